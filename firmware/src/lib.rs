@@ -1,0 +1,10 @@
+//! The leg's firmware without its hardware: what a board, QEMU and the host's own process run alike.
+#![cfg_attr(not(test), no_std)]
+
+pub mod counter;
+pub mod exit;
+pub mod frame;
+pub mod kernels;
+pub mod link;
+pub mod protocol;
+pub mod server;

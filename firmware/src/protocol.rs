@@ -1,0 +1,158 @@
+//! What host and firmware say to each other, and the hash by which they know that they mean the same.
+
+use crate::kernels::{Kernel, KernelInput, KernelOutput};
+use leg_model::{Error, Evaluation, Query, RigParameters};
+use postcard_schema::{Schema, key::Key};
+use serde::{Deserialize, Serialize};
+
+/// A request from the host. The first one on a link is [`Request::Hello`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub enum Request {
+    /// Introduces the host; the firmware answers with what it is.
+    Hello(Hello),
+    /// Evaluates the whole model at one pose.
+    Evaluate(EvaluateRequest),
+    /// Runs one kernel and returns what it computed.
+    Run(KernelRequest),
+    /// Counts the instructions of one kernel.
+    Count(KernelRequest),
+}
+
+/// The firmware's answer to a [`Request`].
+///
+/// The order of the variants is part of the format: [`Reply::Hello`] and [`Reply::Refused`] stay in front, so that
+/// two sides of different age can still tell each other so.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub enum Reply {
+    /// The firmware speaks the same language.
+    Hello(BoardInfo),
+    /// Nothing was done.
+    Refused(Refusal),
+    /// The model at the pose.
+    Evaluation(Evaluation<f32>),
+    /// What a kernel computed.
+    Ran(KernelOutput),
+    /// Instructions that a kernel took.
+    Counted(u32),
+}
+
+/// The hash of the sender's [`Request`] and [`Reply`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Hello {
+    /// [`SCHEMA`] of the sender.
+    pub schema: [u8; 8],
+}
+
+/// What the firmware is and found at boot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct BoardInfo {
+    /// Which board layer answers.
+    pub board: Board,
+    /// What the board measured of itself at boot; `None` in the host's own process.
+    pub boot: Option<BootCheck>,
+}
+
+/// What a board measured of itself at boot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct BootCheck {
+    /// How long an alarm set to 1 000 µs took by the board's other timer, µs.
+    pub alarm_us: u32,
+    /// What the instruction counter read for 100 `nop`s; it counts only where this is 100.
+    pub nops_counted: u32,
+}
+
+/// The board layers that exist.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub enum Board {
+    /// QEMU's mps2-an386.
+    Qemu,
+    /// NUCLEO-G474RE.
+    Stm32g474,
+    /// Inside the host's own process.
+    InProcess,
+}
+
+/// A pose to evaluate on a rig.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct EvaluateRequest {
+    /// The mechanism.
+    pub rig: RigMessage,
+    /// The pose, the load and the tendons.
+    pub query: Query<f32>,
+}
+
+/// A kernel and what it works on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct KernelRequest {
+    /// Which kernel.
+    pub kernel: Kernel,
+    /// Its arguments.
+    pub input: KernelInput,
+}
+
+/// Why the firmware did nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub enum Refusal {
+    /// The host has not said [`Request::Hello`] yet.
+    NoHello,
+    /// The host's schema is another one; the firmware's own is given.
+    SchemaMismatch {
+        /// [`SCHEMA`] of the firmware.
+        schema: [u8; 8],
+    },
+    /// The frame could not be read.
+    BadFrame(crate::frame::FrameError),
+    /// The frame is whole but holds no request.
+    BadRequest,
+    /// The model gives no result for the arguments.
+    Model(Error),
+    /// The board cannot count instructions.
+    NoCounter,
+}
+
+/// Hash of every type that crosses the link: it changes when a message's shape changes.
+pub const SCHEMA: [u8; 8] = Key::for_path::<(Request, Reply)>("leg").to_bytes();
+
+/// [`RigParameters`] of a mechanism with three tendons, as they cross the link.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[allow(missing_docs, reason = "each field is documented at RigParameters")]
+pub struct RigMessage {
+    pub base_anchors_m: [[f32; 2]; 3],
+    pub leg_anchors_m: [[f32; 2]; 3],
+    pub upper_length_m: f32,
+    pub joint_length_m: f32,
+    pub leg_length_m: f32,
+    pub leg_mass_kg: f32,
+    pub leg_centroid_m: f32,
+    pub gravity_m_per_s2: f32,
+}
+
+impl From<RigParameters<f32, 3>> for RigMessage {
+    fn from(rig: RigParameters<f32, 3>) -> Self {
+        Self {
+            base_anchors_m: rig.base_anchors_m,
+            leg_anchors_m: rig.leg_anchors_m,
+            upper_length_m: rig.upper_length_m,
+            joint_length_m: rig.joint_length_m,
+            leg_length_m: rig.leg_length_m,
+            leg_mass_kg: rig.leg_mass_kg,
+            leg_centroid_m: rig.leg_centroid_m,
+            gravity_m_per_s2: rig.gravity_m_per_s2,
+        }
+    }
+}
+
+impl From<RigMessage> for RigParameters<f32, 3> {
+    fn from(rig: RigMessage) -> Self {
+        Self {
+            base_anchors_m: rig.base_anchors_m,
+            leg_anchors_m: rig.leg_anchors_m,
+            upper_length_m: rig.upper_length_m,
+            joint_length_m: rig.joint_length_m,
+            leg_length_m: rig.leg_length_m,
+            leg_mass_kg: rig.leg_mass_kg,
+            leg_centroid_m: rig.leg_centroid_m,
+            gravity_m_per_s2: rig.gravity_m_per_s2,
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! Answers requests: the same on every board and inside the host's own process.
+
+use crate::counter::Counter;
+use crate::frame::{self, Frame, FrameError, MAX_FRAME};
+use crate::kernels;
+use crate::protocol::{
+    BoardInfo, EvaluateRequest, Hello, KernelRequest, Refusal, Reply, Request, SCHEMA,
+};
+
+#[cfg(test)]
+mod tests;
+
+/// What the server needs from the board that it runs on.
+pub trait Board: Counter {
+    /// What the board is and found at boot.
+    fn info(&self) -> BoardInfo;
+}
+
+/// One end of a link: it answers each request with one reply.
+#[derive(Debug)]
+pub struct Server<B> {
+    board: B,
+    greeted: bool,
+}
+
+impl<B: Board> Server<B> {
+    /// A server whose host has not said [`Request::Hello`] yet.
+    pub const fn new(board: B) -> Self {
+        Self {
+            board,
+            greeted: false,
+        }
+    }
+
+    /// Answers what a [`frame::Decoder`] found and returns the reply's frame.
+    ///
+    /// The reply has the request's sequence; a frame that could not be read is answered by
+    /// [`Refusal::BadFrame`] with sequence 0, which no request has.
+    ///
+    /// # Errors
+    /// [`FrameError::TooLong`] if the reply does not fit into a frame.
+    pub fn answer<'a>(
+        &mut self,
+        request: Result<Frame<'_>, FrameError>,
+        out: &'a mut [u8; MAX_FRAME],
+    ) -> Result<&'a [u8], FrameError> {
+        match request {
+            Ok(frame) => frame::encode(frame.sequence, &self.reply(&frame), out),
+            Err(error) => frame::encode(0, &Reply::Refused(Refusal::BadFrame(error)), out),
+        }
+    }
+
+    fn reply(&mut self, frame: &Frame<'_>) -> Reply {
+        let reply = match frame.message::<Request>() {
+            None => Err(Refusal::BadRequest),
+            Some(Request::Hello(hello)) => self.greet(hello),
+            Some(_) if !self.greeted => Err(Refusal::NoHello),
+            Some(Request::Evaluate(request)) => evaluate(&request),
+            Some(Request::Run(request)) => run(&request),
+            Some(Request::Count(request)) => self.count(&request),
+        };
+        reply.unwrap_or_else(Reply::Refused)
+    }
+
+    fn greet(&mut self, hello: Hello) -> Result<Reply, Refusal> {
+        self.greeted = hello.schema == SCHEMA;
+        if self.greeted {
+            Ok(Reply::Hello(self.board.info()))
+        } else {
+            Err(Refusal::SchemaMismatch { schema: SCHEMA })
+        }
+    }
+
+    fn count(&mut self, request: &KernelRequest) -> Result<Reply, Refusal> {
+        kernels::count(request.kernel, &request.input, &mut self.board)
+            .map_err(Refusal::Model)?
+            .map(Reply::Counted)
+            .ok_or(Refusal::NoCounter)
+    }
+}
+
+fn evaluate(request: &EvaluateRequest) -> Result<Reply, Refusal> {
+    leg_model::evaluate(&request.rig.into(), &request.query)
+        .map(Reply::Evaluation)
+        .map_err(Refusal::Model)
+}
+
+fn run(request: &KernelRequest) -> Result<Reply, Refusal> {
+    kernels::run(request.kernel, &request.input)
+        .map(Reply::Ran)
+        .map_err(Refusal::Model)
+}

@@ -1,0 +1,62 @@
+//! Files that are there as a whole or not at all.
+
+use std::io;
+use std::path::Path;
+
+/// Makes the folder of `path`, lets `write` make a new file of the same name beside it, and moves that to `path`.
+///
+/// # Errors
+/// The error of `write`, or the system's; `path` is then as it was.
+pub fn replace<E: From<io::Error>>(
+    path: &Path,
+    write: impl FnOnce(&Path) -> Result<(), E>,
+) -> Result<(), E> {
+    let no_file = || io::Error::from(io::ErrorKind::IsADirectory);
+    let (Some(folder), Some(name)) = (path.parent(), path.file_name()) else {
+        return Err(no_file().into());
+    };
+    std::fs::create_dir_all(folder)?;
+    // In the same folder: a move from one disk to another is a copy.
+    let workshop = tempfile::Builder::new()
+        .prefix(".leg-")
+        .tempdir_in(folder)?;
+    let new = workshop.path().join(name);
+    write(&new)?;
+    std::fs::rename(&new, path)?;
+    Ok(())
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::replace;
+    use std::io;
+
+    #[test]
+    fn a_failed_write_leaves_the_old_file_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("chart.svg");
+        std::fs::write(&path, "old").unwrap();
+        let failed = replace(&path, |new| {
+            std::fs::write(new, "half")?;
+            Err(io::Error::other("disk full"))
+        });
+        assert!(failed.is_err());
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "old");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_whole_write_replaces_it_and_makes_the_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a/b/chart.svg");
+        replace(&path, |new| std::fs::write(new, "new")).unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "new");
+        assert_eq!(
+            std::fs::read_dir(folder.path().join("a/b"))
+                .unwrap()
+                .count(),
+            1
+        );
+    }
+}

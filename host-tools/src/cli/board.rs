@@ -1,0 +1,56 @@
+//! Opening the links that commands ask for, with everything that they need.
+
+use crate::failure::Failure;
+use crate::link::{InProcess, Link};
+use crate::qemu::{Config, Session};
+use crate::{image, setup};
+use indicatif::ProgressBar;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// What QEMU needs.
+pub(super) struct Prerequisites {
+    /// The emulator's program.
+    pub(super) qemu: PathBuf,
+    /// The firmware's ELF file.
+    pub(super) image: PathBuf,
+}
+
+/// The firmware's code in this process.
+pub(super) fn in_process() -> Result<Box<dyn Link>, Failure> {
+    match InProcess::open() {
+        Ok(link) => Ok(Box::new(link)),
+        Err(error) => Err(Failure::from_error(&error)),
+    }
+}
+
+/// The firmware on an emulated board. Installs and builds first what is missing.
+pub(super) fn qemu(verbose: bool) -> Result<Box<dyn Link>, Failure> {
+    let Prerequisites { qemu, image } = prepare()?;
+    let config = Config {
+        verbose,
+        ..Config::new(qemu, image)
+    };
+    match Session::open(&config) {
+        Ok(session) => Ok(Box::new(session)),
+        Err(error) => Err(Failure::from_error(&error)),
+    }
+}
+
+/// Installs and builds what is missing, and says so on standard error.
+pub(super) fn prepare() -> Result<Prerequisites, Failure> {
+    let mut report = |doing: &str| eprintln!("leg: {doing}");
+    setup::ensure_target(&mut report).map_err(|error| Failure::from_error(&error))?;
+    let qemu = setup::ensure_qemu(&mut report).map_err(|error| Failure::from_error(&error))?;
+    let image = build_image()?;
+    Ok(Prerequisites { qemu, image })
+}
+
+/// Builds the firmware, with a sign of life on a terminal: the first time takes half a minute.
+fn build_image() -> Result<PathBuf, Failure> {
+    let spinner = ProgressBar::new_spinner().with_message("building the firmware for QEMU");
+    spinner.enable_steady_tick(Duration::from_millis(100));
+    let built = image::build();
+    spinner.finish_and_clear();
+    built.map_err(|error| Failure::from_error(&error))
+}

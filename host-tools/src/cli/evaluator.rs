@@ -1,0 +1,97 @@
+//! What computes the answers of `leg eval`.
+
+use super::board;
+use crate::evaluate::{self, EvaluateError};
+use crate::failure::Failure;
+use crate::jsonl::Line;
+use crate::line_error::LineError;
+use crate::link::Link;
+use crate::rig_file::RigFile;
+use clap::ValueEnum;
+use serde::Serialize;
+
+/// The choices of `--on`.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum On {
+    /// The host, in f64.
+    F64,
+    /// The firmware's code in this process, in f32.
+    F32,
+    /// The firmware on an emulated Cortex-M4F, in f32.
+    Qemu,
+}
+
+/// Why there is no answer.
+pub(super) enum Stop {
+    /// The line has no result; the next may have one.
+    Line(LineError),
+    /// The command cannot go on.
+    Command(Failure),
+}
+
+impl From<LineError> for Stop {
+    fn from(error: LineError) -> Self {
+        Self::Line(error)
+    }
+}
+
+impl From<leg_model::Error> for Stop {
+    fn from(error: leg_model::Error) -> Self {
+        Self::Line(error.into())
+    }
+}
+
+impl From<EvaluateError> for Stop {
+    fn from(error: EvaluateError) -> Self {
+        match error {
+            EvaluateError::Model(error) => Self::Line(error.into()),
+            _ => Self::Command(Failure::from_error(&error)),
+        }
+    }
+}
+
+/// The model in f64 on the host, or in f32 behind a link.
+pub(super) enum Evaluator {
+    Host,
+    Firmware(Box<dyn Link>),
+}
+
+impl Evaluator {
+    pub(super) fn start(on: On, verbose: bool) -> Result<Self, Failure> {
+        Ok(match on {
+            On::F64 => Self::Host,
+            On::F32 => Self::Firmware(board::in_process()?),
+            On::Qemu => Self::Firmware(board::qemu(verbose)?),
+        })
+    }
+
+    /// The answer to a line, as a line.
+    pub(super) fn answer(&mut self, text: &[u8], rig: &RigFile) -> Result<String, Stop> {
+        let Line { rig, query } = Line::parse(text, rig)?;
+        match self {
+            Self::Host => to_line(&leg_model::evaluate(&rig, &query)?),
+            Self::Firmware(link) => to_line(&evaluate::on_link(link.as_mut(), &rig, &query)?),
+        }
+        .map_err(Stop::Command)
+    }
+}
+
+/// What stands in the place of an answer.
+pub(super) fn refusal(error: &LineError, line: usize) -> Result<String, Failure> {
+    #[derive(Serialize)]
+    struct Refusal {
+        error: String,
+        line: usize,
+    }
+    to_line(&Refusal {
+        error: error.to_string(),
+        line,
+    })
+}
+
+fn to_line(answer: &impl Serialize) -> Result<String, Failure> {
+    match serde_json::to_string(answer) {
+        Ok(json) => Ok(json + "\n"),
+        Err(error) => Err(Failure::from_error(&error)),
+    }
+}

@@ -1,0 +1,67 @@
+//! The command line `leg`, one file a command.
+
+mod board;
+mod eval;
+mod evaluator;
+mod run;
+mod run_report;
+mod setup;
+
+use crate::failure::Failure;
+use clap::{Parser, Subcommand};
+use std::io::{self, IsTerminal, Write};
+use std::process::ExitCode;
+
+/// The tendon-driven leg on your desk: its model, and its firmware under an emulator.
+#[derive(Debug, Parser)]
+#[command(name = "leg", bin_name = "leg", version, after_help = EXIT_CODES)]
+struct Cli {
+    /// Shows the firmware's log on standard error.
+    #[arg(short, long, global = true)]
+    verbose: bool,
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  everything held
+  1  something was checked and did not hold
+  2  bad input, or something needed is missing";
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Eval(eval::Args),
+    Run(run::Args),
+    /// Installs what the other commands need: the Rust target, QEMU, and the firmware built for it.
+    ///
+    /// The other commands do the same on their first use.
+    Setup,
+}
+
+/// Runs the command of this process's arguments and tells its failure on standard error.
+#[must_use]
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let ended = match &cli.command {
+        Command::Eval(args) => eval::run(args, cli.verbose),
+        Command::Run(args) => run::run(args, cli.verbose),
+        Command::Setup => setup::run(),
+    };
+    match ended {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("{}", failure.render(io::stderr().is_terminal()));
+            failure.exit_code()
+        }
+    }
+}
+
+/// Writes to standard output.
+fn print(text: &str) -> Result<(), Failure> {
+    let written = io::stdout().lock().write_all(text.as_bytes());
+    written.map_err(|error| {
+        let help = "see that the program that reads the output is still there";
+        Failure::refused(format!("cannot write to standard output: {error}"), help)
+    })
+}

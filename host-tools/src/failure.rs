@@ -1,0 +1,115 @@
+//! What a command can end with instead of success, and how it is told.
+
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use std::ops::Range;
+use std::process::ExitCode;
+
+/// What a command can end with instead of success.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Failure {
+    /// The work was done and something did not hold: exit code 1.
+    Missed(Message),
+    /// Bad input or a missing prerequisite: exit code 2.
+    Refused(Message),
+}
+
+/// A sentence for the user, with what to do about it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Message {
+    /// What is wrong.
+    pub sentence: String,
+    /// What to do.
+    pub help: Option<String>,
+    /// Where it is.
+    pub place: Option<Place>,
+}
+
+/// A piece of a text file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The file's name, as the user gave it.
+    pub file: String,
+    /// The whole text of the file.
+    pub text: String,
+    /// The bytes of the text that are meant.
+    pub span: Range<usize>,
+}
+
+impl Failure {
+    /// Something was checked and did not hold.
+    #[must_use]
+    pub fn missed(sentence: impl Into<String>, help: impl Into<String>) -> Self {
+        Self::Missed(Message::new(sentence, Some(help.into())))
+    }
+
+    /// The input or a prerequisite is at fault.
+    #[must_use]
+    pub fn refused(sentence: impl Into<String>, help: impl Into<String>) -> Self {
+        Self::Refused(Message::new(sentence, Some(help.into())))
+    }
+
+    /// A text file is at fault, at a place in it.
+    #[must_use]
+    pub fn refused_at(sentence: impl Into<String>, help: impl Into<String>, place: Place) -> Self {
+        let message = Message::new(sentence, Some(help.into()));
+        Self::Refused(Message {
+            place: Some(place),
+            ..message
+        })
+    }
+
+    /// An error whose own sentence already says what to do.
+    #[must_use]
+    pub fn from_error(error: &impl std::error::Error) -> Self {
+        Self::Refused(Message::new(error.to_string(), None))
+    }
+
+    /// The process's exit code: 1 or 2.
+    #[must_use]
+    pub fn exit_code(&self) -> ExitCode {
+        ExitCode::from(match self {
+            Self::Missed(_) => 1,
+            Self::Refused(_) => 2,
+        })
+    }
+
+    /// The text for the user, coloured or plain.
+    #[must_use]
+    pub fn render(&self, coloured: bool) -> String {
+        let (Self::Missed(message) | Self::Refused(message)) = self;
+        let renderer = if coloured {
+            Renderer::styled()
+        } else {
+            Renderer::plain()
+        };
+        let mut told = renderer.render(&[message.error_group()]).to_string();
+        if let Some(help) = &message.help {
+            let group = Group::with_title(Level::HELP.primary_title(help.as_str()));
+            told.push('\n');
+            told.push_str(&renderer.render(&[group]).to_string());
+        }
+        told
+    }
+}
+
+impl Message {
+    fn new(sentence: impl Into<String>, help: Option<String>) -> Self {
+        Self {
+            sentence: sentence.into(),
+            help,
+            place: None,
+        }
+    }
+
+    fn error_group(&self) -> Group<'_> {
+        let title = Level::ERROR.primary_title(self.sentence.as_str());
+        match &self.place {
+            None => Group::with_title(title),
+            Some(place) => title.element(
+                Snippet::source(place.text.as_str())
+                    .path(place.file.as_str())
+                    .annotation(AnnotationKind::Primary.span(place.span.clone())),
+            ),
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! One line of `leg eval`'s input.
+
+use crate::json_entries::{self, Entries};
+use crate::line_error::LineError;
+use crate::rig_file::RigFile;
+use crate::suggest;
+use crate::support_word;
+use leg_model::{Query, RigParameters, SupportKind};
+
+/// The keys that a line has to give.
+const REQUIRED: [&str; 3] = ["azimuth_deg", "tilt_deg", "payload_kg"];
+
+/// All keys.
+const KEYS: [&str; 10] = [
+    "azimuth_deg",
+    "tilt_deg",
+    "payload_kg",
+    "level_n",
+    "stiffness_n_per_m",
+    "f_min_n",
+    "f_max_n",
+    "leg_mass_kg",
+    "l_upper_m",
+    "support",
+];
+
+/// The shortest line that has a result.
+pub const EXAMPLE: &str = r#"{"azimuth_deg":30,"tilt_deg":20,"payload_kg":1}"#;
+
+/// What a line asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    /// The rig file's mechanism with the line's changes.
+    pub rig: RigParameters<f64, 3>,
+    /// The pose, the load and the tendons.
+    pub query: Query<f64>,
+}
+
+impl Line {
+    /// Reads one line; what it leaves out comes from the rig file.
+    ///
+    /// # Errors
+    /// A [`LineError`] that names the key and the fix.
+    pub fn parse(text: &[u8], defaults: &RigFile) -> Result<Self, LineError> {
+        let Entries(entries) = json_entries::parse(text).map_err(LineError::NotAnObject)?;
+        let mut line = Self {
+            rig: defaults.parameters,
+            query: defaults.query(0.0, 0.0, 0.0),
+        };
+        for (index, (key, value)) in entries.iter().enumerate() {
+            if entries[..index].iter().any(|(earlier, _)| earlier == key) {
+                return Err(LineError::Repeated(key.clone()));
+            }
+            line.set(key, value.get())?;
+        }
+        let given = |key: &str| entries.iter().any(|(given, _)| given == key);
+        match REQUIRED.iter().find(|key| !given(key)) {
+            Some(key) => Err(LineError::MissingKey(key)),
+            None => Ok(line),
+        }
+    }
+
+    fn set(&mut self, key: &str, value: &str) -> Result<(), LineError> {
+        let Some(key) = KEYS.into_iter().find(|known| *known == key) else {
+            let fix = suggest::for_key(key, &KEYS);
+            return Err(LineError::UnknownKey {
+                key: key.into(),
+                fix,
+            });
+        };
+        let query = &mut self.query;
+        match key {
+            "azimuth_deg" => query.azimuth_rad = number(key, value)?.to_radians(),
+            "tilt_deg" => query.tilt_rad = number(key, value)?.to_radians(),
+            "payload_kg" => query.payload_kg = number(key, value)?,
+            "level_n" => query.level_n = number(key, value)?,
+            "stiffness_n_per_m" => query.stiffness_n_per_m = number(key, value)?,
+            "f_min_n" => query.tension_floor_n = number(key, value)?,
+            "f_max_n" => query.tension_ceiling_n = number(key, value)?,
+            "leg_mass_kg" => self.rig.leg_mass_kg = number(key, value)?,
+            "l_upper_m" => self.rig.upper_length_m = number(key, value)?,
+            _ => query.support = support(value)?,
+        }
+        Ok(())
+    }
+}
+
+fn number(key: &'static str, value: &str) -> Result<f64, LineError> {
+    match kind(value) {
+        "a number" => {}
+        found => return Err(LineError::NotANumber { key, found }),
+    }
+    match value.parse() {
+        Ok(number) if f64::is_finite(number) => Ok(number),
+        _ => Err(LineError::NotFinite {
+            key,
+            found: value.into(),
+        }),
+    }
+}
+
+fn support(value: &str) -> Result<SupportKind, LineError> {
+    let word: String = serde_json::from_str(value).map_err(|_| LineError::NotAWord(kind(value)))?;
+    support_word::parse(&word).map_err(LineError::Support)
+}
+
+/// What a JSON value is; its first character tells.
+fn kind(value: &str) -> &'static str {
+    match value.as_bytes().first() {
+        Some(b'"') => "a string",
+        Some(b'[') => "an array",
+        Some(b'{') => "an object",
+        Some(b't' | b'f') => "a truth value",
+        Some(b'n') => "null",
+        _ => "a number",
+    }
+}

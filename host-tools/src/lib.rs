@@ -1,0 +1,20 @@
+//! The command `leg` and what it is made of.
+
+pub mod atomic_file;
+pub mod cli;
+pub mod evaluate;
+pub mod experiment;
+pub mod failure;
+pub mod image;
+mod json_entries;
+pub mod jsonl;
+pub mod line_error;
+pub mod link;
+pub mod plot;
+pub mod qemu;
+pub mod rig_file;
+pub mod setup;
+mod suggest;
+pub mod support_word;
+pub mod toml_problem;
+pub mod toml_section;

@@ -1,0 +1,60 @@
+//! The firmware under QEMU: one emulator for one session, reached by two named pipes.
+
+mod connection;
+mod log;
+mod pipes;
+mod process;
+mod session;
+
+pub use session::Session;
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// How QEMU's clock relates to the instructions that it executes. Both kinds give the same run every time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clock {
+    /// 8 ns an instruction: about the speed of the real processor.
+    Normal,
+    /// 1 024 ns an instruction: the firmware can count instructions.
+    Counting,
+}
+
+impl Clock {
+    /// QEMU's `-icount`. Without it QEMU's clock is the host's, and the boot check of a busy machine would fail.
+    const fn icount(self) -> &'static str {
+        match self {
+            Self::Normal => "shift=3,sleep=off",
+            Self::Counting => "shift=10,sleep=off",
+        }
+    }
+}
+
+/// What to start and how.
+#[derive(Clone, Debug)]
+pub struct Config {
+    /// The program `qemu-system-arm`.
+    pub qemu: PathBuf,
+    /// ELF file of the firmware.
+    pub image: PathBuf,
+    /// QEMU's clock.
+    pub clock: Clock,
+    /// Longest wait for the boot, for a reply and for the end.
+    pub timeout: Duration,
+    /// Whether the firmware's log goes to standard error as it comes.
+    pub verbose: bool,
+}
+
+impl Config {
+    /// Runs `image` in `qemu` with the normal clock, a timeout of 20 s and a silent log.
+    #[must_use]
+    pub const fn new(qemu: PathBuf, image: PathBuf) -> Self {
+        Self {
+            qemu,
+            image,
+            clock: Clock::Normal,
+            timeout: Duration::from_secs(20),
+            verbose: false,
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! The rig file: a mechanism in a human's units, read into SI.
+
+mod reading;
+
+use crate::failure::{Failure, Place};
+use crate::toml_problem::Problem;
+use leg_model::{Query, RigParameters, SupportKind};
+use std::path::{Path, PathBuf};
+
+/// The bundled file that describes the paper's rig.
+const TABLE_1: &str = include_str!("../rigs/table1.toml");
+
+/// A mechanism and how it is used, as its file describes them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigFile {
+    /// The geometry and the masses.
+    pub parameters: RigParameters<f64, 3>,
+    /// Stiffness of each tendon, N/m.
+    pub stiffness_n_per_m: f64,
+    /// Lowest tension allowed, N.
+    pub tension_floor_n: f64,
+    /// Highest tension allowed, N.
+    pub tension_ceiling_n: f64,
+    /// Level of pretension, N per tendon at the vertical pose.
+    pub level_n: f64,
+    /// How far the leg leans at most, degrees.
+    pub tilt_deg: f64,
+    /// How the central support guides the leg.
+    pub support: SupportKind,
+}
+
+/// Why a rig file is refused.
+#[derive(Debug, thiserror::Error)]
+pub enum RigFileError {
+    /// The file cannot be read.
+    #[error("cannot read the rig file {}: {error}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        error: std::io::Error,
+    },
+    /// The file is read, but something in it is wrong.
+    #[error("{problem}")]
+    Faulty {
+        /// Where.
+        place: Place,
+        /// What.
+        problem: Problem,
+    },
+}
+
+impl RigFile {
+    /// The file at `path`, or the paper's rig when there is none.
+    ///
+    /// # Errors
+    /// A [`RigFileError`] with the place.
+    pub fn load(path: Option<&Path>) -> Result<Self, RigFileError> {
+        let Some(path) = path else {
+            return Self::parse("rigs/table1.toml", TABLE_1);
+        };
+        let unreadable = |error| RigFileError::Unreadable {
+            path: path.into(),
+            error,
+        };
+        let text = std::fs::read_to_string(path).map_err(unreadable)?;
+        Self::parse(&path.display().to_string(), &text)
+    }
+
+    /// The text of a rig file; `file` is its name in messages.
+    ///
+    /// # Errors
+    /// [`RigFileError::Faulty`] with the place.
+    pub fn parse(file: &str, text: &str) -> Result<Self, RigFileError> {
+        reading::parse(text).map_err(|fault| RigFileError::Faulty {
+            place: Place {
+                file: file.into(),
+                text: text.into(),
+                span: fault.span,
+            },
+            problem: fault.problem,
+        })
+    }
+
+    /// Whether this is the paper's rig.
+    #[must_use]
+    pub fn is_table_1(&self) -> bool {
+        Self::load(None).is_ok_and(|table_1| table_1 == *self)
+    }
+
+    /// The pose at an azimuth and a tilt with a payload, everything else as the file says.
+    #[must_use]
+    pub fn query(&self, azimuth_deg: f64, tilt_deg: f64, payload_kg: f64) -> Query<f64> {
+        Query {
+            azimuth_rad: azimuth_deg.to_radians(),
+            tilt_rad: tilt_deg.to_radians(),
+            payload_kg,
+            level_n: self.level_n,
+            tension_floor_n: self.tension_floor_n,
+            tension_ceiling_n: self.tension_ceiling_n,
+            stiffness_n_per_m: self.stiffness_n_per_m,
+            support: self.support,
+        }
+    }
+}
+
+impl From<RigFileError> for Failure {
+    fn from(error: RigFileError) -> Self {
+        match error {
+            RigFileError::Unreadable { .. } => {
+                Self::refused(error.to_string(), "give a file that exists and may be read")
+            }
+            RigFileError::Faulty { place, ref problem } => {
+                Self::refused_at(problem.to_string(), problem.fix(), place)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::RigFile;
+    use leg_model::{RigParameters, SupportKind};
+
+    #[test]
+    fn the_bundled_file_is_the_models_table_1() {
+        let file = RigFile::load(None).unwrap();
+        assert_eq!(file.parameters, RigParameters::<f64, 3>::TABLE_1);
+        assert_eq!(file.support, SupportKind::TorsionFree);
+        assert!(file.is_table_1());
+    }
+}

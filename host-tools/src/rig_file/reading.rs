@@ -1,0 +1,114 @@
+//! From the text of a rig file to its values, every one checked.
+
+use super::RigFile;
+use crate::support_word;
+use crate::toml_problem::{Fault, Problem};
+use crate::toml_section::Section;
+use leg_model::{Error, Quantity, Reason, RigParameters, SupportKind};
+use toml::de::DeTable;
+
+/// Reads the file and lets the model check it.
+pub(super) fn parse(text: &str) -> Result<RigFile, Fault> {
+    let syntax = |error: toml::de::Error| Fault {
+        span: error.span().unwrap_or(0..0),
+        problem: Problem::Syntax(error.message().into()),
+    };
+    let table = DeTable::parse(text).map_err(syntax)?;
+    let sections = ["geometry", "mass", "tendon", "workspace", "support"];
+    let root = Section::new(table.get_ref(), 0..0, &sections)?;
+    let file = read(&root)?;
+    if let Err((quantity, reason)) = check(&file)
+        && let Some((section, key)) = key_of(quantity)
+    {
+        let span = root.span_of(section, key).unwrap_or(0..0);
+        return Err(Fault {
+            span,
+            problem: Problem::Refused { key, reason },
+        });
+    }
+    Ok(file)
+}
+
+fn read(root: &Section<'_>) -> Result<RigFile, Fault> {
+    let lengths = [
+        "upper_mm",
+        "joint_mm",
+        "leg_mm",
+        "base_anchors_mm",
+        "leg_anchors_mm",
+    ];
+    let geometry = root.section("geometry", &lengths)?;
+    let mass = root.section("mass", &["leg_kg", "centroid_mm", "gravity_m_per_s2"])?;
+    let forces = ["stiffness_n_per_m", "floor_n", "ceiling_n", "level_n"];
+    let tendon = root.section("tendon", &forces)?;
+    let workspace = root.section("workspace", &["tilt_deg"])?;
+    let support = root.section("support", &["kind"])?;
+    Ok(RigFile {
+        parameters: RigParameters {
+            base_anchors_m: geometry
+                .points("base_anchors_mm")?
+                .map(|point| point.map(metres)),
+            leg_anchors_m: geometry
+                .points("leg_anchors_mm")?
+                .map(|point| point.map(metres)),
+            upper_length_m: metres(geometry.number("upper_mm")?),
+            joint_length_m: metres(geometry.number("joint_mm")?),
+            leg_length_m: metres(geometry.number("leg_mm")?),
+            leg_mass_kg: mass.number("leg_kg")?,
+            leg_centroid_m: metres(mass.number("centroid_mm")?),
+            gravity_m_per_s2: mass.number("gravity_m_per_s2")?,
+        },
+        stiffness_n_per_m: tendon.number("stiffness_n_per_m")?,
+        tension_floor_n: tendon.number("floor_n")?,
+        tension_ceiling_n: tendon.number("ceiling_n")?,
+        level_n: tendon.number("level_n")?,
+        tilt_deg: workspace.number("tilt_deg")?,
+        support: read_support(&support)?,
+    })
+}
+
+fn metres(length_mm: f64) -> f64 {
+    length_mm / 1000.0
+}
+
+fn read_support(section: &Section<'_>) -> Result<SupportKind, Fault> {
+    let word = section.word("kind")?;
+    let unknown = |error| Fault {
+        span: word.span(),
+        problem: Problem::Support(error),
+    };
+    support_word::parse(word.get_ref()).map_err(unknown)
+}
+
+/// What the model refuses in the file. What it cannot solve at some pose is left to the commands.
+fn check(file: &RigFile) -> Result<(), (Quantity, Reason)> {
+    if file.tilt_deg <= 0.0 {
+        return Err((Quantity::Tilt, Reason::NotPositive));
+    }
+    match leg_model::evaluate(&file.parameters, &file.query(0.0, file.tilt_deg, 0.0)) {
+        Err(Error::Refused { quantity, reason }) => Err((quantity, reason)),
+        _ => Ok(()),
+    }
+}
+
+/// Where the file gives a quantity: section and key. It does not give those of a single pose.
+fn key_of(quantity: Quantity) -> Option<(&'static str, &'static str)> {
+    Some(match quantity {
+        Quantity::BaseAnchors => ("geometry", "base_anchors_mm"),
+        Quantity::LegAnchors => ("geometry", "leg_anchors_mm"),
+        Quantity::UpperLength => ("geometry", "upper_mm"),
+        Quantity::JointLength => ("geometry", "joint_mm"),
+        Quantity::LegLength => ("geometry", "leg_mm"),
+        Quantity::LegMass => ("mass", "leg_kg"),
+        Quantity::LegCentroid => ("mass", "centroid_mm"),
+        Quantity::Gravity => ("mass", "gravity_m_per_s2"),
+        Quantity::TendonStiffness => ("tendon", "stiffness_n_per_m"),
+        Quantity::TensionFloor => ("tendon", "floor_n"),
+        Quantity::TensionCeiling => ("tendon", "ceiling_n"),
+        Quantity::Level => ("tendon", "level_n"),
+        Quantity::Tilt => ("workspace", "tilt_deg"),
+        Quantity::Azimuth | Quantity::Payload | Quantity::TendonLength | Quantity::Direction => {
+            return None;
+        }
+    })
+}

@@ -1,0 +1,98 @@
+//! What can be wrong with a rig file, in words.
+
+use crate::support_word::UnknownSupport;
+use leg_model::Reason;
+use std::ops::Range;
+
+/// A refusal and the bytes of the text that it means.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// The bytes.
+    pub span: Range<usize>,
+    /// What is wrong with them.
+    pub problem: Problem,
+}
+
+/// What can be wrong with a rig file.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Problem {
+    /// It is no TOML.
+    #[error("not TOML: {0}")]
+    Syntax(String),
+    /// A key that no reader takes.
+    #[error("unknown key `{key}`")]
+    UnknownKey {
+        /// The key.
+        key: String,
+        /// The fix.
+        fix: String,
+    },
+    /// A key is not there.
+    #[error("missing key `{0}`")]
+    MissingKey(&'static str),
+    /// A section is not there.
+    #[error("missing section `[{0}]`")]
+    MissingSection(&'static str),
+    /// A value has another type.
+    #[error("`{key}` has to be {wanted}, this is a TOML {found}")]
+    WrongType {
+        /// The key.
+        key: &'static str,
+        /// What the file takes.
+        wanted: &'static str,
+        /// The TOML type found.
+        found: &'static str,
+    },
+    /// A number is infinite or not a number.
+    #[error("`{0}` must be a finite number")]
+    NotFinite(&'static str),
+    /// Not as many anchors as the leg has tendons.
+    #[error("`{key}` has {found} anchors: the leg has three tendons")]
+    AnchorCount {
+        /// The key.
+        key: &'static str,
+        /// How many the file gives.
+        found: usize,
+    },
+    /// No support has this name.
+    #[error(transparent)]
+    Support(UnknownSupport),
+    /// The model refuses the value.
+    #[error("`{key}` {reason}")]
+    Refused {
+        /// The key.
+        key: &'static str,
+        /// What is wrong with it.
+        reason: Reason,
+    },
+}
+
+impl Problem {
+    /// What to do about it.
+    #[must_use]
+    pub fn fix(&self) -> String {
+        match self {
+            Self::Syntax(_) => "write `key = value` lines under `[section]` headings".into(),
+            Self::UnknownKey { fix, .. } => fix.clone(),
+            Self::MissingKey(_) | Self::MissingSection(_) => {
+                "add it; host-tools/rigs/table1.toml shows them all".into()
+            }
+            Self::WrongType { wanted, .. } => format!("write {wanted}"),
+            Self::NotFinite(_) => "write a number such as 29 or 1.5e3".into(),
+            Self::AnchorCount { .. } => "give three anchors, [[x, y], [x, y], [x, y]]".into(),
+            Self::Support(error) => error.fix(),
+            Self::Refused { key, reason } => fix_of(key, *reason),
+        }
+    }
+}
+
+fn fix_of(key: &str, reason: Reason) -> String {
+    match reason {
+        Reason::OutOfRange if key == "tilt_deg" => "give at most 60".into(),
+        Reason::Collinear => "spread the anchors round the axis".into(),
+        Reason::AboveCeiling => "give at most `ceiling_n`".into(),
+        Reason::NotFinite | Reason::NotPositive | Reason::Negative | Reason::OutOfRange => {
+            "correct the value; host-tools/rigs/table1.toml has one that works".into()
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! Where the tendons pull: the part of a mechanism that the fast path works on.
+
+use crate::{RigParameters, Scalar, Twist};
+
+/// Anchors and plates of a validated mechanism, for a leg without torsion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Geometry<T, const N: usize> {
+    pub(crate) tendons: [AnchorPair<T>; N],
+    /// L_upper, m.
+    pub(crate) upper: T,
+    /// L_joint, m.
+    pub(crate) joint: T,
+}
+
+/// The two ends of a tendon on their plates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct AnchorPair<T> {
+    /// On the base plate: b, m.
+    pub base: [T; 2],
+    /// On the leg's plate: s, m.
+    pub leg: [T; 2],
+    /// |b − s|² + (L_upper − L_joint)², m²: the part of l² that does not depend on the leg's direction.
+    pub square: T,
+}
+
+impl<T: Scalar, const N: usize> Geometry<T, N> {
+    pub(crate) fn new(parameters: &RigParameters<T, N>) -> Self {
+        let p = parameters;
+        let mut geometry = Self {
+            tendons: [AnchorPair::none(); N],
+            upper: p.upper_length_m,
+            joint: p.joint_length_m,
+        };
+        let ends = p.base_anchors_m.iter().zip(&p.leg_anchors_m);
+        for (pair, (&base, &leg)) in geometry.tendons.iter_mut().zip(ends) {
+            *pair = AnchorPair::new(base, leg, p.upper_length_m, p.joint_length_m);
+        }
+        geometry
+    }
+
+    /// The same mechanism with its leg twisted about its own axis.
+    ///
+    /// A twist only turns the leg's anchors, so every function for a leg without torsion serves a twisted one.
+    #[must_use]
+    #[inline(always)]
+    pub fn twisted(&self, twist: &Twist<T>) -> Self {
+        let mut twisted = *self;
+        for pair in &mut twisted.tendons {
+            *pair = AnchorPair::new(pair.base, twist.apply(pair.leg), self.upper, self.joint);
+        }
+        twisted
+    }
+}
+
+impl<T: Scalar> AnchorPair<T> {
+    fn none() -> Self {
+        let (end, square) = ([T::zero(); 2], T::zero());
+        Self {
+            base: end,
+            leg: end,
+            square,
+        }
+    }
+
+    #[inline(always)]
+    fn new(base: [T; 2], leg: [T; 2], upper: T, joint: T) -> Self {
+        let (dx, dy) = (base[0] - leg[0], base[1] - leg[1]);
+        let dz = upper - joint;
+        Self {
+            base,
+            leg,
+            square: dx * dx + dy * dy + dz * dz,
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Kinematics, statics and stiffness of a leg on a central joint that tendons turn about two axes.
+//!
+//! Every function is pure, allocates nothing, cannot panic and works in f32 (on the board) and f64 (on the host).
+//! Frame {A}: origin at the joint centre, z up, x towards the first base anchor; the leg hangs along −z. SI units.
+//! "Eq. (n)" cites Ma, Yu, Dong, Axinte, "Design and stiffness analysis of a class of 2-DoF tendon driven parallel
+//! kinematics mechanism"; where the code differs from the print, the place says why.
+//!
+//! ```
+//! use leg_model::{Direction, Rig, RigParameters, inverse_kinematics};
+//!
+//! let rig = Rig::new(&RigParameters::<f32, 3>::TABLE_1)?;
+//! let hanging = inverse_kinematics(rig.geometry(), &Direction::down())?;
+//! assert!(hanging.lengths.iter().all(|length| (length - 0.035).abs() < 1e-8));
+//! # Ok::<(), leg_model::Error>(())
+//! ```
+#![no_std]
+
+mod deviation;
+mod error;
+mod evaluation;
+mod forward;
+mod full_pass;
+mod geometry;
+mod kinematics;
+mod load;
+mod pose;
+mod rig;
+mod scalar;
+mod solve;
+mod sqrt;
+mod structural_stiffness;
+mod support;
+mod tendon;
+mod tendon_stiffness;
+mod tension;
+mod torsion;
+mod trigonometry;
+
+pub use deviation::{deviation, tip_displacement};
+pub use error::{Error, Quantity, Reason};
+pub use evaluation::{Evaluation, Query, evaluate};
+pub use forward::{ForwardKinematics, forward_kinematics, forward_kinematics_universal};
+pub use full_pass::{FullPass, TendonStates, full_pass, full_pass_in_plane};
+pub use geometry::Geometry;
+pub use kinematics::{Kinematics, inverse_kinematics};
+pub use load::{Load, estimate_moment};
+pub use pose::{Direction, HalfTangent, Twist};
+pub use rig::{Rig, RigParameters};
+pub use scalar::Scalar;
+pub use solve::{Symmetric3, solve2, solve3};
+pub use structural_stiffness::{structural_stiffness, structural_stiffness_printed};
+pub use support::{FreePlane, SupportKind};
+pub use tendon::Tendon;
+pub use tendon_stiffness::tendon_stiffness;
+pub use tension::{Bound, Distribution, Limit, TensionBounds, distribute};
+pub use torsion::ball_joint_torsion;

@@ -1,0 +1,61 @@
+//! Structural stiffness K₂: what the tensions add while the mechanism turns (Eqs. 10–16).
+
+use crate::kinematics::TendonAtPose;
+use crate::{Direction, Geometry, Scalar};
+use nalgebra::{Matrix3, SVector, Vector3};
+
+/// K₂ exactly, N·m/rad.
+///
+/// The derivative of the tendons' moment at constant tensions,
+/// Σ f(−[n×][e×] + (1/l)[e×](I − nnᵀ)[e×]ᵀ), is Σ (f/l)((e·B)I − eBᵀ − aaᵀ) with a = e × n, because the squares of e
+/// cancel. Its antisymmetric part is half the moment of the tendons.
+#[must_use]
+pub fn structural_stiffness<T: Scalar, const N: usize>(
+    geometry: &Geometry<T, N>,
+    direction: &Direction<T>,
+    tensions: &SVector<T, N>,
+) -> Matrix3<T> {
+    sum_over_tendons(geometry, direction, tensions, |tendon, base| {
+        let (e, a) = (tendon.end(), tendon.moment());
+        let spread = Matrix3::identity() * e.dot(&base) - e * base.transpose() - a * a.transpose();
+        spread * tendon.inverse_length
+    })
+}
+
+/// K₂ as Eq. (15) prints it, Σ f[n×][e×], N·m/rad: for comparison only.
+///
+/// It has the wrong sign for n from S to B and lacks the change of n, so it claims that pretension stiffens bending.
+#[must_use]
+pub fn structural_stiffness_printed<T: Scalar, const N: usize>(
+    geometry: &Geometry<T, N>,
+    direction: &Direction<T>,
+    tensions: &SVector<T, N>,
+) -> Matrix3<T> {
+    sum_over_tendons(geometry, direction, tensions, |tendon, base| {
+        let e = tendon.end();
+        let n = (base - e) * tendon.inverse_length;
+        skew(&n) * skew(&e)
+    })
+}
+
+/// Σ f·term(tendon, B).
+fn sum_over_tendons<T: Scalar, const N: usize>(
+    geometry: &Geometry<T, N>,
+    direction: &Direction<T>,
+    tensions: &SVector<T, N>,
+    term: impl Fn(&TendonAtPose<T>, Vector3<T>) -> Matrix3<T>,
+) -> Matrix3<T> {
+    let q = direction.half_tangent();
+    let pairs = geometry.tendons.iter().zip(tensions.iter());
+    pairs.fold(Matrix3::zeros(), |sum, (pair, &tension)| {
+        let tendon = TendonAtPose::new(pair, geometry.upper, geometry.joint, &q);
+        let base = Vector3::new(pair.base[0], pair.base[1], geometry.upper);
+        sum + term(&tendon, base) * tension
+    })
+}
+
+/// [v×] (Eq. 16).
+fn skew<T: Scalar>(v: &Vector3<T>) -> Matrix3<T> {
+    let zero = T::zero();
+    Matrix3::new(zero, -v.z, v.y, v.z, zero, -v.x, -v.y, v.x, zero)
+}

@@ -1,0 +1,246 @@
+//! Tension distribution: the tensions that balance a load, and the pretension they may carry.
+
+use crate::rig::{check_finite, check_not_negative};
+use crate::{Error, FreePlane, Quantity, Reason, Scalar};
+use nalgebra::{SMatrix, SVector, Vector3};
+
+/// The tensions that are allowed, N.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TensionBounds<T> {
+    pub(crate) floor: T,
+    pub(crate) ceiling: T,
+}
+
+impl<T: Scalar> TensionBounds<T> {
+    /// Lowest and highest tension allowed, N.
+    ///
+    /// # Errors
+    /// Bounds that are not finite, a negative floor, a floor above the ceiling.
+    pub fn new(floor_n: T, ceiling_n: T) -> Result<Self, Error> {
+        check_not_negative(floor_n, Quantity::TensionFloor)?;
+        check_finite(ceiling_n, Quantity::TensionCeiling)?;
+        if floor_n > ceiling_n {
+            return Err(Error::refused(Quantity::TensionFloor, Reason::AboveCeiling));
+        }
+        Ok(Self {
+            floor: floor_n,
+            ceiling: ceiling_n,
+        })
+    }
+}
+
+/// Which bound on the tensions ends the range of levels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize, postcard_schema::Schema),
+    serde(rename_all = "snake_case")
+)]
+pub enum Bound {
+    /// The lowest tension allowed.
+    Floor,
+    /// The highest tension allowed.
+    Ceiling,
+}
+
+/// The tendon and the bound that end the range of levels on one side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize, postcard_schema::Schema)
+)]
+pub struct Limit {
+    /// Tendon, counted from 1.
+    pub tendon: u8,
+    /// The bound that it meets.
+    pub bound: Bound,
+}
+
+/// All tensions that balance a load: f = f_p + level·√N·h.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Distribution<T, const N: usize> {
+    /// f_p: the smallest tensions (in the sum of squares) that balance the load, N. They may be negative.
+    pub particular: SVector<T, N>,
+    /// √N·h: tensions per level of pretension. They load no free axis, and their squares add up to N, so that the
+    /// level is the tension in each tendon at the vertical of a symmetric rig.
+    pub per_level: SVector<T, N>,
+    /// Lowest level that keeps every tension inside its bounds, N.
+    pub lowest_level: T,
+    /// Highest level that keeps every tension inside its bounds, N. Below the lowest when there is none.
+    pub highest_level: T,
+}
+
+impl<T: Scalar, const N: usize> Distribution<T, N> {
+    /// Tensions at a level, N. They balance the load whether or not they keep the bounds.
+    #[must_use]
+    #[inline(always)]
+    pub fn tensions(&self, level: T) -> SVector<T, N> {
+        SVector::from_fn(|i, _| self.particular[i] + level * self.per_level[i])
+    }
+
+    /// Whether any level keeps every tension inside its bounds.
+    #[must_use]
+    #[inline(always)]
+    pub fn feasible(&self) -> bool {
+        self.lowest_level <= self.highest_level
+    }
+
+    /// The tendons and bounds that end the range of levels below and above.
+    #[must_use]
+    pub fn limits(&self, bounds: &TensionBounds<T>) -> [Limit; 2] {
+        let (mut lowest, mut highest) = (-T::MAX, T::MAX);
+        let none = Limit {
+            tendon: 0,
+            bound: Bound::Floor,
+        };
+        let mut limits = [none; 2];
+        for (tendon, i) in (1..).zip(0..N) {
+            let range = level_range(self.particular[i], self.per_level[i], bounds);
+            let rising = self.per_level[i] > T::zero();
+            if range.0 > lowest {
+                lowest = range.0;
+                limits[0] = Limit {
+                    tendon,
+                    bound: if rising { Bound::Floor } else { Bound::Ceiling },
+                };
+            }
+            if range.1 < highest {
+                highest = range.1;
+                limits[1] = Limit {
+                    tendon,
+                    bound: if rising { Bound::Ceiling } else { Bound::Floor },
+                };
+            }
+        }
+        limits
+    }
+}
+
+/// Distributes a load over the tendons: Pᵀ(A f + M) = 0 with every f between its bounds (Eq. 5 on the free axes).
+///
+/// The three rows of A are never solved for three tensions: they depend on each other at the vertical and in every
+/// plane of symmetry.
+///
+/// # Errors
+/// [`Error::Singular`] if the tendons cannot turn the leg about both free axes, or if one of them takes no part in
+/// the pretension.
+#[inline(always)]
+pub fn distribute<T: Scalar, const N: usize>(
+    moment_map: &SMatrix<T, 3, N>,
+    plane: &FreePlane<T>,
+    load_moment: &Vector3<T>,
+    bounds: &TensionBounds<T>,
+) -> Result<Distribution<T, N>, Error> {
+    let rows = Rows::new(moment_map, plane);
+    let (particular, internal) = rows.split(plane.project(load_moment));
+    let (mut sum, mut squares, mut product) = (T::zero(), T::zero(), T::one());
+    for &component in internal.iter() {
+        sum += component;
+        squares += component * component;
+        product *= component;
+    }
+    // A zero component, a missing rank and NaN all end here.
+    if !(product.abs() > T::zero()) {
+        return Err(Error::Singular);
+    }
+    let length = (T::count::<N>() / squares).sqrt();
+    let scale = if sum < T::zero() { -length } else { length };
+    let per_level = SVector::from_fn(|i, _| internal[i] * scale);
+    let (mut lowest_level, mut highest_level) = (-T::MAX, T::MAX);
+    for i in 0..N {
+        let (low, high) = level_range(particular[i], per_level[i], bounds);
+        lowest_level = if low > lowest_level {
+            low
+        } else {
+            lowest_level
+        };
+        highest_level = if high < highest_level {
+            high
+        } else {
+            highest_level
+        };
+    }
+    Ok(Distribution {
+        particular,
+        per_level,
+        lowest_level,
+        highest_level,
+    })
+}
+
+/// Levels between which one tension keeps its bounds, whichever way it changes with the level.
+#[inline(always)]
+fn level_range<T: Scalar>(particular: T, per_level: T, bounds: &TensionBounds<T>) -> (T, T) {
+    let scale = T::one() / per_level;
+    let centre = (T::HALF * (bounds.ceiling + bounds.floor) - particular) * scale;
+    let half_width = (T::HALF * (bounds.ceiling - bounds.floor) * scale).abs();
+    (centre - half_width, centre + half_width)
+}
+
+/// The two rows of PᵀA.
+struct Rows<T, const N: usize> {
+    x: SVector<T, N>,
+    y: SVector<T, N>,
+}
+
+impl<T: Scalar, const N: usize> Rows<T, N> {
+    #[inline(always)]
+    fn new(moment_map: &SMatrix<T, 3, N>, plane: &FreePlane<T>) -> Self {
+        Self {
+            x: SVector::from_fn(|i, _| moment_map[(0, i)] + plane.rho_x * moment_map[(2, i)]),
+            y: SVector::from_fn(|i, _| moment_map[(1, i)] + plane.rho_y * moment_map[(2, i)]),
+        }
+    }
+
+    /// The smallest f with PᵀA f = −w, and a vector of the null space of PᵀA.
+    #[inline(always)]
+    fn split(&self, w: [T; 2]) -> (SVector<T, N>, SVector<T, N>) {
+        if N == 3 {
+            self.split_three(w)
+        } else {
+            self.split_many(w)
+        }
+    }
+
+    /// With three tendons the null space is the line h = x × y, |h|² is the determinant of the normal equations, and
+    /// f_p = h × (w_x y − w_y x)/|h|².
+    #[inline(always)]
+    fn split_three(&self, w: [T; 2]) -> (SVector<T, N>, SVector<T, N>) {
+        let three = |v: &SVector<T, N>| [v[0], v[1], v[2]];
+        let (x, y) = (three(&self.x), three(&self.y));
+        let h = cross(x, y);
+        let scale = T::one() / (h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
+        let turned = [0, 1, 2].map(|i| (w[0] * y[i] - w[1] * x[i]) * scale);
+        let particular = cross(h, turned);
+        (
+            SVector::from_fn(|i, _| particular[i]),
+            SVector::from_fn(|i, _| h[i]),
+        )
+    }
+
+    /// With more tendons: the pseudo-inverse by its normal equations, and the part of (1, …, 1) in the null space.
+    fn split_many(&self, w: [T; 2]) -> (SVector<T, N>, SVector<T, N>) {
+        let (xx, xy, yy) = (
+            self.x.dot(&self.x),
+            self.x.dot(&self.y),
+            self.y.dot(&self.y),
+        );
+        let scale = T::one() / (xx * yy - xy * xy);
+        let in_row_space = |[a, b]: [T; 2]| {
+            let (along_x, along_y) = ((yy * a - xy * b) * scale, (xx * b - xy * a) * scale);
+            self.x * along_x + self.y * along_y
+        };
+        let ones = SVector::repeat(T::one());
+        let internal = ones - in_row_space([self.x.sum(), self.y.sum()]);
+        (-in_row_space(w), internal)
+    }
+}
+
+#[inline(always)]
+fn cross<T: Scalar>(a: [T; 3], b: [T; 3]) -> [T; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}

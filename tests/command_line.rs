@@ -1,0 +1,94 @@
+//! What `leg` says, word for word: the transcripts in `command_line/`.
+//!
+//! `TRYCMD=overwrite cargo test --test command_line` writes them anew.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::io::Write;
+use std::process::{Command, Output, Stdio};
+
+const LEG: &str = env!("CARGO_BIN_EXE_leg-under-test");
+
+#[test]
+fn transcripts() {
+    trycmd::TestCases::new()
+        .register_bin("leg", std::path::Path::new(LEG))
+        .case("command_line/*.trycmd");
+}
+
+/// Runs `leg` with a text on its standard input.
+fn leg_reads(arguments: &[&str], input: &[u8]) -> Output {
+    let mut leg = Command::new(LEG)
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    leg.stdin.take().unwrap().write_all(input).unwrap();
+    leg.wait_with_output().unwrap()
+}
+
+#[test]
+fn a_missing_emulator_is_refused_with_the_fix() {
+    let output = Command::new(LEG)
+        .args(["run"])
+        .env("LEG_QEMU", "no-such-emulator")
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(told.contains("LEG_QEMU names `no-such-emulator`"), "{told}");
+    assert!(output.stdout.is_empty());
+}
+
+#[test]
+fn run_tells_machines_every_pose() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = Command::new(LEG)
+        .args(["run", "--on", "sim", "--json", "--plots"])
+        .arg(folder.path())
+        .output()
+        .unwrap();
+    assert!(output.status.success());
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["held"], true);
+    assert_eq!(report["tilts_deg"].as_array().unwrap().len(), 31);
+    for (curve, maxima) in (0..4).map(|i| (&report["curves"][i], &report["maxima"][i])) {
+        assert_eq!(curve["firmware_mm"].as_array().unwrap().len(), 31);
+        assert_eq!(curve["paper_max_mm"], maxima["paper_mm"]);
+        assert!(maxima["off_paper_percent"].as_f64().unwrap().abs() <= 1.5);
+    }
+    assert!(folder.path().join("fig9.png").is_file());
+}
+
+#[test]
+fn eval_reads_standard_input_when_no_file_is_named() {
+    let line = br#"{"azimuth_deg":30,"tilt_deg":20,"payload_kg":1}"#;
+    let output = leg_reads(&["eval"], line);
+    assert!(output.status.success());
+    assert_eq!(output.stdout, leg_reads(&["eval", "-"], line).stdout);
+    assert!(output.stdout.starts_with(br#"{"lengths_m":["#));
+}
+
+#[test]
+fn eval_refuses_empty_standard_input() {
+    let output = leg_reads(&["eval"], b"");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        String::from_utf8(output.stderr)
+            .unwrap()
+            .contains("standard input holds no pose")
+    );
+}
+
+#[test]
+fn eval_answers_a_line_that_is_not_utf8_in_its_place() {
+    let output = leg_reads(&["eval"], b"{\"\xff\":1}\n");
+    assert_eq!(output.status.code(), Some(1));
+    let answer = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        answer.starts_with(r#"{"error":"not a JSON object: invalid unicode"#),
+        "{answer}"
+    );
+}

@@ -1,0 +1,57 @@
+//! What the tests across the crates share.
+
+use serde_json::Value;
+
+/// The numbers of a JSON value, those of nested arrays one after the other.
+///
+/// What is neither a number nor an array gives NaN, which is near to nothing.
+#[must_use]
+pub fn numbers(value: &Value) -> Vec<f64> {
+    match value {
+        Value::Array(values) => values.iter().flat_map(numbers).collect(),
+        _ => vec![value.as_f64().unwrap_or(f64::NAN)],
+    }
+}
+
+/// The largest difference between two arrays, relative to the largest magnitude in `expected`.
+///
+/// An entry that should vanish is so judged beside its neighbours. Arrays of zeros are compared absolutely; arrays
+/// of different lengths differ by infinity.
+#[must_use]
+pub fn difference(found: &[f64], expected: &[f64]) -> f64 {
+    if found.len() != expected.len() {
+        return f64::INFINITY;
+    }
+    let scale = expected
+        .iter()
+        .fold(0.0, |scale: f64, value| scale.max(value.abs()));
+    let scale = if scale > 0.0 { scale } else { 1.0 };
+    let differences = found
+        .iter()
+        .zip(expected)
+        .map(|(a, b)| (a - b).abs() / scale);
+    differences.fold(0.0, |largest: f64, next| {
+        if next > largest || next.is_nan() {
+            next
+        } else {
+            largest
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::difference;
+
+    #[test]
+    fn entries_are_judged_beside_the_largest() {
+        assert_eq!(difference(&[1e-9, 2.0], &[0.0, 2.0]), 5e-10);
+        assert_eq!(difference(&[1e-9], &[0.0]), 1e-9);
+    }
+
+    #[test]
+    fn another_length_and_nan_are_far() {
+        assert_eq!(difference(&[1.0], &[1.0, 0.0]), f64::INFINITY);
+        assert!(difference(&[f64::NAN, 1.0], &[1.0, 1.0]).is_nan());
+    }
+}
