@@ -8,7 +8,7 @@ use crate::protocol::RigMessage;
 use bench::Bench;
 use bodies::Body;
 use heapless::Vec;
-use leg_model::Error;
+use leg_model::{Error, Scalar};
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
@@ -95,14 +95,14 @@ pub struct KernelInput {
 }
 
 /// The numbers that a kernel computed, in its own order.
-pub type KernelOutput = Vec<f32, 32>;
+pub type KernelOutput<T = f32> = Vec<T, 32>;
 
-/// Runs a kernel.
+/// Runs a kernel, in f32 as on the board or in f64 as its proof.
 ///
 /// # Errors
 /// What the kernel refuses, or the preparation of its arguments.
-pub fn run(kernel: Kernel, input: &KernelInput) -> Result<KernelOutput, Error> {
-    visit(kernel, Runner(Bench::new(input)?))
+pub fn run<T: Scalar>(kernel: Kernel, input: &KernelInput) -> Result<KernelOutput<T>, Error> {
+    visit::<T, _>(kernel, Runner(Bench::new(input)?))
 }
 
 /// Counts the instructions of a kernel, without the preparation of its arguments.
@@ -114,16 +114,16 @@ pub fn count(
     input: &KernelInput,
     counter: &mut impl Counter,
 ) -> Result<Option<u32>, Error> {
-    visit(kernel, Counting(Bench::new(input)?, counter))
+    visit::<f32, _>(kernel, Counting(Bench::new(input)?, counter))
 }
 
 /// Something to do with a kernel whose type is known.
-trait Visitor {
+trait Visitor<T> {
     type Output;
-    fn visit<B: Body>(self) -> Result<Self::Output, Error>;
+    fn visit<B: Body<T>>(self) -> Result<Self::Output, Error>;
 }
 
-fn visit<V: Visitor>(kernel: Kernel, visitor: V) -> Result<V::Output, Error> {
+fn visit<T: Scalar, V: Visitor<T>>(kernel: Kernel, visitor: V) -> Result<V::Output, Error> {
     match kernel {
         Kernel::SquareRoot => visitor.visit::<bodies::SquareRoot>(),
         Kernel::SinCos => visitor.visit::<bodies::SinCos>(),
@@ -137,16 +137,18 @@ fn visit<V: Visitor>(kernel: Kernel, visitor: V) -> Result<V::Output, Error> {
     }
 }
 
-struct Runner(Bench);
+struct Runner<T>(Bench<T>);
 
-impl Visitor for Runner {
-    type Output = KernelOutput;
+impl<T: Scalar> Visitor<T> for Runner<T> {
+    type Output = KernelOutput<T>;
 
-    fn visit<B: Body>(self) -> Result<KernelOutput, Error> {
+    fn visit<B: Body<T>>(self) -> Result<KernelOutput<T>, Error> {
         let mut result = Err(Error::NotConverged);
-        execute::<B>(&self.0, &mut result);
+        execute::<T, B>(&self.0, &mut result);
         let mut numbers = KernelOutput::new();
-        B::flatten(&result?, &mut |number| {
+        let output = result?;
+        B::check(&output)?;
+        B::flatten(&output, &mut |number| {
             // The capacity is that of the longest output, which a test checks.
             let _ = numbers.push(number);
         });
@@ -154,15 +156,17 @@ impl Visitor for Runner {
     }
 }
 
-struct Counting<'a, C>(Bench, &'a mut C);
+struct Counting<'a, C>(Bench<f32>, &'a mut C);
 
-impl<C: Counter> Visitor for Counting<'_, C> {
+impl<C: Counter> Visitor<f32> for Counting<'_, C> {
     type Output = Option<u32>;
 
-    fn visit<B: Body>(self) -> Result<Option<u32>, Error> {
+    fn visit<B: Body<f32>>(self) -> Result<Option<u32>, Error> {
         let mut result = Err(Error::NotConverged);
-        match self.1.count(execute::<B>, &self.0, &mut result) {
-            Some(count) => result.map(|_| Some(count)),
+        match self.1.count(execute::<f32, B>, &self.0, &mut result) {
+            Some(count) => result
+                .and_then(|output| B::check(&output))
+                .map(|()| Some(count)),
             None => Ok(None),
         }
     }
@@ -170,6 +174,6 @@ impl<C: Counter> Visitor for Counting<'_, C> {
 
 /// The kernel as it is counted: one function, not inlined, arguments and result in memory.
 #[inline(never)]
-fn execute<B: Body>(bench: &Bench, result: &mut Result<B::Output, Error>) {
+fn execute<T, B: Body<T>>(bench: &Bench<T>, result: &mut Result<B::Output, Error>) {
     *result = B::run(bench);
 }

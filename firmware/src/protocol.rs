@@ -1,7 +1,7 @@
 //! What host and firmware say to each other, and the hash by which they know that they mean the same.
 
 use crate::kernels::{Kernel, KernelInput, KernelOutput};
-use leg_model::{Error, Evaluation, Query, RigParameters};
+use leg_model::{Error, Evaluation, Query, RigParameters, Scalar};
 use postcard_schema::{Schema, key::Key};
 use serde::{Deserialize, Serialize};
 
@@ -142,17 +142,18 @@ impl From<RigParameters<f32, 3>> for RigMessage {
     }
 }
 
-impl From<RigMessage> for RigParameters<f32, 3> {
+impl<T: Scalar> From<RigMessage> for RigParameters<T, 3> {
     fn from(rig: RigMessage) -> Self {
+        let anchors = |points: [[f32; 2]; 3]| points.map(|point| point.map(T::from));
         Self {
-            base_anchors_m: rig.base_anchors_m,
-            leg_anchors_m: rig.leg_anchors_m,
-            upper_length_m: rig.upper_length_m,
-            joint_length_m: rig.joint_length_m,
-            leg_length_m: rig.leg_length_m,
-            leg_mass_kg: rig.leg_mass_kg,
-            leg_centroid_m: rig.leg_centroid_m,
-            gravity_m_per_s2: rig.gravity_m_per_s2,
+            base_anchors_m: anchors(rig.base_anchors_m),
+            leg_anchors_m: anchors(rig.leg_anchors_m),
+            upper_length_m: rig.upper_length_m.into(),
+            joint_length_m: rig.joint_length_m.into(),
+            leg_length_m: rig.leg_length_m.into(),
+            leg_mass_kg: rig.leg_mass_kg.into(),
+            leg_centroid_m: rig.leg_centroid_m.into(),
+            gravity_m_per_s2: rig.gravity_m_per_s2.into(),
         }
     }
 }

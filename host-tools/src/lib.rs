@@ -1,7 +1,9 @@
 //! The command `leg` and what it is made of.
 
 pub mod atomic_file;
+pub mod check;
 pub mod cli;
+pub mod cost;
 pub mod evaluate;
 pub mod experiment;
 pub mod failure;
@@ -10,7 +12,9 @@ mod json_entries;
 pub mod jsonl;
 pub mod line_error;
 pub mod link;
+pub mod nonlinear;
 pub mod plot;
+pub mod precision;
 pub mod qemu;
 pub mod rig_file;
 pub mod setup;

@@ -1,10 +1,12 @@
 //! Forward kinematics: the direction of the leg from the lengths of its tendons.
 //!
 //! Three lengths on two freedoms are overdetermined, so the direction is found by Gauss–Newton least squares in
-//! half-tangent coordinates, which are smooth through the vertical. The residual is a free check: a tendon that
-//! jumped or a count that was lost shows there.
+//! half-tangent coordinates, which are smooth through the vertical and make each tendon's equation a polynomial of
+//! second degree ([`LengthPolynomial`]). The residual is a free check: a tendon that jumped or a count that was lost
+//! shows there.
 
 use crate::geometry::AnchorPair;
+use crate::length_polynomial::LengthPolynomial;
 use crate::pose::universal_torsion_gradient;
 use crate::solve::NormalEquations;
 use crate::{Direction, Error, Geometry, HalfTangent, Quantity, Reason, Scalar, Twist};
@@ -38,15 +40,9 @@ pub fn forward_kinematics<T: Scalar, const N: usize>(
     lengths: &SVector<T, N>,
     start: &Direction<T>,
 ) -> Result<ForwardKinematics<T>, Error> {
-    let targets = targets(lengths)?;
-    search(start, |q| {
-        let mut equations = NormalEquations::zero();
-        for (pair, target) in geometry.tendons.iter().zip(&targets) {
-            let row = LengthRow::new(pair, target, geometry, q);
-            equations.add(row.gradient, row.error, target.weight);
-        }
-        equations
-    })
+    require_positive(lengths)?;
+    let targets = core::array::from_fn(|i| Target::new(&geometry.tendons[i], lengths[i]));
+    search(start, &Straight::<T, N> { targets })
 }
 
 /// Direction of a leg on a universal joint, whose twist follows from its direction.
@@ -59,105 +55,113 @@ pub fn forward_kinematics_universal<T: Scalar, const N: usize>(
     lengths: &SVector<T, N>,
     start: &Direction<T>,
 ) -> Result<ForwardKinematics<T>, Error> {
-    let targets = targets(lengths)?;
-    search(start, |q| {
-        let geometry = geometry.twisted(&Twist::universal(q));
-        let torsion = universal_torsion_gradient(q);
-        let mut equations = NormalEquations::zero();
-        for (pair, target) in geometry.tendons.iter().zip(&targets) {
-            let row = LengthRow::new(pair, target, &geometry, q);
-            let twist = row.by_torsion(pair, q);
-            let [x, y] = row.gradient;
-            let gradient = [x + twist * torsion[0], y + twist * torsion[1]];
-            equations.add(gradient, row.error, target.weight);
-        }
-        equations
-    })
+    require_positive(lengths)?;
+    search(start, &Twisting { geometry, lengths })
 }
 
-/// A measured length, prepared.
+/// Each length on its own: a product could hide two negative ones.
+#[inline(always)]
+fn require_positive<T: Scalar, const N: usize>(lengths: &SVector<T, N>) -> Result<(), Error> {
+    for &length in lengths.iter() {
+        if !(length > T::zero()) {
+            return Err(Error::refused(Quantity::TendonLength, Reason::NotPositive));
+        }
+    }
+    Ok(())
+}
+
+/// A tendon that was measured.
 struct Target<T> {
-    /// L², m².
-    square: T,
-    /// 1/L², which turns errors of l²/2 into errors of l.
+    polynomial: LengthPolynomial<T>,
+    /// 1/L²: with it, an error of F counts as one of the length.
     weight: T,
 }
 
-#[inline(always)]
-fn targets<T: Scalar, const N: usize>(lengths: &SVector<T, N>) -> Result<[Target<T>; N], Error> {
-    let mut product = T::one();
-    let targets = core::array::from_fn(|i| {
-        let square = lengths[i] * lengths[i];
-        product *= lengths[i];
-        Target {
-            square,
+impl<T: Scalar> Target<T> {
+    #[inline(always)]
+    fn new(pair: &AnchorPair<T>, length: T) -> Self {
+        let square = length * length;
+        Self {
+            polynomial: pair.polynomial.at_length(square),
             weight: T::one() / square,
         }
-    });
-    // One comparison refuses a zero and a NaN among all of them.
-    if product > T::zero() && product <= T::MAX {
-        Ok(targets)
-    } else {
-        Err(Error::refused(Quantity::TendonLength, Reason::NotPositive))
     }
 }
 
-/// How l²/2 of one tendon stands to its target at a direction, and how it changes.
-struct LengthRow<T> {
-    /// −∂(l²/2)/∂q, over γ.
-    gradient: [T; 2],
-    /// (l² − L²)/2, m².
-    error: T,
-    /// L_upper − q·b, m.
-    base_height: T,
+/// The equations of all tendons at a direction.
+trait Equations<T> {
+    fn at(&self, q: &HalfTangent<T>) -> NormalEquations<T>;
 }
 
-impl<T: Scalar> LengthRow<T> {
-    /// l²/2 = square/2 + γ(L_joint − q·s)(L_upper − q·b); see [`crate::kinematics`].
+/// A leg without torsion.
+struct Straight<T, const N: usize> {
+    targets: [Target<T>; N],
+}
+
+impl<T: Scalar, const N: usize> Equations<T> for Straight<T, N> {
     #[inline(always)]
-    fn new<const N: usize>(
-        pair: &AnchorPair<T>,
-        target: &Target<T>,
-        geometry: &Geometry<T, N>,
-        q: &HalfTangent<T>,
-    ) -> Self {
-        let ([base_x, base_y], [leg_x, leg_y]) = (pair.base, pair.leg);
-        let leg_height = geometry.joint - q.x * leg_x - q.y * leg_y;
-        let base_height = geometry.upper - q.x * base_x - q.y * base_y;
-        let rise = q.gain * leg_height * base_height;
-        Self {
-            gradient: [
-                leg_x * base_height + base_x * leg_height + rise * q.x,
-                leg_y * base_height + base_y * leg_height + rise * q.y,
-            ],
-            error: T::HALF * (pair.square - target.square) + rise,
-            base_height,
+    fn at(&self, q: &HalfTangent<T>) -> NormalEquations<T> {
+        let mut equations = NormalEquations::new();
+        for target in &self.targets {
+            let error = target.polynomial.at(q);
+            equations.add(error.gradient, error.twice, target.weight);
         }
-    }
-
-    /// −∂(l²/2)/∂τ, over γ, at the twisted anchors of `pair`.
-    #[inline(always)]
-    fn by_torsion(&self, pair: &AnchorPair<T>, q: &HalfTangent<T>) -> T {
-        let ([base_x, base_y], [leg_x, leg_y]) = (pair.base, pair.leg);
-        let across_base = base_y * leg_x - base_x * leg_y;
-        let across_tilt = q.y * leg_x - q.x * leg_y;
-        q.inverse_gain * across_base + self.base_height * across_tilt
+        equations
     }
 }
 
-/// Gauss–Newton from `start`; `equations` are those of the lengths at a direction.
+/// A leg whose torsion follows from its direction.
+struct Twisting<'a, T, const N: usize> {
+    geometry: &'a Geometry<T, N>,
+    lengths: &'a SVector<T, N>,
+}
+
+impl<T: Scalar, const N: usize> Equations<T> for Twisting<'_, T, N> {
+    #[inline(always)]
+    fn at(&self, q: &HalfTangent<T>) -> NormalEquations<T> {
+        let geometry = self.geometry.twisted(&Twist::universal(q));
+        let torsion = universal_torsion_gradient(q);
+        let mut equations = NormalEquations::new();
+        for (pair, &length) in geometry.tendons.iter().zip(self.lengths) {
+            let target = Target::new(pair, length);
+            let error = target.polynomial.at(q);
+            let by_torsion = by_torsion(pair, geometry.upper, q);
+            let gradient = [
+                error.gradient[0] + by_torsion * torsion[0],
+                error.gradient[1] + by_torsion * torsion[1],
+            ];
+            equations.add(gradient, error.twice, target.weight);
+        }
+        equations
+    }
+}
+
+/// ∂F/∂τ at the twisted anchors of `pair`.
+#[inline(always)]
+fn by_torsion<T: Scalar>(pair: &AnchorPair<T>, upper: T, q: &HalfTangent<T>) -> T {
+    let ([base_x, base_y], [leg_x, leg_y]) = (pair.base, pair.leg);
+    let across_base = base_x * leg_y - base_y * leg_x;
+    let across_tilt = q.x * leg_y - q.y * leg_x;
+    let base_height = upper - q.x * base_x - q.y * base_y;
+    let half = q.inverse_gain() * across_base + base_height * across_tilt;
+    half + half
+}
+
+/// Gauss–Newton from `start`.
 #[inline(always)]
 fn search<T: Scalar>(
     start: &Direction<T>,
-    equations: impl Fn(&HalfTangent<T>) -> NormalEquations<T>,
+    equations: &impl Equations<T>,
 ) -> Result<ForwardKinematics<T>, Error> {
     let mut q = start.half_tangent();
-    for steps in 1..=STEPS_MAX {
-        let solution = equations(&q).solve()?;
-        let (dx, dy) = (solution.x * q.inverse_gain, solution.y * q.inverse_gain);
-        q = HalfTangent::new(q.x + dx, q.y + dy);
-        if dx * dx + dy * dy <= T::DIRECTION_STEP * T::DIRECTION_STEP {
-            return found(&q, solution.remainder, steps);
+    for step_count in 0..STEPS_MAX {
+        let step = equations.at(&q).solve()?;
+        q = HalfTangent {
+            x: q.x - step.x,
+            y: q.y - step.y,
+        };
+        if step.x * step.x + step.y * step.y <= T::DIRECTION_STEP * T::DIRECTION_STEP {
+            return found(&q, step.remainder, step_count + 1);
         }
     }
     Err(Error::NotConverged)
@@ -169,18 +173,21 @@ fn found<T: Scalar>(
     remainder: T,
     steps: u8,
 ) -> Result<ForwardKinematics<T>, Error> {
-    if q.gain <= T::one() {
+    let half_gain = T::one() / (T::one() + q.x * q.x + q.y * q.y);
+    let gain = half_gain + half_gain;
+    // Also refuses NaN.
+    if !(gain > T::one()) {
         return Err(Error::NotConverged);
     }
-    // Rounding can leave a remainder of nothing slightly below zero.
-    let remainder = if remainder > T::zero() {
-        remainder
-    } else {
-        T::zero()
+    let direction = Direction {
+        x: gain * q.x,
+        y: gain * q.y,
+        z: T::one() - gain,
     };
     Ok(ForwardKinematics {
-        direction: q.direction(),
-        residual_m: remainder.sqrt(),
+        direction,
+        // l − L is γF/2L. Rounding can leave a remainder of nothing slightly below zero.
+        residual_m: T::HALF * half_gain * remainder.abs().sqrt(),
         steps,
     })
 }

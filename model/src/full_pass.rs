@@ -1,6 +1,6 @@
 //! The fast path's full pass: kinematics, total stiffness, rotation and tip displacement in one walk over the tendons.
 
-use crate::kinematics::{TendonAtPose, require_lengths};
+use crate::kinematics::TendonAtPose;
 use crate::{
     Direction, Error, FreePlane, Kinematics, Load, Rig, Scalar, Symmetric3, tip_displacement,
 };
@@ -13,7 +13,15 @@ pub struct FullPass<T, const N: usize> {
     pub kinematics: Kinematics<T, N>,
     /// K₁ + exact K₂ + K_load, symmetrised, N·m/rad. At equilibrium the total is symmetric by itself.
     pub stiffness: Symmetric3<T>,
-    /// ψ: how the leg gives way under its load, rad.
+    /// How the leg gives way under its load. An error here condemns the other fields, too: they stand beside it, not
+    /// inside, so that each number is written once, as soon as it is known.
+    pub deflection: Result<Deflection<T>, Error>,
+}
+
+/// A small motion of the leg.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deflection<T> {
+    /// ψ, rad.
     pub rotation: Vector3<T>,
     /// How far that takes the tip, m.
     pub tip_displacement: Vector3<T>,
@@ -30,30 +38,21 @@ pub struct TendonStates<T, const N: usize> {
 
 /// Full pass for a ball joint: three free rotations, a 3×3 solve.
 ///
-/// # Errors
-/// [`Error::TendonCollapsed`], or [`Error::Unstable`] when the leg would buckle.
+/// [`FullPass::deflection`] is [`Error::TendonCollapsed`] or [`Error::Unstable`], when the leg would buckle.
 #[inline(always)]
 pub fn full_pass<T: Scalar, const N: usize>(
     rig: &Rig<T, N>,
     direction: &Direction<T>,
     load: &Load<T>,
     tendons: &TendonStates<T, N>,
-) -> Result<FullPass<T, N>, Error> {
-    let (kinematics, stiffness) = total_stiffness(rig, direction, load, tendons)?;
-    let rotation = stiffness.solve(&load.moment(direction))?;
-    let tip_displacement = tip_displacement(&rotation, direction, rig.tip);
-    Ok(FullPass {
-        kinematics,
-        stiffness,
-        rotation,
-        tip_displacement,
-    })
+) -> FullPass<T, N> {
+    let solve = |stiffness: &Symmetric3<T>, moment| stiffness.solve_horizontal(moment);
+    pass(rig, direction, load, tendons, solve)
 }
 
 /// Full pass for a support with two freedoms: a 2×2 solve in its free plane.
 ///
-/// # Errors
-/// As [`full_pass`].
+/// The same errors as in [`full_pass`].
 #[inline(always)]
 pub fn full_pass_in_plane<T: Scalar, const N: usize>(
     rig: &Rig<T, N>,
@@ -61,34 +60,26 @@ pub fn full_pass_in_plane<T: Scalar, const N: usize>(
     plane: &FreePlane<T>,
     load: &Load<T>,
     tendons: &TendonStates<T, N>,
-) -> Result<FullPass<T, N>, Error> {
-    let (kinematics, stiffness) = total_stiffness(rig, direction, load, tendons)?;
-    let rotation = plane.solve_symmetric(&stiffness, &load.moment(direction))?;
-    let tip_displacement = tip_displacement(&rotation, direction, rig.tip);
-    Ok(FullPass {
-        kinematics,
-        stiffness,
-        rotation,
-        tip_displacement,
-    })
+) -> FullPass<T, N> {
+    let solve = |stiffness: &Symmetric3<T>, moment| plane.solve_horizontal(stiffness, moment);
+    pass(rig, direction, load, tendons, solve)
 }
 
 #[inline(always)]
-fn total_stiffness<T: Scalar, const N: usize>(
+fn pass<T: Scalar, const N: usize>(
     rig: &Rig<T, N>,
     direction: &Direction<T>,
     load: &Load<T>,
     states: &TendonStates<T, N>,
-) -> Result<(Kinematics<T, N>, Symmetric3<T>), Error> {
+    solve: impl Fn(&Symmetric3<T>, [T; 2]) -> Result<Vector3<T>, Error>,
+) -> FullPass<T, N> {
     let geometry = &rig.geometry;
     let q = direction.half_tangent();
     let mut kinematics = Kinematics::zero();
-    let mut sums = Sums::zero();
-    let mut product = T::one();
+    let mut sums = Sums::new();
     for (i, pair) in geometry.tendons.iter().enumerate() {
-        let tendon = TendonAtPose::new(pair, geometry.upper, geometry.joint, &q);
+        let tendon = TendonAtPose::new(pair, geometry, &q, direction.gain());
         kinematics.set(i, &tendon);
-        product *= tendon.length;
         sums.add(
             &tendon,
             pair.base,
@@ -96,8 +87,20 @@ fn total_stiffness<T: Scalar, const N: usize>(
             states.stiffnesses[i],
         );
     }
-    require_lengths(product)?;
-    Ok((kinematics, sums.total(geometry.upper, direction, load)))
+    let stiffness = sums.total(geometry.upper, direction, load);
+    // A collapsed tendon makes the stiffness infinite or NaN, which the solve refuses: only then is it named.
+    let deflection = match solve(&stiffness, load.horizontal_moment(direction)) {
+        Ok(rotation) => Ok(Deflection {
+            rotation,
+            tip_displacement: tip_displacement(&rotation, direction, rig.tip),
+        }),
+        Err(error) => Err(kinematics.collapsed().unwrap_or(error)),
+    };
+    FullPass {
+        kinematics,
+        stiffness,
+        deflection,
+    }
 }
 
 /// Sums over the tendons, with φ = f/l the force density.
@@ -116,21 +119,21 @@ struct Sums<T> {
 
 impl<T: Scalar> Sums<T> {
     #[inline(always)]
-    fn zero() -> Self {
-        let zero = T::zero();
+    fn new() -> Self {
+        let start = T::SUM_START;
         Self {
             along: Symmetric3 {
-                xx: zero,
-                xy: zero,
-                xz: zero,
-                yy: zero,
-                yz: zero,
-                zz: zero,
+                xx: start,
+                xy: start,
+                xz: start,
+                yy: start,
+                yz: start,
+                zz: start,
             },
-            diagonal: [zero; 2],
-            cross: zero,
-            vertical: [zero; 2],
-            ends: [zero; 3],
+            diagonal: [start; 2],
+            cross: start,
+            vertical: [start; 2],
+            ends: [start; 3],
         }
     }
 

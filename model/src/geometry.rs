@@ -1,5 +1,6 @@
 //! Where the tendons pull: the part of a mechanism that the fast path works on.
 
+use crate::length_polynomial::LengthPolynomial;
 use crate::{RigParameters, Scalar, Twist};
 
 /// Anchors and plates of a validated mechanism, for a leg without torsion.
@@ -21,21 +22,21 @@ pub(crate) struct AnchorPair<T> {
     pub leg: [T; 2],
     /// |b − s|² + (L_upper − L_joint)², m²: the part of l² that does not depend on the leg's direction.
     pub square: T,
+    /// Its length in half-tangent coordinates.
+    pub polynomial: LengthPolynomial<T>,
 }
 
 impl<T: Scalar, const N: usize> Geometry<T, N> {
     pub(crate) fn new(parameters: &RigParameters<T, N>) -> Self {
         let p = parameters;
-        let mut geometry = Self {
-            tendons: [AnchorPair::none(); N],
-            upper: p.upper_length_m,
-            joint: p.joint_length_m,
-        };
-        let ends = p.base_anchors_m.iter().zip(&p.leg_anchors_m);
-        for (pair, (&base, &leg)) in geometry.tendons.iter_mut().zip(ends) {
-            *pair = AnchorPair::new(base, leg, p.upper_length_m, p.joint_length_m);
+        let (upper, joint) = (p.upper_length_m, p.joint_length_m);
+        let pair =
+            |i: usize| AnchorPair::new(p.base_anchors_m[i], p.leg_anchors_m[i], upper, joint);
+        Self {
+            tendons: core::array::from_fn(pair),
+            upper,
+            joint,
         }
-        geometry
     }
 
     /// The same mechanism with its leg twisted about its own axis.
@@ -53,23 +54,16 @@ impl<T: Scalar, const N: usize> Geometry<T, N> {
 }
 
 impl<T: Scalar> AnchorPair<T> {
-    fn none() -> Self {
-        let (end, square) = ([T::zero(); 2], T::zero());
-        Self {
-            base: end,
-            leg: end,
-            square,
-        }
-    }
-
     #[inline(always)]
     fn new(base: [T; 2], leg: [T; 2], upper: T, joint: T) -> Self {
-        let (dx, dy) = (base[0] - leg[0], base[1] - leg[1]);
-        let dz = upper - joint;
+        let (dx, dy, dz) = (base[0] - leg[0], base[1] - leg[1], upper - joint);
+        let square = dx * dx + dy * dy + dz * dz;
+        let polynomial = LengthPolynomial::new(base, leg, upper, joint, square);
         Self {
             base,
             leg,
-            square: dx * dx + dy * dy + dz * dz,
+            square,
+            polynomial,
         }
     }
 }

@@ -23,6 +23,15 @@ impl<T: Scalar, const N: usize> Kinematics<T, N> {
         }
     }
 
+    /// The error of a pose at which a tendon has no length.
+    pub(crate) fn collapsed(&self) -> Option<Error> {
+        let product = self
+            .lengths
+            .iter()
+            .fold(T::one(), |product, &length| product * length);
+        require_lengths(product).err()
+    }
+
     #[inline(always)]
     pub(crate) fn set(&mut self, i: usize, tendon: &TendonAtPose<T>) {
         self.lengths[i] = tendon.length;
@@ -47,7 +56,7 @@ pub fn inverse_kinematics<T: Scalar, const N: usize>(
     let mut kinematics = Kinematics::zero();
     let mut product = T::one();
     for (i, pair) in geometry.tendons.iter().enumerate() {
-        let tendon = TendonAtPose::new(pair, geometry.upper, geometry.joint, &q);
+        let tendon = TendonAtPose::new(pair, geometry, &q, direction.gain());
         kinematics.set(i, &tendon);
         product *= tendon.length;
     }
@@ -57,7 +66,7 @@ pub fn inverse_kinematics<T: Scalar, const N: usize>(
 
 /// Refuses a zero (or NaN) among the lengths by their product: one comparison for all of them.
 #[inline(always)]
-pub(crate) fn require_lengths<T: Scalar>(product: T) -> Result<(), Error> {
+fn require_lengths<T: Scalar>(product: T) -> Result<(), Error> {
     if product > T::zero() {
         Ok(())
     } else {
@@ -81,10 +90,16 @@ impl<T: Scalar> TendonAtPose<T> {
     /// The rotation as two reflections: with t = γ(L_joint − q·s), e = (s, L_joint) + t(q, −1) and
     /// l² = |b − s|² + (L_upper − L_joint)² + 2t(L_upper − q·b). Nothing in l² cancels.
     #[inline(always)]
-    pub fn new(pair: &AnchorPair<T>, upper: T, joint: T, q: &HalfTangent<T>) -> Self {
+    pub fn new<const N: usize>(
+        pair: &AnchorPair<T>,
+        geometry: &Geometry<T, N>,
+        q: &HalfTangent<T>,
+        gain: T,
+    ) -> Self {
+        let (upper, joint) = (geometry.upper, geometry.joint);
         let [base_x, base_y] = pair.base;
         let [leg_x, leg_y] = pair.leg;
-        let t = q.gain * (joint - q.x * leg_x - q.y * leg_y);
+        let t = gain * (joint - q.x * leg_x - q.y * leg_y);
         let end = [leg_x + t * q.x, leg_y + t * q.y, joint - t];
         let rise = t * (upper - q.x * base_x - q.y * base_y);
         let length = (pair.square + (rise + rise)).sqrt();

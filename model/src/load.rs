@@ -27,8 +27,14 @@ impl<T: Scalar> Load<T> {
     #[must_use]
     #[inline(always)]
     pub fn moment(&self, direction: &Direction<T>) -> Vector3<T> {
-        let &Direction { x, y, .. } = direction;
-        Vector3::new(-self.lever * y, self.lever * x, T::zero())
+        let [x, y] = self.horizontal_moment(direction);
+        Vector3::new(x, y, T::zero())
+    }
+
+    /// The same without its vertical part, which is zero.
+    #[inline(always)]
+    pub(crate) fn horizontal_moment(&self, direction: &Direction<T>) -> [T; 2] {
+        [-self.lever * direction.y, self.lever * direction.x]
     }
 
     /// K_load = −Σ [F×][r×], N·m/rad: the weights turn with the leg. The paper leaves it out.

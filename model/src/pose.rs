@@ -68,21 +68,24 @@ impl<T: Scalar> Direction<T> {
     #[must_use]
     #[inline(always)]
     pub fn half_tangent(&self) -> HalfTangent<T> {
-        let gain = T::one() - self.z;
-        let scale = T::one() / gain;
+        let scale = T::one() / self.gain();
         HalfTangent {
             x: self.x * scale,
             y: self.y * scale,
-            gain,
-            inverse_gain: scale,
         }
+    }
+
+    /// γ = 1 + cos θ.
+    #[inline(always)]
+    pub(crate) fn gain(&self) -> T {
+        T::one() - self.z
     }
 
     /// Rotation that takes (0, 0, −1) here without torsion: Eq. (1) at the axis (sin φ, −cos φ, 0), corrected.
     #[must_use]
     pub fn rotation(&self) -> Matrix3<T> {
         let &Self { x, y, z } = self;
-        let HalfTangent { x: qx, y: qy, .. } = self.half_tangent();
+        let HalfTangent { x: qx, y: qy } = self.half_tangent();
         let one = T::one();
         #[rustfmt::skip]
         let rotation = Matrix3::new(
@@ -107,39 +110,18 @@ fn check_angle<T: Scalar>(angle: T, limit: T, quantity: Quantity) -> Result<(), 
 /// A direction as q = tan(θ/2)·(cos φ, sin φ): its stereographic projection.
 ///
 /// In these coordinates the mechanism is rational. The rotation without torsion is R v = v* + (v·q*)γq* with
-/// v* = (v_x, v_y, −v_z) and q* = (q_x, q_y, −1): two reflections.
+/// v* = (v_x, v_y, −v_z) and q* = (q_x, q_y, −1) and γ = 2/(1 + q²): two reflections.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfTangent<T> {
     pub(crate) x: T,
     pub(crate) y: T,
-    /// γ = 2/(1 + q²) = 1 + cos θ.
-    pub(crate) gain: T,
-    /// 1/γ.
-    pub(crate) inverse_gain: T,
 }
 
 impl<T: Scalar> HalfTangent<T> {
+    /// 1/γ = (1 + q²)/2.
     #[inline(always)]
-    pub(crate) fn new(x: T, y: T) -> Self {
-        let inverse_gain = T::HALF * (T::one() + x * x + y * y);
-        let gain = T::one() / inverse_gain;
-        Self {
-            x,
-            y,
-            gain,
-            inverse_gain,
-        }
-    }
-
-    /// The unit vector.
-    #[must_use]
-    #[inline(always)]
-    pub fn direction(&self) -> Direction<T> {
-        Direction {
-            x: self.gain * self.x,
-            y: self.gain * self.y,
-            z: T::one() - self.gain,
-        }
+    pub(crate) fn inverse_gain(&self) -> T {
+        T::HALF * (T::one() + self.x * self.x + self.y * self.y)
     }
 }
 

@@ -9,12 +9,14 @@ use num_traits::NumAssign;
 /// The basic operations and `sqrt` are those of IEEE 754, and everything else is computed from them, so a type
 /// gives the same bits on every machine. Nothing here calls the platform's mathematics or fuses operations.
 pub trait Scalar:
-    nalgebra::Scalar + NumAssign + Neg<Output = Self> + Copy + Debug + PartialOrd
+    nalgebra::Scalar + NumAssign + Neg<Output = Self> + Copy + Debug + PartialOrd + From<f32>
 {
     /// 1/2.
     const HALF: Self;
     /// 2.
     const TWO: Self;
+    /// −0, from which sums start: unlike +0 it leaves every number as it is, so the first addition costs nothing.
+    const SUM_START: Self;
     /// 1/√3.
     const FRAC_1_SQRT_3: Self;
     /// The greatest finite number.
@@ -53,6 +55,7 @@ macro_rules! scalar {
         impl Scalar for $t {
             const HALF: Self = 0.5;
             const TWO: Self = 2.0;
+            const SUM_START: Self = -0.0;
             const FRAC_1_SQRT_3: Self = 0.577_350_269_189_625_8;
             const MAX: Self = $t::MAX;
             const TILT_MAX_RAD: Self = core::$t::consts::FRAC_PI_3;
@@ -90,5 +93,5 @@ macro_rules! scalar {
     };
 }
 
-scalar!(f32, crate::sqrt::sqrt_f32, crate::trigonometry::sin_cos_f32, libm::atan2f, direction: 2e-4, torsion: 1e-6);
+scalar!(f32, crate::sqrt::sqrt_f32, crate::trigonometry::sin_cos_f32, libm::atan2f, direction: 5e-4, torsion: 1e-6);
 scalar!(f64, libm::sqrt, libm::sincos, libm::atan2, direction: 1e-9, torsion: 1e-12);

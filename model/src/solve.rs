@@ -3,14 +3,14 @@
 use crate::{Error, Scalar};
 use nalgebra::{Matrix3, Vector3};
 
-/// Normal equations of a weighted least-squares problem with two unknowns.
+/// Normal equations of a weighted least-squares problem with two unknowns, whose errors come doubled.
 pub(crate) struct NormalEquations<T> {
     xx: T,
     xy: T,
     yy: T,
-    right_x: T,
-    right_y: T,
-    /// Weighted sum of the squared errors before the step.
+    twice_right_x: T,
+    twice_right_y: T,
+    /// Weighted sum of the squared doubled errors before the step.
     errors: T,
 }
 
@@ -18,35 +18,35 @@ pub(crate) struct NormalEquations<T> {
 pub(crate) struct LeastSquares<T> {
     pub x: T,
     pub y: T,
-    /// Weighted sum of the squared errors that the step leaves, to first order.
+    /// Weighted sum of the squared doubled errors that the step leaves, to first order.
     pub remainder: T,
 }
 
 impl<T: Scalar> NormalEquations<T> {
     #[inline(always)]
-    pub fn zero() -> Self {
-        let zero = T::zero();
+    pub fn new() -> Self {
+        let start = T::SUM_START;
         Self {
-            xx: zero,
-            xy: zero,
-            yy: zero,
-            right_x: zero,
-            right_y: zero,
-            errors: zero,
+            xx: start,
+            xy: start,
+            yy: start,
+            twice_right_x: start,
+            twice_right_y: start,
+            errors: start,
         }
     }
 
     /// Adds one equation: gradient·(x, y) = error.
     #[inline(always)]
-    pub fn add(&mut self, gradient: [T; 2], error: T, weight: T) {
+    pub fn add(&mut self, gradient: [T; 2], twice_error: T, weight: T) {
         let [x, y] = gradient;
         let (weighted_x, weighted_y) = (weight * x, weight * y);
         self.xx += weighted_x * x;
         self.xy += weighted_x * y;
         self.yy += weighted_y * y;
-        self.right_x += weighted_x * error;
-        self.right_y += weighted_y * error;
-        self.errors += weight * error * error;
+        self.twice_right_x += weighted_x * twice_error;
+        self.twice_right_y += weighted_y * twice_error;
+        self.errors += weight * twice_error * twice_error;
     }
 
     #[inline(always)]
@@ -56,10 +56,12 @@ impl<T: Scalar> NormalEquations<T> {
         if !(determinant > T::zero()) {
             return Err(Error::Singular);
         }
-        let scale = T::one() / determinant;
-        let x = (self.yy * self.right_x - self.xy * self.right_y) * scale;
-        let y = (self.xx * self.right_y - self.xy * self.right_x) * scale;
-        let remainder = self.errors - self.right_x * x - self.right_y * y;
+        let scale = T::HALF / determinant;
+        let (right_x, right_y) = (self.twice_right_x, self.twice_right_y);
+        let x = (self.yy * right_x - self.xy * right_y) * scale;
+        let y = (self.xx * right_y - self.xy * right_x) * scale;
+        let explained = right_x * x + right_y * y;
+        let remainder = self.errors - (explained + explained);
         Ok(LeastSquares { x, y, remainder })
     }
 }
@@ -109,42 +111,20 @@ impl<T: Scalar> Symmetric3<T> {
         Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
     }
 
-    /// Solves K x = m by LDLᵀ.
+    /// Solves K x = (m_x, m_y, 0), as the moment of weights has no part along z, by condensing z.
     ///
     /// # Errors
     /// [`Error::Unstable`] unless the matrix is positive definite.
     #[inline(always)]
-    pub fn solve(&self, m: &Vector3<T>) -> Result<Vector3<T>, Error> {
-        let &Self {
-            xx,
-            xy,
-            xz,
-            yy,
-            yz,
-            zz,
-        } = self;
-        let inverse_1 = positive_inverse(xx)?;
-        let (l21, l31) = (xy * inverse_1, xz * inverse_1);
-        let inverse_2 = positive_inverse(yy - l21 * xy)?;
-        let rest_yz = yz - l31 * xy;
-        let l32 = rest_yz * inverse_2;
-        let inverse_3 = positive_inverse(zz - l31 * xz - l32 * rest_yz)?;
-        let y2 = m.y - l21 * m.x;
-        let y3 = m.z - l31 * m.x - l32 * y2;
-        let x3 = y3 * inverse_3;
-        let x2 = y2 * inverse_2 - l32 * x3;
-        let x1 = m.x * inverse_1 - l21 * x2 - l31 * x3;
-        Ok(Vector3::new(x1, x2, x3))
-    }
-}
-
-/// 1/pivot of a positive pivot; NaN is refused too.
-#[inline(always)]
-fn positive_inverse<T: Scalar>(pivot: T) -> Result<T, Error> {
-    if pivot > T::zero() {
-        Ok(T::one() / pivot)
-    } else {
-        Err(Error::Unstable)
+    pub fn solve_horizontal(&self, m: [T; 2]) -> Result<Vector3<T>, Error> {
+        if !(self.zz > T::zero()) {
+            return Err(Error::Unstable);
+        }
+        let inverse = T::one() / self.zz;
+        let (by_x, by_y) = (self.xz * inverse, self.yz * inverse);
+        let xy = self.xy - by_x * self.yz;
+        let [x, y] = solve2_symmetric(self.xx - by_x * self.xz, xy, self.yy - by_y * self.yz, m)?;
+        Ok(Vector3::new(x, y, -(by_x * x + by_y * y)))
     }
 }
 
@@ -153,7 +133,7 @@ fn positive_inverse<T: Scalar>(pivot: T) -> Result<T, Error> {
 /// # Errors
 /// [`Error::Unstable`] unless the symmetric part of K is positive definite.
 pub fn solve3<T: Scalar>(k: &Matrix3<T>, m: &Vector3<T>) -> Result<Vector3<T>, Error> {
-    Symmetric3::symmetric_part(k).solve(m)?;
+    Symmetric3::symmetric_part(k).solve_horizontal([T::zero(); 2])?;
     let row = |i| k.row(i).transpose();
     let (r1, r2, r3) = (row(0), row(1), row(2));
     let (c1, c2, c3) = (r2.cross(&r3), r3.cross(&r1), r1.cross(&r2));
@@ -176,5 +156,22 @@ pub fn solve2<T: Scalar>(k: [[T; 2]; 2], m: [T; 2]) -> Result<[T; 2], Error> {
     Ok([
         (k22 * m[0] - k12 * m[1]) * scale,
         (k11 * m[1] - k21 * m[0]) * scale,
+    ])
+}
+
+/// Solves a symmetric system of order two.
+///
+/// # Errors
+/// [`Error::Unstable`] unless it is positive definite.
+#[inline(always)]
+pub(crate) fn solve2_symmetric<T: Scalar>(xx: T, xy: T, yy: T, m: [T; 2]) -> Result<[T; 2], Error> {
+    let determinant = xx * yy - xy * xy;
+    if !(xx > T::zero() && determinant > T::zero()) {
+        return Err(Error::Unstable);
+    }
+    let scale = T::one() / determinant;
+    Ok([
+        (yy * m[0] - xy * m[1]) * scale,
+        (xx * m[1] - xy * m[0]) * scale,
     ])
 }

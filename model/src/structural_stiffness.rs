@@ -48,7 +48,7 @@ fn sum_over_tendons<T: Scalar, const N: usize>(
     let q = direction.half_tangent();
     let pairs = geometry.tendons.iter().zip(tensions.iter());
     pairs.fold(Matrix3::zeros(), |sum, (pair, &tension)| {
-        let tendon = TendonAtPose::new(pair, geometry.upper, geometry.joint, &q);
+        let tendon = TendonAtPose::new(pair, geometry, &q, direction.gain());
         let base = Vector3::new(pair.base[0], pair.base[1], geometry.upper);
         sum + term(&tendon, base) * tension
     })

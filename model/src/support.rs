@@ -1,6 +1,6 @@
 //! What the central support leaves free.
 
-use crate::solve::{Symmetric3, solve2};
+use crate::solve::{Symmetric3, solve2, solve2_symmetric};
 use crate::{Direction, Error, Scalar};
 use nalgebra::{Matrix3, Vector3};
 
@@ -80,17 +80,16 @@ impl<T: Scalar> FreePlane<T> {
         Ok(self.rotation(free))
     }
 
-    /// [`Self::solve`] for a symmetric K.
+    /// [`Self::solve`] for a symmetric K and a moment (m_x, m_y, 0), as weights have.
     ///
     /// # Errors
     /// [`Error::Unstable`] unless PᵀKP is positive definite.
     #[inline(always)]
-    pub fn solve_symmetric(&self, k: &Symmetric3<T>, m: &Vector3<T>) -> Result<Vector3<T>, Error> {
+    pub fn solve_horizontal(&self, k: &Symmetric3<T>, m: [T; 2]) -> Result<Vector3<T>, Error> {
         let (right_x, right_y) = (k.xz + self.rho_x * k.zz, k.yz + self.rho_y * k.zz);
         let k11 = k.xx + self.rho_x * (k.xz + right_x);
         let k22 = k.yy + self.rho_y * (k.yz + right_y);
         let k12 = k.xy + self.rho_x * k.yz + self.rho_y * right_x;
-        let free = solve2([[k11, k12], [k12, k22]], self.project(m))?;
-        Ok(self.rotation(free))
+        Ok(self.rotation(solve2_symmetric(k11, k12, k22, m)?))
     }
 }

@@ -7,8 +7,10 @@ use nalgebra::{SMatrix, SVector, Vector3};
 /// The tensions that are allowed, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TensionBounds<T> {
-    pub(crate) floor: T,
-    pub(crate) ceiling: T,
+    /// Half of floor + ceiling.
+    centre: T,
+    /// Half of ceiling − floor.
+    half_width: T,
 }
 
 impl<T: Scalar> TensionBounds<T> {
@@ -23,8 +25,8 @@ impl<T: Scalar> TensionBounds<T> {
             return Err(Error::refused(Quantity::TensionFloor, Reason::AboveCeiling));
         }
         Ok(Self {
-            floor: floor_n,
-            ceiling: ceiling_n,
+            centre: T::HALF * ceiling_n + T::HALF * floor_n,
+            half_width: T::HALF * ceiling_n - T::HALF * floor_n,
         })
     }
 }
@@ -133,21 +135,21 @@ pub fn distribute<T: Scalar, const N: usize>(
 ) -> Result<Distribution<T, N>, Error> {
     let rows = Rows::new(moment_map, plane);
     let (particular, internal) = rows.split(plane.project(load_moment));
-    let (mut sum, mut squares, mut product) = (T::zero(), T::zero(), T::one());
+    let (mut sum, mut squares, mut product) = (T::SUM_START, T::SUM_START, T::one());
     for &component in internal.iter() {
         sum += component;
         squares += component * component;
         product *= component;
     }
     // A zero component, a missing rank and NaN all end here.
-    if !(product.abs() > T::zero()) {
+    if !(product * product > T::zero()) {
         return Err(Error::Singular);
     }
     let length = (T::count::<N>() / squares).sqrt();
     let scale = if sum < T::zero() { -length } else { length };
     let per_level = SVector::from_fn(|i, _| internal[i] * scale);
-    let (mut lowest_level, mut highest_level) = (-T::MAX, T::MAX);
-    for i in 0..N {
+    let (mut lowest_level, mut highest_level) = level_range(particular[0], per_level[0], bounds);
+    for i in 1..N {
         let (low, high) = level_range(particular[i], per_level[i], bounds);
         lowest_level = if low > lowest_level {
             low
@@ -172,8 +174,8 @@ pub fn distribute<T: Scalar, const N: usize>(
 #[inline(always)]
 fn level_range<T: Scalar>(particular: T, per_level: T, bounds: &TensionBounds<T>) -> (T, T) {
     let scale = T::one() / per_level;
-    let centre = (T::HALF * (bounds.ceiling + bounds.floor) - particular) * scale;
-    let half_width = (T::HALF * (bounds.ceiling - bounds.floor) * scale).abs();
+    let centre = (bounds.centre - particular) * scale;
+    let half_width = (bounds.half_width * scale).abs();
     (centre - half_width, centre + half_width)
 }
 

@@ -2,59 +2,61 @@
 
 use super::KernelInput;
 use leg_model::{
-    Direction, Distribution, Error, FreePlane, Kinematics, Load, Rig, Tendon, TendonStates,
+    Direction, Error, FreePlane, Kinematics, Load, Rig, Scalar, Tendon, TendonStates,
     TensionBounds, Twist, distribute, inverse_kinematics,
 };
 use nalgebra::{SVector, Vector3};
 
 /// Prepared arguments.
-pub struct Bench {
-    pub angle: f32,
-    pub rig: Rig<f32, 3>,
-    pub direction: Direction<f32>,
-    pub start: Direction<f32>,
-    pub plane: FreePlane<f32>,
-    pub load: Load<f32>,
-    pub moment: Vector3<f32>,
-    pub bounds: TensionBounds<f32>,
-    pub level: f32,
-    pub tendon: Tendon<f32>,
-    pub kinematics: Kinematics<f32, 3>,
-    pub states: TendonStates<f32, 3>,
-    pub lengths: SVector<f32, 3>,
-    pub lengths_universal: SVector<f32, 3>,
+pub struct Bench<T> {
+    pub angle: T,
+    pub rig: Rig<T, 3>,
+    pub direction: Direction<T>,
+    pub start: Direction<T>,
+    pub plane: FreePlane<T>,
+    pub load: Load<T>,
+    pub moment: Vector3<T>,
+    pub bounds: TensionBounds<T>,
+    pub level: T,
+    pub tendon: Tendon<T>,
+    pub kinematics: Kinematics<T, 3>,
+    pub states: TendonStates<T, 3>,
+    pub lengths: SVector<T, 3>,
+    pub lengths_universal: SVector<T, 3>,
 }
 
-impl Bench {
+impl<T: Scalar> Bench<T> {
     pub fn new(input: &KernelInput) -> Result<Self, Error> {
         let rig = Rig::new(&input.rig.into())?;
-        let direction = Direction::from_angles(input.azimuth_rad, input.tilt_rad)?;
-        let bounds = TensionBounds::new(input.tension_floor_n, input.tension_ceiling_n)?;
-        let tendon = Tendon::new(input.stiffness_n_per_m)?;
-        let load = Load::new(&rig, input.payload_kg)?;
+        let direction = Direction::from_angles(input.azimuth_rad.into(), input.tilt_rad.into())?;
+        let bounds =
+            TensionBounds::new(input.tension_floor_n.into(), input.tension_ceiling_n.into())?;
+        let tendon = Tendon::new(input.stiffness_n_per_m.into())?;
+        let load = Load::new(&rig, input.payload_kg.into())?;
         let moment = load.moment(&direction);
         let plane = FreePlane::torsion_free(&direction);
         let kinematics = inverse_kinematics(rig.geometry(), &direction)?;
-        let distribution: Distribution<f32, 3> =
-            distribute(&kinematics.moment_map, &plane, &moment, &bounds)?;
+        let distribution = distribute(&kinematics.moment_map, &plane, &moment, &bounds)?;
+        let level = input.level_n.into();
         let states = TendonStates {
-            tensions: distribution.tensions(input.level_n),
+            tensions: distribution.tensions(level),
             stiffnesses: SVector::repeat(tendon.stiffness()),
         };
-        let twisted = rig
-            .geometry()
-            .twisted(&Twist::universal(&direction.half_tangent()));
-        let errors = SVector::from(input.length_errors_m);
+        let start =
+            Direction::from_angles(input.start_azimuth_rad.into(), input.start_tilt_rad.into())?;
+        let twist = Twist::universal(&direction.half_tangent());
+        let twisted = rig.geometry().twisted(&twist);
+        let errors = SVector::from(input.length_errors_m.map(T::from));
         Ok(Self {
-            angle: input.azimuth_rad,
+            angle: input.azimuth_rad.into(),
             rig,
             direction,
-            start: Direction::from_angles(input.start_azimuth_rad, input.start_tilt_rad)?,
+            start,
             plane,
             load,
             moment,
             bounds,
-            level: input.level_n,
+            level,
             tendon,
             kinematics,
             states,

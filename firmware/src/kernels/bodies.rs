@@ -1,42 +1,47 @@
 //! What each kernel calls, and the numbers of its result.
 
 use super::bench::Bench;
-use leg_model::{Error, Scalar, Symmetric3};
+use leg_model::{Deflection, Error, Scalar, Symmetric3};
 use nalgebra::{SVector, Vector3};
 
 /// A kernel as a type.
-pub trait Body {
+pub trait Body<T> {
     type Output;
-    fn run(bench: &Bench) -> Result<Self::Output, Error>;
-    fn flatten(output: &Self::Output, push: &mut impl FnMut(f32));
+    fn run(bench: &Bench<T>) -> Result<Self::Output, Error>;
+    fn flatten(output: &Self::Output, push: &mut impl FnMut(T));
+
+    /// An error that stands inside the output.
+    fn check(_output: &Self::Output) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
 pub struct SquareRoot;
 
-impl Body for SquareRoot {
-    type Output = f32;
+impl<T: Scalar> Body<T> for SquareRoot {
+    type Output = T;
 
     #[inline(always)]
-    fn run(bench: &Bench) -> Result<f32, Error> {
-        Ok(Scalar::sqrt(Scalar::abs(bench.angle)))
+    fn run(bench: &Bench<T>) -> Result<T, Error> {
+        Ok(bench.angle.abs().sqrt())
     }
 
-    fn flatten(&root: &f32, push: &mut impl FnMut(f32)) {
+    fn flatten(&root: &T, push: &mut impl FnMut(T)) {
         push(root);
     }
 }
 
 pub struct SinCos;
 
-impl Body for SinCos {
-    type Output = (f32, f32);
+impl<T: Scalar> Body<T> for SinCos {
+    type Output = (T, T);
 
     #[inline(always)]
-    fn run(bench: &Bench) -> Result<(f32, f32), Error> {
-        Ok(Scalar::sin_cos(bench.angle))
+    fn run(bench: &Bench<T>) -> Result<(T, T), Error> {
+        Ok(bench.angle.sin_cos())
     }
 
-    fn flatten(&(sin, cos): &(f32, f32), push: &mut impl FnMut(f32)) {
+    fn flatten(&(sin, cos): &(T, T), push: &mut impl FnMut(T)) {
         push(sin);
         push(cos);
     }
@@ -44,15 +49,15 @@ impl Body for SinCos {
 
 pub struct InverseKinematics;
 
-impl Body for InverseKinematics {
-    type Output = leg_model::Kinematics<f32, 3>;
+impl<T: Scalar> Body<T> for InverseKinematics {
+    type Output = leg_model::Kinematics<T, 3>;
 
     #[inline(always)]
-    fn run(bench: &Bench) -> Result<Self::Output, Error> {
+    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
         leg_model::inverse_kinematics(bench.rig.geometry(), &bench.direction)
     }
 
-    fn flatten(kinematics: &Self::Output, push: &mut impl FnMut(f32)) {
+    fn flatten(kinematics: &Self::Output, push: &mut impl FnMut(T)) {
         kinematics.lengths.iter().copied().for_each(&mut *push);
         kinematics.moment_map.iter().copied().for_each(push);
     }
@@ -60,26 +65,26 @@ impl Body for InverseKinematics {
 
 pub struct ForwardKinematics;
 
-impl Body for ForwardKinematics {
-    type Output = leg_model::ForwardKinematics<f32>;
+impl<T: Scalar> Body<T> for ForwardKinematics {
+    type Output = leg_model::ForwardKinematics<T>;
 
     #[inline(always)]
-    fn run(bench: &Bench) -> Result<Self::Output, Error> {
+    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
         leg_model::forward_kinematics(bench.rig.geometry(), &bench.lengths, &bench.start)
     }
 
-    fn flatten(found: &Self::Output, push: &mut impl FnMut(f32)) {
+    fn flatten(found: &Self::Output, push: &mut impl FnMut(T)) {
         push_found(found, push);
     }
 }
 
 pub struct ForwardKinematicsUniversal;
 
-impl Body for ForwardKinematicsUniversal {
-    type Output = leg_model::ForwardKinematics<f32>;
+impl<T: Scalar> Body<T> for ForwardKinematicsUniversal {
+    type Output = leg_model::ForwardKinematics<T>;
 
     #[inline(always)]
-    fn run(bench: &Bench) -> Result<Self::Output, Error> {
+    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
         leg_model::forward_kinematics_universal(
             bench.rig.geometry(),
             &bench.lengths_universal,
@@ -87,24 +92,24 @@ impl Body for ForwardKinematicsUniversal {
         )
     }
 
-    fn flatten(found: &Self::Output, push: &mut impl FnMut(f32)) {
+    fn flatten(found: &Self::Output, push: &mut impl FnMut(T)) {
         push_found(found, push);
     }
 }
 
 pub struct Distribution;
 
-impl Body for Distribution {
-    type Output = (leg_model::Distribution<f32, 3>, SVector<f32, 3>);
+impl<T: Scalar> Body<T> for Distribution {
+    type Output = (leg_model::Distribution<T, 3>, SVector<T, 3>);
 
     #[inline(always)]
-    fn run(bench: &Bench) -> Result<Self::Output, Error> {
+    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
         let map = &bench.kinematics.moment_map;
         let distribution = leg_model::distribute(map, &bench.plane, &bench.moment, &bench.bounds)?;
         Ok((distribution, distribution.tensions(bench.level)))
     }
 
-    fn flatten((distribution, tensions): &Self::Output, push: &mut impl FnMut(f32)) {
+    fn flatten((distribution, tensions): &Self::Output, push: &mut impl FnMut(T)) {
         distribution.particular.iter().copied().for_each(&mut *push);
         distribution.per_level.iter().copied().for_each(&mut *push);
         push(distribution.lowest_level);
@@ -115,37 +120,50 @@ impl Body for Distribution {
 
 pub struct FullPass;
 
-impl Body for FullPass {
-    type Output = leg_model::FullPass<f32, 3>;
+impl<T: Scalar> Body<T> for FullPass {
+    type Output = leg_model::FullPass<T, 3>;
 
     #[inline(always)]
-    fn run(bench: &Bench) -> Result<Self::Output, Error> {
-        leg_model::full_pass(&bench.rig, &bench.direction, &bench.load, &bench.states)
+    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+        Ok(leg_model::full_pass(
+            &bench.rig,
+            &bench.direction,
+            &bench.load,
+            &bench.states,
+        ))
     }
 
-    fn flatten(pass: &Self::Output, push: &mut impl FnMut(f32)) {
+    fn flatten(pass: &Self::Output, push: &mut impl FnMut(T)) {
         push_pass(pass, push);
+    }
+
+    fn check(pass: &Self::Output) -> Result<(), Error> {
+        pass.deflection.map(|_| ())
     }
 }
 
 pub struct FullPassInPlane;
 
-impl Body for FullPassInPlane {
-    type Output = leg_model::FullPass<f32, 3>;
+impl<T: Scalar> Body<T> for FullPassInPlane {
+    type Output = leg_model::FullPass<T, 3>;
 
     #[inline(always)]
-    fn run(bench: &Bench) -> Result<Self::Output, Error> {
-        leg_model::full_pass_in_plane(
+    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+        Ok(leg_model::full_pass_in_plane(
             &bench.rig,
             &bench.direction,
             &bench.plane,
             &bench.load,
             &bench.states,
-        )
+        ))
     }
 
-    fn flatten(pass: &Self::Output, push: &mut impl FnMut(f32)) {
+    fn flatten(pass: &Self::Output, push: &mut impl FnMut(T)) {
         push_pass(pass, push);
+    }
+
+    fn check(pass: &Self::Output) -> Result<(), Error> {
+        pass.deflection.map(|_| ())
     }
 }
 
@@ -153,22 +171,24 @@ impl Body for FullPassInPlane {
 pub struct ModelTick;
 
 /// What the model's part of a tick computes.
-pub struct TickOutput {
-    found: leg_model::ForwardKinematics<f32>,
-    moment: Vector3<f32>,
-    pass: leg_model::FullPass<f32, 3>,
-    tensions: SVector<f32, 3>,
-    unstretched: SVector<f32, 3>,
+pub struct TickOutput<T> {
+    found: leg_model::ForwardKinematics<T>,
+    moment: Vector3<T>,
+    stiffness: Symmetric3<T>,
+    deflection: Deflection<T>,
+    tensions: SVector<T, 3>,
+    unstretched: SVector<T, 3>,
 }
 
-impl Body for ModelTick {
-    type Output = TickOutput;
+impl<T: Scalar> Body<T> for ModelTick {
+    type Output = TickOutput<T>;
 
     #[inline(always)]
-    fn run(bench: &Bench) -> Result<TickOutput, Error> {
+    fn run(bench: &Bench<T>) -> Result<TickOutput<T>, Error> {
         let found =
             leg_model::forward_kinematics(bench.rig.geometry(), &bench.lengths, &bench.start)?;
-        let pass = leg_model::full_pass(&bench.rig, &found.direction, &bench.load, &bench.states)?;
+        let pass = leg_model::full_pass(&bench.rig, &found.direction, &bench.load, &bench.states);
+        let deflection = pass.deflection?;
         let kinematics = &pass.kinematics;
         let moment = leg_model::estimate_moment(&kinematics.moment_map, &bench.states.tensions);
         let plane = leg_model::FreePlane::torsion_free(&found.direction);
@@ -180,26 +200,24 @@ impl Body for ModelTick {
         Ok(TickOutput {
             found,
             moment,
-            pass,
+            stiffness: pass.stiffness,
+            deflection,
             tensions,
             unstretched,
         })
     }
 
-    fn flatten(tick: &TickOutput, push: &mut impl FnMut(f32)) {
+    fn flatten(tick: &Self::Output, push: &mut impl FnMut(T)) {
         push_found(&tick.found, push);
         tick.moment.iter().copied().for_each(&mut *push);
-        tick.pass
-            .tip_displacement
-            .iter()
-            .copied()
-            .for_each(&mut *push);
+        push_symmetric(&tick.stiffness, push);
+        push_deflection(&tick.deflection, push);
         tick.tensions.iter().copied().for_each(&mut *push);
         tick.unstretched.iter().copied().for_each(push);
     }
 }
 
-fn push_found(found: &leg_model::ForwardKinematics<f32>, push: &mut impl FnMut(f32)) {
+fn push_found<T: Scalar>(found: &leg_model::ForwardKinematics<T>, push: &mut impl FnMut(T)) {
     found
         .direction
         .vector()
@@ -207,25 +225,35 @@ fn push_found(found: &leg_model::ForwardKinematics<f32>, push: &mut impl FnMut(f
         .copied()
         .for_each(&mut *push);
     push(found.residual_m);
-    push(f32::from(found.steps));
+    push(T::from(f32::from(found.steps)));
 }
 
-fn push_pass(pass: &leg_model::FullPass<f32, 3>, push: &mut impl FnMut(f32)) {
+fn push_pass<T: Scalar>(pass: &leg_model::FullPass<T, 3>, push: &mut impl FnMut(T)) {
     pass.kinematics.lengths.iter().copied().for_each(&mut *push);
     pass.kinematics
         .moment_map
         .iter()
         .copied()
         .for_each(&mut *push);
-    let Symmetric3 {
+    push_symmetric(&pass.stiffness, push);
+    if let Ok(deflection) = &pass.deflection {
+        push_deflection(deflection, push);
+    }
+}
+
+fn push_symmetric<T: Scalar>(matrix: &Symmetric3<T>, push: &mut impl FnMut(T)) {
+    let &Symmetric3 {
         xx,
         xy,
         xz,
         yy,
         yz,
         zz,
-    } = pass.stiffness;
-    [xx, xy, xz, yy, yz, zz].into_iter().for_each(&mut *push);
-    pass.rotation.iter().copied().for_each(&mut *push);
-    pass.tip_displacement.iter().copied().for_each(push);
+    } = matrix;
+    [xx, xy, xz, yy, yz, zz].into_iter().for_each(push);
+}
+
+fn push_deflection<T: Scalar>(deflection: &Deflection<T>, push: &mut impl FnMut(T)) {
+    deflection.rotation.iter().copied().for_each(&mut *push);
+    deflection.tip_displacement.iter().copied().for_each(push);
 }

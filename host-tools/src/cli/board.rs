@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::link::{InProcess, Link};
-use crate::qemu::{Config, Session};
+use crate::qemu::{Clock, Config, Session};
 use crate::{image, setup};
 use indicatif::ProgressBar;
 use std::path::PathBuf;
@@ -26,8 +26,14 @@ pub(super) fn in_process() -> Result<Box<dyn Link>, Failure> {
 
 /// The firmware on an emulated board. Installs and builds first what is missing.
 pub(super) fn qemu(verbose: bool) -> Result<Box<dyn Link>, Failure> {
+    qemu_with(Clock::Normal, verbose)
+}
+
+/// The firmware on an emulated board whose clock may be made for counting.
+pub(super) fn qemu_with(clock: Clock, verbose: bool) -> Result<Box<dyn Link>, Failure> {
     let Prerequisites { qemu, image } = prepare()?;
     let config = Config {
+        clock,
         verbose,
         ..Config::new(qemu, image)
     };

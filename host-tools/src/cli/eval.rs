@@ -39,7 +39,10 @@ and, from the rig file if left out:
 
 Each line is answered by one line, in order, in SI units. A line that has no result is
 answered by {\"error\":…,\"line\":n}; the others go on, and the exit code is 1. Empty lines
-are skipped, but counted.";
+are skipped, but counted.
+
+deviation_nonlinear_m comes from f64 only. It is left out for a spherical support and at
+a negative level, where it has no meaning.";
 
 /// Runs the command.
 ///

@@ -6,8 +6,10 @@ use crate::failure::Failure;
 use crate::jsonl::Line;
 use crate::line_error::LineError;
 use crate::link::Link;
+use crate::nonlinear;
 use crate::rig_file::RigFile;
 use clap::ValueEnum;
+use leg_model::Evaluation;
 use serde::Serialize;
 
 /// The choices of `--on`.
@@ -69,11 +71,23 @@ impl Evaluator {
     pub(super) fn answer(&mut self, text: &[u8], rig: &RigFile) -> Result<String, Stop> {
         let Line { rig, query } = Line::parse(text, rig)?;
         match self {
-            Self::Host => to_line(&leg_model::evaluate(&rig, &query)?),
+            Self::Host => to_line(&HostAnswer {
+                evaluation: leg_model::evaluate(&rig, &query)?,
+                deviation_nonlinear_m: nonlinear::deviation_m(&rig, &query)?,
+            }),
             Self::Firmware(link) => to_line(&evaluate::on_link(link.as_mut(), &rig, &query)?),
         }
         .map_err(Stop::Command)
     }
+}
+
+/// What the host says of a pose: the model, and what only f64 is fit for.
+#[derive(Serialize)]
+struct HostAnswer {
+    #[serde(flatten)]
+    evaluation: Evaluation<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    deviation_nonlinear_m: Option<f64>,
 }
 
 /// What stands in the place of an answer.

@@ -1,6 +1,7 @@
 //! The command line `leg`, one file a command.
 
 mod board;
+mod cost;
 mod eval;
 mod evaluator;
 mod run;
@@ -31,6 +32,7 @@ Exit codes:
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Cost(cost::Args),
     Eval(eval::Args),
     Run(run::Args),
     /// Installs what the other commands need: the Rust target, QEMU, and the firmware built for it.
@@ -44,6 +46,7 @@ enum Command {
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let ended = match &cli.command {
+        Command::Cost(args) => cost::run(args, cli.verbose),
         Command::Eval(args) => eval::run(args, cli.verbose),
         Command::Run(args) => run::run(args, cli.verbose),
         Command::Setup => setup::run(),

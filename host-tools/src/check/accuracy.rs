@@ -1,0 +1,69 @@
+//! The worst difference of each quantity, and where it is.
+
+use super::{Pose, State};
+use crate::precision::{Part, Row};
+use serde::Serialize;
+
+/// A row of the precision table and how it was kept.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct RowReport {
+    /// The row.
+    #[serde(flatten)]
+    pub row: Row,
+    /// The largest difference; infinite where the firmware has no number.
+    pub worst: f64,
+    /// Where that is; none before anything was compared.
+    pub at: Option<Pose>,
+    /// Whether something was compared and all of it lay within the bound.
+    pub held: bool,
+}
+
+/// The worst so far.
+#[derive(Clone, Debug)]
+pub struct Accuracy(Vec<RowReport>);
+
+impl Accuracy {
+    /// Nothing compared yet.
+    #[must_use]
+    pub fn new(table: &[Row]) -> Self {
+        let report = |&row| RowReport {
+            row,
+            worst: 0.0,
+            at: None,
+            held: false,
+        };
+        Self(table.iter().map(report).collect())
+    }
+
+    /// Compares the numbers of one reply, part by part.
+    pub fn add(&mut self, parts: &[Part], found: &[f64], expected: &[f64], state: &State) {
+        let mut first = 0;
+        for &(quantity, count) in parts {
+            let numbers = first..first + count;
+            first += count;
+            let rows = self.0.iter_mut();
+            for report in rows.filter(|report| Some(report.row.quantity) == quantity) {
+                let slice = |from: &[f64]| from.get(numbers.clone()).unwrap_or_default().to_vec();
+                let (found, expected) = (slice(found), slice(expected));
+                // A refusal leaves no numbers, and is far from the reference's.
+                report.add(report.row.difference(&found, &expected), state);
+            }
+        }
+    }
+
+    /// The rows.
+    #[must_use]
+    pub fn into_rows(self) -> Vec<RowReport> {
+        self.0
+    }
+}
+
+impl RowReport {
+    fn add(&mut self, difference: f64, state: &State) {
+        if self.at.is_none() || difference > self.worst {
+            self.worst = difference;
+            self.at = Some(state.pose());
+        }
+        self.held = self.worst <= self.row.bound;
+    }
+}
