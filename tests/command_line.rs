@@ -13,7 +13,8 @@ const LEG: &str = env!("CARGO_BIN_EXE_leg-under-test");
 fn transcripts() {
     trycmd::TestCases::new()
         .register_bin("leg", std::path::Path::new(LEG))
-        .case("command_line/*.trycmd");
+        .case("command_line/*.trycmd")
+        .case("../README.md");
 }
 
 /// Runs `leg` with a text on its standard input.

@@ -5,6 +5,8 @@ mod bits;
 mod reference;
 mod sample;
 mod state;
+#[cfg(test)]
+mod tests;
 
 pub use accuracy::{Accuracy, RowReport};
 pub use bits::{Bits, Difference};

@@ -84,7 +84,7 @@ pub struct Row {
     pub name: &'static str,
     /// How it is compared.
     pub measure: Measure,
-    /// The unit of the bound; "relative" where there is none.
+    /// The unit of the bound; "relative" or "absolute" where there is none.
     pub unit: &'static str,
     /// The largest difference that is allowed.
     pub bound: f64,

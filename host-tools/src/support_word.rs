@@ -2,10 +2,10 @@
 
 use leg_model::SupportKind;
 
-const SUPPORTS: [(&str, SupportKind); 3] = [
-    ("torsion_free", SupportKind::TorsionFree),
-    ("universal", SupportKind::Universal),
-    ("spherical", SupportKind::Spherical),
+const SUPPORTS: [SupportKind; 3] = [
+    SupportKind::TorsionFree,
+    SupportKind::Universal,
+    SupportKind::Spherical,
 ];
 
 /// A word that names no support.
@@ -17,10 +17,7 @@ impl UnknownSupport {
     /// What to write instead.
     #[must_use]
     pub fn fix(&self) -> String {
-        let names: Vec<String> = SUPPORTS
-            .iter()
-            .map(|(name, _)| format!("`{name}`"))
-            .collect();
+        let names = SUPPORTS.map(|support| format!("`{}`", of(support)));
         format!("write one of {}", names.join(", "))
     }
 }
@@ -30,10 +27,18 @@ impl UnknownSupport {
 /// # Errors
 /// [`UnknownSupport`] when there is none.
 pub fn parse(word: &str) -> Result<SupportKind, UnknownSupport> {
-    let named = SUPPORTS.iter().find(|(name, _)| *name == word);
-    named
-        .map(|&(_, support)| support)
-        .ok_or_else(|| UnknownSupport(word.into()))
+    let named = SUPPORTS.into_iter().find(|&support| of(support) == word);
+    named.ok_or_else(|| UnknownSupport(word.into()))
+}
+
+/// The name of a support.
+#[must_use]
+pub const fn of(support: SupportKind) -> &'static str {
+    match support {
+        SupportKind::TorsionFree => "torsion_free",
+        SupportKind::Universal => "universal",
+        SupportKind::Spherical => "spherical",
+    }
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use crate::{Direction, Error, Geometry, HalfTangent, Quantity, Reason, Scalar, T
 use nalgebra::SVector;
 
 /// Steps after which a search without convergence ends.
-pub const STEPS_MAX: u8 = 10;
+const STEPS_MAX: u8 = 10;
 
 /// What forward kinematics found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +33,7 @@ pub struct ForwardKinematics<T> {
 ///
 /// # Errors
 /// Lengths that are not positive are refused; [`Error::Singular`] if the tendons do not determine a direction;
-/// [`Error::NotConverged`] if [`STEPS_MAX`] steps do not suffice or the leg would point above the horizon.
+/// [`Error::NotConverged`] if ten steps do not suffice or the leg would point above the horizon.
 #[inline(always)]
 pub fn forward_kinematics<T: Scalar, const N: usize>(
     geometry: &Geometry<T, N>,

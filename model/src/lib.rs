@@ -14,6 +14,14 @@
 //! # Ok::<(), leg_model::Error>(())
 //! ```
 #![no_std]
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "a comparison that is negated refuses NaN, too"
+)]
+#![allow(
+    clippy::excessive_precision,
+    reason = "constants are written once, for f32 and f64"
+)]
 
 mod deviation;
 mod error;

@@ -37,7 +37,7 @@ impl<T: Scalar> Load<T> {
         [-self.lever * direction.y, self.lever * direction.x]
     }
 
-    /// K_load = −Σ [F×][r×], N·m/rad: the weights turn with the leg. The paper leaves it out.
+    /// `K_load = −Σ [F×][r×]`, N·m/rad: the weights turn with the leg. The paper leaves it out.
     #[must_use]
     pub fn stiffness(&self, direction: &Direction<T>) -> Matrix3<T> {
         let [x, y, z] = [direction.x, direction.y, direction.z].map(|c| self.lever * c);

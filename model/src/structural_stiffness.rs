@@ -7,8 +7,8 @@ use nalgebra::{Matrix3, SVector, Vector3};
 /// K₂ exactly, N·m/rad.
 ///
 /// The derivative of the tendons' moment at constant tensions,
-/// Σ f(−[n×][e×] + (1/l)[e×](I − nnᵀ)[e×]ᵀ), is Σ (f/l)((e·B)I − eBᵀ − aaᵀ) with a = e × n, because the squares of e
-/// cancel. Its antisymmetric part is half the moment of the tendons.
+/// `Σ f(−[n×][e×] + (1/l)[e×](I − nnᵀ)[e×]ᵀ)`, is Σ (f/l)((e·B)I − eBᵀ − aaᵀ) with a = e × n, because the squares
+/// of e cancel. Its antisymmetric part is half the moment of the tendons.
 #[must_use]
 pub fn structural_stiffness<T: Scalar, const N: usize>(
     geometry: &Geometry<T, N>,
@@ -22,7 +22,7 @@ pub fn structural_stiffness<T: Scalar, const N: usize>(
     })
 }
 
-/// K₂ as Eq. (15) prints it, Σ f[n×][e×], N·m/rad: for comparison only.
+/// K₂ as Eq. (15) prints it, `Σ f[n×][e×]`, N·m/rad: for comparison only.
 ///
 /// It has the wrong sign for n from S to B and lacks the change of n, so it claims that pretension stiffens bending.
 #[must_use]

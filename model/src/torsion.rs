@@ -6,7 +6,7 @@ use crate::{
 };
 
 /// Steps after which a search without convergence ends.
-pub const STEPS_MAX: u8 = 20;
+const STEPS_MAX: u8 = 20;
 
 /// The torsion, rad, at which the tendons' moment about the bisector of the two plates' normals vanishes while the
 /// pretension keeps its `level` (N), by the secant method.

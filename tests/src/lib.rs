@@ -1,5 +1,8 @@
 //! What the tests across the crates share.
 
+pub mod numeric;
+pub mod reference;
+
 use serde_json::Value;
 
 /// The numbers of a JSON value, those of nested arrays one after the other.

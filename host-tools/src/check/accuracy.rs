@@ -10,7 +10,7 @@ pub struct RowReport {
     /// The row.
     #[serde(flatten)]
     pub row: Row,
-    /// The largest difference; infinite where the firmware has no number.
+    /// The largest difference; infinite (in JSON null) where the firmware has no number.
     pub worst: f64,
     /// Where that is; none before anything was compared.
     pub at: Option<Pose>,
@@ -43,10 +43,10 @@ impl Accuracy {
             first += count;
             let rows = self.0.iter_mut();
             for report in rows.filter(|report| Some(report.row.quantity) == quantity) {
-                let slice = |from: &[f64]| from.get(numbers.clone()).unwrap_or_default().to_vec();
-                let (found, expected) = (slice(found), slice(expected));
                 // A refusal leaves no numbers, and is far from the reference's.
-                report.add(report.row.difference(&found, &expected), state);
+                let found = found.get(numbers.clone()).unwrap_or_default();
+                let expected = expected.get(numbers.clone()).unwrap_or_default();
+                report.add(report.row.difference(found, expected), state);
             }
         }
     }

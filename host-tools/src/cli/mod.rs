@@ -1,6 +1,7 @@
 //! The command line `leg`, one file a command.
 
 mod board;
+mod check;
 mod cost;
 mod eval;
 mod evaluator;
@@ -32,6 +33,7 @@ Exit codes:
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Check(check::Args),
     Cost(cost::Args),
     Eval(eval::Args),
     Run(run::Args),
@@ -46,6 +48,7 @@ enum Command {
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let ended = match &cli.command {
+        Command::Check(args) => check::run(args, cli.verbose),
         Command::Cost(args) => cost::run(args, cli.verbose),
         Command::Eval(args) => eval::run(args, cli.verbose),
         Command::Run(args) => run::run(args, cli.verbose),

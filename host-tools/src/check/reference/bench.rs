@@ -1,0 +1,178 @@
+//! The kernels in f64.
+//!
+//! Where the fast path has a function of its own (the full pass), the reference is put together from the plain ones, so
+//! that a slip in a short cut shows, too.
+
+use crate::check::State;
+use leg_firmware::kernels::Kernel;
+use leg_model::{
+    Direction, Distribution, Error, ForwardKinematics, FreePlane, Kinematics, Load, Rig, Tendon,
+    TendonStates, TensionBounds, Twist, distribute, estimate_moment, forward_kinematics,
+    forward_kinematics_universal, inverse_kinematics, solve3, structural_stiffness,
+    tendon_stiffness, tip_displacement,
+};
+use nalgebra::{Matrix3, SVector, Vector3};
+
+/// The arguments of the kernels, prepared as the firmware prepares them.
+pub(super) struct Bench {
+    azimuth: f64,
+    rig: Rig<f64, 3>,
+    direction: Direction<f64>,
+    start: Direction<f64>,
+    plane: FreePlane<f64>,
+    load: Load<f64>,
+    bounds: TensionBounds<f64>,
+    level: f64,
+    tendon: Tendon<f64>,
+    kinematics: Kinematics<f64, 3>,
+    distribution: Distribution<f64, 3>,
+    states: TendonStates<f64, 3>,
+    length_errors: Vector3<f64>,
+}
+
+impl Bench {
+    pub(super) fn new(state: &State) -> Result<Self, Error> {
+        let (rig, query) = (Rig::new(&state.rig())?, state.query::<f64>());
+        let input = &state.input;
+        let direction = Direction::from_angles(query.azimuth_rad, query.tilt_rad)?;
+        let (start_azimuth, start_tilt) = (input.start_azimuth_rad, input.start_tilt_rad);
+        let plane = FreePlane::torsion_free(&direction);
+        let load = Load::new(&rig, query.payload_kg)?;
+        let bounds = TensionBounds::new(query.tension_floor_n, query.tension_ceiling_n)?;
+        let tendon = Tendon::new(query.stiffness_n_per_m)?;
+        let kinematics = inverse_kinematics(rig.geometry(), &direction)?;
+        let moment = load.moment(&direction);
+        let distribution: Distribution<f64, 3> =
+            distribute(&kinematics.moment_map, &plane, &moment, &bounds)?;
+        Ok(Self {
+            azimuth: query.azimuth_rad,
+            rig,
+            direction,
+            start: Direction::from_angles(start_azimuth.into(), start_tilt.into())?,
+            plane,
+            load,
+            bounds,
+            level: query.level_n,
+            tendon,
+            kinematics,
+            distribution,
+            states: TendonStates {
+                tensions: distribution.tensions(query.level_n),
+                stiffnesses: SVector::repeat(tendon.stiffness()),
+            },
+            length_errors: Vector3::from(input.length_errors_m.map(f64::from)),
+        })
+    }
+
+    pub(super) fn run(&self, kernel: Kernel) -> Result<Vec<f64>, Error> {
+        Ok(match kernel {
+            Kernel::SquareRoot => vec![self.azimuth.abs().sqrt()],
+            Kernel::SinCos => vec![self.azimuth.sin(), self.azimuth.cos()],
+            Kernel::InverseKinematics => of_kinematics(&self.kinematics),
+            Kernel::ForwardKinematics => of_found(&self.found()?),
+            Kernel::ForwardKinematicsUniversal => of_found(&self.found_universal()?),
+            Kernel::Distribution => self.distribution(),
+            Kernel::FullPass => self.pass(None)?,
+            Kernel::FullPassInPlane => self.pass(Some(&self.plane))?,
+            Kernel::ModelTick => self.tick()?,
+        })
+    }
+
+    fn found(&self) -> Result<ForwardKinematics<f64>, Error> {
+        let lengths = self.kinematics.lengths + self.length_errors;
+        forward_kinematics(self.rig.geometry(), &lengths, &self.start)
+    }
+
+    fn found_universal(&self) -> Result<ForwardKinematics<f64>, Error> {
+        let geometry = self.rig.geometry();
+        let twist = Twist::universal(&self.direction.half_tangent());
+        let kinematics = inverse_kinematics(&geometry.twisted(&twist), &self.direction)?;
+        let lengths = kinematics.lengths + self.length_errors;
+        forward_kinematics_universal(geometry, &lengths, &self.start)
+    }
+
+    fn distribution(&self) -> Vec<f64> {
+        let distribution = &self.distribution;
+        let levels = [distribution.lowest_level, distribution.highest_level];
+        let (particular, per_level) = (&distribution.particular, &distribution.per_level);
+        let tensions = &self.states.tensions;
+        [
+            particular.as_slice(),
+            per_level.as_slice(),
+            &levels,
+            tensions.as_slice(),
+        ]
+        .concat()
+    }
+
+    /// The full pass, in a plane or, without one, on a ball joint.
+    fn pass(&self, plane: Option<&FreePlane<f64>>) -> Result<Vec<f64>, Error> {
+        let sag = self.sag(&self.kinematics, &self.direction, plane)?;
+        Ok([of_kinematics(&self.kinematics), sag].concat())
+    }
+
+    /// Total stiffness, rotation and tip displacement.
+    fn sag(
+        &self,
+        kinematics: &Kinematics<f64, 3>,
+        direction: &Direction<f64>,
+        plane: Option<&FreePlane<f64>>,
+    ) -> Result<Vec<f64>, Error> {
+        let stiffness = self.stiffness(kinematics, direction);
+        let moment = self.load.moment(direction);
+        let rotation = match plane {
+            Some(plane) => plane.solve(&stiffness, &moment)?,
+            None => solve3(&stiffness, &moment)?,
+        };
+        let tip = tip_displacement(&rotation, direction, self.rig.tip_m());
+        let upper = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)].map(|entry| stiffness[entry]);
+        Ok([&upper, rotation.as_slice(), tip.as_slice()].concat())
+    }
+
+    /// K₁ + exact K₂ + K_load, symmetrised.
+    fn stiffness(
+        &self,
+        kinematics: &Kinematics<f64, 3>,
+        direction: &Direction<f64>,
+    ) -> Matrix3<f64> {
+        let TendonStates {
+            tensions,
+            stiffnesses,
+        } = &self.states;
+        let total = tendon_stiffness(&kinematics.moment_map, stiffnesses)
+            + structural_stiffness(self.rig.geometry(), direction, tensions)
+            + self.load.stiffness(direction);
+        (total + total.transpose()) * 0.5
+    }
+
+    fn tick(&self) -> Result<Vec<f64>, Error> {
+        let found = self.found()?;
+        let direction = &found.direction;
+        let kinematics = inverse_kinematics(self.rig.geometry(), direction)?;
+        let moment = estimate_moment(&kinematics.moment_map, &self.states.tensions);
+        let plane = FreePlane::torsion_free(direction);
+        let distribution: Distribution<f64, 3> =
+            distribute(&kinematics.moment_map, &plane, &moment, &self.bounds)?;
+        let tensions = distribution.tensions(self.level);
+        let unstretched: Vector3<f64> =
+            Vector3::from_fn(|i, _| self.tendon.unstretched(kinematics.lengths[i], tensions[i]));
+        Ok([
+            of_found(&found),
+            moment.as_slice().to_vec(),
+            self.sag(&kinematics, direction, None)?,
+            tensions.as_slice().to_vec(),
+            unstretched.as_slice().to_vec(),
+        ]
+        .concat())
+    }
+}
+
+fn of_kinematics(kinematics: &Kinematics<f64, 3>) -> Vec<f64> {
+    let (lengths, map) = (&kinematics.lengths, &kinematics.moment_map);
+    [lengths.as_slice(), map.as_slice()].concat()
+}
+
+fn of_found(found: &ForwardKinematics<f64>) -> Vec<f64> {
+    let rest = [found.residual_m, found.steps.into()];
+    [found.direction.vector().as_slice(), &rest].concat()
+}
