@@ -11,10 +11,12 @@ const LEG: &str = env!("CARGO_BIN_EXE_leg-under-test");
 
 #[test]
 fn transcripts() {
+    // README.md speaks from the root of the workspace, so that is where its commands run.
+    std::env::set_current_dir(leg_host_tools::image::workspace_root()).unwrap();
     trycmd::TestCases::new()
         .register_bin("leg", std::path::Path::new(LEG))
-        .case("command_line/*.trycmd")
-        .case("../README.md");
+        .case("tests/command_line/*.trycmd")
+        .case("README.md");
 }
 
 /// Runs `leg` with a text on its standard input.

@@ -4,6 +4,7 @@
 //! The payload is a message in postcard's format. A zero occurs nowhere inside a frame, so a receiver that lost its
 //! place finds it again at the next zero.
 
+use cobs::{DecodeResult, DecoderState};
 use crc::{CRC_32_ISO_HDLC, Crc};
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -110,7 +111,9 @@ fn fill<T: Serialize>(
         _ => FrameError::NotSerialisable,
     })?;
     let checked = SEQUENCE + written.len();
-    let (checked_bytes, rest) = body.split_at_mut(checked);
+    let (checked_bytes, rest) = body
+        .split_at_mut_checked(checked)
+        .ok_or(FrameError::TooLong)?;
     let checksum = CRC.checksum(checked_bytes).to_le_bytes();
     rest.first_chunk_mut::<CHECKSUM>()
         .ok_or(FrameError::TooLong)?
@@ -119,9 +122,10 @@ fn fill<T: Serialize>(
 }
 
 /// Finds frames in a stream of bytes.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Decoder {
-    encoded: [u8; MAX_ENCODED],
+    state: DecoderState,
+    body: [u8; MAX_BODY],
     length: usize,
     too_long: bool,
 }
@@ -131,7 +135,8 @@ impl Decoder {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            encoded: [0; MAX_ENCODED],
+            state: DecoderState::Idle,
+            body: [0; MAX_BODY],
             length: 0,
             too_long: false,
         }
@@ -141,27 +146,40 @@ impl Decoder {
     ///
     /// Zeros between frames are skipped, so a sender may send one to end whatever the receiver believes to be in.
     pub fn push(&mut self, byte: u8) -> Option<Result<Frame<'_>, FrameError>> {
-        if byte == 0 {
-            return self.finish();
+        match self.state.feed(byte) {
+            Ok(DecodeResult::NoData | DecodeResult::DataStart) => None,
+            Ok(DecodeResult::DataContinue(decoded)) => {
+                self.append(decoded);
+                None
+            }
+            Ok(DecodeResult::DataComplete) => Some(self.finish()),
+            Err(_) => {
+                self.restart();
+                Some(Err(FrameError::BadCobs))
+            }
         }
-        match self.encoded.get_mut(self.length) {
+    }
+
+    fn append(&mut self, byte: u8) {
+        match self.body.get_mut(self.length) {
             Some(place) => {
                 *place = byte;
                 self.length += 1;
             }
             None => self.too_long = true,
         }
-        None
     }
 
-    fn finish(&mut self) -> Option<Result<Frame<'_>, FrameError>> {
+    /// Forgets the frame so far; returns its length and whether it was too long.
+    fn restart(&mut self) -> (usize, bool) {
         let length = core::mem::take(&mut self.length);
-        if core::mem::take(&mut self.too_long) {
-            return Some(Err(FrameError::TooLong));
-        }
-        match self.encoded.get_mut(..length) {
-            None | Some([]) => None,
-            Some(encoded) => Some(unpack(encoded)),
+        (length, core::mem::take(&mut self.too_long))
+    }
+
+    fn finish(&mut self) -> Result<Frame<'_>, FrameError> {
+        match self.restart() {
+            (_, true) => Err(FrameError::TooLong),
+            (length, false) => unpack(self.body.get(..length).unwrap_or_default()),
         }
     }
 }
@@ -172,9 +190,7 @@ impl Default for Decoder {
     }
 }
 
-fn unpack(encoded: &mut [u8]) -> Result<Frame<'_>, FrameError> {
-    let length = cobs::decode_in_place(encoded).map_err(|_| FrameError::BadCobs)?;
-    let body = encoded.get(..length).ok_or(FrameError::BadCobs)?;
+fn unpack(body: &[u8]) -> Result<Frame<'_>, FrameError> {
     let (checked, checksum) = body
         .split_last_chunk::<CHECKSUM>()
         .ok_or(FrameError::TooShort)?;

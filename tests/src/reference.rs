@@ -50,7 +50,9 @@ impl<const N: usize> Tendons<N> {
     pub fn new(parameters: &RigParameters<f64, N>, rotation: &Matrix3<f64>) -> Self {
         let p = parameters;
         let plate = |[x, y]: [f64; 2], z| Vector3::new(x, y, z);
-        let ends = p.leg_anchors_m.map(|s| rotation * plate(s, -p.joint_length_m));
+        let ends = p
+            .leg_anchors_m
+            .map(|s| rotation * plate(s, -p.joint_length_m));
         let spans: [Vector3<f64>; N] =
             std::array::from_fn(|i| plate(p.base_anchors_m[i], p.upper_length_m) - ends[i]);
         Self {
@@ -97,6 +99,7 @@ pub fn load_moment<const N: usize>(
 
 /// Azimuths and tilts, rad: every `step_deg` round the vertical, and from `step_deg` to `tilt_max_deg`.
 pub fn poses(tilt_max_deg: u32, step_deg: u32) -> impl Iterator<Item = (f64, f64)> {
-    let steps = |end: u32| (1..=end / step_deg).map(move |i| f64::from(i * step_deg).to_radians());
+    let steps =
+        move |end: u32| (1..=end / step_deg).map(move |i| f64::from(i * step_deg).to_radians());
     steps(tilt_max_deg).flat_map(move |tilt| steps(360).map(move |azimuth| (azimuth, tilt)))
 }

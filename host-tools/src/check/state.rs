@@ -1,5 +1,6 @@
 //! One state of the mechanism, in numbers that f32 can hold.
 
+use crate::support_word;
 use leg_firmware::kernels::KernelInput;
 use leg_model::{Query, RigParameters, SupportKind};
 use serde::Serialize;
@@ -83,13 +84,13 @@ impl fmt::Display for Pose {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "azimuth {:.1}°, tilt {:.1}°, {:.2} kg, {:.1} N, {:.2e} N/m, {:?}",
+            "azimuth {:.1}°, tilt {:.1}°, {:.2} kg, {:.1} N, {:.2e} N/m, {}",
             self.azimuth_deg,
             self.tilt_deg,
             self.payload_kg,
             self.level_n,
             self.stiffness_n_per_m,
-            self.support,
+            support_word::of(self.support),
         )
     }
 }
