@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use leg_host_tools::{image, setup};
 use std::io::Write;
 use std::process::{Command, Output, Stdio};
 
@@ -11,8 +12,11 @@ const LEG: &str = env!("CARGO_BIN_EXE_leg-under-test");
 
 #[test]
 fn transcripts() {
+    // What a bare machine installs first is told on standard error, and not part of any transcript.
+    setup::ensure_target(&mut |_| {}).unwrap();
+    setup::ensure_qemu(&mut |_| {}).unwrap();
     // README.md speaks from the root of the workspace, so that is where its commands run.
-    std::env::set_current_dir(leg_host_tools::image::workspace_root()).unwrap();
+    std::env::set_current_dir(image::workspace_root()).unwrap();
     trycmd::TestCases::new()
         .register_bin("leg", std::path::Path::new(LEG))
         .case("tests/command_line/*.trycmd")
