@@ -5,7 +5,10 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use leg_host_tools::{image, setup};
+use std::fs::Permissions;
 use std::io::Write;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 const LEG: &str = env!("CARGO_BIN_EXE_leg-under-test");
@@ -18,7 +21,7 @@ fn transcripts() {
     // README.md speaks from the root of the workspace, so that is where its commands run.
     std::env::set_current_dir(image::workspace_root()).unwrap();
     trycmd::TestCases::new()
-        .register_bin("leg", std::path::Path::new(LEG))
+        .register_bin("leg", Path::new(LEG))
         .case("tests/command_line/*.trycmd")
         .case("README.md");
 }
@@ -47,6 +50,46 @@ fn a_missing_emulator_is_refused_with_the_fix() {
     let told = String::from_utf8(output.stderr).unwrap();
     assert!(told.contains("LEG_QEMU names `no-such-emulator`"), "{told}");
     assert!(output.stdout.is_empty());
+}
+
+/// A program in the emulator's place: it runs the emulator and kills it after a moment.
+fn dying_emulator(folder: &Path) -> PathBuf {
+    let emulator = setup::ensure_qemu(&mut |_| {}).unwrap();
+    let script = folder.join("dying-emulator");
+    let text = format!(
+        "#!/bin/sh\n'{}' \"$@\" &\nsleep 1\nkill -9 $!\nwait $!\n",
+        emulator.display()
+    );
+    std::fs::write(&script, text).unwrap();
+    std::fs::set_permissions(&script, Permissions::from_mode(0o755)).unwrap();
+    script
+}
+
+#[test]
+fn an_emulator_that_dies_in_mid_run_is_told_in_words() {
+    let folder = tempfile::tempdir().unwrap();
+    image::build().unwrap();
+    // Enough poses that a second does not suffice.
+    let line = br#"{"azimuth_deg":30,"tilt_deg":20,"payload_kg":1}
+"#;
+    let poses = folder.path().join("poses.jsonl");
+    std::fs::write(&poses, line.repeat(200_000)).unwrap();
+    let output = Command::new(LEG)
+        .args(["eval", "--on", "qemu"])
+        .arg(&poses)
+        .env("LEG_QEMU", dying_emulator(folder.path()))
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        told.contains("QEMU") && told.contains("start again"),
+        "{told}"
+    );
+    let answers = String::from_utf8(output.stdout).unwrap();
+    let count = answers.lines().count();
+    assert!((1..200_000).contains(&count), "{count} answers");
+    assert!(answers.ends_with("}\n"), "the last answer is whole");
 }
 
 #[test]

@@ -38,7 +38,7 @@ pub enum LinkError {
         source: std::io::Error,
     },
     /// QEMU or the firmware in it ended.
-    #[error("{reason}{}", last_words(.log))]
+    #[error("{reason}; start again, and with -v to see all of its log{}", last_words(.log))]
     Died {
         /// How it ended, as a sentence.
         reason: String,
