@@ -88,6 +88,7 @@ fn key_of(quantity: Quantity) -> &'static str {
         Quantity::Gravity => "gravity_m_per_s2",
         Quantity::TendonLength => "tendon length",
         Quantity::Direction => "direction",
+        Quantity::Tension => "tension",
     }
 }
 
@@ -97,6 +98,12 @@ fn fix_of(quantity: Quantity, reason: Reason) -> &'static str {
         (Quantity::Tilt, Reason::OutOfRange) => ": give -60 to 60",
         (Quantity::Azimuth, Reason::OutOfRange) => ": give -3600 to 3600",
         (_, Reason::NotFinite) => " in f32: give at most 3.4e38",
+        (Quantity::Payload, Reason::OutOfRange) => ": give 0 to 1e6",
+        (Quantity::TendonStiffness, Reason::OutOfRange) => ": give 0.01 to 1e12",
+        (Quantity::TensionFloor | Quantity::TensionCeiling, Reason::OutOfRange) => {
+            ": give 0 to 1e7"
+        }
+        (Quantity::Level, Reason::OutOfRange) => ": give -1e7 to 1e7",
         (_, Reason::AboveCeiling) => ": give at most `f_max_n`",
         _ => "",
     }

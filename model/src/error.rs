@@ -43,6 +43,8 @@ pub enum Quantity {
     TendonLength,
     /// A unit vector along the leg.
     Direction,
+    /// Tension of a tendon, N.
+    Tension,
 }
 
 /// What is wrong with a refused quantity.
@@ -82,7 +84,7 @@ pub enum Error {
     },
     /// A tendon has no length at this pose: its two anchors meet.
     TendonCollapsed,
-    /// The tendons cannot turn the leg about both of its free axes.
+    /// The tendons cannot turn the leg about both of its free axes (under a load that is finite).
     Singular,
     /// The stiffness is not positive: the leg would buckle at this pose under this load.
     Unstable,

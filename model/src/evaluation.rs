@@ -1,6 +1,6 @@
 //! The whole model at one pose: what `leg eval` prints.
 
-use crate::rig::check_finite;
+use crate::range::{TENSION_MAX, check_magnitude};
 use crate::{
     Direction, Distribution, Error, FreePlane, Geometry, Kinematics, Limit, Load, Quantity, Rig,
     RigParameters, Scalar, SupportKind, Tendon, TensionBounds, Twist, ball_joint_torsion,
@@ -139,7 +139,7 @@ impl<T: Scalar> State<T> {
     fn new(parameters: &RigParameters<T, 3>, query: &Query<T>) -> Result<Self, Error> {
         let rig = Rig::new(parameters)?;
         let direction = Direction::from_angles(query.azimuth_rad, query.tilt_rad)?;
-        check_finite(query.level_n, Quantity::Level)?;
+        check_magnitude(query.level_n, TENSION_MAX, Quantity::Level)?;
         let bounds = TensionBounds::new(query.tension_floor_n, query.tension_ceiling_n)?;
         let tendon = Tendon::new(query.stiffness_n_per_m)?;
         let load = Load::new(&rig, query.payload_kg)?;

@@ -1,8 +1,11 @@
 //! The fast path's full pass: kinematics, total stiffness, rotation and tip displacement in one walk over the tendons.
 
 use crate::kinematics::TendonAtPose;
+use crate::range::{TENSION_MAX, check_magnitude};
+use crate::tendon::check_stiffness;
 use crate::{
-    Direction, Error, FreePlane, Kinematics, Load, Rig, Scalar, Symmetric3, tip_displacement,
+    Direction, Error, FreePlane, Kinematics, Load, Quantity, Rig, Scalar, Symmetric3,
+    tip_displacement,
 };
 use nalgebra::{SVector, Vector3};
 
@@ -30,10 +33,41 @@ pub struct Deflection<T> {
 /// Tensions and tangent stiffnesses of the tendons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TendonStates<T, const N: usize> {
-    /// N.
-    pub tensions: SVector<T, N>,
-    /// N/m.
-    pub stiffnesses: SVector<T, N>,
+    tensions: SVector<T, N>,
+    stiffnesses: SVector<T, N>,
+}
+
+impl<T: Scalar, const N: usize> TendonStates<T, N> {
+    /// Tensions in N and tangent stiffnesses in N/m.
+    ///
+    /// # Errors
+    /// A tension that is not finite or beyond 10⁷ N; a stiffness that no tendon has.
+    pub fn new(tensions: SVector<T, N>, stiffnesses: SVector<T, N>) -> Result<Self, Error> {
+        for &tension in tensions.iter() {
+            check_magnitude(tension, TENSION_MAX, Quantity::Tension)?;
+        }
+        for &stiffness in stiffnesses.iter() {
+            check_stiffness(stiffness)?;
+        }
+        Ok(Self {
+            tensions,
+            stiffnesses,
+        })
+    }
+
+    /// Tensions, N.
+    #[must_use]
+    #[inline(always)]
+    pub fn tensions(&self) -> &SVector<T, N> {
+        &self.tensions
+    }
+
+    /// Tangent stiffnesses, N/m.
+    #[must_use]
+    #[inline(always)]
+    pub fn stiffnesses(&self) -> &SVector<T, N> {
+        &self.stiffnesses
+    }
 }
 
 /// Full pass for a ball joint: three free rotations, a 3×3 solve.

@@ -33,6 +33,7 @@ mod kinematics;
 mod length_polynomial;
 mod load;
 mod pose;
+mod range;
 mod rig;
 mod scalar;
 mod solve;

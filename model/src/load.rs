@@ -1,6 +1,6 @@
 //! The moment of the weights about the joint centre.
 
-use crate::rig::check_not_negative;
+use crate::range::{MASS_MAX, check_not_negative};
 use crate::{Direction, Error, Quantity, Rig, Scalar};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
@@ -15,9 +15,9 @@ impl<T: Scalar> Load<T> {
     /// The leg and a payload (kg) at its tip.
     ///
     /// # Errors
-    /// A payload that is negative or not finite.
+    /// A payload that is negative, not finite or above 10⁶ kg.
     pub fn new<const N: usize>(rig: &Rig<T, N>, payload_kg: T) -> Result<Self, Error> {
-        check_not_negative(payload_kg, Quantity::Payload)?;
+        check_not_negative(payload_kg, MASS_MAX, Quantity::Payload)?;
         Ok(Self {
             lever: rig.leg_moment + payload_kg * rig.gravity * rig.tip,
         })

@@ -1,5 +1,8 @@
 //! The mechanism's geometry and masses, and their validation.
 
+use crate::range::{
+    GRAVITY_MAX, LENGTH_MAX, MASS_MAX, check_magnitude, check_not_negative, check_positive,
+};
 use crate::{Error, Geometry, Quantity, Reason, Scalar};
 
 /// The numbers that describe a mechanism with `N` tendons, not yet validated. SI units.
@@ -67,19 +70,19 @@ impl<T: Scalar, const N: usize> Rig<T, N> {
     /// Validates a mechanism.
     ///
     /// # Errors
-    /// The first quantity that is not finite, not positive (or negative, where zero is allowed), or whose anchors
-    /// lie on one line.
+    /// The first quantity that is not finite, not positive (or negative, where zero is allowed) or out of range (lengths
+    /// to 100 m, 10⁶ kg, 10³ m/s²), and anchors that lie on one line or within 10 µm.
     pub fn new(parameters: &RigParameters<T, N>) -> Result<Self, Error> {
         const { assert!(N >= 3, "two free axes need at least three tendons") };
         let p = parameters;
         check_anchors(&p.base_anchors_m, Quantity::BaseAnchors)?;
         check_anchors(&p.leg_anchors_m, Quantity::LegAnchors)?;
-        check_not_negative(p.upper_length_m, Quantity::UpperLength)?;
-        check_positive(p.joint_length_m, Quantity::JointLength)?;
-        check_positive(p.leg_length_m, Quantity::LegLength)?;
-        check_not_negative(p.leg_mass_kg, Quantity::LegMass)?;
-        check_not_negative(p.leg_centroid_m, Quantity::LegCentroid)?;
-        check_not_negative(p.gravity_m_per_s2, Quantity::Gravity)?;
+        check_not_negative(p.upper_length_m, LENGTH_MAX, Quantity::UpperLength)?;
+        check_positive(p.joint_length_m, LENGTH_MAX, Quantity::JointLength)?;
+        check_positive(p.leg_length_m, LENGTH_MAX, Quantity::LegLength)?;
+        check_not_negative(p.leg_mass_kg, MASS_MAX, Quantity::LegMass)?;
+        check_not_negative(p.leg_centroid_m, LENGTH_MAX, Quantity::LegCentroid)?;
+        check_not_negative(p.gravity_m_per_s2, GRAVITY_MAX, Quantity::Gravity)?;
         Ok(Self {
             geometry: Geometry::new(p),
             tip: p.joint_length_m + p.leg_length_m,
@@ -103,42 +106,13 @@ impl<T: Scalar, const N: usize> Rig<T, N> {
     }
 }
 
-/// Refuses a value that is not finite.
-pub(crate) fn check_finite<T: Scalar>(value: T, quantity: Quantity) -> Result<(), Error> {
-    if value.is_finite() {
-        Ok(())
-    } else {
-        Err(Error::refused(quantity, Reason::NotFinite))
-    }
-}
-
-/// Refuses a value that is not finite or not above zero.
-pub(crate) fn check_positive<T: Scalar>(value: T, quantity: Quantity) -> Result<(), Error> {
-    check_finite(value, quantity)?;
-    if value > T::zero() {
-        Ok(())
-    } else {
-        Err(Error::refused(quantity, Reason::NotPositive))
-    }
-}
-
-/// Refuses a value that is not finite or below zero.
-pub(crate) fn check_not_negative<T: Scalar>(value: T, quantity: Quantity) -> Result<(), Error> {
-    check_finite(value, quantity)?;
-    if value >= T::zero() {
-        Ok(())
-    } else {
-        Err(Error::refused(quantity, Reason::Negative))
-    }
-}
-
 fn check_anchors<T: Scalar, const N: usize>(
     anchors: &[[T; 2]; N],
     quantity: Quantity,
 ) -> Result<(), Error> {
     for &[x, y] in anchors {
-        check_finite(x, quantity)?;
-        check_finite(y, quantity)?;
+        check_magnitude(x, LENGTH_MAX, quantity)?;
+        check_magnitude(y, LENGTH_MAX, quantity)?;
     }
     if collinear(anchors) {
         return Err(Error::refused(quantity, Reason::Collinear));
@@ -146,7 +120,7 @@ fn check_anchors<T: Scalar, const N: usize>(
     Ok(())
 }
 
-/// Whether the anchors lie on one line: the smaller principal moment of their spread vanishes beside the larger.
+/// Whether the anchors lie on one line (or nearly in one point): the smaller principal moment of their spread vanishes beside the larger.
 fn collinear<T: Scalar, const N: usize>(anchors: &[[T; 2]; N]) -> bool {
     let (mut count, mut sum_x, mut sum_y) = (T::zero(), T::zero(), T::zero());
     for &[x, y] in anchors {
@@ -159,6 +133,6 @@ fn collinear<T: Scalar, const N: usize>(anchors: &[[T; 2]; N]) -> bool {
     }
     let trace = xx + yy;
     let determinant = xx * yy - xy * xy;
-    // Written so that a NaN from an overflow counts as collinear.
-    !(determinant > T::COLLINEAR * trace * trace)
+    let smallest = T::from(1e-5 * 1e-5);
+    !(trace > smallest && determinant > T::COLLINEAR * trace * trace)
 }

@@ -1,6 +1,7 @@
 //! The elasticity of a tendon.
 
-use crate::{Error, Quantity, Scalar, rig::check_positive};
+use crate::range::{STIFFNESS, check_positive};
+use crate::{Error, Quantity, Reason, Scalar};
 
 /// A tendon with constant stiffness. It pulls when it is stretched and cannot push.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,9 +13,9 @@ impl<T: Scalar> Tendon<T> {
     /// A tendon of a stiffness in N/m.
     ///
     /// # Errors
-    /// A stiffness that is not finite or not positive.
+    /// A stiffness that is not finite, not positive or outside 10⁻² to 10¹² N/m.
     pub fn new(stiffness_n_per_m: T) -> Result<Self, Error> {
-        check_positive(stiffness_n_per_m, Quantity::TendonStiffness)?;
+        check_stiffness(stiffness_n_per_m)?;
         Ok(Self {
             stiffness: stiffness_n_per_m,
         })
@@ -52,4 +53,17 @@ impl<T: Scalar> Tendon<T> {
     pub fn unstretched(&self, length: T, tension: T) -> T {
         length - self.elongation(tension)
     }
+}
+
+/// Refuses what is no stiffness of a tendon.
+pub(crate) fn check_stiffness<T: Scalar>(stiffness: T) -> Result<(), Error> {
+    let [softest, stiffest] = STIFFNESS;
+    check_positive(stiffness, stiffest, Quantity::TendonStiffness)?;
+    if stiffness < T::from(softest) {
+        return Err(Error::refused(
+            Quantity::TendonStiffness,
+            Reason::OutOfRange,
+        ));
+    }
+    Ok(())
 }

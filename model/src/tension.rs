@@ -1,6 +1,6 @@
 //! Tension distribution: the tensions that balance a load, and the pretension they may carry.
 
-use crate::rig::{check_finite, check_not_negative};
+use crate::range::{TENSION_MAX, check_magnitude, check_not_negative};
 use crate::{Error, FreePlane, Quantity, Reason, Scalar};
 use nalgebra::{SMatrix, SVector, Vector3};
 
@@ -17,10 +17,10 @@ impl<T: Scalar> TensionBounds<T> {
     /// Lowest and highest tension allowed, N.
     ///
     /// # Errors
-    /// Bounds that are not finite, a negative floor, a floor above the ceiling.
+    /// Bounds that are not finite or above 10⁷ N, a negative floor, a floor above the ceiling.
     pub fn new(floor_n: T, ceiling_n: T) -> Result<Self, Error> {
-        check_not_negative(floor_n, Quantity::TensionFloor)?;
-        check_finite(ceiling_n, Quantity::TensionCeiling)?;
+        check_not_negative(floor_n, TENSION_MAX, Quantity::TensionFloor)?;
+        check_magnitude(ceiling_n, TENSION_MAX, Quantity::TensionCeiling)?;
         if floor_n > ceiling_n {
             return Err(Error::refused(Quantity::TensionFloor, Reason::AboveCeiling));
         }
@@ -124,7 +124,7 @@ impl<T: Scalar, const N: usize> Distribution<T, N> {
 /// plane of symmetry.
 ///
 /// # Errors
-/// [`Error::Singular`] if the tendons cannot turn the leg about both free axes, or if one of them takes no part in
+/// [`Error::Singular`] if the load moment is not finite, if the tendons cannot turn the leg about both free axes, or if one of them takes no part in
 /// the pretension.
 #[inline(always)]
 pub fn distribute<T: Scalar, const N: usize>(
@@ -141,8 +141,10 @@ pub fn distribute<T: Scalar, const N: usize>(
         squares += component * component;
         product *= component;
     }
-    // A zero component, a missing rank and NaN all end here.
-    if !(product * product > T::zero()) {
+    // A missing rank makes the product zero or NaN. A moment that is not finite enters every tension, and zero times
+    // that is NaN. One comparison refuses both.
+    let nothing = particular[0] * T::zero();
+    if !(product * product > nothing) {
         return Err(Error::Singular);
     }
     let length = (T::count::<N>() / squares).sqrt();

@@ -38,10 +38,10 @@ impl<T: Scalar> Bench<T> {
         let kinematics = inverse_kinematics(rig.geometry(), &direction)?;
         let distribution = distribute(&kinematics.moment_map, &plane, &moment, &bounds)?;
         let level = input.level_n.into();
-        let states = TendonStates {
-            tensions: distribution.tensions(level),
-            stiffnesses: SVector::repeat(tendon.stiffness()),
-        };
+        let states = TendonStates::new(
+            distribution.tensions(level),
+            SVector::repeat(tendon.stiffness()),
+        )?;
         let start =
             Direction::from_angles(input.start_azimuth_rad.into(), input.start_tilt_rad.into())?;
         let twist = Twist::universal(&direction.half_tangent());

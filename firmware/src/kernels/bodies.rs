@@ -190,7 +190,7 @@ impl<T: Scalar> Body<T> for ModelTick {
         let pass = leg_model::full_pass(&bench.rig, &found.direction, &bench.load, &bench.states);
         let deflection = pass.deflection?;
         let kinematics = &pass.kinematics;
-        let moment = leg_model::estimate_moment(&kinematics.moment_map, &bench.states.tensions);
+        let moment = leg_model::estimate_moment(&kinematics.moment_map, bench.states.tensions());
         let plane = leg_model::FreePlane::torsion_free(&found.direction);
         let distribution =
             leg_model::distribute(&kinematics.moment_map, &plane, &moment, &bench.bounds)?;

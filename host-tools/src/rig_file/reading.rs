@@ -107,8 +107,10 @@ fn key_of(quantity: Quantity) -> Option<(&'static str, &'static str)> {
         Quantity::TensionCeiling => ("tendon", "ceiling_n"),
         Quantity::Level => ("tendon", "level_n"),
         Quantity::Tilt => ("workspace", "tilt_deg"),
-        Quantity::Azimuth | Quantity::Payload | Quantity::TendonLength | Quantity::Direction => {
-            return None;
-        }
+        Quantity::Azimuth
+        | Quantity::Payload
+        | Quantity::TendonLength
+        | Quantity::Direction
+        | Quantity::Tension => return None,
     })
 }

@@ -56,10 +56,10 @@ impl Bench {
             tendon,
             kinematics,
             distribution,
-            states: TendonStates {
-                tensions: distribution.tensions(query.level_n),
-                stiffnesses: SVector::repeat(tendon.stiffness()),
-            },
+            states: TendonStates::new(
+                distribution.tensions(query.level_n),
+                SVector::repeat(tendon.stiffness()),
+            )?,
             length_errors: Vector3::from(input.length_errors_m.map(f64::from)),
         })
     }
@@ -95,7 +95,7 @@ impl Bench {
         let distribution = &self.distribution;
         let levels = [distribution.lowest_level, distribution.highest_level];
         let (particular, per_level) = (&distribution.particular, &distribution.per_level);
-        let tensions = &self.states.tensions;
+        let tensions = self.states.tensions();
         [
             particular.as_slice(),
             per_level.as_slice(),
@@ -135,10 +135,7 @@ impl Bench {
         kinematics: &Kinematics<f64, 3>,
         direction: &Direction<f64>,
     ) -> Matrix3<f64> {
-        let TendonStates {
-            tensions,
-            stiffnesses,
-        } = &self.states;
+        let (tensions, stiffnesses) = (self.states.tensions(), self.states.stiffnesses());
         let total = tendon_stiffness(&kinematics.moment_map, stiffnesses)
             + structural_stiffness(self.rig.geometry(), direction, tensions)
             + self.load.stiffness(direction);
@@ -149,7 +146,7 @@ impl Bench {
         let found = self.found()?;
         let direction = &found.direction;
         let kinematics = inverse_kinematics(self.rig.geometry(), direction)?;
-        let moment = estimate_moment(&kinematics.moment_map, &self.states.tensions);
+        let moment = estimate_moment(&kinematics.moment_map, self.states.tensions());
         let plane = FreePlane::torsion_free(direction);
         let distribution: Distribution<f64, 3> =
             distribute(&kinematics.moment_map, &plane, &moment, &self.bounds)?;
