@@ -115,10 +115,7 @@ fn the_load_s_own_stiffness_is_the_derivative_of_its_moment() {
 fn the_full_pass_keeps_the_symmetric_part_of_the_derivative_of_all_moments() {
     let rig = rig();
     let load = Load::new(&rig, PAYLOAD_KG).unwrap();
-    let states = TendonStates {
-        tensions: TENSIONS,
-        stiffnesses: STIFFNESSES,
-    };
+    let states = TendonStates::new(TENSIONS, STIFFNESSES).unwrap();
     for (azimuth, tilt) in poses(60, 10) {
         let pose = rotation(azimuth, tilt, 0.0);
         let lengths = turned(&pose, &Vector3::zeros()).lengths;

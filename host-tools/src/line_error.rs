@@ -99,7 +99,7 @@ fn fix_of(quantity: Quantity, reason: Reason) -> &'static str {
         (Quantity::Azimuth, Reason::OutOfRange) => ": give -3600 to 3600",
         (_, Reason::NotFinite) => " in f32: give at most 3.4e38",
         (Quantity::Payload, Reason::OutOfRange) => ": give 0 to 1e6",
-        (Quantity::TendonStiffness, Reason::OutOfRange) => ": give 0.01 to 1e12",
+        (Quantity::TendonStiffness, Reason::OutOfRange) => ": give 0.01 to 1e10",
         (Quantity::TensionFloor | Quantity::TensionCeiling, Reason::OutOfRange) => {
             ": give 0 to 1e7"
         }

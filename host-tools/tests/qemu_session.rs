@@ -196,7 +196,7 @@ fn a_killed_emulator_is_told_in_words() -> Outcome {
     assert!(matches!(error, LinkError::Died { .. }), "{error:?}");
     let text = error.to_string();
     assert!(
-        text.starts_with("QEMU was ended by signal 9; its last lines were:\n  "),
+        text.starts_with("QEMU was ended by signal 9; start again, and with -v to see all of its log; its last lines were:\n  "),
         "{text}"
     );
     Ok(())
@@ -253,7 +253,10 @@ fn what_cannot_start_is_named() -> Outcome {
         qemu: "/bin/false".into(),
         ..config
     };
-    assert_eq!(opening_error(&other_program), "QEMU failed (exit code 1)");
+    assert_eq!(
+        opening_error(&other_program),
+        "QEMU failed (exit code 1); start again, and with -v to see all of its log"
+    );
     Ok(())
 }
 

@@ -11,7 +11,7 @@ pub(crate) const GRAVITY_MAX: f32 = 1e3;
 /// Greatest tension and level of pretension, N.
 pub(crate) const TENSION_MAX: f32 = 1e7;
 /// Softest and stiffest tendon, N/m.
-pub(crate) const STIFFNESS: [f32; 2] = [1e-2, 1e12];
+pub(crate) const STIFFNESS: [f32; 2] = [1e-2, 1e10];
 
 /// Refuses a value that is not finite or whose magnitude is above `limit`.
 pub(crate) fn check_magnitude<T: Scalar>(

@@ -70,7 +70,8 @@ impl<T: Scalar, const N: usize> Rig<T, N> {
     /// Validates a mechanism.
     ///
     /// # Errors
-    /// The first quantity that is not finite, not positive (or negative, where zero is allowed) or out of range (lengths
+    /// The first quantity that is not finite, not positive (or negative, where zero is allowed) or out of range
+    /// (lengths
     /// to 100 m, 10⁶ kg, 10³ m/s²), and anchors that lie on one line or within 10 µm.
     pub fn new(parameters: &RigParameters<T, N>) -> Result<Self, Error> {
         const { assert!(N >= 3, "two free axes need at least three tendons") };
@@ -120,7 +121,8 @@ fn check_anchors<T: Scalar, const N: usize>(
     Ok(())
 }
 
-/// Whether the anchors lie on one line (or nearly in one point): the smaller principal moment of their spread vanishes beside the larger.
+/// Whether the anchors lie on one line (or nearly in one point): the smaller principal moment of their spread
+/// vanishes beside the larger.
 fn collinear<T: Scalar, const N: usize>(anchors: &[[T; 2]; N]) -> bool {
     let (mut count, mut sum_x, mut sum_y) = (T::zero(), T::zero(), T::zero());
     for &[x, y] in anchors {

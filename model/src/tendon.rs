@@ -13,7 +13,7 @@ impl<T: Scalar> Tendon<T> {
     /// A tendon of a stiffness in N/m.
     ///
     /// # Errors
-    /// A stiffness that is not finite, not positive or outside 10⁻² to 10¹² N/m.
+    /// A stiffness that is not finite, not positive or outside 10⁻² to 10¹⁰ N/m.
     pub fn new(stiffness_n_per_m: T) -> Result<Self, Error> {
         check_stiffness(stiffness_n_per_m)?;
         Ok(Self {

@@ -123,8 +123,11 @@ impl<T: Scalar, const N: usize> Distribution<T, N> {
 /// The three rows of A are never solved for three tensions: they depend on each other at the vertical and in every
 /// plane of symmetry.
 ///
+/// `load_moment` may be anything up to 10¹² N·m, far above what a [`Load`](crate::Load) or measured tensions give.
+///
 /// # Errors
-/// [`Error::Singular`] if the load moment is not finite, if the tendons cannot turn the leg about both free axes, or if one of them takes no part in
+/// [`Error::Singular`] if the load moment is not finite, if the tendons cannot turn the leg about both free axes, or
+/// if one of them takes no part in
 /// the pretension.
 #[inline(always)]
 pub fn distribute<T: Scalar, const N: usize>(
