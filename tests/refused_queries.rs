@@ -83,7 +83,7 @@ fn a_query_beyond_the_model_s_range_is_refused() {
         (Quantity::TensionCeiling, &[1.1e7], |q, v| {
             q.tension_ceiling_n = v
         }),
-        (Quantity::TendonStiffness, &[9e-3, 1.1e12], |q, v| {
+        (Quantity::TendonStiffness, &[9e-3, 1.1e10], |q, v| {
             q.stiffness_n_per_m = v
         }),
     ];
@@ -158,7 +158,7 @@ fn the_ends_of_the_ranges_are_served() {
     assert!(Direction::from_angles(-20.0 * std::f64::consts::PI, 0.1).is_ok());
     assert!(TensionBounds::new(10.0, 10.0).is_ok());
     assert!(TensionBounds::new(0.0, 0.0).is_ok());
-    assert!(Tendon::new(1e-2_f64).is_ok() && Tendon::new(1e12_f32).is_ok());
+    assert!(Tendon::new(1e-2_f64).is_ok() && Tendon::new(1e10_f64).is_ok());
 }
 
 #[test]
