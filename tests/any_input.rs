@@ -2,10 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use leg_firmware::messages::{QueryMessage, SupportMessage, TendonMessage, TendonsMessage};
 use leg_model::{
-    Direction, Evaluation, FreePlane, Load, Query, Rig, RigParameters, SupportKind, TendonStates,
-    TensionBounds, distribute, evaluate, forward_kinematics, full_pass, full_pass_in_plane,
-    inverse_kinematics,
+    CURVE_POINTS_MAX, CurvePoint, Direction, Evaluation, FreePlane, JointStiffness, Load, Rig,
+    RigParameters, StiffnessAt, SupportKind, TendonStates, TensionBounds, distribute, evaluate,
+    forward_kinematics, full_pass, full_pass_in_plane, inverse_kinematics,
 };
 use nalgebra::Vector3;
 use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop, prop_oneof, proptest};
@@ -62,23 +63,57 @@ fn rigs() -> impl Strategy<Value = RigParameters<f32, 3>> {
     })
 }
 
-fn queries() -> impl Strategy<Value = Query<f32>> {
-    const SUPPORTS: [SupportKind; 3] = [
+fn queries() -> impl Strategy<Value = QueryMessage> {
+    let numbers = [0.5, 0.5, 1.0, 70.0, 8.0, 150.0].map(near);
+    let readings = prop::sample::select(&[StiffnessAt::Pretension, StiffnessAt::Tension][..]);
+    (numbers, tendons(), readings, supports()).prop_map(|(n, tendons, stiffness_at, support)| {
+        QueryMessage {
+            azimuth_rad: n[0],
+            tilt_rad: n[1],
+            payload_kg: n[2],
+            level_n: n[3],
+            tension_floor_n: n[4],
+            tension_ceiling_n: n[5],
+            tendons,
+            stiffness_at,
+            support,
+        }
+    })
+}
+
+fn supports() -> impl Strategy<Value = SupportMessage> {
+    const KINDS: [SupportKind; 4] = [
         SupportKind::TorsionFree,
         SupportKind::Universal,
         SupportKind::Spherical,
+        SupportKind::ElasticUniversal,
     ];
-    let numbers = [0.5, 0.5, 1.0, 70.0, 8.0, 150.0, 1e5].map(near);
-    (numbers, prop::sample::select(&SUPPORTS[..])).prop_map(|(n, support)| Query {
-        azimuth_rad: n[0],
-        tilt_rad: n[1],
-        payload_kg: n[2],
-        level_n: n[3],
-        tension_floor_n: n[4],
-        tension_ceiling_n: n[5],
-        stiffness_n_per_m: n[6],
-        support,
+    let joint = [1.0, 5.0, 1e-7].map(|value| prop_oneof![Just(0.0), near(value)]);
+    (prop::sample::select(&KINDS[..]), joint).prop_map(|(kind, joint)| SupportMessage {
+        kind,
+        joint: JointStiffness {
+            bending_nm_per_rad: joint[0],
+            torsion_nm_per_rad: joint[1],
+            axial_compliance_m_per_n: joint[2],
+        },
     })
+}
+
+/// Constant tendons, and curves of which one point is anything.
+fn tendons() -> impl Strategy<Value = TendonsMessage> {
+    let curve = (0..CURVE_POINTS_MAX, [10.0, 5e-4, 2e4].map(near)).prop_map(|(at, strange)| {
+        let mut points = CurvePoint::<f32>::PAPER;
+        if strange[0].to_bits() % 2 == 0 {
+            points[at] = CurvePoint {
+                tension_n: strange[0],
+                elongation_m: strange[1],
+                stiffness_n_per_m: strange[2],
+            };
+        }
+        TendonMessage::Curve(points.into_iter().collect())
+    });
+    let tendon = prop_oneof![near(1e5).prop_map(TendonMessage::Constant), curve];
+    tendon.prop_map(TendonsMessage::Alike)
 }
 
 fn assert_finite(evaluation: &Evaluation<f32>) {
@@ -100,6 +135,10 @@ fn assert_finite(evaluation: &Evaluation<f32>) {
             e.torsion_rad,
         ],
         &e.unstretched_m,
+        &e.joint_moment_nm,
+        e.stiffness_joint_nm_per_rad.as_flattened(),
+        &e.bending_stiffness_nm_per_rad,
+        &[e.axial_stretch_m],
     ];
     assert!(
         numbers.concat().iter().all(|number| number.is_finite()),
@@ -112,7 +151,7 @@ proptest! {
 
     #[test]
     fn an_evaluation_is_finite_or_an_error(rig in rigs(), query in queries()) {
-        if let Ok(evaluation) = evaluate(&rig, &query) {
+        if let Ok(evaluation) = query.query().and_then(|query| evaluate(&rig, &query)) {
             assert_finite(&evaluation);
         }
     }

@@ -3,8 +3,10 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use leg_model::{
-    Direction, Evaluation, FreePlane, Load, Query, Rig, RigParameters, SupportKind, evaluate,
+    Direction, Evaluation, FreePlane, Load, Query, Rig, RigParameters, StiffnessAt, SupportKind,
+    evaluate,
 };
+use leg_tests::constant_tendons;
 use nalgebra::Matrix3;
 
 const TABLE_1: RigParameters<f64, 3> = RigParameters::<f64, 3>::TABLE_1;
@@ -20,8 +22,9 @@ fn at(azimuth_deg: f64, tilt_deg: f64, support: SupportKind) -> Evaluation<f64> 
         level_n: LEVEL_N,
         tension_floor_n: 8.0,
         tension_ceiling_n: 150.0,
-        stiffness_n_per_m: STIFFNESS_N_PER_M,
-        support,
+        tendons: constant_tendons(STIFFNESS_N_PER_M).unwrap(),
+        stiffness_at: StiffnessAt::Pretension,
+        support: support.into(),
     };
     evaluate(&TABLE_1, &query).unwrap()
 }

@@ -3,9 +3,10 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use leg_model::{
-    Direction, FreePlane, Load, Query, Rig, RigParameters, SupportKind, TensionBounds, distribute,
-    estimate_moment, evaluate, inverse_kinematics,
+    Direction, FreePlane, Load, Query, Rig, RigParameters, StiffnessAt, SupportKind, TensionBounds,
+    distribute, estimate_moment, evaluate, inverse_kinematics,
 };
+use leg_tests::constant_tendons;
 use leg_tests::numeric::by_rotation;
 use leg_tests::reference::{Tendons, poses, potential, rodrigues, rotation, turn};
 use nalgebra::{Matrix3, Vector1, Vector3};
@@ -178,8 +179,9 @@ fn table_1_has_another_leg_mass_than_figure_9() {
         level_n: 70.0,
         tension_floor_n: 8.0,
         tension_ceiling_n: 150.0,
-        stiffness_n_per_m: 9.945e4,
-        support: SupportKind::TorsionFree,
+        tendons: constant_tendons(9.945e4).unwrap(),
+        stiffness_at: StiffnessAt::Pretension,
+        support: SupportKind::TorsionFree.into(),
     };
     let [light, heavy] = [1.0, 1.5].map(|leg_mass_kg| {
         let parameters = RigParameters {

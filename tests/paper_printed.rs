@@ -2,7 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_model::{Direction, Query, Rig, RigParameters, SupportKind, evaluate, inverse_kinematics};
+use leg_model::{
+    Direction, Query, Rig, RigParameters, StiffnessAt, SupportKind, evaluate, inverse_kinematics,
+};
+use leg_tests::constant_tendons;
 use nalgebra::{Matrix3, Vector3};
 
 const TABLE_1: RigParameters<f64, 3> = RigParameters::<f64, 3>::TABLE_1;
@@ -123,8 +126,9 @@ fn query(azimuth_deg: f64, tilt_deg: f64, payload_kg: f64) -> Query<f64> {
         level_n: 70.0,
         tension_floor_n: 8.0,
         tension_ceiling_n: 150.0,
-        stiffness_n_per_m: STIFFNESS_N_PER_M,
-        support: SupportKind::TorsionFree,
+        tendons: constant_tendons(STIFFNESS_N_PER_M).unwrap(),
+        stiffness_at: StiffnessAt::Pretension,
+        support: SupportKind::TorsionFree.into(),
     }
 }
 

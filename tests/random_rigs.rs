@@ -3,10 +3,11 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use leg_model::{
-    Direction, FreePlane, Load, Query, Rig, RigParameters, SupportKind, Symmetric3, TendonStates,
-    TensionBounds, distribute, evaluate, full_pass, full_pass_in_plane, inverse_kinematics, solve3,
-    structural_stiffness, tendon_stiffness,
+    Direction, FreePlane, Load, Query, Rig, RigParameters, StiffnessAt, SupportKind, Symmetric3,
+    TendonStates, TensionBounds, distribute, evaluate, full_pass, full_pass_in_plane,
+    inverse_kinematics, solve3, structural_stiffness, tendon_stiffness,
 };
+use leg_tests::constant_tendons;
 use leg_tests::numeric::by_rotation;
 use leg_tests::reference::{Tendons, load_moment, skew, turn};
 use nalgebra::{Matrix3, SVector, Vector2, Vector3};
@@ -210,8 +211,9 @@ proptest! {
             level_n: 50.0,
             tension_floor_n: 8.0,
             tension_ceiling_n: 150.0,
-            stiffness_n_per_m: 1e5,
-            support: SupportKind::TorsionFree,
+            tendons: constant_tendons(1e5).unwrap(),
+            stiffness_at: StiffnessAt::Pretension,
+            support: SupportKind::TorsionFree.into(),
         };
         let found = evaluate(&parameters, &query).unwrap();
         let rig = Rig::new(&parameters).unwrap();

@@ -3,9 +3,10 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use leg_model::{
-    Direction, Error, Quantity, Query, Reason, RigParameters, SupportKind, Tendon, TendonStates,
-    TensionBounds, evaluate,
+    Direction, Error, Quantity, Query, Reason, RigParameters, StiffnessAt, SupportKind, Tendon,
+    TendonStates, TensionBounds, evaluate,
 };
+use leg_tests::constant_tendons;
 use nalgebra::Vector3;
 
 const TABLE_1: RigParameters<f64, 3> = RigParameters::<f64, 3>::TABLE_1;
@@ -19,16 +20,19 @@ fn refused(quantity: Quantity, reason: Reason) -> Error {
     Error::Refused { quantity, reason }
 }
 
-const QUERY: Query<f64> = Query {
-    azimuth_rad: 0.5,
-    tilt_rad: 0.5,
-    payload_kg: 1.0,
-    level_n: 70.0,
-    tension_floor_n: 8.0,
-    tension_ceiling_n: 150.0,
-    stiffness_n_per_m: 1e5,
-    support: SupportKind::TorsionFree,
-};
+fn query(support: SupportKind) -> Query<f64> {
+    Query {
+        azimuth_rad: 0.5,
+        tilt_rad: 0.5,
+        payload_kg: 1.0,
+        level_n: 70.0,
+        tension_floor_n: 8.0,
+        tension_ceiling_n: 150.0,
+        tendons: constant_tendons(1e5).unwrap(),
+        stiffness_at: StiffnessAt::Pretension,
+        support: support.into(),
+    }
+}
 
 /// Asserts that `set` makes a query that is refused, with each of the values and whatever the support.
 fn assert_query(quantity: Quantity, reason: Reason, values: &[f64], set: SetQuery) {
@@ -41,7 +45,7 @@ fn assert_query(quantity: Quantity, reason: Reason, values: &[f64], set: SetQuer
         .into_iter()
         .flat_map(|s| values.iter().map(move |v| (s, v)))
     {
-        let mut query = Query { support, ..QUERY };
+        let mut query = query(support);
         set(&mut query, value);
         let error = evaluate(&TABLE_1, &query).unwrap_err();
         assert_eq!(error, refused(quantity, reason), "{value}");
@@ -50,14 +54,13 @@ fn assert_query(quantity: Quantity, reason: Reason, values: &[f64], set: SetQuer
 
 #[test]
 fn a_query_with_a_number_that_is_not_finite_is_refused() {
-    let cases: [(Quantity, SetQuery); 7] = [
+    let cases: [(Quantity, SetQuery); 6] = [
         (Quantity::Azimuth, |q, v| q.azimuth_rad = v),
         (Quantity::Tilt, |q, v| q.tilt_rad = v),
         (Quantity::Payload, |q, v| q.payload_kg = v),
         (Quantity::Level, |q, v| q.level_n = v),
         (Quantity::TensionFloor, |q, v| q.tension_floor_n = v),
         (Quantity::TensionCeiling, |q, v| q.tension_ceiling_n = v),
-        (Quantity::TendonStiffness, |q, v| q.stiffness_n_per_m = v),
     ];
     for (quantity, set) in cases {
         assert_query(quantity, Reason::NotFinite, &INFINITE, set);
@@ -73,7 +76,7 @@ fn a_query_beyond_the_model_s_range_is_refused() {
         &[tilt, -tilt],
         |q, v| q.tilt_rad = v,
     );
-    let cases: [(Quantity, &[f64], SetQuery); 6] = [
+    let cases: [(Quantity, &[f64], SetQuery); 5] = [
         (Quantity::Azimuth, &[63.0, -63.0], |q, v| q.azimuth_rad = v),
         (Quantity::Payload, &[1.1e6], |q, v| q.payload_kg = v),
         (Quantity::Level, &[1.1e7, -1.1e7], |q, v| q.level_n = v),
@@ -82,9 +85,6 @@ fn a_query_beyond_the_model_s_range_is_refused() {
         }),
         (Quantity::TensionCeiling, &[1.1e7], |q, v| {
             q.tension_ceiling_n = v
-        }),
-        (Quantity::TendonStiffness, &[9e-3, 1.1e10], |q, v| {
-            q.stiffness_n_per_m = v
         }),
     ];
     for (quantity, values, set) in cases {
@@ -95,7 +95,7 @@ fn a_query_beyond_the_model_s_range_is_refused() {
 #[test]
 fn a_query_with_a_wrong_sign_or_order_is_refused() {
     type Case = (Quantity, Reason, &'static [f64], SetQuery);
-    let cases: [Case; 4] = [
+    let cases: [Case; 3] = [
         (Quantity::Payload, Reason::Negative, &[-0.1], |q, v| {
             q.payload_kg = v
         }),
@@ -108,15 +108,24 @@ fn a_query_with_a_wrong_sign_or_order_is_refused() {
             &[150.1],
             |q, v| q.tension_floor_n = v,
         ),
-        (
-            Quantity::TendonStiffness,
-            Reason::NotPositive,
-            &[0.0, -1.0],
-            |q, v| q.stiffness_n_per_m = v,
-        ),
     ];
     for (quantity, reason, values, set) in cases {
         assert_query(quantity, reason, values, set);
+    }
+}
+
+#[test]
+fn a_stiffness_that_no_tendon_has_is_refused() {
+    let cases = [
+        (Reason::NotFinite, &INFINITE[..]),
+        (Reason::OutOfRange, &[9e-3, 1.1e10]),
+        (Reason::NotPositive, &[0.0, -1.0]),
+    ];
+    for (reason, values) in cases {
+        for &value in values {
+            let error = Tendon::constant(value).unwrap_err();
+            assert_eq!(error, refused(Quantity::TendonStiffness, reason), "{value}");
+        }
     }
 }
 
@@ -158,7 +167,7 @@ fn the_ends_of_the_ranges_are_served() {
     assert!(Direction::from_angles(-20.0 * std::f64::consts::PI, 0.1).is_ok());
     assert!(TensionBounds::new(10.0, 10.0).is_ok());
     assert!(TensionBounds::new(0.0, 0.0).is_ok());
-    assert!(Tendon::new(1e-2_f64).is_ok() && Tendon::new(1e10_f64).is_ok());
+    assert!(Tendon::constant(1e-2_f64).is_ok() && Tendon::constant(1e10_f64).is_ok());
 }
 
 #[test]
@@ -186,7 +195,7 @@ fn a_tendon_whose_ends_meet_is_named_as_collapsed() {
     let query = Query {
         azimuth_rad: 0.0,
         tilt_rad: lean,
-        ..QUERY
+        ..query(SupportKind::TorsionFree)
     };
     let evaluated = evaluate(&parameters, &query);
     assert_eq!(evaluated, Err(Error::TendonCollapsed));

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use leg_model::{
-    Direction, FreePlane, Kinematics, Load, Rig, RigParameters, TensionBounds, Twist,
-    ball_joint_torsion, distribute, inverse_kinematics,
+    Direction, FreePlane, Kinematics, Load, Rig, RigParameters, SupportKind, TensionBounds, Twist,
+    distribute, elastic_torsion, inverse_kinematics,
 };
 use leg_tests::reference::poses;
 use nalgebra::Vector3;
@@ -107,13 +107,14 @@ fn ball_joint(azimuth: f64, tilt: f64, level: f64) -> (f64, f64) {
     let rig = Rig::new(&TABLE_1).unwrap();
     let load = Load::new(&rig, 2.0).unwrap();
     let direction = direction(azimuth, tilt);
-    let torsion = ball_joint_torsion(&rig, &direction, &load, &bounds(), level).unwrap();
+    let support = SupportKind::Spherical.into();
+    let moment = load.moment(&direction);
+    let torsion = elastic_torsion(&rig, &support, &direction, &moment, &bounds(), level).unwrap();
     let geometry = rig.geometry().twisted(&Twist::from_torsion(torsion));
     let moment_map = inverse_kinematics(&geometry, &direction)
         .unwrap()
         .moment_map;
     let plane = FreePlane::torsion_free(&direction);
-    let moment = load.moment(&direction);
     let tensions = distribute(&moment_map, &plane, &moment, &bounds())
         .unwrap()
         .tensions(level);

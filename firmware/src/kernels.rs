@@ -4,7 +4,7 @@ mod bench;
 mod bodies;
 
 use crate::counter::Counter;
-use crate::protocol::RigMessage;
+use crate::messages::RigMessage;
 use bench::Bench;
 use bodies::Body;
 use heapless::Vec;
@@ -31,6 +31,12 @@ pub enum Kernel {
     FullPass,
     /// Kinematics, total stiffness, 2×2 solve in the plane without torsion, tip.
     FullPassInPlane,
+    /// Elongation and stiffness of a tendon with a curve.
+    TendonCurve,
+    /// Unstretched lengths of tendons with curves that hold a load.
+    InverseStatics,
+    /// The level that gives a demanded bending stiffness, with tendons with curves.
+    StiffnessCommand,
     /// The model's part of a control tick: forward kinematics, load estimate, full pass, distribution, unstretched
     /// lengths.
     ModelTick,
@@ -38,7 +44,7 @@ pub enum Kernel {
 
 impl Kernel {
     /// Every kernel.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 12] = [
         Self::SquareRoot,
         Self::SinCos,
         Self::InverseKinematics,
@@ -47,6 +53,9 @@ impl Kernel {
         Self::Distribution,
         Self::FullPass,
         Self::FullPassInPlane,
+        Self::TendonCurve,
+        Self::InverseStatics,
+        Self::StiffnessCommand,
         Self::ModelTick,
     ];
 
@@ -62,6 +71,9 @@ impl Kernel {
             Self::Distribution => "tension distribution",
             Self::FullPass => "full pass, 3×3",
             Self::FullPassInPlane => "full pass, 2×2",
+            Self::TendonCurve => "tendon curve",
+            Self::InverseStatics => "inverse statics",
+            Self::StiffnessCommand => "stiffness on command",
             Self::ModelTick => "model part of a tick",
         }
     }
@@ -90,8 +102,11 @@ pub struct KernelInput {
     pub tension_floor_n: f32,
     /// Highest tension allowed, N.
     pub tension_ceiling_n: f32,
-    /// Stiffness of each tendon, N/m.
+    /// Stiffness of each tendon, N/m. Kernels that take tendons with curves get the paper's
+    /// ([`CurvePoint::PAPER`](leg_model::CurvePoint::PAPER)), scaled to have this stiffness at the level.
     pub stiffness_n_per_m: f32,
+    /// Bending stiffness demanded of the leg, N·m/rad.
+    pub demand_nm_per_rad: f32,
 }
 
 /// The numbers that a kernel computed, in its own order.
@@ -133,6 +148,9 @@ fn visit<T: Scalar, V: Visitor<T>>(kernel: Kernel, visitor: V) -> Result<V::Outp
         Kernel::Distribution => visitor.visit::<bodies::Distribution>(),
         Kernel::FullPass => visitor.visit::<bodies::FullPass>(),
         Kernel::FullPassInPlane => visitor.visit::<bodies::FullPassInPlane>(),
+        Kernel::TendonCurve => visitor.visit::<bodies::TendonCurve>(),
+        Kernel::InverseStatics => visitor.visit::<bodies::InverseStatics>(),
+        Kernel::StiffnessCommand => visitor.visit::<bodies::StiffnessCommand>(),
         Kernel::ModelTick => visitor.visit::<bodies::ModelTick>(),
     }
 }

@@ -6,5 +6,6 @@ pub mod exit;
 pub mod frame;
 pub mod kernels;
 pub mod link;
+pub mod messages;
 pub mod protocol;
 pub mod server;

@@ -1,7 +1,8 @@
 //! What host and firmware say to each other, and the hash by which they know that they mean the same.
 
 use crate::kernels::{Kernel, KernelInput, KernelOutput};
-use leg_model::{Error, Evaluation, Query, RigParameters, Scalar};
+use crate::messages::{QueryMessage, RigMessage};
+use leg_model::{Error, Evaluation};
 use postcard_schema::{Schema, key::Key};
 use serde::{Deserialize, Serialize};
 
@@ -77,8 +78,8 @@ pub enum Board {
 pub struct EvaluateRequest {
     /// The mechanism.
     pub rig: RigMessage,
-    /// The pose, the load and the tendons.
-    pub query: Query<f32>,
+    /// The pose, the load and what holds it.
+    pub query: QueryMessage,
 }
 
 /// A kernel and what it works on.
@@ -112,48 +113,3 @@ pub enum Refusal {
 
 /// Hash of every type that crosses the link: it changes when a message's shape changes.
 pub const SCHEMA: [u8; 8] = Key::for_path::<(Request, Reply)>("leg").to_bytes();
-
-/// [`RigParameters`] of a mechanism with three tendons, as they cross the link.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
-#[allow(missing_docs, reason = "each field is documented at RigParameters")]
-pub struct RigMessage {
-    pub base_anchors_m: [[f32; 2]; 3],
-    pub leg_anchors_m: [[f32; 2]; 3],
-    pub upper_length_m: f32,
-    pub joint_length_m: f32,
-    pub leg_length_m: f32,
-    pub leg_mass_kg: f32,
-    pub leg_centroid_m: f32,
-    pub gravity_m_per_s2: f32,
-}
-
-impl From<RigParameters<f32, 3>> for RigMessage {
-    fn from(rig: RigParameters<f32, 3>) -> Self {
-        Self {
-            base_anchors_m: rig.base_anchors_m,
-            leg_anchors_m: rig.leg_anchors_m,
-            upper_length_m: rig.upper_length_m,
-            joint_length_m: rig.joint_length_m,
-            leg_length_m: rig.leg_length_m,
-            leg_mass_kg: rig.leg_mass_kg,
-            leg_centroid_m: rig.leg_centroid_m,
-            gravity_m_per_s2: rig.gravity_m_per_s2,
-        }
-    }
-}
-
-impl<T: Scalar> From<RigMessage> for RigParameters<T, 3> {
-    fn from(rig: RigMessage) -> Self {
-        let anchors = |points: [[f32; 2]; 3]| points.map(|point| point.map(T::from));
-        Self {
-            base_anchors_m: anchors(rig.base_anchors_m),
-            leg_anchors_m: anchors(rig.leg_anchors_m),
-            upper_length_m: rig.upper_length_m.into(),
-            joint_length_m: rig.joint_length_m.into(),
-            leg_length_m: rig.leg_length_m.into(),
-            leg_mass_kg: rig.leg_mass_kg.into(),
-            leg_centroid_m: rig.leg_centroid_m.into(),
-            gravity_m_per_s2: rig.gravity_m_per_s2.into(),
-        }
-    }
-}

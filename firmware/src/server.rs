@@ -80,9 +80,11 @@ impl<B: Board> Server<B> {
 }
 
 fn evaluate(request: &EvaluateRequest) -> Result<Reply, Refusal> {
-    leg_model::evaluate(&request.rig.into(), &request.query)
-        .map(Reply::Evaluation)
-        .map_err(Refusal::Model)
+    let evaluated = request
+        .query
+        .query()
+        .and_then(|query| leg_model::evaluate(&request.rig.into(), &query));
+    evaluated.map(Reply::Evaluation).map_err(Refusal::Model)
 }
 
 fn run(request: &KernelRequest) -> Result<Reply, Refusal> {

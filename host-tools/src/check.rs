@@ -11,7 +11,7 @@ mod tests;
 pub use accuracy::{Accuracy, RowReport};
 pub use bits::{Bits, Difference};
 pub use sample::{grid, random};
-pub use state::{Pose, State};
+pub use state::{Pose, State, Stretch};
 
 use crate::link::{InProcess, Link, LinkError};
 use crate::precision::{Row, of_evaluation, of_kernel};
@@ -83,9 +83,9 @@ pub fn run(
             bits.compare(&reply, &host.ask(request)?, what, state)?;
             numbers(&reply)
         };
-        let found = ask(&evaluate_request(state), bits::EVALUATION)?;
+        let found = ask(&evaluate_request(state)?, bits::EVALUATION)?;
         let expected = reference::evaluation(state)?;
-        accuracy.add(&of_evaluation(state.support), &found, &expected, state);
+        accuracy.add(&of_evaluation(state.support.kind), &found, &expected, state);
         for kernel in Kernel::ALL {
             let found = ask(&kernel_request(kernel, state), kernel.name())?;
             let expected = reference::kernel(kernel, state)?;
@@ -100,11 +100,12 @@ pub fn run(
     })
 }
 
-fn evaluate_request(state: &State) -> Request {
-    Request::Evaluate(EvaluateRequest {
+fn evaluate_request(state: &State) -> Result<Request, CheckError> {
+    let query = state.message().map_err(reference::at(state))?;
+    Ok(Request::Evaluate(EvaluateRequest {
         rig: state.input.rig,
-        query: state.query(),
-    })
+        query,
+    }))
 }
 
 const fn kernel_request(kernel: Kernel, state: &State) -> Request {

@@ -131,5 +131,6 @@ fn input(azimuth_deg: f32, tilt_deg: f32, payload_kg: f32) -> KernelInput {
         tension_floor_n: 8.0,
         tension_ceiling_n: 150.0,
         stiffness_n_per_m: 99_450.0,
+        demand_nm_per_rad: 100.0,
     }
 }

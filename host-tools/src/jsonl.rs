@@ -4,19 +4,20 @@ use crate::json_entries::{self, Entries};
 use crate::line_error::LineError;
 use crate::rig_file::RigFile;
 use crate::suggest;
-use crate::support_word;
-use leg_model::{Query, RigParameters, SupportKind};
+use crate::support_name::SupportName;
+use leg_model::{Query, RigParameters, StiffnessAt, Support, Tendon};
 
 /// The keys that a line has to give.
 const REQUIRED: [&str; 3] = ["azimuth_deg", "tilt_deg", "payload_kg"];
 
 /// All keys.
-const KEYS: [&str; 10] = [
+const KEYS: [&str; 11] = [
     "azimuth_deg",
     "tilt_deg",
     "payload_kg",
     "level_n",
     "stiffness_n_per_m",
+    "stiffness_at",
     "f_min_n",
     "f_max_n",
     "leg_mass_kg",
@@ -51,7 +52,7 @@ impl Line {
             if entries[..index].iter().any(|(earlier, _)| earlier == key) {
                 return Err(LineError::Repeated(key.clone()));
             }
-            line.set(key, value.get())?;
+            line.set(key, value.get(), defaults)?;
         }
         let given = |key: &str| entries.iter().any(|(given, _)| given == key);
         match REQUIRED.iter().find(|key| !given(key)) {
@@ -60,7 +61,7 @@ impl Line {
         }
     }
 
-    fn set(&mut self, key: &str, value: &str) -> Result<(), LineError> {
+    fn set(&mut self, key: &str, value: &str, defaults: &RigFile) -> Result<(), LineError> {
         let Some(key) = KEYS.into_iter().find(|known| *known == key) else {
             let fix = suggest::for_key(key, &KEYS);
             return Err(LineError::UnknownKey {
@@ -74,12 +75,13 @@ impl Line {
             "tilt_deg" => query.tilt_rad = number(key, value)?.to_radians(),
             "payload_kg" => query.payload_kg = number(key, value)?,
             "level_n" => query.level_n = number(key, value)?,
-            "stiffness_n_per_m" => query.stiffness_n_per_m = number(key, value)?,
+            "stiffness_n_per_m" => query.tendons = [Tendon::constant(number(key, value)?)?; 3],
+            "stiffness_at" => query.stiffness_at = stiffness_at(value)?,
             "f_min_n" => query.tension_floor_n = number(key, value)?,
             "f_max_n" => query.tension_ceiling_n = number(key, value)?,
             "leg_mass_kg" => self.rig.leg_mass_kg = number(key, value)?,
             "l_upper_m" => self.rig.upper_length_m = number(key, value)?,
-            _ => query.support = support(value)?,
+            _ => query.support = support(value, defaults)?,
         }
         Ok(())
     }
@@ -99,9 +101,32 @@ fn number(key: &'static str, value: &str) -> Result<f64, LineError> {
     }
 }
 
-fn support(value: &str) -> Result<SupportKind, LineError> {
-    let word: String = serde_json::from_str(value).map_err(|_| LineError::NotAWord(kind(value)))?;
-    support_word::parse(&word).map_err(LineError::Support)
+/// A rigid support, or the elastic one that the rig file describes.
+fn support(value: &str, defaults: &RigFile) -> Result<Support<f64>, LineError> {
+    let name = SupportName::parse(&word("support", value)?).map_err(LineError::Support)?;
+    if name == defaults.support_name {
+        Ok(defaults.support)
+    } else if name.elastic() {
+        Err(LineError::NotInRigFile {
+            asked: name.word(),
+            described: defaults.support_name.word(),
+        })
+    } else {
+        Ok(name.kind().into())
+    }
+}
+
+fn stiffness_at(value: &str) -> Result<StiffnessAt, LineError> {
+    match word("stiffness_at", value)?.as_str() {
+        "pretension" => Ok(StiffnessAt::Pretension),
+        "tension" => Ok(StiffnessAt::Tension),
+        other => Err(LineError::StiffnessAt(other.into())),
+    }
+}
+
+fn word(key: &'static str, value: &str) -> Result<String, LineError> {
+    let found = kind(value);
+    serde_json::from_str(value).map_err(|_| LineError::NotAWord { key, found })
 }
 
 /// What a JSON value is; its first character tells.

@@ -1,6 +1,6 @@
 //! Why a line of `leg eval`'s input has no result, in words.
 
-use crate::support_word::UnknownSupport;
+use crate::support_name::UnknownSupport;
 use leg_model::{Error, Quantity, Reason};
 
 /// Why a line has no result.
@@ -39,9 +39,27 @@ pub enum LineError {
         /// The value.
         found: String,
     },
-    /// A support that is no string.
-    #[error("`support` has to be a string in quotes, not {0}: write one such as `torsion_free`")]
-    NotAWord(&'static str),
+    /// A word that is no string.
+    #[error("`{key}` has to be a string in quotes, not {found}: `leg eval --help` lists the words")]
+    NotAWord {
+        /// The key.
+        key: &'static str,
+        /// What the value is.
+        found: &'static str,
+    },
+    /// An elastic support that the rig file does not describe.
+    #[error(
+        "the rig file describes the support `{described}`, not `{asked}`: give a rig file with --rig that does, `leg rig list` names some"
+    )]
+    NotInRigFile {
+        /// What the line asks for.
+        asked: &'static str,
+        /// What the rig file has.
+        described: &'static str,
+    },
+    /// A reading of the stiffness that does not exist.
+    #[error("`stiffness_at` cannot be `{0}`: write `pretension` or `tension`")]
+    StiffnessAt(String),
     /// A support that does not exist.
     #[error("{0}: {fix}", fix = .0.fix())]
     Support(UnknownSupport),
@@ -88,7 +106,11 @@ fn key_of(quantity: Quantity) -> &'static str {
         Quantity::Gravity => "gravity_m_per_s2",
         Quantity::TendonLength => "tendon length",
         Quantity::Direction => "direction",
-        Quantity::Tension => "tension",
+        Quantity::Tension => "tension of a tendon at this level",
+        Quantity::Elongation => "elongation of a tendon",
+        Quantity::TendonCurve => "curve",
+        Quantity::BendingStiffness => "bending stiffness",
+        _ => "support",
     }
 }
 
@@ -104,6 +126,7 @@ fn fix_of(quantity: Quantity, reason: Reason) -> &'static str {
             ": give 0 to 1e7"
         }
         (Quantity::Level, Reason::OutOfRange) => ": give -1e7 to 1e7",
+        (_, Reason::BeyondCurve) => ": give a lower `level_n`, or a constant `stiffness_n_per_m`",
         (_, Reason::AboveCeiling) => ": give at most `f_max_n`",
         _ => "",
     }

@@ -59,6 +59,22 @@ pub enum Quantity {
     TickRotation,
     /// The tip's displacement there.
     TickDisplacement,
+    /// Moment of an elastic joint.
+    JointMoment,
+    /// Stiffness of an elastic joint.
+    JointStiffness,
+    /// Smallest and largest bending stiffness.
+    Bending,
+    /// How much longer joint and shaft become.
+    AxialStretch,
+    /// Elongation of a tendon with a curve.
+    Elongation,
+    /// Stiffness of a tendon with a curve.
+    TendonStiffness,
+    /// Level of pretension for a demanded stiffness.
+    CommandedLevel,
+    /// The stiffness that it gives.
+    CommandedStiffness,
     /// Square root.
     SquareRoot,
     /// Sine and cosine.

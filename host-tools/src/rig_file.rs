@@ -1,10 +1,13 @@
 //! The rig file: a mechanism in a human's units, read into SI.
 
 mod reading;
+mod support;
+mod tendon;
 
 use crate::failure::{Failure, Place};
+use crate::support_name::SupportName;
 use crate::toml_problem::Problem;
-use leg_model::{Query, RigParameters, SupportKind};
+use leg_model::{Elasticity, Query, RigParameters, StiffnessAt, Support, Tendon};
 use std::path::{Path, PathBuf};
 
 /// The bundled file that describes the paper's rig.
@@ -15,8 +18,10 @@ const TABLE_1: &str = include_str!("../rigs/table1.toml");
 pub struct RigFile {
     /// The geometry and the masses.
     pub parameters: RigParameters<f64, 3>,
-    /// Stiffness of each tendon, N/m.
-    pub stiffness_n_per_m: f64,
+    /// The tendons.
+    pub tendons: [Tendon<f64>; 3],
+    /// At which tension their stiffness is read.
+    pub stiffness_at: StiffnessAt,
     /// Lowest tension allowed, N.
     pub tension_floor_n: f64,
     /// Highest tension allowed, N.
@@ -25,8 +30,10 @@ pub struct RigFile {
     pub level_n: f64,
     /// How far the leg leans at most, degrees.
     pub tilt_deg: f64,
-    /// How the central support guides the leg.
-    pub support: SupportKind,
+    /// The central support's name.
+    pub support_name: SupportName,
+    /// The central support.
+    pub support: Support<f64>,
 }
 
 /// Why a rig file is refused.
@@ -82,6 +89,25 @@ impl RigFile {
         })
     }
 
+    /// Stiffness of each tendon at the level, N/m.
+    #[must_use]
+    pub fn stiffnesses_n_per_m(&self) -> [f64; 3] {
+        // The file was refused if a curve does not reach the level.
+        let at_level = |tendon: Tendon<f64>| tendon.stiffness(self.level_n).unwrap_or(f64::NAN);
+        self.tendons.map(at_level)
+    }
+
+    /// The same in words.
+    #[must_use]
+    pub fn stiffness_words(&self) -> String {
+        let [first, second, third] = self.stiffnesses_n_per_m();
+        if self.tendons.iter().all(|tendon| *tendon == self.tendons[0]) {
+            format!("tendons of {first:.0} N/m there")
+        } else {
+            format!("tendons of {first:.0}, {second:.0} and {third:.0} N/m there")
+        }
+    }
+
     /// Whether this is the paper's rig.
     #[must_use]
     pub fn is_table_1(&self) -> bool {
@@ -98,7 +124,8 @@ impl RigFile {
             level_n: self.level_n,
             tension_floor_n: self.tension_floor_n,
             tension_ceiling_n: self.tension_ceiling_n,
-            stiffness_n_per_m: self.stiffness_n_per_m,
+            tendons: self.tendons,
+            stiffness_at: self.stiffness_at,
             support: self.support,
         }
     }
@@ -121,13 +148,15 @@ impl From<RigFileError> for Failure {
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::RigFile;
-    use leg_model::{RigParameters, SupportKind};
+    use leg_model::{CurvePoint, RigParameters, SupportKind, Tendon};
 
     #[test]
     fn the_bundled_file_is_the_models_table_1() {
         let file = RigFile::load(None).unwrap();
         assert_eq!(file.parameters, RigParameters::<f64, 3>::TABLE_1);
-        assert_eq!(file.support, SupportKind::TorsionFree);
+        assert_eq!(file.support, SupportKind::TorsionFree.into());
+        let tendon = Tendon::curve(&CurvePoint::<f64>::PAPER).unwrap();
+        assert_eq!(file.tendons, [tendon; 3]);
         assert!(file.is_table_1());
     }
 }

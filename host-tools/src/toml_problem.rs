@@ -1,6 +1,6 @@
 //! What can be wrong with a rig file, in words.
 
-use crate::support_word::UnknownSupport;
+use crate::support_name::UnknownSupport;
 use leg_model::Reason;
 use std::ops::Range;
 
@@ -57,6 +57,32 @@ pub enum Problem {
     /// No support has this name.
     #[error(transparent)]
     Support(UnknownSupport),
+    /// Two keys that give the same thing.
+    #[error("`{0}` and `{1}` cannot both be given")]
+    Both(&'static str, &'static str),
+    /// Arrays that belong together are of different lengths.
+    #[error("`{key}` has {found} entries, `{other}` has {wanted}")]
+    Count {
+        /// The key.
+        key: &'static str,
+        /// How many it has.
+        found: usize,
+        /// The key beside it.
+        other: &'static str,
+        /// How many that one has.
+        wanted: usize,
+    },
+    /// A point of a tendon's curve that cannot be.
+    #[error("point {point} of the curve {reason}")]
+    Curve {
+        /// Which point, counted from 1.
+        point: usize,
+        /// What is wrong with it.
+        reason: Reason,
+    },
+    /// The model has no result for the section.
+    #[error("the model has no result for this: {0}")]
+    NoResult(leg_model::Error),
     /// The model refuses the value.
     #[error("`{key}` {reason}")]
     Refused {
@@ -81,6 +107,12 @@ impl Problem {
             Self::NotFinite(_) => "write a number such as 29 or 1.5e3".into(),
             Self::AnchorCount { .. } => "give three anchors, [[x, y], [x, y], [x, y]]".into(),
             Self::Support(error) => error.fix(),
+            Self::Both(first, second) => format!("give either `{first}` or `{second}`"),
+            Self::Count { .. } => "give one entry for each point of the curve in each array".into(),
+            Self::Curve { .. } => {
+                "correct the point; `leg curve` makes a curve from a tensile test".into()
+            }
+            Self::NoResult(_) => "compare with the ready rigs, `leg rig list`".into(),
             Self::Refused { key, reason } => fix_of(key, *reason),
         }
     }
@@ -91,8 +123,11 @@ fn fix_of(key: &str, reason: Reason) -> String {
         Reason::OutOfRange if key == "tilt_deg" => "give at most 60".into(),
         Reason::Collinear => "spread the anchors round the axis".into(),
         Reason::AboveCeiling => "give at most `ceiling_n`".into(),
-        Reason::NotFinite | Reason::NotPositive | Reason::Negative | Reason::OutOfRange => {
-            "correct the value; host-tools/rigs/table1.toml has one that works".into()
-        }
+        Reason::NotSlender => "make it longer or wider, or the flexure thinner".into(),
+        Reason::OutsideFormula => "give 0.05 to 0.8 times `radius_mm`".into(),
+        Reason::Exceeded => "make the flexure thinner or longer, or lower `tilt_deg`".into(),
+        Reason::BeyondCurve => "give at most the last tension of the curve".into(),
+        Reason::TooFew | Reason::TooMany => "give 2 to 16 points".into(),
+        _ => "correct the value; host-tools/rigs/table1.toml has one that works".into(),
     }
 }

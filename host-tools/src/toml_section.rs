@@ -2,6 +2,7 @@
 
 use crate::suggest;
 use crate::toml_problem::{Fault, Problem};
+use leg_model::Reason;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -47,14 +48,60 @@ impl<'a> Section<'a> {
     /// # Errors
     /// A missing key, a value of another type or an unknown key within it.
     pub fn section(&self, key: &'static str, known: &[&str]) -> Result<Section<'a>, Fault> {
+        let Section { table, span } = self.any_section(key)?;
+        Section::new(table, span, known)
+    }
+
+    /// Whether a key is there in a table within this one.
+    #[must_use]
+    pub fn section_has(&self, section: &str, key: &str) -> bool {
+        let table = self
+            .table
+            .get(section)
+            .and_then(|value| value.get_ref().as_table());
+        table.is_some_and(|table| table.contains_key(key))
+    }
+
+    /// A table within this one, whose keys are not yet checked: for a first look at the one that says which are known.
+    ///
+    /// # Errors
+    /// A missing key or a value of another type.
+    pub fn any_section(&self, key: &'static str) -> Result<Section<'a>, Fault> {
         let value = self
             .table
             .get(key)
             .ok_or_else(|| self.missing(Problem::MissingSection(key)))?;
         match value.get_ref() {
-            DeValue::Table(table) => Section::new(table, value.span(), known),
+            DeValue::Table(table) => Ok(Section {
+                table,
+                span: value.span(),
+            }),
             _ => Err(wrong_type(key, "a section, `[name]`", value)),
         }
+    }
+
+    /// The place of the value of a key, if it is there.
+    #[must_use]
+    pub fn span_of_key(&self, key: &str) -> Option<Range<usize>> {
+        self.table.get(key).map(Spanned::span)
+    }
+
+    /// A finite number above zero.
+    ///
+    /// # Errors
+    /// As [`Self::number`]; [`Problem::Refused`].
+    pub fn positive(&self, key: &'static str) -> Result<f64, Fault> {
+        let number = self.spanned_number(key)?;
+        if *number.get_ref() > 0.0 {
+            return Ok(*number.get_ref());
+        }
+        Err(Fault {
+            span: number.span(),
+            problem: Problem::Refused {
+                key,
+                reason: Reason::NotPositive,
+            },
+        })
     }
 
     /// A finite number.
@@ -63,6 +110,42 @@ impl<'a> Section<'a> {
     /// A missing key, a value of another type, an infinite number or NaN.
     pub fn number(&self, key: &'static str) -> Result<f64, Fault> {
         number(key, self.get(key)?)
+    }
+
+    /// Whether the key is there.
+    #[must_use]
+    pub fn has(&self, key: &str) -> bool {
+        self.table.contains_key(key)
+    }
+
+    /// The place of the section.
+    #[must_use]
+    pub fn span(&self) -> Range<usize> {
+        self.span.clone()
+    }
+
+    /// A finite number and its place.
+    ///
+    /// # Errors
+    /// As [`Self::number`].
+    pub fn spanned_number(&self, key: &'static str) -> Result<Spanned<f64>, Fault> {
+        let value = self.get(key)?;
+        Ok(Spanned::new(value.span(), number(key, value)?))
+    }
+
+    /// An array of finite numbers, each with its place, and the place of the whole.
+    ///
+    /// # Errors
+    /// A missing key, a value of another type, an entry that is no finite number.
+    pub fn numbers(&self, key: &'static str) -> Result<Spanned<Vec<Spanned<f64>>>, Fault> {
+        let value = self.get(key)?;
+        let DeValue::Array(entries) = value.get_ref() else {
+            return Err(wrong_type(key, "an array of numbers", value));
+        };
+        let entry =
+            |entry: &Spanned<DeValue<'_>>| Ok(Spanned::new(entry.span(), number(key, entry)?));
+        let numbers: Result<_, Fault> = entries.iter().map(entry).collect();
+        Ok(Spanned::new(value.span(), numbers?))
     }
 
     /// A word, for example one of several choices, and its place.

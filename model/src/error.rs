@@ -1,5 +1,6 @@
 //! Everything the model can refuse, each refusal with a name.
 
+use crate::{Bound, Limit};
 use core::fmt;
 
 /// A quantity that a caller hands to the model.
@@ -45,6 +46,34 @@ pub enum Quantity {
     Direction,
     /// Tension of a tendon, N.
     Tension,
+    /// Elongation of a tendon, m.
+    Elongation,
+    /// The points of a tendon's curve.
+    TendonCurve,
+    /// Bending stiffness of the joint, N·m/rad.
+    JointBending,
+    /// Torsion stiffness of the joint, N·m/rad.
+    JointTorsion,
+    /// Axial compliance of joint and shaft, m/N.
+    AxialCompliance,
+    /// A demanded bending stiffness of the leg, N·m/rad.
+    BendingStiffness,
+    /// Free length of a flexure, m.
+    FlexureLength,
+    /// Width of a flexure, m.
+    FlexureWidth,
+    /// Thickness or diameter of a flexure, m.
+    FlexureThickness,
+    /// Radius of a notch, m.
+    NotchRadius,
+    /// Distance between the two flexures of a pair, m.
+    FlexureSpacing,
+    /// Young's modulus of a flexure, Pa.
+    YoungsModulus,
+    /// Shear modulus of a flexure, Pa.
+    ShearModulus,
+    /// The largest strain from which a flexure springs back.
+    StrainLimit,
 }
 
 /// What is wrong with a refused quantity.
@@ -66,6 +95,26 @@ pub enum Reason {
     Collinear,
     /// The lowest allowed value is above the highest.
     AboveCeiling,
+    /// It is beyond what the tendon's curve knows.
+    BeyondCurve,
+    /// Its first point is not at zero tension and zero elongation.
+    NotFromZero,
+    /// A point has not both more tension and more elongation than the one before.
+    NotRising,
+    /// Between two points it would turn back.
+    NotMonotone,
+    /// It has too few points.
+    TooFew,
+    /// It has too many points.
+    TooMany,
+    /// The support allows no such motion.
+    Blocked,
+    /// It is too small beside the flexure's thickness for the formulas of slender beams.
+    NotSlender,
+    /// It is outside the range in which the formula has been confirmed.
+    OutsideFormula,
+    /// At the greatest tilt the flexure is strained beyond it.
+    Exceeded,
 }
 
 /// Why the model gives no result.
@@ -86,6 +135,10 @@ pub enum Error {
     TendonCollapsed,
     /// The tendons cannot turn the leg about both of its free axes (under a load that is finite).
     Singular,
+    /// No level of pretension keeps every tension inside its bounds at this pose under this load.
+    Infeasible,
+    /// At this level of pretension a tension is outside its bounds.
+    OutOfBounds(Limit),
     /// The stiffness is not positive: the leg would buckle at this pose under this load.
     Unstable,
     /// An iteration ended without a solution.
@@ -107,6 +160,18 @@ impl fmt::Display for Reason {
             Self::OutOfRange => "is beyond the range in which the model holds",
             Self::Collinear => "must not lie on one line",
             Self::AboveCeiling => "must not be above the highest tension",
+            Self::BeyondCurve => "is beyond the last point of the tendon's curve",
+            Self::NotFromZero => "must start at zero tension and zero elongation",
+            Self::NotRising => "must rise in tension and in elongation from point to point",
+            Self::NotMonotone => {
+                "must not turn back between two points: the stiffness at one of them is less than a third of the average between them"
+            }
+            Self::TooFew => "must have at least two points",
+            Self::TooMany => "must have at most 16 points",
+            Self::NotSlender => "is too small beside the thickness for the formulas of slender beams",
+            Self::OutsideFormula => "is outside the formula's range",
+            Self::Exceeded => "is exceeded when the flexure is bent to the greatest tilt",
+            Self::Blocked => "must be zero: this support allows no such motion",
         })
     }
 }
@@ -119,6 +184,17 @@ impl fmt::Display for Error {
             Self::Singular => {
                 f.write_str("the tendons cannot turn the leg about both of its free axes")
             }
+            Self::Infeasible => {
+                f.write_str("no level of pretension keeps every tension inside its bounds")
+            }
+            Self::OutOfBounds(Limit { tendon, bound }) => write!(
+                f,
+                "at this level of pretension the tension of tendon {tendon} is {} bound",
+                match bound {
+                    Bound::Floor => "below its lower",
+                    Bound::Ceiling => "above its upper",
+                }
+            ),
             Self::Unstable => f.write_str("the stiffness is not positive: the leg would buckle"),
             Self::NotConverged => f.write_str("the iteration ended without a solution"),
         }

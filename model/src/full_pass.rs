@@ -4,7 +4,7 @@ use crate::kinematics::TendonAtPose;
 use crate::range::{TENSION_MAX, check_magnitude};
 use crate::tendon::check_stiffness;
 use crate::{
-    Direction, Error, FreePlane, Kinematics, Load, Quantity, Rig, Scalar, Symmetric3,
+    Direction, Error, FreePlane, Geometry, Kinematics, Load, Quantity, Rig, Scalar, Symmetric3,
     tip_displacement,
 };
 use nalgebra::{SVector, Vector3};
@@ -135,6 +135,23 @@ fn pass<T: Scalar, const N: usize>(
         stiffness,
         deflection,
     }
+}
+
+/// Exact K₂ at constant tensions + K_load, symmetrised, N·m/rad: the full pass without the tendons' own stiffness.
+#[inline(always)]
+pub(crate) fn at_tensions<T: Scalar, const N: usize>(
+    geometry: &Geometry<T, N>,
+    direction: &Direction<T>,
+    load: &Load<T>,
+    tensions: &SVector<T, N>,
+) -> Symmetric3<T> {
+    let q = direction.half_tangent();
+    let mut sums = Sums::new();
+    for (i, pair) in geometry.tendons.iter().enumerate() {
+        let tendon = TendonAtPose::new(pair, geometry, &q, direction.gain());
+        sums.add(&tendon, pair.base, tensions[i], T::zero());
+    }
+    sums.total(geometry.upper, direction, load)
 }
 
 /// Sums over the tendons, with φ = f/l the force density.

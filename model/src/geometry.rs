@@ -1,7 +1,8 @@
 //! Where the tendons pull: the part of a mechanism that the fast path works on.
 
 use crate::length_polynomial::LengthPolynomial;
-use crate::{RigParameters, Scalar, Twist};
+use crate::{Direction, Kinematics, RigParameters, Scalar, Twist};
+use nalgebra::SVector;
 
 /// Anchors and plates of a validated mechanism, for a leg without torsion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +38,21 @@ impl<T: Scalar, const N: usize> Geometry<T, N> {
             upper,
             joint,
         }
+    }
+
+    /// How much of a unit tension in each tendon pulls the leg up along its own axis: −n·p with n = (B − e)/l.
+    #[must_use]
+    pub fn along_leg(
+        &self,
+        direction: &Direction<T>,
+        kinematics: &Kinematics<T, N>,
+    ) -> SVector<T, N> {
+        SVector::from_fn(|i, _| {
+            let [x, y] = self.tendons[i].base;
+            // e·p is the joint's distance from the leg's plate.
+            let base = x * direction.x + y * direction.y + self.upper * direction.z;
+            (self.joint - base) / kinematics.lengths[i]
+        })
     }
 
     /// The same mechanism with its leg twisted about its own axis.

@@ -23,12 +23,17 @@
     reason = "constants are written once, for f32 and f64"
 )]
 
+mod bending;
 mod deviation;
 mod error;
 mod evaluation;
+mod flexure;
 mod forward;
+mod free_plane;
 mod full_pass;
 mod geometry;
+mod inverse_statics;
+mod joint;
 mod kinematics;
 mod length_polynomial;
 mod load;
@@ -38,29 +43,41 @@ mod rig;
 mod scalar;
 mod solve;
 mod sqrt;
+mod stiffness_command;
 mod structural_stiffness;
 mod support;
+mod support_printed;
 mod tendon;
 mod tendon_stiffness;
 mod tension;
 mod torsion;
 mod trigonometry;
 
+pub use bending::{Bending, BendingAxis};
 pub use deviation::{deviation, tip_displacement};
 pub use error::{Error, Quantity, Reason};
-pub use evaluation::{Evaluation, Query, evaluate};
+pub use evaluation::{Evaluation, Query, StiffnessAt, evaluate};
+pub use flexure::{FlexureMaterial, Leaf, Notch, Rod};
 pub use forward::{ForwardKinematics, forward_kinematics, forward_kinematics_universal};
+pub use free_plane::FreePlane;
 pub use full_pass::{Deflection, FullPass, TendonStates, full_pass, full_pass_in_plane};
 pub use geometry::Geometry;
+pub use inverse_statics::{InverseStatics, inverse_statics};
 pub use kinematics::{Kinematics, inverse_kinematics};
 pub use load::{Load, estimate_moment};
 pub use pose::{Direction, HalfTangent, Twist};
 pub use rig::{Rig, RigParameters};
 pub use scalar::Scalar;
 pub use solve::{Symmetric3, solve2, solve3};
+pub use stiffness_command::{StiffnessAnswer, StiffnessCommand};
 pub use structural_stiffness::{structural_stiffness, structural_stiffness_printed};
-pub use support::{FreePlane, SupportKind};
-pub use tendon::Tendon;
+pub use support::{JointStiffness, Support, SupportKind};
+pub use support_printed::{
+    joint_stiffness_leg_fixed, series_stiffness_printed, support_stiffness_printed,
+};
+pub use tendon::{
+    CURVE_POINTS_MAX, ConstantStiffness, CurvePoint, Elasticity, Tendon, TendonCurve,
+};
 pub use tendon_stiffness::tendon_stiffness;
 pub use tension::{Bound, Distribution, Limit, TensionBounds, distribute};
-pub use torsion::ball_joint_torsion;
+pub use torsion::elastic_torsion;

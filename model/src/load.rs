@@ -9,6 +9,8 @@ use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 pub struct Load<T> {
     /// Σ weight × distance from the joint, N·m: the moment when the leg is level.
     pub(crate) lever: T,
+    /// Σ weight, N.
+    pub(crate) weight: T,
 }
 
 impl<T: Scalar> Load<T> {
@@ -20,7 +22,17 @@ impl<T: Scalar> Load<T> {
         check_not_negative(payload_kg, MASS_MAX, Quantity::Payload)?;
         Ok(Self {
             lever: rig.leg_moment + payload_kg * rig.gravity * rig.tip,
+            weight: rig.leg_weight + payload_kg * rig.gravity,
         })
+    }
+
+    /// No weights.
+    #[must_use]
+    pub fn none() -> Self {
+        Self {
+            lever: T::zero(),
+            weight: T::zero(),
+        }
     }
 
     /// M = Σ R(0, 0, −L) × (0, 0, −mg), N·m. (Eq. 21 with its lever corrected.)
@@ -31,7 +43,19 @@ impl<T: Scalar> Load<T> {
         Vector3::new(x, y, T::zero())
     }
 
-    /// The same without its vertical part, which is zero.
+    /// Potential energy of the weights, J; zero with the leg level.
+    #[must_use]
+    pub fn energy(&self, direction: &Direction<T>) -> T {
+        self.lever * direction.z
+    }
+
+    /// The weights' pull along the leg, away from the joint, N.
+    #[must_use]
+    pub fn along_leg_n(&self, direction: &Direction<T>) -> T {
+        self.weight * -direction.z
+    }
+
+    /// The moment without its vertical part, which is zero.
     #[inline(always)]
     pub(crate) fn horizontal_moment(&self, direction: &Direction<T>) -> [T; 2] {
         [-self.lever * direction.y, self.lever * direction.x]

@@ -179,6 +179,13 @@ impl<T: Scalar> Twist<T> {
         }
     }
 
+    /// Both twists, one after the other.
+    #[must_use]
+    pub fn and(&self, other: &Self) -> Self {
+        let [cos, sin] = self.apply([other.cos, other.sin]);
+        Self { sin, cos }
+    }
+
     /// The torsion τ in rad, positive about the leg's plate normal (upwards).
     #[must_use]
     pub fn torsion(&self) -> T {

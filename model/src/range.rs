@@ -12,6 +12,10 @@ pub(crate) const GRAVITY_MAX: f32 = 1e3;
 pub(crate) const TENSION_MAX: f32 = 1e7;
 /// Softest and stiffest tendon, N/m.
 pub(crate) const STIFFNESS: [f32; 2] = [1e-2, 1e10];
+/// Stiffest joint, N·m/rad.
+pub(crate) const JOINT_STIFFNESS_MAX: f32 = 1e6;
+/// Most compliant joint along its axis, m/N.
+pub(crate) const COMPLIANCE_MAX: f32 = 1.0;
 
 /// Refuses a value that is not finite or whose magnitude is above `limit`.
 pub(crate) fn check_magnitude<T: Scalar>(

@@ -63,6 +63,8 @@ pub struct Rig<T, const N: usize> {
     pub(crate) tip: T,
     /// Weight of the leg times the distance of its centroid, N·m.
     pub(crate) leg_moment: T,
+    /// N.
+    pub(crate) leg_weight: T,
     pub(crate) gravity: T,
 }
 
@@ -87,6 +89,7 @@ impl<T: Scalar, const N: usize> Rig<T, N> {
         Ok(Self {
             geometry: Geometry::new(p),
             tip: p.joint_length_m + p.leg_length_m,
+            leg_weight: p.leg_mass_kg * p.gravity_m_per_s2,
             leg_moment: p.leg_mass_kg * p.gravity_m_per_s2 * p.leg_centroid_m,
             gravity: p.gravity_m_per_s2,
         })

@@ -17,6 +17,8 @@ pub trait Scalar:
     const TWO: Self;
     /// −0, from which sums start: unlike +0 it leaves every number as it is, so the first addition costs nothing.
     const SUM_START: Self;
+    /// π.
+    const PI: Self;
     /// 1/√3.
     const FRAC_1_SQRT_3: Self;
     /// The greatest finite number.
@@ -56,6 +58,7 @@ macro_rules! scalar {
             const HALF: Self = 0.5;
             const TWO: Self = 2.0;
             const SUM_START: Self = -0.0;
+            const PI: Self = core::$t::consts::PI;
             const FRAC_1_SQRT_3: Self = 0.577_350_269_189_625_8;
             const MAX: Self = $t::MAX;
             const TILT_MAX_RAD: Self = core::$t::consts::FRAC_PI_3;

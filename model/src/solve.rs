@@ -1,7 +1,7 @@
 //! Small linear systems: two by two for the free axes, three by three for a ball joint.
 
 use crate::{Error, Scalar};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, SMatrix, Vector3};
 
 /// Normal equations of a weighted least-squares problem with two unknowns, whose errors come doubled.
 pub(crate) struct NormalEquations<T> {
@@ -109,6 +109,56 @@ impl<T: Scalar> Symmetric3<T> {
             zz,
         } = self;
         Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+    }
+
+    /// The sum of two.
+    #[must_use]
+    #[inline(always)]
+    pub(crate) fn plus(&self, other: &Self) -> Self {
+        self.plus_scaled(other, T::one())
+    }
+
+    /// The sum of this one and a multiple of another.
+    #[must_use]
+    #[inline(always)]
+    pub(crate) fn plus_scaled(&self, other: &Self, scale: T) -> Self {
+        Self {
+            xx: self.xx + scale * other.xx,
+            xy: self.xy + scale * other.xy,
+            xz: self.xz + scale * other.xz,
+            yy: self.yy + scale * other.yy,
+            yz: self.yz + scale * other.yz,
+            zz: self.zz + scale * other.zz,
+        }
+    }
+
+    /// Adds k·aaᵀ with a column of a moment map.
+    #[inline(always)]
+    pub(crate) fn add_square<const N: usize>(
+        &mut self,
+        moment_map: &SMatrix<T, 3, N>,
+        column: usize,
+        k: T,
+    ) {
+        let a = [0, 1, 2].map(|row| moment_map[(row, column)]);
+        let [kx, ky, kz] = a.map(|component| k * component);
+        self.xx += kx * a[0];
+        self.xy += kx * a[1];
+        self.xz += kx * a[2];
+        self.yy += ky * a[1];
+        self.yz += ky * a[2];
+        self.zz += kz * a[2];
+    }
+
+    /// The matrix times a vector.
+    #[must_use]
+    #[inline(always)]
+    pub(crate) fn times(&self, v: &Vector3<T>) -> Vector3<T> {
+        Vector3::new(
+            self.xx * v.x + self.xy * v.y + self.xz * v.z,
+            self.xy * v.x + self.yy * v.y + self.yz * v.z,
+            self.xz * v.x + self.yz * v.y + self.zz * v.z,
+        )
     }
 
     /// Solves K x = (m_x, m_y, 0), as the moment of weights has no part along z, by condensing z.

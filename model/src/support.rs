@@ -1,10 +1,9 @@
-//! What the central support leaves free.
+//! The central support: how it guides the leg, and how its joint resists (Fig. 2).
 
-use crate::solve::{Symmetric3, solve2, solve2_symmetric};
-use crate::{Direction, Error, Scalar};
-use nalgebra::{Matrix3, Vector3};
+use crate::range::{COMPLIANCE_MAX, JOINT_STIFFNESS_MAX, check_not_negative};
+use crate::{Direction, Error, FreePlane, Quantity, Reason, Scalar, Twist};
 
-/// How the central support guides the leg (Fig. 2).
+/// How the central support guides the leg.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -12,84 +11,131 @@ use nalgebra::{Matrix3, Vector3};
     serde(rename_all = "snake_case")
 )]
 pub enum SupportKind {
-    /// The paper's idealisation: the leg tilts without torsion, about axes in the plane normal to the bisector of
-    /// the two plates' normals.
+    /// Two freedoms, the paper's idealisation: the leg tilts without torsion, about axes in the plane normal to the
+    /// bisector of the two plates' normals.
     TorsionFree,
-    /// A universal joint, its first axis fixed to the base along x: it twists as it points.
+    /// Two freedoms: a universal joint, its first axis fixed to the base along x. The leg twists as it points.
     Universal,
-    /// A ball joint: only the tendons hold the torsion.
+    /// Three freedoms: a ball joint, or an elastic pivot. The tendons, and the joint where it is elastic, hold the
+    /// torsion.
     Spherical,
+    /// Three freedoms: a universal joint of flexures, which give way in torsion, too.
+    ElasticUniversal,
 }
 
-/// The rotations that a support with two freedoms allows: ψ = (ψ_x, ψ_y, ρ_xψ_x + ρ_yψ_y).
-///
-/// The plane is all that matters: tensions and rotations come out the same from any basis of it, and this one needs
-/// neither a square root nor a normalisation.
+/// How a joint resists its motions: zero for one that does not.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FreePlane<T> {
-    pub(crate) rho_x: T,
-    pub(crate) rho_y: T,
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize, postcard_schema::Schema)
+)]
+pub struct JointStiffness<T> {
+    /// Against tilt, about either axis, N·m/rad.
+    pub bending_nm_per_rad: T,
+    /// Against torsion beyond that which the joint itself gives the leg, N·m/rad.
+    pub torsion_nm_per_rad: T,
+    /// Of joint and shaft in series along the leg, m/N: 1/K_joint,z + L_shaft/EA.
+    pub axial_compliance_m_per_n: T,
 }
 
-impl<T: Scalar> FreePlane<T> {
-    /// The plane normal to the bisector z + Rz: ρ = q.
+impl<T: Scalar> JointStiffness<T> {
+    /// A joint that turns freely and does not give way along the leg.
     #[must_use]
-    #[inline(always)]
-    pub fn torsion_free(direction: &Direction<T>) -> Self {
-        let q = direction.half_tangent();
+    pub fn none() -> Self {
         Self {
-            rho_x: q.x,
-            rho_y: q.y,
+            bending_nm_per_rad: T::zero(),
+            torsion_nm_per_rad: T::zero(),
+            axial_compliance_m_per_n: T::zero(),
+        }
+    }
+}
+
+/// A central support whose numbers have been validated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Support<T> {
+    kind: SupportKind,
+    pub(crate) joint: JointStiffness<T>,
+}
+
+impl<T: Scalar> From<SupportKind> for Support<T> {
+    /// With a joint that does not resist.
+    fn from(kind: SupportKind) -> Self {
+        Self {
+            kind,
+            joint: JointStiffness::none(),
+        }
+    }
+}
+
+impl<T: Scalar> Support<T> {
+    /// A support with an elastic joint.
+    ///
+    /// # Errors
+    /// A stiffness that is negative, not finite or above 10⁶ N·m/rad, a compliance above 1 m/N; torsion stiffness of a
+    /// support that blocks the torsion, and none where only the joint's torsion stiffness tells a universal joint from
+    /// a ball.
+    pub fn new(kind: SupportKind, joint: JointStiffness<T>) -> Result<Self, Error> {
+        let (bending, torsion) = (joint.bending_nm_per_rad, joint.torsion_nm_per_rad);
+        check_not_negative(bending, JOINT_STIFFNESS_MAX, Quantity::JointBending)?;
+        check_not_negative(torsion, JOINT_STIFFNESS_MAX, Quantity::JointTorsion)?;
+        let compliance = joint.axial_compliance_m_per_n;
+        check_not_negative(compliance, COMPLIANCE_MAX, Quantity::AxialCompliance)?;
+        let refused = |reason| Err(Error::refused(Quantity::JointTorsion, reason));
+        match kind {
+            SupportKind::TorsionFree | SupportKind::Universal if torsion > T::zero() => {
+                refused(Reason::Blocked)
+            }
+            SupportKind::ElasticUniversal if torsion <= T::zero() => refused(Reason::NotPositive),
+            _ => Ok(Self { kind, joint }),
         }
     }
 
-    /// The axes x and (0, cos α, sin α) of a universal joint.
+    /// How it guides the leg.
     #[must_use]
-    #[inline(always)]
-    pub fn universal(direction: &Direction<T>) -> Self {
-        Self {
-            rho_x: T::zero(),
-            rho_y: -direction.y / direction.z,
+    pub fn kind(&self) -> SupportKind {
+        self.kind
+    }
+
+    /// How its joint resists.
+    #[must_use]
+    pub fn joint(&self) -> &JointStiffness<T> {
+        &self.joint
+    }
+
+    /// Whether the leg can twist at a given direction: three freedoms, not two.
+    #[must_use]
+    pub fn twists(&self) -> bool {
+        matches!(
+            self.kind,
+            SupportKind::Spherical | SupportKind::ElasticUniversal
+        )
+    }
+
+    /// Whether its axes are those of a universal joint.
+    pub(crate) fn universal(&self) -> bool {
+        matches!(
+            self.kind,
+            SupportKind::Universal | SupportKind::ElasticUniversal
+        )
+    }
+
+    /// The twist of the leg at a direction when the joint is not twisted elastically.
+    #[must_use]
+    pub fn twist(&self, direction: &Direction<T>) -> Twist<T> {
+        if self.universal() {
+            Twist::universal(&direction.half_tangent())
+        } else {
+            Twist::none()
         }
     }
 
-    /// The rotation with the components `x` and `y`.
+    /// The rotations that it leaves free; for a support with three freedoms those that tilt the leg.
     #[must_use]
-    #[inline(always)]
-    pub fn rotation(&self, [x, y]: [T; 2]) -> Vector3<T> {
-        Vector3::new(x, y, self.rho_x * x + self.rho_y * y)
-    }
-
-    /// Pᵀm: what a moment does along the free rotations.
-    #[must_use]
-    #[inline(always)]
-    pub fn project(&self, m: &Vector3<T>) -> [T; 2] {
-        [m.x + self.rho_x * m.z, m.y + self.rho_y * m.z]
-    }
-
-    /// ψ = P(PᵀKP)⁻¹Pᵀm: the free rotation under a moment. K need not be symmetric.
-    ///
-    /// # Errors
-    /// [`Error::Unstable`] unless PᵀKP is positive definite.
-    #[inline(always)]
-    pub fn solve(&self, k: &Matrix3<T>, m: &Vector3<T>) -> Result<Vector3<T>, Error> {
-        let column = |i: usize| Vector3::new(k[(0, i)], k[(1, i)], k[(2, i)]);
-        let [k11, k21] = self.project(&(column(0) + column(2) * self.rho_x));
-        let [k12, k22] = self.project(&(column(1) + column(2) * self.rho_y));
-        let free = solve2([[k11, k12], [k21, k22]], self.project(m))?;
-        Ok(self.rotation(free))
-    }
-
-    /// [`Self::solve`] for a symmetric K and a moment (m_x, m_y, 0), as weights have.
-    ///
-    /// # Errors
-    /// [`Error::Unstable`] unless PᵀKP is positive definite.
-    #[inline(always)]
-    pub fn solve_horizontal(&self, k: &Symmetric3<T>, m: [T; 2]) -> Result<Vector3<T>, Error> {
-        let (right_x, right_y) = (k.xz + self.rho_x * k.zz, k.yz + self.rho_y * k.zz);
-        let k11 = k.xx + self.rho_x * (k.xz + right_x);
-        let k22 = k.yy + self.rho_y * (k.yz + right_y);
-        let k12 = k.xy + self.rho_x * k.yz + self.rho_y * right_x;
-        Ok(self.rotation(solve2_symmetric(k11, k12, k22, m)?))
+    pub fn plane(&self, direction: &Direction<T>) -> FreePlane<T> {
+        if self.universal() {
+            FreePlane::universal(direction)
+        } else {
+            FreePlane::torsion_free(direction)
+        }
     }
 }

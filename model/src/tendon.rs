@@ -1,57 +1,104 @@
 //! The elasticity of a tendon.
 
+mod constant;
+mod curve;
+mod published;
+
+pub use constant::ConstantStiffness;
+pub use curve::{CURVE_POINTS_MAX, CurvePoint, TendonCurve};
+
 use crate::range::{STIFFNESS, check_positive};
 use crate::{Error, Quantity, Reason, Scalar};
 
-/// A tendon with constant stiffness. It pulls when it is stretched and cannot push.
+/// How a tendon answers a pull. It cannot push.
+///
+/// Asked by tension, the law goes on in a straight line below zero, which no tendon has: so a sum over tendons stays
+/// smooth where one of them is asked too much, and what is allowed is the business of
+/// [`TensionBounds`](crate::TensionBounds). Asked by elongation, as in nature, a tendon that is not stretched is slack.
+pub trait Elasticity<T: Scalar> {
+    /// δ(T): how much longer it is under a tension in N than without, m.
+    ///
+    /// # Errors
+    /// A tension that is not a number or beyond what is known of the tendon: nothing is guessed.
+    fn elongation(&self, tension: T) -> Result<T, Error>;
+
+    /// Tangent stiffness k = dT/dδ under a tension in N, N/m.
+    ///
+    /// # Errors
+    /// As [`Self::elongation`].
+    fn stiffness(&self, tension: T) -> Result<T, Error>;
+
+    /// Tension at an elongation in m, N; none when slack.
+    ///
+    /// # Errors
+    /// An elongation that is not a number or beyond what is known of the tendon.
+    fn tension(&self, elongation: T) -> Result<T, Error>;
+
+    /// Elastic energy at an elongation in m: ∫T dδ, J.
+    ///
+    /// # Errors
+    /// As [`Self::tension`].
+    fn energy(&self, elongation: T) -> Result<T, Error>;
+}
+
+/// A tendon: of constant stiffness, or as a tensile test found it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tendon<T> {
-    stiffness: T,
+#[allow(
+    clippy::large_enum_variant,
+    reason = "a curve is kept in place: there is no allocation on the board"
+)]
+pub enum Tendon<T> {
+    /// The same stiffness at every tension.
+    Constant(ConstantStiffness<T>),
+    /// A monotone curve δ(T).
+    Curve(TendonCurve<T>),
 }
 
 impl<T: Scalar> Tendon<T> {
-    /// A tendon of a stiffness in N/m.
+    /// A tendon of a constant stiffness in N/m.
     ///
     /// # Errors
-    /// A stiffness that is not finite, not positive or outside 10⁻² to 10¹⁰ N/m.
-    pub fn new(stiffness_n_per_m: T) -> Result<Self, Error> {
-        check_stiffness(stiffness_n_per_m)?;
-        Ok(Self {
-            stiffness: stiffness_n_per_m,
-        })
+    /// As [`ConstantStiffness::new`].
+    pub fn constant(stiffness_n_per_m: T) -> Result<Self, Error> {
+        ConstantStiffness::new(stiffness_n_per_m).map(Self::Constant)
     }
 
-    /// Tangent stiffness, N/m.
-    #[must_use]
-    #[inline(always)]
-    pub fn stiffness(&self) -> T {
-        self.stiffness
+    /// A tendon with a curve through `points`.
+    ///
+    /// # Errors
+    /// As [`TendonCurve::new`].
+    pub fn curve(points: &[CurvePoint<T>]) -> Result<Self, Error> {
+        TendonCurve::new(points).map(Self::Curve)
     }
+}
 
-    /// δ(T): how much longer it is under a tension, m.
-    #[must_use]
-    #[inline(always)]
-    pub fn elongation(&self, tension: T) -> T {
-        tension / self.stiffness
-    }
-
-    /// Tension at an elongation; none when slack, N.
-    #[must_use]
-    #[inline(always)]
-    pub fn tension(&self, elongation: T) -> T {
-        let tension = self.stiffness * elongation;
-        if tension > T::zero() {
-            tension
-        } else {
-            T::zero()
+impl<T: Scalar> Elasticity<T> for Tendon<T> {
+    fn elongation(&self, tension: T) -> Result<T, Error> {
+        match self {
+            Self::Constant(constant) => constant.elongation(tension),
+            Self::Curve(curve) => curve.elongation(tension),
         }
     }
 
-    /// Length without tension of a tendon that measures `length` under `tension`, m.
-    #[must_use]
-    #[inline(always)]
-    pub fn unstretched(&self, length: T, tension: T) -> T {
-        length - self.elongation(tension)
+    fn stiffness(&self, tension: T) -> Result<T, Error> {
+        match self {
+            Self::Constant(constant) => constant.stiffness(tension),
+            Self::Curve(curve) => curve.stiffness(tension),
+        }
+    }
+
+    fn tension(&self, elongation: T) -> Result<T, Error> {
+        match self {
+            Self::Constant(constant) => constant.tension(elongation),
+            Self::Curve(curve) => curve.tension(elongation),
+        }
+    }
+
+    fn energy(&self, elongation: T) -> Result<T, Error> {
+        match self {
+            Self::Constant(constant) => constant.energy(elongation),
+            Self::Curve(curve) => curve.energy(elongation),
+        }
     }
 }
 

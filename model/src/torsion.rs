@@ -1,27 +1,32 @@
-//! The twist of a leg on a ball joint, which only its tendons hold.
+//! The twist of a leg on a support with three freedoms: only its tendons and an elastic joint hold it.
 
 use crate::{
-    Direction, Error, FreePlane, Load, Rig, Scalar, TensionBounds, Twist, distribute,
-    inverse_kinematics,
+    Direction, Error, Rig, Scalar, Support, TensionBounds, Twist, distribute, inverse_kinematics,
 };
+use nalgebra::Vector3;
 
 /// Steps after which a search without convergence ends.
 const STEPS_MAX: u8 = 20;
 
-/// The torsion, rad, at which the tendons' moment about the bisector of the two plates' normals vanishes while the
-/// pretension keeps its `level` (N), by the secant method.
+/// The elastic torsion, rad, at which tendons, joint and load balance about the third axis, too, while the pretension
+/// keeps its `level` (N); by the secant method. Zero for a support that blocks the torsion.
 ///
 /// # Errors
 /// Those of [`inverse_kinematics`] and [`distribute`]; [`Error::Unstable`] if nothing holds the torsion, as without
-/// any tension; [`Error::NotConverged`].
-pub fn ball_joint_torsion<T: Scalar, const N: usize>(
+/// any tension on a ball joint; [`Error::NotConverged`].
+pub fn elastic_torsion<T: Scalar, const N: usize>(
     rig: &Rig<T, N>,
+    support: &Support<T>,
     direction: &Direction<T>,
-    load: &Load<T>,
+    load_moment: &Vector3<T>,
     bounds: &TensionBounds<T>,
     level: T,
 ) -> Result<T, Error> {
-    let moment_at = |torsion| torsion_moment(rig, direction, load, bounds, level, torsion);
+    if !support.twists() {
+        return Ok(T::zero());
+    }
+    let moment_at =
+        |torsion| torsion_moment(rig, support, direction, load_moment, bounds, level, torsion);
     // A thousandth of a radian is small beside the curvature of the moment and large beside its rounding.
     let (mut last, mut torsion) = (T::zero(), T::TORSION_START_RAD);
     let mut last_moment = moment_at(last)?;
@@ -40,20 +45,21 @@ pub fn ball_joint_torsion<T: Scalar, const N: usize>(
     Err(Error::NotConverged)
 }
 
-/// Moment of the tendons along z + Rz at a torsion, N·m (times the length of that vector).
+/// Moment on the leg along the normal of the plane of its tilts, N·m (times the length of that vector).
 fn torsion_moment<T: Scalar, const N: usize>(
     rig: &Rig<T, N>,
+    support: &Support<T>,
     direction: &Direction<T>,
-    load: &Load<T>,
+    load_moment: &Vector3<T>,
     bounds: &TensionBounds<T>,
     level: T,
     torsion: T,
 ) -> Result<T, Error> {
-    let geometry = rig.geometry.twisted(&Twist::from_torsion(torsion));
+    let twist = support.twist(direction).and(&Twist::from_torsion(torsion));
+    let geometry = rig.geometry.twisted(&twist);
     let moment_map = inverse_kinematics(&geometry, direction)?.moment_map;
-    let plane = FreePlane::torsion_free(direction);
-    let tensions =
-        distribute(&moment_map, &plane, &load.moment(direction), bounds)?.tensions(level);
-    let moment = moment_map * tensions;
-    Ok(moment.z * (T::one() - direction.z) - moment.x * direction.x - moment.y * direction.y)
+    let plane = support.plane(direction);
+    let outer = load_moment + support.joint_moment(direction, torsion);
+    let tensions = distribute(&moment_map, &plane, &outer, bounds)?.tensions(level);
+    Ok((moment_map * tensions + outer).dot(&plane.normal()))
 }

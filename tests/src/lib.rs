@@ -3,7 +3,16 @@
 pub mod numeric;
 pub mod reference;
 
+use leg_model::{Error, Scalar, Tendon};
 use serde_json::Value;
+
+/// Three tendons of one constant stiffness, N/m.
+///
+/// # Errors
+/// A stiffness that no tendon has.
+pub fn constant_tendons<T: Scalar>(stiffness_n_per_m: T) -> Result<[Tendon<T>; 3], Error> {
+    Ok([Tendon::constant(stiffness_n_per_m)?; 3])
+}
 
 /// The numbers of a JSON value, those of nested arrays one after the other.
 ///

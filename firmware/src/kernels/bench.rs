@@ -1,9 +1,11 @@
 //! The arguments of every kernel, validated and prepared, so that only the kernel itself is counted.
 
 use super::KernelInput;
+use crate::messages::widened;
 use leg_model::{
-    Direction, Error, FreePlane, Kinematics, Load, Rig, Scalar, Tendon, TendonStates,
-    TensionBounds, Twist, distribute, inverse_kinematics,
+    ConstantStiffness, CurvePoint, Direction, Distribution, Elasticity, Error, FreePlane,
+    Kinematics, Load, Rig, Scalar, Support, SupportKind, TendonCurve, TendonStates, TensionBounds,
+    Twist, distribute, inverse_kinematics,
 };
 use nalgebra::{SVector, Vector3};
 
@@ -18,8 +20,12 @@ pub struct Bench<T> {
     pub moment: Vector3<T>,
     pub bounds: TensionBounds<T>,
     pub level: T,
-    pub tendon: Tendon<T>,
+    pub support: Support<T>,
+    pub tendons: [ConstantStiffness<T>; 3],
+    pub curves: [TendonCurve<T>; 3],
+    pub demand: T,
     pub kinematics: Kinematics<T, 3>,
+    pub distribution: Distribution<T, 3>,
     pub states: TendonStates<T, 3>,
     pub lengths: SVector<T, 3>,
     pub lengths_universal: SVector<T, 3>,
@@ -31,7 +37,7 @@ impl<T: Scalar> Bench<T> {
         let direction = Direction::from_angles(input.azimuth_rad.into(), input.tilt_rad.into())?;
         let bounds =
             TensionBounds::new(input.tension_floor_n.into(), input.tension_ceiling_n.into())?;
-        let tendon = Tendon::new(input.stiffness_n_per_m.into())?;
+        let tendon = ConstantStiffness::new(input.stiffness_n_per_m.into())?;
         let load = Load::new(&rig, input.payload_kg.into())?;
         let moment = load.moment(&direction);
         let plane = FreePlane::torsion_free(&direction);
@@ -40,7 +46,7 @@ impl<T: Scalar> Bench<T> {
         let level = input.level_n.into();
         let states = TendonStates::new(
             distribution.tensions(level),
-            SVector::repeat(tendon.stiffness()),
+            SVector::repeat(tendon.stiffness_n_per_m()),
         )?;
         let start =
             Direction::from_angles(input.start_azimuth_rad.into(), input.start_tilt_rad.into())?;
@@ -57,11 +63,23 @@ impl<T: Scalar> Bench<T> {
             moment,
             bounds,
             level,
-            tendon,
+            support: SupportKind::TorsionFree.into(),
+            tendons: [tendon; 3],
+            curves: [curve(level, tendon.stiffness_n_per_m())?; 3],
+            demand: input.demand_nm_per_rad.into(),
             kinematics,
+            distribution,
             states,
             lengths: kinematics.lengths + errors,
             lengths_universal: inverse_kinematics(&twisted, &direction)?.lengths + errors,
         })
     }
+}
+
+/// The paper's tendon, scaled to a stiffness (N/m) at a level (N).
+fn curve<T: Scalar>(level: T, stiffness: T) -> Result<TendonCurve<T>, Error> {
+    let points = CurvePoint::<f32>::PAPER;
+    let softening =
+        TendonCurve::new(&points.map(|point| widened(&point)))?.stiffness(level)? / stiffness;
+    TendonCurve::new(&points.map(|point| widened(&point).scaled(softening, T::one())))
 }

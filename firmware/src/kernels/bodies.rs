@@ -1,7 +1,7 @@
 //! What each kernel calls, and the numbers of its result.
 
 use super::bench::Bench;
-use leg_model::{Deflection, Error, Scalar, Symmetric3};
+use leg_model::{BendingAxis, Deflection, Elasticity, Error, Scalar, StiffnessAnswer, Symmetric3};
 use nalgebra::{SVector, Vector3};
 
 /// A kernel as a type.
@@ -167,6 +167,78 @@ impl<T: Scalar> Body<T> for FullPassInPlane {
     }
 }
 
+/// Elongation and stiffness of the first tendon at the level.
+pub struct TendonCurve;
+
+impl<T: Scalar> Body<T> for TendonCurve {
+    type Output = [T; 2];
+
+    #[inline(always)]
+    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+        let [curve, ..] = &bench.curves;
+        Ok([
+            curve.elongation(bench.level)?,
+            curve.stiffness(bench.level)?,
+        ])
+    }
+
+    fn flatten(output: &Self::Output, push: &mut impl FnMut(T)) {
+        output.iter().copied().for_each(push);
+    }
+}
+
+pub struct InverseStatics;
+
+impl<T: Scalar> Body<T> for InverseStatics {
+    type Output = leg_model::InverseStatics<T, 3>;
+
+    #[inline(always)]
+    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+        leg_model::inverse_statics(
+            bench.rig.geometry(),
+            &bench.plane,
+            &bench.direction,
+            &bench.moment,
+            &bench.bounds,
+            &bench.curves,
+            bench.level,
+        )
+    }
+
+    fn flatten(found: &Self::Output, push: &mut impl FnMut(T)) {
+        found.tensions.iter().copied().for_each(&mut *push);
+        found.unstretched.iter().copied().for_each(push);
+    }
+}
+
+pub struct StiffnessCommand;
+
+impl<T: Scalar> Body<T> for StiffnessCommand {
+    type Output = StiffnessAnswer<T>;
+
+    #[inline(always)]
+    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+        let command = leg_model::StiffnessCommand::new(
+            bench.rig.geometry(),
+            &bench.support,
+            &bench.direction,
+            &bench.load,
+            &bench.curves,
+            &bench.kinematics,
+            &bench.distribution,
+        );
+        command.level_for(bench.demand, &BendingAxis::Softest, &bench.bounds)
+    }
+
+    fn flatten(answer: &Self::Output, push: &mut impl FnMut(T)) {
+        push(answer.level);
+        push(answer.stiffness);
+        push(T::from(f32::from(
+            answer.limit.map_or(0, |limit| limit.tendon),
+        )));
+    }
+}
+
 /// The model's part of a tick, as one kernel.
 pub struct ModelTick;
 
@@ -195,8 +267,10 @@ impl<T: Scalar> Body<T> for ModelTick {
         let distribution =
             leg_model::distribute(&kinematics.moment_map, &plane, &moment, &bench.bounds)?;
         let tensions = distribution.tensions(bench.level);
-        let unstretched =
-            SVector::from_fn(|i, _| bench.tendon.unstretched(kinematics.lengths[i], tensions[i]));
+        let mut unstretched = kinematics.lengths;
+        for (i, tendon) in bench.tendons.iter().enumerate() {
+            unstretched[i] -= tendon.elongation(tensions[i])?;
+        }
         Ok(TickOutput {
             found,
             moment,

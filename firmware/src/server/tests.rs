@@ -2,10 +2,11 @@ use super::{Board, Server};
 use crate::counter::Counter;
 use crate::frame::{Decoder, FrameError, MAX_FRAME, encode};
 use crate::kernels::{self, Kernel, KernelInput};
+use crate::messages::{QueryMessage, SupportMessage, TendonMessage, TendonsMessage};
 use crate::protocol::{
     self, BoardInfo, EvaluateRequest, Hello, KernelRequest, Refusal, Reply, Request, SCHEMA,
 };
-use leg_model::{Error, Quantity, Query, Reason, RigParameters, SupportKind};
+use leg_model::{Error, JointStiffness, Quantity, Reason, RigParameters, StiffnessAt, SupportKind};
 
 /// Counts every kernel as as many instructions as it is told, or nothing.
 struct Bench {
@@ -98,6 +99,7 @@ fn kernel_request(payload_kg: f32) -> KernelRequest {
             tension_floor_n: 8.0,
             tension_ceiling_n: 150.0,
             stiffness_n_per_m: 1e5,
+            demand_nm_per_rad: 100.0,
         },
     }
 }
@@ -105,15 +107,19 @@ fn kernel_request(payload_kg: f32) -> KernelRequest {
 fn evaluate_request(tilt_rad: f32) -> EvaluateRequest {
     EvaluateRequest {
         rig: RigParameters::<f32, 3>::TABLE_1.into(),
-        query: Query {
+        query: QueryMessage {
             azimuth_rad: 0.5,
             tilt_rad,
             payload_kg: 1.0,
             level_n: 70.0,
             tension_floor_n: 8.0,
             tension_ceiling_n: 150.0,
-            stiffness_n_per_m: 1e5,
-            support: SupportKind::TorsionFree,
+            tendons: TendonsMessage::Alike(TendonMessage::Constant(1e5)),
+            stiffness_at: StiffnessAt::Pretension,
+            support: SupportMessage {
+                kind: SupportKind::TorsionFree,
+                joint: JointStiffness::none(),
+            },
         },
     }
 }
@@ -148,7 +154,10 @@ fn another_schema_is_refused_and_takes_the_greeting_back() {
 #[test]
 fn an_evaluation_is_the_models() {
     let request = evaluate_request(0.3);
-    let model = leg_model::evaluate(&RigParameters::<f32, 3>::TABLE_1, &request.query);
+    let model = leg_model::evaluate(
+        &RigParameters::<f32, 3>::TABLE_1,
+        &request.query.query().unwrap(),
+    );
     assert_eq!(
         Ok(ask(&mut greeted(None), &Request::Evaluate(request))),
         model.map(Reply::Evaluation)

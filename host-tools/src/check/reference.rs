@@ -9,7 +9,9 @@ use leg_model::{Error, Evaluation};
 
 /// The numbers of an evaluation in f64.
 pub(super) fn evaluation(state: &State) -> Result<Vec<f64>, CheckError> {
-    let evaluated = leg_model::evaluate(&state.rig(), &state.query::<f64>());
+    let evaluated = state
+        .query()
+        .and_then(|query| leg_model::evaluate(&state.rig(), &query));
     evaluated
         .map(|evaluation| flatten(&evaluation))
         .map_err(at(state))
@@ -23,12 +25,16 @@ pub(super) fn flatten<T: Copy + Into<f64>>(evaluation: &Evaluation<T>) -> Vec<f6
         e.moment_map_m.as_flattened(),
         &e.pretension_direction,
         &e.load_moment_nm,
+        &e.joint_moment_nm,
         &e.tensions_n,
         &e.tensions_min_n,
         &e.level_range_n,
         e.stiffness_nm_per_rad.as_flattened(),
+        e.stiffness_joint_nm_per_rad.as_flattened(),
         e.stiffness_k2_exact_nm_per_rad.as_flattened(),
         e.stiffness_k2_printed_nm_per_rad.as_flattened(),
+        &e.bending_stiffness_nm_per_rad,
+        &[e.axial_stretch_m],
         &[e.deviation_m, e.deviation_with_load_stiffness_m],
         &e.unstretched_m,
         &[e.torsion_rad],
@@ -43,7 +49,7 @@ pub(super) fn kernel(kernel: Kernel, state: &State) -> Result<Vec<f64>, CheckErr
         .map_err(at(state))
 }
 
-fn at(state: &State) -> impl Fn(Error) -> CheckError {
+pub(super) fn at(state: &State) -> impl Fn(Error) -> CheckError {
     let pose = state.pose();
     move |error| CheckError::Reference { pose, error }
 }

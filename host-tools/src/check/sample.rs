@@ -1,16 +1,47 @@
 //! The states that are checked: a grid and a random sample of the workspace.
 
-use super::State;
+use super::{State, Stretch};
 use fastrand::Rng;
 use leg_firmware::kernels::KernelInput;
-use leg_model::{Query, RigParameters, SupportKind, evaluate};
+use leg_firmware::messages::SupportMessage;
+use leg_model::{JointStiffness, Query, RigParameters, SupportKind, evaluate};
 use std::f32::consts::TAU;
 
-const SUPPORTS: [SupportKind; 3] = [
-    SupportKind::TorsionFree,
-    SupportKind::Universal,
-    SupportKind::Spherical,
+/// Every kind of support, with a joint that resists and one that does not. (A universal joint whose torsion is elastic
+/// always resists.)
+const SUPPORTS: [SupportMessage; 7] = [
+    rigid(SupportKind::TorsionFree),
+    rigid(SupportKind::Universal),
+    rigid(SupportKind::Spherical),
+    elastic(SupportKind::TorsionFree, 0.0),
+    elastic(SupportKind::Universal, 0.0),
+    elastic(SupportKind::Spherical, 1.5),
+    elastic(SupportKind::ElasticUniversal, 10.0),
 ];
+
+const STRETCHES: [Stretch; 3] = [Stretch::Constant, Stretch::Curve, Stretch::CurveAtTension];
+
+const fn rigid(kind: SupportKind) -> SupportMessage {
+    SupportMessage {
+        kind,
+        joint: JointStiffness {
+            bending_nm_per_rad: 0.0,
+            torsion_nm_per_rad: 0.0,
+            axial_compliance_m_per_n: 0.0,
+        },
+    }
+}
+
+const fn elastic(kind: SupportKind, torsion_nm_per_rad: f32) -> SupportMessage {
+    SupportMessage {
+        kind,
+        joint: JointStiffness {
+            bending_nm_per_rad: 2.0,
+            torsion_nm_per_rad,
+            axial_compliance_m_per_n: 1e-7,
+        },
+    }
+}
 
 /// How far the leg leans at most, degrees.
 const TILT_MAX_DEG: f32 = 30.0;
@@ -23,10 +54,13 @@ const STIFFNESSES_N_PER_M: (f32, f32) = (2e4, 2e5);
 /// How far off the pose forward kinematics starts, degrees.
 const START_OFF_DEG: f32 = 2.0;
 
+/// Greatest bending stiffness demanded: often more than can be reached.
+const DEMAND_MAX_NM_PER_RAD: f32 = 200.0;
+
 /// Largest error of a measured length, m.
 const LENGTH_ERROR_M: f32 = 1e-5;
 
-/// Azimuths every 15°, tilts every 5° to 30°, four payloads, three supports; the pretension and the tendons of the
+/// Azimuths every 15°, tilts every 5° to 30°, four payloads, every support; the pretension and the tendons of the
 /// paper's Fig. 9.
 #[must_use]
 pub fn grid() -> Vec<State> {
@@ -42,6 +76,7 @@ pub fn grid() -> Vec<State> {
                             ..input(azimuth_deg, tilt_deg, 0.0)
                         },
                         support,
+                        stretch: Stretch::Constant,
                     });
                 }
             }
@@ -50,20 +85,25 @@ pub fn grid() -> Vec<State> {
     states
 }
 
-/// Random states whose tensions keep their bounds, a third for each support; equal for equal seeds.
+/// Random states whose tensions keep their bounds, equally many for each support and each way to stretch; equal for
+/// equal seeds.
 #[must_use]
 pub fn random(count: usize, seed: u64) -> Vec<State> {
     let mut rng = Rng::with_seed(seed);
-    let supports = SUPPORTS.into_iter().cycle().take(count);
+    let supports = SUPPORTS
+        .into_iter()
+        .cycle()
+        .zip(STRETCHES.into_iter().cycle());
     supports
-        .map(|support| feasible(&mut rng, support))
+        .take(count)
+        .map(|(support, stretch)| feasible(&mut rng, support, stretch))
         .collect()
 }
 
 /// Draws until a draw is feasible.
-fn feasible(rng: &mut Rng, support: SupportKind) -> State {
+fn feasible(rng: &mut Rng, support: SupportMessage, stretch: Stretch) -> State {
     loop {
-        let drawn = draw(rng, support);
+        let drawn = draw(rng, support, stretch);
         if let Some(state) = at_feasible_level(rng, drawn) {
             return state;
         }
@@ -71,29 +111,36 @@ fn feasible(rng: &mut Rng, support: SupportKind) -> State {
 }
 
 /// A random pose, load and stiffness.
-fn draw(rng: &mut Rng, support: SupportKind) -> State {
+fn draw(rng: &mut Rng, support: SupportMessage, stretch: Stretch) -> State {
     let azimuth_deg = 360.0 * rng.f32();
     let (softest, stiffest) = STIFFNESSES_N_PER_M;
     let start_azimuth_rad = TAU * rng.f32();
     let input = KernelInput {
         payload_kg: PAYLOAD_MAX_KG * rng.f32(),
         stiffness_n_per_m: softest * (stiffest / softest).powf(rng.f32()),
+        demand_nm_per_rad: DEMAND_MAX_NM_PER_RAD * rng.f32(),
         length_errors_m: [(); 3].map(|()| LENGTH_ERROR_M * (2.0 * rng.f32() - 1.0)),
         ..input(azimuth_deg, TILT_MAX_DEG * rng.f32(), start_azimuth_rad)
     };
-    State { input, support }
+    State {
+        input,
+        support,
+        stretch,
+    }
 }
 
 /// The state at a random level that keeps the bounds on the tensions, if there is one.
 fn at_feasible_level(rng: &mut Rng, mut state: State) -> Option<State> {
     let without_torsion = Query {
-        support: SupportKind::TorsionFree,
-        ..state.query::<f64>()
+        support: SupportKind::TorsionFree.into(),
+        ..state.query().ok()?
     };
     let [lowest, highest] = evaluate(&state.rig(), &without_torsion).ok()?.level_range_n;
     state.input.level_n = to_f32(lowest + rng.f64() * (highest - lowest));
     // The twist of the other supports shifts the range.
-    let tensions = evaluate(&state.rig(), &state.query()).ok()?.tensions_n;
+    let tensions = evaluate(&state.rig(), &state.query().ok()?)
+        .ok()?
+        .tensions_n;
     let bounds = f64::from(state.input.tension_floor_n)..=f64::from(state.input.tension_ceiling_n);
     let keeps_bounds = lowest <= highest && tensions.iter().all(|tension| bounds.contains(tension));
     keeps_bounds.then_some(state)
@@ -116,6 +163,7 @@ fn input(azimuth_deg: f32, tilt_deg: f32, start_azimuth_rad: f32) -> KernelInput
         tension_floor_n: 8.0,
         tension_ceiling_n: 150.0,
         stiffness_n_per_m: 99_450.0,
+        demand_nm_per_rad: 100.0,
     }
 }
 

@@ -1,8 +1,10 @@
 //! One state of the mechanism, in numbers that f32 can hold.
 
-use crate::support_word;
 use leg_firmware::kernels::KernelInput;
-use leg_model::{Query, RigParameters, SupportKind};
+use leg_firmware::messages::{QueryMessage, SupportMessage, TendonMessage, TendonsMessage};
+use leg_model::{
+    CurvePoint, Elasticity, Error, Query, RigParameters, StiffnessAt, SupportKind, TendonCurve,
+};
 use serde::Serialize;
 use std::fmt;
 
@@ -11,8 +13,22 @@ use std::fmt;
 pub struct State {
     /// The mechanism, the pose, the load and the tendons.
     pub input: KernelInput,
-    /// How the central support guides the leg.
-    pub support: SupportKind,
+    /// The central support.
+    pub support: SupportMessage,
+    /// How the tendons stretch.
+    pub stretch: Stretch,
+}
+
+/// How the tendons of a state stretch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stretch {
+    /// With the state's stiffness at every tension.
+    Constant,
+    /// Along the paper's curve, scaled to have the state's stiffness at its level; read at the pretension.
+    Curve,
+    /// The same, read at each tendon's tension.
+    CurveAtTension,
 }
 
 /// Where a state is, in a human's units.
@@ -30,6 +46,8 @@ pub struct Pose {
     pub stiffness_n_per_m: f64,
     /// How the central support guides the leg.
     pub support: SupportKind,
+    /// How the tendons stretch.
+    pub stretch: Stretch,
 }
 
 impl State {
@@ -43,40 +61,65 @@ impl State {
             payload_kg: input.payload_kg.into(),
             level_n: input.level_n.into(),
             stiffness_n_per_m: input.stiffness_n_per_m.into(),
-            support: self.support,
+            support: self.support.kind,
+            stretch: self.stretch,
         }
     }
 
-    /// What a whole evaluation gets, in either precision.
-    #[must_use]
-    pub fn query<T: From<f32>>(&self) -> Query<T> {
+    /// What a whole evaluation gets.
+    ///
+    /// # Errors
+    /// A level beyond the curve.
+    pub fn message(&self) -> Result<QueryMessage, Error> {
         let input = &self.input;
-        Query {
-            azimuth_rad: input.azimuth_rad.into(),
-            tilt_rad: input.tilt_rad.into(),
-            payload_kg: input.payload_kg.into(),
-            level_n: input.level_n.into(),
-            tension_floor_n: input.tension_floor_n.into(),
-            tension_ceiling_n: input.tension_ceiling_n.into(),
-            stiffness_n_per_m: input.stiffness_n_per_m.into(),
+        Ok(QueryMessage {
+            azimuth_rad: input.azimuth_rad,
+            tilt_rad: input.tilt_rad,
+            payload_kg: input.payload_kg,
+            level_n: input.level_n,
+            tension_floor_n: input.tension_floor_n,
+            tension_ceiling_n: input.tension_ceiling_n,
+            tendons: TendonsMessage::Alike(self.tendon()?),
+            stiffness_at: match self.stretch {
+                Stretch::CurveAtTension => StiffnessAt::Tension,
+                Stretch::Constant | Stretch::Curve => StiffnessAt::Pretension,
+            },
             support: self.support,
+        })
+    }
+
+    /// The same in f64.
+    ///
+    /// # Errors
+    /// A level beyond the curve.
+    pub fn query(&self) -> Result<Query<f64>, Error> {
+        self.message()?.query()
+    }
+
+    /// The same state on tendons with curves.
+    #[must_use]
+    pub fn with_curves(&self) -> Self {
+        Self {
+            stretch: Stretch::Curve,
+            ..*self
         }
+    }
+
+    fn tendon(&self) -> Result<TendonMessage, Error> {
+        let (level, stiffness) = (self.input.level_n, self.input.stiffness_n_per_m);
+        if self.stretch == Stretch::Constant {
+            return Ok(TendonMessage::Constant(stiffness));
+        }
+        let points = CurvePoint::<f32>::PAPER;
+        let softening = TendonCurve::new(&points)?.stiffness(level)? / stiffness;
+        let scaled = points.iter().map(|point| point.scaled(softening, 1.0));
+        Ok(TendonMessage::Curve(scaled.collect()))
     }
 
     /// The mechanism in f64.
     #[must_use]
     pub fn rig(&self) -> RigParameters<f64, 3> {
-        let rig = &self.input.rig;
-        RigParameters {
-            base_anchors_m: rig.base_anchors_m.map(|point| point.map(f64::from)),
-            leg_anchors_m: rig.leg_anchors_m.map(|point| point.map(f64::from)),
-            upper_length_m: rig.upper_length_m.into(),
-            joint_length_m: rig.joint_length_m.into(),
-            leg_length_m: rig.leg_length_m.into(),
-            leg_mass_kg: rig.leg_mass_kg.into(),
-            leg_centroid_m: rig.leg_centroid_m.into(),
-            gravity_m_per_s2: rig.gravity_m_per_s2.into(),
-        }
+        self.input.rig.into()
     }
 }
 
@@ -84,13 +127,14 @@ impl fmt::Display for Pose {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "azimuth {:.1}°, tilt {:.1}°, {:.2} kg, {:.1} N, {:.2e} N/m, {}",
+            "azimuth {:.1}°, tilt {:.1}°, {:.2} kg, {:.1} N, {:.2e} N/m, {:?}, {:?}",
             self.azimuth_deg,
             self.tilt_deg,
             self.payload_kg,
             self.level_n,
             self.stiffness_n_per_m,
-            support_word::of(self.support),
+            self.stretch,
+            self.support,
         )
     }
 }

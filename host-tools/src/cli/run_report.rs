@@ -26,8 +26,11 @@ impl Report<'_> {
     pub(super) fn table(&self) -> String {
         let edge = self.rig.tilt_deg;
         let title = format!(
-            "Fig. 9: firmware {}, azimuth {}°, tilt -{edge}° to {edge}°, level {} N, tendons of {} N/m\n\n",
-            self.place, self.fig9.azimuth_deg, self.rig.level_n, self.rig.stiffness_n_per_m,
+            "Fig. 9: firmware {}, azimuth {}°, tilt -{edge}° to {edge}°, level {} N, {}\n\n",
+            self.place,
+            self.fig9.azimuth_deg,
+            self.rig.level_n,
+            self.rig.stiffness_words(),
         );
         let rows: String = self.fig9.curves.iter().map(row).collect();
         title + HEADING + &rows + &self.remarks()
@@ -51,7 +54,7 @@ impl Report<'_> {
             experiment: "fig9",
             firmware: self.place,
             level_n: self.rig.level_n,
-            stiffness_n_per_m: self.rig.stiffness_n_per_m,
+            stiffness_at_level_n_per_m: self.rig.stiffnesses_n_per_m(),
             fig9: self.fig9,
             maxima: self.fig9.curves.iter().map(Maxima::of).collect(),
             largest_difference_mm: self.fig9.largest_difference_mm(),
@@ -91,7 +94,7 @@ struct JsonReport<'a> {
     experiment: &'static str,
     firmware: &'static str,
     level_n: f64,
-    stiffness_n_per_m: f64,
+    stiffness_at_level_n_per_m: [f64; 3],
     #[serde(flatten)]
     fig9: &'a Fig9,
     maxima: Vec<Maxima>,

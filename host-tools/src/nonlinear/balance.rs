@@ -1,8 +1,8 @@
 //! Energy, moment and stiffness of a mechanism whose tendons have fixed lengths without tension.
 
 use leg_model::{
-    Direction, Error, FreePlane, Geometry, Load, Rig, RigParameters, SupportKind, Tendon, Twist,
-    inverse_kinematics, structural_stiffness, tendon_stiffness, tip_displacement,
+    Direction, Elasticity, Error, FreePlane, Geometry, Kinematics, Load, Rig, Support, Tendon,
+    Twist, inverse_kinematics, solve3, structural_stiffness, tendon_stiffness, tip_displacement,
 };
 use nalgebra::{Matrix3, SVector, Vector3};
 
@@ -14,20 +14,32 @@ const DAMPING: [f64; 12] = [
 /// Energies that differ by less than this part of their terms are equal but for rounding.
 const ENERGY_ROUNDING: f64 = 1e-14;
 
-/// A mechanism on a support with two freedoms, with weights, and tendons that hold it.
+/// Steps after which a search without convergence ends.
+const STEPS_MAX: u32 = 100;
+
+/// The search has converged when a step is not longer than this, rad: a hundred times its rounding.
+const STEP_RAD: f64 = 1e-13;
+
+/// Where the leg is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Posture {
+    /// Where it points.
+    pub direction: Direction<f64>,
+    /// Its torsion beyond that which the joint itself gives it, rad; zero on a support that blocks it.
+    pub torsion: f64,
+}
+
+/// A mechanism with weights, on tendons that pull as far as they are stretched.
 #[derive(Clone, Copy, Debug)]
 pub struct Balance {
     rig: Rig<f64, 3>,
     load: Load<f64>,
-    /// Σ weight × distance from the joint, N·m.
-    lever_nm: f64,
-    support: SupportKind,
-    tendon: Tendon<f64>,
-    /// Lengths of the tendons without tension, m.
-    pub unstretched_m: SVector<f64, 3>,
+    support: Support<f64>,
+    tendons: [Tendon<f64>; 3],
+    unstretched_m: SVector<f64, 3>,
 }
 
-/// What the mechanism does at a direction.
+/// What the mechanism does at a posture.
 struct Point {
     plane: FreePlane<f64>,
     /// N·m.
@@ -37,145 +49,217 @@ struct Point {
 }
 
 impl Balance {
-    /// A mechanism whose tendons are still without length.
-    ///
-    /// # Errors
-    /// A parameter or payload that is refused.
+    /// A mechanism with weights whose tendons have these lengths without tension (m).
+    #[must_use]
     pub fn new(
-        parameters: &RigParameters<f64, 3>,
-        payload_kg: f64,
-        support: SupportKind,
-        tendon: Tendon<f64>,
-    ) -> Result<Self, Error> {
-        let p = parameters;
-        let rig = Rig::new(p)?;
-        Ok(Self {
+        rig: Rig<f64, 3>,
+        load: Load<f64>,
+        support: Support<f64>,
+        tendons: [Tendon<f64>; 3],
+        unstretched_m: SVector<f64, 3>,
+    ) -> Self {
+        Self {
             rig,
-            load: Load::new(&rig, payload_kg)?,
-            lever_nm: (p.leg_mass_kg * p.leg_centroid_m + payload_kg * rig.tip_m())
-                * p.gravity_m_per_s2,
+            load,
             support,
-            tendon,
-            unstretched_m: SVector::zeros(),
-        })
+            tendons,
+            unstretched_m,
+        }
     }
 
-    /// From the joint centre to the tip, m.
-    #[must_use]
-    pub fn tip_m(&self) -> f64 {
-        self.rig.tip_m()
+    /// The same with the leg's own weight and a payload (kg).
+    ///
+    /// # Errors
+    /// A payload that is refused.
+    pub fn with_payload(&self, payload_kg: f64) -> Result<Self, Error> {
+        let load = Load::new(&self.rig, payload_kg)?;
+        Ok(Self { load, ..*self })
     }
 
-    /// The anchors, twisted as the support twists them at a direction, and the rotations that it leaves free.
-    #[must_use]
-    pub fn guided(&self, direction: &Direction<f64>) -> (Geometry<f64, 3>, FreePlane<f64>) {
-        let (twist, plane) = guide(self.support, direction);
-        (self.rig.geometry().twisted(&twist), plane)
+    /// Where it comes to rest: down the potential energy from `start`, by Newton's steps where they lead down and by
+    /// shorter ones elsewhere.
+    ///
+    /// # Errors
+    /// [`Error::Unstable`] if it comes to no rest below the horizon; a tension beyond a tendon's curve;
+    /// [`Error::TendonCollapsed`]; [`Error::NotConverged`].
+    pub fn rest(&self, start: Posture) -> Result<Posture, Error> {
+        let mut here = start;
+        for _ in 0..STEPS_MAX {
+            let (next, step_rad) = self.step(&here)?;
+            if step_rad <= STEP_RAD {
+                return Ok(next);
+            }
+            here = next;
+        }
+        Err(Error::NotConverged)
     }
 
-    /// Potential energy of tendons and weights, J.
+    /// Tension of each tendon, N.
+    ///
+    /// # Errors
+    /// [`Error::TendonCollapsed`]; a tension beyond a tendon's curve.
+    pub fn tensions_n(&self, posture: &Posture) -> Result<SVector<f64, 3>, Error> {
+        self.pull(&self.kinematics(posture)?)
+            .map(|(tensions, _)| tensions)
+    }
+
+    /// Lengths and moments of the tendons.
     ///
     /// # Errors
     /// [`Error::TendonCollapsed`].
-    pub fn energy_j(&self, direction: &Direction<f64>) -> Result<f64, Error> {
-        Ok(self.tendon_energy_j(direction)? + self.lever_nm * direction.vector().z)
+    pub fn kinematics(&self, posture: &Posture) -> Result<Kinematics<f64, 3>, Error> {
+        inverse_kinematics(&self.geometry(posture), &posture.direction)
     }
 
-    /// Moment along the free rotations: minus the energy's derivative by them, N·m.
+    /// The tip in frame {A}, joint and shaft stretched by the force along them, m.
     ///
     /// # Errors
-    /// [`Error::TendonCollapsed`].
-    pub fn free_moment_nm(&self, direction: &Direction<f64>) -> Result<[f64; 2], Error> {
-        let point = self.at(direction)?;
-        Ok(point.plane.project(&point.moment))
+    /// [`Error::TendonCollapsed`]; a tension beyond a tendon's curve.
+    pub fn tip_position_m(&self, posture: &Posture) -> Result<Vector3<f64>, Error> {
+        let kinematics = self.kinematics(posture)?;
+        let (tensions, _) = self.pull(&kinematics)?;
+        let direction = &posture.direction;
+        let pull = self
+            .geometry(posture)
+            .along_leg(direction, &kinematics)
+            .dot(&tensions);
+        let force = self.load.along_leg_n(direction) - pull;
+        let compliance = self.support.joint().axial_compliance_m_per_n;
+        Ok(direction.vector() * (self.rig.tip_m() + compliance * force))
     }
 
-    /// The next direction on the way down and the length of the step to it, rad.
+    /// Potential energy of tendons, joint and weights, J.
     ///
     /// # Errors
-    /// [`Error::TendonCollapsed`]; [`Error::Unstable`] when every way down leads above the horizon.
-    pub(super) fn step(&self, here: &Direction<f64>) -> Result<(Direction<f64>, f64), Error> {
+    /// [`Error::TendonCollapsed`]; a tension beyond a tendon's curve.
+    pub fn energy_j(&self, posture: &Posture) -> Result<f64, Error> {
+        let (springs, weights) = self.energies_j(posture)?;
+        Ok(springs + weights)
+    }
+
+    /// Moment along each free rotation, N·m: minus the energy's derivative by it. On a support with two freedoms the
+    /// third is zero.
+    ///
+    /// # Errors
+    /// [`Error::TendonCollapsed`]; a tension beyond a tendon's curve.
+    pub fn free_moment_nm(&self, posture: &Posture) -> Result<Vector3<f64>, Error> {
+        let point = self.at(posture)?;
+        if self.support.twists() {
+            return Ok(point.moment);
+        }
+        let [x, y] = point.plane.project(&point.moment);
+        Ok(Vector3::new(x, y, 0.0))
+    }
+
+    /// The next posture on the way down and the length of the step to it, rad.
+    fn step(&self, here: &Posture) -> Result<(Posture, f64), Error> {
         let point = self.at(here)?;
         let scale = point.stiffness.amax();
+        let mut refusal = Error::Unstable;
         for damping in DAMPING {
             let damped = point.stiffness + Matrix3::identity() * (damping * scale);
-            let Ok(rotation) = point.plane.solve(&damped, &point.moment) else {
+            let Some((next, step_rad)) = self.turn(here, &point, &damped) else {
                 continue;
             };
-            let Some(next) = turned(here, &rotation) else {
-                continue;
-            };
-            if self.leads_down(here, &next, &point)? {
-                return Ok((next, rotation.dot(&rotation).sqrt()));
+            match self.leads_down(here, &next, scale) {
+                Ok(true) => return Ok((next, step_rad)),
+                Ok(false) => {}
+                // A step that overstretches a tendon is too long; it is the end only if no shorter one leads down.
+                Err(error) => refusal = error,
             }
         }
-        Err(Error::Unstable)
+        Err(refusal)
+    }
+
+    /// One step under a stiffness; none above the horizon or if the stiffness is not positive.
+    fn turn(
+        &self,
+        here: &Posture,
+        point: &Point,
+        stiffness: &Matrix3<f64>,
+    ) -> Option<(Posture, f64)> {
+        let rotation = if self.support.twists() {
+            solve3(stiffness, &point.moment)
+        } else {
+            point.plane.solve(stiffness, &point.moment)
+        };
+        let rotation = rotation.ok()?;
+        let next = self.turned(here, &rotation)?;
+        Some((next, rotation.norm()))
+    }
+
+    /// The posture after a small rotation; none above the horizon.
+    pub(super) fn turned(&self, here: &Posture, rotation: &Vector3<f64>) -> Option<Posture> {
+        let direction = &here.direction;
+        let moved = direction.vector() + tip_displacement(rotation, direction, 1.0);
+        let torsion = if self.support.twists() {
+            here.torsion + self.support.torsion_change(direction).dot(rotation)
+        } else {
+            0.0
+        };
+        let direction = Direction::from_xy(moved.x, moved.y).ok()?;
+        Some(Posture { direction, torsion })
     }
 
     /// Whether the energy falls or, where rounding hides that, the moment does not rise.
-    fn leads_down(
-        &self,
-        here: &Direction<f64>,
-        next: &Direction<f64>,
-        point: &Point,
-    ) -> Result<bool, Error> {
-        let change = self.energy_j(next)? - self.energy_j(here)?;
-        let rounding = ENERGY_ROUNDING * (self.tendon_energy_j(here)? + self.lever_nm);
-        if change.abs() > rounding {
+    fn leads_down(&self, here: &Posture, next: &Posture, stiffness: f64) -> Result<bool, Error> {
+        let (springs, weights) = self.energies_j(here)?;
+        let change = self.energy_j(next)? - (springs + weights);
+        if change.abs() > ENERGY_ROUNDING * (springs + weights.abs()) {
             return Ok(change < 0.0);
         }
-        let [x, y] = point.plane.project(&point.moment);
-        let [next_x, next_y] = self.free_moment_nm(next)?;
         // At the rounding of the moment itself both are noise, and the step is too short to matter.
-        let noise = f64::EPSILON * point.stiffness.amax();
-        Ok(next_x.hypot(next_y) <= x.hypot(y) + noise)
+        let noise = f64::EPSILON * stiffness;
+        Ok(self.free_moment_nm(next)?.norm() <= self.free_moment_nm(here)?.norm() + noise)
     }
 
-    fn at(&self, direction: &Direction<f64>) -> Result<Point, Error> {
-        let (geometry, plane) = self.guided(direction);
+    fn geometry(&self, posture: &Posture) -> Geometry<f64, 3> {
+        let twist = self.support.twist(&posture.direction);
+        let twist = twist.and(&Twist::from_torsion(posture.torsion));
+        self.rig.geometry().twisted(&twist)
+    }
+
+    fn at(&self, posture: &Posture) -> Result<Point, Error> {
+        let (geometry, direction) = (self.geometry(posture), &posture.direction);
         let kinematics = inverse_kinematics(&geometry, direction)?;
-        let elongations = kinematics.lengths - self.unstretched_m;
-        let tensions = elongations.map(|elongation| self.tendon.tension(elongation));
-        let stiffnesses = elongations.map(|elongation| self.tangent(elongation));
-        let stiffness = tendon_stiffness(&kinematics.moment_map, &stiffnesses)
-            + structural_stiffness(&geometry, direction, &tensions)
-            + self.load.stiffness(direction);
+        let (tensions, stiffnesses) = self.pull(&kinematics)?;
+        let moment_map = kinematics.moment_map;
         Ok(Point {
-            plane,
-            moment: kinematics.moment_map * tensions + self.load.moment(direction),
-            stiffness,
+            plane: self.support.plane(direction),
+            moment: moment_map * tensions
+                + self.load.moment(direction)
+                + self.support.joint_moment(direction, posture.torsion),
+            stiffness: tendon_stiffness(&moment_map, &stiffnesses)
+                + structural_stiffness(&geometry, direction, &tensions)
+                + self.load.stiffness(direction)
+                + self.support.joint_stiffness(direction),
         })
     }
 
-    fn tendon_energy_j(&self, direction: &Direction<f64>) -> Result<f64, Error> {
-        let (geometry, _) = self.guided(direction);
-        let elongations = inverse_kinematics(&geometry, direction)?.lengths - self.unstretched_m;
-        let energies = elongations.map(|length| 0.5 * self.tendon.tension(length) * length);
-        Ok(energies.sum())
-    }
-
-    /// Tangent stiffness at an elongation: none when slack, N/m.
-    fn tangent(&self, elongation: f64) -> f64 {
-        if elongation < 0.0 {
-            0.0
-        } else {
-            self.tendon.stiffness()
+    /// Tensions and tangent stiffnesses: none of either in a slack tendon.
+    fn pull(
+        &self,
+        kinematics: &Kinematics<f64, 3>,
+    ) -> Result<(SVector<f64, 3>, SVector<f64, 3>), Error> {
+        let (mut tensions, mut stiffnesses) = (SVector::zeros(), SVector::zeros());
+        for (i, tendon) in self.tendons.iter().enumerate() {
+            let elongation = kinematics.lengths[i] - self.unstretched_m[i];
+            if elongation > 0.0 {
+                tensions[i] = tendon.tension(elongation)?;
+                stiffnesses[i] = tendon.stiffness(tensions[i])?;
+            }
         }
+        Ok((tensions, stiffnesses))
     }
-}
 
-/// The direction after a small rotation; none above the horizon.
-fn turned(direction: &Direction<f64>, rotation: &Vector3<f64>) -> Option<Direction<f64>> {
-    let moved = direction.vector() + tip_displacement(rotation, direction, 1.0);
-    Direction::from_xy(moved.x, moved.y).ok()
-}
-
-/// The leg's twist and free rotations on a support with two freedoms.
-fn guide(support: SupportKind, direction: &Direction<f64>) -> (Twist<f64>, FreePlane<f64>) {
-    if support == SupportKind::Universal {
-        let twist = Twist::universal(&direction.half_tangent());
-        (twist, FreePlane::universal(direction))
-    } else {
-        (Twist::none(), FreePlane::torsion_free(direction))
+    /// Of tendons and joint, and of the weights.
+    fn energies_j(&self, posture: &Posture) -> Result<(f64, f64), Error> {
+        let direction = &posture.direction;
+        let mut springs = self.support.joint_energy(direction, posture.torsion);
+        let lengths = self.kinematics(posture)?.lengths;
+        for (i, tendon) in self.tendons.iter().enumerate() {
+            springs += tendon.energy(lengths[i] - self.unstretched_m[i])?;
+        }
+        Ok((springs, self.load.energy(direction)))
     }
 }

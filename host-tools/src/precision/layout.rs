@@ -26,24 +26,30 @@ const STEPS: Part = (None, 1);
 
 /// The parts of an evaluation, in the order of its fields.
 #[must_use]
-pub const fn of_evaluation(support: SupportKind) -> [Part; 13] {
+pub const fn of_evaluation(support: SupportKind) -> [Part; 17] {
     let (deviation, torsion) = match support {
         SupportKind::TorsionFree | SupportKind::Universal => {
             (Quantity::Deviation, Quantity::Torsion)
         }
-        SupportKind::Spherical => (Quantity::DeviationBallJoint, Quantity::TorsionBallJoint),
+        SupportKind::Spherical | SupportKind::ElasticUniversal => {
+            (Quantity::DeviationBallJoint, Quantity::TorsionBallJoint)
+        }
     };
     [
         LENGTHS,
         MOMENT_MAP,
         PRETENSION,
         LOAD_MOMENT,
+        (Some(Quantity::JointMoment), 3),
         TENSIONS,
         TENSIONS,
         LEVEL_RANGE,
         MATRIX,
+        (Some(Quantity::JointStiffness), 9),
         K2_EXACT,
         K2_PRINTED,
+        (Some(Quantity::Bending), 2),
+        (Some(Quantity::AxialStretch), 1),
         // With and without the load's own stiffness.
         (Some(deviation), 2),
         UNSTRETCHED,
@@ -76,6 +82,17 @@ pub const fn of_kernel(kernel: Kernel) -> &'static [Part] {
             SYMMETRIC,
             (Some(Rotation), 3),
             (Some(Deviation), 3),
+        ],
+        Kernel::TendonCurve => &[
+            (Some(Quantity::Elongation), 1),
+            (Some(Quantity::TendonStiffness), 1),
+        ],
+        Kernel::InverseStatics => &[TENSIONS, UNSTRETCHED],
+        Kernel::StiffnessCommand => &[
+            (Some(Quantity::CommandedLevel), 1),
+            (Some(Quantity::CommandedStiffness), 1),
+            // Two bounds may meet within rounding, and either names one.
+            (None, 1),
         ],
         Kernel::ModelTick => &[
             DIRECTION,

@@ -3,7 +3,7 @@
 use super::{Measure, Quantity, Row};
 
 /// All rows, one for each [`Quantity`], in its order.
-pub const TABLE: [Row; 23] = [
+pub const TABLE: [Row; 31] = [
     absolute(Quantity::Lengths, "lengths", 2e-8, "m"),
     relative(Quantity::MomentMap, "moment map", 1.2e-6),
     relative(Quantity::PretensionDirection, "pretension direction", 1e-6),
@@ -36,6 +36,14 @@ pub const TABLE: [Row; 23] = [
         "m",
     )
     .because(NO_SAG),
+    absolute(Quantity::JointMoment, "joint moment", 3e-6, "N·m"),
+    relative(Quantity::JointStiffness, "joint stiffness", 1e-6),
+    relative(Quantity::Bending, "bending stiffness", 2.5e-6),
+    absolute(Quantity::AxialStretch, "axial stretch", 1e-11, "m"),
+    relative(Quantity::Elongation, "elongation on a curve", 1e-6),
+    relative(Quantity::TendonStiffness, "stiffness on a curve", 1e-5),
+    relative(Quantity::CommandedLevel, "commanded level", 1e-4),
+    relative(Quantity::CommandedStiffness, "commanded stiffness", 2e-5),
     relative(Quantity::SquareRoot, "square root", 1.2e-7),
     absolute(Quantity::SinCos, "sine and cosine", 2e-7, "absolute"),
 ];

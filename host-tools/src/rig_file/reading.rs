@@ -1,10 +1,9 @@
 //! From the text of a rig file to its values, every one checked.
 
-use super::RigFile;
-use crate::support_word;
+use super::{RigFile, support, tendon};
 use crate::toml_problem::{Fault, Problem};
 use crate::toml_section::Section;
-use leg_model::{Error, Quantity, Reason, RigParameters, SupportKind};
+use leg_model::{Elasticity, Error, Quantity, Reason, RigParameters};
 use toml::de::DeTable;
 
 /// Reads the file and lets the model check it.
@@ -39,10 +38,10 @@ fn read(root: &Section<'_>) -> Result<RigFile, Fault> {
     ];
     let geometry = root.section("geometry", &lengths)?;
     let mass = root.section("mass", &["leg_kg", "centroid_mm", "gravity_m_per_s2"])?;
-    let forces = ["stiffness_n_per_m", "floor_n", "ceiling_n", "level_n"];
-    let tendon = root.section("tendon", &forces)?;
+    let forces = root.section("tendon", &tendon::KEYS)?;
     let workspace = root.section("workspace", &["tilt_deg"])?;
-    let support = root.section("support", &["kind"])?;
+    let tilt_deg = workspace.number("tilt_deg")?;
+    let (support_name, support) = support::read(root, tilt_deg)?;
     Ok(RigFile {
         parameters: RigParameters {
             base_anchors_m: geometry
@@ -58,26 +57,19 @@ fn read(root: &Section<'_>) -> Result<RigFile, Fault> {
             leg_centroid_m: metres(mass.number("centroid_mm")?),
             gravity_m_per_s2: mass.number("gravity_m_per_s2")?,
         },
-        stiffness_n_per_m: tendon.number("stiffness_n_per_m")?,
-        tension_floor_n: tendon.number("floor_n")?,
-        tension_ceiling_n: tendon.number("ceiling_n")?,
-        level_n: tendon.number("level_n")?,
-        tilt_deg: workspace.number("tilt_deg")?,
-        support: read_support(&support)?,
+        tendons: tendon::read(&forces)?,
+        stiffness_at: tendon::read_stiffness_at(&forces)?,
+        tension_floor_n: forces.number("floor_n")?,
+        tension_ceiling_n: forces.number("ceiling_n")?,
+        level_n: forces.number("level_n")?,
+        tilt_deg,
+        support_name,
+        support,
     })
 }
 
-fn metres(length_mm: f64) -> f64 {
+pub(super) fn metres(length_mm: f64) -> f64 {
     length_mm / 1000.0
-}
-
-fn read_support(section: &Section<'_>) -> Result<SupportKind, Fault> {
-    let word = section.word("kind")?;
-    let unknown = |error| Fault {
-        span: word.span(),
-        problem: Problem::Support(error),
-    };
-    support_word::parse(word.get_ref()).map_err(unknown)
 }
 
 /// What the model refuses in the file. What it cannot solve at some pose is left to the commands.
@@ -85,13 +77,23 @@ fn check(file: &RigFile) -> Result<(), (Quantity, Reason)> {
     if file.tilt_deg <= 0.0 {
         return Err((Quantity::Tilt, Reason::NotPositive));
     }
+    // A curve has to serve every tension that is allowed.
+    for tendon in &file.tendons {
+        if let Err(Error::Refused { reason, .. }) = tendon.elongation(file.tension_ceiling_n) {
+            return Err((Quantity::TensionCeiling, reason));
+        }
+        if let Err(Error::Refused { reason, .. }) = tendon.elongation(file.level_n) {
+            return Err((Quantity::Level, reason));
+        }
+    }
     match leg_model::evaluate(&file.parameters, &file.query(0.0, file.tilt_deg, 0.0)) {
         Err(Error::Refused { quantity, reason }) => Err((quantity, reason)),
         _ => Ok(()),
     }
 }
 
-/// Where the file gives a quantity: section and key. It does not give those of a single pose.
+/// Where the file gives a quantity: section and key. It does not give those of a single pose; tendons and support are
+/// checked where they are read.
 fn key_of(quantity: Quantity) -> Option<(&'static str, &'static str)> {
     Some(match quantity {
         Quantity::BaseAnchors => ("geometry", "base_anchors_mm"),
@@ -102,15 +104,10 @@ fn key_of(quantity: Quantity) -> Option<(&'static str, &'static str)> {
         Quantity::LegMass => ("mass", "leg_kg"),
         Quantity::LegCentroid => ("mass", "centroid_mm"),
         Quantity::Gravity => ("mass", "gravity_m_per_s2"),
-        Quantity::TendonStiffness => ("tendon", "stiffness_n_per_m"),
         Quantity::TensionFloor => ("tendon", "floor_n"),
         Quantity::TensionCeiling => ("tendon", "ceiling_n"),
         Quantity::Level => ("tendon", "level_n"),
         Quantity::Tilt => ("workspace", "tilt_deg"),
-        Quantity::Azimuth
-        | Quantity::Payload
-        | Quantity::TendonLength
-        | Quantity::Direction
-        | Quantity::Tension => return None,
+        _ => return None,
     })
 }

@@ -6,12 +6,12 @@
 use crate::check::State;
 use leg_firmware::kernels::Kernel;
 use leg_model::{
-    Direction, Distribution, Error, ForwardKinematics, FreePlane, Kinematics, Load, Rig, Tendon,
-    TendonStates, TensionBounds, Twist, distribute, estimate_moment, forward_kinematics,
-    forward_kinematics_universal, inverse_kinematics, solve3, structural_stiffness,
-    tendon_stiffness, tip_displacement,
+    ConstantStiffness, Direction, Distribution, Elasticity, Error, ForwardKinematics, FreePlane,
+    Kinematics, Load, Rig, Tendon, TendonStates, TensionBounds, Twist, distribute, estimate_moment,
+    forward_kinematics, forward_kinematics_universal, inverse_kinematics, solve3,
+    structural_stiffness, tendon_stiffness, tip_displacement,
 };
-use nalgebra::{Matrix3, SVector, Vector3};
+use nalgebra::{Matrix3, Matrix3x2, SVector, Vector3};
 
 /// The arguments of the kernels, prepared as the firmware prepares them.
 pub(super) struct Bench {
@@ -23,7 +23,9 @@ pub(super) struct Bench {
     load: Load<f64>,
     bounds: TensionBounds<f64>,
     level: f64,
-    tendon: Tendon<f64>,
+    tendon: ConstantStiffness<f64>,
+    curve: Tendon<f64>,
+    demand: f64,
     kinematics: Kinematics<f64, 3>,
     distribution: Distribution<f64, 3>,
     states: TendonStates<f64, 3>,
@@ -32,14 +34,15 @@ pub(super) struct Bench {
 
 impl Bench {
     pub(super) fn new(state: &State) -> Result<Self, Error> {
-        let (rig, query) = (Rig::new(&state.rig())?, state.query::<f64>());
+        let (rig, query) = (Rig::new(&state.rig())?, state.query()?);
         let input = &state.input;
         let direction = Direction::from_angles(query.azimuth_rad, query.tilt_rad)?;
         let (start_azimuth, start_tilt) = (input.start_azimuth_rad, input.start_tilt_rad);
         let plane = FreePlane::torsion_free(&direction);
         let load = Load::new(&rig, query.payload_kg)?;
         let bounds = TensionBounds::new(query.tension_floor_n, query.tension_ceiling_n)?;
-        let tendon = Tendon::new(query.stiffness_n_per_m)?;
+        let tendon = ConstantStiffness::new(input.stiffness_n_per_m.into())?;
+        let [curve, ..] = state.with_curves().query()?.tendons;
         let kinematics = inverse_kinematics(rig.geometry(), &direction)?;
         let moment = load.moment(&direction);
         let distribution: Distribution<f64, 3> =
@@ -54,11 +57,13 @@ impl Bench {
             bounds,
             level: query.level_n,
             tendon,
+            curve,
+            demand: input.demand_nm_per_rad.into(),
             kinematics,
             distribution,
             states: TendonStates::new(
                 distribution.tensions(query.level_n),
-                SVector::repeat(tendon.stiffness()),
+                SVector::repeat(tendon.stiffness_n_per_m()),
             )?,
             length_errors: Vector3::from(input.length_errors_m.map(f64::from)),
         })
@@ -74,6 +79,12 @@ impl Bench {
             Kernel::Distribution => self.distribution(),
             Kernel::FullPass => self.pass(None)?,
             Kernel::FullPassInPlane => self.pass(Some(&self.plane))?,
+            Kernel::TendonCurve => vec![
+                self.curve.elongation(self.level)?,
+                self.curve.stiffness(self.level)?,
+            ],
+            Kernel::InverseStatics => self.inverse_statics()?,
+            Kernel::StiffnessCommand => self.stiffness_command()?,
             Kernel::ModelTick => self.tick()?,
         })
     }
@@ -142,6 +153,55 @@ impl Bench {
         (total + total.transpose()) * 0.5
     }
 
+    fn inverse_statics(&self) -> Result<Vec<f64>, Error> {
+        let tensions = self.states.tensions();
+        let mut numbers = tensions.as_slice().to_vec();
+        for (length, &tension) in self.kinematics.lengths.iter().zip(tensions.iter()) {
+            numbers.push(length - self.curve.elongation(tension)?);
+        }
+        Ok(numbers)
+    }
+
+    /// By halving, on the eigenvalues of the plain matrix.
+    fn stiffness_command(&self) -> Result<Vec<f64>, Error> {
+        let distribution = &self.distribution;
+        let (mut low, mut high) = (distribution.lowest_level, distribution.highest_level);
+        let (softest, stiffest) = (self.bending_at(low)?, self.bending_at(high)?);
+        let [at_lowest, at_highest] = distribution.limits(&self.bounds);
+        if self.demand <= softest {
+            return Ok(vec![low, softest, at_lowest.tendon.into()]);
+        }
+        if self.demand >= stiffest {
+            return Ok(vec![high, stiffest, at_highest.tendon.into()]);
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if self.bending_at(middle)? < self.demand {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        Ok(vec![low, self.bending_at(low)?, 0.0])
+    }
+
+    /// The smallest eigenvalue of PᵀKP with an orthonormal P, each tendon's stiffness at its own tension.
+    fn bending_at(&self, level: f64) -> Result<f64, Error> {
+        let tensions = self.distribution.tensions(level);
+        let mut stiffnesses = Vector3::zeros();
+        for (stiffness, &tension) in stiffnesses.iter_mut().zip(tensions.iter()) {
+            *stiffness = self.curve.stiffness(tension)?;
+        }
+        let total = tendon_stiffness(&self.kinematics.moment_map, &stiffnesses)
+            + structural_stiffness(self.rig.geometry(), &self.direction, &tensions)
+            + self.load.stiffness(&self.direction);
+        let first = self.plane.rotation([1.0, 0.0]).normalize();
+        let basis =
+            Matrix3x2::from_columns(&[first, self.plane.normal().normalize().cross(&first)]);
+        let reduced = basis.transpose() * (total + total.transpose()) * basis * 0.5;
+        Ok(reduced.symmetric_eigenvalues().min())
+    }
+
     fn tick(&self) -> Result<Vec<f64>, Error> {
         let found = self.found()?;
         let direction = &found.direction;
@@ -151,8 +211,10 @@ impl Bench {
         let distribution: Distribution<f64, 3> =
             distribute(&kinematics.moment_map, &plane, &moment, &self.bounds)?;
         let tensions = distribution.tensions(self.level);
-        let unstretched: Vector3<f64> =
-            Vector3::from_fn(|i, _| self.tendon.unstretched(kinematics.lengths[i], tensions[i]));
+        let mut unstretched = kinematics.lengths;
+        for (length, &tension) in unstretched.iter_mut().zip(tensions.iter()) {
+            *length -= self.tendon.elongation(tension)?;
+        }
         Ok([
             of_found(&found),
             moment.as_slice().to_vec(),

@@ -1,0 +1,175 @@
+//! The section `[support]`: how the joint guides the leg, and how it resists.
+
+use super::reading::metres;
+use crate::support_name::SupportName;
+use crate::toml_problem::{Fault, Problem};
+use crate::toml_section::Section;
+use leg_model::{Error, FlexureMaterial, JointStiffness, Leaf, Notch, Quantity, Rod, Support};
+
+/// The keys of a measured joint.
+const MEASURED: [&str; 3] = ["bending_nm_per_rad", "torsion_nm_per_rad", "axial_n_per_m"];
+
+/// The keys of a material.
+const MATERIAL: [&str; 3] = [
+    "youngs_modulus_gpa",
+    "shear_modulus_gpa",
+    "strain_max_percent",
+];
+
+const SHAFT: [&str; 3] = ["length_mm", "section_mm2", "youngs_modulus_gpa"];
+
+/// Reads the section; `tilt_deg` is how far the joint bends.
+pub(super) fn read(
+    root: &Section<'_>,
+    tilt_deg: f64,
+) -> Result<(SupportName, Support<f64>), Fault> {
+    let name = read_name(root)?;
+    let measured = root.section_has("support", MEASURED[0]);
+    let section = root.section("support", &keys(name, measured))?;
+    let joint = match (name.elastic(), measured) {
+        (false, _) => rigid(&section)?,
+        (true, true) => measured_joint(&section)?,
+        (true, false) => from_geometry(&section, name, tilt_deg.to_radians())?,
+    };
+    let joint = JointStiffness {
+        axial_compliance_m_per_n: joint.axial_compliance_m_per_n + shaft(&section)?,
+        ..joint
+    };
+    let support = Support::new(name.kind(), joint).map_err(|error| fault(&section, error))?;
+    Ok((name, support))
+}
+
+fn read_name(root: &Section<'_>) -> Result<SupportName, Fault> {
+    let word = root.any_section("support")?.word("kind")?;
+    let unknown = |error| Fault {
+        span: word.span(),
+        problem: Problem::Support(error),
+    };
+    SupportName::parse(word.get_ref()).map_err(unknown)
+}
+
+/// The keys of the section for a support.
+fn keys(name: SupportName, measured: bool) -> Vec<&'static str> {
+    let own: &[&str] = match name {
+        _ if name.elastic() && measured => &MEASURED,
+        SupportName::TorsionFree | SupportName::Spherical | SupportName::Universal => {
+            &["axial_n_per_m"]
+        }
+        SupportName::CompliantPivot => &["length_mm", "diameter_mm"],
+        SupportName::ElasticRodUniversal => &["length_mm", "diameter_mm", "spacing_mm"],
+        SupportName::NotchUniversal => &["radius_mm", "thickness_mm", "width_mm", "spacing_mm"],
+        SupportName::LeafSpringUniversal => {
+            &["length_mm", "thickness_mm", "width_mm", "spacing_mm"]
+        }
+    };
+    let material: &[&str] = if name.elastic() && !measured {
+        &MATERIAL
+    } else {
+        &[]
+    };
+    [&["kind", "shaft"], own, material].concat()
+}
+
+/// A rigid joint gives way along the leg at most.
+fn rigid(section: &Section<'_>) -> Result<JointStiffness<f64>, Fault> {
+    Ok(JointStiffness {
+        axial_compliance_m_per_n: if section.has(MEASURED[2]) {
+            section.positive(MEASURED[2])?.recip()
+        } else {
+            0.0
+        },
+        ..JointStiffness::none()
+    })
+}
+
+fn measured_joint(section: &Section<'_>) -> Result<JointStiffness<f64>, Fault> {
+    Ok(JointStiffness {
+        bending_nm_per_rad: section.positive(MEASURED[0])?,
+        torsion_nm_per_rad: section.positive(MEASURED[1])?,
+        axial_compliance_m_per_n: section.positive(MEASURED[2])?.recip(),
+    })
+}
+
+fn from_geometry(
+    section: &Section<'_>,
+    name: SupportName,
+    tilt: f64,
+) -> Result<JointStiffness<f64>, Fault> {
+    let material = FlexureMaterial {
+        youngs_modulus_pa: section.number(MATERIAL[0])? * 1e9,
+        shear_modulus_pa: section.number(MATERIAL[1])? * 1e9,
+        strain_max: section.number(MATERIAL[2])? / 100.0,
+    };
+    let length = |key| section.number(key).map(metres);
+    let joint = match name {
+        SupportName::CompliantPivot => rod(section)?.pivot(&material, tilt),
+        SupportName::NotchUniversal => {
+            let notch = Notch {
+                radius_m: length("radius_mm")?,
+                thickness_m: length("thickness_mm")?,
+                width_m: length("width_mm")?,
+            };
+            notch.universal(length("spacing_mm")?, &material, tilt)
+        }
+        SupportName::LeafSpringUniversal => {
+            let leaf = Leaf {
+                length_m: length("length_mm")?,
+                width_m: length("width_mm")?,
+                thickness_m: length("thickness_mm")?,
+            };
+            leaf.universal(length("spacing_mm")?, &material, tilt)
+        }
+        _ => rod(section)?.universal(length("spacing_mm")?, &material, tilt),
+    };
+    joint.map_err(|error| fault(section, error))
+}
+
+fn rod(section: &Section<'_>) -> Result<Rod<f64>, Fault> {
+    Ok(Rod {
+        length_m: metres(section.number("length_mm")?),
+        diameter_m: metres(section.number("diameter_mm")?),
+    })
+}
+
+/// L/EA of the shaft between joint and leg, m/N; nothing where the file gives none.
+fn shaft(section: &Section<'_>) -> Result<f64, Fault> {
+    if !section.has("shaft") {
+        return Ok(0.0);
+    }
+    let shaft = section.section("shaft", &SHAFT)?;
+    let [length_mm, section_mm2, modulus_gpa] = SHAFT.map(|key| shaft.positive(key));
+    Ok(metres(length_mm?) / (section_mm2? * 1e-6 * modulus_gpa? * 1e9))
+}
+
+/// What the model refuses, at the key that gives it.
+fn fault(section: &Section<'_>, error: Error) -> Fault {
+    let Error::Refused { quantity, reason } = error else {
+        return Fault {
+            span: section.span(),
+            problem: Problem::NoResult(error),
+        };
+    };
+    let candidates: &[&'static str] = match quantity {
+        Quantity::FlexureLength => &["length_mm"],
+        Quantity::FlexureWidth => &["width_mm"],
+        Quantity::FlexureThickness => &["thickness_mm", "diameter_mm"],
+        Quantity::NotchRadius => &["radius_mm"],
+        Quantity::FlexureSpacing => &["spacing_mm"],
+        Quantity::YoungsModulus => &["youngs_modulus_gpa"],
+        Quantity::ShearModulus => &["shear_modulus_gpa"],
+        Quantity::StrainLimit => &["strain_max_percent"],
+        Quantity::JointBending => &["bending_nm_per_rad"],
+        Quantity::JointTorsion => &["torsion_nm_per_rad"],
+        _ => &["axial_n_per_m"],
+    };
+    let key = candidates.iter().copied().find(|key| section.has(key));
+    Fault {
+        span: key
+            .and_then(|key| section.span_of_key(key))
+            .unwrap_or(section.span()),
+        problem: Problem::Refused {
+            key: key.unwrap_or("kind"),
+            reason,
+        },
+    }
+}

@@ -1,0 +1,113 @@
+//! Bending stiffness: how the leg resists a tilt.
+
+use crate::{Error, FreePlane, Scalar, Symmetric3};
+
+/// Which bending stiffness is meant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BendingAxis<T> {
+    /// The softest tilt: the smallest eigenvalue.
+    Softest,
+    /// The tilt towards an azimuth, given as (cos, sin): the moment per angle that a push that way shows.
+    Towards([T; 2]),
+}
+
+/// The stiffness of a leg against tilts, in the plane of its free rotations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bending<T> {
+    /// PᵀKP in the basis (1, 0, ρ_x), (0, 1, ρ_y).
+    stiffness: [T; 3],
+    /// PᵀP.
+    gram: [T; 3],
+}
+
+impl<T: Scalar> Bending<T> {
+    /// On a support with two freedoms: PᵀKP.
+    #[must_use]
+    #[inline(always)]
+    pub fn guided(k: &Symmetric3<T>, plane: &FreePlane<T>) -> Self {
+        let (right_x, right_y) = (k.xz + plane.rho_x * k.zz, k.yz + plane.rho_y * k.zz);
+        Self {
+            stiffness: [
+                k.xx + plane.rho_x * (k.xz + right_x),
+                k.xy + plane.rho_x * k.yz + plane.rho_y * right_x,
+                k.yy + plane.rho_y * (k.yz + right_y),
+            ],
+            gram: [
+                T::one() + plane.rho_x * plane.rho_x,
+                plane.rho_x * plane.rho_y,
+                T::one() + plane.rho_y * plane.rho_y,
+            ],
+        }
+    }
+
+    /// On a support with three freedoms: the twist about the plane's normal gives way until it carries no moment.
+    ///
+    /// # Errors
+    /// [`Error::Unstable`] if nothing holds that twist.
+    #[inline(always)]
+    pub fn twisting(k: &Symmetric3<T>, plane: &FreePlane<T>) -> Result<Self, Error> {
+        let normal = plane.normal();
+        let moment = k.times(&normal);
+        let along = normal.dot(&moment);
+        if !(along > T::zero()) {
+            return Err(Error::Unstable);
+        }
+        let [x, y] = plane.project(&moment);
+        let (by_x, by_y) = (x / along, y / along);
+        let mut bending = Self::guided(k, plane);
+        let [xx, xy, yy] = &mut bending.stiffness;
+        *xx -= by_x * x;
+        *xy -= by_x * y;
+        *yy -= by_y * y;
+        Ok(bending)
+    }
+
+    /// The stiffness about an axis, N·m/rad.
+    ///
+    /// # Errors
+    /// [`Error::Unstable`] if the leg does not resist every push.
+    #[inline(always)]
+    pub fn about(&self, axis: &BendingAxis<T>) -> Result<T, Error> {
+        match axis {
+            BendingAxis::Softest => self.extremes().map(|[softest, _]| softest),
+            BendingAxis::Towards(azimuth) => self.towards(*azimuth),
+        }
+    }
+
+    /// The smallest and the largest stiffness over all tilts, N·m/rad.
+    ///
+    /// # Errors
+    /// [`Error::Unstable`] if the smallest is not positive.
+    #[inline(always)]
+    pub fn extremes(&self) -> Result<[T; 2], Error> {
+        let ([xx, xy, yy], [gxx, gxy, gyy]) = (self.stiffness, self.gram);
+        // In the orthonormal basis that starts along the first axis, where the gap is a sum of squares: nothing cancels.
+        let skew = gxy / gxx;
+        let rest = gyy - skew * gxy;
+        let side = xy - skew * xx;
+        let first = xx / gxx;
+        let second = (yy - skew * (xy + side)) / rest;
+        let (mean, half) = (T::HALF * (first + second), T::HALF * (first - second));
+        let half_gap = (half * half + side * side / (gxx * rest)).sqrt();
+        let softest = mean - half_gap;
+        if softest > T::zero() {
+            Ok([softest, mean + half_gap])
+        } else {
+            Err(Error::Unstable)
+        }
+    }
+
+    /// n²/(cᵀG K⁻¹ G c) with the axis c = (sin, −cos) of the azimuth and n² = cᵀGc.
+    #[inline(always)]
+    fn towards(&self, [cos, sin]: [T; 2]) -> Result<T, Error> {
+        let ([xx, xy, yy], [gxx, gxy, gyy]) = (self.stiffness, self.gram);
+        let determinant = xx * yy - xy * xy;
+        if !(xx > T::zero() && determinant > T::zero()) {
+            return Err(Error::Unstable);
+        }
+        let (x, y) = (sin, -cos);
+        let (mx, my) = (gxx * x + gxy * y, gxy * x + gyy * y);
+        let give = yy * mx * mx - T::TWO * xy * mx * my + xx * my * my;
+        Ok((x * mx + y * my) * determinant / give)
+    }
+}

@@ -1,0 +1,85 @@
+//! Flexures: the stiffness of elastic joints from geometry and material (rows c to i of Fig. 2).
+//!
+//! A pivot (row c) is one rod. A universal joint of flexures (rows d to i) has two pairs in series, one for each axis:
+//! the two flexures of a pair stand side by side on their axis, `spacing_m` apart, along the leg. So a pair bends
+//! easily about its axis, and resists torsion by bending its flexures sideways.
+
+mod leaf;
+mod notch;
+mod rod;
+
+pub use leaf::Leaf;
+pub use notch::Notch;
+pub use rod::Rod;
+
+use crate::range::{LENGTH_MAX, check_positive};
+use crate::{Error, JointStiffness, Quantity, Reason, Scalar};
+
+/// Stiffest material, Pa: above diamond.
+const MODULUS_MAX: f32 = 2e12;
+
+/// What a flexure is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlexureMaterial<T> {
+    /// E, Pa.
+    pub youngs_modulus_pa: T,
+    /// G, Pa.
+    pub shear_modulus_pa: T,
+    /// The largest strain from which it springs back, as a part of one.
+    pub strain_max: T,
+}
+
+impl<T: Scalar> FlexureMaterial<T> {
+    fn check(&self) -> Result<(), Error> {
+        check_positive(self.youngs_modulus_pa, MODULUS_MAX, Quantity::YoungsModulus)?;
+        check_positive(self.shear_modulus_pa, MODULUS_MAX, Quantity::ShearModulus)?;
+        check_positive(self.strain_max, 1.0, Quantity::StrainLimit)
+    }
+
+    /// Refuses a strain from which the material does not spring back.
+    fn check_strain(&self, strain: T) -> Result<(), Error> {
+        if strain <= self.strain_max {
+            Ok(())
+        } else {
+            Err(Error::refused(Quantity::StrainLimit, Reason::Exceeded))
+        }
+    }
+}
+
+/// The stiffnesses of one flexure between its two ends.
+struct Flexure<T> {
+    /// Against bending about its axis, N·m/rad.
+    bending: T,
+    /// Against torsion, N·m/rad.
+    torsion: T,
+    /// Against a sideways shift of one end, which stays parallel to the other, N/m.
+    lateral: T,
+    /// Along it, N/m.
+    axial: T,
+}
+
+impl<T: Scalar> Flexure<T> {
+    /// Two pairs in series, the flexures of a pair `spacing` apart.
+    fn universal(&self, spacing: T) -> Result<JointStiffness<T>, Error> {
+        check_length(spacing, Quantity::FlexureSpacing)?;
+        let arm = T::HALF * spacing;
+        Ok(JointStiffness {
+            bending_nm_per_rad: T::TWO * self.bending,
+            torsion_nm_per_rad: self.torsion + self.lateral * arm * arm,
+            axial_compliance_m_per_n: T::one() / self.axial,
+        })
+    }
+}
+
+fn check_length<T: Scalar>(length: T, quantity: Quantity) -> Result<(), Error> {
+    check_positive(length, LENGTH_MAX, quantity)
+}
+
+/// Refuses a quantity that is less than `least` times another: a formula for slender flexures would not hold.
+fn check_ratio<T: Scalar>(value: T, other: T, least: f32, quantity: Quantity) -> Result<(), Error> {
+    if value >= T::from(least) * other {
+        Ok(())
+    } else {
+        Err(Error::refused(quantity, Reason::NotSlender))
+    }
+}

@@ -1,0 +1,75 @@
+//! A round rod.
+
+use super::{Flexure, FlexureMaterial, check_length, check_ratio};
+use crate::{Error, JointStiffness, Quantity, Scalar};
+
+/// Shorter rods, in diameters, shear as much as they bend: the formulas for slender beams do not hold.
+const LENGTH_BY_DIAMETER: f32 = 5.0;
+
+/// A round rod along the leg.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rod<T> {
+    /// Its free length, m; at least five diameters.
+    pub length_m: T,
+    /// m.
+    pub diameter_m: T,
+}
+
+impl<T: Scalar> Rod<T> {
+    /// A compliant pivot: one rod, bent by up to `tilt` rad. EI/L, GJ/L, L/EA (Eq. 19 prints half of EI/L).
+    ///
+    /// # Errors
+    /// A part that is refused, a rod that is not slender, a strain beyond the material's.
+    pub fn pivot(
+        &self,
+        material: &FlexureMaterial<T>,
+        tilt: T,
+    ) -> Result<JointStiffness<T>, Error> {
+        let rod = self.flexure(material, tilt)?;
+        Ok(JointStiffness {
+            bending_nm_per_rad: rod.bending,
+            torsion_nm_per_rad: rod.torsion,
+            axial_compliance_m_per_n: T::one() / rod.axial,
+        })
+    }
+
+    /// A universal joint of two pairs of rods, each pair `spacing_m` apart, bent by up to `tilt` rad about either axis.
+    ///
+    /// # Errors
+    /// As [`Self::pivot`], and a spacing that is not positive.
+    pub fn universal(
+        &self,
+        spacing_m: T,
+        material: &FlexureMaterial<T>,
+        tilt: T,
+    ) -> Result<JointStiffness<T>, Error> {
+        self.flexure(material, tilt)?.universal(spacing_m)
+    }
+
+    /// I = πd⁴/64, J = 2I, A = πd²/4; the surface strain of a rod bent to a circle is dθ/2L.
+    fn flexure(&self, material: &FlexureMaterial<T>, tilt: T) -> Result<Flexure<T>, Error> {
+        let &Self {
+            length_m: length,
+            diameter_m: diameter,
+        } = self;
+        material.check()?;
+        check_length(length, Quantity::FlexureLength)?;
+        check_length(diameter, Quantity::FlexureThickness)?;
+        check_ratio(
+            length,
+            diameter,
+            LENGTH_BY_DIAMETER,
+            Quantity::FlexureLength,
+        )?;
+        material.check_strain(T::HALF * diameter * tilt / length)?;
+        let area = T::PI * diameter * diameter / T::from(4.0);
+        let second_moment = area * diameter * diameter / T::from(16.0);
+        let bending = material.youngs_modulus_pa * second_moment / length;
+        Ok(Flexure {
+            bending,
+            torsion: material.shear_modulus_pa * T::TWO * second_moment / length,
+            lateral: T::from(12.0) * bending / (length * length),
+            axial: material.youngs_modulus_pa * area / length,
+        })
+    }
+}
