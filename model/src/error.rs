@@ -1,6 +1,5 @@
 //! Everything the model can refuse, each refusal with a name.
 
-use crate::{Bound, Limit};
 use core::fmt;
 
 /// A quantity that a caller hands to the model.
@@ -118,6 +117,8 @@ pub enum Reason {
 }
 
 /// Why the model gives no result.
+///
+/// Only one variant has fields, so that an error takes two bytes: the fast path writes one on every way out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -137,8 +138,6 @@ pub enum Error {
     Singular,
     /// No level of pretension keeps every tension inside its bounds at this pose under this load.
     Infeasible,
-    /// At this level of pretension a tension is outside its bounds.
-    OutOfBounds(Limit),
     /// The stiffness is not positive: the leg would buckle at this pose under this load.
     Unstable,
     /// An iteration ended without a solution.
@@ -187,14 +186,6 @@ impl fmt::Display for Error {
             Self::Infeasible => {
                 f.write_str("no level of pretension keeps every tension inside its bounds")
             }
-            Self::OutOfBounds(Limit { tendon, bound }) => write!(
-                f,
-                "at this level of pretension the tension of tendon {tendon} is {} bound",
-                match bound {
-                    Bound::Floor => "below its lower",
-                    Bound::Ceiling => "above its upper",
-                }
-            ),
             Self::Unstable => f.write_str("the stiffness is not positive: the leg would buckle"),
             Self::NotConverged => f.write_str("the iteration ended without a solution"),
         }

@@ -4,8 +4,8 @@ use crate::kinematics::TendonAtPose;
 use crate::range::{TENSION_MAX, check_magnitude};
 use crate::tendon::check_stiffness;
 use crate::{
-    Direction, Error, FreePlane, Geometry, Kinematics, Load, Quantity, Rig, Scalar, Symmetric3,
-    tip_displacement,
+    Direction, Distribution, Error, FreePlane, Geometry, Kinematics, Load, Quantity, Rig, Scalar,
+    Symmetric3, tip_displacement,
 };
 use nalgebra::{SVector, Vector3};
 
@@ -137,21 +137,26 @@ fn pass<T: Scalar, const N: usize>(
     }
 }
 
-/// Exact K₂ at constant tensions + K_load, symmetrised, N·m/rad: the full pass without the tendons' own stiffness.
+/// Exact K₂ at constant tensions, symmetrised, N·m/rad, for tensions f = particular + level·per_level: the part that
+/// stays, with K_load, and the part per level. The tendons' own stiffness is left out.
 #[inline(always)]
-pub(crate) fn at_tensions<T: Scalar, const N: usize>(
+pub(crate) fn tension_stiffness<T: Scalar, const N: usize>(
     geometry: &Geometry<T, N>,
     direction: &Direction<T>,
     load: &Load<T>,
-    tensions: &SVector<T, N>,
-) -> Symmetric3<T> {
+    distribution: &Distribution<T, N>,
+) -> [Symmetric3<T>; 2] {
     let q = direction.half_tangent();
-    let mut sums = Sums::new();
+    let (mut fixed, mut per_level) = (Sums::new(), Sums::new());
     for (i, pair) in geometry.tendons.iter().enumerate() {
         let tendon = TendonAtPose::new(pair, geometry, &q, direction.gain());
-        sums.add(&tendon, pair.base, tensions[i], T::zero());
+        fixed.add(&tendon, pair.base, distribution.particular[i], T::zero());
+        per_level.add(&tendon, pair.base, distribution.per_level[i], T::zero());
     }
-    sums.total(geometry.upper, direction, load)
+    [
+        fixed.total(geometry.upper, direction, load),
+        per_level.total(geometry.upper, direction, &Load::none()),
+    ]
 }
 
 /// Sums over the tendons, with φ = f/l the force density.

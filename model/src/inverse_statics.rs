@@ -1,23 +1,62 @@
 //! Inverse statics: the unstretched lengths that put the loaded tip on its target.
 
 use crate::{
-    Direction, Distribution, Elasticity, Error, FreePlane, Geometry, Kinematics, Scalar,
-    TensionBounds, distribute, inverse_kinematics,
+    Bound, Direction, Distribution, Elasticity, Error, FreePlane, Geometry, Kinematics, Limit,
+    Scalar, TensionBounds, distribute, inverse_kinematics,
 };
+use core::fmt;
 use nalgebra::{SVector, Vector3};
 
 /// What holds a loaded leg at a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct InverseStatics<T, const N: usize> {
-    /// Lengths and moments of the tendons at the pose.
-    pub kinematics: Kinematics<T, N>,
-    /// All tensions that balance the load there.
-    pub distribution: Distribution<T, N>,
+pub struct Hold<T, const N: usize> {
     /// The tensions at the level, N.
     pub tensions: SVector<T, N>,
     /// u = l − δ(f): lengths of the tendons without tension, m. Tendons of these lengths bring the loaded leg to rest
     /// exactly at the pose.
     pub unstretched: SVector<T, N>,
+}
+
+/// Why nothing holds the leg at a pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HoldError {
+    /// The model has no result there.
+    Model(Error),
+    /// At the level a tendon is beyond a bound.
+    OutOfBounds(Limit),
+    /// At every level one is: which ends the range of levels below, and which above.
+    Infeasible([Limit; 2]),
+}
+
+impl From<Error> for HoldError {
+    fn from(error: Error) -> Self {
+        Self::Model(error)
+    }
+}
+
+impl fmt::Display for HoldError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Model(error) => error.fmt(f),
+            Self::OutOfBounds(limit) => write!(f, "at this level {limit}"),
+            Self::Infeasible([lowest, highest]) => write!(
+                f,
+                "at every level a tendon leaves its bounds: at low ones {lowest}, at high ones {highest}"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for HoldError {}
+
+impl fmt::Display for Limit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { tendon, bound } = self;
+        match bound {
+            Bound::Floor => write!(f, "tendon {tendon} is below the lowest tension"),
+            Bound::Ceiling => write!(f, "tendon {tendon} is above the highest tension"),
+        }
+    }
 }
 
 /// Finds the unstretched lengths that hold the leg at `direction` against a moment, at a level of pretension in N.
@@ -27,9 +66,9 @@ pub struct InverseStatics<T, const N: usize> {
 /// [`estimate_moment`](crate::estimate_moment) from measured tensions, and that of an elastic joint.
 ///
 /// # Errors
-/// Those of [`inverse_kinematics`] and [`distribute`]; [`Error::OutOfBounds`] with the tendon and the bound if the
-/// tensions at the level leave their bounds; [`Error::Infeasible`] if they do at every level; a tension that is
-/// beyond a tendon's curve.
+/// Those of [`inverse_kinematics`] and [`distribute`]; [`HoldError::OutOfBounds`] with the tendon and the
+/// bound if the tensions at the level leave their bounds; [`HoldError::Infeasible`] if they do at every
+/// level; a tension that is beyond a tendon's curve.
 #[inline(always)]
 pub fn inverse_statics<T: Scalar, E: Elasticity<T>, const N: usize>(
     geometry: &Geometry<T, N>,
@@ -39,21 +78,52 @@ pub fn inverse_statics<T: Scalar, E: Elasticity<T>, const N: usize>(
     bounds: &TensionBounds<T>,
     tendons: &[E; N],
     level: T,
-) -> Result<InverseStatics<T, N>, Error> {
+) -> Result<Hold<T, N>, HoldError> {
     let kinematics = inverse_kinematics(geometry, direction)?;
     let distribution = distribute(&kinematics.moment_map, plane, moment, bounds)?;
+    hold(&kinematics, &distribution, bounds, tendons, level)
+}
+
+/// The last step of [`inverse_statics`], where kinematics and distribution are at hand.
+///
+/// # Errors
+/// As [`inverse_statics`].
+#[inline(always)]
+pub fn hold<T: Scalar, E: Elasticity<T>, const N: usize>(
+    kinematics: &Kinematics<T, N>,
+    distribution: &Distribution<T, N>,
+    bounds: &TensionBounds<T>,
+    tendons: &[E; N],
+    level: T,
+) -> Result<Hold<T, N>, HoldError> {
     if !(distribution.lowest_level <= level && level <= distribution.highest_level) {
-        return Err(distribution.refusal(bounds, level));
+        return Err(refusal(distribution, bounds, level));
     }
     let tensions = distribution.tensions(level);
     let mut unstretched = kinematics.lengths;
     for (i, tendon) in tendons.iter().enumerate() {
         unstretched[i] -= tendon.elongation(tensions[i])?;
     }
-    Ok(InverseStatics {
-        kinematics,
-        distribution,
+    Ok(Hold {
         tensions,
         unstretched,
     })
+}
+
+#[cold]
+#[inline(never)]
+fn refusal<T: Scalar, const N: usize>(
+    distribution: &Distribution<T, N>,
+    bounds: &TensionBounds<T>,
+    level: T,
+) -> HoldError {
+    let limits = distribution.limits(bounds);
+    let [lowest, highest] = limits;
+    if !distribution.feasible() {
+        HoldError::Infeasible(limits)
+    } else if level < distribution.lowest_level {
+        HoldError::OutOfBounds(lowest)
+    } else {
+        HoldError::OutOfBounds(highest)
+    }
 }

@@ -63,9 +63,9 @@ pub struct Rig<T, const N: usize> {
     pub(crate) tip: T,
     /// Weight of the leg times the distance of its centroid, N·m.
     pub(crate) leg_moment: T,
+    pub(crate) gravity: T,
     /// N.
     pub(crate) leg_weight: T,
-    pub(crate) gravity: T,
 }
 
 impl<T: Scalar, const N: usize> Rig<T, N> {

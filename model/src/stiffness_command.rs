@@ -1,6 +1,6 @@
 //! Stiffness on command: the level of pretension that makes the leg as stiff as demanded.
 
-use crate::full_pass::at_tensions;
+use crate::full_pass::tension_stiffness;
 use crate::range::{JOINT_STIFFNESS_MAX, check_positive};
 use crate::{
     Bending, BendingAxis, Direction, Distribution, Elasticity, Error, FreePlane, Geometry,
@@ -8,7 +8,7 @@ use crate::{
 };
 
 /// Stiffnesses that differ by no more than this part of the demand are equal.
-const TOLERANCE: f32 = 1e-5;
+const TOLERANCE: f32 = 1e-4;
 
 /// Steps after which a search without convergence ends. Stiffness is nearly linear in the level: three do as a rule.
 const STEPS_MAX: u8 = 12;
@@ -52,15 +52,15 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
         distribution: &'a Distribution<T, N>,
     ) -> Self {
         let joint = Symmetric3::symmetric_part(&support.joint_stiffness(direction));
-        let loaded = at_tensions(geometry, direction, load, &distribution.particular);
+        let [fixed, per_level] = tension_stiffness(geometry, direction, load, distribution);
         Self {
             tendons,
             kinematics,
             distribution,
             plane: support.plane(direction),
             twists: support.twists(),
-            base: loaded.plus(&joint),
-            per_level: at_tensions(geometry, direction, &Load::none(), &distribution.per_level),
+            base: fixed.plus(&joint),
+            per_level,
         }
     }
 
@@ -128,7 +128,7 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
     }
 
     /// Between two levels whose stiffnesses enclose the demand: the false position, the end that stays weighed less
-    /// each time (the Illinois method).
+    /// each time (after Anderson and Björck, 1973).
     #[inline(always)]
     fn search(
         &self,
@@ -149,7 +149,8 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
                 });
             }
             if (next.error > T::zero()) == (last.error > T::zero()) {
-                kept.error *= T::HALF;
+                let left = T::one() - next.error / last.error;
+                kept.error *= if left > T::zero() { left } else { T::HALF };
             } else {
                 kept = last;
             }

@@ -118,21 +118,6 @@ impl<T: Scalar, const N: usize> Distribution<T, N> {
     }
 }
 
-impl<T: Scalar, const N: usize> Distribution<T, N> {
-    /// Why a level outside the range is refused.
-    pub(crate) fn refusal(&self, bounds: &TensionBounds<T>, level: T) -> Error {
-        if !self.feasible() {
-            return Error::Infeasible;
-        }
-        let [lowest, highest] = self.limits(bounds);
-        Error::OutOfBounds(if level < self.lowest_level {
-            lowest
-        } else {
-            highest
-        })
-    }
-}
-
 /// Distributes a load over the tendons: Pᵀ(A f + M) = 0 with every f between its bounds (Eq. 5 on the free axes).
 ///
 /// The three rows of A are never solved for three tensions: they depend on each other at the vertical and in every

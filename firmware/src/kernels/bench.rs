@@ -9,26 +9,29 @@ use leg_model::{
 };
 use nalgebra::{SVector, Vector3};
 
-/// Prepared arguments.
+/// Prepared arguments. The curves come last: a load reaches no further than 1 020 bytes, and an address that had to be
+/// added up would be counted with the kernel.
+
+#[repr(C)]
 pub struct Bench<T> {
-    pub angle: T,
     pub rig: Rig<T, 3>,
     pub direction: Direction<T>,
-    pub start: Direction<T>,
-    pub plane: FreePlane<T>,
     pub load: Load<T>,
+    pub plane: FreePlane<T>,
+    pub states: TendonStates<T, 3>,
+    pub start: Direction<T>,
     pub moment: Vector3<T>,
     pub bounds: TensionBounds<T>,
     pub level: T,
-    pub support: Support<T>,
-    pub tendons: [ConstantStiffness<T>; 3],
-    pub curves: [TendonCurve<T>; 3],
-    pub demand: T,
-    pub kinematics: Kinematics<T, 3>,
-    pub distribution: Distribution<T, 3>,
-    pub states: TendonStates<T, 3>,
+    pub angle: T,
     pub lengths: SVector<T, 3>,
     pub lengths_universal: SVector<T, 3>,
+    pub kinematics: Kinematics<T, 3>,
+    pub distribution: Distribution<T, 3>,
+    pub tendons: [ConstantStiffness<T>; 3],
+    pub demand: T,
+    pub support: Support<T>,
+    pub curves: [TendonCurve<T>; 3],
 }
 
 impl<T: Scalar> Bench<T> {

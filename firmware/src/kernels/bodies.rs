@@ -1,7 +1,9 @@
 //! What each kernel calls, and the numbers of its result.
 
 use super::bench::Bench;
-use leg_model::{BendingAxis, Deflection, Elasticity, Error, Scalar, StiffnessAnswer, Symmetric3};
+use leg_model::{
+    BendingAxis, Deflection, Elasticity, Error, HoldError, Scalar, StiffnessAnswer, Symmetric3,
+};
 use nalgebra::{SVector, Vector3};
 
 /// A kernel as a type.
@@ -190,7 +192,7 @@ impl<T: Scalar> Body<T> for TendonCurve {
 pub struct InverseStatics;
 
 impl<T: Scalar> Body<T> for InverseStatics {
-    type Output = leg_model::InverseStatics<T, 3>;
+    type Output = leg_model::Hold<T, 3>;
 
     #[inline(always)]
     fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
@@ -203,6 +205,10 @@ impl<T: Scalar> Body<T> for InverseStatics {
             &bench.curves,
             bench.level,
         )
+        .map_err(|error| match error {
+            HoldError::Model(error) => error,
+            _ => Error::Infeasible,
+        })
     }
 
     fn flatten(found: &Self::Output, push: &mut impl FnMut(T)) {

@@ -55,9 +55,9 @@ pub const fn of(kernel: Kernel) -> Budget {
         Kernel::Distribution => Budget::new(90, 150).references(155, 237),
         Kernel::FullPass => Budget::new(240, 340).references(284, 605),
         Kernel::FullPassInPlane => Budget::new(240, 340),
-        Kernel::TendonCurve => Budget::new(1, 1000),
-        Kernel::InverseStatics => Budget::new(1, 5000),
-        Kernel::StiffnessCommand => Budget::new(1, 9000),
+        Kernel::TendonCurve => Budget::new(40, 80),
+        Kernel::InverseStatics => Budget::new(350, 480),
+        Kernel::StiffnessCommand => Budget::new(900, 2300),
         Kernel::ModelTick => Budget::new(600, 900).references(779, 1516),
     }
 }
