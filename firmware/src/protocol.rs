@@ -8,6 +8,10 @@ use serde::{Deserialize, Serialize};
 
 /// A request from the host. The first one on a link is [`Request::Hello`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "a message is kept in place: there is no allocation on the board"
+)]
 pub enum Request {
     /// Introduces the host; the firmware answers with what it is.
     Hello(Hello),

@@ -5,13 +5,11 @@ mod support;
 mod tendon;
 
 use crate::failure::{Failure, Place};
+use crate::ready_rigs::{self, READY_RIGS};
 use crate::support_name::SupportName;
 use crate::toml_problem::Problem;
 use leg_model::{Elasticity, Query, RigParameters, StiffnessAt, Support, Tendon};
 use std::path::{Path, PathBuf};
-
-/// The bundled file that describes the paper's rig.
-const TABLE_1: &str = include_str!("../rigs/table1.toml");
 
 /// A mechanism and how it is used, as its file describes them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,20 +56,14 @@ pub enum RigFileError {
 }
 
 impl RigFile {
-    /// The file at `path`, or the paper's rig when there is none.
+    /// The rig of a file or, where there is no such file, the ready rig of that name; the paper's rig when neither is
+    /// given.
     ///
     /// # Errors
     /// A [`RigFileError`] with the place.
     pub fn load(path: Option<&Path>) -> Result<Self, RigFileError> {
-        let Some(path) = path else {
-            return Self::parse("rigs/table1.toml", TABLE_1);
-        };
-        let unreadable = |error| RigFileError::Unreadable {
-            path: path.into(),
-            error,
-        };
-        let text = std::fs::read_to_string(path).map_err(unreadable)?;
-        Self::parse(&path.display().to_string(), &text)
+        let RigText { name, text } = RigText::load(path)?;
+        Self::parse(&name, &text)
     }
 
     /// The text of a rig file; `file` is its name in messages.
@@ -131,11 +123,45 @@ impl RigFile {
     }
 }
 
+/// The text of a rig file and its name in messages.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RigText {
+    /// The file, as the user named it, or a ready rig.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+}
+
+impl RigText {
+    /// The text that [`RigFile::load`] reads.
+    ///
+    /// # Errors
+    /// [`RigFileError::Unreadable`].
+    pub fn load(path: Option<&Path>) -> Result<Self, RigFileError> {
+        let path = path.unwrap_or(Path::new(READY_RIGS[0].name));
+        let name = path.display().to_string();
+        match std::fs::read_to_string(path) {
+            Ok(text) => Ok(Self { name, text }),
+            Err(error) => match ready_rigs::named(&name) {
+                Some(ready) => Ok(Self {
+                    name: format!("rigs/{name}.toml"),
+                    text: ready.text.into(),
+                }),
+                None => Err(RigFileError::Unreadable {
+                    path: path.into(),
+                    error,
+                }),
+            },
+        }
+    }
+}
+
 impl From<RigFileError> for Failure {
     fn from(error: RigFileError) -> Self {
         match error {
             RigFileError::Unreadable { .. } => {
-                Self::refused(error.to_string(), "give a file that exists and may be read")
+                let help = "give a file that exists and may be read, or a name from `leg rig list`";
+                Self::refused(error.to_string(), help)
             }
             RigFileError::Faulty { place, ref problem } => {
                 Self::refused_at(problem.to_string(), problem.fix(), place)

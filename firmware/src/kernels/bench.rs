@@ -11,7 +11,6 @@ use nalgebra::{SVector, Vector3};
 
 /// Prepared arguments. The curves come last: a load reaches no further than 1 020 bytes, and an address that had to be
 /// added up would be counted with the kernel.
-
 #[repr(C)]
 pub struct Bench<T> {
     pub rig: Rig<T, 3>,

@@ -154,10 +154,9 @@ fn another_schema_is_refused_and_takes_the_greeting_back() {
 #[test]
 fn an_evaluation_is_the_models() {
     let request = evaluate_request(0.3);
-    let model = leg_model::evaluate(
-        &RigParameters::<f32, 3>::TABLE_1,
-        &request.query.query().unwrap(),
-    );
+    let query = request.query.query();
+    let model =
+        query.and_then(|query| leg_model::evaluate(&RigParameters::<f32, 3>::TABLE_1, &query));
     assert_eq!(
         Ok(ask(&mut greeted(None), &Request::Evaluate(request))),
         model.map(Reply::Evaluation)

@@ -5,6 +5,7 @@ mod check;
 mod cost;
 mod eval;
 mod evaluator;
+mod rig;
 mod run;
 mod run_report;
 mod setup;
@@ -36,6 +37,7 @@ enum Command {
     Check(check::Args),
     Cost(cost::Args),
     Eval(eval::Args),
+    Rig(rig::Args),
     Run(run::Args),
     /// Installs what the other commands need: the Rust target, QEMU, and the firmware built for it.
     ///
@@ -51,6 +53,7 @@ pub fn main() -> ExitCode {
         Command::Check(args) => check::run(args, cli.verbose),
         Command::Cost(args) => cost::run(args, cli.verbose),
         Command::Eval(args) => eval::run(args, cli.verbose),
+        Command::Rig(args) => rig::run(args),
         Command::Run(args) => run::run(args, cli.verbose),
         Command::Setup => setup::run(),
     };

@@ -1,0 +1,94 @@
+//! `leg rig`.
+
+use super::print;
+use crate::atomic_file;
+use crate::failure::Failure;
+use crate::ready_rigs::READY_RIGS;
+use crate::rig_convert::{self, Format};
+use crate::rig_file::{RigFile, RigText};
+use crate::rig_show;
+use clap::Subcommand;
+use std::path::PathBuf;
+
+/// Shows, checks, lists and converts rig files.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Debug, Subcommand)]
+enum Action {
+    /// Lists the rigs that come with the tool; `--rig` takes their names.
+    List,
+    /// Prints what the model makes of a rig file.
+    Show {
+        /// The rig file or a ready rig's name; the paper's rig if left out.
+        rig: Option<PathBuf>,
+        /// Prints JSON.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Checks a rig file and tells line and column of the first fault.
+    Validate {
+        /// The rig file.
+        rig: PathBuf,
+    },
+    /// Writes a rig file as JSON, or JSON as a rig file: the same keys. Comments are lost.
+    Convert {
+        /// The rig file (TOML or JSON) or a ready rig's name.
+        rig: PathBuf,
+        /// The format to write.
+        #[arg(long, value_enum)]
+        to: Format,
+        /// The file to write; standard output if left out.
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
+    },
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A [`Failure`]: a rig file that is refused or a file that cannot be written.
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    match &args.action {
+        Action::List => print(&list()),
+        Action::Show { rig, json } => {
+            let file = RigFile::load(rig.as_deref())?;
+            print(&if *json {
+                rig_show::json(&file)?
+            } else {
+                rig_show::words(&file)
+            })
+        }
+        Action::Validate { rig } => {
+            let file = RigFile::load(Some(rig))?;
+            let support = file.support_name.word();
+            print(&format!(
+                "{}: a rig on the support `{support}`, nothing wrong with it\n",
+                rig.display()
+            ))
+        }
+        Action::Convert { rig, to, out } => {
+            let source = RigText::load(Some(rig))?;
+            let converted = rig_convert::convert(&source, *to)?;
+            match out {
+                None => print(&converted),
+                Some(file) => atomic_file::replace(file, |new| std::fs::write(new, &converted))
+                    .map_err(|error| {
+                        let help = "name a file in a folder that may be written";
+                        Failure::refused(format!("cannot write {}: {error}", file.display()), help)
+                    }),
+            }
+        }
+    }
+}
+
+fn list() -> String {
+    let heading = format!("{:<22} {:<7} {}\n", "rig", "Fig. 2", "support");
+    let row = |rig: &crate::ready_rigs::ReadyRig| {
+        format!("{:<22} {:<7} {}\n", rig.name, rig.figure_2, rig.words)
+    };
+    heading + &READY_RIGS.iter().map(row).collect::<String>()
+}
