@@ -31,8 +31,11 @@ pub fn deviation_m(
     };
     let loaded = without_weights.with_payload(query.payload_kg)?;
     let end = loaded.rest(start)?;
-    let moved = loaded.tip_position_m(&end)? - without_weights.tip_position_m(&start)?;
-    Ok(Some(deviation(&moved)))
+    let turned = (end.direction.vector() - start.direction.vector()) * loaded.tip_m();
+    let stretch = loaded.axial_stretch_m(&end)? - without_weights.axial_stretch_m(&start)?;
+    Ok(Some(deviation(
+        &(turned + end.direction.vector() * stretch),
+    )))
 }
 
 /// The mechanism without weights, its tendons made to hold it at the query's pose, and its posture there.

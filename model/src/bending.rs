@@ -1,6 +1,6 @@
 //! Bending stiffness: how the leg resists a tilt.
 
-use crate::{Error, FreePlane, Scalar, Symmetric3};
+use crate::{Direction, Error, FreePlane, Scalar, Symmetric3};
 
 /// Which bending stiffness is meant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,7 +11,7 @@ pub enum BendingAxis<T> {
     Towards([T; 2]),
 }
 
-/// The stiffness of a leg against tilts, in the plane of its free rotations.
+/// The stiffness of a leg against tilts, in a plane of rotations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bending<T> {
     /// PᵀKP in the basis (1, 0, ρ_x), (0, 1, ρ_y).
@@ -40,12 +40,14 @@ impl<T: Scalar> Bending<T> {
         }
     }
 
-    /// On a support with three freedoms: the twist about the plane's normal gives way until it carries no moment.
+    /// On a support with three freedoms: rotations across the leg, which move its tip, while the twist about the leg
+    /// gives way until it carries no moment. This is what a push at the tip meets.
     ///
     /// # Errors
     /// [`Error::Unstable`] if nothing holds that twist.
     #[inline(always)]
-    pub fn twisting(k: &Symmetric3<T>, plane: &FreePlane<T>) -> Result<Self, Error> {
+    pub fn twisting(k: &Symmetric3<T>, direction: &Direction<T>) -> Result<Self, Error> {
+        let plane = &FreePlane::across(direction);
         let normal = plane.normal();
         let moment = k.times(&normal);
         let along = normal.dot(&moment);

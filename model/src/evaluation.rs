@@ -110,8 +110,8 @@ pub fn evaluate<T: Scalar>(
     let tensions = distribution.tensions(query.level_n);
     let stiffness = state.stiffness(query, &tensions)?;
     let load_stiffness = state.load.stiffness(&state.direction);
-    let sag = state.sag(&stiffness.total, &stiffness.tendons)?;
-    let sag_with_load = state.sag(&(stiffness.total + load_stiffness), &stiffness.tendons)?;
+    let sag = state.sag(&stiffness.total, &stiffness)?;
+    let sag_with_load = state.sag(&(stiffness.total + load_stiffness), &stiffness)?;
     let mut unstretched = state.kinematics.lengths;
     for (i, tendon) in query.tendons.iter().enumerate() {
         unstretched[i] -= tendon.elongation(tensions[i])?;
@@ -148,6 +148,7 @@ struct State<T> {
     direction: Direction<T>,
     /// Of the leg, the joint's own twist included.
     torsion: T,
+    elastic_torsion: T,
     plane: FreePlane<T>,
     load: Load<T>,
     load_moment: Vector3<T>,
@@ -164,6 +165,8 @@ struct Stiffness<T> {
     k2_printed: Matrix3<T>,
     /// Of each tendon, N/m.
     tendons: SVector<T, 3>,
+    /// At which that is, N.
+    tensions: SVector<T, 3>,
 }
 
 /// How the leg gives way under its load.
@@ -195,6 +198,7 @@ impl<T: Scalar> State<T> {
             geometry,
             direction,
             torsion: twist.torsion(),
+            elastic_torsion: elastic,
             plane,
             load,
             load_moment,
@@ -217,23 +221,26 @@ impl<T: Scalar> State<T> {
         let k1 = tendon_stiffness(&self.kinematics.moment_map, &tendons);
         let k2_exact = structural_stiffness(&self.geometry, &self.direction, tensions);
         let k2_printed = structural_stiffness_printed(&self.geometry, &self.direction, tensions);
-        let joint = self.support.joint_stiffness(&self.direction);
+        let joint = self
+            .support
+            .joint_stiffness(&self.direction, self.elastic_torsion);
         Ok(Stiffness {
             total: k1 + k2_exact + joint,
             joint,
             k2_exact,
             k2_printed,
             tendons,
+            tensions: *tensions,
         })
     }
 
-    fn sag(&self, k: &Matrix3<T>, tendons: &SVector<T, 3>) -> Result<Sag<T>, Error> {
+    fn sag(&self, k: &Matrix3<T>, stiffness: &Stiffness<T>) -> Result<Sag<T>, Error> {
         let rotation = if self.support.twists() {
             solve3(k, &self.load_moment)?
         } else {
             self.plane.solve(k, &self.load_moment)?
         };
-        let axial_stretch = self.axial_stretch(&rotation, tendons);
+        let axial_stretch = self.axial_stretch(&rotation, stiffness);
         let moved = tip_displacement(&rotation, &self.direction, self.rig.tip);
         Ok(Sag {
             deviation: deviation(&(moved + self.direction.vector() * axial_stretch)),
@@ -243,19 +250,23 @@ impl<T: Scalar> State<T> {
 
     /// What the load adds to the force along the leg, the change of the tendons' pull included, times the compliance of
     /// joint and shaft, which are in series there.
-    fn axial_stretch(&self, rotation: &Vector3<T>, tendons: &SVector<T, 3>) -> T {
+    fn axial_stretch(&self, rotation: &Vector3<T>, stiffness: &Stiffness<T>) -> T {
+        let (geometry, direction, kinematics) = (&self.geometry, &self.direction, &self.kinematics);
+        let lengthening = -kinematics.moment_map.tr_mul(rotation);
+        let tension_change = stiffness.tendons.component_mul(&lengthening);
+        let turning = geometry.along_leg_change(direction, kinematics, rotation, &lengthening);
+        let pull = geometry
+            .along_leg(direction, kinematics)
+            .dot(&tension_change)
+            + turning.dot(&stiffness.tensions);
         let compliance = self.support.joint.axial_compliance_m_per_n;
-        let pull = self.geometry.along_leg(&self.direction, &self.kinematics);
-        let lengthening = self.kinematics.moment_map.tr_mul(rotation);
-        let tension_change = -tendons.component_mul(&lengthening);
-        let weight = self.load.along_leg_n(&self.direction);
-        compliance * (weight - pull.dot(&tension_change))
+        compliance * (self.load.along_leg_n(direction) - pull)
     }
 
     fn bending(&self, k: &Matrix3<T>) -> [T; 2] {
         let k = Symmetric3::symmetric_part(k);
         let bending = if self.support.twists() {
-            Bending::twisting(&k, &self.plane)
+            Bending::twisting(&k, &self.direction)
         } else {
             Ok(Bending::guided(&k, &self.plane))
         };

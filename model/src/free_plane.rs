@@ -36,6 +36,16 @@ impl<T: Scalar> FreePlane<T> {
         }
     }
 
+    /// The plane normal to the leg: the rotations that move its tip.
+    #[must_use]
+    #[inline(always)]
+    pub fn across(direction: &Direction<T>) -> Self {
+        Self {
+            rho_x: -direction.x / direction.z,
+            rho_y: -direction.y / direction.z,
+        }
+    }
+
     /// The rotation with the components `x` and `y`.
     #[must_use]
     #[inline(always)]

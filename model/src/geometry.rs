@@ -2,7 +2,7 @@
 
 use crate::length_polynomial::LengthPolynomial;
 use crate::{Direction, Kinematics, RigParameters, Scalar, Twist};
-use nalgebra::SVector;
+use nalgebra::{SVector, Vector3};
 
 /// Anchors and plates of a validated mechanism, for a leg without torsion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,6 +52,23 @@ impl<T: Scalar, const N: usize> Geometry<T, N> {
             // e·p is the joint's distance from the leg's plate.
             let base = x * direction.x + y * direction.y + self.upper * direction.z;
             (self.joint - base) / kinematics.lengths[i]
+        })
+    }
+
+    /// What a small rotation of the leg changes [`Self::along_leg`] by; `lengthening` is what it does to the tendons, m.
+    pub(crate) fn along_leg_change(
+        &self,
+        direction: &Direction<T>,
+        kinematics: &Kinematics<T, N>,
+        rotation: &Vector3<T>,
+        lengthening: &SVector<T, N>,
+    ) -> SVector<T, N> {
+        let along = self.along_leg(direction, kinematics);
+        let turned = rotation.cross(&direction.vector());
+        SVector::from_fn(|i, _| {
+            let [x, y] = self.tendons[i].base;
+            let base = x * turned.x + y * turned.y + self.upper * turned.z;
+            -(base + along[i] * lengthening[i]) / kinematics.lengths[i]
         })
     }
 

@@ -1,8 +1,9 @@
 //! Inverse statics: the unstretched lengths that put the loaded tip on its target.
 
 use crate::{
-    Bound, Direction, Distribution, Elasticity, Error, FreePlane, Geometry, Kinematics, Limit,
-    Scalar, TensionBounds, distribute, inverse_kinematics,
+    Bound, Direction, Distribution, Elasticity, Error, FreePlane, Geometry, Kinematics, Limit, Rig,
+    Scalar, Support, TensionBounds, Twist, distribute, elastic_torsion, estimate_moment,
+    inverse_kinematics,
 };
 use core::fmt;
 use nalgebra::{SVector, Vector3};
@@ -59,18 +60,61 @@ impl fmt::Display for Limit {
     }
 }
 
-/// Finds the unstretched lengths that hold the leg at `direction` against a moment, at a level of pretension in N.
+/// Finds the unstretched lengths that hold the leg at `direction` against a load, at a level of pretension in N, on any
+/// support.
 ///
-/// `geometry` is twisted as the support twists it there. `moment` is all that turns the leg but its tendons, N·m: the
-/// load's, as [`Load::moment`](crate::Load::moment) gives it for a known load or
-/// [`estimate_moment`](crate::estimate_moment) from measured tensions, and that of an elastic joint.
+/// `load_moment` (N·m) is that of the load: [`Load::moment`](crate::Load::moment) of a known one, or what
+/// [`estimate_load`] makes of measured tensions.
 ///
 /// # Errors
-/// Those of [`inverse_kinematics`] and [`distribute`]; [`HoldError::OutOfBounds`] with the tendon and the
-/// bound if the tensions at the level leave their bounds; [`HoldError::Infeasible`] if they do at every
-/// level; a tension that is beyond a tendon's curve.
-#[inline(always)]
+/// Those of [`elastic_torsion`](crate::elastic_torsion), [`inverse_kinematics`] and [`distribute`];
+/// [`HoldError::OutOfBounds`] with the tendon and the bound if the tensions at the level leave their bounds;
+/// [`HoldError::Infeasible`] if they do at every level; a tension that is beyond a tendon's curve.
 pub fn inverse_statics<T: Scalar, E: Elasticity<T>, const N: usize>(
+    rig: &Rig<T, N>,
+    support: &Support<T>,
+    direction: &Direction<T>,
+    load_moment: &Vector3<T>,
+    bounds: &TensionBounds<T>,
+    tendons: &[E; N],
+    level: T,
+) -> Result<Hold<T, N>, HoldError> {
+    let torsion = elastic_torsion(rig, support, direction, load_moment, bounds, level)?;
+    let twist = support.twist(direction).and(&Twist::from_torsion(torsion));
+    let geometry = rig.geometry.twisted(&twist);
+    let plane = support.plane(direction);
+    let moment = load_moment + support.joint_moment(direction, torsion);
+    inverse_statics_in_plane(
+        &geometry, &plane, direction, &moment, bounds, tendons, level,
+    )
+}
+
+/// The load that measured tensions balance, with what an elastic joint takes of it: M̂ = −A f − M_joint, N·m.
+///
+/// `geometry` is twisted as the leg is, `torsion` (rad) its elastic part. Only the part of the result along the free
+/// rotations means anything.
+///
+/// # Errors
+/// As [`inverse_kinematics`].
+pub fn estimate_load<T: Scalar, const N: usize>(
+    geometry: &Geometry<T, N>,
+    support: &Support<T>,
+    direction: &Direction<T>,
+    torsion: T,
+    tensions: &SVector<T, N>,
+) -> Result<Vector3<T>, Error> {
+    let moment_map = inverse_kinematics(geometry, direction)?.moment_map;
+    let all = estimate_moment(&moment_map, tensions);
+    Ok(all - support.joint_moment(direction, torsion))
+}
+
+/// [`inverse_statics`] on the fast path: `geometry` is twisted as the support twists it at `direction`, `plane` are its
+/// free rotations there, and `moment` (N·m) is all that turns the leg but its tendons.
+///
+/// # Errors
+/// As [`inverse_statics`].
+#[inline(always)]
+pub fn inverse_statics_in_plane<T: Scalar, E: Elasticity<T>, const N: usize>(
     geometry: &Geometry<T, N>,
     plane: &FreePlane<T>,
     direction: &Direction<T>,

@@ -1,8 +1,7 @@
 //! The elastic joint of a support: its energy, moment and stiffness at a pose.
 //!
 //! A joint bends by two angles and twists by one, and its energy is ½ Σ kα². A small rotation ψ of the leg changes
-//! each angle by d·ψ, so the moment is −Σ kα d and the stiffness Σ k ddᵀ (the part that comes from the turning of the
-//! vectors d while the joint is bent is left out: at 30° it is below a seventh of the bending stiffness).
+//! each angle by d·ψ, so the moment is −Σ kα d and the stiffness Σ k(ddᵀ + α ∂d/∂ψ).
 //! For a universal joint the angles are those of R = Rx(α)Ry(β)Rz(γ). A pivot bends by the tilt in any azimuth and
 //! twists by the torsion τ. At the vertical both give diag(K_bending, K_bending, K_torsion), the joint's own diagonal;
 //! and as the torsion stiffness grows, a universal joint of flexures becomes a rigid one, which the diagonal turned
@@ -15,6 +14,11 @@ use nalgebra::{Matrix3, Vector3};
 struct UniversalAngles<T> {
     alpha: T,
     beta: T,
+    tan_beta: T,
+    /// 1/cos β.
+    secant: T,
+    /// Normal to both axes of the joint, (0, −sin α, cos α).
+    normal: Vector3<T>,
     by_alpha: Vector3<T>,
     by_beta: Vector3<T>,
     by_torsion: Vector3<T>,
@@ -24,16 +28,37 @@ impl<T: Scalar> UniversalAngles<T> {
     fn at(direction: &Direction<T>) -> Self {
         let &Direction { x, y, z } = direction;
         let cos_beta = (y * y + z * z).sqrt();
-        let (sin_alpha, cos_alpha) = (y / cos_beta, -z / cos_beta);
-        let tan_beta = -x / cos_beta;
-        let zero = T::zero();
+        let secant = T::one() / cos_beta;
+        let (sin_alpha, cos_alpha) = (y * secant, -z * secant);
+        let tan_beta = -x * secant;
+        let normal = Vector3::new(T::zero(), -sin_alpha, cos_alpha);
         Self {
             alpha: y.atan2(-z),
             beta: (-x).atan2(cos_beta),
-            by_alpha: Vector3::new(T::one(), tan_beta * sin_alpha, -tan_beta * cos_alpha),
-            by_beta: Vector3::new(zero, cos_alpha, sin_alpha),
-            by_torsion: Vector3::new(zero, -sin_alpha, cos_alpha) / cos_beta,
+            tan_beta,
+            secant,
+            normal,
+            by_alpha: Vector3::x() - normal * tan_beta,
+            by_beta: Vector3::new(T::zero(), cos_alpha, sin_alpha),
+            by_torsion: normal * secant,
         }
+    }
+
+    /// Σ(ddᵀ + α ∂d/∂ψ) over the two bending angles.
+    fn bending_stiffness(&self) -> Matrix3<T> {
+        let (d1, d2) = (self.by_alpha.transpose(), self.by_beta.transpose());
+        let turning = (self.by_beta * d1 * self.tan_beta
+            - self.normal * d2 * (self.secant * self.secant))
+            * self.alpha
+            + self.normal * d1 * self.beta;
+        self.by_alpha * d1 + self.by_beta * d2 + turning
+    }
+
+    /// The same of the elastic torsion.
+    fn torsion_stiffness(&self, torsion: T) -> Matrix3<T> {
+        let (d1, d2) = (self.by_alpha.transpose(), self.by_beta.transpose());
+        let turning = self.normal * d2 * self.tan_beta - self.by_beta * d1;
+        self.by_torsion * self.by_torsion.transpose() + turning * (self.secant * torsion)
     }
 }
 
@@ -58,23 +83,20 @@ impl<T: Scalar> Support<T> {
         }
     }
 
-    /// Stiffness of the joint at a pose, N·m/rad. It adds to that of the tendons: they are parallel.
+    /// Stiffness of the joint at a pose: minus the derivative of its moment, N·m/rad. It adds to that of the tendons:
+    /// they are parallel. Its antisymmetric part is half the joint's moment, as that of the tendons is half of theirs.
     #[must_use]
-    pub fn joint_stiffness(&self, direction: &Direction<T>) -> Matrix3<T> {
+    pub fn joint_stiffness(&self, direction: &Direction<T>, torsion: T) -> Matrix3<T> {
         let JointStiffness {
             bending_nm_per_rad: bending,
             torsion_nm_per_rad: twisting,
             ..
         } = self.joint;
-        let square = |d: Vector3<T>| d * d.transpose();
         if self.universal() {
             let angles = UniversalAngles::at(direction);
-            (square(angles.by_alpha) + square(angles.by_beta)) * bending
-                + square(angles.by_torsion) * twisting
+            angles.bending_stiffness() * bending + angles.torsion_stiffness(torsion) * twisting
         } else {
-            let twist = square(torsion_change(direction));
-            let tilt = Matrix3::identity() - twist * (T::one() / twist.trace());
-            tilt * bending + twist * twisting
+            tilt_stiffness(direction) * bending + torsion_stiffness(direction, torsion) * twisting
         }
     }
 
@@ -111,6 +133,39 @@ impl<T: Scalar> Support<T> {
 fn torsion_change<T: Scalar>(direction: &Direction<T>) -> Vector3<T> {
     let q = direction.half_tangent();
     Vector3::new(-q.x, -q.y, T::one())
+}
+
+/// Stiffness of a pivot against tilt for a unit bending stiffness: the moment is that of a load of the lever
+/// −θ/sin θ, which changes with the tilt.
+fn tilt_stiffness<T: Scalar>(direction: &Direction<T>) -> Matrix3<T> {
+    let &Direction { x, y, z } = direction;
+    let (lever, sine, zero) = (tilt_by_sine(direction), sine(direction), T::zero());
+    let turned = Matrix3::new(-z, zero, x, zero, -z, y, zero, zero, zero) * lever;
+    if sine > zero {
+        let axis = Vector3::new(y, -x, zero) / sine;
+        turned + axis * axis.transpose() * (T::one() + lever * z)
+    } else {
+        turned
+    }
+}
+
+/// Stiffness of a pivot against torsion for a unit torsion stiffness: ddᵀ + τ ∂d/∂ψ with d = (−q, 1).
+fn torsion_stiffness<T: Scalar>(direction: &Direction<T>, torsion: T) -> Matrix3<T> {
+    let &Direction { x, y, z } = direction;
+    let q = direction.half_tangent();
+    let (d, zero, scale) = (
+        torsion_change(direction),
+        T::zero(),
+        -torsion / direction.gain(),
+    );
+    // How a rotation changes the direction: ψ × p, by rows.
+    #[rustfmt::skip]
+    let turning = Matrix3::new(
+        q.x * y, z - q.x * x, -y,
+        q.y * y - z, -q.y * x, x,
+        zero, zero, zero,
+    );
+    d * d.transpose() + turning * scale
 }
 
 fn sine<T: Scalar>(direction: &Direction<T>) -> T {

@@ -62,7 +62,9 @@ pub use forward::{ForwardKinematics, forward_kinematics, forward_kinematics_univ
 pub use free_plane::FreePlane;
 pub use full_pass::{Deflection, FullPass, TendonStates, full_pass, full_pass_in_plane};
 pub use geometry::Geometry;
-pub use inverse_statics::{Hold, HoldError, hold, inverse_statics};
+pub use inverse_statics::{
+    Hold, HoldError, estimate_load, hold, inverse_statics, inverse_statics_in_plane,
+};
 pub use kinematics::{Kinematics, inverse_kinematics};
 pub use load::{Load, estimate_moment};
 pub use pose::{Direction, HalfTangent, Twist};

@@ -19,6 +19,7 @@ pub struct StiffnessCommand<'a, T, E, const N: usize> {
     tendons: &'a [E; N],
     kinematics: &'a Kinematics<T, N>,
     distribution: &'a Distribution<T, N>,
+    direction: Direction<T>,
     plane: FreePlane<T>,
     twists: bool,
     /// The stiffness at level zero but for that of the tendons themselves.
@@ -39,24 +40,30 @@ pub struct StiffnessAnswer<T> {
 }
 
 impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E, N> {
-    /// The leg at a pose: its geometry twisted as the support twists it there, and `kinematics` and `distribution` of
-    /// that pose under the load.
+    /// The leg at a pose: its geometry twisted as the support twists it there, `torsion` the elastic part of that (rad),
+    /// and `kinematics` and `distribution` of that pose under the load.
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "each is a part of the pose that the caller has at hand"
+    )]
     #[inline(always)]
     pub fn new(
         geometry: &Geometry<T, N>,
         support: &Support<T>,
         direction: &Direction<T>,
+        torsion: T,
         load: &Load<T>,
         tendons: &'a [E; N],
         kinematics: &'a Kinematics<T, N>,
         distribution: &'a Distribution<T, N>,
     ) -> Self {
-        let joint = Symmetric3::symmetric_part(&support.joint_stiffness(direction));
+        let joint = Symmetric3::symmetric_part(&support.joint_stiffness(direction, torsion));
         let [fixed, per_level] = tension_stiffness(geometry, direction, load, distribution);
         Self {
             tendons,
             kinematics,
             distribution,
+            direction: *direction,
             plane: support.plane(direction),
             twists: support.twists(),
             base: fixed.plus(&joint),
@@ -77,7 +84,7 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
             total.add_square(&self.kinematics.moment_map, i, stiffness);
         }
         let bending = if self.twists {
-            Bending::twisting(&total, &self.plane)?
+            Bending::twisting(&total, &self.direction)?
         } else {
             Bending::guided(&total, &self.plane)
         };

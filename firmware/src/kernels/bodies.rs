@@ -196,7 +196,7 @@ impl<T: Scalar> Body<T> for InverseStatics {
 
     #[inline(always)]
     fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
-        leg_model::inverse_statics(
+        leg_model::inverse_statics_in_plane(
             bench.rig.geometry(),
             &bench.plane,
             &bench.direction,
@@ -228,6 +228,7 @@ impl<T: Scalar> Body<T> for StiffnessCommand {
             bench.rig.geometry(),
             &bench.support,
             &bench.direction,
+            T::zero(),
             &bench.load,
             &bench.curves,
             &bench.kinematics,

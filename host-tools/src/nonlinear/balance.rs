@@ -111,21 +111,23 @@ impl Balance {
         inverse_kinematics(&self.geometry(posture), &posture.direction)
     }
 
-    /// The tip in frame {A}, joint and shaft stretched by the force along them, m.
+    /// From the joint centre to the tip, m.
+    #[must_use]
+    pub fn tip_m(&self) -> f64 {
+        self.rig.tip_m()
+    }
+
+    /// How much longer joint and shaft are under the force along them than without any, m.
     ///
     /// # Errors
     /// [`Error::TendonCollapsed`]; a tension beyond a tendon's curve.
-    pub fn tip_position_m(&self, posture: &Posture) -> Result<Vector3<f64>, Error> {
+    pub fn axial_stretch_m(&self, posture: &Posture) -> Result<f64, Error> {
         let kinematics = self.kinematics(posture)?;
         let (tensions, _) = self.pull(&kinematics)?;
         let direction = &posture.direction;
-        let pull = self
-            .geometry(posture)
-            .along_leg(direction, &kinematics)
-            .dot(&tensions);
-        let force = self.load.along_leg_n(direction) - pull;
-        let compliance = self.support.joint().axial_compliance_m_per_n;
-        Ok(direction.vector() * (self.rig.tip_m() + compliance * force))
+        let along = self.geometry(posture).along_leg(direction, &kinematics);
+        let force = self.load.along_leg_n(direction) - along.dot(&tensions);
+        Ok(self.support.joint().axial_compliance_m_per_n * force)
     }
 
     /// Potential energy of tendons, joint and weights, J.
@@ -232,7 +234,7 @@ impl Balance {
             stiffness: tendon_stiffness(&moment_map, &stiffnesses)
                 + structural_stiffness(&geometry, direction, &tensions)
                 + self.load.stiffness(direction)
-                + self.support.joint_stiffness(direction),
+                + self.support.joint_stiffness(direction, posture.torsion),
         })
     }
 

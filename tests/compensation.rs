@@ -1,0 +1,204 @@
+//! Inverse statics: the loaded tip comes to rest on its target in the nonlinear model, which shares nothing with it but
+//! the mechanism.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use leg_host_tools::nonlinear::{Balance, Posture};
+use leg_host_tools::ready_rigs::READY_RIGS;
+use leg_host_tools::rig_file::RigFile;
+use leg_host_tools::rounding::{round, round_rig, round_support, round_tendons};
+use leg_model::{
+    Direction, HoldError, Load, Rig, TensionBounds, Twist, estimate_load, inverse_statics,
+};
+use nalgebra::Vector3;
+
+const PAYLOADS_KG: [f64; 4] = [0.0, 0.5, 1.0, 2.0];
+
+/// Every pose of the workspace's grid: azimuth and tilt, rad.
+fn poses(tilt_deg: f64) -> impl Iterator<Item = (f64, f64)> {
+    (0..24).flat_map(move |azimuth| {
+        (0..=6).map(move |tilt| {
+            let azimuth = f64::from(azimuth) * 15.0;
+            (
+                azimuth.to_radians(),
+                (tilt_deg * f64::from(tilt) / 6.0).to_radians(),
+            )
+        })
+    })
+}
+
+/// A level inside the bounds, near the rig's own; none where no level is.
+fn feasible_level(file: &RigFile, azimuth: f64, tilt: f64, payload_kg: f64) -> Option<f64> {
+    let query = file.query(azimuth.to_degrees(), tilt.to_degrees(), payload_kg);
+    let range = leg_model::evaluate(&file.parameters, &query)
+        .unwrap()
+        .level_range_n;
+    let [lowest, highest] = range;
+    // A third of the range from its ends, since the twist of a support with three freedoms depends on the level.
+    (highest - lowest > 1.0).then(|| file.level_n.clamp(lowest + 0.3, highest - 0.3))
+}
+
+/// Where the leg with a payload rests on tendons of these unstretched lengths, from a little off.
+fn rest(
+    file: &RigFile,
+    unstretched: Vector3<f64>,
+    payload_kg: f64,
+    near: &Direction<f64>,
+) -> (Balance, Posture) {
+    let rig = Rig::new(&file.parameters).unwrap();
+    let load = Load::new(&rig, payload_kg).unwrap();
+    let balance = Balance::new(rig, load, file.support, file.tendons, unstretched);
+    let p = near.vector();
+    let start = Direction::from_xy(p.x * 0.99, p.y * 0.99).unwrap();
+    let posture = balance
+        .rest(Posture {
+            direction: start,
+            torsion: 0.0,
+        })
+        .unwrap();
+    (balance, posture)
+}
+
+fn tip_error_m(file: &RigFile, posture: &Posture, target: &Direction<f64>) -> f64 {
+    let tip = file.parameters.joint_length_m + file.parameters.leg_length_m;
+    (posture.direction.vector() - target.vector()).norm() * tip
+}
+
+fn bounds(file: &RigFile) -> TensionBounds<f64> {
+    TensionBounds::new(file.tension_floor_n, file.tension_ceiling_n).unwrap()
+}
+
+/// The largest error of the tip with unstretched lengths from `compensate`, and how many poses had a level.
+fn worst_m(
+    file: &RigFile,
+    compensate: impl Fn(f64, f64, f64, f64) -> Result<Vector3<f64>, HoldError>,
+) -> (f64, usize) {
+    let (mut worst, mut poses_held) = (0.0_f64, 0);
+    for payload_kg in PAYLOADS_KG {
+        for (azimuth, tilt) in poses(file.tilt_deg) {
+            let Some(level) = feasible_level(file, azimuth, tilt, payload_kg) else {
+                continue;
+            };
+            let target = Direction::from_angles(azimuth, tilt).unwrap();
+            let unstretched = compensate(azimuth, tilt, payload_kg, level).unwrap();
+            let (_, posture) = rest(file, unstretched, payload_kg, &target);
+            worst = worst.max(tip_error_m(file, &posture, &target));
+            poses_held += 1;
+        }
+    }
+    (worst, poses_held)
+}
+
+fn in_f64(file: &RigFile) -> impl Fn(f64, f64, f64, f64) -> Result<Vector3<f64>, HoldError> {
+    let rig = Rig::new(&file.parameters).unwrap();
+    let (support, tendons, bounds) = (file.support, file.tendons, bounds(file));
+    move |azimuth, tilt, payload_kg, level| {
+        let target = Direction::from_angles(azimuth, tilt)?;
+        let moment = Load::new(&rig, payload_kg)?.moment(&target);
+        let held = inverse_statics(&rig, &support, &target, &moment, &bounds, &tendons, level)?;
+        Ok(held.unstretched)
+    }
+}
+
+fn in_f32(file: &RigFile) -> impl Fn(f64, f64, f64, f64) -> Result<Vector3<f64>, HoldError> {
+    let rig = Rig::new(&round_rig(&file.parameters)).unwrap();
+    let support = round_support(&file.support).support::<f32>().unwrap();
+    let tendons = round_tendons(&file.tendons).tendons::<f32>().unwrap();
+    let (floor, ceiling) = (round(file.tension_floor_n), round(file.tension_ceiling_n));
+    let bounds = TensionBounds::new(floor, ceiling).unwrap();
+    move |azimuth, tilt, payload_kg, level| {
+        let target = Direction::from_angles(round(azimuth), round(tilt))?;
+        let moment = Load::new(&rig, round(payload_kg))?.moment(&target);
+        let level = round(level);
+        let held = inverse_statics(&rig, &support, &target, &moment, &bounds, &tendons, level)?;
+        Ok(held.unstretched.map(f64::from))
+    }
+}
+
+#[test]
+fn a_known_load_rests_on_target_on_every_support() {
+    for ready in READY_RIGS {
+        let file = RigFile::parse(ready.name, ready.text).unwrap();
+        let (worst, poses) = worst_m(&file, in_f64(&file));
+        println!("{}: {worst:.1e} m in f64 at {poses} poses", ready.name);
+        assert!(poses > 400, "{}: {poses} poses", ready.name);
+        assert!(worst <= 1e-9, "{}: {worst:e} m in f64", ready.name);
+        let (worst, _) = worst_m(&file, in_f32(&file));
+        println!("{}: {worst:.1e} m in f32", ready.name);
+        assert!(worst <= 1e-6, "{}: {worst:e} m in f32", ready.name);
+        assert!(worst > 1e-9, "{}: {worst:e} m: was this f32?", ready.name);
+    }
+}
+
+/// The leg with an unknown payload: it rests somewhere, its tensions are measured with errors, and the lengths are set
+/// for the load that they tell; seven times.
+fn after_estimates_m(
+    file: &RigFile,
+    azimuth: f64,
+    tilt: f64,
+    payload_kg: f64,
+    errors: [f64; 3],
+) -> f64 {
+    let rig = Rig::new(&file.parameters).unwrap();
+    let target = Direction::from_angles(azimuth, tilt).unwrap();
+    let level = feasible_level(file, azimuth, tilt, payload_kg).unwrap();
+    let wide = TensionBounds::new(0.0, 200.0).unwrap();
+    let (support, tendons) = (file.support, file.tendons);
+    let mut moment = Load::new(&rig, 0.0).unwrap().moment(&target);
+    let mut error = f64::NAN;
+    for _ in 0..8 {
+        let held =
+            inverse_statics(&rig, &support, &target, &moment, &wide, &tendons, level).unwrap();
+        let (balance, posture) = rest(file, held.unstretched, payload_kg, &target);
+        error = tip_error_m(file, &posture, &target);
+        let factors = Vector3::from(errors).map(|error| 1.0 + error);
+        let measured = balance
+            .tensions_n(&posture)
+            .unwrap()
+            .component_mul(&factors);
+        let twist = support
+            .twist(&posture.direction)
+            .and(&Twist::from_torsion(posture.torsion));
+        let geometry = rig.geometry().twisted(&twist);
+        moment = estimate_load(
+            &geometry,
+            &support,
+            &posture.direction,
+            posture.torsion,
+            &measured,
+        )
+        .unwrap();
+    }
+    error
+}
+
+#[test]
+fn an_unknown_load_is_told_by_the_tensions() {
+    let file = RigFile::load(None).unwrap();
+    let sign = |bits: u8, bit: u8| if bits & bit == 0 { -1.0 } else { 1.0 };
+    let patterns = (0..8).map(|bits| [1, 2, 4].map(|bit| sign(bits, bit)));
+    let patterns: Vec<[f64; 3]> = patterns.collect();
+    let (mut exact, mut one_percent) = (0.0_f64, 0.0_f64);
+    for payload_kg in PAYLOADS_KG {
+        for (azimuth, tilt) in poses(file.tilt_deg).step_by(5) {
+            exact = exact.max(after_estimates_m(
+                &file, azimuth, tilt, payload_kg, [0.0; 3],
+            ));
+            for pattern in &patterns {
+                let errors = pattern.map(|sign| 0.01 * sign);
+                one_percent =
+                    one_percent.max(after_estimates_m(&file, azimuth, tilt, payload_kg, errors));
+            }
+        }
+    }
+    println!(
+        "exact tensions {:.1e} mm, 1 % off {:.3} mm",
+        exact * 1e3,
+        one_percent * 1e3
+    );
+    assert!(exact < 1e-10, "{exact:e} m with exact tensions");
+    assert!(
+        (5e-5..5e-4).contains(&one_percent),
+        "{one_percent:e} m with tensions 1 % off"
+    );
+}

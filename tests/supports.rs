@@ -1,0 +1,119 @@
+//! Every ready rig, a member of the paper's class each: small loads against the nonlinear equilibrium, and the same
+//! answers from the host in f64, the firmware's f32 and the emulated core.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use leg_host_tools::nonlinear;
+use leg_host_tools::ready_rigs::{READY_RIGS, ReadyRig};
+use leg_host_tools::rig_file::RigFile;
+use leg_model::{Query, StiffnessAt, evaluate};
+use leg_tests::{difference, numbers};
+use serde_json::{Map, Value};
+use std::io::Write;
+use std::process::{Command, Stdio};
+
+/// A weight so small that the leg answers it linearly. With three freedoms nothing is left out of the linear answer;
+/// with two it is in the planes of symmetry, where no moment about the blocked axis turns with it.
+#[test]
+fn a_small_weight_deviates_linearly_on_every_support() {
+    for ready in READY_RIGS {
+        let file = RigFile::parse(ready.name, ready.text).unwrap();
+        let mut rig = file.parameters;
+        rig.gravity_m_per_s2 = 1e-5;
+        let azimuths: &[f64] = if file.support.twists() {
+            &[0.0, 17.0, 130.0, 305.0]
+        } else {
+            &[0.0, 180.0]
+        };
+        for &azimuth in azimuths {
+            let query = Query {
+                stiffness_at: StiffnessAt::Tension,
+                ..file.query(azimuth, 25.0, 1.0)
+            };
+            let linear = evaluate(&rig, &query).unwrap().deviation_m;
+            let nonlinear = nonlinear::deviation_m(&rig, &query).unwrap().unwrap();
+            let relative = (nonlinear / linear - 1.0).abs();
+            assert!(
+                relative < 1e-5,
+                "{} at {azimuth}°: {relative:e}",
+                ready.name
+            );
+        }
+    }
+}
+
+const POSES: &str = r#"{"azimuth_deg":0,"tilt_deg":0,"payload_kg":1}
+{"azimuth_deg":30,"tilt_deg":20,"payload_kg":0}
+{"azimuth_deg":75,"tilt_deg":-15,"payload_kg":0.5,"level_n":60}
+{"azimuth_deg":290,"tilt_deg":30,"payload_kg":2,"stiffness_at":"tension"}
+{"azimuth_deg":160,"tilt_deg":25,"payload_kg":1.5,"stiffness_n_per_m":80000}
+"#;
+
+fn answers(rig: &ReadyRig, on: &str) -> String {
+    let leg = env!("CARGO_BIN_EXE_leg-under-test");
+    let mut leg = Command::new(leg)
+        .args(["eval", "--on", on, "--rig", rig.name])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    leg.stdin
+        .take()
+        .unwrap()
+        .write_all(POSES.as_bytes())
+        .unwrap();
+    let output = leg.wait_with_output().unwrap();
+    assert!(output.status.success(), "{} on {on}", rig.name);
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn objects(text: &str) -> Vec<Map<String, Value>> {
+    text.lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect()
+}
+
+#[test]
+fn f32_agrees_with_f64_and_the_emulated_core_with_f32_on_every_support() {
+    for rig in &READY_RIGS {
+        let single = answers(rig, "f32");
+        assert_eq!(answers(rig, "qemu"), single, "{}: bits", rig.name);
+        let (double, single) = (objects(&answers(rig, "f64")), objects(&single));
+        assert_eq!(double.len(), 5);
+        for (double, single) in double.iter().zip(&single) {
+            for (key, value) in single
+                .iter()
+                .filter(|(_, value)| value.is_number() || value.is_array())
+            {
+                let (found, expected) = (numbers(value), numbers(&double[key]));
+                // What vanishes at the vertical is judged beside a hundredth of a unit.
+                let absolute = found
+                    .iter()
+                    .zip(&expected)
+                    .all(|(a, b)| (a - b).abs() < 1e-7);
+                let off = difference(&found, &expected);
+                assert!(
+                    key == "level_limits" || absolute || off < 3e-5,
+                    "{} {key}: {off:e}",
+                    rig.name
+                );
+            }
+        }
+    }
+}
+
+/// The deviation that the paper's idealisation gives bounds that of its class: stiffer joints sag less.
+#[test]
+fn members_of_the_class_differ_by_their_joints_only() {
+    let deviation = |name: &str| {
+        let ready = READY_RIGS.iter().find(|rig| rig.name == name).unwrap();
+        let file = RigFile::parse(ready.name, ready.text).unwrap();
+        evaluate(&file.parameters, &file.query(0.0, 20.0, 1.0))
+            .unwrap()
+            .deviation_m
+    };
+    let [ball, pivot] = ["spherical", "compliant_pivot"].map(deviation);
+    assert!(pivot < 0.99 * ball, "{pivot} {ball}");
+    let [rigid, notch] = ["universal", "notch_universal"].map(deviation);
+    assert!(notch < 0.995 * rigid, "{notch} {rigid}");
+}
