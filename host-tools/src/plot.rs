@@ -1,20 +1,18 @@
-//! Line charts as SVG and PNG, drawn by one function with a font of our own: a bare machine has none.
+//! Line charts as SVG and PNG.
 
-use plotters::coord::Shift;
+mod canvas;
+pub mod field;
+
+pub use canvas::PlotError;
+
+use canvas::{AXIS_TITLE_PX, Area, Drawn, GRID, LABEL_PX, MARGIN_PX, TITLE_PX, WIDTH_PX, range};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{FontStyle, register_font};
 use std::path::Path;
 
-const WIDTH_PX: u32 = 1280;
-const HEIGHT_PX: u32 = 800;
-const MARGIN_PX: u32 = 18;
 const LEGEND_WIDTH_PX: u32 = 260;
 const LEGEND_ROW_PX: i32 = 36;
-const TITLE_PX: u32 = 30;
-const AXIS_TITLE_PX: u32 = 24;
-const LABEL_PX: u32 = 22;
 const LINE_PX: u32 = 3;
 /// The two arms of a mark: rectangles along the pixels, so that a bitmap keeps them sharp.
 const MARK_ARMS_PX: [[(i32, i32); 2]; 2] = [[(-10, -1), (10, 1)], [(-1, -10), (1, 10)]];
@@ -28,7 +26,6 @@ const COLOURS: [RGBColor; 6] = [
     RGBColor(204, 121, 167),
     RGBColor(86, 180, 233),
 ];
-const GRID: RGBColor = RGBColor(225, 225, 225);
 
 /// What to draw. Titles carry their units.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,34 +53,13 @@ pub struct Line {
     pub marks: Vec<(f64, f64)>,
 }
 
-/// Why a chart was not drawn.
-#[derive(Debug, thiserror::Error)]
-pub enum PlotError {
-    /// There is nothing to draw.
-    #[error("the chart has no points: give at least two that differ in x")]
-    Empty,
-    /// The bundled font is damaged.
-    #[error("the bundled font cannot be read: build the tool anew")]
-    Font,
-    /// The file could not be put in its place.
-    #[error(
-        "the chart cannot be written ({0}): see that the folder is writable and the disk not full"
-    )]
-    Write(#[from] std::io::Error),
-    /// The drawing could not be made.
-    #[error(
-        "the chart cannot be drawn ({0}): see that the folder is writable and the disk not full"
-    )]
-    Draw(String),
-}
-
 /// Draws the chart as an SVG file.
 ///
 /// # Errors
 /// A [`PlotError`] when there is nothing to draw or the file cannot be written.
 pub fn save_svg(chart: &Chart, path: &Path) -> Result<(), PlotError> {
     let bounds = Bounds::of(chart)?;
-    draw(chart, &bounds, SVGBackend::new(path, (WIDTH_PX, HEIGHT_PX)))
+    canvas::svg(path, |root| paint(chart, &bounds, root))
 }
 
 /// Draws the chart as a PNG file of 1280 × 800 pixels; the path has to end in `.png`.
@@ -92,23 +68,10 @@ pub fn save_svg(chart: &Chart, path: &Path) -> Result<(), PlotError> {
 /// A [`PlotError`] when there is nothing to draw or the file cannot be written.
 pub fn save_png(chart: &Chart, path: &Path) -> Result<(), PlotError> {
     let bounds = Bounds::of(chart)?;
-    draw(
-        chart,
-        &bounds,
-        BitMapBackend::new(path, (WIDTH_PX, HEIGHT_PX)),
-    )
+    canvas::png(path, |root| paint(chart, &bounds, root))
 }
 
-type Area<B> = DrawingArea<B, Shift>;
 type Plane = Cartesian2d<RangedCoordf64, RangedCoordf64>;
-type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
-
-fn draw<B: DrawingBackend>(chart: &Chart, bounds: &Bounds, backend: B) -> Result<(), PlotError> {
-    register_font("sans-serif", FontStyle::Normal, dejavu::sans::regular())
-        .map_err(|_| PlotError::Font)?;
-    paint(chart, bounds, &backend.into_drawing_area())
-        .map_err(|error| PlotError::Draw(error.to_string()))
-}
 
 fn paint<B: DrawingBackend>(chart: &Chart, bounds: &Bounds, root: &Area<B>) -> Drawn<B> {
     root.fill(&WHITE)?;
@@ -125,8 +88,7 @@ fn paint<B: DrawingBackend>(chart: &Chart, bounds: &Bounds, root: &Area<B>) -> D
     for (line, colour) in chart.lines.iter().zip(COLOURS.iter().cycle()) {
         draw_line(line, colour, &mut context)?;
     }
-    draw_legend(chart, &legend)?;
-    root.present()
+    draw_legend(chart, &legend)
 }
 
 fn draw_axes<B: DrawingBackend>(chart: &Chart, context: &mut ChartContext<B, Plane>) -> Drawn<B> {
@@ -201,13 +163,6 @@ impl Bounds {
         let top = if room > 0.0 { y.1 + room } else { 1.0 };
         Ok(Self { x, y: (y.0, top) })
     }
-}
-
-fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
-    values.fold(None, |range, value| {
-        let (low, high) = range.unwrap_or((value, value));
-        Some((low.min(value), high.max(value)))
-    })
 }
 
 #[cfg(test)]

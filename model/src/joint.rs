@@ -92,6 +92,9 @@ impl<T: Scalar> Support<T> {
             torsion_nm_per_rad: twisting,
             ..
         } = self.joint;
+        if bending == T::zero() && twisting == T::zero() {
+            return Matrix3::zeros();
+        }
         if self.universal() {
             let angles = UniversalAngles::at(direction);
             angles.bending_stiffness() * bending + angles.torsion_stiffness(torsion) * twisting

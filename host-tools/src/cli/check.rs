@@ -1,10 +1,9 @@
 //! `leg check`.
 
-use super::{board, print};
+use super::{board, print, progress};
 use crate::check::{self, Bits, Report, RowReport};
 use crate::failure::Failure;
 use crate::precision::TABLE;
-use indicatif::{ProgressBar, ProgressStyle};
 use leg_firmware::kernels::Kernel;
 use serde::Serialize;
 use std::fmt::Write;
@@ -33,7 +32,7 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
     let mut link = board::qemu(verbose)?;
     let mut states = check::grid();
     states.extend(check::random(SAMPLE, SEED));
-    let progress = progress_bar(states.len() as u64);
+    let progress = progress::bar(states.len() as u64, "states");
     let checked = check::run(link.as_mut(), &TABLE, &states, || progress.inc(1));
     progress.finish_and_clear();
     let report = checked.map_err(|error| Failure::from_error(&error))?;
@@ -43,14 +42,6 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
         table(&report)
     })?;
     judge(&report)
-}
-
-fn progress_bar(length: u64) -> ProgressBar {
-    let bar = ProgressBar::new(length);
-    match ProgressStyle::with_template("{bar:40} {pos}/{len} states, {eta} left") {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    }
 }
 
 fn table(report: &Report) -> String {

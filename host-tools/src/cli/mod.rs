@@ -5,6 +5,9 @@ mod check;
 mod cost;
 mod eval;
 mod evaluator;
+mod map;
+mod map_report;
+mod progress;
 mod rig;
 mod run;
 mod run_report;
@@ -37,6 +40,7 @@ enum Command {
     Check(check::Args),
     Cost(cost::Args),
     Eval(eval::Args),
+    Map(map::Args),
     Rig(rig::Args),
     Run(run::Args),
     /// Installs what the other commands need: the Rust target, QEMU, and the firmware built for it.
@@ -53,6 +57,7 @@ pub fn main() -> ExitCode {
         Command::Check(args) => check::run(args, cli.verbose),
         Command::Cost(args) => cost::run(args, cli.verbose),
         Command::Eval(args) => eval::run(args, cli.verbose),
+        Command::Map(args) => map::run(args),
         Command::Rig(args) => rig::run(args),
         Command::Run(args) => run::run(args, cli.verbose),
         Command::Setup => setup::run(),

@@ -1,13 +1,12 @@
 //! `leg run`.
 
 use super::run_report::Report;
-use super::{board, print};
+use super::{board, print, progress};
 use crate::experiment::{self, BOUND_PERCENT, Fig9};
 use crate::failure::Failure;
 use crate::rig_file::RigFile;
 use crate::{atomic_file, image, plot};
 use clap::ValueEnum;
-use indicatif::{ProgressBar, ProgressStyle};
 use std::path::{Path, PathBuf};
 
 /// Lets the firmware evaluate the paper's Fig. 9 experiment, and sets it beside the paper and the model in f64.
@@ -47,7 +46,7 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
         On::Qemu => (board::qemu(verbose)?, "under QEMU"),
         On::Sim => (board::in_process()?, "in this process"),
     };
-    let progress = progress_bar(experiment::pose_count());
+    let progress = progress::bar(experiment::pose_count(), "poses");
     let measured = Fig9::measure(&rig, link.as_mut(), || progress.inc(1));
     progress.finish_and_clear();
     let fig9 = measured.map_err(|error| Failure::from_error(&error))?;
@@ -81,15 +80,6 @@ fn folder(args: &Args) -> PathBuf {
     args.plots
         .clone()
         .unwrap_or_else(|| image::workspace_root().join("target/leg-run"))
-}
-
-fn progress_bar(length: u64) -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} poses, {eta} left");
-    let bar = ProgressBar::new(length);
-    match style {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    }
 }
 
 /// Writes both files whole or not at all.

@@ -2,10 +2,10 @@
 
 use crate::experiment::{Curve, Fig9};
 use crate::failure::Failure;
+use crate::paths::from_here;
 use crate::rig_file::RigFile;
 use serde::Serialize;
-use std::env;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 const HEADING: &str = "\
 payload   paper max   firmware f32 max   host f64 max   off the paper
@@ -81,12 +81,6 @@ fn row(curve: &Curve) -> String {
         curve.firmware_max_mm(),
         curve.host_max_mm(),
     )
-}
-
-/// The path from the working directory, if it lies below it.
-fn from_here(path: &Path) -> PathBuf {
-    let here = env::current_dir().unwrap_or_default();
-    path.strip_prefix(here).unwrap_or(path).to_path_buf()
 }
 
 #[derive(Serialize)]

@@ -1,0 +1,13 @@
+//! Progress of long work, on a terminal only.
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// A bar of `length` steps, named by what they are.
+pub(super) fn bar(length: u64, steps: &str) -> ProgressBar {
+    let template = format!("{{bar:40}} {{pos}}/{{len}} {steps}, {{eta}} left");
+    let bar = ProgressBar::new(length);
+    match ProgressStyle::with_template(&template) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}

@@ -1,0 +1,82 @@
+//! From above: azimuth round, tilt outwards.
+
+use super::bands::Bands;
+use super::isolines::isolines;
+use super::runs::{Run, runs};
+use super::{Field, NOTHING};
+use crate::plot::canvas::{Area, Drawn, LABEL_PX};
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+/// Room for the labels round the map, in parts of its radius.
+const ROOM: f64 = 1.14;
+
+/// A piece of a circle is drawn in steps of this, degrees.
+const ARC_DEG: f64 = 2.0;
+
+pub(super) fn paint<B: DrawingBackend>(field: &Field, bands: &Bands, area: &Area<B>) -> Drawn<B> {
+    let edge = field.tilt_max_deg();
+    let (width, height) = area.dim_in_pixel();
+    let side = width.min(height);
+    let (left, top) = ((width - side) / 2, (height - side) / 2);
+    let square = area.margin(top, height - side - top, left, width - side - left);
+    let reach = -ROOM * edge..ROOM * edge;
+    let mut chart = ChartBuilder::on(&square).build_cartesian_2d(reach.clone(), reach)?;
+    for run in runs(field, bands) {
+        let colour = run.band.map_or(NOTHING, |band| bands.colour(band));
+        chart.draw_series([Polygon::new(sector(&run), colour.filled())])?;
+    }
+    for line in isolines(field, bands) {
+        let points = line.into_iter().map(|(azimuth, tilt)| at(azimuth, tilt));
+        chart.draw_series(LineSeries::new(points, BLACK.stroke_width(1)))?;
+    }
+    let text = ("sans-serif", LABEL_PX)
+        .into_text_style(area)
+        .pos(Pos::new(HPos::Center, VPos::Center));
+    for azimuth in (0..360).step_by(30).map(f64::from) {
+        let spoke = [at(azimuth, 0.0), at(azimuth, edge)];
+        chart.draw_series(LineSeries::new(spoke, WHITE.mix(0.5).stroke_width(1)))?;
+        let place = at(azimuth, 1.08 * edge);
+        chart.draw_series([Text::new(format!("{azimuth:.0}°"), place, text.clone())])?;
+    }
+    for ring in rings(edge) {
+        chart.draw_series(LineSeries::new(
+            circle(ring),
+            WHITE.mix(0.5).stroke_width(1),
+        ))?;
+        let style = text.color(&WHITE);
+        let place = at(75.0, ring - 0.04 * edge);
+        chart.draw_series([Text::new(format!("{ring:.0}°"), place, style)])?;
+    }
+    chart.draw_series(LineSeries::new(circle(edge), BLACK.stroke_width(1)))?;
+    Ok(())
+}
+
+/// Tilts to mark: every ten degrees or, in a small workspace, every five.
+fn rings(edge: f64) -> impl Iterator<Item = f64> {
+    let step = if edge > 15.0 { 10.0 } else { 5.0 };
+    (1..)
+        .map(move |i| step * f64::from(i))
+        .take_while(move |tilt| *tilt <= edge)
+}
+
+fn circle(tilt_deg: f64) -> impl Iterator<Item = (f64, f64)> {
+    (0..=180).map(move |step| at(2.0 * f64::from(step), tilt_deg))
+}
+
+/// Where a pose is, seen from above.
+fn at(azimuth_deg: f64, tilt_deg: f64) -> (f64, f64) {
+    let (sin, cos) = azimuth_deg.to_radians().sin_cos();
+    (tilt_deg * cos, tilt_deg * sin)
+}
+
+/// The outline of a run: along its outer arc and back along the inner one.
+fn sector(run: &Run) -> Vec<(f64, f64)> {
+    let (first, last) = run.azimuths_deg;
+    let steps = ((last - first) / ARC_DEG).ceil().max(1.0) as usize;
+    let azimuth = |step: usize| first + (last - first) * step as f64 / steps as f64;
+    let (inside, outside) = run.tilts_deg;
+    let outer = (0..=steps).map(|step| at(azimuth(step), outside));
+    let inner = (0..=steps).rev().map(|step| at(azimuth(step), inside));
+    outer.chain(inner).collect()
+}
