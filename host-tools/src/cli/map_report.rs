@@ -45,6 +45,7 @@ impl Report<'_> {
             .iter()
             .map(|(value, ..)| *value)
             .fold(f64::INFINITY, f64::min);
+        // Of equal ones the first: all azimuths are one pose at the vertical.
         let (largest, azimuth, tilt) = poses
             .into_iter()
             .max_by(|a, b| a.0.total_cmp(&b.0))

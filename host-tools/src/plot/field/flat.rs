@@ -29,7 +29,7 @@ pub(super) fn paint<B: DrawingBackend>(field: &Field, bands: &Bands, area: &Area
         .configure_mesh()
         .disable_mesh()
         .axis_style(BLACK)
-        .x_labels(13)
+        .x_labels(19)
         .y_labels(7)
         .x_label_formatter(&|azimuth| format!("{azimuth:.0}"))
         .y_label_formatter(&|tilt| format!("{tilt:.0}"))

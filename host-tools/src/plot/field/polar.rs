@@ -14,6 +14,9 @@ const ROOM: f64 = 1.14;
 /// A piece of a circle is drawn in steps of this, degrees.
 const ARC_DEG: f64 = 2.0;
 
+/// How far a piece reaches under the next, in parts of the radius.
+const OVERLAP: f64 = 0.006;
+
 pub(super) fn paint<B: DrawingBackend>(field: &Field, bands: &Bands, area: &Area<B>) -> Drawn<B> {
     let edge = field.tilt_max_deg();
     let (width, height) = area.dim_in_pixel();
@@ -23,6 +26,14 @@ pub(super) fn paint<B: DrawingBackend>(field: &Field, bands: &Bands, area: &Area
     let reach = -ROOM * edge..ROOM * edge;
     let mut chart = ChartBuilder::on(&square).build_cartesian_2d(reach.clone(), reach)?;
     for run in runs(field, bands) {
+        // The next row paints over what is too much: no gaps between the pieces.
+        let run = Run {
+            tilts_deg: (
+                run.tilts_deg.0,
+                (run.tilts_deg.1 + OVERLAP * edge).min(edge),
+            ),
+            ..run
+        };
         let colour = run.band.map_or(NOTHING, |band| bands.colour(band));
         chart.draw_series([Polygon::new(sector(&run), colour.filled())])?;
     }
