@@ -5,11 +5,12 @@ pub mod field;
 
 pub use canvas::PlotError;
 
+use crate::atomic_file;
 use canvas::{AXIS_TITLE_PX, Area, Drawn, GRID, LABEL_PX, MARGIN_PX, TITLE_PX, WIDTH_PX, range};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 const LEGEND_WIDTH_PX: u32 = 260;
 const LEGEND_ROW_PX: i32 = 36;
@@ -69,6 +70,17 @@ pub fn save_svg(chart: &Chart, path: &Path) -> Result<(), PlotError> {
 pub fn save_png(chart: &Chart, path: &Path) -> Result<(), PlotError> {
     let bounds = Bounds::of(chart)?;
     canvas::png(path, |root| paint(chart, &bounds, root))
+}
+
+/// Draws the chart as `stem.svg` and `stem.png`, each whole or not at all, and names the first.
+///
+/// # Errors
+/// As [`save_svg`].
+pub fn save_both(chart: &Chart, stem: &Path) -> Result<PathBuf, PlotError> {
+    let (svg, png) = (stem.with_extension("svg"), stem.with_extension("png"));
+    atomic_file::replace(&svg, |new| save_svg(chart, new))?;
+    atomic_file::replace(&png, |new| save_png(chart, new))?;
+    Ok(svg)
 }
 
 type Plane = Cartesian2d<RangedCoordf64, RangedCoordf64>;

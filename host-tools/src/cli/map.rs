@@ -6,8 +6,8 @@ use crate::failure::Failure;
 use crate::plot::field::{self, Layout};
 use crate::rig_file::RigFile;
 use crate::workspace_map::{Grid, Quantity, WorkspaceMap};
-use crate::{atomic_file, image, map_csv};
-use std::path::{Path, PathBuf};
+use crate::{image, map_csv};
+use std::path::PathBuf;
 
 /// Draws the rig over its workspace: deviation, stiffness, tension margin, feasible levels.
 #[derive(Debug, clap::Args)]
@@ -135,22 +135,14 @@ fn draw(args: &Args, rig: &RigFile, map: &WorkspaceMap) -> Result<Vec<PathBuf>, 
         let field = map.field(quantity, title);
         for (layout, suffix) in [(Layout::Flat, "contour"), (Layout::Polar, "polar")] {
             let stem = folder.join(format!("{}_{suffix}", quantity.name()));
-            pictures.push(save(&field, layout, &stem)?);
+            let picture = field::save_both(&field, layout, &stem).map_err(|error| {
+                let sentence = format!("no picture in {}: {error}", folder.display());
+                Failure::refused(sentence, "name another folder with --out")
+            });
+            pictures.push(picture?);
         }
     }
     Ok(pictures)
-}
-
-/// Writes an SVG and a PNG file, and names the SVG.
-fn save(field: &field::Field, layout: Layout, stem: &Path) -> Result<PathBuf, Failure> {
-    let (svg, png) = (stem.with_extension("svg"), stem.with_extension("png"));
-    atomic_file::replace(&svg, |new| field::save_svg(field, layout, new))
-        .and_then(|()| atomic_file::replace(&png, |new| field::save_png(field, layout, new)))
-        .map_err(|error| {
-            let sentence = format!("no picture {}: {error}", svg.display());
-            Failure::refused(sentence, "name another folder with --out")
-        })?;
-    Ok(svg)
 }
 
 fn capitalised(words: &str) -> String {

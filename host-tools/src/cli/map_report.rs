@@ -45,10 +45,14 @@ impl Report<'_> {
             .iter()
             .map(|(value, ..)| *value)
             .fold(f64::INFINITY, f64::min);
-        // Of equal ones the first: all azimuths are one pose at the vertical.
+        let most = poses
+            .iter()
+            .map(|(value, ..)| *value)
+            .fold(f64::NEG_INFINITY, f64::max);
+        // Of those that are equal but for rounding the first: all azimuths are one pose at the vertical.
         let (largest, azimuth, tilt) = poses
             .into_iter()
-            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .find(|(value, ..)| most - value <= 1e-9 * most.abs())
             .unwrap_or((f64::NAN, 0.0, 0.0));
         format!(
             "{:<26} {smallest:>10.3}    {largest:>10.3}  {:<8}  azimuth {azimuth:.1}°, tilt {tilt:.1}°\n",

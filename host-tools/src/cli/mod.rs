@@ -3,6 +3,8 @@
 mod board;
 mod check;
 mod cost;
+mod curve;
+mod curve_report;
 mod eval;
 mod evaluator;
 mod map;
@@ -39,6 +41,7 @@ Exit codes:
 enum Command {
     Check(check::Args),
     Cost(cost::Args),
+    Curve(curve::Args),
     Eval(eval::Args),
     Map(map::Args),
     Rig(rig::Args),
@@ -56,6 +59,7 @@ pub fn main() -> ExitCode {
     let ended = match &cli.command {
         Command::Check(args) => check::run(args, cli.verbose),
         Command::Cost(args) => cost::run(args, cli.verbose),
+        Command::Curve(args) => curve::run(args),
         Command::Eval(args) => eval::run(args, cli.verbose),
         Command::Map(args) => map::run(args),
         Command::Rig(args) => rig::run(args),

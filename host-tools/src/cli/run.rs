@@ -5,7 +5,7 @@ use super::{board, print, progress};
 use crate::experiment::{self, BOUND_PERCENT, Fig9};
 use crate::failure::Failure;
 use crate::rig_file::RigFile;
-use crate::{atomic_file, image, plot};
+use crate::{image, plot};
 use clap::ValueEnum;
 use std::path::{Path, PathBuf};
 
@@ -50,12 +50,12 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
     let measured = Fig9::measure(&rig, link.as_mut(), || progress.inc(1));
     progress.finish_and_clear();
     let fig9 = measured.map_err(|error| Failure::from_error(&error))?;
-    let plots = draw(&fig9, place, &folder(args))?;
+    let plot = draw(&fig9, place, &folder(args))?;
     let report = Report {
         rig: &rig,
         place,
         fig9: &fig9,
-        plots: &plots,
+        plot: &plot,
     };
     print(&if args.json {
         report.json()?
@@ -82,22 +82,12 @@ fn folder(args: &Args) -> PathBuf {
         .unwrap_or_else(|| image::workspace_root().join("target/leg-run"))
 }
 
-/// Writes both files whole or not at all.
-fn draw(fig9: &Fig9, place: &str, folder: &Path) -> Result<[PathBuf; 2], Failure> {
-    let chart = fig9.chart(format!(
-        "Fig. 9: deviation of the tip, firmware in f32 {place}"
-    ));
-    let files = [folder.join("fig9.svg"), folder.join("fig9.png")];
-    let [svg, png] = &files;
-    atomic_file::replace(svg, |new| plot::save_svg(&chart, new))
-        .and_then(|()| atomic_file::replace(png, |new| plot::save_png(&chart, new)))
-        .map_err(|error| {
-            Failure::refused(
-                format!("no plots in {}: {error}", folder.display()),
-                "name another folder with --plots",
-            )
-        })?;
-    Ok(files)
+fn draw(fig9: &Fig9, place: &str, folder: &Path) -> Result<PathBuf, Failure> {
+    let title = format!("Fig. 9: deviation of the tip, firmware in f32 {place}");
+    plot::save_both(&fig9.chart(title), &folder.join("fig9")).map_err(|error| {
+        let sentence = format!("no plots in {}: {error}", folder.display());
+        Failure::refused(sentence, "name another folder with --plots")
+    })
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::paths::from_here;
 use crate::rig_file::RigFile;
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::Path;
 
 const HEADING: &str = "\
 payload   paper max   firmware f32 max   host f64 max   off the paper
@@ -18,7 +18,8 @@ pub(super) struct Report<'a> {
     /// Where the firmware ran.
     pub(super) place: &'static str,
     pub(super) fig9: &'a Fig9,
-    pub(super) plots: &'a [PathBuf; 2],
+    /// The SVG file; the PNG file is beside it.
+    pub(super) plot: &'a Path,
 }
 
 impl Report<'_> {
@@ -40,11 +41,9 @@ impl Report<'_> {
         let other_rig = "\nThe paper's maxima are left out: this is not the paper's rig.\n";
         let paper = if self.rig.is_table_1() { "" } else { other_rig };
         let difference = self.fig9.largest_difference_mm();
-        let [svg, png] = self.plots;
         format!(
-            "{paper}\nLargest difference between f32 and f64: {difference:.1e} mm\nPlots: {}, {}\n",
-            from_here(svg).display(),
-            from_here(png).display(),
+            "{paper}\nLargest difference between f32 and f64: {difference:.1e} mm\nPlot: {} (and .png)\n",
+            from_here(self.plot).display(),
         )
     }
 
@@ -59,7 +58,7 @@ impl Report<'_> {
             maxima: self.fig9.curves.iter().map(Maxima::of).collect(),
             largest_difference_mm: self.fig9.largest_difference_mm(),
             held: self.fig9.held(),
-            plots: self.plots,
+            plot: self.plot,
         };
         match serde_json::to_string(&report) {
             Ok(json) => Ok(json + "\n"),
@@ -94,7 +93,7 @@ struct JsonReport<'a> {
     maxima: Vec<Maxima>,
     largest_difference_mm: f64,
     held: bool,
-    plots: &'a [PathBuf; 2],
+    plot: &'a Path,
 }
 
 #[derive(Serialize)]

@@ -7,10 +7,11 @@ mod polar;
 mod runs;
 
 use super::canvas::{self, Area, Drawn, LABEL_PX, MARGIN_PX, PlotError, TITLE_PX, WIDTH_PX, range};
+use crate::atomic_file;
 use bands::Bands;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Pose without a value.
 const NOTHING: RGBColor = RGBColor(200, 200, 200);
@@ -58,6 +59,17 @@ pub fn save_svg(field: &Field, layout: Layout, path: &Path) -> Result<(), PlotEr
 pub fn save_png(field: &Field, layout: Layout, path: &Path) -> Result<(), PlotError> {
     let bands = field.bands()?;
     canvas::png(path, |root| paint(field, &bands, layout, root))
+}
+
+/// Draws the map as `stem.svg` and `stem.png`, each whole or not at all, and names the first.
+///
+/// # Errors
+/// As [`save_svg`].
+pub fn save_both(field: &Field, layout: Layout, stem: &Path) -> Result<PathBuf, PlotError> {
+    let (svg, png) = (stem.with_extension("svg"), stem.with_extension("png"));
+    atomic_file::replace(&svg, |new| save_svg(field, layout, new))?;
+    atomic_file::replace(&png, |new| save_png(field, layout, new))?;
+    Ok(svg)
 }
 
 impl Field {

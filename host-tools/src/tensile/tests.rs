@@ -1,0 +1,155 @@
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use super::{Fit, TensileError, read};
+use leg_model::{CurvePoint, Elasticity, TendonCurve};
+use std::fmt::Write;
+use std::path::Path;
+
+fn paper() -> TendonCurve<f64> {
+    TendonCurve::new(&CurvePoint::<f64>::PAPER).unwrap()
+}
+
+fn fit(text: &str) -> Result<Fit, TensileError> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("test.csv");
+    std::fs::write(&path, text).unwrap();
+    Fit::new(&read(&path)?, None)
+}
+
+/// A test of the paper's tendon in newtons and millimetres, with slack and a lag on the way back.
+fn sampled(step_n: f64, take_up_mm: f64, lag_mm: f64) -> String {
+    let mut text = String::from("force_n,elongation_mm\n");
+    let elongation_mm = |force: f64| take_up_mm + 1e3 * paper().elongation(force).unwrap();
+    if take_up_mm > 0.0 {
+        writeln!(text, "0,0\n0.05,{}", 0.6 * take_up_mm).unwrap();
+    }
+    let steps = (199.0 / step_n) as i32;
+    for step in 1..=steps {
+        let force = step_n * f64::from(step);
+        writeln!(text, "{force},{}", elongation_mm(force)).unwrap();
+    }
+    if lag_mm > 0.0 {
+        for step in (1..steps).rev() {
+            let force = step_n * f64::from(step);
+            let lag = lag_mm * (1.0 - force / (step_n * f64::from(steps)));
+            writeln!(text, "{force},{}", elongation_mm(force) + lag).unwrap();
+        }
+    }
+    text
+}
+
+fn assert_papers(fit: &Fit, elongation_m: f64, stiffness: f64) {
+    let found = TendonCurve::new(&fit.points).unwrap();
+    for force in [5.0, 9.0, 20.0, 50.0, 70.0, 100.0, 150.0, 190.0] {
+        let off = found.elongation(force).unwrap() - paper().elongation(force).unwrap();
+        assert!(off.abs() < elongation_m, "{force} N: {off:e} m");
+        let ratio = found.stiffness(force).unwrap() / paper().stiffness(force).unwrap();
+        assert!((ratio - 1.0).abs() < stiffness, "{force} N: {ratio}");
+    }
+}
+
+#[test]
+fn the_papers_curve_comes_back() {
+    let found = fit(&sampled(0.5, 0.0, 0.0)).unwrap();
+    assert_papers(&found, 2e-6, 0.04);
+    assert!(found.take_up_m.abs() < 2e-6);
+    assert!(found.error_max_m < 2e-6 && found.error_rms_m <= found.error_max_m);
+    assert!(found.points.len() <= 16 && found.hysteresis.is_none());
+}
+
+#[test]
+fn take_up_and_the_way_back_leave_the_curve_as_it_is() {
+    let found = fit(&sampled(0.5, 0.8, 0.05)).unwrap();
+    assert_papers(&found, 2e-6, 0.04);
+    assert!(
+        (found.take_up_m - 0.8e-3).abs() < 2e-6,
+        "{}",
+        found.take_up_m
+    );
+    let hysteresis = found.hysteresis.unwrap();
+    assert!(
+        (hysteresis.elongation_m - 0.05e-3).abs() < 1e-6,
+        "{hysteresis:?}"
+    );
+    assert!((0.005..0.05).contains(&hysteresis.lost), "{hysteresis:?}");
+}
+
+#[test]
+fn units_are_read_from_the_header() {
+    let rows = "1,0.1\n2,0.3\n4,0.5\n";
+    let newtons = fit(&format!("force_n,elongation_mm\n{rows}")).unwrap();
+    let kilo = fit(&format!("# by hand\n\nforce_kn, elongation_um\n{rows}")).unwrap();
+    for (a, b) in newtons.points.iter().zip(&kilo.points) {
+        assert!((a.tension_n * 1e3 - b.tension_n).abs() < 1e-9);
+        assert!((a.elongation_m * 1e-3 - b.elongation_m).abs() < 1e-15);
+    }
+    let swapped = fit("elongation_m,force_n\n0.1,1\n0.3,2\n0.5,4\n").unwrap();
+    assert!((swapped.points[2].elongation_m / newtons.points[2].elongation_m - 1e3).abs() < 1e-9);
+}
+
+#[test]
+fn noise_that_was_averaged_away_does_not_bend_the_curve() {
+    let mut rng = fastrand::Rng::with_seed(3);
+    let mut text = String::from("force_n,elongation_mm\n");
+    for step in 1..=60 {
+        let force = 3.3 * f64::from(step);
+        let noise = 2e-4 * (2.0 * rng.f64() - 1.0);
+        writeln!(
+            text,
+            "{force},{}",
+            1e3 * paper().elongation(force).unwrap() + noise
+        )
+        .unwrap();
+    }
+    let found = fit(&text).unwrap();
+    let curve = TendonCurve::new(&found.points).unwrap();
+    for force in [30.0, 70.0, 150.0] {
+        let ratio = curve.stiffness(force).unwrap() / paper().stiffness(force).unwrap();
+        assert!((ratio - 1.0).abs() < 0.05, "{force} N: {ratio}");
+    }
+}
+
+#[test]
+fn what_is_wrong_is_named_with_its_place() {
+    let cases = [
+        (
+            "force_lbf,elongation_mm\n1,1\n",
+            "line 1, column 1: the unit of `force_lbf`",
+        ),
+        ("force_n,time_s\n1,1\n", "line 1, column 2: `time_s`"),
+        ("force_n,force_kn\n1,1\n", "names 2 columns for the force"),
+        ("force_n\n1\n", "names 0 columns for the elongation"),
+        (
+            "force_n,elongation_mm\n1,1\n2,\n",
+            "line 3, column 2: nothing is there",
+        ),
+        (
+            "force_n,elongation_mm\n1,1\n2,x\n",
+            "line 3, column 2: `x` is no finite number",
+        ),
+        (
+            "force_n,elongation_mm\n1,1\nNaN,2\n",
+            "line 3, column 1: `NaN` is no finite number",
+        ),
+        (
+            "force_n,elongation_mm\n1,1\n2,2\n2,3\n3,4\n",
+            "line 4: the force is that of line 3",
+        ),
+        (
+            "force_n,elongation_mm\n1,1\n3,2\n2,3\n4,4\n",
+            "line 4: the force goes backwards from line 3",
+        ),
+        (
+            "force_n,elongation_mm\n1,1\n2,2\n3,1.5\n4,4\n",
+            "line 4: the elongation goes backwards",
+        ),
+        ("force_n,elongation_mm\n1,1\n2,2\n", "has 2 taut rows"),
+        ("force_n,elongation_mm\n", "has 0 taut rows"),
+        ("force_n,elongation_mm\n1,1,1\n", "cannot read"),
+    ];
+    for (text, wanted) in cases {
+        let error = fit(text).unwrap_err().to_string();
+        assert!(error.contains(wanted), "{text:?}: {error}");
+    }
+    assert!(read(Path::new("nowhere.csv")).is_err());
+}
