@@ -1,7 +1,6 @@
 //! What the tests across the crates share.
 
-pub mod numeric;
-pub mod reference;
+pub use leg_host_tools::{numeric, plain_vectors as reference};
 
 use leg_model::{Error, Scalar, Tendon};
 use serde_json::Value;

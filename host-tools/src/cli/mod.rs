@@ -9,6 +9,7 @@ mod eval;
 mod evaluator;
 mod map;
 mod map_report;
+mod paper;
 mod progress;
 mod rig;
 mod run;
@@ -44,6 +45,7 @@ enum Command {
     Curve(curve::Args),
     Eval(eval::Args),
     Map(map::Args),
+    Paper(paper::Args),
     Rig(rig::Args),
     Run(run::Args),
     /// Installs what the other commands need: the Rust target, QEMU, and the firmware built for it.
@@ -62,6 +64,7 @@ pub fn main() -> ExitCode {
         Command::Curve(args) => curve::run(args),
         Command::Eval(args) => eval::run(args, cli.verbose),
         Command::Map(args) => map::run(args),
+        Command::Paper(args) => paper::run(args),
         Command::Rig(args) => rig::run(args),
         Command::Run(args) => run::run(args, cli.verbose),
         Command::Setup => setup::run(),

@@ -115,14 +115,17 @@ fn with_slopes(rows: &[Row]) -> Vec<CurvePoint<f64>> {
     let width = |i: usize| places[i + 1].0 - places[i].0;
     let stiffness = |i: usize| width(i) / (places[i + 1].1 - places[i].1);
     let last = places.len() - 1;
+    // The stiffness is the weighted mean of those beside it, the nearer one the heavier.
+    let inner = |i: usize| {
+        let (before, after) = (width(i - 1), width(i));
+        (after * stiffness(i - 1) + before * stiffness(i)) / (before + after)
+    };
+    // At an end it goes on as it changed, but not below half of what is beside it.
+    let end = |beside: f64, inner: f64| (2.0 * beside - inner).max(0.5 * beside);
     let at = |i: usize| match i {
-        0 => stiffness(0),
-        _ if i == last => stiffness(last - 1),
-        _ => {
-            // The stiffness is the weighted mean of those beside it, the nearer one the heavier.
-            let (before, after) = (width(i - 1), width(i));
-            (after * stiffness(i - 1) + before * stiffness(i)) / (before + after)
-        }
+        0 => end(stiffness(0), inner(1)),
+        _ if i == last => end(stiffness(last - 1), inner(last - 1)),
+        _ => inner(i),
     };
     let point = |(i, &(tension_n, elongation_m)): (usize, &(f64, f64))| CurvePoint {
         tension_n,

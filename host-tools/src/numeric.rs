@@ -7,12 +7,14 @@ use nalgebra::{SMatrix, SVector, Vector3};
 const STEP_RAD: f64 = 1e-3;
 
 /// Derivative of `f` at zero, by central differences of fourth order.
+#[must_use]
 pub fn derivative<const M: usize>(f: impl Fn(f64) -> SVector<f64, M>) -> SVector<f64, M> {
     let slope = |step: f64| (f(step) - f(-step)) / (2.0 * step);
     (slope(STEP_RAD) * 4.0 - slope(2.0 * STEP_RAD)) / 3.0
 }
 
 /// Derivative of `f` by its rotation vector, at zero.
+#[must_use]
 pub fn by_rotation<const M: usize>(
     f: impl Fn(Vector3<f64>) -> SVector<f64, M>,
 ) -> SMatrix<f64, M, 3> {

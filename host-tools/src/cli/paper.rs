@@ -1,0 +1,98 @@
+//! `leg paper`.
+
+use super::print;
+use crate::failure::Failure;
+use crate::paper::{self, Paper, Row, Verdict};
+use crate::paths::from_here;
+use crate::{atomic_file, image};
+use std::path::{Path, PathBuf};
+
+/// Lays every number that the paper publishes beside ours, draws its figures 6, 9 and 10, and shows its errata.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The folder for report.md and the figures; target/leg-paper in the workspace if left out.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Prints JSON instead of a table.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A [`Failure`]: files that cannot be written, or a verdict that is not the one that is known.
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let default = || image::workspace_root().join("target/leg-paper");
+    let folder = args.out.clone().unwrap_or_else(default);
+    let computed = Paper::compute().map_err(|error| Failure::from_error(&error))?;
+    let report = write(&computed, &folder)?;
+    print(&if args.json {
+        json(&computed)?
+    } else {
+        table(&computed, &report)
+    })?;
+    judge(&computed)
+}
+
+fn write(computed: &Paper, folder: &Path) -> Result<PathBuf, Failure> {
+    let refused = |error: &dyn std::error::Error| {
+        let sentence = format!("no report in {}: {error}", folder.display());
+        Failure::refused(sentence, "name another folder with --out")
+    };
+    let figures = paper::draw(folder).map_err(|error| refused(&error))?;
+    let report = folder.join("report.md");
+    let text = paper::markdown(computed, &figures);
+    atomic_file::replace(&report, |new| std::fs::write(new, &text))
+        .map_err(|error: std::io::Error| refused(&error))?;
+    Ok(report)
+}
+
+fn table(computed: &Paper, report: &Path) -> String {
+    let heading = format!(
+        "{:>10} {:>11}  {:<8} {:<8} {}\n",
+        "published", "ours", "unit", "verdict", "what"
+    );
+    let row = |row: &Row| {
+        format!(
+            "{:>10.*} {:>11.*}  {:<8} {:<8} {}\n",
+            row.decimals,
+            row.published,
+            row.decimals,
+            row.ours,
+            row.unit,
+            row.verdict().word(),
+            row.what
+        )
+    };
+    let rows: String = computed.rows.iter().map(row).collect();
+    let differing = computed
+        .rows
+        .iter()
+        .filter(|row| row.verdict() == Verdict::Differs);
+    let reasons: String = differing
+        .map(|row| format!("* {}: {}\n", row.what, row.why))
+        .collect();
+    format!(
+        "{heading}{rows}\nWhat differs, and why:\n{reasons}\n{} errors of the print are shown by their numbers in the report.\nReport: {}\n",
+        computed.errata.len(),
+        from_here(report).display()
+    )
+}
+
+fn json(computed: &Paper) -> Result<String, Failure> {
+    match serde_json::to_string(computed) {
+        Ok(json) => Ok(json + "\n"),
+        Err(error) => Err(Failure::from_error(&error)),
+    }
+}
+
+fn judge(computed: &Paper) -> Result<(), Failure> {
+    let surprises: Vec<&str> = computed.surprises().map(|row| row.what.as_str()).collect();
+    if surprises.is_empty() {
+        return Ok(());
+    }
+    let sentence = format!("a verdict is not the known one: {}", surprises.join("; "));
+    let help = "look for what changed in the model before you change what is known in paper/";
+    Err(Failure::missed(sentence, help))
+}

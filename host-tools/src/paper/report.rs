@@ -1,0 +1,130 @@
+//! The report: what is published beside what is computed, in Markdown.
+
+use super::row::{Meaning, Row, Topic};
+use super::{Erratum, Paper};
+use std::path::{Path, PathBuf};
+
+const INTRODUCTION: &str = "\
+# The paper's numbers beside ours
+
+Ma, Yu, Dong, Axinte, \"Design and stiffness analysis of a class of 2-DoF tendon driven parallel kinematics mechanism\".
+Every number in the columns \"ours\" and \"difference\" was computed when this report was written, on the rig of Table 1
+with the leg's mass from the note in Fig. 9, at a level of 70 N.
+
+";
+
+const NOT_COMPARED: &str = "\
+## What cannot be compared
+
+The paper's experiment (circles of Fig. 9, average error 3.4 %, 0.9 % to 4.7 % over the workspace) and its simulation
+are published as pictures only. The slope of the stiffness over the tension and the pretension of the experiment cannot
+be told apart from what is printed: the default curve's choice is stated in its rig file.
+
+";
+
+/// The whole report; figures are named relative to its folder.
+#[must_use]
+pub fn markdown(paper: &Paper, figures: &[(PathBuf, &'static str)]) -> String {
+    let topics = Topic::ALL.map(|topic| table(topic, paper));
+    [
+        INTRODUCTION.to_owned(),
+        summary(paper),
+        topics.concat(),
+        errata(&paper.errata),
+        pictures(figures),
+        NOT_COMPARED.to_owned(),
+    ]
+    .concat()
+}
+
+fn summary(paper: &Paper) -> String {
+    let differing = paper
+        .rows
+        .iter()
+        .filter(|row| row.verdict() == super::Verdict::Differs);
+    let list: String = differing
+        .map(|row| {
+            format!(
+                "- {} ({} {}): {}.\n",
+                row.what,
+                number(row, row.ours),
+                row.unit,
+                row.why
+            )
+        })
+        .collect();
+    format!("## What does not agree\n\n{list}\n")
+}
+
+fn table(topic: Topic, paper: &Paper) -> String {
+    let rows: String = paper
+        .rows
+        .iter()
+        .filter(|row| row.topic == topic)
+        .map(|row| {
+            let limit = match row.meaning {
+                Meaning::Value => "",
+                Meaning::AtMost => "≤ ",
+            };
+            format!(
+                "| {} | {limit}{} | {} | {:+.*} | {} | {} | {} |\n",
+                row.what,
+                number(row, row.published),
+                number(row, row.ours),
+                row.decimals,
+                row.difference(),
+                row.unit,
+                row.verdict().word(),
+                row.why
+            )
+        })
+        .collect();
+    format!(
+        "## {}\n\n| what | published | ours | difference | unit | verdict | why |\n|---|---|---|---|---|---|---|\n{rows}\n",
+        topic.heading()
+    )
+}
+
+fn number(row: &Row, value: f64) -> String {
+    format!("{value:.*}", row.decimals)
+}
+
+fn errata(errata: &[Erratum]) -> String {
+    let place = match errata.first() {
+        Some(_) => "at azimuth 30°, tilt 30° with 2 kg where a pose is needed",
+        None => return String::new(),
+    };
+    let rows: String = errata
+        .iter()
+        .map(|erratum| {
+            format!(
+                "| {} | {} | {} | {} | {:.6} | {:.6} | {} |\n",
+                erratum.place,
+                erratum.wrong,
+                erratum.right,
+                erratum.number,
+                erratum.printed,
+                erratum.corrected,
+                erratum.unit
+            )
+        })
+        .collect();
+    format!(
+        "## Errors of the print\n\nEach is shown by a number, {place}.\n\n\
+         | where | wrong | right | number | as printed | corrected | unit |\n|---|---|---|---|---|---|---|\n{rows}\n"
+    )
+}
+
+fn pictures(figures: &[(PathBuf, &'static str)]) -> String {
+    let name = |path: &Path| {
+        path.file_name()
+            .map(|name| name.to_string_lossy().into_owned())
+    };
+    let pictures: String = figures
+        .iter()
+        .filter_map(|(path, caption)| {
+            Some(format!("![{caption}]({})\n\n{caption}.\n\n", name(path)?))
+        })
+        .collect();
+    format!("## Figures\n\n{pictures}")
+}

@@ -1,0 +1,89 @@
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use super::{Paper, Verdict, draw, markdown};
+
+fn ours(paper: &Paper, what: &str) -> f64 {
+    let row = paper.rows.iter().find(|row| row.what.contains(what));
+    row.unwrap_or_else(|| panic!("no row {what}")).ours
+}
+
+fn assert_near(paper: &Paper, what: &str, expected: f64, within: f64) {
+    let found = ours(paper, what);
+    assert!((found - expected).abs() <= within, "{what}: {found}");
+}
+
+#[test]
+fn every_verdict_is_the_known_one() {
+    let paper = Paper::compute().unwrap();
+    let surprises: Vec<_> = paper.surprises().collect();
+    assert!(surprises.is_empty(), "{surprises:#?}");
+    let differing = paper
+        .rows
+        .iter()
+        .filter(|row| row.verdict() == Verdict::Differs);
+    assert!((3..=8).contains(&differing.count()));
+}
+
+#[test]
+fn the_numbers_are_the_known_ones() {
+    let paper = Paper::compute().unwrap();
+    let deviations = [(0.0, 2.022), (0.5, 3.635), (1.0, 5.238), (2.0, 8.417)];
+    for (payload, expected) in deviations {
+        assert_near(
+            &paper,
+            &format!("largest deviation with {payload} kg"),
+            expected,
+            0.002,
+        );
+    }
+    assert_near(&paper, "on average", 3.9, 0.1);
+    assert_near(&paper, "load's own stiffness, at most", 0.5, 0.1);
+    for (tilt, expected) in [(10, 0.15), (20, 1.34), (30, 5.46)] {
+        assert_near(&paper, &format!("at a tilt of {tilt}°"), expected, 0.006);
+    }
+    assert_near(&paper, "Eq. (24), L_upper = 6 mm: moment", 99.93, 0.005);
+    assert_near(&paper, "Eq. (25), L_upper = 0: moment", 100.03, 0.005);
+}
+
+#[test]
+fn every_erratum_has_two_numbers_that_differ() {
+    let paper = Paper::compute().unwrap();
+    assert_eq!(paper.errata.len(), 14);
+    for erratum in &paper.errata {
+        let scale = erratum.printed.abs().max(erratum.corrected.abs());
+        let difference = (erratum.printed - erratum.corrected).abs();
+        assert!(difference > 0.15 * scale, "{erratum:?}");
+    }
+    let of = |place: &str| {
+        paper
+            .errata
+            .iter()
+            .find(|erratum| erratum.place == place)
+            .unwrap()
+    };
+    assert!(of("Eq. (1)").corrected < 1e-14 && of("Eq. (15)").corrected < 1e-7);
+    assert!(of("Eqs. (5), (6), (23)").corrected < 1e-12);
+    assert!((of("Sec. 4").corrected / of("Sec. 4").printed - 32.0 / 15.0).abs() < 1e-9);
+}
+
+#[test]
+fn the_report_names_every_row_and_every_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let figures = draw(folder.path()).unwrap();
+    assert_eq!(figures.len(), 6);
+    let paper = Paper::compute().unwrap();
+    let report = markdown(&paper, &figures);
+    for (path, caption) in &figures {
+        assert!(path.exists() && path.with_extension("png").exists());
+        let name = path.file_name().unwrap().to_str().unwrap();
+        assert!(report.contains(&format!("![{caption}]({name})")));
+    }
+    for row in &paper.rows {
+        assert!(
+            report.contains(&row.what) && report.contains(row.why),
+            "{}",
+            row.what
+        );
+    }
+    assert!(!report.contains("NaN"));
+}
