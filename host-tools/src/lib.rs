@@ -13,6 +13,7 @@ pub mod jsonl;
 pub mod line_error;
 pub mod link;
 pub mod map_csv;
+pub mod mjcf;
 pub mod nonlinear;
 mod paths;
 pub mod plot;

@@ -1,5 +1,6 @@
 //! What the tests across the crates share.
 
+pub mod mujoco;
 pub mod numeric;
 pub mod reference;
 

@@ -5,6 +5,7 @@ mod check;
 mod cost;
 mod eval;
 mod evaluator;
+mod export;
 mod map;
 mod map_report;
 mod progress;
@@ -40,6 +41,7 @@ enum Command {
     Check(check::Args),
     Cost(cost::Args),
     Eval(eval::Args),
+    Export(export::Args),
     Map(map::Args),
     Rig(rig::Args),
     Run(run::Args),
@@ -57,6 +59,7 @@ pub fn main() -> ExitCode {
         Command::Check(args) => check::run(args, cli.verbose),
         Command::Cost(args) => cost::run(args, cli.verbose),
         Command::Eval(args) => eval::run(args, cli.verbose),
+        Command::Export(args) => export::run(args),
         Command::Map(args) => map::run(args),
         Command::Rig(args) => rig::run(args),
         Command::Run(args) => run::run(args, cli.verbose),
@@ -74,8 +77,11 @@ pub fn main() -> ExitCode {
 /// Writes to standard output.
 fn print(text: &str) -> Result<(), Failure> {
     let written = io::stdout().lock().write_all(text.as_bytes());
-    written.map_err(|error| {
-        let help = "see that the program that reads the output is still there";
-        Failure::refused(format!("cannot write to standard output: {error}"), help)
-    })
+    written.map_err(not_printed)
+}
+
+/// Standard output does not take more.
+fn not_printed(error: io::Error) -> Failure {
+    let help = "see that the program that reads the output is still there";
+    Failure::refused(format!("cannot write to standard output: {error}"), help)
 }
