@@ -43,7 +43,9 @@ pub enum MjcfError {
     Infeasible,
     /// The level gives a tension outside its bounds.
     #[error(
-        "the level {level_n} N leaves a tension outside its bounds at this pose under this load: give a level from {lowest_n:.2} to {highest_n:.2} N"
+        "the level {level_n} N leaves a tension outside its bounds at this pose under this load: give a level from {lowest:.2} to {highest:.2} N",
+        lowest = (lowest_n * 100.0).ceil() / 100.0,
+        highest = (highest_n * 100.0).floor() / 100.0
     )]
     Level {
         /// The level, N.

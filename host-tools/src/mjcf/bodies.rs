@@ -132,14 +132,15 @@ fn joint_element(leg: &HeldLeg, joint: &Joint) -> Element {
         Shape::Ball => element.text("type", "ball"),
         Shape::Hinge(axis) => element.text("type", "hinge").numbers("axis", &axis),
     };
-    let element = element
-        .numbers("stiffness", &[joint.spring])
-        .numbers("damping", &[joint.damping * leg.damping_nm_s_per_rad()]);
+    let element = element.numbers("damping", &[joint.damping * leg.damping_nm_s_per_rad()]);
+    let element = if joint.spring > 0.0 {
+        element.numbers("stiffness", &[joint.spring])
+    } else {
+        element
+    };
     if joint.tied {
-        element.numbers(
-            "armature",
-            &[TIED_ARMATURE_RATIO * leg.tilt_inertia_kg_m2()],
-        )
+        let armature = TIED_ARMATURE_RATIO * leg.tilt_inertia_kg_m2();
+        element.numbers("armature", &[armature])
     } else {
         element
     }
