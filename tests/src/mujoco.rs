@@ -53,6 +53,8 @@ pub fn python(folder: &Path) -> Result<PathBuf, MujocoError> {
     let python = environment.join("bin/python");
     let ready = fs::read_to_string(&installed).is_ok_and(|text| text == REQUIREMENTS);
     if !(ready && python.is_file()) {
+        // An environment that is made only in part is not taken for a whole one.
+        fs::write(&installed, "").map_err(failed)?;
         make(&environment, &python)?;
         fs::write(&installed, REQUIREMENTS).map_err(failed)?;
     }
