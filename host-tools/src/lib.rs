@@ -14,6 +14,7 @@ pub mod jsonl;
 pub mod line_error;
 pub mod link;
 pub mod map_csv;
+pub mod mjcf;
 pub mod nonlinear;
 pub mod numeric;
 pub mod paper;

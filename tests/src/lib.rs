@@ -1,5 +1,7 @@
 //! What the tests across the crates share.
 
+pub mod mujoco;
+
 pub use leg_host_tools::{numeric, plain_vectors as reference};
 
 use leg_model::{Error, Scalar, Tendon};

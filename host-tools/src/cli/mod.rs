@@ -7,6 +7,7 @@ mod curve;
 mod curve_report;
 mod eval;
 mod evaluator;
+mod export;
 mod map;
 mod map_report;
 mod paper;
@@ -44,6 +45,7 @@ enum Command {
     Cost(cost::Args),
     Curve(curve::Args),
     Eval(eval::Args),
+    Export(export::Args),
     Map(map::Args),
     Paper(paper::Args),
     Rig(rig::Args),
@@ -63,6 +65,7 @@ pub fn main() -> ExitCode {
         Command::Cost(args) => cost::run(args, cli.verbose),
         Command::Curve(args) => curve::run(args),
         Command::Eval(args) => eval::run(args, cli.verbose),
+        Command::Export(args) => export::run(args),
         Command::Map(args) => map::run(args),
         Command::Paper(args) => paper::run(args),
         Command::Rig(args) => rig::run(args),
@@ -81,8 +84,11 @@ pub fn main() -> ExitCode {
 /// Writes to standard output.
 fn print(text: &str) -> Result<(), Failure> {
     let written = io::stdout().lock().write_all(text.as_bytes());
-    written.map_err(|error| {
-        let help = "see that the program that reads the output is still there";
-        Failure::refused(format!("cannot write to standard output: {error}"), help)
-    })
+    written.map_err(not_printed)
+}
+
+/// Standard output does not take more.
+fn not_printed(error: io::Error) -> Failure {
+    let help = "see that the program that reads the output is still there";
+    Failure::refused(format!("cannot write to standard output: {error}"), help)
 }

@@ -168,7 +168,7 @@ impl<'a> Shown<'a> {
             place: "Eqs. (12), (14)",
             wrong: "∂n/∂ψ is called zero",
             right: "the tendons turn as the leg does",
-            number: "largest |e × ∂n/∂ψ|",
+            number: "largest magnitude of e × ∂n/∂ψ",
             printed: 0.0,
             corrected: (0..3).map(norm).fold(0.0, f64::max),
             unit: "mm/rad",

@@ -1,0 +1,95 @@
+"""What MuJoCo says of exported legs.
+
+Reads a JSON list of jobs from standard input and writes a JSON list of answers. A job names a model file (`model`),
+other payloads for it (`other_payloads_kg`) and whether to let it fall into place from the vertical (`settle`). SI units.
+"""
+
+import json
+import sys
+
+import mujoco
+import numpy as np
+
+STEP_RAD = 1e-6  # of the central differences
+CONVERGED_RAD = 1e-11
+STEPS_MAX = 50
+SETTLED_RAD_PER_S = 1e-8
+SETTLE_STEPS_MAX = 200_000
+
+
+def answer(job):
+    model = mujoco.MjModel.from_xml_path(job["model"])
+    model.opt.tolerance = 0.0  # the constraint solver goes on to its rounding
+    held = model.key("held").qpos
+    found = at_pose(model, held)
+    found["tip_at_rest_m"] = tip_at_rest(model, held)
+    found["tip_settled_m"] = tip_settled(model) if job["settle"] else None
+    payload = model.body("payload")
+    found["other_tips_at_rest_m"] = []
+    for mass_kg in job["other_payloads_kg"]:
+        payload.mass[0] = mass_kg
+        found["other_tips_at_rest_m"].append(tip_at_rest(model, held))
+    return found
+
+
+def at_pose(model, position):
+    """Tendons and tip without any motion, as the position says."""
+    data = mujoco.MjData(model)
+    data.qpos[:] = position
+    mujoco.mj_forward(model, data)
+    rates = np.zeros((model.ntendon, model.nv))
+    mujoco.mju_sparse2dense(rates, data.ten_J, model.ten_J_rownnz, model.ten_J_rowadr, model.ten_J_colind)
+    rotations = np.zeros((3, model.nv))
+    mujoco.mj_jacBody(model, data, None, rotations, model.body("leg").id)
+    return {
+        "lengths_m": data.ten_length.tolist(),
+        "length_rates_m_per_rad": rates.tolist(),
+        "rotation_rates": rotations.tolist(),
+        "tip_m": data.site("tip").xpos.tolist(),
+    }
+
+
+def moment(model, data, position):
+    """What would set the resting leg in motion, per joint: weights, springs, tendons and constraints."""
+    data.qpos[:] = position
+    data.qvel[:] = 0.0
+    mujoco.mj_forward(model, data)
+    result = np.zeros(model.nv)
+    mujoco.mj_mulM(model, data, result, data.qacc)
+    return result
+
+
+def moved(model, position, step):
+    result = position.copy()
+    mujoco.mj_integratePos(model, result, step, 1.0)
+    return result
+
+
+def tip_at_rest(model, position):
+    """The tip where the moment vanishes, by Newton's method."""
+    data = mujoco.MjData(model)
+    for _ in range(STEPS_MAX):
+        slope = np.zeros((model.nv, model.nv))
+        for joint, step in enumerate(np.eye(model.nv) * STEP_RAD):
+            ahead = moment(model, data, moved(model, position, step))
+            behind = moment(model, data, moved(model, position, -step))
+            slope[:, joint] = (ahead - behind) / (2.0 * STEP_RAD)
+        step = -np.linalg.solve(slope, moment(model, data, position))
+        position = moved(model, position, step)
+        if np.abs(step).max() < CONVERGED_RAD:
+            moment(model, data, position)
+            return data.site("tip").xpos.tolist()
+    sys.exit(f"Newton's method does not converge: the last step was {step} rad")
+
+
+def tip_settled(model):
+    """The tip after the simulation has come to rest, let go at the vertical."""
+    data = mujoco.MjData(model)
+    for _ in range(SETTLE_STEPS_MAX):
+        mujoco.mj_step(model, data)
+        if np.abs(data.qvel).max() < SETTLED_RAD_PER_S and np.abs(data.qacc).max() < SETTLED_RAD_PER_S:
+            return data.site("tip").xpos.tolist()
+    sys.exit(f"the leg does not come to rest within {data.time} s: it still moves at {data.qvel} rad/s")
+
+
+json.dump([answer(job) for job in json.load(sys.stdin)], sys.stdout)

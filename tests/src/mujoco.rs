@@ -1,0 +1,91 @@
+//! Python with MuJoCo, in a virtual environment of its own.
+
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The packages and their versions.
+const REQUIREMENTS: &str = include_str!("../mujoco/requirements.txt");
+
+/// Why there is no MuJoCo.
+#[derive(Debug, thiserror::Error)]
+pub enum MujocoError {
+    /// The environment's folder cannot be written to.
+    #[error("cannot write to {}: {error}; see that the target folder is writable", folder.display())]
+    Folder {
+        /// The environment's folder.
+        folder: PathBuf,
+        /// What the system says.
+        error: io::Error,
+    },
+    /// Python is missing.
+    #[error(
+        "python3 does not start ({0}): install it and its module venv, on Debian with `apt-get install python3-venv`"
+    )]
+    NoPython(io::Error),
+    /// Python has no module `venv`.
+    #[error(
+        "python3 makes no virtual environment: install its module venv, on Debian with `apt-get install python3-venv`\n{0}"
+    )]
+    NoVenv(String),
+    /// The packages cannot be installed.
+    #[error(
+        "pip does not install tests/mujoco/requirements.txt: Python 3.11 or newer and a way to PyPI are needed\n{0}"
+    )]
+    NoPackages(String),
+}
+
+/// The Python of an environment with MuJoCo in `folder`, made on first use and when the requirements change.
+///
+/// # Errors
+/// A [`MujocoError`] that says what to install.
+pub fn python(folder: &Path) -> Result<PathBuf, MujocoError> {
+    let failed = |error| MujocoError::Folder {
+        folder: folder.into(),
+        error,
+    };
+    fs::create_dir_all(folder).map_err(failed)?;
+    // One test at a time: the lock ends with the file.
+    let lock = File::create(folder.join("lock")).map_err(failed)?;
+    lock.lock().map_err(failed)?;
+    let (environment, installed) = (folder.join("environment"), folder.join("installed.txt"));
+    let python = environment.join("bin/python");
+    let ready = fs::read_to_string(&installed).is_ok_and(|text| text == REQUIREMENTS);
+    if !(ready && python.is_file()) {
+        // An environment that is made only in part is not taken for a whole one.
+        fs::write(&installed, "").map_err(failed)?;
+        make(&environment, &python)?;
+        fs::write(&installed, REQUIREMENTS).map_err(failed)?;
+    }
+    Ok(python)
+}
+
+fn make(environment: &Path, python: &Path) -> Result<(), MujocoError> {
+    let venv = ["-m", "venv", "--clear"];
+    let made = run(Command::new("python3").args(venv).arg(environment));
+    made.map_err(MujocoError::NoPython)?
+        .map_err(MujocoError::NoVenv)?;
+    let requirements = concat!(env!("CARGO_MANIFEST_DIR"), "/mujoco/requirements.txt");
+    let install = [
+        "-m",
+        "pip",
+        "install",
+        "--quiet",
+        "--requirement",
+        requirements,
+    ];
+    run(Command::new(python).args(install))
+        .map_err(MujocoError::NoPython)?
+        .map_err(MujocoError::NoPackages)
+}
+
+/// Runs a command to its end; one that fails gives what it said.
+fn run(command: &mut Command) -> io::Result<Result<(), String>> {
+    let output = command.output()?;
+    if output.status.success() {
+        return Ok(Ok(()));
+    }
+    let said = [output.stdout, output.stderr].concat();
+    Ok(Err(String::from_utf8_lossy(&said).into_owned()))
+}
