@@ -5,8 +5,8 @@
 use leg_firmware::messages::{QueryMessage, SupportMessage, TendonMessage, TendonsMessage};
 use leg_model::{
     CURVE_POINTS_MAX, CurvePoint, Direction, Evaluation, FreePlane, JointStiffness, Load, Rig,
-    RigParameters, StiffnessAt, SupportKind, TendonStates, TensionBounds, distribute, evaluate,
-    forward_kinematics, full_pass, full_pass_in_plane, inverse_kinematics,
+    RigParameters, StiffnessAt, StiffnessDemand, SupportKind, TendonStates, TensionBounds,
+    distribute, evaluate, forward_kinematics, full_pass, full_pass_in_plane, inverse_kinematics,
 };
 use nalgebra::Vector3;
 use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop, prop_oneof, proptest};
@@ -66,8 +66,17 @@ fn rigs() -> impl Strategy<Value = RigParameters<f32, 3>> {
 fn queries() -> impl Strategy<Value = QueryMessage> {
     let numbers = [0.5, 0.5, 1.0, 70.0, 8.0, 150.0].map(near);
     let readings = prop::sample::select(&[StiffnessAt::Pretension, StiffnessAt::Tension][..]);
-    (numbers, tendons(), readings, supports()).prop_map(|(n, tendons, stiffness_at, support)| {
-        QueryMessage {
+    let demand = (
+        near(100.0),
+        prop_oneof![Just(None), near(1.0).prop_map(Some)],
+    )
+        .prop_map(|(stiffness_nm_per_rad, towards_rad)| StiffnessDemand {
+            stiffness_nm_per_rad,
+            towards_rad,
+        });
+    let demand = prop_oneof![Just(None), demand.prop_map(Some)];
+    (numbers, tendons(), readings, supports(), demand).prop_map(
+        |(n, tendons, stiffness_at, support, demand)| QueryMessage {
             azimuth_rad: n[0],
             tilt_rad: n[1],
             payload_kg: n[2],
@@ -77,8 +86,9 @@ fn queries() -> impl Strategy<Value = QueryMessage> {
             tendons,
             stiffness_at,
             support,
-        }
-    })
+            demand,
+        },
+    )
 }
 
 fn supports() -> impl Strategy<Value = SupportMessage> {
@@ -118,6 +128,9 @@ fn tendons() -> impl Strategy<Value = TendonsMessage> {
 
 fn assert_finite(evaluation: &Evaluation<f32>) {
     let e = evaluation;
+    let commanded = e
+        .commanded
+        .map_or([0.0; 2], |c| [c.level_n, c.stiffness_nm_per_rad]);
     let numbers = [
         &e.lengths_m[..],
         e.moment_map_m.as_flattened(),
@@ -139,6 +152,7 @@ fn assert_finite(evaluation: &Evaluation<f32>) {
         e.stiffness_joint_nm_per_rad.as_flattened(),
         &e.bending_stiffness_nm_per_rad,
         &[e.axial_stretch_m],
+        &commanded,
     ];
     assert!(
         numbers.concat().iter().all(|number| number.is_finite()),

@@ -25,6 +25,7 @@ fn at(azimuth_deg: f64, tilt_deg: f64, support: SupportKind) -> Evaluation<f64> 
         tendons: constant_tendons(STIFFNESS_N_PER_M).unwrap(),
         stiffness_at: StiffnessAt::Pretension,
         support: support.into(),
+        demand: None,
     };
     evaluate(&TABLE_1, &query).unwrap()
 }

@@ -182,6 +182,7 @@ fn table_1_has_another_leg_mass_than_figure_9() {
         tendons: constant_tendons(9.945e4).unwrap(),
         stiffness_at: StiffnessAt::Pretension,
         support: SupportKind::TorsionFree.into(),
+        demand: None,
     };
     let [light, heavy] = [1.0, 1.5].map(|leg_mass_kg| {
         let parameters = RigParameters {

@@ -129,6 +129,7 @@ fn query(azimuth_deg: f64, tilt_deg: f64, payload_kg: f64) -> Query<f64> {
         tendons: constant_tendons(STIFFNESS_N_PER_M).unwrap(),
         stiffness_at: StiffnessAt::Pretension,
         support: SupportKind::TorsionFree.into(),
+        demand: None,
     }
 }
 

@@ -213,7 +213,7 @@ proptest! {
             tension_ceiling_n: 150.0,
             tendons: constant_tendons(1e5).unwrap(),
             stiffness_at: StiffnessAt::Pretension,
-            support: SupportKind::TorsionFree.into(),
+            support: SupportKind::TorsionFree.into(), demand: None,
         };
         let found = evaluate(&parameters, &query).unwrap();
         let rig = Rig::new(&parameters).unwrap();

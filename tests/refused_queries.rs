@@ -31,6 +31,7 @@ fn query(support: SupportKind) -> Query<f64> {
         tendons: constant_tendons(1e5).unwrap(),
         stiffness_at: StiffnessAt::Pretension,
         support: support.into(),
+        demand: None,
     }
 }
 

@@ -3,7 +3,7 @@
 use heapless::Vec;
 use leg_model::{
     CURVE_POINTS_MAX, CurvePoint, Error, JointStiffness, Query, RigParameters, Scalar, StiffnessAt,
-    Support, SupportKind, Tendon,
+    StiffnessDemand, Support, SupportKind, Tendon,
 };
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -97,6 +97,7 @@ pub struct QueryMessage {
     pub tendons: TendonsMessage,
     pub stiffness_at: StiffnessAt,
     pub support: SupportMessage,
+    pub demand: Option<StiffnessDemand<f32>>,
 }
 
 impl QueryMessage {
@@ -115,6 +116,10 @@ impl QueryMessage {
             tendons: self.tendons.tendons()?,
             stiffness_at: self.stiffness_at,
             support: self.support.support()?,
+            demand: self.demand.map(|demand| StiffnessDemand {
+                stiffness_nm_per_rad: demand.stiffness_nm_per_rad.into(),
+                towards_rad: demand.towards_rad.map(T::from),
+            }),
         })
     }
 }

@@ -5,13 +5,13 @@ use crate::line_error::LineError;
 use crate::rig_file::RigFile;
 use crate::suggest;
 use crate::support_name::SupportName;
-use leg_model::{Query, RigParameters, StiffnessAt, Support, Tendon};
+use leg_model::{Query, RigParameters, StiffnessAt, StiffnessDemand, Support, Tendon};
 
 /// The keys that a line has to give.
 const REQUIRED: [&str; 3] = ["azimuth_deg", "tilt_deg", "payload_kg"];
 
 /// All keys.
-const KEYS: [&str; 11] = [
+const KEYS: [&str; 13] = [
     "azimuth_deg",
     "tilt_deg",
     "payload_kg",
@@ -23,6 +23,8 @@ const KEYS: [&str; 11] = [
     "leg_mass_kg",
     "l_upper_m",
     "support",
+    "demand_nm_per_rad",
+    "demand_towards_deg",
 ];
 
 /// The shortest line that has a result.
@@ -33,8 +35,16 @@ pub const EXAMPLE: &str = r#"{"azimuth_deg":30,"tilt_deg":20,"payload_kg":1}"#;
 pub struct Line {
     /// The rig file's mechanism with the line's changes.
     pub rig: RigParameters<f64, 3>,
-    /// The pose, the load and the tendons.
+    /// The pose, the load and what holds it.
     pub query: Query<f64>,
+}
+
+/// What the keys of a line have said so far.
+struct Draft {
+    rig: RigParameters<f64, 3>,
+    query: Query<f64>,
+    demand_nm_per_rad: Option<f64>,
+    demand_towards_deg: Option<f64>,
 }
 
 impl Line {
@@ -44,21 +54,43 @@ impl Line {
     /// A [`LineError`] that names the key and the fix.
     pub fn parse(text: &[u8], defaults: &RigFile) -> Result<Self, LineError> {
         let Entries(entries) = json_entries::parse(text).map_err(LineError::NotAnObject)?;
-        let mut line = Self {
+        let mut draft = Draft {
             rig: defaults.parameters,
             query: defaults.query(0.0, 0.0, 0.0),
+            demand_nm_per_rad: None,
+            demand_towards_deg: None,
         };
         for (index, (key, value)) in entries.iter().enumerate() {
             if entries[..index].iter().any(|(earlier, _)| earlier == key) {
                 return Err(LineError::Repeated(key.clone()));
             }
-            line.set(key, value.get(), defaults)?;
+            draft.set(key, value.get(), defaults)?;
         }
         let given = |key: &str| entries.iter().any(|(given, _)| given == key);
         match REQUIRED.iter().find(|key| !given(key)) {
             Some(key) => Err(LineError::MissingKey(key)),
-            None => Ok(line),
+            None => draft.line(),
         }
+    }
+}
+
+impl Draft {
+    fn line(self) -> Result<Line, LineError> {
+        let demand = match (self.demand_nm_per_rad, self.demand_towards_deg) {
+            (None, None) => None,
+            (None, Some(_)) => return Err(LineError::NoDemand),
+            (Some(stiffness_nm_per_rad), towards_deg) => Some(StiffnessDemand {
+                stiffness_nm_per_rad,
+                towards_rad: towards_deg.map(f64::to_radians),
+            }),
+        };
+        Ok(Line {
+            rig: self.rig,
+            query: Query {
+                demand,
+                ..self.query
+            },
+        })
     }
 
     fn set(&mut self, key: &str, value: &str, defaults: &RigFile) -> Result<(), LineError> {
@@ -80,6 +112,8 @@ impl Line {
             "f_min_n" => query.tension_floor_n = number(key, value)?,
             "f_max_n" => query.tension_ceiling_n = number(key, value)?,
             "leg_mass_kg" => self.rig.leg_mass_kg = number(key, value)?,
+            "demand_nm_per_rad" => self.demand_nm_per_rad = Some(number(key, value)?),
+            "demand_towards_deg" => self.demand_towards_deg = Some(number(key, value)?),
             "l_upper_m" => self.rig.upper_length_m = number(key, value)?,
             _ => query.support = support(value, defaults)?,
         }

@@ -57,6 +57,9 @@ pub enum LineError {
         /// What the rig file has.
         described: &'static str,
     },
+    /// A direction without a demand.
+    #[error("`demand_towards_deg` is given without a demand: add `demand_nm_per_rad`")]
+    NoDemand,
     /// A reading of the stiffness that does not exist.
     #[error("`stiffness_at` cannot be `{0}`: write `pretension` or `tension`")]
     StiffnessAt(String),
@@ -109,7 +112,8 @@ fn key_of(quantity: Quantity) -> &'static str {
         Quantity::Tension => "tension of a tendon at this level",
         Quantity::Elongation => "elongation of a tendon",
         Quantity::TendonCurve => "curve",
-        Quantity::BendingStiffness => "bending stiffness",
+        Quantity::BendingStiffness => "demand_nm_per_rad",
+        Quantity::DemandAzimuth => "demand_towards_deg",
         _ => "support",
     }
 }
@@ -118,7 +122,8 @@ fn key_of(quantity: Quantity) -> &'static str {
 fn fix_of(quantity: Quantity, reason: Reason) -> &'static str {
     match (quantity, reason) {
         (Quantity::Tilt, Reason::OutOfRange) => ": give -60 to 60",
-        (Quantity::Azimuth, Reason::OutOfRange) => ": give -3600 to 3600",
+        (Quantity::BendingStiffness, Reason::OutOfRange) => ": give more than 0 to 1e6",
+        (Quantity::Azimuth | Quantity::DemandAzimuth, Reason::OutOfRange) => ": give -3600 to 3600",
         (_, Reason::NotFinite) => " in f32: give at most 3.4e38",
         (Quantity::Payload, Reason::OutOfRange) => ": give 0 to 1e6",
         (Quantity::TendonStiffness, Reason::OutOfRange) => ": give 0.01 to 1e10",

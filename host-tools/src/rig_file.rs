@@ -119,6 +119,7 @@ impl RigFile {
             tendons: self.tendons,
             stiffness_at: self.stiffness_at,
             support: self.support,
+            demand: None,
         }
     }
 }

@@ -1,7 +1,9 @@
 //! The model's arguments in f64, rounded to what crosses the link.
 
 use leg_firmware::messages::{QueryMessage, SupportMessage, TendonMessage, TendonsMessage};
-use leg_model::{CurvePoint, JointStiffness, Query, RigParameters, Support, Tendon};
+use leg_model::{
+    CurvePoint, JointStiffness, Query, RigParameters, StiffnessDemand, Support, Tendon,
+};
 
 /// A mechanism.
 #[must_use]
@@ -31,6 +33,10 @@ pub fn round_query(query: &Query<f64>) -> QueryMessage {
         tendons: round_tendons(&query.tendons),
         stiffness_at: query.stiffness_at,
         support: round_support(&query.support),
+        demand: query.demand.map(|demand| StiffnessDemand {
+            stiffness_nm_per_rad: round(demand.stiffness_nm_per_rad),
+            towards_rad: demand.towards_rad.map(round),
+        }),
     }
 }
 

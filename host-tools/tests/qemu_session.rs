@@ -63,6 +63,7 @@ fn evaluate_request(tilt_rad: f32) -> Request {
                 kind: SupportKind::TorsionFree,
                 joint: JointStiffness::none(),
             },
+            demand: None,
         },
     })
 }

@@ -1,19 +1,23 @@
 //! Bending stiffness: how the leg resists a tilt.
 
 use crate::{Direction, Error, FreePlane, Scalar, Symmetric3};
+use nalgebra::Vector3;
 
 /// Which bending stiffness is meant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BendingAxis<T> {
     /// The softest tilt: the smallest eigenvalue.
     Softest,
-    /// The tilt towards an azimuth, given as (cos, sin): the moment per angle that a push that way shows.
+    /// The tilt towards an azimuth, given as (cos, sin): what a push at the tip that way meets, as moment per angle.
+    /// It is never below that of the softest tilt.
     Towards([T; 2]),
 }
 
 /// The stiffness of a leg against tilts, in a plane of rotations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bending<T> {
+    direction: Direction<T>,
+    plane: FreePlane<T>,
     /// PᵀKP in the basis (1, 0, ρ_x), (0, 1, ρ_y).
     stiffness: [T; 3],
     /// PᵀP.
@@ -24,9 +28,11 @@ impl<T: Scalar> Bending<T> {
     /// On a support with two freedoms: PᵀKP.
     #[must_use]
     #[inline(always)]
-    pub fn guided(k: &Symmetric3<T>, plane: &FreePlane<T>) -> Self {
+    pub fn guided(k: &Symmetric3<T>, direction: &Direction<T>, plane: &FreePlane<T>) -> Self {
         let (right_x, right_y) = (k.xz + plane.rho_x * k.zz, k.yz + plane.rho_y * k.zz);
         Self {
+            direction: *direction,
+            plane: *plane,
             stiffness: [
                 k.xx + plane.rho_x * (k.xz + right_x),
                 k.xy + plane.rho_x * k.yz + plane.rho_y * right_x,
@@ -56,7 +62,7 @@ impl<T: Scalar> Bending<T> {
         }
         let [x, y] = plane.project(&moment);
         let (by_x, by_y) = (x / along, y / along);
-        let mut bending = Self::guided(k, plane);
+        let mut bending = Self::guided(k, direction, plane);
         let [xx, xy, yy] = &mut bending.stiffness;
         *xx -= by_x * x;
         *xy -= by_x * y;
@@ -99,17 +105,19 @@ impl<T: Scalar> Bending<T> {
         }
     }
 
-    /// n²/(cᵀG K⁻¹ G c) with the axis c = (sin, −cos) of the azimuth and n² = cᵀGc.
+    /// 1/(aᵀP K⁻¹ Pᵀa) with a = p × h/|p × h|, the axis about which a push towards the horizontal direction h turns the
+    /// leg.
     #[inline(always)]
     fn towards(&self, [cos, sin]: [T; 2]) -> Result<T, Error> {
-        let ([xx, xy, yy], [gxx, gxy, gyy]) = (self.stiffness, self.gram);
+        let [xx, xy, yy] = self.stiffness;
         let determinant = xx * yy - xy * xy;
         if !(xx > T::zero() && determinant > T::zero()) {
             return Err(Error::Unstable);
         }
-        let (x, y) = (sin, -cos);
-        let (mx, my) = (gxx * x + gxy * y, gxy * x + gyy * y);
+        let &Direction { x, y, z } = &self.direction;
+        let axis = Vector3::new(-z * sin, z * cos, x * sin - y * cos);
+        let [mx, my] = self.plane.project(&axis);
         let give = yy * mx * mx - T::TWO * xy * mx * my + xx * my * my;
-        Ok((x * mx + y * my) * determinant / give)
+        Ok(axis.dot(&axis) * determinant / give)
     }
 }

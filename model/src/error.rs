@@ -57,6 +57,8 @@ pub enum Quantity {
     AxialCompliance,
     /// A demanded bending stiffness of the leg, N·m/rad.
     BendingStiffness,
+    /// Azimuth of a demanded bending stiffness, rad.
+    DemandAzimuth,
     /// Free length of a flexure, m.
     FlexureLength,
     /// Width of a flexure, m.

@@ -1,13 +1,14 @@
 //! The whole model at one pose: what `leg eval` prints.
 
-use crate::range::{TENSION_MAX, check_magnitude};
+mod state;
+
+use crate::range::check_magnitude;
 use crate::{
-    Bending, Direction, Distribution, Elasticity, Error, FreePlane, Geometry, Kinematics, Limit,
-    Load, Quantity, Rig, RigParameters, Scalar, Support, Symmetric3, Tendon, TensionBounds, Twist,
-    deviation, distribute, elastic_torsion, inverse_kinematics, solve3, structural_stiffness,
-    structural_stiffness_printed, tendon_stiffness, tip_displacement,
+    BendingAxis, Elasticity, Error, Limit, Quantity, RigParameters, Scalar, StiffnessAnswer,
+    Support, Tendon,
 };
-use nalgebra::{Matrix3, SVector, Vector3};
+use nalgebra::Matrix3;
+use state::State;
 
 /// At which tension the stiffness of a tendon is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,6 +23,37 @@ pub enum StiffnessAt {
     Pretension,
     /// At the tension of each tendon under the load.
     Tension,
+}
+
+/// Ten turns, rad: as for the azimuth of a pose.
+const AZIMUTH_MAX_RAD: f32 = 20.0 * core::f32::consts::PI;
+
+/// A bending stiffness that the leg shall have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize, postcard_schema::Schema)
+)]
+pub struct StiffnessDemand<T> {
+    /// N·m/rad.
+    pub stiffness_nm_per_rad: T,
+    /// The azimuth towards which a push at the tip shall meet it, rad; the softest tilt's if there is none.
+    pub towards_rad: Option<T>,
+}
+
+impl<T: Scalar> StiffnessDemand<T> {
+    /// The tilt that is meant.
+    ///
+    /// # Errors
+    /// An azimuth that is not finite or beyond ten turns.
+    pub fn axis(&self) -> Result<BendingAxis<T>, Error> {
+        let Some(azimuth) = self.towards_rad else {
+            return Ok(BendingAxis::Softest);
+        };
+        check_magnitude(azimuth, AZIMUTH_MAX_RAD, Quantity::DemandAzimuth)?;
+        let (sin, cos) = azimuth.sin_cos();
+        Ok(BendingAxis::Towards([cos, sin]))
+    }
 }
 
 /// A pose, a load and what holds it.
@@ -45,6 +77,8 @@ pub struct Query<T> {
     pub stiffness_at: StiffnessAt,
     /// The central support.
     pub support: Support<T>,
+    /// A stiffness to find the level for, if one is demanded. The rest of the evaluation stays at the asked level.
+    pub demand: Option<StiffnessDemand<T>>,
 }
 
 /// What the model says of a [`Query`] on a mechanism with three tendons. SI units, frame {A}, matrices by rows.
@@ -95,6 +129,9 @@ pub struct Evaluation<T> {
     pub unstretched_m: [T; 3],
     /// Twist of the leg about its own axis, rad.
     pub torsion_rad: T,
+    /// What answers the demanded stiffness; none without a demand. On a support with three freedoms the leg keeps the
+    /// twist that it has at the asked level.
+    pub commanded: Option<StiffnessAnswer<T>>,
 }
 
 /// Evaluates the whole model at one pose.
@@ -116,6 +153,8 @@ pub fn evaluate<T: Scalar>(
     for (i, tendon) in query.tendons.iter().enumerate() {
         unstretched[i] -= tendon.elongation(tensions[i])?;
     }
+    let demand = query.demand.as_ref();
+    let commanded = demand.map(|demand| state.command(demand, &query.tendons));
     Ok(Evaluation {
         lengths_m: state.kinematics.lengths.into(),
         moment_map_m: rows(&state.kinematics.moment_map),
@@ -137,143 +176,8 @@ pub fn evaluate<T: Scalar>(
         deviation_with_load_stiffness_m: sag_with_load.deviation,
         unstretched_m: unstretched.into(),
         torsion_rad: state.torsion,
+        commanded: commanded.transpose()?,
     })
-}
-
-/// The mechanism at the pose of a query, balanced.
-struct State<T> {
-    rig: Rig<T, 3>,
-    support: Support<T>,
-    geometry: Geometry<T, 3>,
-    direction: Direction<T>,
-    /// Of the leg, the joint's own twist included.
-    torsion: T,
-    elastic_torsion: T,
-    plane: FreePlane<T>,
-    load: Load<T>,
-    load_moment: Vector3<T>,
-    joint_moment: Vector3<T>,
-    bounds: TensionBounds<T>,
-    kinematics: Kinematics<T, 3>,
-    distribution: Distribution<T, 3>,
-}
-
-struct Stiffness<T> {
-    total: Matrix3<T>,
-    joint: Matrix3<T>,
-    k2_exact: Matrix3<T>,
-    k2_printed: Matrix3<T>,
-    /// Of each tendon, N/m.
-    tendons: SVector<T, 3>,
-    /// At which that is, N.
-    tensions: SVector<T, 3>,
-}
-
-/// How the leg gives way under its load.
-struct Sag<T> {
-    deviation: T,
-    axial_stretch: T,
-}
-
-impl<T: Scalar> State<T> {
-    fn new(parameters: &RigParameters<T, 3>, query: &Query<T>) -> Result<Self, Error> {
-        let rig = Rig::new(parameters)?;
-        let direction = Direction::from_angles(query.azimuth_rad, query.tilt_rad)?;
-        check_magnitude(query.level_n, TENSION_MAX, Quantity::Level)?;
-        let bounds = TensionBounds::new(query.tension_floor_n, query.tension_ceiling_n)?;
-        let load = Load::new(&rig, query.payload_kg)?;
-        let load_moment = load.moment(&direction);
-        let (support, level) = (query.support, query.level_n);
-        let elastic = elastic_torsion(&rig, &support, &direction, &load_moment, &bounds, level)?;
-        let twist = support.twist(&direction).and(&Twist::from_torsion(elastic));
-        let geometry = rig.geometry.twisted(&twist);
-        let kinematics = inverse_kinematics(&geometry, &direction)?;
-        let plane = support.plane(&direction);
-        let joint_moment = support.joint_moment(&direction, elastic);
-        let outer = load_moment + joint_moment;
-        let distribution = distribute(&kinematics.moment_map, &plane, &outer, &bounds)?;
-        Ok(Self {
-            rig,
-            support,
-            geometry,
-            direction,
-            torsion: twist.torsion(),
-            elastic_torsion: elastic,
-            plane,
-            load,
-            load_moment,
-            joint_moment,
-            bounds,
-            kinematics,
-            distribution,
-        })
-    }
-
-    fn stiffness(&self, query: &Query<T>, tensions: &SVector<T, 3>) -> Result<Stiffness<T>, Error> {
-        let mut tendons = SVector::zeros();
-        for (i, tendon) in query.tendons.iter().enumerate() {
-            let at = match query.stiffness_at {
-                StiffnessAt::Pretension => query.level_n,
-                StiffnessAt::Tension => tensions[i],
-            };
-            tendons[i] = tendon.stiffness(at)?;
-        }
-        let k1 = tendon_stiffness(&self.kinematics.moment_map, &tendons);
-        let k2_exact = structural_stiffness(&self.geometry, &self.direction, tensions);
-        let k2_printed = structural_stiffness_printed(&self.geometry, &self.direction, tensions);
-        let joint = self
-            .support
-            .joint_stiffness(&self.direction, self.elastic_torsion);
-        Ok(Stiffness {
-            total: k1 + k2_exact + joint,
-            joint,
-            k2_exact,
-            k2_printed,
-            tendons,
-            tensions: *tensions,
-        })
-    }
-
-    fn sag(&self, k: &Matrix3<T>, stiffness: &Stiffness<T>) -> Result<Sag<T>, Error> {
-        let rotation = if self.support.twists() {
-            solve3(k, &self.load_moment)?
-        } else {
-            self.plane.solve(k, &self.load_moment)?
-        };
-        let axial_stretch = self.axial_stretch(&rotation, stiffness);
-        let moved = tip_displacement(&rotation, &self.direction, self.rig.tip);
-        Ok(Sag {
-            deviation: deviation(&(moved + self.direction.vector() * axial_stretch)),
-            axial_stretch,
-        })
-    }
-
-    /// What the load adds to the force along the leg, the change of the tendons' pull included, times the compliance of
-    /// joint and shaft, which are in series there.
-    fn axial_stretch(&self, rotation: &Vector3<T>, stiffness: &Stiffness<T>) -> T {
-        let (geometry, direction, kinematics) = (&self.geometry, &self.direction, &self.kinematics);
-        let lengthening = -kinematics.moment_map.tr_mul(rotation);
-        let tension_change = stiffness.tendons.component_mul(&lengthening);
-        let turning = geometry.along_leg_change(direction, kinematics, rotation, &lengthening);
-        let pull = geometry
-            .along_leg(direction, kinematics)
-            .dot(&tension_change)
-            + turning.dot(&stiffness.tensions);
-        let compliance = self.support.joint.axial_compliance_m_per_n;
-        compliance * (self.load.along_leg_n(direction) - pull)
-    }
-
-    fn bending(&self, k: &Matrix3<T>) -> [T; 2] {
-        let k = Symmetric3::symmetric_part(k);
-        let bending = if self.support.twists() {
-            Bending::twisting(&k, &self.direction)
-        } else {
-            Ok(Bending::guided(&k, &self.plane))
-        };
-        bending
-            .and_then(|bending| bending.extremes())
-            .unwrap_or([T::zero(); 2])
-    }
 }
 
 fn rows<T: Scalar>(matrix: &Matrix3<T>) -> [[T; 3]; 3] {

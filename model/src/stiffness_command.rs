@@ -30,11 +30,15 @@ pub struct StiffnessCommand<'a, T, E, const N: usize> {
 
 /// The answer to a demand.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize, postcard_schema::Schema)
+)]
 pub struct StiffnessAnswer<T> {
     /// Level of pretension, N.
-    pub level: T,
+    pub level_n: T,
     /// The stiffness that it gives, N·m/rad: the demanded one, or the nearest to it that can be reached.
-    pub stiffness: T,
+    pub stiffness_nm_per_rad: T,
     /// The tendon and the bound that stop it short of the demand; none if the demand is met.
     pub limit: Option<Limit>,
 }
@@ -86,7 +90,7 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
         let bending = if self.twists {
             Bending::twisting(&total, &self.direction)?
         } else {
-            Bending::guided(&total, &self.plane)
+            Bending::guided(&total, &self.direction, &self.plane)
         };
         bending.about(axis)
     }
@@ -126,8 +130,8 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
                 (above, highest)
             };
             return Ok(StiffnessAnswer {
-                level: end.level,
-                stiffness: demand + end.error,
+                level_n: end.level,
+                stiffness_nm_per_rad: demand + end.error,
                 limit: Some(limit),
             });
         }
@@ -150,8 +154,8 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
             let next = End::new(level, self.stiffness_at(level, axis)?, demand);
             if next.error.abs() <= T::from(TOLERANCE) * demand {
                 return Ok(StiffnessAnswer {
-                    level,
-                    stiffness: demand + next.error,
+                    level_n: level,
+                    stiffness_nm_per_rad: demand + next.error,
                     limit: None,
                 });
             }

@@ -238,8 +238,8 @@ impl<T: Scalar> Body<T> for StiffnessCommand {
     }
 
     fn flatten(answer: &Self::Output, push: &mut impl FnMut(T)) {
-        push(answer.level);
-        push(answer.stiffness);
+        push(answer.level_n);
+        push(answer.stiffness_nm_per_rad);
         push(T::from(f32::from(
             answer.limit.map_or(0, |limit| limit.tendon),
         )));

@@ -120,6 +120,7 @@ fn evaluate_request(tilt_rad: f32) -> EvaluateRequest {
                 kind: SupportKind::TorsionFree,
                 joint: JointStiffness::none(),
             },
+            demand: None,
         },
     }
 }

@@ -20,6 +20,10 @@ pub(super) fn evaluation(state: &State) -> Result<Vec<f64>, CheckError> {
 /// The numbers of an evaluation, in the order of its fields.
 pub(super) fn flatten<T: Copy + Into<f64>>(evaluation: &Evaluation<T>) -> Vec<f64> {
     let e = evaluation;
+    let commanded = e.commanded.iter();
+    let commanded: Vec<T> = commanded
+        .flat_map(|c| [c.level_n, c.stiffness_nm_per_rad])
+        .collect();
     let numbers = [
         &e.lengths_m[..],
         e.moment_map_m.as_flattened(),
@@ -38,6 +42,7 @@ pub(super) fn flatten<T: Copy + Into<f64>>(evaluation: &Evaluation<T>) -> Vec<f6
         &[e.deviation_m, e.deviation_with_load_stiffness_m],
         &e.unstretched_m,
         &[e.torsion_rad],
+        &commanded,
     ];
     numbers.concat().into_iter().map(Into::into).collect()
 }

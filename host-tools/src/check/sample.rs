@@ -77,6 +77,7 @@ pub fn grid() -> Vec<State> {
                         },
                         support,
                         stretch: Stretch::Constant,
+                        demanded: false,
                     });
                 }
             }
@@ -126,6 +127,7 @@ fn draw(rng: &mut Rng, support: SupportMessage, stretch: Stretch) -> State {
         input,
         support,
         stretch,
+        demanded: true,
     }
 }
 

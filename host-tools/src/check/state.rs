@@ -3,7 +3,8 @@
 use leg_firmware::kernels::KernelInput;
 use leg_firmware::messages::{QueryMessage, SupportMessage, TendonMessage, TendonsMessage};
 use leg_model::{
-    CurvePoint, Elasticity, Error, Query, RigParameters, StiffnessAt, SupportKind, TendonCurve,
+    CurvePoint, Elasticity, Error, Query, RigParameters, StiffnessAt, StiffnessDemand, SupportKind,
+    TendonCurve,
 };
 use serde::Serialize;
 use std::fmt;
@@ -17,6 +18,8 @@ pub struct State {
     pub support: SupportMessage,
     /// How the tendons stretch.
     pub stretch: Stretch,
+    /// Whether the evaluation has to find a level for the demanded stiffness: there has to be one that is allowed.
+    pub demanded: bool,
 }
 
 /// How the tendons of a state stretch.
@@ -85,6 +88,10 @@ impl State {
                 Stretch::Constant | Stretch::Curve => StiffnessAt::Pretension,
             },
             support: self.support,
+            demand: self.demanded.then_some(StiffnessDemand {
+                stiffness_nm_per_rad: input.demand_nm_per_rad,
+                towards_rad: None,
+            }),
         })
     }
 

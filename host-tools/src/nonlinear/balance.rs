@@ -37,6 +37,8 @@ pub struct Balance {
     support: Support<f64>,
     tendons: [Tendon<f64>; 3],
     unstretched_m: SVector<f64, 3>,
+    /// A force at the tip beside the weights, N.
+    push_n: Vector3<f64>,
 }
 
 /// What the mechanism does at a posture.
@@ -64,7 +66,14 @@ impl Balance {
             support,
             tendons,
             unstretched_m,
+            push_n: Vector3::zeros(),
         }
+    }
+
+    /// The same with a force at the tip, N in frame {A}.
+    #[must_use]
+    pub fn pushed(&self, push_n: Vector3<f64>) -> Self {
+        Self { push_n, ..*self }
     }
 
     /// The same with the leg's own weight and a payload (kg).
@@ -215,6 +224,10 @@ impl Balance {
         Ok(self.free_moment_nm(next)?.norm() <= self.free_moment_nm(here)?.norm() + noise)
     }
 
+    fn tip(&self, direction: &Direction<f64>) -> Vector3<f64> {
+        direction.vector() * self.rig.tip_m()
+    }
+
     fn geometry(&self, posture: &Posture) -> Geometry<f64, 3> {
         let twist = self.support.twist(&posture.direction);
         let twist = twist.and(&Twist::from_torsion(posture.torsion));
@@ -230,6 +243,7 @@ impl Balance {
             plane: self.support.plane(direction),
             moment: moment_map * tensions
                 + self.load.moment(direction)
+                + self.tip(direction).cross(&self.push_n)
                 + self.support.joint_moment(direction, posture.torsion),
             stiffness: tendon_stiffness(&moment_map, &stiffnesses)
                 + structural_stiffness(&geometry, direction, &tensions)
@@ -254,7 +268,7 @@ impl Balance {
         Ok((tensions, stiffnesses))
     }
 
-    /// Of tendons and joint, and of the weights.
+    /// Of tendons and joint, and of weights and push.
     fn energies_j(&self, posture: &Posture) -> Result<(f64, f64), Error> {
         let direction = &posture.direction;
         let mut springs = self.support.joint_energy(direction, posture.torsion);
@@ -262,6 +276,7 @@ impl Balance {
         for (i, tendon) in self.tendons.iter().enumerate() {
             springs += tendon.energy(lengths[i] - self.unstretched_m[i])?;
         }
-        Ok((springs, self.load.energy(direction)))
+        let outer = self.load.energy(direction) - self.tip(direction).dot(&self.push_n);
+        Ok((springs, outer))
     }
 }

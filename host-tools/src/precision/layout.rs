@@ -26,7 +26,7 @@ const STEPS: Part = (None, 1);
 
 /// The parts of an evaluation, in the order of its fields.
 #[must_use]
-pub const fn of_evaluation(support: SupportKind) -> [Part; 17] {
+pub const fn of_evaluation(support: SupportKind) -> [Part; 19] {
     let (deviation, torsion) = match support {
         SupportKind::TorsionFree | SupportKind::Universal => {
             (Quantity::Deviation, Quantity::Torsion)
@@ -54,6 +54,8 @@ pub const fn of_evaluation(support: SupportKind) -> [Part; 17] {
         (Some(deviation), 2),
         UNSTRETCHED,
         (Some(torsion), 1),
+        (Some(Quantity::CommandedLevel), 1),
+        (Some(Quantity::CommandedStiffness), 1),
     ]
 }
 

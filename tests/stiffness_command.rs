@@ -1,0 +1,222 @@
+//! Stiffness on command: the level that makes the leg as stiff as demanded, inside the bounds on the tensions.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use leg_host_tools::nonlinear::{Balance, Posture};
+use leg_host_tools::ready_rigs::READY_RIGS;
+use leg_host_tools::rig_file::RigFile;
+use leg_model::{
+    Bound, Direction, Error, Limit, Load, Query, Rig, StiffnessAnswer, StiffnessDemand,
+    TensionBounds, evaluate, inverse_statics,
+};
+use nalgebra::Vector3;
+
+fn table_1() -> RigFile {
+    RigFile::load(None).unwrap()
+}
+
+fn answer(
+    file: &RigFile,
+    (azimuth_deg, tilt_deg, payload_kg): (f64, f64, f64),
+    stiffness_nm_per_rad: f64,
+    towards_deg: Option<f64>,
+) -> Result<StiffnessAnswer<f64>, Error> {
+    let query = Query {
+        demand: Some(StiffnessDemand {
+            stiffness_nm_per_rad,
+            towards_rad: towards_deg.map(f64::to_radians),
+        }),
+        ..file.query(azimuth_deg, tilt_deg, payload_kg)
+    };
+    evaluate(&file.parameters, &query).map(|evaluation| evaluation.commanded.unwrap())
+}
+
+/// At the vertical, without weights, tensions of 8 to 150 N give 12.8 to 178 N·m/rad.
+#[test]
+fn the_range_at_the_vertical_is_known() {
+    let mut file = table_1();
+    file.parameters.gravity_m_per_s2 = 0.0;
+    let lowest = answer(&file, (0.0, 0.0, 0.0), 1.0, None).unwrap();
+    assert!(
+        (lowest.stiffness_nm_per_rad - 12.8).abs() < 0.06,
+        "{lowest:?}"
+    );
+    assert!((lowest.level_n - 8.0).abs() < 1e-9);
+    assert!(matches!(
+        lowest.limit,
+        Some(Limit {
+            bound: Bound::Floor,
+            ..
+        })
+    ));
+    let highest = answer(&file, (0.0, 0.0, 0.0), 500.0, None).unwrap();
+    assert!(
+        (highest.stiffness_nm_per_rad - 178.0).abs() < 0.6,
+        "{highest:?}"
+    );
+    assert!((highest.level_n - 150.0).abs() < 1e-9);
+    assert!(matches!(
+        highest.limit,
+        Some(Limit {
+            bound: Bound::Ceiling,
+            ..
+        })
+    ));
+}
+
+#[test]
+fn at_the_edge_with_2_kg_only_levels_from_61_7_to_83_8_are_allowed() {
+    let file = table_1();
+    let at_edge = (30.0, 30.0, 2.0);
+    let [low, high] = [1.0, 500.0].map(|demand| answer(&file, at_edge, demand, None).unwrap());
+    assert!(
+        (low.level_n - 61.7).abs() < 0.05 && (high.level_n - 83.8).abs() < 0.1,
+        "{low:?} {high:?}"
+    );
+    // Both ends name the tendon that stops them.
+    for end in [low, high] {
+        let limit = end.limit.unwrap();
+        assert!((1..=3).contains(&limit.tendon));
+    }
+}
+
+/// Stiffness rises with the level from end to end, so that the nearer end is the best.
+#[test]
+fn stiffness_rises_with_the_level_over_the_workspace() {
+    let file = table_1();
+    for azimuth in (0..360).step_by(20) {
+        for (tilt, payload) in [
+            (0.0, 0.0),
+            (10.0, 1.0),
+            (20.0, 0.5),
+            (30.0, 2.0),
+            (30.0, 0.0),
+        ] {
+            let pose = (f64::from(azimuth), tilt, payload);
+            let [low, high] = [1e-3, 1e5].map(|demand| answer(&file, pose, demand, None).unwrap());
+            let mut before = low;
+            for step in 1..20 {
+                let part = f64::from(step) / 20.0;
+                let range = high.stiffness_nm_per_rad - low.stiffness_nm_per_rad;
+                let demand = low.stiffness_nm_per_rad + part * range;
+                let found = answer(&file, pose, demand, None).unwrap();
+                assert_eq!(found.limit, None);
+                assert!(
+                    (found.stiffness_nm_per_rad / demand - 1.0).abs() <= 1e-4,
+                    "{found:?}"
+                );
+                assert!(
+                    found.level_n > before.level_n,
+                    "{pose:?}: {found:?} {before:?}"
+                );
+                before = found;
+            }
+        }
+    }
+}
+
+/// What a small push at the tip towards an azimuth meets in the nonlinear model, N·m/rad: F·L by δ/L.
+fn pushed(file: &RigFile, pose: (f64, f64, f64), level: f64, towards_deg: f64) -> f64 {
+    const PUSH_N: f64 = 1e-3;
+    let (azimuth_deg, tilt_deg, payload_kg) = pose;
+    let rig = Rig::new(&file.parameters).unwrap();
+    let target = Direction::from_angles(azimuth_deg.to_radians(), tilt_deg.to_radians()).unwrap();
+    let load = Load::new(&rig, payload_kg).unwrap();
+    let bounds = TensionBounds::new(file.tension_floor_n, file.tension_ceiling_n).unwrap();
+    let (support, tendons) = (file.support, file.tendons);
+    let moment = load.moment(&target);
+    let held = inverse_statics(&rig, &support, &target, &moment, &bounds, &tendons, level).unwrap();
+    let balance = Balance::new(rig, load, support, tendons, held.unstretched);
+    let p = target.vector();
+    let (sin, cos) = towards_deg.to_radians().sin_cos();
+    let horizontal = Vector3::new(cos, sin, 0.0);
+    let way = (horizontal - p * p.dot(&horizontal)).normalize();
+    let tip_along = |force: f64| {
+        let start = Posture {
+            direction: target,
+            torsion: 0.0,
+        };
+        let rest = balance.pushed(way * force).rest(start).unwrap();
+        rest.direction.vector().dot(&way)
+    };
+    let angle = tip_along(PUSH_N) - tip_along(-PUSH_N);
+    2.0 * PUSH_N * rig.tip_m() / angle
+}
+
+/// A push the way that is meant shows the stiffness that was demanded.
+#[test]
+fn a_push_in_the_nonlinear_model_shows_the_demanded_stiffness() {
+    let file = table_1();
+    for (pose, demand) in [
+        ((0.0, 0.0, 1.0), 60.0),
+        ((30.0, 20.0, 1.0), 90.0),
+        ((200.0, 25.0, 0.5), 70.0),
+    ] {
+        for towards in [0.0, 45.0, 120.0, 250.0] {
+            let commanded = answer(&file, pose, demand, Some(towards)).unwrap();
+            assert_eq!(commanded.limit, None);
+            let shown = pushed(&file, pose, commanded.level_n, towards);
+            assert!(
+                (shown / demand - 1.0).abs() < 0.02,
+                "{pose:?} towards {towards}°: {shown}"
+            );
+        }
+    }
+}
+
+#[test]
+fn every_support_is_as_stiff_as_demanded() {
+    for ready in READY_RIGS {
+        let file = RigFile::parse(ready.name, ready.text).unwrap();
+        let found = answer(&file, (100.0, 15.0, 0.5), 75.0, None).unwrap();
+        assert_eq!(found.limit, None, "{}", ready.name);
+        let query = Query {
+            level_n: found.level_n,
+            stiffness_at: leg_model::StiffnessAt::Tension,
+            ..file.query(100.0, 15.0, 0.5)
+        };
+        let [softest, _] = evaluate(&file.parameters, &query)
+            .unwrap()
+            .bending_stiffness_nm_per_rad;
+        // The twist of a support with three freedoms changes a little with the level.
+        assert!(
+            (softest / 75.0 - 1.0).abs() < 2e-3,
+            "{}: {softest}",
+            ready.name
+        );
+    }
+}
+
+#[test]
+fn a_demand_that_cannot_be_is_refused() {
+    use leg_model::{Quantity, Reason};
+    let file = table_1();
+    let pose = (0.0, 10.0, 1.0);
+    let refused = |quantity, reason| Err(Error::Refused { quantity, reason });
+    let bending = Quantity::BendingStiffness;
+    assert_eq!(
+        answer(&file, pose, -4.0, None),
+        refused(bending, Reason::NotPositive)
+    );
+    assert_eq!(
+        answer(&file, pose, 0.0, None),
+        refused(bending, Reason::NotPositive)
+    );
+    assert_eq!(
+        answer(&file, pose, f64::NAN, None),
+        refused(bending, Reason::NotFinite)
+    );
+    assert_eq!(
+        answer(&file, pose, 2e6, None),
+        refused(bending, Reason::OutOfRange)
+    );
+    let azimuth = Quantity::DemandAzimuth;
+    assert_eq!(
+        answer(&file, pose, 50.0, Some(1e9)),
+        refused(azimuth, Reason::OutOfRange)
+    );
+    assert_eq!(
+        answer(&file, (30.0, 30.0, 4.0), 50.0, None),
+        Err(Error::Infeasible)
+    );
+}
