@@ -216,7 +216,7 @@ fn a_demand_that_cannot_be_is_refused() {
         refused(azimuth, Reason::OutOfRange)
     );
     assert_eq!(
-        answer(&file, (30.0, 30.0, 4.0), 50.0, None),
+        answer(&file, (30.0, 30.0, 3.0), 50.0, None),
         Err(Error::Infeasible)
     );
 }

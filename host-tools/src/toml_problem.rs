@@ -57,6 +57,16 @@ pub enum Problem {
     /// No support has this name.
     #[error(transparent)]
     Support(UnknownSupport),
+    /// A word that is none of the choices.
+    #[error("`{key}` cannot be `{found}`")]
+    Choice {
+        /// The key.
+        key: &'static str,
+        /// What the file says.
+        found: String,
+        /// What it may say.
+        choices: &'static str,
+    },
     /// Two keys that give the same thing.
     #[error("`{0}` and `{1}` cannot both be given")]
     Both(&'static str, &'static str),
@@ -101,12 +111,13 @@ impl Problem {
             Self::Syntax(_) => "write `key = value` lines under `[section]` headings".into(),
             Self::UnknownKey { fix, .. } => fix.clone(),
             Self::MissingKey(_) | Self::MissingSection(_) => {
-                "add it; host-tools/rigs/table1.toml shows them all".into()
+                "add it; the ready rigs in host-tools/rigs show all keys of each support".into()
             }
             Self::WrongType { wanted, .. } => format!("write {wanted}"),
             Self::NotFinite(_) => "write a number such as 29 or 1.5e3".into(),
             Self::AnchorCount { .. } => "give three anchors, [[x, y], [x, y], [x, y]]".into(),
             Self::Support(error) => error.fix(),
+            Self::Choice { choices, .. } => format!("write {choices}"),
             Self::Both(first, second) => format!("give either `{first}` or `{second}`"),
             Self::Count { .. } => "give one entry for each point of the curve in each array".into(),
             Self::Curve { .. } => {
@@ -128,6 +139,6 @@ fn fix_of(key: &str, reason: Reason) -> String {
         Reason::Exceeded => "make the flexure thinner or longer, or lower `tilt_deg`".into(),
         Reason::BeyondCurve => "give at most the last tension of the curve".into(),
         Reason::TooFew | Reason::TooMany => "give 2 to 16 points".into(),
-        _ => "correct the value; host-tools/rigs/table1.toml has one that works".into(),
+        _ => "correct the value; the ready rigs in host-tools/rigs have one that works".into(),
     }
 }

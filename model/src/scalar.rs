@@ -35,7 +35,8 @@ pub trait Scalar:
     const DIRECTION_STEP: Self;
     /// The first step of the search for the torsion on a ball joint, rad.
     const TORSION_START_RAD: Self;
-    /// That search has converged when a step is not longer than this, rad.
+    /// That search has converged when a step is not longer than this, rad: the next one, about the product of the last
+    /// two, would be lost in rounding.
     const TORSION_STEP_RAD: Self;
 
     /// Square root, correctly rounded.
@@ -97,4 +98,4 @@ macro_rules! scalar {
 }
 
 scalar!(f32, crate::sqrt::sqrt_f32, crate::trigonometry::sin_cos_f32, libm::atan2f, direction: 5e-4, torsion: 1e-6);
-scalar!(f64, libm::sqrt, libm::sincos, libm::atan2, direction: 1e-9, torsion: 1e-12);
+scalar!(f64, libm::sqrt, libm::sincos, libm::atan2, direction: 1e-9, torsion: 1e-9);

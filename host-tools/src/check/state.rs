@@ -130,18 +130,37 @@ impl State {
     }
 }
 
+impl Stretch {
+    const fn words(self) -> &'static str {
+        match self {
+            Self::Constant => "constant",
+            Self::Curve => "curve",
+            Self::CurveAtTension => "curve at tension",
+        }
+    }
+}
+
+const fn support_words(kind: SupportKind) -> &'static str {
+    match kind {
+        SupportKind::TorsionFree => "torsion-free",
+        SupportKind::Universal => "universal",
+        SupportKind::Spherical => "spherical",
+        SupportKind::ElasticUniversal => "elastic universal",
+    }
+}
+
 impl fmt::Display for Pose {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "azimuth {:.1}°, tilt {:.1}°, {:.2} kg, {:.1} N, {:.2e} N/m, {:?}, {:?}",
+            "azimuth {:.1}°, tilt {:.1}°, {:.2} kg, {:.1} N, {:.2e} N/m, {}, {}",
             self.azimuth_deg,
             self.tilt_deg,
             self.payload_kg,
             self.level_n,
             self.stiffness_n_per_m,
-            self.stretch,
-            self.support,
+            self.stretch.words(),
+            support_words(self.support),
         )
     }
 }

@@ -79,13 +79,23 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
 fn rig(args: &Args) -> Result<RigFile, Failure> {
     let mut rig = RigFile::load(args.rig.as_deref())?;
     rig.level_n = args.level_n.unwrap_or(rig.level_n);
-    match leg_model::evaluate(&rig.parameters, &rig.query(0.0, 0.0, args.payload_kg)) {
-        Err(error @ leg_model::Error::Refused { .. }) => {
-            let help = "give --payload-kg from 0, and --level-n within the tendons' curve";
-            Err(Failure::refused(format!("no map: {error}"), help))
-        }
+    let hanging = rig.query(0.0, 0.0, args.payload_kg);
+    match leg_model::evaluate(&rig.parameters, &hanging) {
+        Err(leg_model::Error::Refused { quantity, reason }) => Err(refused(quantity, reason)),
         _ => Ok(rig),
     }
+}
+
+/// The rig itself was accepted with its file, so that only what the command line gives can be refused.
+fn refused(quantity: leg_model::Quantity, reason: leg_model::Reason) -> Failure {
+    let (argument, help) = match quantity {
+        leg_model::Quantity::Payload => ("--payload-kg", "give 0 to 1e6"),
+        _ => (
+            "--level-n",
+            "give a level within the tendons' curve, from -1e7 to 1e7",
+        ),
+    };
+    Failure::refused(format!("{argument} {reason}"), help)
 }
 
 fn grid(args: &Args) -> Result<Grid, Failure> {

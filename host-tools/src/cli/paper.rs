@@ -66,18 +66,28 @@ fn table(computed: &Paper, report: &Path) -> String {
         )
     };
     let rows: String = computed.rows.iter().map(row).collect();
-    let differing = computed
-        .rows
-        .iter()
-        .filter(|row| row.verdict() == Verdict::Differs);
-    let reasons: String = differing
-        .map(|row| format!("* {}: {}\n", row.what, row.why))
-        .collect();
+    let reasons = reasons(computed);
     format!(
         "{heading}{rows}\nWhat differs, and why:\n{reasons}\n{} errors of the print are shown by their numbers in the report.\nReport: {}\n",
         computed.errata.len(),
         from_here(report).display()
     )
+}
+
+/// Why rows differ; rows that differ for one reason stand together.
+fn reasons(computed: &Paper) -> String {
+    let differing = computed
+        .rows
+        .iter()
+        .filter(|row| row.verdict() == Verdict::Differs);
+    let differing: Vec<&Row> = differing.collect();
+    let groups = differing.chunk_by(|a, b| a.why == b.why);
+    let line = |group: &[&Row]| {
+        let rows: Vec<&str> = group.iter().map(|row| row.what.as_str()).collect();
+        let why = group.first().map_or("", |row| row.why);
+        format!("* {}:\n  {why}\n", rows.join(";\n  "))
+    };
+    groups.map(line).collect()
 }
 
 fn json(computed: &Paper) -> Result<String, Failure> {

@@ -53,7 +53,7 @@ enum Action {
 /// A [`Failure`]: a rig file that is refused or a file that cannot be written.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     match &args.action {
-        Action::List => print(&list()),
+        Action::List => print(&list()?),
         Action::Show { rig, json } => {
             let file = RigFile::load(rig.as_deref())?;
             print(&if *json {
@@ -85,10 +85,27 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-fn list() -> String {
-    let heading = format!("{:<22} {:<7} {}\n", "rig", "Fig. 2", "support");
-    let row = |rig: &crate::ready_rigs::ReadyRig| {
-        format!("{:<22} {:<7} {}\n", rig.name, rig.figure_2, rig.words)
-    };
-    heading + &READY_RIGS.iter().map(row).collect::<String>()
+/// The ready rigs with what their joints do, as the model computes it from geometry and material.
+fn list() -> Result<String, Failure> {
+    let mut table = String::from(
+        "                                          bending   torsion\n\
+         rig                    Fig. 2  freedoms   N·m/rad   N·m/rad  support\n",
+    );
+    for rig in READY_RIGS {
+        let support = RigFile::parse(rig.name, rig.text)?.support;
+        let joint = support.joint();
+        let torsion = match support.twists() {
+            true => format!("{:.3}", joint.torsion_nm_per_rad),
+            false => "blocked".into(),
+        };
+        table += &format!(
+            "{:<22} {:<7} {:>8} {:>9.3} {torsion:>9}  {}\n",
+            rig.name,
+            rig.figure_2,
+            if support.twists() { 3 } else { 2 },
+            joint.bending_nm_per_rad,
+            rig.words
+        );
+    }
+    Ok(table)
 }

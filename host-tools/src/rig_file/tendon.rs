@@ -48,18 +48,27 @@ pub(super) fn read(section: &Section<'_>) -> Result<[Tendon<f64>; 3], Fault> {
     }
 }
 
-/// `stiffness_at`: at which tension the stiffness is read.
+/// `stiffness_at`: at which tension a curve's stiffness is read. A constant one is the same at all.
 pub(super) fn read_stiffness_at(section: &Section<'_>) -> Result<StiffnessAt, Fault> {
+    if section.has("stiffness_n_per_m") {
+        return match section.span_of_key("stiffness_at") {
+            None => Ok(StiffnessAt::Pretension),
+            Some(span) => Err(Fault {
+                span,
+                problem: Problem::Both("stiffness_n_per_m", "stiffness_at"),
+            }),
+        };
+    }
     let word = section.word("stiffness_at")?;
     match *word.get_ref() {
         "pretension" => Ok(StiffnessAt::Pretension),
         "tension" => Ok(StiffnessAt::Tension),
         _ => Err(Fault {
             span: word.span(),
-            problem: Problem::WrongType {
+            problem: Problem::Choice {
                 key: "stiffness_at",
-                wanted: "\"pretension\" or \"tension\"",
-                found: "string of another kind",
+                found: (*word.get_ref()).into(),
+                choices: "\"pretension\" or \"tension\"",
             },
         }),
     }
