@@ -157,9 +157,12 @@ impl TendonMessage {
         match self {
             Self::Constant(stiffness) => Tendon::constant((*stiffness).into()),
             Self::Curve(points) => {
-                let points: Vec<CurvePoint<T>, CURVE_POINTS_MAX> =
-                    points.iter().map(widened).collect();
-                Tendon::curve(&points)
+                let mut widened_points = Vec::<CurvePoint<T>, CURVE_POINTS_MAX>::new();
+                for point in points {
+                    // Both have the same capacity; to collect would panic beyond it.
+                    let _ = widened_points.push(widened(point));
+                }
+                Tendon::curve(&widened_points)
             }
         }
     }

@@ -76,15 +76,19 @@ fn take_up_and_the_way_back_leave_the_curve_as_it_is() {
 
 #[test]
 fn units_are_read_from_the_header() {
-    let rows = "1,0.1\n2,0.3\n4,0.5\n";
-    let newtons = fit(&format!("force_n,elongation_mm\n{rows}")).unwrap();
-    let kilo = fit(&format!("# by hand\n\nforce_kn, elongation_um\n{rows}")).unwrap();
-    for (a, b) in newtons.points.iter().zip(&kilo.points) {
-        assert!((a.tension_n * 1e3 - b.tension_n).abs() < 1e-9);
-        assert!((a.elongation_m * 1e-3 - b.elongation_m).abs() < 1e-15);
-    }
-    let swapped = fit("elongation_m,force_n\n0.1,1\n0.3,2\n0.5,4\n").unwrap();
-    assert!((swapped.points[2].elongation_m / newtons.points[2].elongation_m - 1e3).abs() < 1e-9);
+    let rows = "1,10\n2,30\n4,50\n";
+    let at = |text: &str, force: f64| {
+        let curve = TendonCurve::new(&fit(text).unwrap().points).unwrap();
+        curve.elongation(force).unwrap()
+    };
+    let newtons = at(&format!("force_n,elongation_mm\n{rows}"), 3.0);
+    let kilo = at(
+        &format!("# by hand\n\nforce_kn, elongation_um\n{rows}"),
+        3e3,
+    );
+    assert!((newtons * 1e-3 / kilo - 1.0).abs() < 1e-12);
+    let metres = at("elongation_m,force_n\n10,1\n30,2\n50,4\n", 3.0);
+    assert!((metres / newtons / 1e3 - 1.0).abs() < 1e-12);
 }
 
 #[test]

@@ -3,10 +3,10 @@
 use super::{Flexure, FlexureMaterial, check_length, check_ratio};
 use crate::{Error, JointStiffness, Quantity, Reason, Scalar};
 
-/// The range of neck thickness by radius over which the formula has been compared with finite elements (Y. K. Yong,
-/// T.-F. Lu, D. C. Handley, "Review of circular flexure hinge design equations and derivation of empirical
+/// The range of radius by neck thickness over which the formula has been compared with finite elements, 1.25 to 20
+/// (Y. K. Yong, T.-F. Lu, D. C. Handley, "Review of circular flexure hinge design equations and derivation of empirical
 /// formulations", Precision Engineering 32, 2008).
-const THICKNESS_BY_RADIUS: [f32; 2] = [0.05, 0.8];
+const RADIUS_BY_THICKNESS: [f32; 2] = [1.25, 20.0];
 
 /// Narrower necks, in thicknesses, twist unlike a thin strip.
 const WIDTH_BY_THICKNESS: f32 = 3.0;
@@ -72,8 +72,8 @@ impl<T: Scalar> Notch<T> {
         check_length(self.radius_m, Quantity::NotchRadius)?;
         check_length(self.thickness_m, Quantity::FlexureThickness)?;
         check_length(self.width_m, Quantity::FlexureWidth)?;
-        let [thinnest, thickest] = THICKNESS_BY_RADIUS.map(|ratio| T::from(ratio) * self.radius_m);
-        if !(thinnest <= self.thickness_m && self.thickness_m <= thickest) {
+        let [least, most] = RADIUS_BY_THICKNESS.map(|ratio| T::from(ratio) * self.thickness_m);
+        if !(least <= self.radius_m && self.radius_m <= most) {
             return Err(Error::refused(
                 Quantity::FlexureThickness,
                 Reason::OutsideFormula,
