@@ -117,3 +117,49 @@ fn members_of_the_class_differ_by_their_joints_only() {
     let [rigid, notch] = ["universal", "notch_universal"].map(deviation);
     assert!(notch < 0.995 * rigid, "{notch} {rigid}");
 }
+
+/// Largest and mean difference of the linear deviation from the nonlinear equilibrium over the workspace, percent, with
+/// the load's own stiffness and tendons of the constant stiffness at the level.
+fn linear_error_percent(file: &RigFile) -> (f64, f64) {
+    let tendons = leg_tests::constant_tendons(file.stiffnesses_n_per_m()[0]).unwrap();
+    let mut errors = Vec::new();
+    for payload_kg in [0.0, 0.5, 1.0, 2.0] {
+        for azimuth in (0..360).step_by(15) {
+            for tilt in [5.0, 10.0, 15.0, 20.0, 25.0, 30.0] {
+                let query = Query {
+                    tendons,
+                    ..file.query(f64::from(azimuth), tilt, payload_kg)
+                };
+                let linear = evaluate(&file.parameters, &query).unwrap();
+                let nonlinear = nonlinear::deviation_m(&file.parameters, &query).unwrap();
+                let taut = linear.tensions_n.iter().all(|&tension| tension > 0.0);
+                // Where a stiff joint leaves a tendon nothing to pull, the leg is not linear.
+                let (true, Some(nonlinear)) = (taut, nonlinear) else {
+                    continue;
+                };
+                errors
+                    .push(100.0 * (linear.deviation_with_load_stiffness_m / nonlinear - 1.0).abs());
+            }
+        }
+    }
+    let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+    (errors.into_iter().fold(0.0, f64::max), mean)
+}
+
+#[test]
+fn the_linear_deviation_is_near_the_equilibrium_over_the_workspace() {
+    for ready in READY_RIGS {
+        let file = RigFile::parse(ready.name, ready.text).unwrap();
+        let (largest, mean) = linear_error_percent(&file);
+        println!(
+            "{}: at most {largest:.2} %, {mean:.2} % on average",
+            ready.name
+        );
+        assert!(
+            (0.02..1.5).contains(&mean),
+            "{}: {mean} % on average",
+            ready.name
+        );
+        assert!(largest < 1.1, "{}: at most {largest} %", ready.name);
+    }
+}

@@ -13,7 +13,7 @@ mod tests;
 mod workspace;
 
 pub use errata::Erratum;
-pub use figures::draw;
+pub use figures::{FigureError, draw};
 pub use report::markdown;
 pub use row::{Row, Topic, Verdict};
 

@@ -52,16 +52,6 @@ impl<'a> Section<'a> {
         Section::new(table, span, known)
     }
 
-    /// Whether a key is there in a table within this one.
-    #[must_use]
-    pub fn section_has(&self, section: &str, key: &str) -> bool {
-        let table = self
-            .table
-            .get(section)
-            .and_then(|value| value.get_ref().as_table());
-        table.is_some_and(|table| table.contains_key(key))
-    }
-
     /// A table within this one, whose keys are not yet checked: for a first look at the one that says which are known.
     ///
     /// # Errors

@@ -2,10 +2,13 @@
 
 mod constant;
 mod curve;
+mod piece;
+mod point;
 mod published;
 
 pub use constant::ConstantStiffness;
-pub use curve::{CURVE_POINTS_MAX, CurvePoint, TendonCurve};
+pub use curve::{CURVE_POINTS_MAX, TendonCurve};
+pub use point::CurvePoint;
 
 use crate::range::{STIFFNESS, check_positive};
 use crate::{Error, Quantity, Reason, Scalar};

@@ -23,8 +23,9 @@ pub(super) fn read(
     root: &Section<'_>,
     tilt_deg: f64,
 ) -> Result<(SupportName, Support<f64>), Fault> {
-    let name = read_name(root)?;
-    let measured = root.section_has("support", MEASURED[0]);
+    let first_look = root.any_section("support")?;
+    let name = read_name(&first_look)?;
+    let measured = first_look.has(MEASURED[0]);
     let section = root.section("support", &keys(name, measured))?;
     let joint = match (name.elastic(), measured) {
         (false, _) => rigid(&section)?,
@@ -39,8 +40,8 @@ pub(super) fn read(
     Ok((name, support))
 }
 
-fn read_name(root: &Section<'_>) -> Result<SupportName, Fault> {
-    let word = root.any_section("support")?.word("kind")?;
+fn read_name(section: &Section<'_>) -> Result<SupportName, Fault> {
+    let word = section.word("kind")?;
     let unknown = |error| Fault {
         span: word.span(),
         problem: Problem::Support(error),

@@ -182,3 +182,44 @@ fn reason(error: Error) -> Reason {
         _ => Reason::OutOfRange,
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use crate::ready_rigs::READY_RIGS;
+    use crate::rig_file::RigFile;
+    use leg_model::Elasticity;
+
+    /// The paper's rig with other lines in the place of its curve's section.
+    fn with(tendon: impl Fn(&str) -> String) -> RigFile {
+        let text = READY_RIGS[0].text;
+        let start = text.find("[tendon.curve]").unwrap();
+        let end = text.find("[workspace]").unwrap();
+        let replaced = [&text[..start], &tendon(&text[start..end]), &text[end..]].concat();
+        RigFile::parse("test", &replaced).unwrap()
+    }
+
+    #[test]
+    fn each_tendon_may_have_its_own_curve() {
+        let file = with(|curve| {
+            let named = |name: &str| curve.replace("[tendon.curve]", name);
+            let longer = named("[tendon.curve_2]").replace("200]", "250]");
+            [named("[tendon.curve_1]"), longer, named("[tendon.curve_3]")].concat()
+        });
+        let [first, second, third] = file.tendons;
+        assert_eq!(first, third);
+        assert!(first.elongation(220.0).is_err() && second.elongation(220.0).is_ok());
+    }
+
+    /// Twice as long is twice as soft, half the section as well: 0.6 mm × 120 mm to 0.8 mm × 100 mm is 32/15.
+    #[test]
+    fn a_test_piece_is_scaled_to_the_tendon() {
+        let sizes = "[tendon.test_piece]\nlength_mm = 120\ndiameter_mm = 0.6\ntendon_length_mm = 100\n\
+                     tendon_diameter_mm = 0.8\n";
+        let (plain, scaled) = (with(str::to_owned), with(|curve| [curve, sizes].concat()));
+        for tension in [5.0, 70.0, 150.0] {
+            let [a, b] = [plain, scaled].map(|file| file.tendons[0].stiffness(tension).unwrap());
+            assert!((b / a - 32.0 / 15.0).abs() < 1e-12, "{tension} N: {a} {b}");
+        }
+    }
+}

@@ -3,83 +3,12 @@
 //! Stiffness is not monotone in tension, elongation is. So elongation is kept, as a cubic between each two points, and
 //! the stiffness is the reciprocal of its slope.
 
-use super::{Elasticity, check_stiffness};
-use crate::range::{LENGTH_MAX, TENSION_MAX, check_magnitude};
+use super::piece::Piece;
+use super::{CurvePoint, Elasticity};
 use crate::{Error, Quantity, Reason, Scalar};
 
 /// The most points that a curve may have: a power of two, for the search.
 pub const CURVE_POINTS_MAX: usize = 16;
-
-/// Between two points the curve rises if it is nowhere this many times as steep at one of them as on average (after
-/// Fritsch and Carlson, 1980).
-const STEEPNESS_MAX: f32 = 3.0;
-
-/// Steps after which the search for a tension ends: more than halving alone needs.
-const NEWTON_STEPS_MAX: u8 = 80;
-
-/// One point of a curve.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize, postcard_schema::Schema)
-)]
-pub struct CurvePoint<T> {
-    /// Tension, N.
-    pub tension_n: T,
-    /// Elongation under it, m.
-    pub elongation_m: T,
-    /// Tangent stiffness there, N/m.
-    pub stiffness_n_per_m: T,
-}
-
-impl<T: Scalar> CurvePoint<T> {
-    /// The same point of a tendon of another length and section: twice as long is twice as soft, twice the section
-    /// half as soft.
-    #[must_use]
-    pub fn scaled(&self, length_ratio: T, section_ratio: T) -> Self {
-        let softening = length_ratio / section_ratio;
-        Self {
-            tension_n: self.tension_n,
-            elongation_m: self.elongation_m * softening,
-            stiffness_n_per_m: self.stiffness_n_per_m / softening,
-        }
-    }
-
-    /// Whether this point may come first: it has to be the slack tendon, without tension and elongation.
-    ///
-    /// # Errors
-    /// [`Quantity::TendonCurve`], [`Reason::NotFromZero`]; a stiffness that no tendon has.
-    pub fn check_first(&self) -> Result<(), Error> {
-        if self.tension_n != T::zero() || self.elongation_m != T::zero() {
-            return Err(Error::refused(Quantity::TendonCurve, Reason::NotFromZero));
-        }
-        check_stiffness(self.stiffness_n_per_m)
-    }
-
-    /// Whether this point may follow `before`.
-    ///
-    /// # Errors
-    /// [`Quantity::TendonCurve`] out of range, [`Reason::NotRising`] or [`Reason::NotMonotone`] (the stiffnesses at the
-    /// two points are so far below the average between them that the curve would turn back); a stiffness that no
-    /// tendon has.
-    pub fn check_after(&self, before: &Self) -> Result<(), Error> {
-        check_magnitude(self.tension_n, TENSION_MAX, Quantity::TendonCurve)?;
-        check_magnitude(self.elongation_m, LENGTH_MAX, Quantity::TendonCurve)?;
-        check_stiffness(self.stiffness_n_per_m)?;
-        let rise = self.tension_n - before.tension_n;
-        let stretch = self.elongation_m - before.elongation_m;
-        if !(rise > T::zero() && stretch > T::zero()) {
-            return Err(Error::refused(Quantity::TendonCurve, Reason::NotRising));
-        }
-        let average = rise / stretch;
-        let softest = average / T::from(STEEPNESS_MAX);
-        if before.stiffness_n_per_m > softest && self.stiffness_n_per_m > softest {
-            Ok(())
-        } else {
-            Err(Error::refused(Quantity::TendonCurve, Reason::NotMonotone))
-        }
-    }
-}
 
 /// A curve whose points have been validated.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,19 +19,6 @@ pub struct TendonCurve<T> {
     tension_max: T,
     /// The elongation there, m.
     elongation_max: T,
-}
-
-/// The curve between two points, with s = T − start: δ = c₀ + c₁s + c₂s² + c₃s³.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Piece<T> {
-    /// N.
-    start: T,
-    /// N.
-    end: T,
-    /// c₀ to c₃.
-    elongation: [T; 4],
-    /// ∫δ dT from zero to the start, J.
-    complement: T,
 }
 
 impl<T: Scalar> TendonCurve<T> {
@@ -227,86 +143,5 @@ impl<T: Scalar> Elasticity<T> for TendonCurve<T> {
         } else {
             T::zero()
         })
-    }
-}
-
-impl<T: Scalar> Piece<T> {
-    /// A piece that no tension and no elongation reaches.
-    fn beyond() -> Self {
-        Self {
-            start: T::MAX,
-            end: T::MAX,
-            elongation: [T::MAX, T::zero(), T::zero(), T::zero()],
-            complement: T::zero(),
-        }
-    }
-
-    /// Hermite's cubic from one point to the next.
-    fn new(before: &CurvePoint<T>, after: &CurvePoint<T>, complement: T) -> Self {
-        let rise = after.tension_n - before.tension_n;
-        let average = (after.elongation_m - before.elongation_m) / rise;
-        let first = T::one() / before.stiffness_n_per_m;
-        let last = T::one() / after.stiffness_n_per_m;
-        let bend = first + last - T::TWO * average;
-        let square = (average - first - bend) / rise;
-        Self {
-            start: before.tension_n,
-            end: after.tension_n,
-            elongation: [before.elongation_m, first, square, bend / (rise * rise)],
-            complement,
-        }
-    }
-
-    fn point_at(&self, tension: T) -> CurvePoint<T> {
-        CurvePoint {
-            tension_n: tension,
-            elongation_m: self.elongation_at(tension),
-            stiffness_n_per_m: T::one() / self.slope_at(tension),
-        }
-    }
-
-    #[inline(always)]
-    fn elongation_at(&self, tension: T) -> T {
-        let s = tension - self.start;
-        let [c0, c1, c2, c3] = self.elongation;
-        c0 + s * (c1 + s * (c2 + s * c3))
-    }
-
-    #[inline(always)]
-    fn slope_at(&self, tension: T) -> T {
-        let s = tension - self.start;
-        let [_, c1, c2, c3] = self.elongation;
-        c1 + s * (c2 + c2 + T::from(3.0) * c3 * s)
-    }
-
-    /// ∫δ dT from zero to a tension, J.
-    fn complement_at(&self, tension: T) -> T {
-        let s = tension - self.start;
-        let [c0, c1, c2, c3] = self.elongation;
-        let [c1, c2, c3] = [c1 / T::from(2.0), c2 / T::from(3.0), c3 / T::from(4.0)];
-        self.complement + s * (c0 + s * (c1 + s * (c2 + s * c3)))
-    }
-
-    /// The tension at an elongation of this piece, by Newton's steps between bounds that close in.
-    fn tension_at(&self, elongation: T) -> T {
-        let (mut low, mut high) = (self.start, self.end);
-        let mut tension = self.start + (elongation - self.elongation[0]) / self.elongation[1];
-        for _ in 0..NEWTON_STEPS_MAX {
-            if !(tension > low && tension < high) {
-                tension = T::HALF * (low + high);
-            }
-            let error = self.elongation_at(tension) - elongation;
-            if error > T::zero() {
-                high = tension;
-            } else {
-                low = tension;
-            }
-            let next = tension - error / self.slope_at(tension);
-            if next == tension {
-                break;
-            }
-            tension = next;
-        }
-        tension
     }
 }

@@ -1,0 +1,83 @@
+//! The full pass, on a ball joint and in a plane.
+
+use super::{Bench, Body};
+use leg_model::{Deflection, Error, Scalar, Symmetric3};
+
+pub struct FullPass;
+
+impl<T: Scalar> Body<T> for FullPass {
+    type Output = leg_model::FullPass<T, 3>;
+
+    #[inline(always)]
+    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+        Ok(leg_model::full_pass(
+            &bench.rig,
+            &bench.direction,
+            &bench.load,
+            &bench.states,
+        ))
+    }
+
+    fn flatten(pass: &Self::Output, push: &mut impl FnMut(T)) {
+        push_pass(pass, push);
+    }
+
+    fn check(pass: &Self::Output) -> Result<(), Error> {
+        pass.deflection.map(|_| ())
+    }
+}
+
+pub struct FullPassInPlane;
+
+impl<T: Scalar> Body<T> for FullPassInPlane {
+    type Output = leg_model::FullPass<T, 3>;
+
+    #[inline(always)]
+    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+        Ok(leg_model::full_pass_in_plane(
+            &bench.rig,
+            &bench.direction,
+            &bench.plane,
+            &bench.load,
+            &bench.states,
+        ))
+    }
+
+    fn flatten(pass: &Self::Output, push: &mut impl FnMut(T)) {
+        push_pass(pass, push);
+    }
+
+    fn check(pass: &Self::Output) -> Result<(), Error> {
+        pass.deflection.map(|_| ())
+    }
+}
+
+fn push_pass<T: Scalar>(pass: &leg_model::FullPass<T, 3>, push: &mut impl FnMut(T)) {
+    pass.kinematics.lengths.iter().copied().for_each(&mut *push);
+    pass.kinematics
+        .moment_map
+        .iter()
+        .copied()
+        .for_each(&mut *push);
+    push_symmetric(&pass.stiffness, push);
+    if let Ok(deflection) = &pass.deflection {
+        push_deflection(deflection, push);
+    }
+}
+
+pub(super) fn push_symmetric<T: Scalar>(matrix: &Symmetric3<T>, push: &mut impl FnMut(T)) {
+    let &Symmetric3 {
+        xx,
+        xy,
+        xz,
+        yy,
+        yz,
+        zz,
+    } = matrix;
+    [xx, xy, xz, yy, yz, zz].into_iter().for_each(push);
+}
+
+pub(super) fn push_deflection<T: Scalar>(deflection: &Deflection<T>, push: &mut impl FnMut(T)) {
+    deflection.rotation.iter().copied().for_each(&mut *push);
+    deflection.tip_displacement.iter().copied().for_each(push);
+}

@@ -1,0 +1,68 @@
+//! Inverse and forward kinematics.
+
+use super::{Bench, Body};
+use leg_model::{Error, Scalar};
+
+pub struct InverseKinematics;
+
+impl<T: Scalar> Body<T> for InverseKinematics {
+    type Output = leg_model::Kinematics<T, 3>;
+
+    #[inline(always)]
+    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+        leg_model::inverse_kinematics(bench.rig.geometry(), &bench.direction)
+    }
+
+    fn flatten(kinematics: &Self::Output, push: &mut impl FnMut(T)) {
+        kinematics.lengths.iter().copied().for_each(&mut *push);
+        kinematics.moment_map.iter().copied().for_each(push);
+    }
+}
+
+pub struct ForwardKinematics;
+
+impl<T: Scalar> Body<T> for ForwardKinematics {
+    type Output = leg_model::ForwardKinematics<T>;
+
+    #[inline(always)]
+    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+        leg_model::forward_kinematics(bench.rig.geometry(), &bench.lengths, &bench.start)
+    }
+
+    fn flatten(found: &Self::Output, push: &mut impl FnMut(T)) {
+        push_found(found, push);
+    }
+}
+
+pub struct ForwardKinematicsUniversal;
+
+impl<T: Scalar> Body<T> for ForwardKinematicsUniversal {
+    type Output = leg_model::ForwardKinematics<T>;
+
+    #[inline(always)]
+    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+        leg_model::forward_kinematics_universal(
+            bench.rig.geometry(),
+            &bench.lengths_universal,
+            &bench.start,
+        )
+    }
+
+    fn flatten(found: &Self::Output, push: &mut impl FnMut(T)) {
+        push_found(found, push);
+    }
+}
+
+pub(super) fn push_found<T: Scalar>(
+    found: &leg_model::ForwardKinematics<T>,
+    push: &mut impl FnMut(T),
+) {
+    found
+        .direction
+        .vector()
+        .iter()
+        .copied()
+        .for_each(&mut *push);
+    push(found.residual_m);
+    push(T::from(f32::from(found.steps)));
+}

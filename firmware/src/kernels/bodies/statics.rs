@@ -1,0 +1,103 @@
+//! Tensions, tendons with curves, inverse statics and stiffness on command.
+
+use super::{Bench, Body};
+use leg_model::{BendingAxis, Elasticity, Error, HoldError, Scalar, StiffnessAnswer};
+use nalgebra::SVector;
+
+pub struct Distribution;
+
+impl<T: Scalar> Body<T> for Distribution {
+    type Output = (leg_model::Distribution<T, 3>, SVector<T, 3>);
+
+    #[inline(always)]
+    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+        let map = &bench.kinematics.moment_map;
+        let distribution = leg_model::distribute(map, &bench.plane, &bench.moment, &bench.bounds)?;
+        Ok((distribution, distribution.tensions(bench.level)))
+    }
+
+    fn flatten((distribution, tensions): &Self::Output, push: &mut impl FnMut(T)) {
+        distribution.particular.iter().copied().for_each(&mut *push);
+        distribution.per_level.iter().copied().for_each(&mut *push);
+        push(distribution.lowest_level);
+        push(distribution.highest_level);
+        tensions.iter().copied().for_each(push);
+    }
+}
+
+/// Elongation and stiffness of the first tendon at the level.
+pub struct TendonCurve;
+
+impl<T: Scalar> Body<T> for TendonCurve {
+    type Output = [T; 2];
+
+    #[inline(always)]
+    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+        let [curve, ..] = &bench.curves;
+        Ok([
+            curve.elongation(bench.level)?,
+            curve.stiffness(bench.level)?,
+        ])
+    }
+
+    fn flatten(output: &Self::Output, push: &mut impl FnMut(T)) {
+        output.iter().copied().for_each(push);
+    }
+}
+
+pub struct InverseStatics;
+
+impl<T: Scalar> Body<T> for InverseStatics {
+    type Output = leg_model::Hold<T, 3>;
+
+    #[inline(always)]
+    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+        leg_model::inverse_statics_in_plane(
+            bench.rig.geometry(),
+            &bench.plane,
+            &bench.direction,
+            &bench.moment,
+            &bench.bounds,
+            &bench.curves,
+            bench.level,
+        )
+        .map_err(|error| match error {
+            HoldError::Model(error) => error,
+            _ => Error::Infeasible,
+        })
+    }
+
+    fn flatten(found: &Self::Output, push: &mut impl FnMut(T)) {
+        found.tensions.iter().copied().for_each(&mut *push);
+        found.unstretched.iter().copied().for_each(push);
+    }
+}
+
+pub struct StiffnessCommand;
+
+impl<T: Scalar> Body<T> for StiffnessCommand {
+    type Output = StiffnessAnswer<T>;
+
+    #[inline(always)]
+    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+        let command = leg_model::StiffnessCommand::new(
+            bench.rig.geometry(),
+            &bench.support,
+            &bench.direction,
+            T::zero(),
+            &bench.load,
+            &bench.curves,
+            &bench.kinematics,
+            &bench.distribution,
+        );
+        command.level_for(bench.demand, &BendingAxis::Softest, &bench.bounds)
+    }
+
+    fn flatten(answer: &Self::Output, push: &mut impl FnMut(T)) {
+        push(answer.level_n);
+        push(answer.stiffness_nm_per_rad);
+        push(T::from(f32::from(
+            answer.limit.map_or(0, |limit| limit.tendon),
+        )));
+    }
+}
