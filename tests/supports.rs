@@ -102,6 +102,32 @@ fn f32_agrees_with_f64_and_the_emulated_core_with_f32_on_every_support() {
     }
 }
 
+/// `leg run` on a rig, as JSON.
+fn experiment(rig: &ReadyRig, on: &str) -> Value {
+    let folder = tempfile::tempdir().unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_leg-under-test"))
+        .args(["run", "--json", "--on", on, "--rig", rig.name, "--plots"])
+        .arg(folder.path())
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{} on {on}", rig.name);
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn the_experiment_runs_on_every_support_with_equal_bits() {
+    for rig in &READY_RIGS {
+        let (qemu, sim) = (experiment(rig, "qemu"), experiment(rig, "sim"));
+        assert_eq!(qemu["curves"], sim["curves"], "{}", rig.name);
+        let off_mm = qemu["largest_difference_mm"].as_f64().unwrap();
+        assert!(
+            off_mm < 2e-5,
+            "{}: {off_mm:e} mm between f32 and f64",
+            rig.name
+        );
+    }
+}
+
 /// The deviation that the paper's idealisation gives bounds that of its class: stiffer joints sag less.
 #[test]
 fn members_of_the_class_differ_by_their_joints_only() {

@@ -67,7 +67,7 @@ pub enum LineError {
     #[error("{0}: {fix}", fix = .0.fix())]
     Support(UnknownSupport),
     /// The model refuses a value.
-    #[error("`{key}` {reason}{fix}", key = key_of(*.quantity), fix = fix_of(*.quantity, *.reason))]
+    #[error("{name} {reason}{fix}", name = name_of(*.quantity), fix = fix_of(*.quantity, *.reason))]
     Refused {
         /// Which one.
         quantity: Quantity,
@@ -85,6 +85,15 @@ impl From<Error> for LineError {
             Error::Refused { quantity, reason } => Self::Refused { quantity, reason },
             _ => Self::NoResult(error),
         }
+    }
+}
+
+/// The key in quotes, or words where no key gives the quantity itself.
+fn name_of(quantity: Quantity) -> String {
+    match quantity {
+        Quantity::Tension => "the tension of a tendon at this level".into(),
+        Quantity::Elongation => "the elongation of a tendon under this load".into(),
+        _ => format!("`{}`", key_of(quantity)),
     }
 }
 
@@ -109,8 +118,7 @@ fn key_of(quantity: Quantity) -> &'static str {
         Quantity::Gravity => "gravity_m_per_s2",
         Quantity::TendonLength => "tendon length",
         Quantity::Direction => "direction",
-        Quantity::Tension => "tension of a tendon at this level",
-        Quantity::Elongation => "elongation of a tendon",
+        Quantity::Tension | Quantity::Elongation => "level_n",
         Quantity::TendonCurve => "curve",
         Quantity::BendingStiffness => "demand_nm_per_rad",
         Quantity::DemandAzimuth => "demand_towards_deg",
