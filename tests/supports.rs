@@ -49,10 +49,10 @@ const POSES: &str = r#"{"azimuth_deg":0,"tilt_deg":0,"payload_kg":1}
 {"azimuth_deg":160,"tilt_deg":25,"payload_kg":1.5,"stiffness_n_per_m":80000}
 "#;
 
-fn answers(rig: &ReadyRig, on: &str) -> String {
+fn answers(rig: &str, on: &str) -> String {
     let leg = env!("CARGO_BIN_EXE_leg-under-test");
     let mut leg = Command::new(leg)
-        .args(["eval", "--on", on, "--rig", rig.name])
+        .args(["eval", "--on", on, "--rig", rig])
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .spawn()
@@ -63,7 +63,7 @@ fn answers(rig: &ReadyRig, on: &str) -> String {
         .write_all(POSES.as_bytes())
         .unwrap();
     let output = leg.wait_with_output().unwrap();
-    assert!(output.status.success(), "{} on {on}", rig.name);
+    assert!(output.status.success(), "{rig} on {on}");
     String::from_utf8(output.stdout).unwrap()
 }
 
@@ -73,33 +73,61 @@ fn objects(text: &str) -> Vec<Map<String, Value>> {
         .collect()
 }
 
+/// f32 against f64, and the emulated core against f32.
+fn assert_alike_everywhere(rig: &str) {
+    let single = answers(rig, "f32");
+    assert_eq!(answers(rig, "qemu"), single, "{rig}: bits");
+    let (double, single) = (objects(&answers(rig, "f64")), objects(&single));
+    assert_eq!(double.len(), 5);
+    for (double, single) in double.iter().zip(&single) {
+        let numeric = single
+            .iter()
+            .filter(|(_, value)| value.is_number() || value.is_array());
+        for (key, value) in numeric.filter(|(key, _)| *key != "level_limits") {
+            let (found, expected) = (numbers(value), numbers(&double[key]));
+            // What vanishes at the vertical is judged absolutely.
+            let absolute = found
+                .iter()
+                .zip(&expected)
+                .all(|(a, b)| (a - b).abs() < 1e-7);
+            let off = difference(&found, &expected);
+            assert!(absolute || off < 3e-5, "{rig} {key}: {off:e}");
+        }
+    }
+}
+
 #[test]
 fn f32_agrees_with_f64_and_the_emulated_core_with_f32_on_every_support() {
     for rig in &READY_RIGS {
-        let single = answers(rig, "f32");
-        assert_eq!(answers(rig, "qemu"), single, "{}: bits", rig.name);
-        let (double, single) = (objects(&answers(rig, "f64")), objects(&single));
-        assert_eq!(double.len(), 5);
-        for (double, single) in double.iter().zip(&single) {
-            for (key, value) in single
-                .iter()
-                .filter(|(_, value)| value.is_number() || value.is_array())
-            {
-                let (found, expected) = (numbers(value), numbers(&double[key]));
-                // What vanishes at the vertical is judged beside a hundredth of a unit.
-                let absolute = found
-                    .iter()
-                    .zip(&expected)
-                    .all(|(a, b)| (a - b).abs() < 1e-7);
-                let off = difference(&found, &expected);
-                assert!(
-                    key == "level_limits" || absolute || off < 3e-5,
-                    "{} {key}: {off:e}",
-                    rig.name
-                );
-            }
-        }
+        assert_alike_everywhere(rig.name);
     }
+}
+
+#[test]
+fn tendons_with_a_curve_each_cross_the_link() {
+    let text = READY_RIGS[0].text;
+    let (start, end) = (
+        text.find("[tendon.curve]").unwrap(),
+        text.find("[workspace]").unwrap(),
+    );
+    let curve = |name: &str, stiffer: &str| {
+        let named = text[start..end].replace("[tendon.curve]", name);
+        // Another last point: stiffer tendons are stretched less.
+        named.replace("2.516238389659529", stiffer)
+    };
+    let curves = [
+        curve("[tendon.curve_1]", "2.5162"),
+        curve("[tendon.curve_2]", "2.51"),
+        curve("[tendon.curve_3]", "2.52"),
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("each.toml");
+    std::fs::write(
+        &file,
+        [&text[..start], &curves.concat(), &text[end..]].concat(),
+    )
+    .unwrap();
+    assert_alike_everywhere(file.to_str().unwrap());
 }
 
 /// `leg run` on a rig, as JSON.
