@@ -99,7 +99,7 @@ fn maxima(rig: &RigFile, stiffness_at: StiffnessAt) -> Result<Vec<Row>, Error> {
             StiffnessAt::Tension => (
                 ", stiffness at each tendon's tension",
                 Verdict::Differs,
-                "read so, the default curve makes the loaded tendons stiffer and the slack ones softer; the paper's \
+                "read so, the default curve makes the more loaded tendons stiffer and the less loaded ones softer; the paper's \
                  deviations grow in proportion to the load, which only one stiffness for all loads gives",
             ),
         };

@@ -67,12 +67,13 @@ fn table(topic: Topic, paper: &Paper) -> String {
                 Meaning::AtMost => "≤ ",
             };
             format!(
-                "| {} | {limit}{} | {} | {:+.*} | {} | {} | {} |\n",
+                "| {} | {limit}{} | {} | {:+.*} | {} | {} | {} | {} |\n",
                 row.what,
                 number(row, row.published),
                 number(row, row.ours),
                 row.decimals,
                 row.difference(),
+                number(row, row.bound),
                 row.unit,
                 row.verdict().word(),
                 row.why
@@ -80,7 +81,7 @@ fn table(topic: Topic, paper: &Paper) -> String {
         })
         .collect();
     format!(
-        "## {}\n\n| what | published | ours | difference | unit | verdict | why |\n|---|---|---|---|---|---|---|\n{rows}\n",
+        "## {}\n\n| what | published | ours | difference | bound | unit | verdict | why |\n|---|---|---|---|---|---|---|---|\n{rows}\n",
         topic.heading()
     )
 }
