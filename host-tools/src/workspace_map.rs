@@ -100,9 +100,10 @@ fn row_of(
     grid: Grid,
     row: u32,
 ) -> impl Iterator<Item = Result<Cell, Error>> {
-    let tilt = tilt_deg(rig.tilt_deg, grid, row);
+    // Once a row: a query carries three whole curves.
+    let mut query = rig.query(0.0, tilt_deg(rig.tilt_deg, grid, row), payload_kg);
     (0..grid.azimuths).map(move |column| {
-        let query = rig.query(azimuth_deg(grid, column), tilt, payload_kg);
+        query.azimuth_rad = azimuth_deg(grid, column).to_radians();
         let evaluation = evaluate(&rig.parameters, &query)?;
         Ok(Cell::of(&evaluation, rig))
     })
