@@ -85,7 +85,7 @@ impl Quantity {
             Self::Deviation => cell.deviation_mm,
             Self::StiffnessMin => cell.stiffness_min_nm_per_rad,
             Self::StiffnessMax => cell.stiffness_max_nm_per_rad,
-            Self::Condition => cell.condition(),
+            Self::Condition => cell.condition,
             Self::LevelMin => cell.level_min_n,
             Self::LevelMax => cell.level_max_n,
         };
