@@ -51,7 +51,7 @@ fn fields(cell: &Cell) -> Vec<String> {
         cell.deviation_mm,
         cell.stiffness_min_nm_per_rad,
         cell.stiffness_max_nm_per_rad,
-        cell.condition(),
+        cell.condition,
         cell.margin_n,
         cell.level_min_n,
         cell.level_max_n,

@@ -1,11 +1,14 @@
 //! The model over the whole workspace.
 
+mod cell;
 mod quantity;
 
+pub use cell::Cell;
 pub use quantity::Quantity;
 
 use crate::rig_file::RigFile;
-use leg_model::{Error, Evaluation, evaluate};
+use cell::Prepared;
+use leg_model::Error;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -16,25 +19,6 @@ pub struct Grid {
     pub azimuths: u32,
     /// Rows: tilts evenly from the vertical to the edge. At least 2.
     pub tilts: u32,
-}
-
-/// What the model says of a pose, for a map.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Cell {
-    /// Linear deviation at the rig's level, mm.
-    pub deviation_mm: f64,
-    /// Smallest bending stiffness, N·m/rad.
-    pub stiffness_min_nm_per_rad: f64,
-    /// Largest bending stiffness, N·m/rad.
-    pub stiffness_max_nm_per_rad: f64,
-    /// How far the tensions at the rig's level stay from their bounds, N; negative beyond them.
-    pub margin_n: f64,
-    /// Lowest level that keeps the bounds, N.
-    pub level_min_n: f64,
-    /// Highest level that keeps the bounds, N.
-    pub level_max_n: f64,
-    /// Whether any level keeps the bounds.
-    pub feasible: bool,
 }
 
 /// A rig over its workspace with a payload.
@@ -52,8 +36,9 @@ impl WorkspaceMap {
     /// Evaluates every pose on all cores, and calls `done` after each row.
     #[must_use]
     pub fn compute(rig: &RigFile, payload_kg: f64, grid: Grid, done: impl Fn() + Sync) -> Self {
+        let prepared = Prepared::new(rig, payload_kg);
         let rows = (0..grid.tilts).into_par_iter().map(|row| {
-            let cells = row_of(rig, payload_kg, grid, row).collect::<Vec<_>>();
+            let cells = row_of(&prepared, rig.tilt_deg, grid, row).collect::<Vec<_>>();
             done();
             cells
         });
@@ -67,7 +52,8 @@ impl WorkspaceMap {
     /// The same on one core: what a benchmark measures.
     #[must_use]
     pub fn on_one_core(rig: &RigFile, payload_kg: f64, grid: Grid) -> Self {
-        let rows = (0..grid.tilts).flat_map(|row| row_of(rig, payload_kg, grid, row));
+        let prepared = Prepared::new(rig, payload_kg);
+        let rows = (0..grid.tilts).flat_map(|row| row_of(&prepared, rig.tilt_deg, grid, row));
         Self {
             grid,
             tilt_max_deg: rig.tilt_deg,
@@ -95,16 +81,16 @@ impl WorkspaceMap {
 }
 
 fn row_of(
-    rig: &RigFile,
-    payload_kg: f64,
+    prepared: &Result<Prepared, Error>,
+    edge_deg: f64,
     grid: Grid,
     row: u32,
 ) -> impl Iterator<Item = Result<Cell, Error>> {
-    let tilt = tilt_deg(rig.tilt_deg, grid, row);
-    (0..grid.azimuths).map(move |column| {
-        let query = rig.query(azimuth_deg(grid, column), tilt, payload_kg);
-        let evaluation = evaluate(&rig.parameters, &query)?;
-        Ok(Cell::of(&evaluation, rig))
+    let tilt_deg = tilt_deg(edge_deg, grid, row);
+    let mut row = prepared.as_ref().map(|prepared| prepared.row(tilt_deg));
+    (0..grid.azimuths).map(move |column| match &mut row {
+        Ok(row) => row.cell(azimuth_deg(grid, column)),
+        Err(error) => Err(**error),
     })
 }
 
@@ -114,31 +100,6 @@ fn azimuth_deg(grid: Grid, column: u32) -> f64 {
 
 fn tilt_deg(edge_deg: f64, grid: Grid, row: u32) -> f64 {
     edge_deg * f64::from(row) / f64::from(grid.tilts - 1)
-}
-
-impl Cell {
-    fn of(evaluation: &Evaluation<f64>, rig: &RigFile) -> Self {
-        let e = evaluation;
-        let (floor, ceiling) = (rig.tension_floor_n, rig.tension_ceiling_n);
-        let margins = e
-            .tensions_n
-            .map(|tension| (tension - floor).min(ceiling - tension));
-        Self {
-            deviation_mm: e.deviation_m * 1000.0,
-            stiffness_min_nm_per_rad: e.bending_stiffness_nm_per_rad[0],
-            stiffness_max_nm_per_rad: e.bending_stiffness_nm_per_rad[1],
-            margin_n: margins.into_iter().fold(f64::INFINITY, f64::min),
-            level_min_n: e.level_range_n[0],
-            level_max_n: e.level_range_n[1],
-            feasible: e.feasible,
-        }
-    }
-
-    /// Largest by smallest bending stiffness.
-    #[must_use]
-    pub fn condition(&self) -> f64 {
-        self.stiffness_max_nm_per_rad / self.stiffness_min_nm_per_rad
-    }
 }
 
 #[cfg(test)]

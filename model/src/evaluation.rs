@@ -1,11 +1,14 @@
 //! The whole model at one pose: what `leg eval` prints.
 
 mod state;
+mod survey;
+
+pub use survey::{Survey, survey};
 
 use crate::range::check_magnitude;
 use crate::{
-    BendingAxis, Elasticity, Error, Limit, Quantity, RigParameters, Scalar, StiffnessAnswer,
-    Support, Tendon,
+    BendingAxis, Error, Limit, Quantity, Rig, RigParameters, Scalar, StiffnessAnswer, Support,
+    Tendon, structural_stiffness_printed,
 };
 use nalgebra::Matrix3;
 use state::State;
@@ -142,17 +145,16 @@ pub fn evaluate<T: Scalar>(
     parameters: &RigParameters<T, 3>,
     query: &Query<T>,
 ) -> Result<Evaluation<T>, Error> {
-    let state = State::new(parameters, query)?;
+    let state = State::new(Rig::new(parameters)?, query)?;
     let distribution = &state.distribution;
     let tensions = distribution.tensions(query.level_n);
     let stiffness = state.stiffness(query, &tensions)?;
+    let k2_printed = structural_stiffness_printed(&state.geometry, &state.direction, &tensions);
     let load_stiffness = state.load.stiffness(&state.direction);
     let sag = state.sag(&stiffness.total, &stiffness)?;
     let sag_with_load = state.sag(&(stiffness.total + load_stiffness), &stiffness)?;
-    let mut unstretched = state.kinematics.lengths;
-    for (i, tendon) in query.tendons.iter().enumerate() {
-        unstretched[i] -= tendon.elongation(tensions[i])?;
-    }
+    let unstretched = state.unstretched(&query.tendons, &tensions)?;
+    let bending = state.bending(&(stiffness.total + load_stiffness));
     let demand = query.demand.as_ref();
     let commanded = demand.map(|demand| state.command(demand, &query.tendons));
     Ok(Evaluation {
@@ -169,8 +171,8 @@ pub fn evaluate<T: Scalar>(
         stiffness_nm_per_rad: rows(&stiffness.total),
         stiffness_joint_nm_per_rad: rows(&stiffness.joint),
         stiffness_k2_exact_nm_per_rad: rows(&stiffness.k2_exact),
-        stiffness_k2_printed_nm_per_rad: rows(&stiffness.k2_printed),
-        bending_stiffness_nm_per_rad: state.bending(&(stiffness.total + load_stiffness)),
+        stiffness_k2_printed_nm_per_rad: rows(&k2_printed),
+        bending_stiffness_nm_per_rad: bending.unwrap_or([T::zero(); 2]),
         axial_stretch_m: sag_with_load.axial_stretch,
         deviation_m: sag.deviation,
         deviation_with_load_stiffness_m: sag_with_load.deviation,

@@ -62,24 +62,48 @@ impl<T: Scalar> UniversalAngles<T> {
     }
 }
 
+/// The joint's moment at a direction as a function of its elastic torsion alone.
+pub(crate) struct JointMoment<T> {
+    bent: Vector3<T>,
+    by_torsion: Vector3<T>,
+    twisting: T,
+}
+
+impl<T: Scalar> JointMoment<T> {
+    /// Moment on the leg, N·m, at an elastic torsion in rad.
+    pub fn at(&self, torsion: T) -> Vector3<T> {
+        self.bent - self.by_torsion * (self.twisting * torsion)
+    }
+}
+
 impl<T: Scalar> Support<T> {
     /// Moment of the bent and twisted joint on the leg, N·m. `torsion` (rad) is the elastic one, beyond that which the
     /// joint itself gives the leg.
     #[must_use]
     pub fn joint_moment(&self, direction: &Direction<T>, torsion: T) -> Vector3<T> {
+        self.joint_moment_by_torsion(direction).at(torsion)
+    }
+
+    /// [`Self::joint_moment`] for many torsions at one direction.
+    pub(crate) fn joint_moment_by_torsion(&self, direction: &Direction<T>) -> JointMoment<T> {
         let JointStiffness {
             bending_nm_per_rad: bending,
             torsion_nm_per_rad: twisting,
             ..
         } = self.joint;
-        if self.universal() {
+        let (bent, by_torsion) = if self.universal() {
             let angles = UniversalAngles::at(direction);
             let bent = angles.by_alpha * angles.alpha + angles.by_beta * angles.beta;
-            bent * -bending - angles.by_torsion * (twisting * torsion)
+            (bent * -bending, angles.by_torsion)
         } else {
             let scale = bending * tilt_by_sine(direction);
             let bent = Vector3::new(-direction.y, direction.x, T::zero()) * scale;
-            bent - torsion_change(direction) * (twisting * torsion)
+            (bent, torsion_change(direction))
+        };
+        JointMoment {
+            bent,
+            by_torsion,
+            twisting,
         }
     }
 

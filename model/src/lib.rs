@@ -56,7 +56,7 @@ mod trigonometry;
 pub use bending::{Bending, BendingAxis};
 pub use deviation::{deviation, tip_displacement};
 pub use error::{Error, Quantity, Reason};
-pub use evaluation::{Evaluation, Query, StiffnessAt, StiffnessDemand, evaluate};
+pub use evaluation::{Evaluation, Query, StiffnessAt, StiffnessDemand, Survey, evaluate, survey};
 pub use flexure::{FlexureMaterial, Leaf, Notch, Rod};
 pub use forward::{ForwardKinematics, forward_kinematics, forward_kinematics_universal};
 pub use free_plane::FreePlane;

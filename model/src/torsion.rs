@@ -1,7 +1,9 @@
 //! The twist of a leg on a support with three freedoms: only its tendons and an elastic joint hold it.
 
+use crate::joint::JointMoment;
 use crate::{
-    Direction, Error, Rig, Scalar, Support, TensionBounds, Twist, distribute, inverse_kinematics,
+    Direction, Error, FreePlane, Rig, Scalar, Support, TensionBounds, Twist, distribute,
+    inverse_kinematics,
 };
 use nalgebra::Vector3;
 
@@ -25,8 +27,17 @@ pub fn elastic_torsion<T: Scalar, const N: usize>(
     if !support.twists() {
         return Ok(T::zero());
     }
-    let moment_at =
-        |torsion| torsion_moment(rig, support, direction, load_moment, bounds, level, torsion);
+    let third_axis = ThirdAxis {
+        rig,
+        direction,
+        load_moment,
+        bounds,
+        level,
+        joint: support.joint_moment_by_torsion(direction),
+        twist: support.twist(direction),
+        plane: support.plane(direction),
+    };
+    let moment_at = |torsion| third_axis.moment(torsion);
     // A thousandth of a radian is small beside the curvature of the moment and large beside its rounding.
     let (mut last, mut torsion) = (T::zero(), T::TORSION_START_RAD);
     let mut last_moment = moment_at(last)?;
@@ -45,21 +56,27 @@ pub fn elastic_torsion<T: Scalar, const N: usize>(
     Err(Error::NotConverged)
 }
 
-/// Moment on the leg along the normal of the plane of its tilts, N·m (times the length of that vector).
-fn torsion_moment<T: Scalar, const N: usize>(
-    rig: &Rig<T, N>,
-    support: &Support<T>,
-    direction: &Direction<T>,
-    load_moment: &Vector3<T>,
-    bounds: &TensionBounds<T>,
+/// Everything about a pose that its elastic torsion does not change.
+struct ThirdAxis<'a, T, const N: usize> {
+    rig: &'a Rig<T, N>,
+    direction: &'a Direction<T>,
+    load_moment: &'a Vector3<T>,
+    bounds: &'a TensionBounds<T>,
     level: T,
-    torsion: T,
-) -> Result<T, Error> {
-    let twist = support.twist(direction).and(&Twist::from_torsion(torsion));
-    let geometry = rig.geometry.twisted(&twist);
-    let moment_map = inverse_kinematics(&geometry, direction)?.moment_map;
-    let plane = support.plane(direction);
-    let outer = load_moment + support.joint_moment(direction, torsion);
-    let tensions = distribute(&moment_map, &plane, &outer, bounds)?.tensions(level);
-    Ok((moment_map * tensions + outer).dot(&plane.normal()))
+    joint: JointMoment<T>,
+    twist: Twist<T>,
+    plane: FreePlane<T>,
+}
+
+impl<T: Scalar, const N: usize> ThirdAxis<'_, T, N> {
+    /// Moment on the leg along the normal of the plane of its tilts, N·m (times the length of that vector).
+    fn moment(&self, torsion: T) -> Result<T, Error> {
+        let twist = self.twist.and(&Twist::from_torsion(torsion));
+        let geometry = self.rig.geometry.twisted(&twist);
+        let moment_map = inverse_kinematics(&geometry, self.direction)?.moment_map;
+        let outer = self.load_moment + self.joint.at(torsion);
+        let distribution = distribute(&moment_map, &self.plane, &outer, self.bounds)?;
+        let tensions = distribution.tensions(self.level);
+        Ok((moment_map * tensions + outer).dot(&self.plane.normal()))
+    }
 }

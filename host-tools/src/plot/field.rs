@@ -5,33 +5,56 @@ mod flat;
 mod isolines;
 mod polar;
 mod runs;
+mod scale;
 
-use super::canvas::{self, Area, Drawn, LABEL_PX, MARGIN_PX, PlotError, TITLE_PX, WIDTH_PX, range};
+use super::canvas::{self, Area, Drawn, MARGIN_PX, PlotError, TITLE_PX, WIDTH_PX, range};
 use crate::atomic_file;
 use bands::Bands;
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use scale::SCALE_WIDTH_PX;
 use std::path::{Path, PathBuf};
-
-/// Pose without a value.
-const NOTHING: RGBColor = RGBColor(200, 200, 200);
-const SCALE_WIDTH_PX: u32 = 270;
 
 /// A quantity over azimuth and tilt.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
     /// Above the map.
     pub title: String,
-    /// Beside the scale, with its unit.
+    /// Above the scale.
     pub quantity: String,
-    /// What a pose without a value is.
-    pub nothing: String,
+    /// Below that; empty for a ratio.
+    pub unit: String,
+    /// What a pose outside the region is.
+    pub outside: String,
     /// Azimuths of the columns: evenly from 0°, the full turn not repeated.
     pub azimuths: usize,
     /// Tilts of the rows, degrees: evenly from 0.
     pub tilts_deg: Vec<f64>,
-    /// A value for each pose, row by row; none where there is none.
-    pub values: Vec<Option<f64>>,
+    /// What is known of each pose, row by row; none where there is no result.
+    pub samples: Vec<Option<Sample>>,
+}
+
+/// What is known of a pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// The quantity.
+    pub value: f64,
+    /// How far the pose is inside the region that is shown; negative outside. Its border is where this is zero.
+    pub room: f64,
+}
+
+impl Sample {
+    /// The sample at a part of the way to another.
+    fn towards(self, other: Self, part: f64) -> Self {
+        let between = |from: f64, to: f64| from * (1.0 - part) + to * part;
+        Self {
+            value: between(self.value, other.value),
+            room: between(self.room, other.room),
+        }
+    }
+
+    fn inside(&self) -> bool {
+        self.room >= 0.0
+    }
 }
 
 /// How a [`Field`] is laid out.
@@ -46,7 +69,7 @@ pub enum Layout {
 /// Draws the map as an SVG file.
 ///
 /// # Errors
-/// [`PlotError::Empty`] if no pose has a value or the rows do not fit; a file that cannot be written.
+/// [`PlotError::Empty`] if nothing is inside the region or the rows do not fit; a file that cannot be written.
 pub fn save_svg(field: &Field, layout: Layout, path: &Path) -> Result<(), PlotError> {
     let bands = field.bands()?;
     canvas::svg(path, |root| paint(field, &bands, layout, root))
@@ -76,12 +99,14 @@ impl Field {
     fn bands(&self) -> Result<Bands, PlotError> {
         let fits = self.azimuths > 1
             && self.tilts_deg.len() > 1
-            && self.values.len() == self.azimuths * self.tilts_deg.len();
-        let values = self.values.iter().flatten().copied();
+            && self.samples.len() == self.azimuths * self.tilts_deg.len();
+        if !fits {
+            return Err(PlotError::Empty);
+        }
+        let inside = self.samples.iter().flatten().filter(|s| s.inside());
+        let values = inside.map(|sample| sample.value).chain(runs::values(self));
         match range(values) {
-            Some((low, high)) if fits && low.is_finite() && high.is_finite() => {
-                Ok(Bands::new(low, high))
-            }
+            Some((low, high)) if low.is_finite() && high.is_finite() => Ok(Bands::new(low, high)),
             _ => Err(PlotError::Empty),
         }
     }
@@ -91,18 +116,19 @@ impl Field {
         self.tilts_deg.last().copied().unwrap_or_default()
     }
 
-    /// The value at a place between the poses: azimuth in columns, tilt in rows. None beside a pose without a value.
-    fn at(&self, column: f64, row: f64) -> Option<f64> {
+    /// What is known of a place between the poses: azimuth in columns, tilt in rows. None beside a pose without a
+    /// result.
+    fn at(&self, column: f64, row: f64) -> Option<Sample> {
         let last = self.tilts_deg.len() - 1;
         let (left, below) = (column.floor(), row.floor().min(last as f64 - 1.0));
         let (x, y) = (column - left, row - below);
-        let value = |dx: f64, dy: f64| {
+        let sample = |dx: f64, dy: f64| {
             let column = (left + dx) as usize % self.azimuths;
-            self.values[(below + dy) as usize * self.azimuths + column]
+            self.samples[(below + dy) as usize * self.azimuths + column]
         };
-        let low = value(0.0, 0.0)? * (1.0 - x) + value(1.0, 0.0)? * x;
-        let high = value(0.0, 1.0)? * (1.0 - x) + value(1.0, 1.0)? * x;
-        Some(low * (1.0 - y) + high * y)
+        let low = sample(0.0, 0.0)?.towards(sample(1.0, 0.0)?, x);
+        let high = sample(0.0, 1.0)?.towards(sample(1.0, 1.0)?, x);
+        Some(low.towards(high, y))
     }
 }
 
@@ -121,50 +147,7 @@ fn paint<B: DrawingBackend>(
         Layout::Flat => flat::paint(field, bands, &map)?,
         Layout::Polar => polar::paint(field, bands, &map)?,
     }
-    paint_scale(field, bands, &scale)
-}
-
-/// The bands' colours with the levels between them: those of the lines on the map.
-fn paint_scale<B: DrawingBackend>(field: &Field, bands: &Bands, area: &Area<B>) -> Drawn<B> {
-    const LEFT_PX: i32 = 30;
-    const BAR_PX: i32 = 36;
-    const TOP_PX: i32 = 60;
-    let text = ("sans-serif", LABEL_PX)
-        .into_text_style(area)
-        .pos(Pos::new(HPos::Left, VPos::Center));
-    area.draw(&Text::new(
-        field.quantity.as_str(),
-        (LEFT_PX, TOP_PX - 32),
-        text.clone(),
-    ))?;
-    let (_, height) = area.dim_in_pixel();
-    let step = (height as i32 - TOP_PX - 110) / bands.count() as i32;
-    let bottom = TOP_PX + step * bands.count() as i32;
-    for band in 0..bands.count() {
-        let y = bottom - step * band as i32;
-        let corners = [(LEFT_PX, y - step), (LEFT_PX + BAR_PX, y)];
-        area.draw(&Rectangle::new(corners, bands.colour(band).filled()))?;
-        area.draw(&Rectangle::new(corners, BLACK.stroke_width(1)))?;
-    }
-    for (level, label) in bands.labels().iter().enumerate() {
-        let y = bottom - step * level as i32;
-        area.draw(&Text::new(
-            label.as_str(),
-            (LEFT_PX + BAR_PX + 10, y),
-            text.clone(),
-        ))?;
-    }
-    if field.values.iter().any(Option::is_none) {
-        let y = bottom + 50;
-        let corners = [(LEFT_PX, y - 12), (LEFT_PX + BAR_PX, y + 12)];
-        area.draw(&Rectangle::new(corners, NOTHING.filled()))?;
-        area.draw(&Text::new(
-            field.nothing.as_str(),
-            (LEFT_PX + BAR_PX + 10, y),
-            text,
-        ))?;
-    }
-    Ok(())
+    scale::paint(field, bands, &scale)
 }
 
 #[cfg(test)]

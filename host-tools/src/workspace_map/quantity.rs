@@ -1,7 +1,7 @@
 //! What a map can show.
 
 use super::{Cell, WorkspaceMap};
-use crate::plot::field::Field;
+use crate::plot::field::{Field, Sample};
 use clap::ValueEnum;
 use serde::Serialize;
 
@@ -77,19 +77,37 @@ impl Quantity {
         }
     }
 
-    /// Its value in a cell. Where no level keeps the bounds only the margin has one.
+    /// Its value in a cell, feasible or not.
     #[must_use]
-    pub fn of(self, cell: &Cell) -> Option<f64> {
-        let value = match self {
-            Self::Margin => return Some(cell.margin_n),
+    pub const fn value(self, cell: &Cell) -> f64 {
+        match self {
             Self::Deviation => cell.deviation_mm,
             Self::StiffnessMin => cell.stiffness_min_nm_per_rad,
             Self::StiffnessMax => cell.stiffness_max_nm_per_rad,
-            Self::Condition => cell.condition(),
+            Self::Condition => cell.condition,
+            Self::Margin => cell.margin_n,
             Self::LevelMin => cell.level_min_n,
             Self::LevelMax => cell.level_max_n,
+        }
+    }
+
+    /// Its value in a cell, if it counts there: where no level keeps the bounds only the margin does.
+    #[must_use]
+    pub fn of(self, cell: &Cell) -> Option<f64> {
+        (self == Self::Margin || cell.feasible).then(|| self.value(cell))
+    }
+
+    /// What a map of it shows of a cell.
+    fn sample(self, cell: &Cell) -> Sample {
+        let room = match self {
+            // It is shown everywhere: below zero it is what the level lacks.
+            Self::Margin => 1.0,
+            _ => cell.level_max_n - cell.level_min_n,
         };
-        (cell.feasible && value.is_finite()).then_some(value)
+        Sample {
+            value: self.value(cell),
+            room,
+        }
     }
 }
 
@@ -97,20 +115,17 @@ impl WorkspaceMap {
     /// A quantity over the workspace, to be drawn.
     #[must_use]
     pub fn field(&self, quantity: Quantity, title: String) -> Field {
-        let last = f64::from(self.grid.tilts - 1);
-        let tilt = |row| self.tilt_max_deg * f64::from(row) / last;
-        let value = |cell: &Result<Cell, _>| cell.as_ref().ok().and_then(|cell| quantity.of(cell));
-        let unit = match quantity.unit() {
-            "" => String::new(),
-            unit => format!(" ({unit})"),
-        };
+        let grid = self.grid;
+        let sample = |cell: &Result<Cell, _>| cell.as_ref().ok().map(|cell| quantity.sample(cell));
+        let tilts = (0..grid.tilts).map(|row| super::tilt_deg(self.tilt_max_deg, grid, row));
         Field {
             title,
-            quantity: format!("{}{unit}", quantity.words()),
-            nothing: "no feasible level".into(),
-            azimuths: self.grid.azimuths as usize,
-            tilts_deg: (0..self.grid.tilts).map(tilt).collect(),
-            values: self.cells.iter().map(value).collect(),
+            quantity: quantity.words().into(),
+            unit: quantity.unit().into(),
+            outside: "no feasible level".into(),
+            azimuths: grid.azimuths as usize,
+            tilts_deg: tilts.collect(),
+            samples: self.cells.iter().map(sample).collect(),
         }
     }
 }

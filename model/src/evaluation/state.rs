@@ -4,9 +4,9 @@ use super::{Query, StiffnessAt, StiffnessDemand};
 use crate::range::{TENSION_MAX, check_magnitude};
 use crate::{
     Bending, Direction, Distribution, Elasticity, Error, FreePlane, Geometry, Kinematics, Load,
-    Quantity, Rig, RigParameters, Scalar, StiffnessAnswer, StiffnessCommand, Support, Symmetric3,
-    Tendon, TensionBounds, Twist, deviation, distribute, elastic_torsion, inverse_kinematics,
-    solve3, structural_stiffness, structural_stiffness_printed, tendon_stiffness, tip_displacement,
+    Quantity, Rig, Scalar, StiffnessAnswer, StiffnessCommand, Support, Symmetric3, Tendon,
+    TensionBounds, Twist, deviation, distribute, elastic_torsion, inverse_kinematics, solve3,
+    structural_stiffness, tendon_stiffness, tip_displacement,
 };
 use nalgebra::{Matrix3, SVector, Vector3};
 
@@ -32,7 +32,6 @@ pub(super) struct Stiffness<T> {
     pub total: Matrix3<T>,
     pub joint: Matrix3<T>,
     pub k2_exact: Matrix3<T>,
-    pub k2_printed: Matrix3<T>,
     /// Of each tendon, N/m.
     pub tendons: SVector<T, 3>,
     /// At which that is, N.
@@ -46,8 +45,7 @@ pub(super) struct Sag<T> {
 }
 
 impl<T: Scalar> State<T> {
-    pub fn new(parameters: &RigParameters<T, 3>, query: &Query<T>) -> Result<Self, Error> {
-        let rig = Rig::new(parameters)?;
+    pub fn new(rig: Rig<T, 3>, query: &Query<T>) -> Result<Self, Error> {
         let direction = Direction::from_angles(query.azimuth_rad, query.tilt_rad)?;
         check_magnitude(query.level_n, TENSION_MAX, Quantity::Level)?;
         let bounds = TensionBounds::new(query.tension_floor_n, query.tension_ceiling_n)?;
@@ -94,7 +92,6 @@ impl<T: Scalar> State<T> {
         }
         let k1 = tendon_stiffness(&self.kinematics.moment_map, &tendons);
         let k2_exact = structural_stiffness(&self.geometry, &self.direction, tensions);
-        let k2_printed = structural_stiffness_printed(&self.geometry, &self.direction, tensions);
         let joint = self
             .support
             .joint_stiffness(&self.direction, self.elastic_torsion);
@@ -102,7 +99,6 @@ impl<T: Scalar> State<T> {
             total: k1 + k2_exact + joint,
             joint,
             k2_exact,
-            k2_printed,
             tendons,
             tensions: *tensions,
         })
@@ -137,16 +133,28 @@ impl<T: Scalar> State<T> {
         compliance * (self.load.along_leg_n(direction) - pull)
     }
 
-    pub fn bending(&self, k: &Matrix3<T>) -> [T; 2] {
+    /// The smallest and the largest stiffness against a tilt.
+    pub fn bending(&self, k: &Matrix3<T>) -> Result<[T; 2], Error> {
         let k = Symmetric3::symmetric_part(k);
         let bending = if self.support.twists() {
-            Bending::twisting(&k, &self.direction)
+            Bending::twisting(&k, &self.direction)?
         } else {
-            Ok(Bending::guided(&k, &self.direction, &self.plane))
+            Bending::guided(&k, &self.direction, &self.plane)
         };
-        bending
-            .and_then(|bending| bending.extremes())
-            .unwrap_or([T::zero(); 2])
+        bending.extremes()
+    }
+
+    /// Lengths of the tendons without these tensions.
+    pub fn unstretched(
+        &self,
+        tendons: &[Tendon<T>; 3],
+        tensions: &SVector<T, 3>,
+    ) -> Result<SVector<T, 3>, Error> {
+        let mut unstretched = self.kinematics.lengths;
+        for (i, tendon) in tendons.iter().enumerate() {
+            unstretched[i] -= tendon.elongation(tensions[i])?;
+        }
+        Ok(unstretched)
     }
 
     /// The level that gives a demanded stiffness at this pose.

@@ -1,9 +1,9 @@
 //! Azimuth across, tilt upwards.
 
+use super::Field;
 use super::bands::Bands;
-use super::isolines::isolines;
+use super::isolines::{LINE_PX, isolines};
 use super::runs::runs;
-use super::{Field, NOTHING};
 use crate::plot::canvas::{AXIS_TITLE_PX, Area, Drawn, LABEL_PX, MARGIN_PX};
 use plotters::prelude::*;
 
@@ -19,11 +19,10 @@ pub(super) fn paint<B: DrawingBackend>(field: &Field, bands: &Bands, area: &Area
             (run.azimuths_deg.0, run.tilts_deg.0),
             (run.azimuths_deg.1, run.tilts_deg.1),
         ];
-        let colour = run.band.map_or(NOTHING, |band| bands.colour(band));
-        Rectangle::new(corners, colour.filled())
+        Rectangle::new(corners, run.shade.colour(bands).filled())
     }))?;
     for line in isolines(field, bands) {
-        chart.draw_series(LineSeries::new(line, BLACK.stroke_width(1)))?;
+        chart.draw_series(LineSeries::new(line, BLACK.stroke_width(LINE_PX)))?;
     }
     chart
         .configure_mesh()

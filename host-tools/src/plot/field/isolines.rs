@@ -1,40 +1,48 @@
 //! Lines of equal value, by marching squares.
 
-use super::Field;
 use super::bands::Bands;
+use super::{Field, Sample};
 use contour::ContourBuilder;
 
-/// The lines between the bands as points (azimuth, tilt), degrees. They end where values end.
+/// How wide the lines are.
+pub(super) const LINE_PX: u32 = 2;
+
+/// The lines between the bands as points (azimuth, tilt), degrees. They end where the region or what is known ends.
 pub(super) fn isolines(field: &Field, bands: &Bands) -> Vec<Vec<(f64, f64)>> {
-    // The full turn is repeated, so that lines reach it.
+    // A column of the turn before and two of the next one, so that lines reach 0° and 360°.
+    let around = |row: &[Option<Sample>]| {
+        let columns = (0..row.len() + 3).map(|i| (i + row.len() - 1) % row.len());
+        let values = columns.map(|i| row[i].map_or(f64::NAN, |sample| sample.value));
+        values.collect::<Vec<f64>>()
+    };
     let values: Vec<f64> = field
-        .values
+        .samples
         .chunks(field.azimuths)
-        .flat_map(|row| row.iter().chain(row.first()))
-        .map(|value| value.unwrap_or(f64::NAN))
+        .flat_map(around)
         .collect();
     let rows = field.tilts_deg.len();
     let edge = field.tilt_max_deg();
     let (x_step, y_step) = (360.0 / field.azimuths as f64, edge / (rows - 1) as f64);
     // Marching squares take a value as that of a cell's middle.
-    let lines = ContourBuilder::new(field.azimuths + 1, rows, true)
+    let lines = ContourBuilder::new(field.azimuths + 3, rows, true)
         .x_step(x_step)
         .y_step(y_step)
-        .x_origin(-0.5 * x_step)
+        .x_origin(-1.5 * x_step)
         .y_origin(-0.5 * y_step)
         .lines(&values, bands.inner())
         .unwrap_or_default();
-    let inside = |&(x, y): &(f64, f64)| x > 0.0 && x < 360.0 && y > 0.0 && y < edge;
-    let mut rings: Vec<Vec<(f64, f64)>> = Vec::new();
-    for ring in lines.iter().flat_map(|line| &line.geometry().0) {
-        rings.push(ring.0.iter().map(|point| (point.x, point.y)).collect());
+    let shown = |&(x, y): &(f64, f64)| {
+        // Where a ring runs along the border of the values it is none of the value's lines.
+        let on_map = (0.0..=360.0).contains(&x) && y > 0.0 && y < edge;
+        let sample = || field.at(x / x_step, y / y_step);
+        on_map && sample().is_some_and(|sample| sample.inside())
+    };
+    let rings = lines.iter().flat_map(|line| &line.geometry().0);
+    let mut pieces = Vec::new();
+    for ring in rings {
+        let points: Vec<_> = ring.0.iter().map(|point| (point.x, point.y)).collect();
+        pieces.extend(points.split(|point| !shown(point)).map(<[_]>::to_vec));
     }
-    // Where a ring runs along the border it is none of the value's lines.
-    let pieces = rings
-        .iter()
-        .flat_map(|ring| ring.split(|point| !inside(point)));
+    pieces.retain(|piece| piece.len() > 1);
     pieces
-        .filter(|piece| piece.len() > 1)
-        .map(<[_]>::to_vec)
-        .collect()
 }

@@ -1,9 +1,9 @@
 //! From above: azimuth round, tilt outwards.
 
+use super::Field;
 use super::bands::Bands;
-use super::isolines::isolines;
+use super::isolines::{LINE_PX, isolines};
 use super::runs::{Run, runs};
-use super::{Field, NOTHING};
 use crate::plot::canvas::{Area, Drawn, LABEL_PX};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -34,12 +34,12 @@ pub(super) fn paint<B: DrawingBackend>(field: &Field, bands: &Bands, area: &Area
             ),
             ..run
         };
-        let colour = run.band.map_or(NOTHING, |band| bands.colour(band));
+        let colour = run.shade.colour(bands);
         chart.draw_series([Polygon::new(sector(&run), colour.filled())])?;
     }
     for line in isolines(field, bands) {
         let points = line.into_iter().map(|(azimuth, tilt)| at(azimuth, tilt));
-        chart.draw_series(LineSeries::new(points, BLACK.stroke_width(1)))?;
+        chart.draw_series(LineSeries::new(points, BLACK.stroke_width(LINE_PX)))?;
     }
     let text = ("sans-serif", LABEL_PX)
         .into_text_style(area)
@@ -55,11 +55,15 @@ pub(super) fn paint<B: DrawingBackend>(field: &Field, bands: &Bands, area: &Area
             circle(ring),
             WHITE.mix(0.5).stroke_width(1),
         ))?;
-        let style = text.color(&WHITE);
-        let place = at(75.0, ring - 0.04 * edge);
-        chart.draw_series([Text::new(format!("{ring:.0}°"), place, style)])?;
     }
     chart.draw_series(LineSeries::new(circle(edge), BLACK.stroke_width(1)))?;
+    for ring in rings(edge) {
+        // On white: no one colour of text can be read on every band.
+        let label = EmptyElement::at(at(75.0, ring))
+            + Rectangle::new([(-22, -13), (22, 13)], WHITE.mix(0.85).filled())
+            + Text::new(format!("{ring:.0}°"), (0, 0), text.clone());
+        chart.draw_series([label])?;
+    }
     Ok(())
 }
 

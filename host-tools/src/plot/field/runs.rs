@@ -1,7 +1,11 @@
 //! Cells of equal colour side by side, as one piece: a picture of a thousand pieces, not of a hundred thousand.
 
-use super::Field;
 use super::bands::Bands;
+use super::{Field, Sample};
+use plotters::style::RGBColor;
+
+pub(super) const OUTSIDE: RGBColor = RGBColor(205, 205, 205);
+pub(super) const NO_RESULT: RGBColor = RGBColor(120, 120, 120);
 
 /// Finer rows and columns than the poses, with values between them: the edges of the bands look smooth.
 const FINER: usize = 4;
@@ -13,13 +17,53 @@ pub(super) struct Run {
     pub azimuths_deg: (f64, f64),
     /// Lowest and highest tilt, degrees.
     pub tilts_deg: (f64, f64),
-    /// The band; none where there is no value.
-    pub band: Option<usize>,
+    /// What it shows.
+    pub shade: Shade,
+}
+
+/// What a place of a map shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Shade {
+    /// A value in a band.
+    Band(usize),
+    /// Outside the region.
+    Outside,
+    /// Beside a pose without a result.
+    NoResult,
+}
+
+impl Shade {
+    pub fn colour(self, bands: &Bands) -> RGBColor {
+        match self {
+            Self::Band(band) => bands.colour(band),
+            Self::Outside => OUTSIDE,
+            Self::NoResult => NO_RESULT,
+        }
+    }
+}
+
+/// The values that the runs show.
+pub(super) fn values(field: &Field) -> impl Iterator<Item = f64> {
+    let (rows, columns) = counts(field);
+    let places = (0..rows).flat_map(move |row| (0..columns).map(move |column| (column, row)));
+    let samples = places.filter_map(|(column, row)| field.at(middle(column), middle(row)));
+    samples.filter(Sample::inside).map(|sample| sample.value)
+}
+
+/// How many fine rows and columns there are.
+fn counts(field: &Field) -> (usize, usize) {
+    let rows = (field.tilts_deg.len() - 1) * FINER;
+    (rows, field.azimuths * FINER)
+}
+
+/// The middle of a fine row or column, in rows or columns of poses.
+fn middle(index: usize) -> f64 {
+    (index as f64 + 0.5) / FINER as f64
 }
 
 /// All runs of a field.
 pub(super) fn runs(field: &Field, bands: &Bands) -> Vec<Run> {
-    let rows = (field.tilts_deg.len() - 1) * FINER;
+    let (rows, _) = counts(field);
     let height = field.tilt_max_deg() / rows as f64;
     let row = |row| (row as f64 * height, (row + 1) as f64 * height);
     (0..rows)
@@ -28,20 +72,22 @@ pub(super) fn runs(field: &Field, bands: &Bands) -> Vec<Run> {
 }
 
 fn row_of(field: &Field, bands: &Bands, row: usize, tilts_deg: (f64, f64)) -> Vec<Run> {
-    let columns = field.azimuths * FINER;
+    let (_, columns) = counts(field);
     let width = 360.0 / columns as f64;
-    let middle = |index: usize| (index as f64 + 0.5) / FINER as f64;
     let mut runs: Vec<Run> = Vec::new();
     for column in 0..columns {
-        let value = field.at(middle(column), middle(row));
-        let band = value.map(|value| bands.band(value));
+        let shade = match field.at(middle(column), middle(row)) {
+            Some(sample) if sample.inside() => Shade::Band(bands.band(sample.value)),
+            Some(_) => Shade::Outside,
+            None => Shade::NoResult,
+        };
         let end = (column + 1) as f64 * width;
         match runs.last_mut() {
-            Some(run) if run.band == band => run.azimuths_deg.1 = end,
+            Some(run) if run.shade == shade => run.azimuths_deg.1 = end,
             _ => runs.push(Run {
                 azimuths_deg: (column as f64 * width, end),
                 tilts_deg,
-                band,
+                shade,
             }),
         }
     }

@@ -1,49 +1,71 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::isolines::isolines;
-use super::runs::runs;
-use super::{Field, Layout, save_png, save_svg};
+use super::runs::{Shade, runs};
+use super::{Field, Layout, Sample, save_png, save_svg};
 use crate::plot::PlotError;
 
-/// Tilt itself as the quantity; nothing on one side of the outer rows.
+/// Tilt itself as the quantity, with room for it up to 24° at azimuths from 180° to 330°; no result near 355°.
 fn field() -> Field {
     let tilts_deg: Vec<f64> = (0..=6).map(|i| 5.0 * f64::from(i)).collect();
-    let value = |tilt: f64, column: usize| (tilt < 20.0 || column < 18).then_some(tilt);
-    let row = |tilt: f64| (0..36).map(move |column| value(tilt, column));
-    let values = tilts_deg.iter().flat_map(|&tilt| row(tilt)).collect();
+    let sample = |tilt: f64, column: u32| {
+        let room = if (18..34).contains(&column) {
+            24.0 - tilt
+        } else {
+            1.0
+        };
+        (column != 35).then_some(Sample { value: tilt, room })
+    };
+    let row = |tilt: f64| (0..36).map(move |column| sample(tilt, column));
+    let samples = tilts_deg.iter().flat_map(|&tilt| row(tilt)).collect();
     Field {
         title: "Title".into(),
-        quantity: "tilt (°)".into(),
-        nothing: "no level".into(),
+        quantity: "tilt".into(),
+        unit: "°C".into(),
+        outside: "no room".into(),
         azimuths: 36,
-        values,
+        samples,
         tilts_deg,
     }
 }
 
 #[test]
-fn lines_of_equal_value_are_where_the_value_is() {
+fn lines_of_equal_value_are_where_the_value_is_and_end_with_the_region() {
     let field = field();
     let bands = field.bands().unwrap();
     let points: Vec<_> = isolines(&field, &bands).concat();
-    // Beside poses without a value nothing can be said.
-    let known = points.iter().filter(|(azimuth, _)| *azimuth < 160.0);
-    assert!(known.clone().count() > 50);
-    for (azimuth, tilt) in known {
+    // Beside poses without a result nothing can be said.
+    let known = points.iter().filter(|(azimuth, _)| *azimuth < 330.0);
+    assert!(known.clone().count() > 100);
+    for (azimuth, tilt) in known.clone() {
         let off = bands.inner().iter().map(|level| (level - tilt).abs());
         assert!(off.fold(f64::MAX, f64::min) < 1e-9, "{azimuth}° {tilt}°");
+        let outside = (180.0..330.0).contains(azimuth) && *tilt > 24.0;
+        assert!(!outside, "{azimuth}° {tilt}°");
     }
+    assert!(known.clone().any(|(azimuth, _)| *azimuth == 0.0));
+    assert!(known.clone().any(|(_, tilt)| *tilt > 24.0));
 }
 
 #[test]
-fn every_cell_is_in_one_run() {
+fn every_place_is_in_one_run_of_its_shade() {
     let field = field();
     let runs = runs(&field, &field.bands().unwrap());
-    let area = |(first, last): (f64, f64), (low, high): (f64, f64)| (last - first) * (high - low);
-    let areas = runs.iter().map(|run| area(run.azimuths_deg, run.tilts_deg));
-    let sum: f64 = areas.sum();
+    let area = |wanted: fn(&Shade) -> bool| {
+        let runs = runs.iter().filter(|run| wanted(&run.shade));
+        let areas = runs.map(|run| {
+            let ((first, last), (low, high)) = (run.azimuths_deg, run.tilts_deg);
+            (last - first) * (high - low)
+        });
+        areas.sum::<f64>()
+    };
+    let no_result = area(|shade| *shade == Shade::NoResult);
+    assert!((no_result - 20.0 * 30.0).abs() < 1e-6, "{no_result}");
+    // The border is between the poses at 20° and 25°, to a quarter of a row.
+    let outside = area(|shade| *shade == Shade::Outside);
+    assert!((outside - 155.0 * 6.0).abs() < 160.0 * 1.25, "{outside}");
+    let sum = area(|_| true);
     assert!((sum - 360.0 * 30.0).abs() < 1e-6, "{sum}");
-    assert!(runs.iter().any(|run| run.band.is_none()));
 }
 
 #[test]
@@ -53,7 +75,7 @@ fn both_layouts_name_everything() {
         let path = folder.path().join("map.svg");
         save_svg(&field(), layout, &path).unwrap();
         let svg = std::fs::read_to_string(&path).unwrap();
-        for text in ["Title", "tilt (°)", "no level", axis] {
+        for text in ["Title", ">\ntilt\n<", "°C", "no room", "no result", axis] {
             assert!(svg.contains(text), "{layout:?}: {text}");
         }
         save_png(&field(), layout, &folder.path().join("map.png")).unwrap();
@@ -61,17 +83,22 @@ fn both_layouts_name_everything() {
 }
 
 #[test]
-fn a_field_without_values_is_refused() {
+fn a_field_with_nothing_to_show_is_refused() {
     let empty = Field {
-        values: vec![None; 36 * 7],
+        samples: vec![None; 36 * 7],
         ..field()
     };
+    let sample = |room| Some(Sample { value: 1.0, room });
     let short = Field {
-        values: vec![Some(1.0); 5],
+        samples: vec![sample(1.0); 5],
+        ..field()
+    };
+    let outside = Field {
+        samples: vec![sample(-1.0); 36 * 7],
         ..field()
     };
     let path = std::path::Path::new("never.svg");
-    for field in [empty, short] {
+    for field in [empty, short, outside] {
         let refused = save_svg(&field, Layout::Flat, path);
         assert!(matches!(refused, Err(PlotError::Empty)));
     }
