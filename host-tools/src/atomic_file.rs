@@ -3,15 +3,19 @@
 use std::io;
 use std::path::Path;
 
-/// Makes the folder of `path`, lets `write` make a new file of the same name beside it, and moves that to `path`.
+/// Makes the folder of `path`, lets `write` make a new file of the same name beside it, moves that to `path`, and gives
+/// what `write` gave.
 ///
 /// # Errors
 /// The error of `write`, or the system's; `path` is then as it was.
-pub fn replace<E: From<io::Error>>(
+pub fn replace<T, E: From<io::Error>>(
     path: &Path,
-    write: impl FnOnce(&Path) -> Result<(), E>,
-) -> Result<(), E> {
+    write: impl FnOnce(&Path) -> Result<T, E>,
+) -> Result<T, E> {
     let no_file = || io::Error::from(io::ErrorKind::IsADirectory);
+    if path.is_dir() {
+        return Err(no_file().into());
+    }
     let (Some(folder), Some(name)) = (path.parent(), path.file_name()) else {
         return Err(no_file().into());
     };
@@ -21,9 +25,9 @@ pub fn replace<E: From<io::Error>>(
         .prefix(".leg-")
         .tempdir_in(folder)?;
     let new = workshop.path().join(name);
-    write(&new)?;
+    let written = write(&new)?;
     std::fs::rename(&new, path)?;
-    Ok(())
+    Ok(written)
 }
 
 #[cfg(test)]
@@ -37,13 +41,21 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("chart.svg");
         std::fs::write(&path, "old").unwrap();
-        let failed = replace(&path, |new| {
+        let failed = replace(&path, |new| -> io::Result<()> {
             std::fs::write(new, "half")?;
             Err(io::Error::other("disk full"))
         });
         assert!(failed.is_err());
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "old");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_folder_is_refused_before_anything_is_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let refused = replace(folder.path(), |_| -> io::Result<()> { unreachable!() });
+        let kind = refused.unwrap_err().kind();
+        assert_eq!(kind, io::ErrorKind::IsADirectory);
     }
 
     #[test]

@@ -78,6 +78,62 @@ impl WorkspaceMap {
         let cells = self.cells.iter().flatten();
         cells.filter(|cell| cell.feasible).count()
     }
+
+    /// The reasons for which poses have no result, each with how many those are, the most frequent first.
+    #[must_use]
+    pub fn without_result(&self) -> Vec<(Error, usize)> {
+        let mut reasons: Vec<(Error, usize)> = Vec::new();
+        for error in self.cells.iter().filter_map(|cell| cell.as_ref().err()) {
+            match reasons.iter_mut().find(|(reason, _)| reason == error) {
+                Some((_, count)) => *count += 1,
+                None => reasons.push((*error, 1)),
+            }
+        }
+        reasons.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        reasons
+    }
+
+    /// Where a quantity is smallest and largest; none if it counts at no pose.
+    #[must_use]
+    pub fn extremes(&self, quantity: Quantity) -> Option<[Extreme; 2]> {
+        let extreme = |(azimuth_deg, tilt_deg, cell): (_, _, &Result<Cell, Error>)| {
+            let value = quantity.of(cell.as_ref().ok()?)?;
+            Some(Extreme {
+                value,
+                azimuth_deg,
+                tilt_deg,
+            })
+        };
+        let mut poses = self.poses().filter_map(extreme);
+        let first = poses.next()?;
+        Some(poses.fold([first; 2], |[smallest, largest], pose| {
+            // Of those that are equal but for rounding the first: all azimuths are one pose at the vertical.
+            let rounding = 1e-9 * pose.value.abs().max(1e-3);
+            [
+                if pose.value < smallest.value - rounding {
+                    pose
+                } else {
+                    smallest
+                },
+                if pose.value > largest.value + rounding {
+                    pose
+                } else {
+                    largest
+                },
+            ]
+        }))
+    }
+}
+
+/// An extreme value and the first pose that has it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Extreme {
+    /// In the quantity's unit.
+    pub value: f64,
+    /// Azimuth of the pose, degrees.
+    pub azimuth_deg: f64,
+    /// Its tilt, degrees.
+    pub tilt_deg: f64,
 }
 
 fn row_of(

@@ -55,12 +55,12 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let map = WorkspaceMap::compute(&rig, args.payload_kg, grid, || bar.inc(1));
     bar.finish_and_clear();
     if map.feasible_count() == 0 {
-        return Err(nothing_feasible(&rig, args.payload_kg));
+        return Err(nothing_feasible(&rig, args.payload_kg, &map));
     }
-    let pictures = draw(args, &rig, &map)?;
-    if let Some(file) = &args.csv {
-        map_csv::save(&map, file)?;
-    }
+    let pictures = match &args.csv {
+        Some(file) => map_csv::save_around(&map, file, || draw(args, &rig, &map))?,
+        None => draw(args, &rig, &map)?,
+    };
     let report = Report {
         rig: &rig,
         payload_kg: args.payload_kg,
@@ -113,7 +113,18 @@ fn grid(args: &Args) -> Result<Grid, Failure> {
     Ok(Grid { azimuths, tilts })
 }
 
-fn nothing_feasible(rig: &RigFile, payload_kg: f64) -> Failure {
+fn nothing_feasible(rig: &RigFile, payload_kg: f64, map: &WorkspaceMap) -> Failure {
+    if let Some((reason, count)) = map.without_result().first() {
+        let all = map.cells.len();
+        return Failure::missed(
+            format!(
+                "no pose of the workspace is feasible, and {count} of {all} have no result with {payload_kg} kg and \
+                 level {} N: {reason}",
+                rig.level_n
+            ),
+            "give another --level-n or a smaller payload",
+        );
+    }
     let sentence = format!(
         "no pose of the workspace is feasible with {payload_kg} kg and tensions from {} to {} N",
         rig.tension_floor_n, rig.tension_ceiling_n

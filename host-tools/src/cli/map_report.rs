@@ -3,12 +3,12 @@
 use crate::failure::Failure;
 use crate::paths::from_here;
 use crate::rig_file::RigFile;
-use crate::workspace_map::{Cell, Quantity, WorkspaceMap};
+use crate::workspace_map::{Cell, Extreme, Quantity, WorkspaceMap};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
 const HEADING: &str = "\
-quantity                     smallest       largest  unit      largest at
+quantity                     smallest at (azimuth, tilt)        largest at (azimuth, tilt)  unit
 ";
 
 /// Everything that `leg map` found.
@@ -36,29 +36,25 @@ impl Report<'_> {
     }
 
     fn row(&self, quantity: Quantity) -> String {
-        let poses = self.map.poses().filter_map(|(azimuth, tilt, cell)| {
-            let value = quantity.of(cell.as_ref().ok()?)?;
-            Some((value, azimuth, tilt))
-        });
-        let poses: Vec<_> = poses.collect();
-        let smallest = poses
-            .iter()
-            .map(|(value, ..)| *value)
-            .fold(f64::INFINITY, f64::min);
-        let most = poses
-            .iter()
-            .map(|(value, ..)| *value)
-            .fold(f64::NEG_INFINITY, f64::max);
-        // Of those that are equal but for rounding the first: all azimuths are one pose at the vertical.
-        let (largest, azimuth, tilt) = poses
-            .into_iter()
-            .find(|(value, ..)| most - value <= 1e-9 * most.abs())
-            .unwrap_or((f64::NAN, 0.0, 0.0));
-        format!(
-            "{:<26} {smallest:>10.3}    {largest:>10.3}  {:<8}  azimuth {azimuth:.1}°, tilt {tilt:.1}°\n",
+        let Some([smallest, largest]) = self.map.extremes(quantity) else {
+            return format!("{:<26} at no feasible pose\n", quantity.words());
+        };
+        let place = |at: &Extreme| {
+            let (azimuth, tilt) = (at.azimuth_deg, at.tilt_deg);
+            format!(
+                "{:>10.3} {:>16}",
+                at.value,
+                format!("({azimuth:.1}°, {tilt:.1}°)")
+            )
+        };
+        let row = format!(
+            "{:<26} {}      {}  {}",
             quantity.words(),
-            quantity.unit(),
-        )
+            place(&smallest),
+            place(&largest),
+            quantity.unit()
+        );
+        format!("{}\n", row.trim_end())
     }
 
     fn remarks(&self) -> String {
@@ -69,13 +65,31 @@ impl Report<'_> {
             .iter()
             .map(|path| format!("  {}\n", from_here(path).display()))
             .collect();
+        let without = self.map.without_result();
+        let without: String = without
+            .iter()
+            .map(|(reason, count)| format!("No result at {count} poses: {reason}\n"))
+            .collect();
         let csv = self
             .csv
             .map(|path| format!("CSV: {}\n", from_here(path).display()));
         format!(
-            "\nFeasible: {feasible} of {all} poses ({share:.1} %)\nPictures, each as .svg and .png:\n{pictures}{}",
+            "\nFeasible: {feasible} of {all} poses ({share:.1} %)\n{without}Pictures, each as .svg and .png:\n{pictures}{}",
             csv.unwrap_or_default()
         )
+    }
+
+    fn extremes(&self, quantity: Quantity) -> JsonExtremes {
+        let [smallest, largest] = self
+            .map
+            .extremes(quantity)
+            .map_or([None; 2], |e| e.map(Some));
+        JsonExtremes {
+            quantity,
+            unit: quantity.unit(),
+            smallest,
+            largest,
+        }
     }
 
     /// One line of JSON for machines.
@@ -94,6 +108,7 @@ impl Report<'_> {
             payload_kg: self.payload_kg,
             level_n: self.rig.level_n,
             feasible: self.map.feasible_count(),
+            extremes: Quantity::ALL.map(|quantity| self.extremes(quantity)),
             pictures: self.pictures,
             poses: poses.collect(),
         };
@@ -110,8 +125,17 @@ struct JsonReport<'a> {
     payload_kg: f64,
     level_n: f64,
     feasible: usize,
+    extremes: [JsonExtremes; Quantity::ALL.len()],
     pictures: &'a [PathBuf],
     poses: Vec<JsonPose<'a>>,
+}
+
+#[derive(Serialize)]
+struct JsonExtremes {
+    quantity: Quantity,
+    unit: &'static str,
+    smallest: Option<Extreme>,
+    largest: Option<Extreme>,
 }
 
 #[derive(Serialize)]

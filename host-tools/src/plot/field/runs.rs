@@ -8,7 +8,7 @@ pub(super) const OUTSIDE: RGBColor = RGBColor(205, 205, 205);
 pub(super) const NO_RESULT: RGBColor = RGBColor(120, 120, 120);
 
 /// Finer rows and columns than the poses, with values between them: the edges of the bands look smooth.
-const FINER: usize = 4;
+const FINER: usize = 6;
 
 /// A row of cells of one colour.
 #[derive(Clone, Copy, Debug, PartialEq)]

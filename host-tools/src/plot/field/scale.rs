@@ -63,3 +63,25 @@ fn text<B: DrawingBackend>(area: &Area<B>) -> TextStyle<'static> {
         .into_text_style(area)
         .pos(Pos::new(HPos::Left, VPos::Center))
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::{LEFT_PX, SCALE_WIDTH_PX, text};
+    use crate::plot::canvas;
+    use crate::workspace_map::Quantity;
+
+    #[test]
+    fn the_heading_of_every_map_fits_beside_it() {
+        let folder = tempfile::tempdir().unwrap();
+        canvas::svg(&folder.path().join("scale.svg"), |area| {
+            let room = SCALE_WIDTH_PX as i32 - LEFT_PX;
+            for quantity in Quantity::ALL {
+                let (width, _) = area.estimate_text_size(quantity.words(), &text(area))?;
+                assert!((width as i32) < room, "{quantity:?}: {width} of {room} px");
+            }
+            Ok(())
+        })
+        .unwrap();
+    }
+}

@@ -61,9 +61,9 @@ fn every_place_is_in_one_run_of_its_shade() {
     };
     let no_result = area(|shade| *shade == Shade::NoResult);
     assert!((no_result - 20.0 * 30.0).abs() < 1e-6, "{no_result}");
-    // The border is between the poses at 20° and 25°, to a quarter of a row.
+    // The border is between the poses at 20° and 25°, to the height of a fine one.
     let outside = area(|shade| *shade == Shade::Outside);
-    assert!((outside - 155.0 * 6.0).abs() < 160.0 * 1.25, "{outside}");
+    assert!((outside - 155.0 * 6.0).abs() < 160.0 * 1.0, "{outside}");
     let sum = area(|_| true);
     assert!((sum - 360.0 * 30.0).abs() < 1e-6, "{sum}");
 }
