@@ -36,21 +36,21 @@ impl Spline {
         };
         // All unknowns are lengths then.
         let unit = last - first;
-        let mut equations = Equations::new(2 * knots.len());
+        let mut wishes = Wishes::new(2 * knots.len());
         for row in rows {
             let (piece, place, width) = locate(&knots, row.force_n);
             let weights = value_weights(place, width / unit);
-            equations.add(2 * piece, &weights, row.elongation_m, 1.0);
+            wishes.add(2 * piece, weights, row.elongation_m, 1.0);
         }
         let bending = BENDING * rows.len() as f64;
         for piece in 0..knots.len() - 1 {
             let width = (knots[piece + 1] - knots[piece]) / unit;
             for place in [0.5 - GAUSS, 0.5 + GAUSS] {
                 let weights = bending_weights(place, width);
-                equations.add(2 * piece, &weights, 0.0, bending * 0.5 * width);
+                wishes.add(2 * piece, weights, 0.0, bending * 0.5 * width);
             }
         }
-        let solution = equations.solve()?;
+        let solution = wishes.solve()?;
         let (elongations, slopes) = solution
             .as_slice()
             .chunks_exact(2)
@@ -129,32 +129,46 @@ fn bending_weights(s: f64, width: f64) -> [f64; 4] {
     [-end, (6.0 * s - 4.0) / width, end, (6.0 * s - 2.0) / width]
 }
 
-/// The normal equations of a least squares problem.
-struct Equations {
-    matrix: DMatrix<f64>,
-    right: DVector<f64>,
+/// What the unknowns should fulfil, as well as they can.
+struct Wishes {
+    unknowns: usize,
+    /// The unknown that each begins at, its weights, and its value.
+    rows: Vec<(usize, [f64; 4], f64)>,
 }
 
-impl Equations {
+impl Wishes {
     fn new(unknowns: usize) -> Self {
         Self {
-            matrix: DMatrix::zeros(unknowns, unknowns),
-            right: DVector::zeros(unknowns),
+            unknowns,
+            rows: Vec::new(),
         }
     }
 
-    /// Wishes that the sum of `weights` times the unknowns from `first` on be `value`, as much as `importance` says.
-    fn add(&mut self, first: usize, weights: &[f64; 4], value: f64, importance: f64) {
-        for (i, row) in weights.iter().enumerate() {
-            self.right[first + i] += importance * row * value;
-            for (j, column) in weights.iter().enumerate() {
-                self.matrix[(first + i, first + j)] += importance * row * column;
+    /// Wishes that the sum of `weights` times the unknowns from `first` on be `value`; its square counts `importance`
+    /// times.
+    fn add(&mut self, first: usize, weights: [f64; 4], value: f64, importance: f64) {
+        let root = importance.sqrt();
+        let weights = weights.map(|weight| root * weight);
+        self.rows.push((first, weights, root * value));
+    }
+
+    /// The solution of least squares, by orthogonal factors: normal equations would lose the bending in rounding.
+    fn solve(&self) -> Option<DVector<f64>> {
+        let mut matrix = DMatrix::zeros(self.rows.len(), self.unknowns);
+        for (i, (first, weights, _)) in self.rows.iter().enumerate() {
+            for (j, weight) in weights.iter().enumerate() {
+                matrix[(i, first + j)] = *weight;
             }
         }
-    }
-
-    fn solve(self) -> Option<DVector<f64>> {
-        let factors = self.matrix.cholesky()?;
-        Some(factors.solve(&self.right))
+        let values = self.rows.iter().map(|(.., value)| *value);
+        let mut right = DVector::from_iterator(self.rows.len(), values);
+        let factors = matrix.qr();
+        factors.q_tr_mul(&mut right);
+        let right = right.rows(0, self.unknowns).into_owned();
+        let solution = factors.r().solve_upper_triangular(&right)?;
+        solution
+            .iter()
+            .all(|value| value.is_finite())
+            .then_some(solution)
     }
 }
