@@ -2,7 +2,7 @@
 
 use leg_model::CurvePoint;
 
-/// `[tendon.curve]`: it replaces the section of that name, or `stiffness_n_per_m`. Rounded to a tenth of a nanometre and
+/// `[tendon.curve]` under a comment: it replaces the section of that name, or `stiffness_n_per_m`. Rounded to a tenth of a nanometre and
 /// a hundredth of a newton per metre.
 #[must_use]
 pub fn section(points: &[CurvePoint<f64>]) -> String {
@@ -18,6 +18,7 @@ pub fn section(points: &[CurvePoint<f64>]) -> String {
         format!("{name} = [\n{rows}]\n")
     };
     [
+        "# From a tensile test; in a rig file it stands in place of its [tendon.curve] or stiffness_n_per_m.\n".into(),
         "[tendon.curve]\n".into(),
         column("tension_n", 1e-6, &|point| point.tension_n),
         column("elongation_mm", 1e-7, &|point| point.elongation_m * 1e3),

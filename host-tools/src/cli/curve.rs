@@ -1,12 +1,12 @@
 //! `leg curve`.
 
+use super::curve_charts::draw;
 use super::curve_report::Report;
 use super::print;
 use crate::failure::Failure;
-use crate::plot::{self, Chart, Line};
 use crate::tensile::{self, Fit, TensileError};
 use crate::{atomic_file, curve_toml};
-use leg_model::{CurvePoint, Elasticity, TendonCurve};
+use leg_model::{CurvePoint, TendonCurve};
 use std::path::{Path, PathBuf};
 
 /// Turns a tensile test of a tendon into the curve of a rig file.
@@ -54,14 +54,15 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let test = tensile::read(&args.file).map_err(|error| refused(&args.file, &error))?;
     let fit = Fit::new(&test, args.taut_n).map_err(|error| refused(&args.file, &error))?;
     let points: Vec<_> = fit.points.iter().map(|point| scale.apply(point)).collect();
+    TendonCurve::new(&points).map_err(no_tendon)?;
     let toml = curve_toml::section(&points);
+    if let Some(file) = &args.out {
+        save(file, &toml)?;
+    }
     let plots = match &args.plots {
         Some(folder) => Some(draw(&fit, folder)?),
         None => None,
     };
-    if let Some(file) = &args.out {
-        save(file, &toml)?;
-    }
     let report = Report {
         fit: &fit,
         points: &points,
@@ -78,6 +79,11 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
 fn refused(file: &Path, error: &TensileError) -> Failure {
     let help = "`leg curve --help` tells what the file has to be";
     Failure::refused(format!("{}: {error}", file.display()), help)
+}
+
+fn no_tendon(error: leg_model::Error) -> Failure {
+    let help = "the sizes of the test piece and of the tendon are in millimetres";
+    Failure::refused(format!("scaled to the tendon: {error}"), help)
 }
 
 fn check_taut(taut_n: Option<f64>) -> Result<(), Failure> {
@@ -129,49 +135,4 @@ fn save(file: &Path, text: &str) -> Result<(), Failure> {
         let sentence = format!("cannot write {}: {error}", file.display());
         Failure::refused(sentence, "name a file in a folder that may be written")
     })
-}
-
-/// Both charts, each as SVG and PNG; the names of the SVG files.
-fn draw(fit: &Fit, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let curve = TendonCurve::new(&fit.points).map_err(|error| Failure::from_error(&error))?;
-    let last = fit.rows.last().map_or(0.0, |row| row.force_n);
-    let forces = (0..=400).map(|step| last * f64::from(step) / 400.0);
-    // The last force is the last point's, so the curve knows all of them.
-    let over = |of: &dyn Fn(f64) -> f64| forces.clone().map(|force| (force, of(force))).collect();
-    let elongation = over(&|force| curve.elongation(force).unwrap_or(f64::NAN) * 1e3);
-    let stiffness = over(&|force| curve.stiffness(force).unwrap_or(f64::NAN) * 1e-3);
-    let measured = fit
-        .rows
-        .iter()
-        .map(|row| (row.force_n, row.elongation_m * 1e3));
-    let charts = [
-        (
-            "curve_elongation",
-            "elongation (mm)",
-            elongation,
-            measured.collect(),
-        ),
-        ("curve_stiffness", "stiffness (N/mm)", stiffness, Vec::new()),
-    ];
-    let mut files = Vec::new();
-    for (name, y_title, points, marks) in charts {
-        let chart = Chart {
-            title: format!("Tensile test: {y_title} over tension"),
-            x_title: "tension (N)".into(),
-            y_title: y_title.into(),
-            lines: vec![Line {
-                label: "curve".into(),
-                points,
-                marks,
-            }],
-            marks_label: "measured".into(),
-        };
-        files.push(
-            plot::save_both(&chart, &folder.join(name)).map_err(|error| {
-                let sentence = format!("no plots in {}: {error}", folder.display());
-                Failure::refused(sentence, "name another folder with --plots")
-            })?,
-        );
-    }
-    Ok(files)
 }

@@ -47,12 +47,12 @@ impl Report<'_> {
         };
         format!(
             "rows        {} taut ones of the loading branch, from {:.3} N\n\
-             take-up     {:.4} mm removed\n\
+             take-up     {}\n\
              fit         {} points, off by at most {:.5} mm, {:.5} mm root mean square\n\
              hysteresis  {hysteresis}\n",
             fit.rows.len(),
             fit.taut_n,
-            fit.take_up_m * 1e3,
+            take_up(fit.take_up_m * 1e3),
             fit.points.len(),
             fit.error_max_m * 1e3,
             fit.error_rms_m * 1e3,
@@ -83,6 +83,17 @@ impl Report<'_> {
             Err(error) => Err(Failure::from_error(&error)),
         }
     }
+}
+
+fn take_up(slack_mm: f64) -> String {
+    // Less than what is printed is rounding.
+    if slack_mm < -5e-5 {
+        return format!(
+            "none; {:.4} mm added, as the test's zero is under tension",
+            -slack_mm
+        );
+    }
+    format!("{slack_mm:.4} mm removed")
 }
 
 #[derive(Serialize)]

@@ -4,6 +4,7 @@ mod board;
 mod check;
 mod cost;
 mod curve;
+mod curve_charts;
 mod curve_report;
 mod eval;
 mod evaluator;

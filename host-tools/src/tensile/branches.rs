@@ -58,7 +58,13 @@ fn check(rows: &[Row], sign: f64, branch: &'static str) -> Result<(), TensileErr
         if (row.force_n - before.force_n) * sign < 0.0 {
             return Err(backwards("force"));
         }
-        if (row.elongation_m - before.elongation_m) * sign <= 0.0 {
+        if row.elongation_m == before.elongation_m {
+            return Err(TensileError::Standing {
+                line,
+                before: before_line,
+            });
+        }
+        if (row.elongation_m - before.elongation_m) * sign < 0.0 {
             return Err(backwards("elongation"));
         }
     }

@@ -1,15 +1,33 @@
 //! The rows of a tensile test, from a CSV file whose header names the units.
 
 use super::TensileError;
-use csv::{ReaderBuilder, StringRecord, Trim};
+use csv::{ErrorKind, Position, ReaderBuilder, StringRecord, Trim};
 use std::path::Path;
 
-const FORCES: [(&str, f64); 2] = [("force_n", 1.0), ("force_kn", 1e3)];
-const ELONGATIONS: [(&str, f64); 3] = [
-    ("elongation_mm", 1e-3),
-    ("elongation_um", 1e-6),
-    ("elongation_m", 1.0),
-];
+/// A measured quantity and the units it may have in the header.
+struct Known {
+    quantity: &'static str,
+    /// The columns' names with their units in SI.
+    columns: &'static [(&'static str, f64)],
+    /// The names in words.
+    names: &'static str,
+}
+
+const FORCE: Known = Known {
+    quantity: "force",
+    columns: &[("force_n", 1.0), ("force_kn", 1e3)],
+    names: "force_n or force_kn",
+};
+
+const ELONGATION: Known = Known {
+    quantity: "elongation",
+    columns: &[
+        ("elongation_mm", 1e-3),
+        ("elongation_um", 1e-6),
+        ("elongation_m", 1.0),
+    ],
+    names: "elongation_mm, elongation_um or elongation_m",
+};
 
 /// A row of a test.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,21 +59,17 @@ struct Column {
 /// # Errors
 /// A [`TensileError`] with line and column.
 pub fn read(path: &Path) -> Result<TensileTest, TensileError> {
-    let unreadable = |error| TensileError::Unreadable {
-        path: path.into(),
-        error,
-    };
+    let text = std::fs::read_to_string(path)?;
+    let (data, lines) = without_comments(&text);
     let mut reader = ReaderBuilder::new()
-        .comment(Some(b'#'))
         .trim(Trim::All)
-        .from_path(path)
-        .map_err(unreadable)?;
-    let header = reader.headers().map_err(unreadable)?;
-    let (force, elongation) = columns(header)?;
+        .from_reader(data.as_bytes());
+    let header = reader.headers()?;
+    let (force, elongation) = columns(header, lines.of(header.position()))?;
     let mut rows = Vec::new();
     for record in reader.records() {
-        let record = record.map_err(unreadable)?;
-        let line = record.position().map_or(0, csv::Position::line);
+        let record = record.map_err(|error| lines.place(error))?;
+        let line = lines.of(record.position());
         rows.push(Row {
             line,
             force_n: number(&record, line, force)?,
@@ -65,43 +79,85 @@ pub fn read(path: &Path) -> Result<TensileTest, TensileError> {
     Ok(TensileTest { rows })
 }
 
-fn columns(header: &StringRecord) -> Result<(Column, Column), TensileError> {
-    let (mut forces, mut elongations) = (Vec::new(), Vec::new());
-    for (index, name) in header.iter().enumerate() {
-        let known = |units: &[(&str, f64)]| {
-            let unit = units.iter().find(|(known, _)| *known == name);
-            unit.map(|&(_, scale)| Column { index, scale })
-        };
-        match (known(&FORCES), known(&ELONGATIONS)) {
-            (Some(force), _) => forces.push(force),
-            (_, Some(elongation)) => elongations.push(elongation),
-            _ => return Err(unknown(index + 1, name)),
+/// The lines of the file that hold data, and where each of them is: the CSV reader's own count is off after a comment.
+fn without_comments(text: &str) -> (String, Lines) {
+    let text = text.trim_start_matches('\u{feff}');
+    let data = (1..)
+        .zip(text.lines())
+        .filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
+    let (numbers, lines): (Vec<u64>, Vec<&str>) = data.unzip();
+    (lines.join("\n"), Lines(numbers))
+}
+
+/// The file's line numbers of the lines that are read.
+struct Lines(Vec<u64>);
+
+impl Lines {
+    fn of(&self, place: Option<&Position>) -> u64 {
+        let index = place.map_or(0, |place| place.line().saturating_sub(1) as usize);
+        self.0.get(index).copied().unwrap_or(1)
+    }
+
+    fn place(&self, error: csv::Error) -> TensileError {
+        match error.kind() {
+            ErrorKind::UnequalLengths {
+                pos,
+                expected_len: wanted,
+                len: found,
+            } => TensileError::Fields {
+                line: self.of(pos.as_ref()),
+                found: *found,
+                wanted: *wanted,
+            },
+            _ => error.into(),
         }
     }
-    Ok((one("force", &forces)?, one("elongation", &elongations)?))
 }
 
-fn unknown(column: usize, name: &str) -> TensileError {
+fn columns(header: &StringRecord, line: u64) -> Result<(Column, Column), TensileError> {
+    let mut seen = [(FORCE, Vec::new()), (ELONGATION, Vec::new())];
+    for (index, name) in header.iter().enumerate() {
+        let found = seen.iter_mut().find_map(|(known, columns)| {
+            let &(_, scale) = known.columns.iter().find(|(unit, _)| *unit == name)?;
+            columns.push(Column { index, scale });
+            Some(())
+        });
+        if found.is_none() {
+            return Err(unknown(line, index + 1, name));
+        }
+    }
+    let [force, elongation] = seen.map(|(known, columns)| one(line, &known, &columns));
+    Ok((force?, elongation?))
+}
+
+fn unknown(line: u64, column: usize, name: &str) -> TensileError {
     let name = name.to_owned();
+    if name.contains([';', '\t']) {
+        return TensileError::Separator { line, header: name };
+    }
     let quantity = name.split('_').next().unwrap_or_default();
-    let units = match quantity {
-        "force" => "force_n or force_kn",
-        "elongation" => "elongation_mm, elongation_um or elongation_m",
-        _ => return TensileError::UnknownColumn { column, name },
-    };
-    TensileError::UnknownUnit {
-        column,
-        name,
-        units,
+    let known = [FORCE, ELONGATION]
+        .into_iter()
+        .find(|known| known.quantity == quantity);
+    match known {
+        None => TensileError::UnknownColumn { line, column, name },
+        Some(Known { names: units, .. }) => TensileError::UnknownUnit {
+            line,
+            column,
+            name,
+            units,
+        },
     }
 }
 
-fn one(quantity: &'static str, columns: &[Column]) -> Result<Column, TensileError> {
+fn one(line: u64, known: &Known, columns: &[Column]) -> Result<Column, TensileError> {
     match columns {
         [column] => Ok(*column),
         _ => Err(TensileError::Columns {
-            quantity,
+            line,
+            quantity: known.quantity,
             found: columns.len(),
+            units: known.names,
         }),
     }
 }
