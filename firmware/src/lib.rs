@@ -2,10 +2,12 @@
 #![cfg_attr(not(test), no_std)]
 
 pub mod counter;
+pub mod drive;
 pub mod exit;
 pub mod frame;
 pub mod kernels;
 pub mod link;
 pub mod messages;
 pub mod protocol;
+pub mod sensors;
 pub mod server;

@@ -1,5 +1,6 @@
 //! The command `leg` and what it is made of.
 
+pub mod actuator;
 pub mod atomic_file;
 pub mod check;
 pub mod cli;

@@ -1,0 +1,33 @@
+//! What the board reads before a tick: raw, as its peripherals give it.
+
+use postcard_schema::Schema;
+use serde::{Deserialize, Serialize};
+
+/// Highest code of an analogue input: the sum of 16 conversions of 12 bits, as the converter's oversampling gives it.
+pub const CODE_MAX: u16 = 16 * 4095;
+
+/// Ticks of the control law in a second.
+pub const TICK_HZ: u16 = 8_000;
+
+/// One reading of every sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Sensors {
+    /// Encoder counters of the motors; they wrap. A count up pulls the tendon in.
+    pub encoder_counts: [u16; 3],
+    /// Load cells, 0 to [`CODE_MAX`]; a code up is more tension.
+    pub cell_codes: [u16; 3],
+    /// Motor currents, 0 to [`CODE_MAX`]; half of it is no current, more of it pulls in.
+    pub current_codes: [u16; 3],
+    /// Supply voltage, 0 to [`CODE_MAX`].
+    pub supply_code: u16,
+    /// Temperature of the drivers, 0 to [`CODE_MAX`].
+    pub temperature_code: u16,
+    /// Whether each load cell's code was converted since the last tick.
+    pub cell_fresh: [bool; 3],
+    /// Fault line of each motor driver.
+    pub driver_fault: [bool; 3],
+    /// Whether the emergency stop is pressed.
+    pub emergency_stop: bool,
+    /// Whether the last tick ended too late.
+    pub late: bool,
+}
