@@ -1,13 +1,19 @@
 //! The leg's firmware without its hardware: what a board, QEMU and the host's own process run alike.
 #![cfg_attr(not(test), no_std)]
 
+pub mod command;
+pub mod control;
 pub mod counter;
 pub mod drive;
 pub mod exit;
 pub mod frame;
 pub mod kernels;
+pub mod leg;
 pub mod link;
 pub mod messages;
 pub mod protocol;
 pub mod sensors;
 pub mod server;
+pub mod settings;
+pub mod supervisor;
+pub mod telemetry;

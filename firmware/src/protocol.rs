@@ -1,7 +1,12 @@
 //! What host and firmware say to each other, and the hash by which they know that they mean the same.
 
+use crate::drive::Drive;
 use crate::kernels::{Kernel, KernelInput, KernelOutput};
 use crate::messages::{QueryMessage, RigMessage};
+use crate::sensors::Sensors;
+use crate::settings::{Settings, SettingsError};
+use crate::telemetry::Telemetry;
+use heapless::Vec;
 use leg_model::{Error, Evaluation};
 use postcard_schema::{Schema, key::Key};
 use serde::{Deserialize, Serialize};
@@ -21,6 +26,12 @@ pub enum Request {
     Run(KernelRequest),
     /// Counts the instructions of one kernel.
     Count(KernelRequest),
+    /// Makes a leg with these settings; one that was there is dropped.
+    Start(Settings),
+    /// One tick of the leg.
+    Tick(TickRequest),
+    /// One tick of the leg, its instructions counted.
+    CountTick(TickRequest),
 }
 
 /// The firmware's answer to a [`Request`].
@@ -39,6 +50,10 @@ pub enum Reply {
     Ran(KernelOutput),
     /// Instructions that a kernel took.
     Counted(u32),
+    /// The leg is made.
+    Started,
+    /// What a tick asks of the motors, and what the leg tells of itself.
+    Ticked(TickReply),
 }
 
 /// The hash of the sender's [`Request`] and [`Reply`].
@@ -95,8 +110,31 @@ pub struct KernelRequest {
     pub input: KernelInput,
 }
 
+/// Most bytes from the host's link that one tick takes: what a serial link of 1 MBd brings in it, and more.
+pub const LINK_BYTES_MAX: usize = 64;
+
+/// What a tick gets.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct TickRequest {
+    /// What the sensors read.
+    pub sensors: Sensors,
+    /// The bytes that came from the host since the last tick.
+    pub link: Vec<u8, LINK_BYTES_MAX>,
+}
+
+/// What a tick gives.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct TickReply {
+    /// For the motors.
+    pub drive: Drive<f32>,
+    /// For the host.
+    pub telemetry: Telemetry<f32>,
+    /// Instructions that the tick took, if they were counted.
+    pub instructions: Option<u32>,
+}
+
 /// Why the firmware did nothing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub enum Refusal {
     /// The host has not said [`Request::Hello`] yet.
     NoHello,
@@ -113,6 +151,10 @@ pub enum Refusal {
     Model(Error),
     /// The board cannot count instructions.
     NoCounter,
+    /// The settings of a leg are refused.
+    Settings(SettingsError),
+    /// There is no leg yet: [`Request::Start`] has to come first.
+    NoLeg,
 }
 
 /// Hash of every type that crosses the link: it changes when a message's shape changes.

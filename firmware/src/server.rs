@@ -1,11 +1,15 @@
 //! Answers requests: the same on every board and inside the host's own process.
 
 use crate::counter::Counter;
+use crate::drive::Drive;
 use crate::frame::{self, Frame, FrameError, MAX_FRAME};
 use crate::kernels;
+use crate::leg::Leg;
 use crate::protocol::{
-    BoardInfo, EvaluateRequest, Hello, KernelRequest, Refusal, Reply, Request, SCHEMA,
+    BoardInfo, EvaluateRequest, Hello, KernelRequest, Refusal, Reply, Request, SCHEMA, TickReply,
+    TickRequest,
 };
+use crate::settings::Settings;
 
 #[cfg(test)]
 mod tests;
@@ -21,6 +25,7 @@ pub trait Board: Counter {
 pub struct Server<B> {
     board: B,
     greeted: bool,
+    leg: Option<Leg<f32>>,
 }
 
 impl<B: Board> Server<B> {
@@ -29,6 +34,7 @@ impl<B: Board> Server<B> {
         Self {
             board,
             greeted: false,
+            leg: None,
         }
     }
 
@@ -58,6 +64,9 @@ impl<B: Board> Server<B> {
             Some(Request::Evaluate(request)) => evaluate(&request),
             Some(Request::Run(request)) => run(&request),
             Some(Request::Count(request)) => self.count(&request),
+            Some(Request::Start(settings)) => self.start(&settings),
+            Some(Request::Tick(request)) => self.tick(&request),
+            Some(Request::CountTick(request)) => self.count_tick(&request),
         };
         reply.unwrap_or_else(Reply::Refused)
     }
@@ -71,12 +80,51 @@ impl<B: Board> Server<B> {
         }
     }
 
+    #[inline(never)]
+    fn start(&mut self, settings: &Settings) -> Result<Reply, Refusal> {
+        self.leg = Some(Leg::new(settings).map_err(Refusal::Settings)?);
+        Ok(Reply::Started)
+    }
+
+    fn tick(&mut self, request: &TickRequest) -> Result<Reply, Refusal> {
+        let leg = self.leg.as_mut().ok_or(Refusal::NoLeg)?;
+        Ok(Reply::Ticked(TickReply {
+            drive: leg.tick(&request.sensors, &request.link),
+            telemetry: leg.telemetry(),
+            instructions: None,
+        }))
+    }
+
+    fn count_tick(&mut self, request: &TickRequest) -> Result<Reply, Refusal> {
+        let leg = self.leg.as_mut().ok_or(Refusal::NoLeg)?;
+        let mut ticking = Ticking { leg, drive: None };
+        let instructions = self.board.count(tick, request, &mut ticking);
+        match (instructions, ticking.drive) {
+            (Some(_), Some(drive)) => Ok(Reply::Ticked(TickReply {
+                drive,
+                telemetry: ticking.leg.telemetry(),
+                instructions,
+            })),
+            _ => Err(Refusal::NoCounter),
+        }
+    }
+
     fn count(&mut self, request: &KernelRequest) -> Result<Reply, Refusal> {
         kernels::count(request.kernel, &request.input, &mut self.board)
             .map_err(Refusal::Model)?
             .map(Reply::Counted)
             .ok_or(Refusal::NoCounter)
     }
+}
+
+/// What a counted tick works on.
+struct Ticking<'a> {
+    leg: &'a mut Leg<f32>,
+    drive: Option<Drive<f32>>,
+}
+
+fn tick(request: &TickRequest, ticking: &mut Ticking<'_>) {
+    ticking.drive = Some(ticking.leg.tick(&request.sensors, &request.link));
 }
 
 fn evaluate(request: &EvaluateRequest) -> Result<Reply, Refusal> {

@@ -118,6 +118,32 @@ pub struct HalfTangent<T> {
 }
 
 impl<T: Scalar> HalfTangent<T> {
+    /// The point with these coordinates; their squares add up to less than one below the horizon.
+    #[must_use]
+    #[inline(always)]
+    pub const fn new(x: T, y: T) -> Self {
+        Self { x, y }
+    }
+
+    /// Both coordinates.
+    #[must_use]
+    #[inline(always)]
+    pub const fn xy(&self) -> [T; 2] {
+        [self.x, self.y]
+    }
+
+    /// The same direction as a unit vector.
+    #[must_use]
+    #[inline(always)]
+    pub fn direction(&self) -> Direction<T> {
+        let gain = T::one() / self.inverse_gain();
+        Direction {
+            x: gain * self.x,
+            y: gain * self.y,
+            z: T::one() - gain,
+        }
+    }
+
     /// 1/γ = (1 + q²)/2.
     #[inline(always)]
     pub(crate) fn inverse_gain(&self) -> T {

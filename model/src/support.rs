@@ -111,8 +111,9 @@ impl<T: Scalar> Support<T> {
         )
     }
 
-    /// Whether its axes are those of a universal joint.
-    pub(crate) fn universal(&self) -> bool {
+    /// Whether its axes are those of a universal joint: the leg twists as it points.
+    #[must_use]
+    pub fn universal(&self) -> bool {
         matches!(
             self.kind,
             SupportKind::Universal | SupportKind::ElasticUniversal

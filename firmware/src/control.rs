@@ -1,0 +1,41 @@
+//! The control law: from what the sensors read to what the motors do, in one pure tick.
+
+mod axis;
+mod bounds;
+mod estimate;
+mod filter;
+mod homing;
+mod level;
+mod measure;
+mod mechanism;
+mod plan;
+mod quintic;
+mod target;
+mod trajectory;
+
+pub use axis::{Axis, AxisGoal, AxisInput};
+pub use estimate::{Estimate, Estimator};
+pub use homing::{Homing, HomingStep};
+pub use level::{Level, LevelDemand};
+pub use measure::{Measured, Measurement};
+pub use mechanism::Mechanism;
+pub use target::{Target, Targets, Wish};
+pub use trajectory::{Point, Trajectory};
+
+use crate::sensors::TICK_HZ;
+
+/// Time of a tick, s.
+pub const TICK_S: f32 = 1.0 / TICK_HZ as f32;
+
+/// Ticks in which estimate, level and target are each renewed once, one a tick.
+pub const CYCLE_TICKS: u8 = 3;
+
+/// Time of a cycle, s.
+pub const CYCLE_S: f32 = CYCLE_TICKS as f32 * TICK_S;
+
+/// Ticks in a time in s, at least one.
+#[must_use]
+pub fn ticks(time_s: f32) -> u32 {
+    let ticks = time_s * f32::from(TICK_HZ);
+    if ticks >= 1.0 { ticks as u32 } else { 1 }
+}

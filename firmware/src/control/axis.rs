@@ -1,0 +1,183 @@
+//! One motor: position and speed with feed-forward, inside what voltage, current and tension allow.
+
+use super::{
+    TICK_S,
+    bounds::{least, most, within},
+};
+use crate::settings::Settings;
+use leg_model::Scalar;
+
+/// Where a motor shall be led.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisGoal<T> {
+    /// How far the tendon shall be pulled in, m.
+    pub pulled_m: T,
+    /// No faster than this, m/s.
+    pub speed_m_per_s: T,
+}
+
+/// The controller of one axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Axis<T> {
+    gains: Gains<T>,
+    /// Where the axis shall be now, m, and how that changes in a tick, m.
+    reference_m: T,
+    step_m: T,
+    /// The tracked position and speed.
+    tracked_m: T,
+    speed_m_per_s: T,
+    integral_v: T,
+    voltage_v: T,
+}
+
+/// Gains in the units in which they are applied.
+#[derive(Clone, Copy, Debug)]
+struct Gains<T> {
+    position: T,
+    speed: T,
+    integral: T,
+    back_emf: T,
+    current_v: T,
+    duty_max: T,
+    speed_max: T,
+    dead_band_m: T,
+    track_position: T,
+    track_speed: T,
+    per_band_n: T,
+    tick_s: T,
+    per_tick: T,
+}
+
+/// What one axis measures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisInput<T> {
+    /// How far the tendon is pulled in, m.
+    pub pulled_m: T,
+    /// Its tension, N.
+    pub tension_n: T,
+    /// The highest tension that is allowed now, N.
+    pub ceiling_n: T,
+    /// The supply, V.
+    pub supply_v: T,
+}
+
+impl<T: Scalar> Axis<T> {
+    /// At rest.
+    pub fn new(settings: &Settings) -> Self {
+        let servo = &settings.servo;
+        let tracking = servo.tracking;
+        let gains = Gains {
+            position: servo.position_gain_per_s.into(),
+            speed: servo.speed_gain_v_s_per_m.into(),
+            integral: T::from(servo.speed_gain_v_s_per_m * TICK_S / servo.integral_time_s),
+            back_emf: servo.back_emf_v_s_per_m.into(),
+            current_v: T::from(servo.current_a * servo.resistance_ohm),
+            duty_max: servo.duty_max.into(),
+            speed_max: servo.speed_m_per_s.into(),
+            dead_band_m: servo.dead_band_m.into(),
+            track_position: tracking.into(),
+            // Critically damped.
+            track_speed: T::from(0.25 * tracking * tracking / TICK_S),
+            per_band_n: T::from(1.0 / servo.ceiling_band_n),
+            tick_s: T::from(TICK_S),
+            per_tick: T::from(1.0 / TICK_S),
+        };
+        Self {
+            gains,
+            reference_m: T::zero(),
+            step_m: T::zero(),
+            tracked_m: T::zero(),
+            speed_m_per_s: T::zero(),
+            integral_v: T::zero(),
+            voltage_v: T::zero(),
+        }
+    }
+
+    /// Where the axis shall be now, m.
+    #[inline(always)]
+    pub fn reference_m(&self) -> T {
+        self.reference_m
+    }
+
+    /// The tracked speed, m/s.
+    #[inline(always)]
+    pub fn speed_m_per_s(&self) -> T {
+        self.speed_m_per_s
+    }
+
+    /// The voltage at the motor, V.
+    #[inline(always)]
+    pub fn voltage_v(&self) -> T {
+        self.voltage_v
+    }
+
+    /// The part of it beyond what the motor's speed induces, V.
+    #[inline(always)]
+    pub fn driving_v(&self) -> T {
+        self.voltage_v - self.gains.back_emf * self.speed_m_per_s
+    }
+
+    /// Stays where it is, m.
+    pub fn rest(&mut self, pulled_m: T) {
+        self.reference_m = pulled_m;
+        self.step_m = T::zero();
+        self.integral_v = T::zero();
+        self.voltage_v = T::zero();
+    }
+
+    /// Leads the axis to a goal within `ticks` ticks or, if that is too fast, later.
+    #[inline(always)]
+    pub fn lead(&mut self, goal: &AxisGoal<T>, per_ticks: T) {
+        let fastest = least(goal.speed_m_per_s, self.gains.speed_max) * self.gains.tick_s;
+        self.step_m = within((goal.pulled_m - self.reference_m) * per_ticks, fastest);
+    }
+
+    /// Follows the motor without driving it.
+    #[inline(always)]
+    pub fn track(&mut self, pulled_m: T) {
+        let predicted = self.tracked_m + self.speed_m_per_s * self.gains.tick_s;
+        let off = pulled_m - predicted;
+        self.tracked_m = predicted + self.gains.track_position * off;
+        self.speed_m_per_s += self.gains.track_speed * off;
+    }
+
+    /// One tick: the duty. Call [`Self::track`] first.
+    #[inline(always)]
+    pub fn drive(&mut self, input: &AxisInput<T>) -> T {
+        let gains = &self.gains;
+        self.reference_m += self.step_m;
+        let error = self.reference_m - input.pulled_m;
+        let resting = self.step_m == T::zero() && error.abs() <= gains.dead_band_m;
+        let wanted = if resting {
+            T::zero()
+        } else {
+            self.step_m * gains.per_tick + gains.position * error
+        };
+        let wanted = within(wanted, gains.speed_max);
+        // The nearer to the ceiling, the slower the pull; above it the tendon is let out.
+        let room = (input.ceiling_n - input.tension_n) * gains.per_band_n;
+        let fastest = within(room, T::one()) * gains.speed_max;
+        let wanted = least(wanted, fastest);
+        let missing = wanted - self.speed_m_per_s;
+        let proportional = gains.back_emf * wanted + gains.speed * missing;
+        let asked = proportional + self.integral_v;
+        let induced = gains.back_emf * self.speed_m_per_s;
+        let supply = gains.duty_max * input.supply_v;
+        let high = least(induced + gains.current_v, supply);
+        let low = most(induced - gains.current_v, -supply);
+        let voltage = most(least(asked, high), low);
+        // The integral grows only while its voltage is applied, and while there is something to make up for.
+        let held = resting
+            || (asked > high && missing > T::zero())
+            || (asked < low && missing < T::zero());
+        if !held {
+            self.integral_v += gains.integral * missing;
+        }
+        self.voltage_v = voltage;
+        if input.supply_v > T::one() {
+            voltage / input.supply_v
+        } else {
+            T::zero()
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! Where the leg is and what it carries, by the lengths and tensions of its tendons.
+
+use super::{CYCLE_S, Mechanism, bounds::most, filter::LowPass};
+use crate::settings::Settings;
+use leg_model::{
+    Direction, Elasticity, Error, Geometry, Scalar, SupportKind, estimate_load, forward_kinematics,
+    forward_kinematics_universal,
+};
+use nalgebra::SVector;
+
+/// What the tendons tell of the leg.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate<T> {
+    /// Where the leg points.
+    pub direction: Direction<T>,
+    /// What forward kinematics leaves over, m: a tendon that jumped or a count that was lost shows there.
+    pub residual_m: T,
+}
+
+/// Estimates pose and load, warm-started from the last estimate.
+#[derive(Clone, Copy, Debug)]
+pub struct Estimator<T> {
+    direction: Direction<T>,
+    /// Moment beyond that of the leg's own weight, as a horizontal one (x, y) of the same effect, N·m.
+    excess: [[LowPass<T>; 2]; 2],
+    payload_kg: T,
+    /// Square of the sine of the tilt from which the payload is told.
+    payload_sine_squared: T,
+}
+
+impl<T: Scalar> Estimator<T> {
+    /// Straight down, without a payload.
+    pub fn new(settings: &Settings) -> Self {
+        let estimation = &settings.estimation;
+        let filter = LowPass::new(estimation.load_time_s, CYCLE_S);
+        let sine = T::from(estimation.payload_sine);
+        Self {
+            direction: Direction::down(),
+            excess: [[filter; 2]; 2],
+            payload_kg: T::zero(),
+            payload_sine_squared: sine * sine,
+        }
+    }
+
+    /// The last direction.
+    #[inline(always)]
+    pub fn direction(&self) -> &Direction<T> {
+        &self.direction
+    }
+
+    /// Starts anew, straight down, without a load.
+    pub fn straight_down(&mut self) {
+        self.direction = Direction::down();
+        self.payload_kg = T::zero();
+        for filter in self.excess.iter_mut().flatten() {
+            filter.set(T::zero());
+        }
+    }
+
+    /// The load beyond the leg's own weight, as a horizontal moment (x, y), N·m.
+    #[inline(always)]
+    pub fn excess_nm(&self) -> [T; 2] {
+        self.excess.map(|[_, second]| second.value())
+    }
+
+    /// The payload that such a load would be, kg.
+    #[inline(always)]
+    pub fn payload_kg(&self) -> T {
+        self.payload_kg
+    }
+
+    /// Estimates the pose and, unless the load is `frozen`, the load. `torsion` is the elastic one, rad.
+    ///
+    /// # Errors
+    /// A tension beyond a tendon's curve; what forward kinematics refuses.
+    #[inline(always)]
+    pub fn update(
+        &mut self,
+        mechanism: &Mechanism<T>,
+        unstretched_m: &[T; 3],
+        tensions_n: &[T; 3],
+        torsion: T,
+        frozen: bool,
+    ) -> Result<Estimate<T>, Error> {
+        let (mut lengths, mut pull) = (SVector::<T, 3>::zeros(), SVector::<T, 3>::zeros());
+        for (i, tendon) in mechanism.tendons.iter().enumerate() {
+            // A slack tendon is as long as it is; noise does not make it push.
+            pull[i] = most(tensions_n[i], T::zero());
+            lengths[i] = unstretched_m[i] + tendon.elongation(pull[i])?;
+        }
+        let found = if mechanism.support.kind() == SupportKind::Universal {
+            forward_kinematics_universal(mechanism.rig.geometry(), &lengths, &self.direction)?
+        } else {
+            let geometry = mechanism.geometry(&self.direction, torsion);
+            forward_kinematics(&geometry, &lengths, &self.direction)?
+        };
+        self.direction = found.direction;
+        if !frozen {
+            self.weigh(
+                mechanism,
+                &mechanism.geometry(&found.direction, torsion),
+                torsion,
+                &pull,
+            )?;
+        }
+        Ok(Estimate {
+            direction: found.direction,
+            residual_m: found.residual_m,
+        })
+    }
+
+    #[inline(always)]
+    fn weigh(
+        &mut self,
+        mechanism: &Mechanism<T>,
+        geometry: &Geometry<T, 3>,
+        torsion: T,
+        pull: &SVector<T, 3>,
+    ) -> Result<(), Error> {
+        let (direction, support) = (&self.direction, &mechanism.support);
+        let load = estimate_load(geometry, support, direction, torsion, pull)?;
+        let [x, y] = support.plane(direction).project(&load);
+        let own = mechanism.leg.moment(direction);
+        let excess = [x - own.x, y - own.y];
+        for ([first, second], input) in self.excess.iter_mut().zip(excess) {
+            second.step(first.step(input));
+        }
+        self.guess_payload(mechanism);
+        Ok(())
+    }
+
+    /// A weight at the tip turns the leg about (−p_y, p_x), the more the further it leans.
+    #[inline(always)]
+    fn guess_payload(&mut self, mechanism: &Mechanism<T>) {
+        let down = self.direction.vector();
+        let sine_squared = down.x * down.x + down.y * down.y;
+        let lever = sine_squared * mechanism.payload_lever;
+        if sine_squared > self.payload_sine_squared && lever > T::zero() {
+            let [x, y] = self.excess_nm();
+            self.payload_kg = most((down.x * y - down.y * x) / lever, T::zero());
+        }
+    }
+}

@@ -1,0 +1,273 @@
+//! Finds the zero: the leg hangs free, and one tendon after the other is taken up until it just pulls.
+//!
+//! Slack tendons tell the load cells' zero. One taut tendon and the leg's own weight settle where the leg rests, and so
+//! how long that tendon is.
+
+use super::{AxisGoal, Mechanism, filter::LowPass, ticks};
+use crate::settings;
+use leg_model::{Direction, Elasticity, Error, Scalar, estimate_load, inverse_kinematics};
+use nalgebra::SVector;
+
+/// What homing does now.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    /// Every tendon is let out.
+    Release,
+    /// The slack load cells are averaged.
+    Tare,
+    /// One tendon is taken up.
+    TakeUp(Tendon),
+    /// The leg comes to rest on it.
+    Settle(Tendon),
+    /// Its tension and position are averaged.
+    Average(Tendon),
+    /// It is let out again.
+    LetOut(Tendon),
+}
+
+/// The tendon that is taken up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Tendon {
+    First,
+    Second,
+    Third,
+}
+
+impl Tendon {
+    const fn index(self) -> usize {
+        match self {
+            Self::First => 0,
+            Self::Second => 1,
+            Self::Third => 2,
+        }
+    }
+
+    const fn next(self) -> Option<Self> {
+        match self {
+            Self::First => Some(Self::Second),
+            Self::Second => Some(Self::Third),
+            Self::Third => None,
+        }
+    }
+}
+
+/// What a tick of homing asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HomingStep<T> {
+    /// Lead the axes there.
+    Lead([AxisGoal<T>; 3]),
+    /// The load cells are slack: their averages are their zero, N.
+    Tare([T; 3]),
+    /// The length of each tendon without tension when the board started, m.
+    Found([T; 3]),
+    /// A tendon did not come taut within its travel; the tendon counts from 1.
+    NotTaut(u8),
+    /// The leg does not come to rest on a tendon as its weight says.
+    NoRest(u8),
+}
+
+/// The course of homing.
+#[derive(Clone, Copy, Debug)]
+pub struct Homing<T> {
+    phase: Phase,
+    left: u32,
+    goals_m: [T; 3],
+    sums: [T; 3],
+    position_sum: T,
+    count: u32,
+    steady: [LowPass<T>; 3],
+    found: [T; 3],
+    start_m: T,
+    times: Times,
+    speed: T,
+    release_m: T,
+    touch_n: T,
+    travel_m: T,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Times {
+    tare: u32,
+    settle: u32,
+    average: u32,
+}
+
+/// Time constant with which a touch is felt, s.
+const TOUCH_TIME_S: f32 = 0.005;
+
+impl<T: Scalar> Homing<T> {
+    /// Starts from where the tendons are, m.
+    pub fn new(homing: &settings::Homing, pulled_m: &[T; 3]) -> Self {
+        let release_m = T::from(homing.release_m);
+        Self {
+            phase: Phase::Release,
+            left: 0,
+            goals_m: pulled_m.map(|pulled| pulled - release_m),
+            sums: [T::zero(); 3],
+            position_sum: T::zero(),
+            count: 0,
+            steady: [LowPass::new(TOUCH_TIME_S, super::TICK_S); 3],
+            found: [T::zero(); 3],
+            start_m: T::zero(),
+            times: Times {
+                tare: ticks(homing.tare_time_s),
+                settle: ticks(homing.settle_time_s),
+                average: ticks(homing.average_time_s),
+            },
+            speed: homing.speed_m_per_s.into(),
+            release_m,
+            touch_n: homing.touch_n.into(),
+            travel_m: homing.travel_m.into(),
+        }
+    }
+
+    /// One tick.
+    #[inline(never)]
+    pub fn step(
+        &mut self,
+        mechanism: &Mechanism<T>,
+        pulled_m: &[T; 3],
+        tensions_n: &[T; 3],
+    ) -> HomingStep<T> {
+        match self.phase {
+            Phase::Release => self.release(pulled_m),
+            Phase::Tare => self.tare(tensions_n),
+            Phase::TakeUp(tendon) => self.take_up(tendon, pulled_m, tensions_n),
+            Phase::Settle(tendon) => self.settle(tendon),
+            Phase::Average(tendon) => self.average(mechanism, tendon, pulled_m, tensions_n),
+            Phase::LetOut(tendon) => self.let_out(tendon, pulled_m),
+        }
+    }
+
+    fn lead(&self) -> HomingStep<T> {
+        HomingStep::Lead(self.goals_m.map(|pulled_m| AxisGoal {
+            pulled_m,
+            speed_m_per_s: self.speed,
+        }))
+    }
+
+    fn release(&mut self, pulled_m: &[T; 3]) -> HomingStep<T> {
+        let near = T::from(1e-4);
+        let arrived = pulled_m
+            .iter()
+            .zip(&self.goals_m)
+            .all(|(pulled, goal)| (*pulled - *goal).abs() < near);
+        if arrived {
+            (self.phase, self.left, self.count) = (Phase::Tare, self.times.tare, 0);
+        }
+        self.lead()
+    }
+
+    fn tare(&mut self, tensions_n: &[T; 3]) -> HomingStep<T> {
+        for (sum, tension) in self.sums.iter_mut().zip(tensions_n) {
+            *sum += *tension;
+        }
+        self.count += 1;
+        if self.count < self.times.tare {
+            return self.lead();
+        }
+        let count = T::from(self.count as f32);
+        self.phase = Phase::TakeUp(Tendon::First);
+        let [start, ..] = self.goals_m;
+        self.start_m = start;
+        HomingStep::Tare(self.sums.map(|sum| sum / count))
+    }
+
+    fn take_up(&mut self, tendon: Tendon, pulled_m: &[T; 3], tensions_n: &[T; 3]) -> HomingStep<T> {
+        let i = tendon.index();
+        if self.steady[i].step(tensions_n[i]) >= self.touch_n {
+            self.goals_m[i] = pulled_m[i];
+            (self.phase, self.left) = (Phase::Settle(tendon), self.times.settle);
+            return self.lead();
+        }
+        self.goals_m[i] = self.start_m + self.travel_m;
+        if pulled_m[i] >= self.start_m + self.travel_m - T::from(1e-4) {
+            return HomingStep::NotTaut(tendon.index() as u8 + 1);
+        }
+        self.lead()
+    }
+
+    fn settle(&mut self, tendon: Tendon) -> HomingStep<T> {
+        self.left = self.left.saturating_sub(1);
+        if self.left == 0 {
+            self.phase = Phase::Average(tendon);
+            (self.count, self.position_sum, self.sums) = (0, T::zero(), [T::zero(); 3]);
+        }
+        self.lead()
+    }
+
+    fn average(
+        &mut self,
+        mechanism: &Mechanism<T>,
+        tendon: Tendon,
+        pulled_m: &[T; 3],
+        tensions_n: &[T; 3],
+    ) -> HomingStep<T> {
+        let i = tendon.index();
+        self.sums[i] += tensions_n[i];
+        // From where it rests, so that the sum stays small.
+        self.position_sum += pulled_m[i] - self.goals_m[i];
+        self.count += 1;
+        if self.count < self.times.average {
+            return self.lead();
+        }
+        let count = T::from(self.count as f32);
+        let tension = self.sums[i] / count;
+        let pulled = self.goals_m[i] + self.position_sum / count;
+        match unstretched_under_one(mechanism, i, tension) {
+            Ok(unstretched) => self.found[i] = unstretched + pulled,
+            Err(_) => return HomingStep::NoRest(tendon.index() as u8 + 1),
+        }
+        let Some(next) = tendon.next() else {
+            return HomingStep::Found(self.found);
+        };
+        self.goals_m[i] -= self.release_m;
+        self.start_m = self.goals_m[next.index()];
+        self.phase = Phase::LetOut(tendon);
+        self.lead()
+    }
+
+    fn let_out(&mut self, tendon: Tendon, pulled_m: &[T; 3]) -> HomingStep<T> {
+        let i = tendon.index();
+        if (pulled_m[i] - self.goals_m[i]).abs() < T::from(1e-4)
+            && let Some(next) = tendon.next()
+        {
+            self.phase = Phase::TakeUp(next);
+        }
+        self.lead()
+    }
+}
+
+/// Steps after which the search for the pose on one tendon ends.
+const STEPS: u8 = 12;
+
+/// Length without tension of a tendon that alone pulls a hanging leg with a tension in N, m.
+fn unstretched_under_one<T: Scalar>(
+    mechanism: &Mechanism<T>,
+    i: usize,
+    tension: T,
+) -> Result<T, Error> {
+    let mut pull = SVector::<T, 3>::zeros();
+    pull[i] = tension;
+    let mut direction = Direction::down();
+    for _ in 0..STEPS {
+        let geometry = mechanism.geometry(&direction, T::zero());
+        let load = estimate_load(&geometry, &mechanism.support, &direction, T::zero(), &pull)?;
+        let plane = mechanism.support.plane(&direction);
+        let [x, y] = plane.project(&load);
+        let own = mechanism.leg.moment(&direction);
+        // What is out of balance, over the stiffness that the weight alone gives: the weights' own is the least there is.
+        let stiffness = mechanism.leg.stiffness(&direction)[(0, 0)]
+            + mechanism.support.joint().bending_nm_per_rad;
+        if !(stiffness > T::zero()) {
+            return Err(Error::Unstable);
+        }
+        let (turn_x, turn_y) = ((own.x - x) / stiffness, (own.y - y) / stiffness);
+        // A turn about x moves the tip along −p_z y, one about y along p_z x.
+        let vector = direction.vector();
+        direction = Direction::from_xy(vector.x + vector.z * turn_y, vector.y - vector.z * turn_x)?;
+    }
+    let geometry = mechanism.geometry(&direction, T::zero());
+    let kinematics = inverse_kinematics(&geometry, &direction)?;
+    Ok(kinematics.lengths[i] - mechanism.tendons[i].elongation(tension)?)
+}

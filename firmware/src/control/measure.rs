@@ -1,0 +1,142 @@
+//! From counts and codes to SI.
+
+use super::{TICK_S, bounds::within, filter::LowPass};
+use crate::sensors::{CODE_MAX, Sensors};
+use crate::settings::Settings;
+use leg_model::Scalar;
+
+/// What the sensors say, in SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured<T> {
+    /// How far each tendon is pulled in since the board started, m.
+    pub pulled_m: [T; 3],
+    /// Tension of each tendon, N.
+    pub tensions_n: [T; 3],
+    /// The same without noise.
+    pub steady_tensions_n: [T; 3],
+    /// Current of each motor, A.
+    pub currents_a: [T; 3],
+    /// Supply, V.
+    pub supply_v: T,
+    /// Temperature of the drivers, °C.
+    pub temperature_c: T,
+}
+
+/// The conversion of one axis.
+#[derive(Clone, Copy, Debug)]
+struct Channel<T> {
+    last_count: u16,
+    /// Counts since the start: integers, so that none is ever lost to rounding.
+    counts: i32,
+    m_per_count: T,
+    n_per_code: T,
+    zero_code: T,
+    a_per_code: T,
+    steady: LowPass<T>,
+}
+
+/// Converts what the sensors read.
+#[derive(Clone, Copy, Debug)]
+pub struct Measurement<T> {
+    channels: [Channel<T>; 3],
+    supply_v_per_code: T,
+    temperature_c_per_code: T,
+    temperature_at_zero_c: T,
+    started: bool,
+}
+
+impl<T: Scalar> Measurement<T> {
+    /// With the calibration of the settings.
+    pub fn new(settings: &Settings) -> Self {
+        let channel = |i: usize| {
+            let axis = &settings.axes[i];
+            Channel {
+                last_count: 0,
+                counts: 0,
+                m_per_count: axis.m_per_count.into(),
+                n_per_code: axis.cell_n_per_code.into(),
+                zero_code: axis.cell_zero_code.into(),
+                a_per_code: axis.current_a_per_code.into(),
+                steady: LowPass::new(settings.estimation.tension_time_s, TICK_S),
+            }
+        };
+        Self {
+            channels: [channel(0), channel(1), channel(2)],
+            supply_v_per_code: settings.board.supply_v_per_code.into(),
+            temperature_c_per_code: settings.board.temperature_c_per_code.into(),
+            temperature_at_zero_c: settings.board.temperature_at_zero_c.into(),
+            started: false,
+        }
+    }
+
+    /// Converts one reading.
+    #[inline(always)]
+    pub fn convert(&mut self, sensors: &Sensors) -> Measured<T> {
+        if !self.started {
+            self.start(sensors);
+        }
+        let mut measured = Measured {
+            pulled_m: [T::zero(); 3],
+            tensions_n: [T::zero(); 3],
+            steady_tensions_n: [T::zero(); 3],
+            currents_a: [T::zero(); 3],
+            supply_v: code::<T>(sensors.supply_code) * self.supply_v_per_code,
+            temperature_c: code::<T>(sensors.temperature_code) * self.temperature_c_per_code
+                + self.temperature_at_zero_c,
+        };
+        for (i, channel) in self.channels.iter_mut().enumerate() {
+            measured.pulled_m[i] = channel.pulled(sensors.encoder_counts[i]);
+            let tension = channel.tension(sensors.cell_codes[i]);
+            measured.tensions_n[i] = tension;
+            measured.steady_tensions_n[i] = channel.steady.step(tension);
+            measured.currents_a[i] = channel.current(sensors.current_codes[i]);
+        }
+        measured
+    }
+
+    /// Takes the present codes of the load cells, each an average, as those without tension.
+    pub fn tare(&mut self, offsets_n: &[T; 3]) {
+        for (channel, &offset_n) in self.channels.iter_mut().zip(offsets_n) {
+            channel.zero_code += offset_n / channel.n_per_code;
+            channel.steady.set(T::zero());
+        }
+    }
+
+    #[cold]
+    fn start(&mut self, sensors: &Sensors) {
+        self.started = true;
+        for (i, channel) in self.channels.iter_mut().enumerate() {
+            channel.last_count = sensors.encoder_counts[i];
+            let tension = channel.tension(sensors.cell_codes[i]);
+            channel.steady.set(tension);
+        }
+    }
+}
+
+impl<T: Scalar> Channel<T> {
+    #[inline(always)]
+    fn pulled(&mut self, count: u16) -> T {
+        // Between two ticks a motor turns far less than half of the counter's range.
+        let step = count.wrapping_sub(self.last_count).cast_signed();
+        self.last_count = count;
+        self.counts = self.counts.wrapping_add(i32::from(step));
+        // Exact up to 2²⁴ counts, far beyond any travel.
+        T::from(self.counts as f32) * self.m_per_count
+    }
+
+    #[inline(always)]
+    fn tension(&self, cell_code: u16) -> T {
+        (code::<T>(cell_code) - self.zero_code) * self.n_per_code
+    }
+
+    #[inline(always)]
+    fn current(&self, current_code: u16) -> T {
+        let half = T::from(f32::from(CODE_MAX) * 0.5);
+        within(code::<T>(current_code) - half, half) * self.a_per_code
+    }
+}
+
+#[inline(always)]
+fn code<T: Scalar>(code: u16) -> T {
+    T::from(f32::from(code))
+}

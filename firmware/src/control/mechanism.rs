@@ -1,0 +1,77 @@
+//! The mechanism that is controlled: rig, support and tendons, validated.
+
+use crate::settings::{Settings, SettingsError};
+use leg_model::{
+    Direction, Error, Geometry, Load, Rig, RigParameters, Scalar, Support, Tendon, TensionBounds,
+    Twist,
+};
+
+/// Rig, support and tendons.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mechanism<T> {
+    /// Geometry and masses.
+    pub rig: Rig<T, 3>,
+    /// The central support.
+    pub support: Support<T>,
+    /// The tendons.
+    pub tendons: [Tendon<T>; 3],
+    /// The tensions that are allowed.
+    pub bounds: TensionBounds<T>,
+    /// Lowest tension allowed, N.
+    pub floor_n: T,
+    /// Highest tension allowed, N.
+    pub ceiling_n: T,
+    /// The weights without a payload.
+    pub leg: Load<T>,
+    /// Moment of a payload of 1 kg with the leg level, N·m/kg.
+    pub payload_lever: T,
+}
+
+impl<T: Scalar> Mechanism<T> {
+    /// Validates what the settings say of the mechanism.
+    ///
+    /// # Errors
+    /// What the model refuses.
+    pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
+        let parameters: RigParameters<T, 3> = settings.rig.into();
+        let rig = Rig::new(&parameters)?;
+        let (floor_n, ceiling_n) = (
+            T::from(settings.tension_floor_n),
+            T::from(settings.tension_ceiling_n),
+        );
+        Ok(Self {
+            support: settings.support.support()?,
+            tendons: settings.tendons.tendons()?,
+            bounds: TensionBounds::new(floor_n, ceiling_n)?,
+            floor_n,
+            ceiling_n,
+            leg: Load::new(&rig, T::zero())?,
+            payload_lever: parameters.gravity_m_per_s2 * rig.tip_m(),
+            rig,
+        })
+    }
+
+    /// The geometry of a leg that points along `direction` with an elastic torsion in rad.
+    #[inline(always)]
+    pub fn geometry(&self, direction: &Direction<T>, torsion: T) -> Geometry<T, 3> {
+        if self.support.twists() {
+            let twist = self
+                .support
+                .twist(direction)
+                .and(&Twist::from_torsion(torsion));
+            self.rig.geometry().twisted(&twist)
+        } else if self.support.universal() {
+            self.rig.geometry().twisted(&self.support.twist(direction))
+        } else {
+            *self.rig.geometry()
+        }
+    }
+
+    /// The weights with a payload.
+    ///
+    /// # Errors
+    /// A payload that is refused.
+    pub fn load(&self, payload_kg: T) -> Result<Load<T>, Error> {
+        Load::new(&self.rig, payload_kg)
+    }
+}

@@ -1,0 +1,119 @@
+//! A smooth way from a moving start to a resting end: a polynomial of fifth degree in each coordinate.
+
+use leg_model::Scalar;
+
+/// Position, rate and its change, in two coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion<T> {
+    /// Position.
+    pub position: [T; 2],
+    /// Its change, 1/s.
+    pub rate: [T; 2],
+    /// The change of that, 1/s².
+    pub acceleration: [T; 2],
+}
+
+impl<T: Scalar> Motion<T> {
+    /// At rest.
+    pub fn at(position: [T; 2]) -> Self {
+        Self {
+            position,
+            rate: [T::zero(); 2],
+            acceleration: [T::zero(); 2],
+        }
+    }
+}
+
+/// The way, over a time that goes from 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quintic<T> {
+    coefficients: [[T; 6]; 2],
+    duration_s: T,
+}
+
+/// The largest squares of rate, acceleration and jerk.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Peaks<T> {
+    /// (1/s)².
+    pub rate: T,
+    /// (1/s²)².
+    pub acceleration: T,
+    /// (1/s³)².
+    pub jerk: T,
+}
+
+impl<T: Scalar> Quintic<T> {
+    /// From a motion to rest at `end` within a time in s.
+    pub fn new(start: &Motion<T>, end: [T; 2], duration_s: T) -> Self {
+        let number = |value: f32| T::from(value);
+        let coordinate = |i: usize| {
+            let way = end[i] - start.position[i];
+            let rate = start.rate[i] * duration_s;
+            let half = T::HALF * start.acceleration[i] * duration_s * duration_s;
+            [
+                start.position[i],
+                rate,
+                half,
+                number(10.0) * way - number(6.0) * rate - number(3.0) * half,
+                number(8.0) * rate + number(3.0) * half - number(15.0) * way,
+                number(6.0) * way - number(3.0) * rate - half,
+            ]
+        };
+        Self {
+            coefficients: [coordinate(0), coordinate(1)],
+            duration_s,
+        }
+    }
+
+    /// The position at a part of the time.
+    #[inline(always)]
+    pub fn position(&self, part: T) -> [T; 2] {
+        self.coefficients.map(|[c0, c1, c2, c3, c4, c5]| {
+            c0 + part * (c1 + part * (c2 + part * (c3 + part * (c4 + part * c5))))
+        })
+    }
+
+    /// Position, rate and acceleration at a part of the time.
+    #[inline(always)]
+    pub fn motion(&self, part: T) -> Motion<T> {
+        let per_second = T::one() / self.duration_s;
+        let number = |value: f32| T::from(value);
+        Motion {
+            position: self.position(part),
+            rate: self.coefficients.map(|[_, c1, c2, c3, c4, c5]| {
+                let slope = c1
+                    + part
+                        * (T::TWO * c2
+                            + part
+                                * (number(3.0) * c3
+                                    + part * (number(4.0) * c4 + part * number(5.0) * c5)));
+                slope * per_second
+            }),
+            acceleration: self.coefficients.map(|[_, _, c2, c3, c4, c5]| {
+                let bend = T::TWO * c2
+                    + part
+                        * (number(6.0) * c3
+                            + part * (number(12.0) * c4 + part * number(20.0) * c5));
+                bend * per_second * per_second
+            }),
+        }
+    }
+
+    /// The squares of rate, acceleration and jerk at a part of the time.
+    #[inline(always)]
+    pub fn squares(&self, part: T) -> Peaks<T> {
+        let motion = self.motion(part);
+        let per_second = T::one() / self.duration_s;
+        let number = |value: f32| T::from(value);
+        let jerk = self.coefficients.map(|[_, _, _, c3, c4, c5]| {
+            let third = number(6.0) * c3 + part * (number(24.0) * c4 + part * number(60.0) * c5);
+            third * per_second * per_second * per_second
+        });
+        let square = |[x, y]: [T; 2]| x * x + y * y;
+        Peaks {
+            rate: square(motion.rate),
+            acceleration: square(motion.acceleration),
+            jerk: square(jerk),
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! The lengths that put the loaded leg on its target.
+
+use super::{
+    CYCLE_S, Mechanism,
+    bounds::{least, most, within},
+};
+use crate::settings::Settings;
+use leg_model::{
+    Direction, Distribution, Elasticity, Error, HalfTangent, Kinematics, Scalar, distribute,
+    inverse_kinematics,
+};
+use nalgebra::Vector3;
+
+/// What the tendons shall do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target<T> {
+    /// Where the leg shall point.
+    pub direction: Direction<T>,
+    /// Its elastic torsion there, rad.
+    pub torsion: T,
+    /// Lengths and moments of the tendons there.
+    pub kinematics: Kinematics<T, 3>,
+    /// The tensions that balance the load there.
+    pub distribution: Distribution<T, 3>,
+    /// The level that is asked for now, N.
+    pub level_n: T,
+    /// The tensions at that level, N.
+    pub tensions_n: [T; 3],
+    /// The lengths without tension that give these tensions there, m.
+    pub unstretched_m: [T; 3],
+    /// Whether the bounds on the tensions, or the limit of the trim, hold the level back.
+    pub limited: bool,
+}
+
+/// Computes targets, one after the other.
+#[derive(Clone, Copy, Debug)]
+pub struct Targets<T> {
+    level_n: T,
+    level_step_n: T,
+    trim_n: T,
+    trim_gain: T,
+    trim_max_n: T,
+    torsion: Torsion<T>,
+}
+
+/// What a target is made for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wish<T> {
+    /// The pose.
+    pub q: HalfTangent<T>,
+    /// The load beyond the leg's own weight, as a horizontal moment; none to leave all weights out.
+    pub excess_nm: Option<[T; 2]>,
+    /// The level of pretension, N.
+    pub level_n: T,
+}
+
+impl<T: Scalar> Targets<T> {
+    /// At level zero.
+    pub fn new(settings: &Settings) -> Self {
+        Self {
+            level_n: T::zero(),
+            level_step_n: T::from(settings.motion.level_rate_n_per_s * CYCLE_S),
+            trim_n: T::zero(),
+            trim_gain: T::from(CYCLE_S / settings.estimation.trim_time_s),
+            trim_max_n: settings.estimation.trim_max_n.into(),
+            torsion: Torsion::new(),
+        }
+    }
+
+    /// Starts from a level, N.
+    pub fn start(&mut self, level_n: T) {
+        self.level_n = level_n;
+        self.trim_n = T::zero();
+    }
+
+    /// The torsion that the last target has, rad.
+    #[inline(always)]
+    pub fn torsion(&self) -> T {
+        self.torsion.angle
+    }
+
+    /// The next target; `measured_n` are the tensions now.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`] if no level keeps the bounds; what kinematics and distribution refuse; a tension beyond a
+    /// tendon's curve.
+    #[inline(always)]
+    pub fn next(
+        &mut self,
+        mechanism: &Mechanism<T>,
+        wish: &Wish<T>,
+        measured_n: &[T; 3],
+    ) -> Result<Target<T>, Error> {
+        let direction = wish.q.direction();
+        let torsion = self.torsion.angle;
+        let kinematics = inverse_kinematics(&mechanism.geometry(&direction, torsion), &direction)?;
+        let plane = mechanism.support.plane(&direction);
+        let mut moment = mechanism.support.joint_moment(&direction, torsion);
+        if let Some([x, y]) = wish.excess_nm {
+            moment += mechanism.leg.moment(&direction) + Vector3::new(x, y, T::zero());
+        }
+        let distribution = distribute(&kinematics.moment_map, &plane, &moment, &mechanism.bounds)?;
+        if !distribution.feasible() {
+            return Err(Error::Infeasible);
+        }
+        let limited = self.step_level(wish.level_n, &distribution);
+        let tensions = distribution.tensions(self.level_n);
+        if mechanism.support.twists() {
+            let third = (kinematics.moment_map * tensions + moment).dot(&plane.normal());
+            self.torsion.step(third);
+        }
+        let trimmed = if wish.excess_nm.is_some() {
+            self.trim(&distribution, measured_n)
+        } else {
+            T::zero()
+        };
+        let stretched = distribution.tensions(self.level_n + trimmed);
+        let mut unstretched_m = [T::zero(); 3];
+        let mut tensions_n = [T::zero(); 3];
+        for (i, tendon) in mechanism.tendons.iter().enumerate() {
+            tensions_n[i] = tensions[i];
+            unstretched_m[i] = kinematics.lengths[i] - tendon.elongation(stretched[i])?;
+        }
+        Ok(Target {
+            direction,
+            torsion,
+            kinematics,
+            distribution,
+            level_n: self.level_n,
+            tensions_n,
+            unstretched_m,
+            limited: limited || !(trimmed.abs() < self.trim_max_n),
+        })
+    }
+
+    /// Moves the level towards the wish, inside what the bounds allow; tells whether they hold it back.
+    #[inline(always)]
+    fn step_level(&mut self, wish_n: T, distribution: &Distribution<T, 3>) -> bool {
+        let (lowest, highest) = (distribution.lowest_level, distribution.highest_level);
+        let allowed = least(most(wish_n, lowest), highest);
+        let step = within(allowed - self.level_n, self.level_step_n);
+        // The pose may narrow the range faster than the level follows.
+        self.level_n = least(most(self.level_n + step, lowest), highest);
+        allowed != wish_n
+    }
+
+    /// What is added to the level so that the measured one becomes it: for what the curves do not tell.
+    #[inline(always)]
+    fn trim(&mut self, distribution: &Distribution<T, 3>, measured_n: &[T; 3]) -> T {
+        let mut measured = T::SUM_START;
+        for (i, &tension) in measured_n.iter().enumerate() {
+            measured += distribution.per_level[i] * tension;
+        }
+        // The squares of the tensions per level add up to three.
+        let error = self.level_n - measured * T::from(1.0 / 3.0);
+        self.trim_n = within(self.trim_n + self.trim_gain * error, self.trim_max_n);
+        self.trim_n
+    }
+}
+
+/// The elastic torsion, found by one step of the secant method a cycle.
+#[derive(Clone, Copy, Debug)]
+struct Torsion<T> {
+    angle: T,
+    last_angle: T,
+    last_moment: T,
+    /// Stiffness about the third axis, N·m/rad.
+    slope: T,
+}
+
+impl<T: Scalar> Torsion<T> {
+    fn new() -> Self {
+        Self {
+            angle: T::zero(),
+            last_angle: -T::TORSION_START_RAD,
+            last_moment: T::zero(),
+            slope: -T::one(),
+        }
+    }
+
+    /// Takes the moment about the third axis at the present angle, N·m.
+    #[inline(always)]
+    fn step(&mut self, moment: T) {
+        let turned = self.angle - self.last_angle;
+        let slope = (moment - self.last_moment) / turned;
+        // Steps too short to tell a slope from rounding, and slopes that would turn the leg away, are left out.
+        if turned.abs() > T::from(1e-4) && slope < -T::from(1e-2) {
+            self.slope = slope;
+        }
+        (self.last_angle, self.last_moment) = (self.angle, moment);
+        self.angle -= within(moment / self.slope, T::from(2e-3));
+    }
+}

@@ -1,0 +1,254 @@
+//! The whole leg: sensors in, duties out, one tick at a time. The same code on every board and in the host's process.
+
+mod active;
+mod commands;
+mod motors;
+
+use crate::command::Compensation;
+use crate::control::{
+    Axis, CYCLE_TICKS, Estimator, Homing, Level, Measured, Measurement, Mechanism, Target, Targets,
+    Trajectory, ticks,
+};
+use crate::drive::Drive;
+use crate::frame::Decoder;
+use crate::sensors::Sensors;
+use crate::settings::{Settings, SettingsError};
+use crate::supervisor::{AxisView, Event, Fault, FaultSet, Monitors, State, Supervisor, View};
+use crate::telemetry::Telemetry;
+use leg_model::{Error, Scalar};
+
+/// Ticks of [`State::Boot`].
+const BOOT_TICKS: u32 = 16;
+
+/// The controller of a leg.
+#[derive(Debug)]
+pub struct Leg<T> {
+    tick: u32,
+    phase: u8,
+    decoder: Decoder,
+    silence: u32,
+    bad_frames: u16,
+    mechanism: Mechanism<T>,
+    measurement: Measurement<T>,
+    estimator: Estimator<T>,
+    trajectory: Trajectory<T>,
+    level: Level<T>,
+    targets: Targets<T>,
+    axes: [Axis<T>; 3],
+    monitors: Monitors<T>,
+    supervisor: Supervisor,
+    homing: Option<Homing<T>>,
+    homing_ceiling_n: T,
+    settings_of_homing: crate::settings::Homing,
+    /// Length of each tendon without tension when the board started, m.
+    zero_m: Option<[T; 3]>,
+    compensation: Compensation,
+    target: Option<Target<T>>,
+    residual_m: Option<T>,
+    /// Whether every tendon has been above the floor since the leg was armed.
+    tensioned: bool,
+    floor_start_m: [T; 3],
+    refused: bool,
+    measured: Option<Measured<T>>,
+    limits: Limits<T>,
+}
+
+/// What the tick itself decides by.
+#[derive(Clone, Copy, Debug)]
+struct Limits<T> {
+    silence: u32,
+    bad_frames: u16,
+    ramp_m_per_s: T,
+    floor_travel_m: T,
+    slack_n: T,
+    servo_m_per_s: T,
+    tilt_max_sine: T,
+}
+
+impl<T: Scalar> Leg<T> {
+    /// A leg that has not seen its sensors yet.
+    ///
+    /// # Errors
+    /// Settings that are refused.
+    pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
+        settings.check()?;
+        let limits = &settings.limits;
+        let zero = |i: usize| settings.axes[i].unstretched_at_zero_m;
+        let zero_m = match [zero(0), zero(1), zero(2)] {
+            [Some(a), Some(b), Some(c)] => Some([a.into(), b.into(), c.into()]),
+            _ => None,
+        };
+        Ok(Self {
+            tick: 0,
+            phase: 0,
+            decoder: Decoder::new(),
+            silence: 0,
+            bad_frames: 0,
+            mechanism: Mechanism::new(settings)?,
+            measurement: Measurement::new(settings),
+            estimator: Estimator::new(settings),
+            trajectory: Trajectory::new(settings),
+            level: Level::new(settings.level_n.into()),
+            targets: Targets::new(settings),
+            axes: [Axis::new(settings); 3],
+            monitors: Monitors::new(settings),
+            supervisor: Supervisor::default(),
+            homing: None,
+            homing_ceiling_n: settings.homing.ceiling_n.into(),
+            settings_of_homing: settings.homing,
+            zero_m,
+            compensation: Compensation::Estimated,
+            target: None,
+            residual_m: None,
+            tensioned: false,
+            floor_start_m: [T::zero(); 3],
+            refused: false,
+            measured: None,
+            limits: Limits {
+                silence: ticks(limits.command_time_s),
+                bad_frames: limits.bad_frames as u16,
+                ramp_m_per_s: limits.ramp_m_per_s.into(),
+                floor_travel_m: limits.floor_travel_m.into(),
+                slack_n: limits.slack_n.into(),
+                servo_m_per_s: settings.servo.speed_m_per_s.into(),
+                tilt_max_sine: settings.tilt_max_sine.into(),
+            },
+        })
+    }
+
+    /// One tick: `link` are the bytes that came from the host since the last one.
+    #[inline(never)]
+    pub fn tick(&mut self, sensors: &Sensors, link: &[u8]) -> Drive<T> {
+        self.tick = self.tick.wrapping_add(1);
+        let measured = self.measurement.convert(sensors);
+        for (axis, &pulled) in self.axes.iter_mut().zip(&measured.pulled_m) {
+            axis.track(pulled);
+        }
+        if self.tick == BOOT_TICKS {
+            self.supervisor.happen(Event::Ready);
+        }
+        self.listen(link, &measured);
+        let before = self.supervisor.state();
+        let result = self.advance(&measured);
+        let faults = self.faults(sensors, &measured, result);
+        self.supervisor.watch(faults);
+        let state = self.supervisor.state();
+        if state != before {
+            self.entered(state, &measured);
+        }
+        self.phase = if self.phase + 1 < CYCLE_TICKS {
+            self.phase + 1
+        } else {
+            0
+        };
+        let drive = self.drive(&measured);
+        self.measured = Some(measured);
+        drive
+    }
+
+    /// One step of what the state does.
+    #[inline(always)]
+    fn advance(&mut self, measured: &Measured<T>) -> Result<(), Error> {
+        match self.supervisor.state() {
+            State::Active => self.follow(measured),
+            State::Homing => {
+                self.seek(measured);
+                Ok(())
+            }
+            State::Held => {
+                self.look(measured);
+                self.keep_floor(measured);
+                Ok(())
+            }
+            State::RampingDown => {
+                self.look(measured);
+                self.relax(measured);
+                Ok(())
+            }
+            State::Boot | State::Disarmed | State::Off => Ok(()),
+        }
+    }
+
+    /// Every fault of the tick.
+    #[inline(always)]
+    fn faults(
+        &mut self,
+        sensors: &Sensors,
+        measured: &Measured<T>,
+        result: Result<(), Error>,
+    ) -> FaultSet {
+        let state = self.supervisor.state();
+        let active = state == State::Active;
+        let view = |axis: &Axis<T>, pulled: T| AxisView {
+            following_m: axis.reference_m() - pulled,
+            driving_v: axis.driving_v(),
+            voltage_v: axis.voltage_v(),
+        };
+        let [a, b, c] = &self.axes;
+        let [x, y, z] = measured.pulled_m;
+        let mut faults = self.monitors.watch(&View {
+            sensors,
+            measured,
+            axes: [view(a, x), view(b, y), view(c, z)],
+            driven: state.driven(),
+            tensioned: active && self.tensioned,
+            residual_m: if active && self.tensioned {
+                self.residual_m
+            } else {
+                None
+            },
+        });
+        faults.add(Fault::Infeasible, self.refused);
+        match result {
+            Ok(()) => {}
+            Err(Error::Infeasible) => faults.add(Fault::Infeasible, true),
+            Err(_) => faults.add(Fault::PoseLost, true),
+        }
+        let limited = self.target.is_some_and(|target| target.limited);
+        faults.add(
+            Fault::Unreachable,
+            active && (limited || self.level.unreachable()),
+        );
+        let listening = matches!(state, State::Active | State::Homing);
+        self.silence = if listening {
+            self.silence.saturating_add(1)
+        } else {
+            0
+        };
+        faults.add(Fault::CommandTimeout, self.silence > self.limits.silence);
+        faults.add(Fault::BadFrame, self.bad_frames >= self.limits.bad_frames);
+        faults.add(Fault::HomingFailed, self.homing_failed(measured));
+        faults
+    }
+
+    /// What the leg tells of itself.
+    #[must_use]
+    pub fn telemetry(&self) -> Telemetry<T> {
+        let zero = [T::zero(); 3];
+        let (tensions_n, pulled_m) = self.measured.map_or((zero, zero), |measured| {
+            (measured.tensions_n, measured.pulled_m)
+        });
+        let pose = self.estimator.direction().vector();
+        let target = self.target.map_or(pose, |target| target.direction.vector());
+        let [a, b, c] = &self.axes;
+        Telemetry {
+            tick: self.tick,
+            state: self.supervisor.state(),
+            faults: self.supervisor.latched(),
+            homed: self.zero_m.is_some(),
+            moving: self.trajectory.moving(),
+            target: [target.x, target.y],
+            pose: [pose.x, pose.y],
+            residual_m: self.residual_m.unwrap_or(T::zero()),
+            tensions_n,
+            target_tensions_n: self.target.map_or(zero, |target| target.tensions_n),
+            pulled_m,
+            reference_m: [a.reference_m(), b.reference_m(), c.reference_m()],
+            level_n: self.target.map_or(T::zero(), |target| target.level_n),
+            stiffness_nm_per_rad: self.level.stiffness_nm_per_rad(),
+            load_nm: self.estimator.excess_nm(),
+            payload_kg: self.estimator.payload_kg(),
+            unstretched_at_zero_m: self.zero_m.unwrap_or(zero),
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! What the leg does while it follows commands or looks for its zero.
+
+use super::Leg;
+use crate::command::Compensation;
+use crate::control::{AxisGoal, CYCLE_TICKS, HomingStep, Measured, Wish};
+use crate::supervisor::Event;
+use leg_model::{Error, Scalar};
+
+impl<T: Scalar> Leg<T> {
+    /// Follows the trajectory: estimate, level and target in turn, one a tick.
+    #[inline(always)]
+    pub(super) fn follow(&mut self, measured: &Measured<T>) -> Result<(), Error> {
+        let Some(zero_m) = self.zero_m else {
+            return Err(Error::NotConverged);
+        };
+        match self.phase {
+            0 => self.track(&zero_m, measured),
+            1 => self.choose_level(),
+            _ => self.aim(&zero_m, measured),
+        }
+    }
+
+    /// Goes on estimating the pose while nothing is made of it.
+    #[inline(always)]
+    pub(super) fn look(&mut self, measured: &Measured<T>) {
+        if let (0, Some(zero_m)) = (self.phase, self.zero_m) {
+            // Where there is no result, the last pose stands.
+            let _ = self.estimate(&zero_m, measured, true);
+        }
+    }
+
+    /// Estimates pose and load. While the tendons come up from slack there is no load to be told.
+    #[inline(always)]
+    fn track(&mut self, zero_m: &[T; 3], measured: &Measured<T>) -> Result<(), Error> {
+        let frozen = self.compensation != Compensation::Estimated || !self.tensioned;
+        if !self.tensioned {
+            let floor_n = self.mechanism.floor_n;
+            let tensions_n = &measured.steady_tensions_n;
+            self.tensioned = tensions_n.iter().all(|&tension| tension > floor_n);
+        }
+        self.estimate(zero_m, measured, frozen)
+    }
+
+    #[inline(never)]
+    fn estimate(
+        &mut self,
+        zero_m: &[T; 3],
+        measured: &Measured<T>,
+        frozen: bool,
+    ) -> Result<(), Error> {
+        let mut unstretched_m = *zero_m;
+        for (unstretched, &pulled) in unstretched_m.iter_mut().zip(&measured.pulled_m) {
+            *unstretched -= pulled;
+        }
+        let tensions_n = &measured.steady_tensions_n;
+        let torsion = self.targets.torsion();
+        let mechanism = &self.mechanism;
+        let estimate =
+            self.estimator
+                .update(mechanism, &unstretched_m, tensions_n, torsion, frozen)?;
+        self.residual_m = Some(estimate.residual_m);
+        Ok(())
+    }
+
+    #[inline(never)]
+    fn choose_level(&mut self) -> Result<(), Error> {
+        match &self.target {
+            Some(target) => self
+                .level
+                .step(&self.mechanism, target, self.estimator.payload_kg()),
+            None => Ok(()),
+        }
+    }
+
+    #[inline(never)]
+    fn aim(&mut self, zero_m: &[T; 3], measured: &Measured<T>) -> Result<(), Error> {
+        let compensated = self.compensation != Compensation::Off;
+        let wish = Wish {
+            q: self.trajectory.next(),
+            excess_nm: compensated.then(|| self.estimator.excess_nm()),
+            level_n: self.level.level_n(),
+        };
+        let target = self
+            .targets
+            .next(&self.mechanism, &wish, &measured.steady_tensions_n)?;
+        let per_ticks = T::one() / T::from(f32::from(CYCLE_TICKS));
+        for (i, axis) in self.axes.iter_mut().enumerate() {
+            let goal = AxisGoal {
+                pulled_m: zero_m[i] - target.unstretched_m[i],
+                speed_m_per_s: self.limits.servo_m_per_s,
+            };
+            axis.lead(&goal, per_ticks);
+        }
+        self.target = Some(target);
+        Ok(())
+    }
+
+    /// One tick of homing.
+    #[inline(never)]
+    pub(super) fn seek(&mut self, measured: &Measured<T>) {
+        let Some(homing) = &mut self.homing else {
+            return;
+        };
+        match homing.step(&self.mechanism, &measured.pulled_m, &measured.tensions_n) {
+            HomingStep::Lead(goals) => {
+                for (axis, goal) in self.axes.iter_mut().zip(&goals) {
+                    axis.lead(goal, T::one());
+                }
+            }
+            HomingStep::Tare(offsets_n) => self.measurement.tare(&offsets_n),
+            HomingStep::Found(zero_m) => {
+                self.zero_m = Some(zero_m);
+                self.homing = None;
+                self.estimator.straight_down();
+                self.supervisor.happen(Event::Homed);
+            }
+            HomingStep::NotTaut(_) | HomingStep::NoRest(_) => self.homing = None,
+        }
+    }
+
+    /// Whether homing has given up, or pulls more than it may.
+    #[inline(always)]
+    pub(super) fn homing_failed(&self, measured: &Measured<T>) -> bool {
+        use crate::supervisor::State;
+        let homing = self.supervisor.state() == State::Homing;
+        let twice = self.homing_ceiling_n + self.homing_ceiling_n;
+        homing
+            && (self.homing.is_none() || measured.tensions_n.iter().any(|&tension| tension > twice))
+    }
+}

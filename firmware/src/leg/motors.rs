@@ -1,0 +1,112 @@
+//! What the motors do in each state, and what a change of state begins.
+
+use super::Leg;
+use crate::control::{AxisGoal, AxisInput, Homing, Measured};
+use crate::drive::Drive;
+use crate::supervisor::{Event, State};
+use leg_model::Scalar;
+
+impl<T: Scalar> Leg<T> {
+    /// Begins what a state does.
+    #[inline(never)]
+    pub(super) fn entered(&mut self, state: State, measured: &Measured<T>) {
+        for (axis, &pulled) in self.axes.iter_mut().zip(&measured.pulled_m) {
+            axis.rest(pulled);
+        }
+        self.silence = 0;
+        match state {
+            State::Homing => {
+                self.homing = Some(Homing::new(&self.settings_of_homing, &measured.pulled_m))
+            }
+            State::Active => self.begin_here(measured),
+            State::Held => self.floor_start_m = measured.pulled_m,
+            State::Boot | State::Disarmed | State::RampingDown | State::Off => {}
+        }
+    }
+
+    /// Follows commands from the present pose and level on.
+    fn begin_here(&mut self, measured: &Measured<T>) {
+        let [a, b, c] = measured.tensions_n;
+        let level_n = (a + b + c) * T::from(1.0 / 3.0);
+        self.targets.start(level_n);
+        self.trajectory
+            .start(self.estimator.direction().half_tangent());
+        self.tensioned = false;
+        self.target = None;
+        self.residual_m = None;
+        self.phase = 0;
+    }
+
+    /// Pulls in any tendon that is below the floor, as far as that is allowed.
+    #[inline(never)]
+    pub(super) fn keep_floor(&mut self, measured: &Measured<T>) {
+        for (i, axis) in self.axes.iter_mut().enumerate() {
+            let low = measured.steady_tensions_n[i] < self.mechanism.floor_n;
+            let room = measured.pulled_m[i] - self.floor_start_m[i] < self.limits.floor_travel_m;
+            let goal = if low && room {
+                measured.pulled_m[i] + self.limits.floor_travel_m
+            } else {
+                axis.reference_m()
+            };
+            axis.lead(
+                &AxisGoal {
+                    pulled_m: goal,
+                    speed_m_per_s: self.limits.ramp_m_per_s,
+                },
+                T::one(),
+            );
+        }
+    }
+
+    /// Lets every tendon out that still pulls.
+    #[inline(never)]
+    pub(super) fn relax(&mut self, measured: &Measured<T>) {
+        let mut relaxed = true;
+        for (i, axis) in self.axes.iter_mut().enumerate() {
+            let pulls = measured.steady_tensions_n[i] > self.limits.slack_n;
+            relaxed &= !pulls;
+            let goal = if pulls {
+                axis.reference_m() - self.limits.floor_travel_m
+            } else {
+                axis.reference_m()
+            };
+            axis.lead(
+                &AxisGoal {
+                    pulled_m: goal,
+                    speed_m_per_s: self.limits.ramp_m_per_s,
+                },
+                T::one(),
+            );
+        }
+        if relaxed {
+            self.supervisor.happen(Event::Relaxed);
+        }
+    }
+
+    /// The duties of the state.
+    #[inline(always)]
+    pub(super) fn drive(&mut self, measured: &Measured<T>) -> Drive<T> {
+        let state = self.supervisor.state();
+        let mut drive = Drive {
+            duty: [T::zero(); 3],
+            enabled: state.driven(),
+        };
+        if !drive.enabled {
+            return drive;
+        }
+        let ceiling_n = if state == State::Homing {
+            self.homing_ceiling_n
+        } else {
+            self.mechanism.ceiling_n
+        };
+        for (i, axis) in self.axes.iter_mut().enumerate() {
+            drive.duty[i] = axis.drive(&AxisInput {
+                pulled_m: measured.pulled_m[i],
+                tension_n: measured.tensions_n[i],
+                ceiling_n,
+                supply_v: measured.supply_v,
+            });
+        }
+        drive
+    }
+}

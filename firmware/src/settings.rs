@@ -1,0 +1,149 @@
+//! What the control law is set to: the mechanism, the calibration of its sensors, gains and limits.
+
+mod section;
+mod sections;
+
+pub use section::{Field, OutOfRange};
+pub use sections::{Estimation, Homing, Limits, Motion, Servo};
+
+use crate::messages::{RigMessage, SupportMessage, TendonsMessage};
+use leg_model::Error;
+use postcard_schema::Schema;
+use serde::{Deserialize, Serialize};
+
+/// Calibration of one axis: its encoder, its load cell and its motor's current.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct AxisCalibration {
+    /// How far one encoder count pulls the tendon in, m; negative for an encoder that counts the other way.
+    pub m_per_count: f32,
+    /// Length of the tendon without tension when the board started (counter at zero), m; none until it is homed.
+    pub unstretched_at_zero_m: Option<f32>,
+    /// Tension by code of the load cell, N.
+    pub cell_n_per_code: f32,
+    /// Code of the load cell without tension.
+    pub cell_zero_code: f32,
+    /// Current by code of the motor's current, A; half of the highest code is no current.
+    pub current_a_per_code: f32,
+}
+
+/// Scales of what all axes share.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct BoardCalibration {
+    /// Supply voltage by code, V.
+    pub supply_v_per_code: f32,
+    /// Temperature by code, °C.
+    pub temperature_c_per_code: f32,
+    /// Temperature at code 0, °C.
+    pub temperature_at_zero_c: f32,
+}
+
+/// All settings.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct Settings {
+    /// The mechanism.
+    pub rig: RigMessage,
+    /// Its central support.
+    pub support: SupportMessage,
+    /// Its tendons.
+    pub tendons: TendonsMessage,
+    /// Lowest tension allowed, N.
+    pub tension_floor_n: f32,
+    /// Highest tension allowed, N.
+    pub tension_ceiling_n: f32,
+    /// Level of pretension until another is commanded, N.
+    pub level_n: f32,
+    /// How far the leg may lean: the sine of the greatest tilt.
+    pub tilt_max_sine: f32,
+    /// The three axes.
+    pub axes: [AxisCalibration; 3],
+    /// What they share.
+    pub board: BoardCalibration,
+    /// How the leg moves.
+    pub motion: Motion,
+    /// How a motor follows.
+    pub servo: Servo,
+    /// How pose and load are estimated.
+    pub estimation: Estimation,
+    /// What is taken as a fault.
+    pub limits: Limits,
+    /// How the zero is found.
+    pub homing: Homing,
+}
+
+/// Why settings are refused.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub enum SettingsError {
+    /// The mechanism, its tendons or its tensions.
+    Model(Error),
+    /// A gain or a limit.
+    OutOfRange(OutOfRange),
+    /// A calibration that is not finite or zero; the axis counts from 1, 0 stands for what the axes share.
+    Calibration {
+        /// The axis.
+        axis: u8,
+    },
+}
+
+impl From<Error> for SettingsError {
+    fn from(error: Error) -> Self {
+        Self::Model(error)
+    }
+}
+
+impl From<OutOfRange> for SettingsError {
+    fn from(error: OutOfRange) -> Self {
+        Self::OutOfRange(error)
+    }
+}
+
+impl core::fmt::Display for SettingsError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Model(error) => error.fmt(f),
+            Self::OutOfRange(error) => error.fmt(f),
+            Self::Calibration { axis: 0 } => {
+                f.write_str("the calibration of supply or temperature is not finite or zero")
+            }
+            Self::Calibration { axis } => {
+                write!(f, "the calibration of axis {axis} is not finite or zero")
+            }
+        }
+    }
+}
+
+impl core::error::Error for SettingsError {}
+
+impl Settings {
+    /// Checks gains, limits and calibration. The mechanism is checked where it is built.
+    ///
+    /// # Errors
+    /// The first value that is refused.
+    pub fn check(&self) -> Result<(), SettingsError> {
+        self.motion.check()?;
+        self.servo.check()?;
+        self.estimation.check()?;
+        self.limits.check()?;
+        self.homing.check()?;
+        let scale = |value: f32| value.is_finite() && value != 0.0;
+        let shared = [
+            self.board.supply_v_per_code,
+            self.board.temperature_c_per_code,
+        ];
+        if !shared.into_iter().all(scale) || !self.board.temperature_at_zero_c.is_finite() {
+            return Err(SettingsError::Calibration { axis: 0 });
+        }
+        for (axis, calibration) in (1..).zip(&self.axes) {
+            let zero = calibration.unstretched_at_zero_m.unwrap_or(0.0);
+            let scales = [
+                calibration.m_per_count,
+                calibration.cell_n_per_code,
+                calibration.current_a_per_code,
+            ];
+            let offsets = zero.is_finite() && calibration.cell_zero_code.is_finite();
+            if !scales.into_iter().all(scale) || !offsets {
+                return Err(SettingsError::Calibration { axis });
+            }
+        }
+        Ok(())
+    }
+}

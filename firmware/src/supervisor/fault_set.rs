@@ -1,0 +1,125 @@
+//! A set of faults, one bit each.
+
+use super::{Fault, Reaction};
+use postcard_schema::Schema;
+use serde::{Deserialize, Serialize};
+
+/// A set of faults.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct FaultSet(u32);
+
+/// The faults of one reaction.
+const fn of(reaction: Reaction) -> u32 {
+    let mut bits = 0;
+    let mut i = 0;
+    while i < Fault::ALL.len() {
+        if Fault::ALL[i].reaction() as u8 == reaction as u8 {
+            bits |= FaultSet::of(Fault::ALL[i]).0;
+        }
+        i += 1;
+    }
+    bits
+}
+
+const LIMITS: u32 = of(Reaction::Limit);
+const RAMPS: u32 = of(Reaction::RampDown);
+const GATES: u32 = of(Reaction::GateOff);
+
+impl FaultSet {
+    /// No fault.
+    pub const NONE: Self = Self(0);
+
+    /// One fault.
+    #[must_use]
+    pub const fn of(fault: Fault) -> Self {
+        Self(1 << fault.code())
+    }
+
+    /// Adds a fault if it is there.
+    #[inline(always)]
+    pub fn add(&mut self, fault: Fault, there: bool) {
+        self.0 |= u32::from(there) << fault.code();
+    }
+
+    /// Whether a fault is in it.
+    #[must_use]
+    pub const fn has(self, fault: Fault) -> bool {
+        self.0 & Self::of(fault).0 != 0
+    }
+
+    /// Whether there is any.
+    #[must_use]
+    #[inline(always)]
+    pub const fn any(self) -> bool {
+        self.0 != 0
+    }
+
+    /// Those of both.
+    #[must_use]
+    #[inline(always)]
+    pub const fn with(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Those that only limit.
+    #[must_use]
+    #[inline(always)]
+    pub const fn limits(self) -> Self {
+        Self(self.0 & LIMITS)
+    }
+
+    /// Those that do more than limit.
+    #[must_use]
+    #[inline(always)]
+    pub const fn without_limits(self) -> Self {
+        Self(self.0 & !LIMITS)
+    }
+
+    /// The gravest reaction that any of them has.
+    #[must_use]
+    #[inline(always)]
+    pub const fn gravest(self) -> Option<Reaction> {
+        if self.0 & GATES != 0 {
+            Some(Reaction::GateOff)
+        } else if self.0 & RAMPS != 0 {
+            Some(Reaction::RampDown)
+        } else if self.0 & !LIMITS != 0 {
+            Some(Reaction::Hold)
+        } else if self.0 != 0 {
+            Some(Reaction::Limit)
+        } else {
+            None
+        }
+    }
+
+    /// Every fault in it, in the order of the codes.
+    pub fn faults(self) -> impl Iterator<Item = Fault> {
+        Fault::ALL.into_iter().filter(move |fault| self.has(*fault))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Fault, FaultSet, Reaction};
+
+    #[test]
+    fn codes_follow_the_list_and_fit_into_the_bits() {
+        for (code, fault) in (1..).zip(Fault::ALL) {
+            assert_eq!(fault.code(), code);
+            assert!(code < 32);
+            let set = FaultSet::of(fault);
+            assert_eq!(set.faults().collect::<Vec<_>>(), [fault]);
+            assert_eq!(set.gravest(), Some(fault.reaction()));
+        }
+    }
+
+    #[test]
+    fn the_gravest_reaction_wins() {
+        let mut set = FaultSet::of(Fault::Unreachable);
+        assert_eq!(set.gravest(), Some(Reaction::Limit));
+        for fault in [Fault::Slack, Fault::OverTension, Fault::DriverFault] {
+            set.add(fault, true);
+            assert_eq!(set.gravest(), Some(fault.reaction()));
+        }
+    }
+}

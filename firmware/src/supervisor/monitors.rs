@@ -1,0 +1,90 @@
+//! What raises each fault that the sensors and the axes show.
+
+mod axis;
+mod timer;
+
+pub use axis::AxisView;
+
+use super::{Fault, FaultSet};
+use crate::control::{Measured, ticks};
+use crate::sensors::{CODE_MAX, Sensors};
+use crate::settings::Settings;
+use axis::AxisMonitor;
+use leg_model::Scalar;
+use timer::Timer;
+
+/// What the monitors look at.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a, T> {
+    /// What the sensors read.
+    pub sensors: &'a Sensors,
+    /// The same in SI.
+    pub measured: &'a Measured<T>,
+    /// The axes.
+    pub axes: [AxisView<T>; 3],
+    /// Whether the drivers are on.
+    pub driven: bool,
+    /// Whether every tendon should pull.
+    pub tensioned: bool,
+    /// What forward kinematics leaves over, m; none while the pose is not needed.
+    pub residual_m: Option<T>,
+}
+
+/// Codes this near to an end of the range are taken as saturated.
+const SATURATED: u16 = 64;
+
+/// Watches sensors and axes.
+#[derive(Clone, Copy, Debug)]
+pub struct Monitors<T> {
+    axes: [AxisMonitor<T>; 3],
+    residual: Timer,
+    residual_m: T,
+    supply_v: [T; 2],
+    temperature_c: T,
+}
+
+impl<T: Scalar> Monitors<T> {
+    /// With the limits of the settings.
+    pub fn new(settings: &Settings) -> Self {
+        let limits = &settings.limits;
+        Self {
+            axes: settings
+                .axes
+                .map(|axis| AxisMonitor::new(settings, axis.m_per_count)),
+            residual: Timer::new(ticks(limits.residual_time_s)),
+            residual_m: limits.residual_m.into(),
+            supply_v: [limits.supply_min_v.into(), limits.supply_max_v.into()],
+            temperature_c: limits.temperature_c.into(),
+        }
+    }
+
+    /// The faults of a tick.
+    #[inline(always)]
+    pub fn watch(&mut self, view: &View<'_, T>) -> FaultSet {
+        let (sensors, measured) = (view.sensors, view.measured);
+        let mut faults = FaultSet::NONE;
+        for (i, monitor) in self.axes.iter_mut().enumerate() {
+            monitor.watch(i, view, &mut faults);
+            let code = sensors.cell_codes[i];
+            let saturated = code < SATURATED || code > CODE_MAX - SATURATED;
+            faults.add(Fault::CellSaturated, saturated);
+            faults.add(Fault::DriverFault, sensors.driver_fault[i]);
+        }
+        let off = view
+            .residual_m
+            .is_some_and(|residual| !(residual <= self.residual_m));
+        faults.add(Fault::Residual, self.residual.over(off));
+        faults.add(
+            Fault::SupplyLow,
+            view.driven && !(measured.supply_v >= self.supply_v[0]),
+        );
+        faults.add(Fault::SupplyHigh, !(measured.supply_v <= self.supply_v[1]));
+        faults.add(
+            Fault::OverTemperature,
+            !(measured.temperature_c <= self.temperature_c),
+        );
+        faults.add(Fault::LateTick, sensors.late);
+        faults.add(Fault::EmergencyStop, sensors.emergency_stop);
+        faults
+    }
+}

@@ -1,0 +1,88 @@
+//! The states and the events that lead from one to another.
+
+use super::Reaction;
+use postcard_schema::Schema;
+use serde::{Deserialize, Serialize};
+
+/// What the leg is allowed to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[serde(rename_all = "snake_case")]
+pub enum State {
+    /// The first ticks: the sensors are read, nothing is driven.
+    Boot,
+    /// Ready; the drivers are off and the screws hold.
+    Disarmed,
+    /// The zero is looked for.
+    Homing,
+    /// Commands are followed.
+    Active,
+    /// The leg stays where it is, its tendons kept above the floor.
+    Held,
+    /// The tendons are let out until they barely pull.
+    RampingDown,
+    /// The drivers are off after a fault; the screws hold.
+    Off,
+}
+
+/// What happens to the leg.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// The first ticks are over.
+    Ready,
+    /// The host arms a leg that knows its zero.
+    Arm,
+    /// The host starts homing.
+    Home,
+    /// Homing has found the zero.
+    Homed,
+    /// The host stops the leg.
+    Stop,
+    /// The host disarms the leg.
+    Disarm,
+    /// Every tendon barely pulls.
+    Relaxed,
+    /// The last fault is cleared, the zero is not known.
+    Clear,
+    /// The last fault is cleared, the zero is known.
+    ClearHomed,
+    /// A fault asks for it.
+    Reaction(Reaction),
+}
+
+use Event::{Arm, Clear, ClearHomed, Disarm, Home, Homed, Ready, Relaxed, Stop};
+use State::{Active, Boot, Disarmed, Held, Homing, Off, RampingDown};
+
+impl State {
+    /// Every state.
+    pub const ALL: [Self; 7] = [Boot, Disarmed, Homing, Active, Held, RampingDown, Off];
+
+    /// The state after an event; none if the event means nothing here. This is the whole table.
+    #[must_use]
+    #[inline(always)]
+    pub const fn after(self, event: Event) -> Option<Self> {
+        Some(match (self, event) {
+            (Boot, Ready) => Disarmed,
+            (Disarmed, Arm) => Active,
+            (Disarmed, Home) => Homing,
+            (Homing, Homed) => Active,
+            (Homing | Active, Stop) => Held,
+            (Homing | Active | Held, Disarm) => RampingDown,
+            (RampingDown, Relaxed) => Disarmed,
+            (Held, ClearHomed) => Active,
+            (Held, Clear) => RampingDown,
+            (Off, Clear | ClearHomed) => Disarmed,
+            (Homing | Active, Event::Reaction(Reaction::Hold)) => Held,
+            (Homing | Active | Held, Event::Reaction(Reaction::RampDown)) => RampingDown,
+            (Off, Event::Reaction(_)) => return None,
+            (_, Event::Reaction(Reaction::GateOff)) => Off,
+            _ => return None,
+        })
+    }
+
+    /// Whether the drivers are on.
+    #[must_use]
+    #[inline(always)]
+    pub const fn driven(self) -> bool {
+        matches!(self, Homing | Active | Held | RampingDown)
+    }
+}

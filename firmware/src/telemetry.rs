@@ -1,0 +1,44 @@
+//! What the leg tells of itself.
+
+use crate::supervisor::{FaultSet, State};
+use postcard_schema::Schema;
+use serde::{Deserialize, Serialize};
+
+/// The leg after a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct Telemetry<T> {
+    /// Ticks since the start.
+    pub tick: u32,
+    /// What the leg may do.
+    pub state: State,
+    /// Faults that have not been cleared, or that limit now.
+    pub faults: FaultSet,
+    /// Whether the zero is known.
+    pub homed: bool,
+    /// Whether the trajectory is on its way.
+    pub moving: bool,
+    /// Where the leg shall point: horizontal components.
+    pub target: [T; 2],
+    /// Where it is estimated to point.
+    pub pose: [T; 2],
+    /// What forward kinematics leaves over, m.
+    pub residual_m: T,
+    /// Measured tensions, N.
+    pub tensions_n: [T; 3],
+    /// Tensions that the target asks for, N.
+    pub target_tensions_n: [T; 3],
+    /// How far each tendon is pulled in, m.
+    pub pulled_m: [T; 3],
+    /// How far each shall be, m.
+    pub reference_m: [T; 3],
+    /// Level of pretension of the target, N.
+    pub level_n: T,
+    /// Bending stiffness at the level that is asked for, N·m/rad.
+    pub stiffness_nm_per_rad: T,
+    /// The load beyond the leg's own weight, as a horizontal moment, N·m.
+    pub load_nm: [T; 2],
+    /// The payload that this would be, kg.
+    pub payload_kg: T,
+    /// Lengths of the tendons without tension when the board started, m.
+    pub unstretched_at_zero_m: [T; 3],
+}
