@@ -21,6 +21,7 @@ pub mod numeric;
 pub mod paper;
 mod paths;
 pub mod plain_vectors;
+pub mod plant;
 pub mod plot;
 pub mod precision;
 pub mod qemu;

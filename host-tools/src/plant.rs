@@ -1,0 +1,245 @@
+//! The simulated leg: rigid body, tendons, motors, gears, screws and sensors, as the board sees them through its raw
+//! interface.
+//!
+//! A step of the integration is symmetric and of second order: half a step of the ways, half of currents and speeds, a
+//! whole one of the leg's rotation, and the same halves back. Everything is f64, follows from the seed, and takes the
+//! same time and no allocation in every tick.
+
+mod advance;
+mod body;
+mod encoder;
+mod faults;
+mod leg;
+mod mechanism;
+mod motor;
+mod outside;
+mod screw;
+mod sensing;
+mod settings;
+mod start;
+mod supply;
+mod temperature;
+mod tendon_pull;
+mod truth;
+mod work;
+
+#[cfg(test)]
+mod tests;
+
+pub use faults::Fault;
+pub use settings::PlantSettings;
+pub use start::Start;
+pub use truth::{Energy, Truth};
+pub use work::Work;
+
+use crate::actuator::Actuator;
+use crate::rig_file::RigFile;
+use body::Body;
+use encoder::Encoder;
+use faults::Faults;
+use leg::Leg;
+use leg_firmware::sensors::{Sensors, TICK_HZ};
+use leg_model::{Error, Load, Quantity, Reason, Rig};
+use mechanism::Mechanism;
+use motor::{Motor, MotorType};
+use nalgebra::Vector3;
+use outside::{Payload, Push};
+use sensing::{Cells, code, code_around_none};
+use supply::Supply;
+use temperature::Temperature;
+use tendon_pull::RealTendon;
+
+/// A simulated leg with its actuators and sensors.
+#[derive(Clone, Debug)]
+pub struct Plant {
+    actuator: Actuator,
+    mechanism: Mechanism,
+    /// The leg without a payload.
+    bare: Body,
+    leg: Leg,
+    motor_type: MotorType,
+    motors: [Motor; 3],
+    supply: Supply,
+    temperature: Temperature,
+    encoders: [Encoder; 3],
+    cells: Cells,
+    faults: Faults,
+    emergency_stop: bool,
+    payload: Payload,
+    push: Push,
+    unstretched_at_zero_m: [f64; 3],
+    /// Tension of each tendon now, N.
+    tensions_n: [f64; 3],
+    work: Work,
+    ticks: u64,
+    substeps: u32,
+}
+
+/// Length of a tick, s.
+fn tick_s() -> f64 {
+    1.0 / f64::from(TICK_HZ)
+}
+
+impl Plant {
+    /// A leg at its start.
+    ///
+    /// # Errors
+    /// A rig without inertia; a start that the model refuses or at which a tension leaves the rig's bounds.
+    pub fn new(
+        rig: &RigFile,
+        actuator: &Actuator,
+        settings: &PlantSettings,
+        start: Start,
+        seed: u64,
+    ) -> Result<Self, Error> {
+        let bare = bare_body(rig, settings)?;
+        let mut mechanism = mechanism(rig, settings, bare)?;
+        let begun = start.begin(rig, &mechanism.rig, &mechanism.tendons)?;
+        mechanism.load = Load::new(&mechanism.rig, begun.payload_kg)?;
+        mechanism.body = bare.loaded(begun.payload_kg, mechanism.rig.tip_m());
+        let substeps = settings.substeps.max(1);
+        let mut plant = Self {
+            actuator: *actuator,
+            mechanism,
+            bare,
+            leg: begun.leg,
+            motor_type: MotorType::new(actuator, 0.5 * tick_s() / f64::from(substeps)),
+            motors: [Motor::new(actuator); 3],
+            supply: Supply {
+                open_v: actuator.supply_v,
+                resistance_ohm: settings.supply_resistance_ohm,
+            },
+            temperature: Temperature::new(settings.ambient_c),
+            encoders: [Encoder::default(); 3],
+            cells: Cells::new(actuator, settings, seed),
+            faults: Faults::default(),
+            emergency_stop: false,
+            payload: Payload::new(begun.payload_kg),
+            push: Push::default(),
+            unstretched_at_zero_m: begun.unstretched_m,
+            tensions_n: [0.0; 3],
+            work: Work::default(),
+            ticks: 0,
+            substeps,
+        };
+        plant.tensions_n = plant.tensions_n();
+        Ok(plant)
+    }
+
+    /// Reads every sensor.
+    pub fn sense(&mut self) -> Sensors {
+        let (actuator, faults) = (&self.actuator, self.faults);
+        let current_code =
+            |motor: Motor| code_around_none(motor.current_a, actuator.current_range_a);
+        Sensors {
+            encoder_counts: self.encoders.map(|encoder| encoder.counter),
+            cell_codes: self.cells.read(self.tensions_n, faults),
+            current_codes: self.motors.map(current_code),
+            supply_code: code(
+                self.supply.voltage_v(&self.motors),
+                [0.0, actuator.supply_range_v],
+            ),
+            temperature_code: code(self.temperature.now_c, actuator.temperature_range_c),
+            cell_fresh: faults.of_three(Fault::CellStale).map(|stale| !stale),
+            driver_fault: faults.of_three(Fault::DriverFault),
+            emergency_stop: self.emergency_stop,
+            late: faults.has(Fault::LateTicks),
+        }
+    }
+
+    /// Lets the payload at the tip change linearly to `target_kg` (at least zero) in `over_s`; 0 is at once.
+    pub fn set_payload(&mut self, target_kg: f64, over_s: f64) {
+        self.payload.set(target_kg, over_s);
+    }
+
+    /// Pushes at the tip for `over_s`, with a force in N in frame {A}; it ends an earlier push.
+    pub fn push(&mut self, force_n: [f64; 3], over_s: f64) {
+        self.push = Push::new(force_n, over_s);
+    }
+
+    /// Presses the emergency stop or lets it go. It only tells the controller, which has to switch the drivers off.
+    pub fn press_emergency_stop(&mut self, pressed: bool) {
+        self.emergency_stop = pressed;
+    }
+
+    /// Lets a fault begin or end.
+    pub fn set_fault(&mut self, fault: Fault, on: bool) {
+        self.faults.set(fault, on);
+        self.mechanism.cut = self.faults.of_three(Fault::TendonCut);
+        self.tensions_n = self.tensions_n();
+    }
+
+    /// Length of each tendon without tension when its encoder has counted to zero, m: what a perfect homing finds. The
+    /// play of the gear is then taken up as after pulling in.
+    #[must_use]
+    pub fn unstretched_at_zero_m(&self) -> [f64; 3] {
+        self.unstretched_at_zero_m
+    }
+
+    /// The state as it is.
+    #[must_use]
+    pub fn truth(&self) -> Truth {
+        Truth {
+            time_s: self.ticks as f64 * tick_s(),
+            direction: self.leg.direction,
+            torsion_rad: self.leg.torsion_rad,
+            rate_rad_per_s: self.leg.rate,
+            tip_m: self.mechanism.tip_m(&self.leg),
+            tensions_n: self.tensions_n,
+            unstretched_m: self.unstretched_m(),
+            payload_kg: self.payload.now_kg,
+            currents_a: self.motors.map(|motor| motor.current_a),
+            speeds_rad_per_s: self.motors.map(|motor| motor.speed),
+            supply_v: self.supply.voltage_v(&self.motors),
+            energy: self.energy(),
+            work: self.work,
+        }
+    }
+
+    fn energy(&self) -> Energy {
+        let (mechanism, leg) = (&self.mechanism, &self.leg);
+        let support = &mechanism.support;
+        Energy {
+            kinetic_j: mechanism.body.kinetic_j(&leg.direction, &leg.rate),
+            tendons_j: mechanism.springs_j(leg, self.unstretched_m()),
+            joint_j: support.joint_energy(&leg.direction, leg.torsion_rad),
+            weights_j: mechanism.load.energy(&leg.direction),
+        }
+    }
+
+    fn unstretched_m(&self) -> [f64; 3] {
+        std::array::from_fn(|i| self.unstretched_at_zero_m[i] - self.motors[i].screw.slider_m)
+    }
+}
+
+fn bare_body(rig: &RigFile, settings: &PlantSettings) -> Result<Body, Error> {
+    let body = Body {
+        transverse_kg_m2: settings.transverse_inertia_kg_m2(&rig.parameters),
+        axial_kg_m2: settings.leg_axial_inertia_kg_m2,
+    };
+    if body.transverse_kg_m2 > 0.0 && body.axial_kg_m2 > 0.0 {
+        return Ok(body);
+    }
+    Err(Error::Refused {
+        quantity: Quantity::LegMass,
+        reason: Reason::NotPositive,
+    })
+}
+
+/// Without a payload.
+fn mechanism(file: &RigFile, settings: &PlantSettings, body: Body) -> Result<Mechanism, Error> {
+    let [first, second, third] = &file.tendons;
+    let real = |tendon| RealTendon::new(tendon, settings.curve_error);
+    let rig = Rig::new(&file.parameters)?;
+    Ok(Mechanism {
+        rig,
+        support: file.support,
+        tendons: [real(first)?, real(second)?, real(third)?],
+        cut: [false; 3],
+        body,
+        load: Load::new(&rig, 0.0)?,
+        push_n: Vector3::zeros(),
+        joint_damping_nm_s_per_rad: settings.joint_damping_nm_s_per_rad,
+        tendon_damping_n_s_per_m: settings.tendon_damping_n_s_per_m,
+    })
+}

@@ -1,0 +1,50 @@
+//! An encoder and its counter.
+
+use std::f64::consts::TAU;
+
+/// What is wrong with an encoder.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct EncoderFault {
+    pub lost: bool,
+    pub slipping: bool,
+    pub reversed: bool,
+}
+
+/// The counter of one motor; it wraps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Encoder {
+    /// What it shows.
+    pub counter: u16,
+    /// Counts that passed its head.
+    passed: i64,
+    /// Counts since the last one that slipped, without their sign.
+    since_slip: i64,
+}
+
+impl Encoder {
+    /// Follows the rotor, whose angle since the start is `angle_rad`.
+    pub fn follow(&mut self, angle_rad: f64, counts_per_turn: f64, fault: EncoderFault) {
+        // Far below 2⁵³ counts.
+        let now = (angle_rad * (counts_per_turn / TAU)).floor() as i64;
+        let mut seen = now - self.passed;
+        self.passed = now;
+        if fault.slipping {
+            seen -= self.slipped(seen);
+        }
+        if fault.reversed {
+            seen = -seen;
+        }
+        if !fault.lost {
+            // The counter wraps: only the lowest bits of the sum matter.
+            self.counter = self.counter.wrapping_add(seen as u16);
+        }
+    }
+
+    /// How many of these counts slip.
+    fn slipped(&mut self, seen: i64) -> i64 {
+        self.since_slip += seen.abs();
+        let lost = self.since_slip / 10;
+        self.since_slip %= 10;
+        lost * seen.signum()
+    }
+}

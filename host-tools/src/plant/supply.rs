@@ -1,0 +1,34 @@
+//! The supply of all motors, which sags under their currents.
+
+use super::motor::{Motor, MotorType};
+
+/// A voltage behind a resistance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Supply {
+    /// Without a current, V.
+    pub open_v: f64,
+    pub resistance_ohm: f64,
+}
+
+impl Supply {
+    /// The voltage at the drivers, V.
+    pub fn voltage_v(&self, motors: &[Motor; 3]) -> f64 {
+        self.under(motors, motors.map(|motor| motor.current_a))
+    }
+
+    fn under(&self, motors: &[Motor; 3], currents_a: [f64; 3]) -> f64 {
+        let pairs = motors.iter().zip(currents_a);
+        let drawn: f64 = pairs.map(|(motor, current)| motor.drawn_a(current)).sum();
+        (self.open_v - self.resistance_ohm * drawn).max(0.0)
+    }
+
+    /// Takes the currents on by half a step, at the mean of the voltages before and after it.
+    pub fn drive(&self, motors: &mut [Motor; 3], kind: &MotorType) {
+        let before = self.voltage_v(motors);
+        let tried = motors.map(|motor| motor.next_current_a(kind, before));
+        let mean = 0.5 * (before + self.under(motors, tried));
+        for motor in motors {
+            motor.current_a = motor.next_current_a(kind, mean);
+        }
+    }
+}
