@@ -1,6 +1,10 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+mod actuators;
 mod energy;
+mod faults;
+mod order;
+mod pendulum;
 mod rest;
 
 use super::{Plant, PlantSettings, Start};
