@@ -2,8 +2,8 @@
 //! interface.
 //!
 //! A step of the integration is symmetric and of second order: half a step of the ways, half of currents and speeds, a
-//! whole one of the leg's rotation, and the same halves back. Everything is f64, follows from the seed, and takes the
-//! same time and no allocation in every tick.
+//! whole one of the leg's rotation, and the same halves back. Everything is f64 and follows from the seed, and no tick
+//! allocates.
 
 mod advance;
 mod body;

@@ -4,6 +4,7 @@ mod actuators;
 mod cells;
 mod energy;
 mod faults;
+mod momentum;
 mod order;
 mod pendulum;
 mod rest;
