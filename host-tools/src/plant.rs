@@ -2,17 +2,19 @@
 //! interface.
 //!
 //! A step of the integration is symmetric and of second order: half a step of the ways, half of currents and speeds, a
-//! whole one of the leg's rotation, and the same halves back. Everything is f64, follows from the seed, and takes the
-//! same time and no allocation in every tick.
+//! whole one of the leg's rotation, and the same halves back. Everything is f64 and follows from the seed, and no tick
+//! allocates.
 
 mod advance;
 mod body;
+mod build;
 mod encoder;
 mod faults;
 mod leg;
 mod mechanism;
 mod motor;
 mod outside;
+mod scene;
 mod screw;
 mod sensing;
 mod settings;
@@ -33,21 +35,17 @@ pub use truth::{Energy, Truth};
 pub use work::Work;
 
 use crate::actuator::Actuator;
-use crate::rig_file::RigFile;
 use body::Body;
 use encoder::Encoder;
 use faults::Faults;
 use leg::Leg;
 use leg_firmware::sensors::{Sensors, TICK_HZ};
-use leg_model::{Error, Load, Quantity, Reason, Rig};
 use mechanism::Mechanism;
 use motor::{Motor, MotorType};
-use nalgebra::Vector3;
 use outside::{Payload, Push};
 use sensing::{Cells, code, code_around_none};
 use supply::Supply;
 use temperature::Temperature;
-use tendon_pull::RealTendon;
 
 /// A simulated leg with its actuators and sensors.
 #[derive(Clone, Debug)]
@@ -81,51 +79,6 @@ fn tick_s() -> f64 {
 }
 
 impl Plant {
-    /// A leg at its start.
-    ///
-    /// # Errors
-    /// A rig without inertia; a start that the model refuses or at which a tension leaves the rig's bounds.
-    pub fn new(
-        rig: &RigFile,
-        actuator: &Actuator,
-        settings: &PlantSettings,
-        start: Start,
-        seed: u64,
-    ) -> Result<Self, Error> {
-        let bare = bare_body(rig, settings)?;
-        let mut mechanism = mechanism(rig, settings, bare)?;
-        let begun = start.begin(rig, &mechanism.rig, &mechanism.tendons)?;
-        mechanism.load = Load::new(&mechanism.rig, begun.payload_kg)?;
-        mechanism.body = bare.loaded(begun.payload_kg, mechanism.rig.tip_m());
-        let substeps = settings.substeps.max(1);
-        let mut plant = Self {
-            actuator: *actuator,
-            mechanism,
-            bare,
-            leg: begun.leg,
-            motor_type: MotorType::new(actuator, 0.5 * tick_s() / f64::from(substeps)),
-            motors: [Motor::new(actuator); 3],
-            supply: Supply {
-                open_v: actuator.supply_v,
-                resistance_ohm: settings.supply_resistance_ohm,
-            },
-            temperature: Temperature::new(settings.ambient_c),
-            encoders: [Encoder::default(); 3],
-            cells: Cells::new(actuator, settings, seed),
-            faults: Faults::default(),
-            emergency_stop: false,
-            payload: Payload::new(begun.payload_kg),
-            push: Push::default(),
-            unstretched_at_zero_m: begun.unstretched_m,
-            tensions_n: [0.0; 3],
-            work: Work::default(),
-            ticks: 0,
-            substeps,
-        };
-        plant.tensions_n = plant.tensions_n();
-        Ok(plant)
-    }
-
     /// Reads every sensor.
     pub fn sense(&mut self) -> Sensors {
         let (actuator, faults) = (&self.actuator, self.faults);
@@ -164,9 +117,11 @@ impl Plant {
 
     /// Lets a fault begin or end.
     pub fn set_fault(&mut self, fault: Fault, on: bool) {
+        let before_j = self.energy().tendons_j;
         self.faults.set(fault, on);
         self.mechanism.cut = self.faults.of_three(Fault::TendonCut);
-        self.tensions_n = self.tensions_n();
+        self.work.cut_j += before_j - self.energy().tendons_j;
+        self.tensions_n = self.pulls_n();
     }
 
     /// Length of each tendon without tension when its encoder has counted to zero, m: what a perfect homing finds. The
@@ -210,36 +165,4 @@ impl Plant {
     fn unstretched_m(&self) -> [f64; 3] {
         std::array::from_fn(|i| self.unstretched_at_zero_m[i] - self.motors[i].screw.slider_m)
     }
-}
-
-fn bare_body(rig: &RigFile, settings: &PlantSettings) -> Result<Body, Error> {
-    let body = Body {
-        transverse_kg_m2: settings.transverse_inertia_kg_m2(&rig.parameters),
-        axial_kg_m2: settings.leg_axial_inertia_kg_m2,
-    };
-    if body.transverse_kg_m2 > 0.0 && body.axial_kg_m2 > 0.0 {
-        return Ok(body);
-    }
-    Err(Error::Refused {
-        quantity: Quantity::LegMass,
-        reason: Reason::NotPositive,
-    })
-}
-
-/// Without a payload.
-fn mechanism(file: &RigFile, settings: &PlantSettings, body: Body) -> Result<Mechanism, Error> {
-    let [first, second, third] = &file.tendons;
-    let real = |tendon| RealTendon::new(tendon, settings.curve_error);
-    let rig = Rig::new(&file.parameters)?;
-    Ok(Mechanism {
-        rig,
-        support: file.support,
-        tendons: [real(first)?, real(second)?, real(third)?],
-        cut: [false; 3],
-        body,
-        load: Load::new(&rig, 0.0)?,
-        push_n: Vector3::zeros(),
-        joint_damping_nm_s_per_rad: settings.joint_damping_nm_s_per_rad,
-        tendon_damping_n_s_per_m: settings.tendon_damping_n_s_per_m,
-    })
 }

@@ -3,6 +3,7 @@
 use super::encoder::EncoderFault;
 use super::faults::Fault;
 use super::motor::Wiring;
+use super::scene::Scene;
 use super::{Plant, Work, tick_s};
 use leg_firmware::drive::Drive;
 use leg_model::Load;
@@ -23,7 +24,7 @@ impl Plant {
         self.cells.drift(tick_s(), self.faults);
         let heating = self.faults.has(Fault::Overheating);
         self.temperature.advance(tick_s(), heating);
-        self.tensions_n = self.tensions_n();
+        self.tensions_n = self.pulls_n();
         self.ticks += 1;
     }
 
@@ -92,7 +93,7 @@ impl Plant {
         }
     }
 
-    fn kick_motors(&mut self, scene: &super::mechanism::Scene) {
+    fn kick_motors(&mut self, scene: &Scene) {
         let sliders = self.motors.map(|motor| motor.slider_m_per_s());
         let pulls = self.mechanism.pulls_n(scene, &self.leg.rate, sliders);
         for (motor, pull) in self.motors.iter_mut().zip(pulls) {
@@ -122,7 +123,7 @@ impl Plant {
     }
 
     /// Tension of each tendon now, N.
-    pub(super) fn tensions_n(&self) -> [f64; 3] {
+    pub(super) fn pulls_n(&self) -> [f64; 3] {
         let scene = self.mechanism.scene(&self.leg, self.unstretched_m());
         let sliders = self.motors.map(|motor| motor.slider_m_per_s());
         self.mechanism.pulls_n(&scene, &self.leg.rate, sliders)

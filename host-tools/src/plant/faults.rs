@@ -58,9 +58,26 @@ impl Fault {
 
     /// A bit of its own; none for one of more than three.
     fn bit(self) -> u64 {
-        Self::all()
-            .position(|fault| fault == self)
-            .map_or(0, |place| 1 << place)
+        let (kind, which) = match self {
+            Self::TendonCut(i) => (0, i),
+            Self::CellStuck(i) => (1, i),
+            Self::CellSaturated(i) => (2, i),
+            Self::CellStale(i) => (3, i),
+            Self::CellDrifting(i) => (4, i),
+            Self::EncoderLost(i) => (5, i),
+            Self::EncoderSlipping(i) => (6, i),
+            Self::EncoderReversed(i) => (7, i),
+            Self::MotorJammed(i) => (8, i),
+            Self::DriverFault(i) => (9, i),
+            Self::SupplySag => (10, 0),
+            Self::Overheating => (10, 1),
+            Self::LateTicks => (10, 2),
+        };
+        if which < 3 {
+            1 << (3 * kind + which)
+        } else {
+            0
+        }
     }
 }
 

@@ -1,9 +1,8 @@
-//! The moments on the leg, and its change of rotation under them.
+//! The parts of the leg that stay as they are, with what it carries.
 
-use super::body::{Body, Guided};
+use super::body::Body;
 use super::leg::Leg;
 use super::tendon_pull::RealTendon;
-use super::work::Work;
 use leg_model::{Kinematics, Load, Rig, Support, inverse_kinematics};
 use nalgebra::{SMatrix, Vector3};
 
@@ -24,46 +23,7 @@ pub(super) struct Mechanism {
     pub tendon_damping_n_s_per_m: f64,
 }
 
-/// The mechanism at one posture and with one length of each tendon.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Scene {
-    guided: Guided,
-    /// Moment of a unit pull of each tendon, m.
-    moment_map: SMatrix<f64, 3, 3>,
-    /// Whether each tendon is stretched.
-    taut: [bool; 3],
-    /// Tension of each tendon without its damping, N.
-    springs_n: [f64; 3],
-    /// Moment of everything that does not depend on the rotation's rate, but the tendons, N·m.
-    steady_nm: Vector3<f64>,
-    tip_m: Vector3<f64>,
-}
-
 impl Mechanism {
-    pub fn scene(&self, leg: &Leg, unstretched_m: [f64; 3]) -> Scene {
-        let kinematics = self.kinematics(leg);
-        let elongations = self.elongations_m(&kinematics, unstretched_m);
-        let taut = elongations.map(|elongation| elongation > 0.0);
-        let spring = |i: usize| {
-            if taut[i] {
-                self.tendons[i].tension_n(elongations[i])
-            } else {
-                0.0
-            }
-        };
-        let tip_m = self.tip_m(leg);
-        Scene {
-            guided: Guided::new(&self.body, &self.support, &leg.direction),
-            moment_map: kinematics.moment_map,
-            taut,
-            springs_n: std::array::from_fn(spring),
-            steady_nm: self.load.moment(&leg.direction)
-                + tip_m.cross(&self.push_n)
-                + self.support.joint_moment(&leg.direction, leg.torsion_rad),
-            tip_m,
-        }
-    }
-
     /// From the joint centre to the tip, m.
     pub fn tip_m(&self, leg: &Leg) -> Vector3<f64> {
         leg.direction.vector() * self.rig.tip_m()
@@ -79,7 +39,11 @@ impl Mechanism {
     }
 
     /// Elongation of each tendon, m; a slack or cut one has zero or less.
-    fn elongations_m(&self, kinematics: &Kinematics<f64, 3>, unstretched_m: [f64; 3]) -> [f64; 3] {
+    pub fn elongations_m(
+        &self,
+        kinematics: &Kinematics<f64, 3>,
+        unstretched_m: [f64; 3],
+    ) -> [f64; 3] {
         std::array::from_fn(|i| {
             if self.cut[i] {
                 0.0
@@ -90,69 +54,11 @@ impl Mechanism {
     }
 
     /// Lengths and moments of the tendons. The stop keeps the leg away from where a tendon has no length.
-    fn kinematics(&self, leg: &Leg) -> Kinematics<f64, 3> {
+    pub fn kinematics(&self, leg: &Leg) -> Kinematics<f64, 3> {
         let geometry = leg.geometry(self.rig.geometry(), &self.support);
         inverse_kinematics(&geometry, &leg.direction).unwrap_or(Kinematics {
             lengths: nalgebra::SVector::zeros(),
             moment_map: SMatrix::zeros(),
         })
-    }
-
-    /// Turns the leg faster or slower for `span_s` by the midpoint rule, with sliders that pull in at a speed (m/s).
-    pub fn kick(
-        &self,
-        leg: &mut Leg,
-        scene: &Scene,
-        sliders_m_per_s: [f64; 3],
-        span_s: f64,
-    ) -> Work {
-        let half = leg.rate + self.acceleration(scene, &leg.rate, sliders_m_per_s) * (0.5 * span_s);
-        leg.rate += self.acceleration(scene, &half, sliders_m_per_s) * span_s;
-        self.work(scene, &half, sliders_m_per_s, span_s)
-    }
-
-    fn acceleration(&self, scene: &Scene, rate: &Vector3<f64>, sliders: [f64; 3]) -> Vector3<f64> {
-        let pulls = Vector3::from(self.pulls_n(scene, rate, sliders));
-        let damping = rate * self.joint_damping_nm_s_per_rad;
-        let moment = scene.steady_nm + scene.moment_map * pulls - damping;
-        scene.guided.acceleration(rate, &moment)
-    }
-
-    /// Tension of each tendon with its damping, N, while the leg turns at `rate` rad/s.
-    pub fn pulls_n(
-        &self,
-        scene: &Scene,
-        rate: &Vector3<f64>,
-        sliders_m_per_s: [f64; 3],
-    ) -> [f64; 3] {
-        std::array::from_fn(|i| {
-            if !scene.taut[i] {
-                return 0.0;
-            }
-            let stretching = sliders_m_per_s[i] + scene.lengthening_m_per_s(i, rate);
-            (scene.springs_n[i] + self.tendon_damping_n_s_per_m * stretching).max(0.0)
-        })
-    }
-
-    fn work(&self, scene: &Scene, rate: &Vector3<f64>, sliders: [f64; 3], span_s: f64) -> Work {
-        let pulls = self.pulls_n(scene, rate, sliders);
-        let mut work = Work {
-            joint_damping_j: self.joint_damping_nm_s_per_rad * rate.norm_squared() * span_s,
-            push_j: rate.cross(&scene.tip_m).dot(&self.push_n) * span_s,
-            ..Work::default()
-        };
-        for i in 0..3 {
-            let stretching = sliders[i] + scene.lengthening_m_per_s(i, rate);
-            work.tendon_damping_j += (pulls[i] - scene.springs_n[i]) * stretching * span_s;
-            work.sliders_j += pulls[i] * sliders[i] * span_s;
-        }
-        work
-    }
-}
-
-impl Scene {
-    /// How fast the leg lengthens the way of a tendon, m/s.
-    fn lengthening_m_per_s(&self, tendon: usize, rate: &Vector3<f64>) -> f64 {
-        -self.moment_map.column(tendon).dot(rate)
     }
 }

@@ -1,6 +1,6 @@
 //! How a real tendon pulls: by its curve, and beyond the curve's end in a straight line.
 
-use leg_model::{Elasticity, Error, Tendon};
+use leg_model::{Elasticity, Error, Quantity, Reason, Tendon};
 
 /// Tension up to which a tendon of constant stiffness is asked, N.
 const CONSTANT_END_N: f64 = 1e6;
@@ -23,8 +23,15 @@ pub(super) struct RealTendon {
 
 impl RealTendon {
     /// # Errors
-    /// What the curve refuses at its own end.
+    /// A tendon that does not stretch, by an error of −1 or less; what the curve refuses at its own end.
     pub fn new(tendon: &Tendon<f64>, curve_error: f64) -> Result<Self, Error> {
+        let scale = 1.0 + curve_error;
+        if !(scale.is_finite() && scale > 0.0) {
+            return Err(Error::Refused {
+                quantity: Quantity::Elongation,
+                reason: Reason::NotPositive,
+            });
+        }
         let end_n = match tendon {
             Tendon::Constant(_) => CONSTANT_END_N,
             Tendon::Curve(curve) => curve.tension_max_n(),
@@ -32,7 +39,7 @@ impl RealTendon {
         let end_m = tendon.elongation(end_n)?;
         Ok(Self {
             tendon: *tendon,
-            scale: 1.0 + curve_error,
+            scale,
             end_m,
             end_n,
             end_n_per_m: tendon.stiffness(end_n)?,

@@ -1,7 +1,14 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+mod actuators;
+mod cells;
 mod energy;
+mod faults;
+mod momentum;
+mod order;
+mod pendulum;
 mod rest;
+mod tendons;
 
 use super::{Plant, PlantSettings, Start};
 use crate::actuator::Actuator;

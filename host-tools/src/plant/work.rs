@@ -17,6 +17,8 @@ pub struct Work {
     pub tendon_damping_j: f64,
     /// Lost in blows on the stop.
     pub stop_j: f64,
+    /// Lost with tendons that were cut.
+    pub cut_j: f64,
 }
 
 impl Work {
@@ -26,10 +28,10 @@ impl Work {
         self.sliders_j + self.push_j + self.payload_j - self.lost_j()
     }
 
-    /// What became heat, J.
+    /// What the leg lost, J.
     #[must_use]
     pub fn lost_j(&self) -> f64 {
-        self.joint_damping_j + self.tendon_damping_j + self.stop_j
+        self.joint_damping_j + self.tendon_damping_j + self.stop_j + self.cut_j
     }
 }
 
@@ -41,5 +43,6 @@ impl AddAssign for Work {
         self.joint_damping_j += other.joint_damping_j;
         self.tendon_damping_j += other.tendon_damping_j;
         self.stop_j += other.stop_j;
+        self.cut_j += other.cut_j;
     }
 }
