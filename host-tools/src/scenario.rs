@@ -1,0 +1,168 @@
+//! A scenario: how a simulated leg starts, what is done to it, and what must come out.
+
+mod step;
+
+pub use step::{Quantity, Step};
+
+use crate::control_settings::Gains;
+use crate::failure::{Failure, Place};
+use crate::plant::{PlantSettings, Start};
+use crate::ready_scenarios;
+use serde::Deserialize;
+use std::path::Path;
+
+/// A scenario as its file describes it.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scenario {
+    /// One sentence: what it shows.
+    pub title: String,
+    /// Seed of the noise.
+    #[serde(default)]
+    pub seed: u64,
+    /// The rig unless the command names another: a ready rig.
+    #[serde(default = "table_1")]
+    pub rig: String,
+    /// How the leg is at first.
+    #[serde(default)]
+    start: StartText,
+    /// What the simulated leg is beside its rig.
+    #[serde(default)]
+    plant: PlantText,
+    /// Gains and limits that differ from their defaults.
+    #[serde(default)]
+    pub control: Gains,
+    /// What happens, one after the other.
+    pub steps: Vec<Step>,
+}
+
+fn table_1() -> String {
+    "table1".into()
+}
+
+/// How the leg starts. Held, it knows its zero; slack, it has to be homed.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+enum StartText {
+    Slack {
+        slack_mm: f64,
+    },
+    Held {
+        azimuth_deg: f64,
+        tilt_deg: f64,
+        level_n: f64,
+        payload_kg: f64,
+    },
+}
+
+impl Default for StartText {
+    fn default() -> Self {
+        Self::Held {
+            azimuth_deg: 0.0,
+            tilt_deg: 0.0,
+            level_n: 70.0,
+            payload_kg: 0.0,
+        }
+    }
+}
+
+/// What the simulated leg is beside its rig; zero what is left out, but for the cells' offsets and noise.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct PlantText {
+    cell_gain_error_percent: [f64; 3],
+    cell_offset_n: [f64; 3],
+    cell_noise_n: f64,
+    curve_error_percent: f64,
+}
+
+impl Default for PlantText {
+    fn default() -> Self {
+        let plant = PlantSettings::DEFAULT;
+        Self {
+            cell_gain_error_percent: [0.0; 3],
+            cell_offset_n: [0.0; 3],
+            cell_noise_n: plant.cell_noise_n,
+            curve_error_percent: 0.0,
+        }
+    }
+}
+
+impl Scenario {
+    /// The scenario of a file or, where there is no such file, the ready one of that name.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the place.
+    pub fn load(path: &Path) -> Result<Self, Failure> {
+        let name = path.display().to_string();
+        match std::fs::read_to_string(path) {
+            Ok(text) => Self::parse(&name, &text),
+            Err(error) => match ready_scenarios::named(&name) {
+                Some(ready) => Self::parse(&format!("scenarios/{name}.toml"), ready.text),
+                None => Err(Failure::refused(
+                    format!("cannot read the scenario {name}: {error}"),
+                    &format!("give a file, or one of: {}", ready_scenarios::names()),
+                )),
+            },
+        }
+    }
+
+    /// The text of a scenario; `file` is its name in messages.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the place.
+    pub fn parse(file: &str, text: &str) -> Result<Self, Failure> {
+        toml::from_str(text).map_err(|error| {
+            let place = Place {
+                file: file.into(),
+                text: text.into(),
+                span: error.span().unwrap_or(0..0),
+            };
+            Failure::refused_at(
+                error.message().to_string(),
+                "see the ready scenarios for what there is",
+                place,
+            )
+        })
+    }
+
+    /// How the leg starts.
+    #[must_use]
+    pub fn start(&self) -> Start {
+        match self.start {
+            StartText::Slack { slack_mm } => Start::Slack {
+                slack_m: slack_mm / 1000.0,
+            },
+            StartText::Held {
+                azimuth_deg,
+                tilt_deg,
+                level_n,
+                payload_kg,
+            } => Start::Held {
+                azimuth_deg,
+                tilt_deg,
+                level_n,
+                payload_kg,
+            },
+        }
+    }
+
+    /// Whether the leg has to be homed.
+    #[must_use]
+    pub fn starts_slack(&self) -> bool {
+        matches!(self.start, StartText::Slack { .. })
+    }
+
+    /// What the simulated leg is beside its rig.
+    #[must_use]
+    pub fn plant(&self) -> PlantSettings {
+        let text = self.plant;
+        PlantSettings {
+            cell_gain_error: text.cell_gain_error_percent.map(|percent| percent / 100.0),
+            cell_offset_n: text.cell_offset_n,
+            cell_noise_n: text.cell_noise_n,
+            curve_error: text.curve_error_percent / 100.0,
+            ..PlantSettings::DEFAULT
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! A controller and a simulated leg in lock-step, with a shadow of the whole control law in f64 beside them.
+
+mod controller;
+mod divergence;
+mod extremes;
+mod outcome;
+mod script;
+mod stage;
+
+pub use controller::{Controller, ControllerError, InThisProcess, OnLink};
+pub use divergence::Divergence;
+pub use outcome::{Finding, Sample, SimulationError, Summary};
+
+use crate::actuator::Actuator;
+use crate::control_settings;
+use crate::plant::Plant;
+use crate::rig_file::RigFile;
+use crate::scenario::Scenario;
+use leg_firmware::drive::Drive;
+use leg_firmware::leg::Leg;
+use leg_firmware::sensors::{Sensors, TICK_HZ};
+use leg_firmware::settings::Settings;
+use leg_firmware::telemetry::Telemetry;
+use script::Script;
+use stage::Stage;
+
+/// Longest simulation, s.
+const LONGEST_S: f64 = 600.0;
+
+/// What is known of one tick.
+#[derive(Debug)]
+pub struct Tick<'a> {
+    /// What the sensors read.
+    pub sensors: &'a Sensors,
+    /// The bytes from the host.
+    pub link: &'a [u8],
+    /// What the controller asks of the motors.
+    pub drive: &'a Drive<f32>,
+    /// What it tells.
+    pub telemetry: &'a Telemetry<f32>,
+}
+
+/// A scenario on a rig, ready to run.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    scenario: Scenario,
+    rig: RigFile,
+    plant: Plant,
+    settings: Settings,
+}
+
+impl Simulation {
+    /// Puts a leg together.
+    ///
+    /// # Errors
+    /// A start that the model refuses.
+    pub fn new(scenario: &Scenario, rig: &RigFile) -> Result<Self, SimulationError> {
+        let actuator = Actuator::default();
+        let plant = Plant::new(
+            rig,
+            &actuator,
+            &scenario.plant(),
+            scenario.start(),
+            scenario.seed,
+        )
+        .map_err(SimulationError::Start)?;
+        let zero = (!scenario.starts_slack()).then(|| plant.unstretched_at_zero_m());
+        Ok(Self {
+            settings: control_settings::settings(rig, &actuator, &scenario.control, zero),
+            scenario: scenario.clone(),
+            rig: *rig,
+            plant,
+        })
+    }
+
+    /// The settings that the controller gets.
+    #[must_use]
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Runs to the end of the scenario and calls `watch` after each tick.
+    ///
+    /// # Errors
+    /// A [`SimulationError`]: settings or a link that fail, a step that never ends.
+    pub fn run(
+        self,
+        controller: &mut dyn Controller,
+        watch: &mut dyn FnMut(&Tick<'_>),
+    ) -> Result<Summary, SimulationError> {
+        let mut shadow = Leg::<f64>::new(&self.settings).map_err(SimulationError::Settings)?;
+        controller.start(&self.settings)?;
+        let mut stage = Stage::new(&self.rig, self.plant, self.scenario.seed);
+        let mut script = Script::new(&self.scenario.steps);
+        let mut divergence = Divergence::default();
+        while let Some(step) = script.advance(&mut stage)? {
+            if stage.time_s() > LONGEST_S {
+                return Err(SimulationError::Endless { step });
+            }
+            let sensors = stage.plant.sense();
+            let link = stage.outgoing();
+            let (drive, telemetry) = controller.tick(&sensors, &link)?;
+            let shadow_drive = shadow.tick(&sensors, &link);
+            divergence.compare(&drive, &telemetry, &shadow_drive, &shadow.telemetry());
+            watch(&Tick {
+                sensors: &sensors,
+                link: &link,
+                drive: &drive,
+                telemetry: &telemetry,
+            });
+            stage.step(&drive, &telemetry);
+        }
+        Ok(stage.summary(script.findings(), divergence))
+    }
+}
+
+/// Time of a tick, s.
+#[must_use]
+pub fn tick_s() -> f64 {
+    1.0 / f64::from(TICK_HZ)
+}

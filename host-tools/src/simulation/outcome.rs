@@ -1,0 +1,106 @@
+//! What came out of a simulation.
+
+use super::{ControllerError, Divergence};
+use leg_firmware::settings::SettingsError;
+use leg_firmware::telemetry::Telemetry;
+use serde::Serialize;
+
+/// Why a simulation came to no end.
+#[derive(Debug, thiserror::Error)]
+pub enum SimulationError {
+    /// The leg cannot start so.
+    #[error("the leg cannot start as the scenario says: {0}")]
+    Start(leg_model::Error),
+    /// The settings are refused.
+    #[error("the settings are refused: {0}")]
+    Settings(SettingsError),
+    /// The controller failed.
+    #[error(transparent)]
+    Controller(#[from] ControllerError),
+    /// A step did not end in time.
+    #[error("step {step}: {what} did not come within {timeout_s} s; the leg is {state}")]
+    Timeout {
+        /// The step, counted from 1.
+        step: usize,
+        /// What was waited for.
+        what: String,
+        /// s.
+        timeout_s: f64,
+        /// What the leg was doing, and its faults.
+        state: String,
+    },
+    /// It takes too long.
+    #[error(
+        "step {step} is not over after ten minutes of the leg's time; make the scenario shorter"
+    )]
+    Endless {
+        /// The step, counted from 1.
+        step: usize,
+    },
+    /// A command has no form.
+    #[error("a command cannot be sent: {0}")]
+    Command(leg_firmware::frame::FrameError),
+}
+
+/// One measured value.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Finding {
+    /// What it is.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Lowest and highest value.
+    pub between: [f64; 2],
+    /// Time in the scenario, s.
+    pub at_s: f64,
+}
+
+impl Finding {
+    /// Whether the value is where it must be.
+    #[must_use]
+    pub fn held(&self) -> bool {
+        (self.between[0]..=self.between[1]).contains(&self.value)
+    }
+}
+
+/// The leg at a time, for plots.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// s.
+    pub time_s: f64,
+    /// Distance of the true tip from its target, mm.
+    pub tip_error_mm: f64,
+    /// True tensions, N.
+    pub tensions_n: [f64; 3],
+    /// True payload, kg.
+    pub payload_kg: f64,
+    /// What the leg tells.
+    pub telemetry: Telemetry<f32>,
+}
+
+/// What came out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// What was measured.
+    pub findings: Vec<Finding>,
+    /// Ticks.
+    pub ticks: u64,
+    /// Lowest and highest true tension over all ticks, N.
+    pub tension_range_n: [f64; 2],
+    /// Against the shadow in f64.
+    pub divergence: Divergence,
+    /// Every fault in the order in which it was first seen, with the time, s.
+    pub faults: Vec<(leg_firmware::supervisor::Fault, f64)>,
+    /// The leg at 500 Hz.
+    pub samples: Vec<Sample>,
+}
+
+impl Summary {
+    /// Whether every value is where it must be.
+    #[must_use]
+    pub fn held(&self) -> bool {
+        self.findings.iter().all(Finding::held)
+    }
+}
