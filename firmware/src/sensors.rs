@@ -9,7 +9,7 @@ pub const CODE_MAX: u16 = 16 * 4095;
 /// Ticks of the control law in a second.
 pub const TICK_HZ: u16 = 8_000;
 
-/// One reading of every sensor.
+/// One reading of every sensor, and what the board knows of itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Sensors {
     /// Encoder counters of the motors; they wrap. A count up pulls the tendon in.
@@ -30,4 +30,6 @@ pub struct Sensors {
     pub emergency_stop: bool,
     /// Whether the last tick ended too late.
     pub late: bool,
+    /// Whether the stored settings were not whole at the start, so that others are used.
+    pub settings_corrupt: bool,
 }

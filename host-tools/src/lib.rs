@@ -32,6 +32,7 @@ pub mod rig_convert;
 pub mod rig_file;
 pub mod rig_show;
 pub mod rounding;
+pub mod run_charts;
 pub mod scenario;
 pub mod setup;
 pub mod simulation;

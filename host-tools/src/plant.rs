@@ -73,6 +73,9 @@ pub struct Plant {
     substeps: u32,
 }
 
+/// What a faulty current sensor shows too much, A.
+const CURRENT_OFFSET_A: f64 = 10.0;
+
 /// Length of a tick, s.
 fn tick_s() -> f64 {
     1.0 / f64::from(TICK_HZ)
@@ -82,12 +85,15 @@ impl Plant {
     /// Reads every sensor.
     pub fn sense(&mut self) -> Sensors {
         let (actuator, faults) = (&self.actuator, self.faults);
-        let current_code =
-            |motor: Motor| code_around_none(motor.current_a, actuator.current_range_a);
+        let offset = faults.of_three(Fault::CurrentOffset);
+        let current_code = |i: usize| {
+            let off = if offset[i] { CURRENT_OFFSET_A } else { 0.0 };
+            code_around_none(self.motors[i].current_a + off, actuator.current_range_a)
+        };
         Sensors {
             encoder_counts: self.encoders.map(|encoder| encoder.counter),
             cell_codes: self.cells.read(self.tensions_n, faults),
-            current_codes: self.motors.map(current_code),
+            current_codes: std::array::from_fn(current_code),
             supply_code: code(
                 self.supply.voltage_v(&self.motors),
                 [0.0, actuator.supply_range_v],
@@ -97,6 +103,7 @@ impl Plant {
             driver_fault: faults.of_three(Fault::DriverFault),
             emergency_stop: self.emergency_stop,
             late: faults.has(Fault::LateTicks),
+            settings_corrupt: faults.has(Fault::SettingsCorrupt),
         }
     }
 

@@ -16,7 +16,39 @@ macro_rules! ready {
 }
 
 /// Every ready scenario; the first is the default.
-pub const READY_SCENARIOS: &[ReadyScenario] = ready!["fig9"];
+pub const READY_SCENARIOS: &[ReadyScenario] = ready![
+    "fig9",
+    "homing",
+    "tour",
+    "stiffness",
+    "payload",
+    "fault_bad_frame",
+    "fault_cell_saturated",
+    "fault_cell_stale",
+    "fault_cell_stuck",
+    "fault_command_timeout",
+    "fault_current_disagrees",
+    "fault_driver_fault",
+    "fault_emergency_stop",
+    "fault_encoder_reversed",
+    "fault_encoder_still",
+    "fault_following",
+    "fault_homing_failed",
+    "fault_infeasible",
+    "fault_jam",
+    "fault_late_tick",
+    "fault_over_current",
+    "fault_over_temperature",
+    "fault_over_tension",
+    "fault_pose_lost",
+    "fault_residual",
+    "fault_settings_corrupt",
+    "fault_slack",
+    "fault_supply_high",
+    "fault_supply_low",
+    "fault_tension_jump",
+    "fault_unreachable"
+];
 
 /// The ready scenario of a name.
 #[must_use]

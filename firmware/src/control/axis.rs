@@ -7,6 +7,9 @@ use super::{
 use crate::settings::Settings;
 use leg_model::Scalar;
 
+/// What is left of the integral after a tick at rest.
+const RESTING_DECAY: f32 = 0.99;
+
 /// Where a motor shall be led.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisGoal<T> {
@@ -41,6 +44,7 @@ struct Gains<T> {
     duty_max: T,
     speed_max: T,
     dead_band_m: T,
+    still_step_m: T,
     track_position: T,
     track_speed: T,
     per_band_n: T,
@@ -75,6 +79,7 @@ impl<T: Scalar> Axis<T> {
             duty_max: servo.duty_max.into(),
             speed_max: servo.speed_m_per_s.into(),
             dead_band_m: servo.dead_band_m.into(),
+            still_step_m: T::from(0.01 * servo.dead_band_m),
             track_position: tracking.into(),
             // Critically damped.
             track_speed: T::from(0.25 * tracking * tracking / TICK_S),
@@ -147,7 +152,7 @@ impl<T: Scalar> Axis<T> {
         let gains = &self.gains;
         self.reference_m += self.step_m;
         let error = self.reference_m - input.pulled_m;
-        let resting = self.step_m == T::zero() && error.abs() <= gains.dead_band_m;
+        let resting = self.step_m.abs() <= gains.still_step_m && error.abs() <= gains.dead_band_m;
         let wanted = if resting {
             T::zero()
         } else {
@@ -167,10 +172,11 @@ impl<T: Scalar> Axis<T> {
         let low = most(induced - gains.current_v, -supply);
         let voltage = most(least(asked, high), low);
         // The integral grows only while its voltage is applied, and while there is something to make up for.
-        let held = resting
-            || (asked > high && missing > T::zero())
-            || (asked < low && missing < T::zero());
-        if !held {
+        let held = (asked > high && missing > T::zero()) || (asked < low && missing < T::zero());
+        if resting {
+            // The screw holds by itself: nothing need be kept up.
+            self.integral_v *= T::from(RESTING_DECAY);
+        } else if !held {
             self.integral_v += gains.integral * missing;
         }
         self.voltage_v = voltage;

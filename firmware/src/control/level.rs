@@ -129,7 +129,8 @@ impl<T: Scalar> Level<T> {
         } else {
             within(error / slope, T::from(STEP_N))
         };
-        self.level_n = least(most(level + step, lowest), highest);
-        self.unreachable = !met && self.level_n == level;
+        let wanted = level + step;
+        self.level_n = least(most(wanted, lowest), highest);
+        self.unreachable = wanted < lowest || wanted > highest;
     }
 }

@@ -52,8 +52,9 @@ impl<T: Scalar> Limits<T> {
     #[inline(always)]
     pub fn shortest_s(&self, start: &Motion<T>, end: [T; 2]) -> T {
         let (x, y) = (end[0] - start.position[0], end[1] - start.position[1]);
-        // The fastest place of a way from rest to rest is at 15/8 of the average.
-        let s = (x * x + y * y).sqrt() * T::from(1.875) / self.rate;
+        // The fastest place of a way from rest to rest is at 15/8 of the average. A little more, so that rounding does
+        // not decide.
+        let s = (x * x + y * y).sqrt() * T::from(1.89) / self.rate;
         if s > T::from(0.02) { s } else { T::from(0.02) }
     }
 }

@@ -40,6 +40,9 @@ pub struct Targets<T> {
     trim_n: T,
     trim_gain: T,
     trim_max_n: T,
+    /// Part of the load that is held, 0 to 1, and how much that changes in a cycle.
+    share: T,
+    share_step: T,
     torsion: Torsion<T>,
 }
 
@@ -48,8 +51,12 @@ pub struct Targets<T> {
 pub struct Wish<T> {
     /// The pose.
     pub q: HalfTangent<T>,
-    /// The load beyond the leg's own weight, as a horizontal moment; none to leave all weights out.
-    pub excess_nm: Option<[T; 2]>,
+    /// The load beyond the leg's own weight, as a horizontal moment, N·m.
+    pub excess_nm: [T; 2],
+    /// Whether the weights shall be held, or left out.
+    pub compensated: bool,
+    /// Whether the tensions tell how the level is to be trimmed: not before every tendon pulls.
+    pub trimmed: bool,
     /// The level of pretension, N.
     pub level_n: T,
 }
@@ -63,14 +70,17 @@ impl<T: Scalar> Targets<T> {
             trim_n: T::zero(),
             trim_gain: T::from(CYCLE_S / settings.estimation.trim_time_s),
             trim_max_n: settings.estimation.trim_max_n.into(),
+            share: T::zero(),
+            share_step: T::from(CYCLE_S / settings.motion.load_time_s),
             torsion: Torsion::new(),
         }
     }
 
-    /// Starts from a level, N.
-    pub fn start(&mut self, level_n: T) {
+    /// Starts from a level, N, with the load held or left out.
+    pub fn start(&mut self, level_n: T, compensated: bool) {
         self.level_n = level_n;
         self.trim_n = T::zero();
+        self.share = if compensated { T::one() } else { T::zero() };
     }
 
     /// The torsion that the last target has, rad.
@@ -96,9 +106,9 @@ impl<T: Scalar> Targets<T> {
         let kinematics = inverse_kinematics(&mechanism.geometry(&direction, torsion), &direction)?;
         let plane = mechanism.support.plane(&direction);
         let mut moment = mechanism.support.joint_moment(&direction, torsion);
-        if let Some([x, y]) = wish.excess_nm {
-            moment += mechanism.leg.moment(&direction) + Vector3::new(x, y, T::zero());
-        }
+        let [x, y] = wish.excess_nm;
+        let load = mechanism.leg.moment(&direction) + Vector3::new(x, y, T::zero());
+        moment += load * self.step_share(wish.compensated);
         let distribution = distribute(&kinematics.moment_map, &plane, &moment, &mechanism.bounds)?;
         if !distribution.feasible() {
             return Err(Error::Infeasible);
@@ -109,7 +119,7 @@ impl<T: Scalar> Targets<T> {
             let third = (kinematics.moment_map * tensions + moment).dot(&plane.normal());
             self.torsion.step(third);
         }
-        let trimmed = if wish.excess_nm.is_some() {
+        let trimmed = if wish.trimmed {
             self.trim(&distribution, measured_n)
         } else {
             T::zero()
@@ -129,8 +139,17 @@ impl<T: Scalar> Targets<T> {
             level_n: self.level_n,
             tensions_n,
             unstretched_m,
-            limited: limited || !(trimmed.abs() < self.trim_max_n),
+            limited: limited || (wish.trimmed && !(trimmed.abs() < self.trim_max_n)),
         })
+    }
+
+    /// Moves the part of the load that is held, and gives it smoothed, so that the leg does not swing.
+    #[inline(always)]
+    fn step_share(&mut self, compensated: bool) -> T {
+        let wanted = if compensated { T::one() } else { T::zero() };
+        let share = self.share + within(wanted - self.share, self.share_step);
+        self.share = share;
+        share * share * (T::from(3.0) - T::TWO * share)
     }
 
     /// Moves the level towards the wish, inside what the bounds allow; tells whether they hold it back.

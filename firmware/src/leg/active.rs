@@ -32,7 +32,7 @@ impl<T: Scalar> Leg<T> {
     /// Estimates pose and load. While the tendons come up from slack there is no load to be told.
     #[inline(always)]
     fn track(&mut self, zero_m: &[T; 3], measured: &Measured<T>) -> Result<(), Error> {
-        let frozen = self.compensation != Compensation::Estimated || !self.tensioned;
+        let frozen = self.compensation == Compensation::Frozen || !self.tensioned;
         if !self.tensioned {
             let floor_n = self.mechanism.floor_n;
             let tensions_n = &measured.steady_tensions_n;
@@ -74,20 +74,27 @@ impl<T: Scalar> Leg<T> {
 
     #[inline(never)]
     fn aim(&mut self, zero_m: &[T; 3], measured: &Measured<T>) -> Result<(), Error> {
-        let compensated = self.compensation != Compensation::Off;
         let wish = Wish {
             q: self.trajectory.next(),
-            excess_nm: compensated.then(|| self.estimator.excess_nm()),
+            excess_nm: self.estimator.excess_nm(),
+            compensated: self.compensation != Compensation::Off,
+            trimmed: self.compensation == Compensation::Estimated && self.tensioned,
             level_n: self.level.level_n(),
         };
         let target = self
             .targets
             .next(&self.mechanism, &wish, &measured.steady_tensions_n)?;
+        // Slack tendons come taut gently.
+        let speed_m_per_s = if self.tensioned {
+            self.limits.servo_m_per_s
+        } else {
+            self.limits.ramp_m_per_s
+        };
         let per_ticks = T::one() / T::from(f32::from(CYCLE_TICKS));
         for (i, axis) in self.axes.iter_mut().enumerate() {
             let goal = AxisGoal {
                 pulled_m: zero_m[i] - target.unstretched_m[i],
-                speed_m_per_s: self.limits.servo_m_per_s,
+                speed_m_per_s,
             };
             axis.lead(&goal, per_ticks);
         }

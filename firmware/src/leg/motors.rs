@@ -1,6 +1,7 @@
 //! What the motors do in each state, and what a change of state begins.
 
 use super::Leg;
+use crate::command::Compensation;
 use crate::control::{AxisGoal, AxisInput, Homing, Measured};
 use crate::drive::Drive;
 use crate::supervisor::{Event, State};
@@ -28,7 +29,8 @@ impl<T: Scalar> Leg<T> {
     fn begin_here(&mut self, measured: &Measured<T>) {
         let [a, b, c] = measured.tensions_n;
         let level_n = (a + b + c) * T::from(1.0 / 3.0);
-        self.targets.start(level_n);
+        let compensated = self.compensation != Compensation::Off;
+        self.targets.start(level_n, compensated);
         self.trajectory
             .start(self.estimator.direction().half_tangent());
         self.tensioned = false;

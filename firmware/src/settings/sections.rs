@@ -13,6 +13,8 @@ section! {
         jerk_rad_per_s3: 0.01..=1e5 = 100.0;
         /// Fastest change of the level of pretension, N/s.
         level_rate_n_per_s: 0.1..=1e4 = 120.0;
+        /// Time in which the compensation of the load comes and goes, s.
+        load_time_s: 1e-3..=60.0 = 0.6;
     }
 }
 
@@ -76,9 +78,9 @@ section! {
         /// A change of a tension within a millisecond that is a fault, N.
         jump_n: 0.1..=1e4 = 25.0;
         /// The most that forward kinematics may leave over, m.
-        residual_m: 1e-7..=0.1 = 3e-4;
+        residual_m: 1e-7..=0.1 = 1.5e-4;
         /// It is a fault after this time, s.
-        residual_time_s: 1.25e-4..=10.0 = 0.01;
+        residual_time_s: 1.25e-4..=10.0 = 0.1;
         /// A load cell whose code has not changed for this time is stuck, s.
         stuck_time_s: 1.25e-4..=10.0 = 0.02;
         /// A load cell whose code is not fresh for this time is stale, s.
@@ -120,15 +122,15 @@ section! {
         /// How far every tendon is let out first, m.
         release_m: 0.0..=0.5 = 0.004;
         /// Speed of letting out and taking up, m/s.
-        speed_m_per_s: 1e-5..=0.1 = 0.02;
+        speed_m_per_s: 1e-5..=0.1 = 0.01;
         /// Time in which the slack load cells are averaged, s.
         tare_time_s: 1e-3..=10.0 = 0.25;
         /// Tension at which a tendon is taken as taut, N.
         touch_n: 0.1..=100.0 = 2.0;
         /// Time that the leg is given to come to rest then, s.
-        settle_time_s: 1e-3..=60.0 = 0.6;
+        settle_time_s: 1e-3..=60.0 = 1.0;
         /// Time in which tension and position are averaged, s.
-        average_time_s: 1e-3..=60.0 = 0.3;
+        average_time_s: 1e-3..=60.0 = 0.7;
         /// Highest tension while homing, N.
         ceiling_n: 0.1..=1e3 = 15.0;
         /// Farthest that a tendon is taken up, m.

@@ -85,6 +85,7 @@ impl<T: Scalar> Monitors<T> {
         );
         faults.add(Fault::LateTick, sensors.late);
         faults.add(Fault::EmergencyStop, sensors.emergency_stop);
+        faults.add(Fault::SettingsCorrupt, sensors.settings_corrupt);
         faults
     }
 }

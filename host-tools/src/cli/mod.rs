@@ -9,6 +9,7 @@ mod curve_report;
 mod eval;
 mod evaluator;
 mod export;
+mod faults;
 mod map;
 mod map_report;
 mod paper;
@@ -47,6 +48,7 @@ enum Command {
     Curve(curve::Args),
     Eval(eval::Args),
     Export(export::Args),
+    Faults(faults::Args),
     Map(map::Args),
     Paper(paper::Args),
     Rig(rig::Args),
@@ -67,6 +69,7 @@ pub fn main() -> ExitCode {
         Command::Curve(args) => curve::run(args),
         Command::Eval(args) => eval::run(args, cli.verbose),
         Command::Export(args) => export::run(args),
+        Command::Faults(args) => faults::run(args),
         Command::Map(args) => map::run(args),
         Command::Paper(args) => paper::run(args),
         Command::Rig(args) => rig::run(args),

@@ -11,3 +11,13 @@ pub(super) fn bar(length: u64, steps: &str) -> ProgressBar {
         Err(_) => bar,
     }
 }
+
+/// A sign of life for work of unknown length, named by what it counts.
+pub(super) fn spinner(steps: &str) -> ProgressBar {
+    let template = format!("{{spinner}} {{pos}} {steps}, {{per_sec}}");
+    let bar = ProgressBar::new_spinner();
+    match ProgressStyle::with_template(&template) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}

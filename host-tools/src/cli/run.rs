@@ -2,33 +2,40 @@
 
 use super::run_report::Report;
 use super::{board, print, progress};
-use crate::experiment::{self, BOUND_PERCENT, Fig9};
 use crate::failure::Failure;
+use crate::image;
+use crate::qemu::Clock;
 use crate::rig_file::RigFile;
-use crate::{image, plot};
+use crate::run_charts;
+use crate::scenario::Scenario;
+use crate::simulation::{Controller, InThisProcess, OnLink, Simulation, SimulationError, Summary};
 use clap::ValueEnum;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
-/// Lets the firmware evaluate the paper's Fig. 9 experiment, and sets it beside the paper and the model in f64.
+/// Lets the firmware drive a simulated leg through a scenario, and says whether what must come out came out.
 ///
-/// The leg leans along azimuth 30° from one edge of the workspace to the other, with 0, 0.5, 1 and 2 kg at the tip.
+/// The firmware sees encoder counts, codes and flags alone, as on the board. Beside it the same control law runs in f64.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Where the firmware runs.
     #[arg(long, value_enum, default_value_t = On::Qemu)]
     on: On,
-    /// The rig file; the paper's rig if left out. Only that is compared with the paper.
+    /// A scenario file or the name of a ready one; the paper's Fig. 9 if left out.
+    #[arg(long, value_name = "FILE", default_value = "fig9")]
+    scenario: PathBuf,
+    /// The rig file or the name of a ready rig; the scenario's own if left out.
     #[arg(long, value_name = "FILE")]
     rig: Option<PathBuf>,
-    /// The folder for fig9.svg and fig9.png; target/leg-run in the workspace if left out.
+    /// The folder for the charts; target/leg-run in the workspace if left out.
     #[arg(long, value_name = "DIR")]
     plots: Option<PathBuf>,
-    /// Prints JSON with every pose instead of a table.
+    /// Prints JSON instead of a table.
     #[arg(long)]
     json: bool,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum On {
     /// On an emulated Cortex-M4F.
     Qemu,
@@ -36,43 +43,87 @@ enum On {
     Sim,
 }
 
+impl On {
+    const fn words(self) -> &'static str {
+        match self {
+            Self::Qemu => "under QEMU",
+            Self::Sim => "in this process",
+        }
+    }
+}
+
 /// Runs the command.
 ///
 /// # Errors
-/// A [`Failure`]: a rig file or link that is refused, plots that cannot be written, or maxima that miss the paper's.
+/// A [`Failure`]: a scenario, rig or link that is refused, charts that cannot be written, or a value that is not where it
+/// must be.
 pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
-    let rig = RigFile::load(args.rig.as_deref())?;
-    let (mut link, place) = match args.on {
-        On::Qemu => (board::qemu(verbose)?, "under QEMU"),
-        On::Sim => (board::in_process()?, "in this process"),
+    let scenario = Scenario::load(&args.scenario)?;
+    let rig_name = args
+        .rig
+        .clone()
+        .unwrap_or_else(|| scenario.rig.clone().into());
+    let rig = RigFile::load(Some(&rig_name))?;
+    let started = Instant::now();
+    let summary = match args.on {
+        On::Sim => simulate(&scenario, &rig, &mut InThisProcess::default())?,
+        On::Qemu => {
+            let mut link = board::qemu_with(Clock::Normal, verbose)?;
+            simulate(&scenario, &rig, &mut OnLink::new(link.as_mut(), false))?
+        }
     };
-    let progress = progress::bar(experiment::pose_count(), "poses");
-    let measured = Fig9::measure(&rig, link.as_mut(), || progress.inc(1));
-    progress.finish_and_clear();
-    let fig9 = measured.map_err(|error| Failure::from_error(&error))?;
-    let plot = draw(&fig9, place, &folder(args))?;
+    let seconds = started.elapsed().as_secs_f64();
+    let plots = draw(&scenario, &summary, &folder(args))?;
     let report = Report {
-        rig: &rig,
-        place,
-        fig9: &fig9,
-        plot: &plot,
+        scenario: &scenario,
+        place: args.on.words(),
+        summary: &summary,
+        ticks_per_s: summary.ticks as f64 / seconds,
+        plots: &plots,
     };
     print(&if args.json {
         report.json()?
     } else {
         report.table()
     })?;
-    judge(&fig9)
+    judge(&summary)
 }
 
-fn judge(fig9: &Fig9) -> Result<(), Failure> {
-    if fig9.held() {
+fn simulate(
+    scenario: &Scenario,
+    rig: &RigFile,
+    controller: &mut dyn Controller,
+) -> Result<Summary, Failure> {
+    let bar = progress::spinner("ticks");
+    let result = Simulation::new(scenario, rig)
+        .and_then(|simulation| simulation.run(controller, &mut |_| bar.inc(1)));
+    bar.finish_and_clear();
+    result.map_err(|error| failure(&error))
+}
+
+fn failure(error: &SimulationError) -> Failure {
+    match error {
+        SimulationError::Timeout { .. } => Failure::missed(
+            error.to_string(),
+            "see what the leg was doing in the charts of a shorter scenario",
+        ),
+        _ => Failure::from_error(error),
+    }
+}
+
+fn judge(summary: &Summary) -> Result<(), Failure> {
+    if summary.held() {
         return Ok(());
     }
-    let sentence = format!("a maximum is more than {BOUND_PERCENT} % off the paper's");
+    let missed: Vec<_> = summary
+        .findings
+        .iter()
+        .filter(|finding| !finding.held())
+        .collect();
+    let names: Vec<_> = missed.iter().map(|finding| finding.name.as_str()).collect();
     Err(Failure::missed(
-        sentence,
-        "compare the model and the rig with what the paper used",
+        format!("not where it must be: {}", names.join("; ")),
+        "look at the charts, then at the scenario's bounds",
     ))
 }
 
@@ -82,37 +133,9 @@ fn folder(args: &Args) -> PathBuf {
         .unwrap_or_else(|| image::workspace_root().join("target/leg-run"))
 }
 
-fn draw(fig9: &Fig9, place: &str, folder: &Path) -> Result<PathBuf, Failure> {
-    let title = format!("Fig. 9: deviation of the tip, firmware in f32 {place}");
-    plot::save_both(&fig9.chart(title), &folder.join("fig9")).map_err(|error| {
-        let sentence = format!("no plots in {}: {error}", folder.display());
+fn draw(scenario: &Scenario, summary: &Summary, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    run_charts::save(&scenario.title, &summary.samples, folder).map_err(|error| {
+        let sentence = format!("no charts in {}: {error}", folder.display());
         Failure::refused(sentence, "name another folder with --plots")
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::judge;
-    use crate::experiment::{Curve, Fig9};
-    use crate::failure::Failure;
-
-    fn fig9(max_mm: f64) -> Fig9 {
-        let curve = Curve {
-            paper_max_mm: Some(2.0),
-            firmware_mm: vec![max_mm],
-            host_mm: vec![max_mm],
-            ..Curve::default()
-        };
-        Fig9 {
-            azimuth_deg: 30.0,
-            tilts_deg: vec![30.0],
-            curves: vec![curve],
-        }
-    }
-
-    #[test]
-    fn a_maximum_beyond_the_bound_ends_with_exit_code_1() {
-        assert!(judge(&fig9(2.02)).is_ok());
-        assert!(matches!(judge(&fig9(2.1)), Err(Failure::Missed(_))));
-    }
 }

@@ -1,64 +1,92 @@
 //! What `leg run` prints.
 
-use crate::experiment::{Curve, Fig9};
 use crate::failure::Failure;
 use crate::paths::from_here;
-use crate::rig_file::RigFile;
+use crate::scenario::Scenario;
+use crate::simulation::{Finding, Summary, tick_s};
 use serde::Serialize;
-use std::path::Path;
+use std::path::PathBuf;
 
 const HEADING: &str = "\
-payload   paper max   firmware f32 max   host f64 max   off the paper
-     kg          mm                 mm             mm               %
+   time     value  unit          lowest   highest            what
 ";
 
 /// Everything that `leg run` found.
 pub(super) struct Report<'a> {
-    pub(super) rig: &'a RigFile,
+    pub(super) scenario: &'a Scenario,
     /// Where the firmware ran.
     pub(super) place: &'static str,
-    pub(super) fig9: &'a Fig9,
-    /// The SVG file; the PNG file is beside it.
-    pub(super) plot: &'a Path,
+    pub(super) summary: &'a Summary,
+    pub(super) ticks_per_s: f64,
+    /// The SVG files; the PNG files are beside them.
+    pub(super) plots: &'a [PathBuf],
 }
 
 impl Report<'_> {
     /// A table for people.
     pub(super) fn table(&self) -> String {
-        let edge = self.rig.tilt_deg;
         let title = format!(
-            "Fig. 9: firmware {}, azimuth {}°, tilt -{edge}° to {edge}°, level {} N, {}\n\n",
+            "{}\nFirmware {}, {:.1} s of the leg's time\n\n",
+            self.scenario.title,
             self.place,
-            self.fig9.azimuth_deg,
-            self.rig.level_n,
-            self.rig.stiffness_words(),
+            self.time_s()
         );
-        let rows: String = self.fig9.curves.iter().map(row).collect();
+        let rows: String = self.summary.findings.iter().map(row).collect();
         title + HEADING + &rows + &self.remarks()
     }
 
+    fn time_s(&self) -> f64 {
+        self.summary.ticks as f64 * tick_s()
+    }
+
     fn remarks(&self) -> String {
-        let other_rig = "\nThe paper's maxima are left out: this is not the paper's rig.\n";
-        let paper = if self.rig.is_table_1() { "" } else { other_rig };
-        let difference = self.fig9.largest_difference_mm();
+        let summary = self.summary;
+        let [lowest, highest] = summary.tension_range_n;
+        let faults: Vec<String> = summary
+            .faults
+            .iter()
+            .map(|(fault, at_s)| format!("{} ({at_s:.3} s)", fault.entry().name))
+            .collect();
+        let faults = if faults.is_empty() {
+            "none".into()
+        } else {
+            faults.join(", ")
+        };
+        let plots: String = self
+            .plots
+            .iter()
+            .map(|path| format!("Chart: {} (and .png)\n", from_here(path).display()))
+            .collect();
         format!(
-            "{paper}\nLargest difference between f32 and f64: {difference:.1e} mm\nPlot: {} (and .png)\n",
-            from_here(self.plot).display(),
+            "\nTensions: {lowest:.1} to {highest:.1} N\nFaults: {faults}\n{}{} ticks, {:.0} a second\n{plots}",
+            divergence(summary),
+            summary.ticks,
+            self.ticks_per_s,
         )
     }
 
     /// One line of JSON for machines.
     pub(super) fn json(&self) -> Result<String, Failure> {
+        let summary = self.summary;
         let report = JsonReport {
-            experiment: "fig9",
+            title: &self.scenario.title,
             firmware: self.place,
-            level_n: self.rig.level_n,
-            stiffness_at_level_n_per_m: self.rig.stiffnesses_n_per_m(),
-            fig9: self.fig9,
-            maxima: self.fig9.curves.iter().map(Maxima::of).collect(),
-            largest_difference_mm: self.fig9.largest_difference_mm(),
-            held: self.fig9.held(),
-            plot: self.plot,
+            ticks: summary.ticks,
+            ticks_per_s: self.ticks_per_s,
+            tension_range_n: summary.tension_range_n,
+            findings: &summary.findings,
+            faults: summary
+                .faults
+                .iter()
+                .map(|(fault, at_s)| JsonFault {
+                    code: fault.code(),
+                    name: fault.entry().name,
+                    at_s: *at_s,
+                })
+                .collect(),
+            divergence: &summary.divergence,
+            held: summary.held(),
+            plots: self.plots,
         };
         match serde_json::to_string(&report) {
             Ok(json) => Ok(json + "\n"),
@@ -67,52 +95,46 @@ impl Report<'_> {
     }
 }
 
-fn row(curve: &Curve) -> String {
-    let paper = curve
-        .paper_max_mm
-        .map_or("-".into(), |max| format!("{max:.1}"));
-    let off = curve
-        .off_paper_percent()
-        .map_or("-".into(), |percent| format!("{percent:+.2}"));
+fn divergence(summary: &Summary) -> String {
+    let divergence = &summary.divergence;
     format!(
-        "{:7.1}   {paper:>9}   {:16.3}   {:12.3}   {off:>13}\n",
-        curve.payload_kg,
-        curve.firmware_max_mm(),
-        curve.host_max_mm(),
+        "Largest difference between f32 and its shadow in f64: duty {:.1e}, pull {:.1e} mm, pose {:.1e}; {} ticks in another state\n",
+        divergence.duty,
+        divergence.reference_m * 1000.0,
+        divergence.pose,
+        divergence.other_state,
+    )
+}
+
+fn row(finding: &Finding) -> String {
+    let [lowest, highest] = finding.between;
+    format!(
+        "{:6.2} s {:9.4}  {:<8} {lowest:11.4} {highest:9.4}   {}   {}\n",
+        finding.at_s,
+        finding.value,
+        finding.unit,
+        if finding.held() { "held  " } else { "missed" },
+        finding.name,
     )
 }
 
 #[derive(Serialize)]
 struct JsonReport<'a> {
-    experiment: &'static str,
-    firmware: &'static str,
-    level_n: f64,
-    stiffness_at_level_n_per_m: [f64; 3],
-    #[serde(flatten)]
-    fig9: &'a Fig9,
-    maxima: Vec<Maxima>,
-    largest_difference_mm: f64,
+    title: &'a str,
+    firmware: &'a str,
+    ticks: u64,
+    ticks_per_s: f64,
+    tension_range_n: [f64; 2],
+    findings: &'a [Finding],
+    faults: Vec<JsonFault>,
+    divergence: &'a crate::simulation::Divergence,
     held: bool,
-    plot: &'a Path,
+    plots: &'a [PathBuf],
 }
 
 #[derive(Serialize)]
-struct Maxima {
-    payload_kg: f64,
-    paper_mm: Option<f64>,
-    firmware_mm: f64,
-    host_mm: f64,
-    off_paper_percent: Option<f64>,
-}
-
-impl Maxima {
-    fn of(curve: &Curve) -> Self {
-        Self {
-            payload_kg: curve.payload_kg,
-            paper_mm: curve.paper_max_mm,
-            firmware_mm: curve.firmware_max_mm(),
-            host_mm: curve.host_max_mm(),
-            off_paper_percent: curve.off_paper_percent(),
-        }
-    }
+struct JsonFault {
+    code: u8,
+    name: &'static str,
+    at_s: f64,
 }

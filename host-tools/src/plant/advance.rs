@@ -11,6 +11,9 @@ use leg_model::Load;
 /// The supply when it sags, V.
 const SAGGED_V: f64 = 11.0;
 
+/// A supply that surges, V.
+const SURGED_V: f64 = 32.0;
+
 impl Plant {
     /// Advances by one tick under a drive.
     pub fn step(&mut self, drive: &Drive<f32>) {
@@ -46,6 +49,8 @@ impl Plant {
         }
         self.supply.open_v = if self.faults.has(Fault::SupplySag) {
             SAGGED_V
+        } else if self.faults.has(Fault::SupplySurge) {
+            SURGED_V
         } else {
             self.actuator.supply_v
         };

@@ -25,18 +25,24 @@ pub enum Fault {
     EncoderReversed(#[serde(with = "from_one")] usize),
     /// A motor does not turn.
     MotorJammed(#[serde(with = "from_one")] usize),
+    /// A motor's current shows 10 A too much.
+    CurrentOffset(#[serde(with = "from_one")] usize),
     /// A driver reports a fault and switches its motor off.
     DriverFault(#[serde(with = "from_one")] usize),
     /// The supply falls to 11 V.
     SupplySag,
+    /// The supply rises to 32 V.
+    SupplySurge,
     /// The drivers heat up by 20 K in a second.
     Overheating,
     /// Every tick ends too late.
     LateTicks,
+    /// The board's stored settings are not whole.
+    SettingsCorrupt,
 }
 
 /// Kinds of faults that strike one of three.
-const KINDS: [fn(usize) -> Fault; 10] = [
+const KINDS: [fn(usize) -> Fault; 11] = [
     Fault::TendonCut,
     Fault::CellStuck,
     Fault::CellSaturated,
@@ -46,6 +52,7 @@ const KINDS: [fn(usize) -> Fault; 10] = [
     Fault::EncoderSlipping,
     Fault::EncoderReversed,
     Fault::MotorJammed,
+    Fault::CurrentOffset,
     Fault::DriverFault,
 ];
 
@@ -53,7 +60,13 @@ impl Fault {
     /// Every fault.
     pub fn all() -> impl Iterator<Item = Self> {
         let of_three = KINDS.into_iter().flat_map(|kind| (0..3).map(kind));
-        of_three.chain([Self::SupplySag, Self::Overheating, Self::LateTicks])
+        of_three.chain([
+            Self::SupplySag,
+            Self::SupplySurge,
+            Self::Overheating,
+            Self::LateTicks,
+            Self::SettingsCorrupt,
+        ])
     }
 
     /// A bit of its own; none for one of more than three.
@@ -68,10 +81,13 @@ impl Fault {
             Self::EncoderSlipping(i) => (6, i),
             Self::EncoderReversed(i) => (7, i),
             Self::MotorJammed(i) => (8, i),
-            Self::DriverFault(i) => (9, i),
-            Self::SupplySag => (10, 0),
-            Self::Overheating => (10, 1),
-            Self::LateTicks => (10, 2),
+            Self::CurrentOffset(i) => (9, i),
+            Self::DriverFault(i) => (10, i),
+            Self::SupplySag => (11, 0),
+            Self::SupplySurge => (11, 1),
+            Self::Overheating => (11, 2),
+            Self::LateTicks => (12, 0),
+            Self::SettingsCorrupt => (12, 1),
         };
         if which < 3 {
             1 << (3 * kind + which)
@@ -93,10 +109,15 @@ impl fmt::Display for Fault {
             Self::EncoderSlipping(i) => write!(f, "encoder {} loses every tenth count", i + 1),
             Self::EncoderReversed(i) => write!(f, "encoder {} counts the wrong way", i + 1),
             Self::MotorJammed(i) => write!(f, "motor {} is jammed", i + 1),
+            Self::CurrentOffset(i) => {
+                write!(f, "the current of motor {} shows 10 A too much", i + 1)
+            }
             Self::DriverFault(i) => write!(f, "driver {} reports a fault", i + 1),
             Self::SupplySag => write!(f, "the supply falls to 11 V"),
             Self::Overheating => write!(f, "the drivers heat up by 20 K/s"),
+            Self::SupplySurge => write!(f, "the supply rises to 32 V"),
             Self::LateTicks => write!(f, "every tick ends too late"),
+            Self::SettingsCorrupt => write!(f, "the stored settings are not whole"),
         }
     }
 }

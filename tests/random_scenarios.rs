@@ -1,0 +1,171 @@
+//! Random scenarios: whatever comes, no number is lost, no tendon is pulled above the ceiling, and nothing re-arms.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use fastrand::Rng;
+use leg_firmware::supervisor::{FaultSet, State};
+use leg_host_tools::plant::Fault;
+use leg_host_tools::rig_file::RigFile;
+use leg_host_tools::scenario::Scenario;
+use leg_host_tools::simulation::{InThisProcess, Simulation, Tick};
+use std::fmt::Write;
+use std::path::Path;
+
+/// How many are tried. Each is made from its number alone: `run(number)` replays it.
+const SCENARIOS: u64 = 1000;
+
+/// No motor pulls a tendon beyond this, N: the ceiling of the rig, and what the leg's own swing adds.
+const CEILING_N: f64 = 150.0 * 1.05;
+
+/// What has to hold in every tick.
+#[derive(Default)]
+struct Watch {
+    faulty: bool,
+    complaint: Option<String>,
+}
+
+impl Watch {
+    fn look(&mut self, tick: &Tick<'_>) {
+        let telemetry = tick.telemetry;
+        let sound = tick.drive.duty.iter().all(|duty| duty.abs() <= 1.0);
+        let numbers = [telemetry.pose, telemetry.target].concat();
+        if !sound || !numbers.iter().all(|number| number.is_finite()) {
+            self.complain(tick, "a number is lost");
+        }
+        let driven = matches!(telemetry.state, State::Active | State::Homing);
+        if self.faulty && driven {
+            self.complain(tick, "the leg re-armed by itself");
+        }
+        if !telemetry.state.driven() && tick.drive.enabled {
+            self.complain(tick, "the drivers are on");
+        }
+        self.faulty |= telemetry.faults.without_limits() != FaultSet::NONE;
+    }
+
+    fn complain(&mut self, tick: &Tick<'_>, what: &str) {
+        if self.complaint.is_none() {
+            self.complaint = Some(format!(
+                "{what} in tick {}: {:?}",
+                tick.telemetry.tick, tick.telemetry
+            ));
+        }
+    }
+}
+
+/// A scenario as text, so that one that fails can be kept as a file. It has no `clear`.
+fn text(seed: u64) -> String {
+    let mut rng = Rng::with_seed(seed);
+    let mut text = format!(
+        "title = \"random scenario {seed}\"\nseed = {seed}\nsteps = [\n    {{ wait_s = 0.01 }},\n    \"arm\",\n"
+    );
+    for _ in 0..rng.u32(3..12) {
+        writeln!(
+            text,
+            "    {},\n    {{ wait_s = {} }},",
+            step(&mut rng),
+            rng.f64() * 0.3
+        )
+        .unwrap();
+    }
+    let (azimuth, tilt, payload) = (360.0 * rng.f64(), 30.0 * rng.f64(), 2.0 * rng.f64());
+    let noise = 0.3 * rng.f64();
+    write!(
+        text,
+        "]\n\n[start.held]\nazimuth_deg = {azimuth}\ntilt_deg = {tilt}\nlevel_n = 70\npayload_kg = {payload}\n\n[plant]\ncell_noise_n = {noise}\n"
+    )
+    .unwrap();
+    text
+}
+
+fn step(rng: &mut Rng) -> String {
+    match rng.u32(0..12) {
+        0..=3 => format!(
+            "{{ move = {{ azimuth_deg = {}, tilt_deg = {} }} }}",
+            360.0 * rng.f64(),
+            35.0 * rng.f64()
+        ),
+        4 => format!("{{ level_n = {} }}", 160.0 * rng.f64()),
+        5 => format!(
+            "{{ stiffness = {{ nm_per_rad = {} }} }}",
+            300.0 * rng.f64() - 20.0
+        ),
+        6 => format!(
+            "{{ payload = {{ kg = {}, over_s = {} }} }}",
+            2.0 * rng.f64(),
+            0.1 + 0.2 * rng.f64()
+        ),
+        7 => format!(
+            "{{ compensation = \"{}\" }}",
+            ["off", "estimated", "frozen"][rng.usize(0..3)]
+        ),
+        8 => format!("{{ garbage = {} }}", rng.u32(1..600)),
+        9 => ["\"arm\"", "\"home\"", "\"hold\"", "\"stop\"", "\"disarm\""][rng.usize(0..5)].into(),
+        10 => format!(
+            "{{ push = {{ azimuth_deg = {}, force_n = {}, for_s = 0.2 }} }}",
+            360.0 * rng.f64(),
+            1.5 * rng.f64()
+        ),
+        _ => {
+            let all: Vec<Fault> = Fault::all().collect();
+            format!("{{ fault = {} }}", toml_of(all[rng.usize(0..all.len())]))
+        }
+    }
+}
+
+/// A fault as the value of a key.
+fn toml_of(fault: Fault) -> String {
+    match serde_json::to_value(fault).unwrap() {
+        serde_json::Value::Object(map) => {
+            let (name, number) = map.into_iter().next().unwrap();
+            format!("{{ {name} = {number} }}")
+        }
+        name => name.to_string(),
+    }
+}
+
+/// Runs one; what is wrong with it.
+fn run(seed: u64, rig: &RigFile) -> Result<(), String> {
+    let scenario = Scenario::parse("random", &text(seed)).map_err(|error| format!("{error:?}"))?;
+    // A pose that its payload does not allow at the level is no start.
+    let Ok(simulation) = Simulation::new(&scenario, rig) else {
+        return Ok(());
+    };
+    let mut watch = Watch::default();
+    let summary = simulation
+        .run(&mut InThisProcess::default(), &mut |tick| watch.look(tick))
+        .map_err(|error| error.to_string())?;
+    let [_, highest] = summary.tension_range_n;
+    match watch.complaint {
+        Some(complaint) => Err(complaint),
+        None if highest > CEILING_N => Err(format!("a tension of {highest} N")),
+        None => Ok(()),
+    }
+}
+
+#[test]
+fn whatever_comes_the_leg_stays_safe() {
+    let rig = RigFile::load(Some(Path::new("table1"))).unwrap();
+    let work = |thread: u64| {
+        (thread..SCENARIOS)
+            .step_by(2)
+            .filter_map(|seed| run(seed, &rig).err().map(|error| (seed, error)))
+            .collect::<Vec<_>>()
+    };
+    let failed = std::thread::scope(|scope| {
+        let other = scope.spawn(|| work(1));
+        let mut failed = work(0);
+        failed.extend(other.join().unwrap());
+        failed
+    });
+    for (seed, error) in &failed {
+        println!("seed {seed}: {error}");
+    }
+    if let Some((seed, _)) = failed.first() {
+        println!("\n{}", text(*seed));
+    }
+    assert!(
+        failed.is_empty(),
+        "{} of {SCENARIOS} failed; see above",
+        failed.len()
+    );
+}

@@ -1,0 +1,107 @@
+//! Every ready scenario, in this process and under QEMU.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use leg_firmware::supervisor::Fault;
+use leg_host_tools::link::Link;
+use leg_host_tools::qemu::{Config, Session};
+use leg_host_tools::ready_scenarios::{self, READY_SCENARIOS};
+use leg_host_tools::rig_file::RigFile;
+use leg_host_tools::scenario::{Scenario, Step};
+use leg_host_tools::simulation::{Controller, InThisProcess, OnLink, Simulation, Summary};
+use leg_host_tools::{image, setup};
+use std::path::Path;
+
+/// Everything of a tick that a controller decides, as bits.
+type Bits = Vec<[u32; 3]>;
+
+fn scenario(name: &str) -> Scenario {
+    Scenario::parse(name, ready_scenarios::named(name).unwrap().text).unwrap()
+}
+
+fn run(scenario: &Scenario, controller: &mut dyn Controller) -> (Summary, Bits) {
+    let rig = RigFile::load(Some(Path::new(&scenario.rig))).unwrap();
+    let mut bits = Bits::new();
+    let summary = Simulation::new(scenario, &rig)
+        .unwrap()
+        .run(controller, &mut |tick| {
+            let enabled = u32::from(tick.drive.enabled) << 31;
+            bits.push(tick.drive.duty.map(|duty| duty.to_bits() ^ enabled));
+        })
+        .unwrap();
+    (summary, bits)
+}
+
+fn session() -> Session {
+    setup::ensure_target(&mut |_| {}).unwrap();
+    let qemu = setup::ensure_qemu(&mut |_| {}).unwrap();
+    Session::open(&Config::new(qemu, image::build().unwrap())).unwrap()
+}
+
+#[test]
+fn every_ready_scenario_holds() {
+    for ready in READY_SCENARIOS {
+        let (summary, _) = run(&scenario(ready.name), &mut InThisProcess::default());
+        let missed: Vec<_> = summary
+            .findings
+            .iter()
+            .filter(|finding| !finding.held())
+            .collect();
+        assert!(missed.is_empty(), "{}: {missed:?}", ready.name);
+        assert!(
+            !summary.findings.is_empty(),
+            "{} measures nothing",
+            ready.name
+        );
+    }
+}
+
+/// The scenario of a fault waits for the fault and the state that its reaction leads to.
+#[test]
+fn every_fault_has_a_scenario_that_raises_it() {
+    let mut raised: Vec<Fault> = Vec::new();
+    for ready in READY_SCENARIOS {
+        for step in scenario(ready.name).steps {
+            if let Step::Reaction { fault, .. } = step {
+                raised.push(fault);
+            }
+        }
+    }
+    for fault in Fault::ALL {
+        assert!(raised.contains(&fault), "no scenario raises {fault:?}");
+    }
+}
+
+#[test]
+fn the_emulated_core_asks_for_the_same_duties_to_the_last_bit() {
+    let mut session = session();
+    let link: &mut dyn Link = &mut session;
+    for name in [
+        "payload",
+        "homing",
+        "fault_tension_jump",
+        "fault_encoder_reversed",
+        "fault_bad_frame",
+    ] {
+        let scenario = scenario(name);
+        let (here, expected) = run(&scenario, &mut InThisProcess::default());
+        let (emulated, found) = run(&scenario, &mut OnLink::new(link, false));
+        let first = expected.iter().zip(&found).position(|(a, b)| a != b);
+        assert_eq!(first, None, "{name}: first tick with other bits");
+        assert_eq!(here.ticks, emulated.ticks, "{name}");
+        assert_eq!(here.findings, emulated.findings, "{name}");
+    }
+}
+
+/// The law in f32 stays near to its shadow in f64 while nothing fails.
+#[test]
+fn the_shadow_in_f64_stays_near() {
+    for name in ["fig9", "homing", "tour", "stiffness", "payload"] {
+        let (summary, _) = run(&scenario(name), &mut InThisProcess::default());
+        let divergence = summary.divergence;
+        assert_eq!(divergence.other_state, 0, "{name}");
+        assert!(divergence.reference_m < 5e-7, "{name}: {divergence:?}");
+        assert!(divergence.pose < 2e-5, "{name}: {divergence:?}");
+        assert!(divergence.reference_m > 0.0, "{name}: nothing was compared");
+    }
+}
