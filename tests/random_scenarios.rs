@@ -14,8 +14,9 @@ use std::path::Path;
 /// How many are tried. Each is made from its number alone: `run(number)` replays it.
 const SCENARIOS: u64 = 1000;
 
-/// No motor pulls a tendon beyond this, N: the ceiling of the rig, and what the leg's own swing adds.
-const CEILING_N: f64 = 150.0 * 1.05;
+/// While the motors are driven no tension goes beyond this, N: where too much tension is a fault, a tenth above the
+/// ceiling. So much a swing of the leg adds before a motor gives way.
+const CEILING_N: f64 = 150.0 * 1.1;
 
 /// What has to hold in every tick.
 #[derive(Default)]
@@ -134,7 +135,7 @@ fn run(seed: u64, rig: &RigFile) -> Result<(), String> {
     let summary = simulation
         .run(&mut InThisProcess::default(), &mut |tick| watch.look(tick))
         .map_err(|error| error.to_string())?;
-    let [_, highest] = summary.tension_range_n;
+    let highest = summary.driven_max_n;
     match watch.complaint {
         Some(complaint) => Err(complaint),
         None if highest > CEILING_N => Err(format!("a tension of {highest} N")),

@@ -14,7 +14,7 @@ mod target;
 mod trajectory;
 
 pub use axis::{Axis, AxisGoal, AxisInput};
-pub use estimate::{Estimate, Estimator};
+pub use estimate::{Estimate, Estimator, Weighing};
 pub use homing::{Homing, HomingStep};
 pub use level::{Level, LevelDemand};
 pub use measure::{Measured, Measurement};

@@ -165,7 +165,10 @@ impl<T: Scalar> Leg<T> {
                 self.relax(measured);
                 Ok(())
             }
-            State::Boot | State::Disarmed | State::Off => Ok(()),
+            State::Boot | State::Disarmed | State::Off => {
+                self.look(measured);
+                Ok(())
+            }
         }
     }
 

@@ -1,6 +1,7 @@
 //! Instructions of the model's kernels on the emulated core, against their budgets.
 
 mod budget;
+mod tick;
 
 pub use budget::{Budget, of};
 
@@ -39,6 +40,9 @@ pub enum CostError {
     /// The firmware answered something else.
     #[error("the firmware's reply is no count; build host and firmware from the same sources")]
     WrongReply,
+    /// The simulation of which each tick is counted failed.
+    #[error("the ticks cannot be counted: {0}")]
+    Tick(String),
     /// The link failed.
     #[error(transparent)]
     Link(#[from] LinkError),
@@ -61,7 +65,8 @@ pub struct Cost {
     pub held: bool,
 }
 
-/// Counts every kernel at every pose on the paper's rig, and calls `done` after each kernel.
+/// Counts every kernel at every pose on the paper's rig, and every tick of a scenario; calls `done` after each kernel and
+/// after the ticks.
 ///
 /// # Errors
 /// The first count that cannot be had.
@@ -71,14 +76,16 @@ pub fn measure(link: &mut dyn Link, mut done: impl FnMut()) -> Result<Vec<Cost>,
         let counts: Result<Vec<u32>, _> = inputs()
             .map(|input| count(link, KernelRequest { kernel, input }))
             .collect();
-        costs.push(Cost::new(kernel, counts?));
+        costs.push(Cost::of(kernel.name(), counts?, of(kernel)));
         done();
     }
+    costs.push(tick::measure(link)?);
+    done();
     Ok(costs)
 }
 
 impl Cost {
-    fn new(kernel: Kernel, mut counts: Vec<u32>) -> Self {
+    fn of(name: &'static str, mut counts: Vec<u32>, budget: Budget) -> Self {
         counts.sort_unstable();
         let at = |i: usize| counts.get(i).copied().unwrap_or(0);
         let (minimum, median, maximum) = (
@@ -86,9 +93,8 @@ impl Cost {
             at(counts.len() / 2),
             at(counts.len().saturating_sub(1)),
         );
-        let budget = of(kernel);
         Self {
-            kernel: kernel.name(),
+            kernel: name,
             minimum,
             median,
             maximum,

@@ -18,6 +18,7 @@ macro_rules! ready {
 /// Every ready scenario; the first is the default.
 pub const READY_SCENARIOS: &[ReadyScenario] = ready![
     "fig9",
+    "cost",
     "homing",
     "tour",
     "stiffness",

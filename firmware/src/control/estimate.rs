@@ -17,6 +17,17 @@ pub struct Estimate<T> {
     pub residual_m: T,
 }
 
+/// How the load is estimated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Weighing {
+    /// It stays as it is.
+    Frozen,
+    /// It follows what the tendons tell, filtered.
+    Filtered,
+    /// It is what they tell now.
+    AtOnce,
+}
+
 /// Estimates pose and load, warm-started from the last estimate.
 #[derive(Clone, Copy, Debug)]
 pub struct Estimator<T> {
@@ -69,7 +80,7 @@ impl<T: Scalar> Estimator<T> {
         self.payload_kg
     }
 
-    /// Estimates the pose and, unless the load is `frozen`, the load. `torsion` is the elastic one, rad.
+    /// Estimates the pose and, as `weighing` says, the load. `torsion` is the elastic one, rad.
     ///
     /// # Errors
     /// A tension beyond a tendon's curve; what forward kinematics refuses.
@@ -80,7 +91,7 @@ impl<T: Scalar> Estimator<T> {
         unstretched_m: &[T; 3],
         tensions_n: &[T; 3],
         torsion: T,
-        frozen: bool,
+        weighing: Weighing,
     ) -> Result<Estimate<T>, Error> {
         let (mut lengths, mut pull) = (SVector::<T, 3>::zeros(), SVector::<T, 3>::zeros());
         for (i, tendon) in mechanism.tendons.iter().enumerate() {
@@ -95,12 +106,13 @@ impl<T: Scalar> Estimator<T> {
             forward_kinematics(&geometry, &lengths, &self.direction)?
         };
         self.direction = found.direction;
-        if !frozen {
+        if weighing != Weighing::Frozen {
             self.weigh(
                 mechanism,
                 &mechanism.geometry(&found.direction, torsion),
                 torsion,
                 &pull,
+                weighing,
             )?;
         }
         Ok(Estimate {
@@ -116,6 +128,7 @@ impl<T: Scalar> Estimator<T> {
         geometry: &Geometry<T, 3>,
         torsion: T,
         pull: &SVector<T, 3>,
+        weighing: Weighing,
     ) -> Result<(), Error> {
         let (direction, support) = (&self.direction, &mechanism.support);
         let load = estimate_load(geometry, support, direction, torsion, pull)?;
@@ -123,6 +136,10 @@ impl<T: Scalar> Estimator<T> {
         let own = mechanism.leg.moment(direction);
         let excess = [x - own.x, y - own.y];
         for ([first, second], input) in self.excess.iter_mut().zip(excess) {
+            if weighing == Weighing::AtOnce {
+                first.set(input);
+                second.set(input);
+            }
             second.step(first.step(input));
         }
         self.guess_payload(mechanism);

@@ -2,7 +2,7 @@
 
 use super::Leg;
 use crate::command::Compensation;
-use crate::control::{AxisGoal, CYCLE_TICKS, HomingStep, Measured, Wish};
+use crate::control::{AxisGoal, CYCLE_TICKS, HomingStep, Measured, Weighing, Wish};
 use crate::supervisor::Event;
 use leg_model::{Error, Scalar};
 
@@ -20,25 +20,29 @@ impl<T: Scalar> Leg<T> {
         }
     }
 
-    /// Goes on estimating the pose while nothing is made of it.
+    /// Goes on estimating pose and load while nothing is made of them, so that the leg starts from where it is.
     #[inline(always)]
     pub(super) fn look(&mut self, measured: &Measured<T>) {
         if let (0, Some(zero_m)) = (self.phase, self.zero_m) {
             // Where there is no result, the last pose stands.
-            let _ = self.estimate(&zero_m, measured, true);
+            let _ = self.estimate(&zero_m, measured, Weighing::AtOnce);
         }
     }
 
     /// Estimates pose and load. While the tendons come up from slack there is no load to be told.
     #[inline(always)]
     fn track(&mut self, zero_m: &[T; 3], measured: &Measured<T>) -> Result<(), Error> {
-        let frozen = self.compensation == Compensation::Frozen || !self.tensioned;
+        let weighing = if self.compensation == Compensation::Frozen || !self.tensioned {
+            Weighing::Frozen
+        } else {
+            Weighing::Filtered
+        };
         if !self.tensioned {
             let floor_n = self.mechanism.floor_n;
             let tensions_n = &measured.steady_tensions_n;
             self.tensioned = tensions_n.iter().all(|&tension| tension > floor_n);
         }
-        self.estimate(zero_m, measured, frozen)
+        self.estimate(zero_m, measured, weighing)
     }
 
     #[inline(never)]
@@ -46,7 +50,7 @@ impl<T: Scalar> Leg<T> {
         &mut self,
         zero_m: &[T; 3],
         measured: &Measured<T>,
-        frozen: bool,
+        weighing: Weighing,
     ) -> Result<(), Error> {
         let mut unstretched_m = *zero_m;
         for (unstretched, &pulled) in unstretched_m.iter_mut().zip(&measured.pulled_m) {
@@ -57,7 +61,7 @@ impl<T: Scalar> Leg<T> {
         let mechanism = &self.mechanism;
         let estimate =
             self.estimator
-                .update(mechanism, &unstretched_m, tensions_n, torsion, frozen)?;
+                .update(mechanism, &unstretched_m, tensions_n, torsion, weighing)?;
         self.residual_m = Some(estimate.residual_m);
         Ok(())
     }

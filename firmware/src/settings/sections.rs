@@ -6,9 +6,9 @@ section! {
     /// How the leg moves.
     0 Motion {
         /// Fastest turn of the leg, rad/s.
-        speed_rad_per_s: 0.01..=20.0 = 1.0;
+        speed_rad_per_s: 0.01..=20.0 = 0.8;
         /// Greatest change of that, rad/s².
-        acceleration_rad_per_s2: 0.01..=1e3 = 8.0;
+        acceleration_rad_per_s2: 0.01..=1e3 = 4.0;
         /// Greatest change of that, rad/s³: lower is smoother, and longer.
         jerk_rad_per_s3: 0.01..=1e5 = 100.0;
         /// Fastest change of the level of pretension, N/s.

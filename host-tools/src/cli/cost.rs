@@ -28,7 +28,7 @@ kernel                                minimum  median  maximum   budget      A  
 /// A [`Failure`]: a missing prerequisite, a link that fails, or a kernel outside its budget.
 pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
     let mut link = board::qemu_with(Clock::Counting, verbose)?;
-    let progress = ProgressBar::new(Kernel::ALL.len() as u64);
+    let progress = ProgressBar::new(Kernel::ALL.len() as u64 + 1);
     let measured = cost::measure(link.as_mut(), || progress.inc(1));
     progress.finish_and_clear();
     let costs = measured.map_err(|error| Failure::from_error(&error))?;

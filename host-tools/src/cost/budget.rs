@@ -19,7 +19,7 @@ pub struct Budget {
 }
 
 impl Budget {
-    const fn new(lowest: u32, highest: u32) -> Self {
+    pub(super) const fn new(lowest: u32, highest: u32) -> Self {
         Self {
             lowest,
             highest,

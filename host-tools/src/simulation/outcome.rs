@@ -89,6 +89,8 @@ pub struct Summary {
     pub ticks: u64,
     /// Lowest and highest true tension over all ticks, N.
     pub tension_range_n: [f64; 2],
+    /// Highest true tension while the drivers were on, N: without them the leg's swing alone decides.
+    pub driven_max_n: f64,
     /// Against the shadow in f64.
     pub divergence: Divergence,
     /// Every fault in the order in which it was first seen, with the time, s.

@@ -46,6 +46,7 @@ pub(super) struct Stage {
     pub tip_length_m: f64,
     pub rng: fastrand::Rng,
     all: Extremes,
+    driven_max_n: f64,
     queue: VecDeque<u8>,
     sequence: u16,
     tips_m: VecDeque<Vector3<f64>>,
@@ -62,6 +63,7 @@ impl Stage {
         Self {
             extremes: Extremes::new(&truth),
             all: Extremes::new(&truth),
+            driven_max_n: 0.0,
             plant,
             truth,
             telemetry: None,
@@ -126,6 +128,10 @@ impl Stage {
         self.telemetry = Some(*telemetry);
         self.extremes.take(&self.truth, self.bounds_n);
         self.all.take(&self.truth, self.bounds_n);
+        if drive.enabled {
+            let highest = self.truth.tensions_n.into_iter().fold(0.0, f64::max);
+            self.driven_max_n = self.driven_max_n.max(highest);
+        }
         self.tips_m.push_back(self.truth.tip_m);
         if self.tips_m.len() > AVERAGE_TICKS {
             self.tips_m.pop_front();
@@ -184,6 +190,7 @@ impl Stage {
             findings,
             ticks: self.ticks,
             tension_range_n: [self.all.tension_min_n, self.all.tension_max_n],
+            driven_max_n: self.driven_max_n,
             divergence,
             faults: self.faults,
             samples: self.samples,
