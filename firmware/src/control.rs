@@ -27,8 +27,8 @@ use crate::sensors::TICK_HZ;
 /// Time of a tick, s.
 pub const TICK_S: f32 = 1.0 / TICK_HZ as f32;
 
-/// Ticks in which estimate, level and target are each renewed once, one a tick.
-pub const CYCLE_TICKS: u8 = 3;
+/// Ticks in which estimate, level, target and the plan of the way are each renewed once, one a tick.
+pub const CYCLE_TICKS: u8 = 4;
 
 /// Time of a cycle, s.
 pub const CYCLE_S: f32 = CYCLE_TICKS as f32 * TICK_S;

@@ -4,7 +4,7 @@ mod active;
 mod commands;
 mod motors;
 
-use crate::command::Compensation;
+use crate::command::{Command, Compensation};
 use crate::control::{
     Axis, CYCLE_TICKS, Estimator, Homing, Level, Measured, Measurement, Mechanism, Target, Targets,
     Trajectory, ticks,
@@ -15,7 +15,11 @@ use crate::sensors::Sensors;
 use crate::settings::{Settings, SettingsError};
 use crate::supervisor::{AxisView, Event, Fault, FaultSet, Monitors, State, Supervisor, View};
 use crate::telemetry::Telemetry;
+use heapless::Deque;
 use leg_model::{Error, Scalar};
+
+/// Commands that may wait: a tick takes one.
+const COMMANDS_MAX: usize = 8;
 
 /// Ticks of [`State::Boot`].
 const BOOT_TICKS: u32 = 16;
@@ -26,6 +30,7 @@ pub struct Leg<T> {
     tick: u32,
     phase: u8,
     decoder: Decoder,
+    commands: Deque<Command, COMMANDS_MAX>,
     silence: u32,
     bad_frames: u16,
     mechanism: Mechanism<T>,
@@ -82,6 +87,7 @@ impl<T: Scalar> Leg<T> {
             tick: 0,
             phase: 0,
             decoder: Decoder::new(),
+            commands: Deque::new(),
             silence: 0,
             bad_frames: 0,
             mechanism: Mechanism::new(settings)?,
@@ -116,9 +122,9 @@ impl<T: Scalar> Leg<T> {
         })
     }
 
-    /// One tick: `link` are the bytes that came from the host since the last one.
+    /// One tick. It takes one command of those that [`Self::receive`] has found.
     #[inline(never)]
-    pub fn tick(&mut self, sensors: &Sensors, link: &[u8]) -> Drive<T> {
+    pub fn tick(&mut self, sensors: &Sensors) -> Drive<T> {
         self.tick = self.tick.wrapping_add(1);
         let measured = self.measurement.convert(sensors);
         for (axis, &pulled) in self.axes.iter_mut().zip(&measured.pulled_m) {
@@ -127,7 +133,9 @@ impl<T: Scalar> Leg<T> {
         if self.tick == BOOT_TICKS {
             self.supervisor.happen(Event::Ready);
         }
-        self.listen(link, &measured);
+        if let Some(command) = self.commands.pop_front() {
+            self.obey(command, &measured);
+        }
         let before = self.supervisor.state();
         let result = self.advance(&measured);
         let faults = self.faults(sensors, &measured, result);
@@ -182,17 +190,19 @@ impl<T: Scalar> Leg<T> {
     ) -> FaultSet {
         let state = self.supervisor.state();
         let active = state == State::Active;
-        let view = |axis: &Axis<T>, pulled: T| AxisView {
-            following_m: axis.reference_m() - pulled,
-            driving_v: axis.driving_v(),
-            voltage_v: axis.voltage_v(),
+        let turn = match self.phase {
+            0 => Some(0),
+            2 => Some(1),
+            3 => Some(2),
+            _ => None,
         };
-        let [a, b, c] = &self.axes;
-        let [x, y, z] = measured.pulled_m;
+        let look = |turn: usize| Some(self.axes.get(turn)?.view(*measured.pulled_m.get(turn)?));
+        let shown = turn.and_then(look).unwrap_or(AxisView::none());
         let mut faults = self.monitors.watch(&View {
             sensors,
             measured,
-            axes: [view(a, x), view(b, y), view(c, z)],
+            axis: turn,
+            shown,
             driven: state.driven(),
             tensioned: active && self.tensioned,
             residual_m: if active && self.tensioned {

@@ -88,8 +88,9 @@ impl<B: Board> Server<B> {
 
     fn tick(&mut self, request: &TickRequest) -> Result<Reply, Refusal> {
         let leg = self.leg.as_mut().ok_or(Refusal::NoLeg)?;
+        leg.receive(&request.link);
         Ok(Reply::Ticked(TickReply {
-            drive: leg.tick(&request.sensors, &request.link),
+            drive: leg.tick(&request.sensors),
             telemetry: leg.telemetry(),
             instructions: None,
         }))
@@ -97,6 +98,7 @@ impl<B: Board> Server<B> {
 
     fn count_tick(&mut self, request: &TickRequest) -> Result<Reply, Refusal> {
         let leg = self.leg.as_mut().ok_or(Refusal::NoLeg)?;
+        leg.receive(&request.link);
         let mut ticking = Ticking { leg, drive: None };
         let instructions = self.board.count(tick, request, &mut ticking);
         match (instructions, ticking.drive) {
@@ -124,7 +126,7 @@ struct Ticking<'a> {
 }
 
 fn tick(request: &TickRequest, ticking: &mut Ticking<'_>) {
-    ticking.drive = Some(ticking.leg.tick(&request.sensors, &request.link));
+    ticking.drive = Some(ticking.leg.tick(&request.sensors));
 }
 
 fn evaluate(request: &EvaluateRequest) -> Result<Reply, Refusal> {

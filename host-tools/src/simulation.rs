@@ -100,7 +100,8 @@ impl Simulation {
             let sensors = stage.plant.sense();
             let link = stage.outgoing();
             let (drive, telemetry) = controller.tick(&sensors, &link)?;
-            let shadow_drive = shadow.tick(&sensors, &link);
+            shadow.receive(&link);
+            let shadow_drive = shadow.tick(&sensors);
             divergence.compare(&drive, &telemetry, &shadow_drive, &shadow.telemetry());
             watch(&Tick {
                 sensors: &sensors,

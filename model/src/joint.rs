@@ -81,6 +81,9 @@ impl<T: Scalar> Support<T> {
     /// joint itself gives the leg.
     #[must_use]
     pub fn joint_moment(&self, direction: &Direction<T>, torsion: T) -> Vector3<T> {
+        if !self.elastic() {
+            return Vector3::zeros();
+        }
         self.joint_moment_by_torsion(direction).at(torsion)
     }
 
@@ -111,6 +114,9 @@ impl<T: Scalar> Support<T> {
     /// they are parallel. Its antisymmetric part is half the joint's moment, as that of the tendons is half of theirs.
     #[must_use]
     pub fn joint_stiffness(&self, direction: &Direction<T>, torsion: T) -> Matrix3<T> {
+        if !self.elastic() {
+            return Matrix3::zeros();
+        }
         let JointStiffness {
             bending_nm_per_rad: bending,
             torsion_nm_per_rad: twisting,

@@ -111,6 +111,17 @@ impl<T: Scalar> Support<T> {
         )
     }
 
+    /// Whether its joint resists a rotation.
+    #[inline(always)]
+    pub(crate) fn elastic(&self) -> bool {
+        let JointStiffness {
+            bending_nm_per_rad: bending,
+            torsion_nm_per_rad: torsion,
+            ..
+        } = self.joint;
+        bending > T::zero() || torsion > T::zero()
+    }
+
     /// Whether its axes are those of a universal joint: the leg twists as it points.
     #[must_use]
     pub fn universal(&self) -> bool {

@@ -5,6 +5,7 @@ use super::{
     bounds::{least, most, within},
 };
 use crate::settings::Settings;
+use crate::supervisor::AxisView;
 use leg_model::Scalar;
 
 /// What is left of the integral after a tick at rest.
@@ -110,16 +111,14 @@ impl<T: Scalar> Axis<T> {
         self.speed_m_per_s
     }
 
-    /// The voltage at the motor, V.
+    /// What the monitors look at; `pulled_m` is how far the tendon is pulled in.
     #[inline(always)]
-    pub fn voltage_v(&self) -> T {
-        self.voltage_v
-    }
-
-    /// The part of it beyond what the motor's speed induces, V.
-    #[inline(always)]
-    pub fn driving_v(&self) -> T {
-        self.voltage_v - self.gains.back_emf * self.speed_m_per_s
+    pub fn view(&self, pulled_m: T) -> AxisView<T> {
+        AxisView {
+            following_m: self.reference_m - pulled_m,
+            driving_v: self.voltage_v - self.gains.back_emf * self.speed_m_per_s,
+            voltage_v: self.voltage_v,
+        }
     }
 
     /// Stays where it is, m.

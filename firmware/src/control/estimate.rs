@@ -99,17 +99,18 @@ impl<T: Scalar> Estimator<T> {
             pull[i] = most(tensions_n[i], T::zero());
             lengths[i] = unstretched_m[i] + tendon.elongation(pull[i])?;
         }
+        let mut twisted = None;
         let found = if mechanism.support.kind() == SupportKind::Universal {
             forward_kinematics_universal(mechanism.rig.geometry(), &lengths, &self.direction)?
         } else {
-            let geometry = mechanism.geometry(&self.direction, torsion);
-            forward_kinematics(&geometry, &lengths, &self.direction)?
+            let geometry = mechanism.geometry(&self.direction, torsion, &mut twisted);
+            forward_kinematics(geometry, &lengths, &self.direction)?
         };
         self.direction = found.direction;
         if weighing != Weighing::Frozen {
             self.weigh(
                 mechanism,
-                &mechanism.geometry(&found.direction, torsion),
+                mechanism.geometry(&found.direction, torsion, &mut twisted),
                 torsion,
                 &pull,
                 weighing,

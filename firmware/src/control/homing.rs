@@ -251,8 +251,9 @@ fn unstretched_under_one<T: Scalar>(
     pull[i] = tension;
     let mut direction = Direction::down();
     for _ in 0..STEPS {
-        let geometry = mechanism.geometry(&direction, T::zero());
-        let load = estimate_load(&geometry, &mechanism.support, &direction, T::zero(), &pull)?;
+        let mut twisted = None;
+        let geometry = mechanism.geometry(&direction, T::zero(), &mut twisted);
+        let load = estimate_load(geometry, &mechanism.support, &direction, T::zero(), &pull)?;
         let plane = mechanism.support.plane(&direction);
         let [x, y] = plane.project(&load);
         let own = mechanism.leg.moment(&direction);
@@ -267,7 +268,8 @@ fn unstretched_under_one<T: Scalar>(
         let vector = direction.vector();
         direction = Direction::from_xy(vector.x + vector.z * turn_y, vector.y - vector.z * turn_x)?;
     }
-    let geometry = mechanism.geometry(&direction, T::zero());
-    let kinematics = inverse_kinematics(&geometry, &direction)?;
+    let mut twisted = None;
+    let geometry = mechanism.geometry(&direction, T::zero(), &mut twisted);
+    let kinematics = inverse_kinematics(geometry, &direction)?;
     Ok(kinematics.lengths[i] - mechanism.tendons[i].elongation(tension)?)
 }

@@ -90,7 +90,7 @@ impl<T: Scalar> Level<T> {
         };
         let load = mechanism.load(payload_kg)?;
         let command = StiffnessCommand::new(
-            &mechanism.geometry(&target.direction, target.torsion),
+            mechanism.geometry(&target.direction, target.torsion, &mut None),
             &mechanism.support,
             &target.direction,
             target.torsion,

@@ -51,19 +51,25 @@ impl<T: Scalar> Mechanism<T> {
         })
     }
 
-    /// The geometry of a leg that points along `direction` with an elastic torsion in rad.
+    /// The geometry of a leg that points along `direction` with an elastic torsion in rad. It is made in `twisted` where
+    /// the support twists the leg; elsewhere nothing is copied.
     #[inline(always)]
-    pub fn geometry(&self, direction: &Direction<T>, torsion: T) -> Geometry<T, 3> {
+    pub fn geometry<'a>(
+        &'a self,
+        direction: &Direction<T>,
+        torsion: T,
+        twisted: &'a mut Option<Geometry<T, 3>>,
+    ) -> &'a Geometry<T, 3> {
         if self.support.twists() {
             let twist = self
                 .support
                 .twist(direction)
                 .and(&Twist::from_torsion(torsion));
-            self.rig.geometry().twisted(&twist)
+            twisted.insert(self.rig.geometry().twisted(&twist))
         } else if self.support.universal() {
-            self.rig.geometry().twisted(&self.support.twist(direction))
+            twisted.insert(self.rig.geometry().twisted(&self.support.twist(direction)))
         } else {
-            *self.rig.geometry()
+            self.rig.geometry()
         }
     }
 

@@ -5,7 +5,7 @@ use crate::settings;
 use leg_model::Scalar;
 
 /// Places at which a way is looked at; between two of them a polynomial of fifth degree changes by less than the margin.
-const PLACES: u8 = 16;
+pub const PLACES: u8 = 16;
 
 /// Limits are held to this part.
 const MARGIN: f32 = 0.98;
@@ -36,16 +36,14 @@ impl<T: Scalar> Limits<T> {
         }
     }
 
-    /// Whether a way keeps them.
+    /// Whether a way keeps them at one of its places, 0 to [`PLACES`].
     #[inline(always)]
-    pub fn kept(&self, way: &Quintic<T>) -> bool {
-        let part = |place: u8| T::from(f32::from(place) / f32::from(PLACES));
-        (0..=PLACES).all(|place| {
-            let squares = way.squares(part(place));
-            squares.rate <= self.squares.rate
-                && squares.acceleration <= self.squares.acceleration
-                && squares.jerk <= self.squares.jerk
-        })
+    pub fn kept(&self, way: &Quintic<T>, place: u8) -> bool {
+        let part = T::from(f32::from(place) * (1.0 / PLACES as f32));
+        let squares = way.squares(part);
+        squares.rate <= self.squares.rate
+            && squares.acceleration <= self.squares.acceleration
+            && squares.jerk <= self.squares.jerk
     }
 
     /// A time that is too short for a way, or just enough, s.

@@ -103,7 +103,10 @@ impl<T: Scalar> Targets<T> {
     ) -> Result<Target<T>, Error> {
         let direction = wish.q.direction();
         let torsion = self.torsion.angle;
-        let kinematics = inverse_kinematics(&mechanism.geometry(&direction, torsion), &direction)?;
+        let kinematics = inverse_kinematics(
+            mechanism.geometry(&direction, torsion, &mut None),
+            &direction,
+        )?;
         let plane = mechanism.support.plane(&direction);
         let mut moment = mechanism.support.joint_moment(&direction, torsion);
         let [x, y] = wish.excess_nm;

@@ -2,7 +2,7 @@
 //! vertical.
 
 use super::CYCLE_S;
-use super::plan::{Limits, longer};
+use super::plan::{Limits, PLACES, longer};
 use super::quintic::{Motion, Quintic};
 use crate::settings::Settings;
 use leg_model::{HalfTangent, Scalar};
@@ -23,12 +23,30 @@ pub struct Trajectory<T> {
     planned: Option<Plan<T>>,
 }
 
-/// A way that is tried with ever more time, once a cycle.
+/// A way that is tried with ever more time, and looked at place by place.
 #[derive(Clone, Copy, Debug)]
 struct Plan<T> {
     end: End<T>,
     duration_s: Option<T>,
+    tried: Option<Attempt<T>>,
 }
+
+/// A way that is being looked at. It starts where the present way will be in a few cycles.
+#[derive(Clone, Copy, Debug)]
+struct Attempt<T> {
+    way: Quintic<T>,
+    cycles: u32,
+    /// Cycles until it starts.
+    ahead: u32,
+    /// The next place to look at.
+    place: u8,
+}
+
+/// Cycles that are given to look at a way: enough for all its places.
+const AHEAD: u32 = PLACES as u32 / PLACES_A_CYCLE as u32 + 1;
+
+/// Places looked at in a cycle.
+const PLACES_A_CYCLE: u8 = 2;
 
 /// Where a way shall end.
 #[derive(Clone, Copy, Debug)]
@@ -60,17 +78,19 @@ impl<T: Scalar> Trajectory<T> {
 
     /// Goes to a point, from wherever the trajectory is and however it moves.
     pub fn go(&mut self, q: Point<T>) {
-        self.planned = Some(Plan {
-            end: End::At(q.xy()),
-            duration_s: None,
-        });
+        self.plan(End::At(q.xy()));
     }
 
     /// Comes to rest.
     pub fn stop(&mut self) {
+        self.plan(End::Soon);
+    }
+
+    fn plan(&mut self, end: End<T>) {
         self.planned = Some(Plan {
-            end: End::Soon,
+            end,
             duration_s: None,
+            tried: None,
         });
     }
 
@@ -86,28 +106,38 @@ impl<T: Scalar> Trajectory<T> {
         if self.cycle < self.cycles {
             self.cycle += 1;
         }
-        if let Some(plan) = self.planned {
-            self.planned = self.attempt(plan);
-        }
-        let [x, y] = self.way.position(self.part());
+        let [x, y] = self.way.position(self.part(0));
         HalfTangent::new(x, y)
     }
 
+    /// Goes on with the plan of another way, once a cycle.
+    #[inline(never)]
+    pub fn advance_plan(&mut self) {
+        if let Some(plan) = self.planned {
+            self.planned = match plan.tried {
+                Some(attempt) => self.look(plan, attempt),
+                None => self.attempt(plan),
+            };
+        }
+    }
+
+    /// The part of the way that will be done in some cycles.
     #[inline(always)]
-    fn part(&self) -> T {
-        if self.cycle < self.cycles {
-            T::from(self.cycle as f32) / T::from(self.cycles as f32)
+    fn part(&self, ahead: u32) -> T {
+        let cycle = self.cycle + ahead;
+        if cycle < self.cycles {
+            T::from(cycle as f32) / T::from(self.cycles as f32)
         } else {
             T::one()
         }
     }
 
-    /// Tries a way from where the trajectory is now; gives back the plan unless the way keeps the limits.
-    #[inline(never)]
-    fn attempt(&mut self, plan: Plan<T>) -> Option<Plan<T>> {
-        let start = self.way.motion(self.part());
+    /// Makes a way from where the trajectory will be; no plan if it would take too long.
+    #[inline(always)]
+    fn attempt(&self, plan: Plan<T>) -> Option<Plan<T>> {
+        let start = self.way.motion(self.part(AHEAD));
         let duration_s = match (plan.duration_s, plan.end) {
-            (Some(tried_s), _) => longer(tried_s),
+            (Some(duration_s), _) => duration_s,
             (None, End::At(end)) => self.limits.shortest_s(&start, end),
             (None, End::Soon) => T::from(0.02),
         };
@@ -117,23 +147,50 @@ impl<T: Scalar> Trajectory<T> {
         let end = match plan.end {
             End::At(end) => end,
             End::Soon => {
-                let ahead =
-                    |i: usize| start.position[i] + start.rate[i] * duration_s * T::from(0.4);
-                [ahead(0), ahead(1)]
+                let on = |i: usize| start.position[i] + start.rate[i] * duration_s * T::from(0.4);
+                [on(0), on(1)]
             }
         };
-        let way = Quintic::new(&start, end, duration_s);
-        if !self.limits.kept(&way) {
+        // Whole cycles: the way is stretched to them.
+        let cycles = cycles(duration_s);
+        let attempt = Attempt {
+            way: Quintic::new(&start, end, T::from(cycles as f32 * CYCLE_S)),
+            cycles,
+            ahead: AHEAD,
+            place: 0,
+        };
+        Some(Plan {
+            duration_s: Some(duration_s),
+            tried: Some(attempt),
+            ..plan
+        })
+    }
+
+    /// Looks at the next places of a way. One that leaves the limits is tried again with more time; one that keeps them
+    /// is taken when its start has come.
+    #[inline(always)]
+    fn look(&mut self, plan: Plan<T>, mut attempt: Attempt<T>) -> Option<Plan<T>> {
+        attempt.ahead = attempt.ahead.saturating_sub(1);
+        for _ in 0..PLACES_A_CYCLE {
+            if attempt.place > PLACES {
+                break;
+            }
+            if !self.limits.kept(&attempt.way, attempt.place) {
+                return Some(Plan {
+                    duration_s: plan.duration_s.map(longer),
+                    tried: None,
+                    ..plan
+                });
+            }
+            attempt.place += 1;
+        }
+        if attempt.ahead > 0 {
             return Some(Plan {
-                end: plan.end,
-                duration_s: Some(duration_s),
+                tried: Some(attempt),
+                ..plan
             });
         }
-        self.cycles = cycles(duration_s);
-        // Whole cycles: the way is stretched to them.
-        let whole_s = T::from(self.cycles as f32 * CYCLE_S);
-        self.way = Quintic::new(&start, end, whole_s);
-        self.cycle = 0;
+        (self.way, self.cycle, self.cycles) = (attempt.way, 0, attempt.cycles);
         None
     }
 }

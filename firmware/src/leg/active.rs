@@ -7,7 +7,7 @@ use crate::supervisor::Event;
 use leg_model::{Error, Scalar};
 
 impl<T: Scalar> Leg<T> {
-    /// Follows the trajectory: estimate, level and target in turn, one a tick.
+    /// Follows the trajectory: estimate, level, target and plan in turn, one a tick.
     #[inline(always)]
     pub(super) fn follow(&mut self, measured: &Measured<T>) -> Result<(), Error> {
         let Some(zero_m) = self.zero_m else {
@@ -16,7 +16,11 @@ impl<T: Scalar> Leg<T> {
         match self.phase {
             0 => self.track(&zero_m, measured),
             1 => self.choose_level(),
-            _ => self.aim(&zero_m, measured),
+            2 => self.aim(&zero_m, measured),
+            _ => {
+                self.trajectory.advance_plan();
+                Ok(())
+            }
         }
     }
 

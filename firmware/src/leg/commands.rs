@@ -7,28 +7,27 @@ use crate::supervisor::{Event, State};
 use leg_model::{BendingAxis, Direction, Scalar};
 
 impl<T: Scalar> Leg<T> {
-    /// Takes the bytes that came since the last tick.
-    #[inline(always)]
-    pub(super) fn listen(&mut self, link: &[u8], measured: &Measured<T>) {
-        for &byte in link {
+    /// Takes bytes from the host; apart from the tick, as a board's link runs below it. A frame that cannot be read, and
+    /// a command for which there is no room, is told by [`Fault::BadFrame`](crate::supervisor::Fault::BadFrame).
+    pub fn receive(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
             let command = match self.decoder.push(byte) {
                 None => continue,
                 Some(Ok(frame)) => frame.message::<Command>(),
                 Some(Err(_)) => None,
             };
-            match command {
-                Some(command) => {
-                    self.silence = 0;
-                    self.bad_frames = 0;
-                    self.obey(command, measured);
-                }
-                None => self.bad_frames = self.bad_frames.saturating_add(1),
+            let taken = command.is_some_and(|command| self.commands.push_back(command).is_ok());
+            if taken {
+                self.silence = 0;
+                self.bad_frames = 0;
+            } else {
+                self.bad_frames = self.bad_frames.saturating_add(1);
             }
         }
     }
 
     #[inline(never)]
-    fn obey(&mut self, command: Command, measured: &Measured<T>) {
+    pub(super) fn obey(&mut self, command: Command, measured: &Measured<T>) {
         let before = self.supervisor.state();
         match command {
             Command::KeepAlive => {}

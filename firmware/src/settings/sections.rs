@@ -128,7 +128,7 @@ section! {
         /// Tension at which a tendon is taken as taut, N.
         touch_n: 0.1..=100.0 = 2.0;
         /// Time that the leg is given to come to rest then, s.
-        settle_time_s: 1e-3..=60.0 = 1.0;
+        settle_time_s: 1e-3..=60.0 = 1.5;
         /// Time in which tension and position are averaged, s.
         average_time_s: 1e-3..=60.0 = 0.7;
         /// Highest tension while homing, N.

@@ -7,7 +7,7 @@ pub use axis::AxisView;
 
 use super::{Fault, FaultSet};
 use crate::control::{Measured, ticks};
-use crate::sensors::{CODE_MAX, Sensors};
+use crate::sensors::Sensors;
 use crate::settings::Settings;
 use axis::AxisMonitor;
 use leg_model::Scalar;
@@ -20,8 +20,10 @@ pub struct View<'a, T> {
     pub sensors: &'a Sensors,
     /// The same in SI.
     pub measured: &'a Measured<T>,
-    /// The axes.
-    pub axes: [AxisView<T>; 3],
+    /// The axis that is looked at in this tick, from 0 to 2; none in the tick that has most else to do.
+    pub axis: Option<usize>,
+    /// What that axis shows.
+    pub shown: AxisView<T>,
     /// Whether the drivers are on.
     pub driven: bool,
     /// Whether every tendon should pull.
@@ -29,9 +31,6 @@ pub struct View<'a, T> {
     /// What forward kinematics leaves over, m; none while the pose is not needed.
     pub residual_m: Option<T>,
 }
-
-/// Codes this near to an end of the range are taken as saturated.
-const SATURATED: u16 = 64;
 
 /// Watches sensors and axes.
 #[derive(Clone, Copy, Debug)]
@@ -63,12 +62,13 @@ impl<T: Scalar> Monitors<T> {
     pub fn watch(&mut self, view: &View<'_, T>) -> FaultSet {
         let (sensors, measured) = (view.sensors, view.measured);
         let mut faults = FaultSet::NONE;
-        for (i, monitor) in self.axes.iter_mut().enumerate() {
-            monitor.watch(i, view, &mut faults);
-            let code = sensors.cell_codes[i];
-            let saturated = code < SATURATED || code > CODE_MAX - SATURATED;
-            faults.add(Fault::CellSaturated, saturated);
-            faults.add(Fault::DriverFault, sensors.driver_fault[i]);
+        if let Some(turn) = view.axis
+            && let Some(monitor) = self.axes.get_mut(turn)
+        {
+            monitor.watch(turn, view, &mut faults);
+        }
+        for fault in sensors.driver_fault {
+            faults.add(Fault::DriverFault, fault);
         }
         let off = view
             .residual_m

@@ -27,7 +27,6 @@ pub fn measure(link: &mut dyn Link) -> Result<Cost, CostError> {
     simulation
         .run(&mut controller, &mut |_| ())
         .map_err(|error| failed(&error))?;
-    eprintln!("{:?}", &controller.instructions[..60]);for (i,c) in controller.instructions.chunks(60).enumerate() { eprintln!("{i} {:?}", &c[..c.len().min(9)]); }
     Ok(Cost::of(
         "whole control tick",
         controller.instructions,

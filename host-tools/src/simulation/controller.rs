@@ -66,7 +66,8 @@ impl Controller for InThisProcess {
             .0
             .as_mut()
             .ok_or(ControllerError::Refused(Refusal::NoLeg))?;
-        let drive = leg.tick(sensors, link);
+        leg.receive(link);
+        let drive = leg.tick(sensors);
         Ok((drive, leg.telemetry()))
     }
 }

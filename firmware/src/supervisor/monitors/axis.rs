@@ -1,7 +1,8 @@
 //! What raises the faults of one axis.
 
 use super::{Timer, View};
-use crate::control::ticks;
+use crate::control::{CYCLE_TICKS, ticks};
+use crate::sensors::CODE_MAX;
 use crate::settings::Settings;
 use crate::supervisor::{Fault, FaultSet};
 use leg_model::Scalar;
@@ -17,11 +18,31 @@ pub struct AxisView<T> {
     pub voltage_v: T,
 }
 
-/// Ticks over which a tension must not jump: a power of two.
-const JUMP_TICKS: usize = 8;
+impl<T: Scalar> AxisView<T> {
+    /// An axis that does nothing.
+    #[must_use]
+    pub fn none() -> Self {
+        Self {
+            following_m: T::zero(),
+            driving_v: T::zero(),
+            voltage_v: T::zero(),
+        }
+    }
+}
 
-/// Ticks after which a current is a fault: 2 ms.
-const CURRENT_TICKS: u32 = 16;
+/// Looks over which a tension must not jump, a power of two: a millisecond.
+const JUMP_LOOKS: usize = 2;
+
+/// Looks after which a current is a fault: 2 ms.
+const CURRENT_LOOKS: u32 = 4;
+
+/// Codes this near to an end of the range are taken as saturated.
+const SATURATED: u16 = 64;
+
+/// Looks in a time in s, at least one: each axis has its turn once a cycle.
+fn looks(time_s: f32) -> u32 {
+    ticks(time_s).div_ceil(u32::from(CYCLE_TICKS))
+}
 
 /// Watches one axis.
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +56,7 @@ pub struct AxisMonitor<T> {
     disagrees: Timer,
     last_code: u16,
     last_count: u16,
-    history: [T; JUMP_TICKS],
+    history: [T; JUMP_LOOKS],
     place: usize,
     filled: bool,
     bounds: Bounds<T>,
@@ -60,16 +81,16 @@ impl<T: Scalar> AxisMonitor<T> {
         let (limits, servo) = (&settings.limits, &settings.servo);
         let ceiling = settings.tension_ceiling_n;
         Self {
-            slack: Timer::new(ticks(limits.slack_time_s)),
-            stale: Timer::new(ticks(limits.stale_time_s)),
-            stuck: Timer::new(ticks(limits.stuck_time_s)),
-            still: Timer::new(ticks(limits.still_time_s)),
-            reversed: Timer::new(ticks(limits.reversed_time_s)),
-            over_current: Timer::new(CURRENT_TICKS),
-            disagrees: Timer::new(ticks(limits.disagreement_time_s)),
+            slack: Timer::new(looks(limits.slack_time_s)),
+            stale: Timer::new(looks(limits.stale_time_s)),
+            stuck: Timer::new(looks(limits.stuck_time_s)),
+            still: Timer::new(looks(limits.still_time_s)),
+            reversed: Timer::new(looks(limits.reversed_time_s)),
+            over_current: Timer::new(CURRENT_LOOKS),
+            disagrees: Timer::new(looks(limits.disagreement_time_s)),
             last_code: 0,
             last_count: 0,
-            history: [T::zero(); JUMP_TICKS],
+            history: [T::zero(); JUMP_LOOKS],
             place: 0,
             filled: false,
             bounds: Bounds {
@@ -103,6 +124,8 @@ impl<T: Scalar> AxisMonitor<T> {
         ) else {
             return;
         };
+        let saturated = !(SATURATED..=CODE_MAX - SATURATED).contains(&code);
+        faults.add(Fault::CellSaturated, saturated);
         faults.add(Fault::CellStale, self.stale.over(!fresh));
         // A code that is not fresh is the last one: that is stale, not stuck.
         faults.add(
@@ -116,11 +139,11 @@ impl<T: Scalar> AxisMonitor<T> {
             Fault::OverTension,
             view.driven && !(tension <= bounds.tension_n),
         );
-        let place = self.place & (JUMP_TICKS - 1);
+        let place = self.place & (JUMP_LOOKS - 1);
         let before = core::mem::replace(&mut self.history[place], tension);
         self.place = place + 1;
         let jump = self.filled && view.driven && !((tension - before).abs() <= bounds.jump_n);
-        self.filled |= self.place == JUMP_TICKS;
+        self.filled |= self.place == JUMP_LOOKS;
         faults.add(Fault::TensionJump, jump);
     }
 
@@ -128,9 +151,9 @@ impl<T: Scalar> AxisMonitor<T> {
     #[inline(always)]
     fn motor(&mut self, i: usize, view: &View<'_, T>, faults: &mut FaultSet) {
         let bounds = &self.bounds;
-        let (Some(&count), Some(axis), Some(&current), Some(&tension)) = (
+        let axis = &view.shown;
+        let (Some(&count), Some(&current), Some(&tension)) = (
             view.sensors.encoder_counts.get(i),
-            view.axes.get(i),
             view.measured.currents_a.get(i),
             view.measured.tensions_n.get(i),
         ) else {
