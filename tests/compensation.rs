@@ -59,6 +59,7 @@ fn rest(
     (balance, posture)
 }
 
+/// How far the tip is from its target but for the stretch of joint and shaft along the leg, which no tilt can undo.
 fn tip_error_m(file: &RigFile, posture: &Posture, target: &Direction<f64>) -> f64 {
     let tip = file.parameters.joint_length_m + file.parameters.leg_length_m;
     (posture.direction.vector() - target.vector()).norm() * tip
@@ -68,25 +69,40 @@ fn bounds(file: &RigFile) -> TensionBounds<f64> {
     TensionBounds::new(file.tension_floor_n, file.tension_ceiling_n).unwrap()
 }
 
-/// The largest error of the tip with unstretched lengths from `compensate`, and how many poses had a level.
-fn worst_m(
+/// What came out over the workspace.
+#[derive(Default)]
+struct Worst {
+    /// The largest error of the tip, m.
+    tip_m: f64,
+    /// The largest stretch of joint and shaft along the leg, m.
+    stretch_m: f64,
+    /// Poses that had a level, and poses that had none.
+    held: usize,
+    infeasible: usize,
+}
+
+/// Rests the leg everywhere with unstretched lengths from `compensate`.
+fn worst(
     file: &RigFile,
     compensate: impl Fn(f64, f64, f64, f64) -> Result<Vector3<f64>, HoldError>,
-) -> (f64, usize) {
-    let (mut worst, mut poses_held) = (0.0_f64, 0);
+) -> Worst {
+    let mut worst = Worst::default();
     for payload_kg in PAYLOADS_KG {
         for (azimuth, tilt) in poses(file.tilt_deg) {
             let Some(level) = feasible_level(file, azimuth, tilt, payload_kg) else {
+                worst.infeasible += 1;
                 continue;
             };
             let target = Direction::from_angles(azimuth, tilt).unwrap();
             let unstretched = compensate(azimuth, tilt, payload_kg, level).unwrap();
-            let (_, posture) = rest(file, unstretched, payload_kg, &target);
-            worst = worst.max(tip_error_m(file, &posture, &target));
-            poses_held += 1;
+            let (balance, posture) = rest(file, unstretched, payload_kg, &target);
+            worst.tip_m = worst.tip_m.max(tip_error_m(file, &posture, &target));
+            let stretch = balance.axial_stretch_m(&posture).unwrap().abs();
+            worst.stretch_m = worst.stretch_m.max(stretch);
+            worst.held += 1;
         }
     }
-    (worst, poses_held)
+    worst
 }
 
 fn in_f64(file: &RigFile) -> impl Fn(f64, f64, f64, f64) -> Result<Vector3<f64>, HoldError> {
@@ -119,14 +135,31 @@ fn in_f32(file: &RigFile) -> impl Fn(f64, f64, f64, f64) -> Result<Vector3<f64>,
 fn a_known_load_rests_on_target_on_every_support() {
     for ready in READY_RIGS {
         let file = RigFile::parse(ready.name, ready.text).unwrap();
-        let (worst, poses) = worst_m(&file, in_f64(&file));
-        println!("{}: {worst:.1e} m in f64 at {poses} poses", ready.name);
-        assert!(poses > 400, "{}: {poses} poses", ready.name);
-        assert!(worst <= 1e-9, "{}: {worst:e} m in f64", ready.name);
-        let (worst, _) = worst_m(&file, in_f32(&file));
-        println!("{}: {worst:.1e} m in f32", ready.name);
-        assert!(worst <= 1e-6, "{}: {worst:e} m in f32", ready.name);
-        assert!(worst > 1e-9, "{}: {worst:e} m: was this f32?", ready.name);
+        let f64_worst = worst(&file, in_f64(&file));
+        let Worst {
+            tip_m,
+            stretch_m,
+            held,
+            infeasible,
+        } = f64_worst;
+        println!(
+            "{}: {tip_m:.1e} m in f64 at {held} poses ({infeasible} have no level), beside a stretch of up to {stretch_m:.1e} m along the leg",
+            ready.name
+        );
+        assert!(held > 400, "{}: {held} poses", ready.name);
+        assert!(tip_m <= 1e-9, "{}: {tip_m:e} m in f64", ready.name);
+        // What is said of it: less than a tenth of a millimetre, and none where the joint is rigid.
+        let rigid = file.support.joint().axial_compliance_m_per_n == 0.0;
+        assert_eq!(rigid, stretch_m == 0.0, "{}", ready.name);
+        assert!(
+            stretch_m < 1e-4,
+            "{}: {stretch_m:e} m along the leg",
+            ready.name
+        );
+        let tip_m = worst(&file, in_f32(&file)).tip_m;
+        println!("{}: {tip_m:.1e} m in f32", ready.name);
+        assert!(tip_m <= 1e-6, "{}: {tip_m:e} m in f32", ready.name);
+        assert!(tip_m > 1e-9, "{}: {tip_m:e} m: was this f32?", ready.name);
     }
 }
 
@@ -198,7 +231,7 @@ fn an_unknown_load_is_told_by_the_tensions() {
     );
     assert!(exact < 1e-10, "{exact:e} m with exact tensions");
     assert!(
-        (5e-5..5e-4).contains(&one_percent),
+        (5e-5..2e-4).contains(&one_percent),
         "{one_percent:e} m with tensions 1 % off"
     );
 }

@@ -64,6 +64,27 @@ fn the_range_at_the_vertical_is_known() {
     ));
 }
 
+/// With a floor below the tension at which the tendons are softest, stiffness first falls with the level, then rises.
+#[test]
+fn a_demand_between_the_ends_of_a_range_that_dips_is_met() {
+    let mut file = table_1();
+    file.tension_floor_n = 0.5;
+    let pose = (0.0, 0.0, 1.0);
+    let met = answer(&file, pose, 20.0, None).unwrap();
+    assert!(
+        (met.stiffness_nm_per_rad / 20.0 - 1.0).abs() < 2e-4,
+        "{met:?}"
+    );
+    assert_eq!(met.limit, None);
+    // Softer than the softest: the nearest level is inside, and no bound stops it.
+    let softest = answer(&file, pose, 10.0, None).unwrap();
+    assert!((softest.level_n - 8.0).abs() < 6.0, "{softest:?}");
+    assert!(softest.stiffness_nm_per_rad < 17.5, "{softest:?}");
+    assert_eq!(softest.limit, None);
+    let pushed_m = pushed(&file, pose, met.level_n, 0.0);
+    assert!((pushed_m / 20.0 - 1.0).abs() < 0.05, "{pushed_m}");
+}
+
 #[test]
 fn at_the_edge_with_2_kg_only_levels_from_61_7_to_83_8_are_allowed() {
     let file = table_1();

@@ -14,7 +14,7 @@ pub struct Hold<T, const N: usize> {
     /// The tensions at the level, N.
     pub tensions: SVector<T, N>,
     /// u = l − δ(f): lengths of the tendons without tension, m. Tendons of these lengths bring the loaded leg to rest
-    /// exactly at the pose.
+    /// exactly at the pose. What joint and shaft stretch along the leg is not undone: that takes another freedom.
     pub unstretched: SVector<T, N>,
 }
 

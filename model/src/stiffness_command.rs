@@ -13,6 +13,13 @@ const TOLERANCE: f32 = 1e-4;
 /// Steps after which a search without convergence ends. Stiffness is nearly linear in the level: three do as a rule.
 const STEPS_MAX: u8 = 12;
 
+/// How far from the nearer end of the range it is looked whether the stiffness nears the demand inwards.
+const INWARD: f32 = 1.0 / 64.0;
+
+/// Steps in which the range is tried then, and how often, ever nearer to the best.
+const SCAN_STEPS: u8 = 16;
+const SCAN_ROUNDS: u8 = 3;
+
 /// A leg at a pose under a load, whose level of pretension is still open.
 #[derive(Clone, Copy, Debug)]
 pub struct StiffnessCommand<'a, T, E, const N: usize> {
@@ -39,7 +46,8 @@ pub struct StiffnessAnswer<T> {
     pub level_n: T,
     /// The stiffness that it gives, N·m/rad: the demanded one, or the nearest to it that can be reached.
     pub stiffness_nm_per_rad: T,
-    /// The tendon and the bound that stop it short of the demand; none if the demand is met.
+    /// The tendon and the bound that stop it short of the demand. None if the demand is met, or if the tendons' softest
+    /// point stops it and no bound does.
     pub limit: Option<Limit>,
 }
 
@@ -97,9 +105,9 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
 
     /// The level that gives a demanded bending stiffness (N·m/rad) within the bounds on the tensions.
     ///
-    /// Stiffness is taken to rise (or to fall) with the level from one end of its range to the other, as it does where
-    /// every tendon is tensioned beyond its softest point; a demand outside the stiffnesses at the two ends is answered
-    /// with the nearer end.
+    /// A tendon with a curve is softest at some tension, so stiffness need not rise all the way. Where both ends of the
+    /// range lie on one side of the demand and the stiffness nears it inwards, levels between them are tried, too;
+    /// if none of them crosses the demand, the nearest of them is the answer, with no bound to name.
     ///
     /// # Errors
     /// A demand that is not finite or not positive; [`Error::Infeasible`] if no level keeps the bounds; those of
@@ -122,20 +130,80 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
         let below = End::new(low, self.stiffness_at(low, axis)?, demand);
         let above = End::new(high, self.stiffness_at(high, axis)?, demand);
         if (below.error > T::zero()) == (above.error > T::zero()) {
-            let nearer_below = below.error.abs() <= above.error.abs();
-            let [lowest, highest] = self.distribution.limits(bounds);
-            let (end, limit) = if nearer_below {
-                (below, lowest)
-            } else {
-                (above, highest)
-            };
-            return Ok(StiffnessAnswer {
-                level_n: end.level,
-                stiffness_nm_per_rad: demand + end.error,
-                limit: Some(limit),
-            });
+            return self.beyond(below, above, demand, axis, bounds);
         }
         self.search(below, above, demand, axis)
+    }
+
+    /// Both ends of the range lie on one side of the demand: the nearer one is the answer unless the stiffness nears the
+    /// demand from there inwards.
+    #[inline(always)]
+    fn beyond(
+        &self,
+        below: End<T>,
+        above: End<T>,
+        demand: T,
+        axis: &BendingAxis<T>,
+        bounds: &TensionBounds<T>,
+    ) -> Result<StiffnessAnswer<T>, Error> {
+        let [lowest, highest] = self.distribution.limits(bounds);
+        let (end, other, limit) = if below.error.abs() <= above.error.abs() {
+            (below, above, lowest)
+        } else {
+            (above, below, highest)
+        };
+        let inward = end.level + (other.level - end.level) * T::from(INWARD);
+        let inside = End::new(inward, self.stiffness_at(inward, axis)?, demand);
+        if inside.error.abs() < end.error.abs() {
+            return self.scan(end, other, demand, axis);
+        }
+        Ok(StiffnessAnswer {
+            level_n: end.level,
+            stiffness_nm_per_rad: demand + end.error,
+            limit: Some(limit),
+        })
+    }
+
+    /// Tries levels from one end of the range to the other, then more of them around the nearest.
+    #[cold]
+    #[inline(never)]
+    fn scan(
+        &self,
+        mut start: End<T>,
+        end: End<T>,
+        demand: T,
+        axis: &BendingAxis<T>,
+    ) -> Result<StiffnessAnswer<T>, Error> {
+        let steps = T::from(f32::from(SCAN_STEPS));
+        let (lowest, highest) = (
+            self.distribution.lowest_level,
+            self.distribution.highest_level,
+        );
+        let mut step = (end.level - start.level) / steps;
+        let mut nearest = start;
+        for _ in 0..SCAN_ROUNDS {
+            let mut last = start;
+            for _ in 0..SCAN_STEPS {
+                let level = between(last.level + step, lowest, highest);
+                let next = End::new(level, self.stiffness_at(level, axis)?, demand);
+                if (next.error > T::zero()) != (last.error > T::zero()) {
+                    return self.search(last, next, demand, axis);
+                }
+                if next.error.abs() < nearest.error.abs() {
+                    nearest = next;
+                }
+                last = next;
+            }
+            // From one step before the nearest to one after it.
+            let level = between(nearest.level - step, lowest, highest);
+            start = End::new(level, self.stiffness_at(level, axis)?, demand);
+            step = (step + step) / steps;
+        }
+        Ok(StiffnessAnswer {
+            level_n: nearest.level,
+            stiffness_nm_per_rad: demand + nearest.error,
+            limit: None,
+        })
     }
 
     /// Between two levels whose stiffnesses enclose the demand: the false position, the end that stays weighed less
@@ -168,6 +236,17 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
             last = next;
         }
         Err(Error::NotConverged)
+    }
+}
+
+/// The number of a range that is nearest to a level.
+fn between<T: Scalar>(level: T, lowest: T, highest: T) -> T {
+    if level < lowest {
+        lowest
+    } else if level > highest {
+        highest
+    } else {
+        level
     }
 }
 
