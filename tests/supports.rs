@@ -9,6 +9,7 @@ use leg_host_tools::rig_file::RigFile;
 use leg_model::{Query, StiffnessAt, evaluate};
 use leg_tests::{difference, numbers};
 use serde_json::{Map, Value};
+use std::collections::BTreeSet;
 use std::io::Write;
 use std::process::{Command, Stdio};
 
@@ -28,7 +29,7 @@ fn a_small_weight_deviates_linearly_on_every_support() {
         for &azimuth in azimuths {
             let query = Query {
                 stiffness_at: StiffnessAt::Tension,
-                ..file.query(azimuth, 25.0, 1.0)
+                ..file.query(azimuth, file.tilt_deg.min(25.0), 1.0)
             };
             let linear = evaluate(&rig, &query).unwrap().deviation_m;
             let nonlinear = nonlinear::deviation_m(&rig, &query).unwrap().unwrap();
@@ -73,6 +74,9 @@ fn objects(text: &str) -> Vec<Map<String, Value>> {
         .collect()
 }
 
+/// What f32 does not compute.
+const DOUBLE_ONLY: [&str; 1] = ["deviation_nonlinear_m"];
+
 /// f32 against f64, and the emulated core against f32.
 fn assert_alike_everywhere(rig: &str) {
     let single = answers(rig, "f32");
@@ -80,6 +84,11 @@ fn assert_alike_everywhere(rig: &str) {
     let (double, single) = (objects(&answers(rig, "f64")), objects(&single));
     assert_eq!(double.len(), 5);
     for (double, single) in double.iter().zip(&single) {
+        let mut keys: BTreeSet<&String> = single.keys().collect();
+        assert!(DOUBLE_ONLY.iter().all(|key| !single.contains_key(*key)));
+        let double_only = DOUBLE_ONLY.map(String::from);
+        keys.extend(&double_only);
+        assert_eq!(double.keys().collect::<BTreeSet<_>>(), keys, "{rig}");
         let numeric = single
             .iter()
             .filter(|(_, value)| value.is_number() || value.is_array());
@@ -162,7 +171,7 @@ fn members_of_the_class_differ_by_their_joints_only() {
     let deviation = |name: &str| {
         let ready = READY_RIGS.iter().find(|rig| rig.name == name).unwrap();
         let file = RigFile::parse(ready.name, ready.text).unwrap();
-        evaluate(&file.parameters, &file.query(0.0, 20.0, 1.0))
+        evaluate(&file.parameters, &file.query(0.0, 10.0, 1.0))
             .unwrap()
             .deviation_m
     };
@@ -179,7 +188,7 @@ fn linear_error_percent(file: &RigFile) -> (f64, f64) {
     let mut errors = Vec::new();
     for payload_kg in [0.0, 0.5, 1.0, 2.0] {
         for azimuth in (0..360).step_by(15) {
-            for tilt in [5.0, 10.0, 15.0, 20.0, 25.0, 30.0] {
+            for tilt in [1, 2, 3, 4, 5, 6].map(|part| file.tilt_deg / 6.0 * f64::from(part)) {
                 let query = Query {
                     tendons,
                     ..file.query(f64::from(azimuth), tilt, payload_kg)
@@ -210,7 +219,7 @@ fn the_linear_deviation_is_near_the_equilibrium_over_the_workspace() {
             ready.name
         );
         assert!(
-            (0.02..1.5).contains(&mean),
+            (0.005..1.5).contains(&mean),
             "{}: {mean} % on average",
             ready.name
         );

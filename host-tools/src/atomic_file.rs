@@ -1,7 +1,12 @@
 //! Files that are there as a whole or not at all.
 
+mod workshop;
+
+pub use workshop::Workshop;
+
 use std::io;
 use std::path::Path;
+use tempfile::TempDir;
 
 /// Makes the folder of `path`, lets `write` make a new file of the same name beside it, moves that to `path`, and gives
 /// what `write` gave.
@@ -20,14 +25,16 @@ pub fn replace<T, E: From<io::Error>>(
         return Err(no_file().into());
     };
     std::fs::create_dir_all(folder)?;
-    // In the same folder: a move from one disk to another is a copy.
-    let workshop = tempfile::Builder::new()
-        .prefix(".leg-")
-        .tempdir_in(folder)?;
+    let workshop = workshop_in(folder)?;
     let new = workshop.path().join(name);
     let written = write(&new)?;
     std::fs::rename(&new, path)?;
     Ok(written)
+}
+
+/// In the same folder: a move from one disk to another is a copy.
+fn workshop_in(folder: &Path) -> io::Result<TempDir> {
+    tempfile::Builder::new().prefix(".leg-").tempdir_in(folder)
 }
 
 #[cfg(test)]

@@ -83,7 +83,7 @@ mod tests {
     use crate::rig_file::RigFile;
 
     #[test]
-    fn every_ready_rig_has_its_support_and_is_table_1_otherwise() {
+    fn every_ready_rig_has_its_support_and_is_table_1_otherwise_or_leans_less() {
         let table_1 = RigFile::load(None).unwrap();
         for rig in READY_RIGS {
             let file = RigFile::parse(rig.name, rig.text).unwrap();
@@ -91,9 +91,36 @@ mod tests {
             let same = RigFile {
                 support_name: table_1.support_name,
                 support: table_1.support,
+                critical_n: table_1.critical_n,
+                tilt_deg: table_1.tilt_deg,
                 ..file
             };
             assert_eq!(same, table_1, "{}", rig.name);
+            assert!(file.tilt_deg <= table_1.tilt_deg, "{}", rig.name);
+        }
+    }
+
+    /// No material of these rigs is superelastic: metals are linear to 2 % at the very most.
+    #[test]
+    fn ready_rigs_are_bent_within_the_linear_range_only() {
+        for rig in READY_RIGS {
+            let mut lines = rig.text.lines();
+            let limit = lines.find_map(|line| line.strip_prefix("strain_max_percent = "));
+            assert_eq!(limit.is_some(), rig.support.elastic(), "{}", rig.name);
+            let percent: f64 = limit.map_or(0.0, |percent| percent.parse().unwrap());
+            assert!(percent <= 2.0, "{}: {percent} %", rig.name);
+        }
+    }
+
+    #[test]
+    fn the_joints_of_ready_rigs_bear_the_tendons_pull() {
+        for rig in READY_RIGS {
+            let file = RigFile::parse(rig.name, rig.text).unwrap();
+            assert_eq!(file.buckling().is_some(), rig.support.elastic());
+            if let Some(buckling) = file.buckling() {
+                assert!(buckling.at_level < 0.33, "{}: {buckling:?}", rig.name);
+                assert!(buckling.at_ceiling < 0.7, "{}: {buckling:?}", rig.name);
+            }
         }
     }
 }

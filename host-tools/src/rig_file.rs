@@ -1,8 +1,12 @@
 //! The rig file: a mechanism in a human's units, read into SI.
 
+mod buckling;
+mod flexures;
 mod reading;
 mod support;
 mod tendon;
+
+pub use buckling::Buckling;
 
 use crate::failure::{Failure, Place};
 use crate::ready_rigs::{self, READY_RIGS};
@@ -32,6 +36,8 @@ pub struct RigFile {
     pub support_name: SupportName,
     /// The central support.
     pub support: Support<f64>,
+    /// The load along the leg under which its flexures buckle, N; none where the file does not give their geometry.
+    pub critical_n: Option<f64>,
 }
 
 /// Why a rig file is refused.

@@ -98,6 +98,26 @@ pub enum TensileError {
         /// What is there.
         text: String,
     },
+    /// A field that overflows in SI units.
+    #[error(
+        "line {line}, column {column}: `{text}` is too large in newtons or metres; check it and the unit of its column"
+    )]
+    TooLarge {
+        /// The line of the file.
+        line: u64,
+        /// The column, counted from 1.
+        column: usize,
+        /// What is there.
+        text: String,
+    },
+    /// No row under tension, and some under compression.
+    #[error(
+        "no force is above zero, the first below is on line {line}: this is a test in compression, which a tendon does not bear, or its signs are reversed; give a pull as a positive force"
+    )]
+    Compression {
+        /// The line of the file.
+        line: u64,
+    },
     /// Two rows of a branch at one force.
     #[error(
         "line {line}: the force is that of line {before}; keep one row for each force, for example their mean"

@@ -93,6 +93,16 @@ pub enum Problem {
     /// The model has no result for the section.
     #[error("the model has no result for this: {0}")]
     NoResult(leg_model::Error),
+    /// The flexures buckle.
+    #[error(
+        "`level_n` is too high for the flexures: three tendons at it pull with {pull_n:.0} N, and the joint buckles at {critical_n:.0} N"
+    )]
+    Buckles {
+        /// What the tendons pull with, N.
+        pull_n: f64,
+        /// What the joint bears, N.
+        critical_n: f64,
+    },
     /// The model refuses the value.
     #[error("`{key}` {reason}")]
     Refused {
@@ -123,6 +133,10 @@ impl Problem {
             Self::Curve { .. } => {
                 "correct the point; `leg curve` makes a curve from a tensile test".into()
             }
+            Self::Buckles { critical_n, .. } => format!(
+                "make the flexures thicker or shorter, or give less than {:.1}",
+                (critical_n / 0.3).floor() / 10.0
+            ),
             Self::NoResult(_) => "compare with the ready rigs, `leg rig list`".into(),
             Self::Refused { key, reason } => fix_of(key, *reason),
         }
@@ -132,6 +146,9 @@ impl Problem {
 fn fix_of(key: &str, reason: Reason) -> String {
     match reason {
         Reason::OutOfRange if key == "tilt_deg" => "give at most 60".into(),
+        Reason::OutOfRange if key == "shear_modulus_gpa" => {
+            "give less than `youngs_modulus_gpa`, about 0.38 of it for a metal".into()
+        }
         Reason::Collinear => "spread the anchors round the axis".into(),
         Reason::AboveCeiling => "give at most `ceiling_n`".into(),
         Reason::NotSlender => "make it longer or wider, or the flexure thinner".into(),

@@ -73,7 +73,7 @@ pub enum Quantity {
     YoungsModulus,
     /// Shear modulus of a flexure, Pa.
     ShearModulus,
-    /// The largest strain from which a flexure springs back.
+    /// The strain to which a flexure's material is linear.
     StrainLimit,
 }
 

@@ -3,6 +3,10 @@
 //! A pivot (row c) is one rod. A universal joint of flexures (rows d to i) has two pairs in series, one for each axis:
 //! the two flexures of a pair stand side by side on their axis, `spacing_m` apart, along the leg. So a pair bends
 //! easily about its axis, and resists torsion by bending its flexures sideways.
+//!
+//! The formulas are those of small strain and no load along the flexure. A load along it makes it softer, by about its
+//! part of the critical load. That is told for a flexure whose ends are kept from turning, one by the base and one by
+//! the tendons, but not from moving aside: π²EI/L², as if it were pinned at both ends.
 
 mod leaf;
 mod notch;
@@ -25,7 +29,8 @@ pub struct FlexureMaterial<T> {
     pub youngs_modulus_pa: T,
     /// G, Pa.
     pub shear_modulus_pa: T,
-    /// The largest strain from which it springs back, as a part of one.
+    /// The strain to which its stress is linear, as a part of one. Beyond it there is no E: superelastic
+    /// nickel-titanium, say, springs back from 6 % but is linear to about 1 %.
     pub strain_max: T,
 }
 
@@ -33,10 +38,14 @@ impl<T: Scalar> FlexureMaterial<T> {
     fn check(&self) -> Result<(), Error> {
         check_positive(self.youngs_modulus_pa, MODULUS_MAX, Quantity::YoungsModulus)?;
         check_positive(self.shear_modulus_pa, MODULUS_MAX, Quantity::ShearModulus)?;
+        // E = 2G(1 + ν): ν would be at most -1/2, which no material of flexures has.
+        if self.shear_modulus_pa >= self.youngs_modulus_pa {
+            return Err(Error::refused(Quantity::ShearModulus, Reason::OutOfRange));
+        }
         check_positive(self.strain_max, 1.0, Quantity::StrainLimit)
     }
 
-    /// Refuses a strain from which the material does not spring back.
+    /// Refuses a strain to which the material is not linear.
     fn check_strain(&self, strain: T) -> Result<(), Error> {
         if strain <= self.strain_max {
             Ok(())
@@ -69,6 +78,11 @@ impl<T: Scalar> Flexure<T> {
             axial_compliance_m_per_n: T::one() / self.axial,
         })
     }
+}
+
+/// π²EI/L², N.
+fn critical<T: Scalar>(bending_nm_per_rad: T, length_m: T) -> T {
+    T::PI * T::PI * bending_nm_per_rad / length_m
 }
 
 fn check_length<T: Scalar>(length: T, quantity: Quantity) -> Result<(), Error> {

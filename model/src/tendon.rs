@@ -22,13 +22,14 @@ pub trait Elasticity<T: Scalar> {
     /// δ(T): how much longer it is under a tension in N than without, m.
     ///
     /// # Errors
-    /// A tension that is not a number or beyond what is known of the tendon: nothing is guessed.
+    /// A tension beyond what is known of the tendon: nothing is guessed. One that is not a number is beyond every curve;
+    /// a constant stiffness, which knows every tension, hands it on.
     fn elongation(&self, tension: T) -> Result<T, Error>;
 
     /// Tangent stiffness k = dT/dδ under a tension in N, N/m.
     ///
     /// # Errors
-    /// As [`Self::elongation`].
+    /// As [`Self::elongation`]; a constant stiffness does not look at the tension.
     fn stiffness(&self, tension: T) -> Result<T, Error>;
 
     /// Tension at an elongation in m, N; none when slack.

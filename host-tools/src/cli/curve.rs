@@ -1,12 +1,14 @@
 //! `leg curve`.
 
-use super::curve_charts::draw;
+mod scale;
+
+use super::curve_charts::Charts;
 use super::curve_report::Report;
 use super::print;
 use crate::failure::Failure;
 use crate::tensile::{self, Fit, TensileError};
 use crate::{atomic_file, curve_toml};
-use leg_model::{CurvePoint, TendonCurve};
+use leg_model::TendonCurve;
 use std::path::{Path, PathBuf};
 
 /// Turns a tensile test of a tendon into the curve of a rig file.
@@ -19,19 +21,34 @@ pub struct Args {
     /// The tensile test.
     file: PathBuf,
     /// Rows below this force are slack that is taken up, N; a thousandth of the largest force if left out.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     taut_n: Option<f64>,
     /// Length of the test piece, mm, where it is not that of the tendon.
-    #[arg(long, value_name = "MM", requires_all = ["diameter_mm", "tendon_length_mm", "tendon_diameter_mm"])]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, requires_all = ["diameter_mm", "tendon_length_mm", "tendon_diameter_mm"])]
     length_mm: Option<f64>,
     /// Diameter of the test piece, mm.
-    #[arg(long, value_name = "MM", requires = "length_mm")]
+    #[arg(
+        long,
+        value_name = "MM",
+        allow_negative_numbers = true,
+        requires = "length_mm"
+    )]
     diameter_mm: Option<f64>,
     /// Length of the tendon, mm.
-    #[arg(long, value_name = "MM", requires = "length_mm")]
+    #[arg(
+        long,
+        value_name = "MM",
+        allow_negative_numbers = true,
+        requires = "length_mm"
+    )]
     tendon_length_mm: Option<f64>,
     /// Diameter of the tendon, mm.
-    #[arg(long, value_name = "MM", requires = "length_mm")]
+    #[arg(
+        long,
+        value_name = "MM",
+        allow_negative_numbers = true,
+        requires = "length_mm"
+    )]
     tendon_diameter_mm: Option<f64>,
     /// Writes the section for a rig file here instead of printing it.
     #[arg(long, value_name = "FILE")]
@@ -50,30 +67,43 @@ pub struct Args {
 /// A [`Failure`]: a test that gives no curve, by line and column; files that cannot be written.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     check_taut(args.taut_n)?;
-    let scale = scale(args)?;
+    let scale = scale::of(args)?;
     let test = tensile::read(&args.file).map_err(|error| refused(&args.file, &error))?;
     let fit = Fit::new(&test, args.taut_n).map_err(|error| refused(&args.file, &error))?;
     let points: Vec<_> = fit.points.iter().map(|point| scale.apply(point)).collect();
     TendonCurve::new(&points).map_err(no_tendon)?;
     let toml = curve_toml::section(&points);
-    if let Some(file) = &args.out {
-        save(file, &toml)?;
-    }
-    let plots = match &args.plots {
-        Some(folder) => Some(draw(&fit, folder)?),
-        None => None,
-    };
+    let plots = save_all(args, &fit, &toml)?;
     let report = Report {
         fit: &fit,
         points: &points,
+        strain: args.length_mm.map(|length_mm| strain(&fit, length_mm)),
         out: args.out.as_deref(),
-        plots: plots.as_deref().unwrap_or_default(),
+        plots: &plots,
     };
     if args.json {
         return print(&report.json()?);
     }
     let printed = if args.out.is_some() { "" } else { &toml };
     print(&(report.table() + printed))
+}
+
+/// Everything that is asked for, or nothing: the charts are drawn beside their places before the section is written.
+fn save_all(args: &Args, fit: &Fit, toml: &str) -> Result<Vec<PathBuf>, Failure> {
+    let charts = match &args.plots {
+        Some(folder) => Some(Charts::draw(fit, folder)?),
+        None => None,
+    };
+    if let Some(file) = &args.out {
+        save(file, toml)?;
+    }
+    charts.map_or_else(|| Ok(Vec::new()), Charts::deliver)
+}
+
+/// The largest strain of the test piece.
+fn strain(fit: &Fit, length_mm: f64) -> f64 {
+    let elongations_mm = fit.rows.iter().map(|row| row.elongation_m * 1e3);
+    elongations_mm.fold(0.0, f64::max) / length_mm
 }
 
 fn refused(file: &Path, error: &TensileError) -> Failure {
@@ -94,40 +124,6 @@ fn check_taut(taut_n: Option<f64>) -> Result<(), Failure> {
         }
         _ => Ok(()),
     }
-}
-
-/// From the test piece to the tendon.
-struct Scale {
-    length_ratio: f64,
-    section_ratio: f64,
-}
-
-impl Scale {
-    fn apply(&self, point: &CurvePoint<f64>) -> CurvePoint<f64> {
-        point.scaled(self.length_ratio, self.section_ratio)
-    }
-}
-
-fn scale(args: &Args) -> Result<Scale, Failure> {
-    let sizes = [
-        ("--length-mm", args.length_mm),
-        ("--diameter-mm", args.diameter_mm),
-        ("--tendon-length-mm", args.tendon_length_mm),
-        ("--tendon-diameter-mm", args.tendon_diameter_mm),
-    ];
-    for (name, size) in sizes {
-        if size.is_some_and(|size| !(size.is_finite() && size > 0.0)) {
-            let sentence = format!("{name} has to be greater than zero");
-            return Err(Failure::refused(sentence, "give the size in millimetres"));
-        }
-    }
-    let ratio =
-        |tendon: Option<f64>, piece: Option<f64>| tendon.unwrap_or(1.0) / piece.unwrap_or(1.0);
-    let diameter_ratio = ratio(args.tendon_diameter_mm, args.diameter_mm);
-    Ok(Scale {
-        length_ratio: ratio(args.tendon_length_mm, args.length_mm),
-        section_ratio: diameter_ratio * diameter_ratio,
-    })
 }
 
 fn save(file: &Path, text: &str) -> Result<(), Failure> {

@@ -1,9 +1,12 @@
 //! The charts of `leg curve`, as the paper's Fig. 6 has them.
 
+use crate::atomic_file::Workshop;
 use crate::failure::Failure;
-use crate::plot::{self, Chart, Line};
+use crate::plot::{self, Chart, Line, PlotError};
 use crate::tensile::{Fit, Row};
-use leg_model::{Elasticity, Error, TendonCurve};
+use leg_model::{Elasticity, TendonCurve};
+use std::error::Error;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 /// Steps of a drawn line.
@@ -17,16 +20,47 @@ type Panel = (&'static str, &'static str, Points, Points);
 
 type Points = Vec<(f64, f64)>;
 
-/// Draws elongation and stiffness of the test piece, each as SVG and PNG, and names the SVG files.
-pub(super) fn draw(fit: &Fit, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let panels = panels(fit).map_err(|error| Failure::from_error(&error))?;
-    panels
-        .into_iter()
-        .map(|panel| save(panel, folder))
-        .collect()
+/// Elongation and stiffness of the test piece, each as SVG and PNG, drawn but not yet in their folder.
+pub(super) struct Charts<'a> {
+    folder: &'a Path,
+    workshop: Workshop,
+    /// The names of the SVG files.
+    names: Vec<OsString>,
 }
 
-fn panels(fit: &Fit) -> Result<[Panel; 2], Error> {
+impl<'a> Charts<'a> {
+    /// Draws them.
+    pub(super) fn draw(fit: &Fit, folder: &'a Path) -> Result<Self, Failure> {
+        let panels = panels(fit).map_err(|error| Failure::from_error(&error))?;
+        let workshop = Workshop::beside(folder).map_err(|error| refused(folder, &error))?;
+        let mut names = Vec::new();
+        for panel in panels {
+            let svg = save(panel, workshop.path()).map_err(|error| refused(folder, &error))?;
+            names.extend(svg.file_name().map(OsString::from));
+        }
+        workshop.check().map_err(|error| refused(folder, &error))?;
+        Ok(Self {
+            folder,
+            workshop,
+            names,
+        })
+    }
+
+    /// Moves them into their folder, and names the SVG files.
+    pub(super) fn deliver(self) -> Result<Vec<PathBuf>, Failure> {
+        let delivered = self.workshop.deliver();
+        delivered.map_err(|error| refused(self.folder, &error))?;
+        let in_folder = |name| self.folder.join(name);
+        Ok(self.names.into_iter().map(in_folder).collect())
+    }
+}
+
+fn refused(folder: &Path, error: &dyn Error) -> Failure {
+    let sentence = format!("no plots in {}: {error}", folder.display());
+    Failure::refused(sentence, "name another folder with --plots")
+}
+
+fn panels(fit: &Fit) -> Result<[Panel; 2], leg_model::Error> {
     let curve = TendonCurve::new(&fit.points)?;
     let marked = thinned(&fit.rows);
     Ok([
@@ -48,7 +82,10 @@ fn panels(fit: &Fit) -> Result<[Panel; 2], Error> {
     ])
 }
 
-fn line(curve: &TendonCurve<f64>, of: impl Fn(f64) -> Result<f64, Error>) -> Result<Points, Error> {
+fn line(
+    curve: &TendonCurve<f64>,
+    of: impl Fn(f64) -> Result<f64, leg_model::Error>,
+) -> Result<Points, leg_model::Error> {
     let last = curve.tension_max_n();
     let point = |step| {
         let force = last * (f64::from(step) / f64::from(STEPS));
@@ -73,7 +110,7 @@ fn average_stiffness(pair: &[Row]) -> (f64, f64) {
     (before.force_n + 0.5 * rise_n, rise_n / stretch_mm)
 }
 
-fn save((name, y_title, points, marks): Panel, folder: &Path) -> Result<PathBuf, Failure> {
+fn save((name, y_title, points, marks): Panel, folder: &Path) -> Result<PathBuf, PlotError> {
     let chart = Chart {
         title: format!("Tensile test: {y_title} over tension"),
         x_title: "tension (N)".into(),
@@ -85,8 +122,5 @@ fn save((name, y_title, points, marks): Panel, folder: &Path) -> Result<PathBuf,
         }],
         marks_label: "measured".into(),
     };
-    plot::save_both(&chart, &folder.join(name)).map_err(|error| {
-        let sentence = format!("no plots in {}: {error}", folder.display());
-        Failure::refused(sentence, "name another folder with --plots")
-    })
+    plot::save_both(&chart, &folder.join(name))
 }

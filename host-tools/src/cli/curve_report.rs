@@ -7,11 +7,16 @@ use leg_model::CurvePoint;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
+/// Tendons break before they are stretched by more than this part of their length.
+const STRAIN_LIKELY: f64 = 0.2;
+
 /// Everything that `leg curve` found.
 pub(super) struct Report<'a> {
     pub(super) fit: &'a Fit,
     /// Of the tendon: those of the fit, scaled.
     pub(super) points: &'a [CurvePoint<f64>],
+    /// The largest of the test piece, where its length is known.
+    pub(super) strain: Option<f64>,
     pub(super) out: Option<&'a Path>,
     pub(super) plots: &'a [PathBuf],
 }
@@ -49,14 +54,25 @@ impl Report<'_> {
             "rows        {} taut ones of the loading branch, from {:.3} N\n\
              take-up     {}\n\
              fit         {} points, off by at most {:.5} mm, {:.5} mm root mean square\n\
-             hysteresis  {hysteresis}\n",
+             hysteresis  {hysteresis}\n{}",
             fit.rows.len(),
             fit.taut_n,
             take_up(fit.take_up_m * 1e3),
             fit.points.len(),
             fit.error_max_m * 1e3,
             fit.error_rms_m * 1e3,
+            self.warning()
+                .map_or_else(String::new, |warning| format!("warning     {warning}\n")),
         )
+    }
+
+    /// What is unlikely for a tendon.
+    fn warning(&self) -> Option<String> {
+        let strain = self.strain.filter(|strain| *strain > STRAIN_LIKELY)?;
+        Some(format!(
+            "the test piece is stretched by {:.0} % of --length-mm: check the length and the unit of the elongation",
+            strain * 100.0
+        ))
     }
 
     fn files(&self) -> String {
@@ -76,6 +92,8 @@ impl Report<'_> {
             error_rms_m: self.fit.error_rms_m,
             hysteresis: self.fit.hysteresis,
             plots: self.plots,
+            strain_max: self.strain,
+            warning: self.warning(),
             out: self.out,
         };
         match serde_json::to_string(&report) {
@@ -105,6 +123,8 @@ struct JsonReport<'a> {
     error_rms_m: f64,
     hysteresis: Option<Hysteresis>,
     plots: &'a [PathBuf],
+    strain_max: Option<f64>,
+    warning: Option<String>,
     out: Option<&'a Path>,
 }
 

@@ -3,12 +3,18 @@
 use super::not_printed;
 use crate::atomic_file;
 use crate::failure::Failure;
+use crate::line_error::LineError;
 use crate::mjcf::{HeldLeg, Mjcf, MjcfError};
 use crate::rig_file::RigFile;
-use leg_model::Query;
+use leg_model::{Quantity, Query};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+
+const AZIMUTH: &str = "--azimuth-deg";
+const TILT: &str = "--tilt-deg";
+const PAYLOAD: &str = "--payload-kg";
+const LEVEL: &str = "--level-n";
 
 /// Writes the rig for another program.
 #[derive(Debug, clap::Args)]
@@ -69,6 +75,7 @@ struct MjcfArgs {
 /// A [`Failure`]: a rig file that is refused, a pose that the tendons cannot hold, or a file that cannot be written.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let Format::Mjcf(args) = &args.format;
+    args.check()?;
     let rig = RigFile::load(args.rig.as_deref())?;
     let query = rig.query(args.azimuth_deg, args.tilt_deg, args.payload_kg);
     let query = Query {
@@ -77,11 +84,48 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     };
     let model = HeldLeg::new(&rig.parameters, &query)
         .and_then(|leg| Mjcf::new(&leg))
-        .map_err(|error: MjcfError| Failure::from_error(&error))?;
+        .map_err(|error| refused(&error))?;
     match &args.out {
         None => model.write(io::stdout().lock()).map_err(not_printed),
         Some(path) => save(&model, path),
     }
+}
+
+impl MjcfArgs {
+    fn check(&self) -> Result<(), Failure> {
+        let numbers = [
+            (AZIMUTH, Some(self.azimuth_deg)),
+            (TILT, Some(self.tilt_deg)),
+            (PAYLOAD, Some(self.payload_kg)),
+            (LEVEL, self.level_n),
+        ];
+        for (flag, number) in numbers {
+            if number.is_some_and(|number| !number.is_finite()) {
+                let sentence = format!("{flag} must be a finite number");
+                return Err(Failure::refused(sentence, "give a number such as 1.5"));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The model's words at the flag that gives the value.
+fn refused(error: &MjcfError) -> Failure {
+    let &MjcfError::Model(LineError::Refused { quantity, reason }) = error else {
+        return Failure::from_error(error);
+    };
+    let (what, help) = match quantity {
+        Quantity::Azimuth => (AZIMUTH, "give -3600 to 3600"),
+        Quantity::Tilt => (TILT, "give -60 to 60"),
+        Quantity::Payload => (PAYLOAD, "give 0 to 1e6"),
+        Quantity::Level => (LEVEL, "give a level inside the bounds of the rig file"),
+        Quantity::Tension => (
+            "the tension of a tendon at this level",
+            "give a lower --level-n or --payload-kg, or a rig file with a constant `stiffness_n_per_m`",
+        ),
+        _ => return Failure::from_error(error),
+    };
+    Failure::refused(format!("{what} {reason}"), help)
 }
 
 /// Writes the file whole or not at all.

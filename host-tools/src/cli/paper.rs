@@ -1,11 +1,15 @@
 //! `leg paper`.
 
 use super::print;
+use crate::atomic_file::Workshop;
 use crate::failure::Failure;
+use crate::image;
 use crate::paper::{self, Paper, Row, Verdict};
 use crate::paths::from_here;
-use crate::{atomic_file, image};
 use std::path::{Path, PathBuf};
+
+/// The file beside the figures.
+const REPORT: &str = "report.md";
 
 /// Lays every number that the paper publishes beside ours, draws its figures 6, 9 and 10, and shows its errata.
 #[derive(Debug, clap::Args)]
@@ -35,17 +39,18 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     judge(&computed)
 }
 
+/// Report and figures together, or nothing.
 fn write(computed: &Paper, folder: &Path) -> Result<PathBuf, Failure> {
     let refused = |error: &dyn std::error::Error| {
         let sentence = format!("no report in {}: {error}", folder.display());
         Failure::refused(sentence, "name another folder with --out")
     };
-    let figures = paper::draw(folder).map_err(|error| refused(&error))?;
-    let report = folder.join("report.md");
+    let workshop = Workshop::beside(folder).map_err(|error| refused(&error))?;
+    let figures = paper::draw(workshop.path()).map_err(|error| refused(&error))?;
     let text = paper::markdown(computed, &figures);
-    atomic_file::replace(&report, |new| std::fs::write(new, &text))
-        .map_err(|error: std::io::Error| refused(&error))?;
-    Ok(report)
+    std::fs::write(workshop.path().join(REPORT), text).map_err(|error| refused(&error))?;
+    workshop.deliver().map_err(|error| refused(&error))?;
+    Ok(folder.join(REPORT))
 }
 
 fn table(computed: &Paper, report: &Path) -> String {

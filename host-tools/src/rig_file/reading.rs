@@ -1,6 +1,6 @@
 //! From the text of a rig file to its values, every one checked.
 
-use super::{RigFile, support, tendon};
+use super::{RigFile, buckling, support, tendon};
 use crate::toml_problem::{Fault, Problem};
 use crate::toml_section::Section;
 use leg_model::{Elasticity, Error, Quantity, Reason, RigParameters};
@@ -25,6 +25,7 @@ pub(super) fn parse(text: &str) -> Result<RigFile, Fault> {
             problem: Problem::Refused { key, reason },
         });
     }
+    buckling::check(&file, root.span_of("tendon", "level_n"))?;
     Ok(file)
 }
 
@@ -41,7 +42,11 @@ fn read(root: &Section<'_>) -> Result<RigFile, Fault> {
     let forces = root.section("tendon", &tendon::KEYS)?;
     let workspace = root.section("workspace", &["tilt_deg"])?;
     let tilt_deg = workspace.number("tilt_deg")?;
-    let (support_name, support) = support::read(root, tilt_deg)?;
+    let support::Read {
+        name: support_name,
+        support,
+        critical_n,
+    } = support::read(root, tilt_deg)?;
     Ok(RigFile {
         parameters: RigParameters {
             base_anchors_m: geometry
@@ -65,6 +70,7 @@ fn read(root: &Section<'_>) -> Result<RigFile, Fault> {
         tilt_deg,
         support_name,
         support,
+        critical_n,
     })
 }
 

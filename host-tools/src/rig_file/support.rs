@@ -1,43 +1,46 @@
 //! The section `[support]`: how the joint guides the leg, and how it resists.
 
+use super::flexures::{self, MATERIAL};
 use super::reading::metres;
 use crate::support_name::SupportName;
 use crate::toml_problem::{Fault, Problem};
 use crate::toml_section::Section;
-use leg_model::{Error, FlexureMaterial, JointStiffness, Leaf, Notch, Quantity, Rod, Support};
+use leg_model::{Error, JointStiffness, Quantity, Support};
 
 /// The keys of a measured joint.
 const MEASURED: [&str; 3] = ["bending_nm_per_rad", "torsion_nm_per_rad", "axial_n_per_m"];
 
-/// The keys of a material.
-const MATERIAL: [&str; 3] = [
-    "youngs_modulus_gpa",
-    "shear_modulus_gpa",
-    "strain_max_percent",
-];
-
 const SHAFT: [&str; 3] = ["length_mm", "section_mm2", "youngs_modulus_gpa"];
 
+/// What the section gives.
+pub(super) struct Read {
+    pub name: SupportName,
+    pub support: Support<f64>,
+    /// The load along the leg under which its flexures buckle, N.
+    pub critical_n: Option<f64>,
+}
+
 /// Reads the section; `tilt_deg` is how far the joint bends.
-pub(super) fn read(
-    root: &Section<'_>,
-    tilt_deg: f64,
-) -> Result<(SupportName, Support<f64>), Fault> {
+pub(super) fn read(root: &Section<'_>, tilt_deg: f64) -> Result<Read, Fault> {
     let first_look = root.any_section("support")?;
     let name = read_name(&first_look)?;
     let measured = first_look.has(MEASURED[0]);
     let section = root.section("support", &keys(name, measured))?;
-    let joint = match (name.elastic(), measured) {
-        (false, _) => rigid(&section)?,
-        (true, true) => measured_joint(&section)?,
-        (true, false) => from_geometry(&section, name, tilt_deg.to_radians())?,
+    let (joint, critical_n) = match (name.elastic(), measured) {
+        (false, _) => (rigid(&section)?, None),
+        (true, true) => (measured_joint(&section)?, None),
+        (true, false) => flexures::read(&section, name, tilt_deg.to_radians())?,
     };
     let joint = JointStiffness {
         axial_compliance_m_per_n: joint.axial_compliance_m_per_n + shaft(&section)?,
         ..joint
     };
     let support = Support::new(name.kind(), joint).map_err(|error| fault(&section, error))?;
-    Ok((name, support))
+    Ok(Read {
+        name,
+        support,
+        critical_n,
+    })
 }
 
 fn read_name(section: &Section<'_>) -> Result<SupportName, Fault> {
@@ -91,47 +94,6 @@ fn measured_joint(section: &Section<'_>) -> Result<JointStiffness<f64>, Fault> {
     })
 }
 
-fn from_geometry(
-    section: &Section<'_>,
-    name: SupportName,
-    tilt: f64,
-) -> Result<JointStiffness<f64>, Fault> {
-    let material = FlexureMaterial {
-        youngs_modulus_pa: section.number(MATERIAL[0])? * 1e9,
-        shear_modulus_pa: section.number(MATERIAL[1])? * 1e9,
-        strain_max: section.number(MATERIAL[2])? / 100.0,
-    };
-    let length = |key| section.number(key).map(metres);
-    let joint = match name {
-        SupportName::CompliantPivot => rod(section)?.pivot(&material, tilt),
-        SupportName::NotchUniversal => {
-            let notch = Notch {
-                radius_m: length("radius_mm")?,
-                thickness_m: length("thickness_mm")?,
-                width_m: length("width_mm")?,
-            };
-            notch.universal(length("spacing_mm")?, &material, tilt)
-        }
-        SupportName::LeafSpringUniversal => {
-            let leaf = Leaf {
-                length_m: length("length_mm")?,
-                width_m: length("width_mm")?,
-                thickness_m: length("thickness_mm")?,
-            };
-            leaf.universal(length("spacing_mm")?, &material, tilt)
-        }
-        _ => rod(section)?.universal(length("spacing_mm")?, &material, tilt),
-    };
-    joint.map_err(|error| fault(section, error))
-}
-
-fn rod(section: &Section<'_>) -> Result<Rod<f64>, Fault> {
-    Ok(Rod {
-        length_m: metres(section.number("length_mm")?),
-        diameter_m: metres(section.number("diameter_mm")?),
-    })
-}
-
 /// L/EA of the shaft between joint and leg, m/N; nothing where the file gives none.
 fn shaft(section: &Section<'_>) -> Result<f64, Fault> {
     if !section.has("shaft") {
@@ -143,7 +105,7 @@ fn shaft(section: &Section<'_>) -> Result<f64, Fault> {
 }
 
 /// What the model refuses, at the key that gives it.
-fn fault(section: &Section<'_>, error: Error) -> Fault {
+pub(super) fn fault(section: &Section<'_>, error: Error) -> Fault {
     let Error::Refused { quantity, reason } = error else {
         return Fault {
             span: section.span(),

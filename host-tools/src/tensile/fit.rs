@@ -36,6 +36,7 @@ impl Fit {
     /// A [`TensileError`] with the line.
     pub fn new(test: &TensileTest, taut_n: Option<f64>) -> Result<Self, TensileError> {
         let largest = test.rows.iter().map(|row| row.force_n).fold(0.0, f64::max);
+        check_pull(test, largest)?;
         let taut_n = taut_n.unwrap_or(TAUT * largest).max(f64::MIN_POSITIVE);
         let branches = split(test, taut_n)?;
         let spline = knots::best(&branches.loading)?;
@@ -55,6 +56,14 @@ impl Fit {
             take_up_m,
             taut_n,
         })
+    }
+}
+
+/// Refuses a test that only pushes.
+fn check_pull(test: &TensileTest, largest_n: f64) -> Result<(), TensileError> {
+    match test.rows.iter().find(|row| row.force_n < 0.0) {
+        Some(row) if largest_n <= 0.0 => Err(TensileError::Compression { line: row.line }),
+        _ => Ok(()),
     }
 }
 

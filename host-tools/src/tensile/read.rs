@@ -172,7 +172,12 @@ fn number(record: &StringRecord, line: u64, column: Column) -> Result<f64, Tensi
         });
     }
     match text.parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(number * column.scale),
+        Ok(number) if (number * column.scale).is_finite() => Ok(number * column.scale),
+        Ok(number) if number.is_finite() => Err(TensileError::TooLarge {
+            line,
+            column: place,
+            text: text.into(),
+        }),
         _ => Err(TensileError::NotANumber {
             line,
             column: place,

@@ -196,6 +196,14 @@ fn what_is_wrong_is_named_with_its_place() {
             "line 3, column 1: `NaN` is no finite number",
         ),
         (
+            "force_kn,elongation_mm\n1,1\n4e305,2\n",
+            "line 3, column 1: `4e305` is too large in newtons",
+        ),
+        (
+            "force_n,elongation_mm\n0,0\n-1,1\n-2,2\n-3,3\n",
+            "the first below is on line 3: this is a test in compression",
+        ),
+        (
             "force_n,elongation_mm\n1,1\n2,2\n2,3\n3,4\n",
             "line 4: the force is that of line 3",
         ),

@@ -1,6 +1,6 @@
 //! A leaf spring.
 
-use super::{Flexure, FlexureMaterial, check_length, check_ratio};
+use super::{Flexure, FlexureMaterial, check_length, check_ratio, critical};
 use crate::{Error, JointStiffness, Quantity, Scalar};
 
 /// Shorter leaves, in thicknesses, are no slender beams.
@@ -35,8 +35,23 @@ impl<T: Scalar> Leaf<T> {
         self.flexure(material, tilt)?.universal(spacing_m)
     }
 
-    /// EI/L with I = wt³/12, and the torsion constant of a rectangle, wt³(1/3 − 0.21 t/w (1 − t⁴/12w⁴)) (W. C. Young,
+    /// The load along one leaf under which it buckles, N; see the module for its ends.
+    #[must_use]
+    pub fn critical_n(&self, material: &FlexureMaterial<T>) -> T {
+        critical(self.bending(material), self.length_m)
+    }
+
+    /// EI/L, N·m/rad, with I = wt³/12.
+    fn bending(&self, material: &FlexureMaterial<T>) -> T {
+        let cubed = self.width_m * self.thickness_m * self.thickness_m * self.thickness_m;
+        material.youngs_modulus_pa * cubed / (T::from(12.0) * self.length_m)
+    }
+
+    /// EI/L as of a beam that may curve across, and the torsion constant of a rectangle, wt³(1/3 − 0.21 t/w (1 − t⁴/12w⁴)) (W. C. Young,
     /// R. G. Budynas, "Roark's Formulas for Stress and Strain").
+    ///
+    /// A leaf much wider than √(Rt), where R = L/θ is the radius to which it is bent, and one whose clamps keep it flat
+    /// across, is stiffer in bending: by at most 1/(1 − ν²), a tenth for steel. That is left out.
     fn flexure(&self, material: &FlexureMaterial<T>, tilt: T) -> Result<Flexure<T>, Error> {
         let &Self {
             length_m: length,
@@ -61,7 +76,7 @@ impl<T: Scalar> Leaf<T> {
         let torsion_constant = cubed
             * (T::one() / T::from(3.0)
                 - T::from(21.0) / T::from(100.0) * ratio * (T::one() - fourth / T::from(12.0)));
-        let bending = material.youngs_modulus_pa * cubed / (T::from(12.0) * length);
+        let bending = self.bending(material);
         Ok(Flexure {
             bending,
             torsion: material.shear_modulus_pa * torsion_constant / length,

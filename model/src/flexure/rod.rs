@@ -1,6 +1,6 @@
 //! A round rod.
 
-use super::{Flexure, FlexureMaterial, check_length, check_ratio};
+use super::{Flexure, FlexureMaterial, check_length, check_ratio, critical};
 use crate::{Error, JointStiffness, Quantity, Scalar};
 
 /// Shorter rods, in diameters, shear as much as they bend: the formulas for slender beams do not hold.
@@ -46,6 +46,18 @@ impl<T: Scalar> Rod<T> {
         self.flexure(material, tilt)?.universal(spacing_m)
     }
 
+    /// The load along one rod under which it buckles, N; see the module for its ends.
+    #[must_use]
+    pub fn critical_n(&self, material: &FlexureMaterial<T>) -> T {
+        let bending = material.youngs_modulus_pa * self.second_moment() / self.length_m;
+        critical(bending, self.length_m)
+    }
+
+    fn second_moment(&self) -> T {
+        let square = self.diameter_m * self.diameter_m;
+        T::PI * square * square / T::from(64.0)
+    }
+
     /// I = πd⁴/64, J = 2I, A = πd²/4; the surface strain of a rod bent to a circle is dθ/2L.
     fn flexure(&self, material: &FlexureMaterial<T>, tilt: T) -> Result<Flexure<T>, Error> {
         let &Self {
@@ -63,7 +75,7 @@ impl<T: Scalar> Rod<T> {
         )?;
         material.check_strain(T::HALF * diameter * tilt / length)?;
         let area = T::PI * diameter * diameter / T::from(4.0);
-        let second_moment = area * diameter * diameter / T::from(16.0);
+        let second_moment = self.second_moment();
         let bending = material.youngs_modulus_pa * second_moment / length;
         Ok(Flexure {
             bending,

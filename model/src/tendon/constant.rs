@@ -29,6 +29,7 @@ impl<T: Scalar> ConstantStiffness<T> {
     }
 }
 
+/// Asked by tension it checks nothing: the fast path asks it for every tendon, with tensions that are already checked.
 impl<T: Scalar> Elasticity<T> for ConstantStiffness<T> {
     #[inline(always)]
     fn elongation(&self, tension: T) -> Result<T, Error> {

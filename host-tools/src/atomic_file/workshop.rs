@@ -1,0 +1,91 @@
+//! Several files that are delivered together.
+
+use super::workshop_in;
+use std::io;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+/// Where several files of one folder are made before all of them are moved into it.
+#[derive(Debug)]
+pub struct Workshop {
+    folder: PathBuf,
+    made: TempDir,
+}
+
+impl Workshop {
+    /// For the files of a folder, which is made if it is not there.
+    ///
+    /// # Errors
+    /// The system's.
+    pub fn beside(folder: &Path) -> io::Result<Self> {
+        std::fs::create_dir_all(folder)?;
+        Ok(Self {
+            folder: folder.into(),
+            made: workshop_in(folder)?,
+        })
+    }
+
+    /// Where to make the files.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        self.made.path()
+    }
+
+    /// Whether every file that was made can be moved into the folder.
+    ///
+    /// # Errors
+    /// A folder is where a file has to go.
+    pub fn check(&self) -> io::Result<()> {
+        self.moves().map(drop)
+    }
+
+    /// Moves the files into the folder: all, or none if one of them cannot be.
+    ///
+    /// # Errors
+    /// As [`Self::check`], or the system's.
+    pub fn deliver(self) -> io::Result<()> {
+        for (from, to) in self.moves()? {
+            std::fs::rename(from, to)?;
+        }
+        Ok(())
+    }
+
+    fn moves(&self) -> io::Result<Vec<(PathBuf, PathBuf)>> {
+        let mut moves = Vec::new();
+        for entry in std::fs::read_dir(self.made.path())? {
+            let entry = entry?;
+            let to = self.folder.join(entry.file_name());
+            if to.is_dir() {
+                let taken = format!("{} is a folder", to.display());
+                return Err(io::Error::new(io::ErrorKind::IsADirectory, taken));
+            }
+            moves.push((entry.path(), to));
+        }
+        Ok(moves)
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::Workshop;
+
+    #[test]
+    fn several_files_are_delivered_together_or_not_at_all() {
+        let folder = tempfile::tempdir().unwrap();
+        let made = || {
+            let workshop = Workshop::beside(folder.path()).unwrap();
+            for name in ["a.svg", "b.svg", "c.svg"] {
+                std::fs::write(workshop.path().join(name), "new").unwrap();
+            }
+            workshop
+        };
+        std::fs::create_dir(folder.path().join("b.svg")).unwrap();
+        assert!(made().check().is_err());
+        assert!(made().deliver().is_err());
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+        std::fs::remove_dir(folder.path().join("b.svg")).unwrap();
+        made().deliver().unwrap();
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
+    }
+}

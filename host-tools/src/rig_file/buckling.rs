@@ -1,0 +1,50 @@
+//! Whether the flexures of the joint bear the pull of the tendons.
+
+use super::RigFile;
+use crate::toml_problem::{Fault, Problem};
+use std::ops::Range;
+
+/// The load along a joint of flexures beside the one under which it buckles.
+///
+/// The pull is that of the three tendons along the leg; its weight, which takes a little off, is left out. The joint
+/// is softer in bending by about this part of it, which the model leaves out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Buckling {
+    /// The load under which the joint buckles, N.
+    pub critical_n: f64,
+    /// The pull by it, each tendon at the level.
+    pub at_level: f64,
+    /// The pull by it, each tendon at the highest tension allowed.
+    pub at_ceiling: f64,
+}
+
+impl RigFile {
+    /// How near the joint is to buckling; none where the file does not give the geometry of flexures.
+    #[must_use]
+    pub fn buckling(&self) -> Option<Buckling> {
+        let critical_n = self.critical_n?;
+        Some(Buckling {
+            critical_n,
+            at_level: pull_n(self.level_n) / critical_n,
+            at_ceiling: pull_n(self.tension_ceiling_n) / critical_n,
+        })
+    }
+}
+
+fn pull_n(tension_n: f64) -> f64 {
+    3.0 * tension_n
+}
+
+/// Refuses a joint that buckles at the level, at the place of the level.
+pub(super) fn check(file: &RigFile, level: Option<Range<usize>>) -> Result<(), Fault> {
+    match file.buckling() {
+        Some(buckling) if buckling.at_level >= 1.0 => Err(Fault {
+            span: level.unwrap_or(0..0),
+            problem: Problem::Buckles {
+                pull_n: pull_n(file.level_n),
+                critical_n: buckling.critical_n,
+            },
+        }),
+        _ => Ok(()),
+    }
+}
