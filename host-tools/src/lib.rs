@@ -8,7 +8,6 @@ pub mod control_settings;
 pub mod cost;
 pub mod curve_toml;
 pub mod evaluate;
-pub mod experiment;
 pub mod failure;
 pub mod image;
 mod json_entries;

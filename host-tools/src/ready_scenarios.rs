@@ -23,6 +23,7 @@ pub const READY_SCENARIOS: &[ReadyScenario] = ready![
     "tour",
     "stiffness",
     "payload",
+    "support",
     "fault_bad_frame",
     "fault_cell_saturated",
     "fault_cell_stale",

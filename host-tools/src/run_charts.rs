@@ -32,6 +32,9 @@ const CHARTS: [(&str, &str, &[Curve]); 3] = [
     ),
 ];
 
+/// More points than this do not show in a chart.
+const POINTS_MAX: usize = 1500;
+
 /// Draws them, each as SVG and PNG, and names the SVG files.
 ///
 /// # Errors
@@ -41,6 +44,7 @@ pub fn save(title: &str, samples: &[Sample], folder: &Path) -> Result<Vec<PathBu
         label: label.into(),
         points: samples
             .iter()
+            .step_by(samples.len().div_ceil(POINTS_MAX).max(1))
             .map(|sample| (sample.time_s, of(sample)))
             .collect(),
         marks: Vec::new(),

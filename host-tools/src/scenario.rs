@@ -101,7 +101,7 @@ impl Scenario {
                 Some(ready) => Self::parse(&format!("scenarios/{name}.toml"), ready.text),
                 None => Err(Failure::refused(
                     format!("cannot read the scenario {name}: {error}"),
-                    &format!("give a file, or one of: {}", ready_scenarios::names()),
+                    format!("give a file, or one of: {}", ready_scenarios::names()),
                 )),
             },
         }

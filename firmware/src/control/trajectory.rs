@@ -102,7 +102,7 @@ impl<T: Scalar> Trajectory<T> {
 
     /// The point of the next cycle.
     #[inline(always)]
-    pub fn next(&mut self) -> Point<T> {
+    pub fn step(&mut self) -> Point<T> {
         if self.cycle < self.cycles {
             self.cycle += 1;
         }

@@ -83,7 +83,7 @@ impl<T: Scalar> Leg<T> {
     #[inline(never)]
     fn aim(&mut self, zero_m: &[T; 3], measured: &Measured<T>) -> Result<(), Error> {
         let wish = Wish {
-            q: self.trajectory.next(),
+            q: self.trajectory.step(),
             excess_nm: self.estimator.excess_nm(),
             compensated: self.compensation != Compensation::Off,
             trimmed: self.compensation == Compensation::Estimated && self.tensioned,

@@ -10,6 +10,7 @@ use crate::run_charts;
 use crate::scenario::Scenario;
 use crate::simulation::{Controller, InThisProcess, OnLink, Simulation, SimulationError, Summary};
 use clap::ValueEnum;
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -81,6 +82,10 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
         ticks_per_s: summary.ticks as f64 / seconds,
         plots: &plots,
     };
+    if std::io::stderr().is_terminal() {
+        let rate = report.ticks_per_s;
+        eprintln!("leg: {} ticks, {rate:.0} a second", summary.ticks);
+    }
     print(&if args.json {
         report.json()?
     } else {

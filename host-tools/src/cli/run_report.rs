@@ -7,9 +7,7 @@ use crate::simulation::{Finding, Summary, tick_s};
 use serde::Serialize;
 use std::path::PathBuf;
 
-const HEADING: &str = "\
-   time     value  unit          lowest   highest            what
-";
+const HEADING: &str = "   time       value  unit          lowest   highest            what\n";
 
 /// Everything that `leg run` found.
 pub(super) struct Report<'a> {
@@ -58,10 +56,8 @@ impl Report<'_> {
             .map(|path| format!("Chart: {} (and .png)\n", from_here(path).display()))
             .collect();
         format!(
-            "\nTensions: {lowest:.1} to {highest:.1} N\nFaults: {faults}\n{}{} ticks, {:.0} a second\n{plots}",
+            "\nTensions: {lowest:.1} to {highest:.1} N\nFaults: {faults}\n{}{plots}",
             divergence(summary),
-            summary.ticks,
-            self.ticks_per_s,
         )
     }
 
