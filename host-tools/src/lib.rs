@@ -27,6 +27,7 @@ pub mod precision;
 pub mod qemu;
 pub mod ready_rigs;
 pub mod ready_scenarios;
+pub mod recording;
 pub mod rig_convert;
 pub mod rig_file;
 pub mod rig_show;

@@ -14,6 +14,7 @@ mod map;
 mod map_report;
 mod paper;
 mod progress;
+mod replay;
 mod rig;
 mod run;
 mod run_report;
@@ -51,6 +52,7 @@ enum Command {
     Faults(faults::Args),
     Map(map::Args),
     Paper(paper::Args),
+    Replay(replay::Args),
     Rig(rig::Args),
     Run(run::Args),
     /// Installs what the other commands need: the Rust target, QEMU, and the firmware built for it.
@@ -72,6 +74,7 @@ pub fn main() -> ExitCode {
         Command::Faults(args) => faults::run(args),
         Command::Map(args) => map::run(args),
         Command::Paper(args) => paper::run(args),
+        Command::Replay(args) => replay::run(args),
         Command::Rig(args) => rig::run(args),
         Command::Run(args) => run::run(args, cli.verbose),
         Command::Setup => setup::run(),

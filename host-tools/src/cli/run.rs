@@ -5,10 +5,13 @@ use super::{board, print, progress};
 use crate::failure::Failure;
 use crate::image;
 use crate::qemu::Clock;
+use crate::recording;
 use crate::rig_file::RigFile;
 use crate::run_charts;
 use crate::scenario::Scenario;
-use crate::simulation::{Controller, InThisProcess, OnLink, Simulation, SimulationError, Summary};
+use crate::simulation::{
+    Controller, InThisProcess, OnLink, Simulation, SimulationError, Summary, Tick,
+};
 use clap::ValueEnum;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -28,6 +31,9 @@ pub struct Args {
     /// The rig file or the name of a ready rig; the scenario's own if left out.
     #[arg(long, value_name = "FILE")]
     rig: Option<PathBuf>,
+    /// Records every tick: FILE.mcap for Foxglove, PlotJuggler and `leg replay`, or FILE.csv.
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
     /// The folder for the charts; target/leg-run in the workspace if left out.
     #[arg(long, value_name = "DIR")]
     plots: Option<PathBuf>,
@@ -67,10 +73,15 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
     let rig = RigFile::load(Some(&rig_name))?;
     let started = Instant::now();
     let summary = match args.on {
-        On::Sim => simulate(&scenario, &rig, &mut InThisProcess::default())?,
+        On::Sim => simulate(args, &scenario, &rig, &mut InThisProcess::default())?,
         On::Qemu => {
             let mut link = board::qemu_with(Clock::Normal, verbose)?;
-            simulate(&scenario, &rig, &mut OnLink::new(link.as_mut(), false))?
+            simulate(
+                args,
+                &scenario,
+                &rig,
+                &mut OnLink::new(link.as_mut(), false),
+            )?
         }
     };
     let seconds = started.elapsed().as_secs_f64();
@@ -95,15 +106,33 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
 }
 
 fn simulate(
+    args: &Args,
     scenario: &Scenario,
     rig: &RigFile,
     controller: &mut dyn Controller,
 ) -> Result<Summary, Failure> {
+    let simulation = Simulation::new(scenario, rig).map_err(|error| failure(&error))?;
+    let settings = simulation.settings().clone();
     let bar = progress::spinner("ticks");
-    let result = Simulation::new(scenario, rig)
-        .and_then(|simulation| simulation.run(controller, &mut |_| bar.inc(1)));
-    bar.finish_and_clear();
-    result.map_err(|error| failure(&error))
+    let mut watched = |watch: &mut dyn FnMut(&Tick<'_>)| {
+        let result = simulation.clone().run(controller, watch);
+        bar.finish_and_clear();
+        result.map_err(|error| failure(&error))
+    };
+    match &args.record {
+        None => watched(&mut |_| bar.inc(1)),
+        Some(file) => recording::around(file, &settings, |recorder| {
+            let mut written = Ok(());
+            let summary = watched(&mut |tick| {
+                bar.inc(1);
+                if written.is_ok() {
+                    written = recorder.take(tick);
+                }
+            })?;
+            written.map_err(|error| Failure::from_error(&error))?;
+            Ok(summary)
+        }),
+    }
 }
 
 fn failure(error: &SimulationError) -> Failure {

@@ -1,0 +1,64 @@
+//! `leg replay`.
+
+use super::print;
+use crate::failure::Failure;
+use crate::recording::{self, Replay};
+use crate::simulation::tick_s;
+use std::path::PathBuf;
+
+/// Runs the firmware's code again on a recording of `leg run --record F.mcap`, and says where it does something else.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The recording.
+    file: PathBuf,
+    /// Prints JSON instead of a sentence.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A [`Failure`]: a recording that cannot be read, or duties that differ.
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let replay = recording::replay(&args.file).map_err(|error| {
+        Failure::refused(
+            format!("{}: {error}", args.file.display()),
+            "record anew with `leg run --record FILE.mcap`",
+        )
+    })?;
+    print(&if args.json {
+        match serde_json::to_string(&replay) {
+            Ok(json) => json + "\n",
+            Err(error) => return Err(Failure::from_error(&error)),
+        }
+    } else {
+        words(&replay)
+    })?;
+    if replay.other == 0 {
+        return Ok(());
+    }
+    let sentence = format!("{} of {} ticks differ", replay.other, replay.ticks);
+    Err(Failure::missed(
+        sentence,
+        "the control law has changed since the recording",
+    ))
+}
+
+fn words(replay: &Replay) -> String {
+    let Some(first) = &replay.first else {
+        return format!(
+            "{} ticks, each with the bits that were recorded\n",
+            replay.ticks
+        );
+    };
+    format!(
+        "First other duties in tick {} ({:.6} s): recorded {:?}, now {:?}\nDrivers on: recorded {}, now {}\n",
+        first.tick,
+        f64::from(first.tick) * tick_s(),
+        first.recorded,
+        first.now,
+        first.enabled[0],
+        first.enabled[1],
+    )
+}
