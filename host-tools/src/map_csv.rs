@@ -2,25 +2,29 @@
 
 use crate::atomic_file;
 use crate::failure::Failure;
-use crate::workspace_map::{Cell, WorkspaceMap};
+use crate::workspace_map::{Cell, Quantity, WorkspaceMap};
 use std::io;
 use std::path::Path;
 
-const COLUMNS: [&str; 10] = [
-    "azimuth_deg",
-    "tilt_deg",
-    "feasible",
-    "deviation_mm",
-    "stiffness_min_nm_per_rad",
-    "stiffness_max_nm_per_rad",
-    "condition",
-    "margin_n",
-    "level_min_n",
-    "level_max_n",
-];
+const POSE_COLUMNS: [&str; 4] = ["azimuth_deg", "tilt_deg", "feasible", "level_keeps_bounds"];
+
+const fn column(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Deviation => "deviation_mm",
+        Quantity::StiffnessMin => "stiffness_min_nm_per_rad",
+        Quantity::StiffnessMax => "stiffness_max_nm_per_rad",
+        Quantity::Condition => "condition",
+        Quantity::Margin => "margin_n",
+        Quantity::LevelMin => "level_min_n",
+        Quantity::LevelMax => "level_max_n",
+        Quantity::DeviationNonlinear => "deviation_nonlinear_mm",
+        Quantity::LinearOverNonlinear => "linear_over_nonlinear_percent",
+    }
+}
 
 /// Writes the map, whole or not at all, around other work: its folder is tried before that work, and the file is put
-/// in its place only if the work succeeds. A pose without a result has empty fields.
+/// in its place only if the work succeeds. What is not known of a pose is an empty field. The vertical is one pose and
+/// has one row.
 ///
 /// # Errors
 /// A [`Failure`] if the file cannot be written; that of the work.
@@ -55,68 +59,87 @@ impl From<io::Error> for Stopped {
 }
 
 fn write(map: &WorkspaceMap, new: &Path) -> io::Result<()> {
+    let quantities = map.quantities();
     let mut writer = csv::Writer::from_path(new)?;
-    writer.write_record(COLUMNS)?;
+    let columns = quantities.iter().map(|quantity| column(*quantity));
+    writer.write_record(POSE_COLUMNS.into_iter().chain(columns))?;
     for (azimuth, tilt, cell) in map.poses() {
-        let mut record = vec![azimuth.to_string(), tilt.to_string()];
-        record.extend(
-            cell.as_ref()
-                .map_or_else(|_| vec![String::new(); 8], fields),
+        let place = [azimuth.to_string(), tilt.to_string()];
+        let fields = cell.as_ref().map_or_else(
+            |_| vec![String::new(); quantities.len() + 2],
+            |cell| fields(cell, quantities),
         );
-        writer.write_record(record)?;
+        writer.write_record(place.into_iter().chain(fields))?;
     }
     writer.flush()
 }
 
-fn fields(cell: &Cell) -> Vec<String> {
-    let numbers = [
-        cell.deviation_mm,
-        cell.stiffness_min_nm_per_rad,
-        cell.stiffness_max_nm_per_rad,
-        cell.condition,
-        cell.margin_n,
-        cell.level_min_n,
-        cell.level_max_n,
-    ];
-    let numbers = numbers.iter().map(ToString::to_string);
-    [cell.feasible.to_string()]
+fn fields(cell: &Cell, quantities: &[Quantity]) -> Vec<String> {
+    let values = quantities.iter().map(|quantity| quantity.value(cell));
+    let values = values.map(|value| value.map_or_else(String::new, |value| value.to_string()));
+    [cell.feasible, cell.level_keeps_bounds]
+        .map(|is| is.to_string())
         .into_iter()
-        .chain(numbers)
+        .chain(values)
         .collect()
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{COLUMNS, save_around};
+    use super::save_around;
     use crate::failure::Failure;
     use crate::rig_file::RigFile;
     use crate::workspace_map::{Grid, WorkspaceMap};
 
-    fn map(level_n: f64) -> WorkspaceMap {
+    const GRID: Grid = Grid {
+        azimuths: 3,
+        tilts: 2,
+    };
+
+    fn ball_joint(level_n: f64) -> RigFile {
         let mut rig = RigFile::load(Some("spherical".as_ref())).unwrap();
         rig.level_n = level_n;
-        let grid = Grid {
-            azimuths: 3,
-            tilts: 2,
-        };
-        WorkspaceMap::on_one_core(&rig, 1.0, grid)
+        rig
+    }
+
+    fn map(level_n: f64) -> WorkspaceMap {
+        WorkspaceMap::on_one_core(&ball_joint(level_n), 1.0, GRID)
+    }
+
+    /// The lines of the file.
+    fn saved(map: &WorkspaceMap) -> Vec<Vec<String>> {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("map.csv");
+        save_around(map, &file, || Ok(())).unwrap();
+        let text = std::fs::read_to_string(&file).unwrap();
+        let fields = |line: &str| line.split(',').map(String::from).collect();
+        text.lines().map(fields).collect()
     }
 
     #[test]
-    fn a_pose_without_a_result_has_empty_fields() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("map.csv");
-        save_around(&map(0.0), &file, || Ok(())).unwrap();
-        let mut reader = csv::Reader::from_path(&file).unwrap();
-        assert_eq!(reader.headers().unwrap(), &COLUMNS[..]);
-        let rows: Vec<_> = reader.records().map(Result::unwrap).collect();
-        assert_eq!(rows.len(), 6);
-        // Straight down a ball joint that nothing pulls cannot hold its twist.
-        assert!(rows[1].iter().skip(2).all(str::is_empty));
-        assert_eq!(rows[1].get(0), Some("120"));
-        let numbers = rows[4].iter().skip(3).map(str::parse::<f64>);
-        assert!(numbers.map(Result::unwrap).all(f64::is_finite));
+    fn what_is_not_known_of_a_pose_is_an_empty_field() {
+        let lines = saved(&map(0.0));
+        assert_eq!(lines.len(), 1 + 1 + 3);
+        assert_eq!(lines[0].len(), 11);
+        // Straight down a ball joint that nothing pulls cannot hold its twist, but at another level it would.
+        assert_eq!(lines[1][..4], ["0", "0", "true", "false"]);
+        assert!(lines[1][4..9].iter().all(String::is_empty));
+        assert_eq!(lines[3][..2], ["120", "30"]);
+        let numbers = |line: &[String]| line.iter().all(|s| s.parse::<f64>().unwrap().is_finite());
+        assert!(numbers(&lines[1][9..]) && numbers(&lines[3][4..]));
+    }
+
+    #[test]
+    fn the_nonlinear_deviation_has_columns_where_it_was_asked_for() {
+        let map = WorkspaceMap::compute_with_nonlinear(&ball_joint(70.0), 1.0, GRID, || ());
+        let lines = saved(&map);
+        assert_eq!(
+            lines[0][11..],
+            ["deviation_nonlinear_mm", "linear_over_nonlinear_percent"]
+        );
+        let percent: f64 = lines[2][12].parse().unwrap();
+        assert!((50.0..150.0).contains(&percent), "{percent}");
     }
 
     #[test]

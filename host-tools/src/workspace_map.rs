@@ -1,9 +1,14 @@
 //! The model over the whole workspace.
 
 mod cell;
+mod drawn;
+mod found;
 mod quantity;
 
-pub use cell::Cell;
+pub use cell::{AtLevel, Cell};
+#[cfg(test)]
+pub(crate) use drawn::SHADES;
+pub use found::{Counts, Extreme};
 pub use quantity::Quantity;
 
 use crate::rig_file::RigFile;
@@ -28,7 +33,9 @@ pub struct WorkspaceMap {
     pub grid: Grid,
     /// The greatest tilt, degrees.
     pub tilt_max_deg: f64,
-    /// One a pose, row by row from the vertical; what the model says where it has no result.
+    /// Whether the nonlinear deviation was looked for.
+    pub with_nonlinear: bool,
+    /// One a pose: the vertical, which is the same at every azimuth, then row by row; why there is no result.
     pub cells: Vec<Result<Cell, Error>>,
 }
 
@@ -36,7 +43,28 @@ impl WorkspaceMap {
     /// Evaluates every pose on all cores, and calls `done` after each row.
     #[must_use]
     pub fn compute(rig: &RigFile, payload_kg: f64, grid: Grid, done: impl Fn() + Sync) -> Self {
-        let prepared = Prepared::new(rig, payload_kg);
+        Self::on_all_cores(rig, payload_kg, grid, false, done)
+    }
+
+    /// The same with the nonlinear deviation, which takes far longer than all the rest.
+    #[must_use]
+    pub fn compute_with_nonlinear(
+        rig: &RigFile,
+        payload_kg: f64,
+        grid: Grid,
+        done: impl Fn() + Sync,
+    ) -> Self {
+        Self::on_all_cores(rig, payload_kg, grid, true, done)
+    }
+
+    fn on_all_cores(
+        rig: &RigFile,
+        payload_kg: f64,
+        grid: Grid,
+        with_nonlinear: bool,
+        done: impl Fn() + Sync,
+    ) -> Self {
+        let prepared = Prepared::new(rig, payload_kg, with_nonlinear);
         let rows = (0..grid.tilts).into_par_iter().map(|row| {
             let cells = row_of(&prepared, rig.tilt_deg, grid, row).collect::<Vec<_>>();
             done();
@@ -45,109 +73,62 @@ impl WorkspaceMap {
         Self {
             grid,
             tilt_max_deg: rig.tilt_deg,
+            with_nonlinear,
             cells: rows.flatten().collect(),
         }
     }
 
-    /// The same on one core: what a benchmark measures.
+    /// [`compute`](Self::compute) on one core: what a benchmark measures.
     #[must_use]
     pub fn on_one_core(rig: &RigFile, payload_kg: f64, grid: Grid) -> Self {
-        let prepared = Prepared::new(rig, payload_kg);
+        let prepared = Prepared::new(rig, payload_kg, false);
         let rows = (0..grid.tilts).flat_map(|row| row_of(&prepared, rig.tilt_deg, grid, row));
         Self {
             grid,
             tilt_max_deg: rig.tilt_deg,
+            with_nonlinear: false,
             cells: rows.collect(),
         }
     }
 
-    /// Azimuth and tilt of each cell, degrees, and the cell.
+    /// Azimuth and tilt of each pose, degrees, and its cell. The vertical comes once, at azimuth 0°.
     pub fn poses(&self) -> impl Iterator<Item = (f64, f64, &Result<Cell, Error>)> {
         let grid = self.grid;
         let poses = (0..grid.tilts)
-            .flat_map(move |row| (0..grid.azimuths).map(move |column| (row, column)));
+            .flat_map(move |row| columns(grid, row).map(move |column| (row, column)));
         poses.zip(&self.cells).map(move |((row, column), cell)| {
             let tilt = tilt_deg(self.tilt_max_deg, grid, row);
             (azimuth_deg(grid, column), tilt, cell)
         })
     }
 
-    /// Poses at which some level keeps the bounds.
-    #[must_use]
-    pub fn feasible_count(&self) -> usize {
-        let cells = self.cells.iter().flatten();
-        cells.filter(|cell| cell.feasible).count()
+    /// The cell of a row and a column; of the vertical in every column of the first row.
+    fn at(&self, row: u32, column: u32) -> &Result<Cell, Error> {
+        let before = |row: u32| row as usize * self.grid.azimuths as usize;
+        let index = row
+            .checked_sub(1)
+            .map_or(0, |row| 1 + before(row) + column as usize);
+        &self.cells[index]
     }
-
-    /// The reasons for which poses have no result, each with how many those are, the most frequent first.
-    #[must_use]
-    pub fn without_result(&self) -> Vec<(Error, usize)> {
-        let mut reasons: Vec<(Error, usize)> = Vec::new();
-        for error in self.cells.iter().filter_map(|cell| cell.as_ref().err()) {
-            match reasons.iter_mut().find(|(reason, _)| reason == error) {
-                Some((_, count)) => *count += 1,
-                None => reasons.push((*error, 1)),
-            }
-        }
-        reasons.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-        reasons
-    }
-
-    /// Where a quantity is smallest and largest; none if it counts at no pose.
-    #[must_use]
-    pub fn extremes(&self, quantity: Quantity) -> Option<[Extreme; 2]> {
-        let extreme = |(azimuth_deg, tilt_deg, cell): (_, _, &Result<Cell, Error>)| {
-            let value = quantity.of(cell.as_ref().ok()?)?;
-            Some(Extreme {
-                value,
-                azimuth_deg,
-                tilt_deg,
-            })
-        };
-        let mut poses = self.poses().filter_map(extreme);
-        let first = poses.next()?;
-        Some(poses.fold([first; 2], |[smallest, largest], pose| {
-            // Of those that are equal but for rounding the first: all azimuths are one pose at the vertical.
-            let rounding = 1e-9 * pose.value.abs().max(1e-3);
-            [
-                if pose.value < smallest.value - rounding {
-                    pose
-                } else {
-                    smallest
-                },
-                if pose.value > largest.value + rounding {
-                    pose
-                } else {
-                    largest
-                },
-            ]
-        }))
-    }
-}
-
-/// An extreme value and the first pose that has it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Extreme {
-    /// In the quantity's unit.
-    pub value: f64,
-    /// Azimuth of the pose, degrees.
-    pub azimuth_deg: f64,
-    /// Its tilt, degrees.
-    pub tilt_deg: f64,
 }
 
 fn row_of(
     prepared: &Result<Prepared, Error>,
     edge_deg: f64,
     grid: Grid,
-    row: u32,
+    row_index: u32,
 ) -> impl Iterator<Item = Result<Cell, Error>> {
-    let tilt_deg = tilt_deg(edge_deg, grid, row);
+    let tilt_deg = tilt_deg(edge_deg, grid, row_index);
     let mut row = prepared.as_ref().map(|prepared| prepared.row(tilt_deg));
-    (0..grid.azimuths).map(move |column| match &mut row {
+    columns(grid, row_index).map(move |column| match &mut row {
         Ok(row) => row.cell(azimuth_deg(grid, column)),
         Err(error) => Err(**error),
     })
+}
+
+/// The poses of a row: the vertical is one.
+fn columns(grid: Grid, row: u32) -> std::ops::Range<u32> {
+    0..if row == 0 { 1 } else { grid.azimuths }
 }
 
 fn azimuth_deg(grid: Grid, column: u32) -> f64 {

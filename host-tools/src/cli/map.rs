@@ -27,7 +27,7 @@ pub struct Args {
     /// Rows of the map, at least 2.
     #[arg(long, default_value_t = 31)]
     tilts: u32,
-    /// What to draw; every quantity if left out.
+    /// What to draw; all but the nonlinear ones if left out. Those are computed only if asked for here.
     #[arg(long, value_enum)]
     quantity: Vec<Quantity>,
     /// The folder for the pictures; target/leg-map in the workspace if left out.
@@ -52,9 +52,14 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let rig = rig(args)?;
     let grid = grid(args)?;
     let bar = progress::bar(grid.tilts.into(), "rows");
-    let map = WorkspaceMap::compute(&rig, args.payload_kg, grid, || bar.inc(1));
+    let done = || bar.inc(1);
+    let map = if args.quantity.iter().any(|asked| asked.is_nonlinear()) {
+        WorkspaceMap::compute_with_nonlinear(&rig, args.payload_kg, grid, done)
+    } else {
+        WorkspaceMap::compute(&rig, args.payload_kg, grid, done)
+    };
     bar.finish_and_clear();
-    if map.feasible_count() == 0 {
+    if map.counts().feasible == 0 {
         return Err(nothing_feasible(&rig, args.payload_kg, &map));
     }
     let pictures = match &args.csv {
@@ -118,11 +123,10 @@ fn nothing_feasible(rig: &RigFile, payload_kg: f64, map: &WorkspaceMap) -> Failu
         let all = map.cells.len();
         return Failure::missed(
             format!(
-                "no pose of the workspace is feasible, and {count} of {all} have no result with {payload_kg} kg and \
-                 level {} N: {reason}",
-                rig.level_n
+                "no pose of the workspace is known to be feasible with {payload_kg} kg: {count} of {all} have no \
+                 result: {reason}"
             ),
-            "give another --level-n or a smaller payload",
+            "give a smaller payload or change the rig",
         );
     }
     let sentence = format!(
@@ -140,7 +144,7 @@ fn draw(args: &Args, rig: &RigFile, map: &WorkspaceMap) -> Result<Vec<PathBuf>, 
     let default = || image::workspace_root().join("target/leg-map");
     let folder = args.out.clone().unwrap_or_else(default);
     let asked = if args.quantity.is_empty() {
-        &Quantity::ALL[..]
+        Quantity::plain()
     } else {
         &args.quantity
     };

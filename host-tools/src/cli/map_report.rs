@@ -3,7 +3,8 @@
 use crate::failure::Failure;
 use crate::paths::from_here;
 use crate::rig_file::RigFile;
-use crate::workspace_map::{Cell, Extreme, Quantity, WorkspaceMap};
+use crate::workspace_map::{AtLevel, Cell, Counts, Extreme, Quantity, WorkspaceMap};
+use leg_model::Error;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -31,13 +32,14 @@ impl Report<'_> {
             rig.level_n,
             rig.support_name.word()
         );
-        let rows = Quantity::ALL.map(|quantity| self.row(quantity)).concat();
-        title + HEADING + &rows + &self.remarks()
+        let rows = self.map.quantities().iter();
+        let rows: String = rows.map(|quantity| self.row(*quantity)).collect();
+        title + HEADING + &rows + &self.counts() + &self.remarks()
     }
 
     fn row(&self, quantity: Quantity) -> String {
         let Some([smallest, largest]) = self.map.extremes(quantity) else {
-            return format!("{:<26} at no feasible pose\n", quantity.words());
+            return format!("{:<26} at no pose\n", quantity.words());
         };
         let place = |at: &Extreme| {
             let (azimuth, tilt) = (at.azimuth_deg, at.tilt_deg);
@@ -57,26 +59,34 @@ impl Report<'_> {
         format!("{}\n", row.trim_end())
     }
 
-    fn remarks(&self) -> String {
-        let (feasible, all) = (self.map.feasible_count(), self.map.cells.len());
-        let share = 100.0 * feasible as f64 / all as f64;
-        let pictures: String = self
-            .pictures
-            .iter()
-            .map(|path| format!("  {}\n", from_here(path).display()))
-            .collect();
-        let without = self.map.without_result();
-        let without: String = without
-            .iter()
-            .map(|(reason, count)| format!("No result at {count} poses: {reason}\n"))
-            .collect();
-        let csv = self
-            .csv
-            .map(|path| format!("CSV: {}\n", from_here(path).display()));
+    fn counts(&self) -> String {
+        let counts = self.map.counts();
+        let share = 100.0 * counts.feasible as f64 / counts.poses as f64;
+        let level_n = self.rig.level_n;
         format!(
-            "\nFeasible: {feasible} of {all} poses ({share:.1} %)\n{without}Pictures, each as .svg and .png:\n{pictures}{}",
-            csv.unwrap_or_default()
+            "\nFeasible: {} of {} poses ({share:.1} %), {} at level {level_n} N and {} only at another\n",
+            counts.feasible, counts.poses, counts.level_keeps_bounds, counts.only_another_level
         )
+    }
+
+    fn remarks(&self) -> String {
+        let level_n = self.rig.level_n;
+        let at_level = format!("No result at level {level_n} N");
+        let missing = [
+            ("No result", self.map.without_result()),
+            (at_level.as_str(), self.map.without_level()),
+            ("No nonlinear deviation", self.map.without_nonlinear()),
+        ];
+        let lines = |(what, reasons): (&str, Vec<(Error, usize)>)| -> String {
+            let line = |(reason, count)| format!("{what} at {count} of the poses: {reason}\n");
+            reasons.into_iter().map(line).collect()
+        };
+        let missing = missing.map(lines).concat();
+        let picture = |path: &PathBuf| format!("  {}\n", from_here(path).display());
+        let pictures: String = self.pictures.iter().map(picture).collect();
+        let csv = |path| format!("CSV: {}\n", from_here(path).display());
+        let csv = self.csv.map(csv).unwrap_or_default();
+        format!("{missing}Pictures, each as .svg and .png:\n{pictures}{csv}")
     }
 
     fn extremes(&self, quantity: Quantity) -> JsonExtremes {
@@ -101,14 +111,25 @@ impl Report<'_> {
                 azimuth_deg,
                 tilt_deg,
                 cell: cell.as_ref().ok(),
-                error: cell.as_ref().err().map(ToString::to_string),
+                at_level: cell.as_ref().ok().and_then(|cell| cell.at_level.ok()),
+                deviation_nonlinear_mm: cell
+                    .as_ref()
+                    .ok()
+                    .and_then(|cell| Quantity::DeviationNonlinear.value(cell)),
+                error: cell
+                    .and_then(|cell| cell.at_level)
+                    .err()
+                    .map(|error| error.to_string()),
             });
+        let quantities = self.map.quantities().iter();
         let report = JsonReport {
             support: self.rig.support_name.word(),
             payload_kg: self.payload_kg,
             level_n: self.rig.level_n,
-            feasible: self.map.feasible_count(),
-            extremes: Quantity::ALL.map(|quantity| self.extremes(quantity)),
+            counts: self.map.counts(),
+            extremes: quantities
+                .map(|quantity| self.extremes(*quantity))
+                .collect(),
             pictures: self.pictures,
             poses: poses.collect(),
         };
@@ -124,8 +145,9 @@ struct JsonReport<'a> {
     support: &'static str,
     payload_kg: f64,
     level_n: f64,
-    feasible: usize,
-    extremes: [JsonExtremes; Quantity::ALL.len()],
+    #[serde(flatten)]
+    counts: Counts,
+    extremes: Vec<JsonExtremes>,
     pictures: &'a [PathBuf],
     poses: Vec<JsonPose<'a>>,
 }
@@ -144,6 +166,11 @@ struct JsonPose<'a> {
     tilt_deg: f64,
     #[serde(flatten)]
     cell: Option<&'a Cell>,
+    #[serde(flatten)]
+    at_level: Option<AtLevel>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    deviation_nonlinear_mm: Option<f64>,
+    /// Why there is nothing at the rig's level or nothing at all.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
 }

@@ -23,7 +23,9 @@ pub struct Field {
     pub quantity: String,
     /// Below that; empty for a ratio.
     pub unit: String,
-    /// What a pose outside the region is.
+    /// What a pose outside the region, but inside the wider one is.
+    pub between: String,
+    /// What a pose outside both is.
     pub outside: String,
     /// Azimuths of the columns: evenly from 0°, the full turn not repeated.
     pub azimuths: usize,
@@ -36,10 +38,12 @@ pub struct Field {
 /// What is known of a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// The quantity.
-    pub value: f64,
+    /// The quantity, if it is known.
+    pub value: Option<f64>,
     /// How far the pose is inside the region that is shown; negative outside. Its border is where this is zero.
     pub room: f64,
+    /// The same of a wider region around it.
+    pub wider_room: f64,
 }
 
 impl Sample {
@@ -47,13 +51,24 @@ impl Sample {
     fn towards(self, other: Self, part: f64) -> Self {
         let between = |from: f64, to: f64| from * (1.0 - part) + to * part;
         Self {
-            value: between(self.value, other.value),
+            value: self.value.zip(other.value).map(|(a, b)| between(a, b)),
             room: between(self.room, other.room),
+            wider_room: between(self.wider_room, other.wider_room),
         }
     }
 
-    fn inside(&self) -> bool {
-        self.room >= 0.0
+    /// The value, if it is to be shown.
+    fn shown(&self) -> Option<f64> {
+        self.value.filter(|_| self.room >= 0.0)
+    }
+
+    /// Outside the region, but inside the wider one.
+    fn between(&self) -> bool {
+        self.room < 0.0 && self.wider_room >= 0.0
+    }
+
+    fn outside(&self) -> bool {
+        self.room < 0.0 && self.wider_room < 0.0
     }
 }
 
@@ -69,7 +84,7 @@ pub enum Layout {
 /// Draws the map as an SVG file.
 ///
 /// # Errors
-/// [`PlotError::Empty`] if nothing is inside the region or the rows do not fit; a file that cannot be written.
+/// [`PlotError::Empty`] if nothing is known of any pose or the rows do not fit; a file that cannot be written.
 pub fn save_svg(field: &Field, layout: Layout, path: &Path) -> Result<(), PlotError> {
     let bands = field.bands()?;
     canvas::svg(path, |root| paint(field, &bands, layout, root))
@@ -103,10 +118,11 @@ impl Field {
         if !fits {
             return Err(PlotError::Empty);
         }
-        let inside = self.samples.iter().flatten().filter(|s| s.inside());
-        let values = inside.map(|sample| sample.value).chain(runs::values(self));
-        match range(values) {
+        let poses = self.samples.iter().flatten().filter_map(Sample::shown);
+        match range(poses.chain(runs::values(self))) {
             Some((low, high)) if low.is_finite() && high.is_finite() => Ok(Bands::new(low, high)),
+            // Where the values would be says something, too.
+            None if self.samples.iter().any(Option::is_some) => Ok(Bands::none()),
             _ => Err(PlotError::Empty),
         }
     }

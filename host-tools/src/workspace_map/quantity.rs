@@ -1,7 +1,6 @@
 //! What a map can show.
 
-use super::{Cell, WorkspaceMap};
-use crate::plot::field::{Field, Sample};
+use super::Cell;
 use clap::ValueEnum;
 use serde::Serialize;
 
@@ -10,25 +9,32 @@ use serde::Serialize;
 #[serde(rename_all = "snake_case")]
 #[value(rename_all = "snake_case")]
 pub enum Quantity {
-    /// Deviation of the tip at the rig's level.
+    /// Linear deviation of the tip at the rig's level.
     Deviation,
-    /// Smallest bending stiffness.
+    /// Smallest bending stiffness at the rig's level.
     StiffnessMin,
-    /// Largest bending stiffness.
+    /// Largest bending stiffness at the rig's level.
     StiffnessMax,
-    /// Largest by smallest bending stiffness.
+    /// Largest by smallest bending stiffness at the rig's level.
     Condition,
-    /// Distance of the tensions at the rig's level from their bounds.
+    /// Distance of the tensions at the rig's level from their bounds; negative beyond them.
     Margin,
     /// Lowest level that keeps the bounds.
     LevelMin,
     /// Highest level that keeps the bounds.
     LevelMax,
+    /// Deviation of the tip at the rig's level without linearisation: much slower.
+    DeviationNonlinear,
+    /// Linear by nonlinear deviation: as slow.
+    LinearOverNonlinear,
 }
+
+/// Below this the deviation is nothing but rounding, and nothing can be compared with it, mm.
+const DEVIATION_ROUNDING_MM: f64 = 1e-9;
 
 impl Quantity {
     /// Every quantity.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::Deviation,
         Self::StiffnessMin,
         Self::StiffnessMax,
@@ -36,7 +42,21 @@ impl Quantity {
         Self::Margin,
         Self::LevelMin,
         Self::LevelMax,
+        Self::DeviationNonlinear,
+        Self::LinearOverNonlinear,
     ];
+
+    /// Those of every map; the others only if asked for.
+    #[must_use]
+    pub fn plain() -> &'static [Self] {
+        Self::ALL.split_at(7).0
+    }
+
+    /// Whether it takes the nonlinear deviation.
+    #[must_use]
+    pub const fn is_nonlinear(self) -> bool {
+        matches!(self, Self::DeviationNonlinear | Self::LinearOverNonlinear)
+    }
 
     /// Its name in files and on the command line.
     #[must_use]
@@ -49,6 +69,8 @@ impl Quantity {
             Self::Margin => "margin",
             Self::LevelMin => "level_min",
             Self::LevelMax => "level_max",
+            Self::DeviationNonlinear => "deviation_nonlinear",
+            Self::LinearOverNonlinear => "linear_over_nonlinear",
         }
     }
 
@@ -63,6 +85,8 @@ impl Quantity {
             Self::Margin => "tension margin",
             Self::LevelMin => "lowest feasible level",
             Self::LevelMax => "highest feasible level",
+            Self::DeviationNonlinear => "nonlinear deviation",
+            Self::LinearOverNonlinear => "linear by nonlinear",
         }
     }
 
@@ -70,62 +94,43 @@ impl Quantity {
     #[must_use]
     pub const fn unit(self) -> &'static str {
         match self {
-            Self::Deviation => "mm",
+            Self::Deviation | Self::DeviationNonlinear => "mm",
             Self::StiffnessMin | Self::StiffnessMax => "N·m/rad",
             Self::Condition => "",
             Self::Margin | Self::LevelMin | Self::LevelMax => "N",
+            Self::LinearOverNonlinear => "%",
         }
     }
 
-    /// Its value in a cell, feasible or not.
+    /// Its value in a cell, whether or not that keeps the bounds.
     #[must_use]
-    pub const fn value(self, cell: &Cell) -> f64 {
+    pub fn value(self, cell: &Cell) -> Option<f64> {
+        let at_level = cell.at_level.ok();
+        let nonlinear_mm = || cell.deviation_nonlinear_mm?.ok();
         match self {
-            Self::Deviation => cell.deviation_mm,
-            Self::StiffnessMin => cell.stiffness_min_nm_per_rad,
-            Self::StiffnessMax => cell.stiffness_max_nm_per_rad,
-            Self::Condition => cell.condition,
+            Self::Deviation => Some(at_level?.deviation_mm),
+            Self::StiffnessMin => Some(at_level?.stiffness_min_nm_per_rad),
+            Self::StiffnessMax => Some(at_level?.stiffness_max_nm_per_rad),
+            Self::Condition => Some(at_level?.condition),
             Self::Margin => cell.margin_n,
-            Self::LevelMin => cell.level_min_n,
-            Self::LevelMax => cell.level_max_n,
+            Self::LevelMin => Some(cell.level_min_n),
+            Self::LevelMax => Some(cell.level_max_n),
+            Self::DeviationNonlinear => nonlinear_mm(),
+            Self::LinearOverNonlinear => nonlinear_mm()
+                .filter(|deviation_mm| *deviation_mm > DEVIATION_ROUNDING_MM)
+                .and_then(|deviation_mm| Some(100.0 * at_level?.deviation_mm / deviation_mm)),
         }
     }
 
-    /// Its value in a cell, if it counts there: where no level keeps the bounds only the margin does.
+    /// Its value in a cell, if it counts there: that of a range where there is one, that of the rig's level where it
+    /// keeps the bounds. The margin counts everywhere: below zero it says how far the level is from keeping them.
     #[must_use]
     pub fn of(self, cell: &Cell) -> Option<f64> {
-        (self == Self::Margin || cell.feasible).then(|| self.value(cell))
-    }
-
-    /// What a map of it shows of a cell.
-    fn sample(self, cell: &Cell) -> Sample {
-        let room = match self {
-            // It is shown everywhere: below zero it is what the level lacks.
-            Self::Margin => 1.0,
-            _ => cell.level_max_n - cell.level_min_n,
+        let counts = match self {
+            Self::Margin => true,
+            Self::LevelMin | Self::LevelMax => cell.feasible,
+            _ => cell.level_keeps_bounds,
         };
-        Sample {
-            value: self.value(cell),
-            room,
-        }
-    }
-}
-
-impl WorkspaceMap {
-    /// A quantity over the workspace, to be drawn.
-    #[must_use]
-    pub fn field(&self, quantity: Quantity, title: String) -> Field {
-        let grid = self.grid;
-        let sample = |cell: &Result<Cell, _>| cell.as_ref().ok().map(|cell| quantity.sample(cell));
-        let tilts = (0..grid.tilts).map(|row| super::tilt_deg(self.tilt_max_deg, grid, row));
-        Field {
-            title,
-            quantity: quantity.words().into(),
-            unit: quantity.unit().into(),
-            outside: "no feasible level".into(),
-            azimuths: grid.azimuths as usize,
-            tilts_deg: tilts.collect(),
-            samples: self.cells.iter().map(sample).collect(),
-        }
+        self.value(cell).filter(|_| counts)
     }
 }

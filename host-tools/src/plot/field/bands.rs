@@ -34,9 +34,17 @@ impl Bands {
         }
     }
 
+    /// No levels: there is no value.
+    pub(super) const fn none() -> Self {
+        Self {
+            levels: Vec::new(),
+            decimals: 0,
+        }
+    }
+
     /// How many bands there are.
     pub(super) fn count(&self) -> usize {
-        self.levels.len() - 1
+        self.levels.len().saturating_sub(1)
     }
 
     /// The band of a value.
@@ -46,13 +54,13 @@ impl Bands {
     }
 
     pub(super) fn colour(&self, band: usize) -> RGBColor {
-        let last = (self.count() - 1).max(1) as f64;
+        let last = self.count().saturating_sub(1).max(1) as f64;
         ViridisRGB.get_color(band as f64 / last)
     }
 
     /// The levels between the bands.
     pub(super) fn inner(&self) -> &[f64] {
-        &self.levels[1..self.count()]
+        self.levels.get(1..self.count()).unwrap_or_default()
     }
 
     /// All levels in words.

@@ -12,7 +12,7 @@ pub(super) fn isolines(field: &Field, bands: &Bands) -> Vec<Vec<(f64, f64)>> {
     // A column of the turn before and two of the next one, so that lines reach 0° and 360°.
     let around = |row: &[Option<Sample>]| {
         let columns = (0..row.len() + 3).map(|i| (i + row.len() - 1) % row.len());
-        let values = columns.map(|i| row[i].map_or(f64::NAN, |sample| sample.value));
+        let values = columns.map(|i| row[i].and_then(|s| s.value).unwrap_or(f64::NAN));
         values.collect::<Vec<f64>>()
     };
     let values: Vec<f64> = field
@@ -35,7 +35,7 @@ pub(super) fn isolines(field: &Field, bands: &Bands) -> Vec<Vec<(f64, f64)>> {
         // Where a ring runs along the border of the values it is none of the value's lines.
         let on_map = (0.0..=360.0).contains(&x) && y > 0.0 && y < edge;
         let sample = || field.at(x / x_step, y / y_step);
-        on_map && sample().is_some_and(|sample| sample.inside())
+        on_map && sample().and_then(|sample| sample.shown()).is_some()
     };
     let rings = lines.iter().flat_map(|line| &line.geometry().0);
     let mut pieces = Vec::new();

@@ -4,6 +4,8 @@ use super::bands::Bands;
 use super::{Field, Sample};
 use plotters::style::RGBColor;
 
+/// None of the colours of the bands, and none of the greys.
+pub(super) const BETWEEN: RGBColor = RGBColor(236, 200, 196);
 pub(super) const OUTSIDE: RGBColor = RGBColor(205, 205, 205);
 pub(super) const NO_RESULT: RGBColor = RGBColor(120, 120, 120);
 
@@ -26,16 +28,31 @@ pub(super) struct Run {
 pub(super) enum Shade {
     /// A value in a band.
     Band(usize),
-    /// Outside the region.
+    /// Outside the region, but inside the wider one.
+    Between,
+    /// Outside both.
     Outside,
-    /// Beside a pose without a result.
+    /// Beside a pose of which nothing is known, or inside the region, but without a value.
     NoResult,
 }
 
 impl Shade {
+    fn of(sample: Option<Sample>, bands: &Bands) -> Self {
+        let Some(sample) = sample else {
+            return Self::NoResult;
+        };
+        match sample.shown() {
+            Some(value) => Self::Band(bands.band(value)),
+            None if sample.between() => Self::Between,
+            None if sample.outside() => Self::Outside,
+            None => Self::NoResult,
+        }
+    }
+
     pub fn colour(self, bands: &Bands) -> RGBColor {
         match self {
             Self::Band(band) => bands.colour(band),
+            Self::Between => BETWEEN,
             Self::Outside => OUTSIDE,
             Self::NoResult => NO_RESULT,
         }
@@ -47,7 +64,7 @@ pub(super) fn values(field: &Field) -> impl Iterator<Item = f64> {
     let (rows, columns) = counts(field);
     let places = (0..rows).flat_map(move |row| (0..columns).map(move |column| (column, row)));
     let samples = places.filter_map(|(column, row)| field.at(middle(column), middle(row)));
-    samples.filter(Sample::inside).map(|sample| sample.value)
+    samples.filter_map(|sample| sample.shown())
 }
 
 /// How many fine rows and columns there are.
@@ -76,11 +93,7 @@ fn row_of(field: &Field, bands: &Bands, row: usize, tilts_deg: (f64, f64)) -> Ve
     let width = 360.0 / columns as f64;
     let mut runs: Vec<Run> = Vec::new();
     for column in 0..columns {
-        let shade = match field.at(middle(column), middle(row)) {
-            Some(sample) if sample.inside() => Shade::Band(bands.band(sample.value)),
-            Some(_) => Shade::Outside,
-            None => Shade::NoResult,
-        };
+        let shade = Shade::of(field.at(middle(column), middle(row)), bands);
         let end = (column + 1) as f64 * width;
         match runs.last_mut() {
             Some(run) if run.shade == shade => run.azimuths_deg.1 = end,

@@ -1,8 +1,8 @@
 //! The colours of a map with the levels between them: those of its lines.
 
-use super::Field;
 use super::bands::Bands;
-use super::runs::{NO_RESULT, OUTSIDE};
+use super::runs::{BETWEEN, NO_RESULT, OUTSIDE};
+use super::{Field, Sample};
 use crate::plot::canvas::{Area, Drawn, LABEL_PX};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -22,7 +22,7 @@ pub(super) fn paint<B: DrawingBackend>(field: &Field, bands: &Bands, area: &Area
         area.draw(&Text::new(words.as_str(), (LEFT_PX, y), text(area)))?;
     }
     let (_, height) = area.dim_in_pixel();
-    let step = (height as i32 - TOP_PX - LEGEND_PX) / bands.count() as i32;
+    let step = (height as i32 - TOP_PX - LEGEND_PX) / bands.count().max(1) as i32;
     let bottom = TOP_PX + step * bands.count() as i32;
     for band in 0..bands.count() {
         let y = bottom - step * band as i32;
@@ -38,10 +38,12 @@ pub(super) fn paint<B: DrawingBackend>(field: &Field, bands: &Bands, area: &Area
 
 /// What has no colour, if there is any of it.
 fn paint_legend<B: DrawingBackend>(field: &Field, area: &Area<B>, bottom: i32) -> Drawn<B> {
-    let outside = field.samples.iter().flatten().any(|s| !s.inside());
-    let no_result = field.samples.iter().any(Option::is_none);
+    let any = |is: fn(&Sample) -> bool| field.samples.iter().flatten().any(is);
+    let no_value = |sample: &Sample| sample.room >= 0.0 && sample.value.is_none();
+    let no_result = any(no_value) || field.samples.iter().any(Option::is_none);
     let entries = [
-        (outside, OUTSIDE, field.outside.as_str()),
+        (any(Sample::between), BETWEEN, field.between.as_str()),
+        (any(Sample::outside), OUTSIDE, field.outside.as_str()),
         (no_result, NO_RESULT, "no result"),
     ];
     let shown = entries.into_iter().filter(|(shown, ..)| *shown);
@@ -67,18 +69,23 @@ fn text<B: DrawingBackend>(area: &Area<B>) -> TextStyle<'static> {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{LEFT_PX, SCALE_WIDTH_PX, text};
+    use super::{BAR_PX, LEFT_PX, SCALE_WIDTH_PX, text};
     use crate::plot::canvas;
-    use crate::workspace_map::Quantity;
+    use crate::workspace_map::{Quantity, SHADES};
 
     #[test]
-    fn the_heading_of_every_map_fits_beside_it() {
+    fn heading_and_legend_of_every_map_fit_beside_it() {
         let folder = tempfile::tempdir().unwrap();
         canvas::svg(&folder.path().join("scale.svg"), |area| {
             let room = SCALE_WIDTH_PX as i32 - LEFT_PX;
             for quantity in Quantity::ALL {
                 let (width, _) = area.estimate_text_size(quantity.words(), &text(area))?;
                 assert!((width as i32) < room, "{quantity:?}: {width} of {room} px");
+            }
+            for words in SHADES {
+                let (width, _) = area.estimate_text_size(words, &text(area))?;
+                let room = room - BAR_PX - 10;
+                assert!((width as i32) < room, "{words}: {width} of {room} px");
             }
             Ok(())
         })

@@ -5,7 +5,8 @@ use super::runs::{Shade, runs};
 use super::{Field, Layout, Sample, save_png, save_svg};
 use crate::plot::PlotError;
 
-/// Tilt itself as the quantity, with room for it up to 24° at azimuths from 180° to 330°; no result near 355°.
+/// Tilt itself as the quantity, with room for it up to 24° at azimuths from 180° to 330°; no result near 355°. What has
+/// no room has some of the wider kind to 240°.
 fn field() -> Field {
     let tilts_deg: Vec<f64> = (0..=6).map(|i| 5.0 * f64::from(i)).collect();
     let sample = |tilt: f64, column: u32| {
@@ -14,7 +15,12 @@ fn field() -> Field {
         } else {
             1.0
         };
-        (column != 35).then_some(Sample { value: tilt, room })
+        let wider_room = if column < 24 { 1.0 } else { room };
+        (column != 35).then_some(Sample {
+            value: Some(tilt),
+            room,
+            wider_room,
+        })
     };
     let row = |tilt: f64| (0..36).map(move |column| sample(tilt, column));
     let samples = tilts_deg.iter().flat_map(|&tilt| row(tilt)).collect();
@@ -22,6 +28,7 @@ fn field() -> Field {
         title: "Title".into(),
         quantity: "tilt".into(),
         unit: "°C".into(),
+        between: "little room".into(),
         outside: "no room".into(),
         azimuths: 36,
         samples,
@@ -63,7 +70,9 @@ fn every_place_is_in_one_run_of_its_shade() {
     assert!((no_result - 20.0 * 30.0).abs() < 1e-6, "{no_result}");
     // The border is between the poses at 20° and 25°, to the height of a fine one.
     let outside = area(|shade| *shade == Shade::Outside);
-    assert!((outside - 155.0 * 6.0).abs() < 160.0 * 1.0, "{outside}");
+    assert!((outside - 95.0 * 6.0).abs() < 100.0, "{outside}");
+    let between = area(|shade| *shade == Shade::Between);
+    assert!((between - 60.0 * 6.0).abs() < 65.0, "{between}");
     let sum = area(|_| true);
     assert!((sum - 360.0 * 30.0).abs() < 1e-6, "{sum}");
 }
@@ -75,7 +84,15 @@ fn both_layouts_name_everything() {
         let path = folder.path().join("map.svg");
         save_svg(&field(), layout, &path).unwrap();
         let svg = std::fs::read_to_string(&path).unwrap();
-        for text in ["Title", ">\ntilt\n<", "°C", "no room", "no result", axis] {
+        for text in [
+            "Title",
+            ">\ntilt\n<",
+            "°C",
+            "little room",
+            "no room",
+            "no result",
+            axis,
+        ] {
             assert!(svg.contains(text), "{layout:?}: {text}");
         }
         save_png(&field(), layout, &folder.path().join("map.png")).unwrap();
@@ -88,19 +105,36 @@ fn a_field_with_nothing_to_show_is_refused() {
         samples: vec![None; 36 * 7],
         ..field()
     };
-    let sample = |room| Some(Sample { value: 1.0, room });
     let short = Field {
-        samples: vec![sample(1.0); 5],
-        ..field()
-    };
-    let outside = Field {
-        samples: vec![sample(-1.0); 36 * 7],
+        samples: field().samples[..5].to_vec(),
         ..field()
     };
     let path = std::path::Path::new("never.svg");
-    for field in [empty, short, outside] {
+    for field in [empty, short] {
         let refused = save_svg(&field, Layout::Flat, path);
         assert!(matches!(refused, Err(PlotError::Empty)));
     }
     assert!(!path.exists());
+}
+
+#[test]
+fn a_field_without_a_value_shows_where_they_would_be() {
+    let unknown = |sample: Option<Sample>| {
+        let sample = sample?;
+        Some(Sample {
+            value: None,
+            ..sample
+        })
+    };
+    let field = Field {
+        samples: field().samples.into_iter().map(unknown).collect(),
+        ..field()
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.svg");
+    save_svg(&field, Layout::Polar, &path).unwrap();
+    let svg = std::fs::read_to_string(&path).unwrap();
+    for text in ["little room", "no room", "no result"] {
+        assert!(svg.contains(text), "{text}");
+    }
 }
