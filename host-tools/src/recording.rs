@@ -112,3 +112,6 @@ pub fn around<T>(
         ),
     })
 }
+
+#[cfg(test)]
+mod tests;
