@@ -4,7 +4,7 @@ mod section;
 mod sections;
 
 pub use section::{Field, OutOfRange};
-pub use sections::{Estimation, Homing, Limits, Motion, Servo};
+pub use sections::{Estimation, Homing, Limits, Motion, SECTIONS, Servo};
 
 use crate::messages::{RigMessage, SupportMessage, TendonsMessage};
 use leg_model::Error;

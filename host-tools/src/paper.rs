@@ -39,6 +39,8 @@ pub enum PaperError {
 pub struct Paper {
     /// Published numbers.
     pub rows: Vec<Row>,
+    /// Every printed entry of Eqs. (24) and (25): `rows` count those that agree.
+    pub entries: Vec<Row>,
     /// Errors of the print.
     pub errata: Vec<Erratum>,
 }
@@ -59,6 +61,7 @@ impl Paper {
         ];
         Ok(Self {
             rows: rows.concat(),
+            entries: kinematics::entries()?,
             errata: errata::all(&rig)?,
         })
     }

@@ -19,7 +19,7 @@ pub struct Field {
 /// A field outside its range.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct OutOfRange {
-    /// The section's number, as in [`SECTIONS`](super::sections::SECTIONS).
+    /// The section's number, as in [`SECTIONS`](super::SECTIONS).
     pub section: u8,
     /// The field's number in the section.
     pub field: u8,

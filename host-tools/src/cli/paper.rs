@@ -55,12 +55,12 @@ fn write(computed: &Paper, folder: &Path) -> Result<PathBuf, Failure> {
 
 fn table(computed: &Paper, report: &Path) -> String {
     let heading = format!(
-        "{:>10} {:>11}  {:<8} {:<8} {}\n",
+        "{:>10} {:>11}  {:<8} {:<14} {}\n",
         "published", "ours", "unit", "verdict", "what"
     );
     let row = |row: &Row| {
         format!(
-            "{:>10.*} {:>11.*}  {:<8} {:<8} {}\n",
+            "{:>10.*} {:>11.*}  {:<8} {:<14} {}\n",
             row.decimals,
             row.published,
             row.decimals,

@@ -1,5 +1,7 @@
 //! Fig. 9: the deviation along azimuth 30° under four payloads.
 
+mod experiment;
+
 use super::row::{Meaning, Row, Topic, Verdict};
 use crate::nonlinear;
 use crate::rig_file::RigFile;
@@ -75,6 +77,7 @@ pub(super) fn rows(rig: &RigFile) -> Result<Vec<Row>, Error> {
     let mut rows = maxima(rig, StiffnessAt::Pretension)?;
     rows.extend(maxima(rig, StiffnessAt::Tension)?);
     rows.extend(against_equilibrium(rig)?);
+    rows.extend(experiment::rows(rig)?);
     Ok(rows)
 }
 
@@ -94,7 +97,7 @@ fn maxima(rig: &RigFile, stiffness_at: StiffnessAt) -> Result<Vec<Row>, Error> {
             StiffnessAt::Pretension => (
                 "",
                 Verdict::Agrees,
-                "one stiffness, that at the level, fits all four; they are read off a figure",
+                "the stiffness at the level was fitted to these four rows, one number for all: they prove the proportions, not the size",
             ),
             StiffnessAt::Tension => (
                 ", stiffness at each tendon's tension",

@@ -66,6 +66,7 @@ pub(super) fn all(rig: &RigFile) -> Result<Vec<Erratum>, Error> {
         shown.centroid(),
         rig::figure_11(),
         rig::section_4(rig)?,
+        rig::elastic_length(rig)?,
     ])
 }
 

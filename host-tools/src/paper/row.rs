@@ -49,6 +49,8 @@ pub enum Verdict {
     Agrees,
     /// Beyond it.
     Differs,
+    /// Ours is the nearest counterpart, but another thing.
+    NotComparable,
 }
 
 /// How the published number is meant.
@@ -59,6 +61,8 @@ pub enum Meaning {
     Value,
     /// As a limit that is not exceeded.
     AtMost,
+    /// As something that cannot be repeated here; ours stands beside it for scale.
+    Unrepeatable,
 }
 
 /// A published number beside ours.
@@ -99,6 +103,7 @@ impl Row {
         let near = match self.meaning {
             Meaning::Value => self.difference().abs() <= self.bound,
             Meaning::AtMost => self.difference() <= self.bound,
+            Meaning::Unrepeatable => return Verdict::NotComparable,
         };
         if near {
             Verdict::Agrees
@@ -115,6 +120,7 @@ impl Verdict {
         match self {
             Self::Agrees => "agrees",
             Self::Differs => "differs",
+            Self::NotComparable => "not comparable",
         }
     }
 }

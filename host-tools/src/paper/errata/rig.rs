@@ -81,3 +81,24 @@ pub(super) fn section_4(rig: &RigFile) -> Result<Erratum, Error> {
         unit: "N/m",
     })
 }
+
+/// Between the plates a tendon is 35 mm long when the leg hangs; it stretches over the 100 mm to its slider.
+pub(super) fn elastic_length(rig: &RigFile) -> Result<Erratum, Error> {
+    let p = &rig.parameters;
+    let hanging = evaluate(p, &rig.query(0.0, 0.0, 0.0))?;
+    let [length_m, ..] = hanging.lengths_m;
+    let [tendon, ..] = &rig.tendons;
+    let right = tendon.stiffness(rig.level_n)?;
+    Ok(Erratum {
+        place: "Sec. 4, Table 1",
+        wrong: "the length between the plates is taken as what stretches",
+        right: "the 100 mm to the slider, whatever the pose",
+        number: "stiffness at the level, if only the length between the plates stretched",
+        printed: right * ELASTIC_LENGTH_M / length_m,
+        corrected: right,
+        unit: "N/m",
+    })
+}
+
+/// From the leg's plate to the slider, m.
+const ELASTIC_LENGTH_M: f64 = 0.1;
