@@ -105,3 +105,25 @@ fn the_shadow_in_f64_stays_near() {
         assert!(divergence.reference_m > 0.0, "{name}: nothing was compared");
     }
 }
+
+/// The figure of `leg run --errors`: what cells and curves that are off cost.
+#[test]
+fn cells_and_curves_that_are_off_move_the_tip_by_as_much_as_is_said() {
+    let largest_mm = |cell_percent: f64, curve_percent: f64| {
+        let scenario = scenario("support").with_errors(cell_percent, curve_percent);
+        let (summary, _) = run(&scenario, &mut InThisProcess::default());
+        let errors = summary
+            .findings
+            .iter()
+            .filter(|finding| finding.unit == "mm");
+        errors.map(|finding| finding.value).fold(0.0, f64::max)
+    };
+    let (exact, cells, curves) = (
+        largest_mm(0.0, 0.0),
+        largest_mm(1.0, 0.0),
+        largest_mm(0.0, 2.0),
+    );
+    assert!(exact < 0.03, "{exact}");
+    assert!(cells > 2.0 * exact && cells < 0.2, "{cells}");
+    assert!(curves > cells && curves < 0.6, "{curves}");
+}

@@ -34,6 +34,7 @@ pub mod rig_show;
 pub mod rounding;
 pub mod run_charts;
 pub mod scenario;
+pub mod sensitivity;
 pub mod setup;
 pub mod simulation;
 mod suggest;

@@ -24,6 +24,7 @@ pub const READY_SCENARIOS: &[ReadyScenario] = ready![
     "stiffness",
     "payload",
     "support",
+    "workspace",
     "fault_bad_frame",
     "fault_cell_saturated",
     "fault_cell_stale",

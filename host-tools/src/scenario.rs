@@ -147,6 +147,21 @@ impl Scenario {
         }
     }
 
+    /// The same with load cells that are off by a percentage, its sign changing from one to the next, and tendons that
+    /// stretch farther than by their curves.
+    #[must_use]
+    pub fn with_errors(&self, cell_percent: f64, curve_percent: f64) -> Self {
+        let plant = PlantText {
+            cell_gain_error_percent: [cell_percent, -cell_percent, cell_percent],
+            curve_error_percent: curve_percent,
+            ..self.plant
+        };
+        Self {
+            plant,
+            ..self.clone()
+        }
+    }
+
     /// Whether the leg has to be homed.
     #[must_use]
     pub fn starts_slack(&self) -> bool {

@@ -17,6 +17,7 @@ mod progress;
 mod replay;
 mod rig;
 mod run;
+mod run_errors;
 mod run_report;
 mod setup;
 

@@ -1,7 +1,7 @@
 //! `leg run`.
 
 use super::run_report::Report;
-use super::{board, print, progress};
+use super::{board, print, progress, run_errors};
 use crate::failure::Failure;
 use crate::image;
 use crate::qemu::Clock;
@@ -37,6 +37,10 @@ pub struct Args {
     /// The folder for the charts; target/leg-run in the workspace if left out.
     #[arg(long, value_name = "DIR")]
     plots: Option<PathBuf>,
+    /// Runs the scenario again and again in this process, with load cells and tendon curves that are off, and draws the
+    /// largest error of the tip.
+    #[arg(long, conflicts_with_all = ["on", "record"])]
+    errors: bool,
     /// Prints JSON instead of a table.
     #[arg(long)]
     json: bool,
@@ -71,6 +75,9 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
         .clone()
         .unwrap_or_else(|| scenario.rig.clone().into());
     let rig = RigFile::load(Some(&rig_name))?;
+    if args.errors {
+        return run_errors::run(&scenario, &rig, &folder(args), args.json);
+    }
     let started = Instant::now();
     let summary = match args.on {
         On::Sim => simulate(args, &scenario, &rig, &mut InThisProcess::default())?,

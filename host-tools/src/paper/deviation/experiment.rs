@@ -64,19 +64,19 @@ pub(super) fn rows(rig: &RigFile) -> Result<Vec<Row>, Error> {
             "%",
         ),
         of(
-            "smallest error against the experiment",
+            "smallest error against the experiment over the workspace; ours along azimuth 30°",
             least,
             percents().fold(f64::INFINITY, f64::min),
             "%",
         ),
         of(
-            "largest error against the experiment",
+            "largest error against the experiment over the workspace; ours along azimuth 30°",
             most,
             percents().fold(0.0, f64::max),
             "%",
         ),
         of(
-            "limit of the error in Fig. 9 (b)",
+            "limit of the error in Fig. 9 (b), ±",
             LIMIT_MM,
             largest_mm,
             "mm",

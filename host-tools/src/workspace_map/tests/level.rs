@@ -58,7 +58,7 @@ fn feasibility_does_not_depend_on_the_level() {
 
 #[test]
 fn extremes_at_the_level_are_of_poses_where_it_keeps_the_bounds() {
-    let rig = ready("notch_universal");
+    let rig = ready("leaf_spring_universal");
     let map = WorkspaceMap::on_one_core(&rig, 2.0, GRID);
     let counts = map.counts();
     assert!(counts.only_another_level > 0 && counts.feasible < POSES);

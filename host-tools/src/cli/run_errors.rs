@@ -1,0 +1,65 @@
+//! `leg run --errors`.
+
+use super::{print, progress};
+use crate::failure::Failure;
+use crate::paths::from_here;
+use crate::plot;
+use crate::rig_file::RigFile;
+use crate::scenario::Scenario;
+use crate::sensitivity::{self, CELLS_PERCENT, CURVES_PERCENT, Sensitivity};
+use std::path::Path;
+
+/// Runs the command.
+///
+/// # Errors
+/// A [`Failure`]: a start that is refused, a chart that cannot be written.
+pub(super) fn run(
+    scenario: &Scenario,
+    rig: &RigFile,
+    folder: &Path,
+    json: bool,
+) -> Result<(), Failure> {
+    let runs = CELLS_PERCENT.len() * CURVES_PERCENT.len();
+    let bar = progress::bar(runs as u64, "runs");
+    let measured = sensitivity::measure(scenario, rig, || bar.inc(1));
+    bar.finish_and_clear();
+    let all = measured.map_err(|error| Failure::from_error(&error))?;
+    if json {
+        return match serde_json::to_string(&all) {
+            Ok(json) => print(&(json + "\n")),
+            Err(error) => Err(Failure::from_error(&error)),
+        };
+    }
+    let chart = sensitivity::chart(&scenario.title, &all);
+    let file = plot::save_both(&chart, &folder.join("errors")).map_err(|error| {
+        let sentence = format!("no chart in {}: {error}", folder.display());
+        Failure::refused(sentence, "name another folder with --plots")
+    })?;
+    print(&format!(
+        "{}\nLargest distance of the tip from its target, mm\n\n{}-: the leg was stopped, since its sensors disagreed too much\n\nChart: {} (and .png)\n",
+        scenario.title,
+        table(&all),
+        from_here(&file).display()
+    ))
+}
+
+/// A row for each error of the load cells, a column for each of the tendons.
+fn table(all: &[Sensitivity]) -> String {
+    let columns: String = CURVES_PERCENT
+        .iter()
+        .map(|percent| format!("{percent:>8} %"))
+        .collect();
+    let row = |cell: &f64| {
+        let values: String = all
+            .iter()
+            .filter(|one| one.cell_percent == *cell)
+            .map(|one| {
+                one.tip_mm
+                    .map_or("         -".into(), |tip_mm| format!("{tip_mm:>10.3}"))
+            })
+            .collect();
+        format!("{cell:>5} %          {values}\n")
+    };
+    let rows: String = CELLS_PERCENT.iter().map(row).collect();
+    format!("load cells  tendons{columns}\n{rows}")
+}
