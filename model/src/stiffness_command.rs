@@ -16,6 +16,10 @@ const STEPS_MAX: u8 = 12;
 /// How far from the nearer end of the range it is looked whether the stiffness nears the demand inwards.
 const INWARD: f32 = 1.0 / 64.0;
 
+/// It does if it is nearer there by more than this part of the demand. Where the stiffness hardly depends on the level, no
+/// level is much better than another.
+const NEARS: f32 = 1e-2;
+
 /// Steps in which the range is tried then, and how often, ever nearer to the best.
 const SCAN_STEPS: u8 = 16;
 const SCAN_ROUNDS: u8 = 3;
@@ -154,7 +158,7 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
         };
         let inward = end.level + (other.level - end.level) * T::from(INWARD);
         let inside = End::new(inward, self.stiffness_at(inward, axis)?, demand);
-        if inside.error.abs() < end.error.abs() {
+        if inside.error.abs() + T::from(NEARS) * demand < end.error.abs() {
             return self.scan(end, other, demand, axis);
         }
         Ok(StiffnessAnswer {
