@@ -1,5 +1,6 @@
 //! What a host commands the leg to do.
 
+use crate::supervisor::State;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
@@ -15,7 +16,7 @@ pub enum Compensation {
     Frozen,
 }
 
-/// A command. The leg answers the next one only when this one is done or refused; both are told by the state.
+/// A command. A tick obeys one, or refuses it by name.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub enum Command {
     /// Nothing but that the host is there.
@@ -50,4 +51,51 @@ pub enum Command {
     Disarm,
     /// Clears the faults whose cause is gone.
     Clear,
+}
+
+/// Why a command is not obeyed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub enum CommandRefusal {
+    /// The leg does not know its zero.
+    NotHomed,
+    /// A fault has to be cleared first, or its cause is still there.
+    Faulted,
+    /// It means nothing in this state.
+    State(State),
+    /// The leg cannot lean that far.
+    OutOfReach,
+    /// A number is not finite, or is not above zero where it has to be.
+    Number,
+    /// A stop came first.
+    Overtaken,
+}
+
+impl CommandRefusal {
+    /// What is wrong, and what to do about it.
+    #[must_use]
+    pub const fn words(self) -> [&'static str; 2] {
+        match self {
+            Self::NotHomed => ["the leg does not know its zero", "home it"],
+            Self::Faulted => ["a fault is latched", "mend its cause, then clear it"],
+            Self::State(State::Boot) => ["the leg is still starting", "ask again"],
+            Self::State(State::Disarmed) => ["the leg is disarmed", "arm it"],
+            Self::State(State::Homing) => ["the leg is homing", "wait for its end, or stop it"],
+            Self::State(State::Active) => ["the leg is armed already", "disarm it first"],
+            Self::State(State::Held) => ["the leg is held", "clear it to go on"],
+            Self::State(State::RampingDown) => [
+                "the leg is letting its tendons out",
+                "wait until it is disarmed",
+            ],
+            Self::State(State::Off) => ["the drivers are off after a fault", "clear it"],
+            Self::OutOfReach => [
+                "the leg cannot lean that far",
+                "stay within the rig's greatest tilt",
+            ],
+            Self::Number => [
+                "a number is not finite or not above zero",
+                "give another number",
+            ],
+            Self::Overtaken => ["a stop came first", "look why, then command again"],
+        }
+    }
 }

@@ -4,13 +4,12 @@ mod active;
 mod commands;
 mod motors;
 
-use crate::command::{Command, Compensation};
+use crate::command::{Command, CommandRefusal, Compensation};
 use crate::control::{
     Axis, CYCLE_TICKS, Estimator, Homing, Level, Measured, Measurement, Mechanism, Target, Targets,
     Trajectory, ticks,
 };
 use crate::drive::Drive;
-use crate::frame::Decoder;
 use crate::sensors::Sensors;
 use crate::settings::{Settings, SettingsError};
 use crate::supervisor::{AxisView, Event, Fault, FaultSet, Monitors, State, Supervisor, View};
@@ -24,13 +23,22 @@ const COMMANDS_MAX: usize = 8;
 /// Ticks of [`State::Boot`].
 const BOOT_TICKS: u32 = 16;
 
+/// What became of a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// The number that the command was given.
+    pub number: u16,
+    /// Whether it was obeyed.
+    pub result: Result<(), CommandRefusal>,
+}
+
 /// The controller of a leg.
 #[derive(Debug)]
 pub struct Leg<T> {
     tick: u32,
     phase: u8,
-    decoder: Decoder,
-    commands: Deque<Command, COMMANDS_MAX>,
+    commands: Deque<(u16, Command), COMMANDS_MAX>,
+    outcomes: Deque<Outcome, COMMANDS_MAX>,
     silence: u32,
     bad_frames: u16,
     mechanism: Mechanism<T>,
@@ -86,8 +94,8 @@ impl<T: Scalar> Leg<T> {
         Ok(Self {
             tick: 0,
             phase: 0,
-            decoder: Decoder::new(),
             commands: Deque::new(),
+            outcomes: Deque::new(),
             silence: 0,
             bad_frames: 0,
             mechanism: Mechanism::new(settings)?,
@@ -122,7 +130,7 @@ impl<T: Scalar> Leg<T> {
         })
     }
 
-    /// One tick. It takes one command of those that [`Self::receive`] has found.
+    /// One tick. It takes one of the commands that wait.
     #[inline(never)]
     pub fn tick(&mut self, sensors: &Sensors) -> Drive<T> {
         self.tick = self.tick.wrapping_add(1);
@@ -222,8 +230,7 @@ impl<T: Scalar> Leg<T> {
             Fault::Unreachable,
             active && (limited || self.level.unreachable()),
         );
-        let listening = matches!(state, State::Active | State::Homing);
-        self.silence = if listening {
+        self.silence = if state.follows() {
             self.silence.saturating_add(1)
         } else {
             0
@@ -232,6 +239,12 @@ impl<T: Scalar> Leg<T> {
         faults.add(Fault::BadFrame, self.bad_frames >= self.limits.bad_frames);
         faults.add(Fault::HomingFailed, self.homing_failed(measured));
         faults
+    }
+
+    /// What the leg may do.
+    #[must_use]
+    pub fn state(&self) -> State {
+        self.supervisor.state()
     }
 
     /// What the leg tells of itself.

@@ -1,6 +1,7 @@
-//! What host and firmware say to each other, and the hash by which they know that they mean the same.
+//! What the host says to the firmware under test, and the hash by which two sides know that they mean the same.
 
 use crate::drive::Drive;
+use crate::host_link::{HostReply, HostRequest};
 use crate::kernels::{Kernel, KernelInput, KernelOutput};
 use crate::messages::{QueryMessage, RigMessage};
 use crate::sensors::Sensors;
@@ -110,7 +111,7 @@ pub struct KernelRequest {
     pub input: KernelInput,
 }
 
-/// Most bytes from the host's link that one tick takes: what a serial link of 1 MBd brings in it, and more.
+/// Most bytes of the user's link that one tick takes or gives: what a serial link of 1 MBd brings in it, and more.
 pub const LINK_BYTES_MAX: usize = 64;
 
 /// What a tick gets.
@@ -118,12 +119,12 @@ pub const LINK_BYTES_MAX: usize = 64;
 pub struct TickRequest {
     /// What the sensors read.
     pub sensors: Sensors,
-    /// The bytes that came from the host since the last tick.
+    /// The bytes that came from the user's host since the last tick: see [`HostLink`](crate::host_link::HostLink).
     pub link: Vec<u8, LINK_BYTES_MAX>,
 }
 
 /// What a tick gives.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct TickReply {
     /// For the motors.
     pub drive: Drive<f32>,
@@ -131,6 +132,8 @@ pub struct TickReply {
     pub telemetry: Telemetry<f32>,
     /// Instructions that the tick took, if they were counted.
     pub instructions: Option<u32>,
+    /// The bytes for the user's host.
+    pub link: Vec<u8, LINK_BYTES_MAX>,
 }
 
 /// Why the firmware did nothing.
@@ -157,5 +160,6 @@ pub enum Refusal {
     NoLeg,
 }
 
-/// Hash of every type that crosses the link: it changes when a message's shape changes.
-pub const SCHEMA: [u8; 8] = Key::for_path::<(Request, Reply)>("leg").to_bytes();
+/// Hash of every type that crosses a link: it changes when a message's shape changes.
+pub const SCHEMA: [u8; 8] =
+    Key::for_path::<(Request, Reply, HostRequest, HostReply)>("leg").to_bytes();

@@ -10,7 +10,7 @@ pub const CODE_MAX: u16 = 16 * 4095;
 pub const TICK_HZ: u16 = 8_000;
 
 /// One reading of every sensor, and what the board knows of itself.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Sensors {
     /// Encoder counters of the motors; they wrap. A count up pulls the tendon in.
     pub encoder_counts: [u16; 3],

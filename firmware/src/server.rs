@@ -3,13 +3,15 @@
 use crate::counter::Counter;
 use crate::drive::Drive;
 use crate::frame::{self, Frame, FrameError, MAX_FRAME};
+use crate::host_link::{Identity, Reset};
 use crate::kernels;
-use crate::leg::Leg;
+use crate::linked_leg::{LinkedLeg, SensingLeg};
 use crate::protocol::{
-    BoardInfo, EvaluateRequest, Hello, KernelRequest, Refusal, Reply, Request, SCHEMA, TickReply,
-    TickRequest,
+    self, BoardInfo, EvaluateRequest, Hello, KernelRequest, Refusal, Reply, Request, SCHEMA,
+    TickReply, TickRequest,
 };
 use crate::settings::Settings;
+use crate::version::VERSION;
 
 #[cfg(test)]
 mod tests;
@@ -18,6 +20,9 @@ mod tests;
 pub trait Board: Counter {
     /// What the board is and found at boot.
     fn info(&self) -> BoardInfo;
+
+    /// Keeps settings over a reset; false if that failed.
+    fn save(&mut self, settings: &Settings) -> bool;
 }
 
 /// One end of a link: it answers each request with one reply.
@@ -25,7 +30,7 @@ pub trait Board: Counter {
 pub struct Server<B> {
     board: B,
     greeted: bool,
-    leg: Option<Leg<f32>>,
+    leg: Option<LinkedLeg<f32>>,
 }
 
 impl<B: Board> Server<B> {
@@ -82,31 +87,36 @@ impl<B: Board> Server<B> {
 
     #[inline(never)]
     fn start(&mut self, settings: &Settings) -> Result<Reply, Refusal> {
-        self.leg = Some(Leg::new(settings).map_err(Refusal::Settings)?);
+        let identity = emulated(self.board.info().board);
+        self.leg = Some(LinkedLeg::new(identity, settings).map_err(Refusal::Settings)?);
         Ok(Reply::Started)
     }
 
     fn tick(&mut self, request: &TickRequest) -> Result<Reply, Refusal> {
         let leg = self.leg.as_mut().ok_or(Refusal::NoLeg)?;
-        leg.receive(&request.link);
-        Ok(Reply::Ticked(TickReply {
-            drive: leg.tick(&request.sensors),
-            telemetry: leg.telemetry(),
-            instructions: None,
-        }))
+        let board = &mut self.board;
+        let save = &mut |settings: &Settings| board.save(settings);
+        Ok(Reply::Ticked(leg.tick(request, save)))
     }
 
     fn count_tick(&mut self, request: &TickRequest) -> Result<Reply, Refusal> {
         let leg = self.leg.as_mut().ok_or(Refusal::NoLeg)?;
         leg.receive(&request.link);
-        let mut ticking = Ticking { leg, drive: None };
+        let mut ticking = Ticking {
+            leg: leg.leg(),
+            drive: None,
+        };
         let instructions = self.board.count(tick, request, &mut ticking);
         match (instructions, ticking.drive) {
-            (Some(_), Some(drive)) => Ok(Reply::Ticked(TickReply {
-                drive,
-                telemetry: ticking.leg.telemetry(),
-                instructions,
-            })),
+            (Some(_), Some(drive)) => {
+                let board = &mut self.board;
+                let save = &mut |settings: &Settings| board.save(settings);
+                let reply = leg.reply(drive, save);
+                Ok(Reply::Ticked(TickReply {
+                    instructions,
+                    ..reply
+                }))
+            }
             _ => Err(Refusal::NoCounter),
         }
     }
@@ -121,12 +131,23 @@ impl<B: Board> Server<B> {
 
 /// What a counted tick works on.
 struct Ticking<'a> {
-    leg: &'a mut Leg<f32>,
+    leg: &'a mut SensingLeg<f32>,
     drive: Option<Drive<f32>>,
 }
 
 fn tick(request: &TickRequest, ticking: &mut Ticking<'_>) {
     ticking.drive = Some(ticking.leg.tick(&request.sensors));
+}
+
+/// What an emulated board is to the user's host.
+#[must_use]
+pub fn emulated(board: protocol::Board) -> Identity {
+    Identity {
+        board,
+        version: VERSION,
+        reset: Reset::Emulated,
+        last_words: heapless::String::new(),
+    }
 }
 
 fn evaluate(request: &EvaluateRequest) -> Result<Reply, Refusal> {

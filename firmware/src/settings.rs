@@ -114,6 +114,16 @@ impl core::fmt::Display for SettingsError {
 impl core::error::Error for SettingsError {}
 
 impl Settings {
+    /// The same for a leg that has to be homed: a zero holds only from the start at which it was found.
+    #[must_use]
+    pub fn without_zero(&self) -> Self {
+        let mut settings = self.clone();
+        for axis in &mut settings.axes {
+            axis.unstretched_at_zero_m = None;
+        }
+        settings
+    }
+
     /// Checks gains, limits and calibration. The mechanism is checked where it is built.
     ///
     /// # Errors

@@ -42,3 +42,28 @@ pub struct Telemetry<T> {
     /// Lengths of the tendons without tension when the board started, m.
     pub unstretched_at_zero_m: [T; 3],
 }
+
+impl<T: Copy> Telemetry<T> {
+    /// The same in another precision.
+    pub fn map<U>(&self, number: impl Fn(T) -> U) -> Telemetry<U> {
+        Telemetry {
+            tick: self.tick,
+            state: self.state,
+            faults: self.faults,
+            homed: self.homed,
+            moving: self.moving,
+            target: self.target.map(&number),
+            pose: self.pose.map(&number),
+            residual_m: number(self.residual_m),
+            tensions_n: self.tensions_n.map(&number),
+            target_tensions_n: self.target_tensions_n.map(&number),
+            pulled_m: self.pulled_m.map(&number),
+            reference_m: self.reference_m.map(&number),
+            level_n: number(self.level_n),
+            stiffness_nm_per_rad: number(self.stiffness_nm_per_rad),
+            load_nm: self.load_nm.map(&number),
+            payload_kg: number(self.payload_kg),
+            unstretched_at_zero_m: self.unstretched_at_zero_m.map(&number),
+        }
+    }
+}

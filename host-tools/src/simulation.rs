@@ -17,8 +17,10 @@ use crate::plant::Plant;
 use crate::rig_file::RigFile;
 use crate::scenario::Scenario;
 use leg_firmware::drive::Drive;
-use leg_firmware::leg::Leg;
+use leg_firmware::linked_leg::LinkedLeg;
+use leg_firmware::protocol::{Board, TickReply};
 use leg_firmware::sensors::{Sensors, TICK_HZ};
+use leg_firmware::server::emulated;
 use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
 use script::Script;
@@ -88,7 +90,8 @@ impl Simulation {
         controller: &mut dyn Controller,
         watch: &mut dyn FnMut(&Tick<'_>),
     ) -> Result<Summary, SimulationError> {
-        let mut shadow = Leg::<f64>::new(&self.settings).map_err(SimulationError::Settings)?;
+        let mut shadow = LinkedLeg::<f64>::new(emulated(Board::InProcess), &self.settings)
+            .map_err(SimulationError::Settings)?;
         controller.start(&self.settings)?;
         let mut stage = Stage::new(&self.rig, self.plant, self.scenario.seed);
         let mut script = Script::new(&self.scenario.steps);
@@ -99,10 +102,12 @@ impl Simulation {
             }
             let sensors = stage.plant.sense();
             let link = stage.outgoing();
-            let (drive, telemetry) = controller.tick(&sensors, &link)?;
+            let TickReply {
+                drive, telemetry, ..
+            } = controller.tick(&sensors, &link)?;
             shadow.receive(&link);
-            let shadow_drive = shadow.tick(&sensors);
-            divergence.compare(&drive, &telemetry, &shadow_drive, &shadow.telemetry());
+            let shadow_drive = shadow.leg().tick(&sensors);
+            divergence.compare(&drive, &telemetry, &shadow_drive, &shadow.leg().telemetry());
             watch(&Tick {
                 sensors: &sensors,
                 link: &link,

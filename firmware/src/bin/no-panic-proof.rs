@@ -12,6 +12,7 @@ use leg_firmware::counter::Counter;
 use leg_firmware::frame::{Decoder, MAX_FRAME};
 use leg_firmware::protocol::{self, BoardInfo};
 use leg_firmware::server::{self, Server};
+use leg_firmware::settings::Settings;
 use panic_never as _;
 
 struct NoBoard;
@@ -29,6 +30,10 @@ impl server::Board for NoBoard {
             board: protocol::Board::Qemu,
             boot: None,
         }
+    }
+
+    fn save(&mut self, _settings: &Settings) -> bool {
+        true
     }
 }
 

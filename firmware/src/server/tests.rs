@@ -6,6 +6,7 @@ use crate::messages::{QueryMessage, SupportMessage, TendonMessage, TendonsMessag
 use crate::protocol::{
     self, BoardInfo, EvaluateRequest, Hello, KernelRequest, Refusal, Reply, Request, SCHEMA,
 };
+use crate::settings::Settings;
 use leg_model::{Error, JointStiffness, Quantity, Reason, RigParameters, StiffnessAt, SupportKind};
 
 /// Counts every kernel as as many instructions as it is told, or nothing.
@@ -29,6 +30,10 @@ impl Counter for Bench {
 impl Board for Bench {
     fn info(&self) -> BoardInfo {
         INFO
+    }
+
+    fn save(&mut self, _settings: &Settings) -> bool {
+        true
     }
 }
 

@@ -85,4 +85,11 @@ impl State {
     pub const fn driven(self) -> bool {
         matches!(self, Homing | Active | Held | RampingDown)
     }
+
+    /// Whether the leg does what a host asks, and wants to hear from it.
+    #[must_use]
+    #[inline(always)]
+    pub const fn follows(self) -> bool {
+        matches!(self, Homing | Active)
+    }
 }

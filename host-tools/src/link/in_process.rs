@@ -5,6 +5,7 @@ use leg_firmware::counter::Counter;
 use leg_firmware::frame::{self, Decoder, MAX_FRAME};
 use leg_firmware::protocol::{Board, BoardInfo, Reply, Request};
 use leg_firmware::server::{self, Server};
+use leg_firmware::settings::Settings;
 
 /// The firmware's library inside the host's own process, behind the same frames.
 #[derive(Debug)]
@@ -66,6 +67,10 @@ impl server::Board for ThisProcess {
             board: Board::InProcess,
             boot: None,
         }
+    }
+
+    fn save(&mut self, _settings: &Settings) -> bool {
+        false
     }
 }
 

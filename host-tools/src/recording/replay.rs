@@ -2,7 +2,9 @@
 
 use super::mcap_file::{SCHEMA_KEY, SETTINGS, TICKS, schema};
 use super::tick_record::{TickRecord, bits};
-use leg_firmware::leg::Leg;
+use leg_firmware::linked_leg::LinkedLeg;
+use leg_firmware::protocol::Board;
+use leg_firmware::server::emulated;
 use leg_firmware::settings::{Settings, SettingsError};
 use mcap::{Message, MessageStream};
 use serde::Deserialize;
@@ -78,7 +80,8 @@ pub fn replay(file: &Path) -> Result<Replay, ReplayError> {
         match (message.channel.topic.as_str(), &mut leg) {
             (SETTINGS, leg) => {
                 let settings: Settings = read(&message)?;
-                *leg = Some(Leg::<f32>::new(&settings).map_err(ReplayError::Settings)?);
+                let identity = emulated(Board::InProcess);
+                *leg = Some(LinkedLeg::new(identity, &settings).map_err(ReplayError::Settings)?);
             }
             (TICKS, Some(leg)) => result.take(leg, &read(&message)?),
             (TICKS, None) => return Err(ReplayError::NoSettings),
@@ -105,9 +108,9 @@ fn read<'a, T: Deserialize<'a>>(message: &'a Message<'_>) -> Result<T, ReplayErr
 }
 
 impl Replay {
-    fn take(&mut self, leg: &mut Leg<f32>, record: &TickRecord) {
+    fn take(&mut self, leg: &mut LinkedLeg<f32>, record: &TickRecord) {
         leg.receive(&record.link);
-        let drive = leg.tick(&record.sensors);
+        let drive = leg.leg().tick(&record.sensors);
         if bits(&drive) != (record.duty_bits, record.enabled) {
             self.other += 1;
             self.first.get_or_insert(Difference {

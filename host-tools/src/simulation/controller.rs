@@ -1,12 +1,11 @@
 //! Where the controller runs: in this process, or behind a link.
 
 use crate::link::{Link, LinkError};
-use leg_firmware::drive::Drive;
-use leg_firmware::leg::Leg;
-use leg_firmware::protocol::{Refusal, Reply, Request, TickReply, TickRequest};
+use leg_firmware::linked_leg::LinkedLeg;
+use leg_firmware::protocol::{Board, Refusal, Reply, Request, TickReply, TickRequest};
 use leg_firmware::sensors::Sensors;
+use leg_firmware::server;
 use leg_firmware::settings::{Settings, SettingsError};
-use leg_firmware::telemetry::Telemetry;
 
 /// Why a controller gave no duty.
 #[derive(Debug, thiserror::Error)]
@@ -28,7 +27,7 @@ pub enum ControllerError {
     Link(#[from] LinkError),
 }
 
-/// The controller of a leg in f32.
+/// The controller of a leg in f32, with its end of the user's link.
 pub trait Controller {
     /// Makes a leg anew.
     ///
@@ -40,35 +39,35 @@ pub trait Controller {
     ///
     /// # Errors
     /// A link that failed.
-    fn tick(
-        &mut self,
-        sensors: &Sensors,
-        link: &[u8],
-    ) -> Result<(Drive<f32>, Telemetry<f32>), ControllerError>;
+    fn tick(&mut self, sensors: &Sensors, link: &[u8]) -> Result<TickReply, ControllerError>;
 }
 
 /// In this process.
 #[derive(Debug, Default)]
-pub struct InThisProcess(Option<Leg<f32>>);
+pub struct InThisProcess {
+    leg: Option<LinkedLeg<f32>>,
+    /// The settings that were saved last.
+    pub saved: Option<Settings>,
+}
 
 impl Controller for InThisProcess {
     fn start(&mut self, settings: &Settings) -> Result<(), ControllerError> {
-        self.0 = Some(Leg::new(settings).map_err(ControllerError::Settings)?);
+        let identity = server::emulated(Board::InProcess);
+        let leg = LinkedLeg::new(identity, settings).map_err(ControllerError::Settings)?;
+        self.leg = Some(leg);
         Ok(())
     }
 
-    fn tick(
-        &mut self,
-        sensors: &Sensors,
-        link: &[u8],
-    ) -> Result<(Drive<f32>, Telemetry<f32>), ControllerError> {
+    fn tick(&mut self, sensors: &Sensors, link: &[u8]) -> Result<TickReply, ControllerError> {
         let leg = self
-            .0
+            .leg
             .as_mut()
             .ok_or(ControllerError::Refused(Refusal::NoLeg))?;
-        leg.receive(link);
-        let drive = leg.tick(sensors);
-        Ok((drive, leg.telemetry()))
+        let saved = &mut self.saved;
+        Ok(leg.tick(&tick_request(sensors, link)?, &mut |settings| {
+            *saved = Some(settings.clone());
+            true
+        }))
     }
 }
 
@@ -101,32 +100,27 @@ impl Controller for OnLink<'_> {
         }
     }
 
-    fn tick(
-        &mut self,
-        sensors: &Sensors,
-        link: &[u8],
-    ) -> Result<(Drive<f32>, Telemetry<f32>), ControllerError> {
-        let link = heapless::Vec::from_slice(link).map_err(|_| ControllerError::TooManyBytes)?;
-        let request = TickRequest {
-            sensors: *sensors,
-            link,
-        };
+    fn tick(&mut self, sensors: &Sensors, link: &[u8]) -> Result<TickReply, ControllerError> {
+        let request = tick_request(sensors, link)?;
         let request = if self.counting {
             Request::CountTick(request)
         } else {
             Request::Tick(request)
         };
         match self.link.ask(&request)? {
-            Reply::Ticked(TickReply {
-                drive,
-                telemetry,
-                instructions,
-            }) => {
-                self.instructions.extend(instructions);
-                Ok((drive, telemetry))
+            Reply::Ticked(reply) => {
+                self.instructions.extend(reply.instructions);
+                Ok(reply)
             }
             Reply::Refused(refusal) => Err(ControllerError::Refused(refusal)),
             _ => Err(ControllerError::WrongReply),
         }
     }
+}
+
+fn tick_request(sensors: &Sensors, link: &[u8]) -> Result<TickRequest, ControllerError> {
+    Ok(TickRequest {
+        sensors: *sensors,
+        link: heapless::Vec::from_slice(link).map_err(|_| ControllerError::TooManyBytes)?,
+    })
 }

@@ -8,7 +8,8 @@ use crate::rig_file::RigFile;
 use leg_firmware::command::Command;
 use leg_firmware::drive::Drive;
 use leg_firmware::frame::{self, MAX_FRAME};
-use leg_firmware::protocol::LINK_BYTES_MAX;
+use leg_firmware::host_link::{HostId, HostRequest};
+use leg_firmware::protocol::{Hello, LINK_BYTES_MAX, SCHEMA};
 use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_firmware::telemetry::Telemetry;
 use nalgebra::Vector3;
@@ -22,6 +23,9 @@ const ALIVE_TICKS: u64 = 400;
 
 /// Ticks between two samples.
 const SAMPLE_TICKS: u64 = 16;
+
+/// The only host of a scenario.
+const HOST: HostId = 1;
 
 /// A force at the tip that comes up smoothly.
 #[derive(Clone, Copy, Debug)]
@@ -93,10 +97,20 @@ impl Stage {
 
     /// Sends a command.
     pub fn send(&mut self, command: &Command) -> Result<(), SimulationError> {
-        self.sequence = self.sequence.wrapping_add(1);
+        if self.sequence == 0 {
+            self.ask(&HostRequest::Identify(Hello { schema: SCHEMA }))?;
+        }
+        self.ask(&HostRequest::Command {
+            host: HOST,
+            command: *command,
+        })
+    }
+
+    fn ask(&mut self, request: &HostRequest) -> Result<(), SimulationError> {
+        self.sequence = self.sequence.checked_add(1).unwrap_or(1);
         let mut out = [0; MAX_FRAME];
         let bytes =
-            frame::encode(self.sequence, command, &mut out).map_err(SimulationError::Command)?;
+            frame::encode(self.sequence, request, &mut out).map_err(SimulationError::Command)?;
         self.queue.extend(bytes);
         Ok(())
     }

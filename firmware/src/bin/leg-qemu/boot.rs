@@ -6,6 +6,7 @@ use leg_firmware::counter::Counter;
 use leg_firmware::exit::Exit;
 use leg_firmware::protocol::{self, BoardInfo, BootCheck};
 use leg_firmware::server;
+use leg_firmware::settings::Settings;
 
 const ALARM: Duration = Duration::from_micros(1_000);
 
@@ -54,5 +55,9 @@ impl server::Board for QemuBoard {
             board: protocol::Board::Qemu,
             boot: Some(self.check),
         }
+    }
+
+    fn save(&mut self, _settings: &Settings) -> bool {
+        true
     }
 }

@@ -8,6 +8,7 @@ use leg_firmware::counter::Counter;
 use leg_firmware::frame::{Decoder, MAX_FRAME};
 use leg_firmware::protocol::{self, BoardInfo};
 use leg_firmware::server::{self, Server};
+use leg_firmware::settings::Settings;
 use static_cell::StaticCell;
 
 const BAUD: u32 = 921_600;
@@ -32,6 +33,10 @@ impl server::Board for Nucleo {
             board: protocol::Board::Stm32g474,
             boot: None,
         }
+    }
+
+    fn save(&mut self, _settings: &Settings) -> bool {
+        false
     }
 }
 

@@ -1,0 +1,41 @@
+//! Bytes on their way to the host.
+
+use crate::frame::{self, MAX_FRAME};
+use crate::host_link::HostReply;
+use heapless::Deque;
+
+/// Room for three of the longest frames.
+const ROOM: usize = 4096;
+const _: () = assert!(ROOM >= 3 * MAX_FRAME);
+
+/// A queue of whole frames.
+#[derive(Debug)]
+pub struct Outbox(Deque<u8, ROOM>);
+
+impl Outbox {
+    pub const fn new() -> Self {
+        Self(Deque::new())
+    }
+
+    /// Puts in a frame. False, and nothing is put in, if `spare` bytes would not be left free.
+    pub fn put(&mut self, sequence: u16, reply: &HostReply, spare: usize) -> bool {
+        let mut out = [0; MAX_FRAME];
+        let Ok(bytes) = frame::encode(sequence, reply, &mut out) else {
+            return false;
+        };
+        let free = ROOM - self.0.len();
+        if free < bytes.len() + spare {
+            return false;
+        }
+        for &byte in bytes {
+            // There is room: it was just counted.
+            let _ = self.0.push_back(byte);
+        }
+        true
+    }
+
+    /// Takes the next byte.
+    pub fn take(&mut self) -> Option<u8> {
+        self.0.pop_front()
+    }
+}

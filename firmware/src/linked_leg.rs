@@ -1,0 +1,155 @@
+//! A leg with its end of the host's line, as an emulator runs both: no flash, no clock but the ticks.
+
+use crate::command::Command;
+use crate::drive::Drive;
+use crate::host_link::{Commanded, HostLink, HostRefusal, Identity};
+use crate::leg::{Leg, Outcome};
+use crate::protocol::{LINK_BYTES_MAX, TickReply, TickRequest};
+use crate::sensors::Sensors;
+use crate::settings::{Settings, SettingsError};
+use crate::telemetry::Telemetry;
+use heapless::Vec;
+use leg_model::Scalar;
+
+/// A leg, and what it read last.
+#[derive(Debug)]
+pub struct SensingLeg<T> {
+    leg: Leg<T>,
+    sensors: Sensors,
+}
+
+impl<T: Scalar> SensingLeg<T> {
+    /// A leg that has not seen its sensors yet.
+    ///
+    /// # Errors
+    /// Settings that are refused.
+    pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
+        Ok(Self {
+            leg: Leg::new(settings)?,
+            sensors: Sensors::default(),
+        })
+    }
+
+    /// One tick: see [`Leg::tick`].
+    #[inline(always)]
+    pub fn tick(&mut self, sensors: &Sensors) -> Drive<T> {
+        self.sensors = *sensors;
+        self.leg.tick(sensors)
+    }
+
+    /// See [`Leg::telemetry`].
+    #[must_use]
+    pub fn telemetry(&self) -> Telemetry<T> {
+        self.leg.telemetry()
+    }
+}
+
+macro_rules! commanded {
+    ($number:ty, $narrowed:expr) => {
+        impl Commanded for SensingLeg<$number> {
+            fn command(&mut self, number: u16, command: Command) -> bool {
+                self.leg.command(number, command)
+            }
+
+            fn misheard(&mut self) {
+                self.leg.misheard();
+            }
+
+            fn outcome(&mut self) -> Option<Outcome> {
+                self.leg.outcome()
+            }
+
+            fn telemetry(&mut self) -> Telemetry<f32> {
+                self.leg.telemetry().map($narrowed)
+            }
+
+            fn sensors(&mut self) -> Sensors {
+                self.sensors
+            }
+
+            fn restart(&mut self, settings: &Settings) -> Result<(), HostRefusal> {
+                if self.leg.state().driven() {
+                    return Err(HostRefusal::Driven);
+                }
+                let settings = settings.without_zero();
+                self.leg = Leg::new(&settings).map_err(HostRefusal::Settings)?;
+                Ok(())
+            }
+        }
+    };
+}
+
+commanded!(f32, |value| value);
+commanded!(f64, |value| value as f32);
+
+/// Keeps settings over a reset; false if that failed.
+pub type Save<'a> = &'a mut dyn FnMut(&Settings) -> bool;
+
+/// A leg and its line.
+#[derive(Debug)]
+pub struct LinkedLeg<T> {
+    leg: SensingLeg<T>,
+    link: HostLink,
+}
+
+impl<T: Scalar> LinkedLeg<T>
+where
+    SensingLeg<T>: Commanded,
+{
+    /// A leg that has not seen its sensors yet, on a line on which nothing was said yet.
+    ///
+    /// # Errors
+    /// Settings that are refused.
+    pub fn new(identity: Identity, settings: &Settings) -> Result<Self, SettingsError> {
+        Ok(Self {
+            leg: SensingLeg::new(settings)?,
+            link: HostLink::new(identity, settings.clone()),
+        })
+    }
+
+    /// Takes bytes from the host.
+    pub fn receive(&mut self, bytes: &[u8]) {
+        self.link.receive(bytes, &mut self.leg);
+    }
+
+    /// The leg alone, for its tick.
+    pub fn leg(&mut self) -> &mut SensingLeg<T> {
+        &mut self.leg
+    }
+
+    /// What the host gets after a tick, as far as it fits.
+    pub fn sent(&mut self, save: Save<'_>) -> Vec<u8, LINK_BYTES_MAX> {
+        self.link.report(&mut self.leg);
+        if let Some(settings) = self.link.to_save() {
+            let kept = save(settings);
+            self.link.saved(kept);
+        }
+        let mut sent = Vec::new();
+        while !sent.is_full()
+            && let Some(byte) = self.link.transmit()
+        {
+            // There is room: it was just looked at.
+            let _ = sent.push(byte);
+        }
+        sent
+    }
+}
+
+impl LinkedLeg<f32> {
+    /// One tick and what belongs to it.
+    pub fn tick(&mut self, request: &TickRequest, save: Save<'_>) -> TickReply {
+        self.receive(&request.link);
+        let drive = self.leg.tick(&request.sensors);
+        self.reply(drive, save)
+    }
+
+    /// What follows the tick that gave `drive`.
+    pub fn reply(&mut self, drive: Drive<f32>, save: Save<'_>) -> TickReply {
+        TickReply {
+            drive,
+            telemetry: self.leg.telemetry(),
+            instructions: None,
+            link: self.sent(save),
+        }
+    }
+}
