@@ -60,10 +60,32 @@ pub struct Leg<T> {
     residual_m: Option<T>,
     /// Whether every tendon has been above the floor since the leg was armed.
     tensioned: bool,
-    floor_start_m: [T; 3],
+    /// What is left of the way until every tendon pulls.
+    slack: Slack<T>,
+    /// Where the tendons were when the leg was held or began to relax, m.
+    rest_m: [T; 3],
     refused: bool,
+    failed_tendon: u8,
     measured: Option<Measured<T>>,
     limits: Limits<T>,
+}
+
+/// The way from slack to taut: every tendon is as far from its target as every other, so that the leg does not swing.
+#[derive(Clone, Copy, Debug)]
+struct Slack<T> {
+    /// How far, m; none before the first target.
+    left_m: Option<T>,
+    /// Cycles since the leg was armed.
+    cycles: u32,
+}
+
+impl<T> Default for Slack<T> {
+    fn default() -> Self {
+        Self {
+            left_m: None,
+            cycles: 0,
+        }
+    }
 }
 
 /// What the tick itself decides by.
@@ -72,7 +94,9 @@ struct Limits<T> {
     silence: u32,
     bad_frames: u16,
     ramp_m_per_s: T,
-    floor_travel_m: T,
+    hold_travel_m: T,
+    relax_travel_m: T,
+    taut_cycles: u32,
     slack_n: T,
     servo_m_per_s: T,
     tilt_max_sine: T,
@@ -115,14 +139,18 @@ impl<T: Scalar> Leg<T> {
             target: None,
             residual_m: None,
             tensioned: false,
-            floor_start_m: [T::zero(); 3],
+            slack: Slack::default(),
+            rest_m: [T::zero(); 3],
             refused: false,
+            failed_tendon: 0,
             measured: None,
             limits: Limits {
                 silence: ticks(limits.command_time_s),
                 bad_frames: limits.bad_frames as u16,
                 ramp_m_per_s: limits.ramp_m_per_s.into(),
-                floor_travel_m: limits.floor_travel_m.into(),
+                hold_travel_m: limits.hold_travel_m.into(),
+                relax_travel_m: limits.relax_travel_m.into(),
+                taut_cycles: ticks(limits.taut_time_s) / u32::from(CYCLE_TICKS),
                 slack_n: limits.slack_n.into(),
                 servo_m_per_s: settings.servo.speed_m_per_s.into(),
                 tilt_max_sine: settings.tilt_max_sine.into(),
@@ -220,6 +248,8 @@ impl<T: Scalar> Leg<T> {
             },
         });
         faults.add(Fault::Infeasible, self.refused);
+        let late = self.slack.cycles > self.limits.taut_cycles;
+        faults.add(Fault::Slack, active && !self.tensioned && late);
         match result {
             Ok(()) => {}
             Err(Error::Infeasible) => faults.add(Fault::Infeasible, true),
@@ -262,6 +292,7 @@ impl<T: Scalar> Leg<T> {
             state: self.supervisor.state(),
             faults: self.supervisor.latched(),
             homed: self.zero_m.is_some(),
+            failed_tendon: self.failed_tendon,
             moving: self.trajectory.moving(),
             target: [target.x, target.y],
             pose: [pose.x, pose.y],

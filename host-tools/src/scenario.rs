@@ -1,5 +1,6 @@
 //! A scenario: how a simulated leg starts, what is done to it, and what must come out.
 
+mod check;
 mod step;
 
 pub use step::{Quantity, Step};
@@ -8,6 +9,7 @@ use crate::control_settings::Gains;
 use crate::failure::{Failure, Place};
 use crate::plant::{PlantSettings, Start};
 use crate::ready_scenarios;
+use leg_firmware::supervisor::Fault;
 use serde::Deserialize;
 use std::path::Path;
 
@@ -32,6 +34,9 @@ pub struct Scenario {
     /// Gains and limits that differ from their defaults.
     #[serde(default)]
     pub control: Gains,
+    /// Faults that may come beside those that a step waits for; any other one fails the scenario.
+    #[serde(default)]
+    pub expected: Vec<Fault>,
     /// What happens, one after the other.
     pub steps: Vec<Step>,
 }
@@ -112,7 +117,7 @@ impl Scenario {
     /// # Errors
     /// A [`Failure`] with the place.
     pub fn parse(file: &str, text: &str) -> Result<Self, Failure> {
-        toml::from_str(text).map_err(|error| {
+        let scenario: Self = toml::from_str(text).map_err(|error| {
             let place = Place {
                 file: file.into(),
                 text: text.into(),
@@ -123,7 +128,14 @@ impl Scenario {
                 "see the ready scenarios for what there is",
                 place,
             )
-        })
+        })?;
+        check::check(&scenario).map_err(|refused| {
+            Failure::refused(
+                format!("{file}: {refused}"),
+                "see the ready scenarios for what there is",
+            )
+        })?;
+        Ok(scenario)
     }
 
     /// How the leg starts.

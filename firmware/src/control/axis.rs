@@ -27,6 +27,8 @@ pub struct Axis<T> {
     /// Where the axis shall be now, m, and how that changes in a tick, m.
     reference_m: T,
     step_m: T,
+    /// No faster than this, m/s.
+    fastest_m_per_s: T,
     /// The tracked position and speed.
     tracked_m: T,
     speed_m_per_s: T,
@@ -64,6 +66,8 @@ pub struct AxisInput<T> {
     pub ceiling_n: T,
     /// The supply, V.
     pub supply_v: T,
+    /// The tendon is not let out beyond this, m, whatever its load cell says.
+    pub lowest_m: T,
 }
 
 impl<T: Scalar> Axis<T> {
@@ -92,6 +96,7 @@ impl<T: Scalar> Axis<T> {
             gains,
             reference_m: T::zero(),
             step_m: T::zero(),
+            fastest_m_per_s: T::zero(),
             tracked_m: T::zero(),
             speed_m_per_s: T::zero(),
             integral_v: T::zero(),
@@ -132,8 +137,14 @@ impl<T: Scalar> Axis<T> {
     /// Leads the axis to a goal within `ticks` ticks or, if that is too fast, later.
     #[inline(always)]
     pub fn lead(&mut self, goal: &AxisGoal<T>, per_ticks: T) {
-        let fastest = least(goal.speed_m_per_s, self.gains.speed_max) * self.gains.tick_s;
+        self.fastest_m_per_s = least(goal.speed_m_per_s, self.gains.speed_max);
+        let fastest = self.fastest_m_per_s * self.gains.tick_s;
         self.step_m = within((goal.pulled_m - self.reference_m) * per_ticks, fastest);
+    }
+
+    /// Leads the axis no farther, until it is led again.
+    pub fn pause(&mut self) {
+        self.step_m = T::zero();
     }
 
     /// Follows the motor without driving it.
@@ -160,8 +171,17 @@ impl<T: Scalar> Axis<T> {
         let wanted = within(wanted, gains.speed_max);
         // The nearer to the ceiling, the slower the pull; above it the tendon is let out.
         let room = (input.ceiling_n - input.tension_n) * gains.per_band_n;
-        let fastest = within(room, T::one()) * gains.speed_max;
+        let fastest = if room < T::zero() {
+            most(room, -T::one()) * self.fastest_m_per_s
+        } else {
+            least(room, T::one()) * gains.speed_max
+        };
         let wanted = least(wanted, fastest);
+        let wanted = if input.pulled_m <= input.lowest_m {
+            most(wanted, T::zero())
+        } else {
+            wanted
+        };
         let missing = wanted - self.speed_m_per_s;
         let proportional = gains.back_emf * wanted + gains.speed * missing;
         let asked = proportional + self.integral_v;

@@ -1,6 +1,6 @@
 //! What the motors do in each state, and what a change of state begins.
 
-use super::Leg;
+use super::{Leg, Slack};
 use crate::command::Compensation;
 use crate::control::{AxisGoal, AxisInput, Homing, Measured};
 use crate::drive::Drive;
@@ -17,11 +17,12 @@ impl<T: Scalar> Leg<T> {
         self.silence = 0;
         match state {
             State::Homing => {
-                self.homing = Some(Homing::new(&self.settings_of_homing, &measured.pulled_m))
+                self.failed_tendon = 0;
+                self.homing = Some(Homing::new(&self.settings_of_homing, &measured.pulled_m));
             }
             State::Active => self.begin_here(measured),
-            State::Held => self.floor_start_m = measured.pulled_m,
-            State::Boot | State::Disarmed | State::RampingDown | State::Off => {}
+            State::Held | State::RampingDown => self.rest_m = measured.pulled_m,
+            State::Boot | State::Disarmed | State::Off => {}
         }
     }
 
@@ -34,6 +35,7 @@ impl<T: Scalar> Leg<T> {
         self.trajectory
             .start(self.estimator.direction().half_tangent());
         self.tensioned = false;
+        self.slack = Slack::default();
         self.target = None;
         self.residual_m = None;
         self.phase = 0;
@@ -44,9 +46,9 @@ impl<T: Scalar> Leg<T> {
     pub(super) fn keep_floor(&mut self, measured: &Measured<T>) {
         for (i, axis) in self.axes.iter_mut().enumerate() {
             let low = measured.steady_tensions_n[i] < self.mechanism.floor_n;
-            let room = measured.pulled_m[i] - self.floor_start_m[i] < self.limits.floor_travel_m;
+            let room = measured.pulled_m[i] - self.rest_m[i] < self.limits.hold_travel_m;
             let goal = if low && room {
-                measured.pulled_m[i] + self.limits.floor_travel_m
+                measured.pulled_m[i] + self.limits.hold_travel_m
             } else {
                 axis.reference_m()
             };
@@ -60,15 +62,16 @@ impl<T: Scalar> Leg<T> {
         }
     }
 
-    /// Lets every tendon out that still pulls.
+    /// Lets every tendon out that still pulls, as far as that is allowed: a dead load cell may say so for ever.
     #[inline(never)]
     pub(super) fn relax(&mut self, measured: &Measured<T>) {
         let mut relaxed = true;
         for (i, axis) in self.axes.iter_mut().enumerate() {
             let pulls = measured.steady_tensions_n[i] > self.limits.slack_n;
-            relaxed &= !pulls;
-            let goal = if pulls {
-                axis.reference_m() - self.limits.floor_travel_m
+            let room = self.rest_m[i] - measured.pulled_m[i] < self.limits.relax_travel_m;
+            relaxed &= !(pulls && room);
+            let goal = if pulls && room {
+                axis.reference_m() - self.limits.hold_travel_m
             } else {
                 axis.reference_m()
             };
@@ -101,12 +104,18 @@ impl<T: Scalar> Leg<T> {
         } else {
             self.mechanism.ceiling_n
         };
+        let lowest = match state {
+            State::Held => Some(self.limits.hold_travel_m),
+            State::RampingDown => Some(self.limits.relax_travel_m),
+            _ => None,
+        };
         for (i, axis) in self.axes.iter_mut().enumerate() {
             drive.duty[i] = axis.drive(&AxisInput {
                 pulled_m: measured.pulled_m[i],
                 tension_n: measured.tensions_n[i],
                 ceiling_n,
                 supply_v: measured.supply_v,
+                lowest_m: lowest.map_or(-T::MAX, |travel_m| self.rest_m[i] - travel_m),
             });
         }
         drive

@@ -43,7 +43,12 @@ impl Report<'_> {
         let faults: Vec<String> = summary
             .faults
             .iter()
-            .map(|(fault, at_s)| format!("{} ({at_s:.3} s)", fault.entry().name))
+            .map(|(fault, at_s)| {
+                let name = fault.entry().name;
+                let expected = !summary.unexpected.contains(fault);
+                let remark = if expected { "" } else { ", not expected" };
+                format!("{name} ({at_s:.3} s{remark})")
+            })
             .collect();
         let faults = if faults.is_empty() {
             "none".into()

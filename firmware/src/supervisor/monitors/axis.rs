@@ -126,23 +126,21 @@ impl<T: Scalar> AxisMonitor<T> {
         };
         let saturated = !(SATURATED..=CODE_MAX - SATURATED).contains(&code);
         faults.add(Fault::CellSaturated, saturated);
-        faults.add(Fault::CellStale, self.stale.over(!fresh));
+        let stale = self.stale.over(!fresh);
+        faults.add(Fault::CellStale, stale);
         // A code that is not fresh is the last one: that is stale, not stuck.
-        faults.add(
-            Fault::CellStuck,
-            self.stuck.over(fresh && code == self.last_code),
-        );
+        let stuck = self.stuck.over(fresh && code == self.last_code);
+        faults.add(Fault::CellStuck, stuck);
+        // What a dead cell says is no tension.
+        let alive = view.driven && !saturated && !stale && !stuck;
         self.last_code = code;
         let slack = view.tensioned && !(tension >= bounds.slack_n);
         faults.add(Fault::Slack, self.slack.over(slack));
-        faults.add(
-            Fault::OverTension,
-            view.driven && !(tension <= bounds.tension_n),
-        );
+        faults.add(Fault::OverTension, alive && !(tension <= bounds.tension_n));
         let place = self.place & (JUMP_LOOKS - 1);
         let before = core::mem::replace(&mut self.history[place], tension);
         self.place = place + 1;
-        let jump = self.filled && view.driven && !((tension - before).abs() <= bounds.jump_n);
+        let jump = self.filled && alive && !((tension - before).abs() <= bounds.jump_n);
         self.filled |= self.place == JUMP_LOOKS;
         faults.add(Fault::TensionJump, jump);
     }
