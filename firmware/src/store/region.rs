@@ -20,5 +20,5 @@ pub const WORD_SIZE: usize = 8;
 /// The last 16 KiB of the second bank, 0x0807_C000 to 0x0808_0000, in bytes from [`FLASH_START`].
 ///
 /// Eight pages of at least two records each: one page is erased for two saves, each page for sixteen, so that 10 000
-/// erases a page last for 160 000 saves.
+/// erases a page last for 160 000 saves. `memory.x` keeps programs out of it.
 pub const REGION: Range<u32> = FLASH_SIZE - 0x4000..FLASH_SIZE;

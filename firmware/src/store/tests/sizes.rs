@@ -4,7 +4,9 @@ use super::large;
 use crate::settings::Settings;
 use crate::store::sealed::Sealed;
 use crate::store::tests::mock::Mock;
-use crate::store::{BANK_2, FLASH_SIZE, PAGE_SIZE, RECORD_MAX, REGION, SETTINGS_MAX, WORD_SIZE};
+use crate::store::{
+    BANK_2, FLASH_SIZE, FLASH_START, PAGE_SIZE, RECORD_MAX, REGION, SETTINGS_MAX, WORD_SIZE,
+};
 use embedded_storage_async::nor_flash::NorFlash;
 use leg_model::CURVE_POINTS_MAX;
 use postcard_schema::Schema;
@@ -63,4 +65,12 @@ fn the_region_is_the_end_of_the_second_bank() {
     assert_eq!(REGION.end, FLASH_SIZE);
     assert_eq!(REGION.len(), 8 * PAGE_SIZE);
     assert!(REGION.start.is_multiple_of(PAGE_SIZE as u32));
+}
+
+#[test]
+fn programs_are_kept_out_of_the_region() {
+    let memory = include_str!("../../../../memory.x");
+    let origin = format!("_flash_origin : {FLASH_START:#010x}, ");
+    let length = format!("LENGTH = {}K", REGION.start / 1024);
+    assert!(memory.contains(&(origin + &length)), "{memory}");
 }
