@@ -108,6 +108,10 @@ impl Simulation {
             shadow.receive(&link);
             let shadow_drive = shadow.leg().tick(&sensors);
             divergence.compare(&drive, &telemetry, &shadow_drive, &shadow.leg().telemetry());
+            shadow.leg().take_over(&Drive {
+                duty: drive.duty.map(f64::from),
+                enabled: drive.enabled,
+            });
             watch(&Tick {
                 sensors: &sensors,
                 link: &link,

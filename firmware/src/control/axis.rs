@@ -27,8 +27,6 @@ pub struct Axis<T> {
     /// Where the axis shall be now, m, and how that changes in a tick, m.
     reference_m: T,
     step_m: T,
-    /// No faster than this, m/s.
-    fastest_m_per_s: T,
     /// The tracked position and speed.
     tracked_m: T,
     speed_m_per_s: T,
@@ -96,7 +94,6 @@ impl<T: Scalar> Axis<T> {
             gains,
             reference_m: T::zero(),
             step_m: T::zero(),
-            fastest_m_per_s: T::zero(),
             tracked_m: T::zero(),
             speed_m_per_s: T::zero(),
             integral_v: T::zero(),
@@ -137,8 +134,7 @@ impl<T: Scalar> Axis<T> {
     /// Leads the axis to a goal within `ticks` ticks or, if that is too fast, later.
     #[inline(always)]
     pub fn lead(&mut self, goal: &AxisGoal<T>, per_ticks: T) {
-        self.fastest_m_per_s = least(goal.speed_m_per_s, self.gains.speed_max);
-        let fastest = self.fastest_m_per_s * self.gains.tick_s;
+        let fastest = least(goal.speed_m_per_s, self.gains.speed_max) * self.gains.tick_s;
         self.step_m = within((goal.pulled_m - self.reference_m) * per_ticks, fastest);
     }
 
@@ -156,6 +152,12 @@ impl<T: Scalar> Axis<T> {
         self.speed_m_per_s += self.gains.track_speed * off;
     }
 
+    /// Goes on from the voltage that another controller of the same motor has applied: the integral becomes what it had to be.
+    pub fn take_over(&mut self, applied_v: T) {
+        self.integral_v += applied_v - self.voltage_v;
+        self.voltage_v = applied_v;
+    }
+
     /// One tick: the duty. Call [`Self::track`] first.
     #[inline(always)]
     pub fn drive(&mut self, input: &AxisInput<T>) -> T {
@@ -171,11 +173,7 @@ impl<T: Scalar> Axis<T> {
         let wanted = within(wanted, gains.speed_max);
         // The nearer to the ceiling, the slower the pull; above it the tendon is let out.
         let room = (input.ceiling_n - input.tension_n) * gains.per_band_n;
-        let fastest = if room < T::zero() {
-            most(room, -T::one()) * self.fastest_m_per_s
-        } else {
-            least(room, T::one()) * gains.speed_max
-        };
+        let fastest = within(room, T::one()) * gains.speed_max;
         let wanted = least(wanted, fastest);
         let wanted = if input.pulled_m <= input.lowest_m {
             most(wanted, T::zero())

@@ -46,7 +46,8 @@ impl<T: Scalar> Leg<T> {
             self.slack.cycles = self.slack.cycles.saturating_add(1);
             let floor_n = self.mechanism.floor_n;
             let tensions_n = &measured.steady_tensions_n;
-            self.tensioned = tensions_n.iter().all(|&tension| tension > floor_n);
+            self.tensioned =
+                self.slack.gone() && tensions_n.iter().all(|&tension| tension > floor_n);
         }
         self.estimate(zero_m, measured, weighing)
     }
@@ -84,17 +85,23 @@ impl<T: Scalar> Leg<T> {
 
     #[inline(never)]
     fn aim(&mut self, zero_m: &[T; 3], measured: &Measured<T>) -> Result<(), Error> {
+        let taut = self.slack.gone();
         let wish = Wish {
             q: self.trajectory.step(),
             excess_nm: self.estimator.excess_nm(),
             compensated: self.compensation != Compensation::Off,
             trimmed: self.compensation == Compensation::Estimated && self.tensioned,
-            level_n: self.level.level_n(),
+            // The level comes up when every tendon is as far from slack as every other.
+            level_n: if taut {
+                self.level.level_n()
+            } else {
+                T::zero()
+            },
         };
         let target = self
             .targets
             .next(&self.mechanism, &wish, &measured.steady_tensions_n);
-        let target = match target {
+        let mut target = match target {
             Ok(target) => target,
             Err(error) => {
                 self.stay();
@@ -105,7 +112,6 @@ impl<T: Scalar> Leg<T> {
         for (pulled, &unstretched) in pulled_m.iter_mut().zip(&target.unstretched_m) {
             *pulled -= unstretched;
         }
-        let taut = self.slack.left_m.is_some_and(|left| left <= T::zero());
         let speed_m_per_s = if taut {
             self.limits.servo_m_per_s
         } else {
@@ -120,6 +126,7 @@ impl<T: Scalar> Leg<T> {
             };
             axis.lead(&goal, per_ticks);
         }
+        target.limited &= taut;
         self.target = Some(target);
         Ok(())
     }

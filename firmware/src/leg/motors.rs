@@ -4,7 +4,7 @@ use super::{Leg, Slack};
 use crate::command::Compensation;
 use crate::control::{AxisGoal, AxisInput, Homing, Measured};
 use crate::drive::Drive;
-use crate::supervisor::{Event, State};
+use crate::supervisor::{Event, FaultSet, State};
 use leg_model::Scalar;
 
 impl<T: Scalar> Leg<T> {
@@ -15,14 +15,20 @@ impl<T: Scalar> Leg<T> {
             axis.rest(pulled);
         }
         self.silence = 0;
+        self.rest_m = measured.pulled_m;
+        let travel_m = match state {
+            State::Homing => T::TWO * self.limits.homing_release_m,
+            State::RampingDown => self.limits.relax_travel_m,
+            _ => T::MAX,
+        };
+        self.lowest_m = self.rest_m.map(|rest| rest - travel_m);
         match state {
             State::Homing => {
                 self.failed_tendon = 0;
                 self.homing = Some(Homing::new(&self.settings_of_homing, &measured.pulled_m));
             }
             State::Active => self.begin_here(measured),
-            State::Held | State::RampingDown => self.rest_m = measured.pulled_m,
-            State::Boot | State::Disarmed | State::Off => {}
+            State::Boot | State::Disarmed | State::Held | State::RampingDown | State::Off => {}
         }
     }
 
@@ -41,12 +47,24 @@ impl<T: Scalar> Leg<T> {
         self.phase = 0;
     }
 
+    /// How far a tendon may move while the leg is held, m: not at all while it is doubted what the cells say.
+    #[inline(always)]
+    fn hold_travel_m(&self) -> T {
+        if self.supervisor.latched().overlaps(FaultSet::DOUBTED_CELLS) {
+            T::zero()
+        } else {
+            self.limits.hold_travel_m
+        }
+    }
+
     /// Pulls in any tendon that is below the floor, as far as that is allowed.
     #[inline(never)]
     pub(super) fn keep_floor(&mut self, measured: &Measured<T>) {
+        let travel_m = self.hold_travel_m();
+        self.lowest_m = self.rest_m.map(|rest| rest - travel_m);
         for (i, axis) in self.axes.iter_mut().enumerate() {
             let low = measured.steady_tensions_n[i] < self.mechanism.floor_n;
-            let room = measured.pulled_m[i] - self.rest_m[i] < self.limits.hold_travel_m;
+            let room = measured.pulled_m[i] - self.rest_m[i] < travel_m;
             let goal = if low && room {
                 measured.pulled_m[i] + self.limits.hold_travel_m
             } else {
@@ -104,18 +122,13 @@ impl<T: Scalar> Leg<T> {
         } else {
             self.mechanism.ceiling_n
         };
-        let lowest = match state {
-            State::Held => Some(self.limits.hold_travel_m),
-            State::RampingDown => Some(self.limits.relax_travel_m),
-            _ => None,
-        };
         for (i, axis) in self.axes.iter_mut().enumerate() {
             drive.duty[i] = axis.drive(&AxisInput {
                 pulled_m: measured.pulled_m[i],
                 tension_n: measured.tensions_n[i],
                 ceiling_n,
                 supply_v: measured.supply_v,
-                lowest_m: lowest.map_or(-T::MAX, |travel_m| self.rest_m[i] - travel_m),
+                lowest_m: self.lowest_m[i],
             });
         }
         drive
