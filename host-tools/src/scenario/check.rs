@@ -104,7 +104,11 @@ fn plant(scenario: &Scenario) -> Vec<Number> {
     let gains = plant.cell_gain_error_percent;
     let offsets = plant.cell_offset_n;
     let mut numbers = vec![
-        ("cell_noise_n", plant.cell_noise_n, [0.0, 100.0]),
+        (
+            "cell_noise_n",
+            plant.cell_noise_n.unwrap_or(0.0),
+            [0.0, 100.0],
+        ),
         (
             "curve_error_percent",
             plant.curve_error_percent,
