@@ -10,6 +10,7 @@ pub mod curve_toml;
 pub mod evaluate;
 pub mod failure;
 pub mod image;
+pub mod image_budget;
 mod json_entries;
 pub mod jsonl;
 pub mod line_error;
