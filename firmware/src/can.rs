@@ -46,5 +46,11 @@ pub use fault::CanFault;
 pub use identifier::Identifier;
 pub use segmenter::{SegmentError, Segmenter, Segments};
 
+/// Bit rate while nodes arbitrate, bit/s. Every node on the bus has the same.
+pub const NOMINAL_BIT_RATE: u32 = 1_000_000;
+
+/// Bit rate of the payload, bit/s. Every node on the bus has the same.
+pub const DATA_BIT_RATE: u32 = 5_000_000;
+
 #[cfg(test)]
 mod tests;
