@@ -42,4 +42,5 @@ pub mod support_name;
 pub mod tensile;
 pub mod toml_problem;
 pub mod toml_section;
+pub mod transport;
 pub mod workspace_map;
