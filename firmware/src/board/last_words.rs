@@ -39,7 +39,7 @@ impl LastWords {
 
     /// A record of words, as many of them as fit.
     #[must_use]
-    pub fn new(words: &impl Display, failures: u32) -> Self {
+    pub fn new(words: &dyn Display, failures: u32) -> Self {
         let mut fitting = Fitting(String::new());
         // What does not fit is left out, and `Fitting` never fails.
         let _ = write!(fitting, "{words}");

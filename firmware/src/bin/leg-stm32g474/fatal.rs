@@ -61,7 +61,7 @@ pub fn origin() -> (Reset, Option<Kept>) {
 }
 
 /// Keeps words for the next start, and counts a failure. Returns how many there were in a row.
-pub fn keep(words: &impl Display) -> u32 {
+pub fn keep(words: &dyn Display) -> u32 {
     let before = record().read().map_or(0, |kept| kept.failures);
     let failures = before.saturating_add(1);
     write(LastWords::new(words, failures));
@@ -74,7 +74,7 @@ pub fn settle() {
 }
 
 /// Ends everything, safely.
-pub fn end(words: &impl Display) -> ! {
+pub fn end(words: &dyn Display) -> ! {
     cortex_m::interrupt::disable();
     power::off();
     if FAILING.swap(true, Ordering::Relaxed) {

@@ -1,11 +1,13 @@
 //! The chip's flash, each write and erase read back.
 //!
+//! Nothing is written where the option byte DBANK is not as the chip comes from the factory: the pages would be others.
+//!
 //! The driver's interrupt clears the flash's error flags before the task that waits can look at them; so what was meant
 //! to be there is compared with what is.
 
 use embassy_stm32::flash::{Async, Error, Flash, InterruptHandler};
 use embassy_stm32::peripherals::FLASH;
-use embassy_stm32::{Peri, bind_interrupts};
+use embassy_stm32::{Peri, bind_interrupts, pac};
 use embedded_storage_async::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
 use leg_firmware::store::{PAGE_SIZE, WORD_SIZE};
 
@@ -22,6 +24,15 @@ impl CheckedFlash {
     /// The flash of the chip.
     pub fn new(flash: Peri<'static, FLASH>) -> Self {
         Self(Flash::new(flash, Interrupts))
+    }
+
+    /// Whether the pages are those of two banks.
+    fn in_two_banks() -> Result<(), Error> {
+        if pac::FLASH.optr().read().dbank() {
+            Ok(())
+        } else {
+            Err(Error::Protected)
+        }
     }
 
     /// Compares the flash from `offset` on with `expected`.
@@ -62,6 +73,7 @@ impl NorFlash for CheckedFlash {
     const ERASE_SIZE: usize = <Flash<'static, Async> as NorFlash>::ERASE_SIZE;
 
     async fn erase(&mut self, from: u32, to: u32) -> Result<(), Error> {
+        Self::in_two_banks()?;
         self.0.erase(from, to).await?;
         let words = to.saturating_sub(from) as usize / WORD_SIZE;
         let erased: &[u8] = &[ERASED; WORD_SIZE];
@@ -69,6 +81,7 @@ impl NorFlash for CheckedFlash {
     }
 
     async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Error> {
+        Self::in_two_banks()?;
         self.0.write(offset, bytes).await?;
         self.compare(offset, bytes.chunks(WORD_SIZE))
     }

@@ -1,5 +1,6 @@
 //! What has to be looked after now and then: slow sensors, the watchdog, the lamp.
 
+use crate::cycles::CycleCounter;
 use crate::slow_sensors::SlowSensors;
 use crate::watchdog::Watchdog;
 use crate::{control, fatal};
@@ -22,6 +23,7 @@ const LOG_STEPS: u32 = 50;
 pub async fn keep_house(
     mut sensors: SlowSensors,
     mut watchdog: Watchdog,
+    mut cycles: CycleCounter,
     mut lamp: Output<'static>,
 ) {
     let mut ticker = Ticker::every(Duration::from_millis(RollCall::ROUND_MS));
@@ -29,6 +31,7 @@ pub async fn keep_house(
     loop {
         ticker.next().await;
         sensors.read();
+        cycles.keep_running();
         watchdog.round();
         if rounds.is_multiple_of(ROUNDS_PER_STEP) {
             step(rounds / ROUNDS_PER_STEP, &mut lamp);

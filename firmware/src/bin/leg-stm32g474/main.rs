@@ -41,6 +41,7 @@ mod can_bus;
 mod clocks;
 mod control;
 mod converters;
+mod cycles;
 mod encoders;
 mod fatal;
 mod flash;

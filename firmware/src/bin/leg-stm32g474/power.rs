@@ -215,12 +215,12 @@ fn set_up_breaks() {
 #[inline(always)]
 fn take_breaks() -> SrAdv {
     let flags = pac::TIM1.sr().read();
-    // Flags are cleared by zeros; ones leave the others alone.
-    let mut others = SrAdv(u32::MAX);
-    others.set_bif(0, false);
-    others.set_bif(1, false);
-    others.set_sbif(false);
-    pac::TIM1.sr().write_value(others);
+    // Zeros clear flags and ones leave them alone: those that were not seen stay for the next call.
+    let mut clear = SrAdv(u32::MAX);
+    clear.set_bif(0, !flags.bif(0));
+    clear.set_bif(1, !flags.bif(1));
+    clear.set_sbif(!flags.sbif());
+    pac::TIM1.sr().write_value(clear);
     flags
 }
 

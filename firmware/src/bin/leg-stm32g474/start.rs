@@ -2,6 +2,7 @@
 
 use crate::control::{self, SharedLeg};
 use crate::converters::{ConverterParts, Converters};
+use crate::cycles::CycleCounter;
 use crate::encoders::{EncoderParts, Encoders};
 use crate::flash::CheckedFlash;
 use crate::link::Session;
@@ -70,7 +71,9 @@ pub async fn start(spawner: Spawner, p: Peripherals, origin: (Reset, Option<Kept
     static SESSION: StaticCell<Session> = StaticCell::new();
     let session = SESSION.init(Session::new(link, shared));
 
-    count_cycles();
+    let Some(cycles) = CycleCounter::start() else {
+        fatal::end(&"the cycle counter is taken");
+    };
     control::start(Nucleo::new(power, encoders, converters), leg);
     power::start();
     spawn(&spawner, settings_task::keep_settings(store));
@@ -87,7 +90,7 @@ pub async fn start(spawner: Spawner, p: Peripherals, origin: (Reset, Option<Kept
     let watchdog = Watchdog::start(p.IWDG);
     spawn(
         &spawner,
-        housekeeping::keep_house(slow_sensors, watchdog, lamp),
+        housekeeping::keep_house(slow_sensors, watchdog, cycles, lamp),
     );
 }
 
@@ -138,13 +141,5 @@ fn accepted(leg: Result<SensingLeg<f32>, SettingsError>) -> SensingLeg<f32> {
     match leg {
         Ok(leg) => leg,
         Err(error) => fatal::end(&error),
-    }
-}
-
-/// Lets the processor count its cycles.
-fn count_cycles() {
-    if let Some(mut core) = cortex_m::Peripherals::take() {
-        core.DCB.enable_trace();
-        core.DWT.enable_cycle_counter();
     }
 }
