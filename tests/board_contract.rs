@@ -5,7 +5,6 @@ use leg_firmware::board::timing::PWM_TOP;
 use leg_firmware::board::{FaultLines, Gate, Half, LowerHalf, PowerPins, PowerStage, Turn};
 use leg_firmware::drive::Drive;
 use leg_firmware::sensors::Sensors;
-use leg_host_tools::actuator::Actuator;
 use leg_host_tools::plant::{Plant, PlantSettings, Start};
 use leg_host_tools::ready_rigs::READY_RIGS;
 use leg_host_tools::rig_file::RigFile;
@@ -99,15 +98,8 @@ impl Simulated {
     fn new() -> Result<Self, Box<dyn Error>> {
         let [table_1, ..] = &READY_RIGS;
         let rig = RigFile::parse(table_1.name, table_1.text)?;
-        let actuator = Actuator::default();
         let settings = PlantSettings::default();
-        let plant = Plant::new(
-            &rig,
-            &actuator,
-            &settings,
-            Start::Slack { slack_m: 2e-3 },
-            1,
-        )?;
+        let plant = Plant::new(&rig, &settings, Start::Slack { slack_m: 2e-3 }, 1)?;
         Ok(Self {
             plant,
             gate: Gate::default(),

@@ -1,11 +1,10 @@
-//! The settings that are built into the firmware are those of the default rig file and the default actuator.
+//! The settings that are built into the firmware are those of the default rig file.
 //!
 //! `LEG_WRITE_DEFAULTS=1 cargo test --package leg-tests --test default_settings` writes them anew.
 
 use leg_firmware::leg::Leg;
 use leg_firmware::settings::Settings;
-use leg_host_tools::actuator::Actuator;
-use leg_host_tools::control_settings::{Gains, settings};
+use leg_host_tools::control_settings::settings;
 use leg_host_tools::ready_rigs::READY_RIGS;
 use leg_host_tools::rig_file::RigFile;
 use std::error::Error;
@@ -20,12 +19,7 @@ const BLOB: &str = concat!(
 fn expected() -> Result<Settings, Box<dyn Error>> {
     let [table_1, ..] = &READY_RIGS;
     let rig = RigFile::parse(table_1.name, table_1.text)?;
-    Ok(settings(
-        &rig,
-        &Actuator::default(),
-        &Gains::default(),
-        None,
-    ))
+    Ok(settings(&rig, &rig.gains, None))
 }
 
 #[test]

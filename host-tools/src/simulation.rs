@@ -11,7 +11,6 @@ pub use controller::{Controller, ControllerError, InThisProcess, OnLink};
 pub use divergence::Divergence;
 pub use outcome::{Finding, Sample, SimulationError, Summary};
 
-use crate::actuator::Actuator;
 use crate::control_settings;
 use crate::plant::Plant;
 use crate::rig_file::RigFile;
@@ -57,18 +56,11 @@ impl Simulation {
     /// # Errors
     /// A start that the model refuses.
     pub fn new(scenario: &Scenario, rig: &RigFile) -> Result<Self, SimulationError> {
-        let actuator = Actuator::default();
-        let plant = Plant::new(
-            rig,
-            &actuator,
-            &scenario.plant(),
-            scenario.start(),
-            scenario.seed,
-        )
-        .map_err(SimulationError::Start)?;
+        let plant = Plant::new(rig, &scenario.plant(rig), scenario.start(), scenario.seed)
+            .map_err(SimulationError::Start)?;
         let zero = (!scenario.starts_slack()).then(|| plant.unstretched_at_zero_m());
         Ok(Self {
-            settings: control_settings::settings(rig, &actuator, &scenario.control, zero),
+            settings: control_settings::settings(rig, &rig.gains.with(&scenario.control), zero),
             scenario: scenario.clone(),
             rig: *rig,
             plant,
@@ -93,8 +85,8 @@ impl Simulation {
         let mut shadow = LinkedLeg::<f64>::new(emulated(Board::InProcess), &self.settings)
             .map_err(SimulationError::Settings)?;
         controller.start(&self.settings)?;
-        let mut stage = Stage::new(&self.rig, self.plant, self.scenario.seed);
-        let mut script = Script::new(&self.scenario.steps);
+        let mut stage = Stage::new(&self.rig, self.plant, &self.scenario);
+        let mut script = Script::new(&self.scenario);
         let mut divergence = Divergence::default();
         while let Some(step) = script.advance(&mut stage)? {
             if stage.time_s() > LONGEST_S {
@@ -108,15 +100,20 @@ impl Simulation {
             shadow.receive(&link);
             let shadow_drive = shadow.leg().tick(&sensors);
             divergence.compare(&drive, &telemetry, &shadow_drive, &shadow.leg().telemetry());
+            shadow.leg().take_over(&Drive {
+                duty: drive.duty.map(f64::from),
+                enabled: drive.enabled,
+            });
             watch(&Tick {
                 sensors: &sensors,
                 link: &link,
                 drive: &drive,
                 telemetry: &telemetry,
             });
-            stage.step(&drive, &telemetry);
+            stage.step(&drive, &telemetry)?;
         }
-        Ok(stage.summary(script.findings(), divergence))
+        let (findings, expected) = script.findings();
+        Ok(stage.summary(findings, expected, divergence))
     }
 }
 

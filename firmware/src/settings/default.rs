@@ -2,12 +2,12 @@
 
 use super::Settings;
 
-/// In postcard's format. `tests/default_settings.rs` compares it with what the rig file `table1` and the default
-/// actuator give, and writes it.
+/// In postcard's format. `tests/default_settings.rs` compares it with what the rig file `table1` gives, and
+/// writes it.
 const TABLE_1: &[u8] = include_bytes!("default.postcard");
 
 impl Settings {
-    /// The settings for the leg of the paper's Table 1 with the default actuators, not homed.
+    /// The settings for the leg of the paper's Table 1 with the actuators of its rig file, not homed.
     ///
     /// `None` only if the program was built from a blob of another shape, which a test excludes.
     #[must_use]

@@ -1,11 +1,10 @@
 //! `leg cost`.
 
-use super::{board, print};
+use super::{board, cost_image, print};
 use crate::cost::{self, Cost};
 use crate::failure::Failure;
 use crate::qemu::Clock;
 use indicatif::ProgressBar;
-use leg_firmware::kernels::Kernel;
 
 /// Counts the instructions of the model's kernels on the emulated Cortex-M4F, against their budgets.
 ///
@@ -13,6 +12,9 @@ use leg_firmware::kernels::Kernel;
 /// with Eigen: the same work on the same core, by gcc 12 -O3 without contraction.
 #[derive(Debug, clap::Args)]
 pub struct Args {
+    /// Measures the images instead: flash, RAM, a bound on the stack, and whether a panic can be reached.
+    #[arg(long)]
+    image: bool,
     /// Prints JSON instead of a table.
     #[arg(long)]
     json: bool,
@@ -25,10 +27,13 @@ kernel                                minimum  median  maximum   budget      A  
 /// Runs the command.
 ///
 /// # Errors
-/// A [`Failure`]: a missing prerequisite, a link that fails, or a kernel outside its budget.
+/// A [`Failure`]: a missing prerequisite, a link that fails, or a kernel or an image outside its budget.
 pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
+    if args.image {
+        return cost_image::run(args.json);
+    }
     let mut link = board::qemu_with(Clock::Counting, verbose)?;
-    let progress = ProgressBar::new(Kernel::ALL.len() as u64 + 1);
+    let progress = ProgressBar::new(cost::counted() as u64);
     let measured = cost::measure(link.as_mut(), || progress.inc(1));
     progress.finish_and_clear();
     let costs = measured.map_err(|error| Failure::from_error(&error))?;
@@ -73,7 +78,7 @@ fn judge(costs: &[Cost]) -> Result<(), Failure> {
     let missed: Vec<&str> = costs
         .iter()
         .filter(|cost| !cost.held)
-        .map(|cost| cost.kernel)
+        .map(|cost| cost.kernel.as_str())
         .collect();
     if missed.is_empty() {
         return Ok(());

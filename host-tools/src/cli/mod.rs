@@ -3,6 +3,7 @@
 mod board;
 mod check;
 mod cost;
+mod cost_image;
 mod curve;
 mod curve_charts;
 mod curve_report;

@@ -1,0 +1,99 @@
+//! What an image takes of the board's memories.
+
+use super::elf_file::ElfFile;
+use super::error::{Address, ImageBudgetError};
+use object::Endianness;
+use object::elf::{PT_LOAD, ProgramHeader32};
+use object::read::elf::ProgramHeader;
+use serde::Serialize;
+use std::ops::Range;
+
+/// What is used of a memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Usage {
+    /// Bytes that are used, gaps between them included.
+    pub used: u32,
+    /// Bytes that there are.
+    pub size: u32,
+}
+
+/// The board's memories, whose sizes the image has from memory.x.
+pub(super) struct Memories {
+    flash: Range<u32>,
+    ram: Range<u32>,
+    /// RAM that holds code and nothing else, where the linker script has some: it is bounded there.
+    code: Option<Range<u32>>,
+}
+
+impl Memories {
+    pub(super) fn of(elf: &ElfFile<'_>) -> Result<Self, ImageBudgetError> {
+        Ok(Self {
+            flash: elf.value("_flash_start")?..elf.value("_flash_end")?,
+            ram: elf.value("_ram_start")?..elf.value("_ram_end")?,
+            code: code(elf),
+        })
+    }
+
+    /// Flash: code, constants, and what static variables begin with.
+    pub(super) fn flash(&self, elf: &ElfFile<'_>) -> Result<Usage, ImageBudgetError> {
+        let stored = segments(elf).map(|segment| {
+            let start = segment.p_paddr(Endianness::Little);
+            start..start.saturating_add(segment.p_filesz(Endianness::Little))
+        });
+        let stored: Vec<_> = stored.filter(|part| !part.is_empty()).collect();
+        if let Some(outside) = stored.iter().find(|part| !holds(&self.flash, part)) {
+            return Err(outside_at(outside.start));
+        }
+        Ok(usage(&self.flash, &stored))
+    }
+
+    /// RAM: static variables, without the stack.
+    pub(super) fn ram(&self, elf: &ElfFile<'_>) -> Result<Usage, ImageBudgetError> {
+        let live = segments(elf).map(|segment| {
+            let start = segment.p_vaddr(Endianness::Little);
+            start..start.saturating_add(segment.p_memsz(Endianness::Little))
+        });
+        let code = |part: &Range<u32>| self.code.as_ref().is_some_and(|code| holds(code, part));
+        let live: Vec<_> = live
+            .filter(|part| !holds(&self.flash, part) && !code(part))
+            .collect();
+        if let Some(outside) = live.iter().find(|part| !holds(&self.ram, part)) {
+            return Err(outside_at(outside.start));
+        }
+        Ok(usage(&self.ram, &live))
+    }
+}
+
+/// The RAM for code, of an image that has some.
+fn code(elf: &ElfFile<'_>) -> Option<Range<u32>> {
+    Some(elf.value("_code_ram_start").ok()?..elf.value("_code_ram_end").ok()?)
+}
+
+/// Bytes that the linker script leaves to the stack.
+pub(super) fn stack_size(elf: &ElfFile<'_>) -> Result<u32, ImageBudgetError> {
+    let (lowest, start) = (elf.value("_stack_end")?, elf.value("_stack_start")?);
+    Ok(start.saturating_sub(lowest))
+}
+
+fn segments<'a>(elf: &ElfFile<'a>) -> impl Iterator<Item = &'a ProgramHeader32<Endianness>> {
+    let headers = elf.file.elf_program_headers().iter();
+    headers.filter(|header| {
+        header.p_type(Endianness::Little) == PT_LOAD && header.p_memsz(Endianness::Little) > 0
+    })
+}
+
+fn holds(memory: &Range<u32>, part: &Range<u32>) -> bool {
+    memory.start <= part.start && part.end <= memory.end
+}
+
+fn usage(memory: &Range<u32>, parts: &[Range<u32>]) -> Usage {
+    let end = parts.iter().map(|part| part.end).max();
+    Usage {
+        used: end.map_or(0, |end| end - memory.start),
+        size: memory.end - memory.start,
+    }
+}
+
+const fn outside_at(start: u32) -> ImageBudgetError {
+    ImageBudgetError::Outside { at: Address(start) }
+}
