@@ -1,0 +1,182 @@
+//! What the firmware said before it stopped, kept in RAM that a reset leaves alone.
+
+use crate::host_link::LAST_WORDS_MAX;
+use core::fmt::{Display, Write};
+use crc::{CRC_32_ISO_HDLC, Crc};
+use heapless::String;
+
+/// Tells a record from whatever RAM holds when the power comes.
+const MAGIC: u32 = 0x4c65_6721;
+
+const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+
+/// The record. Every pattern of bits is one, whole or not, so it may lie in memory that nothing has initialised.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LastWords {
+    magic: u32,
+    failures: u32,
+    length: u32,
+    text: [u8; LAST_WORDS_MAX],
+    checksum: u32,
+}
+
+/// What a whole record holds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Kept {
+    /// What was said; empty if the firmware did not stop by itself.
+    pub words: String<LAST_WORDS_MAX>,
+    /// How often the firmware has stopped by itself without having run well in between.
+    pub failures: u32,
+}
+
+impl LastWords {
+    /// A record of nothing. To keep one of these makes the next start know that the RAM remembers.
+    #[must_use]
+    pub fn silent(failures: u32) -> Self {
+        Self::new(&"", failures)
+    }
+
+    /// A record of words, as many of them as fit.
+    #[must_use]
+    pub fn new(words: &dyn Display, failures: u32) -> Self {
+        let mut fitting = Fitting(String::new());
+        // What does not fit is left out, and `Fitting` never fails.
+        let _ = write!(fitting, "{words}");
+        let mut text = [0; LAST_WORDS_MAX];
+        for (place, byte) in text.iter_mut().zip(fitting.0.bytes()) {
+            *place = byte;
+        }
+        let mut record = Self {
+            magic: MAGIC,
+            failures,
+            length: fitting.0.len() as u32,
+            text,
+            checksum: 0,
+        };
+        record.checksum = record.sum();
+        record
+    }
+
+    /// What it holds; `None` if it is not whole.
+    #[must_use]
+    pub fn read(&self) -> Option<Kept> {
+        if self.magic != MAGIC || self.checksum != self.sum() {
+            return None;
+        }
+        let text = self.text.get(..self.length as usize)?;
+        let words = core::str::from_utf8(text).ok()?;
+        Some(Kept {
+            words: String::try_from(words).ok()?,
+            failures: self.failures,
+        })
+    }
+
+    fn sum(&self) -> u32 {
+        let mut digest = CRC.digest();
+        for word in [self.magic, self.failures, self.length] {
+            digest.update(&word.to_le_bytes());
+        }
+        digest.update(&self.text);
+        digest.finalize()
+    }
+}
+
+/// A source file's name without its folders, which would leave no room for what happened there.
+#[must_use]
+pub fn file_name(path: &str) -> &str {
+    path.rsplit(['/', '\\']).next().unwrap_or(path)
+}
+
+/// Takes as many whole characters as there is room for.
+struct Fitting(String<LAST_WORDS_MAX>);
+
+impl Write for Fitting {
+    fn write_str(&mut self, text: &str) -> core::fmt::Result {
+        for character in text.chars() {
+            if self.0.push(character).is_err() {
+                break;
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Kept, LAST_WORDS_MAX, LastWords, file_name};
+    use heapless::String;
+
+    fn kept(words: &str, failures: u32) -> Option<Kept> {
+        let words = String::try_from(words).ok()?;
+        Some(Kept { words, failures })
+    }
+
+    #[test]
+    fn words_are_kept() {
+        let record = LastWords::new(&format_args!("panicked at {}", 12), 3);
+        assert_eq!(record.read(), kept("panicked at 12", 3));
+        assert_eq!(LastWords::silent(0).read(), kept("", 0));
+    }
+
+    #[test]
+    fn what_does_not_fit_is_left_out() {
+        let record = LastWords::new(&"x".repeat(1000), 1);
+        assert_eq!(record.read(), kept(&"x".repeat(LAST_WORDS_MAX), 1));
+        let record = LastWords::new(&"µ".repeat(1000), 1);
+        assert_eq!(record.read(), kept(&"µ".repeat(LAST_WORDS_MAX / 2), 1));
+    }
+
+    #[test]
+    fn folders_are_left_out() {
+        assert_eq!(file_name("firmware/src/leg.rs"), "leg.rs");
+        assert_eq!(file_name("src\\leg.rs"), "leg.rs");
+        assert_eq!(file_name("leg.rs"), "leg.rs");
+    }
+
+    #[test]
+    fn a_flipped_bit_is_noticed() {
+        let whole = LastWords::new(&"words", 1);
+        for bit in 0..32 {
+            for damaged in [
+                LastWords {
+                    magic: whole.magic ^ 1 << bit,
+                    ..whole
+                },
+                LastWords {
+                    failures: whole.failures ^ 1 << bit,
+                    ..whole
+                },
+                LastWords {
+                    length: whole.length ^ 1 << bit,
+                    ..whole
+                },
+                LastWords {
+                    checksum: whole.checksum ^ 1 << bit,
+                    ..whole
+                },
+            ] {
+                assert_eq!(damaged.read(), None);
+            }
+        }
+        for place in 0..LAST_WORDS_MAX {
+            let mut damaged = whole;
+            damaged.text[place] ^= 4;
+            assert_eq!(damaged.read(), None);
+        }
+    }
+
+    #[test]
+    fn ram_that_holds_nothing_is_no_record() {
+        for pattern in [0, u32::MAX, 0xaaaa_aaaa] {
+            let record = LastWords {
+                magic: pattern,
+                failures: pattern,
+                length: pattern,
+                text: [pattern as u8; LAST_WORDS_MAX],
+                checksum: pattern,
+            };
+            assert_eq!(record.read(), None);
+        }
+    }
+}
