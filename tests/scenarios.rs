@@ -100,7 +100,8 @@ fn the_shadow_in_f64_stays_near() {
         let (summary, _) = run(&scenario(name), &mut InThisProcess::default());
         let divergence = summary.divergence;
         assert_eq!(divergence.other_state, 0, "{name}");
-        assert!(divergence.reference_m < 5e-7, "{name}: {divergence:?}");
+        // Tendons that come taut may do so a cycle apart: 5 mm/s for half a millisecond.
+        assert!(divergence.reference_m < 3e-6, "{name}: {divergence:?}");
         assert!(divergence.pose < 2e-5, "{name}: {divergence:?}");
         assert!(divergence.reference_m > 0.0, "{name}: nothing was compared");
     }
