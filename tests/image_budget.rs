@@ -77,7 +77,7 @@ fn the_board_image_keeps_its_budget() {
             "LPUART1"
         ]
     );
-    // The tasks run in the thread's executor, and one of them evaluates the model.
+    // The tasks run in the thread's executor.
     let thread = named(&needs, "Reset");
     assert_eq!(thread.kind, RootKind::Thread);
     assert!(

@@ -13,17 +13,19 @@ mod reset_cause;
 mod roll_call;
 mod tick_timer;
 pub mod timing;
+mod words;
 
 pub use beat::{STEP_MS, lit};
 pub use bridge::{Bridge, Half};
 pub use fault_lines::{FaultLines, Faults};
 pub use gate::{Gate, Turn};
-pub use last_words::{Kept, LastWords, file_name};
+pub use last_words::{Kept, LastWords};
 pub use link_choice::LinkChoice;
 pub use power_stage::{PowerPins, PowerStage};
 pub use reset_cause::reset_cause;
 pub use roll_call::{Member, RollCall, Rounds};
 pub use tick_timer::TickTimer;
+pub use words::{Words, file_name};
 
 use crate::drive::Drive;
 use crate::linked_leg::SensingLeg;

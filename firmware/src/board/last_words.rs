@@ -1,7 +1,7 @@
 //! What the firmware said before it stopped, kept in RAM that a reset leaves alone.
 
+use super::Words;
 use crate::host_link::LAST_WORDS_MAX;
-use core::fmt::{Display, Write};
 use crc::{CRC_32_ISO_HDLC, Crc};
 use heapless::String;
 
@@ -34,23 +34,20 @@ impl LastWords {
     /// A record of nothing. To keep one of these makes the next start know that the RAM remembers.
     #[must_use]
     pub fn silent(failures: u32) -> Self {
-        Self::new(&"", failures)
+        Self::new(&Words::new(""), failures)
     }
 
-    /// A record of words, as many of them as fit.
+    /// A record of words.
     #[must_use]
-    pub fn new(words: &dyn Display, failures: u32) -> Self {
-        let mut fitting = Fitting(String::new());
-        // What does not fit is left out, and `Fitting` never fails.
-        let _ = write!(fitting, "{words}");
+    pub fn new(words: &Words, failures: u32) -> Self {
         let mut text = [0; LAST_WORDS_MAX];
-        for (place, byte) in text.iter_mut().zip(fitting.0.bytes()) {
+        for (place, byte) in text.iter_mut().zip(words.as_str().bytes()) {
             *place = byte;
         }
         let mut record = Self {
             magic: MAGIC,
             failures,
-            length: fitting.0.len() as u32,
+            length: words.as_str().len() as u32,
             text,
             checksum: 0,
         };
@@ -82,29 +79,9 @@ impl LastWords {
     }
 }
 
-/// A source file's name without its folders, which would leave no room for what happened there.
-#[must_use]
-pub fn file_name(path: &str) -> &str {
-    path.rsplit(['/', '\\']).next().unwrap_or(path)
-}
-
-/// Takes as many whole characters as there is room for.
-struct Fitting(String<LAST_WORDS_MAX>);
-
-impl Write for Fitting {
-    fn write_str(&mut self, text: &str) -> core::fmt::Result {
-        for character in text.chars() {
-            if self.0.push(character).is_err() {
-                break;
-            }
-        }
-        Ok(())
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{Kept, LAST_WORDS_MAX, LastWords, file_name};
+    use super::{Kept, LAST_WORDS_MAX, LastWords, Words};
     use heapless::String;
 
     fn kept(words: &str, failures: u32) -> Option<Kept> {
@@ -114,29 +91,17 @@ mod tests {
 
     #[test]
     fn words_are_kept() {
-        let record = LastWords::new(&format_args!("panicked at {}", 12), 3);
-        assert_eq!(record.read(), kept("panicked at 12", 3));
+        let words = Words::new("panicked at ").number(12);
+        assert_eq!(LastWords::new(&words, 3).read(), kept("panicked at 12", 3));
+        let longest = "x".repeat(LAST_WORDS_MAX);
+        let record = LastWords::new(&Words::new(&longest), 1);
+        assert_eq!(record.read(), kept(&longest, 1));
         assert_eq!(LastWords::silent(0).read(), kept("", 0));
     }
 
     #[test]
-    fn what_does_not_fit_is_left_out() {
-        let record = LastWords::new(&"x".repeat(1000), 1);
-        assert_eq!(record.read(), kept(&"x".repeat(LAST_WORDS_MAX), 1));
-        let record = LastWords::new(&"µ".repeat(1000), 1);
-        assert_eq!(record.read(), kept(&"µ".repeat(LAST_WORDS_MAX / 2), 1));
-    }
-
-    #[test]
-    fn folders_are_left_out() {
-        assert_eq!(file_name("firmware/src/leg.rs"), "leg.rs");
-        assert_eq!(file_name("src\\leg.rs"), "leg.rs");
-        assert_eq!(file_name("leg.rs"), "leg.rs");
-    }
-
-    #[test]
     fn a_flipped_bit_is_noticed() {
-        let whole = LastWords::new(&"words", 1);
+        let whole = LastWords::new(&Words::new("words"), 1);
         for bit in 0..32 {
             for damaged in [
                 LastWords {

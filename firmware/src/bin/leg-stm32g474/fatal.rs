@@ -1,7 +1,6 @@
 //! What happens when nothing can go on: first the outputs are switched off, then the cause is kept over a reset.
 
 use crate::power;
-use core::fmt::Display;
 use core::mem::MaybeUninit;
 use core::panic::PanicInfo;
 use core::ptr;
@@ -10,7 +9,7 @@ use cortex_m::peripheral::SCB;
 use cortex_m_rt::{ExceptionFrame, exception};
 use embassy_stm32::pac;
 use embassy_stm32::pac::iwdg::vals::Key;
-use leg_firmware::board::{Kept, LastWords, file_name, reset_cause};
+use leg_firmware::board::{Kept, LastWords, Words, file_name, reset_cause};
 use leg_firmware::host_link::Reset;
 
 /// Failures in a row from which on the next start is put off, so that a debugger has time to attach.
@@ -61,7 +60,7 @@ pub fn origin() -> (Reset, Option<Kept>) {
 }
 
 /// Keeps words for the next start, and counts a failure. Returns how many there were in a row.
-pub fn keep(words: &dyn Display) -> u32 {
+pub fn keep(words: &Words) -> u32 {
     let before = record().read().map_or(0, |kept| kept.failures);
     let failures = before.saturating_add(1);
     write(LastWords::new(words, failures));
@@ -74,14 +73,14 @@ pub fn settle() {
 }
 
 /// Ends everything, safely.
-pub fn end(words: &dyn Display) -> ! {
+pub fn end(words: &Words) -> ! {
     cortex_m::interrupt::disable();
     power::off();
     if FAILING.swap(true, Ordering::Relaxed) {
         SCB::sys_reset();
     }
     let failures = keep(words);
-    defmt::error!("{}", defmt::Display2Format(words));
+    defmt::error!("{=str}", words.as_str());
     if failures >= HASTY_FAILURES {
         rest();
     }
@@ -98,15 +97,15 @@ fn rest() {
 
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
-    match info.location() {
-        Some(place) => end(&format_args!(
-            "{}:{}: {}",
-            file_name(place.file()),
-            place.line(),
-            info.message()
-        )),
-        None => end(&info.message()),
-    }
+    let words = match info.location() {
+        Some(place) => Words::new(file_name(place.file()))
+            .text(":")
+            .number(place.line())
+            .text(": "),
+        None => Words::default(),
+    };
+    // A message that has to be put together first is left out: the place tells enough.
+    end(&words.text(info.message().as_str().unwrap_or("panic")))
 }
 
 #[allow(
@@ -117,10 +116,9 @@ fn panic(info: &PanicInfo<'_>) -> ! {
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
     // SAFETY: reading the register changes nothing, and it is always there.
     let cause = unsafe { (*SCB::PTR).cfsr.read() };
-    let (at, caller) = (frame.pc(), frame.lr());
-    end(&format_args!(
-        "hard fault at {at:#010x}, called from {caller:#010x}, CFSR {cause:#x}"
-    ))
+    let words = Words::new("hard fault at ").hex(frame.pc());
+    let words = words.text(", called from ").hex(frame.lr());
+    end(&words.text(", CFSR ").hex(cause))
 }
 
 #[allow(
@@ -129,7 +127,9 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
 )]
 #[exception]
 unsafe fn DefaultHandler(number: i16) -> ! {
-    end(&format_args!("no handler for interrupt {number}"))
+    // Numbers count from the first interrupt; those of the core's own exceptions are negative.
+    let exception = u32::from(number.wrapping_add(16).cast_unsigned());
+    end(&Words::new("no handler for exception ").number(exception))
 }
 
 /// The flash has read a double word that does not agree with its ECC.
@@ -145,7 +145,7 @@ unsafe fn NonMaskableInt() {
     let ecc = pac::FLASH.eccr().read();
     let found = ecc.eccd() || ecc.eccd2();
     if !found || !ecc.bk_ecc() || ecc.sysf_ecc() {
-        end(&format_args!("NMI, flash ECC {:#010x}", ecc.0));
+        end(&Words::new("NMI, flash ECC ").hex(ecc.0));
     }
     // Ones clear the flags.
     pac::FLASH.eccr().modify(|w| {

@@ -14,7 +14,7 @@ use crate::{can_bus, fatal, housekeeping, serial, settings_task, switches};
 use embassy_executor::{SpawnError, SpawnToken, Spawner};
 use embassy_stm32::Peripherals;
 use embassy_stm32::gpio::{Level, Output, Speed};
-use leg_firmware::board::{Kept, LinkChoice};
+use leg_firmware::board::{Kept, LinkChoice, Words};
 use leg_firmware::host_link::{HostLink, Identity, Reset};
 use leg_firmware::linked_leg::SensingLeg;
 use leg_firmware::protocol::Board;
@@ -61,7 +61,7 @@ pub async fn start(spawner: Spawner, p: Peripherals, origin: (Reset, Option<Kept
     let lamp = Output::new(p.PA5, Level::High, Speed::Low);
 
     let Ok(mut store) = settings_task::store(CheckedFlash::new(p.FLASH)) else {
-        fatal::end(&"the settings' place is not in the flash");
+        fatal::end(&Words::new("the settings' place is not in the flash"));
     };
     let built_in = built_in();
     let loaded = settings_task::load(&mut store, built_in.clone()).await;
@@ -72,7 +72,7 @@ pub async fn start(spawner: Spawner, p: Peripherals, origin: (Reset, Option<Kept
     let session = SESSION.init(Session::new(link, shared));
 
     let Some(cycles) = CycleCounter::start() else {
-        fatal::end(&"the cycle counter is taken");
+        fatal::end(&Words::new("the cycle counter is taken"));
     };
     control::start(Nucleo::new(power, encoders, converters), leg);
     power::start();
@@ -80,7 +80,7 @@ pub async fn start(spawner: Spawner, p: Peripherals, origin: (Reset, Option<Kept
     match switches::read(p.PC10, p.PC11, p.PC12) {
         LinkChoice::Serial => match serial::open(p.LPUART1, p.PA3, p.PA2) {
             Ok(uart) => spawn(&spawner, serial::serve(uart, session)),
-            Err(_) => fatal::end(&"the serial line refuses its settings"),
+            Err(_) => fatal::end(&Words::new("the serial line refuses its settings")),
         },
         LinkChoice::Can(address) => {
             let node = can_bus::open(p.FDCAN2, p.PB12, p.PB13, address);
@@ -97,7 +97,7 @@ pub async fn start(spawner: Spawner, p: Peripherals, origin: (Reset, Option<Kept
 fn spawn<S>(spawner: &Spawner, task: Result<SpawnToken<S>, SpawnError>) {
     match task {
         Ok(task) => spawner.spawn(task),
-        Err(_) => fatal::end(&"a task was started twice"),
+        Err(_) => fatal::end(&Words::new("a task was started twice")),
     }
 }
 
@@ -113,7 +113,7 @@ fn identity((reset, kept): (Reset, Option<Kept>)) -> Identity {
 fn built_in() -> Settings {
     match Settings::for_table_1() {
         Some(settings) => settings,
-        None => fatal::end(&"the built-in settings have another shape"),
+        None => fatal::end(&Words::new("the built-in settings have another shape")),
     }
 }
 
@@ -140,6 +140,6 @@ fn spare(settings: &Settings) -> &'static mut SensingLeg<f32> {
 fn accepted(leg: Result<SensingLeg<f32>, SettingsError>) -> SensingLeg<f32> {
     match leg {
         Ok(leg) => leg,
-        Err(error) => fatal::end(&error),
+        Err(_) => fatal::end(&Words::new("the built-in settings are refused")),
     }
 }

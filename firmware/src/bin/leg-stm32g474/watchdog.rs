@@ -8,7 +8,7 @@ use crate::{control, fatal, power};
 use embassy_stm32::peripherals::IWDG;
 use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_stm32::{Peri, pac};
-use leg_firmware::board::{Member, RollCall, Rounds};
+use leg_firmware::board::{Member, RollCall, Rounds, Words};
 
 /// Nominal time without food until the reset, µs.
 const TIMEOUT_US: u32 = 100_000;
@@ -54,5 +54,5 @@ impl Watchdog {
 fn give_up(absent: Member) {
     control::cut();
     power::off();
-    fatal::keep(&format_args!("{} did not check in", absent.name()));
+    fatal::keep(&Words::new(absent.name()).text(" did not check in"));
 }
