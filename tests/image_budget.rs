@@ -67,8 +67,8 @@ fn the_board_image_keeps_its_budget() {
         [
             "Reset",
             "NonMaskableInt",
-            "DefaultHandler",
             "HardFault",
+            "DefaultHandler",
             "FLASH",
             "ADC1_2",
             "TIM1_BRK_TIM15",
@@ -124,7 +124,7 @@ fn a_panic_is_found_where_one_can_be_reached_and_nowhere_else() {
     // The linker has shown that this one has none, though it holds all that the server and the model do.
     let proof = root(&panic_free_image(), "_start").unwrap();
     assert_eq!(proof.panic, None);
-    assert!((20_000..35_000).contains(&proof.stack_bytes), "{proof:#?}");
+    assert!((20_000..45_000).contains(&proof.stack_bytes), "{proof:#?}");
     let board = image_of(Board::Stm32g474);
     assert_eq!(root(&board, "ADC1_2").unwrap().panic, None);
 }
