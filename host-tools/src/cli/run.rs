@@ -13,7 +13,6 @@ use crate::simulation::{
     Controller, InThisProcess, OnLink, Simulation, SimulationError, Summary, Tick,
 };
 use clap::ValueEnum;
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -100,10 +99,6 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
         ticks_per_s: summary.ticks as f64 / seconds,
         plots: &plots,
     };
-    if std::io::stderr().is_terminal() {
-        let rate = report.ticks_per_s;
-        eprintln!("leg: {} ticks, {rate:.0} a second", summary.ticks);
-    }
     print(&if args.json {
         report.json()?
     } else {

@@ -61,8 +61,9 @@ impl Report<'_> {
             .map(|path| format!("Chart: {} (and .png)\n", from_here(path).display()))
             .collect();
         format!(
-            "\nTensions: {lowest:.1} to {highest:.1} N\nFaults: {faults}\n{}{plots}",
+            "\nTensions: {lowest:.1} to {highest:.1} N\nFaults: {faults}\n{}Speed: {:.0} ticks a second\n{plots}",
             divergence(summary),
+            self.ticks_per_s,
         )
     }
 
