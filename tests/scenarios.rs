@@ -49,6 +49,7 @@ fn every_ready_scenario_holds() {
             .filter(|finding| !finding.held())
             .collect();
         assert!(missed.is_empty(), "{}: {missed:?}", ready.name);
+        assert_eq!(summary.stopped, None, "{}", ready.name);
         let unexpected = &summary.unexpected;
         assert!(unexpected.is_empty(), "{}: {unexpected:?}", ready.name);
         assert!(
@@ -154,4 +155,20 @@ fn a_cut_tendon_lets_the_tip_swing_no_farther_than_is_said() {
     assert!(swings_mm.len() > 100, "{} starts", swings_mm.len());
     let (farthest, text) = swings_mm.iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
     assert!((200.0..250.0).contains(farthest), "{farthest} mm:\n{text}");
+}
+
+/// A step that does not end stops a scenario, and what came out until then is kept.
+#[test]
+fn what_came_out_before_a_step_that_never_ends_is_kept() {
+    let text = "title = \"never\"\nsteps = [{ wait_s = 0.1 }, { measure = { name = \"level\", quantity = \"level_n\", between = [0, 0] } }, { await = { state = \"held\", timeout_s = 0.1 } }]";
+    let scenario = Scenario::parse("never", text).unwrap();
+    let (summary, bits) = run(&scenario, &mut InThisProcess::default());
+    let stopped = summary.stopped.clone().unwrap();
+    assert!(
+        stopped.starts_with("step 3: held did not come within 0.1 s"),
+        "{stopped}"
+    );
+    assert_eq!(summary.findings.len(), 1);
+    assert!(summary.findings[0].held() && !summary.held());
+    assert!(bits.len() > 1600 && !summary.samples.is_empty());
 }

@@ -9,9 +9,7 @@ use crate::recording;
 use crate::rig_file::RigFile;
 use crate::run_charts;
 use crate::scenario::Scenario;
-use crate::simulation::{
-    Controller, InThisProcess, OnLink, Simulation, SimulationError, Summary, Tick,
-};
+use crate::simulation::{Controller, InThisProcess, OnLink, Simulation, Summary, Tick};
 use clap::ValueEnum;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -113,13 +111,13 @@ fn simulate(
     rig: &RigFile,
     controller: &mut dyn Controller,
 ) -> Result<Summary, Failure> {
-    let simulation = Simulation::new(scenario, rig).map_err(|error| failure(&error))?;
+    let simulation = Simulation::new(scenario, rig).map_err(|error| Failure::from_error(&error))?;
     let settings = simulation.settings().clone();
     let bar = progress::spinner("ticks");
     let mut watched = |watch: &mut dyn FnMut(&Tick<'_>)| {
         let result = simulation.clone().run(controller, watch);
         bar.finish_and_clear();
-        result.map_err(|error| failure(&error))
+        result.map_err(|error| Failure::from_error(&error))
     };
     match &args.record {
         None => watched(&mut |_| bar.inc(1)),
@@ -137,19 +135,15 @@ fn simulate(
     }
 }
 
-fn failure(error: &SimulationError) -> Failure {
-    match error {
-        SimulationError::Timeout { .. } => Failure::missed(
-            error.to_string(),
-            "see what the leg was doing in the charts of a shorter scenario",
-        ),
-        _ => Failure::from_error(error),
-    }
-}
-
 fn judge(summary: &Summary) -> Result<(), Failure> {
     if summary.held() {
         return Ok(());
+    }
+    if let Some(words) = &summary.stopped {
+        return Err(Failure::missed(
+            words.clone(),
+            "see in the charts what the leg was doing",
+        ));
     }
     let missed: Vec<_> = summary
         .findings

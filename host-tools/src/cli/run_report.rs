@@ -87,6 +87,7 @@ impl Report<'_> {
                 })
                 .collect(),
             divergence: &summary.divergence,
+            stopped: summary.stopped.as_deref(),
             held: summary.held(),
             plots: self.plots,
         };
@@ -136,6 +137,7 @@ struct JsonReport<'a> {
     findings: &'a [Finding],
     faults: Vec<JsonFault>,
     divergence: &'a crate::simulation::Divergence,
+    stopped: Option<&'a str>,
     held: bool,
     plots: &'a [PathBuf],
 }
