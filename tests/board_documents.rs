@@ -30,7 +30,9 @@ fn pins_of_the_image() -> BTreeSet<String> {
     let folder = Path::new(FIRMWARE).join("src/bin/leg-stm32g474");
     let mut found = BTreeSet::new();
     for entry in fs::read_dir(folder).unwrap() {
-        found.append(&mut pins(&fs::read_to_string(entry.unwrap().path()).unwrap()));
+        found.append(&mut pins(
+            &fs::read_to_string(entry.unwrap().path()).unwrap(),
+        ));
     }
     found
 }
