@@ -1,0 +1,36 @@
+//! What carries the bytes of a link to a board and back.
+
+pub mod emulated;
+pub mod hub;
+pub mod serial;
+
+use std::io;
+use std::sync::LazyLock;
+use std::time::{Duration, Instant};
+
+/// A way for the frames of [`leg_firmware::frame`] to one board and back. What was lost is lost: the frames' own
+/// sequence and CRC tell.
+pub trait Transport {
+    /// What it is, for a message to the user: `can0, leg 3`.
+    fn name(&self) -> &str;
+
+    /// Sends whole frames, each with its final zero; returns when the system has taken them all.
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::InvalidInput`] if a transport that cannot send parts of a frame is given one;
+    /// [`io::ErrorKind::TimedOut`] if the system does not take them; what else the system says.
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()>;
+
+    /// Waits for bytes and returns how many came, at least one; 0 only for a `bytes` without room, and where the other
+    /// side has ended for good.
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::TimedOut`] if none came in time; what else the system says.
+    fn receive(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize>;
+
+    /// Time since some moment, by the clock of the timeouts: the host's, or that of an emulated leg.
+    fn now(&self) -> Duration {
+        static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+        START.elapsed()
+    }
+}
