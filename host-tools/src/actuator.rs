@@ -1,70 +1,81 @@
 //! The motors, gears, screws and sensors that pull the tendons: what the control law is told and the simulated leg is.
 
-/// One actuator; the three are of one type.
-///
-/// The defaults are those of a small ironless DC motor of 20 W at 24 V (maxon RE 25, order number 118752, by its data
-/// sheet), a planetary gear, and a trapezoidal screw that holds by its friction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Actuator {
-    /// Terminal resistance of the motor, Ω.
-    pub resistance_ohm: f64,
-    /// Terminal inductance, H.
-    pub inductance_h: f64,
-    /// Torque constant, N·m/A, which is also the voltage per speed, V·s/rad.
-    pub torque_constant_nm_per_a: f64,
-    /// Inertia of the rotor, and of gear and screw as the rotor feels them, kg·m².
-    pub inertia_kg_m2: f64,
-    /// Dry friction at the rotor without a load, N·m.
-    pub friction_nm: f64,
-    /// Viscous friction at the rotor, N·m·s/rad.
-    pub viscous_nm_s_per_rad: f64,
-    /// Turns of the motor in one of the screw.
-    pub gear_ratio: f64,
-    /// Play between gear and screw, as a rotation of the screw, rad.
-    pub backlash_rad: f64,
-    /// How far a turn of the screw pulls the tendon, m.
-    pub lead_m: f64,
-    /// Part of the work that reaches the tendon when the screw pulls; below a half, so that a pull cannot turn it.
-    pub screw_efficiency: f64,
-    /// Part of the work that passes the gear.
-    pub gear_efficiency: f64,
-    /// Encoder counts in a turn of the motor, after quadrature.
-    pub counts_per_turn: f64,
-    /// Tension at a load cell's code 0 and at its highest, N.
-    pub cell_range_n: [f64; 2],
-    /// Motor current at the highest code, A; code 0 is minus that.
-    pub current_range_a: f64,
-    /// Supply at the highest code, V.
-    pub supply_range_v: f64,
-    /// Temperature at code 0 and at the highest, °C.
-    pub temperature_range_c: [f64; 2],
-    /// Nominal supply, V.
-    pub supply_v: f64,
-}
+use crate::fields::{Field, fields};
+use leg_firmware::sensors::CODE_MAX;
 
-impl Default for Actuator {
-    fn default() -> Self {
-        Self {
-            resistance_ohm: 2.32,
-            inductance_h: 0.238e-3,
-            torque_constant_nm_per_a: 23.4e-3,
-            inertia_kg_m2: 1.2e-6,
-            friction_nm: 0.9e-3,
-            viscous_nm_s_per_rad: 3e-7,
-            gear_ratio: 4.4,
-            backlash_rad: 0.015,
-            lead_m: 1e-3,
-            screw_efficiency: 0.3,
-            gear_efficiency: 0.9,
-            counts_per_turn: 2048.0,
-            cell_range_n: [-20.0, 230.0],
-            current_range_a: 12.0,
-            supply_range_v: 36.0,
-            temperature_range_c: [-40.0, 160.0],
-            supply_v: 24.0,
-        }
+fields! {
+    /// One actuator; the three are of one type.
+    ///
+    /// The defaults are typical of an ironless DC motor of 20 W at 24 V such as maxon's RE 25, with a planetary gear and
+    /// a trapezoidal screw that holds by its friction. Replace them by the data sheets of your own.
+    Actuator {
+        /// Terminal resistance of the motor, Ω.
+        resistance_ohm: 0.01..=1e3 = 2.32;
+        /// Terminal inductance, H.
+        inductance_h: 1e-7..=1.0 = 0.238e-3;
+        /// Torque constant, N·m/A, which is also the voltage per speed, V·s/rad.
+        torque_constant_nm_per_a: 1e-5..=100.0 = 23.4e-3;
+        /// Inertia of the rotor, and of gear and screw as the rotor feels them, kg·m².
+        inertia_kg_m2: 1e-10..=1.0 = 1.2e-6;
+        /// Dry friction at the rotor without a load, N·m.
+        friction_nm: 0.0..=10.0 = 0.9e-3;
+        /// Viscous friction at the rotor, N·m·s/rad.
+        viscous_nm_s_per_rad: 0.0..=0.1 = 3e-7;
+        /// Turns of the motor in one of the screw.
+        gear_ratio: 0.1..=1e4 = 4.4;
+        /// Play between gear and screw, as a rotation of the screw, rad.
+        backlash_rad: 0.0..=1.0 = 0.015;
+        /// How far a turn of the screw pulls the tendon, m.
+        lead_m: 1e-5..=0.1 = 1e-3;
+        /// Part of the work that reaches the tendon when the screw pulls; below a half, so that a pull cannot turn it.
+        screw_efficiency: 0.01..=0.499 = 0.3;
+        /// Part of the work that passes the gear.
+        gear_efficiency: 0.05..=1.0 = 0.9;
+        /// Encoder counts in a turn of the motor, after quadrature.
+        counts_per_turn: 4.0..=1e6 = 2048.0;
+        /// Motor current at the highest code, A; code 0 is minus that.
+        current_range_a: 0.01..=1e3 = 12.0;
+        /// Supply at the highest code, V.
+        supply_range_v: 1.0..=1e3 = 36.0;
+        /// Nominal supply, V.
+        supply_v: 1.0..=1e3 = 24.0;
+    }
+    besides {
+        /// Tension at a load cell's code 0 and at its highest, N.
+        cell_range_n: [f64; 2] = [-20.0, 230.0];
+        /// Temperature at code 0 and at the highest, °C.
+        temperature_range_c: [f64; 2] = [-40.0, 160.0];
     }
 }
+
+/// The ends of [`Actuator::cell_range_n`].
+pub const CELL_RANGE: [Field; 2] = [
+    Field {
+        name: "cell_range_n",
+        meaning: "Tension at a load cell's code 0, N; below zero, since a slack cell at the end of its range would be \
+                  taken for a faulty one.",
+        range: [-1e5, -1e-3],
+    },
+    Field {
+        name: "cell_range_n",
+        meaning: "Tension at a load cell's highest code, N.",
+        range: [1e-3, 1e5],
+    },
+];
+
+/// The ends of [`Actuator::temperature_range_c`].
+pub const TEMPERATURE_RANGE: [Field; 2] = [
+    Field {
+        name: "temperature_range_c",
+        meaning: "Temperature at code 0, °C.",
+        range: [-300.0, 20.0],
+    },
+    Field {
+        name: "temperature_range_c",
+        meaning: "Temperature at the highest code, °C.",
+        range: [30.0, 2000.0],
+    },
+];
 
 impl Actuator {
     /// How far one encoder count pulls the tendon in, m.
@@ -77,5 +88,36 @@ impl Actuator {
     #[must_use]
     pub fn m_per_rad(&self) -> f64 {
         self.lead_m / (self.gear_ratio * std::f64::consts::TAU)
+    }
+
+    /// Voltage that the motor induces, by the speed of the tendon, V·s/m.
+    #[must_use]
+    pub fn back_emf_v_s_per_m(&self) -> f64 {
+        self.torque_constant_nm_per_a / self.m_per_rad()
+    }
+
+    /// Time in which the motor comes up to speed at a voltage: RJ/k², s.
+    #[must_use]
+    pub fn mechanical_time_s(&self) -> f64 {
+        self.resistance_ohm * self.inertia_kg_m2 / self.torque_constant_nm_per_a.powi(2)
+    }
+
+    /// Tension by code of a load cell, N.
+    #[must_use]
+    pub fn cell_n_per_code(&self) -> f64 {
+        let [low, high] = self.cell_range_n;
+        (high - low) / f64::from(CODE_MAX)
+    }
+
+    /// Code of a load cell without tension.
+    #[must_use]
+    pub fn cell_zero_code(&self) -> f64 {
+        -self.cell_range_n[0] / self.cell_n_per_code()
+    }
+
+    /// Current by code, A.
+    #[must_use]
+    pub fn current_a_per_code(&self) -> f64 {
+        2.0 * self.current_range_a / f64::from(CODE_MAX)
     }
 }

@@ -1,48 +1,21 @@
-//! The settings of the control law for a rig and its actuators.
+//! The settings of the control law for a rig.
 
-use crate::actuator::Actuator;
+use crate::calibration::CompleteCalibration;
+use crate::gains::Gains;
 use crate::rig_file::RigFile;
 use crate::rounding::{round_query, round_rig};
 use leg_firmware::sensors::CODE_MAX;
-use leg_firmware::settings::{
-    AxisCalibration, BoardCalibration, Estimation, Homing, Limits, Motion, Servo, Settings,
-};
+use leg_firmware::settings::{AxisCalibration, BoardCalibration, Settings};
 
-/// Gains and limits, each section at its defaults unless given.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Gains {
-    /// How the leg moves.
-    pub motion: Motion,
-    /// How a motor follows.
-    pub servo: Servo,
-    /// How pose and load are estimated.
-    pub estimation: Estimation,
-    /// What is taken as a fault.
-    pub limits: Limits,
-    /// How the zero is found.
-    pub homing: Homing,
-}
-
-/// All settings. The zero of the tendons is left open unless it is given.
+/// All settings: those of the rig file but for the gains, which a scenario may have changed. The zero of the tendons is
+/// left open unless it is given.
 #[must_use]
-pub fn settings(
-    rig: &RigFile,
-    actuator: &Actuator,
-    gains: &Gains,
-    unstretched_at_zero_m: Option<[f64; 3]>,
-) -> Settings {
+pub fn settings(rig: &RigFile, gains: &Gains, unstretched_at_zero_m: Option<[f64; 3]>) -> Settings {
     let query = round_query(&rig.query(0.0, 0.0, 0.0));
-    let codes = f64::from(CODE_MAX);
-    let [cell_low_n, cell_high_n] = actuator.cell_range_n;
-    let cell_n_per_code = (cell_high_n - cell_low_n) / codes;
-    let [cold_c, hot_c] = actuator.temperature_range_c;
+    let calibration = rig.calibration.complete(&rig.actuator);
     let axis = |i: usize| AxisCalibration {
-        m_per_count: actuator.m_per_count() as f32,
         unstretched_at_zero_m: unstretched_at_zero_m.map(|zero| zero[i] as f32),
-        cell_n_per_code: cell_n_per_code as f32,
-        cell_zero_code: (-cell_low_n / cell_n_per_code) as f32,
-        current_a_per_code: (2.0 * actuator.current_range_a / codes) as f32,
+        ..axis(&calibration, i)
     };
     Settings {
         rig: round_rig(&rig.parameters).into(),
@@ -53,19 +26,32 @@ pub fn settings(
         level_n: query.level_n,
         tilt_max_sine: rig.tilt_deg.to_radians().sin() as f32,
         axes: [axis(0), axis(1), axis(2)],
-        board: BoardCalibration {
-            supply_v_per_code: (actuator.supply_range_v / codes) as f32,
-            temperature_c_per_code: ((hot_c - cold_c) / codes) as f32,
-            temperature_at_zero_c: cold_c as f32,
-        },
+        board: board(rig),
         motion: gains.motion,
-        servo: Servo {
-            back_emf_v_s_per_m: (actuator.torque_constant_nm_per_a / actuator.m_per_rad()) as f32,
-            resistance_ohm: actuator.resistance_ohm as f32,
-            ..gains.servo
-        },
+        servo: gains.servo,
         estimation: gains.estimation,
         limits: gains.limits,
         homing: gains.homing,
+    }
+}
+
+/// Without its zero.
+fn axis(calibration: &CompleteCalibration, i: usize) -> AxisCalibration {
+    AxisCalibration {
+        m_per_count: (calibration.counts_sign[i] * calibration.m_per_count[i]) as f32,
+        unstretched_at_zero_m: None,
+        cell_n_per_code: calibration.cell_n_per_code[i] as f32,
+        cell_zero_code: calibration.cell_zero_code[i] as f32,
+        current_a_per_code: calibration.current_a_per_code[i] as f32,
+    }
+}
+
+fn board(rig: &RigFile) -> BoardCalibration {
+    let codes = f64::from(CODE_MAX);
+    let [cold_c, hot_c] = rig.actuator.temperature_range_c;
+    BoardCalibration {
+        supply_v_per_code: (rig.actuator.supply_range_v / codes) as f32,
+        temperature_c_per_code: ((hot_c - cold_c) / codes) as f32,
+        temperature_at_zero_c: cold_c as f32,
     }
 }

@@ -2,14 +2,18 @@
 
 pub mod actuator;
 pub mod atomic_file;
+pub mod calibration;
 pub mod check;
 pub mod cli;
+pub mod control_section;
 pub mod control_settings;
 pub mod cost;
 pub mod curve_toml;
 pub mod emulated_leg;
 pub mod evaluate;
 pub mod failure;
+pub mod fields;
+pub mod gains;
 pub mod image;
 mod json_entries;
 pub mod jsonl;
@@ -32,6 +36,7 @@ pub mod ready_scenarios;
 pub mod recording;
 pub mod rig_convert;
 pub mod rig_file;
+pub mod rig_settings;
 pub mod rig_show;
 pub mod rounding;
 pub mod run_charts;

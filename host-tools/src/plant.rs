@@ -29,7 +29,7 @@ mod work;
 mod tests;
 
 pub use faults::Fault;
-pub use settings::PlantSettings;
+pub use settings::{PlantSettings, TRANSVERSE_INERTIA};
 pub use start::Start;
 pub use truth::{Energy, Truth};
 pub use work::Work;

@@ -100,6 +100,23 @@ mod tests {
     }
 
     #[test]
+    fn what_may_be_left_out_goes_there_and_back_too() {
+        let more = "[control.limits]\njump_n = 30\n[actuator]\ncell_range_n = [-10, 200]\n[calibration]\n\
+                    counts_sign = [1, -1, 1]\n[simulation]\nambient_c = 20\n";
+        let source = RigText {
+            name: "more".into(),
+            text: [READY_RIGS[0].text, more].concat(),
+        };
+        let json = RigText {
+            text: convert(&source, Format::Json).unwrap(),
+            ..source.clone()
+        };
+        let back = convert(&json, Format::Toml).unwrap();
+        let [before, after] = [&source.text, &back].map(|text| RigFile::parse("more", text));
+        assert_eq!(before.unwrap(), after.unwrap());
+    }
+
+    #[test]
     fn what_is_no_rig_is_refused() {
         let source = RigText {
             name: "x.json".into(),

@@ -1,21 +1,29 @@
-//! The rig file: a mechanism in a human's units, read into SI.
+//! The rig file: a leg with its actuators, its sensors and its controller's settings, in a human's units, read into SI.
 
+mod actuator;
 mod buckling;
+mod calibration;
+mod consistency;
 mod flexures;
 mod reading;
+mod simulation;
 mod support;
 mod tendon;
 
 pub use buckling::Buckling;
 
+use crate::actuator::Actuator;
+use crate::calibration::Calibration;
 use crate::failure::{Failure, Place};
+use crate::gains::Gains;
+use crate::plant::PlantSettings;
 use crate::ready_rigs::{self, READY_RIGS};
 use crate::support_name::SupportName;
 use crate::toml_problem::Problem;
 use leg_model::{Elasticity, Query, RigParameters, StiffnessAt, Support, Tendon};
 use std::path::{Path, PathBuf};
 
-/// A mechanism and how it is used, as its file describes them.
+/// A leg and how it is used, as its file describes them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigFile {
     /// The geometry and the masses.
@@ -38,6 +46,14 @@ pub struct RigFile {
     pub support: Support<f64>,
     /// The load along the leg under which its flexures buckle, N; none where the file does not give their geometry.
     pub critical_n: Option<f64>,
+    /// Motors, gears, screws and sensors by their data sheets.
+    pub actuator: Actuator,
+    /// What was measured of the sensors.
+    pub calibration: Calibration,
+    /// Gains and limits of the control law, those that are not given at their defaults.
+    pub gains: Gains,
+    /// What else the simulated leg is.
+    pub plant: PlantSettings,
 }
 
 /// Why a rig file is refused.
@@ -181,6 +197,8 @@ impl From<RigFileError> for Failure {
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::RigFile;
+    use crate::calibration::Calibration;
+    use crate::ready_rigs::READY_RIGS;
     use leg_model::{CurvePoint, RigParameters, SupportKind, Tendon};
 
     #[test]
@@ -191,5 +209,30 @@ mod tests {
         let tendon = Tendon::curve(&CurvePoint::<f64>::PAPER).unwrap();
         assert_eq!(file.tendons, [tendon; 3]);
         assert!(file.is_table_1());
+    }
+
+    /// What is commented out at the end of the default rig is what there is without it.
+    #[test]
+    fn the_sections_that_may_be_left_out_are_shown_at_their_defaults() {
+        let text = READY_RIGS[0].text;
+        let shown: Vec<_> = text.lines().map(uncommented).collect();
+        let given = RigFile::parse("shown", &shown.join("\n")).unwrap();
+        let left_out = RigFile::parse("left out", text).unwrap();
+        assert!(given.calibration.cell_zero_code.is_some());
+        assert_eq!(
+            RigFile {
+                calibration: Calibration::default(),
+                ..given
+            },
+            left_out
+        );
+    }
+
+    /// Prose has a space after its #.
+    fn uncommented(line: &str) -> &str {
+        match line.strip_prefix('#') {
+            Some(code) if !code.starts_with(' ') => code,
+            _ => line,
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::rig_file::{Buckling, RigFile};
+use crate::rig_settings;
 use serde::Serialize;
 
 /// The numbers of a rig that its file does not give directly.
@@ -63,7 +64,8 @@ pub fn words(file: &RigFile) -> String {
          leg                    {} kg, centroid {:.1} mm below the joint\n\
          tensions               {} to {} N, level {} N\n\
          tendons at the level   {first:.0}, {second:.0}, {third:.0} N/m\n\
-         workspace              tilt to {}°\n",
+         workspace              tilt to {}°\n\
+         {}",
         shown.support,
         shown.bending_nm_per_rad,
         shown.torsion_nm_per_rad,
@@ -76,6 +78,7 @@ pub fn words(file: &RigFile) -> String {
         shown.tension_ceiling_n,
         shown.level_n,
         shown.tilt_deg,
+        rig_settings::changes(file),
     )
 }
 

@@ -4,12 +4,18 @@ mod step;
 
 pub use step::{Quantity, Step};
 
-use crate::control_settings::Gains;
+use crate::control_section;
 use crate::failure::{Failure, Place};
+use crate::gains::GainChange;
 use crate::plant::{PlantSettings, Start};
 use crate::ready_scenarios;
-use serde::Deserialize;
+use crate::rig_file::RigFile;
+use crate::toml_section::Section;
+use serde::de::IgnoredAny;
+use serde::{Deserialize, Deserializer};
+use std::ops::Range;
 use std::path::Path;
+use toml::de::DeTable;
 
 /// A scenario as its file describes it.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -29,11 +35,17 @@ pub struct Scenario {
     /// What the simulated leg is beside its rig.
     #[serde(default)]
     plant: PlantText,
-    /// Gains and limits that differ from their defaults.
-    #[serde(default)]
-    pub control: Gains,
+    /// Gains and limits in the place of the rig's.
+    #[serde(default, deserialize_with = "read_later")]
+    pub control: Vec<GainChange>,
     /// What happens, one after the other.
     pub steps: Vec<Step>,
+}
+
+/// [`control_section::read`] reads `[control]`: of what is wrong it tells more than serde does.
+fn read_later<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<GainChange>, D::Error> {
+    IgnoredAny::deserialize(deserializer)?;
+    Ok(Vec::new())
 }
 
 fn table_1() -> String {
@@ -66,26 +78,14 @@ impl Default for StartText {
     }
 }
 
-/// What the simulated leg is beside its rig; zero what is left out, but for the cells' offsets and noise.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+/// What the simulated leg is beside its rig; zero what is left out, but for the cells' noise, which is then the rig's.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct PlantText {
     cell_gain_error_percent: [f64; 3],
     cell_offset_n: [f64; 3],
-    cell_noise_n: f64,
+    cell_noise_n: Option<f64>,
     curve_error_percent: f64,
-}
-
-impl Default for PlantText {
-    fn default() -> Self {
-        let plant = PlantSettings::DEFAULT;
-        Self {
-            cell_gain_error_percent: [0.0; 3],
-            cell_offset_n: [0.0; 3],
-            cell_noise_n: plant.cell_noise_n,
-            curve_error_percent: 0.0,
-        }
-    }
 }
 
 impl Scenario {
@@ -112,17 +112,24 @@ impl Scenario {
     /// # Errors
     /// A [`Failure`] with the place.
     pub fn parse(file: &str, text: &str) -> Result<Self, Failure> {
-        toml::from_str(text).map_err(|error| {
-            let place = Place {
-                file: file.into(),
-                text: text.into(),
-                span: error.span().unwrap_or(0..0),
-            };
+        let refused = |error: toml::de::Error| {
             Failure::refused_at(
                 error.message().to_string(),
                 "see the ready scenarios for what there is",
-                place,
+                place(file, text, error.span().unwrap_or(0..0)),
             )
+        };
+        let scenario: Self = toml::from_str(text).map_err(refused)?;
+        let table = DeTable::parse(text).map_err(refused)?;
+        let root = Section::unchecked(table.get_ref());
+        let control = control_section::read(&root).map_err(|fault| {
+            let problem = &fault.problem;
+            let place = place(file, text, fault.span);
+            Failure::refused_at(problem.to_string(), problem.fix(), place)
+        })?;
+        Ok(Self {
+            control,
+            ..scenario
         })
     }
 
@@ -168,16 +175,25 @@ impl Scenario {
         matches!(self.start, StartText::Slack { .. })
     }
 
-    /// What the simulated leg is beside its rig.
+    /// What the simulated leg is beside its rig's mechanism and actuator: as the rig file says, with the scenario's
+    /// errors.
     #[must_use]
-    pub fn plant(&self) -> PlantSettings {
+    pub fn plant(&self, rig: &RigFile) -> PlantSettings {
         let text = self.plant;
         PlantSettings {
             cell_gain_error: text.cell_gain_error_percent.map(|percent| percent / 100.0),
             cell_offset_n: text.cell_offset_n,
-            cell_noise_n: text.cell_noise_n,
+            cell_noise_n: text.cell_noise_n.unwrap_or(rig.plant.cell_noise_n),
             curve_error: text.curve_error_percent / 100.0,
-            ..PlantSettings::DEFAULT
+            ..rig.plant
         }
+    }
+}
+
+fn place(file: &str, text: &str, span: Range<usize>) -> Place {
+    Place {
+        file: file.into(),
+        text: text.into(),
+        span,
     }
 }

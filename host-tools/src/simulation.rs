@@ -11,7 +11,6 @@ pub use controller::{Controller, ControllerError, InThisProcess, OnLink};
 pub use divergence::Divergence;
 pub use outcome::{Finding, Sample, SimulationError, Summary};
 
-use crate::actuator::Actuator;
 use crate::control_settings;
 use crate::plant::Plant;
 use crate::rig_file::RigFile;
@@ -57,18 +56,11 @@ impl Simulation {
     /// # Errors
     /// A start that the model refuses.
     pub fn new(scenario: &Scenario, rig: &RigFile) -> Result<Self, SimulationError> {
-        let actuator = Actuator::default();
-        let plant = Plant::new(
-            rig,
-            &actuator,
-            &scenario.plant(),
-            scenario.start(),
-            scenario.seed,
-        )
-        .map_err(SimulationError::Start)?;
+        let plant = Plant::new(rig, &scenario.plant(rig), scenario.start(), scenario.seed)
+            .map_err(SimulationError::Start)?;
         let zero = (!scenario.starts_slack()).then(|| plant.unstretched_at_zero_m());
         Ok(Self {
-            settings: control_settings::settings(rig, &actuator, &scenario.control, zero),
+            settings: control_settings::settings(rig, &rig.gains.with(&scenario.control), zero),
             scenario: scenario.clone(),
             rig: *rig,
             plant,

@@ -1,5 +1,6 @@
-//! What can be wrong with a rig file, in words.
+//! What can be wrong with a rig file or a scenario's sections that are read alike, in words.
 
+use crate::fields::plain;
 use crate::support_name::UnknownSupport;
 use leg_model::Reason;
 use std::ops::Range;
@@ -82,6 +83,46 @@ pub enum Problem {
         /// How many that one has.
         wanted: usize,
     },
+    /// An array of another length than it has to be.
+    #[error("`{key}` has {found} entries, it takes {wanted}")]
+    Entries {
+        /// The key.
+        key: &'static str,
+        /// How many it has.
+        found: usize,
+        /// How many it takes.
+        wanted: usize,
+    },
+    /// A value outside its range.
+    #[error("`{key}` is outside {} to {}", plain(range[0]), plain(range[1]))]
+    OutsideRange {
+        /// The key.
+        key: &'static str,
+        /// Lowest and highest value.
+        range: [f64; 2],
+        /// What the value means.
+        meaning: &'static str,
+    },
+    /// Values that are sensible each, but make up something that is not.
+    #[error("{what} comes out as {found}")]
+    Outcome {
+        /// What they make up.
+        what: &'static str,
+        /// Its value and its range.
+        found: Box<str>,
+        /// The keys that make it up.
+        keys: &'static str,
+    },
+    /// A value that has to be below another.
+    #[error("{low} has to be below {high}")]
+    NotBelow {
+        /// The one, with its value.
+        low: Box<str>,
+        /// The other, with its value.
+        high: Box<str>,
+        /// Why.
+        reason: &'static str,
+    },
     /// A point of a tendon's curve that cannot be.
     #[error("point {point} of the curve {reason}")]
     Curve {
@@ -130,6 +171,10 @@ impl Problem {
             Self::Choice { choices, .. } => format!("write {choices}"),
             Self::Both(first, second) => format!("give either `{first}` or `{second}`"),
             Self::Count { .. } => "give one entry for each point of the curve in each array".into(),
+            Self::Entries { wanted, .. } => format!("give {wanted} numbers, [a, b, …]"),
+            Self::OutsideRange { key, meaning, .. } => format!("`{key}` is this: {meaning}"),
+            Self::Outcome { keys, .. } => format!("correct one of {keys}"),
+            Self::NotBelow { reason, .. } => (*reason).into(),
             Self::Curve { .. } => {
                 "correct the point; `leg curve` makes a curve from a tensile test".into()
             }

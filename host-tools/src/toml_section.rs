@@ -1,5 +1,7 @@
 //! Reading a TOML file section by section, each refusal with its place in the text.
 
+mod optional;
+
 use crate::suggest;
 use crate::toml_problem::{Fault, Problem};
 use leg_model::Reason;
@@ -34,6 +36,12 @@ impl<'a> Section<'a> {
                 },
             }),
         }
+    }
+
+    /// The table of a whole file whose keys others check.
+    #[must_use]
+    pub fn unchecked(table: &'a DeTable<'a>) -> Self {
+        Self { table, span: 0..0 }
     }
 
     /// The place of the value of a key in a section, if both are there.

@@ -57,13 +57,23 @@ macro_rules! section {
                 },)*
             ];
 
+            /// The value of every field, in the order of [`Self::FIELDS`].
+            #[must_use]
+            pub fn values(&self) -> [f32; Self::FIELDS.len()] {
+                [$(self.$field),*]
+            }
+
+            /// The same, to be changed. [`Self::check`] tells whether they are in range.
+            pub fn values_mut(&mut self) -> [&mut f32; Self::FIELDS.len()] {
+                [$(&mut self.$field),*]
+            }
+
             /// Checks every field against its range.
             ///
             /// # Errors
             /// The first that is outside, or not a number.
             pub fn check(&self) -> Result<(), $crate::settings::OutOfRange> {
-                let values = [$(self.$field),*];
-                for ((number, known), value) in (0..).zip(Self::FIELDS).zip(values) {
+                for ((number, known), value) in (0..).zip(Self::FIELDS).zip(self.values()) {
                     if !(known.range[0] <= value && value <= known.range[1]) {
                         return Err($crate::settings::OutOfRange { section: $number, field: number });
                     }

@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::ready_rigs::READY_RIGS;
 use crate::rig_convert::{self, Format};
 use crate::rig_file::{RigFile, RigText};
+use crate::rig_settings::{self, Setting};
 use crate::rig_show;
 use clap::Subcommand;
 use std::path::PathBuf;
@@ -25,6 +26,15 @@ enum Action {
     Show {
         /// The rig file or a ready rig's name; the paper's rig if left out.
         rig: Option<PathBuf>,
+        /// Lists gains and limits of the controller instead, each with its range, its default and its meaning.
+        #[arg(long)]
+        control: bool,
+        /// Lists actuators, sensors and their calibration instead.
+        #[arg(long, conflicts_with = "control")]
+        actuator: bool,
+        /// Lists what else the simulated leg is instead.
+        #[arg(long, conflicts_with_all = ["control", "actuator"])]
+        simulation: bool,
         /// Prints JSON.
         #[arg(long)]
         json: bool,
@@ -47,6 +57,9 @@ enum Action {
     },
 }
 
+/// What lists settings of a rig.
+type List = fn(&RigFile) -> Vec<Setting>;
+
 /// Runs the command.
 ///
 /// # Errors
@@ -54,12 +67,25 @@ enum Action {
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     match &args.action {
         Action::List => print(&list()?),
-        Action::Show { rig, json } => {
+        Action::Show {
+            rig,
+            control,
+            actuator,
+            simulation,
+            json,
+        } => {
             let file = RigFile::load(rig.as_deref())?;
-            print(&if *json {
-                rig_show::json(&file)?
-            } else {
-                rig_show::words(&file)
+            let list = [
+                (*control, rig_settings::control as List),
+                (*actuator, rig_settings::actuator),
+                (*simulation, rig_settings::simulation),
+            ];
+            let list = list.into_iter().find_map(|(asked, of)| asked.then_some(of));
+            print(&match (list, *json) {
+                (None, false) => rig_show::words(&file),
+                (None, true) => rig_show::json(&file)?,
+                (Some(list), false) => rig_settings::table(&list(&file)),
+                (Some(list), true) => rig_settings::json(&list(&file))?,
             })
         }
         Action::Validate { rig } => {

@@ -11,19 +11,18 @@ use super::supply::Supply;
 use super::temperature::Temperature;
 use super::tendon_pull::RealTendon;
 use super::{Plant, PlantSettings, Start, Work, tick_s};
-use crate::actuator::Actuator;
 use crate::rig_file::RigFile;
 use leg_model::{Error, Load, Quantity, Reason, Rig};
 use nalgebra::Vector3;
 
 impl Plant {
-    /// A leg at its start.
+    /// A leg at its start. Its actuators and sensors are as the rig's actuator data say, whatever calibrations the rig
+    /// has besides: only the signs of the encoders' counts are those of the calibration, as they are wired.
     ///
     /// # Errors
     /// A rig without inertia; a start that the model refuses or at which a tension leaves the rig's bounds.
     pub fn new(
         rig: &RigFile,
-        actuator: &Actuator,
         settings: &PlantSettings,
         start: Start,
         seed: u64,
@@ -33,6 +32,7 @@ impl Plant {
         let begun = start.begin(rig, &mechanism.rig, &mechanism.tendons)?;
         mechanism.load = Load::new(&mechanism.rig, begun.payload_kg)?;
         mechanism.body = bare.loaded(begun.payload_kg, mechanism.rig.tip_m());
+        let actuator = &rig.actuator;
         let substeps = settings.substeps.max(1);
         let mut plant = Self {
             actuator: *actuator,
@@ -46,7 +46,7 @@ impl Plant {
                 resistance_ohm: settings.supply_resistance_ohm,
             },
             temperature: Temperature::new(settings.ambient_c),
-            encoders: [Encoder::default(); 3],
+            encoders: rig.calibration.counts_sign.map(Encoder::new),
             cells: Cells::new(actuator, settings, seed),
             faults: Faults::default(),
             emergency_stop: false,

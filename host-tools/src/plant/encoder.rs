@@ -17,11 +17,21 @@ pub(super) struct Encoder {
     pub counter: u16,
     /// Counts that passed its head.
     passed: i64,
+    /// Whether it is wired to count down while the tendon is pulled in.
+    downwards: bool,
     /// Counts since the last one that slipped, without their sign.
     since_slip: i64,
 }
 
 impl Encoder {
+    /// At zero; `sign` is negative if it counts down while the tendon is pulled in.
+    pub fn new(sign: f64) -> Self {
+        Self {
+            downwards: sign < 0.0,
+            ..Self::default()
+        }
+    }
+
     /// Follows the rotor, whose angle since the start is `angle_rad`.
     pub fn follow(&mut self, angle_rad: f64, counts_per_turn: f64, fault: EncoderFault) {
         // Far below 2⁵³ counts.
@@ -31,7 +41,7 @@ impl Encoder {
         if fault.slipping {
             seen -= self.slipped(seen);
         }
-        if fault.reversed {
+        if fault.reversed != self.downwards {
             seen = -seen;
         }
         if !fault.lost {

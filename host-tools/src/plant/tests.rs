@@ -11,7 +11,6 @@ mod rest;
 mod tendons;
 
 use super::{Plant, PlantSettings, Start};
-use crate::actuator::Actuator;
 use crate::ready_rigs::READY_RIGS;
 use crate::rig_file::RigFile;
 use leg_firmware::drive::Drive;
@@ -44,7 +43,7 @@ fn ready_rigs() -> impl Iterator<Item = (&'static str, RigFile)> {
 }
 
 fn plant(rig: &RigFile, settings: &PlantSettings, start: Start) -> Plant {
-    Plant::new(rig, &Actuator::default(), settings, start, 1).unwrap()
+    Plant::new(rig, settings, start, 1).unwrap()
 }
 
 fn run(plant: &mut Plant, ticks: u32, drive: &Drive<f32>) {

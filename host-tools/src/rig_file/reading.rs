@@ -1,10 +1,28 @@
 //! From the text of a rig file to its values, every one checked.
 
-use super::{RigFile, buckling, support, tendon};
+use super::actuator::{self, ACTUATOR};
+use super::calibration::{self, CALIBRATION};
+use super::simulation::{self, SIMULATION};
+use super::{RigFile, buckling, consistency, support, tendon};
+use crate::control_section::{self, CONTROL};
+use crate::gains::Gains;
 use crate::toml_problem::{Fault, Problem};
 use crate::toml_section::Section;
 use leg_model::{Elasticity, Error, Quantity, Reason, RigParameters};
 use toml::de::DeTable;
+
+/// The sections of a file; those from [`CONTROL`] on may be left out.
+const SECTIONS: [&str; 9] = [
+    "geometry",
+    "mass",
+    "tendon",
+    "workspace",
+    "support",
+    CONTROL,
+    ACTUATOR,
+    CALIBRATION,
+    SIMULATION,
+];
 
 /// Reads the file and lets the model check it.
 pub(super) fn parse(text: &str) -> Result<RigFile, Fault> {
@@ -13,8 +31,7 @@ pub(super) fn parse(text: &str) -> Result<RigFile, Fault> {
         problem: Problem::Syntax(error.message().into()),
     };
     let table = DeTable::parse(text).map_err(syntax)?;
-    let sections = ["geometry", "mass", "tendon", "workspace", "support"];
-    let root = Section::new(table.get_ref(), 0..0, &sections)?;
+    let root = Section::new(table.get_ref(), 0..0, &SECTIONS)?;
     let file = read(&root)?;
     if let Err((quantity, reason)) = check(&file)
         && let Some((section, key)) = key_of(quantity)
@@ -26,6 +43,7 @@ pub(super) fn parse(text: &str) -> Result<RigFile, Fault> {
         });
     }
     buckling::check(&file, root.span_of("tendon", "level_n"))?;
+    consistency::check(&file, &root)?;
     Ok(file)
 }
 
@@ -47,6 +65,7 @@ fn read(root: &Section<'_>) -> Result<RigFile, Fault> {
         support,
         critical_n,
     } = support::read(root, tilt_deg)?;
+    let actuator = actuator::read(root)?;
     Ok(RigFile {
         parameters: RigParameters {
             base_anchors_m: geometry
@@ -71,6 +90,10 @@ fn read(root: &Section<'_>) -> Result<RigFile, Fault> {
         support_name,
         support,
         critical_n,
+        gains: Gains::defaults(&actuator).with(&control_section::read(root)?),
+        actuator,
+        calibration: calibration::read(root)?,
+        plant: simulation::read(root)?,
     })
 }
 

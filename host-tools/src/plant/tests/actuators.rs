@@ -2,6 +2,7 @@
 
 use super::{HELD, OFF, PlantSettings, Start, driven, plant, ready, run};
 use crate::actuator::Actuator;
+use crate::rig_file::RigFile;
 
 /// The pull inwards and outwards at a level of pretension: 150 N is the rig's ceiling.
 const HIGHEST: Start = Start::Held {
@@ -63,8 +64,11 @@ fn a_steady_motor_carries_its_pull() {
         ..PlantSettings::default()
     };
     for (duty, part) in [(0.5_f32, 1.0 / 0.3), (-0.5, 1.0 / 0.3 - 2.0)] {
-        let rig = ready("table1");
-        let mut plant = crate::plant::Plant::new(&rig, &actuator, &settings, HIGHEST, 1).unwrap();
+        let rig = RigFile {
+            actuator,
+            ..ready("table1")
+        };
+        let mut plant = plant(&rig, &settings, HIGHEST);
         run(&mut plant, 1600, &driven([duty, 0.0, 0.0]));
         let truth = plant.truth();
         let torque = truth.tensions_n[0] * actuator.m_per_rad() * part / 0.9;

@@ -1,7 +1,6 @@
 //! The integration is of second order, and the same seed gives the same bits.
 
 use super::{HELD, OFF, PlantSettings, driven, plant, ready_rigs, run};
-use crate::actuator::Actuator;
 use crate::plant::{Plant, Truth};
 use crate::rig_file::RigFile;
 use leg_firmware::drive::Drive;
@@ -61,7 +60,7 @@ fn with_turning_motors_a_quarter_of_the_step_leaves_about_a_sixteenth() {
 fn bits(seed: u64) -> (Vec<[u16; 3]>, [u64; 3]) {
     let rig = super::ready("spherical");
     let settings = PlantSettings::default();
-    let mut plant = Plant::new(&rig, &Actuator::default(), &settings, HELD, seed).unwrap();
+    let mut plant = Plant::new(&rig, &settings, HELD, seed).unwrap();
     let codes = (0..200).map(|_| {
         plant.step(&driven([0.2, -0.1, 0.3]));
         plant.sense().cell_codes

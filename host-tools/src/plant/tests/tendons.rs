@@ -96,8 +96,7 @@ fn a_start_that_no_tension_holds_is_refused() {
         payload_kg,
     };
     for refused in [start(10.0, 1.0), start(70.0, 50.0), start(70.0, -1.0)] {
-        let actuator = crate::actuator::Actuator::default();
         let settings = PlantSettings::default();
-        assert!(crate::plant::Plant::new(&rig, &actuator, &settings, refused, 1).is_err());
+        assert!(crate::plant::Plant::new(&rig, &settings, refused, 1).is_err());
     }
 }
