@@ -8,6 +8,7 @@ use leg_host_tools::qemu::{Config, Session};
 use leg_host_tools::ready_scenarios::{self, READY_SCENARIOS};
 use leg_host_tools::rig_file::RigFile;
 use leg_host_tools::scenario::{Scenario, Step};
+use leg_host_tools::sensitivity;
 use leg_host_tools::simulation::{Controller, InThisProcess, OnLink, Simulation, Summary};
 use leg_host_tools::{image, setup};
 use std::path::Path;
@@ -48,6 +49,8 @@ fn every_ready_scenario_holds() {
             .filter(|finding| !finding.held())
             .collect();
         assert!(missed.is_empty(), "{}: {missed:?}", ready.name);
+        let unexpected = &summary.unexpected;
+        assert!(unexpected.is_empty(), "{}: {unexpected:?}", ready.name);
         assert!(
             !summary.findings.is_empty(),
             "{} measures nothing",
@@ -112,11 +115,7 @@ fn cells_and_curves_that_are_off_move_the_tip_by_as_much_as_is_said() {
     let largest_mm = |cell_percent: f64, curve_percent: f64| {
         let scenario = scenario("support").with_errors(cell_percent, curve_percent);
         let (summary, _) = run(&scenario, &mut InThisProcess::default());
-        let errors = summary
-            .findings
-            .iter()
-            .filter(|finding| finding.unit == "mm");
-        errors.map(|finding| finding.value).fold(0.0, f64::max)
+        sensitivity::largest_mm(&summary).unwrap()
     };
     let (exact, cells, curves) = (
         largest_mm(0.0, 0.0),

@@ -1,7 +1,7 @@
 //! The control law: from what the sensors read to what the motors do, in one pure tick.
 
 mod axis;
-mod bounds;
+pub(crate) mod bounds;
 mod estimate;
 mod filter;
 mod homing;

@@ -12,7 +12,7 @@ use crate::control::{
 use crate::drive::Drive;
 use crate::sensors::Sensors;
 use crate::settings::{Settings, SettingsError};
-use crate::supervisor::{AxisView, Event, Fault, FaultSet, Monitors, State, Supervisor, View};
+use crate::supervisor::{Event, Fault, FaultSet, Monitors, State, Supervisor, View};
 use crate::telemetry::Telemetry;
 use heapless::Deque;
 use leg_model::{Error, Scalar};
@@ -60,10 +60,41 @@ pub struct Leg<T> {
     residual_m: Option<T>,
     /// Whether every tendon has been above the floor since the leg was armed.
     tensioned: bool,
-    floor_start_m: [T; 3],
+    /// What is left of the way until every tendon pulls.
+    slack: Slack<T>,
+    /// Where the tendons were when the state began, and how far they may be let out in it, m.
+    rest_m: [T; 3],
+    lowest_m: [T; 3],
     refused: bool,
+    failed_tendon: u8,
     measured: Option<Measured<T>>,
     limits: Limits<T>,
+}
+
+/// The way from slack to taut: every tendon is as far from its target as every other, so that the leg does not swing.
+#[derive(Clone, Copy, Debug)]
+struct Slack<T> {
+    /// How far, m; none before the first target.
+    left_m: Option<T>,
+    /// Cycles since the leg was armed.
+    cycles: u32,
+}
+
+impl<T: Scalar> Slack<T> {
+    /// Whether every tendon is led to its target itself.
+    #[inline(always)]
+    fn gone(&self) -> bool {
+        self.left_m.is_some_and(|left| left <= T::zero())
+    }
+}
+
+impl<T> Default for Slack<T> {
+    fn default() -> Self {
+        Self {
+            left_m: None,
+            cycles: 0,
+        }
+    }
 }
 
 /// What the tick itself decides by.
@@ -72,7 +103,10 @@ struct Limits<T> {
     silence: u32,
     bad_frames: u16,
     ramp_m_per_s: T,
-    floor_travel_m: T,
+    homing_release_m: T,
+    hold_travel_m: T,
+    relax_travel_m: T,
+    taut_cycles: u32,
     slack_n: T,
     servo_m_per_s: T,
     tilt_max_sine: T,
@@ -115,14 +149,20 @@ impl<T: Scalar> Leg<T> {
             target: None,
             residual_m: None,
             tensioned: false,
-            floor_start_m: [T::zero(); 3],
+            slack: Slack::default(),
+            rest_m: [T::zero(); 3],
+            lowest_m: [T::zero(); 3],
             refused: false,
+            failed_tendon: 0,
             measured: None,
             limits: Limits {
                 silence: ticks(limits.command_time_s),
                 bad_frames: limits.bad_frames as u16,
                 ramp_m_per_s: limits.ramp_m_per_s.into(),
-                floor_travel_m: limits.floor_travel_m.into(),
+                homing_release_m: settings.homing.release_m.into(),
+                hold_travel_m: limits.hold_travel_m.into(),
+                relax_travel_m: limits.relax_travel_m.into(),
+                taut_cycles: ticks(limits.taut_time_s) / u32::from(CYCLE_TICKS),
                 slack_n: limits.slack_n.into(),
                 servo_m_per_s: settings.servo.speed_m_per_s.into(),
                 tilt_max_sine: settings.tilt_max_sine.into(),
@@ -198,28 +238,35 @@ impl<T: Scalar> Leg<T> {
     ) -> FaultSet {
         let state = self.supervisor.state();
         let active = state == State::Active;
-        let turn = match self.phase {
-            0 => Some(0),
-            2 => Some(1),
-            3 => Some(2),
-            _ => None,
-        };
-        let look = |turn: usize| Some(self.axes.get(turn)?.view(*measured.pulled_m.get(turn)?));
-        let shown = turn.and_then(look).unwrap_or(AxisView::none());
-        let mut faults = self.monitors.watch(&View {
+        let view = View {
             sensors,
             measured,
-            axis: turn,
-            shown,
             driven: state.driven(),
+            led: state.follows(),
             tensioned: active && self.tensioned,
             residual_m: if active && self.tensioned {
                 self.residual_m
             } else {
                 None
             },
-        });
+        };
+        let mut faults = self.monitors.watch(&view);
+        // Where there is most time.
+        let turns: &[usize] = match self.phase {
+            0 => &[0],
+            3 => &[1, 2],
+            _ => &[],
+        };
+        for &turn in turns {
+            if let (Some(axis), Some(&pulled)) = (self.axes.get(turn), measured.pulled_m.get(turn))
+            {
+                let shown = axis.view(pulled);
+                self.monitors.watch_axis(turn, &view, &shown, &mut faults);
+            }
+        }
         faults.add(Fault::Infeasible, self.refused);
+        let late = self.slack.cycles > self.limits.taut_cycles;
+        faults.add(Fault::Slack, active && !self.tensioned && late);
         match result {
             Ok(()) => {}
             Err(Error::Infeasible) => faults.add(Fault::Infeasible, true),
@@ -239,6 +286,17 @@ impl<T: Scalar> Leg<T> {
         faults.add(Fault::BadFrame, self.bad_frames >= self.limits.bad_frames);
         faults.add(Fault::HomingFailed, self.homing_failed(measured));
         faults
+    }
+
+    /// Goes on from the duties that another leg on the same motors has applied in this tick: a shadow's integrals are not on
+    /// its own motors, and would wander.
+    pub fn take_over(&mut self, applied: &Drive<T>) {
+        let supply_v = self
+            .measured
+            .map_or(T::zero(), |measured| measured.supply_v);
+        for (axis, &duty) in self.axes.iter_mut().zip(&applied.duty) {
+            axis.take_over(duty * supply_v);
+        }
     }
 
     /// What the leg may do.
@@ -262,6 +320,7 @@ impl<T: Scalar> Leg<T> {
             state: self.supervisor.state(),
             faults: self.supervisor.latched(),
             homed: self.zero_m.is_some(),
+            failed_tendon: self.failed_tendon,
             moving: self.trajectory.moving(),
             target: [target.x, target.y],
             pose: [pose.x, pose.y],

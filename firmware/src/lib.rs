@@ -21,6 +21,7 @@ pub mod protocol;
 pub mod sensors;
 pub mod server;
 pub mod settings;
+pub mod store;
 pub mod supervisor;
 pub mod telemetry;
 pub mod version;

@@ -30,11 +30,22 @@ impl<T: Scalar> SensingLeg<T> {
         })
     }
 
+    /// Keeps what the sensors read, to be told, and gives the leg for its tick.
+    #[inline(always)]
+    pub fn sensed(&mut self, sensors: &Sensors) -> &mut Leg<T> {
+        self.sensors = *sensors;
+        &mut self.leg
+    }
+
     /// One tick: see [`Leg::tick`].
     #[inline(always)]
     pub fn tick(&mut self, sensors: &Sensors) -> Drive<T> {
-        self.sensors = *sensors;
-        self.leg.tick(sensors)
+        self.sensed(sensors).tick(sensors)
+    }
+
+    /// See [`Leg::take_over`].
+    pub fn take_over(&mut self, applied: &Drive<T>) {
+        self.leg.take_over(applied);
     }
 
     /// See [`Leg::telemetry`].

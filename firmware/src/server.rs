@@ -5,7 +5,8 @@ use crate::drive::Drive;
 use crate::frame::{self, Frame, FrameError, MAX_FRAME};
 use crate::host_link::{Identity, Reset};
 use crate::kernels;
-use crate::linked_leg::{LinkedLeg, SensingLeg};
+use crate::leg::Leg;
+use crate::linked_leg::LinkedLeg;
 use crate::protocol::{
     self, BoardInfo, EvaluateRequest, Hello, KernelRequest, Refusal, Reply, Request, SCHEMA,
     TickReply, TickRequest,
@@ -103,7 +104,7 @@ impl<B: Board> Server<B> {
         let leg = self.leg.as_mut().ok_or(Refusal::NoLeg)?;
         leg.receive(&request.link);
         let mut ticking = Ticking {
-            leg: leg.leg(),
+            leg: leg.leg().sensed(&request.sensors),
             drive: None,
         };
         let instructions = self.board.count(tick, request, &mut ticking);
@@ -131,7 +132,7 @@ impl<B: Board> Server<B> {
 
 /// What a counted tick works on.
 struct Ticking<'a> {
-    leg: &'a mut SensingLeg<f32>,
+    leg: &'a mut Leg<f32>,
     drive: Option<Drive<f32>>,
 }
 

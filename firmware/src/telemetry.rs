@@ -15,6 +15,8 @@ pub struct Telemetry<T> {
     pub faults: FaultSet,
     /// Whether the zero is known.
     pub homed: bool,
+    /// Tendon at which homing failed the last time, from 1; 0 if it did not.
+    pub failed_tendon: u8,
     /// Whether the trajectory is on its way.
     pub moving: bool,
     /// Where the leg shall point: horizontal components.
@@ -51,6 +53,7 @@ impl<T: Copy> Telemetry<T> {
             state: self.state,
             faults: self.faults,
             homed: self.homed,
+            failed_tendon: self.failed_tendon,
             moving: self.moving,
             target: self.target.map(&number),
             pose: self.pose.map(&number),

@@ -49,10 +49,10 @@ pub enum CostError {
 }
 
 /// Instructions of one kernel over all poses.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Cost {
     /// Its name.
-    pub kernel: &'static str,
+    pub kernel: String,
     /// Fewest instructions.
     pub minimum: u32,
     /// As many poses take fewer as take more.
@@ -65,7 +65,7 @@ pub struct Cost {
     pub held: bool,
 }
 
-/// Counts every kernel at every pose on the paper's rig, and every tick of a scenario; calls `done` after each kernel and
+/// Counts every kernel at every pose on the paper's rig, and every tick of a scenario on every ready rig; calls `done` after each kernel and
 /// after the ticks.
 ///
 /// # Errors
@@ -79,13 +79,21 @@ pub fn measure(link: &mut dyn Link, mut done: impl FnMut()) -> Result<Vec<Cost>,
         costs.push(Cost::of(kernel.name(), counts?, of(kernel)));
         done();
     }
-    costs.push(tick::measure(link)?);
-    done();
+    for counted in tick::COUNTED {
+        costs.push(tick::measure(link, &counted)?);
+        done();
+    }
     Ok(costs)
 }
 
+/// How often [`measure`] calls `done`.
+#[must_use]
+pub const fn counted() -> usize {
+    Kernel::ALL.len() + tick::COUNTED.len()
+}
+
 impl Cost {
-    fn of(name: &'static str, mut counts: Vec<u32>, budget: Budget) -> Self {
+    fn of(name: &str, mut counts: Vec<u32>, budget: Budget) -> Self {
         counts.sort_unstable();
         let at = |i: usize| counts.get(i).copied().unwrap_or(0);
         let (minimum, median, maximum) = (
@@ -94,7 +102,7 @@ impl Cost {
             at(counts.len().saturating_sub(1)),
         );
         Self {
-            kernel: name,
+            kernel: name.into(),
             minimum,
             median,
             maximum,

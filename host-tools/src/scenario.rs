@@ -1,5 +1,6 @@
 //! A scenario: how a simulated leg starts, what is done to it, and what must come out.
 
+mod check;
 mod step;
 
 pub use step::{Quantity, Step};
@@ -11,6 +12,7 @@ use crate::plant::{PlantSettings, Start};
 use crate::ready_scenarios;
 use crate::rig_file::RigFile;
 use crate::toml_section::Section;
+use leg_firmware::supervisor::Fault;
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer};
 use std::ops::Range;
@@ -38,6 +40,9 @@ pub struct Scenario {
     /// Gains and limits in the place of the rig's.
     #[serde(default, deserialize_with = "read_later")]
     pub control: Vec<GainChange>,
+    /// Faults that may come beside those that a step waits for; any other one fails the scenario.
+    #[serde(default)]
+    pub expected: Vec<Fault>,
     /// What happens, one after the other.
     pub steps: Vec<Step>,
 }
@@ -120,6 +125,12 @@ impl Scenario {
             )
         };
         let scenario: Self = toml::from_str(text).map_err(refused)?;
+        check::check(&scenario).map_err(|refused| {
+            Failure::refused(
+                format!("{file}: {refused}"),
+                "see the ready scenarios for what there is",
+            )
+        })?;
         let table = DeTable::parse(text).map_err(refused)?;
         let root = Section::unchecked(table.get_ref());
         let control = control_section::read(&root).map_err(|fault| {

@@ -2,7 +2,7 @@
 
 use crate::plot::{Chart, Line};
 use crate::rig_file::RigFile;
-use crate::scenario::Scenario;
+use crate::scenario::{Quantity, Scenario};
 use crate::simulation::{InThisProcess, Simulation, SimulationError, Summary};
 use leg_firmware::supervisor::{Fault, Reaction};
 use serde::Serialize;
@@ -14,14 +14,17 @@ pub const CELLS_PERCENT: [f64; 5] = [0.0, 0.1, 0.2, 0.5, 1.0];
 pub const CURVES_PERCENT: [f64; 4] = [0.0, 1.0, 2.0, 5.0];
 
 /// The largest error of the tip in a scenario.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Sensitivity {
     /// Error of the load cells, percent.
     pub cell_percent: f64,
     /// Error of the tendons' elongation, percent.
     pub curve_percent: f64,
-    /// Largest of what the scenario measures in mm; none where a fault stopped the leg.
+    /// Largest error of the tip that the scenario measures while the load is compensated, mm; none where the run did not get
+    /// so far.
     pub tip_mm: Option<f64>,
+    /// What stopped the run, if anything did.
+    pub stopped: Option<String>,
 }
 
 /// Runs a scenario with every pair of errors, in this process, and calls `done` after each.
@@ -39,11 +42,18 @@ pub fn measure(
             let erring = scenario.with_errors(cell_percent, curve_percent);
             let simulation = Simulation::new(&erring, rig)?;
             let ended = simulation.run(&mut InThisProcess::default(), &mut |_| ());
-            let tip_mm = ended.ok().and_then(|summary| largest_mm(&summary));
+            let (tip_mm, stopped) = match ended {
+                Ok(summary) => match stopping(&summary) {
+                    None => (largest_mm(&summary), None),
+                    Some(fault) => (None, Some(fault.entry().name.into())),
+                },
+                Err(error) => (None, Some(error.to_string())),
+            };
             all.push(Sensitivity {
                 cell_percent,
                 curve_percent,
                 tip_mm,
+                stopped,
             });
             done();
         }
@@ -51,17 +61,21 @@ pub fn measure(
     Ok(all)
 }
 
-/// The largest of what is measured in mm; none if a fault stopped the leg on its way.
-fn largest_mm(summary: &Summary) -> Option<f64> {
-    let stopped = |(fault, _): &(Fault, f64)| fault.reaction() > Reaction::Limit;
-    if summary.faults.iter().any(stopped) {
-        return None;
-    }
-    let errors = summary
+/// The first fault that stopped the leg on its way.
+fn stopping(summary: &Summary) -> Option<Fault> {
+    let stops = |(fault, _): &&(Fault, f64)| fault.reaction() > Reaction::Limit;
+    summary.faults.iter().find(stops).map(|(fault, _)| *fault)
+}
+
+/// The largest error of the tip that was measured while the load was compensated; none if there was no such measure.
+#[must_use]
+pub fn largest_mm(summary: &Summary) -> Option<f64> {
+    summary
         .findings
         .iter()
-        .filter(|finding| finding.unit == "mm");
-    Some(errors.map(|finding| finding.value).fold(0.0, f64::max))
+        .filter(|finding| finding.compensated && finding.quantity == Some(Quantity::TipErrorMm))
+        .map(|finding| finding.value)
+        .reduce(f64::max)
 }
 
 /// One line for each error of the tendons.

@@ -85,8 +85,8 @@ impl Simulation {
         let mut shadow = LinkedLeg::<f64>::new(emulated(Board::InProcess), &self.settings)
             .map_err(SimulationError::Settings)?;
         controller.start(&self.settings)?;
-        let mut stage = Stage::new(&self.rig, self.plant, self.scenario.seed);
-        let mut script = Script::new(&self.scenario.steps);
+        let mut stage = Stage::new(&self.rig, self.plant, &self.scenario);
+        let mut script = Script::new(&self.scenario);
         let mut divergence = Divergence::default();
         while let Some(step) = script.advance(&mut stage)? {
             if stage.time_s() > LONGEST_S {
@@ -100,15 +100,20 @@ impl Simulation {
             shadow.receive(&link);
             let shadow_drive = shadow.leg().tick(&sensors);
             divergence.compare(&drive, &telemetry, &shadow_drive, &shadow.leg().telemetry());
+            shadow.leg().take_over(&Drive {
+                duty: drive.duty.map(f64::from),
+                enabled: drive.enabled,
+            });
             watch(&Tick {
                 sensors: &sensors,
                 link: &link,
                 drive: &drive,
                 telemetry: &telemetry,
             });
-            stage.step(&drive, &telemetry);
+            stage.step(&drive, &telemetry)?;
         }
-        Ok(stage.summary(script.findings(), divergence))
+        let (findings, expected) = script.findings();
+        Ok(stage.summary(findings, expected, divergence))
     }
 }
 

@@ -64,6 +64,8 @@ pub struct AxisInput<T> {
     pub ceiling_n: T,
     /// The supply, V.
     pub supply_v: T,
+    /// The tendon is not let out beyond this, m, whatever its load cell says.
+    pub lowest_m: T,
 }
 
 impl<T: Scalar> Axis<T> {
@@ -136,6 +138,11 @@ impl<T: Scalar> Axis<T> {
         self.step_m = within((goal.pulled_m - self.reference_m) * per_ticks, fastest);
     }
 
+    /// Leads the axis no farther, until it is led again.
+    pub fn pause(&mut self) {
+        self.step_m = T::zero();
+    }
+
     /// Follows the motor without driving it.
     #[inline(always)]
     pub fn track(&mut self, pulled_m: T) {
@@ -143,6 +150,12 @@ impl<T: Scalar> Axis<T> {
         let off = pulled_m - predicted;
         self.tracked_m = predicted + self.gains.track_position * off;
         self.speed_m_per_s += self.gains.track_speed * off;
+    }
+
+    /// Goes on from the voltage that another controller of the same motor has applied: the integral becomes what it had to be.
+    pub fn take_over(&mut self, applied_v: T) {
+        self.integral_v += applied_v - self.voltage_v;
+        self.voltage_v = applied_v;
     }
 
     /// One tick: the duty. Call [`Self::track`] first.
@@ -162,6 +175,11 @@ impl<T: Scalar> Axis<T> {
         let room = (input.ceiling_n - input.tension_n) * gains.per_band_n;
         let fastest = within(room, T::one()) * gains.speed_max;
         let wanted = least(wanted, fastest);
+        let wanted = if input.pulled_m <= input.lowest_m {
+            most(wanted, T::zero())
+        } else {
+            wanted
+        };
         let missing = wanted - self.speed_m_per_s;
         let proportional = gains.back_emf * wanted + gains.speed * missing;
         let asked = proportional + self.integral_v;

@@ -21,6 +21,8 @@ enum Phase {
     Settle(Tendon),
     /// Its tension and position are averaged.
     Average(Tendon),
+    /// The pose in which the leg rests on it is looked for, one step a tick.
+    Search(Tendon),
     /// It is let out again.
     LetOut(Tendon),
 }
@@ -42,6 +44,15 @@ impl Tendon {
         }
     }
 
+    /// Counted from 1.
+    const fn number(self) -> u8 {
+        match self {
+            Self::First => 1,
+            Self::Second => 2,
+            Self::Third => 3,
+        }
+    }
+
     const fn next(self) -> Option<Self> {
         match self {
             Self::First => Some(Self::Second),
@@ -60,10 +71,11 @@ pub enum HomingStep<T> {
     Tare([T; 3]),
     /// The length of each tendon without tension when the board started, m.
     Found([T; 3]),
-    /// A tendon did not come taut within its travel; the tendon counts from 1.
-    NotTaut(u8),
-    /// The leg does not come to rest on a tendon as its weight says.
-    NoRest(u8),
+    /// Nothing but time.
+    Searching,
+    /// A load cell is too far off, a tendon did not come taut within its travel, or the leg does not come to rest on it as
+    /// its weight says; the tendon counts from 1.
+    Failed(u8),
 }
 
 /// The course of homing.
@@ -77,10 +89,12 @@ pub struct Homing<T> {
     count: u32,
     steady: [LowPass<T>; 3],
     found: [T; 3],
+    rest: Rest<T>,
     start_m: T,
     times: Times,
     speed: T,
     release_m: T,
+    tare_max_n: T,
     touch_n: T,
     travel_m: T,
 }
@@ -108,6 +122,7 @@ impl<T: Scalar> Homing<T> {
             count: 0,
             steady: [LowPass::new(TOUCH_TIME_S, super::TICK_S); 3],
             found: [T::zero(); 3],
+            rest: Rest::new(T::zero(), T::zero()),
             start_m: T::zero(),
             times: Times {
                 tare: ticks(homing.tare_time_s),
@@ -116,6 +131,7 @@ impl<T: Scalar> Homing<T> {
             },
             speed: homing.speed_m_per_s.into(),
             release_m,
+            tare_max_n: homing.tare_max_n.into(),
             touch_n: homing.touch_n.into(),
             travel_m: homing.travel_m.into(),
         }
@@ -134,7 +150,8 @@ impl<T: Scalar> Homing<T> {
             Phase::Tare => self.tare(tensions_n),
             Phase::TakeUp(tendon) => self.take_up(tendon, pulled_m, tensions_n),
             Phase::Settle(tendon) => self.settle(tendon),
-            Phase::Average(tendon) => self.average(mechanism, tendon, pulled_m, tensions_n),
+            Phase::Average(tendon) => self.average(tendon, pulled_m, tensions_n),
+            Phase::Search(tendon) => self.search(mechanism, tendon),
             Phase::LetOut(tendon) => self.let_out(tendon, pulled_m),
         }
     }
@@ -153,7 +170,7 @@ impl<T: Scalar> Homing<T> {
             .zip(&self.goals_m)
             .all(|(pulled, goal)| (*pulled - *goal).abs() < near);
         if arrived {
-            (self.phase, self.left, self.count) = (Phase::Tare, self.times.tare, 0);
+            (self.phase, self.count) = (Phase::Tare, 0);
         }
         self.lead()
     }
@@ -167,10 +184,16 @@ impl<T: Scalar> Homing<T> {
             return self.lead();
         }
         let count = T::from(self.count as f32);
+        let offsets = self.sums.map(|sum| sum / count);
+        for (tendon, offset) in (1..).zip(offsets) {
+            if !(offset.abs() <= self.tare_max_n) {
+                return HomingStep::Failed(tendon);
+            }
+        }
         self.phase = Phase::TakeUp(Tendon::First);
         let [start, ..] = self.goals_m;
         self.start_m = start;
-        HomingStep::Tare(self.sums.map(|sum| sum / count))
+        HomingStep::Tare(offsets)
     }
 
     fn take_up(&mut self, tendon: Tendon, pulled_m: &[T; 3], tensions_n: &[T; 3]) -> HomingStep<T> {
@@ -182,7 +205,7 @@ impl<T: Scalar> Homing<T> {
         }
         self.goals_m[i] = self.start_m + self.travel_m;
         if pulled_m[i] >= self.start_m + self.travel_m - T::from(1e-4) {
-            return HomingStep::NotTaut(tendon.index() as u8 + 1);
+            return HomingStep::Failed(tendon.number());
         }
         self.lead()
     }
@@ -196,13 +219,7 @@ impl<T: Scalar> Homing<T> {
         self.lead()
     }
 
-    fn average(
-        &mut self,
-        mechanism: &Mechanism<T>,
-        tendon: Tendon,
-        pulled_m: &[T; 3],
-        tensions_n: &[T; 3],
-    ) -> HomingStep<T> {
+    fn average(&mut self, tendon: Tendon, pulled_m: &[T; 3], tensions_n: &[T; 3]) -> HomingStep<T> {
         let i = tendon.index();
         self.sums[i] += tensions_n[i];
         // From where it rests, so that the sum stays small.
@@ -212,11 +229,18 @@ impl<T: Scalar> Homing<T> {
             return self.lead();
         }
         let count = T::from(self.count as f32);
-        let tension = self.sums[i] / count;
         let pulled = self.goals_m[i] + self.position_sum / count;
-        match unstretched_under_one(mechanism, i, tension) {
-            Ok(unstretched) => self.found[i] = unstretched + pulled,
-            Err(_) => return HomingStep::NoRest(tendon.index() as u8 + 1),
+        self.rest = Rest::new(self.sums[i] / count, pulled);
+        self.phase = Phase::Search(tendon);
+        self.lead()
+    }
+
+    fn search(&mut self, mechanism: &Mechanism<T>, tendon: Tendon) -> HomingStep<T> {
+        let i = tendon.index();
+        match self.rest.step(mechanism, i) {
+            Ok(None) => return HomingStep::Searching,
+            Ok(Some(unstretched_at_zero)) => self.found[i] = unstretched_at_zero,
+            Err(_) => return HomingStep::Failed(tendon.number()),
         }
         let Some(next) = tendon.next() else {
             return HomingStep::Found(self.found);
@@ -238,19 +262,46 @@ impl<T: Scalar> Homing<T> {
     }
 }
 
-/// Steps after which the search for the pose on one tendon ends.
+/// Steps of the search for the pose on one tendon.
 const STEPS: u8 = 12;
 
-/// Length without tension of a tendon that alone pulls a hanging leg with a tension in N, m.
-fn unstretched_under_one<T: Scalar>(
-    mechanism: &Mechanism<T>,
-    i: usize,
-    tension: T,
-) -> Result<T, Error> {
-    let mut pull = SVector::<T, 3>::zeros();
-    pull[i] = tension;
-    let mut direction = Direction::down();
-    for _ in 0..STEPS {
+/// Searches the pose in which a hanging leg rests on one tendon, one step a tick.
+#[derive(Clone, Copy, Debug)]
+struct Rest<T> {
+    direction: Direction<T>,
+    tension_n: T,
+    pulled_m: T,
+    steps: u8,
+}
+
+impl<T: Scalar> Rest<T> {
+    fn new(tension_n: T, pulled_m: T) -> Self {
+        Self {
+            direction: Direction::down(),
+            tension_n,
+            pulled_m,
+            steps: 0,
+        }
+    }
+
+    /// The next step; at the end, the length of tendon `i` without tension when the board started, m.
+    fn step(&mut self, mechanism: &Mechanism<T>, i: usize) -> Result<Option<T>, Error> {
+        if self.steps < STEPS {
+            self.steps += 1;
+            self.direction = self.nearer(mechanism, i)?;
+            return Ok(None);
+        }
+        let mut twisted = None;
+        let geometry = mechanism.geometry(&self.direction, T::zero(), &mut twisted);
+        let kinematics = inverse_kinematics(geometry, &self.direction)?;
+        let elongation = mechanism.tendons[i].elongation(self.tension_n)?;
+        Ok(Some(kinematics.lengths[i] - elongation + self.pulled_m))
+    }
+
+    fn nearer(&self, mechanism: &Mechanism<T>, i: usize) -> Result<Direction<T>, Error> {
+        let direction = self.direction;
+        let mut pull = SVector::<T, 3>::zeros();
+        pull[i] = self.tension_n;
         let mut twisted = None;
         let geometry = mechanism.geometry(&direction, T::zero(), &mut twisted);
         let load = estimate_load(geometry, &mechanism.support, &direction, T::zero(), &pull)?;
@@ -266,10 +317,6 @@ fn unstretched_under_one<T: Scalar>(
         let (turn_x, turn_y) = ((own.x - x) / stiffness, (own.y - y) / stiffness);
         // A turn about x moves the tip along −p_z y, one about y along p_z x.
         let vector = direction.vector();
-        direction = Direction::from_xy(vector.x + vector.z * turn_y, vector.y - vector.z * turn_x)?;
+        Direction::from_xy(vector.x + vector.z * turn_y, vector.y - vector.z * turn_x)
     }
-    let mut twisted = None;
-    let geometry = mechanism.geometry(&direction, T::zero(), &mut twisted);
-    let kinematics = inverse_kinematics(geometry, &direction)?;
-    Ok(kinematics.lengths[i] - mechanism.tendons[i].elongation(tension)?)
 }

@@ -15,7 +15,7 @@ pub struct Mechanism<T> {
     pub support: Support<T>,
     /// The tendons.
     pub tendons: [Tendon<T>; 3],
-    /// The tensions that are allowed.
+    /// The tensions that targets may have.
     pub bounds: TensionBounds<T>,
     /// Lowest tension allowed, N.
     pub floor_n: T,
@@ -42,7 +42,8 @@ impl<T: Scalar> Mechanism<T> {
         Ok(Self {
             support: settings.support.support()?,
             tendons: settings.tendons.tendons()?,
-            bounds: TensionBounds::new(floor_n, ceiling_n)?,
+            // In the last newtons below the ceiling a motor is slowed down: no target leads there.
+            bounds: TensionBounds::new(floor_n, ceiling_n - settings.servo.ceiling_band_n.into())?,
             floor_n,
             ceiling_n,
             leg: Load::new(&rig, T::zero())?,

@@ -2,7 +2,8 @@
 
 use super::Leg;
 use crate::command::Compensation;
-use crate::control::{AxisGoal, CYCLE_TICKS, HomingStep, Measured, Weighing, Wish};
+use crate::control::bounds::most;
+use crate::control::{Axis, AxisGoal, CYCLE_S, CYCLE_TICKS, HomingStep, Measured, Weighing, Wish};
 use crate::supervisor::Event;
 use leg_model::{Error, Scalar};
 
@@ -42,9 +43,11 @@ impl<T: Scalar> Leg<T> {
             Weighing::Filtered
         };
         if !self.tensioned {
+            self.slack.cycles = self.slack.cycles.saturating_add(1);
             let floor_n = self.mechanism.floor_n;
             let tensions_n = &measured.steady_tensions_n;
-            self.tensioned = tensions_n.iter().all(|&tension| tension > floor_n);
+            self.tensioned =
+                self.slack.gone() && tensions_n.iter().all(|&tension| tension > floor_n);
         }
         self.estimate(zero_m, measured, weighing)
     }
@@ -82,32 +85,86 @@ impl<T: Scalar> Leg<T> {
 
     #[inline(never)]
     fn aim(&mut self, zero_m: &[T; 3], measured: &Measured<T>) -> Result<(), Error> {
+        let taut = self.slack.gone();
         let wish = Wish {
             q: self.trajectory.step(),
             excess_nm: self.estimator.excess_nm(),
             compensated: self.compensation != Compensation::Off,
             trimmed: self.compensation == Compensation::Estimated && self.tensioned,
-            level_n: self.level.level_n(),
+            // The level comes up when every tendon is as far from slack as every other.
+            level_n: if taut {
+                self.level.level_n()
+            } else {
+                T::zero()
+            },
         };
         let target = self
             .targets
-            .next(&self.mechanism, &wish, &measured.steady_tensions_n)?;
-        // Slack tendons come taut gently.
-        let speed_m_per_s = if self.tensioned {
+            .next(&self.mechanism, &wish, &measured.steady_tensions_n);
+        let mut target = match target {
+            Ok(target) => target,
+            Err(error) => {
+                self.stay();
+                return Err(error);
+            }
+        };
+        let mut pulled_m = *zero_m;
+        for (pulled, &unstretched) in pulled_m.iter_mut().zip(&target.unstretched_m) {
+            *pulled -= unstretched;
+        }
+        let speed_m_per_s = if taut {
             self.limits.servo_m_per_s
         } else {
+            self.tauten(&mut pulled_m);
             self.limits.ramp_m_per_s
         };
         let per_ticks = T::one() / T::from(f32::from(CYCLE_TICKS));
-        for (i, axis) in self.axes.iter_mut().enumerate() {
+        for (axis, &pulled_m) in self.axes.iter_mut().zip(&pulled_m) {
             let goal = AxisGoal {
-                pulled_m: zero_m[i] - target.unstretched_m[i],
+                pulled_m,
                 speed_m_per_s,
             };
             axis.lead(&goal, per_ticks);
         }
+        target.limited &= taut;
         self.target = Some(target);
         Ok(())
+    }
+
+    /// Stays where the last target was: there is none where the trajectory is now.
+    #[cold]
+    fn stay(&mut self) {
+        for axis in &mut self.axes {
+            axis.pause();
+        }
+        if let Some(target) = &self.target {
+            self.trajectory.start(target.direction.half_tangent());
+        }
+        self.refused = true;
+    }
+
+    /// Takes from the goals how far the tendons are still kept from them, m, and lessens that.
+    #[inline(never)]
+    fn tauten(&mut self, goals_m: &mut [T; 3]) {
+        let mut left_m = self.slack.left_m.unwrap_or_else(|| {
+            let farthest = |farthest: T, (axis, &goal): (&Axis<T>, &T)| {
+                most(farthest, goal - axis.reference_m())
+            };
+            self.axes
+                .iter()
+                .zip(goals_m.iter())
+                .fold(T::zero(), farthest)
+        });
+        let step_m = self.limits.ramp_m_per_s * T::from(CYCLE_S);
+        let mut there = true;
+        for (axis, goal) in self.axes.iter().zip(goals_m) {
+            *goal -= left_m;
+            there &= (*goal - axis.reference_m()).abs() <= T::TWO * step_m;
+        }
+        if there {
+            left_m -= step_m;
+        }
+        self.slack.left_m = Some(left_m);
     }
 
     /// One tick of homing.
@@ -123,13 +180,17 @@ impl<T: Scalar> Leg<T> {
                 }
             }
             HomingStep::Tare(offsets_n) => self.measurement.tare(&offsets_n),
+            HomingStep::Searching => {}
             HomingStep::Found(zero_m) => {
                 self.zero_m = Some(zero_m);
                 self.homing = None;
                 self.estimator.straight_down();
                 self.supervisor.happen(Event::Homed);
             }
-            HomingStep::NotTaut(_) | HomingStep::NoRest(_) => self.homing = None,
+            HomingStep::Failed(tendon) => {
+                self.failed_tendon = tendon;
+                self.homing = None;
+            }
         }
     }
 

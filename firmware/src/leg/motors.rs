@@ -1,10 +1,10 @@
 //! What the motors do in each state, and what a change of state begins.
 
-use super::Leg;
+use super::{Leg, Slack};
 use crate::command::Compensation;
 use crate::control::{AxisGoal, AxisInput, Homing, Measured};
 use crate::drive::Drive;
-use crate::supervisor::{Event, State};
+use crate::supervisor::{Event, FaultSet, State};
 use leg_model::Scalar;
 
 impl<T: Scalar> Leg<T> {
@@ -15,13 +15,20 @@ impl<T: Scalar> Leg<T> {
             axis.rest(pulled);
         }
         self.silence = 0;
+        self.rest_m = measured.pulled_m;
+        let travel_m = match state {
+            State::Homing => T::TWO * self.limits.homing_release_m,
+            State::RampingDown => self.limits.relax_travel_m,
+            _ => T::MAX,
+        };
+        self.lowest_m = self.rest_m.map(|rest| rest - travel_m);
         match state {
             State::Homing => {
-                self.homing = Some(Homing::new(&self.settings_of_homing, &measured.pulled_m))
+                self.failed_tendon = 0;
+                self.homing = Some(Homing::new(&self.settings_of_homing, &measured.pulled_m));
             }
             State::Active => self.begin_here(measured),
-            State::Held => self.floor_start_m = measured.pulled_m,
-            State::Boot | State::Disarmed | State::RampingDown | State::Off => {}
+            State::Boot | State::Disarmed | State::Held | State::RampingDown | State::Off => {}
         }
     }
 
@@ -34,19 +41,32 @@ impl<T: Scalar> Leg<T> {
         self.trajectory
             .start(self.estimator.direction().half_tangent());
         self.tensioned = false;
+        self.slack = Slack::default();
         self.target = None;
         self.residual_m = None;
         self.phase = 0;
     }
 
+    /// How far a tendon may move while the leg is held, m: not at all while it is doubted what the cells say.
+    #[inline(always)]
+    fn hold_travel_m(&self) -> T {
+        if self.supervisor.latched().overlaps(FaultSet::DOUBTED_CELLS) {
+            T::zero()
+        } else {
+            self.limits.hold_travel_m
+        }
+    }
+
     /// Pulls in any tendon that is below the floor, as far as that is allowed.
     #[inline(never)]
     pub(super) fn keep_floor(&mut self, measured: &Measured<T>) {
+        let travel_m = self.hold_travel_m();
+        self.lowest_m = self.rest_m.map(|rest| rest - travel_m);
         for (i, axis) in self.axes.iter_mut().enumerate() {
             let low = measured.steady_tensions_n[i] < self.mechanism.floor_n;
-            let room = measured.pulled_m[i] - self.floor_start_m[i] < self.limits.floor_travel_m;
+            let room = measured.pulled_m[i] - self.rest_m[i] < travel_m;
             let goal = if low && room {
-                measured.pulled_m[i] + self.limits.floor_travel_m
+                measured.pulled_m[i] + self.limits.hold_travel_m
             } else {
                 axis.reference_m()
             };
@@ -60,15 +80,16 @@ impl<T: Scalar> Leg<T> {
         }
     }
 
-    /// Lets every tendon out that still pulls.
+    /// Lets every tendon out that still pulls, as far as that is allowed: a dead load cell may say so for ever.
     #[inline(never)]
     pub(super) fn relax(&mut self, measured: &Measured<T>) {
         let mut relaxed = true;
         for (i, axis) in self.axes.iter_mut().enumerate() {
             let pulls = measured.steady_tensions_n[i] > self.limits.slack_n;
-            relaxed &= !pulls;
-            let goal = if pulls {
-                axis.reference_m() - self.limits.floor_travel_m
+            let room = self.rest_m[i] - measured.pulled_m[i] < self.limits.relax_travel_m;
+            relaxed &= !(pulls && room);
+            let goal = if pulls && room {
+                axis.reference_m() - self.limits.hold_travel_m
             } else {
                 axis.reference_m()
             };
@@ -107,6 +128,7 @@ impl<T: Scalar> Leg<T> {
                 tension_n: measured.tensions_n[i],
                 ceiling_n,
                 supply_v: measured.supply_v,
+                lowest_m: self.lowest_m[i],
             });
         }
         drive

@@ -111,8 +111,12 @@ section! {
         bad_frames: 1.0..=1e3 = 3.0;
         /// Speed at which tendons are let out when they have to be relaxed, m/s.
         ramp_m_per_s: 1e-5..=0.1 = 5e-3;
-        /// Farthest that a tendon is pulled in to keep the floor while the leg is held, m.
-        floor_travel_m: 0.0..=0.1 = 1e-3;
+        /// Longest time from an arm until every tendon pulls, s.
+        taut_time_s: 0.01..=60.0 = 5.0;
+        /// Farthest that a tendon is pulled in to keep the floor, or let out to keep the ceiling, while the leg is held, m.
+        hold_travel_m: 1e-6..=0.1 = 1e-3;
+        /// Farthest that a tendon is let out when it has to be relaxed, m.
+        relax_travel_m: 1e-6..=0.1 = 5e-3;
     }
 }
 
@@ -125,6 +129,8 @@ section! {
         speed_m_per_s: 1e-5..=0.1 = 0.01;
         /// Time in which the slack load cells are averaged, s.
         tare_time_s: 1e-3..=10.0 = 0.25;
+        /// Greatest offset of a slack load cell that is taken as its zero, N.
+        tare_max_n: 0.0..=1e3 = 10.0;
         /// Tension at which a tendon is taken as taut, N.
         touch_n: 0.1..=100.0 = 2.0;
         /// Time that the leg is given to come to rest then, s.

@@ -29,6 +29,14 @@ impl FaultSet {
     /// No fault.
     pub const NONE: Self = Self(0);
 
+    /// Those that put in doubt what the load cells say: as long as one is latched, a held leg does not move by them.
+    pub const DOUBTED_CELLS: Self = Self::of(Fault::CellStale)
+        .with(Self::of(Fault::CellStuck))
+        .with(Self::of(Fault::CellSaturated))
+        .with(Self::of(Fault::TensionJump))
+        .with(Self::of(Fault::CurrentDisagrees))
+        .with(Self::of(Fault::Residual));
+
     /// One fault.
     #[must_use]
     pub const fn of(fault: Fault) -> Self {
@@ -52,6 +60,13 @@ impl FaultSet {
     #[inline(always)]
     pub const fn any(self) -> bool {
         self.0 != 0
+    }
+
+    /// Whether any is in both.
+    #[must_use]
+    #[inline(always)]
+    pub const fn overlaps(self, other: Self) -> bool {
+        self.0 & other.0 != 0
     }
 
     /// Those of both.

@@ -20,12 +20,10 @@ pub struct View<'a, T> {
     pub sensors: &'a Sensors,
     /// The same in SI.
     pub measured: &'a Measured<T>,
-    /// The axis that is looked at in this tick, from 0 to 2; none in the tick that has most else to do.
-    pub axis: Option<usize>,
-    /// What that axis shows.
-    pub shown: AxisView<T>,
     /// Whether the drivers are on.
     pub driven: bool,
+    /// Whether the motors follow where they are led; at rest, one that gives way to a tension does not.
+    pub led: bool,
     /// Whether every tendon should pull.
     pub tensioned: bool,
     /// What forward kinematics leaves over, m; none while the pose is not needed.
@@ -57,16 +55,25 @@ impl<T: Scalar> Monitors<T> {
         }
     }
 
-    /// The faults of a tick.
+    /// The faults of one axis, from 0 to 2; each has its turn once a cycle.
+    #[inline(never)]
+    pub fn watch_axis(
+        &mut self,
+        turn: usize,
+        view: &View<'_, T>,
+        shown: &AxisView<T>,
+        faults: &mut FaultSet,
+    ) {
+        if let Some(monitor) = self.axes.get_mut(turn) {
+            monitor.watch(turn, view, shown, faults);
+        }
+    }
+
+    /// The faults of a tick, but those of the axes.
     #[inline(always)]
     pub fn watch(&mut self, view: &View<'_, T>) -> FaultSet {
         let (sensors, measured) = (view.sensors, view.measured);
         let mut faults = FaultSet::NONE;
-        if let Some(turn) = view.axis
-            && let Some(monitor) = self.axes.get_mut(turn)
-        {
-            monitor.watch(turn, view, &mut faults);
-        }
         for fault in sensors.driver_fault {
             faults.add(Fault::DriverFault, fault);
         }

@@ -23,7 +23,7 @@ macro_rules! table {
 
 /// Every fault, in the order of the codes.
 pub const TABLE: [FaultEntry; Fault::ALL.len()] = table! {
-    Slack: "slack tendon", "a tension stays below slack_n for slack_time_s after the leg was tensioned", "look whether the tendon is cut or off its anchor";
+    Slack: "slack tendon", "a tension stays below slack_n for slack_time_s, or does not come up within taut_time_s after an arm", "look whether the tendon is cut or off its anchor";
     OverTension: "too much tension", "a tension is above the ceiling by over_tension_part", "look what pulls at the leg; check the load cell";
     TensionJump: "jump of a tension", "a tension changes by jump_n within a millisecond", "look for a cut or slipped tendon";
     Residual: "sensors disagree on the pose", "forward kinematics leaves over more than residual_m for residual_time_s", "home the leg; check the encoders, the load cells and the tendon curves";
@@ -47,7 +47,7 @@ pub const TABLE: [FaultEntry; Fault::ALL.len()] = table! {
     DriverFault: "driver fault", "a motor driver raises its fault line", "look up the driver's own fault";
     EmergencyStop: "emergency stop", "the emergency stop is pressed", "release it when it is safe";
     SettingsCorrupt: "settings corrupt", "the stored settings are not whole or not valid", "write the settings anew";
-    HomingFailed: "homing failed", "a tendon does not come taut within travel_m, or pulls more than the homing ceiling", "let the leg hang free; check the load cells";
+    HomingFailed: "homing failed", "a tendon does not come taut within travel_m, pulls more than twice the homing ceiling, or a slack load cell is off by tare_max_n", "let the leg hang free, without a payload; check the load cells";
 };
 
 impl Fault {

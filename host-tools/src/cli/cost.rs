@@ -5,7 +5,6 @@ use crate::cost::{self, Cost};
 use crate::failure::Failure;
 use crate::qemu::Clock;
 use indicatif::ProgressBar;
-use leg_firmware::kernels::Kernel;
 
 /// Counts the instructions of the model's kernels on the emulated Cortex-M4F, against their budgets.
 ///
@@ -28,7 +27,7 @@ kernel                                minimum  median  maximum   budget      A  
 /// A [`Failure`]: a missing prerequisite, a link that fails, or a kernel outside its budget.
 pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
     let mut link = board::qemu_with(Clock::Counting, verbose)?;
-    let progress = ProgressBar::new(Kernel::ALL.len() as u64 + 1);
+    let progress = ProgressBar::new(cost::counted() as u64);
     let measured = cost::measure(link.as_mut(), || progress.inc(1));
     progress.finish_and_clear();
     let costs = measured.map_err(|error| Failure::from_error(&error))?;
@@ -73,7 +72,7 @@ fn judge(costs: &[Cost]) -> Result<(), Failure> {
     let missed: Vec<&str> = costs
         .iter()
         .filter(|cost| !cost.held)
-        .map(|cost| cost.kernel)
+        .map(|cost| cost.kernel.as_str())
         .collect();
     if missed.is_empty() {
         return Ok(());

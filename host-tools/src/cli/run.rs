@@ -162,7 +162,8 @@ fn judge(summary: &Summary) -> Result<(), Failure> {
         .iter()
         .filter(|finding| !finding.held())
         .collect();
-    let names: Vec<_> = missed.iter().map(|finding| finding.name.as_str()).collect();
+    let mut names: Vec<_> = missed.iter().map(|finding| finding.name.as_str()).collect();
+    names.extend(summary.unexpected.iter().map(|fault| fault.entry().name));
     Err(Failure::missed(
         format!("not where it must be: {}", names.join("; ")),
         "look at the charts, then at the scenario's bounds",

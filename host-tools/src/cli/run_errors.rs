@@ -24,6 +24,15 @@ pub(super) fn run(
     let measured = sensitivity::measure(scenario, rig, || bar.inc(1));
     bar.finish_and_clear();
     let all = measured.map_err(|error| Failure::from_error(&error))?;
+    if all
+        .iter()
+        .all(|one| one.tip_mm.is_none() && one.stopped.is_none())
+    {
+        return Err(Failure::refused(
+            "the scenario measures no tip_error_mm while the load is compensated",
+            "choose another, such as --scenario tour",
+        ));
+    }
     if json {
         return match serde_json::to_string(&all) {
             Ok(json) => print(&(json + "\n")),
@@ -36,11 +45,27 @@ pub(super) fn run(
         Failure::refused(sentence, "name another folder with --plots")
     })?;
     print(&format!(
-        "{}\nLargest distance of the tip from its target, mm\n\n{}-: the leg was stopped, since its sensors disagreed too much\n\nChart: {} (and .png)\n",
+        "{}\nLargest distance of the compensated tip from its target, mm\n\n{}{}\nChart: {} (and .png)\n",
         scenario.title,
         table(&all),
+        stops(&all),
         from_here(&file).display()
     ))
+}
+
+/// What stopped the runs without a value.
+fn stops(all: &[Sensitivity]) -> String {
+    let mut reasons: Vec<&str> = all
+        .iter()
+        .filter_map(|one| one.stopped.as_deref())
+        .collect();
+    reasons.sort_unstable();
+    reasons.dedup();
+    if reasons.is_empty() {
+        String::new()
+    } else {
+        format!("-: the leg was stopped: {}\n", reasons.join("; "))
+    }
 }
 
 /// A row for each error of the load cells, a column for each of the tendons.

@@ -43,7 +43,12 @@ impl Report<'_> {
         let faults: Vec<String> = summary
             .faults
             .iter()
-            .map(|(fault, at_s)| format!("{} ({at_s:.3} s)", fault.entry().name))
+            .map(|(fault, at_s)| {
+                let name = fault.entry().name;
+                let expected = !summary.unexpected.contains(fault);
+                let remark = if expected { "" } else { ", not expected" };
+                format!("{name} ({at_s:.3} s{remark})")
+            })
             .collect();
         let faults = if faults.is_empty() {
             "none".into()
@@ -93,12 +98,18 @@ impl Report<'_> {
 
 fn divergence(summary: &Summary) -> String {
     let divergence = &summary.divergence;
+    let others = match divergence.first_other_tick {
+        None => String::new(),
+        Some(first) => format!(
+            "; {} ticks in another state, the first of them {first}",
+            divergence.other_state
+        ),
+    };
     format!(
-        "Largest difference between f32 and its shadow in f64: duty {:.1e}, pull {:.1e} mm, pose {:.1e}; {} ticks in another state\n",
+        "Largest difference between f32 and its shadow in f64: duty {:.1e}, pull {:.1e} mm, pose {:.1e}{others}\n",
         divergence.duty,
         divergence.reference_m * 1000.0,
         divergence.pose,
-        divergence.other_state,
     )
 }
 

@@ -13,6 +13,8 @@ pub enum Fault {
     CellStuck(#[serde(with = "from_one")] usize),
     /// A load cell shows its highest code.
     CellSaturated(#[serde(with = "from_one")] usize),
+    /// A load cell shows its lowest code.
+    CellDead(#[serde(with = "from_one")] usize),
     /// A load cell converts no more: its last code stays, and is not fresh.
     CellStale(#[serde(with = "from_one")] usize),
     /// A load cell's offset grows by 5 N in a second, and stays when the fault ends.
@@ -42,10 +44,11 @@ pub enum Fault {
 }
 
 /// Kinds of faults that strike one of three.
-const KINDS: [fn(usize) -> Fault; 11] = [
+const KINDS: [fn(usize) -> Fault; 12] = [
     Fault::TendonCut,
     Fault::CellStuck,
     Fault::CellSaturated,
+    Fault::CellDead,
     Fault::CellStale,
     Fault::CellDrifting,
     Fault::EncoderLost,
@@ -86,6 +89,7 @@ impl Fault {
             Self::SupplySag => (11, 0),
             Self::SupplySurge => (11, 1),
             Self::Overheating => (11, 2),
+            Self::CellDead(i) => (13, i),
             Self::LateTicks => (12, 0),
             Self::SettingsCorrupt => (12, 1),
         };
@@ -103,6 +107,7 @@ impl fmt::Display for Fault {
             Self::TendonCut(i) => write!(f, "tendon {} is cut", i + 1),
             Self::CellStuck(i) => write!(f, "load cell {} is stuck", i + 1),
             Self::CellSaturated(i) => write!(f, "load cell {} shows its highest value", i + 1),
+            Self::CellDead(i) => write!(f, "load cell {} shows its lowest value", i + 1),
             Self::CellStale(i) => write!(f, "load cell {} converts no more", i + 1),
             Self::CellDrifting(i) => write!(f, "load cell {} drifts by 5 N/s", i + 1),
             Self::EncoderLost(i) => write!(f, "encoder {} stands still", i + 1),

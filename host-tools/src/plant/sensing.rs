@@ -64,6 +64,8 @@ impl Cells {
             let noise = self.noise_n * gaussian(&mut self.rng);
             if faults.has(Fault::CellSaturated(i)) {
                 self.codes[i] = CODE_MAX;
+            } else if faults.has(Fault::CellDead(i)) {
+                self.codes[i] = 0;
             } else if !faults.has(Fault::CellStuck(i)) && !faults.has(Fault::CellStale(i)) {
                 let shown = tension * self.gains[i] + self.offsets_n[i] + noise;
                 self.codes[i] = code(shown, self.range_n);

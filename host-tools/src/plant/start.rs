@@ -29,6 +29,25 @@ pub enum Start {
     },
 }
 
+impl Start {
+    /// Where the leg points, as horizontal components.
+    #[must_use]
+    pub fn direction(&self) -> [f64; 2] {
+        match *self {
+            Self::Slack { .. } => [0.0; 2],
+            Self::Held {
+                azimuth_deg,
+                tilt_deg,
+                ..
+            } => {
+                let (sin, cos) = azimuth_deg.to_radians().sin_cos();
+                let sine = tilt_deg.to_radians().sin();
+                [sine * cos, sine * sin]
+            }
+        }
+    }
+}
+
 /// What a start says of the leg and its tendons.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Begun {

@@ -15,6 +15,8 @@ pub struct Divergence {
     pub pose: f64,
     /// Ticks at which the two were not in the same state or had other faults.
     pub other_state: u64,
+    /// The first of them: the differences above are of the other ticks alone.
+    pub first_other_tick: Option<u32>,
 }
 
 impl Divergence {
@@ -28,6 +30,7 @@ impl Divergence {
         if telemetry.state != shadow_telemetry.state || telemetry.faults != shadow_telemetry.faults
         {
             self.other_state += 1;
+            self.first_other_tick.get_or_insert(telemetry.tick);
             return;
         }
         self.duty = self.duty.max(largest(&drive.duty, &shadow.duty));

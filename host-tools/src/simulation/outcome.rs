@@ -1,6 +1,7 @@
 //! What came out of a simulation.
 
 use super::{ControllerError, Divergence};
+use crate::scenario::Quantity;
 use leg_firmware::settings::SettingsError;
 use leg_firmware::telemetry::Telemetry;
 use serde::Serialize;
@@ -29,6 +30,14 @@ pub enum SimulationError {
         /// What the leg was doing, and its faults.
         state: String,
     },
+    /// A number of the simulated leg is lost.
+    #[error(
+        "at {time_s:.3} s the simulated leg has no finite place or tension any more; look what acts on it"
+    )]
+    NotFinite {
+        /// s.
+        time_s: f64,
+    },
     /// It takes too long.
     #[error(
         "step {step} is not over after ten minutes of the leg's time; make the scenario shorter"
@@ -55,6 +64,10 @@ pub struct Finding {
     pub between: [f64; 2],
     /// Time in the scenario, s.
     pub at_s: f64,
+    /// What was measured; none for a reaction and a push.
+    pub quantity: Option<Quantity>,
+    /// Whether the leg compensated its load then.
+    pub compensated: bool,
 }
 
 impl Finding {
@@ -95,14 +108,16 @@ pub struct Summary {
     pub divergence: Divergence,
     /// Every fault in the order in which it was first seen, with the time, s.
     pub faults: Vec<(leg_firmware::supervisor::Fault, f64)>,
+    /// Faults that the scenario does not expect.
+    pub unexpected: Vec<leg_firmware::supervisor::Fault>,
     /// The leg at 500 Hz.
     pub samples: Vec<Sample>,
 }
 
 impl Summary {
-    /// Whether every value is where it must be.
+    /// Whether every value is where it must be, and no fault came that is not expected.
     #[must_use]
     pub fn held(&self) -> bool {
-        self.findings.iter().all(Finding::held)
+        self.findings.iter().all(Finding::held) && self.unexpected.is_empty()
     }
 }

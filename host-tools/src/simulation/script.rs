@@ -3,9 +3,10 @@
 use super::extremes::Extremes;
 use super::outcome::{Finding, SimulationError};
 use super::stage::{Pushing, Stage};
-use crate::scenario::{Quantity, Step};
+use crate::scenario::{Quantity, Scenario, Step};
 use crate::words;
-use leg_firmware::command::Command;
+use leg_firmware::command::{Command, Compensation};
+use leg_firmware::supervisor::{FaultSet, State};
 use nalgebra::Vector3;
 
 /// Time in which a push of a test comes up, s.
@@ -24,12 +25,18 @@ pub(super) struct Script<'a> {
     /// Since when the leg has arrived, s.
     arrived_s: Option<f64>,
     findings: Vec<Finding>,
+    expected: FaultSet,
 }
 
 impl<'a> Script<'a> {
-    pub fn new(steps: &'a [Step]) -> Self {
+    pub fn new(scenario: &'a Scenario) -> Self {
+        let mut expected = FaultSet::NONE;
+        for fault in &scenario.expected {
+            expected.add(*fault, true);
+        }
         Self {
-            steps,
+            steps: &scenario.steps,
+            expected,
             next: 0,
             began_s: 0.0,
             acted_s: 0.0,
@@ -39,8 +46,9 @@ impl<'a> Script<'a> {
         }
     }
 
-    pub fn findings(self) -> Vec<Finding> {
-        self.findings
+    /// What was found, and the faults that had to come.
+    pub fn findings(self) -> (Vec<Finding>, FaultSet) {
+        (self.findings, self.expected)
     }
 
     /// Goes on as far as it can; the number of the step that takes time, or none at the end.
@@ -71,6 +79,7 @@ impl<'a> Script<'a> {
                 state,
                 within_ms,
             } => {
+                self.expected.add(*fault, true);
                 let seen = stage
                     .telemetry
                     .is_some_and(|telemetry| telemetry.faults.has(*fault));
@@ -80,9 +89,9 @@ impl<'a> Script<'a> {
                     let value = (stage.time_s() - self.acted_s) * 1000.0;
                     self.find(
                         &format!("{name}: {}", words::state(*state)),
-                        value,
-                        "ms",
+                        (value, "ms"),
                         [0.0, *within_ms],
+                        None,
                         stage,
                     );
                 }
@@ -95,9 +104,9 @@ impl<'a> Script<'a> {
             } => {
                 self.find(
                     name,
-                    measure(*quantity, stage),
-                    quantity.unit(),
+                    (measure(*quantity, stage), quantity.unit()),
                     *between,
+                    Some(*quantity),
                     stage,
                 );
                 Ok(true)
@@ -186,9 +195,9 @@ impl<'a> Script<'a> {
         let off = asked * within_percent / 100.0;
         self.find(
             name,
-            stiffness,
-            "N·m/rad",
+            (stiffness, "N·m/rad"),
             [asked - off, asked + off],
+            None,
             stage,
         );
         self.before_m = None;
@@ -199,9 +208,9 @@ impl<'a> Script<'a> {
     fn find(
         &mut self,
         name: &str,
-        value: f64,
-        unit: &'static str,
+        (value, unit): (f64, &'static str),
         between: [f64; 2],
+        quantity: Option<Quantity>,
         stage: &Stage,
     ) {
         let at_s = stage.time_s();
@@ -211,6 +220,8 @@ impl<'a> Script<'a> {
             unit,
             between,
             at_s,
+            quantity,
+            compensated: stage.compensated,
         });
     }
 }
@@ -256,6 +267,14 @@ fn act(step: &Step, stage: &mut Stage) -> Result<(), SimulationError> {
         Step::Mark => stage.extremes = Extremes::new(&stage.truth),
         _ => {
             if let Some(command) = command(step) {
+                match command {
+                    Command::Move { x, y } => stage.asked = Some([x, y].map(f64::from)),
+                    Command::Hold | Command::Stop => stage.asked = None,
+                    Command::Compensation(compensation) => {
+                        stage.compensated = compensation != Compensation::Off;
+                    }
+                    _ => {}
+                }
                 stage.send(&command)?;
             }
         }
@@ -307,7 +326,7 @@ fn measure(quantity: Quantity, stage: &Stage) -> f64 {
             .map_or(f64::NAN, |telemetry| f64::from(of(telemetry)))
     };
     match quantity {
-        Quantity::TipErrorMm => (stage.average_tip_m() - stage.target_m()).norm() * 1000.0,
+        Quantity::TipErrorMm => (stage.average_tip_m() - stage.asked_m()).norm() * 1000.0,
         Quantity::TipMovedMm => stage.extremes.tip_moved_mm,
         Quantity::TensionMinN => stage.extremes.tension_min_n,
         Quantity::TensionMaxN => stage.extremes.tension_max_n,

@@ -5,6 +5,7 @@ use super::outcome::{Finding, Sample, Summary};
 use super::{Divergence, SimulationError, tick_s};
 use crate::plant::{Plant, Truth};
 use crate::rig_file::RigFile;
+use crate::scenario::Scenario;
 use leg_firmware::command::Command;
 use leg_firmware::drive::Drive;
 use leg_firmware::frame::{self, MAX_FRAME};
@@ -49,6 +50,10 @@ pub(super) struct Stage {
     pub bounds_n: [f64; 2],
     pub tip_length_m: f64,
     pub rng: fastrand::Rng,
+    /// Where the host has sent the leg, as horizontal components; none after a hold on the way.
+    pub asked: Option<[f64; 2]>,
+    /// Whether the leg compensates its load.
+    pub compensated: bool,
     all: Extremes,
     driven_max_n: f64,
     queue: VecDeque<u8>,
@@ -61,7 +66,8 @@ pub(super) struct Stage {
 }
 
 impl Stage {
-    pub fn new(rig: &RigFile, plant: Plant, seed: u64) -> Self {
+    pub fn new(rig: &RigFile, plant: Plant, scenario: &Scenario) -> Self {
+        let (seed, asked) = (scenario.seed, scenario.start().direction());
         let truth = plant.truth();
         let parameters = &rig.parameters;
         Self {
@@ -76,6 +82,8 @@ impl Stage {
             bounds_n: [rig.tension_floor_n, rig.tension_ceiling_n],
             tip_length_m: parameters.joint_length_m + parameters.leg_length_m,
             rng: fastrand::Rng::with_seed(seed),
+            asked: Some(asked),
+            compensated: true,
             queue: VecDeque::new(),
             sequence: 0,
             tips_m: VecDeque::new(),
@@ -135,10 +143,22 @@ impl Stage {
     }
 
     /// Lets the leg go on for a tick.
-    pub fn step(&mut self, drive: &Drive<f32>, telemetry: &Telemetry<f32>) {
+    ///
+    /// # Errors
+    /// [`SimulationError::NotFinite`] if a number is lost.
+    pub fn step(
+        &mut self,
+        drive: &Drive<f32>,
+        telemetry: &Telemetry<f32>,
+    ) -> Result<(), SimulationError> {
         self.push();
         self.plant.step(drive);
         self.truth = self.plant.truth();
+        let numbers = self.truth.tensions_n.iter().chain(self.truth.tip_m.iter());
+        if !numbers.copied().all(f64::is_finite) {
+            let time_s = self.time_s();
+            return Err(SimulationError::NotFinite { time_s });
+        }
         self.telemetry = Some(*telemetry);
         self.extremes.take(&self.truth, self.bounds_n);
         self.all.take(&self.truth, self.bounds_n);
@@ -161,6 +181,7 @@ impl Stage {
             });
         }
         self.ticks += 1;
+        Ok(())
     }
 
     fn push(&mut self) {
@@ -184,11 +205,21 @@ impl Stage {
         self.seen = self.seen.with(faults);
     }
 
-    /// Where the tip shall be, m.
+    /// Where the trajectory has the tip now, m.
     pub fn target_m(&self) -> Vector3<f64> {
-        let [x, y] = self
-            .telemetry
-            .map_or([0.0; 2], |telemetry| telemetry.target.map(f64::from));
+        self.tip_towards(
+            self.telemetry
+                .map_or([0.0; 2], |telemetry| telemetry.target.map(f64::from)),
+        )
+    }
+
+    /// Where the host has sent the tip, m: whatever the leg itself takes for its target.
+    pub fn asked_m(&self) -> Vector3<f64> {
+        self.asked
+            .map_or_else(|| self.target_m(), |asked| self.tip_towards(asked))
+    }
+
+    fn tip_towards(&self, [x, y]: [f64; 2]) -> Vector3<f64> {
         let z = -(1.0 - x * x - y * y).max(0.0).sqrt();
         Vector3::new(x, y, z) * self.tip_length_m
     }
@@ -199,9 +230,16 @@ impl Stage {
         sum / (self.tips_m.len().max(1) as f64)
     }
 
-    pub fn summary(self, findings: Vec<Finding>, divergence: Divergence) -> Summary {
+    pub fn summary(
+        self,
+        findings: Vec<Finding>,
+        expected: FaultSet,
+        divergence: Divergence,
+    ) -> Summary {
+        let unexpected = self.faults.iter().map(|(fault, _)| *fault);
         Summary {
             findings,
+            unexpected: unexpected.filter(|fault| !expected.has(*fault)).collect(),
             ticks: self.ticks,
             tension_range_n: [self.all.tension_min_n, self.all.tension_max_n],
             driven_max_n: self.driven_max_n,

@@ -18,18 +18,6 @@ pub struct AxisView<T> {
     pub voltage_v: T,
 }
 
-impl<T: Scalar> AxisView<T> {
-    /// An axis that does nothing.
-    #[must_use]
-    pub fn none() -> Self {
-        Self {
-            following_m: T::zero(),
-            driving_v: T::zero(),
-            voltage_v: T::zero(),
-        }
-    }
-}
-
 /// Looks over which a tension must not jump, a power of two: a millisecond.
 const JUMP_LOOKS: usize = 2;
 
@@ -108,9 +96,15 @@ impl<T: Scalar> AxisMonitor<T> {
     }
 
     #[inline(always)]
-    pub fn watch(&mut self, i: usize, view: &View<'_, T>, faults: &mut FaultSet) {
+    pub fn watch(
+        &mut self,
+        i: usize,
+        view: &View<'_, T>,
+        shown: &AxisView<T>,
+        faults: &mut FaultSet,
+    ) {
         self.cell(i, view, faults);
-        self.motor(i, view, faults);
+        self.motor(i, view, shown, faults);
     }
 
     /// The load cell and the tension that it tells.
@@ -126,32 +120,29 @@ impl<T: Scalar> AxisMonitor<T> {
         };
         let saturated = !(SATURATED..=CODE_MAX - SATURATED).contains(&code);
         faults.add(Fault::CellSaturated, saturated);
-        faults.add(Fault::CellStale, self.stale.over(!fresh));
+        let stale = self.stale.over(!fresh);
+        faults.add(Fault::CellStale, stale);
         // A code that is not fresh is the last one: that is stale, not stuck.
-        faults.add(
-            Fault::CellStuck,
-            self.stuck.over(fresh && code == self.last_code),
-        );
+        let stuck = self.stuck.over(fresh && code == self.last_code);
+        faults.add(Fault::CellStuck, stuck);
+        // What a dead cell says is no tension.
+        let alive = view.driven && !saturated && !stale && !stuck;
         self.last_code = code;
         let slack = view.tensioned && !(tension >= bounds.slack_n);
         faults.add(Fault::Slack, self.slack.over(slack));
-        faults.add(
-            Fault::OverTension,
-            view.driven && !(tension <= bounds.tension_n),
-        );
+        faults.add(Fault::OverTension, alive && !(tension <= bounds.tension_n));
         let place = self.place & (JUMP_LOOKS - 1);
         let before = core::mem::replace(&mut self.history[place], tension);
         self.place = place + 1;
-        let jump = self.filled && view.driven && !((tension - before).abs() <= bounds.jump_n);
+        let jump = self.filled && alive && !((tension - before).abs() <= bounds.jump_n);
         self.filled |= self.place == JUMP_LOOKS;
         faults.add(Fault::TensionJump, jump);
     }
 
     /// The motor and its encoder.
     #[inline(always)]
-    fn motor(&mut self, i: usize, view: &View<'_, T>, faults: &mut FaultSet) {
+    fn motor(&mut self, i: usize, view: &View<'_, T>, axis: &AxisView<T>, faults: &mut FaultSet) {
         let bounds = &self.bounds;
-        let axis = &view.shown;
         let (Some(&count), Some(&current), Some(&tension)) = (
             view.sensors.encoder_counts.get(i),
             view.measured.currents_a.get(i),
@@ -167,7 +158,7 @@ impl<T: Scalar> AxisMonitor<T> {
         let against = step != 0 && (step > 0) != (pulls == bounds.forward);
         let hard = view.driven && axis.voltage_v.abs() > bounds.driven_v;
         faults.add(Fault::EncoderReversed, self.reversed.over(hard && against));
-        let lags = view.driven && !(axis.following_m.abs() <= bounds.following_m);
+        let lags = view.led && !(axis.following_m.abs() <= bounds.following_m);
         faults.add(Fault::Following, lags);
         let current = current.abs();
         faults.add(

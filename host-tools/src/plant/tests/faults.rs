@@ -50,6 +50,8 @@ fn faults_of_cells() {
     assert_eq!(stale.cell_fresh, [true, false, true]);
     let (_, saturated) = faulty(Fault::CellSaturated(2), 400);
     assert_eq!(saturated.cell_codes[2], CODE_MAX);
+    let (_, dead) = faulty(Fault::CellDead(1), 400);
+    assert_eq!(dead.cell_codes[1], 0);
     let (_, drifting) = faulty(Fault::CellDrifting(2), 400);
     let drift = f64::from(drifting.cell_codes[2]) - f64::from(sound(400).cell_codes[2]);
     assert!((drift * N_PER_CODE - 0.25).abs() < 0.01, "{drift} codes");
