@@ -1,5 +1,7 @@
 //! What carries the bytes of a link to a board and back.
 
+pub mod bus;
+pub mod can;
 pub mod emulated;
 pub mod hub;
 pub mod serial;

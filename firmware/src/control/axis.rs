@@ -184,12 +184,16 @@ impl<T: Scalar> Axis<T> {
         let proportional = gains.back_emf * wanted + gains.speed * missing;
         let asked = proportional + self.integral_v;
         let induced = gains.back_emf * self.speed_m_per_s;
-        let supply = gains.duty_max * input.supply_v;
-        let high = least(induced + gains.current_v, supply);
-        let low = most(induced - gains.current_v, -supply);
-        let voltage = most(least(asked, high), low);
+        // The current's bounds first: an encoder that jumps tells of a speed whose voltage no supply has.
+        let low = induced - gains.current_v;
+        let high = induced + gains.current_v;
+        let voltage = within(
+            least(most(asked, low), high),
+            gains.duty_max * input.supply_v,
+        );
         // The integral grows only while its voltage is applied, and while there is something to make up for.
-        let held = (asked > high && missing > T::zero()) || (asked < low && missing < T::zero());
+        let held =
+            (asked > voltage && missing > T::zero()) || (asked < voltage && missing < T::zero());
         if resting {
             // The screw holds by itself: nothing need be kept up.
             self.integral_v *= T::from(RESTING_DECAY);

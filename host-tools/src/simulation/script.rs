@@ -6,7 +6,7 @@ use super::stage::{Pushing, Stage};
 use crate::scenario::{Quantity, Scenario, Step};
 use crate::words;
 use leg_firmware::command::{Command, Compensation};
-use leg_firmware::supervisor::{FaultSet, State};
+use leg_firmware::supervisor::FaultSet;
 use nalgebra::Vector3;
 
 /// Time in which a push of a test comes up, s.

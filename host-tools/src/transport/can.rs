@@ -1,0 +1,146 @@
+//! One leg of a CAN FD bus, through a port that sends and receives CAN frames.
+
+#[cfg(target_os = "linux")]
+mod interface;
+#[cfg(target_os = "linux")]
+mod socket;
+
+#[cfg(target_os = "linux")]
+pub use interface::InterfaceError;
+#[cfg(target_os = "linux")]
+pub use socket::SocketCan;
+
+use super::Transport;
+use leg_firmware::can::{
+    Assembler, CanFault, CanFrame, Identifier, LegAddress, SegmentError, Segmenter,
+};
+use std::collections::VecDeque;
+use std::io;
+use std::time::{Duration, Instant};
+
+#[cfg(test)]
+mod tests;
+
+/// A node on a CAN FD bus.
+pub trait CanPort {
+    /// What it is, for a message to the user: `can0`.
+    fn name(&self) -> &str;
+
+    /// Hands a frame to the controller. Those under one identifier are sent in the order in which they were handed over;
+    /// an urgent one does not wait for ordinary ones.
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::TimedOut`] if the controller does not take it; what else the system says.
+    fn send(&mut self, frame: &CanFrame) -> io::Result<()>;
+
+    /// Waits for the next frame.
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::TimedOut`] if none came in time; what else the system says.
+    fn receive(&mut self, timeout: Duration) -> io::Result<CanFrame>;
+}
+
+/// The link to one leg of a CAN FD bus.
+///
+/// The host has one for each leg, and not more: two would count under the same identifier.
+#[derive(Debug)]
+pub struct CanTransport<P> {
+    port: P,
+    name: String,
+    ordinary: Segmenter,
+    urgent: Segmenter,
+    urgent_to_all: Segmenter,
+    assembler: Assembler,
+    received: VecDeque<u8>,
+    faults: Vec<CanFault>,
+}
+
+impl<P: CanPort> CanTransport<P> {
+    /// The link to a leg by a port.
+    #[must_use]
+    pub fn new(port: P, leg: LegAddress) -> Self {
+        Self {
+            name: format!("{}, {leg}", port.name()),
+            port,
+            ordinary: Segmenter::new(Identifier::ToLeg(leg)),
+            urgent: Segmenter::new(Identifier::Urgent(leg)),
+            urgent_to_all: Segmenter::new(Identifier::UrgentToAll),
+            assembler: Assembler::of_host(leg),
+            received: VecDeque::new(),
+            faults: Vec::new(),
+        }
+    }
+
+    /// Sends a frame to the leg before all that waits: a stop.
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::InvalidInput`] unless it is one whole frame of up to
+    /// [`SEGMENT_MAX`](leg_firmware::can::SEGMENT_MAX) bytes; else as [`Transport::send`].
+    pub fn send_urgent(&mut self, link_frame: &[u8]) -> io::Result<()> {
+        segment(&mut self.port, &mut self.urgent, link_frame)
+    }
+
+    /// As [`Self::send_urgent`], to all legs on the bus.
+    ///
+    /// # Errors
+    /// As [`Self::send_urgent`].
+    pub fn send_urgent_to_all(&mut self, link_frame: &[u8]) -> io::Result<()> {
+        segment(&mut self.port, &mut self.urgent_to_all, link_frame)
+    }
+
+    /// What was wrong with what came since the last call.
+    pub fn take_faults(&mut self) -> Vec<CanFault> {
+        std::mem::take(&mut self.faults)
+    }
+
+    fn receive_frame(&mut self, timeout: Duration) -> io::Result<()> {
+        let frame = self.port.receive(timeout)?;
+        let taken = self.assembler.push(&frame);
+        self.faults.extend(taken.fault);
+        self.received.extend(taken.link_frame.unwrap_or_default());
+        Ok(())
+    }
+
+    fn take(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        io::Read::read(&mut self.received, bytes)
+    }
+}
+
+impl<P: CanPort> Transport for CanTransport<P> {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        if bytes.last().is_some_and(|&byte| byte != 0) {
+            return Err(not_one_frame(SegmentError::NotOneFrame));
+        }
+        for link_frame in bytes.split_inclusive(|&byte| byte == 0) {
+            segment(&mut self.port, &mut self.ordinary, link_frame)?;
+        }
+        Ok(())
+    }
+
+    fn receive(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize> {
+        let start = Instant::now();
+        while self.received.is_empty() && !bytes.is_empty() {
+            self.receive_frame(timeout.saturating_sub(start.elapsed()))?;
+        }
+        self.take(bytes)
+    }
+}
+
+fn segment(
+    port: &mut impl CanPort,
+    segmenter: &mut Segmenter,
+    link_frame: &[u8],
+) -> io::Result<()> {
+    for frame in segmenter.segments(link_frame).map_err(not_one_frame)? {
+        port.send(&frame)?;
+    }
+    Ok(())
+}
+
+fn not_one_frame(error: SegmentError) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidInput, error)
+}
