@@ -1,6 +1,5 @@
 //! A leg without a board: the firmware and a simulated leg, tick by tick.
 
-use crate::actuator::Actuator;
 use crate::control_settings;
 use crate::link::Link;
 use crate::plant::{Plant, PlantSettings, Start};
@@ -39,13 +38,11 @@ impl EmulatedLeg {
         beginning: Beginning,
         mut controller: Box<dyn Controller>,
     ) -> Result<Self, SimulationError> {
-        let actuator = Actuator::default();
         let (start, plant) = begin(rig, beginning);
-        let plant = Plant::new(rig, &actuator, &plant, start, 0).map_err(SimulationError::Start)?;
+        let plant = Plant::new(rig, &plant, start, 0).map_err(SimulationError::Start)?;
         let homed = beginning == Beginning::Hanging;
         let zero = homed.then(|| plant.unstretched_at_zero_m());
-        let gains = control_settings::Gains::default();
-        controller.start(&control_settings::settings(rig, &actuator, &gains, zero))?;
+        controller.start(&control_settings::settings(rig, &rig.gains, zero))?;
         let mut leg = Self {
             plant,
             controller,
@@ -91,7 +88,7 @@ impl EmulatedLeg {
 /// A leg that is homed has its load cells tared.
 fn begin(rig: &RigFile, beginning: Beginning) -> (Start, PlantSettings) {
     match beginning {
-        Beginning::Slack(slack_m) => (Start::Slack { slack_m }, PlantSettings::DEFAULT),
+        Beginning::Slack(slack_m) => (Start::Slack { slack_m }, rig.plant),
         Beginning::Hanging => {
             let start = Start::Held {
                 azimuth_deg: 0.0,
@@ -101,7 +98,7 @@ fn begin(rig: &RigFile, beginning: Beginning) -> (Start, PlantSettings) {
             };
             let plant = PlantSettings {
                 cell_offset_n: [0.0; 3],
-                ..PlantSettings::DEFAULT
+                ..rig.plant
             };
             (start, plant)
         }

@@ -1,4 +1,4 @@
-//! Builds the firmware image that QEMU boots.
+//! Builds the firmware images: the one that QEMU boots, and the one for the board.
 
 use cargo_metadata::Message;
 use std::env;
@@ -8,7 +8,37 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use thiserror::Error;
 
-const BINARY: &str = "leg-qemu";
+/// What a firmware image is made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Board {
+    /// QEMU's mps2-an386.
+    Qemu,
+    /// The NUCLEO-G474RE.
+    Stm32g474,
+}
+
+impl Board {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Stm32g474, Self::Qemu];
+
+    /// The name of the image's executable.
+    #[must_use]
+    pub const fn binary(self) -> &'static str {
+        match self {
+            Self::Qemu => "leg-qemu",
+            Self::Stm32g474 => "leg-stm32g474",
+        }
+    }
+
+    /// Cargo's command that builds the image: an alias in .cargo/config.toml.
+    #[must_use]
+    pub const fn command(self) -> &'static str {
+        match self {
+            Self::Qemu => "image-qemu",
+            Self::Stm32g474 => "image-stm32g474",
+        }
+    }
+}
 
 /// Variables that would change how the image is compiled: it is to be the same whoever builds it.
 const FOREIGN_VARIABLES: [&str; 4] = [
@@ -33,8 +63,10 @@ pub enum ImageError {
     #[error("cannot start cargo: {0}; install Rust with rustup")]
     NoCargo(#[source] io::Error),
     /// The build failed.
-    #[error("`cargo image-qemu` failed in {root}:\n{output}")]
+    #[error("`cargo {}` failed in {root}:\n{output}", .board.command())]
     Failed {
+        /// What the image is for.
+        board: Board,
         /// Where it ran.
         root: String,
         /// What it wrote.
@@ -42,9 +74,13 @@ pub enum ImageError {
     },
     /// The build made no executable.
     #[error(
-        "`cargo image-qemu` made no executable named `{BINARY}`; see the alias in .cargo/config.toml"
+        "`cargo {}` made no executable named `{}`; see the alias in .cargo/config.toml",
+        .board.command(), .board.binary()
     )]
-    NoExecutable,
+    NoExecutable {
+        /// What the image is for.
+        board: Board,
+    },
 }
 
 /// The folder of the workspace that this program was built from.
@@ -61,27 +97,36 @@ pub fn workspace_root() -> PathBuf {
 /// # Errors
 /// [`ImageError`] with what cargo wrote.
 pub fn build() -> Result<PathBuf, ImageError> {
+    build_for(Board::Qemu)
+}
+
+/// Builds the image for a board, as [`build`] does.
+///
+/// # Errors
+/// [`ImageError`] with what cargo wrote.
+pub fn build_for(board: Board) -> Result<PathBuf, ImageError> {
     let root = workspace_root();
     if !root.join("firmware/Cargo.toml").is_file() {
         return Err(ImageError::NoSources {
             root: root.display().to_string(),
         });
     }
-    let output = cargo(&root).output().map_err(ImageError::NoCargo)?;
+    let output = cargo(board, &root).output().map_err(ImageError::NoCargo)?;
     if !output.status.success() {
         return Err(ImageError::Failed {
+            board,
             root: root.display().to_string(),
             output: String::from_utf8_lossy(&output.stderr).into_owned(),
         });
     }
-    executable(&output).ok_or(ImageError::NoExecutable)
+    executable(board, &output).ok_or(ImageError::NoExecutable { board })
 }
 
-fn cargo(root: &Path) -> Command {
+fn cargo(board: Board, root: &Path) -> Command {
     let program = env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
     let mut command = Command::new(program);
     command
-        .args(["image-qemu", "--message-format=json-render-diagnostics"])
+        .args([board.command(), "--message-format=json-render-diagnostics"])
         .current_dir(root);
     for variable in FOREIGN_VARIABLES {
         command.env_remove(variable);
@@ -90,11 +135,11 @@ fn cargo(root: &Path) -> Command {
 }
 
 /// The image's path as cargo names it.
-fn executable(output: &Output) -> Option<PathBuf> {
+fn executable(board: Board, output: &Output) -> Option<PathBuf> {
     Message::parse_stream(output.stdout.as_slice())
         .filter_map(Result::ok)
         .find_map(|message| match message {
-            Message::CompilerArtifact(artifact) if artifact.target.name == BINARY => {
+            Message::CompilerArtifact(artifact) if artifact.target.name == board.binary() => {
                 artifact.executable.map(Into::into)
             }
             _ => None,

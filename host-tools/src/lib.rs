@@ -15,6 +15,7 @@ pub mod failure;
 pub mod fields;
 pub mod gains;
 pub mod image;
+pub mod image_budget;
 mod json_entries;
 pub mod jsonl;
 pub mod line_error;

@@ -131,8 +131,6 @@ impl Operator {
 }
 
 fn greet(line: &mut Line) -> Result<Identity, OperatorError> {
-    // Ends whatever the board takes for the beginning of a frame.
-    line.send_raw(&[0])?;
     let request = HostRequest::Identify(Hello { schema: SCHEMA });
     for _ in 0..GREETINGS {
         let number = line.send(&request)?;

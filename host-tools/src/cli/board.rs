@@ -1,9 +1,10 @@
 //! Opening the links that commands ask for, with everything that they need.
 
 use crate::failure::Failure;
+use crate::image::{self, Board};
 use crate::link::{InProcess, Link};
 use crate::qemu::{Clock, Config, Session};
-use crate::{image, setup};
+use crate::setup;
 use indicatif::ProgressBar;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -45,18 +46,27 @@ pub(super) fn qemu_with(clock: Clock, verbose: bool) -> Result<Box<dyn Link>, Fa
 
 /// Installs and builds what is missing, and says so on standard error.
 pub(super) fn prepare() -> Result<Prerequisites, Failure> {
-    let mut report = |doing: &str| eprintln!("leg: {doing}");
-    setup::ensure_target(&mut report).map_err(|error| Failure::from_error(&error))?;
+    prepare_target()?;
     let qemu = setup::ensure_qemu(&mut report).map_err(|error| Failure::from_error(&error))?;
-    let image = build_image()?;
+    let image = build_image(Board::Qemu)?;
     Ok(Prerequisites { qemu, image })
 }
 
-/// Builds the firmware, with a sign of life on a terminal: the first time takes half a minute.
-fn build_image() -> Result<PathBuf, Failure> {
-    let spinner = ProgressBar::new_spinner().with_message("building the firmware for QEMU");
+/// Installs what compiles the firmware, and says so on standard error.
+pub(super) fn prepare_target() -> Result<(), Failure> {
+    setup::ensure_target(&mut report).map_err(|error| Failure::from_error(&error))
+}
+
+fn report(doing: &str) {
+    eprintln!("leg: {doing}");
+}
+
+/// Builds a board's firmware, with a sign of life on a terminal: the first time takes half a minute.
+pub(super) fn build_image(board: Board) -> Result<PathBuf, Failure> {
+    let message = format!("building {}", board.binary());
+    let spinner = ProgressBar::new_spinner().with_message(message);
     spinner.enable_steady_tick(Duration::from_millis(100));
-    let built = image::build();
+    let built = image::build_for(board);
     spinner.finish_and_clear();
     built.map_err(|error| Failure::from_error(&error))
 }

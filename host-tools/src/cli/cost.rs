@@ -1,6 +1,6 @@
 //! `leg cost`.
 
-use super::{board, print};
+use super::{board, cost_image, print};
 use crate::cost::{self, Cost};
 use crate::failure::Failure;
 use crate::qemu::Clock;
@@ -12,6 +12,9 @@ use indicatif::ProgressBar;
 /// with Eigen: the same work on the same core, by gcc 12 -O3 without contraction.
 #[derive(Debug, clap::Args)]
 pub struct Args {
+    /// Measures the images instead: flash, RAM, a bound on the stack, and whether a panic can be reached.
+    #[arg(long)]
+    image: bool,
     /// Prints JSON instead of a table.
     #[arg(long)]
     json: bool,
@@ -24,8 +27,11 @@ kernel                                minimum  median  maximum   budget      A  
 /// Runs the command.
 ///
 /// # Errors
-/// A [`Failure`]: a missing prerequisite, a link that fails, or a kernel outside its budget.
+/// A [`Failure`]: a missing prerequisite, a link that fails, or a kernel or an image outside its budget.
 pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
+    if args.image {
+        return cost_image::run(args.json);
+    }
     let mut link = board::qemu_with(Clock::Counting, verbose)?;
     let progress = ProgressBar::new(cost::counted() as u64);
     let measured = cost::measure(link.as_mut(), || progress.inc(1));

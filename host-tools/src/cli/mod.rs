@@ -4,6 +4,7 @@ mod board;
 mod check;
 mod clear;
 mod cost;
+mod cost_image;
 mod curve;
 mod curve_charts;
 mod curve_report;

@@ -3,7 +3,6 @@
 use super::leg_report::to_line;
 use super::line::{Fresh, LineArgs};
 use super::print;
-use crate::actuator::Actuator;
 use crate::atomic_file;
 use crate::control_settings;
 use crate::failure::Failure;
@@ -93,13 +92,7 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
 /// What a rig file sets a board to.
 fn of_rig(rig: &Path) -> Result<Settings, Failure> {
     let rig = RigFile::load(Some(rig))?;
-    let gains = control_settings::Gains::default();
-    Ok(control_settings::settings(
-        &rig,
-        &Actuator::default(),
-        &gains,
-        None,
-    ))
+    Ok(control_settings::settings(&rig, &rig.gains, None))
 }
 
 fn get(operator: &mut Operator, out: Option<&Path>, json: bool) -> Result<(), Failure> {

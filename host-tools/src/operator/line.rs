@@ -43,13 +43,9 @@ impl Line {
         self.sequence = self.sequence.checked_add(1).unwrap_or(1);
         let mut out = [0; MAX_FRAME];
         let bytes = frame::encode(self.sequence, request, &mut out)?;
-        self.send_raw(bytes)?;
-        Ok(self.sequence)
-    }
-
-    pub fn send_raw(&mut self, bytes: &[u8]) -> Result<(), OperatorError> {
         let sent = self.transport.send(bytes);
-        sent.map_err(|source| self.broken(source))
+        sent.map_err(|source| self.broken(source))?;
+        Ok(self.sequence)
     }
 
     /// The next message with its number; none if none came in time. Looks once even where there is no time left.

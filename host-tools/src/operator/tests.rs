@@ -324,13 +324,13 @@ impl Transport for Spoilt {
     }
 }
 
-/// What comes of a move whose frame is lost: it is the fourth, after a zero, the introduction and the arming.
+/// What comes of a move whose frame is lost: it is the third, after the introduction and the arming.
 fn lost_move(pieces: bool) -> (Result<(), OperatorError>, State) {
     let leg = emulated(Beginning::Hanging);
     let line = Spoilt {
         inner: leg.beside(),
         sent: 0,
-        lose: Some(4),
+        lose: Some(3),
         pieces,
     };
     let mut operator = Operator::open(Box::new(line), Host::FIXED, Interrupt::default()).unwrap();

@@ -120,9 +120,10 @@ impl Serial {
     /// # Errors
     /// A [`SerialError`].
     pub fn open(port: &str) -> Result<Self, SerialError> {
-        let port: String = port.into();
-        let client = join(&port)?;
-        Ok(Self { port, client })
+        Ok(Self {
+            port: port.into(),
+            client: join(port)?,
+        })
     }
 }
 
@@ -165,7 +166,7 @@ fn join(port: &str) -> Result<Client, SerialError> {
     loop {
         match open_port(port) {
             Ok(tty) => {
-                return hub::start(tty, port).map_err(|error| SerialError::System {
+                return begin(tty, port).map_err(|error| SerialError::System {
                     port: port.into(),
                     reason: error.to_string(),
                 });
@@ -181,6 +182,13 @@ fn join(port: &str) -> Result<Client, SerialError> {
         }
         std::thread::sleep(Duration::from_millis(20));
     }
+}
+
+fn begin(tty: TTYPort, port: &str) -> io::Result<Client> {
+    let mut client = hub::start(tty, port)?;
+    // Ends whatever the board takes for the beginning of a frame.
+    client.send(&[0])?;
+    Ok(client)
 }
 
 fn open_port(port: &str) -> Result<TTYPort, SerialError> {

@@ -1,0 +1,156 @@
+//! What a firmware image needs of flash, RAM and stack, and whether a panic can be reached, from its ELF file alone.
+//!
+//! The stack is an upper bound: every function's instructions that take stack are added up, whichever of them run; the
+//! deepest chain of calls counts; and all handlers stand on top of each other. What the bound rests on besides the code
+//! is declared: what calls by address reach and how deep they nest (`indirect.rs`), and how many panics stand on one
+//! stack (`call_graph.rs`). Stack that foreign code takes in ways that this does not see is an error, not a gap.
+//!
+//! A panic is found by the names of the functions that begin one. Faults of the core, `udf` and endless loops are none.
+
+mod budget;
+mod call_graph;
+mod elf_file;
+mod error;
+mod function;
+mod indirect;
+mod memory;
+mod program;
+#[cfg(test)]
+mod tests;
+mod thumb;
+mod vector_table;
+
+pub use budget::{Bounds, Check, ImageBudget, checks, of};
+pub use error::{Address, ImageBudgetError};
+pub use memory::Usage;
+pub use vector_table::RootKind;
+
+use call_graph::CallGraph;
+use elf_file::ElfFile;
+use memory::Memories;
+use program::Program;
+use serde::Serialize;
+use vector_table::Entry;
+
+/// Bytes that the core puts on the stack when an exception begins: 26 words where the floating-point unit is in use,
+/// and one to align them.
+pub const EXCEPTION_ENTRY: u32 = 27 * 4;
+
+/// What an image needs.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct ImageNeeds {
+    /// Flash, against what memory.x gives.
+    pub flash: Usage,
+    /// RAM for static variables, against what memory.x gives.
+    pub ram: Usage,
+    /// Stack with all roots on top of each other, against the RAM that static variables leave.
+    pub stack: Usage,
+    /// Where execution can begin.
+    pub roots: Vec<Root>,
+}
+
+/// Where execution can begin, and what it needs from there on.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Root {
+    /// The handler's or function's name.
+    pub name: String,
+    /// What begins here.
+    pub kind: RootKind,
+    /// The most stack that it takes, bytes, without what the core adds when an exception begins.
+    pub stack_bytes: u32,
+    /// The functions whose frames that stack holds, the root first.
+    pub deepest: Vec<String>,
+    /// The shortest way to a panic, the root first, if there is one.
+    pub panic: Option<Vec<String>>,
+    /// The functions within reach that call by address.
+    pub indirect: Vec<IndirectCaller>,
+}
+
+/// A function that calls by address.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct IndirectCaller {
+    /// Its name.
+    pub function: String,
+    /// Such calls among its instructions.
+    pub calls: usize,
+    /// Whether what they reach is declared; else it is every function whose address is taken.
+    pub declared: bool,
+}
+
+/// What an image with a vector table and the symbols of memory.x needs; `elf` are the bytes of its ELF file.
+///
+/// # Errors
+/// [`ImageBudgetError`] for a file that cannot be read and for stack that has no known bound.
+pub fn needs(elf: &[u8]) -> Result<ImageNeeds, ImageBudgetError> {
+    let elf = ElfFile::parse(elf)?;
+    let program = Program::read(&elf)?;
+    let graph = CallGraph::new(&program)?;
+    let entries = vector_table::entries(&elf.vector_table()?, &program)?;
+    let roots: Result<Vec<Root>, _> = entries
+        .into_iter()
+        .map(|entry| Root::of(entry, &graph))
+        .collect();
+    let roots = roots?;
+    let memories = Memories::of(&elf)?;
+    Ok(ImageNeeds {
+        flash: memories.flash(&elf)?,
+        ram: memories.ram(&elf)?,
+        stack: Usage {
+            used: together(&roots),
+            size: memory::stack_size(&elf)?,
+        },
+        roots,
+    })
+}
+
+/// What one function of an image needs, by the name that the linker has for it; a vector table is not needed.
+///
+/// # Errors
+/// [`ImageBudgetError::NoRoot`] if there is no such function or it is the handler of all that have none, and those of
+/// [`needs`].
+pub fn root(elf: &[u8], name: &str) -> Result<Root, ImageBudgetError> {
+    let elf = ElfFile::parse(elf)?;
+    let program = Program::read(&elf)?;
+    let entry = vector_table::named(name, &elf.vector_table()?, &program)?;
+    Root::of(entry, &CallGraph::new(&program)?)
+}
+
+impl Root {
+    fn of(entry: Entry, graph: &CallGraph<'_>) -> Result<Self, ImageBudgetError> {
+        let stack = graph.stack(entry.address)?;
+        let callers = graph.indirect_callers(entry.address).into_iter();
+        // The root's function may be another handler's, too, and have that one's name.
+        let renamed = |way: Vec<String>| {
+            let rest = way.into_iter().skip(1);
+            [entry.name.clone()].into_iter().chain(rest).collect()
+        };
+        Ok(Self {
+            name: entry.name.clone(),
+            kind: entry.kind,
+            stack_bytes: stack.bytes,
+            deepest: renamed(stack.functions),
+            panic: graph.panic_path(entry.address).map(renamed),
+            indirect: callers
+                .map(|function| IndirectCaller {
+                    function: function.name().into(),
+                    calls: function.indirect_calls,
+                    declared: indirect::is_declared(function),
+                })
+                .collect(),
+        })
+    }
+
+    /// The most stack that it takes with what the core adds, bytes.
+    #[must_use]
+    pub fn stack_with_entry(&self) -> u32 {
+        match self.kind {
+            RootKind::Thread => self.stack_bytes,
+            RootKind::Exception | RootKind::Interrupt => self.stack_bytes + EXCEPTION_ENTRY,
+        }
+    }
+}
+
+/// Each handler interrupts the one before: priorities, which allow less, are set as the image runs.
+fn together(roots: &[Root]) -> u32 {
+    roots.iter().map(Root::stack_with_entry).sum()
+}

@@ -1,0 +1,234 @@
+//! Who calls whom, how deep the stack gets by it, and whether a panic can be reached.
+
+use super::error::ImageBudgetError;
+use super::function::Function;
+use super::indirect::{self, NESTED};
+use super::program::Program;
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, VecDeque};
+
+/// Names of functions that begin a panic, or parts of them.
+const PANICS: [&str; 3] = ["core::panicking::", PANIC_HANDLER, "_defmt_panic"];
+
+/// What every panic ends in.
+const PANIC_HANDLER: &str = "::rust_begin_unwind";
+
+/// How many panics stand on one stack at most: a handler logs the first and stops at one that the log raises.
+const PANICS_ON_A_STACK: usize = 2;
+
+/// A call from one function to another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Edge {
+    to: u32,
+    counted: Counted,
+}
+
+/// What a call counts towards.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Counted {
+    /// Nothing: it stands on a stack once, else it is a recursion.
+    Once,
+    /// [`NESTED`].
+    Nested,
+    /// [`PANICS_ON_A_STACK`].
+    Panic,
+}
+
+/// Who calls whom.
+pub(super) struct CallGraph<'a> {
+    program: &'a Program,
+    edges: BTreeMap<u32, Vec<Edge>>,
+}
+
+/// The deepest stack below a function, itself included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Depth {
+    bytes: u32,
+    next: Option<Node>,
+}
+
+fn edges_of(function: &Function, program: &Program) -> Result<Vec<Edge>, ImageBudgetError> {
+    let direct = function.leads_to.iter().filter_map(|to| program.at(*to));
+    let direct = direct.map(|called| Edge {
+        to: called.range.start,
+        counted: if called.is_called(&[PANIC_HANDLER]) {
+            Counted::Panic
+        } else {
+            Counted::Once
+        },
+    });
+    let reach = indirect::reach(function, program)?;
+    let counted = if reach.nested {
+        Counted::Nested
+    } else {
+        Counted::Once
+    };
+    let indirect = reach.targets.into_iter().map(|to| Edge { to, counted });
+    Ok(direct.chain(indirect).collect())
+}
+
+/// A function on a stack, and how many counted calls may still stand above it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Node {
+    function: u32,
+    nested: usize,
+    panics: usize,
+}
+
+impl Node {
+    /// What a call leads to; nothing if it is counted and there are enough of its kind.
+    fn call(self, edge: &Edge) -> Option<Self> {
+        let (nested, panics) = match edge.counted {
+            Counted::Once => (self.nested, self.panics),
+            Counted::Nested => (self.nested.checked_sub(1)?, self.panics),
+            Counted::Panic => (self.nested, self.panics.checked_sub(1)?),
+        };
+        Some(Self {
+            function: edge.to,
+            nested,
+            panics,
+        })
+    }
+}
+
+/// A stack and the functions whose frames it holds, the root first.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Stack {
+    pub(super) bytes: u32,
+    pub(super) functions: Vec<String>,
+}
+
+impl<'a> CallGraph<'a> {
+    pub(super) fn new(program: &'a Program) -> Result<Self, ImageBudgetError> {
+        let functions = program.functions.iter();
+        let edges: Result<_, ImageBudgetError> = functions
+            .map(|(address, function)| Ok((*address, edges_of(function, program)?)))
+            .collect();
+        Ok(Self {
+            program,
+            edges: edges?,
+        })
+    }
+
+    fn edges(&self, from: u32) -> &[Edge] {
+        self.edges.get(&from).map_or(&[], Vec::as_slice)
+    }
+
+    fn function(&self, address: u32) -> Option<&'a Function> {
+        self.program.functions.get(&address)
+    }
+
+    fn name(&self, address: u32) -> String {
+        self.function(address)
+            .map_or_else(String::new, |function| function.name().into())
+    }
+
+    /// The deepest stack below a root.
+    pub(super) fn stack(&self, root: u32) -> Result<Stack, ImageBudgetError> {
+        let mut depths = BTreeMap::new();
+        let start = Node {
+            function: root,
+            nested: NESTED,
+            panics: PANICS_ON_A_STACK,
+        };
+        let depth = self.depth(start, &mut depths, &mut Vec::new())?;
+        let mut functions = vec![self.name(root)];
+        let mut next = depth.next;
+        while let Some(node) = next {
+            functions.push(self.name(node.function));
+            next = depths.get(&node).and_then(|depth| depth.next);
+        }
+        Ok(Stack {
+            bytes: depth.bytes,
+            functions,
+        })
+    }
+
+    fn depth(
+        &self,
+        node: Node,
+        known: &mut BTreeMap<Node, Depth>,
+        above: &mut Vec<Node>,
+    ) -> Result<Depth, ImageBudgetError> {
+        if let Some(depth) = known.get(&node) {
+            return Ok(*depth);
+        }
+        if let Some(first) = above.iter().position(|other| *other == node) {
+            return Err(self.recursion(above.get(first..).unwrap_or_default()));
+        }
+        above.push(node);
+        let mut deepest: Option<(u32, Node)> = None;
+        let calls = self.edges(node.function).iter();
+        for next in calls.filter_map(|edge| node.call(edge)) {
+            let bytes = self.depth(next, known, above)?.bytes;
+            if deepest.is_none_or(|(most, _)| bytes > most) {
+                deepest = Some((bytes, next));
+            }
+        }
+        above.pop();
+        let own = self
+            .function(node.function)
+            .map_or(0, |function| function.frame);
+        let depth = Depth {
+            bytes: own + deepest.map_or(0, |(bytes, _)| bytes),
+            next: deepest.map(|(_, next)| next),
+        };
+        known.insert(node, depth);
+        Ok(depth)
+    }
+
+    fn recursion(&self, circle: &[Node]) -> ImageBudgetError {
+        ImageBudgetError::Recursion {
+            circle: circle.iter().map(|node| self.name(node.function)).collect(),
+        }
+    }
+
+    /// The functions that a root can reach and that make calls by address.
+    pub(super) fn indirect_callers(&self, root: u32) -> Vec<&'a Function> {
+        let reached = self.came_from(root).into_keys();
+        reached
+            .filter_map(|address| self.function(address))
+            .filter(|function| function.indirect_calls > 0)
+            .collect()
+    }
+
+    /// The shortest way from a root to a panic.
+    pub(super) fn panic_path(&self, root: u32) -> Option<Vec<String>> {
+        let came_from = self.came_from(root);
+        let begins = |address: &&u32| {
+            self.function(**address)
+                .is_some_and(|function| function.is_called(&PANICS))
+        };
+        let ways = came_from
+            .keys()
+            .filter(begins)
+            .map(|end| self.way(*end, &came_from));
+        ways.min_by_key(Vec::len)
+    }
+
+    /// From which function each one is reached first, breadth first.
+    fn came_from(&self, root: u32) -> BTreeMap<u32, Option<u32>> {
+        let mut came_from = BTreeMap::from([(root, None)]);
+        let mut open = VecDeque::from([root]);
+        while let Some(from) = open.pop_front() {
+            for edge in self.edges(from) {
+                if let Entry::Vacant(new) = came_from.entry(edge.to) {
+                    new.insert(Some(from));
+                    open.push_back(edge.to);
+                }
+            }
+        }
+        came_from
+    }
+
+    fn way(&self, end: u32, came_from: &BTreeMap<u32, Option<u32>>) -> Vec<String> {
+        let mut way = vec![self.name(end)];
+        let mut at = end;
+        while let Some(Some(before)) = came_from.get(&at) {
+            way.push(self.name(*before));
+            at = *before;
+        }
+        way.reverse();
+        way
+    }
+}

@@ -1,0 +1,88 @@
+//! What an image takes of the board's memories.
+
+use super::elf_file::ElfFile;
+use super::error::{Address, ImageBudgetError};
+use object::Endianness;
+use object::elf::{PT_LOAD, ProgramHeader32};
+use object::read::elf::ProgramHeader;
+use serde::Serialize;
+use std::ops::Range;
+
+/// What is used of a memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Usage {
+    /// Bytes that are used, gaps between them included.
+    pub used: u32,
+    /// Bytes that there are.
+    pub size: u32,
+}
+
+/// The board's memories, whose sizes the image has from memory.x.
+pub(super) struct Memories {
+    flash: Range<u32>,
+    ram: Range<u32>,
+}
+
+impl Memories {
+    pub(super) fn of(elf: &ElfFile<'_>) -> Result<Self, ImageBudgetError> {
+        Ok(Self {
+            flash: elf.value("_flash_start")?..elf.value("_flash_end")?,
+            ram: elf.value("_ram_start")?..elf.value("_ram_end")?,
+        })
+    }
+
+    /// Flash: code, constants, and what static variables begin with.
+    pub(super) fn flash(&self, elf: &ElfFile<'_>) -> Result<Usage, ImageBudgetError> {
+        let stored = segments(elf).map(|segment| {
+            let start = segment.p_paddr(Endianness::Little);
+            start..start.saturating_add(segment.p_filesz(Endianness::Little))
+        });
+        let stored: Vec<_> = stored.filter(|part| !part.is_empty()).collect();
+        if let Some(outside) = stored.iter().find(|part| !holds(&self.flash, part)) {
+            return Err(outside_at(outside.start));
+        }
+        Ok(usage(&self.flash, &stored))
+    }
+
+    /// RAM: static variables, without the stack.
+    pub(super) fn ram(&self, elf: &ElfFile<'_>) -> Result<Usage, ImageBudgetError> {
+        let live = segments(elf).map(|segment| {
+            let start = segment.p_vaddr(Endianness::Little);
+            start..start.saturating_add(segment.p_memsz(Endianness::Little))
+        });
+        let live: Vec<_> = live.filter(|part| !holds(&self.flash, part)).collect();
+        if let Some(outside) = live.iter().find(|part| !holds(&self.ram, part)) {
+            return Err(outside_at(outside.start));
+        }
+        Ok(usage(&self.ram, &live))
+    }
+}
+
+/// Bytes that the linker script leaves to the stack.
+pub(super) fn stack_size(elf: &ElfFile<'_>) -> Result<u32, ImageBudgetError> {
+    let (lowest, start) = (elf.value("_stack_end")?, elf.value("_stack_start")?);
+    Ok(start.saturating_sub(lowest))
+}
+
+fn segments<'a>(elf: &ElfFile<'a>) -> impl Iterator<Item = &'a ProgramHeader32<Endianness>> {
+    let headers = elf.file.elf_program_headers().iter();
+    headers.filter(|header| {
+        header.p_type(Endianness::Little) == PT_LOAD && header.p_memsz(Endianness::Little) > 0
+    })
+}
+
+fn holds(memory: &Range<u32>, part: &Range<u32>) -> bool {
+    memory.start <= part.start && part.end <= memory.end
+}
+
+fn usage(memory: &Range<u32>, parts: &[Range<u32>]) -> Usage {
+    let end = parts.iter().map(|part| part.end).max();
+    Usage {
+        used: end.map_or(0, |end| end - memory.start),
+        size: memory.end - memory.start,
+    }
+}
+
+const fn outside_at(start: u32) -> ImageBudgetError {
+    ImageBudgetError::Outside { at: Address(start) }
+}

@@ -1,0 +1,172 @@
+//! What the firmware images need of the board, told from their ELF files, within budgets on both sides; and that the
+//! analysis can fail.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use leg_host_tools::image::{self, Board, workspace_root};
+use leg_host_tools::image_budget::{
+    self, ImageBudgetError, ImageNeeds, Root, RootKind, checks, needs, root,
+};
+use leg_host_tools::setup;
+use std::path::PathBuf;
+use std::process::Command;
+
+/// The bytes of a board's image.
+fn image_of(board: Board) -> Vec<u8> {
+    setup::ensure_target(&mut |_| {}).unwrap();
+    std::fs::read(image::build_for(board).unwrap()).unwrap()
+}
+
+/// The bytes of the image whose panics cannot be linked.
+fn panic_free_image() -> Vec<u8> {
+    setup::ensure_target(&mut |_| {}).unwrap();
+    let folder: PathBuf = workspace_root().join("target/proof");
+    let built = Command::new(env!("CARGO"))
+        .arg("no-panic-proof")
+        .arg("--target-dir")
+        .arg(&folder)
+        .current_dir(workspace_root())
+        .env_remove("RUSTFLAGS")
+        .env_remove("CARGO_ENCODED_RUSTFLAGS")
+        .status();
+    assert!(built.unwrap().success());
+    std::fs::read(folder.join("thumbv7em-none-eabihf/firmware/no-panic-proof")).unwrap()
+}
+
+fn names(needs: &ImageNeeds) -> Vec<&str> {
+    needs.roots.iter().map(|root| root.name.as_str()).collect()
+}
+
+fn named<'a>(needs: &'a ImageNeeds, name: &str) -> &'a Root {
+    let mut roots = needs.roots.iter();
+    roots.find(|root| root.name == name).unwrap()
+}
+
+/// Every check of the budget holds, and every call by address is one whose targets are declared.
+fn assert_held(board: Board, needs: &ImageNeeds) {
+    let checks = checks(needs, &image_budget::of(board)).unwrap();
+    assert!(checks.iter().all(|check| check.held), "{checks:#?}");
+    for root in &needs.roots {
+        assert!(
+            root.indirect.iter().all(|caller| caller.declared),
+            "{root:#?}"
+        );
+    }
+}
+
+#[test]
+fn the_board_image_keeps_its_budget() {
+    let needs = needs(&image_of(Board::Stm32g474)).unwrap();
+    assert_held(Board::Stm32g474, &needs);
+    // memory.x
+    assert_eq!(needs.flash.size, 512 * 1024);
+    assert_eq!(needs.ram.size, 128 * 1024);
+    assert_eq!(needs.stack.size + needs.ram.used, needs.ram.size);
+    assert_eq!(
+        names(&needs),
+        [
+            "Reset",
+            "DefaultHandler",
+            "HardFault",
+            "TIM1_BRK_TIM15",
+            "LPUART1"
+        ]
+    );
+    // The tasks run in the thread's executor, and one of them evaluates the model.
+    let thread = named(&needs, "Reset");
+    assert_eq!(thread.kind, RootKind::Thread);
+    assert!(
+        (20_000..35_000).contains(&thread.stack_bytes),
+        "{thread:#?}"
+    );
+    assert!(
+        thread
+            .deepest
+            .iter()
+            .any(|name| name.contains("TaskStorage"))
+    );
+}
+
+#[test]
+fn the_image_for_qemu_keeps_its_budget() {
+    let needs = needs(&image_of(Board::Qemu)).unwrap();
+    assert_held(Board::Qemu, &needs);
+    assert_eq!(
+        names(&needs),
+        [
+            "Reset",
+            "DefaultHandler",
+            "HardFault",
+            "TIMER0",
+            "TIMER1",
+            "LINK"
+        ]
+    );
+    // Here the tasks run in an interrupt's executor.
+    let link = named(&needs, "LINK");
+    assert_eq!(link.kind, RootKind::Interrupt);
+    assert!((17_000..29_000).contains(&link.stack_bytes), "{link:#?}");
+}
+
+#[test]
+fn a_panic_is_found_where_one_can_be_reached_and_nowhere_else() {
+    let qemu = image_of(Board::Qemu);
+    // Borrowing the clock's state twice would panic.
+    let way = root(&qemu, "TIMER0").unwrap().panic.unwrap();
+    assert_eq!(way.first().unwrap(), "TIMER0");
+    assert!(way.last().unwrap().contains("core::panicking::"), "{way:?}");
+    assert!(root(&qemu, "Reset").unwrap().panic.is_some());
+    // The linker has shown that this one has none, though it holds all that the server and the model do.
+    let proof = root(&panic_free_image(), "_start").unwrap();
+    assert_eq!(proof.panic, None);
+    assert!((20_000..35_000).contains(&proof.stack_bytes), "{proof:#?}");
+    let board = image_of(Board::Stm32g474);
+    assert_eq!(root(&board, "HardFault").unwrap().panic, None);
+}
+
+#[test]
+fn an_interrupt_without_a_handler_of_its_own_cannot_pass_for_one_without_panic() {
+    let board = image_of(Board::Stm32g474);
+    for name in ["CORDIC", "NO_SUCH_INTERRUPT"] {
+        assert!(matches!(
+            root(&board, name),
+            Err(ImageBudgetError::NoRoot { .. })
+        ));
+    }
+}
+
+#[test]
+fn a_file_that_is_no_image_is_refused() {
+    assert!(matches!(
+        needs(b"not an ELF file"),
+        Err(ImageBudgetError::Elf(_))
+    ));
+    let host = std::fs::read(std::env::current_exe().unwrap()).unwrap();
+    assert!(matches!(needs(&host), Err(ImageBudgetError::Elf(_))));
+}
+
+#[test]
+fn the_command_tells_people_and_machines_what_the_images_need() {
+    let leg = |args: &[&str]| {
+        let mut leg = Command::new(env!("CARGO_BIN_EXE_leg-under-test"));
+        leg.args(["cost", "--image"]).args(args).output().unwrap()
+    };
+    let output = leg(&[]);
+    assert!(output.status.success());
+    let told = String::from_utf8(output.stdout).unwrap();
+    for part in [
+        "leg-stm32g474",
+        "leg-qemu",
+        "flash",
+        "TIM1_BRK_TIM15",
+        "LINK",
+        "no panic from HardFault",
+    ] {
+        assert!(told.contains(part), "{part} in {told}");
+    }
+    let output = leg(&["--json"]);
+    let images: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(images[0]["image"], "leg-stm32g474");
+    assert_eq!(images[0]["needs"]["flash"]["size"], 512 * 1024);
+    assert!(images[1]["needs"]["roots"][0]["stack_bytes"].is_u64());
+}
