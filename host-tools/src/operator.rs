@@ -59,6 +59,8 @@ pub struct Operator {
     identity: Identity,
     interrupt: Interrupt,
     watcher: Option<Watcher>,
+    /// Whether this host has asked for telemetry: that of others on the same line is theirs.
+    streams: bool,
     /// Telemetry that came by itself and was not looked at yet.
     told: VecDeque<Told>,
     /// When the leg last heard a command.
@@ -94,6 +96,7 @@ impl Operator {
             identity,
             interrupt,
             watcher: None,
+            streams: false,
             told: VecDeque::new(),
             alive: false,
             drives: false,
@@ -116,6 +119,12 @@ impl Operator {
     #[must_use]
     pub fn now(&self) -> Duration {
         self.line.now()
+    }
+
+    /// Whether that is an emulated leg's own.
+    #[must_use]
+    pub fn clock_is_emulated(&self) -> bool {
+        self.line.clock_is_emulated()
     }
 
     /// Frames from the leg that could not be read.

@@ -35,4 +35,9 @@ pub trait Transport {
         static START: LazyLock<Instant> = LazyLock::new(Instant::now);
         START.elapsed()
     }
+
+    /// Whether that clock is an emulated leg's own, which goes on only while bytes are waited for.
+    fn clock_is_emulated(&self) -> bool {
+        false
+    }
 }

@@ -1,6 +1,6 @@
 //! `leg disarm`.
 
-use super::leg_report;
+use super::leg_told;
 use super::line::{Fresh, LineArgs, RigArgs, shown};
 use crate::failure::Failure;
 
@@ -24,5 +24,5 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
     let rig = args.rig.load()?;
     let mut line = args.line.open(&rig, Fresh::Homed, verbose)?;
     shown(&mut line.operator, |operator| operator.disarm())?;
-    leg_report::tell(&mut line.operator, args.json, "")
+    leg_told::tell(&mut line.operator, args.json)
 }

@@ -1,11 +1,13 @@
 //! `leg hold`.
 
-use super::leg_report;
+use super::leg_told;
 use super::line::{Fresh, LineArgs, RigArgs, shown};
 use crate::failure::Failure;
 use crate::operator::Goal;
 
-/// Holds the leg where it is, its tendons taut. Arms it if it is homed and disarmed.
+/// Holds the leg where it is, its tendons taut.
+///
+/// It is armed first if it is homed and disarmed.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]
@@ -27,5 +29,5 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
     shown(&mut line.operator, |operator| {
         operator.reach(&Goal::default())
     })?;
-    leg_report::tell(&mut line.operator, args.json, "")
+    leg_told::tell(&mut line.operator, args.json)
 }

@@ -1,13 +1,16 @@
 //! `leg home`.
 
-use super::leg_report::{self, LegReport, to_line};
+use super::leg_told::to_line;
 use super::line::{Fresh, LineArgs, RigArgs, shown};
 use super::print;
 use crate::failure::Failure;
+use crate::leg_report::{self, LegReport};
 use leg_firmware::telemetry::Telemetry;
 use serde::Serialize;
 
-/// Lets the leg find its zero and leaves it in hold, straight down. It has to hang free, without a payload.
+/// Lets the leg find its zero and leaves it in hold, straight down.
+///
+/// It has to hang free, without a payload. One that is held is disarmed first.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]

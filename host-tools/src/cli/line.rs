@@ -8,9 +8,12 @@ use crate::operator::{Host, Interrupt, Operator};
 use crate::rig_file::RigFile;
 use crate::simulation::{Controller, InThisProcess};
 use crate::transport::Transport;
+#[cfg(target_os = "linux")]
+use crate::transport::can::{CanTransport, SocketCan};
 use crate::transport::emulated::Emulated;
 use crate::transport::serial::{self, Serial, SerialError};
 use crate::words;
+use leg_firmware::can::LegAddress;
 use leg_firmware::host_link::Reset;
 use leg_firmware::telemetry::Telemetry;
 use leg_firmware::version::VERSION;
@@ -29,6 +32,17 @@ pub(super) struct LineArgs {
     /// The board's serial port; that of the ST-LINK if left out.
     #[arg(long, value_name = "PATH", conflicts_with = "on")]
     port: Option<String>,
+    /// The CAN FD interface to which the board is connected, as `can0`: Linux only.
+    #[arg(long, value_name = "INTERFACE", conflicts_with_all = ["on", "port"])]
+    can: Option<String>,
+    /// Which of the legs on the CAN bus, 1 to 6.
+    #[arg(long, value_name = "N", requires = "can", default_value = "1", value_parser = leg_address)]
+    leg: LegAddress,
+}
+
+fn leg_address(text: &str) -> Result<LegAddress, String> {
+    let number = text.parse().ok().and_then(LegAddress::new);
+    number.ok_or_else(|| "it is none of 1 to 6".into())
 }
 
 /// Which leg is emulated.
@@ -73,7 +87,11 @@ impl LineArgs {
     pub(super) fn open(&self, rig: &RigFile, fresh: Fresh, verbose: bool) -> Result<Line, Failure> {
         let interrupt = Interrupt::on_ctrl_c();
         let Some(on) = self.on else {
-            let operator = Operator::open(self.serial()?, Host::random(), interrupt)?;
+            let transport = match &self.can {
+                None => self.serial()?,
+                Some(interface) => can(interface, self.leg)?,
+            };
+            let operator = Operator::open(transport, Host::random(), interrupt)?;
             tell_board(&operator);
             return Ok(Line {
                 operator,
@@ -100,6 +118,22 @@ impl LineArgs {
             Err(error) => Err(no_line(&error)),
         }
     }
+}
+
+#[cfg(target_os = "linux")]
+fn can(interface: &str, leg: LegAddress) -> Result<Box<dyn Transport>, Failure> {
+    match SocketCan::open(interface, leg) {
+        Ok(port) => Ok(Box::new(CanTransport::new(port, leg))),
+        Err(error) => Err(Failure::from_error(&error)),
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn can(_: &str, _: LegAddress) -> Result<Box<dyn Transport>, Failure> {
+    Err(Failure::refused(
+        "CAN is served on Linux only",
+        "connect the board's serial port",
+    ))
 }
 
 fn no_line(error: &SerialError) -> Failure {
@@ -159,7 +193,7 @@ pub(super) fn shown<T>(
 
 fn progress_words(telemetry: &Telemetry<f32>) -> String {
     let [a, b, c] = telemetry.tensions_n;
-    let pose = super::leg_report::pose_words(telemetry.pose);
+    let pose = crate::leg_report::pose_words(telemetry.pose);
     let state = words::state(telemetry.state);
     format!("{state}, {pose}, tensions {a:.0} {b:.0} {c:.0} N")
 }

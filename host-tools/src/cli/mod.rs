@@ -1,6 +1,7 @@
 //! The command line `leg`, one file a command.
 
 mod board;
+mod calibrate;
 mod check;
 mod clear;
 mod cost;
@@ -9,17 +10,21 @@ mod curve;
 mod curve_charts;
 mod curve_report;
 mod disarm;
+mod emulate;
 mod eval;
 mod evaluator;
 mod export;
 mod faults;
+mod flash;
 mod go;
 mod hold;
 mod home;
-mod leg_report;
+mod leg_told;
 mod line;
+mod log;
 mod map;
 mod map_report;
+mod monitor;
 mod numbers;
 mod paper;
 mod progress;
@@ -57,17 +62,22 @@ Exit codes:
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Calibrate(calibrate::Args),
     Check(check::Args),
     Clear(clear::Args),
     Cost(cost::Args),
     Curve(curve::Args),
     Disarm(disarm::Args),
+    Emulate(emulate::Args),
     Eval(eval::Args),
     Export(export::Args),
     Faults(faults::Args),
+    Flash(flash::Args),
     Hold(hold::Args),
     Home(home::Args),
+    Log(log::Args),
     Map(map::Args),
+    Monitor(monitor::Args),
     Move(go::Args),
     Paper(paper::Args),
     Replay(replay::Args),
@@ -87,17 +97,22 @@ enum Command {
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let ended = match &cli.command {
+        Command::Calibrate(args) => calibrate::run(args, cli.verbose),
         Command::Check(args) => check::run(args, cli.verbose),
         Command::Clear(args) => clear::run(args, cli.verbose),
         Command::Cost(args) => cost::run(args, cli.verbose),
         Command::Curve(args) => curve::run(args),
         Command::Disarm(args) => disarm::run(args, cli.verbose),
+        Command::Emulate(args) => emulate::run(args, cli.verbose),
         Command::Eval(args) => eval::run(args, cli.verbose),
         Command::Export(args) => export::run(args),
         Command::Faults(args) => faults::run(args),
+        Command::Flash(args) => flash::run(args),
         Command::Hold(args) => hold::run(args, cli.verbose),
         Command::Home(args) => home::run(args, cli.verbose),
+        Command::Log(args) => log::run(args, cli.verbose),
         Command::Map(args) => map::run(args),
+        Command::Monitor(args) => monitor::run(args, cli.verbose),
         Command::Move(args) => go::run(args, cli.verbose),
         Command::Paper(args) => paper::run(args),
         Command::Replay(args) => replay::run(args),

@@ -1,13 +1,15 @@
 //! `leg settings`.
 
-use super::leg_report::to_line;
+use super::leg_told::to_line;
 use super::line::{Fresh, LineArgs};
 use super::print;
 use crate::atomic_file;
 use crate::control_settings;
 use crate::failure::Failure;
+use crate::fields::{decimal, plain};
 use crate::operator::{Difference, Operator, differences};
 use crate::rig_file::RigFile;
+use crate::settings_text;
 use clap::Subcommand;
 use leg_firmware::settings::Settings;
 use serde_json::Value;
@@ -22,12 +24,12 @@ pub struct Args {
 
 #[derive(Debug, Subcommand)]
 enum Action {
-    /// Prints the settings in use as TOML, in SI units.
+    /// Prints the settings in use as a rig file that gives the same bits again.
     Get {
         /// The file to write; standard output if left out.
         #[arg(long, value_name = "FILE")]
         out: Option<PathBuf>,
-        /// JSON instead of TOML.
+        /// JSON in SI units instead.
         #[arg(long)]
         json: bool,
         #[command(flatten)]
@@ -100,7 +102,7 @@ fn get(operator: &mut Operator, out: Option<&Path>, json: bool) -> Result<(), Fa
     let text = if json {
         to_line(&settings)?
     } else {
-        toml::to_string(&settings).map_err(|error| Failure::from_error(&error))?
+        settings_text::rig_file(&settings)
     };
     match out {
         None => print(&text),
@@ -158,9 +160,10 @@ fn value_words(value: &Option<Value>) -> String {
         None => "-".into(),
         Some(Value::String(text)) => text.clone(),
         // The shortest decimal of an f32, which a JSON number does not tell.
-        Some(Value::Number(number)) => number
-            .as_f64()
-            .map_or_else(|| number.to_string(), |number| format!("{}", number as f32)),
+        Some(Value::Number(number)) => number.as_f64().map_or_else(
+            || number.to_string(),
+            |number| plain(decimal(number as f32)),
+        ),
         Some(value) => value.to_string(),
     }
 }

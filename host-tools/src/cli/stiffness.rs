@@ -1,6 +1,6 @@
 //! `leg stiffness`.
 
-use super::leg_report;
+use super::leg_told;
 use super::line::{Fresh, LineArgs, RigArgs, shown};
 use super::numbers::{azimuth_deg, positive, towards};
 use crate::failure::Failure;
@@ -10,7 +10,7 @@ use crate::operator::{Demand, Goal};
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Bending stiffness, N·m/rad: the smallest, unless --towards says otherwise.
-    #[arg(value_name = "NM_PER_RAD", value_parser = positive)]
+    #[arg(value_name = "NM_PER_RAD", value_parser = positive, allow_negative_numbers = true)]
     stiffness: f64,
     /// Azimuth of the push that shall meet it, degrees.
     #[arg(long, value_name = "DEG", value_parser = azimuth_deg, allow_negative_numbers = true)]
@@ -39,5 +39,5 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
         )),
     };
     shown(&mut line.operator, |operator| operator.reach(&goal))?;
-    leg_report::tell(&mut line.operator, args.json, "")
+    leg_told::tell(&mut line.operator, args.json)
 }

@@ -1,10 +1,12 @@
 //! `leg stop`.
 
-use super::leg_report;
+use super::leg_told;
 use super::line::{Fresh, LineArgs, RigArgs, shown};
 use crate::failure::Failure;
 
-/// Stops the leg, whatever else is going on, and leaves it in hold: repeated until the leg acknowledges.
+/// Stops the leg, whatever else is going on, and leaves it in hold.
+///
+/// It is repeated until the leg acknowledges, and works beside another command that drives the leg.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]
@@ -24,5 +26,5 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
     let rig = args.rig.load()?;
     let mut line = args.line.open(&rig, Fresh::Homed, verbose)?;
     shown(&mut line.operator, |operator| operator.stop())?;
-    leg_report::tell(&mut line.operator, args.json, "")
+    leg_told::tell(&mut line.operator, args.json)
 }

@@ -151,7 +151,9 @@ impl Operator {
             self.keep_alive()?;
             let wake = until.min(self.now() + ALIVE_TIME);
             match self.line.receive(wake)? {
-                Some((0, HostReply::Telemetry(told))) => self.told.push_back(told),
+                Some((0, HostReply::Telemetry(told))) => {
+                    self.told.extend(self.streams.then_some(told));
+                }
                 Some(message) => return Ok(Some(message)),
                 None if self.now() >= until => return Ok(None),
                 None => {}

@@ -186,6 +186,7 @@ impl Operator {
                 return Err(if faults.any() {
                     OperatorError::Failed {
                         asked,
+                        failed_tendon: telemetry.failed_tendon,
                         state,
                         faults,
                     }

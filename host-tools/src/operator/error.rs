@@ -55,10 +55,15 @@ pub enum OperatorError {
         faults: FaultSet,
     },
     /// Faults ended what the leg was doing.
-    #[error("the leg did not {asked}, it is {} ({})", words::state(*.state), words::causes(*.faults))]
+    #[error(
+        "the leg did not {asked}{}, it is {} ({})",
+        at_tendon(*.failed_tendon), words::state(*.state), words::causes(*.faults)
+    )]
     Failed {
         /// What it was to do.
         asked: &'static str,
+        /// Tendon at which homing failed, from 1; 0 for none.
+        failed_tendon: u8,
         /// What it does now.
         state: State,
         /// The faults.
@@ -203,6 +208,13 @@ impl From<OperatorError> for Failure {
         } else {
             Self::missed(sentence, cure)
         }
+    }
+}
+
+fn at_tendon(tendon: u8) -> String {
+    match tendon {
+        0 => String::new(),
+        tendon => format!(" with tendon {tendon}"),
     }
 }
 

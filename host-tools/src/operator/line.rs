@@ -38,6 +38,10 @@ impl Line {
         self.transport.now()
     }
 
+    pub fn clock_is_emulated(&self) -> bool {
+        self.transport.clock_is_emulated()
+    }
+
     /// Sends a request and returns its number. It is never 0: that is of what the leg says by itself.
     pub fn send(&mut self, request: &HostRequest) -> Result<u16, OperatorError> {
         self.sequence = self.sequence.checked_add(1).unwrap_or(1);

@@ -17,7 +17,10 @@ impl Operator {
     pub fn stream(&mut self, every_ticks: u16) -> Result<(), OperatorError> {
         let asked = "send telemetry";
         match self.ask(asked, &HostRequest::Stream(every_ticks), Repeat::Always)? {
-            HostReply::Done => Ok(()),
+            HostReply::Done => {
+                self.streams = every_ticks > 0;
+                Ok(())
+            }
             _ => Err(OperatorError::WrongReply { asked }),
         }
     }

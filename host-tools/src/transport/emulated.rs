@@ -112,4 +112,8 @@ impl Transport for Emulated {
     fn now(&self) -> Duration {
         self.shared.borrow().leg.time()
     }
+
+    fn clock_is_emulated(&self) -> bool {
+        true
+    }
 }

@@ -1,9 +1,7 @@
-//! What a command tells of the leg when it ends.
+//! The leg in a user's units.
 
-use super::print;
-use crate::failure::Failure;
-use crate::operator::Operator;
 use crate::words;
+use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_firmware::telemetry::Telemetry;
 use serde::Serialize;
@@ -13,33 +11,49 @@ const UPRIGHT_DEG: f64 = 0.05;
 
 /// The leg in a user's units.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct LegReport {
-    state: State,
-    faults: Vec<FaultReport>,
-    homed: bool,
-    azimuth_deg: f64,
-    tilt_deg: f64,
-    tensions_n: [f32; 3],
-    level_n: f32,
-    stiffness_nm_per_rad: f32,
-    load_nm: [f32; 2],
-    payload_kg: f32,
+pub struct LegReport {
+    /// What it may do.
+    pub state: State,
+    /// What is wrong with it.
+    pub faults: Vec<FaultReport>,
+    /// Whether its zero is known.
+    pub homed: bool,
+    /// Where it is estimated to lean, 0 to 360°.
+    pub azimuth_deg: f64,
+    /// How far.
+    pub tilt_deg: f64,
+    /// Measured tensions, N.
+    pub tensions_n: [f32; 3],
+    /// Level of pretension, N; 0 while none is followed.
+    pub level_n: f32,
+    /// Bending stiffness at that level, N·m/rad.
+    pub stiffness_nm_per_rad: f32,
+    /// Load beyond the leg's own weight, N·m.
+    pub load_nm: [f32; 2],
+    /// The payload that this would be, kg.
+    pub payload_kg: f32,
     /// Time of the leg since its board started, s.
-    time_s: f64,
+    pub time_s: f64,
 }
 
 /// A fault with what to do about it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct FaultReport {
-    code: u8,
-    fault: Fault,
-    name: &'static str,
-    cause: &'static str,
-    cure: &'static str,
+pub struct FaultReport {
+    /// Its code.
+    pub code: u8,
+    /// The fault.
+    pub fault: Fault,
+    /// Its name in words.
+    pub name: &'static str,
+    /// What raises it.
+    pub cause: &'static str,
+    /// What to do about it.
+    pub cure: &'static str,
 }
 
 /// Every fault of a set.
-pub(super) fn fault_reports(faults: FaultSet) -> Vec<FaultReport> {
+#[must_use]
+pub fn fault_reports(faults: FaultSet) -> Vec<FaultReport> {
     let report = |fault: Fault| {
         let entry = fault.entry();
         FaultReport {
@@ -54,7 +68,9 @@ pub(super) fn fault_reports(faults: FaultSet) -> Vec<FaultReport> {
 }
 
 impl LegReport {
-    pub(super) fn of(telemetry: &Telemetry<f32>) -> Self {
+    /// What the leg tells.
+    #[must_use]
+    pub fn of(telemetry: &Telemetry<f32>) -> Self {
         let [azimuth_deg, tilt_deg] = angles_deg(telemetry.pose);
         Self {
             state: telemetry.state,
@@ -67,20 +83,23 @@ impl LegReport {
             stiffness_nm_per_rad: telemetry.stiffness_nm_per_rad,
             load_nm: telemetry.load_nm,
             payload_kg: telemetry.payload_kg,
-            time_s: f64::from(telemetry.tick) * crate::simulation::tick_s(),
+            time_s: f64::from(telemetry.tick) / f64::from(TICK_HZ),
         }
     }
 }
 
-/// Azimuth (0 to 360) and tilt of a direction, degrees.
-pub(super) fn angles_deg([x, y]: [f32; 2]) -> [f64; 2] {
+/// Azimuth (0 to 360) and tilt of a direction, degrees, to a ten-thousandth.
+#[must_use]
+pub fn angles_deg([x, y]: [f32; 2]) -> [f64; 2] {
     let (x, y) = (f64::from(x), f64::from(y));
     let tilt_deg = x.hypot(y).min(1.0).asin().to_degrees();
-    [y.atan2(x).to_degrees().rem_euclid(360.0), tilt_deg]
+    // Beyond that, machines differ.
+    [y.atan2(x).to_degrees().rem_euclid(360.0), tilt_deg].map(|deg| (deg * 1e4).round() / 1e4)
 }
 
 /// A direction in words.
-pub(super) fn pose_words(pose: [f32; 2]) -> String {
+#[must_use]
+pub fn pose_words(pose: [f32; 2]) -> String {
     let [azimuth_deg, tilt_deg] = angles_deg(pose);
     if tilt_deg < UPRIGHT_DEG {
         "straight down".into()
@@ -90,7 +109,8 @@ pub(super) fn pose_words(pose: [f32; 2]) -> String {
 }
 
 /// The rows of a table for people.
-pub(super) fn rows(telemetry: &Telemetry<f32>) -> String {
+#[must_use]
+pub fn rows(telemetry: &Telemetry<f32>) -> String {
     let [a, b, c] = telemetry.tensions_n;
     let pose = if telemetry.homed {
         pose_words(telemetry.pose)
@@ -108,22 +128,4 @@ pub(super) fn rows(telemetry: &Telemetry<f32>) -> String {
         );
     }
     rows + &format!("faults     {}\n", words::faults(telemetry.faults))
-}
-
-/// Asks the leg what it is doing and prints it, with `extra` rows at the end.
-pub(super) fn tell(operator: &mut Operator, json: bool, extra: &str) -> Result<(), Failure> {
-    let telemetry = operator.telemetry()?.telemetry;
-    print(&if json {
-        to_line(&LegReport::of(&telemetry))?
-    } else {
-        rows(&telemetry) + extra
-    })
-}
-
-/// One line of JSON.
-pub(super) fn to_line<T: Serialize>(value: &T) -> Result<String, Failure> {
-    match serde_json::to_string(value) {
-        Ok(json) => Ok(json + "\n"),
-        Err(error) => Err(Failure::from_error(&error)),
-    }
 }
