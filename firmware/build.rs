@@ -10,8 +10,9 @@ const TARGET: &str = "thumbv7em-none-eabihf";
 struct Board {
     feature: &'static str,
     binary: &'static str,
-    /// Folder of a `device.x`; the STM32's comes with its peripheral access crate.
-    device: Option<&'static str>,
+    /// Its own linker script, by folder and name. (The STM32's `device.x` comes with its peripheral access crate.)
+    script: [&'static str; 2],
+    /// The linker's arguments, before the common ones: what a script places first stays where it is.
     arguments: &'static [&'static str],
 }
 
@@ -19,14 +20,14 @@ const BOARDS: [Board; 2] = [
     Board {
         feature: "qemu",
         binary: "leg-qemu",
-        device: Some("qemu"),
+        script: ["qemu", "device.x"],
         arguments: &["--defsym=_flash_origin=0"],
     },
     Board {
         feature: "stm32g474",
         binary: "leg-stm32g474",
-        device: None,
-        arguments: &[],
+        script: ["stm32g474", "hot.x"],
+        arguments: &["-Thot.x"],
     },
 ];
 
@@ -55,12 +56,11 @@ fn is_enabled(board: &Board) -> bool {
 fn link(board: &Board) -> Result<(), Box<dyn Error>> {
     let package = env::var("CARGO_MANIFEST_DIR")?;
     println!("cargo::rerun-if-changed={package}/../memory.x");
-    if let Some(device) = board.device {
-        println!("cargo::rerun-if-changed={package}/{device}/device.x");
-        println!("cargo::rustc-link-search={package}/{device}");
-    }
+    let [folder, script] = board.script;
+    println!("cargo::rerun-if-changed={package}/{folder}/{script}");
+    println!("cargo::rustc-link-search={package}/{folder}");
     let common = ["--nmagic", "-Tlink.x", "-Tdefmt.x"];
-    for argument in common.iter().chain(board.arguments) {
+    for argument in board.arguments.iter().chain(&common) {
         println!("cargo::rustc-link-arg-bin={}={argument}", board.binary);
     }
     Ok(())

@@ -3,7 +3,6 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use leg_firmware::command::Command;
-use leg_firmware::frame::{MAX_FRAME, encode};
 use leg_firmware::leg::Leg;
 use leg_firmware::sensors::Sensors;
 use leg_firmware::supervisor::State;
@@ -27,8 +26,7 @@ fn active_leg() -> (Leg<f32>, Sensors) {
     for sensors in &sensors {
         leg.tick(sensors);
     }
-    let mut out = [0; MAX_FRAME];
-    leg.receive(encode(1, &Command::Arm, &mut out).unwrap());
+    assert!(leg.command(1, Command::Arm));
     let last = *sensors.last().unwrap();
     leg.tick(&last);
     assert_eq!(leg.telemetry().state, State::Active);

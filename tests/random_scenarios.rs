@@ -14,8 +14,8 @@ use std::path::Path;
 /// How many are tried. Each is made from its number alone: `run(number)` replays it.
 const SCENARIOS: u64 = 1000;
 
-/// While the motors are driven no tension goes beyond this, N: where too much tension is a fault, a tenth above the
-/// ceiling. So much a swing of the leg adds before a motor gives way.
+/// While the motors follow commands no tension goes beyond this, N: where too much tension is a fault, a tenth above the
+/// ceiling. So much a swing of the leg adds before a motor gives way. Where they are held, what acts from outside decides.
 const CEILING_N: f64 = 150.0 * 1.1;
 
 /// What has to hold in every tick.

@@ -79,13 +79,10 @@ fn every_fault_has_a_scenario_that_raises_it() {
 fn the_emulated_core_asks_for_the_same_duties_to_the_last_bit() {
     let mut session = session();
     let link: &mut dyn Link = &mut session;
-    for name in [
-        "payload",
-        "homing",
-        "fault_tension_jump",
-        "fault_encoder_reversed",
-        "fault_bad_frame",
-    ] {
+    // But for those that take minutes and do what others do, too.
+    let long = ["workspace", "tour"];
+    let names = READY_SCENARIOS.iter().map(|ready| ready.name);
+    for name in names.filter(|name| !long.contains(name)) {
         let scenario = scenario(name);
         let (here, expected) = run(&scenario, &mut InThisProcess::default());
         let (emulated, found) = run(&scenario, &mut OnLink::new(link, false));
@@ -103,7 +100,8 @@ fn the_shadow_in_f64_stays_near() {
         let (summary, _) = run(&scenario(name), &mut InThisProcess::default());
         let divergence = summary.divergence;
         assert_eq!(divergence.other_state, 0, "{name}");
-        assert!(divergence.reference_m < 5e-7, "{name}: {divergence:?}");
+        // Tendons that come taut may do so a cycle apart: 5 mm/s for half a millisecond.
+        assert!(divergence.reference_m < 3e-6, "{name}: {divergence:?}");
         assert!(divergence.pose < 2e-5, "{name}: {divergence:?}");
         assert!(divergence.reference_m > 0.0, "{name}: nothing was compared");
     }

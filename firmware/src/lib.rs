@@ -5,6 +5,7 @@
     reason = "a comparison that is negated refuses NaN, too"
 )]
 
+pub mod board;
 pub mod can;
 pub mod command;
 pub mod control;

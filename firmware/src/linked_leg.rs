@@ -93,9 +93,6 @@ macro_rules! commanded {
 commanded!(f32, |value| value);
 commanded!(f64, |value| value as f32);
 
-/// Keeps settings over a reset; false if that failed.
-pub type Save<'a> = &'a mut dyn FnMut(&Settings) -> bool;
-
 /// A leg and its line.
 #[derive(Debug)]
 pub struct LinkedLeg<T> {
@@ -128,8 +125,8 @@ where
         &mut self.leg
     }
 
-    /// What the host gets after a tick, as far as it fits.
-    pub fn sent(&mut self, save: Save<'_>) -> Vec<u8, LINK_BYTES_MAX> {
+    /// What the host gets after a tick, as far as it fits. `save` keeps settings over a reset; false if that failed.
+    pub fn sent(&mut self, mut save: impl FnMut(&Settings) -> bool) -> Vec<u8, LINK_BYTES_MAX> {
         self.link.report(&mut self.leg);
         if let Some(settings) = self.link.to_save() {
             let kept = save(settings);
@@ -148,14 +145,18 @@ where
 
 impl LinkedLeg<f32> {
     /// One tick and what belongs to it.
-    pub fn tick(&mut self, request: &TickRequest, save: Save<'_>) -> TickReply {
+    pub fn tick(
+        &mut self,
+        request: &TickRequest,
+        save: impl FnMut(&Settings) -> bool,
+    ) -> TickReply {
         self.receive(&request.link);
         let drive = self.leg.tick(&request.sensors);
         self.reply(drive, save)
     }
 
     /// What follows the tick that gave `drive`.
-    pub fn reply(&mut self, drive: Drive<f32>, save: Save<'_>) -> TickReply {
+    pub fn reply(&mut self, drive: Drive<f32>, save: impl FnMut(&Settings) -> bool) -> TickReply {
         TickReply {
             drive,
             telemetry: self.leg.telemetry(),

@@ -96,7 +96,7 @@ impl<B: Board> Server<B> {
     fn tick(&mut self, request: &TickRequest) -> Result<Reply, Refusal> {
         let leg = self.leg.as_mut().ok_or(Refusal::NoLeg)?;
         let board = &mut self.board;
-        let save = &mut |settings: &Settings| board.save(settings);
+        let save = |settings: &Settings| board.save(settings);
         Ok(Reply::Ticked(leg.tick(request, save)))
     }
 
@@ -111,7 +111,7 @@ impl<B: Board> Server<B> {
         match (instructions, ticking.drive) {
             (Some(_), Some(drive)) => {
                 let board = &mut self.board;
-                let save = &mut |settings: &Settings| board.save(settings);
+                let save = |settings: &Settings| board.save(settings);
                 let reply = leg.reply(drive, save);
                 Ok(Reply::Ticked(TickReply {
                     instructions,

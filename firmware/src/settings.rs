@@ -1,5 +1,6 @@
 //! What the control law is set to: the mechanism, the calibration of its sensors, gains and limits.
 
+mod default;
 mod section;
 mod sections;
 

@@ -76,7 +76,10 @@ impl<T: Scalar> Leg<T> {
             Command::Stiffness {
                 demand_nm_per_rad,
                 towards,
-            } if demand_nm_per_rad > 0.0 && demand_nm_per_rad.is_finite() => {
+            } if demand_nm_per_rad > 0.0
+                && demand_nm_per_rad.is_finite()
+                && towards.is_none_or(|[x, y]| x.is_finite() && y.is_finite()) =>
+            {
                 let axis = match towards {
                     None => BendingAxis::Softest,
                     Some(towards) => BendingAxis::Towards(towards.map(T::from)),

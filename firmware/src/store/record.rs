@@ -13,7 +13,7 @@ pub const VERSION: u8 = 1;
 pub const SETTINGS_SCHEMA: [u8; 8] = Key::for_path::<Settings>("settings").to_bytes();
 
 /// Most that settings take in postcard's format, bytes: three tendons with full curves.
-pub const SETTINGS_MAX: usize = 971;
+pub const SETTINGS_MAX: usize = 983;
 
 const HEAD: usize = size_of::<u8>() + SETTINGS_SCHEMA.len();
 const CHECKSUM: usize = size_of::<u32>();

@@ -33,7 +33,6 @@ impl FaultSet {
     pub const DOUBTED_CELLS: Self = Self::of(Fault::CellStale)
         .with(Self::of(Fault::CellStuck))
         .with(Self::of(Fault::CellSaturated))
-        .with(Self::of(Fault::TensionJump))
         .with(Self::of(Fault::CurrentDisagrees))
         .with(Self::of(Fault::Residual));
 

@@ -60,14 +60,14 @@ impl Bounds {
 pub const fn of(board: Board) -> ImageBudget {
     match board {
         Board::Stm32g474 => ImageBudget {
-            flash: Bounds::new(136_000, 182_000),
-            ram: Bounds::new(8_900, 12_000),
-            stack: Bounds::new(26_900, 35_900),
-            panic_free: &["DefaultHandler", "HardFault"],
+            flash: Bounds::new(165_000, 220_000),
+            ram: Bounds::new(31_300, 41_700),
+            stack: Bounds::new(38_000, 51_000),
+            panic_free: &["ADC1_2"],
         },
         Board::Qemu => ImageBudget {
-            flash: Bounds::new(140_000, 187_000),
-            ram: Bounds::new(5_700, 7_700),
+            flash: Bounds::new(172_000, 229_000),
+            ram: Bounds::new(10_600, 14_200),
             stack: Bounds::new(26_300, 35_000),
             panic_free: &[],
         },

@@ -6,6 +6,9 @@ use super::thumb::{self, Effect, Instruction};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
+/// What the names of the linker's veneers begin with: each makes an address in a register, and branches there.
+const VENEER: &str = "__Thumbv7ABSLongThunk_";
+
 /// A function.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Function {
@@ -142,6 +145,7 @@ impl Reader {
                 self.function.leads_to.insert(to);
             }
             Effect::Branch(to) | Effect::MayBranch(to) => self.branch(to),
+            Effect::BranchRegister if self.function.name().starts_with(VENEER) => self.veneer(),
             Effect::CallRegister | Effect::BranchRegister => self.function.indirect_calls += 1,
             Effect::Low { register, value } => {
                 self.halves.insert(register, value);
@@ -150,6 +154,16 @@ impl Reader {
             Effect::None | Effect::Filler | Effect::Switch | Effect::Return | Effect::Trap => {}
         }
         Ok(())
+    }
+
+    /// The address is the one that was made, and is not taken for anything else.
+    fn veneer(&mut self) {
+        match self.function.words.pop_last() {
+            Some(to) => {
+                self.function.leads_to.insert(to & !1);
+            }
+            None => self.function.indirect_calls += 1,
+        }
     }
 
     /// A branch within the function is none of its calls.

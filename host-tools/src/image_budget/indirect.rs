@@ -34,7 +34,7 @@ const POLLS: &[&str] = &["raw::TaskStorage<F>::poll", "raw::poll_exited"];
 /// The functions behind a waker: each image has those of embassy's executor alone.
 const WAKERS: &[&str] = &["embassy_executor::raw::waker::"];
 
-static DECLARATIONS: [Declaration; 9] = [
+static DECLARATIONS: [Declaration; 17] = [
     // What pads a value's letters hands them to what writes.
     Declaration {
         callers: &["core::fmt::Formatter>::"],
@@ -55,8 +55,35 @@ static DECLARATIONS: [Declaration; 9] = [
     wakers(&["TIM1_BRK_TIM15", "TIMER1"], 2),
     // The serial line's interrupt wakes who reads and who writes.
     wakers(&["LPUART1"], 6),
+    // So does that of the bus, and who watches the controller's errors.
+    wakers(
+        &[
+            "FDCAN2_IT0",
+            "embassy_stm32::can::_version::RxMode::on_interrupt",
+        ],
+        5,
+    ),
+    wakers(
+        &["embassy_stm32::can::_version::Info::adjust_reference_counter"],
+        2,
+    ),
+    wakers(&["leg_stm32g474::can_bus::Bus::wait::"], 9),
+    // Of the flash, too, and who waits for it registers himself.
+    wakers(&["FLASH"], 2),
+    wakers(
+        &[
+            "leg_stm32g474::flash::CheckedFlash as embedded_storage_async",
+            "leg_firmware::store::sealed::Sealed<F>::renew::",
+        ],
+        3,
+    ),
+    wakers(&["sequential_storage::map::MapStorage<K,S,C>::"], 1),
+    // Settings to keep wake the task that keeps them.
+    wakers(&["leg_stm32g474::link::Session::turn"], 1),
     polls(&["embassy_executor::platform::thread::Executor::run"]),
     polls(&["LINK"]),
+    // What a task does may be a function of its own.
+    wakers(&["leg_qemu::__answer_host_task::"], 1),
     // What is counted under QEMU.
     Declaration {
         callers: &["leg_qemu::counter::ticks_of"],

@@ -21,6 +21,8 @@ pub struct Usage {
 pub(super) struct Memories {
     flash: Range<u32>,
     ram: Range<u32>,
+    /// RAM that holds code and nothing else, where the linker script has some: it is bounded there.
+    code: Option<Range<u32>>,
 }
 
 impl Memories {
@@ -28,6 +30,7 @@ impl Memories {
         Ok(Self {
             flash: elf.value("_flash_start")?..elf.value("_flash_end")?,
             ram: elf.value("_ram_start")?..elf.value("_ram_end")?,
+            code: code(elf),
         })
     }
 
@@ -50,12 +53,20 @@ impl Memories {
             let start = segment.p_vaddr(Endianness::Little);
             start..start.saturating_add(segment.p_memsz(Endianness::Little))
         });
-        let live: Vec<_> = live.filter(|part| !holds(&self.flash, part)).collect();
+        let code = |part: &Range<u32>| self.code.as_ref().is_some_and(|code| holds(code, part));
+        let live: Vec<_> = live
+            .filter(|part| !holds(&self.flash, part) && !code(part))
+            .collect();
         if let Some(outside) = live.iter().find(|part| !holds(&self.ram, part)) {
             return Err(outside_at(outside.start));
         }
         Ok(usage(&self.ram, &live))
     }
+}
+
+/// The RAM for code, of an image that has some.
+fn code(elf: &ElfFile<'_>) -> Option<Range<u32>> {
+    Some(elf.value("_code_ram_start").ok()?..elf.value("_code_ram_end").ok()?)
 }
 
 /// Bytes that the linker script leaves to the stack.

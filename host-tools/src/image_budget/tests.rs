@@ -106,6 +106,34 @@ fn an_address_in_two_halves_is_seen() {
 }
 
 #[test]
+fn a_veneer_leads_where_its_name_says_that_it_does() {
+    let code = [
+        0x40, 0xf2, 0x45, 0x2c, // movw r12, #0x245
+        0xc0, 0xf6, 0x00, 0x0c, // movt r12, #0x800
+        0x60, 0x47, // bx r12
+    ];
+    let named = |name: &str| {
+        let mapping = Mapping {
+            address: START,
+            code: true,
+        };
+        let range = START..START + 10;
+        let bytes = Bytes {
+            address: START,
+            bytes: &code,
+        };
+        Function::read(vec![name.into()], range, &bytes, &[mapping]).unwrap()
+    };
+    let veneer = named("__Thumbv7ABSLongThunk_far");
+    assert_eq!(veneer.leads_to, BTreeSet::from([0x0800_0244]));
+    assert_eq!((veneer.indirect_calls, veneer.words.len()), (0, 0));
+    let other = named("other");
+    assert!(other.leads_to.is_empty());
+    assert_eq!(other.indirect_calls, 1);
+    assert_eq!(other.words, BTreeSet::from([0x0800_0245]));
+}
+
+#[test]
 fn code_that_is_not_understood_is_an_error() {
     // mov sp, r4
     assert!(matches!(

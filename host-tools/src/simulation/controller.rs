@@ -64,7 +64,7 @@ impl Controller for InThisProcess {
             .as_mut()
             .ok_or(ControllerError::Refused(Refusal::NoLeg))?;
         let saved = &mut self.saved;
-        Ok(leg.tick(&tick_request(sensors, link)?, &mut |settings| {
+        Ok(leg.tick(&tick_request(sensors, link)?, |settings| {
             *saved = Some(settings.clone());
             true
         }))

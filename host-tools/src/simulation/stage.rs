@@ -162,7 +162,7 @@ impl Stage {
         self.telemetry = Some(*telemetry);
         self.extremes.take(&self.truth, self.bounds_n);
         self.all.take(&self.truth, self.bounds_n);
-        if drive.enabled {
+        if drive.enabled && telemetry.state.follows() {
             let highest = self.truth.tensions_n.into_iter().fold(0.0, f64::max);
             self.driven_max_n = self.driven_max_n.max(highest);
         }

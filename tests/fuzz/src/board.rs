@@ -3,6 +3,7 @@
 use leg_firmware::counter::Counter;
 use leg_firmware::protocol::{self, BoardInfo};
 use leg_firmware::server::Board;
+use leg_firmware::settings::Settings;
 
 /// A board that counts every kernel as one instruction, so that counted ticks run, too.
 pub struct NoBoard;
@@ -20,5 +21,9 @@ impl Board for NoBoard {
             board: protocol::Board::InProcess,
             boot: None,
         }
+    }
+
+    fn save(&mut self, _settings: &Settings) -> bool {
+        true
     }
 }

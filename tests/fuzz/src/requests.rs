@@ -2,6 +2,7 @@
 
 use leg_firmware::command::Command;
 use leg_firmware::frame::{MAX_FRAME, MAX_PAYLOAD, encode};
+use leg_firmware::host_link::HostRequest;
 use leg_firmware::kernels::{Kernel, KernelInput};
 use leg_firmware::messages::{QueryMessage, SupportMessage, TendonMessage, TendonsMessage};
 use leg_firmware::protocol::{EvaluateRequest, Hello, KernelRequest, Request, SCHEMA, TickRequest};
@@ -22,6 +23,7 @@ pub fn armed() -> Vec<Vec<u8>> {
     let mut requests = vec![
         Request::Hello(Hello { schema: SCHEMA }),
         Request::Start(settings()),
+        Request::Tick(identify()),
     ];
     let ticks = std::iter::repeat_n(Request::Tick(tick(&Command::KeepAlive)), BOOT_TICKS);
     requests.extend(ticks);
@@ -47,6 +49,12 @@ pub fn requests() -> Vec<Vec<u8>> {
         Request::Hello(Hello { schema: SCHEMA }),
         Request::Evaluate(evaluate()),
         Request::Start(settings()),
+        Request::Tick(identify()),
+        Request::Tick(hears(&HostRequest::Telemetry)),
+        Request::Tick(hears(&HostRequest::Stream(1))),
+        Request::Tick(hears(&HostRequest::Sensors)),
+        Request::Tick(hears(&HostRequest::GetSettings)),
+        Request::Tick(hears(&HostRequest::SaveSettings)),
     ];
     requests.extend(Kernel::ALL.map(|kernel| Request::Run(run(kernel))));
     requests.push(Request::Count(run(Kernel::ModelTick)));
@@ -136,10 +144,22 @@ fn settings() -> Settings {
     }
 }
 
+fn identify() -> TickRequest {
+    hears(&HostRequest::Identify(Hello { schema: SCHEMA }))
+}
+
 /// A quiet leg at 70 N, 24 V and 25 °C, which gets a command.
 fn tick(command: &Command) -> TickRequest {
+    hears(&HostRequest::Command {
+        host: 1,
+        command: *command,
+    })
+}
+
+/// The same, which hears anything of its host.
+fn hears(request: &HostRequest) -> TickRequest {
     let mut out = [0; MAX_FRAME];
-    let frame = encode(1, command, &mut out).expect("a command fits");
+    let frame = encode(1, request, &mut out).expect("it fits");
     TickRequest {
         sensors: Sensors {
             encoder_counts: [0; 3],
@@ -153,7 +173,7 @@ fn tick(command: &Command) -> TickRequest {
             late: false,
             settings_corrupt: false,
         },
-        link: heapless::Vec::from_slice(frame).expect("a command takes less than a tick's bytes"),
+        link: heapless::Vec::from_slice(frame).expect("it takes less than a tick's bytes"),
     }
 }
 

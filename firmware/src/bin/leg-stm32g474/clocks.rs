@@ -1,10 +1,12 @@
 //! 170 MHz from the board's 24 MHz crystal.
 
 use embassy_stm32::Config;
+use embassy_stm32::rcc::mux::{Adcsel, Fdcansel};
 use embassy_stm32::rcc::{Hse, HseMode, Pll, PllMul, PllPreDiv, PllRDiv, PllSource, Sysclk};
 use embassy_stm32::time::Hertz;
 
-/// 24 MHz / 6 × 85 / 2 = 170 MHz, with the core's voltage boosted as that speed asks.
+/// 24 MHz / 6 × 85 / 2 = 170 MHz for processor, buses, timers, converters and CAN, with the core's voltage boosted as
+/// that speed asks: `leg_firmware::board::timing` counts on it.
 pub fn config() -> Config {
     let mut config = Config::default();
     config.rcc.hse = Some(Hse {
@@ -21,5 +23,8 @@ pub fn config() -> Config {
     });
     config.rcc.sys = Sysclk::PLL1_R;
     config.rcc.boost = true;
+    config.rcc.mux.adc12sel = Adcsel::SYS;
+    config.rcc.mux.adc345sel = Adcsel::SYS;
+    config.rcc.mux.fdcansel = Fdcansel::PCLK1;
     config
 }

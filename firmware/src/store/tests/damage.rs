@@ -8,10 +8,11 @@ use crate::store::sealed::SEAL;
 use crate::store::{KEY, PAGE_SIZE, RECORD_MAX, WORD_SIZE};
 use core::ops::Range;
 
-/// Where a large record and its header lie, in bits; the page begins with its seal and its state.
+/// Where a large record and its header lie, in bits; the page begins with its seal and its state, and a record is filled up
+/// to whole words.
 fn record(number: usize) -> Range<usize> {
     let length = WORD_SIZE + RECORD_MAX;
-    let start = 2 * WORD_SIZE + number * length;
+    let start = 2 * WORD_SIZE + number * length.next_multiple_of(WORD_SIZE);
     8 * start..8 * (start + length)
 }
 
@@ -116,7 +117,7 @@ fn a_damaged_header_may_claim_any_length() {
 fn clearing_ends_what_a_word_that_refuses_writes_has_begun() {
     let mut flash = Mock::new(2);
     keep(&mut flash, &large(0));
-    let free = record(0).end / 8;
+    let free = record(1).start / 8;
     flash.refuse(free);
     let refused = Failure::NotErased(free as u32);
     assert_eq!(save(&mut flash, &large(1)), Err(StoreError::Flash(refused)));

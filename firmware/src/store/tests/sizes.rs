@@ -56,7 +56,7 @@ fn a_page_holds_two_of_the_largest_records() {
     // A page has a state at its start and end, a record a header; each is a word.
     let room = Sealed::<Mock>::ERASE_SIZE - 2 * WORD_SIZE;
     let record = WORD_SIZE + RECORD_MAX.next_multiple_of(WORD_SIZE);
-    assert_eq!((room / record, room % record), (2, 40));
+    assert_eq!((room / record, room % record), (2, 8));
 }
 
 #[test]

@@ -1,0 +1,146 @@
+//! The control interrupt, and the leg that it shares with the tasks below it.
+//!
+//! The leg is touched by the interrupt, and by tasks inside short critical sections only, so that neither ever finds it
+//! taken; if it did, the tick would be left out and be told as late, not panic.
+
+use crate::nucleo::Nucleo;
+use crate::watchdog::ROLL;
+use core::cell::RefCell;
+use cortex_m::peripheral::DWT;
+use critical_section::Mutex;
+use embassy_stm32::interrupt;
+use embassy_stm32::interrupt::InterruptExt;
+use leg_firmware::board::{self, LowerHalf, Member, TickTimer};
+use leg_firmware::command::Command;
+use leg_firmware::host_link::{Commanded, HostRefusal};
+use leg_firmware::leg::Outcome;
+use leg_firmware::linked_leg::SensingLeg;
+use leg_firmware::sensors::Sensors;
+use leg_firmware::settings::Settings;
+use leg_firmware::telemetry::Telemetry;
+
+static CONTROL: Mutex<RefCell<Option<Control>>> = Mutex::new(RefCell::new(None));
+
+/// What a tick works on.
+struct Control {
+    board: Nucleo,
+    leg: &'static mut SensingLeg<f32>,
+    timer: TickTimer,
+}
+
+impl Control {
+    #[inline(always)]
+    fn tick(&mut self, started: u32) {
+        self.board.late = self.timer.start(started);
+        board::tick(&mut self.board, self.leg);
+        self.timer.end(DWT::cycle_count());
+    }
+}
+
+/// Reads the sensors, runs the control law and sets the duties, 8 000 times a second.
+#[interrupt]
+fn ADC1_2() {
+    let started = DWT::cycle_count();
+    if with(|control| control.tick(started)).is_some() {
+        ROLL.check_in(Member::Control);
+    }
+}
+
+/// What `body` makes of the control; `None` before [`start`].
+#[inline(always)]
+fn with<R>(body: impl FnOnce(&mut Control) -> R) -> Option<R> {
+    critical_section::with(|section| {
+        let mut control = CONTROL.borrow(section).try_borrow_mut().ok()?;
+        control.as_mut().map(body)
+    })
+}
+
+/// Hands the board and the leg to the interrupt. The first tick comes once the timer runs.
+#[allow(
+    unsafe_code,
+    reason = "unmasking an interrupt can break critical sections that rely on masks"
+)]
+pub fn start(board: Nucleo, leg: &'static mut SensingLeg<f32>) {
+    let control = Control {
+        board,
+        leg,
+        timer: TickTimer::new(),
+    };
+    critical_section::with(|section| CONTROL.replace(section, Some(control)));
+    interrupt::ADC1_2.unpend();
+    // SAFETY: all critical sections stop every interrupt and rely on no mask.
+    unsafe { interrupt::ADC1_2.enable() };
+}
+
+/// Switches the outputs off, and leaves them off until the leg has let go of them.
+pub fn cut() {
+    with(|control| control.board.cut());
+}
+
+/// The longest tick so far, cycles.
+pub fn longest_tick() -> u32 {
+    with(|control| control.timer.longest()).unwrap_or(0)
+}
+
+/// The leg as a host commands it.
+pub struct SharedLeg {
+    /// The leg that is not in use: it is built anew here, at leisure, and then changes places with the other.
+    spare: &'static mut SensingLeg<f32>,
+    /// The last that was told.
+    telemetry: Telemetry<f32>,
+}
+
+impl SharedLeg {
+    /// The leg that the control interrupt has, beside one that it has not.
+    pub fn new(spare: &'static mut SensingLeg<f32>) -> Self {
+        let telemetry = spare.telemetry();
+        Self { spare, telemetry }
+    }
+}
+
+impl Commanded for SharedLeg {
+    fn command(&mut self, number: u16, command: Command) -> bool {
+        with(|control| control.leg.command(number, command)).unwrap_or(false)
+    }
+
+    fn misheard(&mut self) {
+        with(|control| control.leg.misheard());
+    }
+
+    fn outcome(&mut self) -> Option<Outcome> {
+        with(|control| control.leg.outcome())?
+    }
+
+    fn telemetry(&mut self) -> Telemetry<f32> {
+        if let Some(telemetry) = telemetry() {
+            self.telemetry = telemetry;
+        }
+        self.telemetry
+    }
+
+    fn sensors(&mut self) -> Sensors {
+        with(|control| control.leg.sensors()).unwrap_or_default()
+    }
+
+    fn restart(&mut self, settings: &Settings) -> Result<(), HostRefusal> {
+        let fresh = SensingLeg::new(&settings.without_zero()).map_err(HostRefusal::Settings)?;
+        *self.spare = fresh;
+        let spare = &mut self.spare;
+        let changed = with(|control| {
+            let free = !control.leg.telemetry().state.driven();
+            if free {
+                core::mem::swap(&mut control.leg, spare);
+            }
+            free
+        });
+        match changed {
+            Some(true) => Ok(()),
+            Some(false) | None => Err(HostRefusal::Driven),
+        }
+    }
+}
+
+/// The leg after the last tick; `None` before the first start.
+pub fn telemetry() -> Option<Telemetry<f32>> {
+    with(|control| control.leg.telemetry())
+}

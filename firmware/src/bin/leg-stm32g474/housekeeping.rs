@@ -1,0 +1,56 @@
+//! What has to be looked after now and then: slow sensors, the watchdog, the lamp.
+
+use crate::cycles::CycleCounter;
+use crate::slow_sensors::SlowSensors;
+use crate::watchdog::Watchdog;
+use crate::{control, fatal};
+use embassy_stm32::gpio::Output;
+use embassy_time::{Duration, Ticker};
+use leg_firmware::board::{RollCall, STEP_MS, lit};
+use leg_firmware::supervisor::State;
+
+/// Rounds in a step of the lamp.
+const ROUNDS_PER_STEP: u32 = (STEP_MS / RollCall::ROUND_MS) as u32;
+
+/// Steps after which the firmware counts as running well: 1 s.
+const SETTLED: u32 = 10;
+
+/// Steps from one line in the log to the next.
+const LOG_STEPS: u32 = 50;
+
+/// Does it for ever.
+#[embassy_executor::task]
+pub async fn keep_house(
+    mut sensors: SlowSensors,
+    mut watchdog: Watchdog,
+    mut cycles: CycleCounter,
+    mut lamp: Output<'static>,
+) {
+    let mut ticker = Ticker::every(Duration::from_millis(RollCall::ROUND_MS));
+    let mut rounds: u32 = 0;
+    loop {
+        ticker.next().await;
+        sensors.read();
+        cycles.keep_running();
+        watchdog.round();
+        if rounds.is_multiple_of(ROUNDS_PER_STEP) {
+            step(rounds / ROUNDS_PER_STEP, &mut lamp);
+        }
+        rounds = rounds.wrapping_add(1);
+    }
+}
+
+/// A step of the lamp, and what comes even more seldom.
+fn step(step: u32, lamp: &mut Output<'static>) {
+    let (state, faulted) = match control::telemetry() {
+        Some(telemetry) => (telemetry.state, telemetry.faults.without_limits().any()),
+        None => (State::Boot, false),
+    };
+    lamp.set_level(lit(state, faulted, step).into());
+    if step == SETTLED {
+        fatal::settle();
+    }
+    if step.is_multiple_of(LOG_STEPS) {
+        defmt::info!("longest tick: {=u32} cycles", control::longest_tick());
+    }
+}

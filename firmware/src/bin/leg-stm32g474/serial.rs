@@ -1,0 +1,72 @@
+//! The serial line to the host: LPUART1, which the board's debugger passes on over USB.
+
+use crate::link::{REPORT_MS, Session};
+use embassy_futures::select::{Either, select};
+use embassy_stm32::peripherals::{LPUART1, PA2, PA3};
+use embassy_stm32::usart::{BufferedInterruptHandler, BufferedUart, Config, ConfigError};
+use embassy_stm32::{Peri, bind_interrupts};
+use embassy_time::Timer;
+use embedded_io_async::{Read, Write};
+use heapless::Vec;
+use leg_firmware::frame::MAX_FRAME;
+use static_cell::StaticCell;
+
+const BAUD: u32 = 921_600;
+
+/// Bytes that are passed on at a time, so that what comes in never waits long: the line takes 1.4 ms for them.
+const CHUNK: usize = 128;
+
+bind_interrupts!(struct Interrupts {
+    LPUART1 => BufferedInterruptHandler<LPUART1>;
+});
+
+/// Opens the serial line at 921 600 baud, 8 bits, no parity, one stop bit.
+///
+/// # Errors
+/// [`ConfigError`] if the clock does not give that rate.
+pub fn open(
+    lpuart: Peri<'static, LPUART1>,
+    receive: Peri<'static, PA3>,
+    transmit: Peri<'static, PA2>,
+) -> Result<BufferedUart<'static>, ConfigError> {
+    static TO_HOST: StaticCell<[u8; MAX_FRAME]> = StaticCell::new();
+    static FROM_HOST: StaticCell<[u8; MAX_FRAME]> = StaticCell::new();
+    let mut config = Config::default();
+    config.baudrate = BAUD;
+    BufferedUart::new(
+        lpuart,
+        receive,
+        transmit,
+        TO_HOST.init([0; MAX_FRAME]),
+        FROM_HOST.init([0; MAX_FRAME]),
+        Interrupts,
+        config,
+    )
+}
+
+/// Serves the host for ever.
+#[embassy_executor::task]
+pub async fn serve(uart: BufferedUart<'static>, session: &'static mut Session) {
+    let (mut to_host, mut from_host) = uart.split();
+    let mut received = [0; CHUNK];
+    loop {
+        let pause = Timer::after_millis(REPORT_MS);
+        match select(from_host.read(&mut received), pause).await {
+            Either::First(Ok(length)) => {
+                session.receive(received.get(..length).unwrap_or_default());
+            }
+            // A byte is lost or damaged: the frame that it belongs to tells by its CRC.
+            Either::First(Err(_)) | Either::Second(()) => {}
+        }
+        session.turn();
+        let mut chunk: Vec<u8, CHUNK> = Vec::new();
+        while !chunk.is_full()
+            && let Some(byte) = session.transmit()
+        {
+            // There is room: it was just looked at.
+            let _ = chunk.push(byte);
+        }
+        // The line has no flow control, so it takes every byte in its time.
+        let _ = to_host.write_all(&chunk).await;
+    }
+}

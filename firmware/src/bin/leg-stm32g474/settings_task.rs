@@ -1,0 +1,85 @@
+//! The task that keeps settings in flash.
+//!
+//! It works on the second bank while programs run from the first, so the control interrupt goes on. A host is told that
+//! its settings were kept only after they were read back and are equal.
+
+use crate::flash::CheckedFlash;
+use crate::watchdog::ROLL;
+use core::sync::atomic::{AtomicBool, Ordering};
+use embassy_stm32::flash::Error;
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_sync::signal::Signal;
+use embassy_time::{Duration, with_timeout};
+use leg_firmware::board::{Member, RollCall};
+use leg_firmware::settings::Settings;
+use leg_firmware::store::{Loaded, REGION, Store, StoreError};
+
+/// Settings to keep.
+pub static TO_SAVE: Signal<CriticalSectionRawMutex, Settings> = Signal::new();
+
+/// Whether they were kept.
+pub static SAVED: Signal<CriticalSectionRawMutex, bool> = Signal::new();
+
+/// Whether there were no whole settings at the start, and none have been kept since.
+static CORRUPT: AtomicBool = AtomicBool::new(false);
+
+/// The store on this chip's flash.
+pub type BoardStore = Store<CheckedFlash>;
+
+/// Whether other settings are used than those that were kept.
+#[inline(always)]
+pub fn corrupt() -> bool {
+    CORRUPT.load(Ordering::Relaxed)
+}
+
+/// The store, unread.
+///
+/// # Errors
+/// [`StoreError::Region`], which the region of this chip excludes.
+pub fn store(flash: CheckedFlash) -> Result<BoardStore, StoreError<Error>> {
+    Store::new(flash, REGION)
+}
+
+/// The settings that were kept, or `others` where there are none: then the leg is told, and is not driven until settings
+/// have been kept anew. A board that was never set counts as such.
+pub async fn load(store: &mut BoardStore, others: Settings) -> Settings {
+    match store.load().await {
+        Ok(Loaded::Settings(settings)) => return settings,
+        Ok(Loaded::Empty) => defmt::warn!("no settings are kept"),
+        Ok(Loaded::Corrupt(why)) => {
+            defmt::warn!("settings: {}", defmt::Display2Format(&why));
+        }
+        Err(error) => defmt::warn!("settings: {}", defmt::Display2Format(&error)),
+    }
+    unfit();
+    others
+}
+
+/// The settings that were kept are of no use.
+pub fn unfit() {
+    CORRUPT.store(true, Ordering::Relaxed);
+}
+
+/// Keeps what it is asked to keep, for ever.
+#[embassy_executor::task]
+pub async fn keep_settings(mut store: BoardStore) {
+    let round = Duration::from_millis(RollCall::ROUND_MS);
+    loop {
+        ROLL.check_in(Member::Settings);
+        if let Ok(settings) = with_timeout(round, TO_SAVE.wait()).await {
+            let kept = save(&mut store, &settings).await;
+            if kept {
+                CORRUPT.store(false, Ordering::Relaxed);
+            }
+            SAVED.signal(kept);
+        }
+    }
+}
+
+async fn save(store: &mut BoardStore, settings: &Settings) -> bool {
+    if let Err(error) = store.save(settings).await {
+        defmt::warn!("settings: {}", defmt::Display2Format(&error));
+        return false;
+    }
+    matches!(store.load().await, Ok(Loaded::Settings(kept)) if kept == *settings)
+}
