@@ -10,6 +10,7 @@ mod body;
 mod build;
 mod encoder;
 mod faults;
+mod hand;
 mod leg;
 mod mechanism;
 mod motor;
@@ -38,6 +39,7 @@ use crate::actuator::Actuator;
 use body::Body;
 use encoder::Encoder;
 use faults::Faults;
+use hand::Hand;
 use leg::Leg;
 use leg_firmware::sensors::{Sensors, TICK_HZ};
 use mechanism::Mechanism;
@@ -65,6 +67,7 @@ pub struct Plant {
     emergency_stop: bool,
     payload: Payload,
     push: Push,
+    hand: Hand,
     unstretched_at_zero_m: [f64; 3],
     /// Tension of each tendon now, N.
     tensions_n: [f64; 3],
@@ -92,7 +95,7 @@ impl Plant {
         };
         Sensors {
             encoder_counts: self.encoders.map(|encoder| encoder.counter),
-            cell_codes: self.cells.read(self.tensions_n, faults),
+            cell_codes: self.cells.read(self.hand.pulls_n(self.tensions_n), faults),
             current_codes: std::array::from_fn(current_code),
             supply_code: code(
                 self.supply.voltage_v(&self.motors),

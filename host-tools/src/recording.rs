@@ -3,9 +3,12 @@
 mod csv_file;
 mod mcap_file;
 mod replay;
+mod telemetry_channel;
+mod telemetry_file;
 mod tick_record;
 
 pub use replay::{Replay, ReplayError, replay};
+pub use telemetry_file::{TelemetryFile, around_telemetry};
 
 use crate::atomic_file;
 use crate::failure::Failure;
@@ -41,11 +44,10 @@ pub enum RecordingError {
 }
 
 impl Recorder {
-    fn create(file: &Path, csv: bool, settings: &Settings) -> Result<Self, RecordingError> {
-        Ok(if csv {
-            Self::Csv(Box::new(CsvFile::create(file)?))
-        } else {
-            Self::Mcap(Box::new(McapFile::create(file, settings)?))
+    fn create(file: &Path, format: Format, settings: &Settings) -> Result<Self, RecordingError> {
+        Ok(match format {
+            Format::Csv => Self::Csv(Box::new(CsvFile::create(file)?)),
+            Format::Mcap => Self::Mcap(Box::new(McapFile::create(file, settings)?)),
         })
     }
 
@@ -90,27 +92,56 @@ pub fn around<T>(
     settings: &Settings,
     work: impl FnOnce(&mut Recorder) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
-    let csv = match file.extension().and_then(|ending| ending.to_str()) {
-        Some("mcap") => false,
-        Some("csv") => true,
-        _ => {
-            let sentence = format!("{} is no name of a recording", file.display());
-            return Err(Failure::refused(sentence, "end it with .mcap or .csv"));
-        }
-    };
+    whole(
+        file,
+        |new, format| Recorder::create(new, format, settings),
+        work,
+        Recorder::finish,
+    )
+}
+
+/// Makes a recorder, does the work and finishes the recorder; the file is then put in its place.
+fn whole<R, T>(
+    file: &Path,
+    create: impl FnOnce(&Path, Format) -> Result<R, RecordingError>,
+    work: impl FnOnce(&mut R) -> Result<T, Failure>,
+    finish: impl FnOnce(R) -> Result<(), RecordingError>,
+) -> Result<T, Failure> {
+    let format = Format::of(file)?;
     let done = atomic_file::replace(file, |new| {
-        let mut recorder = Recorder::create(new, csv, settings).map_err(Stopped::Recording)?;
+        let mut recorder = create(new, format).map_err(Stopped::Recording)?;
         let result = work(&mut recorder).map_err(Stopped::Work)?;
-        recorder.finish().map_err(Stopped::Recording)?;
+        finish(recorder).map_err(Stopped::Recording)?;
         Ok(result)
     });
     done.map_err(|stopped| match stopped {
         Stopped::Work(failure) => failure,
         Stopped::Recording(error) => Failure::refused(
             format!("cannot write {}: {error}", file.display()),
-            "name a file in a folder that may be written with --record",
+            "name a file in a folder that may be written",
         ),
     })
+}
+
+/// What a file is written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Mcap,
+    Csv,
+}
+
+impl Format {
+    /// By the ending of the file's name.
+    fn of(file: &Path) -> Result<Self, Failure> {
+        match file.extension().and_then(|ending| ending.to_str()) {
+            Some("mcap") => Ok(Self::Mcap),
+            Some("csv") => Ok(Self::Csv),
+            _ => {
+                let sentence = format!("{} is no name of a recording", file.display());
+                Err(Failure::refused(sentence, "end it with .mcap or .csv"))
+            }
+        }
+    }
 }
 
 #[cfg(test)]

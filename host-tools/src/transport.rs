@@ -2,9 +2,13 @@
 
 pub mod bus;
 pub mod can;
+pub mod emulated;
+pub mod hub;
+pub mod serial;
 
 use std::io;
-use std::time::Duration;
+use std::sync::LazyLock;
+use std::time::{Duration, Instant};
 
 /// A way for the frames of [`leg_firmware::frame`] to one board and back. What was lost is lost: the frames' own
 /// sequence and CRC tell.
@@ -25,4 +29,15 @@ pub trait Transport {
     /// # Errors
     /// [`io::ErrorKind::TimedOut`] if none came in time; what else the system says.
     fn receive(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize>;
+
+    /// Time since some moment, by the clock of the timeouts: the host's, or that of an emulated leg.
+    fn now(&self) -> Duration {
+        static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+        START.elapsed()
+    }
+
+    /// Whether that clock is an emulated leg's own, which goes on only while bytes are waited for.
+    fn clock_is_emulated(&self) -> bool {
+        false
+    }
 }

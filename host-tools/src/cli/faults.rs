@@ -2,6 +2,7 @@
 
 use super::print;
 use crate::failure::Failure;
+use crate::words;
 use leg_firmware::supervisor::{FaultEntry, Reaction, TABLE};
 use serde::Serialize;
 
@@ -19,16 +20,6 @@ pub struct Args {
 /// Standard output that cannot be written.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     print(&if args.json { json()? } else { table() })
-}
-
-/// What a reaction does, in words.
-fn reaction(reaction: Reaction) -> &'static str {
-    match reaction {
-        Reaction::Limit => "limit",
-        Reaction::Hold => "hold",
-        Reaction::RampDown => "ramp down",
-        Reaction::GateOff => "gate off",
-    }
 }
 
 /// When a fault of a reaction is over.
@@ -57,7 +48,7 @@ fn row(entry: &FaultEntry) -> String {
         "{:4}  {:28}  {:9}  {}\n{:47}cure: {}\n",
         fault.code(),
         entry.name,
-        reaction(fault.reaction()),
+        words::reaction(fault.reaction()),
         entry.cause,
         "",
         entry.cure

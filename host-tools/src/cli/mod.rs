@@ -1,18 +1,31 @@
 //! The command line `leg`, one file a command.
 
 mod board;
+mod calibrate;
 mod check;
+mod clear;
 mod cost;
 mod cost_image;
 mod curve;
 mod curve_charts;
 mod curve_report;
+mod disarm;
+mod emulate;
 mod eval;
 mod evaluator;
 mod export;
 mod faults;
+mod flash;
+mod go;
+mod hold;
+mod home;
+mod leg_told;
+mod line;
+mod log;
 mod map;
 mod map_report;
+mod monitor;
+mod numbers;
 mod paper;
 mod progress;
 mod replay;
@@ -20,7 +33,10 @@ mod rig;
 mod run;
 mod run_errors;
 mod run_report;
+mod settings;
 mod setup;
+mod stiffness;
+mod stop;
 
 use crate::failure::Failure;
 use clap::{Parser, Subcommand};
@@ -46,21 +62,34 @@ Exit codes:
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Calibrate(calibrate::Args),
     Check(check::Args),
+    Clear(clear::Args),
     Cost(cost::Args),
     Curve(curve::Args),
+    Disarm(disarm::Args),
+    Emulate(emulate::Args),
     Eval(eval::Args),
     Export(export::Args),
     Faults(faults::Args),
+    Flash(flash::Args),
+    Hold(hold::Args),
+    Home(home::Args),
+    Log(log::Args),
     Map(map::Args),
+    Monitor(monitor::Args),
+    Move(go::Args),
     Paper(paper::Args),
     Replay(replay::Args),
     Rig(rig::Args),
     Run(run::Args),
+    Settings(settings::Args),
     /// Installs what the other commands need: the Rust target, QEMU, and the firmware built for it.
     ///
     /// The other commands do the same on their first use.
     Setup,
+    Stiffness(stiffness::Args),
+    Stop(stop::Args),
 }
 
 /// Runs the command of this process's arguments and tells its failure on standard error.
@@ -68,18 +97,31 @@ enum Command {
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let ended = match &cli.command {
+        Command::Calibrate(args) => calibrate::run(args, cli.verbose),
         Command::Check(args) => check::run(args, cli.verbose),
+        Command::Clear(args) => clear::run(args, cli.verbose),
         Command::Cost(args) => cost::run(args, cli.verbose),
         Command::Curve(args) => curve::run(args),
+        Command::Disarm(args) => disarm::run(args, cli.verbose),
+        Command::Emulate(args) => emulate::run(args, cli.verbose),
         Command::Eval(args) => eval::run(args, cli.verbose),
         Command::Export(args) => export::run(args),
         Command::Faults(args) => faults::run(args),
+        Command::Flash(args) => flash::run(args),
+        Command::Hold(args) => hold::run(args, cli.verbose),
+        Command::Home(args) => home::run(args, cli.verbose),
+        Command::Log(args) => log::run(args, cli.verbose),
         Command::Map(args) => map::run(args),
+        Command::Monitor(args) => monitor::run(args, cli.verbose),
+        Command::Move(args) => go::run(args, cli.verbose),
         Command::Paper(args) => paper::run(args),
         Command::Replay(args) => replay::run(args),
         Command::Rig(args) => rig::run(args),
         Command::Run(args) => run::run(args, cli.verbose),
+        Command::Settings(args) => settings::run(args, cli.verbose),
         Command::Setup => setup::run(),
+        Command::Stiffness(args) => stiffness::run(args, cli.verbose),
+        Command::Stop(args) => stop::run(args, cli.verbose),
     };
     match ended {
         Ok(()) => ExitCode::SUCCESS,

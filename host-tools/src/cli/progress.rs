@@ -21,3 +21,12 @@ pub(super) fn spinner(steps: &str) -> ProgressBar {
         Err(_) => bar,
     }
 }
+
+/// A sign of life that says what is going on.
+pub(super) fn telling() -> ProgressBar {
+    let bar = ProgressBar::new_spinner();
+    match ProgressStyle::with_template("{spinner} {msg}") {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}

@@ -43,8 +43,9 @@ pub struct Args {
     json: bool,
 }
 
+/// Where the firmware runs without a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum On {
+pub(super) enum On {
     /// On an emulated Cortex-M4F.
     Qemu,
     /// In this process.
@@ -52,7 +53,7 @@ enum On {
 }
 
 impl On {
-    const fn words(self) -> &'static str {
+    pub(super) const fn words(self) -> &'static str {
         match self {
             Self::Qemu => "under QEMU",
             Self::Sim => "in this process",

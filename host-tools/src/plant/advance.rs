@@ -19,6 +19,7 @@ impl Plant {
     pub fn step(&mut self, drive: &Drive<f32>) {
         self.wire(drive);
         self.change_payload();
+        self.turn_by_hand();
         self.mechanism.push_n = self.push.next_n(tick_s());
         for _ in 0..self.substeps {
             self.substep();

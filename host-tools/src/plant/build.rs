@@ -3,6 +3,7 @@
 use super::body::Body;
 use super::encoder::Encoder;
 use super::faults::Faults;
+use super::hand::Hand;
 use super::mechanism::Mechanism;
 use super::motor::{Motor, MotorType};
 use super::outside::{Payload, Push};
@@ -52,6 +53,7 @@ impl Plant {
             emergency_stop: false,
             payload: Payload::new(begun.payload_kg),
             push: Push::default(),
+            hand: Hand::default(),
             unstretched_at_zero_m: begun.unstretched_m,
             tensions_n: [0.0; 3],
             work: Work::default(),

@@ -97,9 +97,13 @@ impl Motor {
 
     /// Turns on for half a step.
     pub fn drift(&mut self, kind: &MotorType) {
-        let turned = self.speed * kind.half_s;
-        self.angle_rad += turned;
-        self.screw.follow(turned);
+        self.turn(self.speed * kind.half_s);
+    }
+
+    /// Turns by an angle, rad.
+    pub fn turn(&mut self, turned_rad: f64) {
+        self.angle_rad += turned_rad;
+        self.screw.follow(turned_rad);
     }
 
     /// Speed at which the tendon is pulled in, m/s.

@@ -2,6 +2,7 @@
 
 use super::RecordingError;
 use crate::simulation::{Tick, tick_s};
+use serde::Serialize;
 use serde_json::Value;
 use std::fs::File;
 use std::path::Path;
@@ -44,23 +45,34 @@ impl CsvFile {
 }
 
 /// Names and values of a row.
-fn columns(time_s: f64, tick: &Tick<'_>) -> Result<Vec<(String, String)>, RecordingError> {
-    let form = |error: serde_json::Error| RecordingError::Form(error.to_string());
+fn columns(time_s: f64, tick: &Tick<'_>) -> Result<Row, RecordingError> {
+    let (telemetry, drive) = (value(tick.telemetry)?, value(tick.drive)?);
+    Ok(row(time_s, &[&telemetry, &drive]))
+}
+
+/// Names and values.
+pub(super) type Row = Vec<(String, String)>;
+
+/// What something is in JSON.
+pub(super) fn value<T: Serialize>(value: &T) -> Result<Value, RecordingError> {
+    serde_json::to_value(value).map_err(|error| RecordingError::Form(error.to_string()))
+}
+
+/// The time and every value of some objects.
+pub(super) fn row(time_s: f64, objects: &[&Value]) -> Row {
     let mut columns = vec![("time_s".into(), time_s.to_string())];
-    for value in [
-        serde_json::to_value(tick.telemetry).map_err(form)?,
-        serde_json::to_value(tick.drive).map_err(form)?,
-    ] {
-        if let Value::Object(map) = value {
-            map.into_iter()
-                .for_each(|(name, value)| flatten(name, value, &mut columns));
+    for object in objects {
+        if let Value::Object(map) = object {
+            for (name, value) in map {
+                flatten(name.clone(), value.clone(), &mut columns);
+            }
         }
     }
-    Ok(columns)
+    columns
 }
 
 /// The three of a list are counted from 1, as tendons are.
-fn flatten(name: String, value: Value, columns: &mut Vec<(String, String)>) {
+fn flatten(name: String, value: Value, columns: &mut Row) {
     match value {
         Value::Array(values) => {
             for (number, value) in (1..).zip(values) {

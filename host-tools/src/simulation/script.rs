@@ -4,8 +4,9 @@ use super::extremes::Extremes;
 use super::outcome::{Finding, SimulationError};
 use super::stage::{Pushing, Stage};
 use crate::scenario::{Quantity, Scenario, Step};
+use crate::words;
 use leg_firmware::command::{Command, Compensation};
-use leg_firmware::supervisor::{FaultSet, State};
+use leg_firmware::supervisor::FaultSet;
 use nalgebra::Vector3;
 
 /// Time in which a push of a test comes up, s.
@@ -70,7 +71,7 @@ impl<'a> Script<'a> {
             Step::WaitS(time_s) => Ok(waited_s >= *time_s),
             Step::Await { state, timeout_s } => {
                 let there = stage.state() == *state;
-                self.in_time(there, &words(*state), *timeout_s, stage)
+                self.in_time(there, words::state(*state), *timeout_s, stage)
             }
             Step::Arrive { then_s, timeout_s } => self.arrive(*then_s, *timeout_s, stage),
             Step::Reaction {
@@ -87,7 +88,7 @@ impl<'a> Script<'a> {
                 if there {
                     let value = (stage.time_s() - self.acted_s) * 1000.0;
                     self.find(
-                        &format!("{name}: {}", words(*state)),
+                        &format!("{name}: {}", words::state(*state)),
                         (value, "ms"),
                         [0.0, *within_ms],
                         None,
@@ -232,31 +233,13 @@ fn across(azimuth_deg: f64, stage: &Stage) -> Vector3<f64> {
     (horizontal - leg * leg.dot(&horizontal)).normalize()
 }
 
-fn words(state: State) -> String {
-    match state {
-        State::Boot => "booting",
-        State::Disarmed => "disarmed",
-        State::Homing => "homing",
-        State::Active => "active",
-        State::Held => "held",
-        State::RampingDown => "ramping down",
-        State::Off => "off",
-    }
-    .into()
-}
-
 fn describe(stage: &Stage) -> String {
-    let faults: Vec<_> = stage
-        .telemetry
-        .iter()
-        .flat_map(|telemetry| telemetry.faults.faults())
-        .map(|fault| fault.entry().name)
-        .collect();
-    let state = words(stage.state());
-    if faults.is_empty() {
-        state
-    } else {
-        format!("{state} ({})", faults.join(", "))
+    let state = words::state(stage.state());
+    match stage.telemetry {
+        Some(telemetry) if telemetry.faults.any() => {
+            format!("{state} ({})", words::faults(telemetry.faults))
+        }
+        _ => state.into(),
     }
 }
 

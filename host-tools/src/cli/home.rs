@@ -1,0 +1,57 @@
+//! `leg home`.
+
+use super::leg_told::to_line;
+use super::line::{Fresh, LineArgs, RigArgs, shown};
+use super::print;
+use crate::failure::Failure;
+use crate::leg_report::{self, LegReport};
+use leg_firmware::telemetry::Telemetry;
+use serde::Serialize;
+
+/// Lets the leg find its zero and leaves it in hold, straight down.
+///
+/// It has to hang free, without a payload. One that is held is disarmed first.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    line: LineArgs,
+    #[command(flatten)]
+    rig: RigArgs,
+    /// Prints JSON instead of a table.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A [`Failure`]: no line to the leg, a leg that refuses, or a fault on the way.
+pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
+    let rig = args.rig.load()?;
+    let mut line = args.line.open(&rig, Fresh::Slack, verbose)?;
+    shown(&mut line.operator, |operator| operator.home())?;
+    let telemetry = line.operator.telemetry()?.telemetry;
+    print(&report(&telemetry, args.json)?)
+}
+
+/// What homing found, for people or machines.
+pub(super) fn report(telemetry: &Telemetry<f32>, json: bool) -> Result<String, Failure> {
+    if json {
+        return to_line(&HomeReport {
+            leg: LegReport::of(telemetry),
+            unstretched_at_zero_m: telemetry.unstretched_at_zero_m,
+        });
+    }
+    let [a, b, c] = telemetry.unstretched_at_zero_m.map(|m| m * 1000.0);
+    Ok(format!(
+        "{}zero       {a:.3}  {b:.3}  {c:.3} mm of tendon when the board started\n",
+        leg_report::rows(telemetry)
+    ))
+}
+
+#[derive(Serialize)]
+struct HomeReport {
+    #[serde(flatten)]
+    leg: LegReport,
+    unstretched_at_zero_m: [f32; 3],
+}

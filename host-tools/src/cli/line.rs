@@ -1,0 +1,199 @@
+//! The line to a leg: a board's serial port, or an emulated leg.
+
+use super::run::On;
+use super::{board, progress};
+use crate::emulated_leg::{Beginning, Behind, EmulatedLeg};
+use crate::failure::Failure;
+use crate::operator::{Host, Interrupt, Operator};
+use crate::rig_file::RigFile;
+use crate::simulation::{Controller, InThisProcess};
+use crate::transport::Transport;
+#[cfg(target_os = "linux")]
+use crate::transport::can::{CanTransport, SocketCan};
+use crate::transport::emulated::Emulated;
+use crate::transport::serial::{self, Serial, SerialError};
+use crate::words;
+use leg_firmware::can::LegAddress;
+use leg_firmware::host_link::Reset;
+use leg_firmware::telemetry::Telemetry;
+use leg_firmware::version::VERSION;
+use std::path::PathBuf;
+
+/// How long the tendons of a leg that has to be homed are beyond their ways, m.
+const SLACK_M: f64 = 3e-3;
+
+/// Where the leg is.
+#[derive(Debug, clap::Args)]
+pub(super) struct LineArgs {
+    /// A leg without a board, a fresh one for each command: homed, hanging straight down, disarmed. `leg home` and `leg
+    /// calibrate` get it slack and not homed. Its time is its own: it does not wait for the clock.
+    #[arg(long, value_enum)]
+    on: Option<On>,
+    /// The board's serial port; that of the ST-LINK if left out.
+    #[arg(long, value_name = "PATH", conflicts_with = "on")]
+    port: Option<String>,
+    /// The CAN FD interface to which the board is connected, as `can0`: Linux only.
+    #[arg(long, value_name = "INTERFACE", conflicts_with_all = ["on", "port"])]
+    can: Option<String>,
+    /// Which of the legs on the CAN bus, 1 to 6.
+    #[arg(long, value_name = "N", requires = "can", default_value = "1", value_parser = leg_address)]
+    leg: LegAddress,
+}
+
+fn leg_address(text: &str) -> Result<LegAddress, String> {
+    let number = text.parse().ok().and_then(LegAddress::new);
+    number.ok_or_else(|| "it is none of 1 to 6".into())
+}
+
+/// Which leg is emulated.
+#[derive(Debug, clap::Args)]
+pub(super) struct RigArgs {
+    /// The rig file or the name of a ready rig for the emulated leg; the paper's rig if left out.
+    #[arg(long, value_name = "FILE", requires = "on")]
+    rig: Option<PathBuf>,
+}
+
+impl RigArgs {
+    pub(super) fn load(&self) -> Result<RigFile, Failure> {
+        Ok(RigFile::load(self.rig.as_deref())?)
+    }
+}
+
+/// An emulated leg's state when the command begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Fresh {
+    Homed,
+    Slack,
+}
+
+impl Fresh {
+    pub(super) const fn beginning(self) -> Beginning {
+        match self {
+            Self::Homed => Beginning::Hanging,
+            Self::Slack => Beginning::Slack(SLACK_M),
+        }
+    }
+}
+
+/// A leg that knows this host.
+pub(super) struct Line {
+    pub(super) operator: Operator,
+    /// The emulated leg, for what is done to it from outside.
+    pub(super) emulated: Option<Emulated>,
+}
+
+impl LineArgs {
+    /// Opens the line. `rig` is that of an emulated leg.
+    pub(super) fn open(&self, rig: &RigFile, fresh: Fresh, verbose: bool) -> Result<Line, Failure> {
+        let interrupt = Interrupt::on_ctrl_c();
+        let Some(on) = self.on else {
+            let transport = match &self.can {
+                None => self.serial()?,
+                Some(interface) => can(interface, self.leg)?,
+            };
+            let operator = Operator::open(transport, Host::random(), interrupt)?;
+            tell_board(&operator);
+            return Ok(Line {
+                operator,
+                emulated: None,
+            });
+        };
+        let leg = EmulatedLeg::new(rig, fresh.beginning(), controller(on, verbose)?)
+            .map_err(|error| Failure::from_error(&error))?;
+        let emulated = Emulated::new(leg, &format!("the leg {}", on.words()));
+        let host = Box::new(emulated.beside());
+        Ok(Line {
+            operator: Operator::open(host, Host::FIXED, interrupt)?,
+            emulated: Some(emulated),
+        })
+    }
+
+    fn serial(&self) -> Result<Box<dyn Transport>, Failure> {
+        let opened = match &self.port {
+            Some(port) => Serial::open(port),
+            None => serial::find().and_then(|port| Serial::open(&port)),
+        };
+        match opened {
+            Ok(serial) => Ok(Box::new(serial)),
+            Err(error) => Err(no_line(&error)),
+        }
+    }
+}
+
+#[cfg(target_os = "linux")]
+fn can(interface: &str, leg: LegAddress) -> Result<Box<dyn Transport>, Failure> {
+    match SocketCan::open(interface, leg) {
+        Ok(port) => Ok(Box::new(CanTransport::new(port, leg))),
+        Err(error) => Err(Failure::from_error(&error)),
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn can(_: &str, _: LegAddress) -> Result<Box<dyn Transport>, Failure> {
+    Err(Failure::refused(
+        "CAN is served on Linux only",
+        "connect the board's serial port",
+    ))
+}
+
+fn no_line(error: &SerialError) -> Failure {
+    Failure::refused(error.to_string(), error.cure())
+}
+
+/// The firmware without a board.
+pub(super) fn controller(on: On, verbose: bool) -> Result<Box<dyn Controller>, Failure> {
+    Ok(match on {
+        On::Sim => Box::new(InThisProcess::default()),
+        On::Qemu => Box::new(Behind::new(board::qemu(verbose)?)),
+    })
+}
+
+/// What the user should know of the board before anything else.
+fn tell_board(operator: &Operator) {
+    let identity = operator.identity();
+    if identity.version != VERSION {
+        let [theirs, ours] = [identity.version, VERSION].map(version);
+        eprintln!(
+            "leg: the firmware is version {theirs}, this program {ours}: `leg flash` makes them the same"
+        );
+    }
+    let cause = match identity.reset {
+        Reset::BrownOut => "its supply was too low",
+        Reset::Software => "its firmware stopped by itself",
+        Reset::Watchdog => "its watchdog: a task had not checked in",
+        _ => return,
+    };
+    let words = &identity.last_words;
+    eprintln!(
+        "leg: the board started anew because of {cause}{}{words}",
+        if words.is_empty() { "" } else { ": " }
+    );
+}
+
+/// A version in words.
+pub(super) fn version([major, minor, patch]: [u8; 3]) -> String {
+    format!("{major}.{minor}.{patch}")
+}
+
+/// Shows on a terminal what the leg does while `work` is done.
+pub(super) fn shown<T>(
+    operator: &mut Operator,
+    work: impl FnOnce(&mut Operator) -> Result<T, crate::operator::OperatorError>,
+) -> Result<T, Failure> {
+    let bar = progress::telling();
+    let watching = bar.clone();
+    operator.set_watcher(move |telemetry| {
+        watching.set_message(progress_words(telemetry));
+        watching.tick();
+    });
+    let result = work(operator);
+    bar.finish_and_clear();
+    Ok(result?)
+}
+
+fn progress_words(telemetry: &Telemetry<f32>) -> String {
+    let [a, b, c] = telemetry.tensions_n;
+    let pose = crate::leg_report::pose_words(telemetry.pose);
+    let state = words::state(telemetry.state);
+    format!("{state}, {pose}, tensions {a:.0} {b:.0} {c:.0} N")
+}

@@ -1,0 +1,112 @@
+//! Writing the firmware into a board by [probe-rs](https://probe.rs), and its log.
+
+mod error;
+
+pub use error::FlashError;
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+/// The chip as probe-rs calls it.
+pub const CHIP: &str = "STM32G474RETx";
+
+/// Variable that names the program in the place of `probe-rs`.
+pub const PROGRAM_VARIABLE: &str = "LEG_PROBE_RS";
+
+/// Register by which the chip tells what it is, and what its low bits are for an STM32G471/473/474/483/484.
+const ID_REGISTER: &str = "0xE0042000";
+const ID_BITS: u32 = 0xfff;
+const ID: u32 = 0x469;
+
+/// A debugger that probe-rs can use.
+#[derive(Clone, Debug)]
+pub struct Probe {
+    program: PathBuf,
+    selector: Option<String>,
+}
+
+impl Probe {
+    /// Finds the program. `selector` is probe-rs's for one of several debuggers: `VID:PID:Serial`.
+    ///
+    /// # Errors
+    /// [`FlashError::NoProgram`].
+    pub fn find(selector: Option<String>) -> Result<Self, FlashError> {
+        let named = std::env::var_os(PROGRAM_VARIABLE);
+        let name = named.as_deref().unwrap_or(OsStr::new("probe-rs"));
+        match which::which(name) {
+            Ok(program) => Ok(Self { program, selector }),
+            Err(_) => Err(FlashError::NoProgram(name.to_string_lossy().into_owned())),
+        }
+    }
+
+    /// Refuses another chip than the board's.
+    ///
+    /// # Errors
+    /// What probe-rs says, by name; [`FlashError::OtherChip`].
+    pub fn check_chip(&self) -> Result<(), FlashError> {
+        let read = self.run("read", &["b32", ID_REGISTER, "1"])?;
+        let text = String::from_utf8_lossy(&read.stdout);
+        let word = text.split_whitespace().last().unwrap_or_default();
+        let digits = word.trim_start_matches("0x");
+        match u32::from_str_radix(digits, 16) {
+            Ok(id) if id & ID_BITS == ID => Ok(()),
+            Ok(id) => Err(FlashError::OtherChip(id & ID_BITS)),
+            Err(_) => Err(FlashError::other(&read)),
+        }
+    }
+
+    /// Writes an image, reads it back and compares.
+    ///
+    /// # Errors
+    /// What probe-rs says, by name.
+    pub fn download(&self, image: &Path) -> Result<(), FlashError> {
+        let image = image.to_string_lossy();
+        self.run("download", &["--disable-progressbars", "--verify", &image])
+            .map(drop)
+    }
+
+    /// Starts the firmware anew.
+    ///
+    /// # Errors
+    /// What probe-rs says, by name.
+    pub fn reset(&self) -> Result<(), FlashError> {
+        self.run("reset", &[]).map(drop)
+    }
+
+    /// Shows the firmware's log until the user ends it.
+    ///
+    /// # Errors
+    /// A program that cannot be started, or that fails.
+    pub fn attach(&self, image: &Path) -> Result<(), FlashError> {
+        let status = self.command("attach").arg(image).status();
+        match status.map_err(FlashError::NotStarted)? {
+            // Ended by the user's Ctrl-C, which is the way to end it.
+            status if status.success() || status.code().is_none() => Ok(()),
+            status => Err(FlashError::Other(format!("it ended with {status}"))),
+        }
+    }
+
+    fn command(&self, subcommand: &str) -> Command {
+        let mut command = Command::new(&self.program);
+        command.args([subcommand, "--non-interactive", "--chip", CHIP]);
+        if let Some(selector) = &self.selector {
+            command.args(["--probe", selector]);
+        }
+        command
+    }
+
+    fn run(&self, subcommand: &str, arguments: &[&str]) -> Result<Output, FlashError> {
+        let output = self
+            .command(subcommand)
+            .args(arguments)
+            .stdin(Stdio::null())
+            .output()
+            .map_err(FlashError::NotStarted)?;
+        if output.status.success() {
+            Ok(output)
+        } else {
+            Err(FlashError::of(&output))
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! Why a board was not flashed, by what probe-rs says.
+
+use super::{CHIP, PROGRAM_VARIABLE};
+use std::process::Output;
+
+/// Why a board was not flashed.
+#[derive(Debug, thiserror::Error)]
+pub enum FlashError {
+    /// The program is not installed.
+    #[error("there is no program `{0}`, which writes the firmware into the board")]
+    NoProgram(String),
+    /// It does not start.
+    #[error("cannot start probe-rs: {0}")]
+    NotStarted(std::io::Error),
+    /// No debugger is plugged in.
+    #[error("probe-rs finds no debugger")]
+    NoProbe,
+    /// Several are.
+    #[error("several debuggers are plugged in")]
+    SeveralProbes,
+    /// The debugger cannot be opened.
+    #[error("the debugger cannot be opened: {0}")]
+    NotOpened(String),
+    /// The chip does not answer.
+    #[error("the debugger reaches no chip: {0}")]
+    NoChip(String),
+    /// Another chip answers.
+    #[error("the chip is no STM32G474: its device number is {0:#05x}, not 0x469")]
+    OtherChip(u32),
+    /// The chip is protected.
+    #[error("the chip is protected against reading: {0}")]
+    Protected(String),
+    /// What was read back differs.
+    #[error("the flash does not hold what was written")]
+    NotVerified,
+    /// probe-rs does not know the chip.
+    #[error("this probe-rs does not know the {CHIP}")]
+    UnknownChip,
+    /// Anything else.
+    #[error("probe-rs failed: {0}")]
+    Other(String),
+}
+
+/// An error from what was said.
+type Meaning = fn(String) -> FlashError;
+
+/// What probe-rs says, in small letters, and what it means.
+const SAYS: [(&str, Meaning); 10] = [
+    ("no connected probes", |_| FlashError::NoProbe),
+    ("probe not found", |_| FlashError::NoProbe),
+    ("probes were found", |_| FlashError::SeveralProbes),
+    ("verification failed", |_| FlashError::NotVerified),
+    ("failed to open", FlashError::NotOpened),
+    ("probe could not be created", FlashError::NotOpened),
+    ("locked", FlashError::Protected),
+    ("not found in the database", |_| FlashError::UnknownChip),
+    ("unable to load specification", |_| FlashError::UnknownChip),
+    ("connecting to the chip", FlashError::NoChip),
+];
+
+impl FlashError {
+    /// The meaning of an output that ended badly.
+    pub(super) fn of(output: &Output) -> Self {
+        let told = told(output);
+        let small = told.to_lowercase();
+        let meaning = SAYS.iter().find(|(says, _)| small.contains(says));
+        match meaning {
+            Some((_, error)) => error(told),
+            None => Self::Other(told),
+        }
+    }
+
+    /// An output that cannot be understood.
+    pub(super) fn other(output: &Output) -> Self {
+        Self::Other(told(output))
+    }
+
+    /// What to do about it.
+    #[must_use]
+    pub fn cure(&self) -> String {
+        match self {
+            Self::NoProgram(_) => {
+                return format!(
+                    "install it: `cargo install probe-rs-tools --locked`, or name it in {PROGRAM_VARIABLE}"
+                );
+            }
+            Self::NotStarted(_) => "see that the program may be run",
+            Self::NoProbe => {
+                "plug the board in at its ST-LINK connector with a cable that carries data; on Linux allow its use: \
+                 https://probe.rs/docs/getting-started/probe-setup/"
+            }
+            Self::SeveralProbes => "name one with --probe; `probe-rs list` shows them",
+            Self::NotOpened(_) => {
+                "end other programs that use the debugger; on Linux allow its use: \
+                 https://probe.rs/docs/getting-started/probe-setup/"
+            }
+            Self::NoChip(_) => "see that the board is powered and its ST-LINK jumpers are set",
+            Self::OtherChip(_) => "use a NUCLEO-G474RE; the image fits no other chip",
+            Self::Protected(_) => {
+                "lift the protection with STM32CubeProgrammer (RDP level 0), which erases the chip"
+            }
+            Self::NotVerified => "flash again; if it stays, the chip's flash is worn out",
+            Self::UnknownChip => "install a newer one: `cargo install probe-rs-tools --locked`",
+            Self::Other(_) => "run `probe-rs info` to see what it reaches",
+        }
+        .into()
+    }
+}
+
+/// The lines that are not empty, of both outputs; errors are the last to be told.
+fn told(output: &Output) -> String {
+    let text = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes));
+    let lines = text.iter().flat_map(|text| text.lines());
+    let lines: Vec<&str> = lines
+        .map(str::trim)
+        .filter(|line| !line.is_empty())
+        .collect();
+    lines.join("; ")
+}

@@ -1,0 +1,55 @@
+//! A tension as a bar between its bounds.
+
+use ratatui::style::{Color, Style};
+use ratatui::text::Span;
+
+/// How far beyond the ceiling a bar reaches, as a part of it.
+const BEYOND: f32 = 1.1;
+
+/// Distance from a bound at which a bar warns, as a part of the ceiling.
+const NEAR: f32 = 0.03;
+
+/// A bar of `width` places: full up to the value, with a mark at either bound.
+pub(super) fn bar(value: f32, [floor, ceiling]: [f32; 2], width: usize) -> Span<'static> {
+    let place = |at: f32| (at / (ceiling * BEYOND) * width as f32).round() as usize;
+    let (full, marks) = (place(value), [place(floor), place(ceiling)]);
+    let text: String = (0..width)
+        .map(|at| match (marks.contains(&at), at < full) {
+            (true, true) => '┃',
+            (true, false) => '│',
+            (false, true) => '█',
+            (false, false) => '·',
+        })
+        .collect();
+    Span::styled(text, Style::new().fg(colour(value, [floor, ceiling])))
+}
+
+fn colour(value: f32, [floor, ceiling]: [f32; 2]) -> Color {
+    let near = NEAR * ceiling;
+    if value < floor || value > ceiling {
+        Color::Red
+    } else if value < floor + near || value > ceiling - near {
+        Color::Yellow
+    } else {
+        Color::Green
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bar;
+    use ratatui::style::Color;
+
+    #[test]
+    fn the_bounds_are_marked() {
+        let shown = |value| bar(value, [8.0, 150.0], 33);
+        assert_eq!(shown(0.0).content, "··│···························│··");
+        assert_eq!(
+            shown(75.0).content,
+            "██┃████████████·· ·············│··".replace(' ', "")
+        );
+        let colours = [0.0, 9.0, 75.0, 160.0].map(|value| shown(value).style.fg);
+        let expected = [Color::Red, Color::Yellow, Color::Green, Color::Red];
+        assert_eq!(colours, expected.map(Some));
+    }
+}

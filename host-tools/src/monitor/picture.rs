@@ -1,0 +1,86 @@
+//! The leg at a time, with what follows from what it tells.
+
+use super::sag::Sagging;
+use crate::leg_report::LegReport;
+use leg_firmware::settings::Settings;
+use leg_firmware::telemetry::Telemetry;
+use serde::Serialize;
+
+/// What is shown of a leg.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    title: String,
+    bounds_n: [f32; 2],
+    sagging: Option<Sagging>,
+    telemetry: Option<Telemetry<f32>>,
+}
+
+/// A line of JSON.
+#[derive(Serialize)]
+struct Line<'a> {
+    #[serde(flatten)]
+    report: LegReport,
+    moving: bool,
+    target: [f32; 2],
+    target_tensions_n: [f32; 3],
+    pulled_m: [f32; 3],
+    residual_m: f32,
+    sag_m: Option<f64>,
+    tension_bounds_n: &'a [f32; 2],
+}
+
+impl Picture {
+    /// A leg that has told nothing yet; `title` says which.
+    #[must_use]
+    pub fn new(title: &str, settings: &Settings) -> Self {
+        Self {
+            title: title.into(),
+            bounds_n: [settings.tension_floor_n, settings.tension_ceiling_n],
+            sagging: Sagging::new(settings),
+            telemetry: None,
+        }
+    }
+
+    /// Takes what the leg tells.
+    pub fn take(&mut self, telemetry: &Telemetry<f32>) {
+        self.telemetry = Some(*telemetry);
+    }
+
+    /// A line of JSON, without its end; none before the leg has told anything.
+    ///
+    /// # Errors
+    /// Numbers without a form in JSON.
+    pub fn json(&self) -> Result<Option<String>, serde_json::Error> {
+        let Some(telemetry) = &self.telemetry else {
+            return Ok(None);
+        };
+        serde_json::to_string(&Line {
+            report: LegReport::of(telemetry),
+            moving: telemetry.moving,
+            target: telemetry.target,
+            target_tensions_n: telemetry.target_tensions_n,
+            pulled_m: telemetry.pulled_m,
+            residual_m: telemetry.residual_m,
+            sag_m: self.sag_m(),
+            tension_bounds_n: &self.bounds_n,
+        })
+        .map(Some)
+    }
+
+    pub(super) fn title(&self) -> &str {
+        &self.title
+    }
+
+    pub(super) fn bounds_n(&self) -> [f32; 2] {
+        self.bounds_n
+    }
+
+    pub(super) fn telemetry(&self) -> Option<&Telemetry<f32>> {
+        self.telemetry.as_ref()
+    }
+
+    /// How far the tip would sag without compensation, m.
+    pub(super) fn sag_m(&self) -> Option<f64> {
+        self.sagging.as_ref()?.sag_m(self.telemetry.as_ref()?)
+    }
+}

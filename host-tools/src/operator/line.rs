@@ -1,0 +1,104 @@
+//! Frames on a transport.
+
+use super::OperatorError;
+use crate::transport::Transport;
+use leg_firmware::frame::{self, Decoder, MAX_FRAME};
+use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest};
+use std::collections::VecDeque;
+use std::io;
+use std::time::Duration;
+
+/// A transport with its frames, and the numbers of the requests.
+pub(super) struct Line {
+    transport: Box<dyn Transport>,
+    decoder: Decoder,
+    sequence: u16,
+    /// Messages that came and were not looked at yet.
+    messages: VecDeque<(u16, HostReply)>,
+    /// Frames that could not be read.
+    pub damaged: u64,
+}
+
+impl Line {
+    pub fn new(transport: Box<dyn Transport>, sequence: u16) -> Self {
+        Self {
+            transport,
+            decoder: Decoder::new(),
+            sequence,
+            messages: VecDeque::new(),
+            damaged: 0,
+        }
+    }
+
+    pub fn name(&self) -> String {
+        self.transport.name().into()
+    }
+
+    pub fn now(&self) -> Duration {
+        self.transport.now()
+    }
+
+    pub fn clock_is_emulated(&self) -> bool {
+        self.transport.clock_is_emulated()
+    }
+
+    /// Sends a request and returns its number. It is never 0: that is of what the leg says by itself.
+    pub fn send(&mut self, request: &HostRequest) -> Result<u16, OperatorError> {
+        self.sequence = self.sequence.checked_add(1).unwrap_or(1);
+        let mut out = [0; MAX_FRAME];
+        let bytes = frame::encode(self.sequence, request, &mut out)?;
+        let sent = self.transport.send(bytes);
+        sent.map_err(|source| self.broken(source))?;
+        Ok(self.sequence)
+    }
+
+    /// The next message with its number; none if none came in time. Looks once even where there is no time left.
+    pub fn receive(&mut self, until: Duration) -> Result<Option<(u16, HostReply)>, OperatorError> {
+        loop {
+            if let Some(message) = self.messages.pop_front() {
+                return Ok(Some(message));
+            }
+            let left = until.saturating_sub(self.now());
+            let mut bytes = [0; MAX_FRAME];
+            match self.transport.receive(&mut bytes, left) {
+                Ok(0) => return Err(self.broken(io::ErrorKind::UnexpectedEof.into())),
+                Ok(count) => self.take(bytes.get(..count).unwrap_or_default()),
+                Err(error) if error.kind() == io::ErrorKind::TimedOut => return Ok(None),
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(source) => return Err(self.broken(source)),
+            }
+        }
+    }
+
+    fn take(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            let message = match self.decoder.push(byte) {
+                None => continue,
+                Some(Ok(frame)) => frame.message().map(|reply| (frame.sequence, reply)),
+                Some(Err(_)) => None,
+            };
+            match message {
+                Some(message) => self.messages.push_back(message),
+                None => self.damaged += 1,
+            }
+        }
+    }
+
+    fn broken(&self, source: io::Error) -> OperatorError {
+        OperatorError::Broken {
+            name: self.name(),
+            source,
+        }
+    }
+
+    /// The error of a refusal.
+    pub fn refused(&self, asked: &'static str, refusal: HostRefusal) -> OperatorError {
+        match refusal {
+            HostRefusal::SchemaMismatch { schema } => OperatorError::OtherSchema {
+                name: self.name(),
+                firmware: schema,
+            },
+            refusal => OperatorError::Refused { asked, refusal },
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! Why a leg refuses a host, in words.
+
+use leg_firmware::host_link::HostRefusal;
+use leg_firmware::settings::SettingsError;
+
+/// What is wrong, and what to do about it.
+#[must_use]
+pub(super) fn words(refusal: &HostRefusal) -> [String; 2] {
+    let [wrong, cure] = match refusal {
+        HostRefusal::Settings(error) => {
+            return [format!("the settings are refused: {error}"), cure(error)];
+        }
+        HostRefusal::BadFrame(error) => {
+            return [
+                format!("a frame was damaged on the way: {error}"),
+                "check cable and baud rate, then command again".into(),
+            ];
+        }
+        HostRefusal::Command(refusal) => refusal.words(),
+        HostRefusal::SchemaMismatch { .. } => [
+            "the firmware speaks another protocol",
+            "build and flash it from the sources of this program: `leg flash`",
+        ],
+        HostRefusal::NotIdentified => [
+            "the board has started anew and does not know this host",
+            "look with `leg monitor` why, then command again",
+        ],
+        HostRefusal::BadRequest => [
+            "the request is not known to the firmware",
+            "build and flash it from the sources of this program: `leg flash`",
+        ],
+        HostRefusal::Busy => [
+            "too many commands wait for their tick",
+            "command more slowly",
+        ],
+        HostRefusal::OtherHost => [
+            "another host drives the leg",
+            "end that one, or `leg stop`, which any host may do",
+        ],
+        HostRefusal::Driven => [
+            "settings change and are kept only while the drivers are off",
+            "run `leg disarm` first",
+        ],
+        HostRefusal::NotSaved => [
+            "the board could not keep the settings",
+            "save again; they are in use until the board starts anew",
+        ],
+    };
+    [wrong.into(), cure.into()]
+}
+
+fn cure(error: &SettingsError) -> String {
+    match error {
+        SettingsError::Model(_) => "correct the rig file; `leg rig validate` shows the place",
+        SettingsError::OutOfRange(_) => "give a value inside the range",
+        SettingsError::Calibration { .. } => "calibrate that axis anew: `leg calibrate`",
+    }
+    .into()
+}

@@ -1,0 +1,226 @@
+//! The settings of a board as a rig file that gives the same bits again.
+
+mod number;
+
+use crate::support_name::SupportName;
+use leg_firmware::messages::{TendonMessage, TendonsMessage};
+use leg_firmware::sensors::CODE_MAX;
+use leg_firmware::settings::{AxisCalibration, SECTIONS, Settings};
+use leg_model::SupportKind;
+pub use number::number;
+use number::{millimetres, through};
+
+const HEADING: &str = "# What a board is set to, as a rig file. The geometry of an elastic joint is not on the board: its stiffness stands \
+here as if it\n# had been measured.\n";
+
+/// The text of a rig file.
+#[must_use]
+pub fn rig_file(settings: &Settings) -> String {
+    [
+        HEADING.into(),
+        geometry(settings),
+        mass(settings),
+        tendon(settings),
+        workspace(settings),
+        support(settings),
+        control(settings),
+        actuator(settings),
+        calibration(&settings.axes),
+    ]
+    .concat()
+}
+
+fn list(numbers: impl IntoIterator<Item = String>) -> String {
+    let numbers: Vec<String> = numbers.into_iter().collect();
+    format!("[{}]", numbers.join(", "))
+}
+
+fn geometry(settings: &Settings) -> String {
+    let rig = &settings.rig;
+    let anchors = |points: [[f32; 2]; 3]| list(points.map(|point| list(point.map(millimetres))));
+    format!(
+        "\n[geometry]\nupper_mm = {}\njoint_mm = {}\nleg_mm = {}\nbase_anchors_mm = {}\nleg_anchors_mm = {}\n",
+        millimetres(rig.upper_length_m),
+        millimetres(rig.joint_length_m),
+        millimetres(rig.leg_length_m),
+        anchors(rig.base_anchors_m),
+        anchors(rig.leg_anchors_m),
+    )
+}
+
+fn mass(settings: &Settings) -> String {
+    let rig = &settings.rig;
+    format!(
+        "\n[mass]\nleg_kg = {}\ncentroid_mm = {}\ngravity_m_per_s2 = {}\n",
+        number(rig.leg_mass_kg),
+        millimetres(rig.leg_centroid_m),
+        number(rig.gravity_m_per_s2),
+    )
+}
+
+fn tendon(settings: &Settings) -> String {
+    let bounds = format!(
+        "\n[tendon]\nfloor_n = {}\nceiling_n = {}\nlevel_n = {}\n",
+        number(settings.tension_floor_n),
+        number(settings.tension_ceiling_n),
+        number(settings.level_n),
+    );
+    let curves = "# Where a tendon's stiffness is read for the linear deviation; the board has no use for it.\n\
+                  stiffness_at = \"pretension\"\n";
+    match &settings.tendons {
+        TendonsMessage::Alike(TendonMessage::Constant(stiffness)) => {
+            format!("{bounds}stiffness_n_per_m = {}\n", number(*stiffness))
+        }
+        TendonsMessage::Alike(tendon) => [bounds, curves.into(), curve("curve", tendon)].concat(),
+        TendonsMessage::Each(tendons) => {
+            let each = ["curve_1", "curve_2", "curve_3"].into_iter().zip(tendons);
+            let each: String = each.map(|(name, tendon)| curve(name, tendon)).collect();
+            [bounds, curves.into(), each].concat()
+        }
+    }
+}
+
+fn curve(name: &str, tendon: &TendonMessage) -> String {
+    let TendonMessage::Curve(points) = tendon else {
+        return String::new();
+    };
+    format!(
+        "\n[tendon.{name}]\ntension_n = {}\nelongation_mm = {}\nstiffness_n_per_m = {}\n",
+        list(points.iter().map(|point| number(point.tension_n))),
+        list(points.iter().map(|point| millimetres(point.elongation_m))),
+        list(points.iter().map(|point| number(point.stiffness_n_per_m))),
+    )
+}
+
+fn workspace(settings: &Settings) -> String {
+    let sine = settings.tilt_max_sine;
+    let tilt_deg = through(f64::from(sine).asin().to_degrees(), sine, |tilt_deg| {
+        tilt_deg.to_radians().sin()
+    });
+    format!("\n[workspace]\ntilt_deg = {tilt_deg}\n")
+}
+
+fn support(settings: &Settings) -> String {
+    let joint = &settings.support.joint;
+    let elastic = joint.bending_nm_per_rad > 0.0;
+    let name = match (settings.support.kind, elastic) {
+        (SupportKind::TorsionFree, _) => SupportName::TorsionFree,
+        (SupportKind::Universal, _) => SupportName::Universal,
+        (SupportKind::Spherical, false) => SupportName::Spherical,
+        (SupportKind::Spherical, true) => SupportName::CompliantPivot,
+        (SupportKind::ElasticUniversal, _) => SupportName::ElasticRodUniversal,
+    };
+    let mut text = format!("\n[support]\nkind = \"{}\"\n", name.word());
+    if elastic {
+        text += &format!(
+            "bending_nm_per_rad = {}\ntorsion_nm_per_rad = {}\n",
+            number(joint.bending_nm_per_rad),
+            number(joint.torsion_nm_per_rad)
+        );
+    }
+    let compliance = joint.axial_compliance_m_per_n;
+    if compliance > 0.0 {
+        let stiffness = through(f64::from(compliance).recip(), compliance, f64::recip);
+        text += &format!("axial_n_per_m = {stiffness}\n");
+    }
+    text
+}
+
+fn control(settings: &Settings) -> String {
+    let values: [Vec<f32>; 5] = [
+        settings.motion.values().into(),
+        settings.servo.values().into(),
+        settings.estimation.values().into(),
+        settings.limits.values().into(),
+        settings.homing.values().into(),
+    ];
+    let sections = SECTIONS.iter().zip(values);
+    sections
+        .map(|((name, fields), values)| {
+            let lines: String = fields
+                .iter()
+                .zip(values)
+                .map(|(field, value)| format!("{} = {}\n", field.name, number(value)))
+                .collect();
+            format!("\n[control.{name}]\n{lines}")
+        })
+        .collect()
+}
+
+fn actuator(settings: &Settings) -> String {
+    let codes = f64::from(CODE_MAX);
+    let board = &settings.board;
+    let supply_v = through(
+        f64::from(board.supply_v_per_code) * codes,
+        board.supply_v_per_code,
+        |range| range / codes,
+    );
+    let cold_c = number(board.temperature_at_zero_c);
+    let cold: f64 = cold_c.parse().unwrap_or_default();
+    let hot_c = through(
+        cold + f64::from(board.temperature_c_per_code) * codes,
+        board.temperature_c_per_code,
+        |hot| (hot - cold) / codes,
+    );
+    format!(
+        "\n# Only what the board knows of its sensors; what else there is of the actuators is by default.\n[actuator]\n\
+         supply_range_v = {supply_v}\ntemperature_range_c = [{cold_c}, {hot_c}]\n"
+    )
+}
+
+fn calibration(axes: &[AxisCalibration; 3]) -> String {
+    let each = |of: fn(&AxisCalibration) -> f32| list(axes.each_ref().map(|axis| number(of(axis))));
+    format!(
+        "\n[calibration]\nm_per_count = {}\ncounts_sign = {}\ncell_n_per_code = {}\ncell_zero_code = {}\n\
+         current_a_per_code = {}\n",
+        each(|axis| axis.m_per_count.abs()),
+        each(|axis| axis.m_per_count.signum()),
+        each(|axis| axis.cell_n_per_code),
+        each(|axis| axis.cell_zero_code),
+        each(|axis| axis.current_a_per_code),
+    )
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::rig_file;
+    use crate::control_settings;
+    use crate::ready_rigs::READY_RIGS;
+    use crate::rig_file::RigFile;
+    use leg_firmware::settings::Settings;
+
+    fn settings(file: &str, text: &str) -> Settings {
+        let rig = RigFile::parse(file, text).unwrap();
+        control_settings::settings(&rig, &rig.gains, None)
+    }
+
+    #[test]
+    fn the_text_gives_the_same_bits_again() {
+        for rig in READY_RIGS {
+            let before = settings(rig.name, rig.text);
+            let text = rig_file(&before);
+            assert_eq!(settings("text", &text), before, "{}:\n{text}", rig.name);
+        }
+    }
+
+    #[test]
+    fn odd_numbers_give_the_same_bits_again() {
+        let mut rng = fastrand::Rng::with_seed(7);
+        for _ in 0..200 {
+            let mut before = settings(READY_RIGS[0].name, READY_RIGS[0].text);
+            let mut spread = |value: &mut f32| *value *= 1.0 + 0.01 * rng.f32();
+            spread(&mut before.rig.leg_length_m);
+            spread(&mut before.tilt_max_sine);
+            spread(&mut before.limits.following_m);
+            spread(&mut before.board.supply_v_per_code);
+            spread(&mut before.board.temperature_c_per_code);
+            for axis in &mut before.axes {
+                axis.m_per_count = -axis.m_per_count;
+                spread(&mut axis.m_per_count);
+                spread(&mut axis.cell_zero_code);
+            }
+            assert_eq!(settings("text", &rig_file(&before)), before);
+        }
+    }
+}

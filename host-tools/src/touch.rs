@@ -1,0 +1,81 @@
+//! What is done to an emulated leg from outside, as a line of JSON: `{"payload":{"kg":2}}`.
+
+use crate::plant::{Fault, Plant};
+use serde::Deserialize;
+
+/// One thing that is done. Motors and load cells are counted from 1.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Touch {
+    /// Changes the payload, at once or over a time.
+    Payload {
+        /// kg.
+        kg: f64,
+        /// s.
+        #[serde(default)]
+        over_s: f64,
+    },
+    /// Lets something fail.
+    Fault(Fault),
+    /// Mends it.
+    Repair(Fault),
+    /// Presses the emergency stop, or lets it go.
+    EmergencyStop(bool),
+    /// Turns a motor by hand, one turn a second; a positive turn pulls its tendon in.
+    Turn {
+        /// The motor.
+        motor: usize,
+        /// Turns.
+        turns: f64,
+    },
+    /// Hangs a weight on a load cell in the place of its tendon, or puts the tendon back.
+    Hang {
+        /// The load cell.
+        cell: usize,
+        /// Its weight, N; none is the tendon.
+        newtons: Option<f64>,
+    },
+}
+
+impl Touch {
+    /// The one of a line.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn parse(line: &str) -> Result<Self, String> {
+        serde_json::from_str(line).map_err(|error| error.to_string())
+    }
+
+    /// Does it.
+    pub fn apply(&self, plant: &mut Plant) {
+        match *self {
+            Self::Payload { kg, over_s } => plant.set_payload(kg, over_s),
+            Self::Fault(fault) => plant.set_fault(fault, true),
+            Self::Repair(fault) => plant.set_fault(fault, false),
+            Self::EmergencyStop(pressed) => plant.press_emergency_stop(pressed),
+            // None of them is number 0, and none the greatest number.
+            Self::Turn { motor, turns } => plant.turn_motor(motor.wrapping_sub(1), turns),
+            Self::Hang { cell, newtons } => plant.hang_on_cell(cell.wrapping_sub(1), newtons),
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::Touch;
+    use crate::plant::Fault;
+
+    #[test]
+    fn a_line_is_one_thing() {
+        let turn = Touch::parse(r#"{"turn":{"motor":2,"turns":-0.5}}"#).unwrap();
+        let expected = Touch::Turn {
+            motor: 2,
+            turns: -0.5,
+        };
+        assert_eq!(turn, expected);
+        let fault = Touch::parse(r#"{"fault":{"driver_fault":1}}"#).unwrap();
+        assert_eq!(fault, Touch::Fault(Fault::DriverFault(0)));
+        assert!(Touch::parse(r#"{"turn":{"motor":2}}"#).is_err());
+    }
+}
