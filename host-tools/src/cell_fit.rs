@@ -76,7 +76,7 @@ pub fn fit(weighings: &[Weighing]) -> Result<CellFit, CellFitError> {
         together += heavier * higher;
         span = span.max(higher.abs());
     }
-    if !(spread > 0.0) {
+    if spread <= 0.0 {
         return Err(CellFitError::OneWeight);
     }
     if span < SPAN_MIN {

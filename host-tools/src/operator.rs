@@ -6,6 +6,7 @@ mod ending;
 mod error;
 mod interrupt;
 mod line;
+mod looking;
 mod refusal;
 mod settings;
 mod telemetry;

@@ -7,7 +7,8 @@ use leg_firmware::messages::{TendonMessage, TendonsMessage};
 use leg_firmware::sensors::CODE_MAX;
 use leg_firmware::settings::{AxisCalibration, SECTIONS, Settings};
 use leg_model::SupportKind;
-use number::{millimetres, number, through};
+pub use number::number;
+use number::{millimetres, through};
 
 const HEADING: &str = "# What a board is set to, as a rig file. The geometry of an elastic joint is not on the board: its stiffness stands \
 here as if it\n# had been measured.\n";

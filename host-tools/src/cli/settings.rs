@@ -6,7 +6,6 @@ use super::print;
 use crate::atomic_file;
 use crate::control_settings;
 use crate::failure::Failure;
-use crate::fields::{decimal, plain};
 use crate::operator::{Difference, Operator, differences};
 use crate::rig_file::RigFile;
 use crate::settings_text;
@@ -162,7 +161,7 @@ fn value_words(value: &Option<Value>) -> String {
         // The shortest decimal of an f32, which a JSON number does not tell.
         Some(Value::Number(number)) => number.as_f64().map_or_else(
             || number.to_string(),
-            |number| plain(decimal(number as f32)),
+            |value| settings_text::number(value as f32),
         ),
         Some(value) => value.to_string(),
     }

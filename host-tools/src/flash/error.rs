@@ -41,8 +41,11 @@ pub enum FlashError {
     Other(String),
 }
 
+/// An error from what was said.
+type Meaning = fn(String) -> FlashError;
+
 /// What probe-rs says, in small letters, and what it means.
-const SAYS: [(&str, fn(String) -> FlashError); 10] = [
+const SAYS: [(&str, Meaning); 10] = [
     ("no connected probes", |_| FlashError::NoProbe),
     ("probe not found", |_| FlashError::NoProbe),
     ("probes were found", |_| FlashError::SeveralProbes),

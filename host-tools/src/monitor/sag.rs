@@ -27,7 +27,7 @@ impl Sagging {
     /// The deviation of the tip under the leg's own weight and the payload, at the pose and the level that the board tells,
     /// m; none while it tells no level.
     pub fn sag_m(&self, telemetry: &Telemetry<f32>) -> Option<f64> {
-        if !(telemetry.level_n > 0.0) {
+        if telemetry.level_n <= 0.0 {
             return None;
         }
         let [x, y] = telemetry.pose.map(f64::from);

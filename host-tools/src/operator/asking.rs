@@ -1,5 +1,6 @@
 //! Requests and their replies.
 
+use super::looking::Seen;
 use super::{Operator, OperatorError};
 use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest, Told};
@@ -40,10 +41,8 @@ impl Operator {
         let before = self.drives;
         // From the moment that it is sent the leg may obey.
         self.drives |= !ends;
-        self.spoke_at = self.now();
-        match self.ask(asked, &request, repeat(&command)) {
-            Ok(HostReply::Done) => Ok(()),
-            Ok(_) => Err(OperatorError::WrongReply { asked }),
+        match self.ask_and_look(asked, &request, &command) {
+            Ok(()) => Ok(()),
             Err(error) => {
                 if let OperatorError::Refused { refusal, .. } = &error {
                     self.drives = before;
@@ -55,6 +54,30 @@ impl Operator {
                 Err(error)
             }
         }
+    }
+
+    /// Sends a command. One without an answer that must not be done later than asked is sent once more only after a look at
+    /// the leg.
+    fn ask_and_look(
+        &mut self,
+        asked: &'static str,
+        request: &HostRequest,
+        command: &Command,
+    ) -> Result<(), OperatorError> {
+        for _ in 0..ATTEMPTS {
+            self.spoke_at = self.now();
+            match self.ask(asked, request, repeat(command)) {
+                Ok(HostReply::Done) => return Ok(()),
+                Ok(_) => return Err(OperatorError::WrongReply { asked }),
+                Err(OperatorError::Unanswered { .. }) => match self.look(command)? {
+                    Seen::Obeyed => return Ok(()),
+                    Seen::Lost => {}
+                    Seen::Unclear => break,
+                },
+                Err(error) => return Err(error),
+            }
+        }
+        Err(OperatorError::Unanswered { asked })
     }
 
     /// What the leg tells of itself now.

@@ -1,5 +1,6 @@
 //! Moving the leg, and leaving it in hold.
 
+use super::looking::near;
 use super::{Operator, OperatorError};
 use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::host_link::HostRefusal;
@@ -15,9 +16,6 @@ const MOVE_TIME: Duration = Duration::from_secs(60);
 
 /// How long the leg has to be settled.
 const SETTLED_TIME: Duration = Duration::from_millis(300);
-
-/// Distance of the estimated direction from its target below which a leg is settled: 0.03°.
-const SETTLED: f32 = 5e-4;
 
 /// Distance of every tension from its target below which a leg is settled, N.
 const SETTLED_N: f32 = 2.0;
@@ -116,8 +114,8 @@ impl Operator {
             if let Some([x, y]) = goal.direction {
                 operator.command(Command::Move { x, y })?;
             }
-            let telemetry = operator.settle(asked)?;
-            unlimited(asked, &telemetry)
+            let telemetry = unlimited(asked, &operator.settle(asked)?)?;
+            arrived(goal, &telemetry)
         })
     }
 
@@ -219,12 +217,23 @@ fn settled(before: &Telemetry<f32>, now: &Telemetry<f32>) -> bool {
     !now.moving
         && steady(|telemetry| telemetry.level_n)
         && steady(|telemetry| telemetry.stiffness_nm_per_rad)
-        && near(&now.pose, &now.target, SETTLED)
-        && near(&now.tensions_n, &now.target_tensions_n, SETTLED_N)
+        && near(&now.pose, &now.target)
+        && taut(&now.tensions_n, &now.target_tensions_n)
 }
 
-fn near<const N: usize>(a: &[f32; N], b: &[f32; N], distance: f32) -> bool {
-    a.iter().zip(b).all(|(a, b)| (a - b).abs() <= distance)
+fn taut(measured_n: &[f32; 3], target_n: &[f32; 3]) -> bool {
+    let mut pairs = measured_n.iter().zip(target_n);
+    pairs.all(|(measured, target)| (measured - target).abs() <= SETTLED_N)
+}
+
+/// Whether the leg is where it shall be: a board may give up a way that it cannot plan.
+fn arrived(goal: &Goal, telemetry: &Telemetry<f32>) -> Result<Telemetry<f32>, OperatorError> {
+    match &goal.direction {
+        Some(direction) if !near(&telemetry.target, direction) => Err(OperatorError::Elsewhere {
+            pose: telemetry.pose,
+        }),
+        _ => Ok(*telemetry),
+    }
 }
 
 fn unlimited(

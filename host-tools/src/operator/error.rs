@@ -2,6 +2,7 @@
 
 use super::refusal;
 use crate::failure::Failure;
+use crate::leg_report::pose_words;
 use crate::words;
 use leg_firmware::frame::FrameError;
 use leg_firmware::host_link::HostRefusal;
@@ -89,6 +90,12 @@ pub enum OperatorError {
         /// What it does now.
         state: State,
     },
+    /// The leg came to rest somewhere else.
+    #[error("the leg did not move there: it came to rest at {}", pose_words(*.pose))]
+    Elsewhere {
+        /// Where it points: horizontal components.
+        pose: [f32; 2],
+    },
     /// It is not known whether the leg obeys.
     #[error("the leg did not say whether it will {asked}")]
     Unanswered {
@@ -172,6 +179,7 @@ impl OperatorError {
                 words::cures(*faults)
             ),
             Self::Overtaken { .. } => "look why, then command again".into(),
+            Self::Elsewhere { .. } => "go there by way of other poses".into(),
             Self::Unanswered { .. } => {
                 "look at the cable, and with `leg monitor` at what the leg does".into()
             }
@@ -192,6 +200,7 @@ impl OperatorError {
             Self::Failed { .. }
                 | Self::Limited { .. }
                 | Self::Overtaken { .. }
+                | Self::Elsewhere { .. }
                 | Self::NotStopped { .. }
                 | Self::Late { .. }
                 | Self::ReadBack { .. }

@@ -78,10 +78,5 @@ pub fn around_telemetry<T>(
     file: &Path,
     work: impl FnOnce(&mut TelemetryFile) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
-    whole(
-        file,
-        |new, format| TelemetryFile::create(new, format),
-        work,
-        TelemetryFile::finish,
-    )
+    whole(file, TelemetryFile::create, work, TelemetryFile::finish)
 }

@@ -81,3 +81,47 @@ fn work_that_fails_leaves_no_recording() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     assert!(replay(&file).is_err());
 }
+
+#[test]
+fn telemetry_alone_is_recorded_with_the_legs_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut told = Vec::new();
+    let text = ready_scenarios::named("fault_driver_fault").unwrap().text;
+    let scenario = Scenario::parse("test", text).unwrap();
+    let rig = RigFile::load(None).unwrap();
+    let simulation = Simulation::new(&scenario, &rig).unwrap();
+    let watch = &mut |tick: &Tick<'_>| told.push(*tick.telemetry);
+    simulation
+        .run(&mut InThisProcess::default(), watch)
+        .unwrap();
+    for name in ["leg.mcap", "leg.csv"] {
+        let file = folder.path().join(name);
+        super::around_telemetry(&file, |recorder| {
+            for telemetry in &told {
+                recorder.take(telemetry).unwrap();
+            }
+            Ok(())
+        })
+        .unwrap();
+    }
+    let bytes = std::fs::read(folder.path().join("leg.mcap")).unwrap();
+    let messages: Vec<_> = mcap::MessageStream::new(&bytes)
+        .unwrap()
+        .map(Result::unwrap)
+        .collect();
+    assert_eq!(messages.len(), told.len());
+    let last = messages.last().unwrap();
+    assert_eq!(last.channel.topic, "/leg");
+    let tick = told.last().unwrap().tick;
+    assert_eq!(last.log_time, u64::from(tick) * 125_000);
+    let value: serde_json::Value = serde_json::from_slice(&last.data).unwrap();
+    assert_eq!(value["tick"], tick);
+    let mut rows = csv::Reader::from_path(folder.path().join("leg.csv")).unwrap();
+    assert!(
+        rows.headers()
+            .unwrap()
+            .iter()
+            .any(|name| name == "tensions_n_2")
+    );
+    assert_eq!(rows.records().count(), told.len());
+}

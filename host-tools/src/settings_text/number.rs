@@ -1,7 +1,8 @@
 //! Numbers in the units of a file that give the bits of an f32 again.
 
-/// An f32 as it is.
-pub(super) fn number(value: f32) -> String {
+/// The shortest text of an f32.
+#[must_use]
+pub fn number(value: f32) -> String {
     through(f64::from(value), value, |value| value)
 }
 

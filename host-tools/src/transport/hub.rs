@@ -86,10 +86,7 @@ pub fn start(tty: TTYPort, port: &str) -> io::Result<Client> {
     welcome(hubs, &clients, &to_board)?;
     let listening = Arc::clone(&clients);
     thread::spawn(move || listen(&listener, &listening, &to_board));
-    thread::spawn(move || {
-        pass_on_from_board(tty, &clients);
-        let _ = std::fs::remove_file(&place);
-    });
+    thread::spawn(move || pass_on_from_board(tty, &clients));
     Ok(Client(own))
 }
 

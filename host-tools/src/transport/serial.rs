@@ -13,7 +13,7 @@ const BAUD: u32 = 921_600;
 const STEP_TIME: Duration = Duration::from_millis(100);
 
 /// How long a port is tried that another program of this kind is about to open or to leave.
-const OPEN_TIME: Duration = Duration::from_millis(500);
+const OPEN_TIME: Duration = Duration::from_secs(2);
 
 /// Vendor of the debugger on the board.
 const ST: u16 = 0x0483;
@@ -133,29 +133,35 @@ impl Transport for Serial {
     }
 
     fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
-        match self.client.send(bytes) {
-            Err(error) if hub::ended(&error) => {
-                self.client = self.again()?;
-                self.client.send(bytes)
+        let until = Instant::now() + OPEN_TIME;
+        loop {
+            match self.client.send(bytes) {
+                Err(error) if hub::ended(&error) && Instant::now() < until => {
+                    self.client = self.again()?;
+                }
+                result => return result,
             }
-            result => result,
         }
     }
 
     fn receive(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize> {
-        match self.client.receive(bytes, timeout) {
-            Ok(0) if !bytes.is_empty() => {
-                self.client = self.again()?;
-                self.client.receive(bytes, timeout)
+        let until = Instant::now() + OPEN_TIME;
+        loop {
+            match self.client.receive(bytes, timeout) {
+                Ok(0) if !bytes.is_empty() && Instant::now() < until => {
+                    self.client = self.again()?;
+                }
+                result => return result,
             }
-            result => result,
         }
     }
 }
 
 impl Serial {
-    /// Goes on after the program that had the port has ended. What was on its way is lost.
+    /// Goes on after the program that had the port has ended. What was on its way is lost. A program that is about to end may
+    /// still let another join.
     fn again(&self) -> io::Result<Client> {
+        std::thread::sleep(Duration::from_millis(1));
         join(&self.port).map_err(io::Error::other)
     }
 }
