@@ -136,6 +136,9 @@ fn run(seed: u64, rig: &RigFile) -> Result<(), String> {
         .run(&mut InThisProcess::default(), &mut |tick| watch.look(tick))
         .map_err(|error| error.to_string())?;
     let highest = summary.driven_max_n;
+    if let Some(words) = summary.stopped {
+        return Err(words);
+    }
     match watch.complaint {
         Some(complaint) => Err(complaint),
         None if highest > CEILING_N => Err(format!("a tension of {highest} N")),

@@ -49,6 +49,7 @@ fn every_ready_scenario_holds() {
             .filter(|finding| !finding.held())
             .collect();
         assert!(missed.is_empty(), "{}: {missed:?}", ready.name);
+        assert_eq!(summary.stopped, None, "{}", ready.name);
         let unexpected = &summary.unexpected;
         assert!(unexpected.is_empty(), "{}: {unexpected:?}", ready.name);
         assert!(
@@ -123,4 +124,51 @@ fn cells_and_curves_that_are_off_move_the_tip_by_as_much_as_is_said() {
     assert!(exact < 0.03, "{exact}");
     assert!(cells > 2.0 * exact && cells < 0.2, "{cells}");
     assert!(curves > 2.0 * exact && curves < 0.2, "{curves}");
+}
+
+/// Wherever the leg leans and whatever it carries, when a tendon is cut it swings no farther than README says.
+#[test]
+fn a_cut_tendon_lets_the_tip_swing_no_farther_than_is_said() {
+    let ready = ready_scenarios::named("fault_tension_jump").unwrap().text;
+    let (steps, _) = ready.split_once("[start.held]").unwrap();
+    let mut swings_mm = Vec::new();
+    for tendon in 1..=3 {
+        for azimuth in (0..360).step_by(40) {
+            for (tilt, payload) in [(0, 0.0), (15, 1.0), (30, 0.0), (30, 1.0), (30, 2.0)] {
+                let text = format!(
+                    "{}\n[start.held]\nazimuth_deg = {azimuth}\ntilt_deg = {tilt}\nlevel_n = 70\npayload_kg = {payload}\n",
+                    steps.replace("tendon_cut = 1", &format!("tendon_cut = {tendon}"))
+                );
+                let rig = RigFile::load(None).unwrap();
+                let scenario = Scenario::parse("cut", &text).unwrap();
+                // A pose that its payload does not allow at the level is no start.
+                let Ok(simulation) = Simulation::new(&scenario, &rig) else {
+                    continue;
+                };
+                let controller = &mut InThisProcess::default();
+                let summary = simulation.run(controller, &mut |_| ()).unwrap();
+                let moved = summary.findings.iter().find(|finding| finding.unit == "mm");
+                swings_mm.push((moved.unwrap().value, text));
+            }
+        }
+    }
+    assert!(swings_mm.len() > 100, "{} starts", swings_mm.len());
+    let (farthest, text) = swings_mm.iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
+    assert!((200.0..250.0).contains(farthest), "{farthest} mm:\n{text}");
+}
+
+/// A step that does not end stops a scenario, and what came out until then is kept.
+#[test]
+fn what_came_out_before_a_step_that_never_ends_is_kept() {
+    let text = "title = \"never\"\nsteps = [{ wait_s = 0.1 }, { measure = { name = \"level\", quantity = \"level_n\", between = [0, 0] } }, { await = { state = \"held\", timeout_s = 0.1 } }]";
+    let scenario = Scenario::parse("never", text).unwrap();
+    let (summary, bits) = run(&scenario, &mut InThisProcess::default());
+    let stopped = summary.stopped.clone().unwrap();
+    assert!(
+        stopped.starts_with("step 3: held did not come within 0.1 s"),
+        "{stopped}"
+    );
+    assert_eq!(summary.findings.len(), 1);
+    assert!(summary.findings[0].held() && !summary.held());
+    assert!(bits.len() > 1600 && !summary.samples.is_empty());
 }

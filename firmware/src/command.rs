@@ -45,7 +45,8 @@ pub enum Command {
     },
     /// Chooses the load that is held.
     Compensation(Compensation),
-    /// Stays where it is until a clear, whatever else is going on.
+    /// Stays where it is until a clear, before whatever waits. A leg that is not moving, or is letting its tendons out, does
+    /// not change by it.
     Stop,
     /// Relaxes the tendons and switches the drivers off.
     Disarm,

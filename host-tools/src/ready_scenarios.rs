@@ -23,6 +23,7 @@ pub const READY_SCENARIOS: &[ReadyScenario] = ready![
     "homing",
     "tour",
     "stiffness",
+    "stiffness_lean",
     "payload",
     "support",
     "hold",

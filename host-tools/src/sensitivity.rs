@@ -43,9 +43,10 @@ pub fn measure(
             let simulation = Simulation::new(&erring, rig)?;
             let ended = simulation.run(&mut InThisProcess::default(), &mut |_| ());
             let (tip_mm, stopped) = match ended {
-                Ok(summary) => match stopping(&summary) {
-                    None => (largest_mm(&summary), None),
-                    Some(fault) => (None, Some(fault.entry().name.into())),
+                Ok(summary) => match (stopping(&summary), &summary.stopped) {
+                    (None, None) => (largest_mm(&summary), None),
+                    (Some(fault), _) => (None, Some(fault.entry().name.into())),
+                    (None, Some(words)) => (None, Some(words.clone())),
                 },
                 Err(error) => (None, Some(error.to_string())),
             };

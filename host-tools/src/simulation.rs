@@ -73,10 +73,10 @@ impl Simulation {
         &self.settings
     }
 
-    /// Runs to the end of the scenario and calls `watch` after each tick.
+    /// Runs to the end of the scenario, or until a step does not end, and calls `watch` after each tick.
     ///
     /// # Errors
-    /// A [`SimulationError`]: settings or a link that fail, a step that never ends.
+    /// A [`SimulationError`]: settings or a link that fail.
     pub fn run(
         self,
         controller: &mut dyn Controller,
@@ -88,33 +88,53 @@ impl Simulation {
         let mut stage = Stage::new(&self.rig, self.plant, &self.scenario);
         let mut script = Script::new(&self.scenario);
         let mut divergence = Divergence::default();
-        while let Some(step) = script.advance(&mut stage)? {
-            if stage.time_s() > LONGEST_S {
-                return Err(SimulationError::Endless { step });
+        let stopped = loop {
+            let next = script.advance(&mut stage).and_then(|step| match step {
+                Some(step) if stage.time_s() > LONGEST_S => Err(SimulationError::Endless { step }),
+                Some(_) => {
+                    tick(controller, &mut shadow, &mut stage, &mut divergence, watch).map(Some)
+                }
+                None => Ok(None),
+            });
+            match next {
+                Ok(Some(())) => {}
+                Ok(None) => break None,
+                Err(error) if error.midway() => break Some(error.to_string()),
+                Err(error) => return Err(error),
             }
-            let sensors = stage.plant.sense();
-            let link = stage.outgoing();
-            let TickReply {
-                drive, telemetry, ..
-            } = controller.tick(&sensors, &link)?;
-            shadow.receive(&link);
-            let shadow_drive = shadow.leg().tick(&sensors);
-            divergence.compare(&drive, &telemetry, &shadow_drive, &shadow.leg().telemetry());
-            shadow.leg().take_over(&Drive {
-                duty: drive.duty.map(f64::from),
-                enabled: drive.enabled,
-            });
-            watch(&Tick {
-                sensors: &sensors,
-                link: &link,
-                drive: &drive,
-                telemetry: &telemetry,
-            });
-            stage.step(&drive, &telemetry)?;
-        }
+        };
         let (findings, expected) = script.findings();
-        Ok(stage.summary(findings, expected, divergence))
+        Ok(stage.summary(findings, expected, divergence, stopped))
     }
+}
+
+/// One tick of controller, shadow and simulated leg.
+fn tick(
+    controller: &mut dyn Controller,
+    shadow: &mut LinkedLeg<f64>,
+    stage: &mut Stage,
+    divergence: &mut Divergence,
+    watch: &mut dyn FnMut(&Tick<'_>),
+) -> Result<(), SimulationError> {
+    let sensors = stage.plant.sense();
+    let link = stage.outgoing();
+    let TickReply {
+        drive, telemetry, ..
+    } = controller.tick(&sensors, &link)?;
+    shadow.receive(&link);
+    let shadow_drive = shadow.leg().tick(&sensors);
+    divergence.compare(&drive, &telemetry, &shadow_drive, &shadow.leg().telemetry());
+    shadow.leg().take_over(&Drive {
+        duty: drive.duty.map(f64::from),
+        enabled: drive.enabled,
+    });
+    watch(&Tick {
+        sensors: &sensors,
+        link: &link,
+        drive: &drive,
+        telemetry: &telemetry,
+    });
+    stage.step(&drive, &telemetry)
 }
 
 /// Time of a tick, s.

@@ -18,10 +18,12 @@ impl<T: Scalar> Leg<T> {
             0 => self.track(&zero_m, measured),
             1 => self.choose_level(),
             2 => self.aim(&zero_m, measured),
-            _ => {
+            // A leg that is not taut yet does not set out.
+            _ if self.slack.gone() => {
                 self.trajectory.advance_plan();
                 Ok(())
             }
+            _ => Ok(()),
         }
     }
 

@@ -37,12 +37,12 @@ pub const TABLE: [FaultEntry; Fault::ALL.len()] = table! {
     PoseLost: "pose is lost", "forward kinematics or a tendon's curve gives no result", "home the leg; check the tensions";
     Infeasible: "target out of reach", "no level of pretension holds the target within the bounds, or a move leads beyond the workspace", "give another pose or a smaller payload";
     Unreachable: "stiffness out of reach", "the bounds on the tensions stop the level short of the demand, or the trim is at trim_max_n", "demand less; check load cells and tendon curves";
-    OverCurrent: "too much current", "a motor draws more than current_a for 2 ms", "look for a short circuit";
+    OverCurrent: "too much current", "a motor draws more than current_a for 2 ms", "look for a short circuit, or a current sensor without power";
     OverTemperature: "too hot", "the drivers are above temperature_c", "let them cool";
     SupplyLow: "supply too low", "the supply is below supply_min_v", "check supply and battery";
     SupplyHigh: "supply too high", "the supply is above supply_max_v", "check the supply; a braking motor feeds back into it";
     LateTick: "late tick", "a tick of the control law ended too late", "shorten what runs above it";
-    CommandTimeout: "no command", "the host is silent for command_time_s while the leg is armed", "check the link; send keep_alive";
+    CommandTimeout: "no command", "the host is silent for command_time_s while the leg is armed", "check the link and the host: it has to speak more often";
     BadFrame: "bad frames", "bad_frames frames in a row could not be read", "check the link";
     DriverFault: "driver fault", "a motor driver raises its fault line", "look up the driver's own fault";
     EmergencyStop: "emergency stop", "the emergency stop is pressed", "release it when it is safe";

@@ -9,11 +9,8 @@ use crate::recording;
 use crate::rig_file::RigFile;
 use crate::run_charts;
 use crate::scenario::Scenario;
-use crate::simulation::{
-    Controller, InThisProcess, OnLink, Simulation, SimulationError, Summary, Tick,
-};
+use crate::simulation::{Controller, InThisProcess, OnLink, Simulation, Summary, Tick};
 use clap::ValueEnum;
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -101,10 +98,6 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
         ticks_per_s: summary.ticks as f64 / seconds,
         plots: &plots,
     };
-    if std::io::stderr().is_terminal() {
-        let rate = report.ticks_per_s;
-        eprintln!("leg: {} ticks, {rate:.0} a second", summary.ticks);
-    }
     print(&if args.json {
         report.json()?
     } else {
@@ -119,13 +112,13 @@ fn simulate(
     rig: &RigFile,
     controller: &mut dyn Controller,
 ) -> Result<Summary, Failure> {
-    let simulation = Simulation::new(scenario, rig).map_err(|error| failure(&error))?;
+    let simulation = Simulation::new(scenario, rig).map_err(|error| Failure::from_error(&error))?;
     let settings = simulation.settings().clone();
     let bar = progress::spinner("ticks");
     let mut watched = |watch: &mut dyn FnMut(&Tick<'_>)| {
         let result = simulation.clone().run(controller, watch);
         bar.finish_and_clear();
-        result.map_err(|error| failure(&error))
+        result.map_err(|error| Failure::from_error(&error))
     };
     match &args.record {
         None => watched(&mut |_| bar.inc(1)),
@@ -143,19 +136,15 @@ fn simulate(
     }
 }
 
-fn failure(error: &SimulationError) -> Failure {
-    match error {
-        SimulationError::Timeout { .. } => Failure::missed(
-            error.to_string(),
-            "see what the leg was doing in the charts of a shorter scenario",
-        ),
-        _ => Failure::from_error(error),
-    }
-}
-
 fn judge(summary: &Summary) -> Result<(), Failure> {
     if summary.held() {
         return Ok(());
+    }
+    if let Some(words) = &summary.stopped {
+        return Err(Failure::missed(
+            words.clone(),
+            "see in the charts what the leg was doing",
+        ));
     }
     let missed: Vec<_> = summary
         .findings

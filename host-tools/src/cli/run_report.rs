@@ -61,8 +61,9 @@ impl Report<'_> {
             .map(|path| format!("Chart: {} (and .png)\n", from_here(path).display()))
             .collect();
         format!(
-            "\nTensions: {lowest:.1} to {highest:.1} N\nFaults: {faults}\n{}{plots}",
+            "\nTensions: {lowest:.1} to {highest:.1} N\nFaults: {faults}\n{}Speed: {:.0} ticks a second\n{plots}",
             divergence(summary),
+            self.ticks_per_s,
         )
     }
 
@@ -86,6 +87,7 @@ impl Report<'_> {
                 })
                 .collect(),
             divergence: &summary.divergence,
+            stopped: summary.stopped.as_deref(),
             held: summary.held(),
             plots: self.plots,
         };
@@ -135,6 +137,7 @@ struct JsonReport<'a> {
     findings: &'a [Finding],
     faults: Vec<JsonFault>,
     divergence: &'a crate::simulation::Divergence,
+    stopped: Option<&'a str>,
     held: bool,
     plots: &'a [PathBuf],
 }

@@ -93,9 +93,12 @@ pub fn measure(link: &mut dyn Link, counted: &Counted) -> Result<Cost, CostError
     let rig = RigFile::load(Some(Path::new(counted.rig))).map_err(|error| failed(&error))?;
     let mut controller = OnLink::new(link, true);
     let simulation = Simulation::new(&scenario, &rig).map_err(|error| failed(&error))?;
-    simulation
+    let summary = simulation
         .run(&mut controller, &mut |_| ())
         .map_err(|error| failed(&error))?;
+    if let Some(words) = summary.stopped {
+        return Err(CostError::Tick(words));
+    }
     Ok(Cost::of(
         counted.name,
         controller.instructions,

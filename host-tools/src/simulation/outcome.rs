@@ -6,7 +6,7 @@ use leg_firmware::settings::SettingsError;
 use leg_firmware::telemetry::Telemetry;
 use serde::Serialize;
 
-/// Why a simulation came to no end.
+/// Why a simulation came to no end, or could not begin.
 #[derive(Debug, thiserror::Error)]
 pub enum SimulationError {
     /// The leg cannot start so.
@@ -98,6 +98,8 @@ pub struct Sample {
 pub struct Summary {
     /// What was measured.
     pub findings: Vec<Finding>,
+    /// Why it ended before its last step, if it did.
+    pub stopped: Option<String>,
     /// Ticks.
     pub ticks: u64,
     /// Lowest and highest true tension over all ticks, N.
@@ -115,10 +117,22 @@ pub struct Summary {
     pub samples: Vec<Sample>,
 }
 
+impl SimulationError {
+    /// Whether what came out until then is worth looking at.
+    pub(super) const fn midway(&self) -> bool {
+        matches!(
+            self,
+            Self::Timeout { .. } | Self::Endless { .. } | Self::NotFinite { .. }
+        )
+    }
+}
+
 impl Summary {
-    /// Whether every value is where it must be, and no fault came that is not expected.
+    /// Whether it came to its end, every value is where it must be, and no fault came that is not expected.
     #[must_use]
     pub fn held(&self) -> bool {
-        self.findings.iter().all(Finding::held) && self.unexpected.is_empty()
+        self.stopped.is_none()
+            && self.findings.iter().all(Finding::held)
+            && self.unexpected.is_empty()
     }
 }

@@ -235,10 +235,12 @@ impl Stage {
         findings: Vec<Finding>,
         expected: FaultSet,
         divergence: Divergence,
+        stopped: Option<String>,
     ) -> Summary {
         let unexpected = self.faults.iter().map(|(fault, _)| *fault);
         Summary {
             findings,
+            stopped,
             unexpected: unexpected.filter(|fault| !expected.has(*fault)).collect(),
             ticks: self.ticks,
             tension_range_n: [self.all.tension_min_n, self.all.tension_max_n],
