@@ -12,7 +12,10 @@ use std::time::{Duration, Instant};
 
 const LEG: &str = env!("CARGO_BIN_EXE_leg-under-test");
 
-/// A rig that takes five seconds for what others do in one.
+/// A board that waits longer for its host: the machine may have much else to do.
+const PATIENT: &str = "\n[control.limits]\ncommand_time_s = 2\n";
+
+/// A leg that takes five seconds for what others do in one.
 const SLOW: &str = "\n[control.motion]\nspeed_rad_per_s = 0.1\n";
 
 /// `leg emulate` in the background.
@@ -24,8 +27,22 @@ struct Board {
 
 impl Board {
     fn new(arguments: &[&str]) -> Self {
+        Self::with("", arguments)
+    }
+
+    /// A leg that moves slowly.
+    fn slow() -> Self {
+        Self::with(SLOW, &[])
+    }
+
+    /// A leg of the default rig with more sections.
+    fn with(sections: &str, arguments: &[&str]) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let rig = folder.path().join("rig.toml");
+        std::fs::write(&rig, [READY_RIGS[0].text, PATIENT, sections].concat()).unwrap();
         let mut process = Command::new(LEG)
-            .args(["emulate", "--touch", "--for", "120"])
+            .args(["emulate", "--touch", "--for", "120", "--rig"])
+            .arg(&rig)
             .args(arguments)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -39,14 +56,6 @@ impl Board {
             process,
             port: port.trim_end().into(),
         }
-    }
-
-    /// A leg that moves slowly.
-    fn slow() -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        let rig = folder.path().join("slow.toml");
-        std::fs::write(&rig, [READY_RIGS[0].text, SLOW].concat()).unwrap();
-        Self::new(&["--rig", &rig.display().to_string()])
     }
 
     /// Begins a move and waits until the leg is on its way.
@@ -210,7 +219,7 @@ fn a_monitor_goes_on_when_the_command_that_had_the_port_ends() {
     assert!(first.wait_with_output().unwrap().status.success());
     let output = second.wait_with_output().unwrap();
     assert!(output.status.success(), "{}", errors(&output));
-    assert!(output.stdout.iter().filter(|byte| **byte == b'\n').count() > 25);
+    assert!(output.stdout.iter().filter(|byte| **byte == b'\n').count() > 5);
 }
 
 #[test]
@@ -233,9 +242,11 @@ fn a_host_that_dies_in_mid_move_leaves_the_leg_in_hold() {
     let mut moving = board.begin_move();
     moving.kill().unwrap();
     moving.wait().unwrap();
-    sleep(Duration::from_millis(500));
+    let begun = Instant::now();
+    while board.state()["state"] != "held" {
+        assert!(begun.elapsed() < Duration::from_secs(20));
+    }
     let state = board.state();
-    assert_eq!(state["state"], "held");
     assert_eq!(state["faults"][0]["fault"], "command_timeout");
     let (code, told) = board.refused(&move_to("5"));
     assert_eq!(code, Some(2));
@@ -315,8 +326,9 @@ fn calibrate(board: &mut Board, arguments: &[&str], hand: &[&str], leg_time_s: f
         writeln!(enter).unwrap();
     }
     let output = calibrating.wait_with_output().unwrap();
-    drop(questions);
-    output
+    // What else it says.
+    let stderr = questions.map_while(Result::ok).collect::<String>().into();
+    Output { stderr, ..output }
 }
 
 #[test]
@@ -352,7 +364,7 @@ fn a_load_cell_is_calibrated_with_weights_and_the_board_is_set_to_it() {
         "--json",
     ];
     let output = calibrate(&mut board, &arguments, &hangs, 0.0);
-    assert!(output.status.success());
+    assert!(output.status.success(), "{}", errors(&output));
     let found: Value = serde_json::from_slice(&output.stdout).unwrap();
     let settings = board.told(&["settings", "get"]);
     let cell = &settings["axes"][1];

@@ -13,8 +13,9 @@ use std::time::{Duration, Instant};
 /// How often bytes are exchanged.
 const EXCHANGE_TIME: Duration = Duration::from_millis(1);
 
-/// How far the leg may stay behind the clock before it gives that time up.
-const BEHIND_MAX: Duration = Duration::from_millis(100);
+/// How far the leg may stay behind the clock before it gives that time up: it must not live through much of it without a
+/// word from its host.
+const BEHIND_MAX: Duration = Duration::from_millis(10);
 
 /// Why an emulated board stops.
 #[derive(Debug, thiserror::Error)]
@@ -75,14 +76,12 @@ impl EmulatedBoard {
         let mut bytes = [0; 4096];
         let count = self.port.read(&mut bytes)?;
         self.incoming.extend(bytes.get(..count).unwrap_or_default());
-        let begun = Instant::now();
+        let behind = clock.saturating_sub(self.leg.time() + self.given_up);
+        self.given_up += behind.saturating_sub(BEHIND_MAX);
         while self.leg.time() + self.given_up < clock {
             let outgoing: Vec<u8> = self.leg.tick(&mut self.incoming)?.collect();
             if !outgoing.is_empty() {
                 self.port.write(&outgoing)?;
-            }
-            if begun.elapsed() > BEHIND_MAX {
-                self.given_up = clock.saturating_sub(self.leg.time());
             }
         }
         Ok(())

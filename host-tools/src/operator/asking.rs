@@ -10,8 +10,11 @@ use std::time::Duration;
 /// Wait for a reply before the request is taken for lost.
 const REPLY_TIME: Duration = Duration::from_millis(250);
 
-/// How often a request is sent at most.
-const ATTEMPTS: u32 = 4;
+/// How often a request is sent at most: for three seconds, as the machine may have much else to do.
+const ATTEMPTS: u32 = 12;
+
+/// How often a command is sent after a look at the leg.
+const LOOKS: u32 = 3;
 
 /// Silence after which the leg is told that the host is there: a quarter of what it waits by default.
 const ALIVE_TIME: Duration = Duration::from_millis(50);
@@ -64,7 +67,7 @@ impl Operator {
         request: &HostRequest,
         command: &Command,
     ) -> Result<(), OperatorError> {
-        for _ in 0..ATTEMPTS {
+        for _ in 0..LOOKS {
             self.spoke_at = self.now();
             match self.ask(asked, request, repeat(command)) {
                 Ok(HostReply::Done) => return Ok(()),
@@ -140,7 +143,7 @@ impl Operator {
                 None => return Err(OperatorError::Unanswered { asked }),
             }
         }
-        Err(OperatorError::Unanswered { asked })
+        Err(OperatorError::Silent { name: self.name() })
     }
 
     /// The reply to one of these requests, and whether the leg could not read a frame meanwhile.
