@@ -22,7 +22,7 @@ pub struct Target<T> {
     pub kinematics: Kinematics<T, 3>,
     /// The tensions that balance the load there.
     pub distribution: Distribution<T, 3>,
-    /// The level that is asked for now, N.
+    /// Level of pretension on its way to the one that is asked for, N.
     pub level_n: T,
     /// The tensions at that level, N.
     pub tensions_n: [T; 3],

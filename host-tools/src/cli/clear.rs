@@ -1,7 +1,6 @@
 //! `leg clear`.
 
-use super::leg_told;
-use super::line::{Fresh, LineArgs, RigArgs, shown};
+use super::leg_args::LegArgs;
 use crate::failure::Failure;
 
 /// Clears the faults whose cause is gone.
@@ -10,12 +9,7 @@ use crate::failure::Failure;
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]
-    line: LineArgs,
-    #[command(flatten)]
-    rig: RigArgs,
-    /// Prints JSON instead of a table.
-    #[arg(long)]
-    json: bool,
+    leg: LegArgs,
 }
 
 /// Runs the command.
@@ -23,8 +17,5 @@ pub struct Args {
 /// # Errors
 /// A [`Failure`]: no line to the leg, or a cause that is still there.
 pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
-    let rig = args.rig.load()?;
-    let mut line = args.line.open(&rig, Fresh::Homed, verbose)?;
-    shown(&mut line.operator, |operator| operator.clear())?;
-    leg_told::tell(&mut line.operator, args.json)
+    args.leg.command(verbose, |operator| operator.clear())
 }

@@ -1,7 +1,6 @@
 //! `leg move`.
 
-use super::leg_told;
-use super::line::{Fresh, LineArgs, RigArgs, shown};
+use super::leg_args::LegArgs;
 use super::numbers::{azimuth_deg, direction, positive, tilt_deg, towards};
 use crate::failure::Failure;
 use crate::operator::{Demand, Goal};
@@ -27,12 +26,7 @@ pub struct Args {
     #[arg(long, value_name = "DEG", value_parser = azimuth_deg, allow_negative_numbers = true, requires = "stiffness")]
     towards: Option<f64>,
     #[command(flatten)]
-    line: LineArgs,
-    #[command(flatten)]
-    rig: RigArgs,
-    /// Prints JSON instead of a table.
-    #[arg(long)]
-    json: bool,
+    leg: LegArgs,
 }
 
 impl Args {
@@ -53,8 +47,6 @@ impl Args {
 /// # Errors
 /// A [`Failure`]: no line to the leg, a leg that refuses, or what keeps it from the goal.
 pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
-    let rig = args.rig.load()?;
-    let mut line = args.line.open(&rig, Fresh::Homed, verbose)?;
-    shown(&mut line.operator, |operator| operator.reach(&args.goal()))?;
-    leg_told::tell(&mut line.operator, args.json)
+    args.leg
+        .command(verbose, |operator| operator.reach(&args.goal()))
 }

@@ -1,7 +1,6 @@
 //! `leg hold`.
 
-use super::leg_told;
-use super::line::{Fresh, LineArgs, RigArgs, shown};
+use super::leg_args::LegArgs;
 use crate::failure::Failure;
 use crate::operator::Goal;
 
@@ -11,12 +10,7 @@ use crate::operator::Goal;
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]
-    line: LineArgs,
-    #[command(flatten)]
-    rig: RigArgs,
-    /// Prints JSON instead of a table.
-    #[arg(long)]
-    json: bool,
+    leg: LegArgs,
 }
 
 /// Runs the command.
@@ -24,10 +18,6 @@ pub struct Args {
 /// # Errors
 /// A [`Failure`]: no line to the leg, a leg that refuses, or a fault on the way.
 pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
-    let rig = args.rig.load()?;
-    let mut line = args.line.open(&rig, Fresh::Homed, verbose)?;
-    shown(&mut line.operator, |operator| {
-        operator.reach(&Goal::default())
-    })?;
-    leg_told::tell(&mut line.operator, args.json)
+    args.leg
+        .command(verbose, |operator| operator.reach(&Goal::default()))
 }

@@ -1,7 +1,8 @@
 //! `leg home`.
 
+use super::leg_args::LegArgs;
 use super::leg_told::to_line;
-use super::line::{Fresh, LineArgs, RigArgs, shown};
+use super::line::Fresh;
 use super::print;
 use crate::failure::Failure;
 use crate::leg_report::{self, LegReport};
@@ -14,12 +15,7 @@ use serde::Serialize;
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]
-    line: LineArgs,
-    #[command(flatten)]
-    rig: RigArgs,
-    /// Prints JSON instead of a table.
-    #[arg(long)]
-    json: bool,
+    leg: LegArgs,
 }
 
 /// Runs the command.
@@ -27,11 +23,10 @@ pub struct Args {
 /// # Errors
 /// A [`Failure`]: no line to the leg, a leg that refuses, or a fault on the way.
 pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
-    let rig = args.rig.load()?;
-    let mut line = args.line.open(&rig, Fresh::Slack, verbose)?;
-    shown(&mut line.operator, |operator| operator.home())?;
-    let telemetry = line.operator.telemetry()?.telemetry;
-    print(&report(&telemetry, args.json)?)
+    let homed = args
+        .leg
+        .drive(Fresh::Slack, verbose, |operator| operator.home())?;
+    print(&report(&homed, args.leg.json)?)
 }
 
 /// What homing found, for people or machines.

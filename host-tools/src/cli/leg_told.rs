@@ -3,16 +3,15 @@
 use super::print;
 use crate::failure::Failure;
 use crate::leg_report::{LegReport, rows};
-use crate::operator::Operator;
+use leg_firmware::telemetry::Telemetry;
 use serde::Serialize;
 
-/// Asks the leg what it is doing and prints it.
-pub(super) fn tell(operator: &mut Operator, json: bool) -> Result<(), Failure> {
-    let telemetry = operator.telemetry()?.telemetry;
+/// Prints what the leg is doing.
+pub(super) fn tell(telemetry: &Telemetry<f32>, json: bool) -> Result<(), Failure> {
     print(&if json {
-        to_line(&LegReport::of(&telemetry))?
+        to_line(&LegReport::of(telemetry))?
     } else {
-        rows(&telemetry)
+        rows(telemetry)
     })
 }
 

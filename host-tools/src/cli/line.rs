@@ -159,13 +159,13 @@ fn tell_board(operator: &Operator) {
     }
     let cause = match identity.reset {
         Reset::BrownOut => "its supply was too low",
-        Reset::Software => "its firmware stopped by itself",
-        Reset::Watchdog => "its watchdog: a task had not checked in",
+        Reset::Software => "its firmware had stopped by itself",
+        Reset::Watchdog => "a task had not checked in with its watchdog",
         _ => return,
     };
     let words = &identity.last_words;
     eprintln!(
-        "leg: the board started anew because of {cause}{}{words}",
+        "leg: the board started anew because {cause}{}{words}",
         if words.is_empty() { "" } else { ": " }
     );
 }

@@ -1,7 +1,8 @@
 //! `leg log`.
 
+use super::leg_args::LegArgs;
 use super::leg_told::to_line;
-use super::line::{Fresh, LineArgs, RigArgs};
+use super::line::Fresh;
 use super::numbers::positive;
 use super::{print, progress};
 use crate::failure::Failure;
@@ -36,12 +37,7 @@ pub struct Args {
     #[arg(long = "for", value_name = "SECONDS", value_parser = positive)]
     length: f64,
     #[command(flatten)]
-    line: LineArgs,
-    #[command(flatten)]
-    rig: RigArgs,
-    /// Prints JSON instead of a sentence.
-    #[arg(long)]
-    json: bool,
+    leg: LegArgs,
 }
 
 fn rate(text: &str) -> Result<f64, String> {
@@ -69,9 +65,8 @@ struct Recorded {
 /// # Errors
 /// A [`Failure`]: no line to the leg, one that breaks, or a file that cannot be written.
 pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
-    let rig = args.rig.load()?;
     let every_ticks = (f64::from(TICK_HZ) / args.rate).round().max(1.0) as u16;
-    let mut operator = args.line.open(&rig, Fresh::Homed, verbose)?.operator;
+    let mut operator = args.leg.open(Fresh::Homed, verbose)?.operator;
     let (recorded, ended) = recording::around_telemetry(&args.out, |file| {
         let mut recorded = Recorded {
             every_s: f64::from(every_ticks) / f64::from(TICK_HZ),
@@ -85,7 +80,7 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
             Ok(()) => Ok((recorded, None)),
         }
     })?;
-    print(&if args.json {
+    print(&if args.leg.json {
         to_line(&recorded)?
     } else {
         words(&recorded)

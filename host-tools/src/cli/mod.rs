@@ -19,6 +19,7 @@ mod flash;
 mod go;
 mod hold;
 mod home;
+mod leg_args;
 mod leg_told;
 mod line;
 mod log;

@@ -1,7 +1,6 @@
 //! `leg stiffness`.
 
-use super::leg_told;
-use super::line::{Fresh, LineArgs, RigArgs, shown};
+use super::leg_args::LegArgs;
 use super::numbers::{azimuth_deg, positive, towards};
 use crate::failure::Failure;
 use crate::operator::{Demand, Goal};
@@ -16,12 +15,7 @@ pub struct Args {
     #[arg(long, value_name = "DEG", value_parser = azimuth_deg, allow_negative_numbers = true)]
     towards: Option<f64>,
     #[command(flatten)]
-    line: LineArgs,
-    #[command(flatten)]
-    rig: RigArgs,
-    /// Prints JSON instead of a table.
-    #[arg(long)]
-    json: bool,
+    leg: LegArgs,
 }
 
 /// Runs the command.
@@ -29,8 +23,6 @@ pub struct Args {
 /// # Errors
 /// A [`Failure`]: no line to the leg, a leg that refuses, or bounds that do not allow the stiffness.
 pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
-    let rig = args.rig.load()?;
-    let mut line = args.line.open(&rig, Fresh::Homed, verbose)?;
     let goal = Goal {
         direction: None,
         demand: Some(Demand::Stiffness(
@@ -38,6 +30,5 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
             args.towards.map(towards),
         )),
     };
-    shown(&mut line.operator, |operator| operator.reach(&goal))?;
-    leg_told::tell(&mut line.operator, args.json)
+    args.leg.command(verbose, |operator| operator.reach(&goal))
 }

@@ -2,8 +2,9 @@
 
 use super::hand::{Hand, drivers_off};
 use crate::cell_fit::{CellFit, CellFitError, Weighing, fit};
+use crate::cli::leg_args::LegArgs;
 use crate::cli::leg_told::to_line;
-use crate::cli::line::{Fresh, LineArgs, RigArgs};
+use crate::cli::line::Fresh;
 use crate::cli::numbers::not_negative;
 use crate::cli::print;
 use crate::failure::Failure;
@@ -35,12 +36,7 @@ pub(super) struct Args {
     #[arg(long, requires = "set")]
     save: bool,
     #[command(flatten)]
-    line: LineArgs,
-    #[command(flatten)]
-    rig: RigArgs,
-    /// Prints JSON instead of a table.
-    #[arg(long)]
-    json: bool,
+    leg: LegArgs,
 }
 
 /// What was found, for machines.
@@ -59,7 +55,7 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
     if args.weights.iter().all(|weight| Some(weight) == first) {
         return Err(refused(CellFitError::OneWeight));
     }
-    let mut line = args.line.open(&args.rig.load()?, Fresh::Slack, verbose)?;
+    let mut line = args.leg.open(Fresh::Slack, verbose)?;
     let operator = &mut line.operator;
     drivers_off(operator, "let weights be hung on its cells")?;
     let mut settings = operator.settings()?;
@@ -104,7 +100,7 @@ fn report(
     let axes = &settings.axes;
     let cell_n_per_code = axes.each_ref().map(|axis| axis.cell_n_per_code);
     let cell_zero_code = axes.each_ref().map(|axis| axis.cell_zero_code);
-    if args.json {
+    if args.leg.json {
         return print(&to_line(&CellReport {
             axis: args.axis,
             fit: *found,

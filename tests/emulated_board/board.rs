@@ -1,0 +1,145 @@
+//! An emulated board in the background, and the commands for it.
+
+use leg_host_tools::ready_rigs::READY_RIGS;
+use serde_json::Value;
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Child, ChildStdin, Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+const LEG: &str = env!("CARGO_BIN_EXE_leg-under-test");
+
+/// A board that waits longer for its host: the machine may have much else to do.
+const PATIENT: &str = "\n[control.limits]\ncommand_time_s = 2\n";
+
+/// A leg that takes five seconds for what others do in one.
+const SLOW: &str = "\n[control.motion]\nspeed_rad_per_s = 0.1\n";
+
+/// `leg emulate` in the background.
+pub struct Board {
+    pub process: Child,
+    hand: ChildStdin,
+    pub port: String,
+}
+
+impl Board {
+    pub fn new(arguments: &[&str]) -> Self {
+        Self::with("", arguments)
+    }
+
+    /// A leg that moves slowly.
+    pub fn slow() -> Self {
+        Self::with(SLOW, &[])
+    }
+
+    /// A leg of the default rig with more sections.
+    pub fn with(sections: &str, arguments: &[&str]) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let rig = folder.path().join("rig.toml");
+        std::fs::write(&rig, [READY_RIGS[0].text, PATIENT, sections].concat()).unwrap();
+        let mut process = Command::new(LEG)
+            .args(["emulate", "--touch", "--for", "120", "--rig"])
+            .arg(&rig)
+            .args(arguments)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut port = String::new();
+        let stdout = process.stdout.take().unwrap();
+        BufReader::new(stdout).read_line(&mut port).unwrap();
+        Self {
+            hand: process.stdin.take().unwrap(),
+            process,
+            port: port.trim_end().into(),
+        }
+    }
+
+    /// Begins a move and waits until the leg is on its way.
+    pub fn begin_move(&self) -> Child {
+        let moving = self.begin(&move_to("29"));
+        let begun = Instant::now();
+        while self.state()["moving"] != true {
+            if begun.elapsed() > Duration::from_secs(20) {
+                let told = errors(&moving.wait_with_output().unwrap());
+                panic!("it does not move: {told} {}", self.state());
+            }
+        }
+        moving
+    }
+
+    pub fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(LEG);
+        command.args(arguments).args(["--port", &self.port]);
+        command
+    }
+
+    /// Runs a command to its end.
+    pub fn run(&self, arguments: &[&str]) -> Output {
+        self.command(arguments).output().unwrap()
+    }
+
+    /// Runs a command that succeeds, and what it tells machines.
+    pub fn told(&self, arguments: &[&str]) -> Value {
+        let output = self.run(&[arguments, &["--json"]].concat());
+        assert!(
+            output.status.success(),
+            "{arguments:?}: {}",
+            errors(&output)
+        );
+        serde_json::from_slice(&output.stdout).unwrap()
+    }
+
+    /// Runs a command that fails: its exit code and what it says.
+    pub fn refused(&self, arguments: &[&str]) -> (Option<i32>, String) {
+        let output = self.run(arguments);
+        (output.status.code(), errors(&output))
+    }
+
+    pub fn begin(&self, arguments: &[&str]) -> Child {
+        let mut command = self.command(arguments);
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        command.spawn().unwrap()
+    }
+
+    pub fn touch(&mut self, line: &str) {
+        writeln!(self.hand, "{line}").unwrap();
+        // The board looks every millisecond.
+        sleep(Duration::from_millis(100));
+    }
+
+    /// Lets the leg's own time go on, which may be slower than the clock.
+    pub fn wait(&self, seconds: f64) {
+        let time = || self.state()["time_s"].as_f64().unwrap();
+        let until = time() + seconds;
+        while time() < until {}
+    }
+
+    /// Homes nothing, arms nothing: what the leg does now.
+    pub fn state(&self) -> Value {
+        let output = self.run(&["monitor", "--json", "--for", "0.01"]);
+        let text = String::from_utf8(output.stdout).unwrap();
+        serde_json::from_str(text.lines().next().unwrap()).unwrap()
+    }
+}
+
+impl Drop for Board {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+pub fn errors(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+pub fn move_to(tilt: &str) -> [&str; 5] {
+    ["move", "--azimuth", "40", "--tilt", tilt]
+}
+
+pub fn signal(process: &Child, name: &str) {
+    let id = process.id().to_string();
+    let sent = Command::new("kill").args([name, &id]).status().unwrap();
+    assert!(sent.success());
+}
