@@ -5,6 +5,7 @@
 
 use leg_firmware::command::Command;
 use leg_firmware::frame::{Decoder, FrameError, MAX_FRAME, encode};
+use leg_firmware::host_link::HostRequest;
 use leg_firmware::messages::{QueryMessage, SupportMessage, TendonMessage, TendonsMessage};
 use leg_firmware::protocol::{EvaluateRequest, Hello, Request, SCHEMA, TickRequest};
 use leg_firmware::sensors::Sensors;
@@ -80,19 +81,17 @@ fn evaluate() -> EvaluateRequest {
 /// A tick with a command inside: a frame in a frame.
 fn tick() -> Request {
     let mut out = [0; MAX_FRAME];
-    let command = encode(9, &Command::Move { x: 0.1, y: -0.2 }, &mut out).unwrap();
+    let command = HostRequest::Command {
+        host: 1,
+        command: Command::Move { x: 0.1, y: -0.2 },
+    };
+    let command = encode(9, &command, &mut out).unwrap();
     Request::Tick(TickRequest {
         sensors: Sensors {
             encoder_counts: [0, 1, u16::MAX],
             cell_codes: [23_590; 3],
-            current_codes: [32_760; 3],
-            supply_code: 43_680,
-            temperature_code: 21_294,
             cell_fresh: [true; 3],
-            driver_fault: [false; 3],
-            emergency_stop: false,
-            late: false,
-            settings_corrupt: false,
+            ..Sensors::default()
         },
         link: command.iter().copied().collect(),
     })

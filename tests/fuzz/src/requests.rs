@@ -6,8 +6,8 @@ use leg_firmware::host_link::HostRequest;
 use leg_firmware::kernels::{Kernel, KernelInput};
 use leg_firmware::messages::{QueryMessage, SupportMessage, TendonMessage, TendonsMessage};
 use leg_firmware::protocol::{EvaluateRequest, Hello, KernelRequest, Request, SCHEMA, TickRequest};
-use leg_firmware::sensors::Sensors;
-use leg_firmware::settings::{AxisCalibration, BoardCalibration, Settings};
+use leg_firmware::sensors::{CODE_MAX, Sensors};
+use leg_firmware::settings::Settings;
 use leg_model::{JointStiffness, RigParameters, StiffnessAt, SupportKind};
 
 const TENSION_FLOOR_N: f32 = 8.0;
@@ -114,34 +114,13 @@ fn run(kernel: Kernel) -> KernelRequest {
     }
 }
 
-/// A leg whose zero is known, so that it can be armed.
+/// The paper's leg, its zero known, so that it can be armed.
 fn settings() -> Settings {
-    Settings {
-        rig: RigParameters::<f32, 3>::TABLE_1.into(),
-        support: support(),
-        tendons: TENDONS,
-        tension_floor_n: TENSION_FLOOR_N,
-        tension_ceiling_n: TENSION_CEILING_N,
-        level_n: LEVEL_N,
-        tilt_max_sine: 0.5,
-        axes: [AxisCalibration {
-            m_per_count: 1.1e-7,
-            unstretched_at_zero_m: Some(0.0343),
-            cell_n_per_code: 3.8e-3,
-            cell_zero_code: 5242.0,
-            current_a_per_code: 3.7e-4,
-        }; 3],
-        board: BoardCalibration {
-            supply_v_per_code: 5.5e-4,
-            temperature_c_per_code: 3.1e-3,
-            temperature_at_zero_c: -40.0,
-        },
-        motion: Default::default(),
-        servo: Default::default(),
-        estimation: Default::default(),
-        limits: Default::default(),
-        homing: Default::default(),
+    let mut settings = Settings::for_table_1().expect("they are built in");
+    for axis in &mut settings.axes {
+        axis.unstretched_at_zero_m = Some(0.0343);
     }
+    settings
 }
 
 fn identify() -> TickRequest {
@@ -162,16 +141,12 @@ fn hears(request: &HostRequest) -> TickRequest {
     let frame = encode(1, request, &mut out).expect("it fits");
     TickRequest {
         sensors: Sensors {
-            encoder_counts: [0; 3],
             cell_codes: [23_590; 3],
-            current_codes: [32_760; 3],
+            current_codes: [CODE_MAX / 2; 3],
             supply_code: 43_680,
             temperature_code: 21_294,
             cell_fresh: [true; 3],
-            driver_fault: [false; 3],
-            emergency_stop: false,
-            late: false,
-            settings_corrupt: false,
+            ..Sensors::default()
         },
         link: heapless::Vec::from_slice(frame).expect("it takes less than a tick's bytes"),
     }
