@@ -1,4 +1,4 @@
-//! What the pages about the board say of pins and faults is what the sources say.
+//! What the pages about the board say of pins, faults and messages is what the sources say.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -66,6 +66,52 @@ fn every_fault_that_is_named_is_in_the_table() {
             let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
             let known = TABLE.iter().any(|entry| entry.name == words);
             assert!(known, "{name}: no fault is called {words}");
+        }
+    }
+}
+
+/// Every Rust source below a folder.
+fn sources(folder: &Path, text: &mut String) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            sources(&path, text);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            text.push_str(&fs::read_to_string(path).unwrap());
+        }
+    }
+}
+
+/// The sources of firmware and host, string literals in one line.
+fn all_sources() -> String {
+    let mut text = String::new();
+    for folder in ["src", "../host-tools/src"] {
+        sources(&Path::new(FIRMWARE).join(folder), &mut text);
+    }
+    let lines = text.split("\\\n").map(str::trim_start);
+    lines.collect::<Vec<_>>().concat()
+}
+
+/// What stands between single backticks and is more than a word.
+fn quoted(text: &str) -> Vec<&str> {
+    let text = text.split('`').skip(1).step_by(2);
+    text.filter(|words| words.contains(' ')).collect()
+}
+
+/// In the first column of the tables stand sentences that `leg` or the firmware prints; an ellipsis is what varies.
+#[test]
+fn every_message_that_is_quoted_is_in_the_sources() {
+    let (text, sources) = (page("TROUBLESHOOTING.md"), all_sources());
+    let rows = text.lines().filter(|line| line.starts_with("| "));
+    let first_column = rows.map(|row| row.split('|').nth(1).unwrap());
+    let messages: Vec<&str> = first_column.flat_map(quoted).collect();
+    assert!(messages.len() > 40, "{messages:?}");
+    for message in messages {
+        let parts = message
+            .split('…')
+            .map(|part| part.trim_matches([' ', '(', ')', ',', ':']));
+        for part in parts.filter(|part| part.contains(' ')) {
+            assert!(sources.contains(part), "{message}: {part}");
         }
     }
 }

@@ -24,7 +24,7 @@ pub struct LegReport {
     pub tilt_deg: f64,
     /// Measured tensions, N.
     pub tensions_n: [f32; 3],
-    /// Level of pretension, N; 0 while none is followed.
+    /// Level of pretension of the last target, N; 0 before the first.
     pub level_n: f32,
     /// Bending stiffness at that level, N·m/rad.
     pub stiffness_nm_per_rad: f32,

@@ -49,6 +49,7 @@ pub mod rounding;
 pub mod run_charts;
 pub mod scenario;
 pub mod sensitivity;
+pub mod sensor_report;
 pub mod settings_text;
 pub mod setup;
 pub mod simulation;

@@ -23,6 +23,14 @@ pub trait Transport {
     /// [`io::ErrorKind::TimedOut`] if the system does not take them; what else the system says.
     fn send(&mut self, bytes: &[u8]) -> io::Result<()>;
 
+    /// Sends one whole frame before all that waits, where the transport can: a stop.
+    ///
+    /// # Errors
+    /// As [`Self::send`].
+    fn send_urgent(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.send(bytes)
+    }
+
     /// Waits for bytes and returns how many came, at least one; 0 only for a `bytes` without room, and where the other
     /// side has ended for good.
     ///

@@ -34,6 +34,7 @@ mod rig;
 mod run;
 mod run_errors;
 mod run_report;
+mod sensors;
 mod settings;
 mod setup;
 mod stiffness;
@@ -84,6 +85,7 @@ enum Command {
     Replay(replay::Args),
     Rig(rig::Args),
     Run(run::Args),
+    Sensors(sensors::Args),
     Settings(settings::Args),
     /// Installs what the other commands need: the Rust target, QEMU, and the firmware built for it.
     ///
@@ -119,6 +121,7 @@ pub fn main() -> ExitCode {
         Command::Replay(args) => replay::run(args),
         Command::Rig(args) => rig::run(args),
         Command::Run(args) => run::run(args, cli.verbose),
+        Command::Sensors(args) => sensors::run(args, cli.verbose),
         Command::Settings(args) => settings::run(args, cli.verbose),
         Command::Setup => setup::run(),
         Command::Stiffness(args) => stiffness::run(args, cli.verbose),

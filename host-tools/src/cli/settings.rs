@@ -121,7 +121,17 @@ fn set(operator: &mut Operator, settings: &Settings, save: bool) -> Result<(), F
         operator.save_settings()?;
         print("kept over a reset\n")?;
     }
-    print("home the leg before it is armed: `leg home`\n")
+    print(&format!("{}\n", before_armed(operator)?))
+}
+
+/// What has to be done before a leg with new settings is armed.
+pub(super) fn before_armed(operator: &mut Operator) -> Result<&'static str, Failure> {
+    let faults = operator.telemetry()?.telemetry.faults.without_limits();
+    Ok(if faults.any() {
+        "end its faults and home the leg before it is armed: `leg clear`, then `leg home`"
+    } else {
+        "home the leg before it is armed: `leg home`"
+    })
 }
 
 fn diff(operator: &mut Operator, settings: &Settings, json: bool) -> Result<(), Failure> {

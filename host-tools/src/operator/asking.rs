@@ -32,8 +32,8 @@ impl Operator {
     /// Commands the leg and waits until a tick has obeyed.
     ///
     /// # Errors
-    /// [`OperatorError::Refused`], [`OperatorError::Faulted`] or [`OperatorError::Unanswered`]; a line that breaks;
-    /// [`OperatorError::Interrupted`].
+    /// [`OperatorError::Refused`], [`OperatorError::Faulted`], [`OperatorError::NotCleared`] or
+    /// [`OperatorError::Unanswered`]; a line that breaks; [`OperatorError::Interrupted`].
     pub fn command(&mut self, command: Command) -> Result<(), OperatorError> {
         let asked = name(&command);
         let request = HostRequest::Command {
@@ -51,7 +51,10 @@ impl Operator {
                     self.drives = before;
                     if *refusal == HostRefusal::Command(CommandRefusal::Faulted) {
                         let faults = self.telemetry()?.telemetry.faults.without_limits();
-                        return Err(OperatorError::Faulted { asked, faults });
+                        return Err(match command {
+                            Command::Clear => OperatorError::NotCleared { faults },
+                            _ => OperatorError::Faulted { asked, faults },
+                        });
                     }
                 }
                 Err(error)

@@ -39,7 +39,7 @@ impl Operator {
         };
         let mut numbers = Vec::new();
         for _ in 0..STOPS {
-            numbers.push(self.line.send(&request)?);
+            numbers.push(self.line.send_urgent(&request)?);
             let until = self.now() + STOP_TIME;
             match self.reply(&numbers, until)?.0 {
                 Some(HostReply::Done) => return Ok(()),
@@ -74,7 +74,7 @@ impl Operator {
     /// Clears the faults whose cause is gone, and leaves the leg in hold if it was held.
     ///
     /// # Errors
-    /// As [`Self::command`]; [`OperatorError::Faulted`] where a cause is still there.
+    /// As [`Self::command`]; [`OperatorError::NotCleared`] where a cause is still there.
     pub fn clear(&mut self) -> Result<(), OperatorError> {
         self.drive(|operator| operator.command(Command::Clear))
     }

@@ -55,6 +55,12 @@ pub enum OperatorError {
         /// The faults.
         faults: FaultSet,
     },
+    /// Faults cannot be cleared yet.
+    #[error("the leg keeps its faults while one of them still has its cause ({})", words::causes(*.faults))]
+    NotCleared {
+        /// The faults.
+        faults: FaultSet,
+    },
     /// Faults ended what the leg was doing.
     #[error(
         "the leg did not {asked}{}, it is {} ({})",
@@ -163,10 +169,9 @@ impl OperatorError {
                 let [_, cure] = refusal::words(refusal);
                 cure
             }
-            Self::Faulted { faults, .. } => {
-                format!("{}; then `leg clear`", words::cures(*faults))
-            }
-            Self::Failed { faults, .. } => {
+            Self::Faulted { faults, .. }
+            | Self::NotCleared { faults }
+            | Self::Failed { faults, .. } => {
                 format!("{}; then `leg clear`", words::cures(*faults))
             }
             Self::Limited {

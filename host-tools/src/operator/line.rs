@@ -44,10 +44,23 @@ impl Line {
 
     /// Sends a request and returns its number. It is never 0: that is of what the leg says by itself.
     pub fn send(&mut self, request: &HostRequest) -> Result<u16, OperatorError> {
+        self.send_by(<dyn Transport>::send, request)
+    }
+
+    /// The same before all that waits.
+    pub fn send_urgent(&mut self, request: &HostRequest) -> Result<u16, OperatorError> {
+        self.send_by(<dyn Transport>::send_urgent, request)
+    }
+
+    fn send_by(
+        &mut self,
+        way: fn(&mut (dyn Transport + 'static), &[u8]) -> io::Result<()>,
+        request: &HostRequest,
+    ) -> Result<u16, OperatorError> {
         self.sequence = self.sequence.checked_add(1).unwrap_or(1);
         let mut out = [0; MAX_FRAME];
         let bytes = frame::encode(self.sequence, request, &mut out)?;
-        let sent = self.transport.send(bytes);
+        let sent = way(self.transport.as_mut(), bytes);
         sent.map_err(|source| self.broken(source))?;
         Ok(self.sequence)
     }

@@ -6,6 +6,7 @@ mod greeting;
 mod hosts;
 mod lost_frames;
 mod settings;
+mod urgent;
 
 use crate::emulated_leg::{Beginning, EmulatedLeg};
 use crate::operator::{Goal, Host, Interrupt, Operator};

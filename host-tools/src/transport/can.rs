@@ -71,19 +71,10 @@ impl<P: CanPort> CanTransport<P> {
         }
     }
 
-    /// Sends a frame to the leg before all that waits: a stop.
+    /// As [`Transport::send_urgent`], to all legs on the bus.
     ///
     /// # Errors
-    /// [`io::ErrorKind::InvalidInput`] unless it is one whole frame of up to
-    /// [`SEGMENT_MAX`](leg_firmware::can::SEGMENT_MAX) bytes; else as [`Transport::send`].
-    pub fn send_urgent(&mut self, link_frame: &[u8]) -> io::Result<()> {
-        segment(&mut self.port, &mut self.urgent, link_frame)
-    }
-
-    /// As [`Self::send_urgent`], to all legs on the bus.
-    ///
-    /// # Errors
-    /// As [`Self::send_urgent`].
+    /// As [`Transport::send_urgent`].
     pub fn send_urgent_to_all(&mut self, link_frame: &[u8]) -> io::Result<()> {
         segment(&mut self.port, &mut self.urgent_to_all, link_frame)
     }
@@ -119,6 +110,11 @@ impl<P: CanPort> Transport for CanTransport<P> {
             segment(&mut self.port, &mut self.ordinary, link_frame)?;
         }
         Ok(())
+    }
+
+    /// As any other, and at most [`SEGMENT_MAX`](leg_firmware::can::SEGMENT_MAX) bytes long.
+    fn send_urgent(&mut self, link_frame: &[u8]) -> io::Result<()> {
+        segment(&mut self.port, &mut self.urgent, link_frame)
     }
 
     fn receive(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize> {

@@ -7,6 +7,7 @@ use crate::cli::leg_told::to_line;
 use crate::cli::line::Fresh;
 use crate::cli::numbers::not_negative;
 use crate::cli::print;
+use crate::cli::settings::before_armed;
 use crate::failure::Failure;
 use crate::fields::decimal;
 use crate::operator::Operator;
@@ -145,6 +146,7 @@ fn set(operator: &mut Operator, settings: &Settings, save: bool) -> Result<(), F
     if save {
         operator.save_settings()?;
     }
-    eprintln!("leg: the board is set to it; put the tendon back and home the leg: `leg home`");
+    let next = before_armed(operator)?;
+    eprintln!("leg: the board is set to it; put the tendon back; {next}");
     Ok(())
 }

@@ -26,7 +26,7 @@ fn a_latched_fault_is_named_with_its_cure_until_it_is_cleared() {
     // Its cause is still there.
     assert!(matches!(
         operator.clear().unwrap_err(),
-        OperatorError::Faulted { faults, .. } if faults.has(Fault::EmergencyStop)
+        OperatorError::NotCleared { faults } if faults.has(Fault::EmergencyStop)
     ));
     leg.touch(|plant| plant.press_emergency_stop(false));
     operator.pause(Duration::from_millis(10)).unwrap();
