@@ -45,8 +45,8 @@ pub enum Command {
     },
     /// Chooses the load that is held.
     Compensation(Compensation),
-    /// Stays where it is until a clear, before whatever waits. A leg that is not moving, or is letting its tendons out, does
-    /// not change by it.
+    /// Stays where it is until a clear, before whatever waits. A leg that is disarmed, held or off is at rest already; one
+    /// that lets its tendons out goes on with that, and refuses by its state.
     Stop,
     /// Relaxes the tendons and switches the drivers off.
     Disarm,

@@ -103,7 +103,7 @@ impl<T> Default for Slack<T> {
 #[derive(Clone, Copy, Debug)]
 struct Limits<T> {
     silence: u32,
-    bad_frames: u16,
+    bad_frames: f32,
     ramp_m_per_s: T,
     homing_release_m: T,
     hold_travel_m: T,
@@ -160,7 +160,7 @@ impl<T: Scalar> Leg<T> {
             measured: None,
             limits: Limits {
                 silence: ticks(limits.command_time_s),
-                bad_frames: limits.bad_frames as u16,
+                bad_frames: limits.bad_frames,
                 ramp_m_per_s: limits.ramp_m_per_s.into(),
                 homing_release_m: settings.homing.release_m.into(),
                 hold_travel_m: limits.hold_travel_m.into(),
@@ -286,7 +286,10 @@ impl<T: Scalar> Leg<T> {
             0
         };
         faults.add(Fault::CommandTimeout, self.silence > self.limits.silence);
-        faults.add(Fault::BadFrame, self.bad_frames >= self.limits.bad_frames);
+        faults.add(
+            Fault::BadFrame,
+            f32::from(self.bad_frames) >= self.limits.bad_frames,
+        );
         faults.add(Fault::HomingFailed, self.homing_failed(measured));
         faults
     }

@@ -78,7 +78,7 @@ impl<T: Scalar> Leg<T> {
                 towards,
             } if demand_nm_per_rad > 0.0
                 && demand_nm_per_rad.is_finite()
-                && towards.is_none_or(|towards| unit(towards)) =>
+                && towards.is_none_or(unit) =>
             {
                 let axis = match towards {
                     None => BendingAxis::Softest,
