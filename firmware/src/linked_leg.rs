@@ -92,11 +92,14 @@ macro_rules! commanded {
             }
 
             fn restart(&mut self, settings: &Settings) -> Result<(), HostRefusal> {
-                let fresh = Self::new(&settings.without_zero());
-                let mut fresh = fresh.map_err(HostRefusal::Settings)?;
-                self.hand_over(&mut fresh)?;
-                *self = fresh;
-                Ok(())
+                match Self::new(&settings.without_zero()) {
+                    Ok(mut fresh) => {
+                        self.hand_over(&mut fresh)?;
+                        *self = fresh;
+                        Ok(())
+                    }
+                    Err(error) => Err(HostRefusal::Settings(error)),
+                }
             }
         }
     };
