@@ -205,8 +205,13 @@ impl Service {
             HostRequest::Sensors => HostReply::Sensors(leg.sensors()),
             HostRequest::GetSettings => HostReply::Settings(self.settings.clone()),
             HostRequest::SetSettings(settings) => {
+                if self.saving.is_some() {
+                    // What is told to be kept would not be what is in use.
+                    return Err(HostRefusal::Busy);
+                }
                 leg.restart(&settings)?;
-                self.settings = settings;
+                // The leg has started without it.
+                self.settings = settings.without_zero();
                 HostReply::Done
             }
             HostRequest::SaveSettings => {
