@@ -65,7 +65,7 @@ pub enum CommandRefusal {
     State(State),
     /// The leg cannot lean that far.
     OutOfReach,
-    /// A number is not finite, or is not above zero where it has to be.
+    /// A number is not finite, or is not above zero, or no cosine and sine, where it has to be.
     Number,
     /// A stop came first.
     Overtaken,

@@ -65,6 +65,8 @@ impl End {
             Reply::Ticked(tick) => {
                 let sound = |duty: &f32| duty.abs() <= 1.0;
                 assert!(tick.drive.duty.iter().all(sound), "{tick:?}");
+                let finite = |number: f32| assert!(number.is_finite(), "{tick:?}");
+                tick.telemetry.map(finite);
                 for found in feed(&mut self.host, &tick.link) {
                     let (_, payload) = found.expect("a good frame");
                     whole::<HostReply>(&payload);
