@@ -31,7 +31,7 @@ pub trait Commanded {
     fn telemetry(&mut self) -> Telemetry<f32>;
     /// What the sensors read last.
     fn sensors(&mut self) -> Sensors;
-    /// Starts again with other settings and without its zero.
+    /// Starts again with other settings and without its zero. Faults stay latched.
     ///
     /// # Errors
     /// [`HostRefusal::Driven`] and [`HostRefusal::Settings`]; the old settings stay in use.

@@ -299,6 +299,11 @@ impl<T: Scalar> Leg<T> {
         }
     }
 
+    /// Latches the faults of a leg whose place this one takes: nothing but a clear ends them.
+    pub fn latch(&mut self, faults: FaultSet) {
+        self.supervisor.latch(faults);
+    }
+
     /// What the leg may do.
     #[must_use]
     pub fn state(&self) -> State {

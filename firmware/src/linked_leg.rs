@@ -48,6 +48,11 @@ impl<T: Scalar> SensingLeg<T> {
         self.leg.take_over(applied);
     }
 
+    /// Takes the place of another leg: see [`Leg::latch`].
+    pub fn replace(&mut self, other: &Self) {
+        self.leg.latch(other.leg.telemetry().faults);
+    }
+
     /// See [`Leg::telemetry`].
     #[must_use]
     pub fn telemetry(&self) -> Telemetry<T> {
@@ -82,8 +87,10 @@ macro_rules! commanded {
                 if self.leg.state().driven() {
                     return Err(HostRefusal::Driven);
                 }
+                let latched = self.leg.telemetry().faults;
                 let settings = settings.without_zero();
                 self.leg = Leg::new(&settings).map_err(HostRefusal::Settings)?;
+                self.leg.latch(latched);
                 Ok(())
             }
         }

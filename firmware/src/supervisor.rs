@@ -66,6 +66,11 @@ impl Supervisor {
         }
     }
 
+    /// Latches faults that another has seen, but for those that only limit.
+    pub fn latch(&mut self, faults: FaultSet) {
+        self.latched = self.latched.with(faults.without_limits());
+    }
+
     /// Goes where an event leads; stays where it leads nowhere. An arm or a start of homing is refused while a fault is
     /// latched.
     #[inline(always)]

@@ -129,6 +129,7 @@ impl Commanded for SharedLeg {
         let changed = with(|control| {
             let free = !control.leg.telemetry().state.driven();
             if free {
+                spare.replace(control.leg);
                 core::mem::swap(&mut control.leg, spare);
             }
             free

@@ -1,12 +1,13 @@
 //! Settings that are asked for, replaced and kept.
 
 use super::{Line, others, refused};
+use crate::command::{Command, CommandRefusal};
 use crate::host_link::{Commanded, HostRefusal, HostReply, HostRequest};
-use crate::leg::Leg;
+use crate::leg::{Leg, Outcome};
 use crate::linked_leg::SensingLeg;
-use crate::sensors::Sensors;
+use crate::sensors::{CODE_MAX, Sensors};
 use crate::settings::{OutOfRange, Settings, SettingsError};
-use crate::supervisor::State;
+use crate::supervisor::{Fault, FaultSet, State};
 
 const DRIVEN: [State; 4] = [
     State::Homing,
@@ -117,6 +118,49 @@ fn a_leg_that_refuses_settings_goes_on_with_the_old_ones() {
     assert_eq!(leg.restart(&bad), Err(HostRefusal::Settings(error)));
     assert_eq!(leg.telemetry(), before);
     assert!(before.homed && before.tick == 20);
+}
+
+/// A slack leg at rest with 24 V.
+fn quiet() -> Sensors {
+    Sensors {
+        cell_codes: [5_242; 3],
+        current_codes: [CODE_MAX / 2; 3],
+        supply_code: 43_680,
+        temperature_code: 21_294,
+        cell_fresh: [true; 3],
+        ..Sensors::default()
+    }
+}
+
+fn ticked(leg: &mut SensingLeg<f32>, command: Command) -> Option<Outcome> {
+    assert!(leg.command(1, command));
+    (0..20).for_each(|_| {
+        leg.tick(&quiet());
+    });
+    leg.outcome()
+}
+
+/// A cut leg does not come back by new settings, only by a clear.
+#[test]
+fn new_settings_clear_no_fault() {
+    let outcome = |result| Some(Outcome { number: 1, result });
+    let mut leg = SensingLeg::<f32>::new(&built_in()).unwrap();
+    ticked(&mut leg, Command::KeepAlive);
+    leg.tick(&Sensors {
+        emergency_stop: true,
+        ..quiet()
+    });
+    assert_eq!(leg.restart(&others()), Ok(()));
+    assert_eq!(
+        ticked(&mut leg, Command::Home),
+        outcome(Err(CommandRefusal::Faulted))
+    );
+    let latched = FaultSet::of(Fault::EmergencyStop);
+    assert_eq!(leg.telemetry().faults, latched);
+    assert_eq!(leg.telemetry().state, State::Off);
+    assert_eq!(ticked(&mut leg, Command::Clear), outcome(Ok(())));
+    assert_eq!(ticked(&mut leg, Command::Home), outcome(Ok(())));
+    assert_eq!(leg.telemetry().state, State::Homing);
 }
 
 #[test]
