@@ -259,11 +259,13 @@ fn commands_that_mean_nothing_now_are_refused_by_name() {
         y: 0.0,
     };
     assert_eq!(bench.obey(lost), Err(CommandRefusal::Number));
-    let stiffness = Command::Stiffness {
-        demand_nm_per_rad: 100.0,
-        towards: Some([f32::NAN, 0.0]),
-    };
-    assert_eq!(bench.obey(stiffness), Err(CommandRefusal::Number));
+    for towards in [[f32::NAN, 0.0], [0.0, 0.0], [1.0, 1.0], [f32::MAX, 0.0]] {
+        let stiffness = Command::Stiffness {
+            demand_nm_per_rad: 100.0,
+            towards: Some(towards),
+        };
+        assert_eq!(bench.obey(stiffness), Err(CommandRefusal::Number));
+    }
     assert_eq!(
         bench.obey(Command::Level(f32::INFINITY)),
         Err(CommandRefusal::Number)

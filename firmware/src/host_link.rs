@@ -31,7 +31,7 @@ pub trait Commanded {
     fn telemetry(&mut self) -> Telemetry<f32>;
     /// What the sensors read last.
     fn sensors(&mut self) -> Sensors;
-    /// Starts again with other settings and without its zero.
+    /// Starts again with other settings and without its zero. Faults stay latched.
     ///
     /// # Errors
     /// [`HostRefusal::Driven`] and [`HostRefusal::Settings`]; the old settings stay in use.
@@ -52,7 +52,7 @@ struct Service {
     identity: Identity,
     identified: bool,
     settings: Settings,
-    /// Host of the last command that drives.
+    /// Host of the last command that can set the leg in motion.
     driver: Option<HostId>,
     stream: Stream,
     /// Number of the request to save that waits for [`HostLink::saved`].
@@ -205,8 +205,13 @@ impl Service {
             HostRequest::Sensors => HostReply::Sensors(leg.sensors()),
             HostRequest::GetSettings => HostReply::Settings(self.settings.clone()),
             HostRequest::SetSettings(settings) => {
+                if self.saving.is_some() {
+                    // What is told to be kept would not be what is in use.
+                    return Err(HostRefusal::Busy);
+                }
                 leg.restart(&settings)?;
-                self.settings = settings;
+                // The leg has started without it.
+                self.settings = settings.without_zero();
                 HostReply::Done
             }
             HostRequest::SaveSettings => {
@@ -223,17 +228,18 @@ impl Service {
     }
 
     fn identify(&mut self, hello: Hello) -> Result<HostReply, HostRefusal> {
-        self.identified = hello.schema == SCHEMA;
+        if hello.schema != SCHEMA {
+            // Whoever is known on the line stays so: a stranger must not take the leg from its host.
+            return Err(HostRefusal::SchemaMismatch { schema: SCHEMA });
+        }
+        self.identified = true;
         // A new host has not asked for anything yet.
         self.stream.every_ticks = 0;
-        if self.identified {
-            Ok(HostReply::Identified(self.identity.clone()))
-        } else {
-            Err(HostRefusal::SchemaMismatch { schema: SCHEMA })
-        }
+        Ok(HostReply::Identified(self.identity.clone()))
     }
 
-    /// Passes a command on. Any host may stop a leg; whatever else a driven leg does, it does for one.
+    /// Passes a command on. Any host may stop or disarm a leg; whatever else a leg does that follows commands, it does for
+    /// the one that set it in motion.
     fn command(
         &mut self,
         number: u16,
@@ -242,6 +248,7 @@ impl Service {
         leg: &mut impl Commanded,
     ) -> Result<Option<HostReply>, HostRefusal> {
         let ends = matches!(command, Command::Stop | Command::Disarm);
+        let begins = matches!(command, Command::Arm | Command::Home | Command::Clear);
         let follows = leg.telemetry().state.follows();
         if follows && !ends && self.driver.is_some_and(|driver| driver != host) {
             return Err(HostRefusal::OtherHost);
@@ -249,7 +256,7 @@ impl Service {
         if !leg.command(number, command) {
             return Err(HostRefusal::Busy);
         }
-        if !ends {
+        if begins {
             self.driver = Some(host);
         }
         Ok(None)

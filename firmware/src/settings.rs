@@ -8,9 +8,19 @@ pub use section::{Field, OutOfRange};
 pub use sections::{Estimation, Homing, Limits, Motion, SECTIONS, Servo};
 
 use crate::messages::{RigMessage, SupportMessage, TendonsMessage};
+use core::ops::RangeInclusive;
 use leg_model::Error;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
+
+#[cfg(test)]
+mod tests;
+
+/// What one code or count may stand for, but for its sign, in any unit: no sensor is beyond it, and no reading overflows.
+const SCALES: RangeInclusive<f32> = 1e-12..=1e3;
+
+/// Greatest offset of a calibration, in any unit.
+const OFFSET_MAX: f32 = 1e6;
 
 /// Calibration of one axis: its encoder, its load cell and its motor's current.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
@@ -78,7 +88,7 @@ pub enum SettingsError {
     Model(Error),
     /// A gain or a limit.
     OutOfRange(OutOfRange),
-    /// A calibration that is not finite or zero; the axis counts from 1, 0 stands for what the axes share.
+    /// A calibration that is not finite, zero or beyond what any sensor has; the axis counts from 1, 0 stands for what the axes share.
     Calibration {
         /// The axis.
         axis: u8,
@@ -102,11 +112,14 @@ impl core::fmt::Display for SettingsError {
         match self {
             Self::Model(error) => error.fmt(f),
             Self::OutOfRange(error) => error.fmt(f),
-            Self::Calibration { axis: 0 } => {
-                f.write_str("the calibration of supply or temperature is not finite or zero")
-            }
+            Self::Calibration { axis: 0 } => f.write_str(
+                "the calibration of supply or temperature is zero or beyond any sensor's",
+            ),
             Self::Calibration { axis } => {
-                write!(f, "the calibration of axis {axis} is not finite or zero")
+                write!(
+                    f,
+                    "the calibration of axis {axis} is zero or beyond any sensor's"
+                )
             }
         }
     }
@@ -135,12 +148,13 @@ impl Settings {
         self.estimation.check()?;
         self.limits.check()?;
         self.homing.check()?;
-        let scale = |value: f32| value.is_finite() && value != 0.0;
+        let scale = |value: f32| SCALES.contains(&value.abs());
+        let offset = |value: f32| value.abs() <= OFFSET_MAX;
         let shared = [
             self.board.supply_v_per_code,
             self.board.temperature_c_per_code,
         ];
-        if !shared.into_iter().all(scale) || !self.board.temperature_at_zero_c.is_finite() {
+        if !shared.into_iter().all(scale) || !offset(self.board.temperature_at_zero_c) {
             return Err(SettingsError::Calibration { axis: 0 });
         }
         for (axis, calibration) in (1..).zip(&self.axes) {
@@ -150,7 +164,7 @@ impl Settings {
                 calibration.cell_n_per_code,
                 calibration.current_a_per_code,
             ];
-            let offsets = zero.is_finite() && calibration.cell_zero_code.is_finite();
+            let offsets = offset(zero) && offset(calibration.cell_zero_code);
             if !scales.into_iter().all(scale) || !offsets {
                 return Err(SettingsError::Calibration { axis });
             }

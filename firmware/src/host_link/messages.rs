@@ -125,7 +125,7 @@ pub enum HostRefusal {
     BadFrame(FrameError),
     /// The frame is whole but holds no request.
     BadRequest,
-    /// Too many commands wait for their tick.
+    /// Too many commands wait for their tick, or settings are being kept.
     Busy,
     /// Another host drives the leg.
     OtherHost,

@@ -6,6 +6,12 @@ use crate::control::{LevelDemand, Measured};
 use crate::supervisor::{Event, State};
 use leg_model::{BendingAxis, Direction, Scalar};
 
+/// Whether these are a cosine and a sine, but for their rounding. Of a direction of no length or of a huge one there is no
+/// stiffness.
+fn is_azimuth([cos, sin]: [f32; 2]) -> bool {
+    (0.999..=1.001).contains(&(cos * cos + sin * sin))
+}
+
 impl<T: Scalar> Leg<T> {
     /// Takes a command, which a later tick obeys; the number comes back with its [`Outcome`]. A stop goes before whatever
     /// waits. False if there is no room; apart from the tick, as a board's link runs below it.
@@ -78,7 +84,7 @@ impl<T: Scalar> Leg<T> {
                 towards,
             } if demand_nm_per_rad > 0.0
                 && demand_nm_per_rad.is_finite()
-                && towards.is_none_or(unit) =>
+                && towards.is_none_or(is_azimuth) =>
             {
                 let axis = match towards {
                     None => BendingAxis::Softest,
@@ -166,9 +172,4 @@ impl<T: Scalar> Leg<T> {
             }
         }
     }
-}
-
-/// Whether it is as long as (cos, sin) of some azimuth, to a thousandth.
-fn unit([x, y]: [f32; 2]) -> bool {
-    (x * x + y * y - 1.0).abs() <= 2e-3
 }

@@ -1,9 +1,11 @@
 //! What the fuzz targets share.
 
 mod board;
+mod host_requests;
 mod requests;
 
 pub use board::NoBoard;
+pub use host_requests::{brought, host_requests};
 pub use requests::{armed, requests};
 
 use leg_firmware::frame::{Decoder, FrameError, MAX_FRAME, MAX_PAYLOAD, encode};

@@ -1,14 +1,16 @@
 //! Requests of every kind that the firmware answers, for a fuzz target to damage.
 
+use crate::framed;
+use crate::host_requests::{self, commanded, identify, ticks};
 use leg_firmware::command::Command;
-use leg_firmware::frame::{MAX_FRAME, MAX_PAYLOAD, encode};
+use leg_firmware::frame::MAX_PAYLOAD;
 use leg_firmware::host_link::HostRequest;
 use leg_firmware::kernels::{Kernel, KernelInput};
 use leg_firmware::messages::{QueryMessage, SupportMessage, TendonMessage, TendonsMessage};
 use leg_firmware::protocol::{EvaluateRequest, Hello, KernelRequest, Request, SCHEMA, TickRequest};
-use leg_firmware::sensors::{CODE_MAX, Sensors};
 use leg_firmware::settings::Settings;
 use leg_model::{JointStiffness, RigParameters, StiffnessAt, SupportKind};
+use serde::Serialize;
 
 const TENSION_FLOOR_N: f32 = 8.0;
 const TENSION_CEILING_N: f32 = 150.0;
@@ -23,50 +25,41 @@ pub fn armed() -> Vec<Vec<u8>> {
     let mut requests = vec![
         Request::Hello(Hello { schema: SCHEMA }),
         Request::Start(settings()),
-        Request::Tick(identify()),
     ];
-    let ticks = std::iter::repeat_n(Request::Tick(tick(&Command::KeepAlive)), BOOT_TICKS);
-    requests.extend(ticks);
-    requests.push(Request::Tick(tick(&Command::Arm)));
+    let boot = std::iter::repeat_n(commanded(Command::KeepAlive), BOOT_TICKS);
+    let said = std::iter::once(identify()).chain(boot);
+    for request in said.chain([commanded(Command::Arm)]) {
+        requests.extend(hears(&request).into_iter().map(Request::Tick));
+    }
     requests.iter().map(payload).collect()
 }
 
 /// The payload of each request.
 pub fn requests() -> Vec<Vec<u8>> {
-    let commands = [
-        Command::KeepAlive,
-        Command::Arm,
-        Command::Home,
-        Command::Move { x: 0.2, y: -0.1 },
-        Command::Stiffness {
-            demand_nm_per_rad: 60.0,
-            towards: Some([1.0, 0.0]),
-        },
-        Command::Stop,
-        Command::Clear,
-    ];
     let mut requests = vec![
         Request::Hello(Hello { schema: SCHEMA }),
         Request::Evaluate(evaluate()),
         Request::Start(settings()),
-        Request::Tick(identify()),
-        Request::Tick(hears(&HostRequest::Telemetry)),
-        Request::Tick(hears(&HostRequest::Stream(1))),
-        Request::Tick(hears(&HostRequest::Sensors)),
-        Request::Tick(hears(&HostRequest::GetSettings)),
-        Request::Tick(hears(&HostRequest::SaveSettings)),
     ];
     requests.extend(Kernel::ALL.map(|kernel| Request::Run(run(kernel))));
     requests.push(Request::Count(run(Kernel::ModelTick)));
-    requests.extend(commands.map(|command| Request::Tick(tick(&command))));
-    requests.push(Request::CountTick(tick(&Command::Hold)));
+    for request in host_requests::every() {
+        requests.extend(hears(&request).into_iter().map(Request::Tick));
+    }
+    let counted = hears(&commanded(Command::Hold));
+    requests.extend(counted.into_iter().map(Request::CountTick));
     requests.iter().map(payload).collect()
 }
 
-fn payload(request: &Request) -> Vec<u8> {
+pub(crate) fn payload<T: Serialize>(request: &T) -> Vec<u8> {
     let mut buffer = [0; MAX_PAYLOAD];
     let payload = postcard::to_slice(request, &mut buffer);
     payload.expect("the request fits").to_vec()
+}
+
+/// The ticks in which a leg hears a request.
+fn hears(request: &HostRequest) -> Vec<TickRequest> {
+    ticks(&framed(1, &payload(request)))
 }
 
 fn support() -> SupportMessage {
@@ -115,7 +108,7 @@ fn run(kernel: Kernel) -> KernelRequest {
 }
 
 /// The paper's leg, its zero known, so that it can be armed.
-fn settings() -> Settings {
+pub(crate) fn settings() -> Settings {
     let mut settings = Settings::for_table_1().expect("they are built in");
     for axis in &mut settings.axes {
         axis.unstretched_at_zero_m = Some(0.0343);
@@ -123,41 +116,14 @@ fn settings() -> Settings {
     settings
 }
 
-fn identify() -> TickRequest {
-    hears(&HostRequest::Identify(Hello { schema: SCHEMA }))
-}
-
-/// A quiet leg at 70 N, 24 V and 25 °C, which gets a command.
-fn tick(command: &Command) -> TickRequest {
-    hears(&HostRequest::Command {
-        host: 1,
-        command: *command,
-    })
-}
-
-/// The same, which hears anything of its host.
-fn hears(request: &HostRequest) -> TickRequest {
-    let mut out = [0; MAX_FRAME];
-    let frame = encode(1, request, &mut out).expect("it fits");
-    TickRequest {
-        sensors: Sensors {
-            cell_codes: [23_590; 3],
-            current_codes: [CODE_MAX / 2; 3],
-            supply_code: 43_680,
-            temperature_code: 21_294,
-            cell_fresh: [true; 3],
-            ..Sensors::default()
-        },
-        link: heapless::Vec::from_slice(frame).expect("it takes less than a tick's bytes"),
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{armed, requests};
-    use crate::{NoBoard, feed, framed};
+    use super::{armed, hears, payload, requests, settings};
+    use crate::host_requests::{identify, ticks};
+    use crate::{NoBoard, brought, feed, framed, host_requests};
     use leg_firmware::frame::{Decoder, MAX_FRAME};
-    use leg_firmware::protocol::Reply;
+    use leg_firmware::host_link::{HostRefusal, HostReply};
+    use leg_firmware::protocol::{Hello, Reply, Request, SCHEMA};
     use leg_firmware::server::Server;
     use leg_firmware::supervisor::State;
 
@@ -185,6 +151,53 @@ mod tests {
         for (number, payload) in requests().iter().enumerate() {
             let reply = ask(&mut server, payload);
             assert!(!matches!(reply, Reply::Refused(_)), "{number}: {reply:?}");
+        }
+    }
+
+    /// What a leg says to its host in this tick.
+    fn said(
+        server: &mut Server<NoBoard>,
+        host: &mut Decoder,
+        tick: &[u8],
+    ) -> Vec<(u16, HostReply)> {
+        let Reply::Ticked(ticked) = ask(server, tick) else {
+            panic!("no tick")
+        };
+        let found = feed(host, &ticked.link).into_iter().map(|found| {
+            let (number, payload) = found.expect("a good frame");
+            (number, postcard::from_bytes(&payload).expect("a reply"))
+        });
+        found.collect()
+    }
+
+    /// The longest reply takes ten ticks, and there is telemetry in between.
+    const REPLY_TICKS: usize = 60;
+
+    /// One that the leg cannot read, or that it refuses for what is in it, would be a poor one to start from.
+    #[test]
+    fn every_request_of_a_host_is_read_by_the_leg() {
+        let (mut server, mut host) = (Server::new(NoBoard), Decoder::new());
+        let hello = Request::Hello(Hello { schema: SCHEMA });
+        ask(&mut server, &payload(&hello));
+        ask(&mut server, &payload(&Request::Start(settings())));
+        let [quiet] = ticks(&[0]).try_into().expect("one tick");
+        let quiet = vec![payload(&Request::Tick(quiet)); REPLY_TICKS];
+        for tick in hears(&identify()) {
+            said(&mut server, &mut host, &payload(&Request::Tick(tick)));
+        }
+        for (number, request) in (100..).zip(host_requests()) {
+            let ticks = [brought(number, &request), quiet.clone()].concat();
+            let mut replies = ticks
+                .iter()
+                .flat_map(|tick| said(&mut server, &mut host, tick));
+            let (_, reply) = replies
+                .find(|(told, _)| *told == number)
+                .expect("it is answered");
+            let obeyed_or_not = match reply {
+                HostReply::Refused(refusal) => matches!(refusal, HostRefusal::Command(_)),
+                _ => true,
+            };
+            assert!(obeyed_or_not, "{request:?}: {reply:?}");
         }
     }
 

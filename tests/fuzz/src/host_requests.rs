@@ -1,0 +1,76 @@
+//! What a user's host asks the leg, for a fuzz target to damage, and the ticks that bring it there.
+
+use crate::framed;
+use crate::requests::{payload, settings};
+use leg_firmware::command::{Command, Compensation};
+use leg_firmware::host_link::HostRequest;
+use leg_firmware::protocol::{Hello, LINK_BYTES_MAX, Request, SCHEMA, TickRequest};
+use leg_firmware::sensors::{CODE_MAX, Sensors};
+
+/// Every request of a user's host.
+pub(crate) fn every() -> Vec<HostRequest> {
+    let mut requests = vec![
+        identify(),
+        HostRequest::Telemetry,
+        HostRequest::Stream(1),
+        HostRequest::Sensors,
+        HostRequest::GetSettings,
+        HostRequest::SaveSettings,
+        HostRequest::SetSettings(settings()),
+    ];
+    requests.extend(COMMANDS.map(commanded));
+    requests
+}
+
+const COMMANDS: [Command; 12] = [
+    Command::KeepAlive,
+    Command::Arm,
+    Command::Home,
+    Command::Move { x: 0.2, y: -0.1 },
+    Command::Hold,
+    Command::Level(60.0),
+    Command::Stiffness {
+        demand_nm_per_rad: 60.0,
+        towards: Some([1.0, 0.0]),
+    },
+    Command::Compensation(Compensation::Off),
+    Command::Compensation(Compensation::Frozen),
+    Command::Stop,
+    Command::Disarm,
+    Command::Clear,
+];
+
+pub(crate) fn identify() -> HostRequest {
+    HostRequest::Identify(Hello { schema: SCHEMA })
+}
+
+pub(crate) fn commanded(command: Command) -> HostRequest {
+    HostRequest::Command { host: 1, command }
+}
+
+/// The payload of each request of a user's host.
+pub fn host_requests() -> Vec<Vec<u8>> {
+    every().iter().map(payload).collect()
+}
+
+/// The payloads of the ticks that bring the leg a good frame with this payload.
+pub fn brought(sequence: u16, host_payload: &[u8]) -> Vec<Vec<u8>> {
+    let ticks = ticks(&framed(sequence, host_payload)).into_iter();
+    ticks.map(|tick| payload(&Request::Tick(tick))).collect()
+}
+
+/// A quiet leg at 70 N, 24 V and 25 °C, which hears these bytes in as many ticks as they take.
+pub(crate) fn ticks(bytes: &[u8]) -> Vec<TickRequest> {
+    let ticks = bytes.chunks(LINK_BYTES_MAX).map(|bytes| TickRequest {
+        sensors: Sensors {
+            cell_codes: [23_590; 3],
+            current_codes: [CODE_MAX / 2; 3],
+            supply_code: 43_680,
+            temperature_code: 21_294,
+            cell_fresh: [true; 3],
+            ..Sensors::default()
+        },
+        link: bytes.iter().copied().collect(),
+    });
+    ticks.collect()
+}
