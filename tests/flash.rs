@@ -9,8 +9,14 @@ use std::process::{Command, Output};
 
 const LEG: &str = env!("CARGO_BIN_EXE_leg-under-test");
 
-/// What `probe-rs read` prints for the right chip.
-const RIGHT_CHIP: &str = "echo 'e0042000: 20036469'";
+/// What `probe-rs read` prints of the right chip: its number and its option bytes.
+const RIGHT_CHIP: &str = "case \"$*\" in *0xE0042000*) echo 'e0042000: 20036469';; \
+                          *) echo '40022020: ffeff8aa';; esac";
+
+/// The same with other option bytes.
+fn option_bytes(options: &str) -> String {
+    RIGHT_CHIP.replace("ffeff8aa", options)
+}
 
 /// Makes the program: a line of shell for each of its subcommands. It notes how it was called.
 fn probe_rs(folder: &Path, lines: &[(&str, &str)]) -> PathBuf {
@@ -70,6 +76,7 @@ fn the_chip_is_checked_written_read_back_started_and_listened_to() {
     assert_eq!(
         flashed.calls,
         "read --non-interactive --chip STM32G474RETx b32 0xE0042000 1\n\
+         read --non-interactive --chip STM32G474RETx b32 0x40022020 1\n\
          download --non-interactive --chip STM32G474RETx --disable-progressbars --verify IMAGE\n\
          reset --non-interactive --chip STM32G474RETx\n\
          attach --non-interactive --chip STM32G474RETx IMAGE\n"
@@ -119,6 +126,12 @@ fn what_goes_wrong_is_named_with_its_cure() {
             "does not know",
             "newer",
         ),
+        (
+            "The core entered an unexpected status: LockedUp.",
+            2,
+            "processor is locked up",
+            "reset the board",
+        ),
         ("Something else.", 2, "Something else", "probe-rs info"),
     ];
     for (says, code, wrong, cure) in cases {
@@ -141,6 +154,33 @@ fn another_chip_is_not_written_to() {
         flashed.told()
     );
     assert!(!flashed.calls.contains("download"));
+}
+
+#[test]
+fn a_chip_with_other_option_bytes_is_not_written_to() {
+    for (options, wrong, cure) in [
+        ("ffeff8bb", "protected against reading", "RDP level 0"),
+        ("ffaff8aa", "set to a single bank", "DBANK"),
+    ] {
+        let flashed = flash(&[("read", &option_bytes(options))], &[]);
+        assert_eq!(flashed.output.status.code(), Some(2));
+        let told = flashed.told();
+        assert!(told.contains(wrong) && told.contains(cure), "{told}");
+        assert!(!flashed.calls.contains("download"));
+    }
+}
+
+#[test]
+fn ctrl_c_is_the_way_to_end_the_log_and_a_crash_is_not() {
+    for (attach, code) in [
+        ("kill -INT $PPID; sleep 0.3; kill -INT $$", Some(0)),
+        ("kill -INT $PPID; sleep 0.3; exit 130", Some(0)),
+        ("kill -SEGV $$", Some(2)),
+        ("exit 1", Some(2)),
+    ] {
+        let flashed = flash(&[("read", RIGHT_CHIP), ("attach", attach)], &[]);
+        assert_eq!(flashed.output.status.code(), code, "{attach}");
+    }
 }
 
 #[test]

@@ -4,6 +4,7 @@ mod error;
 
 pub use error::FlashError;
 
+use crate::operator::Interrupt;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -18,6 +19,12 @@ pub const PROGRAM_VARIABLE: &str = "LEG_PROBE_RS";
 const ID_REGISTER: &str = "0xE0042000";
 const ID_BITS: u32 = 0xfff;
 const ID: u32 = 0x469;
+
+/// Register of the option bytes, what its low bits are without a protection against reading, and the bit of two banks.
+const OPTION_REGISTER: &str = "0x40022020";
+const PROTECTION_BITS: u32 = 0xff;
+const UNPROTECTED: u32 = 0xaa;
+const TWO_BANKS: u32 = 1 << 22;
 
 /// A debugger that probe-rs can use.
 #[derive(Clone, Debug)]
@@ -40,20 +47,32 @@ impl Probe {
         }
     }
 
-    /// Refuses another chip than the board's.
+    /// Refuses another chip than the board's, and one whose option bytes do not let the firmware be written or keep its
+    /// settings.
     ///
     /// # Errors
-    /// What probe-rs says, by name; [`FlashError::OtherChip`].
+    /// What probe-rs says, by name; [`FlashError::OtherChip`], [`FlashError::Protected`], [`FlashError::OneBank`].
     pub fn check_chip(&self) -> Result<(), FlashError> {
-        let read = self.run("read", &["b32", ID_REGISTER, "1"])?;
+        let id = self.register(ID_REGISTER)? & ID_BITS;
+        if id != ID {
+            return Err(FlashError::OtherChip(id));
+        }
+        let options = self.register(OPTION_REGISTER)?;
+        if options & PROTECTION_BITS != UNPROTECTED {
+            return Err(FlashError::Protected);
+        }
+        if options & TWO_BANKS == 0 {
+            return Err(FlashError::OneBank);
+        }
+        Ok(())
+    }
+
+    fn register(&self, address: &str) -> Result<u32, FlashError> {
+        let read = self.run("read", &["b32", address, "1"])?;
         let text = String::from_utf8_lossy(&read.stdout);
         let word = text.split_whitespace().last().unwrap_or_default();
         let digits = word.trim_start_matches("0x");
-        match u32::from_str_radix(digits, 16) {
-            Ok(id) if id & ID_BITS == ID => Ok(()),
-            Ok(id) => Err(FlashError::OtherChip(id & ID_BITS)),
-            Err(_) => Err(FlashError::other(&read)),
-        }
+        u32::from_str_radix(digits, 16).map_err(|_| FlashError::other(&read))
     }
 
     /// Writes an image, reads it back and compares.
@@ -74,15 +93,14 @@ impl Probe {
         self.run("reset", &[]).map(drop)
     }
 
-    /// Shows the firmware's log until the user ends it.
+    /// Shows the firmware's log until the user ends it, which raises `interrupt` and reaches probe-rs, too.
     ///
     /// # Errors
     /// A program that cannot be started, or that fails.
-    pub fn attach(&self, image: &Path) -> Result<(), FlashError> {
+    pub fn attach(&self, image: &Path, interrupt: &Interrupt) -> Result<(), FlashError> {
         let status = self.command("attach").arg(image).status();
         match status.map_err(FlashError::NotStarted)? {
-            // Ended by the user's Ctrl-C, which is the way to end it.
-            status if status.success() || status.code().is_none() => Ok(()),
+            status if status.success() || interrupt.raised() => Ok(()),
             status => Err(FlashError::Other(format!("it ended with {status}"))),
         }
     }

@@ -9,7 +9,7 @@ mod advance;
 mod body;
 mod build;
 mod encoder;
-mod faults;
+pub(crate) mod faults;
 mod hand;
 mod leg;
 mod mechanism;

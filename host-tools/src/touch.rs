@@ -1,9 +1,10 @@
 //! What is done to an emulated leg from outside, as a line of JSON: `{"payload":{"kg":2}}`.
 
+use crate::plant::faults::from_one;
 use crate::plant::{Fault, Plant};
 use serde::Deserialize;
 
-/// One thing that is done. Motors and load cells are counted from 1.
+/// One thing that is done. Motors and load cells are counted from 0 here, and from 1 in a line.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Touch {
@@ -24,6 +25,7 @@ pub enum Touch {
     /// Turns a motor by hand, one turn a second; a positive turn pulls its tendon in.
     Turn {
         /// The motor.
+        #[serde(with = "from_one")]
         motor: usize,
         /// Turns.
         turns: f64,
@@ -31,6 +33,7 @@ pub enum Touch {
     /// Hangs a weight on a load cell in the place of its tendon, or puts the tendon back.
     Hang {
         /// The load cell.
+        #[serde(with = "from_one")]
         cell: usize,
         /// Its weight, N; none is the tendon.
         newtons: Option<f64>,
@@ -43,7 +46,13 @@ impl Touch {
     /// # Errors
     /// What is wrong with it.
     pub fn parse(line: &str) -> Result<Self, String> {
-        serde_json::from_str(line).map_err(|error| error.to_string())
+        let touch: Self = serde_json::from_str(line).map_err(|error| error.to_string())?;
+        match touch {
+            Self::Payload { kg, over_s } if kg < 0.0 || over_s < 0.0 => {
+                Err("a payload and its time are not below zero".into())
+            }
+            touch => Ok(touch),
+        }
     }
 
     /// Does it.
@@ -53,9 +62,8 @@ impl Touch {
             Self::Fault(fault) => plant.set_fault(fault, true),
             Self::Repair(fault) => plant.set_fault(fault, false),
             Self::EmergencyStop(pressed) => plant.press_emergency_stop(pressed),
-            // None of them is number 0, and none the greatest number.
-            Self::Turn { motor, turns } => plant.turn_motor(motor.wrapping_sub(1), turns),
-            Self::Hang { cell, newtons } => plant.hang_on_cell(cell.wrapping_sub(1), newtons),
+            Self::Turn { motor, turns } => plant.turn_motor(motor, turns),
+            Self::Hang { cell, newtons } => plant.hang_on_cell(cell, newtons),
         }
     }
 }
@@ -70,12 +78,25 @@ mod tests {
     fn a_line_is_one_thing() {
         let turn = Touch::parse(r#"{"turn":{"motor":2,"turns":-0.5}}"#).unwrap();
         let expected = Touch::Turn {
-            motor: 2,
+            motor: 1,
             turns: -0.5,
         };
         assert_eq!(turn, expected);
         let fault = Touch::parse(r#"{"fault":{"driver_fault":1}}"#).unwrap();
         assert_eq!(fault, Touch::Fault(Fault::DriverFault(0)));
-        assert!(Touch::parse(r#"{"turn":{"motor":2}}"#).is_err());
+    }
+
+    #[test]
+    fn what_would_do_nothing_or_something_else_is_refused() {
+        for line in [
+            r#"{"turn":{"motor":2}}"#,
+            r#"{"turn":{"motor":0,"turns":1}}"#,
+            r#"{"hang":{"cell":4,"newtons":1}}"#,
+            r#"{"payload":{"kg":-5}}"#,
+            r#"{"payload":{"kg":1,"over_s":-1}}"#,
+            r#"{"payload":{"kg":1e999}}"#,
+        ] {
+            assert!(Touch::parse(line).is_err(), "{line}");
+        }
     }
 }

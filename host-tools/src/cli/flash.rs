@@ -4,6 +4,7 @@ use super::{board, print};
 use crate::failure::Failure;
 use crate::flash::{FlashError, Probe};
 use crate::image::Board;
+use crate::operator::Interrupt;
 use std::path::PathBuf;
 
 /// Builds the firmware, writes it into the board over its debugger, reads it back, starts it and shows its log.
@@ -23,7 +24,7 @@ pub struct Args {
 /// Runs the command.
 ///
 /// # Errors
-/// A [`Failure`]: no probe-rs, no debugger, another chip, or flash that does not hold what was written.
+/// A [`Failure`]: no probe-rs, no debugger, another chip or one with other option bytes, or flash that does not hold what was written.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let probe = Probe::find(args.probe.clone()).map_err(failure)?;
     let image = match &args.image {
@@ -45,8 +46,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     if args.no_log {
         return Ok(());
     }
+    let interrupt = Interrupt::on_ctrl_c();
     eprintln!("leg: the firmware's log follows; Ctrl-C ends it");
-    probe.attach(&image).map_err(failure)
+    probe.attach(&image, &interrupt).map_err(failure)
 }
 
 fn failure(error: FlashError) -> Failure {

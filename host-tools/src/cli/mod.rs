@@ -49,7 +49,7 @@ use std::process::ExitCode;
 #[derive(Debug, Parser)]
 #[command(name = "leg", bin_name = "leg", version, after_help = EXIT_CODES)]
 struct Cli {
-    /// Shows the firmware's log on standard error.
+    /// Shows the log of the firmware under QEMU on standard error.
     #[arg(short, long, global = true)]
     verbose: bool,
     #[command(subcommand)]

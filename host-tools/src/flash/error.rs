@@ -28,8 +28,14 @@ pub enum FlashError {
     #[error("the chip is no STM32G474: its device number is {0:#05x}, not 0x469")]
     OtherChip(u32),
     /// The chip is protected.
-    #[error("the chip is protected against reading: {0}")]
-    Protected(String),
+    #[error("the chip is protected against reading")]
+    Protected,
+    /// The chip's flash is one bank, where the settings have to be in the second.
+    #[error("the chip's flash is set to a single bank")]
+    OneBank,
+    /// The processor is locked up.
+    #[error("the chip's processor is locked up: {0}")]
+    LockedUp(String),
     /// What was read back differs.
     #[error("the flash does not hold what was written")]
     NotVerified,
@@ -45,14 +51,15 @@ pub enum FlashError {
 type Meaning = fn(String) -> FlashError;
 
 /// What probe-rs says, in small letters, and what it means.
-const SAYS: [(&str, Meaning); 10] = [
+const SAYS: [(&str, Meaning); 11] = [
     ("no connected probes", |_| FlashError::NoProbe),
     ("probe not found", |_| FlashError::NoProbe),
     ("probes were found", |_| FlashError::SeveralProbes),
     ("verification failed", |_| FlashError::NotVerified),
     ("failed to open", FlashError::NotOpened),
     ("probe could not be created", FlashError::NotOpened),
-    ("locked", FlashError::Protected),
+    ("lockedup", FlashError::LockedUp),
+    ("locked up", FlashError::LockedUp),
     ("not found in the database", |_| FlashError::UnknownChip),
     ("unable to load specification", |_| FlashError::UnknownChip),
     ("connecting to the chip", FlashError::NoChip),
@@ -96,9 +103,11 @@ impl FlashError {
             }
             Self::NoChip(_) => "see that the board is powered and its ST-LINK jumpers are set",
             Self::OtherChip(_) => "use a NUCLEO-G474RE; the image fits no other chip",
-            Self::Protected(_) => {
+            Self::Protected => {
                 "lift the protection with STM32CubeProgrammer (RDP level 0), which erases the chip"
             }
+            Self::OneBank => "set its option byte DBANK with STM32CubeProgrammer, as it is from the factory",
+            Self::LockedUp(_) => "reset the board, then flash again",
             Self::NotVerified => "flash again; if it stays, the chip's flash is worn out",
             Self::UnknownChip => "install a newer one: `cargo install probe-rs-tools --locked`",
             Self::Other(_) => "run `probe-rs info` to see what it reaches",

@@ -147,7 +147,7 @@ impl Faults {
 }
 
 /// A number from 1 to 3 in a file, from 0 to 2 here.
-mod from_one {
+pub(crate) mod from_one {
     use serde::{Deserialize, Deserializer, Serializer, de::Error};
 
     #[allow(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]

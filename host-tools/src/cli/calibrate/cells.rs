@@ -18,6 +18,9 @@ use std::time::Duration;
 /// Readings that are averaged.
 const READINGS: u32 = 200;
 
+/// How far a weight may be off the straight line, as a part of the heaviest.
+const RESIDUAL_PART: f64 = 0.01;
+
 /// Time between two of them: at least a tick.
 const READING_TIME: Duration = Duration::from_millis(2);
 
@@ -77,10 +80,28 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
     axis.cell_n_per_code = found.n_per_code as f32;
     axis.cell_zero_code = found.zero_code as f32;
     report(args, &weighings, &found, &settings)?;
+    straight(args.axis, &weighings, &found)?;
     if args.set {
         set(operator, &settings, args.save)?;
     }
     Ok(())
+}
+
+/// Refuses weights that no straight line explains: one was not what was said, or hung somewhere else.
+fn straight(axis: u8, weighings: &[Weighing], found: &CellFit) -> Result<(), Failure> {
+    let newtons = weighings.iter().map(|weighing| weighing.newtons);
+    let heaviest_n = newtons.fold(0.0, f64::max);
+    if found.residual_n <= RESIDUAL_PART * heaviest_n {
+        return Ok(());
+    }
+    Err(Failure::missed(
+        format!(
+            "load cell {axis} is off a straight line by {:.3} N, more than {} % of the heaviest weight",
+            found.residual_n,
+            RESIDUAL_PART * 100.0
+        ),
+        "hang the weights again, in the order in which they were given; nothing was set",
+    ))
 }
 
 fn mean_code(operator: &mut Operator, cell: usize) -> Result<f64, Failure> {

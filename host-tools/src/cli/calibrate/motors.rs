@@ -75,6 +75,15 @@ impl Turned {
 
 pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
     let rig = RigFile::load(args.rig.as_deref())?;
+    let counts_per_turn = rig.actuator.counts_per_turn;
+    if counts_per_turn * (1.0 + HAND_PART) > f64::from(i16::MAX) {
+        return Err(Failure::refused(
+            format!(
+                "a turn of {counts_per_turn} counts is too much for the board's counter of 16 bits"
+            ),
+            "check its direction by homing; a wrong one is a fault by name",
+        ));
+    }
     let mut line = args.line.open(&rig, Fresh::Slack, verbose)?;
     let operator = &mut line.operator;
     drivers_off(operator, "let itself be turned by hand")?;
@@ -85,9 +94,9 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
         let before = operator.sensors()?.encoder_counts[motor];
         hand.turn(operator, motor)?;
         let after = operator.sensors()?.encoder_counts[motor];
-        // The counter wraps; half of it is several turns.
+        // The counter wraps; a turn is less than half of it.
         let counts = after.wrapping_sub(before) as i16;
-        let expected = rig.actuator.counts_per_turn * f64::from(axis.m_per_count.signum());
+        let expected = counts_per_turn * f64::from(axis.m_per_count.signum());
         turns.push(Turned::new(motor, counts, expected));
     }
     print(&if args.json {
@@ -100,9 +109,13 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
 
 fn table(turns: &[Turned]) -> String {
     let rows: String = turns.iter().map(Turned::words).collect();
+    let head = format!("motor   counts  expected\n{rows}");
+    if turns.iter().any(|turned| turned.sign == 0) {
+        return head;
+    }
     let signs: Vec<String> = turns.iter().map(|turned| turned.sign.to_string()).collect();
     format!(
-        "motor   counts  expected\n{rows}\n[calibration]\ncounts_sign = [{}]\n",
+        "{head}\n[calibration]\ncounts_sign = [{}]\n",
         signs.join(", ")
     )
 }
@@ -115,7 +128,7 @@ fn judge(turns: &[Turned]) -> Result<(), Failure> {
     }
     Err(Failure::missed(
         format!(
-            "motor {} does not count as the board is set",
+            "motor {} does not count as the rig file and the board say",
             motors.join(", ")
         ),
         "correct the rig file, then `leg settings set`",
