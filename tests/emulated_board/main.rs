@@ -8,6 +8,7 @@ mod calibration;
 use board::{Board, errors, move_to, signal};
 use serde_json::Value;
 use std::fs::File;
+use std::io::{BufRead, BufReader};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -151,6 +152,40 @@ fn a_busy_port_is_named() {
     assert!(told.contains("is busy") && told.contains("fuser"), "{told}");
     other.unlock().unwrap();
     assert_eq!(board.told(&["stop"])["state"], "disarmed");
+}
+
+#[test]
+fn a_suspended_command_that_has_the_port_is_named() {
+    let board = Board::new(&[]);
+    let mut first = board.begin(&["monitor", "--json", "--for", "60"]);
+    // It has the port once it prints.
+    let mut line = String::new();
+    let stdout = first.stdout.take().unwrap();
+    BufReader::new(stdout).read_line(&mut line).unwrap();
+    signal(&first, "-STOP");
+    let (code, told) = board.refused(&["stop"]);
+    signal(&first, "-CONT");
+    assert_eq!(code, Some(2));
+    assert!(
+        told.contains("another `leg` has the port") && told.contains("resume or end it"),
+        "{told}"
+    );
+    assert_eq!(board.told(&["stop"])["state"], "disarmed");
+    first.kill().unwrap();
+    first.wait().unwrap();
+}
+
+#[test]
+fn a_port_that_cannot_be_shared_serves_one_command() {
+    let board = Board::new(&[]);
+    let mut stop = board.command(&["stop", "--json"]);
+    let output = stop.env("TMPDIR", "/dev/null/no-folder").output().unwrap();
+    assert!(output.status.success(), "{}", errors(&output));
+    assert!(
+        errors(&output).contains("other commands cannot use this port meanwhile"),
+        "{}",
+        errors(&output)
+    );
 }
 
 #[test]

@@ -114,7 +114,14 @@ impl LineArgs {
             None => serial::find().and_then(|port| Serial::open(&port)),
         };
         match opened {
-            Ok(serial) => Ok(Box::new(serial)),
+            Ok(serial) => {
+                if let Some(reason) = serial.alone() {
+                    eprintln!(
+                        "leg: other commands cannot use this port meanwhile ({reason}): let TMPDIR be a folder that may be written, with a short path"
+                    );
+                }
+                Ok(Box::new(serial))
+            }
             Err(error) => Err(no_line(&error)),
         }
     }
