@@ -129,10 +129,10 @@ impl Operator {
         self.line.clock_is_emulated()
     }
 
-    /// Frames from the leg that could not be read.
+    /// Frames from the leg that could not be read, and what came so damaged that it is in none.
     #[must_use]
     pub fn damaged(&self) -> u64 {
-        self.line.damaged
+        self.line.damaged()
     }
 
     /// Lets someone look at the telemetry that the operator asks for while it waits.

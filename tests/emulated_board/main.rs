@@ -72,6 +72,63 @@ fn monitor_and_log_run_beside_a_move() {
     let logged: Value = serde_json::from_slice(&output.stdout).unwrap();
     let rows = std::fs::read_to_string(&file).unwrap().lines().count() as u64;
     assert_eq!(logged["count"].as_u64().unwrap() + 1, rows);
+    // The introductions of the other two end the telemetry; it was asked for again before it was missed.
+    assert_eq!(logged["lost"], 0);
+    assert!(logged["longest_s"].as_f64().unwrap() < 0.15, "{logged}");
+}
+
+#[test]
+fn two_logs_share_a_rate_and_not_two() {
+    let folder = tempfile::tempdir().unwrap();
+    let board = Board::new(&[]);
+    let log = |name: &str, rate: &str| {
+        let file = folder.path().join(name).display().to_string();
+        let log = board.begin(&["log", "--out", &file, "--rate", rate, "--for", "3"]);
+        sleep(Duration::from_millis(700));
+        log
+    };
+    let logs = [log("a.csv", "100"), log("b.csv", "100")];
+    for log in logs {
+        let output = log.wait_with_output().unwrap();
+        assert!(output.status.success(), "{}", errors(&output));
+    }
+    let logs = [log("a.csv", "100"), log("b.csv", "40")];
+    let outputs = logs.map(|log| log.wait_with_output().unwrap());
+    let failed: Vec<_> = outputs
+        .iter()
+        .filter(|output| !output.status.success())
+        .collect();
+    let [failed] = failed.as_slice() else {
+        panic!("{} of the logs fail", failed.len());
+    };
+    assert_eq!(failed.status.code(), Some(1));
+    let told = errors(failed);
+    assert!(
+        told.contains("another host has asked the leg to tell of itself every")
+            && told.contains("end the other `leg log`"),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_log_ends_where_the_leg_starts_anew() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("leg.csv");
+    let board = Board::new(&[]);
+    let name = file.display().to_string();
+    let log = board.begin(&["log", "--out", &name, "--for", "20"]);
+    sleep(Duration::from_millis(1500));
+    let set = board.run(&["settings", "set", "--rig", "table1"]);
+    assert!(set.status.success(), "{}", errors(&set));
+    let output = log.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        errors(&output).contains("the leg started anew, and its time begins again"),
+        "{}",
+        errors(&output)
+    );
+    let rows = std::fs::read_to_string(&file).unwrap().lines().count();
+    assert!((10..1000).contains(&rows), "{rows}");
 }
 
 #[test]

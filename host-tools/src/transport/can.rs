@@ -52,7 +52,7 @@ pub struct CanTransport<P> {
     urgent_to_all: Segmenter,
     assembler: Assembler,
     received: VecDeque<u8>,
-    faults: Vec<CanFault>,
+    damaged: u64,
 }
 
 impl<P: CanPort> CanTransport<P> {
@@ -67,7 +67,7 @@ impl<P: CanPort> CanTransport<P> {
             urgent_to_all: Segmenter::new(Identifier::UrgentToAll),
             assembler: Assembler::of_host(leg),
             received: VecDeque::new(),
-            faults: Vec::new(),
+            damaged: 0,
         }
     }
 
@@ -79,15 +79,12 @@ impl<P: CanPort> CanTransport<P> {
         segment(&mut self.port, &mut self.urgent_to_all, link_frame)
     }
 
-    /// What was wrong with what came since the last call.
-    pub fn take_faults(&mut self) -> Vec<CanFault> {
-        std::mem::take(&mut self.faults)
-    }
-
     fn receive_frame(&mut self, timeout: Duration) -> io::Result<()> {
         let frame = self.port.receive(timeout)?;
         let taken = self.assembler.push(&frame);
-        self.faults.extend(taken.fault);
+        // A double costs nothing.
+        let damaged = taken.fault.is_some_and(|fault| fault != CanFault::Doubled);
+        self.damaged += u64::from(damaged);
         self.received.extend(taken.link_frame.unwrap_or_default());
         Ok(())
     }
@@ -115,6 +112,10 @@ impl<P: CanPort> Transport for CanTransport<P> {
     /// As any other, and at most [`SEGMENT_MAX`](leg_firmware::can::SEGMENT_MAX) bytes long.
     fn send_urgent(&mut self, link_frame: &[u8]) -> io::Result<()> {
         segment(&mut self.port, &mut self.urgent, link_frame)
+    }
+
+    fn damaged(&self) -> u64 {
+        self.damaged
     }
 
     fn receive(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize> {
