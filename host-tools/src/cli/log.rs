@@ -24,7 +24,7 @@ const STALL_TIME: Duration = Duration::from_millis(200);
 /// Such silences without anything between them.
 const SILENCES_MAX: u32 = 20;
 
-/// Records what the leg tells of itself, beside whatever else goes on.
+/// Records what the leg tells of itself, beside whatever else goes on; not on CAN.
 ///
 /// Ctrl-C ends it early, and the file is whole.
 #[derive(Debug, clap::Args)]

@@ -18,7 +18,7 @@ const KEY_TIME: Duration = Duration::from_millis(50);
 
 /// Shows what the leg tells, on the terminal or as lines of JSON.
 ///
-/// It commands nothing, and may run beside other commands.
+/// It commands nothing, and may run beside other commands; not on CAN.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Prints a line of JSON each time instead of a screen.

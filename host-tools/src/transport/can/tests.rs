@@ -102,6 +102,23 @@ fn urgent_frames_reach_one_leg_or_all() -> io::Result<()> {
 }
 
 #[test]
+fn one_who_only_stops_sends_nothing_under_the_ordinary_identifier() -> io::Result<()> {
+    let bus = Rc::new(RefCell::new(Bus::new(Damage::default(), 1)));
+    let mut listening = BusPort::attach(&bus);
+    let mut stopping = CanTransport::urgent_only(BusPort::attach(&bus), LEG);
+    stopping.send(&[1, 0, 2, 0])?;
+    stopping.send_urgent(&[3, 0])?;
+    for _ in 0..3 {
+        let frame = listening.receive(TIMEOUT)?;
+        assert_eq!(frame.identifier(), Identifier::Urgent(LEG));
+    }
+    let long = [[1; 62].as_slice(), &[0]].concat();
+    let refused = stopping.send(&long).map_err(|error| error.kind());
+    assert_eq!(refused, Err(ErrorKind::InvalidInput));
+    Ok(())
+}
+
+#[test]
 fn what_was_lost_is_told() -> io::Result<()> {
     let bus = Rc::new(RefCell::new(Bus::new(Damage::default(), 1)));
     let mut leg = BusPort::attach(&bus);
