@@ -21,8 +21,7 @@ impl Operator {
             return Ok(());
         }
         let command_time_s = self.settings()?.limits.command_time_s;
-        // Not below: also where it is no number.
-        if !(command_time_s >= PATIENCE_MIN_S) {
+        if command_time_s < PATIENCE_MIN_S {
             return Err(OperatorError::Impatient { command_time_s });
         }
         let patience = Duration::try_from_secs_f32(command_time_s).unwrap_or(Duration::MAX);

@@ -167,8 +167,8 @@ impl OperatorError {
                 "plug the board in again; without its host an armed leg holds by itself".into()
             }
             Self::Silent { .. } => {
-                "see that the board is powered and flashed (`leg flash`), and that \
-                 this is its port"
+                "see that the board is powered and flashed (`leg flash`), that this is its port, and \
+                 that no other `leg` that has it is suspended"
                     .into()
             }
             Self::OtherSchema { .. } | Self::WrongReply { .. } => {

@@ -68,9 +68,14 @@ fn listen(listener: &UnixListener, hub: &Arc<Hub>) {
             &mut [PollFd::new(listener, PollFlags::IN)],
             Some(&LOOK_TIME),
         );
-        if let Ok((stream, _)) = listener.accept() {
-            // A client that cannot be served sees its stream end.
-            let _ = welcome(stream, hub);
+        match listener.accept() {
+            Ok((stream, _)) => {
+                // A client that cannot be served sees its stream end.
+                let _ = welcome(stream, hub);
+            }
+            Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
+            // Too many open files, say: that does not change in a moment.
+            Err(_) => thread::sleep(PATIENCE),
         }
     }
 }
