@@ -6,9 +6,11 @@ mod board;
 mod calibration;
 
 use board::{Board, errors, move_to, signal};
+use leg_host_tools::transport::Transport;
+use leg_host_tools::transport::serial::Serial;
 use serde_json::Value;
 use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, ErrorKind};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -108,6 +110,21 @@ fn two_logs_share_a_rate_and_not_two() {
             && told.contains("end the other `leg log`"),
         "{told}"
     );
+}
+
+#[test]
+fn a_log_that_is_ended_lets_the_line_go() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("leg.csv").display().to_string();
+    let board = Board::new(&[]);
+    let log = board.begin(&["log", "--out", &file, "--for", "60"]);
+    sleep(Duration::from_secs(1));
+    signal(&log, "-INT");
+    let output = log.wait_with_output().unwrap();
+    assert!(output.status.success(), "{}", errors(&output));
+    let mut line = Serial::open(&board.port).unwrap();
+    let heard = line.receive(&mut [0; 99], Duration::from_millis(500));
+    assert_eq!(heard.unwrap_err().kind(), ErrorKind::TimedOut);
 }
 
 #[test]
