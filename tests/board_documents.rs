@@ -26,33 +26,114 @@ fn pins(text: &str) -> BTreeSet<String> {
         .collect()
 }
 
-fn pins_of_the_image() -> BTreeSet<String> {
-    let folder = Path::new(FIRMWARE).join("src/bin/leg-stm32g474");
-    let mut found = BTreeSet::new();
-    for entry in fs::read_dir(folder).unwrap() {
-        found.append(&mut pins(
-            &fs::read_to_string(entry.unwrap().path()).unwrap(),
-        ));
-    }
-    found
+/// The code that hands each pin to its part, without the spaces.
+fn start() -> String {
+    let start = Path::new(FIRMWARE).join("src/bin/leg-stm32g474/start.rs");
+    let mut text = fs::read_to_string(start).unwrap();
+    text.retain(|c| !c.is_whitespace());
+    text
 }
 
-#[test]
-fn the_wiring_table_has_the_pins_of_the_image() {
+/// What stands before each pin of a row of BOARD.md in the code that hands it to its part.
+const PARTS: [(&str, &[&str]); 18] = [
+    (
+        "pulses of motors 1, 2, 3",
+        &["pulse_1:p.", ",pulse_2:p.", ",pulse_3:p."],
+    ),
+    (
+        "directions of motors 1, 2, 3",
+        &["direction_1:p.", ",direction_2:p.", ",direction_3:p."],
+    ),
+    ("enable of all drivers", &["enable:p."]),
+    (
+        "fault lines of drivers 1, 2, 3",
+        &["fault_1:p.", ",fault_2:p.", ",fault_3:p."],
+    ),
+    (
+        "the three fault lines together, a diode from each: break 1",
+        &["any_fault:p."],
+    ),
+    ("emergency stop: break 2", &["stop:p."]),
+    ("encoder 1, tracks A and B", &["tracks_1:(p.", ",p."]),
+    ("encoder 2, tracks A and B", &["tracks_2:(p.", ",p."]),
+    ("encoder 3, tracks A and B", &["tracks_3:(p.", ",p."]),
+    (
+        "load cells 1, 2, 3",
+        &["cell_1:p.", ",cell_2:p.", ",cell_3:p."],
+    ),
+    (
+        "currents of motors 1, 2, 3",
+        &["current_1:p.", ",current_2:p.", ",current_3:p."],
+    ),
+    ("motor supply", &["SlowSensors::new(p.ADC3,p."]),
+    (
+        "temperature of the drivers",
+        &["SlowSensors::new(p.ADC3,p.PB1,p."],
+    ),
+    (
+        "serial line to the ST-LINK",
+        &["serial::open(p.LPUART1,p.PA3,p."],
+    ),
+    (
+        "CAN FD: receive, transmit",
+        &["can_bus::open(p.FDCAN2,p.", ",p."],
+    ),
+    (
+        "address switches 1, 2, 4",
+        &["switches::read(p.", ",p.", ",p."],
+    ),
+    ("lamp", &["letlamp=Output::new(p."]),
+    ("button", &[]),
+];
+
+/// The rows of the wiring table: pins in order, and what they are for.
+fn wiring() -> Vec<(Vec<String>, String)> {
     let text = page("BOARD.md");
     let rows = text.lines().filter(|line| line.starts_with("| P"));
-    let first_column: String = rows
-        .map(|row| row.split('|').nth(1).unwrap().to_owned() + "\n")
-        .collect();
-    let image = pins_of_the_image();
-    assert!(image.len() > 30, "{image:?}");
-    assert_eq!(pins(&first_column), image);
-    assert!(pins(&text).is_subset(&image));
+    let cells = rows.map(|row| row.split('|').map(str::trim).collect::<Vec<_>>());
+    cells
+        .map(|cells| {
+            (
+                cells[1].split(", ").map(String::from).collect(),
+                cells[2].into(),
+            )
+        })
+        .collect()
 }
 
 #[test]
-fn the_picture_has_the_pins_of_the_image() {
-    assert_eq!(pins(&page("wiring.svg")), pins_of_the_image());
+fn every_pin_of_the_wiring_table_is_handed_to_its_part() {
+    let (start, rows) = (start(), wiring());
+    assert_eq!(rows.len(), PARTS.len());
+    for (row_pins, function) in rows {
+        let (_, before) = PARTS.iter().find(|(words, _)| *words == function).unwrap();
+        let code: String = before
+            .iter()
+            .zip(&row_pins)
+            .map(|(b, pin)| format!("{b}{pin}"))
+            .collect();
+        assert!(
+            before.len() <= row_pins.len() && start.contains(&code),
+            "{function}: {code}"
+        );
+    }
+}
+
+#[test]
+fn the_picture_and_the_page_have_the_pins_of_the_wiring_table() {
+    let table: BTreeSet<String> = wiring().into_iter().flat_map(|(pins, _)| pins).collect();
+    assert_eq!(pins(&page("wiring.svg")), table);
+    assert_eq!(pins(&page("BOARD.md")), table);
+}
+
+#[test]
+fn the_image_uses_the_pins_of_the_wiring_table() {
+    let start = fs::read_to_string(Path::new(FIRMWARE).join("src/bin/leg-stm32g474/start.rs"));
+    let mut used = pins(&start.unwrap());
+    // The button is named, so that nobody takes its pin.
+    used.insert("PC13".into());
+    let table: BTreeSet<String> = wiring().into_iter().flat_map(|(pins, _)| pins).collect();
+    assert_eq!(used, table);
 }
 
 /// On these pages bold words are faults.

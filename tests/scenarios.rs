@@ -4,13 +4,11 @@
 
 use leg_firmware::supervisor::Fault;
 use leg_host_tools::link::Link;
-use leg_host_tools::qemu::{Config, Session};
 use leg_host_tools::ready_scenarios::{self, READY_SCENARIOS};
 use leg_host_tools::rig_file::RigFile;
 use leg_host_tools::scenario::{Scenario, Step};
 use leg_host_tools::sensitivity;
 use leg_host_tools::simulation::{Controller, InThisProcess, OnLink, Simulation, Summary};
-use leg_host_tools::{image, setup};
 use std::path::Path;
 
 /// Everything of a tick that a controller decides, as bits.
@@ -31,12 +29,6 @@ fn run(scenario: &Scenario, controller: &mut dyn Controller) -> (Summary, Bits) 
         })
         .unwrap();
     (summary, bits)
-}
-
-fn session() -> Session {
-    setup::ensure_target(&mut |_| {}).unwrap();
-    let qemu = setup::ensure_qemu(&mut |_| {}).unwrap();
-    Session::open(&Config::new(qemu, image::build().unwrap())).unwrap()
 }
 
 #[test]
@@ -78,7 +70,7 @@ fn every_fault_has_a_scenario_that_raises_it() {
 
 #[test]
 fn the_emulated_core_asks_for_the_same_duties_to_the_last_bit() {
-    let mut session = session();
+    let mut session = leg_tests::qemu().unwrap();
     let link: &mut dyn Link = &mut session;
     // But for those that take minutes and do what others do, too.
     let long = ["workspace", "tour"];

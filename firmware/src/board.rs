@@ -13,6 +13,7 @@ mod reset_cause;
 mod roll_call;
 mod tick_timer;
 pub mod timing;
+mod virtual_board;
 mod words;
 
 pub use beat::{STEP_MS, lit};
@@ -25,6 +26,7 @@ pub use power_stage::{PowerPins, PowerStage};
 pub use reset_cause::reset_cause;
 pub use roll_call::{Member, RollCall, Rounds};
 pub use tick_timer::TickTimer;
+pub use virtual_board::VirtualBoard;
 pub use words::{Words, file_name};
 
 use crate::drive::Drive;
@@ -50,10 +52,11 @@ pub trait LowerHalf {
     fn cut(&mut self);
 }
 
-/// One tick of a leg on a board.
+/// One tick of a leg on a board; gives what the leg asked of the motors.
 #[inline(always)]
-pub fn tick(board: &mut impl LowerHalf, leg: &mut SensingLeg<f32>) {
+pub fn tick(board: &mut impl LowerHalf, leg: &mut SensingLeg<f32>) -> Drive<f32> {
     let sensors = board.sense();
     let drive = leg.tick(&sensors);
     board.drive(&drive);
+    drive
 }

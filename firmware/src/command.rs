@@ -40,13 +40,13 @@ pub enum Command {
     Stiffness {
         /// N·m/rad.
         demand_nm_per_rad: f32,
-        /// Direction of the push; none for the smallest.
+        /// Direction of the push, of length 1; none for the smallest.
         towards: Option<[f32; 2]>,
     },
     /// Chooses the load that is held.
     Compensation(Compensation),
-    /// Stays where it is until a clear, before whatever waits. A leg that is not moving, or is letting its tendons out, does
-    /// not change by it.
+    /// Stays where it is until a clear, before whatever waits. A leg that is disarmed, held or off is at rest already; one
+    /// that lets its tendons out goes on with that, and refuses by its state.
     Stop,
     /// Relaxes the tendons and switches the drivers off.
     Disarm,
@@ -65,7 +65,7 @@ pub enum CommandRefusal {
     State(State),
     /// The leg cannot lean that far.
     OutOfReach,
-    /// A number is not finite, or is not above zero where it has to be.
+    /// A number is not finite, or is not above zero where it has to be, or a direction has another length than 1.
     Number,
     /// A stop came first.
     Overtaken,

@@ -4,6 +4,7 @@
 //! The payload is a message in postcard's format. A zero occurs nowhere inside a frame, so a receiver that lost its
 //! place finds it again at the next zero.
 
+use crate::store::SETTINGS_MAX;
 use cobs::{DecodeResult, DecoderState};
 use crc::{CRC_32_ISO_HDLC, Crc};
 use postcard_schema::Schema;
@@ -12,8 +13,11 @@ use serde::{Deserialize, Serialize};
 #[cfg(test)]
 mod tests;
 
-/// Longest payload, bytes. The longest reply, an evaluation, takes about 300.
+/// Longest payload, bytes.
 pub const MAX_PAYLOAD: usize = 1024;
+
+// Settings are the longest message; beside them are the numbers of their variants.
+const _: () = assert!(SETTINGS_MAX + 2 <= MAX_PAYLOAD);
 
 const SEQUENCE: usize = size_of::<u16>();
 const CHECKSUM: usize = size_of::<u32>();

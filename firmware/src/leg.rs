@@ -36,6 +36,8 @@ pub struct Outcome {
 #[derive(Debug)]
 pub struct Leg<T> {
     tick: u32,
+    /// The tick that ends the boot.
+    ready_tick: u32,
     phase: u8,
     commands: Deque<(u16, Command), COMMANDS_MAX>,
     outcomes: Deque<Outcome, COMMANDS_MAX>,
@@ -101,7 +103,7 @@ impl<T> Default for Slack<T> {
 #[derive(Clone, Copy, Debug)]
 struct Limits<T> {
     silence: u32,
-    bad_frames: u16,
+    bad_frames: f32,
     ramp_m_per_s: T,
     homing_release_m: T,
     hold_travel_m: T,
@@ -127,6 +129,7 @@ impl<T: Scalar> Leg<T> {
         };
         Ok(Self {
             tick: 0,
+            ready_tick: BOOT_TICKS,
             phase: 0,
             commands: Deque::new(),
             outcomes: Deque::new(),
@@ -157,7 +160,7 @@ impl<T: Scalar> Leg<T> {
             measured: None,
             limits: Limits {
                 silence: ticks(limits.command_time_s),
-                bad_frames: limits.bad_frames as u16,
+                bad_frames: limits.bad_frames,
                 ramp_m_per_s: limits.ramp_m_per_s.into(),
                 homing_release_m: settings.homing.release_m.into(),
                 hold_travel_m: limits.hold_travel_m.into(),
@@ -178,7 +181,7 @@ impl<T: Scalar> Leg<T> {
         for (axis, &pulled) in self.axes.iter_mut().zip(&measured.pulled_m) {
             axis.track(pulled);
         }
-        if self.tick == BOOT_TICKS {
+        if self.tick == self.ready_tick {
             self.supervisor.happen(Event::Ready);
         }
         if let Some(command) = self.commands.pop_front() {
@@ -250,7 +253,6 @@ impl<T: Scalar> Leg<T> {
                 None
             },
         };
-        let mut faults = self.monitors.watch(&view);
         // Where there is most time.
         let turns: &[usize] = match self.phase {
             0 => &[0],
@@ -261,9 +263,10 @@ impl<T: Scalar> Leg<T> {
             if let (Some(axis), Some(&pulled)) = (self.axes.get(turn), measured.pulled_m.get(turn))
             {
                 let shown = axis.view(pulled);
-                self.monitors.watch_axis(turn, &view, &shown, &mut faults);
+                self.monitors.watch_axis(turn, &view, &shown);
             }
         }
+        let mut faults = self.monitors.watch(&view);
         faults.add(Fault::Infeasible, self.refused);
         let late = self.slack.cycles > self.limits.taut_cycles;
         faults.add(Fault::Slack, active && !self.tensioned && late);
@@ -283,7 +286,10 @@ impl<T: Scalar> Leg<T> {
             0
         };
         faults.add(Fault::CommandTimeout, self.silence > self.limits.silence);
-        faults.add(Fault::BadFrame, self.bad_frames >= self.limits.bad_frames);
+        faults.add(
+            Fault::BadFrame,
+            f32::from(self.bad_frames) >= self.limits.bad_frames,
+        );
         faults.add(Fault::HomingFailed, self.homing_failed(measured));
         faults
     }
@@ -297,6 +303,16 @@ impl<T: Scalar> Leg<T> {
         for (axis, &duty) in self.axes.iter_mut().zip(&applied.duty) {
             axis.take_over(duty * supply_v);
         }
+    }
+
+    /// Begins in the place of another leg on the same board: with its count of ticks and the faults that nobody has cleared.
+    /// The commands that wait are refused, and their outcomes told from here.
+    pub fn succeed(&mut self, before: &mut Self) {
+        before.forget_commands();
+        core::mem::swap(&mut self.outcomes, &mut before.outcomes);
+        self.tick = before.tick;
+        self.ready_tick = before.tick.wrapping_add(BOOT_TICKS);
+        self.supervisor.inherit(before.supervisor.latched());
     }
 
     /// What the leg may do.

@@ -6,6 +6,7 @@
 )]
 
 pub mod board;
+pub mod boarded_leg;
 pub mod can;
 pub mod command;
 pub mod control;

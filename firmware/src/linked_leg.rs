@@ -1,10 +1,10 @@
-//! A leg with its end of the host's line, as an emulator runs both: no flash, no clock but the ticks.
+//! A leg with its end of the host's line: no flash, no clock but the ticks.
 
 use crate::command::Command;
 use crate::drive::Drive;
 use crate::host_link::{Commanded, HostLink, HostRefusal, Identity};
 use crate::leg::{Leg, Outcome};
-use crate::protocol::{LINK_BYTES_MAX, TickReply, TickRequest};
+use crate::protocol::LINK_BYTES_MAX;
 use crate::sensors::Sensors;
 use crate::settings::{Settings, SettingsError};
 use crate::telemetry::Telemetry;
@@ -43,6 +43,19 @@ impl<T: Scalar> SensingLeg<T> {
         self.sensed(sensors).tick(sensors)
     }
 
+    /// Lets another leg take this one's place on the board: see [`Leg::succeed`].
+    ///
+    /// # Errors
+    /// [`HostRefusal::Driven`]: this one drives its motors, and stays.
+    pub fn hand_over(&mut self, to: &mut Self) -> Result<(), HostRefusal> {
+        if self.leg.state().driven() {
+            return Err(HostRefusal::Driven);
+        }
+        to.leg.succeed(&mut self.leg);
+        to.sensors = self.sensors;
+        Ok(())
+    }
+
     /// See [`Leg::take_over`].
     pub fn take_over(&mut self, applied: &Drive<T>) {
         self.leg.take_over(applied);
@@ -79,12 +92,14 @@ macro_rules! commanded {
             }
 
             fn restart(&mut self, settings: &Settings) -> Result<(), HostRefusal> {
-                if self.leg.state().driven() {
-                    return Err(HostRefusal::Driven);
+                match Self::new(&settings.without_zero()) {
+                    Ok(mut fresh) => {
+                        self.hand_over(&mut fresh)?;
+                        *self = fresh;
+                        Ok(())
+                    }
+                    Err(error) => Err(HostRefusal::Settings(error)),
                 }
-                let settings = settings.without_zero();
-                self.leg = Leg::new(&settings).map_err(HostRefusal::Settings)?;
-                Ok(())
             }
         }
     };
@@ -143,25 +158,5 @@ where
     }
 }
 
-impl LinkedLeg<f32> {
-    /// One tick and what belongs to it.
-    pub fn tick(
-        &mut self,
-        request: &TickRequest,
-        save: impl FnMut(&Settings) -> bool,
-    ) -> TickReply {
-        self.receive(&request.link);
-        let drive = self.leg.tick(&request.sensors);
-        self.reply(drive, save)
-    }
-
-    /// What follows the tick that gave `drive`.
-    pub fn reply(&mut self, drive: Drive<f32>, save: impl FnMut(&Settings) -> bool) -> TickReply {
-        TickReply {
-            drive,
-            telemetry: self.leg.telemetry(),
-            instructions: None,
-            link: self.sent(save),
-        }
-    }
-}
+#[cfg(test)]
+mod tests;

@@ -33,6 +33,8 @@ pub enum Request {
     Tick(TickRequest),
     /// One tick of the leg, its instructions counted.
     CountTick(TickRequest),
+    /// One step of the leg's board, without the leg.
+    Board(BoardStep),
 }
 
 /// The firmware's answer to a [`Request`].
@@ -55,6 +57,8 @@ pub enum Reply {
     Started,
     /// What a tick asks of the motors, and what the leg tells of itself.
     Ticked(TickReply),
+    /// What the board reads and does.
+    Board(BoardReply),
 }
 
 /// The hash of the sender's [`Request`] and [`Reply`].
@@ -126,14 +130,36 @@ pub struct TickRequest {
 /// What a tick gives.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct TickReply {
-    /// For the motors.
+    /// What the leg asks of the motors.
     pub drive: Drive<f32>,
+    /// What the board gives them: whole steps of its timer, no turn under a pulse, nothing behind a break.
+    pub motors: Drive<f32>,
     /// For the host.
     pub telemetry: Telemetry<f32>,
     /// Instructions that the tick took, if they were counted.
     pub instructions: Option<u32>,
     /// The bytes for the user's host.
     pub link: Vec<u8, LINK_BYTES_MAX>,
+}
+
+/// What is done to a leg's board.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub enum BoardStep {
+    /// The sensors read this from now on.
+    Read(Sensors),
+    /// A tick asks this of the motors.
+    Drive(Drive<f32>),
+    /// The outputs are switched off.
+    Cut,
+}
+
+/// What a board does after a [`BoardStep`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct BoardReply {
+    /// What a tick is told that the sensors read.
+    pub sensors: Sensors,
+    /// What the motors get.
+    pub motors: Drive<f32>,
 }
 
 /// Why the firmware did nothing.

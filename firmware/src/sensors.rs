@@ -28,7 +28,7 @@ pub struct Sensors {
     pub driver_fault: [bool; 3],
     /// Whether the emergency stop is pressed.
     pub emergency_stop: bool,
-    /// Whether the last tick ended too late.
+    /// Whether the last tick ended too late, or this one began too late.
     pub late: bool,
     /// Whether the stored settings were not whole at the start, so that others are used.
     pub settings_corrupt: bool,

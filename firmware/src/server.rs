@@ -1,15 +1,13 @@
 //! Answers requests: the same on every board and inside the host's own process.
 
+use crate::boarded_leg::BoardedLeg;
 use crate::counter::Counter;
-use crate::drive::Drive;
 use crate::frame::{self, Frame, FrameError, MAX_FRAME};
 use crate::host_link::{Identity, Reset};
 use crate::kernels;
-use crate::leg::Leg;
-use crate::linked_leg::LinkedLeg;
 use crate::protocol::{
-    self, BoardInfo, EvaluateRequest, Hello, KernelRequest, Refusal, Reply, Request, SCHEMA,
-    TickReply, TickRequest,
+    self, BoardInfo, BoardStep, EvaluateRequest, Hello, KernelRequest, Refusal, Reply, Request,
+    SCHEMA, TickRequest,
 };
 use crate::settings::Settings;
 use crate::version::VERSION;
@@ -31,7 +29,7 @@ pub trait Board: Counter {
 pub struct Server<B> {
     board: B,
     greeted: bool,
-    leg: Option<LinkedLeg<f32>>,
+    leg: Option<BoardedLeg>,
 }
 
 impl<B: Board> Server<B> {
@@ -73,6 +71,7 @@ impl<B: Board> Server<B> {
             Some(Request::Start(settings)) => self.start(&settings),
             Some(Request::Tick(request)) => self.tick(&request),
             Some(Request::CountTick(request)) => self.count_tick(&request),
+            Some(Request::Board(step)) => self.board_step(&step),
         };
         reply.unwrap_or_else(Reply::Refused)
     }
@@ -89,10 +88,11 @@ impl<B: Board> Server<B> {
     #[inline(never)]
     fn start(&mut self, settings: &Settings) -> Result<Reply, Refusal> {
         let identity = emulated(self.board.info().board);
-        self.leg = Some(LinkedLeg::new(identity, settings).map_err(Refusal::Settings)?);
+        self.leg = Some(BoardedLeg::new(identity, settings).map_err(Refusal::Settings)?);
         Ok(Reply::Started)
     }
 
+    #[inline(never)]
     fn tick(&mut self, request: &TickRequest) -> Result<Reply, Refusal> {
         let leg = self.leg.as_mut().ok_or(Refusal::NoLeg)?;
         let board = &mut self.board;
@@ -100,26 +100,18 @@ impl<B: Board> Server<B> {
         Ok(Reply::Ticked(leg.tick(request, save)))
     }
 
+    #[inline(never)]
     fn count_tick(&mut self, request: &TickRequest) -> Result<Reply, Refusal> {
         let leg = self.leg.as_mut().ok_or(Refusal::NoLeg)?;
-        leg.receive(&request.link);
-        let mut ticking = Ticking {
-            leg: leg.leg().sensed(&request.sensors),
-            drive: None,
-        };
-        let instructions = self.board.count(tick, request, &mut ticking);
-        match (instructions, ticking.drive) {
-            (Some(_), Some(drive)) => {
-                let board = &mut self.board;
-                let save = |settings: &Settings| board.save(settings);
-                let reply = leg.reply(drive, save);
-                Ok(Reply::Ticked(TickReply {
-                    instructions,
-                    ..reply
-                }))
-            }
-            _ => Err(Refusal::NoCounter),
-        }
+        leg.count_tick(request, &mut self.board, B::save)
+            .map(Reply::Ticked)
+            .ok_or(Refusal::NoCounter)
+    }
+
+    #[inline(never)]
+    fn board_step(&mut self, step: &BoardStep) -> Result<Reply, Refusal> {
+        let leg = self.leg.as_mut().ok_or(Refusal::NoLeg)?;
+        Ok(Reply::Board(leg.board_step(step)))
     }
 
     fn count(&mut self, request: &KernelRequest) -> Result<Reply, Refusal> {
@@ -128,16 +120,6 @@ impl<B: Board> Server<B> {
             .map(Reply::Counted)
             .ok_or(Refusal::NoCounter)
     }
-}
-
-/// What a counted tick works on.
-struct Ticking<'a> {
-    leg: &'a mut Leg<f32>,
-    drive: Option<Drive<f32>>,
-}
-
-fn tick(request: &TickRequest, ticking: &mut Ticking<'_>) {
-    ticking.drive = Some(ticking.leg.tick(&request.sensors));
 }
 
 /// What an emulated board is to the user's host.

@@ -13,7 +13,7 @@
 //! Not shown: how the STM32G4 itself behaves. Its flash has an ECC for each double word. One that was half written or
 //! half erased may not agree with its ECC, and to read it raises the NMI; it may also read differently from one time to
 //! the next, or read as erased and refuse a write ([`StoreError::Flash`]; [`Store::clear`] ends that). So the board has
-//! to survive the NMI (note the address, carry on), and should save only at rest and with the supply in its range.
+//! to survive the NMI, and should save only at rest and with the supply in its range.
 //!
 //! A flipped bit that the ECC does not correct costs the record it is in: an older one is loaded, if there is any, and
 //! nothing tells that it is older.

@@ -52,6 +52,11 @@ impl Supervisor {
         self.present
     }
 
+    /// Takes over the faults that another supervisor has latched; those that only limit end with their cause.
+    pub fn inherit(&mut self, latched: FaultSet) {
+        self.latched = self.latched.with(latched.without_limits());
+    }
+
     /// Takes the faults of a tick and reacts to the gravest that is latched.
     #[inline(always)]
     pub fn watch(&mut self, present: FaultSet) {

@@ -55,7 +55,7 @@ impl EmulatedLeg {
     fn advance(&mut self, bytes: &[u8]) -> Result<TickReply, ControllerError> {
         let sensors = self.plant.sense();
         let reply = self.controller.tick(&sensors, bytes)?;
-        self.plant.step(&reply.drive);
+        self.plant.step(&reply.motors);
         self.ticks += 1;
         Ok(reply)
     }

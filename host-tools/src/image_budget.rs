@@ -15,6 +15,7 @@ mod function;
 mod indirect;
 mod memory;
 mod program;
+mod task;
 #[cfg(test)]
 mod tests;
 mod thumb;
@@ -23,9 +24,10 @@ mod vector_table;
 pub use budget::{Bounds, Check, ImageBudget, checks, of};
 pub use error::{Address, ImageBudgetError};
 pub use memory::Usage;
+pub use task::Task;
 pub use vector_table::RootKind;
 
-use call_graph::CallGraph;
+use call_graph::{CallGraph, LOGS, PANICS};
 use elf_file::ElfFile;
 use memory::Memories;
 use program::Program;
@@ -47,6 +49,8 @@ pub struct ImageNeeds {
     pub stack: Usage,
     /// Where execution can begin.
     pub roots: Vec<Root>,
+    /// The tasks, whose stack is part of that of the root whose executor polls them.
+    pub tasks: Vec<Task>,
 }
 
 /// Where execution can begin, and what it needs from there on.
@@ -62,6 +66,8 @@ pub struct Root {
     pub deepest: Vec<String>,
     /// The shortest way to a panic, the root first, if there is one.
     pub panic: Option<Vec<String>>,
+    /// The shortest way to a line in the log, the root first, if there is one.
+    pub log: Option<Vec<String>>,
     /// The functions within reach that call by address.
     pub indirect: Vec<IndirectCaller>,
 }
@@ -99,6 +105,7 @@ pub fn needs(elf: &[u8]) -> Result<ImageNeeds, ImageBudgetError> {
             used: together(&roots),
             size: memory::stack_size(&elf)?,
         },
+        tasks: task::tasks(&program, &graph)?,
         roots,
     })
 }
@@ -129,7 +136,8 @@ impl Root {
             kind: entry.kind,
             stack_bytes: stack.bytes,
             deepest: renamed(stack.functions),
-            panic: graph.panic_path(entry.address).map(renamed),
+            panic: graph.way_to(&PANICS, entry.address).map(renamed),
+            log: graph.way_to(&LOGS, entry.address).map(renamed),
             indirect: callers
                 .map(|function| IndirectCaller {
                     function: function.name().into(),

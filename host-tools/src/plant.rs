@@ -120,7 +120,7 @@ impl Plant {
         self.push = Push::new(force_n, over_s);
     }
 
-    /// Presses the emergency stop or lets it go. It only tells the controller, which has to switch the drivers off.
+    /// Presses the emergency stop or lets it go. It only tells the board, which has to switch the drivers off.
     pub fn press_emergency_stop(&mut self, pressed: bool) {
         self.emergency_stop = pressed;
     }

@@ -119,7 +119,10 @@ fn tick(
     let sensors = stage.plant.sense();
     let link = stage.outgoing();
     let TickReply {
-        drive, telemetry, ..
+        drive,
+        motors,
+        telemetry,
+        ..
     } = controller.tick(&sensors, &link)?;
     shadow.receive(&link);
     let shadow_drive = shadow.leg().tick(&sensors);
@@ -134,7 +137,7 @@ fn tick(
         drive: &drive,
         telemetry: &telemetry,
     });
-    stage.step(&drive, &telemetry)
+    stage.step(&motors, &telemetry)
 }
 
 /// Time of a tick, s.

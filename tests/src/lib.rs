@@ -4,8 +4,20 @@ pub mod mujoco;
 
 pub use leg_host_tools::{numeric, plain_vectors as reference};
 
+use leg_host_tools::qemu::{Config, Session};
+use leg_host_tools::{image, setup};
 use leg_model::{Error, Scalar, Tendon};
 use serde_json::Value;
+
+/// The firmware under QEMU; installs and builds first what is missing.
+///
+/// # Errors
+/// What is missing and cannot be had.
+pub fn qemu() -> Result<Session, Box<dyn std::error::Error>> {
+    setup::ensure_target(&mut |_| {})?;
+    let qemu = setup::ensure_qemu(&mut |_| {})?;
+    Ok(Session::open(&Config::new(qemu, image::build()?))?)
+}
 
 /// Three tendons of one constant stiffness, N/m.
 ///

@@ -131,11 +131,11 @@ impl<T: Scalar> Axis<T> {
         self.voltage_v = T::zero();
     }
 
-    /// Leads the axis to a goal within `ticks` ticks or, if that is too fast, later.
+    /// Leads the axis to a goal by `share` of the way in each tick from now or, if that is too fast, more slowly.
     #[inline(always)]
-    pub fn lead(&mut self, goal: &AxisGoal<T>, per_ticks: T) {
+    pub fn lead(&mut self, goal: &AxisGoal<T>, share: T) {
         let fastest = least(goal.speed_m_per_s, self.gains.speed_max) * self.gains.tick_s;
-        self.step_m = within((goal.pulled_m - self.reference_m) * per_ticks, fastest);
+        self.step_m = within((goal.pulled_m - self.reference_m) * share, fastest);
     }
 
     /// Leads the axis no farther, until it is led again.

@@ -99,7 +99,7 @@ pub enum Reset {
     Power,
     /// The supply was too low for the chip.
     BrownOut,
-    /// The reset pin, which the debugger pulls, too.
+    /// The reset pin, or a debugger.
     Pin,
     /// The firmware itself, after a panic or a hard fault.
     Software,

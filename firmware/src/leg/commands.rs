@@ -31,7 +31,7 @@ impl<T: Scalar> Leg<T> {
         self.outcomes.pop_front()
     }
 
-    fn forget_commands(&mut self) {
+    pub(super) fn forget_commands(&mut self) {
         while let Some((number, _)) = self.commands.pop_front() {
             self.tell(number, Err(CommandRefusal::Overtaken));
         }
@@ -78,7 +78,7 @@ impl<T: Scalar> Leg<T> {
                 towards,
             } if demand_nm_per_rad > 0.0
                 && demand_nm_per_rad.is_finite()
-                && towards.is_none_or(|[x, y]| x.is_finite() && y.is_finite()) =>
+                && towards.is_none_or(unit) =>
             {
                 let axis = match towards {
                     None => BendingAxis::Softest,
@@ -166,4 +166,9 @@ impl<T: Scalar> Leg<T> {
             }
         }
     }
+}
+
+/// Whether it is as long as (cos, sin) of some azimuth, to a thousandth.
+fn unit([x, y]: [f32; 2]) -> bool {
+    (x * x + y * y - 1.0).abs() <= 2e-3
 }

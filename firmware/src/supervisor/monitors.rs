@@ -34,6 +34,8 @@ pub struct View<'a, T> {
 #[derive(Clone, Copy, Debug)]
 pub struct Monitors<T> {
     axes: [AxisMonitor<T>; 3],
+    /// What each axis showed at its last turn: its faults are there until the next one.
+    of_axes: [FaultSet; 3],
     residual: Timer,
     residual_m: T,
     supply_v: [T; 2],
@@ -48,6 +50,7 @@ impl<T: Scalar> Monitors<T> {
             axes: settings
                 .axes
                 .map(|axis| AxisMonitor::new(settings, axis.m_per_count)),
+            of_axes: [FaultSet::NONE; 3],
             residual: Timer::new(ticks(limits.residual_time_s)),
             residual_m: limits.residual_m.into(),
             supply_v: [limits.supply_min_v.into(), limits.supply_max_v.into()],
@@ -55,25 +58,22 @@ impl<T: Scalar> Monitors<T> {
         }
     }
 
-    /// The faults of one axis, from 0 to 2; each has its turn once a cycle.
+    /// Looks at one axis, from 0 to 2; each has its turn once a cycle.
     #[inline(never)]
-    pub fn watch_axis(
-        &mut self,
-        turn: usize,
-        view: &View<'_, T>,
-        shown: &AxisView<T>,
-        faults: &mut FaultSet,
-    ) {
-        if let Some(monitor) = self.axes.get_mut(turn) {
+    pub fn watch_axis(&mut self, turn: usize, view: &View<'_, T>, shown: &AxisView<T>) {
+        if let (Some(monitor), Some(faults)) = (self.axes.get_mut(turn), self.of_axes.get_mut(turn))
+        {
+            *faults = FaultSet::NONE;
             monitor.watch(turn, view, shown, faults);
         }
     }
 
-    /// The faults of a tick, but those of the axes.
+    /// The faults that sensors and axes show in a tick.
     #[inline(always)]
     pub fn watch(&mut self, view: &View<'_, T>) -> FaultSet {
         let (sensors, measured) = (view.sensors, view.measured);
-        let mut faults = FaultSet::NONE;
+        let [first, second, third] = self.of_axes;
+        let mut faults = first.with(second).with(third);
         for fault in sensors.driver_fault {
             faults.add(Fault::DriverFault, fault);
         }

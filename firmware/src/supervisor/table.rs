@@ -41,7 +41,7 @@ pub const TABLE: [FaultEntry; Fault::ALL.len()] = table! {
     OverTemperature: "too hot", "the drivers are above temperature_c", "let them cool";
     SupplyLow: "supply too low", "the supply is below supply_min_v", "check supply and battery";
     SupplyHigh: "supply too high", "the supply is above supply_max_v", "check the supply; a braking motor feeds back into it";
-    LateTick: "late tick", "a tick of the control law ended too late", "shorten what runs above it";
+    LateTick: "late tick", "a tick of the control law began or ended too late", "look in the log for the longest tick; flash a build with optimisation; keep debuggers away";
     CommandTimeout: "no command", "the host is silent for command_time_s while the leg is armed", "check the link and the host: it has to speak more often";
     BadFrame: "bad frames", "bad_frames frames in a row could not be read", "check the link";
     DriverFault: "driver fault", "a motor driver raises its fault line", "look up the driver's own fault";

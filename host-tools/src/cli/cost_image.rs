@@ -16,7 +16,7 @@ struct Judged {
 }
 
 const HEADING: &str = "\
-what                            bytes   there are   budget
+what                                    bytes   there are   budget
 ";
 
 const ROOTS_HEADING: &str = "\
@@ -75,7 +75,7 @@ fn image_table(judged: &Judged) -> String {
 
 fn check_row(check: &Check) -> String {
     format!(
-        "{:28}  {:7}     {:7}   {}-{}{}\n",
+        "{:36}  {:7}     {:7}   {}-{}{}\n",
         check.what,
         check.usage.used,
         check.usage.size,

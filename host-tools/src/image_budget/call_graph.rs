@@ -7,8 +7,11 @@ use super::program::Program;
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, VecDeque};
 
+/// Names of functions that begin a line in the log, or parts of them.
+pub(super) const LOGS: [&str; 2] = ["defmt::export::", "_defmt_acquire"];
+
 /// Names of functions that begin a panic, or parts of them.
-const PANICS: [&str; 3] = ["core::panicking::", PANIC_HANDLER, "_defmt_panic"];
+pub(super) const PANICS: [&str; 3] = ["core::panicking::", PANIC_HANDLER, "_defmt_panic"];
 
 /// What every panic ends in.
 const PANIC_HANDLER: &str = "::rust_begin_unwind";
@@ -192,12 +195,12 @@ impl<'a> CallGraph<'a> {
             .collect()
     }
 
-    /// The shortest way from a root to a panic.
-    pub(super) fn panic_path(&self, root: u32) -> Option<Vec<String>> {
+    /// The shortest way from a root to a function that is called so.
+    pub(super) fn way_to(&self, names: &[&str], root: u32) -> Option<Vec<String>> {
         let came_from = self.came_from(root);
         let begins = |address: &&u32| {
             self.function(**address)
-                .is_some_and(|function| function.is_called(&PANICS))
+                .is_some_and(|function| function.is_called(names))
         };
         let ways = came_from
             .keys()

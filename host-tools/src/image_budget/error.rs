@@ -47,6 +47,14 @@ pub enum ImageBudgetError {
         /// What was asked for.
         name: String,
     },
+    /// The budget names other tasks than there are.
+    #[error("the image has the tasks {found}; the budget in image_budget/budget.rs has {budgeted}")]
+    OtherTasks {
+        /// Those of the image.
+        found: String,
+        /// Those of the budget.
+        budgeted: String,
+    },
     /// A function sets the stack pointer to what its code does not tell.
     #[error("{function} sets the stack pointer to an unknown place at {at}")]
     UnknownStack {

@@ -28,8 +28,11 @@ struct Declaration {
 /// reference, the error itself, what pads it, and what writes its letters.
 pub(super) const NESTED: usize = 8;
 
+/// What polls a task: its name has the task's.
+pub(super) const TASK: &str = "embassy_executor::raw::TaskStorage<";
+
 /// The functions that embassy's executor is handed for a task.
-const POLLS: &[&str] = &["raw::TaskStorage<F>::poll", "raw::poll_exited"];
+const POLLS: &[&str] = &[TASK, "raw::poll_exited"];
 
 /// The functions behind a waker: each image has those of embassy's executor alone.
 const WAKERS: &[&str] = &["embassy_executor::raw::waker::"];
@@ -49,7 +52,7 @@ static DECLARATIONS: [Declaration; 17] = [
         targets: &["core::fmt::"],
         nested: true,
     },
-    wakers(&["raw::TaskStorage<F>::poll"], 2),
+    wakers(&[TASK], 2),
     wakers(&["_embassy_time_schedule_wake"], 3),
     // The alarm of embassy's clock, on the STM32 and under QEMU.
     wakers(&["TIM1_BRK_TIM15", "TIMER1"], 2),
@@ -59,28 +62,28 @@ static DECLARATIONS: [Declaration; 17] = [
     wakers(
         &[
             "FDCAN2_IT0",
-            "embassy_stm32::can::_version::RxMode::on_interrupt",
+            "embassy_stm32::can::_version::RxMode>::on_interrupt",
         ],
         5,
     ),
     wakers(
-        &["embassy_stm32::can::_version::Info::adjust_reference_counter"],
+        &["embassy_stm32::can::_version::Info>::adjust_reference_counter"],
         2,
     ),
-    wakers(&["leg_stm32g474::can_bus::Bus::wait::"], 9),
+    wakers(&["leg_stm32g474::can_bus::Bus>::wait::"], 9),
     // Of the flash, too, and who waits for it registers himself.
     wakers(&["FLASH"], 2),
     wakers(
         &[
             "leg_stm32g474::flash::CheckedFlash as embedded_storage_async",
-            "leg_firmware::store::sealed::Sealed<F>::renew::",
+            "leg_firmware::store::sealed::Sealed<leg_stm32g474::flash::CheckedFlash>>::renew::",
         ],
         3,
     ),
-    wakers(&["sequential_storage::map::MapStorage<K,S,C>::"], 1),
+    wakers(&["sequential_storage::map::MapStorage<"], 1),
     // Settings to keep wake the task that keeps them.
-    wakers(&["leg_stm32g474::link::Session::turn"], 1),
-    polls(&["embassy_executor::platform::thread::Executor::run"]),
+    wakers(&["leg_stm32g474::link::Session>::turn"], 1),
+    polls(&["embassy_executor::platform::thread::Executor>::run"]),
     polls(&["LINK"]),
     // What a task does may be a function of its own.
     wakers(&["leg_qemu::__answer_host_task::"], 1),
@@ -90,7 +93,7 @@ static DECLARATIONS: [Declaration; 17] = [
         calls: 1,
         targets: &[
             "leg_firmware::kernels::",
-            "leg_firmware::server::tick",
+            "leg_firmware::boarded_leg::tick",
             "leg_qemu::counter::",
         ],
         nested: false,

@@ -1,12 +1,12 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::call_graph::CallGraph;
+use super::call_graph::{CallGraph, PANICS};
 use super::elf_file::{Bytes, Mapping};
 use super::error::ImageBudgetError;
 use super::function::Function;
 use super::program::Program;
 use super::vector_table;
-use super::{Bounds, Check, ImageBudget, ImageNeeds, Root, RootKind, Usage, checks};
+use super::{Bounds, Check, ImageBudget, ImageNeeds, Root, RootKind, Task, Usage, checks};
 use std::collections::BTreeSet;
 
 /// Where hand-made code begins.
@@ -290,7 +290,7 @@ fn a_panic_is_found_by_the_shortest_way_directly_or_by_address() {
         ],
         &[],
     );
-    let way = CallGraph::new(&direct).unwrap().panic_path(0);
+    let way = CallGraph::new(&direct).unwrap().way_to(&PANICS, 0);
     assert_eq!(way.unwrap().join(" "), "a c core::panicking::panic");
     let by_address = program(
         &[("a", 8, &[], 1), ("b", 8, &[2], 0), (panic, 8, &[], 0)],
@@ -298,14 +298,14 @@ fn a_panic_is_found_by_the_shortest_way_directly_or_by_address() {
     );
     let graph = CallGraph::new(&by_address).unwrap();
     assert_eq!(
-        graph.panic_path(0).unwrap().join(" "),
+        graph.way_to(&PANICS, 0).unwrap().join(" "),
         "a b core::panicking::panic"
     );
     let apart = program(
         &[("a", 8, &[1], 0), ("b", 8, &[], 0), (panic, 8, &[], 0)],
         &[],
     );
-    assert_eq!(CallGraph::new(&apart).unwrap().panic_path(0), None);
+    assert_eq!(CallGraph::new(&apart).unwrap().way_to(&PANICS, 0), None);
 }
 
 #[test]
@@ -359,7 +359,7 @@ fn usage(used: u32) -> Usage {
     Usage { used, size: 100 }
 }
 
-fn judged(needs: &ImageNeeds, panic_free: &'static [&'static str]) -> Vec<bool> {
+fn judged(needs: &ImageNeeds, hot: &'static [&'static str]) -> Vec<bool> {
     let bounds = Bounds {
         lowest: 10,
         highest: 120,
@@ -368,20 +368,30 @@ fn judged(needs: &ImageNeeds, panic_free: &'static [&'static str]) -> Vec<bool> 
         flash: bounds,
         ram: bounds,
         stack: bounds,
-        panic_free,
+        tasks: TASKS,
+        hot,
     };
     let checks: Vec<Check> = checks(needs, &budget).unwrap();
     checks.iter().map(|check| check.held).collect()
 }
 
+const TASKS: &[(&str, Bounds)] = &[(
+    "module::task",
+    Bounds {
+        lowest: 10,
+        highest: 100,
+    },
+)];
+
 #[test]
-fn a_budget_is_missed_below_above_beyond_the_memory_and_by_a_panic() {
-    let root = |name: &str, panic: Option<&str>| Root {
+fn a_budget_is_missed_below_above_beyond_the_memory_by_a_panic_and_by_a_log() {
+    let root = |name: &str, panic: Option<&str>, log: Option<&str>| Root {
         name: name.into(),
         kind: RootKind::Interrupt,
         stack_bytes: 8,
         deepest: Vec::new(),
         panic: panic.map(|to| vec![to.into()]),
+        log: log.map(|to| vec![to.into()]),
         indirect: Vec::new(),
     };
     let mut needs = ImageNeeds {
@@ -389,12 +399,21 @@ fn a_budget_is_missed_below_above_beyond_the_memory_and_by_a_panic() {
         ram: usage(50),
         stack: usage(100),
         roots: vec![
-            root("safe", None),
-            root("unsafe", Some("core::panicking::panic")),
+            root("safe", None, None),
+            root("panics", Some("core::panicking::panic"), None),
+            root("logs", None, Some("_defmt_acquire")),
         ],
+        tasks: vec![Task {
+            name: "module::task".into(),
+            stack_bytes: 100,
+            deepest: Vec::new(),
+        }],
     };
-    assert_eq!(judged(&needs, &["safe"]), [true; 4]);
-    assert_eq!(judged(&needs, &["unsafe"]), [true, true, true, false]);
+    assert_eq!(judged(&needs, &["safe"]), [true; 6]);
+    assert_eq!(judged(&needs, &["panics"])[4..], [false, true]);
+    assert_eq!(judged(&needs, &["logs"])[4..], [true, false]);
     (needs.flash, needs.stack) = (usage(9), usage(101));
-    assert_eq!(judged(&needs, &[]), [false, true, false]);
+    assert_eq!(judged(&needs, &[]), [false, true, false, true]);
+    needs.tasks[0].stack_bytes = 101;
+    assert!(!judged(&needs, &[])[3]);
 }

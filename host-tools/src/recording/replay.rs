@@ -2,8 +2,8 @@
 
 use super::mcap_file::{SCHEMA_KEY, SETTINGS, TICKS, schema};
 use super::tick_record::{TickRecord, bits};
-use leg_firmware::linked_leg::LinkedLeg;
-use leg_firmware::protocol::Board;
+use leg_firmware::boarded_leg::BoardedLeg;
+use leg_firmware::protocol::{Board, TickRequest};
 use leg_firmware::server::emulated;
 use leg_firmware::settings::{Settings, SettingsError};
 use mcap::{Message, MessageStream};
@@ -81,9 +81,9 @@ pub fn replay(file: &Path) -> Result<Replay, ReplayError> {
             (SETTINGS, leg) => {
                 let settings: Settings = read(&message)?;
                 let identity = emulated(Board::InProcess);
-                *leg = Some(LinkedLeg::new(identity, &settings).map_err(ReplayError::Settings)?);
+                *leg = Some(BoardedLeg::new(identity, &settings).map_err(ReplayError::Settings)?);
             }
-            (TICKS, Some(leg)) => result.take(leg, &read(&message)?),
+            (TICKS, Some(leg)) => result.take(leg, read(&message)?),
             (TICKS, None) => return Err(ReplayError::NoSettings),
             _ => {}
         }
@@ -108,9 +108,12 @@ fn read<'a, T: Deserialize<'a>>(message: &'a Message<'_>) -> Result<T, ReplayErr
 }
 
 impl Replay {
-    fn take(&mut self, leg: &mut LinkedLeg<f32>, record: &TickRecord) {
-        leg.receive(&record.link);
-        let drive = leg.leg().tick(&record.sensors);
+    fn take(&mut self, leg: &mut BoardedLeg, record: TickRecord) {
+        let request = TickRequest {
+            sensors: record.sensors,
+            link: record.link,
+        };
+        let drive = leg.tick(&request, |_| true).drive;
         if bits(&drive) != (record.duty_bits, record.enabled) {
             self.other += 1;
             self.first.get_or_insert(Difference {

@@ -1,7 +1,7 @@
 //! Where the controller runs: in this process, or behind a link.
 
 use crate::link::{Link, LinkError};
-use leg_firmware::linked_leg::LinkedLeg;
+use leg_firmware::boarded_leg::BoardedLeg;
 use leg_firmware::protocol::{Board, Refusal, Reply, Request, TickReply, TickRequest};
 use leg_firmware::sensors::Sensors;
 use leg_firmware::server;
@@ -45,7 +45,7 @@ pub trait Controller {
 /// In this process.
 #[derive(Debug, Default)]
 pub struct InThisProcess {
-    leg: Option<LinkedLeg<f32>>,
+    leg: Option<BoardedLeg>,
     /// The settings that were saved last.
     pub saved: Option<Settings>,
 }
@@ -53,7 +53,7 @@ pub struct InThisProcess {
 impl Controller for InThisProcess {
     fn start(&mut self, settings: &Settings) -> Result<(), ControllerError> {
         let identity = server::emulated(Board::InProcess);
-        let leg = LinkedLeg::new(identity, settings).map_err(ControllerError::Settings)?;
+        let leg = BoardedLeg::new(identity, settings).map_err(ControllerError::Settings)?;
         self.leg = Some(leg);
         Ok(())
     }

@@ -148,11 +148,11 @@ impl Stage {
     /// [`SimulationError::NotFinite`] if a number is lost.
     pub fn step(
         &mut self,
-        drive: &Drive<f32>,
+        motors: &Drive<f32>,
         telemetry: &Telemetry<f32>,
     ) -> Result<(), SimulationError> {
         self.push();
-        self.plant.step(drive);
+        self.plant.step(motors);
         self.truth = self.plant.truth();
         let numbers = self.truth.tensions_n.iter().chain(self.truth.tip_m.iter());
         if !numbers.copied().all(f64::is_finite) {
@@ -162,7 +162,7 @@ impl Stage {
         self.telemetry = Some(*telemetry);
         self.extremes.take(&self.truth, self.bounds_n);
         self.all.take(&self.truth, self.bounds_n);
-        if drive.enabled && telemetry.state.follows() {
+        if motors.enabled && telemetry.state.follows() {
             let highest = self.truth.tensions_n.into_iter().fold(0.0, f64::max);
             self.driven_max_n = self.driven_max_n.max(highest);
         }

@@ -1,9 +1,9 @@
 //! 170 MHz from the board's 24 MHz crystal.
 
-use embassy_stm32::Config;
 use embassy_stm32::rcc::mux::{Adcsel, Fdcansel};
 use embassy_stm32::rcc::{Hse, HseMode, Pll, PllMul, PllPreDiv, PllRDiv, PllSource, Sysclk};
 use embassy_stm32::time::Hertz;
+use embassy_stm32::{Config, pac};
 
 /// 24 MHz / 6 × 85 / 2 = 170 MHz for processor, buses, timers, converters and CAN, with the core's voltage boosted as
 /// that speed asks: `leg_firmware::board::timing` counts on it.
@@ -27,4 +27,15 @@ pub fn config() -> Config {
     config.rcc.mux.adc345sel = Adcsel::SYS;
     config.rcc.mux.fdcansel = Fdcansel::PCLK1;
     config
+}
+
+/// Lets the chip watch its crystal. If it stops, TIM1's system break ends the pulses, the chip goes on from its own
+/// oscillator, and an NMI tells.
+pub fn watch() {
+    pac::RCC.cr().modify(|w| w.set_csson(true));
+}
+
+/// Whether the crystal has stopped.
+pub fn lost() -> bool {
+    pac::RCC.cifr().read().cssf()
 }

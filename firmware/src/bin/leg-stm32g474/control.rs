@@ -127,16 +127,11 @@ impl Commanded for SharedLeg {
         *self.spare = fresh;
         let spare = &mut self.spare;
         let changed = with(|control| {
-            let free = !control.leg.telemetry().state.driven();
-            if free {
-                core::mem::swap(&mut control.leg, spare);
-            }
-            free
+            control.leg.hand_over(spare)?;
+            core::mem::swap(&mut control.leg, spare);
+            Ok(())
         });
-        match changed {
-            Some(true) => Ok(()),
-            Some(false) | None => Err(HostRefusal::Driven),
-        }
+        changed.unwrap_or(Err(HostRefusal::Busy))
     }
 }
 

@@ -1,6 +1,6 @@
 //! What happens when nothing can go on: first the outputs are switched off, then the cause is kept over a reset.
 
-use crate::power;
+use crate::{clocks, power};
 use core::mem::MaybeUninit;
 use core::panic::PanicInfo;
 use core::ptr;
@@ -56,7 +56,7 @@ pub fn origin() -> (Reset, Option<Kept>) {
     write(LastWords::silent(
         kept.as_ref().map_or(0, |kept| kept.failures),
     ));
-    (reset_cause(flags, kept.is_some()), kept)
+    (reset_cause(flags, kept.as_ref()), kept)
 }
 
 /// Keeps words for the next start, and counts a failure. Returns how many there were in a row.
@@ -132,16 +132,19 @@ unsafe fn DefaultHandler(number: i16) -> ! {
     end(&Words::new("no handler for exception ").number(exception))
 }
 
-/// The flash has read a double word that does not agree with its ECC.
+/// The crystal has stopped, or the flash has read a double word that does not agree with its ECC.
 ///
 /// Where settings are kept that can happen after a loss of power; who reads there finds it out by checksums, and goes
-/// on. Programs lie in the first bank: there it is the end.
+/// on. Programs lie in the first bank: there it is the end, and so it is without the crystal.
 #[allow(
     unsafe_code,
     reason = "cortex-m-rt wants its exception handlers unsafe"
 )]
 #[exception]
 unsafe fn NonMaskableInt() {
+    if clocks::lost() {
+        end(&Words::new("the crystal has stopped"));
+    }
     let ecc = pac::FLASH.eccr().read();
     let found = ecc.eccd() || ecc.eccd2();
     if !found || !ecc.bk_ecc() || ecc.sysf_ecc() {

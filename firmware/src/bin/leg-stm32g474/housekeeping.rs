@@ -30,26 +30,29 @@ pub async fn keep_house(
     let mut rounds: u32 = 0;
     loop {
         ticker.next().await;
+        // After a stall or a debugger's halt no rounds are made up for: two within a tick would miss the control interrupt.
+        ticker.reset();
         sensors.read();
         cycles.keep_running();
         watchdog.round();
         if rounds.is_multiple_of(ROUNDS_PER_STEP) {
-            step(rounds / ROUNDS_PER_STEP, &mut lamp);
+            let step = rounds / ROUNDS_PER_STEP;
+            show(step, &mut lamp);
+            if step == SETTLED && !watchdog.bites() {
+                fatal::settle();
+            }
         }
         rounds = rounds.wrapping_add(1);
     }
 }
 
-/// A step of the lamp, and what comes even more seldom.
-fn step(step: u32, lamp: &mut Output<'static>) {
+/// A step of the lamp, and now and then a line in the log.
+fn show(step: u32, lamp: &mut Output<'static>) {
     let (state, faulted) = match control::telemetry() {
         Some(telemetry) => (telemetry.state, telemetry.faults.without_limits().any()),
         None => (State::Boot, false),
     };
     lamp.set_level(lit(state, faulted, step).into());
-    if step == SETTLED {
-        fatal::settle();
-    }
     if step.is_multiple_of(LOG_STEPS) {
         defmt::info!("longest tick: {=u32} cycles", control::longest_tick());
     }

@@ -1,28 +1,7 @@
 //! The firmware on a NUCLEO-G474RE: the control interrupt, and below it the tasks that serve the host, keep the settings
 //! and look after the board.
 //!
-//! # Wiring
-//!
-//! | pins                | what                                                                              |
-//! |---------------------|-----------------------------------------------------------------------------------|
-//! | PA8 PA9 PA10        | pulses of motors 1 to 3, 40 kHz, high is on; pull each down at the driver          |
-//! | PC6 PC7 PC8         | their directions, high pulls the tendon in                                         |
-//! | PC9                 | enables the drivers, high; pull it down at the drivers                             |
-//! | PB2 PB11 PB15       | fault lines of drivers 1 to 3, low when raised; pulled up here                     |
-//! | PB10                | the three together (a diode from each), low when raised: break 1                   |
-//! | PC3                 | emergency stop, a contact to ground that opens: break 2; it has to be there        |
-//! | PA0 PA1             | encoder 1, tracks A and B; up to 3.3 V, pulled up here                             |
-//! | PB4 PB5             | encoder 2                                                                          |
-//! | PB6 PB7             | encoder 3                                                                          |
-//! | PC0 PC1 PC2         | load cells 1 to 3, 0 to 3.3 V, more is more tension                                |
-//! | PA4 PA6 PA7         | currents of motors 1 to 3, 0 to 3.3 V, half of it is none, more pulls in           |
-//! | PB1                 | supply by a divider                                                                |
-//! | PB0                 | temperature of the drivers, more is warmer, in a straight line                     |
-//! | PA2 PA3             | serial line of the on-board debugger, 921 600 baud                                 |
-//! | PB12 PB13           | CAN FD, receive and transmit, 1 and 5 Mbit/s                                       |
-//! | PC10 PC11 PC12      | address switches 1, 2, 4 to ground: 1 to 6 is a leg on the bus, else the serial line |
-//! | PA5                 | lamp on the board: see [`leg_firmware::board::lit`]                                |
-//! | PC13                | button on the board, not used                                                      |
+//! Wiring: `firmware/BOARD.md`.
 //!
 //! # Not shown
 //!
@@ -68,6 +47,7 @@ async fn main(spawner: Spawner) {
     hot::load();
     let origin = fatal::origin();
     let peripherals = embassy_stm32::init(clocks::config());
+    clocks::watch();
     priorities::set();
     start::start(spawner, peripherals, origin).await;
 }

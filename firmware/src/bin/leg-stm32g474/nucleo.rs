@@ -42,6 +42,7 @@ impl LowerHalf for Nucleo {
             current_codes: codes.currents,
             supply_code: slow_sensors::supply_code(),
             temperature_code: slow_sensors::temperature_code(),
+            // The converters run as a pair: where either stands still, neither's codes are of this tick.
             cell_fresh: [codes.fresh; 3],
             driver_fault: faults.drivers,
             emergency_stop: faults.stop,

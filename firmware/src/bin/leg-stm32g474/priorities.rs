@@ -2,7 +2,7 @@
 
 use embassy_stm32::interrupt::{self, InterruptExt, Priority};
 
-/// Puts the control interrupt above everything else; to be called before any of them is unmasked.
+/// Puts the control interrupt above everything else; to be called before any but the clock is unmasked.
 ///
 /// After a reset all have the highest priority. The tasks run below all interrupts.
 pub fn set() {

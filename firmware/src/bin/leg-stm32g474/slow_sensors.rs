@@ -51,7 +51,7 @@ impl SlowSensors {
         sensors
     }
 
-    /// Reads both inputs, which takes 80 µs. A divider and a thermistor need the long sampling time.
+    /// Reads both inputs, which takes 80 µs. A divider and a sensor's filter need the long sampling time.
     pub fn read(&mut self) {
         let time = SampleTime::CYCLES92_5;
         let supply = self.converter.blocking_read(&mut self.supply, time);

@@ -1,8 +1,8 @@
 //! The independent watchdog, which resets the chip unless it is fed; and it is fed only while everybody checks in.
 //!
 //! It runs from the chip's own slow oscillator of 32 kHz, which is anywhere from 29.5 to 34 kHz over temperature and
-//! supply: the nominal 100 ms are 94 to 109 ms. To that comes the time in which a member is missed, see
-//! [`leg_firmware::board::Member`]; the outputs are switched off as soon as it is.
+//! supply: the nominal 100 ms are 94 to 109 ms since the last food, which was a round before a member was found to be
+//! missed, see [`leg_firmware::board::Member`]; the outputs are switched off as soon as it is.
 
 use crate::{control, fatal, power};
 use embassy_stm32::peripherals::IWDG;
@@ -30,11 +30,18 @@ impl Watchdog {
         pac::DBGMCU.apb1lfzr().modify(|w| w.set_iwdg(true));
         let mut dog = IndependentWatchdog::new(dog, TIMEOUT_US);
         dog.unleash();
+        // Until it is fed for the first time it counts from its highest value.
+        dog.pet();
         Self {
             dog,
             rounds: Rounds::default(),
             bites: false,
         }
+    }
+
+    /// Whether the reset is on its way.
+    pub const fn bites(&self) -> bool {
+        self.bites
     }
 
     /// Calls the roll, and feeds the watchdog if nobody is missed; to be called every [`RollCall::ROUND_MS`].

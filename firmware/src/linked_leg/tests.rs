@@ -1,0 +1,129 @@
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use super::SensingLeg;
+use crate::command::{Command, CommandRefusal};
+use crate::host_link::{Commanded, HostRefusal};
+use crate::leg::Outcome;
+use crate::sensors::{CODE_MAX, Sensors};
+use crate::settings::Settings;
+use crate::supervisor::{Fault, State};
+
+/// Ticks in which a leg boots, and every fault of an axis that is not timed has shown.
+const SOME_TICKS: u32 = 40;
+
+/// A leg whose sensors read what they read on a leg at rest without tension, but for what a test changes.
+struct Bench {
+    leg: SensingLeg<f32>,
+    sensors: Sensors,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let settings = Settings::for_table_1().unwrap();
+        let board = &settings.board;
+        let temperature = (25.0 - board.temperature_at_zero_c) / board.temperature_c_per_code;
+        let mut bench = Self {
+            leg: SensingLeg::new(&settings).unwrap(),
+            sensors: Sensors {
+                cell_codes: settings.axes.map(|axis| axis.cell_zero_code as u16),
+                current_codes: [CODE_MAX / 2; 3],
+                supply_code: (24.0 / board.supply_v_per_code) as u16,
+                temperature_code: temperature as u16,
+                cell_fresh: [true; 3],
+                ..Sensors::default()
+            },
+        };
+        bench.run(SOME_TICKS);
+        assert_eq!(bench.leg.telemetry().state, State::Disarmed);
+        bench
+    }
+
+    fn run(&mut self, ticks: u32) {
+        for _ in 0..ticks {
+            self.leg.tick(&self.sensors);
+        }
+    }
+
+    fn obey(&mut self, command: Command) -> Result<(), CommandRefusal> {
+        assert!(self.leg.command(7, command));
+        self.run(1);
+        self.leg.outcome().unwrap().result
+    }
+
+    fn restart(&mut self) -> Result<(), HostRefusal> {
+        self.leg.restart(&Settings::for_table_1().unwrap())
+    }
+}
+
+#[test]
+fn a_fault_outlives_new_settings() {
+    let mut bench = Bench::new();
+    bench.sensors.driver_fault[1] = true;
+    bench.run(1);
+    bench.sensors.driver_fault[1] = false;
+    assert_eq!(bench.leg.telemetry().state, State::Off);
+    bench.restart().unwrap();
+    bench.run(SOME_TICKS);
+    let telemetry = bench.leg.telemetry();
+    assert!(telemetry.faults.has(Fault::DriverFault));
+    assert_eq!(telemetry.state, State::Off);
+    assert_eq!(bench.obey(Command::Home), Err(CommandRefusal::Faulted));
+    assert_eq!(bench.obey(Command::Clear), Ok(()));
+    assert_eq!(bench.obey(Command::Home), Ok(()));
+    assert_eq!(bench.restart(), Err(HostRefusal::Driven));
+}
+
+#[test]
+fn what_waits_while_settings_change_is_refused_and_the_ticks_go_on() {
+    let mut bench = Bench::new();
+    let before = bench.leg.telemetry().tick;
+    assert!(bench.leg.command(3, Command::Home));
+    bench.restart().unwrap();
+    bench.run(SOME_TICKS);
+    let refused = Outcome {
+        number: 3,
+        result: Err(CommandRefusal::Overtaken),
+    };
+    assert_eq!(bench.leg.outcome(), Some(refused));
+    let telemetry = bench.leg.telemetry();
+    assert_eq!(telemetry.tick, before + SOME_TICKS);
+    assert_eq!(telemetry.state, State::Disarmed);
+}
+
+/// The axes take turns; a clear between them must not find that all is well.
+#[test]
+fn no_clear_passes_between_two_looks_at_an_axis() {
+    for axis in 0..3 {
+        let mut bench = Bench::new();
+        bench.sensors.current_codes[axis] = CODE_MAX;
+        bench.run(SOME_TICKS);
+        assert_eq!(bench.leg.telemetry().state, State::Off);
+        for _ in 0..8 {
+            assert_eq!(bench.obey(Command::Clear), Err(CommandRefusal::Faulted));
+            assert_eq!(bench.leg.telemetry().state, State::Off);
+        }
+        bench.sensors.current_codes[axis] = CODE_MAX / 2;
+        bench.run(SOME_TICKS);
+        assert_eq!(bench.obey(Command::Clear), Ok(()));
+    }
+}
+
+#[test]
+fn a_direction_that_is_none_is_refused() {
+    let mut bench = Bench::new();
+    let stiffness = |towards| Command::Stiffness {
+        demand_nm_per_rad: 100.0,
+        towards: Some(towards),
+    };
+    for none in [
+        [0.0, 0.0],
+        [1e-30, 0.0],
+        [1e30, 0.0],
+        [0.9, 0.0],
+        [f32::NAN, 1.0],
+    ] {
+        let outcome = bench.obey(stiffness(none));
+        assert_eq!(outcome, Err(CommandRefusal::Number), "{none:?}");
+    }
+    assert_eq!(bench.obey(stiffness([0.6, -0.8])), Ok(()));
+}
