@@ -4,7 +4,8 @@ use crate::board::{self, LowerHalf, VirtualBoard};
 use crate::counter::Counter;
 use crate::drive::Drive;
 use crate::host_link::Identity;
-use crate::linked_leg::{LinkedLeg, SensingLeg};
+use crate::leg::Leg;
+use crate::linked_leg::LinkedLeg;
 use crate::protocol::{BoardReply, BoardStep, TickReply, TickRequest};
 use crate::sensors::Sensors;
 use crate::settings::{Settings, SettingsError};
@@ -51,7 +52,7 @@ impl BoardedLeg {
         self.board.read(&request.sensors);
         let sensors = self.board.sense();
         let mut ticking = Ticking {
-            leg: self.leg.leg(),
+            leg: self.leg.leg().sensed(&sensors),
             drive: None,
         };
         let instructions = counter.count(tick, &sensors, &mut ticking)?;
@@ -93,7 +94,7 @@ impl BoardedLeg {
 
 /// What a counted tick works on.
 struct Ticking<'a> {
-    leg: &'a mut SensingLeg<f32>,
+    leg: &'a mut Leg<f32>,
     drive: Option<Drive<f32>>,
 }
 

@@ -103,7 +103,7 @@ impl<T> Default for Slack<T> {
 #[derive(Clone, Copy, Debug)]
 struct Limits<T> {
     silence: u32,
-    bad_frames: f32,
+    bad_frames: u16,
     ramp_m_per_s: T,
     homing_release_m: T,
     hold_travel_m: T,
@@ -112,6 +112,12 @@ struct Limits<T> {
     slack_n: T,
     servo_m_per_s: T,
     tilt_max_sine: T,
+}
+
+/// The first whole number that is not below.
+fn at_least(number: f32) -> u16 {
+    let whole = number as u16;
+    whole.saturating_add(u16::from(f32::from(whole) < number))
 }
 
 impl<T: Scalar> Leg<T> {
@@ -160,7 +166,7 @@ impl<T: Scalar> Leg<T> {
             measured: None,
             limits: Limits {
                 silence: ticks(limits.command_time_s),
-                bad_frames: limits.bad_frames,
+                bad_frames: at_least(limits.bad_frames),
                 ramp_m_per_s: limits.ramp_m_per_s.into(),
                 homing_release_m: settings.homing.release_m.into(),
                 hold_travel_m: limits.hold_travel_m.into(),
@@ -253,6 +259,7 @@ impl<T: Scalar> Leg<T> {
                 None
             },
         };
+        let mut faults = self.monitors.watch(&view);
         // Where there is most time.
         let turns: &[usize] = match self.phase {
             0 => &[0],
@@ -266,7 +273,7 @@ impl<T: Scalar> Leg<T> {
                 self.monitors.watch_axis(turn, &view, &shown);
             }
         }
-        let mut faults = self.monitors.watch(&view);
+        faults = faults.with(self.monitors.of_axes());
         faults.add(Fault::Infeasible, self.refused);
         let late = self.slack.cycles > self.limits.taut_cycles;
         faults.add(Fault::Slack, active && !self.tensioned && late);
@@ -288,7 +295,7 @@ impl<T: Scalar> Leg<T> {
         faults.add(Fault::CommandTimeout, self.silence > self.limits.silence);
         faults.add(
             Fault::BadFrame,
-            f32::from(self.bad_frames) >= self.limits.bad_frames,
+            self.bad_frames >= self.limits.bad_frames,
         );
         faults.add(Fault::HomingFailed, self.homing_failed(measured));
         faults

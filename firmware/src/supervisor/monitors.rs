@@ -68,12 +68,18 @@ impl<T: Scalar> Monitors<T> {
         }
     }
 
-    /// The faults that sensors and axes show in a tick.
+    /// What the axes showed at their last turns.
+    #[inline(always)]
+    pub fn of_axes(&self) -> FaultSet {
+        let [first, second, third] = self.of_axes;
+        first.with(second).with(third)
+    }
+
+    /// The faults of a tick, but those of the axes.
     #[inline(always)]
     pub fn watch(&mut self, view: &View<'_, T>) -> FaultSet {
         let (sensors, measured) = (view.sensors, view.measured);
-        let [first, second, third] = self.of_axes;
-        let mut faults = first.with(second).with(third);
+        let mut faults = FaultSet::NONE;
         for fault in sensors.driver_fault {
             faults.add(Fault::DriverFault, fault);
         }
