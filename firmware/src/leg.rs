@@ -293,10 +293,7 @@ impl<T: Scalar> Leg<T> {
             0
         };
         faults.add(Fault::CommandTimeout, self.silence > self.limits.silence);
-        faults.add(
-            Fault::BadFrame,
-            self.bad_frames >= self.limits.bad_frames,
-        );
+        faults.add(Fault::BadFrame, self.bad_frames >= self.limits.bad_frames);
         faults.add(Fault::HomingFailed, self.homing_failed(measured));
         faults
     }
