@@ -1,5 +1,6 @@
 //! A user's host: it identifies itself to a leg, commands it, and listens to it, over any transport.
 
+mod alive;
 mod asking;
 mod driving;
 mod ending;
@@ -20,12 +21,12 @@ pub use interrupt::Interrupt;
 pub use settings::{Difference, differences};
 
 use crate::transport::Transport;
-use leg_firmware::host_link::{HostId, HostReply, HostRequest, Identity, Told};
+use leg_firmware::host_link::{HostId, HostReply, HostRequest, Identity};
 use leg_firmware::protocol::{Hello, SCHEMA};
 use leg_firmware::telemetry::Telemetry;
 use line::Line;
-use std::collections::VecDeque;
 use std::time::Duration;
+use telemetry::Stream;
 
 /// How the host is told from others, and what the first of its requests is numbered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,12 +61,12 @@ pub struct Operator {
     identity: Identity,
     interrupt: Interrupt,
     watcher: Option<Watcher>,
-    /// Whether this host has asked for telemetry: that of others on the same line is theirs.
-    streams: bool,
-    /// Telemetry that came by itself and was not looked at yet.
-    told: VecDeque<Told>,
+    /// Telemetry that comes by itself.
+    stream: Stream,
     /// When the leg last heard a command.
     spoke_at: Duration,
+    /// How long the leg may hear nothing of this host while it is driven; none before that was asked.
+    silence_max: Option<Duration>,
     /// Whether the leg shall be kept from missing this host.
     alive: bool,
     /// Whether the leg may be doing what this host commanded.
@@ -97,8 +98,8 @@ impl Operator {
             identity,
             interrupt,
             watcher: None,
-            streams: false,
-            told: VecDeque::new(),
+            stream: Stream::default(),
+            silence_max: None,
             alive: false,
             drives: false,
         })
@@ -128,10 +129,10 @@ impl Operator {
         self.line.clock_is_emulated()
     }
 
-    /// Frames from the leg that could not be read.
+    /// Frames from the leg that could not be read, and what came so damaged that it is in none.
     #[must_use]
     pub fn damaged(&self) -> u64 {
-        self.line.damaged
+        self.line.damaged()
     }
 
     /// Lets someone look at the telemetry that the operator asks for while it waits.

@@ -38,6 +38,11 @@ pub trait Transport {
     /// [`io::ErrorKind::TimedOut`] if none came in time; what else the system says.
     fn receive(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize>;
 
+    /// What of the transport's own came damaged or incomplete, and so is missing in the bytes.
+    fn damaged(&self) -> u64 {
+        0
+    }
+
     /// Time since some moment, by the clock of the timeouts: the host's, or that of an emulated leg.
     fn now(&self) -> Duration {
         static START: LazyLock<Instant> = LazyLock::new(Instant::now);

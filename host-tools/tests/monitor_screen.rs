@@ -16,7 +16,7 @@ const ENTERS: &str = "\x1b[?1049h";
 const LEAVES: &str = "\x1b[?1049l";
 
 /// A terminal of 80 × 24 with a monitor on it.
-fn monitor() -> (PseudoTerminal, Child) {
+fn monitor(rate_hz: &str) -> (PseudoTerminal, Child) {
     let terminal = PseudoTerminal::open().unwrap();
     let open = || {
         OpenOptions::new()
@@ -33,7 +33,7 @@ fn monitor() -> (PseudoTerminal, Child) {
     };
     tcsetwinsize(&side, size).unwrap();
     let monitor = Command::new(env!("CARGO_BIN_EXE_leg"))
-        .args(["monitor", "--on", "sim"])
+        .args(["monitor", "--on", "sim", "--rate", rate_hz])
         .stdin(open().unwrap())
         .stdout(side)
         .spawn()
@@ -56,7 +56,7 @@ fn read_until(terminal: &PseudoTerminal, shown: &mut String, text: &str) {
 #[test]
 fn a_key_ends_the_screen_and_the_terminal_is_as_before() {
     for key in [b"q".as_slice(), b"\x03"] {
-        let (terminal, mut monitor) = monitor();
+        let (terminal, mut monitor) = monitor("20");
         let mut shown = String::new();
         read_until(&terminal, &mut shown, ENTERS);
         for text in ["disarmed", "Tensions", "Faults", "commands nothing"] {
@@ -66,4 +66,16 @@ fn a_key_ends_the_screen_and_the_terminal_is_as_before() {
         read_until(&terminal, &mut shown, LEAVES);
         assert!(monitor.wait().unwrap().success());
     }
+}
+
+#[test]
+fn a_key_does_not_wait_for_the_next_picture() {
+    let (terminal, mut monitor) = monitor("0.1");
+    let mut shown = String::new();
+    read_until(&terminal, &mut shown, "commands nothing");
+    let begun = Instant::now();
+    terminal.write(b"q").unwrap();
+    read_until(&terminal, &mut shown, LEAVES);
+    assert!(monitor.wait().unwrap().success());
+    assert!(begun.elapsed() < Duration::from_secs(5));
 }

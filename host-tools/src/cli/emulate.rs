@@ -1,7 +1,7 @@
 //! `leg emulate`.
 
 use super::line::{Fresh, controller};
-use super::numbers::positive;
+use super::numbers::seconds;
 use super::print;
 use super::run::On;
 use crate::emulated_board::EmulatedBoard;
@@ -34,8 +34,8 @@ pub struct Args {
     #[arg(long)]
     slack: bool,
     /// Ends after so many seconds.
-    #[arg(long = "for", value_name = "SECONDS", value_parser = positive)]
-    length: Option<f64>,
+    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    length: Option<Duration>,
     /// Reads on standard input what is done to the leg, one JSON object a line: {"payload":{"kg":2,"over_s":1}},
     /// {"fault":{"driver_fault":1}}, {"repair":{"driver_fault":1}}, {"emergency_stop":true}, {"turn":{"motor":1,"turns":1}},
     /// {"hang":{"cell":1,"newtons":20}}.
@@ -66,10 +66,9 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
     let touches = touches(args.touch);
     print(&format!("{}\n", port.path().display()))?;
     let board = EmulatedBoard::new(leg, port);
-    let length = args.length.map(Duration::from_secs_f64);
     let began = std::time::Instant::now();
     let missed = board
-        .run(&interrupt, length, &touches)
+        .run(&interrupt, args.length, &touches)
         .map_err(|error| Failure::from_error(&error))?;
     let part = missed.as_secs_f64() / began.elapsed().as_secs_f64();
     if part > MISSED_PART {

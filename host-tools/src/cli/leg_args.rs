@@ -1,7 +1,7 @@
 //! What the commands for one leg have in common: where it is, how they tell what came out.
 
 use super::leg_told;
-use super::line::{Fresh, Line, LineArgs, RigArgs, shown};
+use super::line::{Fresh, Line, LineArgs, RigArgs, Use, shown};
 use crate::failure::Failure;
 use crate::operator::{Operator, OperatorError};
 use leg_firmware::telemetry::Telemetry;
@@ -22,6 +22,14 @@ impl LegArgs {
     /// Opens the line to the leg.
     pub(super) fn open(&self, fresh: Fresh, verbose: bool) -> Result<Line, Failure> {
         self.line.open(&self.rig.load()?, fresh, verbose)
+    }
+
+    /// Stops the leg beside whatever else goes on, and tells what it is doing then.
+    pub(super) fn stop(&self, verbose: bool) -> Result<(), Failure> {
+        let rig = self.rig.load()?;
+        let mut line = self.line.open_for(Use::Stop, &rig, Fresh::Homed, verbose)?;
+        shown(&mut line.operator, Operator::stop)?;
+        leg_told::tell(&line.operator.telemetry()?.telemetry, self.json)
     }
 
     /// Lets the leg do something, shows it meanwhile, and gives the leg afterwards.

@@ -1,5 +1,6 @@
 //! The line to a leg: a board's serial port, or an emulated leg.
 
+use super::board_notice::notices;
 use super::run::On;
 use super::{board, progress};
 use crate::emulated_leg::{Beginning, Behind, EmulatedLeg};
@@ -14,9 +15,7 @@ use crate::transport::emulated::Emulated;
 use crate::transport::serial::{self, Serial, SerialError};
 use crate::words;
 use leg_firmware::can::LegAddress;
-use leg_firmware::host_link::Reset;
 use leg_firmware::telemetry::Telemetry;
-use leg_firmware::version::VERSION;
 use std::path::PathBuf;
 
 /// How long the tendons of a leg that has to be homed are beyond their ways, m.
@@ -32,7 +31,8 @@ pub(super) struct LineArgs {
     /// The board's serial port; that of the ST-LINK if left out.
     #[arg(long, value_name = "PATH", conflicts_with = "on")]
     port: Option<String>,
-    /// The CAN FD interface to which the board is connected, as `can0`: Linux only.
+    /// The CAN FD interface to which the board is connected, as `can0`: Linux only. One command at a time may talk to a leg on
+    /// CAN; only `leg stop` goes beside another.
     #[arg(long, value_name = "INTERFACE", conflicts_with_all = ["on", "port"])]
     can: Option<String>,
     /// Which of the legs on the CAN bus, 1 to 6.
@@ -75,6 +75,14 @@ impl Fresh {
     }
 }
 
+/// What a line is opened for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Use {
+    All,
+    /// Nothing but a stop, beside whatever else goes on.
+    Stop,
+}
+
 /// A leg that knows this host.
 pub(super) struct Line {
     pub(super) operator: Operator,
@@ -85,14 +93,27 @@ pub(super) struct Line {
 impl LineArgs {
     /// Opens the line. `rig` is that of an emulated leg.
     pub(super) fn open(&self, rig: &RigFile, fresh: Fresh, verbose: bool) -> Result<Line, Failure> {
+        self.open_for(Use::All, rig, fresh, verbose)
+    }
+
+    /// The same for one use.
+    pub(super) fn open_for(
+        &self,
+        to: Use,
+        rig: &RigFile,
+        fresh: Fresh,
+        verbose: bool,
+    ) -> Result<Line, Failure> {
         let interrupt = Interrupt::on_ctrl_c();
         let Some(on) = self.on else {
             let transport = match &self.can {
                 None => self.serial()?,
-                Some(interface) => can(interface, self.leg)?,
+                Some(interface) => can(interface, self.leg, to)?,
             };
             let operator = Operator::open(transport, Host::random(), interrupt)?;
-            tell_board(&operator);
+            for notice in notices(operator.identity()) {
+                eprintln!("leg: {notice}");
+            }
             return Ok(Line {
                 operator,
                 emulated: None,
@@ -114,22 +135,35 @@ impl LineArgs {
             None => serial::find().and_then(|port| Serial::open(&port)),
         };
         match opened {
-            Ok(serial) => Ok(Box::new(serial)),
+            Ok(serial) => {
+                if let Some(reason) = serial.alone() {
+                    eprintln!(
+                        "leg: other commands cannot use this port meanwhile ({reason}): let TMPDIR be a folder that may be written, with a short path"
+                    );
+                }
+                Ok(Box::new(serial))
+            }
             Err(error) => Err(no_line(&error)),
         }
     }
 }
 
 #[cfg(target_os = "linux")]
-fn can(interface: &str, leg: LegAddress) -> Result<Box<dyn Transport>, Failure> {
-    match SocketCan::open(interface, leg) {
-        Ok(port) => Ok(Box::new(CanTransport::new(port, leg))),
+fn can(interface: &str, leg: LegAddress, to: Use) -> Result<Box<dyn Transport>, Failure> {
+    let opened = match to {
+        Use::All => SocketCan::open(interface, leg).map(|port| CanTransport::new(port, leg)),
+        Use::Stop => {
+            SocketCan::open_beside(interface, leg).map(|port| CanTransport::urgent_only(port, leg))
+        }
+    };
+    match opened {
+        Ok(transport) => Ok(Box::new(transport)),
         Err(error) => Err(Failure::from_error(&error)),
     }
 }
 
 #[cfg(not(target_os = "linux"))]
-fn can(_: &str, _: LegAddress) -> Result<Box<dyn Transport>, Failure> {
+fn can(_: &str, _: LegAddress, _: Use) -> Result<Box<dyn Transport>, Failure> {
     Err(Failure::refused(
         "CAN is served on Linux only",
         "connect the board's serial port",
@@ -146,28 +180,6 @@ pub(super) fn controller(on: On, verbose: bool) -> Result<Box<dyn Controller>, F
         On::Sim => Box::new(InThisProcess::default()),
         On::Qemu => Box::new(Behind::new(board::qemu(verbose)?)),
     })
-}
-
-/// What the user should know of the board before anything else.
-fn tell_board(operator: &Operator) {
-    let identity = operator.identity();
-    if identity.version != VERSION {
-        let [theirs, ours] = [identity.version, VERSION].map(version);
-        eprintln!(
-            "leg: the firmware is version {theirs}, this program {ours}: `leg flash` makes them the same"
-        );
-    }
-    let cause = match identity.reset {
-        Reset::BrownOut => "its supply was too low",
-        Reset::Software => "its firmware had stopped by itself",
-        Reset::Watchdog => "a task had not checked in with its watchdog",
-        _ => return,
-    };
-    let words = &identity.last_words;
-    eprintln!(
-        "leg: the board started anew because {cause}{}{words}",
-        if words.is_empty() { "" } else { ": " }
-    );
 }
 
 /// A version in words.

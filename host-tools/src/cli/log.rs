@@ -1,28 +1,30 @@
 //! `leg log`.
 
+mod recorded;
+
 use super::leg_args::LegArgs;
 use super::leg_told::to_line;
 use super::line::Fresh;
-use super::numbers::positive;
+use super::numbers::{positive, seconds};
 use super::{print, progress};
 use crate::failure::Failure;
 use crate::operator::{Operator, OperatorError};
 use crate::recording::{self, TelemetryFile};
 use leg_firmware::sensors::TICK_HZ;
-use serde::Serialize;
+use recorded::{Counter, Foreign};
 use std::path::PathBuf;
 use std::time::Duration;
 
 /// What the serial line carries, with room for replies, Hz.
 const RATE_MAX_HZ: f64 = 500.0;
 
-/// Silence after which telemetry is asked for again: another host's greeting ends it.
+/// Silence after which telemetry is asked for again: another host may have ended it.
 const STALL_TIME: Duration = Duration::from_millis(200);
 
 /// Such silences without anything between them.
 const SILENCES_MAX: u32 = 20;
 
-/// Records what the leg tells of itself, beside whatever else goes on.
+/// Records what the leg tells of itself, beside whatever else goes on; not on CAN.
 ///
 /// Ctrl-C ends it early, and the file is whole.
 #[derive(Debug, clap::Args)]
@@ -30,34 +32,28 @@ pub struct Args {
     /// The file: FILE.mcap for Foxglove and PlotJuggler, or FILE.csv.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// How often, Hz: up to 500; the nearest whole number of ticks is taken.
-    #[arg(long, value_name = "HZ", value_parser = rate, default_value = "100")]
-    rate: f64,
+    /// How often, Hz: 0.1221 to 500; the nearest whole number of ticks is asked for, and how often the leg told is said in the
+    /// end.
+    #[arg(long = "rate", value_name = "HZ", value_parser = rate, default_value = "100")]
+    every_ticks: u16,
     /// How long, s.
-    #[arg(long = "for", value_name = "SECONDS", value_parser = positive)]
-    length: f64,
+    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    length: Duration,
     #[command(flatten)]
     leg: LegArgs,
 }
 
-fn rate(text: &str) -> Result<f64, String> {
-    match positive(text)? {
-        rate if rate <= RATE_MAX_HZ => Ok(rate),
-        _ => Err(format!("the line carries up to {RATE_MAX_HZ} a second")),
+/// How many ticks are from one to the next at a rate, Hz.
+fn rate(text: &str) -> Result<u16, String> {
+    let rate_hz = positive(text)?;
+    if rate_hz > RATE_MAX_HZ {
+        return Err(format!("the line carries up to {RATE_MAX_HZ} a second"));
     }
-}
-
-/// What was recorded.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-struct Recorded {
-    /// Telemetry in the file.
-    count: u64,
-    /// Telemetry that did not come.
-    lost: u64,
-    /// From the first to the last, s.
-    length_s: f64,
-    /// Between two, s.
-    every_s: f64,
+    let ticks = (f64::from(TICK_HZ) / rate_hz).round();
+    if ticks > f64::from(u16::MAX) {
+        return Err("a leg tells of itself at least every 8.19 s, at 0.1221 Hz".into());
+    }
+    Ok(ticks as u16)
 }
 
 /// Runs the command.
@@ -65,35 +61,33 @@ struct Recorded {
 /// # Errors
 /// A [`Failure`]: no line to the leg, one that breaks, or a file that cannot be written.
 pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
-    let every_ticks = (f64::from(TICK_HZ) / args.rate).round().max(1.0) as u16;
     let mut operator = args.leg.open(Fresh::Homed, verbose)?.operator;
     let (recorded, ended) = recording::around_telemetry(&args.out, |file| {
-        let mut recorded = Recorded {
-            every_s: f64::from(every_ticks) / f64::from(TICK_HZ),
-            ..Recorded::default()
-        };
-        let ended = record(&mut operator, every_ticks, args.length, file, &mut recorded);
+        let mut counter = Counter::new(args.every_ticks);
+        let bar = progress::spinner("times");
+        let ended = record(&mut operator, args, file, &mut counter, || bar.inc(1));
+        bar.finish_and_clear();
+        let ended = let_go(&mut operator, ended);
+        let recorded = counter.recorded(operator.damaged());
         match ended {
-            // What there is is kept; the user wants it so, or the line broke.
-            Err(Ended::Line(error)) => Ok((recorded, Some(error))),
             Err(Ended::File(failure)) => Err(failure),
-            Ok(()) => Ok((recorded, None)),
+            // What there is is kept.
+            ended => Ok((recorded, ended)),
         }
     })?;
     print(&if args.leg.json {
         to_line(&recorded)?
     } else {
-        words(&recorded)
+        recorded.words()
     })?;
-    match ended {
-        None | Some(OperatorError::Interrupted) => Ok(()),
-        Some(error) => Err(error.into()),
-    }
+    ended.or_else(Ended::told)
 }
 
+/// What ends a recording before its time.
 enum Ended {
     Line(OperatorError),
     File(Failure),
+    Foreign(Foreign),
 }
 
 impl From<OperatorError> for Ended {
@@ -102,50 +96,83 @@ impl From<OperatorError> for Ended {
     }
 }
 
+impl Ended {
+    fn told(self) -> Result<(), Failure> {
+        Err(match self {
+            // The user wants it so.
+            Self::Line(OperatorError::Interrupted) => return Ok(()),
+            Self::Line(error) => error.into(),
+            Self::File(failure) => failure,
+            Self::Foreign(Foreign::Restarted) => Failure::missed(
+                "the leg started anew, and its time begins again",
+                "the file ends there; log again for what follows",
+            ),
+            Self::Foreign(Foreign::Every(s)) => Failure::missed(
+                format!(
+                    "another host has asked the leg to tell of itself every {} ms",
+                    s * 1000.0
+                ),
+                "the file ends there; end the other `leg log`, or give both the same --rate",
+            ),
+        })
+    }
+}
+
+/// Lets the telemetry end, unless it is another host's now, or nothing gets through.
+fn let_go(operator: &mut Operator, ended: Result<(), Ended>) -> Result<(), Ended> {
+    match ended {
+        Ok(()) => Ok(operator.end_stream()?),
+        Err(Ended::Foreign(Foreign::Every(_))) => ended,
+        Err(Ended::Line(ref error)) if !matches!(error, OperatorError::Interrupted) => ended,
+        Err(_) => {
+            // Worse is told already.
+            let _ = operator.end_stream();
+            ended
+        }
+    }
+}
+
 fn record(
     operator: &mut Operator,
-    every_ticks: u16,
-    length_s: f64,
+    args: &Args,
     file: &mut TelemetryFile,
-    recorded: &mut Recorded,
+    counter: &mut Counter,
+    mut written: impl FnMut(),
 ) -> Result<(), Ended> {
-    let bar = progress::spinner("times");
-    operator.stream(every_ticks)?;
-    let stall = STALL_TIME.max(Duration::from_secs_f64(4.0 * recorded.every_s));
-    let mut first_tick = None;
+    operator.stream(args.every_ticks)?;
+    let every = Duration::from_secs(1) * u32::from(args.every_ticks) / u32::from(TICK_HZ);
+    let stall = STALL_TIME.max(4 * every);
+    let length_ticks = args.length.as_secs_f64() * f64::from(TICK_HZ);
     let mut silences = 0;
-    while recorded.length_s < length_s {
+    while (counter.ticks() as f64) < length_ticks {
         let Some(told) = operator.streamed(stall)? else {
             silences += 1;
             if silences > SILENCES_MAX {
                 let name = operator.name();
                 return Err(OperatorError::Silent { name }.into());
             }
-            operator.stream(every_ticks)?;
+            operator.stream(args.every_ticks)?;
             continue;
         };
         silences = 0;
-        let tick = told.telemetry.tick;
-        let ticks = tick.wrapping_sub(*first_tick.get_or_insert(tick));
+        counter.take(&told).map_err(Ended::Foreign)?;
         file.take(&told.telemetry)
             .map_err(|error| Ended::File(Failure::from_error(&error)))?;
-        recorded.count += 1;
-        let due = u64::from(ticks / u32::from(every_ticks)) + 1;
-        recorded.lost = due.saturating_sub(recorded.count);
-        recorded.length_s = f64::from(ticks) / f64::from(TICK_HZ);
-        bar.inc(1);
+        written();
     }
-    bar.finish_and_clear();
-    operator.stream(0)?;
     Ok(())
 }
 
-fn words(recorded: &Recorded) -> String {
-    format!(
-        "{} times in {:.3} s, every {:.3} ms; {} lost on the way\n",
-        recorded.count,
-        recorded.length_s,
-        recorded.every_s * 1000.0,
-        recorded.lost
-    )
+#[cfg(test)]
+mod tests {
+    use super::rate;
+
+    #[test]
+    fn a_rate_that_a_leg_cannot_tell_at_is_refused() {
+        assert_eq!(rate("500"), Ok(16));
+        assert_eq!(rate("0.1221"), Ok(65_520));
+        for wrong in ["0.05", "0.12", "501", "1e-300"] {
+            assert!(rate(wrong).is_err(), "{wrong}");
+        }
+    }
 }

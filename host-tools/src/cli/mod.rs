@@ -1,6 +1,7 @@
 //! The command line `leg`, one file a command.
 
 mod board;
+mod board_notice;
 mod calibrate;
 mod check;
 mod clear;

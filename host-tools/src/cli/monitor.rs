@@ -1,20 +1,24 @@
 //! `leg monitor`.
 
+mod udp;
+
 use super::line::{Fresh, LineArgs, RigArgs, version};
-use super::numbers::positive;
+use super::numbers::{positive, seconds};
 use super::print;
 use crate::failure::Failure;
 use crate::monitor::{Picture, draw};
 use crate::operator::{Operator, OperatorError};
-use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyModifiers};
 use std::io::IsTerminal;
-use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
-use std::time::Duration;
+use std::time::{Duration, Instant};
+use udp::Udp;
+
+/// How often a key is looked for.
+const KEY_TIME: Duration = Duration::from_millis(50);
 
 /// Shows what the leg tells, on the terminal or as lines of JSON.
 ///
-/// It commands nothing, and may run beside other commands.
+/// It commands nothing, and may run beside other commands; not on CAN.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Prints a line of JSON each time instead of a screen.
@@ -27,8 +31,8 @@ pub struct Args {
     #[arg(long, value_name = "HZ", value_parser = rate, default_value = "20")]
     rate: f64,
     /// Ends after so many seconds.
-    #[arg(long = "for", value_name = "SECONDS", value_parser = positive)]
-    length: Option<f64>,
+    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    length: Option<Duration>,
     #[command(flatten)]
     line: LineArgs,
     #[command(flatten)]
@@ -68,12 +72,12 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
         udp,
         json: args.json,
         period: Duration::from_secs_f64(1.0 / args.rate),
-        length: args.length.map(Duration::from_secs_f64),
+        length: args.length,
     };
     if screen {
         monitor.on_screen(&mut operator)
     } else {
-        monitor.watch(&mut operator, |_| Ok(true))
+        monitor.watch(&mut operator, |_, _| Ok(true))
     }
 }
 
@@ -95,11 +99,12 @@ struct Monitor {
 }
 
 impl Monitor {
-    /// Looks at the leg until `shown` has enough of it, or the time is over.
+    /// Looks at the leg until `shown` has enough of it, or the time is over. `shown` is told the time, gets what is new, and
+    /// is asked in between.
     fn watch(
         &mut self,
         operator: &mut Operator,
-        mut shown: impl FnMut(&Picture) -> Result<bool, Failure>,
+        mut shown: impl FnMut(Duration, Option<&Picture>) -> Result<bool, Failure>,
     ) -> Result<(), Failure> {
         let end = self.length.map(|length| operator.now() + length);
         while end.is_none_or(|end| operator.now() < end) {
@@ -107,14 +112,18 @@ impl Monitor {
             let Some(told) = unless_ended(operator.telemetry())? else {
                 return Ok(());
             };
-            self.picture.take(&told.telemetry);
+            self.picture.take(&told.telemetry, operator.damaged());
             self.tell()?;
-            if !shown(&self.picture)? {
+            if !shown(operator.now(), Some(&self.picture))? {
                 return Ok(());
             }
-            let left = due.saturating_sub(operator.now());
-            if unless_ended(operator.pause(left))?.is_none() {
-                return Ok(());
+            while operator.now() < due {
+                let left = due.saturating_sub(operator.now());
+                if unless_ended(operator.pause(left.min(KEY_TIME)))?.is_none()
+                    || !shown(operator.now(), None)?
+                {
+                    return Ok(());
+                }
             }
         }
         Ok(())
@@ -130,7 +139,7 @@ impl Monitor {
             return Ok(());
         };
         if let Some(udp) = &self.udp {
-            udp.send(&line);
+            udp.send(&line)?;
         }
         if self.json {
             print(&(line + "\n"))?;
@@ -141,34 +150,34 @@ impl Monitor {
     fn on_screen(&mut self, operator: &mut Operator) -> Result<(), Failure> {
         let mut terminal = ratatui::try_init().map_err(|error| no_screen(&error))?;
         // An emulated leg waits for nobody: without this it would rush through its time.
-        let begun = (std::time::Instant::now(), operator.now());
+        let begun = (Instant::now(), operator.now());
         let clock = operator.clock_is_emulated().then_some(begun);
-        let period = self.period;
-        let mut next = begun.0;
-        let watched = self.watch(operator, |picture| {
-            if clock.is_some() {
-                next += period;
-                std::thread::sleep(next.saturating_duration_since(std::time::Instant::now()));
+        let watched = self.watch(operator, |now, picture| {
+            if let Some((begun, begun_there)) = clock {
+                let ahead = now.saturating_sub(begun_there);
+                std::thread::sleep(ahead.saturating_sub(begun.elapsed()));
             }
-            show(&mut terminal, picture)
+            if let Some(picture) = picture {
+                let drawn = terminal.draw(|frame| draw(frame, picture));
+                drawn.map_err(|error| no_screen(&error))?;
+            }
+            Ok(!end_wanted().map_err(|error| no_screen(&error))?)
         });
         ratatui::restore();
         watched
     }
 }
 
-/// Draws, and tells whether the user wants to see more.
-fn show(terminal: &mut DefaultTerminal, picture: &Picture) -> Result<bool, Failure> {
-    let drawn = terminal.draw(|frame| draw(frame, picture));
-    drawn.map_err(|error| no_screen(&error))?;
-    while event::poll(Duration::ZERO).map_err(|error| no_screen(&error))? {
-        if let Event::Key(key) = event::read().map_err(|error| no_screen(&error))?
+/// Whether the user has seen enough.
+fn end_wanted() -> std::io::Result<bool> {
+    while event::poll(Duration::ZERO)? {
+        if let Event::Key(key) = event::read()?
             && ends(key)
         {
-            return Ok(false);
+            return Ok(true);
         }
     }
-    Ok(true)
+    Ok(false)
 }
 
 fn ends(key: KeyEvent) -> bool {
@@ -185,37 +194,4 @@ fn no_screen(error: &std::io::Error) -> Failure {
         format!("the terminal shows no screen: {error}"),
         "ask for lines with --json",
     )
-}
-
-/// Where datagrams go.
-struct Udp {
-    socket: UdpSocket,
-    to: SocketAddr,
-}
-
-impl Udp {
-    fn open(to: &str) -> Result<Self, Failure> {
-        let refused = |error: std::io::Error| {
-            let help = "give a host and a port, as 127.0.0.1:9870";
-            Failure::refused(format!("cannot send to {to}: {error}"), help)
-        };
-        let no_address = || std::io::Error::other("the name has no address");
-        let address = to
-            .to_socket_addrs()
-            .and_then(|mut found| found.next().ok_or_else(no_address))
-            .map_err(refused)?;
-        let here = match address {
-            SocketAddr::V4(_) => "0.0.0.0:0",
-            SocketAddr::V6(_) => "[::]:0",
-        };
-        Ok(Self {
-            socket: UdpSocket::bind(here).map_err(refused)?,
-            to: address,
-        })
-    }
-
-    fn send(&self, line: &str) {
-        // Nobody has to listen, and what is lost is lost.
-        let _ = self.socket.send_to(line.as_bytes(), self.to);
-    }
 }

@@ -1,6 +1,10 @@
 //! Numbers that a leg can be given.
 
 use std::ops::RangeInclusive;
+use std::time::Duration;
+
+/// The longest time that a command is given, s: a year.
+const SECONDS_MAX: f64 = 31_536_000.0;
 
 fn finite(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -39,6 +43,12 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A time above zero, s.
+pub(super) fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds = within(positive(text)?, &(0.0..=SECONDS_MAX), "s")?;
+    Duration::try_from_secs_f64(seconds).map_err(|error| error.to_string())
+}
+
 /// A number of at least zero.
 pub(super) fn not_negative(text: &str) -> Result<f64, String> {
     match finite(text)? {
@@ -58,4 +68,18 @@ pub(super) fn direction(azimuth_deg: f64, tilt_deg: f64) -> [f32; 2] {
     let sine = tilt_deg.to_radians().sin();
     let (sin, cos) = azimuth_deg.to_radians().sin_cos();
     [(sine * cos) as f32, (sine * sin) as f32]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::seconds;
+    use std::time::Duration;
+
+    #[test]
+    fn a_time_that_no_clock_holds_is_refused() {
+        assert_eq!(seconds("1.5"), Ok(Duration::from_millis(1500)));
+        for wrong in ["1e20", "1e9", "0", "-1", "inf", "NaN", "soon"] {
+            assert!(seconds(wrong).is_err(), "{wrong}");
+        }
+    }
 }

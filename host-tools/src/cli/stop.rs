@@ -5,7 +5,7 @@ use crate::failure::Failure;
 
 /// Stops the leg, whatever else is going on, and leaves it in hold.
 ///
-/// It is repeated until the leg acknowledges, and works beside another command that drives the leg.
+/// It is repeated until the leg acknowledges, and works beside another command that drives the leg, on CAN as well.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]
@@ -17,5 +17,5 @@ pub struct Args {
 /// # Errors
 /// A [`Failure`]: no line to the leg, or no acknowledgement.
 pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
-    args.leg.command(verbose, |operator| operator.stop())
+    args.leg.stop(verbose)
 }

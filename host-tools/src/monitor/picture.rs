@@ -13,6 +13,7 @@ pub struct Picture {
     bounds_n: [f32; 2],
     sagging: Option<Sagging>,
     telemetry: Option<Telemetry<f32>>,
+    damaged_frames: u64,
 }
 
 /// A line of JSON.
@@ -27,6 +28,7 @@ struct Line<'a> {
     residual_m: f32,
     sag_m: Option<f64>,
     tension_bounds_n: &'a [f32; 2],
+    damaged_frames: u64,
 }
 
 impl Picture {
@@ -38,12 +40,14 @@ impl Picture {
             bounds_n: [settings.tension_floor_n, settings.tension_ceiling_n],
             sagging: Sagging::new(settings),
             telemetry: None,
+            damaged_frames: 0,
         }
     }
 
-    /// Takes what the leg tells.
-    pub fn take(&mut self, telemetry: &Telemetry<f32>) {
+    /// Takes what the leg tells, and how many frames could not be read so far.
+    pub fn take(&mut self, telemetry: &Telemetry<f32>, damaged_frames: u64) {
         self.telemetry = Some(*telemetry);
+        self.damaged_frames = damaged_frames;
     }
 
     /// A line of JSON, without its end; none before the leg has told anything.
@@ -63,12 +67,17 @@ impl Picture {
             residual_m: telemetry.residual_m,
             sag_m: self.sag_m(),
             tension_bounds_n: &self.bounds_n,
+            damaged_frames: self.damaged_frames,
         })
         .map(Some)
     }
 
     pub(super) fn title(&self) -> &str {
         &self.title
+    }
+
+    pub(super) fn damaged_frames(&self) -> u64 {
+        self.damaged_frames
     }
 
     pub(super) fn bounds_n(&self) -> [f32; 2] {

@@ -26,8 +26,7 @@ pub fn draw(frame: &mut Frame<'_>, picture: &Picture) {
         Constraint::Length(1),
     ];
     let [state, tensions, load, faults, keys] = Layout::vertical(rows).areas(frame.area());
-    let quits = Line::from(" q or Ctrl-C ends this; it commands nothing").dim();
-    frame.render_widget(quits, keys);
+    frame.render_widget(last_line(picture), keys);
     let Some(telemetry) = picture.telemetry() else {
         let waiting = Paragraph::new("waiting for the leg").block(titled(picture.title()));
         return frame.render_widget(waiting, state);
@@ -51,6 +50,17 @@ pub fn draw(frame: &mut Frame<'_>, picture: &Picture) {
         faulty.block(titled(&faults_title(telemetry.faults))),
         faults,
     );
+}
+
+fn last_line(picture: &Picture) -> Line<'static> {
+    let keys = " q or Ctrl-C ends this; it commands nothing".dim();
+    match picture.damaged_frames() {
+        0 => Line::from(keys),
+        count => {
+            let damaged = format!(" {count} frames damaged;").fg(Color::Yellow);
+            Line::from(vec![damaged, keys])
+        }
+    }
 }
 
 fn titled(title: &str) -> Block<'static> {

@@ -65,24 +65,30 @@ fn a_held_leg_with_two_faults() {
     let mut faults = FaultSet::of(Fault::CommandTimeout);
     faults.add(Fault::Unreachable, true);
     let mut picture = Picture::new("the leg in this test, firmware 0.1.0", &settings());
-    picture.take(&Telemetry {
-        faults,
-        ..telemetry()
-    });
+    picture.take(
+        &Telemetry {
+            faults,
+            ..telemetry()
+        },
+        0,
+    );
     compare("held", &screen(&picture, [80, 24]));
 }
 
 #[test]
 fn a_leg_before_homing_on_a_narrow_terminal() {
     let mut picture = Picture::new("/dev/ttyACM0, firmware 0.1.0", &settings());
-    picture.take(&Telemetry {
-        state: State::Disarmed,
-        homed: false,
-        level_n: 0.0,
-        stiffness_nm_per_rad: 0.0,
-        payload_kg: 0.0,
-        ..telemetry()
-    });
+    picture.take(
+        &Telemetry {
+            state: State::Disarmed,
+            homed: false,
+            level_n: 0.0,
+            stiffness_nm_per_rad: 0.0,
+            payload_kg: 0.0,
+            ..telemetry()
+        },
+        3,
+    );
     compare("not_homed", &screen(&picture, [60, 24]));
 }
 
@@ -91,7 +97,7 @@ fn no_size_of_the_terminal_is_too_small() {
     let mut picture = Picture::new("a leg", &settings());
     for size in [[1, 1], [10, 3], [20, 40]] {
         screen(&picture, size);
-        picture.take(&telemetry());
+        picture.take(&telemetry(), 0);
         screen(&picture, size);
     }
 }
@@ -100,12 +106,16 @@ fn no_size_of_the_terminal_is_too_small() {
 fn the_line_for_machines_holds_what_the_screen_shows() {
     let mut picture = Picture::new("a leg", &settings());
     assert_eq!(picture.json().unwrap(), None);
-    picture.take(&Telemetry {
-        faults: FaultSet::of(Fault::Slack),
-        ..telemetry()
-    });
+    picture.take(
+        &Telemetry {
+            faults: FaultSet::of(Fault::Slack),
+            ..telemetry()
+        },
+        2,
+    );
     let line: serde_json::Value = serde_json::from_str(&picture.json().unwrap().unwrap()).unwrap();
     assert_eq!(line["state"], "held");
+    assert_eq!(line["damaged_frames"], 2);
     assert_eq!(line["faults"][0]["code"], 1);
     assert!(!line["faults"][0]["cure"].as_str().unwrap().is_empty());
     // The sag is that of `leg eval` at the same pose.

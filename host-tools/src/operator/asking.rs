@@ -16,8 +16,8 @@ const ATTEMPTS: u32 = 12;
 /// How often a command is sent after a look at the leg.
 const LOOKS: u32 = 3;
 
-/// Silence after which the leg is told that the host is there: a quarter of what it waits by default.
-const ALIVE_TIME: Duration = Duration::from_millis(50);
+/// Wait before a busy leg is asked again.
+const BUSY_TIME: Duration = Duration::from_millis(50);
 
 /// When a request that got no reply is sent again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -132,12 +132,14 @@ impl Operator {
         reply_time: Duration,
     ) -> Result<HostReply, OperatorError> {
         let mut numbers = Vec::new();
+        let mut busy = false;
         for _ in 0..ATTEMPTS {
             numbers.push(self.line.send(request)?);
             let until = self.now() + reply_time;
             let (reply, lost) = self.reply(&numbers, until)?;
+            busy = reply == Some(HostReply::Refused(HostRefusal::Busy));
             match reply {
-                Some(HostReply::Refused(HostRefusal::Busy)) => self.pause(ALIVE_TIME)?,
+                Some(_) if busy => self.pause(BUSY_TIME)?,
                 Some(HostReply::Refused(refusal)) => {
                     return Err(self.line.refused(asked, refusal));
                 }
@@ -146,7 +148,11 @@ impl Operator {
                 None => return Err(OperatorError::Unanswered { asked }),
             }
         }
-        Err(OperatorError::Silent { name: self.name() })
+        Err(if busy {
+            self.line.refused(asked, HostRefusal::Busy)
+        } else {
+            OperatorError::Silent { name: self.name() }
+        })
     }
 
     /// The reply to one of these requests, and whether the leg could not read a frame meanwhile.
@@ -178,27 +184,17 @@ impl Operator {
                 return Err(OperatorError::Interrupted);
             }
             self.keep_alive()?;
-            let wake = until.min(self.now() + ALIVE_TIME);
+            let wake = until.min(self.wake_at());
             match self.line.receive(wake)? {
-                Some((0, HostReply::Telemetry(told))) => {
-                    self.told.extend(self.streams.then_some(told));
+                Some((0, HostReply::Telemetry(told))) => self.overhear(told),
+                Some(message) => {
+                    self.overhear_reply(&message.1);
+                    return Ok(Some(message));
                 }
-                Some(message) => return Ok(Some(message)),
                 None if self.now() >= until => return Ok(None),
                 None => {}
             }
         }
-    }
-
-    fn keep_alive(&mut self) -> Result<(), OperatorError> {
-        if self.alive && self.drives && self.now() >= self.spoke_at + ALIVE_TIME {
-            self.spoke_at = self.now();
-            self.line.send(&HostRequest::Command {
-                host: self.host,
-                command: Command::KeepAlive,
-            })?;
-        }
-        Ok(())
     }
 
     /// Lets time pass.

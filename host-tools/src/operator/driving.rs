@@ -58,20 +58,23 @@ impl Operator {
     /// of it is left as it was.
     ///
     /// # Errors
-    /// That of `work`, or of [`Self::stop`].
+    /// That of `work`, unless no stop is acknowledged; [`OperatorError::Impatient`] before anything is done.
     pub fn drive<T>(
         &mut self,
         work: impl FnOnce(&mut Self) -> Result<T, OperatorError>,
     ) -> Result<T, OperatorError> {
+        self.learn_patience()?;
         self.alive = true;
         let result = work(self);
         self.alive = false;
-        let stopped = if self.drives {
-            self.stop().map(drop)
-        } else {
-            Ok(())
-        };
-        result.and_then(|result| stopped.map(|()| result))
+        let halted = if self.drives { self.halt() } else { Ok(()) };
+        match (result, halted) {
+            // Without a line there can be no stop, and its error says what the leg does then.
+            (Err(error @ OperatorError::Broken { .. }), _) => Err(error),
+            // Worse than whatever went before: it is not known whether the leg rests.
+            (_, Err(not_stopped)) => Err(not_stopped),
+            (result, Ok(())) => result,
+        }
     }
 
     /// Finds the zero and leaves the leg in hold, straight down. A leg in hold is disarmed first.
@@ -113,6 +116,10 @@ impl Operator {
             }
             if let Some([x, y]) = goal.direction {
                 operator.command(Command::Move { x, y })?;
+            }
+            if *goal == Goal::default() {
+                // Also where the leg is active: it is this host then that holds it, or another that drives it is named.
+                operator.command(Command::Hold)?;
             }
             let telemetry = unlimited(asked, &operator.settle(asked)?)?;
             arrived(goal, &telemetry)

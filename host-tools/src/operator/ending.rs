@@ -24,12 +24,31 @@ impl Operator {
     /// # Errors
     /// [`OperatorError::NotStopped`]; a line that breaks.
     pub fn stop(&mut self) -> Result<Telemetry<f32>, OperatorError> {
-        let interrupt = std::mem::take(&mut self.interrupt);
-        let alive = std::mem::replace(&mut self.alive, false);
-        let stopped = self.send_stops().and_then(|()| self.telemetry());
-        (self.interrupt, self.alive) = (interrupt, alive);
+        let stopped = self.heedless(|operator| {
+            operator.send_stops()?;
+            operator.telemetry()
+        });
         self.drives = false;
         stopped.map(|told| told.telemetry)
+    }
+
+    /// The same without a look at the leg.
+    pub(super) fn halt(&mut self) -> Result<(), OperatorError> {
+        let halted = self.heedless(Self::send_stops);
+        self.drives = false;
+        halted
+    }
+
+    /// Does `work` heedless of Ctrl-C, and without being heard in between.
+    pub(super) fn heedless<T>(
+        &mut self,
+        work: impl FnOnce(&mut Self) -> Result<T, OperatorError>,
+    ) -> Result<T, OperatorError> {
+        let interrupt = std::mem::take(&mut self.interrupt);
+        let alive = std::mem::replace(&mut self.alive, false);
+        let result = work(self);
+        (self.interrupt, self.alive) = (interrupt, alive);
+        result
     }
 
     fn send_stops(&mut self) -> Result<(), OperatorError> {

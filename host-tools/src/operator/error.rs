@@ -1,5 +1,6 @@
 //! Why an operator did not get what it asked for.
 
+use super::alive::PATIENCE_MIN_S;
 use super::refusal;
 use crate::failure::Failure;
 use crate::leg_report::pose_words;
@@ -141,6 +142,14 @@ pub enum OperatorError {
         /// Those that differ.
         names: Vec<String>,
     },
+    /// The leg misses its host sooner than this one can speak.
+    #[error(
+        "the leg misses its host after {command_time_s} s of silence, and this program speaks every few milliseconds at best"
+    )]
+    Impatient {
+        /// What the leg waits, s.
+        command_time_s: f32,
+    },
     /// The user ended it.
     #[error("ended by Ctrl-C")]
     Interrupted,
@@ -158,8 +167,8 @@ impl OperatorError {
                 "plug the board in again; without its host an armed leg holds by itself".into()
             }
             Self::Silent { .. } => {
-                "see that the board is powered and flashed (`leg flash`), and that \
-                 this is its port"
+                "see that the board is powered and flashed (`leg flash`), that this is its port, and \
+                 that no other `leg` that has it is suspended"
                     .into()
             }
             Self::OtherSchema { .. } | Self::WrongReply { .. } => {
@@ -193,7 +202,13 @@ impl OperatorError {
             }
             Self::Late { .. } => "look with `leg monitor` at what the leg does".into(),
             Self::ReadBack { .. } => "set them again; if that does not help, flash anew".into(),
-            Self::Interrupted => "the leg is in hold if it was driven".into(),
+            Self::Impatient { .. } => format!(
+                "give command_time_s in [control.limits] of the rig file {PATIENCE_MIN_S} or more, then `leg settings set`"
+            ),
+            Self::Interrupted => {
+                "the leg is in hold if it was driven; one that was being disarmed goes on to relax"
+                    .into()
+            }
             Self::Frame(_) => "give shorter settings: fewer points of a tendon's curve".into(),
         }
     }

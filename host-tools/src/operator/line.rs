@@ -16,7 +16,7 @@ pub(super) struct Line {
     /// Messages that came and were not looked at yet.
     messages: VecDeque<(u16, HostReply)>,
     /// Frames that could not be read.
-    pub damaged: u64,
+    damaged: u64,
 }
 
 impl Line {
@@ -36,6 +36,10 @@ impl Line {
 
     pub fn now(&self) -> Duration {
         self.transport.now()
+    }
+
+    pub fn damaged(&self) -> u64 {
+        self.damaged + self.transport.damaged()
     }
 
     pub fn clock_is_emulated(&self) -> bool {

@@ -23,15 +23,15 @@ pub(super) fn words(refusal: &HostRefusal) -> [String; 2] {
         ],
         HostRefusal::NotIdentified => [
             "the board has started anew and does not know this host",
-            "look with `leg monitor` why, then command again",
+            "command again: unless its power had gone, the board tells then why it started anew",
         ],
         HostRefusal::BadRequest => [
             "the request is not known to the firmware",
             "build and flash it from the sources of this program: `leg flash`",
         ],
         HostRefusal::Busy => [
-            "too many commands wait for their tick",
-            "command more slowly",
+            "the board is still busy with what it was asked before",
+            "command again; if it stays so, end the other commands that use this line",
         ],
         HostRefusal::OtherHost => [
             "another host drives the leg",

@@ -30,6 +30,7 @@ impl Operator {
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), OperatorError> {
         let asked = "take the settings";
         let request = HostRequest::SetSettings(settings.clone());
+        self.silence_max = None;
         match self.ask(asked, &request, Repeat::Always)? {
             HostReply::Done => {}
             _ => return Err(OperatorError::WrongReply { asked }),

@@ -1,11 +1,17 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+mod can;
+mod endings;
 mod faults;
 mod goals;
 mod greeting;
 mod hosts;
 mod lost_frames;
+mod patience;
+mod scripted;
 mod settings;
+mod strange;
+mod stream;
 mod urgent;
 
 use crate::emulated_leg::{Beginning, EmulatedLeg};
@@ -18,10 +24,13 @@ use leg_firmware::supervisor::State;
 use std::time::Duration;
 
 fn emulated(beginning: Beginning) -> Emulated {
-    let rig = RigFile::load(None).unwrap();
+    emulated_rig(&RigFile::load(None).unwrap(), beginning)
+}
+
+fn emulated_rig(rig: &RigFile, beginning: Beginning) -> Emulated {
     let controller = Box::new(InThisProcess::default());
     Emulated::new(
-        EmulatedLeg::new(&rig, beginning, controller).unwrap(),
+        EmulatedLeg::new(rig, beginning, controller).unwrap(),
         "the leg in this test",
     )
 }

@@ -4,6 +4,8 @@
 mod interface;
 #[cfg(target_os = "linux")]
 mod socket;
+#[cfg(target_os = "linux")]
+mod sole;
 
 #[cfg(target_os = "linux")]
 pub use interface::InterfaceError;
@@ -42,17 +44,19 @@ pub trait CanPort {
 
 /// The link to one leg of a CAN FD bus.
 ///
-/// The host has one for each leg, and not more: two would count under the same identifier.
+/// There is one for each leg, and not more: two would count under the same identifier. Beside it there may be any number of
+/// those that send urgent frames only, whose counters nobody looks at.
 #[derive(Debug)]
 pub struct CanTransport<P> {
     port: P,
     name: String,
-    ordinary: Segmenter,
+    /// None where all frames are sent as urgent ones.
+    ordinary: Option<Segmenter>,
     urgent: Segmenter,
     urgent_to_all: Segmenter,
     assembler: Assembler,
     received: VecDeque<u8>,
-    faults: Vec<CanFault>,
+    damaged: u64,
 }
 
 impl<P: CanPort> CanTransport<P> {
@@ -60,14 +64,24 @@ impl<P: CanPort> CanTransport<P> {
     #[must_use]
     pub fn new(port: P, leg: LegAddress) -> Self {
         Self {
+            ordinary: Some(Segmenter::new(Identifier::ToLeg(leg))),
+            ..Self::urgent_only(port, leg)
+        }
+    }
+
+    /// The link of one who stops a leg beside others that talk to it: everything goes as urgent frames, and so has to be
+    /// short.
+    #[must_use]
+    pub fn urgent_only(port: P, leg: LegAddress) -> Self {
+        Self {
             name: format!("{}, {leg}", port.name()),
             port,
-            ordinary: Segmenter::new(Identifier::ToLeg(leg)),
+            ordinary: None,
             urgent: Segmenter::new(Identifier::Urgent(leg)),
             urgent_to_all: Segmenter::new(Identifier::UrgentToAll),
             assembler: Assembler::of_host(leg),
             received: VecDeque::new(),
-            faults: Vec::new(),
+            damaged: 0,
         }
     }
 
@@ -79,15 +93,12 @@ impl<P: CanPort> CanTransport<P> {
         segment(&mut self.port, &mut self.urgent_to_all, link_frame)
     }
 
-    /// What was wrong with what came since the last call.
-    pub fn take_faults(&mut self) -> Vec<CanFault> {
-        std::mem::take(&mut self.faults)
-    }
-
     fn receive_frame(&mut self, timeout: Duration) -> io::Result<()> {
         let frame = self.port.receive(timeout)?;
         let taken = self.assembler.push(&frame);
-        self.faults.extend(taken.fault);
+        // A double costs nothing.
+        let damaged = taken.fault.is_some_and(|fault| fault != CanFault::Doubled);
+        self.damaged += u64::from(damaged);
         self.received.extend(taken.link_frame.unwrap_or_default());
         Ok(())
     }
@@ -107,7 +118,8 @@ impl<P: CanPort> Transport for CanTransport<P> {
             return Err(not_one_frame(SegmentError::NotOneFrame));
         }
         for link_frame in bytes.split_inclusive(|&byte| byte == 0) {
-            segment(&mut self.port, &mut self.ordinary, link_frame)?;
+            let segmenter = self.ordinary.as_mut().unwrap_or(&mut self.urgent);
+            segment(&mut self.port, segmenter, link_frame)?;
         }
         Ok(())
     }
@@ -115,6 +127,10 @@ impl<P: CanPort> Transport for CanTransport<P> {
     /// As any other, and at most [`SEGMENT_MAX`](leg_firmware::can::SEGMENT_MAX) bytes long.
     fn send_urgent(&mut self, link_frame: &[u8]) -> io::Result<()> {
         segment(&mut self.port, &mut self.urgent, link_frame)
+    }
+
+    fn damaged(&self) -> u64 {
+        self.damaged
     }
 
     fn receive(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize> {

@@ -1,4 +1,4 @@
-//! An emulated leg at the other end, in lock-step with the host: its time goes on only while the host waits.
+//! An emulated leg at the other end, in lock-step with its hosts: its time goes on only while one of them waits.
 
 use super::Transport;
 use crate::emulated_leg::EmulatedLeg;
@@ -6,62 +6,71 @@ use crate::plant::Plant;
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::io;
-use std::rc::Rc;
+use std::rc::{Rc, Weak};
 use std::time::Duration;
 
-/// One host's end of the line to an emulated leg.
+/// An emulated leg and the line to it.
 pub struct Emulated {
     shared: Rc<RefCell<Shared>>,
-    /// Which of the hosts this is.
-    place: usize,
     name: String,
 }
+
+/// One host's end of that line.
+pub struct EmulatedEnd {
+    shared: Rc<RefCell<Shared>>,
+    incoming: Incoming,
+    name: String,
+}
+
+/// What of the leg's bytes one host has not read yet.
+type Incoming = Rc<RefCell<VecDeque<u8>>>;
 
 /// The leg and what is on its way to it and to each host.
 struct Shared {
     leg: EmulatedLeg,
     outgoing: VecDeque<u8>,
-    incoming: Vec<VecDeque<u8>>,
+    /// None of a host that has gone.
+    hosts: Vec<Weak<RefCell<VecDeque<u8>>>>,
 }
 
 impl Shared {
     fn tick(&mut self) -> io::Result<()> {
         let bytes = self.leg.tick(&mut self.outgoing);
-        for byte in bytes.map_err(io::Error::other)? {
-            for host in &mut self.incoming {
-                host.push_back(byte);
-            }
-        }
+        let bytes: Vec<u8> = bytes.map_err(io::Error::other)?.collect();
+        self.hosts.retain(|host| {
+            let Some(incoming) = host.upgrade() else {
+                return false;
+            };
+            incoming.borrow_mut().extend(&bytes);
+            true
+        });
         Ok(())
     }
 }
 
 impl Emulated {
-    /// The first host of a leg.
+    /// A leg without a host yet.
     #[must_use]
     pub fn new(leg: EmulatedLeg, name: &str) -> Self {
         Self {
             shared: Rc::new(RefCell::new(Shared {
                 leg,
                 outgoing: VecDeque::new(),
-                incoming: vec![VecDeque::new()],
+                hosts: Vec::new(),
             })),
-            place: 0,
             name: name.into(),
         }
     }
 
-    /// Another host on the same line: what the leg says reaches all of them.
+    /// A host on its line, beside those that are there: what the leg says reaches all of them.
     #[must_use]
-    pub fn beside(&self) -> Self {
-        let place = {
-            let incoming = &mut self.shared.borrow_mut().incoming;
-            incoming.push(VecDeque::new());
-            incoming.len() - 1
-        };
-        Self {
+    pub fn beside(&self) -> EmulatedEnd {
+        let incoming = Incoming::default();
+        let host = Rc::downgrade(&incoming);
+        self.shared.borrow_mut().hosts.push(host);
+        EmulatedEnd {
             shared: Rc::clone(&self.shared),
-            place,
+            incoming,
             name: self.name.clone(),
         }
     }
@@ -70,22 +79,16 @@ impl Emulated {
     pub fn touch<T>(&self, what: impl FnOnce(&mut Plant) -> T) -> T {
         what(self.shared.borrow_mut().leg.plant())
     }
+}
 
+impl EmulatedEnd {
     /// What of the leg's bytes has come.
-    fn take(&self, bytes: &mut [u8]) -> usize {
-        let mut shared = self.shared.borrow_mut();
-        let Some(incoming) = shared.incoming.get_mut(self.place) else {
-            return 0;
-        };
-        let count = incoming.len().min(bytes.len());
-        for (place, byte) in bytes.iter_mut().zip(incoming.drain(..count)) {
-            *place = byte;
-        }
-        count
+    fn take(&self, bytes: &mut [u8]) -> io::Result<usize> {
+        io::Read::read(&mut *self.incoming.borrow_mut(), bytes)
     }
 }
 
-impl Transport for Emulated {
+impl Transport for EmulatedEnd {
     fn name(&self) -> &str {
         &self.name
     }
@@ -98,7 +101,7 @@ impl Transport for Emulated {
     fn receive(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize> {
         let until = self.now() + timeout;
         loop {
-            let count = self.take(bytes);
+            let count = self.take(bytes)?;
             if count > 0 || bytes.is_empty() {
                 return Ok(count);
             }
@@ -115,5 +118,28 @@ impl Transport for Emulated {
 
     fn clock_is_emulated(&self) -> bool {
         true
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::Emulated;
+    use crate::emulated_leg::{Beginning, EmulatedLeg};
+    use crate::operator::{Host, Interrupt, Operator};
+    use crate::rig_file::RigFile;
+    use crate::simulation::InThisProcess;
+
+    #[test]
+    fn nothing_is_kept_for_a_host_that_does_not_read() {
+        let rig = RigFile::load(None).unwrap();
+        let controller = Box::new(InThisProcess::default());
+        let leg = EmulatedLeg::new(&rig, Beginning::Hanging, controller).unwrap();
+        let line = Emulated::new(leg, "a leg");
+        drop(line.beside());
+        let end = Box::new(line.beside());
+        let mut operator = Operator::open(end, Host::FIXED, Interrupt::default()).unwrap();
+        operator.telemetry().unwrap();
+        assert_eq!(line.shared.borrow().hosts.len(), 1);
     }
 }

@@ -4,24 +4,18 @@
 //! Bytes from the board go to everyone, whole frames from everyone go to the board. When the program that has the port ends,
 //! one of the others opens it.
 
+mod outgoing;
+mod serving;
+
 use serialport::TTYPort;
-use std::io::{self, BufRead, BufReader, Read, Write};
-use std::net::Shutdown;
+use std::io::{self, Read, Write};
 use std::os::unix::fs::{DirBuilderExt, MetadataExt};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::thread;
 use std::time::Duration;
 
-/// Longest frame that is passed on, with much to spare.
-const FRAME_MAX: u64 = 4096;
-
-/// Wait before a client that does not read is let go.
-const PATIENCE: Duration = Duration::from_millis(50);
-
-/// The streams to all clients.
-type Clients = Arc<Mutex<Vec<UnixStream>>>;
+/// What a hub says to whoever joins it: the end of an empty frame. A program that was suspended does not come to it.
+const WELCOME: [u8; 1] = [0];
 
 /// A program's place at a hub, its own or another's.
 #[derive(Debug)]
@@ -66,32 +60,48 @@ pub fn ended(error: &io::Error) -> bool {
 /// Joins the hub of another program.
 ///
 /// # Errors
-/// What the system says if there is none.
-pub fn join(port: &str) -> io::Result<Client> {
-    UnixStream::connect(meeting_place(port)?).map(Client)
+/// [`io::ErrorKind::TimedOut`] if that program lets in whoever comes but does nothing for `patience`; what the system says if
+/// there is none.
+pub fn join(port: &str, patience: Duration) -> io::Result<Client> {
+    let mut client = Client(UnixStream::connect(meeting_place(port)?)?);
+    match client.receive(&mut [0; WELCOME.len()], patience)? {
+        0 => Err(io::ErrorKind::UnexpectedEof.into()),
+        _ => Ok(client),
+    }
 }
 
-/// Starts the hub of a port that this program has opened, and joins it. It ends with the program or the port.
+/// A hub that this program has started.
+#[derive(Debug)]
+pub struct Started {
+    /// This program's place at it.
+    pub client: Client,
+    /// Why no other program can join it, if so.
+    pub alone: Option<io::Error>,
+}
+
+/// Starts the hub of a port that this program has opened, and joins it. It ends with the program or the port. Where other
+/// programs cannot meet it, it serves this one alone: to stop a leg has to be possible without a folder to write in.
 ///
 /// # Errors
 /// What the system says.
-pub fn start(tty: TTYPort, port: &str) -> io::Result<Client> {
+pub fn start(tty: TTYPort, port: &str) -> io::Result<Started> {
+    let (listener, alone) = match meet(port) {
+        Ok(listener) => (Some(listener), None),
+        Err(error) => (None, Some(error)),
+    };
+    let client = Client(serving::start(tty, listener)?);
+    Ok(Started { client, alone })
+}
+
+fn meet(port: &str) -> io::Result<UnixListener> {
     let place = meeting_place(port)?;
     // The port is this program's, so whoever met there has ended.
     let _ = std::fs::remove_file(&place);
-    let listener = UnixListener::bind(&place)?;
-    let (own, hubs) = UnixStream::pair()?;
-    let clients = Clients::default();
-    let to_board = Arc::new(Mutex::new(tty.try_clone_native().map_err(io::Error::from)?));
-    welcome(hubs, &clients, &to_board)?;
-    let listening = Arc::clone(&clients);
-    thread::spawn(move || listen(&listener, &listening, &to_board));
-    thread::spawn(move || pass_on_from_board(tty, &clients));
-    Ok(Client(own))
+    UnixListener::bind(&place)
 }
 
 /// The socket of a port, in a folder of this user.
-fn meeting_place(port: &str) -> io::Result<PathBuf> {
+pub(super) fn meeting_place(port: &str) -> io::Result<PathBuf> {
     let port = std::fs::canonicalize(port)?;
     let name: String = port
         .to_string_lossy()
@@ -108,72 +118,4 @@ fn meeting_place(port: &str) -> io::Result<PathBuf> {
         return Err(io::ErrorKind::PermissionDenied.into());
     }
     Ok(folder.join(format!("{}.socket", name.trim_start_matches('-'))))
-}
-
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    // What a thread that failed left behind is whole: each change is one step.
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-fn listen(listener: &UnixListener, clients: &Clients, to_board: &Arc<Mutex<TTYPort>>) {
-    for stream in listener.incoming().flatten() {
-        // A client that cannot be served sees its stream end.
-        let _ = welcome(stream, clients, to_board);
-    }
-}
-
-fn welcome(
-    stream: UnixStream,
-    clients: &Clients,
-    to_board: &Arc<Mutex<TTYPort>>,
-) -> io::Result<()> {
-    stream.set_write_timeout(Some(PATIENCE))?;
-    lock(clients).push(stream.try_clone()?);
-    let to_board = Arc::clone(to_board);
-    thread::spawn(move || pass_on_from_client(stream, &to_board));
-    Ok(())
-}
-
-/// Passes whole frames to the board until the client or the port ends.
-fn pass_on_from_client(stream: UnixStream, to_board: &Mutex<TTYPort>) {
-    let mut reader = BufReader::new(stream);
-    loop {
-        let mut frame = Vec::new();
-        match reader.by_ref().take(FRAME_MAX).read_until(0, &mut frame) {
-            Ok(1..) if frame.ends_with(&[0]) => {}
-            _ => return,
-        }
-        if lock(to_board).write_all(&frame).is_err() {
-            return;
-        }
-    }
-}
-
-/// Passes what the board says to every client until the port ends, and then lets them all go.
-fn pass_on_from_board(mut tty: TTYPort, clients: &Clients) {
-    let mut bytes = [0; 4096];
-    loop {
-        match tty.read(&mut bytes) {
-            Ok(0) => break,
-            Ok(count) => {
-                let bytes = bytes.get(..count).unwrap_or_default();
-                lock(clients).retain_mut(|client| heard(client, bytes));
-            }
-            Err(error) if error.kind() == io::ErrorKind::TimedOut => {}
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            Err(_) => break,
-        }
-    }
-    for client in lock(clients).drain(..) {
-        let _ = client.shutdown(Shutdown::Both);
-    }
-}
-
-/// Whether a client takes bytes; one that does not is let go.
-fn heard(client: &mut UnixStream, bytes: &[u8]) -> bool {
-    let heard = client.write_all(bytes).is_ok();
-    if !heard {
-        let _ = client.shutdown(Shutdown::Both);
-    }
-    heard
 }

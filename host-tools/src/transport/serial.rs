@@ -1,10 +1,13 @@
 //! A board on a serial port. Several programs of this kind may use one port: see [`super::hub`].
 
 use super::Transport;
-use super::hub::{self, Client};
+use super::hub::{self, Client, Started};
 use serialport::{ClearBuffer, SerialPort, SerialPortInfo, SerialPortType, TTYPort, UsbPortInfo};
 use std::io;
 use std::time::{Duration, Instant};
+
+#[cfg(test)]
+mod tests;
 
 /// Speed of the board's line.
 const BAUD: u32 = 921_600;
@@ -36,6 +39,9 @@ pub enum SerialError {
     /// Another program has it.
     #[error("the port {0} is busy: another program has opened it")]
     Busy(String),
+    /// Another program of this kind has it, and was suspended.
+    #[error("another `leg` has the port {0} and passes nothing on")]
+    Suspended(String),
     /// The user may not open it.
     #[error("the port {0} may not be opened by this user")]
     Forbidden(String),
@@ -60,6 +66,9 @@ impl SerialError {
             Self::SeveralBoards(_) => "name one of them with --port",
             Self::NoPort(_) => "plug the board in, and look for its port with `ls /dev/tty*`",
             Self::Busy(_) => "end that program; `fuser` with the port's path names it",
+            Self::Suspended(_) => {
+                "resume or end it; `fuser` with the port's path names it. If the leg moves, press the emergency stop"
+            }
             Self::Forbidden(_) => {
                 "add yourself to the group that owns the port, often `dialout`, and log in again"
             }
@@ -112,6 +121,7 @@ fn is_st_link(port: &SerialPortInfo) -> bool {
 pub struct Serial {
     port: String,
     client: Client,
+    alone: Option<String>,
 }
 
 impl Serial {
@@ -120,10 +130,18 @@ impl Serial {
     /// # Errors
     /// A [`SerialError`].
     pub fn open(port: &str) -> Result<Self, SerialError> {
+        let Started { client, alone } = join(port)?;
         Ok(Self {
             port: port.into(),
-            client: join(port)?,
+            client,
+            alone: alone.map(|error| error.to_string()),
         })
+    }
+
+    /// Why no other program can use the port meanwhile, if so.
+    #[must_use]
+    pub fn alone(&self) -> Option<&str> {
+        self.alone.as_deref()
     }
 }
 
@@ -162,14 +180,16 @@ impl Serial {
     /// still let another join.
     fn again(&self) -> io::Result<Client> {
         std::thread::sleep(Duration::from_millis(1));
-        join(&self.port).map_err(io::Error::other)
+        let started = join(&self.port).map_err(io::Error::other)?;
+        Ok(started.client)
     }
 }
 
 /// A place at the hub of a port; opens the port if nobody has.
-fn join(port: &str) -> Result<Client, SerialError> {
+fn join(port: &str) -> Result<Started, SerialError> {
     let until = Instant::now() + OPEN_TIME;
     loop {
+        let left = || until.saturating_duration_since(Instant::now());
         match open_port(port) {
             Ok(tty) => {
                 return begin(tty, port).map_err(|error| SerialError::System {
@@ -180,21 +200,30 @@ fn join(port: &str) -> Result<Client, SerialError> {
             Err(SerialError::Busy(_)) => {}
             Err(error) => return Err(error),
         }
-        if let Ok(client) = hub::join(port) {
-            return Ok(client);
+        match hub::join(port, left()) {
+            Ok(client) => {
+                return Ok(Started {
+                    client,
+                    alone: None,
+                });
+            }
+            Err(error) if error.kind() == io::ErrorKind::TimedOut => {
+                return Err(SerialError::Suspended(port.into()));
+            }
+            Err(_) => {}
         }
-        if Instant::now() >= until {
+        if left().is_zero() {
             return Err(SerialError::Busy(port.into()));
         }
         std::thread::sleep(Duration::from_millis(20));
     }
 }
 
-fn begin(tty: TTYPort, port: &str) -> io::Result<Client> {
-    let mut client = hub::start(tty, port)?;
+fn begin(tty: TTYPort, port: &str) -> io::Result<Started> {
+    let mut started = hub::start(tty, port)?;
     // Ends whatever the board takes for the beginning of a frame.
-    client.send(&[0])?;
-    Ok(client)
+    started.client.send(&[0])?;
+    Ok(started)
 }
 
 fn open_port(port: &str) -> Result<TTYPort, SerialError> {
@@ -218,55 +247,5 @@ fn refused(port: &str, error: &serialport::Error) -> SerialError {
             port,
             reason: error.description.clone(),
         },
-    }
-}
-
-#[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "a test may panic")]
-mod tests {
-    use super::{ST, Serial, SerialError, choose};
-    use serialport::{SerialPortInfo, SerialPortType, UsbPortInfo};
-
-    fn usb(name: &str, vid: u16, pid: u16) -> SerialPortInfo {
-        SerialPortInfo {
-            port_name: name.into(),
-            port_type: SerialPortType::UsbPort(UsbPortInfo {
-                vid,
-                pid,
-                serial_number: None,
-                manufacturer: None,
-                product: None,
-            }),
-        }
-    }
-
-    #[test]
-    fn the_only_st_link_is_chosen() {
-        let other = usb("/dev/ttyUSB0", 0x1a86, 0x7523);
-        let board = usb("/dev/ttyACM0", ST, 0x374e);
-        assert_eq!(
-            choose(&[other.clone(), board.clone()]).unwrap(),
-            "/dev/ttyACM0"
-        );
-        let none = choose(&[other]).unwrap_err();
-        assert_eq!(
-            none.to_string(),
-            "no ST-LINK with a serial port is plugged in; other serial ports: /dev/ttyUSB0"
-        );
-        let second = usb("/dev/ttyACM1", ST, 0x374b);
-        let several = choose(&[board, second]).unwrap_err();
-        assert!(matches!(several, SerialError::SeveralBoards(names) if names.len() == 2));
-    }
-
-    #[test]
-    fn what_is_no_port_is_refused_by_name() {
-        let folder = tempfile::tempdir().unwrap();
-        let missing = folder.path().join("ttyACM7");
-        let error = Serial::open(&missing.display().to_string()).unwrap_err();
-        assert!(matches!(error, SerialError::NoPort(_)), "{error}");
-        let file = folder.path().join("file");
-        std::fs::write(&file, "").unwrap();
-        let error = Serial::open(&file.display().to_string()).unwrap_err();
-        assert!(matches!(error, SerialError::System { .. }), "{error}");
     }
 }

@@ -4,7 +4,7 @@ use super::{emulated, host, state};
 use crate::emulated_leg::Beginning;
 use crate::operator::{Host, Interrupt, Operator, OperatorError};
 use crate::transport::Transport;
-use crate::transport::emulated::Emulated;
+use crate::transport::emulated::EmulatedEnd;
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::State;
 use std::io;
@@ -22,9 +22,9 @@ enum Loss {
     Stopped,
 }
 
-/// A line that loses the third frame of the host.
+/// A line that loses the fourth frame of the host.
 struct Spoilt {
-    inner: Emulated,
+    inner: EmulatedEnd,
     other: Operator,
     sent: u32,
     loss: Loss,
@@ -39,7 +39,7 @@ impl Transport for Spoilt {
 
     fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.sent += 1;
-        if self.sent != 3 {
+        if self.sent != 4 {
             return self.inner.send(bytes);
         }
         match self.loss {
@@ -68,7 +68,8 @@ impl Transport for Spoilt {
     }
 }
 
-/// What comes of a move whose frame is lost: it is the third, after the introduction and the arming.
+/// What comes of a move whose frame is lost: it is the fourth, after the introduction, the settings and
+/// the arming.
 fn lost_move(loss: Loss) -> (Result<(), OperatorError>, bool) {
     let leg = emulated(Beginning::Hanging);
     let line = Spoilt {

@@ -4,14 +4,14 @@ use super::{begin_move, emulated, host, state};
 use crate::emulated_leg::Beginning;
 use crate::operator::{Host, Interrupt, Operator, OperatorError};
 use crate::transport::Transport;
-use crate::transport::emulated::Emulated;
+use crate::transport::emulated::EmulatedEnd;
 use leg_firmware::supervisor::State;
 use std::io;
 use std::time::Duration;
 
 /// From the second frame of the host on, its ordinary ones do not arrive.
 struct Clogged {
-    inner: Emulated,
+    inner: EmulatedEnd,
     sent: u32,
 }
 

@@ -1,6 +1,6 @@
 //! What a CAN interface of the machine has to be, and what is told if it is not.
 
-use leg_firmware::can::{DATA_BIT_RATE, NOMINAL_BIT_RATE};
+use leg_firmware::can::{DATA_BIT_RATE, LegAddress, NOMINAL_BIT_RATE};
 use std::fs;
 use std::io;
 use std::path::Path;
@@ -71,6 +71,16 @@ pub enum InterfaceError {
         /// Its name.
         name: String,
     },
+    /// Another program of this kind counts under the leg's identifier.
+    #[error(
+        "another `leg` uses the CAN identifier of {leg} on `{name}`; wait for it or end it: only `leg stop` goes beside it"
+    )]
+    Taken {
+        /// Its name.
+        name: String,
+        /// The leg.
+        leg: LegAddress,
+    },
     /// What is sent is not taken.
     #[error(
         "nobody on `{name}` takes what is sent; is the leg powered, is the cable terminated at both ends, and have all \
@@ -93,6 +103,7 @@ impl InterfaceError {
             Self::Classic { .. } => io::ErrorKind::Unsupported,
             Self::BusOff { .. } => io::ErrorKind::ConnectionAborted,
             Self::NotTaken { .. } => io::ErrorKind::TimedOut,
+            Self::Taken { .. } => io::ErrorKind::ResourceBusy,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! A CAN interface of Linux.
 
 use super::interface::{INTERFACES, check};
+use super::sole::Sole;
 use super::{CanPort, InterfaceError};
 use leg_firmware::can::{CanFrame, Identifier, LegAddress};
 use rustix::io::Errno;
@@ -30,16 +31,32 @@ pub struct SocketCan {
     name: String,
     ordinary: CanFdSocket,
     urgent: CanFdSocket,
+    /// None where only urgent frames are sent.
+    _sole: Option<Sole>,
 }
 
 impl SocketCan {
-    /// Opens an interface by its name, as `can0`, to receive what a leg sends.
+    /// Opens an interface by its name, as `can0`, to talk to a leg. One program at a time may.
     ///
     /// # Errors
-    /// An [`InterfaceError`] inside: no CAN in the kernel, no such interface, not up, without CAN FD. What else the
-    /// system says.
+    /// An [`InterfaceError`] inside: no CAN in the kernel, no such interface, not up, without CAN FD, taken by another
+    /// program. What else the system says.
     pub fn open(name: &str, leg: LegAddress) -> io::Result<Self> {
         check(Path::new(INTERFACES), name)?;
+        let sole = Sole::take(name, leg)?;
+        Self::begin(name, leg, Some(sole))
+    }
+
+    /// The same beside whatever other program talks to that leg, for one that sends urgent frames only.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub fn open_beside(name: &str, leg: LegAddress) -> io::Result<Self> {
+        check(Path::new(INTERFACES), name)?;
+        Self::begin(name, leg, None)
+    }
+
+    fn begin(name: &str, leg: LegAddress, sole: Option<Sole>) -> io::Result<Self> {
         let open = || CanFdSocket::open(name).map_err(|error| explain(error, name));
         let (ordinary, urgent) = (open()?, open()?);
         let from_leg = CanFilter::new(u32::from(Identifier::ToHost(leg).bits()), EXACTLY);
@@ -54,6 +71,7 @@ impl SocketCan {
             name: name.to_owned(),
             ordinary,
             urgent,
+            _sole: sole,
         })
     }
 }
@@ -230,12 +248,10 @@ mod tests {
 
     #[test]
     fn an_interface_that_is_not_there_or_of_another_kind_is_refused() {
-        let refused = |name| {
-            SocketCan::open(name, LEG)
-                .map(drop)
-                .map_err(|error| error.kind())
-        };
-        assert_eq!(refused("no-such-can"), Err(io::ErrorKind::NotFound));
-        assert_eq!(refused("lo"), Err(io::ErrorKind::InvalidInput));
+        for open in [SocketCan::open, SocketCan::open_beside] {
+            let refused = |name| open(name, LEG).map(drop).map_err(|error| error.kind());
+            assert_eq!(refused("no-such-can"), Err(io::ErrorKind::NotFound));
+            assert_eq!(refused("lo"), Err(io::ErrorKind::InvalidInput));
+        }
     }
 }

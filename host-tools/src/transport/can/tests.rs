@@ -1,7 +1,7 @@
 use super::{CanPort, CanTransport};
 use crate::transport::Transport;
 use crate::transport::bus::{Bus, BusPort, Damage};
-use leg_firmware::can::{Assembler, CanFault, CanFrame, Identifier, LegAddress, Segmenter};
+use leg_firmware::can::{Assembler, CanFrame, Identifier, LegAddress, Segmenter};
 use leg_firmware::frame::MAX_FRAME;
 use std::cell::RefCell;
 use std::io::{self, ErrorKind};
@@ -52,7 +52,7 @@ fn frames_go_to_the_leg_and_come_back_in_pieces_of_any_size() -> io::Result<()> 
         received.extend(receive(&mut transport, 9)?);
     }
     assert_eq!(received, sent);
-    assert_eq!(transport.take_faults(), []);
+    assert_eq!(transport.damaged(), 0);
     Ok(())
 }
 
@@ -102,6 +102,23 @@ fn urgent_frames_reach_one_leg_or_all() -> io::Result<()> {
 }
 
 #[test]
+fn one_who_only_stops_sends_nothing_under_the_ordinary_identifier() -> io::Result<()> {
+    let bus = Rc::new(RefCell::new(Bus::new(Damage::default(), 1)));
+    let mut listening = BusPort::attach(&bus);
+    let mut stopping = CanTransport::urgent_only(BusPort::attach(&bus), LEG);
+    stopping.send(&[1, 0, 2, 0])?;
+    stopping.send_urgent(&[3, 0])?;
+    for _ in 0..3 {
+        let frame = listening.receive(TIMEOUT)?;
+        assert_eq!(frame.identifier(), Identifier::Urgent(LEG));
+    }
+    let long = [[1; 62].as_slice(), &[0]].concat();
+    let refused = stopping.send(&long).map_err(|error| error.kind());
+    assert_eq!(refused, Err(ErrorKind::InvalidInput));
+    Ok(())
+}
+
+#[test]
 fn what_was_lost_is_told() -> io::Result<()> {
     let bus = Rc::new(RefCell::new(Bus::new(Damage::default(), 1)));
     let mut leg = BusPort::attach(&bus);
@@ -116,7 +133,6 @@ fn what_was_lost_is_told() -> io::Result<()> {
         }
     }
     assert_eq!(receive(&mut host, 9)?, [3, 0]);
-    assert_eq!(host.take_faults(), [CanFault::Lost]);
-    assert_eq!(host.take_faults(), []);
+    assert_eq!(host.damaged(), 1);
     Ok(())
 }
