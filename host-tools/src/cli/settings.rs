@@ -10,6 +10,7 @@ use crate::operator::{Difference, Operator, differences};
 use crate::rig_file::RigFile;
 use crate::settings_text;
 use clap::Subcommand;
+use leg_firmware::host_link::Reset;
 use leg_firmware::settings::Settings;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -80,8 +81,8 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
             set(&mut open(line)?, &settings, *save)
         }
         Action::Save { line } => {
-            open(line)?.save_settings()?;
-            print("kept over a reset\n")
+            let mut operator = open(line)?;
+            keep(&mut operator)
         }
         Action::Diff { rig, json, line } => {
             let settings = of_rig(rig)?;
@@ -118,10 +119,17 @@ fn set(operator: &mut Operator, settings: &Settings, save: bool) -> Result<(), F
     operator.set_settings(settings)?;
     print("set, read back and found the same\n")?;
     if save {
-        operator.save_settings()?;
-        print("kept over a reset\n")?;
+        keep(operator)?;
     }
     print(&format!("{}\n", before_armed(operator)?))
+}
+
+fn keep(operator: &mut Operator) -> Result<(), Failure> {
+    operator.save_settings()?;
+    print(match operator.identity().reset {
+        Reset::Emulated => "taken; an emulated board is never reset, and keeps nothing when it ends\n",
+        _ => "kept over a reset\n",
+    })
 }
 
 /// What has to be done before a leg with new settings is armed.
