@@ -13,7 +13,7 @@ const LEG: &str = env!("CARGO_BIN_EXE_leg-under-test");
 const PATIENT: &str = "\n[control.limits]\ncommand_time_s = 2\n";
 
 /// A leg that takes five seconds for what others do in one.
-const SLOW: &str = "\n[control.motion]\nspeed_rad_per_s = 0.1\n";
+pub const SLOW: &str = "\n[control.motion]\nspeed_rad_per_s = 0.1\n";
 
 /// `leg emulate` in the background.
 pub struct Board {

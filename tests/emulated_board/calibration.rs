@@ -1,6 +1,6 @@
 //! Calibrations, with what a user does by hand.
 
-use crate::board::{Board, errors};
+use super::board::{Board, errors};
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Output, Stdio};

@@ -127,7 +127,9 @@ fn set(operator: &mut Operator, settings: &Settings, save: bool) -> Result<(), F
 fn keep(operator: &mut Operator) -> Result<(), Failure> {
     operator.save_settings()?;
     print(match operator.identity().reset {
-        Reset::Emulated => "taken; an emulated board is never reset, and keeps nothing when it ends\n",
+        Reset::Emulated => {
+            "taken; an emulated board is never reset, and keeps nothing when it ends\n"
+        }
         _ => "kept over a reset\n",
     })
 }
