@@ -10,6 +10,8 @@ use leg_model::{
 };
 use nalgebra::Vector3;
 use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop, prop_oneof, proptest};
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
 
 /// Any bits, the values at which something changes, and what a user may mean.
 fn numbers() -> impl Strategy<Value = f32> {
@@ -231,4 +233,18 @@ proptest! {
             assert!(finite(&levels), "{found:?}");
         }
     }
+}
+
+/// What is checked above is not all refused.
+#[test]
+fn some_of_these_inputs_have_a_result() {
+    let mut runner = TestRunner::deterministic();
+    let inputs = (rigs(), queries());
+    let mut results = 0;
+    for _ in 0..4_096 {
+        let (rig, query) = inputs.new_tree(&mut runner).unwrap().current();
+        let result = query.query().and_then(|query| evaluate(&rig, &query));
+        results += u32::from(result.is_ok());
+    }
+    assert!(results > 100, "{results} of 4096");
 }
