@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 const LEG: &str = env!("CARGO_BIN_EXE_leg-under-test");
 
 /// A board that waits longer for its host: the machine may have much else to do.
-const PATIENT: &str = "\n[control.limits]\ncommand_time_s = 2\n";
+pub const PATIENT: &str = "\n[control.limits]\ncommand_time_s = 2\n";
 
 /// A leg that takes five seconds for what others do in one.
 pub const SLOW: &str = "\n[control.motion]\nspeed_rad_per_s = 0.1\n";

@@ -53,7 +53,7 @@ fn a_load_cell_is_calibrated_with_weights_and_the_board_is_set_to_it() {
     let arguments = [
         "calibrate",
         "cells",
-        "--axis",
+        "--cell",
         "2",
         "--weights",
         "0,20",

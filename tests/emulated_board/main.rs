@@ -4,6 +4,7 @@
 
 mod board;
 mod calibration;
+mod first_power_up;
 mod logs;
 mod ports;
 mod qemu;

@@ -29,7 +29,7 @@ const READING_TIME: Duration = Duration::from_millis(2);
 pub(super) struct Args {
     /// The load cell, 1 to 3.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=3))]
-    axis: u8,
+    cell: u8,
     /// The weights, kg, in the order in which they are hung; two at least, 0 is the empty hook.
     #[arg(long, value_name = "KG,...", value_delimiter = ',', required = true, value_parser = not_negative)]
     weights: Vec<f64>,
@@ -46,7 +46,7 @@ pub(super) struct Args {
 /// What was found, for machines.
 #[derive(Serialize)]
 struct CellReport {
-    axis: u8,
+    cell: u8,
     #[serde(flatten)]
     fit: CellFit,
     cell_n_per_code: [f32; 3],
@@ -63,7 +63,7 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
     let operator = &mut line.operator;
     drivers_off(operator, "let weights be hung on its cells")?;
     let mut settings = operator.settings()?;
-    let cell = usize::from(args.axis) - 1;
+    let cell = usize::from(args.cell) - 1;
     let hand = Hand::of(line.emulated.as_ref());
     let gravity = f64::from(settings.rig.gravity_m_per_s2);
     let mut weighings = Vec::new();
@@ -80,7 +80,7 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
     axis.cell_n_per_code = found.n_per_code as f32;
     axis.cell_zero_code = found.zero_code as f32;
     report(args, &weighings, &found, &settings)?;
-    straight(args.axis, &weighings, &found)?;
+    straight(args.cell, &weighings, &found)?;
     if args.set {
         set(operator, &settings, args.save)?;
     }
@@ -88,7 +88,7 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
 }
 
 /// Refuses weights that no straight line explains: one was not what was said, or hung somewhere else.
-fn straight(axis: u8, weighings: &[Weighing], found: &CellFit) -> Result<(), Failure> {
+fn straight(cell: u8, weighings: &[Weighing], found: &CellFit) -> Result<(), Failure> {
     let newtons = weighings.iter().map(|weighing| weighing.newtons);
     let heaviest_n = newtons.fold(0.0, f64::max);
     if found.residual_n <= RESIDUAL_PART * heaviest_n {
@@ -96,7 +96,7 @@ fn straight(axis: u8, weighings: &[Weighing], found: &CellFit) -> Result<(), Fai
     }
     Err(Failure::missed(
         format!(
-            "load cell {axis} is off a straight line by {:.3} N, more than {} % of the heaviest weight",
+            "load cell {cell} is off a straight line by {:.3} N, more than {} % of the heaviest weight",
             found.residual_n,
             RESIDUAL_PART * 100.0
         ),
@@ -124,7 +124,7 @@ fn report(
     let cell_zero_code = axes.each_ref().map(|axis| axis.cell_zero_code);
     if args.leg.json {
         return print(&to_line(&CellReport {
-            axis: args.axis,
+            cell: args.cell,
             fit: *found,
             cell_n_per_code,
             cell_zero_code,
@@ -148,7 +148,7 @@ fn report(
         "      kg         N      code    told N    off N\n{rows}\n\
          Load cell {}: {:.6} N by code, {:.1} without tension, off by at most {:.3} N\n\n\
          [calibration]\ncell_n_per_code = [{}]\ncell_zero_code = [{}]\n",
-        args.axis,
+        args.cell,
         found.n_per_code,
         found.zero_code,
         found.residual_n,

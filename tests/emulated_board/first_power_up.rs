@@ -1,0 +1,122 @@
+//! The steps of BOARD.md that need no board, typed as they stand there.
+
+use super::board::{Board, PATIENT};
+use leg_host_tools::image::workspace_root;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// A step of the page.
+struct Step<'a>(&'a str);
+
+impl Step<'_> {
+    fn of(page: &str, number: u32) -> Step<'_> {
+        let (_, from) = page.split_once(&format!("\n**{number}. ")).unwrap();
+        let step = from.split("\n**").next().unwrap();
+        Step(step.split("\n## ").next().unwrap())
+    }
+
+    /// The lines to be typed.
+    fn commands(&self) -> Vec<&str> {
+        let blocks = self.0.split("```sh\n").skip(1);
+        let lines = blocks.flat_map(|block| block.split("```").next().unwrap().lines());
+        lines.collect()
+    }
+
+    /// What is quoted of what is seen, but for commands and what only a board with flash says.
+    fn seen(&self) -> Vec<String> {
+        let (_, from) = self.0.split_once("\nYou see").unwrap();
+        let sentences = from.split("\nIf not:").next().unwrap();
+        let sentences = sentences.split("```").next().unwrap();
+        let quoted = sentences.split('`').skip(1).step_by(2).map(one_line);
+        let told = |words: &String| words != "kept over a reset" && !words.starts_with("leg ");
+        quoted.filter(told).collect()
+    }
+}
+
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Types a line and does by hand what is asked for; what is told then.
+fn typed(board: &mut Board, folder: &Path, line: &str, hand: &[&str]) -> String {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let (program, arguments) = words.split_first().unwrap();
+    if *program == "cp" {
+        // The file of a patient leg: the machine may have much else to do.
+        let text = std::fs::read_to_string(workspace_root().join(arguments[0])).unwrap();
+        std::fs::write(folder.join(arguments[1]), text + PATIENT).unwrap();
+        return String::new();
+    }
+    assert_eq!(*program, "leg");
+    let mut command = match arguments[0] {
+        "rig" => {
+            let mut command = Command::new(env!("CARGO_BIN_EXE_leg-under-test"));
+            command.args(arguments);
+            command
+        }
+        _ => board.command(arguments),
+    };
+    command
+        .current_dir(folder)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    let mut leg = command.spawn().unwrap();
+    let mut enter = leg.stdin.take().unwrap();
+    let mut errors = BufReader::new(leg.stderr.take().unwrap());
+    for touch in hand {
+        let mut question = String::new();
+        errors.read_line(&mut question).unwrap();
+        assert!(question.ends_with("then press Enter\n"), "{question}");
+        board.touch(touch);
+        board.wait(1.2);
+        writeln!(enter).unwrap();
+    }
+    let mut told = String::new();
+    errors.read_to_string(&mut told).unwrap();
+    let output = leg.wait_with_output().unwrap();
+    told += &String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success(), "{line}: {told}");
+    told
+}
+
+const TURNS: &[&str] = &[
+    r#"{"turn":{"motor":1,"turns":1}}"#,
+    r#"{"turn":{"motor":2,"turns":1}}"#,
+    r#"{"turn":{"motor":3,"turns":1}}"#,
+];
+
+const WEIGHTS: &[&str] = &[
+    r#"{"hang":{"cell":1,"newtons":0}}"#,
+    r#"{"hang":{"cell":1,"newtons":9.81}}"#,
+    r#"{"hang":{"cell":1,"newtons":19.62}}"#,
+    r#"{"hang":{"cell":1,"newtons":49.05}}"#,
+];
+
+#[test]
+fn from_the_rig_file_to_the_first_moves_each_step_shows_what_the_page_says() {
+    let page = std::fs::read_to_string(workspace_root().join("firmware/BOARD.md")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let mut board = Board::new(&["--slack"]);
+    for number in [4, 8, 9, 12, 13, 14, 15] {
+        let step = Step::of(&page, number);
+        let hand = match number {
+            8 => TURNS,
+            9 => WEIGHTS,
+            _ => &[],
+        };
+        let told: String = step
+            .commands()
+            .into_iter()
+            .map(|line| typed(&mut board, folder.path(), line, hand))
+            .collect();
+        let told = one_line(&told);
+        for words in step.seen() {
+            assert!(told.contains(&words), "step {number}: {words}\n{told}");
+        }
+        if number == 9 {
+            board.touch(r#"{"hang":{"cell":1}}"#);
+        }
+    }
+}
