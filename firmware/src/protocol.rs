@@ -72,7 +72,7 @@ pub struct Hello {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct BoardInfo {
     /// Which board layer answers.
-    pub board: Board,
+    pub board: BoardKind,
     /// What the board measured of itself at boot; `None` in the host's own process.
     pub boot: Option<BootCheck>,
 }
@@ -86,9 +86,9 @@ pub struct BootCheck {
     pub nops_counted: u32,
 }
 
-/// The board layers that exist.
+/// The boards that there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
-pub enum Board {
+pub enum BoardKind {
     /// QEMU's mps2-an386.
     Qemu,
     /// NUCLEO-G474RE.

@@ -124,7 +124,7 @@ impl<B: Board> Server<B> {
 
 /// What an emulated board is to the user's host.
 #[must_use]
-pub fn emulated(board: protocol::Board) -> Identity {
+pub fn emulated(board: protocol::BoardKind) -> Identity {
     Identity {
         board,
         version: VERSION,

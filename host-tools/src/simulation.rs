@@ -17,7 +17,7 @@ use crate::rig_file::RigFile;
 use crate::scenario::Scenario;
 use leg_firmware::drive::Drive;
 use leg_firmware::linked_leg::LinkedLeg;
-use leg_firmware::protocol::{Board, TickReply};
+use leg_firmware::protocol::{BoardKind, TickReply};
 use leg_firmware::sensors::{Sensors, TICK_HZ};
 use leg_firmware::server::emulated;
 use leg_firmware::settings::Settings;
@@ -82,7 +82,7 @@ impl Simulation {
         controller: &mut dyn Controller,
         watch: &mut dyn FnMut(&Tick<'_>),
     ) -> Result<Summary, SimulationError> {
-        let mut shadow = LinkedLeg::<f64>::new(emulated(Board::InProcess), &self.settings)
+        let mut shadow = LinkedLeg::<f64>::new(emulated(BoardKind::InProcess), &self.settings)
             .map_err(SimulationError::Settings)?;
         controller.start(&self.settings)?;
         let mut stage = Stage::new(&self.rig, self.plant, &self.scenario);

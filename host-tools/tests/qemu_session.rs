@@ -3,7 +3,7 @@
 use leg_firmware::kernels::{self, Kernel, KernelInput};
 use leg_firmware::messages::{QueryMessage, SupportMessage, TendonMessage, TendonsMessage};
 use leg_firmware::protocol::{
-    Board, EvaluateRequest, Hello, KernelRequest, Refusal, Reply, Request, SCHEMA,
+    BoardKind, EvaluateRequest, Hello, KernelRequest, Refusal, Reply, Request, SCHEMA,
 };
 use leg_host_tools::link::{InProcess, Link, LinkError};
 use leg_host_tools::qemu::{Clock, Config, Session};
@@ -85,7 +85,7 @@ fn folder(session: &Session) -> Result<PathBuf, Box<dyn Error>> {
 fn the_firmware_boots_and_ends_with_its_link() -> Outcome {
     let session = Session::open(&config(Clock::Normal)?)?;
     let info = *session.info();
-    assert_eq!(info.board, Board::Qemu);
+    assert_eq!(info.board, BoardKind::Qemu);
     let boot = info.boot.ok_or("a board checks itself")?;
     assert!((1_000..1_100).contains(&boot.alarm_us), "{boot:?}");
     let log = session.log();

@@ -30,7 +30,7 @@ impl Counter for NoBoard {
 impl server::Board for NoBoard {
     fn info(&self) -> BoardInfo {
         BoardInfo {
-            board: protocol::Board::Qemu,
+            board: protocol::BoardKind::Qemu,
             boot: None,
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::command::{Command, CommandRefusal};
 use crate::frame::FrameError;
-use crate::protocol::{Board, Hello};
+use crate::protocol::{BoardKind, Hello};
 use crate::sensors::Sensors;
 use crate::settings::{Settings, SettingsError};
 use crate::telemetry::Telemetry;
@@ -83,7 +83,7 @@ pub struct Told {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Identity {
     /// Which board layer runs.
-    pub board: Board,
+    pub board: BoardKind,
     /// Version of the firmware: major, minor, patch.
     pub version: [u8; 3],
     /// Why the board started.

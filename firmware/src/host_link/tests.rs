@@ -12,7 +12,7 @@ mod telemetry;
 use super::{HostId, HostLink, HostRefusal, HostReply, HostRequest, Identity, Reset};
 use crate::command::{Command, CommandRefusal};
 use crate::frame::{Decoder, MAX_FRAME, encode};
-use crate::protocol::{Board, Hello, SCHEMA};
+use crate::protocol::{BoardKind, Hello, SCHEMA};
 use crate::settings::Settings;
 use mock::NotedLeg;
 
@@ -107,7 +107,7 @@ fn framed(number: u16, request: &HostRequest) -> Vec<u8> {
 
 fn identity() -> Identity {
     Identity {
-        board: Board::InProcess,
+        board: BoardKind::InProcess,
         version: [1, 2, 3],
         reset: Reset::Emulated,
         last_words: "once".parse().unwrap(),

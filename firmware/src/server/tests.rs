@@ -15,7 +15,7 @@ struct Bench {
 }
 
 const INFO: BoardInfo = BoardInfo {
-    board: protocol::Board::InProcess,
+    board: protocol::BoardKind::InProcess,
     boot: None,
 };
 

@@ -32,12 +32,12 @@ pub(super) fn notices(identity: &Identity) -> Vec<String> {
 mod tests {
     use super::notices;
     use leg_firmware::host_link::{Identity, Reset};
-    use leg_firmware::protocol::Board;
+    use leg_firmware::protocol::BoardKind;
     use leg_firmware::version::VERSION;
 
     fn of(version: [u8; 3], reset: Reset, words: &str) -> Vec<String> {
         notices(&Identity {
-            board: Board::InProcess,
+            board: BoardKind::InProcess,
             version,
             reset,
             last_words: words.try_into().unwrap(),

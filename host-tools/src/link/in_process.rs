@@ -3,7 +3,7 @@
 use super::{Link, LinkError, Sequence, greet};
 use leg_firmware::counter::Counter;
 use leg_firmware::frame::{self, Decoder, MAX_FRAME};
-use leg_firmware::protocol::{Board, BoardInfo, Reply, Request};
+use leg_firmware::protocol::{BoardInfo, BoardKind, Reply, Request};
 use leg_firmware::server::{self, Server};
 use leg_firmware::settings::Settings;
 
@@ -64,7 +64,7 @@ impl Counter for ThisProcess {
 impl server::Board for ThisProcess {
     fn info(&self) -> BoardInfo {
         BoardInfo {
-            board: Board::InProcess,
+            board: BoardKind::InProcess,
             boot: None,
         }
     }

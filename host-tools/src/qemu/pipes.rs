@@ -1,7 +1,7 @@
 //! The two named pipes between host and firmware, never waited for without end.
 
 use crate::link::LinkError;
-use leg_firmware::link::{TO_FIRMWARE, TO_HOST};
+use leg_firmware::pipes::{TO_FIRMWARE, TO_HOST};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{CWD, Mode, OFlags, mkfifoat, open};
 use rustix::io::{Errno, read, write};

@@ -3,7 +3,7 @@
 use super::mcap_file::{SCHEMA_KEY, SETTINGS, TICKS, schema};
 use super::tick_record::{TickRecord, bits};
 use leg_firmware::boarded_leg::BoardedLeg;
-use leg_firmware::protocol::{Board, TickRequest};
+use leg_firmware::protocol::{BoardKind, TickRequest};
 use leg_firmware::server::emulated;
 use leg_firmware::settings::{Settings, SettingsError};
 use mcap::{Message, MessageStream};
@@ -80,7 +80,7 @@ pub fn replay(file: &Path) -> Result<Replay, ReplayError> {
         match (message.channel.topic.as_str(), &mut leg) {
             (SETTINGS, leg) => {
                 let settings: Settings = read(&message)?;
-                let identity = emulated(Board::InProcess);
+                let identity = emulated(BoardKind::InProcess);
                 *leg = Some(BoardedLeg::new(identity, &settings).map_err(ReplayError::Settings)?);
             }
             (TICKS, Some(leg)) => result.take(leg, read(&message)?),

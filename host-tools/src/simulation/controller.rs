@@ -2,7 +2,7 @@
 
 use crate::link::{Link, LinkError};
 use leg_firmware::boarded_leg::BoardedLeg;
-use leg_firmware::protocol::{Board, Refusal, Reply, Request, TickReply, TickRequest};
+use leg_firmware::protocol::{BoardKind, Refusal, Reply, Request, TickReply, TickRequest};
 use leg_firmware::sensors::Sensors;
 use leg_firmware::server;
 use leg_firmware::settings::{Settings, SettingsError};
@@ -52,7 +52,7 @@ pub struct InThisProcess {
 
 impl Controller for InThisProcess {
     fn start(&mut self, settings: &Settings) -> Result<(), ControllerError> {
-        let identity = server::emulated(Board::InProcess);
+        let identity = server::emulated(BoardKind::InProcess);
         let leg = BoardedLeg::new(identity, settings).map_err(ControllerError::Settings)?;
         self.leg = Some(leg);
         Ok(())

@@ -18,7 +18,7 @@ impl Counter for NoBoard {
 impl Board for NoBoard {
     fn info(&self) -> BoardInfo {
         BoardInfo {
-            board: protocol::Board::InProcess,
+            board: protocol::BoardKind::InProcess,
             boot: None,
         }
     }

@@ -52,7 +52,7 @@ impl Counter for QemuBoard {
 impl server::Board for QemuBoard {
     fn info(&self) -> BoardInfo {
         BoardInfo {
-            board: protocol::Board::Qemu,
+            board: protocol::BoardKind::Qemu,
             boot: Some(self.check),
         }
     }

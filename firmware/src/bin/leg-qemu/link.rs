@@ -6,7 +6,7 @@ use crate::boot::QemuBoard;
 use embassy_futures::yield_now;
 use leg_firmware::exit::Exit;
 use leg_firmware::frame::{Decoder, MAX_FRAME};
-use leg_firmware::link::{TO_FIRMWARE, TO_HOST};
+use leg_firmware::pipes::{TO_FIRMWARE, TO_HOST};
 use leg_firmware::server::Server;
 use semihosting::fs::File;
 use semihosting::io::{Read, Write};

@@ -17,7 +17,7 @@ use embassy_stm32::gpio::{Level, Output, Speed};
 use leg_firmware::board::{Kept, LinkChoice, Words};
 use leg_firmware::host_link::{HostLink, Identity, Reset};
 use leg_firmware::linked_leg::SensingLeg;
-use leg_firmware::protocol::Board;
+use leg_firmware::protocol::BoardKind;
 use leg_firmware::settings::{Settings, SettingsError};
 use leg_firmware::version::VERSION;
 use static_cell::StaticCell;
@@ -103,7 +103,7 @@ fn spawn<S>(spawner: &Spawner, task: Result<SpawnToken<S>, SpawnError>) {
 
 fn identity((reset, kept): (Reset, Option<Kept>)) -> Identity {
     Identity {
-        board: Board::Stm32g474,
+        board: BoardKind::Stm32g474,
         version: VERSION,
         reset,
         last_words: kept.map(|kept| kept.words).unwrap_or_default(),

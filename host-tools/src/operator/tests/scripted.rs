@@ -6,7 +6,7 @@ use crate::operator::{Host, Interrupt, Operator};
 use crate::transport::Transport;
 use leg_firmware::frame::{self, MAX_FRAME};
 use leg_firmware::host_link::{HostReply, HostRequest, Identity, Reset, Told};
-use leg_firmware::protocol::Board;
+use leg_firmware::protocol::BoardKind;
 use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
 use leg_firmware::version::VERSION;
@@ -76,7 +76,7 @@ pub fn scripted(mut answer: impl FnMut(&HostRequest) -> Option<HostReply> + 'sta
 
 pub fn identity() -> Identity {
     Identity {
-        board: Board::InProcess,
+        board: BoardKind::InProcess,
         version: VERSION,
         reset: Reset::Emulated,
         last_words: heapless::String::new(),
