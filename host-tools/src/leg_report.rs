@@ -1,7 +1,7 @@
 //! The leg in a user's units.
 
+use crate::tick_time::tick_s;
 use crate::words;
-use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_firmware::telemetry::Telemetry;
 use serde::Serialize;
@@ -83,7 +83,7 @@ impl LegReport {
             stiffness_nm_per_rad: telemetry.stiffness_nm_per_rad,
             load_nm: telemetry.load_nm,
             payload_kg: telemetry.payload_kg,
-            time_s: f64::from(telemetry.tick) / f64::from(TICK_HZ),
+            time_s: f64::from(telemetry.tick) * tick_s(),
         }
     }
 }

@@ -36,12 +36,13 @@ pub use truth::{Energy, Truth};
 pub use work::Work;
 
 use crate::actuator::Actuator;
+use crate::tick_time::tick_s;
 use body::Body;
 use encoder::Encoder;
 use faults::Faults;
 use hand::Hand;
 use leg::Leg;
-use leg_firmware::sensors::{Sensors, TICK_HZ};
+use leg_firmware::sensors::Sensors;
 use mechanism::Mechanism;
 use motor::{Motor, MotorType};
 use outside::{Payload, Push};
@@ -78,11 +79,6 @@ pub struct Plant {
 
 /// What a faulty current sensor shows too much, A.
 const CURRENT_OFFSET_A: f64 = 10.0;
-
-/// Length of a tick, s.
-fn tick_s() -> f64 {
-    1.0 / f64::from(TICK_HZ)
-}
 
 impl Plant {
     /// Reads every sensor.

@@ -7,6 +7,7 @@ use crate::calibration::{
 use crate::failure::Failure;
 use crate::fields::{Field, decimal, plain};
 use crate::gains::Gains;
+use crate::json_line::to_line;
 use crate::plant::{PlantSettings, TRANSVERSE_INERTIA};
 use crate::rig_file::RigFile;
 use leg_firmware::settings::SECTIONS;
@@ -203,8 +204,5 @@ fn written(values: &[f64]) -> String {
 /// # Errors
 /// A [`Failure`] if the numbers have no form in JSON.
 pub fn json(settings: &[Setting]) -> Result<String, Failure> {
-    match serde_json::to_string(settings) {
-        Ok(json) => Ok(json + "\n"),
-        Err(error) => Err(Failure::from_error(&error)),
-    }
+    to_line(settings)
 }

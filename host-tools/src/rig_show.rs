@@ -1,6 +1,7 @@
 //! What the model makes of a rig file.
 
 use crate::failure::Failure;
+use crate::json_line::to_line;
 use crate::rig_file::{Buckling, RigFile};
 use crate::rig_settings;
 use serde::Serialize;
@@ -105,8 +106,5 @@ fn buckling_words(buckling: Buckling) -> String {
 /// # Errors
 /// A [`Failure`] if the numbers have no form in JSON.
 pub fn json(file: &RigFile) -> Result<String, Failure> {
-    match serde_json::to_string(&Shown::of(file)) {
-        Ok(json) => Ok(json + "\n"),
-        Err(error) => Err(Failure::from_error(&error)),
-    }
+    to_line(&Shown::of(file))
 }

@@ -18,7 +18,7 @@ use crate::scenario::Scenario;
 use leg_firmware::drive::Drive;
 use leg_firmware::linked_leg::LinkedLeg;
 use leg_firmware::protocol::{BoardKind, TickReply};
-use leg_firmware::sensors::{Sensors, TICK_HZ};
+use leg_firmware::sensors::Sensors;
 use leg_firmware::server::emulated;
 use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
@@ -138,10 +138,4 @@ fn tick(
         telemetry: &telemetry,
     });
     stage.step(&motors, &telemetry)
-}
-
-/// Time of a tick, s.
-#[must_use]
-pub fn tick_s() -> f64 {
-    1.0 / f64::from(TICK_HZ)
 }

@@ -57,3 +57,9 @@ fn joined(faults: FaultSet, words: fn(leg_firmware::supervisor::Fault) -> String
     let words: Vec<_> = faults.faults().map(words).collect();
     words.join("; ")
 }
+
+/// A schema's hash in hexadecimal digits.
+#[must_use]
+pub fn hex(schema: &[u8; 8]) -> String {
+    schema.iter().map(|byte| format!("{byte:02x}")).collect()
+}

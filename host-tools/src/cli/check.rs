@@ -3,6 +3,7 @@
 use super::{board, print, progress};
 use crate::check::{self, Bits, Report, RowReport};
 use crate::failure::Failure;
+use crate::json_line::to_line;
 use crate::precision::TABLE;
 use leg_firmware::kernels::Kernel;
 use serde::Serialize;
@@ -102,10 +103,7 @@ struct JsonReport<'a> {
 
 fn json(report: &Report) -> Result<String, Failure> {
     let held = report.missed().is_empty();
-    match serde_json::to_string(&JsonReport { report, held }) {
-        Ok(json) => Ok(json + "\n"),
-        Err(error) => Err(Failure::from_error(&error)),
-    }
+    to_line(&JsonReport { report, held })
 }
 
 fn judge(report: &Report) -> Result<(), Failure> {

@@ -3,6 +3,7 @@
 use super::{board, cost_image, print};
 use crate::cost::{self, Cost};
 use crate::failure::Failure;
+use crate::json_line::to_line;
 use crate::qemu::Clock;
 use indicatif::ProgressBar;
 
@@ -38,7 +39,7 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
     progress.finish_and_clear();
     let costs = measured.map_err(|error| Failure::from_error(&error))?;
     print(&if args.json {
-        json(&costs)?
+        to_line(&costs)?
     } else {
         table(&costs)
     })?;
@@ -65,13 +66,6 @@ fn row(cost: &Cost) -> String {
         reference(cost.budget.reference_b),
         if cost.held { "" } else { "  missed" },
     )
-}
-
-fn json(costs: &[Cost]) -> Result<String, Failure> {
-    match serde_json::to_string(costs) {
-        Ok(json) => Ok(json + "\n"),
-        Err(error) => Err(Failure::from_error(&error)),
-    }
 }
 
 fn judge(costs: &[Cost]) -> Result<(), Failure> {

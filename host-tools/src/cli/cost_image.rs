@@ -4,6 +4,7 @@ use super::{board, print};
 use crate::failure::Failure;
 use crate::image::Board;
 use crate::image_budget::{self, Check, EXCEPTION_ENTRY, ImageNeeds, Root, RootKind};
+use crate::json_line::to_line;
 use serde::Serialize;
 use std::fs;
 
@@ -32,7 +33,7 @@ pub(super) fn run(json: bool) -> Result<(), Failure> {
     let judged: Result<Vec<Judged>, Failure> = Board::ALL.into_iter().map(judged).collect();
     let judged = judged?;
     print(&if json {
-        self::json(&judged)?
+        to_line(&judged)?
     } else {
         table(&judged)
     })?;
@@ -115,13 +116,6 @@ fn root_row(root: &Root) -> String {
         "{:16}  {kind:9}  {:8}  {calls:>16}  {panic}\n",
         root.name, root.stack_bytes
     )
-}
-
-fn json(judged: &[Judged]) -> Result<String, Failure> {
-    match serde_json::to_string(judged) {
-        Ok(json) => Ok(json + "\n"),
-        Err(error) => Err(Failure::from_error(&error)),
-    }
 }
 
 fn verdict(judged: &[Judged]) -> Result<(), Failure> {

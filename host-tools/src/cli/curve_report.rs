@@ -1,6 +1,7 @@
 //! What `leg curve` prints.
 
 use crate::failure::Failure;
+use crate::json_line::to_line;
 use crate::paths::from_here;
 use crate::tensile::{Fit, Hysteresis};
 use leg_model::CurvePoint;
@@ -96,10 +97,7 @@ impl Report<'_> {
             warning: self.warning(),
             out: self.out,
         };
-        match serde_json::to_string(&report) {
-            Ok(json) => Ok(json + "\n"),
-            Err(error) => Err(Failure::from_error(&error)),
-        }
+        to_line(&report)
     }
 }
 

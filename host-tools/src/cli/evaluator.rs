@@ -3,6 +3,7 @@
 use super::board;
 use crate::evaluate::{self, EvaluateError};
 use crate::failure::Failure;
+use crate::json_line::to_line;
 use crate::jsonl::Line;
 use crate::line_error::LineError;
 use crate::link::Link;
@@ -101,11 +102,4 @@ pub(super) fn refusal(error: &LineError, line: usize) -> Result<String, Failure>
         error: error.to_string(),
         line,
     })
-}
-
-fn to_line(answer: &impl Serialize) -> Result<String, Failure> {
-    match serde_json::to_string(answer) {
-        Ok(json) => Ok(json + "\n"),
-        Err(error) => Err(Failure::from_error(&error)),
-    }
 }

@@ -2,6 +2,7 @@
 
 use super::print;
 use crate::failure::Failure;
+use crate::json_line::to_line;
 use crate::words;
 use leg_firmware::supervisor::{FaultEntry, Reaction, TABLE};
 use serde::Serialize;
@@ -79,8 +80,5 @@ fn json() -> Result<String, Failure> {
             ends: ends(entry.fault.reaction()),
         })
         .collect();
-    match serde_json::to_string(&rows) {
-        Ok(json) => Ok(json + "\n"),
-        Err(error) => Err(Failure::from_error(&error)),
-    }
+    to_line(&rows)
 }

@@ -1,10 +1,10 @@
 //! `leg home`.
 
 use super::leg_args::LegArgs;
-use super::leg_told::to_line;
 use super::line::Fresh;
 use super::print;
 use crate::failure::Failure;
+use crate::json_line::to_line;
 use crate::leg_report::{self, LegReport};
 use leg_firmware::telemetry::Telemetry;
 use serde::Serialize;

@@ -2,9 +2,9 @@
 
 use super::print;
 use crate::failure::Failure;
+use crate::json_line::to_line;
 use crate::leg_report::{LegReport, rows};
 use leg_firmware::telemetry::Telemetry;
-use serde::Serialize;
 
 /// Prints what the leg is doing.
 pub(super) fn tell(telemetry: &Telemetry<f32>, json: bool) -> Result<(), Failure> {
@@ -13,12 +13,4 @@ pub(super) fn tell(telemetry: &Telemetry<f32>, json: bool) -> Result<(), Failure
     } else {
         rows(telemetry)
     })
-}
-
-/// One line of JSON.
-pub(super) fn to_line<T: Serialize>(value: &T) -> Result<String, Failure> {
-    match serde_json::to_string(value) {
-        Ok(json) => Ok(json + "\n"),
-        Err(error) => Err(Failure::from_error(&error)),
-    }
 }

@@ -3,11 +3,11 @@
 mod recorded;
 
 use super::leg_args::LegArgs;
-use super::leg_told::to_line;
 use super::line::Fresh;
 use super::numbers::{positive, seconds};
 use super::{print, progress};
 use crate::failure::Failure;
+use crate::json_line::to_line;
 use crate::operator::{Operator, OperatorError};
 use crate::recording::{self, TelemetryFile};
 use leg_firmware::sensors::TICK_HZ;

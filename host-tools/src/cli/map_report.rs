@@ -1,6 +1,7 @@
 //! What `leg map` prints.
 
 use crate::failure::Failure;
+use crate::json_line::to_line;
 use crate::paths::from_here;
 use crate::rig_file::RigFile;
 use crate::workspace_map::{AtLevel, Cell, Counts, Extreme, Quantity, WorkspaceMap};
@@ -133,10 +134,7 @@ impl Report<'_> {
             pictures: self.pictures,
             poses: poses.collect(),
         };
-        match serde_json::to_string(&report) {
-            Ok(json) => Ok(json + "\n"),
-            Err(error) => Err(Failure::from_error(&error)),
-        }
+        to_line(&report)
     }
 }
 

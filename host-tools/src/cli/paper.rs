@@ -4,6 +4,7 @@ use super::print;
 use crate::atomic_file::Workshop;
 use crate::failure::Failure;
 use crate::image;
+use crate::json_line::to_line;
 use crate::paper::{self, Paper, Row, Verdict};
 use crate::paths::from_here;
 use std::path::{Path, PathBuf};
@@ -32,7 +33,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let computed = Paper::compute().map_err(|error| Failure::from_error(&error))?;
     let report = write(&computed, &folder)?;
     print(&if args.json {
-        json(&computed)?
+        to_line(&computed)?
     } else {
         table(&computed, &report)
     })?;
@@ -93,13 +94,6 @@ fn reasons(computed: &Paper) -> String {
         format!("* {}:\n  {why}\n", rows.join(";\n  "))
     };
     groups.map(line).collect()
-}
-
-fn json(computed: &Paper) -> Result<String, Failure> {
-    match serde_json::to_string(computed) {
-        Ok(json) => Ok(json + "\n"),
-        Err(error) => Err(Failure::from_error(&error)),
-    }
 }
 
 fn judge(computed: &Paper) -> Result<(), Failure> {

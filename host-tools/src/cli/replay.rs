@@ -2,8 +2,9 @@
 
 use super::print;
 use crate::failure::Failure;
+use crate::json_line::to_line;
 use crate::recording::{self, Replay};
-use crate::simulation::tick_s;
+use crate::tick_time::tick_s;
 use std::path::PathBuf;
 
 /// Runs the firmware's code again on a recording of `leg run --record F.mcap`, and says where it does something else.
@@ -28,10 +29,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         )
     })?;
     print(&if args.json {
-        match serde_json::to_string(&replay) {
-            Ok(json) => json + "\n",
-            Err(error) => return Err(Failure::from_error(&error)),
-        }
+        to_line(&replay)?
     } else {
         words(&replay)
     })?;

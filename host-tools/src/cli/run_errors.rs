@@ -2,6 +2,7 @@
 
 use super::{print, progress};
 use crate::failure::Failure;
+use crate::json_line::to_line;
 use crate::paths::from_here;
 use crate::plot;
 use crate::rig_file::RigFile;
@@ -34,10 +35,7 @@ pub(super) fn run(
         ));
     }
     if json {
-        return match serde_json::to_string(&all) {
-            Ok(json) => print(&(json + "\n")),
-            Err(error) => Err(Failure::from_error(&error)),
-        };
+        return print(&to_line(&all)?);
     }
     let chart = sensitivity::chart(&scenario.title, &all);
     let file = plot::save_both(&chart, &folder.join("errors")).map_err(|error| {

@@ -1,9 +1,11 @@
 //! What `leg run` prints.
 
 use crate::failure::Failure;
+use crate::json_line::to_line;
 use crate::paths::from_here;
 use crate::scenario::Scenario;
-use crate::simulation::{Finding, Summary, tick_s};
+use crate::simulation::{Finding, Summary};
+use crate::tick_time::tick_s;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -91,10 +93,7 @@ impl Report<'_> {
             held: summary.held(),
             plots: self.plots,
         };
-        match serde_json::to_string(&report) {
-            Ok(json) => Ok(json + "\n"),
-            Err(error) => Err(Failure::from_error(&error)),
-        }
+        to_line(&report)
     }
 }
 

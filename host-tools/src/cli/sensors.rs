@@ -1,10 +1,10 @@
 //! `leg sensors`.
 
 use super::leg_args::LegArgs;
-use super::leg_told::to_line;
 use super::line::Fresh;
 use super::print;
 use crate::failure::Failure;
+use crate::json_line::to_line;
 use crate::sensor_report::SensorReport;
 
 /// Shows what the sensors read, raw and by the calibration of the leg's settings. It looks only.

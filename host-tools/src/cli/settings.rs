@@ -1,11 +1,11 @@
 //! `leg settings`.
 
-use super::leg_told::to_line;
 use super::line::{Fresh, LineArgs};
 use super::print;
 use crate::atomic_file;
 use crate::control_settings;
 use crate::failure::Failure;
+use crate::json_line::to_line;
 use crate::operator::{Difference, Operator, differences};
 use crate::rig_file::RigFile;
 use crate::settings_text;

@@ -61,7 +61,7 @@ pub enum LinkError {
     /// Host and firmware were built from different sources.
     #[error(
         "the firmware speaks another protocol (schema {}, this program {}); build and start both from the same sources",
-        hex(.firmware), hex(.host)
+        crate::words::hex(.firmware), crate::words::hex(.host)
     )]
     SchemaMismatch {
         /// Schema of this program.
@@ -102,8 +102,4 @@ fn last_words(log: &[String]) -> String {
         return String::new();
     }
     format!("; its last lines were:\n  {}", log.join("\n  "))
-}
-
-fn hex(schema: &[u8; 8]) -> String {
-    schema.iter().map(|byte| format!("{byte:02x}")).collect()
 }

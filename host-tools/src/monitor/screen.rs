@@ -3,7 +3,7 @@
 use super::Picture;
 use super::bar::bar;
 use crate::leg_report::pose_words;
-use crate::simulation::tick_s;
+use crate::tick_time::tick_s;
 use crate::words;
 use leg_firmware::supervisor::{FaultSet, Reaction, State};
 use leg_firmware::telemetry::Telemetry;

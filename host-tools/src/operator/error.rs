@@ -32,7 +32,7 @@ pub enum OperatorError {
     /// The firmware was built from other sources.
     #[error(
         "the firmware at {name} speaks another protocol (schema {}, this program {})",
-        hex(.firmware), hex(&SCHEMA)
+        words::hex(.firmware), words::hex(&SCHEMA)
     )]
     OtherSchema {
         /// What is at the other end.
@@ -245,8 +245,4 @@ fn at_tendon(tendon: u8) -> String {
         0 => String::new(),
         tendon => format!(" with tendon {tendon}"),
     }
-}
-
-fn hex(schema: &[u8; 8]) -> String {
-    schema.iter().map(|byte| format!("{byte:02x}")).collect()
 }

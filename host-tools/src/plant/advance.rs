@@ -4,7 +4,8 @@ use super::encoder::EncoderFault;
 use super::faults::Fault;
 use super::motor::Wiring;
 use super::scene::Scene;
-use super::{Plant, Work, tick_s};
+use super::{Plant, Work};
+use crate::tick_time::tick_s;
 use leg_firmware::drive::Drive;
 use leg_model::Load;
 

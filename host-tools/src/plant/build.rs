@@ -11,8 +11,9 @@ use super::sensing::Cells;
 use super::supply::Supply;
 use super::temperature::Temperature;
 use super::tendon_pull::RealTendon;
-use super::{Plant, PlantSettings, Start, Work, tick_s};
+use super::{Plant, PlantSettings, Start, Work};
 use crate::rig_file::RigFile;
+use crate::tick_time::tick_s;
 use leg_model::{Error, Load, Quantity, Reason, Rig};
 use nalgebra::Vector3;
 

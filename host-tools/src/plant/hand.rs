@@ -1,6 +1,7 @@
 //! What a user does to actuators and sensors by hand: turning screws and hanging weights on load cells.
 
-use super::{Plant, tick_s};
+use super::Plant;
+use crate::tick_time::tick_s;
 use std::f64::consts::TAU;
 
 /// How fast a hand turns a motor, rad/s.

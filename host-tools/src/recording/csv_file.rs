@@ -1,7 +1,8 @@
 //! A recording as CSV: what the leg tells, a thousand rows a second, units in the names of the columns.
 
 use super::RecordingError;
-use crate::simulation::{Tick, tick_s};
+use crate::simulation::Tick;
+use crate::tick_time::tick_s;
 use serde::Serialize;
 use serde_json::Value;
 use std::fs::File;

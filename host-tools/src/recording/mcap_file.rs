@@ -4,7 +4,9 @@ use super::RecordingError;
 use super::telemetry_channel::TelemetryChannel;
 use super::tick_record::{TickRecord, to_bytes};
 use crate::simulation::Tick;
+use crate::words::hex;
 use leg_firmware::protocol::SCHEMA;
+use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::settings::Settings;
 use mcap::records::MessageHeader;
 use mcap::{WriteOptions, Writer};
@@ -24,7 +26,7 @@ pub(super) const SCHEMA_KEY: &str = "schema";
 const TELEMETRY_TICKS: u32 = 32;
 
 /// A tick in ns.
-const TICK_NS: u64 = 125_000;
+const TICK_NS: u64 = 1_000_000_000 / TICK_HZ as u64;
 
 /// A recording that is being written.
 pub struct McapFile {
@@ -36,7 +38,7 @@ pub struct McapFile {
 
 /// The hash of all message types, in words.
 pub(super) fn schema() -> String {
-    SCHEMA.iter().map(|byte| format!("{byte:02x}")).collect()
+    hex(&SCHEMA)
 }
 
 impl McapFile {

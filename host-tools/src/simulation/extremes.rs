@@ -1,7 +1,7 @@
 //! The extremes since a mark.
 
-use super::tick_s;
 use crate::plant::Truth;
+use crate::tick_time::tick_s;
 use nalgebra::Vector3;
 
 /// How far beyond its bounds a tension may be for a short time, as a part of the bound.

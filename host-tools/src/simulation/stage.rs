@@ -2,10 +2,11 @@
 
 use super::extremes::Extremes;
 use super::outcome::{Finding, Sample, Summary};
-use super::{Divergence, SimulationError, tick_s};
+use super::{Divergence, SimulationError};
 use crate::plant::{Plant, Truth};
 use crate::rig_file::RigFile;
 use crate::scenario::Scenario;
+use crate::tick_time::tick_s;
 use leg_firmware::command::Command;
 use leg_firmware::drive::Drive;
 use leg_firmware::frame::{self, MAX_FRAME};

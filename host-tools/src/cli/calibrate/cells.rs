@@ -3,13 +3,13 @@
 use super::hand::{Hand, drivers_off};
 use crate::cell_fit::{CellFit, CellFitError, Weighing, fit};
 use crate::cli::leg_args::LegArgs;
-use crate::cli::leg_told::to_line;
 use crate::cli::line::Fresh;
 use crate::cli::numbers::not_negative;
 use crate::cli::print;
 use crate::cli::settings::before_armed;
 use crate::failure::Failure;
 use crate::fields::decimal;
+use crate::json_line::to_line;
 use crate::operator::Operator;
 use leg_firmware::settings::Settings;
 use serde::Serialize;

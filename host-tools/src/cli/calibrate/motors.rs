@@ -1,10 +1,10 @@
 //! `leg calibrate motors`.
 
 use super::hand::{Hand, drivers_off};
-use crate::cli::leg_told::to_line;
 use crate::cli::line::{Fresh, LineArgs};
 use crate::cli::print;
 use crate::failure::Failure;
+use crate::json_line::to_line;
 use crate::rig_file::RigFile;
 use serde::Serialize;
 use std::path::PathBuf;

@@ -1,0 +1,9 @@
+//! The time of ticks.
+
+use leg_firmware::sensors::TICK_HZ;
+
+/// Time of a tick, s.
+#[must_use]
+pub fn tick_s() -> f64 {
+    1.0 / f64::from(TICK_HZ)
+}
