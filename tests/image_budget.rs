@@ -3,34 +3,18 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_host_tools::image::{self, Board, workspace_root};
+use leg_host_tools::image::{self, Board};
 use leg_host_tools::image_budget::{
     self, ImageBudgetError, ImageNeeds, Root, RootKind, checks, needs, root,
 };
 use leg_host_tools::setup;
-use std::path::PathBuf;
+use leg_tests::panic_free;
 use std::process::Command;
 
 /// The bytes of a board's image.
 fn image_of(board: Board) -> Vec<u8> {
     setup::ensure_target(&mut |_| {}).unwrap();
     std::fs::read(image::build_for(board).unwrap()).unwrap()
-}
-
-/// The bytes of the image whose panics cannot be linked.
-fn panic_free_image() -> Vec<u8> {
-    setup::ensure_target(&mut |_| {}).unwrap();
-    let folder: PathBuf = workspace_root().join("target/proof");
-    let built = Command::new(env!("CARGO"))
-        .arg("no-panic-proof")
-        .arg("--target-dir")
-        .arg(&folder)
-        .current_dir(workspace_root())
-        .env_remove("RUSTFLAGS")
-        .env_remove("CARGO_ENCODED_RUSTFLAGS")
-        .status();
-    assert!(built.unwrap().success());
-    std::fs::read(folder.join("thumbv7em-none-eabihf/firmware/no-panic-proof")).unwrap()
 }
 
 fn names(needs: &ImageNeeds) -> Vec<&str> {
@@ -124,7 +108,7 @@ fn a_panic_is_found_where_one_can_be_reached_and_nowhere_else() {
     assert!(way.last().unwrap().contains("core::panicking::"), "{way:?}");
     assert!(root(&qemu, "Reset").unwrap().panic.is_some());
     // The linker has shown that this one has none, though it holds all that the server and the model do.
-    let proof = root(&panic_free_image(), "_start").unwrap();
+    let proof = root(&panic_free::image().unwrap(), "_start").unwrap();
     assert_eq!(proof.panic, None);
     assert!((25_000..45_000).contains(&proof.stack_bytes), "{proof:#?}");
     let board = image_of(Board::Stm32g474);

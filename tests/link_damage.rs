@@ -4,14 +4,13 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use leg_firmware::command::Command;
+use leg_firmware::example;
 use leg_firmware::frame::{Decoder, FrameError, MAX_FRAME, encode};
 use leg_firmware::host_link::HostRequest;
-use leg_firmware::messages::{QueryMessage, SupportMessage, TendonMessage, TendonsMessage};
+use leg_firmware::messages::{QueryMessage, TendonMessage, TendonsMessage};
 use leg_firmware::protocol::{EvaluateRequest, Hello, Request, SCHEMA, TickRequest};
 use leg_firmware::sensors::Sensors;
-use leg_model::{
-    CURVE_POINTS_MAX, CurvePoint, JointStiffness, RigParameters, StiffnessAt, SupportKind,
-};
+use leg_model::{CURVE_POINTS_MAX, CurvePoint, RigParameters};
 use std::fmt;
 
 /// Sequence of the frame that is damaged, and of the one behind it.
@@ -57,23 +56,12 @@ fn evaluate() -> EvaluateRequest {
     EvaluateRequest {
         rig: RigParameters::<f32, 3>::TABLE_1.into(),
         query: QueryMessage {
-            azimuth_rad: 0.5,
-            tilt_rad: 0.3,
-            payload_kg: 1.0,
-            level_n: 70.0,
-            tension_floor_n: 8.0,
-            tension_ceiling_n: 150.0,
             tendons: TendonsMessage::Each([
                 curve(CURVE_POINTS_MAX),
                 curve(6),
                 TendonMessage::Constant(1e5),
             ]),
-            stiffness_at: StiffnessAt::Pretension,
-            support: SupportMessage {
-                kind: SupportKind::TorsionFree,
-                joint: JointStiffness::none(),
-            },
-            demand: None,
+            ..example::query()
         },
     }
 }

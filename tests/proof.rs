@@ -2,43 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_host_tools::image::workspace_root;
-use leg_host_tools::setup;
+use leg_tests::panic_free;
 use object::{Object, ObjectSymbol};
-use std::path::PathBuf;
-use std::process::{Command, Output};
-
-/// Kept between runs, so that only the first one compiles everything.
-fn folder() -> PathBuf {
-    workspace_root().join("target/proof")
-}
-
-/// Builds the image whose panics cannot be linked.
-fn link(more: &[&str]) -> Output {
-    setup::ensure_target(&mut |_| {}).unwrap();
-    Command::new(env!("CARGO"))
-        .arg("no-panic-proof")
-        .arg("--target-dir")
-        .arg(folder())
-        .args(more)
-        .current_dir(workspace_root())
-        .env_remove("RUSTFLAGS")
-        .env_remove("CARGO_ENCODED_RUSTFLAGS")
-        .output()
-        .unwrap()
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
 
 #[test]
 fn no_request_can_panic_and_none_needs_double_precision() {
-    let output = link(&[]);
-    assert!(output.status.success(), "{}", said(&output));
-
-    let image = folder().join("thumbv7em-none-eabihf/firmware/no-panic-proof");
-    let bytes = std::fs::read(image).unwrap();
+    let bytes = panic_free::image().unwrap();
     let elf = object::File::parse(&*bytes).unwrap();
     let names: Vec<&str> = elf
         .symbols()
@@ -57,9 +26,9 @@ fn no_request_can_panic_and_none_needs_double_precision() {
 
 #[test]
 fn the_proof_fails_where_there_is_a_panic() {
-    let output = link(&["--features", "with-a-panic"]);
+    let output = panic_free::link(&["--features", "with-a-panic"]).unwrap();
     assert!(!output.status.success());
-    let told = said(&output);
+    let told = String::from_utf8_lossy(&output.stderr);
     assert!(
         told.contains("contains at least one panicking branch"),
         "{told}"

@@ -12,6 +12,7 @@ pub mod command;
 pub mod control;
 pub mod counter;
 pub mod drive;
+pub mod example;
 pub mod exit;
 pub mod frame;
 pub mod host_link;

@@ -1,14 +1,15 @@
 //! The firmware under QEMU, driven as the command `leg` drives it.
 
-use leg_firmware::kernels::{self, Kernel, KernelInput};
-use leg_firmware::messages::{QueryMessage, SupportMessage, TendonMessage, TendonsMessage};
+use leg_firmware::example;
+use leg_firmware::kernels::{self, Kernel};
+use leg_firmware::messages::QueryMessage;
 use leg_firmware::protocol::{
     BoardKind, EvaluateRequest, Hello, KernelRequest, Refusal, Reply, Request, SCHEMA,
 };
 use leg_host_tools::link::{InProcess, Link, LinkError};
 use leg_host_tools::qemu::{Clock, Config, Session};
 use leg_host_tools::{image, setup};
-use leg_model::{JointStiffness, RigParameters, StiffnessAt, SupportKind};
+use leg_model::RigParameters;
 use rustix::process::{Pid, Signal, kill_process, test_kill_process};
 use std::error::Error;
 use std::fs;
@@ -30,20 +31,7 @@ fn config(clock: Clock) -> Result<Config, Box<dyn Error>> {
 fn kernel_request(kernel: Kernel) -> KernelRequest {
     KernelRequest {
         kernel,
-        input: KernelInput {
-            rig: RigParameters::<f32, 3>::TABLE_1.into(),
-            azimuth_rad: 0.5,
-            tilt_rad: 0.3,
-            start_azimuth_rad: 0.5,
-            start_tilt_rad: 0.28,
-            length_errors_m: [0.0; 3],
-            payload_kg: 1.0,
-            level_n: 70.0,
-            tension_floor_n: 8.0,
-            tension_ceiling_n: 150.0,
-            stiffness_n_per_m: 1e5,
-            demand_nm_per_rad: 100.0,
-        },
+        input: example::kernel_input(),
     }
 }
 
@@ -51,19 +39,8 @@ fn evaluate_request(tilt_rad: f32) -> Request {
     Request::Evaluate(EvaluateRequest {
         rig: RigParameters::<f32, 3>::TABLE_1.into(),
         query: QueryMessage {
-            azimuth_rad: 0.5,
             tilt_rad,
-            payload_kg: 1.0,
-            level_n: 70.0,
-            tension_floor_n: 8.0,
-            tension_ceiling_n: 150.0,
-            tendons: TendonsMessage::Alike(TendonMessage::Constant(1e5)),
-            stiffness_at: StiffnessAt::Pretension,
-            support: SupportMessage {
-                kind: SupportKind::TorsionFree,
-                joint: JointStiffness::none(),
-            },
-            demand: None,
+            ..example::query()
         },
     })
 }

@@ -1,6 +1,7 @@
 //! What the tests across the crates share.
 
 pub mod mujoco;
+pub mod panic_free;
 
 pub use leg_host_tools::{numeric, plain_vectors as reference};
 

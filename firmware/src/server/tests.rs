@@ -1,13 +1,14 @@
 use super::{Board, Server};
 use crate::counter::Counter;
+use crate::example;
 use crate::frame::{Decoder, FrameError, MAX_FRAME, encode};
 use crate::kernels::{self, Kernel, KernelInput};
-use crate::messages::{QueryMessage, SupportMessage, TendonMessage, TendonsMessage};
+use crate::messages::QueryMessage;
 use crate::protocol::{
     self, BoardInfo, EvaluateRequest, Hello, KernelRequest, Refusal, Reply, Request, SCHEMA,
 };
 use crate::settings::Settings;
-use leg_model::{Error, JointStiffness, Quantity, Reason, RigParameters, StiffnessAt, SupportKind};
+use leg_model::{Error, Quantity, Reason, RigParameters};
 
 /// Counts every kernel as as many instructions as it is told, or nothing.
 struct Bench {
@@ -93,18 +94,8 @@ fn kernel_request(payload_kg: f32) -> KernelRequest {
     KernelRequest {
         kernel: Kernel::FullPass,
         input: KernelInput {
-            rig: RigParameters::<f32, 3>::TABLE_1.into(),
-            azimuth_rad: 0.5,
-            tilt_rad: 0.3,
-            start_azimuth_rad: 0.5,
-            start_tilt_rad: 0.3,
-            length_errors_m: [0.0; 3],
             payload_kg,
-            level_n: 70.0,
-            tension_floor_n: 8.0,
-            tension_ceiling_n: 150.0,
-            stiffness_n_per_m: 1e5,
-            demand_nm_per_rad: 100.0,
+            ..example::kernel_input()
         },
     }
 }
@@ -113,19 +104,8 @@ fn evaluate_request(tilt_rad: f32) -> EvaluateRequest {
     EvaluateRequest {
         rig: RigParameters::<f32, 3>::TABLE_1.into(),
         query: QueryMessage {
-            azimuth_rad: 0.5,
             tilt_rad,
-            payload_kg: 1.0,
-            level_n: 70.0,
-            tension_floor_n: 8.0,
-            tension_ceiling_n: 150.0,
-            tendons: TendonsMessage::Alike(TendonMessage::Constant(1e5)),
-            stiffness_at: StiffnessAt::Pretension,
-            support: SupportMessage {
-                kind: SupportKind::TorsionFree,
-                joint: JointStiffness::none(),
-            },
-            demand: None,
+            ..example::query()
         },
     }
 }

@@ -3,19 +3,14 @@
 use crate::framed;
 use crate::host_requests::{self, commanded, identify, ticks};
 use leg_firmware::command::Command;
+use leg_firmware::example;
 use leg_firmware::frame::MAX_PAYLOAD;
 use leg_firmware::host_link::HostRequest;
-use leg_firmware::kernels::{Kernel, KernelInput};
-use leg_firmware::messages::{QueryMessage, SupportMessage, TendonMessage, TendonsMessage};
+use leg_firmware::kernels::Kernel;
 use leg_firmware::protocol::{EvaluateRequest, Hello, KernelRequest, Request, SCHEMA, TickRequest};
 use leg_firmware::settings::Settings;
-use leg_model::{JointStiffness, RigParameters, StiffnessAt, SupportKind};
+use leg_model::RigParameters;
 use serde::Serialize;
-
-const TENSION_FLOOR_N: f32 = 8.0;
-const TENSION_CEILING_N: f32 = 150.0;
-const LEVEL_N: f32 = 70.0;
-const TENDONS: TendonsMessage = TendonsMessage::Alike(TendonMessage::Constant(1e5));
 
 /// Ticks from the start until the leg can be armed, and some more.
 const BOOT_TICKS: usize = 20;
@@ -62,48 +57,17 @@ fn hears(request: &HostRequest) -> Vec<TickRequest> {
     ticks(&framed(1, &payload(request)))
 }
 
-fn support() -> SupportMessage {
-    SupportMessage {
-        kind: SupportKind::TorsionFree,
-        joint: JointStiffness::none(),
-    }
-}
-
 fn evaluate() -> EvaluateRequest {
     EvaluateRequest {
         rig: RigParameters::<f32, 3>::TABLE_1.into(),
-        query: QueryMessage {
-            azimuth_rad: 0.5,
-            tilt_rad: 0.3,
-            payload_kg: 1.0,
-            level_n: LEVEL_N,
-            tension_floor_n: TENSION_FLOOR_N,
-            tension_ceiling_n: TENSION_CEILING_N,
-            tendons: TENDONS,
-            stiffness_at: StiffnessAt::Pretension,
-            support: support(),
-            demand: None,
-        },
+        query: example::query(),
     }
 }
 
 fn run(kernel: Kernel) -> KernelRequest {
     KernelRequest {
         kernel,
-        input: KernelInput {
-            rig: RigParameters::<f32, 3>::TABLE_1.into(),
-            azimuth_rad: 0.5,
-            tilt_rad: 0.3,
-            start_azimuth_rad: 0.5,
-            start_tilt_rad: 0.3,
-            length_errors_m: [0.0; 3],
-            payload_kg: 1.0,
-            level_n: LEVEL_N,
-            tension_floor_n: TENSION_FLOOR_N,
-            tension_ceiling_n: TENSION_CEILING_N,
-            stiffness_n_per_m: 1e5,
-            demand_nm_per_rad: 100.0,
-        },
+        input: example::kernel_input(),
     }
 }
 
