@@ -253,7 +253,9 @@ impl Service {
         if follows && !ends && self.driver.is_some_and(|driver| driver != host) {
             return Err(HostRefusal::OtherHost);
         }
-        if !leg.command(number, command) {
+        // Flash is written at rest alone.
+        let waits = begins && self.saving.is_some();
+        if waits || !leg.command(number, command) {
             return Err(HostRefusal::Busy);
         }
         if begins {

@@ -1,6 +1,6 @@
 //! Settings that are asked for, replaced and kept.
 
-use super::{Line, others, refused};
+use super::{Line, ONE, others, refused};
 use crate::command::{Command, CommandRefusal};
 use crate::host_link::{Commanded, HostRefusal, HostReply, HostRequest};
 use crate::leg::{Leg, Outcome};
@@ -217,4 +217,17 @@ fn settings_that_nobody_asked_to_keep_are_not_told_of() {
     line.link.saved(true);
     line.link.saved(false);
     assert_eq!(line.heard(), []);
+}
+
+#[test]
+fn a_leg_is_not_set_in_motion_while_settings_are_being_kept_and_may_be_stopped() {
+    let (mut line, _) = saving();
+    for command in [Command::Arm, Command::Home, Command::Clear] {
+        let request = HostRequest::Command { host: ONE, command };
+        assert_eq!(line.ask(&request), refused(HostRefusal::Busy));
+    }
+    assert_eq!(line.obey(ONE, Command::Stop), HostReply::Done);
+    line.link.saved(true);
+    line.heard();
+    assert_eq!(line.obey(ONE, Command::Arm), HostReply::Done);
 }
