@@ -53,6 +53,8 @@ pub struct Leg<T> {
     monitors: Monitors<T>,
     supervisor: Supervisor,
     homing: Option<Homing<T>>,
+    /// Tension above which a tendon is let out in what the leg does now, N, and while homing takes tendons up.
+    ceiling_n: T,
     homing_ceiling_n: T,
     settings_of_homing: crate::settings::Homing,
     /// Length of each tendon without tension when the board started, m.
@@ -69,6 +71,8 @@ pub struct Leg<T> {
     lowest_m: [T; 3],
     refused: bool,
     failed_tendon: u8,
+    /// Whether homing has given up, or pulls more than it may.
+    homing_failed: bool,
     measured: Option<Measured<T>>,
     limits: Limits<T>,
 }
@@ -105,6 +109,7 @@ struct Limits<T> {
     silence: u32,
     bad_frames: u16,
     ramp_m_per_s: T,
+    homing_travel_m: T,
     homing_release_m: T,
     hold_travel_m: T,
     relax_travel_m: T,
@@ -151,6 +156,7 @@ impl<T: Scalar> Leg<T> {
             monitors: Monitors::new(settings),
             supervisor: Supervisor::default(),
             homing: None,
+            ceiling_n: settings.tension_ceiling_n.into(),
             homing_ceiling_n: settings.homing.ceiling_n.into(),
             settings_of_homing: settings.homing,
             zero_m,
@@ -163,11 +169,13 @@ impl<T: Scalar> Leg<T> {
             lowest_m: [T::zero(); 3],
             refused: false,
             failed_tendon: 0,
+            homing_failed: false,
             measured: None,
             limits: Limits {
                 silence: ticks(limits.command_time_s),
                 bad_frames: at_least(limits.bad_frames),
                 ramp_m_per_s: limits.ramp_m_per_s.into(),
+                homing_travel_m: settings.homing.travel_m.into(),
                 homing_release_m: settings.homing.release_m.into(),
                 hold_travel_m: limits.hold_travel_m.into(),
                 relax_travel_m: limits.relax_travel_m.into(),
@@ -294,7 +302,7 @@ impl<T: Scalar> Leg<T> {
         };
         faults.add(Fault::CommandTimeout, self.silence > self.limits.silence);
         faults.add(Fault::BadFrame, self.bad_frames >= self.limits.bad_frames);
-        faults.add(Fault::HomingFailed, self.homing_failed(measured));
+        faults.add(Fault::HomingFailed, self.homing_failed);
         faults
     }
 

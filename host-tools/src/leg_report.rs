@@ -1,6 +1,6 @@
 //! The leg in a user's units.
 
-use crate::tick_time::tick_s;
+use crate::tick_time::seconds;
 use crate::words;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_firmware::telemetry::Telemetry;
@@ -83,7 +83,7 @@ impl LegReport {
             stiffness_nm_per_rad: telemetry.stiffness_nm_per_rad,
             load_nm: telemetry.load_nm,
             payload_kg: telemetry.payload_kg,
-            time_s: f64::from(telemetry.tick) * tick_s(),
+            time_s: seconds(telemetry.tick.into()),
         }
     }
 }

@@ -21,6 +21,7 @@ pub const READY_SCENARIOS: &[ReadyScenario] = ready![
     "cost",
     "cost_homing",
     "homing",
+    "homing_again",
     "tour",
     "stiffness",
     "stiffness_lean",

@@ -11,7 +11,7 @@ use nalgebra::SVector;
 /// What homing does now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
-    /// Every tendon is let out.
+    /// Every tendon is let out, until that changes no tension any more.
     Release,
     /// The slack load cells are averaged.
     Tare,
@@ -73,8 +73,8 @@ pub enum HomingStep<T> {
     Found([T; 3]),
     /// Nothing but time.
     Searching,
-    /// A load cell is too far off, a tendon did not come taut within its travel, or the leg does not come to rest on it as
-    /// its weight says; the tendon counts from 1.
+    /// A load cell is too far off, a tendon did not become slack or taut within its travel, or the leg does not come to rest
+    /// on it as its weight says; the tendon counts from 1.
     Failed(u8),
 }
 
@@ -84,6 +84,9 @@ pub struct Homing<T> {
     phase: Phase,
     left: u32,
     goals_m: [T; 3],
+    /// How far every tendon was let out, m, and the tensions before the last step of that, N.
+    released_m: T,
+    before_n: Option<[T; 3]>,
     sums: [T; 3],
     position_sum: T,
     count: u32,
@@ -106,8 +109,16 @@ struct Times {
     average: u32,
 }
 
+/// Tension with which a leg rests on a tendon at least, of the tension of the touch: it comes in motion, so most of that
+/// is gone when the leg has come to rest.
+const REST_PART: f32 = 0.02;
+
 /// Time constant with which a touch is felt, s.
 const TOUCH_TIME_S: f32 = 0.005;
+
+/// Change of a tension over a step of the release below which the tendon counts as slack, of the tension of a touch: the
+/// cell's own offset is not known, but it does not change.
+const SLACK_PART: f32 = 0.25;
 
 impl<T: Scalar> Homing<T> {
     /// Starts from where the tendons are, m.
@@ -117,6 +128,8 @@ impl<T: Scalar> Homing<T> {
             phase: Phase::Release,
             left: 0,
             goals_m: pulled_m.map(|pulled| pulled - release_m),
+            released_m: release_m,
+            before_n: None,
             sums: [T::zero(); 3],
             position_sum: T::zero(),
             count: 0,
@@ -146,7 +159,7 @@ impl<T: Scalar> Homing<T> {
         tensions_n: &[T; 3],
     ) -> HomingStep<T> {
         match self.phase {
-            Phase::Release => self.release(pulled_m),
+            Phase::Release => self.release(pulled_m, tensions_n),
             Phase::Tare => self.tare(tensions_n),
             Phase::TakeUp(tendon) => self.take_up(tendon, pulled_m, tensions_n),
             Phase::Settle(tendon) => self.settle(tendon),
@@ -163,16 +176,58 @@ impl<T: Scalar> Homing<T> {
         }))
     }
 
-    fn release(&mut self, pulled_m: &[T; 3]) -> HomingStep<T> {
+    fn release(&mut self, pulled_m: &[T; 3], tensions_n: &[T; 3]) -> HomingStep<T> {
+        let Some(before_n) = self.before_n else {
+            self.steady
+                .iter_mut()
+                .zip(tensions_n)
+                .for_each(|(steady, tension)| steady.set(*tension));
+            self.before_n = Some(*tensions_n);
+            return self.lead();
+        };
+        let mut now_n = *tensions_n;
+        for (now, steady) in now_n.iter_mut().zip(&mut self.steady) {
+            *now = steady.step(*now);
+        }
         let near = T::from(1e-4);
         let arrived = pulled_m
             .iter()
             .zip(&self.goals_m)
             .all(|(pulled, goal)| (*pulled - *goal).abs() < near);
-        if arrived {
-            (self.phase, self.count) = (Phase::Tare, 0);
+        if !arrived {
+            return self.lead();
+        }
+        let slack_n = self.touch_n * T::from(SLACK_PART);
+        let taut = |(now, before): (T, T)| !((now - before).abs() <= slack_n);
+        match (1..)
+            .zip(now_n.into_iter().zip(before_n))
+            .find(|&(_, pair)| taut(pair))
+        {
+            None => self.begin_tare(),
+            Some((tendon, _)) if self.released_m >= self.travel_m => {
+                return HomingStep::Failed(tendon);
+            }
+            Some(_) => {
+                self.before_n = Some(now_n);
+                self.released_m += self.release_m;
+                self.goals_m = self.goals_m.map(|goal| goal - self.release_m);
+            }
         }
         self.lead()
+    }
+
+    /// The tendons are slack; from the tare on the load cells tell zero.
+    fn begin_tare(&mut self) {
+        (self.phase, self.count) = (Phase::Tare, 0);
+        self.steady
+            .iter_mut()
+            .for_each(|steady| steady.set(T::zero()));
+    }
+
+    /// Whether tendons may still pull as they did before homing.
+    #[must_use]
+    pub fn releases(&self) -> bool {
+        self.phase == Phase::Release
     }
 
     fn tare(&mut self, tensions_n: &[T; 3]) -> HomingStep<T> {
@@ -229,8 +284,15 @@ impl<T: Scalar> Homing<T> {
             return self.lead();
         }
         let count = T::from(self.count as f32);
+        let tension = self.sums[i] / count;
+        if !(tension >= self.touch_n * T::from(REST_PART)) {
+            // The leg has only swung against it, and hangs free: it is taken up farther.
+            self.steady[i].set(T::zero());
+            self.phase = Phase::TakeUp(tendon);
+            return self.lead();
+        }
         let pulled = self.goals_m[i] + self.position_sum / count;
-        self.rest = Rest::new(self.sums[i] / count, pulled);
+        self.rest = Rest::new(tension, pulled);
         self.phase = Phase::Search(tendon);
         self.lead()
     }

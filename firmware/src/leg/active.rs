@@ -175,7 +175,13 @@ impl<T: Scalar> Leg<T> {
         let Some(homing) = &mut self.homing else {
             return;
         };
-        match homing.step(&self.mechanism, &measured.pulled_m, &measured.tensions_n) {
+        let step = homing.step(&self.mechanism, &measured.pulled_m, &measured.tensions_n);
+        if !homing.releases() {
+            self.ceiling_n = self.homing_ceiling_n;
+            let twice = self.homing_ceiling_n + self.homing_ceiling_n;
+            self.homing_failed = measured.tensions_n.iter().any(|&tension| tension > twice);
+        }
+        match step {
             HomingStep::Lead(goals) => {
                 for (axis, goal) in self.axes.iter_mut().zip(&goals) {
                     axis.lead(goal, T::one());
@@ -191,18 +197,9 @@ impl<T: Scalar> Leg<T> {
             }
             HomingStep::Failed(tendon) => {
                 self.failed_tendon = tendon;
+                self.homing_failed = true;
                 self.homing = None;
             }
         }
-    }
-
-    /// Whether homing has given up, or pulls more than it may.
-    #[inline(always)]
-    pub(super) fn homing_failed(&self, measured: &Measured<T>) -> bool {
-        use crate::supervisor::State;
-        let homing = self.supervisor.state() == State::Homing;
-        let twice = self.homing_ceiling_n + self.homing_ceiling_n;
-        homing
-            && (self.homing.is_none() || measured.tensions_n.iter().any(|&tension| tension > twice))
     }
 }

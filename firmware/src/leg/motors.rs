@@ -15,9 +15,12 @@ impl<T: Scalar> Leg<T> {
             axis.rest(pulled);
         }
         self.silence = 0;
+        self.ceiling_n = self.mechanism.ceiling_n;
+        self.homing_failed = false;
         self.rest_m = measured.pulled_m;
         let travel_m = match state {
-            State::Homing => T::TWO * self.limits.homing_release_m,
+            // All the way to slack, the last step of it, and once more for each tendon.
+            State::Homing => self.limits.homing_travel_m + T::TWO * self.limits.homing_release_m,
             State::RampingDown => self.limits.relax_travel_m,
             _ => T::MAX,
         };
@@ -117,16 +120,11 @@ impl<T: Scalar> Leg<T> {
         if !drive.enabled {
             return drive;
         }
-        let ceiling_n = if state == State::Homing {
-            self.homing_ceiling_n
-        } else {
-            self.mechanism.ceiling_n
-        };
         for (i, axis) in self.axes.iter_mut().enumerate() {
             drive.duty[i] = axis.drive(&AxisInput {
                 pulled_m: measured.pulled_m[i],
                 tension_n: measured.tensions_n[i],
-                ceiling_n,
+                ceiling_n: self.ceiling_n,
                 supply_v: measured.supply_v,
                 lowest_m: self.lowest_m[i],
             });

@@ -123,8 +123,8 @@ section! {
 section! {
     /// How the zero is found: the leg hangs free, with no payload, and one tendon after the other is taken up.
     4 Homing {
-        /// How far every tendon is let out first, m.
-        release_m: 0.0..=0.5 = 0.004;
+        /// How far every tendon is let out at a time, m: until that changes no tension any more.
+        release_m: 1e-4..=0.5 = 0.004;
         /// Speed of letting out and taking up, m/s.
         speed_m_per_s: 1e-5..=0.1 = 0.01;
         /// Time in which the slack load cells are averaged, s.
@@ -139,7 +139,7 @@ section! {
         average_time_s: 1e-3..=60.0 = 0.7;
         /// Highest tension while homing, N.
         ceiling_n: 0.1..=1e3 = 15.0;
-        /// Farthest that a tendon is taken up, m.
+        /// Farthest that a tendon is let out until it is slack, and then taken up, m.
         travel_m: 1e-4..=1.0 = 0.05;
     }
 }

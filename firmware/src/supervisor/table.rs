@@ -47,7 +47,7 @@ pub const TABLE: [FaultEntry; Fault::ALL.len()] = table! {
     DriverFault: "driver fault", "a motor driver raises its fault line", "look up the driver's own fault";
     EmergencyStop: "emergency stop", "the emergency stop is pressed", "release it when it is safe";
     SettingsCorrupt: "settings corrupt", "the stored settings are not whole or not valid", "write the settings anew";
-    HomingFailed: "homing failed", "a tendon does not come taut within travel_m, pulls more than twice the homing ceiling, or a slack load cell is off by tare_max_n", "let the leg hang free, without a payload; check the load cells";
+    HomingFailed: "homing failed", "a tendon does not become slack, or then taut, within travel_m, pulls more than twice the homing ceiling, or a slack load cell is off by tare_max_n", "let the leg hang free, without a payload; check the load cells";
 };
 
 impl Fault {

@@ -4,7 +4,7 @@ use super::csv_file::{row, value};
 use super::telemetry_channel::TelemetryChannel;
 use super::{Format, RecordingError, whole};
 use crate::failure::Failure;
-use crate::tick_time::tick_s;
+use crate::tick_time::seconds;
 use leg_firmware::telemetry::Telemetry;
 use mcap::{WriteOptions, Writer};
 use std::fs::File;
@@ -40,7 +40,7 @@ impl TelemetryFile {
     /// # Errors
     /// A file that cannot be written.
     pub fn take(&mut self, telemetry: &Telemetry<f32>) -> Result<(), RecordingError> {
-        let time_s = f64::from(telemetry.tick) * tick_s();
+        let time_s = seconds(telemetry.tick.into());
         match &mut self.sink {
             Sink::Mcap(writer, channel) => {
                 let time_ns = (time_s * 1e9).round() as u64;

@@ -269,6 +269,7 @@ fn act(step: &Step, stage: &mut Stage) -> Result<(), SimulationError> {
             if let Some(command) = command(step) {
                 match command {
                     Command::Move { x, y } => stage.asked = Some([x, y].map(f64::from)),
+                    Command::Home => stage.asked = Some([0.0; 2]),
                     Command::Hold | Command::Stop => stage.asked = None,
                     Command::Compensation(compensation) => {
                         stage.compensated = compensation != Compensation::Off;

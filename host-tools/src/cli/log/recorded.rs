@@ -1,7 +1,7 @@
 //! What came of the telemetry that was asked for.
 
+use crate::tick_time::seconds;
 use leg_firmware::host_link::Told;
-use leg_firmware::sensors::TICK_HZ;
 use serde::Serialize;
 
 /// How much later than asked a board tells, ticks: it looks about every millisecond.
@@ -132,10 +132,6 @@ impl Recorded {
             self.lost
         )
     }
-}
-
-fn seconds(ticks: u64) -> f64 {
-    ticks as f64 / f64::from(TICK_HZ)
 }
 
 #[cfg(test)]
