@@ -349,7 +349,7 @@ impl<T: Scalar> Leg<T> {
             faults: self.supervisor.latched(),
             homed: self.zero_m.is_some(),
             failed_tendon: self.failed_tendon,
-            moving: self.trajectory.moving(),
+            moving: self.state() == State::Active && self.trajectory.moving(),
             target: [target.x, target.y],
             pose: [pose.x, pose.y],
             residual_m: self.residual_m.unwrap_or(T::zero()),

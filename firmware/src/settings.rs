@@ -9,7 +9,7 @@ pub use sections::{Estimation, Homing, Limits, Motion, SECTIONS, Servo};
 
 use crate::messages::{RigMessage, SupportMessage, TendonsMessage};
 use core::ops::RangeInclusive;
-use leg_model::Error;
+use leg_model::{Error, Quantity, Reason};
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
@@ -148,6 +148,14 @@ impl Settings {
         self.estimation.check()?;
         self.limits.check()?;
         self.homing.check()?;
+        let bounds = self.tension_floor_n..=self.tension_ceiling_n;
+        // Bounds that are none are refused with the mechanism.
+        if !bounds.is_empty() && !bounds.contains(&self.level_n) {
+            return Err(SettingsError::Model(Error::Refused {
+                quantity: Quantity::Level,
+                reason: Reason::OutsideBounds,
+            }));
+        }
         let scale = |value: f32| SCALES.contains(&value.abs());
         let offset = |value: f32| value.abs() <= OFFSET_MAX;
         let shared = [

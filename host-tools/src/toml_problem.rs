@@ -196,6 +196,7 @@ fn fix_of(key: &str, reason: Reason) -> String {
         }
         Reason::Collinear => "spread the anchors round the axis".into(),
         Reason::AboveCeiling => "give at most `ceiling_n`".into(),
+        Reason::OutsideBounds => "give at least `floor_n` and at most `ceiling_n`".into(),
         Reason::NotSlender => "make it longer or wider, or the flexure thinner".into(),
         Reason::OutsideFormula => "give 0.05 to 0.8 times `radius_mm`".into(),
         Reason::Exceeded => "make the flexure thinner or longer, or lower `tilt_deg`".into(),

@@ -47,12 +47,23 @@ impl Touch {
     /// What is wrong with it.
     pub fn parse(line: &str) -> Result<Self, String> {
         let touch: Self = serde_json::from_str(line).map_err(|error| error.to_string())?;
-        match touch {
-            Self::Payload { kg, over_s } if kg < 0.0 || over_s < 0.0 => {
-                Err("a payload and its time are not below zero".into())
+        let within = |what: &str, value: f64, [low, high]: [f64; 2]| {
+            if (low..=high).contains(&value) {
+                Ok(())
+            } else {
+                Err(format!("{what} is not within {low} to {high}"))
             }
-            touch => Ok(touch),
+        };
+        match touch {
+            Self::Payload { kg, over_s } => {
+                within("kg", kg, [0.0, 1e3])?;
+                within("over_s", over_s, [0.0, 1e3])?;
+            }
+            Self::Turn { turns, .. } => within("turns", turns, [-1e3, 1e3])?,
+            Self::Hang { newtons, .. } => within("newtons", newtons.unwrap_or(0.0), [0.0, 1e4])?,
+            Self::Fault(_) | Self::Repair(_) | Self::EmergencyStop(_) => {}
         }
+        Ok(touch)
     }
 
     /// Does it.
@@ -94,7 +105,9 @@ mod tests {
             r#"{"hang":{"cell":4,"newtons":1}}"#,
             r#"{"payload":{"kg":-5}}"#,
             r#"{"payload":{"kg":1,"over_s":-1}}"#,
-            r#"{"payload":{"kg":1e999}}"#,
+            r#"{"payload":{"kg":1e308}}"#,
+            r#"{"turn":{"motor":1,"turns":1e300}}"#,
+            r#"{"hang":{"cell":1,"newtons":-1}}"#,
         ] {
             assert!(Touch::parse(line).is_err(), "{line}");
         }

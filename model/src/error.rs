@@ -96,6 +96,8 @@ pub enum Reason {
     Collinear,
     /// The lowest allowed value is above the highest.
     AboveCeiling,
+    /// It is below the lowest allowed tension or above the highest.
+    OutsideBounds,
     /// It is beyond what the tendon's curve knows.
     BeyondCurve,
     /// Its first point is not at zero tension and zero elongation.
@@ -160,6 +162,7 @@ impl fmt::Display for Reason {
             Self::Negative => "must not be negative",
             Self::OutOfRange => "is beyond the range in which the model holds",
             Self::Collinear => "must not lie on one line",
+            Self::OutsideBounds => "must be from the lowest tension allowed to the highest",
             Self::AboveCeiling => "must not be above the highest tension",
             Self::BeyondCurve => "is beyond the last point of the tendon's curve",
             Self::NotFromZero => "must start at zero tension and zero elongation",

@@ -36,7 +36,7 @@ pub const TABLE: [FaultEntry; Fault::ALL.len()] = table! {
     EncoderReversed: "motor turns the wrong way", "a motor counts against its voltage for reversed_time_s", "swap the motor's wires or the sign of m_per_count";
     PoseLost: "pose is lost", "forward kinematics or a tendon's curve gives no result", "home the leg; check the tensions";
     Infeasible: "target out of reach", "no level of pretension holds the target within the bounds, or a move leads beyond the workspace", "give another pose or a smaller payload";
-    Unreachable: "stiffness out of reach", "the bounds on the tensions stop the level short of the demand, or the trim is at trim_max_n", "demand less; check load cells and tendon curves";
+    Unreachable: "stiffness out of reach", "the bounds on the tensions stop the level short of the demand, or the trim is at trim_max_n", "demand something nearer to what was reached; check load cells and tendon curves";
     OverCurrent: "too much current", "a motor draws more than current_a for 2 ms", "look for a short circuit, or a current sensor without power";
     OverTemperature: "too hot", "the drivers are above temperature_c", "let them cool";
     SupplyLow: "supply too low", "the supply is below supply_min_v", "check supply and battery";

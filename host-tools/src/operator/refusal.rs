@@ -1,5 +1,6 @@
 //! Why a leg refuses a host, in words.
 
+use leg_firmware::command::CommandRefusal;
 use leg_firmware::host_link::HostRefusal;
 use leg_firmware::settings::SettingsError;
 
@@ -15,6 +16,10 @@ pub(super) fn words(refusal: &HostRefusal) -> [String; 2] {
                 format!("a frame was damaged on the way: {error}"),
                 "check cable and baud rate, then command again".into(),
             ];
+        }
+        HostRefusal::Command(CommandRefusal::NotHomed) => {
+            let [wrong, _] = CommandRefusal::NotHomed.words();
+            [wrong, "home it: `leg home`"]
         }
         HostRefusal::Command(refusal) => refusal.words(),
         HostRefusal::SchemaMismatch { .. } => [

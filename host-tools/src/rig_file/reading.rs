@@ -117,6 +117,9 @@ fn check(file: &RigFile) -> Result<(), (Quantity, Reason)> {
     }
     match leg_model::evaluate(&file.parameters, &file.query(0.0, file.tilt_deg, 0.0)) {
         Err(Error::Refused { quantity, reason }) => Err((quantity, reason)),
+        _ if !(file.tension_floor_n..=file.tension_ceiling_n).contains(&file.level_n) => {
+            Err((Quantity::Level, Reason::OutsideBounds))
+        }
         _ => Ok(()),
     }
 }

@@ -3,11 +3,15 @@
 use crate::framed;
 use crate::host_requests::{self, commanded, identify, ticks};
 use leg_firmware::command::Command;
+use leg_firmware::drive::Drive;
 use leg_firmware::example;
 use leg_firmware::frame::MAX_PAYLOAD;
 use leg_firmware::host_link::HostRequest;
 use leg_firmware::kernels::Kernel;
-use leg_firmware::protocol::{EvaluateRequest, Hello, KernelRequest, Request, SCHEMA, TickRequest};
+use leg_firmware::protocol::{
+    BoardStep, EvaluateRequest, Hello, KernelRequest, Request, SCHEMA, TickRequest,
+};
+use leg_firmware::sensors::Sensors;
 use leg_firmware::settings::Settings;
 use leg_model::RigParameters;
 use serde::Serialize;
@@ -41,6 +45,20 @@ pub fn requests() -> Vec<Vec<u8>> {
     for request in host_requests::every() {
         requests.extend(hears(&request).into_iter().map(Request::Tick));
     }
+    let drive = Drive {
+        duty: [0.5, -1.0, f32::NAN],
+        enabled: true,
+    };
+    let sensors = Sensors {
+        driver_fault: [false, true, false],
+        ..Sensors::default()
+    };
+    let steps = [
+        BoardStep::Read(sensors),
+        BoardStep::Drive(drive),
+        BoardStep::Cut,
+    ];
+    requests.extend(steps.map(Request::Board));
     let counted = hears(&commanded(Command::Hold));
     requests.extend(counted.into_iter().map(Request::CountTick));
     requests.iter().map(payload).collect()

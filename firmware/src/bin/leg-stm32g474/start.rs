@@ -77,6 +77,8 @@ pub async fn start(spawner: Spawner, p: Peripherals, origin: (Reset, Option<Kept
     control::start(Nucleo::new(power, encoders, converters), leg);
     power::start();
     spawn(&spawner, settings_task::keep_settings(store));
+    // Before the line is opened, which may wait for its hardware.
+    let watchdog = Watchdog::start(p.IWDG);
     match switches::read(p.PC10, p.PC11, p.PC12) {
         LinkChoice::Serial => match serial::open(p.LPUART1, p.PA3, p.PA2) {
             Ok(uart) => spawn(&spawner, serial::serve(uart, session)),
@@ -87,7 +89,6 @@ pub async fn start(spawner: Spawner, p: Peripherals, origin: (Reset, Option<Kept
             spawn(&spawner, can_bus::serve(node, session));
         }
     }
-    let watchdog = Watchdog::start(p.IWDG);
     spawn(
         &spawner,
         housekeeping::keep_house(slow_sensors, watchdog, cycles, lamp),

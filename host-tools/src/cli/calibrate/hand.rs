@@ -1,9 +1,8 @@
 //! Whoever hangs weights and turns motors: the user, or the emulation of one.
 
 use crate::failure::Failure;
-use crate::operator::{Operator, OperatorError};
+use crate::operator::Operator;
 use crate::transport::emulated::Emulated;
-use leg_firmware::host_link::HostRefusal;
 use std::io::BufRead;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
@@ -92,8 +91,10 @@ fn ask(operator: &mut Operator, what: &str) -> Result<(), Failure> {
 /// Refuses a leg that drives its motors.
 pub(super) fn drivers_off(operator: &mut Operator, asked: &'static str) -> Result<(), Failure> {
     if operator.telemetry()?.telemetry.state.driven() {
-        let refusal = HostRefusal::Driven;
-        return Err(OperatorError::Refused { asked, refusal }.into());
+        return Err(Failure::refused(
+            format!("the leg does not {asked} while its drivers are on"),
+            "run `leg disarm` first",
+        ));
     }
     Ok(())
 }

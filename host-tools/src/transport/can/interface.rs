@@ -38,7 +38,7 @@ pub enum InterfaceError {
         others: Vec<String>,
     },
     /// It is a network interface of another kind.
-    #[error("`{name}` is no CAN interface{}", there_is(.others))]
+    #[error("`{name}` is no CAN interface{}; name one that `ip link show type can` lists", there_is(.others))]
     NotCan {
         /// The name that was asked for.
         name: String,
@@ -226,7 +226,9 @@ mod tests {
         );
         assert_eq!(
             told("eth0")?.as_deref(),
-            Some("`eth0` is no CAN interface (there is can0, can1, can2)")
+            Some(
+                "`eth0` is no CAN interface (there is can0, can1, can2); name one that `ip link show type can` lists"
+            )
         );
         assert_eq!(
             told("can7")?.as_deref(),
