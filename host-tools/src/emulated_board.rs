@@ -17,6 +17,9 @@ const EXCHANGE_TIME: Duration = Duration::from_millis(1);
 /// word from its host.
 const BEHIND_MAX: Duration = Duration::from_millis(10);
 
+/// What waits for a host that does not read at once, bytes: about what a serial adapter and its driver hold. More is lost.
+const ADAPTER_BYTES: usize = 16 * 1024;
+
 /// Why an emulated board stops.
 #[derive(Debug, thiserror::Error)]
 pub enum BoardError {
@@ -33,6 +36,7 @@ pub struct EmulatedBoard {
     leg: EmulatedLeg,
     port: PseudoTerminal,
     incoming: VecDeque<u8>,
+    outgoing: VecDeque<u8>,
     /// Time that the leg has given up.
     given_up: Duration,
 }
@@ -45,6 +49,7 @@ impl EmulatedBoard {
             leg,
             port,
             incoming: VecDeque::new(),
+            outgoing: VecDeque::new(),
             given_up: Duration::ZERO,
         }
     }
@@ -79,10 +84,13 @@ impl EmulatedBoard {
         let behind = clock.saturating_sub(self.leg.time() + self.given_up);
         self.given_up += behind.saturating_sub(BEHIND_MAX);
         while self.leg.time() + self.given_up < clock {
-            let outgoing: Vec<u8> = self.leg.tick(&mut self.incoming)?.collect();
-            if !outgoing.is_empty() {
-                self.port.write(&outgoing)?;
-            }
+            let told = self.leg.tick(&mut self.incoming)?;
+            let room = ADAPTER_BYTES - self.outgoing.len();
+            self.outgoing.extend(told.take(room));
+        }
+        if !self.outgoing.is_empty() {
+            let count = self.port.write(self.outgoing.make_contiguous())?;
+            self.outgoing.drain(..count);
         }
         Ok(())
     }

@@ -60,13 +60,14 @@ impl PseudoTerminal {
         }
     }
 
-    /// Writes. What nobody reads is lost, as on a serial line.
+    /// Writes, and tells how many bytes there was room for.
     ///
     /// # Errors
     /// What the system says.
-    pub fn write(&self, bytes: &[u8]) -> io::Result<()> {
+    pub fn write(&self, bytes: &[u8]) -> io::Result<usize> {
         match rustix::io::write(&self.device, bytes) {
-            Ok(_) | Err(Errno::AGAIN | Errno::INTR) => Ok(()),
+            Ok(count) => Ok(count),
+            Err(Errno::AGAIN | Errno::INTR) => Ok(0),
             Err(error) => Err(error.into()),
         }
     }

@@ -32,10 +32,8 @@ fn monitor_and_log_run_beside_a_move() {
     let rows = std::fs::read_to_string(&file).unwrap().lines().count() as u64;
     assert_eq!(logged["count"].as_u64().unwrap() + 1, rows);
     // The introductions of the other two end the telemetry; it was asked for again before it was missed.
-    // A machine that has much else to do may lose some.
-    let [count, lost] = ["count", "lost"].map(|key| logged[key].as_u64().unwrap());
-    assert!(10 * lost <= count, "{logged}");
-    assert!(logged["longest_s"].as_f64().unwrap() < 0.5, "{logged}");
+    assert_eq!(logged["lost"], 0, "{logged}");
+    assert!(logged["longest_s"].as_f64().unwrap() < 0.15, "{logged}");
 }
 
 #[test]
