@@ -2,14 +2,16 @@
 //! only recorded, the virtual board with the simulated leg, and the virtual board inside QEMU.
 
 use leg_firmware::board::timing::PWM_TOP;
-use leg_firmware::board::{FaultLines, Half, LowerHalf, PowerPins, PowerStage, VirtualBoard};
+use leg_firmware::board::{FaultLines, Half, LowerHalf, PowerPins, PowerStage};
 use leg_firmware::drive::Drive;
-use leg_firmware::protocol::{BoardReply, BoardStep, Reply, Request};
 use leg_firmware::sensors::Sensors;
 use leg_firmware::settings::Settings;
-use leg_host_tools::link::Link;
-use leg_host_tools::plant::{Fault, Plant, PlantSettings, Start};
-use leg_host_tools::rig_file::RigFile;
+use leg_firmware_bench::protocol::{BoardReply, BoardStep, Reply, Request};
+use leg_firmware_bench::virtual_board::VirtualBoard;
+use leg_rig::plant_settings::PlantSettings;
+use leg_rig::rig_file::RigFile;
+use leg_sim::link::Link;
+use leg_sim::plant::{Fault, Plant, Start};
 use std::error::Error;
 
 const DRIVER_FAULT: Fault = Fault::DriverFault(0);

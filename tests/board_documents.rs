@@ -28,7 +28,7 @@ fn pins(text: &str) -> BTreeSet<String> {
 
 /// The code that hands each pin to its part, without the spaces.
 fn start() -> String {
-    let start = Path::new(FIRMWARE).join("src/bin/leg-stm32g474/start.rs");
+    let start = Path::new(FIRMWARE).join("stm32g474/src/start.rs");
     let mut text = fs::read_to_string(start).unwrap();
     text.retain(|c| !c.is_whitespace());
     text
@@ -128,7 +128,7 @@ fn the_picture_and_the_page_have_the_pins_of_the_wiring_table() {
 
 #[test]
 fn the_image_uses_the_pins_of_the_wiring_table() {
-    let start = fs::read_to_string(Path::new(FIRMWARE).join("src/bin/leg-stm32g474/start.rs"));
+    let start = fs::read_to_string(Path::new(FIRMWARE).join("stm32g474/src/start.rs"));
     let mut used = pins(&start.unwrap());
     // The button is named, so that nobody takes its pin.
     used.insert("PC13".into());
@@ -166,7 +166,7 @@ fn sources(folder: &Path, text: &mut String) {
 /// The sources of firmware and host, string literals in one line.
 fn all_sources() -> String {
     let mut text = String::new();
-    for folder in ["src", "../host-tools/src"] {
+    for folder in [".", "../host-tools"] {
         sources(&Path::new(FIRMWARE).join(folder), &mut text);
     }
     let lines = text.split("\\\n").map(str::trim_start);

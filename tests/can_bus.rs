@@ -5,7 +5,7 @@
 use leg_firmware::can::{Assembler, CanFrame, Identifier, LegAddress, Segmenter};
 use leg_firmware::command::Command;
 use leg_firmware::frame::{Decoder, MAX_FRAME, encode};
-use leg_host_tools::transport::bus::{Bus, Damage, NodeId, duration};
+use leg_host::transport::bus::{Bus, Damage, NodeId, duration};
 use std::cell::RefCell;
 use std::rc::Rc;
 

@@ -2,11 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_firmware::kernels::Kernel;
-use leg_firmware::protocol::{Reply, Request};
-use leg_host_tools::check::{self, Report, State};
-use leg_host_tools::link::{InProcess, Link, LinkError};
-use leg_host_tools::precision::{Row, TABLE};
+use leg_bench::check::{self, Report, State};
+use leg_bench::precision::{Row, TABLE};
+use leg_firmware_bench::kernels::Kernel;
+use leg_firmware_bench::protocol::{Reply, Request};
+use leg_sim::link::{InProcess, Link, LinkError};
 use std::process::Command;
 
 /// The firmware's code with one fault.
@@ -118,7 +118,7 @@ fn the_sign_of_a_zero_is_a_bit() {
 fn a_firmware_that_refuses_a_pose_has_missed() {
     let refuse = |request: &Request, reply: &mut Reply| {
         if is_run_of(request, Kernel::SinCos) {
-            *reply = Reply::Refused(leg_firmware::protocol::Refusal::Model(
+            *reply = Reply::Refused(leg_firmware_bench::protocol::Refusal::Model(
                 leg_model::Error::NotConverged,
             ));
         }

@@ -3,13 +3,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_host_tools::nonlinear::{Balance, Posture};
-use leg_host_tools::ready_rigs::READY_RIGS;
-use leg_host_tools::rig_file::RigFile;
-use leg_host_tools::rounding::{round, round_rig, round_support, round_tendons};
 use leg_model::{
     Direction, HoldError, Load, Rig, TensionBounds, Twist, estimate_load, inverse_statics,
 };
+use leg_model_tools::nonlinear::{Balance, Posture};
+use leg_rig::ready_rigs::READY_RIGS;
+use leg_rig::rig_file::RigFile;
+use leg_rig::rounding::{round, round_rig, round_support, round_tendons};
 use nalgebra::Vector3;
 
 const PAYLOADS_KG: [f64; 4] = [0.0, 0.5, 1.0, 2.0];

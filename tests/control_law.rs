@@ -8,9 +8,9 @@ use leg_firmware::leg::{Leg, Outcome};
 use leg_firmware::sensors::{CODE_MAX, Sensors, TICK_HZ};
 use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::{Fault, State};
-use leg_host_tools::control_settings;
-use leg_host_tools::rig_file::RigFile;
 use leg_model::{HalfTangent, Scalar};
+use leg_rig::control_settings;
+use leg_rig::rig_file::RigFile;
 
 const TICK_S: f64 = 1.0 / TICK_HZ as f64;
 

@@ -4,15 +4,15 @@
 
 use leg_firmware::leg::Leg;
 use leg_firmware::settings::Settings;
-use leg_host_tools::control_settings::settings;
-use leg_host_tools::ready_rigs::READY_RIGS;
-use leg_host_tools::rig_file::RigFile;
+use leg_rig::control_settings::settings;
+use leg_rig::ready_rigs::READY_RIGS;
+use leg_rig::rig_file::RigFile;
 use std::error::Error;
 use std::path::Path;
 
 const BLOB: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
-    "/../firmware/src/settings/default.postcard"
+    "/../firmware/library/src/settings/default.postcard"
 );
 
 /// What the blob should hold.

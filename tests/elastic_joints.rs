@@ -2,11 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_host_tools::rig_file::RigFile;
 use leg_model::{
     Direction, JointStiffness, Query, Support, SupportKind, Twist, evaluate,
     joint_stiffness_leg_fixed, series_stiffness_printed, support_stiffness_printed,
 };
+use leg_rig::rig_file::RigFile;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 const BENDING: f64 = 2.0;

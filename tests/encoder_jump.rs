@@ -6,9 +6,9 @@ use leg_firmware::command::Command;
 use leg_firmware::leg::Leg;
 use leg_firmware::sensors::Sensors;
 use leg_firmware::supervisor::State;
-use leg_host_tools::rig_file::RigFile;
-use leg_host_tools::scenario::Scenario;
-use leg_host_tools::simulation::{InThisProcess, Simulation};
+use leg_rig::rig_file::RigFile;
+use leg_sim::scenario::Scenario;
+use leg_sim::simulation::{InThisProcess, Simulation};
 use std::path::Path;
 
 /// A leg that follows commands, and what its sensors then read.
@@ -19,7 +19,7 @@ fn active_leg() -> (Leg<f32>, Sensors) {
     let simulation = Simulation::new(&scenario, &rig).unwrap();
     let mut leg = Leg::new(simulation.settings()).unwrap();
     let mut sensors = Vec::new();
-    let watch = &mut |tick: &leg_host_tools::simulation::Tick<'_>| sensors.push(*tick.sensors);
+    let watch = &mut |tick: &leg_sim::simulation::Tick<'_>| sensors.push(*tick.sensors);
     simulation
         .run(&mut InThisProcess::default(), watch)
         .unwrap();

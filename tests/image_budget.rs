@@ -3,11 +3,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_host_tools::image::{self, Board};
-use leg_host_tools::image_budget::{
+use leg_bench::image_budget::{
     self, ImageBudgetError, ImageNeeds, Root, RootKind, checks, needs, root,
 };
-use leg_host_tools::setup;
+use leg_boards::image::{self, Board};
+use leg_boards::setup;
 use leg_tests::panic_free;
 use std::process::Command;
 

@@ -4,12 +4,13 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use leg_firmware::command::Command;
-use leg_firmware::example;
 use leg_firmware::frame::{Decoder, FrameError, MAX_FRAME, encode};
+use leg_firmware::host_link::Hello;
 use leg_firmware::host_link::HostRequest;
 use leg_firmware::messages::{QueryMessage, TendonMessage, TendonsMessage};
-use leg_firmware::protocol::{EvaluateRequest, Hello, Request, SCHEMA, TickRequest};
 use leg_firmware::sensors::Sensors;
+use leg_firmware_bench::example;
+use leg_firmware_bench::protocol::{BENCH_SCHEMA, EvaluateRequest, Request, TickRequest};
 use leg_model::{CURVE_POINTS_MAX, CurvePoint, RigParameters};
 use std::fmt;
 
@@ -38,7 +39,9 @@ fn decode(bytes: &[u8]) -> Vec<Found> {
 /// A short request, one with a frame inside, and one that takes more than one of COBS's blocks.
 fn requests() -> [Request; 3] {
     [
-        Request::Hello(Hello { schema: SCHEMA }),
+        Request::Hello(Hello {
+            schema: BENCH_SCHEMA,
+        }),
         tick(),
         Request::Evaluate(evaluate()),
     ]

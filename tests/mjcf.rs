@@ -3,10 +3,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_host_tools::mjcf::{HeldLeg, HeldTendon, Mjcf};
-use leg_host_tools::nonlinear::{Balance, Posture};
-use leg_host_tools::rig_file::RigFile;
 use leg_model::{Direction, Evaluation, Load, Query, Rig, Tendon, evaluate};
+use leg_model_tools::mjcf::{HeldLeg, HeldTendon, Mjcf};
+use leg_model_tools::nonlinear::{Balance, Posture};
+use leg_rig::rig_file::RigFile;
 use leg_tests::{mujoco, numbers};
 use nalgebra::{Matrix3, Matrix3x2, Vector3};
 use serde_json::{Value, json};

@@ -4,10 +4,10 @@
 
 use fastrand::Rng;
 use leg_firmware::supervisor::{FaultSet, State};
-use leg_host_tools::plant::Fault;
-use leg_host_tools::rig_file::RigFile;
-use leg_host_tools::scenario::Scenario;
-use leg_host_tools::simulation::{InThisProcess, Simulation, Tick};
+use leg_rig::rig_file::RigFile;
+use leg_sim::plant::Fault;
+use leg_sim::scenario::Scenario;
+use leg_sim::simulation::{InThisProcess, Simulation, Tick};
 use std::fmt::Write;
 use std::path::Path;
 

@@ -3,12 +3,12 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use leg_firmware::settings::{SECTIONS, Settings};
-use leg_host_tools::actuator::Actuator;
-use leg_host_tools::plant::PlantSettings;
-use leg_host_tools::ready_rigs::READY_RIGS;
-use leg_host_tools::rig_file::RigFile;
-use leg_host_tools::scenario::Scenario;
-use leg_host_tools::simulation::{InThisProcess, Simulation, Summary};
+use leg_rig::actuator::Actuator;
+use leg_rig::plant_settings::PlantSettings;
+use leg_rig::ready_rigs::READY_RIGS;
+use leg_rig::rig_file::RigFile;
+use leg_sim::scenario::Scenario;
+use leg_sim::simulation::{InThisProcess, Simulation, Summary};
 
 /// The default rig with more sections.
 fn rig(more: &str) -> RigFile {

@@ -2,13 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use leg_bench::sensitivity;
 use leg_firmware::supervisor::Fault;
-use leg_host_tools::link::Link;
-use leg_host_tools::ready_scenarios::{self, READY_SCENARIOS};
-use leg_host_tools::rig_file::RigFile;
-use leg_host_tools::scenario::{Scenario, Step};
-use leg_host_tools::sensitivity;
-use leg_host_tools::simulation::{Controller, InThisProcess, OnLink, Simulation, Summary};
+use leg_rig::rig_file::RigFile;
+use leg_sim::link::Link;
+use leg_sim::ready_scenarios::{self, READY_SCENARIOS};
+use leg_sim::scenario::{Scenario, Step};
+use leg_sim::simulation::{Controller, InThisProcess, OnLink, Simulation, Summary};
 use std::path::Path;
 
 /// Everything of a tick that a controller decides, as bits.

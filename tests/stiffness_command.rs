@@ -2,13 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_host_tools::nonlinear::{Balance, Posture};
-use leg_host_tools::ready_rigs::READY_RIGS;
-use leg_host_tools::rig_file::RigFile;
 use leg_model::{
     Bound, Direction, Error, Limit, Load, Query, Rig, StiffnessAnswer, StiffnessDemand,
     TensionBounds, evaluate, inverse_statics,
 };
+use leg_model_tools::nonlinear::{Balance, Posture};
+use leg_rig::ready_rigs::READY_RIGS;
+use leg_rig::rig_file::RigFile;
 use nalgebra::Vector3;
 
 fn table_1() -> RigFile {

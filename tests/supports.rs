@@ -3,10 +3,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_host_tools::nonlinear;
-use leg_host_tools::ready_rigs::{READY_RIGS, ReadyRig};
-use leg_host_tools::rig_file::RigFile;
 use leg_model::{Query, StiffnessAt, evaluate};
+use leg_model_tools::nonlinear;
+use leg_rig::ready_rigs::{READY_RIGS, ReadyRig};
+use leg_rig::rig_file::RigFile;
 use leg_tests::{difference, numbers};
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;

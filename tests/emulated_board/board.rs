@@ -1,6 +1,6 @@
 //! An emulated board in the background, and the commands for it.
 
-use leg_host_tools::ready_rigs::READY_RIGS;
+use leg_rig::ready_rigs::READY_RIGS;
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, Command, Output, Stdio};

@@ -1,7 +1,7 @@
 //! The steps of BOARD.md that need no board, typed as they stand there.
 
 use super::board::{Board, PATIENT};
-use leg_host_tools::image::workspace_root;
+use leg_boards::image::workspace_root;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::Path;
 use std::process::{Command, Stdio};

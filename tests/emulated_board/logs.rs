@@ -1,8 +1,8 @@
 //! Who only looks: logs, monitors, datagrams.
 
 use super::board::{Board, errors, move_to, signal};
-use leg_host_tools::transport::Transport;
-use leg_host_tools::transport::serial::Serial;
+use leg_host::transport::Transport;
+use leg_host::transport::serial::Serial;
 use serde_json::Value;
 use std::io::ErrorKind;
 use std::thread::sleep;

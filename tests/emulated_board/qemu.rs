@@ -1,7 +1,7 @@
 //! The firmware under QEMU behind the pseudo-terminal.
 
 use super::board::{Board, SLOW, errors};
-use leg_host_tools::{image, setup};
+use leg_boards::{image, setup};
 
 #[test]
 fn a_leg_under_qemu_homes_moves_and_is_stopped_on_its_way() {

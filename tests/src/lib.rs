@@ -3,10 +3,11 @@
 pub mod mujoco;
 pub mod panic_free;
 
-pub use leg_host_tools::{numeric, plain_vectors as reference};
+pub use leg_base::numeric;
+pub use leg_model_tools::plain_vectors as reference;
 
-use leg_host_tools::qemu::{Config, Session};
-use leg_host_tools::{image, setup};
+use leg_boards::qemu::{Config, Session};
+use leg_boards::{image, setup};
 use leg_model::{Error, Scalar, Tendon};
 use serde_json::Value;
 

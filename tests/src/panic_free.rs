@@ -1,7 +1,7 @@
 //! The image that cannot be linked if any request can make the firmware panic.
 
-use leg_host_tools::image::workspace_root;
-use leg_host_tools::setup;
+use leg_boards::image::workspace_root;
+use leg_boards::setup;
 use std::error::Error;
 use std::path::PathBuf;
 use std::process::{Command, Output};

@@ -4,8 +4,8 @@
 
 use leg_firmware::frame::{Decoder, MAX_FRAME};
 use leg_firmware::host_link::HostReply;
-use leg_firmware::protocol::Reply;
-use leg_firmware::server::Server;
+use leg_firmware_bench::protocol::Reply;
+use leg_firmware_bench::server::Server;
 use leg_fuzz::{NoBoard, armed, brought, feed, framed, host_requests, requests};
 use libfuzzer_sys::arbitrary::{self, Arbitrary};
 use libfuzzer_sys::fuzz_target;

@@ -1,9 +1,9 @@
 //! A board without hardware.
 
-use leg_firmware::counter::Counter;
-use leg_firmware::protocol::{self, BoardInfo};
-use leg_firmware::server::Board;
 use leg_firmware::settings::Settings;
+use leg_firmware_bench::counter::Counter;
+use leg_firmware_bench::protocol::{self, BoardInfo};
+use leg_firmware_bench::server::Board;
 
 /// A board that counts every kernel as one instruction, so that counted ticks run, too.
 pub struct NoBoard;
@@ -18,7 +18,7 @@ impl Counter for NoBoard {
 impl Board for NoBoard {
     fn info(&self) -> BoardInfo {
         BoardInfo {
-            board: protocol::BoardKind::InProcess,
+            board: BoardKind::InProcess,
             boot: None,
         }
     }

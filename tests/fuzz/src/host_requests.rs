@@ -4,8 +4,10 @@ use crate::framed;
 use crate::requests::{payload, settings};
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::host_link::HostRequest;
-use leg_firmware::protocol::{Hello, LINK_BYTES_MAX, Request, SCHEMA, TickRequest};
+use leg_firmware::host_link::{HOST_SCHEMA, Hello};
+use leg_firmware::linked_leg::LINK_BYTES_MAX;
 use leg_firmware::sensors::{CODE_MAX, Sensors};
+use leg_firmware_bench::protocol::{Request, TickRequest};
 
 /// Every request of a user's host.
 pub(crate) fn every() -> Vec<HostRequest> {
@@ -41,7 +43,9 @@ const COMMANDS: [Command; 12] = [
 ];
 
 pub(crate) fn identify() -> HostRequest {
-    HostRequest::Identify(Hello { schema: SCHEMA })
+    HostRequest::Identify(Hello {
+        schema: HOST_SCHEMA,
+    })
 }
 
 pub(crate) fn commanded(command: Command) -> HostRequest {

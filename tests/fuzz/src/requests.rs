@@ -4,15 +4,16 @@ use crate::framed;
 use crate::host_requests::{self, commanded, identify, ticks};
 use leg_firmware::command::Command;
 use leg_firmware::drive::Drive;
-use leg_firmware::example;
 use leg_firmware::frame::MAX_PAYLOAD;
+use leg_firmware::host_link::Hello;
 use leg_firmware::host_link::HostRequest;
-use leg_firmware::kernels::Kernel;
-use leg_firmware::protocol::{
-    BoardStep, EvaluateRequest, Hello, KernelRequest, Request, SCHEMA, TickRequest,
-};
 use leg_firmware::sensors::Sensors;
 use leg_firmware::settings::Settings;
+use leg_firmware_bench::example;
+use leg_firmware_bench::kernels::Kernel;
+use leg_firmware_bench::protocol::{
+    BENCH_SCHEMA, BoardStep, EvaluateRequest, KernelRequest, Request, TickRequest,
+};
 use leg_model::RigParameters;
 use serde::Serialize;
 
@@ -22,7 +23,9 @@ const BOOT_TICKS: usize = 20;
 /// The payloads that make a leg and arm it.
 pub fn armed() -> Vec<Vec<u8>> {
     let mut requests = vec![
-        Request::Hello(Hello { schema: SCHEMA }),
+        Request::Hello(Hello {
+            schema: BENCH_SCHEMA,
+        }),
         Request::Start(settings()),
     ];
     let boot = std::iter::repeat_n(commanded(Command::KeepAlive), BOOT_TICKS);
@@ -36,7 +39,9 @@ pub fn armed() -> Vec<Vec<u8>> {
 /// The payload of each request.
 pub fn requests() -> Vec<Vec<u8>> {
     let mut requests = vec![
-        Request::Hello(Hello { schema: SCHEMA }),
+        Request::Hello(Hello {
+            schema: BENCH_SCHEMA,
+        }),
         Request::Evaluate(evaluate()),
         Request::Start(settings()),
     ];
@@ -104,10 +109,11 @@ mod tests {
     use crate::host_requests::{identify, ticks};
     use crate::{NoBoard, brought, feed, framed, host_requests};
     use leg_firmware::frame::{Decoder, MAX_FRAME};
+    use leg_firmware::host_link::Hello;
     use leg_firmware::host_link::{HostRefusal, HostReply};
-    use leg_firmware::protocol::{Hello, Reply, Request, SCHEMA};
-    use leg_firmware::server::Server;
     use leg_firmware::supervisor::State;
+    use leg_firmware_bench::protocol::{BENCH_SCHEMA, Reply, Request};
+    use leg_firmware_bench::server::Server;
 
     fn ask(server: &mut Server<NoBoard>, payload: &[u8]) -> Reply {
         let mut decoder = Decoder::new();
@@ -159,7 +165,9 @@ mod tests {
     #[test]
     fn every_request_of_a_host_is_read_by_the_leg() {
         let (mut server, mut host) = (Server::new(NoBoard), Decoder::new());
-        let hello = Request::Hello(Hello { schema: SCHEMA });
+        let hello = Request::Hello(Hello {
+            schema: BENCH_SCHEMA,
+        });
         ask(&mut server, &payload(&hello));
         ask(&mut server, &payload(&Request::Start(settings())));
         let [quiet] = ticks(&[0]).try_into().expect("one tick");

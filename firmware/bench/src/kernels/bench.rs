@@ -1,0 +1,87 @@
+//! The arguments of every kernel, validated and prepared, so that only the kernel itself is counted.
+
+use super::KernelInput;
+use leg_firmware::messages::widened;
+use leg_model::{
+    ConstantStiffness, CurvePoint, Direction, Distribution, Elasticity, Error, FreePlane,
+    Kinematics, Load, Rig, Scalar, Support, SupportKind, TendonCurve, TendonStates, TensionBounds,
+    Twist, distribute, inverse_kinematics,
+};
+use nalgebra::{SVector, Vector3};
+
+/// Prepared arguments. The curves come last: a load reaches no further than 1 020 bytes, and an address that had to be
+/// added up would be counted with the kernel.
+#[repr(C)]
+pub struct Bench<T> {
+    pub rig: Rig<T, 3>,
+    pub direction: Direction<T>,
+    pub load: Load<T>,
+    pub plane: FreePlane<T>,
+    pub states: TendonStates<T, 3>,
+    pub start: Direction<T>,
+    pub moment: Vector3<T>,
+    pub bounds: TensionBounds<T>,
+    pub level: T,
+    pub angle: T,
+    pub lengths: SVector<T, 3>,
+    pub lengths_universal: SVector<T, 3>,
+    pub kinematics: Kinematics<T, 3>,
+    pub distribution: Distribution<T, 3>,
+    pub tendons: [ConstantStiffness<T>; 3],
+    pub demand: T,
+    pub support: Support<T>,
+    pub curves: [TendonCurve<T>; 3],
+}
+
+impl<T: Scalar> Bench<T> {
+    pub fn new(input: &KernelInput) -> Result<Self, Error> {
+        let rig = Rig::new(&input.rig.into())?;
+        let direction = Direction::from_angles(input.azimuth_rad.into(), input.tilt_rad.into())?;
+        let bounds =
+            TensionBounds::new(input.tension_floor_n.into(), input.tension_ceiling_n.into())?;
+        let tendon = ConstantStiffness::new(input.stiffness_n_per_m.into())?;
+        let load = Load::new(&rig, input.payload_kg.into())?;
+        let moment = load.moment(&direction);
+        let plane = FreePlane::torsion_free(&direction);
+        let kinematics = inverse_kinematics(rig.geometry(), &direction)?;
+        let distribution = distribute(&kinematics.moment_map, &plane, &moment, &bounds)?;
+        let level = input.level_n.into();
+        let states = TendonStates::new(
+            distribution.tensions(level),
+            SVector::repeat(tendon.stiffness_n_per_m()),
+        )?;
+        let start =
+            Direction::from_angles(input.start_azimuth_rad.into(), input.start_tilt_rad.into())?;
+        let twist = Twist::universal(&direction.half_tangent());
+        let twisted = rig.geometry().twisted(&twist);
+        let errors = SVector::from(input.length_errors_m.map(T::from));
+        Ok(Self {
+            angle: input.azimuth_rad.into(),
+            rig,
+            direction,
+            start,
+            plane,
+            load,
+            moment,
+            bounds,
+            level,
+            support: SupportKind::TorsionFree.into(),
+            tendons: [tendon; 3],
+            curves: [curve(level, tendon.stiffness_n_per_m())?; 3],
+            demand: input.demand_nm_per_rad.into(),
+            kinematics,
+            distribution,
+            states,
+            lengths: kinematics.lengths + errors,
+            lengths_universal: inverse_kinematics(&twisted, &direction)?.lengths + errors,
+        })
+    }
+}
+
+/// The paper's tendon, scaled to a stiffness (N/m) at a level (N).
+fn curve<T: Scalar>(level: T, stiffness: T) -> Result<TendonCurve<T>, Error> {
+    let points = CurvePoint::<f32>::PAPER;
+    let softening =
+        TendonCurve::new(&points.map(|point| widened(&point)))?.stiffness(level)? / stiffness;
+    TendonCurve::new(&points.map(|point| widened(&point).scaled(softening, T::one())))
+}

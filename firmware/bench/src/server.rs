@@ -1,0 +1,150 @@
+//! Answers requests: the same on every board and inside the host's own process.
+
+use crate::boarded_leg::BoardedLeg;
+use crate::counter::Counter;
+use crate::kernels;
+use crate::protocol::{
+    BENCH_SCHEMA, BoardInfo, BoardStep, EvaluateRequest, KernelRequest, Refusal, Reply, Request,
+    TickRequest,
+};
+use leg_firmware::frame::{self, Frame, FrameError, MAX_FRAME};
+use leg_firmware::host_link::{BoardKind, Hello, Identity, Reset};
+use leg_firmware::settings::Settings;
+use leg_firmware::version::VERSION;
+
+#[cfg(test)]
+mod tests;
+
+/// What the server needs from the board that it runs on.
+pub trait Board: Counter {
+    /// What the board is and found at boot.
+    fn info(&self) -> BoardInfo;
+
+    /// Keeps settings over a reset; false if that failed.
+    fn save(&mut self, settings: &Settings) -> bool;
+}
+
+/// One end of a link: it answers each request with one reply.
+#[derive(Debug)]
+pub struct Server<B> {
+    board: B,
+    greeted: bool,
+    leg: Option<BoardedLeg>,
+}
+
+impl<B: Board> Server<B> {
+    /// A server whose host has not said [`Request::Hello`] yet.
+    pub const fn new(board: B) -> Self {
+        Self {
+            board,
+            greeted: false,
+            leg: None,
+        }
+    }
+
+    /// Answers what a [`frame::Decoder`] found and returns the reply's frame.
+    ///
+    /// The reply has the request's sequence; a frame that could not be read is answered by
+    /// [`Refusal::BadFrame`] with sequence 0, which no request has.
+    ///
+    /// # Errors
+    /// [`FrameError::TooLong`] if the reply does not fit into a frame.
+    pub fn answer<'a>(
+        &mut self,
+        request: Result<Frame<'_>, FrameError>,
+        out: &'a mut [u8; MAX_FRAME],
+    ) -> Result<&'a [u8], FrameError> {
+        match request {
+            Ok(frame) => frame::encode(frame.sequence, &self.reply(&frame), out),
+            Err(error) => frame::encode(0, &Reply::Refused(Refusal::BadFrame(error)), out),
+        }
+    }
+
+    fn reply(&mut self, frame: &Frame<'_>) -> Reply {
+        let reply = match frame.message::<Request>() {
+            None => Err(Refusal::BadRequest),
+            Some(Request::Hello(hello)) => self.greet(hello),
+            Some(_) if !self.greeted => Err(Refusal::NoHello),
+            Some(Request::Evaluate(request)) => evaluate(&request),
+            Some(Request::Run(request)) => run(&request),
+            Some(Request::Count(request)) => self.count(&request),
+            Some(Request::Start(settings)) => self.start(&settings),
+            Some(Request::Tick(request)) => self.tick(&request),
+            Some(Request::CountTick(request)) => self.count_tick(&request),
+            Some(Request::Board(step)) => self.board_step(&step),
+        };
+        reply.unwrap_or_else(Reply::Refused)
+    }
+
+    fn greet(&mut self, hello: Hello) -> Result<Reply, Refusal> {
+        self.greeted = hello.schema == BENCH_SCHEMA;
+        if self.greeted {
+            Ok(Reply::Hello(self.board.info()))
+        } else {
+            Err(Refusal::SchemaMismatch {
+                schema: BENCH_SCHEMA,
+            })
+        }
+    }
+
+    #[inline(never)]
+    fn start(&mut self, settings: &Settings) -> Result<Reply, Refusal> {
+        let identity = emulated(self.board.info().board);
+        self.leg = Some(BoardedLeg::new(identity, settings).map_err(Refusal::Settings)?);
+        Ok(Reply::Started)
+    }
+
+    #[inline(never)]
+    fn tick(&mut self, request: &TickRequest) -> Result<Reply, Refusal> {
+        let leg = self.leg.as_mut().ok_or(Refusal::NoLeg)?;
+        let board = &mut self.board;
+        let save = |settings: &Settings| board.save(settings);
+        Ok(Reply::Ticked(leg.tick(request, save)))
+    }
+
+    #[inline(never)]
+    fn count_tick(&mut self, request: &TickRequest) -> Result<Reply, Refusal> {
+        let leg = self.leg.as_mut().ok_or(Refusal::NoLeg)?;
+        leg.count_tick(request, &mut self.board, B::save)
+            .map(Reply::Ticked)
+            .ok_or(Refusal::NoCounter)
+    }
+
+    #[inline(never)]
+    fn board_step(&mut self, step: &BoardStep) -> Result<Reply, Refusal> {
+        let leg = self.leg.as_mut().ok_or(Refusal::NoLeg)?;
+        Ok(Reply::Board(leg.board_step(step)))
+    }
+
+    fn count(&mut self, request: &KernelRequest) -> Result<Reply, Refusal> {
+        kernels::count(request.kernel, &request.input, &mut self.board)
+            .map_err(Refusal::Model)?
+            .map(Reply::Counted)
+            .ok_or(Refusal::NoCounter)
+    }
+}
+
+/// What an emulated board is to the user's host.
+#[must_use]
+pub fn emulated(board: BoardKind) -> Identity {
+    Identity {
+        board,
+        version: VERSION,
+        reset: Reset::Emulated,
+        last_words: heapless::String::new(),
+    }
+}
+
+fn evaluate(request: &EvaluateRequest) -> Result<Reply, Refusal> {
+    let evaluated = request
+        .query
+        .query()
+        .and_then(|query| leg_model::evaluate(&request.rig.into(), &query));
+    evaluated.map(Reply::Evaluation).map_err(Refusal::Model)
+}
+
+fn run(request: &KernelRequest) -> Result<Reply, Refusal> {
+    kernels::run(request.kernel, &request.input)
+        .map(Reply::Ran)
+        .map_err(Refusal::Model)
+}

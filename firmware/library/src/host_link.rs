@@ -1,0 +1,268 @@
+//! The leg's end of the line to a user's host: the same on the board, under QEMU and in the host's process.
+
+mod messages;
+mod outbox;
+
+pub use messages::{
+    BoardKind, HOST_SCHEMA, Hello, HostId, HostRefusal, HostReply, HostRequest, Identity,
+    LAST_WORDS_MAX, Reset, Told,
+};
+
+use crate::command::Command;
+use crate::frame::{Decoder, Frame, FrameError, MAX_FRAME};
+use crate::leg::Outcome;
+use crate::sensors::Sensors;
+use crate::settings::Settings;
+use crate::telemetry::Telemetry;
+use outbox::Outbox;
+
+#[cfg(test)]
+mod tests;
+
+/// A leg that a host can command.
+pub trait Commanded {
+    /// Takes a command for a later tick; false if there is no room.
+    fn command(&mut self, number: u16, command: Command) -> bool;
+    /// Takes note of a frame that could not be read.
+    fn misheard(&mut self);
+    /// What became of a command.
+    fn outcome(&mut self) -> Option<Outcome>;
+    /// The leg after the last tick.
+    fn telemetry(&mut self) -> Telemetry<f32>;
+    /// What the sensors read last.
+    fn sensors(&mut self) -> Sensors;
+    /// Starts again with other settings and without its zero. Faults stay latched.
+    ///
+    /// # Errors
+    /// [`HostRefusal::Driven`] and [`HostRefusal::Settings`]; the old settings stay in use.
+    fn restart(&mut self, settings: &Settings) -> Result<(), HostRefusal>;
+}
+
+/// The leg's end of the line.
+#[derive(Debug)]
+pub struct HostLink {
+    decoder: Decoder,
+    outbox: Outbox,
+    service: Service,
+}
+
+/// What there is beside the bytes.
+#[derive(Debug)]
+struct Service {
+    identity: Identity,
+    identified: bool,
+    settings: Settings,
+    /// Host of the last command that can set the leg in motion.
+    driver: Option<HostId>,
+    stream: Stream,
+    /// Number of the request to save that waits for [`HostLink::saved`].
+    saving: Option<u16>,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Stream {
+    every_ticks: u16,
+    last_tick: u32,
+    number: u32,
+}
+
+impl HostLink {
+    /// A line on which nothing was said yet, to a leg with these settings.
+    #[must_use]
+    pub fn new(identity: Identity, settings: Settings) -> Self {
+        Self {
+            decoder: Decoder::new(),
+            outbox: Outbox::new(),
+            service: Service {
+                identity,
+                identified: false,
+                settings,
+                driver: None,
+                stream: Stream::default(),
+                saving: None,
+            },
+        }
+    }
+
+    /// Takes bytes from the host.
+    pub fn receive(&mut self, bytes: &[u8], leg: &mut impl Commanded) {
+        for &byte in bytes {
+            let Some(found) = self.decoder.push(byte) else {
+                continue;
+            };
+            if let Some((number, reply)) = self.service.answer(found, leg) {
+                // Without room the reply is lost, and the host asks again.
+                self.outbox.put(number, &reply, 0);
+            }
+        }
+    }
+
+    /// Tells the host what became of its commands, and what it asked to be told again and again. Called after each tick, or
+    /// more seldom.
+    pub fn report(&mut self, leg: &mut impl Commanded) {
+        while let Some(Outcome { number, result }) = leg.outcome() {
+            let reply = match result {
+                Ok(()) => HostReply::Done,
+                Err(refusal) => HostReply::Refused(HostRefusal::Command(refusal)),
+            };
+            self.outbox.put(number, &reply, 0);
+        }
+        if self.service.stream.every_ticks > 0 {
+            self.stream(&leg.telemetry());
+        }
+    }
+
+    fn stream(&mut self, telemetry: &Telemetry<f32>) {
+        let stream = &mut self.service.stream;
+        let due = telemetry.tick.wrapping_sub(stream.last_tick) >= u32::from(stream.every_ticks);
+        if !due {
+            return;
+        }
+        stream.last_tick = telemetry.tick;
+        stream.number = stream.number.wrapping_add(1);
+        let told = Told {
+            number: stream.number,
+            telemetry: *telemetry,
+        };
+        // Replies go first: a full line costs telemetry.
+        self.outbox.put(0, &HostReply::Telemetry(told), MAX_FRAME);
+    }
+
+    /// The next byte for the host.
+    pub fn transmit(&mut self) -> Option<u8> {
+        self.outbox.take()
+    }
+
+    /// The settings that the host asks to keep; [`Self::saved`] has to follow.
+    #[must_use]
+    pub fn to_save(&self) -> Option<&Settings> {
+        self.service.saving.and(Some(&self.service.settings))
+    }
+
+    /// Tells the host whether its settings were kept.
+    pub fn saved(&mut self, kept: bool) {
+        if let Some(number) = self.service.saving.take() {
+            let reply = if kept {
+                HostReply::Done
+            } else {
+                HostReply::Refused(HostRefusal::NotSaved)
+            };
+            self.outbox.put(number, &reply, 0);
+        }
+    }
+}
+
+impl Service {
+    /// The reply to what the decoder found, if it does not come later.
+    fn answer(
+        &mut self,
+        found: Result<Frame<'_>, FrameError>,
+        leg: &mut impl Commanded,
+    ) -> Option<(u16, HostReply)> {
+        let (number, result) = match found {
+            Ok(frame) => {
+                let request = frame.message().ok_or(HostRefusal::BadRequest);
+                let result = request.and_then(|request| self.serve(frame.sequence, request, leg));
+                (frame.sequence, result)
+            }
+            Err(error) => (0, Err(HostRefusal::BadFrame(error))),
+        };
+        if let Err(HostRefusal::BadFrame(_) | HostRefusal::BadRequest) = result {
+            leg.misheard();
+        }
+        match result {
+            Ok(reply) => reply.map(|reply| (number, reply)),
+            Err(refusal) => Some((number, HostReply::Refused(refusal))),
+        }
+    }
+
+    /// Serves a request; no reply if that comes later.
+    fn serve(
+        &mut self,
+        number: u16,
+        request: HostRequest,
+        leg: &mut impl Commanded,
+    ) -> Result<Option<HostReply>, HostRefusal> {
+        if let HostRequest::Identify(hello) = request {
+            return self.identify(hello).map(Some);
+        }
+        if !self.identified {
+            return Err(HostRefusal::NotIdentified);
+        }
+        Ok(Some(match request {
+            HostRequest::Identify(_) => return Err(HostRefusal::BadRequest),
+            HostRequest::Command { host, command } => {
+                return self.command(number, host, command, leg);
+            }
+            HostRequest::Telemetry => HostReply::Telemetry(Told {
+                number: self.stream.number,
+                telemetry: leg.telemetry(),
+            }),
+            HostRequest::Stream(every_ticks) => {
+                self.stream.every_ticks = every_ticks;
+                HostReply::Done
+            }
+            HostRequest::Sensors => HostReply::Sensors(leg.sensors()),
+            HostRequest::GetSettings => HostReply::Settings(self.settings.clone()),
+            HostRequest::SetSettings(settings) => {
+                if self.saving.is_some() {
+                    // What is told to be kept would not be what is in use.
+                    return Err(HostRefusal::Busy);
+                }
+                leg.restart(&settings)?;
+                // The leg has started without it.
+                self.settings = settings.without_zero();
+                HostReply::Done
+            }
+            HostRequest::SaveSettings => {
+                if leg.telemetry().state.driven() {
+                    return Err(HostRefusal::Driven);
+                }
+                if self.saving.is_some() {
+                    return Err(HostRefusal::Busy);
+                }
+                self.saving = Some(number);
+                return Ok(None);
+            }
+        }))
+    }
+
+    fn identify(&mut self, hello: Hello) -> Result<HostReply, HostRefusal> {
+        if hello.schema != HOST_SCHEMA {
+            // Whoever is known on the line stays so: a stranger must not take the leg from its host.
+            return Err(HostRefusal::SchemaMismatch {
+                schema: HOST_SCHEMA,
+            });
+        }
+        self.identified = true;
+        // A new host has not asked for anything yet.
+        self.stream.every_ticks = 0;
+        Ok(HostReply::Identified(self.identity.clone()))
+    }
+
+    /// Passes a command on. Any host may stop or disarm a leg; whatever else a leg does that follows commands, it does for
+    /// the one that set it in motion.
+    fn command(
+        &mut self,
+        number: u16,
+        host: HostId,
+        command: Command,
+        leg: &mut impl Commanded,
+    ) -> Result<Option<HostReply>, HostRefusal> {
+        let ends = matches!(command, Command::Stop | Command::Disarm);
+        let begins = matches!(command, Command::Arm | Command::Home | Command::Clear);
+        let follows = leg.telemetry().state.follows();
+        if follows && !ends && self.driver.is_some_and(|driver| driver != host) {
+            return Err(HostRefusal::OtherHost);
+        }
+        // Flash is written at rest alone.
+        let waits = begins && self.saving.is_some();
+        if waits || !leg.command(number, command) {
+            return Err(HostRefusal::Busy);
+        }
+        if begins {
+            self.driver = Some(host);
+        }
+        Ok(None)
+    }
+}

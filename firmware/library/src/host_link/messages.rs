@@ -1,0 +1,160 @@
+//! What a user's host and a leg say to each other, on every transport.
+
+use crate::command::{Command, CommandRefusal};
+use crate::frame::FrameError;
+use crate::sensors::Sensors;
+use crate::settings::{Settings, SettingsError};
+use crate::telemetry::Telemetry;
+use heapless::String;
+use postcard_schema::{Schema, key::Key};
+use serde::{Deserialize, Serialize};
+
+/// Longest text that a board keeps over a reset, bytes.
+pub const LAST_WORDS_MAX: usize = 96;
+
+/// Hash of the messages between a host and a leg: it changes when the shape of one of them changes.
+pub const HOST_SCHEMA: [u8; 8] = Key::for_path::<(HostRequest, HostReply)>("leg").to_bytes();
+
+/// The hash of the sender's messages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Hello {
+    /// [`HOST_SCHEMA`] of the sender; on a test bench, the hash of the bench's messages.
+    pub schema: [u8; 8],
+}
+
+/// The boards that there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub enum BoardKind {
+    /// QEMU's mps2-an386.
+    Qemu,
+    /// NUCLEO-G474RE.
+    Stm32g474,
+    /// Inside the host's own process.
+    InProcess,
+}
+
+/// Bytes by which a host is told from another: chosen at random when it starts.
+pub type HostId = u32;
+
+/// What a host asks. The first on a link is [`HostRequest::Identify`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "a message is kept in place: there is no allocation on the board"
+)]
+pub enum HostRequest {
+    /// Introduces the host; the leg answers with what it is.
+    Identify(Hello),
+    /// Commands the leg. The reply comes when a tick has obeyed or refused it.
+    Command {
+        /// Who commands: a driven leg obeys one host.
+        host: HostId,
+        /// The command.
+        command: Command,
+    },
+    /// Asks for telemetry once.
+    Telemetry,
+    /// Asks for telemetry again and again, every so many ticks; 0 ends it.
+    Stream(u16),
+    /// Asks for the raw codes of the sensors.
+    Sensors,
+    /// Asks for the settings in use.
+    GetSettings,
+    /// Replaces the settings while the drivers are off. The leg has to be homed then.
+    SetSettings(Settings),
+    /// Keeps the settings in use over a reset.
+    SaveSettings,
+}
+
+/// What the leg answers, and tells by itself.
+///
+/// The order of the variants is part of the format: [`HostReply::Identified`] and [`HostReply::Refused`] stay in front,
+/// so that two sides of different age can still tell each other so.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "a message is kept in place: there is no allocation on the board"
+)]
+pub enum HostReply {
+    /// The leg speaks the same language.
+    Identified(Identity),
+    /// Nothing was done.
+    Refused(HostRefusal),
+    /// It is done.
+    Done,
+    /// What the leg tells of itself.
+    Telemetry(Told),
+    /// The raw codes of the sensors.
+    Sensors(Sensors),
+    /// The settings in use.
+    Settings(Settings),
+}
+
+/// Telemetry with its number.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct Told {
+    /// Counts what was told and what found no room on the line, so a gap shows what was lost.
+    pub number: u32,
+    /// The leg after a tick.
+    pub telemetry: Telemetry<f32>,
+}
+
+/// What a leg's board is, and what it went through before it started.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Identity {
+    /// Which board layer runs.
+    pub board: BoardKind,
+    /// Version of the firmware: major, minor, patch.
+    pub version: [u8; 3],
+    /// Why the board started.
+    pub reset: Reset,
+    /// What the firmware said before it stopped the last time; empty if it did not stop by itself.
+    pub last_words: String<LAST_WORDS_MAX>,
+}
+
+/// Why a board started.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub enum Reset {
+    /// The power came.
+    Power,
+    /// The supply was too low for the chip.
+    BrownOut,
+    /// The reset pin, or a debugger.
+    Pin,
+    /// The firmware itself, after a panic or a hard fault.
+    Software,
+    /// The watchdog: a task had not checked in.
+    Watchdog,
+    /// Something else.
+    Other,
+    /// It was started by an emulator or in the host's process.
+    Emulated,
+}
+
+/// Why the leg did not do what it was asked.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub enum HostRefusal {
+    /// The host's schema is another one; the leg's own is given.
+    SchemaMismatch {
+        /// [`HOST_SCHEMA`] of the firmware.
+        schema: [u8; 8],
+    },
+    /// The host has not said [`HostRequest::Identify`] yet.
+    NotIdentified,
+    /// The frame could not be read.
+    BadFrame(FrameError),
+    /// The frame is whole but holds no request.
+    BadRequest,
+    /// Too many commands wait for their tick, or settings are being kept.
+    Busy,
+    /// Another host drives the leg.
+    OtherHost,
+    /// The command is refused.
+    Command(CommandRefusal),
+    /// The settings can be replaced and saved only while the drivers are off.
+    Driven,
+    /// The settings are refused.
+    Settings(SettingsError),
+    /// The settings could not be kept.
+    NotSaved,
+}

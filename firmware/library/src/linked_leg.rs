@@ -1,0 +1,164 @@
+//! A leg with its end of the host's line: no flash, no clock but the ticks.
+
+use crate::command::Command;
+use crate::drive::Drive;
+use crate::host_link::{Commanded, HostLink, HostRefusal, Identity};
+use crate::leg::{Leg, Outcome};
+use crate::sensors::Sensors;
+use crate::settings::{Settings, SettingsError};
+use crate::telemetry::Telemetry;
+use heapless::Vec;
+use leg_model::Scalar;
+
+/// Most bytes of the host's link that one tick takes or gives: what a serial link of 1 MBd brings in it, and more.
+pub const LINK_BYTES_MAX: usize = 64;
+
+/// A leg, and what it read last.
+#[derive(Debug)]
+pub struct SensingLeg<T> {
+    leg: Leg<T>,
+    sensors: Sensors,
+}
+
+impl<T: Scalar> SensingLeg<T> {
+    /// A leg that has not seen its sensors yet.
+    ///
+    /// # Errors
+    /// Settings that are refused.
+    pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
+        Ok(Self {
+            leg: Leg::new(settings)?,
+            sensors: Sensors::default(),
+        })
+    }
+
+    /// Keeps what the sensors read, to be told, and gives the leg for its tick.
+    #[inline(always)]
+    pub fn sensed(&mut self, sensors: &Sensors) -> &mut Leg<T> {
+        self.sensors = *sensors;
+        &mut self.leg
+    }
+
+    /// One tick: see [`Leg::tick`].
+    #[inline(always)]
+    pub fn tick(&mut self, sensors: &Sensors) -> Drive<T> {
+        self.sensed(sensors).tick(sensors)
+    }
+
+    /// Lets another leg take this one's place on the board: see [`Leg::succeed`].
+    ///
+    /// # Errors
+    /// [`HostRefusal::Driven`]: this one drives its motors, and stays.
+    pub fn hand_over(&mut self, to: &mut Self) -> Result<(), HostRefusal> {
+        if self.leg.state().driven() {
+            return Err(HostRefusal::Driven);
+        }
+        to.leg.succeed(&mut self.leg);
+        to.sensors = self.sensors;
+        Ok(())
+    }
+
+    /// See [`Leg::take_over`].
+    pub fn take_over(&mut self, applied: &Drive<T>) {
+        self.leg.take_over(applied);
+    }
+
+    /// See [`Leg::telemetry`].
+    #[must_use]
+    pub fn telemetry(&self) -> Telemetry<T> {
+        self.leg.telemetry()
+    }
+}
+
+macro_rules! commanded {
+    ($number:ty, $narrowed:expr) => {
+        impl Commanded for SensingLeg<$number> {
+            fn command(&mut self, number: u16, command: Command) -> bool {
+                self.leg.command(number, command)
+            }
+
+            fn misheard(&mut self) {
+                self.leg.misheard();
+            }
+
+            fn outcome(&mut self) -> Option<Outcome> {
+                self.leg.outcome()
+            }
+
+            fn telemetry(&mut self) -> Telemetry<f32> {
+                self.leg.telemetry().map($narrowed)
+            }
+
+            fn sensors(&mut self) -> Sensors {
+                self.sensors
+            }
+
+            fn restart(&mut self, settings: &Settings) -> Result<(), HostRefusal> {
+                match Self::new(&settings.without_zero()) {
+                    Ok(mut fresh) => {
+                        self.hand_over(&mut fresh)?;
+                        *self = fresh;
+                        Ok(())
+                    }
+                    Err(error) => Err(HostRefusal::Settings(error)),
+                }
+            }
+        }
+    };
+}
+
+commanded!(f32, |value| value);
+commanded!(f64, |value| value as f32);
+
+/// A leg and its line.
+#[derive(Debug)]
+pub struct LinkedLeg<T> {
+    leg: SensingLeg<T>,
+    link: HostLink,
+}
+
+impl<T: Scalar> LinkedLeg<T>
+where
+    SensingLeg<T>: Commanded,
+{
+    /// A leg that has not seen its sensors yet, on a line on which nothing was said yet.
+    ///
+    /// # Errors
+    /// Settings that are refused.
+    pub fn new(identity: Identity, settings: &Settings) -> Result<Self, SettingsError> {
+        Ok(Self {
+            leg: SensingLeg::new(settings)?,
+            link: HostLink::new(identity, settings.clone()),
+        })
+    }
+
+    /// Takes bytes from the host.
+    pub fn receive(&mut self, bytes: &[u8]) {
+        self.link.receive(bytes, &mut self.leg);
+    }
+
+    /// The leg alone, for its tick.
+    pub fn leg(&mut self) -> &mut SensingLeg<T> {
+        &mut self.leg
+    }
+
+    /// What the host gets after a tick, as far as it fits. `save` keeps settings over a reset; false if that failed.
+    pub fn sent(&mut self, mut save: impl FnMut(&Settings) -> bool) -> Vec<u8, LINK_BYTES_MAX> {
+        self.link.report(&mut self.leg);
+        if let Some(settings) = self.link.to_save() {
+            let kept = save(settings);
+            self.link.saved(kept);
+        }
+        let mut sent = Vec::new();
+        while !sent.is_full()
+            && let Some(byte) = self.link.transmit()
+        {
+            // There is room: it was just looked at.
+            let _ = sent.push(byte);
+        }
+        sent
+    }
+}
+
+#[cfg(test)]
+mod tests;

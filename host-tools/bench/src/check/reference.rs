@@ -1,0 +1,60 @@
+//! What a state gives in f64, as numbers in the firmware's order.
+
+mod bench;
+
+use super::{CheckError, State};
+use bench::Bench;
+use leg_firmware_bench::kernels::Kernel;
+use leg_model::{Error, Evaluation};
+
+/// The numbers of an evaluation in f64.
+pub(super) fn evaluation(state: &State) -> Result<Vec<f64>, CheckError> {
+    let evaluated = state
+        .query()
+        .and_then(|query| leg_model::evaluate(&state.rig(), &query));
+    evaluated
+        .map(|evaluation| flatten(&evaluation))
+        .map_err(at(state))
+}
+
+/// The numbers of an evaluation, in the order of its fields.
+pub(super) fn flatten<T: Copy + Into<f64>>(evaluation: &Evaluation<T>) -> Vec<f64> {
+    let e = evaluation;
+    let commanded = e.commanded.iter();
+    let commanded: Vec<T> = commanded
+        .flat_map(|c| [c.level_n, c.stiffness_nm_per_rad])
+        .collect();
+    let numbers = [
+        &e.lengths_m[..],
+        e.moment_map_m.as_flattened(),
+        &e.pretension_direction,
+        &e.load_moment_nm,
+        &e.joint_moment_nm,
+        &e.tensions_n,
+        &e.tensions_min_n,
+        &e.level_range_n,
+        e.stiffness_nm_per_rad.as_flattened(),
+        e.stiffness_joint_nm_per_rad.as_flattened(),
+        e.stiffness_k2_exact_nm_per_rad.as_flattened(),
+        e.stiffness_k2_printed_nm_per_rad.as_flattened(),
+        &e.bending_stiffness_nm_per_rad,
+        &[e.axial_stretch_m],
+        &[e.deviation_m, e.deviation_with_load_stiffness_m],
+        &e.unstretched_m,
+        &[e.torsion_rad],
+        &commanded,
+    ];
+    numbers.concat().into_iter().map(Into::into).collect()
+}
+
+/// The numbers of a kernel in f64.
+pub(super) fn kernel(kernel: Kernel, state: &State) -> Result<Vec<f64>, CheckError> {
+    Bench::new(state)
+        .and_then(|bench| bench.run(kernel))
+        .map_err(at(state))
+}
+
+pub(super) fn at(state: &State) -> impl Fn(Error) -> CheckError {
+    let pose = state.pose();
+    move |error| CheckError::Reference { pose, error }
+}

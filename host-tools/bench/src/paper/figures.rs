@@ -1,0 +1,183 @@
+//! Figures 6, 9 and 10.
+
+use super::PaperError;
+use super::deviation::{AZIMUTH_DEG, Deviations, MAXIMA, deviations, tilts_deg};
+use super::tendon::PUBLISHED;
+use super::workspace::PAYLOAD_KG;
+use leg_model::{Elasticity, Error, Query, Tendon};
+use leg_model_tools::plot::{self, Chart, Line, PlotError, field};
+use leg_model_tools::workspace_map::{Grid, Quantity, WorkspaceMap};
+use leg_rig::rig_file::RigFile;
+use std::path::{Path, PathBuf};
+
+/// Why a figure was not drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum FigureError {
+    /// There are no numbers for it.
+    #[error(transparent)]
+    Paper(#[from] PaperError),
+    /// It could not be drawn.
+    #[error(transparent)]
+    Plot(#[from] PlotError),
+}
+
+impl From<Error> for FigureError {
+    fn from(error: Error) -> Self {
+        Self::Paper(error.into())
+    }
+}
+
+/// Draws every figure into a folder, as SVG and PNG, and names the SVG files with their captions.
+///
+/// # Errors
+/// A [`FigureError`].
+pub fn draw(folder: &Path) -> Result<Vec<(PathBuf, &'static str)>, FigureError> {
+    let rig = RigFile::load(None).map_err(PaperError::from)?;
+    let mut figures = Vec::new();
+    let charts = [
+        (
+            "fig6_elongation",
+            elongation(&rig)?,
+            "Fig. 6: elongation of the default tendon over its tension",
+        ),
+        (
+            "fig6_stiffness",
+            stiffness(&rig)?,
+            "Fig. 6: its stiffness, with the published points",
+        ),
+        (
+            "fig9a",
+            deviation_chart(&rig)?,
+            "Fig. 9 a: linear deviation (lines) and nonlinear equilibrium (crosses)",
+        ),
+        (
+            "fig9b",
+            difference_chart(&rig)?,
+            "Fig. 9 b: linear deviation less nonlinear equilibrium",
+        ),
+    ];
+    for (name, chart, caption) in charts {
+        figures.push((plot::save_both(&chart, &folder.join(name))?, caption));
+    }
+    let map = workspace_field(&rig)?;
+    for (name, layout, caption) in [
+        (
+            "fig10a",
+            field::Layout::Polar,
+            "Fig. 10 a: deviation over the workspace with 1 kg, from above",
+        ),
+        (
+            "fig10b",
+            field::Layout::Flat,
+            "Fig. 10 b: the same over azimuth and tilt",
+        ),
+    ] {
+        figures.push((field::save_both(&map, layout, &folder.join(name))?, caption));
+    }
+    Ok(figures)
+}
+
+fn over_tension(
+    rig: &RigFile,
+    of: impl Fn(&Tendon<f64>, f64) -> Result<f64, Error>,
+) -> Result<Vec<(f64, f64)>, Error> {
+    let [tendon, ..] = &rig.tendons;
+    (0..=300)
+        .map(|step| 0.5 * f64::from(step))
+        .map(|tension| Ok((tension, of(tendon, tension)?)))
+        .collect()
+}
+
+fn elongation(rig: &RigFile) -> Result<Chart, Error> {
+    let points = over_tension(rig, |tendon, tension| Ok(tendon.elongation(tension)? * 1e3))?;
+    Ok(tendon_chart("elongation (mm)", points, Vec::new()))
+}
+
+fn stiffness(rig: &RigFile) -> Result<Chart, Error> {
+    let points = over_tension(rig, |tendon, tension| Ok(tendon.stiffness(tension)? * 1e-3))?;
+    let marks = PUBLISHED
+        .iter()
+        .map(|(tension, stiffness)| (*tension, stiffness * 1e-3));
+    Ok(tendon_chart("stiffness (N/mm)", points, marks.collect()))
+}
+
+fn tendon_chart(y_title: &str, points: Vec<(f64, f64)>, marks: Vec<(f64, f64)>) -> Chart {
+    Chart {
+        title: format!("Fig. 6: {y_title} of the tendon"),
+        x_title: "tension (N)".into(),
+        y_title: y_title.into(),
+        lines: vec![Line {
+            label: "default curve".into(),
+            points,
+            marks,
+        }],
+        marks_label: "published".into(),
+    }
+}
+
+fn deviation_chart(rig: &RigFile) -> Result<Chart, Error> {
+    let line = |d: &Deviations| d.linear;
+    let mark = |d: &Deviations| Some(d.nonlinear);
+    fig9(
+        rig,
+        "Fig. 9 a: deviation of the tip",
+        "deviation (mm)",
+        line,
+        mark,
+    )
+}
+
+fn difference_chart(rig: &RigFile) -> Result<Chart, Error> {
+    let line = |d: &Deviations| d.linear - d.nonlinear;
+    fig9(
+        rig,
+        "Fig. 9 b: linear less nonlinear",
+        "difference (mm)",
+        line,
+        |_| None,
+    )
+}
+
+fn fig9(
+    rig: &RigFile,
+    title: &str,
+    y_title: &str,
+    line: impl Fn(&Deviations) -> f64,
+    mark: impl Fn(&Deviations) -> Option<f64>,
+) -> Result<Chart, Error> {
+    let mut lines = Vec::new();
+    for (payload_kg, _) in MAXIMA {
+        let (mut points, mut marks) = (Vec::new(), Vec::new());
+        for tilt_deg in tilts_deg() {
+            let d = deviations(rig, tilt_deg, payload_kg)?;
+            points.push((tilt_deg, line(&d)));
+            marks.extend(mark(&d).map(|value| (tilt_deg, value)));
+        }
+        lines.push(Line {
+            label: format!("payload {payload_kg} kg"),
+            points,
+            marks,
+        });
+    }
+    Ok(Chart {
+        title: title.into(),
+        x_title: format!("tilt (°) along azimuth {AZIMUTH_DEG}°"),
+        y_title: y_title.into(),
+        lines,
+        marks_label: "nonlinear".into(),
+    })
+}
+
+fn workspace_field(rig: &RigFile) -> Result<field::Field, Error> {
+    let grid = Grid {
+        azimuths: 360,
+        tilts: 31,
+    };
+    let Query { tendons, .. } = super::deviation::constant(rig, 0.0, 0.0, PAYLOAD_KG)?;
+    let rig = RigFile { tendons, ..*rig };
+    let map = WorkspaceMap::compute(&rig, PAYLOAD_KG, grid, || ());
+    Ok(map.field(
+        Quantity::Deviation,
+        "Fig. 10: deviation of the tip with 1 kg".into(),
+    ))
+}

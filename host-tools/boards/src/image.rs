@@ -1,0 +1,147 @@
+//! Builds the firmware images: the one that QEMU boots, and the one for the board.
+
+use cargo_metadata::Message;
+use std::env;
+use std::ffi::OsString;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use thiserror::Error;
+
+/// What a firmware image is made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Board {
+    /// QEMU's mps2-an386.
+    Qemu,
+    /// The NUCLEO-G474RE.
+    Stm32g474,
+}
+
+impl Board {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Stm32g474, Self::Qemu];
+
+    /// The name of the image's executable.
+    #[must_use]
+    pub const fn binary(self) -> &'static str {
+        match self {
+            Self::Qemu => "leg-qemu",
+            Self::Stm32g474 => "leg-stm32g474",
+        }
+    }
+
+    /// Cargo's command that builds the image: an alias in .cargo/config.toml.
+    #[must_use]
+    pub const fn command(self) -> &'static str {
+        match self {
+            Self::Qemu => "image-qemu",
+            Self::Stm32g474 => "image-stm32g474",
+        }
+    }
+}
+
+/// Variables that would change how the image is compiled: it is to be the same whoever builds it.
+const FOREIGN_VARIABLES: [&str; 4] = [
+    "RUSTFLAGS",
+    "CARGO_ENCODED_RUSTFLAGS",
+    "RUSTC_WRAPPER",
+    "RUSTC_WORKSPACE_WRAPPER",
+];
+
+/// Why there is no image.
+#[derive(Debug, Error)]
+pub enum ImageError {
+    /// The sources are not where this program was built from.
+    #[error(
+        "the firmware's sources are not in {root}; run this program from the tree that it was built in"
+    )]
+    NoSources {
+        /// Where they were looked for.
+        root: String,
+    },
+    /// Cargo could not be started.
+    #[error("cannot start cargo: {0}; install Rust with rustup")]
+    NoCargo(#[source] io::Error),
+    /// The build failed.
+    #[error("`cargo {}` failed in {root}:\n{output}", .board.command())]
+    Failed {
+        /// What the image is for.
+        board: Board,
+        /// Where it ran.
+        root: String,
+        /// What it wrote.
+        output: String,
+    },
+    /// The build made no executable.
+    #[error(
+        "`cargo {}` made no executable named `{}`; see the alias in .cargo/config.toml",
+        .board.command(), .board.binary()
+    )]
+    NoExecutable {
+        /// What the image is for.
+        board: Board,
+    },
+}
+
+/// The folder of the workspace that this program was built from.
+#[must_use]
+pub fn workspace_root() -> PathBuf {
+    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+    package.ancestors().nth(2).unwrap_or(package).to_path_buf()
+}
+
+/// Builds the image for QEMU, which takes a moment if nothing has changed, and returns the path of its ELF file.
+///
+/// Several callers at once wait for each other by cargo's own lock.
+///
+/// # Errors
+/// [`ImageError`] with what cargo wrote.
+pub fn build() -> Result<PathBuf, ImageError> {
+    build_for(Board::Qemu)
+}
+
+/// Builds the image for a board, as [`build`] does.
+///
+/// # Errors
+/// [`ImageError`] with what cargo wrote.
+pub fn build_for(board: Board) -> Result<PathBuf, ImageError> {
+    let root = workspace_root();
+    if !root.join("firmware/library/Cargo.toml").is_file() {
+        return Err(ImageError::NoSources {
+            root: root.display().to_string(),
+        });
+    }
+    let output = cargo(board, &root).output().map_err(ImageError::NoCargo)?;
+    if !output.status.success() {
+        return Err(ImageError::Failed {
+            board,
+            root: root.display().to_string(),
+            output: String::from_utf8_lossy(&output.stderr).into_owned(),
+        });
+    }
+    executable(board, &output).ok_or(ImageError::NoExecutable { board })
+}
+
+fn cargo(board: Board, root: &Path) -> Command {
+    let program = env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
+    let mut command = Command::new(program);
+    command
+        .args([board.command(), "--message-format=json-render-diagnostics"])
+        .current_dir(root);
+    for variable in FOREIGN_VARIABLES {
+        command.env_remove(variable);
+    }
+    command
+}
+
+/// The image's path as cargo names it.
+fn executable(board: Board, output: &Output) -> Option<PathBuf> {
+    Message::parse_stream(output.stdout.as_slice())
+        .filter_map(Result::ok)
+        .find_map(|message| match message {
+            Message::CompilerArtifact(artifact) if artifact.target.name == board.binary() => {
+                artifact.executable.map(Into::into)
+            }
+            _ => None,
+        })
+}

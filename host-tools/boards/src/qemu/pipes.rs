@@ -1,0 +1,130 @@
+//! The two named pipes between host and firmware, never waited for without end.
+
+use leg_firmware_bench::pipes::{TO_FIRMWARE, TO_HOST};
+use leg_sim::link::LinkError;
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::fs::{CWD, Mode, OFlags, mkfifoat, open};
+use rustix::io::{Errno, read, write};
+use std::ffi::{CStr, OsStr};
+use std::io;
+use std::os::fd::{AsFd, OwnedFd};
+use std::os::unix::ffi::OsStrExt;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// What a wait for the firmware ended with.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Transfer {
+    /// So many bytes.
+    Bytes(usize),
+    /// Nothing until the deadline.
+    TimedOut,
+    /// The firmware's side is closed.
+    Closed,
+}
+
+/// The host's end of the pipe that the firmware writes.
+#[derive(Debug)]
+pub struct FromFirmware(OwnedFd);
+
+/// The host's end of the pipe that the firmware reads.
+#[derive(Debug)]
+pub struct ToFirmware(OwnedFd);
+
+/// Makes both pipes in the folder and opens the one that the firmware opens first.
+///
+/// # Errors
+/// [`LinkError::System`].
+pub fn create(folder: &Path) -> Result<FromFirmware, LinkError> {
+    for name in [TO_HOST, TO_FIRMWARE] {
+        mkfifoat(CWD, path(folder, name), Mode::RUSR | Mode::WUSR)
+            .map_err(io::Error::from)
+            .map_err(LinkError::system("make a named pipe"))?;
+    }
+    open_now(folder, TO_HOST, OFlags::RDONLY)
+        .map(FromFirmware)
+        .map_err(io::Error::from)
+        .map_err(LinkError::system("open a named pipe"))
+}
+
+impl ToFirmware {
+    /// Opens the pipe; `None` if the firmware has not opened its side yet.
+    ///
+    /// # Errors
+    /// [`LinkError::System`].
+    pub fn open(folder: &Path) -> Result<Option<Self>, LinkError> {
+        match open_now(folder, TO_FIRMWARE, OFlags::WRONLY) {
+            Ok(pipe) => Ok(Some(Self(pipe))),
+            Err(Errno::NXIO) => Ok(None),
+            Err(error) => Err(LinkError::system("open a named pipe")(error.into())),
+        }
+    }
+
+    /// Writes some of the bytes.
+    ///
+    /// # Errors
+    /// [`LinkError::System`].
+    pub fn write(&self, bytes: &[u8], deadline: Instant) -> Result<Transfer, LinkError> {
+        transfer(&self.0, PollFlags::OUT, deadline, || write(&self.0, bytes))
+            .map_err(io::Error::from)
+            .map_err(LinkError::system("write to the firmware"))
+    }
+}
+
+impl FromFirmware {
+    /// Reads what there is, at least one byte.
+    ///
+    /// # Errors
+    /// [`LinkError::System`].
+    pub fn read(&self, bytes: &mut [u8], deadline: Instant) -> Result<Transfer, LinkError> {
+        transfer(&self.0, PollFlags::IN, deadline, || {
+            read(&self.0, &mut *bytes)
+        })
+        .map_err(io::Error::from)
+        .map_err(LinkError::system("read from the firmware"))
+    }
+}
+
+fn path(folder: &Path, name: &CStr) -> PathBuf {
+    folder.join(OsStr::from_bytes(name.to_bytes()))
+}
+
+/// Opens a pipe without waiting for the other side, and keeps it from the emulators that this process starts.
+fn open_now(folder: &Path, name: &CStr, mode: OFlags) -> Result<OwnedFd, Errno> {
+    let flags = mode | OFlags::NONBLOCK | OFlags::CLOEXEC;
+    open(path(folder, name), flags, Mode::empty())
+}
+
+/// Moves bytes as soon as the pipe is ready.
+fn transfer(
+    pipe: &OwnedFd,
+    ready: PollFlags,
+    deadline: Instant,
+    mut attempt: impl FnMut() -> Result<usize, Errno>,
+) -> Result<Transfer, Errno> {
+    loop {
+        if !wait(pipe, ready, deadline)? {
+            return Ok(Transfer::TimedOut);
+        }
+        match attempt() {
+            Ok(0) | Err(Errno::PIPE) => return Ok(Transfer::Closed),
+            Ok(length) => return Ok(Transfer::Bytes(length)),
+            Err(Errno::INTR | Errno::AGAIN) => {}
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+/// Waits until the pipe is ready or closed; `false` if that did not happen in time.
+fn wait(pipe: &OwnedFd, ready: PollFlags, deadline: Instant) -> Result<bool, Errno> {
+    let left = deadline.saturating_duration_since(Instant::now());
+    let timeout = Timespec::try_from(left).map_err(|_| Errno::OVERFLOW)?;
+    match poll(
+        &mut [PollFd::from_borrowed_fd(pipe.as_fd(), ready)],
+        Some(&timeout),
+    ) {
+        Ok(count) => Ok(count > 0),
+        Err(Errno::INTR) => Ok(true),
+        Err(error) => Err(error),
+    }
+}

@@ -1,0 +1,130 @@
+//! QEMU's process: started, watched, and never left behind.
+
+use super::Config;
+use leg_firmware_bench::exit::Exit;
+use leg_sim::link::LinkError;
+use std::io::ErrorKind;
+use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
+use std::process::{Child, ChildStderr, ChildStdout, Command, ExitStatus, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// How often a wait looks again.
+pub const LOOK_AGAIN: Duration = Duration::from_millis(1);
+
+/// A running emulator; dropping it ends it.
+#[derive(Debug)]
+pub struct Process(Child);
+
+impl Process {
+    /// Starts QEMU in `folder`, with its outputs captured.
+    ///
+    /// # Errors
+    /// [`LinkError::QemuNotStarted`].
+    pub fn start(config: &Config, folder: &Path) -> Result<Self, LinkError> {
+        let child = Command::new(&config.qemu)
+            .args(["-M", "mps2-an386"])
+            .args(["-semihosting-config", "enable=on,target=native"])
+            .args(["-nographic", "-monitor", "none", "-serial", "null"])
+            .args(["-icount", config.clock.icount()])
+            .arg("-kernel")
+            .arg(&config.image)
+            .current_dir(folder)
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn();
+        child.map(Self).map_err(|source| LinkError::QemuNotStarted {
+            program: config.qemu.display().to_string(),
+            source,
+        })
+    }
+
+    /// Its number.
+    pub fn id(&self) -> u32 {
+        self.0.id()
+    }
+
+    /// Takes its standard output and its standard error.
+    ///
+    /// # Errors
+    /// [`LinkError::System`] if they were taken before.
+    pub fn outputs(&mut self) -> Result<(ChildStdout, ChildStderr), LinkError> {
+        self.0
+            .stdout
+            .take()
+            .zip(self.0.stderr.take())
+            .ok_or_else(|| LinkError::system("capture QEMU's output")(ErrorKind::NotFound.into()))
+    }
+
+    /// How it ended, if it has.
+    ///
+    /// # Errors
+    /// [`LinkError::System`].
+    pub fn ended(&mut self) -> Result<Option<ExitStatus>, LinkError> {
+        self.0
+            .try_wait()
+            .map_err(LinkError::system("ask how QEMU ended"))
+    }
+
+    /// Waits for the end; `None` if it did not come in time.
+    ///
+    /// # Errors
+    /// [`LinkError::System`].
+    pub fn wait(&mut self, deadline: Instant) -> Result<Option<ExitStatus>, LinkError> {
+        loop {
+            let ended = self.ended()?;
+            if ended.is_some() || Instant::now() >= deadline {
+                return Ok(ended);
+            }
+            thread::sleep(LOOK_AGAIN);
+        }
+    }
+
+    /// Ends it and takes its exit status from the system, so that nothing of it stays.
+    pub fn kill(&mut self) {
+        // Both fail only if it has ended and was waited for: then there is nothing to do.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        self.kill();
+    }
+}
+
+/// What an exit status means, as a sentence.
+pub fn describe(status: ExitStatus) -> String {
+    match (status.code(), status.signal()) {
+        (Some(code), _) => match Exit::from_code(code) {
+            Some(exit) => format!("the firmware {} (exit code {code})", exit.meaning()),
+            None => format!("QEMU failed (exit code {code})"),
+        },
+        (None, Some(signal)) => format!("QEMU was ended by signal {signal}"),
+        (None, None) => "QEMU ended without an exit code".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::describe;
+    use std::os::unix::process::ExitStatusExt;
+    use std::process::ExitStatus;
+
+    #[test]
+    fn an_end_is_told_in_words() {
+        let exited = |code: i32| describe(ExitStatus::from_raw(code << 8));
+        assert_eq!(
+            exited(71),
+            "the firmware took a hard fault; the log names the address (exit code 71)"
+        );
+        assert_eq!(exited(1), "QEMU failed (exit code 1)");
+        assert_eq!(
+            describe(ExitStatus::from_raw(9)),
+            "QEMU was ended by signal 9"
+        );
+    }
+}

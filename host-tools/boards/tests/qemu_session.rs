@@ -1,0 +1,255 @@
+//! The firmware under QEMU, driven as the command `leg` drives it.
+
+use leg_boards::qemu::{Clock, Config, Session};
+use leg_boards::{image, setup};
+use leg_firmware::host_link::{BoardKind, Hello};
+use leg_firmware::messages::QueryMessage;
+use leg_firmware_bench::example;
+use leg_firmware_bench::kernels::{self, Kernel};
+use leg_firmware_bench::protocol::{
+    BENCH_SCHEMA, EvaluateRequest, KernelRequest, Refusal, Reply, Request,
+};
+use leg_model::RigParameters;
+use leg_sim::link::{InProcess, Link, LinkError};
+use rustix::process::{Pid, Signal, kill_process, test_kill_process};
+use std::error::Error;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+type Outcome = Result<(), Box<dyn Error>>;
+
+fn config(clock: Clock) -> Result<Config, Box<dyn Error>> {
+    let mut report = |what: &str| eprintln!("{what}");
+    setup::ensure_target(&mut report)?;
+    let qemu = setup::ensure_qemu(&mut report)?;
+    Ok(Config {
+        clock,
+        ..Config::new(qemu, image::build()?)
+    })
+}
+
+fn kernel_request(kernel: Kernel) -> KernelRequest {
+    KernelRequest {
+        kernel,
+        input: example::kernel_input(),
+    }
+}
+
+fn evaluate_request(tilt_rad: f32) -> Request {
+    Request::Evaluate(EvaluateRequest {
+        rig: RigParameters::<f32, 3>::TABLE_1.into(),
+        query: QueryMessage {
+            tilt_rad,
+            ..example::query()
+        },
+    })
+}
+
+fn process(session: &Session) -> Result<Pid, Box<dyn Error>> {
+    let id = i32::try_from(session.process_id())?;
+    Pid::from_raw(id).ok_or_else(|| "no process".into())
+}
+
+/// The folder of the session's pipes: QEMU's working directory.
+fn folder(session: &Session) -> Result<PathBuf, Box<dyn Error>> {
+    Ok(fs::read_link(format!(
+        "/proc/{}/cwd",
+        session.process_id()
+    ))?)
+}
+
+#[test]
+fn the_firmware_boots_and_ends_with_its_link() -> Outcome {
+    let session = Session::open(&config(Clock::Normal)?)?;
+    let info = *session.info();
+    assert_eq!(info.board, BoardKind::Qemu);
+    let boot = info.boot.ok_or("a board checks itself")?;
+    assert!((1_000..1_100).contains(&boot.alarm_us), "{boot:?}");
+    let log = session.log();
+    assert!(
+        log.iter()
+            .any(|line| line.contains("alarm of 1000 us took")),
+        "{log:?}"
+    );
+    let (id, folder) = (process(&session)?, folder(&session)?);
+    session.close()?;
+    assert!(test_kill_process(id).is_err(), "QEMU is still there");
+    assert!(
+        !Path::new(&folder).exists(),
+        "{} is still there",
+        folder.display()
+    );
+    Ok(())
+}
+
+#[test]
+fn a_dropped_session_leaves_nothing_behind() -> Outcome {
+    let session = Session::open(&config(Clock::Normal)?)?;
+    let (id, folder) = (process(&session)?, folder(&session)?);
+    drop(session);
+    assert!(test_kill_process(id).is_err(), "QEMU is still there");
+    assert!(
+        !Path::new(&folder).exists(),
+        "{} is still there",
+        folder.display()
+    );
+    Ok(())
+}
+
+#[test]
+fn the_core_computes_what_the_host_computes() -> Outcome {
+    let mut qemu = Session::open(&config(Clock::Normal)?)?;
+    let mut host = InProcess::open()?;
+    for step in -10_i8..=10 {
+        let request = evaluate_request(f32::from(step) / 20.0);
+        let reply = qemu.ask(&request)?;
+        assert!(matches!(reply, Reply::Evaluation(_)), "{reply:?}");
+        assert_eq!(reply, host.ask(&request)?);
+    }
+    for kernel in Kernel::ALL {
+        let request = kernel_request(kernel);
+        let output = kernels::run(kernel, &request.input)?;
+        assert_eq!(
+            qemu.ask(&Request::Run(request))?,
+            Reply::Ran(output),
+            "{kernel:?}"
+        );
+    }
+    Ok(qemu.close()?)
+}
+
+#[test]
+fn the_counting_clock_counts_and_repeats() -> Outcome {
+    let config = config(Clock::Counting)?;
+    let count = || -> Result<Vec<Reply>, LinkError> {
+        let mut session = Session::open(&config)?;
+        let boot = session.info().boot;
+        assert_eq!(boot.map(|boot| boot.nops_counted), Some(100));
+        let replies = Kernel::ALL
+            .into_iter()
+            .map(|kernel| session.ask(&Request::Count(kernel_request(kernel))))
+            .collect();
+        session.close()?;
+        replies
+    };
+    let first = count()?;
+    for (kernel, reply) in Kernel::ALL.into_iter().zip(&first) {
+        assert!(
+            matches!(reply, Reply::Counted(4..)),
+            "{kernel:?}: {reply:?}"
+        );
+    }
+    assert_eq!(count()?, first, "a second run counts the same");
+    Ok(())
+}
+
+#[test]
+fn the_normal_clock_and_the_host_do_not_count() -> Outcome {
+    let request = Request::Count(kernel_request(Kernel::FullPass));
+    let mut session = Session::open(&config(Clock::Normal)?)?;
+    assert_eq!(session.ask(&request)?, Reply::Refused(Refusal::NoCounter));
+    assert_eq!(
+        InProcess::open()?.ask(&request)?,
+        Reply::Refused(Refusal::NoCounter)
+    );
+    Ok(())
+}
+
+#[test]
+fn another_schema_is_refused_by_the_firmware() -> Outcome {
+    let mut session = Session::open(&config(Clock::Normal)?)?;
+    let hello = Request::Hello(Hello { schema: [7; 8] });
+    assert_eq!(
+        session.ask(&hello)?,
+        Reply::Refused(Refusal::SchemaMismatch {
+            schema: BENCH_SCHEMA
+        })
+    );
+    assert_eq!(
+        session.ask(&evaluate_request(0.1))?,
+        Reply::Refused(Refusal::NoHello)
+    );
+    Ok(())
+}
+
+#[test]
+fn a_killed_emulator_is_told_in_words() -> Outcome {
+    let mut session = Session::open(&config(Clock::Normal)?)?;
+    kill_process(process(&session)?, Signal::KILL)?;
+    let Err(error) = session.ask(&evaluate_request(0.1)) else {
+        return Err("a dead firmware does not answer".into());
+    };
+    assert!(matches!(error, LinkError::Died { .. }), "{error:?}");
+    let text = error.to_string();
+    assert!(
+        text.starts_with("QEMU was ended by signal 9; start again, and with -v to see all of its log; its last lines were:\n  "),
+        "{text}"
+    );
+    Ok(())
+}
+
+#[test]
+fn a_stopped_emulator_times_out() -> Outcome {
+    let config = Config {
+        timeout: Duration::from_millis(500),
+        ..config(Clock::Normal)?
+    };
+    let mut session = Session::open(&config)?;
+    kill_process(process(&session)?, Signal::STOP)?;
+    let start = Instant::now();
+    let Err(error) = session.ask(&evaluate_request(0.1)) else {
+        return Err("a stopped firmware does not answer".into());
+    };
+    assert!(start.elapsed() < Duration::from_secs(5));
+    let text = error.to_string();
+    assert!(
+        text.starts_with("the firmware did not answer within 0.5 s; is the machine overloaded?"),
+        "{text}"
+    );
+    Ok(())
+}
+
+#[test]
+fn what_cannot_start_is_named() -> Outcome {
+    let config = config(Clock::Normal)?;
+    let no_image = Config {
+        image: "/nowhere/leg-qemu".into(),
+        ..config.clone()
+    };
+    assert_eq!(
+        opening_error(&no_image),
+        "there is no firmware image at /nowhere/leg-qemu; build it with `cargo image-qemu`"
+    );
+    let foreign_image = Config {
+        image: config.qemu.clone(),
+        ..config.clone()
+    };
+    let text = opening_error(&foreign_image);
+    assert!(text.contains("is no image of this firmware"), "{text}");
+    let no_qemu = Config {
+        qemu: "/nowhere/qemu".into(),
+        ..config.clone()
+    };
+    let text = opening_error(&no_qemu);
+    assert!(
+        text.starts_with("cannot start QEMU as `/nowhere/qemu`: "),
+        "{text}"
+    );
+    let other_program = Config {
+        qemu: "/bin/false".into(),
+        ..config
+    };
+    assert_eq!(
+        opening_error(&other_program),
+        "QEMU failed (exit code 1); start again, and with -v to see all of its log"
+    );
+    Ok(())
+}
+
+fn opening_error(config: &Config) -> String {
+    match Session::open(config) {
+        Ok(_) => "(it started)".to_owned(),
+        Err(error) => error.to_string(),
+    }
+}

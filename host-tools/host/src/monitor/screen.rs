@@ -1,0 +1,168 @@
+//! The leg on a terminal.
+
+use super::Picture;
+use super::bar::bar;
+use crate::leg_report::pose_words;
+use leg_base::tick_time::tick_s;
+use leg_base::words;
+use leg_firmware::supervisor::{FaultSet, Reaction, State};
+use leg_firmware::telemetry::Telemetry;
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::style::{Color, Stylize};
+use ratatui::text::Line;
+use ratatui::widgets::{Block, Paragraph, Wrap};
+
+/// Places beside a bar: number, value and unit, with their gaps.
+const BESIDE_BAR: u16 = 16;
+
+/// Draws a picture on a whole screen.
+pub fn draw(frame: &mut Frame<'_>, picture: &Picture) {
+    let rows = [
+        Constraint::Length(5),
+        Constraint::Length(5),
+        Constraint::Length(5),
+        Constraint::Min(3),
+        Constraint::Length(1),
+    ];
+    let [state, tensions, load, faults, keys] = Layout::vertical(rows).areas(frame.area());
+    frame.render_widget(last_line(picture), keys);
+    let Some(telemetry) = picture.telemetry() else {
+        let waiting = Paragraph::new("waiting for the leg").block(titled(picture.title()));
+        return frame.render_widget(waiting, state);
+    };
+    show(frame, state, picture.title(), state_lines(telemetry));
+    show(
+        frame,
+        tensions,
+        &bounds_title(picture),
+        bar_lines(picture, telemetry, tensions.width),
+    );
+    show(
+        frame,
+        load,
+        "Stiffness and load",
+        load_lines(picture, telemetry),
+    );
+    let lines = fault_lines(telemetry.faults);
+    let faulty = Paragraph::new(lines).wrap(Wrap { trim: false });
+    frame.render_widget(
+        faulty.block(titled(&faults_title(telemetry.faults))),
+        faults,
+    );
+}
+
+fn last_line(picture: &Picture) -> Line<'static> {
+    let keys = " q or Ctrl-C ends this; it commands nothing".dim();
+    match picture.damaged_frames() {
+        0 => Line::from(keys),
+        count => {
+            let damaged = format!(" {count} frames damaged;").fg(Color::Yellow);
+            Line::from(vec![damaged, keys])
+        }
+    }
+}
+
+fn titled(title: &str) -> Block<'static> {
+    Block::bordered().title(format!(" {title} "))
+}
+
+fn show(frame: &mut Frame<'_>, area: Rect, title: &str, lines: Vec<Line<'static>>) {
+    frame.render_widget(Paragraph::new(lines).block(titled(title)), area);
+}
+
+fn bounds_title(picture: &Picture) -> String {
+    let [floor, ceiling] = picture.bounds_n();
+    format!("Tensions, floor {floor} N, ceiling {ceiling} N")
+}
+
+/// What of the leg's state a user looks at first.
+fn state_lines(telemetry: &Telemetry<f32>) -> Vec<Line<'static>> {
+    let colour = match telemetry.state {
+        State::Active | State::Homing => Color::Green,
+        State::Held | State::RampingDown => Color::Yellow,
+        State::Off => Color::Red,
+        State::Boot | State::Disarmed => Color::Reset,
+    };
+    let homed = if telemetry.homed {
+        "homed"
+    } else {
+        "not homed"
+    };
+    let moving = if telemetry.moving { ", moving" } else { "" };
+    let state = words::state(telemetry.state);
+    let time_s = f64::from(telemetry.tick) * tick_s();
+    let pose = if telemetry.homed {
+        pose_words(telemetry.pose)
+    } else {
+        "not known before homing".into()
+    };
+    vec![
+        Line::from(vec![
+            "state   ".into(),
+            state.bold().fg(colour),
+            format!(", {homed}{moving}, {time_s:.2} s since the board started").into(),
+        ]),
+        Line::from(format!("pose    {pose}")),
+        Line::from(format!("target  {}", pose_words(telemetry.target))),
+    ]
+}
+
+fn bar_lines(picture: &Picture, telemetry: &Telemetry<f32>, width: u16) -> Vec<Line<'static>> {
+    let width = usize::from(width.saturating_sub(BESIDE_BAR));
+    let bars = (1..).zip(telemetry.tensions_n);
+    bars.map(|(number, tension)| {
+        Line::from(vec![
+            format!("{number} {tension:7.1} N  ").into(),
+            bar(tension, picture.bounds_n(), width),
+        ])
+    })
+    .collect()
+}
+
+fn load_lines(picture: &Picture, telemetry: &Telemetry<f32>) -> Vec<Line<'static>> {
+    let [x, y] = telemetry.load_nm;
+    let sag = picture.sag_m().map_or_else(
+        || "-".into(),
+        |sag_m| format!("{:.2} mm without compensation", sag_m * 1000.0),
+    );
+    vec![
+        Line::from(format!(
+            "stiffness  {:.2} N·m/rad at level {:.1} N",
+            telemetry.stiffness_nm_per_rad, telemetry.level_n
+        )),
+        Line::from(format!(
+            "load       {x:.3}, {y:.3} N·m beyond the leg's own, payload {:.3} kg",
+            telemetry.payload_kg
+        )),
+        Line::from(format!("sag        {sag}")),
+    ]
+}
+
+fn faults_title(faults: FaultSet) -> String {
+    match faults.faults().count() {
+        0 => "Faults".into(),
+        count => format!("Faults: {count}"),
+    }
+}
+
+fn fault_lines(faults: FaultSet) -> Vec<Line<'static>> {
+    if !faults.any() {
+        return vec![Line::from("none")];
+    }
+    let lines = faults.faults().flat_map(|fault| {
+        let (entry, reaction) = (fault.entry(), fault.reaction());
+        let colour = if reaction == Reaction::Limit {
+            Color::Yellow
+        } else {
+            Color::Red
+        };
+        let name = format!("{} {}", fault.code(), entry.name);
+        let reaction = format!(" ({}): {}", words::reaction(reaction), entry.cause);
+        [
+            Line::from(vec![name.bold().fg(colour), reaction.into()]),
+            Line::from(format!("   cure: {}", entry.cure)),
+        ]
+    });
+    lines.collect()
+}

@@ -1,0 +1,145 @@
+//! An emulated leg at the other end, in lock-step with its hosts: its time goes on only while one of them waits.
+
+use super::Transport;
+use leg_sim::emulated_leg::EmulatedLeg;
+use leg_sim::plant::Plant;
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::io;
+use std::rc::{Rc, Weak};
+use std::time::Duration;
+
+/// An emulated leg and the line to it.
+pub struct Emulated {
+    shared: Rc<RefCell<Shared>>,
+    name: String,
+}
+
+/// One host's end of that line.
+pub struct EmulatedEnd {
+    shared: Rc<RefCell<Shared>>,
+    incoming: Incoming,
+    name: String,
+}
+
+/// What of the leg's bytes one host has not read yet.
+type Incoming = Rc<RefCell<VecDeque<u8>>>;
+
+/// The leg and what is on its way to it and to each host.
+struct Shared {
+    leg: EmulatedLeg,
+    outgoing: VecDeque<u8>,
+    /// None of a host that has gone.
+    hosts: Vec<Weak<RefCell<VecDeque<u8>>>>,
+}
+
+impl Shared {
+    fn tick(&mut self) -> io::Result<()> {
+        let bytes = self.leg.tick(&mut self.outgoing);
+        let bytes: Vec<u8> = bytes.map_err(io::Error::other)?.collect();
+        self.hosts.retain(|host| {
+            let Some(incoming) = host.upgrade() else {
+                return false;
+            };
+            incoming.borrow_mut().extend(&bytes);
+            true
+        });
+        Ok(())
+    }
+}
+
+impl Emulated {
+    /// A leg without a host yet.
+    #[must_use]
+    pub fn new(leg: EmulatedLeg, name: &str) -> Self {
+        Self {
+            shared: Rc::new(RefCell::new(Shared {
+                leg,
+                outgoing: VecDeque::new(),
+                hosts: Vec::new(),
+            })),
+            name: name.into(),
+        }
+    }
+
+    /// A host on its line, beside those that are there: what the leg says reaches all of them.
+    #[must_use]
+    pub fn beside(&self) -> EmulatedEnd {
+        let incoming = Incoming::default();
+        let host = Rc::downgrade(&incoming);
+        self.shared.borrow_mut().hosts.push(host);
+        EmulatedEnd {
+            shared: Rc::clone(&self.shared),
+            incoming,
+            name: self.name.clone(),
+        }
+    }
+
+    /// Does something to the leg from outside.
+    pub fn touch<T>(&self, what: impl FnOnce(&mut Plant) -> T) -> T {
+        what(self.shared.borrow_mut().leg.plant())
+    }
+}
+
+impl EmulatedEnd {
+    /// What of the leg's bytes has come.
+    fn take(&self, bytes: &mut [u8]) -> io::Result<usize> {
+        io::Read::read(&mut *self.incoming.borrow_mut(), bytes)
+    }
+}
+
+impl Transport for EmulatedEnd {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.shared.borrow_mut().outgoing.extend(bytes);
+        Ok(())
+    }
+
+    fn receive(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize> {
+        let until = self.now() + timeout;
+        loop {
+            let count = self.take(bytes)?;
+            if count > 0 || bytes.is_empty() {
+                return Ok(count);
+            }
+            if self.now() >= until {
+                return Err(io::ErrorKind::TimedOut.into());
+            }
+            self.shared.borrow_mut().tick()?;
+        }
+    }
+
+    fn now(&self) -> Duration {
+        self.shared.borrow().leg.time()
+    }
+
+    fn clock_is_emulated(&self) -> bool {
+        true
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::Emulated;
+    use crate::operator::{Host, Interrupt, Operator};
+    use leg_rig::rig_file::RigFile;
+    use leg_sim::emulated_leg::{Beginning, EmulatedLeg};
+    use leg_sim::simulation::InThisProcess;
+
+    #[test]
+    fn nothing_is_kept_for_a_host_that_does_not_read() {
+        let rig = RigFile::load(None).unwrap();
+        let controller = Box::new(InThisProcess::default());
+        let leg = EmulatedLeg::new(&rig, Beginning::Hanging, controller).unwrap();
+        let line = Emulated::new(leg, "a leg");
+        drop(line.beside());
+        let end = Box::new(line.beside());
+        let mut operator = Operator::open(end, Host::FIXED, Interrupt::default()).unwrap();
+        operator.telemetry().unwrap();
+        assert_eq!(line.shared.borrow().hosts.len(), 1);
+    }
+}

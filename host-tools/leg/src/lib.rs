@@ -1,0 +1,3 @@
+//! The command `leg`.
+
+pub mod cli;

@@ -1,0 +1,7 @@
+//! The command `leg`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    leg_cli::cli::main()
+}

@@ -1,0 +1,181 @@
+//! Line charts as SVG and PNG.
+
+mod canvas;
+pub mod field;
+
+pub use canvas::PlotError;
+
+use canvas::{AXIS_TITLE_PX, Area, Drawn, GRID, LABEL_PX, MARGIN_PX, TITLE_PX, WIDTH_PX, range};
+use leg_base::atomic_file;
+use plotters::coord::types::RangedCoordf64;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use std::path::{Path, PathBuf};
+
+const LEGEND_WIDTH_PX: u32 = 260;
+const LEGEND_ROW_PX: i32 = 36;
+const LINE_PX: u32 = 3;
+/// The two arms of a mark: rectangles along the pixels, so that a bitmap keeps them sharp.
+const MARK_ARMS_PX: [[(i32, i32); 2]; 2] = [[(-10, -1), (10, 1)], [(-1, -10), (1, 10)]];
+
+/// Okabe and Ito's colours, in an order that stays distinct for the colour-blind.
+const COLOURS: [RGBColor; 6] = [
+    RGBColor(0, 114, 178),
+    RGBColor(230, 159, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(213, 94, 0),
+    RGBColor(204, 121, 167),
+    RGBColor(86, 180, 233),
+];
+
+/// What to draw. Titles carry their units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chart {
+    /// Above the chart.
+    pub title: String,
+    /// Under the horizontal axis.
+    pub x_title: String,
+    /// Beside the vertical axis.
+    pub y_title: String,
+    /// The lines, in the legend's order.
+    pub lines: Vec<Line>,
+    /// What the lines' marks mean, for the legend; left out when no line has any.
+    pub marks_label: String,
+}
+
+/// One line of a [`Chart`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// Its name in the legend.
+    pub label: String,
+    /// Its points (x, y), in the order in which they are joined.
+    pub points: Vec<(f64, f64)>,
+    /// Points (x, y) to mark in its colour with a cross: what it is compared with.
+    pub marks: Vec<(f64, f64)>,
+}
+
+/// Draws the chart as an SVG file.
+///
+/// # Errors
+/// A [`PlotError`] when there is nothing to draw or the file cannot be written.
+pub fn save_svg(chart: &Chart, path: &Path) -> Result<(), PlotError> {
+    let bounds = Bounds::of(chart)?;
+    canvas::svg(path, |root| paint(chart, &bounds, root))
+}
+
+/// Draws the chart as a PNG file of 1280 × 800 pixels; the path has to end in `.png`.
+///
+/// # Errors
+/// A [`PlotError`] when there is nothing to draw or the file cannot be written.
+pub fn save_png(chart: &Chart, path: &Path) -> Result<(), PlotError> {
+    let bounds = Bounds::of(chart)?;
+    canvas::png(path, |root| paint(chart, &bounds, root))
+}
+
+/// Draws the chart as `stem.svg` and `stem.png`, each whole or not at all, and names the first.
+///
+/// # Errors
+/// As [`save_svg`].
+pub fn save_both(chart: &Chart, stem: &Path) -> Result<PathBuf, PlotError> {
+    let (svg, png) = (stem.with_extension("svg"), stem.with_extension("png"));
+    atomic_file::replace(&svg, |new| save_svg(chart, new))?;
+    atomic_file::replace(&png, |new| save_png(chart, new))?;
+    Ok(svg)
+}
+
+type Plane = Cartesian2d<RangedCoordf64, RangedCoordf64>;
+
+fn paint<B: DrawingBackend>(chart: &Chart, bounds: &Bounds, root: &Area<B>) -> Drawn<B> {
+    root.fill(&WHITE)?;
+    let body = root
+        .margin(MARGIN_PX, MARGIN_PX, MARGIN_PX, 0)
+        .titled(&chart.title, ("sans-serif", TITLE_PX))?;
+    let (plot, legend) = body.split_horizontally(WIDTH_PX - LEGEND_WIDTH_PX - MARGIN_PX);
+    let mut context = ChartBuilder::on(&plot)
+        .margin(MARGIN_PX)
+        .set_label_area_size(LabelAreaPosition::Bottom, 70)
+        .set_label_area_size(LabelAreaPosition::Left, 90)
+        .build_cartesian_2d(bounds.x.0..bounds.x.1, bounds.y.0..bounds.y.1)?;
+    draw_axes(chart, &mut context)?;
+    for (line, colour) in chart.lines.iter().zip(COLOURS.iter().cycle()) {
+        draw_line(line, colour, &mut context)?;
+    }
+    draw_legend(chart, &legend)
+}
+
+fn draw_axes<B: DrawingBackend>(chart: &Chart, context: &mut ChartContext<B, Plane>) -> Drawn<B> {
+    let label = |value: &f64| format!("{}", (value * 1e6).round() / 1e6 + 0.0);
+    context
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(GRID)
+        .axis_style(BLACK)
+        .x_labels(13)
+        .y_labels(11)
+        .x_label_formatter(&label)
+        .y_label_formatter(&label)
+        .label_style(("sans-serif", LABEL_PX))
+        .axis_desc_style(("sans-serif", AXIS_TITLE_PX))
+        .x_desc(&chart.x_title)
+        .y_desc(&chart.y_title)
+        .draw()
+}
+
+fn draw_line<B: DrawingBackend>(
+    line: &Line,
+    colour: &RGBColor,
+    context: &mut ChartContext<B, Plane>,
+) -> Drawn<B> {
+    let stroke = colour.stroke_width(LINE_PX);
+    context.draw_series(LineSeries::new(line.points.iter().copied(), stroke))?;
+    for arm in MARK_ARMS_PX {
+        let at = |&mark| EmptyElement::at(mark) + Rectangle::new(arm, colour.filled());
+        context.draw_series(line.marks.iter().map(at))?;
+    }
+    Ok(())
+}
+
+fn draw_legend<B: DrawingBackend>(chart: &Chart, area: &Area<B>) -> Drawn<B> {
+    let text = ("sans-serif", LABEL_PX)
+        .into_text_style(area)
+        .pos(Pos::new(HPos::Left, VPos::Center));
+    let mut y = LEGEND_ROW_PX;
+    for (line, colour) in chart.lines.iter().zip(COLOURS.iter().cycle()) {
+        let sample = vec![(0, y), (40, y)];
+        area.draw(&PathElement::new(sample, colour.stroke_width(LINE_PX)))?;
+        area.draw(&Text::new(line.label.as_str(), (52, y), text.clone()))?;
+        y += LEGEND_ROW_PX;
+    }
+    if chart.lines.iter().any(|line| !line.marks.is_empty()) {
+        for arm in MARK_ARMS_PX {
+            area.draw(&(EmptyElement::at((20, y)) + Rectangle::new(arm, BLACK.filled())))?;
+        }
+        area.draw(&Text::new(chart.marks_label.as_str(), (52, y), text))?;
+    }
+    Ok(())
+}
+
+/// The ranges of the two axes.
+struct Bounds {
+    x: (f64, f64),
+    y: (f64, f64),
+}
+
+impl Bounds {
+    /// Takes in every point and mark, y = 0 as well, with some room above.
+    fn of(chart: &Chart) -> Result<Self, PlotError> {
+        let points = |line: &Line| [line.points.as_slice(), line.marks.as_slice()].concat();
+        let all: Vec<(f64, f64)> = chart.lines.iter().flat_map(points).collect();
+        let x = range(all.iter().map(|point| point.0)).ok_or(PlotError::Empty)?;
+        let y = range(all.iter().map(|point| point.1).chain([0.0])).ok_or(PlotError::Empty)?;
+        if x.0 >= x.1 {
+            return Err(PlotError::Empty);
+        }
+        let room = 0.06 * (y.1 - y.0);
+        let top = if room > 0.0 { y.1 + room } else { 1.0 };
+        Ok(Self { x, y: (y.0, top) })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,170 @@
+//! Maps of a quantity over the workspace, flat or seen from above, with its scale beside them.
+
+mod bands;
+mod flat;
+mod isolines;
+mod polar;
+mod runs;
+mod scale;
+
+use super::canvas::{self, Area, Drawn, MARGIN_PX, PlotError, TITLE_PX, WIDTH_PX, range};
+use bands::Bands;
+use leg_base::atomic_file;
+use plotters::prelude::*;
+use scale::SCALE_WIDTH_PX;
+use std::path::{Path, PathBuf};
+
+/// A quantity over azimuth and tilt.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// Above the map.
+    pub title: String,
+    /// Above the scale.
+    pub quantity: String,
+    /// Below that; empty for a ratio.
+    pub unit: String,
+    /// What a pose outside the region, but inside the wider one is.
+    pub between: String,
+    /// What a pose outside both is.
+    pub outside: String,
+    /// Azimuths of the columns: evenly from 0°, the full turn not repeated.
+    pub azimuths: usize,
+    /// Tilts of the rows, degrees: evenly from 0.
+    pub tilts_deg: Vec<f64>,
+    /// What is known of each pose, row by row; none where there is no result.
+    pub samples: Vec<Option<Sample>>,
+}
+
+/// What is known of a pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// The quantity, if it is known.
+    pub value: Option<f64>,
+    /// How far the pose is inside the region that is shown; negative outside. Its border is where this is zero.
+    pub room: f64,
+    /// The same of a wider region around it.
+    pub wider_room: f64,
+}
+
+impl Sample {
+    /// The sample at a part of the way to another.
+    fn towards(self, other: Self, part: f64) -> Self {
+        let between = |from: f64, to: f64| from * (1.0 - part) + to * part;
+        Self {
+            value: self.value.zip(other.value).map(|(a, b)| between(a, b)),
+            room: between(self.room, other.room),
+            wider_room: between(self.wider_room, other.wider_room),
+        }
+    }
+
+    /// The value, if it is to be shown.
+    fn shown(&self) -> Option<f64> {
+        self.value.filter(|_| self.room >= 0.0)
+    }
+
+    /// Outside the region, but inside the wider one.
+    fn between(&self) -> bool {
+        self.room < 0.0 && self.wider_room >= 0.0
+    }
+
+    fn outside(&self) -> bool {
+        self.room < 0.0 && self.wider_room < 0.0
+    }
+}
+
+/// How a [`Field`] is laid out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layout {
+    /// Azimuth across, tilt upwards.
+    Flat,
+    /// From above: azimuth round, tilt outwards.
+    Polar,
+}
+
+/// Draws the map as an SVG file.
+///
+/// # Errors
+/// [`PlotError::Empty`] if nothing is known of any pose or the rows do not fit; a file that cannot be written.
+pub fn save_svg(field: &Field, layout: Layout, path: &Path) -> Result<(), PlotError> {
+    let bands = field.bands()?;
+    canvas::svg(path, |root| paint(field, &bands, layout, root))
+}
+
+/// Draws the map as a PNG file of 1280 × 800 pixels; the path has to end in `.png`.
+///
+/// # Errors
+/// As [`save_svg`].
+pub fn save_png(field: &Field, layout: Layout, path: &Path) -> Result<(), PlotError> {
+    let bands = field.bands()?;
+    canvas::png(path, |root| paint(field, &bands, layout, root))
+}
+
+/// Draws the map as `stem.svg` and `stem.png`, each whole or not at all, and names the first.
+///
+/// # Errors
+/// As [`save_svg`].
+pub fn save_both(field: &Field, layout: Layout, stem: &Path) -> Result<PathBuf, PlotError> {
+    let (svg, png) = (stem.with_extension("svg"), stem.with_extension("png"));
+    atomic_file::replace(&svg, |new| save_svg(field, layout, new))?;
+    atomic_file::replace(&png, |new| save_png(field, layout, new))?;
+    Ok(svg)
+}
+
+impl Field {
+    fn bands(&self) -> Result<Bands, PlotError> {
+        let fits = self.azimuths > 1
+            && self.tilts_deg.len() > 1
+            && self.samples.len() == self.azimuths * self.tilts_deg.len();
+        if !fits {
+            return Err(PlotError::Empty);
+        }
+        let poses = self.samples.iter().flatten().filter_map(Sample::shown);
+        match range(poses.chain(runs::values(self))) {
+            Some((low, high)) if low.is_finite() && high.is_finite() => Ok(Bands::new(low, high)),
+            // Where the values would be says something, too.
+            None if self.samples.iter().any(Option::is_some) => Ok(Bands::none()),
+            _ => Err(PlotError::Empty),
+        }
+    }
+
+    /// The greatest tilt, degrees.
+    fn tilt_max_deg(&self) -> f64 {
+        self.tilts_deg.last().copied().unwrap_or_default()
+    }
+
+    /// What is known of a place between the poses: azimuth in columns, tilt in rows. None beside a pose without a
+    /// result.
+    fn at(&self, column: f64, row: f64) -> Option<Sample> {
+        let last = self.tilts_deg.len() - 1;
+        let (left, below) = (column.floor(), row.floor().min(last as f64 - 1.0));
+        let (x, y) = (column - left, row - below);
+        let sample = |dx: f64, dy: f64| {
+            let column = (left + dx) as usize % self.azimuths;
+            self.samples[(below + dy) as usize * self.azimuths + column]
+        };
+        let low = sample(0.0, 0.0)?.towards(sample(1.0, 0.0)?, x);
+        let high = sample(0.0, 1.0)?.towards(sample(1.0, 1.0)?, x);
+        Some(low.towards(high, y))
+    }
+}
+
+fn paint<B: DrawingBackend>(
+    field: &Field,
+    bands: &Bands,
+    layout: Layout,
+    root: &Area<B>,
+) -> Drawn<B> {
+    root.fill(&WHITE)?;
+    let body = root
+        .margin(MARGIN_PX, MARGIN_PX, MARGIN_PX, 0)
+        .titled(&field.title, ("sans-serif", TITLE_PX))?;
+    let (map, scale) = body.split_horizontally(WIDTH_PX - SCALE_WIDTH_PX - MARGIN_PX);
+    match layout {
+        Layout::Flat => flat::paint(field, bands, &map)?,
+        Layout::Polar => polar::paint(field, bands, &map)?,
+    }
+    scale::paint(field, bands, &scale)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,134 @@
+//! What the model says of a pose: all that a map asks of it.
+
+use crate::nonlinear;
+use leg_model::{Error, Query, Rig, RigParameters, Survey, survey};
+use leg_rig::rig_file::RigFile;
+use serde::Serialize;
+
+/// What the model says of a pose, for a map.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Cell {
+    /// Whether any level keeps the bounds.
+    pub feasible: bool,
+    /// Whether the rig's level does.
+    pub level_keeps_bounds: bool,
+    /// Lowest level that keeps the bounds, N; above the highest where none does.
+    pub level_min_n: f64,
+    /// Highest level that keeps the bounds, N.
+    pub level_max_n: f64,
+    /// How far the rig's level is inside that range, N; negative outside.
+    #[serde(skip)]
+    pub(super) level_room_n: f64,
+    /// How far the tensions at the rig's level stay from their bounds, N; negative beyond them. None where nothing
+    /// holds the leg at that level.
+    pub margin_n: Option<f64>,
+    /// What the leg does at the rig's level, whether or not that keeps the bounds; why that is not known.
+    #[serde(skip)]
+    pub at_level: Result<AtLevel, Error>,
+    /// Nonlinear deviation at the rig's level, mm, or why there is none. Not there if it was not asked for, if there is
+    /// no linear one, or if the level would have a tendon push before the weights come.
+    #[serde(skip)]
+    pub deviation_nonlinear_mm: Option<Result<f64, Error>>,
+}
+
+/// What the leg does at the rig's level.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct AtLevel {
+    /// Linear deviation, mm.
+    pub deviation_mm: f64,
+    /// Smallest bending stiffness, N·m/rad.
+    pub stiffness_min_nm_per_rad: f64,
+    /// Largest bending stiffness, N·m/rad.
+    pub stiffness_max_nm_per_rad: f64,
+    /// Largest by smallest bending stiffness.
+    pub condition: f64,
+}
+
+/// A rig and its load, validated once for all poses.
+pub(super) struct Prepared {
+    parameters: RigParameters<f64, 3>,
+    rig: Rig<f64, 3>,
+    /// At no pose yet.
+    query: Query<f64>,
+    with_nonlinear: bool,
+}
+
+impl Prepared {
+    pub fn new(rig: &RigFile, payload_kg: f64, with_nonlinear: bool) -> Result<Self, Error> {
+        Ok(Self {
+            parameters: rig.parameters,
+            rig: Rig::new(&rig.parameters)?,
+            query: rig.query(0.0, 0.0, payload_kg),
+            with_nonlinear,
+        })
+    }
+
+    /// All poses of one tilt.
+    pub fn row(&self, tilt_deg: f64) -> Row<'_> {
+        let tilt_rad = tilt_deg.to_radians();
+        let query = Query {
+            tilt_rad,
+            ..self.query
+        };
+        Row {
+            prepared: self,
+            query,
+        }
+    }
+}
+
+/// The poses of one tilt. It keeps a query of its own, which carries three whole curves: not to be made for each pose.
+pub(super) struct Row<'a> {
+    prepared: &'a Prepared,
+    query: Query<f64>,
+}
+
+impl Row<'_> {
+    pub fn cell(&mut self, azimuth_deg: f64) -> Result<Cell, Error> {
+        self.query.azimuth_rad = azimuth_deg.to_radians();
+        #[cfg(test)]
+        super::tests::count_survey();
+        let found = survey(&self.prepared.rig, &self.query)?;
+        let mut cell = Cell::of(&found, &self.query);
+        if self.prepared.with_nonlinear && cell.at_level.is_ok() {
+            let deviation_m = nonlinear::deviation_m(&self.prepared.parameters, &self.query);
+            let deviation_m = deviation_m.transpose();
+            cell.deviation_nonlinear_mm = deviation_m.map(|found| found.map(|m| m * 1000.0));
+        }
+        Ok(cell)
+    }
+}
+
+impl Cell {
+    fn of(found: &Survey<f64>, query: &Query<f64>) -> Self {
+        let (floor, ceiling) = (query.tension_floor_n, query.tension_ceiling_n);
+        let margin = |tensions: [f64; 3]| {
+            let margins = tensions.map(|tension| (tension - floor).min(ceiling - tension));
+            margins.into_iter().fold(f64::INFINITY, f64::min)
+        };
+        let [lowest, highest] = found.level_range_n;
+        let level_room_n = (query.level_n - lowest).min(highest - query.level_n);
+        Self {
+            feasible: lowest <= highest,
+            level_keeps_bounds: level_room_n >= 0.0 && found.tensions_n.is_ok(),
+            level_min_n: lowest,
+            level_max_n: highest,
+            level_room_n,
+            margin_n: found.tensions_n.ok().map(margin),
+            at_level: AtLevel::of(found),
+            deviation_nonlinear_mm: None,
+        }
+    }
+}
+
+impl AtLevel {
+    fn of(found: &Survey<f64>) -> Result<Self, Error> {
+        let [softest, stiffest] = found.bending_stiffness_nm_per_rad?;
+        Ok(Self {
+            deviation_mm: found.deviation_m? * 1000.0,
+            stiffness_min_nm_per_rad: softest,
+            stiffness_max_nm_per_rad: stiffest,
+            condition: stiffest / softest,
+        })
+    }
+}

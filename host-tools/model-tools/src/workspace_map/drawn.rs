@@ -1,0 +1,47 @@
+//! A map as a field to be drawn.
+
+use super::{Cell, Quantity, WorkspaceMap, tilt_deg};
+use crate::plot::field::{Field, Sample};
+use leg_model::Error;
+
+/// What the shades without a value say: where another level would do, and where none does.
+pub const SHADES: [&str; 2] = ["level out of bounds", "no feasible level"];
+
+impl WorkspaceMap {
+    /// A quantity over the workspace, to be drawn.
+    #[must_use]
+    pub fn field(&self, quantity: Quantity, title: String) -> Field {
+        let grid = self.grid;
+        let [between, outside] = SHADES.map(String::from);
+        let places =
+            (0..grid.tilts).flat_map(|row| (0..grid.azimuths).map(move |column| (row, column)));
+        let samples = places.map(|(row, column)| sample(quantity, self.at(row, column)));
+        let tilts = (0..grid.tilts).map(|row| tilt_deg(self.tilt_max_deg, grid, row));
+        Field {
+            title,
+            quantity: quantity.words().into(),
+            unit: quantity.unit().into(),
+            between,
+            outside,
+            azimuths: grid.azimuths as usize,
+            tilts_deg: tilts.collect(),
+            samples: samples.collect(),
+        }
+    }
+}
+
+fn sample(quantity: Quantity, cell: &Result<Cell, Error>) -> Option<Sample> {
+    let cell = cell.as_ref().ok()?;
+    let range_n = cell.level_max_n - cell.level_min_n;
+    let (room, wider_room) = match quantity {
+        // It is shown everywhere: below zero it is what the level lacks.
+        Quantity::Margin => (1.0, 1.0),
+        Quantity::LevelMin | Quantity::LevelMax => (range_n, range_n),
+        _ => (cell.level_room_n, range_n),
+    };
+    Some(Sample {
+        value: quantity.value(cell),
+        room,
+        wider_room,
+    })
+}

@@ -1,0 +1,126 @@
+//! The rigs that come with the tool: one for each kind of support.
+
+use crate::support_name::SupportName;
+
+/// A rig that comes with the tool.
+#[derive(Clone, Copy, Debug)]
+pub struct ReadyRig {
+    /// What `--rig` takes.
+    pub name: &'static str,
+    /// Its support.
+    pub support: SupportName,
+    /// The parts of the paper's Fig. 2 that show the support; none shows the idealisation.
+    pub figure_2: &'static str,
+    /// What it is.
+    pub words: &'static str,
+    /// The rig file.
+    pub text: &'static str,
+}
+
+/// Every ready rig; the first is the default.
+pub const READY_RIGS: [ReadyRig; 7] = [
+    ReadyRig {
+        name: "table1",
+        support: SupportName::TorsionFree,
+        figure_2: "-",
+        words: "idealised: tilts without torsion",
+        text: include_str!("../../rigs/table1.toml"),
+    },
+    ReadyRig {
+        name: "spherical",
+        support: SupportName::Spherical,
+        figure_2: "a",
+        words: "ball joint",
+        text: include_str!("../../rigs/spherical.toml"),
+    },
+    ReadyRig {
+        name: "universal",
+        support: SupportName::Universal,
+        figure_2: "b",
+        words: "rigid universal joint",
+        text: include_str!("../../rigs/universal.toml"),
+    },
+    ReadyRig {
+        name: "compliant_pivot",
+        support: SupportName::CompliantPivot,
+        figure_2: "c",
+        words: "one elastic rod",
+        text: include_str!("../../rigs/compliant_pivot.toml"),
+    },
+    ReadyRig {
+        name: "elastic_rod_universal",
+        support: SupportName::ElasticRodUniversal,
+        figure_2: "d, g",
+        words: "universal joint of elastic rods",
+        text: include_str!("../../rigs/elastic_rod_universal.toml"),
+    },
+    ReadyRig {
+        name: "notch_universal",
+        support: SupportName::NotchUniversal,
+        figure_2: "e, h",
+        words: "universal joint of notch hinges",
+        text: include_str!("../../rigs/notch_universal.toml"),
+    },
+    ReadyRig {
+        name: "leaf_spring_universal",
+        support: SupportName::LeafSpringUniversal,
+        figure_2: "f, i",
+        words: "universal joint of leaf springs",
+        text: include_str!("../../rigs/leaf_spring_universal.toml"),
+    },
+];
+
+/// The ready rig of a name.
+#[must_use]
+pub fn named(name: &str) -> Option<&'static ReadyRig> {
+    READY_RIGS.iter().find(|rig| rig.name == name)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::READY_RIGS;
+    use crate::rig_file::RigFile;
+
+    #[test]
+    fn every_ready_rig_has_its_support_and_is_table_1_otherwise_or_leans_less() {
+        let table_1 = RigFile::load(None).unwrap();
+        for rig in READY_RIGS {
+            let file = RigFile::parse(rig.name, rig.text).unwrap();
+            assert_eq!(file.support_name, rig.support, "{}", rig.name);
+            let same = RigFile {
+                support_name: table_1.support_name,
+                support: table_1.support,
+                critical_n: table_1.critical_n,
+                tilt_deg: table_1.tilt_deg,
+                ..file
+            };
+            assert_eq!(same, table_1, "{}", rig.name);
+            assert!(file.tilt_deg <= table_1.tilt_deg, "{}", rig.name);
+        }
+    }
+
+    /// No material of these rigs is superelastic: metals are linear to 2 % at the very most.
+    #[test]
+    fn ready_rigs_are_bent_within_the_linear_range_only() {
+        for rig in READY_RIGS {
+            let mut lines = rig.text.lines();
+            let limit = lines.find_map(|line| line.strip_prefix("strain_max_percent = "));
+            assert_eq!(limit.is_some(), rig.support.elastic(), "{}", rig.name);
+            let percent: f64 = limit.map_or(0.0, |percent| percent.parse().unwrap());
+            assert!(percent <= 2.0, "{}: {percent} %", rig.name);
+        }
+    }
+
+    #[test]
+    fn the_joints_of_ready_rigs_bear_the_tendons_pull() {
+        for rig in READY_RIGS {
+            let file = RigFile::parse(rig.name, rig.text).unwrap();
+            assert_eq!(file.buckling().is_some(), rig.support.elastic());
+            if let Some(buckling) = file.buckling() {
+                assert!(buckling.at_level < 0.33, "{}: {buckling:?}", rig.name);
+                assert!(buckling.at_ceiling < 0.7, "{}: {buckling:?}", rig.name);
+            }
+        }
+    }
+}

@@ -1,0 +1,221 @@
+//! The rig file: a leg with its actuators, its sensors and its controller's settings, in a human's units, read into SI.
+
+mod actuator;
+mod buckling;
+mod calibration;
+mod consistency;
+mod flexures;
+mod reading;
+mod simulation;
+mod support;
+mod tendon;
+
+pub use buckling::Buckling;
+
+use crate::actuator::Actuator;
+use crate::calibration::Calibration;
+use crate::gains::Gains;
+use crate::plant_settings::PlantSettings;
+use crate::ready_rigs::{self, READY_RIGS};
+use crate::support_name::SupportName;
+use crate::toml_problem::Problem;
+use leg_base::failure::{Failure, Place};
+use leg_model::{Elasticity, Query, RigParameters, StiffnessAt, Support, Tendon};
+use std::path::{Path, PathBuf};
+
+/// A leg and how it is used, as its file describes them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigFile {
+    /// The geometry and the masses.
+    pub parameters: RigParameters<f64, 3>,
+    /// The tendons.
+    pub tendons: [Tendon<f64>; 3],
+    /// At which tension their stiffness is read.
+    pub stiffness_at: StiffnessAt,
+    /// Lowest tension allowed, N.
+    pub tension_floor_n: f64,
+    /// Highest tension allowed, N.
+    pub tension_ceiling_n: f64,
+    /// Level of pretension, N per tendon at the vertical pose.
+    pub level_n: f64,
+    /// How far the leg leans at most, degrees.
+    pub tilt_deg: f64,
+    /// The central support's name.
+    pub support_name: SupportName,
+    /// The central support.
+    pub support: Support<f64>,
+    /// The load along the leg under which its flexures buckle, N; none where the file does not give their geometry.
+    pub critical_n: Option<f64>,
+    /// Motors, gears, screws and sensors by their data sheets.
+    pub actuator: Actuator,
+    /// What was measured of the sensors.
+    pub calibration: Calibration,
+    /// Gains and limits of the control law, those that are not given at their defaults.
+    pub gains: Gains,
+    /// What else the simulated leg is.
+    pub plant: PlantSettings,
+}
+
+/// Why a rig file is refused.
+#[derive(Debug, thiserror::Error)]
+pub enum RigFileError {
+    /// The file cannot be read.
+    #[error("cannot read the rig file {}: {error}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        error: std::io::Error,
+    },
+    /// The file is read, but something in it is wrong.
+    #[error("{problem}")]
+    Faulty {
+        /// Where.
+        place: Place,
+        /// What.
+        problem: Problem,
+    },
+}
+
+impl RigFile {
+    /// The rig of a file or, where there is no such file, the ready rig of that name; the paper's rig when neither is
+    /// given.
+    ///
+    /// # Errors
+    /// A [`RigFileError`] with the place.
+    pub fn load(path: Option<&Path>) -> Result<Self, RigFileError> {
+        let RigText { name, text } = RigText::load(path)?;
+        Self::parse(&name, &text)
+    }
+
+    /// The text of a rig file; `file` is its name in messages.
+    ///
+    /// # Errors
+    /// [`RigFileError::Faulty`] with the place.
+    pub fn parse(file: &str, text: &str) -> Result<Self, RigFileError> {
+        reading::parse(text).map_err(|fault| RigFileError::Faulty {
+            place: Place {
+                file: file.into(),
+                text: text.into(),
+                span: fault.span,
+            },
+            problem: fault.problem,
+        })
+    }
+
+    /// Stiffness of each tendon at the level, N/m.
+    #[must_use]
+    pub fn stiffnesses_n_per_m(&self) -> [f64; 3] {
+        // The file was refused if a curve does not reach the level.
+        let at_level = |tendon: Tendon<f64>| tendon.stiffness(self.level_n).unwrap_or(f64::NAN);
+        self.tendons.map(at_level)
+    }
+
+    /// The pose at an azimuth and a tilt with a payload, everything else as the file says.
+    #[must_use]
+    pub fn query(&self, azimuth_deg: f64, tilt_deg: f64, payload_kg: f64) -> Query<f64> {
+        Query {
+            azimuth_rad: azimuth_deg.to_radians(),
+            tilt_rad: tilt_deg.to_radians(),
+            payload_kg,
+            level_n: self.level_n,
+            tension_floor_n: self.tension_floor_n,
+            tension_ceiling_n: self.tension_ceiling_n,
+            tendons: self.tendons,
+            stiffness_at: self.stiffness_at,
+            support: self.support,
+            demand: None,
+        }
+    }
+}
+
+/// The text of a rig file and its name in messages.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RigText {
+    /// The file, as the user named it, or a ready rig.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+}
+
+impl RigText {
+    /// The text that [`RigFile::load`] reads.
+    ///
+    /// # Errors
+    /// [`RigFileError::Unreadable`].
+    pub fn load(path: Option<&Path>) -> Result<Self, RigFileError> {
+        let path = path.unwrap_or(Path::new(READY_RIGS[0].name));
+        let name = path.display().to_string();
+        match std::fs::read_to_string(path) {
+            Ok(text) => Ok(Self { name, text }),
+            Err(error) => match ready_rigs::named(&name) {
+                Some(ready) => Ok(Self {
+                    name: format!("rigs/{name}.toml"),
+                    text: ready.text.into(),
+                }),
+                None => Err(RigFileError::Unreadable {
+                    path: path.into(),
+                    error,
+                }),
+            },
+        }
+    }
+}
+
+impl From<RigFileError> for Failure {
+    fn from(error: RigFileError) -> Self {
+        match error {
+            RigFileError::Unreadable { .. } => {
+                let help = "give a file that exists and may be read, or a name from `leg rig list`";
+                Self::refused(error.to_string(), help)
+            }
+            RigFileError::Faulty { place, ref problem } => {
+                Self::refused_at(problem.to_string(), problem.fix(), place)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::RigFile;
+    use crate::calibration::Calibration;
+    use crate::ready_rigs::READY_RIGS;
+    use leg_model::{CurvePoint, RigParameters, SupportKind, Tendon};
+
+    #[test]
+    fn the_bundled_file_is_the_models_table_1() {
+        let file = RigFile::load(None).unwrap();
+        assert_eq!(file.parameters, RigParameters::<f64, 3>::TABLE_1);
+        assert_eq!(file.support, SupportKind::TorsionFree.into());
+        let tendon = Tendon::curve(&CurvePoint::<f64>::PAPER).unwrap();
+        assert_eq!(file.tendons, [tendon; 3]);
+        assert_eq!(Some(file), RigFile::load(None).ok());
+    }
+
+    /// What is commented out at the end of the default rig is what there is without it.
+    #[test]
+    fn the_sections_that_may_be_left_out_are_shown_at_their_defaults() {
+        let text = READY_RIGS[0].text;
+        let shown: Vec<_> = text.lines().map(uncommented).collect();
+        let given = RigFile::parse("shown", &shown.join("\n")).unwrap();
+        let left_out = RigFile::parse("left out", text).unwrap();
+        assert!(given.calibration.cell_zero_code.is_some());
+        assert_eq!(
+            RigFile {
+                calibration: Calibration::default(),
+                ..given
+            },
+            left_out
+        );
+    }
+
+    /// Prose has a space after its #.
+    fn uncommented(line: &str) -> &str {
+        match line.strip_prefix('#') {
+            Some(code) if !code.starts_with(' ') => code,
+            _ => line,
+        }
+    }
+}

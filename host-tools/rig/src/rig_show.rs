@@ -1,0 +1,110 @@
+//! What the model makes of a rig file.
+
+use crate::rig_file::{Buckling, RigFile};
+use crate::rig_settings;
+use leg_base::failure::Failure;
+use leg_base::json_line::to_line;
+use serde::Serialize;
+
+/// The numbers of a rig that its file does not give directly.
+#[derive(Debug, Serialize)]
+struct Shown {
+    support: &'static str,
+    bending_nm_per_rad: f64,
+    torsion_nm_per_rad: f64,
+    axial_compliance_m_per_n: f64,
+    critical_load_n: Option<f64>,
+    pull_by_critical_at_level: Option<f64>,
+    pull_by_critical_at_ceiling: Option<f64>,
+    tip_below_joint_m: f64,
+    leg_mass_kg: f64,
+    leg_centroid_m: f64,
+    level_n: f64,
+    tension_floor_n: f64,
+    tension_ceiling_n: f64,
+    stiffness_at_level_n_per_m: [f64; 3],
+    tilt_deg: f64,
+}
+
+impl Shown {
+    fn of(file: &RigFile) -> Self {
+        let (joint, parameters) = (file.support.joint(), &file.parameters);
+        let buckling = file.buckling();
+        Self {
+            support: file.support_name.word(),
+            bending_nm_per_rad: joint.bending_nm_per_rad,
+            torsion_nm_per_rad: joint.torsion_nm_per_rad,
+            axial_compliance_m_per_n: joint.axial_compliance_m_per_n,
+            critical_load_n: buckling.map(|found| found.critical_n),
+            pull_by_critical_at_level: buckling.map(|found| found.at_level),
+            pull_by_critical_at_ceiling: buckling.map(|found| found.at_ceiling),
+            tip_below_joint_m: parameters.joint_length_m + parameters.leg_length_m,
+            leg_mass_kg: parameters.leg_mass_kg,
+            leg_centroid_m: parameters.leg_centroid_m,
+            level_n: file.level_n,
+            tension_floor_n: file.tension_floor_n,
+            tension_ceiling_n: file.tension_ceiling_n,
+            stiffness_at_level_n_per_m: file.stiffnesses_n_per_m(),
+            tilt_deg: file.tilt_deg,
+        }
+    }
+}
+
+/// A table for people.
+#[must_use]
+pub fn words(file: &RigFile) -> String {
+    let shown = Shown::of(file);
+    let [first, second, third] = shown.stiffness_at_level_n_per_m;
+    format!(
+        "support                {}\n\
+         joint, bending         {:.4} N·m/rad\n\
+         joint, torsion         {:.4} N·m/rad\n\
+         joint, along the leg   {:.3e} m/N\n\
+         {}\
+         tip below the joint    {:.1} mm\n\
+         leg                    {} kg, centroid {:.1} mm below the joint\n\
+         tensions               {} to {} N, level {} N\n\
+         tendons at the level   {first:.0}, {second:.0}, {third:.0} N/m\n\
+         workspace              tilt to {}°\n\
+         {}",
+        shown.support,
+        shown.bending_nm_per_rad,
+        shown.torsion_nm_per_rad,
+        shown.axial_compliance_m_per_n,
+        file.buckling().map_or_else(String::new, buckling_words),
+        shown.tip_below_joint_m * 1000.0,
+        shown.leg_mass_kg,
+        shown.leg_centroid_m * 1000.0,
+        shown.tension_floor_n,
+        shown.tension_ceiling_n,
+        shown.level_n,
+        shown.tilt_deg,
+        rig_settings::changes(file),
+    )
+}
+
+fn buckling_words(buckling: Buckling) -> String {
+    let Buckling {
+        critical_n,
+        at_level,
+        at_ceiling,
+    } = buckling;
+    let warning = if at_ceiling >= 1.0 {
+        "warning                the joint buckles before all tendons pull with the highest tension: make its flexures\n\
+         \u{20}                      thicker or shorter, or lower `ceiling_n`\n"
+    } else {
+        ""
+    };
+    format!(
+        "joint, buckling        at {critical_n:.0} N; the tendons pull with {at_level:.2} of it at the level, \
+         {at_ceiling:.2} at the ceiling\n{warning}"
+    )
+}
+
+/// One line of JSON for machines, in SI units.
+///
+/// # Errors
+/// A [`Failure`] if the numbers have no form in JSON.
+pub fn json(file: &RigFile) -> Result<String, Failure> {
+    to_line(&Shown::of(file))
+}

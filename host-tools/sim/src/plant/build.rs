@@ -1,0 +1,100 @@
+//! The simulated leg at its start.
+
+use super::body::Body;
+use super::encoder::Encoder;
+use super::faults::Faults;
+use super::hand::Hand;
+use super::mechanism::Mechanism;
+use super::motor::{Motor, MotorType};
+use super::outside::{Payload, Push};
+use super::sensing::Cells;
+use super::supply::Supply;
+use super::temperature::Temperature;
+use super::tendon_pull::RealTendon;
+use super::{Plant, Start, Work};
+use leg_base::tick_time::tick_s;
+use leg_model::{Error, Load, Quantity, Reason, Rig};
+use leg_rig::plant_settings::PlantSettings;
+use leg_rig::rig_file::RigFile;
+use nalgebra::Vector3;
+
+impl Plant {
+    /// A leg at its start. Its actuators and sensors are as the rig's actuator data say, whatever calibrations the rig
+    /// has besides: only the signs of the encoders' counts are those of the calibration, as they are wired.
+    ///
+    /// # Errors
+    /// A rig without inertia; a start that the model refuses or at which a tension leaves the rig's bounds.
+    pub fn new(
+        rig: &RigFile,
+        settings: &PlantSettings,
+        start: Start,
+        seed: u64,
+    ) -> Result<Self, Error> {
+        let bare = bare_body(rig, settings)?;
+        let mut mechanism = mechanism(rig, settings, bare)?;
+        let begun = start.begin(rig, &mechanism.rig, &mechanism.tendons)?;
+        mechanism.load = Load::new(&mechanism.rig, begun.payload_kg)?;
+        mechanism.body = bare.loaded(begun.payload_kg, mechanism.rig.tip_m());
+        let actuator = &rig.actuator;
+        let substeps = settings.substeps.max(1);
+        let mut plant = Self {
+            actuator: *actuator,
+            mechanism,
+            bare,
+            leg: begun.leg,
+            motor_type: MotorType::new(actuator, 0.5 * tick_s() / f64::from(substeps)),
+            motors: [Motor::new(actuator); 3],
+            supply: Supply {
+                open_v: actuator.supply_v,
+                resistance_ohm: settings.supply_resistance_ohm,
+            },
+            temperature: Temperature::new(settings.ambient_c),
+            encoders: rig.calibration.counts_sign.map(Encoder::new),
+            cells: Cells::new(actuator, settings, seed),
+            faults: Faults::default(),
+            emergency_stop: false,
+            payload: Payload::new(begun.payload_kg),
+            push: Push::default(),
+            hand: Hand::default(),
+            unstretched_at_zero_m: begun.unstretched_m,
+            tensions_n: [0.0; 3],
+            work: Work::default(),
+            ticks: 0,
+            substeps,
+        };
+        plant.tensions_n = plant.pulls_n();
+        Ok(plant)
+    }
+}
+
+fn bare_body(rig: &RigFile, settings: &PlantSettings) -> Result<Body, Error> {
+    let body = Body {
+        transverse_kg_m2: settings.transverse_inertia_kg_m2(&rig.parameters),
+        axial_kg_m2: settings.leg_axial_inertia_kg_m2,
+    };
+    if body.transverse_kg_m2 > 0.0 && body.axial_kg_m2 > 0.0 {
+        return Ok(body);
+    }
+    Err(Error::Refused {
+        quantity: Quantity::LegMass,
+        reason: Reason::NotPositive,
+    })
+}
+
+/// Without a payload.
+fn mechanism(file: &RigFile, settings: &PlantSettings, body: Body) -> Result<Mechanism, Error> {
+    let [first, second, third] = &file.tendons;
+    let real = |tendon| RealTendon::new(tendon, settings.curve_error);
+    let rig = Rig::new(&file.parameters)?;
+    Ok(Mechanism {
+        rig,
+        support: file.support,
+        tendons: [real(first)?, real(second)?, real(third)?],
+        cut: [false; 3],
+        body,
+        load: Load::new(&rig, 0.0)?,
+        push_n: Vector3::zeros(),
+        joint_damping_nm_s_per_rad: settings.joint_damping_nm_s_per_rad,
+        tendon_damping_n_s_per_m: settings.tendon_damping_n_s_per_m,
+    })
+}

@@ -1,0 +1,81 @@
+//! What the board reads: codes with the sensors' errors.
+
+use super::faults::{Fault, Faults};
+use fastrand::Rng;
+use leg_firmware::sensors::CODE_MAX;
+use leg_rig::actuator::Actuator;
+use leg_rig::plant_settings::PlantSettings;
+
+/// How fast a drifting cell's offset grows, N/s.
+const DRIFT_N_PER_S: f64 = 5.0;
+
+/// The code of a value between those of code 0 and of the highest code.
+pub(super) fn code(value: f64, [low, high]: [f64; 2]) -> u16 {
+    let part = (value - low) / (high - low);
+    // A conversion from f64 to an integer saturates, so only the upper end is left to do.
+    ((part * f64::from(CODE_MAX)).round() as u16).min(CODE_MAX)
+}
+
+/// Codes around half of the highest one, which is none.
+pub(super) fn code_around_none(value: f64, range: f64) -> u16 {
+    code(value, [-range, range])
+}
+
+/// The load cells.
+#[derive(Clone, Debug)]
+pub(super) struct Cells {
+    rng: Rng,
+    range_n: [f64; 2],
+    gains: [f64; 3],
+    offsets_n: [f64; 3],
+    noise_n: f64,
+    drift_n_per_s: f64,
+    codes: [u16; 3],
+}
+
+impl Cells {
+    pub fn new(actuator: &Actuator, settings: &PlantSettings, seed: u64) -> Self {
+        Self {
+            rng: Rng::with_seed(seed),
+            range_n: actuator.cell_range_n,
+            gains: settings.cell_gain_error.map(|error| 1.0 + error),
+            offsets_n: settings.cell_offset_n,
+            noise_n: settings.cell_noise_n,
+            drift_n_per_s: settings.cell_drift_n_per_s,
+            codes: settings
+                .cell_offset_n
+                .map(|offset| code(offset, actuator.cell_range_n)),
+        }
+    }
+
+    /// Lets the offsets drift for `span_s`.
+    pub fn drift(&mut self, span_s: f64, faults: Faults) {
+        let drifting = faults.of_three(Fault::CellDrifting);
+        for (offset, drifting) in self.offsets_n.iter_mut().zip(drifting) {
+            let fault = if drifting { DRIFT_N_PER_S } else { 0.0 };
+            *offset += (self.drift_n_per_s + fault) * span_s;
+        }
+    }
+
+    /// The codes under these tensions.
+    pub fn read(&mut self, tensions_n: [f64; 3], faults: Faults) -> [u16; 3] {
+        for (i, tension) in tensions_n.into_iter().enumerate() {
+            // Drawn whatever fails, so that a fault does not change the noise of the other cells.
+            let noise = self.noise_n * gaussian(&mut self.rng);
+            if faults.has(Fault::CellSaturated(i)) {
+                self.codes[i] = CODE_MAX;
+            } else if faults.has(Fault::CellDead(i)) {
+                self.codes[i] = 0;
+            } else if !faults.has(Fault::CellStuck(i)) && !faults.has(Fault::CellStale(i)) {
+                let shown = tension * self.gains[i] + self.offsets_n[i] + noise;
+                self.codes[i] = code(shown, self.range_n);
+            }
+        }
+        self.codes
+    }
+}
+
+/// A number of mean 0 and variance 1, close to normal: a sum of twelve even ones, whose bits are the same everywhere.
+fn gaussian(rng: &mut Rng) -> f64 {
+    (0..12).map(|_| rng.f64()).sum::<f64>() - 6.0
+}

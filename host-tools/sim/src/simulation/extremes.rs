@@ -1,0 +1,53 @@
+//! The extremes since a mark.
+
+use crate::plant::Truth;
+use leg_base::tick_time::tick_s;
+use nalgebra::Vector3;
+
+/// How far beyond its bounds a tension may be for a short time, as a part of the bound.
+const BEYOND: f64 = 0.05;
+
+/// The extremes since a mark.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Extremes {
+    pub tension_min_n: f64,
+    pub tension_max_n: f64,
+    /// Longest time outside the bounds, ms.
+    pub outside_ms: f64,
+    pub tip_moved_mm: f64,
+    tip_m: Vector3<f64>,
+    outside_now_ms: f64,
+}
+
+impl Extremes {
+    pub fn new(truth: &Truth) -> Self {
+        Self {
+            tension_min_n: f64::INFINITY,
+            tension_max_n: f64::NEG_INFINITY,
+            outside_ms: 0.0,
+            tip_moved_mm: 0.0,
+            tip_m: truth.tip_m,
+            outside_now_ms: 0.0,
+        }
+    }
+
+    pub fn take(&mut self, truth: &Truth, [floor_n, ceiling_n]: [f64; 2]) {
+        let lowest = truth.tensions_n.into_iter().fold(f64::INFINITY, f64::min);
+        let highest = truth
+            .tensions_n
+            .into_iter()
+            .fold(f64::NEG_INFINITY, f64::max);
+        self.tension_min_n = self.tension_min_n.min(lowest);
+        self.tension_max_n = self.tension_max_n.max(highest);
+        let outside = lowest < floor_n * (1.0 - BEYOND) || highest > ceiling_n * (1.0 + BEYOND);
+        self.outside_now_ms = if outside {
+            self.outside_now_ms + tick_s() * 1000.0
+        } else {
+            0.0
+        };
+        self.outside_ms = self.outside_ms.max(self.outside_now_ms);
+        self.tip_moved_mm = self
+            .tip_moved_mm
+            .max((truth.tip_m - self.tip_m).norm() * 1000.0);
+    }
+}
