@@ -82,9 +82,9 @@ fn queries() -> impl Strategy<Value = QueryMessage> {
             azimuth_rad: n[0],
             tilt_rad: n[1],
             payload_kg: n[2],
-            level_n: n[3],
-            tension_floor_n: n[4],
-            tension_ceiling_n: n[5],
+            pretension_n: n[3],
+            f_min_n: n[4],
+            f_max_n: n[5],
             tendons,
             stiffness_at,
             support,
@@ -132,7 +132,7 @@ fn assert_finite(evaluation: &Evaluation<f32>) {
     let e = evaluation;
     let commanded = e
         .commanded
-        .map_or([0.0; 2], |c| [c.level_n, c.stiffness_nm_per_rad]);
+        .map_or([0.0; 2], |c| [c.pretension_n, c.stiffness_nm_per_rad]);
     let numbers = [
         &e.lengths_m[..],
         e.moment_map_m.as_flattened(),
@@ -140,7 +140,7 @@ fn assert_finite(evaluation: &Evaluation<f32>) {
         &e.load_moment_nm,
         &e.tensions_n,
         &e.tensions_min_n,
-        &e.level_range_n,
+        &e.pretension_range_n,
         e.stiffness_nm_per_rad.as_flattened(),
         e.stiffness_k2_exact_nm_per_rad.as_flattened(),
         e.stiffness_k2_printed_nm_per_rad.as_flattened(),
@@ -227,10 +227,10 @@ proptest! {
         if moment.iter().any(|m| m.is_finite() && m.abs() > 1e12) { return Ok(()) }
         let plane = FreePlane::torsion_free(&direction);
         if let Ok(found) = distribute(&kinematics.moment_map, &plane, &Vector3::from(moment), &bounds) {
-            let levels = [found.lowest_level, found.highest_level];
+            let pretensions = [found.pretension_min, found.pretension_max];
             let finite = |v: &[f32]| v.iter().all(|number| number.is_finite());
-            assert!(finite(found.particular.as_slice()) && finite(found.per_level.as_slice()), "{found:?}");
-            assert!(finite(&levels), "{found:?}");
+            assert!(finite(found.particular.as_slice()) && finite(found.per_pretension.as_slice()), "{found:?}");
+            assert!(finite(&pretensions), "{found:?}");
         }
     }
 }

@@ -151,9 +151,9 @@ fn every_fault_that_is_named_is_in_the_table() {
     }
 }
 
-/// Every Rust source below a folder.
-fn sources(folder: &Path, text: &mut String) {
-    for entry in fs::read_dir(folder).unwrap() {
+/// Every Rust source below a directory.
+fn sources(directory: &Path, text: &mut String) {
+    for entry in fs::read_dir(directory).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
             sources(&path, text);
@@ -166,8 +166,8 @@ fn sources(folder: &Path, text: &mut String) {
 /// The sources of firmware and host, string literals in one line.
 fn all_sources() -> String {
     let mut text = String::new();
-    for folder in [".", "../host-tools"] {
-        sources(&Path::new(FIRMWARE).join(folder), &mut text);
+    for directory in [".", "../host-tools"] {
+        sources(&Path::new(FIRMWARE).join(directory), &mut text);
     }
     let lines = text.split("\\\n").map(str::trim_start);
     lines.collect::<Vec<_>>().concat()

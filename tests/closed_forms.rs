@@ -12,16 +12,16 @@ use nalgebra::Matrix3;
 const TABLE_1: RigParameters<f64, 3> = RigParameters::<f64, 3>::TABLE_1;
 const RING_M: f64 = 0.024;
 const STIFFNESS_N_PER_M: f64 = 1e5;
-const LEVEL_N: f64 = 70.0;
+const PRETENSION_N: f64 = 70.0;
 
 fn at(azimuth_deg: f64, tilt_deg: f64, support: SupportKind) -> Evaluation<f64> {
     let query = Query {
         azimuth_rad: azimuth_deg.to_radians(),
         tilt_rad: tilt_deg.to_radians(),
         payload_kg: 1.0,
-        level_n: LEVEL_N,
-        tension_floor_n: 8.0,
-        tension_ceiling_n: 150.0,
+        pretension_n: PRETENSION_N,
+        f_min_n: 8.0,
+        f_max_n: 150.0,
         tendons: constant_tendons(STIFFNESS_N_PER_M).unwrap(),
         stiffness_at: StiffnessAt::Pretension,
         support: support.into(),
@@ -66,7 +66,7 @@ fn a_hanging_leg_has_vertical_tendons() {
     let [x, y] = [0, 1].map(|axis| TABLE_1.leg_anchors_m.map(|anchor| anchor[axis]));
     assert_matrix(&hanging.moment_map_m, [y, x.map(|x| -x), [0.0; 3]]);
     for tension in hanging.tensions_n {
-        assert_near(tension, LEVEL_N, 100.0);
+        assert_near(tension, PRETENSION_N, 100.0);
     }
     assert_eq!(hanging.deviation_m, 0.0);
 }
@@ -76,7 +76,7 @@ fn a_hanging_leg_has_vertical_tendons() {
 #[test]
 fn the_stiffness_of_a_hanging_leg_is_that_of_its_ring_and_of_two_pendulums() {
     let (upper, joint) = (TABLE_1.upper_length_m, TABLE_1.joint_length_m);
-    let per_metre = 3.0 * LEVEL_N / (upper + joint);
+    let per_metre = 3.0 * PRETENSION_N / (upper + joint);
     let (bending, torsion) = (-per_metre * joint * upper, per_metre * RING_M * RING_M);
     let hanging = at(0.0, 0.0, SupportKind::TorsionFree);
     assert_matrix(
@@ -89,7 +89,7 @@ fn the_stiffness_of_a_hanging_leg_is_that_of_its_ring_and_of_two_pendulums() {
         diagonal(k1 + bending, torsion),
     );
     // Eq. (15): Σ f[z×][e×] = 3f·L_joint about x and y, nothing about z.
-    let printed = diagonal(3.0 * LEVEL_N * joint, 0.0);
+    let printed = diagonal(3.0 * PRETENSION_N * joint, 0.0);
     assert_matrix(&hanging.stiffness_k2_printed_nm_per_rad, printed);
 }
 

@@ -53,9 +53,9 @@ fn a_missing_emulator_is_refused_with_the_fix() {
 }
 
 /// A program in the emulator's place: it runs the emulator and kills it after a moment.
-fn dying_emulator(folder: &Path) -> PathBuf {
+fn dying_emulator(directory: &Path) -> PathBuf {
     let emulator = setup::ensure_qemu(&mut |_| {}).unwrap();
-    let script = folder.join("dying-emulator");
+    let script = directory.join("dying-emulator");
     let text = format!(
         "#!/bin/sh\n'{}' \"$@\" &\nsleep 1\nkill -9 $!\nwait $!\n",
         emulator.display()
@@ -67,17 +67,17 @@ fn dying_emulator(folder: &Path) -> PathBuf {
 
 #[test]
 fn an_emulator_that_dies_in_mid_run_is_told_in_words() {
-    let folder = tempfile::tempdir().unwrap();
+    let directory = tempfile::tempdir().unwrap();
     image::build().unwrap();
     // Enough poses that a second does not suffice.
     let line = br#"{"azimuth_deg":30,"tilt_deg":20,"payload_kg":1}
 "#;
-    let poses = folder.path().join("poses.jsonl");
+    let poses = directory.path().join("poses.jsonl");
     std::fs::write(&poses, line.repeat(200_000)).unwrap();
     let output = Command::new(LEG)
         .args(["eval", "--on", "qemu"])
         .arg(&poses)
-        .env("LEG_QEMU", dying_emulator(folder.path()))
+        .env("LEG_QEMU", dying_emulator(directory.path()))
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(2));
@@ -94,10 +94,10 @@ fn an_emulator_that_dies_in_mid_run_is_told_in_words() {
 
 #[test]
 fn run_tells_machines_what_came_out() {
-    let folder = tempfile::tempdir().unwrap();
+    let directory = tempfile::tempdir().unwrap();
     let output = Command::new(LEG)
         .args(["run", "--on", "sim", "--json", "--plots"])
-        .arg(folder.path())
+        .arg(directory.path())
         .output()
         .unwrap();
     assert!(output.status.success());
@@ -107,7 +107,7 @@ fn run_tells_machines_what_came_out() {
     let findings = report["findings"].as_array().unwrap();
     assert!(findings.iter().all(|finding| finding["value"].is_f64()));
     for chart in ["tip", "tensions", "stiffness"] {
-        assert!(folder.path().join(chart).with_extension("png").is_file());
+        assert!(directory.path().join(chart).with_extension("png").is_file());
     }
 }
 

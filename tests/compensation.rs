@@ -27,15 +27,15 @@ fn poses(tilt_deg: f64) -> impl Iterator<Item = (f64, f64)> {
     })
 }
 
-/// A level inside the bounds, near the rig's own; none where no level is.
-fn feasible_level(file: &RigFile, azimuth: f64, tilt: f64, payload_kg: f64) -> Option<f64> {
+/// A pretension inside the bounds, near the rig's own; none where no pretension is.
+fn feasible_pretension(file: &RigFile, azimuth: f64, tilt: f64, payload_kg: f64) -> Option<f64> {
     let query = file.query(azimuth.to_degrees(), tilt.to_degrees(), payload_kg);
     let range = leg_model::evaluate(&file.parameters, &query)
         .unwrap()
-        .level_range_n;
+        .pretension_range_n;
     let [lowest, highest] = range;
-    // A third of the range from its ends, since the twist of a support with three freedoms depends on the level.
-    (highest - lowest > 1.0).then(|| file.level_n.clamp(lowest + 0.3, highest - 0.3))
+    // A third of the range from its ends, since the twist of a support with three freedoms depends on the pretension.
+    (highest - lowest > 1.0).then(|| file.pretension_n.clamp(lowest + 0.3, highest - 0.3))
 }
 
 /// Where the leg with a payload rests on tendons of these unstretched lengths, from a little off.
@@ -66,7 +66,7 @@ fn tip_error_m(file: &RigFile, posture: &Posture, target: &Direction<f64>) -> f6
 }
 
 fn bounds(file: &RigFile) -> TensionBounds<f64> {
-    TensionBounds::new(file.tension_floor_n, file.tension_ceiling_n).unwrap()
+    TensionBounds::new(file.f_min_n, file.f_max_n).unwrap()
 }
 
 /// What came out over the workspace.
@@ -76,7 +76,7 @@ struct Worst {
     tip_m: f64,
     /// The largest stretch of joint and shaft along the leg, m.
     stretch_m: f64,
-    /// Poses that had a level, and poses that had none.
+    /// Poses that had a pretension, and poses that had none.
     held: usize,
     infeasible: usize,
 }
@@ -89,12 +89,12 @@ fn worst(
     let mut worst = Worst::default();
     for payload_kg in PAYLOADS_KG {
         for (azimuth, tilt) in poses(file.tilt_deg) {
-            let Some(level) = feasible_level(file, azimuth, tilt, payload_kg) else {
+            let Some(pretension) = feasible_pretension(file, azimuth, tilt, payload_kg) else {
                 worst.infeasible += 1;
                 continue;
             };
             let target = Direction::from_angles(azimuth, tilt).unwrap();
-            let unstretched = compensate(azimuth, tilt, payload_kg, level).unwrap();
+            let unstretched = compensate(azimuth, tilt, payload_kg, pretension).unwrap();
             let (balance, posture) = rest(file, unstretched, payload_kg, &target);
             worst.tip_m = worst.tip_m.max(tip_error_m(file, &posture, &target));
             let stretch = balance.axial_stretch_m(&posture).unwrap().abs();
@@ -108,10 +108,12 @@ fn worst(
 fn in_f64(file: &RigFile) -> impl Fn(f64, f64, f64, f64) -> Result<Vector3<f64>, HoldError> {
     let rig = Rig::new(&file.parameters).unwrap();
     let (support, tendons, bounds) = (file.support, file.tendons, bounds(file));
-    move |azimuth, tilt, payload_kg, level| {
+    move |azimuth, tilt, payload_kg, pretension| {
         let target = Direction::from_angles(azimuth, tilt)?;
         let moment = Load::new(&rig, payload_kg)?.moment(&target);
-        let held = inverse_statics(&rig, &support, &target, &moment, &bounds, &tendons, level)?;
+        let held = inverse_statics(
+            &rig, &support, &target, &moment, &bounds, &tendons, pretension,
+        )?;
         Ok(held.unstretched)
     }
 }
@@ -120,13 +122,15 @@ fn in_f32(file: &RigFile) -> impl Fn(f64, f64, f64, f64) -> Result<Vector3<f64>,
     let rig = Rig::new(&round_rig(&file.parameters)).unwrap();
     let support = round_support(&file.support).support::<f32>().unwrap();
     let tendons = round_tendons(&file.tendons).tendons::<f32>().unwrap();
-    let (floor, ceiling) = (round(file.tension_floor_n), round(file.tension_ceiling_n));
+    let (floor, ceiling) = (round(file.f_min_n), round(file.f_max_n));
     let bounds = TensionBounds::new(floor, ceiling).unwrap();
-    move |azimuth, tilt, payload_kg, level| {
+    move |azimuth, tilt, payload_kg, pretension| {
         let target = Direction::from_angles(round(azimuth), round(tilt))?;
         let moment = Load::new(&rig, round(payload_kg))?.moment(&target);
-        let level = round(level);
-        let held = inverse_statics(&rig, &support, &target, &moment, &bounds, &tendons, level)?;
+        let pretension = round(pretension);
+        let held = inverse_statics(
+            &rig, &support, &target, &moment, &bounds, &tendons, pretension,
+        )?;
         Ok(held.unstretched.map(f64::from))
     }
 }
@@ -143,7 +147,7 @@ fn a_known_load_rests_on_target_on_every_support() {
             infeasible,
         } = f64_worst;
         println!(
-            "{}: {tip_m:.1e} m in f64 at {held} poses ({infeasible} have no level), beside a stretch of up to {stretch_m:.1e} m along the leg",
+            "{}: {tip_m:.1e} m in f64 at {held} poses ({infeasible} have no pretension), beside a stretch of up to {stretch_m:.1e} m along the leg",
             ready.name
         );
         assert!(held > 400, "{}: {held} poses", ready.name);
@@ -174,14 +178,16 @@ fn after_estimates_m(
 ) -> f64 {
     let rig = Rig::new(&file.parameters).unwrap();
     let target = Direction::from_angles(azimuth, tilt).unwrap();
-    let level = feasible_level(file, azimuth, tilt, payload_kg).unwrap();
+    let pretension = feasible_pretension(file, azimuth, tilt, payload_kg).unwrap();
     let wide = TensionBounds::new(0.0, 200.0).unwrap();
     let (support, tendons) = (file.support, file.tendons);
     let mut moment = Load::new(&rig, 0.0).unwrap().moment(&target);
     let mut error = f64::NAN;
     for _ in 0..8 {
-        let held =
-            inverse_statics(&rig, &support, &target, &moment, &wide, &tendons, level).unwrap();
+        let held = inverse_statics(
+            &rig, &support, &target, &moment, &wide, &tendons, pretension,
+        )
+        .unwrap();
         let (balance, posture) = rest(file, held.unstretched, payload_kg, &target);
         error = tip_error_m(file, &posture, &target);
         let factors = Vector3::from(errors).map(|error| 1.0 + error);

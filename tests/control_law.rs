@@ -24,7 +24,7 @@ fn input(pulled_m: f64) -> AxisInput<f64> {
     AxisInput {
         pulled_m,
         tension_n: 0.0,
-        ceiling_n: 150.0,
+        f_max_n: 150.0,
         supply_v: 24.0,
         lowest_m: f64::MIN,
     }
@@ -63,7 +63,7 @@ fn an_integral_gathers_nothing_while_the_voltage_is_limited() {
     assert!((200..300).contains(&ticks), "{ticks} ticks");
 }
 
-/// Above the ceiling a tendon is let out, wherever it is led; but not beyond where it may go.
+/// Above the maximum tension a tendon is let out, wherever it is led; but not beyond where it may go.
 #[test]
 fn a_tension_above_the_ceiling_turns_the_motor_round() {
     let settings = settings(None);
@@ -225,15 +225,15 @@ fn homing_gives_way_above_its_ceiling_and_gives_up_at_twice_that() {
     assert_eq!(bench.obey(Command::Home), Ok(()));
     // Let out, tared, and the first tendon half taken up.
     bench.run(7000);
-    let ceiling_n = bench.settings.homing.ceiling_n;
-    bench.tensions([ceiling_n - 5.0, 0.0, 0.0]);
+    let f_max_n = bench.settings.homing.f_max_n;
+    bench.tensions([f_max_n - 5.0, 0.0, 0.0]);
     let below = bench.run(1);
-    bench.tensions([ceiling_n + 5.0, 0.0, 0.0]);
+    bench.tensions([f_max_n + 5.0, 0.0, 0.0]);
     let above = bench.run(1);
     let telemetry = bench.leg.telemetry();
     assert_eq!(telemetry.state, State::Homing, "{telemetry:?}");
     assert!(below[0] >= 0.0 && above[0] < -0.1, "{below:?} {above:?}");
-    bench.tensions([2.0 * ceiling_n + 1.0, 0.0, 0.0]);
+    bench.tensions([2.0 * f_max_n + 1.0, 0.0, 0.0]);
     bench.run(1);
     assert!(bench.has(Fault::HomingFailed));
     assert_eq!(bench.leg.state(), State::RampingDown);
@@ -267,7 +267,7 @@ fn commands_that_mean_nothing_now_are_refused_by_name() {
         assert_eq!(bench.obey(stiffness), Err(CommandRefusal::Number));
     }
     assert_eq!(
-        bench.obey(Command::Level(f32::INFINITY)),
+        bench.obey(Command::Pretension(f32::INFINITY)),
         Err(CommandRefusal::Number)
     );
     assert_eq!(bench.obey(Command::Stop), Ok(()));

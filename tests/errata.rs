@@ -17,7 +17,7 @@ fn rig() -> Rig<f64, 3> {
     Rig::new(&TABLE_1).unwrap()
 }
 
-/// The tensions at a pose with a level of 70 N.
+/// The tensions at a pose with a pretension of 70 N.
 fn tensions(direction: &Direction<f64>, payload_kg: f64) -> Vector3<f64> {
     let rig = rig();
     let moment = Load::new(&rig, payload_kg).unwrap().moment(direction);
@@ -176,9 +176,9 @@ fn table_1_has_another_leg_mass_than_figure_9() {
         azimuth_rad: 30_f64.to_radians(),
         tilt_rad: 30_f64.to_radians(),
         payload_kg: 0.0,
-        level_n: 70.0,
-        tension_floor_n: 8.0,
-        tension_ceiling_n: 150.0,
+        pretension_n: 70.0,
+        f_min_n: 8.0,
+        f_max_n: 150.0,
         tendons: constant_tendons(9.945e4).unwrap(),
         stiffness_at: StiffnessAt::Pretension,
         support: SupportKind::TorsionFree.into(),

@@ -33,7 +33,7 @@ fn distribution(direction: &Direction<f64>, payload_kg: f64) -> Distribution<f64
     .unwrap()
 }
 
-/// The tensions at a pose with a level of 70 N.
+/// The tensions at a pose with a pretension of 70 N.
 fn tensions(direction: &Direction<f64>, payload_kg: f64) -> Vector3<f64> {
     distribution(direction, payload_kg).tensions(70.0)
 }
@@ -116,7 +116,7 @@ fn stiffnesses(
 fn equation_15_says_that_pretension_stiffens_bending_where_it_softens_it() {
     for (azimuth, tilt) in poses(10, 5) {
         let direction = Direction::from_angles(azimuth, tilt).unwrap();
-        let pretension = distribution(&direction, 0.0).per_level * 70.0;
+        let pretension = distribution(&direction, 0.0).per_pretension * 70.0;
         let [exact, printed] = stiffnesses(rig().geometry(), &direction, &pretension);
         let plane = FreePlane::torsion_free(&direction);
         // The mean over the two free axes.

@@ -19,13 +19,13 @@ fn option_bytes(options: &str) -> String {
 }
 
 /// Makes the program: a line of shell for each of its subcommands. It notes how it was called.
-fn probe_rs(folder: &Path, lines: &[(&str, &str)]) -> PathBuf {
-    let script = folder.join("probe-rs");
+fn probe_rs(directory: &Path, lines: &[(&str, &str)]) -> PathBuf {
+    let script = directory.join("probe-rs");
     let cases: String = lines
         .iter()
         .map(|(subcommand, line)| format!("{subcommand}) {line};;\n"))
         .collect();
-    let calls = folder.join("calls");
+    let calls = directory.join("calls");
     let text = format!(
         "#!/bin/sh\necho \"$@\" >> '{}'\ncase $1 in\n{cases}esac\n",
         calls.display()
@@ -47,17 +47,17 @@ impl Flashed {
 }
 
 fn flash(lines: &[(&str, &str)], arguments: &[&str]) -> Flashed {
-    let folder = tempfile::tempdir().unwrap();
-    let image = folder.path().join("leg.elf");
+    let directory = tempfile::tempdir().unwrap();
+    let image = directory.path().join("leg.elf");
     std::fs::write(&image, "an image").unwrap();
     let output = Command::new(LEG)
         .args(["flash", "--image"])
         .arg(&image)
         .args(arguments)
-        .env("LEG_PROBE_RS", probe_rs(folder.path(), lines))
+        .env("LEG_PROBE_RS", probe_rs(directory.path(), lines))
         .output()
         .unwrap();
-    let calls = std::fs::read_to_string(folder.path().join("calls")).unwrap_or_default();
+    let calls = std::fs::read_to_string(directory.path().join("calls")).unwrap_or_default();
     Flashed {
         output,
         calls: calls.replace(&image.display().to_string(), "IMAGE"),
@@ -134,11 +134,11 @@ fn what_goes_wrong_is_named_with_its_cure() {
         ),
         ("Something else.", 2, "Something else", "probe-rs info"),
     ];
-    for (says, code, wrong, cure) in cases {
+    for (says, code, wrong, remedy) in cases {
         let flashed = flash(&[("read", &fails(&says.replace('\'', "")))], &[]);
         let told = flashed.told();
         assert_eq!(flashed.output.status.code(), Some(code), "{told}");
-        assert!(told.contains(wrong) && told.contains(cure), "{told}");
+        assert!(told.contains(wrong) && told.contains(remedy), "{told}");
     }
 }
 
@@ -158,14 +158,14 @@ fn another_chip_is_not_written_to() {
 
 #[test]
 fn a_chip_with_other_option_bytes_is_not_written_to() {
-    for (options, wrong, cure) in [
-        ("ffeff8bb", "protected against reading", "RDP level 0"),
+    for (options, wrong, remedy) in [
+        ("ffeff8bb", "protected against reading", "RDP pretension 0"),
         ("ffaff8aa", "set to a single bank", "DBANK"),
     ] {
         let flashed = flash(&[("read", &option_bytes(options))], &[]);
         assert_eq!(flashed.output.status.code(), Some(2));
         let told = flashed.told();
-        assert!(told.contains(wrong) && told.contains(cure), "{told}");
+        assert!(told.contains(wrong) && told.contains(remedy), "{told}");
         assert!(!flashed.calls.contains("download"));
     }
 }

@@ -1,5 +1,5 @@
 //! The exported MuJoCo models, judged by MuJoCo: `tests/mujoco/compare.py` runs in a virtual environment under the
-//! target folder.
+//! target directory.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -38,14 +38,14 @@ struct Case {
 
 impl Case {
     fn new(rig: &RigFile, azimuth_deg: f64, tilt_deg: f64) -> Self {
-        let at_the_rigs_level = rig.query(azimuth_deg, tilt_deg, PAYLOAD_KG);
-        let [lowest, highest] = evaluate(&rig.parameters, &at_the_rigs_level)
+        let at_the_rigs_pretension = rig.query(azimuth_deg, tilt_deg, PAYLOAD_KG);
+        let [lowest, highest] = evaluate(&rig.parameters, &at_the_rigs_pretension)
             .unwrap()
-            .level_range_n;
-        // The rig's level does not serve every elastic joint at every pose.
+            .pretension_range_n;
+        // The rig's pretension does not serve every elastic joint at every pose.
         let query = Query {
-            level_n: (lowest + highest) / 2.0,
-            ..at_the_rigs_level
+            pretension_n: (lowest + highest) / 2.0,
+            ..at_the_rigs_pretension
         };
         Self {
             leg: HeldLeg::new(&rig.parameters, &query).unwrap(),
@@ -150,13 +150,13 @@ fn largest_difference(found: &[f64], expected: &[f64]) -> f64 {
 
 /// Asks MuJoCo about every case.
 fn ask(cases: &[Case]) -> Vec<Value> {
-    let folder = tempfile::tempdir().unwrap();
+    let directory = tempfile::tempdir().unwrap();
     let jobs: Vec<Value> = cases
         .iter()
         .enumerate()
         .map(|(i, case)| {
             json!({
-                "model": export(case, folder.path(), i),
+                "model": export(case, directory.path(), i),
                 "other_payloads_kg": OTHER_PAYLOADS_KG,
                 "settle": i == SETTLED,
             })
@@ -167,16 +167,16 @@ fn ask(cases: &[Case]) -> Vec<Value> {
     answers
 }
 
-fn export(case: &Case, folder: &Path, i: usize) -> PathBuf {
-    let path = folder.join(format!("{i}.xml"));
+fn export(case: &Case, directory: &Path, i: usize) -> PathBuf {
+    let path = directory.join(format!("{i}.xml"));
     let model = Mjcf::new(&case.leg).unwrap();
     model.write(File::create(&path).unwrap()).unwrap();
     path
 }
 
 fn compare(jobs: &str) -> Vec<Value> {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("mujoco");
-    let python = mujoco::python(&folder).unwrap_or_else(|error| panic!("{error}"));
+    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("mujoco");
+    let python = mujoco::python(&directory).unwrap_or_else(|error| panic!("{error}"));
     let mut child = Command::new(python)
         .arg(concat!(env!("CARGO_MANIFEST_DIR"), "/mujoco/compare.py"))
         .stdin(Stdio::piped())

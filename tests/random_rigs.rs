@@ -150,19 +150,21 @@ fn assert_balance<const N: usize>((parameters, direction, _, payload_kg): &State
     let load = Load::new(&rig, *payload_kg).unwrap().moment(direction);
     assert!((load - moment).amax() < 1e-14);
     let found = distribute(&moment_map, &plane, &load, &bounds).unwrap();
-    for level in [0.0, 70.0] {
-        let rest = Vector2::from(plane.project(&(moment_map * found.tensions(level) + moment)));
+    for pretension in [0.0, 70.0] {
+        let rest =
+            Vector2::from(plane.project(&(moment_map * found.tensions(pretension) + moment)));
         assert!(rest.amax() < 1e-11, "{rest} N·m");
     }
     // Pretension pulls, in whichever order the tendons stand.
-    assert!(found.per_level.sum() > 0.0);
+    assert!(found.per_pretension.sum() > 0.0);
     // The smallest solution has no part along the pretension.
-    let part = found.particular.dot(&found.per_level);
+    let part = found.particular.dot(&found.per_pretension);
     assert!(
         part.abs() < 1e-10 * (1.0 + found.particular.norm()),
         "{part} N"
     );
-    let ends = [found.lowest_level, found.highest_level].map(|level| found.tensions(level));
+    let ends =
+        [found.pretension_min, found.pretension_max].map(|pretension| found.tensions(pretension));
     if found.feasible() {
         for tensions in ends {
             assert!(
@@ -208,9 +210,9 @@ proptest! {
             azimuth_rad: p.y.atan2(p.x),
             tilt_rad: (-p.z).acos(),
             payload_kg,
-            level_n: 50.0,
-            tension_floor_n: 8.0,
-            tension_ceiling_n: 150.0,
+            pretension_n: 50.0,
+            f_min_n: 8.0,
+            f_max_n: 150.0,
             tendons: constant_tendons(1e5).unwrap(),
             stiffness_at: StiffnessAt::Pretension,
             support: SupportKind::TorsionFree.into(), demand: None,

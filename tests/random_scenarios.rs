@@ -1,4 +1,4 @@
-//! Random scenarios: whatever comes, no number is lost, no tendon is pulled above the ceiling, and nothing re-arms.
+//! Random scenarios: whatever comes, no number is lost, no tendon is pulled above the maximum tension, and nothing re-arms.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -16,7 +16,7 @@ const SCENARIOS: u64 = 1000;
 
 /// While the motors follow commands no tension goes beyond this, N: where too much tension is a fault, a tenth above the
 /// ceiling. So much a swing of the leg adds before a motor gives way. Where they are held, what acts from outside decides.
-const CEILING_N: f64 = 150.0 * 1.1;
+const F_MAX_N: f64 = 150.0 * 1.1;
 
 /// What has to hold in every tick.
 #[derive(Default)]
@@ -85,7 +85,7 @@ fn step(rng: &mut Rng) -> String {
             360.0 * rng.f64(),
             35.0 * rng.f64()
         ),
-        4 => format!("{{ level_n = {} }}", 160.0 * rng.f64()),
+        4 => format!("{{ pretension_n = {} }}", 160.0 * rng.f64()),
         5 => format!(
             "{{ stiffness = {{ nm_per_rad = {} }} }}",
             300.0 * rng.f64() - 20.0
@@ -127,7 +127,7 @@ fn toml_of(fault: Fault) -> String {
 /// Runs one, and tells whether it could begin; what is wrong with it.
 fn run(seed: u64, rig: &RigFile) -> Result<bool, String> {
     let scenario = Scenario::parse("random", &text(seed)).map_err(|error| format!("{error:?}"))?;
-    // A pose that its payload does not allow at the level is no start.
+    // A pose that its payload does not allow at the pretension is no start.
     let Ok(simulation) = Simulation::new(&scenario, rig) else {
         return Ok(false);
     };
@@ -141,7 +141,7 @@ fn run(seed: u64, rig: &RigFile) -> Result<bool, String> {
     }
     match watch.complaint {
         Some(complaint) => Err(complaint),
-        None if highest > CEILING_N => Err(format!("a tension of {highest} N")),
+        None if highest > F_MAX_N => Err(format!("a tension of {highest} N")),
         None => Ok(true),
     }
 }

@@ -25,9 +25,9 @@ fn query(support: SupportKind) -> Query<f64> {
         azimuth_rad: 0.5,
         tilt_rad: 0.5,
         payload_kg: 1.0,
-        level_n: 70.0,
-        tension_floor_n: 8.0,
-        tension_ceiling_n: 150.0,
+        pretension_n: 70.0,
+        f_min_n: 8.0,
+        f_max_n: 150.0,
         tendons: constant_tendons(1e5).unwrap(),
         stiffness_at: StiffnessAt::Pretension,
         support: support.into(),
@@ -59,9 +59,9 @@ fn a_query_with_a_number_that_is_not_finite_is_refused() {
         (Quantity::Azimuth, |q, v| q.azimuth_rad = v),
         (Quantity::Tilt, |q, v| q.tilt_rad = v),
         (Quantity::Payload, |q, v| q.payload_kg = v),
-        (Quantity::Level, |q, v| q.level_n = v),
-        (Quantity::TensionFloor, |q, v| q.tension_floor_n = v),
-        (Quantity::TensionCeiling, |q, v| q.tension_ceiling_n = v),
+        (Quantity::Pretension, |q, v| q.pretension_n = v),
+        (Quantity::TensionMin, |q, v| q.f_min_n = v),
+        (Quantity::TensionMax, |q, v| q.f_max_n = v),
     ];
     for (quantity, set) in cases {
         assert_query(quantity, Reason::NotFinite, &INFINITE, set);
@@ -80,13 +80,11 @@ fn a_query_beyond_the_model_s_range_is_refused() {
     let cases: [(Quantity, &[f64], SetQuery); 5] = [
         (Quantity::Azimuth, &[63.0, -63.0], |q, v| q.azimuth_rad = v),
         (Quantity::Payload, &[1.1e6], |q, v| q.payload_kg = v),
-        (Quantity::Level, &[1.1e7, -1.1e7], |q, v| q.level_n = v),
-        (Quantity::TensionFloor, &[1.1e7], |q, v| {
-            q.tension_floor_n = v
+        (Quantity::Pretension, &[1.1e7, -1.1e7], |q, v| {
+            q.pretension_n = v
         }),
-        (Quantity::TensionCeiling, &[1.1e7], |q, v| {
-            q.tension_ceiling_n = v
-        }),
+        (Quantity::TensionMin, &[1.1e7], |q, v| q.f_min_n = v),
+        (Quantity::TensionMax, &[1.1e7], |q, v| q.f_max_n = v),
     ];
     for (quantity, values, set) in cases {
         assert_query(quantity, Reason::OutOfRange, values, set);
@@ -100,15 +98,12 @@ fn a_query_with_a_wrong_sign_or_order_is_refused() {
         (Quantity::Payload, Reason::Negative, &[-0.1], |q, v| {
             q.payload_kg = v
         }),
-        (Quantity::TensionFloor, Reason::Negative, &[-1.0], |q, v| {
-            q.tension_floor_n = v
+        (Quantity::TensionMin, Reason::Negative, &[-1.0], |q, v| {
+            q.f_min_n = v
         }),
-        (
-            Quantity::TensionFloor,
-            Reason::AboveCeiling,
-            &[150.1],
-            |q, v| q.tension_floor_n = v,
-        ),
+        (Quantity::TensionMin, Reason::AboveMax, &[150.1], |q, v| {
+            q.f_min_n = v
+        }),
     ];
     for (quantity, reason, values, set) in cases {
         assert_query(quantity, reason, values, set);

@@ -133,7 +133,7 @@ fn a_cut_tendon_lets_the_tip_swing_no_farther_than_is_said() {
                 );
                 let rig = RigFile::load(None).unwrap();
                 let scenario = Scenario::parse("cut", &text).unwrap();
-                // A pose that its payload does not allow at the level is no start.
+                // A pose that its payload does not allow at the pretension is no start.
                 let Ok(simulation) = Simulation::new(&scenario, &rig) else {
                     continue;
                 };
@@ -152,7 +152,7 @@ fn a_cut_tendon_lets_the_tip_swing_no_farther_than_is_said() {
 /// A step that does not end stops a scenario, and what came out until then is kept.
 #[test]
 fn what_came_out_before_a_step_that_never_ends_is_kept() {
-    let text = "title = \"never\"\nsteps = [{ wait_s = 0.1 }, { measure = { name = \"level\", quantity = \"level_n\", between = [0, 0] } }, { await = { state = \"held\", timeout_s = 0.1 } }]";
+    let text = "title = \"never\"\nsteps = [{ wait_s = 0.1 }, { measure = { name = \"level\", quantity = \"pretension_n\", between = [0, 0] } }, { await = { state = \"held\", timeout_s = 0.1 } }]";
     let scenario = Scenario::parse("never", text).unwrap();
     let (summary, bits) = run(&scenario, &mut InThisProcess::default());
     let stopped = summary.stopped.clone().unwrap();

@@ -78,7 +78,7 @@ fn the_condition_number_of_the_moment_map_is_at_least_272_at_30_degrees() {
     assert!((1.0 / best - 272.6).abs() < 0.1, "{}", 1.0 / best);
 }
 
-/// Pretension per level without load at a tilt that may be beyond the 60° of `Direction::from_angles`.
+/// Pretension per pretension without load at a tilt that may be beyond the 60° of `Direction::from_angles`.
 fn least_pretension(tilt_deg: f64) -> f64 {
     let sin = tilt_deg.to_radians().sin();
     let of = |azimuth: u32| {
@@ -88,7 +88,7 @@ fn least_pretension(tilt_deg: f64) -> f64 {
         let moment_map = kinematics(&TABLE_1, &direction).moment_map;
         distribute(&moment_map, &plane, &Vector3::zeros(), &bounds())
             .unwrap()
-            .per_level
+            .per_pretension
             .min()
     };
     (0..360).map(of).fold(f64::MAX, f64::min)
@@ -103,13 +103,14 @@ fn pretension_pulls_all_tendons_up_to_64_25_degrees() {
 }
 
 /// Torsion of a ball joint and the tendons' moment about the bisector there, N·m.
-fn ball_joint(azimuth: f64, tilt: f64, level: f64) -> (f64, f64) {
+fn ball_joint(azimuth: f64, tilt: f64, pretension: f64) -> (f64, f64) {
     let rig = Rig::new(&TABLE_1).unwrap();
     let load = Load::new(&rig, 2.0).unwrap();
     let direction = direction(azimuth, tilt);
     let support = SupportKind::Spherical.into();
     let moment = load.moment(&direction);
-    let torsion = elastic_torsion(&rig, &support, &direction, &moment, &bounds(), level).unwrap();
+    let torsion =
+        elastic_torsion(&rig, &support, &direction, &moment, &bounds(), pretension).unwrap();
     let geometry = rig.geometry().twisted(&Twist::from_torsion(torsion));
     let moment_map = inverse_kinematics(&geometry, &direction)
         .unwrap()
@@ -117,7 +118,7 @@ fn ball_joint(azimuth: f64, tilt: f64, level: f64) -> (f64, f64) {
     let plane = FreePlane::torsion_free(&direction);
     let tensions = distribute(&moment_map, &plane, &moment, &bounds())
         .unwrap()
-        .tensions(level);
+        .tensions(pretension);
     let bisector = (Vector3::z() - direction.vector()).normalize();
     (torsion, bisector.dot(&(moment_map * tensions)))
 }

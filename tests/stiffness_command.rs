@@ -1,4 +1,4 @@
-//! Stiffness on command: the level that makes the leg as stiff as demanded, inside the bounds on the tensions.
+//! Stiffness on command: the pretension that makes the leg as stiff as demanded, inside the bounds on the tensions.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -41,11 +41,11 @@ fn the_range_at_the_vertical_is_known() {
         (lowest.stiffness_nm_per_rad - 12.8).abs() < 0.06,
         "{lowest:?}"
     );
-    assert!((lowest.level_n - 8.0).abs() < 1e-9);
+    assert!((lowest.pretension_n - 8.0).abs() < 1e-9);
     assert!(matches!(
         lowest.limit,
         Some(Limit {
-            bound: Bound::Floor,
+            bound: Bound::Min,
             ..
         })
     ));
@@ -54,21 +54,21 @@ fn the_range_at_the_vertical_is_known() {
         (highest.stiffness_nm_per_rad - 178.0).abs() < 0.6,
         "{highest:?}"
     );
-    assert!((highest.level_n - 150.0).abs() < 1e-9);
+    assert!((highest.pretension_n - 150.0).abs() < 1e-9);
     assert!(matches!(
         highest.limit,
         Some(Limit {
-            bound: Bound::Ceiling,
+            bound: Bound::Max,
             ..
         })
     ));
 }
 
-/// With a floor below the tension at which the tendons are softest, stiffness first falls with the level, then rises.
+/// With a floor below the tension at which the tendons are softest, stiffness first falls with the pretension, then rises.
 #[test]
 fn a_demand_between_the_ends_of_a_range_that_dips_is_met() {
     let mut file = table_1();
-    file.tension_floor_n = 0.5;
+    file.f_min_n = 0.5;
     let pose = (0.0, 0.0, 1.0);
     let met = answer(&file, pose, 20.0, None).unwrap();
     assert!(
@@ -76,12 +76,12 @@ fn a_demand_between_the_ends_of_a_range_that_dips_is_met() {
         "{met:?}"
     );
     assert_eq!(met.limit, None);
-    // Softer than the softest: the nearest level is inside, and no bound stops it.
+    // Softer than the softest: the nearest pretension is inside, and no bound stops it.
     let softest = answer(&file, pose, 10.0, None).unwrap();
-    assert!((softest.level_n - 8.0).abs() < 6.0, "{softest:?}");
+    assert!((softest.pretension_n - 8.0).abs() < 6.0, "{softest:?}");
     assert!(softest.stiffness_nm_per_rad < 17.5, "{softest:?}");
     assert_eq!(softest.limit, None);
-    let pushed_m = pushed(&file, pose, met.level_n, 0.0);
+    let pushed_m = pushed(&file, pose, met.pretension_n, 0.0);
     assert!((pushed_m / 20.0 - 1.0).abs() < 0.05, "{pushed_m}");
 }
 
@@ -91,7 +91,7 @@ fn at_the_edge_with_2_kg_only_levels_from_61_7_to_83_8_are_allowed() {
     let at_edge = (30.0, 30.0, 2.0);
     let [low, high] = [1.0, 500.0].map(|demand| answer(&file, at_edge, demand, None).unwrap());
     assert!(
-        (low.level_n - 61.7).abs() < 0.05 && (high.level_n - 83.8).abs() < 0.1,
+        (low.pretension_n - 61.7).abs() < 0.05 && (high.pretension_n - 83.8).abs() < 0.1,
         "{low:?} {high:?}"
     );
     // Both ends name the tendon that stops them.
@@ -101,7 +101,7 @@ fn at_the_edge_with_2_kg_only_levels_from_61_7_to_83_8_are_allowed() {
     }
 }
 
-/// Stiffness rises with the level from end to end, so that the nearer end is the best.
+/// Stiffness rises with the pretension from end to end, so that the nearer end is the best.
 #[test]
 fn stiffness_rises_with_the_level_over_the_workspace() {
     let file = table_1();
@@ -127,7 +127,7 @@ fn stiffness_rises_with_the_level_over_the_workspace() {
                     "{found:?}"
                 );
                 assert!(
-                    found.level_n > before.level_n,
+                    found.pretension_n > before.pretension_n,
                     "{pose:?}: {found:?} {before:?}"
                 );
                 before = found;
@@ -137,16 +137,19 @@ fn stiffness_rises_with_the_level_over_the_workspace() {
 }
 
 /// What a small push at the tip towards an azimuth meets in the nonlinear model, N·m/rad: F·L by δ/L.
-fn pushed(file: &RigFile, pose: (f64, f64, f64), level: f64, towards_deg: f64) -> f64 {
+fn pushed(file: &RigFile, pose: (f64, f64, f64), pretension: f64, towards_deg: f64) -> f64 {
     const PUSH_N: f64 = 1e-3;
     let (azimuth_deg, tilt_deg, payload_kg) = pose;
     let rig = Rig::new(&file.parameters).unwrap();
     let target = Direction::from_angles(azimuth_deg.to_radians(), tilt_deg.to_radians()).unwrap();
     let load = Load::new(&rig, payload_kg).unwrap();
-    let bounds = TensionBounds::new(file.tension_floor_n, file.tension_ceiling_n).unwrap();
+    let bounds = TensionBounds::new(file.f_min_n, file.f_max_n).unwrap();
     let (support, tendons) = (file.support, file.tendons);
     let moment = load.moment(&target);
-    let held = inverse_statics(&rig, &support, &target, &moment, &bounds, &tendons, level).unwrap();
+    let held = inverse_statics(
+        &rig, &support, &target, &moment, &bounds, &tendons, pretension,
+    )
+    .unwrap();
     let balance = Balance::new(rig, load, support, tendons, held.unstretched);
     let p = target.vector();
     let (sin, cos) = towards_deg.to_radians().sin_cos();
@@ -176,7 +179,7 @@ fn a_push_in_the_nonlinear_model_shows_the_demanded_stiffness() {
         for towards in [0.0, 45.0, 120.0, 250.0] {
             let commanded = answer(&file, pose, demand, Some(towards)).unwrap();
             assert_eq!(commanded.limit, None);
-            let shown = pushed(&file, pose, commanded.level_n, towards);
+            let shown = pushed(&file, pose, commanded.pretension_n, towards);
             assert!(
                 (shown / demand - 1.0).abs() < 0.02,
                 "{pose:?} towards {towards}°: {shown}"
@@ -192,14 +195,14 @@ fn every_support_is_as_stiff_as_demanded() {
         let found = answer(&file, (100.0, 15.0, 0.5), 75.0, None).unwrap();
         assert_eq!(found.limit, None, "{}", ready.name);
         let query = Query {
-            level_n: found.level_n,
+            pretension_n: found.pretension_n,
             stiffness_at: leg_model::StiffnessAt::Tension,
             ..file.query(100.0, 15.0, 0.5)
         };
         let [softest, _] = evaluate(&file.parameters, &query)
             .unwrap()
             .bending_stiffness_nm_per_rad;
-        // The twist of a support with three freedoms changes a little with the level.
+        // The twist of a support with three freedoms changes a little with the pretension.
         assert!(
             (softest / 75.0 - 1.0).abs() < 2e-3,
             "{}: {softest}",

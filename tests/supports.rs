@@ -45,7 +45,7 @@ fn a_small_weight_deviates_linearly_on_every_support() {
 
 const POSES: &str = r#"{"azimuth_deg":0,"tilt_deg":0,"payload_kg":1}
 {"azimuth_deg":30,"tilt_deg":20,"payload_kg":0}
-{"azimuth_deg":75,"tilt_deg":-15,"payload_kg":0.5,"level_n":60}
+{"azimuth_deg":75,"tilt_deg":-15,"payload_kg":0.5,"pretension_n":60}
 {"azimuth_deg":290,"tilt_deg":30,"payload_kg":2,"stiffness_at":"tension"}
 {"azimuth_deg":160,"tilt_deg":25,"payload_kg":1.5,"stiffness_n_per_m":80000}
 "#;
@@ -92,7 +92,7 @@ fn assert_alike_everywhere(rig: &str) {
         let numeric = single
             .iter()
             .filter(|(_, value)| value.is_number() || value.is_array());
-        for (key, value) in numeric.filter(|(key, _)| *key != "level_limits") {
+        for (key, value) in numeric.filter(|(key, _)| *key != "pretension_limits") {
             let (found, expected) = (numbers(value), numbers(&double[key]));
             // What vanishes at the vertical is judged absolutely.
             let absolute = found
@@ -129,8 +129,8 @@ fn tendons_with_a_curve_each_cross_the_link() {
         curve("[tendon.curve_2]", "2.51"),
         curve("[tendon.curve_3]", "2.52"),
     ];
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("each.toml");
+    let directory = tempfile::tempdir().unwrap();
+    let file = directory.path().join("each.toml");
     std::fs::write(
         &file,
         [&text[..start], &curves.concat(), &text[end..]].concat(),
@@ -141,11 +141,11 @@ fn tendons_with_a_curve_each_cross_the_link() {
 
 /// `leg run` on a rig, as JSON.
 fn run(rig: &ReadyRig, on: &str) -> Value {
-    let folder = tempfile::tempdir().unwrap();
+    let directory = tempfile::tempdir().unwrap();
     let output = Command::new(env!("CARGO_BIN_EXE_leg-under-test"))
         .args(["run", "--json", "--scenario", "support", "--on", on])
         .args(["--rig", rig.name, "--plots"])
-        .arg(folder.path())
+        .arg(directory.path())
         .output()
         .unwrap();
     assert!(output.status.success(), "{} on {on}: {output:?}", rig.name);
@@ -183,7 +183,7 @@ fn members_of_the_class_differ_by_their_joints_only() {
 }
 
 /// Largest and mean difference of the linear deviation from the nonlinear equilibrium over the workspace, percent, with
-/// the load's own stiffness and tendons of the constant stiffness at the level.
+/// the load's own stiffness and tendons of the constant stiffness at the pretension.
 fn linear_error_percent(file: &RigFile) -> (f64, f64) {
     let tendons = leg_tests::constant_tendons(file.stiffnesses_n_per_m()[0]).unwrap();
     let mut errors = Vec::new();

@@ -1,4 +1,4 @@
-//! Tension distribution: balance, bounds and levels.
+//! Tension distribution: balance, bounds and pretensions.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -52,8 +52,8 @@ fn the_worst_pose_of_the_workspace_leaves_the_known_levels() {
         let (mut lowest, mut highest): (f64, f64) = (0.0, f64::MAX);
         for (azimuth, tilt) in poses(30, 1) {
             let distribution = distribution(azimuth, tilt, payload_kg, &bounds());
-            lowest = lowest.max(distribution.lowest_level);
-            highest = highest.min(distribution.highest_level);
+            lowest = lowest.max(distribution.pretension_min);
+            highest = highest.min(distribution.pretension_max);
         }
         assert!(
             (lowest - expected_lowest).abs() < 0.05,
@@ -68,10 +68,10 @@ fn the_worst_pose_of_the_workspace_leaves_the_known_levels() {
 
 #[test]
 fn at_45_newtons_a_tendon_goes_slack_with_2_kg_and_at_70_none_does() {
-    let smallest = |level: f64| {
+    let smallest = |pretension: f64| {
         let at = |(azimuth, tilt)| {
             distribution(azimuth, tilt, 2.0, &bounds())
-                .tensions(level)
+                .tensions(pretension)
                 .min()
         };
         poses(30, 2).map(at).fold(f64::MAX, f64::min)
@@ -80,15 +80,15 @@ fn at_45_newtons_a_tendon_goes_slack_with_2_kg_and_at_70_none_does() {
     assert!(smallest(70.0) > 8.0);
 }
 
-/// Asserts that the range of levels ends where the named tendons meet the named bounds, and no other exceeds its own.
+/// Asserts that the range of pretensions ends where the named tendons meet the named bounds, and no other exceeds its own.
 fn assert_limits(distribution: &Distribution<f64, 3>, floor: f64, ceiling: f64) {
     let bounds = TensionBounds::new(floor, ceiling).unwrap();
     let limits = distribution.limits(&bounds);
-    let ends = [distribution.lowest_level, distribution.highest_level];
-    for (limit, level) in limits.into_iter().zip(ends) {
-        let tensions = distribution.tensions(level);
+    let ends = [distribution.pretension_min, distribution.pretension_max];
+    for (limit, pretension) in limits.into_iter().zip(ends) {
+        let tensions = distribution.tensions(pretension);
         let met = tensions[usize::from(limit.tendon) - 1];
-        let bound = if limit.bound == Bound::Floor {
+        let bound = if limit.bound == Bound::Min {
             floor
         } else {
             ceiling
@@ -114,7 +114,7 @@ fn the_levels_end_exactly_where_the_named_tendon_meets_the_named_bound() {
     }
 }
 
-/// The leg leans towards tendon 1, which has to hold it there and so meets the ceiling, another one the floor.
+/// The leg leans towards tendon 1, which has to hold it there and so meets the maximum tension, another one the minimum tension.
 #[test]
 fn an_infeasible_load_names_both_tendons_and_bounds() {
     let bounds = TensionBounds::new(60.0, 70.0).unwrap();
@@ -125,14 +125,14 @@ fn an_infeasible_load_names_both_tendons_and_bounds() {
         below,
         Limit {
             tendon: 3,
-            bound: Bound::Floor
+            bound: Bound::Min
         }
     );
     assert_eq!(
         above,
         Limit {
             tendon: 1,
-            bound: Bound::Ceiling
+            bound: Bound::Max
         }
     );
 }
@@ -185,13 +185,13 @@ fn assert_balance<const N: usize>() {
             let wanted = -SVector::<f64, 2>::from(plane.project(&moment));
             let balance = rows * found.tensions(70.0) - wanted;
             assert!(balance.amax() < 1e-12, "{balance} N·m");
-            assert!((rows * found.per_level).amax() < 1e-14);
+            assert!((rows * found.per_pretension).amax() < 1e-14);
             // The smallest solution is the one without a part in the null space of PᵀA.
             let least =
                 rows.transpose() * (rows * rows.transpose()).try_inverse().unwrap() * wanted;
             assert!((found.particular - least).amax() < 1e-9);
-            assert!((found.per_level.norm_squared() - N as f64).abs() < 1e-9);
-            assert!(found.per_level.sum() > 0.0);
+            assert!((found.per_pretension.norm_squared() - N as f64).abs() < 1e-9);
+            assert!(found.per_pretension.sum() > 0.0);
         }
     }
 }

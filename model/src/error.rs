@@ -31,12 +31,12 @@ pub enum Quantity {
     Tilt,
     /// Payload at the tip, kg.
     Payload,
-    /// Level of pretension, N.
-    Level,
+    /// Pretension, N.
+    Pretension,
     /// Lowest tension allowed, N.
-    TensionFloor,
+    TensionMin,
     /// Highest tension allowed, N.
-    TensionCeiling,
+    TensionMax,
     /// Stiffness of a tendon, N/m.
     TendonStiffness,
     /// Tendon length, m.
@@ -95,7 +95,7 @@ pub enum Reason {
     /// The points lie on one line, so they cannot hold the leg.
     Collinear,
     /// The lowest allowed value is above the highest.
-    AboveCeiling,
+    AboveMax,
     /// It is below the lowest allowed tension or above the highest.
     OutsideBounds,
     /// It is beyond what the tendon's curve knows.
@@ -140,7 +140,7 @@ pub enum Error {
     TendonCollapsed,
     /// The tendons cannot turn the leg about both of its free axes (under a load that is finite).
     Singular,
-    /// No level of pretension keeps every tension inside its bounds at this pose under this load.
+    /// No pretension keeps every tension inside its bounds at this pose under this load.
     Infeasible,
     /// The stiffness is not positive: the leg would buckle at this pose under this load.
     Unstable,
@@ -163,7 +163,7 @@ impl fmt::Display for Reason {
             Self::OutOfRange => "is beyond the range in which the model holds",
             Self::Collinear => "must not lie on one line",
             Self::OutsideBounds => "must be from the lowest tension allowed to the highest",
-            Self::AboveCeiling => "must not be above the highest tension",
+            Self::AboveMax => "must not be above the highest tension",
             Self::BeyondCurve => "is beyond the last point of the tendon's curve",
             Self::NotFromZero => "must start at zero tension and zero elongation",
             Self::NotRising => "must rise in tension and in elongation from point to point",
@@ -188,9 +188,7 @@ impl fmt::Display for Error {
             Self::Singular => {
                 f.write_str("the tendons cannot turn the leg about both of its free axes")
             }
-            Self::Infeasible => {
-                f.write_str("no level of pretension keeps every tension inside its bounds")
-            }
+            Self::Infeasible => f.write_str("no pretension keeps every tension inside its bounds"),
             Self::Unstable => f.write_str("the stiffness is not positive: the leg would buckle"),
             Self::NotConverged => f.write_str("the iteration ended without a solution"),
         }

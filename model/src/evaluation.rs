@@ -21,7 +21,7 @@ use state::State;
     serde(rename_all = "snake_case")
 )]
 pub enum StiffnessAt {
-    /// At the level of pretension: equal for equal tendons and independent of the load. The deviation then grows in
+    /// At the pretension: equal for equal tendons and independent of the load. The deviation then grows in
     /// proportion to the load, as the paper's does.
     Pretension,
     /// At the tension of each tendon under the load.
@@ -68,19 +68,19 @@ pub struct Query<T> {
     pub tilt_rad: T,
     /// Mass hung at the tip, kg.
     pub payload_kg: T,
-    /// Level of pretension λ/√3, N per tendon at the vertical pose. It may lie outside the feasible range.
-    pub level_n: T,
+    /// Pretension λ/√3, N per tendon at the vertical pose. It may lie outside the feasible range.
+    pub pretension_n: T,
     /// Lowest tension allowed, N.
-    pub tension_floor_n: T,
+    pub f_min_n: T,
     /// Highest tension allowed, N.
-    pub tension_ceiling_n: T,
+    pub f_max_n: T,
     /// The tendons.
     pub tendons: [Tendon<T>; 3],
     /// At which tension their stiffness is read.
     pub stiffness_at: StiffnessAt,
     /// The central support.
     pub support: Support<T>,
-    /// A stiffness to find the level for, if one is demanded. The rest of the evaluation stays at the asked level.
+    /// A stiffness to find the pretension for, if one is demanded. The rest of the evaluation stays at the asked pretension.
     pub demand: Option<StiffnessDemand<T>>,
 }
 
@@ -101,15 +101,17 @@ pub struct Evaluation<T> {
     pub load_moment_nm: [T; 3],
     /// Moment of the bent and twisted joint on the leg, N·m.
     pub joint_moment_nm: [T; 3],
-    /// Tensions at the asked level, N.
+    /// Tensions at the asked pretension, N.
     pub tensions_n: [T; 3],
-    /// Tensions at the lowest level that keeps the bounds, N.
+    /// Tensions at the lowest pretension that keeps the bounds, N.
     pub tensions_min_n: [T; 3],
-    /// Lowest and highest level inside the tension bounds, N; lowest above highest when there is none.
-    pub level_range_n: [T; 2],
+    /// Lowest and highest pretension inside the tension bounds, N; lowest above highest when there is none.
+    #[cfg_attr(feature = "serde", serde(rename = "level_range_n"))]
+    pub pretension_range_n: [T; 2],
     /// What ends that range below and above.
-    pub level_limits: [Limit; 2],
-    /// Whether any level keeps every tension inside its bounds.
+    #[cfg_attr(feature = "serde", serde(rename = "level_limits"))]
+    pub pretension_limits: [Limit; 2],
+    /// Whether any pretension keeps every tension inside its bounds.
     pub feasible: bool,
     /// K₁ + exact K₂ + that of the joint, N·m/rad.
     pub stiffness_nm_per_rad: [[T; 3]; 3],
@@ -133,7 +135,7 @@ pub struct Evaluation<T> {
     /// Twist of the leg about its own axis, rad.
     pub torsion_rad: T,
     /// What answers the demanded stiffness; none without a demand. On a support with three freedoms the leg keeps the
-    /// twist that it has at the asked level.
+    /// twist that it has at the asked pretension.
     pub commanded: Option<StiffnessAnswer<T>>,
 }
 
@@ -147,7 +149,7 @@ pub fn evaluate<T: Scalar>(
 ) -> Result<Evaluation<T>, Error> {
     let state = State::new(Rig::new(parameters)?, query)?;
     let distribution = &state.distribution;
-    let tensions = distribution.tensions(query.level_n);
+    let tensions = distribution.tensions(query.pretension_n);
     let stiffness = state.stiffness(query, &tensions)?;
     let k2_printed = structural_stiffness_printed(&state.geometry, &state.direction, &tensions);
     let load_stiffness = state.load.stiffness(&state.direction);
@@ -160,13 +162,13 @@ pub fn evaluate<T: Scalar>(
     Ok(Evaluation {
         lengths_m: state.kinematics.lengths.into(),
         moment_map_m: rows(&state.kinematics.moment_map),
-        pretension_direction: (distribution.per_level * T::FRAC_1_SQRT_3).into(),
+        pretension_direction: (distribution.per_pretension * T::FRAC_1_SQRT_3).into(),
         load_moment_nm: state.load_moment.into(),
         joint_moment_nm: state.joint_moment.into(),
         tensions_n: tensions.into(),
-        tensions_min_n: distribution.tensions(distribution.lowest_level).into(),
-        level_range_n: [distribution.lowest_level, distribution.highest_level],
-        level_limits: distribution.limits(&state.bounds),
+        tensions_min_n: distribution.tensions(distribution.pretension_min).into(),
+        pretension_range_n: [distribution.pretension_min, distribution.pretension_max],
+        pretension_limits: distribution.limits(&state.bounds),
         feasible: distribution.feasible(),
         stiffness_nm_per_rad: rows(&stiffness.total),
         stiffness_joint_nm_per_rad: rows(&stiffness.joint),

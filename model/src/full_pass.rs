@@ -137,8 +137,8 @@ fn pass<T: Scalar, const N: usize>(
     }
 }
 
-/// Exact K₂ at constant tensions, symmetrised, N·m/rad, for tensions f = particular + level·per_level: the part that
-/// stays, with K_load, and the part per level. The tendons' own stiffness is left out.
+/// Exact K₂ at constant tensions, symmetrised, N·m/rad, for tensions f = particular + pretension·per_pretension: the part that
+/// stays, with K_load, and the part per pretension. The tendons' own stiffness is left out.
 #[inline(always)]
 pub(crate) fn tension_stiffness<T: Scalar, const N: usize>(
     geometry: &Geometry<T, N>,
@@ -147,15 +147,20 @@ pub(crate) fn tension_stiffness<T: Scalar, const N: usize>(
     distribution: &Distribution<T, N>,
 ) -> [Symmetric3<T>; 2] {
     let q = direction.half_tangent();
-    let (mut fixed, mut per_level) = (Sums::new(), Sums::new());
+    let (mut fixed, mut per_pretension) = (Sums::new(), Sums::new());
     for (i, pair) in geometry.tendons.iter().enumerate() {
         let tendon = TendonAtPose::new(pair, geometry, &q, direction.gain());
         fixed.add(&tendon, pair.base, distribution.particular[i], T::zero());
-        per_level.add(&tendon, pair.base, distribution.per_level[i], T::zero());
+        per_pretension.add(
+            &tendon,
+            pair.base,
+            distribution.per_pretension[i],
+            T::zero(),
+        );
     }
     [
         fixed.total(geometry.upper, direction, load),
-        per_level.total(geometry.upper, direction, &Load::none()),
+        per_pretension.total(geometry.upper, direction, &Load::none()),
     ]
 }
 
@@ -221,14 +226,14 @@ impl<T: Scalar> Sums<T> {
     fn total(&self, upper: T, direction: &Direction<T>, load: &Load<T>) -> Symmetric3<T> {
         let [x, y] = self.diagonal;
         let z = upper * self.ends[2];
-        let level = z - load.lever * direction.z;
+        let pretension = z - load.lever * direction.z;
         let lean =
             |axis: T, end: T, vertical: T| T::HALF * (load.lever * axis - upper * end - vertical);
         Symmetric3 {
-            xx: self.along.xx + y + level,
+            xx: self.along.xx + y + pretension,
             xy: self.along.xy - T::HALF * self.cross,
             xz: self.along.xz + lean(direction.x, self.ends[0], self.vertical[0]),
-            yy: self.along.yy + x + level,
+            yy: self.along.yy + x + pretension,
             yz: self.along.yz + lean(direction.y, self.ends[1], self.vertical[1]),
             zz: self.along.zz + x + y,
         }

@@ -11,7 +11,7 @@ use nalgebra::{SVector, Vector3};
 /// What holds a loaded leg at a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold<T, const N: usize> {
-    /// The tensions at the level, N.
+    /// The tensions at the pretension, N.
     pub tensions: SVector<T, N>,
     /// u = l − δ(f): lengths of the tendons without tension, m. Tendons of these lengths bring the loaded leg to rest
     /// exactly at the pose. What joint and shaft stretch along the leg is not undone: that takes another freedom.
@@ -23,9 +23,9 @@ pub struct Hold<T, const N: usize> {
 pub enum HoldError {
     /// The model has no result there.
     Model(Error),
-    /// At the level a tendon is beyond a bound.
+    /// At the pretension a tendon is beyond a bound.
     OutOfBounds(Limit),
-    /// At every level one is: which ends the range of levels below, and which above.
+    /// At every pretension one is: which ends the range of pretensions below, and which above.
     Infeasible([Limit; 2]),
 }
 
@@ -39,10 +39,10 @@ impl fmt::Display for HoldError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Model(error) => error.fmt(f),
-            Self::OutOfBounds(limit) => write!(f, "at this level {limit}"),
+            Self::OutOfBounds(limit) => write!(f, "at this pretension {limit}"),
             Self::Infeasible([lowest, highest]) => write!(
                 f,
-                "at every level a tendon leaves its bounds: at low ones {lowest}, at high ones {highest}"
+                "at every pretension a tendon leaves its bounds: at low ones {lowest}, at high ones {highest}"
             ),
         }
     }
@@ -54,13 +54,13 @@ impl fmt::Display for Limit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { tendon, bound } = self;
         match bound {
-            Bound::Floor => write!(f, "tendon {tendon} is below the lowest tension"),
-            Bound::Ceiling => write!(f, "tendon {tendon} is above the highest tension"),
+            Bound::Min => write!(f, "tendon {tendon} is below the lowest tension"),
+            Bound::Max => write!(f, "tendon {tendon} is above the highest tension"),
         }
     }
 }
 
-/// Finds the unstretched lengths that hold the leg at `direction` against a load, at a level of pretension in N, on any
+/// Finds the unstretched lengths that hold the leg at `direction` against a load, at a pretension in N, on any
 /// support.
 ///
 /// `load_moment` (N·m) is that of the load: [`Load::moment`](crate::Load::moment) of a known one, or what
@@ -68,8 +68,8 @@ impl fmt::Display for Limit {
 ///
 /// # Errors
 /// Those of [`elastic_torsion`](crate::elastic_torsion), [`inverse_kinematics`] and [`distribute`];
-/// [`HoldError::OutOfBounds`] with the tendon and the bound if the tensions at the level leave their bounds;
-/// [`HoldError::Infeasible`] if they do at every level; a tension that is beyond a tendon's curve.
+/// [`HoldError::OutOfBounds`] with the tendon and the bound if the tensions at the pretension leave their bounds;
+/// [`HoldError::Infeasible`] if they do at every pretension; a tension that is beyond a tendon's curve.
 pub fn inverse_statics<T: Scalar, E: Elasticity<T>, const N: usize>(
     rig: &Rig<T, N>,
     support: &Support<T>,
@@ -77,15 +77,15 @@ pub fn inverse_statics<T: Scalar, E: Elasticity<T>, const N: usize>(
     load_moment: &Vector3<T>,
     bounds: &TensionBounds<T>,
     tendons: &[E; N],
-    level: T,
+    pretension: T,
 ) -> Result<Hold<T, N>, HoldError> {
-    let torsion = elastic_torsion(rig, support, direction, load_moment, bounds, level)?;
+    let torsion = elastic_torsion(rig, support, direction, load_moment, bounds, pretension)?;
     let twist = support.twist(direction).and(&Twist::from_torsion(torsion));
     let geometry = rig.geometry.twisted(&twist);
     let plane = support.plane(direction);
     let moment = load_moment + support.joint_moment(direction, torsion);
     inverse_statics_in_plane(
-        &geometry, &plane, direction, &moment, bounds, tendons, level,
+        &geometry, &plane, direction, &moment, bounds, tendons, pretension,
     )
 }
 
@@ -121,11 +121,11 @@ pub fn inverse_statics_in_plane<T: Scalar, E: Elasticity<T>, const N: usize>(
     moment: &Vector3<T>,
     bounds: &TensionBounds<T>,
     tendons: &[E; N],
-    level: T,
+    pretension: T,
 ) -> Result<Hold<T, N>, HoldError> {
     let kinematics = inverse_kinematics(geometry, direction)?;
     let distribution = distribute(&kinematics.moment_map, plane, moment, bounds)?;
-    hold(&kinematics, &distribution, bounds, tendons, level)
+    hold(&kinematics, &distribution, bounds, tendons, pretension)
 }
 
 /// The last step of [`inverse_statics`], where kinematics and distribution are at hand.
@@ -138,12 +138,12 @@ pub fn hold<T: Scalar, E: Elasticity<T>, const N: usize>(
     distribution: &Distribution<T, N>,
     bounds: &TensionBounds<T>,
     tendons: &[E; N],
-    level: T,
+    pretension: T,
 ) -> Result<Hold<T, N>, HoldError> {
-    if !(distribution.lowest_level <= level && level <= distribution.highest_level) {
-        return Err(refusal(distribution, bounds, level));
+    if !(distribution.pretension_min <= pretension && pretension <= distribution.pretension_max) {
+        return Err(refusal(distribution, bounds, pretension));
     }
-    let tensions = distribution.tensions(level);
+    let tensions = distribution.tensions(pretension);
     let mut unstretched = kinematics.lengths;
     for (i, tendon) in tendons.iter().enumerate() {
         unstretched[i] -= tendon.elongation(tensions[i])?;
@@ -159,13 +159,13 @@ pub fn hold<T: Scalar, E: Elasticity<T>, const N: usize>(
 fn refusal<T: Scalar, const N: usize>(
     distribution: &Distribution<T, N>,
     bounds: &TensionBounds<T>,
-    level: T,
+    pretension: T,
 ) -> HoldError {
     let limits = distribution.limits(bounds);
     let [lowest, highest] = limits;
     if !distribution.feasible() {
         HoldError::Infeasible(limits)
-    } else if level < distribution.lowest_level {
+    } else if pretension < distribution.pretension_min {
         HoldError::OutOfBounds(lowest)
     } else {
         HoldError::OutOfBounds(highest)

@@ -8,7 +8,7 @@ pub(crate) const LENGTH_MAX: f32 = 100.0;
 pub(crate) const MASS_MAX: f32 = 1e6;
 /// Strongest gravity, m/s².
 pub(crate) const GRAVITY_MAX: f32 = 1e3;
-/// Greatest tension and level of pretension, N.
+/// Greatest tension and pretension, N.
 pub(crate) const TENSION_MAX: f32 = 1e7;
 /// Softest and stiffest tendon, N/m.
 pub(crate) const STIFFNESS: [f32; 2] = [1e-2, 1e10];

@@ -1,4 +1,4 @@
-//! Stiffness on command: the level of pretension that makes the leg as stiff as demanded.
+//! Stiffness on command: the pretension that makes the leg as stiff as demanded.
 
 use crate::full_pass::tension_stiffness;
 use crate::range::{JOINT_STIFFNESS_MAX, check_positive};
@@ -10,21 +10,21 @@ use crate::{
 /// Stiffnesses that differ by no more than this part of the demand are equal.
 const TOLERANCE: f32 = 1e-4;
 
-/// Steps after which a search without convergence ends. Stiffness is nearly linear in the level: three do as a rule.
+/// Steps after which a search without convergence ends. Stiffness is nearly linear in the pretension: three do as a rule.
 const STEPS_MAX: u8 = 12;
 
 /// How far from the nearer end of the range it is looked whether the stiffness nears the demand inwards.
 const INWARD: f32 = 1.0 / 64.0;
 
-/// It does if it is nearer there by more than this part of the demand. Where the stiffness hardly depends on the level, no
-/// level is much better than another.
+/// It does if it is nearer there by more than this part of the demand. Where the stiffness hardly depends on the pretension, no
+/// pretension is much better than another.
 const NEARS: f32 = 1e-2;
 
 /// Steps in which the range is tried then, and how often, ever nearer to the best.
 const SCAN_STEPS: u8 = 16;
 const SCAN_ROUNDS: u8 = 3;
 
-/// A leg at a pose under a load, whose level of pretension is still open.
+/// A leg at a pose under a load, whose pretension is still open.
 #[derive(Clone, Copy, Debug)]
 pub struct StiffnessCommand<'a, T, E, const N: usize> {
     tendons: &'a [E; N],
@@ -33,10 +33,10 @@ pub struct StiffnessCommand<'a, T, E, const N: usize> {
     direction: Direction<T>,
     plane: FreePlane<T>,
     twists: bool,
-    /// The stiffness at level zero but for that of the tendons themselves.
+    /// The stiffness at pretension zero but for that of the tendons themselves.
     base: Symmetric3<T>,
-    /// What a level of one adds to that.
-    per_level: Symmetric3<T>,
+    /// What a pretension of one adds to that.
+    per_pretension: Symmetric3<T>,
 }
 
 /// The answer to a demand.
@@ -46,8 +46,9 @@ pub struct StiffnessCommand<'a, T, E, const N: usize> {
     derive(serde::Serialize, serde::Deserialize, postcard_schema::Schema)
 )]
 pub struct StiffnessAnswer<T> {
-    /// Level of pretension, N.
-    pub level_n: T,
+    /// Pretension, N.
+    #[cfg_attr(feature = "serde", serde(rename = "level_n"))]
+    pub pretension_n: T,
     /// The stiffness that it gives, N·m/rad: the demanded one, or the nearest to it that can be reached.
     pub stiffness_nm_per_rad: T,
     /// The tendon and the bound that stop it short of the demand. None if the demand is met, or if the tendons' softest
@@ -74,7 +75,7 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
         distribution: &'a Distribution<T, N>,
     ) -> Self {
         let joint = Symmetric3::symmetric_part(&support.joint_stiffness(direction, torsion));
-        let [fixed, per_level] = tension_stiffness(geometry, direction, load, distribution);
+        let [fixed, per_pretension] = tension_stiffness(geometry, direction, load, distribution);
         Self {
             tendons,
             kinematics,
@@ -83,18 +84,18 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
             plane: support.plane(direction),
             twists: support.twists(),
             base: fixed.plus(&joint),
-            per_level,
+            per_pretension,
         }
     }
 
-    /// The bending stiffness at a level of pretension in N, with each tendon at its own tension, N·m/rad.
+    /// The bending stiffness at a pretension in N, with each tendon at its own tension, N·m/rad.
     ///
     /// # Errors
     /// A tension beyond a tendon's curve; [`Error::Unstable`].
     #[inline(always)]
-    pub fn stiffness_at(&self, level: T, axis: &BendingAxis<T>) -> Result<T, Error> {
-        let mut total = self.base.plus_scaled(&self.per_level, level);
-        let tensions = self.distribution.tensions(level);
+    pub fn stiffness_at(&self, pretension: T, axis: &BendingAxis<T>) -> Result<T, Error> {
+        let mut total = self.base.plus_scaled(&self.per_pretension, pretension);
+        let tensions = self.distribution.tensions(pretension);
         for (i, tendon) in self.tendons.iter().enumerate() {
             let stiffness = tendon.stiffness(tensions[i])?;
             total.add_square(&self.kinematics.moment_map, i, stiffness);
@@ -107,17 +108,17 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
         bending.about(axis)
     }
 
-    /// The level that gives a demanded bending stiffness (N·m/rad) within the bounds on the tensions.
+    /// The pretension that gives a demanded bending stiffness (N·m/rad) within the bounds on the tensions.
     ///
     /// A tendon with a curve is softest at some tension, so stiffness need not rise all the way. Where both ends of the
-    /// range lie on one side of the demand and the stiffness nears it inwards, levels between them are tried, too;
+    /// range lie on one side of the demand and the stiffness nears it inwards, pretensions between them are tried, too;
     /// if none of them crosses the demand, the nearest of them is the answer, with no bound to name.
     ///
     /// # Errors
-    /// A demand that is not finite or not positive; [`Error::Infeasible`] if no level keeps the bounds; those of
+    /// A demand that is not finite or not positive; [`Error::Infeasible`] if no pretension keeps the bounds; those of
     /// [`Self::stiffness_at`]; [`Error::NotConverged`].
     #[inline(always)]
-    pub fn level_for(
+    pub fn pretension_for(
         &self,
         demand: T,
         axis: &BendingAxis<T>,
@@ -128,8 +129,8 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
             return Err(Error::Infeasible);
         }
         let (low, high) = (
-            self.distribution.lowest_level,
-            self.distribution.highest_level,
+            self.distribution.pretension_min,
+            self.distribution.pretension_max,
         );
         let below = End::new(low, self.stiffness_at(low, axis)?, demand);
         let above = End::new(high, self.stiffness_at(high, axis)?, demand);
@@ -156,19 +157,19 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
         } else {
             (above, below, highest)
         };
-        let inward = end.level + (other.level - end.level) * T::from(INWARD);
+        let inward = end.pretension + (other.pretension - end.pretension) * T::from(INWARD);
         let inside = End::new(inward, self.stiffness_at(inward, axis)?, demand);
         if inside.error.abs() + T::from(NEARS) * demand < end.error.abs() {
             return self.scan(end, other, demand, axis);
         }
         Ok(StiffnessAnswer {
-            level_n: end.level,
+            pretension_n: end.pretension,
             stiffness_nm_per_rad: demand + end.error,
             limit: Some(limit),
         })
     }
 
-    /// Tries levels from one end of the range to the other, then more of them around the nearest.
+    /// Tries pretensions from one end of the range to the other, then more of them around the nearest.
     #[cold]
     #[inline(never)]
     fn scan(
@@ -180,16 +181,16 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
     ) -> Result<StiffnessAnswer<T>, Error> {
         let steps = T::from(f32::from(SCAN_STEPS));
         let (lowest, highest) = (
-            self.distribution.lowest_level,
-            self.distribution.highest_level,
+            self.distribution.pretension_min,
+            self.distribution.pretension_max,
         );
-        let mut step = (end.level - start.level) / steps;
+        let mut step = (end.pretension - start.pretension) / steps;
         let mut nearest = start;
         for _ in 0..SCAN_ROUNDS {
             let mut last = start;
             for _ in 0..SCAN_STEPS {
-                let level = between(last.level + step, lowest, highest);
-                let next = End::new(level, self.stiffness_at(level, axis)?, demand);
+                let pretension = between(last.pretension + step, lowest, highest);
+                let next = End::new(pretension, self.stiffness_at(pretension, axis)?, demand);
                 if (next.error > T::zero()) != (last.error > T::zero()) {
                     return self.search(last, next, demand, axis);
                 }
@@ -199,18 +200,18 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
                 last = next;
             }
             // From one step before the nearest to one after it.
-            let level = between(nearest.level - step, lowest, highest);
-            start = End::new(level, self.stiffness_at(level, axis)?, demand);
+            let pretension = between(nearest.pretension - step, lowest, highest);
+            start = End::new(pretension, self.stiffness_at(pretension, axis)?, demand);
             step = (step + step) / steps;
         }
         Ok(StiffnessAnswer {
-            level_n: nearest.level,
+            pretension_n: nearest.pretension,
             stiffness_nm_per_rad: demand + nearest.error,
             limit: None,
         })
     }
 
-    /// Between two levels whose stiffnesses enclose the demand: the false position, the end that stays weighed less
+    /// Between two pretensions whose stiffnesses enclose the demand: the false position, the end that stays weighed less
     /// each time (after Anderson and Björck, 1973).
     #[inline(always)]
     fn search(
@@ -222,11 +223,12 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
     ) -> Result<StiffnessAnswer<T>, Error> {
         for _ in 0..STEPS_MAX {
             let slope = last.error - kept.error;
-            let level = last.level - last.error * (last.level - kept.level) / slope;
-            let next = End::new(level, self.stiffness_at(level, axis)?, demand);
+            let pretension =
+                last.pretension - last.error * (last.pretension - kept.pretension) / slope;
+            let next = End::new(pretension, self.stiffness_at(pretension, axis)?, demand);
             if next.error.abs() <= T::from(TOLERANCE) * demand {
                 return Ok(StiffnessAnswer {
-                    level_n: level,
+                    pretension_n: pretension,
                     stiffness_nm_per_rad: demand + next.error,
                     limit: None,
                 });
@@ -243,29 +245,29 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
     }
 }
 
-/// The number of a range that is nearest to a level.
-fn between<T: Scalar>(level: T, lowest: T, highest: T) -> T {
-    if level < lowest {
+/// The number of a range that is nearest to a pretension.
+fn between<T: Scalar>(pretension: T, lowest: T, highest: T) -> T {
+    if pretension < lowest {
         lowest
-    } else if level > highest {
+    } else if pretension > highest {
         highest
     } else {
-        level
+        pretension
     }
 }
 
-/// A level of pretension and how far its stiffness is above the demand.
+/// A pretension and how far its stiffness is above the demand.
 #[derive(Clone, Copy)]
 struct End<T> {
-    level: T,
+    pretension: T,
     error: T,
 }
 
 impl<T: Scalar> End<T> {
     #[inline(always)]
-    fn new(level: T, stiffness: T, demand: T) -> Self {
+    fn new(pretension: T, stiffness: T, demand: T) -> Self {
         Self {
-            level,
+            pretension,
             error: stiffness - demand,
         }
     }

@@ -17,21 +17,21 @@ impl<T: Scalar> TensionBounds<T> {
     /// Lowest and highest tension allowed, N.
     ///
     /// # Errors
-    /// Bounds that are not finite or above 10⁷ N, a negative floor, a floor above the ceiling.
-    pub fn new(floor_n: T, ceiling_n: T) -> Result<Self, Error> {
-        check_not_negative(floor_n, TENSION_MAX, Quantity::TensionFloor)?;
-        check_magnitude(ceiling_n, TENSION_MAX, Quantity::TensionCeiling)?;
-        if floor_n > ceiling_n {
-            return Err(Error::refused(Quantity::TensionFloor, Reason::AboveCeiling));
+    /// Bounds that are not finite or above 10⁷ N, a negative floor, a floor above the maximum tension.
+    pub fn new(f_min_n: T, f_max_n: T) -> Result<Self, Error> {
+        check_not_negative(f_min_n, TENSION_MAX, Quantity::TensionMin)?;
+        check_magnitude(f_max_n, TENSION_MAX, Quantity::TensionMax)?;
+        if f_min_n > f_max_n {
+            return Err(Error::refused(Quantity::TensionMin, Reason::AboveMax));
         }
         Ok(Self {
-            centre: T::HALF * ceiling_n + T::HALF * floor_n,
-            half_width: T::HALF * ceiling_n - T::HALF * floor_n,
+            centre: T::HALF * f_max_n + T::HALF * f_min_n,
+            half_width: T::HALF * f_max_n - T::HALF * f_min_n,
         })
     }
 }
 
-/// Which bound on the tensions ends the range of levels.
+/// Which bound on the tensions ends the range of pretensions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -39,13 +39,15 @@ impl<T: Scalar> TensionBounds<T> {
     serde(rename_all = "snake_case")
 )]
 pub enum Bound {
-    /// The lowest tension allowed.
-    Floor,
-    /// The highest tension allowed.
-    Ceiling,
+    /// The lowest tension allowed, f_min.
+    #[cfg_attr(feature = "serde", serde(rename = "floor"))]
+    Min,
+    /// The highest tension allowed, f_max.
+    #[cfg_attr(feature = "serde", serde(rename = "ceiling"))]
+    Max,
 }
 
-/// The tendon and the bound that end the range of levels on one side.
+/// The tendon and the bound that end the range of pretensions on one side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -58,59 +60,59 @@ pub struct Limit {
     pub bound: Bound,
 }
 
-/// All tensions that balance a load: f = f_p + level·√N·h.
+/// All tensions that balance a load: f = f_p + pretension·√N·h.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distribution<T, const N: usize> {
     /// f_p: the smallest tensions (in the sum of squares) that balance the load, N. They may be negative.
     pub particular: SVector<T, N>,
-    /// √N·h: tensions per level of pretension. They load no free axis, and their squares add up to N, so that the
-    /// level is the tension in each tendon at the vertical of a symmetric rig.
-    pub per_level: SVector<T, N>,
-    /// Lowest level that keeps every tension inside its bounds, N.
-    pub lowest_level: T,
-    /// Highest level that keeps every tension inside its bounds, N. Below the lowest when there is none.
-    pub highest_level: T,
+    /// √N·h: tensions per pretension. They load no free axis, and their squares add up to N, so that the
+    /// pretension is the tension in each tendon at the vertical of a symmetric rig.
+    pub per_pretension: SVector<T, N>,
+    /// Lowest pretension that keeps every tension inside its bounds, N.
+    pub pretension_min: T,
+    /// Highest pretension that keeps every tension inside its bounds, N. Below the lowest when there is none.
+    pub pretension_max: T,
 }
 
 impl<T: Scalar, const N: usize> Distribution<T, N> {
-    /// Tensions at a level, N. They balance the load whether or not they keep the bounds.
+    /// Tensions at a pretension, N. They balance the load whether or not they keep the bounds.
     #[must_use]
     #[inline(always)]
-    pub fn tensions(&self, level: T) -> SVector<T, N> {
-        SVector::from_fn(|i, _| self.particular[i] + level * self.per_level[i])
+    pub fn tensions(&self, pretension: T) -> SVector<T, N> {
+        SVector::from_fn(|i, _| self.particular[i] + pretension * self.per_pretension[i])
     }
 
-    /// Whether any level keeps every tension inside its bounds.
+    /// Whether any pretension keeps every tension inside its bounds.
     #[must_use]
     #[inline(always)]
     pub fn feasible(&self) -> bool {
-        self.lowest_level <= self.highest_level
+        self.pretension_min <= self.pretension_max
     }
 
-    /// The tendons and bounds that end the range of levels below and above.
+    /// The tendons and bounds that end the range of pretensions below and above.
     #[must_use]
     pub fn limits(&self, bounds: &TensionBounds<T>) -> [Limit; 2] {
         let (mut lowest, mut highest) = (-T::MAX, T::MAX);
         let none = Limit {
             tendon: 0,
-            bound: Bound::Floor,
+            bound: Bound::Min,
         };
         let mut limits = [none; 2];
         for (tendon, i) in (1..).zip(0..N) {
-            let range = level_range(self.particular[i], self.per_level[i], bounds);
-            let rising = self.per_level[i] > T::zero();
+            let range = pretension_range(self.particular[i], self.per_pretension[i], bounds);
+            let rising = self.per_pretension[i] > T::zero();
             if range.0 > lowest {
                 lowest = range.0;
                 limits[0] = Limit {
                     tendon,
-                    bound: if rising { Bound::Floor } else { Bound::Ceiling },
+                    bound: if rising { Bound::Min } else { Bound::Max },
                 };
             }
             if range.1 < highest {
                 highest = range.1;
                 limits[1] = Limit {
                     tendon,
-                    bound: if rising { Bound::Ceiling } else { Bound::Floor },
+                    bound: if rising { Bound::Max } else { Bound::Min },
                 };
             }
         }
@@ -152,33 +154,38 @@ pub fn distribute<T: Scalar, const N: usize>(
     }
     let length = (T::count::<N>() / squares).sqrt();
     let scale = if sum < T::zero() { -length } else { length };
-    let per_level = SVector::from_fn(|i, _| internal[i] * scale);
-    let (mut lowest_level, mut highest_level) = level_range(particular[0], per_level[0], bounds);
+    let per_pretension = SVector::from_fn(|i, _| internal[i] * scale);
+    let (mut pretension_min, mut pretension_max) =
+        pretension_range(particular[0], per_pretension[0], bounds);
     for i in 1..N {
-        let (low, high) = level_range(particular[i], per_level[i], bounds);
-        lowest_level = if low > lowest_level {
+        let (low, high) = pretension_range(particular[i], per_pretension[i], bounds);
+        pretension_min = if low > pretension_min {
             low
         } else {
-            lowest_level
+            pretension_min
         };
-        highest_level = if high < highest_level {
+        pretension_max = if high < pretension_max {
             high
         } else {
-            highest_level
+            pretension_max
         };
     }
     Ok(Distribution {
         particular,
-        per_level,
-        lowest_level,
-        highest_level,
+        per_pretension,
+        pretension_min,
+        pretension_max,
     })
 }
 
-/// Levels between which one tension keeps its bounds, whichever way it changes with the level.
+/// Pretensions between which one tension keeps its bounds, whichever way it changes with the pretension.
 #[inline(always)]
-fn level_range<T: Scalar>(particular: T, per_level: T, bounds: &TensionBounds<T>) -> (T, T) {
-    let scale = T::one() / per_level;
+fn pretension_range<T: Scalar>(
+    particular: T,
+    per_pretension: T,
+    bounds: &TensionBounds<T>,
+) -> (T, T) {
+    let scale = T::one() / per_pretension;
     let centre = (bounds.centre - particular) * scale;
     let half_width = (bounds.half_width * scale).abs();
     (centre - half_width, centre + half_width)

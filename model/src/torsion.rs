@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 const STEPS_MAX: u8 = 20;
 
 /// The elastic torsion, rad, at which tendons, joint and load balance about the third axis, too, while the pretension
-/// keeps its `level` (N); by the secant method. Zero for a support that blocks the torsion.
+/// keeps its `pretension` (N); by the secant method. Zero for a support that blocks the torsion.
 ///
 /// # Errors
 /// Those of [`inverse_kinematics`] and [`distribute`]; [`Error::Unstable`] if nothing holds the torsion, as without
@@ -22,7 +22,7 @@ pub fn elastic_torsion<T: Scalar, const N: usize>(
     direction: &Direction<T>,
     load_moment: &Vector3<T>,
     bounds: &TensionBounds<T>,
-    level: T,
+    pretension: T,
 ) -> Result<T, Error> {
     if !support.twists() {
         return Ok(T::zero());
@@ -32,7 +32,7 @@ pub fn elastic_torsion<T: Scalar, const N: usize>(
         direction,
         load_moment,
         bounds,
-        level,
+        pretension,
         joint: support.joint_moment_by_torsion(direction),
         twist: support.twist(direction),
         plane: support.plane(direction),
@@ -62,7 +62,7 @@ struct ThirdAxis<'a, T, const N: usize> {
     direction: &'a Direction<T>,
     load_moment: &'a Vector3<T>,
     bounds: &'a TensionBounds<T>,
-    level: T,
+    pretension: T,
     joint: JointMoment<T>,
     twist: Twist<T>,
     plane: FreePlane<T>,
@@ -76,7 +76,7 @@ impl<T: Scalar, const N: usize> ThirdAxis<'_, T, N> {
         let moment_map = inverse_kinematics(&geometry, self.direction)?.moment_map;
         let outer = self.load_moment + self.joint.at(torsion);
         let distribution = distribute(&moment_map, &self.plane, &outer, self.bounds)?;
-        let tensions = distribution.tensions(self.level);
+        let tensions = distribution.tensions(self.pretension);
         Ok((moment_map * tensions + outer).dot(&self.plane.normal()))
     }
 }

@@ -34,8 +34,8 @@ impl Board {
 
     /// A leg of the default rig with more sections.
     pub fn with(sections: &str, arguments: &[&str]) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        let rig = folder.path().join("rig.toml");
+        let directory = tempfile::tempdir().unwrap();
+        let rig = directory.path().join("rig.toml");
         std::fs::write(&rig, [READY_RIGS[0].text, PATIENT, sections].concat()).unwrap();
         let mut process = Command::new(LEG)
             .args(["emulate", "--touch", "--for", "120", "--rig"])

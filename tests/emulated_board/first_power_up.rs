@@ -39,13 +39,13 @@ fn one_line(text: &str) -> String {
 }
 
 /// Types a line and does by hand what is asked for; what is told then.
-fn typed(board: &mut Board, folder: &Path, line: &str, hand: &[&str]) -> String {
+fn typed(board: &mut Board, directory: &Path, line: &str, hand: &[&str]) -> String {
     let words: Vec<&str> = line.split_whitespace().collect();
     let (program, arguments) = words.split_first().unwrap();
     if *program == "cp" {
         // The file of a patient leg: the machine may have much else to do.
         let text = std::fs::read_to_string(workspace_root().join(arguments[0])).unwrap();
-        std::fs::write(folder.join(arguments[1]), text + PATIENT).unwrap();
+        std::fs::write(directory.join(arguments[1]), text + PATIENT).unwrap();
         return String::new();
     }
     assert_eq!(*program, "leg");
@@ -58,7 +58,7 @@ fn typed(board: &mut Board, folder: &Path, line: &str, hand: &[&str]) -> String 
         _ => board.command(arguments),
     };
     command
-        .current_dir(folder)
+        .current_dir(directory)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped());
@@ -97,7 +97,7 @@ const WEIGHTS: &[&str] = &[
 #[test]
 fn from_the_rig_file_to_the_first_moves_each_step_shows_what_the_page_says() {
     let page = std::fs::read_to_string(workspace_root().join("firmware/BOARD.md")).unwrap();
-    let folder = tempfile::tempdir().unwrap();
+    let directory = tempfile::tempdir().unwrap();
     let mut board = Board::new(&["--slack"]);
     for number in [4, 8, 9, 12, 13, 14, 15] {
         let step = Step::of(&page, number);
@@ -109,7 +109,7 @@ fn from_the_rig_file_to_the_first_moves_each_step_shows_what_the_page_says() {
         let told: String = step
             .commands()
             .into_iter()
-            .map(|line| typed(&mut board, folder.path(), line, hand))
+            .map(|line| typed(&mut board, directory.path(), line, hand))
             .collect();
         let told = one_line(&told);
         for words in step.seen() {

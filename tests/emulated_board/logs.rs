@@ -10,8 +10,8 @@ use std::time::Duration;
 
 #[test]
 fn monitor_and_log_run_beside_a_move() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("leg.csv");
+    let directory = tempfile::tempdir().unwrap();
+    let file = directory.path().join("leg.csv");
     let board = Board::new(&[]);
     let monitor = board.begin(&["monitor", "--json", "--rate", "50", "--for", "3"]);
     let name = file.display().to_string();
@@ -38,10 +38,10 @@ fn monitor_and_log_run_beside_a_move() {
 
 #[test]
 fn two_logs_share_a_rate_and_not_two() {
-    let folder = tempfile::tempdir().unwrap();
+    let directory = tempfile::tempdir().unwrap();
     let board = Board::new(&[]);
     let log = |name: &str, rate: &str| {
-        let file = folder.path().join(name).display().to_string();
+        let file = directory.path().join(name).display().to_string();
         let log = board.begin(&["log", "--out", &file, "--rate", rate, "--for", "3"]);
         sleep(Duration::from_millis(700));
         log
@@ -71,8 +71,8 @@ fn two_logs_share_a_rate_and_not_two() {
 
 #[test]
 fn a_log_that_is_ended_lets_the_line_go() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("leg.csv").display().to_string();
+    let directory = tempfile::tempdir().unwrap();
+    let file = directory.path().join("leg.csv").display().to_string();
     let board = Board::new(&[]);
     let log = board.begin(&["log", "--out", &file, "--for", "60"]);
     sleep(Duration::from_secs(1));
@@ -86,8 +86,8 @@ fn a_log_that_is_ended_lets_the_line_go() {
 
 #[test]
 fn a_log_goes_on_over_new_settings() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("leg.csv");
+    let directory = tempfile::tempdir().unwrap();
+    let file = directory.path().join("leg.csv");
     let board = Board::new(&[]);
     let name = file.display().to_string();
     let log = board.begin(&["log", "--out", &name, "--for", "3"]);

@@ -71,7 +71,10 @@ fn a_suspended_command_that_has_the_port_is_named() {
 fn a_port_that_cannot_be_shared_serves_one_command() {
     let board = Board::new(&[]);
     let mut stop = board.command(&["stop", "--json"]);
-    let output = stop.env("TMPDIR", "/dev/null/no-folder").output().unwrap();
+    let output = stop
+        .env("TMPDIR", "/dev/null/no-directory")
+        .output()
+        .unwrap();
     assert!(output.status.success(), "{}", errors(&output));
     assert!(
         errors(&output).contains("other commands cannot use this port meanwhile"),

@@ -11,11 +11,11 @@ const REQUIREMENTS: &str = include_str!("../mujoco/requirements.txt");
 /// Why there is no MuJoCo.
 #[derive(Debug, thiserror::Error)]
 pub enum MujocoError {
-    /// The environment's folder cannot be written to.
-    #[error("cannot write to {}: {error}; see that the target folder is writable", folder.display())]
-    Folder {
-        /// The environment's folder.
-        folder: PathBuf,
+    /// The environment's directory cannot be written to.
+    #[error("cannot write to {}: {error}; see that the target directory is writable", directory.display())]
+    Directory {
+        /// The environment's directory.
+        directory: PathBuf,
         /// What the system says.
         error: io::Error,
     },
@@ -36,20 +36,23 @@ pub enum MujocoError {
     NoPackages(String),
 }
 
-/// The Python of an environment with MuJoCo in `folder`, made on first use and when the requirements change.
+/// The Python of an environment with MuJoCo in `directory`, made on first use and when the requirements change.
 ///
 /// # Errors
 /// A [`MujocoError`] that says what to install.
-pub fn python(folder: &Path) -> Result<PathBuf, MujocoError> {
-    let failed = |error| MujocoError::Folder {
-        folder: folder.into(),
+pub fn python(directory: &Path) -> Result<PathBuf, MujocoError> {
+    let failed = |error| MujocoError::Directory {
+        directory: directory.into(),
         error,
     };
-    fs::create_dir_all(folder).map_err(failed)?;
+    fs::create_dir_all(directory).map_err(failed)?;
     // One test at a time: the lock ends with the file.
-    let lock = File::create(folder.join("lock")).map_err(failed)?;
+    let lock = File::create(directory.join("lock")).map_err(failed)?;
     lock.lock().map_err(failed)?;
-    let (environment, installed) = (folder.join("environment"), folder.join("installed.txt"));
+    let (environment, installed) = (
+        directory.join("environment"),
+        directory.join("installed.txt"),
+    );
     let python = environment.join("bin/python");
     let ready = fs::read_to_string(&installed).is_ok_and(|text| text == REQUIREMENTS);
     if !(ready && python.is_file()) {

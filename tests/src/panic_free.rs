@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::process::{Command, Output};
 
 /// Kept between runs, so that only the first one compiles everything.
-fn folder() -> PathBuf {
+fn directory() -> PathBuf {
     workspace_root().join("target/proof")
 }
 
@@ -20,7 +20,7 @@ pub fn link(more: &[&str]) -> Result<Output, Box<dyn Error>> {
     let output = Command::new(env!("CARGO"))
         .arg("no-panic-proof")
         .arg("--target-dir")
-        .arg(folder())
+        .arg(directory())
         .args(more)
         .current_dir(workspace_root())
         .env_remove("RUSTFLAGS")
@@ -38,6 +38,6 @@ pub fn image() -> Result<Vec<u8>, Box<dyn Error>> {
     if !output.status.success() {
         return Err(String::from_utf8_lossy(&output.stderr).into());
     }
-    let image = folder().join("thumbv7em-none-eabihf/firmware/no-panic-proof");
+    let image = directory().join("thumbv7em-none-eabihf/firmware/no-panic-proof");
     Ok(std::fs::read(image)?)
 }

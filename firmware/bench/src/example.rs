@@ -7,9 +7,9 @@ use leg_model::{JointStiffness, RigParameters, StiffnessAt, SupportKind};
 const AZIMUTH_RAD: f32 = 0.5;
 const TILT_RAD: f32 = 0.3;
 const PAYLOAD_KG: f32 = 1.0;
-const LEVEL_N: f32 = 70.0;
-const FLOOR_N: f32 = 8.0;
-const CEILING_N: f32 = 150.0;
+const PRETENSION_N: f32 = 70.0;
+const F_MIN_N: f32 = 8.0;
+const F_MAX_N: f32 = 150.0;
 const STIFFNESS_N_PER_M: f32 = 1e5;
 
 /// A query for the whole evaluation.
@@ -19,9 +19,9 @@ pub fn query() -> QueryMessage {
         azimuth_rad: AZIMUTH_RAD,
         tilt_rad: TILT_RAD,
         payload_kg: PAYLOAD_KG,
-        level_n: LEVEL_N,
-        tension_floor_n: FLOOR_N,
-        tension_ceiling_n: CEILING_N,
+        pretension_n: PRETENSION_N,
+        f_min_n: F_MIN_N,
+        f_max_n: F_MAX_N,
         tendons: TendonsMessage::Alike(TendonMessage::Constant(STIFFNESS_N_PER_M)),
         stiffness_at: StiffnessAt::Pretension,
         support: SupportMessage {
@@ -43,9 +43,9 @@ pub fn kernel_input() -> KernelInput {
         start_tilt_rad: 0.28,
         length_errors_m: [0.0; 3],
         payload_kg: PAYLOAD_KG,
-        level_n: LEVEL_N,
-        tension_floor_n: FLOOR_N,
-        tension_ceiling_n: CEILING_N,
+        pretension_n: PRETENSION_N,
+        f_min_n: F_MIN_N,
+        f_max_n: F_MAX_N,
         stiffness_n_per_m: STIFFNESS_N_PER_M,
         demand_nm_per_rad: 100.0,
     }

@@ -35,7 +35,7 @@ pub enum Kernel {
     TendonCurve,
     /// Unstretched lengths of tendons with curves that hold a load.
     InverseStatics,
-    /// The level that gives a demanded bending stiffness, with tendons with curves.
+    /// The pretension that gives a demanded bending stiffness, with tendons with curves.
     StiffnessCommand,
     /// The model's part of a control tick: forward kinematics, load estimate, full pass, distribution, unstretched
     /// lengths.
@@ -96,14 +96,14 @@ pub struct KernelInput {
     pub length_errors_m: [f32; 3],
     /// Mass at the tip, kg.
     pub payload_kg: f32,
-    /// Level of pretension, N.
-    pub level_n: f32,
+    /// Pretension, N.
+    pub pretension_n: f32,
     /// Lowest tension allowed, N.
-    pub tension_floor_n: f32,
+    pub f_min_n: f32,
     /// Highest tension allowed, N.
-    pub tension_ceiling_n: f32,
+    pub f_max_n: f32,
     /// Stiffness of each tendon, N/m. Kernels that take tendons with curves get the paper's
-    /// ([`CurvePoint::PAPER`](leg_model::CurvePoint::PAPER)), scaled to have this stiffness at the level.
+    /// ([`CurvePoint::PAPER`](leg_model::CurvePoint::PAPER)), scaled to have this stiffness at the pretension.
     pub stiffness_n_per_m: f32,
     /// Bending stiffness demanded of the leg, N·m/rad.
     pub demand_nm_per_rad: f32,

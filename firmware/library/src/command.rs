@@ -34,8 +34,8 @@ pub enum Command {
     },
     /// Comes to rest on the way, and goes on following commands.
     Hold,
-    /// Sets the level of pretension, N.
-    Level(f32),
+    /// Sets the pretension, N.
+    Pretension(f32),
     /// Demands a bending stiffness, N·m/rad: the smallest, or that against a push towards (cos, sin).
     Stiffness {
         /// N·m/rad.

@@ -5,10 +5,10 @@ pub(crate) mod bounds;
 mod estimate;
 mod filter;
 mod homing;
-mod level;
 mod measure;
 mod mechanism;
 mod plan;
+mod pretension;
 mod quintic;
 mod target;
 mod trajectory;
@@ -16,9 +16,9 @@ mod trajectory;
 pub use axis::{Axis, AxisGoal, AxisInput};
 pub use estimate::{Estimate, Estimator, Weighing};
 pub use homing::{Homing, HomingStep};
-pub use level::{Level, LevelDemand};
 pub use measure::{Measured, Measurement};
 pub use mechanism::Mechanism;
+pub use pretension::{Pretension, PretensionDemand};
 pub use target::{Target, Targets, Wish};
 pub use trajectory::{Point, Trajectory};
 
@@ -27,7 +27,7 @@ use crate::sensors::TICK_HZ;
 /// Time of a tick, s.
 pub const TICK_S: f32 = 1.0 / TICK_HZ as f32;
 
-/// Ticks in which estimate, level, target and the plan of the way are each renewed once, one a tick.
+/// Ticks in which estimate, pretension, target and the plan of the way are each renewed once, one a tick.
 pub const CYCLE_TICKS: u8 = 4;
 
 /// Time of a cycle, s.

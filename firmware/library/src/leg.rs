@@ -6,8 +6,8 @@ mod motors;
 
 use crate::command::{Command, CommandRefusal, Compensation};
 use crate::control::{
-    Axis, CYCLE_TICKS, Estimator, Homing, Level, Measured, Measurement, Mechanism, Target, Targets,
-    Trajectory, ticks,
+    Axis, CYCLE_TICKS, Estimator, Homing, Measured, Measurement, Mechanism, Pretension, Target,
+    Targets, Trajectory, ticks,
 };
 use crate::drive::Drive;
 use crate::sensors::Sensors;
@@ -47,22 +47,22 @@ pub struct Leg<T> {
     measurement: Measurement<T>,
     estimator: Estimator<T>,
     trajectory: Trajectory<T>,
-    level: Level<T>,
+    pretension: Pretension<T>,
     targets: Targets<T>,
     axes: [Axis<T>; 3],
     monitors: Monitors<T>,
     supervisor: Supervisor,
     homing: Option<Homing<T>>,
     /// Tension above which a tendon is let out in what the leg does now, N, and while homing takes tendons up.
-    ceiling_n: T,
-    homing_ceiling_n: T,
+    f_max_n: T,
+    homing_f_max_n: T,
     settings_of_homing: crate::settings::Homing,
     /// Length of each tendon without tension when the board started, m.
     zero_m: Option<[T; 3]>,
     compensation: Compensation,
     target: Option<Target<T>>,
     residual_m: Option<T>,
-    /// Whether every tendon has been above the floor since the leg was armed.
+    /// Whether every tendon has been above the minimum tension since the leg was armed.
     tensioned: bool,
     /// What is left of the way until every tendon pulls.
     slack: Slack<T>,
@@ -150,14 +150,14 @@ impl<T: Scalar> Leg<T> {
             measurement: Measurement::new(settings),
             estimator: Estimator::new(settings),
             trajectory: Trajectory::new(settings),
-            level: Level::new(settings.level_n.into()),
+            pretension: Pretension::new(settings.pretension_n.into()),
             targets: Targets::new(settings),
             axes: [Axis::new(settings); 3],
             monitors: Monitors::new(settings),
             supervisor: Supervisor::default(),
             homing: None,
-            ceiling_n: settings.tension_ceiling_n.into(),
-            homing_ceiling_n: settings.homing.ceiling_n.into(),
+            f_max_n: settings.f_max_n.into(),
+            homing_f_max_n: settings.homing.f_max_n.into(),
             settings_of_homing: settings.homing,
             zero_m,
             compensation: Compensation::Estimated,
@@ -230,7 +230,7 @@ impl<T: Scalar> Leg<T> {
             }
             State::Held => {
                 self.look(measured);
-                self.keep_floor(measured);
+                self.keep_f_min(measured);
                 Ok(())
             }
             State::RampingDown => {
@@ -293,7 +293,7 @@ impl<T: Scalar> Leg<T> {
         let limited = self.target.is_some_and(|target| target.limited);
         faults.add(
             Fault::Unreachable,
-            active && (limited || self.level.unreachable()),
+            active && (limited || self.pretension.unreachable()),
         );
         self.silence = if state.follows() {
             self.silence.saturating_add(1)
@@ -357,8 +357,8 @@ impl<T: Scalar> Leg<T> {
             target_tensions_n: self.target.map_or(zero, |target| target.tensions_n),
             pulled_m,
             reference_m: [a.reference_m(), b.reference_m(), c.reference_m()],
-            level_n: self.target.map_or(T::zero(), |target| target.level_n),
-            stiffness_nm_per_rad: self.level.stiffness_nm_per_rad(),
+            pretension_n: self.target.map_or(T::zero(), |target| target.pretension_n),
+            stiffness_nm_per_rad: self.pretension.stiffness_nm_per_rad(),
             load_nm: self.estimator.excess_nm(),
             payload_kg: self.estimator.payload_kg(),
             unstretched_at_zero_m: self.zero_m.unwrap_or(zero),

@@ -58,11 +58,11 @@ pub struct Settings {
     /// Its tendons.
     pub tendons: TendonsMessage,
     /// Lowest tension allowed, N.
-    pub tension_floor_n: f32,
+    pub f_min_n: f32,
     /// Highest tension allowed, N.
-    pub tension_ceiling_n: f32,
-    /// Level of pretension until another is commanded, N.
-    pub level_n: f32,
+    pub f_max_n: f32,
+    /// Pretension until another is commanded, N.
+    pub pretension_n: f32,
     /// How far the leg may lean: the sine of the greatest tilt.
     pub tilt_max_sine: f32,
     /// The three axes.
@@ -148,11 +148,11 @@ impl Settings {
         self.estimation.check()?;
         self.limits.check()?;
         self.homing.check()?;
-        let bounds = self.tension_floor_n..=self.tension_ceiling_n;
+        let bounds = self.f_min_n..=self.f_max_n;
         // Bounds that are none are refused with the mechanism.
-        if !bounds.is_empty() && !bounds.contains(&self.level_n) {
+        if !bounds.is_empty() && !bounds.contains(&self.pretension_n) {
             return Err(SettingsError::Model(Error::Refused {
-                quantity: Quantity::Level,
+                quantity: Quantity::Pretension,
                 reason: Reason::OutsideBounds,
             }));
         }

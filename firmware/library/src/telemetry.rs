@@ -33,9 +33,9 @@ pub struct Telemetry<T> {
     pub pulled_m: [T; 3],
     /// How far each shall be, m.
     pub reference_m: [T; 3],
-    /// Level of pretension of the target, N.
-    pub level_n: T,
-    /// Bending stiffness at the level that is asked for, N·m/rad.
+    /// Pretension of the target, N.
+    pub pretension_n: T,
+    /// Bending stiffness at the pretension that is asked for, N·m/rad.
     pub stiffness_nm_per_rad: T,
     /// The load beyond the leg's own weight, as a horizontal moment, N·m.
     pub load_nm: [T; 2],
@@ -62,7 +62,7 @@ impl<T: Copy> Telemetry<T> {
             target_tensions_n: self.target_tensions_n.map(&number),
             pulled_m: self.pulled_m.map(&number),
             reference_m: self.reference_m.map(&number),
-            level_n: number(self.level_n),
+            pretension_n: number(self.pretension_n),
             stiffness_nm_per_rad: number(self.stiffness_nm_per_rad),
             load_nm: self.load_nm.map(&number),
             payload_kg: number(self.payload_kg),

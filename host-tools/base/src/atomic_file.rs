@@ -8,7 +8,7 @@ use std::io;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// Makes the folder of `path`, lets `write` make a new file of the same name beside it, moves that to `path`, and gives
+/// Makes the directory of `path`, lets `write` make a new file of the same name beside it, moves that to `path`, and gives
 /// what `write` gave.
 ///
 /// # Errors
@@ -21,20 +21,22 @@ pub fn replace<T, E: From<io::Error>>(
     if path.is_dir() {
         return Err(no_file().into());
     }
-    let (Some(folder), Some(name)) = (path.parent(), path.file_name()) else {
+    let (Some(directory), Some(name)) = (path.parent(), path.file_name()) else {
         return Err(no_file().into());
     };
-    std::fs::create_dir_all(folder)?;
-    let workshop = workshop_in(folder)?;
+    std::fs::create_dir_all(directory)?;
+    let workshop = workshop_in(directory)?;
     let new = workshop.path().join(name);
     let written = write(&new)?;
     std::fs::rename(&new, path)?;
     Ok(written)
 }
 
-/// In the same folder: a move from one disk to another is a copy.
-fn workshop_in(folder: &Path) -> io::Result<TempDir> {
-    tempfile::Builder::new().prefix(".leg-").tempdir_in(folder)
+/// In the same directory: a move from one disk to another is a copy.
+fn workshop_in(directory: &Path) -> io::Result<TempDir> {
+    tempfile::Builder::new()
+        .prefix(".leg-")
+        .tempdir_in(directory)
 }
 
 #[cfg(test)]
@@ -45,8 +47,8 @@ mod tests {
 
     #[test]
     fn a_failed_write_leaves_the_old_file_and_nothing_else() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("chart.svg");
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("chart.svg");
         std::fs::write(&path, "old").unwrap();
         let failed = replace(&path, |new| -> io::Result<()> {
             std::fs::write(new, "half")?;
@@ -54,25 +56,25 @@ mod tests {
         });
         assert!(failed.is_err());
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "old");
-        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+        assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 1);
     }
 
     #[test]
     fn a_folder_is_refused_before_anything_is_written() {
-        let folder = tempfile::tempdir().unwrap();
-        let refused = replace(folder.path(), |_| -> io::Result<()> { unreachable!() });
+        let directory = tempfile::tempdir().unwrap();
+        let refused = replace(directory.path(), |_| -> io::Result<()> { unreachable!() });
         let kind = refused.unwrap_err().kind();
         assert_eq!(kind, io::ErrorKind::IsADirectory);
     }
 
     #[test]
     fn a_whole_write_replaces_it_and_makes_the_folder() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a/b/chart.svg");
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a/b/chart.svg");
         replace(&path, |new| std::fs::write(new, "new")).unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "new");
         assert_eq!(
-            std::fs::read_dir(folder.path().join("a/b"))
+            std::fs::read_dir(directory.path().join("a/b"))
                 .unwrap()
                 .count(),
             1

@@ -53,8 +53,8 @@ mod tests {
     #[test]
     fn a_strange_key_is_answered_with_all_of_them() {
         assert_eq!(
-            for_key("colour", &["leg_kg", "level_n"]),
-            "the keys here are `leg_kg`, `level_n`"
+            for_key("colour", &["leg_kg", "pretension_n"]),
+            "the keys here are `leg_kg`, `pretension_n`"
         );
     }
 }

@@ -49,8 +49,8 @@ pub fn causes(faults: FaultSet) -> String {
 
 /// What to do about each.
 #[must_use]
-pub fn cures(faults: FaultSet) -> String {
-    joined(faults, |fault| fault.entry().cure.into())
+pub fn remedies(faults: FaultSet) -> String {
+    joined(faults, |fault| fault.entry().remedy.into())
 }
 
 fn joined(faults: FaultSet, words: fn(leg_firmware::supervisor::Fault) -> String) -> String {

@@ -141,9 +141,9 @@ fn input(azimuth_deg: f32, tilt_deg: f32, payload_kg: f32) -> KernelInput {
         start_tilt_rad: (tilt_deg + START_OFF_DEG).to_radians(),
         length_errors_m: [0.0; 3],
         payload_kg,
-        level_n: 70.0,
-        tension_floor_n: 8.0,
-        tension_ceiling_n: 150.0,
+        pretension_n: 70.0,
+        f_min_n: 8.0,
+        f_max_n: 150.0,
         stiffness_n_per_m: 99_450.0,
         demand_nm_per_rad: 100.0,
     }

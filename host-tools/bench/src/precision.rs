@@ -1,6 +1,6 @@
 //! THE precision table: how far the firmware's f32 may be from f64.
 //!
-//! It holds on the paper's rig over its workspace: any azimuth, tilts to 30°, payloads to 2 kg, levels that keep every
+//! It holds on the paper's rig over its workspace: any azimuth, tilts to 30°, payloads to 2 kg, pretensions that keep every
 //! tension between 8 N and 150 N, tendons of 2e4 to 2e5 N/m, all supports. Both sides get the same arguments: those
 //! that f32 can hold. Each bound is two to four times the worst of 100 000 random states, so that a loss of precision
 //! shows at once.
@@ -27,8 +27,8 @@ pub enum Quantity {
     LoadMoment,
     /// Tensions.
     Tensions,
-    /// Lowest and highest level.
-    LevelRange,
+    /// Lowest and highest pretension.
+    PretensionRange,
     /// Stiffness.
     Stiffness,
     /// K₂, exact.
@@ -71,8 +71,8 @@ pub enum Quantity {
     Elongation,
     /// Stiffness of a tendon with a curve.
     TendonStiffness,
-    /// Level of pretension for a demanded stiffness.
-    CommandedLevel,
+    /// Pretension for a demanded stiffness.
+    CommandedPretension,
     /// The stiffness that it gives.
     CommandedStiffness,
     /// Square root.

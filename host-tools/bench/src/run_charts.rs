@@ -39,7 +39,7 @@ const POINTS_MAX: usize = 1500;
 ///
 /// # Errors
 /// A chart that cannot be drawn or written.
-pub fn save(title: &str, samples: &[Sample], folder: &Path) -> Result<Vec<PathBuf>, PlotError> {
+pub fn save(title: &str, samples: &[Sample], directory: &Path) -> Result<Vec<PathBuf>, PlotError> {
     let line = |&(label, of): &Curve| Line {
         label: label.into(),
         points: samples
@@ -57,7 +57,7 @@ pub fn save(title: &str, samples: &[Sample], folder: &Path) -> Result<Vec<PathBu
             lines: curves.iter().map(line).collect(),
             marks_label: String::new(),
         };
-        plot::save_both(&chart, &folder.join(name))
+        plot::save_both(&chart, &directory.join(name))
     };
     CHARTS.iter().map(chart).collect()
 }

@@ -83,7 +83,7 @@ pub enum ImageError {
     },
 }
 
-/// The folder of the workspace that this program was built from.
+/// The directory of the workspace that this program was built from.
 #[must_use]
 pub fn workspace_root() -> PathBuf {
     let package = Path::new(env!("CARGO_MANIFEST_DIR"));

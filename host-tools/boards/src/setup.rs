@@ -83,8 +83,8 @@ impl Programs {
     fn has_target(&self) -> Result<bool, SetupError> {
         let mut rustc = self.rust("rustc")?;
         rustc.args(["--print", "target-libdir", "--target", TARGET]);
-        let folder = run(&mut rustc)?;
-        Ok(Path::new(folder.trim()).is_dir())
+        let directory = run(&mut rustc)?;
+        Ok(Path::new(directory.trim()).is_dir())
     }
 
     fn add_target(&self) -> Result<(), SetupError> {

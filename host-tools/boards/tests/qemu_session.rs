@@ -51,8 +51,8 @@ fn process(session: &Session) -> Result<Pid, Box<dyn Error>> {
     Pid::from_raw(id).ok_or_else(|| "no process".into())
 }
 
-/// The folder of the session's pipes: QEMU's working directory.
-fn folder(session: &Session) -> Result<PathBuf, Box<dyn Error>> {
+/// The directory of the session's pipes: QEMU's working directory.
+fn directory(session: &Session) -> Result<PathBuf, Box<dyn Error>> {
     Ok(fs::read_link(format!(
         "/proc/{}/cwd",
         session.process_id()
@@ -72,13 +72,13 @@ fn the_firmware_boots_and_ends_with_its_link() -> Outcome {
             .any(|line| line.contains("alarm of 1000 us took")),
         "{log:?}"
     );
-    let (id, folder) = (process(&session)?, folder(&session)?);
+    let (id, directory) = (process(&session)?, directory(&session)?);
     session.close()?;
     assert!(test_kill_process(id).is_err(), "QEMU is still there");
     assert!(
-        !Path::new(&folder).exists(),
+        !Path::new(&directory).exists(),
         "{} is still there",
-        folder.display()
+        directory.display()
     );
     Ok(())
 }
@@ -86,13 +86,13 @@ fn the_firmware_boots_and_ends_with_its_link() -> Outcome {
 #[test]
 fn a_dropped_session_leaves_nothing_behind() -> Outcome {
     let session = Session::open(&config(Clock::Normal)?)?;
-    let (id, folder) = (process(&session)?, folder(&session)?);
+    let (id, directory) = (process(&session)?, directory(&session)?);
     drop(session);
     assert!(test_kill_process(id).is_err(), "QEMU is still there");
     assert!(
-        !Path::new(&folder).exists(),
+        !Path::new(&directory).exists(),
         "{} is still there",
-        folder.display()
+        directory.display()
     );
     Ok(())
 }

@@ -42,7 +42,7 @@ pub enum CellFitError {
 impl CellFitError {
     /// What to do about it.
     #[must_use]
-    pub const fn cure(self) -> &'static str {
+    pub const fn remedy(self) -> &'static str {
         match self {
             Self::OneWeight => "give more weights, as --weights 0,1,2,5",
             Self::Dead => "see that the weight hangs on this cell, and check its wiring",

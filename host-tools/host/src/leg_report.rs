@@ -24,9 +24,9 @@ pub struct LegReport {
     pub tilt_deg: f64,
     /// Measured tensions, N.
     pub tensions_n: [f32; 3],
-    /// Level of pretension of the last target, N; 0 before the first.
-    pub level_n: f32,
-    /// Bending stiffness at that level, N·m/rad.
+    /// Pretension of the last target, N; 0 before the first.
+    pub pretension_n: f32,
+    /// Bending stiffness at that pretension, N·m/rad.
     pub stiffness_nm_per_rad: f32,
     /// Load beyond the leg's own weight, N·m.
     pub load_nm: [f32; 2],
@@ -48,7 +48,7 @@ pub struct FaultReport {
     /// What raises it.
     pub cause: &'static str,
     /// What to do about it.
-    pub cure: &'static str,
+    pub remedy: &'static str,
 }
 
 /// Every fault of a set.
@@ -61,7 +61,7 @@ pub fn fault_reports(faults: FaultSet) -> Vec<FaultReport> {
             fault,
             name: entry.name,
             cause: entry.cause,
-            cure: entry.cure,
+            remedy: entry.remedy,
         }
     };
     faults.faults().map(report).collect()
@@ -79,7 +79,7 @@ impl LegReport {
             azimuth_deg,
             tilt_deg,
             tensions_n: telemetry.tensions_n,
-            level_n: telemetry.level_n,
+            pretension_n: telemetry.pretension_n,
             stiffness_nm_per_rad: telemetry.stiffness_nm_per_rad,
             load_nm: telemetry.load_nm,
             payload_kg: telemetry.payload_kg,
@@ -121,10 +121,10 @@ pub fn rows(telemetry: &Telemetry<f32>) -> String {
         "state      {}\npose       {pose}\ntensions   {a:.1}  {b:.1}  {c:.1} N\n",
         words::state(telemetry.state)
     );
-    if telemetry.level_n > 0.0 {
+    if telemetry.pretension_n > 0.0 {
         rows += &format!(
-            "level      {:.1} N\nstiffness  {:.2} N·m/rad\npayload    {:.2} kg\n",
-            telemetry.level_n, telemetry.stiffness_nm_per_rad, telemetry.payload_kg
+            "pretension {:.1} N\nstiffness  {:.2} N·m/rad\npayload    {:.2} kg\n",
+            telemetry.pretension_n, telemetry.stiffness_nm_per_rad, telemetry.payload_kg
         );
     }
     rows + &format!("faults     {}\n", words::faults(telemetry.faults))

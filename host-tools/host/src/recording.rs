@@ -118,7 +118,7 @@ fn whole<R, T>(
         Stopped::Work(failure) => failure,
         Stopped::Recording(error) => Failure::refused(
             format!("cannot write {}: {error}", file.display()),
-            "name a file in a folder that may be written",
+            "name a file in a directory that may be written",
         ),
     })
 }

@@ -6,7 +6,12 @@ use leg_base::failure::Failure;
 use std::io;
 use std::path::Path;
 
-const POSE_COLUMNS: [&str; 4] = ["azimuth_deg", "tilt_deg", "feasible", "level_keeps_bounds"];
+const POSE_COLUMNS: [&str; 4] = [
+    "azimuth_deg",
+    "tilt_deg",
+    "feasible",
+    "pretension_keeps_bounds",
+];
 
 const fn column(quantity: Quantity) -> &'static str {
     match quantity {
@@ -15,14 +20,14 @@ const fn column(quantity: Quantity) -> &'static str {
         Quantity::StiffnessMax => "stiffness_max_nm_per_rad",
         Quantity::Condition => "condition",
         Quantity::Margin => "margin_n",
-        Quantity::LevelMin => "level_min_n",
-        Quantity::LevelMax => "level_max_n",
+        Quantity::PretensionMin => "pretension_min_n",
+        Quantity::PretensionMax => "pretension_max_n",
         Quantity::DeviationNonlinear => "deviation_nonlinear_mm",
         Quantity::LinearOverNonlinear => "linear_over_nonlinear_percent",
     }
 }
 
-/// Writes the map, whole or not at all, around other work: its folder is tried before that work, and the file is put
+/// Writes the map, whole or not at all, around other work: its directory is tried before that work, and the file is put
 /// in its place only if the work succeeds. What is not known of a pose is an empty field. The vertical is one pose and
 /// has one row.
 ///
@@ -41,7 +46,7 @@ pub fn save_around<T>(
         Stopped::Work(failure) => failure,
         Stopped::File(error) => Failure::refused(
             format!("cannot write {}: {error}", file.display()),
-            "name a file in a folder that may be written with --csv",
+            "name a file in a directory that may be written with --csv",
         ),
     })
 }
@@ -77,7 +82,7 @@ fn write(map: &WorkspaceMap, new: &Path) -> io::Result<()> {
 fn fields(cell: &Cell, quantities: &[Quantity]) -> Vec<String> {
     let values = quantities.iter().map(|quantity| quantity.value(cell));
     let values = values.map(|value| value.map_or_else(String::new, |value| value.to_string()));
-    [cell.feasible, cell.level_keeps_bounds]
+    [cell.feasible, cell.pretension_keeps_bounds]
         .map(|is| is.to_string())
         .into_iter()
         .chain(values)
@@ -97,20 +102,20 @@ mod tests {
         tilts: 2,
     };
 
-    fn ball_joint(level_n: f64) -> RigFile {
+    fn ball_joint(pretension_n: f64) -> RigFile {
         let mut rig = RigFile::load(Some("spherical".as_ref())).unwrap();
-        rig.level_n = level_n;
+        rig.pretension_n = pretension_n;
         rig
     }
 
-    fn map(level_n: f64) -> WorkspaceMap {
-        WorkspaceMap::on_one_core(&ball_joint(level_n), 1.0, GRID)
+    fn map(pretension_n: f64) -> WorkspaceMap {
+        WorkspaceMap::on_one_core(&ball_joint(pretension_n), 1.0, GRID)
     }
 
     /// The lines of the file.
     fn saved(map: &WorkspaceMap) -> Vec<Vec<String>> {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("map.csv");
+        let directory = tempfile::tempdir().unwrap();
+        let file = directory.path().join("map.csv");
         save_around(map, &file, || Ok(())).unwrap();
         let text = std::fs::read_to_string(&file).unwrap();
         let fields = |line: &str| line.split(',').map(String::from).collect();
@@ -122,7 +127,7 @@ mod tests {
         let lines = saved(&map(0.0));
         assert_eq!(lines.len(), 1 + 1 + 3);
         assert_eq!(lines[0].len(), 11);
-        // Straight down a ball joint that nothing pulls cannot hold its twist, but at another level it would.
+        // Straight down a ball joint that nothing pulls cannot hold its twist, but at another pretension it would.
         assert_eq!(lines[1][..4], ["0", "0", "true", "false"]);
         assert!(lines[1][4..9].iter().all(String::is_empty));
         assert_eq!(lines[3][..2], ["120", "30"]);
@@ -144,8 +149,8 @@ mod tests {
 
     #[test]
     fn table_and_work_are_done_both_or_neither() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("map.csv");
+        let directory = tempfile::tempdir().unwrap();
+        let file = directory.path().join("map.csv");
         let failure = Failure::missed("no pictures", "");
         let failed = save_around(&map(60.0), &file, || Err::<(), _>(failure.clone()));
         assert_eq!(failed, Err(failure));

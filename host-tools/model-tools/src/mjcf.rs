@@ -33,23 +33,23 @@ const SOLIMP: [f64; 5] = [0.9999, 0.9999, 0.001, 0.5, 2.0];
 /// Why there is no MuJoCo model.
 #[derive(Debug, thiserror::Error)]
 pub enum MjcfError {
-    /// The model refuses the pose, the load or the level.
+    /// The model refuses the pose, the load or the pretension.
     #[error(transparent)]
     Model(#[from] LineError),
-    /// No level of pretension serves.
+    /// No pretension serves.
     #[error(
-        "no level of pretension keeps every tension inside its bounds at this pose under this load: give another pose or a smaller payload"
+        "no pretension keeps every tension inside its bounds at this pose under this load: give another pose or a smaller payload"
     )]
     Infeasible,
-    /// The level gives a tension outside its bounds.
+    /// The pretension gives a tension outside its bounds.
     #[error(
-        "the level {level_n} N leaves a tension outside its bounds at this pose under this load: give a level from {lowest:.2} to {highest:.2} N",
+        "the pretension {pretension_n} N leaves a tension outside its bounds at this pose under this load: give a pretension from {lowest:.2} to {highest:.2} N",
         lowest = (lowest_n * 100.0).ceil() / 100.0,
         highest = (highest_n * 100.0).floor() / 100.0
     )]
-    Level {
-        /// The level, N.
-        level_n: f64,
+    Pretension {
+        /// The pretension, N.
+        pretension_n: f64,
         /// The lowest that keeps the bounds, N.
         lowest_n: f64,
         /// The highest, N.
@@ -116,11 +116,11 @@ fn about(leg: &HeldLeg) -> String {
         azimuth_deg,
         tilt_deg,
         payload_kg,
-        level_n,
+        pretension_n,
         ..
     } = leg;
     format!(
-        " Key `held`: azimuth {azimuth_deg:.3} deg, tilt {tilt_deg:.3} deg, payload {payload_kg} kg, level {level_n} N.\n  \
+        " Key `held`: azimuth {azimuth_deg:.3} deg, tilt {tilt_deg:.3} deg, payload {payload_kg} kg, pretension {pretension_n} N.\n  \
          Not from the rig file: the leg's inertia (a solid cylinder from joint to tip), the payload's (a steel ball),\n  \
          and the joint's damping (a tenth of the critical). Joint and shaft do not stretch. "
     )

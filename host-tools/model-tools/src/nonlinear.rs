@@ -16,7 +16,7 @@ use nalgebra::{SVector, Vector3};
 
 /// Distance of the tip from the pose after the weights are switched on, m.
 ///
-/// `None` where that has no meaning: at a level that would have a tendon push, so that nothing holds the leg before
+/// `None` where that has no meaning: at a pretension that would have a tendon push, so that nothing holds the leg before
 /// the weights come.
 ///
 /// # Errors
@@ -44,23 +44,23 @@ fn pretensioned(
     query: &Query<f64>,
 ) -> Result<Option<(Balance, Posture)>, Error> {
     let rig = Rig::new(parameters)?;
-    let (support, level) = (query.support, query.level_n);
+    let (support, pretension) = (query.support, query.pretension_n);
     let direction = Direction::from_angles(query.azimuth_rad, query.tilt_rad)?;
-    let bounds = TensionBounds::new(query.tension_floor_n, query.tension_ceiling_n)?;
+    let bounds = TensionBounds::new(query.f_min_n, query.f_max_n)?;
     let torsion = elastic_torsion(
         &rig,
         &support,
         &direction,
         &Vector3::zeros(),
         &bounds,
-        level,
+        pretension,
     )?;
     let twist = support.twist(&direction).and(&Twist::from_torsion(torsion));
     let kinematics = inverse_kinematics(&rig.geometry().twisted(&twist), &direction)?;
     let (map, plane) = (&kinematics.moment_map, support.plane(&direction));
     let joint_moment = support.joint_moment(&direction, torsion);
     let tensions: SVector<f64, 3> =
-        distribute(map, &plane, &joint_moment, &bounds)?.tensions(level);
+        distribute(map, &plane, &joint_moment, &bounds)?.tensions(pretension);
     if tensions.iter().any(|&tension| tension < 0.0) {
         return Ok(None);
     }

@@ -5,7 +5,7 @@ mod drawn;
 mod found;
 mod quantity;
 
-pub use cell::{AtLevel, Cell};
+pub use cell::{AtPretension, Cell};
 #[cfg(test)]
 pub use drawn::SHADES;
 pub use found::{Counts, Extreme};

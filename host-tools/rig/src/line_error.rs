@@ -91,7 +91,7 @@ impl From<Error> for LineError {
 /// The key in quotes, or words where no key gives the quantity itself.
 fn name_of(quantity: Quantity) -> String {
     match quantity {
-        Quantity::Tension => "the tension of a tendon at this level".into(),
+        Quantity::Tension => "the tension of a tendon at this pretension".into(),
         Quantity::Elongation => "the elongation of a tendon under this load".into(),
         _ => format!("`{}`", key_of(quantity)),
     }
@@ -104,10 +104,10 @@ fn key_of(quantity: Quantity) -> &'static str {
         Quantity::Azimuth => "azimuth_deg",
         Quantity::Tilt => "tilt_deg",
         Quantity::Payload => "payload_kg",
-        Quantity::Level => "level_n",
+        Quantity::Pretension => "level_n",
         Quantity::TendonStiffness => "stiffness_n_per_m",
-        Quantity::TensionFloor => "f_min_n",
-        Quantity::TensionCeiling => "f_max_n",
+        Quantity::TensionMin => "f_min_n",
+        Quantity::TensionMax => "f_max_n",
         Quantity::LegMass => "leg_mass_kg",
         Quantity::UpperLength => "l_upper_m",
         Quantity::BaseAnchors => "base_anchors_mm",
@@ -135,12 +135,10 @@ fn fix_of(quantity: Quantity, reason: Reason) -> &'static str {
         (_, Reason::NotFinite) => " in f32: give at most 3.4e38",
         (Quantity::Payload, Reason::OutOfRange) => ": give 0 to 1e6",
         (Quantity::TendonStiffness, Reason::OutOfRange) => ": give 0.01 to 1e10",
-        (Quantity::TensionFloor | Quantity::TensionCeiling, Reason::OutOfRange) => {
-            ": give 0 to 1e7"
-        }
-        (Quantity::Level, Reason::OutOfRange) => ": give -1e7 to 1e7",
+        (Quantity::TensionMin | Quantity::TensionMax, Reason::OutOfRange) => ": give 0 to 1e7",
+        (Quantity::Pretension, Reason::OutOfRange) => ": give -1e7 to 1e7",
         (_, Reason::BeyondCurve) => ": give a lower `level_n`, or a constant `stiffness_n_per_m`",
-        (_, Reason::AboveCeiling) => ": give at most `f_max_n`",
+        (_, Reason::AboveMax) => ": give at most `f_max_n`",
         _ => "",
     }
 }

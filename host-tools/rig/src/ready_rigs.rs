@@ -118,8 +118,8 @@ mod tests {
             let file = RigFile::parse(rig.name, rig.text).unwrap();
             assert_eq!(file.buckling().is_some(), rig.support.elastic());
             if let Some(buckling) = file.buckling() {
-                assert!(buckling.at_level < 0.33, "{}: {buckling:?}", rig.name);
-                assert!(buckling.at_ceiling < 0.7, "{}: {buckling:?}", rig.name);
+                assert!(buckling.at_pretension < 0.33, "{}: {buckling:?}", rig.name);
+                assert!(buckling.at_f_max < 0.7, "{}: {buckling:?}", rig.name);
             }
         }
     }

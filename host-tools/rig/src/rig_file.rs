@@ -33,11 +33,11 @@ pub struct RigFile {
     /// At which tension their stiffness is read.
     pub stiffness_at: StiffnessAt,
     /// Lowest tension allowed, N.
-    pub tension_floor_n: f64,
+    pub f_min_n: f64,
     /// Highest tension allowed, N.
-    pub tension_ceiling_n: f64,
-    /// Level of pretension, N per tendon at the vertical pose.
-    pub level_n: f64,
+    pub f_max_n: f64,
+    /// Pretension, N per tendon at the vertical pose.
+    pub pretension_n: f64,
     /// How far the leg leans at most, degrees.
     pub tilt_deg: f64,
     /// The central support's name.
@@ -103,12 +103,13 @@ impl RigFile {
         })
     }
 
-    /// Stiffness of each tendon at the level, N/m.
+    /// Stiffness of each tendon at the pretension, N/m.
     #[must_use]
     pub fn stiffnesses_n_per_m(&self) -> [f64; 3] {
-        // The file was refused if a curve does not reach the level.
-        let at_level = |tendon: Tendon<f64>| tendon.stiffness(self.level_n).unwrap_or(f64::NAN);
-        self.tendons.map(at_level)
+        // The file was refused if a curve does not reach the pretension.
+        let at_pretension =
+            |tendon: Tendon<f64>| tendon.stiffness(self.pretension_n).unwrap_or(f64::NAN);
+        self.tendons.map(at_pretension)
     }
 
     /// The pose at an azimuth and a tilt with a payload, everything else as the file says.
@@ -118,9 +119,9 @@ impl RigFile {
             azimuth_rad: azimuth_deg.to_radians(),
             tilt_rad: tilt_deg.to_radians(),
             payload_kg,
-            level_n: self.level_n,
-            tension_floor_n: self.tension_floor_n,
-            tension_ceiling_n: self.tension_ceiling_n,
+            pretension_n: self.pretension_n,
+            f_min_n: self.f_min_n,
+            f_max_n: self.f_max_n,
             tendons: self.tendons,
             stiffness_at: self.stiffness_at,
             support: self.support,

@@ -14,15 +14,15 @@ struct Shown {
     torsion_nm_per_rad: f64,
     axial_compliance_m_per_n: f64,
     critical_load_n: Option<f64>,
-    pull_by_critical_at_level: Option<f64>,
-    pull_by_critical_at_ceiling: Option<f64>,
+    pull_by_critical_at_pretension: Option<f64>,
+    pull_by_critical_at_f_max: Option<f64>,
     tip_below_joint_m: f64,
     leg_mass_kg: f64,
     leg_centroid_m: f64,
-    level_n: f64,
-    tension_floor_n: f64,
-    tension_ceiling_n: f64,
-    stiffness_at_level_n_per_m: [f64; 3],
+    pretension_n: f64,
+    f_min_n: f64,
+    f_max_n: f64,
+    stiffness_at_pretension_n_per_m: [f64; 3],
     tilt_deg: f64,
 }
 
@@ -36,15 +36,15 @@ impl Shown {
             torsion_nm_per_rad: joint.torsion_nm_per_rad,
             axial_compliance_m_per_n: joint.axial_compliance_m_per_n,
             critical_load_n: buckling.map(|found| found.critical_n),
-            pull_by_critical_at_level: buckling.map(|found| found.at_level),
-            pull_by_critical_at_ceiling: buckling.map(|found| found.at_ceiling),
+            pull_by_critical_at_pretension: buckling.map(|found| found.at_pretension),
+            pull_by_critical_at_f_max: buckling.map(|found| found.at_f_max),
             tip_below_joint_m: parameters.joint_length_m + parameters.leg_length_m,
             leg_mass_kg: parameters.leg_mass_kg,
             leg_centroid_m: parameters.leg_centroid_m,
-            level_n: file.level_n,
-            tension_floor_n: file.tension_floor_n,
-            tension_ceiling_n: file.tension_ceiling_n,
-            stiffness_at_level_n_per_m: file.stiffnesses_n_per_m(),
+            pretension_n: file.pretension_n,
+            f_min_n: file.f_min_n,
+            f_max_n: file.f_max_n,
+            stiffness_at_pretension_n_per_m: file.stiffnesses_n_per_m(),
             tilt_deg: file.tilt_deg,
         }
     }
@@ -54,7 +54,7 @@ impl Shown {
 #[must_use]
 pub fn words(file: &RigFile) -> String {
     let shown = Shown::of(file);
-    let [first, second, third] = shown.stiffness_at_level_n_per_m;
+    let [first, second, third] = shown.stiffness_at_pretension_n_per_m;
     format!(
         "support                {}\n\
          joint, bending         {:.4} N·m/rad\n\
@@ -63,8 +63,8 @@ pub fn words(file: &RigFile) -> String {
          {}\
          tip below the joint    {:.1} mm\n\
          leg                    {} kg, centroid {:.1} mm below the joint\n\
-         tensions               {} to {} N, level {} N\n\
-         tendons at the level   {first:.0}, {second:.0}, {third:.0} N/m\n\
+         tensions               {} to {} N, pretension {} N\n\
+         tendons at the pretension   {first:.0}, {second:.0}, {third:.0} N/m\n\
          workspace              tilt to {}°\n\
          {}",
         shown.support,
@@ -75,9 +75,9 @@ pub fn words(file: &RigFile) -> String {
         shown.tip_below_joint_m * 1000.0,
         shown.leg_mass_kg,
         shown.leg_centroid_m * 1000.0,
-        shown.tension_floor_n,
-        shown.tension_ceiling_n,
-        shown.level_n,
+        shown.f_min_n,
+        shown.f_max_n,
+        shown.pretension_n,
         shown.tilt_deg,
         rig_settings::changes(file),
     )
@@ -86,18 +86,18 @@ pub fn words(file: &RigFile) -> String {
 fn buckling_words(buckling: Buckling) -> String {
     let Buckling {
         critical_n,
-        at_level,
-        at_ceiling,
+        at_pretension,
+        at_f_max,
     } = buckling;
-    let warning = if at_ceiling >= 1.0 {
+    let warning = if at_f_max >= 1.0 {
         "warning                the joint buckles before all tendons pull with the highest tension: make its flexures\n\
-         \u{20}                      thicker or shorter, or lower `ceiling_n`\n"
+         \u{20}                      thicker or shorter, or lower `f_max_n`\n"
     } else {
         ""
     };
     format!(
-        "joint, buckling        at {critical_n:.0} N; the tendons pull with {at_level:.2} of it at the level, \
-         {at_ceiling:.2} at the ceiling\n{warning}"
+        "joint, buckling        at {critical_n:.0} N; the tendons pull with {at_pretension:.2} of it at the pretension, \
+         {at_f_max:.2} at the maximum tension\n{warning}"
     )
 }
 

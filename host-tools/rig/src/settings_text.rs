@@ -61,9 +61,9 @@ fn mass(settings: &Settings) -> String {
 fn tendon(settings: &Settings) -> String {
     let bounds = format!(
         "\n[tendon]\nfloor_n = {}\nceiling_n = {}\nlevel_n = {}\n",
-        number(settings.tension_floor_n),
-        number(settings.tension_ceiling_n),
-        number(settings.level_n),
+        number(settings.f_min_n),
+        number(settings.f_max_n),
+        number(settings.pretension_n),
     );
     let curves = "# Where a tendon's stiffness is read for the linear deviation; the board has no use for it.\n\
                   stiffness_at = \"pretension\"\n";

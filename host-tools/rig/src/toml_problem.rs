@@ -136,7 +136,7 @@ pub enum Problem {
     NoResult(leg_model::Error),
     /// The flexures buckle.
     #[error(
-        "`level_n` is too high for the flexures: three tendons at it pull with {pull_n:.0} N, and the joint buckles at {critical_n:.0} N"
+        "`pretension_n` is too high for the flexures: three tendons at it pull with {pull_n:.0} N, and the joint buckles at {critical_n:.0} N"
     )]
     Buckles {
         /// What the tendons pull with, N.
@@ -195,8 +195,8 @@ fn fix_of(key: &str, reason: Reason) -> String {
             "give less than `youngs_modulus_gpa`, about 0.38 of it for a metal".into()
         }
         Reason::Collinear => "spread the anchors round the axis".into(),
-        Reason::AboveCeiling => "give at most `ceiling_n`".into(),
-        Reason::OutsideBounds => "give at least `floor_n` and at most `ceiling_n`".into(),
+        Reason::AboveMax => "give at most `f_max_n`".into(),
+        Reason::OutsideBounds => "give at least `f_min_n` and at most `f_max_n`".into(),
         Reason::NotSlender => "make it longer or wider, or the flexure thinner".into(),
         Reason::OutsideFormula => "give 0.05 to 0.8 times `radius_mm`".into(),
         Reason::Exceeded => "make the flexure thinner or longer, or lower `tilt_deg`".into(),

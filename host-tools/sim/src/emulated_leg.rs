@@ -17,7 +17,7 @@ use std::time::Duration;
 /// How an emulated leg begins; it is disarmed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Beginning {
-    /// Homed, hanging straight down, its tendons at the rig's level.
+    /// Homed, hanging straight down, its tendons at the rig's pretension.
     Hanging,
     /// Not homed, hanging straight down, every tendon longer than its way by as much, m.
     Slack(f64),
@@ -95,7 +95,7 @@ fn begin(rig: &RigFile, beginning: Beginning) -> (Start, PlantSettings) {
             let start = Start::Held {
                 azimuth_deg: 0.0,
                 tilt_deg: 0.0,
-                level_n: rig.level_n,
+                pretension_n: rig.pretension_n,
                 payload_kg: 0.0,
             };
             let plant = PlantSettings {

@@ -68,7 +68,7 @@ enum StartText {
     Held {
         azimuth_deg: f64,
         tilt_deg: f64,
-        level_n: f64,
+        pretension_n: f64,
         payload_kg: f64,
     },
 }
@@ -78,7 +78,7 @@ impl Default for StartText {
         Self::Held {
             azimuth_deg: 0.0,
             tilt_deg: 0.0,
-            level_n: 70.0,
+            pretension_n: 70.0,
             payload_kg: 0.0,
         }
     }
@@ -155,12 +155,12 @@ impl Scenario {
             StartText::Held {
                 azimuth_deg,
                 tilt_deg,
-                level_n,
+                pretension_n,
                 payload_kg,
             } => Start::Held {
                 azimuth_deg,
                 tilt_deg,
-                level_n,
+                pretension_n,
                 payload_kg,
             },
         }

@@ -47,12 +47,19 @@ pub(super) struct Sag<T> {
 impl<T: Scalar> State<T> {
     pub fn new(rig: Rig<T, 3>, query: &Query<T>) -> Result<Self, Error> {
         let direction = Direction::from_angles(query.azimuth_rad, query.tilt_rad)?;
-        check_magnitude(query.level_n, TENSION_MAX, Quantity::Level)?;
-        let bounds = TensionBounds::new(query.tension_floor_n, query.tension_ceiling_n)?;
+        check_magnitude(query.pretension_n, TENSION_MAX, Quantity::Pretension)?;
+        let bounds = TensionBounds::new(query.f_min_n, query.f_max_n)?;
         let load = Load::new(&rig, query.payload_kg)?;
         let load_moment = load.moment(&direction);
-        let (support, level) = (query.support, query.level_n);
-        let elastic = elastic_torsion(&rig, &support, &direction, &load_moment, &bounds, level)?;
+        let (support, pretension) = (query.support, query.pretension_n);
+        let elastic = elastic_torsion(
+            &rig,
+            &support,
+            &direction,
+            &load_moment,
+            &bounds,
+            pretension,
+        )?;
         let twist = support.twist(&direction).and(&Twist::from_torsion(elastic));
         let geometry = rig.geometry.twisted(&twist);
         let kinematics = inverse_kinematics(&geometry, &direction)?;
@@ -85,7 +92,7 @@ impl<T: Scalar> State<T> {
         let mut tendons = SVector::zeros();
         for (i, tendon) in query.tendons.iter().enumerate() {
             let at = match query.stiffness_at {
-                StiffnessAt::Pretension => query.level_n,
+                StiffnessAt::Pretension => query.pretension_n,
                 StiffnessAt::Tension => tensions[i],
             };
             tendons[i] = tendon.stiffness(at)?;
@@ -157,7 +164,7 @@ impl<T: Scalar> State<T> {
         Ok(unstretched)
     }
 
-    /// The level that gives a demanded stiffness at this pose.
+    /// The pretension that gives a demanded stiffness at this pose.
     pub fn command(
         &self,
         demand: &StiffnessDemand<T>,
@@ -173,6 +180,6 @@ impl<T: Scalar> State<T> {
             &self.kinematics,
             &self.distribution,
         )
-        .level_for(demand.stiffness_nm_per_rad, &demand.axis()?, &self.bounds)
+        .pretension_for(demand.stiffness_nm_per_rad, &demand.axis()?, &self.bounds)
     }
 }

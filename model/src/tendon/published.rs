@@ -6,7 +6,7 @@ macro_rules! paper {
     ($($t:ty),*) => {$(
         impl CurvePoint<$t> {
             /// A curve through what the paper publishes: a stiffness of 2.9·10⁴ N/m when the pull begins, the lowest,
-            /// 1.5·10⁴ N/m, at 8 N, and the 9.945·10⁴ N/m at a level of 70 N that the maxima of Fig. 9 fix.
+            /// 1.5·10⁴ N/m, at 8 N, and the 9.945·10⁴ N/m at a pretension of 70 N that the maxima of Fig. 9 fix.
             ///
             /// In between the stiffness is taken as linear in the tension, so δ is a logarithm. That is a choice: the
             /// paper's slope and pretension cannot be told apart, and its test piece (0.6 mm × 120 mm) is not the rig's

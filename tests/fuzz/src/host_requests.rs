@@ -30,7 +30,7 @@ const COMMANDS: [Command; 12] = [
     Command::Home,
     Command::Move { x: 0.2, y: -0.1 },
     Command::Hold,
-    Command::Level(60.0),
+    Command::Pretension(60.0),
     Command::Stiffness {
         demand_nm_per_rad: 60.0,
         towards: Some([1.0, 0.0]),

@@ -21,7 +21,7 @@ pub struct Bench<T> {
     pub start: Direction<T>,
     pub moment: Vector3<T>,
     pub bounds: TensionBounds<T>,
-    pub level: T,
+    pub pretension: T,
     pub angle: T,
     pub lengths: SVector<T, 3>,
     pub lengths_universal: SVector<T, 3>,
@@ -37,17 +37,16 @@ impl<T: Scalar> Bench<T> {
     pub fn new(input: &KernelInput) -> Result<Self, Error> {
         let rig = Rig::new(&input.rig.into())?;
         let direction = Direction::from_angles(input.azimuth_rad.into(), input.tilt_rad.into())?;
-        let bounds =
-            TensionBounds::new(input.tension_floor_n.into(), input.tension_ceiling_n.into())?;
+        let bounds = TensionBounds::new(input.f_min_n.into(), input.f_max_n.into())?;
         let tendon = ConstantStiffness::new(input.stiffness_n_per_m.into())?;
         let load = Load::new(&rig, input.payload_kg.into())?;
         let moment = load.moment(&direction);
         let plane = FreePlane::torsion_free(&direction);
         let kinematics = inverse_kinematics(rig.geometry(), &direction)?;
         let distribution = distribute(&kinematics.moment_map, &plane, &moment, &bounds)?;
-        let level = input.level_n.into();
+        let pretension = input.pretension_n.into();
         let states = TendonStates::new(
-            distribution.tensions(level),
+            distribution.tensions(pretension),
             SVector::repeat(tendon.stiffness_n_per_m()),
         )?;
         let start =
@@ -64,10 +63,10 @@ impl<T: Scalar> Bench<T> {
             load,
             moment,
             bounds,
-            level,
+            pretension,
             support: SupportKind::TorsionFree.into(),
             tendons: [tendon; 3],
-            curves: [curve(level, tendon.stiffness_n_per_m())?; 3],
+            curves: [curve(pretension, tendon.stiffness_n_per_m())?; 3],
             demand: input.demand_nm_per_rad.into(),
             kinematics,
             distribution,
@@ -78,10 +77,10 @@ impl<T: Scalar> Bench<T> {
     }
 }
 
-/// The paper's tendon, scaled to a stiffness (N/m) at a level (N).
-fn curve<T: Scalar>(level: T, stiffness: T) -> Result<TendonCurve<T>, Error> {
+/// The paper's tendon, scaled to a stiffness (N/m) at a pretension (N).
+fn curve<T: Scalar>(pretension: T, stiffness: T) -> Result<TendonCurve<T>, Error> {
     let points = CurvePoint::<f32>::PAPER;
     let softening =
-        TendonCurve::new(&points.map(|point| widened(&point)))?.stiffness(level)? / stiffness;
+        TendonCurve::new(&points.map(|point| widened(&point)))?.stiffness(pretension)? / stiffness;
     TendonCurve::new(&points.map(|point| widened(&point).scaled(softening, T::one())))
 }

@@ -77,11 +77,11 @@ impl Words {
     }
 }
 
-/// A source file's name without its folders, which would leave no room for what happened there.
+/// A source file's name without its directories, which would leave no room for what happened there.
 #[must_use]
 pub fn file_name(path: &str) -> &str {
-    let folder = |byte: u8| byte == b'/' || byte == b'\\';
-    match path.bytes().rposition(folder) {
+    let directory = |byte: u8| byte == b'/' || byte == b'\\';
+    match path.bytes().rposition(directory) {
         Some(end) => path.get(end + 1..).unwrap_or(path),
         None => path,
     }

@@ -61,7 +61,7 @@ pub struct AxisInput<T> {
     /// Its tension, N.
     pub tension_n: T,
     /// The highest tension that is allowed now, N.
-    pub ceiling_n: T,
+    pub f_max_n: T,
     /// The supply, V.
     pub supply_v: T,
     /// The tendon is not let out beyond this, m, whatever its load cell says.
@@ -86,7 +86,7 @@ impl<T: Scalar> Axis<T> {
             track_position: tracking.into(),
             // Critically damped.
             track_speed: T::from(0.25 * tracking * tracking / TICK_S),
-            per_band_n: T::from(1.0 / servo.ceiling_band_n),
+            per_band_n: T::from(1.0 / servo.f_max_band_n),
             tick_s: T::from(TICK_S),
             per_tick: T::from(1.0 / TICK_S),
         };
@@ -171,8 +171,8 @@ impl<T: Scalar> Axis<T> {
             self.step_m * gains.per_tick + gains.position * error
         };
         let wanted = within(wanted, gains.speed_max);
-        // The nearer to the ceiling, the slower the pull; above it the tendon is let out.
-        let room = (input.ceiling_n - input.tension_n) * gains.per_band_n;
+        // The nearer to the maximum tension, the slower the pull; above it the tendon is let out.
+        let room = (input.f_max_n - input.tension_n) * gains.per_band_n;
         let fastest = within(room, T::one()) * gains.speed_max;
         let wanted = least(wanted, fastest);
         let wanted = if input.pulled_m <= input.lowest_m {

@@ -18,12 +18,12 @@ pub struct Mechanism<T> {
     /// The tensions that targets may have.
     pub bounds: TensionBounds<T>,
     /// Lowest tension allowed, N.
-    pub floor_n: T,
+    pub f_min_n: T,
     /// Highest tension allowed, N.
-    pub ceiling_n: T,
+    pub f_max_n: T,
     /// The weights without a payload.
     pub leg: Load<T>,
-    /// Moment of a payload of 1 kg with the leg level, N·m/kg.
+    /// Moment of a payload of 1 kg with the leg pretension, N·m/kg.
     pub payload_lever: T,
 }
 
@@ -35,17 +35,14 @@ impl<T: Scalar> Mechanism<T> {
     pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
         let parameters: RigParameters<T, 3> = settings.rig.into();
         let rig = Rig::new(&parameters)?;
-        let (floor_n, ceiling_n) = (
-            T::from(settings.tension_floor_n),
-            T::from(settings.tension_ceiling_n),
-        );
+        let (f_min_n, f_max_n) = (T::from(settings.f_min_n), T::from(settings.f_max_n));
         Ok(Self {
             support: settings.support.support()?,
             tendons: settings.tendons.tendons()?,
-            // In the last newtons below the ceiling a motor is slowed down: no target leads there.
-            bounds: TensionBounds::new(floor_n, ceiling_n - settings.servo.ceiling_band_n.into())?,
-            floor_n,
-            ceiling_n,
+            // In the last newtons below the maximum tension a motor is slowed down: no target leads there.
+            bounds: TensionBounds::new(f_min_n, f_max_n - settings.servo.f_max_band_n.into())?,
+            f_min_n,
+            f_max_n,
             leg: Load::new(&rig, T::zero())?,
             payload_lever: parameters.gravity_m_per_s2 * rig.tip_m(),
             rig,

@@ -22,21 +22,21 @@ pub struct Target<T> {
     pub kinematics: Kinematics<T, 3>,
     /// The tensions that balance the load there.
     pub distribution: Distribution<T, 3>,
-    /// Level of pretension on its way to the one that is asked for, N.
-    pub level_n: T,
-    /// The tensions at that level, N.
+    /// Pretension on its way to the one that is asked for, N.
+    pub pretension_n: T,
+    /// The tensions at that pretension, N.
     pub tensions_n: [T; 3],
     /// The lengths without tension that give these tensions there, m.
     pub unstretched_m: [T; 3],
-    /// Whether the bounds on the tensions, or the limit of the trim, hold the level back.
+    /// Whether the bounds on the tensions, or the limit of the trim, hold the pretension back.
     pub limited: bool,
 }
 
 /// Computes targets, one after the other.
 #[derive(Clone, Copy, Debug)]
 pub struct Targets<T> {
-    level_n: T,
-    level_step_n: T,
+    pretension_n: T,
+    pretension_step_n: T,
     trim_n: T,
     trim_gain: T,
     trim_max_n: T,
@@ -55,18 +55,18 @@ pub struct Wish<T> {
     pub excess_nm: [T; 2],
     /// Whether the weights shall be held, or left out.
     pub compensated: bool,
-    /// Whether the tensions tell how the level is to be trimmed: not before every tendon pulls.
+    /// Whether the tensions tell how the pretension is to be trimmed: not before every tendon pulls.
     pub trimmed: bool,
-    /// The level of pretension, N.
-    pub level_n: T,
+    /// The pretension, N.
+    pub pretension_n: T,
 }
 
 impl<T: Scalar> Targets<T> {
-    /// At level zero.
+    /// At pretension zero.
     pub fn new(settings: &Settings) -> Self {
         Self {
-            level_n: T::zero(),
-            level_step_n: T::from(settings.motion.level_rate_n_per_s * CYCLE_S),
+            pretension_n: T::zero(),
+            pretension_step_n: T::from(settings.motion.pretension_rate_n_per_s * CYCLE_S),
             trim_n: T::zero(),
             trim_gain: T::from(CYCLE_S / settings.estimation.trim_time_s),
             trim_max_n: settings.estimation.trim_max_n.into(),
@@ -76,9 +76,9 @@ impl<T: Scalar> Targets<T> {
         }
     }
 
-    /// Starts from a level, N, with the load held or left out.
-    pub fn start(&mut self, level_n: T, compensated: bool) {
-        self.level_n = level_n;
+    /// Starts from a pretension, N, with the load held or left out.
+    pub fn start(&mut self, pretension_n: T, compensated: bool) {
+        self.pretension_n = pretension_n;
         self.trim_n = T::zero();
         self.share = if compensated { T::one() } else { T::zero() };
     }
@@ -92,7 +92,7 @@ impl<T: Scalar> Targets<T> {
     /// The next target; `measured_n` are the tensions now.
     ///
     /// # Errors
-    /// [`Error::Infeasible`] if no level keeps the bounds; what kinematics and distribution refuse; a tension beyond a
+    /// [`Error::Infeasible`] if no pretension keeps the bounds; what kinematics and distribution refuse; a tension beyond a
     /// tendon's curve.
     #[inline(always)]
     pub fn next(
@@ -116,8 +116,8 @@ impl<T: Scalar> Targets<T> {
         if !distribution.feasible() {
             return Err(Error::Infeasible);
         }
-        let limited = self.step_level(wish.level_n, &distribution);
-        let tensions = distribution.tensions(self.level_n);
+        let limited = self.step_pretension(wish.pretension_n, &distribution);
+        let tensions = distribution.tensions(self.pretension_n);
         if mechanism.support.twists() {
             let third = (kinematics.moment_map * tensions + moment).dot(&plane.normal());
             self.torsion.step(third);
@@ -127,7 +127,7 @@ impl<T: Scalar> Targets<T> {
         } else {
             T::zero()
         };
-        let stretched = distribution.tensions(self.level_n + trimmed);
+        let stretched = distribution.tensions(self.pretension_n + trimmed);
         let mut unstretched_m = [T::zero(); 3];
         let mut tensions_n = [T::zero(); 3];
         for (i, tendon) in mechanism.tendons.iter().enumerate() {
@@ -139,7 +139,7 @@ impl<T: Scalar> Targets<T> {
             torsion,
             kinematics,
             distribution,
-            level_n: self.level_n,
+            pretension_n: self.pretension_n,
             tensions_n,
             unstretched_m,
             limited: limited || (wish.trimmed && !(trimmed.abs() < self.trim_max_n)),
@@ -155,26 +155,26 @@ impl<T: Scalar> Targets<T> {
         share * share * (T::from(3.0) - T::TWO * share)
     }
 
-    /// Moves the level towards the wish, inside what the bounds allow; tells whether they hold it back.
+    /// Moves the pretension towards the wish, inside what the bounds allow; tells whether they hold it back.
     #[inline(always)]
-    fn step_level(&mut self, wish_n: T, distribution: &Distribution<T, 3>) -> bool {
-        let (lowest, highest) = (distribution.lowest_level, distribution.highest_level);
+    fn step_pretension(&mut self, wish_n: T, distribution: &Distribution<T, 3>) -> bool {
+        let (lowest, highest) = (distribution.pretension_min, distribution.pretension_max);
         let allowed = least(most(wish_n, lowest), highest);
-        let step = within(allowed - self.level_n, self.level_step_n);
-        // The pose may narrow the range faster than the level follows.
-        self.level_n = least(most(self.level_n + step, lowest), highest);
+        let step = within(allowed - self.pretension_n, self.pretension_step_n);
+        // The pose may narrow the range faster than the pretension follows.
+        self.pretension_n = least(most(self.pretension_n + step, lowest), highest);
         allowed != wish_n
     }
 
-    /// What is added to the level so that the measured one becomes it: for what the curves do not tell.
+    /// What is added to the pretension so that the measured one becomes it: for what the curves do not tell.
     #[inline(always)]
     fn trim(&mut self, distribution: &Distribution<T, 3>, measured_n: &[T; 3]) -> T {
         let mut measured = T::SUM_START;
         for (i, &tension) in measured_n.iter().enumerate() {
-            measured += distribution.per_level[i] * tension;
+            measured += distribution.per_pretension[i] * tension;
         }
-        // The squares of the tensions per level add up to three.
-        let error = self.level_n - measured * T::from(1.0 / 3.0);
+        // The squares of the tensions per pretension add up to three.
+        let error = self.pretension_n - measured * T::from(1.0 / 3.0);
         self.trim_n = within(self.trim_n + self.trim_gain * error, self.trim_max_n);
         self.trim_n
     }

@@ -123,7 +123,7 @@ fn identify() -> HostRequest {
 /// Settings that differ from those that a line begins with.
 fn others() -> Settings {
     let mut settings = Settings::for_table_1().unwrap();
-    settings.level_n += 1.0;
+    settings.pretension_n += 1.0;
     settings
 }
 

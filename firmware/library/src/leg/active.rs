@@ -8,7 +8,7 @@ use crate::supervisor::Event;
 use leg_model::{Error, Scalar};
 
 impl<T: Scalar> Leg<T> {
-    /// Follows the trajectory: estimate, level, target and plan in turn, one a tick.
+    /// Follows the trajectory: estimate, pretension, target and plan in turn, one a tick.
     #[inline(always)]
     pub(super) fn follow(&mut self, measured: &Measured<T>) -> Result<(), Error> {
         let Some(zero_m) = self.zero_m else {
@@ -16,7 +16,7 @@ impl<T: Scalar> Leg<T> {
         };
         match self.phase {
             0 => self.track(&zero_m, measured),
-            1 => self.choose_level(),
+            1 => self.choose_pretension(),
             2 => self.aim(&zero_m, measured),
             // A leg that is not taut yet does not set out.
             _ if self.slack.gone() => {
@@ -46,10 +46,10 @@ impl<T: Scalar> Leg<T> {
         };
         if !self.tensioned {
             self.slack.cycles = self.slack.cycles.saturating_add(1);
-            let floor_n = self.mechanism.floor_n;
+            let f_min_n = self.mechanism.f_min_n;
             let tensions_n = &measured.steady_tensions_n;
             self.tensioned =
-                self.slack.gone() && tensions_n.iter().all(|&tension| tension > floor_n);
+                self.slack.gone() && tensions_n.iter().all(|&tension| tension > f_min_n);
         }
         self.estimate(zero_m, measured, weighing)
     }
@@ -76,11 +76,12 @@ impl<T: Scalar> Leg<T> {
     }
 
     #[inline(never)]
-    fn choose_level(&mut self) -> Result<(), Error> {
+    fn choose_pretension(&mut self) -> Result<(), Error> {
         match &self.target {
-            Some(target) => self
-                .level
-                .step(&self.mechanism, target, self.estimator.payload_kg()),
+            Some(target) => {
+                self.pretension
+                    .step(&self.mechanism, target, self.estimator.payload_kg())
+            }
             None => Ok(()),
         }
     }
@@ -93,9 +94,9 @@ impl<T: Scalar> Leg<T> {
             excess_nm: self.estimator.excess_nm(),
             compensated: self.compensation != Compensation::Off,
             trimmed: self.compensation == Compensation::Estimated && self.tensioned,
-            // The level comes up when every tendon is as far from slack as every other.
-            level_n: if taut {
-                self.level.level_n()
+            // The pretension comes up when every tendon is as far from slack as every other.
+            pretension_n: if taut {
+                self.pretension.pretension_n()
             } else {
                 T::zero()
             },
@@ -177,8 +178,8 @@ impl<T: Scalar> Leg<T> {
         };
         let step = homing.step(&self.mechanism, &measured.pulled_m, &measured.tensions_n);
         if !homing.releases() {
-            self.ceiling_n = self.homing_ceiling_n;
-            let twice = self.homing_ceiling_n + self.homing_ceiling_n;
+            self.f_max_n = self.homing_f_max_n;
+            let twice = self.homing_f_max_n + self.homing_f_max_n;
             self.homing_failed = measured.tensions_n.iter().any(|&tension| tension > twice);
         }
         match step {

@@ -2,7 +2,7 @@
 
 use super::{Leg, Outcome};
 use crate::command::{Command, CommandRefusal};
-use crate::control::{LevelDemand, Measured};
+use crate::control::{Measured, PretensionDemand};
 use crate::supervisor::{Event, State};
 use leg_model::{BendingAxis, Direction, Scalar};
 
@@ -75,8 +75,9 @@ impl<T: Scalar> Leg<T> {
                 self.trajectory.stop();
                 Ok(())
             }
-            Command::Level(level_n) if level_n.is_finite() => {
-                self.level.demand(LevelDemand::Level(level_n.into()));
+            Command::Pretension(pretension_n) if pretension_n.is_finite() => {
+                self.pretension
+                    .demand(PretensionDemand::Pretension(pretension_n.into()));
                 Ok(())
             }
             Command::Stiffness {
@@ -90,11 +91,11 @@ impl<T: Scalar> Leg<T> {
                     None => BendingAxis::Softest,
                     Some(towards) => BendingAxis::Towards(towards.map(T::from)),
                 };
-                self.level
-                    .demand(LevelDemand::Stiffness(demand_nm_per_rad.into(), axis));
+                self.pretension
+                    .demand(PretensionDemand::Stiffness(demand_nm_per_rad.into(), axis));
                 Ok(())
             }
-            Command::Level(_) | Command::Stiffness { .. } => {
+            Command::Pretension(_) | Command::Stiffness { .. } => {
                 self.refused = true;
                 Err(CommandRefusal::Number)
             }

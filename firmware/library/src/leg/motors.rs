@@ -15,7 +15,7 @@ impl<T: Scalar> Leg<T> {
             axis.rest(pulled);
         }
         self.silence = 0;
-        self.ceiling_n = self.mechanism.ceiling_n;
+        self.f_max_n = self.mechanism.f_max_n;
         self.homing_failed = false;
         self.rest_m = measured.pulled_m;
         let travel_m = match state {
@@ -35,12 +35,12 @@ impl<T: Scalar> Leg<T> {
         }
     }
 
-    /// Follows commands from the present pose and level on.
+    /// Follows commands from the present pose and pretension on.
     fn begin_here(&mut self, measured: &Measured<T>) {
         let [a, b, c] = measured.tensions_n;
-        let level_n = (a + b + c) * T::from(1.0 / 3.0);
+        let pretension_n = (a + b + c) * T::from(1.0 / 3.0);
         let compensated = self.compensation != Compensation::Off;
-        self.targets.start(level_n, compensated);
+        self.targets.start(pretension_n, compensated);
         self.trajectory
             .start(self.estimator.direction().half_tangent());
         self.tensioned = false;
@@ -60,13 +60,13 @@ impl<T: Scalar> Leg<T> {
         }
     }
 
-    /// Pulls in any tendon that is below the floor, as far as that is allowed.
+    /// Pulls in any tendon that is below the minimum tension, as far as that is allowed.
     #[inline(never)]
-    pub(super) fn keep_floor(&mut self, measured: &Measured<T>) {
+    pub(super) fn keep_f_min(&mut self, measured: &Measured<T>) {
         let travel_m = self.hold_travel_m();
         self.lowest_m = self.rest_m.map(|rest| rest - travel_m);
         for (i, axis) in self.axes.iter_mut().enumerate() {
-            let low = measured.steady_tensions_n[i] < self.mechanism.floor_n;
+            let low = measured.steady_tensions_n[i] < self.mechanism.f_min_n;
             let room = measured.pulled_m[i] - self.rest_m[i] < travel_m;
             let goal = if low && room {
                 measured.pulled_m[i] + self.limits.hold_travel_m
@@ -124,7 +124,7 @@ impl<T: Scalar> Leg<T> {
             drive.duty[i] = axis.drive(&AxisInput {
                 pulled_m: measured.pulled_m[i],
                 tension_n: measured.tensions_n[i],
-                ceiling_n: self.ceiling_n,
+                f_max_n: self.f_max_n,
                 supply_v: measured.supply_v,
                 lowest_m: self.lowest_m[i],
             });

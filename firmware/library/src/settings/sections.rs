@@ -11,8 +11,8 @@ section! {
         acceleration_rad_per_s2: 0.01..=1e3 = 4.0;
         /// Greatest change of that, rad/s³: lower is smoother, and longer.
         jerk_rad_per_s3: 0.01..=1e5 = 100.0;
-        /// Fastest change of the level of pretension, N/s.
-        level_rate_n_per_s: 0.1..=1e4 = 120.0;
+        /// Fastest change of the pretension, N/s.
+        pretension_rate_n_per_s: 0.1..=1e4 = 120.0;
         /// Time in which the compensation of the load comes and goes, s.
         load_time_s: 1e-3..=60.0 = 0.6;
     }
@@ -45,8 +45,8 @@ section! {
         dead_band_m: 0.0..=1e-3 = 2e-7;
         /// Part of a new reading of the counter that the tracked speed takes up.
         tracking: 0.01..=1.0 = 0.3;
-        /// Below the ceiling by this much a tendon is pulled ever more slowly, N.
-        ceiling_band_n: 0.1..=1e3 = 4.0;
+        /// Below the maximum tension by this much a tendon is pulled ever more slowly, N.
+        f_max_band_n: 0.1..=1e3 = 4.0;
     }
 }
 
@@ -57,9 +57,9 @@ section! {
         tension_time_s: 1.25e-4..=1.0 = 4e-4;
         /// Time constant of each of the two filters of the load, s: faster ones meet the leg's own swing.
         load_time_s: 1e-3..=10.0 = 0.15;
-        /// Time in which the level of pretension is trimmed by the tensions, s.
+        /// Time in which the pretension is trimmed by the tensions, s.
         trim_time_s: 1e-3..=100.0 = 0.5;
-        /// Most that the level is trimmed, N.
+        /// Most that the pretension is trimmed, N.
         trim_max_n: 0.0..=1e3 = 20.0;
         /// Sine of the tilt from which the payload is told from the load; nearer to the vertical the last one stands.
         payload_sine: 0.01..=1.0 = 0.15;
@@ -73,7 +73,7 @@ section! {
         slack_n: 0.1..=1e3 = 2.0;
         /// It is a fault after this time, s.
         slack_time_s: 1.25e-4..=10.0 = 0.02;
-        /// Above the ceiling by this part, a tension is a fault.
+        /// Above the maximum tension by this part, a tension is a fault.
         over_tension_part: 0.0..=1.0 = 0.1;
         /// A change of a tension within a millisecond that is a fault, N.
         jump_n: 0.1..=1e4 = 25.0;
@@ -113,7 +113,7 @@ section! {
         ramp_m_per_s: 1e-5..=0.1 = 5e-3;
         /// Longest time from an arm until every tendon pulls, s.
         taut_time_s: 0.01..=60.0 = 5.0;
-        /// Farthest that a tendon is pulled in to keep the floor, or let out to keep the ceiling, while the leg is held, m.
+        /// Farthest that a tendon is pulled in to keep the minimum tension, or let out to keep the maximum tension, while the leg is held, m.
         hold_travel_m: 1e-6..=0.1 = 1e-3;
         /// Farthest that a tendon is let out when it has to be relaxed, m.
         relax_travel_m: 1e-6..=0.1 = 5e-3;
@@ -138,7 +138,7 @@ section! {
         /// Time in which tension and position are averaged, s.
         average_time_s: 1e-3..=60.0 = 0.7;
         /// Highest tension while homing, N.
-        ceiling_n: 0.1..=1e3 = 15.0;
+        f_max_n: 0.1..=1e3 = 15.0;
         /// Farthest that a tendon is let out until it is slack, and then taken up, m.
         travel_m: 1e-4..=1.0 = 0.05;
     }

@@ -78,9 +78,9 @@ fn small(number: usize) -> Settings {
             joint,
         },
         tendons: TendonsMessage::Alike(TendonMessage::Constant(5e4)),
-        tension_floor_n: 5.0,
-        tension_ceiling_n: 100.0,
-        level_n: 10.0 + 0.1 * number as f32,
+        f_min_n: 5.0,
+        f_max_n: 100.0,
+        pretension_n: 10.0 + 0.1 * number as f32,
         tilt_max_sine: 0.4,
         axes: [axis; 3],
         board: BoardCalibration {

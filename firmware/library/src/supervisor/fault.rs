@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub enum Reaction {
     /// The leg goes on with what is possible.
     Limit,
-    /// The leg stays where it is, its tendons kept above the floor.
+    /// The leg stays where it is, its tendons kept above the minimum tension.
     Hold,
     /// The tendons are let out until they barely pull, then the drivers are switched off.
     RampDown,

@@ -16,7 +16,7 @@ pub enum State {
     Homing,
     /// Commands are followed.
     Active,
-    /// The leg stays where it is, its tendons kept above the floor.
+    /// The leg stays where it is, its tendons kept above the minimum tension.
     Held,
     /// The tendons are let out until they barely pull.
     RampingDown,

@@ -12,19 +12,19 @@ pub struct FaultEntry {
     /// What raises it, with the setting that decides.
     pub cause: &'static str,
     /// What to do about it.
-    pub cure: &'static str,
+    pub remedy: &'static str,
 }
 
 macro_rules! table {
-    ($($fault:ident: $name:literal, $cause:literal, $cure:literal;)*) => {
-        [$(FaultEntry { fault: Fault::$fault, name: $name, cause: $cause, cure: $cure },)*]
+    ($($fault:ident: $name:literal, $cause:literal, $remedy:literal;)*) => {
+        [$(FaultEntry { fault: Fault::$fault, name: $name, cause: $cause, remedy: $remedy },)*]
     };
 }
 
 /// Every fault, in the order of the codes.
 pub const TABLE: [FaultEntry; Fault::ALL.len()] = table! {
     Slack: "slack tendon", "a tension stays below slack_n for slack_time_s, or does not come up within taut_time_s after an arm", "look whether the tendon is cut or off its anchor";
-    OverTension: "too much tension", "a tension is above the ceiling by over_tension_part", "look what pulls at the leg; check the load cell";
+    OverTension: "too much tension", "a tension is above the maximum tension by over_tension_part", "look what pulls at the leg; check the load cell";
     TensionJump: "jump of a tension", "a tension changes by jump_n within a millisecond", "look for a cut or slipped tendon";
     Residual: "sensors disagree on the pose", "forward kinematics leaves over more than residual_m for residual_time_s", "home the leg; check the encoders, the load cells and the tendon curves";
     CellStale: "stale load cell", "a load cell gives no fresh code for stale_time_s", "check its converter and wiring";
@@ -35,8 +35,8 @@ pub const TABLE: [FaultEntry; Fault::ALL.len()] = table! {
     EncoderStill: "motor does not turn", "a motor is driven with driven_part of its current and counts nothing for still_time_s", "check the encoder's wiring; look for a jam";
     EncoderReversed: "motor turns the wrong way", "a motor counts against its voltage for reversed_time_s", "swap the motor's wires or the sign of m_per_count";
     PoseLost: "pose is lost", "forward kinematics or a tendon's curve gives no result", "home the leg; check the tensions";
-    Infeasible: "target out of reach", "no level of pretension holds the target within the bounds, or a move leads beyond the workspace", "give another pose or a smaller payload";
-    Unreachable: "stiffness out of reach", "the bounds on the tensions stop the level short of the demand, or the trim is at trim_max_n", "demand something nearer to what was reached; check load cells and tendon curves";
+    Infeasible: "target out of reach", "no pretension holds the target within the bounds, or a move leads beyond the workspace", "give another pose or a smaller payload";
+    Unreachable: "stiffness out of reach", "the bounds on the tensions stop the pretension short of the demand, or the trim is at trim_max_n", "demand something nearer to what was reached; check load cells and tendon curves";
     OverCurrent: "too much current", "a motor draws more than current_a for 2 ms", "look for a short circuit, or a current sensor without power";
     OverTemperature: "too hot", "the drivers are above temperature_c", "let them cool";
     SupplyLow: "supply too low", "the supply is below supply_min_v", "check supply and battery";
@@ -68,7 +68,7 @@ mod tests {
         for (fault, row) in Fault::ALL.into_iter().zip(TABLE) {
             assert_eq!(row.fault, fault);
             assert_eq!(*fault.entry(), row);
-            assert!(!row.name.is_empty() && !row.cause.is_empty() && !row.cure.is_empty());
+            assert!(!row.name.is_empty() && !row.cause.is_empty() && !row.remedy.is_empty());
         }
     }
 }

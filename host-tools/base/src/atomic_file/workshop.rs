@@ -5,23 +5,23 @@ use std::io;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-/// Where several files of one folder are made before all of them are moved into it.
+/// Where several files of one directory are made before all of them are moved into it.
 #[derive(Debug)]
 pub struct Workshop {
-    folder: PathBuf,
+    directory: PathBuf,
     made: TempDir,
 }
 
 impl Workshop {
-    /// For the files of a folder, which is made if it is not there.
+    /// For the files of a directory, which is made if it is not there.
     ///
     /// # Errors
     /// The system's.
-    pub fn beside(folder: &Path) -> io::Result<Self> {
-        std::fs::create_dir_all(folder)?;
+    pub fn beside(directory: &Path) -> io::Result<Self> {
+        std::fs::create_dir_all(directory)?;
         Ok(Self {
-            folder: folder.into(),
-            made: workshop_in(folder)?,
+            directory: directory.into(),
+            made: workshop_in(directory)?,
         })
     }
 
@@ -31,15 +31,15 @@ impl Workshop {
         self.made.path()
     }
 
-    /// Whether every file that was made can be moved into the folder.
+    /// Whether every file that was made can be moved into the directory.
     ///
     /// # Errors
-    /// A folder is where a file has to go.
+    /// A directory is where a file has to go.
     pub fn check(&self) -> io::Result<()> {
         self.moves().map(drop)
     }
 
-    /// Moves the files into the folder: all, or none if one of them cannot be.
+    /// Moves the files into the directory: all, or none if one of them cannot be.
     ///
     /// # Errors
     /// As [`Self::check`], or the system's.
@@ -54,9 +54,9 @@ impl Workshop {
         let mut moves = Vec::new();
         for entry in std::fs::read_dir(self.made.path())? {
             let entry = entry?;
-            let to = self.folder.join(entry.file_name());
+            let to = self.directory.join(entry.file_name());
             if to.is_dir() {
-                let taken = format!("{} is a folder", to.display());
+                let taken = format!("{} is a directory", to.display());
                 return Err(io::Error::new(io::ErrorKind::IsADirectory, taken));
             }
             moves.push((entry.path(), to));
@@ -72,20 +72,20 @@ mod tests {
 
     #[test]
     fn several_files_are_delivered_together_or_not_at_all() {
-        let folder = tempfile::tempdir().unwrap();
+        let directory = tempfile::tempdir().unwrap();
         let made = || {
-            let workshop = Workshop::beside(folder.path()).unwrap();
+            let workshop = Workshop::beside(directory.path()).unwrap();
             for name in ["a.svg", "b.svg", "c.svg"] {
                 std::fs::write(workshop.path().join(name), "new").unwrap();
             }
             workshop
         };
-        std::fs::create_dir(folder.path().join("b.svg")).unwrap();
+        std::fs::create_dir(directory.path().join("b.svg")).unwrap();
         assert!(made().check().is_err());
         assert!(made().deliver().is_err());
-        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
-        std::fs::remove_dir(folder.path().join("b.svg")).unwrap();
+        assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 1);
+        std::fs::remove_dir(directory.path().join("b.svg")).unwrap();
         made().deliver().unwrap();
-        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
+        assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 3);
     }
 }

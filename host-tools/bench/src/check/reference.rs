@@ -22,7 +22,7 @@ pub(super) fn flatten<T: Copy + Into<f64>>(evaluation: &Evaluation<T>) -> Vec<f6
     let e = evaluation;
     let commanded = e.commanded.iter();
     let commanded: Vec<T> = commanded
-        .flat_map(|c| [c.level_n, c.stiffness_nm_per_rad])
+        .flat_map(|c| [c.pretension_n, c.stiffness_nm_per_rad])
         .collect();
     let numbers = [
         &e.lengths_m[..],
@@ -32,7 +32,7 @@ pub(super) fn flatten<T: Copy + Into<f64>>(evaluation: &Evaluation<T>) -> Vec<f6
         &e.joint_moment_nm,
         &e.tensions_n,
         &e.tensions_min_n,
-        &e.level_range_n,
+        &e.pretension_range_n,
         e.stiffness_nm_per_rad.as_flattened(),
         e.stiffness_joint_nm_per_rad.as_flattened(),
         e.stiffness_k2_exact_nm_per_rad.as_flattened(),

@@ -105,7 +105,7 @@ pub fn random(count: usize, seed: u64) -> Vec<State> {
 fn feasible(rng: &mut Rng, support: SupportMessage, stretch: Stretch) -> State {
     loop {
         let drawn = draw(rng, support, stretch);
-        if let Some(state) = at_feasible_level(rng, drawn) {
+        if let Some(state) = at_feasible_pretension(rng, drawn) {
             return state;
         }
     }
@@ -131,19 +131,21 @@ fn draw(rng: &mut Rng, support: SupportMessage, stretch: Stretch) -> State {
     }
 }
 
-/// The state at a random level that keeps the bounds on the tensions, if there is one.
-fn at_feasible_level(rng: &mut Rng, mut state: State) -> Option<State> {
+/// The state at a random pretension that keeps the bounds on the tensions, if there is one.
+fn at_feasible_pretension(rng: &mut Rng, mut state: State) -> Option<State> {
     let without_torsion = Query {
         support: SupportKind::TorsionFree.into(),
         ..state.query().ok()?
     };
-    let [lowest, highest] = evaluate(&state.rig(), &without_torsion).ok()?.level_range_n;
-    state.input.level_n = to_f32(lowest + rng.f64() * (highest - lowest));
+    let [lowest, highest] = evaluate(&state.rig(), &without_torsion)
+        .ok()?
+        .pretension_range_n;
+    state.input.pretension_n = to_f32(lowest + rng.f64() * (highest - lowest));
     // The twist of the other supports shifts the range.
     let tensions = evaluate(&state.rig(), &state.query().ok()?)
         .ok()?
         .tensions_n;
-    let bounds = f64::from(state.input.tension_floor_n)..=f64::from(state.input.tension_ceiling_n);
+    let bounds = f64::from(state.input.f_min_n)..=f64::from(state.input.f_max_n);
     let keeps_bounds = lowest <= highest && tensions.iter().all(|tension| bounds.contains(tension));
     keeps_bounds.then_some(state)
 }
@@ -161,9 +163,9 @@ fn input(azimuth_deg: f32, tilt_deg: f32, start_azimuth_rad: f32) -> KernelInput
         start_tilt_rad: start_x.hypot(start_y).to_radians(),
         length_errors_m: [0.0; 3],
         payload_kg: 0.0,
-        level_n: 70.0,
-        tension_floor_n: 8.0,
-        tension_ceiling_n: 150.0,
+        pretension_n: 70.0,
+        f_min_n: 8.0,
+        f_max_n: 150.0,
         stiffness_n_per_m: 99_450.0,
         demand_nm_per_rad: 100.0,
     }

@@ -18,7 +18,7 @@ pub struct State {
     pub support: SupportMessage,
     /// How the tendons stretch.
     pub stretch: Stretch,
-    /// Whether the evaluation has to find a level for the demanded stiffness: there has to be one that is allowed.
+    /// Whether the evaluation has to find a pretension for the demanded stiffness: there has to be one that is allowed.
     pub demanded: bool,
 }
 
@@ -28,7 +28,7 @@ pub struct State {
 pub enum Stretch {
     /// With the state's stiffness at every tension.
     Constant,
-    /// Along the paper's curve, scaled to have the state's stiffness at its level; read at the pretension.
+    /// Along the paper's curve, scaled to have the state's stiffness at its pretension; read at the pretension.
     Curve,
     /// The same, read at each tendon's tension.
     CurveAtTension,
@@ -43,8 +43,8 @@ pub struct Pose {
     pub tilt_deg: f64,
     /// Payload, kg.
     pub payload_kg: f64,
-    /// Level of pretension, N.
-    pub level_n: f64,
+    /// Pretension, N.
+    pub pretension_n: f64,
     /// Stiffness of each tendon, N/m.
     pub stiffness_n_per_m: f64,
     /// How the central support guides the leg.
@@ -62,7 +62,7 @@ impl State {
             azimuth_deg: f64::from(input.azimuth_rad).to_degrees(),
             tilt_deg: f64::from(input.tilt_rad).to_degrees(),
             payload_kg: input.payload_kg.into(),
-            level_n: input.level_n.into(),
+            pretension_n: input.pretension_n.into(),
             stiffness_n_per_m: input.stiffness_n_per_m.into(),
             support: self.support.kind,
             stretch: self.stretch,
@@ -72,16 +72,16 @@ impl State {
     /// What a whole evaluation gets.
     ///
     /// # Errors
-    /// A level beyond the curve.
+    /// A pretension beyond the curve.
     pub fn message(&self) -> Result<QueryMessage, Error> {
         let input = &self.input;
         Ok(QueryMessage {
             azimuth_rad: input.azimuth_rad,
             tilt_rad: input.tilt_rad,
             payload_kg: input.payload_kg,
-            level_n: input.level_n,
-            tension_floor_n: input.tension_floor_n,
-            tension_ceiling_n: input.tension_ceiling_n,
+            pretension_n: input.pretension_n,
+            f_min_n: input.f_min_n,
+            f_max_n: input.f_max_n,
             tendons: TendonsMessage::Alike(self.tendon()?),
             stiffness_at: match self.stretch {
                 Stretch::CurveAtTension => StiffnessAt::Tension,
@@ -98,7 +98,7 @@ impl State {
     /// The same in f64.
     ///
     /// # Errors
-    /// A level beyond the curve.
+    /// A pretension beyond the curve.
     pub fn query(&self) -> Result<Query<f64>, Error> {
         self.message()?.query()
     }
@@ -113,12 +113,12 @@ impl State {
     }
 
     fn tendon(&self) -> Result<TendonMessage, Error> {
-        let (level, stiffness) = (self.input.level_n, self.input.stiffness_n_per_m);
+        let (pretension, stiffness) = (self.input.pretension_n, self.input.stiffness_n_per_m);
         if self.stretch == Stretch::Constant {
             return Ok(TendonMessage::Constant(stiffness));
         }
         let points = CurvePoint::<f32>::PAPER;
-        let softening = TendonCurve::new(&points)?.stiffness(level)? / stiffness;
+        let softening = TendonCurve::new(&points)?.stiffness(pretension)? / stiffness;
         let scaled = points.iter().map(|point| point.scaled(softening, 1.0));
         Ok(TendonMessage::Curve(scaled.collect()))
     }
@@ -157,7 +157,7 @@ impl fmt::Display for Pose {
             self.azimuth_deg,
             self.tilt_deg,
             self.payload_kg,
-            self.level_n,
+            self.pretension_n,
             self.stiffness_n_per_m,
             self.stretch.words(),
             support_words(self.support),

@@ -18,7 +18,7 @@ pub(super) fn tilts_deg() -> impl Iterator<Item = f64> + Clone {
     (-15..=15).map(|step| 2.0 * f64::from(step))
 }
 
-/// The rig's pose on tendons of the constant stiffness that they have at the level: what the paper's theory and a
+/// The rig's pose on tendons of the constant stiffness that they have at the pretension: what the paper's theory and a
 /// simulation with springs share.
 pub(super) fn constant(
     rig: &RigFile,
@@ -27,7 +27,7 @@ pub(super) fn constant(
     payload_kg: f64,
 ) -> Result<Query<f64>, Error> {
     let [tendon, ..] = &rig.tendons;
-    let constant = Tendon::constant(tendon.stiffness(rig.level_n)?)?;
+    let constant = Tendon::constant(tendon.stiffness(rig.pretension_n)?)?;
     Ok(Query {
         tendons: [constant; 3],
         ..rig.query(azimuth_deg, tilt_deg, payload_kg)
@@ -97,7 +97,7 @@ fn maxima(rig: &RigFile, stiffness_at: StiffnessAt) -> Result<Vec<Row>, Error> {
             StiffnessAt::Pretension => (
                 "",
                 Verdict::Agrees,
-                "the stiffness at the level was fitted to these four rows, one number for all: they prove the proportions, not the size",
+                "the stiffness at the pretension was fitted to these four rows, one number for all: they prove the proportions, not the size",
             ),
             StiffnessAt::Tension => (
                 ", stiffness at each tendon's tension",

@@ -27,11 +27,11 @@ impl From<Error> for FigureError {
     }
 }
 
-/// Draws every figure into a folder, as SVG and PNG, and names the SVG files with their captions.
+/// Draws every figure into a directory, as SVG and PNG, and names the SVG files with their captions.
 ///
 /// # Errors
 /// A [`FigureError`].
-pub fn draw(folder: &Path) -> Result<Vec<(PathBuf, &'static str)>, FigureError> {
+pub fn draw(directory: &Path) -> Result<Vec<(PathBuf, &'static str)>, FigureError> {
     let rig = RigFile::load(None).map_err(PaperError::from)?;
     let mut figures = Vec::new();
     let charts = [
@@ -57,7 +57,7 @@ pub fn draw(folder: &Path) -> Result<Vec<(PathBuf, &'static str)>, FigureError> 
         ),
     ];
     for (name, chart, caption) in charts {
-        figures.push((plot::save_both(&chart, &folder.join(name))?, caption));
+        figures.push((plot::save_both(&chart, &directory.join(name))?, caption));
     }
     let map = workspace_field(&rig)?;
     for (name, layout, caption) in [
@@ -72,7 +72,10 @@ pub fn draw(folder: &Path) -> Result<Vec<(PathBuf, &'static str)>, FigureError> 
             "Fig. 10 b: the same over azimuth and tilt",
         ),
     ] {
-        figures.push((field::save_both(&map, layout, &folder.join(name))?, caption));
+        figures.push((
+            field::save_both(&map, layout, &directory.join(name))?,
+            caption,
+        ));
     }
     Ok(figures)
 }

@@ -9,7 +9,7 @@ const INTRODUCTION: &str = "\
 
 Ma, Yu, Dong, Axinte, \"Design and stiffness analysis of a class of 2-DoF tendon driven parallel kinematics mechanism\".
 Every number in the columns \"ours\" and \"difference\" was computed when this report was written, on the rig of Table 1
-with the leg's mass from the note in Fig. 9, at a level of 70 N.
+with the leg's mass from the note in Fig. 9, at a pretension of 70 N.
 
 ";
 
@@ -22,7 +22,7 @@ what is printed: the default curve's choice is stated in its rig file.
 
 ";
 
-/// The whole report; figures are named relative to its folder.
+/// The whole report; figures are named relative to its directory.
 #[must_use]
 pub fn markdown(paper: &Paper, figures: &[(PathBuf, &'static str)]) -> String {
     let topics = Topic::ALL.map(|topic| table(topic, paper));

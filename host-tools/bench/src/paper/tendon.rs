@@ -54,7 +54,7 @@ pub(super) fn rows(rig: &RigFile) -> Result<Vec<Row>, Error> {
             lowest.0,
             "N",
             0.5,
-            "the default curve turns there; beyond it, the stiffness at the level is fixed by Fig. 9 and the slope \
+            "the default curve turns there; beyond it, the stiffness at the pretension is fixed by Fig. 9 and the slope \
              between is a choice",
         ),
     ])

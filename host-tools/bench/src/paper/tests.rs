@@ -91,8 +91,8 @@ fn every_erratum_has_two_numbers_that_differ() {
 
 #[test]
 fn the_report_names_every_row_and_every_picture() {
-    let folder = tempfile::tempdir().unwrap();
-    let figures = draw(folder.path()).unwrap();
+    let directory = tempfile::tempdir().unwrap();
+    let figures = draw(directory.path()).unwrap();
     assert_eq!(figures.len(), 6);
     let paper = Paper::compute().unwrap();
     let report = markdown(&paper, &figures);

@@ -13,7 +13,7 @@ const PRETENSION: Part = (Some(Quantity::PretensionDirection), 3);
 const LOAD_MOMENT: Part = (Some(Quantity::LoadMoment), 3);
 const LOAD_ESTIMATE: Part = (Some(Quantity::LoadEstimate), 3);
 const TENSIONS: Part = (Some(Quantity::Tensions), 3);
-const LEVEL_RANGE: Part = (Some(Quantity::LevelRange), 2);
+const PRETENSION_RANGE: Part = (Some(Quantity::PretensionRange), 2);
 const MATRIX: Part = (Some(Quantity::Stiffness), 9);
 const SYMMETRIC: Part = (Some(Quantity::Stiffness), 6);
 const K2_EXACT: Part = (Some(Quantity::K2Exact), 9);
@@ -43,7 +43,7 @@ pub const fn of_evaluation(support: SupportKind) -> [Part; 19] {
         (Some(Quantity::JointMoment), 3),
         TENSIONS,
         TENSIONS,
-        LEVEL_RANGE,
+        PRETENSION_RANGE,
         MATRIX,
         (Some(Quantity::JointStiffness), 9),
         K2_EXACT,
@@ -54,7 +54,7 @@ pub const fn of_evaluation(support: SupportKind) -> [Part; 19] {
         (Some(deviation), 2),
         UNSTRETCHED,
         (Some(torsion), 1),
-        (Some(Quantity::CommandedLevel), 1),
+        (Some(Quantity::CommandedPretension), 1),
         (Some(Quantity::CommandedStiffness), 1),
     ]
 }
@@ -70,7 +70,7 @@ pub const fn of_kernel(kernel: Kernel) -> &'static [Part] {
         Kernel::ForwardKinematics | Kernel::ForwardKinematicsUniversal => {
             &[DIRECTION, RESIDUAL, STEPS]
         }
-        Kernel::Distribution => &[TENSIONS, PRETENSION, LEVEL_RANGE, TENSIONS],
+        Kernel::Distribution => &[TENSIONS, PRETENSION, PRETENSION_RANGE, TENSIONS],
         Kernel::FullPass => &[
             LENGTHS,
             MOMENT_MAP,
@@ -91,7 +91,7 @@ pub const fn of_kernel(kernel: Kernel) -> &'static [Part] {
         ],
         Kernel::InverseStatics => &[TENSIONS, UNSTRETCHED],
         Kernel::StiffnessCommand => &[
-            (Some(Quantity::CommandedLevel), 1),
+            (Some(Quantity::CommandedPretension), 1),
             (Some(Quantity::CommandedStiffness), 1),
             // Two bounds may meet within rounding, and either names one.
             (None, 1),

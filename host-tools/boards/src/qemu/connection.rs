@@ -16,7 +16,7 @@ use tempfile::TempDir;
 /// Time that QEMU may take to end once its side of the link is closed.
 const END_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// A session before its greeting. The order of the fields is that of the end: first the process, then the folder.
+/// A session before its greeting. The order of the fields is that of the end: first the process, then the directory.
 #[derive(Debug)]
 pub struct Connection {
     to_firmware: ToFirmware,
@@ -36,21 +36,21 @@ impl Connection {
     /// As [`super::Session::open`].
     pub fn open(config: &Config) -> Result<Self, LinkError> {
         let table = log::table(&config.image)?;
-        let folder = tempfile::Builder::new()
+        let directory = tempfile::Builder::new()
             .prefix("leg-qemu-")
             .tempdir()
-            .map_err(LinkError::system("make a folder for the link"))?;
-        let from_firmware = pipes::create(folder.path())?;
-        let mut process = Process::start(config, folder.path())?;
+            .map_err(LinkError::system("make a directory for the link"))?;
+        let from_firmware = pipes::create(directory.path())?;
+        let mut process = Process::start(config, directory.path())?;
         let (stdout, stderr) = process.outputs()?;
         let mut log = Log::collect(table, stdout, stderr, config.verbose);
-        let to_firmware = meet(&mut process, &mut log, &folder, config.timeout)?;
+        let to_firmware = meet(&mut process, &mut log, &directory, config.timeout)?;
         Ok(Self {
             to_firmware,
             from_firmware,
             process,
             log,
-            _folder: folder,
+            _folder: directory,
             decoder: Decoder::new(),
             sequence: Sequence::new(),
             timeout: config.timeout,
@@ -150,12 +150,12 @@ impl Link for Connection {
 fn meet(
     process: &mut Process,
     log: &mut Log,
-    folder: &TempDir,
+    directory: &TempDir,
     timeout: Duration,
 ) -> Result<ToFirmware, LinkError> {
     let deadline = Instant::now() + timeout;
     loop {
-        if let Some(pipe) = ToFirmware::open(folder.path())? {
+        if let Some(pipe) = ToFirmware::open(directory.path())? {
             return Ok(pipe);
         }
         if let Some(status) = process.ended()? {

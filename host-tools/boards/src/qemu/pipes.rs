@@ -31,17 +31,17 @@ pub struct FromFirmware(OwnedFd);
 #[derive(Debug)]
 pub struct ToFirmware(OwnedFd);
 
-/// Makes both pipes in the folder and opens the one that the firmware opens first.
+/// Makes both pipes in the directory and opens the one that the firmware opens first.
 ///
 /// # Errors
 /// [`LinkError::System`].
-pub fn create(folder: &Path) -> Result<FromFirmware, LinkError> {
+pub fn create(directory: &Path) -> Result<FromFirmware, LinkError> {
     for name in [TO_HOST, TO_FIRMWARE] {
-        mkfifoat(CWD, path(folder, name), Mode::RUSR | Mode::WUSR)
+        mkfifoat(CWD, path(directory, name), Mode::RUSR | Mode::WUSR)
             .map_err(io::Error::from)
             .map_err(LinkError::system("make a named pipe"))?;
     }
-    open_now(folder, TO_HOST, OFlags::RDONLY)
+    open_now(directory, TO_HOST, OFlags::RDONLY)
         .map(FromFirmware)
         .map_err(io::Error::from)
         .map_err(LinkError::system("open a named pipe"))
@@ -52,8 +52,8 @@ impl ToFirmware {
     ///
     /// # Errors
     /// [`LinkError::System`].
-    pub fn open(folder: &Path) -> Result<Option<Self>, LinkError> {
-        match open_now(folder, TO_FIRMWARE, OFlags::WRONLY) {
+    pub fn open(directory: &Path) -> Result<Option<Self>, LinkError> {
+        match open_now(directory, TO_FIRMWARE, OFlags::WRONLY) {
             Ok(pipe) => Ok(Some(Self(pipe))),
             Err(Errno::NXIO) => Ok(None),
             Err(error) => Err(LinkError::system("open a named pipe")(error.into())),
@@ -85,14 +85,14 @@ impl FromFirmware {
     }
 }
 
-fn path(folder: &Path, name: &CStr) -> PathBuf {
-    folder.join(OsStr::from_bytes(name.to_bytes()))
+fn path(directory: &Path, name: &CStr) -> PathBuf {
+    directory.join(OsStr::from_bytes(name.to_bytes()))
 }
 
 /// Opens a pipe without waiting for the other side, and keeps it from the emulators that this process starts.
-fn open_now(folder: &Path, name: &CStr, mode: OFlags) -> Result<OwnedFd, Errno> {
+fn open_now(directory: &Path, name: &CStr, mode: OFlags) -> Result<OwnedFd, Errno> {
     let flags = mode | OFlags::NONBLOCK | OFlags::CLOEXEC;
-    open(path(folder, name), flags, Mode::empty())
+    open(path(directory, name), flags, Mode::empty())
 }
 
 /// Moves bytes as soon as the pipe is ready.

@@ -18,11 +18,11 @@ pub const LOOK_AGAIN: Duration = Duration::from_millis(1);
 pub struct Process(Child);
 
 impl Process {
-    /// Starts QEMU in `folder`, with its outputs captured.
+    /// Starts QEMU in `directory`, with its outputs captured.
     ///
     /// # Errors
     /// [`LinkError::QemuNotStarted`].
-    pub fn start(config: &Config, folder: &Path) -> Result<Self, LinkError> {
+    pub fn start(config: &Config, directory: &Path) -> Result<Self, LinkError> {
         let child = Command::new(&config.qemu)
             .args(["-M", "mps2-an386"])
             .args(["-semihosting-config", "enable=on,target=native"])
@@ -30,7 +30,7 @@ impl Process {
             .args(["-icount", config.clock.icount()])
             .arg("-kernel")
             .arg(&config.image)
-            .current_dir(folder)
+            .current_dir(directory)
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())

@@ -22,9 +22,9 @@ END
 chmod +x apt-get sudo
 "#;
 
-fn only_in(folder: impl Into<OsString>) -> Programs {
+fn only_in(directory: impl Into<OsString>) -> Programs {
     Programs {
-        path: Some(folder.into()),
+        path: Some(directory.into()),
         named_qemu: None,
     }
 }
@@ -36,11 +36,11 @@ fn ensure_qemu(programs: &Programs) -> (Vec<String>, Result<OsString, SetupError
     (reports, outcome.map(OsString::from))
 }
 
-fn run_shell(folder: &Path, script: &str) -> io::Result<()> {
+fn run_shell(directory: &Path, script: &str) -> io::Result<()> {
     // Written by a child: a script that this process still had open for writing could not be run.
     let status = Command::new("sh")
         .args(["-ec", script])
-        .current_dir(folder)
+        .current_dir(directory)
         .status()?;
     assert!(status.success());
     Ok(())
@@ -70,15 +70,15 @@ fn a_missing_qemu_is_named_with_what_installs_it() {
 
 #[test]
 fn a_missing_qemu_is_installed_where_apt_get_may_be_used() -> io::Result<()> {
-    let folder = tempfile::tempdir()?;
-    run_shell(folder.path(), FAKE_PROGRAMS)?;
-    let programs = only_in(folder.path());
+    let directory = tempfile::tempdir()?;
+    run_shell(directory.path(), FAKE_PROGRAMS)?;
+    let programs = only_in(directory.path());
     let (reports, outcome) = ensure_qemu(&programs);
     assert_eq!(reports, ["installing qemu-system-arm by apt-get"]);
-    let qemu = folder.path().join("qemu-system-arm");
+    let qemu = directory.path().join("qemu-system-arm");
     assert_eq!(outcome.ok(), Some(qemu.clone().into()));
     assert_eq!(
-        std::fs::read_to_string(folder.path().join("calls"))?,
+        std::fs::read_to_string(directory.path().join("calls"))?,
         "noninteractive -o DPkg::Lock::Timeout=300 update\n\
          noninteractive -o DPkg::Lock::Timeout=300 install -y --no-install-recommends qemu-system-arm\n"
     );
@@ -90,12 +90,12 @@ fn a_missing_qemu_is_installed_where_apt_get_may_be_used() -> io::Result<()> {
 
 #[test]
 fn a_failing_apt_get_is_quoted() -> io::Result<()> {
-    let folder = tempfile::tempdir()?;
+    let directory = tempfile::tempdir()?;
     let failing =
         "printf '#!/bin/sh\\necho no network >&2; exit 100\\n' > apt-get; chmod +x apt-get";
-    run_shell(folder.path(), FAKE_PROGRAMS)?;
-    run_shell(folder.path(), failing)?;
-    let (_, outcome) = ensure_qemu(&only_in(folder.path()));
+    run_shell(directory.path(), FAKE_PROGRAMS)?;
+    run_shell(directory.path(), failing)?;
+    let (_, outcome) = ensure_qemu(&only_in(directory.path()));
     let text = outcome.map_or_else(|error| error.to_string(), |_| String::new());
     assert!(
         text.contains("apt-get -o DPkg::Lock::Timeout=300 update` failed"),

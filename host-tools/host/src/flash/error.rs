@@ -84,7 +84,7 @@ impl FlashError {
 
     /// What to do about it.
     #[must_use]
-    pub fn cure(&self) -> String {
+    pub fn remedy(&self) -> String {
         match self {
             Self::NoProgram(_) => {
                 return format!(

@@ -3,10 +3,10 @@
 use ratatui::style::{Color, Style};
 use ratatui::text::Span;
 
-/// How far beyond the ceiling a bar reaches, as a part of it.
+/// How far beyond the maximum tension a bar reaches, as a part of it.
 const BEYOND: f32 = 1.1;
 
-/// Distance from a bound at which a bar warns, as a part of the ceiling.
+/// Distance from a bound at which a bar warns, as a part of the maximum tension.
 const NEAR: f32 = 0.03;
 
 /// A bar of `width` places: full up to the value, with a mark at either bound.

@@ -37,7 +37,7 @@ impl Picture {
     pub fn new(title: &str, settings: &Settings) -> Self {
         Self {
             title: title.into(),
-            bounds_n: [settings.tension_floor_n, settings.tension_ceiling_n],
+            bounds_n: [settings.f_min_n, settings.f_max_n],
             sagging: Sagging::new(settings),
             telemetry: None,
             damaged_frames: 0,

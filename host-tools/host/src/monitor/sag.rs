@@ -20,25 +20,25 @@ impl Sagging {
             parameters: settings.rig.into(),
             tendons: settings.tendons.tendons().ok()?,
             support: settings.support.support().ok()?,
-            bounds_n: [settings.tension_floor_n, settings.tension_ceiling_n].map(f64::from),
+            bounds_n: [settings.f_min_n, settings.f_max_n].map(f64::from),
         })
     }
 
-    /// The deviation of the tip under the leg's own weight and the payload, at the pose and the level that the board tells,
-    /// m; none while it tells no level.
+    /// The deviation of the tip under the leg's own weight and the payload, at the pose and the pretension that the board tells,
+    /// m; none while it tells no pretension.
     pub fn sag_m(&self, telemetry: &Telemetry<f32>) -> Option<f64> {
-        if telemetry.level_n <= 0.0 {
+        if telemetry.pretension_n <= 0.0 {
             return None;
         }
         let [x, y] = telemetry.pose.map(f64::from);
-        let [tension_floor_n, tension_ceiling_n] = self.bounds_n;
+        let [f_min_n, f_max_n] = self.bounds_n;
         let query = Query {
             azimuth_rad: y.atan2(x),
             tilt_rad: x.hypot(y).min(1.0).asin(),
             payload_kg: f64::from(telemetry.payload_kg),
-            level_n: f64::from(telemetry.level_n),
-            tension_floor_n,
-            tension_ceiling_n,
+            pretension_n: f64::from(telemetry.pretension_n),
+            f_min_n,
+            f_max_n,
             tendons: self.tendons,
             stiffness_at: StiffnessAt::Pretension,
             support: self.support,

@@ -128,8 +128,8 @@ fn load_lines(picture: &Picture, telemetry: &Telemetry<f32>) -> Vec<Line<'static
     );
     vec![
         Line::from(format!(
-            "stiffness  {:.2} N·m/rad at level {:.1} N",
-            telemetry.stiffness_nm_per_rad, telemetry.level_n
+            "stiffness  {:.2} N·m/rad at pretension {:.1} N",
+            telemetry.stiffness_nm_per_rad, telemetry.pretension_n
         )),
         Line::from(format!(
             "load       {x:.3}, {y:.3} N·m beyond the leg's own, payload {:.3} kg",
@@ -161,7 +161,7 @@ fn fault_lines(faults: FaultSet) -> Vec<Line<'static>> {
         let reaction = format!(" ({}): {}", words::reaction(reaction), entry.cause);
         [
             Line::from(vec![name.bold().fg(colour), reaction.into()]),
-            Line::from(format!("   cure: {}", entry.cure)),
+            Line::from(format!("   remedy: {}", entry.remedy)),
         ]
     });
     lines.collect()

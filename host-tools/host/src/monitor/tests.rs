@@ -29,7 +29,7 @@ fn telemetry() -> Telemetry<f32> {
         target_tensions_n: [8.0, 73.0, 149.5],
         pulled_m: [0.001, 0.002, 0.003],
         reference_m: [0.001, 0.002, 0.003],
-        level_n: 70.0,
+        pretension_n: 70.0,
         stiffness_nm_per_rad: 81.64,
         load_nm: [0.1, -0.4],
         payload_kg: 1.003,
@@ -82,7 +82,7 @@ fn a_leg_before_homing_on_a_narrow_terminal() {
         &Telemetry {
             state: State::Disarmed,
             homed: false,
-            level_n: 0.0,
+            pretension_n: 0.0,
             stiffness_nm_per_rad: 0.0,
             payload_kg: 0.0,
             ..telemetry()
@@ -117,7 +117,7 @@ fn the_line_for_machines_holds_what_the_screen_shows() {
     assert_eq!(line["state"], "held");
     assert_eq!(line["damaged_frames"], 2);
     assert_eq!(line["faults"][0]["code"], 1);
-    assert!(!line["faults"][0]["cure"].as_str().unwrap().is_empty());
+    assert!(!line["faults"][0]["remedy"].as_str().unwrap().is_empty());
     assert!(line["sag_m"].is_f64());
 }
 

@@ -216,7 +216,7 @@ const fn name(command: &Command) -> &'static str {
         Command::Home => "home",
         Command::Move { .. } => "move",
         Command::Hold => "come to rest",
-        Command::Level(_) => "change its level",
+        Command::Pretension(_) => "change its pretension",
         Command::Stiffness { .. } => "change its stiffness",
         Command::Compensation(_) => "change its compensation",
         Command::Stop => "stop",

@@ -20,14 +20,14 @@ const SETTLED_TIME: Duration = Duration::from_millis(300);
 /// Distance of every tension from its target below which a leg is settled, N.
 const SETTLED_N: f32 = 2.0;
 
-/// Change between two looks below which level and stiffness are settled, as a part of each.
+/// Change between two looks below which pretension and stiffness are settled, as a part of each.
 const SETTLED_PART: f32 = 1e-3;
 
 /// How hard the tendons shall pull.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Demand {
-    /// A level of pretension, N.
-    Level(f32),
+    /// A pretension, N.
+    Pretension(f32),
     /// A bending stiffness, N·m/rad: the smallest, or against a push towards (cos, sin).
     Stiffness(f32, Option<[f32; 2]>),
 }
@@ -35,7 +35,7 @@ pub enum Demand {
 impl Demand {
     const fn command(self) -> Command {
         match self {
-            Self::Level(level_n) => Command::Level(level_n),
+            Self::Pretension(pretension_n) => Command::Pretension(pretension_n),
             Self::Stiffness(demand_nm_per_rad, towards) => Command::Stiffness {
                 demand_nm_per_rad,
                 towards,
@@ -222,7 +222,7 @@ fn settled(before: &Telemetry<f32>, now: &Telemetry<f32>) -> bool {
         (of(now) - of(before)).abs() <= SETTLED_PART * of(now).abs()
     };
     !now.moving
-        && steady(|telemetry| telemetry.level_n)
+        && steady(|telemetry| telemetry.pretension_n)
         && steady(|telemetry| telemetry.stiffness_nm_per_rad)
         && near(&now.pose, &now.target)
         && taut(&now.tensions_n, &now.target_tensions_n)
@@ -253,7 +253,7 @@ fn unlimited(
             asked,
             faults,
             stiffness_nm_per_rad: telemetry.stiffness_nm_per_rad,
-            level_n: telemetry.level_n,
+            pretension_n: telemetry.pretension_n,
         });
     }
     Ok(*telemetry)

@@ -86,8 +86,8 @@ pub enum OperatorError {
         faults: FaultSet,
         /// Its stiffness as far as it got, N·m/rad.
         stiffness_nm_per_rad: f32,
-        /// Its level as far as it got, N.
-        level_n: f32,
+        /// Its pretension as far as it got, N.
+        pretension_n: f32,
     },
     /// Another host ended what the leg was doing.
     #[error("the leg did not {asked}: another host stopped it, and it is {}", words::state(*.state))]
@@ -161,7 +161,7 @@ pub enum OperatorError {
 impl OperatorError {
     /// What to do about it.
     #[must_use]
-    pub fn cure(&self) -> String {
+    pub fn remedy(&self) -> String {
         match self {
             Self::Broken { .. } => {
                 "plug the board in again; without its host an armed leg holds by itself".into()
@@ -175,22 +175,22 @@ impl OperatorError {
                 "build and flash the firmware from the sources of this program: `leg flash`".into()
             }
             Self::Refused { refusal, .. } => {
-                let [_, cure] = refusal::words(refusal);
-                cure
+                let [_, remedy] = refusal::words(refusal);
+                remedy
             }
             Self::Faulted { faults, .. }
             | Self::NotCleared { faults }
             | Self::Failed { faults, .. } => {
-                format!("{}; then `leg clear`", words::cures(*faults))
+                format!("{}; then `leg clear`", words::remedies(*faults))
             }
             Self::Limited {
                 faults,
                 stiffness_nm_per_rad,
-                level_n,
+                pretension_n,
                 ..
             } => format!(
-                "{}; it is held at level {level_n:.1} N, stiffness {stiffness_nm_per_rad:.1} N·m/rad",
-                words::cures(*faults)
+                "{}; it is held at pretension {pretension_n:.1} N, stiffness {stiffness_nm_per_rad:.1} N·m/rad",
+                words::remedies(*faults)
             ),
             Self::Overtaken { .. } => "look why, then command again".into(),
             Self::Elsewhere { .. } => "go there by way of other poses".into(),
@@ -231,11 +231,11 @@ impl OperatorError {
 
 impl From<OperatorError> for Failure {
     fn from(error: OperatorError) -> Self {
-        let (sentence, cure) = (error.to_string(), error.cure());
+        let (sentence, remedy) = (error.to_string(), error.remedy());
         if error.refuses() {
-            Self::refused(sentence, cure)
+            Self::refused(sentence, remedy)
         } else {
-            Self::missed(sentence, cure)
+            Self::missed(sentence, remedy)
         }
     }
 }

@@ -7,9 +7,9 @@ use leg_firmware::settings::SettingsError;
 /// What is wrong, and what to do about it.
 #[must_use]
 pub(super) fn words(refusal: &HostRefusal) -> [String; 2] {
-    let [wrong, cure] = match refusal {
+    let [wrong, remedy] = match refusal {
         HostRefusal::Settings(error) => {
-            return [format!("the settings are refused: {error}"), cure(error)];
+            return [format!("the settings are refused: {error}"), remedy(error)];
         }
         HostRefusal::BadFrame(error) => {
             return [
@@ -51,10 +51,10 @@ pub(super) fn words(refusal: &HostRefusal) -> [String; 2] {
             "save again; they are in use until the board starts anew",
         ],
     };
-    [wrong.into(), cure.into()]
+    [wrong.into(), remedy.into()]
 }
 
-fn cure(error: &SettingsError) -> String {
+fn remedy(error: &SettingsError) -> String {
     match error {
         SettingsError::Model(_) => "correct the rig file; `leg rig validate` shows the place",
         SettingsError::OutOfRange(_) => "give a value inside the range",

@@ -33,8 +33,8 @@ fn record(file: &Path, spoil: impl Fn(&mut leg_firmware::drive::Drive<f32>, u32)
 
 #[test]
 fn a_recording_is_reproduced_bit_for_bit() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("leg.mcap");
+    let directory = tempfile::tempdir().unwrap();
+    let file = directory.path().join("leg.mcap");
     let ticks = record(&file, |_, _| ());
     let replay = replay(&file).unwrap();
     assert_eq!((u64::from(replay.ticks), replay.other), (ticks, 0));
@@ -43,8 +43,8 @@ fn a_recording_is_reproduced_bit_for_bit() {
 
 #[test]
 fn a_single_other_bit_is_told_with_its_tick() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("leg.mcap");
+    let directory = tempfile::tempdir().unwrap();
+    let file = directory.path().join("leg.mcap");
     record(&file, |drive, tick| {
         if tick == 777 {
             drive.duty[1] = f32::from_bits(drive.duty[1].to_bits() ^ 1);
@@ -56,8 +56,8 @@ fn a_single_other_bit_is_told_with_its_tick() {
 
 #[test]
 fn a_table_has_a_row_a_millisecond_and_units_in_its_names() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("leg.csv");
+    let directory = tempfile::tempdir().unwrap();
+    let file = directory.path().join("leg.csv");
     let ticks = record(&file, |_, _| ());
     let mut reader = csv::Reader::from_path(&file).unwrap();
     let names = reader.headers().unwrap().clone();
@@ -69,8 +69,8 @@ fn a_table_has_a_row_a_millisecond_and_units_in_its_names() {
 
 #[test]
 fn work_that_fails_leaves_no_recording() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("leg.mcap");
+    let directory = tempfile::tempdir().unwrap();
+    let file = directory.path().join("leg.mcap");
     let rig = RigFile::load(None).unwrap();
     let text = ready_scenarios::named("fig9").unwrap().text;
     let scenario = Scenario::parse("test", text).unwrap();
@@ -78,13 +78,13 @@ fn work_that_fails_leaves_no_recording() {
     let failure = Failure::missed("no", "");
     let failed = around(&file, &settings, |_| Err::<(), _>(failure.clone()));
     assert_eq!(failed, Err(failure));
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 0);
     assert!(replay(&file).is_err());
 }
 
 #[test]
 fn telemetry_alone_is_recorded_with_the_legs_time() {
-    let folder = tempfile::tempdir().unwrap();
+    let directory = tempfile::tempdir().unwrap();
     let mut told = Vec::new();
     let text = ready_scenarios::named("fault_driver_fault").unwrap().text;
     let scenario = Scenario::parse("test", text).unwrap();
@@ -95,7 +95,7 @@ fn telemetry_alone_is_recorded_with_the_legs_time() {
         .run(&mut InThisProcess::default(), watch)
         .unwrap();
     for name in ["leg.mcap", "leg.csv"] {
-        let file = folder.path().join(name);
+        let file = directory.path().join(name);
         super::around_telemetry(&file, |recorder| {
             for telemetry in &told {
                 recorder.take(telemetry).unwrap();
@@ -104,7 +104,7 @@ fn telemetry_alone_is_recorded_with_the_legs_time() {
         })
         .unwrap();
     }
-    let bytes = std::fs::read(folder.path().join("leg.mcap")).unwrap();
+    let bytes = std::fs::read(directory.path().join("leg.mcap")).unwrap();
     let messages: Vec<_> = mcap::MessageStream::new(&bytes)
         .unwrap()
         .map(Result::unwrap)
@@ -116,7 +116,7 @@ fn telemetry_alone_is_recorded_with_the_legs_time() {
     assert_eq!(last.log_time, u64::from(tick) * 125_000);
     let value: serde_json::Value = serde_json::from_slice(&last.data).unwrap();
     assert_eq!(value["tick"], tick);
-    let mut rows = csv::Reader::from_path(folder.path().join("leg.csv")).unwrap();
+    let mut rows = csv::Reader::from_path(directory.path().join("leg.csv")).unwrap();
     assert!(
         rows.headers()
             .unwrap()

@@ -80,7 +80,7 @@ pub struct Started {
 }
 
 /// Starts the hub of a port that this program has opened, and joins it. It ends with the program or the port. Where other
-/// programs cannot meet it, it serves this one alone: to stop a leg has to be possible without a folder to write in.
+/// programs cannot meet it, it serves this one alone: to stop a leg has to be possible without a directory to write in.
 ///
 /// # Errors
 /// What the system says.
@@ -100,7 +100,7 @@ fn meet(port: &str) -> io::Result<UnixListener> {
     UnixListener::bind(&place)
 }
 
-/// The socket of a port, in a folder of this user.
+/// The socket of a port, in a directory of this user.
 pub(super) fn meeting_place(port: &str) -> io::Result<PathBuf> {
     let port = std::fs::canonicalize(port)?;
     let name: String = port
@@ -109,13 +109,13 @@ pub(super) fn meeting_place(port: &str) -> io::Result<PathBuf> {
         .map(|letter| if letter == '/' { '-' } else { letter })
         .collect();
     let user = rustix::process::getuid().as_raw();
-    let folder = std::env::temp_dir().join(format!("leg-{user}"));
+    let directory = std::env::temp_dir().join(format!("leg-{user}"));
     std::fs::DirBuilder::new()
         .recursive(true)
         .mode(0o700)
-        .create(&folder)?;
-    if std::fs::symlink_metadata(&folder)?.uid() != user {
+        .create(&directory)?;
+    if std::fs::symlink_metadata(&directory)?.uid() != user {
         return Err(io::ErrorKind::PermissionDenied.into());
     }
-    Ok(folder.join(format!("{}.socket", name.trim_start_matches('-'))))
+    Ok(directory.join(format!("{}.socket", name.trim_start_matches('-'))))
 }

@@ -58,7 +58,7 @@ pub enum SerialError {
 impl SerialError {
     /// What to do about it.
     #[must_use]
-    pub fn cure(&self) -> &'static str {
+    pub fn remedy(&self) -> &'static str {
         match self {
             Self::NoBoard(_) => {
                 "plug the board in, name its port with --port, or try without a board: --on sim"

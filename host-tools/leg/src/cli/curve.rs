@@ -54,7 +54,7 @@ pub struct Args {
     /// Writes the section for a rig file here instead of printing it.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Draws elongation and stiffness over tension into this folder, as the paper's Fig. 6 does.
+    /// Draws elongation and stiffness over tension into this directory, as the paper's Fig. 6 does.
     #[arg(long, value_name = "DIR")]
     plots: Option<PathBuf>,
     /// Prints JSON instead of a table.
@@ -92,7 +92,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
 /// Everything that is asked for, or nothing: the charts are drawn beside their places before the section is written.
 fn save_all(args: &Args, fit: &Fit, toml: &str) -> Result<Vec<PathBuf>, Failure> {
     let charts = match &args.plots {
-        Some(folder) => Some(Charts::draw(fit, folder)?),
+        Some(directory) => Some(Charts::draw(fit, directory)?),
         None => None,
     };
     if let Some(file) = &args.out {
@@ -130,6 +130,6 @@ fn check_taut(taut_n: Option<f64>) -> Result<(), Failure> {
 fn save(file: &Path, text: &str) -> Result<(), Failure> {
     atomic_file::replace(file, |new| std::fs::write(new, text)).map_err(|error: std::io::Error| {
         let sentence = format!("cannot write {}: {error}", file.display());
-        Failure::refused(sentence, "name a file in a folder that may be written")
+        Failure::refused(sentence, "name a file in a directory that may be written")
     })
 }

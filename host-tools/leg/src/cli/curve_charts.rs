@@ -20,9 +20,9 @@ type Panel = (&'static str, &'static str, Points, Points);
 
 type Points = Vec<(f64, f64)>;
 
-/// Elongation and stiffness of the test piece, each as SVG and PNG, drawn but not yet in their folder.
+/// Elongation and stiffness of the test piece, each as SVG and PNG, drawn but not yet in their directory.
 pub(super) struct Charts<'a> {
-    folder: &'a Path,
+    directory: &'a Path,
     workshop: Workshop,
     /// The names of the SVG files.
     names: Vec<OsString>,
@@ -30,34 +30,36 @@ pub(super) struct Charts<'a> {
 
 impl<'a> Charts<'a> {
     /// Draws them.
-    pub(super) fn draw(fit: &Fit, folder: &'a Path) -> Result<Self, Failure> {
+    pub(super) fn draw(fit: &Fit, directory: &'a Path) -> Result<Self, Failure> {
         let panels = panels(fit).map_err(|error| Failure::from_error(&error))?;
-        let workshop = Workshop::beside(folder).map_err(|error| refused(folder, &error))?;
+        let workshop = Workshop::beside(directory).map_err(|error| refused(directory, &error))?;
         let mut names = Vec::new();
         for panel in panels {
-            let svg = save(panel, workshop.path()).map_err(|error| refused(folder, &error))?;
+            let svg = save(panel, workshop.path()).map_err(|error| refused(directory, &error))?;
             names.extend(svg.file_name().map(OsString::from));
         }
-        workshop.check().map_err(|error| refused(folder, &error))?;
+        workshop
+            .check()
+            .map_err(|error| refused(directory, &error))?;
         Ok(Self {
-            folder,
+            directory,
             workshop,
             names,
         })
     }
 
-    /// Moves them into their folder, and names the SVG files.
+    /// Moves them into their directory, and names the SVG files.
     pub(super) fn deliver(self) -> Result<Vec<PathBuf>, Failure> {
         let delivered = self.workshop.deliver();
-        delivered.map_err(|error| refused(self.folder, &error))?;
-        let in_folder = |name| self.folder.join(name);
+        delivered.map_err(|error| refused(self.directory, &error))?;
+        let in_folder = |name| self.directory.join(name);
         Ok(self.names.into_iter().map(in_folder).collect())
     }
 }
 
-fn refused(folder: &Path, error: &dyn Error) -> Failure {
-    let sentence = format!("no plots in {}: {error}", folder.display());
-    Failure::refused(sentence, "name another folder with --plots")
+fn refused(directory: &Path, error: &dyn Error) -> Failure {
+    let sentence = format!("no plots in {}: {error}", directory.display());
+    Failure::refused(sentence, "name another directory with --plots")
 }
 
 fn panels(fit: &Fit) -> Result<[Panel; 2], leg_model::Error> {
@@ -110,7 +112,7 @@ fn average_stiffness(pair: &[Row]) -> (f64, f64) {
     (before.force_n + 0.5 * rise_n, rise_n / stretch_mm)
 }
 
-fn save((name, y_title, points, marks): Panel, folder: &Path) -> Result<PathBuf, PlotError> {
+fn save((name, y_title, points, marks): Panel, directory: &Path) -> Result<PathBuf, PlotError> {
     let chart = Chart {
         title: format!("Tensile test: {y_title} over tension"),
         x_title: "tension (N)".into(),
@@ -122,5 +124,5 @@ fn save((name, y_title, points, marks): Panel, folder: &Path) -> Result<PathBuf,
         }],
         marks_label: "measured".into(),
     };
-    plot::save_both(&chart, &folder.join(name))
+    plot::save_both(&chart, &directory.join(name))
 }

@@ -30,9 +30,9 @@ Keys of a line:
   tilt_deg           how far, -60 to 60; a negative tilt is the opposite azimuth
   payload_kg         mass at the tip
 and, from the rig file if left out:
-  level_n            level of pretension, N per tendon at the vertical pose
+  pretension_n            pretension, N per tendon at the vertical pose
   stiffness_n_per_m  constant stiffness of each tendon, instead of the rig's curve
-  stiffness_at       where a curve's stiffness is read: \"pretension\" (the level) or
+  stiffness_at       where a curve's stiffness is read: \"pretension\" (the pretension) or
                      \"tension\" (each tendon's own)
   f_min_n, f_max_n   lowest and highest tension allowed
   leg_mass_kg        mass of the leg
@@ -41,14 +41,14 @@ and, from the rig file if left out:
 and, if a stiffness is demanded:
   demand_nm_per_rad  bending stiffness that the leg shall have, of its softest tilt
   demand_towards_deg azimuth towards which a push at the tip shall meet it, instead
-It is answered under `commanded` by the level that gives it or, where no level within the
+It is answered under `commanded` by the pretension that gives it or, where no pretension within the
 tension bounds does, by the nearest and the tendon and bound that stop it.
 
 Each line is answered by one line, in order, in SI units. A line that has no result is
 answered by {\"error\":…,\"line\":n}; the others go on, and the exit code is 1. Empty lines
 are skipped, but counted.
 
-deviation_nonlinear_m comes from f64 only. It is left out at a level at which a tendon
+deviation_nonlinear_m comes from f64 only. It is left out at a pretension at which a tendon
 would have to push before the weights come, where it has no meaning.";
 
 /// Runs the command.

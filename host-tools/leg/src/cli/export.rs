@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 const AZIMUTH: &str = "--azimuth-deg";
 const TILT: &str = "--tilt-deg";
 const PAYLOAD: &str = "--payload-kg";
-const LEVEL: &str = "--level-n";
+const PRETENSION: &str = "--pretension-n";
 
 /// Writes the rig for another program.
 #[derive(Debug, clap::Args)]
@@ -61,9 +61,14 @@ struct MjcfArgs {
         allow_negative_numbers = true
     )]
     payload_kg: f64,
-    /// Level of pretension; the rig file's if left out.
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    level_n: Option<f64>,
+    /// Pretension; the rig file's if left out.
+    #[arg(
+        long,
+        alias = "level-n",
+        value_name = "N",
+        allow_negative_numbers = true
+    )]
+    pretension_n: Option<f64>,
     /// The file to write; standard output if left out.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -79,7 +84,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let rig = RigFile::load(args.rig.as_deref())?;
     let query = rig.query(args.azimuth_deg, args.tilt_deg, args.payload_kg);
     let query = Query {
-        level_n: args.level_n.unwrap_or(rig.level_n),
+        pretension_n: args.pretension_n.unwrap_or(rig.pretension_n),
         ..query
     };
     let model = HeldLeg::new(&rig.parameters, &query)
@@ -97,7 +102,7 @@ impl MjcfArgs {
             (AZIMUTH, Some(self.azimuth_deg)),
             (TILT, Some(self.tilt_deg)),
             (PAYLOAD, Some(self.payload_kg)),
-            (LEVEL, self.level_n),
+            (PRETENSION, self.pretension_n),
         ];
         for (flag, number) in numbers {
             if number.is_some_and(|number| !number.is_finite()) {
@@ -118,10 +123,13 @@ fn refused(error: &MjcfError) -> Failure {
         Quantity::Azimuth => (AZIMUTH, "give -3600 to 3600"),
         Quantity::Tilt => (TILT, "give -60 to 60"),
         Quantity::Payload => (PAYLOAD, "give 0 to 1e6"),
-        Quantity::Level => (LEVEL, "give a level inside the bounds of the rig file"),
+        Quantity::Pretension => (
+            PRETENSION,
+            "give a pretension inside the bounds of the rig file",
+        ),
         Quantity::Tension => (
-            "the tension of a tendon at this level",
-            "give a lower --level-n or --payload-kg, or a rig file with a constant `stiffness_n_per_m`",
+            "the tension of a tendon at this pretension",
+            "give a lower --pretension-n or --payload-kg, or a rig file with a constant `stiffness_n_per_m`",
         ),
         _ => return Failure::from_error(error),
     };
@@ -139,7 +147,7 @@ fn save(model: &Mjcf, path: &Path) -> Result<(), Failure> {
         let sentence = format!("cannot write {}: {error}", path.display());
         Failure::refused(
             sentence,
-            "name another file with --out, in a folder that may be written to",
+            "name another file with --out, in a directory that may be written to",
         )
     })
 }

@@ -36,7 +36,7 @@ fn table() -> String {
     format!(
         "code  fault                         reaction   raised when\n{rows}\n\
          limit: the leg goes on with what is possible; ends with its cause.\n\
-         hold: the leg stays where it is, its tendons kept above the floor.\n\
+         hold: the leg stays where it is, its tendons kept above the minimum tension.\n\
          ramp down: the tendons are let out until they barely pull, then the drivers are off.\n\
          gate off: the drivers are off at once; the screws hold.\n\
          All but limits end by `clear` alone, once their cause is gone.\n"
@@ -46,13 +46,13 @@ fn table() -> String {
 fn row(entry: &FaultEntry) -> String {
     let fault = entry.fault;
     format!(
-        "{:4}  {:28}  {:9}  {}\n{:47}cure: {}\n",
+        "{:4}  {:28}  {:9}  {}\n{:47}remedy: {}\n",
         fault.code(),
         entry.name,
         words::reaction(fault.reaction()),
         entry.cause,
         "",
-        entry.cure
+        entry.remedy
     )
 }
 
@@ -63,7 +63,7 @@ struct JsonRow {
     name: &'static str,
     reaction: Reaction,
     cause: &'static str,
-    cure: &'static str,
+    remedy: &'static str,
     ends: &'static str,
 }
 
@@ -76,7 +76,7 @@ fn json() -> Result<String, Failure> {
             name: entry.name,
             reaction: entry.fault.reaction(),
             cause: entry.cause,
-            cure: entry.cure,
+            remedy: entry.remedy,
             ends: ends(entry.fault.reaction()),
         })
         .collect();

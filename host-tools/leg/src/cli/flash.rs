@@ -52,10 +52,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 fn failure(error: FlashError) -> Failure {
-    let (sentence, cure) = (error.to_string(), error.cure());
+    let (sentence, remedy) = (error.to_string(), error.remedy());
     if matches!(error, FlashError::NotVerified) {
-        Failure::missed(sentence, cure)
+        Failure::missed(sentence, remedy)
     } else {
-        Failure::refused(sentence, cure)
+        Failure::refused(sentence, remedy)
     }
 }

@@ -16,10 +16,10 @@ pub struct Args {
     /// How far, degrees; a negative tilt is the opposite azimuth.
     #[arg(long, value_name = "DEG", value_parser = tilt_deg, allow_negative_numbers = true)]
     tilt: f64,
-    /// Level of pretension, N; as before if left out.
-    #[arg(long, value_name = "N", value_parser = positive, allow_negative_numbers = true, conflicts_with = "stiffness")]
-    level: Option<f64>,
-    /// Bending stiffness, N·m/rad, in the place of a level: the smallest, unless --towards says otherwise.
+    /// Pretension, N; as before if left out.
+    #[arg(long, alias = "level", value_name = "N", value_parser = positive, allow_negative_numbers = true, conflicts_with = "stiffness")]
+    pretension: Option<f64>,
+    /// Bending stiffness, N·m/rad, in the place of a pretension: the smallest, unless --towards says otherwise.
     #[arg(long, value_name = "NM_PER_RAD", value_parser = positive, allow_negative_numbers = true)]
     stiffness: Option<f64>,
     /// Azimuth of the push that shall meet the stiffness, degrees.
@@ -31,13 +31,15 @@ pub struct Args {
 
 impl Args {
     fn goal(&self) -> Goal {
-        let level = self.level.map(|level_n| Demand::Level(level_n as f32));
+        let pretension = self
+            .pretension
+            .map(|pretension_n| Demand::Pretension(pretension_n as f32));
         let stiffness = self
             .stiffness
             .map(|demand| Demand::Stiffness(demand as f32, self.towards.map(towards)));
         Goal {
             direction: Some(direction(self.azimuth, self.tilt)),
-            demand: level.or(stiffness),
+            demand: pretension.or(stiffness),
         }
     }
 }

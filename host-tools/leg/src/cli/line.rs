@@ -138,7 +138,7 @@ impl LineArgs {
             Ok(serial) => {
                 if let Some(reason) = serial.alone() {
                     eprintln!(
-                        "leg: other commands cannot use this port meanwhile ({reason}): let TMPDIR be a folder that may be written, with a short path"
+                        "leg: other commands cannot use this port meanwhile ({reason}): let TMPDIR be a directory that may be written, with a short path"
                     );
                 }
                 Ok(Box::new(serial))
@@ -171,7 +171,7 @@ fn can(_: &str, _: LegAddress, _: Use) -> Result<Box<dyn Transport>, Failure> {
 }
 
 fn no_line(error: &SerialError) -> Failure {
-    Failure::refused(error.to_string(), error.cure())
+    Failure::refused(error.to_string(), error.remedy())
 }
 
 /// The firmware without a board.

@@ -10,7 +10,7 @@ use leg_model_tools::workspace_map::{Grid, Quantity, WorkspaceMap};
 use leg_rig::rig_file::RigFile;
 use std::path::PathBuf;
 
-/// Draws the rig over its workspace: deviation, stiffness, tension margin, feasible levels.
+/// Draws the rig over its workspace: deviation, stiffness, tension margin, feasible pretensions.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// The rig file or a ready rig's name; the paper's rig if left out.
@@ -19,9 +19,9 @@ pub struct Args {
     /// Mass at the tip, kg.
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     payload_kg: f64,
-    /// Level of pretension, N; the rig's if left out.
-    #[arg(long, allow_negative_numbers = true)]
-    level_n: Option<f64>,
+    /// Pretension, N; the rig's if left out.
+    #[arg(long, alias = "level-n", allow_negative_numbers = true)]
+    pretension_n: Option<f64>,
     /// Columns of the map, at least 3.
     #[arg(long, default_value_t = 360)]
     azimuths: u32,
@@ -31,7 +31,7 @@ pub struct Args {
     /// What to draw; all but the nonlinear ones if left out. Those are computed only if asked for here.
     #[arg(long, value_enum)]
     quantity: Vec<Quantity>,
-    /// The folder for the pictures; target/leg-map in the workspace if left out.
+    /// The directory for the pictures; target/leg-map in the workspace if left out.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Writes every pose to a CSV file as well.
@@ -81,10 +81,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     })
 }
 
-/// The rig at the asked level, if the model accepts it with the payload.
+/// The rig at the asked pretension, if the model accepts it with the payload.
 fn rig(args: &Args) -> Result<RigFile, Failure> {
     let mut rig = RigFile::load(args.rig.as_deref())?;
-    rig.level_n = args.level_n.unwrap_or(rig.level_n);
+    rig.pretension_n = args.pretension_n.unwrap_or(rig.pretension_n);
     let hanging = rig.query(0.0, 0.0, args.payload_kg);
     match leg_model::evaluate(&rig.parameters, &hanging) {
         Err(leg_model::Error::Refused { quantity, reason }) => Err(refused(quantity, reason)),
@@ -97,8 +97,8 @@ fn refused(quantity: leg_model::Quantity, reason: leg_model::Reason) -> Failure 
     let (argument, help) = match quantity {
         leg_model::Quantity::Payload => ("--payload-kg", "give 0 to 1e6"),
         _ => (
-            "--level-n",
-            "give a level within the tendons' curve, from -1e7 to 1e7",
+            "--pretension-n",
+            "give a pretension within the tendons' curve, from -1e7 to 1e7",
         ),
     };
     Failure::refused(format!("{argument} {reason}"), help)
@@ -132,7 +132,7 @@ fn nothing_feasible(rig: &RigFile, payload_kg: f64, map: &WorkspaceMap) -> Failu
     }
     let sentence = format!(
         "no pose of the workspace is feasible with {payload_kg} kg and tensions from {} to {} N",
-        rig.tension_floor_n, rig.tension_ceiling_n
+        rig.f_min_n, rig.f_max_n
     );
     Failure::missed(
         sentence,
@@ -143,7 +143,7 @@ fn nothing_feasible(rig: &RigFile, payload_kg: f64, map: &WorkspaceMap) -> Failu
 /// Every picture whole or not at all.
 fn draw(args: &Args, rig: &RigFile, map: &WorkspaceMap) -> Result<Vec<PathBuf>, Failure> {
     let default = || image::workspace_root().join("target/leg-map");
-    let folder = args.out.clone().unwrap_or_else(default);
+    let directory = args.out.clone().unwrap_or_else(default);
     let asked = if args.quantity.is_empty() {
         Quantity::plain()
     } else {
@@ -152,18 +152,18 @@ fn draw(args: &Args, rig: &RigFile, map: &WorkspaceMap) -> Result<Vec<PathBuf>, 
     let mut pictures = Vec::new();
     for &quantity in asked {
         let title = format!(
-            "{}: payload {} kg, level {} N, support {}",
+            "{}: payload {} kg, pretension {} N, support {}",
             capitalised(quantity.words()),
             args.payload_kg,
-            rig.level_n,
+            rig.pretension_n,
             rig.support_name.word()
         );
         let field = map.field(quantity, title);
         for (layout, suffix) in [(Layout::Flat, "contour"), (Layout::Polar, "polar")] {
-            let stem = folder.join(format!("{}_{suffix}", quantity.name()));
+            let stem = directory.join(format!("{}_{suffix}", quantity.name()));
             let picture = field::save_both(&field, layout, &stem).map_err(|error| {
-                let sentence = format!("no picture in {}: {error}", folder.display());
-                Failure::refused(sentence, "name another folder with --out")
+                let sentence = format!("no picture in {}: {error}", directory.display());
+                Failure::refused(sentence, "name another directory with --out")
             });
             pictures.push(picture?);
         }

@@ -4,7 +4,7 @@ use leg_base::failure::Failure;
 use leg_base::json_line::to_line;
 use leg_base::paths::from_here;
 use leg_model::Error;
-use leg_model_tools::workspace_map::{AtLevel, Cell, Counts, Extreme, Quantity, WorkspaceMap};
+use leg_model_tools::workspace_map::{AtPretension, Cell, Counts, Extreme, Quantity, WorkspaceMap};
 use leg_rig::rig_file::RigFile;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -27,10 +27,10 @@ impl Report<'_> {
     pub(super) fn table(&self) -> String {
         let rig = self.rig;
         let title = format!(
-            "Workspace to {}° with {} kg, level {} N, support {}\n\n",
+            "Workspace to {}° with {} kg, pretension {} N, support {}\n\n",
             rig.tilt_deg,
             self.payload_kg,
-            rig.level_n,
+            rig.pretension_n,
             rig.support_name.word()
         );
         let rows = self.map.quantities().iter();
@@ -63,19 +63,22 @@ impl Report<'_> {
     fn counts(&self) -> String {
         let counts = self.map.counts();
         let share = 100.0 * counts.feasible as f64 / counts.poses as f64;
-        let level_n = self.rig.level_n;
+        let pretension_n = self.rig.pretension_n;
         format!(
-            "\nFeasible: {} of {} poses ({share:.1} %), {} at level {level_n} N and {} only at another\n",
-            counts.feasible, counts.poses, counts.level_keeps_bounds, counts.only_another_level
+            "\nFeasible: {} of {} poses ({share:.1} %), {} at pretension {pretension_n} N and {} only at another\n",
+            counts.feasible,
+            counts.poses,
+            counts.pretension_keeps_bounds,
+            counts.only_another_pretension
         )
     }
 
     fn remarks(&self) -> String {
-        let level_n = self.rig.level_n;
-        let at_level = format!("No result at level {level_n} N");
+        let pretension_n = self.rig.pretension_n;
+        let at_pretension = format!("No result at pretension {pretension_n} N");
         let missing = [
             ("No result", self.map.without_result()),
-            (at_level.as_str(), self.map.without_level()),
+            (at_pretension.as_str(), self.map.without_pretension()),
             ("No nonlinear deviation", self.map.without_nonlinear()),
         ];
         let lines = |(what, reasons): (&str, Vec<(Error, usize)>)| -> String {
@@ -112,13 +115,13 @@ impl Report<'_> {
                 azimuth_deg,
                 tilt_deg,
                 cell: cell.as_ref().ok(),
-                at_level: cell.as_ref().ok().and_then(|cell| cell.at_level.ok()),
+                at_pretension: cell.as_ref().ok().and_then(|cell| cell.at_pretension.ok()),
                 deviation_nonlinear_mm: cell
                     .as_ref()
                     .ok()
                     .and_then(|cell| Quantity::DeviationNonlinear.value(cell)),
                 error: cell
-                    .and_then(|cell| cell.at_level)
+                    .and_then(|cell| cell.at_pretension)
                     .err()
                     .map(|error| error.to_string()),
             });
@@ -126,7 +129,7 @@ impl Report<'_> {
         let report = JsonReport {
             support: self.rig.support_name.word(),
             payload_kg: self.payload_kg,
-            level_n: self.rig.level_n,
+            pretension_n: self.rig.pretension_n,
             counts: self.map.counts(),
             extremes: quantities
                 .map(|quantity| self.extremes(*quantity))
@@ -142,7 +145,7 @@ impl Report<'_> {
 struct JsonReport<'a> {
     support: &'static str,
     payload_kg: f64,
-    level_n: f64,
+    pretension_n: f64,
     #[serde(flatten)]
     counts: Counts,
     extremes: Vec<JsonExtremes>,
@@ -165,10 +168,10 @@ struct JsonPose<'a> {
     #[serde(flatten)]
     cell: Option<&'a Cell>,
     #[serde(flatten)]
-    at_level: Option<AtLevel>,
+    at_pretension: Option<AtPretension>,
     #[serde(skip_serializing_if = "Option::is_none")]
     deviation_nonlinear_mm: Option<f64>,
-    /// Why there is nothing at the rig's level or nothing at all.
+    /// Why there is nothing at the rig's pretension or nothing at all.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
 }

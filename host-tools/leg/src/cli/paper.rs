@@ -15,7 +15,7 @@ const REPORT: &str = "report.md";
 /// Lays every number that the paper publishes beside ours, draws its figures 6, 9 and 10, and shows its errata.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The folder for report.md and the figures; target/leg-paper in the workspace if left out.
+    /// The directory for report.md and the figures; target/leg-paper in the workspace if left out.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Prints JSON instead of a table.
@@ -29,9 +29,9 @@ pub struct Args {
 /// A [`Failure`]: files that cannot be written, or a verdict that is not the one that is known.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let default = || image::workspace_root().join("target/leg-paper");
-    let folder = args.out.clone().unwrap_or_else(default);
+    let directory = args.out.clone().unwrap_or_else(default);
     let computed = Paper::compute().map_err(|error| Failure::from_error(&error))?;
-    let report = write(&computed, &folder)?;
+    let report = write(&computed, &directory)?;
     print(&if args.json {
         to_line(&computed)?
     } else {
@@ -41,17 +41,17 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// Report and figures together, or nothing.
-fn write(computed: &Paper, folder: &Path) -> Result<PathBuf, Failure> {
+fn write(computed: &Paper, directory: &Path) -> Result<PathBuf, Failure> {
     let refused = |error: &dyn std::error::Error| {
-        let sentence = format!("no report in {}: {error}", folder.display());
-        Failure::refused(sentence, "name another folder with --out")
+        let sentence = format!("no report in {}: {error}", directory.display());
+        Failure::refused(sentence, "name another directory with --out")
     };
-    let workshop = Workshop::beside(folder).map_err(|error| refused(&error))?;
+    let workshop = Workshop::beside(directory).map_err(|error| refused(&error))?;
     let figures = paper::draw(workshop.path()).map_err(|error| refused(&error))?;
     let text = paper::markdown(computed, &figures);
     std::fs::write(workshop.path().join(REPORT), text).map_err(|error| refused(&error))?;
     workshop.deliver().map_err(|error| refused(&error))?;
-    Ok(folder.join(REPORT))
+    Ok(directory.join(REPORT))
 }
 
 fn table(computed: &Paper, report: &Path) -> String {

@@ -103,7 +103,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
                 None => print(&converted),
                 Some(file) => atomic_file::replace(file, |new| std::fs::write(new, &converted))
                     .map_err(|error| {
-                        let help = "name a file in a folder that may be written";
+                        let help = "name a file in a directory that may be written";
                         Failure::refused(format!("cannot write {}: {error}", file.display()), help)
                     }),
             }

@@ -31,7 +31,7 @@ pub struct Args {
     /// Records every tick: FILE.mcap for Foxglove, PlotJuggler and `leg replay`, or FILE.csv.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
-    /// The folder for the charts; target/leg-run in the workspace if left out.
+    /// The directory for the charts; target/leg-run in the workspace if left out.
     #[arg(long, value_name = "DIR")]
     plots: Option<PathBuf>,
     /// Runs the scenario again and again in this process, with load cells and tendon curves that are off, and draws the
@@ -74,7 +74,7 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
         .unwrap_or_else(|| scenario.rig.clone().into());
     let rig = RigFile::load(Some(&rig_name))?;
     if args.errors {
-        return run_errors::run(&scenario, &rig, &folder(args), args.json);
+        return run_errors::run(&scenario, &rig, &directory(args), args.json);
     }
     let started = Instant::now();
     let summary = match args.on {
@@ -90,7 +90,7 @@ pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
         }
     };
     let seconds = started.elapsed().as_secs_f64();
-    let plots = draw(&scenario, &summary, &folder(args))?;
+    let plots = draw(&scenario, &summary, &directory(args))?;
     let report = Report {
         scenario: &scenario,
         place: args.on.words(),
@@ -159,15 +159,15 @@ fn judge(summary: &Summary) -> Result<(), Failure> {
     ))
 }
 
-fn folder(args: &Args) -> PathBuf {
+fn directory(args: &Args) -> PathBuf {
     args.plots
         .clone()
         .unwrap_or_else(|| image::workspace_root().join("target/leg-run"))
 }
 
-fn draw(scenario: &Scenario, summary: &Summary, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    run_charts::save(&scenario.title, &summary.samples, folder).map_err(|error| {
-        let sentence = format!("no charts in {}: {error}", folder.display());
-        Failure::refused(sentence, "name another folder with --plots")
+fn draw(scenario: &Scenario, summary: &Summary, directory: &Path) -> Result<Vec<PathBuf>, Failure> {
+    run_charts::save(&scenario.title, &summary.samples, directory).map_err(|error| {
+        let sentence = format!("no charts in {}: {error}", directory.display());
+        Failure::refused(sentence, "name another directory with --plots")
     })
 }

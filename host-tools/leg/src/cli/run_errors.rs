@@ -17,7 +17,7 @@ use std::path::Path;
 pub(super) fn run(
     scenario: &Scenario,
     rig: &RigFile,
-    folder: &Path,
+    directory: &Path,
     json: bool,
 ) -> Result<(), Failure> {
     let runs = CELLS_PERCENT.len() * CURVES_PERCENT.len();
@@ -38,9 +38,9 @@ pub(super) fn run(
         return print(&to_line(&all)?);
     }
     let chart = sensitivity::chart(&scenario.title, &all);
-    let file = plot::save_both(&chart, &folder.join("errors")).map_err(|error| {
-        let sentence = format!("no chart in {}: {error}", folder.display());
-        Failure::refused(sentence, "name another folder with --plots")
+    let file = plot::save_both(&chart, &directory.join("errors")).map_err(|error| {
+        let sentence = format!("no chart in {}: {error}", directory.display());
+        Failure::refused(sentence, "name another directory with --plots")
     })?;
     print(&format!(
         "{}\nLargest distance of the compensated tip from its target, mm\n\n{}{}\nChart: {} (and .png)\n",

@@ -108,7 +108,7 @@ fn get(operator: &mut Operator, out: Option<&Path>, json: bool) -> Result<(), Fa
         None => print(&text),
         Some(file) => {
             atomic_file::replace(file, |new| std::fs::write(new, &text)).map_err(|error| {
-                let help = "name a file in a folder that may be written";
+                let help = "name a file in a directory that may be written";
                 Failure::refused(format!("cannot write {}: {error}", file.display()), help)
             })
         }

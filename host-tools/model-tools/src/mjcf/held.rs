@@ -32,8 +32,8 @@ pub struct HeldLeg {
     pub tilt_deg: f64,
     /// Mass at the tip, kg.
     pub payload_kg: f64,
-    /// Level of pretension, N.
-    pub level_n: f64,
+    /// Pretension, N.
+    pub pretension_n: f64,
     /// R: the rotation of the leg, its torsion included.
     pub rotation: Rotation3<f64>,
     /// What holds it there.
@@ -43,16 +43,16 @@ pub struct HeldLeg {
 }
 
 impl HeldLeg {
-    /// The leg at the pose, the load and the level of a query.
+    /// The leg at the pose, the load and the pretension of a query.
     ///
     /// The stiffness of each tendon is read where the query says, and its unstretched length is such that its tension
     /// balances the load.
     ///
     /// # Errors
-    /// What [`evaluate`] refuses; [`MjcfError::Infeasible`] and [`MjcfError::Level`] if a tension is outside its bounds.
+    /// What [`evaluate`] refuses; [`MjcfError::Infeasible`] and [`MjcfError::Pretension`] if a tension is outside its bounds.
     pub fn new(parameters: &RigParameters<f64, 3>, query: &Query<f64>) -> Result<Self, MjcfError> {
         let evaluation = evaluate(parameters, query).map_err(LineError::from)?;
-        check_level(query.level_n, &evaluation)?;
+        check_pretension(query.pretension_n, &evaluation)?;
         let rotation = rotation(query, evaluation.torsion_rad).map_err(LineError::from)?;
         Ok(Self {
             parameters: *parameters,
@@ -60,7 +60,7 @@ impl HeldLeg {
             azimuth_deg: query.azimuth_rad.to_degrees(),
             tilt_deg: query.tilt_rad.to_degrees(),
             payload_kg: query.payload_kg,
-            level_n: query.level_n,
+            pretension_n: query.pretension_n,
             rotation,
             tendons: tendons(query, &evaluation).map_err(LineError::from)?,
             bending_nm_per_rad: evaluation.bending_stiffness_nm_per_rad[0],
@@ -89,14 +89,14 @@ impl HeldLeg {
     }
 }
 
-fn check_level(level_n: f64, evaluation: &Evaluation<f64>) -> Result<(), MjcfError> {
-    let [lowest_n, highest_n] = evaluation.level_range_n;
+fn check_pretension(pretension_n: f64, evaluation: &Evaluation<f64>) -> Result<(), MjcfError> {
+    let [lowest_n, highest_n] = evaluation.pretension_range_n;
     if !evaluation.feasible {
         return Err(MjcfError::Infeasible);
     }
-    if level_n < lowest_n || level_n > highest_n {
-        return Err(MjcfError::Level {
-            level_n,
+    if pretension_n < lowest_n || pretension_n > highest_n {
+        return Err(MjcfError::Pretension {
+            pretension_n,
             lowest_n,
             highest_n,
         });
@@ -118,7 +118,7 @@ fn tendons(query: &Query<f64>, evaluation: &Evaluation<f64>) -> Result<[HeldTend
     for (i, tendon) in tendons.iter_mut().enumerate() {
         let tension = evaluation.tensions_n[i];
         let at = match query.stiffness_at {
-            StiffnessAt::Pretension => query.level_n,
+            StiffnessAt::Pretension => query.pretension_n,
             StiffnessAt::Tension => tension,
         };
         tendon.stiffness_n_per_m = query.tendons[i].stiffness(at)?;

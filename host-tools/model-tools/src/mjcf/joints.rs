@@ -61,7 +61,7 @@ impl Joints {
     }
 }
 
-/// R = Rx(α/2)·Ry(β)·Rx(α/2) has a level axis: no torsion. The two halves are held equal.
+/// R = Rx(α/2)·Ry(β)·Rx(α/2) has a pretension axis: no torsion. The two halves are held equal.
 fn torsion_free(
     joint: &JointStiffness<f64>,
     rotation: &Rotation3<f64>,
@@ -168,7 +168,7 @@ fn ball(name: &'static str, spring: f64, rotation: &Rotation3<f64>) -> Joint {
     }
 }
 
-/// θ and τ, rad, in R = Rod(k, θ)·Rz(τ) with a level axis k.
+/// θ and τ, rad, in R = Rod(k, θ)·Rz(τ) with a pretension axis k.
 struct TiltAndTorsion {
     tilt: f64,
     torsion: f64,

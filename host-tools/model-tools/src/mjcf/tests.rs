@@ -52,20 +52,20 @@ fn a_leg_without_any_mass_is_refused() {
 
 #[test]
 fn a_level_that_the_tendons_cannot_hold_is_refused_with_the_range() {
-    let leg = |level_n, payload_kg| {
+    let leg = |pretension_n, payload_kg| {
         let query = Query {
-            level_n,
+            pretension_n,
             ..rig().query(30.0, 30.0, payload_kg)
         };
         HeldLeg::new(&rig().parameters, &query)
     };
-    let Err(MjcfError::Level {
+    let Err(MjcfError::Pretension {
         lowest_n,
         highest_n,
         ..
     }) = leg(45.0, 2.0)
     else {
-        panic!("a level of 45 N should be refused");
+        panic!("a pretension of 45 N should be refused");
     };
     assert!(leg(lowest_n, 2.0).is_ok() && leg(highest_n, 2.0).is_ok());
     assert!(matches!(
@@ -78,7 +78,7 @@ fn a_level_that_the_tendons_cannot_hold_is_refused_with_the_range() {
 fn an_unstretched_tendon_is_shorter_by_its_tension_over_its_stiffness() {
     let leg = HeldLeg::new(&rig().parameters, &rig().query(0.0, 0.0, 1.0)).unwrap();
     for tendon in leg.tendons {
-        // Straight down no weight turns the leg: each tendon has the tension of the level, 70 N, and 35 mm.
+        // Straight down no weight turns the leg: each tendon has the tension of the pretension, 70 N, and 35 mm.
         assert!((tendon.stiffness_n_per_m - 99_450.0).abs() < 1e-6);
         assert!((0.035 - tendon.unstretched_m - 70.0 / 99_450.0).abs() < 1e-12);
     }

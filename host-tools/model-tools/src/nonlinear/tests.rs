@@ -100,7 +100,7 @@ fn the_moment_is_the_energys_derivative() {
 fn a_tendon_may_go_slack_on_the_way() {
     let file = RigFile::load(None).unwrap();
     let slack = Query {
-        level_n: 10.0,
+        pretension_n: 10.0,
         payload_kg: 2.0,
         tendons: [Tendon::constant(99_450.0).unwrap(); 3],
         ..query(SupportKind::TorsionFree.into())
@@ -116,7 +116,7 @@ fn a_tendon_may_go_slack_on_the_way() {
 fn what_has_no_meaning_is_left_out() {
     let rig = RigFile::load(None).unwrap().parameters;
     let pushes = Query {
-        level_n: -1.0,
+        pretension_n: -1.0,
         ..query(SupportKind::TorsionFree.into())
     };
     assert_eq!(deviation_m(&rig, &pushes).unwrap(), None);

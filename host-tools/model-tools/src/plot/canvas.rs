@@ -27,12 +27,12 @@ pub enum PlotError {
     Font,
     /// The file could not be put in its place.
     #[error(
-        "the chart cannot be written ({0}): see that the folder is writable and the disk not full"
+        "the chart cannot be written ({0}): see that the directory is writable and the disk not full"
     )]
     Write(#[from] std::io::Error),
     /// The drawing could not be made.
     #[error(
-        "the chart cannot be drawn ({0}): see that the folder is writable and the disk not full"
+        "the chart cannot be drawn ({0}): see that the directory is writable and the disk not full"
     )]
     Draw(String),
 }

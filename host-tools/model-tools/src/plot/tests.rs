@@ -20,8 +20,8 @@ fn chart(points: Vec<(f64, f64)>) -> Chart {
 
 #[test]
 fn the_svg_names_everything() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("chart.svg");
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("chart.svg");
     save_svg(&chart(vec![(-30.0, 8.0), (0.0, 0.0), (30.0, 8.0)]), &path).unwrap();
     let svg = std::fs::read_to_string(path).unwrap();
     for text in [
@@ -38,9 +38,9 @@ fn the_svg_names_everything() {
 
 #[test]
 fn the_png_shows_its_text_without_a_font_on_the_machine() {
-    let folder = tempfile::tempdir().unwrap();
+    let directory = tempfile::tempdir().unwrap();
     let size = |name: &str, title: &str| {
-        let path = folder.path().join(name);
+        let path = directory.path().join(name);
         let chart = Chart {
             title: title.into(),
             ..chart(vec![(0.0, 0.0), (1.0, 1.0)])
@@ -67,10 +67,10 @@ fn nothing_to_draw_is_refused() {
 
 #[test]
 fn a_flat_line_has_room() {
-    let folder = tempfile::tempdir().unwrap();
+    let directory = tempfile::tempdir().unwrap();
     save_svg(
         &chart(vec![(0.0, 0.0), (1.0, 0.0)]),
-        &folder.path().join("flat.svg"),
+        &directory.path().join("flat.svg"),
     )
     .unwrap();
 }

@@ -10,8 +10,8 @@ fn paper() -> TendonCurve<f64> {
 }
 
 fn fit(text: &str) -> Result<Fit, TensileError> {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("test.csv");
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("test.csv");
     std::fs::write(&path, text).unwrap();
     Fit::new(&read(&path)?, None)
 }

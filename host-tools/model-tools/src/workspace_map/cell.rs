@@ -8,32 +8,32 @@ use serde::Serialize;
 /// What the model says of a pose, for a map.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Cell {
-    /// Whether any level keeps the bounds.
+    /// Whether any pretension keeps the bounds.
     pub feasible: bool,
-    /// Whether the rig's level does.
-    pub level_keeps_bounds: bool,
-    /// Lowest level that keeps the bounds, N; above the highest where none does.
-    pub level_min_n: f64,
-    /// Highest level that keeps the bounds, N.
-    pub level_max_n: f64,
-    /// How far the rig's level is inside that range, N; negative outside.
+    /// Whether the rig's pretension does.
+    pub pretension_keeps_bounds: bool,
+    /// Lowest pretension that keeps the bounds, N; above the highest where none does.
+    pub pretension_min_n: f64,
+    /// Highest pretension that keeps the bounds, N.
+    pub pretension_max_n: f64,
+    /// How far the rig's pretension is inside that range, N; negative outside.
     #[serde(skip)]
-    pub(super) level_room_n: f64,
-    /// How far the tensions at the rig's level stay from their bounds, N; negative beyond them. None where nothing
-    /// holds the leg at that level.
+    pub(super) pretension_room_n: f64,
+    /// How far the tensions at the rig's pretension stay from their bounds, N; negative beyond them. None where nothing
+    /// holds the leg at that pretension.
     pub margin_n: Option<f64>,
-    /// What the leg does at the rig's level, whether or not that keeps the bounds; why that is not known.
+    /// What the leg does at the rig's pretension, whether or not that keeps the bounds; why that is not known.
     #[serde(skip)]
-    pub at_level: Result<AtLevel, Error>,
-    /// Nonlinear deviation at the rig's level, mm, or why there is none. Not there if it was not asked for, if there is
-    /// no linear one, or if the level would have a tendon push before the weights come.
+    pub at_pretension: Result<AtPretension, Error>,
+    /// Nonlinear deviation at the rig's pretension, mm, or why there is none. Not there if it was not asked for, if there is
+    /// no linear one, or if the pretension would have a tendon push before the weights come.
     #[serde(skip)]
     pub deviation_nonlinear_mm: Option<Result<f64, Error>>,
 }
 
-/// What the leg does at the rig's level.
+/// What the leg does at the rig's pretension.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct AtLevel {
+pub struct AtPretension {
     /// Linear deviation, mm.
     pub deviation_mm: f64,
     /// Smallest bending stiffness, N·m/rad.
@@ -90,7 +90,7 @@ impl Row<'_> {
         super::tests::count_survey();
         let found = survey(&self.prepared.rig, &self.query)?;
         let mut cell = Cell::of(&found, &self.query);
-        if self.prepared.with_nonlinear && cell.at_level.is_ok() {
+        if self.prepared.with_nonlinear && cell.at_pretension.is_ok() {
             let deviation_m = nonlinear::deviation_m(&self.prepared.parameters, &self.query);
             let deviation_m = deviation_m.transpose();
             cell.deviation_nonlinear_mm = deviation_m.map(|found| found.map(|m| m * 1000.0));
@@ -101,27 +101,27 @@ impl Row<'_> {
 
 impl Cell {
     fn of(found: &Survey<f64>, query: &Query<f64>) -> Self {
-        let (floor, ceiling) = (query.tension_floor_n, query.tension_ceiling_n);
+        let (floor, ceiling) = (query.f_min_n, query.f_max_n);
         let margin = |tensions: [f64; 3]| {
             let margins = tensions.map(|tension| (tension - floor).min(ceiling - tension));
             margins.into_iter().fold(f64::INFINITY, f64::min)
         };
-        let [lowest, highest] = found.level_range_n;
-        let level_room_n = (query.level_n - lowest).min(highest - query.level_n);
+        let [lowest, highest] = found.pretension_range_n;
+        let pretension_room_n = (query.pretension_n - lowest).min(highest - query.pretension_n);
         Self {
             feasible: lowest <= highest,
-            level_keeps_bounds: level_room_n >= 0.0 && found.tensions_n.is_ok(),
-            level_min_n: lowest,
-            level_max_n: highest,
-            level_room_n,
+            pretension_keeps_bounds: pretension_room_n >= 0.0 && found.tensions_n.is_ok(),
+            pretension_min_n: lowest,
+            pretension_max_n: highest,
+            pretension_room_n,
             margin_n: found.tensions_n.ok().map(margin),
-            at_level: AtLevel::of(found),
+            at_pretension: AtPretension::of(found),
             deviation_nonlinear_mm: None,
         }
     }
 }
 
-impl AtLevel {
+impl AtPretension {
     fn of(found: &Survey<f64>) -> Result<Self, Error> {
         let [softest, stiffest] = found.bending_stiffness_nm_per_rad?;
         Ok(Self {

@@ -4,8 +4,8 @@ use super::{Cell, Quantity, WorkspaceMap, tilt_deg};
 use crate::plot::field::{Field, Sample};
 use leg_model::Error;
 
-/// What the shades without a value say: where another level would do, and where none does.
-pub const SHADES: [&str; 2] = ["level out of bounds", "no feasible level"];
+/// What the shades without a value say: where another pretension would do, and where none does.
+pub const SHADES: [&str; 2] = ["pretension out of bounds", "no feasible pretension"];
 
 impl WorkspaceMap {
     /// A quantity over the workspace, to be drawn.
@@ -32,12 +32,12 @@ impl WorkspaceMap {
 
 fn sample(quantity: Quantity, cell: &Result<Cell, Error>) -> Option<Sample> {
     let cell = cell.as_ref().ok()?;
-    let range_n = cell.level_max_n - cell.level_min_n;
+    let range_n = cell.pretension_max_n - cell.pretension_min_n;
     let (room, wider_room) = match quantity {
-        // It is shown everywhere: below zero it is what the level lacks.
+        // It is shown everywhere: below zero it is what the pretension lacks.
         Quantity::Margin => (1.0, 1.0),
-        Quantity::LevelMin | Quantity::LevelMax => (range_n, range_n),
-        _ => (cell.level_room_n, range_n),
+        Quantity::PretensionMin | Quantity::PretensionMax => (range_n, range_n),
+        _ => (cell.pretension_room_n, range_n),
     };
     Some(Sample {
         value: quantity.value(cell),

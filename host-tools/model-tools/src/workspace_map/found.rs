@@ -10,12 +10,12 @@ pub struct Counts {
     /// All poses.
     #[serde(skip)]
     pub poses: usize,
-    /// Those at which some level keeps the bounds.
+    /// Those at which some pretension keeps the bounds.
     pub feasible: usize,
-    /// Those at which the rig's level does.
-    pub level_keeps_bounds: usize,
-    /// Those at which only another level does.
-    pub only_another_level: usize,
+    /// Those at which the rig's pretension does.
+    pub pretension_keeps_bounds: usize,
+    /// Those at which only another pretension does.
+    pub only_another_pretension: usize,
 }
 
 impl WorkspaceMap {
@@ -29,8 +29,8 @@ impl WorkspaceMap {
         Counts {
             poses: self.cells.len(),
             feasible: count(|cell| cell.feasible),
-            level_keeps_bounds: count(|cell| cell.level_keeps_bounds),
-            only_another_level: count(|cell| cell.feasible && !cell.level_keeps_bounds),
+            pretension_keeps_bounds: count(|cell| cell.pretension_keeps_bounds),
+            only_another_pretension: count(|cell| cell.feasible && !cell.pretension_keeps_bounds),
         }
     }
 
@@ -44,17 +44,17 @@ impl WorkspaceMap {
         }
     }
 
-    /// The reasons for which poses have no result at any level, each with how many those are, the most frequent first.
+    /// The reasons for which poses have no result at any pretension, each with how many those are, the most frequent first.
     #[must_use]
     pub fn without_result(&self) -> Vec<(Error, usize)> {
         by_reason(self.cells.iter().filter_map(|cell| cell.err()))
     }
 
-    /// The same of poses that have none at the rig's level alone.
+    /// The same of poses that have none at the rig's pretension alone.
     #[must_use]
-    pub fn without_level(&self) -> Vec<(Error, usize)> {
+    pub fn without_pretension(&self) -> Vec<(Error, usize)> {
         let cells = self.cells.iter().flatten();
-        by_reason(cells.filter_map(|cell| cell.at_level.err()))
+        by_reason(cells.filter_map(|cell| cell.at_pretension.err()))
     }
 
     /// The same of poses that have no nonlinear deviation although it was looked for.

@@ -9,21 +9,23 @@ use serde::Serialize;
 #[serde(rename_all = "snake_case")]
 #[value(rename_all = "snake_case")]
 pub enum Quantity {
-    /// Linear deviation of the tip at the rig's level.
+    /// Linear deviation of the tip at the rig's pretension.
     Deviation,
-    /// Smallest bending stiffness at the rig's level.
+    /// Smallest bending stiffness at the rig's pretension.
     StiffnessMin,
-    /// Largest bending stiffness at the rig's level.
+    /// Largest bending stiffness at the rig's pretension.
     StiffnessMax,
-    /// Largest by smallest bending stiffness at the rig's level.
+    /// Largest by smallest bending stiffness at the rig's pretension.
     Condition,
-    /// Distance of the tensions at the rig's level from their bounds; negative beyond them.
+    /// Distance of the tensions at the rig's pretension from their bounds; negative beyond them.
     Margin,
-    /// Lowest level that keeps the bounds.
-    LevelMin,
-    /// Highest level that keeps the bounds.
-    LevelMax,
-    /// Deviation of the tip at the rig's level without linearisation: much slower.
+    /// Lowest pretension that keeps the bounds.
+    #[value(alias = "level_min")]
+    PretensionMin,
+    /// Highest pretension that keeps the bounds.
+    #[value(alias = "level_max")]
+    PretensionMax,
+    /// Deviation of the tip at the rig's pretension without linearisation: much slower.
     DeviationNonlinear,
     /// Linear by nonlinear deviation: as slow.
     LinearOverNonlinear,
@@ -40,8 +42,8 @@ impl Quantity {
         Self::StiffnessMax,
         Self::Condition,
         Self::Margin,
-        Self::LevelMin,
-        Self::LevelMax,
+        Self::PretensionMin,
+        Self::PretensionMax,
         Self::DeviationNonlinear,
         Self::LinearOverNonlinear,
     ];
@@ -67,8 +69,8 @@ impl Quantity {
             Self::StiffnessMax => "stiffness_max",
             Self::Condition => "condition",
             Self::Margin => "margin",
-            Self::LevelMin => "level_min",
-            Self::LevelMax => "level_max",
+            Self::PretensionMin => "pretension_min",
+            Self::PretensionMax => "pretension_max",
             Self::DeviationNonlinear => "deviation_nonlinear",
             Self::LinearOverNonlinear => "linear_over_nonlinear",
         }
@@ -83,8 +85,8 @@ impl Quantity {
             Self::StiffnessMax => "largest bending stiffness",
             Self::Condition => "condition number",
             Self::Margin => "tension margin",
-            Self::LevelMin => "lowest feasible level",
-            Self::LevelMax => "highest feasible level",
+            Self::PretensionMin => "lowest feasible pretension",
+            Self::PretensionMax => "highest feasible pretension",
             Self::DeviationNonlinear => "nonlinear deviation",
             Self::LinearOverNonlinear => "linear by nonlinear",
         }
@@ -97,7 +99,7 @@ impl Quantity {
             Self::Deviation | Self::DeviationNonlinear => "mm",
             Self::StiffnessMin | Self::StiffnessMax => "N·m/rad",
             Self::Condition => "",
-            Self::Margin | Self::LevelMin | Self::LevelMax => "N",
+            Self::Margin | Self::PretensionMin | Self::PretensionMax => "N",
             Self::LinearOverNonlinear => "%",
         }
     }
@@ -105,31 +107,31 @@ impl Quantity {
     /// Its value in a cell, whether or not that keeps the bounds.
     #[must_use]
     pub fn value(self, cell: &Cell) -> Option<f64> {
-        let at_level = cell.at_level.ok();
+        let at_pretension = cell.at_pretension.ok();
         let nonlinear_mm = || cell.deviation_nonlinear_mm?.ok();
         match self {
-            Self::Deviation => Some(at_level?.deviation_mm),
-            Self::StiffnessMin => Some(at_level?.stiffness_min_nm_per_rad),
-            Self::StiffnessMax => Some(at_level?.stiffness_max_nm_per_rad),
-            Self::Condition => Some(at_level?.condition),
+            Self::Deviation => Some(at_pretension?.deviation_mm),
+            Self::StiffnessMin => Some(at_pretension?.stiffness_min_nm_per_rad),
+            Self::StiffnessMax => Some(at_pretension?.stiffness_max_nm_per_rad),
+            Self::Condition => Some(at_pretension?.condition),
             Self::Margin => cell.margin_n,
-            Self::LevelMin => Some(cell.level_min_n),
-            Self::LevelMax => Some(cell.level_max_n),
+            Self::PretensionMin => Some(cell.pretension_min_n),
+            Self::PretensionMax => Some(cell.pretension_max_n),
             Self::DeviationNonlinear => nonlinear_mm(),
             Self::LinearOverNonlinear => nonlinear_mm()
                 .filter(|deviation_mm| *deviation_mm > DEVIATION_ROUNDING_MM)
-                .and_then(|deviation_mm| Some(100.0 * at_level?.deviation_mm / deviation_mm)),
+                .and_then(|deviation_mm| Some(100.0 * at_pretension?.deviation_mm / deviation_mm)),
         }
     }
 
-    /// Its value in a cell, if it counts there: that of a range where there is one, that of the rig's level where it
-    /// keeps the bounds. The margin counts everywhere: below zero it says how far the level is from keeping them.
+    /// Its value in a cell, if it counts there: that of a range where there is one, that of the rig's pretension where it
+    /// keeps the bounds. The margin counts everywhere: below zero it says how far the pretension is from keeping them.
     #[must_use]
     pub fn of(self, cell: &Cell) -> Option<f64> {
         let counts = match self {
             Self::Margin => true,
-            Self::LevelMin | Self::LevelMax => cell.feasible,
-            _ => cell.level_keeps_bounds,
+            Self::PretensionMin | Self::PretensionMax => cell.feasible,
+            _ => cell.pretension_keeps_bounds,
         };
         self.value(cell).filter(|_| counts)
     }

@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod agreement;
-mod level;
+mod pretension;
 mod work;
 
 pub(super) use work::count_survey;
@@ -49,7 +49,7 @@ fn the_map_of_a_symmetric_rig_repeats_every_120_degrees() {
     }
 }
 
-/// The levels that serve every pose of the workspace, for 0, 0.5, 1 and 2 kg.
+/// The pretensions that serve every pose of the workspace, for 0, 0.5, 1 and 2 kg.
 #[test]
 fn the_levels_that_serve_every_pose_are_known() {
     let expected = [
@@ -63,11 +63,11 @@ fn the_levels_that_serve_every_pose_are_known() {
         let cells: Vec<_> = map.cells.iter().map(|cell| cell.unwrap()).collect();
         let least = cells
             .iter()
-            .map(|cell| cell.level_min_n)
+            .map(|cell| cell.pretension_min_n)
             .fold(f64::MIN, f64::max);
         let most = cells
             .iter()
-            .map(|cell| cell.level_max_n)
+            .map(|cell| cell.pretension_max_n)
             .fold(f64::MAX, f64::min);
         assert!((least - lowest).abs() < 0.06, "{payload_kg} kg: {least}");
         assert!((most - highest).abs() < 0.06, "{payload_kg} kg: {most}");

@@ -12,10 +12,10 @@ use std::ops::Range;
 pub struct Buckling {
     /// The load under which the joint buckles, N.
     pub critical_n: f64,
-    /// The pull by it, each tendon at the level.
-    pub at_level: f64,
+    /// The pull by it, each tendon at the pretension.
+    pub at_pretension: f64,
     /// The pull by it, each tendon at the highest tension allowed.
-    pub at_ceiling: f64,
+    pub at_f_max: f64,
 }
 
 impl RigFile {
@@ -25,8 +25,8 @@ impl RigFile {
         let critical_n = self.critical_n?;
         Some(Buckling {
             critical_n,
-            at_level: pull_n(self.level_n) / critical_n,
-            at_ceiling: pull_n(self.tension_ceiling_n) / critical_n,
+            at_pretension: pull_n(self.pretension_n) / critical_n,
+            at_f_max: pull_n(self.f_max_n) / critical_n,
         })
     }
 }
@@ -35,13 +35,13 @@ fn pull_n(tension_n: f64) -> f64 {
     3.0 * tension_n
 }
 
-/// Refuses a joint that buckles at the level, at the place of the level.
-pub(super) fn check(file: &RigFile, level: Option<Range<usize>>) -> Result<(), Fault> {
+/// Refuses a joint that buckles at the pretension, at the place of the pretension.
+pub(super) fn check(file: &RigFile, pretension: Option<Range<usize>>) -> Result<(), Fault> {
     match file.buckling() {
-        Some(buckling) if buckling.at_level >= 1.0 => Err(Fault {
-            span: level.unwrap_or(0..0),
+        Some(buckling) if buckling.at_pretension >= 1.0 => Err(Fault {
+            span: pretension.unwrap_or(0..0),
             problem: Problem::Buckles {
-                pull_n: pull_n(file.level_n),
+                pull_n: pull_n(file.pretension_n),
                 critical_n: buckling.critical_n,
             },
         }),

@@ -132,14 +132,14 @@ fn others(file: &RigFile) -> [Pair; 3] {
             "else no sensor sees that the drivers are too hot",
         ),
         Pair::new(
-            Side::tendon("ceiling_n", file.tension_ceiling_n),
+            Side::tendon("f_max_n", file.f_max_n),
             Side::actuator("cell_range_n", taut_n),
             "else no load cell sees too much tension",
         ),
         Pair::new(
             Side::limit("slack_n", limits.slack_n),
-            Side::tendon("floor_n", file.tension_floor_n),
-            "else a tendon at the floor is taken as slack",
+            Side::tendon("f_min_n", file.f_min_n),
+            "else a tendon at the minimum tension is taken as slack",
         ),
     ]
 }

@@ -42,7 +42,7 @@ pub(super) fn parse(text: &str) -> Result<RigFile, Fault> {
             problem: Problem::Refused { key, reason },
         });
     }
-    buckling::check(&file, root.span_of("tendon", "level_n"))?;
+    buckling::check(&file, root.span_of("tendon", "pretension_n"))?;
     consistency::check(&file, &root)?;
     Ok(file)
 }
@@ -83,9 +83,9 @@ fn read(root: &Section<'_>) -> Result<RigFile, Fault> {
         },
         tendons: tendon::read(&forces)?,
         stiffness_at: tendon::read_stiffness_at(&forces)?,
-        tension_floor_n: forces.number("floor_n")?,
-        tension_ceiling_n: forces.number("ceiling_n")?,
-        level_n: forces.number("level_n")?,
+        f_min_n: forces.number("f_min_n")?,
+        f_max_n: forces.number("f_max_n")?,
+        pretension_n: forces.number("pretension_n")?,
         tilt_deg,
         support_name,
         support,
@@ -108,17 +108,17 @@ fn check(file: &RigFile) -> Result<(), (Quantity, Reason)> {
     }
     // A curve has to serve every tension that is allowed.
     for tendon in &file.tendons {
-        if let Err(Error::Refused { reason, .. }) = tendon.elongation(file.tension_ceiling_n) {
-            return Err((Quantity::TensionCeiling, reason));
+        if let Err(Error::Refused { reason, .. }) = tendon.elongation(file.f_max_n) {
+            return Err((Quantity::TensionMax, reason));
         }
-        if let Err(Error::Refused { reason, .. }) = tendon.elongation(file.level_n) {
-            return Err((Quantity::Level, reason));
+        if let Err(Error::Refused { reason, .. }) = tendon.elongation(file.pretension_n) {
+            return Err((Quantity::Pretension, reason));
         }
     }
     match leg_model::evaluate(&file.parameters, &file.query(0.0, file.tilt_deg, 0.0)) {
         Err(Error::Refused { quantity, reason }) => Err((quantity, reason)),
-        _ if !(file.tension_floor_n..=file.tension_ceiling_n).contains(&file.level_n) => {
-            Err((Quantity::Level, Reason::OutsideBounds))
+        _ if !(file.f_min_n..=file.f_max_n).contains(&file.pretension_n) => {
+            Err((Quantity::Pretension, Reason::OutsideBounds))
         }
         _ => Ok(()),
     }
@@ -136,9 +136,9 @@ fn key_of(quantity: Quantity) -> Option<(&'static str, &'static str)> {
         Quantity::LegMass => ("mass", "leg_kg"),
         Quantity::LegCentroid => ("mass", "centroid_mm"),
         Quantity::Gravity => ("mass", "gravity_m_per_s2"),
-        Quantity::TensionFloor => ("tendon", "floor_n"),
-        Quantity::TensionCeiling => ("tendon", "ceiling_n"),
-        Quantity::Level => ("tendon", "level_n"),
+        Quantity::TensionMin => ("tendon", "f_min_n"),
+        Quantity::TensionMax => ("tendon", "f_max_n"),
+        Quantity::Pretension => ("tendon", "pretension_n"),
         Quantity::Tilt => ("workspace", "tilt_deg"),
         _ => return None,
     })

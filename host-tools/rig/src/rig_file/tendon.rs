@@ -15,9 +15,9 @@ pub(super) const KEYS: [&str; 10] = [
     "curve_3",
     "test_piece",
     "stiffness_at",
-    "floor_n",
-    "ceiling_n",
-    "level_n",
+    "f_min_n",
+    "f_max_n",
+    "pretension_n",
 ];
 
 const COLUMNS: [&str; 3] = ["tension_n", "elongation_mm", "stiffness_n_per_m"];

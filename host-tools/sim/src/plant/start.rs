@@ -22,8 +22,8 @@ pub enum Start {
         azimuth_deg: f64,
         /// Tilt, degrees.
         tilt_deg: f64,
-        /// Level of pretension, N.
-        level_n: f64,
+        /// Pretension, N.
+        pretension_n: f64,
         /// kg.
         payload_kg: f64,
     },
@@ -69,12 +69,12 @@ impl Start {
             Self::Held {
                 azimuth_deg,
                 tilt_deg,
-                level_n,
+                pretension_n,
                 payload_kg,
             } => {
                 let direction =
                     Direction::from_angles(azimuth_deg.to_radians(), tilt_deg.to_radians())?;
-                held(file, rig, tendons, direction, level_n, payload_kg)
+                held(file, rig, tendons, direction, pretension_n, payload_kg)
             }
         }
     }
@@ -96,13 +96,13 @@ fn held(
     rig: &Rig<f64, 3>,
     tendons: &[RealTendon; 3],
     direction: Direction<f64>,
-    level_n: f64,
+    pretension_n: f64,
     payload_kg: f64,
 ) -> Result<Begun, Error> {
-    let bounds = TensionBounds::new(file.tension_floor_n, file.tension_ceiling_n)?;
+    let bounds = TensionBounds::new(file.f_min_n, file.f_max_n)?;
     let moment = Load::new(rig, payload_kg)?.moment(&direction);
     let support = &file.support;
-    let torsion = elastic_torsion(rig, support, &direction, &moment, &bounds, level_n)?;
+    let torsion = elastic_torsion(rig, support, &direction, &moment, &bounds, pretension_n)?;
     let hold = inverse_statics(
         rig,
         support,
@@ -110,7 +110,7 @@ fn held(
         &moment,
         &bounds,
         &file.tendons,
-        level_n,
+        pretension_n,
     )
     .map_err(refusal)?;
     let mut unstretched_m: [f64; 3] = hold.unstretched.into();
@@ -135,7 +135,7 @@ fn refusal(error: HoldError) -> Error {
     match error {
         HoldError::Model(error) => error,
         HoldError::OutOfBounds(_) => Error::Refused {
-            quantity: Quantity::Level,
+            quantity: Quantity::Pretension,
             reason: Reason::OutOfRange,
         },
         HoldError::Infeasible(_) => Error::Infeasible,

@@ -24,7 +24,7 @@ const OFF: Drive<f32> = Drive {
 const HELD: Start = Start::Held {
     azimuth_deg: 40.0,
     tilt_deg: 15.0,
-    level_n: 70.0,
+    pretension_n: 70.0,
     payload_kg: 0.5,
 };
 

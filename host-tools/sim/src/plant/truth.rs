@@ -44,7 +44,7 @@ pub struct Energy {
     pub tendons_j: f64,
     /// Of the elastic joint.
     pub joint_j: f64,
-    /// Of the weights; zero with the leg level.
+    /// Of the weights; zero with the leg pretension.
     pub weights_j: f64,
 }
 

@@ -88,12 +88,12 @@ fn start(scenario: &Scenario) -> Vec<Number> {
         StartText::Held {
             azimuth_deg,
             tilt_deg,
-            level_n,
+            pretension_n,
             payload_kg,
         } => vec![
             ("azimuth_deg", azimuth_deg, [-3600.0, 3600.0]),
             ("tilt_deg", tilt_deg, [0.0, 60.0]),
-            ("level_n", level_n, [0.0, 1e3]),
+            ("pretension_n", pretension_n, [0.0, 1e3]),
             ("payload_kg", payload_kg, PAYLOAD_KG),
         ],
     }
@@ -135,7 +135,7 @@ fn numbers(step: &Step) -> Vec<Number> {
             ("azimuth_deg", *azimuth_deg, ANGLE_DEG),
             ("tilt_deg", *tilt_deg, [-90.0, 90.0]),
         ],
-        Step::LevelN(level_n) => vec![("level_n", *level_n, ANY)],
+        Step::PretensionN(pretension_n) => vec![("pretension_n", *pretension_n, ANY)],
         Step::Stiffness {
             nm_per_rad,
             towards_deg,
@@ -221,7 +221,7 @@ mod tests {
                 "step 1: force_n = inf is not from",
             ),
             (
-                "steps = [{ measure = { name = \"a\", quantity = \"level_n\", between = [2, 1] } }]",
+                "steps = [{ measure = { name = \"a\", quantity = \"pretension_n\", between = [2, 1] } }]",
                 "step 1: the higher of between = 1 is not from 2",
             ),
             (

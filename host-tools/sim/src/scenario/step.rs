@@ -28,8 +28,8 @@ pub enum Step {
         /// Degrees.
         tilt_deg: f64,
     },
-    /// Commands a level of pretension, N.
-    LevelN(f64),
+    /// Commands a pretension, N.
+    PretensionN(f64),
     /// Demands a bending stiffness.
     Stiffness {
         /// N·m/rad.
@@ -136,8 +136,8 @@ pub enum Quantity {
     OutsideMs,
     /// Payload that the leg estimates, kg.
     PayloadKg,
-    /// Level of pretension, N.
-    LevelN,
+    /// Pretension, N.
+    PretensionN,
     /// Stiffness that the leg tells, N·m/rad.
     StiffnessNmPerRad,
     /// Largest error of the lengths that homing found, mm.
@@ -150,7 +150,7 @@ impl Quantity {
     pub const fn unit(self) -> &'static str {
         match self {
             Self::TipErrorMm | Self::TipMovedMm | Self::HomingErrorMm => "mm",
-            Self::TensionMinN | Self::TensionMaxN | Self::LevelN => "N",
+            Self::TensionMinN | Self::TensionMaxN | Self::PretensionN => "N",
             Self::OutsideMs => "ms",
             Self::PayloadKg => "kg",
             Self::StiffnessNmPerRad => "N·m/rad",

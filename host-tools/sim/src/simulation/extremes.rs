@@ -31,7 +31,7 @@ impl Extremes {
         }
     }
 
-    pub fn take(&mut self, truth: &Truth, [floor_n, ceiling_n]: [f64; 2]) {
+    pub fn take(&mut self, truth: &Truth, [f_min_n, f_max_n]: [f64; 2]) {
         let lowest = truth.tensions_n.into_iter().fold(f64::INFINITY, f64::min);
         let highest = truth
             .tensions_n
@@ -39,7 +39,7 @@ impl Extremes {
             .fold(f64::NEG_INFINITY, f64::max);
         self.tension_min_n = self.tension_min_n.min(lowest);
         self.tension_max_n = self.tension_max_n.max(highest);
-        let outside = lowest < floor_n * (1.0 - BEYOND) || highest > ceiling_n * (1.0 + BEYOND);
+        let outside = lowest < f_min_n * (1.0 - BEYOND) || highest > f_max_n * (1.0 + BEYOND);
         self.outside_now_ms = if outside {
             self.outside_now_ms + tick_s() * 1000.0
         } else {

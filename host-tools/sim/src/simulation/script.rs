@@ -303,7 +303,7 @@ fn command(step: &Step) -> Option<Command> {
                 y: (sine * sin) as f32,
             }
         }
-        Step::LevelN(level_n) => Command::Level(level_n as f32),
+        Step::PretensionN(pretension_n) => Command::Pretension(pretension_n as f32),
         Step::Stiffness {
             nm_per_rad,
             towards_deg,
@@ -333,7 +333,7 @@ fn measure(quantity: Quantity, stage: &Stage) -> f64 {
         Quantity::TensionMaxN => stage.extremes.tension_max_n,
         Quantity::OutsideMs => stage.extremes.outside_ms,
         Quantity::PayloadKg => told(|telemetry| telemetry.payload_kg),
-        Quantity::LevelN => told(|telemetry| telemetry.level_n),
+        Quantity::PretensionN => told(|telemetry| telemetry.pretension_n),
         Quantity::StiffnessNmPerRad => told(|telemetry| telemetry.stiffness_nm_per_rad),
         Quantity::HomingErrorMm => homing_error_mm(stage),
     }

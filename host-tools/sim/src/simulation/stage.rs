@@ -81,7 +81,7 @@ impl Stage {
             telemetry: None,
             silent: false,
             pushing: None,
-            bounds_n: [rig.tension_floor_n, rig.tension_ceiling_n],
+            bounds_n: [rig.f_min_n, rig.f_max_n],
             tip_length_m: parameters.joint_length_m + parameters.leg_length_m,
             rng: fastrand::Rng::with_seed(seed),
             asked: Some(asked),

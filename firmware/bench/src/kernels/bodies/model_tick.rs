@@ -33,7 +33,7 @@ impl<T: Scalar> Body<T> for ModelTick {
         let plane = leg_model::FreePlane::torsion_free(&found.direction);
         let distribution =
             leg_model::distribute(&kinematics.moment_map, &plane, &moment, &bench.bounds)?;
-        let tensions = distribution.tensions(bench.level);
+        let tensions = distribution.tensions(bench.pretension);
         let mut unstretched = kinematics.lengths;
         for (i, tendon) in bench.tendons.iter().enumerate() {
             unstretched[i] -= tendon.elongation(tensions[i])?;

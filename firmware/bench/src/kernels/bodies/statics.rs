@@ -13,19 +13,23 @@ impl<T: Scalar> Body<T> for Distribution {
     fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
         let map = &bench.kinematics.moment_map;
         let distribution = leg_model::distribute(map, &bench.plane, &bench.moment, &bench.bounds)?;
-        Ok((distribution, distribution.tensions(bench.level)))
+        Ok((distribution, distribution.tensions(bench.pretension)))
     }
 
     fn flatten((distribution, tensions): &Self::Output, push: &mut impl FnMut(T)) {
         distribution.particular.iter().copied().for_each(&mut *push);
-        distribution.per_level.iter().copied().for_each(&mut *push);
-        push(distribution.lowest_level);
-        push(distribution.highest_level);
+        distribution
+            .per_pretension
+            .iter()
+            .copied()
+            .for_each(&mut *push);
+        push(distribution.pretension_min);
+        push(distribution.pretension_max);
         tensions.iter().copied().for_each(push);
     }
 }
 
-/// Elongation and stiffness of the first tendon at the level.
+/// Elongation and stiffness of the first tendon at the pretension.
 pub struct TendonCurve;
 
 impl<T: Scalar> Body<T> for TendonCurve {
@@ -35,8 +39,8 @@ impl<T: Scalar> Body<T> for TendonCurve {
     fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
         let [curve, ..] = &bench.curves;
         Ok([
-            curve.elongation(bench.level)?,
-            curve.stiffness(bench.level)?,
+            curve.elongation(bench.pretension)?,
+            curve.stiffness(bench.pretension)?,
         ])
     }
 
@@ -59,7 +63,7 @@ impl<T: Scalar> Body<T> for InverseStatics {
             &bench.moment,
             &bench.bounds,
             &bench.curves,
-            bench.level,
+            bench.pretension,
         )
         .map_err(|error| match error {
             HoldError::Model(error) => error,
@@ -90,11 +94,11 @@ impl<T: Scalar> Body<T> for StiffnessCommand {
             &bench.kinematics,
             &bench.distribution,
         );
-        command.level_for(bench.demand, &BendingAxis::Softest, &bench.bounds)
+        command.pretension_for(bench.demand, &BendingAxis::Softest, &bench.bounds)
     }
 
     fn flatten(answer: &Self::Output, push: &mut impl FnMut(T)) {
-        push(answer.level_n);
+        push(answer.pretension_n);
         push(answer.stiffness_nm_per_rad);
         push(T::from(f32::from(
             answer.limit.map_or(0, |limit| limit.tendon),

@@ -101,7 +101,7 @@ fn a_second_host_is_refused_while_the_first_drives() {
 /// Between an arm and the tick that obeys it the leg does not follow anybody yet.
 #[test]
 fn who_only_speaks_does_not_take_the_leg_over() {
-    for command in [Command::KeepAlive, MOVE, Command::Level(70.0)] {
+    for command in [Command::KeepAlive, MOVE, Command::Pretension(70.0)] {
         let mut line = followed(State::Disarmed);
         assert_eq!(line.obey(OTHER, command), HostReply::Done);
         line.leg.state = State::Active;

@@ -67,7 +67,7 @@ struct Bounds<T> {
 impl<T: Scalar> AxisMonitor<T> {
     pub fn new(settings: &Settings, m_per_count: f32) -> Self {
         let (limits, servo) = (&settings.limits, &settings.servo);
-        let ceiling = settings.tension_ceiling_n;
+        let ceiling = settings.f_max_n;
         Self {
             slack: Timer::new(looks(limits.slack_time_s)),
             stale: Timer::new(looks(limits.stale_time_s)),

@@ -22,7 +22,7 @@ pub(super) struct Bench {
     plane: FreePlane<f64>,
     load: Load<f64>,
     bounds: TensionBounds<f64>,
-    level: f64,
+    pretension: f64,
     tendon: ConstantStiffness<f64>,
     curve: Tendon<f64>,
     demand: f64,
@@ -40,7 +40,7 @@ impl Bench {
         let (start_azimuth, start_tilt) = (input.start_azimuth_rad, input.start_tilt_rad);
         let plane = FreePlane::torsion_free(&direction);
         let load = Load::new(&rig, query.payload_kg)?;
-        let bounds = TensionBounds::new(query.tension_floor_n, query.tension_ceiling_n)?;
+        let bounds = TensionBounds::new(query.f_min_n, query.f_max_n)?;
         let tendon = ConstantStiffness::new(input.stiffness_n_per_m.into())?;
         let [curve, ..] = state.with_curves().query()?.tendons;
         let kinematics = inverse_kinematics(rig.geometry(), &direction)?;
@@ -55,14 +55,14 @@ impl Bench {
             plane,
             load,
             bounds,
-            level: query.level_n,
+            pretension: query.pretension_n,
             tendon,
             curve,
             demand: input.demand_nm_per_rad.into(),
             kinematics,
             distribution,
             states: TendonStates::new(
-                distribution.tensions(query.level_n),
+                distribution.tensions(query.pretension_n),
                 SVector::repeat(tendon.stiffness_n_per_m()),
             )?,
             length_errors: Vector3::from(input.length_errors_m.map(f64::from)),
@@ -80,8 +80,8 @@ impl Bench {
             Kernel::FullPass => self.pass(None)?,
             Kernel::FullPassInPlane => self.pass(Some(&self.plane))?,
             Kernel::TendonCurve => vec![
-                self.curve.elongation(self.level)?,
-                self.curve.stiffness(self.level)?,
+                self.curve.elongation(self.pretension)?,
+                self.curve.stiffness(self.pretension)?,
             ],
             Kernel::InverseStatics => self.inverse_statics()?,
             Kernel::StiffnessCommand => self.stiffness_command()?,
@@ -104,13 +104,13 @@ impl Bench {
 
     fn distribution(&self) -> Vec<f64> {
         let distribution = &self.distribution;
-        let levels = [distribution.lowest_level, distribution.highest_level];
-        let (particular, per_level) = (&distribution.particular, &distribution.per_level);
+        let pretensions = [distribution.pretension_min, distribution.pretension_max];
+        let (particular, per_pretension) = (&distribution.particular, &distribution.per_pretension);
         let tensions = self.states.tensions();
         [
             particular.as_slice(),
-            per_level.as_slice(),
-            &levels,
+            per_pretension.as_slice(),
+            &pretensions,
             tensions.as_slice(),
         ]
         .concat()
@@ -165,7 +165,7 @@ impl Bench {
     /// By halving, on the eigenvalues of the plain matrix.
     fn stiffness_command(&self) -> Result<Vec<f64>, Error> {
         let distribution = &self.distribution;
-        let (mut low, mut high) = (distribution.lowest_level, distribution.highest_level);
+        let (mut low, mut high) = (distribution.pretension_min, distribution.pretension_max);
         let (softest, stiffest) = (self.bending_at(low)?, self.bending_at(high)?);
         let [at_lowest, at_highest] = distribution.limits(&self.bounds);
         if self.demand <= softest {
@@ -186,8 +186,8 @@ impl Bench {
     }
 
     /// The smallest eigenvalue of PᵀKP with an orthonormal P, each tendon's stiffness at its own tension.
-    fn bending_at(&self, level: f64) -> Result<f64, Error> {
-        let tensions = self.distribution.tensions(level);
+    fn bending_at(&self, pretension: f64) -> Result<f64, Error> {
+        let tensions = self.distribution.tensions(pretension);
         let mut stiffnesses = Vector3::zeros();
         for (stiffness, &tension) in stiffnesses.iter_mut().zip(tensions.iter()) {
             *stiffness = self.curve.stiffness(tension)?;
@@ -210,7 +210,7 @@ impl Bench {
         let plane = FreePlane::torsion_free(direction);
         let distribution: Distribution<f64, 3> =
             distribute(&kinematics.moment_map, &plane, &moment, &self.bounds)?;
-        let tensions = distribution.tensions(self.level);
+        let tensions = distribution.tensions(self.pretension);
         let mut unstretched = kinematics.lengths;
         for (length, &tension) in unstretched.iter_mut().zip(tensions.iter()) {
             *length -= self.tendon.elongation(tension)?;

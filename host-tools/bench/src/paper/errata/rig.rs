@@ -88,12 +88,12 @@ pub(super) fn elastic_length(rig: &RigFile) -> Result<Erratum, Error> {
     let hanging = evaluate(p, &rig.query(0.0, 0.0, 0.0))?;
     let [length_m, ..] = hanging.lengths_m;
     let [tendon, ..] = &rig.tendons;
-    let right = tendon.stiffness(rig.level_n)?;
+    let right = tendon.stiffness(rig.pretension_n)?;
     Ok(Erratum {
         place: "Sec. 4, Table 1",
         wrong: "the length between the plates is taken as what stretches",
         right: "the 100 mm to the slider, whatever the pose",
-        number: "stiffness at the level, if only the length between the plates stretched",
+        number: "stiffness at the pretension, if only the length between the plates stretched",
         printed: right * ELASTIC_LENGTH_M / length_m,
         corrected: right,
         unit: "N/m",

@@ -79,7 +79,7 @@ fn interrupted_on_a_line_that_becomes(becomes: Fate) -> OperatorError {
 fn a_stop_that_nobody_acknowledged_is_told_whatever_went_before() {
     let error = interrupted_on_a_line_that_becomes(Fate::Deaf);
     assert!(matches!(error, OperatorError::NotStopped { .. }), "{error}");
-    assert!(error.cure().contains("press the emergency stop"));
+    assert!(error.remedy().contains("press the emergency stop"));
     assert!(matches!(Failure::from(error), Failure::Missed(_)));
     let error = interrupted_on_a_line_that_becomes(Fate::Broken);
     assert!(matches!(error, OperatorError::Broken { .. }), "{error}");

@@ -19,9 +19,9 @@ fn a_latched_fault_is_named_with_its_cure_until_it_is_cleared() {
         "{error}"
     );
     assert!(
-        error.cure().ends_with("then `leg clear`"),
+        error.remedy().ends_with("then `leg clear`"),
         "{}",
-        error.cure()
+        error.remedy()
     );
     // Its cause is still there.
     assert!(matches!(

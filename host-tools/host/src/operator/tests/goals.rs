@@ -79,7 +79,7 @@ fn what_the_leg_refuses_is_named_and_leaves_it_in_hold() {
             matches!(error, OperatorError::Refused { refusal, .. } if refusal == expected),
             "{error}"
         );
-        assert!(!error.cure().is_empty());
+        assert!(!error.remedy().is_empty());
         assert_eq!(state(&mut operator), State::Held);
     }
 }

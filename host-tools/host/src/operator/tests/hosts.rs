@@ -22,9 +22,9 @@ fn a_host_that_vanishes_in_mid_move_leaves_the_leg_in_hold() {
     // It is refused by name before it is cleared, and goes on then.
     let error = other.reach(&lean(10.0)).unwrap_err();
     assert!(
-        error.cure().contains("it has to speak more often"),
+        error.remedy().contains("it has to speak more often"),
         "{}",
-        error.cure()
+        error.remedy()
     );
     other.clear().unwrap();
     other.reach(&lean(10.0)).unwrap();

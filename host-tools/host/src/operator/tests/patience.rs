@@ -38,6 +38,10 @@ fn a_leg_that_waits_for_nobody_is_not_driven() {
             .starts_with("the leg misses its host after 0.01 s of silence"),
         "{error}"
     );
-    assert!(error.cure().contains("0.02 or more"), "{}", error.cure());
+    assert!(
+        error.remedy().contains("0.02 or more"),
+        "{}",
+        error.remedy()
+    );
     assert_eq!(state(&mut operator), State::Disarmed);
 }

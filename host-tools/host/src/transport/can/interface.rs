@@ -136,7 +136,7 @@ pub(super) fn check(interfaces: &Path, name: &str) -> Result<(), InterfaceError>
 
 /// A number that the system tells of an interface, decimal or hexadecimal.
 fn number(interfaces: &Path, name: &str, what: &str) -> Option<u32> {
-    // Another folder's file is none of an interface.
+    // Another directory's file is none of an interface.
     if name.is_empty() || name.contains('/') || name.starts_with('.') {
         return None;
     }
@@ -179,26 +179,26 @@ mod tests {
 
     /// A system with these interfaces: name, type, flags and MTU.
     fn system(interfaces: &[[&str; 4]]) -> io::Result<TempDir> {
-        let folder = TempDir::new()?;
+        let directory = TempDir::new()?;
         for [name, kind, flags, mtu] in interfaces {
-            let of = folder.path().join(name);
+            let of = directory.path().join(name);
             fs::create_dir(&of)?;
             for (what, value) in [("type", kind), ("flags", flags), ("mtu", mtu)] {
                 fs::write(of.join(what), format!("{value}\n"))?;
             }
         }
-        Ok(folder)
+        Ok(directory)
     }
 
     /// What is told of `name` on a system with one interface of each kind.
     fn told(name: &str) -> io::Result<Option<String>> {
-        let folder = system(&[
+        let directory = system(&[
             ["can0", "280", "0x40081", "72"],
             ["can1", "280", "0x40080", "72"],
             ["can2", "280", "0x40081", "16"],
             ["eth0", "1", "0x1003", "1500"],
         ])?;
-        Ok(check(folder.path(), name)
+        Ok(check(directory.path(), name)
             .err()
             .map(|error| error.to_string()))
     }
@@ -244,8 +244,8 @@ mod tests {
     #[test]
     fn a_path_is_no_interface() -> io::Result<()> {
         for name in ["", ".", "..", "../can0", "can0/"] {
-            let folder = system(&[["can0", "280", "0x1", "72"]])?;
-            let error = check(folder.path(), name);
+            let directory = system(&[["can0", "280", "0x1", "72"]])?;
+            let error = check(directory.path(), name);
             assert!(
                 matches!(error, Err(InterfaceError::Missing { .. })),
                 "{name}"

@@ -121,7 +121,7 @@ fn full(error: &io::Error) -> bool {
     Errno::from_io_error(error) == Some(Errno::NOBUFS)
 }
 
-/// What the system says, with its cause and cure where they are known.
+/// What the system says, with its cause and remedy where they are known.
 fn explain(error: io::Error, name: &str) -> io::Error {
     let name = name.to_owned();
     match Errno::from_io_error(&error) {

@@ -205,8 +205,8 @@ mod tests {
 
     #[test]
     fn a_hub_ends_with_its_port() {
-        let folder = tempfile::tempdir().unwrap();
-        let place = folder.path().join("hub");
+        let directory = tempfile::tempdir().unwrap();
+        let place = directory.path().join("hub");
         let (board, mut tty) = TTYPort::pair().unwrap();
         tty.set_timeout(Duration::from_millis(5)).unwrap();
         let listener = UnixListener::bind(&place).unwrap();

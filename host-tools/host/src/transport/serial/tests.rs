@@ -41,11 +41,11 @@ fn the_only_st_link_is_chosen() {
 
 #[test]
 fn what_is_no_port_is_refused_by_name() {
-    let folder = tempfile::tempdir().unwrap();
-    let missing = folder.path().join("ttyACM7");
+    let directory = tempfile::tempdir().unwrap();
+    let missing = directory.path().join("ttyACM7");
     let error = Serial::open(&missing.display().to_string()).unwrap_err();
     assert!(matches!(error, SerialError::NoPort(_)), "{error}");
-    let file = folder.path().join("file");
+    let file = directory.path().join("file");
     std::fs::write(&file, "").unwrap();
     let error = Serial::open(&file.display().to_string()).unwrap_err();
     assert!(matches!(error, SerialError::System { .. }), "{error}");
@@ -57,7 +57,7 @@ fn a_port_of_another_group_is_named_with_its_cure() {
     let error = refused("/dev/ttyACM0", &serialport::Error::new(denied, ""));
     assert!(matches!(error, SerialError::Forbidden(_)));
     assert!(error.to_string().contains("/dev/ttyACM0"), "{error}");
-    assert!(error.cure().contains("dialout"));
+    assert!(error.remedy().contains("dialout"));
 }
 
 #[test]

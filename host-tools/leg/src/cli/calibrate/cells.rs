@@ -54,7 +54,7 @@ struct CellReport {
 }
 
 pub(super) fn run(args: &Args, verbose: bool) -> Result<(), Failure> {
-    let refused = |error: CellFitError| Failure::refused(error.to_string(), error.cure());
+    let refused = |error: CellFitError| Failure::refused(error.to_string(), error.remedy());
     let first = args.weights.first();
     if args.weights.iter().all(|weight| Some(weight) == first) {
         return Err(refused(CellFitError::OneWeight));

@@ -75,8 +75,8 @@ mod tests {
 
     #[test]
     fn heading_and_legend_of_every_map_fit_beside_it() {
-        let folder = tempfile::tempdir().unwrap();
-        canvas::svg(&folder.path().join("scale.svg"), |area| {
+        let directory = tempfile::tempdir().unwrap();
+        canvas::svg(&directory.path().join("scale.svg"), |area| {
             let room = SCALE_WIDTH_PX as i32 - LEFT_PX;
             for quantity in Quantity::ALL {
                 let (width, _) = area.estimate_text_size(quantity.words(), &text(area))?;

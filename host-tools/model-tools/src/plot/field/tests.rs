@@ -79,9 +79,9 @@ fn every_place_is_in_one_run_of_its_shade() {
 
 #[test]
 fn both_layouts_name_everything() {
-    let folder = tempfile::tempdir().unwrap();
+    let directory = tempfile::tempdir().unwrap();
     for (layout, axis) in [(Layout::Flat, "azimuth (°)"), (Layout::Polar, "330°")] {
-        let path = folder.path().join("map.svg");
+        let path = directory.path().join("map.svg");
         save_svg(&field(), layout, &path).unwrap();
         let svg = std::fs::read_to_string(&path).unwrap();
         for text in [
@@ -95,7 +95,7 @@ fn both_layouts_name_everything() {
         ] {
             assert!(svg.contains(text), "{layout:?}: {text}");
         }
-        save_png(&field(), layout, &folder.path().join("map.png")).unwrap();
+        save_png(&field(), layout, &directory.path().join("map.png")).unwrap();
     }
 }
 
@@ -130,8 +130,8 @@ fn a_field_without_a_value_shows_where_they_would_be() {
         samples: field().samples.into_iter().map(unknown).collect(),
         ..field()
     };
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("map.svg");
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("map.svg");
     save_svg(&field, Layout::Polar, &path).unwrap();
     let svg = std::fs::read_to_string(&path).unwrap();
     for text in ["little room", "no room", "no result"] {

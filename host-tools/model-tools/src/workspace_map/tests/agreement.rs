@@ -16,8 +16,8 @@ fn every_support_maps_what_the_whole_evaluation_says() {
     for ready in READY_RIGS {
         let mut rig = RigFile::parse(ready.name, ready.text).unwrap();
         for _ in 0..6 {
-            // From slack, where ball joints have no result, to beyond the ceiling.
-            rig.level_n = rng.f64().mul_add(200.0, -30.0);
+            // From slack, where ball joints have no result, to beyond the maximum tension.
+            rig.pretension_n = rng.f64().mul_add(200.0, -30.0);
             let payload_kg = 4.0 * rng.f64();
             agrees_with_evaluation(ready.name, &rig, payload_kg);
         }
@@ -29,33 +29,37 @@ fn agrees_with_evaluation(name: &str, rig: &RigFile, payload_kg: f64) {
     for (azimuth, tilt, cell) in map.poses() {
         let place = format!(
             "{name}, {payload_kg} kg, {} N, {azimuth}°, {tilt}°",
-            rig.level_n
+            rig.pretension_n
         );
         let query = rig.query(azimuth, tilt, payload_kg);
         let evaluation = evaluate(&rig.parameters, &query);
-        let at_level = cell.and_then(|cell| cell.at_level);
-        let (Ok(cell), Ok(at_level), Ok(e)) = (cell, at_level, evaluation) else {
-            assert_eq!(at_level.err(), evaluation.err(), "{place}");
+        let at_pretension = cell.and_then(|cell| cell.at_pretension);
+        let (Ok(cell), Ok(at_pretension), Ok(e)) = (cell, at_pretension, evaluation) else {
+            assert_eq!(at_pretension.err(), evaluation.err(), "{place}");
             continue;
         };
         let [softest, stiffest] = e.bending_stiffness_nm_per_rad;
         let inside = e
             .tensions_n
             .iter()
-            .all(|tension| (rig.tension_floor_n..=rig.tension_ceiling_n).contains(tension));
-        assert_eq!(at_level.deviation_mm, e.deviation_m * 1000.0, "{place}");
-        assert_eq!(at_level.stiffness_min_nm_per_rad, softest, "{place}");
-        assert_eq!(at_level.stiffness_max_nm_per_rad, stiffest, "{place}");
-        assert_eq!(at_level.condition, stiffest / softest, "{place}");
+            .all(|tension| (rig.f_min_n..=rig.f_max_n).contains(tension));
         assert_eq!(
-            [cell.level_min_n, cell.level_max_n],
-            e.level_range_n,
+            at_pretension.deviation_mm,
+            e.deviation_m * 1000.0,
+            "{place}"
+        );
+        assert_eq!(at_pretension.stiffness_min_nm_per_rad, softest, "{place}");
+        assert_eq!(at_pretension.stiffness_max_nm_per_rad, stiffest, "{place}");
+        assert_eq!(at_pretension.condition, stiffest / softest, "{place}");
+        assert_eq!(
+            [cell.pretension_min_n, cell.pretension_max_n],
+            e.pretension_range_n,
             "{place}"
         );
         assert_eq!(cell.feasible, e.feasible, "{place}");
         assert_eq!(cell.margin_n.unwrap() >= 0.0, inside, "{place}");
-        // A level that keeps the bounds is in the range, and no other is.
-        assert_eq!(inside, cell.level_keeps_bounds, "{place}");
+        // A pretension that keeps the bounds is in the range, and no other is.
+        assert_eq!(inside, cell.pretension_keeps_bounds, "{place}");
     }
 }
 

@@ -4,11 +4,11 @@ use super::{HELD, OFF, PlantSettings, Start, driven, plant, ready, run};
 use leg_rig::actuator::Actuator;
 use leg_rig::rig_file::RigFile;
 
-/// The pull inwards and outwards at a level of pretension: 150 N is the rig's ceiling.
+/// The pull inwards and outwards at a pretension: 150 N is the rig's ceiling.
 const HIGHEST: Start = Start::Held {
     azimuth_deg: 0.0,
     tilt_deg: 0.0,
-    level_n: 150.0,
+    pretension_n: 150.0,
     payload_kg: 0.0,
 };
 

@@ -89,10 +89,10 @@ fn the_books_close_over_a_cut_and_a_change_of_payload() {
 #[test]
 fn a_start_that_no_tension_holds_is_refused() {
     let rig = ready("table1");
-    let start = |level_n, payload_kg| Start::Held {
+    let start = |pretension_n, payload_kg| Start::Held {
         azimuth_deg: 30.0,
         tilt_deg: 30.0,
-        level_n,
+        pretension_n,
         payload_kg,
     };
     for refused in [start(10.0, 1.0), start(70.0, 50.0), start(70.0, -1.0)] {

@@ -1,4 +1,4 @@
-//! Stiffness on command, one step a cycle: the level of pretension that makes the leg as stiff as demanded.
+//! Stiffness on command, one step a cycle: the pretension that makes the leg as stiff as demanded.
 
 use super::{
     Mechanism, Target,
@@ -12,34 +12,34 @@ const TOLERANCE: f32 = 1e-3;
 /// Longest step of the search, N.
 const STEP_N: f32 = 10.0;
 
-/// What the level of pretension is made for.
+/// What the pretension is made for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LevelDemand<T> {
-    /// The level itself, N.
-    Level(T),
+pub enum PretensionDemand<T> {
+    /// The pretension itself, N.
+    Pretension(T),
     /// A bending stiffness, N·m/rad.
     Stiffness(T, BendingAxis<T>),
 }
 
-/// The search for the level.
+/// The search for the pretension.
 #[derive(Clone, Copy, Debug)]
-pub struct Level<T> {
-    demand: LevelDemand<T>,
-    level_n: T,
-    last_level_n: T,
+pub struct Pretension<T> {
+    demand: PretensionDemand<T>,
+    pretension_n: T,
+    last_pretension_n: T,
     last_stiffness: T,
-    /// Stiffness per level.
+    /// Stiffness per pretension.
     slope: T,
     unreachable: bool,
 }
 
-impl<T: Scalar> Level<T> {
-    /// A level that is asked for directly, N.
-    pub fn new(level_n: T) -> Self {
+impl<T: Scalar> Pretension<T> {
+    /// A pretension that is asked for directly, N.
+    pub fn new(pretension_n: T) -> Self {
         Self {
-            demand: LevelDemand::Level(level_n),
-            level_n,
-            last_level_n: T::zero(),
+            demand: PretensionDemand::Pretension(pretension_n),
+            pretension_n,
+            last_pretension_n: T::zero(),
             last_stiffness: T::zero(),
             slope: T::one(),
             unreachable: false,
@@ -47,21 +47,21 @@ impl<T: Scalar> Level<T> {
     }
 
     /// Takes another demand; the search goes on from where it is.
-    pub fn demand(&mut self, demand: LevelDemand<T>) {
+    pub fn demand(&mut self, demand: PretensionDemand<T>) {
         self.demand = demand;
         self.unreachable = false;
-        if let LevelDemand::Level(level_n) = demand {
-            self.level_n = level_n;
+        if let PretensionDemand::Pretension(pretension_n) = demand {
+            self.pretension_n = pretension_n;
         }
     }
 
-    /// The level found so far, N.
+    /// The pretension found so far, N.
     #[inline(always)]
-    pub fn level_n(&self) -> T {
-        self.level_n
+    pub fn pretension_n(&self) -> T {
+        self.pretension_n
     }
 
-    /// Stiffness at that level, N·m/rad: the smallest against a tilt unless another was demanded.
+    /// Stiffness at that pretension, N·m/rad: the smallest against a tilt unless another was demanded.
     #[inline(always)]
     pub fn stiffness_nm_per_rad(&self) -> T {
         self.last_stiffness
@@ -85,8 +85,8 @@ impl<T: Scalar> Level<T> {
         payload_kg: T,
     ) -> Result<(), Error> {
         let (axis, demand) = match self.demand {
-            LevelDemand::Level(_) => (BendingAxis::Softest, None),
-            LevelDemand::Stiffness(demand, axis) => (axis, Some(demand)),
+            PretensionDemand::Pretension(_) => (BendingAxis::Softest, None),
+            PretensionDemand::Stiffness(demand, axis) => (axis, Some(demand)),
         };
         let load = mechanism.load(payload_kg)?;
         let command = StiffnessCommand::new(
@@ -100,25 +100,25 @@ impl<T: Scalar> Level<T> {
             &target.distribution,
         );
         let (lowest, highest) = (
-            target.distribution.lowest_level,
-            target.distribution.highest_level,
+            target.distribution.pretension_min,
+            target.distribution.pretension_max,
         );
-        let level = least(most(self.level_n, lowest), highest);
-        let stiffness = command.stiffness_at(level, &axis)?;
+        let pretension = least(most(self.pretension_n, lowest), highest);
+        let stiffness = command.stiffness_at(pretension, &axis)?;
         if let Some(demand) = demand {
-            self.search(level, stiffness, demand, [lowest, highest]);
+            self.search(pretension, stiffness, demand, [lowest, highest]);
         }
-        (self.last_level_n, self.last_stiffness) = (level, stiffness);
+        (self.last_pretension_n, self.last_stiffness) = (pretension, stiffness);
         Ok(())
     }
 
     /// A step of the secant method, kept short.
     #[inline(always)]
-    fn search(&mut self, level: T, stiffness: T, demand: T, [lowest, highest]: [T; 2]) {
+    fn search(&mut self, pretension: T, stiffness: T, demand: T, [lowest, highest]: [T; 2]) {
         let error = demand - stiffness;
-        let moved = level - self.last_level_n;
+        let moved = pretension - self.last_pretension_n;
         // A tendon's stiffness about grows with its tension; where it does not, the search must still go on.
-        let proportion = T::from(0.2) * stiffness / most(level, T::one());
+        let proportion = T::from(0.2) * stiffness / most(pretension, T::one());
         if moved.abs() > T::from(0.05) {
             self.slope = (stiffness - self.last_stiffness) / moved;
         }
@@ -129,8 +129,8 @@ impl<T: Scalar> Level<T> {
         } else {
             within(error / slope, T::from(STEP_N))
         };
-        let wanted = level + step;
-        self.level_n = least(most(wanted, lowest), highest);
+        let wanted = pretension + step;
+        self.pretension_n = least(most(wanted, lowest), highest);
         self.unreachable = wanted < lowest || wanted > highest;
     }
 }
