@@ -52,7 +52,7 @@ fn show(step: u32, lamp: &mut Output<'static>) {
         Some(telemetry) => (telemetry.state, telemetry.faults.without_limits().any()),
         None => (State::Boot, false),
     };
-    lamp.set_pretension(lit(state, faulted, step).into());
+    lamp.set_level(lit(state, faulted, step).into());
     if step.is_multiple_of(LOG_STEPS) {
         defmt::info!("longest tick: {=u32} cycles", control::longest_tick());
     }

@@ -13,7 +13,7 @@ use crate::watchdog::Watchdog;
 use crate::{can_bus, fatal, housekeeping, serial, settings_task, switches};
 use embassy_executor::{SpawnError, SpawnToken, Spawner};
 use embassy_stm32::Peripherals;
-use embassy_stm32::gpio::{Output, Pretension, Speed};
+use embassy_stm32::gpio::{Level, Output, Speed};
 use leg_firmware::board::{Kept, LinkChoice, Words};
 use leg_firmware::host_link::BoardKind;
 use leg_firmware::host_link::{HostLink, Identity, Reset};
@@ -58,7 +58,7 @@ pub async fn start(spawner: Spawner, p: Peripherals, origin: (Reset, Option<Kept
         current_2: p.PA6,
         current_3: p.PA7,
     });
-    let lamp = Output::new(p.PA5, Pretension::High, Speed::Low);
+    let lamp = Output::new(p.PA5, Level::High, Speed::Low);
 
     let Ok(mut store) = settings_task::store(CheckedFlash::new(p.FLASH)) else {
         fatal::end(&Words::new("the settings' place is not in the flash"));
