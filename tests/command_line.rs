@@ -1,9 +1,10 @@
-//! What `leg` says, word for word: the transcripts in `command_line/`.
+//! What `leg` prints, to the letter: the transcripts in `command_line/`, README.md and the pages of the host's tools.
 //!
 //! `TRYCMD=overwrite cargo test --test command_line` writes them anew.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use leg_boards::image::FirmwareImage;
 use leg_boards::{image, setup};
 use std::fs::Permissions;
 use std::io::Write;
@@ -15,15 +16,16 @@ const LEG: &str = env!("CARGO_BIN_EXE_leg-under-test");
 
 #[test]
 fn transcripts() {
-    // What a bare machine installs first is told on standard error, and not part of any transcript.
+    // What a bare machine installs first is reported on standard error, and not part of any transcript.
     setup::ensure_target(&mut |_| {}).unwrap();
     setup::ensure_qemu(&mut |_| {}).unwrap();
-    // README.md speaks from the root of the workspace, so that is where its commands run.
+    // The commands of README.md and of the pages run in the root of the workspace.
     std::env::set_current_dir(image::workspace_root()).unwrap();
     trycmd::TestCases::new()
         .register_bin("leg", Path::new(LEG))
         .case("tests/command_line/*.trycmd")
-        .case("README.md");
+        .case("README.md")
+        .case("host-tools/docs/*.md");
 }
 
 /// Runs `leg` with a text on its standard input.
@@ -47,8 +49,11 @@ fn a_missing_emulator_is_refused_with_the_fix() {
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(2));
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert!(told.contains("LEG_QEMU names `no-such-emulator`"), "{told}");
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        error.contains("LEG_QEMU names `no-such-emulator`"),
+        "{error}"
+    );
     assert!(output.stdout.is_empty());
 }
 
@@ -66,9 +71,9 @@ fn dying_emulator(directory: &Path) -> PathBuf {
 }
 
 #[test]
-fn an_emulator_that_dies_in_mid_run_is_told_in_words() {
+fn an_emulator_that_dies_during_a_run_is_reported() {
     let directory = tempfile::tempdir().unwrap();
-    image::build().unwrap();
+    FirmwareImage::Qemu.build().unwrap();
     // Enough poses that a second does not suffice.
     let line = br#"{"azimuth_deg":30,"tilt_deg":20,"payload_kg":1}
 "#;
@@ -81,10 +86,10 @@ fn an_emulator_that_dies_in_mid_run_is_told_in_words() {
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(2));
-    let told = String::from_utf8(output.stderr).unwrap();
+    let error = String::from_utf8(output.stderr).unwrap();
     assert!(
-        told.contains("QEMU") && told.contains("start again"),
-        "{told}"
+        error.contains("QEMU") && error.contains("start again"),
+        "{error}"
     );
     let answers = String::from_utf8(output.stdout).unwrap();
     let count = answers.lines().count();
@@ -93,7 +98,7 @@ fn an_emulator_that_dies_in_mid_run_is_told_in_words() {
 }
 
 #[test]
-fn run_tells_machines_what_came_out() {
+fn run_reports_as_json() {
     let directory = tempfile::tempdir().unwrap();
     let output = Command::new(LEG)
         .args(["run", "--on", "sim", "--json", "--plots"])
@@ -102,7 +107,7 @@ fn run_tells_machines_what_came_out() {
         .unwrap();
     assert!(output.status.success());
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(report["held"], true);
+    assert_eq!(report["passed"], true);
     assert_eq!(report["divergence"]["other_state"], 0);
     let findings = report["findings"].as_array().unwrap();
     assert!(findings.iter().all(|finding| finding["value"].is_f64()));
@@ -140,4 +145,53 @@ fn eval_answers_a_line_that_is_not_utf8_in_its_place() {
         answer.starts_with(r#"{"error":"not a JSON object: invalid unicode"#),
         "{answer}"
     );
+}
+
+#[test]
+fn every_shell_has_completions_and_every_command_a_manual_page() {
+    let directory = tempfile::tempdir().unwrap();
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let script = leg_reads(&["completions", shell], b"");
+        assert!(script.status.success(), "{shell}");
+        let script = String::from_utf8(script.stdout).unwrap();
+        assert!(script.contains("calibrate") && script.contains("payload-kg"));
+    }
+    let pages = directory.path().to_str().unwrap();
+    assert!(leg_reads(&["man", "--out", pages], b"").status.success());
+    for command in leg_cli::command().get_subcommands() {
+        let page = directory
+            .path()
+            .join(format!("leg-{}.1", command.get_name()));
+        let about = command.get_about().unwrap().to_string();
+        let text = std::fs::read_to_string(page).unwrap();
+        // How a manual page writes an apostrophe and a hyphen.
+        let text = text.replace("\\*(Aq", "'").replace('\\', "");
+        assert!(text.contains(&about), "{about}");
+    }
+}
+
+#[test]
+fn every_error_of_a_command_with_json_is_one_line_of_json() {
+    let cases: [(&[&str], i32); 5] = [
+        (&["run", "--scenario", "nowhere"], 2),
+        (
+            &["rig", "validate", "tests/command_line/run.in/typo.toml"],
+            2,
+        ),
+        (&["fly"], 2),
+        (&["home", "--port", "/dev/no-such-port"], 2),
+        (&["eval", "tests/command_line/eval.in/bad.jsonl"], 1),
+    ];
+    for (arguments, exit_code) in cases {
+        let output = Command::new(LEG)
+            .args(arguments)
+            .arg("--json")
+            .current_dir(image::workspace_root())
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(exit_code));
+        let error: serde_json::Value = serde_json::from_slice(&output.stderr).unwrap();
+        assert_eq!(error["exit_code"], exit_code);
+        assert!(!error["error"].as_str().unwrap().is_empty());
+    }
 }

@@ -8,7 +8,8 @@ use nalgebra::Vector3;
 pub enum BendingAxis<T> {
     /// The softest tilt: the smallest eigenvalue.
     Softest,
-    /// The tilt towards an azimuth, given as (cos, sin): what a push at the tip that way meets, as moment per angle.
+    /// The tilt towards an azimuth, given as (cos, sin): the resistance to a push at the tip in that direction, as
+    /// moment per angle.
     /// It is never below that of the softest tilt.
     Towards([T; 2]),
 }
@@ -47,13 +48,13 @@ impl<T: Scalar> Bending<T> {
     }
 
     /// On a support with three freedoms: rotations across the leg, which move its tip, while the twist about the leg
-    /// gives way until it carries no moment. This is what a push at the tip meets.
+    /// turns until it carries no moment. This is the resistance to a push at the tip.
     ///
     /// # Errors
     /// [`Error::Unstable`] if nothing holds that twist.
     #[inline(always)]
     pub fn twisting(k: &Symmetric3<T>, direction: &Direction<T>) -> Result<Self, Error> {
-        let plane = &FreePlane::across(direction);
+        let plane = &FreePlane::normal_to_leg(direction);
         let normal = plane.normal();
         let moment = k.times(&normal);
         let along = normal.dot(&moment);
@@ -75,10 +76,10 @@ impl<T: Scalar> Bending<T> {
     /// # Errors
     /// [`Error::Unstable`] if the leg does not resist every push.
     #[inline(always)]
-    pub fn about(&self, axis: &BendingAxis<T>) -> Result<T, Error> {
+    pub fn stiffness_about(&self, axis: &BendingAxis<T>) -> Result<T, Error> {
         match axis {
             BendingAxis::Softest => self.extremes().map(|[softest, _]| softest),
-            BendingAxis::Towards(azimuth) => self.towards(*azimuth),
+            BendingAxis::Towards(azimuth) => self.push_stiffness(*azimuth),
         }
     }
 
@@ -108,7 +109,7 @@ impl<T: Scalar> Bending<T> {
     /// 1/(aᵀP K⁻¹ Pᵀa) with a = p × h/|p × h|, the axis about which a push towards the horizontal direction h turns the
     /// leg.
     #[inline(always)]
-    fn towards(&self, [cos, sin]: [T; 2]) -> Result<T, Error> {
+    fn push_stiffness(&self, [cos, sin]: [T; 2]) -> Result<T, Error> {
         let [xx, xy, yy] = self.stiffness;
         let determinant = xx * yy - xy * xy;
         if !(xx > T::zero() && determinant > T::zero()) {
@@ -117,7 +118,7 @@ impl<T: Scalar> Bending<T> {
         let &Direction { x, y, z } = &self.direction;
         let axis = Vector3::new(-z * sin, z * cos, x * sin - y * cos);
         let [mx, my] = self.plane.project(&axis);
-        let give = yy * mx * mx - T::TWO * xy * mx * my + xx * my * my;
-        Ok(axis.dot(&axis) * determinant / give)
+        let compliance = yy * mx * mx - T::TWO * xy * mx * my + xx * my * my;
+        Ok(axis.dot(&axis) * determinant / compliance)
     }
 }

@@ -4,10 +4,9 @@ use core::fmt;
 
 /// A quantity that a caller hands to the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize, postcard_schema::Schema)
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(postcard_schema::Schema))]
+#[non_exhaustive]
 pub enum Quantity {
     /// Anchors on the base plate, m.
     BaseAnchors,
@@ -79,10 +78,9 @@ pub enum Quantity {
 
 /// What is wrong with a refused quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize, postcard_schema::Schema)
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(postcard_schema::Schema))]
+#[non_exhaustive]
 pub enum Reason {
     /// It is infinite or not a number.
     NotFinite,
@@ -122,12 +120,11 @@ pub enum Reason {
 
 /// Why the model gives no result.
 ///
-/// Only one variant has fields, so that an error takes two bytes: the fast path writes one on every way out.
+/// Only one variant has fields, so that an error takes two bytes: the fast path writes one at every exit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize, postcard_schema::Schema)
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(postcard_schema::Schema))]
+#[non_exhaustive]
 pub enum Error {
     /// An argument is refused.
     Refused {

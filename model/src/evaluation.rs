@@ -1,25 +1,26 @@
 //! The whole model at one pose: what `leg eval` prints.
 
-mod state;
-mod survey;
+mod balanced_leg;
+mod map;
 
-pub use survey::{Survey, survey};
+pub use map::{MapEvaluation, evaluate_for_map};
 
 use crate::range::check_magnitude;
 use crate::{
     BendingAxis, Error, Limit, Quantity, Rig, RigParameters, Scalar, StiffnessAnswer, Support,
-    Tendon, structural_stiffness_printed,
+    Tendon, printed,
 };
+use balanced_leg::BalancedLeg;
 use nalgebra::Matrix3;
-use state::State;
 
 /// At which tension the stiffness of a tendon is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
-    derive(serde::Serialize, serde::Deserialize, postcard_schema::Schema),
+    derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case")
 )]
+#[cfg_attr(feature = "schema", derive(postcard_schema::Schema))]
 pub enum StiffnessAt {
     /// At the pretension: equal for equal tendons and independent of the load. The deviation then grows in
     /// proportion to the load, as the paper's does.
@@ -33,15 +34,24 @@ const AZIMUTH_MAX_RAD: f32 = 20.0 * core::f32::consts::PI;
 
 /// A bending stiffness that the leg shall have.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize, postcard_schema::Schema)
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(postcard_schema::Schema))]
 pub struct StiffnessDemand<T> {
     /// N·m/rad.
     pub stiffness_nm_per_rad: T,
     /// The azimuth towards which a push at the tip shall meet it, rad; the softest tilt's if there is none.
     pub towards_rad: Option<T>,
+}
+
+impl<T> StiffnessDemand<T> {
+    /// The same numbers in another type, each by `convert`.
+    #[must_use]
+    pub fn map<U>(self, mut convert: impl FnMut(T) -> U) -> StiffnessDemand<U> {
+        StiffnessDemand {
+            stiffness_nm_per_rad: convert(self.stiffness_nm_per_rad),
+            towards_rad: self.towards_rad.map(convert),
+        }
+    }
 }
 
 impl<T: Scalar> StiffnessDemand<T> {
@@ -86,10 +96,8 @@ pub struct Query<T> {
 
 /// What the model says of a [`Query`] on a mechanism with three tendons. SI units, frame {A}, matrices by rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize, postcard_schema::Schema)
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(postcard_schema::Schema))]
 pub struct Evaluation<T> {
     /// Geometric length of each tendon, m (Eq. 4).
     pub lengths_m: [T; 3],
@@ -141,34 +149,60 @@ pub struct Evaluation<T> {
 
 /// Evaluates the whole model at one pose.
 ///
+/// ```
+/// use leg_model::{Query, RigParameters, StiffnessAt, StiffnessDemand, SupportKind, Tendon, evaluate};
+///
+/// let query = Query {
+///     azimuth_rad: 0.0,
+///     tilt_rad: 0.2,
+///     payload_kg: 1.0,
+///     pretension_n: 60.0,
+///     f_min_n: 8.0,
+///     f_max_n: 150.0,
+///     tendons: [Tendon::constant(1e5)?; 3],
+///     stiffness_at: StiffnessAt::Pretension,
+///     support: SupportKind::Spherical.into(),
+///     demand: Some(StiffnessDemand {
+///         stiffness_nm_per_rad: 1e5,
+///         towards_rad: None,
+///     }),
+/// };
+/// let answer = evaluate(&RigParameters::<f64, 3>::TABLE_1, &query)?;
+/// // A ball joint lets the leg twist until no torsion moment is left.
+/// assert!(answer.torsion_rad.abs() < 0.03);
+/// // So stiff a leg is out of reach: the nearest stiffness is the answer.
+/// assert!(answer.commanded.is_some_and(|found| found.stiffness_nm_per_rad < 1e5));
+/// # Ok::<(), leg_model::Error>(())
+/// ```
+///
 /// # Errors
 /// A parameter or a part of the query that is refused, by name; what the model cannot solve at this pose.
 pub fn evaluate<T: Scalar>(
     parameters: &RigParameters<T, 3>,
     query: &Query<T>,
 ) -> Result<Evaluation<T>, Error> {
-    let state = State::new(Rig::new(parameters)?, query)?;
-    let distribution = &state.distribution;
+    let leg = BalancedLeg::new(Rig::new(parameters)?, query)?;
+    let distribution = &leg.distribution;
     let tensions = distribution.tensions(query.pretension_n);
-    let stiffness = state.stiffness(query, &tensions)?;
-    let k2_printed = structural_stiffness_printed(&state.geometry, &state.direction, &tensions);
-    let load_stiffness = state.load.stiffness(&state.direction);
-    let sag = state.sag(&stiffness.total, &stiffness)?;
-    let sag_with_load = state.sag(&(stiffness.total + load_stiffness), &stiffness)?;
-    let unstretched = state.unstretched(&query.tendons, &tensions)?;
-    let bending = state.bending(&(stiffness.total + load_stiffness));
+    let stiffness = leg.stiffness(query, &tensions)?;
+    let k2_printed = printed::structural_stiffness(&leg.geometry, &leg.direction, &tensions);
+    let load_stiffness = leg.load.stiffness(&leg.direction);
+    let sag = leg.sag(&stiffness.total, &stiffness)?;
+    let sag_with_load = leg.sag(&(stiffness.total + load_stiffness), &stiffness)?;
+    let unstretched = leg.unstretched(&query.tendons, &tensions)?;
+    let bending = leg.bending(&(stiffness.total + load_stiffness));
     let demand = query.demand.as_ref();
-    let commanded = demand.map(|demand| state.command(demand, &query.tendons));
+    let commanded = demand.map(|demand| leg.command(demand, &query.tendons));
     Ok(Evaluation {
-        lengths_m: state.kinematics.lengths.into(),
-        moment_map_m: rows(&state.kinematics.moment_map),
+        lengths_m: leg.kinematics.lengths.into(),
+        moment_map_m: rows(&leg.kinematics.moment_map),
         pretension_direction: (distribution.per_pretension * T::FRAC_1_SQRT_3).into(),
-        load_moment_nm: state.load_moment.into(),
-        joint_moment_nm: state.joint_moment.into(),
+        load_moment_nm: leg.load_moment.into(),
+        joint_moment_nm: leg.joint_moment.into(),
         tensions_n: tensions.into(),
         tensions_min_n: distribution.tensions(distribution.pretension_min).into(),
         pretension_range_n: [distribution.pretension_min, distribution.pretension_max],
-        pretension_limits: distribution.limits(&state.bounds),
+        pretension_limits: distribution.limits(&leg.bounds),
         feasible: distribution.feasible(),
         stiffness_nm_per_rad: rows(&stiffness.total),
         stiffness_joint_nm_per_rad: rows(&stiffness.joint),
@@ -179,7 +213,7 @@ pub fn evaluate<T: Scalar>(
         deviation_m: sag.deviation,
         deviation_with_load_stiffness_m: sag_with_load.deviation,
         unstretched_m: unstretched.into(),
-        torsion_rad: state.torsion,
+        torsion_rad: leg.torsion,
         commanded: commanded.transpose()?,
     })
 }

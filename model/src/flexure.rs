@@ -5,8 +5,8 @@
 //! easily about its axis, and resists torsion by bending its flexures sideways.
 //!
 //! The formulas are those of small strain and no load along the flexure. A load along it makes it softer, by about its
-//! part of the critical load. That is told for a flexure whose ends are kept from turning, one by the base and one by
-//! the tendons, but not from moving aside: π²EI/L², as if it were pinned at both ends.
+//! part of the critical load. That load is reported for a flexure whose ends cannot turn (the base holds one, the tendons
+//! the other) but can move aside: π²EI/L², as if it were pinned at both ends.
 
 mod leaf;
 mod notch;
@@ -89,9 +89,14 @@ fn check_length<T: Scalar>(length: T, quantity: Quantity) -> Result<(), Error> {
     check_positive(length, LENGTH_MAX, quantity)
 }
 
-/// Refuses a quantity that is less than `least` times another: a formula for slender flexures would not hold.
-fn check_ratio<T: Scalar>(value: T, other: T, least: f32, quantity: Quantity) -> Result<(), Error> {
-    if value >= T::from(least) * other {
+/// Refuses a quantity that is less than `ratio_min` times another: a formula for slender flexures would not hold.
+fn check_ratio<T: Scalar>(
+    value: T,
+    other: T,
+    ratio_min: f32,
+    quantity: Quantity,
+) -> Result<(), Error> {
+    if value >= T::from(ratio_min) * other {
         Ok(())
     } else {
         Err(Error::refused(quantity, Reason::NotSlender))

@@ -31,6 +31,19 @@ pub struct ForwardKinematics<T> {
 ///
 /// `start` is the last known direction.
 ///
+/// ```
+/// use leg_model::nalgebra::Vector3;
+/// use leg_model::{Direction, Rig, RigParameters, forward_kinematics};
+///
+/// let rig = Rig::new(&RigParameters::<f64, 3>::TABLE_1)?;
+/// let measured_m = Vector3::new(0.0349, 0.0351, 0.0350);
+/// let found = forward_kinematics(rig.geometry(), &measured_m, &Direction::down())?;
+/// // The leg leans towards the shortest tendon; no direction fits all three lengths exactly.
+/// assert!(found.direction.vector().x > 0.0);
+/// assert!(found.residual_m < 1e-4);
+/// # Ok::<(), leg_model::Error>(())
+/// ```
+///
 /// # Errors
 /// Lengths that are not positive are refused; [`Error::Singular`] if the tendons do not determine a direction;
 /// [`Error::NotConverged`] if ten steps do not suffice or the leg would point above the horizon.
@@ -41,7 +54,7 @@ pub fn forward_kinematics<T: Scalar, const N: usize>(
     start: &Direction<T>,
 ) -> Result<ForwardKinematics<T>, Error> {
     require_positive(lengths)?;
-    let targets = core::array::from_fn(|i| Target::new(&geometry.tendons[i], lengths[i]));
+    let targets = core::array::from_fn(|i| MeasuredTendon::new(&geometry.tendons[i], lengths[i]));
     search(start, &Straight::<T, N> { targets })
 }
 
@@ -71,18 +84,18 @@ fn require_positive<T: Scalar, const N: usize>(lengths: &SVector<T, N>) -> Resul
 }
 
 /// A tendon that was measured.
-struct Target<T> {
+struct MeasuredTendon<T> {
     polynomial: LengthPolynomial<T>,
     /// 1/L²: with it, an error of F counts as one of the length.
     weight: T,
 }
 
-impl<T: Scalar> Target<T> {
+impl<T: Scalar> MeasuredTendon<T> {
     #[inline(always)]
     fn new(pair: &AnchorPair<T>, length: T) -> Self {
         let square = length * length;
         Self {
-            polynomial: pair.polynomial.at_length(square),
+            polynomial: pair.polynomial.with_length_square(square),
             weight: T::one() / square,
         }
     }
@@ -90,20 +103,20 @@ impl<T: Scalar> Target<T> {
 
 /// The equations of all tendons at a direction.
 trait Equations<T> {
-    fn at(&self, q: &HalfTangent<T>) -> NormalEquations<T>;
+    fn assemble(&self, q: &HalfTangent<T>) -> NormalEquations<T>;
 }
 
 /// A leg without torsion.
 struct Straight<T, const N: usize> {
-    targets: [Target<T>; N],
+    targets: [MeasuredTendon<T>; N],
 }
 
 impl<T: Scalar, const N: usize> Equations<T> for Straight<T, N> {
     #[inline(always)]
-    fn at(&self, q: &HalfTangent<T>) -> NormalEquations<T> {
+    fn assemble(&self, q: &HalfTangent<T>) -> NormalEquations<T> {
         let mut equations = NormalEquations::new();
         for target in &self.targets {
-            let error = target.polynomial.at(q);
+            let error = target.polynomial.evaluate(q);
             equations.add(error.gradient, error.twice, target.weight);
         }
         equations
@@ -118,13 +131,13 @@ struct Twisting<'a, T, const N: usize> {
 
 impl<T: Scalar, const N: usize> Equations<T> for Twisting<'_, T, N> {
     #[inline(always)]
-    fn at(&self, q: &HalfTangent<T>) -> NormalEquations<T> {
+    fn assemble(&self, q: &HalfTangent<T>) -> NormalEquations<T> {
         let geometry = self.geometry.twisted(&Twist::universal(q));
         let torsion = universal_torsion_gradient(q);
         let mut equations = NormalEquations::new();
         for (pair, &length) in geometry.tendons.iter().zip(self.lengths) {
-            let target = Target::new(pair, length);
-            let error = target.polynomial.at(q);
+            let target = MeasuredTendon::new(pair, length);
+            let error = target.polynomial.evaluate(q);
             let by_torsion = by_torsion(pair, geometry.upper, q);
             let gradient = [
                 error.gradient[0] + by_torsion * torsion[0],
@@ -155,7 +168,7 @@ fn search<T: Scalar>(
 ) -> Result<ForwardKinematics<T>, Error> {
     let mut q = start.half_tangent();
     for step_count in 0..STEPS_MAX {
-        let step = equations.at(&q).solve()?;
+        let step = equations.assemble(&q).solve()?;
         q = HalfTangent {
             x: q.x - step.x,
             y: q.y - step.y,

@@ -39,7 +39,7 @@ impl<T: Scalar> FreePlane<T> {
     /// The plane normal to the leg: the rotations that move its tip.
     #[must_use]
     #[inline(always)]
-    pub fn across(direction: &Direction<T>) -> Self {
+    pub fn normal_to_leg(direction: &Direction<T>) -> Self {
         Self {
             rho_x: -direction.x / direction.z,
             rho_y: -direction.y / direction.z,

@@ -16,8 +16,8 @@ pub struct FullPass<T, const N: usize> {
     pub kinematics: Kinematics<T, N>,
     /// K₁ + exact K₂ + K_load, symmetrised, N·m/rad. At equilibrium the total is symmetric by itself.
     pub stiffness: Symmetric3<T>,
-    /// How the leg gives way under its load. An error here condemns the other fields, too: they stand beside it, not
-    /// inside, so that each number is written once, as soon as it is known.
+    /// Rotation and displacement under the load. With an error here the other fields are invalid, too: they stand
+    /// beside it, not inside, so that each number is written once, as soon as it is known.
     pub deflection: Result<Deflection<T>, Error>,
 }
 
@@ -87,6 +87,20 @@ pub fn full_pass<T: Scalar, const N: usize>(
 /// Full pass for a support with two freedoms: a 2×2 solve in its free plane.
 ///
 /// The same errors as in [`full_pass`].
+///
+/// ```
+/// use leg_model::{Direction, FreePlane, Load, Rig, RigParameters, TendonStates, full_pass_in_plane};
+///
+/// use leg_model::nalgebra::Vector3;
+/// let rig = Rig::new(&RigParameters::<f64, 3>::TABLE_1)?;
+/// let leaning = Direction::from_angles(0.0, 0.3)?;
+/// let plane = FreePlane::torsion_free(&leaning);
+/// let states = TendonStates::new(Vector3::repeat(70.0), Vector3::repeat(9.945e4))?;
+/// let pass = full_pass_in_plane(&rig, &leaning, &plane, &Load::new(&rig, 1.0)?, &states);
+/// let sag_m = pass.deflection?.tip_displacement.norm();
+/// assert!((1e-3..5e-3).contains(&sag_m));
+/// # Ok::<(), leg_model::Error>(())
+/// ```
 #[inline(always)]
 pub fn full_pass_in_plane<T: Scalar, const N: usize>(
     rig: &Rig<T, N>,
@@ -137,8 +151,8 @@ fn pass<T: Scalar, const N: usize>(
     }
 }
 
-/// Exact K₂ at constant tensions, symmetrised, N·m/rad, for tensions f = particular + pretension·per_pretension: the part that
-/// stays, with K_load, and the part per pretension. The tendons' own stiffness is left out.
+/// Exact K₂ at constant tensions, symmetrised, N·m/rad, for tensions f = particular +
+/// pretension·per_pretension: the part that stays, with K_load, and the part per pretension. The tendons' own stiffness is left out.
 #[inline(always)]
 pub(crate) fn tension_stiffness<T: Scalar, const N: usize>(
     geometry: &Geometry<T, N>,
@@ -226,14 +240,14 @@ impl<T: Scalar> Sums<T> {
     fn total(&self, upper: T, direction: &Direction<T>, load: &Load<T>) -> Symmetric3<T> {
         let [x, y] = self.diagonal;
         let z = upper * self.ends[2];
-        let pretension = z - load.lever * direction.z;
+        let upright = z - load.lever * direction.z;
         let lean =
             |axis: T, end: T, vertical: T| T::HALF * (load.lever * axis - upper * end - vertical);
         Symmetric3 {
-            xx: self.along.xx + y + pretension,
+            xx: self.along.xx + y + upright,
             xy: self.along.xy - T::HALF * self.cross,
             xz: self.along.xz + lean(direction.x, self.ends[0], self.vertical[0]),
-            yy: self.along.yy + x + pretension,
+            yy: self.along.yy + x + upright,
             yz: self.along.yz + lean(direction.y, self.ends[1], self.vertical[1]),
             zz: self.along.zz + x + y,
         }

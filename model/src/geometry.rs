@@ -1,8 +1,7 @@
 //! Where the tendons pull: the part of a mechanism that the fast path works on.
 
 use crate::length_polynomial::LengthPolynomial;
-use crate::{Direction, Kinematics, RigParameters, Scalar, Twist};
-use nalgebra::{SVector, Vector3};
+use crate::{Scalar, Twist};
 
 /// Anchors and plates of a validated mechanism, for a leg without torsion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,48 +27,13 @@ pub(crate) struct AnchorPair<T> {
 }
 
 impl<T: Scalar, const N: usize> Geometry<T, N> {
-    pub(crate) fn new(parameters: &RigParameters<T, N>) -> Self {
-        let p = parameters;
-        let (upper, joint) = (p.upper_length_m, p.joint_length_m);
-        let pair =
-            |i: usize| AnchorPair::new(p.base_anchors_m[i], p.leg_anchors_m[i], upper, joint);
+    /// From validated anchors and lengths, m.
+    pub(crate) fn new(base: &[[T; 2]; N], leg: &[[T; 2]; N], upper: T, joint: T) -> Self {
         Self {
-            tendons: core::array::from_fn(pair),
+            tendons: core::array::from_fn(|i| AnchorPair::new(base[i], leg[i], upper, joint)),
             upper,
             joint,
         }
-    }
-
-    /// How much of a unit tension in each tendon pulls the leg up along its own axis: −n·p with n = (B − e)/l.
-    #[must_use]
-    pub fn along_leg(
-        &self,
-        direction: &Direction<T>,
-        kinematics: &Kinematics<T, N>,
-    ) -> SVector<T, N> {
-        SVector::from_fn(|i, _| {
-            let [x, y] = self.tendons[i].base;
-            // e·p is the joint's distance from the leg's plate.
-            let base = x * direction.x + y * direction.y + self.upper * direction.z;
-            (self.joint - base) / kinematics.lengths[i]
-        })
-    }
-
-    /// What a small rotation of the leg changes [`Self::along_leg`] by; `lengthening` is what it does to the tendons, m.
-    pub(crate) fn along_leg_change(
-        &self,
-        direction: &Direction<T>,
-        kinematics: &Kinematics<T, N>,
-        rotation: &Vector3<T>,
-        lengthening: &SVector<T, N>,
-    ) -> SVector<T, N> {
-        let along = self.along_leg(direction, kinematics);
-        let turned = rotation.cross(&direction.vector());
-        SVector::from_fn(|i, _| {
-            let [x, y] = self.tendons[i].base;
-            let base = x * turned.x + y * turned.y + self.upper * turned.z;
-            -(base + along[i] * lengthening[i]) / kinematics.lengths[i]
-        })
     }
 
     /// The same mechanism with its leg twisted about its own axis.

@@ -20,6 +20,7 @@ pub struct Hold<T, const N: usize> {
 
 /// Why nothing holds the leg at a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum HoldError {
     /// The model has no result there.
     Model(Error),
@@ -66,6 +67,23 @@ impl fmt::Display for Limit {
 /// `load_moment` (N·m) is that of the load: [`Load::moment`](crate::Load::moment) of a known one, or what
 /// [`estimate_load`] makes of measured tensions.
 ///
+/// ```
+/// use leg_model::{Direction, Load, Rig, RigParameters, SupportKind, Tendon, TensionBounds,
+///     inverse_statics};
+///
+/// let rig = Rig::new(&RigParameters::<f64, 3>::TABLE_1)?;
+/// let leaning = Direction::from_angles(0.0, 0.3)?;
+/// let tendons = [Tendon::constant(9.945e4)?; 3];
+/// let moment = Load::new(&rig, 1.0)?.moment(&leaning);
+/// let (support, bounds) = (SupportKind::TorsionFree.into(), TensionBounds::new(8.0, 150.0)?);
+/// let held = inverse_statics(&rig, &support, &leaning, &moment, &bounds, &tendons, 70.0)?;
+/// assert!(held.unstretched.iter().all(|length| *length > 0.0));
+/// // Far too heavy: the error names the tendons and bounds that exclude it.
+/// let heavy = moment * 20.0;
+/// assert!(inverse_statics(&rig, &support, &leaning, &heavy, &bounds, &tendons, 70.0).is_err());
+/// # Ok::<(), leg_model::HoldError>(())
+/// ```
+///
 /// # Errors
 /// Those of [`elastic_torsion`](crate::elastic_torsion), [`inverse_kinematics`] and [`distribute`];
 /// [`HoldError::OutOfBounds`] with the tendon and the bound if the tensions at the pretension leave their bounds;
@@ -80,7 +98,7 @@ pub fn inverse_statics<T: Scalar, E: Elasticity<T>, const N: usize>(
     pretension: T,
 ) -> Result<Hold<T, N>, HoldError> {
     let torsion = elastic_torsion(rig, support, direction, load_moment, bounds, pretension)?;
-    let twist = support.twist(direction).and(&Twist::from_torsion(torsion));
+    let twist = support.twist(direction).then(&Twist::from_torsion(torsion));
     let geometry = rig.geometry.twisted(&twist);
     let plane = support.plane(direction);
     let moment = load_moment + support.joint_moment(direction, torsion);
@@ -93,6 +111,19 @@ pub fn inverse_statics<T: Scalar, E: Elasticity<T>, const N: usize>(
 ///
 /// `geometry` is twisted as the leg is, `torsion` (rad) its elastic part. Only the part of the result along the free
 /// rotations means anything.
+///
+/// ```
+/// use leg_model::nalgebra::Vector3;
+/// use leg_model::{Direction, Rig, RigParameters, SupportKind, estimate_load};
+///
+/// let rig = Rig::new(&RigParameters::<f64, 3>::TABLE_1)?;
+/// // Straight down equal tensions carry no moment, whatever hangs on the leg.
+/// let (down, tensions) = (Direction::down(), Vector3::repeat(70.0));
+/// let support = SupportKind::TorsionFree.into();
+/// let load = estimate_load(rig.geometry(), &support, &down, 0.0, &tensions)?;
+/// assert!(load.norm() < 1e-12);
+/// # Ok::<(), leg_model::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`inverse_kinematics`].

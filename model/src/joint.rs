@@ -25,7 +25,7 @@ struct UniversalAngles<T> {
 }
 
 impl<T: Scalar> UniversalAngles<T> {
-    fn at(direction: &Direction<T>) -> Self {
+    fn new(direction: &Direction<T>) -> Self {
         let &Direction { x, y, z } = direction;
         let cos_beta = (y * y + z * z).sqrt();
         let secant = T::one() / cos_beta;
@@ -71,7 +71,7 @@ pub(crate) struct JointMoment<T> {
 
 impl<T: Scalar> JointMoment<T> {
     /// Moment on the leg, N·m, at an elastic torsion in rad.
-    pub fn at(&self, torsion: T) -> Vector3<T> {
+    pub fn moment(&self, torsion: T) -> Vector3<T> {
         self.bent - self.by_torsion * (self.twisting * torsion)
     }
 }
@@ -84,7 +84,7 @@ impl<T: Scalar> Support<T> {
         if !self.elastic() {
             return Vector3::zeros();
         }
-        self.joint_moment_by_torsion(direction).at(torsion)
+        self.joint_moment_by_torsion(direction).moment(torsion)
     }
 
     /// [`Self::joint_moment`] for many torsions at one direction.
@@ -95,7 +95,7 @@ impl<T: Scalar> Support<T> {
             ..
         } = self.joint;
         let (bent, by_torsion) = if self.universal() {
-            let angles = UniversalAngles::at(direction);
+            let angles = UniversalAngles::new(direction);
             let bent = angles.by_alpha * angles.alpha + angles.by_beta * angles.beta;
             (bent * -bending, angles.by_torsion)
         } else {
@@ -126,7 +126,7 @@ impl<T: Scalar> Support<T> {
             return Matrix3::zeros();
         }
         if self.universal() {
-            let angles = UniversalAngles::at(direction);
+            let angles = UniversalAngles::new(direction);
             angles.bending_stiffness() * bending + angles.torsion_stiffness(torsion) * twisting
         } else {
             tilt_stiffness(direction) * bending + torsion_stiffness(direction, torsion) * twisting
@@ -142,7 +142,7 @@ impl<T: Scalar> Support<T> {
             ..
         } = self.joint;
         let bent = if self.universal() {
-            let angles = UniversalAngles::at(direction);
+            let angles = UniversalAngles::new(direction);
             angles.alpha * angles.alpha + angles.beta * angles.beta
         } else {
             let tilt = tilt_by_sine(direction) * sine(direction);
@@ -155,7 +155,7 @@ impl<T: Scalar> Support<T> {
     #[must_use]
     pub fn torsion_change(&self, direction: &Direction<T>) -> Vector3<T> {
         if self.universal() {
-            UniversalAngles::at(direction).by_torsion
+            UniversalAngles::new(direction).by_torsion
         } else {
             torsion_change(direction)
         }

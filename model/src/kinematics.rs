@@ -45,6 +45,15 @@ impl<T: Scalar, const N: usize> Kinematics<T, N> {
 ///
 /// A twisted leg goes in as [`Geometry::twisted`].
 ///
+/// ```
+/// use leg_model::{Direction, Rig, RigParameters, inverse_kinematics};
+///
+/// let rig = Rig::new(&RigParameters::<f64, 3>::TABLE_1)?;
+/// let hanging = inverse_kinematics(rig.geometry(), &Direction::down())?;
+/// assert!(hanging.lengths.iter().all(|length| (length - 0.035).abs() < 1e-12));
+/// # Ok::<(), leg_model::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::TendonCollapsed`] if the two ends of a tendon meet.
 #[inline(always)]

@@ -47,7 +47,7 @@ impl<T: Scalar> LengthPolynomial<T> {
 
     /// The same for another L², of which only these three coefficients know.
     #[inline(always)]
-    pub fn at_length(&self, square: T) -> Self {
+    pub fn with_length_square(&self, square: T) -> Self {
         Self {
             constant: self.constant - square,
             xx: self.xx - square,
@@ -58,7 +58,7 @@ impl<T: Scalar> LengthPolynomial<T> {
 
     /// F follows from its own gradient (Euler's theorem), which spares the products of second degree.
     #[inline(always)]
-    pub fn at(&self, q: &HalfTangent<T>) -> LengthError<T> {
+    pub fn evaluate(&self, q: &HalfTangent<T>) -> LengthError<T> {
         let gradient_x = self.x + self.xx * q.x + self.xy * q.y;
         let gradient_y = self.y + self.xy * q.x + self.yy * q.y;
         let twice = q.x * (self.x + gradient_x) + q.y * (self.y + gradient_y);

@@ -1,18 +1,4 @@
-//! Kinematics, statics and stiffness of a leg on a central joint that tendons turn about two axes.
-//!
-//! Every function is pure, allocates nothing, cannot panic and works in f32 (on the board) and f64 (on the host).
-//! Frame {A}: origin at the joint centre, z up, x towards the first base anchor; the leg hangs along −z. SI units.
-//! "Eq. (n)" cites Ma, Yu, Dong, Axinte, "Design and stiffness analysis of a class of 2-DoF tendon driven parallel
-//! kinematics mechanism"; where the code differs from the print, the place says why.
-//!
-//! ```
-//! use leg_model::{Direction, Rig, RigParameters, inverse_kinematics};
-//!
-//! let rig = Rig::new(&RigParameters::<f32, 3>::TABLE_1)?;
-//! let hanging = inverse_kinematics(rig.geometry(), &Direction::down())?;
-//! assert!(hanging.lengths.iter().all(|length| (length - 0.035).abs() < 1e-8));
-//! # Ok::<(), leg_model::Error>(())
-//! ```
+#![doc = include_str!("../README.md")]
 #![no_std]
 #![allow(
     clippy::neg_cmp_op_on_partial_ord,
@@ -23,6 +9,9 @@
     reason = "constants are written once, for f32 and f64"
 )]
 
+pub use nalgebra;
+
+mod axial_pull;
 mod bending;
 mod deviation;
 mod error;
@@ -38,6 +27,7 @@ mod kinematics;
 mod length_polynomial;
 mod load;
 mod pose;
+pub mod printed;
 mod range;
 mod rig;
 mod scalar;
@@ -46,7 +36,6 @@ mod sqrt;
 mod stiffness_command;
 mod structural_stiffness;
 mod support;
-mod support_printed;
 mod tendon;
 mod tendon_stiffness;
 mod tension;
@@ -56,7 +45,9 @@ mod trigonometry;
 pub use bending::{Bending, BendingAxis};
 pub use deviation::{deviation, tip_displacement};
 pub use error::{Error, Quantity, Reason};
-pub use evaluation::{Evaluation, Query, StiffnessAt, StiffnessDemand, Survey, evaluate, survey};
+pub use evaluation::{
+    Evaluation, MapEvaluation, Query, StiffnessAt, StiffnessDemand, evaluate, evaluate_for_map,
+};
 pub use flexure::{FlexureMaterial, Leaf, Notch, Rod};
 pub use forward::{ForwardKinematics, forward_kinematics, forward_kinematics_universal};
 pub use free_plane::FreePlane;
@@ -72,11 +63,8 @@ pub use rig::{Rig, RigParameters};
 pub use scalar::Scalar;
 pub use solve::{Symmetric3, solve2, solve3};
 pub use stiffness_command::{StiffnessAnswer, StiffnessCommand};
-pub use structural_stiffness::{structural_stiffness, structural_stiffness_printed};
+pub use structural_stiffness::structural_stiffness;
 pub use support::{JointStiffness, Support, SupportKind};
-pub use support_printed::{
-    joint_stiffness_leg_fixed, series_stiffness_printed, support_stiffness_printed,
-};
 pub use tendon::{
     CURVE_POINTS_MAX, ConstantStiffness, CurvePoint, Elasticity, Tendon, TendonCurve,
 };

@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 /// The weights of the leg and its payload, which all hang on the leg's axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Load<T> {
-    /// Σ weight × distance from the joint, N·m: the moment when the leg is pretension.
+    /// Σ weight × distance from the joint, N·m: the moment when the leg is horizontal.
     pub(crate) lever: T,
     /// Σ weight, N.
     pub(crate) weight: T,
@@ -43,7 +43,7 @@ impl<T: Scalar> Load<T> {
         Vector3::new(x, y, T::zero())
     }
 
-    /// Potential energy of the weights, J; zero with the leg pretension.
+    /// Potential energy of the weights, J; zero with the leg horizontal.
     #[must_use]
     pub fn energy(&self, direction: &Direction<T>) -> T {
         self.lever * direction.z

@@ -205,9 +205,9 @@ impl<T: Scalar> Twist<T> {
         }
     }
 
-    /// Both twists, one after the other.
+    /// Both twists, one after the other; the order does not matter.
     #[must_use]
-    pub fn and(&self, other: &Self) -> Self {
+    pub fn then(&self, other: &Self) -> Self {
         let [cos, sin] = self.apply([other.cos, other.sin]);
         Self { sin, cos }
     }

@@ -7,6 +7,15 @@ use crate::{Error, Geometry, Quantity, Reason, Scalar};
 
 /// The numbers that describe a mechanism with `N` tendons, not yet validated. SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(bound(
+        serialize = "T: serde::Serialize, [[T; 2]; N]: serde::Serialize",
+        deserialize = "T: serde::Deserialize<'de>, [[T; 2]; N]: serde::Deserialize<'de>"
+    ))
+)]
+#[cfg_attr(feature = "schema", derive(postcard_schema::Schema))]
 pub struct RigParameters<T, const N: usize> {
     /// Where the tendons are fixed on the base plate (b_i): (x, y) in {A}'s axes, m.
     pub base_anchors_m: [[T; 2]; N],
@@ -24,6 +33,23 @@ pub struct RigParameters<T, const N: usize> {
     pub leg_centroid_m: T,
     /// Gravity along −z, m/s². Zero is allowed.
     pub gravity_m_per_s2: T,
+}
+
+impl<T, const N: usize> RigParameters<T, N> {
+    /// The same numbers in another type, each by `convert`.
+    #[must_use]
+    pub fn map<U>(self, mut convert: impl FnMut(T) -> U) -> RigParameters<U, N> {
+        RigParameters {
+            base_anchors_m: self.base_anchors_m.map(|point| point.map(&mut convert)),
+            leg_anchors_m: self.leg_anchors_m.map(|point| point.map(&mut convert)),
+            upper_length_m: convert(self.upper_length_m),
+            joint_length_m: convert(self.joint_length_m),
+            leg_length_m: convert(self.leg_length_m),
+            leg_mass_kg: convert(self.leg_mass_kg),
+            leg_centroid_m: convert(self.leg_centroid_m),
+            gravity_m_per_s2: convert(self.gravity_m_per_s2),
+        }
+    }
 }
 
 macro_rules! table_1 {
@@ -73,8 +99,7 @@ impl<T: Scalar, const N: usize> Rig<T, N> {
     ///
     /// # Errors
     /// The first quantity that is not finite, not positive (or negative, where zero is allowed) or out of range
-    /// (lengths
-    /// to 100 m, 10⁶ kg, 10³ m/s²), and anchors that lie on one line or within 10 µm.
+    /// (lengths to 100 m, 10⁶ kg, 10³ m/s²), and anchors that lie on one line or within 10 µm.
     pub fn new(parameters: &RigParameters<T, N>) -> Result<Self, Error> {
         const { assert!(N >= 3, "two free axes need at least three tendons") };
         let p = parameters;
@@ -87,7 +112,12 @@ impl<T: Scalar, const N: usize> Rig<T, N> {
         check_not_negative(p.leg_centroid_m, LENGTH_MAX, Quantity::LegCentroid)?;
         check_not_negative(p.gravity_m_per_s2, GRAVITY_MAX, Quantity::Gravity)?;
         Ok(Self {
-            geometry: Geometry::new(p),
+            geometry: Geometry::new(
+                &p.base_anchors_m,
+                &p.leg_anchors_m,
+                p.upper_length_m,
+                p.joint_length_m,
+            ),
             tip: p.joint_length_m + p.leg_length_m,
             leg_weight: p.leg_mass_kg * p.gravity_m_per_s2,
             leg_moment: p.leg_mass_kg * p.gravity_m_per_s2 * p.leg_centroid_m,

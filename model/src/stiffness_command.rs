@@ -13,12 +13,13 @@ const TOLERANCE: f32 = 1e-4;
 /// Steps after which a search without convergence ends. Stiffness is nearly linear in the pretension: three do as a rule.
 const STEPS_MAX: u8 = 12;
 
-/// How far from the nearer end of the range it is looked whether the stiffness nears the demand inwards.
+/// Where the range is probed for a stiffness that comes nearer to the demand inwards: this part of it from the nearer
+/// end.
 const INWARD: f32 = 1.0 / 64.0;
 
-/// It does if it is nearer there by more than this part of the demand. Where the stiffness hardly depends on the pretension, no
-/// pretension is much better than another.
-const NEARS: f32 = 1e-2;
+/// It does if it is nearer there by more than this part of the demand. Where the stiffness hardly depends on the
+/// pretension, no pretension is much better than another.
+const CLOSER_BY: f32 = 1e-2;
 
 /// Steps in which the range is tried then, and how often, ever nearer to the best.
 const SCAN_STEPS: u8 = 16;
@@ -41,10 +42,8 @@ pub struct StiffnessCommand<'a, T, E, const N: usize> {
 
 /// The answer to a demand.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize, postcard_schema::Schema)
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(postcard_schema::Schema))]
 pub struct StiffnessAnswer<T> {
     /// Pretension, N.
     #[cfg_attr(feature = "serde", serde(rename = "level_n"))]
@@ -105,7 +104,7 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
         } else {
             Bending::guided(&total, &self.direction, &self.plane)
         };
-        bending.about(axis)
+        bending.stiffness_about(axis)
     }
 
     /// The pretension that gives a demanded bending stiffness (N·m/rad) within the bounds on the tensions.
@@ -132,10 +131,10 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
             self.distribution.pretension_min,
             self.distribution.pretension_max,
         );
-        let below = End::new(low, self.stiffness_at(low, axis)?, demand);
-        let above = End::new(high, self.stiffness_at(high, axis)?, demand);
+        let below = Trial::new(low, self.stiffness_at(low, axis)?, demand);
+        let above = Trial::new(high, self.stiffness_at(high, axis)?, demand);
         if (below.error > T::zero()) == (above.error > T::zero()) {
-            return self.beyond(below, above, demand, axis, bounds);
+            return self.nearest_end(below, above, demand, axis, bounds);
         }
         self.search(below, above, demand, axis)
     }
@@ -143,10 +142,10 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
     /// Both ends of the range lie on one side of the demand: the nearer one is the answer unless the stiffness nears the
     /// demand from there inwards.
     #[inline(always)]
-    fn beyond(
+    fn nearest_end(
         &self,
-        below: End<T>,
-        above: End<T>,
+        below: Trial<T>,
+        above: Trial<T>,
         demand: T,
         axis: &BendingAxis<T>,
         bounds: &TensionBounds<T>,
@@ -158,8 +157,8 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
             (above, below, highest)
         };
         let inward = end.pretension + (other.pretension - end.pretension) * T::from(INWARD);
-        let inside = End::new(inward, self.stiffness_at(inward, axis)?, demand);
-        if inside.error.abs() + T::from(NEARS) * demand < end.error.abs() {
+        let inside = Trial::new(inward, self.stiffness_at(inward, axis)?, demand);
+        if inside.error.abs() + T::from(CLOSER_BY) * demand < end.error.abs() {
             return self.scan(end, other, demand, axis);
         }
         Ok(StiffnessAnswer {
@@ -174,8 +173,8 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
     #[inline(never)]
     fn scan(
         &self,
-        mut start: End<T>,
-        end: End<T>,
+        mut start: Trial<T>,
+        end: Trial<T>,
         demand: T,
         axis: &BendingAxis<T>,
     ) -> Result<StiffnessAnswer<T>, Error> {
@@ -189,8 +188,8 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
         for _ in 0..SCAN_ROUNDS {
             let mut last = start;
             for _ in 0..SCAN_STEPS {
-                let pretension = between(last.pretension + step, lowest, highest);
-                let next = End::new(pretension, self.stiffness_at(pretension, axis)?, demand);
+                let pretension = clamp(last.pretension + step, lowest, highest);
+                let next = Trial::new(pretension, self.stiffness_at(pretension, axis)?, demand);
                 if (next.error > T::zero()) != (last.error > T::zero()) {
                     return self.search(last, next, demand, axis);
                 }
@@ -200,8 +199,8 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
                 last = next;
             }
             // From one step before the nearest to one after it.
-            let pretension = between(nearest.pretension - step, lowest, highest);
-            start = End::new(pretension, self.stiffness_at(pretension, axis)?, demand);
+            let pretension = clamp(nearest.pretension - step, lowest, highest);
+            start = Trial::new(pretension, self.stiffness_at(pretension, axis)?, demand);
             step = (step + step) / steps;
         }
         Ok(StiffnessAnswer {
@@ -216,8 +215,8 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
     #[inline(always)]
     fn search(
         &self,
-        mut kept: End<T>,
-        mut last: End<T>,
+        mut kept: Trial<T>,
+        mut last: Trial<T>,
         demand: T,
         axis: &BendingAxis<T>,
     ) -> Result<StiffnessAnswer<T>, Error> {
@@ -225,7 +224,7 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
             let slope = last.error - kept.error;
             let pretension =
                 last.pretension - last.error * (last.pretension - kept.pretension) / slope;
-            let next = End::new(pretension, self.stiffness_at(pretension, axis)?, demand);
+            let next = Trial::new(pretension, self.stiffness_at(pretension, axis)?, demand);
             if next.error.abs() <= T::from(TOLERANCE) * demand {
                 return Ok(StiffnessAnswer {
                     pretension_n: pretension,
@@ -245,8 +244,8 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
     }
 }
 
-/// The number of a range that is nearest to a pretension.
-fn between<T: Scalar>(pretension: T, lowest: T, highest: T) -> T {
+/// The pretension, or the end of the range that it is beyond.
+fn clamp<T: Scalar>(pretension: T, lowest: T, highest: T) -> T {
     if pretension < lowest {
         lowest
     } else if pretension > highest {
@@ -258,12 +257,12 @@ fn between<T: Scalar>(pretension: T, lowest: T, highest: T) -> T {
 
 /// A pretension and how far its stiffness is above the demand.
 #[derive(Clone, Copy)]
-struct End<T> {
+struct Trial<T> {
     pretension: T,
     error: T,
 }
 
-impl<T: Scalar> End<T> {
+impl<T: Scalar> Trial<T> {
     #[inline(always)]
     fn new(pretension: T, stiffness: T, demand: T) -> Self {
         Self {

@@ -22,24 +22,8 @@ pub fn structural_stiffness<T: Scalar, const N: usize>(
     })
 }
 
-/// K₂ as Eq. (15) prints it, `Σ f[n×][e×]`, N·m/rad: for comparison only.
-///
-/// It has the wrong sign for n from S to B and lacks the change of n, so it claims that pretension stiffens bending.
-#[must_use]
-pub fn structural_stiffness_printed<T: Scalar, const N: usize>(
-    geometry: &Geometry<T, N>,
-    direction: &Direction<T>,
-    tensions: &SVector<T, N>,
-) -> Matrix3<T> {
-    sum_over_tendons(geometry, direction, tensions, |tendon, base| {
-        let e = tendon.end();
-        let n = (base - e) * tendon.inverse_length;
-        skew(&n) * skew(&e)
-    })
-}
-
 /// Σ f·term(tendon, B).
-fn sum_over_tendons<T: Scalar, const N: usize>(
+pub(crate) fn sum_over_tendons<T: Scalar, const N: usize>(
     geometry: &Geometry<T, N>,
     direction: &Direction<T>,
     tensions: &SVector<T, N>,
@@ -52,10 +36,4 @@ fn sum_over_tendons<T: Scalar, const N: usize>(
         let base = Vector3::new(pair.base[0], pair.base[1], geometry.upper);
         sum + term(&tendon, base) * tension
     })
-}
-
-/// [v×] (Eq. 16).
-fn skew<T: Scalar>(v: &Vector3<T>) -> Matrix3<T> {
-    let zero = T::zero();
-    Matrix3::new(zero, -v.z, v.y, v.z, zero, -v.x, -v.y, v.x, zero)
 }

@@ -7,9 +7,10 @@ use crate::{Direction, Error, FreePlane, Quantity, Reason, Scalar, Twist};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
-    derive(serde::Serialize, serde::Deserialize, postcard_schema::Schema),
+    derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case")
 )]
+#[cfg_attr(feature = "schema", derive(postcard_schema::Schema))]
 pub enum SupportKind {
     /// Two freedoms, the paper's idealisation: the leg tilts without torsion, about axes in the plane normal to the
     /// bisector of the two plates' normals.
@@ -19,16 +20,14 @@ pub enum SupportKind {
     /// Three freedoms: a ball joint, or an elastic pivot. The tendons, and the joint where it is elastic, hold the
     /// torsion.
     Spherical,
-    /// Three freedoms: a universal joint of flexures, which give way in torsion, too.
+    /// Three freedoms: a universal joint of flexures, which are elastic in torsion, too.
     ElasticUniversal,
 }
 
 /// How a joint resists its motions: zero for one that does not.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize, postcard_schema::Schema)
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(postcard_schema::Schema))]
 pub struct JointStiffness<T> {
     /// Against tilt, about either axis, N·m/rad.
     pub bending_nm_per_rad: T,
@@ -39,13 +38,25 @@ pub struct JointStiffness<T> {
 }
 
 impl<T: Scalar> JointStiffness<T> {
-    /// A joint that turns freely and does not give way along the leg.
+    /// A joint that turns freely and is rigid along the leg.
     #[must_use]
     pub fn none() -> Self {
         Self {
             bending_nm_per_rad: T::zero(),
             torsion_nm_per_rad: T::zero(),
             axial_compliance_m_per_n: T::zero(),
+        }
+    }
+}
+
+impl<T> JointStiffness<T> {
+    /// The same numbers in another type, each by `convert`.
+    #[must_use]
+    pub fn map<U>(self, mut convert: impl FnMut(T) -> U) -> JointStiffness<U> {
+        JointStiffness {
+            bending_nm_per_rad: convert(self.bending_nm_per_rad),
+            torsion_nm_per_rad: convert(self.torsion_nm_per_rad),
+            axial_compliance_m_per_n: convert(self.axial_compliance_m_per_n),
         }
     }
 }
@@ -72,8 +83,8 @@ impl<T: Scalar> Support<T> {
     ///
     /// # Errors
     /// A stiffness that is negative, not finite or above 10⁶ N·m/rad, a compliance above 1 m/N; torsion stiffness of a
-    /// support that blocks the torsion, and none where only the joint's torsion stiffness tells a universal joint from
-    /// a ball.
+    /// support that blocks the torsion, and none where only the joint's torsion stiffness distinguishes a universal
+    /// joint from a ball.
     pub fn new(kind: SupportKind, joint: JointStiffness<T>) -> Result<Self, Error> {
         let (bending, torsion) = (joint.bending_nm_per_rad, joint.torsion_nm_per_rad);
         check_not_negative(bending, JOINT_STIFFNESS_MAX, Quantity::JointBending)?;

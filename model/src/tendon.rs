@@ -13,10 +13,10 @@ pub use point::CurvePoint;
 use crate::range::{STIFFNESS, check_positive};
 use crate::{Error, Quantity, Reason, Scalar};
 
-/// How a tendon answers a pull. It cannot push.
+/// The elastic law of a tendon. It cannot push.
 ///
 /// Asked by tension, the law goes on in a straight line below zero, which no tendon has: so a sum over tendons stays
-/// smooth where one of them is asked too much, and what is allowed is the business of
+/// smooth where one of them is asked too much, and what is allowed is checked by
 /// [`TensionBounds`](crate::TensionBounds). Asked by elongation, as in nature, a tendon that is not stretched is slack.
 pub trait Elasticity<T: Scalar> {
     /// δ(T): how much longer it is under a tension in N than without, m.
@@ -29,7 +29,7 @@ pub trait Elasticity<T: Scalar> {
     /// Tangent stiffness k = dT/dδ under a tension in N, N/m.
     ///
     /// # Errors
-    /// As [`Self::elongation`]; a constant stiffness does not look at the tension.
+    /// As [`Self::elongation`]; a constant stiffness ignores the tension.
     fn stiffness(&self, tension: T) -> Result<T, Error>;
 
     /// Tension at an elongation in m, N; none when slack.
@@ -68,6 +68,16 @@ impl<T: Scalar> Tendon<T> {
     }
 
     /// A tendon with a curve through `points`.
+    ///
+    /// ```
+    /// use leg_model::{CurvePoint, Elasticity, Tendon};
+    ///
+    /// let paper = Tendon::curve(&CurvePoint::<f64>::PAPER)?;
+    /// assert!((paper.stiffness(70.0)? - 9.945e4).abs() < 1e-6);
+    /// // Nothing is guessed beyond its last point.
+    /// assert!(paper.elongation(1e3).is_err());
+    /// # Ok::<(), leg_model::Error>(())
+    /// ```
     ///
     /// # Errors
     /// As [`TendonCurve::new`].

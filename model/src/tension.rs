@@ -7,9 +7,9 @@ use nalgebra::{SMatrix, SVector, Vector3};
 /// The tensions that are allowed, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TensionBounds<T> {
-    /// Half of floor + ceiling.
+    /// (f_max + f_min)/2.
     centre: T,
-    /// Half of ceiling − floor.
+    /// (f_max − f_min)/2.
     half_width: T,
 }
 
@@ -17,7 +17,7 @@ impl<T: Scalar> TensionBounds<T> {
     /// Lowest and highest tension allowed, N.
     ///
     /// # Errors
-    /// Bounds that are not finite or above 10⁷ N, a negative floor, a floor above the maximum tension.
+    /// Bounds that are not finite or above 10⁷ N, a negative minimum, a minimum above the maximum.
     pub fn new(f_min_n: T, f_max_n: T) -> Result<Self, Error> {
         check_not_negative(f_min_n, TENSION_MAX, Quantity::TensionMin)?;
         check_magnitude(f_max_n, TENSION_MAX, Quantity::TensionMax)?;
@@ -35,9 +35,10 @@ impl<T: Scalar> TensionBounds<T> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
-    derive(serde::Serialize, serde::Deserialize, postcard_schema::Schema),
+    derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case")
 )]
+#[cfg_attr(feature = "schema", derive(postcard_schema::Schema))]
 pub enum Bound {
     /// The lowest tension allowed, f_min.
     #[cfg_attr(feature = "serde", serde(rename = "floor"))]
@@ -49,10 +50,8 @@ pub enum Bound {
 
 /// The tendon and the bound that end the range of pretensions on one side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize, postcard_schema::Schema)
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(postcard_schema::Schema))]
 pub struct Limit {
     /// Tendon, counted from 1.
     pub tendon: u8,
@@ -127,10 +126,26 @@ impl<T: Scalar, const N: usize> Distribution<T, N> {
 ///
 /// `load_moment` may be anything up to 10¹² N·m, far above what a [`Load`](crate::Load) or measured tensions give.
 ///
+/// ```
+/// use leg_model::{Direction, FreePlane, Load, Rig, RigParameters, TensionBounds, distribute,
+///     inverse_kinematics};
+///
+/// let rig = Rig::new(&RigParameters::<f64, 3>::TABLE_1)?;
+/// let leaning = Direction::from_angles(0.0, 0.3)?;
+/// let a = inverse_kinematics(rig.geometry(), &leaning)?.moment_map;
+/// let plane = FreePlane::torsion_free(&leaning);
+/// let moment = Load::new(&rig, 1.0)?.moment(&leaning);
+/// let found = distribute(&a, &plane, &moment, &TensionBounds::new(8.0, 150.0)?)?;
+/// assert!(found.feasible());
+/// // Balanced about both free axes at any pretension.
+/// let rest = plane.project(&(a * found.tensions(70.0) + moment));
+/// assert!(rest.iter().all(|moment| moment.abs() < 1e-9));
+/// # Ok::<(), leg_model::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Singular`] if the load moment is not finite, if the tendons cannot turn the leg about both free axes, or
-/// if one of them takes no part in
-/// the pretension.
+/// if one of them takes no part in the pretension.
 #[inline(always)]
 pub fn distribute<T: Scalar, const N: usize>(
     moment_map: &SMatrix<T, 3, N>,
@@ -178,7 +193,7 @@ pub fn distribute<T: Scalar, const N: usize>(
     })
 }
 
-/// Pretensions between which one tension keeps its bounds, whichever way it changes with the pretension.
+/// Pretensions between which one tension keeps its bounds, whether it rises or falls with the pretension.
 #[inline(always)]
 fn pretension_range<T: Scalar>(
     particular: T,

@@ -71,10 +71,10 @@ struct ThirdAxis<'a, T, const N: usize> {
 impl<T: Scalar, const N: usize> ThirdAxis<'_, T, N> {
     /// Moment on the leg along the normal of the plane of its tilts, N·m (times the length of that vector).
     fn moment(&self, torsion: T) -> Result<T, Error> {
-        let twist = self.twist.and(&Twist::from_torsion(torsion));
+        let twist = self.twist.then(&Twist::from_torsion(torsion));
         let geometry = self.rig.geometry.twisted(&twist);
         let moment_map = inverse_kinematics(&geometry, self.direction)?.moment_map;
-        let outer = self.load_moment + self.joint.at(torsion);
+        let outer = self.load_moment + self.joint.moment(torsion);
         let distribution = distribute(&moment_map, &self.plane, &outer, self.bounds)?;
         let tensions = distribution.tensions(self.pretension);
         Ok((moment_map * tensions + outer).dot(&self.plane.normal()))

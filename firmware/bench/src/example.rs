@@ -1,7 +1,8 @@
 //! Questions about the paper's leg, for whoever tries a link: leaning, with a payload, its tendons of constant stiffness.
 
 use crate::kernels::KernelInput;
-use leg_firmware::messages::{QueryMessage, SupportMessage, TendonMessage, TendonsMessage};
+use crate::query::QueryMessage;
+use leg_firmware::settings::TendonParameters;
 use leg_model::{JointStiffness, RigParameters, StiffnessAt, SupportKind};
 
 const AZIMUTH_RAD: f32 = 0.5;
@@ -22,12 +23,10 @@ pub fn query() -> QueryMessage {
         pretension_n: PRETENSION_N,
         f_min_n: F_MIN_N,
         f_max_n: F_MAX_N,
-        tendons: TendonsMessage::Alike(TendonMessage::Constant(STIFFNESS_N_PER_M)),
+        tendons: [const { TendonParameters::Constant(STIFFNESS_N_PER_M) }; 3],
         stiffness_at: StiffnessAt::Pretension,
-        support: SupportMessage {
-            kind: SupportKind::TorsionFree,
-            joint: JointStiffness::none(),
-        },
+        support: SupportKind::TorsionFree,
+        joint: JointStiffness::none(),
         demand: None,
     }
 }
@@ -36,7 +35,7 @@ pub fn query() -> QueryMessage {
 #[must_use]
 pub fn kernel_input() -> KernelInput {
     KernelInput {
-        rig: RigParameters::<f32, 3>::TABLE_1.into(),
+        rig: RigParameters::<f32, 3>::TABLE_1,
         azimuth_rad: AZIMUTH_RAD,
         tilt_rad: TILT_RAD,
         start_azimuth_rad: AZIMUTH_RAD,

@@ -7,8 +7,7 @@ use crate::counter::Counter;
 use bench::Bench;
 use bodies::Body;
 use heapless::Vec;
-use leg_firmware::messages::RigMessage;
-use leg_model::{Error, Scalar};
+use leg_model::{Error, RigParameters, Scalar};
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
@@ -83,7 +82,7 @@ impl Kernel {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct KernelInput {
     /// The mechanism.
-    pub rig: RigMessage,
+    pub rig: RigParameters<f32, 3>,
     /// Azimuth of the pose, rad.
     pub azimuth_rad: f32,
     /// Tilt of the pose, rad.

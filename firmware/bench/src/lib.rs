@@ -3,12 +3,13 @@
 //! The product knows nothing of it: no message here is part of what a flashed board speaks.
 #![cfg_attr(not(test), no_std)]
 
-pub mod boarded_leg;
 pub mod counter;
 pub mod example;
 pub mod exit;
 pub mod kernels;
 pub mod pipes;
 pub mod protocol;
+pub mod query;
 pub mod server;
 pub mod virtual_board;
+pub mod virtual_leg;

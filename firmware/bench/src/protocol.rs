@@ -1,15 +1,15 @@
 //! What a host says to the firmware on its test bench, and the hash by which the two know that they mean the same.
 
 use crate::kernels::{Kernel, KernelInput, KernelOutput};
+use crate::query::QueryMessage;
 use heapless::Vec;
 use leg_firmware::drive::Drive;
 use leg_firmware::host_link::{BoardKind, Hello};
 use leg_firmware::linked_leg::LINK_BYTES_MAX;
-use leg_firmware::messages::{QueryMessage, RigMessage};
 use leg_firmware::sensors::Sensors;
 use leg_firmware::settings::{Settings, SettingsError};
 use leg_firmware::telemetry::Telemetry;
-use leg_model::{Error, Evaluation};
+use leg_model::{Error, Evaluation, RigParameters};
 use postcard_schema::{Schema, key::Key};
 use serde::{Deserialize, Serialize};
 
@@ -84,7 +84,7 @@ pub struct BootCheck {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct EvaluateRequest {
     /// The mechanism.
-    pub rig: RigMessage,
+    pub rig: RigParameters<f32, 3>,
     /// The pose, the load and what holds it.
     pub query: QueryMessage,
 }

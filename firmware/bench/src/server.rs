@@ -1,19 +1,16 @@
 //! Answers requests: the same on every board and inside the host's own process.
 
-use crate::boarded_leg::BoardedLeg;
 use crate::counter::Counter;
 use crate::kernels;
 use crate::protocol::{
     BENCH_SCHEMA, BoardInfo, BoardStep, EvaluateRequest, KernelRequest, Refusal, Reply, Request,
     TickRequest,
 };
+use crate::virtual_leg::VirtualLeg;
 use leg_firmware::frame::{self, Frame, FrameError, MAX_FRAME};
-use leg_firmware::host_link::{BoardKind, Hello, Identity, Reset};
+use leg_firmware::host_link::{BoardKind, Hello, Identity, ResetCause};
 use leg_firmware::settings::Settings;
 use leg_firmware::version::VERSION;
-
-#[cfg(test)]
-mod tests;
 
 /// What the server needs from the board that it runs on.
 pub trait Board: Counter {
@@ -29,7 +26,7 @@ pub trait Board: Counter {
 pub struct Server<B> {
     board: B,
     greeted: bool,
-    leg: Option<BoardedLeg>,
+    leg: Option<VirtualLeg>,
 }
 
 impl<B: Board> Server<B> {
@@ -61,17 +58,24 @@ impl<B: Board> Server<B> {
     }
 
     fn reply(&mut self, frame: &Frame<'_>) -> Reply {
-        let reply = match frame.message::<Request>() {
-            None => Err(Refusal::BadRequest),
-            Some(Request::Hello(hello)) => self.greet(hello),
-            Some(_) if !self.greeted => Err(Refusal::NoHello),
-            Some(Request::Evaluate(request)) => evaluate(&request),
-            Some(Request::Run(request)) => run(&request),
-            Some(Request::Count(request)) => self.count(&request),
-            Some(Request::Start(settings)) => self.start(&settings),
-            Some(Request::Tick(request)) => self.tick(&request),
-            Some(Request::CountTick(request)) => self.count_tick(&request),
-            Some(Request::Board(step)) => self.board_step(&step),
+        match frame.message() {
+            None => Reply::Refused(Refusal::BadRequest),
+            Some(request) => self.handle(&request),
+        }
+    }
+
+    /// Answers a request that comes without a frame.
+    pub fn handle(&mut self, request: &Request) -> Reply {
+        let reply = match request {
+            Request::Hello(hello) => self.greet(*hello),
+            _ if !self.greeted => Err(Refusal::NoHello),
+            Request::Evaluate(request) => evaluate(request),
+            Request::Run(request) => run(request),
+            Request::Count(request) => self.count(request),
+            Request::Start(settings) => self.start(settings),
+            Request::Tick(request) => self.tick(request),
+            Request::CountTick(request) => self.count_tick(request),
+            Request::Board(step) => self.board_step(step),
         };
         reply.unwrap_or_else(Reply::Refused)
     }
@@ -90,7 +94,7 @@ impl<B: Board> Server<B> {
     #[inline(never)]
     fn start(&mut self, settings: &Settings) -> Result<Reply, Refusal> {
         let identity = emulated(self.board.info().board);
-        self.leg = Some(BoardedLeg::new(identity, settings).map_err(Refusal::Settings)?);
+        self.leg = Some(VirtualLeg::new(identity, settings).map_err(Refusal::Settings)?);
         Ok(Reply::Started)
     }
 
@@ -130,8 +134,8 @@ pub fn emulated(board: BoardKind) -> Identity {
     Identity {
         board,
         version: VERSION,
-        reset: Reset::Emulated,
-        last_words: heapless::String::new(),
+        reset: ResetCause::Emulated,
+        crash_report: heapless::String::new(),
     }
 }
 
@@ -139,7 +143,7 @@ fn evaluate(request: &EvaluateRequest) -> Result<Reply, Refusal> {
     let evaluated = request
         .query
         .query()
-        .and_then(|query| leg_model::evaluate(&request.rig.into(), &query));
+        .and_then(|query| leg_model::evaluate(&request.rig, &query));
     evaluated.map(Reply::Evaluation).map_err(Refusal::Model)
 }
 

@@ -1,7 +1,7 @@
 //! The board under an emulated leg: the power stage of the real one, on pins that are only kept.
 
 use leg_firmware::board::timing::PWM_TOP;
-use leg_firmware::board::{FaultLines, Half, LowerHalf, PowerPins, PowerStage};
+use leg_firmware::board::{BridgeOutput, FaultLines, LowerHalf, PowerPins, PowerStage};
 use leg_firmware::drive::Drive;
 use leg_firmware::sensors::Sensors;
 
@@ -15,14 +15,14 @@ pub struct VirtualBoard {
 /// Pins that are kept, behind the break of a timer.
 #[derive(Debug, Default)]
 struct Pins {
-    halves: [Half; 3],
+    halves: [BridgeOutput; 3],
     on: bool,
     /// Whether a line holds the break now.
     broken: bool,
 }
 
 impl PowerPins for Pins {
-    fn set(&mut self, motor: usize, half: Half) {
+    fn set(&mut self, motor: usize, half: BridgeOutput) {
         if let Some(kept) = self.halves.get_mut(motor) {
             *kept = half;
         }
@@ -32,7 +32,7 @@ impl PowerPins for Pins {
         self.on = on && !self.broken;
     }
 
-    fn on(&self) -> bool {
+    fn is_on(&self) -> bool {
         self.on
     }
 }
@@ -91,7 +91,7 @@ impl LowerHalf for VirtualBoard {
     }
 }
 
-fn share(half: Half) -> f32 {
+fn share(half: BridgeOutput) -> f32 {
     let share = f32::from(half.compare) / f32::from(PWM_TOP);
     if half.forward { share } else { -share }
 }

@@ -2,30 +2,30 @@
 //!
 //! A board layer reads and writes registers and leaves the rest to this module, so that the rest is tested on the host.
 
-mod beat;
+mod blink;
 mod bridge;
+mod crash_record;
 mod fault_lines;
 mod gate;
-mod last_words;
 mod link_choice;
 mod power_stage;
 mod reset_cause;
-mod roll_call;
+mod short_text;
+mod task_watchdog;
 mod tick_timer;
 pub mod timing;
-mod words;
 
-pub use beat::{STEP_MS, lit};
-pub use bridge::{Bridge, Half};
-pub use fault_lines::{FaultLines, Faults};
-pub use gate::{Gate, Turn};
-pub use last_words::{Kept, LastWords};
+pub use blink::{BLINK_STEP_MS, led_on};
+pub use bridge::{Bridge, BridgeOutput};
+pub use crash_record::{CrashRecord, CrashReport};
+pub use fault_lines::{FaultLines, LineFaults};
+pub use gate::{Gate, GateAction};
 pub use link_choice::LinkChoice;
 pub use power_stage::{PowerPins, PowerStage};
 pub use reset_cause::reset_cause;
-pub use roll_call::{Member, RollCall, Rounds};
+pub use short_text::{ShortText, file_name};
+pub use task_watchdog::{CheckIns, TaskWatchdog, WatchedTask};
 pub use tick_timer::TickTimer;
-pub use words::{Words, file_name};
 
 use crate::drive::Drive;
 use crate::linked_leg::SensingLeg;
@@ -33,7 +33,7 @@ use crate::sensors::Sensors;
 
 /// What a leg needs of the board under it.
 ///
-/// Every implementation keeps to the same contract, which `tests/board_contract.rs` puts each of them through:
+/// Every implementation keeps to the same contract, which `tests/suite/firmware/board_contract.rs` puts each of them through:
 /// - Nothing is driven before a [`drive`](Self::drive) that is enabled.
 /// - A drive that is not enabled drives nothing, whatever its duties are; a duty that is not a number drives nothing,
 ///   and one beyond −1 to 1 counts as the nearer end.

@@ -14,7 +14,7 @@
 //! | 1    | 7–0  | counter: one more than that of the identifier's last CAN frame, modulo 256      |
 //!
 //! CAN FD has payloads of 0 to 8, 12, 16, 20, 24, 32, 48 and 64 bytes. What is left of the shortest one that holds
-//! header and segment is filled with 0xCC, which needs no stuff bits; the header tells the true length, and a payload
+//! header and segment is filled with 0xCC, which needs no stuff bits; the header holds the true length, and a payload
 //! of any other size than this shortest one is refused.
 //!
 //! **Loss.** A receiver gives out whole link frames only. A gap in the counter throws away the link frame that it falls
@@ -34,15 +34,15 @@ mod address;
 mod assembler;
 mod bus_guard;
 mod can_frame;
-mod fault;
+mod error;
 mod identifier;
 mod segmenter;
 
 pub use address::LegAddress;
-pub use assembler::{Assembler, Taken};
+pub use assembler::{Assembled, Assembler};
 pub use bus_guard::{BusAction, BusGuard, BusState};
 pub use can_frame::{CanFrame, PAYLOAD_MAX, SEGMENT_MAX};
-pub use fault::CanFault;
+pub use error::CanError;
 pub use identifier::Identifier;
 pub use segmenter::{SegmentError, Segmenter, Segments};
 

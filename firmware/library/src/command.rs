@@ -10,20 +10,20 @@ use serde::{Deserialize, Serialize};
 pub enum Compensation {
     /// None: the leg sags under its own weight and its payload, as without a controller that knows of them.
     Off,
-    /// The one that the tensions tell: the loaded tip comes to its target.
+    /// The one estimated from the tensions: the loaded tip comes to its target.
     Estimated,
-    /// The one that was told last: the leg answers a push with its stiffness, and does not take it for a load.
+    /// The last estimate: the leg answers a push with its stiffness, and does not take it for a load.
     Frozen,
 }
 
 /// A command. A tick obeys one, or refuses it by name.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub enum Command {
-    /// Nothing but that the host is there.
+    /// Nothing: it shows that the host is there.
     KeepAlive,
     /// Follows commands from now on, from the present pose.
     Arm,
-    /// Looks for the zero, then tensions the leg straight down.
+    /// Homes: searches for the zero, then tensions the leg straight down.
     Home,
     /// Goes to a direction, given by its horizontal components.
     Move {
@@ -46,7 +46,7 @@ pub enum Command {
     /// Chooses the load that is held.
     Compensation(Compensation),
     /// Stays where it is until a clear, before whatever waits. A leg that is disarmed, held or off is at rest already; one
-    /// that lets its tendons out goes on with that, and refuses by its state.
+    /// that ramps down goes on with that, and refuses by its state.
     Stop,
     /// Relaxes the tendons and switches the drivers off.
     Disarm,
@@ -68,25 +68,24 @@ pub enum CommandRefusal {
     /// A number is not finite, or is not above zero where it has to be, or a direction has another length than 1.
     Number,
     /// A stop came first.
-    Overtaken,
+    Superseded,
 }
 
 impl CommandRefusal {
     /// What is wrong, and what to do about it.
     #[must_use]
-    pub const fn words(self) -> [&'static str; 2] {
+    pub const fn description(self) -> [&'static str; 2] {
         match self {
             Self::NotHomed => ["the leg does not know its zero", "home it"],
-            Self::Faulted => ["a fault is latched", "mend its cause, then clear it"],
+            Self::Faulted => ["a fault is latched", "remove its cause, then clear it"],
             Self::State(State::Boot) => ["the leg is still starting", "ask again"],
             Self::State(State::Disarmed) => ["the leg is disarmed", "arm it"],
             Self::State(State::Homing) => ["the leg is homing", "wait for its end, or stop it"],
             Self::State(State::Active) => ["the leg is armed already", "disarm it first"],
             Self::State(State::Held) => ["the leg is held", "clear it to go on"],
-            Self::State(State::RampingDown) => [
-                "the leg is letting its tendons out",
-                "wait until it is disarmed",
-            ],
+            Self::State(State::RampingDown) => {
+                ["the leg is ramping down", "wait until it is disarmed"]
+            }
             Self::State(State::Off) => ["the drivers are off after a fault", "clear it"],
             Self::OutOfReach => [
                 "the leg cannot lean that far",
@@ -96,7 +95,7 @@ impl CommandRefusal {
                 "a number is not finite or not above zero",
                 "give another number",
             ],
-            Self::Overtaken => ["a stop came first", "look why, then command again"],
+            Self::Superseded => ["a stop came first", "find out why, then command again"],
         }
     }
 }

@@ -13,13 +13,14 @@ mod quintic;
 mod target;
 mod trajectory;
 
-pub use axis::{Axis, AxisGoal, AxisInput};
-pub use estimate::{Estimate, Estimator, Weighing};
-pub use homing::{Homing, HomingStep};
+pub use axis::{Axis, AxisGoal, AxisInput, AxisView};
+pub use estimate::{Estimate, Estimator, LoadEstimation};
+pub use homing::{HomingSequence, HomingStep};
 pub use measure::{Measured, Measurement};
 pub use mechanism::Mechanism;
-pub use pretension::{Pretension, PretensionDemand};
-pub use target::{Target, Targets, Wish};
+pub use plan::MotionLimits;
+pub use pretension::{PretensionDemand, PretensionSearch};
+pub use target::{Target, TargetDemand, TargetGenerator};
 pub use trajectory::{Point, Trajectory};
 
 use crate::sensors::TICK_HZ;
@@ -27,7 +28,7 @@ use crate::sensors::TICK_HZ;
 /// Time of a tick, s.
 pub const TICK_S: f32 = 1.0 / TICK_HZ as f32;
 
-/// Ticks in which estimate, pretension, target and the plan of the way are each renewed once, one a tick.
+/// Ticks in which estimate, pretension, target and the plan of the trajectory are each renewed once, one a tick.
 pub const CYCLE_TICKS: u8 = 4;
 
 /// Time of a cycle, s.

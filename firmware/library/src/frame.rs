@@ -146,7 +146,7 @@ impl Decoder {
         }
     }
 
-    /// Takes the stream's next byte; a zero ends a frame and tells what it holds.
+    /// Takes the stream's next byte; a zero ends a frame, which is then given.
     ///
     /// Zeros between frames are skipped, so a sender may send one to end whatever the receiver believes to be in.
     pub fn push(&mut self, byte: u8) -> Option<Result<Frame<'_>, FrameError>> {

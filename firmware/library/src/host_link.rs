@@ -4,8 +4,8 @@ mod messages;
 mod outbox;
 
 pub use messages::{
-    BoardKind, HOST_SCHEMA, Hello, HostId, HostRefusal, HostReply, HostRequest, Identity,
-    LAST_WORDS_MAX, Reset, Told,
+    BoardKind, CRASH_REPORT_MAX, HOST_SCHEMA, Hello, HostId, HostRefusal, HostReply, HostRequest,
+    Identity, ResetCause, TelemetryReport,
 };
 
 use crate::command::Command;
@@ -20,11 +20,11 @@ use outbox::Outbox;
 mod tests;
 
 /// A leg that a host can command.
-pub trait Commanded {
+pub trait CommandedLeg {
     /// Takes a command for a later tick; false if there is no room.
     fn command(&mut self, number: u16, command: Command) -> bool;
     /// Takes note of a frame that could not be read.
-    fn misheard(&mut self);
+    fn note_decode_error(&mut self);
     /// What became of a command.
     fn outcome(&mut self) -> Option<Outcome>;
     /// The leg after the last tick.
@@ -85,7 +85,7 @@ impl HostLink {
     }
 
     /// Takes bytes from the host.
-    pub fn receive(&mut self, bytes: &[u8], leg: &mut impl Commanded) {
+    pub fn receive(&mut self, bytes: &[u8], leg: &mut impl CommandedLeg) {
         for &byte in bytes {
             let Some(found) = self.decoder.push(byte) else {
                 continue;
@@ -97,9 +97,9 @@ impl HostLink {
         }
     }
 
-    /// Tells the host what became of its commands, and what it asked to be told again and again. Called after each tick, or
-    /// more seldom.
-    pub fn report(&mut self, leg: &mut impl Commanded) {
+    /// Reports to the host what became of its commands, and streams telemetry if it asked for that. Called after each tick,
+    /// or more seldom.
+    pub fn report(&mut self, leg: &mut impl CommandedLeg) {
         while let Some(Outcome { number, result }) = leg.outcome() {
             let reply = match result {
                 Ok(()) => HostReply::Done,
@@ -120,12 +120,12 @@ impl HostLink {
         }
         stream.last_tick = telemetry.tick;
         stream.number = stream.number.wrapping_add(1);
-        let told = Told {
+        let report = TelemetryReport {
             number: stream.number,
             telemetry: *telemetry,
         };
         // Replies go first: a full line costs telemetry.
-        self.outbox.put(0, &HostReply::Telemetry(told), MAX_FRAME);
+        self.outbox.put(0, &HostReply::Telemetry(report), MAX_FRAME);
     }
 
     /// The next byte for the host.
@@ -139,7 +139,7 @@ impl HostLink {
         self.service.saving.and(Some(&self.service.settings))
     }
 
-    /// Tells the host whether its settings were kept.
+    /// Reports to the host whether its settings were kept.
     pub fn saved(&mut self, kept: bool) {
         if let Some(number) = self.service.saving.take() {
             let reply = if kept {
@@ -157,7 +157,7 @@ impl Service {
     fn answer(
         &mut self,
         found: Result<Frame<'_>, FrameError>,
-        leg: &mut impl Commanded,
+        leg: &mut impl CommandedLeg,
     ) -> Option<(u16, HostReply)> {
         let (number, result) = match found {
             Ok(frame) => {
@@ -168,7 +168,7 @@ impl Service {
             Err(error) => (0, Err(HostRefusal::BadFrame(error))),
         };
         if let Err(HostRefusal::BadFrame(_) | HostRefusal::BadRequest) = result {
-            leg.misheard();
+            leg.note_decode_error();
         }
         match result {
             Ok(reply) => reply.map(|reply| (number, reply)),
@@ -181,7 +181,7 @@ impl Service {
         &mut self,
         number: u16,
         request: HostRequest,
-        leg: &mut impl Commanded,
+        leg: &mut impl CommandedLeg,
     ) -> Result<Option<HostReply>, HostRefusal> {
         if let HostRequest::Identify(hello) = request {
             return self.identify(hello).map(Some);
@@ -194,7 +194,7 @@ impl Service {
             HostRequest::Command { host, command } => {
                 return self.command(number, host, command, leg);
             }
-            HostRequest::Telemetry => HostReply::Telemetry(Told {
+            HostRequest::Telemetry => HostReply::Telemetry(TelemetryReport {
                 number: self.stream.number,
                 telemetry: leg.telemetry(),
             }),
@@ -206,7 +206,7 @@ impl Service {
             HostRequest::GetSettings => HostReply::Settings(self.settings.clone()),
             HostRequest::SetSettings(settings) => {
                 if self.saving.is_some() {
-                    // What is told to be kept would not be what is in use.
+                    // What would be acknowledged as kept is not what is in use then.
                     return Err(HostRefusal::Busy);
                 }
                 leg.restart(&settings)?;
@@ -247,7 +247,7 @@ impl Service {
         number: u16,
         host: HostId,
         command: Command,
-        leg: &mut impl Commanded,
+        leg: &mut impl CommandedLeg,
     ) -> Result<Option<HostReply>, HostRefusal> {
         let ends = matches!(command, Command::Stop | Command::Disarm);
         let begins = matches!(command, Command::Arm | Command::Home | Command::Clear);

@@ -2,7 +2,7 @@
 
 use crate::command::Command;
 use crate::drive::Drive;
-use crate::host_link::{Commanded, HostLink, HostRefusal, Identity};
+use crate::host_link::{CommandedLeg, HostLink, HostRefusal, Identity};
 use crate::leg::{Leg, Outcome};
 use crate::sensors::Sensors;
 use crate::settings::{Settings, SettingsError};
@@ -32,9 +32,9 @@ impl<T: Scalar> SensingLeg<T> {
         })
     }
 
-    /// Keeps what the sensors read, to be told, and gives the leg for its tick.
+    /// Keeps what the sensors read, for the host, and gives the leg for its tick.
     #[inline(always)]
-    pub fn sensed(&mut self, sensors: &Sensors) -> &mut Leg<T> {
+    pub fn store_sensors(&mut self, sensors: &Sensors) -> &mut Leg<T> {
         self.sensors = *sensors;
         &mut self.leg
     }
@@ -42,10 +42,10 @@ impl<T: Scalar> SensingLeg<T> {
     /// One tick: see [`Leg::tick`].
     #[inline(always)]
     pub fn tick(&mut self, sensors: &Sensors) -> Drive<T> {
-        self.sensed(sensors).tick(sensors)
+        self.store_sensors(sensors).tick(sensors)
     }
 
-    /// Lets another leg take this one's place on the board: see [`Leg::succeed`].
+    /// Lets another leg take this one's place on the board: see [`Leg::inherit_from`].
     ///
     /// # Errors
     /// [`HostRefusal::Driven`]: this one drives its motors, and stays.
@@ -53,14 +53,9 @@ impl<T: Scalar> SensingLeg<T> {
         if self.leg.state().driven() {
             return Err(HostRefusal::Driven);
         }
-        to.leg.succeed(&mut self.leg);
+        to.leg.inherit_from(&mut self.leg);
         to.sensors = self.sensors;
         Ok(())
-    }
-
-    /// See [`Leg::take_over`].
-    pub fn take_over(&mut self, applied: &Drive<T>) {
-        self.leg.take_over(applied);
     }
 
     /// See [`Leg::telemetry`].
@@ -70,15 +65,22 @@ impl<T: Scalar> SensingLeg<T> {
     }
 }
 
+impl SensingLeg<f64> {
+    /// See [`Leg::adopt_drive`].
+    pub fn adopt_drive(&mut self, applied: &Drive<f64>) {
+        self.leg.adopt_drive(applied);
+    }
+}
+
 macro_rules! commanded {
     ($number:ty, $narrowed:expr) => {
-        impl Commanded for SensingLeg<$number> {
+        impl CommandedLeg for SensingLeg<$number> {
             fn command(&mut self, number: u16, command: Command) -> bool {
                 self.leg.command(number, command)
             }
 
-            fn misheard(&mut self) {
-                self.leg.misheard();
+            fn note_decode_error(&mut self) {
+                self.leg.note_decode_error();
             }
 
             fn outcome(&mut self) -> Option<Outcome> {
@@ -119,7 +121,7 @@ pub struct LinkedLeg<T> {
 
 impl<T: Scalar> LinkedLeg<T>
 where
-    SensingLeg<T>: Commanded,
+    SensingLeg<T>: CommandedLeg,
 {
     /// A leg that has not seen its sensors yet, on a line on which nothing was said yet.
     ///
@@ -153,7 +155,7 @@ where
         while !sent.is_full()
             && let Some(byte) = self.link.transmit()
         {
-            // There is room: it was just looked at.
+            // There is room: it was just checked.
             let _ = sent.push(byte);
         }
         sent

@@ -1,62 +1,37 @@
 //! What the control law is set to: the mechanism, the calibration of its sensors, gains and limits.
 
 mod default;
-mod section;
+mod field;
+mod gains;
+mod out_of_range;
 mod sections;
+mod tendon;
 
-pub use section::{Field, OutOfRange};
-pub use sections::{Estimation, Homing, Limits, Motion, SECTIONS, Servo};
+pub use field::Field;
+pub use gains::{Gains, SECTIONS};
+pub use out_of_range::OutOfRange;
+pub use sections::{AxisCalibration, BoardCalibration, Estimation, Homing, Limits, Motion, Servo};
+pub use tendon::TendonParameters;
 
-use crate::messages::{RigMessage, SupportMessage, TendonsMessage};
-use core::ops::RangeInclusive;
-use leg_model::{Error, Quantity, Reason};
+use leg_model::{Error, JointStiffness, Quantity, Reason, RigParameters, SupportKind};
 use postcard_schema::Schema;
+use sections::UNSTRETCHED;
 use serde::{Deserialize, Serialize};
 
 #[cfg(test)]
 mod tests;
 
-/// What one code or count may stand for, but for its sign, in any unit: no sensor is beyond it, and no reading overflows.
-const SCALES: RangeInclusive<f32> = 1e-12..=1e3;
-
-/// Greatest offset of a calibration, in any unit.
-const OFFSET_MAX: f32 = 1e6;
-
-/// Calibration of one axis: its encoder, its load cell and its motor's current.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
-pub struct AxisCalibration {
-    /// How far one encoder count pulls the tendon in, m; negative for an encoder that counts the other way.
-    pub m_per_count: f32,
-    /// Length of the tendon without tension when the board started (counter at zero), m; none until it is homed.
-    pub unstretched_at_zero_m: Option<f32>,
-    /// Tension by code of the load cell, N.
-    pub cell_n_per_code: f32,
-    /// Code of the load cell without tension.
-    pub cell_zero_code: f32,
-    /// Current by code of the motor's current, A; half of the highest code is no current.
-    pub current_a_per_code: f32,
-}
-
-/// Scales of what all axes share.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
-pub struct BoardCalibration {
-    /// Supply voltage by code, V.
-    pub supply_v_per_code: f32,
-    /// Temperature by code, °C.
-    pub temperature_c_per_code: f32,
-    /// Temperature at code 0, °C.
-    pub temperature_at_zero_c: f32,
-}
-
 /// All settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct Settings {
     /// The mechanism.
-    pub rig: RigMessage,
-    /// Its central support.
-    pub support: SupportMessage,
+    pub rig: RigParameters<f32, 3>,
+    /// How its central support guides the leg.
+    pub support: SupportKind,
+    /// How the joint of the support resists.
+    pub joint: JointStiffness<f32>,
     /// Its tendons.
-    pub tendons: TendonsMessage,
+    pub tendons: [TendonParameters; 3],
     /// Lowest tension allowed, N.
     pub f_min_n: f32,
     /// Highest tension allowed, N.
@@ -86,13 +61,8 @@ pub struct Settings {
 pub enum SettingsError {
     /// The mechanism, its tendons or its tensions.
     Model(Error),
-    /// A gain or a limit.
+    /// A gain, a limit or a calibration.
     OutOfRange(OutOfRange),
-    /// A calibration that is not finite, zero or beyond what any sensor has; the axis counts from 1, 0 stands for what the axes share.
-    Calibration {
-        /// The axis.
-        axis: u8,
-    },
 }
 
 impl From<Error> for SettingsError {
@@ -112,15 +82,6 @@ impl core::fmt::Display for SettingsError {
         match self {
             Self::Model(error) => error.fmt(f),
             Self::OutOfRange(error) => error.fmt(f),
-            Self::Calibration { axis: 0 } => f.write_str(
-                "the calibration of supply or temperature is zero or beyond any sensor's",
-            ),
-            Self::Calibration { axis } => {
-                write!(
-                    f,
-                    "the calibration of axis {axis} is zero or beyond any sensor's"
-                )
-            }
         }
     }
 }
@@ -138,16 +99,28 @@ impl Settings {
         settings
     }
 
+    /// Gains and limits.
+    #[must_use]
+    pub fn gains(&self) -> Gains {
+        Gains {
+            motion: self.motion,
+            servo: self.servo,
+            estimation: self.estimation,
+            limits: self.limits,
+            homing: self.homing,
+        }
+    }
+
     /// Checks gains, limits and calibration. The mechanism is checked where it is built.
     ///
     /// # Errors
     /// The first value that is refused.
     pub fn check(&self) -> Result<(), SettingsError> {
-        self.motion.check()?;
-        self.servo.check()?;
-        self.estimation.check()?;
-        self.limits.check()?;
-        self.homing.check()?;
+        OutOfRange::check(0, 0, Motion::FIELDS, &self.motion.values())?;
+        OutOfRange::check(1, 0, Servo::FIELDS, &self.servo.values())?;
+        OutOfRange::check(2, 0, Estimation::FIELDS, &self.estimation.values())?;
+        OutOfRange::check(3, 0, Limits::FIELDS, &self.limits.values())?;
+        OutOfRange::check(4, 0, Homing::FIELDS, &self.homing.values())?;
         let bounds = self.f_min_n..=self.f_max_n;
         // Bounds that are none are refused with the mechanism.
         if !bounds.is_empty() && !bounds.contains(&self.pretension_n) {
@@ -156,27 +129,12 @@ impl Settings {
                 reason: Reason::OutsideBounds,
             }));
         }
-        let scale = |value: f32| SCALES.contains(&value.abs());
-        let offset = |value: f32| value.abs() <= OFFSET_MAX;
-        let shared = [
-            self.board.supply_v_per_code,
-            self.board.temperature_c_per_code,
-        ];
-        if !shared.into_iter().all(scale) || !offset(self.board.temperature_at_zero_c) {
-            return Err(SettingsError::Calibration { axis: 0 });
+        for (number, axis) in (1..).zip(&self.axes) {
+            OutOfRange::check(5, number, AxisCalibration::FIELDS, &axis.values())?;
+            let zero = axis.unstretched_at_zero_m.unwrap_or(0.0);
+            OutOfRange::check(6, number, &[UNSTRETCHED], &[zero])?;
         }
-        for (axis, calibration) in (1..).zip(&self.axes) {
-            let zero = calibration.unstretched_at_zero_m.unwrap_or(0.0);
-            let scales = [
-                calibration.m_per_count,
-                calibration.cell_n_per_code,
-                calibration.current_a_per_code,
-            ];
-            let offsets = offset(zero) && offset(calibration.cell_zero_code);
-            if !scales.into_iter().all(scale) || !offsets {
-                return Err(SettingsError::Calibration { axis });
-            }
-        }
+        OutOfRange::check(7, 0, BoardCalibration::FIELDS, &self.board.values())?;
         Ok(())
     }
 }

@@ -16,7 +16,7 @@
 //! to survive the NMI, and should save only at rest and with the supply in its range.
 //!
 //! A flipped bit that the ECC does not correct costs the record it is in: an older one is loaded, if there is any, and
-//! nothing tells that it is older.
+//! nothing shows that it is older.
 
 mod error;
 mod record;
@@ -26,8 +26,8 @@ mod sealed;
 #[cfg(test)]
 mod tests;
 
-pub use error::{Loaded, StoreError, Why};
-pub use record::{RECORD_MAX, SETTINGS_MAX, SETTINGS_SCHEMA, VERSION};
+pub use error::{CorruptReason, Loaded, StoreError};
+pub use record::{RECORD_MAX, SETTINGS_MAX, SETTINGS_SCHEMA};
 pub use region::{BANK_2, FLASH_SIZE, FLASH_START, PAGE_SIZE, REGION, WORD_SIZE};
 
 use crate::settings::Settings;
@@ -38,6 +38,9 @@ use sealed::Sealed;
 use sequential_storage::Error;
 use sequential_storage::cache::{Cache, Uncached};
 use sequential_storage::map::{MapConfig, MapStorage};
+
+/// Version of a record's layout.
+pub const VERSION: u8 = 1;
 
 /// One value needs no key.
 const KEY: () = ();
@@ -81,7 +84,7 @@ impl<F: NorFlash> Store<F> {
         match self.map.fetch_item(&mut self.buffer, &KEY).await {
             Ok(Some(record)) => Ok(loaded(record)),
             Err(Error::Storage { value, .. }) => Err(StoreError::Flash(value)),
-            Ok(None) | Err(_) => Ok(Loaded::Corrupt(Why::Storage)),
+            Ok(None) | Err(_) => Ok(Loaded::Corrupt(CorruptReason::Storage)),
         }
     }
 

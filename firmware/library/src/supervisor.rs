@@ -3,41 +3,23 @@
 mod fault;
 mod fault_set;
 mod monitors;
+mod reaction;
 mod state;
-mod table;
 
-pub use fault::{Fault, Reaction};
+pub use fault::{FAULT_TABLE, Fault, FaultEntry};
 pub use fault_set::FaultSet;
-pub use monitors::{AxisView, Monitors, View};
+pub use monitors::{MonitorInput, Monitors};
+pub use reaction::{Clearing, Reaction};
 pub use state::{Event, State};
-pub use table::{FaultEntry, TABLE};
 
-/// The state, and the faults that led to it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The faults, and what they allow. The state itself is that of the leg's mode.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Supervisor {
-    state: State,
     latched: FaultSet,
     present: FaultSet,
 }
 
-impl Default for Supervisor {
-    fn default() -> Self {
-        Self {
-            state: State::Boot,
-            latched: FaultSet::NONE,
-            present: FaultSet::NONE,
-        }
-    }
-}
-
 impl Supervisor {
-    /// The state.
-    #[must_use]
-    #[inline(always)]
-    pub fn state(&self) -> State {
-        self.state
-    }
-
     /// Faults that have not been cleared.
     #[must_use]
     #[inline(always)]
@@ -45,59 +27,54 @@ impl Supervisor {
         self.latched
     }
 
-    /// Faults whose cause is present now.
+    /// Takes over the faults that another supervisor has latched; those that only limit end with their cause.
+    pub fn inherit_faults(&mut self, latched: FaultSet) {
+        self.latched = self.latched.union(latched.without_limits());
+    }
+
+    /// Latches the faults of a tick; the state after the most severe reaction of all that are latched.
+    #[inline(always)]
+    pub fn react(&mut self, state: State, present: FaultSet) -> State {
+        self.present = present;
+        // Those that only limit end with their cause.
+        let latched = self.latched.union(present).without_limits();
+        self.latched = latched.union(present.limits());
+        match self.latched.most_severe() {
+            Some(reaction) => state.next(Event::Reaction(reaction)).unwrap_or(state),
+            None => state,
+        }
+    }
+
+    /// The state after an event; none where the event leads nowhere. An arm or a start of homing leads nowhere while a fault is
+    /// latched.
     #[must_use]
     #[inline(always)]
-    pub fn present(&self) -> FaultSet {
-        self.present
-    }
-
-    /// Takes over the faults that another supervisor has latched; those that only limit end with their cause.
-    pub fn inherit(&mut self, latched: FaultSet) {
-        self.latched = self.latched.with(latched.without_limits());
-    }
-
-    /// Takes the faults of a tick and reacts to the gravest that is latched.
-    #[inline(always)]
-    pub fn watch(&mut self, present: FaultSet) {
-        self.present = present;
-        self.latched = self.latched.with(present);
-        // Those that only limit end with their cause.
-        self.latched = self.latched.without_limits().with(present.limits());
-        if self.latched.any()
-            && let Some(reaction) = self.latched.gravest()
-        {
-            self.happen(Event::Reaction(reaction));
-        }
-    }
-
-    /// Goes where an event leads; stays where it leads nowhere. An arm or a start of homing is refused while a fault is
-    /// latched.
-    #[inline(always)]
-    pub fn happen(&mut self, event: Event) -> bool {
+    pub fn next(&self, state: State, event: Event) -> Option<State> {
         let starts = matches!(event, Event::Arm | Event::Home);
-        if starts && self.latched.without_limits().any() {
-            return false;
+        if starts && self.stopped() {
+            return None;
         }
-        match self.state.after(event) {
-            Some(state) => {
-                self.state = state;
-                true
-            }
-            None => false,
-        }
+        state.next(event)
     }
 
-    /// Clears the faults whose cause is gone; if none is left, goes on as the state allows. `homed` tells whether the
-    /// leg knows its zero.
-    pub fn clear(&mut self, homed: bool) -> bool {
+    /// Clears the faults whose cause is gone; the next state if none is left. `homed`: whether the leg knows its zero.
+    pub fn clear(&mut self, state: State, homed: bool) -> Option<State> {
         self.latched = self.present;
-        let free = !self.latched.without_limits().any();
-        free && self.happen(if homed {
+        if self.stopped() {
+            return None;
+        }
+        state.next(if homed {
             Event::ClearHomed
         } else {
             Event::Clear
         })
+    }
+
+    /// Whether a fault is latched that does more than limit.
+    #[must_use]
+    #[inline(always)]
+    pub fn stopped(&self) -> bool {
+        self.latched.without_limits().any()
     }
 }
 

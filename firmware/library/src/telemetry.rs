@@ -1,4 +1,4 @@
-//! What the leg tells of itself.
+//! What the leg reports of itself.
 
 use crate::supervisor::{FaultSet, State};
 use postcard_schema::Schema;
@@ -17,7 +17,7 @@ pub struct Telemetry<T> {
     pub homed: bool,
     /// Tendon at which homing failed the last time, from 1; 0 if it did not.
     pub failed_tendon: u8,
-    /// Whether the trajectory is on its way.
+    /// Whether the trajectory moves.
     pub moving: bool,
     /// Where the leg shall point: horizontal components.
     pub target: [T; 2],

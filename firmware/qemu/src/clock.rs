@@ -1,6 +1,6 @@
-//! The clock behind embassy-time: TIMER0 runs freely and tells the time, TIMER1 rings the next alarm.
+//! The clock behind embassy-time: TIMER0 runs freely and keeps the time, TIMER1 raises the next alarm.
 
-use crate::timer::{TIMER_HZ, Timer};
+use crate::timer::{CmsdkTimer, TIMER_HZ};
 use crate::vectors::Interrupt;
 use core::cell::RefCell;
 use core::task::Waker;
@@ -27,7 +27,7 @@ struct Clock(Mutex<RefCell<State>>);
 struct State {
     /// How often TIMER0 has reached zero.
     turns: u64,
-    /// The latest time told, in timer ticks since the start.
+    /// The latest time given, in timer ticks since the start.
     latest: u64,
     queue: Queue,
 }
@@ -38,7 +38,7 @@ struct State {
     reason = "unmasking an interrupt can break critical sections that rely on masks"
 )]
 pub fn start() {
-    Timer::FREE_RUNNING.start(FIRST_VALUE, u32::MAX);
+    CmsdkTimer::FREE_RUNNING.start(FIRST_VALUE, u32::MAX);
     // SAFETY: the clock's critical sections stop all interrupts and do not rely on masks.
     unsafe {
         NVIC::unmask(Interrupt::Timer0);
@@ -55,18 +55,18 @@ impl Clock {
         })))
     }
 
-    fn with<R>(&self, body: impl FnOnce(&mut State) -> R) -> R {
+    fn with_state<R>(&self, body: impl FnOnce(&mut State) -> R) -> R {
         critical_section::with(|section| body(&mut self.0.borrow_ref_mut(section)))
     }
 }
 
 impl Driver for Clock {
     fn now(&self) -> u64 {
-        self.with(State::elapsed) / SCALE
+        self.with_state(State::elapsed) / SCALE
     }
 
     fn schedule_wake(&self, at: u64, waker: &Waker) {
-        self.with(|state| {
+        self.with_state(|state| {
             if state.queue.schedule_wake(at, waker) {
                 state.set_alarm();
             }
@@ -77,10 +77,10 @@ impl Driver for Clock {
 impl State {
     /// Timer ticks since the start.
     fn elapsed(&mut self) -> u64 {
-        let mut value = Timer::FREE_RUNNING.value();
-        if Timer::FREE_RUNNING.take_event() {
+        let mut value = CmsdkTimer::FREE_RUNNING.value();
+        if CmsdkTimer::FREE_RUNNING.take_event() {
             self.turns += 1;
-            value = Timer::FREE_RUNNING.value();
+            value = CmsdkTimer::FREE_RUNNING.value();
         }
         // The event comes with the zero, not after it: a turn starts there. A zero whose event is still to come
         // reads as the old turn's start, and `latest` keeps the time from going back.
@@ -95,12 +95,12 @@ impl State {
         let elapsed = self.elapsed();
         let next = self.queue.next_expiration(elapsed / SCALE);
         if next == u64::MAX {
-            Timer::ALARM.stop();
+            CmsdkTimer::ALARM.stop();
             return;
         }
         // An alarm beyond a turn rings early and is then set again.
         let wait = next.saturating_mul(SCALE).saturating_sub(elapsed);
-        Timer::ALARM.start(u32::try_from(wait).unwrap_or(u32::MAX).max(1), 0);
+        CmsdkTimer::ALARM.start(u32::try_from(wait).unwrap_or(u32::MAX).max(1), 0);
     }
 }
 
@@ -110,7 +110,7 @@ impl State {
 )]
 #[unsafe(no_mangle)]
 extern "C" fn TIMER0() {
-    CLOCK.with(State::elapsed);
+    CLOCK.with_state(State::elapsed);
 }
 
 #[allow(
@@ -119,6 +119,6 @@ extern "C" fn TIMER0() {
 )]
 #[unsafe(no_mangle)]
 extern "C" fn TIMER1() {
-    Timer::ALARM.stop();
-    CLOCK.with(State::set_alarm);
+    CmsdkTimer::ALARM.stop();
+    CLOCK.with_state(State::set_alarm);
 }

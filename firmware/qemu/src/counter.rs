@@ -3,7 +3,7 @@
 //! Under `-icount shift=10` each instruction takes 2¹⁰ ns of QEMU's time, which is 25.6 ticks of TIMER0: the number
 //! of instructions follows exactly, by rounding, and is the same in every run.
 
-use crate::timer::Timer;
+use crate::timer::CmsdkTimer;
 use core::arch::asm;
 use core::hint::black_box;
 
@@ -34,9 +34,9 @@ fn instructions(ticks: u32) -> u32 {
 #[inline(never)]
 fn ticks_of<A, B>(kernel: fn(&A, &mut B), input: &A, output: &mut B) -> u32 {
     critical_section::with(|_| {
-        let before = Timer::FREE_RUNNING.value();
+        let before = CmsdkTimer::FREE_RUNNING.value();
         kernel(input, output);
-        before.wrapping_sub(Timer::FREE_RUNNING.value())
+        before.wrapping_sub(CmsdkTimer::FREE_RUNNING.value())
     })
 }
 

@@ -1,4 +1,4 @@
-//! Ends the run at once when something went wrong, with an exit code that tells what.
+//! Ends the run at once when something went wrong, with the exit code for it.
 
 use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicBool, Ordering};

@@ -13,17 +13,17 @@ const INTERRUPT: u32 = 1 << 3;
 
 /// One of the timers.
 #[derive(Clone, Copy)]
-pub struct Timer {
+pub struct CmsdkTimer {
     base: *mut u32,
 }
 
-impl Timer {
-    /// TIMER0: tells the time.
+impl CmsdkTimer {
+    /// TIMER0: keeps the time.
     pub const FREE_RUNNING: Self = Self {
         base: 0x4000_0000 as *mut u32,
     };
 
-    /// TIMER1: rings the next alarm.
+    /// TIMER1: raises the next alarm.
     pub const ALARM: Self = Self {
         base: 0x4000_1000 as *mut u32,
     };

@@ -90,7 +90,7 @@ pub fn open(
         bus: Bus {
             tx,
             rx,
-            assembler: Assembler::of_leg(leg),
+            assembler: Assembler::for_leg(leg),
             guard: BusGuard::new(NOMINAL_BIT_RATE),
             watched: Instant::now(),
         },

@@ -30,7 +30,7 @@ pub fn config() -> Config {
 }
 
 /// Lets the chip watch its crystal. If it stops, TIM1's system break ends the pulses, the chip goes on from its own
-/// oscillator, and an NMI tells.
+/// oscillator, and an NMI is raised.
 pub fn watch() {
     pac::RCC.cr().modify(|w| w.set_csson(true));
 }

@@ -1,18 +1,18 @@
 //! The control interrupt, and the leg that it shares with the tasks below it.
 //!
 //! The leg is touched by the interrupt, and by tasks inside short critical sections only, so that neither ever finds it
-//! taken; if it did, the tick would be left out and be told as late, not panic.
+//! taken; if it did, the tick would be left out and be reported as late, not panic.
 
+use crate::check_ins::CHECK_INS;
 use crate::nucleo::Nucleo;
-use crate::watchdog::ROLL;
 use core::cell::RefCell;
 use cortex_m::peripheral::DWT;
 use critical_section::Mutex;
 use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::InterruptExt;
-use leg_firmware::board::{self, LowerHalf, Member, TickTimer};
+use leg_firmware::board::{self, LowerHalf, TickTimer, WatchedTask};
 use leg_firmware::command::Command;
-use leg_firmware::host_link::{Commanded, HostRefusal};
+use leg_firmware::host_link::{CommandedLeg, HostRefusal};
 use leg_firmware::leg::Outcome;
 use leg_firmware::linked_leg::SensingLeg;
 use leg_firmware::sensors::Sensors;
@@ -41,14 +41,14 @@ impl Control {
 #[interrupt]
 fn ADC1_2() {
     let started = DWT::cycle_count();
-    if with(|control| control.tick(started)).is_some() {
-        ROLL.check_in(Member::Control);
+    if with_control(|control| control.tick(started)).is_some() {
+        CHECK_INS.check_in(WatchedTask::Control);
     }
 }
 
 /// What `body` makes of the control; `None` before [`start`].
 #[inline(always)]
-fn with<R>(body: impl FnOnce(&mut Control) -> R) -> Option<R> {
+fn with_control<R>(body: impl FnOnce(&mut Control) -> R) -> Option<R> {
     critical_section::with(|section| {
         let mut control = CONTROL.borrow(section).try_borrow_mut().ok()?;
         control.as_mut().map(body)
@@ -74,19 +74,19 @@ pub fn start(board: Nucleo, leg: &'static mut SensingLeg<f32>) {
 
 /// Switches the outputs off, and leaves them off until the leg has let go of them.
 pub fn cut() {
-    with(|control| control.board.cut());
+    with_control(|control| control.board.cut());
 }
 
 /// The longest tick so far, cycles.
 pub fn longest_tick() -> u32 {
-    with(|control| control.timer.longest()).unwrap_or(0)
+    with_control(|control| control.timer.longest()).unwrap_or(0)
 }
 
 /// The leg as a host commands it.
 pub struct SharedLeg {
     /// The leg that is not in use: it is built anew here, at leisure, and then changes places with the other.
     spare: &'static mut SensingLeg<f32>,
-    /// The last that was told.
+    /// The last that was read.
     telemetry: Telemetry<f32>,
 }
 
@@ -98,17 +98,17 @@ impl SharedLeg {
     }
 }
 
-impl Commanded for SharedLeg {
+impl CommandedLeg for SharedLeg {
     fn command(&mut self, number: u16, command: Command) -> bool {
-        with(|control| control.leg.command(number, command)).unwrap_or(false)
+        with_control(|control| control.leg.command(number, command)).unwrap_or(false)
     }
 
-    fn misheard(&mut self) {
-        with(|control| control.leg.misheard());
+    fn note_decode_error(&mut self) {
+        with_control(|control| control.leg.note_decode_error());
     }
 
     fn outcome(&mut self) -> Option<Outcome> {
-        with(|control| control.leg.outcome())?
+        with_control(|control| control.leg.outcome())?
     }
 
     fn telemetry(&mut self) -> Telemetry<f32> {
@@ -119,14 +119,14 @@ impl Commanded for SharedLeg {
     }
 
     fn sensors(&mut self) -> Sensors {
-        with(|control| control.leg.sensors()).unwrap_or_default()
+        with_control(|control| control.leg.sensors()).unwrap_or_default()
     }
 
     fn restart(&mut self, settings: &Settings) -> Result<(), HostRefusal> {
         let fresh = SensingLeg::new(&settings.without_zero()).map_err(HostRefusal::Settings)?;
         *self.spare = fresh;
         let spare = &mut self.spare;
-        let changed = with(|control| {
+        let changed = with_control(|control| {
             control.leg.hand_over(spare)?;
             core::mem::swap(&mut control.leg, spare);
             Ok(())
@@ -137,5 +137,5 @@ impl Commanded for SharedLeg {
 
 /// The leg after the last tick; `None` before the first start.
 pub fn telemetry() -> Option<Telemetry<f32>> {
-    with(|control| control.leg.telemetry())
+    with_control(|control| control.leg.telemetry())
 }

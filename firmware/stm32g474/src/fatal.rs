@@ -9,8 +9,8 @@ use cortex_m::peripheral::SCB;
 use cortex_m_rt::{ExceptionFrame, exception};
 use embassy_stm32::pac;
 use embassy_stm32::pac::iwdg::vals::Key;
-use leg_firmware::board::{Kept, LastWords, Words, file_name, reset_cause};
-use leg_firmware::host_link::Reset;
+use leg_firmware::board::{CrashRecord, CrashReport, ShortText, file_name, reset_cause};
+use leg_firmware::host_link::ResetCause;
 
 /// Failures in a row from which on the next start is put off, so that a debugger has time to attach.
 const HASTY_FAILURES: u32 = 3;
@@ -21,7 +21,7 @@ const REST_STEPS: u32 = 100;
 /// 10 ms.
 const REST_STEP_CYCLES: u32 = leg_firmware::board::timing::CLOCK_HZ / 100;
 
-/// Set by the first failure: a second one, say inside of what the first one says, ends at once.
+/// Set by the first failure: a second one, say while the first is reported, ends at once.
 static FAILING: AtomicBool = AtomicBool::new(false);
 
 /// Memory that the start-up code leaves alone.
@@ -29,58 +29,58 @@ static FAILING: AtomicBool = AtomicBool::new(false);
     unsafe_code,
     reason = "only the section's name keeps it out of start-up"
 )]
-#[unsafe(link_section = ".uninit.last_words")]
-static mut RECORD: MaybeUninit<LastWords> = MaybeUninit::uninit();
+#[unsafe(link_section = ".uninit.crash_report")]
+static mut RECORD: MaybeUninit<CrashRecord> = MaybeUninit::uninit();
 
 #[allow(unsafe_code, reason = "the record outlives the program that writes it")]
-fn record() -> LastWords {
-    let record: *const LastWords = (&raw const RECORD).cast();
+fn record() -> CrashRecord {
+    let record: *const CrashRecord = (&raw const RECORD).cast();
     // SAFETY: the place is aligned and always there; the read is volatile, so it gives whatever bits are there; every
-    // pattern of bits is a `LastWords`; and no reference to it exists.
+    // pattern of bits is a `CrashRecord`; and no reference to it exists.
     unsafe { ptr::read_volatile(record) }
 }
 
 #[allow(unsafe_code, reason = "the record outlives the program that writes it")]
-fn write(words: LastWords) {
-    let record: *mut LastWords = (&raw mut RECORD).cast();
+fn write(text: CrashRecord) {
+    let record: *mut CrashRecord = (&raw mut RECORD).cast();
     // SAFETY: the place is aligned and always there, and no reference to it exists. A write that is interrupted by a
     // failure's own leaves the failure's, or a record whose checksum is wrong.
-    unsafe { ptr::write_volatile(record, words) };
+    unsafe { ptr::write_volatile(record, text) };
 }
 
-/// Why the chip started, and what the firmware said before. It is asked once, before anything else can fail.
-pub fn origin() -> (Reset, Option<Kept>) {
+/// Why the chip started, and the crash report of the last run. It is asked once, before anything else can fail.
+pub fn origin() -> (ResetCause, Option<CrashReport>) {
     let kept = record().read();
     let flags = pac::RCC.csr().read().0;
     pac::RCC.csr().modify(|w| w.set_rmvf(true));
-    write(LastWords::silent(
+    write(CrashRecord::empty(
         kept.as_ref().map_or(0, |kept| kept.failures),
     ));
     (reset_cause(flags, kept.as_ref()), kept)
 }
 
-/// Keeps words for the next start, and counts a failure. Returns how many there were in a row.
-pub fn keep(words: &Words) -> u32 {
+/// Keeps a report for the next start, and counts a failure. Returns how many there were in a row.
+pub fn keep(text: &ShortText) -> u32 {
     let before = record().read().map_or(0, |kept| kept.failures);
     let failures = before.saturating_add(1);
-    write(LastWords::new(words, failures));
+    write(CrashRecord::new(text, failures));
     failures
 }
 
 /// The firmware runs well: the failures before it are no row any more.
 pub fn settle() {
-    write(LastWords::silent(0));
+    write(CrashRecord::empty(0));
 }
 
 /// Ends everything, safely.
-pub fn end(words: &Words) -> ! {
+pub fn end(text: &ShortText) -> ! {
     cortex_m::interrupt::disable();
     power::off();
     if FAILING.swap(true, Ordering::Relaxed) {
         SCB::sys_reset();
     }
-    let failures = keep(words);
-    defmt::error!("{=str}", words.as_str());
+    let failures = keep(text);
+    defmt::error!("{=str}", text.as_str());
     if failures >= HASTY_FAILURES {
         rest();
     }
@@ -97,15 +97,15 @@ fn rest() {
 
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
-    let words = match info.location() {
-        Some(place) => Words::new(file_name(place.file()))
+    let text = match info.location() {
+        Some(place) => ShortText::new(file_name(place.file()))
             .text(":")
             .number(place.line())
             .text(": "),
-        None => Words::default(),
+        None => ShortText::default(),
     };
-    // A message that has to be put together first is left out: the place tells enough.
-    end(&words.text(info.message().as_str().unwrap_or("panic")))
+    // A message that has to be put together first is left out: the place is enough.
+    end(&text.text(info.message().as_str().unwrap_or("panic")))
 }
 
 #[allow(
@@ -116,9 +116,9 @@ fn panic(info: &PanicInfo<'_>) -> ! {
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
     // SAFETY: reading the register changes nothing, and it is always there.
     let cause = unsafe { (*SCB::PTR).cfsr.read() };
-    let words = Words::new("hard fault at ").hex(frame.pc());
-    let words = words.text(", called from ").hex(frame.lr());
-    end(&words.text(", CFSR ").hex(cause))
+    let text = ShortText::new("hard fault at ").hex(frame.pc());
+    let text = text.text(", called from ").hex(frame.lr());
+    end(&text.text(", CFSR ").hex(cause))
 }
 
 #[allow(
@@ -129,7 +129,7 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
 unsafe fn DefaultHandler(number: i16) -> ! {
     // Numbers count from the first interrupt; those of the core's own exceptions are negative.
     let exception = u32::from(number.wrapping_add(16).cast_unsigned());
-    end(&Words::new("no handler for exception ").number(exception))
+    end(&ShortText::new("no handler for exception ").number(exception))
 }
 
 /// The crystal has stopped, or the flash has read a double word that does not agree with its ECC.
@@ -143,12 +143,12 @@ unsafe fn DefaultHandler(number: i16) -> ! {
 #[exception]
 unsafe fn NonMaskableInt() {
     if clocks::lost() {
-        end(&Words::new("the crystal has stopped"));
+        end(&ShortText::new("the crystal has stopped"));
     }
     let ecc = pac::FLASH.eccr().read();
     let found = ecc.eccd() || ecc.eccd2();
     if !found || !ecc.bk_ecc() || ecc.sysf_ecc() {
-        end(&Words::new("NMI, flash ECC ").hex(ecc.0));
+        end(&ShortText::new("NMI, flash ECC ").hex(ecc.0));
     }
     // Ones clear the flags.
     pac::FLASH.eccr().modify(|w| {

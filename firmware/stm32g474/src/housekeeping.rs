@@ -1,4 +1,4 @@
-//! What has to be looked after now and then: slow sensors, the watchdog, the lamp.
+//! What has to be looked after now and then: slow sensors, the watchdog, the LED.
 
 use crate::cycles::CycleCounter;
 use crate::slow_sensors::SlowSensors;
@@ -6,11 +6,11 @@ use crate::watchdog::Watchdog;
 use crate::{control, fatal};
 use embassy_stm32::gpio::Output;
 use embassy_time::{Duration, Ticker};
-use leg_firmware::board::{RollCall, STEP_MS, lit};
+use leg_firmware::board::{BLINK_STEP_MS, CheckIns, led_on};
 use leg_firmware::supervisor::State;
 
-/// Rounds in a step of the lamp.
-const ROUNDS_PER_STEP: u32 = (STEP_MS / RollCall::ROUND_MS) as u32;
+/// Rounds in a step of the LED.
+const ROUNDS_PER_STEP: u32 = (BLINK_STEP_MS / CheckIns::PERIOD_MS) as u32;
 
 /// Steps after which the firmware counts as running well: 1 s.
 const SETTLED: u32 = 10;
@@ -24,9 +24,9 @@ pub async fn keep_house(
     mut sensors: SlowSensors,
     mut watchdog: Watchdog,
     mut cycles: CycleCounter,
-    mut lamp: Output<'static>,
+    mut led: Output<'static>,
 ) {
-    let mut ticker = Ticker::every(Duration::from_millis(RollCall::ROUND_MS));
+    let mut ticker = Ticker::every(Duration::from_millis(CheckIns::PERIOD_MS));
     let mut rounds: u32 = 0;
     loop {
         ticker.next().await;
@@ -37,8 +37,8 @@ pub async fn keep_house(
         watchdog.round();
         if rounds.is_multiple_of(ROUNDS_PER_STEP) {
             let step = rounds / ROUNDS_PER_STEP;
-            show(step, &mut lamp);
-            if step == SETTLED && !watchdog.bites() {
+            show(step, &mut led);
+            if step == SETTLED && !watchdog.resets() {
                 fatal::settle();
             }
         }
@@ -46,13 +46,13 @@ pub async fn keep_house(
     }
 }
 
-/// A step of the lamp, and now and then a line in the log.
-fn show(step: u32, lamp: &mut Output<'static>) {
+/// A step of the LED, and now and then a line in the log.
+fn show(step: u32, led: &mut Output<'static>) {
     let (state, faulted) = match control::telemetry() {
         Some(telemetry) => (telemetry.state, telemetry.faults.without_limits().any()),
         None => (State::Boot, false),
     };
-    lamp.set_level(lit(state, faulted, step).into());
+    led.set_level(led_on(state, faulted, step).into());
     if step.is_multiple_of(LOG_STEPS) {
         defmt::info!("longest tick: {=u32} cycles", control::longest_tick());
     }

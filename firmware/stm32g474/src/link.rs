@@ -1,9 +1,9 @@
 //! The host's line without its wires: what every transport does with the bytes.
 
+use crate::check_ins::CHECK_INS;
 use crate::control::SharedLeg;
 use crate::settings_task::{SAVED, TO_SAVE};
-use crate::watchdog::ROLL;
-use leg_firmware::board::Member;
+use leg_firmware::board::WatchedTask;
 use leg_firmware::host_link::HostLink;
 
 /// Time from one report to the next where nothing comes in, ms.
@@ -33,7 +33,7 @@ impl Session {
 
     /// Whoever serves the line is alive.
     pub fn alive(&self) {
-        ROLL.check_in(Member::Link);
+        CHECK_INS.check_in(WatchedTask::Link);
     }
 
     /// What has to be done about every millisecond, whatever comes in.

@@ -17,6 +17,7 @@
 #![no_main]
 
 mod can_bus;
+mod check_ins;
 mod clocks;
 mod control;
 mod converters;

@@ -14,7 +14,7 @@ use embassy_stm32::peripherals::{
 };
 use embassy_stm32::{Peri, rcc};
 use leg_firmware::board::timing::{PWM_TOP, REPETITIONS};
-use leg_firmware::board::{FaultLines, Half, PowerPins};
+use leg_firmware::board::{BridgeOutput, FaultLines, PowerPins};
 
 /// TIM1's channels on PA8 to PA10.
 const CHANNEL_AF: u8 = 6;
@@ -98,7 +98,7 @@ impl Power {
         }
     }
 
-    /// What the fault lines say; a break is told once, or as long as it lasts.
+    /// What the fault lines show; a break is reported once, or as long as it lasts.
     #[inline(always)]
     pub fn fault_lines(&self, lost: bool) -> FaultLines {
         let (port_b, port_c) = (pac::GPIOB.idr().read().0, pac::GPIOC.idr().read().0);
@@ -116,7 +116,7 @@ impl Power {
 
 impl PowerPins for Power {
     #[inline(always)]
-    fn set(&mut self, motor: usize, half: Half) {
+    fn set(&mut self, motor: usize, half: BridgeOutput) {
         let pin = DIRECTION_PIN + motor;
         let bit = if half.forward { 1 } else { 1 << 16 };
         pac::GPIOC.bsrr().write(|w| w.0 = bit << pin);
@@ -138,7 +138,7 @@ impl PowerPins for Power {
     }
 
     #[inline(always)]
-    fn on(&self) -> bool {
+    fn is_on(&self) -> bool {
         pac::TIM1.bdtr().read().moe()
     }
 }
@@ -211,7 +211,7 @@ fn set_up_breaks() {
     });
 }
 
-/// The breaks since the last call. A flag whose cause is still there cannot be cleared, and is told again.
+/// The breaks since the last call. A flag whose cause is still there cannot be cleared, and is reported again.
 #[inline(always)]
 fn take_breaks() -> SrAdv {
     let flags = pac::TIM1.sr().read();

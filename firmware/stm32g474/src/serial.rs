@@ -55,7 +55,7 @@ pub async fn serve(uart: BufferedUart<'static>, session: &'static mut Session) {
             Either::First(Ok(length)) => {
                 session.receive(received.get(..length).unwrap_or_default());
             }
-            // A byte is lost or damaged: the frame that it belongs to tells by its CRC.
+            // A byte is lost or damaged: the CRC of its frame shows that.
             Either::First(Err(_)) | Either::Second(()) => {}
         }
         session.turn();
@@ -63,7 +63,7 @@ pub async fn serve(uart: BufferedUart<'static>, session: &'static mut Session) {
         while !chunk.is_full()
             && let Some(byte) = session.transmit()
         {
-            // There is room: it was just looked at.
+            // There is room: it was just checked.
             let _ = chunk.push(byte);
         }
         // The line has no flow control, so it takes every byte in its time.

@@ -1,16 +1,16 @@
 //! The task that keeps settings in flash.
 //!
-//! It works on the second bank while programs run from the first, so the control interrupt goes on. A host is told that
+//! It works on the second bank while programs run from the first, so the control interrupt goes on. A host gets the answer that
 //! its settings were kept only after they were read back and are equal.
 
+use crate::check_ins::CHECK_INS;
 use crate::flash::CheckedFlash;
-use crate::watchdog::ROLL;
 use core::sync::atomic::{AtomicBool, Ordering};
 use embassy_stm32::flash::Error;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::signal::Signal;
 use embassy_time::{Duration, with_timeout};
-use leg_firmware::board::{Member, RollCall};
+use leg_firmware::board::{CheckIns, WatchedTask};
 use leg_firmware::settings::Settings;
 use leg_firmware::store::{Loaded, REGION, Store, StoreError};
 
@@ -40,7 +40,7 @@ pub fn store(flash: CheckedFlash) -> Result<BoardStore, StoreError<Error>> {
     Store::new(flash, REGION)
 }
 
-/// The settings that were kept, or `others` where there are none: then the leg is told, and is not driven until settings
+/// The settings that were kept, or `others` where there are none: then the fault is raised, and the leg is not driven until settings
 /// have been kept anew. A board that was never set counts as such.
 pub async fn load(store: &mut BoardStore, others: Settings) -> Settings {
     match store.load().await {
@@ -63,9 +63,9 @@ pub fn unfit() {
 /// Keeps what it is asked to keep, for ever.
 #[embassy_executor::task]
 pub async fn keep_settings(mut store: BoardStore) {
-    let round = Duration::from_millis(RollCall::ROUND_MS);
+    let round = Duration::from_millis(CheckIns::PERIOD_MS);
     loop {
-        ROLL.check_in(Member::Settings);
+        CHECK_INS.check_in(WatchedTask::Settings);
         if let Ok(settings) = with_timeout(round, TO_SAVE.wait()).await {
             let kept = save(&mut store, &settings).await;
             if kept {

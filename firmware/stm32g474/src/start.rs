@@ -14,16 +14,16 @@ use crate::{can_bus, fatal, housekeeping, serial, settings_task, switches};
 use embassy_executor::{SpawnError, SpawnToken, Spawner};
 use embassy_stm32::Peripherals;
 use embassy_stm32::gpio::{Level, Output, Speed};
-use leg_firmware::board::{Kept, LinkChoice, Words};
+use leg_firmware::board::{CrashReport, LinkChoice, ShortText};
 use leg_firmware::host_link::BoardKind;
-use leg_firmware::host_link::{HostLink, Identity, Reset};
+use leg_firmware::host_link::{HostLink, Identity, ResetCause};
 use leg_firmware::linked_leg::SensingLeg;
 use leg_firmware::settings::{Settings, SettingsError};
 use leg_firmware::version::VERSION;
 use static_cell::StaticCell;
 
 /// Sets everything up and lets it run.
-pub async fn start(spawner: Spawner, p: Peripherals, origin: (Reset, Option<Kept>)) {
+pub async fn start(spawner: Spawner, p: Peripherals, origin: (ResetCause, Option<CrashReport>)) {
     let power = Power::new(PowerParts {
         timer: p.TIM1,
         pulse_1: p.PA8,
@@ -58,10 +58,10 @@ pub async fn start(spawner: Spawner, p: Peripherals, origin: (Reset, Option<Kept
         current_2: p.PA6,
         current_3: p.PA7,
     });
-    let lamp = Output::new(p.PA5, Level::High, Speed::Low);
+    let led = Output::new(p.PA5, Level::High, Speed::Low);
 
     let Ok(mut store) = settings_task::store(CheckedFlash::new(p.FLASH)) else {
-        fatal::end(&Words::new("the settings' place is not in the flash"));
+        fatal::end(&ShortText::new("the settings' place is not in the flash"));
     };
     let built_in = built_in();
     let loaded = settings_task::load(&mut store, built_in.clone()).await;
@@ -72,7 +72,7 @@ pub async fn start(spawner: Spawner, p: Peripherals, origin: (Reset, Option<Kept
     let session = SESSION.init(Session::new(link, shared));
 
     let Some(cycles) = CycleCounter::start() else {
-        fatal::end(&Words::new("the cycle counter is taken"));
+        fatal::end(&ShortText::new("the cycle counter is taken"));
     };
     control::start(Nucleo::new(power, encoders, converters), leg);
     power::start();
@@ -82,7 +82,7 @@ pub async fn start(spawner: Spawner, p: Peripherals, origin: (Reset, Option<Kept
     match switches::read(p.PC10, p.PC11, p.PC12) {
         LinkChoice::Serial => match serial::open(p.LPUART1, p.PA3, p.PA2) {
             Ok(uart) => spawn(&spawner, serial::serve(uart, session)),
-            Err(_) => fatal::end(&Words::new("the serial line refuses its settings")),
+            Err(_) => fatal::end(&ShortText::new("the serial line refuses its settings")),
         },
         LinkChoice::Can(address) => {
             let node = can_bus::open(p.FDCAN2, p.PB12, p.PB13, address);
@@ -91,30 +91,30 @@ pub async fn start(spawner: Spawner, p: Peripherals, origin: (Reset, Option<Kept
     }
     spawn(
         &spawner,
-        housekeeping::keep_house(slow_sensors, watchdog, cycles, lamp),
+        housekeeping::keep_house(slow_sensors, watchdog, cycles, led),
     );
 }
 
 fn spawn<S>(spawner: &Spawner, task: Result<SpawnToken<S>, SpawnError>) {
     match task {
         Ok(task) => spawner.spawn(task),
-        Err(_) => fatal::end(&Words::new("a task was started twice")),
+        Err(_) => fatal::end(&ShortText::new("a task was started twice")),
     }
 }
 
-fn identity((reset, kept): (Reset, Option<Kept>)) -> Identity {
+fn identity((reset, kept): (ResetCause, Option<CrashReport>)) -> Identity {
     Identity {
         board: BoardKind::Stm32g474,
         version: VERSION,
         reset,
-        last_words: kept.map(|kept| kept.words).unwrap_or_default(),
+        crash_report: kept.map(|kept| kept.text).unwrap_or_default(),
     }
 }
 
 fn built_in() -> Settings {
     match Settings::for_table_1() {
         Some(settings) => settings,
-        None => fatal::end(&Words::new("the built-in settings have another shape")),
+        None => fatal::end(&ShortText::new("the built-in settings have another shape")),
     }
 }
 
@@ -141,6 +141,6 @@ fn spare(settings: &Settings) -> &'static mut SensingLeg<f32> {
 fn accepted(leg: Result<SensingLeg<f32>, SettingsError>) -> SensingLeg<f32> {
     match leg {
         Ok(leg) => leg,
-        Err(_) => fatal::end(&Words::new("the built-in settings are refused")),
+        Err(_) => fatal::end(&ShortText::new("the built-in settings are refused")),
     }
 }

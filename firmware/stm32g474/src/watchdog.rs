@@ -1,27 +1,25 @@
-//! The independent watchdog, which resets the chip unless it is fed; and it is fed only while everybody checks in.
+//! The independent watchdog, which resets the chip unless it is fed; it is fed only while every task checks in.
 //!
 //! It runs from the chip's own slow oscillator of 32 kHz, which is anywhere from 29.5 to 34 kHz over temperature and
-//! supply: the nominal 100 ms are 94 to 109 ms since the last food, which was a round before a member was found to be
-//! missed, see [`leg_firmware::board::Member`]; the outputs are switched off as soon as it is.
+//! supply: the nominal 100 ms are 94 to 109 ms since it was last fed, a round before a task was found to be
+//! missing, see [`leg_firmware::board::WatchedTask`]; the outputs are switched off as soon as it is.
 
+use crate::check_ins::CHECK_INS;
 use crate::{control, fatal, power};
 use embassy_stm32::peripherals::IWDG;
 use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_stm32::{Peri, pac};
-use leg_firmware::board::{Member, RollCall, Rounds, Words};
+use leg_firmware::board::{CheckIns, ShortText, TaskWatchdog, WatchedTask};
 
-/// Nominal time without food until the reset, µs.
+/// Nominal time from the last feeding to the reset, µs.
 const TIMEOUT_US: u32 = 100_000;
-const _: () = assert!(TIMEOUT_US as u64 > 5 * 1000 * RollCall::ROUND_MS);
+const _: () = assert!(TIMEOUT_US as u64 > 5 * 1000 * CheckIns::PERIOD_MS);
 
-/// Who has checked in.
-pub static ROLL: RollCall = RollCall::new();
-
-/// The watchdog and who is missed.
+/// The watchdog, and the count of missed tasks.
 pub struct Watchdog {
     dog: IndependentWatchdog<'static, IWDG>,
-    rounds: Rounds,
-    bites: bool,
+    tasks: TaskWatchdog,
+    resets: bool,
 }
 
 impl Watchdog {
@@ -34,32 +32,32 @@ impl Watchdog {
         dog.pet();
         Self {
             dog,
-            rounds: Rounds::default(),
-            bites: false,
+            tasks: TaskWatchdog::default(),
+            resets: false,
         }
     }
 
     /// Whether the reset is on its way.
-    pub const fn bites(&self) -> bool {
-        self.bites
+    pub const fn resets(&self) -> bool {
+        self.resets
     }
 
-    /// Calls the roll, and feeds the watchdog if nobody is missed; to be called every [`RollCall::ROUND_MS`].
+    /// Feeds the watchdog if no task is missing; to be called every [`CheckIns::PERIOD_MS`].
     pub fn round(&mut self) {
-        match self.rounds.call(&ROLL) {
+        match self.tasks.poll(&CHECK_INS) {
             None => self.dog.pet(),
-            Some(_) if self.bites => {}
+            Some(_) if self.resets => {}
             Some(absent) => {
-                self.bites = true;
+                self.resets = true;
                 give_up(absent);
             }
         }
     }
 }
 
-/// Switches off at once what the reset will switch off, and leaves word of who is missed.
-fn give_up(absent: Member) {
+/// Switches off at once what the reset will switch off, and keeps the name of the task for the next start.
+fn give_up(absent: WatchedTask) {
     control::cut();
     power::off();
-    fatal::keep(&Words::new(absent.name()).text(" did not check in"));
+    fatal::keep(&ShortText::new(absent.name()).text(" did not check in"));
 }

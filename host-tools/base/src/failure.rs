@@ -1,14 +1,15 @@
-//! What a command can end with instead of success, and how it is told.
+//! What a command can end with instead of success, and how it is printed.
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use std::fmt;
 use std::ops::Range;
 use std::process::ExitCode;
 
 /// What a command can end with instead of success.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Failure {
-    /// The work was done and something did not hold: exit code 1.
-    Missed(Message),
+    /// The work was done and a check failed: exit code 1.
+    Failed(Message),
     /// Bad input or a missing prerequisite: exit code 2.
     Refused(Message),
 }
@@ -36,10 +37,10 @@ pub struct Place {
 }
 
 impl Failure {
-    /// Something was checked and did not hold.
+    /// A check failed.
     #[must_use]
-    pub fn missed(sentence: impl Into<String>, help: impl Into<String>) -> Self {
-        Self::Missed(Message::new(sentence, Some(help.into())))
+    pub fn failed(sentence: impl Into<String>, help: impl Into<String>) -> Self {
+        Self::Failed(Message::new(sentence, Some(help.into())))
     }
 
     /// The input or a prerequisite is at fault.
@@ -68,7 +69,7 @@ impl Failure {
     #[must_use]
     pub fn exit_code(&self) -> ExitCode {
         ExitCode::from(match self {
-            Self::Missed(_) => 1,
+            Self::Failed(_) => 1,
             Self::Refused(_) => 2,
         })
     }
@@ -76,21 +77,30 @@ impl Failure {
     /// The text for the user, coloured or plain.
     #[must_use]
     pub fn render(&self, coloured: bool) -> String {
-        let (Self::Missed(message) | Self::Refused(message)) = self;
+        let (Self::Failed(message) | Self::Refused(message)) = self;
         let renderer = if coloured {
             Renderer::styled()
         } else {
             Renderer::plain()
         };
-        let mut told = renderer.render(&[message.error_group()]).to_string();
+        let mut text = renderer.render(&[message.error_group()]).to_string();
         if let Some(help) = &message.help {
             let group = Group::with_title(Level::HELP.primary_title(help.as_str()));
-            told.push('\n');
-            told.push_str(&renderer.render(&[group]).to_string());
+            text.push('\n');
+            text.push_str(&renderer.render(&[group]).to_string());
         }
-        told
+        text
     }
 }
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (Self::Failed(message) | Self::Refused(message)) = self;
+        f.write_str(&message.sentence)
+    }
+}
+
+impl std::error::Error for Failure {}
 
 impl Message {
     fn new(sentence: impl Into<String>, help: Option<String>) -> Self {

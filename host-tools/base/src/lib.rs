@@ -1,11 +1,24 @@
-//! What every host crate uses: failures in words, files written whole, numbers and names as text.
+//! What every host crate uses: failures as text, files written whole, numbers and names as text.
+//!
+//! Begin with [`Failure`](failure::Failure), what every command ends with instead of success: a sentence, what to do about
+//! it, where it is, and the exit code.
+//!
+//! ```
+//! use leg_base::failure::Failure;
+//!
+//! let failure = Failure::refused("cannot read the rig file x.toml", "give a file that exists");
+//! assert_eq!(
+//!     failure.render(false),
+//!     "error: cannot read the rig file x.toml\nhelp: give a file that exists"
+//! );
+//! ```
 
+pub mod angles;
 pub mod atomic_file;
+pub mod description;
 pub mod failure;
-pub mod json_entries;
 pub mod json_line;
 pub mod numeric;
 pub mod paths;
 pub mod suggest;
 pub mod tick_time;
-pub mod words;

@@ -3,7 +3,7 @@
 mod budget;
 mod tick;
 
-pub use budget::{Budget, of};
+pub use budget::{InstructionBudget, kernel_budget};
 
 use leg_firmware_bench::kernels::{Kernel, KernelInput};
 use leg_firmware_bench::protocol::{KernelRequest, Refusal, Reply, Request};
@@ -29,7 +29,7 @@ pub enum CostError {
     Model {
         /// The kernel.
         kernel: Kernel,
-        /// What it says.
+        /// The model's error.
         error: leg_model::Error,
     },
     /// The link counts no instructions.
@@ -60,13 +60,13 @@ pub struct Cost {
     /// Most instructions.
     pub maximum: u32,
     /// What it may take.
-    pub budget: Budget,
-    /// Whether it takes that.
-    pub held: bool,
+    pub budget: InstructionBudget,
+    /// Whether it stays within that.
+    pub passed: bool,
 }
 
-/// Counts every kernel at every pose on the paper's rig, and every tick of a scenario on every ready rig; calls `done` after each kernel and
-/// after the ticks.
+/// Counts every kernel at every pose on the paper's rig, and every tick of a scenario on every ready rig. Calls `done`
+/// after each kernel and each scenario.
 ///
 /// # Errors
 /// The first count that cannot be had.
@@ -76,7 +76,11 @@ pub fn measure(link: &mut dyn Link, mut done: impl FnMut()) -> Result<Vec<Cost>,
         let counts: Result<Vec<u32>, _> = inputs()
             .map(|input| count(link, KernelRequest { kernel, input }))
             .collect();
-        costs.push(Cost::of(kernel.name(), counts?, of(kernel)));
+        costs.push(Cost::from_counts(
+            kernel.name(),
+            counts?,
+            kernel_budget(kernel),
+        ));
         done();
     }
     for counted in tick::COUNTED {
@@ -88,18 +92,18 @@ pub fn measure(link: &mut dyn Link, mut done: impl FnMut()) -> Result<Vec<Cost>,
 
 /// How often [`measure`] calls `done`.
 #[must_use]
-pub const fn counted() -> usize {
+pub const fn measurements() -> usize {
     Kernel::ALL.len() + tick::COUNTED.len()
 }
 
 impl Cost {
-    fn of(name: &str, mut counts: Vec<u32>, budget: Budget) -> Self {
+    fn from_counts(name: &str, mut counts: Vec<u32>, budget: InstructionBudget) -> Self {
         counts.sort_unstable();
-        let at = |i: usize| counts.get(i).copied().unwrap_or(0);
+        let count = |i: usize| counts.get(i).copied().unwrap_or(0);
         let (minimum, median, maximum) = (
-            at(0),
-            at(counts.len() / 2),
-            at(counts.len().saturating_sub(1)),
+            count(0),
+            count(counts.len() / 2),
+            count(counts.len().saturating_sub(1)),
         );
         Self {
             kernel: name.into(),
@@ -107,7 +111,7 @@ impl Cost {
             median,
             maximum,
             budget,
-            held: budget.held(minimum, maximum),
+            passed: budget.passes(minimum, maximum),
         }
     }
 }
@@ -134,7 +138,7 @@ fn inputs() -> impl Iterator<Item = KernelInput> {
 
 fn input(azimuth_deg: f32, tilt_deg: f32, payload_kg: f32) -> KernelInput {
     KernelInput {
-        rig: RigParameters::<f32, 3>::TABLE_1.into(),
+        rig: RigParameters::<f32, 3>::TABLE_1,
         azimuth_rad: azimuth_deg.to_radians(),
         tilt_rad: tilt_deg.to_radians(),
         start_azimuth_rad: azimuth_deg.to_radians(),

@@ -21,7 +21,7 @@ mod tests;
 mod thumb;
 mod vector_table;
 
-pub use budget::{Bounds, Check, ImageBudget, checks, of};
+pub use budget::{BudgetCheck, ByteBounds, ImageBudget, checks};
 pub use error::{Address, ImageBudgetError};
 pub use memory::Usage;
 pub use task::Task;
@@ -32,7 +32,7 @@ use elf_file::ElfFile;
 use memory::Memories;
 use program::Program;
 use serde::Serialize;
-use vector_table::Entry;
+use vector_table::VectorEntry;
 
 /// Bytes that the core puts on the stack when an exception begins: 26 words where the floating-point unit is in use,
 /// and one to align them.
@@ -64,9 +64,9 @@ pub struct Root {
     pub stack_bytes: u32,
     /// The functions whose frames that stack holds, the root first.
     pub deepest: Vec<String>,
-    /// The shortest way to a panic, the root first, if there is one.
+    /// The shortest path to a panic, the root first, if there is one.
     pub panic: Option<Vec<String>>,
-    /// The shortest way to a line in the log, the root first, if there is one.
+    /// The shortest path to a line in the log, the root first, if there is one.
     pub log: Option<Vec<String>>,
     /// The functions within reach that call by address.
     pub indirect: Vec<IndirectCaller>,
@@ -94,10 +94,10 @@ pub fn needs(elf: &[u8]) -> Result<ImageNeeds, ImageBudgetError> {
     let entries = vector_table::entries(&elf.vector_table()?, &program)?;
     let roots: Result<Vec<Root>, _> = entries
         .into_iter()
-        .map(|entry| Root::of(entry, &graph))
+        .map(|entry| Root::new(entry, &graph))
         .collect();
     let roots = roots?;
-    let memories = Memories::of(&elf)?;
+    let memories = Memories::read(&elf)?;
     Ok(ImageNeeds {
         flash: memories.flash(&elf)?,
         ram: memories.ram(&elf)?,
@@ -119,16 +119,16 @@ pub fn root(elf: &[u8], name: &str) -> Result<Root, ImageBudgetError> {
     let elf = ElfFile::parse(elf)?;
     let program = Program::read(&elf)?;
     let entry = vector_table::named(name, &elf.vector_table()?, &program)?;
-    Root::of(entry, &CallGraph::new(&program)?)
+    Root::new(entry, &CallGraph::new(&program)?)
 }
 
 impl Root {
-    fn of(entry: Entry, graph: &CallGraph<'_>) -> Result<Self, ImageBudgetError> {
+    fn new(entry: VectorEntry, graph: &CallGraph<'_>) -> Result<Self, ImageBudgetError> {
         let stack = graph.stack(entry.address)?;
         let callers = graph.indirect_callers(entry.address).into_iter();
         // The root's function may be another handler's, too, and have that one's name.
-        let renamed = |way: Vec<String>| {
-            let rest = way.into_iter().skip(1);
+        let renamed = |path: Vec<String>| {
+            let rest = path.into_iter().skip(1);
             [entry.name.clone()].into_iter().chain(rest).collect()
         };
         Ok(Self {
@@ -136,8 +136,8 @@ impl Root {
             kind: entry.kind,
             stack_bytes: stack.bytes,
             deepest: renamed(stack.functions),
-            panic: graph.way_to(&PANICS, entry.address).map(renamed),
-            log: graph.way_to(&LOGS, entry.address).map(renamed),
+            panic: graph.shortest_path(&PANICS, entry.address).map(renamed),
+            log: graph.shortest_path(&LOGS, entry.address).map(renamed),
             indirect: callers
                 .map(|function| IndirectCaller {
                     function: function.name().into(),

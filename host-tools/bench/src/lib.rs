@@ -1,4 +1,22 @@
 //! What is promised of the firmware, measured: accuracy, equal bits, instructions, images, the figures of the paper.
+//!
+//! Begin with [`check`], which compares a firmware with f64 by the [`precision`] table, and bit by bit with the same code
+//! on the host. [`cost`] counts instructions on an emulated board, [`image_budget`] bounds flash, RAM and stack of an
+//! image from its ELF file, and [`paper`] compares the model with the published numbers. [`sensitivity`] and
+//! [`run_charts`] serve `leg run`.
+//!
+//! ```
+//! use leg_bench::{check, precision};
+//! use leg_sim::link::InProcess;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let mut firmware = InProcess::new();
+//! let states = check::random(20, 1);
+//! let report = check::run(&mut firmware, &precision::TABLE, &states, || ())?;
+//! assert!(report.bits.differences.is_empty());
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod check;
 pub mod cost;

@@ -15,13 +15,14 @@ mod workspace;
 pub use errata::Erratum;
 pub use figures::{FigureError, draw};
 pub use report::markdown;
-pub use row::{Row, Topic, Verdict};
+pub use row::{PaperRow, Topic, Verdict};
 
+use leg_base::failure::Failure;
 use leg_model::Error;
-use leg_rig::rig_file::{RigFile, RigFileError};
+use leg_rig::rig_file::RigFile;
 use serde::Serialize;
 
-/// Why the paper could not be laid beside the model.
+/// Why the paper could not be compared with the model.
 #[derive(Debug, thiserror::Error)]
 pub enum PaperError {
     /// The model has no result where the paper has a number.
@@ -31,16 +32,16 @@ pub enum PaperError {
     Model(#[from] Error),
     /// The ready rig is damaged.
     #[error("the rig of Table 1 cannot be read: {0}; build the tool anew")]
-    Rig(#[from] RigFileError),
+    Rig(#[from] Failure),
 }
 
 /// Everything that the paper prints and the model computes.
 #[derive(Clone, Debug, Serialize)]
 pub struct Paper {
     /// Published numbers.
-    pub rows: Vec<Row>,
+    pub rows: Vec<PaperRow>,
     /// Every printed entry of Eqs. (24) and (25): `rows` count those that agree.
-    pub entries: Vec<Row>,
+    pub entries: Vec<PaperRow>,
     /// Errors of the print.
     pub errata: Vec<Erratum>,
 }
@@ -67,7 +68,7 @@ impl Paper {
     }
 
     /// The rows whose verdict is not the one that is known.
-    pub fn surprises(&self) -> impl Iterator<Item = &Row> {
+    pub fn surprises(&self) -> impl Iterator<Item = &PaperRow> {
         self.rows.iter().filter(|row| row.verdict() != row.expected)
     }
 }

@@ -8,7 +8,7 @@
 mod layout;
 mod table;
 
-pub use layout::{Part, of_evaluation, of_kernel};
+pub use layout::{Part, evaluation_parts, kernel_parts};
 pub use table::TABLE;
 
 use serde::Serialize;
@@ -16,7 +16,7 @@ use serde::Serialize;
 /// What is compared. Each has one row in [`TABLE`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Quantity {
+pub enum CheckedQuantity {
     /// Lengths of the tendons.
     Lengths,
     /// The moment map A.
@@ -93,9 +93,9 @@ pub enum Measure {
 
 /// A row of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct PrecisionRow {
     /// What is compared.
-    pub quantity: Quantity,
+    pub quantity: CheckedQuantity,
     /// Its name for people.
     pub name: &'static str,
     /// How it is compared.
@@ -108,7 +108,7 @@ pub struct Row {
     pub exception: Option<&'static str>,
 }
 
-impl Row {
+impl PrecisionRow {
     /// The row with a bound `factor` times as tight.
     #[must_use]
     pub fn tightened(self, factor: f64) -> Self {
@@ -144,10 +144,10 @@ fn largest(magnitudes: impl Iterator<Item = f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Measure, Quantity, Row, TABLE};
+    use super::{CheckedQuantity, Measure, PrecisionRow, TABLE};
 
-    const ROW: Row = Row {
-        quantity: Quantity::Lengths,
+    const ROW: PrecisionRow = PrecisionRow {
+        quantity: CheckedQuantity::Lengths,
         name: "",
         measure: Measure::Relative,
         unit: "",
@@ -158,7 +158,7 @@ mod tests {
     #[test]
     fn entries_are_judged_beside_the_largest() {
         assert_eq!(ROW.difference(&[0.5, -4.0], &[0.0, -4.0]), 0.125);
-        let absolute = Row {
+        let absolute = PrecisionRow {
             measure: Measure::Absolute,
             ..ROW
         };
@@ -178,6 +178,6 @@ mod tests {
         for (i, row) in TABLE.iter().enumerate() {
             assert_eq!(row.quantity as usize, i, "{}", row.name);
         }
-        assert_eq!(TABLE.len(), Quantity::SinCos as usize + 1);
+        assert_eq!(TABLE.len(), CheckedQuantity::SinCos as usize + 1);
     }
 }

@@ -1,6 +1,6 @@
 //! The charts of a simulation: the tip, the tensions and the stiffness over time.
 
-use leg_model_tools::plot::{self, Chart, Line, PlotError};
+use leg_model_tools::plot::{self, Chart, ChartLine, PlotError};
 use leg_sim::simulation::Sample;
 use std::path::{Path, PathBuf};
 
@@ -26,7 +26,7 @@ const CHARTS: [(&str, &str, &[Curve]); 3] = [
     (
         "stiffness",
         "bending stiffness (N·m/rad)",
-        &[("as the leg tells", |sample| {
+        &[("as the leg reports", |sample| {
             f64::from(sample.telemetry.stiffness_nm_per_rad)
         })],
     ),
@@ -40,12 +40,12 @@ const POINTS_MAX: usize = 1500;
 /// # Errors
 /// A chart that cannot be drawn or written.
 pub fn save(title: &str, samples: &[Sample], directory: &Path) -> Result<Vec<PathBuf>, PlotError> {
-    let line = |&(label, of): &Curve| Line {
+    let line = |&(label, quantity): &Curve| ChartLine {
         label: label.into(),
         points: samples
             .iter()
             .step_by(samples.len().div_ceil(POINTS_MAX).max(1))
-            .map(|sample| (sample.time_s, of(sample)))
+            .map(|sample| (sample.time_s, quantity(sample)))
             .collect(),
         marks: Vec::new(),
     };

@@ -1,10 +1,11 @@
 //! How far the tip is from its target when load cells and tendon curves are off.
 
 use leg_firmware::supervisor::{Fault, Reaction};
-use leg_model_tools::plot::{Chart, Line};
+use leg_model_tools::plot::{Chart, ChartLine};
 use leg_rig::rig_file::RigFile;
-use leg_sim::scenario::{Quantity, Scenario};
-use leg_sim::simulation::{InThisProcess, Simulation, SimulationError, Summary};
+use leg_sim::link::InProcess;
+use leg_sim::scenario::{Measurand, Scenario};
+use leg_sim::simulation::{Simulation, SimulationError, Summary};
 use serde::Serialize;
 
 /// Errors of the load cells, percent; their signs alternate from tendon to tendon.
@@ -41,12 +42,12 @@ pub fn measure(
         for cell_percent in CELLS_PERCENT {
             let erring = scenario.with_errors(cell_percent, curve_percent);
             let simulation = Simulation::new(&erring, rig)?;
-            let ended = simulation.run(&mut InThisProcess::default(), &mut |_| ());
+            let ended = simulation.run(&mut InProcess::new(), &mut |_| ());
             let (tip_mm, stopped) = match ended {
                 Ok(summary) => match (stopping(&summary), &summary.stopped) {
                     (None, None) => (largest_mm(&summary), None),
                     (Some(fault), _) => (None, Some(fault.entry().name.into())),
-                    (None, Some(words)) => (None, Some(words.clone())),
+                    (None, Some(reason)) => (None, Some(reason.clone())),
                 },
                 Err(error) => (None, Some(error.to_string())),
             };
@@ -72,10 +73,10 @@ fn stopping(summary: &Summary) -> Option<Fault> {
 #[must_use]
 pub fn largest_mm(summary: &Summary) -> Option<f64> {
     summary
-        .findings
+        .measurements
         .iter()
-        .filter(|finding| finding.compensated && finding.quantity == Some(Quantity::TipErrorMm))
-        .map(|finding| finding.value)
+        .filter(|found| found.compensated && found.quantity == Some(Measurand::TipErrorMm))
+        .map(|found| found.value)
         .reduce(f64::max)
 }
 
@@ -87,7 +88,7 @@ pub fn chart(title: &str, all: &[Sensitivity]) -> Chart {
         let points: Vec<_> = of_line
             .filter_map(|one| Some((one.cell_percent, one.tip_mm?)))
             .collect();
-        Line {
+        ChartLine {
             label: format!("tendons off by {curve_percent} %"),
             marks: points.clone(),
             points,

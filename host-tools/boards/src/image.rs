@@ -8,36 +8,13 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use thiserror::Error;
 
-/// What a firmware image is made for.
+/// A firmware image, by the board that it is made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Board {
+pub enum FirmwareImage {
     /// QEMU's mps2-an386.
     Qemu,
     /// The NUCLEO-G474RE.
     Stm32g474,
-}
-
-impl Board {
-    /// All of them.
-    pub const ALL: [Self; 2] = [Self::Stm32g474, Self::Qemu];
-
-    /// The name of the image's executable.
-    #[must_use]
-    pub const fn binary(self) -> &'static str {
-        match self {
-            Self::Qemu => "leg-qemu",
-            Self::Stm32g474 => "leg-stm32g474",
-        }
-    }
-
-    /// Cargo's command that builds the image: an alias in .cargo/config.toml.
-    #[must_use]
-    pub const fn command(self) -> &'static str {
-        match self {
-            Self::Qemu => "image-qemu",
-            Self::Stm32g474 => "image-stm32g474",
-        }
-    }
 }
 
 /// Variables that would change how the image is compiled: it is to be the same whoever builds it.
@@ -63,10 +40,10 @@ pub enum ImageError {
     #[error("cannot start cargo: {0}; install Rust with rustup")]
     NoCargo(#[source] io::Error),
     /// The build failed.
-    #[error("`cargo {}` failed in {root}:\n{output}", .board.command())]
+    #[error("`cargo {}` failed in {root}:\n{output}", .image.cargo_alias())]
     Failed {
-        /// What the image is for.
-        board: Board,
+        /// The image.
+        image: FirmwareImage,
         /// Where it ran.
         root: String,
         /// What it wrote.
@@ -75,11 +52,11 @@ pub enum ImageError {
     /// The build made no executable.
     #[error(
         "`cargo {}` made no executable named `{}`; see the alias in .cargo/config.toml",
-        .board.command(), .board.binary()
+        .image.cargo_alias(), .image.binary()
     )]
     NoExecutable {
-        /// What the image is for.
-        board: Board,
+        /// The image.
+        image: FirmwareImage,
     },
 }
 
@@ -90,58 +67,76 @@ pub fn workspace_root() -> PathBuf {
     package.ancestors().nth(2).unwrap_or(package).to_path_buf()
 }
 
-/// Builds the image for QEMU, which takes a moment if nothing has changed, and returns the path of its ELF file.
-///
-/// Several callers at once wait for each other by cargo's own lock.
-///
-/// # Errors
-/// [`ImageError`] with what cargo wrote.
-pub fn build() -> Result<PathBuf, ImageError> {
-    build_for(Board::Qemu)
-}
+impl FirmwareImage {
+    /// Every image.
+    pub const ALL: [Self; 2] = [Self::Stm32g474, Self::Qemu];
 
-/// Builds the image for a board, as [`build`] does.
-///
-/// # Errors
-/// [`ImageError`] with what cargo wrote.
-pub fn build_for(board: Board) -> Result<PathBuf, ImageError> {
-    let root = workspace_root();
-    if !root.join("firmware/library/Cargo.toml").is_file() {
-        return Err(ImageError::NoSources {
-            root: root.display().to_string(),
-        });
+    /// The name of its executable.
+    #[must_use]
+    pub const fn binary(self) -> &'static str {
+        match self {
+            Self::Qemu => "leg-qemu",
+            Self::Stm32g474 => "leg-stm32g474",
+        }
     }
-    let output = cargo(board, &root).output().map_err(ImageError::NoCargo)?;
-    if !output.status.success() {
-        return Err(ImageError::Failed {
-            board,
-            root: root.display().to_string(),
-            output: String::from_utf8_lossy(&output.stderr).into_owned(),
-        });
-    }
-    executable(board, &output).ok_or(ImageError::NoExecutable { board })
-}
 
-fn cargo(board: Board, root: &Path) -> Command {
-    let program = env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
-    let mut command = Command::new(program);
-    command
-        .args([board.command(), "--message-format=json-render-diagnostics"])
-        .current_dir(root);
-    for variable in FOREIGN_VARIABLES {
-        command.env_remove(variable);
+    /// Cargo's command that builds it: an alias in .cargo/config.toml.
+    const fn cargo_alias(self) -> &'static str {
+        match self {
+            Self::Qemu => "image-qemu",
+            Self::Stm32g474 => "image-stm32g474",
+        }
     }
-    command
-}
 
-/// The image's path as cargo names it.
-fn executable(board: Board, output: &Output) -> Option<PathBuf> {
-    Message::parse_stream(output.stdout.as_slice())
-        .filter_map(Result::ok)
-        .find_map(|message| match message {
-            Message::CompilerArtifact(artifact) if artifact.target.name == board.binary() => {
-                artifact.executable.map(Into::into)
-            }
-            _ => None,
-        })
+    /// Builds it, which takes a moment if nothing has changed, and returns the path of its ELF file.
+    ///
+    /// Several callers at once wait for each other by cargo's own lock.
+    ///
+    /// # Errors
+    /// [`ImageError`] with what cargo wrote.
+    pub fn build(self) -> Result<PathBuf, ImageError> {
+        let root = workspace_root();
+        if !root.join("firmware/library/Cargo.toml").is_file() {
+            return Err(ImageError::NoSources {
+                root: root.display().to_string(),
+            });
+        }
+        let output = self.cargo(&root).output().map_err(ImageError::NoCargo)?;
+        if !output.status.success() {
+            return Err(ImageError::Failed {
+                image: self,
+                root: root.display().to_string(),
+                output: String::from_utf8_lossy(&output.stderr).into_owned(),
+            });
+        }
+        self.executable(&output)
+            .ok_or(ImageError::NoExecutable { image: self })
+    }
+
+    fn cargo(self, root: &Path) -> Command {
+        let program = env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
+        let mut command = Command::new(program);
+        command
+            .args([
+                self.cargo_alias(),
+                "--message-format=json-render-diagnostics",
+            ])
+            .current_dir(root);
+        for variable in FOREIGN_VARIABLES {
+            command.env_remove(variable);
+        }
+        command
+    }
+
+    /// The path that cargo reports.
+    fn executable(self, output: &Output) -> Option<PathBuf> {
+        Message::parse_stream(output.stdout.as_slice())
+            .filter_map(Result::ok)
+            .find_map(|message| match message {
+                Message::CompilerArtifact(artifact) if artifact.target.name == self.binary() => {
+                    artifact.executable.map(Into::into)
+                }
+                _ => None,
+            })
+    }
 }

@@ -1,125 +1,86 @@
-//! Prerequisites: what a first run installs by itself, and what it asks for in words.
+//! Prerequisites: what a first run installs by itself, and what it asks the user to install.
 //!
-//! Callers in several processes may ask at once: one installs, the others wait for it.
+//! Several processes may ask at once: one installs, the others wait for it.
 
-mod command;
 mod error;
-mod packages;
+mod package;
+mod program;
+#[cfg(test)]
+mod tests;
 
 pub use error::SetupError;
 
-use crate::image::workspace_root;
-use command::run;
-use packages::{APT, Apt, qemu_missing};
+use package::{PYTHON, Package, QEMU};
+use program::{Programs, run};
 use rustix::process::geteuid;
 use std::env;
-use std::ffi::{OsStr, OsString};
 use std::fs::File;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 /// The firmware's target.
 pub const TARGET: &str = "thumbv7em-none-eabihf";
 
-/// The emulator.
-pub const QEMU: &str = "qemu-system-arm";
-
 /// The environment variable that names the emulator's program where it is not on the PATH.
 pub const QEMU_VARIABLE: &str = "LEG_QEMU";
 
-/// Makes sure that the pinned Rust toolchain compiles for [`TARGET`]. `report` is told before anything is installed.
+/// Installs the Rust target [`TARGET`] of the pinned toolchain where it is missing, and calls `report` before it does.
 ///
 /// # Errors
 /// [`SetupError`] if rustup is missing or fails.
 pub fn ensure_target(report: &mut dyn FnMut(&str)) -> Result<(), SetupError> {
-    let programs = Programs::of_this_process();
-    if programs.has_target()? {
+    let programs = Programs::from_environment();
+    if has_target(&programs)? {
         return Ok(());
     }
     let _lock = lock()?;
-    if programs.has_target()? {
+    if has_target(&programs)? {
         return Ok(());
     }
     report(&format!("adding the Rust target {TARGET} by rustup"));
-    programs.add_target()
+    run(programs.rust("rustup")?.args(["target", "add", TARGET])).map(drop)
 }
 
-/// Makes sure that there is an emulator and returns its program. `report` is told before anything is installed.
+/// The program `qemu-system-arm`. Installs it where it is missing, and calls `report` before it does.
 ///
 /// # Errors
 /// [`SetupError`], with the command that installs it where this program may not.
 pub fn ensure_qemu(report: &mut dyn FnMut(&str)) -> Result<PathBuf, SetupError> {
-    Programs::of_this_process().ensure_qemu(report)
+    ensure(&QEMU, &Programs::from_environment(), report)
 }
 
-/// Where programs are looked for.
-struct Programs {
-    path: Option<OsString>,
-    named_qemu: Option<OsString>,
+/// A Python of version 3.11 or later with the module `venv`, which the comparison with MuJoCo needs. Installs it where
+/// it is missing, and calls `report` before it does.
+///
+/// # Errors
+/// As [`ensure_qemu`].
+pub fn ensure_python(report: &mut dyn FnMut(&str)) -> Result<PathBuf, SetupError> {
+    ensure(&PYTHON, &Programs::from_environment(), report)
 }
 
-impl Programs {
-    fn of_this_process() -> Self {
-        Self {
-            path: env::var_os("PATH"),
-            named_qemu: env::var_os(QEMU_VARIABLE),
-        }
-    }
+fn has_target(programs: &Programs) -> Result<bool, SetupError> {
+    let mut rustc = programs.rust("rustc")?;
+    rustc.args(["--print", "target-libdir", "--target", TARGET]);
+    Ok(Path::new(run(&mut rustc)?.trim()).is_dir())
+}
 
-    fn find(&self, program: impl AsRef<OsStr>) -> Option<PathBuf> {
-        which::which_in(program, self.path.as_ref(), workspace_root()).ok()
+fn ensure(
+    package: &Package,
+    programs: &Programs,
+    report: &mut dyn FnMut(&str),
+) -> Result<PathBuf, SetupError> {
+    if let Some(program) = package.program(programs)? {
+        return Ok(program);
     }
-
-    fn rust(&self, program: &'static str) -> Result<Command, SetupError> {
-        let path = self
-            .find(program)
-            .ok_or(SetupError::RustMissing { program })?;
-        let mut command = Command::new(path);
-        // There the pinned toolchain is in force, and rustup adds to that one.
-        command.current_dir(workspace_root());
-        Ok(command)
+    let _lock = lock()?;
+    if let Some(program) = package.program(programs)? {
+        return Ok(program);
     }
-
-    fn has_target(&self) -> Result<bool, SetupError> {
-        let mut rustc = self.rust("rustc")?;
-        rustc.args(["--print", "target-libdir", "--target", TARGET]);
-        let directory = run(&mut rustc)?;
-        Ok(Path::new(directory.trim()).is_dir())
-    }
-
-    fn add_target(&self) -> Result<(), SetupError> {
-        let mut rustup = self.rust("rustup")?;
-        run(rustup.args(["target", "add", TARGET])).map(drop)
-    }
-
-    fn qemu(&self) -> Result<Option<PathBuf>, SetupError> {
-        let Some(named) = &self.named_qemu else {
-            return Ok(self.find(QEMU));
-        };
-        match self.find(named) {
-            Some(path) => Ok(Some(path)),
-            None => Err(SetupError::NamedQemuMissing {
-                program: named.to_string_lossy().into_owned(),
-            }),
-        }
-    }
-
-    fn ensure_qemu(&self, report: &mut dyn FnMut(&str)) -> Result<PathBuf, SetupError> {
-        if let Some(qemu) = self.qemu()? {
-            return Ok(qemu);
-        }
-        let _lock = lock()?;
-        if let Some(qemu) = self.qemu()? {
-            return Ok(qemu);
-        }
-        let apt = self.find(APT);
-        let Some(apt) = apt.and_then(|apt| Apt::allowed(apt, self.find("sudo"))) else {
-            return Err(qemu_missing());
-        };
-        report(&format!("installing {QEMU} by apt-get"));
-        apt.install(QEMU)?;
-        self.qemu()?.ok_or_else(qemu_missing)
-    }
+    let Some(apt) = programs.apt() else {
+        return Err(package.missing());
+    };
+    report(&format!("installing {} by apt-get", package.name));
+    package.install(&apt)?;
+    package.program(programs)?.ok_or_else(|| package.missing())
 }
 
 /// Waits until no other process of this user installs anything; released when dropped.
@@ -137,6 +98,3 @@ fn lock() -> Result<File, SetupError> {
             source,
         })
 }
-
-#[cfg(test)]
-mod tests;

@@ -4,7 +4,7 @@ use leg_firmware::sensors::CODE_MAX;
 
 /// A weight on a load cell and what the cell then reads.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Weighing {
+pub struct KnownWeight {
     /// N.
     pub newtons: f64,
     /// Mean of its codes.
@@ -25,7 +25,7 @@ pub struct CellFit {
 /// Why weighings give no calibration.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum CellFitError {
-    /// One weight does not tell zero and gain apart.
+    /// One weight gives no zero and gain.
     #[error("two different weights are needed at least")]
     OneWeight,
     /// The code does not follow the weight.
@@ -59,9 +59,9 @@ const SPAN_MIN: f64 = 50.0;
 ///
 /// # Errors
 /// A [`CellFitError`].
-pub fn fit(weighings: &[Weighing]) -> Result<CellFit, CellFitError> {
+pub fn fit(weighings: &[KnownWeight]) -> Result<CellFit, CellFitError> {
     let count = weighings.len() as f64;
-    let mean = |of: fn(&Weighing) -> f64| weighings.iter().map(of).sum::<f64>() / count;
+    let mean = |of: fn(&KnownWeight) -> f64| weighings.iter().map(of).sum::<f64>() / count;
     let (newtons, code) = (
         mean(|weighing| weighing.newtons),
         mean(|weighing| weighing.code),
@@ -88,8 +88,9 @@ pub fn fit(weighings: &[Weighing]) -> Result<CellFit, CellFitError> {
     }
     let n_per_code = codes_per_n.recip();
     let zero_code = code - newtons * codes_per_n;
-    let off =
-        |weighing: &Weighing| ((weighing.code - zero_code) * n_per_code - weighing.newtons).abs();
+    let off = |weighing: &KnownWeight| {
+        ((weighing.code - zero_code) * n_per_code - weighing.newtons).abs()
+    };
     Ok(CellFit {
         n_per_code,
         zero_code,
@@ -100,14 +101,14 @@ pub fn fit(weighings: &[Weighing]) -> Result<CellFit, CellFitError> {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{CellFitError, Weighing, fit};
+    use super::{CellFitError, KnownWeight, fit};
 
-    fn weighings(codes: &[f64]) -> Vec<Weighing> {
+    fn weighings(codes: &[f64]) -> Vec<KnownWeight> {
         let weights = [0.0, 10.0, 20.0, 50.0];
         weights
             .into_iter()
             .zip(codes)
-            .map(|(newtons, &code)| Weighing { newtons, code })
+            .map(|(newtons, &code)| KnownWeight { newtons, code })
             .collect()
     }
 

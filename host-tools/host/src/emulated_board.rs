@@ -1,10 +1,9 @@
 //! An emulated leg behind a pseudo-terminal, in real time: to every command it is a board on a serial port.
 
-use crate::operator::Interrupt;
+use crate::cancel_flag::CancelFlag;
 use crate::pseudo_terminal::PseudoTerminal;
-use leg_sim::emulated_leg::EmulatedLeg;
-use leg_sim::simulation::ControllerError;
-use leg_sim::touch::Touch;
+use leg_sim::action::Action;
+use leg_sim::emulated_leg::{EmulatedLeg, EmulationError};
 use std::collections::VecDeque;
 use std::io;
 use std::sync::mpsc::Receiver;
@@ -13,11 +12,11 @@ use std::time::{Duration, Instant};
 /// How often bytes are exchanged.
 const EXCHANGE_TIME: Duration = Duration::from_millis(1);
 
-/// How far the leg may stay behind the clock before it gives that time up: it must not live through much of it without a
-/// word from its host.
+/// How far the leg may stay behind the clock before it skips that time: without a message of its host meanwhile, it would
+/// hold.
 const BEHIND_MAX: Duration = Duration::from_millis(10);
 
-/// What waits for a host that does not read at once, bytes: about what a serial adapter and its driver hold. More is lost.
+/// What waits for a host that does not read at once, bytes: about what a serial adapter and its driver buffer. More is lost.
 const ADAPTER_BYTES: usize = 16 * 1024;
 
 /// Why an emulated board stops.
@@ -28,7 +27,7 @@ pub enum BoardError {
     Terminal(#[from] io::Error),
     /// The firmware fails.
     #[error(transparent)]
-    Controller(#[from] ControllerError),
+    Emulation(#[from] EmulationError),
 }
 
 /// A leg and its port.
@@ -37,8 +36,8 @@ pub struct EmulatedBoard {
     port: PseudoTerminal,
     incoming: VecDeque<u8>,
     outgoing: VecDeque<u8>,
-    /// Time that the leg has given up.
-    given_up: Duration,
+    /// Time that the leg has skipped.
+    skipped: Duration,
 }
 
 impl EmulatedBoard {
@@ -50,30 +49,30 @@ impl EmulatedBoard {
             port,
             incoming: VecDeque::new(),
             outgoing: VecDeque::new(),
-            given_up: Duration::ZERO,
+            skipped: Duration::ZERO,
         }
     }
 
-    /// Runs until it is interrupted or `length` is over, and does to the leg what comes through `touches`. Returns how much
+    /// Runs until `cancel` is set or `length` is over, and does to the leg what comes through `actions`. Returns how much
     /// of that time the leg missed because this machine is too slow.
     ///
     /// # Errors
     /// A [`BoardError`].
     pub fn run(
         mut self,
-        interrupt: &Interrupt,
+        cancel: &CancelFlag,
         length: Option<Duration>,
-        touches: &Receiver<Touch>,
+        actions: &Receiver<Action>,
     ) -> Result<Duration, BoardError> {
         let (start, leg_start) = (Instant::now(), self.leg.time());
-        while !interrupt.raised() && length.is_none_or(|length| start.elapsed() < length) {
-            while let Ok(touch) = touches.try_recv() {
-                touch.apply(self.leg.plant());
+        while !cancel.is_set() && length.is_none_or(|length| start.elapsed() < length) {
+            while let Ok(action) = actions.try_recv() {
+                action.apply(self.leg.plant_mut());
             }
             self.exchange(leg_start + start.elapsed())?;
             std::thread::sleep(EXCHANGE_TIME);
         }
-        Ok(self.given_up)
+        Ok(self.skipped)
     }
 
     /// Lets the leg's time come to that of the clock.
@@ -81,12 +80,12 @@ impl EmulatedBoard {
         let mut bytes = [0; 4096];
         let count = self.port.read(&mut bytes)?;
         self.incoming.extend(bytes.get(..count).unwrap_or_default());
-        let behind = clock.saturating_sub(self.leg.time() + self.given_up);
-        self.given_up += behind.saturating_sub(BEHIND_MAX);
-        while self.leg.time() + self.given_up < clock {
-            let told = self.leg.tick(&mut self.incoming)?;
+        let behind = clock.saturating_sub(self.leg.time() + self.skipped);
+        self.skipped += behind.saturating_sub(BEHIND_MAX);
+        while self.leg.time() + self.skipped < clock {
+            let bytes = self.leg.tick(&mut self.incoming)?;
             let room = ADAPTER_BYTES - self.outgoing.len();
-            self.outgoing.extend(told.take(room));
+            self.outgoing.extend(bytes.take(room));
         }
         if !self.outgoing.is_empty() {
             let count = self.port.write(self.outgoing.make_contiguous())?;

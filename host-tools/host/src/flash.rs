@@ -4,7 +4,7 @@ mod error;
 
 pub use error::FlashError;
 
-use crate::operator::Interrupt;
+use crate::cancel_flag::CancelFlag;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -15,12 +15,12 @@ pub const CHIP: &str = "STM32G474RETx";
 /// Variable that names the program in the place of `probe-rs`.
 pub const PROGRAM_VARIABLE: &str = "LEG_PROBE_RS";
 
-/// Register by which the chip tells what it is, and what its low bits are for an STM32G471/473/474/483/484.
+/// The chip's DBGMCU_IDCODE register, and its device number for an STM32G471/473/474/483/484 (RM0440).
 const ID_REGISTER: &str = "0xE0042000";
 const ID_BITS: u32 = 0xfff;
 const ID: u32 = 0x469;
 
-/// Register of the option bytes, what its low bits are without a protection against reading, and the bit of two banks.
+/// The FLASH_OPTR register of the option bytes: its read-out protection, what that is at level 0, and DBANK (RM0440).
 const OPTION_REGISTER: &str = "0x40022020";
 const PROTECTION_BITS: u32 = 0xff;
 const UNPROTECTED: u32 = 0xaa;
@@ -51,7 +51,7 @@ impl Probe {
     /// settings.
     ///
     /// # Errors
-    /// What probe-rs says, by name; [`FlashError::OtherChip`], [`FlashError::Protected`], [`FlashError::OneBank`].
+    /// An error of probe-rs, by name; [`FlashError::OtherChip`], [`FlashError::Protected`], [`FlashError::OneBank`].
     pub fn check_chip(&self) -> Result<(), FlashError> {
         let id = self.register(ID_REGISTER)? & ID_BITS;
         if id != ID {
@@ -72,13 +72,13 @@ impl Probe {
         let text = String::from_utf8_lossy(&read.stdout);
         let word = text.split_whitespace().last().unwrap_or_default();
         let digits = word.trim_start_matches("0x");
-        u32::from_str_radix(digits, 16).map_err(|_| FlashError::other(&read))
+        u32::from_str_radix(digits, 16).map_err(|_| FlashError::Other(error::output_text(&read)))
     }
 
     /// Writes an image, reads it back and compares.
     ///
     /// # Errors
-    /// What probe-rs says, by name.
+    /// An error of probe-rs, by name.
     pub fn download(&self, image: &Path) -> Result<(), FlashError> {
         let image = image.to_string_lossy();
         self.run("download", &["--disable-progressbars", "--verify", &image])
@@ -88,19 +88,19 @@ impl Probe {
     /// Starts the firmware anew.
     ///
     /// # Errors
-    /// What probe-rs says, by name.
+    /// An error of probe-rs, by name.
     pub fn reset(&self) -> Result<(), FlashError> {
         self.run("reset", &[]).map(drop)
     }
 
-    /// Shows the firmware's log until the user ends it, which raises `interrupt` and reaches probe-rs, too.
+    /// Shows the firmware's log until the user ends it by Ctrl-C, which sets `cancel` and reaches probe-rs, too.
     ///
     /// # Errors
     /// A program that cannot be started, or that fails.
-    pub fn attach(&self, image: &Path, interrupt: &Interrupt) -> Result<(), FlashError> {
+    pub fn attach(&self, image: &Path, cancel: &CancelFlag) -> Result<(), FlashError> {
         let status = self.command("attach").arg(image).status();
         match status.map_err(FlashError::NotStarted)? {
-            status if status.success() || interrupt.raised() => Ok(()),
+            status if status.success() || cancel.is_set() => Ok(()),
             status => Err(FlashError::Other(format!("it ended with {status}"))),
         }
     }
@@ -124,7 +124,7 @@ impl Probe {
         if output.status.success() {
             Ok(output)
         } else {
-            Err(FlashError::of(&output))
+            Err(FlashError::from_output(&output))
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The leg in a user's units.
 
+use leg_base::description;
 use leg_base::tick_time::seconds;
-use leg_base::words;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_firmware::telemetry::Telemetry;
 use serde::Serialize;
@@ -68,9 +68,9 @@ pub fn fault_reports(faults: FaultSet) -> Vec<FaultReport> {
 }
 
 impl LegReport {
-    /// What the leg tells.
+    /// Converts telemetry.
     #[must_use]
-    pub fn of(telemetry: &Telemetry<f32>) -> Self {
+    pub fn new(telemetry: &Telemetry<f32>) -> Self {
         let [azimuth_deg, tilt_deg] = angles_deg(telemetry.pose);
         Self {
             state: telemetry.state,
@@ -108,18 +108,24 @@ pub fn pose_words(pose: [f32; 2]) -> String {
     }
 }
 
+/// The leg's direction in words, if it is known.
+#[must_use]
+pub fn known_pose_words(telemetry: &Telemetry<f32>) -> String {
+    if telemetry.homed {
+        pose_words(telemetry.pose)
+    } else {
+        "not known before homing".into()
+    }
+}
+
 /// The rows of a table for people.
 #[must_use]
 pub fn rows(telemetry: &Telemetry<f32>) -> String {
     let [a, b, c] = telemetry.tensions_n;
-    let pose = if telemetry.homed {
-        pose_words(telemetry.pose)
-    } else {
-        "not known before homing".into()
-    };
+    let pose = known_pose_words(telemetry);
     let mut rows = format!(
         "state      {}\npose       {pose}\ntensions   {a:.1}  {b:.1}  {c:.1} N\n",
-        words::state(telemetry.state)
+        description::state(telemetry.state)
     );
     if telemetry.pretension_n > 0.0 {
         rows += &format!(
@@ -127,5 +133,5 @@ pub fn rows(telemetry: &Telemetry<f32>) -> String {
             telemetry.pretension_n, telemetry.stiffness_nm_per_rad, telemetry.payload_kg
         );
     }
-    rows + &format!("faults     {}\n", words::faults(telemetry.faults))
+    rows + &format!("faults     {}\n", description::faults(telemetry.faults))
 }

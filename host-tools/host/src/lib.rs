@@ -1,8 +1,59 @@
-//! The host of a leg: transports, operator, recordings, the flashing of a board.
+//! The computer's side of a leg: what `leg home`, `leg move`, `leg monitor`, `leg log` and `leg flash` do.
+//!
+//! # Where to begin
+//! An [`operator::Operator`] introduces itself to a leg over a [`transport::Transport`] and commands it. The transport is
+//! a board's serial port ([`transport::serial`]), a CAN FD interface ([`transport::can`]) or an emulated leg in this
+//! process ([`transport::emulated`]), which needs no board:
+//!
+//! ```
+//! use leg_host::cancel_flag::CancelFlag;
+//! use leg_host::leg_report::LegReport;
+//! use leg_host::operator::{HostIdentity, LegGoal, Operator};
+//! use leg_host::transport::emulated::EmulatedLine;
+//! use leg_rig::rig_file::RigFile;
+//! use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
+//! use leg_sim::link::InProcess;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! // A leg of the paper's rig: homed, hanging straight down, disarmed.
+//! let firmware = Box::new(InProcess::new());
+//! let leg = EmulatedLeg::new(&RigFile::load(None)?, InitialState::Homed, firmware)?;
+//! let line = EmulatedLine::new(leg, "the leg in this example");
+//!
+//! let transport = Box::new(line.connect());
+//! let mut operator = Operator::open(transport, HostIdentity::FIXED, CancelFlag::default())?;
+//!
+//! // Lean 10° towards azimuth 0° and stay there in hold. `Operator::home` would come first on a leg that is not homed.
+//! let goal = LegGoal {
+//!     direction: Some([10_f32.to_radians().sin(), 0.0]),
+//!     demand: None,
+//! };
+//! operator.reach(&goal)?;
+//! let report = LegReport::new(&operator.telemetry()?.telemetry);
+//! assert!((report.tilt_deg - 10.0).abs() < 0.05);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! On a board the transport is `Serial::open("/dev/ttyACM0")?` instead, and all else is the same. Dropping the operator in
+//! mid-move is safe: the board holds the leg when it hears no more of its host.
+//!
+//! # What is where
+//! | module | what for |
+//! |---|---|
+//! | [`operator`] | commands, goals, settings, telemetry of one leg, and every error with its remedy |
+//! | [`transport`] | what carries the bytes |
+//! | [`emulated_board`], [`pseudo_terminal`] | an emulated leg behind a serial port, for other programs (`leg emulate`) |
+//! | [`recording`] | simulations and telemetry as MCAP or CSV, and the replay of a simulation |
+//! | [`leg_report`], [`sensor_report`], [`monitor`] | what people and machines are shown of a leg |
+//! | [`cell_fit`] | a load cell's calibration from weights |
+//! | [`flash`] | writing the firmware by `probe-rs` |
 
+pub mod cancel_flag;
 pub mod cell_fit;
 pub mod emulated_board;
 pub mod flash;
+mod flat_json;
 pub mod leg_report;
 pub mod monitor;
 pub mod operator;

@@ -1,12 +1,12 @@
-//! What `leg monitor` shows: a picture of the leg, drawn on a terminal or written as a line of JSON.
+//! What `leg monitor` shows: the state of a leg, drawn on a terminal or written as a line of JSON.
 
 mod bar;
-mod picture;
-mod sag;
+mod sag_model;
 mod screen;
+mod view;
 
 #[cfg(test)]
 mod tests;
 
-pub use picture::Picture;
 pub use screen::draw;
+pub use view::MonitorView;

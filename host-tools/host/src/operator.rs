@@ -1,47 +1,47 @@
-//! A user's host: it identifies itself to a leg, commands it, and listens to it, over any transport.
+//! A host of a leg: it introduces itself, commands the leg and listens to it, over any transport.
 
-mod alive;
-mod asking;
-mod driving;
-mod ending;
+mod command;
+mod connection;
 mod error;
-mod interrupt;
-mod line;
-mod looking;
+mod keep_alive;
+mod motion;
 mod refusal;
+mod request;
 mod settings;
+mod stop;
 mod telemetry;
 
 #[cfg(test)]
 mod tests;
 
-pub use driving::{Demand, Goal};
 pub use error::OperatorError;
-pub use interrupt::Interrupt;
-pub use settings::{Difference, differences};
+pub use motion::{LegGoal, TensionDemand};
+pub use settings::{SettingDifference, setting_differences};
 
+use crate::cancel_flag::CancelFlag;
 use crate::transport::Transport;
-use leg_firmware::host_link::{HOST_SCHEMA, Hello};
-use leg_firmware::host_link::{HostId, HostReply, HostRequest, Identity};
+use connection::LegConnection;
+use leg_firmware::host_link::{
+    HOST_SCHEMA, Hello, HostId, HostReply, HostRequest, Identity, TelemetryReport,
+};
 use leg_firmware::telemetry::Telemetry;
-use line::Line;
+use std::collections::VecDeque;
 use std::time::Duration;
-use telemetry::Stream;
 
-/// How the host is told from others, and what the first of its requests is numbered.
+/// By what a leg knows one host from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Host {
+pub struct HostIdentity {
     /// Its id.
     pub id: HostId,
-    /// Number before that of its first request.
+    /// Sequence number before that of its first request.
     pub sequence: u16,
 }
 
-impl Host {
+impl HostIdentity {
     /// Always the same, so that a run can be repeated.
     pub const FIXED: Self = Self { id: 1, sequence: 0 };
 
-    /// Another one each time: hosts on one line are told apart by it.
+    /// Another one each time, for hosts that share a line.
     #[must_use]
     pub fn random() -> Self {
         Self {
@@ -51,56 +51,66 @@ impl Host {
     }
 }
 
-/// What looks on while the operator waits.
+/// What is called with the telemetry that the operator asks for while it waits.
 type Watcher = Box<dyn FnMut(&Telemetry<f32>)>;
 
-/// A host that a leg knows.
+/// A host that has introduced itself to a leg.
 pub struct Operator {
-    line: Line,
+    connection: LegConnection,
     host: HostId,
     identity: Identity,
-    interrupt: Interrupt,
+    cancel: CancelFlag,
     watcher: Option<Watcher>,
-    /// Telemetry that comes by itself.
-    stream: Stream,
-    /// When the leg last heard a command.
-    spoke_at: Duration,
-    /// How long the leg may hear nothing of this host while it is driven; none before that was asked.
+    stream: TelemetryStream,
+    /// When the leg was last sent a command.
+    commanded_at: Duration,
+    /// Longest time between two messages to a driven leg; none before its command timeout was asked for.
     silence_max: Option<Duration>,
-    /// Whether the leg shall be kept from missing this host.
-    alive: bool,
+    /// Whether to send keep-alives.
+    keeps_alive: bool,
     /// Whether the leg may be doing what this host commanded.
     drives: bool,
 }
 
-/// Wait for the answer to an introduction: a board that was just opened may still be starting.
-const GREETING_TIME: Duration = Duration::from_millis(300);
+/// Telemetry that the leg sends by itself.
+#[derive(Debug, Default)]
+struct TelemetryStream {
+    /// Ticks from one to the next that this host has asked for; 0 for none: then what comes is another host's.
+    every_ticks: u16,
+    /// What came and was not read yet.
+    received: VecDeque<TelemetryReport>,
+    /// Whether another host has introduced itself since: that may have ended the stream.
+    other_host_came: bool,
+}
 
-/// Introductions.
-const GREETINGS: u32 = 6;
+/// Wait for the answer to an introduction: a board that was just opened may still be starting.
+const INTRODUCTION_TIME: Duration = Duration::from_millis(300);
+
+/// Introductions before the leg is taken for silent.
+const INTRODUCTIONS: u32 = 6;
 
 impl Operator {
     /// Introduces the host to the leg at the other end.
     ///
     /// # Errors
-    /// [`OperatorError::Silent`], [`OperatorError::OtherSchema`], or a line that breaks.
+    /// [`OperatorError::NoAnswer`], [`OperatorError::OtherSchema`], or a connection that fails.
     pub fn open(
         transport: Box<dyn Transport>,
-        host: Host,
-        interrupt: Interrupt,
+        host: HostIdentity,
+        cancel: CancelFlag,
     ) -> Result<Self, OperatorError> {
-        let mut line = Line::new(transport, host.sequence);
-        let identity = greet(&mut line)?;
+        let mut connection = LegConnection::new(transport, host.sequence);
+        let identity = introduce(&mut connection)?;
         Ok(Self {
-            spoke_at: line.now(),
-            line,
+            commanded_at: connection.now(),
+            connection,
             host: host.id,
             identity,
-            interrupt,
+            cancel,
             watcher: None,
-            stream: Stream::default(),
+            stream: TelemetryStream::default(),
             silence_max: None,
-            alive: false,
+            keeps_alive: false,
             drives: false,
         })
     }
@@ -114,49 +124,47 @@ impl Operator {
     /// What is at the other end, for a message to the user.
     #[must_use]
     pub fn name(&self) -> String {
-        self.line.name()
+        self.connection.name()
     }
 
     /// Time by the transport's clock.
     #[must_use]
     pub fn now(&self) -> Duration {
-        self.line.now()
+        self.connection.now()
     }
 
-    /// Whether that is an emulated leg's own.
+    /// Whether that clock is an emulated leg's own.
     #[must_use]
     pub fn clock_is_emulated(&self) -> bool {
-        self.line.clock_is_emulated()
+        self.connection.clock_is_emulated()
     }
 
-    /// Frames from the leg that could not be read, and what came so damaged that it is in none.
+    /// Frames from the leg that could not be read, with those that the transport lost.
     #[must_use]
-    pub fn damaged(&self) -> u64 {
-        self.line.damaged()
+    pub fn damaged_frames(&self) -> u64 {
+        self.connection.damaged_frames()
     }
 
-    /// Lets someone look at the telemetry that the operator asks for while it waits.
+    /// Calls `watcher` with the telemetry that the operator asks for while it waits.
     pub fn set_watcher(&mut self, watcher: impl FnMut(&Telemetry<f32>) + 'static) {
         self.watcher = Some(Box::new(watcher));
     }
 }
 
-fn greet(line: &mut Line) -> Result<Identity, OperatorError> {
-    let request = HostRequest::Identify(Hello {
-        schema: HOST_SCHEMA,
-    });
-    for _ in 0..GREETINGS {
-        let number = line.send(&request)?;
-        let until = line.now() + GREETING_TIME;
-        while let Some((sequence, reply)) = line.receive(until)? {
+fn introduce(connection: &mut LegConnection) -> Result<Identity, OperatorError> {
+    let schema = HOST_SCHEMA;
+    for _ in 0..INTRODUCTIONS {
+        let number = connection.send(&HostRequest::Identify(Hello { schema }))?;
+        let until = connection.now() + INTRODUCTION_TIME;
+        while let Some((sequence, reply)) = connection.receive(until)? {
             match reply {
                 HostReply::Identified(identity) if sequence == number => return Ok(identity),
                 HostReply::Refused(refusal) if sequence == number => {
-                    return Err(line.refused("identify", refusal));
+                    return Err(connection.refused("identify", refusal));
                 }
                 _ => {}
             }
         }
     }
-    Err(OperatorError::Silent { name: line.name() })
+    Err(OperatorError::NoAnswer(connection.name()))
 }

@@ -1,18 +1,18 @@
 //! A pseudo-terminal: to other programs it is a serial port.
+//!
+//! Not `serialport::TTYPort::pair`, whose ends are inherited by every program that this one starts.
 
-use rustix::fs::OFlags;
-use rustix::io::Errno;
+use rustix::fs::{OFlags, fcntl_getfl, fcntl_setfl};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 use std::fs::{File, OpenOptions};
-use std::io;
-use std::os::fd::OwnedFd;
+use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// The end that stands for the device.
 #[derive(Debug)]
 pub struct PseudoTerminal {
-    device: OwnedFd,
+    device: File,
     path: PathBuf,
     /// The other end: as long as it is open, a program that closes it ends nothing.
     _port: File,
@@ -22,7 +22,7 @@ impl PseudoTerminal {
     /// Makes one. It passes every byte as it is.
     ///
     /// # Errors
-    /// What the system says.
+    /// The error of the system.
     pub fn open() -> io::Result<Self> {
         let device = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
         grantpt(&device)?;
@@ -33,10 +33,9 @@ impl PseudoTerminal {
         let mut mode = tcgetattr(&port)?;
         mode.make_raw();
         tcsetattr(&port, OptionalActions::Now, &mode)?;
-        let flags = rustix::fs::fcntl_getfl(&device)?;
-        rustix::fs::fcntl_setfl(&device, flags | OFlags::NONBLOCK)?;
+        fcntl_setfl(&device, fcntl_getfl(&device)? | OFlags::NONBLOCK)?;
         Ok(Self {
-            device,
+            device: device.into(),
             path,
             _port: port,
         })
@@ -51,24 +50,25 @@ impl PseudoTerminal {
     /// What has come; 0 if nothing has.
     ///
     /// # Errors
-    /// What the system says.
+    /// The error of the system.
     pub fn read(&self, bytes: &mut [u8]) -> io::Result<usize> {
-        match rustix::io::read(&self.device, bytes) {
-            Ok(count) => Ok(count),
-            Err(Errno::AGAIN | Errno::INTR) => Ok(0),
-            Err(error) => Err(error.into()),
-        }
+        zero_if_blocked((&self.device).read(bytes))
     }
 
-    /// Writes, and tells how many bytes there was room for.
+    /// Writes, and returns how many bytes there was room for.
     ///
     /// # Errors
-    /// What the system says.
+    /// The error of the system.
     pub fn write(&self, bytes: &[u8]) -> io::Result<usize> {
-        match rustix::io::write(&self.device, bytes) {
-            Ok(count) => Ok(count),
-            Err(Errno::AGAIN | Errno::INTR) => Ok(0),
-            Err(error) => Err(error.into()),
+        zero_if_blocked((&self.device).write(bytes))
+    }
+}
+
+fn zero_if_blocked(result: io::Result<usize>) -> io::Result<usize> {
+    match result {
+        Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {
+            Ok(0)
         }
+        result => result,
     }
 }

@@ -48,7 +48,7 @@ pub struct AxisReport {
 impl SensorReport {
     /// Converts codes by the calibration of the leg's settings.
     #[must_use]
-    pub fn of(sensors: &Sensors, settings: &Settings) -> Self {
+    pub fn new(sensors: &Sensors, settings: &Settings) -> Self {
         let measured = Measurement::<f64>::new(settings).convert(sensors);
         let axis = |i: usize| AxisReport {
             encoder_counts: sensors.encoder_counts[i],
@@ -84,8 +84,8 @@ impl SensorReport {
                 without_minus_zero(axis.tension_n, 2),
                 axis.current_code,
                 without_minus_zero(axis.current_a, 3),
-                words(axis.driver_fault, "fault", "ready"),
-                words(axis.cell_fresh, "", ", no fresh code of the cell"),
+                either(axis.driver_fault, "fault", "ready"),
+                either(axis.cell_fresh, "", ", no fresh code of the cell"),
             );
         }
         rows + &format!(
@@ -98,14 +98,14 @@ impl SensorReport {
             self.supply_v,
             self.temperature_code,
             self.temperature_c,
-            words(self.emergency_stop, "pressed", "released"),
-            words(self.late, "late", "in time"),
-            words(self.settings_corrupt, "not whole", "whole"),
+            either(self.emergency_stop, "pressed", "released"),
+            either(self.late, "late", "in time"),
+            either(self.settings_corrupt, "not whole", "whole"),
         )
     }
 }
 
-const fn words(is: bool, yes: &'static str, no: &'static str) -> &'static str {
+const fn either(is: bool, yes: &'static str, no: &'static str) -> &'static str {
     if is { yes } else { no }
 }
 

@@ -1,17 +1,15 @@
-//! What carries the bytes of a link to a board and back.
+//! What carries the bytes between host and board.
 
-pub mod bus;
 pub mod can;
 pub mod emulated;
-pub mod hub;
 pub mod serial;
 
 use std::io;
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
-/// A way for the frames of [`leg_firmware::frame`] to one board and back. What was lost is lost: the frames' own
-/// sequence and CRC tell.
+/// Carries the frames of [`leg_firmware::frame`] to one board and back. What is lost is lost: the frames' own sequence
+/// numbers and CRC show it.
 pub trait Transport {
     /// What it is, for a message to the user: `can0, leg 3`.
     fn name(&self) -> &str;
@@ -20,7 +18,7 @@ pub trait Transport {
     ///
     /// # Errors
     /// [`io::ErrorKind::InvalidInput`] if a transport that cannot send parts of a frame is given one;
-    /// [`io::ErrorKind::TimedOut`] if the system does not take them; what else the system says.
+    /// [`io::ErrorKind::TimedOut`] if the system does not take them; another error of the system.
     fn send(&mut self, bytes: &[u8]) -> io::Result<()>;
 
     /// Sends one whole frame before all that waits, where the transport can: a stop.
@@ -35,10 +33,10 @@ pub trait Transport {
     /// side has ended for good.
     ///
     /// # Errors
-    /// [`io::ErrorKind::TimedOut`] if none came in time; what else the system says.
+    /// [`io::ErrorKind::TimedOut`] if none came in time; another error of the system.
     fn receive(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize>;
 
-    /// What of the transport's own came damaged or incomplete, and so is missing in the bytes.
+    /// Frames of the transport's own that came damaged or incomplete, and so are missing in the bytes.
     fn damaged(&self) -> u64 {
         0
     }

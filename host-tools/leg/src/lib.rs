@@ -1,3 +1,165 @@
-//! The command `leg`.
+//! The command `leg`: parses the command line, calls the crates below, prints reports and errors.
+//!
+//! [`main`] is the program; [`command`] is its command line for completions, manual pages and tests. Every command is
+//! one file with `Args` (their doc comments are the help text) and `run(&Args, Options) -> Result<(), Failure>`:
+//!
+//! | file | commands |
+//! |---|---|
+//! | `run`, `replay` | a simulated leg through a scenario; a recording again |
+//! | `eval`, `check`, `cost`, `paper` | the model at poses; accuracy; instructions and memory; the paper's numbers |
+//! | `map`, `curve`, `export`, `rig` | maps of the workspace; tendon curves; MuJoCo; rig files |
+//! | `leg_commands` | `home`, `move`, `stiffness`, `hold`, `stop`, `disarm`, `clear` |
+//! | `sensors`, `monitor`, `log`, `settings`, `calibrate` | what a leg reports, records and is set to |
+//! | `emulate`, `flash`, `faults` | an emulated board; the image into a board; the fault table |
+//! | `board` | `setup`; links to the firmware in this process and under QEMU |
+//! | `completions`, `man` | for the shell and for `man` |
+//!
+//! The commands share `options` (`--verbose`, `--json`), `output` (printing and files), `connection` (a leg on a port,
+//! on CAN or emulated), `numbers` (checked numbers) and `progress`.
+//!
+//! # A new command
+//! 1. Write its file, with its `Args` and `run`; print through `Options::report`, which serves `--json`.
+//! 2. Add it to `Command` and to the `match` in `run` of this file, and to the table above.
+//! 3. Add its help text to `tests/command_line/help.trycmd` and a transcript of its work beside it.
+//!
+//! ```
+//! let leg = leg_cli::command();
+//! let run = leg.find_subcommand("run").and_then(|run| run.get_about());
+//! assert!(run.is_some());
+//! ```
 
-pub mod cli;
+mod board;
+mod calibrate;
+mod check;
+mod completions;
+mod connection;
+mod cost;
+mod curve;
+mod emulate;
+mod eval;
+mod export;
+mod faults;
+mod flash;
+mod leg_commands;
+mod log;
+mod man;
+mod map;
+mod monitor;
+mod notices;
+mod numbers;
+mod options;
+mod output;
+mod paper;
+mod progress;
+mod replay;
+mod rig;
+mod run;
+mod sensors;
+mod settings;
+
+use clap::{CommandFactory, Parser, Subcommand};
+use leg_base::failure::Failure;
+use leg_commands::LegCommand;
+use options::Options;
+use std::process::ExitCode;
+
+/// Models, simulates and commands a tendon-driven leg, and checks its firmware without a board.
+#[derive(Debug, Parser)]
+#[command(name = "leg", bin_name = "leg", version, after_help = EXIT_CODES, next_display_order = None)]
+struct Cli {
+    #[command(flatten)]
+    options: Options,
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  passed
+  1  checked and failed
+  2  bad input or a missing prerequisite
+
+`leg completions` and `leg man` write shell completions and manual pages.";
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Calibrate(calibrate::Args),
+    /// Checks the firmware under QEMU: its f32 against f64, and its bits against f32 on the host.
+    ///
+    /// A grid and a random sample of the workspace of the paper's rig go through every kernel and the whole evaluation.
+    Check,
+    Completions(completions::Args),
+    Cost(cost::Args),
+    Curve(curve::Args),
+    Emulate(emulate::Args),
+    Eval(eval::Args),
+    Export(export::Args),
+    /// Prints the fault table: what each fault is, what raises it, what it leads to and how it ends.
+    Faults,
+    Flash(flash::Args),
+    #[command(flatten)]
+    Leg(LegCommand),
+    Log(log::Args),
+    Man(man::Args),
+    Map(map::Args),
+    Monitor(monitor::Args),
+    Paper(paper::Args),
+    Replay(replay::Args),
+    Rig(rig::Args),
+    Run(run::Args),
+    Sensors(sensors::Args),
+    Settings(settings::Args),
+    /// Installs what the other commands and the tests need: the Rust target, QEMU, the firmware built for it, and Python.
+    ///
+    /// The other commands do the same on their first use, as far as they need it.
+    Setup,
+}
+
+/// The command line as clap describes it.
+#[must_use]
+pub fn command() -> clap::Command {
+    Cli::command()
+}
+
+/// Runs the command that this process's arguments name, and prints its error on standard error.
+#[must_use]
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return output::usage(&error),
+    };
+    match run(&cli.command, cli.options) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            output::print_failure(&failure, cli.options.json);
+            failure.exit_code()
+        }
+    }
+}
+
+fn run(command: &Command, options: Options) -> Result<(), Failure> {
+    match command {
+        Command::Calibrate(args) => calibrate::run(args, options),
+        Command::Check => check::run(options),
+        Command::Completions(args) => completions::run(args),
+        Command::Cost(args) => cost::run(args, options),
+        Command::Curve(args) => curve::run(args, options),
+        Command::Emulate(args) => emulate::run(args, options),
+        Command::Eval(args) => eval::run(args, options),
+        Command::Export(args) => export::run(args),
+        Command::Faults => faults::run(options),
+        Command::Flash(args) => flash::run(args, options),
+        Command::Leg(command) => command.run(options),
+        Command::Log(args) => log::run(args, options),
+        Command::Man(args) => man::run(args),
+        Command::Map(args) => map::run(args, options),
+        Command::Monitor(args) => monitor::run(args, options),
+        Command::Paper(args) => paper::run(args, options),
+        Command::Replay(args) => replay::run(args, options),
+        Command::Rig(args) => rig::run(args, options),
+        Command::Run(args) => run::run(args, options),
+        Command::Sensors(args) => sensors::run(args, options),
+        Command::Settings(args) => settings::run(args, options),
+        Command::Setup => board::setup(options),
+    }
+}

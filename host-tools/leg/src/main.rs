@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    leg_cli::cli::main()
+    leg_cli::main()
 }

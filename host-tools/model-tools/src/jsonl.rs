@@ -1,9 +1,9 @@
 //! One line of `leg eval`'s input.
 
-use leg_base::json_entries::{self, Entries};
+use crate::json_entries::{self, Entries};
+use crate::line_error::LineError;
 use leg_base::suggest;
 use leg_model::{Query, RigParameters, StiffnessAt, StiffnessDemand, Support, Tendon};
-use leg_rig::line_error::LineError;
 use leg_rig::rig_file::RigFile;
 use leg_rig::support_name::SupportName;
 
@@ -32,7 +32,7 @@ pub const EXAMPLE: &str = r#"{"azimuth_deg":30,"tilt_deg":20,"payload_kg":1}"#;
 
 /// What a line asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Line {
+pub struct PoseLine {
     /// The rig file's mechanism with the line's changes.
     pub rig: RigParameters<f64, 3>,
     /// The pose, the load and what holds it.
@@ -47,7 +47,7 @@ struct Draft {
     demand_towards_deg: Option<f64>,
 }
 
-impl Line {
+impl PoseLine {
     /// Reads one line; what it leaves out comes from the rig file.
     ///
     /// # Errors
@@ -75,7 +75,7 @@ impl Line {
 }
 
 impl Draft {
-    fn line(self) -> Result<Line, LineError> {
+    fn line(self) -> Result<PoseLine, LineError> {
         let demand = match (self.demand_nm_per_rad, self.demand_towards_deg) {
             (None, None) => None,
             (None, Some(_)) => return Err(LineError::NoDemand),
@@ -84,7 +84,7 @@ impl Draft {
                 towards_rad: towards_deg.map(f64::to_radians),
             }),
         };
-        Ok(Line {
+        Ok(PoseLine {
             rig: self.rig,
             query: Query {
                 demand,
@@ -163,7 +163,7 @@ fn word(key: &'static str, value: &str) -> Result<String, LineError> {
     serde_json::from_str(value).map_err(|_| LineError::NotAWord { key, found })
 }
 
-/// What a JSON value is; its first character tells.
+/// The kind of a JSON value, which its first character shows.
 fn kind(value: &str) -> &'static str {
     match value.as_bytes().first() {
         Some(b'"') => "a string",

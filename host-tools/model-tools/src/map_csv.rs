@@ -1,6 +1,6 @@
 //! A map as a table: one pose a row.
 
-use crate::workspace_map::{Cell, Quantity, WorkspaceMap};
+use crate::workspace_map::{Cell, MapQuantity, WorkspaceMap};
 use leg_base::atomic_file;
 use leg_base::failure::Failure;
 use std::io;
@@ -13,18 +13,16 @@ const POSE_COLUMNS: [&str; 4] = [
     "pretension_keeps_bounds",
 ];
 
-const fn column(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::Deviation => "deviation_mm",
-        Quantity::StiffnessMin => "stiffness_min_nm_per_rad",
-        Quantity::StiffnessMax => "stiffness_max_nm_per_rad",
-        Quantity::Condition => "condition",
-        Quantity::Margin => "margin_n",
-        Quantity::PretensionMin => "pretension_min_n",
-        Quantity::PretensionMax => "pretension_max_n",
-        Quantity::DeviationNonlinear => "deviation_nonlinear_mm",
-        Quantity::LinearOverNonlinear => "linear_over_nonlinear_percent",
-    }
+/// The name of a quantity with its unit.
+fn column(quantity: MapQuantity) -> String {
+    let unit = match quantity.unit() {
+        "" => "",
+        "N" => "_n",
+        "%" => "_percent",
+        "mm" => "_mm",
+        _ => "_nm_per_rad",
+    };
+    format!("{}{unit}", quantity.name())
 }
 
 /// Writes the map, whole or not at all, around other work: its directory is tried before that work, and the file is put
@@ -40,11 +38,11 @@ pub fn save_around<T>(
 ) -> Result<T, Failure> {
     let written = atomic_file::replace(file, |new| {
         write(map, new)?;
-        work().map_err(Stopped::Work)
+        work().map_err(SaveError::Work)
     });
     written.map_err(|stopped| match stopped {
-        Stopped::Work(failure) => failure,
-        Stopped::File(error) => Failure::refused(
+        SaveError::Work(failure) => failure,
+        SaveError::File(error) => Failure::refused(
             format!("cannot write {}: {error}", file.display()),
             "name a file in a directory that may be written with --csv",
         ),
@@ -52,12 +50,12 @@ pub fn save_around<T>(
 }
 
 /// Why the file is not in its place.
-enum Stopped {
+enum SaveError {
     File(io::Error),
     Work(Failure),
 }
 
-impl From<io::Error> for Stopped {
+impl From<io::Error> for SaveError {
     fn from(error: io::Error) -> Self {
         Self::File(error)
     }
@@ -67,7 +65,7 @@ fn write(map: &WorkspaceMap, new: &Path) -> io::Result<()> {
     let quantities = map.quantities();
     let mut writer = csv::Writer::from_path(new)?;
     let columns = quantities.iter().map(|quantity| column(*quantity));
-    writer.write_record(POSE_COLUMNS.into_iter().chain(columns))?;
+    writer.write_record(POSE_COLUMNS.map(String::from).into_iter().chain(columns))?;
     for (azimuth, tilt, cell) in map.poses() {
         let place = [azimuth.to_string(), tilt.to_string()];
         let fields = cell.as_ref().map_or_else(
@@ -79,7 +77,7 @@ fn write(map: &WorkspaceMap, new: &Path) -> io::Result<()> {
     writer.flush()
 }
 
-fn fields(cell: &Cell, quantities: &[Quantity]) -> Vec<String> {
+fn fields(cell: &Cell, quantities: &[MapQuantity]) -> Vec<String> {
     let values = quantities.iter().map(|quantity| quantity.value(cell));
     let values = values.map(|value| value.map_or_else(String::new, |value| value.to_string()));
     [cell.feasible, cell.pretension_keeps_bounds]
@@ -137,7 +135,7 @@ mod tests {
 
     #[test]
     fn the_nonlinear_deviation_has_columns_where_it_was_asked_for() {
-        let map = WorkspaceMap::compute_with_nonlinear(&ball_joint(70.0), 1.0, GRID, || ());
+        let map = WorkspaceMap::compute(&ball_joint(70.0), 1.0, GRID, true, || ());
         let lines = saved(&map);
         assert_eq!(
             lines[0][11..],
@@ -151,7 +149,7 @@ mod tests {
     fn table_and_work_are_done_both_or_neither() {
         let directory = tempfile::tempdir().unwrap();
         let file = directory.path().join("map.csv");
-        let failure = Failure::missed("no pictures", "");
+        let failure = Failure::failed("no pictures", "");
         let failed = save_around(&map(60.0), &file, || Err::<(), _>(failure.clone()));
         assert_eq!(failed, Err(failure));
         assert!(!file.exists());

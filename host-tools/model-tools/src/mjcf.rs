@@ -7,17 +7,16 @@
 //! `axial_stretch_m` of `leg eval`.
 
 mod bodies;
-mod element;
 mod held;
 mod joints;
 mod scenery;
 
 pub use held::{HeldLeg, HeldTendon};
 
+use crate::line_error::LineError;
+use crate::xml_element::{self, Element};
 use bodies::Sizes;
-use element::Element;
 use joints::Joints;
-use leg_rig::line_error::LineError;
 use std::io::{self, Write};
 
 /// Step of the simulation, s.
@@ -76,7 +75,7 @@ pub enum MjcfError {
 #[derive(Clone, Debug)]
 pub struct Mjcf {
     root: Element,
-    about: String,
+    comment: String,
 }
 
 impl Mjcf {
@@ -85,8 +84,8 @@ impl Mjcf {
     /// # Errors
     /// [`MjcfError::Springs`] and [`MjcfError::Massless`].
     pub fn new(leg: &HeldLeg) -> Result<Self, MjcfError> {
-        let sizes = Sizes::of(leg)?;
-        let joints = Joints::of(&leg.support, &leg.rotation)?;
+        let sizes = Sizes::new(leg)?;
+        let joints = Joints::new(&leg.support, &leg.rotation)?;
         let root = Element::new("mujoco")
             .text("model", "leg")
             .child(Element::new("compiler").text("angle", "radian"))
@@ -98,8 +97,8 @@ impl Mjcf {
             .child(tendons(leg))
             .children(joints.equal.map(equality))
             .child(keyframe(&joints));
-        let about = about(leg);
-        Ok(Self { root, about })
+        let comment = comment(leg);
+        Ok(Self { root, comment })
     }
 
     /// Writes the XML.
@@ -107,11 +106,11 @@ impl Mjcf {
     /// # Errors
     /// Those of `out`.
     pub fn write(&self, out: impl Write) -> io::Result<()> {
-        element::write(&self.root, &self.about, out)
+        xml_element::write(&self.root, &self.comment, out)
     }
 }
 
-fn about(leg: &HeldLeg) -> String {
+fn comment(leg: &HeldLeg) -> String {
     let HeldLeg {
         azimuth_deg,
         tilt_deg,

@@ -55,7 +55,9 @@ fn pretensioned(
         &bounds,
         pretension,
     )?;
-    let twist = support.twist(&direction).and(&Twist::from_torsion(torsion));
+    let twist = support
+        .twist(&direction)
+        .then(&Twist::from_torsion(torsion));
     let kinematics = inverse_kinematics(&rig.geometry().twisted(&twist), &direction)?;
     let (map, plane) = (&kinematics.moment_map, support.plane(&direction));
     let joint_moment = support.joint_moment(&direction, torsion);

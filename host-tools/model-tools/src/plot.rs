@@ -5,8 +5,9 @@ pub mod field;
 
 pub use canvas::PlotError;
 
-use canvas::{AXIS_TITLE_PX, Area, Drawn, GRID, LABEL_PX, MARGIN_PX, TITLE_PX, WIDTH_PX, range};
-use leg_base::atomic_file;
+use canvas::{
+    AXIS_TITLE_PX, Area, Drawn, GRID, LABEL_PX, MARGIN_PX, Painter, TITLE_PX, WIDTH_PX, range,
+};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -38,14 +39,14 @@ pub struct Chart {
     /// Beside the vertical axis.
     pub y_title: String,
     /// The lines, in the legend's order.
-    pub lines: Vec<Line>,
+    pub lines: Vec<ChartLine>,
     /// What the lines' marks mean, for the legend; left out when no line has any.
     pub marks_label: String,
 }
 
 /// One line of a [`Chart`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct ChartLine {
     /// Its name in the legend.
     pub label: String,
     /// Its points (x, y), in the order in which they are joined.
@@ -54,38 +55,30 @@ pub struct Line {
     pub marks: Vec<(f64, f64)>,
 }
 
-/// Draws the chart as an SVG file.
+/// Draws the chart as `stem.svg` and `stem.png` (1280 × 800 pixels), each whole or not at all, and names the first.
 ///
 /// # Errors
-/// A [`PlotError`] when there is nothing to draw or the file cannot be written.
-pub fn save_svg(chart: &Chart, path: &Path) -> Result<(), PlotError> {
-    let bounds = Bounds::of(chart)?;
-    canvas::svg(path, |root| paint(chart, &bounds, root))
-}
-
-/// Draws the chart as a PNG file of 1280 × 800 pixels; the path has to end in `.png`.
-///
-/// # Errors
-/// A [`PlotError`] when there is nothing to draw or the file cannot be written.
-pub fn save_png(chart: &Chart, path: &Path) -> Result<(), PlotError> {
-    let bounds = Bounds::of(chart)?;
-    canvas::png(path, |root| paint(chart, &bounds, root))
-}
-
-/// Draws the chart as `stem.svg` and `stem.png`, each whole or not at all, and names the first.
-///
-/// # Errors
-/// As [`save_svg`].
+/// A [`PlotError`] when there is nothing to draw or a file cannot be written.
 pub fn save_both(chart: &Chart, stem: &Path) -> Result<PathBuf, PlotError> {
-    let (svg, png) = (stem.with_extension("svg"), stem.with_extension("png"));
-    atomic_file::replace(&svg, |new| save_svg(chart, new))?;
-    atomic_file::replace(&png, |new| save_png(chart, new))?;
-    Ok(svg)
+    let ranges = AxisRanges::new(chart)?;
+    canvas::save_both(&ChartPainter { chart, ranges }, stem)
+}
+
+/// A chart whose axes are known.
+struct ChartPainter<'a> {
+    chart: &'a Chart,
+    ranges: AxisRanges,
+}
+
+impl Painter for ChartPainter<'_> {
+    fn paint<B: DrawingBackend>(&self, root: &Area<B>) -> Drawn<B> {
+        paint(self.chart, &self.ranges, root)
+    }
 }
 
 type Plane = Cartesian2d<RangedCoordf64, RangedCoordf64>;
 
-fn paint<B: DrawingBackend>(chart: &Chart, bounds: &Bounds, root: &Area<B>) -> Drawn<B> {
+fn paint<B: DrawingBackend>(chart: &Chart, ranges: &AxisRanges, root: &Area<B>) -> Drawn<B> {
     root.fill(&WHITE)?;
     let body = root
         .margin(MARGIN_PX, MARGIN_PX, MARGIN_PX, 0)
@@ -95,7 +88,7 @@ fn paint<B: DrawingBackend>(chart: &Chart, bounds: &Bounds, root: &Area<B>) -> D
         .margin(MARGIN_PX)
         .set_label_area_size(LabelAreaPosition::Bottom, 70)
         .set_label_area_size(LabelAreaPosition::Left, 90)
-        .build_cartesian_2d(bounds.x.0..bounds.x.1, bounds.y.0..bounds.y.1)?;
+        .build_cartesian_2d(ranges.x.0..ranges.x.1, ranges.y.0..ranges.y.1)?;
     draw_axes(chart, &mut context)?;
     for (line, colour) in chart.lines.iter().zip(COLOURS.iter().cycle()) {
         draw_line(line, colour, &mut context)?;
@@ -122,7 +115,7 @@ fn draw_axes<B: DrawingBackend>(chart: &Chart, context: &mut ChartContext<B, Pla
 }
 
 fn draw_line<B: DrawingBackend>(
-    line: &Line,
+    line: &ChartLine,
     colour: &RGBColor,
     context: &mut ChartContext<B, Plane>,
 ) -> Drawn<B> {
@@ -156,15 +149,15 @@ fn draw_legend<B: DrawingBackend>(chart: &Chart, area: &Area<B>) -> Drawn<B> {
 }
 
 /// The ranges of the two axes.
-struct Bounds {
+struct AxisRanges {
     x: (f64, f64),
     y: (f64, f64),
 }
 
-impl Bounds {
+impl AxisRanges {
     /// Takes in every point and mark, y = 0 as well, with some room above.
-    fn of(chart: &Chart) -> Result<Self, PlotError> {
-        let points = |line: &Line| [line.points.as_slice(), line.marks.as_slice()].concat();
+    fn new(chart: &Chart) -> Result<Self, PlotError> {
+        let points = |line: &ChartLine| [line.points.as_slice(), line.marks.as_slice()].concat();
         let all: Vec<(f64, f64)> = chart.lines.iter().flat_map(points).collect();
         let x = range(all.iter().map(|point| point.0)).ok_or(PlotError::Empty)?;
         let y = range(all.iter().map(|point| point.1).chain([0.0])).ok_or(PlotError::Empty)?;

@@ -1,15 +1,13 @@
 //! The model over the whole workspace.
 
 mod cell;
-mod drawn;
-mod found;
+mod picture;
 mod quantity;
+mod statistics;
 
 pub use cell::{AtPretension, Cell};
-#[cfg(test)]
-pub use drawn::SHADES;
-pub use found::{Counts, Extreme};
-pub use quantity::Quantity;
+pub use quantity::MapQuantity;
+pub use statistics::{Counts, Extreme};
 
 use cell::Prepared;
 use leg_model::Error;
@@ -33,31 +31,17 @@ pub struct WorkspaceMap {
     pub grid: Grid,
     /// The greatest tilt, degrees.
     pub tilt_max_deg: f64,
-    /// Whether the nonlinear deviation was looked for.
+    /// Whether the nonlinear deviation was computed.
     pub with_nonlinear: bool,
     /// One a pose: the vertical, which is the same at every azimuth, then row by row; why there is no result.
     pub cells: Vec<Result<Cell, Error>>,
 }
 
 impl WorkspaceMap {
-    /// Evaluates every pose on all cores, and calls `done` after each row.
+    /// Evaluates every pose on all cores, and calls `done` after each row. The nonlinear deviation, if it is asked for,
+    /// takes far longer than all the rest.
     #[must_use]
-    pub fn compute(rig: &RigFile, payload_kg: f64, grid: Grid, done: impl Fn() + Sync) -> Self {
-        Self::on_all_cores(rig, payload_kg, grid, false, done)
-    }
-
-    /// The same with the nonlinear deviation, which takes far longer than all the rest.
-    #[must_use]
-    pub fn compute_with_nonlinear(
-        rig: &RigFile,
-        payload_kg: f64,
-        grid: Grid,
-        done: impl Fn() + Sync,
-    ) -> Self {
-        Self::on_all_cores(rig, payload_kg, grid, true, done)
-    }
-
-    fn on_all_cores(
+    pub fn compute(
         rig: &RigFile,
         payload_kg: f64,
         grid: Grid,
@@ -103,7 +87,7 @@ impl WorkspaceMap {
     }
 
     /// The cell of a row and a column; of the vertical in every column of the first row.
-    fn at(&self, row: u32, column: u32) -> &Result<Cell, Error> {
+    fn cell(&self, row: u32, column: u32) -> &Result<Cell, Error> {
         let before = |row: u32| row as usize * self.grid.azimuths as usize;
         let index = row
             .checked_sub(1)

@@ -1,46 +1,50 @@
-//! The motors, gears, screws and sensors that pull the tendons: what the control law is told and the simulated leg is.
+//! The motors, gears, screws and sensors that pull the tendons: what the control law knows of them, and what the simulated leg has.
 
-use crate::fields::{Field, fields};
+use crate::toml_error::TomlError;
+use crate::toml_section::Section;
+use leg_firmware::fields;
 use leg_firmware::sensors::CODE_MAX;
+use leg_firmware::settings::Field;
 
 fields! {
     /// One actuator; the three are of one type.
     ///
     /// The defaults are typical of an ironless DC motor of 20 W at 24 V such as maxon's RE 25, with a planetary gear and
     /// a trapezoidal screw that holds by its friction. Replace them by the data sheets of your own.
-    Actuator {
-        /// Terminal resistance of the motor, Ω.
-        resistance_ohm: 0.01..=1e3 = 2.32;
-        /// Terminal inductance, H.
-        inductance_h: 1e-7..=1.0 = 0.238e-3;
-        /// Torque constant, N·m/A, which is also the voltage per speed, V·s/rad.
-        torque_constant_nm_per_a: 1e-5..=100.0 = 23.4e-3;
-        /// Inertia of the rotor, and of gear and screw as the rotor feels them, kg·m².
-        inertia_kg_m2: 1e-10..=1.0 = 1.2e-6;
-        /// Dry friction at the rotor without a load, N·m.
-        friction_nm: 0.0..=10.0 = 0.9e-3;
-        /// Viscous friction at the rotor, N·m·s/rad.
-        viscous_nm_s_per_rad: 0.0..=0.1 = 3e-7;
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Actuator: f64 {
+        /// Terminal resistance of the motor.
+        resistance_ohm ["Ω"]: 0.01..=1e3 = 2.32;
+        /// Terminal inductance.
+        inductance_h ["H"]: 1e-7..=1.0 = 0.238e-3;
+        /// Torque constant, which is also the voltage per speed in V·s/rad.
+        torque_constant_nm_per_a ["N·m/A"]: 1e-5..=100.0 = 23.4e-3;
+        /// Inertia of the rotor, and of gear and screw as the rotor feels them.
+        inertia_kg_m2 ["kg·m²"]: 1e-10..=1.0 = 1.2e-6;
+        /// Dry friction at the rotor without a load.
+        friction_nm ["N·m"]: 0.0..=10.0 = 0.9e-3;
+        /// Viscous friction at the rotor.
+        viscous_nm_s_per_rad ["N·m·s/rad"]: 0.0..=0.1 = 3e-7;
         /// Turns of the motor in one of the screw.
-        gear_ratio: 0.1..=1e4 = 4.4;
-        /// Play between gear and screw, as a rotation of the screw, rad.
-        backlash_rad: 0.0..=1.0 = 0.015;
-        /// How far a turn of the screw pulls the tendon, m.
-        lead_m: 1e-5..=0.1 = 1e-3;
+        gear_ratio ["1"]: 0.1..=1e4 = 4.4;
+        /// Play between gear and screw, as a rotation of the screw.
+        backlash_rad ["rad"]: 0.0..=1.0 = 0.015;
+        /// How far a turn of the screw pulls the tendon.
+        lead_m ["m"]: 1e-5..=0.1 = 1e-3;
         /// Part of the work that reaches the tendon when the screw pulls; below a half, so that a pull cannot turn it.
-        screw_efficiency: 0.01..=0.499 = 0.3;
+        screw_efficiency ["1"]: 0.01..=0.499 = 0.3;
         /// Part of the work that passes the gear.
-        gear_efficiency: 0.05..=1.0 = 0.9;
+        gear_efficiency ["1"]: 0.05..=1.0 = 0.9;
         /// Encoder counts in a turn of the motor, after quadrature.
-        counts_per_turn: 4.0..=1e6 = 2048.0;
-        /// Motor current at the highest code, A; code 0 is minus that.
-        current_range_a: 0.01..=1e3 = 12.0;
-        /// Supply at the highest code, V.
-        supply_range_v: 1.0..=1e3 = 36.0;
-        /// Nominal supply, V.
-        supply_v: 1.0..=1e3 = 24.0;
+        counts_per_turn ["1"]: 4.0..=1e6 = 2048.0;
+        /// Motor current at the highest code; code 0 is minus that.
+        current_range_a ["A"]: 0.01..=1e3 = 12.0;
+        /// Supply at the highest code.
+        supply_range_v ["V"]: 1.0..=1e3 = 36.0;
+        /// Nominal supply.
+        supply_v ["V"]: 1.0..=1e3 = 24.0;
     }
-    besides {
+    and {
         /// Tension at a load cell's code 0 and at its highest, N.
         cell_range_n: [f64; 2] = [-20.0, 230.0];
         /// Temperature at code 0 and at the highest, °C.
@@ -49,35 +53,54 @@ fields! {
 }
 
 /// The ends of [`Actuator::cell_range_n`].
-pub const CELL_RANGE: [Field; 2] = [
-    Field {
-        name: "cell_range_n",
-        meaning: "Tension at a load cell's code 0, N; below zero, since a slack cell at the end of its range would be \
-                  taken for a faulty one.",
-        range: [-1e5, -1e-3],
-    },
-    Field {
-        name: "cell_range_n",
-        meaning: "Tension at a load cell's highest code, N.",
-        range: [1e-3, 1e5],
-    },
-];
+pub const CELL_RANGE: [Field<f64>; 2] = {
+    let low = "Tension at a load cell's code 0; below zero, since a slack cell at the end of its range would be taken for a \
+               faulty one.";
+    let high = "Tension at a load cell's highest code.";
+    let [slack, taut] = Actuator::DEFAULT.cell_range_n;
+    [
+        Field::new("cell_range_n", "N", low, [-1e5, -1e-3], slack),
+        Field::new("cell_range_n", "N", high, [1e-3, 1e5], taut),
+    ]
+};
 
 /// The ends of [`Actuator::temperature_range_c`].
-pub const TEMPERATURE_RANGE: [Field; 2] = [
-    Field {
-        name: "temperature_range_c",
-        meaning: "Temperature at code 0, °C.",
-        range: [-300.0, 20.0],
-    },
-    Field {
-        name: "temperature_range_c",
-        meaning: "Temperature at the highest code, °C.",
-        range: [30.0, 2000.0],
-    },
-];
+pub const TEMPERATURE_RANGE: [Field<f64>; 2] = {
+    let (name, [cold, hot]) = ("temperature_range_c", Actuator::DEFAULT.temperature_range_c);
+    [
+        Field::new(name, "°C", "Temperature at code 0.", [-300.0, 20.0], cold),
+        Field::new(
+            name,
+            "°C",
+            "Temperature at the highest code.",
+            [30.0, 2000.0],
+            hot,
+        ),
+    ]
+};
+
+/// The section `[actuator]`: motors, gears, screws and sensors by their data sheets.
+pub const ACTUATOR: &str = "actuator";
 
 impl Actuator {
+    /// Reads the section; whatever is left out is as by default.
+    pub(crate) fn read(root: &Section<'_>) -> Result<Self, TomlError> {
+        let mut actuator = Self::DEFAULT;
+        let mut keys: Vec<_> = Self::FIELDS.iter().map(|field| field.name).collect();
+        keys.extend([CELL_RANGE[0].name, TEMPERATURE_RANGE[0].name]);
+        let Some(section) = root.optional(ACTUATOR, &keys)? else {
+            return Ok(actuator);
+        };
+        section.read(Self::FIELDS, actuator.values_mut())?;
+        if let Some(range) = section.values(CELL_RANGE.each_ref())? {
+            actuator.cell_range_n = range;
+        }
+        if let Some(range) = section.values(TEMPERATURE_RANGE.each_ref())? {
+            actuator.temperature_range_c = range;
+        }
+        Ok(actuator)
+    }
+
     /// How far one encoder count pulls the tendon in, m.
     #[must_use]
     pub fn m_per_count(&self) -> f64 {

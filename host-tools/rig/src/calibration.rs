@@ -1,98 +1,23 @@
 //! What was measured of the sensors of the three axes.
 
 use crate::actuator::Actuator;
-use crate::fields::Field;
-use leg_firmware::sensors::CODE_MAX;
+use crate::gains::widened;
+use crate::toml_error::TomlError;
+use crate::toml_section::Section;
+use leg_firmware::settings::{AxisCalibration, Field};
 
-/// Measured calibrations of the three axes, each in the place of what the actuator's data say.
+/// The section `[calibration]`.
+pub const CALIBRATION: &str = "calibration";
+
+/// The calibrations of the three axes: measured, or as the actuator's data say.
 ///
 /// The simulated leg keeps its actuator's data: a calibration that is not theirs shows as an error there. The signs of
 /// the counts are otherwise: how encoders are wired is a fact, and the simulated leg's are wired the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Calibration {
     /// How far one encoder count pulls each tendon in, without its sign, m.
-    pub m_per_count: Option<[f64; 3]>,
-    /// Which way each encoder counts: 1 up while its tendon is pulled in, or −1.
-    pub counts_sign: [f64; 3],
-    /// Tension by code of each load cell, N.
-    pub cell_n_per_code: Option<[f64; 3]>,
-    /// Code of each load cell without tension.
-    pub cell_zero_code: Option<[f64; 3]>,
-    /// Current by code of each motor, A.
-    pub current_a_per_code: Option<[f64; 3]>,
-}
-
-/// [`Calibration::m_per_count`].
-pub const M_PER_COUNT: Field = Field {
-    name: "m_per_count",
-    meaning: "How far one encoder count pulls each tendon in, without its sign, m.",
-    range: COUNT_RANGE_M,
-};
-
-/// How far one encoder count may pull a tendon, m. With finer ones a fast motor outruns the counter of 16 bits.
-pub const COUNT_RANGE_M: [f64; 2] = [1e-9, 1e-4];
-
-/// [`Calibration::counts_sign`]; nothing between the ends is a sign.
-pub const COUNTS_SIGN: Field = Field {
-    name: "counts_sign",
-    meaning: "Which way each encoder counts: 1 up while its tendon is pulled in, or -1.",
-    range: [-1.0, 1.0],
-};
-
-/// [`Calibration::cell_n_per_code`].
-pub const CELL_N_PER_CODE: Field = Field {
-    name: "cell_n_per_code",
-    meaning: "Tension by code of each load cell, N: a code up has to be more tension.",
-    range: [1e-6, 10.0],
-};
-
-/// [`Calibration::cell_zero_code`].
-pub const CELL_ZERO_CODE: Field = Field {
-    name: "cell_zero_code",
-    meaning: "Code of each load cell without tension.",
-    range: [0.0, CODE_MAX as f64],
-};
-
-/// [`Calibration::current_a_per_code`].
-pub const CURRENT_A_PER_CODE: Field = Field {
-    name: "current_a_per_code",
-    meaning: "Current by code of each motor, A.",
-    range: [1e-7, 1.0],
-};
-
-impl Default for Calibration {
-    fn default() -> Self {
-        Self {
-            m_per_count: None,
-            counts_sign: [1.0; 3],
-            cell_n_per_code: None,
-            cell_zero_code: None,
-            current_a_per_code: None,
-        }
-    }
-}
-
-impl Calibration {
-    /// Everything given: what was not measured is as the actuator's data say.
-    #[must_use]
-    pub fn complete(&self, actuator: &Actuator) -> CompleteCalibration {
-        let or = |measured: Option<[f64; 3]>, nominal: f64| measured.unwrap_or([nominal; 3]);
-        CompleteCalibration {
-            m_per_count: or(self.m_per_count, actuator.m_per_count()),
-            counts_sign: self.counts_sign,
-            cell_n_per_code: or(self.cell_n_per_code, actuator.cell_n_per_code()),
-            cell_zero_code: or(self.cell_zero_code, actuator.cell_zero_code()),
-            current_a_per_code: or(self.current_a_per_code, actuator.current_a_per_code()),
-        }
-    }
-}
-
-/// A [`Calibration`] that leaves nothing out.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CompleteCalibration {
-    /// How far one encoder count pulls each tendon in, without its sign, m.
     pub m_per_count: [f64; 3],
-    /// Which way each encoder counts.
+    /// Which way each encoder counts: 1 up while its tendon is pulled in, or −1.
     pub counts_sign: [f64; 3],
     /// Tension by code of each load cell, N.
     pub cell_n_per_code: [f64; 3],
@@ -100,4 +25,73 @@ pub struct CompleteCalibration {
     pub cell_zero_code: [f64; 3],
     /// Current by code of each motor, A.
     pub current_a_per_code: [f64; 3],
+}
+
+/// [`Calibration::counts_sign`]; nothing between the ends is a sign.
+const COUNTS_SIGN: Field<f64> = Field::new(
+    "counts_sign",
+    "1",
+    "Which way each encoder counts: 1 up while its tendon is pulled in, or -1.",
+    [-1.0, 1.0],
+    1.0,
+);
+
+impl Calibration {
+    /// As the actuator's data say.
+    #[must_use]
+    pub fn nominal(actuator: &Actuator) -> Self {
+        Self {
+            m_per_count: [actuator.m_per_count(); 3],
+            counts_sign: [1.0; 3],
+            cell_n_per_code: [actuator.cell_n_per_code(); 3],
+            cell_zero_code: [actuator.cell_zero_code(); 3],
+            current_a_per_code: [actuator.current_a_per_code(); 3],
+        }
+    }
+
+    /// Every key of the section with its field, that of the board's table, and its value by axis.
+    pub(crate) fn keys(&mut self) -> [(Field<f64>, &mut [f64; 3]); 5] {
+        let values = [
+            &mut self.m_per_count,
+            &mut self.cell_n_per_code,
+            &mut self.cell_zero_code,
+            &mut self.current_a_per_code,
+        ];
+        let mut fields = AxisCalibration::FIELDS.iter().map(widened);
+        // The sign of the counts has a key of its own.
+        let mut field = || Field {
+            signed: false,
+            ..fields.next().unwrap_or(COUNTS_SIGN)
+        };
+        let [counts, scale, zero, current] = values.map(|values| (field(), values));
+        let sign = (COUNTS_SIGN, &mut self.counts_sign);
+        [counts, sign, scale, zero, current]
+    }
+
+    /// Reads the section; whatever is left out is as the actuator's data say.
+    pub(crate) fn read(root: &Section<'_>, actuator: &Actuator) -> Result<Self, TomlError> {
+        let mut calibration = Self::nominal(actuator);
+        let keys = calibration.keys();
+        let names = keys.each_ref().map(|(field, _)| field.name);
+        let Some(section) = root.optional(CALIBRATION, &names)? else {
+            return Ok(calibration);
+        };
+        for (field, values) in keys {
+            if let Some(given) = section.values([&field; 3])? {
+                *values = given;
+            }
+        }
+        let other = calibration
+            .counts_sign
+            .iter()
+            .find(|sign| sign.abs() != 1.0);
+        other.map_or(Ok(calibration), |other| {
+            let key = COUNTS_SIGN.name;
+            Err(TomlError::new(
+                section.place(&[key]).unwrap_or(0..0),
+                format!("`{key}` cannot be `{other}`"),
+                "write 1 or -1 for each axis",
+            ))
+        })
+    }
 }

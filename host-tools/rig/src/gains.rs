@@ -1,103 +1,101 @@
-//! Gains and limits of the control law, and changes to them key by key.
+//! Gains and limits of the control law: the sections `[control.…]` of rig files and scenarios.
 
 use crate::actuator::Actuator;
-use leg_firmware::settings::{Estimation, Homing, Limits, Motion, Servo};
+use crate::number::decimal;
+use crate::toml_error::TomlError;
+use crate::toml_section::Section;
+use leg_firmware::settings::{Field, Gains, SECTIONS, Servo};
 
-/// Gains and limits, by the sections of the settings.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Gains {
-    /// How the leg moves.
-    pub motion: Motion,
-    /// How a motor follows.
-    pub servo: Servo,
-    /// How pose and load are estimated.
-    pub estimation: Estimation,
-    /// What is taken as a fault.
-    pub limits: Limits,
-    /// How the zero is found.
-    pub homing: Homing,
-}
+/// The common beginning of the sections.
+pub const CONTROL: &str = "control";
 
 /// One gain that is given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainChange {
-    /// The section's number, as in [`SECTIONS`](leg_firmware::settings::SECTIONS).
-    pub section: usize,
-    /// The field's number in the section.
-    pub field: usize,
-    /// Its value.
-    pub value: f32,
+    /// Which one, counted through the sections.
+    index: usize,
+    value: f32,
 }
 
-impl Gains {
-    /// The defaults, the resistance and the induced voltage being those of the motor. The currents that friction and a pull
-    /// take are not computed: a data sheet does not tell them well, so another motor needs its own in `[control.servo]`.
-    #[must_use]
-    pub fn defaults(actuator: &Actuator) -> Self {
-        Self {
-            servo: Servo {
-                back_emf_v_s_per_m: actuator.back_emf_v_s_per_m() as f32,
-                resistance_ohm: actuator.resistance_ohm as f32,
-                ..Servo::default()
-            },
-            ..Self::default()
+/// The defaults for a motor: its own resistance and induced voltage. The currents that friction and a pull take are not
+/// computed: no data sheet gives them well, so another motor needs its own in `[control.servo]`.
+#[must_use]
+pub fn defaults(actuator: &Actuator) -> Gains {
+    Gains {
+        servo: Servo {
+            back_emf_v_s_per_m: actuator.back_emf_v_s_per_m() as f32,
+            resistance_ohm: actuator.resistance_ohm as f32,
+            ..Servo::DEFAULT
+        },
+        ..Gains::default()
+    }
+}
+
+/// The gains with other values where any are given.
+#[must_use]
+pub fn changed(mut gains: Gains, changes: &[GainChange]) -> Gains {
+    for (index, value) in gains.values_mut().enumerate() {
+        if let Some(change) = changes.iter().find(|change| change.index == index) {
+            *value = change.value;
         }
     }
+    gains
+}
 
-    /// The same with other values where any are given.
-    #[must_use]
-    pub fn with(mut self, changes: &[GainChange]) -> Self {
-        for change in changes {
-            let mut sections = self.values_mut();
-            let section = sections.get_mut(change.section);
-            if let Some(value) = section.and_then(|fields| fields.get_mut(change.field)) {
-                **value = change.value;
+/// The same field in f64: its numbers as they are written, 0.05 not 0.05000000074505806.
+#[must_use]
+pub fn widened(field: &Field) -> Field<f64> {
+    Field {
+        name: field.name,
+        unit: field.unit,
+        meaning: field.meaning,
+        range: field.range.map(decimal),
+        signed: field.signed,
+        default: decimal(field.default),
+    }
+}
+
+/// The gains that a file gives; none where it has no such section.
+///
+/// # Errors
+/// An unknown section or key, a value of another type or outside its range.
+pub fn read(root: &Section<'_>) -> Result<Vec<GainChange>, TomlError> {
+    let mut changes = Vec::new();
+    let Some(control) = root.optional(CONTROL, &SECTIONS.map(|(name, _)| name))? else {
+        return Ok(changes);
+    };
+    let mut first = 0;
+    for (name, fields) in SECTIONS {
+        let keys: Vec<_> = fields.iter().map(|field| field.name).collect();
+        if let Some(section) = control.optional(name, &keys)? {
+            for (index, field) in (first..).zip(fields) {
+                if let Some([value]) = section.values([&widened(field)])? {
+                    let value = value as f32;
+                    changes.push(GainChange { index, value });
+                }
             }
         }
-        self
+        first += fields.len();
     }
-
-    /// Every value by section and field, in the order of [`SECTIONS`](leg_firmware::settings::SECTIONS).
-    #[must_use]
-    pub fn values(&self) -> [Vec<f32>; 5] {
-        [
-            self.motion.values().into(),
-            self.servo.values().into(),
-            self.estimation.values().into(),
-            self.limits.values().into(),
-            self.homing.values().into(),
-        ]
-    }
-
-    fn values_mut(&mut self) -> [Vec<&mut f32>; 5] {
-        [
-            self.motion.values_mut().into(),
-            self.servo.values_mut().into(),
-            self.estimation.values_mut().into(),
-            self.limits.values_mut().into(),
-            self.homing.values_mut().into(),
-        ]
-    }
+    Ok(changes)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{GainChange, Gains};
-    use leg_firmware::settings::SECTIONS;
+    use super::{GainChange, changed};
+    use leg_firmware::settings::{Gains, SECTIONS};
 
     #[test]
     fn every_gain_changes_alone() {
-        for (section, (_, fields)) in SECTIONS.iter().enumerate() {
-            for field in 0..fields.len() {
-                let change = GainChange {
-                    section,
-                    field,
-                    value: -1.0,
-                };
-                let mut expected = Gains::default().values();
-                expected[section][field] = -1.0;
-                assert_eq!(Gains::default().with(&[change]).values(), expected);
-            }
+        let count = SECTIONS.iter().map(|(_, fields)| fields.len()).sum();
+        let default: Vec<f32> = Gains::default().values().collect();
+        assert_eq!(default.len(), count);
+        for index in 0..count {
+            let mut expected = default.clone();
+            expected[index] = -1.0;
+            let value = -1.0;
+            let found = changed(Gains::default(), &[GainChange { index, value }]);
+            assert!(found.values().eq(expected), "{index}");
         }
     }
 }

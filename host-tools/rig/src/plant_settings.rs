@@ -1,25 +1,29 @@
 //! What the simulated leg is beside its rig and its actuators.
 
-use crate::fields::{Field, fields};
+use crate::toml_error::TomlError;
+use crate::toml_section::Section;
+use leg_firmware::fields;
+use leg_firmware::settings::Field;
 use leg_model::RigParameters;
 
 fields! {
-    /// What neither the rig's mechanism nor its actuator tells of the simulated leg: a small leg in a calm room.
-    PlantSettings {
-        /// Damping of the central joint against every rotation, N·m·s/rad.
-        joint_damping_nm_s_per_rad: 0.0..=10.0 = 0.03;
-        /// Damping of a taut tendon, N·s/m. It never makes a tendon push.
-        tendon_damping_n_s_per_m: 0.0..=1e4 = 200.0;
-        /// Inertia of the leg about its own axis, kg·m².
-        leg_axial_inertia_kg_m2: 1e-5..=100.0 = 4e-4;
-        /// Noise of a load cell's reading, root mean square, N.
-        cell_noise_n: 0.0..=100.0 = 0.05;
-        /// Resistance of the supply and its leads, Ω.
-        supply_resistance_ohm: 0.0..=10.0 = 0.2;
-        /// Temperature of the drivers while nothing heats them, °C.
-        ambient_c: -100.0..=200.0 = 25.0;
+    /// What neither the rig's mechanism nor its actuator says of the simulated leg: a small leg in a calm room.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct PlantSettings: f64 {
+        /// Damping of the central joint against every rotation.
+        joint_damping_nm_s_per_rad ["N·m·s/rad"]: 0.0..=10.0 = 0.03;
+        /// Damping of a taut tendon. It never makes a tendon push.
+        tendon_damping_n_s_per_m ["N·s/m"]: 0.0..=1e4 = 200.0;
+        /// Inertia of the leg about its own axis.
+        leg_axial_inertia_kg_m2 ["kg·m²"]: 1e-5..=100.0 = 4e-4;
+        /// Noise of a load cell's reading, root mean square.
+        cell_noise_n ["N"]: 0.0..=100.0 = 0.05;
+        /// Resistance of the supply and its leads.
+        supply_resistance_ohm ["Ω"]: 0.0..=10.0 = 0.2;
+        /// Temperature of the drivers while nothing heats them.
+        ambient_c ["°C"]: -100.0..=200.0 = 25.0;
     }
-    besides {
+    and {
         /// Inertia of the leg without a payload across its axis, about the joint, kg·m²; none is that of a slender uniform
         /// leg with the rig's mass and centroid.
         leg_transverse_inertia_kg_m2: Option<f64> = None;
@@ -36,14 +40,32 @@ fields! {
     }
 }
 
-/// [`PlantSettings::leg_transverse_inertia_kg_m2`].
-pub const TRANSVERSE_INERTIA: Field = Field {
-    name: "leg_transverse_inertia_kg_m2",
-    meaning: "Inertia of the leg without a payload across its axis, about the joint, kg·m².",
-    range: [1e-5, 1e3],
-};
+/// [`PlantSettings::leg_transverse_inertia_kg_m2`]; the default is that of the leg of Table 1.
+pub const TRANSVERSE_INERTIA: Field<f64> = Field::new(
+    "leg_transverse_inertia_kg_m2",
+    "kg·m²",
+    "Inertia of the leg without a payload across its axis, about the joint.",
+    [1e-5, 1e3],
+    0.016562,
+);
+
+/// The section `[simulation]`.
+pub const SIMULATION: &str = "simulation";
 
 impl PlantSettings {
+    /// Reads the section; whatever is left out is as by default.
+    pub(crate) fn read(root: &Section<'_>) -> Result<Self, TomlError> {
+        let mut plant = Self::DEFAULT;
+        let mut keys: Vec<_> = Self::FIELDS.iter().map(|field| field.name).collect();
+        keys.push(TRANSVERSE_INERTIA.name);
+        if let Some(section) = root.optional(SIMULATION, &keys)? {
+            section.read(Self::FIELDS, plant.values_mut())?;
+            let inertia = section.values([&TRANSVERSE_INERTIA])?;
+            plant.leg_transverse_inertia_kg_m2 = inertia.map(|[inertia]| inertia);
+        }
+        Ok(plant)
+    }
+
     /// The same without any damping of the leg: its energy then stays.
     #[must_use]
     pub fn undamped(&self) -> Self {

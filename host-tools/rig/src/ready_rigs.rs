@@ -17,57 +17,47 @@ pub struct ReadyRig {
     pub text: &'static str,
 }
 
+macro_rules! ready {
+    ($name:literal, $support:ident, $figure_2:literal, $words:literal) => {
+        ReadyRig {
+            name: $name,
+            support: SupportName::$support,
+            figure_2: $figure_2,
+            words: $words,
+            text: include_str!(concat!("../../rigs/", $name, ".toml")),
+        }
+    };
+}
+
 /// Every ready rig; the first is the default.
 pub const READY_RIGS: [ReadyRig; 7] = [
-    ReadyRig {
-        name: "table1",
-        support: SupportName::TorsionFree,
-        figure_2: "-",
-        words: "idealised: tilts without torsion",
-        text: include_str!("../../rigs/table1.toml"),
-    },
-    ReadyRig {
-        name: "spherical",
-        support: SupportName::Spherical,
-        figure_2: "a",
-        words: "ball joint",
-        text: include_str!("../../rigs/spherical.toml"),
-    },
-    ReadyRig {
-        name: "universal",
-        support: SupportName::Universal,
-        figure_2: "b",
-        words: "rigid universal joint",
-        text: include_str!("../../rigs/universal.toml"),
-    },
-    ReadyRig {
-        name: "compliant_pivot",
-        support: SupportName::CompliantPivot,
-        figure_2: "c",
-        words: "one elastic rod",
-        text: include_str!("../../rigs/compliant_pivot.toml"),
-    },
-    ReadyRig {
-        name: "elastic_rod_universal",
-        support: SupportName::ElasticRodUniversal,
-        figure_2: "d, g",
-        words: "universal joint of elastic rods",
-        text: include_str!("../../rigs/elastic_rod_universal.toml"),
-    },
-    ReadyRig {
-        name: "notch_universal",
-        support: SupportName::NotchUniversal,
-        figure_2: "e, h",
-        words: "universal joint of notch hinges",
-        text: include_str!("../../rigs/notch_universal.toml"),
-    },
-    ReadyRig {
-        name: "leaf_spring_universal",
-        support: SupportName::LeafSpringUniversal,
-        figure_2: "f, i",
-        words: "universal joint of leaf springs",
-        text: include_str!("../../rigs/leaf_spring_universal.toml"),
-    },
+    ready!(
+        "table1",
+        TorsionFree,
+        "-",
+        "idealised: tilts without torsion"
+    ),
+    ready!("spherical", Spherical, "a", "ball joint"),
+    ready!("universal", Universal, "b", "rigid universal joint"),
+    ready!("compliant_pivot", CompliantPivot, "c", "one elastic rod"),
+    ready!(
+        "elastic_rod_universal",
+        ElasticRodUniversal,
+        "d, g",
+        "universal joint of elastic rods"
+    ),
+    ready!(
+        "notch_universal",
+        NotchUniversal,
+        "e, h",
+        "universal joint of notch hinges"
+    ),
+    ready!(
+        "leaf_spring_universal",
+        LeafSpringUniversal,
+        "f, i",
+        "universal joint of leaf springs"
+    ),
 ];
 
 /// The ready rig of a name.

@@ -6,7 +6,7 @@ use leg_base::failure::Failure;
 
 /// A format for rig files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Format {
+pub enum RigFormat {
     /// What every command reads.
     Toml,
     /// For other programs.
@@ -17,7 +17,7 @@ pub enum Format {
 ///
 /// # Errors
 /// A [`Failure`] that names the place in a TOML file; what is no JSON object.
-pub fn convert(source: &RigText, to: Format) -> Result<String, Failure> {
+pub fn convert(source: &RigText, to: RigFormat) -> Result<String, Failure> {
     let toml_text = if source.text.trim_start().starts_with('{') {
         from_json(source)?
     } else {
@@ -25,8 +25,8 @@ pub fn convert(source: &RigText, to: Format) -> Result<String, Failure> {
     };
     RigFile::parse(&source.name, &toml_text)?;
     match to {
-        Format::Toml => Ok(toml_text),
-        Format::Json => to_json(&source.name, &toml_text),
+        RigFormat::Toml => Ok(toml_text),
+        RigFormat::Json => to_json(&source.name, &toml_text),
     }
 }
 
@@ -43,6 +43,8 @@ fn from_json(source: &RigText) -> Result<String, Failure> {
 }
 
 /// The same value in TOML; none for null and what holds it.
+///
+/// Not by serde: where another crate enables serde_json's arbitrary precision, a number would become a table.
 fn toml_value(value: &serde_json::Value) -> Option<toml::Value> {
     use serde_json::Value;
     Some(match value {
@@ -78,7 +80,7 @@ fn to_json(name: &str, toml_text: &str) -> Result<String, Failure> {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{Format, convert};
+    use super::{RigFormat, convert};
     use crate::ready_rigs::READY_RIGS;
     use crate::rig_file::{RigFile, RigText};
 
@@ -90,10 +92,10 @@ mod tests {
                 text: rig.text.into(),
             };
             let json = RigText {
-                text: convert(&source, Format::Json).unwrap(),
+                text: convert(&source, RigFormat::Json).unwrap(),
                 ..source.clone()
             };
-            let back = convert(&json, Format::Toml).unwrap();
+            let back = convert(&json, RigFormat::Toml).unwrap();
             let [before, after] = [rig.text, &back].map(|text| RigFile::parse(rig.name, text));
             assert_eq!(before.unwrap(), after.unwrap(), "{}", rig.name);
         }
@@ -108,10 +110,10 @@ mod tests {
             text: [READY_RIGS[0].text, more].concat(),
         };
         let json = RigText {
-            text: convert(&source, Format::Json).unwrap(),
+            text: convert(&source, RigFormat::Json).unwrap(),
             ..source.clone()
         };
-        let back = convert(&json, Format::Toml).unwrap();
+        let back = convert(&json, RigFormat::Toml).unwrap();
         let [before, after] = [&source.text, &back].map(|text| RigFile::parse("more", text));
         assert_eq!(before.unwrap(), after.unwrap());
     }
@@ -122,6 +124,6 @@ mod tests {
             name: "x.json".into(),
             text: "{\"geometry\": 3}".into(),
         };
-        assert!(convert(&source, Format::Toml).is_err());
+        assert!(convert(&source, RigFormat::Toml).is_err());
     }
 }

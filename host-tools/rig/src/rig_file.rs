@@ -1,12 +1,8 @@
 //! The rig file: a leg with its actuators, its sensors and its controller's settings, in a human's units, read into SI.
 
-mod actuator;
 mod buckling;
-mod calibration;
 mod consistency;
-mod flexures;
 mod reading;
-mod simulation;
 mod support;
 mod tendon;
 
@@ -14,14 +10,13 @@ pub use buckling::Buckling;
 
 use crate::actuator::Actuator;
 use crate::calibration::Calibration;
-use crate::gains::Gains;
 use crate::plant_settings::PlantSettings;
 use crate::ready_rigs::{self, READY_RIGS};
 use crate::support_name::SupportName;
-use crate::toml_problem::Problem;
-use leg_base::failure::{Failure, Place};
+use leg_base::failure::Failure;
+use leg_firmware::settings::Gains;
 use leg_model::{Elasticity, Query, RigParameters, StiffnessAt, Support, Tendon};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// A leg and how it is used, as its file describes them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,34 +51,13 @@ pub struct RigFile {
     pub plant: PlantSettings,
 }
 
-/// Why a rig file is refused.
-#[derive(Debug, thiserror::Error)]
-pub enum RigFileError {
-    /// The file cannot be read.
-    #[error("cannot read the rig file {}: {error}", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        error: std::io::Error,
-    },
-    /// The file is read, but something in it is wrong.
-    #[error("{problem}")]
-    Faulty {
-        /// Where.
-        place: Place,
-        /// What.
-        problem: Problem,
-    },
-}
-
 impl RigFile {
     /// The rig of a file or, where there is no such file, the ready rig of that name; the paper's rig when neither is
     /// given.
     ///
     /// # Errors
-    /// A [`RigFileError`] with the place.
-    pub fn load(path: Option<&Path>) -> Result<Self, RigFileError> {
+    /// A [`Failure`] with the place.
+    pub fn load(path: Option<&Path>) -> Result<Self, Failure> {
         let RigText { name, text } = RigText::load(path)?;
         Self::parse(&name, &text)
     }
@@ -91,16 +65,13 @@ impl RigFile {
     /// The text of a rig file; `file` is its name in messages.
     ///
     /// # Errors
-    /// [`RigFileError::Faulty`] with the place.
-    pub fn parse(file: &str, text: &str) -> Result<Self, RigFileError> {
-        reading::parse(text).map_err(|fault| RigFileError::Faulty {
-            place: Place {
-                file: file.into(),
-                text: text.into(),
-                span: fault.span,
-            },
-            problem: fault.problem,
-        })
+    /// A [`Failure`] with the place.
+    pub fn parse(file: &str, text: &str) -> Result<Self, Failure> {
+        let (rig, notes) = reading::parse(text).map_err(|error| error.failure(file, text))?;
+        for note in notes {
+            eprintln!("{file}: {note}");
+        }
+        Ok(rig)
     }
 
     /// Stiffness of each tendon at the pretension, N/m.
@@ -143,8 +114,8 @@ impl RigText {
     /// The text that [`RigFile::load`] reads.
     ///
     /// # Errors
-    /// [`RigFileError::Unreadable`].
-    pub fn load(path: Option<&Path>) -> Result<Self, RigFileError> {
+    /// A [`Failure`]: no such file, and no ready rig of that name.
+    pub fn load(path: Option<&Path>) -> Result<Self, Failure> {
         let path = path.unwrap_or(Path::new(READY_RIGS[0].name));
         let name = path.display().to_string();
         match std::fs::read_to_string(path) {
@@ -154,25 +125,11 @@ impl RigText {
                     name: format!("rigs/{name}.toml"),
                     text: ready.text.into(),
                 }),
-                None => Err(RigFileError::Unreadable {
-                    path: path.into(),
-                    error,
-                }),
+                None => Err(Failure::refused(
+                    format!("cannot read the rig file {name}: {error}"),
+                    "give a file that exists and may be read, or a name from `leg rig list`",
+                )),
             },
-        }
-    }
-}
-
-impl From<RigFileError> for Failure {
-    fn from(error: RigFileError) -> Self {
-        match error {
-            RigFileError::Unreadable { .. } => {
-                let help = "give a file that exists and may be read, or a name from `leg rig list`";
-                Self::refused(error.to_string(), help)
-            }
-            RigFileError::Faulty { place, ref problem } => {
-                Self::refused_at(problem.to_string(), problem.fix(), place)
-            }
         }
     }
 }
@@ -181,7 +138,6 @@ impl From<RigFileError> for Failure {
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::RigFile;
-    use crate::calibration::Calibration;
     use crate::ready_rigs::READY_RIGS;
     use leg_model::{CurvePoint, RigParameters, SupportKind, Tendon};
 
@@ -202,14 +158,13 @@ mod tests {
         let shown: Vec<_> = text.lines().map(uncommented).collect();
         let given = RigFile::parse("shown", &shown.join("\n")).unwrap();
         let left_out = RigFile::parse("left out", text).unwrap();
-        assert!(given.calibration.cell_zero_code.is_some());
-        assert_eq!(
-            RigFile {
-                calibration: Calibration::default(),
-                ..given
-            },
-            left_out
-        );
+        let nominal = left_out.calibration;
+        assert_ne!(given.calibration.cell_n_per_code, nominal.cell_n_per_code);
+        let with_nominal = RigFile {
+            calibration: nominal,
+            ..given
+        };
+        assert_eq!(with_nominal, left_out);
     }
 
     /// Prose has a space after its #.

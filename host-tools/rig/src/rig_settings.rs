@@ -1,16 +1,14 @@
-//! What a rig file may leave out, as it stands: each value with its range, its default and its meaning.
+//! What a rig file may leave out, as it stands: each value with its unit, range, default and meaning.
 
-use crate::actuator::{Actuator, CELL_RANGE, TEMPERATURE_RANGE};
-use crate::calibration::{
-    CELL_N_PER_CODE, CELL_ZERO_CODE, COUNTS_SIGN, CURRENT_A_PER_CODE, Calibration, M_PER_COUNT,
-};
-use crate::fields::{Field, decimal, plain};
-use crate::gains::Gains;
-use crate::plant_settings::{PlantSettings, TRANSVERSE_INERTIA};
+use crate::actuator::{ACTUATOR, Actuator, CELL_RANGE, TEMPERATURE_RANGE};
+use crate::calibration::{CALIBRATION, Calibration};
+use crate::gains::{self, CONTROL, widened};
+use crate::number::{decimal, plain};
+use crate::plant_settings::{PlantSettings, SIMULATION, TRANSVERSE_INERTIA};
 use crate::rig_file::RigFile;
 use leg_base::failure::Failure;
 use leg_base::json_line::to_line;
-use leg_firmware::settings::SECTIONS;
+use leg_firmware::settings::{Field, SECTIONS};
 use serde::Serialize;
 
 /// One number of a rig, or one for each end of a range or each axis.
@@ -20,6 +18,8 @@ pub struct Setting {
     pub section: String,
     /// Its key, which ends with its unit.
     pub key: &'static str,
+    /// Its unit, `1` for a pure number.
+    pub unit: &'static str,
     /// As it is.
     pub value: Vec<f64>,
     /// As it is unless the file gives it.
@@ -30,119 +30,90 @@ pub struct Setting {
     pub meaning: String,
 }
 
+impl Setting {
+    /// A key with a value and a default for each field or each axis.
+    fn new(
+        section: &str,
+        fields: &[Field<f64>],
+        value: impl Into<Vec<f64>>,
+        default: impl Into<Vec<f64>>,
+    ) -> Option<Self> {
+        let (first, last) = (fields.first()?, fields.last()?);
+        let meanings: Vec<_> = fields.iter().map(|field| field.meaning.trim()).collect();
+        Some(Self {
+            section: section.into(),
+            key: first.name,
+            unit: first.unit,
+            value: value.into(),
+            default: default.into(),
+            range: [first.range[0], last.range[1]],
+            meaning: meanings.join(" "),
+        })
+    }
+}
+
+/// The settings of a section, one for each field.
+fn numbers(
+    section: &str,
+    fields: &[Field<f64>],
+    values: impl IntoIterator<Item = f64>,
+    defaults: impl IntoIterator<Item = f64>,
+) -> Vec<Setting> {
+    let values = values.into_iter().zip(defaults);
+    let setting = |(field, (value, default)): (&Field<f64>, _)| {
+        Setting::new(section, &[*field], [value], [default])
+    };
+    fields.iter().zip(values).filter_map(setting).collect()
+}
+
 /// Gains and limits of the control law.
 #[must_use]
 pub fn control(file: &RigFile) -> Vec<Setting> {
-    let defaults = Gains::defaults(&file.actuator).values();
-    let sections = SECTIONS.iter().zip(file.gains.values()).zip(defaults);
-    sections
-        .flat_map(|(((name, fields), values), defaults)| {
-            let section = format!("control.{name}");
-            let fields: Vec<Field> = fields.iter().map(Field::from).collect();
-            let [values, defaults] =
-                [values, defaults].map(|all| all.into_iter().map(decimal).collect::<Vec<_>>());
-            numbers(&section, &fields, &values, &defaults)
-        })
-        .collect()
+    let defaults = gains::defaults(&file.actuator);
+    let mut values = file.gains.values().map(decimal);
+    let mut defaults = defaults.values().map(decimal);
+    let settings = SECTIONS.map(|(name, fields)| {
+        let fields: Vec<_> = fields.iter().map(widened).collect();
+        let values = values.by_ref().take(fields.len());
+        let defaults = defaults.by_ref().take(fields.len());
+        numbers(&format!("{CONTROL}.{name}"), &fields, values, defaults)
+    });
+    settings.concat()
 }
 
 /// Actuators, sensors and their calibration.
 #[must_use]
 pub fn actuator(file: &RigFile) -> Vec<Setting> {
     let (actuator, default) = (&file.actuator, Actuator::DEFAULT);
-    let mut all = numbers(
-        "actuator",
-        &Actuator::fields(),
-        &actuator.values(),
-        &default.values(),
-    );
-    let range = |[low, high]: [Field; 2], value: [f64; 2], default: [f64; 2]| Setting {
-        section: "actuator".into(),
-        key: low.name,
-        value: value.into(),
-        default: default.into(),
-        range: [low.range[0], high.range[1]],
-        meaning: [low.meaning, high.meaning].join(" "),
-    };
-    all.push(range(
-        CELL_RANGE,
-        actuator.cell_range_n,
-        default.cell_range_n,
-    ));
-    all.push(range(
-        TEMPERATURE_RANGE,
-        actuator.temperature_range_c,
-        default.temperature_range_c,
-    ));
-    all.extend(calibration(file));
+    let (values, defaults) = (actuator.values(), default.values());
+    let mut all = numbers(ACTUATOR, Actuator::FIELDS, values, defaults);
+    let cells = [actuator.cell_range_n, default.cell_range_n];
+    let temperatures = [actuator.temperature_range_c, default.temperature_range_c];
+    for (fields, [value, default]) in [(CELL_RANGE, cells), (TEMPERATURE_RANGE, temperatures)] {
+        all.extend(Setting::new(ACTUATOR, &fields, value, default));
+    }
+    let (mut measured, mut nominal) = (file.calibration, Calibration::nominal(actuator));
+    for ((field, value), (_, default)) in measured.keys().into_iter().zip(nominal.keys()) {
+        all.extend(Setting::new(CALIBRATION, &[field], *value, *default));
+    }
     all
-}
-
-fn calibration(file: &RigFile) -> Vec<Setting> {
-    let measured = file.calibration.complete(&file.actuator);
-    let nominal = Calibration::default().complete(&file.actuator);
-    let of_axes = |field: Field, value: [f64; 3], default: [f64; 3]| {
-        setting("calibration", &field, value.into(), default.into())
-    };
-    vec![
-        of_axes(M_PER_COUNT, measured.m_per_count, nominal.m_per_count),
-        of_axes(COUNTS_SIGN, measured.counts_sign, nominal.counts_sign),
-        of_axes(
-            CELL_N_PER_CODE,
-            measured.cell_n_per_code,
-            nominal.cell_n_per_code,
-        ),
-        of_axes(
-            CELL_ZERO_CODE,
-            measured.cell_zero_code,
-            nominal.cell_zero_code,
-        ),
-        of_axes(
-            CURRENT_A_PER_CODE,
-            measured.current_a_per_code,
-            nominal.current_a_per_code,
-        ),
-    ]
 }
 
 /// What else the simulated leg is.
 #[must_use]
 pub fn simulation(file: &RigFile) -> Vec<Setting> {
     let (plant, default) = (&file.plant, PlantSettings::DEFAULT);
-    let mut all = numbers(
-        "simulation",
-        &PlantSettings::fields(),
-        &plant.values(),
-        &default.values(),
-    );
-    let inertia = |plant: &PlantSettings| vec![plant.transverse_inertia_kg_m2(&file.parameters)];
-    all.push(setting(
-        "simulation",
-        &TRANSVERSE_INERTIA,
-        inertia(plant),
-        inertia(&default),
-    ));
-    all
-}
-
-fn numbers(section: &str, fields: &[Field], values: &[f64], defaults: &[f64]) -> Vec<Setting> {
-    let values = values.iter().zip(defaults);
-    fields
-        .iter()
-        .zip(values)
-        .map(|(field, (value, default))| setting(section, field, vec![*value], vec![*default]))
-        .collect()
-}
-
-fn setting(section: &str, field: &Field, value: Vec<f64>, default: Vec<f64>) -> Setting {
-    Setting {
-        section: section.into(),
-        key: field.name,
+    let (values, defaults) = (plant.values(), default.values());
+    let mut all = numbers(SIMULATION, PlantSettings::FIELDS, values, defaults);
+    let inertia = |plant: &PlantSettings| [plant.transverse_inertia_kg_m2(&file.parameters)];
+    let [value, default] = [plant, &default].map(inertia);
+    all.extend(Setting::new(
+        SIMULATION,
+        &[TRANSVERSE_INERTIA],
         value,
         default,
-        range: field.range,
-        meaning: field.meaning.into(),
-    }
+    ));
+    all
 }
 
 /// A table for people, a part for each section.
@@ -155,17 +126,18 @@ pub fn table(settings: &[Setting]) -> String {
             let gap = if last.is_empty() { "" } else { "\n" };
             let heading = format!("[{}]", setting.section);
             table += &format!(
-                "{gap}{heading:<28} {:>10} {:>10} {:>10} {:>10}  meaning\n",
-                "value", "default", "lowest", "highest"
+                "{gap}{heading:<28} {:>10} {:>10} {:>10} {:>10}  {:<9}  meaning\n",
+                "value", "default", "lowest", "highest", "unit"
             );
             last = &setting.section;
         }
         let [low, high] = setting.range.map(plain);
         table += &format!(
-            "{:<28} {:>10} {:>10} {low:>10} {high:>10}  {}\n",
+            "{:<28} {:>10} {:>10} {low:>10} {high:>10}  {:<9}  {}\n",
             setting.key,
             written(&setting.value),
             written(&setting.default),
+            setting.unit,
             setting.meaning
         );
     }

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 /// The numbers of a rig that its file does not give directly.
 #[derive(Debug, Serialize)]
-struct Shown {
+struct RigSummary {
     support: &'static str,
     bending_nm_per_rad: f64,
     torsion_nm_per_rad: f64,
@@ -26,8 +26,8 @@ struct Shown {
     tilt_deg: f64,
 }
 
-impl Shown {
-    fn of(file: &RigFile) -> Self {
+impl RigSummary {
+    fn new(file: &RigFile) -> Self {
         let (joint, parameters) = (file.support.joint(), &file.parameters);
         let buckling = file.buckling();
         Self {
@@ -53,8 +53,8 @@ impl Shown {
 /// A table for people.
 #[must_use]
 pub fn words(file: &RigFile) -> String {
-    let shown = Shown::of(file);
-    let [first, second, third] = shown.stiffness_at_pretension_n_per_m;
+    let summary = RigSummary::new(file);
+    let [first, second, third] = summary.stiffness_at_pretension_n_per_m;
     format!(
         "support                {}\n\
          joint, bending         {:.4} N·m/rad\n\
@@ -64,21 +64,21 @@ pub fn words(file: &RigFile) -> String {
          tip below the joint    {:.1} mm\n\
          leg                    {} kg, centroid {:.1} mm below the joint\n\
          tensions               {} to {} N, pretension {} N\n\
-         tendons at the pretension   {first:.0}, {second:.0}, {third:.0} N/m\n\
+         tendons at pretension  {first:.0}, {second:.0}, {third:.0} N/m\n\
          workspace              tilt to {}°\n\
          {}",
-        shown.support,
-        shown.bending_nm_per_rad,
-        shown.torsion_nm_per_rad,
-        shown.axial_compliance_m_per_n,
+        summary.support,
+        summary.bending_nm_per_rad,
+        summary.torsion_nm_per_rad,
+        summary.axial_compliance_m_per_n,
         file.buckling().map_or_else(String::new, buckling_words),
-        shown.tip_below_joint_m * 1000.0,
-        shown.leg_mass_kg,
-        shown.leg_centroid_m * 1000.0,
-        shown.f_min_n,
-        shown.f_max_n,
-        shown.pretension_n,
-        shown.tilt_deg,
+        summary.tip_below_joint_m * 1000.0,
+        summary.leg_mass_kg,
+        summary.leg_centroid_m * 1000.0,
+        summary.f_min_n,
+        summary.f_max_n,
+        summary.pretension_n,
+        summary.tilt_deg,
         rig_settings::changes(file),
     )
 }
@@ -106,5 +106,5 @@ fn buckling_words(buckling: Buckling) -> String {
 /// # Errors
 /// A [`Failure`] if the numbers have no form in JSON.
 pub fn json(file: &RigFile) -> Result<String, Failure> {
-    to_line(&Shown::of(file))
+    to_line(&RigSummary::new(file))
 }

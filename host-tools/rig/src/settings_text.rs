@@ -1,14 +1,11 @@
 //! The settings of a board as a rig file that gives the same bits again.
 
-mod number;
-
+use crate::gains::CONTROL;
+use crate::number::{exact, exact_mm, exact_through};
 use crate::support_name::SupportName;
-use leg_firmware::messages::{TendonMessage, TendonsMessage};
 use leg_firmware::sensors::CODE_MAX;
-use leg_firmware::settings::{AxisCalibration, SECTIONS, Settings};
+use leg_firmware::settings::{AxisCalibration, SECTIONS, Settings, TendonParameters};
 use leg_model::SupportKind;
-pub use number::number;
-use number::{millimetres, through};
 
 const HEADING: &str = "# What a board is set to, as a rig file. The geometry of an elastic joint is not on the board: its stiffness stands \
 here as if it\n# had been measured.\n";
@@ -37,12 +34,12 @@ fn list(numbers: impl IntoIterator<Item = String>) -> String {
 
 fn geometry(settings: &Settings) -> String {
     let rig = &settings.rig;
-    let anchors = |points: [[f32; 2]; 3]| list(points.map(|point| list(point.map(millimetres))));
+    let anchors = |points: [[f32; 2]; 3]| list(points.map(|point| list(point.map(exact_mm))));
     format!(
         "\n[geometry]\nupper_mm = {}\njoint_mm = {}\nleg_mm = {}\nbase_anchors_mm = {}\nleg_anchors_mm = {}\n",
-        millimetres(rig.upper_length_m),
-        millimetres(rig.joint_length_m),
-        millimetres(rig.leg_length_m),
+        exact_mm(rig.upper_length_m),
+        exact_mm(rig.joint_length_m),
+        exact_mm(rig.leg_length_m),
         anchors(rig.base_anchors_m),
         anchors(rig.leg_anchors_m),
     )
@@ -52,27 +49,27 @@ fn mass(settings: &Settings) -> String {
     let rig = &settings.rig;
     format!(
         "\n[mass]\nleg_kg = {}\ncentroid_mm = {}\ngravity_m_per_s2 = {}\n",
-        number(rig.leg_mass_kg),
-        millimetres(rig.leg_centroid_m),
-        number(rig.gravity_m_per_s2),
+        exact(rig.leg_mass_kg),
+        exact_mm(rig.leg_centroid_m),
+        exact(rig.gravity_m_per_s2),
     )
 }
 
 fn tendon(settings: &Settings) -> String {
     let bounds = format!(
-        "\n[tendon]\nfloor_n = {}\nceiling_n = {}\nlevel_n = {}\n",
-        number(settings.f_min_n),
-        number(settings.f_max_n),
-        number(settings.pretension_n),
+        "\n[tendon]\nf_min_n = {}\nf_max_n = {}\npretension_n = {}\n",
+        exact(settings.f_min_n),
+        exact(settings.f_max_n),
+        exact(settings.pretension_n),
     );
     let curves = "# Where a tendon's stiffness is read for the linear deviation; the board has no use for it.\n\
                   stiffness_at = \"pretension\"\n";
     match &settings.tendons {
-        TendonsMessage::Alike(TendonMessage::Constant(stiffness)) => {
-            format!("{bounds}stiffness_n_per_m = {}\n", number(*stiffness))
+        [TendonParameters::Constant(stiffness), ..] => {
+            format!("{bounds}stiffness_n_per_m = {}\n", exact(*stiffness))
         }
-        TendonsMessage::Alike(tendon) => [bounds, curves.into(), curve("curve", tendon)].concat(),
-        TendonsMessage::Each(tendons) => {
+        [a, b, c] if a == b && b == c => [bounds, curves.into(), curve("curve", a)].concat(),
+        tendons => {
             let each = ["curve_1", "curve_2", "curve_3"].into_iter().zip(tendons);
             let each: String = each.map(|(name, tendon)| curve(name, tendon)).collect();
             [bounds, curves.into(), each].concat()
@@ -80,30 +77,30 @@ fn tendon(settings: &Settings) -> String {
     }
 }
 
-fn curve(name: &str, tendon: &TendonMessage) -> String {
-    let TendonMessage::Curve(points) = tendon else {
+fn curve(name: &str, tendon: &TendonParameters) -> String {
+    let TendonParameters::Curve(points) = tendon else {
         return String::new();
     };
     format!(
         "\n[tendon.{name}]\ntension_n = {}\nelongation_mm = {}\nstiffness_n_per_m = {}\n",
-        list(points.iter().map(|point| number(point.tension_n))),
-        list(points.iter().map(|point| millimetres(point.elongation_m))),
-        list(points.iter().map(|point| number(point.stiffness_n_per_m))),
+        list(points.iter().map(|point| exact(point.tension_n))),
+        list(points.iter().map(|point| exact_mm(point.elongation_m))),
+        list(points.iter().map(|point| exact(point.stiffness_n_per_m))),
     )
 }
 
 fn workspace(settings: &Settings) -> String {
     let sine = settings.tilt_max_sine;
-    let tilt_deg = through(f64::from(sine).asin().to_degrees(), sine, |tilt_deg| {
+    let tilt_deg = exact_through(f64::from(sine).asin().to_degrees(), sine, |tilt_deg| {
         tilt_deg.to_radians().sin()
     });
     format!("\n[workspace]\ntilt_deg = {tilt_deg}\n")
 }
 
 fn support(settings: &Settings) -> String {
-    let joint = &settings.support.joint;
+    let joint = &settings.joint;
     let elastic = joint.bending_nm_per_rad > 0.0;
-    let name = match (settings.support.kind, elastic) {
+    let name = match (settings.support, elastic) {
         (SupportKind::TorsionFree, _) => SupportName::TorsionFree,
         (SupportKind::Universal, _) => SupportName::Universal,
         (SupportKind::Spherical, false) => SupportName::Spherical,
@@ -114,50 +111,42 @@ fn support(settings: &Settings) -> String {
     if elastic {
         text += &format!(
             "bending_nm_per_rad = {}\ntorsion_nm_per_rad = {}\n",
-            number(joint.bending_nm_per_rad),
-            number(joint.torsion_nm_per_rad)
+            exact(joint.bending_nm_per_rad),
+            exact(joint.torsion_nm_per_rad)
         );
     }
     let compliance = joint.axial_compliance_m_per_n;
     if compliance > 0.0 {
-        let stiffness = through(f64::from(compliance).recip(), compliance, f64::recip);
+        let stiffness = exact_through(f64::from(compliance).recip(), compliance, f64::recip);
         text += &format!("axial_n_per_m = {stiffness}\n");
     }
     text
 }
 
 fn control(settings: &Settings) -> String {
-    let values: [Vec<f32>; 5] = [
-        settings.motion.values().into(),
-        settings.servo.values().into(),
-        settings.estimation.values().into(),
-        settings.limits.values().into(),
-        settings.homing.values().into(),
-    ];
-    let sections = SECTIONS.iter().zip(values);
-    sections
-        .map(|((name, fields), values)| {
-            let lines: String = fields
-                .iter()
-                .zip(values)
-                .map(|(field, value)| format!("{} = {}\n", field.name, number(value)))
-                .collect();
-            format!("\n[control.{name}]\n{lines}")
-        })
-        .collect()
+    let gains = settings.gains();
+    let mut values = gains.values();
+    let mut text = String::new();
+    for (name, fields) in SECTIONS {
+        text += &format!("\n[{CONTROL}.{name}]\n");
+        for (field, value) in fields.iter().zip(values.by_ref()) {
+            text += &format!("{} = {}\n", field.name, exact(value));
+        }
+    }
+    text
 }
 
 fn actuator(settings: &Settings) -> String {
     let codes = f64::from(CODE_MAX);
     let board = &settings.board;
-    let supply_v = through(
+    let supply_v = exact_through(
         f64::from(board.supply_v_per_code) * codes,
         board.supply_v_per_code,
         |range| range / codes,
     );
-    let cold_c = number(board.temperature_at_zero_c);
+    let cold_c = exact(board.temperature_at_zero_c);
     let cold: f64 = cold_c.parse().unwrap_or_default();
-    let hot_c = through(
+    let hot_c = exact_through(
         cold + f64::from(board.temperature_c_per_code) * codes,
         board.temperature_c_per_code,
         |hot| (hot - cold) / codes,
@@ -169,16 +158,24 @@ fn actuator(settings: &Settings) -> String {
 }
 
 fn calibration(axes: &[AxisCalibration; 3]) -> String {
-    let each = |of: fn(&AxisCalibration) -> f32| list(axes.each_ref().map(|axis| number(of(axis))));
-    format!(
-        "\n[calibration]\nm_per_count = {}\ncounts_sign = {}\ncell_n_per_code = {}\ncell_zero_code = {}\n\
-         current_a_per_code = {}\n",
-        each(|axis| axis.m_per_count.abs()),
-        each(|axis| axis.m_per_count.signum()),
-        each(|axis| axis.cell_n_per_code),
-        each(|axis| axis.cell_zero_code),
-        each(|axis| axis.current_a_per_code),
-    )
+    let each = |value: &dyn Fn(&AxisCalibration) -> f32| {
+        list(axes.each_ref().map(|axis| exact(value(axis))))
+    };
+    let mut text = String::from("\n[calibration]\n");
+    for (index, field) in AxisCalibration::FIELDS.iter().enumerate() {
+        // The sign of a count has a key of its own.
+        let value = |axis: &AxisCalibration| axis.values()[index];
+        if field.signed {
+            let (magnitudes, signs) = (
+                each(&|axis| value(axis).abs()),
+                each(&|axis| value(axis).signum()),
+            );
+            text += &format!("{} = {magnitudes}\ncounts_sign = {signs}\n", field.name);
+        } else {
+            text += &format!("{} = {}\n", field.name, each(&value));
+        }
+    }
+    text
 }
 
 #[cfg(test)]

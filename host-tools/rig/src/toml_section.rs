@@ -1,13 +1,15 @@
 //! Reading a TOML file section by section, each refusal with its place in the text.
 
-mod optional;
-
-use crate::toml_problem::{Fault, Problem};
+use crate::number::plain;
+use crate::toml_error::TomlError;
 use leg_base::suggest;
+use leg_firmware::settings::Field;
 use leg_model::Reason;
 use std::ops::Range;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeArray, DeTable, DeValue};
+
+const ADD: &str = "add it; the ready rigs in host-tools/rigs show all keys of each support";
 
 /// A table of the file, with the place of its heading.
 pub struct Section<'a> {
@@ -19,22 +21,21 @@ impl<'a> Section<'a> {
     /// A table whose keys are all known.
     ///
     /// # Errors
-    /// [`Problem::UnknownKey`] at the first key that is not in `known`.
-    pub fn new(table: &'a DeTable<'a>, span: Range<usize>, known: &[&str]) -> Result<Self, Fault> {
+    /// The first key that is not in `known`.
+    pub fn new(
+        table: &'a DeTable<'a>,
+        span: Range<usize>,
+        known: &[&str],
+    ) -> Result<Self, TomlError> {
         let unknown = |key: &&Spanned<_>| !known.contains(&AsRef::<str>::as_ref(key.get_ref()));
-        match table
-            .keys()
-            .filter(unknown)
-            .min_by_key(|key| key.span().start)
-        {
+        let unknown = table.keys().filter(unknown);
+        match unknown.min_by_key(|key| key.span().start) {
             None => Ok(Self { table, span }),
-            Some(key) => Err(Fault {
-                span: key.span(),
-                problem: Problem::UnknownKey {
-                    key: key.get_ref().to_string(),
-                    fix: suggest::for_key(key.get_ref(), known),
-                },
-            }),
+            Some(key) => Err(TomlError::new(
+                key.span(),
+                format!("unknown key `{}`", key.get_ref()),
+                suggest::for_key(key.get_ref(), known),
+            )),
         }
     }
 
@@ -44,31 +45,52 @@ impl<'a> Section<'a> {
         Self { table, span: 0..0 }
     }
 
-    /// The place of the value of a key in a section, if both are there.
+    /// The place of the section.
     #[must_use]
-    pub fn span_of(&self, section: &str, key: &str) -> Option<Range<usize>> {
-        let section = self.table.get(section)?.get_ref().as_table()?;
-        section.get(key).map(Spanned::span)
+    pub fn span(&self) -> Range<usize> {
+        self.span.clone()
+    }
+
+    /// The place of the value at a path of keys, if it is there.
+    #[must_use]
+    pub fn place(&self, path: &[&str]) -> Option<Range<usize>> {
+        let (last, sections) = path.split_last()?;
+        let inner = |table: &'a DeTable<'a>, key: &&str| table.get(*key)?.get_ref().as_table();
+        let table = sections.iter().try_fold(self.table, inner)?;
+        table.get(*last).map(Spanned::span)
+    }
+
+    /// Whether the key is there.
+    #[must_use]
+    pub fn has(&self, key: &str) -> bool {
+        self.table.contains_key(key)
     }
 
     /// A table within this one, whose keys are all known.
     ///
     /// # Errors
     /// A missing key, a value of another type or an unknown key within it.
-    pub fn section(&self, key: &'static str, known: &[&str]) -> Result<Section<'a>, Fault> {
+    pub fn section(&self, key: &str, known: &[&str]) -> Result<Section<'a>, TomlError> {
         let Section { table, span } = self.any_section(key)?;
         Section::new(table, span, known)
+    }
+
+    /// A table within this one, whose keys are all known; none if it is not there.
+    ///
+    /// # Errors
+    /// A value of another type or an unknown key within it.
+    pub fn optional(&self, key: &str, known: &[&str]) -> Result<Option<Section<'a>>, TomlError> {
+        let given = self.has(key).then(|| self.section(key, known));
+        given.transpose()
     }
 
     /// A table within this one, whose keys are not yet checked: for a first look at the one that says which are known.
     ///
     /// # Errors
     /// A missing key or a value of another type.
-    pub fn any_section(&self, key: &'static str) -> Result<Section<'a>, Fault> {
-        let value = self
-            .table
-            .get(key)
-            .ok_or_else(|| self.missing(Problem::MissingSection(key)))?;
+    pub fn any_section(&self, key: &str) -> Result<Section<'a>, TomlError> {
+        let missing = || TomlError::new(self.span(), format!("missing section `[{key}]`"), ADD);
+        let value = self.table.get(key).ok_or_else(missing)?;
         match value.get_ref() {
             DeValue::Table(table) => Ok(Section {
                 table,
@@ -78,71 +100,92 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// The place of the value of a key, if it is there.
-    #[must_use]
-    pub fn span_of_key(&self, key: &str) -> Option<Range<usize>> {
-        self.table.get(key).map(Spanned::span)
+    /// A finite number.
+    ///
+    /// # Errors
+    /// A missing key, a value of another type, an infinite number or NaN.
+    pub fn number(&self, key: &str) -> Result<f64, TomlError> {
+        number(key, self.get(key)?)
+    }
+
+    /// A length in millimetres, in m.
+    ///
+    /// # Errors
+    /// As [`Self::number`].
+    pub fn metres(&self, key: &str) -> Result<f64, TomlError> {
+        Ok(self.number(key)? / 1000.0)
     }
 
     /// A finite number above zero.
     ///
     /// # Errors
-    /// As [`Self::number`]; [`Problem::Refused`].
-    pub fn positive(&self, key: &'static str) -> Result<f64, Fault> {
-        let number = self.spanned_number(key)?;
-        if *number.get_ref() > 0.0 {
-            return Ok(*number.get_ref());
-        }
-        Err(Fault {
-            span: number.span(),
-            problem: Problem::Refused {
-                key,
-                reason: Reason::NotPositive,
-            },
-        })
-    }
-
-    /// A finite number.
-    ///
-    /// # Errors
-    /// A missing key, a value of another type, an infinite number or NaN.
-    pub fn number(&self, key: &'static str) -> Result<f64, Fault> {
-        number(key, self.get(key)?)
-    }
-
-    /// Whether the key is there.
-    #[must_use]
-    pub fn has(&self, key: &str) -> bool {
-        self.table.contains_key(key)
-    }
-
-    /// The place of the section.
-    #[must_use]
-    pub fn span(&self) -> Range<usize> {
-        self.span.clone()
-    }
-
-    /// A finite number and its place.
-    ///
-    /// # Errors
-    /// As [`Self::number`].
-    pub fn spanned_number(&self, key: &'static str) -> Result<Spanned<f64>, Fault> {
+    /// As [`Self::number`]; one that is not positive.
+    pub fn positive(&self, key: &str) -> Result<f64, TomlError> {
         let value = self.get(key)?;
-        Ok(Spanned::new(value.span(), number(key, value)?))
+        match number(key, value)? {
+            number if number > 0.0 => Ok(number),
+            _ => Err(TomlError::refused(value.span(), key, Reason::NotPositive)),
+        }
+    }
+
+    /// The numbers of one key, each in its field's range: one number for one field, else an array of them. None if the
+    /// key is not there. The fields have one name.
+    ///
+    /// # Errors
+    /// A value of another type, another number of them, or one outside its range.
+    pub fn values<const N: usize>(
+        &self,
+        fields: [&Field<f64>; N],
+    ) -> Result<Option<[f64; N]>, TomlError> {
+        let Some(key) = fields.first().map(|field| field.name) else {
+            return Ok(None);
+        };
+        if !self.has(key) {
+            return Ok(None);
+        }
+        let value = self.get(key)?;
+        let entries = match N {
+            1 => vec![value],
+            _ => array(key, "an array of numbers", value)?.iter().collect(),
+        };
+        if entries.len() != N {
+            let sentence = format!("`{key}` has {} entries, it takes {N}", entries.len());
+            let fix = format!("give {N} numbers, [a, b, …]");
+            return Err(TomlError::new(value.span(), sentence, fix));
+        }
+        let mut numbers = [0.0; N];
+        for ((number, field), entry) in numbers.iter_mut().zip(fields).zip(entries) {
+            *number = in_range(field, entry)?;
+        }
+        Ok(Some(numbers))
+    }
+
+    /// Puts what is given of the fields into their values.
+    ///
+    /// # Errors
+    /// A value of another type, or one outside its range.
+    pub fn read<'v>(
+        &self,
+        fields: &[Field<f64>],
+        values: impl IntoIterator<Item = &'v mut f64>,
+    ) -> Result<(), TomlError> {
+        for (field, value) in fields.iter().zip(values) {
+            if let Some([given]) = self.values([field])? {
+                *value = given;
+            }
+        }
+        Ok(())
     }
 
     /// An array of finite numbers, each with its place, and the place of the whole.
     ///
     /// # Errors
     /// A missing key, a value of another type, an entry that is no finite number.
-    pub fn numbers(&self, key: &'static str) -> Result<Spanned<Vec<Spanned<f64>>>, Fault> {
+    pub fn numbers(&self, key: &str) -> Result<Spanned<Vec<Spanned<f64>>>, TomlError> {
         let value = self.get(key)?;
-        let DeValue::Array(entries) = value.get_ref() else {
-            return Err(wrong_type(key, "an array of numbers", value));
-        };
-        let entry =
-            |entry: &Spanned<DeValue<'_>>| Ok(Spanned::new(entry.span(), number(key, entry)?));
-        let numbers: Result<_, Fault> = entries.iter().map(entry).collect();
+        let entry = |entry| Ok(Spanned::new(Spanned::span(entry), number(key, entry)?));
+        let entries = array(key, "an array of numbers", value)?.iter().map(entry);
+        let numbers: Result<_, TomlError> = entries.collect();
         Ok(Spanned::new(value.span(), numbers?))
     }
 
@@ -150,7 +193,7 @@ impl<'a> Section<'a> {
     ///
     /// # Errors
     /// A missing key or a value of another type.
-    pub fn word(&self, key: &'static str) -> Result<Spanned<&'a str>, Fault> {
+    pub fn word(&self, key: &str) -> Result<Spanned<&'a str>, TomlError> {
         let value = self.get(key)?;
         match value.get_ref() {
             DeValue::String(word) => Ok(Spanned::new(value.span(), word)),
@@ -158,49 +201,44 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Three points in a plane, as `[[x, y], [x, y], [x, y]]`.
+    /// Three points in a plane in millimetres, as `[[x, y], [x, y], [x, y]]`, in m.
     ///
     /// # Errors
     /// A missing key, a value of another shape or another count, a number that is not finite.
-    pub fn points(&self, key: &'static str) -> Result<[[f64; 2]; 3], Fault> {
+    pub fn points_m(&self, key: &str) -> Result<[[f64; 2]; 3], TomlError> {
         let value = self.get(key)?;
         let wanted = "an array of points [x, y]";
-        let DeValue::Array(points) = value.get_ref() else {
-            return Err(wrong_type(key, wanted, value));
-        };
-        let found = points.len();
+        let points = array(key, wanted, value)?;
         let [a, b, c] = &points[..] else {
-            let problem = Problem::AnchorCount { key, found };
-            return Err(Fault {
-                span: value.span(),
-                problem,
-            });
+            let found = points.len();
+            let sentence = format!("`{key}` has {found} anchors: the leg has three tendons");
+            let fix = "give three anchors, [[x, y], [x, y], [x, y]]";
+            return Err(TomlError::new(value.span(), sentence, fix));
         };
-        let point = |point: &Spanned<DeValue<'_>>| match point.get_ref() {
-            DeValue::Array(pair) => match &pair[..] {
-                [x, y] => Ok([number(key, x)?, number(key, y)?]),
-                _ => Err(wrong_type(key, wanted, point)),
-            },
+        let metres = |value| number(key, value).map(|length_mm| length_mm / 1000.0);
+        let point = |point| match &array(key, wanted, point)?[..] {
+            [x, y] => Ok([metres(x)?, metres(y)?]),
             _ => Err(wrong_type(key, wanted, point)),
         };
         Ok([point(a)?, point(b)?, point(c)?])
     }
 
-    fn get(&self, key: &'static str) -> Result<&'a Spanned<DeValue<'a>>, Fault> {
-        self.table
-            .get(key)
-            .ok_or_else(|| self.missing(Problem::MissingKey(key)))
-    }
-
-    fn missing(&self, problem: Problem) -> Fault {
-        Fault {
-            span: self.span.clone(),
-            problem,
-        }
+    fn get(&self, key: &str) -> Result<&'a Spanned<DeValue<'a>>, TomlError> {
+        let missing = || TomlError::new(self.span(), format!("missing key `{key}`"), ADD);
+        self.table.get(key).ok_or_else(missing)
     }
 }
 
-fn number(key: &'static str, value: &Spanned<DeValue<'_>>) -> Result<f64, Fault> {
+fn array<'a>(
+    key: &str,
+    wanted: &str,
+    value: &'a Spanned<DeValue<'a>>,
+) -> Result<&'a DeArray<'a>, TomlError> {
+    let array = value.get_ref().as_array();
+    array.ok_or_else(|| wrong_type(key, wanted, value))
+}
+
+fn number(key: &str, value: &Spanned<DeValue<'_>>) -> Result<f64, TomlError> {
     let parsed = match value.get_ref() {
         DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().parse().ok(),
         DeValue::Float(float) => float.as_str().parse::<f64>().ok(),
@@ -209,17 +247,33 @@ fn number(key: &'static str, value: &Spanned<DeValue<'_>>) -> Result<f64, Fault>
     match parsed {
         None => Err(wrong_type(key, "a decimal number", value)),
         Some(number) if number.is_finite() => Ok(number),
-        Some(_) => Err(Fault {
-            span: value.span(),
-            problem: Problem::NotFinite(key),
-        }),
+        Some(_) => {
+            let sentence = format!("`{key}` must be a finite number");
+            let fix = "write a number such as 29 or 1.5e3";
+            Err(TomlError::new(value.span(), sentence, fix))
+        }
     }
 }
 
-fn wrong_type(key: &'static str, wanted: &'static str, value: &Spanned<DeValue<'_>>) -> Fault {
-    let found = value.get_ref().type_str();
-    Fault {
-        span: value.span(),
-        problem: Problem::WrongType { key, wanted, found },
+fn in_range(field: &Field<f64>, value: &Spanned<DeValue<'_>>) -> Result<f64, TomlError> {
+    let found = number(field.name, value)?;
+    if field.contains(found) {
+        return Ok(found);
     }
+    let (key, [low, high]) = (field.name, field.range.map(plain));
+    let unit = match field.unit {
+        "1" => String::new(),
+        unit => format!(", in {unit},"),
+    };
+    Err(TomlError::new(
+        value.span(),
+        format!("`{key}` is outside {low} to {high}"),
+        format!("`{key}`{unit} is this: {}", field.meaning.trim()),
+    ))
+}
+
+fn wrong_type(key: &str, wanted: &str, value: &Spanned<DeValue<'_>>) -> TomlError {
+    let found = value.get_ref().type_str();
+    let sentence = format!("`{key}` has to be {wanted}, this is a TOML {found}");
+    TomlError::new(value.span(), sentence, format!("write {wanted}"))
 }

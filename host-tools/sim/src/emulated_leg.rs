@@ -1,78 +1,139 @@
-//! A leg without a board: the firmware and a simulated leg, tick by tick.
+//! A leg without a board: the firmware behind a link and the simulated leg that it drives, tick by tick.
 
-use crate::link::Link;
+use crate::link::{Link, LinkError};
 use crate::plant::{Plant, Start};
-use crate::simulation::{Controller, ControllerError, OnLink, SimulationError};
 use leg_firmware::linked_leg::LINK_BYTES_MAX;
 use leg_firmware::sensors::{Sensors, TICK_HZ};
-use leg_firmware::settings::Settings;
+use leg_firmware::settings::{Settings, SettingsError};
 use leg_firmware::supervisor::State;
-use leg_firmware_bench::protocol::TickReply;
+use leg_firmware_bench::protocol::{Refusal, Reply, Request, TickReply, TickRequest};
 use leg_rig::control_settings;
 use leg_rig::plant_settings::PlantSettings;
 use leg_rig::rig_file::RigFile;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// How an emulated leg begins; it is disarmed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Beginning {
-    /// Homed, hanging straight down, its tendons at the rig's pretension.
-    Hanging,
-    /// Not homed, hanging straight down, every tendon longer than its way by as much, m.
-    Slack(f64),
+/// Slack of each tendon of a leg that has to be homed, mm: enough that homing has something to reel in.
+const SLACK_MM: f64 = 3.0;
+
+/// The bytes that the user's host sends in one tick.
+pub type HostBytes = heapless::Vec<u8, LINK_BYTES_MAX>;
+
+/// How an emulated leg starts: disarmed and hanging straight down.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InitialState {
+    /// Homed, its tendons at the rig's pretension.
+    Homed,
+    /// Not homed, every tendon slack by 3 mm.
+    Slack,
+}
+
+/// Why an emulated leg does not run.
+#[derive(Debug, thiserror::Error)]
+pub enum EmulationError {
+    /// The leg cannot start so.
+    #[error("the leg cannot start as the scenario says: {0}")]
+    Start(leg_model::Error),
+    /// The settings are refused.
+    #[error("the settings are refused: {0}")]
+    Settings(SettingsError),
+    /// Something else is refused.
+    #[error("the firmware refused ({0:?}): build host and firmware from the same sources")]
+    Refused(Refusal),
+    /// The reply is of another kind.
+    #[error("the firmware's reply is no tick: build host and firmware from the same sources")]
+    WrongReply,
+    /// The link failed.
+    #[error(transparent)]
+    Link(#[from] LinkError),
 }
 
 /// The firmware, wherever it runs, and the leg that it drives.
-pub struct EmulatedLeg {
+pub struct EmulatedLeg<L = Box<dyn Link>> {
     plant: Plant,
-    controller: Box<dyn Controller>,
+    link: L,
     ticks: u64,
+    /// Whether the instructions of each tick are counted.
+    counting: bool,
 }
 
 impl EmulatedLeg {
     /// A leg that has just started. The noise of its load cells is always the same.
     ///
     /// # Errors
-    /// A rig whose start or whose settings are refused; a controller that fails.
+    /// A rig whose start or whose settings are refused; a link that fails.
     pub fn new(
         rig: &RigFile,
-        beginning: Beginning,
-        mut controller: Box<dyn Controller>,
-    ) -> Result<Self, SimulationError> {
-        let (start, plant) = begin(rig, beginning);
-        let plant = Plant::new(rig, &plant, start, 0).map_err(SimulationError::Start)?;
-        let homed = beginning == Beginning::Hanging;
-        let zero = homed.then(|| plant.unstretched_at_zero_m());
-        controller.start(&control_settings::settings(rig, &rig.gains, zero))?;
-        let mut leg = Self {
-            plant,
-            controller,
-            ticks: 0,
+        initial: InitialState,
+        link: Box<dyn Link>,
+    ) -> Result<Self, EmulationError> {
+        let (start, settings) = match initial {
+            InitialState::Slack => (Start::Slack { slack_mm: SLACK_MM }, rig.plant),
+            InitialState::Homed => (Start::hanging(rig.pretension_n), tared(rig)),
         };
-        while leg.advance(&[])?.telemetry.state == State::Boot {}
+        let plant = Plant::new(rig, &settings, start, 0).map_err(EmulationError::Start)?;
+        let zero = (!start.is_slack()).then(|| plant.unstretched_at_zero_m());
+        let settings = control_settings::settings(rig, &rig.gains, zero);
+        let mut leg = Self::start(plant, &settings, link, false)?;
+        while leg.advance(HostBytes::new())?.1.telemetry.state == State::Boot {}
         Ok(leg)
-    }
-
-    fn advance(&mut self, bytes: &[u8]) -> Result<TickReply, ControllerError> {
-        let sensors = self.plant.sense();
-        let reply = self.controller.tick(&sensors, bytes)?;
-        self.plant.step(&reply.motors);
-        self.ticks += 1;
-        Ok(reply)
     }
 
     /// One tick: takes what of the host's bytes reaches the leg in it, and gives what the host gets.
     ///
     /// # Errors
-    /// A controller that fails.
+    /// A link that fails.
     pub fn tick(
         &mut self,
         incoming: &mut VecDeque<u8>,
-    ) -> Result<impl Iterator<Item = u8> + use<>, ControllerError> {
+    ) -> Result<impl Iterator<Item = u8> + use<>, EmulationError> {
         let count = incoming.len().min(LINK_BYTES_MAX);
-        let bytes: heapless::Vec<u8, LINK_BYTES_MAX> = incoming.drain(..count).collect();
-        Ok(self.advance(&bytes)?.link.into_iter())
+        let (_, reply) = self.advance(incoming.drain(..count).collect())?;
+        Ok(reply.link.into_iter())
+    }
+}
+
+impl<L: Link> EmulatedLeg<L> {
+    /// Gives the firmware its settings. With `counting` it reports the instructions of each tick.
+    pub(crate) fn start(
+        plant: Plant,
+        settings: &Settings,
+        mut link: L,
+        counting: bool,
+    ) -> Result<Self, EmulationError> {
+        match link.ask(&Request::Start(settings.clone()))? {
+            Reply::Started => Ok(Self {
+                plant,
+                link,
+                ticks: 0,
+                counting,
+            }),
+            Reply::Refused(Refusal::Settings(error)) => Err(EmulationError::Settings(error)),
+            Reply::Refused(refusal) => Err(EmulationError::Refused(refusal)),
+            _ => Err(EmulationError::WrongReply),
+        }
+    }
+
+    /// One tick of firmware and leg: reads the sensors, lets the control law run, and moves the leg on.
+    pub(crate) fn advance(
+        &mut self,
+        link: HostBytes,
+    ) -> Result<(Sensors, TickReply), EmulationError> {
+        let sensors = self.plant.sense();
+        let request = TickRequest { sensors, link };
+        let request = if self.counting {
+            Request::CountTick(request)
+        } else {
+            Request::Tick(request)
+        };
+        let reply = match self.link.ask(&request)? {
+            Reply::Ticked(reply) => reply,
+            Reply::Refused(refusal) => return Err(EmulationError::Refused(refusal)),
+            _ => return Err(EmulationError::WrongReply),
+        };
+        self.plant.step(&reply.motors);
+        self.ticks += 1;
+        Ok((sensors, reply))
     }
 
     /// The leg's time since its start.
@@ -81,49 +142,22 @@ impl EmulatedLeg {
         Duration::from_nanos(self.ticks * (1_000_000_000 / u64::from(TICK_HZ)))
     }
 
-    /// What is done to the leg from outside goes here.
-    pub fn plant(&mut self) -> &mut Plant {
+    /// The simulated leg.
+    #[must_use]
+    pub fn plant(&self) -> &Plant {
+        &self.plant
+    }
+
+    /// The simulated leg, for what is done to it from outside.
+    pub fn plant_mut(&mut self) -> &mut Plant {
         &mut self.plant
     }
 }
 
 /// A leg that is homed has its load cells tared.
-fn begin(rig: &RigFile, beginning: Beginning) -> (Start, PlantSettings) {
-    match beginning {
-        Beginning::Slack(slack_m) => (Start::Slack { slack_m }, rig.plant),
-        Beginning::Hanging => {
-            let start = Start::Held {
-                azimuth_deg: 0.0,
-                tilt_deg: 0.0,
-                pretension_n: rig.pretension_n,
-                payload_kg: 0.0,
-            };
-            let plant = PlantSettings {
-                cell_offset_n: [0.0; 3],
-                ..rig.plant
-            };
-            (start, plant)
-        }
-    }
-}
-
-/// A controller behind a link that belongs to it.
-pub struct Behind(Box<dyn Link>);
-
-impl Behind {
-    /// The controller behind `link`.
-    #[must_use]
-    pub fn new(link: Box<dyn Link>) -> Self {
-        Self(link)
-    }
-}
-
-impl Controller for Behind {
-    fn start(&mut self, settings: &Settings) -> Result<(), ControllerError> {
-        OnLink::new(self.0.as_mut(), false).start(settings)
-    }
-
-    fn tick(&mut self, sensors: &Sensors, link: &[u8]) -> Result<TickReply, ControllerError> {
-        OnLink::new(self.0.as_mut(), false).tick(sensors, link)
+fn tared(rig: &RigFile) -> PlantSettings {
+    PlantSettings {
+        cell_offset_n: [0.0; 3],
+        ..rig.plant
     }
 }

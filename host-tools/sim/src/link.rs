@@ -21,6 +21,18 @@ pub trait Link {
     fn ask(&mut self, request: &Request) -> Result<Reply, LinkError>;
 }
 
+impl<L: Link + ?Sized> Link for &mut L {
+    fn ask(&mut self, request: &Request) -> Result<Reply, LinkError> {
+        (**self).ask(request)
+    }
+}
+
+impl<L: Link + ?Sized> Link for Box<L> {
+    fn ask(&mut self, request: &Request) -> Result<Reply, LinkError> {
+        (**self).ask(request)
+    }
+}
+
 /// Introduces the host on a new link and returns what answers.
 ///
 /// # Errors
@@ -39,17 +51,12 @@ pub fn greet(link: &mut impl Link) -> Result<BoardInfo, LinkError> {
 }
 
 /// Numbers the requests and checks the replies: what every link has in common.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Sequence(u16);
 
 impl Sequence {
-    /// No request yet.
-    pub const fn new() -> Self {
-        Self(0)
-    }
-
     /// The next request's number. It is never 0: that is the reply to a request that could not be read.
-    pub fn next(&mut self) -> u16 {
+    pub fn next_number(&mut self) -> u16 {
         self.0 = self.0.checked_add(1).unwrap_or(1);
         self.0
     }
@@ -82,43 +89,27 @@ mod tests {
         }
     }
 
-    fn greeting_error(reply: Reply) -> Option<String> {
-        greet(&mut Always(reply))
-            .err()
-            .map(|error| error.to_string())
-    }
-
     #[test]
-    fn another_schema_is_told_in_words() {
-        let text = greeting_error(Reply::Refused(Refusal::SchemaMismatch {
-            schema: [0xab; 8],
-        }))
-        .unwrap_or_default();
-        assert!(
-            text.starts_with(
-                "the firmware speaks another protocol (schema abababababababab, this program "
+    fn a_greeting_that_fails_says_why() {
+        let schema = [0xab; 8];
+        let other = Reply::Refused(Refusal::SchemaMismatch { schema });
+        for (reply, part) in [
+            (
+                other,
+                "another protocol (schema abababababababab, this program ",
             ),
-            "{text}"
-        );
-        assert!(
-            text.ends_with("; build and start both from the same sources"),
-            "{text}"
-        );
-    }
-
-    #[test]
-    fn an_answer_that_is_no_greeting_is_refused() {
-        assert_eq!(
-            greeting_error(Reply::Counted(1)).as_deref(),
-            Some(
-                "the firmware's reply cannot be read; build and start both sides from the same sources"
-            )
-        );
+            (Reply::Counted(1), "the firmware's reply cannot be read"),
+        ] {
+            let error = greet(&mut Always(reply)).err().map(|e| e.to_string());
+            let text = error.unwrap_or_default();
+            assert!(text.contains(part), "{text}");
+            assert!(text.ends_with("from the same sources"), "{text}");
+        }
     }
 
     #[test]
     fn no_request_has_sequence_zero() {
         let mut sequence = Sequence(u16::MAX);
-        assert_eq!(sequence.next(), 1);
+        assert_eq!(sequence.next_number(), 1);
     }
 }

@@ -8,13 +8,15 @@
 mod advance;
 mod body;
 mod build;
+pub(crate) mod defect;
 mod encoder;
-pub mod faults;
+mod energy;
 mod hand;
 mod leg;
 mod mechanism;
 mod motor;
-mod outside;
+mod payload;
+mod push;
 mod scene;
 mod screw;
 mod sensing;
@@ -23,19 +25,18 @@ mod supply;
 mod temperature;
 mod tendon_pull;
 mod truth;
-mod work;
 
 #[cfg(test)]
 mod tests;
 
-pub use faults::Fault;
+pub use defect::Defect;
+pub use energy::{Energy, Work};
 pub use start::Start;
-pub use truth::{Energy, Truth};
-pub use work::Work;
+pub use truth::Truth;
 
 use body::Body;
+use defect::Defects;
 use encoder::Encoder;
-use faults::Faults;
 use hand::Hand;
 use leg::Leg;
 use leg_base::tick_time::tick_s;
@@ -43,7 +44,9 @@ use leg_firmware::sensors::Sensors;
 use leg_rig::actuator::Actuator;
 use mechanism::Mechanism;
 use motor::{Motor, MotorType};
-use outside::{Payload, Push};
+use nalgebra::Vector3;
+use payload::Payload;
+use push::Push;
 use sensing::{Cells, code, code_around_none};
 use supply::Supply;
 use temperature::Temperature;
@@ -62,7 +65,7 @@ pub struct Plant {
     temperature: Temperature,
     encoders: [Encoder; 3],
     cells: Cells,
-    faults: Faults,
+    defects: Defects,
     emergency_stop: bool,
     payload: Payload,
     push: Push,
@@ -75,32 +78,32 @@ pub struct Plant {
     substeps: u32,
 }
 
-/// What a faulty current sensor shows too much, A.
+/// What a defective current sensor reads too much, A.
 const CURRENT_OFFSET_A: f64 = 10.0;
 
 impl Plant {
     /// Reads every sensor.
     pub fn sense(&mut self) -> Sensors {
-        let (actuator, faults) = (&self.actuator, self.faults);
-        let offset = faults.of_three(Fault::CurrentOffset);
+        let (actuator, defects) = (&self.actuator, &self.defects);
+        let offset = defects.of_three(Defect::CurrentOffset);
         let current_code = |i: usize| {
             let off = if offset[i] { CURRENT_OFFSET_A } else { 0.0 };
             code_around_none(self.motors[i].current_a + off, actuator.current_range_a)
         };
         Sensors {
             encoder_counts: self.encoders.map(|encoder| encoder.counter),
-            cell_codes: self.cells.read(self.hand.pulls_n(self.tensions_n), faults),
+            cell_codes: self.cells.read(self.hand.pulls_n(self.tensions_n), defects),
             current_codes: std::array::from_fn(current_code),
             supply_code: code(
                 self.supply.voltage_v(&self.motors),
                 [0.0, actuator.supply_range_v],
             ),
             temperature_code: code(self.temperature.now_c, actuator.temperature_range_c),
-            cell_fresh: faults.of_three(Fault::CellStale).map(|stale| !stale),
-            driver_fault: faults.of_three(Fault::DriverFault),
+            cell_fresh: defects.of_three(Defect::CellStale).map(|stale| !stale),
+            driver_fault: defects.of_three(Defect::DriverFault),
             emergency_stop: self.emergency_stop,
-            late: faults.has(Fault::LateTicks),
-            settings_corrupt: faults.has(Fault::SettingsCorrupt),
+            late: defects.has(Defect::LateTicks),
+            settings_corrupt: defects.has(Defect::SettingsCorrupt),
         }
     }
 
@@ -109,27 +112,22 @@ impl Plant {
         self.payload.set(target_kg, over_s);
     }
 
-    /// Pushes at the tip for `over_s`, with a force in N in frame {A}; it ends an earlier push.
-    pub fn push(&mut self, force_n: [f64; 3], over_s: f64) {
-        self.push = Push::new(force_n, over_s);
-    }
-
-    /// Presses the emergency stop or lets it go. It only tells the board, which has to switch the drivers off.
+    /// Presses or releases the emergency stop. It only signals the board, which has to switch the drivers off.
     pub fn press_emergency_stop(&mut self, pressed: bool) {
         self.emergency_stop = pressed;
     }
 
-    /// Lets a fault begin or end.
-    pub fn set_fault(&mut self, fault: Fault, on: bool) {
+    /// Lets a defect begin or end.
+    pub fn set_defect(&mut self, defect: Defect, on: bool) {
         let before_j = self.energy().tendons_j;
-        self.faults.set(fault, on);
-        self.mechanism.cut = self.faults.of_three(Fault::TendonCut);
+        self.defects.set(defect, on);
+        self.mechanism.cut = self.defects.of_three(Defect::TendonCut);
         self.work.cut_j += before_j - self.energy().tendons_j;
         self.tensions_n = self.pulls_n();
     }
 
     /// Length of each tendon without tension when its encoder has counted to zero, m: what a perfect homing finds. The
-    /// play of the gear is then taken up as after pulling in.
+    /// gear then touches as after reeling in.
     #[must_use]
     pub fn unstretched_at_zero_m(&self) -> [f64; 3] {
         self.unstretched_at_zero_m
@@ -139,31 +137,28 @@ impl Plant {
     #[must_use]
     pub fn truth(&self) -> Truth {
         Truth {
-            time_s: self.ticks as f64 * tick_s(),
+            time_s: self.time_s(),
             direction: self.leg.direction,
             torsion_rad: self.leg.torsion_rad,
             rate_rad_per_s: self.leg.rate,
-            tip_m: self.mechanism.tip_m(&self.leg),
+            tip_m: self.tip_m(),
             tensions_n: self.tensions_n,
             unstretched_m: self.unstretched_m(),
             payload_kg: self.payload.now_kg,
             currents_a: self.motors.map(|motor| motor.current_a),
             speeds_rad_per_s: self.motors.map(|motor| motor.speed),
             supply_v: self.supply.voltage_v(&self.motors),
-            energy: self.energy(),
-            work: self.work,
         }
     }
 
-    fn energy(&self) -> Energy {
-        let (mechanism, leg) = (&self.mechanism, &self.leg);
-        let support = &mechanism.support;
-        Energy {
-            kinetic_j: mechanism.body.kinetic_j(&leg.direction, &leg.rate),
-            tendons_j: mechanism.springs_j(leg, self.unstretched_m()),
-            joint_j: support.joint_energy(&leg.direction, leg.torsion_rad),
-            weights_j: mechanism.load.energy(&leg.direction),
-        }
+    /// Time since the start, s.
+    #[must_use]
+    pub fn time_s(&self) -> f64 {
+        self.ticks as f64 * tick_s()
+    }
+
+    fn tip_m(&self) -> Vector3<f64> {
+        self.mechanism.tip_m(&self.leg)
     }
 
     fn unstretched_m(&self) -> [f64; 3] {

@@ -1,30 +1,31 @@
-//! A controller and a simulated leg in lock-step, with a shadow of the whole control law in f64 beside them.
+//! A scenario with an emulated leg, and a shadow of the whole control law in f64 beside it.
 
-mod controller;
-mod divergence;
 mod extremes;
-mod outcome;
-mod script;
-mod stage;
+mod host;
+mod measure;
+mod observer;
+mod sequencer;
+mod shadow;
+mod summary;
+mod test_stand;
 
-pub use controller::{Controller, ControllerError, InThisProcess, OnLink};
-pub use divergence::Divergence;
-pub use outcome::{Finding, Sample, SimulationError, Summary};
+pub use shadow::Divergence;
+pub use summary::{Measurement, Sample, SimulationError, Summary};
 
+use crate::emulated_leg::{EmulatedLeg, EmulationError};
+use crate::link::Link;
 use crate::plant::Plant;
 use crate::scenario::Scenario;
 use leg_firmware::drive::Drive;
-use leg_firmware::host_link::BoardKind;
-use leg_firmware::linked_leg::LinkedLeg;
 use leg_firmware::sensors::Sensors;
 use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
-use leg_firmware_bench::protocol::TickReply;
-use leg_firmware_bench::server::emulated;
 use leg_rig::control_settings;
+use leg_rig::gains;
 use leg_rig::rig_file::RigFile;
-use script::Script;
-use stage::Stage;
+use sequencer::Sequencer;
+use shadow::Shadow;
+use test_stand::TestStand;
 
 /// Longest simulation, s.
 const LONGEST_S: f64 = 600.0;
@@ -36,10 +37,12 @@ pub struct Tick<'a> {
     pub sensors: &'a Sensors,
     /// The bytes from the host.
     pub link: &'a [u8],
-    /// What the controller asks of the motors.
+    /// What the firmware asks of the motors.
     pub drive: &'a Drive<f32>,
-    /// What it tells.
+    /// What it reports.
     pub telemetry: &'a Telemetry<f32>,
+    /// Instructions that it took, if they are counted.
+    pub instructions: Option<u32>,
 }
 
 /// A scenario on a rig, ready to run.
@@ -49,6 +52,7 @@ pub struct Simulation {
     rig: RigFile,
     plant: Plant,
     settings: Settings,
+    counting: bool,
 }
 
 impl Simulation {
@@ -57,18 +61,32 @@ impl Simulation {
     /// # Errors
     /// A start that the model refuses.
     pub fn new(scenario: &Scenario, rig: &RigFile) -> Result<Self, SimulationError> {
-        let plant = Plant::new(rig, &scenario.plant(rig), scenario.start(), scenario.seed)
-            .map_err(SimulationError::Start)?;
-        let zero = (!scenario.starts_slack()).then(|| plant.unstretched_at_zero_m());
+        let plant = Plant::new(rig, &scenario.plant(rig), scenario.start, scenario.seed)
+            .map_err(EmulationError::Start)?;
+        let zero = (!scenario.start.is_slack()).then(|| plant.unstretched_at_zero_m());
         Ok(Self {
-            settings: control_settings::settings(rig, &rig.gains.with(&scenario.control), zero),
+            settings: control_settings::settings(
+                rig,
+                &gains::changed(rig.gains, &scenario.control),
+                zero,
+            ),
             scenario: scenario.clone(),
             rig: *rig,
             plant,
+            counting: false,
         })
     }
 
-    /// The settings that the controller gets.
+    /// The same with the instructions of each tick counted: only a link to an emulated core can.
+    #[must_use]
+    pub fn counting(self) -> Self {
+        Self {
+            counting: true,
+            ..self
+        }
+    }
+
+    /// The settings that the firmware gets.
     #[must_use]
     pub fn settings(&self) -> &Settings {
         &self.settings
@@ -80,63 +98,49 @@ impl Simulation {
     /// A [`SimulationError`]: settings or a link that fail.
     pub fn run(
         self,
-        controller: &mut dyn Controller,
+        link: &mut dyn Link,
         watch: &mut dyn FnMut(&Tick<'_>),
     ) -> Result<Summary, SimulationError> {
-        let mut shadow = LinkedLeg::<f64>::new(emulated(BoardKind::InProcess), &self.settings)
-            .map_err(SimulationError::Settings)?;
-        controller.start(&self.settings)?;
-        let mut stage = Stage::new(&self.rig, self.plant, &self.scenario);
-        let mut script = Script::new(&self.scenario);
-        let mut divergence = Divergence::default();
+        let mut shadow = Shadow::new(&self.settings)?;
+        let leg = EmulatedLeg::start(self.plant, &self.settings, link, self.counting)?;
+        let mut stand = TestStand::new(leg, &self.rig, &self.scenario);
+        let mut sequencer = Sequencer::new(&self.scenario);
         let stopped = loop {
-            let next = script.advance(&mut stage).and_then(|step| match step {
-                Some(step) if stage.time_s() > LONGEST_S => Err(SimulationError::Endless { step }),
-                Some(_) => {
-                    tick(controller, &mut shadow, &mut stage, &mut divergence, watch).map(Some)
-                }
-                None => Ok(None),
-            });
-            match next {
-                Ok(Some(())) => {}
-                Ok(None) => break None,
+            match advance(&mut sequencer, &mut stand, &mut shadow, watch) {
+                Ok(true) => {}
+                Ok(false) => break None,
                 Err(error) if error.midway() => break Some(error.to_string()),
                 Err(error) => return Err(error),
             }
         };
-        let (findings, expected) = script.findings();
-        Ok(stage.summary(findings, expected, divergence, stopped))
+        let (measurements, expected) = sequencer.finish();
+        let seen = stand.seen;
+        Ok(seen.summary(measurements, expected, shadow.divergence, stopped))
     }
 }
 
-/// One tick of controller, shadow and simulated leg.
-fn tick(
-    controller: &mut dyn Controller,
-    shadow: &mut LinkedLeg<f64>,
-    stage: &mut Stage,
-    divergence: &mut Divergence,
+/// Does the steps that are due, and then one tick; false at the end.
+fn advance(
+    sequencer: &mut Sequencer<'_>,
+    stand: &mut TestStand<'_>,
+    shadow: &mut Shadow,
     watch: &mut dyn FnMut(&Tick<'_>),
-) -> Result<(), SimulationError> {
-    let sensors = stage.plant.sense();
-    let link = stage.outgoing();
-    let TickReply {
-        drive,
-        motors,
-        telemetry,
-        ..
-    } = controller.tick(&sensors, &link)?;
-    shadow.receive(&link);
-    let shadow_drive = shadow.leg().tick(&sensors);
-    divergence.compare(&drive, &telemetry, &shadow_drive, &shadow.leg().telemetry());
-    shadow.leg().take_over(&Drive {
-        duty: drive.duty.map(f64::from),
-        enabled: drive.enabled,
-    });
-    watch(&Tick {
-        sensors: &sensors,
-        link: &link,
-        drive: &drive,
-        telemetry: &telemetry,
-    });
-    stage.step(&motors, &telemetry)
+) -> Result<bool, SimulationError> {
+    let Some(step) = sequencer.advance(stand)? else {
+        return Ok(false);
+    };
+    if stand.time_s() > LONGEST_S {
+        return Err(SimulationError::Endless { step });
+    }
+    stand.tick(|sensors, link, reply| {
+        shadow.tick(sensors, link, reply);
+        watch(&Tick {
+            sensors,
+            link,
+            drive: &reply.drive,
+            telemetry: &reply.telemetry,
+            instructions: reply.instructions,
+        });
+    })?;
+    Ok(true)
 }

@@ -15,7 +15,7 @@ const WIDTH_BY_THICKNESS: f32 = 3.0;
 /// first of these is of Roark's series, the second makes up for the rest of it.
 const TORSION_BY_RATIO: [f32; 2] = [0.63, 0.6];
 
-/// The shear of a rectangular section is spread unevenly: it gives way by this factor more than if it were not.
+/// Shear is not uniform over a rectangular section: its compliance is larger by this factor than if it were.
 const SHEAR_FACTOR: f32 = 1.2;
 
 /// A neck between two round cuts, its width along the axis about which it bends.
@@ -48,7 +48,7 @@ impl<T: Scalar> Notch<T> {
     ///
     /// Buckled, its slope φ vanishes at both ends, so that φ² is nowhere more than the neck's compliance ∫dz/EI from
     /// there to the end times ∫EIφ'² dz over that half (Cauchy and Schwarz). Hence ∫EIφ'² dz/∫φ² dz, of which the
-    /// critical load is the least, is at least 2/∫|z|/EI dz = Ebt²(1 + t/2r)/3r. A beam of one section has 8EI/L² so,
+    /// critical load is the minimum, is at least 2/∫|z|/EI dz = Ebt²(1 + t/2r)/3r. A beam of one section has 8EI/L² so,
     /// where π²EI/L² is exact. The shear of the thinnest place is taken in series.
     #[must_use]
     pub fn critical_n(&self, material: &FlexureMaterial<T>) -> T {
@@ -102,8 +102,8 @@ impl<T: Scalar> Notch<T> {
         check_length(self.radius_m, Quantity::NotchRadius)?;
         check_length(self.thickness_m, Quantity::FlexureThickness)?;
         check_length(self.width_m, Quantity::FlexureWidth)?;
-        let [least, most] = RADIUS_BY_THICKNESS.map(|ratio| T::from(ratio) * self.thickness_m);
-        if !(least <= self.radius_m && self.radius_m <= most) {
+        let [min, max] = RADIUS_BY_THICKNESS.map(|ratio| T::from(ratio) * self.thickness_m);
+        if !(min <= self.radius_m && self.radius_m <= max) {
             return Err(Error::refused(
                 Quantity::FlexureThickness,
                 Reason::OutsideFormula,

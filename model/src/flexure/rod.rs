@@ -18,6 +18,24 @@ pub struct Rod<T> {
 impl<T: Scalar> Rod<T> {
     /// A compliant pivot: one rod, bent by up to `tilt` rad. EI/L, GJ/L, L/EA (Eq. 19 prints half of EI/L).
     ///
+    /// ```
+    /// use leg_model::{FlexureMaterial, Rod, Support, SupportKind};
+    ///
+    /// let nitinol = FlexureMaterial {
+    ///     youngs_modulus_pa: 60e9,
+    ///     shear_modulus_pa: 23e9,
+    ///     strain_max: 0.01,
+    /// };
+    /// let rod = Rod {
+    ///     length_m: 0.030,
+    ///     diameter_m: 0.001,
+    /// };
+    /// let joint = rod.pivot(&nitinol, 0.5)?;
+    /// let pivot = Support::new(SupportKind::Spherical, joint)?;
+    /// assert!((pivot.joint().bending_nm_per_rad - 0.098_f64).abs() < 0.001);
+    /// # Ok::<(), leg_model::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// A part that is refused, a rod that is not slender, a strain beyond the material's.
     pub fn pivot(

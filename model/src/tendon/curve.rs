@@ -39,7 +39,7 @@ impl<T: Scalar> TendonCurve<T> {
             return Err(refused(Reason::TooMany));
         }
         first.check_first()?;
-        let mut pieces = [Piece::beyond(); CURVE_POINTS_MAX];
+        let mut pieces = [Piece::unused(); CURVE_POINTS_MAX];
         let mut complement = T::zero();
         for (piece, pair) in pieces.iter_mut().zip(points.windows(2)) {
             if let [before, after] = pair {

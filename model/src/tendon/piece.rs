@@ -21,7 +21,7 @@ pub(super) struct Piece<T> {
 
 impl<T: Scalar> Piece<T> {
     /// A piece that no tension and no elongation reaches.
-    pub fn beyond() -> Self {
+    pub fn unused() -> Self {
         Self {
             start: T::MAX,
             end: T::MAX,

@@ -10,10 +10,8 @@ const STEEPNESS_MAX: f32 = 3.0;
 
 /// One point of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize, postcard_schema::Schema)
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(postcard_schema::Schema))]
 pub struct CurvePoint<T> {
     /// Tension, N.
     pub tension_n: T,
@@ -21,6 +19,18 @@ pub struct CurvePoint<T> {
     pub elongation_m: T,
     /// Tangent stiffness there, N/m.
     pub stiffness_n_per_m: T,
+}
+
+impl<T> CurvePoint<T> {
+    /// The same numbers in another type, each by `convert`.
+    #[must_use]
+    pub fn map<U>(self, mut convert: impl FnMut(T) -> U) -> CurvePoint<U> {
+        CurvePoint {
+            tension_n: convert(self.tension_n),
+            elongation_m: convert(self.elongation_m),
+            stiffness_n_per_m: convert(self.stiffness_n_per_m),
+        }
+    }
 }
 
 impl<T: Scalar> CurvePoint<T> {

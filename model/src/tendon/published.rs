@@ -1,4 +1,4 @@
-//! The tendon of the paper, as far as the paper tells it.
+//! The tendon of the paper, as far as the paper describes it.
 
 use super::{CURVE_POINTS_MAX, CurvePoint};
 
@@ -9,7 +9,7 @@ macro_rules! paper {
             /// 1.5·10⁴ N/m, at 8 N, and the 9.945·10⁴ N/m at a pretension of 70 N that the maxima of Fig. 9 fix.
             ///
             /// In between the stiffness is taken as linear in the tension, so δ is a logarithm. That is a choice: the
-            /// paper's slope and pretension cannot be told apart, and its test piece (0.6 mm × 120 mm) is not the rig's
+            /// paper's slope and pretension cannot be separated, and its test piece (0.6 mm × 120 mm) is not the rig's
             /// tendon (0.8 mm × 100 mm).
             pub const PAPER: [Self; CURVE_POINTS_MAX] = {
                 const fn point(tension_n: $t, elongation_m: $t, stiffness_n_per_m: $t) -> CurvePoint<$t> {

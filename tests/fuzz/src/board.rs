@@ -1,8 +1,9 @@
 //! A board without hardware.
 
+use leg_firmware::host_link::BoardKind;
 use leg_firmware::settings::Settings;
 use leg_firmware_bench::counter::Counter;
-use leg_firmware_bench::protocol::{self, BoardInfo};
+use leg_firmware_bench::protocol::BoardInfo;
 use leg_firmware_bench::server::Board;
 
 /// A board that counts every kernel as one instruction, so that counted ticks run, too.

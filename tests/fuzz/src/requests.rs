@@ -82,7 +82,7 @@ fn hears(request: &HostRequest) -> Vec<TickRequest> {
 
 fn evaluate() -> EvaluateRequest {
     EvaluateRequest {
-        rig: RigParameters::<f32, 3>::TABLE_1.into(),
+        rig: RigParameters::<f32, 3>::TABLE_1,
         query: example::query(),
     }
 }

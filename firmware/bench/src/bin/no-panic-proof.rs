@@ -86,7 +86,7 @@ extern "C" fn _start() -> ! {
     let mut decoder = Decoder::new();
     let mut out = [0; MAX_FRAME];
     let leg = LegAddress::ALL[0];
-    let mut assembler = Assembler::<MAX_FRAME>::of_leg(leg);
+    let mut assembler = Assembler::<MAX_FRAME>::for_leg(leg);
     let mut segmenter = Segmenter::new(Identifier::ToHost(leg));
     let mut guard = BusGuard::new(1_000_000);
     loop {

@@ -1,7 +1,6 @@
 //! The arguments of every kernel, validated and prepared, so that only the kernel itself is counted.
 
 use super::KernelInput;
-use leg_firmware::messages::widened;
 use leg_model::{
     ConstantStiffness, CurvePoint, Direction, Distribution, Elasticity, Error, FreePlane,
     Kinematics, Load, Rig, Scalar, Support, SupportKind, TendonCurve, TendonStates, TensionBounds,
@@ -35,7 +34,7 @@ pub struct Bench<T> {
 
 impl<T: Scalar> Bench<T> {
     pub fn new(input: &KernelInput) -> Result<Self, Error> {
-        let rig = Rig::new(&input.rig.into())?;
+        let rig = Rig::new(&input.rig.map(T::from))?;
         let direction = Direction::from_angles(input.azimuth_rad.into(), input.tilt_rad.into())?;
         let bounds = TensionBounds::new(input.f_min_n.into(), input.f_max_n.into())?;
         let tendon = ConstantStiffness::new(input.stiffness_n_per_m.into())?;
@@ -66,7 +65,7 @@ impl<T: Scalar> Bench<T> {
             pretension,
             support: SupportKind::TorsionFree.into(),
             tendons: [tendon; 3],
-            curves: [curve(pretension, tendon.stiffness_n_per_m())?; 3],
+            curves: [curve(input.pretension_n, input.stiffness_n_per_m)?; 3],
             demand: input.demand_nm_per_rad.into(),
             kinematics,
             distribution,
@@ -78,9 +77,11 @@ impl<T: Scalar> Bench<T> {
 }
 
 /// The paper's tendon, scaled to a stiffness (N/m) at a pretension (N).
-fn curve<T: Scalar>(pretension: T, stiffness: T) -> Result<TendonCurve<T>, Error> {
+///
+/// Scaled in f32 for every number type, as a board gets its settings: f32 and f64 then compute on the same points, and
+/// their difference is that of the kernel alone.
+fn curve<T: Scalar>(pretension: f32, stiffness: f32) -> Result<TendonCurve<T>, Error> {
     let points = CurvePoint::<f32>::PAPER;
-    let softening =
-        TendonCurve::new(&points.map(|point| widened(&point)))?.stiffness(pretension)? / stiffness;
-    TendonCurve::new(&points.map(|point| widened(&point).scaled(softening, T::one())))
+    let softening = TendonCurve::new(&points)?.stiffness(pretension)? / stiffness;
+    TendonCurve::new(&points.map(|point| point.scaled(softening, 1.0).map(T::from)))
 }

@@ -2,7 +2,7 @@
 
 /// What a driver gets until the next tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Half {
+pub struct BridgeOutput {
     /// Pulse width in steps of the timer.
     pub compare: u16,
     /// Whether the motor is to pull in.
@@ -15,7 +15,7 @@ pub struct Half {
 /// pulse is on its way: the tick that asks for it gives none, and the one after it turns the pin.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Bridge {
-    last: Half,
+    last: BridgeOutput,
 }
 
 impl Bridge {
@@ -23,7 +23,7 @@ impl Bridge {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            last: Half {
+            last: BridgeOutput {
                 compare: 0,
                 forward: false,
             },
@@ -34,17 +34,17 @@ impl Bridge {
     ///
     /// A duty beyond that range counts as its nearer end, one that is not a number as 0.
     #[inline(always)]
-    pub fn convert(&mut self, duty: f32, top: u16) -> Half {
+    pub fn convert(&mut self, duty: f32, top: u16) -> BridgeOutput {
         let compare = compare(duty.abs(), top);
         let forward = duty > 0.0;
         let turns = compare > 0 && forward != self.last.forward;
         self.last = match (turns, self.last.compare) {
-            (false, _) => Half {
+            (false, _) => BridgeOutput {
                 compare,
                 ..self.last
             },
-            (true, 0) => Half { compare, forward },
-            (true, _) => Half {
+            (true, 0) => BridgeOutput { compare, forward },
+            (true, _) => BridgeOutput {
                 compare: 0,
                 ..self.last
             },
@@ -54,7 +54,7 @@ impl Bridge {
 
     /// No pulse.
     #[inline(always)]
-    pub fn rest(&mut self) -> Half {
+    pub fn rest(&mut self) -> BridgeOutput {
         self.last.compare = 0;
         self.last
     }
@@ -73,22 +73,22 @@ fn compare(magnitude: f32, top: u16) -> u16 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Bridge, Half};
+    use super::{Bridge, BridgeOutput};
 
     const TOP: u16 = 2000;
 
     /// What the last of several duties gives.
-    fn last(duties: &[f32]) -> Half {
+    fn last(duties: &[f32]) -> BridgeOutput {
         let mut bridge = Bridge::new();
-        let mut half = Half::default();
+        let mut half = BridgeOutput::default();
         for &duty in duties {
             half = bridge.convert(duty, TOP);
         }
         half
     }
 
-    fn half(compare: u16, forward: bool) -> Half {
-        Half { compare, forward }
+    fn half(compare: u16, forward: bool) -> BridgeOutput {
+        BridgeOutput { compare, forward }
     }
 
     #[test]
@@ -120,7 +120,7 @@ mod tests {
     #[test]
     fn no_tick_has_both_a_pulse_under_way_and_a_turn() {
         let mut bridge = Bridge::new();
-        let mut before = Half::default();
+        let mut before = BridgeOutput::default();
         for step in 0..10_000_u32 {
             let duty = (f64::from(step) * 0.37).sin() as f32;
             let now = bridge.convert(duty, TOP);

@@ -15,9 +15,9 @@ pub struct FaultLines {
     pub lost: bool,
 }
 
-/// What the leg is told of them.
+/// What is reported of them to the leg.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Faults {
+pub struct LineFaults {
     /// Of each driver; of all where it is not known which.
     pub drivers: [bool; 3],
     /// Emergency stop.
@@ -25,14 +25,14 @@ pub struct Faults {
 }
 
 impl FaultLines {
-    /// What the leg is told: a break that is over is told once, an outage without a break counts as the drivers'.
+    /// What is reported to the leg: a break that is over is reported once, an outage without a break counts as the drivers'.
     #[must_use]
     #[inline(always)]
-    pub fn faults(&self) -> Faults {
+    pub fn faults(&self) -> LineFaults {
         let stop = self.stop || self.stop_break;
         let known = self.drivers[0] || self.drivers[1] || self.drivers[2];
         let unknown = !known && (self.driver_break || (self.lost && !stop));
-        Faults {
+        LineFaults {
             drivers: self.drivers.map(|raised| raised || unknown),
             stop,
         }
@@ -41,7 +41,7 @@ impl FaultLines {
 
 #[cfg(test)]
 mod tests {
-    use super::{FaultLines, Faults};
+    use super::{FaultLines, LineFaults};
 
     const QUIET: FaultLines = FaultLines {
         drivers: [false; 3],
@@ -51,13 +51,13 @@ mod tests {
         lost: false,
     };
 
-    fn faults(drivers: [bool; 3], stop: bool) -> Faults {
-        Faults { drivers, stop }
+    fn faults(drivers: [bool; 3], stop: bool) -> LineFaults {
+        LineFaults { drivers, stop }
     }
 
     #[test]
-    fn quiet_lines_tell_nothing() {
-        assert_eq!(QUIET.faults(), Faults::default());
+    fn quiet_lines_report_nothing() {
+        assert_eq!(QUIET.faults(), LineFaults::default());
     }
 
     #[test]
@@ -72,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn a_break_that_is_over_is_told_all_the_same() {
+    fn a_break_that_is_over_is_reported() {
         let driver = FaultLines {
             driver_break: true,
             ..QUIET
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pressed_stop_is_told_as_long_as_it_is() {
+    fn a_pressed_stop_is_reported_while_it_is_pressed() {
         let lines = FaultLines {
             stop: true,
             ..QUIET

@@ -2,7 +2,7 @@
 
 /// What to do with the outputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Turn {
+pub enum GateAction {
     /// Switch them on.
     Open,
     /// They stay on.
@@ -29,12 +29,12 @@ pub enum Gate {
 impl Gate {
     /// One tick: what the leg asks for, and whether the outputs are on in fact.
     #[inline(always)]
-    pub fn step(&mut self, enabled: bool, on: bool) -> Turn {
+    pub fn step(&mut self, enabled: bool, on: bool) -> GateAction {
         let (gate, turn) = match (*self, enabled) {
-            (_, false) => (Self::Closed, Turn::Close),
-            (Self::Closed, true) => (Self::Open, Turn::Open),
-            (Self::Open, true) if on => (Self::Open, Turn::Keep),
-            (Self::Open | Self::Lost, true) => (Self::Lost, Turn::Close),
+            (_, false) => (Self::Closed, GateAction::Close),
+            (Self::Closed, true) => (Self::Open, GateAction::Open),
+            (Self::Open, true) if on => (Self::Open, GateAction::Keep),
+            (Self::Open | Self::Lost, true) => (Self::Lost, GateAction::Close),
         };
         *self = gate;
         turn
@@ -56,16 +56,16 @@ impl Gate {
 
 #[cfg(test)]
 mod tests {
-    use super::{Gate, Turn};
+    use super::{Gate, GateAction};
 
     #[test]
     fn it_opens_where_the_drive_becomes_enabled() {
         let mut gate = Gate::default();
-        assert_eq!(gate.step(false, false), Turn::Close);
-        assert_eq!(gate.step(true, false), Turn::Open);
-        assert_eq!(gate.step(true, true), Turn::Keep);
-        assert_eq!(gate.step(false, true), Turn::Close);
-        assert_eq!(gate.step(true, false), Turn::Open);
+        assert_eq!(gate.step(false, false), GateAction::Close);
+        assert_eq!(gate.step(true, false), GateAction::Open);
+        assert_eq!(gate.step(true, true), GateAction::Keep);
+        assert_eq!(gate.step(false, true), GateAction::Close);
+        assert_eq!(gate.step(true, false), GateAction::Open);
     }
 
     #[test]
@@ -73,16 +73,16 @@ mod tests {
         let mut gate = Gate::default();
         gate.step(true, false);
         assert!(gate.lost(false));
-        assert_eq!(gate.step(true, false), Turn::Close);
+        assert_eq!(gate.step(true, false), GateAction::Close);
         assert_eq!(
             gate.step(true, true),
-            Turn::Close,
+            GateAction::Close,
             "whatever the outputs do"
         );
         assert!(gate.lost(true));
-        assert_eq!(gate.step(false, false), Turn::Close);
+        assert_eq!(gate.step(false, false), GateAction::Close);
         assert!(!gate.lost(false));
-        assert_eq!(gate.step(true, false), Turn::Open);
+        assert_eq!(gate.step(true, false), GateAction::Open);
     }
 
     #[test]
@@ -91,9 +91,9 @@ mod tests {
             let mut gate = Gate::default();
             gate.step(enabled, false);
             gate.cut();
-            assert_eq!(gate.step(true, true), Turn::Close);
-            assert_eq!(gate.step(false, false), Turn::Close);
-            assert_eq!(gate.step(true, false), Turn::Open);
+            assert_eq!(gate.step(true, true), GateAction::Close);
+            assert_eq!(gate.step(false, false), GateAction::Close);
+            assert_eq!(gate.step(true, false), GateAction::Open);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::can::LegAddress;
 
-/// The one line on which a board's host is: a leg that answered on two could not tell which of them it asked.
+/// The one line on which a board's host is: a leg that answered on two would not know which of them it answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LinkChoice {
     /// The serial line that the on-board debugger passes on over USB.

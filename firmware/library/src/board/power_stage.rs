@@ -1,18 +1,18 @@
 //! The three bridges and what switches them on and off.
 
-use super::{Bridge, Gate, Half, Turn};
+use super::{Bridge, BridgeOutput, Gate, GateAction};
 use crate::drive::Drive;
 
 /// The pins and registers of a power stage.
 pub trait PowerPins {
     /// Sets the pulse width and the direction of a motor, 0 to 2; the width takes effect at the timer's next update.
-    fn set(&mut self, motor: usize, half: Half);
+    fn set(&mut self, motor: usize, half: BridgeOutput);
 
     /// Lets the drivers' enable line follow, and the timer's outputs; a break that is present keeps the latter off.
     fn switch(&mut self, on: bool);
 
     /// Whether the timer's outputs are on: hardware may have switched them off.
-    fn on(&self) -> bool;
+    fn is_on(&self) -> bool;
 }
 
 /// The power stage of three motors.
@@ -40,13 +40,13 @@ impl<P: PowerPins> PowerStage<P> {
     /// Passes on what a tick asks of the motors.
     #[inline(always)]
     pub fn drive(&mut self, drive: &Drive<f32>) {
-        match self.gate.step(drive.enabled, self.pins.on()) {
-            Turn::Open => {
+        match self.gate.step(drive.enabled, self.pins.is_on()) {
+            GateAction::Open => {
                 self.pins.switch(true);
                 self.set(drive);
             }
-            Turn::Keep => self.set(drive),
-            Turn::Close => self.rest(),
+            GateAction::Keep => self.set(drive),
+            GateAction::Close => self.rest(),
         }
     }
 
@@ -59,7 +59,7 @@ impl<P: PowerPins> PowerStage<P> {
     /// Whether the outputs are off although the leg drives.
     #[inline(always)]
     pub fn lost(&self) -> bool {
-        self.gate.lost(self.pins.on())
+        self.gate.lost(self.pins.is_on())
     }
 
     /// What the pins are.

@@ -1,7 +1,7 @@
 //! Why the chip started, from the flags of its reset controller.
 
-use super::Kept;
-use crate::host_link::Reset;
+use super::CrashReport;
+use crate::host_link::ResetCause;
 
 // Bits of the STM32G4's RCC_CSR. The pin's is set by every reset, for the chip pulls its own pin.
 const OPTION_BYTES: u32 = 1 << 25;
@@ -17,25 +17,25 @@ const LOW_POWER: u32 = 1 << 31;
 ///
 /// The chip has one flag for the power that comes and for the power that was too low for a while; only in the second
 /// case can the RAM have kept its contents, and it need not. A debugger resets the chip as the firmware itself does, but
-/// leaves no words.
+/// leaves no report.
 #[must_use]
-pub fn reset_cause(flags: u32, kept: Option<&Kept>) -> Reset {
+pub fn reset_cause(flags: u32, kept: Option<&CrashReport>) -> ResetCause {
     let has = |bits: u32| flags & bits != 0;
-    let spoke = kept.is_some_and(|kept| !kept.words.is_empty());
+    let reported = kept.is_some_and(|kept| !kept.text.is_empty());
     if has(INDEPENDENT_WATCHDOG | WINDOW_WATCHDOG) {
-        Reset::Watchdog
+        ResetCause::Watchdog
     } else if has(BROWN_OUT) && kept.is_some() {
-        Reset::BrownOut
+        ResetCause::BrownOut
     } else if has(BROWN_OUT) {
-        Reset::Power
-    } else if has(SOFTWARE) && spoke {
-        Reset::Software
+        ResetCause::Power
+    } else if has(SOFTWARE) && reported {
+        ResetCause::Software
     } else if has(OPTION_BYTES | LOW_POWER) {
-        Reset::Other
+        ResetCause::Other
     } else if has(PIN | SOFTWARE) {
-        Reset::Pin
+        ResetCause::Pin
     } else {
-        Reset::Other
+        ResetCause::Other
     }
 }
 
@@ -43,9 +43,9 @@ pub fn reset_cause(flags: u32, kept: Option<&Kept>) -> Reset {
 mod tests {
     use super::*;
 
-    fn silent() -> Kept {
-        Kept {
-            words: heapless::String::new(),
+    fn silent() -> CrashReport {
+        CrashReport {
+            text: heapless::String::new(),
             failures: 0,
         }
     }
@@ -53,13 +53,13 @@ mod tests {
     #[test]
     fn each_flag_has_its_cause() {
         for (flags, cause) in [
-            (PIN, Reset::Pin),
-            (PIN | SOFTWARE, Reset::Pin),
-            (PIN | INDEPENDENT_WATCHDOG, Reset::Watchdog),
-            (PIN | WINDOW_WATCHDOG, Reset::Watchdog),
-            (PIN | OPTION_BYTES, Reset::Other),
-            (PIN | LOW_POWER, Reset::Other),
-            (0, Reset::Other),
+            (PIN, ResetCause::Pin),
+            (PIN | SOFTWARE, ResetCause::Pin),
+            (PIN | INDEPENDENT_WATCHDOG, ResetCause::Watchdog),
+            (PIN | WINDOW_WATCHDOG, ResetCause::Watchdog),
+            (PIN | OPTION_BYTES, ResetCause::Other),
+            (PIN | LOW_POWER, ResetCause::Other),
+            (0, ResetCause::Other),
         ] {
             assert_eq!(reset_cause(flags, Some(&silent())), cause, "{flags:#x}");
             assert_eq!(reset_cause(flags, None), cause, "{flags:#x}");
@@ -67,22 +67,28 @@ mod tests {
     }
 
     #[test]
-    fn the_firmware_stopped_by_itself_where_it_left_words() {
+    fn the_firmware_stopped_by_itself_where_it_left_a_report() {
         let mut kept = silent();
-        assert!(kept.words.push_str("start.rs:7").is_ok());
-        assert_eq!(reset_cause(PIN | SOFTWARE, Some(&kept)), Reset::Software);
+        assert!(kept.text.push_str("start.rs:7").is_ok());
+        assert_eq!(
+            reset_cause(PIN | SOFTWARE, Some(&kept)),
+            ResetCause::Software
+        );
     }
 
     #[test]
-    fn a_dip_of_the_supply_is_told_by_what_the_ram_kept() {
-        assert_eq!(reset_cause(PIN | BROWN_OUT, None), Reset::Power);
+    fn a_dip_of_the_supply_is_known_by_what_the_ram_kept() {
+        assert_eq!(reset_cause(PIN | BROWN_OUT, None), ResetCause::Power);
         let kept = silent();
-        assert_eq!(reset_cause(PIN | BROWN_OUT, Some(&kept)), Reset::BrownOut);
+        assert_eq!(
+            reset_cause(PIN | BROWN_OUT, Some(&kept)),
+            ResetCause::BrownOut
+        );
     }
 
     #[test]
     fn a_watchdog_goes_before_what_came_with_it() {
         let all = PIN | SOFTWARE | BROWN_OUT | INDEPENDENT_WATCHDOG;
-        assert_eq!(reset_cause(all, Some(&silent())), Reset::Watchdog);
+        assert_eq!(reset_cause(all, Some(&silent())), ResetCause::Watchdog);
     }
 }

@@ -1,26 +1,26 @@
 //! CAN frames become link frames again.
 
 use super::can_frame::Header;
-use super::{CanFault, CanFrame, Identifier, LegAddress};
+use super::{CanError, CanFrame, Identifier, LegAddress};
 use crate::frame::MAX_FRAME;
 use heapless::Vec;
 
 /// What a CAN frame brought. Both can be there at once: a link frame may follow upon a gap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Taken<'a> {
+pub struct Assembled<'a> {
     /// A whole link frame with its final zero, for a [`crate::frame::Decoder`].
     pub link_frame: Option<&'a [u8]>,
     /// What was noticed to be wrong.
-    pub fault: Option<CanFault>,
+    pub fault: Option<CanError>,
 }
 
-impl Taken<'_> {
+impl Assembled<'_> {
     const NOTHING: Self = Self {
         link_frame: None,
         fault: None,
     };
 
-    const fn fault(fault: CanFault) -> Self {
+    const fn fault(fault: CanError) -> Self {
         Self {
             link_frame: None,
             fault: Some(fault),
@@ -55,17 +55,17 @@ pub struct Assembler<const N: usize = MAX_FRAME> {
 impl<const N: usize> Assembler<N> {
     /// What a leg receives from the host: under its own address, and urgent to all.
     #[must_use]
-    pub const fn of_leg(leg: LegAddress) -> Self {
-        Self::of(Identifier::ToLeg(leg))
+    pub const fn for_leg(leg: LegAddress) -> Self {
+        Self::receiving(Identifier::ToLeg(leg))
     }
 
     /// What the host receives from a leg.
     #[must_use]
-    pub const fn of_host(leg: LegAddress) -> Self {
-        Self::of(Identifier::ToHost(leg))
+    pub const fn for_host(leg: LegAddress) -> Self {
+        Self::receiving(Identifier::ToHost(leg))
     }
 
-    const fn of(ordinary: Identifier) -> Self {
+    const fn receiving(ordinary: Identifier) -> Self {
         Self {
             ordinary,
             expected: None,
@@ -75,7 +75,7 @@ impl<const N: usize> Assembler<N> {
     }
 
     /// Takes the next CAN frame from the bus; one for another receiver brings nothing.
-    pub fn push<'a>(&'a mut self, frame: &'a CanFrame) -> Taken<'a> {
+    pub fn push<'a>(&'a mut self, frame: &'a CanFrame) -> Assembled<'a> {
         let identifier = frame.identifier();
         if identifier == self.ordinary {
             return self.join(frame);
@@ -83,49 +83,49 @@ impl<const N: usize> Assembler<N> {
         match (identifier, self.ordinary) {
             (Identifier::UrgentToAll, Identifier::ToLeg(_)) => whole(frame),
             (Identifier::Urgent(to), Identifier::ToLeg(leg)) if to == leg => whole(frame),
-            _ => Taken::NOTHING,
+            _ => Assembled::NOTHING,
         }
     }
 
-    fn join(&mut self, frame: &CanFrame) -> Taken<'_> {
+    fn join(&mut self, frame: &CanFrame) -> Assembled<'_> {
         let (header, segment) = match frame.unpack() {
             Ok(unpacked) => unpacked,
             Err(fault) => {
                 self.place = Place::Skipping;
-                return Taken::fault(fault);
+                return Assembled::fault(fault);
             }
         };
         let gap = self.gap(header);
-        if gap == Some(CanFault::Doubled) {
-            return Taken::fault(CanFault::Doubled);
+        if gap == Some(CanError::Doubled) {
+            return Assembled::fault(CanError::Doubled);
         }
         self.expected = Some(header.counter.wrapping_add(1));
         let unfinished = self.enter(header, gap);
         let overflow = self.append(segment);
-        Taken {
+        Assembled {
             fault: gap.or(unfinished).or(overflow),
             link_frame: self.finished(),
         }
     }
 
-    /// What the counter tells.
-    fn gap(&self, header: Header) -> Option<CanFault> {
+    /// What the counter shows.
+    fn gap(&self, header: Header) -> Option<CanError> {
         match self.expected {
             _ if header.first => None,
             None if header.begins => None,
             Some(expected) if header.counter == expected => None,
-            Some(expected) if header.counter == expected.wrapping_sub(1) => Some(CanFault::Doubled),
-            None | Some(_) => Some(CanFault::Lost),
+            Some(expected) if header.counter == expected.wrapping_sub(1) => Some(CanError::Doubled),
+            None | Some(_) => Some(CanError::Lost),
         }
     }
 
-    /// Finds the place of a segment; tells if a link frame before it has no end.
-    fn enter(&mut self, header: Header, gap: Option<CanFault>) -> Option<CanFault> {
+    /// Finds the place of a segment; and whether the link frame before it has no end.
+    fn enter(&mut self, header: Header, gap: Option<CanError>) -> Option<CanError> {
         let before = self.place;
         if header.begins {
             self.place = Place::Inside;
             self.link_frame.clear();
-            return (before == Place::Inside).then_some(CanFault::Unfinished);
+            return (before == Place::Inside).then_some(CanError::Unfinished);
         }
         if gap.is_some() || before == Place::Between {
             self.place = Place::Skipping;
@@ -133,12 +133,12 @@ impl<const N: usize> Assembler<N> {
         None
     }
 
-    fn append(&mut self, segment: &[u8]) -> Option<CanFault> {
+    fn append(&mut self, segment: &[u8]) -> Option<CanError> {
         if self.place != Place::Inside || self.link_frame.extend_from_slice(segment).is_ok() {
             return None;
         }
         self.place = Place::Skipping;
-        Some(CanFault::TooLong)
+        Some(CanError::TooLong)
     }
 
     /// The link frame if it has come to its end.
@@ -152,15 +152,15 @@ impl<const N: usize> Assembler<N> {
     }
 }
 
-/// The link frame of an urgent CAN frame. Its counter is not looked at: a second stop harms nobody, and one that was
+/// The link frame of an urgent CAN frame. Its counter is not checked: a second stop harms nobody, and one that was
 /// taken for a double would.
-fn whole(frame: &CanFrame) -> Taken<'_> {
+fn whole(frame: &CanFrame) -> Assembled<'_> {
     match frame.unpack() {
-        Err(fault) => Taken::fault(fault),
-        Ok((header, segment)) if header.begins && segment.last() == Some(&0) => Taken {
+        Err(fault) => Assembled::fault(fault),
+        Ok((header, segment)) if header.begins && segment.last() == Some(&0) => Assembled {
             link_frame: Some(segment),
             fault: None,
         },
-        Ok(_) => Taken::fault(CanFault::Unfinished),
+        Ok(_) => Assembled::fault(CanError::Unfinished),
     }
 }

@@ -87,7 +87,7 @@ impl BusGuard {
         self.bus_offs
     }
 
-    /// Takes the controller's state and the time since the last call, µs; tells what to do.
+    /// Takes the controller's state and the time since the last call, µs; gives what to do.
     pub fn watch(&mut self, read: BusState, since_us: u32) -> BusAction {
         let before = core::mem::replace(&mut self.state, read);
         self.elapsed_us = self.elapsed_us.saturating_add(since_us);

@@ -1,6 +1,6 @@
 //! One CAN FD frame: an identifier and up to 64 bytes.
 
-use super::{CanFault, Identifier};
+use super::{CanError, Identifier};
 
 /// Most bytes in a CAN FD frame.
 pub const PAYLOAD_MAX: usize = 64;
@@ -43,15 +43,15 @@ impl CanFrame {
     /// A frame as a controller received it.
     ///
     /// # Errors
-    /// [`CanFault::WrongLength`] if CAN FD has no payload of that size.
-    pub fn new(identifier: Identifier, payload: &[u8]) -> Result<Self, CanFault> {
+    /// [`CanError::WrongLength`] if CAN FD has no payload of that size.
+    pub fn new(identifier: Identifier, payload: &[u8]) -> Result<Self, CanError> {
         if fitting(payload.len()) != Some(payload.len()) {
-            return Err(CanFault::WrongLength);
+            return Err(CanError::WrongLength);
         }
         let mut bytes = [PADDING; PAYLOAD_MAX];
         bytes
             .get_mut(..payload.len())
-            .ok_or(CanFault::WrongLength)?
+            .ok_or(CanError::WrongLength)?
             .copy_from_slice(payload);
         Ok(Self {
             identifier,
@@ -90,21 +90,21 @@ impl CanFrame {
     }
 
     /// The header and the segment behind it.
-    pub(super) fn unpack(&self) -> Result<(Header, &[u8]), CanFault> {
+    pub(super) fn unpack(&self) -> Result<(Header, &[u8]), CanError> {
         let (&[flags, counter], rest) = self
             .payload()
             .split_first_chunk::<HEADER>()
-            .ok_or(CanFault::WrongLength)?;
+            .ok_or(CanError::WrongLength)?;
         let length = usize::from(flags & LENGTH);
         if length == 0 || fitting(HEADER + length) != Some(self.size) {
-            return Err(CanFault::WrongLength);
+            return Err(CanError::WrongLength);
         }
         let header = Header {
             begins: flags & BEGINS != 0,
             first: flags & FIRST != 0,
             counter,
         };
-        let segment = rest.get(..length).ok_or(CanFault::WrongLength)?;
+        let segment = rest.get(..length).ok_or(CanError::WrongLength)?;
         Ok((header, segment))
     }
 }

@@ -25,7 +25,7 @@ impl core::error::Error for SegmentError {}
 
 /// Cuts link frames into the CAN frames of one identifier, and counts them.
 ///
-/// An identifier has one segmenter in the whole system; a new one tells the receiver that counting begins anew.
+/// An identifier has one segmenter in the whole system; the first frame of a new one restarts the counter of the receiver.
 #[derive(Debug)]
 pub struct Segmenter {
     identifier: Identifier,

@@ -1,14 +1,14 @@
 mod loss;
 mod payloads;
 
-use super::{Assembler, CanFault, CanFrame, LegAddress, Segmenter};
+use super::{Assembler, CanError, CanFrame, LegAddress, Segmenter};
 use crate::frame::MAX_FRAME;
 
 const LEG: LegAddress = LegAddress::ALL[2];
 const OTHER: LegAddress = LegAddress::ALL[3];
 
 /// Link frames and faults, in the order in which they came.
-type Came = (Vec<Vec<u8>>, Vec<CanFault>);
+type Came = (Vec<Vec<u8>>, Vec<CanError>);
 
 /// A link frame of this length; no two are alike.
 fn link_frame(length: usize, mark: u8) -> Vec<u8> {
@@ -41,5 +41,5 @@ fn push_all<'a, const N: usize>(
 }
 
 fn join(frames: &[CanFrame]) -> Came {
-    push_all(&mut Assembler::<MAX_FRAME>::of_leg(LEG), frames)
+    push_all(&mut Assembler::<MAX_FRAME>::for_leg(LEG), frames)
 }

@@ -2,13 +2,13 @@
 
 use super::{
     TICK_S,
-    bounds::{least, most, within},
+    bounds::{clamp_symmetric, max, min},
 };
 use crate::settings::Settings;
-use crate::supervisor::AxisView;
 use leg_model::Scalar;
 
-/// What is left of the integral after a tick at rest.
+/// Part of the integral that is left after a tick at rest: it decays with a time constant of 100 ticks, 12.5 ms. A screw
+/// holds without voltage; without the decay the motor would keep drawing the last current. Scenario `hold` holds it.
 const RESTING_DECAY: f32 = 0.99;
 
 /// Where a motor shall be led.
@@ -20,10 +20,21 @@ pub struct AxisGoal<T> {
     pub speed_m_per_s: T,
 }
 
+/// What an axis shows beside its sensors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisView<T> {
+    /// How far the motor is from where it is led, m.
+    pub following_m: T,
+    /// The voltage at the motor beyond what its speed induces, V.
+    pub driving_v: T,
+    /// The voltage at the motor, V.
+    pub voltage_v: T,
+}
+
 /// The controller of one axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Axis<T> {
-    gains: Gains<T>,
+    gains: ServoGains<T>,
     /// Where the axis shall be now, m, and how that changes in a tick, m.
     reference_m: T,
     step_m: T,
@@ -36,7 +47,7 @@ pub struct Axis<T> {
 
 /// Gains in the units in which they are applied.
 #[derive(Clone, Copy, Debug)]
-struct Gains<T> {
+struct ServoGains<T> {
     position: T,
     speed: T,
     integral: T,
@@ -64,7 +75,7 @@ pub struct AxisInput<T> {
     pub f_max_n: T,
     /// The supply, V.
     pub supply_v: T,
-    /// The tendon is not let out beyond this, m, whatever its load cell says.
+    /// The tendon is not paid out beyond this, m, whatever its load cell says.
     pub lowest_m: T,
 }
 
@@ -73,7 +84,7 @@ impl<T: Scalar> Axis<T> {
     pub fn new(settings: &Settings) -> Self {
         let servo = &settings.servo;
         let tracking = servo.tracking;
-        let gains = Gains {
+        let gains = ServoGains {
             position: servo.position_gain_per_s.into(),
             speed: servo.speed_gain_v_s_per_m.into(),
             integral: T::from(servo.speed_gain_v_s_per_m * TICK_S / servo.integral_time_s),
@@ -82,9 +93,10 @@ impl<T: Scalar> Axis<T> {
             duty_max: servo.duty_max.into(),
             speed_max: servo.speed_m_per_s.into(),
             dead_band_m: servo.dead_band_m.into(),
+            // A goal that moves by less than this in a tick stands still; it takes 100 ticks to cross the dead band.
             still_step_m: T::from(0.01 * servo.dead_band_m),
             track_position: tracking.into(),
-            // Critically damped.
+            // Both poles of the tracking filter in one place: critically damped.
             track_speed: T::from(0.25 * tracking * tracking / TICK_S),
             per_band_n: T::from(1.0 / servo.f_max_band_n),
             tick_s: T::from(TICK_S),
@@ -113,7 +125,7 @@ impl<T: Scalar> Axis<T> {
         self.speed_m_per_s
     }
 
-    /// What the monitors look at; `pulled_m` is how far the tendon is pulled in.
+    /// What the monitors check; `pulled_m` is how far the tendon is pulled in.
     #[inline(always)]
     pub fn view(&self, pulled_m: T) -> AxisView<T> {
         AxisView {
@@ -134,8 +146,8 @@ impl<T: Scalar> Axis<T> {
     /// Leads the axis to a goal by `share` of the way in each tick from now or, if that is too fast, more slowly.
     #[inline(always)]
     pub fn lead(&mut self, goal: &AxisGoal<T>, share: T) {
-        let fastest = least(goal.speed_m_per_s, self.gains.speed_max) * self.gains.tick_s;
-        self.step_m = within((goal.pulled_m - self.reference_m) * share, fastest);
+        let fastest = min(goal.speed_m_per_s, self.gains.speed_max) * self.gains.tick_s;
+        self.step_m = clamp_symmetric((goal.pulled_m - self.reference_m) * share, fastest);
     }
 
     /// Leads the axis no farther, until it is led again.
@@ -153,7 +165,7 @@ impl<T: Scalar> Axis<T> {
     }
 
     /// Goes on from the voltage that another controller of the same motor has applied: the integral becomes what it had to be.
-    pub fn take_over(&mut self, applied_v: T) {
+    pub fn adopt_voltage(&mut self, applied_v: T) {
         self.integral_v += applied_v - self.voltage_v;
         self.voltage_v = applied_v;
     }
@@ -170,13 +182,13 @@ impl<T: Scalar> Axis<T> {
         } else {
             self.step_m * gains.per_tick + gains.position * error
         };
-        let wanted = within(wanted, gains.speed_max);
-        // The nearer to the maximum tension, the slower the pull; above it the tendon is let out.
+        let wanted = clamp_symmetric(wanted, gains.speed_max);
+        // The nearer to the maximum tension, the slower the pull; above it the tendon is paid out.
         let room = (input.f_max_n - input.tension_n) * gains.per_band_n;
-        let fastest = within(room, T::one()) * gains.speed_max;
-        let wanted = least(wanted, fastest);
+        let fastest = clamp_symmetric(room, T::one()) * gains.speed_max;
+        let wanted = min(wanted, fastest);
         let wanted = if input.pulled_m <= input.lowest_m {
-            most(wanted, T::zero())
+            max(wanted, T::zero())
         } else {
             wanted
         };
@@ -184,20 +196,17 @@ impl<T: Scalar> Axis<T> {
         let proportional = gains.back_emf * wanted + gains.speed * missing;
         let asked = proportional + self.integral_v;
         let induced = gains.back_emf * self.speed_m_per_s;
-        // The current's bounds first: an encoder that jumps tells of a speed whose voltage no supply has.
+        // The current's bounds first: an encoder that jumps shows a speed whose induced voltage is beyond any supply.
         let low = induced - gains.current_v;
         let high = induced + gains.current_v;
-        let voltage = within(
-            least(most(asked, low), high),
-            gains.duty_max * input.supply_v,
-        );
-        // The integral grows only while its voltage is applied, and while there is something to make up for.
-        let held =
+        let voltage = clamp_symmetric(min(max(asked, low), high), gains.duty_max * input.supply_v);
+        // Anti-windup: the integral does not grow further into a limit of the voltage.
+        let saturated =
             (asked > voltage && missing > T::zero()) || (asked < voltage && missing < T::zero());
         if resting {
-            // The screw holds by itself: nothing need be kept up.
+            // The screw holds by itself.
             self.integral_v *= T::from(RESTING_DECAY);
-        } else if !held {
+        } else if !saturated {
             self.integral_v += gains.integral * missing;
         }
         self.voltage_v = voltage;

@@ -1,21 +1,21 @@
-//! Numbers held between bounds, by the caller's will and with the caller told.
+//! Minimum, maximum and clamp, with a defined result for NaN; `core` has none for the generic scalar.
 
 use leg_model::Scalar;
 
 /// The lower of two; the second if the first is not a number.
 #[inline(always)]
-pub fn least<T: Scalar>(a: T, b: T) -> T {
+pub fn min<T: Scalar>(a: T, b: T) -> T {
     if a < b { a } else { b }
 }
 
 /// The higher of two; the second if the first is not a number.
 #[inline(always)]
-pub fn most<T: Scalar>(a: T, b: T) -> T {
+pub fn max<T: Scalar>(a: T, b: T) -> T {
     if a > b { a } else { b }
 }
 
 /// The number between −`bound` and `bound` that is nearest.
 #[inline(always)]
-pub fn within<T: Scalar>(value: T, bound: T) -> T {
-    least(most(value, -bound), bound)
+pub fn clamp_symmetric<T: Scalar>(value: T, bound: T) -> T {
+    min(max(value, -bound), bound)
 }

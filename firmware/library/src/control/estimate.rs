@@ -1,6 +1,6 @@
 //! Where the leg is and what it carries, by the lengths and tensions of its tendons.
 
-use super::{CYCLE_S, Mechanism, bounds::most, filter::LowPass};
+use super::{CYCLE_S, Mechanism, bounds::max, filter::LowPass};
 use crate::settings::Settings;
 use leg_model::{
     Direction, Elasticity, Error, Geometry, Scalar, SupportKind, estimate_load, forward_kinematics,
@@ -8,7 +8,7 @@ use leg_model::{
 };
 use nalgebra::SVector;
 
-/// What the tendons tell of the leg.
+/// The pose that the tendons show.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate<T> {
     /// Where the leg points.
@@ -19,13 +19,13 @@ pub struct Estimate<T> {
 
 /// How the load is estimated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Weighing {
+pub enum LoadEstimation {
     /// It stays as it is.
     Frozen,
-    /// It follows what the tendons tell, filtered.
+    /// It follows the tensions, filtered.
     Filtered,
-    /// It is what they tell now.
-    AtOnce,
+    /// It is what the tensions show now, unfiltered.
+    Immediate,
 }
 
 /// Estimates pose and load, warm-started from the last estimate.
@@ -35,7 +35,7 @@ pub struct Estimator<T> {
     /// Moment beyond that of the leg's own weight, as a horizontal one (x, y) of the same effect, N·m.
     excess: [[LowPass<T>; 2]; 2],
     payload_kg: T,
-    /// Square of the sine of the tilt from which the payload is told.
+    /// Square of the sine of the tilt from which the payload is estimated.
     payload_sine_squared: T,
 }
 
@@ -80,7 +80,7 @@ impl<T: Scalar> Estimator<T> {
         self.payload_kg
     }
 
-    /// Estimates the pose and, as `weighing` says, the load. `torsion` is the elastic one, rad.
+    /// Estimates the pose and, as `load_estimation` says, the load. `torsion` is the elastic one, rad.
     ///
     /// # Errors
     /// A tension beyond a tendon's curve; what forward kinematics refuses.
@@ -91,12 +91,12 @@ impl<T: Scalar> Estimator<T> {
         unstretched_m: &[T; 3],
         tensions_n: &[T; 3],
         torsion: T,
-        weighing: Weighing,
+        load_estimation: LoadEstimation,
     ) -> Result<Estimate<T>, Error> {
         let (mut lengths, mut pull) = (SVector::<T, 3>::zeros(), SVector::<T, 3>::zeros());
         for (i, tendon) in mechanism.tendons.iter().enumerate() {
             // A slack tendon is as long as it is; noise does not make it push.
-            pull[i] = most(tensions_n[i], T::zero());
+            pull[i] = max(tensions_n[i], T::zero());
             lengths[i] = unstretched_m[i] + tendon.elongation(pull[i])?;
         }
         let mut twisted = None;
@@ -107,13 +107,13 @@ impl<T: Scalar> Estimator<T> {
             forward_kinematics(geometry, &lengths, &self.direction)?
         };
         self.direction = found.direction;
-        if weighing != Weighing::Frozen {
-            self.weigh(
+        if load_estimation != LoadEstimation::Frozen {
+            self.update_load(
                 mechanism,
                 mechanism.geometry(&found.direction, torsion, &mut twisted),
                 torsion,
                 &pull,
-                weighing,
+                load_estimation,
             )?;
         }
         Ok(Estimate {
@@ -123,13 +123,13 @@ impl<T: Scalar> Estimator<T> {
     }
 
     #[inline(always)]
-    fn weigh(
+    fn update_load(
         &mut self,
         mechanism: &Mechanism<T>,
         geometry: &Geometry<T, 3>,
         torsion: T,
         pull: &SVector<T, 3>,
-        weighing: Weighing,
+        load_estimation: LoadEstimation,
     ) -> Result<(), Error> {
         let (direction, support) = (&self.direction, &mechanism.support);
         let load = estimate_load(geometry, support, direction, torsion, pull)?;
@@ -137,25 +137,25 @@ impl<T: Scalar> Estimator<T> {
         let own = mechanism.leg.moment(direction);
         let excess = [x - own.x, y - own.y];
         for ([first, second], input) in self.excess.iter_mut().zip(excess) {
-            if weighing == Weighing::AtOnce {
+            if load_estimation == LoadEstimation::Immediate {
                 first.set(input);
                 second.set(input);
             }
             second.step(first.step(input));
         }
-        self.guess_payload(mechanism);
+        self.update_payload(mechanism);
         Ok(())
     }
 
     /// A weight at the tip turns the leg about (−p_y, p_x), the more the further it leans.
     #[inline(always)]
-    fn guess_payload(&mut self, mechanism: &Mechanism<T>) {
+    fn update_payload(&mut self, mechanism: &Mechanism<T>) {
         let down = self.direction.vector();
         let sine_squared = down.x * down.x + down.y * down.y;
         let lever = sine_squared * mechanism.payload_lever;
         if sine_squared > self.payload_sine_squared && lever > T::zero() {
             let [x, y] = self.excess_nm();
-            self.payload_kg = most((down.x * y - down.y * x) / lever, T::zero());
+            self.payload_kg = max((down.x * y - down.y * x) / lever, T::zero());
         }
     }
 }

@@ -1,41 +1,43 @@
-//! Finds the zero: the leg hangs free, and one tendon after the other is taken up until it just pulls.
+//! Finds the zero: the leg hangs free, and one tendon after the other is reeled in until it just pulls.
 //!
-//! Slack tendons tell the load cells' zero. One taut tendon and the leg's own weight settle where the leg rests, and so
+//! Slack tendons show the zero of the load cells. One taut tendon and the leg's own weight settle where the leg rests, and so
 //! how long that tendon is.
+
+mod rest_search;
 
 use super::{AxisGoal, Mechanism, filter::LowPass, ticks};
 use crate::settings;
-use leg_model::{Direction, Elasticity, Error, Scalar, estimate_load, inverse_kinematics};
-use nalgebra::SVector;
+use leg_model::Scalar;
+use rest_search::RestSearch;
 
 /// What homing does now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Phase {
-    /// Every tendon is let out, until that changes no tension any more.
+enum HomingPhase {
+    /// Every tendon is paid out, until that changes no tension any more.
     Release,
     /// The slack load cells are averaged.
     Tare,
-    /// One tendon is taken up.
-    TakeUp(Tendon),
+    /// One tendon is reeled in.
+    ReelIn(TendonNumber),
     /// The leg comes to rest on it.
-    Settle(Tendon),
+    Settle(TendonNumber),
     /// Its tension and position are averaged.
-    Average(Tendon),
-    /// The pose in which the leg rests on it is looked for, one step a tick.
-    Search(Tendon),
-    /// It is let out again.
-    LetOut(Tendon),
+    Average(TendonNumber),
+    /// The pose in which the leg rests on it is searched for, one step a tick.
+    Search(TendonNumber),
+    /// It is paid out again.
+    PayOut(TendonNumber),
 }
 
-/// The tendon that is taken up.
+/// The tendon that is reeled in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Tendon {
+enum TendonNumber {
     First,
     Second,
     Third,
 }
 
-impl Tendon {
+impl TendonNumber {
     const fn index(self) -> usize {
         match self {
             Self::First => 0,
@@ -80,11 +82,11 @@ pub enum HomingStep<T> {
 
 /// The course of homing.
 #[derive(Clone, Copy, Debug)]
-pub struct Homing<T> {
-    phase: Phase,
+pub struct HomingSequence<T> {
+    phase: HomingPhase,
     left: u32,
     goals_m: [T; 3],
-    /// How far every tendon was let out, m, and the tensions before the last step of that, N.
+    /// How far every tendon was paid out, m, and the tensions before the last step of that, N.
     released_m: T,
     before_n: Option<[T; 3]>,
     sums: [T; 3],
@@ -92,9 +94,9 @@ pub struct Homing<T> {
     count: u32,
     steady: [LowPass<T>; 3],
     found: [T; 3],
-    rest: Rest<T>,
+    rest: RestSearch<T>,
     start_m: T,
-    times: Times,
+    times: HomingTimes,
     speed: T,
     release_m: T,
     tare_max_n: T,
@@ -103,29 +105,35 @@ pub struct Homing<T> {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Times {
+struct HomingTimes {
     tare: u32,
     settle: u32,
     average: u32,
 }
 
-/// Tension with which a leg rests on a tendon at least, of the tension of the touch: it comes in motion, so most of that
-/// is gone when the leg has come to rest.
+/// Lowest tension with which a leg at rest rests on a tendon, as a part of the tension of the touch: the leg swings at the
+/// touch, so most of that tension is gone when it has come to rest. At the default touch of 2 N it is 0.04 N, enough to
+/// distinguish a leg that rests from one that hangs free. Scenario `homing` holds it.
 const REST_PART: f32 = 0.02;
 
-/// Time constant with which a touch is felt, s.
+/// Time constant of the filter that detects a touch, s: forty ticks average the noise of the load cells out, and at 10 mm/s the
+/// tendon moves by 0.05 mm meanwhile.
 const TOUCH_TIME_S: f32 = 0.005;
 
-/// Change of a tension over a step of the release below which the tendon counts as slack, of the tension of a touch: the
-/// cell's own offset is not known, but it does not change.
+/// Change of a tension over a step of the release below which the tendon counts as slack, as a part of the tension of a
+/// touch: the offset of the cell is not known yet, but it does not change. A quarter is 0.5 N at the default touch: above the
+/// noise, and far below what a taut tendon loses over a step of 4 mm.
 const SLACK_PART: f32 = 0.25;
 
-impl<T: Scalar> Homing<T> {
+/// A tendon this near to its goal has arrived, m: above what the servo leaves, far below a step of the release.
+const ARRIVED_M: f32 = 1e-4;
+
+impl<T: Scalar> HomingSequence<T> {
     /// Starts from where the tendons are, m.
     pub fn new(homing: &settings::Homing, pulled_m: &[T; 3]) -> Self {
         let release_m = T::from(homing.release_m);
         Self {
-            phase: Phase::Release,
+            phase: HomingPhase::Release,
             left: 0,
             goals_m: pulled_m.map(|pulled| pulled - release_m),
             released_m: release_m,
@@ -135,9 +143,9 @@ impl<T: Scalar> Homing<T> {
             count: 0,
             steady: [LowPass::new(TOUCH_TIME_S, super::TICK_S); 3],
             found: [T::zero(); 3],
-            rest: Rest::new(T::zero(), T::zero()),
+            rest: RestSearch::new(T::zero(), T::zero()),
             start_m: T::zero(),
-            times: Times {
+            times: HomingTimes {
                 tare: ticks(homing.tare_time_s),
                 settle: ticks(homing.settle_time_s),
                 average: ticks(homing.average_time_s),
@@ -159,13 +167,13 @@ impl<T: Scalar> Homing<T> {
         tensions_n: &[T; 3],
     ) -> HomingStep<T> {
         match self.phase {
-            Phase::Release => self.release(pulled_m, tensions_n),
-            Phase::Tare => self.tare(tensions_n),
-            Phase::TakeUp(tendon) => self.take_up(tendon, pulled_m, tensions_n),
-            Phase::Settle(tendon) => self.settle(tendon),
-            Phase::Average(tendon) => self.average(tendon, pulled_m, tensions_n),
-            Phase::Search(tendon) => self.search(mechanism, tendon),
-            Phase::LetOut(tendon) => self.let_out(tendon, pulled_m),
+            HomingPhase::Release => self.release(pulled_m, tensions_n),
+            HomingPhase::Tare => self.tare(tensions_n),
+            HomingPhase::ReelIn(tendon) => self.reel_in(tendon, pulled_m, tensions_n),
+            HomingPhase::Settle(tendon) => self.settle(tendon),
+            HomingPhase::Average(tendon) => self.average(tendon, pulled_m, tensions_n),
+            HomingPhase::Search(tendon) => self.search(mechanism, tendon),
+            HomingPhase::PayOut(tendon) => self.pay_out(tendon, pulled_m),
         }
     }
 
@@ -189,7 +197,7 @@ impl<T: Scalar> Homing<T> {
         for (now, steady) in now_n.iter_mut().zip(&mut self.steady) {
             *now = steady.step(*now);
         }
-        let near = T::from(1e-4);
+        let near = T::from(ARRIVED_M);
         let arrived = pulled_m
             .iter()
             .zip(&self.goals_m)
@@ -216,9 +224,9 @@ impl<T: Scalar> Homing<T> {
         self.lead()
     }
 
-    /// The tendons are slack; from the tare on the load cells tell zero.
+    /// The tendons are slack; from the tare on the load cells read zero.
     fn begin_tare(&mut self) {
-        (self.phase, self.count) = (Phase::Tare, 0);
+        (self.phase, self.count) = (HomingPhase::Tare, 0);
         self.steady
             .iter_mut()
             .for_each(|steady| steady.set(T::zero()));
@@ -227,7 +235,7 @@ impl<T: Scalar> Homing<T> {
     /// Whether tendons may still pull as they did before homing.
     #[must_use]
     pub fn releases(&self) -> bool {
-        self.phase == Phase::Release
+        self.phase == HomingPhase::Release
     }
 
     fn tare(&mut self, tensions_n: &[T; 3]) -> HomingStep<T> {
@@ -245,36 +253,46 @@ impl<T: Scalar> Homing<T> {
                 return HomingStep::Failed(tendon);
             }
         }
-        self.phase = Phase::TakeUp(Tendon::First);
+        self.phase = HomingPhase::ReelIn(TendonNumber::First);
         let [start, ..] = self.goals_m;
         self.start_m = start;
         HomingStep::Tare(offsets)
     }
 
-    fn take_up(&mut self, tendon: Tendon, pulled_m: &[T; 3], tensions_n: &[T; 3]) -> HomingStep<T> {
+    fn reel_in(
+        &mut self,
+        tendon: TendonNumber,
+        pulled_m: &[T; 3],
+        tensions_n: &[T; 3],
+    ) -> HomingStep<T> {
         let i = tendon.index();
         if self.steady[i].step(tensions_n[i]) >= self.touch_n {
             self.goals_m[i] = pulled_m[i];
-            (self.phase, self.left) = (Phase::Settle(tendon), self.times.settle);
+            (self.phase, self.left) = (HomingPhase::Settle(tendon), self.times.settle);
             return self.lead();
         }
         self.goals_m[i] = self.start_m + self.travel_m;
-        if pulled_m[i] >= self.start_m + self.travel_m - T::from(1e-4) {
+        if pulled_m[i] >= self.start_m + self.travel_m - T::from(ARRIVED_M) {
             return HomingStep::Failed(tendon.number());
         }
         self.lead()
     }
 
-    fn settle(&mut self, tendon: Tendon) -> HomingStep<T> {
+    fn settle(&mut self, tendon: TendonNumber) -> HomingStep<T> {
         self.left = self.left.saturating_sub(1);
         if self.left == 0 {
-            self.phase = Phase::Average(tendon);
+            self.phase = HomingPhase::Average(tendon);
             (self.count, self.position_sum, self.sums) = (0, T::zero(), [T::zero(); 3]);
         }
         self.lead()
     }
 
-    fn average(&mut self, tendon: Tendon, pulled_m: &[T; 3], tensions_n: &[T; 3]) -> HomingStep<T> {
+    fn average(
+        &mut self,
+        tendon: TendonNumber,
+        pulled_m: &[T; 3],
+        tensions_n: &[T; 3],
+    ) -> HomingStep<T> {
         let i = tendon.index();
         self.sums[i] += tensions_n[i];
         // From where it rests, so that the sum stays small.
@@ -286,18 +304,18 @@ impl<T: Scalar> Homing<T> {
         let count = T::from(self.count as f32);
         let tension = self.sums[i] / count;
         if !(tension >= self.touch_n * T::from(REST_PART)) {
-            // The leg has only swung against it, and hangs free: it is taken up farther.
+            // The leg has only swung against it, and hangs free: it is reeled in farther.
             self.steady[i].set(T::zero());
-            self.phase = Phase::TakeUp(tendon);
+            self.phase = HomingPhase::ReelIn(tendon);
             return self.lead();
         }
         let pulled = self.goals_m[i] + self.position_sum / count;
-        self.rest = Rest::new(tension, pulled);
-        self.phase = Phase::Search(tendon);
+        self.rest = RestSearch::new(tension, pulled);
+        self.phase = HomingPhase::Search(tendon);
         self.lead()
     }
 
-    fn search(&mut self, mechanism: &Mechanism<T>, tendon: Tendon) -> HomingStep<T> {
+    fn search(&mut self, mechanism: &Mechanism<T>, tendon: TendonNumber) -> HomingStep<T> {
         let i = tendon.index();
         match self.rest.step(mechanism, i) {
             Ok(None) => return HomingStep::Searching,
@@ -309,76 +327,17 @@ impl<T: Scalar> Homing<T> {
         };
         self.goals_m[i] -= self.release_m;
         self.start_m = self.goals_m[next.index()];
-        self.phase = Phase::LetOut(tendon);
+        self.phase = HomingPhase::PayOut(tendon);
         self.lead()
     }
 
-    fn let_out(&mut self, tendon: Tendon, pulled_m: &[T; 3]) -> HomingStep<T> {
+    fn pay_out(&mut self, tendon: TendonNumber, pulled_m: &[T; 3]) -> HomingStep<T> {
         let i = tendon.index();
-        if (pulled_m[i] - self.goals_m[i]).abs() < T::from(1e-4)
+        if (pulled_m[i] - self.goals_m[i]).abs() < T::from(ARRIVED_M)
             && let Some(next) = tendon.next()
         {
-            self.phase = Phase::TakeUp(next);
+            self.phase = HomingPhase::ReelIn(next);
         }
         self.lead()
-    }
-}
-
-/// Steps of the search for the pose on one tendon.
-const STEPS: u8 = 12;
-
-/// Searches the pose in which a hanging leg rests on one tendon, one step a tick.
-#[derive(Clone, Copy, Debug)]
-struct Rest<T> {
-    direction: Direction<T>,
-    tension_n: T,
-    pulled_m: T,
-    steps: u8,
-}
-
-impl<T: Scalar> Rest<T> {
-    fn new(tension_n: T, pulled_m: T) -> Self {
-        Self {
-            direction: Direction::down(),
-            tension_n,
-            pulled_m,
-            steps: 0,
-        }
-    }
-
-    /// The next step; at the end, the length of tendon `i` without tension when the board started, m.
-    fn step(&mut self, mechanism: &Mechanism<T>, i: usize) -> Result<Option<T>, Error> {
-        if self.steps < STEPS {
-            self.steps += 1;
-            self.direction = self.nearer(mechanism, i)?;
-            return Ok(None);
-        }
-        let mut twisted = None;
-        let geometry = mechanism.geometry(&self.direction, T::zero(), &mut twisted);
-        let kinematics = inverse_kinematics(geometry, &self.direction)?;
-        let elongation = mechanism.tendons[i].elongation(self.tension_n)?;
-        Ok(Some(kinematics.lengths[i] - elongation + self.pulled_m))
-    }
-
-    fn nearer(&self, mechanism: &Mechanism<T>, i: usize) -> Result<Direction<T>, Error> {
-        let direction = self.direction;
-        let mut pull = SVector::<T, 3>::zeros();
-        pull[i] = self.tension_n;
-        let mut twisted = None;
-        let geometry = mechanism.geometry(&direction, T::zero(), &mut twisted);
-        let load = estimate_load(geometry, &mechanism.support, &direction, T::zero(), &pull)?;
-        let plane = mechanism.support.plane(&direction);
-        let [x, y] = plane.project(&load);
-        let own = mechanism.leg.moment(&direction);
-        // What is out of balance, over the stiffness that the weight alone gives: the weights' own is the least there is.
-        let stiffness = mechanism.leg.stiffness(&direction)[(0, 0)]
-            + mechanism.support.joint().bending_nm_per_rad;
-        if !(stiffness > T::zero()) {
-            return Err(Error::Unstable);
-        }
-        let (turn_x, turn_y) = ((own.x - x) / stiffness, (own.y - y) / stiffness);
-        // A turn about x moves the tip along −p_z y, one about y along p_z x.
-        let vector = direction.vector();
-        Direction::from_xy(vector.x + vector.z * turn_y, vector.y - vector.z * turn_x)
     }
 }

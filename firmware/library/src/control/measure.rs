@@ -1,6 +1,6 @@
 //! From counts and codes to SI.
 
-use super::{TICK_S, bounds::within, filter::LowPass};
+use super::{TICK_S, bounds::clamp_symmetric, filter::LowPass};
 use crate::sensors::{CODE_MAX, Sensors};
 use crate::settings::Settings;
 use leg_model::Scalar;
@@ -132,7 +132,7 @@ impl<T: Scalar> Channel<T> {
     #[inline(always)]
     fn current(&self, current_code: u16) -> T {
         let half = T::from(f32::from(CODE_MAX) * 0.5);
-        within(code::<T>(current_code) - half, half) * self.a_per_code
+        clamp_symmetric(code::<T>(current_code) - half, half) * self.a_per_code
     }
 }
 

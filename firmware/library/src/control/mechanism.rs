@@ -1,9 +1,8 @@
 //! The mechanism that is controlled: rig, support and tendons, validated.
 
-use crate::settings::{Settings, SettingsError};
+use crate::settings::{Settings, SettingsError, TendonParameters};
 use leg_model::{
-    Direction, Error, Geometry, Load, Rig, RigParameters, Scalar, Support, Tendon, TensionBounds,
-    Twist,
+    Direction, Error, Geometry, Load, Rig, Scalar, Support, Tendon, TensionBounds, Twist,
 };
 
 /// Rig, support and tendons.
@@ -23,7 +22,7 @@ pub struct Mechanism<T> {
     pub f_max_n: T,
     /// The weights without a payload.
     pub leg: Load<T>,
-    /// Moment of a payload of 1 kg with the leg pretension, N·m/kg.
+    /// Moment of a payload of 1 kg with the leg horizontal, N·m/kg.
     pub payload_lever: T,
 }
 
@@ -33,12 +32,12 @@ impl<T: Scalar> Mechanism<T> {
     /// # Errors
     /// What the model refuses.
     pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
-        let parameters: RigParameters<T, 3> = settings.rig.into();
+        let parameters = settings.rig.map(T::from);
         let rig = Rig::new(&parameters)?;
         let (f_min_n, f_max_n) = (T::from(settings.f_min_n), T::from(settings.f_max_n));
         Ok(Self {
-            support: settings.support.support()?,
-            tendons: settings.tendons.tendons()?,
+            support: Support::new(settings.support, settings.joint.map(T::from))?,
+            tendons: TendonParameters::validated_all(&settings.tendons)?,
             // In the last newtons below the maximum tension a motor is slowed down: no target leads there.
             bounds: TensionBounds::new(f_min_n, f_max_n - settings.servo.f_max_band_n.into())?,
             f_min_n,
@@ -62,7 +61,7 @@ impl<T: Scalar> Mechanism<T> {
             let twist = self
                 .support
                 .twist(direction)
-                .and(&Twist::from_torsion(torsion));
+                .then(&Twist::from_torsion(torsion));
             twisted.insert(self.rig.geometry().twisted(&twist))
         } else if self.support.universal() {
             twisted.insert(self.rig.geometry().twisted(&self.support.twist(direction)))

@@ -1,26 +1,32 @@
-//! The time that a way needs so that rate, acceleration and jerk keep their limits.
+//! The time that a path needs so that rate, acceleration and jerk keep their limits.
 
-use super::quintic::{Motion, Peaks, Quintic};
+use super::bounds::max;
+use super::quintic::{MotionState, Peaks, Quintic};
 use crate::settings;
 use leg_model::Scalar;
 
-/// Places at which a way is looked at; between two of them a polynomial of fifth degree changes by less than the margin.
+/// Intervals between the places at which a trajectory is checked; see [`MARGIN`].
 pub const PLACES: u8 = 16;
 
-/// Limits are held to this part.
+/// Part of each limit that a trajectory may use, as it is checked at [`PLACES`] only. The test
+/// `trajectories_keep_their_limits` holds both.
 const MARGIN: f32 = 0.98;
 
-/// How much more time the next try is given.
+/// How much more time the next attempt is given. Jerk falls with the third power of time, so by a third an attempt; a
+/// trajectory takes at most 15 % more time than its limits ask.
 const LONGER: f32 = 1.15;
+
+/// Shortest trajectory, s: forty cycles, so that rounding up to whole cycles changes it little.
+pub const SHORTEST_S: f32 = 0.02;
 
 /// The limits as squares, in half-tangent coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits<T> {
+pub struct MotionLimits<T> {
     squares: Peaks<T>,
     rate: T,
 }
 
-impl<T: Scalar> Limits<T> {
+impl<T: Scalar> MotionLimits<T> {
     /// The settings' limits. A half-tangent changes by at least half of the angle, so half of each limit holds everywhere.
     pub fn new(motion: &settings::Motion) -> Self {
         let half = |limit: f32| T::from(0.5 * MARGIN * limit);
@@ -36,24 +42,24 @@ impl<T: Scalar> Limits<T> {
         }
     }
 
-    /// Whether a way keeps them at one of its places, 0 to [`PLACES`].
+    /// Whether a path keeps them at one of its places, 0 to `PLACES`.
     #[inline(always)]
-    pub fn kept(&self, way: &Quintic<T>, place: u8) -> bool {
+    pub fn kept(&self, path: &Quintic<T>, place: u8) -> bool {
         let part = T::from(f32::from(place) * (1.0 / PLACES as f32));
-        let squares = way.squares(part);
+        let squares = path.squares(part);
         squares.rate <= self.squares.rate
             && squares.acceleration <= self.squares.acceleration
             && squares.jerk <= self.squares.jerk
     }
 
-    /// A time that is too short for a way, or just enough, s.
+    /// A time that is too short for a path, or just enough, s.
     #[inline(always)]
-    pub fn shortest_s(&self, start: &Motion<T>, end: [T; 2]) -> T {
+    pub fn shortest_s(&self, start: &MotionState<T>, end: [T; 2]) -> T {
         let (x, y) = (end[0] - start.position[0], end[1] - start.position[1]);
-        // The fastest place of a way from rest to rest is at 15/8 of the average. A little more, so that rounding does
+        // The fastest place of a path from rest to rest is at 15/8 of the average. A little more, so that rounding does
         // not decide.
         let s = (x * x + y * y).sqrt() * T::from(1.89) / self.rate;
-        if s > T::from(0.02) { s } else { T::from(0.02) }
+        max(s, T::from(SHORTEST_S))
     }
 }
 

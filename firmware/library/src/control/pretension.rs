@@ -2,14 +2,15 @@
 
 use super::{
     Mechanism, Target,
-    bounds::{least, most, within},
+    bounds::{clamp_symmetric, max, min},
 };
 use leg_model::{BendingAxis, Error, Scalar, StiffnessCommand};
 
-/// Stiffnesses that differ by no more than this part of the demand are equal.
+/// Stiffnesses that differ by no more than this part of the demand are equal: well below what a tendon's curve is known to.
 const TOLERANCE: f32 = 1e-3;
 
-/// Longest step of the search, N.
+/// Longest step of the search, N: the secant's slope is not trusted over more of a curved stiffness. The scenarios `stiffness`
+/// and `stiffness_lean` hold it.
 const STEP_N: f32 = 10.0;
 
 /// What the pretension is made for.
@@ -23,7 +24,7 @@ pub enum PretensionDemand<T> {
 
 /// The search for the pretension.
 #[derive(Clone, Copy, Debug)]
-pub struct Pretension<T> {
+pub struct PretensionSearch<T> {
     demand: PretensionDemand<T>,
     pretension_n: T,
     last_pretension_n: T,
@@ -33,7 +34,7 @@ pub struct Pretension<T> {
     unreachable: bool,
 }
 
-impl<T: Scalar> Pretension<T> {
+impl<T: Scalar> PretensionSearch<T> {
     /// A pretension that is asked for directly, N.
     pub fn new(pretension_n: T) -> Self {
         Self {
@@ -103,7 +104,7 @@ impl<T: Scalar> Pretension<T> {
             target.distribution.pretension_min,
             target.distribution.pretension_max,
         );
-        let pretension = least(most(self.pretension_n, lowest), highest);
+        let pretension = min(max(self.pretension_n, lowest), highest);
         let stiffness = command.stiffness_at(pretension, &axis)?;
         if let Some(demand) = demand {
             self.search(pretension, stiffness, demand, [lowest, highest]);
@@ -117,20 +118,22 @@ impl<T: Scalar> Pretension<T> {
     fn search(&mut self, pretension: T, stiffness: T, demand: T, [lowest, highest]: [T; 2]) {
         let error = demand - stiffness;
         let moved = pretension - self.last_pretension_n;
-        // A tendon's stiffness about grows with its tension; where it does not, the search must still go on.
-        let proportion = T::from(0.2) * stiffness / most(pretension, T::one());
+        // A tendon's stiffness about grows with its tension. Where it hardly does, the slope is taken as a fifth of proportional,
+        // so that the search goes on.
+        let proportion = T::from(0.2) * stiffness / max(pretension, T::one());
+        // Over a shorter move, N, the difference of two stiffnesses is rounding.
         if moved.abs() > T::from(0.05) {
             self.slope = (stiffness - self.last_stiffness) / moved;
         }
-        let slope = most(self.slope, proportion);
+        let slope = max(self.slope, proportion);
         let met = error.abs() <= T::from(TOLERANCE) * demand;
         let step = if met {
             T::zero()
         } else {
-            within(error / slope, T::from(STEP_N))
+            clamp_symmetric(error / slope, T::from(STEP_N))
         };
         let wanted = pretension + step;
-        self.pretension_n = least(most(wanted, lowest), highest);
+        self.pretension_n = min(max(wanted, lowest), highest);
         self.unreachable = wanted < lowest || wanted > highest;
     }
 }

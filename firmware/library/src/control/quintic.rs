@@ -1,10 +1,10 @@
-//! A smooth way from a moving start to a resting end: a polynomial of fifth degree in each coordinate.
+//! A smooth path from a moving start to a resting end: a polynomial of fifth degree in each coordinate.
 
 use leg_model::Scalar;
 
 /// Position, rate and its change, in two coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion<T> {
+pub struct MotionState<T> {
     /// Position.
     pub position: [T; 2],
     /// Its change, 1/s.
@@ -13,9 +13,9 @@ pub struct Motion<T> {
     pub acceleration: [T; 2],
 }
 
-impl<T: Scalar> Motion<T> {
+impl<T: Scalar> MotionState<T> {
     /// At rest.
-    pub fn at(position: [T; 2]) -> Self {
+    pub fn at_rest(position: [T; 2]) -> Self {
         Self {
             position,
             rate: [T::zero(); 2],
@@ -24,7 +24,7 @@ impl<T: Scalar> Motion<T> {
     }
 }
 
-/// The way, over a time that goes from 0 to 1.
+/// The path, over a time that goes from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quintic<T> {
     coefficients: [[T; 6]; 2],
@@ -44,19 +44,19 @@ pub struct Peaks<T> {
 
 impl<T: Scalar> Quintic<T> {
     /// From a motion to rest at `end` within a time in s.
-    pub fn new(start: &Motion<T>, end: [T; 2], duration_s: T) -> Self {
+    pub fn new(start: &MotionState<T>, end: [T; 2], duration_s: T) -> Self {
         let number = |value: f32| T::from(value);
         let coordinate = |i: usize| {
-            let way = end[i] - start.position[i];
+            let distance = end[i] - start.position[i];
             let rate = start.rate[i] * duration_s;
             let half = T::HALF * start.acceleration[i] * duration_s * duration_s;
             [
                 start.position[i],
                 rate,
                 half,
-                number(10.0) * way - number(6.0) * rate - number(3.0) * half,
-                number(8.0) * rate + number(3.0) * half - number(15.0) * way,
-                number(6.0) * way - number(3.0) * rate - half,
+                number(10.0) * distance - number(6.0) * rate - number(3.0) * half,
+                number(8.0) * rate + number(3.0) * half - number(15.0) * distance,
+                number(6.0) * distance - number(3.0) * rate - half,
             ]
         };
         Self {
@@ -75,10 +75,10 @@ impl<T: Scalar> Quintic<T> {
 
     /// Position, rate and acceleration at a part of the time.
     #[inline(always)]
-    pub fn motion(&self, part: T) -> Motion<T> {
+    pub fn motion(&self, part: T) -> MotionState<T> {
         let per_second = T::one() / self.duration_s;
         let number = |value: f32| T::from(value);
-        Motion {
+        MotionState {
             position: self.position(part),
             rate: self.coefficients.map(|[_, c1, c2, c3, c4, c5]| {
                 let slope = c1

@@ -2,7 +2,7 @@
 
 use super::{
     CYCLE_S, Mechanism,
-    bounds::{least, most, within},
+    bounds::{clamp_symmetric, max, min},
 };
 use crate::settings::Settings;
 use leg_model::{
@@ -34,7 +34,7 @@ pub struct Target<T> {
 
 /// Computes targets, one after the other.
 #[derive(Clone, Copy, Debug)]
-pub struct Targets<T> {
+pub struct TargetGenerator<T> {
     pretension_n: T,
     pretension_step_n: T,
     trim_n: T,
@@ -48,20 +48,20 @@ pub struct Targets<T> {
 
 /// What a target is made for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wish<T> {
+pub struct TargetDemand<T> {
     /// The pose.
     pub q: HalfTangent<T>,
     /// The load beyond the leg's own weight, as a horizontal moment, N·m.
     pub excess_nm: [T; 2],
     /// Whether the weights shall be held, or left out.
     pub compensated: bool,
-    /// Whether the tensions tell how the pretension is to be trimmed: not before every tendon pulls.
+    /// Whether the pretension is trimmed by the measured tensions: not before every tendon pulls.
     pub trimmed: bool,
     /// The pretension, N.
     pub pretension_n: T,
 }
 
-impl<T: Scalar> Targets<T> {
+impl<T: Scalar> TargetGenerator<T> {
     /// At pretension zero.
     pub fn new(settings: &Settings) -> Self {
         Self {
@@ -98,10 +98,10 @@ impl<T: Scalar> Targets<T> {
     pub fn next(
         &mut self,
         mechanism: &Mechanism<T>,
-        wish: &Wish<T>,
+        demand: &TargetDemand<T>,
         measured_n: &[T; 3],
     ) -> Result<Target<T>, Error> {
-        let direction = wish.q.direction();
+        let direction = demand.q.direction();
         let torsion = self.torsion.angle;
         let kinematics = inverse_kinematics(
             mechanism.geometry(&direction, torsion, &mut None),
@@ -109,20 +109,20 @@ impl<T: Scalar> Targets<T> {
         )?;
         let plane = mechanism.support.plane(&direction);
         let mut moment = mechanism.support.joint_moment(&direction, torsion);
-        let [x, y] = wish.excess_nm;
+        let [x, y] = demand.excess_nm;
         let load = mechanism.leg.moment(&direction) + Vector3::new(x, y, T::zero());
-        moment += load * self.step_share(wish.compensated);
+        moment += load * self.step_share(demand.compensated);
         let distribution = distribute(&kinematics.moment_map, &plane, &moment, &mechanism.bounds)?;
         if !distribution.feasible() {
             return Err(Error::Infeasible);
         }
-        let limited = self.step_pretension(wish.pretension_n, &distribution);
+        let limited = self.step_pretension(demand.pretension_n, &distribution);
         let tensions = distribution.tensions(self.pretension_n);
         if mechanism.support.twists() {
             let third = (kinematics.moment_map * tensions + moment).dot(&plane.normal());
             self.torsion.step(third);
         }
-        let trimmed = if wish.trimmed {
+        let trimmed = if demand.trimmed {
             self.trim(&distribution, measured_n)
         } else {
             T::zero()
@@ -142,7 +142,7 @@ impl<T: Scalar> Targets<T> {
             pretension_n: self.pretension_n,
             tensions_n,
             unstretched_m,
-            limited: limited || (wish.trimmed && !(trimmed.abs() < self.trim_max_n)),
+            limited: limited || (demand.trimmed && !(trimmed.abs() < self.trim_max_n)),
         })
     }
 
@@ -150,23 +150,23 @@ impl<T: Scalar> Targets<T> {
     #[inline(always)]
     fn step_share(&mut self, compensated: bool) -> T {
         let wanted = if compensated { T::one() } else { T::zero() };
-        let share = self.share + within(wanted - self.share, self.share_step);
+        let share = self.share + clamp_symmetric(wanted - self.share, self.share_step);
         self.share = share;
         share * share * (T::from(3.0) - T::TWO * share)
     }
 
-    /// Moves the pretension towards the wish, inside what the bounds allow; tells whether they hold it back.
+    /// Moves the pretension towards the demand, inside what the bounds allow; true if they hold it back.
     #[inline(always)]
     fn step_pretension(&mut self, wish_n: T, distribution: &Distribution<T, 3>) -> bool {
         let (lowest, highest) = (distribution.pretension_min, distribution.pretension_max);
-        let allowed = least(most(wish_n, lowest), highest);
-        let step = within(allowed - self.pretension_n, self.pretension_step_n);
+        let allowed = min(max(wish_n, lowest), highest);
+        let step = clamp_symmetric(allowed - self.pretension_n, self.pretension_step_n);
         // The pose may narrow the range faster than the pretension follows.
-        self.pretension_n = least(most(self.pretension_n + step, lowest), highest);
+        self.pretension_n = min(max(self.pretension_n + step, lowest), highest);
         allowed != wish_n
     }
 
-    /// What is added to the pretension so that the measured one becomes it: for what the curves do not tell.
+    /// What is added to the pretension so that the measured one becomes it: for what the curves leave out.
     #[inline(always)]
     fn trim(&mut self, distribution: &Distribution<T, 3>, measured_n: &[T; 3]) -> T {
         let mut measured = T::SUM_START;
@@ -175,7 +175,7 @@ impl<T: Scalar> Targets<T> {
         }
         // The squares of the tensions per pretension add up to three.
         let error = self.pretension_n - measured * T::from(1.0 / 3.0);
-        self.trim_n = within(self.trim_n + self.trim_gain * error, self.trim_max_n);
+        self.trim_n = clamp_symmetric(self.trim_n + self.trim_gain * error, self.trim_max_n);
         self.trim_n
     }
 }
@@ -205,11 +205,13 @@ impl<T: Scalar> Torsion<T> {
     fn step(&mut self, moment: T) {
         let turned = self.angle - self.last_angle;
         let slope = (moment - self.last_moment) / turned;
-        // Steps too short to tell a slope from rounding, and slopes that would turn the leg away, are left out.
+        // Over less than 1e-4 rad the difference of two moments is rounding. A stable leg has a negative slope; the softest, a
+        // ball joint at 10 N, has −0.5 N·m/rad, so one above −0.01 is an artefact.
         if turned.abs() > T::from(1e-4) && slope < -T::from(1e-2) {
             self.slope = slope;
         }
         (self.last_angle, self.last_moment) = (self.angle, moment);
-        self.angle -= within(moment / self.slope, T::from(2e-3));
+        // No more than 2 mrad a cycle, 4 rad/s: faster than any trajectory twists the leg, slow enough for its slope.
+        self.angle -= clamp_symmetric(moment / self.slope, T::from(2e-3));
     }
 }

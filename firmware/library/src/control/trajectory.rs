@@ -1,29 +1,29 @@
-//! Where the leg shall be at any time: jerk-limited ways through half-tangent coordinates, which are smooth at the
+//! Where the leg shall be at any time: jerk-limited paths through half-tangent coordinates, which are smooth at the
 //! vertical.
 
 use super::CYCLE_S;
-use super::plan::{Limits, PLACES, longer};
-use super::quintic::{Motion, Quintic};
-use crate::settings::Settings;
+use super::plan::{MotionLimits, PLACES, SHORTEST_S, longer};
+use super::quintic::{MotionState, Quintic};
 use leg_model::{HalfTangent, Scalar};
 
-/// Longest way, s: one that would need more is given up, and the leg stays on the old one.
+/// Longest trajectory, s: one that would need more is given up, and the leg stays on the old one. Its cycles, 1.2 million, are
+/// exact in f32.
 const LONGEST_S: f32 = 600.0;
 
 /// A point of the trajectory.
 pub type Point<T> = HalfTangent<T>;
 
-/// The trajectory: a way that is followed and, while one is planned, where it shall lead.
+/// The trajectory: a path that is followed and, while one is planned, where it shall lead.
 #[derive(Clone, Copy, Debug)]
 pub struct Trajectory<T> {
-    limits: Limits<T>,
-    way: Quintic<T>,
+    limits: MotionLimits<T>,
+    path: Quintic<T>,
     cycle: u32,
     cycles: u32,
     planned: Option<Plan<T>>,
 }
 
-/// A way that is tried with ever more time, and looked at place by place.
+/// A path that is tried with ever more time, and checked place by place.
 #[derive(Clone, Copy, Debug)]
 struct Plan<T> {
     end: End<T>,
@@ -31,24 +31,24 @@ struct Plan<T> {
     tried: Option<Attempt<T>>,
 }
 
-/// A way that is being looked at. It starts where the present way will be in a few cycles.
+/// A path that is being checked. It starts where the present path will be in a few cycles.
 #[derive(Clone, Copy, Debug)]
 struct Attempt<T> {
-    way: Quintic<T>,
+    path: Quintic<T>,
     cycles: u32,
     /// Cycles until it starts.
     ahead: u32,
-    /// The next place to look at.
+    /// The next place to check.
     place: u8,
 }
 
-/// Cycles that are given to look at a way: enough for all its places.
+/// Cycles that are given to check a path: enough for all its places.
 const AHEAD: u32 = PLACES as u32 / PLACES_A_CYCLE as u32 + 1;
 
-/// Places looked at in a cycle.
+/// Places checked in a cycle: as many as fit beside the monitors of two axes in a tick of the instruction budget.
 const PLACES_A_CYCLE: u8 = 2;
 
-/// Where a way shall end.
+/// Where a path shall end.
 #[derive(Clone, Copy, Debug)]
 enum End<T> {
     /// There.
@@ -58,12 +58,12 @@ enum End<T> {
 }
 
 impl<T: Scalar> Trajectory<T> {
-    /// At rest, straight down.
-    pub fn new(settings: &Settings) -> Self {
-        let start = [T::zero(); 2];
+    /// At rest at a point.
+    pub fn new(limits: MotionLimits<T>, start: Point<T>) -> Self {
+        let start = start.xy();
         Self {
-            limits: Limits::new(&settings.motion),
-            way: Quintic::new(&Motion::at(start), start, T::one()),
+            limits,
+            path: Quintic::new(&MotionState::at_rest(start), start, T::one()),
             cycle: 1,
             cycles: 1,
             planned: None,
@@ -72,7 +72,7 @@ impl<T: Scalar> Trajectory<T> {
 
     /// Starts anew, at rest.
     pub fn start(&mut self, q: Point<T>) {
-        self.way = Quintic::new(&Motion::at(q.xy()), q.xy(), T::one());
+        self.path = Quintic::new(&MotionState::at_rest(q.xy()), q.xy(), T::one());
         (self.cycle, self.cycles, self.planned) = (1, 1, None);
     }
 
@@ -94,7 +94,7 @@ impl<T: Scalar> Trajectory<T> {
         });
     }
 
-    /// Whether it is on its way.
+    /// Whether it moves, or a plan is being made.
     #[inline(always)]
     pub fn moving(&self) -> bool {
         self.cycle < self.cycles || self.planned.is_some()
@@ -106,22 +106,22 @@ impl<T: Scalar> Trajectory<T> {
         if self.cycle < self.cycles {
             self.cycle += 1;
         }
-        let [x, y] = self.way.position(self.part(0));
+        let [x, y] = self.path.position(self.part(0));
         HalfTangent::new(x, y)
     }
 
-    /// Goes on with the plan of another way, once a cycle.
+    /// Goes on with the plan of another path, once a cycle.
     #[inline(never)]
     pub fn advance_plan(&mut self) {
         if let Some(plan) = self.planned {
             self.planned = match plan.tried {
-                Some(attempt) => self.look(plan, attempt),
+                Some(attempt) => self.check(plan, attempt),
                 None => self.attempt(plan),
             };
         }
     }
 
-    /// The part of the way that will be done in some cycles.
+    /// The part of the path that will be done in some cycles.
     #[inline(always)]
     fn part(&self, ahead: u32) -> T {
         let cycle = self.cycle + ahead;
@@ -132,14 +132,14 @@ impl<T: Scalar> Trajectory<T> {
         }
     }
 
-    /// Makes a way from where the trajectory will be; no plan if it would take too long.
+    /// Makes a path from where the trajectory will be; no plan if it would take too long.
     #[inline(always)]
     fn attempt(&self, plan: Plan<T>) -> Option<Plan<T>> {
-        let start = self.way.motion(self.part(AHEAD));
+        let start = self.path.motion(self.part(AHEAD));
         let duration_s = match (plan.duration_s, plan.end) {
             (Some(duration_s), _) => duration_s,
             (None, End::At(end)) => self.limits.shortest_s(&start, end),
-            (None, End::Soon) => T::from(0.02),
+            (None, End::Soon) => T::from(SHORTEST_S),
         };
         if duration_s > T::from(LONGEST_S) {
             return None;
@@ -147,14 +147,16 @@ impl<T: Scalar> Trajectory<T> {
         let end = match plan.end {
             End::At(end) => end,
             End::Soon => {
+                // With two fifths of rate × time the rate falls as (1 − s)³(1 + 3s): it never changes its sign, and both
+                // acceleration and jerk end at zero.
                 let on = |i: usize| start.position[i] + start.rate[i] * duration_s * T::from(0.4);
                 [on(0), on(1)]
             }
         };
-        // Whole cycles: the way is stretched to them.
+        // Whole cycles: the path is stretched to them.
         let cycles = cycles(duration_s);
         let attempt = Attempt {
-            way: Quintic::new(&start, end, T::from(cycles as f32 * CYCLE_S)),
+            path: Quintic::new(&start, end, T::from(cycles as f32 * CYCLE_S)),
             cycles,
             ahead: AHEAD,
             place: 0,
@@ -166,16 +168,16 @@ impl<T: Scalar> Trajectory<T> {
         })
     }
 
-    /// Looks at the next places of a way. One that leaves the limits is tried again with more time; one that keeps them
+    /// Checks the next places of a path. One that leaves the limits is tried again with more time; one that keeps them
     /// is taken when its start has come.
     #[inline(always)]
-    fn look(&mut self, plan: Plan<T>, mut attempt: Attempt<T>) -> Option<Plan<T>> {
+    fn check(&mut self, plan: Plan<T>, mut attempt: Attempt<T>) -> Option<Plan<T>> {
         attempt.ahead = attempt.ahead.saturating_sub(1);
         for _ in 0..PLACES_A_CYCLE {
             if attempt.place > PLACES {
                 break;
             }
-            if !self.limits.kept(&attempt.way, attempt.place) {
+            if !self.limits.kept(&attempt.path, attempt.place) {
                 return Some(Plan {
                     duration_s: plan.duration_s.map(longer),
                     tried: None,
@@ -190,7 +192,7 @@ impl<T: Scalar> Trajectory<T> {
                 ..plan
             });
         }
-        (self.way, self.cycle, self.cycles) = (attempt.way, 0, attempt.cycles);
+        (self.path, self.cycle, self.cycles) = (attempt.path, 0, attempt.cycles);
         None
     }
 }

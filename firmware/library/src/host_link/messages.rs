@@ -9,8 +9,8 @@ use heapless::String;
 use postcard_schema::{Schema, key::Key};
 use serde::{Deserialize, Serialize};
 
-/// Longest text that a board keeps over a reset, bytes.
-pub const LAST_WORDS_MAX: usize = 96;
+/// Longest crash report, bytes.
+pub const CRASH_REPORT_MAX: usize = 96;
 
 /// Hash of the messages between a host and a leg: it changes when the shape of one of them changes.
 pub const HOST_SCHEMA: [u8; 8] = Key::for_path::<(HostRequest, HostReply)>("leg").to_bytes();
@@ -33,7 +33,7 @@ pub enum BoardKind {
     InProcess,
 }
 
-/// Bytes by which a host is told from another: chosen at random when it starts.
+/// Identifies a host: chosen at random when it starts.
 pub type HostId = u32;
 
 /// What a host asks. The first on a link is [`HostRequest::Identify`].
@@ -66,10 +66,10 @@ pub enum HostRequest {
     SaveSettings,
 }
 
-/// What the leg answers, and tells by itself.
+/// What the leg answers, and sends by itself.
 ///
 /// The order of the variants is part of the format: [`HostReply::Identified`] and [`HostReply::Refused`] stay in front,
-/// so that two sides of different age can still tell each other so.
+/// so that two sides of different age still understand that.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
 #[allow(
     clippy::large_enum_variant,
@@ -82,8 +82,8 @@ pub enum HostReply {
     Refused(HostRefusal),
     /// It is done.
     Done,
-    /// What the leg tells of itself.
-    Telemetry(Told),
+    /// The telemetry.
+    Telemetry(TelemetryReport),
     /// The raw codes of the sensors.
     Sensors(Sensors),
     /// The settings in use.
@@ -92,8 +92,8 @@ pub enum HostReply {
 
 /// Telemetry with its number.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
-pub struct Told {
-    /// Counts what was told and what found no room on the line, so a gap shows what was lost.
+pub struct TelemetryReport {
+    /// Counts what was sent and what found no room on the line, so a gap shows what was lost.
     pub number: u32,
     /// The leg after a tick.
     pub telemetry: Telemetry<f32>,
@@ -107,14 +107,14 @@ pub struct Identity {
     /// Version of the firmware: major, minor, patch.
     pub version: [u8; 3],
     /// Why the board started.
-    pub reset: Reset,
-    /// What the firmware said before it stopped the last time; empty if it did not stop by itself.
-    pub last_words: String<LAST_WORDS_MAX>,
+    pub reset: ResetCause,
+    /// Crash report of the last run; empty if it did not stop by itself.
+    pub crash_report: String<CRASH_REPORT_MAX>,
 }
 
 /// Why a board started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
-pub enum Reset {
+pub enum ResetCause {
     /// The power came.
     Power,
     /// The supply was too low for the chip.

@@ -9,7 +9,7 @@ mod mock;
 mod settings;
 mod telemetry;
 
-use super::{HostId, HostLink, HostRefusal, HostReply, HostRequest, Identity, Reset};
+use super::{HostId, HostLink, HostRefusal, HostReply, HostRequest, Identity, ResetCause};
 use crate::command::{Command, CommandRefusal};
 use crate::frame::{Decoder, MAX_FRAME, encode};
 use crate::host_link::{BoardKind, HOST_SCHEMA, Hello};
@@ -109,8 +109,8 @@ fn identity() -> Identity {
     Identity {
         board: BoardKind::InProcess,
         version: [1, 2, 3],
-        reset: Reset::Emulated,
-        last_words: "once".parse().unwrap(),
+        reset: ResetCause::Emulated,
+        crash_report: "once".parse().unwrap(),
     }
 }
 

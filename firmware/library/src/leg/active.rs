@@ -1,128 +1,149 @@
-//! What the leg does while it follows commands or looks for its zero.
+//! Following commands: estimate, pretension, target and plan in turn, one a tick.
 
-use super::Leg;
+use super::phase::Phase;
+use super::shared::Shared;
 use crate::command::Compensation;
-use crate::control::bounds::most;
-use crate::control::{Axis, AxisGoal, CYCLE_S, CYCLE_TICKS, HomingStep, Measured, Weighing, Wish};
-use crate::supervisor::Event;
+use crate::control::{
+    Axis, AxisGoal, CYCLE_S, CYCLE_TICKS, LoadEstimation, Measured, TargetDemand, Trajectory,
+    bounds,
+};
 use leg_model::{Error, Scalar};
 
-impl<T: Scalar> Leg<T> {
-    /// Follows the trajectory: estimate, pretension, target and plan in turn, one a tick.
+/// The leg follows commands.
+#[derive(Clone, Copy, Debug)]
+pub struct Active<T> {
+    pub trajectory: Trajectory<T>,
+    /// Whether every tendon has been above the minimum tension since the leg was armed.
+    pub tensioned: bool,
+    slack: Slack<T>,
+}
+
+/// The travel from slack to taut: every tendon is as far from its target as every other, so that the leg does not swing.
+#[derive(Clone, Copy, Debug)]
+struct Slack<T> {
+    /// How much travel is left, m; none before the first target.
+    left_m: Option<T>,
+    /// Cycles since the leg was armed.
+    cycles: u32,
+}
+
+impl<T: Scalar> Slack<T> {
+    /// Whether every tendon is led to its target itself.
     #[inline(always)]
-    pub(super) fn follow(&mut self, measured: &Measured<T>) -> Result<(), Error> {
-        let Some(zero_m) = self.zero_m else {
-            return Err(Error::NotConverged);
-        };
-        match self.phase {
-            0 => self.track(&zero_m, measured),
-            1 => self.choose_pretension(),
-            2 => self.aim(&zero_m, measured),
-            // A leg that is not taut yet does not set out.
-            _ if self.slack.gone() => {
-                self.trajectory.advance_plan();
+    fn taken_up(&self) -> bool {
+        self.left_m.is_some_and(|left| left <= T::zero())
+    }
+}
+
+impl<T: Scalar> Active<T> {
+    /// Follows commands from the present pose and pretension on.
+    pub fn begin(shared: &mut Shared<T>, measured: &Measured<T>) -> Self {
+        let [a, b, c] = measured.tensions_n;
+        let pretension_n = (a + b + c) * T::from(1.0 / 3.0);
+        let compensated = shared.compensation != Compensation::Off;
+        shared.targets.start(pretension_n, compensated);
+        shared.target = None;
+        shared.residual_m = None;
+        Self {
+            trajectory: Trajectory::new(
+                shared.limits.motion,
+                shared.estimator.direction().half_tangent(),
+            ),
+            tensioned: false,
+            slack: Slack {
+                left_m: None,
+                cycles: 0,
+            },
+        }
+    }
+
+    /// One tick.
+    #[inline(always)]
+    pub fn step(
+        &mut self,
+        phase: Phase,
+        shared: &mut Shared<T>,
+        measured: &Measured<T>,
+    ) -> Result<(), Error> {
+        match phase {
+            Phase::Estimate => self.estimate(shared, measured),
+            Phase::Pretension => search_pretension(shared),
+            Phase::Target => self.aim(shared, measured),
+            Phase::Plan => {
+                // A leg that is not taut yet does not set out.
+                if self.slack.taken_up() {
+                    self.trajectory.advance_plan();
+                }
                 Ok(())
             }
-            _ => Ok(()),
         }
     }
 
-    /// Goes on estimating pose and load while nothing is made of them, so that the leg starts from where it is.
+    /// Whether the tendons take too long to become taut.
     #[inline(always)]
-    pub(super) fn look(&mut self, measured: &Measured<T>) {
-        if let (0, Some(zero_m)) = (self.phase, self.zero_m) {
-            // Where there is no result, the last pose stands.
-            let _ = self.estimate(&zero_m, measured, Weighing::AtOnce);
-        }
+    pub fn stays_slack(&self, shared: &Shared<T>) -> bool {
+        !self.tensioned && self.slack.cycles > shared.limits.taut_cycles
     }
 
-    /// Estimates pose and load. While the tendons come up from slack there is no load to be told.
+    /// Estimates pose and load. While the tendons come up from slack, their tensions do not show the load.
     #[inline(always)]
-    fn track(&mut self, zero_m: &[T; 3], measured: &Measured<T>) -> Result<(), Error> {
-        let weighing = if self.compensation == Compensation::Frozen || !self.tensioned {
-            Weighing::Frozen
+    fn estimate(&mut self, shared: &mut Shared<T>, measured: &Measured<T>) -> Result<(), Error> {
+        let load_estimation = if shared.compensation == Compensation::Frozen || !self.tensioned {
+            LoadEstimation::Frozen
         } else {
-            Weighing::Filtered
+            LoadEstimation::Filtered
         };
         if !self.tensioned {
             self.slack.cycles = self.slack.cycles.saturating_add(1);
-            let f_min_n = self.mechanism.f_min_n;
+            let f_min_n = shared.mechanism.f_min_n;
             let tensions_n = &measured.steady_tensions_n;
             self.tensioned =
-                self.slack.gone() && tensions_n.iter().all(|&tension| tension > f_min_n);
+                self.slack.taken_up() && tensions_n.iter().all(|&tension| tension > f_min_n);
         }
-        self.estimate(zero_m, measured, weighing)
+        shared.estimate(measured, load_estimation)
     }
 
+    /// Computes the next target, and leads the axes there.
     #[inline(never)]
-    fn estimate(
-        &mut self,
-        zero_m: &[T; 3],
-        measured: &Measured<T>,
-        weighing: Weighing,
-    ) -> Result<(), Error> {
-        let mut unstretched_m = *zero_m;
-        for (unstretched, &pulled) in unstretched_m.iter_mut().zip(&measured.pulled_m) {
-            *unstretched -= pulled;
-        }
-        let tensions_n = &measured.steady_tensions_n;
-        let torsion = self.targets.torsion();
-        let mechanism = &self.mechanism;
-        let estimate =
-            self.estimator
-                .update(mechanism, &unstretched_m, tensions_n, torsion, weighing)?;
-        self.residual_m = Some(estimate.residual_m);
-        Ok(())
-    }
-
-    #[inline(never)]
-    fn choose_pretension(&mut self) -> Result<(), Error> {
-        match &self.target {
-            Some(target) => {
-                self.pretension
-                    .step(&self.mechanism, target, self.estimator.payload_kg())
-            }
-            None => Ok(()),
-        }
-    }
-
-    #[inline(never)]
-    fn aim(&mut self, zero_m: &[T; 3], measured: &Measured<T>) -> Result<(), Error> {
-        let taut = self.slack.gone();
-        let wish = Wish {
+    fn aim(&mut self, shared: &mut Shared<T>, measured: &Measured<T>) -> Result<(), Error> {
+        let Some(zero_m) = shared.zero_m else {
+            return Err(Error::NotConverged);
+        };
+        let taut = self.slack.taken_up();
+        let demand = TargetDemand {
             q: self.trajectory.step(),
-            excess_nm: self.estimator.excess_nm(),
-            compensated: self.compensation != Compensation::Off,
-            trimmed: self.compensation == Compensation::Estimated && self.tensioned,
+            excess_nm: shared.estimator.excess_nm(),
+            compensated: shared.compensation != Compensation::Off,
+            trimmed: shared.compensation == Compensation::Estimated && self.tensioned,
             // The pretension comes up when every tendon is as far from slack as every other.
             pretension_n: if taut {
-                self.pretension.pretension_n()
+                shared.pretension.pretension_n()
             } else {
                 T::zero()
             },
         };
-        let target = self
+        let target = shared
             .targets
-            .next(&self.mechanism, &wish, &measured.steady_tensions_n);
+            .next(&shared.mechanism, &demand, &measured.steady_tensions_n);
         let mut target = match target {
             Ok(target) => target,
             Err(error) => {
-                self.stay();
+                self.stay(shared);
                 return Err(error);
             }
         };
-        let mut pulled_m = *zero_m;
+        let mut pulled_m = zero_m;
         for (pulled, &unstretched) in pulled_m.iter_mut().zip(&target.unstretched_m) {
             *pulled -= unstretched;
         }
         let speed_m_per_s = if taut {
-            self.limits.servo_m_per_s
+            shared.limits.servo_m_per_s
         } else {
-            self.tauten(&mut pulled_m);
-            self.limits.ramp_m_per_s
+            self.reel_in(shared, &mut pulled_m);
+            shared.limits.ramp_m_per_s
         };
         let per_ticks = T::one() / T::from(f32::from(CYCLE_TICKS));
-        for (axis, &pulled_m) in self.axes.iter_mut().zip(&pulled_m) {
+        for (axis, &pulled_m) in shared.axes.iter_mut().zip(&pulled_m) {
             let goal = AxisGoal {
                 pulled_m,
                 speed_m_per_s,
@@ -130,37 +151,38 @@ impl<T: Scalar> Leg<T> {
             axis.lead(&goal, per_ticks);
         }
         target.limited &= taut;
-        self.target = Some(target);
+        shared.target = Some(target);
         Ok(())
     }
 
     /// Stays where the last target was: there is none where the trajectory is now.
     #[cold]
-    fn stay(&mut self) {
-        for axis in &mut self.axes {
+    fn stay(&mut self, shared: &mut Shared<T>) {
+        for axis in &mut shared.axes {
             axis.pause();
         }
-        if let Some(target) = &self.target {
+        if let Some(target) = &shared.target {
             self.trajectory.start(target.direction.half_tangent());
         }
-        self.refused = true;
+        shared.refused = true;
     }
 
     /// Takes from the goals how far the tendons are still kept from them, m, and lessens that.
     #[inline(never)]
-    fn tauten(&mut self, goals_m: &mut [T; 3]) {
+    fn reel_in(&mut self, shared: &Shared<T>, goals_m: &mut [T; 3]) {
         let mut left_m = self.slack.left_m.unwrap_or_else(|| {
             let farthest = |farthest: T, (axis, &goal): (&Axis<T>, &T)| {
-                most(farthest, goal - axis.reference_m())
+                bounds::max(farthest, goal - axis.reference_m())
             };
-            self.axes
+            shared
+                .axes
                 .iter()
                 .zip(goals_m.iter())
                 .fold(T::zero(), farthest)
         });
-        let step_m = self.limits.ramp_m_per_s * T::from(CYCLE_S);
+        let step_m = shared.limits.ramp_m_per_s * T::from(CYCLE_S);
         let mut there = true;
-        for (axis, goal) in self.axes.iter().zip(goals_m) {
+        for (axis, goal) in shared.axes.iter().zip(goals_m) {
             *goal -= left_m;
             there &= (*goal - axis.reference_m()).abs() <= T::TWO * step_m;
         }
@@ -169,38 +191,17 @@ impl<T: Scalar> Leg<T> {
         }
         self.slack.left_m = Some(left_m);
     }
+}
 
-    /// One tick of homing.
-    #[inline(never)]
-    pub(super) fn seek(&mut self, measured: &Measured<T>) {
-        let Some(homing) = &mut self.homing else {
-            return;
-        };
-        let step = homing.step(&self.mechanism, &measured.pulled_m, &measured.tensions_n);
-        if !homing.releases() {
-            self.f_max_n = self.homing_f_max_n;
-            let twice = self.homing_f_max_n + self.homing_f_max_n;
-            self.homing_failed = measured.tensions_n.iter().any(|&tension| tension > twice);
+/// One step of the search for the pretension, at the last target.
+#[inline(never)]
+fn search_pretension<T: Scalar>(shared: &mut Shared<T>) -> Result<(), Error> {
+    match &shared.target {
+        Some(target) => {
+            shared
+                .pretension
+                .step(&shared.mechanism, target, shared.estimator.payload_kg())
         }
-        match step {
-            HomingStep::Lead(goals) => {
-                for (axis, goal) in self.axes.iter_mut().zip(&goals) {
-                    axis.lead(goal, T::one());
-                }
-            }
-            HomingStep::Tare(offsets_n) => self.measurement.tare(&offsets_n),
-            HomingStep::Searching => {}
-            HomingStep::Found(zero_m) => {
-                self.zero_m = Some(zero_m);
-                self.homing = None;
-                self.estimator.straight_down();
-                self.supervisor.happen(Event::Homed);
-            }
-            HomingStep::Failed(tendon) => {
-                self.failed_tendon = tendon;
-                self.homing_failed = true;
-                self.homing = None;
-            }
-        }
+        None => Ok(()),
     }
 }

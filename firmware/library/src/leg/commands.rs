@@ -1,5 +1,7 @@
 //! What the host's commands make the leg do.
 
+use super::active::Active;
+use super::mode::Mode;
 use super::{Leg, Outcome};
 use crate::command::{Command, CommandRefusal};
 use crate::control::{Measured, PretensionDemand};
@@ -13,164 +15,164 @@ fn is_azimuth([cos, sin]: [f32; 2]) -> bool {
 }
 
 impl<T: Scalar> Leg<T> {
-    /// Takes a command, which a later tick obeys; the number comes back with its [`Outcome`]. A stop goes before whatever
+    /// Takes a command, which a later tick executes; the number comes back with its [`Outcome`]. A stop goes before whatever
     /// waits. False if there is no room; apart from the tick, as a board's link runs below it.
     pub fn command(&mut self, number: u16, command: Command) -> bool {
         if matches!(command, Command::Stop | Command::Disarm) {
-            self.forget_commands();
+            self.queue.supersede();
         }
-        let taken = self.commands.push_back((number, command)).is_ok();
+        let taken = self.queue.push(number, command);
         if taken {
-            self.silence = 0;
-            self.bad_frames = 0;
+            self.link.heard();
         }
         taken
     }
 
-    /// Takes note of a frame that could not be read: see [`Fault::BadFrame`](crate::supervisor::Fault::BadFrame).
-    pub fn misheard(&mut self) {
-        self.bad_frames = self.bad_frames.saturating_add(1);
+    /// Counts a frame that could not be decoded: see [`Fault::BadFrame`](crate::supervisor::Fault::BadFrame).
+    pub fn note_decode_error(&mut self) {
+        self.link.note_decode_error();
     }
 
-    /// What became of the oldest command that has not been told of.
+    /// What became of the oldest command that has not been reported.
     pub fn outcome(&mut self) -> Option<Outcome> {
-        self.outcomes.pop_front()
+        self.queue.outcome()
     }
 
-    pub(super) fn forget_commands(&mut self) {
-        while let Some((number, _)) = self.commands.pop_front() {
-            self.tell(number, Err(CommandRefusal::Overtaken));
-        }
-    }
-
-    fn tell(&mut self, number: u16, result: Result<(), CommandRefusal>) {
-        if self.outcomes.is_full() {
-            // Nobody asks for them.
-            self.outcomes.pop_front();
-        }
-        let _ = self.outcomes.push_back(Outcome { number, result });
-    }
-
-    /// Obeys the command that waits longest.
+    /// Executes a command.
     #[inline(never)]
     pub(super) fn obey(&mut self, (number, command): (u16, Command), measured: &Measured<T>) {
-        let before = self.supervisor.state();
-        let result = self.carry_out(command);
-        let state = self.supervisor.state();
-        if state != before {
-            self.entered(state, measured);
-        }
-        self.tell(number, result);
+        let result = self.execute(command, measured);
+        self.queue.report(number, result);
     }
 
-    fn carry_out(&mut self, command: Command) -> Result<(), CommandRefusal> {
+    fn execute(&mut self, command: Command, measured: &Measured<T>) -> Result<(), CommandRefusal> {
         match command {
             Command::KeepAlive => Ok(()),
-            Command::Arm if self.zero_m.is_none() => Err(CommandRefusal::NotHomed),
-            Command::Arm => self.start(Event::Arm),
-            Command::Home => self.start(Event::Home),
-            Command::Move { x, y } => self.go(x.into(), y.into()),
+            Command::Arm if self.shared.zero_m.is_none() => Err(CommandRefusal::NotHomed),
+            Command::Arm => self.start(Event::Arm, measured),
+            Command::Home => self.start(Event::Home, measured),
+            Command::Move { x, y } => self.start_move(x.into(), y.into()),
             Command::Hold => {
-                self.following()?;
-                self.trajectory.stop();
+                self.active()?.trajectory.stop();
                 Ok(())
             }
-            Command::Pretension(pretension_n) if pretension_n.is_finite() => {
-                self.pretension
-                    .demand(PretensionDemand::Pretension(pretension_n.into()));
-                Ok(())
-            }
+            Command::Pretension(pretension_n) => self.demand_pretension(pretension_n),
             Command::Stiffness {
                 demand_nm_per_rad,
                 towards,
-            } if demand_nm_per_rad > 0.0
-                && demand_nm_per_rad.is_finite()
-                && towards.is_none_or(is_azimuth) =>
-            {
-                let axis = match towards {
-                    None => BendingAxis::Softest,
-                    Some(towards) => BendingAxis::Towards(towards.map(T::from)),
-                };
-                self.pretension
-                    .demand(PretensionDemand::Stiffness(demand_nm_per_rad.into(), axis));
-                Ok(())
-            }
-            Command::Pretension(_) | Command::Stiffness { .. } => {
-                self.refused = true;
-                Err(CommandRefusal::Number)
-            }
+            } => self.demand_stiffness(demand_nm_per_rad, towards),
             Command::Compensation(compensation) => {
-                self.compensation = compensation;
+                self.shared.compensation = compensation;
                 Ok(())
             }
-            Command::Stop => self.end(Event::Stop),
-            Command::Disarm => self.end(Event::Disarm),
+            Command::Stop => self.end(Event::Stop, measured),
+            Command::Disarm => self.end(Event::Disarm, measured),
             Command::Clear => {
-                self.refused = false;
-                self.bad_frames = 0;
-                self.supervisor.clear(self.zero_m.is_some());
+                self.shared.refused = false;
+                self.link.clear_bad_frames();
+                let homed = self.shared.zero_m.is_some();
+                if let Some(state) = self.supervisor.clear(self.mode.state(), homed) {
+                    self.enter(state, measured);
+                }
                 self.unfaulted()
             }
         }
     }
 
     /// What sets the leg in motion.
-    fn start(&mut self, event: Event) -> Result<(), CommandRefusal> {
-        if self.supervisor.happen(event) {
-            return Ok(());
-        }
-        self.unfaulted()?;
-        Err(CommandRefusal::State(self.supervisor.state()))
+    fn start(&mut self, event: Event, measured: &Measured<T>) -> Result<(), CommandRefusal> {
+        let before = self.mode.state();
+        let Some(state) = self.supervisor.next(before, event) else {
+            self.unfaulted()?;
+            return Err(CommandRefusal::State(before));
+        };
+        self.enter(state, measured);
+        Ok(())
     }
 
     /// What brings it to rest; there is nothing to do where it rests already.
-    fn end(&mut self, event: Event) -> Result<(), CommandRefusal> {
-        let state = self.supervisor.state();
+    fn end(&mut self, event: Event, measured: &Measured<T>) -> Result<(), CommandRefusal> {
+        let before = self.mode.state();
         let resting = match event {
-            Event::Stop => matches!(state, State::Held | State::Disarmed | State::Off),
-            _ => matches!(state, State::RampingDown | State::Disarmed | State::Off),
+            Event::Stop => matches!(before, State::Held | State::Disarmed | State::Off),
+            _ => matches!(before, State::RampingDown | State::Disarmed | State::Off),
         };
-        if resting || self.supervisor.happen(event) {
-            Ok(())
-        } else {
-            Err(CommandRefusal::State(state))
+        if resting {
+            return Ok(());
         }
+        let next = self.supervisor.next(before, event);
+        self.enter(next.ok_or(CommandRefusal::State(before))?, measured);
+        Ok(())
     }
 
     fn unfaulted(&self) -> Result<(), CommandRefusal> {
-        if self.supervisor.latched().without_limits().any() {
+        if self.supervisor.stopped() {
             Err(CommandRefusal::Faulted)
         } else {
             Ok(())
         }
     }
 
-    fn following(&self) -> Result<(), CommandRefusal> {
-        match self.supervisor.state() {
-            State::Active => Ok(()),
-            state => self.unfaulted().and(Err(CommandRefusal::State(state))),
+    /// The active mode; refused in every other.
+    fn active(&mut self) -> Result<&mut Active<T>, CommandRefusal> {
+        let refusal = self.unfaulted().err();
+        let state = self.mode.state();
+        match &mut self.mode {
+            Mode::Active(active) => Ok(active),
+            _ => Err(refusal.unwrap_or(CommandRefusal::State(state))),
         }
     }
 
+    fn demand_pretension(&mut self, pretension_n: f32) -> Result<(), CommandRefusal> {
+        if !pretension_n.is_finite() {
+            return self.refuse(CommandRefusal::Number);
+        }
+        let demand = PretensionDemand::Pretension(pretension_n.into());
+        self.shared.pretension.demand(demand);
+        Ok(())
+    }
+
+    fn demand_stiffness(
+        &mut self,
+        demand_nm_per_rad: f32,
+        towards: Option<[f32; 2]>,
+    ) -> Result<(), CommandRefusal> {
+        let possible = demand_nm_per_rad > 0.0 && demand_nm_per_rad.is_finite();
+        if !possible || !towards.is_none_or(is_azimuth) {
+            return self.refuse(CommandRefusal::Number);
+        }
+        let axis = match towards {
+            None => BendingAxis::Softest,
+            Some(towards) => BendingAxis::Towards(towards.map(T::from)),
+        };
+        let demand = PretensionDemand::Stiffness(demand_nm_per_rad.into(), axis);
+        self.shared.pretension.demand(demand);
+        Ok(())
+    }
+
     /// A move inside the workspace; another is refused.
-    fn go(&mut self, x: T, y: T) -> Result<(), CommandRefusal> {
-        self.following()?;
-        let reach = self.limits.tilt_max_sine;
+    fn start_move(&mut self, x: T, y: T) -> Result<(), CommandRefusal> {
+        let reach = self.shared.limits.tilt_max_sine;
+        let active = self.active()?;
         let inside = x * x + y * y <= reach * reach;
         match Direction::from_xy(x, y) {
             Ok(direction) if inside => {
-                self.refused = false;
-                self.trajectory.go(direction.half_tangent());
+                active.trajectory.go(direction.half_tangent());
+                self.shared.refused = false;
                 Ok(())
             }
-            _ => {
-                self.refused = true;
-                Err(if x.is_finite() && y.is_finite() {
-                    CommandRefusal::OutOfReach
-                } else {
-                    CommandRefusal::Number
-                })
-            }
+            _ => self.refuse(if x.is_finite() && y.is_finite() {
+                CommandRefusal::OutOfReach
+            } else {
+                CommandRefusal::Number
+            }),
         }
+    }
+
+    /// Refuses what cannot be reached; [`Fault::Infeasible`](crate::supervisor::Fault::Infeasible) shows it until another
+    /// command is accepted.
+    fn refuse(&mut self, refusal: CommandRefusal) -> Result<(), CommandRefusal> {
+        self.shared.refused = true;
+        Err(refusal)
     }
 }

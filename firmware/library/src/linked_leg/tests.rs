@@ -2,7 +2,7 @@
 
 use super::SensingLeg;
 use crate::command::{Command, CommandRefusal};
-use crate::host_link::{Commanded, HostRefusal};
+use crate::host_link::{CommandedLeg, HostRefusal};
 use crate::leg::Outcome;
 use crate::sensors::{CODE_MAX, Sensors};
 use crate::settings::Settings;
@@ -82,7 +82,7 @@ fn what_waits_while_settings_change_is_refused_and_the_ticks_go_on() {
     bench.run(SOME_TICKS);
     let refused = Outcome {
         number: 3,
-        result: Err(CommandRefusal::Overtaken),
+        result: Err(CommandRefusal::Superseded),
     };
     assert_eq!(bench.leg.outcome(), Some(refused));
     let telemetry = bench.leg.telemetry();

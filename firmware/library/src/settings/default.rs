@@ -2,7 +2,7 @@
 
 use super::Settings;
 
-/// In postcard's format. `tests/default_settings.rs` compares it with what the rig file `table1` gives, and
+/// In postcard's format. `tests/suite/firmware/default_settings.rs` compares it with what the rig file `table1` gives, and
 /// writes it.
 const TABLE_1: &[u8] = include_bytes!("default.postcard");
 

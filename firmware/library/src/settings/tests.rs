@@ -1,38 +1,60 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{OFFSET_MAX, SCALES, Settings, SettingsError};
+use super::{AxisCalibration, BoardCalibration, Field, OutOfRange, Settings, SettingsError};
 use crate::leg::Leg;
 use crate::sensors::{CODE_MAX, Sensors};
 
-type Place = fn(&mut Settings) -> &mut f32;
-
-fn shared() -> [(Place, u8); 3] {
-    [
-        (|s| &mut s.board.supply_v_per_code, 0),
-        (|s| &mut s.board.temperature_c_per_code, 0),
-        (|s| &mut s.board.temperature_at_zero_c, 0),
-    ]
+/// The section, the axis and the name under which a value is refused.
+fn refused(settings: &Settings) -> Option<(u8, u8, &'static str)> {
+    match settings.check() {
+        Err(SettingsError::OutOfRange(error)) => {
+            let (_, field) = error.field().unwrap();
+            assert!(error.to_string().contains(field.name), "{error}");
+            Some((error.section, error.axis, field.name))
+        }
+        _ => None,
+    }
 }
 
-fn of_an_axis() -> [(Place, u8); 5] {
-    [
-        (|s| &mut s.axes[0].m_per_count, 1),
-        (|s| &mut s.axes[1].cell_n_per_code, 2),
-        (|s| &mut s.axes[2].current_a_per_code, 3),
-        (|s| &mut s.axes[0].cell_zero_code, 1),
-        (|s| s.axes[1].unstretched_at_zero_m.get_or_insert(0.0), 2),
-    ]
+fn beyond(field: &Field) -> [f32; 5] {
+    let [low, high] = field.range;
+    let low = low - 0.1 * low.abs().max(1e-3);
+    [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, low, 1.1 * high]
 }
 
 #[test]
-fn a_calibration_that_no_sensor_has_is_refused() {
-    for value in [f32::NAN, f32::INFINITY, -1e38, 1e7] {
-        for (place, axis) in shared().into_iter().chain(of_an_axis()) {
-            let mut settings = Settings::for_table_1().unwrap();
-            *place(&mut settings) = value;
-            let refused = Err(SettingsError::Calibration { axis });
-            assert_eq!(settings.check(), refused, "{value} at axis {axis}");
+fn a_calibration_outside_its_range_is_refused_by_name() {
+    for (number, field) in AxisCalibration::FIELDS.iter().enumerate() {
+        for axis in 0..3 {
+            for value in beyond(field) {
+                let mut settings = Settings::for_table_1().unwrap();
+                *settings.axes[axis].values_mut()[number] = value;
+                // A count may have either sign.
+                let low_magnitude = field.signed && value.abs() > field.range[0];
+                if low_magnitude && value.is_finite() && value.abs() < field.range[1] {
+                    continue;
+                }
+                let found = refused(&settings);
+                assert_eq!(found, Some((5, 1 + axis as u8, field.name)), "{value}");
+            }
         }
+    }
+    for (number, field) in BoardCalibration::FIELDS.iter().enumerate() {
+        for value in beyond(field) {
+            let mut settings = Settings::for_table_1().unwrap();
+            *settings.board.values_mut()[number] = value;
+            assert_eq!(refused(&settings), Some((7, 0, field.name)), "{value}");
+        }
+    }
+}
+
+#[test]
+fn a_zero_beyond_every_length_is_refused() {
+    for value in [f32::NAN, f32::INFINITY, -1e3, 1e3] {
+        let mut settings = Settings::for_table_1().unwrap();
+        settings.axes[1].unstretched_at_zero_m = Some(value);
+        let expected = Some((6, 2, "unstretched_at_zero_m"));
+        assert_eq!(refused(&settings), expected, "{value}");
     }
 }
 
@@ -41,9 +63,20 @@ fn a_code_that_stands_for_nothing_is_refused() {
     for value in [0.0, -0.0, 1e-38] {
         let mut settings = Settings::for_table_1().unwrap();
         settings.axes[1].cell_n_per_code = value;
-        let refused = Err(SettingsError::Calibration { axis: 2 });
-        assert_eq!(settings.check(), refused, "{value}");
+        let error = settings.check().unwrap_err().to_string();
+        let expected = "calibration.cell_n_per_code of axis 2 is outside 0.000001 to 10";
+        assert_eq!(error, expected, "{value}");
     }
+}
+
+#[test]
+fn a_number_that_no_section_has_is_named_in_general() {
+    let error = OutOfRange {
+        section: 9,
+        field: 0,
+        axis: 0,
+    };
+    assert_eq!(error.to_string(), "a setting is outside its range");
 }
 
 /// What is accepted gives numbers, with sensors at either end.
@@ -51,12 +84,12 @@ fn a_code_that_stands_for_nothing_is_refused() {
 fn the_greatest_calibration_gives_finite_numbers() {
     let mut settings = Settings::for_table_1().unwrap();
     for axis in &mut settings.axes {
-        axis.m_per_count = *SCALES.end();
-        axis.cell_n_per_code = *SCALES.end();
-        axis.current_a_per_code = *SCALES.end();
-        axis.cell_zero_code = -OFFSET_MAX;
-        axis.unstretched_at_zero_m = Some(OFFSET_MAX);
+        for (field, value) in AxisCalibration::FIELDS.iter().zip(axis.values_mut()) {
+            *value = field.range[1];
+        }
+        axis.unstretched_at_zero_m = Some(100.0);
     }
+    settings.check().unwrap();
     let mut leg = Leg::<f32>::new(&settings).unwrap();
     for tick in 0..2_000_u16 {
         leg.tick(&Sensors {

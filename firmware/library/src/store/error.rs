@@ -1,6 +1,6 @@
 //! What a store finds, and why it fails.
 
-use super::record::VERSION;
+use super::VERSION;
 use crate::settings::{Settings, SettingsError};
 use core::fmt::{Debug, Display, Formatter, Result};
 
@@ -16,12 +16,12 @@ pub enum Loaded {
     /// Nothing: the flash is blank, or the settings were cleared.
     Empty,
     /// Something that cannot be used; to save again replaces it.
-    Corrupt(Why),
+    Corrupt(CorruptReason),
 }
 
 /// Why what was stored cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Why {
+pub enum CorruptReason {
     /// The record's CRC belongs to other bytes.
     Crc,
     /// The record has another layout.
@@ -43,7 +43,7 @@ pub enum Why {
     Storage,
 }
 
-impl Display for Why {
+impl Display for CorruptReason {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match self {
             Self::Crc => f.write_str("the record's CRC belongs to other bytes"),
@@ -58,7 +58,7 @@ impl Display for Why {
     }
 }
 
-impl core::error::Error for Why {}
+impl core::error::Error for CorruptReason {}
 
 /// Why a store fails.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,19 +1,17 @@
 //! A record: version, schema, settings in postcard's format, CRC-32 (ISO-HDLC, little-endian) of all before it.
 
-use super::error::Why;
+use super::VERSION;
+use super::error::CorruptReason;
 use crate::settings::Settings;
 use crc::{CRC_32_ISO_HDLC, Crc};
 use postcard_schema::key::Key;
 use sequential_storage::map::{SerializationError, Value};
 
-/// Of the record's own layout.
-pub const VERSION: u8 = 1;
-
 /// Hash of the type [`Settings`] alone: other messages may change without the settings being lost.
 pub const SETTINGS_SCHEMA: [u8; 8] = Key::for_path::<Settings>("settings").to_bytes();
 
 /// Most that settings take in postcard's format, bytes: three tendons with full curves.
-pub const SETTINGS_MAX: usize = 983;
+pub const SETTINGS_MAX: usize = 982;
 
 const HEAD: usize = size_of::<u8>() + SETTINGS_SCHEMA.len();
 const CHECKSUM: usize = size_of::<u32>();
@@ -31,7 +29,7 @@ impl<'a> Value<'a> for Packed<'_> {
         pack(self.0, buffer).ok_or(SerializationError::BufferTooSmall)
     }
 
-    /// A record is fetched as bytes, so that [`unpack`] can tell what is wrong with it.
+    /// A record is fetched as bytes, so that [`unpack`] can report what is wrong with it.
     fn deserialize_from(_: &'a [u8]) -> Result<(Self, usize), SerializationError> {
         Err(SerializationError::InvalidFormat)
     }
@@ -52,21 +50,24 @@ pub fn pack(settings: &Settings, out: &mut [u8]) -> Option<usize> {
 }
 
 /// The settings in a record.
-pub fn unpack(record: &[u8]) -> Result<Settings, Why> {
-    let (checked, checksum) = record.split_last_chunk().ok_or(Why::Crc)?;
+pub fn unpack(record: &[u8]) -> Result<Settings, CorruptReason> {
+    let (checked, checksum) = record.split_last_chunk().ok_or(CorruptReason::Crc)?;
     if CRC.checksum(checked) != u32::from_le_bytes(*checksum) {
-        return Err(Why::Crc);
+        return Err(CorruptReason::Crc);
     }
-    let (&version, rest) = checked.split_first().ok_or(Why::NotSettings)?;
+    let (&version, rest) = checked.split_first().ok_or(CorruptReason::NotSettings)?;
     if version != VERSION {
-        return Err(Why::OtherVersion { found: version });
+        return Err(CorruptReason::OtherVersion { found: version });
     }
-    let (&schema, data) = rest.split_first_chunk().ok_or(Why::NotSettings)?;
+    let (&schema, data) = rest.split_first_chunk().ok_or(CorruptReason::NotSettings)?;
     if schema != SETTINGS_SCHEMA {
-        return Err(Why::OtherSchema { found: schema });
+        return Err(CorruptReason::OtherSchema { found: schema });
     }
     match postcard::take_from_bytes::<Settings>(data) {
-        Ok((settings, [])) => settings.check().map(|()| settings).map_err(Why::Refused),
-        Ok(_) | Err(_) => Err(Why::NotSettings),
+        Ok((settings, [])) => settings
+            .check()
+            .map(|()| settings)
+            .map_err(CorruptReason::Refused),
+        Ok(_) | Err(_) => Err(CorruptReason::NotSettings),
     }
 }

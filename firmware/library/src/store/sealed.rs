@@ -105,7 +105,7 @@ impl<F: NorFlash> ErrorType for Sealed<F> {
 }
 
 impl<F: NorFlash> ReadNorFlash for Sealed<F> {
-    /// As it is written, so that a page's state is told by whole words.
+    /// As it is written, so that whole words show a page's state.
     const READ_SIZE: usize = WORD_SIZE;
 
     async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), F::Error> {

@@ -6,12 +6,11 @@ mod power;
 mod records;
 mod sizes;
 
-use super::{Loaded, Store, StoreError, Why};
-use crate::messages::{RigMessage, SupportMessage, TendonMessage, TendonsMessage};
-use crate::settings::{AxisCalibration, BoardCalibration, Settings};
+use super::{CorruptReason, Loaded, Store, StoreError};
+use crate::settings::{AxisCalibration, BoardCalibration, Settings, TendonParameters};
 use core::ops::Range;
 use embassy_futures::block_on;
-use leg_model::{CURVE_POINTS_MAX, CurvePoint, JointStiffness, SupportKind};
+use leg_model::{CURVE_POINTS_MAX, CurvePoint, JointStiffness, RigParameters, SupportKind};
 use mock::{Failure, Mock};
 
 type Outcome<T> = Result<T, StoreError<Failure>>;
@@ -63,7 +62,7 @@ fn small(number: usize) -> Settings {
         current_a_per_code: 0.005,
     };
     Settings {
-        rig: RigMessage {
+        rig: RigParameters {
             base_anchors_m: [[0.1, 0.0], [-0.05, 0.09], [-0.05, -0.09]],
             leg_anchors_m: [[0.05, 0.0], [-0.02, 0.04], [-0.02, -0.04]],
             upper_length_m: 0.2,
@@ -73,11 +72,9 @@ fn small(number: usize) -> Settings {
             leg_centroid_m: 0.15,
             gravity_m_per_s2: 9.81,
         },
-        support: SupportMessage {
-            kind: SupportKind::ElasticUniversal,
-            joint,
-        },
-        tendons: TendonsMessage::Alike(TendonMessage::Constant(5e4)),
+        support: SupportKind::ElasticUniversal,
+        joint,
+        tendons: [const { TendonParameters::Constant(5e4) }; 3],
         f_min_n: 5.0,
         f_max_n: 100.0,
         pretension_n: 10.0 + 0.1 * number as f32,
@@ -103,9 +100,9 @@ fn large(number: usize) -> Settings {
         elongation_m: 1e-4 * i as f32,
         stiffness_n_per_m: 5e4 + number as f32,
     });
-    let curve = TendonMessage::Curve(points.collect());
+    let curve = TendonParameters::Curve(points.collect());
     Settings {
-        tendons: TendonsMessage::Each([curve.clone(), curve.clone(), curve]),
+        tendons: [curve.clone(), curve.clone(), curve],
         ..small(number)
     }
 }

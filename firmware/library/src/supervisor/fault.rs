@@ -1,85 +1,249 @@
-//! Every fault by name.
+//! The fault table: one row declares all there is to know of a fault.
 
+use super::reaction::{Clearing, Reaction};
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// What a fault leads to, from the mildest to the gravest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, Schema)]
-#[serde(rename_all = "snake_case")]
-pub enum Reaction {
-    /// The leg goes on with what is possible.
-    Limit,
-    /// The leg stays where it is, its tendons kept above the minimum tension.
-    Hold,
-    /// The tendons are let out until they barely pull, then the drivers are switched off.
-    RampDown,
-    /// The drivers are switched off at once; the screws hold.
-    GateOff,
+/// A row of the fault table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FaultEntry {
+    /// The fault; its number is the code.
+    pub fault: Fault,
+    /// Its name as a user reads it.
+    pub name: &'static str,
+    /// What it leads to.
+    pub reaction: Reaction,
+    /// What raises it, with the setting that decides.
+    pub cause: &'static str,
+    /// What to do about it.
+    pub remedy: &'static str,
+    /// What ends it.
+    pub clears: Clearing,
 }
 
-/// A fault. Its number is its code.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, Schema)]
-#[serde(rename_all = "snake_case")]
-#[repr(u8)]
-#[allow(missing_docs, reason = "the table says what each is")]
-pub enum Fault {
-    Slack = 1,
-    OverTension,
-    TensionJump,
-    Residual,
-    CellStale,
-    CellStuck,
-    CellSaturated,
-    CurrentDisagrees,
-    Following,
-    EncoderStill,
-    EncoderReversed,
-    PoseLost,
-    Infeasible,
-    Unreachable,
-    OverCurrent,
-    OverTemperature,
-    SupplyLow,
-    SupplyHigh,
-    LateTick,
-    CommandTimeout,
-    BadFrame,
-    DriverFault,
-    EmergencyStop,
-    SettingsCorrupt,
-    HomingFailed,
+/// Makes [`Fault`] and [`FAULT_TABLE`] of the rows. A row without one of its columns does not compile.
+macro_rules! faults {
+    ($($code:literal $fault:ident {
+        name: $name:literal,
+        reaction: $reaction:ident,
+        cause: $cause:literal,
+        remedy: $remedy:literal,
+        clears: $clears:ident,
+    })*) => {
+        /// A fault. Its number is its code; [`Self::entry`] says what it means.
+        #[derive(
+            Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, Schema,
+        )]
+        #[serde(rename_all = "snake_case")]
+        #[repr(u8)]
+        pub enum Fault {
+            $(#[doc = $cause] $fault = $code,)*
+        }
+
+        impl Fault {
+            /// Every fault, in the order of the codes.
+            pub const ALL: [Self; [$($code),*].len()] = [$(Self::$fault),*];
+
+            /// Its row of the table.
+            #[must_use]
+            pub const fn entry(self) -> &'static FaultEntry {
+                match self {
+                    $(Self::$fault => &FaultEntry {
+                        fault: Self::$fault,
+                        name: $name,
+                        reaction: Reaction::$reaction,
+                        cause: $cause,
+                        remedy: $remedy,
+                        clears: Clearing::$clears,
+                    },)*
+                }
+            }
+        }
+
+        /// Every fault, in the order of the codes.
+        pub const FAULT_TABLE: [&FaultEntry; Fault::ALL.len()] = [$(Fault::$fault.entry()),*];
+    };
+}
+
+faults! {
+    1 Slack {
+        name: "slack tendon",
+        reaction: Hold,
+        cause: "a tension stays below slack_n for slack_time_s, or does not come up within taut_time_s after an arm",
+        remedy: "look whether the tendon is cut or off its anchor",
+        clears: Command,
+    }
+    2 OverTension {
+        name: "too much tension",
+        reaction: RampDown,
+        cause: "a tension is above the maximum tension by over_tension_part",
+        remedy: "look what pulls at the leg; check the load cell",
+        clears: Command,
+    }
+    3 TensionJump {
+        name: "jump of a tension",
+        reaction: Hold,
+        cause: "a tension changes by jump_n within a millisecond",
+        remedy: "look for a cut or slipped tendon",
+        clears: Command,
+    }
+    4 Residual {
+        name: "sensors disagree on the pose",
+        reaction: Hold,
+        cause: "forward kinematics leaves over more than residual_m for residual_time_s",
+        remedy: "home the leg; check the encoders, the load cells and the tendon curves",
+        clears: Command,
+    }
+    5 CellStale {
+        name: "stale load cell",
+        reaction: Hold,
+        cause: "a load cell gives no fresh code for stale_time_s",
+        remedy: "check its converter and wiring",
+        clears: Command,
+    }
+    6 CellStuck {
+        name: "stuck load cell",
+        reaction: Hold,
+        cause: "a load cell's code does not change for stuck_time_s",
+        remedy: "check its amplifier",
+        clears: Command,
+    }
+    7 CellSaturated {
+        name: "saturated load cell",
+        reaction: Hold,
+        cause: "a load cell's code is at an end of its range",
+        remedy: "check its wiring; choose a wider range",
+        clears: Command,
+    }
+    8 CurrentDisagrees {
+        name: "current and tension disagree",
+        reaction: Hold,
+        cause: "a motor draws disagreement_a more than its tension and friction ask, for disagreement_time_s",
+        remedy: "look for a stiff screw or a wrong current sensor",
+        clears: Command,
+    }
+    9 Following {
+        name: "motor stays behind",
+        reaction: Hold,
+        cause: "a motor is following_m away from where it is led",
+        remedy: "look for a slipping encoder or a stiff screw; move more slowly",
+        clears: Command,
+    }
+    10 EncoderStill {
+        name: "motor does not turn",
+        reaction: GateOff,
+        cause: "a motor is driven with driven_part of its current and counts nothing for still_time_s",
+        remedy: "check the encoder's wiring; look for a jam",
+        clears: Command,
+    }
+    11 EncoderReversed {
+        name: "motor turns the wrong way",
+        reaction: GateOff,
+        cause: "a motor counts against its voltage for reversed_time_s",
+        remedy: "swap the motor's wires or the sign of m_per_count",
+        clears: Command,
+    }
+    12 PoseLost {
+        name: "pose is lost",
+        reaction: Hold,
+        cause: "forward kinematics or a tendon's curve gives no result",
+        remedy: "home the leg; check the tensions",
+        clears: Command,
+    }
+    13 Infeasible {
+        name: "target out of reach",
+        reaction: Limit,
+        cause: "no pretension holds the target within the bounds, or a move leads beyond the workspace",
+        remedy: "give another pose or a smaller payload",
+        clears: CauseGone,
+    }
+    14 Unreachable {
+        name: "stiffness out of reach",
+        reaction: Limit,
+        cause: "the bounds on the tensions stop the pretension short of the demand, or the trim is at trim_max_n",
+        remedy: "demand something nearer to what was reached; check load cells and tendon curves",
+        clears: CauseGone,
+    }
+    15 OverCurrent {
+        name: "too much current",
+        reaction: GateOff,
+        cause: "a motor draws more than current_a for 2 ms",
+        remedy: "look for a short circuit, or a current sensor without power",
+        clears: Command,
+    }
+    16 OverTemperature {
+        name: "too hot",
+        reaction: RampDown,
+        cause: "the drivers are above temperature_c",
+        remedy: "let them cool",
+        clears: Command,
+    }
+    17 SupplyLow {
+        name: "supply too low",
+        reaction: Hold,
+        cause: "the supply is below supply_min_v",
+        remedy: "check supply and battery",
+        clears: Command,
+    }
+    18 SupplyHigh {
+        name: "supply too high",
+        reaction: Hold,
+        cause: "the supply is above supply_max_v",
+        remedy: "check the supply; a braking motor feeds back into it",
+        clears: Command,
+    }
+    19 LateTick {
+        name: "late tick",
+        reaction: Hold,
+        cause: "a tick of the control law began or ended too late",
+        remedy: "look in the log for the longest tick; flash a build with optimisation; keep debuggers away",
+        clears: Command,
+    }
+    20 CommandTimeout {
+        name: "no command",
+        reaction: Hold,
+        cause: "the host is silent for command_time_s while the leg is armed",
+        remedy: "check the link and the host: it has to speak more often",
+        clears: Command,
+    }
+    21 BadFrame {
+        name: "bad frames",
+        reaction: Limit,
+        cause: "bad_frames frames in a row could not be read",
+        remedy: "check the link",
+        clears: CauseGone,
+    }
+    22 DriverFault {
+        name: "driver fault",
+        reaction: GateOff,
+        cause: "a motor driver raises its fault line",
+        remedy: "look up the driver's own fault",
+        clears: Command,
+    }
+    23 EmergencyStop {
+        name: "emergency stop",
+        reaction: GateOff,
+        cause: "the emergency stop is pressed",
+        remedy: "release it when it is safe",
+        clears: Command,
+    }
+    24 SettingsCorrupt {
+        name: "settings corrupt",
+        reaction: GateOff,
+        cause: "the stored settings are not whole or not valid",
+        remedy: "write the settings anew",
+        clears: Command,
+    }
+    25 HomingFailed {
+        name: "homing failed",
+        reaction: RampDown,
+        cause: "a tendon does not become slack, or then taut, within travel_m, pulls more than twice the maximum tension of homing, or a slack load cell is off by tare_max_n",
+        remedy: "let the leg hang free, without a payload; check the load cells",
+        clears: Command,
+    }
 }
 
 impl Fault {
-    /// Every fault, in the order of the codes.
-    pub const ALL: [Self; 25] = [
-        Self::Slack,
-        Self::OverTension,
-        Self::TensionJump,
-        Self::Residual,
-        Self::CellStale,
-        Self::CellStuck,
-        Self::CellSaturated,
-        Self::CurrentDisagrees,
-        Self::Following,
-        Self::EncoderStill,
-        Self::EncoderReversed,
-        Self::PoseLost,
-        Self::Infeasible,
-        Self::Unreachable,
-        Self::OverCurrent,
-        Self::OverTemperature,
-        Self::SupplyLow,
-        Self::SupplyHigh,
-        Self::LateTick,
-        Self::CommandTimeout,
-        Self::BadFrame,
-        Self::DriverFault,
-        Self::EmergencyStop,
-        Self::SettingsCorrupt,
-        Self::HomingFailed,
-    ];
-
     /// Its code.
     #[must_use]
     pub const fn code(self) -> u8 {
@@ -89,16 +253,28 @@ impl Fault {
     /// What it leads to.
     #[must_use]
     pub const fn reaction(self) -> Reaction {
-        match self {
-            Self::Infeasible | Self::Unreachable | Self::BadFrame => Reaction::Limit,
-            Self::OverTension | Self::OverTemperature | Self::HomingFailed => Reaction::RampDown,
-            Self::EncoderStill
-            | Self::EncoderReversed
-            | Self::OverCurrent
-            | Self::DriverFault
-            | Self::EmergencyStop
-            | Self::SettingsCorrupt => Reaction::GateOff,
-            _ => Reaction::Hold,
+        self.entry().reaction
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Clearing, FAULT_TABLE, Fault, Reaction};
+
+    #[test]
+    fn every_fault_has_its_row() {
+        for ((fault, row), code) in Fault::ALL.into_iter().zip(FAULT_TABLE).zip(1..) {
+            assert_eq!((row.fault, fault.code()), (fault, code));
+            assert!(!row.name.is_empty() && !row.cause.is_empty() && !row.remedy.is_empty());
+        }
+    }
+
+    /// A leg that goes on as far as it can may forget a fault with its cause; one that was stopped waits for its host.
+    #[test]
+    fn only_a_limit_clears_without_a_command() {
+        for row in FAULT_TABLE {
+            let limits = row.reaction == Reaction::Limit;
+            assert_eq!(row.clears == Clearing::CauseGone, limits, "{}", row.name);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! A set of faults, one bit each.
 
-use super::{Fault, Reaction};
+use super::fault::Fault;
+use super::reaction::Reaction;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
@@ -9,36 +10,36 @@ use serde::{Deserialize, Serialize};
 pub struct FaultSet(u32);
 
 /// The faults of one reaction.
-const fn of(reaction: Reaction) -> u32 {
+const fn bits_with(reaction: Reaction) -> u32 {
     let mut bits = 0;
     let mut i = 0;
     while i < Fault::ALL.len() {
         if Fault::ALL[i].reaction() as u8 == reaction as u8 {
-            bits |= FaultSet::of(Fault::ALL[i]).0;
+            bits |= FaultSet::single(Fault::ALL[i]).0;
         }
         i += 1;
     }
     bits
 }
 
-const LIMITS: u32 = of(Reaction::Limit);
-const RAMPS: u32 = of(Reaction::RampDown);
-const GATES: u32 = of(Reaction::GateOff);
+const LIMITS: u32 = bits_with(Reaction::Limit);
+const RAMPS: u32 = bits_with(Reaction::RampDown);
+const GATES: u32 = bits_with(Reaction::GateOff);
 
 impl FaultSet {
     /// No fault.
     pub const NONE: Self = Self(0);
 
-    /// Those that put in doubt what the load cells say: as long as one is latched, a held leg does not move by them.
-    pub const DOUBTED_CELLS: Self = Self::of(Fault::CellStale)
-        .with(Self::of(Fault::CellStuck))
-        .with(Self::of(Fault::CellSaturated))
-        .with(Self::of(Fault::CurrentDisagrees))
-        .with(Self::of(Fault::Residual));
+    /// Those that make the load cells suspect: while one is latched, a held leg does not move by the measured tensions.
+    pub const SUSPECT_CELLS: Self = Self::single(Fault::CellStale)
+        .union(Self::single(Fault::CellStuck))
+        .union(Self::single(Fault::CellSaturated))
+        .union(Self::single(Fault::CurrentDisagrees))
+        .union(Self::single(Fault::Residual));
 
     /// One fault.
     #[must_use]
-    pub const fn of(fault: Fault) -> Self {
+    pub const fn single(fault: Fault) -> Self {
         Self(1 << fault.code())
     }
 
@@ -51,7 +52,7 @@ impl FaultSet {
     /// Whether a fault is in it.
     #[must_use]
     pub const fn has(self, fault: Fault) -> bool {
-        self.0 & Self::of(fault).0 != 0
+        self.0 & Self::single(fault).0 != 0
     }
 
     /// Whether there is any.
@@ -71,7 +72,7 @@ impl FaultSet {
     /// Those of both.
     #[must_use]
     #[inline(always)]
-    pub const fn with(self, other: Self) -> Self {
+    pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
@@ -89,10 +90,10 @@ impl FaultSet {
         Self(self.0 & !LIMITS)
     }
 
-    /// The gravest reaction that any of them has.
+    /// The most severe reaction that any of them has.
     #[must_use]
     #[inline(always)]
-    pub const fn gravest(self) -> Option<Reaction> {
+    pub const fn most_severe(self) -> Option<Reaction> {
         if self.0 & GATES != 0 {
             Some(Reaction::GateOff)
         } else if self.0 & RAMPS != 0 {
@@ -121,19 +122,19 @@ mod tests {
         for (code, fault) in (1..).zip(Fault::ALL) {
             assert_eq!(fault.code(), code);
             assert!(code < 32);
-            let set = FaultSet::of(fault);
+            let set = FaultSet::single(fault);
             assert_eq!(set.faults().collect::<Vec<_>>(), [fault]);
-            assert_eq!(set.gravest(), Some(fault.reaction()));
+            assert_eq!(set.most_severe(), Some(fault.reaction()));
         }
     }
 
     #[test]
-    fn the_gravest_reaction_wins() {
-        let mut set = FaultSet::of(Fault::Unreachable);
-        assert_eq!(set.gravest(), Some(Reaction::Limit));
+    fn the_most_severe_reaction_wins() {
+        let mut set = FaultSet::single(Fault::Unreachable);
+        assert_eq!(set.most_severe(), Some(Reaction::Limit));
         for fault in [Fault::Slack, Fault::OverTension, Fault::DriverFault] {
             set.add(fault, true);
-            assert_eq!(set.gravest(), Some(fault.reaction()));
+            assert_eq!(set.most_severe(), Some(fault.reaction()));
         }
     }
 }

@@ -1,21 +1,19 @@
 //! What raises each fault that the sensors and the axes show.
 
 mod axis;
-mod timer;
-
-pub use axis::AxisView;
+mod debounce;
 
 use super::{Fault, FaultSet};
-use crate::control::{Measured, ticks};
+use crate::control::{AxisView, Measured, ticks};
 use crate::sensors::Sensors;
 use crate::settings::Settings;
 use axis::AxisMonitor;
+use debounce::Debounce;
 use leg_model::Scalar;
-use timer::Timer;
 
-/// What the monitors look at.
+/// What the monitors check.
 #[derive(Clone, Copy, Debug)]
-pub struct View<'a, T> {
+pub struct MonitorInput<'a, T> {
     /// What the sensors read.
     pub sensors: &'a Sensors,
     /// The same in SI.
@@ -35,8 +33,8 @@ pub struct View<'a, T> {
 pub struct Monitors<T> {
     axes: [AxisMonitor<T>; 3],
     /// What each axis showed at its last turn: its faults are there until the next one.
-    of_axes: [FaultSet; 3],
-    residual: Timer,
+    axis_faults: [FaultSet; 3],
+    residual: Debounce,
     residual_m: T,
     supply_v: [T; 2],
     temperature_c: T,
@@ -50,18 +48,19 @@ impl<T: Scalar> Monitors<T> {
             axes: settings
                 .axes
                 .map(|axis| AxisMonitor::new(settings, axis.m_per_count)),
-            of_axes: [FaultSet::NONE; 3],
-            residual: Timer::new(ticks(limits.residual_time_s)),
+            axis_faults: [FaultSet::NONE; 3],
+            residual: Debounce::new(ticks(limits.residual_time_s)),
             residual_m: limits.residual_m.into(),
             supply_v: [limits.supply_min_v.into(), limits.supply_max_v.into()],
             temperature_c: limits.temperature_c.into(),
         }
     }
 
-    /// Looks at one axis, from 0 to 2; each has its turn once a cycle.
+    /// Checks one axis, from 0 to 2; each has its turn once a cycle.
     #[inline(never)]
-    pub fn watch_axis(&mut self, turn: usize, view: &View<'_, T>, shown: &AxisView<T>) {
-        if let (Some(monitor), Some(faults)) = (self.axes.get_mut(turn), self.of_axes.get_mut(turn))
+    pub fn watch_axis(&mut self, turn: usize, view: &MonitorInput<'_, T>, shown: &AxisView<T>) {
+        if let (Some(monitor), Some(faults)) =
+            (self.axes.get_mut(turn), self.axis_faults.get_mut(turn))
         {
             *faults = FaultSet::NONE;
             monitor.watch(turn, view, shown, faults);
@@ -70,14 +69,14 @@ impl<T: Scalar> Monitors<T> {
 
     /// What the axes showed at their last turns.
     #[inline(always)]
-    pub fn of_axes(&self) -> FaultSet {
-        let [first, second, third] = self.of_axes;
-        first.with(second).with(third)
+    pub fn axis_faults(&self) -> FaultSet {
+        let [first, second, third] = self.axis_faults;
+        first.union(second).union(third)
     }
 
     /// The faults of a tick, but those of the axes.
     #[inline(always)]
-    pub fn watch(&mut self, view: &View<'_, T>) -> FaultSet {
+    pub fn watch(&mut self, view: &MonitorInput<'_, T>) -> FaultSet {
         let (sensors, measured) = (view.sensors, view.measured);
         let mut faults = FaultSet::NONE;
         for fault in sensors.driver_fault {
@@ -86,7 +85,7 @@ impl<T: Scalar> Monitors<T> {
         let off = view
             .residual_m
             .is_some_and(|residual| !(residual <= self.residual_m));
-        faults.add(Fault::Residual, self.residual.over(off));
+        faults.add(Fault::Residual, self.residual.update(off));
         faults.add(
             Fault::SupplyLow,
             view.driven && !(measured.supply_v >= self.supply_v[0]),

@@ -1,6 +1,6 @@
 //! The states and the events that lead from one to another.
 
-use super::Reaction;
+use super::reaction::Reaction;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
@@ -12,13 +12,13 @@ pub enum State {
     Boot,
     /// Ready; the drivers are off and the screws hold.
     Disarmed,
-    /// The zero is looked for.
+    /// The zero is searched for.
     Homing,
     /// Commands are followed.
     Active,
     /// The leg stays where it is, its tendons kept above the minimum tension.
     Held,
-    /// The tendons are let out until they barely pull.
+    /// The tendons are paid out until they barely pull.
     RampingDown,
     /// The drivers are off after a fault; the screws hold.
     Off,
@@ -59,7 +59,7 @@ impl State {
     /// The state after an event; none if the event means nothing here. This is the whole table.
     #[must_use]
     #[inline(always)]
-    pub const fn after(self, event: Event) -> Option<Self> {
+    pub const fn next(self, event: Event) -> Option<Self> {
         Some(match (self, event) {
             (Boot, Ready) => Disarmed,
             (Disarmed, Arm) => Active,

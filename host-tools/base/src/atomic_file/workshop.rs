@@ -1,6 +1,6 @@
 //! Several files that are delivered together.
 
-use super::workshop_in;
+use super::new_directory;
 use std::io;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -17,11 +17,11 @@ impl Workshop {
     ///
     /// # Errors
     /// The system's.
-    pub fn beside(directory: &Path) -> io::Result<Self> {
+    pub fn new(directory: &Path) -> io::Result<Self> {
         std::fs::create_dir_all(directory)?;
         Ok(Self {
             directory: directory.into(),
-            made: workshop_in(directory)?,
+            made: new_directory(directory)?,
         })
     }
 
@@ -62,30 +62,5 @@ impl Workshop {
             moves.push((entry.path(), to));
         }
         Ok(moves)
-    }
-}
-
-#[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "a test may panic")]
-mod tests {
-    use super::Workshop;
-
-    #[test]
-    fn several_files_are_delivered_together_or_not_at_all() {
-        let directory = tempfile::tempdir().unwrap();
-        let made = || {
-            let workshop = Workshop::beside(directory.path()).unwrap();
-            for name in ["a.svg", "b.svg", "c.svg"] {
-                std::fs::write(workshop.path().join(name), "new").unwrap();
-            }
-            workshop
-        };
-        std::fs::create_dir(directory.path().join("b.svg")).unwrap();
-        assert!(made().check().is_err());
-        assert!(made().deliver().is_err());
-        assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 1);
-        std::fs::remove_dir(directory.path().join("b.svg")).unwrap();
-        made().deliver().unwrap();
-        assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 3);
     }
 }

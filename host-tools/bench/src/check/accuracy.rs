@@ -1,21 +1,21 @@
 //! The worst difference of each quantity, and where it is.
 
-use super::{Pose, State};
-use crate::precision::{Part, Row};
+use super::{CheckedState, Pose};
+use crate::precision::{Part, PrecisionRow};
 use serde::Serialize;
 
-/// A row of the precision table and how it was kept.
+/// A row of the precision table, and whether it passed.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct RowReport {
     /// The row.
     #[serde(flatten)]
-    pub row: Row,
+    pub row: PrecisionRow,
     /// The largest difference; infinite (in JSON null) where the firmware has no number.
     pub worst: f64,
     /// Where that is; none before anything was compared.
     pub at: Option<Pose>,
     /// Whether something was compared and all of it lay within the bound.
-    pub held: bool,
+    pub passed: bool,
 }
 
 /// The worst so far.
@@ -25,18 +25,18 @@ pub struct Accuracy(Vec<RowReport>);
 impl Accuracy {
     /// Nothing compared yet.
     #[must_use]
-    pub fn new(table: &[Row]) -> Self {
+    pub fn new(table: &[PrecisionRow]) -> Self {
         let report = |&row| RowReport {
             row,
             worst: 0.0,
             at: None,
-            held: false,
+            passed: false,
         };
         Self(table.iter().map(report).collect())
     }
 
     /// Compares the numbers of one reply, part by part.
-    pub fn add(&mut self, parts: &[Part], found: &[f64], expected: &[f64], state: &State) {
+    pub fn add(&mut self, parts: &[Part], found: &[f64], expected: &[f64], state: &CheckedState) {
         let mut first = 0;
         for &(quantity, count) in parts {
             let numbers = first..first + count;
@@ -59,11 +59,11 @@ impl Accuracy {
 }
 
 impl RowReport {
-    fn add(&mut self, difference: f64, state: &State) {
+    fn add(&mut self, difference: f64, state: &CheckedState) {
         if self.at.is_none() || difference > self.worst {
             self.worst = difference;
             self.at = Some(state.pose());
         }
-        self.held = self.worst <= self.row.bound;
+        self.passed = self.worst <= self.row.bound;
     }
 }

@@ -1,6 +1,6 @@
 //! Whether replies are equal bit by bit.
 
-use super::{CheckError, Pose, State};
+use super::{CheckError, CheckedState, Pose};
 use leg_firmware::frame::{self, MAX_FRAME};
 use leg_firmware_bench::kernels::Kernel;
 use leg_firmware_bench::protocol::Reply;
@@ -11,18 +11,18 @@ pub(super) const EVALUATION: &str = "whole evaluation";
 
 /// Replies whose bits were compared.
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Bits {
+pub struct BitComparison {
     /// Whole evaluations that were compared.
     pub evaluations: usize,
     /// Runs of kernels that were compared.
     pub runs: usize,
     /// What differs, each kernel once.
-    pub differences: Vec<Difference>,
+    pub differences: Vec<BitDifference>,
 }
 
 /// A kernel whose bits differ.
 #[derive(Clone, Debug, Serialize)]
-pub struct Difference {
+pub struct BitDifference {
     /// Its name.
     pub what: &'static str,
     /// The first state at which it differs.
@@ -31,15 +31,15 @@ pub struct Difference {
     pub count: usize,
 }
 
-impl Bits {
+impl BitComparison {
     /// Poses at which each of the kernels was run.
     #[must_use]
     pub const fn poses(&self) -> usize {
         self.runs / Kernel::ALL.len()
     }
 
-    /// What differs, in words.
-    pub fn missed(&self) -> impl Iterator<Item = String> {
+    /// Names what differs.
+    pub fn failures(&self) -> impl Iterator<Item = String> {
         let differences = self.differences.iter();
         differences.map(|difference| format!("bits of {}", difference.what))
     }
@@ -49,7 +49,7 @@ impl Bits {
         reply: &Reply,
         host: &Reply,
         what: &'static str,
-        state: &State,
+        state: &CheckedState,
     ) -> Result<(), CheckError> {
         if what == EVALUATION {
             self.evaluations += 1;
@@ -62,11 +62,11 @@ impl Bits {
         Ok(())
     }
 
-    fn note(&mut self, what: &'static str, state: &State) {
+    fn note(&mut self, what: &'static str, state: &CheckedState) {
         let known = self.differences.iter_mut().find(|known| known.what == what);
         match known {
             Some(difference) => difference.count += 1,
-            None => self.differences.push(Difference {
+            None => self.differences.push(BitDifference {
                 what,
                 at: state.pose(),
                 count: 1,

@@ -1,15 +1,14 @@
 //! The states that are checked: a grid and a random sample of the workspace.
 
-use super::{State, Stretch};
+use super::{CheckedState, Stretch};
 use fastrand::Rng;
-use leg_firmware::messages::SupportMessage;
 use leg_firmware_bench::kernels::KernelInput;
 use leg_model::{JointStiffness, Query, RigParameters, SupportKind, evaluate};
 use std::f32::consts::TAU;
 
 /// Every kind of support, with a joint that resists and one that does not. (A universal joint whose torsion is elastic
 /// always resists.)
-const SUPPORTS: [SupportMessage; 7] = [
+const SUPPORTS: [ElasticSupport; 7] = [
     rigid(SupportKind::TorsionFree),
     rigid(SupportKind::Universal),
     rigid(SupportKind::Spherical),
@@ -19,28 +18,27 @@ const SUPPORTS: [SupportMessage; 7] = [
     elastic(SupportKind::ElasticUniversal, 10.0),
 ];
 
+/// How a support guides the leg, and how its joint resists.
+type ElasticSupport = (SupportKind, JointStiffness<f32>);
+
 const STRETCHES: [Stretch; 3] = [Stretch::Constant, Stretch::Curve, Stretch::CurveAtTension];
 
-const fn rigid(kind: SupportKind) -> SupportMessage {
-    SupportMessage {
-        kind,
-        joint: JointStiffness {
-            bending_nm_per_rad: 0.0,
-            torsion_nm_per_rad: 0.0,
-            axial_compliance_m_per_n: 0.0,
-        },
-    }
+const fn rigid(kind: SupportKind) -> ElasticSupport {
+    let joint = JointStiffness {
+        bending_nm_per_rad: 0.0,
+        torsion_nm_per_rad: 0.0,
+        axial_compliance_m_per_n: 0.0,
+    };
+    (kind, joint)
 }
 
-const fn elastic(kind: SupportKind, torsion_nm_per_rad: f32) -> SupportMessage {
-    SupportMessage {
-        kind,
-        joint: JointStiffness {
-            bending_nm_per_rad: 2.0,
-            torsion_nm_per_rad,
-            axial_compliance_m_per_n: 1e-7,
-        },
-    }
+const fn elastic(kind: SupportKind, torsion_nm_per_rad: f32) -> ElasticSupport {
+    let joint = JointStiffness {
+        bending_nm_per_rad: 2.0,
+        torsion_nm_per_rad,
+        axial_compliance_m_per_n: 1e-7,
+    };
+    (kind, joint)
 }
 
 /// How far the leg leans at most, degrees.
@@ -63,19 +61,20 @@ const LENGTH_ERROR_M: f32 = 1e-5;
 /// Azimuths every 15°, tilts every 5° to 30°, four payloads, every support; the pretension and the tendons of the
 /// paper's Fig. 9.
 #[must_use]
-pub fn grid() -> Vec<State> {
+pub fn grid() -> Vec<CheckedState> {
     let mut states = Vec::new();
-    for support in SUPPORTS {
+    for (support, joint) in SUPPORTS {
         for payload_kg in [0.0, 0.5, 1.0, PAYLOAD_MAX_KG] {
             for tilt_deg in (0..=30_u8).step_by(5) {
                 for azimuth_deg in (0..360_u16).step_by(15) {
                     let (azimuth_deg, tilt_deg) = (azimuth_deg.into(), f32::from(tilt_deg));
-                    states.push(State {
+                    states.push(CheckedState {
                         input: KernelInput {
                             payload_kg,
                             ..input(azimuth_deg, tilt_deg, 0.0)
                         },
                         support,
+                        joint,
                         stretch: Stretch::Constant,
                         demanded: false,
                     });
@@ -89,7 +88,7 @@ pub fn grid() -> Vec<State> {
 /// Random states whose tensions keep their bounds, equally many for each support and each way to stretch; equal for
 /// equal seeds.
 #[must_use]
-pub fn random(count: usize, seed: u64) -> Vec<State> {
+pub fn random(count: usize, seed: u64) -> Vec<CheckedState> {
     let mut rng = Rng::with_seed(seed);
     let supports = SUPPORTS
         .into_iter()
@@ -102,7 +101,7 @@ pub fn random(count: usize, seed: u64) -> Vec<State> {
 }
 
 /// Draws until a draw is feasible.
-fn feasible(rng: &mut Rng, support: SupportMessage, stretch: Stretch) -> State {
+fn feasible(rng: &mut Rng, support: ElasticSupport, stretch: Stretch) -> CheckedState {
     loop {
         let drawn = draw(rng, support, stretch);
         if let Some(state) = at_feasible_pretension(rng, drawn) {
@@ -112,7 +111,7 @@ fn feasible(rng: &mut Rng, support: SupportMessage, stretch: Stretch) -> State {
 }
 
 /// A random pose, load and stiffness.
-fn draw(rng: &mut Rng, support: SupportMessage, stretch: Stretch) -> State {
+fn draw(rng: &mut Rng, support: ElasticSupport, stretch: Stretch) -> CheckedState {
     let azimuth_deg = 360.0 * rng.f32();
     let (softest, stiffest) = STIFFNESSES_N_PER_M;
     let start_azimuth_rad = TAU * rng.f32();
@@ -123,16 +122,18 @@ fn draw(rng: &mut Rng, support: SupportMessage, stretch: Stretch) -> State {
         length_errors_m: [(); 3].map(|()| LENGTH_ERROR_M * (2.0 * rng.f32() - 1.0)),
         ..input(azimuth_deg, TILT_MAX_DEG * rng.f32(), start_azimuth_rad)
     };
-    State {
+    let (support, joint) = support;
+    CheckedState {
         input,
         support,
+        joint,
         stretch,
         demanded: true,
     }
 }
 
 /// The state at a random pretension that keeps the bounds on the tensions, if there is one.
-fn at_feasible_pretension(rng: &mut Rng, mut state: State) -> Option<State> {
+fn at_feasible_pretension(rng: &mut Rng, mut state: CheckedState) -> Option<CheckedState> {
     let without_torsion = Query {
         support: SupportKind::TorsionFree.into(),
         ..state.query().ok()?
@@ -156,7 +157,7 @@ fn input(azimuth_deg: f32, tilt_deg: f32, start_azimuth_rad: f32) -> KernelInput
     let start_x = tilt_deg * azimuth_rad.cos() + START_OFF_DEG * start_azimuth_rad.cos();
     let start_y = tilt_deg * azimuth_rad.sin() + START_OFF_DEG * start_azimuth_rad.sin();
     KernelInput {
-        rig: RigParameters::<f32, 3>::TABLE_1.into(),
+        rig: RigParameters::<f32, 3>::TABLE_1,
         azimuth_rad,
         tilt_rad: tilt_deg.to_radians(),
         start_azimuth_rad: start_y.atan2(start_x),

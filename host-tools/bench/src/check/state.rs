@@ -1,21 +1,24 @@
 //! One state of the mechanism, in numbers that f32 can hold.
 
-use leg_firmware::messages::{QueryMessage, SupportMessage, TendonMessage, TendonsMessage};
+use leg_firmware::settings::TendonParameters;
 use leg_firmware_bench::kernels::KernelInput;
+use leg_firmware_bench::query::QueryMessage;
 use leg_model::{
-    CurvePoint, Elasticity, Error, Query, RigParameters, StiffnessAt, StiffnessDemand, SupportKind,
-    TendonCurve,
+    CurvePoint, Elasticity, Error, JointStiffness, Query, RigParameters, StiffnessAt,
+    StiffnessDemand, SupportKind, TendonCurve,
 };
 use serde::Serialize;
 use std::fmt;
 
 /// Everything that the firmware gets, for a whole evaluation and for its kernels (which know no support).
 #[derive(Clone, Copy, Debug)]
-pub struct State {
+pub struct CheckedState {
     /// The mechanism, the pose, the load and the tendons.
     pub input: KernelInput,
-    /// The central support.
-    pub support: SupportMessage,
+    /// How the central support guides the leg.
+    pub support: SupportKind,
+    /// How its joint resists.
+    pub joint: JointStiffness<f32>,
     /// How the tendons stretch.
     pub stretch: Stretch,
     /// Whether the evaluation has to find a pretension for the demanded stiffness: there has to be one that is allowed.
@@ -53,7 +56,7 @@ pub struct Pose {
     pub stretch: Stretch,
 }
 
-impl State {
+impl CheckedState {
     /// Where it is.
     #[must_use]
     pub fn pose(&self) -> Pose {
@@ -64,7 +67,7 @@ impl State {
             payload_kg: input.payload_kg.into(),
             pretension_n: input.pretension_n.into(),
             stiffness_n_per_m: input.stiffness_n_per_m.into(),
-            support: self.support.kind,
+            support: self.support,
             stretch: self.stretch,
         }
     }
@@ -74,7 +77,7 @@ impl State {
     /// # Errors
     /// A pretension beyond the curve.
     pub fn message(&self) -> Result<QueryMessage, Error> {
-        let input = &self.input;
+        let (input, tendon) = (&self.input, self.tendon()?);
         Ok(QueryMessage {
             azimuth_rad: input.azimuth_rad,
             tilt_rad: input.tilt_rad,
@@ -82,12 +85,13 @@ impl State {
             pretension_n: input.pretension_n,
             f_min_n: input.f_min_n,
             f_max_n: input.f_max_n,
-            tendons: TendonsMessage::Alike(self.tendon()?),
+            tendons: [tendon.clone(), tendon.clone(), tendon],
             stiffness_at: match self.stretch {
                 Stretch::CurveAtTension => StiffnessAt::Tension,
                 Stretch::Constant | Stretch::Curve => StiffnessAt::Pretension,
             },
             support: self.support,
+            joint: self.joint,
             demand: self.demanded.then_some(StiffnessDemand {
                 stiffness_nm_per_rad: input.demand_nm_per_rad,
                 towards_rad: None,
@@ -103,30 +107,21 @@ impl State {
         self.message()?.query()
     }
 
-    /// The same state on tendons with curves.
-    #[must_use]
-    pub fn with_curves(&self) -> Self {
-        Self {
-            stretch: Stretch::Curve,
-            ..*self
-        }
-    }
-
-    fn tendon(&self) -> Result<TendonMessage, Error> {
+    fn tendon(&self) -> Result<TendonParameters, Error> {
         let (pretension, stiffness) = (self.input.pretension_n, self.input.stiffness_n_per_m);
         if self.stretch == Stretch::Constant {
-            return Ok(TendonMessage::Constant(stiffness));
+            return Ok(TendonParameters::Constant(stiffness));
         }
         let points = CurvePoint::<f32>::PAPER;
         let softening = TendonCurve::new(&points)?.stiffness(pretension)? / stiffness;
         let scaled = points.iter().map(|point| point.scaled(softening, 1.0));
-        Ok(TendonMessage::Curve(scaled.collect()))
+        Ok(TendonParameters::Curve(scaled.collect()))
     }
 
     /// The mechanism in f64.
     #[must_use]
     pub fn rig(&self) -> RigParameters<f64, 3> {
-        self.input.rig.into()
+        self.input.rig.map(f64::from)
     }
 }
 

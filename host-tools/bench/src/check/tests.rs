@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{grid, kernel_request, numbers, random, reference};
-use crate::precision::{Part, of_evaluation, of_kernel};
+use super::{evaluate_f64, grid, kernel_request, numbers, random, run_f64};
+use crate::precision::{Part, evaluation_parts, kernel_parts};
 use leg_firmware_bench::kernels::Kernel;
 use leg_sim::link::{InProcess, Link};
 
@@ -11,15 +11,15 @@ fn count(parts: &[Part]) -> usize {
 
 #[test]
 fn every_number_belongs_to_a_part() {
-    let mut link = InProcess::open().unwrap();
+    let mut link = InProcess::new();
     for state in &random(21, 1) {
-        let parts = count(&of_evaluation(state.support.kind));
-        assert_eq!(reference::evaluation(state).unwrap().len(), parts);
+        let parts = count(&evaluation_parts(state.support));
+        assert_eq!(evaluate_f64(state).unwrap().len(), parts);
         for kernel in Kernel::ALL {
-            let parts = count(of_kernel(kernel));
+            let parts = count(kernel_parts(kernel));
             let ran = numbers(&link.ask(&kernel_request(kernel, state)).unwrap()).unwrap();
             assert_eq!(ran.len(), parts, "{}", kernel.name());
-            let expected = reference::kernel(kernel, state).unwrap();
+            let expected = run_f64(kernel, state).unwrap();
             assert_eq!(expected.len(), parts, "{} in f64", kernel.name());
         }
     }
@@ -42,14 +42,10 @@ fn random_states_are_equal_for_equal_seeds_and_feasible() {
 fn the_grid_spans_the_workspace() {
     let grid = grid();
     assert_eq!(grid.len(), 24 * 7 * 4 * 7);
-    let spans = |of: fn(&super::Pose) -> f64, least: f64, greatest: f64| {
-        let values: Vec<f64> = grid.iter().map(|state| of(&state.pose())).collect();
-        assert!(
-            values
-                .iter()
-                .all(|value| (least..=greatest).contains(value))
-        );
-        assert!(values.contains(&least) && values.contains(&greatest));
+    let spans = |quantity: fn(&super::Pose) -> f64, min: f64, max: f64| {
+        let values: Vec<f64> = grid.iter().map(|state| quantity(&state.pose())).collect();
+        assert!(values.iter().all(|value| (min..=max).contains(value)));
+        assert!(values.contains(&min) && values.contains(&max));
     };
     spans(|pose| pose.azimuth_deg.round(), 0.0, 345.0);
     spans(|pose| pose.tilt_deg.round(), 0.0, 30.0);

@@ -23,12 +23,12 @@ const PANICS_ON_A_STACK: usize = 2;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Edge {
     to: u32,
-    counted: Counted,
+    kind: CallKind,
 }
 
 /// What a call counts towards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Counted {
+enum CallKind {
     /// Nothing: it stands on a stack once, else it is a recursion.
     Once,
     /// [`NESTED`].
@@ -47,44 +47,47 @@ pub(super) struct CallGraph<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Depth {
     bytes: u32,
-    next: Option<Node>,
+    next: Option<StackFrame>,
 }
 
-fn edges_of(function: &Function, program: &Program) -> Result<Vec<Edge>, ImageBudgetError> {
-    let direct = function.leads_to.iter().filter_map(|to| program.at(*to));
+fn calls(function: &Function, program: &Program) -> Result<Vec<Edge>, ImageBudgetError> {
+    let direct = function
+        .leads_to
+        .iter()
+        .filter_map(|to| program.function_at(*to));
     let direct = direct.map(|called| Edge {
         to: called.range.start,
-        counted: if called.is_called(&[PANIC_HANDLER]) {
-            Counted::Panic
+        kind: if called.is_called(&[PANIC_HANDLER]) {
+            CallKind::Panic
         } else {
-            Counted::Once
+            CallKind::Once
         },
     });
     let reach = indirect::reach(function, program)?;
-    let counted = if reach.nested {
-        Counted::Nested
+    let kind = if reach.nested {
+        CallKind::Nested
     } else {
-        Counted::Once
+        CallKind::Once
     };
-    let indirect = reach.targets.into_iter().map(|to| Edge { to, counted });
+    let indirect = reach.targets.into_iter().map(|to| Edge { to, kind });
     Ok(direct.chain(indirect).collect())
 }
 
 /// A function on a stack, and how many counted calls may still stand above it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Node {
+struct StackFrame {
     function: u32,
     nested: usize,
     panics: usize,
 }
 
-impl Node {
+impl StackFrame {
     /// What a call leads to; nothing if it is counted and there are enough of its kind.
     fn call(self, edge: &Edge) -> Option<Self> {
-        let (nested, panics) = match edge.counted {
-            Counted::Once => (self.nested, self.panics),
-            Counted::Nested => (self.nested.checked_sub(1)?, self.panics),
-            Counted::Panic => (self.nested, self.panics.checked_sub(1)?),
+        let (nested, panics) = match edge.kind {
+            CallKind::Once => (self.nested, self.panics),
+            CallKind::Nested => (self.nested.checked_sub(1)?, self.panics),
+            CallKind::Panic => (self.nested, self.panics.checked_sub(1)?),
         };
         Some(Self {
             function: edge.to,
@@ -105,7 +108,7 @@ impl<'a> CallGraph<'a> {
     pub(super) fn new(program: &'a Program) -> Result<Self, ImageBudgetError> {
         let functions = program.functions.iter();
         let edges: Result<_, ImageBudgetError> = functions
-            .map(|(address, function)| Ok((*address, edges_of(function, program)?)))
+            .map(|(address, function)| Ok((*address, calls(function, program)?)))
             .collect();
         Ok(Self {
             program,
@@ -129,7 +132,7 @@ impl<'a> CallGraph<'a> {
     /// The deepest stack below a root.
     pub(super) fn stack(&self, root: u32) -> Result<Stack, ImageBudgetError> {
         let mut depths = BTreeMap::new();
-        let start = Node {
+        let start = StackFrame {
             function: root,
             nested: NESTED,
             panics: PANICS_ON_A_STACK,
@@ -137,9 +140,9 @@ impl<'a> CallGraph<'a> {
         let depth = self.depth(start, &mut depths, &mut Vec::new())?;
         let mut functions = vec![self.name(root)];
         let mut next = depth.next;
-        while let Some(node) = next {
-            functions.push(self.name(node.function));
-            next = depths.get(&node).and_then(|depth| depth.next);
+        while let Some(frame) = next {
+            functions.push(self.name(frame.function));
+            next = depths.get(&frame).and_then(|depth| depth.next);
         }
         Ok(Stack {
             bytes: depth.bytes,
@@ -149,20 +152,20 @@ impl<'a> CallGraph<'a> {
 
     fn depth(
         &self,
-        node: Node,
-        known: &mut BTreeMap<Node, Depth>,
-        above: &mut Vec<Node>,
+        frame: StackFrame,
+        known: &mut BTreeMap<StackFrame, Depth>,
+        above: &mut Vec<StackFrame>,
     ) -> Result<Depth, ImageBudgetError> {
-        if let Some(depth) = known.get(&node) {
+        if let Some(depth) = known.get(&frame) {
             return Ok(*depth);
         }
-        if let Some(first) = above.iter().position(|other| *other == node) {
+        if let Some(first) = above.iter().position(|other| *other == frame) {
             return Err(self.recursion(above.get(first..).unwrap_or_default()));
         }
-        above.push(node);
-        let mut deepest: Option<(u32, Node)> = None;
-        let calls = self.edges(node.function).iter();
-        for next in calls.filter_map(|edge| node.call(edge)) {
+        above.push(frame);
+        let mut deepest: Option<(u32, StackFrame)> = None;
+        let calls = self.edges(frame.function).iter();
+        for next in calls.filter_map(|edge| frame.call(edge)) {
             let bytes = self.depth(next, known, above)?.bytes;
             if deepest.is_none_or(|(most, _)| bytes > most) {
                 deepest = Some((bytes, next));
@@ -170,19 +173,22 @@ impl<'a> CallGraph<'a> {
         }
         above.pop();
         let own = self
-            .function(node.function)
+            .function(frame.function)
             .map_or(0, |function| function.frame);
         let depth = Depth {
             bytes: own + deepest.map_or(0, |(bytes, _)| bytes),
             next: deepest.map(|(_, next)| next),
         };
-        known.insert(node, depth);
+        known.insert(frame, depth);
         Ok(depth)
     }
 
-    fn recursion(&self, circle: &[Node]) -> ImageBudgetError {
+    fn recursion(&self, circle: &[StackFrame]) -> ImageBudgetError {
         ImageBudgetError::Recursion {
-            circle: circle.iter().map(|node| self.name(node.function)).collect(),
+            circle: circle
+                .iter()
+                .map(|frame| self.name(frame.function))
+                .collect(),
         }
     }
 
@@ -195,18 +201,18 @@ impl<'a> CallGraph<'a> {
             .collect()
     }
 
-    /// The shortest way from a root to a function that is called so.
-    pub(super) fn way_to(&self, names: &[&str], root: u32) -> Option<Vec<String>> {
+    /// The shortest path from a root to a function that is called so.
+    pub(super) fn shortest_path(&self, names: &[&str], root: u32) -> Option<Vec<String>> {
         let came_from = self.came_from(root);
         let begins = |address: &&u32| {
             self.function(**address)
                 .is_some_and(|function| function.is_called(names))
         };
-        let ways = came_from
+        let paths = came_from
             .keys()
             .filter(begins)
-            .map(|end| self.way(*end, &came_from));
-        ways.min_by_key(Vec::len)
+            .map(|end| self.path(*end, &came_from));
+        paths.min_by_key(Vec::len)
     }
 
     /// From which function each one is reached first, breadth first.
@@ -224,14 +230,14 @@ impl<'a> CallGraph<'a> {
         came_from
     }
 
-    fn way(&self, end: u32, came_from: &BTreeMap<u32, Option<u32>>) -> Vec<String> {
-        let mut way = vec![self.name(end)];
+    fn path(&self, end: u32, came_from: &BTreeMap<u32, Option<u32>>) -> Vec<String> {
+        let mut path = vec![self.name(end)];
         let mut at = end;
         while let Some(Some(before)) = came_from.get(&at) {
-            way.push(self.name(*before));
+            path.push(self.name(*before));
             at = *before;
         }
-        way.reverse();
-        way
+        path.reverse();
+        path
     }
 }

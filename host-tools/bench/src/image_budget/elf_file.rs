@@ -29,7 +29,7 @@ pub(super) struct CodeSymbol<'a> {
     pub(super) name: &'a str,
     /// Where its first instruction lies.
     pub(super) address: u32,
-    /// How many bytes it has; zero if the file does not tell.
+    /// How many bytes it has; zero if the file does not give it.
     pub(super) size: u32,
 }
 

@@ -1,4 +1,4 @@
-//! Why an image's needs cannot be told.
+//! Why an image's needs are not known.
 
 use std::fmt;
 use thiserror::Error;
@@ -13,7 +13,7 @@ impl fmt::Display for Address {
     }
 }
 
-/// Why an image's needs cannot be told.
+/// Why an image's needs are not known.
 #[derive(Debug, Error)]
 pub enum ImageBudgetError {
     /// The bytes are no ELF file for a 32-bit machine.
@@ -55,7 +55,7 @@ pub enum ImageBudgetError {
         /// Those of the budget.
         budgeted: String,
     },
-    /// A function sets the stack pointer to what its code does not tell.
+    /// A function sets the stack pointer to what its code does not show.
     #[error("{function} sets the stack pointer to an unknown place at {at}")]
     UnknownStack {
         /// The function.

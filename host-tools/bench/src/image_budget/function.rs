@@ -1,4 +1,4 @@
-//! A function as its instructions tell: the stack that it takes, and where it leads.
+//! A function as its instructions show: the stack that it takes, and where it leads.
 
 use super::elf_file::{Bytes, Mapping};
 use super::error::{Address, ImageBudgetError};
@@ -49,7 +49,7 @@ impl Function {
     ) -> Result<Self, ImageBudgetError> {
         let mut reader = Reader::new(names, range.clone());
         for (stretch, code) in stretches(&range, mappings) {
-            let bytes = part(section, &stretch);
+            let bytes = section_bytes(section, &stretch);
             if code {
                 reader.instructions(&bytes)?;
             } else {
@@ -79,7 +79,7 @@ fn stretches<'a>(
 }
 
 /// The bytes of a section within a range.
-fn part<'a>(section: &Bytes<'a>, range: &Range<u32>) -> Bytes<'a> {
+fn section_bytes<'a>(section: &Bytes<'a>, range: &Range<u32>) -> Bytes<'a> {
     let at = |address: u32| address.saturating_sub(section.address) as usize;
     Bytes {
         address: range.start,

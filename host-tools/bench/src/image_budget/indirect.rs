@@ -93,7 +93,7 @@ static DECLARATIONS: [Declaration; 17] = [
         calls: 1,
         targets: &[
             "leg_firmware_bench::kernels::",
-            "leg_firmware_bench::boarded_leg::tick",
+            "leg_firmware_bench::virtual_leg::tick",
             "leg_qemu::counter::",
         ],
         nested: false,
@@ -132,21 +132,21 @@ pub(super) fn reach(function: &Function, program: &Program) -> Result<Reach, Ima
     if function.indirect_calls == 0 {
         return Ok(Reach::default());
     }
-    let Some(declaration) = declaration_of(function) else {
+    let Some(declaration) = find_declaration(function) else {
         return Ok(Reach {
             targets: program.taken.clone(),
             nested: false,
         });
     };
     declaration.check_calls(function)?;
-    let of_declaration = of_taken(program, |target| target.is_called(declaration.targets));
+    let of_declaration = taken_functions(program, |target| target.is_called(declaration.targets));
     if of_declaration.is_empty() {
         return Err(ImageBudgetError::NoTarget {
             function: function.name().into(),
             declared: declaration.targets.join(", "),
         });
     }
-    let unnamed = of_taken(program, |target| {
+    let unnamed = taken_functions(program, |target| {
         !DECLARATIONS
             .iter()
             .any(|declaration| target.is_called(declaration.targets))
@@ -159,17 +159,17 @@ pub(super) fn reach(function: &Function, program: &Program) -> Result<Reach, Ima
 
 /// Whether it is declared what the indirect calls of a function reach.
 pub(super) fn is_declared(function: &Function) -> bool {
-    declaration_of(function).is_some()
+    find_declaration(function).is_some()
 }
 
 /// The first one that fits: the narrower stand before the wider.
-fn declaration_of(function: &Function) -> Option<&'static Declaration> {
+fn find_declaration(function: &Function) -> Option<&'static Declaration> {
     DECLARATIONS
         .iter()
         .find(|declaration| function.is_called(declaration.callers))
 }
 
-fn of_taken(program: &Program, wanted: impl Fn(&Function) -> bool) -> BTreeSet<u32> {
+fn taken_functions(program: &Program, wanted: impl Fn(&Function) -> bool) -> BTreeSet<u32> {
     let is_wanted = |address: &&u32| program.functions.get(address).is_some_and(&wanted);
     program.taken.iter().filter(is_wanted).copied().collect()
 }

@@ -26,7 +26,7 @@ pub(super) struct Memories {
 }
 
 impl Memories {
-    pub(super) fn of(elf: &ElfFile<'_>) -> Result<Self, ImageBudgetError> {
+    pub(super) fn read(elf: &ElfFile<'_>) -> Result<Self, ImageBudgetError> {
         Ok(Self {
             flash: elf.value("_flash_start")?..elf.value("_flash_end")?,
             ram: elf.value("_ram_start")?..elf.value("_ram_end")?,

@@ -61,7 +61,7 @@ impl Program {
     }
 
     /// The function that holds an address.
-    pub(super) fn at(&self, address: u32) -> Option<&Function> {
+    pub(super) fn function_at(&self, address: u32) -> Option<&Function> {
         let (_, function) = self.functions.range(..=address).next_back()?;
         function.range.contains(&address).then_some(function)
     }
@@ -84,7 +84,7 @@ impl Program {
     fn check_targets(&self) -> Result<(), ImageBudgetError> {
         for function in self.functions.values() {
             for to in &function.leads_to {
-                if self.at(*to).is_none() {
+                if self.function_at(*to).is_none() {
                     return Err(ImageBudgetError::NoFunction {
                         function: function.name().into(),
                         to: Address(*to),

@@ -6,128 +6,106 @@ use super::error::ImageBudgetError;
 use super::function::Function;
 use super::program::Program;
 use super::vector_table;
-use super::{Bounds, Check, ImageBudget, ImageNeeds, Root, RootKind, Task, Usage, checks};
+use super::{
+    BudgetCheck, ByteBounds, ImageBudget, ImageNeeds, Root, RootKind, Task, Usage, checks,
+};
 use std::collections::BTreeSet;
 
 /// Where hand-made code begins.
 const START: u32 = 0x0800_0000;
 
-/// Reads hand-made code that is all instructions.
-fn read(bytes: &[u8]) -> Result<Function, ImageBudgetError> {
-    read_mapped(bytes, &[(0, true)])
+/// Reads hand-made code whose stretches begin so many bytes behind its start, with instructions or without.
+fn read_named(
+    name: &str,
+    halfwords: &[u16],
+    stretches: &[(u32, bool)],
+) -> Result<Function, ImageBudgetError> {
+    let bytes: Vec<u8> = halfwords
+        .iter()
+        .flat_map(|half| half.to_le_bytes())
+        .collect();
+    let mapping = |&(offset, code)| Mapping {
+        address: START + offset,
+        code,
+    };
+    let mappings: Vec<Mapping> = stretches.iter().map(mapping).collect();
+    let range = START..START + u32::try_from(bytes.len()).unwrap();
+    let section = Bytes {
+        address: START,
+        bytes: &bytes,
+    };
+    Function::read(vec![name.into()], range, &section, &mappings)
 }
 
-/// Reads hand-made code whose stretches begin so many bytes behind its start, with instructions or without.
-fn read_mapped(bytes: &[u8], stretches: &[(u32, bool)]) -> Result<Function, ImageBudgetError> {
-    let mappings: Vec<Mapping> = stretches
-        .iter()
-        .map(|&(offset, code)| Mapping {
-            address: START + offset,
-            code,
-        })
-        .collect();
-    let address = START;
-    let range = START..START + u32::try_from(bytes.len()).unwrap();
-    Function::read(
-        vec!["it".into()],
-        range,
-        &Bytes { address, bytes },
-        &mappings,
-    )
+/// Reads hand-made code that is all instructions.
+fn read(halfwords: &[u16]) -> Result<Function, ImageBudgetError> {
+    read_named("it", halfwords, &[(0, true)])
 }
 
 #[test]
 fn all_that_takes_stack_is_added_up() {
-    let function = read(&[
-        0xf0, 0xb5, // push {r4-r7, lr}: 20
-        0x2d, 0xe9, 0x00, 0x0b, // push.w {r8, r9, r11}: 12
-        0x2d, 0xed, 0x04, 0x8b, // vpush {d8-d9}: 16
-        0xad, 0xf5, 0x80, 0x6d, // sub.w sp, sp, #1024
-        0x0d, 0xf5, 0x80, 0x6d, // add.w sp, sp, #1024: gives back, which is not taken off
-        0x84, 0xb0, // sub sp, #16
-        0xf0, 0xbd, // pop {r4-r7, pc}
-    ]);
-    assert_eq!(function.unwrap().frame, 20 + 12 + 16 + 1024 + 16);
+    #[rustfmt::skip]
+    let code = [
+        0xb5f0, // push {r4-r7, lr}: 20
+        0xe92d, 0x0b00, // push.w {r8, r9, r11}: 12
+        0xed2d, 0x8b04, // vpush {d8-d9}: 16
+        0xf5ad, 0x6d80, // sub.w sp, sp, #1024
+        0xf50d, 0x6d80, // add.w sp, sp, #1024: gives back, which is not taken off
+        0xb084, // sub sp, #16
+        0xbdf0, // pop {r4-r7, pc}
+    ];
+    assert_eq!(read(&code).unwrap().frame, 20 + 12 + 16 + 1024 + 16);
 }
 
 #[test]
 fn data_between_instructions_is_not_decoded() {
-    let function = read_mapped(
-        &[
-            0x80, 0xb5, // push {r7, lr}: 8
-            0x70, 0x47, // bx lr
-            0xff, 0xb0, 0xff, 0xb0, // a word that would be `sub sp, #508` twice
-            0x84, 0xb0, // sub sp, #16
-            0x70, 0x47, // bx lr
-        ],
-        &[(0, true), (4, false), (8, true)],
-    )
-    .unwrap();
+    // push {r7, lr}; bx lr; a word that would be `sub sp, #508` twice; sub sp, #16; bx lr
+    let code = [0xb580, 0x4770, 0xb0ff, 0xb0ff, 0xb084, 0x4770];
+    let function = read_named("it", &code, &[(0, true), (4, false), (8, true)]).unwrap();
     assert_eq!(function.frame, 8 + 16);
     assert_eq!(function.words, BTreeSet::from([0xb0ff_b0ff]));
     assert!(function.leads_to.is_empty());
 }
 
 #[test]
-fn only_branches_out_of_the_function_leave_it() {
-    let function = read(&[
-        0x01, 0xd0, // beq to the `bl`
-        0x00, 0xf0, 0x0d, 0xf8, // bl 32 bytes on from the start
-        0xff, 0xf7, 0xfb, 0xbf, // b.w to the start
-        0x00, 0xf0, 0x80, 0xb8, // b.w beyond the end
-        0x98, 0x47, // blx r3
-        0x18, 0x47, // bx r3
-    ])
-    .unwrap();
-    assert_eq!(
-        function.leads_to,
-        BTreeSet::from([START + 32, START + 10 + 4 + 256])
-    );
-    assert_eq!(function.indirect_calls, 2);
-}
-
-#[test]
-fn code_that_goes_on_leads_to_the_next_function() {
-    // movs r0, #0; nop
-    let function = read(&[0x00, 0x20, 0x00, 0xbf]).unwrap();
-    assert_eq!(function.leads_to, BTreeSet::from([START + 4]));
-    // bx lr; nop
-    let function = read(&[0x70, 0x47, 0x00, 0xbf]).unwrap();
-    assert!(function.leads_to.is_empty());
+fn a_function_leads_where_its_code_goes_on() {
+    let cases: [(&[u16], &[u32], &str); 3] = [
+        (
+            &[
+                0xd001, 0xf000, 0xf80d, 0xf7ff, 0xbffb, 0xf000, 0xb880, 0x4798, 0x4718,
+            ],
+            &[32, 10 + 4 + 256],
+            "beq to the `bl`; bl 32 bytes on from the start; b.w to the start; b.w beyond the end; blx r3; bx r3",
+        ),
+        (
+            &[0x2000, 0xbf00],
+            &[4],
+            "movs r0, #0; nop: the next function",
+        ),
+        (&[0x4770, 0xbf00], &[], "bx lr; nop"),
+    ];
+    for (code, offsets, text) in cases {
+        let wanted: BTreeSet<u32> = offsets.iter().map(|offset| START + offset).collect();
+        assert_eq!(read(code).unwrap().leads_to, wanted, "{text}");
+    }
+    assert_eq!(read(cases[0].0).unwrap().indirect_calls, 2);
 }
 
 #[test]
 fn an_address_in_two_halves_is_seen() {
     // movw r3, #0x5679; movw r4, #0; movt r3, #0x0801; bx lr
-    let function = read(&[
-        0x45, 0xf2, 0x79, 0x63, 0x40, 0xf2, 0x00, 0x04, 0xc0, 0xf6, 0x01, 0x03, 0x70, 0x47,
-    ]);
+    let function = read(&[0xf245, 0x6379, 0xf240, 0x0400, 0xf6c0, 0x0301, 0x4770]);
     assert_eq!(function.unwrap().words, BTreeSet::from([0x0801_5679]));
 }
 
 #[test]
-fn a_veneer_leads_where_its_name_says_that_it_does() {
-    let code = [
-        0x40, 0xf2, 0x45, 0x2c, // movw r12, #0x245
-        0xc0, 0xf6, 0x00, 0x0c, // movt r12, #0x800
-        0x60, 0x47, // bx r12
-    ];
-    let named = |name: &str| {
-        let mapping = Mapping {
-            address: START,
-            code: true,
-        };
-        let range = START..START + 10;
-        let bytes = Bytes {
-            address: START,
-            bytes: &code,
-        };
-        Function::read(vec![name.into()], range, &bytes, &[mapping]).unwrap()
-    };
-    let veneer = named("__Thumbv7ABSLongThunk_far");
+fn a_veneer_leads_to_the_address_that_it_makes() {
+    // movw r12, #0x245; movt r12, #0x800; bx r12
+    let code = [0xf240, 0x2c45, 0xf6c0, 0x0c00, 0x4760];
+    let veneer = read_named("__Thumbv7ABSLongThunk_far", &code, &[(0, true)]).unwrap();
     assert_eq!(veneer.leads_to, BTreeSet::from([0x0800_0244]));
     assert_eq!((veneer.indirect_calls, veneer.words.len()), (0, 0));
-    let other = named("other");
+    let other = read(&code).unwrap();
     assert!(other.leads_to.is_empty());
     assert_eq!(other.indirect_calls, 1);
     assert_eq!(other.words, BTreeSet::from([0x0800_0245]));
@@ -135,16 +113,10 @@ fn a_veneer_leads_where_its_name_says_that_it_does() {
 
 #[test]
 fn code_that_is_not_understood_is_an_error() {
-    // mov sp, r4
-    assert!(matches!(
-        read(&[0xa5, 0x46]),
-        Err(ImageBudgetError::UnknownStack { .. })
-    ));
-    // The first half of `bl`.
-    assert!(matches!(
-        read(&[0x00, 0xf0]),
-        Err(ImageBudgetError::CutOff { .. })
-    ));
+    let moved = read(&[0x46a5]); // mov sp, r4
+    assert!(matches!(moved, Err(ImageBudgetError::UnknownStack { .. })));
+    let cut_off = read(&[0xf000]); // the first half of `bl`
+    assert!(matches!(cut_off, Err(ImageBudgetError::CutOff { .. })));
 }
 
 /// A function at a number times 16, by name, frame, the numbers that it calls, and its calls by address.
@@ -192,15 +164,12 @@ fn the_deepest_chain_counts() {
 #[test]
 fn a_recursion_is_an_error_that_names_its_circle() {
     for (last_calls, wanted) in [(&[1_u32] as &[u32], "b c"), (&[2], "c"), (&[0], "a b c")] {
-        let graph = program(
-            &[
-                ("a", 8, &[1], 0),
-                ("b", 8, &[2], 0),
-                ("c", 8, last_calls, 0),
-            ],
-            &[],
-        );
-        let Err(ImageBudgetError::Recursion { circle }) = stack(&graph) else {
+        let sketches = [
+            ("a", 8, &[1_u32][..], 0),
+            ("b", 8, &[2], 0),
+            ("c", 8, last_calls, 0),
+        ];
+        let Err(ImageBudgetError::Recursion { circle }) = stack(&program(&sketches, &[])) else {
             panic!("{wanted} is a circle");
         };
         assert_eq!(circle.join(" "), wanted);
@@ -279,33 +248,35 @@ fn a_second_panic_is_the_last_on_a_stack() {
 }
 
 #[test]
-fn a_panic_is_found_by_the_shortest_way_directly_or_by_address() {
+fn a_panic_is_found_by_the_shortest_path_directly_or_by_address() {
     let panic = "core::panicking::panic";
-    let direct = program(
-        &[
-            ("a", 8, &[1, 2], 0),
-            ("b", 8, &[2], 0),
-            ("c", 8, &[3], 0),
-            (panic, 8, &[], 0),
-        ],
-        &[],
-    );
-    let way = CallGraph::new(&direct).unwrap().way_to(&PANICS, 0);
-    assert_eq!(way.unwrap().join(" "), "a c core::panicking::panic");
-    let by_address = program(
-        &[("a", 8, &[], 1), ("b", 8, &[2], 0), (panic, 8, &[], 0)],
-        &[1],
-    );
-    let graph = CallGraph::new(&by_address).unwrap();
-    assert_eq!(
-        graph.way_to(&PANICS, 0).unwrap().join(" "),
-        "a b core::panicking::panic"
-    );
-    let apart = program(
-        &[("a", 8, &[1], 0), ("b", 8, &[], 0), (panic, 8, &[], 0)],
-        &[],
-    );
-    assert_eq!(CallGraph::new(&apart).unwrap().way_to(&PANICS, 0), None);
+    let cases: [(&[Sketch<'_>], &[u32], Option<&str>); 3] = [
+        (
+            &[
+                ("a", 8, &[1, 2], 0),
+                ("b", 8, &[2], 0),
+                ("c", 8, &[3], 0),
+                (panic, 8, &[], 0),
+            ],
+            &[],
+            Some("a c core::panicking::panic"),
+        ),
+        (
+            &[("a", 8, &[], 1), ("b", 8, &[2], 0), (panic, 8, &[], 0)],
+            &[1],
+            Some("a b core::panicking::panic"),
+        ),
+        (
+            &[("a", 8, &[1], 0), ("b", 8, &[], 0), (panic, 8, &[], 0)],
+            &[],
+            None,
+        ),
+    ];
+    for (sketches, taken, wanted) in cases {
+        let program = program(sketches, taken);
+        let path = CallGraph::new(&program).unwrap().shortest_path(&PANICS, 0);
+        assert_eq!(path.map(|path| path.join(" ")).as_deref(), wanted);
+    }
 }
 
 #[test]
@@ -359,8 +330,8 @@ fn usage(used: u32) -> Usage {
     Usage { used, size: 100 }
 }
 
-fn judged(needs: &ImageNeeds, hot: &'static [&'static str]) -> Vec<bool> {
-    let bounds = Bounds {
+fn passed(needs: &ImageNeeds, hot: &'static [&'static str]) -> Vec<bool> {
+    let bounds = ByteBounds {
         lowest: 10,
         highest: 120,
     };
@@ -371,20 +342,20 @@ fn judged(needs: &ImageNeeds, hot: &'static [&'static str]) -> Vec<bool> {
         tasks: TASKS,
         hot,
     };
-    let checks: Vec<Check> = checks(needs, &budget).unwrap();
-    checks.iter().map(|check| check.held).collect()
+    let checks: Vec<BudgetCheck> = checks(needs, &budget).unwrap();
+    checks.iter().map(|check| check.passed).collect()
 }
 
-const TASKS: &[(&str, Bounds)] = &[(
+const TASKS: &[(&str, ByteBounds)] = &[(
     "module::task",
-    Bounds {
+    ByteBounds {
         lowest: 10,
         highest: 100,
     },
 )];
 
 #[test]
-fn a_budget_is_missed_below_above_beyond_the_memory_by_a_panic_and_by_a_log() {
+fn a_budget_fails_below_above_beyond_the_memory_by_a_panic_and_by_a_log() {
     let root = |name: &str, panic: Option<&str>, log: Option<&str>| Root {
         name: name.into(),
         kind: RootKind::Interrupt,
@@ -409,11 +380,11 @@ fn a_budget_is_missed_below_above_beyond_the_memory_by_a_panic_and_by_a_log() {
             deepest: Vec::new(),
         }],
     };
-    assert_eq!(judged(&needs, &["safe"]), [true; 6]);
-    assert_eq!(judged(&needs, &["panics"])[4..], [false, true]);
-    assert_eq!(judged(&needs, &["logs"])[4..], [true, false]);
+    assert_eq!(passed(&needs, &["safe"]), [true; 6]);
+    assert_eq!(passed(&needs, &["panics"])[4..], [false, true]);
+    assert_eq!(passed(&needs, &["logs"])[4..], [true, false]);
     (needs.flash, needs.stack) = (usage(9), usage(101));
-    assert_eq!(judged(&needs, &[]), [false, true, false, true]);
+    assert_eq!(passed(&needs, &[]), [false, true, false, true]);
     needs.tasks[0].stack_bytes = 101;
-    assert!(!judged(&needs, &[])[3]);
+    assert!(!passed(&needs, &[])[3]);
 }

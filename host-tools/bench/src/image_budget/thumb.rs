@@ -1,8 +1,10 @@
 //! What an instruction of the Cortex-M4F does to the stack pointer and to the program counter, and nothing else.
 //!
 //! The encodings are those of the ARMv7-M Architecture Reference Manual, DDI 0403E, chapters A5 to A7. An instruction
-//! that sets the stack pointer to something that cannot be told from its bytes is [`Effect::UnknownStack`], so that a
-//! gap in what is decoded is an error and not a stack that is told too small.
+//! that sets the stack pointer to something that its bytes do not show is [`Effect::UnknownStack`], so that a
+//! gap in what is decoded is an error and not a stack that is reported too small.
+//!
+//! Our own, because yaxpeax-arm 0.5 decodes no floating-point instruction: 44 % of the image for QEMU, `vpush` included.
 
 mod narrow;
 #[cfg(test)]

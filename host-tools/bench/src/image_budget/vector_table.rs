@@ -28,7 +28,7 @@ pub enum RootKind {
 
 /// Where execution can begin.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Entry {
+pub(super) struct VectorEntry {
     pub(super) name: String,
     pub(super) kind: RootKind,
     /// Where its code begins.
@@ -36,9 +36,12 @@ pub(super) struct Entry {
 }
 
 /// The entries of a vector table, each handler once.
-pub(super) fn entries(table: &[u32], program: &Program) -> Result<Vec<Entry>, ImageBudgetError> {
+pub(super) fn entries(
+    table: &[u32],
+    program: &Program,
+) -> Result<Vec<VectorEntry>, ImageBudgetError> {
     let default = program.names.get(DEFAULT_HANDLER).copied();
-    let mut found: Vec<Entry> = Vec::new();
+    let mut found: Vec<VectorEntry> = Vec::new();
     // The first word is where the stack begins; a zero is a number that the core does not use.
     let numbered = table.iter().enumerate().skip(RESET);
     for (number, vector) in numbered.filter(|(_, vector)| **vector != 0) {
@@ -59,7 +62,7 @@ pub(super) fn named(
     name: &str,
     table: &[u32],
     program: &Program,
-) -> Result<Entry, ImageBudgetError> {
+) -> Result<VectorEntry, ImageBudgetError> {
     let no_root = || ImageBudgetError::NoRoot { name: name.into() };
     let address = *program.names.get(name).ok_or_else(no_root)?;
     let function = program.functions.get(&address).ok_or_else(no_root)?;
@@ -67,18 +70,18 @@ pub(super) fn named(
     match entries.find(|entry| entry.address == address) {
         // The name of an exception without a handler is another name of the default one.
         Some(entry) if entry.name == DEFAULT_HANDLER && name != DEFAULT_HANDLER => Err(no_root()),
-        Some(entry) => Ok(Entry {
+        Some(entry) => Ok(VectorEntry {
             name: name.into(),
             ..entry
         }),
-        None => Ok(Entry {
+        None => Ok(VectorEntry {
             name: name.into(),
             ..entry(RESET, function, false)
         }),
     }
 }
 
-fn entry(number: usize, function: &Function, is_default: bool) -> Entry {
+fn entry(number: usize, function: &Function, is_default: bool) -> VectorEntry {
     let name = if is_default {
         DEFAULT_HANDLER
     } else {
@@ -89,7 +92,7 @@ fn entry(number: usize, function: &Function, is_default: bool) -> Entry {
         FIRST_INTERRUPT.. if !is_default => RootKind::Interrupt,
         _ => RootKind::Exception,
     };
-    Entry {
+    VectorEntry {
         name: name.into(),
         kind,
         address: function.range.start,

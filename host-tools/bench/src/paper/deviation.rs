@@ -2,7 +2,7 @@
 
 mod experiment;
 
-use super::row::{Meaning, Row, Topic, Verdict};
+use super::row::{PaperRow, Topic, Verdict};
 use leg_model::{Elasticity, Error, Query, StiffnessAt, Tendon, evaluate};
 use leg_model_tools::nonlinear;
 use leg_rig::rig_file::RigFile;
@@ -58,22 +58,7 @@ pub(super) fn deviations(
     })
 }
 
-fn row(what: String, published: f64, ours: f64, unit: &'static str, bound: f64) -> Row {
-    Row {
-        topic: Topic::Deviation,
-        what,
-        published,
-        meaning: Meaning::Value,
-        ours,
-        unit,
-        decimals: 3,
-        bound,
-        expected: Verdict::Agrees,
-        why: "",
-    }
-}
-
-pub(super) fn rows(rig: &RigFile) -> Result<Vec<Row>, Error> {
+pub(super) fn rows(rig: &RigFile) -> Result<Vec<PaperRow>, Error> {
     let mut rows = maxima(rig, StiffnessAt::Pretension)?;
     rows.extend(maxima(rig, StiffnessAt::Tension)?);
     rows.extend(against_equilibrium(rig)?);
@@ -82,9 +67,21 @@ pub(super) fn rows(rig: &RigFile) -> Result<Vec<Row>, Error> {
 }
 
 /// The largest deviation for each payload, with the stiffness read in one way or the other.
-fn maxima(rig: &RigFile, stiffness_at: StiffnessAt) -> Result<Vec<Row>, Error> {
-    let mut rows = Vec::new();
-    for (payload_kg, published) in MAXIMA {
+fn maxima(rig: &RigFile, stiffness_at: StiffnessAt) -> Result<Vec<PaperRow>, Error> {
+    let (reading, expected, why) = match stiffness_at {
+        StiffnessAt::Pretension => (
+            "",
+            Verdict::Agrees,
+            "the stiffness at the pretension was fitted to these four rows, one number for all: they prove the proportions, not the size",
+        ),
+        StiffnessAt::Tension => (
+            ", stiffness at each tendon's tension",
+            Verdict::Differs,
+            "read so, the default curve makes the more loaded tendons stiffer and the less loaded ones softer; the paper's \
+             deviations grow in proportion to the load, which only one stiffness for all loads gives",
+        ),
+    };
+    let row = |(payload_kg, published): (f64, f64)| {
         let mut largest: f64 = 0.0;
         for tilt_deg in tilts_deg() {
             let query = Query {
@@ -93,36 +90,15 @@ fn maxima(rig: &RigFile, stiffness_at: StiffnessAt) -> Result<Vec<Row>, Error> {
             };
             largest = largest.max(evaluate(&rig.parameters, &query)?.deviation_m * 1e3);
         }
-        let (reading, expected, why) = match stiffness_at {
-            StiffnessAt::Pretension => (
-                "",
-                Verdict::Agrees,
-                "the stiffness at the pretension was fitted to these four rows, one number for all: they prove the proportions, not the size",
-            ),
-            StiffnessAt::Tension => (
-                ", stiffness at each tendon's tension",
-                Verdict::Differs,
-                "read so, the default curve makes the more loaded tendons stiffer and the less loaded ones softer; the paper's \
-                 deviations grow in proportion to the load, which only one stiffness for all loads gives",
-            ),
-        };
-        rows.push(Row {
-            expected,
-            why,
-            ..row(
-                format!("largest deviation with {payload_kg} kg{reading}"),
-                published,
-                largest,
-                "mm",
-                0.015 * published,
-            )
-        });
-    }
-    Ok(rows)
+        let what = format!("largest deviation with {payload_kg} kg{reading}");
+        let row = PaperRow::new(Topic::Deviation, what, (published, largest), ("mm", 3), why);
+        Ok(row.bounded(0.015 * published).expected(expected))
+    };
+    MAXIMA.into_iter().map(row).collect()
 }
 
 /// How far the linear deviations are from the nonlinear equilibrium, percent: average and largest.
-fn against_equilibrium(rig: &RigFile) -> Result<Vec<Row>, Error> {
+fn against_equilibrium(rig: &RigFile) -> Result<[PaperRow; 2], Error> {
     let (mut linear, mut with_load) = (Vec::new(), Vec::new());
     for (payload_kg, _) in MAXIMA {
         // At the vertical nothing deviates, and there is nothing to be relative to.
@@ -134,30 +110,21 @@ fn against_equilibrium(rig: &RigFile) -> Result<Vec<Row>, Error> {
     }
     let average = linear.iter().sum::<f64>() / linear.len() as f64;
     let worst = with_load.iter().copied().fold(0.0, f64::max);
-    Ok(vec![
-        Row {
-            meaning: Meaning::AtMost,
-            expected: Verdict::Differs,
-            why: "the linear model leaves out the load's own stiffness and large rotations, so it sags more than the \
-                  equilibrium; the paper's simulation is not described well enough to repeat",
-            ..row(
-                "theory beyond static simulation, on average".into(),
-                1.5,
-                average,
-                "%",
-                0.0,
-            )
-        },
-        Row {
-            meaning: Meaning::AtMost,
-            why: "with the load's own stiffness added the linear model is near the equilibrium everywhere",
-            ..row(
-                "the same with the load's own stiffness, at most".into(),
-                1.5,
-                worst,
-                "%",
-                0.0,
-            )
-        },
+    let row = |what, ours, why| {
+        PaperRow::new(Topic::Deviation, what, (1.5, ours), ("%", 3), why).at_most()
+    };
+    Ok([
+        row(
+            "theory beyond static simulation, on average",
+            average,
+            "the linear model leaves out the load's own stiffness and large rotations, so it sags more than the \
+             equilibrium; the paper's simulation is not described well enough to repeat",
+        )
+        .expected(Verdict::Differs),
+        row(
+            "the same with the load's own stiffness, at most",
+            worst,
+            "with the load's own stiffness added the linear model is near the equilibrium everywhere",
+        ),
     ])
 }

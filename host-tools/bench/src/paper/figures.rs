@@ -5,8 +5,8 @@ use super::deviation::{AZIMUTH_DEG, Deviations, MAXIMA, deviations, tilts_deg};
 use super::tendon::PUBLISHED;
 use super::workspace::PAYLOAD_KG;
 use leg_model::{Elasticity, Error, Query, Tendon};
-use leg_model_tools::plot::{self, Chart, Line, PlotError, field};
-use leg_model_tools::workspace_map::{Grid, Quantity, WorkspaceMap};
+use leg_model_tools::plot::{self, Chart, ChartLine, PlotError, field};
+use leg_model_tools::workspace_map::{Grid, MapQuantity, WorkspaceMap};
 use leg_rig::rig_file::RigFile;
 use std::path::{Path, PathBuf};
 
@@ -109,7 +109,7 @@ fn tendon_chart(y_title: &str, points: Vec<(f64, f64)>, marks: Vec<(f64, f64)>) 
         title: format!("Fig. 6: {y_title} of the tendon"),
         x_title: "tension (N)".into(),
         y_title: y_title.into(),
-        lines: vec![Line {
+        lines: vec![ChartLine {
             label: "default curve".into(),
             points,
             marks,
@@ -156,7 +156,7 @@ fn fig9(
             points.push((tilt_deg, line(&d)));
             marks.extend(mark(&d).map(|value| (tilt_deg, value)));
         }
-        lines.push(Line {
+        lines.push(ChartLine {
             label: format!("payload {payload_kg} kg"),
             points,
             marks,
@@ -171,16 +171,16 @@ fn fig9(
     })
 }
 
-fn workspace_field(rig: &RigFile) -> Result<field::Field, Error> {
+fn workspace_field(rig: &RigFile) -> Result<field::PlotField, Error> {
     let grid = Grid {
         azimuths: 360,
         tilts: 31,
     };
     let Query { tendons, .. } = super::deviation::constant(rig, 0.0, 0.0, PAYLOAD_KG)?;
     let rig = RigFile { tendons, ..*rig };
-    let map = WorkspaceMap::compute(&rig, PAYLOAD_KG, grid, || ());
+    let map = WorkspaceMap::compute(&rig, PAYLOAD_KG, grid, false, || ());
     Ok(map.field(
-        Quantity::Deviation,
+        MapQuantity::Deviation,
         "Fig. 10: deviation of the tip with 1 kg".into(),
     ))
 }

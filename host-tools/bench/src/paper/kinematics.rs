@@ -1,12 +1,12 @@
 //! Eqs. (24) and (25): directions and moments of the tendons in the two configurations of Fig. 11.
 
-use super::row::{Meaning, Row, Topic, Verdict};
+use super::row::{PaperRow, Topic, Verdict};
 use leg_model::{Direction, Error, Rig, RigParameters, inverse_kinematics};
 use leg_model_tools::plain_vectors::rotation;
 use nalgebra::{Matrix3, Vector3};
 
 /// A configuration of Fig. 11: a leg that leans by 30° at azimuth 0.
-pub(super) struct Configuration {
+pub(super) struct PrintedPose {
     pub name: &'static str,
     upper_length_m: f64,
     /// Rows 1 to 3 of the printed matrix: n.
@@ -20,8 +20,8 @@ pub(super) struct Configuration {
 }
 
 /// Both configurations.
-pub(super) const CONFIGURATIONS: [Configuration; 2] = [
-    Configuration {
+pub(super) const CONFIGURATIONS: [PrintedPose; 2] = [
+    PrintedPose {
         name: "Eq. (24), L_upper = 6 mm",
         upper_length_m: 0.006,
         pulls: Matrix3::new(
@@ -33,7 +33,7 @@ pub(super) const CONFIGURATIONS: [Configuration; 2] = [
         tensions_n: Vector3::new(-2.44, 2.44, 2.44),
         support_force_n: Vector3::new(-0.7, 0.0, 2.38),
     },
-    Configuration {
+    PrintedPose {
         name: "Eq. (25), L_upper = 0",
         upper_length_m: 0.0,
         pulls: Matrix3::new(
@@ -47,7 +47,7 @@ pub(super) const CONFIGURATIONS: [Configuration; 2] = [
     },
 ];
 
-impl Configuration {
+impl PrintedPose {
     /// n and A (m) of the model.
     pub(super) fn model(&self) -> Result<(Matrix3<f64>, Matrix3<f64>), Error> {
         let parameters = RigParameters {
@@ -71,71 +71,50 @@ impl Configuration {
 const ENTRY: f64 = 1e-4;
 
 /// How many entries of each matrix agree with the print.
-pub(super) fn rows() -> Result<Vec<Row>, Error> {
+pub(super) fn rows() -> Result<Vec<PaperRow>, Error> {
     let mut rows = Vec::new();
     for configuration in &CONFIGURATIONS {
-        let entries = configuration.entries()?;
-        for matrix in ["n", "A"] {
-            let of_matrix = entries
-                .iter()
-                .filter(|row| row.what.contains(&format!(": {matrix}[")));
-            let verdicts: Vec<Verdict> = of_matrix.map(Row::verdict).collect();
-            let agreeing = verdicts
-                .iter()
-                .filter(|verdict| **verdict == Verdict::Agrees);
-            rows.push(Row {
-                topic: Topic::Kinematics,
-                what: format!(
+        for (matrix, entries) in ["n", "A"].into_iter().zip(configuration.entries()?) {
+            let agree = |row: &&PaperRow| row.verdict() == Verdict::Agrees;
+            let agreeing = entries.iter().filter(agree).count();
+            rows.push(PaperRow::new(
+                Topic::Kinematics,
+                format!(
                     "{}: entries of {matrix} that agree, of those printed",
                     configuration.name
                 ),
-                published: verdicts.len() as f64,
-                meaning: Meaning::Value,
-                ours: agreeing.count() as f64,
-                unit: "",
-                decimals: 0,
-                bound: 0.0,
-                expected: Verdict::Agrees,
-                why: "each to 1e-4; the report lists them",
-            });
+                (entries.len() as f64, agreeing as f64),
+                ("", 0),
+                "each to 1e-4; the report lists them",
+            ));
         }
     }
     Ok(rows)
 }
 
 /// Every printed entry of both configurations.
-pub(super) fn entries() -> Result<Vec<Row>, Error> {
-    let both: Result<Vec<_>, _> = CONFIGURATIONS.iter().map(Configuration::entries).collect();
-    Ok(both?.concat())
+pub(super) fn entries() -> Result<Vec<PaperRow>, Error> {
+    let both: Result<Vec<_>, _> = CONFIGURATIONS.iter().map(PrintedPose::entries).collect();
+    Ok(both?.concat().concat())
 }
 
-impl Configuration {
-    fn entries(&self) -> Result<Vec<Row>, Error> {
+impl PrintedPose {
+    /// The entries of n and those of A, mm.
+    fn entries(&self) -> Result<[Vec<PaperRow>; 2], Error> {
         let (pulls, moment_map) = self.model()?;
-        let matrices = [
-            ("n", "", self.pulls, pulls),
-            ("A", "mm", self.moment_map_mm, moment_map * 1e3),
-        ];
-        let of =
-            |(matrix, unit, printed, ours): (&str, &'static str, Matrix3<f64>, Matrix3<f64>)| {
-                (0..9)
-                    .map(move |place| {
-                        let (row, column) = (place / 3, place % 3);
-                        Row {
-                            topic: Topic::Kinematics,
-                            what: format!("{}: {matrix}[{}][{}]", self.name, row + 1, column + 1),
-                            published: printed[(row, column)],
-                            meaning: Meaning::Value,
-                            ours: ours[(row, column)],
-                            unit,
-                            decimals: 4,
-                            bound: ENTRY,
-                            expected: Verdict::Agrees,
-                            why: "printed to four decimals",
-                        }
-                    })
-                    .collect::<Vec<_>>()
+        let entries = |matrix, unit, printed: &Matrix3<f64>, ours: &Matrix3<f64>| {
+            let entry = |place: usize| {
+                let (row, column) = (place / 3, place % 3);
+                let what = format!("{}: {matrix}[{}][{}]", self.name, row + 1, column + 1);
+                let numbers = (printed[(row, column)], ours[(row, column)]);
+                let why = "printed to four decimals";
+                PaperRow::new(Topic::Kinematics, what, numbers, (unit, 4), why).bounded(ENTRY)
             };
-        Ok(matrices.map(of).concat())
+            (0..9).map(entry).collect()
+        };
+        Ok([
+            entries("n", "", &self.pulls, &pulls),
+            entries("A", "mm", &self.moment_map_mm, &(moment_map * 1e3)),
+        ])
     }
 }

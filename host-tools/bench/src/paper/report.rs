@@ -1,6 +1,6 @@
 //! The report: what is published beside what is computed, in Markdown.
 
-use super::row::{Meaning, Row, Topic};
+use super::row::{PaperRow, PublishedAs, Topic};
 use super::{Erratum, Paper};
 use std::path::{Path, PathBuf};
 
@@ -14,7 +14,7 @@ with the leg's mass from the note in Fig. 9, at a pretension of 70 N.
 ";
 
 const NOT_COMPARED: &str = "\
-## What is not told by the paper
+## What the paper does not report
 
 Figure 9 (b) shows the error of theory against experiment; ours beside it shows the linear model against the nonlinear
 equilibrium. The slope of the stiffness over the tension and the pretension of the experiment cannot be told apart from
@@ -65,12 +65,12 @@ fn table(topic: Topic, paper: &Paper) -> String {
     format!("## {}\n\n{}", topic.heading(), rows(of_topic))
 }
 
-fn rows<'a>(rows: impl Iterator<Item = &'a Row>) -> String {
+fn rows<'a>(rows: impl Iterator<Item = &'a PaperRow>) -> String {
     let rows: String = rows
         .map(|row| {
             let limit = match row.meaning {
-                Meaning::Value | Meaning::Unrepeatable => "",
-                Meaning::AtMost => "≤ ",
+                PublishedAs::Value | PublishedAs::Unrepeatable => "",
+                PublishedAs::AtMost => "≤ ",
             };
             format!(
                 "| {} | {limit}{} | {} | {:+.*} | {} | {} | {} | {} |\n",
@@ -91,7 +91,7 @@ fn rows<'a>(rows: impl Iterator<Item = &'a Row>) -> String {
     )
 }
 
-fn number(row: &Row, value: f64) -> String {
+fn number(row: &PaperRow, value: f64) -> String {
     format!("{value:.*}", row.decimals)
 }
 

@@ -56,7 +56,7 @@ pub enum Verdict {
 /// How the published number is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Meaning {
+pub enum PublishedAs {
     /// As a value.
     Value,
     /// As a limit that is not exceeded.
@@ -67,7 +67,7 @@ pub enum Meaning {
 
 /// A published number beside ours.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct PaperRow {
     /// What it belongs to.
     pub topic: Topic,
     /// What it is.
@@ -75,7 +75,7 @@ pub struct Row {
     /// What the paper prints.
     pub published: f64,
     /// How that is meant.
-    pub meaning: Meaning,
+    pub meaning: PublishedAs,
     /// What the program computes.
     pub ours: f64,
     /// The unit of both.
@@ -90,7 +90,56 @@ pub struct Row {
     pub why: &'static str,
 }
 
-impl Row {
+impl PaperRow {
+    /// A value that is to be met exactly; see the methods below for the other kinds.
+    pub(super) fn new(
+        topic: Topic,
+        what: impl Into<String>,
+        (published, ours): (f64, f64),
+        (unit, decimals): (&'static str, usize),
+        why: &'static str,
+    ) -> Self {
+        Self {
+            topic,
+            what: what.into(),
+            published,
+            meaning: PublishedAs::Value,
+            ours,
+            unit,
+            decimals,
+            bound: 0.0,
+            expected: Verdict::Agrees,
+            why,
+        }
+    }
+
+    /// The same with a bound on the difference.
+    pub(super) fn bounded(self, bound: f64) -> Self {
+        Self { bound, ..self }
+    }
+
+    /// The same as a limit that is not exceeded.
+    pub(super) fn at_most(self) -> Self {
+        Self {
+            meaning: PublishedAs::AtMost,
+            ..self
+        }
+    }
+
+    /// The same as a number that cannot be repeated here.
+    pub(super) fn unrepeatable(self) -> Self {
+        Self {
+            meaning: PublishedAs::Unrepeatable,
+            expected: Verdict::NotComparable,
+            ..self
+        }
+    }
+
+    /// The same with the verdict that is known.
+    pub(super) fn expected(self, expected: Verdict) -> Self {
+        Self { expected, ..self }
+    }
+
     /// Ours less the published number.
     #[must_use]
     pub fn difference(&self) -> f64 {
@@ -101,9 +150,9 @@ impl Row {
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         let near = match self.meaning {
-            Meaning::Value => self.difference().abs() <= self.bound,
-            Meaning::AtMost => self.difference() <= self.bound,
-            Meaning::Unrepeatable => return Verdict::NotComparable,
+            PublishedAs::Value => self.difference().abs() <= self.bound,
+            PublishedAs::AtMost => self.difference() <= self.bound,
+            PublishedAs::Unrepeatable => return Verdict::NotComparable,
         };
         if near {
             Verdict::Agrees

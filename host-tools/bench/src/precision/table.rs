@@ -1,51 +1,94 @@
 //! The rows of the table.
 
-use super::{Measure, Quantity, Row};
+use super::{CheckedQuantity, Measure, PrecisionRow};
 
-/// All rows, one for each [`Quantity`], in its order.
-pub const TABLE: [Row; 31] = [
-    absolute(Quantity::Lengths, "lengths", 2e-8, "m"),
-    relative(Quantity::MomentMap, "moment map", 1.2e-6),
-    relative(Quantity::PretensionDirection, "pretension direction", 1e-6),
-    relative(Quantity::LoadMoment, "load moment", 1e-6),
-    relative(Quantity::Tensions, "tensions", 4e-6),
-    relative(Quantity::PretensionRange, "pretension range", 2e-6),
-    relative(Quantity::Stiffness, "stiffness", 2.5e-6),
-    relative(Quantity::K2Exact, "K2, exact", 2e-6),
-    relative(Quantity::K2Printed, "K2, printed", 2e-6),
-    relative(Quantity::Deviation, "deviation", 2.5e-6),
-    relative(Quantity::DeviationBallJoint, "deviation, ball joint", 7e-6),
-    relative(Quantity::Rotation, "rotation", 2.5e-6),
-    relative(Quantity::RotationBallJoint, "rotation, ball joint", 3e-5).because(SOFT_TORSION),
-    absolute(Quantity::Unstretched, "unstretched lengths", 2.5e-8, "m").because(ELONGATION),
-    absolute(Quantity::Torsion, "torsion", 1e-7, "rad"),
+/// All rows, one for each [`CheckedQuantity`], in its order.
+pub const TABLE: [PrecisionRow; 31] = [
+    absolute(CheckedQuantity::Lengths, "lengths", 2e-8, "m"),
+    relative(CheckedQuantity::MomentMap, "moment map", 1.2e-6),
+    relative(
+        CheckedQuantity::PretensionDirection,
+        "pretension direction",
+        1e-6,
+    ),
+    relative(CheckedQuantity::LoadMoment, "load moment", 1e-6),
+    relative(CheckedQuantity::Tensions, "tensions", 4e-6),
+    relative(CheckedQuantity::PretensionRange, "pretension range", 2e-6),
+    relative(CheckedQuantity::Stiffness, "stiffness", 2.5e-6),
+    relative(CheckedQuantity::K2Exact, "K2, exact", 2e-6),
+    relative(CheckedQuantity::K2Printed, "K2, printed", 2e-6),
+    relative(CheckedQuantity::Deviation, "deviation", 2.5e-6),
+    relative(
+        CheckedQuantity::DeviationBallJoint,
+        "deviation, ball joint",
+        7e-6,
+    ),
+    relative(CheckedQuantity::Rotation, "rotation", 2.5e-6),
+    relative(
+        CheckedQuantity::RotationBallJoint,
+        "rotation, ball joint",
+        3e-5,
+    )
+    .because(SOFT_TORSION),
     absolute(
-        Quantity::TorsionBallJoint,
+        CheckedQuantity::Unstretched,
+        "unstretched lengths",
+        2.5e-8,
+        "m",
+    )
+    .because(ELONGATION),
+    absolute(CheckedQuantity::Torsion, "torsion", 1e-7, "rad"),
+    absolute(
+        CheckedQuantity::TorsionBallJoint,
         "torsion, ball joint",
         3e-7,
         "rad",
     ),
-    absolute(Quantity::Direction, "forward kinematics", 1e-6, "rad"),
-    absolute(Quantity::Residual, "residual of it", 2.5e-8, "m").because(TWO_LENGTHS),
-    absolute(Quantity::LoadEstimate, "load estimate", 6e-6, "N·m"),
-    absolute(Quantity::TickRotation, "rotation, whole tick", 3e-7, "rad"),
     absolute(
-        Quantity::TickDisplacement,
+        CheckedQuantity::Direction,
+        "forward kinematics",
+        1e-6,
+        "rad",
+    ),
+    absolute(CheckedQuantity::Residual, "residual of it", 2.5e-8, "m").because(TWO_LENGTHS),
+    absolute(CheckedQuantity::LoadEstimate, "load estimate", 6e-6, "N·m"),
+    absolute(
+        CheckedQuantity::TickRotation,
+        "rotation, whole tick",
+        3e-7,
+        "rad",
+    ),
+    absolute(
+        CheckedQuantity::TickDisplacement,
         "displacement, whole tick",
         5e-8,
         "m",
     )
     .because(NO_SAG),
-    absolute(Quantity::JointMoment, "joint moment", 1.5e-6, "N·m"),
-    relative(Quantity::JointStiffness, "joint stiffness", 2e-6),
-    relative(Quantity::Bending, "bending stiffness", 2.5e-6),
-    absolute(Quantity::AxialStretch, "axial stretch", 4e-11, "m"),
-    relative(Quantity::Elongation, "elongation on a curve", 2.5e-7),
-    relative(Quantity::TendonStiffness, "stiffness on a curve", 8e-7),
-    relative(Quantity::CommandedPretension, "commanded pretension", 5e-4).because(SEARCH),
-    relative(Quantity::CommandedStiffness, "commanded stiffness", 2e-4).because(SEARCH),
-    relative(Quantity::SquareRoot, "square root", 1.2e-7),
-    absolute(Quantity::SinCos, "sine and cosine", 2e-7, "absolute"),
+    absolute(CheckedQuantity::JointMoment, "joint moment", 1.5e-6, "N·m"),
+    relative(CheckedQuantity::JointStiffness, "joint stiffness", 2e-6),
+    relative(CheckedQuantity::Bending, "bending stiffness", 2.5e-6),
+    absolute(CheckedQuantity::AxialStretch, "axial stretch", 4e-11, "m"),
+    relative(CheckedQuantity::Elongation, "elongation on a curve", 2.5e-7),
+    relative(
+        CheckedQuantity::TendonStiffness,
+        "stiffness on a curve",
+        8e-7,
+    ),
+    relative(
+        CheckedQuantity::CommandedPretension,
+        "commanded pretension",
+        5e-4,
+    )
+    .because(SEARCH),
+    relative(
+        CheckedQuantity::CommandedStiffness,
+        "commanded stiffness",
+        2e-4,
+    )
+    .because(SEARCH),
+    relative(CheckedQuantity::SquareRoot, "square root", 1.2e-7),
+    absolute(CheckedQuantity::SinCos, "sine and cosine", 2e-7, "absolute"),
 ];
 
 const SEARCH: &str = "the search ends within a ten-thousandth of the demanded stiffness, in f32 elsewhere than in f64";
@@ -63,8 +106,8 @@ const NO_SAG: &str = "at the vertical the sag vanishes, so the rounding of the d
      sag to be relative to";
 
 /// A row whose bound is a part of the largest entry.
-const fn relative(quantity: Quantity, name: &'static str, bound: f64) -> Row {
-    Row {
+const fn relative(quantity: CheckedQuantity, name: &'static str, bound: f64) -> PrecisionRow {
+    PrecisionRow {
         quantity,
         name,
         measure: Measure::Relative,
@@ -75,15 +118,20 @@ const fn relative(quantity: Quantity, name: &'static str, bound: f64) -> Row {
 }
 
 /// A row whose bound has a unit.
-const fn absolute(quantity: Quantity, name: &'static str, bound: f64, unit: &'static str) -> Row {
-    Row {
+const fn absolute(
+    quantity: CheckedQuantity,
+    name: &'static str,
+    bound: f64,
+    unit: &'static str,
+) -> PrecisionRow {
+    PrecisionRow {
         measure: Measure::Absolute,
         unit,
         ..relative(quantity, name, bound)
     }
 }
 
-impl Row {
+impl PrecisionRow {
     const fn because(self, reason: &'static str) -> Self {
         Self {
             exception: Some(reason),

@@ -1,9 +1,9 @@
 //! A running emulator and its pipes: sends requests, receives replies, notices every end.
 
-use super::Config;
+use super::QemuConfig;
 use super::log::{self, Log};
 use super::pipes::{self, FromFirmware, ToFirmware, Transfer};
-use super::process::{LOOK_AGAIN, Process, describe};
+use super::process::{POLL_INTERVAL, Process, describe};
 use leg_firmware::frame::{self, Decoder, MAX_FRAME};
 use leg_firmware_bench::exit::Exit;
 use leg_firmware_bench::protocol::{Reply, Request};
@@ -23,7 +23,7 @@ pub struct Connection {
     from_firmware: FromFirmware,
     process: Process,
     log: Log,
-    _folder: TempDir,
+    _directory: TempDir,
     decoder: Decoder,
     sequence: Sequence,
     timeout: Duration,
@@ -31,10 +31,7 @@ pub struct Connection {
 
 impl Connection {
     /// Starts QEMU and waits until the firmware has opened both pipes.
-    ///
-    /// # Errors
-    /// As [`super::Session::open`].
-    pub fn open(config: &Config) -> Result<Self, LinkError> {
+    pub fn open(config: &QemuConfig) -> Result<Self, LinkError> {
         let table = log::table(&config.image)?;
         let directory = tempfile::Builder::new()
             .prefix("leg-qemu-")
@@ -50,9 +47,9 @@ impl Connection {
             from_firmware,
             process,
             log,
-            _folder: directory,
+            _directory: directory,
             decoder: Decoder::new(),
-            sequence: Sequence::new(),
+            sequence: Sequence::default(),
             timeout: config.timeout,
         })
     }
@@ -111,10 +108,7 @@ impl Connection {
         }
     }
 
-    /// As [`super::Session::close`].
-    ///
-    /// # Errors
-    /// [`LinkError`] if the firmware ends in another way.
+    /// As [`super::QemuSession::close`].
     pub fn close(self) -> Result<(), LinkError> {
         let Self {
             to_firmware,
@@ -140,7 +134,7 @@ impl Link for Connection {
     fn ask(&mut self, request: &Request) -> Result<Reply, LinkError> {
         let deadline = Instant::now() + self.timeout;
         let mut buffer = [0; MAX_FRAME];
-        let bytes = frame::encode(self.sequence.next(), request, &mut buffer)?;
+        let bytes = frame::encode(self.sequence.next_number(), request, &mut buffer)?;
         self.send(bytes, deadline)?;
         self.receive(deadline)
     }
@@ -168,7 +162,7 @@ fn meet(
                 log: log.last_lines(),
             });
         }
-        thread::sleep(LOOK_AGAIN);
+        thread::sleep(POLL_INTERVAL);
     }
 }
 

@@ -14,7 +14,7 @@ const KEPT_LINES: usize = 20;
 /// The last lines, and the threads that collect them.
 #[derive(Debug)]
 pub struct Log {
-    lines: Lines,
+    lines: KeptLines,
     readers: Vec<JoinHandle<()>>,
 }
 
@@ -26,7 +26,7 @@ impl Log {
         stderr: impl Read + Send + 'static,
         verbose: bool,
     ) -> Self {
-        let lines = Lines {
+        let lines = KeptLines {
             kept: Arc::default(),
             verbose,
         };
@@ -56,9 +56,6 @@ impl Log {
 }
 
 /// Reads the table of log messages from the image.
-///
-/// # Errors
-/// [`LinkError::ImageMissing`] or [`LinkError::ImageUnreadable`].
 pub fn table(image: &Path) -> Result<Table, LinkError> {
     let path = image.display().to_string();
     let unreadable = |reason: String| LinkError::ImageUnreadable {
@@ -75,12 +72,12 @@ pub fn table(image: &Path) -> Result<Table, LinkError> {
 }
 
 #[derive(Clone, Debug)]
-struct Lines {
+struct KeptLines {
     kept: Arc<Mutex<VecDeque<String>>>,
     verbose: bool,
 }
 
-impl Lines {
+impl KeptLines {
     fn push(&self, line: String) {
         if self.verbose {
             eprintln!("firmware: {line}");
@@ -98,7 +95,7 @@ impl Lines {
     }
 }
 
-fn decode(table: &Table, mut stream: impl Read, lines: &Lines) {
+fn decode(table: &Table, mut stream: impl Read, lines: &KeptLines) {
     let mut decoder = table.new_stream_decoder();
     let mut bytes = [0; 1024];
     while let Ok(length @ 1..) = stream.read(&mut bytes) {
@@ -107,7 +104,7 @@ fn decode(table: &Table, mut stream: impl Read, lines: &Lines) {
     }
 }
 
-fn decode_received(decoder: &mut dyn StreamDecoder, lines: &Lines) {
+fn decode_received(decoder: &mut dyn StreamDecoder, lines: &KeptLines) {
     loop {
         match decoder.decode() {
             Ok(frame) => lines.push(frame.display(false).to_string()),
@@ -117,7 +114,7 @@ fn decode_received(decoder: &mut dyn StreamDecoder, lines: &Lines) {
     }
 }
 
-fn copy(stream: impl Read, lines: &Lines) {
+fn copy(stream: impl Read, lines: &KeptLines) {
     for line in BufReader::new(stream).split(b'\n').map_while(Result::ok) {
         lines.push(String::from_utf8_lossy(&line).into_owned());
     }

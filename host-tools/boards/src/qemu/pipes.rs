@@ -32,9 +32,6 @@ pub struct FromFirmware(OwnedFd);
 pub struct ToFirmware(OwnedFd);
 
 /// Makes both pipes in the directory and opens the one that the firmware opens first.
-///
-/// # Errors
-/// [`LinkError::System`].
 pub fn create(directory: &Path) -> Result<FromFirmware, LinkError> {
     for name in [TO_HOST, TO_FIRMWARE] {
         mkfifoat(CWD, path(directory, name), Mode::RUSR | Mode::WUSR)
@@ -49,9 +46,6 @@ pub fn create(directory: &Path) -> Result<FromFirmware, LinkError> {
 
 impl ToFirmware {
     /// Opens the pipe; `None` if the firmware has not opened its side yet.
-    ///
-    /// # Errors
-    /// [`LinkError::System`].
     pub fn open(directory: &Path) -> Result<Option<Self>, LinkError> {
         match open_now(directory, TO_FIRMWARE, OFlags::WRONLY) {
             Ok(pipe) => Ok(Some(Self(pipe))),
@@ -61,9 +55,6 @@ impl ToFirmware {
     }
 
     /// Writes some of the bytes.
-    ///
-    /// # Errors
-    /// [`LinkError::System`].
     pub fn write(&self, bytes: &[u8], deadline: Instant) -> Result<Transfer, LinkError> {
         transfer(&self.0, PollFlags::OUT, deadline, || write(&self.0, bytes))
             .map_err(io::Error::from)
@@ -73,9 +64,6 @@ impl ToFirmware {
 
 impl FromFirmware {
     /// Reads what there is, at least one byte.
-    ///
-    /// # Errors
-    /// [`LinkError::System`].
     pub fn read(&self, bytes: &mut [u8], deadline: Instant) -> Result<Transfer, LinkError> {
         transfer(&self.0, PollFlags::IN, deadline, || {
             read(&self.0, &mut *bytes)

@@ -1,6 +1,6 @@
 //! QEMU's process: started, watched, and never left behind.
 
-use super::Config;
+use super::QemuConfig;
 use leg_firmware_bench::exit::Exit;
 use leg_sim::link::LinkError;
 use std::io::ErrorKind;
@@ -11,7 +11,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 /// How often a wait looks again.
-pub const LOOK_AGAIN: Duration = Duration::from_millis(1);
+pub const POLL_INTERVAL: Duration = Duration::from_millis(1);
 
 /// A running emulator; dropping it ends it.
 #[derive(Debug)]
@@ -19,10 +19,7 @@ pub struct Process(Child);
 
 impl Process {
     /// Starts QEMU in `directory`, with its outputs captured.
-    ///
-    /// # Errors
-    /// [`LinkError::QemuNotStarted`].
-    pub fn start(config: &Config, directory: &Path) -> Result<Self, LinkError> {
+    pub fn start(config: &QemuConfig, directory: &Path) -> Result<Self, LinkError> {
         let child = Command::new(&config.qemu)
             .args(["-M", "mps2-an386"])
             .args(["-semihosting-config", "enable=on,target=native"])
@@ -47,9 +44,6 @@ impl Process {
     }
 
     /// Takes its standard output and its standard error.
-    ///
-    /// # Errors
-    /// [`LinkError::System`] if they were taken before.
     pub fn outputs(&mut self) -> Result<(ChildStdout, ChildStderr), LinkError> {
         self.0
             .stdout
@@ -59,9 +53,6 @@ impl Process {
     }
 
     /// How it ended, if it has.
-    ///
-    /// # Errors
-    /// [`LinkError::System`].
     pub fn ended(&mut self) -> Result<Option<ExitStatus>, LinkError> {
         self.0
             .try_wait()
@@ -69,16 +60,13 @@ impl Process {
     }
 
     /// Waits for the end; `None` if it did not come in time.
-    ///
-    /// # Errors
-    /// [`LinkError::System`].
     pub fn wait(&mut self, deadline: Instant) -> Result<Option<ExitStatus>, LinkError> {
         loop {
             let ended = self.ended()?;
             if ended.is_some() || Instant::now() >= deadline {
                 return Ok(ended);
             }
-            thread::sleep(LOOK_AGAIN);
+            thread::sleep(POLL_INTERVAL);
         }
     }
 

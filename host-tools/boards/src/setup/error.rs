@@ -1,6 +1,6 @@
-//! Why a prerequisite is missing, in words.
+//! Why a prerequisite is missing.
 
-use super::{QEMU, QEMU_VARIABLE};
+use super::QEMU_VARIABLE;
 use std::io;
 use thiserror::Error;
 
@@ -13,13 +13,15 @@ pub enum SetupError {
         /// What it names.
         program: String,
     },
-    /// There is no emulator and it cannot be installed from here.
-    #[error("`{QEMU}` is missing; install it: {command}")]
-    QemuMissing {
+    /// A program is missing and cannot be installed from here.
+    #[error("`{name}` is missing; install it: {command}")]
+    Missing {
+        /// The program.
+        name: &'static str,
         /// What a user has to run.
         command: String,
     },
-    /// A program that is needed here is not there.
+    /// A part of the Rust toolchain is missing.
     #[error("`{program}` is missing; install Rust with rustup, which brings it")]
     RustMissing {
         /// The program.

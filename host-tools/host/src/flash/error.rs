@@ -1,4 +1,4 @@
-//! Why a board was not flashed, by what probe-rs says.
+//! Why a board was not flashed, by the texts of probe-rs.
 
 use super::{CHIP, PROGRAM_VARIABLE};
 use std::process::Output;
@@ -47,11 +47,11 @@ pub enum FlashError {
     Other(String),
 }
 
-/// An error from what was said.
-type Meaning = fn(String) -> FlashError;
+/// A text of probe-rs in small letters, and the error that it means.
+type Meaning = (&'static str, fn(String) -> FlashError);
 
-/// What probe-rs says, in small letters, and what it means.
-const SAYS: [(&str, Meaning); 11] = [
+/// Every text that is known: probe-rs has no exit codes or JSON for them.
+const MEANINGS: [Meaning; 11] = [
     ("no connected probes", |_| FlashError::NoProbe),
     ("probe not found", |_| FlashError::NoProbe),
     ("probes were found", |_| FlashError::SeveralProbes),
@@ -66,20 +66,12 @@ const SAYS: [(&str, Meaning); 11] = [
 ];
 
 impl FlashError {
-    /// The meaning of an output that ended badly.
-    pub(super) fn of(output: &Output) -> Self {
-        let told = told(output);
-        let small = told.to_lowercase();
-        let meaning = SAYS.iter().find(|(says, _)| small.contains(says));
-        match meaning {
-            Some((_, error)) => error(told),
-            None => Self::Other(told),
-        }
-    }
-
-    /// An output that cannot be understood.
-    pub(super) fn other(output: &Output) -> Self {
-        Self::Other(told(output))
+    /// The meaning of the output of a run that failed.
+    pub(super) fn from_output(output: &Output) -> Self {
+        let text = output_text(output);
+        let small = text.to_lowercase();
+        let meaning = MEANINGS.iter().find(|(part, _)| small.contains(part));
+        meaning.map_or(Self::Other as fn(String) -> Self, |(_, error)| *error)(text)
     }
 
     /// What to do about it.
@@ -116,8 +108,8 @@ impl FlashError {
     }
 }
 
-/// The lines that are not empty, of both outputs; errors are the last to be told.
-fn told(output: &Output) -> String {
+/// The lines of both outputs that are not empty; errors come last.
+pub(super) fn output_text(output: &Output) -> String {
     let text = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes));
     let lines = text.iter().flat_map(|text| text.lines());
     let lines: Vec<&str> = lines

@@ -10,9 +10,9 @@ const BEYOND: f32 = 1.1;
 const NEAR: f32 = 0.03;
 
 /// A bar of `width` places: full up to the value, with a mark at either bound.
-pub(super) fn bar(value: f32, [floor, ceiling]: [f32; 2], width: usize) -> Span<'static> {
-    let place = |at: f32| (at / (ceiling * BEYOND) * width as f32).round() as usize;
-    let (full, marks) = (place(value), [place(floor), place(ceiling)]);
+pub(super) fn bar(value: f32, [f_min_n, f_max_n]: [f32; 2], width: usize) -> Span<'static> {
+    let place = |at: f32| (at / (f_max_n * BEYOND) * width as f32).round() as usize;
+    let (full, marks) = (place(value), [place(f_min_n), place(f_max_n)]);
     let text: String = (0..width)
         .map(|at| match (marks.contains(&at), at < full) {
             (true, true) => '┃',
@@ -21,14 +21,14 @@ pub(super) fn bar(value: f32, [floor, ceiling]: [f32; 2], width: usize) -> Span<
             (false, false) => '·',
         })
         .collect();
-    Span::styled(text, Style::new().fg(colour(value, [floor, ceiling])))
+    Span::styled(text, Style::new().fg(colour(value, [f_min_n, f_max_n])))
 }
 
-fn colour(value: f32, [floor, ceiling]: [f32; 2]) -> Color {
-    let near = NEAR * ceiling;
-    if value < floor || value > ceiling {
+fn colour(value: f32, [f_min_n, f_max_n]: [f32; 2]) -> Color {
+    let near = NEAR * f_max_n;
+    if value < f_min_n || value > f_max_n {
         Color::Red
-    } else if value < floor + near || value > ceiling - near {
+    } else if value < f_min_n + near || value > f_max_n - near {
         Color::Yellow
     } else {
         Color::Green

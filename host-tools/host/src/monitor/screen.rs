@@ -1,10 +1,10 @@
 //! The leg on a terminal.
 
-use super::Picture;
+use super::MonitorView;
 use super::bar::bar;
-use crate::leg_report::pose_words;
+use crate::leg_report::{known_pose_words, pose_words};
+use leg_base::description;
 use leg_base::tick_time::tick_s;
-use leg_base::words;
 use leg_firmware::supervisor::{FaultSet, Reaction, State};
 use leg_firmware::telemetry::Telemetry;
 use ratatui::Frame;
@@ -16,8 +16,8 @@ use ratatui::widgets::{Block, Paragraph, Wrap};
 /// Places beside a bar: number, value and unit, with their gaps.
 const BESIDE_BAR: u16 = 16;
 
-/// Draws a picture on a whole screen.
-pub fn draw(frame: &mut Frame<'_>, picture: &Picture) {
+/// Draws a leg on a whole screen.
+pub fn draw(frame: &mut Frame<'_>, view: &MonitorView) {
     let rows = [
         Constraint::Length(5),
         Constraint::Length(5),
@@ -26,23 +26,23 @@ pub fn draw(frame: &mut Frame<'_>, picture: &Picture) {
         Constraint::Length(1),
     ];
     let [state, tensions, load, faults, keys] = Layout::vertical(rows).areas(frame.area());
-    frame.render_widget(last_line(picture), keys);
-    let Some(telemetry) = picture.telemetry() else {
-        let waiting = Paragraph::new("waiting for the leg").block(titled(picture.title()));
+    frame.render_widget(last_line(view), keys);
+    let Some(telemetry) = &view.telemetry else {
+        let waiting = Paragraph::new("waiting for the leg").block(titled(&view.title));
         return frame.render_widget(waiting, state);
     };
-    show(frame, state, picture.title(), state_lines(telemetry));
+    show(frame, state, &view.title, state_lines(telemetry));
     show(
         frame,
         tensions,
-        &bounds_title(picture),
-        bar_lines(picture, telemetry, tensions.width),
+        &bounds_title(view),
+        bar_lines(view, telemetry, tensions.width),
     );
     show(
         frame,
         load,
         "Stiffness and load",
-        load_lines(picture, telemetry),
+        load_lines(view, telemetry),
     );
     let lines = fault_lines(telemetry.faults);
     let faulty = Paragraph::new(lines).wrap(Wrap { trim: false });
@@ -52,9 +52,9 @@ pub fn draw(frame: &mut Frame<'_>, picture: &Picture) {
     );
 }
 
-fn last_line(picture: &Picture) -> Line<'static> {
+fn last_line(view: &MonitorView) -> Line<'static> {
     let keys = " q or Ctrl-C ends this; it commands nothing".dim();
-    match picture.damaged_frames() {
+    match view.damaged_frames {
         0 => Line::from(keys),
         count => {
             let damaged = format!(" {count} frames damaged;").fg(Color::Yellow);
@@ -71,12 +71,11 @@ fn show(frame: &mut Frame<'_>, area: Rect, title: &str, lines: Vec<Line<'static>
     frame.render_widget(Paragraph::new(lines).block(titled(title)), area);
 }
 
-fn bounds_title(picture: &Picture) -> String {
-    let [floor, ceiling] = picture.bounds_n();
-    format!("Tensions, floor {floor} N, ceiling {ceiling} N")
+fn bounds_title(view: &MonitorView) -> String {
+    let [f_min_n, f_max_n] = view.bounds_n;
+    format!("Tensions, minimum {f_min_n} N, maximum {f_max_n} N")
 }
 
-/// What of the leg's state a user looks at first.
 fn state_lines(telemetry: &Telemetry<f32>) -> Vec<Line<'static>> {
     let colour = match telemetry.state {
         State::Active | State::Homing => Color::Green,
@@ -90,39 +89,34 @@ fn state_lines(telemetry: &Telemetry<f32>) -> Vec<Line<'static>> {
         "not homed"
     };
     let moving = if telemetry.moving { ", moving" } else { "" };
-    let state = words::state(telemetry.state);
+    let state = description::state(telemetry.state);
     let time_s = f64::from(telemetry.tick) * tick_s();
-    let pose = if telemetry.homed {
-        pose_words(telemetry.pose)
-    } else {
-        "not known before homing".into()
-    };
     vec![
         Line::from(vec![
             "state   ".into(),
             state.bold().fg(colour),
             format!(", {homed}{moving}, {time_s:.2} s since the board started").into(),
         ]),
-        Line::from(format!("pose    {pose}")),
+        Line::from(format!("pose    {}", known_pose_words(telemetry))),
         Line::from(format!("target  {}", pose_words(telemetry.target))),
     ]
 }
 
-fn bar_lines(picture: &Picture, telemetry: &Telemetry<f32>, width: u16) -> Vec<Line<'static>> {
+fn bar_lines(view: &MonitorView, telemetry: &Telemetry<f32>, width: u16) -> Vec<Line<'static>> {
     let width = usize::from(width.saturating_sub(BESIDE_BAR));
     let bars = (1..).zip(telemetry.tensions_n);
     bars.map(|(number, tension)| {
         Line::from(vec![
             format!("{number} {tension:7.1} N  ").into(),
-            bar(tension, picture.bounds_n(), width),
+            bar(tension, view.bounds_n, width),
         ])
     })
     .collect()
 }
 
-fn load_lines(picture: &Picture, telemetry: &Telemetry<f32>) -> Vec<Line<'static>> {
+fn load_lines(view: &MonitorView, telemetry: &Telemetry<f32>) -> Vec<Line<'static>> {
     let [x, y] = telemetry.load_nm;
-    let sag = picture.sag_m().map_or_else(
+    let sag = view.sag_m().map_or_else(
         || "-".into(),
         |sag_m| format!("{:.2} mm without compensation", sag_m * 1000.0),
     );
@@ -158,7 +152,7 @@ fn fault_lines(faults: FaultSet) -> Vec<Line<'static>> {
             Color::Red
         };
         let name = format!("{} {}", fault.code(), entry.name);
-        let reaction = format!(" ({}): {}", words::reaction(reaction), entry.cause);
+        let reaction = format!(" ({}): {}", description::reaction(reaction), entry.cause);
         [
             Line::from(vec![name.bold().fg(colour), reaction.into()]),
             Line::from(format!("   remedy: {}", entry.remedy)),

@@ -1,6 +1,6 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{Picture, draw};
+use super::{MonitorView, draw};
 use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_firmware::telemetry::Telemetry;
@@ -38,9 +38,9 @@ fn telemetry() -> Telemetry<f32> {
 }
 
 /// What a terminal of this size shows, line by line.
-fn screen(picture: &Picture, [width, height]: [u16; 2]) -> String {
+fn screen(view: &MonitorView, [width, height]: [u16; 2]) -> String {
     let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
-    terminal.draw(|frame| draw(frame, picture)).unwrap();
+    terminal.draw(|frame| draw(frame, view)).unwrap();
     let lines = terminal.backend().to_string();
     lines
         .lines()
@@ -62,23 +62,23 @@ fn compare(name: &str, shown: &str) {
 
 #[test]
 fn a_held_leg_with_two_faults() {
-    let mut faults = FaultSet::of(Fault::CommandTimeout);
+    let mut faults = FaultSet::single(Fault::CommandTimeout);
     faults.add(Fault::Unreachable, true);
-    let mut picture = Picture::new("the leg in this test, firmware 0.1.0", &settings());
-    picture.take(
+    let mut view = MonitorView::new("the leg in this test, firmware 0.1.0", &settings());
+    view.take(
         &Telemetry {
             faults,
             ..telemetry()
         },
         0,
     );
-    compare("held", &screen(&picture, [80, 24]));
+    compare("held", &screen(&view, [80, 24]));
 }
 
 #[test]
 fn a_leg_before_homing_on_a_narrow_terminal() {
-    let mut picture = Picture::new("/dev/ttyACM0, firmware 0.1.0", &settings());
-    picture.take(
+    let mut view = MonitorView::new("/dev/ttyACM0, firmware 0.1.0", &settings());
+    view.take(
         &Telemetry {
             state: State::Disarmed,
             homed: false,
@@ -89,31 +89,31 @@ fn a_leg_before_homing_on_a_narrow_terminal() {
         },
         3,
     );
-    compare("not_homed", &screen(&picture, [60, 24]));
+    compare("not_homed", &screen(&view, [60, 24]));
 }
 
 #[test]
 fn no_size_of_the_terminal_is_too_small() {
-    let mut picture = Picture::new("a leg", &settings());
+    let mut view = MonitorView::new("a leg", &settings());
     for size in [[1, 1], [10, 3], [20, 40]] {
-        screen(&picture, size);
-        picture.take(&telemetry(), 0);
-        screen(&picture, size);
+        screen(&view, size);
+        view.take(&telemetry(), 0);
+        screen(&view, size);
     }
 }
 
 #[test]
 fn the_line_for_machines_holds_what_the_screen_shows() {
-    let mut picture = Picture::new("a leg", &settings());
-    assert_eq!(picture.json().unwrap(), None);
-    picture.take(
+    let mut view = MonitorView::new("a leg", &settings());
+    assert_eq!(view.json().unwrap(), None);
+    view.take(
         &Telemetry {
-            faults: FaultSet::of(Fault::Slack),
+            faults: FaultSet::single(Fault::Slack),
             ..telemetry()
         },
         2,
     );
-    let line: serde_json::Value = serde_json::from_str(&picture.json().unwrap().unwrap()).unwrap();
+    let line: serde_json::Value = serde_json::from_str(&view.json().unwrap().unwrap()).unwrap();
     assert_eq!(line["state"], "held");
     assert_eq!(line["damaged_frames"], 2);
     assert_eq!(line["faults"][0]["code"], 1);
@@ -123,9 +123,9 @@ fn the_line_for_machines_holds_what_the_screen_shows() {
 
 #[test]
 fn the_sag_is_the_deviation_that_the_paper_has_for_the_pose() {
-    let mut picture = Picture::new("a leg", &settings());
+    let mut view = MonitorView::new("a leg", &settings());
     let (sine, azimuth) = (0.5, 30.0_f32.to_radians());
-    picture.take(
+    view.take(
         &Telemetry {
             pose: [sine * azimuth.cos(), sine * azimuth.sin()],
             payload_kg: 2.0,
@@ -134,6 +134,6 @@ fn the_sag_is_the_deviation_that_the_paper_has_for_the_pose() {
         0,
     );
     // The maximum of Fig. 9 with 2 kg, which `leg paper` has as 8.417 mm.
-    let sag_mm = picture.sag_m().unwrap() * 1e3;
+    let sag_mm = view.sag_m().unwrap() * 1e3;
     assert!((sag_mm - 8.417).abs() < 0.01, "{sag_mm}");
 }

@@ -1,4 +1,4 @@
-//! Why a leg refuses a host, in words.
+//! The texts of a leg's refusals.
 
 use leg_firmware::command::CommandRefusal;
 use leg_firmware::host_link::HostRefusal;
@@ -6,7 +6,7 @@ use leg_firmware::settings::SettingsError;
 
 /// What is wrong, and what to do about it.
 #[must_use]
-pub(super) fn words(refusal: &HostRefusal) -> [String; 2] {
+pub(super) fn description(refusal: &HostRefusal) -> [String; 2] {
     let [wrong, remedy] = match refusal {
         HostRefusal::Settings(error) => {
             return [format!("the settings are refused: {error}"), remedy(error)];
@@ -18,17 +18,17 @@ pub(super) fn words(refusal: &HostRefusal) -> [String; 2] {
             ];
         }
         HostRefusal::Command(CommandRefusal::NotHomed) => {
-            let [wrong, _] = CommandRefusal::NotHomed.words();
+            let [wrong, _] = CommandRefusal::NotHomed.description();
             [wrong, "home it: `leg home`"]
         }
-        HostRefusal::Command(refusal) => refusal.words(),
+        HostRefusal::Command(refusal) => refusal.description(),
         HostRefusal::SchemaMismatch { .. } => [
             "the firmware speaks another protocol",
             "build and flash it from the sources of this program: `leg flash`",
         ],
         HostRefusal::NotIdentified => [
             "the board has started anew and does not know this host",
-            "command again: unless its power had gone, the board tells then why it started anew",
+            "command again: unless its power had gone, the board reports then why it started anew",
         ],
         HostRefusal::BadRequest => [
             "the request is not known to the firmware",
@@ -57,8 +57,10 @@ pub(super) fn words(refusal: &HostRefusal) -> [String; 2] {
 fn remedy(error: &SettingsError) -> String {
     match error {
         SettingsError::Model(_) => "correct the rig file; `leg rig validate` shows the place",
+        SettingsError::OutOfRange(error) if error.axis != 0 => {
+            "calibrate that axis anew: `leg calibrate`"
+        }
         SettingsError::OutOfRange(_) => "give a value inside the range",
-        SettingsError::Calibration { .. } => "calibrate that axis anew: `leg calibrate`",
     }
     .into()
 }

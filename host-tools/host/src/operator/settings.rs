@@ -1,13 +1,14 @@
 //! The settings of a leg: read, replaced, kept and compared.
 
-use super::asking::Repeat;
+use super::request::{Repeat, done};
 use super::{Operator, OperatorError};
+use crate::flat_json::flatten;
 use leg_firmware::host_link::{HostReply, HostRequest};
 use leg_firmware::settings::Settings;
 use serde_json::Value;
 use std::time::Duration;
 
-/// Longest time in which a board keeps its settings.
+/// Longest time in which a board stores its settings: erasing a page of flash takes most of it.
 const SAVE_TIME: Duration = Duration::from_secs(3);
 
 impl Operator {
@@ -16,11 +17,11 @@ impl Operator {
     /// # Errors
     /// As [`Self::command`].
     pub fn settings(&mut self) -> Result<Settings, OperatorError> {
-        let asked = "tell its settings";
-        match self.ask(asked, &HostRequest::GetSettings, Repeat::Always)? {
-            HostReply::Settings(settings) => Ok(settings),
-            _ => Err(OperatorError::WrongReply { asked }),
-        }
+        let request = HostRequest::GetSettings;
+        self.ask("report its settings", &request, |reply| match reply {
+            HostReply::Settings(settings) => Some(settings),
+            _ => None,
+        })
     }
 
     /// Replaces the settings in use, reads them back and compares their bits. The leg has to be homed then.
@@ -28,22 +29,15 @@ impl Operator {
     /// # Errors
     /// As [`Self::command`]; [`OperatorError::ReadBack`].
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), OperatorError> {
-        let asked = "take the settings";
         let request = HostRequest::SetSettings(settings.clone());
         self.silence_max = None;
-        match self.ask(asked, &request, Repeat::Always)? {
-            HostReply::Done => {}
-            _ => return Err(OperatorError::WrongReply { asked }),
-        }
-        let found = self.settings()?;
-        let names: Vec<String> = differences(settings, &found)
-            .into_iter()
-            .map(|difference| difference.name)
-            .collect();
-        if names.is_empty() {
+        self.ask("take the settings", &request, done)?;
+        let differences = setting_differences(settings, &self.settings()?);
+        if differences.is_empty() {
             return Ok(());
         }
-        Err(OperatorError::ReadBack { names })
+        let names = differences.into_iter().map(|difference| difference.name);
+        Err(OperatorError::ReadBack(names.collect()))
     }
 
     /// Lets the board keep the settings in use over a reset.
@@ -53,16 +47,14 @@ impl Operator {
     pub fn save_settings(&mut self) -> Result<(), OperatorError> {
         let asked = "keep its settings";
         let request = HostRequest::SaveSettings;
-        match self.ask_within(asked, &request, Repeat::IfLost, SAVE_TIME)? {
-            HostReply::Done => Ok(()),
-            _ => Err(OperatorError::WrongReply { asked }),
-        }
+        let reply = self.exchange(asked, &request, Repeat::IfLost, SAVE_TIME)?;
+        done(reply).ok_or(OperatorError::WrongReply(asked))
     }
 }
 
 /// A setting that two sides have differently.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct Difference {
+pub struct SettingDifference {
     /// Its place, from the outermost name inwards: `limits.slack_n`.
     pub name: String,
     /// On the one side; none if it is not there.
@@ -72,61 +64,27 @@ pub struct Difference {
 }
 
 /// Every setting whose bits differ. What was found while homing is left out.
+///
+/// Equal values have equal bits: settings hold no NaN, and f32 is written without loss.
 #[must_use]
-pub fn differences(ours: &Settings, theirs: &Settings) -> Vec<Difference> {
-    let [ours, theirs] = [ours, theirs].map(|settings| named(&settings.without_zero()));
-    let mut found: Vec<Difference> = ours
-        .iter()
-        .filter_map(|(name, value)| {
-            let other = value_of(&theirs, name);
-            (other != Some(value)).then(|| Difference {
-                name: name.clone(),
-                ours: Some(value.clone()),
-                theirs: other.cloned(),
-            })
-        })
-        .collect();
+pub fn setting_differences(ours: &Settings, theirs: &Settings) -> Vec<SettingDifference> {
+    // Settings always have a form in JSON.
+    let [ours, theirs] = [ours, theirs]
+        .map(|settings| serde_json::to_value(settings.without_zero()).unwrap_or_default());
+    let [ours, theirs] = [&ours, &theirs].map(|settings| flatten(settings, "."));
+    let value = |settings: &[(String, &Value)], name: &str| {
+        let found = settings.iter().find(|(other, _)| other == name);
+        found.map(|(_, value)| (*value).clone())
+    };
     let added = theirs
         .iter()
-        .filter(|(name, _)| value_of(&ours, name).is_none());
-    found.extend(added.map(|(name, value)| Difference {
+        .filter(|(name, _)| value(&ours, name).is_none());
+    let differences = ours.iter().chain(added).map(|(name, _)| SettingDifference {
         name: name.clone(),
-        ours: None,
-        theirs: Some(value.clone()),
-    }));
-    found
-}
-
-fn value_of<'a>(named: &'a [(String, Value)], name: &str) -> Option<&'a Value> {
-    let found = named.iter().find(|(other, _)| other == name);
-    found.map(|(_, value)| value)
-}
-
-/// Every value by its name. Equal values have equal bits: settings hold no NaN, and f32 is written without loss.
-fn named(settings: &Settings) -> Vec<(String, Value)> {
-    let mut values = Vec::new();
-    // Settings always have a form in JSON.
-    if let Ok(value) = serde_json::to_value(settings) {
-        flatten(String::new(), value, &mut values);
-    }
-    values
-}
-
-fn flatten(name: String, value: Value, values: &mut Vec<(String, Value)>) {
-    let inside = |inner: &str| {
-        if name.is_empty() {
-            inner.to_string()
-        } else {
-            format!("{name}.{inner}")
-        }
-    };
-    match value {
-        Value::Object(map) => map
-            .into_iter()
-            .for_each(|(key, value)| flatten(inside(&key), value, values)),
-        Value::Array(items) => (1..)
-            .zip(items)
-            .for_each(|(number, value)| flatten(inside(&number.to_string()), value, values)),
-        value => values.push((name, value)),
-    }
+        ours: value(&ours, name),
+        theirs: value(&theirs, name),
+    });
+    differences
+        .filter(|difference| difference.ours != difference.theirs)
+        .collect()
 }

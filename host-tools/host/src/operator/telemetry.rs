@@ -1,117 +1,149 @@
-//! Listening to the leg.
+//! Telemetry and sensors, asked for or streamed.
 
-use super::alive::WAKE_TIME;
-use super::asking::Repeat;
-use super::{Operator, OperatorError};
-use leg_firmware::host_link::{HostReply, HostRequest, Told};
+use super::keep_alive::WAKE_TIME;
+use super::request::done;
+use super::{Operator, OperatorError, TelemetryStream};
+use leg_firmware::host_link::{HostReply, HostRequest, TelemetryReport};
+use leg_firmware::sensors::Sensors;
 use leg_firmware::telemetry::Telemetry;
-use std::collections::VecDeque;
 use std::time::Duration;
 
-/// How often the operator looks while it waits for the leg.
-pub(super) const LOOK_TIME: Duration = Duration::from_millis(20);
+/// How often telemetry is asked for while the leg does something.
+const POLL_TIME: Duration = Duration::from_millis(20);
 
-/// Telemetry that comes by itself.
-#[derive(Debug, Default)]
-pub(super) struct Stream {
-    /// Ticks from one to the next that this host has asked for; 0 for none: that of others on the same line is theirs.
-    every_ticks: u16,
-    /// What came and was not looked at yet.
-    told: VecDeque<Told>,
-    /// Whether another host has introduced itself since: a leg may take that for the end of the stream.
-    greeted: bool,
+impl TelemetryStream {
+    /// Keeps telemetry that came while something else was waited for.
+    pub(super) fn keep(&mut self, report: TelemetryReport) {
+        if self.every_ticks > 0 {
+            self.received.push_back(report);
+        }
+    }
+
+    /// Notes where another host introduces itself.
+    pub(super) fn note_introduction(&mut self, reply: &HostReply) {
+        self.other_host_came |= self.every_ticks > 0 && matches!(reply, HostReply::Identified(_));
+    }
 }
 
 impl Operator {
+    /// The telemetry of the last tick.
+    ///
+    /// # Errors
+    /// As [`Self::command`].
+    pub fn telemetry(&mut self) -> Result<TelemetryReport, OperatorError> {
+        let report = self.ask(
+            "send telemetry",
+            &HostRequest::Telemetry,
+            |reply| match reply {
+                HostReply::Telemetry(report) => Some(report),
+                _ => None,
+            },
+        )?;
+        if let Some(watcher) = &mut self.watcher {
+            watcher(&report.telemetry);
+        }
+        Ok(report)
+    }
+
+    /// The raw codes of the sensors in the last tick.
+    ///
+    /// # Errors
+    /// As [`Self::command`].
+    pub fn sensors(&mut self) -> Result<Sensors, OperatorError> {
+        self.ask(
+            "report its sensors",
+            &HostRequest::Sensors,
+            |reply| match reply {
+                HostReply::Sensors(sensors) => Some(sensors),
+                _ => None,
+            },
+        )
+    }
+
     /// Asks for telemetry every so many ticks, or for no more with 0.
     ///
     /// # Errors
     /// As [`Self::command`].
-    pub fn stream(&mut self, every_ticks: u16) -> Result<(), OperatorError> {
-        let asked = "send telemetry";
-        match self.ask(asked, &HostRequest::Stream(every_ticks), Repeat::Always)? {
-            HostReply::Done => {
-                self.stream.every_ticks = every_ticks;
-                Ok(())
-            }
-            _ => Err(OperatorError::WrongReply { asked }),
-        }
+    pub fn start_stream(&mut self, every_ticks: u16) -> Result<(), OperatorError> {
+        self.ask("stream telemetry", &HostRequest::Stream(every_ticks), done)?;
+        self.stream.every_ticks = every_ticks;
+        Ok(())
     }
 
-    /// Lets the telemetry end, heedless of Ctrl-C: a leg that goes on telling takes room from the other hosts.
+    /// Ends the stream, Ctrl-C or not: one that goes on takes room from the other hosts.
     ///
     /// # Errors
-    /// As [`Self::stream`].
+    /// As [`Self::start_stream`].
     pub fn end_stream(&mut self) -> Result<(), OperatorError> {
-        self.heedless(|operator| operator.stream(0))
+        self.uncancelled(|operator| operator.start_stream(0))
     }
 
-    /// Keeps telemetry that came while something else was waited for.
-    pub(super) fn overhear(&mut self, told: Told) {
-        if self.stream.every_ticks > 0 {
-            self.stream.told.push_back(told);
-        }
-    }
-
-    /// Takes note of what other hosts are answered.
-    pub(super) fn overhear_reply(&mut self, reply: &HostReply) {
-        if self.stream.every_ticks > 0 && matches!(reply, HostReply::Identified(_)) {
-            self.stream.greeted = true;
-        }
-    }
-
-    /// The next telemetry of the stream; none if none comes in time. It is asked for again where another host's introduction
-    /// has ended it.
+    /// The next telemetry of the stream; none if none comes in time. The stream is asked for again where another host's
+    /// introduction has ended it.
     ///
     /// # Errors
     /// As [`Self::command`].
-    pub fn streamed(&mut self, timeout: Duration) -> Result<Option<Told>, OperatorError> {
+    pub fn next_streamed(
+        &mut self,
+        timeout: Duration,
+    ) -> Result<Option<TelemetryReport>, OperatorError> {
         let until = self.now() + timeout;
         loop {
-            if let Some(told) = self.stream.told.pop_front() {
-                return Ok(Some(told));
+            if let Some(report) = self.stream.received.pop_front() {
+                return Ok(Some(report));
             }
-            if self.interrupt.raised() {
-                return Err(OperatorError::Interrupted);
+            if self.cancel.is_set() {
+                return Err(OperatorError::Cancelled);
             }
-            if std::mem::take(&mut self.stream.greeted) {
-                self.stream(self.stream.every_ticks)?;
+            if std::mem::take(&mut self.stream.other_host_came) {
+                self.start_stream(self.stream.every_ticks)?;
                 continue;
             }
-            match self.line.receive(until.min(self.now() + WAKE_TIME))? {
-                Some((0, HostReply::Telemetry(told))) => return Ok(Some(told)),
-                Some((_, reply)) => self.overhear_reply(&reply),
+            let wake = until.min(self.now() + WAKE_TIME);
+            match self.connection.receive(wake)? {
+                Some((0, HostReply::Telemetry(report))) => return Ok(Some(report)),
+                Some((_, reply)) => self.stream.note_introduction(&reply),
                 None if self.now() >= until => return Ok(None),
                 None => {}
             }
         }
     }
 
-    /// Looks at the leg again and again until `done` with it.
+    /// Polls telemetry until `done` says so.
     ///
     /// # Errors
-    /// [`OperatorError::Late`] after `timeout`; as [`Self::command`].
-    pub fn until(
+    /// [`OperatorError::TimedOut`] after `timeout`; as [`Self::command`].
+    pub fn wait_until(
         &mut self,
-        what: &'static str,
+        asked: &'static str,
         timeout: Duration,
         mut done: impl FnMut(&Telemetry<f32>) -> bool,
+    ) -> Result<Telemetry<f32>, OperatorError> {
+        self.poll(asked, timeout, |_, telemetry| Ok(done(telemetry)))
+    }
+
+    /// Polls telemetry until `done`, by the time and the telemetry, says so or fails.
+    pub(super) fn poll(
+        &mut self,
+        asked: &'static str,
+        timeout: Duration,
+        mut done: impl FnMut(Duration, &Telemetry<f32>) -> Result<bool, OperatorError>,
     ) -> Result<Telemetry<f32>, OperatorError> {
         let until = self.now() + timeout;
         loop {
             let telemetry = self.telemetry()?.telemetry;
-            if done(&telemetry) {
+            if done(self.now(), &telemetry)? {
                 return Ok(telemetry);
             }
             if self.now() >= until {
-                return Err(OperatorError::Late {
-                    what,
+                return Err(OperatorError::TimedOut {
+                    asked,
                     timeout,
                     state: telemetry.state,
                     faults: telemetry.faults,
                 });
             }
-            self.pause(LOOK_TIME)?;
+            self.pause(POLL_TIME)?;
         }
     }
 }

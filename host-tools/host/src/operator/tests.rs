@@ -1,56 +1,76 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-mod can;
-mod endings;
-mod faults;
-mod goals;
-mod greeting;
-mod hosts;
-mod lost_frames;
-mod patience;
-mod scripted;
-mod settings;
-mod strange;
-mod stream;
-mod urgent;
+/// The error of a result, which has to match a pattern.
+macro_rules! error_of {
+    ($result:expr, $pattern:pat $(if $guard:expr)?) => {{
+        let error = $result.map(drop).unwrap_err();
+        assert!(matches!(&error, $pattern $(if $guard)?), "{error:?}");
+        error
+    }};
+}
 
-use crate::operator::{Goal, Host, Interrupt, Operator};
-use crate::transport::emulated::Emulated;
+mod bad_lines;
+mod goals;
+mod hosts;
+mod scripted;
+mod scripted_board;
+mod settings;
+
+use crate::cancel_flag::CancelFlag;
+use crate::operator::{HostIdentity, LegGoal, Operator, TensionDemand};
+use crate::transport::Transport;
+use crate::transport::emulated::{EmulatedLine, EmulatedTransport};
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::State;
+use leg_firmware::telemetry::Telemetry;
 use leg_rig::rig_file::RigFile;
-use leg_sim::emulated_leg::{Beginning, EmulatedLeg};
-use leg_sim::simulation::InThisProcess;
+use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
+use leg_sim::link::InProcess;
+use std::io;
 use std::time::Duration;
 
-fn emulated(beginning: Beginning) -> Emulated {
-    emulated_rig(&RigFile::load(None).unwrap(), beginning)
+fn emulated_line(rig: &RigFile, beginning: InitialState) -> EmulatedLine {
+    let link = Box::new(InProcess::new());
+    let leg = EmulatedLeg::new(rig, beginning, link).unwrap();
+    EmulatedLine::new(leg, "the leg in this test")
 }
 
-fn emulated_rig(rig: &RigFile, beginning: Beginning) -> Emulated {
-    let controller = Box::new(InThisProcess::default());
-    Emulated::new(
-        EmulatedLeg::new(rig, beginning, controller).unwrap(),
-        "the leg in this test",
-    )
+/// A homed leg of the paper's rig that hangs straight down.
+fn hanging_leg() -> EmulatedLine {
+    emulated_line(&RigFile::load(None).unwrap(), InitialState::Homed)
 }
 
-fn host(leg: &Emulated, id: u32) -> Operator {
+fn host(leg: &EmulatedLine, id: u32) -> Operator {
     let sequence = 1000 * id as u16;
-    let host = Host { id, sequence };
-    Operator::open(Box::new(leg.beside()), host, Interrupt::default()).unwrap()
+    let host = HostIdentity { id, sequence };
+    Operator::open(Box::new(leg.connect()), host, CancelFlag::default()).unwrap()
 }
 
-fn lean(tilt_deg: f64) -> Goal {
+fn operator(transport: impl Transport + 'static, cancel: &CancelFlag) -> Operator {
+    Operator::open(Box::new(transport), HostIdentity::FIXED, cancel.clone()).unwrap()
+}
+
+fn lean(tilt_deg: f64) -> LegGoal {
     let sine = tilt_deg.to_radians().sin() as f32;
-    Goal {
+    LegGoal {
         direction: Some([0.0, sine]),
         demand: None,
     }
 }
 
+fn stiffness(nm_per_rad: f32) -> LegGoal {
+    LegGoal {
+        direction: None,
+        demand: Some(TensionDemand::Stiffness(nm_per_rad, None)),
+    }
+}
+
+fn telemetry(operator: &mut Operator) -> Telemetry<f32> {
+    operator.telemetry().unwrap().telemetry
+}
+
 fn state(operator: &mut Operator) -> State {
-    operator.telemetry().unwrap().telemetry.state
+    telemetry(operator).state
 }
 
 /// Commands a move and comes back while the leg is on its way.
@@ -58,5 +78,71 @@ fn begin_move(operator: &mut Operator) {
     operator.command(Command::Arm).unwrap();
     operator.command(Command::Move { x: 0.4, y: 0.0 }).unwrap();
     operator.pause(Duration::from_millis(100)).unwrap();
-    assert!(operator.telemetry().unwrap().telemetry.moving);
+    assert!(telemetry(operator).moving);
+}
+
+/// Sets the flag once the leg is well on its way, and does something else then.
+fn cancel_in_mid_move(operator: &mut Operator, cancel: CancelFlag, then: impl Fn() + 'static) {
+    operator.set_watcher(move |telemetry| {
+        if telemetry.moving && telemetry.pose[1] > 0.05 {
+            then();
+            cancel.set();
+        }
+    });
+}
+
+/// A line to an emulated leg on which a test decides what becomes of what is sent and received.
+struct BadLine<S, R> {
+    inner: EmulatedTransport,
+    /// Called with the bytes of a frame.
+    on_send: S,
+    /// Called before bytes are waited for.
+    on_receive: R,
+    /// Whether urgent frames are sent as they are.
+    urgent_passes: bool,
+}
+
+impl<S, R> BadLine<S, R>
+where
+    S: FnMut(&mut EmulatedTransport, &[u8]) -> io::Result<()>,
+    R: FnMut(&mut EmulatedTransport),
+{
+    fn new(leg: &EmulatedLine, on_send: S, on_receive: R) -> Self {
+        Self {
+            inner: leg.connect(),
+            on_send,
+            on_receive,
+            urgent_passes: false,
+        }
+    }
+}
+
+impl<S, R> Transport for BadLine<S, R>
+where
+    S: FnMut(&mut EmulatedTransport, &[u8]) -> io::Result<()>,
+    R: FnMut(&mut EmulatedTransport),
+{
+    fn name(&self) -> &str {
+        self.inner.name()
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        (self.on_send)(&mut self.inner, bytes)
+    }
+
+    fn send_urgent(&mut self, bytes: &[u8]) -> io::Result<()> {
+        if self.urgent_passes {
+            return self.inner.send(bytes);
+        }
+        self.send(bytes)
+    }
+
+    fn receive(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize> {
+        (self.on_receive)(&mut self.inner);
+        self.inner.receive(bytes, timeout)
+    }
+
+    fn now(&self) -> Duration {
+        self.inner.now()
+    }
 }

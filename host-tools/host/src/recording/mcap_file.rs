@@ -1,15 +1,16 @@
-//! A recording as MCAP: the settings, every tick as a controller sees it, and what the leg tells, as JSON.
+//! A recording as MCAP: of a simulation the settings and every tick as a controller sees it; of all the telemetry, as JSON.
 
 use super::RecordingError;
-use super::telemetry_channel::TelemetryChannel;
 use super::tick_record::{TickRecord, to_bytes};
-use leg_base::words::hex;
+use leg_base::description::hex;
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::settings::Settings;
+use leg_firmware::telemetry::Telemetry;
 use leg_firmware_bench::protocol::BENCH_SCHEMA;
 use leg_sim::simulation::Tick;
 use mcap::records::MessageHeader;
 use mcap::{WriteOptions, Writer};
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::BufWriter;
@@ -18,73 +19,125 @@ use std::path::Path;
 /// Topics.
 pub(super) const SETTINGS: &str = "/settings";
 pub(super) const TICKS: &str = "/ticks";
+const TELEMETRY: &str = "/leg";
 
-/// The key under which a channel tells the schema of its messages.
+/// The key of a channel's metadata under which the schema of its messages stands.
 pub(super) const SCHEMA_KEY: &str = "schema";
 
-/// Ticks between two messages of telemetry.
+/// Ticks of a simulation between two messages of telemetry: 250 a second.
 const TELEMETRY_TICKS: u32 = 32;
 
 /// A tick in ns.
 const TICK_NS: u64 = 1_000_000_000 / TICK_HZ as u64;
 
-/// A recording that is being written.
-pub struct McapFile {
+/// A file that is being written. A channel is made with its first message.
+pub(super) struct McapFile {
     writer: Writer<BufWriter<File>>,
-    ticks: u16,
-    telemetry: TelemetryChannel,
-    count: u32,
+    ticks: Option<u16>,
+    telemetry: Option<u16>,
 }
 
-/// The hash of all message types, in words.
+/// The hash of all message types, in words: a recording is replayed by the sources that made it.
 pub(super) fn schema() -> String {
     hex(&BENCH_SCHEMA)
 }
 
 impl McapFile {
-    pub(super) fn create(file: &Path, settings: &Settings) -> Result<Self, RecordingError> {
+    pub fn create(file: &Path, settings: Option<&Settings>) -> Result<Self, RecordingError> {
         let options = WriteOptions::new().compression(None).library("leg");
-        let mut writer = options.create(BufWriter::new(File::create(file)?))?;
-        let told = BTreeMap::from([(SCHEMA_KEY.to_string(), schema())]);
-        let channel = writer.add_channel(0, SETTINGS, "postcard", &told)?;
-        writer.write_to_known_channel(&header(channel, 0), &to_bytes(settings)?)?;
-        let ticks = writer.add_channel(0, TICKS, "postcard", &told)?;
-        Ok(Self {
-            writer,
-            ticks,
-            telemetry: TelemetryChannel::default(),
-            count: 0,
-        })
+        let mut file = Self {
+            writer: options.create(BufWriter::new(File::create(file)?))?,
+            ticks: None,
+            telemetry: None,
+        };
+        if let Some(settings) = settings {
+            let channel = file.postcard_channel(SETTINGS)?;
+            file.write(channel, 0, 0, &to_bytes(settings)?)?;
+        }
+        Ok(file)
     }
 
-    pub(super) fn take(&mut self, tick: &Tick<'_>) -> Result<(), RecordingError> {
-        let record = to_bytes(&TickRecord::of(tick)?)?;
-        self.writer
-            .write_to_known_channel(&header(self.ticks, self.count), &record)?;
-        if self.count.is_multiple_of(TELEMETRY_TICKS) {
-            let time_ns = time_ns(self.count);
-            self.telemetry
-                .write(&mut self.writer, self.count, time_ns, tick.telemetry)?;
+    pub fn take_tick(&mut self, number: u32, tick: &Tick<'_>) -> Result<(), RecordingError> {
+        let time_ns = u64::from(number) * TICK_NS;
+        let channel = match self.ticks {
+            Some(channel) => channel,
+            None => self.postcard_channel(TICKS)?,
+        };
+        self.ticks = Some(channel);
+        self.write(
+            channel,
+            number,
+            time_ns,
+            &to_bytes(&TickRecord::new(tick)?)?,
+        )?;
+        if number.is_multiple_of(TELEMETRY_TICKS) {
+            self.write_telemetry(number, time_ns, tick.telemetry)?;
         }
-        self.count += 1;
         Ok(())
     }
 
-    pub(super) fn finish(&mut self) -> Result<(), RecordingError> {
+    pub fn write_telemetry(
+        &mut self,
+        number: u32,
+        time_ns: u64,
+        telemetry: &Telemetry<f32>,
+    ) -> Result<(), RecordingError> {
+        let value = serde_json::to_value(telemetry)?;
+        let channel = match self.telemetry {
+            Some(channel) => channel,
+            None => {
+                let schema = serde_json::to_vec(&json_schema(&value))?;
+                let id = self.writer.add_schema("Telemetry", "jsonschema", &schema)?;
+                self.writer
+                    .add_channel(id, TELEMETRY, "json", &BTreeMap::new())?
+            }
+        };
+        self.telemetry = Some(channel);
+        self.write(channel, number, time_ns, &serde_json::to_vec(&value)?)
+    }
+
+    fn postcard_channel(&mut self, topic: &str) -> Result<u16, RecordingError> {
+        let metadata = BTreeMap::from([(SCHEMA_KEY.to_string(), schema())]);
+        Ok(self.writer.add_channel(0, topic, "postcard", &metadata)?)
+    }
+
+    fn write(
+        &mut self,
+        channel_id: u16,
+        sequence: u32,
+        time_ns: u64,
+        message: &[u8],
+    ) -> Result<(), RecordingError> {
+        let header = MessageHeader {
+            channel_id,
+            sequence,
+            log_time: time_ns,
+            publish_time: time_ns,
+        };
+        Ok(self.writer.write_to_known_channel(&header, message)?)
+    }
+
+    pub fn finish(&mut self) -> Result<(), RecordingError> {
         self.writer.finish()?;
         Ok(())
     }
 }
 
-fn time_ns(tick: u32) -> u64 {
-    u64::from(tick) * TICK_NS
-}
-
-fn header(channel_id: u16, tick: u32) -> MessageHeader {
-    MessageHeader {
-        channel_id,
-        sequence: tick,
-        log_time: time_ns(tick),
-        publish_time: time_ns(tick),
+/// The JSON schema of a value, by which Foxglove lists its fields.
+fn json_schema(value: &Value) -> Value {
+    match value {
+        Value::Object(map) => {
+            let properties: serde_json::Map<String, Value> = map
+                .iter()
+                .map(|(key, value)| (key.clone(), json_schema(value)))
+                .collect();
+            json!({"type": "object", "properties": properties})
+        }
+        Value::Array(values) => {
+            json!({"type": "array", "items": values.first().map(json_schema)})
+        }
+        Value::String(_) => json!({"type": "string"}),
+        Value::Bool(_) => json!({"type": "boolean"}),
+        _ => json!({"type": "number"}),
     }
 }

@@ -4,9 +4,9 @@ use super::mcap_file::{SCHEMA_KEY, SETTINGS, TICKS, schema};
 use super::tick_record::{TickRecord, bits};
 use leg_firmware::host_link::BoardKind;
 use leg_firmware::settings::{Settings, SettingsError};
-use leg_firmware_bench::boarded_leg::BoardedLeg;
 use leg_firmware_bench::protocol::TickRequest;
 use leg_firmware_bench::server::emulated;
+use leg_firmware_bench::virtual_leg::VirtualLeg;
 use mcap::{Message, MessageStream};
 use serde::Deserialize;
 use serde::Serialize;
@@ -40,20 +40,20 @@ pub enum ReplayError {
     Settings(SettingsError),
 }
 
-/// What came out.
+/// How a replay compares with its recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Replay {
     /// Ticks that were replayed.
     pub ticks: u32,
-    /// Ticks with other bits.
+    /// Ticks whose duties have other bits.
     pub other: u32,
     /// The first of them, if any.
-    pub first: Option<Difference>,
+    pub first: Option<TickDifference>,
 }
 
-/// Where the present code does something else.
+/// A tick in which the present code gives other duties.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Difference {
+pub struct TickDifference {
     /// Tick, counted from 0.
     pub tick: u32,
     /// Duties that were recorded.
@@ -82,7 +82,7 @@ pub fn replay(file: &Path) -> Result<Replay, ReplayError> {
             (SETTINGS, leg) => {
                 let settings: Settings = read(&message)?;
                 let identity = emulated(BoardKind::InProcess);
-                *leg = Some(BoardedLeg::new(identity, &settings).map_err(ReplayError::Settings)?);
+                *leg = Some(VirtualLeg::new(identity, &settings).map_err(ReplayError::Settings)?);
             }
             (TICKS, Some(leg)) => result.take(leg, read(&message)?),
             (TICKS, None) => return Err(ReplayError::NoSettings),
@@ -109,7 +109,7 @@ fn read<'a, T: Deserialize<'a>>(message: &'a Message<'_>) -> Result<T, ReplayErr
 }
 
 impl Replay {
-    fn take(&mut self, leg: &mut BoardedLeg, record: TickRecord) {
+    fn take(&mut self, leg: &mut VirtualLeg, record: TickRecord) {
         let request = TickRequest {
             sensors: record.sensors,
             link: record.link,
@@ -117,7 +117,7 @@ impl Replay {
         let drive = leg.tick(&request, |_| true).drive;
         if bits(&drive) != (record.duty_bits, record.enabled) {
             self.other += 1;
-            self.first.get_or_insert(Difference {
+            self.first.get_or_insert(TickDifference {
                 tick: self.ticks,
                 recorded: record.duty_bits.map(f32::from_bits),
                 now: drive.duty,

@@ -1,82 +1,89 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{Recorder, around, replay};
+use super::{ReplayError, record, replay};
 use leg_base::failure::Failure;
+use leg_firmware::drive::Drive;
 use leg_rig::rig_file::RigFile;
+use leg_sim::link::InProcess;
 use leg_sim::ready_scenarios;
 use leg_sim::scenario::Scenario;
-use leg_sim::simulation::{InThisProcess, Simulation, Tick};
+use leg_sim::simulation::{Simulation, Tick};
+use mcap::records::MessageHeader;
+use std::collections::BTreeMap;
+use std::fs::File;
 use std::path::Path;
+use tempfile::TempDir;
 
-/// Records a short scenario; `spoil` may change what a tick gave.
-fn record(file: &Path, spoil: impl Fn(&mut leg_firmware::drive::Drive<f32>, u32)) -> u64 {
+/// A short scenario.
+fn simulation() -> Simulation {
     let text = ready_scenarios::named("fault_driver_fault").unwrap().text;
     let scenario = Scenario::parse("test", text).unwrap();
-    let rig = RigFile::load(None).unwrap();
-    let simulation = Simulation::new(&scenario, &rig).unwrap();
+    Simulation::new(&scenario, &RigFile::load(None).unwrap()).unwrap()
+}
+
+/// Records that scenario; `spoil` may change what a tick gave.
+fn record_spoilt(file: &Path, spoil: impl Fn(&mut Drive<f32>, u32)) -> u64 {
+    let simulation = simulation();
     let settings = simulation.settings().clone();
-    around(file, &settings, |recorder: &mut Recorder| {
+    record(file, Some(&settings), |recording| {
         let watch = &mut |tick: &Tick<'_>| {
             let mut drive = *tick.drive;
             spoil(&mut drive, tick.telemetry.tick - 1);
-            let tick = Tick {
-                drive: &drive,
-                ..*tick
-            };
-            recorder.take(&tick).unwrap();
+            let drive = &drive;
+            recording.take_tick(&Tick { drive, ..*tick }).unwrap();
         };
-        let summary = simulation.run(&mut InThisProcess::default(), watch);
+        let summary = simulation.run(&mut InProcess::new(), watch);
         Ok(summary.unwrap().ticks)
     })
     .unwrap()
 }
 
-#[test]
-fn a_recording_is_reproduced_bit_for_bit() {
-    let directory = tempfile::tempdir().unwrap();
-    let file = directory.path().join("leg.mcap");
-    let ticks = record(&file, |_, _| ());
-    let replay = replay(&file).unwrap();
-    assert_eq!((u64::from(replay.ticks), replay.other), (ticks, 0));
-    assert_eq!(replay.first, None);
+/// The rows of a table, which has these columns.
+fn rows(file: &Path, names: &[&str]) -> u64 {
+    let mut reader = csv::Reader::from_path(file).unwrap();
+    let found = reader.headers().unwrap().clone();
+    for name in names {
+        assert!(
+            found.iter().any(|found| found == *name),
+            "{name}: {found:?}"
+        );
+    }
+    reader.records().count() as u64
 }
 
 #[test]
-fn a_single_other_bit_is_told_with_its_tick() {
-    let directory = tempfile::tempdir().unwrap();
+fn a_recording_is_reproduced_bit_for_bit_and_a_single_other_bit_is_reported() {
+    let directory = TempDir::new().unwrap();
     let file = directory.path().join("leg.mcap");
-    record(&file, |drive, tick| {
+    let ticks = record_spoilt(&file, |_, _| ());
+    let same = replay(&file).unwrap();
+    assert_eq!((u64::from(same.ticks), same.other), (ticks, 0));
+    assert_eq!(same.first, None);
+    record_spoilt(&file, |drive, tick| {
         if tick == 777 {
             drive.duty[1] = f32::from_bits(drive.duty[1].to_bits() ^ 1);
         }
     });
-    let replay = replay(&file).unwrap();
-    assert_eq!((replay.other, replay.first.unwrap().tick), (1, 777));
+    let differing = replay(&file).unwrap();
+    assert_eq!((differing.other, differing.first.unwrap().tick), (1, 777));
 }
 
 #[test]
 fn a_table_has_a_row_a_millisecond_and_units_in_its_names() {
-    let directory = tempfile::tempdir().unwrap();
+    let directory = TempDir::new().unwrap();
     let file = directory.path().join("leg.csv");
-    let ticks = record(&file, |_, _| ());
-    let mut reader = csv::Reader::from_path(&file).unwrap();
-    let names = reader.headers().unwrap().clone();
-    for name in ["time_s", "tensions_n_1", "pulled_m_3", "state", "duty_2"] {
-        assert!(names.iter().any(|found| found == name), "{name}: {names:?}");
-    }
-    assert_eq!(reader.records().count() as u64, ticks.div_ceil(8));
+    let ticks = record_spoilt(&file, |_, _| ());
+    let names = ["time_s", "tensions_n_1", "pulled_m_3", "state", "duty_2"];
+    assert_eq!(rows(&file, &names), ticks.div_ceil(8));
 }
 
 #[test]
 fn work_that_fails_leaves_no_recording() {
-    let directory = tempfile::tempdir().unwrap();
+    let directory = TempDir::new().unwrap();
     let file = directory.path().join("leg.mcap");
-    let rig = RigFile::load(None).unwrap();
-    let text = ready_scenarios::named("fig9").unwrap().text;
-    let scenario = Scenario::parse("test", text).unwrap();
-    let settings = Simulation::new(&scenario, &rig).unwrap().settings().clone();
-    let failure = Failure::missed("no", "");
-    let failed = around(&file, &settings, |_| Err::<(), _>(failure.clone()));
+    let failure = Failure::failed("no", "");
+    let settings = simulation().settings().clone();
+    let failed = record(&file, Some(&settings), |_| Err::<(), _>(failure.clone()));
     assert_eq!(failed, Err(failure));
     assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 0);
     assert!(replay(&file).is_err());
@@ -84,44 +91,52 @@ fn work_that_fails_leaves_no_recording() {
 
 #[test]
 fn telemetry_alone_is_recorded_with_the_legs_time() {
-    let directory = tempfile::tempdir().unwrap();
-    let mut told = Vec::new();
-    let text = ready_scenarios::named("fault_driver_fault").unwrap().text;
-    let scenario = Scenario::parse("test", text).unwrap();
-    let rig = RigFile::load(None).unwrap();
-    let simulation = Simulation::new(&scenario, &rig).unwrap();
-    let watch = &mut |tick: &Tick<'_>| told.push(*tick.telemetry);
-    simulation
-        .run(&mut InThisProcess::default(), watch)
-        .unwrap();
-    for name in ["leg.mcap", "leg.csv"] {
-        let file = directory.path().join(name);
-        super::around_telemetry(&file, |recorder| {
-            for telemetry in &told {
-                recorder.take(telemetry).unwrap();
+    let directory = TempDir::new().unwrap();
+    let mut telemetry = Vec::new();
+    let watch = &mut |tick: &Tick<'_>| telemetry.push(*tick.telemetry);
+    simulation().run(&mut InProcess::new(), watch).unwrap();
+    let [mcap, csv] = ["leg.mcap", "leg.csv"].map(|name| directory.path().join(name));
+    for file in [&mcap, &csv] {
+        record(file, None, |recording| {
+            for telemetry in &telemetry {
+                recording.take_telemetry(telemetry).unwrap();
             }
             Ok(())
         })
         .unwrap();
     }
-    let bytes = std::fs::read(directory.path().join("leg.mcap")).unwrap();
+    assert!(matches!(replay(&mcap), Err(ReplayError::NoSettings)));
+    let bytes = std::fs::read(mcap).unwrap();
     let messages: Vec<_> = mcap::MessageStream::new(&bytes)
         .unwrap()
         .map(Result::unwrap)
         .collect();
-    assert_eq!(messages.len(), told.len());
-    let last = messages.last().unwrap();
+    assert_eq!(messages.len(), telemetry.len());
+    let (last, tick) = (messages.last().unwrap(), telemetry.last().unwrap().tick);
     assert_eq!(last.channel.topic, "/leg");
-    let tick = told.last().unwrap().tick;
     assert_eq!(last.log_time, u64::from(tick) * 125_000);
     let value: serde_json::Value = serde_json::from_slice(&last.data).unwrap();
     assert_eq!(value["tick"], tick);
-    let mut rows = csv::Reader::from_path(directory.path().join("leg.csv")).unwrap();
-    assert!(
-        rows.headers()
-            .unwrap()
-            .iter()
-            .any(|name| name == "tensions_n_2")
-    );
-    assert_eq!(rows.records().count(), told.len());
+    assert_eq!(rows(&csv, &["tensions_n_2"]), telemetry.len() as u64);
+}
+
+#[test]
+fn a_recording_of_other_sources_is_refused_by_name() {
+    let directory = TempDir::new().unwrap();
+    let file = directory.path().join("leg.mcap");
+    let mut writer = mcap::Writer::new(File::create(&file).unwrap()).unwrap();
+    let metadata = BTreeMap::from([("schema".into(), "abababababababab".into())]);
+    let header = MessageHeader {
+        channel_id: writer
+            .add_channel(0, "/settings", "postcard", &metadata)
+            .unwrap(),
+        sequence: 0,
+        log_time: 0,
+        publish_time: 0,
+    };
+    writer.write_to_known_channel(&header, &[0]).unwrap();
+    writer.finish().unwrap();
+    let text = replay(&file).unwrap_err().to_string();
+    let expected = "was recorded by other sources (schema abababababababab, this program ";
+    assert!(text.starts_with(expected), "{text}");
 }

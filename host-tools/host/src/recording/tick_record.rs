@@ -20,9 +20,8 @@ pub(super) struct TickRecord {
 }
 
 impl TickRecord {
-    pub fn of(tick: &Tick<'_>) -> Result<Self, RecordingError> {
-        let link = heapless::Vec::from_slice(tick.link)
-            .map_err(|_| RecordingError::Form("too many bytes from the link".into()))?;
+    pub fn new(tick: &Tick<'_>) -> Result<Self, RecordingError> {
+        let link = heapless::Vec::from_slice(tick.link).map_err(|_| RecordingError::LinkBytes)?;
         let (duty_bits, enabled) = bits(tick.drive);
         Ok(Self {
             sensors: *tick.sensors,
@@ -41,8 +40,5 @@ pub(super) fn bits(drive: &Drive<f32>) -> ([u32; 3], bool) {
 /// A message in postcard's format.
 pub(super) fn to_bytes<T: Serialize>(message: &T) -> Result<Vec<u8>, RecordingError> {
     let mut buffer = [0; BYTES_MAX];
-    match postcard::to_slice(message, &mut buffer) {
-        Ok(bytes) => Ok(bytes.to_vec()),
-        Err(error) => Err(RecordingError::Form(error.to_string())),
-    }
+    Ok(postcard::to_slice(message, &mut buffer)?.to_vec())
 }

@@ -3,9 +3,9 @@
 #[cfg(target_os = "linux")]
 mod interface;
 #[cfg(target_os = "linux")]
-mod socket;
+mod sender_lock;
 #[cfg(target_os = "linux")]
-mod sole;
+mod socket;
 
 #[cfg(target_os = "linux")]
 pub use interface::InterfaceError;
@@ -14,14 +14,11 @@ pub use socket::SocketCan;
 
 use super::Transport;
 use leg_firmware::can::{
-    Assembler, CanFault, CanFrame, Identifier, LegAddress, SegmentError, Segmenter,
+    Assembler, CanError, CanFrame, Identifier, LegAddress, SegmentError, Segmenter,
 };
 use std::collections::VecDeque;
 use std::io;
 use std::time::{Duration, Instant};
-
-#[cfg(test)]
-mod tests;
 
 /// A node on a CAN FD bus.
 pub trait CanPort {
@@ -32,20 +29,20 @@ pub trait CanPort {
     /// an urgent one does not wait for ordinary ones.
     ///
     /// # Errors
-    /// [`io::ErrorKind::TimedOut`] if the controller does not take it; what else the system says.
+    /// [`io::ErrorKind::TimedOut`] if the controller does not take it; another error of the system.
     fn send(&mut self, frame: &CanFrame) -> io::Result<()>;
 
     /// Waits for the next frame.
     ///
     /// # Errors
-    /// [`io::ErrorKind::TimedOut`] if none came in time; what else the system says.
+    /// [`io::ErrorKind::TimedOut`] if none came in time; another error of the system.
     fn receive(&mut self, timeout: Duration) -> io::Result<CanFrame>;
 }
 
 /// The link to one leg of a CAN FD bus.
 ///
-/// There is one for each leg, and not more: two would count under the same identifier. Beside it there may be any number of
-/// those that send urgent frames only, whose counters nobody looks at.
+/// There is one for each leg, and not more: two would count under the same identifier. There may be any number of links
+/// that send urgent frames only: no receiver looks at their counters.
 #[derive(Debug)]
 pub struct CanTransport<P> {
     port: P,
@@ -53,7 +50,6 @@ pub struct CanTransport<P> {
     /// None where all frames are sent as urgent ones.
     ordinary: Option<Segmenter>,
     urgent: Segmenter,
-    urgent_to_all: Segmenter,
     assembler: Assembler,
     received: VecDeque<u8>,
     damaged: u64,
@@ -69,7 +65,7 @@ impl<P: CanPort> CanTransport<P> {
         }
     }
 
-    /// The link of one who stops a leg beside others that talk to it: everything goes as urgent frames, and so has to be
+    /// The link of a host that stops a leg which others drive: everything goes as urgent frames, and so has to be
     /// short.
     #[must_use]
     pub fn urgent_only(port: P, leg: LegAddress) -> Self {
@@ -78,33 +74,20 @@ impl<P: CanPort> CanTransport<P> {
             port,
             ordinary: None,
             urgent: Segmenter::new(Identifier::Urgent(leg)),
-            urgent_to_all: Segmenter::new(Identifier::UrgentToAll),
-            assembler: Assembler::of_host(leg),
+            assembler: Assembler::for_host(leg),
             received: VecDeque::new(),
             damaged: 0,
         }
-    }
-
-    /// As [`Transport::send_urgent`], to all legs on the bus.
-    ///
-    /// # Errors
-    /// As [`Transport::send_urgent`].
-    pub fn send_urgent_to_all(&mut self, link_frame: &[u8]) -> io::Result<()> {
-        segment(&mut self.port, &mut self.urgent_to_all, link_frame)
     }
 
     fn receive_frame(&mut self, timeout: Duration) -> io::Result<()> {
         let frame = self.port.receive(timeout)?;
         let taken = self.assembler.push(&frame);
         // A double costs nothing.
-        let damaged = taken.fault.is_some_and(|fault| fault != CanFault::Doubled);
+        let damaged = taken.fault.is_some_and(|fault| fault != CanError::Doubled);
         self.damaged += u64::from(damaged);
         self.received.extend(taken.link_frame.unwrap_or_default());
         Ok(())
-    }
-
-    fn take(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        io::Read::read(&mut self.received, bytes)
     }
 }
 
@@ -138,7 +121,7 @@ impl<P: CanPort> Transport for CanTransport<P> {
         while self.received.is_empty() && !bytes.is_empty() {
             self.receive_frame(timeout.saturating_sub(start.elapsed()))?;
         }
-        self.take(bytes)
+        io::Read::read(&mut self.received, bytes)
     }
 }
 

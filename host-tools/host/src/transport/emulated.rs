@@ -9,14 +9,14 @@ use std::io;
 use std::rc::{Rc, Weak};
 use std::time::Duration;
 
-/// An emulated leg and the line to it.
-pub struct Emulated {
+/// An emulated leg and the line to it, which any number of hosts share.
+pub struct EmulatedLine {
     shared: Rc<RefCell<Shared>>,
     name: String,
 }
 
 /// One host's end of that line.
-pub struct EmulatedEnd {
+pub struct EmulatedTransport {
     shared: Rc<RefCell<Shared>>,
     incoming: Incoming,
     name: String,
@@ -48,8 +48,8 @@ impl Shared {
     }
 }
 
-impl Emulated {
-    /// A leg without a host yet.
+impl EmulatedLine {
+    /// A leg without a host yet; `name` is for messages.
     #[must_use]
     pub fn new(leg: EmulatedLeg, name: &str) -> Self {
         Self {
@@ -62,33 +62,26 @@ impl Emulated {
         }
     }
 
-    /// A host on its line, beside those that are there: what the leg says reaches all of them.
+    /// Connects another host: what the leg sends reaches all of them.
     #[must_use]
-    pub fn beside(&self) -> EmulatedEnd {
+    pub fn connect(&self) -> EmulatedTransport {
         let incoming = Incoming::default();
         let host = Rc::downgrade(&incoming);
         self.shared.borrow_mut().hosts.push(host);
-        EmulatedEnd {
+        EmulatedTransport {
             shared: Rc::clone(&self.shared),
             incoming,
             name: self.name.clone(),
         }
     }
 
-    /// Does something to the leg from outside.
-    pub fn touch<T>(&self, what: impl FnOnce(&mut Plant) -> T) -> T {
-        what(self.shared.borrow_mut().leg.plant())
+    /// Reads or changes the mechanism itself, as a hand or a measuring instrument does.
+    pub fn with_plant<T>(&self, work: impl FnOnce(&mut Plant) -> T) -> T {
+        work(self.shared.borrow_mut().leg.plant_mut())
     }
 }
 
-impl EmulatedEnd {
-    /// What of the leg's bytes has come.
-    fn take(&self, bytes: &mut [u8]) -> io::Result<usize> {
-        io::Read::read(&mut *self.incoming.borrow_mut(), bytes)
-    }
-}
-
-impl Transport for EmulatedEnd {
+impl Transport for EmulatedTransport {
     fn name(&self) -> &str {
         &self.name
     }
@@ -101,7 +94,7 @@ impl Transport for EmulatedEnd {
     fn receive(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize> {
         let until = self.now() + timeout;
         loop {
-            let count = self.take(bytes)?;
+            let count = io::Read::read(&mut *self.incoming.borrow_mut(), bytes)?;
             if count > 0 || bytes.is_empty() {
                 return Ok(count);
             }
@@ -124,22 +117,22 @@ impl Transport for EmulatedEnd {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::Emulated;
-    use crate::operator::{Host, Interrupt, Operator};
+    use super::{EmulatedLine, Transport};
     use leg_rig::rig_file::RigFile;
-    use leg_sim::emulated_leg::{Beginning, EmulatedLeg};
-    use leg_sim::simulation::InThisProcess;
+    use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
+    use leg_sim::link::InProcess;
+    use std::time::Duration;
 
     #[test]
-    fn nothing_is_kept_for_a_host_that_does_not_read() {
+    fn nothing_is_kept_for_a_host_that_has_gone() {
         let rig = RigFile::load(None).unwrap();
-        let controller = Box::new(InThisProcess::default());
-        let leg = EmulatedLeg::new(&rig, Beginning::Hanging, controller).unwrap();
-        let line = Emulated::new(leg, "a leg");
-        drop(line.beside());
-        let end = Box::new(line.beside());
-        let mut operator = Operator::open(end, Host::FIXED, Interrupt::default()).unwrap();
-        operator.telemetry().unwrap();
+        let link = Box::new(InProcess::new());
+        let leg = EmulatedLeg::new(&rig, InitialState::Homed, link).unwrap();
+        let line = EmulatedLine::new(leg, "a leg");
+        drop(line.connect());
+        let mut host = line.connect();
+        host.receive(&mut [0], Duration::from_millis(1))
+            .unwrap_err();
         assert_eq!(line.shared.borrow().hosts.len(), 1);
     }
 }

@@ -1,10 +1,10 @@
-//! The bodies: the base, the leg and its payload, with shapes to look at.
+//! The bodies: the base, the leg and its payload, with the shapes that are shown.
 
 use super::MjcfError;
-use super::element::Element;
 use super::held::HeldLeg;
 use super::joints::{Joint, Joints, Shape};
 use super::scenery;
+use crate::xml_element::Element;
 use std::f64::consts::PI;
 
 /// Density of the payload, kg/m³: steel.
@@ -40,7 +40,7 @@ pub(super) struct Sizes {
 }
 
 impl Sizes {
-    pub fn of(leg: &HeldLeg) -> Result<Self, MjcfError> {
+    pub fn new(leg: &HeldLeg) -> Result<Self, MjcfError> {
         let mass = leg.parameters.leg_mass_kg;
         if mass + leg.payload_kg <= 0.0 {
             return Err(MjcfError::Massless);

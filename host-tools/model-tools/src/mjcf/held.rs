@@ -1,10 +1,10 @@
 //! What the model says of a leg that tendons of constant stiffness hold at a pose.
 
 use super::MjcfError;
+use crate::line_error::LineError;
 use leg_model::{
     Direction, Elasticity, Error, Evaluation, Query, RigParameters, StiffnessAt, Support, evaluate,
 };
-use leg_rig::line_error::LineError;
 use nalgebra::{Rotation3, Vector3};
 
 /// Damping beside the critical one.

@@ -44,7 +44,7 @@ pub(super) struct Joints {
 
 impl Joints {
     /// The joints of a support, with the leg turned by `rotation`.
-    pub fn of(support: &Support<f64>, rotation: &Rotation3<f64>) -> Result<Self, MjcfError> {
+    pub fn new(support: &Support<f64>, rotation: &Rotation3<f64>) -> Result<Self, MjcfError> {
         let joint = support.joint();
         match support.kind() {
             SupportKind::TorsionFree => torsion_free(joint, rotation),
@@ -61,7 +61,7 @@ impl Joints {
     }
 }
 
-/// R = Rx(α/2)·Ry(β)·Rx(α/2) has a pretension axis: no torsion. The two halves are held equal.
+/// R = Rx(α/2)·Ry(β)·Rx(α/2) has a horizontal axis: no torsion. The two halves are held equal.
 fn torsion_free(
     joint: &JointStiffness<f64>,
     rotation: &Rotation3<f64>,
@@ -96,7 +96,7 @@ fn spherical(joint: &JointStiffness<f64>, rotation: &Rotation3<f64>) -> Result<J
             equal: None,
         });
     }
-    let turn = TiltAndTorsion::of(rotation);
+    let turn = TiltAndTorsion::new(rotation);
     let ball_torsion = bending * turn.half_tilt_by_tangent();
     if torsion >= ball_torsion {
         return Err(springs(joint));
@@ -168,14 +168,14 @@ fn ball(name: &'static str, spring: f64, rotation: &Rotation3<f64>) -> Joint {
     }
 }
 
-/// θ and τ, rad, in R = Rod(k, θ)·Rz(τ) with a pretension axis k.
+/// θ and τ, rad, in R = Rod(k, θ)·Rz(τ) with a horizontal axis k.
 struct TiltAndTorsion {
     tilt: f64,
     torsion: f64,
 }
 
 impl TiltAndTorsion {
-    fn of(rotation: &Rotation3<f64>) -> Self {
+    fn new(rotation: &Rotation3<f64>) -> Self {
         let turn = UnitQuaternion::from_rotation_matrix(rotation);
         Self {
             tilt: 2.0 * turn.i.hypot(turn.j).atan2(turn.w.hypot(turn.k)),

@@ -1,6 +1,6 @@
 //! What the viewer shows around the leg.
 
-use super::element::Element;
+use crate::xml_element::Element;
 
 const ROPE: [f64; 4] = [0.80, 0.20, 0.15, 1.0];
 const ZENITH: [f64; 3] = [0.45, 0.60, 0.80];
@@ -33,7 +33,7 @@ pub(super) fn light(tip: f64) -> Element {
         .text("castshadow", "false")
 }
 
-/// Shapes are to look at: they neither weigh nor touch. `ring` is the radius of the anchors' ring, m.
+/// Shapes are only shown: they have no mass and no contacts. `ring` is the radius of the anchors' ring, m.
 pub(super) fn defaults(ring: f64) -> Element {
     let geom = Element::new("geom")
         .numbers("mass", &[0.0])

@@ -51,7 +51,7 @@ fn a_leg_without_any_mass_is_refused() {
 }
 
 #[test]
-fn a_level_that_the_tendons_cannot_hold_is_refused_with_the_range() {
+fn a_pretension_that_the_tendons_cannot_hold_is_refused_with_the_range() {
     let leg = |pretension_n, payload_kg| {
         let query = Query {
             pretension_n,

@@ -42,7 +42,7 @@ pub struct Balance {
 }
 
 /// What the mechanism does at a posture.
-struct Point {
+struct PostureResponse {
     plane: FreePlane<f64>,
     /// N·m.
     moment: Vector3<f64>,
@@ -154,22 +154,22 @@ impl Balance {
     /// # Errors
     /// [`Error::TendonCollapsed`]; a tension beyond a tendon's curve.
     pub fn free_moment_nm(&self, posture: &Posture) -> Result<Vector3<f64>, Error> {
-        let point = self.at(posture)?;
+        let response = self.respond(posture)?;
         if self.support.twists() {
-            return Ok(point.moment);
+            return Ok(response.moment);
         }
-        let [x, y] = point.plane.project(&point.moment);
+        let [x, y] = response.plane.project(&response.moment);
         Ok(Vector3::new(x, y, 0.0))
     }
 
     /// The next posture on the way down and the length of the step to it, rad.
     fn step(&self, here: &Posture) -> Result<(Posture, f64), Error> {
-        let point = self.at(here)?;
-        let scale = point.stiffness.amax();
+        let response = self.respond(here)?;
+        let scale = response.stiffness.amax();
         let mut refusal = Error::Unstable;
         for damping in DAMPING {
-            let damped = point.stiffness + Matrix3::identity() * (damping * scale);
-            let Some((next, step_rad)) = self.turn(here, &point, &damped) else {
+            let damped = response.stiffness + Matrix3::identity() * (damping * scale);
+            let Some((next, step_rad)) = self.turn(here, &response, &damped) else {
                 continue;
             };
             match self.leads_down(here, &next, scale) {
@@ -186,13 +186,13 @@ impl Balance {
     fn turn(
         &self,
         here: &Posture,
-        point: &Point,
+        response: &PostureResponse,
         stiffness: &Matrix3<f64>,
     ) -> Option<(Posture, f64)> {
         let rotation = if self.support.twists() {
-            solve3(stiffness, &point.moment)
+            solve3(stiffness, &response.moment)
         } else {
-            point.plane.solve(stiffness, &point.moment)
+            response.plane.solve(stiffness, &response.moment)
         };
         let rotation = rotation.ok()?;
         let next = self.turned(here, &rotation)?;
@@ -230,16 +230,16 @@ impl Balance {
 
     fn geometry(&self, posture: &Posture) -> Geometry<f64, 3> {
         let twist = self.support.twist(&posture.direction);
-        let twist = twist.and(&Twist::from_torsion(posture.torsion));
+        let twist = twist.then(&Twist::from_torsion(posture.torsion));
         self.rig.geometry().twisted(&twist)
     }
 
-    fn at(&self, posture: &Posture) -> Result<Point, Error> {
+    fn respond(&self, posture: &Posture) -> Result<PostureResponse, Error> {
         let (geometry, direction) = (self.geometry(posture), &posture.direction);
         let kinematics = inverse_kinematics(&geometry, direction)?;
         let (tensions, stiffnesses) = self.pull(&kinematics)?;
         let moment_map = kinematics.moment_map;
-        Ok(Point {
+        Ok(PostureResponse {
             plane: self.support.plane(direction),
             moment: moment_map * tensions
                 + self.load.moment(direction)

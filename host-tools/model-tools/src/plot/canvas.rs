@@ -1,9 +1,12 @@
-//! What every picture shares: its size, and a font of our own, for a bare machine has none.
+//! What every picture shares: its size, its files, its font.
 
+use leg_base::atomic_file;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
-use std::path::Path;
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
 
 pub(super) const WIDTH_PX: u32 = 1280;
 pub(super) const HEIGHT_PX: u32 = 800;
@@ -11,6 +14,8 @@ pub(super) const MARGIN_PX: u32 = 18;
 pub(super) const TITLE_PX: u32 = 30;
 pub(super) const AXIS_TITLE_PX: u32 = 24;
 pub(super) const LABEL_PX: u32 = 22;
+/// Red, green and blue: what a [`BitMapBackend`] paints into a buffer.
+const BYTES_PER_PIXEL: usize = 3;
 pub(super) const GRID: RGBColor = RGBColor(225, 225, 225);
 
 pub(super) type Area<B> = DrawingArea<B, Shift>;
@@ -35,34 +40,54 @@ pub enum PlotError {
         "the chart cannot be drawn ({0}): see that the directory is writable and the disk not full"
     )]
     Draw(String),
+    /// The bitmap could not be made.
+    #[error(
+        "the bitmap cannot be written ({0}): see that the directory is writable and the disk not full"
+    )]
+    Png(#[from] png::EncodingError),
 }
 
-/// Paints an SVG file.
-pub(super) fn svg<'a>(
-    path: &'a Path,
-    paint: impl FnOnce(&Area<SVGBackend<'a>>) -> Drawn<SVGBackend<'a>>,
-) -> Result<(), PlotError> {
-    draw(SVGBackend::new(path, (WIDTH_PX, HEIGHT_PX)), paint)
+/// A picture whose parts are known.
+pub(super) trait Painter {
+    /// Paints it from its background up.
+    fn paint<B: DrawingBackend>(&self, root: &Area<B>) -> Drawn<B>;
 }
 
-/// Paints a PNG file; the path has to end in `.png`.
-pub(super) fn png<'a>(
-    path: &'a Path,
-    paint: impl FnOnce(&Area<BitMapBackend<'a>>) -> Drawn<BitMapBackend<'a>>,
-) -> Result<(), PlotError> {
-    draw(BitMapBackend::new(path, (WIDTH_PX, HEIGHT_PX)), paint)
+/// Paints `stem.svg` and `stem.png`, each whole or not at all, and names the first.
+pub(super) fn save_both(painter: &impl Painter, stem: &Path) -> Result<PathBuf, PlotError> {
+    let size = (WIDTH_PX, HEIGHT_PX);
+    let (svg, png) = (stem.with_extension("svg"), stem.with_extension("png"));
+    atomic_file::replace(&svg, |new| draw(SVGBackend::new(new, size), painter))?;
+    atomic_file::replace(&png, |new| {
+        let mut pixels = vec![0; (WIDTH_PX * HEIGHT_PX) as usize * BYTES_PER_PIXEL];
+        draw(BitMapBackend::with_buffer(&mut pixels, size), painter)?;
+        write_png(&pixels, new)
+    })?;
+    Ok(svg)
 }
 
-fn draw<B: DrawingBackend>(
-    backend: B,
-    paint: impl FnOnce(&Area<B>) -> Drawn<B>,
-) -> Result<(), PlotError> {
-    register_font("sans-serif", FontStyle::Normal, dejavu::sans::regular())
-        .map_err(|_| PlotError::Font)?;
+fn write_png(pixels: &[u8], path: &Path) -> Result<(), PlotError> {
+    let file = BufWriter::new(File::create(path)?);
+    let mut encoder = png::Encoder::new(file, WIDTH_PX, HEIGHT_PX);
+    encoder.set_color(png::ColorType::Rgb);
+    let mut image = encoder.write_header()?;
+    image.write_image_data(pixels)?;
+    Ok(image.finish()?)
+}
+
+fn draw<B: DrawingBackend>(backend: B, painter: &impl Painter) -> Result<(), PlotError> {
+    provide_font()?;
     let root = backend.into_drawing_area();
-    paint(&root)
+    painter
+        .paint(&root)
         .and_then(|()| root.present())
         .map_err(|error| PlotError::Draw(error.to_string()))
+}
+
+/// A font of our own: a bare machine has none.
+pub(super) fn provide_font() -> Result<(), PlotError> {
+    register_font("sans-serif", FontStyle::Normal, dejavu::sans::regular())
+        .map_err(|_| PlotError::Font)
 }
 
 /// The smallest and the largest value.

@@ -5,18 +5,17 @@ mod flat;
 mod isolines;
 mod polar;
 mod runs;
-mod scale;
+pub(crate) mod scale;
 
-use super::canvas::{self, Area, Drawn, MARGIN_PX, PlotError, TITLE_PX, WIDTH_PX, range};
+use super::canvas::{self, Area, Drawn, MARGIN_PX, Painter, PlotError, TITLE_PX, WIDTH_PX, range};
 use bands::Bands;
-use leg_base::atomic_file;
 use plotters::prelude::*;
 use scale::SCALE_WIDTH_PX;
 use std::path::{Path, PathBuf};
 
 /// A quantity over azimuth and tilt.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Field {
+pub struct PlotField {
     /// Above the map.
     pub title: String,
     /// Above the scale.
@@ -32,12 +31,12 @@ pub struct Field {
     /// Tilts of the rows, degrees: evenly from 0.
     pub tilts_deg: Vec<f64>,
     /// What is known of each pose, row by row; none where there is no result.
-    pub samples: Vec<Option<Sample>>,
+    pub samples: Vec<Option<PoseSample>>,
 }
 
 /// What is known of a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
+pub struct PoseSample {
     /// The quantity, if it is known.
     pub value: Option<f64>,
     /// How far the pose is inside the region that is shown; negative outside. Its border is where this is zero.
@@ -46,9 +45,9 @@ pub struct Sample {
     pub wider_room: f64,
 }
 
-impl Sample {
+impl PoseSample {
     /// The sample at a part of the way to another.
-    fn towards(self, other: Self, part: f64) -> Self {
+    fn blend(self, other: Self, part: f64) -> Self {
         let between = |from: f64, to: f64| from * (1.0 - part) + to * part;
         Self {
             value: self.value.zip(other.value).map(|(a, b)| between(a, b)),
@@ -63,16 +62,16 @@ impl Sample {
     }
 
     /// Outside the region, but inside the wider one.
-    fn between(&self) -> bool {
+    fn is_between(&self) -> bool {
         self.room < 0.0 && self.wider_room >= 0.0
     }
 
-    fn outside(&self) -> bool {
+    fn is_outside(&self) -> bool {
         self.room < 0.0 && self.wider_room < 0.0
     }
 }
 
-/// How a [`Field`] is laid out.
+/// How a [`PlotField`] is laid out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
     /// Azimuth across, tilt upwards.
@@ -81,36 +80,44 @@ pub enum Layout {
     Polar,
 }
 
-/// Draws the map as an SVG file.
+/// Draws the map as `stem.svg` and `stem.png` (1280 × 800 pixels), each whole or not at all, and names the first.
 ///
 /// # Errors
 /// [`PlotError::Empty`] if nothing is known of any pose or the rows do not fit; a file that cannot be written.
-pub fn save_svg(field: &Field, layout: Layout, path: &Path) -> Result<(), PlotError> {
+pub fn save_both(field: &PlotField, layout: Layout, stem: &Path) -> Result<PathBuf, PlotError> {
     let bands = field.bands()?;
-    canvas::svg(path, |root| paint(field, &bands, layout, root))
+    let painter = FieldPainter {
+        field,
+        bands,
+        layout,
+    };
+    canvas::save_both(&painter, stem)
 }
 
-/// Draws the map as a PNG file of 1280 × 800 pixels; the path has to end in `.png`.
-///
-/// # Errors
-/// As [`save_svg`].
-pub fn save_png(field: &Field, layout: Layout, path: &Path) -> Result<(), PlotError> {
-    let bands = field.bands()?;
-    canvas::png(path, |root| paint(field, &bands, layout, root))
+/// A field whose bands are known.
+struct FieldPainter<'a> {
+    field: &'a PlotField,
+    bands: Bands,
+    layout: Layout,
 }
 
-/// Draws the map as `stem.svg` and `stem.png`, each whole or not at all, and names the first.
-///
-/// # Errors
-/// As [`save_svg`].
-pub fn save_both(field: &Field, layout: Layout, stem: &Path) -> Result<PathBuf, PlotError> {
-    let (svg, png) = (stem.with_extension("svg"), stem.with_extension("png"));
-    atomic_file::replace(&svg, |new| save_svg(field, layout, new))?;
-    atomic_file::replace(&png, |new| save_png(field, layout, new))?;
-    Ok(svg)
+impl Painter for FieldPainter<'_> {
+    fn paint<B: DrawingBackend>(&self, root: &Area<B>) -> Drawn<B> {
+        let Self { field, bands, .. } = self;
+        root.fill(&WHITE)?;
+        let body = root
+            .margin(MARGIN_PX, MARGIN_PX, MARGIN_PX, 0)
+            .titled(&field.title, ("sans-serif", TITLE_PX))?;
+        let (map, scale) = body.split_horizontally(WIDTH_PX - SCALE_WIDTH_PX - MARGIN_PX);
+        match self.layout {
+            Layout::Flat => flat::paint(field, bands, &map)?,
+            Layout::Polar => polar::paint(field, bands, &map)?,
+        }
+        scale::paint(field, bands, &scale)
+    }
 }
 
-impl Field {
+impl PlotField {
     fn bands(&self) -> Result<Bands, PlotError> {
         let fits = self.azimuths > 1
             && self.tilts_deg.len() > 1
@@ -118,7 +125,7 @@ impl Field {
         if !fits {
             return Err(PlotError::Empty);
         }
-        let poses = self.samples.iter().flatten().filter_map(Sample::shown);
+        let poses = self.samples.iter().flatten().filter_map(PoseSample::shown);
         match range(poses.chain(runs::values(self))) {
             Some((low, high)) if low.is_finite() && high.is_finite() => Ok(Bands::new(low, high)),
             // Where the values would be says something, too.
@@ -134,7 +141,7 @@ impl Field {
 
     /// What is known of a place between the poses: azimuth in columns, tilt in rows. None beside a pose without a
     /// result.
-    fn at(&self, column: f64, row: f64) -> Option<Sample> {
+    fn interpolate(&self, column: f64, row: f64) -> Option<PoseSample> {
         let last = self.tilts_deg.len() - 1;
         let (left, below) = (column.floor(), row.floor().min(last as f64 - 1.0));
         let (x, y) = (column - left, row - below);
@@ -142,28 +149,10 @@ impl Field {
             let column = (left + dx) as usize % self.azimuths;
             self.samples[(below + dy) as usize * self.azimuths + column]
         };
-        let low = sample(0.0, 0.0)?.towards(sample(1.0, 0.0)?, x);
-        let high = sample(0.0, 1.0)?.towards(sample(1.0, 1.0)?, x);
-        Some(low.towards(high, y))
+        let low = sample(0.0, 0.0)?.blend(sample(1.0, 0.0)?, x);
+        let high = sample(0.0, 1.0)?.blend(sample(1.0, 1.0)?, x);
+        Some(low.blend(high, y))
     }
-}
-
-fn paint<B: DrawingBackend>(
-    field: &Field,
-    bands: &Bands,
-    layout: Layout,
-    root: &Area<B>,
-) -> Drawn<B> {
-    root.fill(&WHITE)?;
-    let body = root
-        .margin(MARGIN_PX, MARGIN_PX, MARGIN_PX, 0)
-        .titled(&field.title, ("sans-serif", TITLE_PX))?;
-    let (map, scale) = body.split_horizontally(WIDTH_PX - SCALE_WIDTH_PX - MARGIN_PX);
-    match layout {
-        Layout::Flat => flat::paint(field, bands, &map)?,
-        Layout::Polar => polar::paint(field, bands, &map)?,
-    }
-    scale::paint(field, bands, &scale)
 }
 
 #[cfg(test)]

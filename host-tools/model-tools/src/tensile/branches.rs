@@ -1,13 +1,13 @@
 //! Loading and unloading, and the slack that is taken up before.
 
-use super::{Row, TensileError, TensileTest};
+use super::{TensileError, TensileTest, TestRow, faulty};
 
 /// The two branches of a test.
 pub(super) struct Branches {
     /// Taut rows up to the largest force.
-    pub loading: Vec<Row>,
+    pub loading: Vec<TestRow>,
     /// Taut rows after it, if the test has any.
-    pub unloading: Vec<Row>,
+    pub unloading: Vec<TestRow>,
 }
 
 /// Splits a test at its largest force. Rows below `taut_n` are the slack that is taken up.
@@ -23,7 +23,7 @@ pub(super) fn split(test: &TensileTest, taut_n: f64) -> Result<Branches, Tensile
         .rposition(|row| row.force_n < taut_n)
         .map_or(0, |last| last + 1);
     let loading = loading[start..].to_vec();
-    let unloading: Vec<Row> = unloading
+    let unloading: Vec<TestRow> = unloading
         .iter()
         .copied()
         .filter(|row| row.force_n >= taut_n)
@@ -38,35 +38,34 @@ pub(super) fn split(test: &TensileTest, taut_n: f64) -> Result<Branches, Tensile
     Ok(Branches { loading, unloading })
 }
 
-/// Force and elongation change one way (`sign`) from row to row.
-fn check(rows: &[Row], sign: f64, branch: &'static str) -> Result<(), TensileError> {
+/// Force and elongation change in one direction (`sign`) from row to row.
+fn check(rows: &[TestRow], sign: f64, branch: &str) -> Result<(), TensileError> {
+    let backwards = |quantity: &str, before: u64| {
+        format!(
+            "the {quantity} goes backwards from line {before} while the tendon is {branch}; average rows until force and elongation change together"
+        )
+    };
     for pair in rows.windows(2) {
         let [before, row] = pair else { continue };
-        let (line, before_line) = (row.line, before.line);
-        if row.force_n == before.force_n {
-            return Err(TensileError::SameForce {
-                line,
-                before: before_line,
-            });
-        }
-        let backwards = |quantity| TensileError::Backwards {
-            line,
-            before: before_line,
-            quantity,
-            branch,
+        let force_n = (row.force_n - before.force_n) * sign;
+        let elongation_m = (row.elongation_m - before.elongation_m) * sign;
+        let before = before.line;
+        let problem = if force_n == 0.0 {
+            format!(
+                "the force is that of line {before}; keep one row for each force, for example their mean"
+            )
+        } else if force_n < 0.0 {
+            backwards("force", before)
+        } else if elongation_m == 0.0 {
+            format!(
+                "the elongation is that of line {before} while the force changes; keep rows farther apart than the elongation is resolved"
+            )
+        } else if elongation_m < 0.0 {
+            backwards("elongation", before)
+        } else {
+            continue;
         };
-        if (row.force_n - before.force_n) * sign < 0.0 {
-            return Err(backwards("force"));
-        }
-        if row.elongation_m == before.elongation_m {
-            return Err(TensileError::Standing {
-                line,
-                before: before_line,
-            });
-        }
-        if (row.elongation_m - before.elongation_m) * sign < 0.0 {
-            return Err(backwards("elongation"));
-        }
+        return Err(faulty(row.line, None, problem));
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 use super::branches::split;
 use super::hysteresis::Hysteresis;
 use super::knots;
-use super::{Row, TensileError, TensileTest};
+use super::{TensileError, TensileTest, TestRow};
 use leg_model::{CurvePoint, Elasticity, TendonCurve};
 
 /// Rows below this part of the largest force are slack, unless the user says otherwise.
@@ -15,7 +15,7 @@ pub struct Fit {
     /// The points of the curve.
     pub points: Vec<CurvePoint<f64>>,
     /// The taut rows of the loading branch, their elongation from zero force.
-    pub rows: Vec<Row>,
+    pub rows: Vec<TestRow>,
     /// Elongation before the tendon was taut, m.
     pub take_up_m: f64,
     /// The force from which it is taken as taut, N.
@@ -50,7 +50,7 @@ impl Fit {
         Ok(Self {
             error_max_m: errors.iter().copied().fold(0.0, f64::max),
             error_rms_m: (squares / errors.len() as f64).sqrt(),
-            hysteresis: Hysteresis::of(&curve, &unloading).map_err(TensileError::NoCurve)?,
+            hysteresis: Hysteresis::new(&curve, &unloading).map_err(TensileError::NoCurve)?,
             points,
             rows,
             take_up_m,
@@ -68,16 +68,16 @@ fn check_pull(test: &TensileTest, largest_n: f64) -> Result<(), TensileError> {
 }
 
 /// The rows with their elongation from zero force.
-fn shifted(rows: Vec<Row>, take_up_m: f64) -> Vec<Row> {
-    let shift = |row: Row| Row {
+fn shifted(rows: Vec<TestRow>, take_up_m: f64) -> Vec<TestRow> {
+    let shift = |row: TestRow| TestRow {
         elongation_m: row.elongation_m - take_up_m,
         ..row
     };
     rows.into_iter().map(shift).collect()
 }
 
-fn errors(curve: &TendonCurve<f64>, rows: &[Row]) -> Result<Vec<f64>, TensileError> {
-    let error = |row: &Row| {
+fn errors(curve: &TendonCurve<f64>, rows: &[TestRow]) -> Result<Vec<f64>, TensileError> {
+    let error = |row: &TestRow| {
         let elongation = curve.elongation(row.force_n)?;
         Ok((elongation - row.elongation_m).abs())
     };

@@ -1,6 +1,6 @@
 //! What a tendon keeps back when it is unloaded.
 
-use super::Row;
+use super::TestRow;
 use leg_model::{Elasticity, Error, TendonCurve};
 use serde::Serialize;
 
@@ -18,7 +18,10 @@ impl Hysteresis {
     ///
     /// # Errors
     /// A force beyond the curve.
-    pub(super) fn of(curve: &TendonCurve<f64>, unloading: &[Row]) -> Result<Option<Self>, Error> {
+    pub(super) fn new(
+        curve: &TendonCurve<f64>,
+        unloading: &[TestRow],
+    ) -> Result<Option<Self>, Error> {
         let Some(lowest) = unloading.last() else {
             return Ok(None);
         };

@@ -1,7 +1,7 @@
 //! Where the points of a curve are needed, and how many.
 
 use super::spline::Spline;
-use super::{Row, TensileError};
+use super::{TensileError, TestRow};
 use leg_model::{CURVE_POINTS_MAX, TendonCurve};
 
 /// The first point of a curve is the slack tendon; the others are knots.
@@ -10,9 +10,9 @@ const KNOTS_MAX: usize = CURVE_POINTS_MAX - 1;
 /// A curve this near to the rows is near enough, in parts of the largest elongation.
 const NEAR: f64 = 1e-5;
 
-/// The spline that tells most of the rows and least of their noise. Knots are added one by one where the rows are missed
-/// most; of all splines on the way, the one with the best Bayesian information criterion is taken.
-pub(super) fn best(rows: &[Row]) -> Result<Spline, TensileError> {
+/// The spline with the lowest Bayesian information criterion: a close fit with few knots. Knots are added one by one where
+/// the squared distances of the rows are largest.
+pub(super) fn best(rows: &[TestRow]) -> Result<Spline, TensileError> {
     let mut best: Option<(f64, Spline)> = None;
     let mut refused = TensileError::TooNear;
     let mut knots = vec![0, rows.len() - 1];
@@ -22,10 +22,10 @@ pub(super) fn best(rows: &[Row]) -> Result<Spline, TensileError> {
             break;
         };
         let squares = squares(&spline, rows);
-        let worth = criterion(&squares, knots.len(), rows);
-        let better = best.as_ref().is_none_or(|(least, _)| worth < *least);
+        let score = criterion(&squares, knots.len(), rows);
+        let better = best.as_ref().is_none_or(|(lowest, _)| score < *lowest);
         match TendonCurve::new(&spline.points()) {
-            Ok(_) if better => best = Some((worth, spline)),
+            Ok(_) if better => best = Some((score, spline)),
             Ok(_) => {}
             Err(error) => refused = TensileError::NoCurve(error),
         }
@@ -37,13 +37,13 @@ pub(super) fn best(rows: &[Row]) -> Result<Spline, TensileError> {
     best.map(|(_, spline)| spline).ok_or(refused)
 }
 
-fn squares(spline: &Spline, rows: &[Row]) -> Vec<f64> {
-    let square = |row: &Row| (spline.elongation(row.force_n) - row.elongation_m).powi(2);
+fn squares(spline: &Spline, rows: &[TestRow]) -> Vec<f64> {
+    let square = |row: &TestRow| (spline.elongation(row.force_n) - row.elongation_m).powi(2);
     rows.iter().map(square).collect()
 }
 
-/// The criterion of Schwarz (1978): the less, the better. Each knot has an elongation and a slope.
-fn criterion(squares: &[f64], knots: usize, rows: &[Row]) -> f64 {
+/// The criterion of Schwarz (1978): lower is better. Each knot has an elongation and a slope.
+fn criterion(squares: &[f64], knots: usize, rows: &[TestRow]) -> f64 {
     let largest = rows.last().map_or(0.0, |row| row.elongation_m) - rows[0].elongation_m;
     let count = squares.len() as f64;
     let mean = squares.iter().sum::<f64>() / count;

@@ -1,6 +1,6 @@
 //! The rows of a tensile test, from a CSV file whose header names the units.
 
-use super::TensileError;
+use super::{TensileError, faulty};
 use csv::{ErrorKind, Position, ReaderBuilder, StringRecord, Trim};
 use std::path::Path;
 
@@ -31,7 +31,7 @@ const ELONGATION: Known = Known {
 
 /// A row of a test.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub struct TestRow {
     /// Its line in the file.
     pub line: u64,
     /// N.
@@ -44,7 +44,7 @@ pub struct Row {
 #[derive(Clone, Debug, PartialEq)]
 pub struct TensileTest {
     /// All rows.
-    pub rows: Vec<Row>,
+    pub rows: Vec<TestRow>,
 }
 
 /// Where a quantity is, and what its unit is in SI.
@@ -65,12 +65,12 @@ pub fn read(path: &Path) -> Result<TensileTest, TensileError> {
         .trim(Trim::All)
         .from_reader(data.as_bytes());
     let header = reader.headers()?;
-    let (force, elongation) = columns(header, lines.of(header.position()))?;
+    let (force, elongation) = columns(header, lines.number(header.position()))?;
     let mut rows = Vec::new();
     for record in reader.records() {
-        let record = record.map_err(|error| lines.place(error))?;
-        let line = lines.of(record.position());
-        rows.push(Row {
+        let record = record.map_err(|error| lines.place_error(error))?;
+        let line = lines.number(record.position());
+        rows.push(TestRow {
             line,
             force_n: number(&record, line, force)?,
             elongation_m: number(&record, line, elongation)?,
@@ -80,35 +80,37 @@ pub fn read(path: &Path) -> Result<TensileTest, TensileError> {
 }
 
 /// The lines of the file that hold data, and where each of them is: the CSV reader's own count is off after a comment.
-fn without_comments(text: &str) -> (String, Lines) {
+fn without_comments(text: &str) -> (String, LineNumbers) {
     let text = text.trim_start_matches('\u{feff}');
     let data = (1..)
         .zip(text.lines())
         .filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
     let (numbers, lines): (Vec<u64>, Vec<&str>) = data.unzip();
-    (lines.join("\n"), Lines(numbers))
+    (lines.join("\n"), LineNumbers(numbers))
 }
 
 /// The file's line numbers of the lines that are read.
-struct Lines(Vec<u64>);
+struct LineNumbers(Vec<u64>);
 
-impl Lines {
-    fn of(&self, place: Option<&Position>) -> u64 {
+impl LineNumbers {
+    fn number(&self, place: Option<&Position>) -> u64 {
         let index = place.map_or(0, |place| place.line().saturating_sub(1) as usize);
         self.0.get(index).copied().unwrap_or(1)
     }
 
-    fn place(&self, error: csv::Error) -> TensileError {
+    fn place_error(&self, error: csv::Error) -> TensileError {
         match error.kind() {
             ErrorKind::UnequalLengths {
                 pos,
                 expected_len: wanted,
                 len: found,
-            } => TensileError::Fields {
-                line: self.of(pos.as_ref()),
-                found: *found,
-                wanted: *wanted,
-            },
+            } => faulty(
+                self.number(pos.as_ref()),
+                None,
+                format!(
+                    "{found} fields under a header of {wanted}; give one each, with a point in decimals and no comma"
+                ),
+            ),
             _ => error.into(),
         }
     }
@@ -131,57 +133,49 @@ fn columns(header: &StringRecord, line: u64) -> Result<(Column, Column), Tensile
 }
 
 fn unknown(line: u64, column: usize, name: &str) -> TensileError {
-    let name = name.to_owned();
     if name.contains([';', '\t']) {
-        return TensileError::Separator { line, header: name };
+        let problem = format!("`{name}` is one column; separate columns by commas");
+        return faulty(line, None, problem);
     }
     let quantity = name.split('_').next().unwrap_or_default();
     let known = [FORCE, ELONGATION]
         .into_iter()
         .find(|known| known.quantity == quantity);
-    match known {
-        None => TensileError::UnknownColumn { line, column, name },
-        Some(Known { names: units, .. }) => TensileError::UnknownUnit {
-            line,
-            column,
-            name,
-            units,
-        },
-    }
+    let problem = match known {
+        None => format!(
+            "`{name}` is no known column; leave it out, and name {}, and {}",
+            FORCE.names, ELONGATION.names
+        ),
+        Some(known) => format!("the unit of `{name}` is not known; give {}", known.names),
+    };
+    faulty(line, Some(column), problem)
 }
 
 fn one(line: u64, known: &Known, columns: &[Column]) -> Result<Column, TensileError> {
-    match columns {
-        [column] => Ok(*column),
-        _ => Err(TensileError::Columns {
-            line,
-            quantity: known.quantity,
-            found: columns.len(),
-            units: known.names,
-        }),
-    }
+    let [column] = columns else {
+        let Known {
+            quantity, names, ..
+        } = known;
+        let found = columns.len();
+        let problem =
+            format!("the header names {found} columns for the {quantity}; give one, {names}");
+        return Err(faulty(line, None, problem));
+    };
+    Ok(*column)
 }
 
 fn number(record: &StringRecord, line: u64, column: Column) -> Result<f64, TensileError> {
     let text = record.get(column.index).unwrap_or_default();
-    let place = column.index + 1;
-    if text.is_empty() {
-        return Err(TensileError::Hole {
-            line,
-            column: place,
-        });
-    }
-    match text.parse::<f64>() {
-        Ok(number) if (number * column.scale).is_finite() => Ok(number * column.scale),
-        Ok(number) if number.is_finite() => Err(TensileError::TooLarge {
-            line,
-            column: place,
-            text: text.into(),
-        }),
-        _ => Err(TensileError::NotANumber {
-            line,
-            column: place,
-            text: text.into(),
-        }),
-    }
+    let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
+    let problem = match number.map(|number| number * column.scale) {
+        Some(number) if number.is_finite() => return Ok(number),
+        Some(_) => format!(
+            "`{text}` is too large in newtons or metres; check it and the unit of its column"
+        ),
+        None if text.is_empty() => {
+            "nothing is there; give the value, or leave the whole row out".into()
+        }
+        None => format!("`{text}` is no finite number; write one such as 12.5"),
+    };
+    Err(faulty(line, Some(column.index + 1), problem))
 }

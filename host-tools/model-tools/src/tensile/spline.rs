@@ -1,6 +1,6 @@
 //! The curve of least squares through rows: cubic between knots, smooth at them.
 
-use super::Row;
+use super::TestRow;
 use leg_model::CurvePoint;
 use nalgebra::{DMatrix, DVector};
 
@@ -30,27 +30,27 @@ pub(super) struct Spline {
 
 impl Spline {
     /// The spline nearest to the rows, with slopes kept where it rises. None when the rows do not settle it.
-    pub(super) fn nearest(rows: &[Row], knots: Vec<f64>) -> Option<Self> {
+    pub(super) fn nearest(rows: &[TestRow], knots: Vec<f64>) -> Option<Self> {
         let [first, .., last] = knots[..] else {
             return None;
         };
         // All unknowns are lengths then.
         let unit = last - first;
-        let mut wishes = Wishes::new(2 * knots.len());
+        let mut equations = WeightedEquations::new(2 * knots.len());
         for row in rows {
             let (piece, place, width) = locate(&knots, row.force_n);
             let weights = value_weights(place, width / unit);
-            wishes.add(2 * piece, weights, row.elongation_m, 1.0);
+            equations.add(2 * piece, weights, row.elongation_m, 1.0);
         }
         let bending = BENDING * rows.len() as f64;
         for piece in 0..knots.len() - 1 {
             let width = (knots[piece + 1] - knots[piece]) / unit;
             for place in [0.5 - GAUSS, 0.5 + GAUSS] {
                 let weights = bending_weights(place, width);
-                wishes.add(2 * piece, weights, 0.0, bending * 0.5 * width);
+                equations.add(2 * piece, weights, 0.0, bending * 0.5 * width);
             }
         }
-        let solution = wishes.solve()?;
+        let solution = equations.solve()?;
         let (elongations, slopes) = solution
             .as_slice()
             .chunks_exact(2)
@@ -129,14 +129,14 @@ fn bending_weights(s: f64, width: f64) -> [f64; 4] {
     [-end, (6.0 * s - 4.0) / width, end, (6.0 * s - 2.0) / width]
 }
 
-/// What the unknowns should fulfil, as well as they can.
-struct Wishes {
+/// A weighted linear least-squares problem.
+struct WeightedEquations {
     unknowns: usize,
     /// The unknown that each begins at, its weights, and its value.
     rows: Vec<(usize, [f64; 4], f64)>,
 }
 
-impl Wishes {
+impl WeightedEquations {
     fn new(unknowns: usize) -> Self {
         Self {
             unknowns,
@@ -144,8 +144,8 @@ impl Wishes {
         }
     }
 
-    /// Wishes that the sum of `weights` times the unknowns from `first` on be `value`; its square counts `importance`
-    /// times.
+    /// Adds one equation: `weights` times the unknowns from `first` on = `value`; its squared error counts
+    /// `importance` times.
     fn add(&mut self, first: usize, weights: [f64; 4], value: f64, importance: f64) {
         let root = importance.sqrt();
         let weights = weights.map(|weight| root * weight);

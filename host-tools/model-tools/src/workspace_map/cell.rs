@@ -1,7 +1,7 @@
 //! What the model says of a pose: all that a map asks of it.
 
 use crate::nonlinear;
-use leg_model::{Error, Query, Rig, RigParameters, Survey, survey};
+use leg_model::{Error, MapEvaluation, Query, Rig, RigParameters, evaluate_for_map};
 use leg_rig::rig_file::RigFile;
 use serde::Serialize;
 
@@ -64,13 +64,13 @@ impl Prepared {
     }
 
     /// All poses of one tilt.
-    pub fn row(&self, tilt_deg: f64) -> Row<'_> {
+    pub fn row(&self, tilt_deg: f64) -> TiltRow<'_> {
         let tilt_rad = tilt_deg.to_radians();
         let query = Query {
             tilt_rad,
             ..self.query
         };
-        Row {
+        TiltRow {
             prepared: self,
             query,
         }
@@ -78,18 +78,18 @@ impl Prepared {
 }
 
 /// The poses of one tilt. It keeps a query of its own, which carries three whole curves: not to be made for each pose.
-pub(super) struct Row<'a> {
+pub(super) struct TiltRow<'a> {
     prepared: &'a Prepared,
     query: Query<f64>,
 }
 
-impl Row<'_> {
+impl TiltRow<'_> {
     pub fn cell(&mut self, azimuth_deg: f64) -> Result<Cell, Error> {
         self.query.azimuth_rad = azimuth_deg.to_radians();
         #[cfg(test)]
-        super::tests::count_survey();
-        let found = survey(&self.prepared.rig, &self.query)?;
-        let mut cell = Cell::of(&found, &self.query);
+        super::tests::count_evaluation();
+        let found = evaluate_for_map(&self.prepared.rig, &self.query)?;
+        let mut cell = Cell::new(&found, &self.query);
         if self.prepared.with_nonlinear && cell.at_pretension.is_ok() {
             let deviation_m = nonlinear::deviation_m(&self.prepared.parameters, &self.query);
             let deviation_m = deviation_m.transpose();
@@ -100,10 +100,10 @@ impl Row<'_> {
 }
 
 impl Cell {
-    fn of(found: &Survey<f64>, query: &Query<f64>) -> Self {
-        let (floor, ceiling) = (query.f_min_n, query.f_max_n);
+    fn new(found: &MapEvaluation<f64>, query: &Query<f64>) -> Self {
+        let (f_min_n, f_max_n) = (query.f_min_n, query.f_max_n);
         let margin = |tensions: [f64; 3]| {
-            let margins = tensions.map(|tension| (tension - floor).min(ceiling - tension));
+            let margins = tensions.map(|tension| (tension - f_min_n).min(f_max_n - tension));
             margins.into_iter().fold(f64::INFINITY, f64::min)
         };
         let [lowest, highest] = found.pretension_range_n;
@@ -115,14 +115,14 @@ impl Cell {
             pretension_max_n: highest,
             pretension_room_n,
             margin_n: found.tensions_n.ok().map(margin),
-            at_pretension: AtPretension::of(found),
+            at_pretension: AtPretension::new(found),
             deviation_nonlinear_mm: None,
         }
     }
 }
 
 impl AtPretension {
-    fn of(found: &Survey<f64>) -> Result<Self, Error> {
+    fn new(found: &MapEvaluation<f64>) -> Result<Self, Error> {
         let [softest, stiffest] = found.bending_stiffness_nm_per_rad?;
         Ok(Self {
             deviation_mm: found.deviation_m? * 1000.0,

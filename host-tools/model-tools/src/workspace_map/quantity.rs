@@ -8,7 +8,7 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[value(rename_all = "snake_case")]
-pub enum Quantity {
+pub enum MapQuantity {
     /// Linear deviation of the tip at the rig's pretension.
     Deviation,
     /// Smallest bending stiffness at the rig's pretension.
@@ -34,7 +34,7 @@ pub enum Quantity {
 /// Below this the deviation is nothing but rounding, and nothing can be compared with it, mm.
 const DEVIATION_ROUNDING_MM: f64 = 1e-9;
 
-impl Quantity {
+impl MapQuantity {
     /// Every quantity.
     pub const ALL: [Self; 9] = [
         Self::Deviation,
@@ -127,7 +127,7 @@ impl Quantity {
     /// Its value in a cell, if it counts there: that of a range where there is one, that of the rig's pretension where it
     /// keeps the bounds. The margin counts everywhere: below zero it says how far the pretension is from keeping them.
     #[must_use]
-    pub fn of(self, cell: &Cell) -> Option<f64> {
+    pub fn counted_value(self, cell: &Cell) -> Option<f64> {
         let counts = match self {
             Self::Margin => true,
             Self::PretensionMin | Self::PretensionMax => cell.feasible,

@@ -4,9 +4,11 @@ mod agreement;
 mod pretension;
 mod work;
 
-pub(super) use work::count_survey;
+pub(super) use work::count_evaluation;
 
-use super::{Grid, Quantity, WorkspaceMap};
+use super::picture::SHADES;
+use super::{Grid, MapQuantity, WorkspaceMap};
+use crate::plot::field::scale::room_px;
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
 
@@ -25,7 +27,7 @@ fn table_1() -> RigFile {
 #[test]
 fn all_cores_and_one_core_give_the_same_map() {
     let rig = table_1();
-    let map = WorkspaceMap::compute(&rig, 1.0, GRID, || ());
+    let map = WorkspaceMap::compute(&rig, 1.0, GRID, false, || ());
     assert_eq!(map, WorkspaceMap::on_one_core(&rig, 1.0, GRID));
     assert_eq!(map.cells.len(), POSES);
     let (azimuth, tilt, _) = map.poses().last().unwrap();
@@ -38,8 +40,11 @@ fn the_map_of_a_symmetric_rig_repeats_every_120_degrees() {
     for cells in map.cells[1..].chunks(72) {
         for (column, cell) in cells.iter().enumerate() {
             let (cell, other) = (cell.unwrap(), cells[(column + 24) % 72].unwrap());
-            for &quantity in Quantity::plain() {
-                let (a, b) = (quantity.of(&cell).unwrap(), quantity.of(&other).unwrap());
+            for &quantity in MapQuantity::plain() {
+                let (a, b) = (
+                    quantity.counted_value(&cell).unwrap(),
+                    quantity.counted_value(&other).unwrap(),
+                );
                 assert!(
                     (a - b).abs() < 1e-9 * a.abs().max(1.0),
                     "{quantity:?}: {a} {b}"
@@ -51,7 +56,7 @@ fn the_map_of_a_symmetric_rig_repeats_every_120_degrees() {
 
 /// The pretensions that serve every pose of the workspace, for 0, 0.5, 1 and 2 kg.
 #[test]
-fn the_levels_that_serve_every_pose_are_known() {
+fn the_pretensions_that_serve_every_pose_are_known() {
     let expected = [
         (0.0, 21.4, 140.3),
         (0.5, 33.3, 138.6),
@@ -94,11 +99,23 @@ fn ready(name: &str) -> RigFile {
 #[test]
 fn extremes_are_at_the_first_pose_that_has_them() {
     let map = WorkspaceMap::on_one_core(&table_1(), 1.0, GRID);
-    let [worst, best] = map.extremes(Quantity::Margin).unwrap();
+    let [worst, best] = map.extremes(MapQuantity::Margin).unwrap();
     assert_eq!((best.azimuth_deg, best.tilt_deg), (0.0, 0.0));
     assert!((best.value - 62.0).abs() < 1e-9);
     assert_eq!((worst.azimuth_deg, worst.tilt_deg), (60.0, 30.0));
-    let [least, most] = map.extremes(Quantity::Deviation).unwrap();
+    let [least, most] = map.extremes(MapQuantity::Deviation).unwrap();
     assert_eq!((least.azimuth_deg, least.tilt_deg), (0.0, 0.0));
     assert_eq!((most.azimuth_deg, most.tilt_deg), (0.0, 30.0));
+}
+
+#[test]
+fn heading_and_legend_of_every_map_fit_beside_it() {
+    let headings = MapQuantity::ALL.map(|quantity| (quantity.words(), false));
+    for (words, in_legend) in headings
+        .into_iter()
+        .chain(SHADES.map(|words| (words, true)))
+    {
+        let room = room_px(words, in_legend);
+        assert!(room > 0, "{words}: {room} px");
+    }
 }

@@ -1,7 +1,7 @@
 //! Whether the flexures of the joint bear the pull of the tendons.
 
 use super::RigFile;
-use crate::toml_problem::{Fault, Problem};
+use crate::toml_error::TomlError;
 use std::ops::Range;
 
 /// The load along a joint of flexures beside the one under which it buckles.
@@ -36,15 +36,22 @@ fn pull_n(tension_n: f64) -> f64 {
 }
 
 /// Refuses a joint that buckles at the pretension, at the place of the pretension.
-pub(super) fn check(file: &RigFile, pretension: Option<Range<usize>>) -> Result<(), Fault> {
-    match file.buckling() {
-        Some(buckling) if buckling.at_pretension >= 1.0 => Err(Fault {
-            span: pretension.unwrap_or(0..0),
-            problem: Problem::Buckles {
-                pull_n: pull_n(file.pretension_n),
-                critical_n: buckling.critical_n,
-            },
-        }),
-        _ => Ok(()),
+pub(super) fn check(file: &RigFile, pretension: Option<Range<usize>>) -> Result<(), TomlError> {
+    let (Some(critical_n), pull_n) = (file.critical_n, pull_n(file.pretension_n)) else {
+        return Ok(());
+    };
+    if pull_n < critical_n {
+        return Ok(());
     }
+    Err(TomlError::new(
+        pretension.unwrap_or(0..0),
+        format!(
+            "`pretension_n` is too high for the flexures: three tendons at it pull with {pull_n:.0} N, and the joint \
+             buckles at {critical_n:.0} N"
+        ),
+        format!(
+            "make the flexures thicker or shorter, or give less than {:.1}",
+            (critical_n / 0.3).floor() / 10.0
+        ),
+    ))
 }

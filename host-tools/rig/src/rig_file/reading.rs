@@ -1,12 +1,12 @@
 //! From the text of a rig file to its values, every one checked.
 
-use super::actuator::{self, ACTUATOR};
-use super::calibration::{self, CALIBRATION};
-use super::simulation::{self, SIMULATION};
 use super::{RigFile, buckling, consistency, support, tendon};
-use crate::control_section::{self, CONTROL};
-use crate::gains::Gains;
-use crate::toml_problem::{Fault, Problem};
+use crate::actuator::{ACTUATOR, Actuator};
+use crate::calibration::{CALIBRATION, Calibration};
+use crate::gains::{self, CONTROL};
+use crate::plant_settings::{PlantSettings, SIMULATION};
+use crate::renamed_keys;
+use crate::toml_error::TomlError;
 use crate::toml_section::Section;
 use leg_model::{Elasticity, Error, Quantity, Reason, RigParameters};
 use toml::de::DeTable;
@@ -24,81 +24,72 @@ const SECTIONS: [&str; 9] = [
     SIMULATION,
 ];
 
-/// Reads the file and lets the model check it.
-pub(super) fn parse(text: &str) -> Result<RigFile, Fault> {
-    let syntax = |error: toml::de::Error| Fault {
-        span: error.span().unwrap_or(0..0),
-        problem: Problem::Syntax(error.message().into()),
-    };
-    let table = DeTable::parse(text).map_err(syntax)?;
-    let root = Section::new(table.get_ref(), 0..0, &SECTIONS)?;
+const GEOMETRY: [&str; 5] = [
+    "upper_mm",
+    "joint_mm",
+    "leg_mm",
+    "base_anchors_mm",
+    "leg_anchors_mm",
+];
+
+const MASS: [&str; 3] = ["leg_kg", "centroid_mm", "gravity_m_per_s2"];
+
+/// Reads the file and lets the model check it; with notes on what it should say otherwise.
+pub(super) fn parse(text: &str) -> Result<(RigFile, Vec<String>), TomlError> {
+    let mut table = DeTable::parse(text)?.into_inner();
+    let notes = renamed_keys::replace(&mut table)?;
+    let root = Section::new(&table, 0..0, &SECTIONS)?;
     let file = read(&root)?;
     if let Err((quantity, reason)) = check(&file)
         && let Some((section, key)) = key_of(quantity)
     {
-        let span = root.span_of(section, key).unwrap_or(0..0);
-        return Err(Fault {
-            span,
-            problem: Problem::Refused { key, reason },
-        });
+        let span = root.place(&[section, key]).unwrap_or(0..0);
+        return Err(TomlError::refused(span, key, reason));
     }
-    buckling::check(&file, root.span_of("tendon", "pretension_n"))?;
+    buckling::check(&file, root.place(&["tendon", "pretension_n"]))?;
     consistency::check(&file, &root)?;
-    Ok(file)
+    Ok((file, notes))
 }
 
-fn read(root: &Section<'_>) -> Result<RigFile, Fault> {
-    let lengths = [
-        "upper_mm",
-        "joint_mm",
-        "leg_mm",
-        "base_anchors_mm",
-        "leg_anchors_mm",
-    ];
-    let geometry = root.section("geometry", &lengths)?;
-    let mass = root.section("mass", &["leg_kg", "centroid_mm", "gravity_m_per_s2"])?;
-    let forces = root.section("tendon", &tendon::KEYS)?;
-    let workspace = root.section("workspace", &["tilt_deg"])?;
-    let tilt_deg = workspace.number("tilt_deg")?;
-    let support::Read {
-        name: support_name,
-        support,
-        critical_n,
-    } = support::read(root, tilt_deg)?;
-    let actuator = actuator::read(root)?;
+fn read(root: &Section<'_>) -> Result<RigFile, TomlError> {
+    let parameters = read_parameters(root)?;
+    let tendon = root.section("tendon", &tendon::KEYS)?;
+    let tilt_deg = root
+        .section("workspace", &["tilt_deg"])?
+        .number("tilt_deg")?;
+    let (support_name, support, critical_n) = support::read(root, tilt_deg)?;
+    let actuator = Actuator::read(root)?;
     Ok(RigFile {
-        parameters: RigParameters {
-            base_anchors_m: geometry
-                .points("base_anchors_mm")?
-                .map(|point| point.map(metres)),
-            leg_anchors_m: geometry
-                .points("leg_anchors_mm")?
-                .map(|point| point.map(metres)),
-            upper_length_m: metres(geometry.number("upper_mm")?),
-            joint_length_m: metres(geometry.number("joint_mm")?),
-            leg_length_m: metres(geometry.number("leg_mm")?),
-            leg_mass_kg: mass.number("leg_kg")?,
-            leg_centroid_m: metres(mass.number("centroid_mm")?),
-            gravity_m_per_s2: mass.number("gravity_m_per_s2")?,
-        },
-        tendons: tendon::read(&forces)?,
-        stiffness_at: tendon::read_stiffness_at(&forces)?,
-        f_min_n: forces.number("f_min_n")?,
-        f_max_n: forces.number("f_max_n")?,
-        pretension_n: forces.number("pretension_n")?,
+        parameters,
+        tendons: tendon::read(&tendon)?,
+        stiffness_at: tendon::read_stiffness_at(&tendon)?,
+        f_min_n: tendon.number("f_min_n")?,
+        f_max_n: tendon.number("f_max_n")?,
+        pretension_n: tendon.number("pretension_n")?,
         tilt_deg,
         support_name,
         support,
         critical_n,
-        gains: Gains::defaults(&actuator).with(&control_section::read(root)?),
+        gains: gains::changed(gains::defaults(&actuator), &gains::read(root)?),
+        calibration: Calibration::read(root, &actuator)?,
         actuator,
-        calibration: calibration::read(root)?,
-        plant: simulation::read(root)?,
+        plant: PlantSettings::read(root)?,
     })
 }
 
-pub(super) fn metres(length_mm: f64) -> f64 {
-    length_mm / 1000.0
+fn read_parameters(root: &Section<'_>) -> Result<RigParameters<f64, 3>, TomlError> {
+    let geometry = root.section("geometry", &GEOMETRY)?;
+    let mass = root.section("mass", &MASS)?;
+    Ok(RigParameters {
+        base_anchors_m: geometry.points_m("base_anchors_mm")?,
+        leg_anchors_m: geometry.points_m("leg_anchors_mm")?,
+        upper_length_m: geometry.metres("upper_mm")?,
+        joint_length_m: geometry.metres("joint_mm")?,
+        leg_length_m: geometry.metres("leg_mm")?,
+        leg_mass_kg: mass.number("leg_kg")?,
+        leg_centroid_m: mass.metres("centroid_mm")?,
+        gravity_m_per_s2: mass.number("gravity_m_per_s2")?,
+    })
 }
 
 /// What the model refuses in the file. What it cannot solve at some pose is left to the commands.

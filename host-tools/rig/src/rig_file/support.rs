@@ -1,10 +1,11 @@
 //! The section `[support]`: how the joint guides the leg, and how it resists.
 
-use super::flexures::{self, MATERIAL};
-use super::reading::metres;
+mod flexures;
+
 use crate::support_name::SupportName;
-use crate::toml_problem::{Fault, Problem};
+use crate::toml_error::TomlError;
 use crate::toml_section::Section;
+use flexures::MATERIAL;
 use leg_model::{Error, JointStiffness, Quantity, Support};
 
 /// The keys of a measured joint.
@@ -12,44 +13,37 @@ const MEASURED: [&str; 3] = ["bending_nm_per_rad", "torsion_nm_per_rad", "axial_
 
 const SHAFT: [&str; 3] = ["length_mm", "section_mm2", "youngs_modulus_gpa"];
 
-/// What the section gives.
-pub(super) struct Read {
-    pub name: SupportName,
-    pub support: Support<f64>,
-    /// The load along the leg under which its flexures buckle, N.
-    pub critical_n: Option<f64>,
-}
-
-/// Reads the section; `tilt_deg` is how far the joint bends.
-pub(super) fn read(root: &Section<'_>, tilt_deg: f64) -> Result<Read, Fault> {
+/// Reads the section: the support's name, the support, and the load along the leg under which its flexures buckle, N;
+/// `tilt_deg` is how far the joint bends.
+pub(super) fn read(
+    root: &Section<'_>,
+    tilt_deg: f64,
+) -> Result<(SupportName, Support<f64>, Option<f64>), TomlError> {
     let first_look = root.any_section("support")?;
     let name = read_name(&first_look)?;
     let measured = first_look.has(MEASURED[0]);
     let section = root.section("support", &keys(name, measured))?;
+    let refused = |error| refusal(&section, error);
     let (joint, critical_n) = match (name.elastic(), measured) {
         (false, _) => (rigid(&section)?, None),
         (true, true) => (measured_joint(&section)?, None),
-        (true, false) => flexures::read(&section, name, tilt_deg.to_radians())?,
+        (true, false) => {
+            let (joint, critical_n) = flexures::read(&section, name, tilt_deg.to_radians())?;
+            (joint.map_err(refused)?, Some(critical_n))
+        }
     };
     let joint = JointStiffness {
         axial_compliance_m_per_n: joint.axial_compliance_m_per_n + shaft(&section)?,
         ..joint
     };
-    let support = Support::new(name.kind(), joint).map_err(|error| fault(&section, error))?;
-    Ok(Read {
-        name,
-        support,
-        critical_n,
-    })
+    let support = Support::new(name.kind(), joint).map_err(refused)?;
+    Ok((name, support, critical_n))
 }
 
-fn read_name(section: &Section<'_>) -> Result<SupportName, Fault> {
+fn read_name(section: &Section<'_>) -> Result<SupportName, TomlError> {
     let word = section.word("kind")?;
-    let unknown = |error| Fault {
-        span: word.span(),
-        problem: Problem::Support(error),
-    };
-    SupportName::parse(word.get_ref()).map_err(unknown)
+    SupportName::parse(word.get_ref())
+        .map_err(|error| TomlError::new(word.span(), error.to_string(), error.fix()))
 }
 
 /// The keys of the section for a support.
@@ -75,7 +69,7 @@ fn keys(name: SupportName, measured: bool) -> Vec<&'static str> {
 }
 
 /// A rigid joint gives way along the leg at most.
-fn rigid(section: &Section<'_>) -> Result<JointStiffness<f64>, Fault> {
+fn rigid(section: &Section<'_>) -> Result<JointStiffness<f64>, TomlError> {
     Ok(JointStiffness {
         axial_compliance_m_per_n: if section.has(MEASURED[2]) {
             section.positive(MEASURED[2])?.recip()
@@ -86,7 +80,7 @@ fn rigid(section: &Section<'_>) -> Result<JointStiffness<f64>, Fault> {
     })
 }
 
-fn measured_joint(section: &Section<'_>) -> Result<JointStiffness<f64>, Fault> {
+fn measured_joint(section: &Section<'_>) -> Result<JointStiffness<f64>, TomlError> {
     Ok(JointStiffness {
         bending_nm_per_rad: section.positive(MEASURED[0])?,
         torsion_nm_per_rad: section.positive(MEASURED[1])?,
@@ -95,24 +89,23 @@ fn measured_joint(section: &Section<'_>) -> Result<JointStiffness<f64>, Fault> {
 }
 
 /// L/EA of the shaft between joint and leg, m/N; nothing where the file gives none.
-fn shaft(section: &Section<'_>) -> Result<f64, Fault> {
+fn shaft(section: &Section<'_>) -> Result<f64, TomlError> {
     if !section.has("shaft") {
         return Ok(0.0);
     }
     let shaft = section.section("shaft", &SHAFT)?;
     let [length_mm, section_mm2, modulus_gpa] = SHAFT.map(|key| shaft.positive(key));
-    Ok(metres(length_mm?) / (section_mm2? * 1e-6 * modulus_gpa? * 1e9))
+    Ok(length_mm? / 1000.0 / (section_mm2? * 1e-6 * modulus_gpa? * 1e9))
 }
 
 /// What the model refuses, at the key that gives it.
-pub(super) fn fault(section: &Section<'_>, error: Error) -> Fault {
+fn refusal(section: &Section<'_>, error: Error) -> TomlError {
     let Error::Refused { quantity, reason } = error else {
-        return Fault {
-            span: section.span(),
-            problem: Problem::NoResult(error),
-        };
+        let sentence = format!("the model has no result for this: {error}");
+        let fix = "compare with the ready rigs, `leg rig list`";
+        return TomlError::new(section.span(), sentence, fix);
     };
-    let candidates: &[&'static str] = match quantity {
+    let candidates: &[&str] = match quantity {
         Quantity::FlexureLength => &["length_mm"],
         Quantity::FlexureWidth => &["width_mm"],
         Quantity::FlexureThickness => &["thickness_mm", "diameter_mm"],
@@ -125,14 +118,9 @@ pub(super) fn fault(section: &Section<'_>, error: Error) -> Fault {
         Quantity::JointTorsion => &["torsion_nm_per_rad"],
         _ => &["axial_n_per_m"],
     };
-    let key = candidates.iter().copied().find(|key| section.has(key));
-    Fault {
-        span: key
-            .and_then(|key| section.span_of_key(key))
-            .unwrap_or(section.span()),
-        problem: Problem::Refused {
-            key: key.unwrap_or("kind"),
-            reason,
-        },
-    }
+    let given = candidates
+        .iter()
+        .find_map(|key| Some((*key, section.place(&[*key])?)));
+    let (key, span) = given.unwrap_or(("kind", section.span()));
+    TomlError::refused(span, key, reason)
 }

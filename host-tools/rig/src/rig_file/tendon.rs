@@ -1,10 +1,9 @@
 //! The section `[tendon]`: how the tendons stretch.
 
-use crate::toml_problem::{Fault, Problem};
+use crate::toml_error::TomlError;
 use crate::toml_section::Section;
 use leg_model::{CURVE_POINTS_MAX, CurvePoint, Error, Reason, StiffnessAt, Tendon};
 use std::ops::Range;
-use toml::Spanned;
 
 /// The keys of the section.
 pub(super) const KEYS: [&str; 10] = [
@@ -29,15 +28,14 @@ const SIZES: [&str; 4] = [
 ];
 
 /// The three tendons: of one constant stiffness, with one curve, or with a curve each.
-pub(super) fn read(section: &Section<'_>) -> Result<[Tendon<f64>; 3], Fault> {
+pub(super) fn read(section: &Section<'_>) -> Result<[Tendon<f64>; 3], TomlError> {
     let curve_key = ["curve", "curve_1"]
         .into_iter()
         .find(|key| section.has(key));
     match curve_key {
-        Some(key) if section.has("stiffness_n_per_m") => Err(Fault {
-            span: section.span(),
-            problem: Problem::Both("stiffness_n_per_m", key),
-        }),
+        Some(key) if section.has("stiffness_n_per_m") => {
+            Err(both(section.span(), "stiffness_n_per_m", key))
+        }
         Some("curve_1") => Ok([
             curve(section, "curve_1")?,
             curve(section, "curve_2")?,
@@ -49,110 +47,87 @@ pub(super) fn read(section: &Section<'_>) -> Result<[Tendon<f64>; 3], Fault> {
 }
 
 /// `stiffness_at`: at which tension a curve's stiffness is read. A constant one is the same at all.
-pub(super) fn read_stiffness_at(section: &Section<'_>) -> Result<StiffnessAt, Fault> {
+pub(super) fn read_stiffness_at(section: &Section<'_>) -> Result<StiffnessAt, TomlError> {
+    let key = "stiffness_at";
     if section.has("stiffness_n_per_m") {
-        return match section.span_of_key("stiffness_at") {
+        return match section.place(&[key]) {
             None => Ok(StiffnessAt::Pretension),
-            Some(span) => Err(Fault {
-                span,
-                problem: Problem::Both("stiffness_n_per_m", "stiffness_at"),
-            }),
+            Some(span) => Err(both(span, "stiffness_n_per_m", key)),
         };
     }
-    let word = section.word("stiffness_at")?;
+    let word = section.word(key)?;
     match *word.get_ref() {
         "pretension" => Ok(StiffnessAt::Pretension),
         "tension" => Ok(StiffnessAt::Tension),
-        _ => Err(Fault {
-            span: word.span(),
-            problem: Problem::Choice {
-                key: "stiffness_at",
-                found: (*word.get_ref()).into(),
-                choices: "\"pretension\" or \"tension\"",
-            },
-        }),
+        other => {
+            let sentence = format!("`{key}` cannot be `{other}`");
+            let fix = "write \"pretension\" or \"tension\"";
+            Err(TomlError::new(word.span(), sentence, fix))
+        }
     }
 }
 
-fn constant(section: &Section<'_>) -> Result<Tendon<f64>, Fault> {
-    let stiffness = section.spanned_number("stiffness_n_per_m")?;
-    let refused = |error| Fault {
-        span: stiffness.span(),
-        problem: Problem::Refused {
-            key: "stiffness_n_per_m",
-            reason: reason(error),
-        },
-    };
-    Tendon::constant(*stiffness.get_ref()).map_err(refused)
+fn both(span: Range<usize>, first: &str, second: &str) -> TomlError {
+    let sentence = format!("`{first}` and `{second}` cannot both be given");
+    TomlError::new(
+        span,
+        sentence,
+        format!("give either `{first}` or `{second}`"),
+    )
 }
 
-fn curve(section: &Section<'_>, key: &'static str) -> Result<Tendon<f64>, Fault> {
+fn constant(section: &Section<'_>) -> Result<Tendon<f64>, TomlError> {
+    let key = "stiffness_n_per_m";
+    let stiffness = section.number(key)?;
+    let span = || section.place(&[key]).unwrap_or(section.span());
+    Tendon::constant(stiffness).map_err(|error| TomlError::refused(span(), key, reason(error)))
+}
+
+fn curve(section: &Section<'_>, key: &str) -> Result<Tendon<f64>, TomlError> {
     let table = section.section(key, &COLUMNS)?;
     let [tensions, elongations, stiffnesses] = COLUMNS.map(|column| table.numbers(column));
     let (tensions, elongations, stiffnesses) = (tensions?, elongations?, stiffnesses?);
+    let wanted = tensions.get_ref().len();
     for (column, other) in [(COLUMNS[1], &elongations), (COLUMNS[2], &stiffnesses)] {
-        same_count(&tensions, column, other)?;
+        let found = other.get_ref().len();
+        if found != wanted {
+            let sentence = format!(
+                "`{column}` has {found} entries, `{}` has {wanted}",
+                COLUMNS[0]
+            );
+            let fix = "give one entry for each point of the curve in each array";
+            return Err(TomlError::new(other.span(), sentence, fix));
+        }
     }
-    let rows = tensions
-        .get_ref()
-        .iter()
-        .zip(elongations.get_ref())
-        .zip(stiffnesses.get_ref());
-    let points: Vec<(Range<usize>, CurvePoint<f64>)> = rows
-        .map(|((tension, elongation), stiffness)| {
-            let point = CurvePoint {
-                tension_n: *tension.get_ref(),
-                elongation_m: elongation.get_ref() / 1000.0,
-                stiffness_n_per_m: *stiffness.get_ref(),
-            };
-            (tension.span(), point)
+    let rows = tensions.get_ref().iter().zip(elongations.get_ref());
+    let rows = rows.zip(stiffnesses.get_ref());
+    let points: Vec<CurvePoint<f64>> = rows
+        .map(|((tension, elongation), stiffness)| CurvePoint {
+            tension_n: *tension.get_ref(),
+            elongation_m: elongation.get_ref() / 1000.0,
+            stiffness_n_per_m: *stiffness.get_ref(),
         })
         .collect();
-    check(&points)?;
-    let scaled = scaled(section, &points)?;
-    Tendon::curve(&scaled).map_err(|error| Fault {
-        span: tensions.span(),
-        problem: Problem::Refused {
-            key,
-            reason: reason(error),
-        },
-    })
+    check(&points, |index| tensions.get_ref()[index].span())?;
+    let refused = |error| TomlError::refused(tensions.span(), key, reason(error));
+    Tendon::curve(&scaled(section, points)?).map_err(refused)
 }
 
-fn same_count(
-    tensions: &Spanned<Vec<Spanned<f64>>>,
-    key: &'static str,
-    other: &Spanned<Vec<Spanned<f64>>>,
-) -> Result<(), Fault> {
-    let (wanted, found) = (tensions.get_ref().len(), other.get_ref().len());
-    if wanted == found {
-        return Ok(());
-    }
-    Err(Fault {
-        span: other.span(),
-        problem: Problem::Count {
-            key,
-            found,
-            other: COLUMNS[0],
-            wanted,
-        },
-    })
-}
-
-/// The first point that the model refuses, with its place.
-fn check(points: &[(Range<usize>, CurvePoint<f64>)]) -> Result<(), Fault> {
+/// Refuses the first point that the model refuses, at its place.
+fn check(
+    points: &[CurvePoint<f64>],
+    place: impl Fn(usize) -> Range<usize>,
+) -> Result<(), TomlError> {
     let mut before = None;
-    for (index, (span, point)) in points.iter().enumerate().take(CURVE_POINTS_MAX) {
+    for (index, point) in points.iter().enumerate().take(CURVE_POINTS_MAX) {
         let checked = match before {
             None => point.check_first(),
             Some(before) => point.check_after(before),
         };
-        checked.map_err(|error| Fault {
-            span: span.clone(),
-            problem: Problem::Curve {
-                point: index + 1,
-                reason: reason(error),
-            },
+        checked.map_err(|error| {
+            let sentence = format!("point {} of the curve {}", index + 1, reason(error));
+            let fix = "correct the point; `leg curve` makes a curve from a tensile test";
+            TomlError::new(place(index), sentence, fix)
         })?;
         before = Some(point);
     }
@@ -162,18 +137,18 @@ fn check(points: &[(Range<usize>, CurvePoint<f64>)]) -> Result<(), Fault> {
 /// The points, scaled from the test piece to the tendon where the file gives their sizes.
 fn scaled(
     section: &Section<'_>,
-    points: &[(Range<usize>, CurvePoint<f64>)],
-) -> Result<Vec<CurvePoint<f64>>, Fault> {
-    let points = points.iter().map(|(_, point)| *point);
+    mut points: Vec<CurvePoint<f64>>,
+) -> Result<Vec<CurvePoint<f64>>, TomlError> {
     if !section.has("test_piece") {
-        return Ok(points.collect());
+        return Ok(points);
     }
     let sizes = section.section("test_piece", &SIZES)?;
     let [length, diameter, tendon_length, tendon_diameter] = SIZES.map(|key| sizes.positive(key));
     let (length, diameter) = (tendon_length? / length?, tendon_diameter? / diameter?);
-    Ok(points
-        .map(|point| point.scaled(length, diameter * diameter))
-        .collect())
+    for point in &mut points {
+        *point = point.scaled(length, diameter * diameter);
+    }
+    Ok(points)
 }
 
 fn reason(error: Error) -> Reason {

@@ -1,4 +1,4 @@
-//! Why a link gave no reply, in words.
+//! Why a link gave no reply.
 
 use leg_firmware::frame::FrameError;
 use std::time::Duration;
@@ -38,7 +38,7 @@ pub enum LinkError {
         source: std::io::Error,
     },
     /// QEMU or the firmware in it ended.
-    #[error("{reason}; start again, and with -v to see all of its log{}", last_words(.log))]
+    #[error("{reason}; start again, and with -v to see all of its log{}", log_lines(.log))]
     Died {
         /// How it ended, as a sentence.
         reason: String,
@@ -48,7 +48,7 @@ pub enum LinkError {
     /// Nothing came in time.
     #[error(
         "the firmware did not {action} within {} s; is the machine overloaded?{}",
-        .timeout.as_secs_f64(), last_words(.log)
+        .timeout.as_secs_f64(), log_lines(.log)
     )]
     TimedOut {
         /// What was waited for.
@@ -61,7 +61,7 @@ pub enum LinkError {
     /// Host and firmware were built from different sources.
     #[error(
         "the firmware speaks another protocol (schema {}, this program {}); build and start both from the same sources",
-        leg_base::words::hex(.firmware), leg_base::words::hex(.host)
+        leg_base::description::hex(.firmware), leg_base::description::hex(.host)
     )]
     SchemaMismatch {
         /// Schema of this program.
@@ -97,7 +97,7 @@ impl LinkError {
     }
 }
 
-fn last_words(log: &[String]) -> String {
+fn log_lines(log: &[String]) -> String {
     if log.is_empty() {
         return String::new();
     }

@@ -1,10 +1,11 @@
 //! One tick of the simulated leg.
 
-use super::encoder::EncoderFault;
-use super::faults::Fault;
+use super::Plant;
+use super::defect::Defect;
+use super::encoder::EncoderDefect;
+use super::energy::Work;
 use super::motor::Wiring;
 use super::scene::Scene;
-use super::{Plant, Work};
 use leg_base::tick_time::tick_s;
 use leg_firmware::drive::Drive;
 use leg_model::Load;
@@ -21,22 +22,22 @@ impl Plant {
         self.wire(drive);
         self.change_payload();
         self.turn_by_hand();
-        self.mechanism.push_n = self.push.next_n(tick_s());
+        self.mechanism.push_n = self.push.force_n(self.time_s());
         for _ in 0..self.substeps {
             self.substep();
         }
         self.count();
-        self.cells.drift(tick_s(), self.faults);
-        let heating = self.faults.has(Fault::Overheating);
+        self.cells.drift(tick_s(), &self.defects);
+        let heating = self.defects.has(Defect::Overheating);
         self.temperature.advance(tick_s(), heating);
         self.tensions_n = self.pulls_n();
         self.ticks += 1;
     }
 
-    /// What the drive and the faults make of motors and supply.
+    /// What the drive and the defects make of motors and supply.
     fn wire(&mut self, drive: &Drive<f32>) {
-        let jammed = self.faults.of_three(Fault::MotorJammed);
-        let failed = self.faults.of_three(Fault::DriverFault);
+        let jammed = self.defects.of_three(Defect::MotorJammed);
+        let failed = self.defects.of_three(Defect::DriverFault);
         for (i, motor) in self.motors.iter_mut().enumerate() {
             let open = failed[i] || !drive.enabled || drive.duty[i].is_nan();
             motor.wiring = Wiring {
@@ -49,9 +50,9 @@ impl Plant {
                 jammed: jammed[i],
             };
         }
-        self.supply.open_v = if self.faults.has(Fault::SupplySag) {
+        self.supply.open_v = if self.defects.has(Defect::SupplySag) {
             SAGGED_V
-        } else if self.faults.has(Fault::SupplySurge) {
+        } else if self.defects.has(Defect::SupplySurge) {
             SURGED_V
         } else {
             self.actuator.supply_v
@@ -110,13 +111,13 @@ impl Plant {
 
     fn count(&mut self) {
         let [lost, slipping, reversed] = [
-            Fault::EncoderLost,
-            Fault::EncoderSlipping,
-            Fault::EncoderReversed,
+            Defect::EncoderLost,
+            Defect::EncoderSlipping,
+            Defect::EncoderReversed,
         ]
-        .map(|kind| self.faults.of_three(kind));
+        .map(|kind| self.defects.of_three(kind));
         for (i, encoder) in self.encoders.iter_mut().enumerate() {
-            let fault = EncoderFault {
+            let defect = EncoderDefect {
                 lost: lost[i],
                 slipping: slipping[i],
                 reversed: reversed[i],
@@ -124,7 +125,7 @@ impl Plant {
             encoder.follow(
                 self.motors[i].angle_rad,
                 self.actuator.counts_per_turn,
-                fault,
+                defect,
             );
         }
     }

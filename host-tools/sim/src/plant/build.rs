@@ -1,17 +1,19 @@
 //! The simulated leg at its start.
 
 use super::body::Body;
+use super::defect::Defects;
 use super::encoder::Encoder;
-use super::faults::Faults;
+use super::energy::Work;
 use super::hand::Hand;
 use super::mechanism::Mechanism;
 use super::motor::{Motor, MotorType};
-use super::outside::{Payload, Push};
+use super::payload::Payload;
+use super::push::Push;
 use super::sensing::Cells;
 use super::supply::Supply;
 use super::temperature::Temperature;
 use super::tendon_pull::RealTendon;
-use super::{Plant, Start, Work};
+use super::{Plant, Start};
 use leg_base::tick_time::tick_s;
 use leg_model::{Error, Load, Quantity, Reason, Rig};
 use leg_rig::plant_settings::PlantSettings;
@@ -32,16 +34,16 @@ impl Plant {
     ) -> Result<Self, Error> {
         let bare = bare_body(rig, settings)?;
         let mut mechanism = mechanism(rig, settings, bare)?;
-        let begun = start.begin(rig, &mechanism.rig, &mechanism.tendons)?;
-        mechanism.load = Load::new(&mechanism.rig, begun.payload_kg)?;
-        mechanism.body = bare.loaded(begun.payload_kg, mechanism.rig.tip_m());
+        let started = start.started(rig, &mechanism.rig, &mechanism.tendons)?;
+        mechanism.load = Load::new(&mechanism.rig, started.payload_kg)?;
+        mechanism.body = bare.loaded(started.payload_kg, mechanism.rig.tip_m());
         let actuator = &rig.actuator;
         let substeps = settings.substeps.max(1);
         let mut plant = Self {
             actuator: *actuator,
             mechanism,
             bare,
-            leg: begun.leg,
+            leg: started.leg,
             motor_type: MotorType::new(actuator, 0.5 * tick_s() / f64::from(substeps)),
             motors: [Motor::new(actuator); 3],
             supply: Supply {
@@ -51,12 +53,12 @@ impl Plant {
             temperature: Temperature::new(settings.ambient_c),
             encoders: rig.calibration.counts_sign.map(Encoder::new),
             cells: Cells::new(actuator, settings, seed),
-            faults: Faults::default(),
+            defects: Defects::default(),
             emergency_stop: false,
-            payload: Payload::new(begun.payload_kg),
+            payload: Payload::new(started.payload_kg),
             push: Push::default(),
             hand: Hand::default(),
-            unstretched_at_zero_m: begun.unstretched_m,
+            unstretched_at_zero_m: started.unstretched_m,
             tensions_n: [0.0; 3],
             work: Work::default(),
             ticks: 0,

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 /// What is wrong with an encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct EncoderFault {
+pub(super) struct EncoderDefect {
     pub lost: bool,
     pub slipping: bool,
     pub reversed: bool,
@@ -33,18 +33,18 @@ impl Encoder {
     }
 
     /// Follows the rotor, whose angle since the start is `angle_rad`.
-    pub fn follow(&mut self, angle_rad: f64, counts_per_turn: f64, fault: EncoderFault) {
+    pub fn follow(&mut self, angle_rad: f64, counts_per_turn: f64, defect: EncoderDefect) {
         // Far below 2⁵³ counts.
         let now = (angle_rad * (counts_per_turn / TAU)).floor() as i64;
         let mut seen = now - self.passed;
         self.passed = now;
-        if fault.slipping {
+        if defect.slipping {
             seen -= self.slipped(seen);
         }
-        if fault.reversed != self.downwards {
+        if defect.reversed != self.downwards {
             seen = -seen;
         }
-        if !fault.lost {
+        if !defect.lost {
             // The counter wraps: only the lowest bits of the sum matter.
             self.counter = self.counter.wrapping_add(seen as u16);
         }

@@ -45,8 +45,8 @@ impl Plant {
     /// A tick of turning.
     pub(super) fn turn_by_hand(&mut self) {
         for (motor, left) in self.motors.iter_mut().zip(&mut self.hand.left_rad) {
-            let most = TURNING_RAD_PER_S * tick_s();
-            let turned = left.clamp(-most, most);
+            let step_rad = TURNING_RAD_PER_S * tick_s();
+            let turned = left.clamp(-step_rad, step_rad);
             *left -= turned;
             motor.turn(turned);
         }

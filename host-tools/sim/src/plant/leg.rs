@@ -37,7 +37,7 @@ impl Leg {
         if !support.twists() {
             return straight.twisted(&twist);
         }
-        straight.twisted(&twist.and(&Twist::from_torsion(self.torsion_rad)))
+        straight.twisted(&twist.then(&Twist::from_torsion(self.torsion_rad)))
     }
 
     /// Turns on for `span_s` by the midpoint rule. What a blow on the stop takes of the kinetic energy comes back, J.
@@ -45,12 +45,12 @@ impl Leg {
         let start = self.direction.vector();
         let half =
             start + self.guided_rate(support, &self.direction).cross(&start) * (0.5 * span_s);
-        let (halfway, _) = within_stop(&half);
+        let (halfway, _) = limited_by_stop(&half);
         let rate = self.guided_rate(support, &halfway);
         if support.twists() {
             self.torsion_rad += support.torsion_change(&halfway).dot(&rate) * span_s;
         }
-        let (end, stopped) = within_stop(&(start + rate.cross(&halfway.vector()) * span_s));
+        let (end, stopped) = limited_by_stop(&(start + rate.cross(&halfway.vector()) * span_s));
         self.direction = end;
         self.rate = self.guided_rate(support, &end);
         if stopped {
@@ -78,7 +78,7 @@ impl Leg {
 }
 
 /// The direction of a vector of about unit length, and whether the stop holds it there.
-fn within_stop(along: &Vector3<f64>) -> (Direction<f64>, bool) {
+fn limited_by_stop(along: &Vector3<f64>) -> (Direction<f64>, bool) {
     let [cosine, sine] = STOP;
     match Direction::from_xy(along.x, along.y) {
         Ok(direction) if direction.vector().z <= -cosine => (direction, false),

@@ -28,7 +28,7 @@ impl MotorType {
     }
 }
 
-/// What the drivers and faults do to a motor.
+/// What the drivers and defects do to a motor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Wiring {
     /// Part of the supply at the motor, −1 to 1.

@@ -1,9 +1,9 @@
 //! The moments on the leg at one posture, and its change of rotation under them.
 
 use super::body::Guided;
+use super::energy::Work;
 use super::leg::Leg;
 use super::mechanism::Mechanism;
-use super::work::Work;
 use nalgebra::{Matrix3, Vector3};
 
 /// The mechanism at one posture and with one length of each tendon.
@@ -99,7 +99,7 @@ impl Mechanism {
 }
 
 impl Scene {
-    /// How fast the leg lengthens the way of a tendon, m/s.
+    /// How fast the leg lengthens the path of a tendon, m/s.
     fn lengthening_m_per_s(&self, tendon: usize, rate: &Vector3<f64>) -> f64 {
         -self.moment_map.column(tendon).dot(rate)
     }

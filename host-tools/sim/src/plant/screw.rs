@@ -7,19 +7,19 @@ use leg_rig::actuator::Actuator;
 pub(super) struct Screw {
     /// How far the tendon is pulled in since the start, m.
     pub slider_m: f64,
-    /// How far the rotor is behind the place where it pulls in, as a way of the slider, m: zero when it touches to pull
-    /// in, minus the play when it touches to let out.
+    /// How far the rotor is behind the place where it pulls in, as travel of the slider, m: zero when it touches to
+    /// reel in, minus the play when it touches to pay out.
     behind_m: f64,
-    /// The play as a way of the slider, m.
+    /// The play as travel of the slider, m.
     play_m: f64,
-    /// Way of the slider in one radian of the rotor, m.
+    /// Travel of the slider in one radian of the rotor, m.
     m_per_rad: f64,
-    /// Torque at the rotor in one newton of pull, N·m/N: while it pulls in, and while it lets out.
+    /// Torque at the rotor in one newton of pull, N·m/N: while it reels in, and while it pays out.
     torque_nm_per_n: [f64; 2],
 }
 
 impl Screw {
-    /// At the start of its way, with the play taken up as if it had pulled in last.
+    /// At the start of its travel, touching as if it had reeled in last.
     pub fn new(actuator: &Actuator) -> Self {
         Self {
             slider_m: 0.0,
@@ -67,10 +67,10 @@ impl Screw {
     }
 }
 
-/// Torque at the rotor in one newton of pull, N·m/N, pulling in and letting out.
+/// Torque at the rotor in one newton of pull, N·m/N, reeling in and paying out.
 ///
 /// A screw of lead angle λ and friction angle ρ is raised by the torque F r tan(λ + ρ) and lowered by F r tan(ρ − λ).
-/// Without friction it would take F r tan λ, which is F times the way in a radian, so its efficiency is η ≈ λ/(λ + ρ)
+/// Without friction it would take F r tan λ, which is F times the travel in a radian, so its efficiency is η ≈ λ/(λ + ρ)
 /// (both angles are small). Hence ρ ≈ λ(1/η − 1): raising takes 1/η of the frictionless torque, and lowering
 /// 1/η − 2 of it, positive for η < ½. So a pull always resists, and never drives, a rotor that moves its screw. The gear
 /// needs its own part on top both ways, because both ways it is the rotor that drives.

@@ -1,6 +1,6 @@
 //! What the board reads: codes with the sensors' errors.
 
-use super::faults::{Fault, Faults};
+use super::defect::{Defect, Defects};
 use fastrand::Rng;
 use leg_firmware::sensors::CODE_MAX;
 use leg_rig::actuator::Actuator;
@@ -49,24 +49,24 @@ impl Cells {
     }
 
     /// Lets the offsets drift for `span_s`.
-    pub fn drift(&mut self, span_s: f64, faults: Faults) {
-        let drifting = faults.of_three(Fault::CellDrifting);
+    pub fn drift(&mut self, span_s: f64, defects: &Defects) {
+        let drifting = defects.of_three(Defect::CellDrifting);
         for (offset, drifting) in self.offsets_n.iter_mut().zip(drifting) {
-            let fault = if drifting { DRIFT_N_PER_S } else { 0.0 };
-            *offset += (self.drift_n_per_s + fault) * span_s;
+            let defect = if drifting { DRIFT_N_PER_S } else { 0.0 };
+            *offset += (self.drift_n_per_s + defect) * span_s;
         }
     }
 
     /// The codes under these tensions.
-    pub fn read(&mut self, tensions_n: [f64; 3], faults: Faults) -> [u16; 3] {
+    pub fn read(&mut self, tensions_n: [f64; 3], defects: &Defects) -> [u16; 3] {
         for (i, tension) in tensions_n.into_iter().enumerate() {
-            // Drawn whatever fails, so that a fault does not change the noise of the other cells.
+            // Drawn whatever fails, so that a defect does not change the noise of the other cells.
             let noise = self.noise_n * gaussian(&mut self.rng);
-            if faults.has(Fault::CellSaturated(i)) {
+            if defects.has(Defect::CellSaturated(i)) {
                 self.codes[i] = CODE_MAX;
-            } else if faults.has(Fault::CellDead(i)) {
+            } else if defects.has(Defect::CellDead(i)) {
                 self.codes[i] = 0;
-            } else if !faults.has(Fault::CellStuck(i)) && !faults.has(Fault::CellStale(i)) {
+            } else if !defects.has(Defect::CellStuck(i)) && !defects.has(Defect::CellStale(i)) {
                 let shown = tension * self.gains[i] + self.offsets_n[i] + noise;
                 self.codes[i] = code(shown, self.range_n);
             }

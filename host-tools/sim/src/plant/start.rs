@@ -1,35 +1,70 @@
-//! How a simulation begins.
+//! How a simulated leg starts.
 
 use super::leg::Leg;
 use super::tendon_pull::RealTendon;
+use crate::range;
+use leg_base::angles;
 use leg_model::{
-    Direction, Error, HoldError, Load, Quantity, Reason, Rig, TensionBounds, elastic_torsion,
-    inverse_kinematics, inverse_statics,
+    Direction, Elasticity, Error, HoldError, Load, Quantity, Reason, Rig, TensionBounds,
+    elastic_torsion, inverse_kinematics, inverse_statics,
 };
 use leg_rig::rig_file::RigFile;
+use serde::Deserialize;
 
 /// How the leg is at first; it is at rest.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Start {
-    /// It hangs straight down without a payload, and every tendon is longer than its way by as much.
+    /// It hangs straight down without a payload, every tendon slack by as much. It has to be homed.
     Slack {
-        /// m.
-        slack_m: f64,
+        /// mm.
+        #[serde(deserialize_with = "range::slack_mm")]
+        slack_mm: f64,
     },
-    /// The tendons hold it at a pose with a payload, as [`leg_model::inverse_statics`] says.
+    /// The tendons hold it at a pose with a payload, as [`leg_model::inverse_statics`] says. It knows its zero.
     Held {
         /// Azimuth, degrees.
+        #[serde(deserialize_with = "range::azimuth_deg")]
         azimuth_deg: f64,
         /// Tilt, degrees.
+        #[serde(deserialize_with = "range::start_tilt_deg")]
         tilt_deg: f64,
         /// Pretension, N.
+        #[serde(deserialize_with = "range::start_pretension_n")]
         pretension_n: f64,
         /// kg.
+        #[serde(deserialize_with = "range::payload_kg")]
         payload_kg: f64,
     },
 }
 
+impl Default for Start {
+    fn default() -> Self {
+        Self::hanging(70.0)
+    }
+}
+
+/// What a start says of the leg and its tendons.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Started {
+    pub leg: Leg,
+    /// Length of each tendon without tension, m.
+    pub unstretched_m: [f64; 3],
+    pub payload_kg: f64,
+}
+
 impl Start {
+    /// Straight down without a payload, the tendons at a pretension, N.
+    #[must_use]
+    pub const fn hanging(pretension_n: f64) -> Self {
+        Self::Held {
+            azimuth_deg: 0.0,
+            tilt_deg: 0.0,
+            pretension_n,
+            payload_kg: 0.0,
+        }
+    }
+
     /// Where the leg points, as horizontal components.
     #[must_use]
     pub fn direction(&self) -> [f64; 2] {
@@ -39,33 +74,24 @@ impl Start {
                 azimuth_deg,
                 tilt_deg,
                 ..
-            } => {
-                let (sin, cos) = azimuth_deg.to_radians().sin_cos();
-                let sine = tilt_deg.to_radians().sin();
-                [sine * cos, sine * sin]
-            }
+            } => angles::direction(azimuth_deg, tilt_deg),
         }
     }
-}
 
-/// What a start says of the leg and its tendons.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Begun {
-    pub leg: Leg,
-    /// Length of each tendon without tension, m.
-    pub unstretched_m: [f64; 3],
-    pub payload_kg: f64,
-}
+    /// Whether the leg has to be homed.
+    #[must_use]
+    pub const fn is_slack(&self) -> bool {
+        matches!(self, Self::Slack { .. })
+    }
 
-impl Start {
-    pub(super) fn begin(
+    pub(super) fn started(
         &self,
         file: &RigFile,
         rig: &Rig<f64, 3>,
         tendons: &[RealTendon; 3],
-    ) -> Result<Begun, Error> {
+    ) -> Result<Started, Error> {
         match *self {
-            Self::Slack { slack_m } => slack(rig, slack_m),
+            Self::Slack { slack_mm } => slack(rig, slack_mm / 1000.0),
             Self::Held {
                 azimuth_deg,
                 tilt_deg,
@@ -81,10 +107,10 @@ impl Start {
 }
 
 /// No support twists the leg that hangs straight down.
-fn slack(rig: &Rig<f64, 3>, slack_m: f64) -> Result<Begun, Error> {
+fn slack(rig: &Rig<f64, 3>, slack_m: f64) -> Result<Started, Error> {
     let down = Direction::down();
     let lengths = inverse_kinematics(rig.geometry(), &down)?.lengths;
-    Ok(Begun {
+    Ok(Started {
         leg: Leg::at_rest(down, 0.0),
         unstretched_m: lengths.add_scalar(slack_m).into(),
         payload_kg: 0.0,
@@ -98,7 +124,7 @@ fn held(
     direction: Direction<f64>,
     pretension_n: f64,
     payload_kg: f64,
-) -> Result<Begun, Error> {
+) -> Result<Started, Error> {
     let bounds = TensionBounds::new(file.f_min_n, file.f_max_n)?;
     let moment = Load::new(rig, payload_kg)?.moment(&direction);
     let support = &file.support;
@@ -116,19 +142,13 @@ fn held(
     let mut unstretched_m: [f64; 3] = hold.unstretched.into();
     for (i, tendon) in tendons.iter().enumerate() {
         let tension = hold.tensions[i];
-        unstretched_m[i] += file_elongation_m(file, i, tension)? - tendon.elongation_m(tension)?;
+        unstretched_m[i] += file.tendons[i].elongation(tension)? - tendon.elongation_m(tension)?;
     }
-    Ok(Begun {
+    Ok(Started {
         leg: Leg::at_rest(direction, torsion),
         unstretched_m,
         payload_kg,
     })
-}
-
-/// What the rig file's curve has in the place of the real tendon's elongation, m.
-fn file_elongation_m(file: &RigFile, tendon: usize, tension_n: f64) -> Result<f64, Error> {
-    use leg_model::Elasticity;
-    file.tendons[tendon].elongation(tension_n)
 }
 
 fn refusal(error: HoldError) -> Error {
@@ -138,6 +158,6 @@ fn refusal(error: HoldError) -> Error {
             quantity: Quantity::Pretension,
             reason: Reason::OutOfRange,
         },
-        HoldError::Infeasible(_) => Error::Infeasible,
+        _ => Error::Infeasible,
     }
 }

@@ -2,8 +2,8 @@
 
 mod actuators;
 mod cells;
+mod defects;
 mod energy;
-mod faults;
 mod momentum;
 mod order;
 mod pendulum;

@@ -1,6 +1,5 @@
-//! What no sensor tells.
+//! The true state of the simulated leg, of which the sensors report a part.
 
-use super::work::Work;
 use leg_model::Direction;
 use nalgebra::Vector3;
 
@@ -29,29 +28,4 @@ pub struct Truth {
     pub speeds_rad_per_s: [f64; 3],
     /// Voltage at the drivers, V.
     pub supply_v: f64,
-    /// Where the energy is.
-    pub energy: Energy,
-    /// What went in and out since the start.
-    pub work: Work,
-}
-
-/// Energy of the leg, J.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Energy {
-    /// Of its motion.
-    pub kinetic_j: f64,
-    /// Of the stretched tendons.
-    pub tendons_j: f64,
-    /// Of the elastic joint.
-    pub joint_j: f64,
-    /// Of the weights; zero with the leg pretension.
-    pub weights_j: f64,
-}
-
-impl Energy {
-    /// All of it, J.
-    #[must_use]
-    pub fn total_j(&self) -> f64 {
-        self.kinetic_j + self.tendons_j + self.joint_j + self.weights_j
-    }
 }

@@ -1,159 +1,106 @@
-//! What happens in a scenario.
+//! What happens in a scenario: actions, commands, and waits and measurements.
 
-use crate::plant::Fault;
-use leg_firmware::command::Compensation;
-use leg_firmware::supervisor::{self, State};
-use serde::{Deserialize, Serialize};
+use super::{CommandStep, TestStep};
+use crate::action::Action;
+use serde::de::value::EnumAccessDeserializer;
+use serde::de::{DeserializeSeed, EnumAccess, Error, IntoDeserializer, VariantAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+use std::fmt;
 
 /// One step. A step that waits or measures takes its time; every other one is done in the same tick.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Step {
-    /// Commands the leg to follow commands.
-    Arm,
-    /// Commands it to find its zero.
-    Home,
-    /// Commands it to come to rest on its way.
-    Hold,
-    /// Commands it to stay where it is.
-    Stop,
-    /// Commands it to relax its tendons.
-    Disarm,
-    /// Clears the faults whose cause is gone.
-    Clear,
-    /// Commands a move.
-    Move {
-        /// Degrees.
-        azimuth_deg: f64,
-        /// Degrees.
-        tilt_deg: f64,
-    },
-    /// Commands a pretension, N.
-    PretensionN(f64),
-    /// Demands a bending stiffness.
-    Stiffness {
-        /// N·m/rad.
-        nm_per_rad: f64,
-        /// Azimuth of the push that it is meant for, degrees; left out for the smallest.
-        #[serde(default)]
-        towards_deg: Option<f64>,
-    },
-    /// Chooses the load that is held.
-    Compensation(Compensation),
-    /// Changes the payload, at once or over a time.
-    Payload {
-        /// kg.
-        kg: f64,
-        /// s.
-        #[serde(default)]
-        over_s: f64,
-    },
-    /// Pushes at the tip, horizontally and across the leg.
-    Push {
-        /// Degrees.
-        azimuth_deg: f64,
-        /// N.
-        force_n: f64,
-        /// s.
-        for_s: f64,
-    },
-    /// Lets something fail.
-    Fault(Fault),
-    /// Mends it.
-    Repair(Fault),
-    /// Presses the emergency stop, or lets it go.
-    EmergencyStop(bool),
-    /// Sends so many random bytes to the leg.
-    Garbage(u32),
-    /// Stops the host's signs of life, or lets them go on.
-    Silence(bool),
-    /// Waits, s.
-    WaitS(f64),
-    /// Waits for a state.
-    Await {
-        /// The state.
-        state: State,
-        /// s.
-        timeout_s: f64,
-    },
-    /// Waits until a move is done, and a time more.
-    Arrive {
-        /// s.
-        then_s: f64,
-        /// s.
-        timeout_s: f64,
-    },
-    /// Starts the extremes anew.
-    Mark,
-    /// Waits for a fault and the state that it leads to, and measures the time since the last step.
-    Reaction {
-        /// The fault.
-        fault: supervisor::Fault,
-        /// The state.
-        state: State,
-        /// ms.
-        within_ms: f64,
-    },
-    /// Measures.
-    Measure {
-        /// What it is called in the table.
-        name: String,
-        /// What.
-        quantity: Quantity,
-        /// Lowest and highest value.
-        between: [f64; 2],
-    },
-    /// Pushes at the tip and measures the stiffness that meets the push.
-    PushTest {
-        /// What it is called in the table.
-        name: String,
-        /// Azimuth of the push, degrees.
-        azimuth_deg: f64,
-        /// N.
-        force_n: f64,
-        /// Time until the leg rests, s.
-        settle_s: f64,
-        /// The stiffness that is expected, N·m/rad.
-        nm_per_rad: f64,
-        /// How far from that it may be, percent.
-        within_percent: f64,
-    },
+    /// Something is done to the leg.
+    Action(Action),
+    /// The host commands the leg.
+    Command(CommandStep),
+    /// Something is awaited or measured, or done to the host.
+    Test(TestStep),
 }
 
-/// What can be measured. Averages are over a quarter of a second.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Quantity {
-    /// Distance of the average tip from its target, mm.
-    TipErrorMm,
-    /// Largest distance of the tip from where it was at the mark, mm.
-    TipMovedMm,
-    /// Lowest true tension since the mark, N.
-    TensionMinN,
-    /// Highest true tension since the mark, N.
-    TensionMaxN,
-    /// Longest time since the mark that a true tension was more than 5 % beyond its bounds, ms.
-    OutsideMs,
-    /// Payload that the leg estimates, kg.
-    PayloadKg,
-    /// Pretension, N.
-    PretensionN,
-    /// Stiffness that the leg tells, N·m/rad.
-    StiffnessNmPerRad,
-    /// Largest error of the lengths that homing found, mm.
-    HomingErrorMm,
+/// All names of steps, for messages.
+fn names() -> impl Iterator<Item = &'static str> {
+    let names = CommandStep::NAMES.into_iter().chain(Action::NAMES);
+    names.chain(TestStep::NAMES)
 }
 
-impl Quantity {
-    /// Its unit.
-    #[must_use]
-    pub const fn unit(self) -> &'static str {
-        match self {
-            Self::TipErrorMm | Self::TipMovedMm | Self::HomingErrorMm => "mm",
-            Self::TensionMinN | Self::TensionMaxN | Self::PretensionN => "N",
-            Self::OutsideMs => "ms",
-            Self::PayloadKg => "kg",
-            Self::StiffnessNmPerRad => "N·m/rad",
+impl<'de> Deserialize<'de> for Step {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_enum("Step", &[], StepVisitor)
+    }
+}
+
+/// Reads the name of a step, and then the one of the three that has it.
+struct StepVisitor;
+
+impl<'de> Visitor<'de> for StepVisitor {
+    type Value = Step;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("a step")
+    }
+
+    fn visit_enum<A: EnumAccess<'de>>(self, access: A) -> Result<Step, A::Error> {
+        let (StepName(name), variant) = access.variant()?;
+        let step = EnumAccessDeserializer::new(Named { name, variant });
+        if Action::NAMES.contains(&name) {
+            Action::deserialize(step).map(Step::Action)
+        } else if CommandStep::NAMES.contains(&name) {
+            CommandStep::deserialize(step).map(Step::Command)
+        } else {
+            TestStep::deserialize(step).map(Step::Test)
+        }
+    }
+}
+
+/// A name that a step has.
+struct StepName(&'static str);
+
+impl<'de> Deserialize<'de> for StepName {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let found = String::deserialize(deserializer)?;
+        names()
+            .find(|name| *name == found)
+            .map(Self)
+            .ok_or_else(|| {
+                let known: Vec<_> = names().map(|name| format!("`{name}`")).collect();
+                D::Error::custom(format!(
+                    "unknown variant `{found}`, expected one of {}",
+                    known.join(", ")
+                ))
+            })
+    }
+}
+
+/// A step whose name has been read.
+struct Named<V> {
+    name: &'static str,
+    variant: V,
+}
+
+impl<'de, V: VariantAccess<'de>> EnumAccess<'de> for Named<V> {
+    type Error = V::Error;
+    type Variant = V;
+
+    fn variant_seed<S: DeserializeSeed<'de>>(
+        self,
+        seed: S,
+    ) -> Result<(S::Value, Self::Variant), Self::Error> {
+        let name = seed.deserialize(self.name.into_deserializer())?;
+        Ok((name, self.variant))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Step, names};
+
+    #[test]
+    fn every_name_is_that_of_a_step() {
+        for name in names() {
+            let refusal = serde_json::from_str::<Step>(&format!(r#"{{"{name}":[]}}"#)).err();
+            let refusal = refusal.map(|error| error.to_string()).unwrap_or_default();
+            assert!(!refusal.contains("unknown variant"), "{refusal}");
         }
     }
 }

@@ -1,5 +1,5 @@
 use super::{LEG, cut, join, link_frame, push_all};
-use crate::can::{Assembler, CanFault, CanFrame, Identifier, PAYLOAD_MAX, SEGMENT_MAX, Segmenter};
+use crate::can::{Assembler, CanError, CanFrame, Identifier, PAYLOAD_MAX, SEGMENT_MAX, Segmenter};
 use crate::frame::{Decoder, FrameError, MAX_FRAME, encode};
 use proptest::collection::vec;
 use proptest::prelude::{any, proptest};
@@ -49,7 +49,7 @@ fn a_lost_can_frame_costs_its_own_link_frame_only() {
         // The very last one and the very first, single one have nothing after or before them that tells.
         let noticed = lost != 0 && lost != frames.len() - 1;
         let expected = if noticed {
-            vec![CanFault::Lost]
+            vec![CanError::Lost]
         } else {
             vec![]
         };
@@ -82,7 +82,7 @@ fn a_doubled_can_frame_is_dropped() {
     for doubled in 1..frames.len() {
         let mut arrived: Vec<CanFrame> = frames.iter().map(|frame| frame.1).collect();
         arrived.insert(doubled, arrived[doubled]);
-        let expected = (link_frames_but(&stream, &[]), vec![CanFault::Doubled]);
+        let expected = (link_frames_but(&stream, &[]), vec![CanError::Doubled]);
         assert_eq!(join(&arrived), expected, "{doubled}");
     }
 }
@@ -102,7 +102,7 @@ fn exchanged_can_frames_are_never_joined() {
 
 #[test]
 fn the_first_frame_of_a_sender_that_starts_anew_is_no_double() {
-    let mut assembler = Assembler::<MAX_FRAME>::of_leg(LEG);
+    let mut assembler = Assembler::<MAX_FRAME>::for_leg(LEG);
     for mark in 1..4 {
         let sent = link_frame(30, mark);
         let frames = cut(&mut Segmenter::new(Identifier::ToLeg(LEG)), &sent);
@@ -117,7 +117,7 @@ fn a_receiver_that_comes_late_begins_with_the_next_link_frame() {
     // From the third segment of the third link frame on.
     let (received, faults) = join(&frames[5..]);
     assert_eq!(received, link_frames_but(&stream, &[0, 1, 2]));
-    assert_eq!(faults, [CanFault::Lost]);
+    assert_eq!(faults, [CanError::Lost]);
 }
 
 #[test]
@@ -132,11 +132,11 @@ fn a_link_frame_given_up_half_sent_costs_itself_only() {
     frames.extend(cut(&mut segmenter, &next));
     assert_eq!(
         join(&frames),
-        (vec![next.clone()], vec![CanFault::Unfinished])
+        (vec![next.clone()], vec![CanError::Unfinished])
     );
     // Of which the controller sent less than it was given.
     frames.remove(2);
-    assert_eq!(join(&frames), (vec![next], vec![CanFault::Lost]));
+    assert_eq!(join(&frames), (vec![next], vec![CanError::Lost]));
 }
 
 #[test]
@@ -158,8 +158,8 @@ fn a_link_frame_that_is_too_long_for_the_receiver_costs_itself_only() {
     let (fits, too_long) = (link_frame(100, 1), link_frame(101, 2));
     let mut frames = cut(&mut segmenter, &too_long);
     frames.extend(cut(&mut segmenter, &fits));
-    let came = push_all(&mut Assembler::<100>::of_leg(LEG), &frames);
-    assert_eq!(came, (vec![fits], vec![CanFault::TooLong]));
+    let came = push_all(&mut Assembler::<100>::for_leg(LEG), &frames);
+    assert_eq!(came, (vec![fits], vec![CanError::TooLong]));
 }
 
 #[test]
@@ -174,7 +174,7 @@ fn a_damaged_payload_inside_a_link_frame_costs_it() {
     frames.extend(cut(&mut segmenter, &next));
     let (received, faults) = join(&frames);
     assert_eq!(received, [next]);
-    assert_eq!(faults, [CanFault::WrongLength, CanFault::Lost]);
+    assert_eq!(faults, [CanError::WrongLength, CanError::Lost]);
 }
 
 #[test]
@@ -216,7 +216,7 @@ proptest! {
         before in vec((any::<u16>(), vec(any::<u8>(), 0..=PAYLOAD_MAX), any::<bool>()), 0..60),
         own in any::<bool>(),
     ) {
-        let mut assembler = Assembler::<200>::of_leg(LEG);
+        let mut assembler = Assembler::<200>::for_leg(LEG);
         for (bits, payload, sensible) in before {
             let bits = if own { Identifier::ToLeg(LEG).bits() } else { bits };
             let Some(frame) = any_frame((bits, payload, sensible)) else { continue };

@@ -1,6 +1,6 @@
 use super::{LEG, OTHER, cut, join, link_frame, push_all};
 use crate::can::{
-    Assembler, CanFault, CanFrame, Identifier, LegAddress, PAYLOAD_MAX, SEGMENT_MAX, SegmentError,
+    Assembler, CanError, CanFrame, Identifier, LegAddress, PAYLOAD_MAX, SEGMENT_MAX, SegmentError,
     Segmenter,
 };
 use crate::command::Command;
@@ -56,7 +56,7 @@ fn the_payloads_layout_is_fixed() {
 #[test]
 fn every_length_comes_back_in_payloads_that_can_fd_has() {
     let mut segmenter = Segmenter::new(Identifier::ToLeg(LEG));
-    let mut assembler = Assembler::<MAX_FRAME>::of_leg(LEG);
+    let mut assembler = Assembler::<MAX_FRAME>::for_leg(LEG);
     for length in 1..=MAX_FRAME {
         let sent = link_frame(length, 7);
         let frames = cut(&mut segmenter, &sent);
@@ -86,7 +86,7 @@ fn what_is_for_others_is_not_looked_at() {
         assert_eq!(join(&frames), (vec![], vec![]), "{identifier:?}");
         assert!(!Identifier::received_by(LEG).contains(&identifier));
     }
-    let mut host = Assembler::<MAX_FRAME>::of_host(LEG);
+    let mut host = Assembler::<MAX_FRAME>::for_host(LEG);
     for identifier in Identifier::received_by(LEG) {
         let frames = cut(&mut Segmenter::new(identifier), &sent);
         assert_eq!(join(&frames).0.len(), 1, "{identifier:?}");
@@ -123,7 +123,7 @@ fn an_urgent_frame_in_pieces_is_refused() {
         let Ok(urgent) = CanFrame::new(Identifier::Urgent(LEG), frame.payload()) else {
             panic!("the size is one that CAN FD has")
         };
-        assert_eq!(join(&[urgent]), (vec![], vec![CanFault::Unfinished]));
+        assert_eq!(join(&[urgent]), (vec![], vec![CanError::Unfinished]));
     }
 }
 
@@ -149,7 +149,7 @@ fn a_payload_of_another_size_than_its_header_asks_for_is_refused() {
         }
         match CanFrame::new(Identifier::ToLeg(LEG), &payload) {
             Ok(frame) => !join(&[frame]).1.is_empty(),
-            Err(fault) => fault == CanFault::WrongLength,
+            Err(fault) => fault == CanError::WrongLength,
         }
     };
     for size in 0..=PAYLOAD_MAX + 1 {

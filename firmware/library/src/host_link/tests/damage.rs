@@ -20,7 +20,7 @@ fn a_whole_frame_that_is_no_request_is_refused_under_its_number() {
         let mut line = Line::identified();
         line.hears(frame);
         assert_eq!(line.heard(), [(5, refused(HostRefusal::BadRequest))]);
-        assert_eq!(line.leg.misheard, 1);
+        assert_eq!(line.leg.note_decode_error, 1);
     }
 }
 
@@ -32,7 +32,7 @@ fn a_damaged_frame_is_refused_under_zero_and_counted() {
         frame[1] ^= 1;
         line.hears(&frame);
         assert_eq!(line.heard(), [bad(FrameError::BadCrc)]);
-        assert_eq!(line.leg.misheard, counted);
+        assert_eq!(line.leg.note_decode_error, counted);
     }
 }
 
@@ -42,14 +42,14 @@ fn a_damaged_frame_before_the_greeting_is_counted_too() {
     let mut line = Line::new();
     line.hears(&[4, 1, 2, 3, 0]);
     assert_eq!(line.heard(), [bad(FrameError::TooShort)]);
-    assert_eq!(line.leg.misheard, 1);
+    assert_eq!(line.leg.note_decode_error, 1);
 }
 
 #[test]
 fn a_good_frame_is_not_misheard() {
     let mut line = Line::identified();
     line.ask(&HostRequest::Telemetry);
-    assert_eq!(line.leg.misheard, 0);
+    assert_eq!(line.leg.note_decode_error, 0);
 }
 
 /// A host that starts while half a frame of another is in: with a zero in front it loses nothing, without one a frame.

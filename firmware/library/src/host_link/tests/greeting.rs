@@ -75,7 +75,7 @@ fn a_refusal_of_what_was_read_is_no_misheard_frame() {
     let mut line = Line::new();
     line.ask(&HostRequest::Telemetry);
     line.ask(&STRANGER);
-    assert_eq!(line.leg.misheard, 0);
+    assert_eq!(line.leg.note_decode_error, 0);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! A leg without a mechanism: it keeps what it is told, and obeys one command a tick.
 
 use crate::command::{Command, CommandRefusal};
-use crate::host_link::{Commanded, HostRefusal};
+use crate::host_link::{CommandedLeg, HostRefusal};
 use crate::leg::{Leg, Outcome};
 use crate::sensors::Sensors;
 use crate::settings::Settings;
@@ -20,7 +20,7 @@ pub struct NotedLeg {
     pub obeyed: Vec<Command>,
     /// What the next ticks answer.
     pub result: Result<(), CommandRefusal>,
-    pub misheard: usize,
+    pub note_decode_error: usize,
     pub sensors: Sensors,
     /// What it was started again with.
     pub restarts: Vec<Settings>,
@@ -38,7 +38,7 @@ impl Default for NotedLeg {
             waiting: VecDeque::new(),
             obeyed: Vec::new(),
             result: Ok(()),
-            misheard: 0,
+            note_decode_error: 0,
             sensors: Sensors::default(),
             restarts: Vec::new(),
             outcomes: VecDeque::new(),
@@ -58,7 +58,7 @@ impl NotedLeg {
     }
 }
 
-impl Commanded for NotedLeg {
+impl CommandedLeg for NotedLeg {
     fn command(&mut self, number: u16, command: Command) -> bool {
         let free = self.waiting.len() < self.room;
         if free {
@@ -67,8 +67,8 @@ impl Commanded for NotedLeg {
         free
     }
 
-    fn misheard(&mut self) {
-        self.misheard += 1;
+    fn note_decode_error(&mut self) {
+        self.note_decode_error += 1;
     }
 
     fn outcome(&mut self) -> Option<Outcome> {

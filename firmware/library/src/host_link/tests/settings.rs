@@ -2,7 +2,7 @@
 
 use super::{Line, ONE, others, refused};
 use crate::command::{Command, CommandRefusal};
-use crate::host_link::{Commanded, HostRefusal, HostReply, HostRequest};
+use crate::host_link::{CommandedLeg, HostRefusal, HostReply, HostRequest};
 use crate::leg::{Leg, Outcome};
 use crate::linked_leg::SensingLeg;
 use crate::sensors::{CODE_MAX, Sensors};
@@ -89,6 +89,7 @@ fn refused_settings_are_named_and_none_of_them_is_in_use() {
     let error = SettingsError::OutOfRange(OutOfRange {
         section: 1,
         field: 8,
+        axis: 0,
     });
     assert_eq!(
         line.ask(&HostRequest::SetSettings(settings)),
@@ -155,7 +156,7 @@ fn new_settings_clear_no_fault() {
         ticked(&mut leg, Command::Home),
         outcome(Err(CommandRefusal::Faulted))
     );
-    let latched = FaultSet::of(Fault::EmergencyStop);
+    let latched = FaultSet::single(Fault::EmergencyStop);
     assert_eq!(leg.telemetry().faults, latched);
     assert_eq!(leg.telemetry().state, State::Off);
     assert_eq!(ticked(&mut leg, Command::Clear), outcome(Ok(())));

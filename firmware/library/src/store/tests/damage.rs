@@ -2,7 +2,8 @@
 
 use super::mock::{Failure, Mock, Random};
 use super::{
-    Loaded, StoreError, Why, assert_holds, block_on, clear, keep, large, load, save, small, store,
+    CorruptReason, Loaded, StoreError, assert_holds, block_on, clear, keep, large, load, save,
+    small, store,
 };
 use crate::store::sealed::SEAL;
 use crate::store::{KEY, PAGE_SIZE, RECORD_MAX, WORD_SIZE};
@@ -24,7 +25,7 @@ fn every_flipped_bit_of_the_only_record_is_found() {
         flash.flip(bit);
         assert_eq!(
             load(&mut flash),
-            Ok(Loaded::Corrupt(Why::Storage)),
+            Ok(Loaded::Corrupt(CorruptReason::Storage)),
             "bit {bit}"
         );
         flash.flip(bit);
@@ -72,7 +73,11 @@ fn wherever_a_bit_flips_no_settings_arise_that_were_not_saved() {
         flipped.restart();
         match load(&mut flipped) {
             Ok(Loaded::Settings(settings)) => assert!(saved.contains(&settings), "bit {bit}"),
-            other => assert_eq!(other, Ok(Loaded::Corrupt(Why::Storage)), "bit {bit}"),
+            other => assert_eq!(
+                other,
+                Ok(Loaded::Corrupt(CorruptReason::Storage)),
+                "bit {bit}"
+            ),
         }
     }
 }
@@ -137,7 +142,10 @@ fn noise(pages: usize, random: &mut Random) -> Vec<u8> {
 fn foreign_contents_are_corrupt_and_can_be_written_over() {
     for seed in 0..100 {
         let mut flash = Mock::holding(noise(3, &mut Random(seed)));
-        assert_eq!(load(&mut flash), Ok(Loaded::Corrupt(Why::Storage)));
+        assert_eq!(
+            load(&mut flash),
+            Ok(Loaded::Corrupt(CorruptReason::Storage))
+        );
         for number in 0..12 {
             keep(&mut flash, &large(number));
         }
@@ -164,7 +172,10 @@ fn contents_that_claim_to_be_a_store_do_no_harm() {
     let mut random = Random(7);
     for _ in 0..2000 {
         let mut flash = imposture(&mut random);
-        assert_eq!(load(&mut flash), Ok(Loaded::Corrupt(Why::Storage)));
+        assert_eq!(
+            load(&mut flash),
+            Ok(Loaded::Corrupt(CorruptReason::Storage))
+        );
         let _ = save(&mut flash, &large(1));
         assert_eq!(clear(&mut flash), Ok(()));
         assert_eq!(load(&mut flash), Ok(Loaded::Empty));

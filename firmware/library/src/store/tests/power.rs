@@ -1,7 +1,9 @@
 //! Power that fails at every step of a save, and what is found afterwards.
 
 use super::mock::{Failure, Mock, Random, TEARS, Tear};
-use super::{Loaded, StoreError, Why, assert_holds, clear, keep, large, load, mixed, save, small};
+use super::{
+    CorruptReason, Loaded, StoreError, assert_holds, clear, keep, large, load, mixed, save, small,
+};
 use crate::settings::Settings;
 
 const CUT: Result<(), StoreError<Failure>> = Err(StoreError::Flash(Failure::PowerCut));
@@ -91,7 +93,7 @@ fn a_first_save_that_is_cut_leaves_no_settings_or_new_ones() {
             let mut torn = cut_save(&blank, &new, cut, tear, cut as u64);
             match load(&mut torn) {
                 Ok(Loaded::Settings(settings)) => assert_eq!(settings, new),
-                Ok(Loaded::Empty | Loaded::Corrupt(Why::Storage)) => {}
+                Ok(Loaded::Empty | Loaded::Corrupt(CorruptReason::Storage)) => {}
                 other => panic!("{tear:?} {cut}: {other:?}"),
             }
             keep(&mut torn, &new);

@@ -1,7 +1,7 @@
 //! What a record holds, and why one is refused.
 
 use super::mock::Mock;
-use super::{Loaded, Why, block_on, large, load, small, store};
+use super::{CorruptReason, Loaded, block_on, large, load, small, store};
 use crate::settings::{OutOfRange, Settings, SettingsError};
 use crate::store::record::{pack, unpack};
 use crate::store::{KEY, RECORD_MAX, SETTINGS_SCHEMA, VERSION};
@@ -61,7 +61,7 @@ fn every_flipped_bit_is_found() {
     let mut record = packed(&large(3));
     for bit in 0..8 * record.len() {
         record[bit / 8] ^= 1 << (bit % 8);
-        assert_eq!(unpack(&record), Err(Why::Crc), "bit {bit}");
+        assert_eq!(unpack(&record), Err(CorruptReason::Crc), "bit {bit}");
         record[bit / 8] ^= 1 << (bit % 8);
     }
     assert_eq!(unpack(&record), Ok(large(3)));
@@ -71,18 +71,22 @@ fn every_flipped_bit_is_found() {
 fn a_record_that_the_storage_takes_for_whole_has_its_own_crc() {
     let mut record = packed(&small(3));
     record[100] ^= 1;
-    assert_eq!(loaded(&record), Loaded::Corrupt(Why::Crc));
+    assert_eq!(loaded(&record), Loaded::Corrupt(CorruptReason::Crc));
 }
 
 #[test]
 fn a_record_that_ends_early_is_refused() {
     let record = packed(&small(3));
     for length in 0..record.len() {
-        assert_eq!(unpack(&record[..length]), Err(Why::Crc), "{length}");
+        assert_eq!(
+            unpack(&record[..length]),
+            Err(CorruptReason::Crc),
+            "{length}"
+        );
     }
     for length in 0..record.len() - 4 {
         let short = changed(&small(3), |record| record.truncate(length));
-        assert_eq!(unpack(&short), Err(Why::NotSettings), "{length}");
+        assert_eq!(unpack(&short), Err(CorruptReason::NotSettings), "{length}");
     }
 }
 
@@ -90,23 +94,29 @@ fn a_record_that_ends_early_is_refused() {
 fn another_firmwares_settings_are_told_by_their_schema() {
     let found = *b"another!";
     let other = changed(&small(3), |record| record[1..9].copy_from_slice(&found));
-    assert_eq!(loaded(&other), Loaded::Corrupt(Why::OtherSchema { found }));
+    assert_eq!(
+        loaded(&other),
+        Loaded::Corrupt(CorruptReason::OtherSchema { found })
+    );
 }
 
 #[test]
 fn another_layout_is_told_by_its_version() {
     let found = VERSION + 1;
     let other = changed(&small(3), |record| record[0] = found);
-    assert_eq!(loaded(&other), Loaded::Corrupt(Why::OtherVersion { found }));
+    assert_eq!(
+        loaded(&other),
+        Loaded::Corrupt(CorruptReason::OtherVersion { found })
+    );
 }
 
 #[test]
 fn a_record_holds_settings_and_nothing_else() {
     let long = changed(&small(3), |record| record.push(0));
-    assert_eq!(loaded(&long), Loaded::Corrupt(Why::NotSettings));
+    assert_eq!(loaded(&long), Loaded::Corrupt(CorruptReason::NotSettings));
     // The kind of support, after the mechanism's eighteen numbers.
     let odd = changed(&small(3), |record| record[9 + 18 * 4] = 9);
-    assert_eq!(loaded(&odd), Loaded::Corrupt(Why::NotSettings));
+    assert_eq!(loaded(&odd), Loaded::Corrupt(CorruptReason::NotSettings));
 }
 
 #[test]
@@ -116,11 +126,12 @@ fn settings_out_of_range_are_refused_by_name() {
     let why = SettingsError::OutOfRange(OutOfRange {
         section: 0,
         field: 0,
+        axis: 0,
     });
     let found = loaded(&packed(&fast));
-    assert_eq!(found, Loaded::Corrupt(Why::Refused(why)));
+    assert_eq!(found, Loaded::Corrupt(CorruptReason::Refused(why)));
     assert_eq!(
-        Why::Refused(why).to_string(),
+        CorruptReason::Refused(why).to_string(),
         "the settings stored are refused: motion.speed_rad_per_s is outside 0.01 to 20"
     );
 }

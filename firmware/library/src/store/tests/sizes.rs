@@ -13,19 +13,19 @@ use postcard_schema::Schema;
 use postcard_schema::schema::{DataModelType, DataModelVariant, NamedType, NamedValue};
 
 /// Most bytes that a value takes; the only sequences in settings are curves, and no enum has 128 variants.
-fn most(named: &NamedType) -> usize {
+fn max_size(named: &NamedType) -> usize {
     match named.ty {
         DataModelType::Bool | DataModelType::U8 | DataModelType::I8 => 1,
         DataModelType::F32 => 4,
-        DataModelType::Option(inner) => 1 + most(inner),
-        DataModelType::NewtypeStruct(inner) => most(inner),
-        DataModelType::Seq(inner) => 1 + CURVE_POINTS_MAX * most(inner),
+        DataModelType::Option(inner) => 1 + max_size(inner),
+        DataModelType::NewtypeStruct(inner) => max_size(inner),
+        DataModelType::Seq(inner) => 1 + CURVE_POINTS_MAX * max_size(inner),
         DataModelType::Tuple(all) | DataModelType::TupleStruct(all) => sum(all),
         DataModelType::Struct(fields) => sum_fields(fields),
         DataModelType::Enum(variants) => {
             let bodies = variants.iter().map(|variant| match variant.ty {
                 DataModelVariant::UnitVariant => 0,
-                DataModelVariant::NewtypeVariant(inner) => most(inner),
+                DataModelVariant::NewtypeVariant(inner) => max_size(inner),
                 DataModelVariant::TupleVariant(all) => sum(all),
                 DataModelVariant::StructVariant(fields) => sum_fields(fields),
             });
@@ -36,16 +36,16 @@ fn most(named: &NamedType) -> usize {
 }
 
 fn sum(all: &[&NamedType]) -> usize {
-    all.iter().map(|one| most(one)).sum()
+    all.iter().map(|one| max_size(one)).sum()
 }
 
 fn sum_fields(fields: &[&NamedValue]) -> usize {
-    fields.iter().map(|field| most(field.ty)).sum()
+    fields.iter().map(|field| max_size(field.ty)).sum()
 }
 
 #[test]
 fn the_largest_settings_are_as_large_as_said() {
-    assert_eq!(most(Settings::SCHEMA), SETTINGS_MAX);
+    assert_eq!(max_size(Settings::SCHEMA), SETTINGS_MAX);
     let mut out = [0; 2 * SETTINGS_MAX];
     let encoded = postcard::to_slice(&large(0), &mut out).map(|encoded| encoded.len());
     assert_eq!(encoded, Ok(SETTINGS_MAX));

@@ -1,57 +1,48 @@
 //! What raises the faults of one axis.
 
-use super::{Timer, View};
-use crate::control::{CYCLE_TICKS, ticks};
+use super::{Debounce, MonitorInput};
+use crate::control::{AxisView, CYCLE_TICKS, ticks};
 use crate::sensors::CODE_MAX;
 use crate::settings::Settings;
 use crate::supervisor::{Fault, FaultSet};
 use leg_model::Scalar;
 
-/// What an axis shows beside its sensors.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AxisView<T> {
-    /// How far the motor is from where it is led, m.
-    pub following_m: T,
-    /// The voltage at the motor beyond what its speed induces, V.
-    pub driving_v: T,
-    /// The voltage at the motor, V.
-    pub voltage_v: T,
-}
+/// Checks over which a tension must not jump: a millisecond, as an axis is checked once a cycle of 0.5 ms. A power of two,
+/// for the index is masked.
+const JUMP_CHECKS: usize = 2;
 
-/// Looks over which a tension must not jump, a power of two: a millisecond.
-const JUMP_LOOKS: usize = 2;
+/// Checks after which a current is a fault: 2 ms, longer than the peak of a motor that reverses. Scenario `fault_over_current`
+/// holds it.
+const CURRENT_CHECKS: u32 = 4;
 
-/// Looks after which a current is a fault: 2 ms.
-const CURRENT_LOOKS: u32 = 4;
-
-/// Codes this near to an end of the range are taken as saturated.
+/// Codes this near to an end of the range are saturated: four steps of the 12-bit converter, whose sixteenfold sum a code is.
 const SATURATED: u16 = 64;
 
-/// Looks in a time in s, at least one: each axis has its turn once a cycle.
-fn looks(time_s: f32) -> u32 {
+/// Checks in a time in s, at least one: each axis has its turn once a cycle.
+fn checks(time_s: f32) -> u32 {
     ticks(time_s).div_ceil(u32::from(CYCLE_TICKS))
 }
 
 /// Watches one axis.
 #[derive(Clone, Copy, Debug)]
 pub struct AxisMonitor<T> {
-    slack: Timer,
-    stale: Timer,
-    stuck: Timer,
-    still: Timer,
-    reversed: Timer,
-    over_current: Timer,
-    disagrees: Timer,
+    slack: Debounce,
+    stale: Debounce,
+    stuck: Debounce,
+    still: Debounce,
+    reversed: Debounce,
+    over_current: Debounce,
+    disagrees: Debounce,
     last_code: u16,
     last_count: u16,
-    history: [T; JUMP_LOOKS],
+    history: [T; JUMP_CHECKS],
     place: usize,
     filled: bool,
-    bounds: Bounds<T>,
+    bounds: AxisBounds<T>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Bounds<T> {
+struct AxisBounds<T> {
     slack_n: T,
     tension_n: T,
     jump_n: T,
@@ -67,23 +58,23 @@ struct Bounds<T> {
 impl<T: Scalar> AxisMonitor<T> {
     pub fn new(settings: &Settings, m_per_count: f32) -> Self {
         let (limits, servo) = (&settings.limits, &settings.servo);
-        let ceiling = settings.f_max_n;
+        let f_max_n = settings.f_max_n;
         Self {
-            slack: Timer::new(looks(limits.slack_time_s)),
-            stale: Timer::new(looks(limits.stale_time_s)),
-            stuck: Timer::new(looks(limits.stuck_time_s)),
-            still: Timer::new(looks(limits.still_time_s)),
-            reversed: Timer::new(looks(limits.reversed_time_s)),
-            over_current: Timer::new(CURRENT_LOOKS),
-            disagrees: Timer::new(looks(limits.disagreement_time_s)),
+            slack: Debounce::new(checks(limits.slack_time_s)),
+            stale: Debounce::new(checks(limits.stale_time_s)),
+            stuck: Debounce::new(checks(limits.stuck_time_s)),
+            still: Debounce::new(checks(limits.still_time_s)),
+            reversed: Debounce::new(checks(limits.reversed_time_s)),
+            over_current: Debounce::new(CURRENT_CHECKS),
+            disagrees: Debounce::new(checks(limits.disagreement_time_s)),
             last_code: 0,
             last_count: 0,
-            history: [T::zero(); JUMP_LOOKS],
+            history: [T::zero(); JUMP_CHECKS],
             place: 0,
             filled: false,
-            bounds: Bounds {
+            bounds: AxisBounds {
                 slack_n: limits.slack_n.into(),
-                tension_n: T::from(ceiling + limits.over_tension_part * ceiling),
+                tension_n: T::from(f_max_n + limits.over_tension_part * f_max_n),
                 jump_n: limits.jump_n.into(),
                 following_m: limits.following_m.into(),
                 driven_v: T::from(limits.driven_part * servo.current_a * servo.resistance_ohm),
@@ -99,7 +90,7 @@ impl<T: Scalar> AxisMonitor<T> {
     pub fn watch(
         &mut self,
         i: usize,
-        view: &View<'_, T>,
+        view: &MonitorInput<'_, T>,
         shown: &AxisView<T>,
         faults: &mut FaultSet,
     ) {
@@ -107,9 +98,9 @@ impl<T: Scalar> AxisMonitor<T> {
         self.motor(i, view, shown, faults);
     }
 
-    /// The load cell and the tension that it tells.
+    /// The load cell and the tension that it reports.
     #[inline(always)]
-    fn cell(&mut self, i: usize, view: &View<'_, T>, faults: &mut FaultSet) {
+    fn cell(&mut self, i: usize, view: &MonitorInput<'_, T>, faults: &mut FaultSet) {
         let (sensors, bounds) = (view.sensors, &self.bounds);
         let (Some(&code), Some(&fresh), Some(&tension)) = (
             sensors.cell_codes.get(i),
@@ -120,28 +111,34 @@ impl<T: Scalar> AxisMonitor<T> {
         };
         let saturated = !(SATURATED..=CODE_MAX - SATURATED).contains(&code);
         faults.add(Fault::CellSaturated, saturated);
-        let stale = self.stale.over(!fresh);
+        let stale = self.stale.update(!fresh);
         faults.add(Fault::CellStale, stale);
         // A code that is not fresh is the last one: that is stale, not stuck.
-        let stuck = self.stuck.over(fresh && code == self.last_code);
+        let stuck = self.stuck.update(fresh && code == self.last_code);
         faults.add(Fault::CellStuck, stuck);
-        // What a dead cell says is no tension.
+        // A dead cell reports no tension.
         let alive = view.driven && !saturated && !stale && !stuck;
         self.last_code = code;
         let slack = view.tensioned && !(tension >= bounds.slack_n);
-        faults.add(Fault::Slack, self.slack.over(slack));
+        faults.add(Fault::Slack, self.slack.update(slack));
         faults.add(Fault::OverTension, alive && !(tension <= bounds.tension_n));
-        let place = self.place & (JUMP_LOOKS - 1);
+        let place = self.place & (JUMP_CHECKS - 1);
         let before = core::mem::replace(&mut self.history[place], tension);
         self.place = place + 1;
         let jump = self.filled && alive && !((tension - before).abs() <= bounds.jump_n);
-        self.filled |= self.place == JUMP_LOOKS;
+        self.filled |= self.place == JUMP_CHECKS;
         faults.add(Fault::TensionJump, jump);
     }
 
     /// The motor and its encoder.
     #[inline(always)]
-    fn motor(&mut self, i: usize, view: &View<'_, T>, axis: &AxisView<T>, faults: &mut FaultSet) {
+    fn motor(
+        &mut self,
+        i: usize,
+        view: &MonitorInput<'_, T>,
+        axis: &AxisView<T>,
+        faults: &mut FaultSet,
+    ) {
         let bounds = &self.bounds;
         let (Some(&count), Some(&current), Some(&tension)) = (
             view.sensors.encoder_counts.get(i),
@@ -153,22 +150,25 @@ impl<T: Scalar> AxisMonitor<T> {
         let step = count.wrapping_sub(self.last_count).cast_signed();
         self.last_count = count;
         let driven = view.driven && axis.driving_v.abs() > bounds.driven_v;
-        faults.add(Fault::EncoderStill, self.still.over(driven && step == 0));
+        faults.add(Fault::EncoderStill, self.still.update(driven && step == 0));
         let pulls = axis.voltage_v > T::zero();
         let against = step != 0 && (step > 0) != (pulls == bounds.forward);
         let hard = view.driven && axis.voltage_v.abs() > bounds.driven_v;
-        faults.add(Fault::EncoderReversed, self.reversed.over(hard && against));
+        faults.add(
+            Fault::EncoderReversed,
+            self.reversed.update(hard && against),
+        );
         let lags = view.led && !(axis.following_m.abs() <= bounds.following_m);
         faults.add(Fault::Following, lags);
         let current = current.abs();
         faults.add(
             Fault::OverCurrent,
-            self.over_current.over(!(current <= bounds.current_a)),
+            self.over_current.update(!(current <= bounds.current_a)),
         );
         let explained = bounds.excess_a + bounds.a_per_n * tension.abs();
         faults.add(
             Fault::CurrentDisagrees,
-            self.disagrees.over(!(current <= explained)),
+            self.disagrees.update(!(current <= explained)),
         );
     }
 }

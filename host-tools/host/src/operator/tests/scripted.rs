@@ -1,99 +1,119 @@
-//! A board that answers as a test says.
+//! Boards that do not know their host, do not do as they report, and send what was not asked.
 
-use super::{emulated, host};
-use crate::operator::{Host, Interrupt, Operator};
-use crate::transport::Transport;
-use leg_firmware::frame::{self, MAX_FRAME};
-use leg_firmware::host_link::BoardKind;
-use leg_firmware::host_link::{HostReply, HostRequest, Identity, Reset, Told};
-use leg_firmware::settings::Settings;
-use leg_firmware::telemetry::Telemetry;
-use leg_firmware::version::VERSION;
-use leg_sim::emulated_leg::Beginning;
-use std::collections::VecDeque;
-use std::io;
+use super::lean;
+use super::scripted_board::{at_rest, scripted, scripted_from_start, telemetry_reply};
+use crate::operator::OperatorError;
+use leg_base::failure::Failure;
+use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest};
+use leg_firmware::supervisor::State;
 use std::time::Duration;
 
-/// It says nothing by itself; time goes on only while its host waits.
-pub struct Scripted<F> {
-    answer: F,
-    decoder: frame::Decoder,
-    answers: VecDeque<u8>,
-    now: Duration,
+#[test]
+fn other_firmware_and_silence_are_told_apart() {
+    let schema = HostRefusal::SchemaMismatch { schema: [0xab; 8] };
+    let opened = scripted_from_start(move |_| Some(HostReply::Refused(schema)));
+    let error = error_of!(opened, OperatorError::OtherSchema { .. });
+    let text = error.to_string();
+    assert!(
+        text.starts_with(
+            "the firmware at a scripted board speaks another protocol (schema abababababababab, this program "
+        ),
+        "{text}"
+    );
+    let silent = scripted_from_start(|_| Some(HostReply::Done));
+    let error = error_of!(silent, OperatorError::NoAnswer(_));
+    assert_eq!(error.to_string(), "a scripted board does not answer");
 }
 
-impl<F: FnMut(&HostRequest) -> Option<HostReply>> Scripted<F> {
-    pub fn new(answer: F) -> Self {
-        Self {
-            answer,
-            decoder: frame::Decoder::new(),
-            answers: VecDeque::new(),
-            now: Duration::ZERO,
-        }
-    }
-}
-
-impl<F: FnMut(&HostRequest) -> Option<HostReply>> Transport for Scripted<F> {
-    fn name(&self) -> &'static str {
-        "a strange board"
-    }
-
-    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
-        for &byte in bytes {
-            let Some(Ok(frame)) = self.decoder.push(byte) else {
-                continue;
-            };
-            if let Some(reply) = (self.answer)(&frame.message().unwrap()) {
-                let mut out = [0; MAX_FRAME];
-                let reply = frame::encode(frame.sequence, &reply, &mut out).unwrap();
-                self.answers.extend(reply);
-            }
-        }
-        Ok(())
-    }
-
-    fn receive(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize> {
-        if self.answers.is_empty() {
-            self.now += timeout;
-            return Err(io::ErrorKind::TimedOut.into());
-        }
-        io::Read::read(&mut self.answers, bytes)
-    }
-
-    fn now(&self) -> Duration {
-        self.now
+#[test]
+fn a_reply_of_another_kind_is_named() {
+    let mut operator = scripted(|_| Some(HostReply::Done));
+    for result in [
+        operator.telemetry().map(drop),
+        operator.sensors().map(drop),
+        operator.settings().map(drop),
+    ] {
+        let error = error_of!(result, OperatorError::WrongReply(_));
+        assert!(matches!(Failure::from(error), Failure::Refused(_)));
     }
 }
 
-/// A host of a board that knows it, and answers everything else so.
-pub fn scripted(mut answer: impl FnMut(&HostRequest) -> Option<HostReply> + 'static) -> Operator {
-    let board = Scripted::new(move |request: &HostRequest| match request {
-        HostRequest::Identify(_) => Some(HostReply::Identified(identity())),
-        request => answer(request),
+#[test]
+fn settings_that_read_back_otherwise_are_named() {
+    let (_, kept) = at_rest();
+    let mut sent = kept.clone();
+    sent.limits.slack_n = 3.0;
+    let mut operator = scripted(move |request| {
+        Some(match request {
+            HostRequest::GetSettings => HostReply::Settings(kept.clone()),
+            _ => HostReply::Done,
+        })
     });
-    Operator::open(Box::new(board), Host::FIXED, Interrupt::default()).unwrap()
+    let error = error_of!(
+        operator.set_settings(&sent),
+        OperatorError::ReadBack(names) if *names == ["limits.slack_n"]
+    );
+    assert!(matches!(Failure::from(error), Failure::Failed(_)));
 }
 
-pub fn identity() -> Identity {
-    Identity {
-        board: BoardKind::InProcess,
-        version: VERSION,
-        reset: Reset::Emulated,
-        last_words: heapless::String::new(),
-    }
+#[test]
+fn a_busy_board_is_not_taken_for_a_silent_one() {
+    let mut operator = scripted(|_| Some(HostReply::Refused(HostRefusal::Busy)));
+    let error = error_of!(
+        operator.save_settings(),
+        OperatorError::Refused {
+            refusal: HostRefusal::Busy,
+            ..
+        }
+    );
+    assert_eq!(
+        error.to_string(),
+        "the leg does not keep its settings: the board is still busy with what it was asked before"
+    );
 }
 
-/// What a homed leg at rest tells of itself, and its settings.
-pub fn at_rest() -> (Telemetry<f32>, Settings) {
-    let leg = emulated(Beginning::Hanging);
-    let mut operator = host(&leg, 1);
-    let telemetry = operator.telemetry().unwrap().telemetry;
-    (telemetry, operator.settings().unwrap())
+#[test]
+fn a_leg_that_never_comes_to_rest_is_late() {
+    let (mut telemetry, _) = at_rest();
+    telemetry.state = State::RampingDown;
+    let mut operator = scripted(move |_| Some(telemetry_reply(&telemetry)));
+    let error = error_of!(operator.reach(&lean(10.0)), OperatorError::TimedOut { .. });
+    let text = error.to_string();
+    assert!(
+        text.starts_with("the leg did not come to rest within 60 s; it is "),
+        "{text}"
+    );
+    assert!(matches!(Failure::from(error), Failure::Failed(_)));
 }
 
-pub fn told(telemetry: &Telemetry<f32>) -> HostReply {
-    HostReply::Telemetry(Told {
-        number: 0,
-        telemetry: *telemetry,
-    })
+#[test]
+fn a_leg_that_rests_elsewhere_reports_where() {
+    let (mut telemetry, settings) = at_rest();
+    telemetry.state = State::Active;
+    telemetry.target = telemetry.pose;
+    telemetry.target_tensions_n = telemetry.tensions_n;
+    let mut operator = scripted(move |request| {
+        Some(match request {
+            HostRequest::Telemetry => telemetry_reply(&telemetry),
+            HostRequest::GetSettings => HostReply::Settings(settings.clone()),
+            _ => HostReply::Done,
+        })
+    });
+    let error = error_of!(operator.reach(&lean(10.0)), OperatorError::OtherPose(_));
+    assert_eq!(
+        error.to_string(),
+        "the leg did not move there: it came to rest at straight down"
+    );
+    assert!(matches!(Failure::from(error), Failure::Failed(_)));
+}
+
+#[test]
+fn silence_ends_the_wait_for_telemetry_in_time() {
+    // Longer than any wait of the operator's own.
+    let long = Duration::from_secs(20);
+    let mut operator = scripted(|_| Some(HostReply::Done));
+    operator.start_stream(1000).unwrap();
+    let before = operator.now();
+    assert_eq!(operator.next_streamed(long).unwrap(), None);
+    assert_eq!(operator.now() - before, long);
 }

@@ -1,4 +1,6 @@
-//! What a CAN interface of the machine has to be, and what is told if it is not.
+//! What a CAN interface of the machine has to be, and the errors if it is not.
+//!
+//! It is read from `/sys`: `socketcan` would ask by netlink, with a crate more and nothing that a test can stand in for.
 
 use leg_firmware::can::{DATA_BIT_RATE, LegAddress, NOMINAL_BIT_RATE};
 use std::fs;
@@ -6,7 +8,7 @@ use std::io;
 use std::path::Path;
 use thiserror::Error;
 
-/// Where Linux tells of its network interfaces.
+/// Where Linux lists its network interfaces.
 pub(super) const INTERFACES: &str = "/sys/class/net";
 
 /// `ARPHRD_CAN`: an interface's type.
@@ -18,7 +20,8 @@ const UP: u32 = 1;
 /// `CANFD_MTU`: one with a smaller MTU carries classic CAN only.
 const CAN_FD_MTU: u32 = 72;
 
-/// Why a CAN interface cannot be used, and what to do.
+/// Why a CAN interface cannot be used, and what to do. Each has the interface's name; where that is no CAN interface, those
+/// that there are.
 #[derive(Debug, PartialEq, Eq, Error)]
 pub enum InterfaceError {
     /// The kernel has no CAN.
@@ -29,112 +32,73 @@ pub enum InterfaceError {
     /// There is no such interface.
     #[error(
         "there is no CAN interface `{name}`{}; plug its adapter in and load its driver, then {}",
-        there_is(.others), bring_up(.name)
+        there_is(.1), bring_up(.0), name = .0
     )]
-    Missing {
-        /// The name that was asked for.
-        name: String,
-        /// The CAN interfaces that there are.
-        others: Vec<String>,
-    },
+    Missing(String, Vec<String>),
     /// It is a network interface of another kind.
-    #[error("`{name}` is no CAN interface{}; name one that `ip link show type can` lists", there_is(.others))]
-    NotCan {
-        /// The name that was asked for.
-        name: String,
-        /// The CAN interfaces that there are.
-        others: Vec<String>,
-    },
+    #[error("`{name}` is no CAN interface{}; name one that `ip link show type can` lists", there_is(.1), name = .0)]
+    NotCan(String, Vec<String>),
     /// It is not up.
-    #[error("the CAN interface `{name}` is down; {}", bring_up(.name))]
-    Down {
-        /// Its name.
-        name: String,
-    },
+    #[error("the CAN interface `{name}` is down; {}", bring_up(.0), name = .0)]
+    Down(String),
     /// It is up without CAN FD.
     #[error(
         "the CAN interface `{name}` is up without CAN FD; `ip link set {name} down`, then {}; \
          if that is refused, its adapter has no CAN FD",
-        bring_up(.name)
+        bring_up(.0), name = .0
     )]
-    Classic {
-        /// Its name.
-        name: String,
-    },
+    Classic(String),
     /// The controller went off the bus.
     #[error(
         "the controller of `{name}` is off the bus after too many errors; check cable, terminators and that all nodes \
          have {} and {} kbit/s, then `ip link set {name} down` and {}",
-        NOMINAL_BIT_RATE / 1000, DATA_BIT_RATE / 1000, bring_up(.name)
+        NOMINAL_BIT_RATE / 1000, DATA_BIT_RATE / 1000, bring_up(.0), name = .0
     )]
-    BusOff {
-        /// Its name.
-        name: String,
-    },
-    /// Another program of this kind counts under the leg's identifier.
+    BusOff(String),
+    /// Another `leg` sends under this leg's identifier.
     #[error(
-        "another `leg` uses the CAN identifier of {leg} on `{name}`; wait for it or end it: only `leg stop` goes beside it"
+        "another `leg` uses the CAN identifier of {1} on `{0}`; wait for it or end it: only `leg stop` goes beside it"
     )]
-    Taken {
-        /// Its name.
-        name: String,
-        /// The leg.
-        leg: LegAddress,
-    },
-    /// What is sent is not taken.
+    Taken(String, LegAddress),
+    /// What is sent is not acknowledged.
     #[error(
-        "nobody on `{name}` takes what is sent; is the leg powered, is the cable terminated at both ends, and have all \
+        "nobody on `{name}` acknowledges what is sent; is the leg powered, is the cable terminated at both ends, and have all \
          nodes {} and {} kbit/s?",
-        NOMINAL_BIT_RATE / 1000, DATA_BIT_RATE / 1000
+        NOMINAL_BIT_RATE / 1000, DATA_BIT_RATE / 1000, name = .0
     )]
-    NotTaken {
-        /// Its name.
-        name: String,
-    },
-}
-
-impl InterfaceError {
-    const fn kind(&self) -> io::ErrorKind {
-        match self {
-            Self::NoCan => io::ErrorKind::Unsupported,
-            Self::Missing { .. } => io::ErrorKind::NotFound,
-            Self::NotCan { .. } => io::ErrorKind::InvalidInput,
-            Self::Down { .. } => io::ErrorKind::NetworkDown,
-            Self::Classic { .. } => io::ErrorKind::Unsupported,
-            Self::BusOff { .. } => io::ErrorKind::ConnectionAborted,
-            Self::NotTaken { .. } => io::ErrorKind::TimedOut,
-            Self::Taken { .. } => io::ErrorKind::ResourceBusy,
-        }
-    }
+    NotAcknowledged(String),
 }
 
 impl From<InterfaceError> for io::Error {
     fn from(error: InterfaceError) -> Self {
-        Self::new(error.kind(), error)
+        let kind = match error {
+            InterfaceError::NoCan | InterfaceError::Classic(_) => io::ErrorKind::Unsupported,
+            InterfaceError::Missing(..) => io::ErrorKind::NotFound,
+            InterfaceError::NotCan(..) => io::ErrorKind::InvalidInput,
+            InterfaceError::Down(_) => io::ErrorKind::NetworkDown,
+            InterfaceError::BusOff(_) => io::ErrorKind::ConnectionAborted,
+            InterfaceError::NotAcknowledged(_) => io::ErrorKind::TimedOut,
+            InterfaceError::Taken(..) => io::ErrorKind::ResourceBusy,
+        };
+        Self::new(kind, error)
     }
 }
 
-/// Looks into `interfaces` (of Linux: `/sys/class/net`) whether one can carry CAN FD now.
+/// Whether an interface can carry CAN FD now, by the files below `interfaces` (`/sys/class/net`).
 pub(super) fn check(interfaces: &Path, name: &str) -> Result<(), InterfaceError> {
     let number = |what| number(interfaces, name, what);
-    let others = || can_interfaces(interfaces);
     let name = name.to_owned();
-    match (number("type"), number("flags"), number("mtu")) {
-        (None, ..) => Err(InterfaceError::Missing {
-            name,
-            others: others(),
-        }),
-        (Some(kind), ..) if kind != CAN_TYPE => Err(InterfaceError::NotCan {
-            name,
-            others: others(),
-        }),
-        (_, Some(flags), _) if flags & UP == 0 => Err(InterfaceError::Down { name }),
-        (.., Some(mtu)) if mtu < CAN_FD_MTU => Err(InterfaceError::Classic { name }),
-        _ => Ok(()),
-    }
+    let others = || can_interfaces(interfaces);
+    Err(match (number("type"), number("flags"), number("mtu")) {
+        (None, ..) => InterfaceError::Missing(name, others()),
+        (Some(kind), ..) if kind != CAN_TYPE => InterfaceError::NotCan(name, others()),
+        (_, Some(flags), _) if flags & UP == 0 => InterfaceError::Down(name),
+        (.., Some(mtu)) if mtu < CAN_FD_MTU => InterfaceError::Classic(name),
+        _ => return Ok(()),
+    })
 }
 
-/// A number that the system tells of an interface, decimal or hexadecimal.
+/// A number that the system reports of an interface, decimal or hexadecimal.
 fn number(interfaces: &Path, name: &str, what: &str) -> Option<u32> {
     // Another directory's file is none of an interface.
     if name.is_empty() || name.contains('/') || name.starts_with('.') {
@@ -175,81 +139,65 @@ mod tests {
     use super::{InterfaceError, check};
     use std::fs;
     use std::io;
-    use tempfile::TempDir;
 
-    /// A system with these interfaces: name, type, flags and MTU.
-    fn system(interfaces: &[[&str; 4]]) -> io::Result<TempDir> {
-        let directory = TempDir::new()?;
-        for [name, kind, flags, mtu] in interfaces {
-            let of = directory.path().join(name);
-            fs::create_dir(&of)?;
-            for (what, value) in [("type", kind), ("flags", flags), ("mtu", mtu)] {
-                fs::write(of.join(what), format!("{value}\n"))?;
-            }
-        }
-        Ok(directory)
-    }
-
-    /// What is told of `name` on a system with one interface of each kind.
-    fn told(name: &str) -> io::Result<Option<String>> {
-        let directory = system(&[
+    /// What is reported of `name` on a system with one interface of each kind: name, type, flags and MTU.
+    fn checked(name: &str) -> io::Result<Result<(), InterfaceError>> {
+        let directory = tempfile::tempdir()?;
+        for [name, kind, flags, mtu] in [
             ["can0", "280", "0x40081", "72"],
             ["can1", "280", "0x40080", "72"],
             ["can2", "280", "0x40081", "16"],
             ["eth0", "1", "0x1003", "1500"],
-        ])?;
-        Ok(check(directory.path(), name)
-            .err()
-            .map(|error| error.to_string()))
+        ] {
+            let interface = directory.path().join(name);
+            fs::create_dir(&interface)?;
+            for (what, value) in [("type", kind), ("flags", flags), ("mtu", mtu)] {
+                fs::write(interface.join(what), format!("{value}\n"))?;
+            }
+        }
+        Ok(check(directory.path(), name))
     }
 
     #[test]
-    fn an_interface_with_can_fd_that_is_up_will_do() -> io::Result<()> {
-        assert_eq!(told("can0")?, None);
-        Ok(())
-    }
-
-    #[test]
-    fn what_is_missing_is_named_with_its_cure() -> io::Result<()> {
-        let up = "`ip link set can1 up type can bitrate 1000000 dbitrate 5000000 fd on`";
-        assert_eq!(
-            told("can1")?,
-            Some(format!("the CAN interface `can1` is down; {up}"))
-        );
-        assert_eq!(
-            told("can2")?.as_deref(),
-            Some(
-                "the CAN interface `can2` is up without CAN FD; `ip link set can2 down`, then \
-                 `ip link set can2 up type can bitrate 1000000 dbitrate 5000000 fd on`; \
-                 if that is refused, its adapter has no CAN FD"
-            )
-        );
-        assert_eq!(
-            told("eth0")?.as_deref(),
-            Some(
+    fn what_is_missing_is_named_with_its_remedy() -> io::Result<()> {
+        assert_eq!(checked("can0")?, Ok(()));
+        let settings = "up type can bitrate 1000000 dbitrate 5000000 fd on`";
+        for (name, expected) in [
+            (
+                "can1",
+                format!("the CAN interface `can1` is down; `ip link set can1 {settings}"),
+            ),
+            (
+                "can2",
+                format!(
+                    "the CAN interface `can2` is up without CAN FD; `ip link set can2 down`, then \
+                     `ip link set can2 {settings}; if that is refused, its adapter has no CAN FD"
+                ),
+            ),
+            (
+                "eth0",
                 "`eth0` is no CAN interface (there is can0, can1, can2); name one that `ip link show type can` lists"
-            )
-        );
-        assert_eq!(
-            told("can7")?.as_deref(),
-            Some(
-                "there is no CAN interface `can7` (there is can0, can1, can2); \
-                 plug its adapter in and load its driver, then \
-                 `ip link set can7 up type can bitrate 1000000 dbitrate 5000000 fd on`"
-            )
-        );
+                    .into(),
+            ),
+            (
+                "can7",
+                format!(
+                    "there is no CAN interface `can7` (there is can0, can1, can2); plug its adapter in and load its \
+                     driver, then `ip link set can7 {settings}"
+                ),
+            ),
+        ] {
+            let error = checked(name)?.map_err(|error| error.to_string());
+            assert_eq!(error, Err(expected));
+        }
         Ok(())
     }
 
     #[test]
     fn a_path_is_no_interface() -> io::Result<()> {
         for name in ["", ".", "..", "../can0", "can0/"] {
-            let directory = system(&[["can0", "280", "0x1", "72"]])?;
-            let error = check(directory.path(), name);
-            assert!(
-                matches!(error, Err(InterfaceError::Missing { .. })),
-                "{name}"
-            );
+            let missing = matches!(checked(name)?, Err(InterfaceError::Missing(..)));
+            assert!(missing, "{name}");
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! A CAN interface of Linux.
 
 use super::interface::{INTERFACES, check};
-use super::sole::Sole;
+use super::sender_lock::SenderLock;
 use super::{CanPort, InterfaceError};
 use leg_firmware::can::{CanFrame, Identifier, LegAddress};
 use rustix::io::Errno;
@@ -32,7 +32,7 @@ pub struct SocketCan {
     ordinary: CanFdSocket,
     urgent: CanFdSocket,
     /// None where only urgent frames are sent.
-    _sole: Option<Sole>,
+    _lock: Option<SenderLock>,
 }
 
 impl SocketCan {
@@ -40,23 +40,23 @@ impl SocketCan {
     ///
     /// # Errors
     /// An [`InterfaceError`] inside: no CAN in the kernel, no such interface, not up, without CAN FD, taken by another
-    /// program. What else the system says.
+    /// program. Another error of the system.
     pub fn open(name: &str, leg: LegAddress) -> io::Result<Self> {
         check(Path::new(INTERFACES), name)?;
-        let sole = Sole::take(name, leg)?;
-        Self::begin(name, leg, Some(sole))
+        let lock = SenderLock::take(name, leg)?;
+        Self::open_sockets(name, leg, Some(lock))
     }
 
-    /// The same beside whatever other program talks to that leg, for one that sends urgent frames only.
+    /// The same for a program that sends urgent frames only, whatever other program talks to that leg.
     ///
     /// # Errors
     /// As [`Self::open`].
-    pub fn open_beside(name: &str, leg: LegAddress) -> io::Result<Self> {
+    pub fn open_urgent(name: &str, leg: LegAddress) -> io::Result<Self> {
         check(Path::new(INTERFACES), name)?;
-        Self::begin(name, leg, None)
+        Self::open_sockets(name, leg, None)
     }
 
-    fn begin(name: &str, leg: LegAddress, sole: Option<Sole>) -> io::Result<Self> {
+    fn open_sockets(name: &str, leg: LegAddress, lock: Option<SenderLock>) -> io::Result<Self> {
         let open = || CanFdSocket::open(name).map_err(|error| explain(error, name));
         let (ordinary, urgent) = (open()?, open()?);
         let from_leg = CanFilter::new(u32::from(Identifier::ToHost(leg).bits()), EXACTLY);
@@ -71,7 +71,7 @@ impl SocketCan {
             name: name.to_owned(),
             ordinary,
             urgent,
-            _sole: sole,
+            _lock: lock,
         })
     }
 }
@@ -121,18 +121,14 @@ fn full(error: &io::Error) -> bool {
     Errno::from_io_error(error) == Some(Errno::NOBUFS)
 }
 
-/// What the system says, with its cause and remedy where they are known.
+/// The error of the system, with its cause and remedy where they are known.
 fn explain(error: io::Error, name: &str) -> io::Error {
     let name = name.to_owned();
     match Errno::from_io_error(&error) {
         Some(Errno::AFNOSUPPORT | Errno::PROTONOSUPPORT) => InterfaceError::NoCan.into(),
-        Some(Errno::NODEV | Errno::NXIO) => InterfaceError::Missing {
-            name,
-            others: Vec::new(),
-        }
-        .into(),
-        Some(Errno::NETDOWN) => InterfaceError::Down { name }.into(),
-        Some(Errno::NOBUFS | Errno::AGAIN) => InterfaceError::NotTaken { name }.into(),
+        Some(Errno::NODEV | Errno::NXIO) => InterfaceError::Missing(name, Vec::new()).into(),
+        Some(Errno::NETDOWN) => InterfaceError::Down(name).into(),
+        Some(Errno::NOBUFS | Errno::AGAIN) => InterfaceError::NotAcknowledged(name).into(),
         _ => error,
     }
 }
@@ -150,22 +146,21 @@ fn from_socket(frame: &CanAnyFrame, name: &str) -> io::Result<Option<CanFrame>> 
     match frame {
         CanAnyFrame::Fd(frame) => Ok(from_fd(frame)),
         CanAnyFrame::Error(error) if error.error_bits() & libc::CAN_ERR_BUSOFF != 0 => {
-            let name = name.to_owned();
-            Err(InterfaceError::BusOff { name }.into())
+            Err(InterfaceError::BusOff(name.to_owned()).into())
         }
         _ => Ok(None),
     }
 }
 
 fn from_fd(frame: &CanFdFrame) -> Option<CanFrame> {
-    let Id::Standard(id) = frame.hal_id() else {
-        return None;
-    };
-    let identifier = Identifier::from_bits(id.as_raw())?;
-    CanFrame::new(identifier, frame.data()).ok()
+    match frame.hal_id() {
+        Id::Standard(id) => CanFrame::new(Identifier::from_bits(id.as_raw())?, frame.data()).ok(),
+        Id::Extended(_) => None,
+    }
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::{SocketCan, explain, from_socket, to_socket};
     use leg_firmware::can::{CanFrame, Identifier, LegAddress};
@@ -176,54 +171,43 @@ mod tests {
 
     const LEG: LegAddress = LegAddress::ALL[4];
 
+    fn error_frame(bits: u32) -> CanAnyFrame {
+        CanErrorFrame::new_error(bits, &[]).unwrap().into()
+    }
+
     #[test]
-    fn a_frame_comes_back_from_the_sockets_form() -> io::Result<()> {
+    fn a_frame_comes_back_from_the_sockets_form() {
         for size in [0, 3, 8, 12, 48, 64] {
             let payload: Vec<u8> = (0..size).collect();
-            let Ok(frame) = CanFrame::new(Identifier::ToLeg(LEG), &payload) else {
-                panic!("{size} bytes are a size that CAN FD has")
-            };
-            let sent = to_socket(&frame)?;
+            let frame = CanFrame::new(Identifier::ToLeg(LEG), &payload).unwrap();
+            let sent = to_socket(&frame).unwrap();
             assert!(
                 sent.is_brs(),
                 "the payload goes at the data phase's bit rate"
             );
             assert_eq!(sent.data(), payload);
-            assert_eq!(from_socket(&sent.into(), "can0")?, Some(frame));
+            assert_eq!(from_socket(&sent.into(), "can0").unwrap(), Some(frame));
         }
-        Ok(())
     }
 
     #[test]
-    fn what_is_no_frame_of_the_bus_is_passed_over() -> io::Result<()> {
-        let standard = |bits| StandardId::new(bits).map(socketcan::Id::from);
-        let extended = ExtendedId::new(0x105).map(socketcan::Id::from);
-        let fd = |id: Option<socketcan::Id>| CanFdFrame::new(id?, &[1; 8]).map(CanAnyFrame::from);
-        let classic = standard(0x105).and_then(|id| CanDataFrame::new(id, &[1; 8]));
+    fn what_is_no_frame_of_the_bus_is_passed_over() {
+        let standard = |bits| StandardId::new(bits).unwrap();
         for frame in [
-            fd(standard(0x107)),
-            fd(extended),
-            classic.map(CanAnyFrame::from),
-            CanErrorFrame::new_error(libc::CAN_ERR_ACK, &[])
-                .ok()
-                .map(CanAnyFrame::from),
+            CanFdFrame::new(standard(0x107), &[1; 8]).unwrap().into(),
+            CanFdFrame::new(ExtendedId::new(0x105).unwrap(), &[1; 8])
+                .unwrap()
+                .into(),
+            CanDataFrame::new(standard(0x105), &[1; 8]).unwrap().into(),
+            error_frame(libc::CAN_ERR_ACK),
         ] {
-            let Some(frame) = frame else {
-                panic!("the frame can be made")
-            };
-            assert_eq!(from_socket(&frame, "can0")?, None);
+            assert_eq!(from_socket(&frame, "can0").unwrap(), None);
         }
-        Ok(())
     }
 
     #[test]
-    fn a_bus_off_is_told_with_its_cure() {
-        let Ok(frame) = CanErrorFrame::new_error(libc::CAN_ERR_BUSOFF, &[]) else {
-            panic!("the frame can be made")
-        };
-        let Err(error) = from_socket(&frame.into(), "can0") else {
-            panic!("a bus-off is no frame")
-        };
+    fn a_bus_off_is_reported_with_its_remedy() {
+        let error = from_socket(&error_frame(libc::CAN_ERR_BUSOFF), "can0").unwrap_err();
         assert_eq!(error.kind(), io::ErrorKind::ConnectionAborted);
         assert_eq!(
             error.to_string(),
@@ -234,24 +218,30 @@ mod tests {
     }
 
     #[test]
-    fn the_systems_refusals_have_a_cure() {
-        for (errno, beginning) in [
+    fn the_systems_refusals_have_a_remedy() {
+        for (errno, start) in [
             (Errno::AFNOSUPPORT, "this system's kernel has no CAN; "),
             (Errno::NODEV, "there is no CAN interface `can0`; "),
             (Errno::NETDOWN, "the CAN interface `can0` is down; "),
-            (Errno::NOBUFS, "nobody on `can0` takes what is sent; "),
+            (
+                Errno::NOBUFS,
+                "nobody on `can0` acknowledges what is sent; ",
+            ),
         ] {
             let text = explain(errno.into(), "can0").to_string();
-            assert!(text.starts_with(beginning), "{text}");
+            assert!(text.starts_with(start), "{text}");
         }
     }
 
     #[test]
     fn an_interface_that_is_not_there_or_of_another_kind_is_refused() {
-        for open in [SocketCan::open, SocketCan::open_beside] {
-            let refused = |name| open(name, LEG).map(drop).map_err(|error| error.kind());
-            assert_eq!(refused("no-such-can"), Err(io::ErrorKind::NotFound));
-            assert_eq!(refused("lo"), Err(io::ErrorKind::InvalidInput));
+        for open in [SocketCan::open, SocketCan::open_urgent] {
+            for (name, kind) in [
+                ("no-such-can", io::ErrorKind::NotFound),
+                ("lo", io::ErrorKind::InvalidInput),
+            ] {
+                assert_eq!(open(name, LEG).unwrap_err().kind(), kind);
+            }
         }
     }
 }

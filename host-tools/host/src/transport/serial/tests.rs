@@ -1,8 +1,8 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{ST, Serial, SerialError, choose, refused};
+use super::port::{ST, choose, refused};
+use super::{Serial, SerialError, hub};
 use crate::pseudo_terminal::PseudoTerminal;
-use crate::transport::hub;
 use serialport::{SerialPortInfo, SerialPortType, UsbPortInfo};
 use std::fs::File;
 use std::io::ErrorKind;
@@ -52,7 +52,7 @@ fn what_is_no_port_is_refused_by_name() {
 }
 
 #[test]
-fn a_port_of_another_group_is_named_with_its_cure() {
+fn a_port_of_another_group_is_named_with_its_remedy() {
     let denied = serialport::ErrorKind::Io(ErrorKind::PermissionDenied);
     let error = refused("/dev/ttyACM0", &serialport::Error::new(denied, ""));
     assert!(matches!(error, SerialError::Forbidden(_)));
@@ -61,15 +61,15 @@ fn a_port_of_another_group_is_named_with_its_cure() {
 }
 
 #[test]
-fn a_program_that_has_the_port_and_sleeps_is_not_taken_for_the_board() {
+fn a_program_that_has_the_port_and_is_suspended_is_not_taken_for_the_board() {
     let terminal = PseudoTerminal::open().unwrap();
     let port = terminal.path().display().to_string();
     let owner = File::open(terminal.path()).unwrap();
     owner.lock().unwrap();
-    let place = hub::meeting_place(&port).unwrap();
-    let _ = std::fs::remove_file(&place);
+    let path = hub::socket_path(&port).unwrap();
+    let _ = std::fs::remove_file(&path);
     // It lets in whoever comes, by the system's hand, and does nothing.
-    let _sleeping = UnixListener::bind(&place).unwrap();
+    let _suspended = UnixListener::bind(&path).unwrap();
     let error = Serial::open(&port).unwrap_err();
     assert!(matches!(error, SerialError::Suspended(_)), "{error}");
 }

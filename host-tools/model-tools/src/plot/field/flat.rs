@@ -1,13 +1,17 @@
 //! Azimuth across, tilt upwards.
 
-use super::Field;
+use super::PlotField;
 use super::bands::Bands;
 use super::isolines::{LINE_PX, isolines};
 use super::runs::runs;
 use crate::plot::canvas::{AXIS_TITLE_PX, Area, Drawn, LABEL_PX, MARGIN_PX};
 use plotters::prelude::*;
 
-pub(super) fn paint<B: DrawingBackend>(field: &Field, bands: &Bands, area: &Area<B>) -> Drawn<B> {
+pub(super) fn paint<B: DrawingBackend>(
+    field: &PlotField,
+    bands: &Bands,
+    area: &Area<B>,
+) -> Drawn<B> {
     let mut chart = ChartBuilder::on(area)
         .margin(MARGIN_PX)
         .set_label_area_size(LabelAreaPosition::Bottom, 70)

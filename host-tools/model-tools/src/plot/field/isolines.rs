@@ -1,16 +1,16 @@
 //! Lines of equal value, by marching squares.
 
 use super::bands::Bands;
-use super::{Field, Sample};
+use super::{PlotField, PoseSample};
 use contour::ContourBuilder;
 
 /// How wide the lines are.
 pub(super) const LINE_PX: u32 = 2;
 
 /// The lines between the bands as points (azimuth, tilt), degrees. They end where the region or what is known ends.
-pub(super) fn isolines(field: &Field, bands: &Bands) -> Vec<Vec<(f64, f64)>> {
+pub(super) fn isolines(field: &PlotField, bands: &Bands) -> Vec<Vec<(f64, f64)>> {
     // A column of the turn before and two of the next one, so that lines reach 0° and 360°.
-    let around = |row: &[Option<Sample>]| {
+    let around = |row: &[Option<PoseSample>]| {
         let columns = (0..row.len() + 3).map(|i| (i + row.len() - 1) % row.len());
         let values = columns.map(|i| row[i].and_then(|s| s.value).unwrap_or(f64::NAN));
         values.collect::<Vec<f64>>()
@@ -34,7 +34,7 @@ pub(super) fn isolines(field: &Field, bands: &Bands) -> Vec<Vec<(f64, f64)>> {
     let shown = |&(x, y): &(f64, f64)| {
         // Where a ring runs along the border of the values it is none of the value's lines.
         let on_map = (0.0..=360.0).contains(&x) && y > 0.0 && y < edge;
-        let sample = || field.at(x / x_step, y / y_step);
+        let sample = || field.interpolate(x / x_step, y / y_step);
         on_map && sample().and_then(|sample| sample.shown()).is_some()
     };
     let rings = lines.iter().flat_map(|line| &line.geometry().0);

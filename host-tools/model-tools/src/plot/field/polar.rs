@@ -1,10 +1,11 @@
 //! From above: azimuth round, tilt outwards.
 
-use super::Field;
+use super::PlotField;
 use super::bands::Bands;
 use super::isolines::{LINE_PX, isolines};
 use super::runs::{Run, runs};
 use crate::plot::canvas::{Area, Drawn, LABEL_PX};
+use leg_base::angles;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -17,7 +18,11 @@ const ARC_DEG: f64 = 2.0;
 /// How far a piece reaches under the next, in parts of the radius.
 const OVERLAP: f64 = 0.006;
 
-pub(super) fn paint<B: DrawingBackend>(field: &Field, bands: &Bands, area: &Area<B>) -> Drawn<B> {
+pub(super) fn paint<B: DrawingBackend>(
+    field: &PlotField,
+    bands: &Bands,
+    area: &Area<B>,
+) -> Drawn<B> {
     let edge = field.tilt_max_deg();
     let (width, height) = area.dim_in_pixel();
     let side = width.min(height);
@@ -38,17 +43,21 @@ pub(super) fn paint<B: DrawingBackend>(field: &Field, bands: &Bands, area: &Area
         chart.draw_series([Polygon::new(sector(&run), colour.filled())])?;
     }
     for line in isolines(field, bands) {
-        let points = line.into_iter().map(|(azimuth, tilt)| at(azimuth, tilt));
+        let points = line.into_iter().map(|(azimuth, tilt)| place(azimuth, tilt));
         chart.draw_series(LineSeries::new(points, BLACK.stroke_width(LINE_PX)))?;
     }
     let text = ("sans-serif", LABEL_PX)
         .into_text_style(area)
         .pos(Pos::new(HPos::Center, VPos::Center));
     for azimuth in (0..360).step_by(30).map(f64::from) {
-        let spoke = [at(azimuth, 0.0), at(azimuth, edge)];
+        let spoke = [place(azimuth, 0.0), place(azimuth, edge)];
         chart.draw_series(LineSeries::new(spoke, WHITE.mix(0.5).stroke_width(1)))?;
-        let place = at(azimuth, 1.08 * edge);
-        chart.draw_series([Text::new(format!("{azimuth:.0}°"), place, text.clone())])?;
+        let label_place = place(azimuth, 1.08 * edge);
+        chart.draw_series([Text::new(
+            format!("{azimuth:.0}°"),
+            label_place,
+            text.clone(),
+        )])?;
     }
     for ring in rings(edge) {
         chart.draw_series(LineSeries::new(
@@ -59,7 +68,7 @@ pub(super) fn paint<B: DrawingBackend>(field: &Field, bands: &Bands, area: &Area
     chart.draw_series(LineSeries::new(circle(edge), BLACK.stroke_width(1)))?;
     for ring in rings(edge) {
         // On white: no one colour of text can be read on every band.
-        let label = EmptyElement::at(at(75.0, ring))
+        let label = EmptyElement::at(place(75.0, ring))
             + Rectangle::new([(-22, -13), (22, 13)], WHITE.mix(0.85).filled())
             + Text::new(format!("{ring:.0}°"), (0, 0), text.clone());
         chart.draw_series([label])?;
@@ -76,13 +85,13 @@ fn rings(edge: f64) -> impl Iterator<Item = f64> {
 }
 
 fn circle(tilt_deg: f64) -> impl Iterator<Item = (f64, f64)> {
-    (0..=180).map(move |step| at(2.0 * f64::from(step), tilt_deg))
+    (0..=180).map(move |step| place(2.0 * f64::from(step), tilt_deg))
 }
 
 /// Where a pose is, seen from above.
-fn at(azimuth_deg: f64, tilt_deg: f64) -> (f64, f64) {
-    let (sin, cos) = azimuth_deg.to_radians().sin_cos();
-    (tilt_deg * cos, tilt_deg * sin)
+fn place(azimuth_deg: f64, tilt_deg: f64) -> (f64, f64) {
+    let [x, y] = angles::unit_vector(azimuth_deg);
+    (tilt_deg * x, tilt_deg * y)
 }
 
 /// The outline of a run: along its outer arc and back along the inner one.
@@ -91,7 +100,7 @@ fn sector(run: &Run) -> Vec<(f64, f64)> {
     let steps = ((last - first) / ARC_DEG).ceil().max(1.0) as usize;
     let azimuth = |step: usize| first + (last - first) * step as f64 / steps as f64;
     let (inside, outside) = run.tilts_deg;
-    let outer = (0..=steps).map(|step| at(azimuth(step), outside));
-    let inner = (0..=steps).rev().map(|step| at(azimuth(step), inside));
+    let outer = (0..=steps).map(|step| place(azimuth(step), outside));
+    let inner = (0..=steps).rev().map(|step| place(azimuth(step), inside));
     outer.chain(inner).collect()
 }

@@ -1,7 +1,7 @@
 //! Cells of equal colour side by side, as one piece: a picture of a thousand pieces, not of a hundred thousand.
 
 use super::bands::Bands;
-use super::{Field, Sample};
+use super::{PlotField, PoseSample};
 use plotters::style::RGBColor;
 
 /// None of the colours of the bands, and none of the greys.
@@ -37,14 +37,14 @@ pub(super) enum Shade {
 }
 
 impl Shade {
-    fn of(sample: Option<Sample>, bands: &Bands) -> Self {
+    fn new(sample: Option<PoseSample>, bands: &Bands) -> Self {
         let Some(sample) = sample else {
             return Self::NoResult;
         };
         match sample.shown() {
             Some(value) => Self::Band(bands.band(value)),
-            None if sample.between() => Self::Between,
-            None if sample.outside() => Self::Outside,
+            None if sample.is_between() => Self::Between,
+            None if sample.is_outside() => Self::Outside,
             None => Self::NoResult,
         }
     }
@@ -60,15 +60,15 @@ impl Shade {
 }
 
 /// The values that the runs show.
-pub(super) fn values(field: &Field) -> impl Iterator<Item = f64> {
+pub(super) fn values(field: &PlotField) -> impl Iterator<Item = f64> {
     let (rows, columns) = counts(field);
     let places = (0..rows).flat_map(move |row| (0..columns).map(move |column| (column, row)));
-    let samples = places.filter_map(|(column, row)| field.at(middle(column), middle(row)));
+    let samples = places.filter_map(|(column, row)| field.interpolate(middle(column), middle(row)));
     samples.filter_map(|sample| sample.shown())
 }
 
 /// How many fine rows and columns there are.
-fn counts(field: &Field) -> (usize, usize) {
+fn counts(field: &PlotField) -> (usize, usize) {
     let rows = (field.tilts_deg.len() - 1) * FINER;
     (rows, field.azimuths * FINER)
 }
@@ -79,7 +79,7 @@ fn middle(index: usize) -> f64 {
 }
 
 /// All runs of a field.
-pub(super) fn runs(field: &Field, bands: &Bands) -> Vec<Run> {
+pub(super) fn runs(field: &PlotField, bands: &Bands) -> Vec<Run> {
     let (rows, _) = counts(field);
     let height = field.tilt_max_deg() / rows as f64;
     let row = |row| (row as f64 * height, (row + 1) as f64 * height);
@@ -88,12 +88,12 @@ pub(super) fn runs(field: &Field, bands: &Bands) -> Vec<Run> {
         .collect()
 }
 
-fn row_of(field: &Field, bands: &Bands, row: usize, tilts_deg: (f64, f64)) -> Vec<Run> {
+fn row_of(field: &PlotField, bands: &Bands, row: usize, tilts_deg: (f64, f64)) -> Vec<Run> {
     let (_, columns) = counts(field);
     let width = 360.0 / columns as f64;
     let mut runs: Vec<Run> = Vec::new();
     for column in 0..columns {
-        let shade = Shade::of(field.at(middle(column), middle(row)), bands);
+        let shade = Shade::new(field.interpolate(middle(column), middle(row)), bands);
         let end = (column + 1) as f64 * width;
         match runs.last_mut() {
             Some(run) if run.shade == shade => run.azimuths_deg.1 = end,

@@ -2,12 +2,12 @@
 
 use super::isolines::isolines;
 use super::runs::{Shade, runs};
-use super::{Field, Layout, Sample, save_png, save_svg};
+use super::{Layout, PlotField, PoseSample, save_both};
 use crate::plot::PlotError;
 
 /// Tilt itself as the quantity, with room for it up to 24° at azimuths from 180° to 330°; no result near 355°. What has
 /// no room has some of the wider kind to 240°.
-fn field() -> Field {
+fn field() -> PlotField {
     let tilts_deg: Vec<f64> = (0..=6).map(|i| 5.0 * f64::from(i)).collect();
     let sample = |tilt: f64, column: u32| {
         let room = if (18..34).contains(&column) {
@@ -16,7 +16,7 @@ fn field() -> Field {
             1.0
         };
         let wider_room = if column < 24 { 1.0 } else { room };
-        (column != 35).then_some(Sample {
+        (column != 35).then_some(PoseSample {
             value: Some(tilt),
             room,
             wider_room,
@@ -24,7 +24,7 @@ fn field() -> Field {
     };
     let row = |tilt: f64| (0..36).map(move |column| sample(tilt, column));
     let samples = tilts_deg.iter().flat_map(|&tilt| row(tilt)).collect();
-    Field {
+    PlotField {
         title: "Title".into(),
         quantity: "tilt".into(),
         unit: "°C".into(),
@@ -81,8 +81,7 @@ fn every_place_is_in_one_run_of_its_shade() {
 fn both_layouts_name_everything() {
     let directory = tempfile::tempdir().unwrap();
     for (layout, axis) in [(Layout::Flat, "azimuth (°)"), (Layout::Polar, "330°")] {
-        let path = directory.path().join("map.svg");
-        save_svg(&field(), layout, &path).unwrap();
+        let path = save_both(&field(), layout, &directory.path().join("map")).unwrap();
         let svg = std::fs::read_to_string(&path).unwrap();
         for text in [
             "Title",
@@ -95,44 +94,44 @@ fn both_layouts_name_everything() {
         ] {
             assert!(svg.contains(text), "{layout:?}: {text}");
         }
-        save_png(&field(), layout, &directory.path().join("map.png")).unwrap();
+        assert!(path.with_extension("png").exists());
     }
 }
 
 #[test]
 fn a_field_with_nothing_to_show_is_refused() {
-    let empty = Field {
+    let empty = PlotField {
         samples: vec![None; 36 * 7],
         ..field()
     };
-    let short = Field {
+    let short = PlotField {
         samples: field().samples[..5].to_vec(),
         ..field()
     };
-    let path = std::path::Path::new("never.svg");
+    let directory = tempfile::tempdir().unwrap();
+    let stem = directory.path().join("never");
     for field in [empty, short] {
-        let refused = save_svg(&field, Layout::Flat, path);
+        let refused = save_both(&field, Layout::Flat, &stem);
         assert!(matches!(refused, Err(PlotError::Empty)));
     }
-    assert!(!path.exists());
+    assert!(!stem.with_extension("svg").exists());
 }
 
 #[test]
 fn a_field_without_a_value_shows_where_they_would_be() {
-    let unknown = |sample: Option<Sample>| {
+    let unknown = |sample: Option<PoseSample>| {
         let sample = sample?;
-        Some(Sample {
+        Some(PoseSample {
             value: None,
             ..sample
         })
     };
-    let field = Field {
+    let field = PlotField {
         samples: field().samples.into_iter().map(unknown).collect(),
         ..field()
     };
     let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("map.svg");
-    save_svg(&field, Layout::Polar, &path).unwrap();
+    let path = save_both(&field, Layout::Polar, &directory.path().join("map")).unwrap();
     let svg = std::fs::read_to_string(&path).unwrap();
     for text in ["little room", "no room", "no result"] {
         assert!(svg.contains(text), "{text}");

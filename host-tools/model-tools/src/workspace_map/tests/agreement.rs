@@ -2,7 +2,7 @@
 
 use super::GRID;
 use crate::nonlinear::deviation_m;
-use crate::workspace_map::{Grid, Quantity, WorkspaceMap};
+use crate::workspace_map::{Grid, MapQuantity, WorkspaceMap};
 use fastrand::Rng;
 use leg_model::evaluate;
 use leg_rig::ready_rigs::READY_RIGS;
@@ -72,14 +72,14 @@ fn linear_and_nonlinear_deviation_are_of_one_size() {
             azimuths: 12,
             tilts: 4,
         };
-        let map = WorkspaceMap::compute_with_nonlinear(&rig, 0.5, grid, || ());
+        let map = WorkspaceMap::compute(&rig, 0.5, grid, true, || ());
         assert_eq!(map.without_nonlinear(), [], "{}", ready.name);
         let (azimuth, tilt, cell) = map.poses().last().unwrap();
         let query = rig.query(azimuth, tilt, 0.5);
         let expected = deviation_m(&rig.parameters, &query).unwrap().unwrap() * 1000.0;
-        let found = Quantity::DeviationNonlinear.value(&cell.unwrap());
+        let found = MapQuantity::DeviationNonlinear.value(&cell.unwrap());
         assert_eq!(found, Some(expected), "{}", ready.name);
-        let [least, most] = map.extremes(Quantity::LinearOverNonlinear).unwrap();
+        let [least, most] = map.extremes(MapQuantity::LinearOverNonlinear).unwrap();
         let (least, most) = (least.value, most.value);
         let close = 90.0 < least && most < 160.0;
         assert!(close, "{}: {least} to {most} %", ready.name);

@@ -1,12 +1,12 @@
 //! What depends on the rig's pretension and what does not.
 
 use super::{GRID, POSES, ready};
-use crate::workspace_map::{Cell, Quantity, WorkspaceMap};
+use crate::workspace_map::{Cell, MapQuantity, WorkspaceMap};
 use leg_model::{Error, Reason};
 use leg_rig::rig_file::RigFile;
 
 #[test]
-fn a_level_that_does_not_hold_a_pose_leaves_its_range() {
+fn a_pretension_that_does_not_hold_a_pose_leaves_its_range() {
     let rig = RigFile {
         pretension_n: 0.0,
         ..ready("spherical")
@@ -22,7 +22,7 @@ fn a_level_that_does_not_hold_a_pose_leaves_its_range() {
 
 /// The ball joint too, although its twist, on which the range depends a little, is that of the pretension.
 #[test]
-fn feasibility_does_not_depend_on_the_level() {
+fn feasibility_does_not_depend_on_the_pretension() {
     for name in ["table1", "notch_universal", "spherical"] {
         let map = |pretension_n| {
             let rig = RigFile {
@@ -60,12 +60,12 @@ fn feasibility_does_not_depend_on_the_level() {
 }
 
 #[test]
-fn extremes_at_the_level_are_of_poses_where_it_keeps_the_bounds() {
+fn extremes_at_the_pretension_are_of_poses_where_it_keeps_the_bounds() {
     let rig = ready("leaf_spring_universal");
     let map = WorkspaceMap::on_one_core(&rig, 2.0, GRID);
     let counts = map.counts();
     assert!(counts.only_another_pretension > 0 && counts.feasible < POSES);
-    let [_, most] = map.extremes(Quantity::Deviation).unwrap();
+    let [_, most] = map.extremes(MapQuantity::Deviation).unwrap();
     let deviation = |cell: &Cell| cell.at_pretension.unwrap().deviation_mm;
     let all = map.cells.iter().flatten();
     let inside = all.clone().filter(|cell| cell.pretension_keeps_bounds);
@@ -73,6 +73,6 @@ fn extremes_at_the_level_are_of_poses_where_it_keeps_the_bounds() {
     assert!((most.value - largest).abs() < 1e-9);
     assert!(all.map(deviation).fold(0.0, f64::max) > largest);
     // The margin says how far the pretension is from keeping them.
-    let [worst, _] = map.extremes(Quantity::Margin).unwrap();
+    let [worst, _] = map.extremes(MapQuantity::Margin).unwrap();
     assert!(worst.value < 0.0);
 }

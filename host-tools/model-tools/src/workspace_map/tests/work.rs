@@ -7,22 +7,22 @@ use leg_rig::rig_file::RigFile;
 use std::cell::Cell;
 
 thread_local! {
-    static SURVEYS: Cell<usize> = const { Cell::new(0) };
+    static EVALUATIONS: Cell<usize> = const { Cell::new(0) };
 }
 
-/// Called once a survey.
-pub(in crate::workspace_map) fn count_survey() {
-    SURVEYS.set(SURVEYS.get() + 1);
+/// Called once an evaluation.
+pub(in crate::workspace_map) fn count_evaluation() {
+    EVALUATIONS.set(EVALUATIONS.get() + 1);
 }
 
-/// One survey a pose, which the benchmark measures, and nothing nonlinear.
+/// One evaluation a pose, which the benchmark measures, and nothing nonlinear.
 #[test]
-fn a_plain_map_surveys_every_pose_once() {
+fn a_plain_map_evaluates_every_pose_once() {
     for ready in READY_RIGS {
         let rig = RigFile::parse(ready.name, ready.text).unwrap();
-        SURVEYS.set(0);
+        EVALUATIONS.set(0);
         let map = WorkspaceMap::on_one_core(&rig, 1.0, GRID);
-        assert_eq!(SURVEYS.get(), POSES, "{}", ready.name);
+        assert_eq!(EVALUATIONS.get(), POSES, "{}", ready.name);
         let mut cells = map.cells.iter().flatten();
         assert!(cells.all(|cell| cell.deviation_nonlinear_mm.is_none()));
     }

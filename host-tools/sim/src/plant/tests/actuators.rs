@@ -4,7 +4,7 @@ use super::{HELD, OFF, PlantSettings, Start, driven, plant, ready, run};
 use leg_rig::actuator::Actuator;
 use leg_rig::rig_file::RigFile;
 
-/// The pull inwards and outwards at a pretension: 150 N is the rig's ceiling.
+/// The pull inwards and outwards at a pretension: 150 N is the rig's maximum tension.
 const HIGHEST: Start = Start::Held {
     azimuth_deg: 0.0,
     tilt_deg: 0.0,
@@ -38,13 +38,13 @@ fn a_reversed_motor_first_crosses_the_play() {
     while plant.motors[0].angle_rad > turned - 2.0 * play_rad {
         plant.step(&driven([-0.1, 0.0, 0.0]));
         let back = turned - plant.motors[0].angle_rad;
-        let let_out = plant.truth().unstretched_m[0] - length;
+        let paid_out_m = plant.truth().unstretched_m[0] - length;
         let expected = (back - play_rad).max(0.0) * actuator.m_per_rad();
         assert!(
-            (let_out - expected).abs() < 1e-15,
-            "{let_out:e} {expected:e}"
+            (paid_out_m - expected).abs() < 1e-15,
+            "{paid_out_m:e} {expected:e}"
         );
-        crossed += u32::from(let_out == 0.0);
+        crossed += u32::from(paid_out_m == 0.0);
     }
     assert!(crossed > 0);
 }

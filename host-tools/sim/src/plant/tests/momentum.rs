@@ -1,4 +1,4 @@
-//! The angular momentum about the axis round which nothing pulls stays. The energy does not tell of gyroscopic moments,
+//! The angular momentum about the axis round which nothing pulls stays. The energy does not show gyroscopic moments,
 //! which do no work; this does.
 
 use super::{OFF, PlantSettings, Start, plant, ready, run};
@@ -22,7 +22,7 @@ fn spinning(name: &str) -> Plant {
         leg_axial_inertia_kg_m2: 8e-3,
         ..PlantSettings::default().undamped()
     };
-    let mut plant = plant(&rig, &settings, Start::Slack { slack_m: 0.1 });
+    let mut plant = plant(&rig, &settings, Start::Slack { slack_mm: 100.0 });
     let direction = Direction::from_angles(0.4, 0.5).unwrap();
     plant.leg.direction = direction;
     plant.leg.rate = if rig.support.twists() {

@@ -13,7 +13,7 @@ fn end(rig: &RigFile, substeps: u32, drive: &Drive<f32>) -> Truth {
         ..PlantSettings::default()
     };
     let mut plant = plant(rig, &settings, HELD);
-    plant.push([8.0, -4.0, 2.0], 0.02);
+    plant.push([8.0, -4.0, 2.0].into(), 0.02, 0.0);
     run(&mut plant, 800, drive);
     plant.truth()
 }

@@ -26,7 +26,7 @@ fn a_loaded_and_pushed_leg_rests_where_the_statics_say() {
     for (name, file) in ready_rigs() {
         let mut plant = plant(&file, &STRONGLY_DAMPED, HELD);
         let start = plant.truth();
-        plant.push([3.0, -8.0, 2.0], 0.05);
+        plant.push([3.0, -8.0, 2.0].into(), 0.05, 0.0);
         plant.set_payload(1.2, 0.1);
         run(&mut plant, 24_000, &OFF);
         let truth = plant.truth();

@@ -1,13 +1,13 @@
 //! The tendons: slack, stretched beyond their curve, cut, and not as the rig file says.
 
 use super::{HELD, OFF, PlantSettings, Start, driven, plant, ready, run};
-use crate::plant::Fault;
+use crate::plant::Defect;
 use crate::plant::tendon_pull::RealTendon;
 use leg_model::Elasticity;
 
 #[test]
 fn a_slack_leg_hangs_at_rest_until_its_tendons_are_wound_up() {
-    let start = Start::Slack { slack_m: 0.5e-3 };
+    let start = Start::Slack { slack_mm: 0.5 };
     let mut plant = plant(&ready("table1"), &PlantSettings::default(), start);
     run(&mut plant, 800, &OFF);
     let at_rest = plant.truth();
@@ -16,12 +16,12 @@ fn a_slack_leg_hangs_at_rest_until_its_tendons_are_wound_up() {
     assert!(at_zero.iter().all(|length| (length - 0.0355).abs() < 1e-15));
     while plant.truth().tensions_n[0] < 20.0 {
         plant.step(&driven([0.1; 3]));
-        // Pulling in, the encoder tells the length to a count.
+        // While it reels in, the encoder gives the length to a count.
         let (truth, m_per_count) = (plant.truth(), plant.actuator.m_per_count());
         let counts = plant.sense().encoder_counts;
         for i in 0..3 {
-            let told = at_zero[i] - f64::from(counts[i]) * m_per_count;
-            assert!((0.0..=m_per_count * 1.001).contains(&(told - truth.unstretched_m[i])));
+            let counted = at_zero[i] - f64::from(counts[i]) * m_per_count;
+            assert!((0.0..=m_per_count * 1.001).contains(&(counted - truth.unstretched_m[i])));
         }
     }
     assert!(plant.truth().time_s < 1.0);
@@ -72,17 +72,17 @@ fn tendons_that_stretch_more_hold_the_leg_alike() {
 #[test]
 fn the_books_close_over_a_cut_and_a_change_of_payload() {
     let mut plant = plant(&ready("universal"), &PlantSettings::default(), HELD);
-    let before = plant.truth().energy.total_j();
+    let before = plant.energy().total_j();
     plant.set_payload(2.0, 0.1);
     run(&mut plant, 400, &OFF);
     assert!((plant.truth().payload_kg - 1.25).abs() < 1e-9);
     run(&mut plant, 800, &OFF);
     assert_eq!(plant.truth().payload_kg, 2.0);
-    plant.set_fault(Fault::TendonCut(2), true);
+    plant.set_defect(Defect::TendonCut(2), true);
     run(&mut plant, 800, &OFF);
-    let truth = plant.truth();
-    assert!(truth.work.cut_j > 1e-3 && truth.work.payload_j < -1.0);
-    let gap = truth.energy.total_j() - before - truth.work.gained_j();
+    let work = plant.work();
+    assert!(work.cut_j > 1e-3 && work.payload_j < -1.0);
+    let gap = plant.energy().total_j() - before - work.gained_j();
     assert!(gap.abs() < 1e-5, "{gap:e} J");
 }
 

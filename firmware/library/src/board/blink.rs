@@ -1,0 +1,75 @@
+//! The blink pattern of a board's LED.
+
+use crate::supervisor::State;
+
+/// Steps of a pattern; one takes a tenth of a second.
+const STEPS: u32 = 20;
+
+/// Time of a step, ms.
+pub const BLINK_STEP_MS: u64 = 100;
+
+/// Whether the LED is on at a step, counted from anywhere.
+///
+/// | state                     | pattern, 2 s            |
+/// |---------------------------|-------------------------|
+/// | starting                  | on                      |
+/// | disarmed                  | one flash               |
+/// | disarmed, fault latched   | three flashes           |
+/// | homing                    | on and off by turns, 0.2 s |
+/// | active                    | on, one gap             |
+/// | held                      | on and off by turns, 1 s |
+/// | ramping down             | two flashes             |
+/// | off after a fault         | on and off by turns, 0.1 s |
+#[must_use]
+pub const fn led_on(state: State, faulted: bool, step: u32) -> bool {
+    // The first step is the lowest bit.
+    let pattern: u32 = match (state, faulted) {
+        (State::Boot, _) => 0b1111_1111_1111_1111_1111,
+        (State::Disarmed, false) => 0b0000_0000_0000_0000_0001,
+        (State::Disarmed, true) => 0b0000_0000_0000_0001_0101,
+        (State::Homing, _) => 0b0011_0011_0011_0011_0011,
+        (State::Active, _) => 0b1111_1111_1111_1111_1110,
+        (State::Held, _) => 0b0000_0000_0011_1111_1111,
+        (State::RampingDown, _) => 0b0000_0000_0000_0000_0101,
+        (State::Off, _) => 0b0101_0101_0101_0101_0101,
+    };
+    pattern >> (step % STEPS) & 1 == 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{STEPS, led_on};
+    use crate::supervisor::State;
+
+    fn pattern(state: State, faulted: bool) -> Vec<bool> {
+        (0..STEPS)
+            .map(|step| led_on(state, faulted, step))
+            .collect()
+    }
+
+    #[test]
+    fn every_state_has_its_own_pattern() {
+        let mut patterns: Vec<Vec<bool>> = State::ALL
+            .into_iter()
+            .map(|state| pattern(state, false))
+            .collect();
+        patterns.push(pattern(State::Disarmed, true));
+        for (i, a) in patterns.iter().enumerate() {
+            assert!(a.contains(&true), "the LED shows that tasks run");
+            for b in &patterns[..i] {
+                assert_ne!(a, b);
+            }
+        }
+    }
+
+    #[test]
+    fn it_repeats() {
+        for step in 0..STEPS {
+            let turn = step + 7 * STEPS;
+            assert_eq!(
+                led_on(State::Held, false, step),
+                led_on(State::Held, false, turn)
+            );
+        }
+    }
+}

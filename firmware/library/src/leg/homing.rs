@@ -1,0 +1,47 @@
+//! One tick of homing.
+
+use super::mode::ModeStep;
+use super::shared::Shared;
+use crate::control::{HomingSequence, HomingStep, Measured, Measurement};
+use crate::supervisor::{Event, Fault, FaultSet};
+use leg_model::Scalar;
+
+/// Goes on with homing, and does what that asks for.
+#[inline(never)]
+pub fn step<T: Scalar>(
+    homing: &mut HomingSequence<T>,
+    shared: &mut Shared<T>,
+    measurement: &mut Measurement<T>,
+    measured: &Measured<T>,
+) -> ModeStep {
+    let asked = homing.step(&shared.mechanism, &measured.pulled_m, &measured.tensions_n);
+    let mut failed = false;
+    if !homing.releases() {
+        let f_max_n = shared.limits.homing_f_max_n;
+        shared.f_max_n = f_max_n;
+        let twice_n = f_max_n + f_max_n;
+        failed = measured.tensions_n.iter().any(|&tension| tension > twice_n);
+    }
+    let mut event = None;
+    match asked {
+        HomingStep::Lead(goals) => {
+            for (axis, goal) in shared.axes.iter_mut().zip(&goals) {
+                axis.lead(goal, T::one());
+            }
+        }
+        HomingStep::Tare(offsets_n) => measurement.tare(&offsets_n),
+        HomingStep::Searching => {}
+        HomingStep::Found(zero_m) => {
+            shared.zero_m = Some(zero_m);
+            shared.estimator.straight_down();
+            event = Some(Event::Homed);
+        }
+        HomingStep::Failed(tendon) => {
+            shared.failed_tendon = tendon;
+            failed = true;
+        }
+    }
+    let mut faults = FaultSet::NONE;
+    faults.add(Fault::HomingFailed, failed);
+    ModeStep { faults, event }
+}

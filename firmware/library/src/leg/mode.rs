@@ -1,0 +1,108 @@
+//! What the leg is doing, and what only that needs.
+
+use super::active::Active;
+use super::resting::{Held, RampingDown};
+use super::shared::Shared;
+use crate::control::{HomingSequence, Measured};
+use crate::supervisor::{Event, FaultSet, State};
+use leg_model::Scalar;
+
+/// Ticks of [`State::Boot`]: 2 ms, in which the filters of the sensors settle.
+const BOOT_TICKS: u32 = 16;
+
+/// The mode: the leg's [`State`] with the data that lives only as long as the state does.
+///
+/// Its tag is the number of the state, so that reading the state costs one load.
+#[derive(Debug)]
+#[repr(u8)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "a mode is kept in place: there is no allocation on the board"
+)]
+pub enum Mode<T> {
+    /// The sensors are read, nothing is driven.
+    Boot { ticks_left: u32 },
+    /// The drivers are off.
+    Disarmed,
+    /// The zero is searched for.
+    Homing(HomingSequence<T>),
+    /// Commands are followed.
+    Active(Active<T>),
+    /// The leg stays where it is.
+    Held(Held<T>),
+    /// The tendons are paid out.
+    RampingDown(RampingDown<T>),
+    /// The drivers are off after a fault.
+    Off,
+}
+
+impl<T: Scalar> Mode<T> {
+    /// The first one.
+    pub const fn boot() -> Self {
+        Self::Boot {
+            ticks_left: BOOT_TICKS,
+        }
+    }
+
+    /// The state.
+    #[inline(always)]
+    pub const fn state(&self) -> State {
+        match self {
+            Self::Boot { .. } => State::Boot,
+            Self::Disarmed => State::Disarmed,
+            Self::Homing(_) => State::Homing,
+            Self::Active(_) => State::Active,
+            Self::Held(_) => State::Held,
+            Self::RampingDown(_) => State::RampingDown,
+            Self::Off => State::Off,
+        }
+    }
+
+    /// The active mode, if it is that.
+    #[inline(always)]
+    pub const fn active(&self) -> Option<&Active<T>> {
+        match self {
+            Self::Active(active) => Some(active),
+            _ => None,
+        }
+    }
+
+    /// Counts a tick of the boot; true if it was the last.
+    #[inline(always)]
+    pub fn boots_up(&mut self) -> bool {
+        match self {
+            Self::Boot { ticks_left } => {
+                *ticks_left = ticks_left.saturating_sub(1);
+                *ticks_left == 0
+            }
+            _ => false,
+        }
+    }
+
+    /// The mode of a state that begins now.
+    pub fn begin(state: State, shared: &mut Shared<T>, measured: &Measured<T>) -> Self {
+        shared.come_to_rest(state, measured);
+        match state {
+            State::Boot => Self::boot(),
+            State::Disarmed => Self::Disarmed,
+            State::Homing => {
+                shared.failed_tendon = 0;
+                let settings = &shared.limits.homing;
+                Self::Homing(HomingSequence::new(settings, &measured.pulled_m))
+            }
+            State::Active => Self::Active(Active::begin(shared, measured)),
+            State::Held => Self::Held(Held::new(measured.pulled_m)),
+            State::RampingDown => Self::RampingDown(RampingDown::new(measured.pulled_m)),
+            State::Off => Self::Off,
+        }
+    }
+}
+
+/// What one tick of a mode comes to.
+#[derive(Clone, Copy, Debug)]
+pub struct ModeStep {
+    /// What went wrong in it.
+    pub faults: FaultSet,
+    /// What ends the mode, if anything does.
+    pub event: Option<Event>,
+}

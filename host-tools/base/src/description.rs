@@ -1,0 +1,65 @@
+//! States, reactions and faults as text.
+
+use leg_firmware::supervisor::{FaultSet, Reaction, State};
+
+/// A state.
+#[must_use]
+pub const fn state(state: State) -> &'static str {
+    match state {
+        State::Boot => "booting",
+        State::Disarmed => "disarmed",
+        State::Homing => "homing",
+        State::Active => "active",
+        State::Held => "held",
+        State::RampingDown => "ramping down",
+        State::Off => "off",
+    }
+}
+
+/// A reaction.
+#[must_use]
+pub const fn reaction(reaction: Reaction) -> &'static str {
+    match reaction {
+        Reaction::Limit => "limit",
+        Reaction::Hold => "hold",
+        Reaction::RampDown => "ramp down",
+        Reaction::GateOff => "gate off",
+    }
+}
+
+/// The names of faults; `none` for none.
+#[must_use]
+pub fn faults(faults: FaultSet) -> String {
+    let names: Vec<_> = faults.faults().map(|fault| fault.entry().name).collect();
+    if names.is_empty() {
+        "none".into()
+    } else {
+        names.join(", ")
+    }
+}
+
+/// Each fault with what raises it.
+#[must_use]
+pub fn causes(faults: FaultSet) -> String {
+    joined(faults, |fault| {
+        let entry = fault.entry();
+        format!("fault {}, {}: {}", fault.code(), entry.name, entry.cause)
+    })
+}
+
+/// What to do about each.
+#[must_use]
+pub fn remedies(faults: FaultSet) -> String {
+    joined(faults, |fault| fault.entry().remedy.into())
+}
+
+fn joined(faults: FaultSet, text: fn(leg_firmware::supervisor::Fault) -> String) -> String {
+    let texts: Vec<_> = faults.faults().map(text).collect();
+    texts.join("; ")
+}
+
+/// A schema's hash in hexadecimal digits.
+#[must_use]
+pub fn hex(schema: &[u8; 8]) -> String {
+    schema.iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -1,0 +1,111 @@
+//! The firmware under QEMU: one emulator for one session, reached by two named pipes.
+
+mod connection;
+mod log;
+mod pipes;
+mod process;
+
+use connection::Connection;
+use leg_firmware_bench::protocol::{BoardInfo, Reply, Request};
+use leg_sim::link::{self, Link, LinkError};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// How QEMU's clock relates to the instructions that it executes. Both kinds give the same run every time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum QemuClock {
+    /// 8 ns an instruction: about the speed of the real processor.
+    Normal,
+    /// 1 024 ns an instruction: the firmware can count instructions.
+    Counting,
+}
+
+impl QemuClock {
+    /// QEMU's `-icount`. Without it QEMU's clock is the host's, and the boot check of a busy machine would fail.
+    const fn icount(self) -> &'static str {
+        match self {
+            Self::Normal => "shift=3,sleep=off",
+            Self::Counting => "shift=10,sleep=off",
+        }
+    }
+}
+
+/// What to start and how.
+#[derive(Clone, Debug)]
+pub struct QemuConfig {
+    /// The program `qemu-system-arm`.
+    pub qemu: PathBuf,
+    /// ELF file of the firmware.
+    pub image: PathBuf,
+    /// QEMU's clock.
+    pub clock: QemuClock,
+    /// Longest wait for the boot, for a reply and for the end.
+    pub timeout: Duration,
+    /// Whether the firmware's log goes to standard error as it comes.
+    pub verbose: bool,
+}
+
+impl QemuConfig {
+    /// Runs `image` in `qemu` with the normal clock, a time-out of 20 s and without printing the log.
+    #[must_use]
+    pub const fn new(qemu: PathBuf, image: PathBuf) -> Self {
+        Self {
+            qemu,
+            image,
+            clock: QemuClock::Normal,
+            timeout: Duration::from_secs(20),
+            verbose: false,
+        }
+    }
+}
+
+/// A booted firmware that answers. Dropping it ends QEMU and removes the pipes.
+#[derive(Debug)]
+pub struct QemuSession {
+    link: Connection,
+    info: BoardInfo,
+}
+
+impl QemuSession {
+    /// Boots the firmware and introduces the host to it.
+    ///
+    /// # Errors
+    /// [`LinkError`] if QEMU, the image or the firmware fails, or the firmware was built from other sources.
+    pub fn open(config: &QemuConfig) -> Result<Self, LinkError> {
+        let mut link = Connection::open(config)?;
+        let info = link::greet(&mut link)?;
+        Ok(Self { link, info })
+    }
+
+    /// What the firmware said of itself.
+    #[must_use]
+    pub const fn info(&self) -> &BoardInfo {
+        &self.info
+    }
+
+    /// Number of QEMU's process.
+    #[must_use]
+    pub fn process_id(&self) -> u32 {
+        self.link.process_id()
+    }
+
+    /// The firmware's last log lines.
+    #[must_use]
+    pub fn log(&self) -> Vec<String> {
+        self.link.last_lines()
+    }
+
+    /// Closes the link and waits for the firmware to end by itself.
+    ///
+    /// # Errors
+    /// [`LinkError::Died`] if it ends in another way than by the closed link.
+    pub fn close(self) -> Result<(), LinkError> {
+        self.link.close()
+    }
+}
+
+impl Link for QemuSession {
+    fn ask(&mut self, request: &Request) -> Result<Reply, LinkError> {
+        self.link.ask(request)
+    }
+}

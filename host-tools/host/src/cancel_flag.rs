@@ -1,0 +1,35 @@
+//! Ctrl-C.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
+
+/// Whether the user has asked for an end; clones share it.
+#[derive(Clone, Debug, Default)]
+pub struct CancelFlag(Arc<AtomicBool>);
+
+impl CancelFlag {
+    /// The one that is set by Ctrl-C and by the end of the terminal.
+    #[must_use]
+    pub fn on_ctrl_c() -> Self {
+        static ONLY: OnceLock<CancelFlag> = OnceLock::new();
+        let make = || {
+            let flag = Self::default();
+            let set = flag.clone();
+            // Without a handler Ctrl-C ends the process, and the board's own timeout holds the leg.
+            let _ = ctrlc::set_handler(move || set.set());
+            flag
+        };
+        ONLY.get_or_init(make).clone()
+    }
+
+    /// Sets it.
+    pub fn set(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether it is set.
+    #[must_use]
+    pub fn is_set(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}

@@ -1,0 +1,256 @@
+//! Homing and moving the leg, and leaving it in hold.
+
+use super::command::same_direction;
+use super::{Operator, OperatorError};
+use leg_firmware::command::{Command, CommandRefusal};
+use leg_firmware::host_link::HostRefusal;
+use leg_firmware::supervisor::State;
+use leg_firmware::telemetry::Telemetry;
+use std::time::Duration;
+
+/// Longest homing.
+const HOMING_TIME: Duration = Duration::from_secs(120);
+
+/// Longest move with all that belongs to it.
+const MOVE_TIME: Duration = Duration::from_secs(60);
+
+/// How long the leg has to be settled.
+const SETTLED_TIME: Duration = Duration::from_millis(300);
+
+/// Distance of every tension from its target below which a leg is settled, N.
+const SETTLED_N: f32 = 2.0;
+
+/// Change from one poll to the next below which pretension and stiffness are settled, as a part of each.
+const SETTLED_PART: f32 = 1e-3;
+
+/// How hard the tendons shall pull.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TensionDemand {
+    /// A pretension, N.
+    Pretension(f32),
+    /// A bending stiffness, N·m/rad: the smallest, or against a push towards (cos, sin).
+    Stiffness(f32, Option<[f32; 2]>),
+}
+
+impl TensionDemand {
+    const fn command(self) -> Command {
+        match self {
+            Self::Pretension(pretension_n) => Command::Pretension(pretension_n),
+            Self::Stiffness(demand_nm_per_rad, towards) => Command::Stiffness {
+                demand_nm_per_rad,
+                towards,
+            },
+        }
+    }
+}
+
+/// What the leg shall do.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LegGoal {
+    /// Where it shall point: horizontal components; where it is if left out.
+    pub direction: Option<[f32; 2]>,
+    /// How hard its tendons shall pull; as before if left out.
+    pub demand: Option<TensionDemand>,
+}
+
+impl Operator {
+    /// Does `work` with keep-alives, and leaves the leg in hold however that ends. A leg that obeyed nothing
+    /// of it is left as it was.
+    ///
+    /// # Errors
+    /// That of `work`, unless no stop is acknowledged; [`OperatorError::CommandTimeTooShort`] before anything is done.
+    pub fn drive<T>(
+        &mut self,
+        work: impl FnOnce(&mut Self) -> Result<T, OperatorError>,
+    ) -> Result<T, OperatorError> {
+        self.learn_command_time()?;
+        self.keeps_alive = true;
+        let result = work(self);
+        self.keeps_alive = false;
+        let halted = if self.drives { self.halt() } else { Ok(()) };
+        match (result, halted) {
+            // Without a line there can be no stop, and its error says what the leg does then.
+            (Err(error @ OperatorError::ConnectionLost { .. }), _) => Err(error),
+            // Worse than whatever went before: it is not known whether the leg rests.
+            (_, Err(not_stopped)) => Err(not_stopped),
+            (result, Ok(())) => result,
+        }
+    }
+
+    /// Finds the zero and leaves the leg in hold, straight down. A leg in hold is disarmed first.
+    ///
+    /// # Errors
+    /// As [`Self::command`]; [`OperatorError::Failed`] if a fault ends it.
+    pub fn home(&mut self) -> Result<Telemetry<f32>, OperatorError> {
+        let asked = "home";
+        self.settle_state(asked)?;
+        if self.telemetry()?.telemetry.state == State::Held {
+            self.disarm()?;
+        }
+        self.drive(|operator| {
+            operator.command(Command::Home)?;
+            operator.follow(asked, HOMING_TIME, |_, telemetry| {
+                telemetry.state == State::Active
+            })?;
+            operator.settle(asked)
+        })
+    }
+
+    /// Brings the leg to a goal and leaves it in hold. Arms it if it is homed and disarmed, ends a hold that no fault
+    /// began.
+    ///
+    /// # Errors
+    /// As [`Self::command`]; [`OperatorError::Failed`], [`OperatorError::Limited`], [`OperatorError::StoppedByOtherHost`] or
+    /// [`OperatorError::TimedOut`] on the way.
+    pub fn reach(&mut self, goal: &LegGoal) -> Result<Telemetry<f32>, OperatorError> {
+        let asked = match (goal.direction, goal.demand) {
+            (Some(_), _) => "move",
+            (None, Some(_)) => "change its stiffness",
+            (None, None) => "hold",
+        };
+        self.settle_state(asked)?;
+        self.drive(|operator| {
+            operator.activate(asked)?;
+            if let Some(demand) = goal.demand {
+                operator.command(demand.command())?;
+            }
+            if let Some([x, y]) = goal.direction {
+                operator.command(Command::Move { x, y })?;
+            }
+            if *goal == LegGoal::default() {
+                // Also where the leg is active: it is this host then that holds it, or another that drives it is named.
+                operator.command(Command::Hold)?;
+            }
+            let telemetry = unlimited(asked, &operator.settle(asked)?)?;
+            arrived(goal, &telemetry)
+        })
+    }
+
+    /// Waits while the leg starts or relaxes; refuses a leg with a fault.
+    fn settle_state(&mut self, asked: &'static str) -> Result<(), OperatorError> {
+        let telemetry = self.wait_until("come to rest", MOVE_TIME, |telemetry| {
+            !matches!(telemetry.state, State::Boot | State::RampingDown)
+        })?;
+        let faults = telemetry.faults.without_limits();
+        if faults.any() {
+            return Err(OperatorError::Faulted { asked, faults });
+        }
+        Ok(())
+    }
+
+    /// Makes a leg without faults follow commands, its tendons taut.
+    fn activate(&mut self, asked: &'static str) -> Result<(), OperatorError> {
+        let telemetry = self.telemetry()?.telemetry;
+        let refuse = |refusal| {
+            Err(OperatorError::Refused {
+                asked,
+                refusal: HostRefusal::Command(refusal),
+            })
+        };
+        match telemetry.state {
+            State::Homing => return refuse(CommandRefusal::State(State::Homing)),
+            _ if !telemetry.homed => return refuse(CommandRefusal::NotHomed),
+            State::Disarmed => self.command(Command::Arm)?,
+            State::Held | State::Off => self.command(Command::Clear)?,
+            // Another host's, or not yet ended by its silence: the commands that follow show it.
+            State::Active | State::Boot | State::RampingDown => return Ok(()),
+        }
+        if telemetry.state == State::Disarmed {
+            self.settle(asked)?;
+        }
+        Ok(())
+    }
+
+    /// Waits until an armed leg is where it shall be, and stays so.
+    fn settle(&mut self, asked: &'static str) -> Result<Telemetry<f32>, OperatorError> {
+        let mut last: Option<Telemetry<f32>> = None;
+        let mut since = None;
+        self.follow(asked, MOVE_TIME, |now, telemetry| {
+            let before = last.replace(*telemetry);
+            if !before.is_some_and(|before| settled(&before, telemetry)) {
+                since = None;
+                return false;
+            }
+            now >= *since.get_or_insert(now) + SETTLED_TIME
+        })
+    }
+
+    /// Polls a leg that follows commands until `done` says so; what else it may come to is an error.
+    fn follow(
+        &mut self,
+        asked: &'static str,
+        timeout: Duration,
+        mut done: impl FnMut(Duration, &Telemetry<f32>) -> bool,
+    ) -> Result<Telemetry<f32>, OperatorError> {
+        let until = self.now() + timeout;
+        self.poll(asked, timeout, |now, telemetry| {
+            if !telemetry.state.follows() {
+                return Err(not_following(asked, telemetry));
+            }
+            let done = done(now, telemetry);
+            if !done && now >= until {
+                // What limits the leg is why it does not arrive.
+                unlimited(asked, telemetry)?;
+            }
+            Ok(done)
+        })
+    }
+}
+
+/// Why a leg that was driven no longer follows commands.
+fn not_following(asked: &'static str, telemetry: &Telemetry<f32>) -> OperatorError {
+    let state = telemetry.state;
+    let faults = telemetry.faults.without_limits();
+    if faults.any() {
+        OperatorError::Failed {
+            asked,
+            failed_tendon: telemetry.failed_tendon,
+            state,
+            faults,
+        }
+    } else {
+        OperatorError::StoppedByOtherHost { asked, state }
+    }
+}
+
+fn settled(before: &Telemetry<f32>, now: &Telemetry<f32>) -> bool {
+    let steady = |value: fn(&Telemetry<f32>) -> f32| {
+        (value(now) - value(before)).abs() <= SETTLED_PART * value(now).abs()
+    };
+    !now.moving
+        && steady(|telemetry| telemetry.pretension_n)
+        && steady(|telemetry| telemetry.stiffness_nm_per_rad)
+        && same_direction(&now.pose, &now.target)
+        && taut(&now.tensions_n, &now.target_tensions_n)
+}
+
+fn taut(measured_n: &[f32; 3], target_n: &[f32; 3]) -> bool {
+    let mut pairs = measured_n.iter().zip(target_n);
+    pairs.all(|(measured, target)| (measured - target).abs() <= SETTLED_N)
+}
+
+/// Whether the leg is where it shall be: a board may give up a path that it cannot plan.
+fn arrived(goal: &LegGoal, telemetry: &Telemetry<f32>) -> Result<Telemetry<f32>, OperatorError> {
+    match &goal.direction {
+        Some(direction) if !same_direction(&telemetry.target, direction) => {
+            Err(OperatorError::OtherPose(telemetry.pose))
+        }
+        _ => Ok(*telemetry),
+    }
+}
+
+fn unlimited(
+    asked: &'static str,
+    telemetry: &Telemetry<f32>,
+) -> Result<Telemetry<f32>, OperatorError> {
+    let faults = telemetry.faults.limits();
+    if faults.any() {
+        return Err(OperatorError::Limited {
+            asked,
+            faults,
+            stiffness_nm_per_rad: telemetry.stiffness_nm_per_rad,
+            pretension_n: telemetry.pretension_n,
+        });
+    }
+    Ok(*telemetry)
+}

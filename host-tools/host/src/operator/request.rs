@@ -1,0 +1,120 @@
+//! Requests and their replies.
+
+use super::{Operator, OperatorError};
+use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest};
+use std::time::Duration;
+
+/// Wait for a reply before the request is taken for lost.
+pub(super) const REPLY_TIME: Duration = Duration::from_millis(250);
+
+/// How often a request is sent at most: for three seconds, as the machine may have much else to do.
+const ATTEMPTS: u32 = 12;
+
+/// Wait before a busy leg is asked again.
+const BUSY_TIME: Duration = Duration::from_millis(50);
+
+/// When a request that got no reply is sent again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Repeat {
+    /// Always: to do it twice is to do it once.
+    Always,
+    /// Only if the leg reported a frame that it could not read: to do it later than asked may be to do something else.
+    IfLost,
+}
+
+/// The reply to a request that has nothing to report.
+pub(super) fn done(reply: HostReply) -> Option<()> {
+    matches!(reply, HostReply::Done).then_some(())
+}
+
+impl Operator {
+    /// Sends a harmless request until it is answered; `read` takes what is wanted out of the reply.
+    pub(super) fn ask<T>(
+        &mut self,
+        asked: &'static str,
+        request: &HostRequest,
+        read: impl FnOnce(HostReply) -> Option<T>,
+    ) -> Result<T, OperatorError> {
+        let reply = self.exchange(asked, request, Repeat::Always, REPLY_TIME)?;
+        read(reply).ok_or(OperatorError::WrongReply(asked))
+    }
+
+    /// Sends a request until it is answered, as often as that is harmless.
+    pub(super) fn exchange(
+        &mut self,
+        asked: &'static str,
+        request: &HostRequest,
+        repeat: Repeat,
+        reply_time: Duration,
+    ) -> Result<HostReply, OperatorError> {
+        let mut numbers = Vec::new();
+        let mut busy = false;
+        for _ in 0..ATTEMPTS {
+            numbers.push(self.connection.send(request)?);
+            let until = self.now() + reply_time;
+            let (reply, lost) = self.reply(&numbers, until)?;
+            busy = reply == Some(HostReply::Refused(HostRefusal::Busy));
+            match reply {
+                Some(_) if busy => self.pause(BUSY_TIME)?,
+                Some(HostReply::Refused(refusal)) => {
+                    return Err(self.connection.refused(asked, refusal));
+                }
+                Some(reply) => return Ok(reply),
+                None if repeat == Repeat::Always || lost => {}
+                None => return Err(OperatorError::Unacknowledged(asked)),
+            }
+        }
+        Err(if busy {
+            self.connection.refused(asked, HostRefusal::Busy)
+        } else {
+            OperatorError::NoAnswer(self.name())
+        })
+    }
+
+    /// The reply to one of these requests, and whether the leg could not read a frame meanwhile.
+    pub(super) fn reply(
+        &mut self,
+        numbers: &[u16],
+        until: Duration,
+    ) -> Result<(Option<HostReply>, bool), OperatorError> {
+        let mut lost = false;
+        while let Some((number, reply)) = self.next_reply(until)? {
+            if numbers.contains(&number) {
+                return Ok((Some(reply), lost));
+            }
+            let bad_frame = matches!(reply, HostReply::Refused(HostRefusal::BadFrame(_)));
+            lost |= number == 0 && bad_frame;
+        }
+        Ok((None, lost))
+    }
+
+    /// The next message that is no telemetry; none if none came in time. Sends keep-alives meanwhile.
+    fn next_reply(&mut self, until: Duration) -> Result<Option<(u16, HostReply)>, OperatorError> {
+        loop {
+            if self.cancel.is_set() {
+                return Err(OperatorError::Cancelled);
+            }
+            self.keep_alive()?;
+            let wake = until.min(self.wake_at());
+            match self.connection.receive(wake)? {
+                Some((0, HostReply::Telemetry(report))) => self.stream.keep(report),
+                Some(message) => {
+                    self.stream.note_introduction(&message.1);
+                    return Ok(Some(message));
+                }
+                None if self.now() >= until => return Ok(None),
+                None => {}
+            }
+        }
+    }
+
+    /// Lets time pass.
+    ///
+    /// # Errors
+    /// A connection that fails; [`OperatorError::Cancelled`].
+    pub fn pause(&mut self, time: Duration) -> Result<(), OperatorError> {
+        let until = self.now() + time;
+        while self.next_reply(until)?.is_some() {}
+        Ok(())
+    }
+}

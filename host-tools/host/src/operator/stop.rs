@@ -1,0 +1,100 @@
+//! Stopping, disarming and clearing a leg.
+
+use super::{Operator, OperatorError};
+use leg_firmware::command::{Command, CommandRefusal};
+use leg_firmware::host_link::{HOST_SCHEMA, Hello, HostRefusal, HostReply, HostRequest};
+use leg_firmware::supervisor::State;
+use leg_firmware::telemetry::Telemetry;
+use std::time::Duration;
+
+/// Wait for the answer to a stop before it is repeated.
+const STOP_TIME: Duration = Duration::from_millis(50);
+
+/// Stops without an answer before the leg is taken for unreachable: two seconds.
+const STOPS: u32 = 40;
+
+/// Longest ramp of the tendons from the maximum tension to slack.
+const RAMP_DOWN_TIME: Duration = Duration::from_secs(30);
+
+impl Operator {
+    /// Stops the leg, whatever else is going on: repeated until it is acknowledged, whoever drives, Ctrl-C or not. A leg
+    /// at rest or ramping down stays so.
+    ///
+    /// # Errors
+    /// [`OperatorError::NotStopped`]; a connection that fails.
+    pub fn stop(&mut self) -> Result<Telemetry<f32>, OperatorError> {
+        let stopped = self.uncancelled(|operator| {
+            operator.send_stops()?;
+            operator.telemetry()
+        });
+        self.drives = false;
+        stopped.map(|report| report.telemetry)
+    }
+
+    /// The same without reading telemetry.
+    pub(super) fn halt(&mut self) -> Result<(), OperatorError> {
+        let halted = self.uncancelled(Self::send_stops);
+        self.drives = false;
+        halted
+    }
+
+    /// Does `work` to its end even after Ctrl-C, and without keep-alives.
+    pub(super) fn uncancelled<T>(
+        &mut self,
+        work: impl FnOnce(&mut Self) -> Result<T, OperatorError>,
+    ) -> Result<T, OperatorError> {
+        let cancel = std::mem::take(&mut self.cancel);
+        let keeps_alive = std::mem::replace(&mut self.keeps_alive, false);
+        let result = work(self);
+        (self.cancel, self.keeps_alive) = (cancel, keeps_alive);
+        result
+    }
+
+    fn send_stops(&mut self) -> Result<(), OperatorError> {
+        let request = HostRequest::Command {
+            host: self.host,
+            command: Command::Stop,
+        };
+        let schema = HOST_SCHEMA;
+        let mut numbers = Vec::new();
+        for _ in 0..STOPS {
+            numbers.push(self.connection.send_urgent(&request)?);
+            let until = self.now() + STOP_TIME;
+            match self.reply(&numbers, until)?.0 {
+                Some(HostReply::Done) => return Ok(()),
+                // It ramps down or starts: nothing of it follows commands.
+                Some(HostReply::Refused(HostRefusal::Command(CommandRefusal::State(_)))) => {
+                    return Ok(());
+                }
+                Some(HostReply::Refused(HostRefusal::NotIdentified)) => {
+                    self.connection
+                        .send(&HostRequest::Identify(Hello { schema }))?;
+                }
+                // No room, or superseded by another stop: again.
+                _ => {}
+            }
+        }
+        Err(OperatorError::NotStopped(self.name()))
+    }
+
+    /// Ramps the tendons down and waits until the drivers are off.
+    ///
+    /// # Errors
+    /// As [`Self::command`]; [`OperatorError::TimedOut`].
+    pub fn disarm(&mut self) -> Result<(), OperatorError> {
+        self.command(Command::Disarm)?;
+        self.drives = false;
+        self.wait_until("relax", RAMP_DOWN_TIME, |telemetry| {
+            matches!(telemetry.state, State::Disarmed | State::Off)
+        })?;
+        Ok(())
+    }
+
+    /// Clears the faults whose cause is gone, and leaves the leg in hold if it was held.
+    ///
+    /// # Errors
+    /// As [`Self::command`]; [`OperatorError::NotCleared`] where a cause is still there.
+    pub fn clear(&mut self) -> Result<(), OperatorError> {
+        self.drive(|operator| operator.command(Command::Clear))
+    }
+}

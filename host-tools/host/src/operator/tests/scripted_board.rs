@@ -1,0 +1,98 @@
+//! A board that answers as a test says.
+
+use super::{hanging_leg, host};
+use crate::cancel_flag::CancelFlag;
+use crate::operator::{HostIdentity, Operator, OperatorError};
+use crate::transport::Transport;
+use leg_firmware::frame::{self, Decoder, MAX_FRAME};
+use leg_firmware::host_link::{
+    BoardKind, HostReply, HostRequest, Identity, ResetCause, TelemetryReport,
+};
+use leg_firmware::settings::Settings;
+use leg_firmware::telemetry::Telemetry;
+use leg_firmware::version::VERSION;
+use std::collections::VecDeque;
+use std::io;
+use std::time::Duration;
+
+/// It sends nothing by itself; time goes on only while its host waits.
+struct ScriptedBoard<F> {
+    answer: F,
+    decoder: Decoder,
+    answers: VecDeque<u8>,
+    now: Duration,
+}
+
+impl<F: FnMut(&HostRequest) -> Option<HostReply>> Transport for ScriptedBoard<F> {
+    fn name(&self) -> &'static str {
+        "a scripted board"
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        for &byte in bytes {
+            let Some(Ok(frame)) = self.decoder.push(byte) else {
+                continue;
+            };
+            if let Some(reply) = (self.answer)(&frame.message().unwrap()) {
+                let mut out = [0; MAX_FRAME];
+                let reply = frame::encode(frame.sequence, &reply, &mut out).unwrap();
+                self.answers.extend(reply);
+            }
+        }
+        Ok(())
+    }
+
+    fn receive(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize> {
+        if self.answers.is_empty() {
+            self.now += timeout;
+            return Err(io::ErrorKind::TimedOut.into());
+        }
+        io::Read::read(&mut self.answers, bytes)
+    }
+
+    fn now(&self) -> Duration {
+        self.now
+    }
+}
+
+/// A host of a board that answers everything so, introductions, too.
+pub fn scripted_from_start(
+    answer: impl FnMut(&HostRequest) -> Option<HostReply> + 'static,
+) -> Result<Operator, OperatorError> {
+    let board = ScriptedBoard {
+        answer,
+        decoder: Decoder::new(),
+        answers: VecDeque::new(),
+        now: Duration::ZERO,
+    };
+    Operator::open(Box::new(board), HostIdentity::FIXED, CancelFlag::default())
+}
+
+/// A host of a board that knows it, and answers everything else so.
+pub fn scripted(mut answer: impl FnMut(&HostRequest) -> Option<HostReply> + 'static) -> Operator {
+    scripted_from_start(move |request| match request {
+        HostRequest::Identify(_) => Some(HostReply::Identified(Identity {
+            board: BoardKind::InProcess,
+            version: VERSION,
+            reset: ResetCause::Emulated,
+            crash_report: heapless::String::new(),
+        })),
+        request => answer(request),
+    })
+    .unwrap()
+}
+
+/// The telemetry of a homed leg at rest, and its settings.
+pub fn at_rest() -> (Telemetry<f32>, Settings) {
+    let leg = hanging_leg();
+    let mut operator = host(&leg, 1);
+    let telemetry = operator.telemetry().unwrap().telemetry;
+    (telemetry, operator.settings().unwrap())
+}
+
+pub fn telemetry_reply(telemetry: &Telemetry<f32>) -> HostReply {
+    HostReply::Telemetry(TelemetryReport {
+        number: 0,
+        telemetry: *telemetry,
+    })
+}

@@ -1,0 +1,112 @@
+//! Links to the firmware without a board, and what they need: the Rust target, QEMU, images.
+
+use crate::options::Options;
+use clap::ValueEnum;
+use indicatif::ProgressBar;
+use leg_base::failure::Failure;
+use leg_boards::image::FirmwareImage;
+use leg_boards::qemu::{QemuClock, QemuConfig, QemuSession};
+use leg_boards::setup;
+use leg_sim::link::{InProcess, Link};
+use serde::Serialize;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Where the firmware runs without a board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Emulation {
+    /// On an emulated Cortex-M4F, under QEMU.
+    Qemu,
+    /// In this process.
+    Sim,
+}
+
+impl Emulation {
+    pub(crate) const fn text(self) -> &'static str {
+        match self {
+            Self::Qemu => "under QEMU",
+            Self::Sim => "in this process",
+        }
+    }
+
+    /// The firmware, to be coupled to a simulated leg.
+    pub(crate) fn link(self, options: Options) -> Result<Box<dyn Link>, Failure> {
+        match self {
+            Self::Sim => Ok(Box::new(InProcess::new())),
+            Self::Qemu => qemu(QemuClock::Normal, options),
+        }
+    }
+}
+
+/// What QEMU needs.
+#[derive(Debug, Serialize)]
+struct Prerequisites {
+    /// The emulator's program.
+    emulator: PathBuf,
+    /// The firmware's ELF file.
+    firmware: PathBuf,
+}
+
+/// What `cargo leg run` and `cargo test` need.
+#[derive(Debug, Serialize)]
+struct Setup {
+    #[serde(flatten)]
+    qemu: Prerequisites,
+    /// The interpreter of the comparison with MuJoCo.
+    python: PathBuf,
+}
+
+/// `leg setup`.
+pub(crate) fn setup(options: Options) -> Result<(), Failure> {
+    let qemu = prepare()?;
+    let python = setup::ensure_python(&mut report).map_err(|error| Failure::from_error(&error))?;
+    options.report(&Setup { qemu, python }, |ready| {
+        format!(
+            "emulator: {}\nfirmware: {}\npython:   {}\nAll is set up.\n",
+            ready.qemu.emulator.display(),
+            ready.qemu.firmware.display(),
+            ready.python.display()
+        )
+    })
+}
+
+/// The firmware under QEMU, whose clock may be made for counting. Installs and builds first what is missing.
+pub(crate) fn qemu(clock: QemuClock, options: Options) -> Result<Box<dyn Link>, Failure> {
+    let Prerequisites { emulator, firmware } = prepare()?;
+    let config = QemuConfig {
+        clock,
+        verbose: options.verbose,
+        ..QemuConfig::new(emulator, firmware)
+    };
+    match QemuSession::open(&config) {
+        Ok(session) => Ok(Box::new(session)),
+        Err(error) => Err(Failure::from_error(&error)),
+    }
+}
+
+/// Installs and builds what is missing, and says so on standard error.
+fn prepare() -> Result<Prerequisites, Failure> {
+    prepare_target()?;
+    let emulator = setup::ensure_qemu(&mut report).map_err(|error| Failure::from_error(&error))?;
+    let firmware = build_image(FirmwareImage::Qemu)?;
+    Ok(Prerequisites { emulator, firmware })
+}
+
+/// Installs what compiles the firmware, and says so on standard error.
+pub(crate) fn prepare_target() -> Result<(), Failure> {
+    setup::ensure_target(&mut report).map_err(|error| Failure::from_error(&error))
+}
+
+fn report(doing: &str) {
+    eprintln!("leg: {doing}");
+}
+
+/// Builds a board's firmware, with a spinner on a terminal: the first time takes half a minute.
+pub(crate) fn build_image(image: FirmwareImage) -> Result<PathBuf, Failure> {
+    let message = format!("building {}", image.binary());
+    let spinner = ProgressBar::new_spinner().with_message(message);
+    spinner.enable_steady_tick(Duration::from_millis(100));
+    let built = image.build();
+    spinner.finish_and_clear();
+    built.map_err(|error| Failure::from_error(&error))
+}

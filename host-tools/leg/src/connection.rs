@@ -1,0 +1,190 @@
+//! The connection to a leg: a board's serial port, a CAN FD bus, or an emulated leg.
+
+use crate::board::Emulation;
+use crate::notices::notices;
+use crate::options::Options;
+use crate::progress;
+use leg_base::description;
+use leg_base::failure::Failure;
+use leg_firmware::can::LegAddress;
+use leg_firmware::telemetry::Telemetry;
+use leg_host::cancel_flag::CancelFlag;
+use leg_host::leg_report::pose_words;
+use leg_host::operator::{HostIdentity, Operator, OperatorError};
+use leg_host::transport::Transport;
+#[cfg(target_os = "linux")]
+use leg_host::transport::can::{CanTransport, SocketCan};
+use leg_host::transport::emulated::EmulatedLine;
+use leg_host::transport::serial::{self, Serial};
+use leg_rig::rig_file::RigFile;
+use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
+use std::path::PathBuf;
+
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Connection")]
+pub(crate) struct ConnectionArgs {
+    /// Commands an emulated leg, a fresh one for each command: homed, hanging straight down and disarmed; for `leg home` and
+    /// `leg calibrate` slack and not homed. It has its own time and does not wait for the clock.
+    #[arg(long, value_enum)]
+    on: Option<Emulation>,
+    /// The serial port of the board; the port of its ST-LINK if left out.
+    #[arg(long, value_name = "PATH", conflicts_with = "on")]
+    port: Option<String>,
+    /// The CAN FD interface to which the board is connected, as `can0`; Linux only. One command at a time may use a leg on
+    /// CAN; only `leg stop` works beside another.
+    #[arg(long, value_name = "INTERFACE", conflicts_with_all = ["on", "port"])]
+    can: Option<String>,
+    /// The address of the leg on the CAN bus, 1 to 6.
+    #[arg(long, value_name = "N", requires = "can", default_value = "1", value_parser = leg_address)]
+    leg: LegAddress,
+}
+
+// No doc comment: it would be the help of the commands that take these arguments alone.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Connection")]
+pub(crate) struct LegArgs {
+    #[command(flatten)]
+    connection: ConnectionArgs,
+    /// The rig file or the name of a ready rig for the emulated leg; the paper's rig if left out.
+    #[arg(long, value_name = "FILE", requires = "on")]
+    rig: Option<PathBuf>,
+}
+
+fn leg_address(text: &str) -> Result<LegAddress, String> {
+    let number = text.parse().ok().and_then(LegAddress::new);
+    number.ok_or_else(|| "it is none of 1 to 6".into())
+}
+
+/// What a connection is opened for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    /// An emulated leg is homed.
+    Use,
+    /// Homing or calibration: an emulated leg is slack and not homed.
+    Calibrate,
+    /// Nothing but a stop, beside whatever else goes on.
+    Stop,
+}
+
+/// A leg that knows this host.
+pub(crate) struct LegConnection {
+    pub(crate) operator: Operator,
+    /// The emulated leg, for what is done to it from outside.
+    pub(crate) emulated: Option<EmulatedLine>,
+}
+
+/// How an emulated leg starts.
+pub(crate) const fn start(slack: bool) -> InitialState {
+    if slack {
+        InitialState::Slack
+    } else {
+        InitialState::Homed
+    }
+}
+
+impl LegArgs {
+    pub(crate) fn open(
+        &self,
+        purpose: Purpose,
+        options: Options,
+    ) -> Result<LegConnection, Failure> {
+        let rig = RigFile::load(self.rig.as_deref())?;
+        self.connection.open(&rig, purpose, options)
+    }
+}
+
+impl ConnectionArgs {
+    /// Opens the connection. `rig` is that of an emulated leg.
+    pub(crate) fn open(
+        &self,
+        rig: &RigFile,
+        purpose: Purpose,
+        options: Options,
+    ) -> Result<LegConnection, Failure> {
+        let cancel = CancelFlag::on_ctrl_c();
+        let Some(on) = self.on else {
+            let transport = match &self.can {
+                None => self.serial()?,
+                Some(interface) => can(interface, self.leg, purpose)?,
+            };
+            let operator = Operator::open(transport, HostIdentity::random(), cancel)?;
+            for notice in notices(operator.identity()) {
+                eprintln!("leg: {notice}");
+            }
+            return Ok(LegConnection {
+                operator,
+                emulated: None,
+            });
+        };
+        let start = start(purpose == Purpose::Calibrate);
+        let leg = EmulatedLeg::new(rig, start, on.link(options)?)
+            .map_err(|error| Failure::from_error(&error))?;
+        let emulated = EmulatedLine::new(leg, &format!("the leg {}", on.text()));
+        let host = Box::new(emulated.connect());
+        Ok(LegConnection {
+            operator: Operator::open(host, HostIdentity::FIXED, cancel)?,
+            emulated: Some(emulated),
+        })
+    }
+
+    fn serial(&self) -> Result<Box<dyn Transport>, Failure> {
+        let opened = match &self.port {
+            Some(port) => Serial::open(port),
+            None => serial::find_board().and_then(|port| Serial::open(&port)),
+        };
+        let serial = opened.map_err(|error| Failure::refused(error.to_string(), error.remedy()))?;
+        if let Some(reason) = serial.unshared() {
+            eprintln!(
+                "leg: other commands cannot use this port meanwhile ({reason}): let TMPDIR be a directory that may be written, with a short path"
+            );
+        }
+        Ok(Box::new(serial))
+    }
+}
+
+#[cfg(target_os = "linux")]
+fn can(interface: &str, leg: LegAddress, purpose: Purpose) -> Result<Box<dyn Transport>, Failure> {
+    let opened = if purpose == Purpose::Stop {
+        SocketCan::open_urgent(interface, leg).map(|port| CanTransport::urgent_only(port, leg))
+    } else {
+        SocketCan::open(interface, leg).map(|port| CanTransport::new(port, leg))
+    };
+    match opened {
+        Ok(transport) => Ok(Box::new(transport)),
+        Err(error) => Err(Failure::from_error(&error)),
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn can(_: &str, _: LegAddress, _: Purpose) -> Result<Box<dyn Transport>, Failure> {
+    Err(Failure::refused(
+        "CAN is supported on Linux only",
+        "connect the board's serial port",
+    ))
+}
+
+impl LegConnection {
+    /// Does `work`, shows meanwhile on a terminal what the leg does, and returns what it does in the end.
+    pub(crate) fn watched<T>(
+        mut self,
+        work: impl FnOnce(&mut Operator) -> Result<T, OperatorError>,
+    ) -> Result<Telemetry<f32>, Failure> {
+        let bar = progress::message();
+        let watching = bar.clone();
+        self.operator.set_watcher(move |telemetry| {
+            watching.set_message(progress_text(telemetry));
+            watching.tick();
+        });
+        let result = work(&mut self.operator);
+        bar.finish_and_clear();
+        result?;
+        Ok(self.operator.telemetry()?.telemetry)
+    }
+}
+
+fn progress_text(telemetry: &Telemetry<f32>) -> String {
+    let [a, b, c] = telemetry.tensions_n;
+    let pose = pose_words(telemetry.pose);
+    let state = description::state(telemetry.state);
+    format!("{state}, {pose}, tensions {a:.0} {b:.0} {c:.0} N")
+}

@@ -1,0 +1,182 @@
+//! `leg monitor`.
+
+mod udp;
+
+use crate::connection::{LegArgs, Purpose};
+use crate::notices::version_text;
+use crate::numbers::{monitor_rate_hz, seconds};
+use crate::options::Options;
+use crate::output::print;
+use leg_base::failure::Failure;
+use leg_host::monitor::{MonitorView, draw};
+use leg_host::operator::{Operator, OperatorError};
+use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyModifiers};
+use std::io::IsTerminal;
+use std::time::{Duration, Instant};
+use udp::Udp;
+
+/// How often keys are polled.
+const KEY_TIME: Duration = Duration::from_millis(50);
+
+/// Shows what the leg reports: on a screen, with --json as lines, or as datagrams. Read-only.
+///
+/// It may run beside other commands, except on CAN. The screen ends with q.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// Sends the lines of JSON as datagrams to a program such as PlotJuggler.
+    #[arg(long, value_name = "HOST:PORT")]
+    udp: Option<String>,
+    /// Reports per second, Hz, 0.1 to 100.
+    #[arg(long, value_name = "HZ", value_parser = monitor_rate_hz, default_value = "20")]
+    rate: f64,
+    /// Ends after so many seconds.
+    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    length: Option<Duration>,
+    #[command(flatten)]
+    leg: LegArgs,
+}
+
+pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
+    let screen = !options.json && std::io::stdout().is_terminal();
+    if !(screen || options.json || args.udp.is_some()) {
+        return Err(Failure::refused(
+            "standard output is no terminal",
+            "ask for lines with --json, or for datagrams with --udp",
+        ));
+    }
+    let udp = args.udp.as_deref().map(Udp::open).transpose()?;
+    let mut operator = args.leg.open(Purpose::Use, options)?.operator;
+    let title = format!(
+        "{}, firmware {}",
+        operator.name(),
+        version_text(operator.identity().version)
+    );
+    let settings = operator.settings()?;
+    let mut monitor = Monitor {
+        view: MonitorView::new(&title, &settings),
+        udp,
+        json: options.json,
+        period: Duration::from_secs_f64(1.0 / args.rate),
+        length: args.length,
+    };
+    if screen {
+        monitor.on_screen(&mut operator)
+    } else {
+        monitor.watch(&mut operator, |_, _| Ok(true))
+    }
+}
+
+/// Ctrl-C is how it ends: nothing then, and no failure.
+fn unless_ended<T>(result: Result<T, OperatorError>) -> Result<Option<T>, Failure> {
+    match result {
+        Ok(value) => Ok(Some(value)),
+        Err(OperatorError::Cancelled) => Ok(None),
+        Err(error) => Err(error.into()),
+    }
+}
+
+struct Monitor {
+    view: MonitorView,
+    udp: Option<Udp>,
+    json: bool,
+    period: Duration,
+    length: Option<Duration>,
+}
+
+impl Monitor {
+    /// Reads telemetry until `shown` returns false or the time is over. `shown` gets the time and, where there is a new one,
+    /// the picture; it is called in between, too.
+    fn watch(
+        &mut self,
+        operator: &mut Operator,
+        mut shown: impl FnMut(Duration, Option<&MonitorView>) -> Result<bool, Failure>,
+    ) -> Result<(), Failure> {
+        let end = self.length.map(|length| operator.now() + length);
+        while end.is_none_or(|end| operator.now() < end) {
+            let due = operator.now() + self.period;
+            let Some(reply) = unless_ended(operator.telemetry())? else {
+                return Ok(());
+            };
+            self.view.take(&reply.telemetry, operator.damaged_frames());
+            self.send()?;
+            if !shown(operator.now(), Some(&self.view))? {
+                return Ok(());
+            }
+            while operator.now() < due {
+                let left = due.saturating_sub(operator.now());
+                if unless_ended(operator.pause(left.min(KEY_TIME)))?.is_none()
+                    || !shown(operator.now(), None)?
+                {
+                    return Ok(());
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Prints and sends the line that is asked for.
+    fn send(&self) -> Result<(), Failure> {
+        if !self.json && self.udp.is_none() {
+            return Ok(());
+        }
+        let line = self.view.json();
+        let Some(line) = line.map_err(|error| Failure::from_error(&error))? else {
+            return Ok(());
+        };
+        if let Some(udp) = &self.udp {
+            udp.send(&line)?;
+        }
+        if self.json {
+            print(&(line + "\n"))?;
+        }
+        Ok(())
+    }
+
+    fn on_screen(&mut self, operator: &mut Operator) -> Result<(), Failure> {
+        let mut terminal = ratatui::try_init().map_err(|error| no_screen(&error))?;
+        // An emulated leg does not wait for the clock: without this its time would pass at once.
+        let start = (Instant::now(), operator.now());
+        let clock = operator.clock_is_emulated().then_some(start);
+        let watched = self.watch(operator, |now, view| {
+            if let Some((start, start_there)) = clock {
+                let ahead = now.saturating_sub(start_there);
+                std::thread::sleep(ahead.saturating_sub(start.elapsed()));
+            }
+            if let Some(view) = view {
+                let drawn = terminal.draw(|frame| draw(frame, view));
+                drawn.map_err(|error| no_screen(&error))?;
+            }
+            Ok(!end_wanted().map_err(|error| no_screen(&error))?)
+        });
+        ratatui::restore();
+        watched
+    }
+}
+
+/// Whether the user has pressed a key that ends the screen.
+fn end_wanted() -> std::io::Result<bool> {
+    while event::poll(Duration::ZERO)? {
+        if let Event::Key(key) = event::read()?
+            && ends(key)
+        {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+fn ends(key: KeyEvent) -> bool {
+    let control = key.modifiers.contains(KeyModifiers::CONTROL);
+    match key.code {
+        KeyCode::Char('c') => control,
+        KeyCode::Char('q') | KeyCode::Esc => true,
+        _ => false,
+    }
+}
+
+fn no_screen(error: &std::io::Error) -> Failure {
+    Failure::refused(
+        format!("the terminal shows no screen: {error}"),
+        "ask for lines with --json",
+    )
+}

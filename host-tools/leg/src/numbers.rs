@@ -1,0 +1,94 @@
+//! Numbers of the command line, checked.
+
+use leg_base::angles;
+use std::ops::RangeInclusive;
+use std::time::Duration;
+
+/// The longest time that a command is given, s: a year.
+const SECONDS_MAX: f64 = 31_536_000.0;
+
+/// A finite number.
+pub(crate) fn finite(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(value) => Err(format!("{value} is no finite number")),
+        Err(_) => Err("it is no number".into()),
+    }
+}
+
+/// A number in a range; `unit` begins with a space.
+fn in_range(text: &str, range: RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
+    let value = finite(text)?;
+    if range.contains(&value) {
+        return Ok(value);
+    }
+    let (start, end) = (range.start(), range.end());
+    Err(format!("it is not within {start} to {end}{unit}"))
+}
+
+/// An azimuth, degrees: ten turns in either direction.
+pub(crate) fn azimuth_deg(text: &str) -> Result<f64, String> {
+    in_range(text, -3600.0..=3600.0, " degrees")
+}
+
+/// A tilt, degrees: what the model serves.
+pub(crate) fn tilt_deg(text: &str) -> Result<f64, String> {
+    in_range(text, -60.0..=60.0, " degrees")
+}
+
+/// A payload, kg: what the model serves.
+pub(crate) fn payload_kg(text: &str) -> Result<f64, String> {
+    in_range(text, 0.0..=1e6, " kg")
+}
+
+/// Telemetry of `leg monitor` per second, Hz.
+pub(crate) fn monitor_rate_hz(text: &str) -> Result<f64, String> {
+    in_range(text, 0.1..=100.0, " Hz")
+}
+
+/// A number above zero.
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
+    match finite(text)? {
+        value if value > 0.0 => Ok(value),
+        _ => Err("it is not above zero".into()),
+    }
+}
+
+/// A number of at least zero.
+pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
+    match finite(text)? {
+        value if value >= 0.0 => Ok(value),
+        _ => Err("it is below zero".into()),
+    }
+}
+
+/// A time above zero, s.
+pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
+    positive(text)?;
+    let seconds = in_range(text, 0.0..=SECONDS_MAX, " s")?;
+    Duration::try_from_secs_f64(seconds).map_err(|error| error.to_string())
+}
+
+/// The horizontal unit vector of an azimuth.
+pub(crate) fn unit_vector(azimuth_deg: f64) -> [f32; 2] {
+    angles::unit_vector(azimuth_deg).map(|component| component as f32)
+}
+
+/// The horizontal components of the direction of a pose.
+pub(crate) fn direction(azimuth_deg: f64, tilt_deg: f64) -> [f32; 2] {
+    angles::direction(azimuth_deg, tilt_deg).map(|component| component as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::seconds;
+    use std::time::Duration;
+
+    #[test]
+    fn a_time_that_no_clock_holds_is_refused() {
+        assert_eq!(seconds("1.5"), Ok(Duration::from_millis(1500)));
+        for wrong in ["1e20", "1e9", "0", "-1", "inf", "NaN", "soon"] {
+            assert!(seconds(wrong).is_err(), "{wrong}");
+        }
+    }
+}

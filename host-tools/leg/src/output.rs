@@ -1,0 +1,164 @@
+//! Printing, files and errors, the same for every command.
+
+use leg_base::atomic_file::{self, Workshop};
+use leg_base::failure::{Failure, Message};
+use leg_base::json_line::to_line;
+use serde::Serialize;
+use std::error::Error;
+use std::fmt::Display;
+use std::io::{self, IsTerminal, Write};
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Writes to standard output.
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    let written = io::stdout().lock().write_all(text.as_bytes());
+    written.map_err(|error| {
+        let help = "see that the program that reads the output is still there";
+        Failure::refused(format!("cannot write to standard output: {error}"), help)
+    })
+}
+
+/// Writes a file whole or not at all; to standard output where none is named.
+pub(crate) fn write(file: Option<&Path>, text: &str) -> Result<(), Failure> {
+    let Some(file) = file else {
+        return print(text);
+    };
+    let written = atomic_file::replace(file, |new| std::fs::write(new, text));
+    written.map_err(|error: io::Error| {
+        let sentence = format!("cannot write {}: {error}", file.display());
+        Failure::refused(sentence, "name a file in a directory that may be written")
+    })
+}
+
+/// A directory into which something cannot be written; `option` is the one that names it.
+pub(crate) fn not_saved(
+    what: &str,
+    directory: &Path,
+    option: &str,
+    error: &dyn Display,
+) -> Failure {
+    let sentence = format!("no {what} in {}: {error}", directory.display());
+    Failure::refused(sentence, format!("name another directory with {option}"))
+}
+
+/// Lets `work` make files in a directory of its own, then moves all of them or none into `directory`. `before` is done when
+/// nothing but the moves is left.
+pub(crate) fn save_all<T>(
+    what: &str,
+    directory: &Path,
+    option: &str,
+    work: impl FnOnce(&Path) -> Result<T, Box<dyn Error>>,
+    before: impl FnOnce() -> Result<(), Failure>,
+) -> Result<T, Failure> {
+    let refused = |error: &dyn Display| not_saved(what, directory, option, error);
+    let workshop = Workshop::new(directory).map_err(|error| refused(&error))?;
+    let made = work(workshop.path()).map_err(|error| refused(&error))?;
+    workshop.check().map_err(|error| refused(&error))?;
+    before()?;
+    workshop.deliver().map_err(|error| refused(&error))?;
+    Ok(made)
+}
+
+/// Fails, exit code 1, if anything is named as failed.
+pub(crate) fn require_none(what: &str, failed: &[String], help: &str) -> Result<(), Failure> {
+    if failed.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::failed(
+        format!("{what}: {}", failed.join("; ")),
+        help,
+    ))
+}
+
+/// Prints an error on standard error.
+pub(crate) fn print_failure(failure: &Failure, json: bool) {
+    if json {
+        eprint!("{}", failure_line(failure));
+    } else {
+        eprintln!("{}", failure.render(io::stderr().is_terminal()));
+    }
+}
+
+/// Prints what clap says of the arguments: help on standard output, an error on standard error.
+pub(crate) fn usage(error: &clap::Error) -> ExitCode {
+    let json = std::env::args_os().any(|argument| argument == "--json");
+    if json && error.use_stderr() {
+        let text = error.to_string();
+        let sentence = text.split("\n\n").next().unwrap_or_default();
+        let sentence = sentence.strip_prefix("error: ").unwrap_or(sentence);
+        let help = "`leg help` and `leg help COMMAND` print what is accepted";
+        print_failure(&Failure::refused(sentence, help), true);
+    } else {
+        // Nothing is left to say where the message itself cannot be written.
+        let _ = error.print();
+    }
+    ExitCode::from(if error.use_stderr() { 2 } else { 0 })
+}
+
+/// An error for machines.
+#[derive(Serialize)]
+struct ErrorReport<'a> {
+    error: &'a str,
+    help: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    file: Option<&'a str>,
+    /// Line and column in the file, from 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    line: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    column: Option<usize>,
+    exit_code: u8,
+}
+
+/// One line of JSON.
+fn failure_line(failure: &Failure) -> String {
+    let (message, exit_code) = match failure {
+        Failure::Failed(message) => (message, 1),
+        Failure::Refused(message) => (message, 2),
+    };
+    let place = place(message);
+    let report = ErrorReport {
+        error: &message.sentence,
+        help: message.help.as_deref(),
+        file: message.place.as_ref().map(|place| place.file.as_str()),
+        line: place.map(|[line, _]| line),
+        column: place.map(|[_, column]| column),
+        exit_code,
+    };
+    // Strings and integers always have a form in JSON.
+    to_line(&report).unwrap_or_default()
+}
+
+/// Line and column where the message's place begins, from 1.
+fn place(message: &Message) -> Option<[usize; 2]> {
+    let place = message.place.as_ref()?;
+    let before = place.text.get(..place.span.start)?;
+    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    let line = before.matches('\n').count() + 1;
+    Some([line, before.get(line_start..)?.chars().count() + 1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::failure_line;
+    use leg_base::failure::{Failure, Place};
+
+    #[test]
+    fn an_error_for_machines_has_its_place_and_exit_code() {
+        let place = Place {
+            file: "a.toml".into(),
+            text: "x = 1\nµ = two\n".into(),
+            span: 11..14,
+        };
+        let failure = Failure::refused_at("no number", "write one", place);
+        assert_eq!(
+            failure_line(&failure),
+            "{\"error\":\"no number\",\"help\":\"write one\",\"file\":\"a.toml\",\"line\":2,\"column\":5,\"exit_code\":2}\n"
+        );
+        assert_eq!(
+            failure_line(&Failure::failed("off", "look")),
+            "{\"error\":\"off\",\"help\":\"look\",\"exit_code\":1}\n"
+        );
+    }
+}

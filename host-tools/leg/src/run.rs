@@ -1,0 +1,124 @@
+//! `leg run`.
+
+mod errors;
+mod report;
+
+use crate::board::Emulation;
+use crate::options::Options;
+use crate::output::not_saved;
+use crate::progress;
+use leg_base::failure::Failure;
+use leg_bench::run_charts;
+use leg_boards::image;
+use leg_host::recording;
+use leg_rig::rig_file::RigFile;
+use leg_sim::link::Link;
+use leg_sim::scenario::Scenario;
+use leg_sim::simulation::{Simulation, Summary, Tick};
+use report::RunReport;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Runs the firmware on a simulated leg through a scenario, and checks the results against the scenario's bounds.
+///
+/// As on the board, the firmware gets nothing but encoder counts, codes and flags. The same control law runs beside it in
+/// f64.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// Where the firmware runs.
+    #[arg(long, value_enum, default_value_t = Emulation::Qemu)]
+    on: Emulation,
+    /// The scenario file or the name of a ready scenario; the paper's Fig. 9 if left out.
+    #[arg(long, value_name = "FILE", default_value = "fig9")]
+    scenario: PathBuf,
+    /// The rig file or the name of a ready rig; that of the scenario if left out.
+    #[arg(long, value_name = "FILE")]
+    rig: Option<PathBuf>,
+    /// Records every tick: FILE.mcap for Foxglove, PlotJuggler and `leg replay`, or FILE.csv.
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    /// The directory for the charts; target/leg-run in the workspace if left out.
+    #[arg(long, value_name = "DIR")]
+    plots: Option<PathBuf>,
+    /// Repeats the scenario in this process with errors of load cells and tendon curves, and draws the largest error of the
+    /// tip.
+    #[arg(long, conflicts_with_all = ["on", "record"])]
+    errors: bool,
+}
+
+pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
+    let scenario = Scenario::load(&args.scenario)?;
+    for note in &scenario.notes {
+        eprintln!("leg: {}: {note}", args.scenario.display());
+    }
+    let default_rig = || scenario.rig.clone().into();
+    let rig = RigFile::load(Some(&args.rig.clone().unwrap_or_else(default_rig)))?;
+    let default = || image::workspace_root().join("target/leg-run");
+    let directory = args.plots.clone().unwrap_or_else(default);
+    if args.errors {
+        return errors::run(&scenario, &rig, &directory, options);
+    }
+    let started = Instant::now();
+    let mut link = args.on.link(options)?;
+    let summary = simulate(args, &scenario, &rig, link.as_mut())?;
+    let seconds = started.elapsed().as_secs_f64();
+    let plots = run_charts::save(&scenario.title, &summary.samples, &directory)
+        .map_err(|error| not_saved("charts", &directory, "--plots", &error))?;
+    let ticks_per_s = summary.ticks as f64 / seconds;
+    let report = RunReport::new(
+        &scenario.title,
+        args.on.text(),
+        &summary,
+        ticks_per_s,
+        &plots,
+    );
+    options.report(&report, RunReport::table)?;
+    require_passed(&summary)
+}
+
+fn simulate(
+    args: &Args,
+    scenario: &Scenario,
+    rig: &RigFile,
+    link: &mut dyn Link,
+) -> Result<Summary, Failure> {
+    let simulation = Simulation::new(scenario, rig).map_err(|error| Failure::from_error(&error))?;
+    let settings = simulation.settings().clone();
+    let bar = progress::counter("ticks");
+    let mut watched = |watch: &mut dyn FnMut(&Tick<'_>)| {
+        let result = simulation.clone().run(link, watch);
+        bar.finish_and_clear();
+        result.map_err(|error| Failure::from_error(&error))
+    };
+    match &args.record {
+        None => watched(&mut |_| bar.inc(1)),
+        Some(file) => recording::record(file, Some(&settings), |recording| {
+            let mut written = Ok(());
+            let summary = watched(&mut |tick| {
+                bar.inc(1);
+                if written.is_ok() {
+                    written = recording.take_tick(tick);
+                }
+            })?;
+            written.map_err(|error| Failure::from_error(&error))?;
+            Ok(summary)
+        }),
+    }
+}
+
+fn require_passed(summary: &Summary) -> Result<(), Failure> {
+    if summary.passes() {
+        return Ok(());
+    }
+    if let Some(reason) = &summary.stopped {
+        let help = "see in the charts what the leg was doing";
+        return Err(Failure::failed(reason.clone(), help));
+    }
+    let failed = summary.measurements.iter().filter(|found| !found.passes());
+    let mut names: Vec<_> = failed.map(|found| found.name.as_str()).collect();
+    names.extend(summary.unexpected.iter().map(|fault| fault.entry().name));
+    Err(Failure::failed(
+        format!("failed: {}", names.join("; ")),
+        "look at the charts, then at the scenario's bounds",
+    ))
+}

@@ -1,0 +1,22 @@
+//! `leg sensors`.
+
+use crate::connection::{LegArgs, Purpose};
+use crate::options::Options;
+use leg_base::failure::Failure;
+use leg_host::sensor_report::SensorReport;
+
+/// Shows what the sensors read, raw and in SI units. Read-only.
+///
+/// Encoders give counts; load cells, motor currents, supply and temperature give codes. The tensions are those of the
+/// calibration in the leg's settings, without the tare of homing.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    leg: LegArgs,
+}
+
+pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
+    let mut operator = args.leg.open(Purpose::Use, options)?.operator;
+    let report = SensorReport::new(&operator.sensors()?, &operator.settings()?);
+    options.report(&report, SensorReport::rows)
+}

@@ -1,0 +1,203 @@
+//! `leg settings`.
+
+use crate::connection::{ConnectionArgs, Purpose};
+use crate::options::Options;
+use crate::output::{print, write};
+use clap::Subcommand;
+use leg_base::failure::Failure;
+use leg_base::json_line::to_line;
+use leg_firmware::host_link::ResetCause;
+use leg_firmware::settings::Settings;
+use leg_host::operator::{Operator, SettingDifference, setting_differences};
+use leg_rig::control_settings;
+use leg_rig::rig_file::RigFile;
+use leg_rig::{number, settings_text};
+use serde::Serialize;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+/// Reads, replaces, saves and compares the settings of a board: mechanism, calibration, gains and limits.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Debug, Subcommand)]
+enum Action {
+    /// Prints the settings in use as a rig file that gives the same bits again; with --json in SI units.
+    Get {
+        /// The file to write; standard output if left out.
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
+        #[command(flatten)]
+        connection: ConnectionArgs,
+    },
+    /// Replaces the settings by those of a rig file, reads them back and compares. The leg must be disarmed, and homed
+    /// afterwards.
+    Set {
+        /// The rig file or a ready rig's name.
+        #[arg(long, value_name = "FILE")]
+        rig: PathBuf,
+        /// Keeps the settings over a reset.
+        #[arg(long)]
+        save: bool,
+        #[command(flatten)]
+        connection: ConnectionArgs,
+    },
+    /// Keeps the settings in use over a reset. The leg must be disarmed.
+    Save {
+        #[command(flatten)]
+        connection: ConnectionArgs,
+    },
+    /// Compares the settings in use with those of a rig file. Exit code 1 if they differ.
+    Diff {
+        /// The rig file or a ready rig's name.
+        #[arg(long, value_name = "FILE")]
+        rig: PathBuf,
+        #[command(flatten)]
+        connection: ConnectionArgs,
+    },
+}
+
+pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
+    let open = |connection: &ConnectionArgs| -> Result<Operator, Failure> {
+        let rig = RigFile::load(None)?;
+        Ok(connection.open(&rig, Purpose::Use, options)?.operator)
+    };
+    match &args.action {
+        Action::Get { out, connection } => get(&mut open(connection)?, out.as_deref(), options),
+        Action::Set {
+            rig,
+            save,
+            connection,
+        } => {
+            let settings = load_settings(rig)?;
+            set(&mut open(connection)?, &settings, *save, options)
+        }
+        Action::Save { connection } => {
+            let saved = keep(&mut open(connection)?)?;
+            options.report(&saved, |saved| saved.text().into())
+        }
+        Action::Diff { rig, connection } => {
+            let settings = load_settings(rig)?;
+            diff(&mut open(connection)?, &settings, options)
+        }
+    }
+}
+
+/// The settings of a board that a rig file gives.
+fn load_settings(rig: &Path) -> Result<Settings, Failure> {
+    let rig = RigFile::load(Some(rig))?;
+    Ok(control_settings::settings(&rig, &rig.gains, None))
+}
+
+fn get(operator: &mut Operator, out: Option<&Path>, options: Options) -> Result<(), Failure> {
+    let settings = operator.settings()?;
+    let text = if options.json {
+        to_line(&settings)?
+    } else {
+        settings_text::rig_file(&settings)
+    };
+    write(out, &text)
+}
+
+/// Whether the board keeps its settings over a reset.
+#[derive(Clone, Copy, Serialize)]
+struct Saved {
+    kept: bool,
+}
+
+impl Saved {
+    const fn text(self) -> &'static str {
+        if self.kept {
+            "kept over a reset\n"
+        } else {
+            "taken; an emulated board is never reset, and keeps nothing when it ends\n"
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct SetReport {
+    verified: bool,
+    saved: Option<Saved>,
+    next: &'static str,
+}
+
+fn set(
+    operator: &mut Operator,
+    settings: &Settings,
+    save: bool,
+    options: Options,
+) -> Result<(), Failure> {
+    operator.set_settings(settings)?;
+    if !options.json {
+        // Printed before the settings are kept, which may fail.
+        print("set, read back and found the same\n")?;
+    }
+    let report = SetReport {
+        verified: true,
+        saved: if save { Some(keep(operator)?) } else { None },
+        next: next_step(operator)?,
+    };
+    options.report(&report, |report| {
+        let saved = report.saved.map_or("", Saved::text);
+        format!("{saved}{}\n", report.next)
+    })
+}
+
+fn keep(operator: &mut Operator) -> Result<Saved, Failure> {
+    operator.save_settings()?;
+    Ok(Saved {
+        kept: operator.identity().reset != ResetCause::Emulated,
+    })
+}
+
+/// What has to be done before a leg with new settings is armed.
+pub(crate) fn next_step(operator: &mut Operator) -> Result<&'static str, Failure> {
+    let faults = operator.telemetry()?.telemetry.faults.without_limits();
+    Ok(if faults.any() {
+        "end its faults and home the leg before it is armed: `leg clear`, then `leg home`"
+    } else {
+        "home the leg before it is armed: `leg home`"
+    })
+}
+
+fn diff(operator: &mut Operator, settings: &Settings, options: Options) -> Result<(), Failure> {
+    let found = setting_differences(settings, &operator.settings()?);
+    options.report(&found, |found| table(found))?;
+    if found.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::failed(
+        format!("{} settings differ", found.len()),
+        "replace those of the board with `leg settings set`",
+    ))
+}
+
+fn table(found: &[SettingDifference]) -> String {
+    if found.is_empty() {
+        return "the board is set as the file says\n".into();
+    }
+    let rows: String = found
+        .iter()
+        .map(|difference| {
+            let [ours, theirs] = [&difference.ours, &difference.theirs].map(value_text);
+            format!("{:<44} {ours:>14} {theirs:>14}\n", difference.name)
+        })
+        .collect();
+    format!("{:<44} {:>14} {:>14}\n{rows}", "setting", "file", "board")
+}
+
+fn value_text(value: &Option<Value>) -> String {
+    match value {
+        None => "-".into(),
+        Some(Value::String(text)) => text.clone(),
+        // The shortest decimal of an f32: a JSON number has more digits.
+        Some(Value::Number(number)) => number
+            .as_f64()
+            .map_or_else(|| number.to_string(), |value| number::exact(value as f32)),
+        Some(value) => value.to_string(),
+    }
+}

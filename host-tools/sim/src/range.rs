@@ -1,0 +1,126 @@
+//! The range of every number in scenarios and actions, checked while it is read: so a refusal has its place.
+
+use serde::de::{Error, Visitor};
+use serde::{Deserialize, Deserializer};
+use std::fmt;
+
+/// A range of values of a key.
+#[derive(Clone, Copy)]
+pub(crate) struct Range {
+    key: &'static str,
+    low: f64,
+    high: f64,
+}
+
+/// The longest time of a step, s.
+const LONGEST_S: f64 = 600.0;
+
+/// Beyond every number that means something here; it only keeps out what is not finite.
+const ANY: f64 = 1e9;
+
+macro_rules! ranges {
+    ($($name:ident $key:literal $low:expr, $high:expr;)*) => {$(
+        pub(crate) fn $name<'de, D: Deserializer<'de>, T: Numbers<'de>>(
+            deserializer: D,
+        ) -> Result<T, D::Error> {
+            T::read(deserializer, Range { key: $key, low: $low, high: $high })
+        }
+    )*};
+}
+
+ranges! {
+    // Ten turns.
+    azimuth_deg "azimuth_deg" -3600.0, 3600.0;
+    towards_deg "towards_deg" -3600.0, 3600.0;
+    tilt_deg "tilt_deg" -90.0, 90.0;
+    start_tilt_deg "tilt_deg" 0.0, 60.0;
+    // What the leg itself refuses is let through, so that the refusal can be seen.
+    pretension_n "pretension_n" -ANY, ANY;
+    demand_nm_per_rad "nm_per_rad" -ANY, ANY;
+    start_pretension_n "pretension_n" 0.0, 1e3;
+    slack_mm "slack_mm" 0.0, 50.0;
+    // The tendons of no rig here hold more.
+    kg "kg" 0.0, 50.0;
+    payload_kg "payload_kg" 0.0, 50.0;
+    force_n "force_n" -1e4, 1e4;
+    test_force_n "force_n" 1e-3, 1e4;
+    turns "turns" -1e3, 1e3;
+    newtons "newtons" 0.0, 1e4;
+    over_s "over_s" 0.0, LONGEST_S;
+    for_s "for_s" 0.0, LONGEST_S;
+    wait_s "wait_s" 0.0, LONGEST_S;
+    then_s "then_s" 0.0, LONGEST_S;
+    timeout_s "timeout_s" 0.0, LONGEST_S;
+    settle_s "settle_s" 0.1, LONGEST_S;
+    within_ms "within_ms" 0.0, 1e3 * LONGEST_S;
+    within_percent "within_percent" 0.0, 100.0;
+    stiffness_nm_per_rad "nm_per_rad" 0.0, ANY;
+    between "between" -ANY, ANY;
+    cell_gain_error_percent "cell_gain_error_percent" -50.0, 50.0;
+    cell_offset_n "cell_offset_n" -100.0, 100.0;
+    cell_noise_n "cell_noise_n" 0.0, 100.0;
+    curve_error_percent "curve_error_percent" -50.0, 50.0;
+}
+
+impl Range {
+    fn check<E: Error>(self, value: f64) -> Result<f64, E> {
+        let Self { key, low, high } = self;
+        if (low..=high).contains(&value) {
+            return Ok(value);
+        }
+        let sentence = format!("{key} = {value} is not from {low} to {high}");
+        Err(E::custom(sentence))
+    }
+}
+
+/// A number is checked where it is read, for the sake of a step that is nothing but a number.
+impl Visitor<'_> for Range {
+    type Value = f64;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("a number")
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<f64, E> {
+        self.check(value)
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<f64, E> {
+        self.check(value as f64)
+    }
+
+    fn visit_u64<E: Error>(self, value: u64) -> Result<f64, E> {
+        self.check(value as f64)
+    }
+}
+
+/// One number or several.
+pub(crate) trait Numbers<'de>: Sized {
+    fn read<D: Deserializer<'de>>(deserializer: D, range: Range) -> Result<Self, D::Error>;
+}
+
+impl<'de> Numbers<'de> for f64 {
+    fn read<D: Deserializer<'de>>(deserializer: D, range: Range) -> Result<Self, D::Error> {
+        deserializer.deserialize_f64(range)
+    }
+}
+
+impl<'de> Numbers<'de> for Option<f64> {
+    fn read<D: Deserializer<'de>>(deserializer: D, range: Range) -> Result<Self, D::Error> {
+        let value = Self::deserialize(deserializer)?;
+        value.map(|value| range.check(value)).transpose()
+    }
+}
+
+impl<'de, const N: usize> Numbers<'de> for [f64; N]
+where
+    Self: Deserialize<'de>,
+{
+    fn read<D: Deserializer<'de>>(deserializer: D, range: Range) -> Result<Self, D::Error> {
+        let values = Self::deserialize(deserializer)?;
+        for value in values {
+            range.check(value)?;
+        }
+        Ok(values)
+    }
+}

@@ -1,0 +1,91 @@
+//! The commands of a scenario, in degrees.
+
+use crate::range;
+use leg_base::angles;
+use leg_firmware::command::{Command, Compensation};
+use serde::Deserialize;
+
+/// A command to the leg. What the leg itself refuses is let through, so that the refusal can be seen.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum CommandStep {
+    /// To follow commands.
+    Arm,
+    /// To find its zero.
+    Home,
+    /// To come to rest on its path.
+    Hold,
+    /// To stay where it is.
+    Stop,
+    /// To relax its tendons.
+    Disarm,
+    /// To clear the faults whose cause is gone.
+    Clear,
+    /// To move.
+    Move {
+        /// Degrees.
+        #[serde(deserialize_with = "range::azimuth_deg")]
+        azimuth_deg: f64,
+        /// Degrees.
+        #[serde(deserialize_with = "range::tilt_deg")]
+        tilt_deg: f64,
+    },
+    /// To take a pretension, N.
+    PretensionN(#[serde(deserialize_with = "range::pretension_n")] f64),
+    /// To take a bending stiffness.
+    Stiffness {
+        /// N·m/rad.
+        #[serde(deserialize_with = "range::demand_nm_per_rad")]
+        nm_per_rad: f64,
+        /// Azimuth of the push that it is meant for, degrees; left out for the smallest.
+        #[serde(default, deserialize_with = "range::towards_deg")]
+        towards_deg: Option<f64>,
+    },
+    /// Chooses the load that is compensated.
+    Compensation(Compensation),
+}
+
+impl CommandStep {
+    /// Their names in files.
+    pub(super) const NAMES: [&'static str; 10] = [
+        "arm",
+        "home",
+        "hold",
+        "stop",
+        "disarm",
+        "clear",
+        "move",
+        "pretension_n",
+        "stiffness",
+        "compensation",
+    ];
+
+    /// What the host sends.
+    #[must_use]
+    pub fn command(&self) -> Command {
+        match *self {
+            Self::Arm => Command::Arm,
+            Self::Home => Command::Home,
+            Self::Hold => Command::Hold,
+            Self::Stop => Command::Stop,
+            Self::Disarm => Command::Disarm,
+            Self::Clear => Command::Clear,
+            Self::Move {
+                azimuth_deg,
+                tilt_deg,
+            } => {
+                let [x, y] = angles::direction(azimuth_deg, tilt_deg).map(|c| c as f32);
+                Command::Move { x, y }
+            }
+            Self::PretensionN(pretension_n) => Command::Pretension(pretension_n as f32),
+            Self::Stiffness {
+                nm_per_rad,
+                towards_deg,
+            } => Command::Stiffness {
+                demand_nm_per_rad: nm_per_rad as f32,
+                towards: towards_deg.map(|deg| angles::unit_vector(deg).map(|c| c as f32)),
+            },
+            Self::Compensation(compensation) => Command::Compensation(compensation),
+        }
+    }
+}

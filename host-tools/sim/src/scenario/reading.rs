@@ -1,0 +1,118 @@
+//! Reading a scenario, each refusal with its place in the text.
+
+use super::Scenario;
+use leg_rig::toml_error::TomlError;
+use leg_rig::toml_section::Section;
+use leg_rig::{gains, renamed_keys};
+use serde::Deserialize;
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, Deserializer, Error};
+
+pub(super) fn read(text: &str) -> Result<Scenario, TomlError> {
+    let refused = |error: Error| refused(error.message().into(), error.span());
+    let mut table = DeTable::parse(text).map_err(refused)?;
+    let notes = renamed_keys::replace(table.get_mut())?;
+    let scenario = Scenario::deserialize(Deserializer::from(table.clone())).map_err(refused)?;
+    let root = table.get_ref();
+    if scenario.steps.is_empty() {
+        let steps = root.get("steps").map(Spanned::span);
+        return Err(self::refused("there is no step".into(), steps));
+    }
+    Ok(Scenario {
+        control: gains::read(&Section::unchecked(root))?,
+        notes,
+        ..scenario
+    })
+}
+
+fn refused(sentence: String, span: Option<Range<usize>>) -> TomlError {
+    let fix = "see the ready scenarios for what there is".to_string();
+    TomlError::new(span.unwrap_or_default(), sentence, fix)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Scenario;
+
+    fn refusal(text: &str) -> String {
+        match Scenario::parse("a.toml", &format!("title = \"\"\n{text}")) {
+            Ok(_) => String::new(),
+            Err(failure) => failure.render(false),
+        }
+    }
+
+    #[test]
+    fn a_number_that_no_leg_can_meet_is_refused_at_its_place() {
+        for (text, sentence, place) in [
+            ("steps = []", "there is no step", "2:9"),
+            (
+                "steps = [\"arm\", { payload = { kg = nan } }]",
+                "kg = NaN is not from 0 to 50",
+                "2:36",
+            ),
+            (
+                "steps = [\n    { payload = { kg = -5 } },\n]",
+                "kg = -5 is not from 0 to 50",
+                "3:24",
+            ),
+            (
+                "steps = [{ wait_s = nan }]",
+                "wait_s = NaN is not from 0 to 600",
+                "2:21",
+            ),
+            (
+                "steps = [{ push = { azimuth_deg = 0, force_n = inf, for_s = 1 } }]",
+                "force_n = inf is not from",
+                "2:48",
+            ),
+            (
+                "steps = [{ turn = { motor = 1, turns = 1e4 } }]",
+                "turns = 10000 is not from -1000 to 1000",
+                "2:40",
+            ),
+            (
+                "steps = [{ pretension_n = inf }]",
+                "pretension_n = inf is not from",
+                "2:27",
+            ),
+            (
+                "steps = [{ measure = { name = \"a\", quantity = \"pretension_n\", between = [2, 1] } }]",
+                "between = [2, 1] ends below its start",
+                "2:73",
+            ),
+            (
+                "steps = [\"arm\"]\n[start.slack]\nslack_mm = -50",
+                "slack_mm = -50 is not from 0 to 50",
+                "4:12",
+            ),
+            (
+                "steps = [\"arm\"]\n[plant]\ncell_gain_error_percent = [1e6, 0, 0]",
+                "cell_gain_error_percent = 1000000 is not from -50 to 50",
+                "4:27",
+            ),
+        ] {
+            let message = refusal(text);
+            assert!(message.contains(sentence), "{text}: {message}");
+            assert!(
+                message.contains(&format!("a.toml:{place}")),
+                "{text}: {message}"
+            );
+            assert!(message.contains("help: "), "{text}: {message}");
+        }
+        assert_eq!(refusal("steps = [\"arm\"]"), "");
+    }
+
+    #[test]
+    fn old_keys_are_read_with_a_note() {
+        let text = "title = \"\"\nsteps = [{ level_n = 60 }, { measure = { name = \"a\", quantity = \"level_n\", between = [1, 2] } }]\n[start.held]\nazimuth_deg = 0\ntilt_deg = 0\nlevel_n = 70\npayload_kg = 0\n";
+        let old = Scenario::parse("old.toml", text);
+        let new = Scenario::parse("new.toml", &text.replace("level_n", "pretension_n"));
+        assert_eq!(old.as_ref().map(|old| old.notes.len()), Ok(2));
+        let old = old.map(|old| Scenario {
+            notes: Vec::new(),
+            ..old
+        });
+        assert_eq!(old, new);
+    }
+}

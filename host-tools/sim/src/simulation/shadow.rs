@@ -1,0 +1,83 @@
+//! The control law in f64 on the same sensors, and how far the one in f32 gets from it.
+
+use crate::emulated_leg::EmulationError;
+use leg_firmware::drive::Drive;
+use leg_firmware::host_link::BoardKind;
+use leg_firmware::linked_leg::LinkedLeg;
+use leg_firmware::sensors::Sensors;
+use leg_firmware::settings::Settings;
+use leg_firmware::telemetry::Telemetry;
+use leg_firmware_bench::protocol::TickReply;
+use leg_firmware_bench::server::emulated;
+use serde::Serialize;
+
+/// The control law in f64.
+pub(super) struct Shadow {
+    leg: LinkedLeg<f64>,
+    pub divergence: Divergence,
+}
+
+/// The largest differences over all ticks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Divergence {
+    /// Of a duty.
+    pub duty: f64,
+    /// Of where a tendon shall be pulled to, m.
+    pub reference_m: f64,
+    /// Of the estimated pose, as a component of the direction.
+    pub pose: f64,
+    /// Ticks at which the two were not in the same state or had other faults.
+    pub other_state: u64,
+    /// The first of them: the differences above are of the other ticks alone.
+    pub first_other_tick: Option<u32>,
+}
+
+impl Shadow {
+    pub fn new(settings: &Settings) -> Result<Self, EmulationError> {
+        let leg = LinkedLeg::new(emulated(BoardKind::InProcess), settings);
+        Ok(Self {
+            leg: leg.map_err(EmulationError::Settings)?,
+            divergence: Divergence::default(),
+        })
+    }
+
+    /// The same tick. It then takes over the drive in f32, so that the differences do not add up.
+    pub fn tick(&mut self, sensors: &Sensors, link: &[u8], reply: &TickReply) {
+        self.leg.receive(link);
+        let leg = self.leg.leg();
+        let drive = leg.tick(sensors);
+        self.divergence.compare(reply, &drive, &leg.telemetry());
+        leg.adopt_drive(&Drive {
+            duty: reply.drive.duty.map(f64::from),
+            enabled: reply.drive.enabled,
+        });
+    }
+}
+
+impl Divergence {
+    fn compare(&mut self, reply: &TickReply, shadow: &Drive<f64>, reported: &Telemetry<f64>) {
+        let (drive, telemetry) = (&reply.drive, &reply.telemetry);
+        if telemetry.state != reported.state || telemetry.faults != reported.faults {
+            self.other_state += 1;
+            self.first_other_tick.get_or_insert(telemetry.tick);
+            return;
+        }
+        for (largest, difference) in [
+            (&mut self.duty, largest(&drive.duty, &shadow.duty)),
+            (
+                &mut self.reference_m,
+                largest(&telemetry.reference_m, &reported.reference_m),
+            ),
+            (&mut self.pose, largest(&telemetry.pose, &reported.pose)),
+        ] {
+            *largest = largest.max(difference);
+        }
+    }
+}
+
+fn largest<const N: usize>(single: &[f32; N], double: &[f64; N]) -> f64 {
+    let pairs = single.iter().zip(double);
+    pairs
+        .map(|(single, double)| (f64::from(*single) - double).abs())
+        .fold(0.0, f64::max)
+}

@@ -1,0 +1,133 @@
+//! What came out of a simulation.
+
+use super::shadow::Divergence;
+use crate::emulated_leg::EmulationError;
+use crate::scenario::Measurand;
+use leg_firmware::supervisor::Fault;
+use leg_firmware::telemetry::Telemetry;
+use serde::Serialize;
+
+/// Why a simulation came to no end, or could not start.
+#[derive(Debug, thiserror::Error)]
+pub enum SimulationError {
+    /// The leg cannot start, or its firmware fails.
+    #[error(transparent)]
+    Emulation(#[from] EmulationError),
+    /// A step did not end in time.
+    #[error("step {step}: {what} did not come within {timeout_s} s; the leg is {state}")]
+    Timeout {
+        /// The step, counted from 1.
+        step: usize,
+        /// What was waited for.
+        what: String,
+        /// s.
+        timeout_s: f64,
+        /// What the leg was doing, and its faults.
+        state: String,
+    },
+    /// A number of the simulated leg is lost.
+    #[error(
+        "at {time_s:.3} s the simulated leg has no finite place or tension any more; look what acts on it"
+    )]
+    NotFinite {
+        /// s.
+        time_s: f64,
+    },
+    /// It takes too long.
+    #[error(
+        "step {step} is not over after ten minutes of the leg's time; make the scenario shorter"
+    )]
+    Endless {
+        /// The step, counted from 1.
+        step: usize,
+    },
+    /// A command has no form.
+    #[error("a command cannot be sent: {0}")]
+    Command(leg_firmware::frame::FrameError),
+}
+
+/// One measured value.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Measurement {
+    /// What it is.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Lowest and highest value.
+    pub between: [f64; 2],
+    /// Time in the scenario, s.
+    pub at_s: f64,
+    /// What was measured; none for a reaction and a push.
+    pub quantity: Option<Measurand>,
+    /// Whether the leg compensated its load then.
+    pub compensated: bool,
+}
+
+impl Measurement {
+    /// Whether the value is where it must be.
+    #[must_use]
+    pub fn passes(&self) -> bool {
+        (self.between[0]..=self.between[1]).contains(&self.value)
+    }
+}
+
+/// The leg at a time, for plots.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// s.
+    pub time_s: f64,
+    /// Distance of the true tip from its target, mm.
+    pub tip_error_mm: f64,
+    /// True tensions, N.
+    pub tensions_n: [f64; 3],
+    /// True payload, kg.
+    pub payload_kg: f64,
+    /// What the leg reports.
+    pub telemetry: Telemetry<f32>,
+}
+
+/// What came out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// What was measured.
+    pub measurements: Vec<Measurement>,
+    /// Why it ended before its last step, if it did.
+    pub stopped: Option<String>,
+    /// Ticks.
+    pub ticks: u64,
+    /// Lowest and highest true tension over all ticks, N.
+    pub tension_range_n: [f64; 2],
+    /// Highest true tension while the motors followed commands or homed, N: where they are held or off, what acts on the leg
+    /// from outside decides alone.
+    pub driven_max_n: f64,
+    /// Against the shadow in f64.
+    pub divergence: Divergence,
+    /// Every fault in the order in which it was first seen, with the time, s.
+    pub faults: Vec<(Fault, f64)>,
+    /// Faults that the scenario does not expect.
+    pub unexpected: Vec<Fault>,
+    /// The leg at 500 Hz.
+    pub samples: Vec<Sample>,
+}
+
+impl SimulationError {
+    /// Whether what came out until then is worth looking at.
+    pub(super) const fn midway(&self) -> bool {
+        matches!(
+            self,
+            Self::Timeout { .. } | Self::Endless { .. } | Self::NotFinite { .. }
+        )
+    }
+}
+
+impl Summary {
+    /// Whether it came to its end, every value is where it must be, and no fault came that is not expected.
+    #[must_use]
+    pub fn passes(&self) -> bool {
+        self.stopped.is_none()
+            && self.measurements.iter().all(Measurement::passes)
+            && self.unexpected.is_empty()
+    }
+}

@@ -1,0 +1,61 @@
+//! Files that are there as a whole or not at all.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use leg_base::atomic_file::{Workshop, replace};
+use std::io;
+
+#[test]
+fn a_failed_write_leaves_the_old_file_and_nothing_else() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("chart.svg");
+    std::fs::write(&path, "old").unwrap();
+    let failed = replace(&path, |new| -> io::Result<()> {
+        std::fs::write(new, "half")?;
+        Err(io::Error::other("disk full"))
+    });
+    assert!(failed.is_err());
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), "old");
+    assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn a_directory_is_refused_before_anything_is_written() {
+    let directory = tempfile::tempdir().unwrap();
+    let refused = replace(directory.path(), |_| -> io::Result<()> { unreachable!() });
+    let kind = refused.unwrap_err().kind();
+    assert_eq!(kind, io::ErrorKind::IsADirectory);
+}
+
+#[test]
+fn a_whole_write_replaces_it_and_makes_the_directory() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("a/b/chart.svg");
+    replace(&path, |new| std::fs::write(new, "new")).unwrap();
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), "new");
+    let directory = directory.path().join("a/b");
+    assert_eq!(std::fs::read_dir(&directory).unwrap().count(), 1);
+    let usual = directory.join("usual");
+    std::fs::write(&usual, "").unwrap();
+    let [found, usual] = [path, usual].map(|path| std::fs::metadata(path).unwrap().permissions());
+    assert_eq!(found, usual);
+}
+
+#[test]
+fn several_files_are_delivered_together_or_not_at_all() {
+    let directory = tempfile::tempdir().unwrap();
+    let made = || {
+        let workshop = Workshop::new(directory.path()).unwrap();
+        for name in ["a.svg", "b.svg", "c.svg"] {
+            std::fs::write(workshop.path().join(name), "new").unwrap();
+        }
+        workshop
+    };
+    std::fs::create_dir(directory.path().join("b.svg")).unwrap();
+    assert!(made().check().is_err());
+    assert!(made().deliver().is_err());
+    assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 1);
+    std::fs::remove_dir(directory.path().join("b.svg")).unwrap();
+    made().deliver().unwrap();
+    assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 3);
+}

@@ -1,0 +1,123 @@
+//! Commands in processes of their own, on one emulated board behind a pseudo-terminal: the same serial code as for a board.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod board;
+mod calibration;
+mod first_power_up;
+mod logs;
+mod ports;
+mod qemu;
+
+use board::{BoardUnderTest, errors, move_to, signal};
+use serde_json::Value;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+#[test]
+fn a_board_keeps_its_state_from_command_to_command() {
+    let board = BoardUnderTest::new(&["--slack"]);
+    let (code, told) = board.refused(&move_to("10"));
+    assert_eq!(code, Some(2));
+    assert!(told.contains("does not know its zero"), "{told}");
+    assert_eq!(board.json(&["home"])["state"], "held");
+    let moved = board.json(&move_to("10"));
+    assert_eq!(moved["state"], "held");
+    assert!((moved["tilt_deg"].as_f64().unwrap() - 10.0).abs() < 0.05);
+    let stiff = board.json(&["stiffness", "95"]);
+    assert!((stiff["stiffness_nm_per_rad"].as_f64().unwrap() - 95.0).abs() < 0.3);
+    assert!((stiff["tilt_deg"].as_f64().unwrap() - 10.0).abs() < 0.05);
+    assert_eq!(board.json(&["stop"])["state"], "held");
+    assert_eq!(board.json(&["disarm"])["state"], "disarmed");
+}
+
+#[test]
+fn stop_is_obeyed_while_another_command_drives() {
+    let board = BoardUnderTest::slow();
+    let moving = board.begin_move();
+    let (code, told) = board.refused(&move_to("5"));
+    assert_eq!(code, Some(2), "{told}");
+    assert!(told.contains("another host drives the leg"), "{told}");
+    let stopped = board.json(&["stop"]);
+    assert_eq!(stopped["state"], "held");
+    let tilt = stopped["tilt_deg"].as_f64().unwrap();
+    let output = moving.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        errors(&output).contains("another host stopped it"),
+        "{}",
+        errors(&output)
+    );
+    assert!(tilt < 28.0, "stopped on the way: {tilt}");
+}
+
+#[test]
+fn a_host_that_dies_in_mid_move_leaves_the_leg_in_hold() {
+    let board = BoardUnderTest::slow();
+    let mut moving = board.begin_move();
+    moving.kill().unwrap();
+    moving.wait().unwrap();
+    let begun = Instant::now();
+    while board.state()["state"] != "held" {
+        assert!(begun.elapsed() < Duration::from_secs(20));
+    }
+    let state = board.state();
+    assert_eq!(state["faults"][0]["fault"], "command_timeout");
+    let (code, told) = board.refused(&move_to("5"));
+    assert_eq!(code, Some(2));
+    assert!(
+        told.contains("fault 20, no command") && told.contains("leg clear"),
+        "{told}"
+    );
+    assert_eq!(board.json(&["clear"])["state"], "held");
+    assert_eq!(board.json(&move_to("5"))["state"], "held");
+}
+
+#[test]
+fn ctrl_c_leaves_the_leg_in_hold_without_a_fault() {
+    let board = BoardUnderTest::slow();
+    let moving = board.begin_move();
+    signal(&moving, "-INT");
+    let output = moving.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        errors(&output).contains("ended by Ctrl-C"),
+        "{}",
+        errors(&output)
+    );
+    let state = board.state();
+    assert_eq!(state["state"], "held");
+    assert_eq!(state["faults"], Value::Array(vec![]));
+    assert!(state["tilt_deg"].as_f64().unwrap() < 28.0);
+}
+
+#[test]
+fn a_fault_in_mid_move_is_reported_with_its_remedy() {
+    let mut board = BoardUnderTest::slow();
+    let moving = board.begin_move();
+    board.act(r#"{"emergency_stop":true}"#);
+    let output = moving.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        errors(&output).contains("fault 23, emergency stop"),
+        "{}",
+        errors(&output)
+    );
+    let (code, told) = board.refused(&["clear"]);
+    assert_eq!(code, Some(2));
+    assert!(told.contains("release it when it is safe"), "{told}");
+    board.act(r#"{"emergency_stop":false}"#);
+    assert_eq!(board.json(&["clear"])["state"], "disarmed");
+}
+
+#[test]
+fn an_emulated_board_ends_with_ctrl_c_and_does_not_run_ahead_of_the_clock() {
+    let mut board = BoardUnderTest::new(&[]);
+    let before = (Instant::now(), board.state()["time_s"].as_f64().unwrap());
+    sleep(Duration::from_secs(1));
+    let after = board.state()["time_s"].as_f64().unwrap() - before.1;
+    // Slower on a machine that has much else to do.
+    assert!(after > 0.1 && after < before.0.elapsed().as_secs_f64() + 0.1);
+    signal(&board.process, "-INT");
+    assert!(board.process.wait().unwrap().success());
+}

@@ -1,0 +1,332 @@
+//! The parts of the control law by themselves.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use leg_base::angles;
+use leg_firmware::command::{Command, CommandRefusal};
+use leg_firmware::control::{Axis, AxisGoal, AxisInput, CYCLE_TICKS, MotionLimits, Trajectory};
+use leg_firmware::leg::{Leg, Outcome};
+use leg_firmware::sensors::{CODE_MAX, Sensors, TICK_HZ};
+use leg_firmware::settings::Settings;
+use leg_firmware::supervisor::{Fault, State};
+use leg_model::{HalfTangent, Scalar};
+use leg_rig::control_settings;
+use leg_rig::rig_file::RigFile;
+
+const TICK_S: f64 = 1.0 / TICK_HZ as f64;
+
+fn settings(zero: Option<[f64; 3]>) -> Settings {
+    let rig = RigFile::load(None).unwrap();
+    control_settings::settings(&rig, &rig.gains, zero)
+}
+
+/// A motor at a place, without a tension.
+fn input(pulled_m: f64) -> AxisInput<f64> {
+    AxisInput {
+        pulled_m,
+        tension_n: 0.0,
+        f_max_n: 150.0,
+        supply_v: 24.0,
+        lowest_m: f64::MIN,
+    }
+}
+
+fn goal(pulled_m: f64) -> AxisGoal<f64> {
+    AxisGoal {
+        pulled_m,
+        speed_m_per_s: 0.03,
+    }
+}
+
+/// A motor that cannot turn for half a second is driven with what its current allows; freed of its task, it is not driven
+/// on by what an integral has gathered.
+#[test]
+fn an_integral_gathers_nothing_while_the_voltage_is_limited() {
+    let settings = settings(None);
+    let limit_v = f64::from(settings.servo.current_a * settings.servo.resistance_ohm);
+    let mut axis = Axis::<f64>::new(&settings);
+    axis.rest(0.0);
+    let mut duty = 0.0;
+    for _ in 0..TICK_HZ / 2 {
+        axis.track(0.0);
+        axis.lead(&goal(1e-3), 1.0);
+        duty = axis.drive(&input(0.0));
+    }
+    assert!((duty * 24.0 - limit_v).abs() < 1e-3, "{} V", duty * 24.0);
+    let mut ticks = 0;
+    while duty > 0.01 && ticks < TICK_HZ {
+        axis.track(0.0);
+        axis.lead(&goal(-1e-4), 1.0);
+        duty = axis.drive(&input(0.0));
+        ticks += 1;
+    }
+    // The reference itself needs 1 mm / 30 mm/s, 267 ticks, to come back.
+    assert!((200..300).contains(&ticks), "{ticks} ticks");
+}
+
+/// Above the maximum tension a tendon is let out, wherever it is led; but not beyond where it may go.
+#[test]
+fn a_tension_above_the_ceiling_turns_the_motor_round() {
+    let settings = settings(None);
+    let duty = |tension_n: f64, lowest_m: f64| {
+        let mut axis = Axis::<f64>::new(&settings);
+        axis.rest(0.0);
+        axis.track(0.0);
+        axis.lead(&goal(1e-3), 1.0);
+        axis.drive(&AxisInput {
+            tension_n,
+            lowest_m,
+            ..input(0.0)
+        })
+    };
+    assert!(duty(140.0, f64::MIN) > 0.1);
+    assert!(duty(151.0, f64::MIN) < -0.1);
+    assert!(duty(151.0, 0.0).abs() < 1e-9);
+}
+
+/// Whatever way is taken, and however often it is changed, rate, acceleration and jerk keep half of the settings' limits in
+/// half-tangent coordinates, and so the limits themselves in angles.
+#[test]
+fn trajectories_keep_their_limits() {
+    let settings = settings(None);
+    let motion = settings.motion;
+    let limits = [
+        motion.speed_rad_per_s,
+        motion.acceleration_rad_per_s2,
+        motion.jerk_rad_per_s3,
+    ]
+    .map(|limit| 0.5 * f64::from(limit));
+    let cycle_s = TICK_S * f64::from(CYCLE_TICKS);
+    let mut rng = fastrand::Rng::with_seed(5);
+    let mut trajectory = Trajectory::<f64>::new(
+        MotionLimits::new(&settings.motion),
+        HalfTangent::new(0.0, 0.0),
+    );
+    let mut last: [[f64; 2]; 4] = [[0.0; 2]; 4];
+    let mut peaks = [0.0_f64; 3];
+    for cycle in 0..200_000_u32 {
+        if cycle % 1500 == 3 {
+            let (tilt, azimuth) = (30.0 * rng.f64(), 360.0 * rng.f64());
+            let q = (0.5 * tilt.to_radians()).tan();
+            let [x, y] = angles::unit_vector(azimuth);
+            trajectory.go(HalfTangent::new(q * x, q * y));
+        }
+        if cycle % 7000 == 900 {
+            trajectory.stop();
+        }
+        trajectory.advance_plan();
+        let now = trajectory.step().xy();
+        last = [now, last[0], last[1], last[2]];
+        if cycle < 4 {
+            continue;
+        }
+        let of = |weights: [f64; 4], order: i32| {
+            let part = |i: usize| (0..4).map(|k| weights[k] * last[k][i]).sum::<f64>();
+            part(0).hypot(part(1)) / cycle_s.powi(order)
+        };
+        let now = [
+            of([1.0, -1.0, 0.0, 0.0], 1),
+            of([1.0, -2.0, 1.0, 0.0], 2),
+            of([1.0, -3.0, 3.0, -1.0], 3),
+        ];
+        for (peak, now) in peaks.iter_mut().zip(now) {
+            *peak = peak.max(now);
+        }
+    }
+    for (peak, limit) in peaks.into_iter().zip(limits) {
+        assert!(peak <= limit * 1.001, "{peaks:?} beyond {limits:?}");
+        assert!(peak > 0.5 * limit, "{peaks:?} far below {limits:?}");
+    }
+}
+
+/// A leg on sensors that a test makes up.
+struct Bench {
+    leg: Leg<f64>,
+    settings: Settings,
+    sensors: Sensors,
+    tick: u16,
+}
+
+impl Bench {
+    fn new(zero: Option<[f64; 3]>) -> Self {
+        let settings = settings(zero);
+        let board = settings.board;
+        let code = |value: f32| value as u16;
+        let sensors = Sensors {
+            current_codes: [CODE_MAX / 2; 3],
+            supply_code: code(24.0 / board.supply_v_per_code),
+            temperature_code: code(
+                (30.0 - board.temperature_at_zero_c) / board.temperature_c_per_code,
+            ),
+            cell_fresh: [true; 3],
+            ..Sensors::default()
+        };
+        let mut bench = Self {
+            leg: Leg::new(&settings).unwrap(),
+            settings,
+            sensors,
+            tick: 0,
+        };
+        bench.tensions([0.0; 3]);
+        bench.run(20);
+        assert_eq!(bench.leg.state(), State::Disarmed);
+        bench
+    }
+
+    fn tensions(&mut self, tensions_n: [f32; 3]) {
+        for (i, tension_n) in tensions_n.into_iter().enumerate() {
+            let axis = &self.settings.axes[i];
+            let code = tension_n / axis.cell_n_per_code + axis.cell_zero_code;
+            self.sensors.cell_codes[i] = code as u16;
+        }
+    }
+
+    fn run(&mut self, ticks: u16) -> [f64; 3] {
+        let mut duty = [0.0; 3];
+        for _ in 0..ticks {
+            self.tick += 1;
+            if self.tick.is_multiple_of(800) {
+                assert!(self.leg.command(0, Command::KeepAlive));
+            }
+            if self.tick.is_multiple_of(CYCLE_TICKS.into()) {
+                // A living cell is never quite still.
+                for code in &mut self.sensors.cell_codes {
+                    *code ^= 1;
+                }
+            }
+            duty = self.leg.tick(&self.sensors).duty;
+            self.turn();
+        }
+        duty
+    }
+
+    /// Motors that are at once where they are led.
+    fn turn(&mut self) {
+        let led_m = self.leg.telemetry().reference_m;
+        for (i, led_m) in led_m.into_iter().enumerate() {
+            let counts = led_m / f64::from(self.settings.axes[i].m_per_count);
+            self.sensors.encoder_counts[i] = (counts.round() as i64).rem_euclid(1 << 16) as u16;
+        }
+    }
+
+    fn obey(&mut self, command: Command) -> Result<(), CommandRefusal> {
+        assert!(self.leg.command(7, command));
+        self.run(1);
+        let Some(Outcome { number: 7, result }) = self.leg.outcome() else {
+            panic!("no outcome of {command:?}");
+        };
+        result
+    }
+
+    fn has(&self, fault: Fault) -> bool {
+        self.leg.telemetry().faults.has(fault)
+    }
+}
+
+#[test]
+fn homing_gives_way_above_its_ceiling_and_gives_up_at_twice_that() {
+    let mut bench = Bench::new(None);
+    assert_eq!(bench.obey(Command::Home), Ok(()));
+    // Let out, tared, and the first tendon half taken up.
+    bench.run(7000);
+    let f_max_n = bench.settings.homing.f_max_n;
+    bench.tensions([f_max_n - 5.0, 0.0, 0.0]);
+    let below = bench.run(1);
+    bench.tensions([f_max_n + 5.0, 0.0, 0.0]);
+    let above = bench.run(1);
+    let telemetry = bench.leg.telemetry();
+    assert_eq!(telemetry.state, State::Homing, "{telemetry:?}");
+    assert!(below[0] >= 0.0 && above[0] < -0.1, "{below:?} {above:?}");
+    bench.tensions([2.0 * f_max_n + 1.0, 0.0, 0.0]);
+    bench.run(1);
+    assert!(bench.has(Fault::HomingFailed));
+    assert_eq!(bench.leg.state(), State::RampingDown);
+}
+
+#[test]
+fn commands_that_mean_nothing_now_are_refused_by_name() {
+    let mut bench = Bench::new(None);
+    assert_eq!(bench.obey(Command::Arm), Err(CommandRefusal::NotHomed));
+    let go = Command::Move { x: 0.1, y: 0.0 };
+    let disarmed = Err(CommandRefusal::State(State::Disarmed));
+    assert_eq!(bench.obey(go), disarmed);
+    assert_eq!(bench.obey(Command::Hold), disarmed);
+    assert_eq!(bench.obey(Command::Stop), Ok(()));
+
+    let mut bench = Bench::new(Some([0.2; 3]));
+    assert_eq!(bench.obey(Command::Arm), Ok(()));
+    assert_eq!(bench.leg.state(), State::Active);
+    let far = Command::Move { x: 0.9, y: 0.0 };
+    assert_eq!(bench.obey(far), Err(CommandRefusal::OutOfReach));
+    let lost = Command::Move {
+        x: f32::NAN,
+        y: 0.0,
+    };
+    assert_eq!(bench.obey(lost), Err(CommandRefusal::Number));
+    for towards in [[f32::NAN, 0.0], [0.0, 0.0], [1.0, 1.0], [f32::MAX, 0.0]] {
+        let stiffness = Command::Stiffness {
+            demand_nm_per_rad: 100.0,
+            towards: Some(towards),
+        };
+        assert_eq!(bench.obey(stiffness), Err(CommandRefusal::Number));
+    }
+    assert_eq!(
+        bench.obey(Command::Pretension(f32::INFINITY)),
+        Err(CommandRefusal::Number)
+    );
+    assert_eq!(bench.obey(Command::Stop), Ok(()));
+    assert_eq!(bench.leg.state(), State::Held);
+    assert_eq!(
+        bench.obey(Command::Arm),
+        Err(CommandRefusal::State(State::Held))
+    );
+    bench.sensors.emergency_stop = true;
+    bench.run(1);
+    assert_eq!(bench.leg.state(), State::Off);
+    for command in [Command::Arm, Command::Home, go] {
+        assert_eq!(bench.obey(command), Err(CommandRefusal::Faulted));
+    }
+    assert_eq!(bench.obey(Command::Clear), Err(CommandRefusal::Faulted));
+    bench.sensors.emergency_stop = false;
+    bench.run(1);
+    assert_eq!(bench.obey(Command::Clear), Ok(()));
+    assert_eq!(bench.leg.state(), State::Disarmed);
+}
+
+/// A stop goes before everything that waits, and what waited is told so.
+#[test]
+fn a_stop_overtakes_what_waits() {
+    let mut bench = Bench::new(Some([0.2; 3]));
+    assert_eq!(bench.obey(Command::Arm), Ok(()));
+    let mut taken = 0;
+    while bench.leg.command(taken, Command::KeepAlive) {
+        taken += 1;
+    }
+    assert_eq!(taken, 8);
+    assert!(bench.leg.command(100, Command::Stop));
+    bench.run(1);
+    assert_eq!(bench.leg.state(), State::Held);
+    let outcomes: Vec<_> = std::iter::from_fn(|| bench.leg.outcome()).collect();
+    assert_eq!(outcomes.len(), 8);
+    assert_eq!(
+        outcomes.last(),
+        Some(&Outcome {
+            number: 100,
+            result: Ok(())
+        })
+    );
+    let overtaken = Err(CommandRefusal::Superseded);
+    assert!(
+        outcomes[..7]
+            .iter()
+            .all(|outcome| outcome.result == overtaken)
+    );
+}
+
+/// The tangent of half of the tilt is what a trajectory runs in.
+#[test]
+fn a_half_tangent_is_that_of_half_the_tilt() {
+    let direction = HalfTangent::new(0.25_f64, 0.0).direction();
+    let tilt = direction.vector().x.atan2(-direction.vector().z);
+    assert!((tilt - 2.0 * 0.25_f64.atan()).abs() < 1e-15 && Scalar::is_finite(tilt));
+}

@@ -1,0 +1,81 @@
+//! `leg monitor` on a terminal: a screen until a key ends it, and the terminal as before.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use leg_host::pseudo_terminal::PseudoTerminal;
+use rustix::termios::{Winsize, tcsetwinsize};
+use std::fs::OpenOptions;
+use std::process::{Child, Command};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// What enters the screen and leaves it.
+const ENTERS: &str = "\x1b[?1049h";
+const LEAVES: &str = "\x1b[?1049l";
+
+/// A terminal of 80 × 24 with a monitor on it.
+fn monitor(rate_hz: &str) -> (PseudoTerminal, Child) {
+    let terminal = PseudoTerminal::open().unwrap();
+    let open = || {
+        OpenOptions::new()
+            .read(true)
+            .write(true)
+            .open(terminal.path())
+    };
+    let side = open().unwrap();
+    let size = Winsize {
+        ws_row: 24,
+        ws_col: 80,
+        ws_xpixel: 0,
+        ws_ypixel: 0,
+    };
+    tcsetwinsize(&side, size).unwrap();
+    let monitor = Command::new(env!("CARGO_BIN_EXE_leg-under-test"))
+        .args(["monitor", "--on", "sim", "--rate", rate_hz])
+        .stdin(open().unwrap())
+        .stdout(side)
+        .spawn()
+        .unwrap();
+    (terminal, monitor)
+}
+
+/// Reads until a text has come.
+fn read_until(terminal: &PseudoTerminal, shown: &mut String, text: &str) {
+    let begun = Instant::now();
+    while !shown.contains(text) {
+        assert!(begun.elapsed() < PATIENCE, "no {text:?} in {shown:?}");
+        let mut bytes = [0; 4096];
+        let count = terminal.read(&mut bytes).unwrap();
+        shown.push_str(&String::from_utf8_lossy(&bytes[..count]));
+        sleep(Duration::from_millis(1));
+    }
+}
+
+#[test]
+fn a_key_ends_the_screen_and_the_terminal_is_as_before() {
+    for key in [b"q".as_slice(), b"\x03"] {
+        let (terminal, mut monitor) = monitor("20");
+        let mut shown = String::new();
+        read_until(&terminal, &mut shown, ENTERS);
+        for text in ["disarmed", "Tensions", "Faults", "commands nothing"] {
+            read_until(&terminal, &mut shown, text);
+        }
+        terminal.write(key).unwrap();
+        read_until(&terminal, &mut shown, LEAVES);
+        assert!(monitor.wait().unwrap().success());
+    }
+}
+
+#[test]
+fn a_key_does_not_wait_for_the_next_picture() {
+    let (terminal, mut monitor) = monitor("0.1");
+    let mut shown = String::new();
+    read_until(&terminal, &mut shown, "commands nothing");
+    let begun = Instant::now();
+    terminal.write(b"q").unwrap();
+    read_until(&terminal, &mut shown, LEAVES);
+    assert!(monitor.wait().unwrap().success());
+    assert!(begun.elapsed() < Duration::from_secs(5));
+}

@@ -1,0 +1,76 @@
+//! The tests across the crates, by subject, in one program: `cargo test --test suite -- model::errata` runs a part.
+
+mod common;
+mod structure;
+
+mod model {
+    mod any_input;
+    mod arithmetic;
+    mod closed_forms;
+    mod compensation;
+    mod derivatives;
+    mod elastic_joints;
+    mod errata;
+    mod errata_stiffness;
+    mod flexure_limits;
+    mod flexures;
+    mod paper_printed;
+    mod random_rigs;
+    mod refused_queries;
+    mod round_trip;
+    mod statics;
+    mod stiffness_command;
+    mod tension_distribution;
+}
+
+mod firmware {
+    mod board_contract;
+    mod board_documents;
+    mod control_law;
+    mod default_settings;
+    mod encoder_jump;
+}
+
+mod base {
+    mod atomic_file;
+    mod numeric;
+    mod suggest;
+}
+
+mod rig {
+    mod refused_rigs;
+    mod rig_settings;
+}
+
+mod sim {
+    mod random_scenarios;
+    mod scenario_bits;
+    mod scenarios;
+}
+
+mod board {
+    mod emulated_board;
+    mod qemu_session;
+}
+
+mod host {
+    mod can_bus;
+    mod flash;
+    mod link_damage;
+    mod monitor_screen;
+}
+
+mod bench {
+    mod check;
+    mod image_budget;
+    mod proof;
+    mod server;
+}
+
+mod commands {
+    mod golden;
+    mod json_entries;
+    mod mjcf;
+    mod supports;
+    mod written_whole;
+}

@@ -1,0 +1,235 @@
+//! Jacobian, stiffness and free rotations against numeric derivatives, in f64.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use crate::common::numeric::{by_rotation, derivative};
+use crate::common::reference::{Tendons, load_moment, poses, rotation, turn};
+use leg_model::{
+    Direction, FreePlane, Load, Rig, RigParameters, TendonStates, Twist, full_pass,
+    inverse_kinematics, structural_stiffness, tendon_stiffness,
+};
+use nalgebra::{Matrix3, Vector3};
+
+const TABLE_1: RigParameters<f64, 3> = RigParameters::<f64, 3>::TABLE_1;
+
+/// Tensions that differ, N: the derivatives hold at any.
+const TENSIONS: Vector3<f64> = Vector3::new(110.0, 55.0, 20.0);
+
+/// Stiffnesses that differ, N/m.
+const STIFFNESSES: Vector3<f64> = Vector3::new(1.2e5, 0.9e5, 0.6e5);
+
+const PAYLOAD_KG: f64 = 2.0;
+
+/// Tendons of Table 1's rig at a pose that has been turned by `psi`.
+fn turned(rotation: &Matrix3<f64>, psi: &Vector3<f64>) -> Tendons<3> {
+    Tendons::new(&TABLE_1, &(turn(psi) * rotation))
+}
+
+/// Poses to 60° with three torsions each: azimuth, tilt, torsion, rad.
+fn twisted_poses() -> impl Iterator<Item = (f64, f64, f64)> {
+    poses(60, 10)
+        .flat_map(|(azimuth, tilt)| [-0.2, 0.0, 0.2].map(|torsion| (azimuth, tilt, torsion)))
+}
+
+fn rig() -> Rig<f64, 3> {
+    Rig::new(&TABLE_1).unwrap()
+}
+
+#[test]
+fn a_rotation_changes_the_lengths_by_minus_the_transposed_moment_map() {
+    for (azimuth, tilt, torsion) in twisted_poses() {
+        let pose = rotation(azimuth, tilt, torsion);
+        let numeric = by_rotation(|psi| turned(&pose, &psi).lengths);
+        let geometry = rig().geometry().twisted(&Twist::from_torsion(torsion));
+        let direction = Direction::from_angles(azimuth, tilt).unwrap();
+        let moment_map = inverse_kinematics(&geometry, &direction)
+            .unwrap()
+            .moment_map;
+        // Entries reach 0.025 m; the differences are good for 1e-11 of the lengths.
+        let error = (numeric + moment_map.transpose()).amax();
+        assert!(
+            error < 1e-11,
+            "azimuth {azimuth}, tilt {tilt}, torsion {torsion}: {error:e}"
+        );
+    }
+}
+
+#[test]
+fn exact_k2_is_the_derivative_of_the_tendon_moment_at_constant_tensions() {
+    for (azimuth, tilt, torsion) in twisted_poses() {
+        let pose = rotation(azimuth, tilt, torsion);
+        let numeric = -by_rotation(|psi| turned(&pose, &psi).moment_map() * TENSIONS);
+        let geometry = rig().geometry().twisted(&Twist::from_torsion(torsion));
+        let direction = Direction::from_angles(azimuth, tilt).unwrap();
+        let error = (structural_stiffness(&geometry, &direction, &TENSIONS) - numeric).amax();
+        assert!(
+            error < 1e-7,
+            "azimuth {azimuth}, tilt {tilt}, torsion {torsion}: {error:e} N·m/rad"
+        );
+    }
+}
+
+#[test]
+fn k1_and_exact_k2_are_the_derivative_of_the_moment_of_elastic_tendons() {
+    for (azimuth, tilt) in poses(60, 10) {
+        let pose = rotation(azimuth, tilt, 0.0);
+        let lengths = turned(&pose, &Vector3::zeros()).lengths;
+        let numeric = -by_rotation(|psi| {
+            let tendons = turned(&pose, &psi);
+            let stretch = tendons.lengths - lengths;
+            tendons.moment_map() * (TENSIONS + STIFFNESSES.component_mul(&stretch))
+        });
+        let rig = rig();
+        let direction = Direction::from_angles(azimuth, tilt).unwrap();
+        let moment_map = inverse_kinematics(rig.geometry(), &direction)
+            .unwrap()
+            .moment_map;
+        let stiffness = tendon_stiffness(&moment_map, &STIFFNESSES)
+            + structural_stiffness(rig.geometry(), &direction, &TENSIONS);
+        let error = (stiffness - numeric).amax();
+        assert!(
+            error < 1e-7,
+            "azimuth {azimuth}, tilt {tilt}: {error:e} N·m/rad"
+        );
+    }
+}
+
+#[test]
+fn the_load_s_own_stiffness_is_the_derivative_of_its_moment() {
+    let load = Load::new(&rig(), PAYLOAD_KG).unwrap();
+    for (azimuth, tilt) in poses(60, 10) {
+        let pose = rotation(azimuth, tilt, 0.0);
+        let numeric = -by_rotation(|psi| load_moment(&TABLE_1, &(turn(&psi) * pose), PAYLOAD_KG));
+        let direction = Direction::from_angles(azimuth, tilt).unwrap();
+        let error = (load.stiffness(&direction) - numeric).amax();
+        // Of 6 N·m/rad.
+        assert!(
+            error < 1e-10,
+            "azimuth {azimuth}, tilt {tilt}: {error:e} N·m/rad"
+        );
+    }
+}
+
+/// The fast path forms the sum of K₁, K₂ and K_load by other formulas, and keeps its symmetric part.
+#[test]
+fn the_full_pass_keeps_the_symmetric_part_of_the_derivative_of_all_moments() {
+    let rig = rig();
+    let load = Load::new(&rig, PAYLOAD_KG).unwrap();
+    let states = TendonStates::new(TENSIONS, STIFFNESSES).unwrap();
+    for (azimuth, tilt) in poses(60, 10) {
+        let pose = rotation(azimuth, tilt, 0.0);
+        let lengths = turned(&pose, &Vector3::zeros()).lengths;
+        let numeric = -by_rotation(|psi| {
+            let tendons = turned(&pose, &psi);
+            let stretch = tendons.lengths - lengths;
+            let tensions = TENSIONS + STIFFNESSES.component_mul(&stretch);
+            tendons.moment_map() * tensions
+                + load_moment(&TABLE_1, &(turn(&psi) * pose), PAYLOAD_KG)
+        });
+        let direction = Direction::from_angles(azimuth, tilt).unwrap();
+        let stiffness = full_pass(&rig, &direction, &load, &states)
+            .stiffness
+            .matrix();
+        let error = (stiffness - (numeric + numeric.transpose()) / 2.0).amax();
+        assert!(
+            error < 1e-7,
+            "azimuth {azimuth}, tilt {tilt}: {error:e} N·m/rad"
+        );
+    }
+}
+
+/// The rotation vector ω of a motion R(t) with R(0) = `pose`, from the differences of R: Ṙ Rᵀ = [ω×].
+fn rate(pose: &Matrix3<f64>, motion: impl Fn(f64) -> Matrix3<f64>) -> Vector3<f64> {
+    derivative(|t| {
+        let spin = motion(t) * pose.transpose();
+        Vector3::new(
+            spin.m32 - spin.m23,
+            spin.m13 - spin.m31,
+            spin.m21 - spin.m12,
+        ) / 2.0
+    })
+}
+
+/// How far a rotation leaves a plane, for a rotation of 1 rad.
+fn off_plane(plane: &FreePlane<f64>, rate: &Vector3<f64>) -> f64 {
+    (rate - plane.rotation([rate.x, rate.y])).norm() / rate.norm()
+}
+
+#[test]
+fn a_leg_without_torsion_turns_in_the_plane_normal_to_the_bisector() {
+    for (azimuth, tilt) in poses(60, 10) {
+        let pose = rotation(azimuth, tilt, 0.0);
+        let plane = FreePlane::torsion_free(&Direction::from_angles(azimuth, tilt).unwrap());
+        let nod = rate(&pose, |t| rotation(azimuth, tilt + t, 0.0));
+        let sway = rate(&pose, |t| rotation(azimuth + t, tilt, 0.0));
+        assert!(off_plane(&plane, &nod) < 1e-10 && off_plane(&plane, &sway) < 1e-10);
+        // The two motions are not the same, so that they span the plane.
+        assert!(nod.normalize().cross(&sway.normalize()).norm() > 0.99);
+        let bisector = Vector3::z() + pose * Vector3::z();
+        assert!(nod.dot(&bisector).abs() < 1e-10 && sway.dot(&bisector).abs() < 1e-10);
+    }
+}
+
+/// R = Rx(α)Ry(β).
+fn universal(alpha: f64, beta: f64) -> Matrix3<f64> {
+    turn(&(Vector3::x() * alpha)) * turn(&(Vector3::y() * beta))
+}
+
+/// Angles of a universal joint whose leg points to an azimuth and a tilt, rad.
+fn universal_angles(azimuth: f64, tilt: f64) -> (f64, f64) {
+    let p = rotation(azimuth, tilt, 0.0) * -Vector3::z();
+    (p.y.atan2(-p.z), (-p.x).asin())
+}
+
+#[test]
+fn a_universal_joint_turns_about_its_two_axes() {
+    for (azimuth, tilt) in poses(60, 10) {
+        let (alpha, beta) = universal_angles(azimuth, tilt);
+        let plane = FreePlane::universal(&Direction::from_angles(azimuth, tilt).unwrap());
+        let pose = universal(alpha, beta);
+        let first = rate(&pose, |t| universal(alpha + t, beta));
+        let second = rate(&pose, |t| universal(alpha, beta + t));
+        assert!(off_plane(&plane, &first) < 1e-10 && off_plane(&plane, &second) < 1e-10);
+        assert!((first - Vector3::x()).norm() < 1e-10);
+    }
+}
+
+#[test]
+fn a_universal_joint_twists_the_leg_by_the_formula_of_its_angles() {
+    let mut largest: f64 = 0.0;
+    for (azimuth, tilt) in poses(60, 5) {
+        let (alpha, beta) = universal_angles(azimuth, tilt);
+        let direction = Direction::from_angles(azimuth, tilt).unwrap();
+        let torsion = Twist::universal(&direction.half_tangent()).torsion();
+        let from_angles = (alpha.sin() * beta.sin()).atan2(alpha.cos() + beta.cos());
+        assert!((torsion - from_angles).abs() < 1e-12);
+        let error = (rotation(azimuth, tilt, torsion) - universal(alpha, beta)).amax();
+        assert!(error < 1e-12, "azimuth {azimuth}, tilt {tilt}: {error:e}");
+        if tilt < 30.1_f64.to_radians() {
+            largest = largest.max(torsion.abs());
+        }
+    }
+    assert!(
+        (largest.to_degrees() - 4.1).abs() < 0.02,
+        "{}°",
+        largest.to_degrees()
+    );
+}
+
+/// Under a stiffness without symmetry, the moment that is left over does nothing along the free rotations.
+#[test]
+fn the_solve_in_a_plane_balances_the_moment_along_two_orthonormal_axes() {
+    let k = Matrix3::new(70.0, -9.0, 30.0, 2.0, 72.0, -4.0, 25.0, 7.0, 19.0);
+    let moment = Vector3::new(1.0, -2.0, 0.5);
+    for (azimuth, tilt) in poses(60, 30) {
+        let plane = FreePlane::torsion_free(&Direction::from_angles(azimuth, tilt).unwrap());
+        let bisector = (Vector3::z() + rotation(azimuth, tilt, 0.0) * Vector3::z()).normalize();
+        let along = bisector.cross(&Vector3::x()).normalize();
+        let psi = plane.solve(&k, &moment).unwrap();
+        assert!(psi.dot(&bisector).abs() < 1e-14);
+        for axis in [along, bisector.cross(&along)] {
+            let rest = axis.dot(&(k * psi - moment));
+            assert!(rest.abs() < 1e-12, "{rest} N·m");
+        }
+    }
+}

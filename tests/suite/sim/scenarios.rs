@@ -1,0 +1,166 @@
+//! Every ready scenario, in this process and under QEMU.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use leg_bench::sensitivity;
+use leg_firmware::supervisor::Fault;
+use leg_rig::rig_file::RigFile;
+use leg_sim::link::{InProcess, Link};
+use leg_sim::ready_scenarios::{self, READY_SCENARIOS};
+use leg_sim::scenario::{Scenario, Step, TestStep};
+use leg_sim::simulation::{Simulation, Summary};
+use std::path::Path;
+
+/// Everything of a tick that the firmware decides, as bits.
+type Bits = Vec<[u32; 3]>;
+
+fn scenario(name: &str) -> Scenario {
+    Scenario::parse(name, ready_scenarios::named(name).unwrap().text).unwrap()
+}
+
+fn run(scenario: &Scenario, link: &mut dyn Link) -> (Summary, Bits) {
+    let rig = RigFile::load(Some(Path::new(&scenario.rig))).unwrap();
+    let mut bits = Bits::new();
+    let summary = Simulation::new(scenario, &rig)
+        .unwrap()
+        .run(link, &mut |tick| {
+            let enabled = u32::from(tick.drive.enabled) << 31;
+            bits.push(tick.drive.duty.map(|duty| duty.to_bits() ^ enabled));
+        })
+        .unwrap();
+    (summary, bits)
+}
+
+#[test]
+fn every_ready_scenario_passes() {
+    for ready in READY_SCENARIOS {
+        let (summary, _) = run(&scenario(ready.name), &mut InProcess::new());
+        let failed: Vec<_> = summary
+            .measurements
+            .iter()
+            .filter(|measurement| !measurement.passes())
+            .collect();
+        assert!(failed.is_empty(), "{}: {failed:?}", ready.name);
+        assert_eq!(summary.stopped, None, "{}", ready.name);
+        let unexpected = &summary.unexpected;
+        assert!(unexpected.is_empty(), "{}: {unexpected:?}", ready.name);
+        assert!(
+            !summary.measurements.is_empty(),
+            "{} measures nothing",
+            ready.name
+        );
+    }
+}
+
+/// The scenario of a fault waits for the fault and the state that its reaction leads to.
+#[test]
+fn every_fault_has_a_scenario_that_raises_it() {
+    let mut raised: Vec<Fault> = Vec::new();
+    for ready in READY_SCENARIOS {
+        for step in scenario(ready.name).steps {
+            if let Step::Test(TestStep::Reaction { fault, .. }) = step {
+                raised.push(fault);
+            }
+        }
+    }
+    for fault in Fault::ALL {
+        assert!(raised.contains(&fault), "no scenario raises {fault:?}");
+    }
+}
+
+#[test]
+fn the_emulated_core_asks_for_the_same_duties_to_the_last_bit() {
+    let mut session = crate::common::qemu().unwrap();
+    let link: &mut dyn Link = &mut session;
+    // But for those that take minutes and do what others do, too.
+    let long = ["workspace", "tour"];
+    let names = READY_SCENARIOS.iter().map(|ready| ready.name);
+    for name in names.filter(|name| !long.contains(name)) {
+        let scenario = scenario(name);
+        let (here, expected) = run(&scenario, &mut InProcess::new());
+        let (emulated, found) = run(&scenario, link);
+        let first = expected.iter().zip(&found).position(|(a, b)| a != b);
+        assert_eq!(first, None, "{name}: first tick with other bits");
+        assert_eq!(here.ticks, emulated.ticks, "{name}");
+        assert_eq!(here.measurements, emulated.measurements, "{name}");
+    }
+}
+
+/// The law in f32 stays near to its shadow in f64 while nothing fails.
+#[test]
+fn the_shadow_in_f64_stays_near() {
+    for name in ["fig9", "homing", "tour", "stiffness", "payload"] {
+        let (summary, _) = run(&scenario(name), &mut InProcess::new());
+        let divergence = summary.divergence;
+        assert_eq!(divergence.other_state, 0, "{name}");
+        // Tendons that come taut may do so a cycle apart: 5 mm/s for half a millisecond.
+        assert!(divergence.reference_m < 3e-6, "{name}: {divergence:?}");
+        assert!(divergence.pose < 2e-5, "{name}: {divergence:?}");
+        assert!(divergence.reference_m > 0.0, "{name}: nothing was compared");
+    }
+}
+
+/// The figure of `leg run --errors`: what cells and curves that are off cost.
+#[test]
+fn cells_and_curves_that_are_off_move_the_tip_by_as_much_as_is_said() {
+    let largest_mm = |cell_percent: f64, curve_percent: f64| {
+        let scenario = scenario("support").with_errors(cell_percent, curve_percent);
+        let (summary, _) = run(&scenario, &mut InProcess::new());
+        sensitivity::largest_mm(&summary).unwrap()
+    };
+    let (exact, cells, curves) = (
+        largest_mm(0.0, 0.0),
+        largest_mm(1.0, 0.0),
+        largest_mm(0.0, 2.0),
+    );
+    assert!(exact < 0.03, "{exact}");
+    assert!(cells > 2.0 * exact && cells < 0.2, "{cells}");
+    assert!(curves > 2.0 * exact && curves < 0.2, "{curves}");
+}
+
+/// Wherever the leg leans and whatever it carries, when a tendon is cut it swings no farther than README says.
+#[test]
+fn a_cut_tendon_lets_the_tip_swing_no_farther_than_is_said() {
+    let ready = ready_scenarios::named("fault_tension_jump").unwrap().text;
+    let (steps, _) = ready.split_once("[start.held]").unwrap();
+    let mut swings_mm = Vec::new();
+    for tendon in 1..=3 {
+        for azimuth in (0..360).step_by(40) {
+            for (tilt, payload) in [(0, 0.0), (15, 1.0), (30, 0.0), (30, 1.0), (30, 2.0)] {
+                let text = format!(
+                    "{}\n[start.held]\nazimuth_deg = {azimuth}\ntilt_deg = {tilt}\npretension_n = 70\npayload_kg = {payload}\n",
+                    steps.replace("tendon_cut = 1", &format!("tendon_cut = {tendon}"))
+                );
+                let rig = RigFile::load(None).unwrap();
+                let scenario = Scenario::parse("cut", &text).unwrap();
+                // A pose that its payload does not allow at the pretension is no start.
+                let Ok(simulation) = Simulation::new(&scenario, &rig) else {
+                    continue;
+                };
+                let link = &mut InProcess::new();
+                let summary = simulation.run(link, &mut |_| ()).unwrap();
+                let moved = summary.measurements.iter().find(|found| found.unit == "mm");
+                swings_mm.push((moved.unwrap().value, text));
+            }
+        }
+    }
+    assert!(swings_mm.len() > 100, "{} starts", swings_mm.len());
+    let (farthest, text) = swings_mm.iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
+    assert!((200.0..250.0).contains(farthest), "{farthest} mm:\n{text}");
+}
+
+/// A step that does not end stops a scenario, and what came out until then is kept.
+#[test]
+fn what_came_out_before_a_step_that_never_ends_is_kept() {
+    let text = "title = \"never\"\nsteps = [{ wait_s = 0.1 }, { measure = { name = \"level\", quantity = \"pretension_n\", between = [0, 0] } }, { await = { state = \"held\", timeout_s = 0.1 } }]";
+    let scenario = Scenario::parse("never", text).unwrap();
+    let (summary, bits) = run(&scenario, &mut InProcess::new());
+    let stopped = summary.stopped.clone().unwrap();
+    assert!(
+        stopped.starts_with("step 3: held did not come within 0.1 s"),
+        "{stopped}"
+    );
+    assert_eq!(summary.measurements.len(), 1);
+    assert!(summary.measurements[0].passes() && !summary.passes());
+    assert!(bits.len() > 1600 && !summary.samples.is_empty());
+}
