@@ -14,7 +14,6 @@ mod model {
     mod errata_stiffness;
     mod flexure_limits;
     mod flexures;
-    mod paper_printed;
     mod random_rigs;
     mod refused_queries;
     mod round_trip;

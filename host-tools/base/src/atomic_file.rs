@@ -1,8 +1,8 @@
 //! Files that are there as a whole or not at all.
 
-mod workshop;
+mod staging;
 
-pub use workshop::Workshop;
+pub use staging::StagingDirectory;
 
 use std::ffi::OsStr;
 use std::io;

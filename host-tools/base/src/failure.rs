@@ -61,7 +61,7 @@ impl Failure {
 
     /// An error whose own sentence already says what to do.
     #[must_use]
-    pub fn from_error(error: &impl std::error::Error) -> Self {
+    pub fn from_error(error: impl std::error::Error) -> Self {
         Self::Refused(Message::new(error.to_string(), None))
     }
 

@@ -1,4 +1,4 @@
-//! The fix for a key that was mistyped.
+//! Help for a key that was mistyped.
 
 /// How alike two keys have to be before one is offered for the other.
 const ALIKE: f64 = 0.8;

@@ -25,13 +25,8 @@ use serde::Serialize;
 #[derive(Debug, thiserror::Error)]
 pub enum CheckError {
     /// The model in f64 has no result where it should have one.
-    #[error("the model in f64 has no result at {pose}: {error}; this is a fault in the model")]
-    Reference {
-        /// The state.
-        pose: Pose,
-        /// The model's error.
-        error: leg_model::Error,
-    },
+    #[error("the model in f64 has no result at {0}: {1}; this is a fault in the model")]
+    Reference(Pose, leg_model::Error),
     /// The firmware answered something else.
     #[error("the firmware's reply is no result; build host and firmware from the same sources")]
     WrongReply,
@@ -126,7 +121,7 @@ fn run_f64(kernel: Kernel, state: &CheckedState) -> Result<Vec<f64>, leg_model::
 
 fn at_state(state: &CheckedState) -> impl Fn(leg_model::Error) -> CheckError {
     let pose = state.pose();
-    move |error| CheckError::Reference { pose, error }
+    move |error| CheckError::Reference(pose, error)
 }
 
 /// The numbers of a reply; none if the model refused.

@@ -25,13 +25,8 @@ pub const POSES: usize = AZIMUTHS_DEG.len() * TILTS_DEG.len() * PAYLOADS_KG.len(
 #[derive(Debug, thiserror::Error)]
 pub enum CostError {
     /// A kernel has no result at a pose of the workspace.
-    #[error("{} refuses a pose of the workspace: {error}; this is a fault in the model", .kernel.name())]
-    Model {
-        /// The kernel.
-        kernel: Kernel,
-        /// The model's error.
-        error: leg_model::Error,
-    },
+    #[error("{kernel} refuses a pose of the workspace: {1}; this is a fault in the model", kernel = .0.name())]
+    Model(Kernel, leg_model::Error),
     /// The link counts no instructions.
     #[error(
         "this firmware cannot count instructions; count on an emulated board whose clock is made for it"
@@ -73,18 +68,14 @@ pub struct Cost {
 pub fn measure(link: &mut dyn Link, mut done: impl FnMut()) -> Result<Vec<Cost>, CostError> {
     let mut costs = Vec::new();
     for kernel in Kernel::ALL {
-        let counts: Result<Vec<u32>, _> = inputs()
-            .map(|input| count(link, KernelRequest { kernel, input }))
-            .collect();
-        costs.push(Cost::from_counts(
-            kernel.name(),
-            counts?,
-            kernel_budget(kernel),
-        ));
+        let counts = inputs().map(|input| count(link, KernelRequest { kernel, input }));
+        let counts = counts.collect::<Result<_, _>>()?;
+        let budget = kernel_budget(kernel);
+        costs.push(Cost::from_counts(kernel.name(), counts, budget));
         done();
     }
     for counted in tick::COUNTED {
-        costs.push(tick::measure(link, &counted)?);
+        costs.push(tick::measure(link, counted)?);
         done();
     }
     Ok(costs)
@@ -100,15 +91,11 @@ impl Cost {
     fn from_counts(name: &str, mut counts: Vec<u32>, budget: InstructionBudget) -> Self {
         counts.sort_unstable();
         let count = |i: usize| counts.get(i).copied().unwrap_or(0);
-        let (minimum, median, maximum) = (
-            count(0),
-            count(counts.len() / 2),
-            count(counts.len().saturating_sub(1)),
-        );
+        let (minimum, maximum) = (count(0), count(counts.len().saturating_sub(1)));
         Self {
             kernel: name.into(),
             minimum,
-            median,
+            median: count(counts.len() / 2),
             maximum,
             budget,
             passed: budget.passes(minimum, maximum),
@@ -120,7 +107,7 @@ fn count(link: &mut dyn Link, request: KernelRequest) -> Result<u32, CostError> 
     let kernel = request.kernel;
     match link.ask(&Request::Count(request))? {
         Reply::Counted(count) => Ok(count),
-        Reply::Refused(Refusal::Model(error)) => Err(CostError::Model { kernel, error }),
+        Reply::Refused(Refusal::Model(error)) => Err(CostError::Model(kernel, error)),
         Reply::Refused(Refusal::NoCounter) => Err(CostError::NoCounter),
         _ => Err(CostError::WrongReply),
     }

@@ -102,7 +102,7 @@ pub fn needs(elf: &[u8]) -> Result<ImageNeeds, ImageBudgetError> {
         flash: memories.flash(&elf)?,
         ram: memories.ram(&elf)?,
         stack: Usage {
-            used: together(&roots),
+            used: nested_stack(&roots),
             size: memory::stack_size(&elf)?,
         },
         tasks: task::tasks(&program, &graph)?,
@@ -159,6 +159,6 @@ impl Root {
 }
 
 /// Each handler interrupts the one before: priorities, which allow less, are set as the image runs.
-fn together(roots: &[Root]) -> u32 {
+fn nested_stack(roots: &[Root]) -> u32 {
     roots.iter().map(Root::stack_with_entry).sum()
 }

@@ -30,12 +30,9 @@ const FOREIGN_VARIABLES: [&str; 4] = [
 pub enum ImageError {
     /// The sources are not where this program was built from.
     #[error(
-        "the firmware's sources are not in {root}; run this program from the tree that it was built in"
+        "the firmware's sources are not in {0}; run this program from the tree that it was built in"
     )]
-    NoSources {
-        /// Where they were looked for.
-        root: String,
-    },
+    NoSources(String),
     /// Cargo could not be started.
     #[error("cannot start cargo: {0}; install Rust with rustup")]
     NoCargo(#[source] io::Error),
@@ -52,12 +49,9 @@ pub enum ImageError {
     /// The build made no executable.
     #[error(
         "`cargo {}` made no executable named `{}`; see the alias in .cargo/config.toml",
-        .image.cargo_alias(), .image.binary()
+        .0.cargo_alias(), .0.binary()
     )]
-    NoExecutable {
-        /// The image.
-        image: FirmwareImage,
-    },
+    NoExecutable(FirmwareImage),
 }
 
 /// The directory of the workspace that this program was built from.
@@ -97,9 +91,7 @@ impl FirmwareImage {
     pub fn build(self) -> Result<PathBuf, ImageError> {
         let root = workspace_root();
         if !root.join("firmware/library/Cargo.toml").is_file() {
-            return Err(ImageError::NoSources {
-                root: root.display().to_string(),
-            });
+            return Err(ImageError::NoSources(root.display().to_string()));
         }
         let output = self.cargo(&root).output().map_err(ImageError::NoCargo)?;
         if !output.status.success() {
@@ -110,7 +102,7 @@ impl FirmwareImage {
             });
         }
         self.executable(&output)
-            .ok_or(ImageError::NoExecutable { image: self })
+            .ok_or(ImageError::NoExecutable(self))
     }
 
     fn cargo(self, root: &Path) -> Command {

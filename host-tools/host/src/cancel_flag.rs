@@ -9,7 +9,6 @@ pub struct CancelFlag(Arc<AtomicBool>);
 
 impl CancelFlag {
     /// The one that is set by Ctrl-C and by the end of the terminal.
-    #[must_use]
     pub fn on_ctrl_c() -> Self {
         static ONLY: OnceLock<CancelFlag> = OnceLock::new();
         let make = || {
@@ -28,7 +27,6 @@ impl CancelFlag {
     }
 
     /// Whether it is set.
-    #[must_use]
     pub fn is_set(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }

@@ -1,5 +1,6 @@
 //! Calibration of a load cell by known weights.
 
+use leg_base::failure::Failure;
 use leg_firmware::sensors::CODE_MAX;
 
 /// A weight on a load cell and what the cell then reads.
@@ -22,86 +23,65 @@ pub struct CellFit {
     pub residual_n: f64,
 }
 
-/// Why weighings give no calibration.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum CellFitError {
-    /// One weight gives no zero and gain.
-    #[error("two different weights are needed at least")]
-    OneWeight,
-    /// The code does not follow the weight.
-    #[error("the cell's codes hardly change with the weight")]
-    Dead,
-    /// More weight is a lower code.
-    #[error("more weight gives a lower code")]
-    Reversed,
-    /// A code is at an end of the range.
-    #[error("a code is at an end of its range: the cell is saturated")]
-    Saturated,
-}
-
-impl CellFitError {
-    /// What to do about it.
-    #[must_use]
-    pub const fn remedy(self) -> &'static str {
-        match self {
-            Self::OneWeight => "give more weights, as --weights 0,1,2,5",
-            Self::Dead => "see that the weight hangs on this cell, and check its wiring",
-            Self::Reversed => "swap the signal wires of the cell",
-            Self::Saturated => "use smaller weights; check the cell's wiring and range",
-        }
-    }
-}
-
 /// Codes that a whole calibration has to span.
 const SPAN_MIN: f64 = 50.0;
 
-/// The straight line through weighings with the least squares of what the codes are off.
-///
-/// # Errors
-/// A [`CellFitError`].
-pub fn fit(weighings: &[KnownWeight]) -> Result<CellFit, CellFitError> {
+/// One weight does not determine both zero and gain.
+pub fn too_few_weights() -> Failure {
+    Failure::refused(
+        "two different weights are needed at least",
+        "give more weights, as --weights 0,1,2,5",
+    )
+}
+
+/// Fits a straight line to weighings by the least squares of the codes' errors. Weighings that determine no line are refused.
+pub fn fit(weighings: &[KnownWeight]) -> Result<CellFit, Failure> {
     let count = weighings.len() as f64;
     let mean = |of: fn(&KnownWeight) -> f64| weighings.iter().map(of).sum::<f64>() / count;
-    let (newtons, code) = (
-        mean(|weighing| weighing.newtons),
-        mean(|weighing| weighing.code),
-    );
-    let (mut spread, mut together, mut span) = (0.0, 0.0, 0.0_f64);
+    let (newtons, code) = (mean(|one| one.newtons), mean(|one| one.code));
+    let (mut variance, mut covariance, mut span) = (0.0, 0.0, 0.0_f64);
     for weighing in weighings {
         if weighing.code < 1.0 || weighing.code > f64::from(CODE_MAX) - 1.0 {
-            return Err(CellFitError::Saturated);
+            return Err(Failure::refused(
+                "a code is at an end of its range: the cell is saturated",
+                "use smaller weights; check the cell's wiring and range",
+            ));
         }
-        let (heavier, higher) = (weighing.newtons - newtons, weighing.code - code);
-        spread += heavier * heavier;
-        together += heavier * higher;
-        span = span.max(higher.abs());
+        let (newtons, code) = (weighing.newtons - newtons, weighing.code - code);
+        variance += newtons * newtons;
+        covariance += newtons * code;
+        span = span.max(code.abs());
     }
-    if spread <= 0.0 {
-        return Err(CellFitError::OneWeight);
+    if variance <= 0.0 {
+        return Err(too_few_weights());
     }
     if span < SPAN_MIN {
-        return Err(CellFitError::Dead);
+        return Err(Failure::refused(
+            "the cell's codes hardly change with the weight",
+            "see that the weight hangs on this cell, and check its wiring",
+        ));
     }
-    let codes_per_n = together / spread;
+    let codes_per_n = covariance / variance;
     if codes_per_n <= 0.0 {
-        return Err(CellFitError::Reversed);
+        return Err(Failure::refused(
+            "more weight gives a lower code",
+            "swap the signal wires of the cell",
+        ));
     }
     let n_per_code = codes_per_n.recip();
     let zero_code = code - newtons * codes_per_n;
-    let off = |weighing: &KnownWeight| {
-        ((weighing.code - zero_code) * n_per_code - weighing.newtons).abs()
-    };
+    let residual_n = |one: &KnownWeight| ((one.code - zero_code) * n_per_code - one.newtons).abs();
     Ok(CellFit {
         n_per_code,
         zero_code,
-        residual_n: weighings.iter().map(off).fold(0.0, f64::max),
+        residual_n: weighings.iter().map(residual_n).fold(0.0, f64::max),
     })
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{CellFitError, KnownWeight, fit};
+    use super::{KnownWeight, fit};
 
     fn weighings(codes: &[f64]) -> Vec<KnownWeight> {
         let weights = [0.0, 10.0, 20.0, 50.0];
@@ -132,11 +112,20 @@ mod tests {
 
     #[test]
     fn what_is_no_calibration_is_named() {
-        let wrong = |codes: &[f64]| fit(&weighings(codes)).unwrap_err();
-        assert_eq!(wrong(&[5000.0]), CellFitError::OneWeight);
-        assert_eq!(wrong(&[]), CellFitError::OneWeight);
-        assert_eq!(wrong(&[5000.0, 5001.0]), CellFitError::Dead);
-        assert_eq!(wrong(&[9000.0, 8000.0]), CellFitError::Reversed);
-        assert_eq!(wrong(&[5000.0, 65_520.0]), CellFitError::Saturated);
+        for (codes, expected) in [
+            (&[5000.0][..], "two different weights are needed at least"),
+            (&[], "two different weights are needed at least"),
+            (
+                &[5000.0, 5001.0],
+                "the cell's codes hardly change with the weight",
+            ),
+            (&[9000.0, 8000.0], "more weight gives a lower code"),
+            (
+                &[5000.0, 65_520.0],
+                "a code is at an end of its range: the cell is saturated",
+            ),
+        ] {
+            assert_eq!(fit(&weighings(codes)).unwrap_err().to_string(), expected);
+        }
     }
 }

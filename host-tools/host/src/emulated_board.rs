@@ -2,8 +2,9 @@
 
 use crate::cancel_flag::CancelFlag;
 use crate::pseudo_terminal::PseudoTerminal;
+use leg_base::failure::Failure;
 use leg_sim::action::Action;
-use leg_sim::emulated_leg::{EmulatedLeg, EmulationError};
+use leg_sim::emulated_leg::EmulatedLeg;
 use std::collections::VecDeque;
 use std::io;
 use std::sync::mpsc::Receiver;
@@ -19,17 +20,6 @@ const BEHIND_MAX: Duration = Duration::from_millis(10);
 /// What waits for a host that does not read at once, bytes: about what a serial adapter and its driver buffer. More is lost.
 const ADAPTER_BYTES: usize = 16 * 1024;
 
-/// Why an emulated board stops.
-#[derive(Debug, thiserror::Error)]
-pub enum BoardError {
-    /// The pseudo-terminal fails.
-    #[error("the pseudo-terminal failed: {0}")]
-    Terminal(#[from] io::Error),
-    /// The firmware fails.
-    #[error(transparent)]
-    Emulation(#[from] EmulationError),
-}
-
 /// A leg and its port.
 pub struct EmulatedBoard {
     leg: EmulatedLeg,
@@ -42,7 +32,6 @@ pub struct EmulatedBoard {
 
 impl EmulatedBoard {
     /// Connects a leg to a port.
-    #[must_use]
     pub fn new(leg: EmulatedLeg, port: PseudoTerminal) -> Self {
         Self {
             leg,
@@ -55,15 +44,12 @@ impl EmulatedBoard {
 
     /// Runs until `cancel` is set or `length` is over, and does to the leg what comes through `actions`. Returns how much
     /// of that time the leg missed because this machine is too slow.
-    ///
-    /// # Errors
-    /// A [`BoardError`].
     pub fn run(
         mut self,
         cancel: &CancelFlag,
         length: Option<Duration>,
         actions: &Receiver<Action>,
-    ) -> Result<Duration, BoardError> {
+    ) -> Result<Duration, Failure> {
         let (start, leg_start) = (Instant::now(), self.leg.time());
         while !cancel.is_set() && length.is_none_or(|length| start.elapsed() < length) {
             while let Ok(action) = actions.try_recv() {
@@ -76,21 +62,30 @@ impl EmulatedBoard {
     }
 
     /// Lets the leg's time come to that of the clock.
-    fn exchange(&mut self, clock: Duration) -> Result<(), BoardError> {
+    fn exchange(&mut self, clock: Duration) -> Result<(), Failure> {
         let mut bytes = [0; 4096];
-        let count = self.port.read(&mut bytes)?;
+        let count = self.port.read(&mut bytes).map_err(terminal_failed)?;
         self.incoming.extend(bytes.get(..count).unwrap_or_default());
         let behind = clock.saturating_sub(self.leg.time() + self.skipped);
         self.skipped += behind.saturating_sub(BEHIND_MAX);
         while self.leg.time() + self.skipped < clock {
-            let bytes = self.leg.tick(&mut self.incoming)?;
+            let bytes = self.leg.tick(&mut self.incoming);
+            let bytes = bytes.map_err(Failure::from_error)?;
             let room = ADAPTER_BYTES - self.outgoing.len();
             self.outgoing.extend(bytes.take(room));
         }
         if !self.outgoing.is_empty() {
-            let count = self.port.write(self.outgoing.make_contiguous())?;
+            let written = self.port.write(self.outgoing.make_contiguous());
+            let count = written.map_err(terminal_failed)?;
             self.outgoing.drain(..count);
         }
         Ok(())
     }
+}
+
+fn terminal_failed(error: io::Error) -> Failure {
+    Failure::refused(
+        format!("the pseudo-terminal failed: {error}"),
+        "start `leg emulate` again",
+    )
 }

@@ -6,9 +6,10 @@
 //! process ([`transport::emulated`]), which needs no board:
 //!
 //! ```
+//! use leg_firmware::command::Command;
 //! use leg_host::cancel_flag::CancelFlag;
-//! use leg_host::leg_report::LegReport;
-//! use leg_host::operator::{HostIdentity, LegGoal, Operator};
+//! use leg_host::leg_report::angles_deg;
+//! use leg_host::operator::{HostIdentity, Operator};
 //! use leg_host::transport::emulated::EmulatedLine;
 //! use leg_rig::rig_file::RigFile;
 //! use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
@@ -24,13 +25,10 @@
 //! let mut operator = Operator::open(transport, HostIdentity::FIXED, CancelFlag::default())?;
 //!
 //! // Lean 10° towards azimuth 0° and stay there in hold. `Operator::home` would come first on a leg that is not homed.
-//! let goal = LegGoal {
-//!     direction: Some([10_f32.to_radians().sin(), 0.0]),
-//!     demand: None,
-//! };
-//! operator.reach(&goal)?;
-//! let report = LegReport::new(&operator.telemetry()?.telemetry);
-//! assert!((report.tilt_deg - 10.0).abs() < 0.05);
+//! let x = 10_f32.to_radians().sin();
+//! let reached = operator.reach(&[Command::Move { x, y: 0.0 }])?;
+//! let [_, tilt_deg] = angles_deg(reached.pose);
+//! assert!((tilt_deg - 10.0).abs() < 0.05);
 //! # Ok(())
 //! # }
 //! ```
@@ -41,7 +39,7 @@
 //! # What is where
 //! | module | what for |
 //! |---|---|
-//! | [`operator`] | commands, goals, settings, telemetry of one leg, and every error with its remedy |
+//! | [`operator`] | commands, settings, telemetry of one leg, and every error with its remedy |
 //! | [`transport`] | what carries the bytes |
 //! | [`emulated_board`], [`pseudo_terminal`] | an emulated leg behind a serial port, for other programs (`leg emulate`) |
 //! | [`recording`] | simulations and telemetry as MCAP or CSV, and the replay of a simulation |

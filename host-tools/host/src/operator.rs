@@ -15,12 +15,11 @@ mod telemetry;
 mod tests;
 
 pub use error::OperatorError;
-pub use motion::{LegGoal, TensionDemand};
 pub use settings::{SettingDifference, setting_differences};
 
 use crate::cancel_flag::CancelFlag;
 use crate::transport::Transport;
-use connection::LegConnection;
+use connection::FramedTransport;
 use leg_firmware::host_link::{
     HOST_SCHEMA, Hello, HostId, HostReply, HostRequest, Identity, TelemetryReport,
 };
@@ -42,7 +41,6 @@ impl HostIdentity {
     pub const FIXED: Self = Self { id: 1, sequence: 0 };
 
     /// Another one each time, for hosts that share a line.
-    #[must_use]
     pub fn random() -> Self {
         Self {
             id: fastrand::u32(..),
@@ -56,7 +54,7 @@ type Watcher = Box<dyn FnMut(&Telemetry<f32>)>;
 
 /// A host that has introduced itself to a leg.
 pub struct Operator {
-    connection: LegConnection,
+    connection: FramedTransport,
     host: HostId,
     identity: Identity,
     cancel: CancelFlag,
@@ -99,10 +97,10 @@ impl Operator {
         host: HostIdentity,
         cancel: CancelFlag,
     ) -> Result<Self, OperatorError> {
-        let mut connection = LegConnection::new(transport, host.sequence);
+        let mut connection = FramedTransport::new(transport, host.sequence);
         let identity = introduce(&mut connection)?;
         Ok(Self {
-            commanded_at: connection.now(),
+            commanded_at: connection.transport.now(),
             connection,
             host: host.id,
             identity,
@@ -116,31 +114,26 @@ impl Operator {
     }
 
     /// What the leg's board is.
-    #[must_use]
     pub fn identity(&self) -> &Identity {
         &self.identity
     }
 
     /// What is at the other end, for a message to the user.
-    #[must_use]
-    pub fn name(&self) -> String {
-        self.connection.name()
+    pub fn name(&self) -> &str {
+        self.connection.transport.name()
     }
 
     /// Time by the transport's clock.
-    #[must_use]
     pub fn now(&self) -> Duration {
-        self.connection.now()
+        self.connection.transport.now()
     }
 
     /// Whether that clock is an emulated leg's own.
-    #[must_use]
     pub fn clock_is_emulated(&self) -> bool {
-        self.connection.clock_is_emulated()
+        self.connection.transport.clock_is_emulated()
     }
 
     /// Frames from the leg that could not be read, with those that the transport lost.
-    #[must_use]
     pub fn damaged_frames(&self) -> u64 {
         self.connection.damaged_frames()
     }
@@ -151,11 +144,11 @@ impl Operator {
     }
 }
 
-fn introduce(connection: &mut LegConnection) -> Result<Identity, OperatorError> {
+fn introduce(connection: &mut FramedTransport) -> Result<Identity, OperatorError> {
     let schema = HOST_SCHEMA;
     for _ in 0..INTRODUCTIONS {
         let number = connection.send(&HostRequest::Identify(Hello { schema }))?;
-        let until = connection.now() + INTRODUCTION_TIME;
+        let until = connection.transport.now() + INTRODUCTION_TIME;
         while let Some((sequence, reply)) = connection.receive(until)? {
             match reply {
                 HostReply::Identified(identity) if sequence == number => return Ok(identity),

@@ -20,9 +20,6 @@ pub struct PseudoTerminal {
 
 impl PseudoTerminal {
     /// Makes one. It passes every byte as it is.
-    ///
-    /// # Errors
-    /// The error of the system.
     pub fn open() -> io::Result<Self> {
         let device = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
         grantpt(&device)?;
@@ -42,23 +39,16 @@ impl PseudoTerminal {
     }
 
     /// What other programs open.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
     /// What has come; 0 if nothing has.
-    ///
-    /// # Errors
-    /// The error of the system.
     pub fn read(&self, bytes: &mut [u8]) -> io::Result<usize> {
         zero_if_blocked((&self.device).read(bytes))
     }
 
     /// Writes, and returns how many bytes there was room for.
-    ///
-    /// # Errors
-    /// The error of the system.
     pub fn write(&self, bytes: &[u8]) -> io::Result<usize> {
         zero_if_blocked((&self.device).write(bytes))
     }

@@ -8,7 +8,7 @@ mod tick_record;
 #[cfg(test)]
 mod tests;
 
-pub use replay::{Replay, ReplayError, TickDifference, replay};
+pub use replay::{Replay, TickDifference, replay};
 
 use csv_file::CsvFile;
 use leg_base::atomic_file;
@@ -18,7 +18,10 @@ use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
 use leg_sim::simulation::Tick;
 use mcap_file::McapFile;
-use serde_json::to_value;
+use serde::Serialize;
+use serde_json::Value;
+use std::error::Error;
+use std::ffi::OsStr;
 use std::path::Path;
 
 /// Ticks of a simulation between two rows of a table: a row a millisecond.
@@ -36,55 +39,31 @@ enum RecordingFile {
     Csv(Box<CsvFile>),
 }
 
-/// Why a recording cannot be made.
-#[derive(Debug, thiserror::Error)]
-pub enum RecordingError {
-    /// The system refused.
-    #[error(transparent)]
-    Io(#[from] std::io::Error),
-    /// The MCAP file cannot be written.
-    #[error(transparent)]
-    Mcap(#[from] mcap::McapError),
-    /// The CSV file cannot be written.
-    #[error(transparent)]
-    Csv(#[from] csv::Error),
-    /// A message has no JSON.
-    #[error("a message cannot be written: {0}")]
-    Json(#[from] serde_json::Error),
-    /// A message has no form in postcard's format.
-    #[error("a message cannot be written: {0}")]
-    Postcard(#[from] postcard::Error),
-    /// More bytes came by the link in a tick than a controller takes.
-    #[error("a message cannot be written: too many bytes from the link")]
-    LinkBytes,
+/// Why a recording cannot be written, or a [`Failure`] of the recorded work.
+pub type RecordingError = Box<dyn Error>;
+
+/// A message that has no form in the format of the recording: another file name would not help.
+fn message_refused(error: impl Into<RecordingError>) -> RecordingError {
+    Failure::refused(
+        format!("a message cannot be written: {}", error.into()),
+        "report this as an error of the program",
+    )
+    .into()
+}
+
+/// A message as JSON.
+fn to_json(message: &impl Serialize) -> Result<Value, RecordingError> {
+    serde_json::to_value(message).map_err(message_refused)
 }
 
 impl Recording {
-    fn create(
-        file: &Path,
-        format: FileFormat,
-        settings: Option<&Settings>,
-    ) -> Result<Self, RecordingError> {
-        let file = match format {
-            FileFormat::Csv => RecordingFile::Csv(Box::new(CsvFile::create(file)?)),
-            FileFormat::Mcap => RecordingFile::Mcap(Box::new(McapFile::create(file, settings)?)),
-        };
-        Ok(Self { file, count: 0 })
-    }
-
     /// Takes a tick of a simulation.
-    ///
-    /// # Errors
-    /// A file that cannot be written.
     pub fn take_tick(&mut self, tick: &Tick<'_>) -> Result<(), RecordingError> {
         match &mut self.file {
             RecordingFile::Mcap(file) => file.take_tick(self.count, tick)?,
             RecordingFile::Csv(file) if self.count.is_multiple_of(ROW_TICKS) => {
                 let time_s = f64::from(self.count) * tick_s();
-                file.write_row(
-                    time_s,
-                    &[&to_value(tick.telemetry)?, &to_value(tick.drive)?],
-                )?;
+                file.write_row(time_s, &[&to_json(tick.telemetry)?, &to_json(tick.drive)?])?;
             }
             RecordingFile::Csv(_) => {}
         }
@@ -93,9 +72,6 @@ impl Recording {
     }
 
     /// Takes telemetry of a leg. Its time is that of the leg since its board started.
-    ///
-    /// # Errors
-    /// A file that cannot be written.
     pub fn take_telemetry(&mut self, telemetry: &Telemetry<f32>) -> Result<(), RecordingError> {
         let time_s = seconds(telemetry.tick.into());
         match &mut self.file {
@@ -103,7 +79,7 @@ impl Recording {
                 let time_ns = (time_s * 1e9).round() as u64;
                 file.write_telemetry(self.count, time_ns, telemetry)?;
             }
-            RecordingFile::Csv(file) => file.write_row(time_s, &[&to_value(telemetry)?])?,
+            RecordingFile::Csv(file) => file.write_row(time_s, &[&to_json(telemetry)?])?,
         }
         self.count += 1;
         Ok(())
@@ -117,59 +93,38 @@ impl Recording {
     }
 }
 
-/// Why there is no recording of some work.
-enum NotRecorded {
-    File(RecordingError),
-    Work(Failure),
-}
-
-impl<E: Into<RecordingError>> From<E> for NotRecorded {
-    fn from(error: E) -> Self {
-        Self::File(error.into())
-    }
-}
-
 /// Records in `file`, by the extension of its name, while `work` is done; the file is put in its place, whole, when the work
 /// is done. A simulation is recorded with its settings, so that it can be replayed; telemetry of a leg without.
 ///
 /// # Errors
-/// A [`Failure`]: another extension, a file that cannot be written, or that of the work.
+/// A [`Failure`]: another extension and a file that cannot be written are refused (exit code 2); that of the work is passed
+/// on as it is.
 pub fn record<T>(
     file: &Path,
     settings: Option<&Settings>,
-    work: impl FnOnce(&mut Recording) -> Result<T, Failure>,
+    work: impl FnOnce(&mut Recording) -> Result<T, RecordingError>,
 ) -> Result<T, Failure> {
-    let format = FileFormat::from_name(file)?;
+    let extension = file.extension().and_then(OsStr::to_str);
+    if !matches!(extension, Some("mcap" | "csv")) {
+        let sentence = format!("{} is no name of a recording", file.display());
+        return Err(Failure::refused(sentence, "end it with .mcap or .csv"));
+    }
     let done = atomic_file::replace(file, |new| {
-        let mut recording = Recording::create(new, format, settings)?;
-        let result = work(&mut recording).map_err(NotRecorded::Work)?;
+        let file = if extension == Some("csv") {
+            RecordingFile::Csv(Box::new(CsvFile::create(new)?))
+        } else {
+            RecordingFile::Mcap(Box::new(McapFile::create(new, settings)?))
+        };
+        let mut recording = Recording { file, count: 0 };
+        let result = work(&mut recording)?;
         recording.finish()?;
         Ok(result)
     });
-    done.map_err(|error| match error {
-        NotRecorded::Work(failure) => failure,
-        NotRecorded::File(error) => Failure::refused(
+    done.map_err(|error: RecordingError| match error.downcast::<Failure>() {
+        Ok(failure) => *failure,
+        Err(error) => Failure::refused(
             format!("cannot write {}: {error}", file.display()),
             "name a file in a directory that may be written",
         ),
     })
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum FileFormat {
-    Mcap,
-    Csv,
-}
-
-impl FileFormat {
-    fn from_name(file: &Path) -> Result<Self, Failure> {
-        match file.extension().and_then(|extension| extension.to_str()) {
-            Some("mcap") => Ok(Self::Mcap),
-            Some("csv") => Ok(Self::Csv),
-            _ => {
-                let sentence = format!("{} is no name of a recording", file.display());
-                Err(Failure::refused(sentence, "end it with .mcap or .csv"))
-            }
-        }
-    }
 }

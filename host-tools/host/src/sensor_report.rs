@@ -1,108 +1,80 @@
 //! What the sensors of a leg read, raw and in a user's units.
 
+use leg_base::json_object;
 use leg_firmware::control::Measurement;
 use leg_firmware::sensors::Sensors;
 use leg_firmware::settings::Settings;
 use serde::Serialize;
 
-/// What all sensors read in one tick.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SensorReport {
-    /// The three axes.
-    pub axes: [AxisReport; 3],
-    /// Supply voltage, 0 to [`leg_firmware::sensors::CODE_MAX`].
-    pub supply_code: u16,
-    /// Supply voltage, V.
-    pub supply_v: f64,
-    /// Temperature of the drivers, 0 to [`leg_firmware::sensors::CODE_MAX`].
-    pub temperature_code: u16,
-    /// Temperature of the drivers, °C.
-    pub temperature_c: f64,
-    /// Whether the emergency stop is pressed.
-    pub emergency_stop: bool,
-    /// Whether the last tick ended too late.
-    pub late: bool,
-    /// Whether the stored settings were not whole at the start, so that others are used.
-    pub settings_corrupt: bool,
-}
-
-/// What the sensors of one axis read.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct AxisReport {
-    /// Counter of the motor's encoder; it wraps.
-    pub encoder_counts: u16,
-    /// Load cell, 0 to [`leg_firmware::sensors::CODE_MAX`].
-    pub cell_code: u16,
-    /// Tension by the calibration of the settings, N: without the tare that homing takes.
-    pub tension_n: f64,
-    /// Whether the load cell was converted since the last tick.
-    pub cell_fresh: bool,
-    /// Motor current, 0 to [`leg_firmware::sensors::CODE_MAX`]; half of it is none.
-    pub current_code: u16,
-    /// Motor current, A; above zero it pulls in.
-    pub current_a: f64,
-    /// Whether the motor's driver raises its fault line.
-    pub driver_fault: bool,
-}
-
-impl SensorReport {
-    /// Converts codes by the calibration of the leg's settings.
-    #[must_use]
-    pub fn new(sensors: &Sensors, settings: &Settings) -> Self {
-        let measured = Measurement::<f64>::new(settings).convert(sensors);
-        let axis = |i: usize| AxisReport {
+/// What all sensors read in one tick, for machines, by the calibration of the leg's settings. Codes are from 0 to
+/// [`leg_firmware::sensors::CODE_MAX`].
+pub fn json(sensors: &Sensors, settings: &Settings) -> impl Serialize + use<> {
+    let measured = Measurement::<f64>::new(settings).convert(sensors);
+    let axis = |i: usize| {
+        json_object! {
+            // Counter of the motor's encoder; it wraps.
             encoder_counts: sensors.encoder_counts[i],
             cell_code: sensors.cell_codes[i],
+            // N, without the tare that homing takes.
             tension_n: measured.tensions_n[i],
+            // Whether the load cell was converted since the last tick.
             cell_fresh: sensors.cell_fresh[i],
+            // Half of the highest code is no current.
             current_code: sensors.current_codes[i],
+            // A; above zero it pulls in.
             current_a: measured.currents_a[i],
+            // Whether the motor's driver raises its fault line.
             driver_fault: sensors.driver_fault[i],
-        };
-        Self {
-            axes: [0, 1, 2].map(axis),
-            supply_code: sensors.supply_code,
-            supply_v: measured.supply_v,
-            temperature_code: sensors.temperature_code,
-            temperature_c: measured.temperature_c,
-            emergency_stop: sensors.emergency_stop,
-            late: sensors.late,
-            settings_corrupt: sensors.settings_corrupt,
         }
+    };
+    json_object! {
+        axes: [0, 1, 2].map(axis),
+        supply_code: sensors.supply_code,
+        // V.
+        supply_v: measured.supply_v,
+        temperature_code: sensors.temperature_code,
+        // Of the drivers, °C.
+        temperature_c: measured.temperature_c,
+        // Whether it is pressed.
+        emergency_stop: sensors.emergency_stop,
+        // Whether the last tick ended too late.
+        late: sensors.late,
+        // Whether the stored settings were not whole at the start, so that others are used.
+        settings_corrupt: sensors.settings_corrupt,
     }
+}
 
-    /// The rows of a table for people.
-    #[must_use]
-    pub fn rows(&self) -> String {
-        let mut rows =
-            String::from("axis  encoder   cell   tension N  current   current A  driver\n");
-        for (axis, number) in self.axes.iter().zip(1..) {
-            rows += &format!(
-                "{number:4}  {:7}  {:5}  {:10.2}  {:7}  {:10.3}  {}{}\n",
-                axis.encoder_counts,
-                axis.cell_code,
-                without_minus_zero(axis.tension_n, 2),
-                axis.current_code,
-                without_minus_zero(axis.current_a, 3),
-                either(axis.driver_fault, "fault", "ready"),
-                either(axis.cell_fresh, "", ", no fresh code of the cell"),
-            );
-        }
-        rows + &format!(
-            "\nsupply          {:5}  {:7.2} V\n\
-             temperature     {:5}  {:7.1} °C\n\
-             emergency stop  {}\n\
-             last tick       {}\n\
-             stored settings {}\n",
-            self.supply_code,
-            self.supply_v,
-            self.temperature_code,
-            self.temperature_c,
-            either(self.emergency_stop, "pressed", "released"),
-            either(self.late, "late", "in time"),
-            either(self.settings_corrupt, "not whole", "whole"),
-        )
+/// The same for people, as tables.
+pub fn text(sensors: &Sensors, settings: &Settings) -> String {
+    let measured = Measurement::<f64>::new(settings).convert(sensors);
+    let mut rows = String::from("axis  encoder   cell   tension N  current   current A  driver\n");
+    for axis in 0..3 {
+        rows += &format!(
+            "{:4}  {:7}  {:5}  {:10.2}  {:7}  {:10.3}  {}{}\n",
+            axis + 1,
+            sensors.encoder_counts[axis],
+            sensors.cell_codes[axis],
+            without_minus_zero(measured.tensions_n[axis], 2),
+            sensors.current_codes[axis],
+            without_minus_zero(measured.currents_a[axis], 3),
+            either(sensors.driver_fault[axis], "fault", "ready"),
+            either(sensors.cell_fresh[axis], "", ", no fresh code of the cell"),
+        );
     }
+    rows + &format!(
+        "\nsupply          {:5}  {:7.2} V\n\
+         temperature     {:5}  {:7.1} °C\n\
+         emergency stop  {}\n\
+         last tick       {}\n\
+         stored settings {}\n",
+        sensors.supply_code,
+        measured.supply_v,
+        sensors.temperature_code,
+        measured.temperature_c,
+        either(sensors.emergency_stop, "pressed", "released"),
+        either(sensors.late, "late", "in time"),
+        either(sensors.settings_corrupt, "not whole", "whole"),
+    )
 }
 
 const fn either(is: bool, yes: &'static str, no: &'static str) -> &'static str {

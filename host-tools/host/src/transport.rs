@@ -15,25 +15,17 @@ pub trait Transport {
     fn name(&self) -> &str;
 
     /// Sends whole frames, each with its final zero; returns when the system has taken them all.
-    ///
-    /// # Errors
-    /// [`io::ErrorKind::InvalidInput`] if a transport that cannot send parts of a frame is given one;
-    /// [`io::ErrorKind::TimedOut`] if the system does not take them; another error of the system.
+    /// [`io::ErrorKind::InvalidInput`] if a transport that cannot send parts of a frame is given one,
+    /// [`io::ErrorKind::TimedOut`] if the system does not take them.
     fn send(&mut self, bytes: &[u8]) -> io::Result<()>;
 
     /// Sends one whole frame before all that waits, where the transport can: a stop.
-    ///
-    /// # Errors
-    /// As [`Self::send`].
     fn send_urgent(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.send(bytes)
     }
 
     /// Waits for bytes and returns how many came, at least one; 0 only for a `bytes` without room, and where the other
-    /// side has ended for good.
-    ///
-    /// # Errors
-    /// [`io::ErrorKind::TimedOut`] if none came in time; another error of the system.
+    /// side has ended for good. [`io::ErrorKind::TimedOut`] if none came in time.
     fn receive(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize>;
 
     /// Frames of the transport's own that came damaged or incomplete, and so are missing in the bytes.

@@ -4,11 +4,11 @@ use crate::options::Options;
 use clap::ValueEnum;
 use indicatif::ProgressBar;
 use leg_base::failure::Failure;
+use leg_base::json_object;
 use leg_boards::image::FirmwareImage;
 use leg_boards::qemu::{QemuClock, QemuConfig, QemuSession};
 use leg_boards::setup;
 use leg_sim::link::{InProcess, Link};
-use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -38,63 +38,40 @@ impl Emulation {
     }
 }
 
-/// What QEMU needs.
-#[derive(Debug, Serialize)]
-struct Prerequisites {
-    /// The emulator's program.
-    emulator: PathBuf,
-    /// The firmware's ELF file.
-    firmware: PathBuf,
-}
-
-/// What `cargo leg run` and `cargo test` need.
-#[derive(Debug, Serialize)]
-struct Setup {
-    #[serde(flatten)]
-    qemu: Prerequisites,
-    /// The interpreter of the comparison with MuJoCo.
-    python: PathBuf,
-}
-
-/// `leg setup`.
+/// `leg setup`: what QEMU needs, and the interpreter of the comparison with MuJoCo.
 pub(crate) fn setup(options: Options) -> Result<(), Failure> {
-    let qemu = prepare()?;
-    let python = setup::ensure_python(&mut report).map_err(|error| Failure::from_error(&error))?;
-    options.report(&Setup { qemu, python }, |ready| {
-        format!(
-            "emulator: {}\nfirmware: {}\npython:   {}\nAll is set up.\n",
-            ready.qemu.emulator.display(),
-            ready.qemu.firmware.display(),
-            ready.python.display()
-        )
+    let [emulator, firmware] = &prepare()?;
+    let python = &setup::ensure_python(&mut report).map_err(Failure::from_error)?;
+    let json = json_object! { emulator: emulator, firmware: firmware, python: python };
+    options.report(&json, || {
+        let [emulator, firmware, python] = [emulator, firmware, python].map(|path| path.display());
+        format!("emulator: {emulator}\nfirmware: {firmware}\npython:   {python}\nAll is set up.\n")
     })
 }
 
 /// The firmware under QEMU, whose clock may be made for counting. Installs and builds first what is missing.
 pub(crate) fn qemu(clock: QemuClock, options: Options) -> Result<Box<dyn Link>, Failure> {
-    let Prerequisites { emulator, firmware } = prepare()?;
+    let [emulator, firmware] = prepare()?;
     let config = QemuConfig {
         clock,
         verbose: options.verbose,
         ..QemuConfig::new(emulator, firmware)
     };
-    match QemuSession::open(&config) {
-        Ok(session) => Ok(Box::new(session)),
-        Err(error) => Err(Failure::from_error(&error)),
-    }
+    Ok(Box::new(
+        QemuSession::open(&config).map_err(Failure::from_error)?,
+    ))
 }
 
-/// Installs and builds what is missing, and says so on standard error.
-fn prepare() -> Result<Prerequisites, Failure> {
+/// Installs and builds what is missing, and says so on standard error: the emulator and the firmware's ELF file.
+fn prepare() -> Result<[PathBuf; 2], Failure> {
     prepare_target()?;
-    let emulator = setup::ensure_qemu(&mut report).map_err(|error| Failure::from_error(&error))?;
-    let firmware = build_image(FirmwareImage::Qemu)?;
-    Ok(Prerequisites { emulator, firmware })
+    let emulator = setup::ensure_qemu(&mut report).map_err(Failure::from_error)?;
+    Ok([emulator, build_image(FirmwareImage::Qemu)?])
 }
 
 /// Installs what compiles the firmware, and says so on standard error.
 pub(crate) fn prepare_target() -> Result<(), Failure> {
-    setup::ensure_target(&mut report).map_err(|error| Failure::from_error(&error))
+    setup::ensure_target(&mut report).map_err(Failure::from_error)
 }
 
 fn report(doing: &str) {
@@ -108,5 +85,5 @@ pub(crate) fn build_image(image: FirmwareImage) -> Result<PathBuf, Failure> {
     spinner.enable_steady_tick(Duration::from_millis(100));
     let built = image.build();
     spinner.finish_and_clear();
-    built.map_err(|error| Failure::from_error(&error))
+    built.map_err(Failure::from_error)
 }

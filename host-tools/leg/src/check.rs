@@ -4,11 +4,11 @@ use crate::options::Options;
 use crate::output::require_none;
 use crate::{board, progress};
 use leg_base::failure::Failure;
+use leg_base::json_object;
 use leg_bench::check::{self, BitComparison, CheckReport, RowReport};
 use leg_bench::precision::TABLE;
 use leg_boards::qemu::QemuClock;
 use leg_firmware_bench::kernels::Kernel;
-use serde::Serialize;
 use std::fmt::Write;
 
 /// Random states beside those of the grid.
@@ -24,24 +24,17 @@ pub(crate) fn run(options: Options) -> Result<(), Failure> {
     let progress = progress::bar(states.len() as u64, "states");
     let checked = check::run(link.as_mut(), &TABLE, &states, || progress.inc(1));
     progress.finish_and_clear();
-    let report = checked.map_err(|error| Failure::from_error(&error))?;
+    let report = checked.map_err(Failure::from_error)?;
     let passed = report.failures().is_empty();
-    let json = JsonReport {
+    let json = json_object! {
+        #[serde(flatten)]
         report: &report,
-        passed,
+        passed: passed,
+        // The same under its former name, for one release.
         held: passed,
     };
-    options.report(&json, |_| table(&report))?;
+    options.report(&json, || table(&report))?;
     require_passed(&report)
-}
-
-#[derive(Serialize)]
-struct JsonReport<'a> {
-    #[serde(flatten)]
-    report: &'a CheckReport,
-    passed: bool,
-    /// The same, under its former name.
-    held: bool,
 }
 
 fn table(report: &CheckReport) -> String {

@@ -73,13 +73,19 @@ pub(crate) struct LegConnection {
     pub(crate) emulated: Option<EmulatedLine>,
 }
 
-/// How an emulated leg starts.
-pub(crate) const fn start(slack: bool) -> InitialState {
-    if slack {
+/// A simulated leg with its firmware, slack and not homed, or homed.
+pub(crate) fn emulated_leg(
+    rig: &RigFile,
+    slack: bool,
+    on: Emulation,
+    options: Options,
+) -> Result<EmulatedLeg, Failure> {
+    let start = if slack {
         InitialState::Slack
     } else {
         InitialState::Homed
-    }
+    };
+    EmulatedLeg::new(rig, start, on.link(options)?).map_err(Failure::from_error)
 }
 
 impl LegArgs {
@@ -116,9 +122,7 @@ impl ConnectionArgs {
                 emulated: None,
             });
         };
-        let start = start(purpose == Purpose::Calibrate);
-        let leg = EmulatedLeg::new(rig, start, on.link(options)?)
-            .map_err(|error| Failure::from_error(&error))?;
+        let leg = emulated_leg(rig, purpose == Purpose::Calibrate, on, options)?;
         let emulated = EmulatedLine::new(leg, &format!("the leg {}", on.text()));
         let host = Box::new(emulated.connect());
         Ok(LegConnection {
@@ -132,7 +136,7 @@ impl ConnectionArgs {
             Some(port) => Serial::open(port),
             None => serial::find_board().and_then(|port| Serial::open(&port)),
         };
-        let serial = opened.map_err(|error| Failure::refused(error.to_string(), error.remedy()))?;
+        let serial = opened?;
         if let Some(reason) = serial.unshared() {
             eprintln!(
                 "leg: other commands cannot use this port meanwhile ({reason}): let TMPDIR be a directory that may be written, with a short path"
@@ -144,15 +148,13 @@ impl ConnectionArgs {
 
 #[cfg(target_os = "linux")]
 fn can(interface: &str, leg: LegAddress, purpose: Purpose) -> Result<Box<dyn Transport>, Failure> {
-    let opened = if purpose == Purpose::Stop {
-        SocketCan::open_urgent(interface, leg).map(|port| CanTransport::urgent_only(port, leg))
+    let urgent_only = purpose == Purpose::Stop;
+    let port = SocketCan::open(interface, leg, urgent_only).map_err(Failure::from_error)?;
+    Ok(Box::new(if urgent_only {
+        CanTransport::urgent_only(port, leg)
     } else {
-        SocketCan::open(interface, leg).map(|port| CanTransport::new(port, leg))
-    };
-    match opened {
-        Ok(transport) => Ok(Box::new(transport)),
-        Err(error) => Err(Failure::from_error(&error)),
-    }
+        CanTransport::new(port, leg)
+    }))
 }
 
 #[cfg(not(target_os = "linux"))]

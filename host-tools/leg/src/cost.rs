@@ -32,8 +32,8 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let progress = progress::bar(cost::measurements() as u64, "kernels");
     let measured = cost::measure(link.as_mut(), || progress.inc(1));
     progress.finish_and_clear();
-    let costs = measured.map_err(|error| Failure::from_error(&error))?;
-    options.report(&costs, |costs| table(costs))?;
+    let costs = measured.map_err(Failure::from_error)?;
+    options.report(&costs, || table(&costs))?;
     let failed = costs.iter().filter(|cost| !cost.passed);
     let names: Vec<String> = failed.map(|cost| cost.kernel.clone()).collect();
     let help = "look for what changed in the kernel or the compiler before you move a bound in cost/budget.rs";

@@ -52,10 +52,15 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     TendonCurve::new(&points).map_err(no_tendon)?;
     let section = curve_toml::section(&points);
     let plots = save(args, &fit, &section)?;
-    let out = args.out.as_deref();
-    let report = CurveReport::new(&fit, &points, args.length_mm, out, &plots);
-    options.report(&report, |report| {
-        let printed = if out.is_some() { "" } else { &section };
+    let report = CurveReport {
+        fit: &fit,
+        points: &points,
+        length_mm: args.length_mm,
+        out: args.out.as_deref(),
+        plots: &plots,
+    };
+    options.report(&report.json(), || {
+        let printed = if args.out.is_some() { "" } else { &section };
         report.table() + printed
     })
 }

@@ -1,19 +1,18 @@
 //! `leg emulate`.
 
 use crate::board::Emulation;
-use crate::connection::start;
+use crate::connection::emulated_leg;
 use crate::numbers::seconds;
 use crate::options::Options;
 use leg_base::failure::Failure;
+use leg_base::json_object;
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::emulated_board::EmulatedBoard;
 use leg_host::pseudo_terminal::PseudoTerminal;
 use leg_rig::rig_file::RigFile;
 use leg_sim::action::Action;
-use leg_sim::emulated_leg::EmulatedLeg;
-use serde::Serialize;
 use std::io::BufRead;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
@@ -44,28 +43,21 @@ pub(crate) struct Args {
     disturbances: bool,
 }
 
-#[derive(Serialize)]
-struct PortReport<'a> {
-    port: &'a Path,
-}
-
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let rig = RigFile::load(args.rig.as_deref())?;
-    let leg = EmulatedLeg::new(&rig, start(args.slack), args.on.link(options)?)
-        .map_err(|error| Failure::from_error(&error))?;
+    let leg = emulated_leg(&rig, args.slack, args.on, options)?;
     let port = PseudoTerminal::open().map_err(|error| {
         let help = "see that /dev/pts is mounted";
         Failure::refused(format!("no pseudo-terminal: {error}"), help)
     })?;
     let cancel = CancelFlag::on_ctrl_c();
     let disturbances = disturbances(args.disturbances);
-    let report = PortReport { port: port.path() };
-    options.report(&report, |report| format!("{}\n", report.port.display()))?;
+    options.report(&json_object! { port: port.path() }, || {
+        format!("{}\n", port.path().display())
+    })?;
     let board = EmulatedBoard::new(leg, port);
     let started = Instant::now();
-    let missed = board
-        .run(&cancel, args.length, &disturbances)
-        .map_err(|error| Failure::from_error(&error))?;
+    let missed = board.run(&cancel, args.length, &disturbances)?;
     let part = missed.as_secs_f64() / started.elapsed().as_secs_f64();
     if part > MISSED_PART {
         let percent = 100.0 * part;

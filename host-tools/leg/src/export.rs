@@ -60,13 +60,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .map_err(|error| refused(&error))?;
     let mut text = Vec::new();
     let written = model.write(&mut text);
-    written.map_err(|error| Failure::from_error(&error))?;
+    written.map_err(Failure::from_error)?;
     write(args.out.as_deref(), &String::from_utf8_lossy(&text))
 }
 
 /// The model's refusal, named by the option that gives the value.
 fn refused(error: &MjcfError) -> Failure {
-    let &MjcfError::Model(LineError::Refused { quantity, reason }) = error else {
+    let &MjcfError::Model(LineError::Refused(quantity, reason)) = error else {
         return Failure::from_error(error);
     };
     let (what, help) = match quantity {

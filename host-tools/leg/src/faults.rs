@@ -1,30 +1,13 @@
 //! `leg faults`.
 
 use crate::options::Options;
-use leg_base::description;
 use leg_base::failure::Failure;
-use leg_firmware::supervisor::{Clearing, FAULT_TABLE, Fault, FaultEntry, Reaction};
-use serde::Serialize;
-
-#[derive(Serialize)]
-struct FaultRow {
-    code: u8,
-    fault: Fault,
-    name: &'static str,
-    reaction: Reaction,
-    cause: &'static str,
-    remedy: &'static str,
-    ends: &'static str,
-}
+use leg_base::{description, json_object};
+use leg_firmware::supervisor::{Clearing, FAULT_TABLE, FaultEntry};
 
 pub(crate) fn run(options: Options) -> Result<(), Failure> {
-    let rows: Vec<FaultRow> = FAULT_TABLE.into_iter().map(FaultRow::new).collect();
-    options.report(&rows, |rows| table(rows))
-}
-
-impl FaultRow {
-    fn new(entry: &FaultEntry) -> Self {
-        Self {
+    let json = |entry: &FaultEntry| {
+        json_object! {
             code: entry.fault.code(),
             fault: entry.fault,
             name: entry.name,
@@ -36,23 +19,24 @@ impl FaultRow {
                 Clearing::Command => "by `clear`, its cause gone",
             },
         }
-    }
-
-    fn text(&self) -> String {
-        format!(
-            "{:4}  {:28}  {:9}  {}\n{:47}remedy: {}\n",
-            self.code,
-            self.name,
-            description::reaction(self.reaction),
-            self.cause,
-            "",
-            self.remedy
-        )
-    }
+    };
+    let rows: Vec<_> = FAULT_TABLE.into_iter().map(json).collect();
+    options.report(&rows, table)
 }
 
-fn table(rows: &[FaultRow]) -> String {
-    let rows: String = rows.iter().map(FaultRow::text).collect();
+fn table() -> String {
+    let row = |entry: &FaultEntry| {
+        format!(
+            "{:4}  {:28}  {:9}  {}\n{:47}remedy: {}\n",
+            entry.fault.code(),
+            entry.name,
+            description::reaction(entry.reaction),
+            entry.cause,
+            "",
+            entry.remedy
+        )
+    };
+    let rows: String = FAULT_TABLE.into_iter().map(row).collect();
     format!(
         "code  fault                         reaction   raised when\n{rows}\n\
          limit: the leg goes on with what is possible; ends with its cause.\n\

@@ -4,10 +4,10 @@ use crate::board;
 use crate::options::Options;
 use crate::output::print;
 use leg_base::failure::Failure;
+use leg_base::json_object;
 use leg_boards::image::FirmwareImage;
 use leg_host::cancel_flag::CancelFlag;
-use leg_host::flash::{FlashError, Probe};
-use serde::Serialize;
+use leg_host::flash::Probe;
 use std::path::PathBuf;
 
 /// Builds the firmware, writes it into the board over its debugger, reads it back, starts it and shows its log.
@@ -24,16 +24,8 @@ pub(crate) struct Args {
     no_log: bool,
 }
 
-/// What was done; the log follows as text.
-#[derive(Serialize)]
-struct FlashReport {
-    image: PathBuf,
-    verified: bool,
-    started: bool,
-}
-
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
-    let probe = Probe::find(args.probe.clone()).map_err(failure)?;
+    let probe = Probe::find(args.probe.clone())?;
     let image = match &args.image {
         Some(image) if image.is_file() => image.clone(),
         Some(image) => {
@@ -45,31 +37,19 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
             board::build_image(FirmwareImage::Stm32g474)?
         }
     };
-    probe.check_chip().map_err(failure)?;
-    probe.download(&image).map_err(failure)?;
+    probe.check_chip()?;
+    probe.download(&image)?;
     if !options.json {
         print("flashed, read back and found the same\n")?;
     }
-    probe.reset().map_err(failure)?;
-    let report = FlashReport {
-        image,
-        verified: true,
-        started: true,
-    };
-    options.report(&report, |_| "started\n".into())?;
+    probe.reset()?;
+    // What was done; the log follows as text.
+    let json = json_object! { image: &image, verified: true, started: true };
+    options.report(&json, || "started\n".into())?;
     if args.no_log {
         return Ok(());
     }
     let cancel = CancelFlag::on_ctrl_c();
     eprintln!("leg: the firmware's log follows; Ctrl-C ends it");
-    probe.attach(&report.image, &cancel).map_err(failure)
-}
-
-fn failure(error: FlashError) -> Failure {
-    let (sentence, remedy) = (error.to_string(), error.remedy());
-    if matches!(error, FlashError::NotVerified) {
-        Failure::failed(sentence, remedy)
-    } else {
-        Failure::refused(sentence, remedy)
-    }
+    probe.attach(&image, &cancel)
 }

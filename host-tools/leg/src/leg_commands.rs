@@ -4,10 +4,10 @@ use crate::connection::{LegArgs, Purpose};
 use crate::numbers::{azimuth_deg, direction, positive, tilt_deg, unit_vector};
 use crate::options::Options;
 use leg_base::failure::Failure;
-use leg_firmware::telemetry::Telemetry;
-use leg_host::leg_report::{self, LegReport};
-use leg_host::operator::{LegGoal, Operator, OperatorError, TensionDemand};
-use serde::Serialize;
+use leg_base::json_object;
+use leg_firmware::command::Command;
+use leg_host::leg_report;
+use leg_host::operator::{Operator, OperatorError};
 
 #[derive(Debug, clap::Subcommand)]
 pub(crate) enum LegCommand {
@@ -72,82 +72,70 @@ pub(crate) struct StiffnessArgs {
 
 impl LegCommand {
     pub(crate) fn run(&self, options: Options) -> Result<(), Failure> {
-        let drive = |leg: &LegArgs, goal: LegGoal| {
-            command(leg, Purpose::Use, options, |operator| operator.reach(&goal))
+        let reach = |leg: &LegArgs, commands: &[Command]| {
+            run(leg, Purpose::Use, options, |operator| {
+                operator.reach(commands)
+            })
         };
         match self {
-            Self::Clear(leg) => command(leg, Purpose::Use, options, Operator::clear),
-            Self::Disarm(leg) => command(leg, Purpose::Use, options, Operator::disarm),
-            Self::Hold(leg) => drive(leg, LegGoal::default()),
+            Self::Clear(leg) => run(leg, Purpose::Use, options, Operator::clear),
+            Self::Disarm(leg) => run(leg, Purpose::Use, options, Operator::disarm),
+            Self::Hold(leg) => reach(leg, &[]),
             Self::Home(leg) => home(leg, options),
-            Self::Move(args) => drive(&args.leg, args.goal()),
-            Self::Stiffness(args) => drive(&args.leg, args.goal()),
-            Self::Stop(leg) => command(leg, Purpose::Stop, options, Operator::stop),
+            Self::Move(args) => reach(&args.leg, &args.commands()),
+            Self::Stiffness(args) => reach(&args.leg, &[stiffness(args.stiffness, args.towards)]),
+            Self::Stop(leg) => run(leg, Purpose::Stop, options, Operator::stop),
         }
     }
 }
 
 impl MoveArgs {
-    fn goal(&self) -> LegGoal {
-        let pretension = self
-            .pretension
-            .map(|pretension_n| TensionDemand::Pretension(pretension_n as f32));
-        let stiffness = self
-            .stiffness
-            .map(|demand| TensionDemand::Stiffness(demand as f32, self.towards.map(unit_vector)));
-        LegGoal {
-            direction: Some(direction(self.azimuth, self.tilt)),
-            demand: pretension.or(stiffness),
-        }
+    fn commands(&self) -> Vec<Command> {
+        let pretension = self.pretension.map(|n| Command::Pretension(n as f32));
+        let stiffness = self.stiffness.map(|demand| stiffness(demand, self.towards));
+        let [x, y] = direction(self.azimuth, self.tilt);
+        let tension = pretension.or(stiffness);
+        tension
+            .into_iter()
+            .chain([Command::Move { x, y }])
+            .collect()
     }
 }
 
-impl StiffnessArgs {
-    fn goal(&self) -> LegGoal {
-        let towards = self.towards.map(unit_vector);
-        LegGoal {
-            direction: None,
-            demand: Some(TensionDemand::Stiffness(self.stiffness as f32, towards)),
-        }
+fn stiffness(nm_per_rad: f64, towards_deg: Option<f64>) -> Command {
+    Command::Stiffness {
+        demand_nm_per_rad: nm_per_rad as f32,
+        towards: towards_deg.map(unit_vector),
     }
 }
 
 /// Does `work` and reports what the leg does in the end.
-fn command<T>(
+fn run<T>(
     leg: &LegArgs,
     purpose: Purpose,
     options: Options,
     work: impl FnOnce(&mut Operator) -> Result<T, OperatorError>,
 ) -> Result<(), Failure> {
     let telemetry = leg.open(purpose, options)?.watched(work)?;
-    options.report(&LegReport::new(&telemetry), |_| {
-        leg_report::rows(&telemetry)
+    options.report(&leg_report::json(&telemetry), || {
+        leg_report::text(&telemetry)
     })
-}
-
-/// What homing found.
-#[derive(Serialize)]
-struct HomeReport {
-    #[serde(flatten)]
-    leg: LegReport,
-    unstretched_at_zero_m: [f32; 3],
 }
 
 /// `leg home`, and `leg calibrate zero`.
 pub(crate) fn home(leg: &LegArgs, options: Options) -> Result<(), Failure> {
     let connection = leg.open(Purpose::Calibrate, options)?;
     let telemetry = connection.watched(Operator::home)?;
-    let report = HomeReport {
-        leg: LegReport::new(&telemetry),
+    let json = json_object! {
+        #[serde(flatten)]
+        leg: leg_report::json(&telemetry),
         unstretched_at_zero_m: telemetry.unstretched_at_zero_m,
     };
-    options.report(&report, |report| home_text(report, &telemetry))
-}
-
-fn home_text(report: &HomeReport, telemetry: &Telemetry<f32>) -> String {
-    let [a, b, c] = report.unstretched_at_zero_m.map(|m| m * 1000.0);
-    format!(
-        "{}zero       {a:.3}  {b:.3}  {c:.3} mm of tendon when the board started\n",
-        leg_report::rows(telemetry)
-    )
+    options.report(&json, || {
+        let [a, b, c] = telemetry.unstretched_at_zero_m.map(|m| m * 1000.0);
+        format!(
+            "{}zero       {a:.3}  {b:.3}  {c:.3} mm of tendon when the board started\n",
+            leg_report::text(&telemetry)
+        )
+    })
 }

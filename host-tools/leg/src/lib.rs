@@ -18,7 +18,8 @@
 //! on CAN or emulated), `numbers` (checked numbers) and `progress`.
 //!
 //! # A new command
-//! 1. Write its file, with its `Args` and `run`; print through `Options::report`, which serves `--json`.
+//! 1. Write its file, with its `Args` and `run`; print through `Options::report`, which takes what `--json`
+//!    prints, mostly a `json_object!`, and the text for people.
 //! 2. Add it to `Command` and to the `match` in `run` of this file, and to the table above.
 //! 3. Add its help text to `tests/command_line/help.trycmd` and a transcript of its work beside it.
 //!

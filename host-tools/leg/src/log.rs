@@ -6,11 +6,11 @@ use crate::connection::{LegArgs, Purpose};
 use crate::numbers::{positive, seconds};
 use crate::options::Options;
 use crate::progress;
-use counter::{Counter, Foreign, Recorded};
+use counter::{Counter, Foreign};
 use leg_base::failure::Failure;
 use leg_firmware::sensors::TICK_HZ;
 use leg_host::operator::{Operator, OperatorError};
-use leg_host::recording::{self, Recording};
+use leg_host::recording::{self, Recording, RecordingError};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -62,50 +62,30 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         let bar = progress::counter("times");
         let ended = record(&mut operator, args, file, &mut counter, || bar.inc(1));
         bar.finish_and_clear();
-        let ended = end_stream(&mut operator, ended);
-        let recorded = counter.recorded(operator.damaged_frames());
-        match ended {
-            Err(Ended::File(failure)) => Err(failure),
+        let ended = match end_stream(&mut operator, ended) {
+            Err(Ended::File(error)) => return Err(error),
+            // Ctrl-C is how the user ends it.
+            Ok(()) | Err(Ended::Line(OperatorError::Cancelled)) => Ok(()),
             // What was recorded until then is kept.
-            ended => Ok((recorded, ended)),
-        }
+            Err(Ended::Line(error)) => Err(error.into()),
+            Err(Ended::Foreign(foreign)) => Err(foreign.failure()),
+        };
+        Ok((counter.recorded(operator.damaged_frames()), ended))
     })?;
-    options.report(&recorded, Recorded::text)?;
-    ended.or_else(Ended::into_result)
+    options.report(&recorded, || recorded.text())?;
+    ended
 }
 
 /// What ends a recording before its time.
 enum Ended {
     Line(OperatorError),
-    File(Failure),
+    File(RecordingError),
     Foreign(Foreign),
 }
 
 impl From<OperatorError> for Ended {
     fn from(error: OperatorError) -> Self {
         Self::Line(error)
-    }
-}
-
-impl Ended {
-    fn into_result(self) -> Result<(), Failure> {
-        Err(match self {
-            // Ctrl-C is how the user ends it.
-            Self::Line(OperatorError::Cancelled) => return Ok(()),
-            Self::Line(error) => error.into(),
-            Self::File(failure) => failure,
-            Self::Foreign(Foreign::Restarted) => Failure::failed(
-                "the leg started anew, and its time begins again",
-                "the file ends there; log again for what follows",
-            ),
-            Self::Foreign(Foreign::Every(s)) => Failure::failed(
-                format!(
-                    "another host has asked the leg to report every {} ms",
-                    s * 1000.0
-                ),
-                "the file ends there; end the other `leg log`, or give both the same --rate",
-            ),
-        })
     }
 }
 
@@ -139,16 +119,16 @@ fn record(
         let Some(reply) = operator.next_streamed(stall)? else {
             silences += 1;
             if silences > SILENCES_MAX {
-                let name = operator.name();
-                return Err(OperatorError::NoAnswer(name).into());
+                return Err(OperatorError::NoAnswer(operator.name().into()).into());
             }
             operator.start_stream(args.every_ticks)?;
             continue;
         };
         silences = 0;
-        counter.take(&reply).map_err(Ended::Foreign)?;
-        file.take_telemetry(&reply.telemetry)
-            .map_err(|error| Ended::File(Failure::from_error(&error)))?;
+        let taken = counter.take(reply.number, reply.telemetry.tick);
+        taken.map_err(Ended::Foreign)?;
+        let recorded = file.take_telemetry(&reply.telemetry);
+        recorded.map_err(Ended::File)?;
         written();
     }
     Ok(())

@@ -20,7 +20,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         None => {
             let mut page = Vec::new();
             let rendered = Man::new(command()).render(&mut page);
-            rendered.map_err(|error| Failure::from_error(&error))?;
+            rendered.map_err(Failure::from_error)?;
             print(&String::from_utf8_lossy(&page))
         }
         Some(directory) => {

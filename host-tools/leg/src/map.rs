@@ -13,7 +13,7 @@ use leg_model_tools::plot::PlotError;
 use leg_model_tools::plot::field::{self, Layout};
 use leg_model_tools::workspace_map::{Grid, MapQuantity, WorkspaceMap};
 use leg_rig::rig_file::RigFile;
-use report::MapReport;
+use report::{MapReport, QuantityExtremes};
 use std::path::PathBuf;
 
 /// Draws deviation, stiffness, tension margin and feasible pretensions over the workspace.
@@ -65,8 +65,14 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         Some(file) => map_csv::save_around(&map, file, || draw(args, &rig, &map))?,
         None => draw(args, &rig, &map)?,
     };
-    let report = MapReport::new(&rig, args.payload_kg, &map, &pictures);
-    options.report(&report, |report| report.table(args.csv.as_deref()))
+    let report = MapReport {
+        rig: &rig,
+        payload_kg: args.payload_kg,
+        map: &map,
+        pictures: &pictures,
+        extremes: QuantityExtremes::all(&map),
+    };
+    options.report(&report.json(), || report.table(args.csv.as_deref()))
 }
 
 /// The rig at the asked pretension, if the model accepts it with the payload.

@@ -119,15 +119,14 @@ impl Monitor {
         if !self.json && self.udp.is_none() {
             return Ok(());
         }
-        let line = self.view.json();
-        let Some(line) = line.map_err(|error| Failure::from_error(&error))? else {
+        let Some(line) = self.view.json()? else {
             return Ok(());
         };
         if let Some(udp) = &self.udp {
-            udp.send(&line)?;
+            udp.send(line.trim_end())?;
         }
         if self.json {
-            print(&(line + "\n"))?;
+            print(&line)?;
         }
         Ok(())
     }

@@ -16,16 +16,12 @@ pub(crate) struct Options {
 }
 
 impl Options {
-    /// Prints a report for people, or as one line of JSON.
-    pub(crate) fn report<T: Serialize + ?Sized>(
+    /// Prints a report for people, or for machines as one line of JSON.
+    pub(crate) fn report(
         self,
-        report: &T,
-        text: impl FnOnce(&T) -> String,
+        json: &(impl Serialize + ?Sized),
+        text: impl FnOnce() -> String,
     ) -> Result<(), Failure> {
-        print(&if self.json {
-            to_line(report)?
-        } else {
-            text(report)
-        })
+        print(&if self.json { to_line(json)? } else { text() })
     }
 }

@@ -1,9 +1,9 @@
 //! Printing, files and errors, the same for every command.
 
-use leg_base::atomic_file::{self, Workshop};
+use leg_base::atomic_file::{self, StagingDirectory};
 use leg_base::failure::{Failure, Message};
 use leg_base::json_line::to_line;
-use serde::Serialize;
+use leg_base::json_object;
 use std::error::Error;
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
@@ -52,11 +52,11 @@ pub(crate) fn save_all<T>(
     before: impl FnOnce() -> Result<(), Failure>,
 ) -> Result<T, Failure> {
     let refused = |error: &dyn Display| not_saved(what, directory, option, error);
-    let workshop = Workshop::new(directory).map_err(|error| refused(&error))?;
-    let made = work(workshop.path()).map_err(|error| refused(&error))?;
-    workshop.check().map_err(|error| refused(&error))?;
+    let staging = StagingDirectory::new(directory).map_err(|error| refused(&error))?;
+    let made = work(staging.path()).map_err(|error| refused(&error))?;
+    staging.check().map_err(|error| refused(&error))?;
     before()?;
-    workshop.deliver().map_err(|error| refused(&error))?;
+    staging.commit().map_err(|error| refused(&error))?;
     Ok(made)
 }
 
@@ -97,37 +97,22 @@ pub(crate) fn usage(error: &clap::Error) -> ExitCode {
 }
 
 /// An error for machines.
-#[derive(Serialize)]
-struct ErrorReport<'a> {
-    error: &'a str,
-    help: Option<&'a str>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    file: Option<&'a str>,
-    /// Line and column in the file, from 1.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    line: Option<usize>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    column: Option<usize>,
-    exit_code: u8,
-}
-
-/// One line of JSON.
 fn failure_line(failure: &Failure) -> String {
     let (message, exit_code) = match failure {
         Failure::Failed(message) => (message, 1),
         Failure::Refused(message) => (message, 2),
     };
-    let place = place(message);
-    let report = ErrorReport {
+    let json = json_object! {
         error: &message.sentence,
-        help: message.help.as_deref(),
-        file: message.place.as_ref().map(|place| place.file.as_str()),
-        line: place.map(|[line, _]| line),
-        column: place.map(|[_, column]| column),
-        exit_code,
+        help: &message.help,
+        #[serde(flatten)]
+        file: message.place.as_ref().map(|place| json_object! { file: &place.file }),
+        #[serde(flatten)]
+        place: place(message).map(|[line, column]| json_object! { line: line, column: column }),
+        exit_code: exit_code,
     };
     // Strings and integers always have a form in JSON.
-    to_line(&report).unwrap_or_default()
+    to_line(&json).unwrap_or_default()
 }
 
 /// Line and column where the message's place begins, from 1.

@@ -22,9 +22,9 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let default = || image::workspace_root().join("target/leg-paper");
     let directory = args.out.clone().unwrap_or_else(default);
-    let computed = Paper::compute().map_err(|error| Failure::from_error(&error))?;
+    let computed = Paper::compute().map_err(Failure::from_error)?;
     let report = write(&computed, &directory)?;
-    options.report(&computed, |computed| table(computed, &report))?;
+    options.report(&computed, || table(&computed, &report))?;
     let surprises: Vec<String> = computed.surprises().map(|row| row.what.clone()).collect();
     let help = "look for what changed in the model before you change what is known in paper/";
     require_none("a verdict is not the known one", &surprises, help)

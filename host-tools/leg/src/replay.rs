@@ -14,13 +14,8 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
-    let replay = recording::replay(&args.file).map_err(|error| {
-        Failure::refused(
-            format!("{}: {error}", args.file.display()),
-            "record anew with `leg run --record FILE.mcap`",
-        )
-    })?;
-    options.report(&replay, text)?;
+    let replay = recording::replay(&args.file)?;
+    options.report(&replay, || text(&replay))?;
     if replay.other == 0 {
         return Ok(());
     }

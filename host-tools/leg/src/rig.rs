@@ -4,6 +4,8 @@ use crate::options::Options;
 use crate::output::{print, write};
 use clap::Subcommand;
 use leg_base::failure::Failure;
+use leg_base::json_line::to_line;
+use leg_base::json_object;
 use leg_model_tools::rig_drawing;
 use leg_rig::ready_rigs::{READY_RIGS, ReadyRig};
 use leg_rig::rig_convert::{self, RigFormat};
@@ -17,11 +19,11 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     #[command(subcommand)]
-    action: Action,
+    action: RigAction,
 }
 
 #[derive(Debug, Subcommand)]
-enum Action {
+enum RigAction {
     /// Lists the ready rigs; `--rig` takes their names.
     List,
     /// Prints the mechanism of a rig file as the model sees it.
@@ -69,8 +71,11 @@ type List = fn(&RigFile) -> Vec<Setting>;
 
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     match &args.action {
-        Action::List => options.report(&ready_rigs()?, |rigs| list_text(rigs)),
-        Action::Show {
+        RigAction::List => {
+            let rigs = ready_rigs()?;
+            options.report(&rigs, || list_text(&rigs))
+        }
+        RigAction::Show {
             rig,
             control,
             actuator,
@@ -87,38 +92,28 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
                 (None, false) => rig_show::words(&file),
                 (None, true) => rig_show::json(&file)?,
                 (Some((_, list)), false) => rig_settings::table(&list(&file)),
-                (Some((_, list)), true) => rig_settings::json(&list(&file))?,
+                (Some((_, list)), true) => to_line(&list(&file))?,
             })
         }
-        Action::Draw { rig, out } => {
-            let svg = rig_drawing::svg(&RigFile::load(rig.as_deref())?)
-                .map_err(|error| Failure::from_error(&error))?;
+        RigAction::Draw { rig, out } => {
+            let svg =
+                rig_drawing::svg(&RigFile::load(rig.as_deref())?).map_err(Failure::from_error)?;
             write(out.as_deref(), &svg)
         }
-        Action::Validate { rig } => validate(rig, options),
-        Action::Convert { rig, to, out } => {
+        RigAction::Validate { rig } => validate(rig, options),
+        RigAction::Convert { rig, to, out } => {
             let source = RigText::load(Some(rig))?;
             write(out.as_deref(), &rig_convert::convert(&source, *to)?)
         }
     }
 }
 
-#[derive(Serialize)]
-struct ValidRig<'a> {
-    file: &'a Path,
-    support: &'static str,
-}
-
 fn validate(rig: &Path, options: Options) -> Result<(), Failure> {
-    let valid = ValidRig {
-        file: rig,
-        support: RigFile::load(Some(rig))?.support_name.word(),
-    };
-    options.report(&valid, |valid| {
+    let support = RigFile::load(Some(rig))?.support_name.word();
+    options.report(&json_object! { file: rig, support: support }, || {
         format!(
-            "{}: a rig on the support `{}`, nothing wrong with it\n",
-            valid.file.display(),
-            valid.support
+            "{}: a rig on the support `{support}`, nothing wrong with it\n",
+            rig.display()
         )
     })
 }

@@ -64,15 +64,14 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let seconds = started.elapsed().as_secs_f64();
     let plots = run_charts::save(&scenario.title, &summary.samples, &directory)
         .map_err(|error| not_saved("charts", &directory, "--plots", &error))?;
-    let ticks_per_s = summary.ticks as f64 / seconds;
-    let report = RunReport::new(
-        &scenario.title,
-        args.on.text(),
-        &summary,
-        ticks_per_s,
-        &plots,
-    );
-    options.report(&report, RunReport::table)?;
+    let report = RunReport {
+        title: &scenario.title,
+        firmware: args.on.text(),
+        summary: &summary,
+        ticks_per_s: summary.ticks as f64 / seconds,
+        plots: &plots,
+    };
+    options.report(&report.json(), || report.table())?;
     require_passed(&summary)
 }
 
@@ -82,13 +81,13 @@ fn simulate(
     rig: &RigFile,
     link: &mut dyn Link,
 ) -> Result<Summary, Failure> {
-    let simulation = Simulation::new(scenario, rig).map_err(|error| Failure::from_error(&error))?;
+    let simulation = Simulation::new(scenario, rig).map_err(Failure::from_error)?;
     let settings = simulation.settings().clone();
     let bar = progress::counter("ticks");
     let mut watched = |watch: &mut dyn FnMut(&Tick<'_>)| {
         let result = simulation.clone().run(link, watch);
         bar.finish_and_clear();
-        result.map_err(|error| Failure::from_error(&error))
+        result.map_err(Failure::from_error)
     };
     match &args.record {
         None => watched(&mut |_| bar.inc(1)),
@@ -100,7 +99,7 @@ fn simulate(
                     written = recording.take_tick(tick);
                 }
             })?;
-            written.map_err(|error| Failure::from_error(&error))?;
+            written?;
             Ok(summary)
         }),
     }

@@ -3,7 +3,7 @@
 use crate::connection::{LegArgs, Purpose};
 use crate::options::Options;
 use leg_base::failure::Failure;
-use leg_host::sensor_report::SensorReport;
+use leg_host::sensor_report::{json, text};
 
 /// Shows what the sensors read, raw and in SI units. Read-only.
 ///
@@ -17,6 +17,6 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let mut operator = args.leg.open(Purpose::Use, options)?.operator;
-    let report = SensorReport::new(&operator.sensors()?, &operator.settings()?);
-    options.report(&report, SensorReport::rows)
+    let (sensors, settings) = (operator.sensors()?, operator.settings()?);
+    options.report(&json(&sensors, &settings), || text(&sensors, &settings))
 }

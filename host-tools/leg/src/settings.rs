@@ -6,13 +6,13 @@ use crate::output::{print, write};
 use clap::Subcommand;
 use leg_base::failure::Failure;
 use leg_base::json_line::to_line;
+use leg_base::json_object;
 use leg_firmware::host_link::ResetCause;
 use leg_firmware::settings::Settings;
 use leg_host::operator::{Operator, SettingDifference, setting_differences};
 use leg_rig::control_settings;
 use leg_rig::rig_file::RigFile;
 use leg_rig::{number, settings_text};
-use serde::Serialize;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -20,11 +20,11 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     #[command(subcommand)]
-    action: Action,
+    action: SettingsAction,
 }
 
 #[derive(Debug, Subcommand)]
-enum Action {
+enum SettingsAction {
     /// Prints the settings in use as a rig file that gives the same bits again; with --json in SI units.
     Get {
         /// The file to write; standard output if left out.
@@ -66,8 +66,10 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         Ok(connection.open(&rig, Purpose::Use, options)?.operator)
     };
     match &args.action {
-        Action::Get { out, connection } => get(&mut open(connection)?, out.as_deref(), options),
-        Action::Set {
+        SettingsAction::Get { out, connection } => {
+            get(&mut open(connection)?, out.as_deref(), options)
+        }
+        SettingsAction::Set {
             rig,
             save,
             connection,
@@ -75,11 +77,11 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
             let settings = load_settings(rig)?;
             set(&mut open(connection)?, &settings, *save, options)
         }
-        Action::Save { connection } => {
-            let saved = keep(&mut open(connection)?)?;
-            options.report(&saved, |saved| saved.text().into())
+        SettingsAction::Save { connection } => {
+            let kept = keep(&mut open(connection)?)?;
+            options.report(&json_object! { kept: kept }, || kept_text(kept).into())
         }
-        Action::Diff { rig, connection } => {
+        SettingsAction::Diff { rig, connection } => {
             let settings = load_settings(rig)?;
             diff(&mut open(connection)?, &settings, options)
         }
@@ -102,27 +104,12 @@ fn get(operator: &mut Operator, out: Option<&Path>, options: Options) -> Result<
     write(out, &text)
 }
 
-/// Whether the board keeps its settings over a reset.
-#[derive(Clone, Copy, Serialize)]
-struct Saved {
-    kept: bool,
-}
-
-impl Saved {
-    const fn text(self) -> &'static str {
-        if self.kept {
-            "kept over a reset\n"
-        } else {
-            "taken; an emulated board is never reset, and keeps nothing when it ends\n"
-        }
+fn kept_text(kept: bool) -> &'static str {
+    if kept {
+        "kept over a reset\n"
+    } else {
+        "taken; an emulated board is never reset, and keeps nothing when it ends\n"
     }
-}
-
-#[derive(Serialize)]
-struct SetReport {
-    verified: bool,
-    saved: Option<Saved>,
-    next: &'static str,
 }
 
 fn set(
@@ -136,22 +123,20 @@ fn set(
         // Printed before the settings are kept, which may fail.
         print("set, read back and found the same\n")?;
     }
-    let report = SetReport {
+    let kept = if save { Some(keep(operator)?) } else { None };
+    let next = next_step(operator)?;
+    let json = json_object! {
         verified: true,
-        saved: if save { Some(keep(operator)?) } else { None },
-        next: next_step(operator)?,
+        saved: kept.map(|kept| json_object! { kept: kept }),
+        next: next,
     };
-    options.report(&report, |report| {
-        let saved = report.saved.map_or("", Saved::text);
-        format!("{saved}{}\n", report.next)
-    })
+    options.report(&json, || format!("{}{next}\n", kept.map_or("", kept_text)))
 }
 
-fn keep(operator: &mut Operator) -> Result<Saved, Failure> {
+/// Saves the settings on the board; returns whether they outlast a reset.
+fn keep(operator: &mut Operator) -> Result<bool, Failure> {
     operator.save_settings()?;
-    Ok(Saved {
-        kept: operator.identity().reset != ResetCause::Emulated,
-    })
+    Ok(operator.identity().reset != ResetCause::Emulated)
 }
 
 /// What has to be done before a leg with new settings is armed.
@@ -166,7 +151,7 @@ pub(crate) fn next_step(operator: &mut Operator) -> Result<&'static str, Failure
 
 fn diff(operator: &mut Operator, settings: &Settings, options: Options) -> Result<(), Failure> {
     let found = setting_differences(settings, &operator.settings()?);
-    options.report(&found, |found| table(found))?;
+    options.report(&found, || table(&found))?;
     if found.is_empty() {
         return Ok(());
     }

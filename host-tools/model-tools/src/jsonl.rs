@@ -95,10 +95,9 @@ impl Draft {
 
     fn set(&mut self, key: &str, value: &str, defaults: &RigFile) -> Result<(), LineError> {
         let Some(key) = KEYS.into_iter().find(|known| *known == key) else {
-            let fix = suggest::for_key(key, &KEYS);
             return Err(LineError::UnknownKey {
                 key: key.into(),
-                fix,
+                remedy: suggest::for_key(key, &KEYS),
             });
         };
         let query = &mut self.query;
@@ -128,10 +127,7 @@ fn number(key: &'static str, value: &str) -> Result<f64, LineError> {
     }
     match value.parse() {
         Ok(number) if f64::is_finite(number) => Ok(number),
-        _ => Err(LineError::NotFinite {
-            key,
-            found: value.into(),
-        }),
+        _ => Err(LineError::NotFinite(key, value.into())),
     }
 }
 

@@ -10,12 +10,12 @@ pub enum LineError {
     #[error("not a JSON object: {0}; `leg eval --help` lists the keys of one")]
     NotAnObject(String),
     /// A key that the contract does not have.
-    #[error("unknown key `{key}`: {fix}")]
+    #[error("unknown key `{key}`: {remedy}")]
     UnknownKey {
         /// The key.
         key: String,
         /// What to write instead.
-        fix: String,
+        remedy: String,
     },
     /// The same key twice.
     #[error("`{0}` is given twice: give it once")]
@@ -23,28 +23,23 @@ pub enum LineError {
     /// A key that every line has to give.
     #[error("missing key `{0}`: add it, the rig file has no value for it")]
     MissingKey(&'static str),
-    /// A value that is no number.
+    /// The value of this key is no number.
     #[error("`{key}` has to be a number, not {found}: write a number such as 1.5")]
     NotANumber {
         /// The key.
         key: &'static str,
-        /// What the value is.
+        /// What the value is instead.
         found: &'static str,
     },
-    /// A number too large for a float.
-    #[error("`{key}` must be a finite number, {found} is too large: give a smaller one")]
-    NotFinite {
-        /// The key.
-        key: &'static str,
-        /// The value.
-        found: String,
-    },
-    /// A word that is no string.
+    /// The value of this key, a number, is too large for a float.
+    #[error("`{0}` must be a finite number, {1} is too large: give a smaller one")]
+    NotFinite(&'static str, String),
+    /// The value of this key is no string.
     #[error("`{key}` has to be a string in quotes, not {found}: `leg eval --help` lists the words")]
     NotAWord {
         /// The key.
         key: &'static str,
-        /// What the value is.
+        /// What the value is instead.
         found: &'static str,
     },
     /// An elastic support that the rig file does not describe.
@@ -64,25 +59,20 @@ pub enum LineError {
     #[error("`stiffness_at` cannot be `{0}`: write `pretension` or `tension`")]
     StiffnessAt(String),
     /// A support that does not exist.
-    #[error("{0}: {fix}", fix = .0.fix())]
+    #[error("{0}: {fix}", fix = .0.help())]
     Support(UnknownSupport),
     /// The model refuses a value.
-    #[error("{name} {reason}{fix}", name = name_of(*.quantity), fix = fix_of(*.quantity, *.reason))]
-    Refused {
-        /// Which one.
-        quantity: Quantity,
-        /// Why.
-        reason: Reason,
-    },
+    #[error("{name} {1}{remedy}", name = name_of(*.0), remedy = remedy_of(*.0, *.1))]
+    Refused(Quantity, Reason),
     /// The model has no result at the pose.
-    #[error("no result: {0}: {fix}", fix = fix_of_pose(*.0))]
+    #[error("no result: {0}: {remedy}", remedy = pose_remedy(*.0))]
     NoResult(Error),
 }
 
 impl From<Error> for LineError {
     fn from(error: Error) -> Self {
         match error {
-            Error::Refused { quantity, reason } => Self::Refused { quantity, reason },
+            Error::Refused { quantity, reason } => Self::Refused(quantity, reason),
             _ => Self::NoResult(error),
         }
     }
@@ -127,7 +117,7 @@ fn key_of(quantity: Quantity) -> &'static str {
 }
 
 /// What to add to a reason that does not say by itself what to give.
-fn fix_of(quantity: Quantity, reason: Reason) -> &'static str {
+fn remedy_of(quantity: Quantity, reason: Reason) -> &'static str {
     match (quantity, reason) {
         (Quantity::Tilt, Reason::OutOfRange) => ": give -60 to 60",
         (Quantity::BendingStiffness, Reason::OutOfRange) => ": give more than 0 to 1e6",
@@ -143,7 +133,7 @@ fn fix_of(quantity: Quantity, reason: Reason) -> &'static str {
     }
 }
 
-fn fix_of_pose(error: Error) -> &'static str {
+fn pose_remedy(error: Error) -> &'static str {
     match error {
         Error::Unstable => "give stiffer tendons or a smaller payload",
         _ => "give another pose or another rig",

@@ -5,12 +5,11 @@ pub mod field;
 
 pub use canvas::PlotError;
 
-use canvas::{
-    AXIS_TITLE_PX, Area, Drawn, GRID, LABEL_PX, MARGIN_PX, Painter, TITLE_PX, WIDTH_PX, range,
-};
+use canvas::{AXIS_TITLE_PX, Area, Drawn, GRID, LABEL_PX, MARGIN_PX, Painter, WIDTH_PX, range};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 const LEGEND_WIDTH_PX: u32 = 260;
@@ -60,41 +59,37 @@ pub struct ChartLine {
 /// # Errors
 /// A [`PlotError`] when there is nothing to draw or a file cannot be written.
 pub fn save_both(chart: &Chart, stem: &Path) -> Result<PathBuf, PlotError> {
-    let ranges = AxisRanges::new(chart)?;
+    let ranges = axis_ranges(chart)?;
     canvas::save_both(&ChartPainter { chart, ranges }, stem)
 }
 
 /// A chart whose axes are known.
 struct ChartPainter<'a> {
     chart: &'a Chart,
-    ranges: AxisRanges,
+    /// Of the horizontal axis and of the vertical one.
+    ranges: [Range<f64>; 2],
 }
 
 impl Painter for ChartPainter<'_> {
     fn paint<B: DrawingBackend>(&self, root: &Area<B>) -> Drawn<B> {
-        paint(self.chart, &self.ranges, root)
+        let Self { chart, ranges } = self;
+        let body = canvas::titled(root, &chart.title)?;
+        let (plot, legend) = body.split_horizontally(WIDTH_PX - LEGEND_WIDTH_PX - MARGIN_PX);
+        let [x, y] = ranges.clone();
+        let mut context = ChartBuilder::on(&plot)
+            .margin(MARGIN_PX)
+            .set_label_area_size(LabelAreaPosition::Bottom, 70)
+            .set_label_area_size(LabelAreaPosition::Left, 90)
+            .build_cartesian_2d(x, y)?;
+        draw_axes(chart, &mut context)?;
+        for (line, colour) in chart.lines.iter().zip(COLOURS.iter().cycle()) {
+            draw_line(line, colour, &mut context)?;
+        }
+        draw_legend(chart, &legend)
     }
 }
 
 type Plane = Cartesian2d<RangedCoordf64, RangedCoordf64>;
-
-fn paint<B: DrawingBackend>(chart: &Chart, ranges: &AxisRanges, root: &Area<B>) -> Drawn<B> {
-    root.fill(&WHITE)?;
-    let body = root
-        .margin(MARGIN_PX, MARGIN_PX, MARGIN_PX, 0)
-        .titled(&chart.title, ("sans-serif", TITLE_PX))?;
-    let (plot, legend) = body.split_horizontally(WIDTH_PX - LEGEND_WIDTH_PX - MARGIN_PX);
-    let mut context = ChartBuilder::on(&plot)
-        .margin(MARGIN_PX)
-        .set_label_area_size(LabelAreaPosition::Bottom, 70)
-        .set_label_area_size(LabelAreaPosition::Left, 90)
-        .build_cartesian_2d(ranges.x.0..ranges.x.1, ranges.y.0..ranges.y.1)?;
-    draw_axes(chart, &mut context)?;
-    for (line, colour) in chart.lines.iter().zip(COLOURS.iter().cycle()) {
-        draw_line(line, colour, &mut context)?;
-    }
-    draw_legend(chart, &legend)
-}
 
 fn draw_axes<B: DrawingBackend>(chart: &Chart, context: &mut ChartContext<B, Plane>) -> Drawn<B> {
     let label = |value: &f64| format!("{}", (value * 1e6).round() / 1e6 + 0.0);
@@ -122,8 +117,8 @@ fn draw_line<B: DrawingBackend>(
     let stroke = colour.stroke_width(LINE_PX);
     context.draw_series(LineSeries::new(line.points.iter().copied(), stroke))?;
     for arm in MARK_ARMS_PX {
-        let at = |&mark| EmptyElement::at(mark) + Rectangle::new(arm, colour.filled());
-        context.draw_series(line.marks.iter().map(at))?;
+        let arm_at = |&mark| EmptyElement::at(mark) + Rectangle::new(arm, colour.filled());
+        context.draw_series(line.marks.iter().map(arm_at))?;
     }
     Ok(())
 }
@@ -148,26 +143,18 @@ fn draw_legend<B: DrawingBackend>(chart: &Chart, area: &Area<B>) -> Drawn<B> {
     Ok(())
 }
 
-/// The ranges of the two axes.
-struct AxisRanges {
-    x: (f64, f64),
-    y: (f64, f64),
-}
-
-impl AxisRanges {
-    /// Takes in every point and mark, y = 0 as well, with some room above.
-    fn new(chart: &Chart) -> Result<Self, PlotError> {
-        let points = |line: &ChartLine| [line.points.as_slice(), line.marks.as_slice()].concat();
-        let all: Vec<(f64, f64)> = chart.lines.iter().flat_map(points).collect();
-        let x = range(all.iter().map(|point| point.0)).ok_or(PlotError::Empty)?;
-        let y = range(all.iter().map(|point| point.1).chain([0.0])).ok_or(PlotError::Empty)?;
-        if x.0 >= x.1 {
-            return Err(PlotError::Empty);
-        }
-        let room = 0.06 * (y.1 - y.0);
-        let top = if room > 0.0 { y.1 + room } else { 1.0 };
-        Ok(Self { x, y: (y.0, top) })
+/// The axes take in every point and mark, y = 0 as well, with some room above.
+fn axis_ranges(chart: &Chart) -> Result<[Range<f64>; 2], PlotError> {
+    let points = |line: &ChartLine| [line.points.as_slice(), line.marks.as_slice()].concat();
+    let all: Vec<(f64, f64)> = chart.lines.iter().flat_map(points).collect();
+    let x = range(all.iter().map(|point| point.0)).ok_or(PlotError::Empty)?;
+    let y = range(all.iter().map(|point| point.1).chain([0.0])).ok_or(PlotError::Empty)?;
+    if x.0 >= x.1 {
+        return Err(PlotError::Empty);
     }
+    let room = 0.06 * (y.1 - y.0);
+    let top = if room > 0.0 { y.1 + room } else { 1.0 };
+    Ok([x.0..x.1, y.0..top])
 }
 
 #[cfg(test)]

@@ -61,7 +61,8 @@ fn notes(rig: &RigFile, leg: &DrawnLeg) -> Vec<Element> {
         format!("Tilt to {}° towards any azimuth.", pen::short(rig.tilt_deg)),
         "Drawn in proportion.".to_owned(),
     ];
-    let line =
-        |(row, text): (i32, &String)| Label::new(text).at([354.0, 322.0 + 20.0 * f64::from(row)]);
+    let line = |(row, text): (i32, &String)| {
+        Label::new(text).place([354.0, 322.0 + 20.0 * f64::from(row)])
+    };
     (0..).zip(&lines).map(line).collect()
 }

@@ -11,7 +11,7 @@ mod tests;
 
 pub use fit::Fit;
 pub use hysteresis::Hysteresis;
-pub use read::{TensileTest, TestRow, read};
+pub use read::{TestRow, read};
 
 /// Why a tensile test gives no curve.
 #[derive(Debug, thiserror::Error)]
@@ -32,20 +32,14 @@ pub enum TensileError {
         /// What is wrong, and what to do.
         problem: String,
     },
-    /// No row under tension, and some under compression.
+    /// No row under tension, and some under compression, the first on this line.
     #[error(
-        "no force is above zero, the first below is on line {line}: this is a test in compression, which a tendon does not bear, or its signs are reversed; give a pull as a positive force"
+        "no force is above zero, the first below is on line {0}: this is a test in compression, which a tendon does not bear, or its signs are reversed; give a pull as a positive force"
     )]
-    Compression {
-        /// The line of the file.
-        line: u64,
-    },
-    /// Too few rows of the loading branch.
-    #[error("the loading branch has {found} taut rows; give at least three, or a lower --taut-n")]
-    TooFewRows {
-        /// How many it has.
-        found: usize,
-    },
+    Compression(u64),
+    /// The loading branch has too few rows: so many.
+    #[error("the loading branch has {0} taut rows; give at least three, or a lower --taut-n")]
+    TooFewRows(usize),
     /// Rows that differ by next to nothing.
     #[error("the rows settle no curve; give rows whose forces are farther apart")]
     TooNear,

@@ -5,7 +5,7 @@ mod picture;
 mod quantity;
 mod statistics;
 
-pub use cell::{AtPretension, Cell};
+pub use cell::{Cell, PretensionedPose};
 pub use quantity::MapQuantity;
 pub use statistics::{Counts, Extreme};
 
@@ -50,7 +50,7 @@ impl WorkspaceMap {
     ) -> Self {
         let prepared = Prepared::new(rig, payload_kg, with_nonlinear);
         let rows = (0..grid.tilts).into_par_iter().map(|row| {
-            let cells = row_of(&prepared, rig.tilt_deg, grid, row).collect::<Vec<_>>();
+            let cells = row_of(&prepared, rig.tilt_deg, grid, row);
             done();
             cells
         });
@@ -100,14 +100,14 @@ fn row_of(
     prepared: &Result<Prepared, Error>,
     edge_deg: f64,
     grid: Grid,
-    row_index: u32,
-) -> impl Iterator<Item = Result<Cell, Error>> {
-    let tilt_deg = tilt_deg(edge_deg, grid, row_index);
-    let mut row = prepared.as_ref().map(|prepared| prepared.row(tilt_deg));
-    columns(grid, row_index).map(move |column| match &mut row {
-        Ok(row) => row.cell(azimuth_deg(grid, column)),
-        Err(error) => Err(**error),
-    })
+    row: u32,
+) -> Vec<Result<Cell, Error>> {
+    let azimuths_deg = move || columns(grid, row).map(move |column| azimuth_deg(grid, column));
+    let tilt_deg = tilt_deg(edge_deg, grid, row);
+    match prepared {
+        Ok(prepared) => prepared.row(tilt_deg, azimuths_deg()).collect(),
+        Err(error) => azimuths_deg().map(|_| Err(*error)).collect(),
+    }
 }
 
 /// The poses of a row: the vertical is one.

@@ -1,4 +1,4 @@
-//! The motors, gears, screws and sensors that pull the tendons: what the control law knows of them, and what the simulated leg has.
+//! Data sheets of the motors, gears, screws and sensors: for the control law and for the simulated leg.
 
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;

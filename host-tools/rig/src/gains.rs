@@ -5,6 +5,7 @@ use crate::number::decimal;
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;
 use leg_firmware::settings::{Field, Gains, SECTIONS, Servo};
+use toml::de::DeTable;
 
 /// The common beginning of the sections.
 pub const CONTROL: &str = "control";
@@ -43,8 +44,7 @@ pub fn changed(mut gains: Gains, changes: &[GainChange]) -> Gains {
 }
 
 /// The same field in f64: its numbers as they are written, 0.05 not 0.05000000074505806.
-#[must_use]
-pub fn widened(field: &Field) -> Field<f64> {
+pub(crate) fn widened(field: &Field) -> Field<f64> {
     Field {
         name: field.name,
         unit: field.unit,
@@ -59,9 +59,10 @@ pub fn widened(field: &Field) -> Field<f64> {
 ///
 /// # Errors
 /// An unknown section or key, a value of another type or outside its range.
-pub fn read(root: &Section<'_>) -> Result<Vec<GainChange>, TomlError> {
+pub fn read(file: &DeTable<'_>) -> Result<Vec<GainChange>, TomlError> {
     let mut changes = Vec::new();
-    let Some(control) = root.optional(CONTROL, &SECTIONS.map(|(name, _)| name))? else {
+    let Some(control) = Section::whole(file).optional(CONTROL, &SECTIONS.map(|(name, _)| name))?
+    else {
         return Ok(changes);
     };
     let mut first = 0;

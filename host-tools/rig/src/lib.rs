@@ -19,7 +19,7 @@
 //!
 //! Every value that may be left out is one line of a table ([`fields!`](leg_firmware::fields)) with its name, unit, range,
 //! default and meaning: gains and calibration in [`leg_firmware::settings`], [`actuator`] and [`plant_settings`] here. The
-//! table drives reading ([`toml_section`]), listing ([`rig_settings`]) and writing.
+//! table drives reading (`toml_section`), listing ([`rig_settings`]) and writing.
 
 pub mod actuator;
 pub mod calibration;
@@ -37,4 +37,4 @@ pub mod rig_show;
 pub mod settings_text;
 pub mod support_name;
 pub mod toml_error;
-pub mod toml_section;
+mod toml_section;

@@ -7,7 +7,7 @@ use leg_firmware::settings::Field;
 use leg_model::RigParameters;
 
 fields! {
-    /// What neither the rig's mechanism nor its actuator says of the simulated leg: a small leg in a calm room.
+    /// What neither the rig's mechanism nor its actuator says of the simulated leg.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct PlantSettings: f64 {
         /// Damping of the central joint against every rotation.

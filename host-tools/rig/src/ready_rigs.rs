@@ -17,48 +17,28 @@ pub struct ReadyRig {
     pub text: &'static str,
 }
 
-macro_rules! ready {
-    ($name:literal, $support:ident, $figure_2:literal, $words:literal) => {
-        ReadyRig {
+macro_rules! ready_rigs {
+    ($($name:literal $support:ident $figure_2:literal $words:literal;)*) => {
+        [$(ReadyRig {
             name: $name,
             support: SupportName::$support,
             figure_2: $figure_2,
             words: $words,
             text: include_str!(concat!("../../rigs/", $name, ".toml")),
-        }
+        },)*]
     };
 }
 
 /// Every ready rig; the first is the default.
-pub const READY_RIGS: [ReadyRig; 7] = [
-    ready!(
-        "table1",
-        TorsionFree,
-        "-",
-        "idealised: tilts without torsion"
-    ),
-    ready!("spherical", Spherical, "a", "ball joint"),
-    ready!("universal", Universal, "b", "rigid universal joint"),
-    ready!("compliant_pivot", CompliantPivot, "c", "one elastic rod"),
-    ready!(
-        "elastic_rod_universal",
-        ElasticRodUniversal,
-        "d, g",
-        "universal joint of elastic rods"
-    ),
-    ready!(
-        "notch_universal",
-        NotchUniversal,
-        "e, h",
-        "universal joint of notch hinges"
-    ),
-    ready!(
-        "leaf_spring_universal",
-        LeafSpringUniversal,
-        "f, i",
-        "universal joint of leaf springs"
-    ),
-];
+pub const READY_RIGS: [ReadyRig; 7] = ready_rigs! {
+    "table1" TorsionFree "-" "idealised: tilts without torsion";
+    "spherical" Spherical "a" "ball joint";
+    "universal" Universal "b" "rigid universal joint";
+    "compliant_pivot" CompliantPivot "c" "one elastic rod";
+    "elastic_rod_universal" ElasticRodUniversal "d, g" "universal joint of elastic rods";
+    "notch_universal" NotchUniversal "e, h" "universal joint of notch hinges";
+    "leaf_spring_universal" LeafSpringUniversal "f, i" "universal joint of leaf springs";
+};
 
 /// The ready rig of a name.
 #[must_use]

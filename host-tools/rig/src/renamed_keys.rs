@@ -6,14 +6,11 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// A key that was renamed, wherever it stands below a section of a file.
-#[derive(Clone, Copy, Debug)]
-pub struct RenamedKey {
-    /// The section.
-    pub section: &'static str,
-    /// The key as it was.
-    pub old: &'static str,
-    /// As it is.
-    pub new: &'static str,
+#[derive(Clone, Copy)]
+struct RenamedKey {
+    section: &'static str,
+    old: &'static str,
+    new: &'static str,
 }
 
 const fn renamed(section: &'static str, old: &'static str, new: &'static str) -> RenamedKey {
@@ -21,7 +18,7 @@ const fn renamed(section: &'static str, old: &'static str, new: &'static str) ->
 }
 
 /// Every old key of rig files and scenarios. In the steps of a scenario the same word names a quantity, too.
-pub const RENAMED_KEYS: [RenamedKey; 8] = [
+const RENAMED_KEYS: [RenamedKey; 8] = [
     renamed("tendon", "floor_n", "f_min_n"),
     renamed("tendon", "ceiling_n", "f_max_n"),
     renamed("tendon", "level_n", "pretension_n"),
@@ -39,63 +36,54 @@ pub const RENAMED_KEYS: [RenamedKey; 8] = [
 pub fn replace(file: &mut DeTable<'_>) -> Result<Vec<String>, TomlError> {
     let mut notes = Vec::new();
     for key in &RENAMED_KEYS {
-        if let Some(section) = file.get_mut(key.section) {
-            let mut found = false;
-            replace_below(section.get_mut(), key, &mut found)?;
-            if found {
-                let RenamedKey { section, old, new } = key;
-                notes.push(format!(
-                    "note: `{old}` in `{section}` is named `{new}` now; the old name is read for this release only"
-                ));
-            }
+        let RenamedKey { section, old, new } = key;
+        if let Some(section_value) = file.get_mut(*section)
+            && replace_below(section_value.get_mut(), key)?
+        {
+            notes.push(format!(
+                "note: `{old}` in `{section}` is named `{new}` now; the old name is read for this release only"
+            ));
         }
     }
     Ok(notes)
 }
 
-fn replace_below(
-    value: &mut DeValue<'_>,
-    key: &RenamedKey,
-    found: &mut bool,
-) -> Result<(), TomlError> {
+/// Whether the old key was found.
+fn replace_below(value: &mut DeValue<'_>, key: &RenamedKey) -> Result<bool, TomlError> {
+    let mut found = false;
     match value {
         DeValue::String(word) if *word == key.old => {
             *word = Cow::Borrowed(key.new);
-            *found = true;
+            found = true;
         }
         DeValue::Array(entries) => {
             for entry in entries.iter_mut() {
-                replace_below(entry.get_mut(), key, found)?;
+                found |= replace_below(entry.get_mut(), key)?;
             }
         }
         DeValue::Table(table) => {
-            replace_key(table, key, found)?;
+            found = replace_key(table, key)?;
             for (_, entry) in table.iter_mut() {
-                replace_below(entry.get_mut(), key, found)?;
+                found |= replace_below(entry.get_mut(), key)?;
             }
         }
         _ => {}
     }
-    Ok(())
+    Ok(found)
 }
 
-fn replace_key(
-    table: &mut DeTable<'_>,
-    key: &RenamedKey,
-    found: &mut bool,
-) -> Result<(), TomlError> {
+fn replace_key(table: &mut DeTable<'_>, key: &RenamedKey) -> Result<bool, TomlError> {
     let RenamedKey { old, new, .. } = *key;
     let Some((place, value)) = table.remove_entry(old) else {
-        return Ok(());
+        return Ok(false);
     };
     if table.contains_key(new) {
         let sentence = format!("`{old}` and `{new}` cannot both be given: they are one key");
-        let fix = format!("remove `{old}`, the old name");
-        return Err(TomlError::new(place.span(), sentence, fix));
+        let help = format!("remove `{old}`, the old name");
+        return Err(TomlError::new(place.span(), sentence, help));
     }
     table.insert(Spanned::new(place.span(), Cow::Borrowed(new)), value);
-    *found = true;
-    Ok(())
+    Ok(true)
 }
 
 #[cfg(test)]

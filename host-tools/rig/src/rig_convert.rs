@@ -86,36 +86,23 @@ mod tests {
 
     #[test]
     fn there_and_back_leaves_the_rig_as_it_is() {
-        for rig in READY_RIGS {
-            let source = RigText {
-                name: rig.name.into(),
-                text: rig.text.into(),
-            };
-            let json = RigText {
-                text: convert(&source, RigFormat::Json).unwrap(),
-                ..source.clone()
-            };
-            let back = convert(&json, RigFormat::Toml).unwrap();
-            let [before, after] = [rig.text, &back].map(|text| RigFile::parse(rig.name, text));
-            assert_eq!(before.unwrap(), after.unwrap(), "{}", rig.name);
-        }
-    }
-
-    #[test]
-    fn what_may_be_left_out_goes_there_and_back_too() {
         let more = "[control.limits]\njump_n = 30\n[actuator]\ncell_range_n = [-10, 200]\n[calibration]\n\
                     counts_sign = [1, -1, 1]\n[simulation]\nambient_c = 20\n";
-        let source = RigText {
-            name: "more".into(),
-            text: [READY_RIGS[0].text, more].concat(),
-        };
-        let json = RigText {
-            text: convert(&source, RigFormat::Json).unwrap(),
-            ..source.clone()
-        };
-        let back = convert(&json, RigFormat::Toml).unwrap();
-        let [before, after] = [&source.text, &back].map(|text| RigFile::parse("more", text));
-        assert_eq!(before.unwrap(), after.unwrap());
+        let with_more = [READY_RIGS[0].text, more].concat();
+        for rig in READY_RIGS
+            .map(|rig| rig.text)
+            .into_iter()
+            .chain([&*with_more])
+        {
+            let source = |text: &str| RigText {
+                name: "test".into(),
+                text: text.into(),
+            };
+            let json = convert(&source(rig), RigFormat::Json).unwrap();
+            let back = convert(&source(&json), RigFormat::Toml).unwrap();
+            let [before, after] = [rig, &back].map(|text| RigFile::parse("test", text).unwrap());
+            assert_eq!(before, after);
+        }
     }
 
     #[test]

@@ -6,8 +6,6 @@ use crate::gains::{self, CONTROL, widened};
 use crate::number::{decimal, plain};
 use crate::plant_settings::{PlantSettings, SIMULATION, TRANSVERSE_INERTIA};
 use crate::rig_file::RigFile;
-use leg_base::failure::Failure;
-use leg_base::json_line::to_line;
 use leg_firmware::settings::{Field, SECTIONS};
 use serde::Serialize;
 
@@ -169,12 +167,4 @@ fn written(values: &[f64]) -> String {
             format!("[{}]", entries.join(", "))
         }
     }
-}
-
-/// One line of JSON for machines.
-///
-/// # Errors
-/// A [`Failure`] if the numbers have no form in JSON.
-pub fn json(settings: &[Setting]) -> Result<String, Failure> {
-    to_line(settings)
 }

@@ -4,15 +4,15 @@ use crate::rig_file::{Buckling, RigFile};
 use crate::rig_settings;
 use leg_base::failure::Failure;
 use leg_base::json_line::to_line;
+use leg_model::JointStiffness;
 use serde::Serialize;
 
 /// The numbers of a rig that its file does not give directly.
 #[derive(Debug, Serialize)]
 struct RigSummary {
     support: &'static str,
-    bending_nm_per_rad: f64,
-    torsion_nm_per_rad: f64,
-    axial_compliance_m_per_n: f64,
+    #[serde(flatten)]
+    joint: JointStiffness<f64>,
     critical_load_n: Option<f64>,
     pull_by_critical_at_pretension: Option<f64>,
     pull_by_critical_at_f_max: Option<f64>,
@@ -28,13 +28,11 @@ struct RigSummary {
 
 impl RigSummary {
     fn new(file: &RigFile) -> Self {
-        let (joint, parameters) = (file.support.joint(), &file.parameters);
+        let parameters = &file.parameters;
         let buckling = file.buckling();
         Self {
             support: file.support_name.word(),
-            bending_nm_per_rad: joint.bending_nm_per_rad,
-            torsion_nm_per_rad: joint.torsion_nm_per_rad,
-            axial_compliance_m_per_n: joint.axial_compliance_m_per_n,
+            joint: *file.support.joint(),
             critical_load_n: buckling.map(|found| found.critical_n),
             pull_by_critical_at_pretension: buckling.map(|found| found.at_pretension),
             pull_by_critical_at_f_max: buckling.map(|found| found.at_f_max),
@@ -68,9 +66,9 @@ pub fn words(file: &RigFile) -> String {
          workspace              tilt to {}°\n\
          {}",
         summary.support,
-        summary.bending_nm_per_rad,
-        summary.torsion_nm_per_rad,
-        summary.axial_compliance_m_per_n,
+        summary.joint.bending_nm_per_rad,
+        summary.joint.torsion_nm_per_rad,
+        summary.joint.axial_compliance_m_per_n,
         file.buckling().map_or_else(String::new, buckling_words),
         summary.tip_below_joint_m * 1000.0,
         summary.leg_mass_kg,

@@ -2,10 +2,12 @@
 
 use leg_model::SupportKind;
 use serde::Serialize;
+use strum::{IntoStaticStr, VariantArray};
 
 /// A kind of central support, as rig files and JSON name it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, IntoStaticStr, VariantArray)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum SupportName {
     /// The paper's idealisation: the leg tilts without torsion.
     TorsionFree,
@@ -31,45 +33,27 @@ pub struct UnknownSupport(String);
 impl UnknownSupport {
     /// What to write instead.
     #[must_use]
-    pub fn fix(&self) -> String {
-        let names = SupportName::ALL.map(|support| format!("`{}`", support.word()));
+    pub fn help(&self) -> String {
+        let names = SupportName::VARIANTS.iter();
+        let names: Vec<_> = names.map(|name| format!("`{}`", name.word())).collect();
         format!("write one of {}", names.join(", "))
     }
 }
 
 impl SupportName {
-    /// Every support.
-    pub const ALL: [Self; 7] = [
-        Self::TorsionFree,
-        Self::Spherical,
-        Self::Universal,
-        Self::CompliantPivot,
-        Self::ElasticRodUniversal,
-        Self::NotchUniversal,
-        Self::LeafSpringUniversal,
-    ];
-
     /// The support with a name.
     ///
     /// # Errors
     /// [`UnknownSupport`] when there is none.
     pub fn parse(word: &str) -> Result<Self, UnknownSupport> {
-        let named = Self::ALL.into_iter().find(|support| support.word() == word);
-        named.ok_or_else(|| UnknownSupport(word.into()))
+        let named = Self::VARIANTS.iter().find(|name| name.word() == word);
+        named.copied().ok_or_else(|| UnknownSupport(word.into()))
     }
 
     /// Its name.
     #[must_use]
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::TorsionFree => "torsion_free",
-            Self::Spherical => "spherical",
-            Self::Universal => "universal",
-            Self::CompliantPivot => "compliant_pivot",
-            Self::ElasticRodUniversal => "elastic_rod_universal",
-            Self::NotchUniversal => "notch_universal",
-            Self::LeafSpringUniversal => "leaf_spring_universal",
-        }
+    pub fn word(self) -> &'static str {
+        self.into()
     }
 
     /// How it guides the leg.
@@ -96,10 +80,11 @@ impl SupportName {
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::SupportName;
+    use strum::VariantArray;
 
     #[test]
     fn every_name_leads_back_to_its_support() {
-        for support in SupportName::ALL {
+        for &support in SupportName::VARIANTS {
             assert_eq!(SupportName::parse(support.word()), Ok(support));
             let json = serde_json::to_string(&support).unwrap();
             assert_eq!(json, format!("{:?}", support.word()));
@@ -109,6 +94,6 @@ mod tests {
     #[test]
     fn another_name_is_answered_with_all_of_them() {
         let error = SupportName::parse("ball").unwrap_err();
-        assert!(error.fix().contains("`spherical`"));
+        assert!(error.help().contains("`spherical`"));
     }
 }

@@ -12,24 +12,24 @@ pub struct TomlError {
     /// What is wrong with them.
     pub sentence: String,
     /// What to do.
-    pub fix: String,
+    pub help: String,
 }
 
 impl TomlError {
     /// A refusal with what to do.
     #[must_use]
-    pub fn new(span: Range<usize>, sentence: impl Into<String>, fix: impl Into<String>) -> Self {
+    pub fn new(span: Range<usize>, sentence: impl Into<String>, help: impl Into<String>) -> Self {
         Self {
             span,
             sentence: sentence.into(),
-            fix: fix.into(),
+            help: help.into(),
         }
     }
 
     /// A value that the model refuses.
     #[must_use]
     pub fn refused(span: Range<usize>, key: &str, reason: Reason) -> Self {
-        Self::new(span, format!("`{key}` {reason}"), fix(key, reason))
+        Self::new(span, format!("`{key}` {reason}"), help(key, reason))
     }
 
     /// The same with the text and its name.
@@ -40,7 +40,7 @@ impl TomlError {
             text: text.into(),
             span: self.span,
         };
-        Failure::refused_at(self.sentence, self.fix, place)
+        Failure::refused_at(self.sentence, self.help, place)
     }
 }
 
@@ -54,7 +54,7 @@ impl From<toml::de::Error> for TomlError {
     }
 }
 
-fn fix(key: &str, reason: Reason) -> &'static str {
+fn help(key: &str, reason: Reason) -> &'static str {
     match reason {
         Reason::OutOfRange if key == "tilt_deg" => "give at most 60",
         Reason::OutOfRange if key == "shear_modulus_gpa" => {

@@ -12,25 +12,23 @@ use toml::de::{DeArray, DeTable, DeValue};
 const ADD: &str = "add it; the ready rigs in host-tools/rigs show all keys of each support";
 
 /// A table of the file, with the place of its heading.
-pub struct Section<'a> {
-    table: &'a DeTable<'a>,
+pub(crate) struct Section<'a> {
+    pub table: &'a DeTable<'a>,
     span: Range<usize>,
 }
 
 impl<'a> Section<'a> {
-    /// A table whose keys are all known.
-    ///
-    /// # Errors
-    /// The first key that is not in `known`.
-    pub fn new(
-        table: &'a DeTable<'a>,
-        span: Range<usize>,
-        known: &[&str],
-    ) -> Result<Self, TomlError> {
+    /// The table of a whole file, whose keys are not yet checked.
+    pub fn whole(table: &'a DeTable<'a>) -> Self {
+        Self { table, span: 0..0 }
+    }
+
+    /// The same, if all its keys are known; else the first that is not is refused.
+    pub fn checked(self, known: &[&str]) -> Result<Self, TomlError> {
         let unknown = |key: &&Spanned<_>| !known.contains(&AsRef::<str>::as_ref(key.get_ref()));
-        let unknown = table.keys().filter(unknown);
+        let unknown = self.table.keys().filter(unknown);
         match unknown.min_by_key(|key| key.span().start) {
-            None => Ok(Self { table, span }),
+            None => Ok(self),
             Some(key) => Err(TomlError::new(
                 key.span(),
                 format!("unknown key `{}`", key.get_ref()),
@@ -39,20 +37,12 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// The table of a whole file whose keys others check.
-    #[must_use]
-    pub fn unchecked(table: &'a DeTable<'a>) -> Self {
-        Self { table, span: 0..0 }
-    }
-
     /// The place of the section.
-    #[must_use]
     pub fn span(&self) -> Range<usize> {
         self.span.clone()
     }
 
     /// The place of the value at a path of keys, if it is there.
-    #[must_use]
     pub fn place(&self, path: &[&str]) -> Option<Range<usize>> {
         let (last, sections) = path.split_last()?;
         let inner = |table: &'a DeTable<'a>, key: &&str| table.get(*key)?.get_ref().as_table();
@@ -61,33 +51,22 @@ impl<'a> Section<'a> {
     }
 
     /// Whether the key is there.
-    #[must_use]
     pub fn has(&self, key: &str) -> bool {
         self.table.contains_key(key)
     }
 
     /// A table within this one, whose keys are all known.
-    ///
-    /// # Errors
-    /// A missing key, a value of another type or an unknown key within it.
     pub fn section(&self, key: &str, known: &[&str]) -> Result<Section<'a>, TomlError> {
-        let Section { table, span } = self.any_section(key)?;
-        Section::new(table, span, known)
+        self.any_section(key)?.checked(known)
     }
 
     /// A table within this one, whose keys are all known; none if it is not there.
-    ///
-    /// # Errors
-    /// A value of another type or an unknown key within it.
     pub fn optional(&self, key: &str, known: &[&str]) -> Result<Option<Section<'a>>, TomlError> {
         let given = self.has(key).then(|| self.section(key, known));
         given.transpose()
     }
 
     /// A table within this one, whose keys are not yet checked: for a first look at the one that says which are known.
-    ///
-    /// # Errors
-    /// A missing key or a value of another type.
     pub fn any_section(&self, key: &str) -> Result<Section<'a>, TomlError> {
         let missing = || TomlError::new(self.span(), format!("missing section `[{key}]`"), ADD);
         let value = self.table.get(key).ok_or_else(missing)?;
@@ -101,25 +80,16 @@ impl<'a> Section<'a> {
     }
 
     /// A finite number.
-    ///
-    /// # Errors
-    /// A missing key, a value of another type, an infinite number or NaN.
     pub fn number(&self, key: &str) -> Result<f64, TomlError> {
         number(key, self.get(key)?)
     }
 
     /// A length in millimetres, in m.
-    ///
-    /// # Errors
-    /// As [`Self::number`].
     pub fn metres(&self, key: &str) -> Result<f64, TomlError> {
         Ok(self.number(key)? / 1000.0)
     }
 
     /// A finite number above zero.
-    ///
-    /// # Errors
-    /// As [`Self::number`]; one that is not positive.
     pub fn positive(&self, key: &str) -> Result<f64, TomlError> {
         let value = self.get(key)?;
         match number(key, value)? {
@@ -130,9 +100,6 @@ impl<'a> Section<'a> {
 
     /// The numbers of one key, each in its field's range: one number for one field, else an array of them. None if the
     /// key is not there. The fields have one name.
-    ///
-    /// # Errors
-    /// A value of another type, another number of them, or one outside its range.
     pub fn values<const N: usize>(
         &self,
         fields: [&Field<f64>; N],
@@ -150,8 +117,8 @@ impl<'a> Section<'a> {
         };
         if entries.len() != N {
             let sentence = format!("`{key}` has {} entries, it takes {N}", entries.len());
-            let fix = format!("give {N} numbers, [a, b, …]");
-            return Err(TomlError::new(value.span(), sentence, fix));
+            let help = format!("give {N} numbers, [a, b, …]");
+            return Err(TomlError::new(value.span(), sentence, help));
         }
         let mut numbers = [0.0; N];
         for ((number, field), entry) in numbers.iter_mut().zip(fields).zip(entries) {
@@ -161,9 +128,6 @@ impl<'a> Section<'a> {
     }
 
     /// Puts what is given of the fields into their values.
-    ///
-    /// # Errors
-    /// A value of another type, or one outside its range.
     pub fn read<'v>(
         &self,
         fields: &[Field<f64>],
@@ -178,9 +142,6 @@ impl<'a> Section<'a> {
     }
 
     /// An array of finite numbers, each with its place, and the place of the whole.
-    ///
-    /// # Errors
-    /// A missing key, a value of another type, an entry that is no finite number.
     pub fn numbers(&self, key: &str) -> Result<Spanned<Vec<Spanned<f64>>>, TomlError> {
         let value = self.get(key)?;
         let entry = |entry| Ok(Spanned::new(Spanned::span(entry), number(key, entry)?));
@@ -190,9 +151,6 @@ impl<'a> Section<'a> {
     }
 
     /// A word, for example one of several choices, and its place.
-    ///
-    /// # Errors
-    /// A missing key or a value of another type.
     pub fn word(&self, key: &str) -> Result<Spanned<&'a str>, TomlError> {
         let value = self.get(key)?;
         match value.get_ref() {
@@ -202,9 +160,6 @@ impl<'a> Section<'a> {
     }
 
     /// Three points in a plane in millimetres, as `[[x, y], [x, y], [x, y]]`, in m.
-    ///
-    /// # Errors
-    /// A missing key, a value of another shape or another count, a number that is not finite.
     pub fn points_m(&self, key: &str) -> Result<[[f64; 2]; 3], TomlError> {
         let value = self.get(key)?;
         let wanted = "an array of points [x, y]";
@@ -212,8 +167,8 @@ impl<'a> Section<'a> {
         let [a, b, c] = &points[..] else {
             let found = points.len();
             let sentence = format!("`{key}` has {found} anchors: the leg has three tendons");
-            let fix = "give three anchors, [[x, y], [x, y], [x, y]]";
-            return Err(TomlError::new(value.span(), sentence, fix));
+            let help = "give three anchors, [[x, y], [x, y], [x, y]]";
+            return Err(TomlError::new(value.span(), sentence, help));
         };
         let metres = |value| number(key, value).map(|length_mm| length_mm / 1000.0);
         let point = |point| match &array(key, wanted, point)?[..] {
@@ -249,8 +204,8 @@ fn number(key: &str, value: &Spanned<DeValue<'_>>) -> Result<f64, TomlError> {
         Some(number) if number.is_finite() => Ok(number),
         Some(_) => {
             let sentence = format!("`{key}` must be a finite number");
-            let fix = "write a number such as 29 or 1.5e3";
-            Err(TomlError::new(value.span(), sentence, fix))
+            let help = "write a number such as 29 or 1.5e3";
+            Err(TomlError::new(value.span(), sentence, help))
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::link::{Link, LinkError};
 use crate::plant::{Plant, Start};
 use leg_firmware::linked_leg::LINK_BYTES_MAX;
 use leg_firmware::sensors::{Sensors, TICK_HZ};
-use leg_firmware::settings::{Settings, SettingsError};
+use leg_firmware::settings::{Gains, Settings, SettingsError};
 use leg_firmware::supervisor::State;
 use leg_firmware_bench::protocol::{Refusal, Reply, Request, TickReply, TickRequest};
 use leg_rig::control_settings;
@@ -52,7 +52,6 @@ pub enum EmulationError {
 pub struct EmulatedLeg<L = Box<dyn Link>> {
     plant: Plant,
     link: L,
-    ticks: u64,
     /// Whether the instructions of each tick are counted.
     counting: bool,
 }
@@ -71,9 +70,7 @@ impl EmulatedLeg {
             InitialState::Slack => (Start::Slack { slack_mm: SLACK_MM }, rig.plant),
             InitialState::Homed => (Start::hanging(rig.pretension_n), tared(rig)),
         };
-        let plant = Plant::new(rig, &settings, start, 0).map_err(EmulationError::Start)?;
-        let zero = (!start.is_slack()).then(|| plant.unstretched_at_zero_m());
-        let settings = control_settings::settings(rig, &rig.gains, zero);
+        let (plant, settings) = assembled(rig, &settings, &rig.gains, start, 0)?;
         let mut leg = Self::start(plant, &settings, link, false)?;
         while leg.advance(HostBytes::new())?.1.telemetry.state == State::Boot {}
         Ok(leg)
@@ -105,7 +102,6 @@ impl<L: Link> EmulatedLeg<L> {
             Reply::Started => Ok(Self {
                 plant,
                 link,
-                ticks: 0,
                 counting,
             }),
             Reply::Refused(Refusal::Settings(error)) => Err(EmulationError::Settings(error)),
@@ -132,14 +128,13 @@ impl<L: Link> EmulatedLeg<L> {
             _ => return Err(EmulationError::WrongReply),
         };
         self.plant.step(&reply.motors);
-        self.ticks += 1;
         Ok((sensors, reply))
     }
 
     /// The leg's time since its start.
     #[must_use]
     pub fn time(&self) -> Duration {
-        Duration::from_nanos(self.ticks * (1_000_000_000 / u64::from(TICK_HZ)))
+        Duration::from_nanos(self.plant.ticks * (1_000_000_000 / u64::from(TICK_HZ)))
     }
 
     /// The simulated leg.
@@ -152,6 +147,20 @@ impl<L: Link> EmulatedLeg<L> {
     pub fn plant_mut(&mut self) -> &mut Plant {
         &mut self.plant
     }
+}
+
+/// A leg at its start, and the settings of its firmware.
+pub(crate) fn assembled(
+    rig: &RigFile,
+    plant: &PlantSettings,
+    gains: &Gains,
+    start: Start,
+    seed: u64,
+) -> Result<(Plant, Settings), EmulationError> {
+    let plant = Plant::new(rig, plant, start, seed).map_err(EmulationError::Start)?;
+    let zero = (!start.is_slack()).then(|| plant.unstretched_at_zero_m());
+    let settings = control_settings::settings(rig, gains, zero);
+    Ok((plant, settings))
 }
 
 /// A leg that is homed has its load cells tared.

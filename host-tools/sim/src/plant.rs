@@ -1,28 +1,27 @@
 //! The simulated leg: rigid body, tendons, motors, gears, screws and sensors, as the board sees them through its raw
 //! interface.
 //!
-//! A step of the integration is symmetric and of second order: half a step of the ways, half of currents and speeds, a
-//! whole one of the leg's rotation, and the same halves back. Everything is f64 and follows from the seed, and no tick
-//! allocates.
+//! A step of the integration is symmetric and of second order: half a step of the positions ("drift"), half of currents
+//! and speeds ("kick"), a whole kick of the leg's rotation, and the same halves in reverse order. Everything is f64 and
+//! follows from the seed, and no tick allocates.
 
 mod advance;
-mod body;
 mod build;
+mod configuration;
 pub(crate) mod defect;
+mod dynamics;
 mod encoder;
 mod energy;
 mod hand;
+mod inertia;
 mod leg;
-mod mechanism;
 mod motor;
 mod payload;
 mod push;
-mod scene;
 mod screw;
 mod sensing;
 mod start;
 mod supply;
-mod temperature;
 mod tendon_pull;
 mod truth;
 
@@ -30,39 +29,40 @@ mod truth;
 mod tests;
 
 pub use defect::Defect;
-pub use energy::{Energy, Work};
 pub use start::Start;
 pub use truth::Truth;
 
-use body::Body;
 use defect::Defects;
+use dynamics::Dynamics;
 use encoder::Encoder;
+use energy::Work;
 use hand::Hand;
-use leg::Leg;
+use inertia::Inertia;
+use leg::LegState;
 use leg_base::tick_time::tick_s;
 use leg_firmware::sensors::Sensors;
 use leg_rig::actuator::Actuator;
-use mechanism::Mechanism;
 use motor::{Motor, MotorType};
 use nalgebra::Vector3;
 use payload::Payload;
 use push::Push;
-use sensing::{Cells, code, code_around_none};
+use sensing::{Cells, code};
 use supply::Supply;
-use temperature::Temperature;
 
 /// A simulated leg with its actuators and sensors.
 #[derive(Clone, Debug)]
 pub struct Plant {
     actuator: Actuator,
-    mechanism: Mechanism,
+    dynamics: Dynamics,
     /// The leg without a payload.
-    bare: Body,
-    leg: Leg,
+    bare: Inertia,
+    leg: LegState,
     motor_type: MotorType,
     motors: [Motor; 3],
     supply: Supply,
-    temperature: Temperature,
+    /// Temperature of all drivers, °C.
+    temperature_c: f64,
+    ambient_c: f64,
     encoders: [Encoder; 3],
     cells: Cells,
     defects: Defects,
@@ -74,7 +74,8 @@ pub struct Plant {
     /// Tension of each tendon now, N.
     tensions_n: [f64; 3],
     work: Work,
-    ticks: u64,
+    /// Ticks since the start.
+    pub(crate) ticks: u64,
     substeps: u32,
 }
 
@@ -88,7 +89,9 @@ impl Plant {
         let offset = defects.of_three(Defect::CurrentOffset);
         let current_code = |i: usize| {
             let off = if offset[i] { CURRENT_OFFSET_A } else { 0.0 };
-            code_around_none(self.motors[i].current_a + off, actuator.current_range_a)
+            // Half of the highest code is no current.
+            let range_a = actuator.current_range_a;
+            code(self.motors[i].current_a + off, [-range_a, range_a])
         };
         Sensors {
             encoder_counts: self.encoders.map(|encoder| encoder.counter),
@@ -98,7 +101,7 @@ impl Plant {
                 self.supply.voltage_v(&self.motors),
                 [0.0, actuator.supply_range_v],
             ),
-            temperature_code: code(self.temperature.now_c, actuator.temperature_range_c),
+            temperature_code: code(self.temperature_c, actuator.temperature_range_c),
             cell_fresh: defects.of_three(Defect::CellStale).map(|stale| !stale),
             driver_fault: defects.of_three(Defect::DriverFault),
             emergency_stop: self.emergency_stop,
@@ -119,10 +122,10 @@ impl Plant {
 
     /// Lets a defect begin or end.
     pub fn set_defect(&mut self, defect: Defect, on: bool) {
-        let before_j = self.energy().tendons_j;
+        let before_j = self.energy_j();
         self.defects.set(defect, on);
-        self.mechanism.cut = self.defects.of_three(Defect::TendonCut);
-        self.work.cut_j += before_j - self.energy().tendons_j;
+        self.dynamics.cut = self.defects.of_three(Defect::TendonCut);
+        self.work.cut_j += before_j - self.energy_j();
         self.tensions_n = self.pulls_n();
     }
 
@@ -158,7 +161,7 @@ impl Plant {
     }
 
     fn tip_m(&self) -> Vector3<f64> {
-        self.mechanism.tip_m(&self.leg)
+        self.dynamics.tip_m(&self.leg)
     }
 
     fn unstretched_m(&self) -> [f64; 3] {

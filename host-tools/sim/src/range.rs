@@ -4,14 +4,6 @@ use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::fmt;
 
-/// A range of values of a key.
-#[derive(Clone, Copy)]
-pub(crate) struct Range {
-    key: &'static str,
-    low: f64,
-    high: f64,
-}
-
 /// The longest time of a step, s.
 const LONGEST_S: f64 = 600.0;
 
@@ -20,10 +12,10 @@ const ANY: f64 = 1e9;
 
 macro_rules! ranges {
     ($($name:ident $key:literal $low:expr, $high:expr;)*) => {$(
-        pub(crate) fn $name<'de, D: Deserializer<'de>, T: Numbers<'de>>(
+        pub(crate) fn $name<'de, D: Deserializer<'de>, T: Ranged<'de>>(
             deserializer: D,
         ) -> Result<T, D::Error> {
-            T::read(deserializer, Range { key: $key, low: $low, high: $high })
+            read(deserializer, $key, [$low, $high])
         }
     )*};
 }
@@ -62,19 +54,36 @@ ranges! {
     curve_error_percent "curve_error_percent" -50.0, 50.0;
 }
 
-impl Range {
-    fn check<E: Error>(self, value: f64) -> Result<f64, E> {
-        let Self { key, low, high } = self;
-        if (low..=high).contains(&value) {
-            return Ok(value);
+fn read<'de, D: Deserializer<'de>, T: Ranged<'de>>(
+    deserializer: D,
+    key: &str,
+    [low, high]: [f64; 2],
+) -> Result<T, D::Error> {
+    let read = T::read(deserializer)?;
+    let mut outside = read
+        .numbers()
+        .iter()
+        .filter(|number| !(low..=high).contains(*number));
+    match outside.next() {
+        None => Ok(read),
+        Some(value) => {
+            let sentence = format!("{key} = {value} is not from {low} to {high}");
+            Err(D::Error::custom(sentence))
         }
-        let sentence = format!("{key} = {value} is not from {low} to {high}");
-        Err(E::custom(sentence))
     }
 }
 
-/// A number is checked where it is read, for the sake of a step that is nothing but a number.
-impl Visitor<'_> for Range {
+/// One number or several.
+pub(crate) trait Ranged<'de>: Sized {
+    fn read<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error>;
+
+    fn numbers(&self) -> &[f64];
+}
+
+/// Reads a number. serde itself would say that it expected an `f64`.
+struct NumberVisitor;
+
+impl Visitor<'_> for NumberVisitor {
     type Value = f64;
 
     fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -82,45 +91,47 @@ impl Visitor<'_> for Range {
     }
 
     fn visit_f64<E: Error>(self, value: f64) -> Result<f64, E> {
-        self.check(value)
+        Ok(value)
     }
 
     fn visit_i64<E: Error>(self, value: i64) -> Result<f64, E> {
-        self.check(value as f64)
+        Ok(value as f64)
     }
 
     fn visit_u64<E: Error>(self, value: u64) -> Result<f64, E> {
-        self.check(value as f64)
+        Ok(value as f64)
     }
 }
 
-/// One number or several.
-pub(crate) trait Numbers<'de>: Sized {
-    fn read<D: Deserializer<'de>>(deserializer: D, range: Range) -> Result<Self, D::Error>;
-}
+impl<'de> Ranged<'de> for f64 {
+    fn read<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_f64(NumberVisitor)
+    }
 
-impl<'de> Numbers<'de> for f64 {
-    fn read<D: Deserializer<'de>>(deserializer: D, range: Range) -> Result<Self, D::Error> {
-        deserializer.deserialize_f64(range)
+    fn numbers(&self) -> &[f64] {
+        std::slice::from_ref(self)
     }
 }
 
-impl<'de> Numbers<'de> for Option<f64> {
-    fn read<D: Deserializer<'de>>(deserializer: D, range: Range) -> Result<Self, D::Error> {
-        let value = Self::deserialize(deserializer)?;
-        value.map(|value| range.check(value)).transpose()
+impl<'de> Ranged<'de> for Option<f64> {
+    fn read<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Self::deserialize(deserializer)
+    }
+
+    fn numbers(&self) -> &[f64] {
+        self.as_slice()
     }
 }
 
-impl<'de, const N: usize> Numbers<'de> for [f64; N]
+impl<'de, const N: usize> Ranged<'de> for [f64; N]
 where
     Self: Deserialize<'de>,
 {
-    fn read<D: Deserializer<'de>>(deserializer: D, range: Range) -> Result<Self, D::Error> {
-        let values = Self::deserialize(deserializer)?;
-        for value in values {
-            range.check(value)?;
-        }
-        Ok(values)
+    fn read<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Self::deserialize(deserializer)
+    }
+
+    fn numbers(&self) -> &[f64] {
+        self
     }
 }

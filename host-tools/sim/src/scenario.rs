@@ -19,8 +19,10 @@ use leg_firmware::supervisor::Fault;
 use leg_rig::gains::GainChange;
 use leg_rig::plant_settings::PlantSettings;
 use leg_rig::rig_file::RigFile;
+use leg_rig::toml_error::TomlError;
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer};
+use std::ops::Range;
 use std::path::Path;
 
 /// A scenario as its file describes it.
@@ -48,15 +50,22 @@ pub struct Scenario {
     #[serde(default)]
     pub expected: Vec<Fault>,
     /// What happens, one after the other.
+    #[serde(deserialize_with = "read_sequence_later")]
     pub steps: Vec<Step>,
     /// Keys of the file that have new names, one sentence each.
     #[serde(skip)]
     pub notes: Vec<String>,
 }
 
-/// [`leg_rig::gains::read`] reads `[control]`: its messages say more than serde's.
-fn read_later<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<GainChange>, D::Error> {
+/// [`leg_rig::gains::read`] reads `[control]`, whose messages say more than serde's, and [`Step::read`] the steps.
+fn read_later<'de, D: Deserializer<'de>, T>(deserializer: D) -> Result<Vec<T>, D::Error> {
     IgnoredAny::deserialize(deserializer)?;
+    Ok(Vec::new())
+}
+
+/// The same, of which at least the form is checked here.
+fn read_sequence_later<'de, D: Deserializer<'de>, T>(deserializer: D) -> Result<Vec<T>, D::Error> {
+    Vec::<IgnoredAny>::deserialize(deserializer)?;
     Ok(Vec::new())
 }
 
@@ -76,6 +85,12 @@ struct PlantErrors {
     cell_noise_n: Option<f64>,
     #[serde(deserialize_with = "range::curve_error_percent")]
     curve_error_percent: f64,
+}
+
+/// What is wrong with a piece of the text.
+fn refused(sentence: String, span: Option<Range<usize>>) -> TomlError {
+    let help = "see the ready scenarios for what there is";
+    TomlError::new(span.unwrap_or_default(), sentence, help)
 }
 
 impl Scenario {

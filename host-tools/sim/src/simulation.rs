@@ -3,7 +3,6 @@
 mod extremes;
 mod host;
 mod measure;
-mod observer;
 mod sequencer;
 mod shadow;
 mod summary;
@@ -12,7 +11,7 @@ mod test_stand;
 pub use shadow::Divergence;
 pub use summary::{Measurement, Sample, SimulationError, Summary};
 
-use crate::emulated_leg::{EmulatedLeg, EmulationError};
+use crate::emulated_leg::{EmulatedLeg, assembled};
 use crate::link::Link;
 use crate::plant::Plant;
 use crate::scenario::Scenario;
@@ -20,7 +19,6 @@ use leg_firmware::drive::Drive;
 use leg_firmware::sensors::Sensors;
 use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
-use leg_rig::control_settings;
 use leg_rig::gains;
 use leg_rig::rig_file::RigFile;
 use sequencer::Sequencer;
@@ -61,18 +59,14 @@ impl Simulation {
     /// # Errors
     /// A start that the model refuses.
     pub fn new(scenario: &Scenario, rig: &RigFile) -> Result<Self, SimulationError> {
-        let plant = Plant::new(rig, &scenario.plant(rig), scenario.start, scenario.seed)
-            .map_err(EmulationError::Start)?;
-        let zero = (!scenario.start.is_slack()).then(|| plant.unstretched_at_zero_m());
+        let gains = gains::changed(rig.gains, &scenario.control);
+        let errors = scenario.plant(rig);
+        let (plant, settings) = assembled(rig, &errors, &gains, scenario.start, scenario.seed)?;
         Ok(Self {
-            settings: control_settings::settings(
-                rig,
-                &gains::changed(rig.gains, &scenario.control),
-                zero,
-            ),
             scenario: scenario.clone(),
             rig: *rig,
             plant,
+            settings,
             counting: false,
         })
     }
@@ -113,9 +107,16 @@ impl Simulation {
                 Err(error) => return Err(error),
             }
         };
-        let (measurements, expected) = sequencer.finish();
-        let seen = stand.seen;
-        Ok(seen.summary(measurements, expected, shadow.divergence, stopped))
+        let mut summary = stand.summary;
+        let faults = summary.faults.iter().map(|(fault, _)| *fault);
+        summary.unexpected = faults
+            .filter(|fault| !sequencer.expected.has(*fault))
+            .collect();
+        Ok(Summary {
+            divergence: shadow.divergence,
+            stopped,
+            ..summary
+        })
     }
 }
 
@@ -130,7 +131,7 @@ fn advance(
         return Ok(false);
     };
     if stand.time_s() > LONGEST_S {
-        return Err(SimulationError::Endless { step });
+        return Err(SimulationError::Endless(step));
     }
     stand.tick(|sensors, link, reply| {
         shadow.tick(sensors, link, reply);

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_base::atomic_file::{Workshop, replace};
+use leg_base::atomic_file::{StagingDirectory, replace};
 use std::io;
 
 #[test]
@@ -45,17 +45,17 @@ fn a_whole_write_replaces_it_and_makes_the_directory() {
 fn several_files_are_delivered_together_or_not_at_all() {
     let directory = tempfile::tempdir().unwrap();
     let made = || {
-        let workshop = Workshop::new(directory.path()).unwrap();
+        let staging = StagingDirectory::new(directory.path()).unwrap();
         for name in ["a.svg", "b.svg", "c.svg"] {
-            std::fs::write(workshop.path().join(name), "new").unwrap();
+            std::fs::write(staging.path().join(name), "new").unwrap();
         }
-        workshop
+        staging
     };
     std::fs::create_dir(directory.path().join("b.svg")).unwrap();
     assert!(made().check().is_err());
-    assert!(made().deliver().is_err());
+    assert!(made().commit().is_err());
     assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 1);
     std::fs::remove_dir(directory.path().join("b.svg")).unwrap();
-    made().deliver().unwrap();
+    made().commit().unwrap();
     assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 3);
 }

@@ -44,23 +44,15 @@ fn is_run_of(request: &Request, kernel: Kernel) -> bool {
 
 #[test]
 fn the_table_passes_over_the_workspace_and_no_row_is_ten_times_too_wide() {
-    let mut states = check::grid();
-    states.extend(check::random(100_000, 2));
-    let report = check(&mut InProcess::new(), &TABLE, &states);
+    let grid = check(&mut InProcess::new(), &TABLE, &check::grid());
+    assert_eq!(grid.failures(), [""; 0], "{:#?}", grid.rows);
+    let random = check::random(100_000, 2);
+    let report = check(&mut InProcess::new(), &TABLE, &random);
     assert_eq!(report.failures(), [""; 0], "{:#?}", report.rows);
     for row in &report.rows {
-        let tight = row.row.tightened(10.0).bound;
+        let tight = row.row.bound / 10.0;
         assert!(row.worst > tight, "{} is too wide", row.row.name);
     }
-}
-
-#[test]
-fn every_row_fails_when_tightened_tenfold() {
-    let tight = TABLE.map(|row| row.tightened(10.0));
-    let states = check::random(100_000, 2);
-    let report = check(&mut InProcess::new(), &tight, &states);
-    let passing: Vec<_> = report.rows.iter().filter(|row| row.passed).collect();
-    assert!(passing.is_empty(), "{passing:#?}");
 }
 
 #[test]

@@ -121,7 +121,7 @@ fn an_interrupt_without_a_handler_of_its_own_cannot_pass_for_one_without_panic()
     for name in ["CORDIC", "NO_SUCH_INTERRUPT"] {
         assert!(matches!(
             root(&board, name),
-            Err(ImageBudgetError::NoRoot { .. })
+            Err(ImageBudgetError::NoRoot(_))
         ));
     }
 }

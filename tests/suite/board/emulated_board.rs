@@ -20,6 +20,7 @@ fn a_board_keeps_its_state_from_command_to_command() {
     let (code, told) = board.refused(&move_to("10"));
     assert_eq!(code, Some(2));
     assert!(told.contains("does not know its zero"), "{told}");
+    assert_eq!(board.state()["state"], "disarmed");
     assert_eq!(board.json(&["home"])["state"], "held");
     let moved = board.json(&move_to("10"));
     assert_eq!(moved["state"], "held");

@@ -63,7 +63,7 @@ fn directory(session: &QemuSession) -> Result<PathBuf, Box<dyn Error>> {
 #[test]
 fn the_firmware_boots_and_ends_with_its_link() -> Outcome {
     let session = QemuSession::open(&config(QemuClock::Normal)?)?;
-    let info = *session.info();
+    let info = *session.info().ok_or("it has introduced itself")?;
     assert_eq!(info.board, BoardKind::Qemu);
     let boot = info.boot.ok_or("a board checks itself")?;
     assert!((1_000..1_100).contains(&boot.alarm_us), "{boot:?}");
@@ -125,7 +125,7 @@ fn the_counting_clock_counts_and_repeats() -> Outcome {
     let config = config(QemuClock::Counting)?;
     let count = || -> Result<Vec<Reply>, LinkError> {
         let mut session = QemuSession::open(&config)?;
-        let boot = session.info().boot;
+        let boot = session.info().and_then(|info| info.boot);
         assert_eq!(boot.map(|boot| boot.nops_counted), Some(100));
         let replies = Kernel::ALL
             .into_iter()
@@ -175,7 +175,7 @@ fn another_schema_is_refused_by_the_firmware() -> Outcome {
 }
 
 #[test]
-fn a_killed_emulator_is_told_in_words() -> Outcome {
+fn a_killed_emulator_is_described() -> Outcome {
     let mut session = QemuSession::open(&config(QemuClock::Normal)?)?;
     kill_process(process(&session)?, Signal::KILL)?;
     let Err(error) = session.ask(&evaluate_request(0.1)) else {

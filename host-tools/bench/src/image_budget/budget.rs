@@ -42,7 +42,7 @@ pub struct BudgetCheck {
 }
 
 impl ByteBounds {
-    const fn new(lowest: u32, highest: u32) -> Self {
+    pub(super) const fn new(lowest: u32, highest: u32) -> Self {
         Self { lowest, highest }
     }
 
@@ -114,9 +114,7 @@ pub fn checks(
     checks.extend(task_checks(needs, budget)?);
     for name in budget.hot {
         let root = needs.roots.iter().find(|root| root.name == *name);
-        let root = root.ok_or_else(|| ImageBudgetError::NoRoot {
-            name: (*name).into(),
-        })?;
+        let root = root.ok_or_else(|| ImageBudgetError::NoRoot((*name).into()))?;
         checks.push(absence("panic", root, root.panic.is_some()));
         checks.push(absence("log", root, root.log.is_some()));
     }

@@ -43,12 +43,8 @@ pub(super) struct CallGraph<'a> {
     edges: BTreeMap<u32, Vec<Edge>>,
 }
 
-/// The deepest stack below a function, itself included.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Depth {
-    bytes: u32,
-    next: Option<StackFrame>,
-}
+/// Bytes of the deepest stack below a function, itself included, and what comes next on it.
+type Depth = (u32, Option<StackFrame>);
 
 fn calls(function: &Function, program: &Program) -> Result<Vec<Edge>, ImageBudgetError> {
     let direct = function
@@ -63,13 +59,13 @@ fn calls(function: &Function, program: &Program) -> Result<Vec<Edge>, ImageBudge
             CallKind::Once
         },
     });
-    let reach = indirect::reach(function, program)?;
-    let kind = if reach.nested {
+    let (targets, nested) = indirect::reach(function, program)?;
+    let kind = if nested {
         CallKind::Nested
     } else {
         CallKind::Once
     };
-    let indirect = reach.targets.into_iter().map(|to| Edge { to, kind });
+    let indirect = targets.into_iter().map(|to| Edge { to, kind });
     Ok(direct.chain(indirect).collect())
 }
 
@@ -137,16 +133,12 @@ impl<'a> CallGraph<'a> {
             nested: NESTED,
             panics: PANICS_ON_A_STACK,
         };
-        let depth = self.depth(start, &mut depths, &mut Vec::new())?;
-        let mut functions = vec![self.name(root)];
-        let mut next = depth.next;
-        while let Some(frame) = next {
-            functions.push(self.name(frame.function));
-            next = depths.get(&frame).and_then(|depth| depth.next);
-        }
+        let (bytes, _) = self.depth(start, &mut depths, &mut Vec::new())?;
+        let next = |frame: &StackFrame| depths.get(frame).and_then(|(_, next)| *next);
+        let frames = std::iter::successors(Some(start), next);
         Ok(Stack {
-            bytes: depth.bytes,
-            functions,
+            bytes,
+            functions: frames.map(|frame| self.name(frame.function)).collect(),
         })
     }
 
@@ -154,42 +146,36 @@ impl<'a> CallGraph<'a> {
         &self,
         frame: StackFrame,
         known: &mut BTreeMap<StackFrame, Depth>,
-        above: &mut Vec<StackFrame>,
+        callers: &mut Vec<StackFrame>,
     ) -> Result<Depth, ImageBudgetError> {
         if let Some(depth) = known.get(&frame) {
             return Ok(*depth);
         }
-        if let Some(first) = above.iter().position(|other| *other == frame) {
-            return Err(self.recursion(above.get(first..).unwrap_or_default()));
+        if let Some(first) = callers.iter().position(|other| *other == frame) {
+            return Err(self.recursion(callers.get(first..).unwrap_or_default()));
         }
-        above.push(frame);
-        let mut deepest: Option<(u32, StackFrame)> = None;
+        callers.push(frame);
+        let (mut most, mut deepest) = (0, None);
         let calls = self.edges(frame.function).iter();
         for next in calls.filter_map(|edge| frame.call(edge)) {
-            let bytes = self.depth(next, known, above)?.bytes;
-            if deepest.is_none_or(|(most, _)| bytes > most) {
-                deepest = Some((bytes, next));
+            let (bytes, _) = self.depth(next, known, callers)?;
+            if deepest.is_none() || bytes > most {
+                (most, deepest) = (bytes, Some(next));
             }
         }
-        above.pop();
-        let own = self
-            .function(frame.function)
-            .map_or(0, |function| function.frame);
-        let depth = Depth {
-            bytes: own + deepest.map_or(0, |(bytes, _)| bytes),
-            next: deepest.map(|(_, next)| next),
-        };
+        callers.pop();
+        let function = self.function(frame.function);
+        let depth = (
+            function.map_or(0, |function| function.frame) + most,
+            deepest,
+        );
         known.insert(frame, depth);
         Ok(depth)
     }
 
     fn recursion(&self, circle: &[StackFrame]) -> ImageBudgetError {
-        ImageBudgetError::Recursion {
-            circle: circle
-                .iter()
-                .map(|frame| self.name(frame.function))
-                .collect(),
-        }
+        let names = circle.iter().map(|frame| self.name(frame.function));
+        ImageBudgetError::Recursion(names.collect())
     }
 
     /// The functions that a root can reach and that make calls by address.
@@ -231,12 +217,9 @@ impl<'a> CallGraph<'a> {
     }
 
     fn path(&self, end: u32, came_from: &BTreeMap<u32, Option<u32>>) -> Vec<String> {
-        let mut path = vec![self.name(end)];
-        let mut at = end;
-        while let Some(Some(before)) = came_from.get(&at) {
-            path.push(self.name(*before));
-            at = *before;
-        }
+        let caller = |at: &u32| came_from.get(at).copied().flatten();
+        let backwards = std::iter::successors(Some(end), caller);
+        let mut path: Vec<String> = backwards.map(|at| self.name(at)).collect();
         path.reverse();
         path
     }

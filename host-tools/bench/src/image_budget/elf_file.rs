@@ -4,6 +4,8 @@ use super::error::ImageBudgetError;
 use object::elf::{SHF_ALLOC, SHF_EXECINSTR};
 use object::read::elf::{ElfFile32, ElfSection32, ElfSymbol32};
 use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SectionIndex, SymbolKind};
+use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// The section that only the core reads.
 const VECTOR_TABLE: &str = ".vector_table";
@@ -22,13 +24,11 @@ pub(super) struct Bytes<'a> {
     pub(super) bytes: &'a [u8],
 }
 
-/// A symbol of code.
-#[derive(Clone, Copy)]
-pub(super) struct CodeSymbol<'a> {
-    /// Its name as the linker knows it.
-    pub(super) name: &'a str,
-    /// Where its first instruction lies.
-    pub(super) address: u32,
+/// The symbols of one function.
+#[derive(Clone, Default)]
+pub(super) struct FunctionSymbols<'a> {
+    /// Its names as the linker knows them.
+    pub(super) names: Vec<&'a str>,
     /// How many bytes it has; zero if the file does not give it.
     pub(super) size: u32,
 }
@@ -53,7 +53,7 @@ impl<'a> ElfFile<'a> {
         let found = self.file.symbol_by_name(name);
         found
             .map(|symbol| narrow(symbol.address()))
-            .ok_or_else(|| ImageBudgetError::NoSymbol { name: name.into() })
+            .ok_or_else(|| ImageBudgetError::NoSymbol(name.into()))
     }
 
     /// The stretches of code.
@@ -72,17 +72,18 @@ impl<'a> ElfFile<'a> {
         Ok(sections.iter().flat_map(Bytes::words).collect())
     }
 
-    /// The functions' symbols, those without a size too.
-    pub(super) fn functions(&self) -> Vec<CodeSymbol<'a>> {
-        self.code_symbols()
-            .filter(|(_, symbol)| symbol.kind() == SymbolKind::Text)
-            .map(|(name, symbol)| CodeSymbol {
-                name,
-                // The lowest bit says that the code is Thumb.
-                address: narrow(symbol.address()) & !1,
-                size: narrow(symbol.size()),
-            })
-            .collect()
+    /// The functions' symbols by address, those without a size too.
+    pub(super) fn functions(&self) -> BTreeMap<u32, FunctionSymbols<'a>> {
+        let mut functions = BTreeMap::<u32, FunctionSymbols<'a>>::new();
+        let symbols = self.code_symbols();
+        for (name, symbol) in symbols.filter(|(_, symbol)| symbol.kind() == SymbolKind::Text) {
+            // The lowest bit says that the code is Thumb.
+            let address = narrow(symbol.address()) & !1;
+            let function = functions.entry(address).or_default();
+            function.names.push(name);
+            function.size = function.size.max(narrow(symbol.size()));
+        }
+        functions
     }
 
     /// Where instructions and data take turns within code, by address.
@@ -134,6 +135,16 @@ impl<'a> ElfFile<'a> {
 }
 
 impl<'a> Bytes<'a> {
+    /// Those at the addresses of a range.
+    pub(super) fn part(&self, range: &Range<u32>) -> Self {
+        let index = |address: u32| address.saturating_sub(self.address) as usize;
+        let part = index(range.start)..index(range.end);
+        Self {
+            address: range.start,
+            bytes: self.bytes.get(part).unwrap_or_default(),
+        }
+    }
+
     /// The words at addresses that are multiples of four.
     pub(super) fn words(&self) -> impl Iterator<Item = u32> + use<'a> {
         let ahead = self.address.next_multiple_of(4) - self.address;

@@ -13,40 +13,24 @@ impl fmt::Display for Address {
     }
 }
 
-/// Why an image's needs are not known.
+/// Why an image's needs are not known. Functions are given by their names.
 #[derive(Debug, Error)]
 pub enum ImageBudgetError {
     /// The bytes are no ELF file for a 32-bit machine.
     #[error("the image is no ELF file that can be read: {0}")]
     Elf(#[from] object::read::Error),
-    /// A symbol that the linker scripts define is missing.
-    #[error("the image has no symbol `{name}`; link it with cortex-m-rt's script and memory.x")]
-    NoSymbol {
-        /// The symbol.
-        name: String,
-    },
-    /// A part of the image lies outside the memories of memory.x.
-    #[error("the image has bytes at {at}, outside the memories of memory.x")]
-    Outside {
-        /// Where the part begins.
-        at: Address,
-    },
-    /// The image's vector table leads to an address without code.
-    #[error("entry {number} of the vector table leads to {at}, where no function begins")]
-    Vector {
-        /// Number of the exception.
-        number: usize,
-        /// Where it leads.
-        at: Address,
-    },
-    /// No function and no handler has the name of the root.
-    #[error(
-        "the image has no function `{name}` of its own; a handler may still be the default one"
-    )]
-    NoRoot {
-        /// What was asked for.
-        name: String,
-    },
+    /// This symbol, which the linker scripts define, is missing.
+    #[error("the image has no symbol `{0}`; link it with cortex-m-rt's script and memory.x")]
+    NoSymbol(String),
+    /// A part of the image that begins here lies outside the memories of memory.x.
+    #[error("the image has bytes at {0}, outside the memories of memory.x")]
+    OutOfMemories(Address),
+    /// The entry of this exception in the vector table leads to an address without code.
+    #[error("entry {0} of the vector table leads to {1}, where no function begins")]
+    Vector(usize, Address),
+    /// No function and no handler has this name of a root.
+    #[error("the image has no function `{0}` of its own; a handler may still be the default one")]
+    NoRoot(String),
     /// The budget names other tasks than there are.
     #[error("the image has the tasks {found}; the budget in image_budget/budget.rs has {budgeted}")]
     OtherTasks {
@@ -55,47 +39,29 @@ pub enum ImageBudgetError {
         /// Those of the budget.
         budgeted: String,
     },
-    /// A function sets the stack pointer to what its code does not show.
-    #[error("{function} sets the stack pointer to an unknown place at {at}")]
-    UnknownStack {
-        /// The function.
-        function: String,
-        /// The instruction.
-        at: Address,
-    },
+    /// An instruction of a function sets the stack pointer to what its code does not show.
+    #[error("{0} sets the stack pointer to an unknown place at {1}")]
+    UnknownStack(String, Address),
     /// A function's code ends within an instruction.
-    #[error("{function} ends within the instruction at {at}")]
-    CutOff {
-        /// The function.
-        function: String,
-        /// The instruction.
-        at: Address,
-    },
+    #[error("{0} ends within the instruction at {1}")]
+    CutOff(String, Address),
     /// A function leads to an address without code.
-    #[error("{function} leads to {to}, where there is no function")]
-    NoFunction {
-        /// The function that branches.
-        function: String,
-        /// Where it leads.
-        to: Address,
-    },
-    /// Functions call each other in a circle, so that no bound on their stack is known.
+    #[error("{0} leads to {1}, where there is no function")]
+    NoFunction(String, Address),
+    /// Functions, each calling the next and the last one the first: no bound on their stack is known.
     #[error(
         "a recursion has no bound on its stack: {}; for an indirect call in it, say in image_budget/indirect.rs what it can reach",
-        .circle.join(" > ")
+        .0.join(" > ")
     )]
-    Recursion {
-        /// The functions, each calling the next and the last one the first.
-        circle: Vec<String>,
-    },
-    /// A declaration of what indirect calls reach matches nothing.
+    Recursion(Vec<String>),
+    /// What is declared of a function's indirect calls matches nothing.
     #[error(
         "{function} makes indirect calls to {declared}, of which the image has no function whose address is taken; look into image_budget/indirect.rs"
     )]
     NoTarget {
         /// The function that calls.
         function: String,
-        /// What is declared.
+        /// The declared targets.
         declared: String,
     },
     /// A function makes more indirect calls than are declared.

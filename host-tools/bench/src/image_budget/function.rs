@@ -47,143 +47,103 @@ impl Function {
         section: &Bytes<'_>,
         mappings: &[Mapping],
     ) -> Result<Self, ImageBudgetError> {
-        let mut reader = Reader::new(names, range.clone());
+        let mut function = Self {
+            names,
+            range: range.clone(),
+            ..Self::default()
+        };
+        let mut goes_on = false;
+        // The lower halves that registers were last set to.
+        let mut halves = BTreeMap::new();
         for (stretch, code) in stretches(&range, mappings) {
-            let bytes = section_bytes(section, &stretch);
+            let bytes = section.part(&stretch);
             if code {
-                reader.instructions(&bytes)?;
+                goes_on = function
+                    .read_instructions(&bytes, &mut halves)?
+                    .unwrap_or(goes_on);
             } else {
-                reader.function.words.extend(bytes.words());
+                function.words.extend(bytes.words());
             }
         }
-        Ok(reader.end())
-    }
-}
-
-/// The stretches of a range, and whether they hold instructions.
-fn stretches<'a>(
-    range: &Range<u32>,
-    mappings: &'a [Mapping],
-) -> impl Iterator<Item = (Range<u32>, bool)> + use<'a> {
-    let before = mappings.partition_point(|mapping| mapping.address <= range.start);
-    let (start, end) = (range.start, range.end);
-    let relevant = mappings.get(before.saturating_sub(1)..).unwrap_or_default();
-    let ends = relevant.iter().skip(1).map(|mapping| mapping.address);
-    let ends = ends.chain([end]);
-    relevant
-        .iter()
-        .zip(ends)
-        .map(move |(mapping, next)| (mapping.address.max(start)..next.min(end), mapping.code))
-        .take_while(move |(stretch, _)| stretch.start < end)
-        .filter(|(stretch, _)| !stretch.is_empty())
-}
-
-/// The bytes of a section within a range.
-fn section_bytes<'a>(section: &Bytes<'a>, range: &Range<u32>) -> Bytes<'a> {
-    let at = |address: u32| address.saturating_sub(section.address) as usize;
-    Bytes {
-        address: range.start,
-        bytes: section
-            .bytes
-            .get(at(range.start)..at(range.end))
-            .unwrap_or_default(),
-    }
-}
-
-struct Reader {
-    function: Function,
-    /// The lower halves that registers were last set to.
-    halves: BTreeMap<u32, u32>,
-    /// Whether the core goes on behind the last instruction.
-    goes_on: bool,
-}
-
-impl Reader {
-    fn new(names: Vec<String>, range: Range<u32>) -> Self {
-        let function = Function {
-            names,
-            range,
-            ..Function::default()
-        };
-        Self {
-            function,
-            halves: BTreeMap::new(),
-            goes_on: false,
+        // Without a branch or a return at its end, execution continues in the next function.
+        if goes_on {
+            function.leads_to.insert(range.end);
         }
+        Ok(function)
     }
 
-    fn instructions(&mut self, stretch: &Bytes<'_>) -> Result<(), ImageBudgetError> {
+    /// Reads a stretch of instructions, and returns whether the core goes on behind it, if anything there tells.
+    fn read_instructions(
+        &mut self,
+        stretch: &Bytes<'_>,
+        halves: &mut BTreeMap<u32, u32>,
+    ) -> Result<Option<bool>, ImageBudgetError> {
+        let mut goes_on = None;
         let mut at = stretch.address;
         let mut rest = stretch.bytes;
         while !rest.is_empty() {
             let Some(Instruction { length, effect }) = thumb::decode(rest, at) else {
-                return Err(ImageBudgetError::CutOff {
-                    function: self.function.name().into(),
-                    at: Address(at),
-                });
+                return Err(ImageBudgetError::CutOff(self.name().into(), Address(at)));
             };
-            self.instruction(effect, at)?;
+            self.add(effect, at, halves)?;
+            if effect != Effect::Filler {
+                goes_on = Some(!effect.may_end());
+            }
             at = at.wrapping_add(length);
             rest = rest.get(length as usize..).unwrap_or_default();
-            if effect != Effect::Filler {
-                self.goes_on = !effect.may_end();
-            }
         }
-        Ok(())
+        Ok(goes_on)
     }
 
-    fn instruction(&mut self, effect: Effect, at: u32) -> Result<(), ImageBudgetError> {
+    fn add(
+        &mut self,
+        effect: Effect,
+        at: u32,
+        halves: &mut BTreeMap<u32, u32>,
+    ) -> Result<(), ImageBudgetError> {
         match effect {
-            Effect::Down(bytes) => self.function.frame += bytes,
+            Effect::Down(bytes) => self.frame += bytes,
             Effect::UnknownStack => {
-                return Err(ImageBudgetError::UnknownStack {
-                    function: self.function.name().into(),
-                    at: Address(at),
-                });
+                let function = self.name().into();
+                return Err(ImageBudgetError::UnknownStack(function, Address(at)));
             }
-            Effect::Call(to) => {
-                self.function.leads_to.insert(to);
+            Effect::Call(to) => self.leads_to.extend([to]),
+            // A branch within the function is none of its calls.
+            Effect::Branch(to) | Effect::MayBranch(to) => {
+                self.leads_to
+                    .extend((!self.range.contains(&to)).then_some(to));
             }
-            Effect::Branch(to) | Effect::MayBranch(to) => self.branch(to),
-            Effect::BranchRegister if self.function.name().starts_with(VENEER) => self.veneer(),
-            Effect::CallRegister | Effect::BranchRegister => self.function.indirect_calls += 1,
-            Effect::Low { register, value } => {
-                self.halves.insert(register, value);
+            Effect::BranchRegister if self.name().starts_with(VENEER) => self.follow_veneer(),
+            Effect::CallRegister | Effect::BranchRegister => self.indirect_calls += 1,
+            Effect::Low(register, value) => {
+                halves.insert(register, value);
             }
-            Effect::High { register, value } => self.high(register, value),
-            Effect::None | Effect::Filler | Effect::Switch | Effect::Return | Effect::Trap => {}
+            Effect::High(register, value) => {
+                let low = halves.get(&register);
+                self.words.extend(low.map(|low| value << 16 | low));
+            }
+            Effect::Other | Effect::Filler | Effect::Switch | Effect::Return | Effect::Trap => {}
         }
         Ok(())
     }
 
     /// The address is the one that was made, and is not taken for anything else.
-    fn veneer(&mut self) {
-        match self.function.words.pop_last() {
-            Some(to) => {
-                self.function.leads_to.insert(to & !1);
-            }
-            None => self.function.indirect_calls += 1,
+    fn follow_veneer(&mut self) {
+        match self.words.pop_last() {
+            Some(to) => self.leads_to.extend([to & !1]),
+            None => self.indirect_calls += 1,
         }
     }
+}
 
-    /// A branch within the function is none of its calls.
-    fn branch(&mut self, to: u32) {
-        if !self.function.range.contains(&to) {
-            self.function.leads_to.insert(to);
-        }
-    }
-
-    fn high(&mut self, register: u32, value: u32) {
-        if let Some(low) = self.halves.get(&register) {
-            self.function.words.insert(value << 16 | low);
-        }
-    }
-
-    /// A function whose last instruction goes on goes on with the next function.
-    fn end(mut self) -> Function {
-        if self.goes_on {
-            self.function.leads_to.insert(self.function.range.end);
-        }
-        self.function
-    }
+/// The stretches of a range, and whether they hold instructions.
+fn stretches(range: &Range<u32>, mappings: &[Mapping]) -> impl Iterator<Item = (Range<u32>, bool)> {
+    let ends = mappings.iter().skip(1).map(|mapping| mapping.address);
+    let stretches = mappings.iter().zip(ends.chain([range.end]));
+    stretches
+        .map(|(mapping, end)| {
+            let stretch = mapping.address.max(range.start)..end.min(range.end);
+            (stretch, mapping.code)
+        })
+        .filter(|(stretch, _)| !stretch.is_empty())
 }

@@ -9,15 +9,18 @@ use super::function::Function;
 use super::program::Program;
 use std::collections::BTreeSet;
 
+/// Names of functions, or parts of them where they hold `::`.
+type Names = &'static [&'static str];
+
 /// What the indirect calls of some functions reach.
 #[derive(Debug)]
 struct Declaration {
-    /// The callers' names, or parts of them where they hold `::`.
-    callers: &'static [&'static str],
+    /// The callers.
+    callers: Names,
     /// The most indirect calls that a caller makes: more are others than those declared.
     calls: usize,
-    /// The targets' names, or parts of them.
-    targets: &'static [&'static str],
+    /// The targets.
+    targets: Names,
     /// Whether the targets may lead back to the callers, [`NESTED`] times on one stack.
     nested: bool,
 }
@@ -32,26 +35,19 @@ pub(super) const NESTED: usize = 8;
 pub(super) const TASK: &str = "embassy_executor::raw::TaskStorage<";
 
 /// The functions that embassy's executor is handed for a task.
-const POLLS: &[&str] = &[TASK, "raw::poll_exited"];
+const POLLS: Names = &[TASK, "raw::poll_exited"];
 
 /// The functions behind a waker: each image has those of embassy's executor alone.
-const WAKERS: &[&str] = &["embassy_executor::raw::waker::"];
+const WAKERS: Names = &["embassy_executor::raw::waker::"];
 
 static DECLARATIONS: [Declaration; 17] = [
     // What pads a value's letters hands them to what writes.
-    Declaration {
-        callers: &["core::fmt::Formatter>::"],
-        calls: usize::MAX,
-        targets: &["core::fmt::Write>::", "core::fmt::Write::"],
-        nested: true,
-    },
+    writes(
+        &["core::fmt::Formatter>::"],
+        &["core::fmt::Write>::", "core::fmt::Write::"],
+    ),
     // Values write themselves, and values in them, to what writes letters.
-    Declaration {
-        callers: &["core::fmt::"],
-        calls: usize::MAX,
-        targets: &["core::fmt::"],
-        nested: true,
-    },
+    writes(&["core::fmt::"], &["core::fmt::"]),
     wakers(&[TASK], 2),
     wakers(&["_embassy_time_schedule_wake"], 3),
     // The alarm of embassy's clock, on the STM32 and under QEMU.
@@ -88,59 +84,62 @@ static DECLARATIONS: [Declaration; 17] = [
     // What a task does may be a function of its own.
     wakers(&["leg_qemu::__answer_host_task::"], 1),
     // What is counted under QEMU.
-    Declaration {
-        callers: &["leg_qemu::counter::ticks_of"],
-        calls: 1,
-        targets: &[
+    plain(
+        &["leg_qemu::counter::ticks_of"],
+        1,
+        &[
             "leg_firmware_bench::kernels::",
             "leg_firmware_bench::virtual_leg::tick",
             "leg_qemu::counter::",
         ],
-        nested: false,
-    },
+    ),
 ];
 
-const fn wakers(callers: &'static [&'static str], calls: usize) -> Declaration {
+const fn writes(callers: Names, targets: Names) -> Declaration {
+    Declaration {
+        nested: true,
+        ..plain(callers, usize::MAX, targets)
+    }
+}
+
+const fn wakers(callers: Names, calls: usize) -> Declaration {
+    plain(callers, calls, WAKERS)
+}
+
+const fn polls(callers: Names) -> Declaration {
+    plain(callers, 1, POLLS)
+}
+
+const fn plain(callers: Names, calls: usize, targets: Names) -> Declaration {
     Declaration {
         callers,
         calls,
-        targets: WAKERS,
+        targets,
         nested: false,
     }
 }
 
-const fn polls(callers: &'static [&'static str]) -> Declaration {
-    Declaration {
-        callers,
-        calls: 1,
-        targets: POLLS,
-        nested: false,
-    }
-}
-
-/// What the indirect calls of one function may reach.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Reach {
-    /// Where the functions begin.
-    pub(super) targets: BTreeSet<u32>,
-    /// Whether these calls count towards [`NESTED`].
-    pub(super) nested: bool,
-}
-
-/// What the indirect calls of a function of the program may reach.
-pub(super) fn reach(function: &Function, program: &Program) -> Result<Reach, ImageBudgetError> {
+/// Where the functions begin that the indirect calls of a function of the program may reach, and whether these calls
+/// count towards [`NESTED`].
+pub(super) fn reach(
+    function: &Function,
+    program: &Program,
+) -> Result<(BTreeSet<u32>, bool), ImageBudgetError> {
     if function.indirect_calls == 0 {
-        return Ok(Reach::default());
+        return Ok((BTreeSet::new(), false));
     }
     let Some(declaration) = find_declaration(function) else {
-        return Ok(Reach {
-            targets: program.taken.clone(),
-            nested: false,
-        });
+        return Ok((program.taken.clone(), false));
     };
-    declaration.check_calls(function)?;
-    let of_declaration = taken_functions(program, |target| target.is_called(declaration.targets));
-    if of_declaration.is_empty() {
+    if function.indirect_calls > declaration.calls {
+        return Err(ImageBudgetError::MoreCalls {
+            function: function.name().into(),
+            found: function.indirect_calls,
+            declared: declaration.calls,
+        });
+    }
+    let declared_targets = taken_functions(program, |target| target.is_called(declaration.targets));
+    if declared_targets.is_empty() {
         return Err(ImageBudgetError::NoTarget {
             function: function.name().into(),
             declared: declaration.targets.join(", "),
@@ -151,10 +150,8 @@ pub(super) fn reach(function: &Function, program: &Program) -> Result<Reach, Ima
             .iter()
             .any(|declaration| target.is_called(declaration.targets))
     });
-    Ok(Reach {
-        targets: of_declaration.into_iter().chain(unnamed).collect(),
-        nested: declaration.nested,
-    })
+    let targets = declared_targets.into_iter().chain(unnamed).collect();
+    Ok((targets, declaration.nested))
 }
 
 /// Whether it is declared what the indirect calls of a function reach.
@@ -172,17 +169,4 @@ fn find_declaration(function: &Function) -> Option<&'static Declaration> {
 fn taken_functions(program: &Program, wanted: impl Fn(&Function) -> bool) -> BTreeSet<u32> {
     let is_wanted = |address: &&u32| program.functions.get(address).is_some_and(&wanted);
     program.taken.iter().filter(is_wanted).copied().collect()
-}
-
-impl Declaration {
-    fn check_calls(&self, function: &Function) -> Result<(), ImageBudgetError> {
-        if function.indirect_calls <= self.calls {
-            return Ok(());
-        }
-        Err(ImageBudgetError::MoreCalls {
-            function: function.name().into(),
-            found: function.indirect_calls,
-            declared: self.calls,
-        })
-    }
 }

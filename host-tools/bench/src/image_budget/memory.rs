@@ -40,11 +40,7 @@ impl Memories {
             let start = segment.p_paddr(Endianness::Little);
             start..start.saturating_add(segment.p_filesz(Endianness::Little))
         });
-        let stored: Vec<_> = stored.filter(|part| !part.is_empty()).collect();
-        if let Some(outside) = stored.iter().find(|part| !holds(&self.flash, part)) {
-            return Err(outside_at(outside.start));
-        }
-        Ok(usage(&self.flash, &stored))
+        usage(&self.flash, stored.filter(|part| !part.is_empty()))
     }
 
     /// RAM: static variables, without the stack.
@@ -53,14 +49,11 @@ impl Memories {
             let start = segment.p_vaddr(Endianness::Little);
             start..start.saturating_add(segment.p_memsz(Endianness::Little))
         });
-        let code = |part: &Range<u32>| self.code.as_ref().is_some_and(|code| holds(code, part));
-        let live: Vec<_> = live
-            .filter(|part| !holds(&self.flash, part) && !code(part))
-            .collect();
-        if let Some(outside) = live.iter().find(|part| !holds(&self.ram, part)) {
-            return Err(outside_at(outside.start));
-        }
-        Ok(usage(&self.ram, &live))
+        let elsewhere = |part: &Range<u32>| {
+            let mut memories = [&self.flash].into_iter().chain(&self.code);
+            memories.any(|memory| holds(memory, part))
+        };
+        usage(&self.ram, live.filter(|part| !elsewhere(part)))
     }
 }
 
@@ -86,14 +79,20 @@ fn holds(memory: &Range<u32>, part: &Range<u32>) -> bool {
     memory.start <= part.start && part.end <= memory.end
 }
 
-fn usage(memory: &Range<u32>, parts: &[Range<u32>]) -> Usage {
-    let end = parts.iter().map(|part| part.end).max();
-    Usage {
-        used: end.map_or(0, |end| end - memory.start),
-        size: memory.end - memory.start,
+/// What parts take of a memory, up to the end of the last one.
+fn usage(
+    memory: &Range<u32>,
+    parts: impl Iterator<Item = Range<u32>>,
+) -> Result<Usage, ImageBudgetError> {
+    let mut end = memory.start;
+    for part in parts {
+        if !holds(memory, &part) {
+            return Err(ImageBudgetError::OutOfMemories(Address(part.start)));
+        }
+        end = end.max(part.end);
     }
-}
-
-const fn outside_at(start: u32) -> ImageBudgetError {
-    ImageBudgetError::Outside { at: Address(start) }
+    Ok(Usage {
+        used: end - memory.start,
+        size: memory.end - memory.start,
+    })
 }

@@ -1,6 +1,6 @@
 //! All functions of an image, and which of them can be called by address.
 
-use super::elf_file::{Bytes, CodeSymbol, ElfFile, Mapping};
+use super::elf_file::{Bytes, ElfFile};
 use super::error::{Address, ImageBudgetError};
 use super::function::Function;
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,47 +17,30 @@ pub(super) struct Program {
 
 impl Program {
     pub(super) fn read(elf: &ElfFile<'_>) -> Result<Self, ImageBudgetError> {
-        let symbols = elf.functions();
-        let names = symbols
-            .iter()
-            .map(|symbol| (symbol.name.into(), symbol.address));
-        let mut program = Self {
-            names: names.collect(),
-            ..Self::default()
-        };
-        let mappings = elf.mappings();
+        let mut program = Self::default();
+        let (symbols, mappings) = (elf.functions(), elf.mappings());
         for section in elf.code()? {
-            program.read_section(&section, &symbols, &mappings)?;
+            let end = section
+                .address
+                .saturating_add(u32::try_from(section.bytes.len()).unwrap_or(u32::MAX));
+            for (&address, function) in symbols.range(section.address..end) {
+                let next = symbols.range(address + 1..end).next();
+                let limit = next.map_or(end, |(next, _)| *next);
+                let range = address..function_end(address, function.size, limit);
+                let names = readable(&function.names);
+                let read = Function::read(names, range, &section, &mappings)?;
+                program.functions.insert(address, read);
+            }
+        }
+        for (address, function) in symbols {
+            let names = function.names.into_iter();
+            program
+                .names
+                .extend(names.map(|name| (name.into(), address)));
         }
         program.taken = program.taken_addresses(&elf.constants()?);
         program.check_targets()?;
         Ok(program)
-    }
-
-    fn read_section(
-        &mut self,
-        section: &Bytes<'_>,
-        symbols: &[CodeSymbol<'_>],
-        mappings: &[Mapping],
-    ) -> Result<(), ImageBudgetError> {
-        let end = section
-            .address
-            .saturating_add(u32::try_from(section.bytes.len()).unwrap_or(u32::MAX));
-        let within = symbols
-            .iter()
-            .filter(|symbol| (section.address..end).contains(&symbol.address));
-        let mut by_address: BTreeMap<u32, Vec<&CodeSymbol<'_>>> = BTreeMap::new();
-        for symbol in within {
-            by_address.entry(symbol.address).or_default().push(symbol);
-        }
-        for (address, aliases) in &by_address {
-            let next = by_address.range(address + 1..).next();
-            let limit = next.map_or(end, |(next, _)| *next);
-            let range = *address..function_end(aliases, limit);
-            let function = Function::read(readable(aliases), range, section, mappings)?;
-            self.functions.insert(*address, function);
-        }
-        Ok(())
     }
 
     /// The function that holds an address.
@@ -83,13 +66,10 @@ impl Program {
     /// A branch to where no function is would end a path unseen.
     fn check_targets(&self) -> Result<(), ImageBudgetError> {
         for function in self.functions.values() {
-            for to in &function.leads_to {
-                if self.function_at(*to).is_none() {
-                    return Err(ImageBudgetError::NoFunction {
-                        function: function.name().into(),
-                        to: Address(*to),
-                    });
-                }
+            let mut targets = function.leads_to.iter();
+            if let Some(to) = targets.find(|to| self.function_at(**to).is_none()) {
+                let name = function.name().into();
+                return Err(ImageBudgetError::NoFunction(name, Address(*to)));
             }
         }
         Ok(())
@@ -100,20 +80,17 @@ impl Program {
 ///
 /// Code in hand-written assembly may have a symbol within another function; such a function ends there and goes on with
 /// the other.
-fn function_end(aliases: &[&CodeSymbol<'_>], limit: u32) -> u32 {
-    let size = aliases.iter().map(|symbol| symbol.size).max().unwrap_or(0);
-    match aliases.first() {
-        Some(symbol) if size > 0 => symbol.address.saturating_add(size).min(limit),
-        _ => limit,
+fn function_end(address: u32, size: u32, limit: u32) -> u32 {
+    match size {
+        0 => limit,
+        _ => address.saturating_add(size).min(limit),
     }
 }
 
 /// A function's names without the compiler's hash, the shortest first.
-fn readable(aliases: &[&CodeSymbol<'_>]) -> Vec<String> {
-    let names = aliases.iter().map(|symbol| symbol.name);
-    let mut names: Vec<String> = names
-        .map(|name| format!("{:#}", rustc_demangle::demangle(name)))
-        .collect();
+fn readable(names: &[&str]) -> Vec<String> {
+    let readable = |name: &&str| format!("{:#}", rustc_demangle::demangle(name));
+    let mut names: Vec<String> = names.iter().map(readable).collect();
     names.sort_by(|a, b| (a.len(), a).cmp(&(b.len(), b)));
     names
 }

@@ -43,11 +43,11 @@ pub(super) fn tasks(
 /// The name of a task whose poll is called so: embassy's macro puts a task `serve` of a module `can_bus` into
 /// `can_bus::__serve_task::__serve_task_inner_function`.
 fn name(function: &str) -> Option<String> {
-    let inside = function.split(TASK).nth(1)?;
+    let future = function.split(TASK).nth(1)?;
     if !function.ends_with("::poll") {
         return None;
     }
-    let (path, _) = inside.split_once("_task_inner_function")?;
+    let (path, _) = future.split_once("_task_inner_function")?;
     let mut words = path.rsplit("::");
     let name = words.next()?.trim_start_matches('_');
     let module = words.nth(1)?;

@@ -47,8 +47,7 @@ pub(super) fn entries(
     for (number, vector) in numbered.filter(|(_, vector)| **vector != 0) {
         let address = vector & !1;
         let Some(function) = program.functions.get(&address) else {
-            let at = Address(*vector);
-            return Err(ImageBudgetError::Vector { number, at });
+            return Err(ImageBudgetError::Vector(number, Address(*vector)));
         };
         if !found.iter().any(|entry| entry.address == address) {
             found.push(entry(number, function, default == Some(address)));
@@ -63,7 +62,7 @@ pub(super) fn named(
     table: &[u32],
     program: &Program,
 ) -> Result<VectorEntry, ImageBudgetError> {
-    let no_root = || ImageBudgetError::NoRoot { name: name.into() };
+    let no_root = || ImageBudgetError::NoRoot(name.into());
     let address = *program.names.get(name).ok_or_else(no_root)?;
     let function = program.functions.get(&address).ok_or_else(no_root)?;
     let mut entries = entries(table, program)?.into_iter();

@@ -34,33 +34,11 @@ impl From<Error> for FigureError {
 pub fn draw(directory: &Path) -> Result<Vec<(PathBuf, &'static str)>, FigureError> {
     let rig = RigFile::load(None).map_err(PaperError::from)?;
     let mut figures = Vec::new();
-    let charts = [
-        (
-            "fig6_elongation",
-            elongation(&rig)?,
-            "Fig. 6: elongation of the default tendon over its tension",
-        ),
-        (
-            "fig6_stiffness",
-            stiffness(&rig)?,
-            "Fig. 6: its stiffness, with the published points",
-        ),
-        (
-            "fig9a",
-            deviation_chart(&rig)?,
-            "Fig. 9 a: linear deviation (lines) and nonlinear equilibrium (crosses)",
-        ),
-        (
-            "fig9b",
-            difference_chart(&rig)?,
-            "Fig. 9 b: linear deviation less nonlinear equilibrium",
-        ),
-    ];
-    for (name, chart, caption) in charts {
+    for (name, chart, caption) in charts(&rig)? {
         figures.push((plot::save_both(&chart, &directory.join(name))?, caption));
     }
     let map = workspace_field(&rig)?;
-    for (name, layout, caption) in [
+    let maps = [
         (
             "fig10a",
             field::Layout::Polar,
@@ -71,40 +49,62 @@ pub fn draw(directory: &Path) -> Result<Vec<(PathBuf, &'static str)>, FigureErro
             field::Layout::Flat,
             "Fig. 10 b: the same over azimuth and tilt",
         ),
-    ] {
-        figures.push((
-            field::save_both(&map, layout, &directory.join(name))?,
-            caption,
-        ));
+    ];
+    for (name, layout, caption) in maps {
+        let drawn = field::save_both(&map, layout, &directory.join(name))?;
+        figures.push((drawn, caption));
     }
     Ok(figures)
 }
 
-fn over_tension(
+/// The charts, each with the name of its file and its caption.
+fn charts(rig: &RigFile) -> Result<[(&'static str, Chart, &'static str); 4], Error> {
+    let elongation = tendon_points(rig, |tendon, tension| Ok(tendon.elongation(tension)? * 1e3))?;
+    let stiffness = tendon_points(rig, |tendon, tension| Ok(tendon.stiffness(tension)? * 1e-3))?;
+    let published = PUBLISHED.map(|(tension, stiffness)| (tension, stiffness * 1e-3));
+    Ok([
+        (
+            "fig6_elongation",
+            tendon_chart("elongation (mm)", elongation, &[]),
+            "Fig. 6: elongation of the default tendon over its tension",
+        ),
+        (
+            "fig6_stiffness",
+            tendon_chart("stiffness (N/mm)", stiffness, &published),
+            "Fig. 6: its stiffness, with the published points",
+        ),
+        (
+            "fig9a",
+            deviation_chart(
+                ["Fig. 9 a: deviation of the tip", "deviation (mm)"],
+                deviation_lines(rig, |d| d.linear, |d| Some(d.nonlinear))?,
+            ),
+            "Fig. 9 a: linear deviation (lines) and nonlinear equilibrium (crosses)",
+        ),
+        (
+            "fig9b",
+            deviation_chart(
+                ["Fig. 9 b: linear less nonlinear", "difference (mm)"],
+                deviation_lines(rig, |d| d.linear - d.nonlinear, |_| None)?,
+            ),
+            "Fig. 9 b: linear deviation less nonlinear equilibrium",
+        ),
+    ])
+}
+
+/// A quantity of the first tendon over its tension.
+fn tendon_points(
     rig: &RigFile,
-    of: impl Fn(&Tendon<f64>, f64) -> Result<f64, Error>,
+    quantity: impl Fn(&Tendon<f64>, f64) -> Result<f64, Error>,
 ) -> Result<Vec<(f64, f64)>, Error> {
     let [tendon, ..] = &rig.tendons;
     (0..=300)
         .map(|step| 0.5 * f64::from(step))
-        .map(|tension| Ok((tension, of(tendon, tension)?)))
+        .map(|tension| Ok((tension, quantity(tendon, tension)?)))
         .collect()
 }
 
-fn elongation(rig: &RigFile) -> Result<Chart, Error> {
-    let points = over_tension(rig, |tendon, tension| Ok(tendon.elongation(tension)? * 1e3))?;
-    Ok(tendon_chart("elongation (mm)", points, Vec::new()))
-}
-
-fn stiffness(rig: &RigFile) -> Result<Chart, Error> {
-    let points = over_tension(rig, |tendon, tension| Ok(tendon.stiffness(tension)? * 1e-3))?;
-    let marks = PUBLISHED
-        .iter()
-        .map(|(tension, stiffness)| (*tension, stiffness * 1e-3));
-    Ok(tendon_chart("stiffness (N/mm)", points, marks.collect()))
-}
-
-fn tendon_chart(y_title: &str, points: Vec<(f64, f64)>, marks: Vec<(f64, f64)>) -> Chart {
+fn tendon_chart(y_title: &str, points: Vec<(f64, f64)>, marks: &[(f64, f64)]) -> Chart {
     Chart {
         title: format!("Fig. 6: {y_title} of the tendon"),
         x_title: "tension (N)".into(),
@@ -112,63 +112,42 @@ fn tendon_chart(y_title: &str, points: Vec<(f64, f64)>, marks: Vec<(f64, f64)>) 
         lines: vec![ChartLine {
             label: "default curve".into(),
             points,
-            marks,
+            marks: marks.into(),
         }],
         marks_label: "published".into(),
     }
 }
 
-fn deviation_chart(rig: &RigFile) -> Result<Chart, Error> {
-    let line = |d: &Deviations| d.linear;
-    let mark = |d: &Deviations| Some(d.nonlinear);
-    fig9(
-        rig,
-        "Fig. 9 a: deviation of the tip",
-        "deviation (mm)",
-        line,
-        mark,
-    )
-}
-
-fn difference_chart(rig: &RigFile) -> Result<Chart, Error> {
-    let line = |d: &Deviations| d.linear - d.nonlinear;
-    fig9(
-        rig,
-        "Fig. 9 b: linear less nonlinear",
-        "difference (mm)",
-        line,
-        |_| None,
-    )
-}
-
-fn fig9(
+/// A line for each payload.
+fn deviation_lines(
     rig: &RigFile,
-    title: &str,
-    y_title: &str,
-    line: impl Fn(&Deviations) -> f64,
-    mark: impl Fn(&Deviations) -> Option<f64>,
-) -> Result<Chart, Error> {
-    let mut lines = Vec::new();
-    for (payload_kg, _) in MAXIMA {
+    value: fn(&Deviations) -> f64,
+    mark: fn(&Deviations) -> Option<f64>,
+) -> Result<Vec<ChartLine>, Error> {
+    let line = |(payload_kg, _)| {
         let (mut points, mut marks) = (Vec::new(), Vec::new());
         for tilt_deg in tilts_deg() {
             let d = deviations(rig, tilt_deg, payload_kg)?;
-            points.push((tilt_deg, line(&d)));
+            points.push((tilt_deg, value(&d)));
             marks.extend(mark(&d).map(|value| (tilt_deg, value)));
         }
-        lines.push(ChartLine {
+        Ok(ChartLine {
             label: format!("payload {payload_kg} kg"),
             points,
             marks,
-        });
-    }
-    Ok(Chart {
+        })
+    };
+    MAXIMA.into_iter().map(line).collect()
+}
+
+fn deviation_chart([title, y_title]: [&str; 2], lines: Vec<ChartLine>) -> Chart {
+    Chart {
         title: title.into(),
         x_title: format!("tilt (°) along azimuth {AZIMUTH_DEG}°"),
         y_title: y_title.into(),
         lines,
         marks_label: "nonlinear".into(),
-    })
+    }
 }
 
 fn workspace_field(rig: &RigFile) -> Result<field::PlotField, Error> {

@@ -22,8 +22,8 @@ pub(super) fn rows(rig: &RigFile) -> Result<Vec<PaperRow>, Error> {
     let row = |what, numbers, unit, bound, why| {
         PaperRow::new(Topic::Tendon, what, numbers, (unit, 1), why).bounded(bound)
     };
-    let through = "the default curve goes through it";
-    let turns = "the default curve turns there; beyond it, the stiffness at the pretension is fixed by Fig. 9 and the slope \
+    let why_stiffness = "the default curve goes through it";
+    let why_turn = "the default curve turns there; beyond it, the stiffness at the pretension is fixed by Fig. 9 and the slope \
                  between is a choice";
     let initial = (first, tendon.stiffness(start)?);
     Ok(vec![
@@ -32,21 +32,21 @@ pub(super) fn rows(rig: &RigFile) -> Result<Vec<PaperRow>, Error> {
             initial,
             "N/m",
             0.01 * first,
-            through,
+            why_stiffness,
         ),
         row(
             "lowest stiffness",
             (least, lowest.1),
             "N/m",
             0.01 * least,
-            through,
+            why_stiffness,
         ),
         row(
             "tension at the lowest stiffness",
             (turn, lowest.0),
             "N",
             0.5,
-            turns,
+            why_turn,
         ),
     ])
 }

@@ -63,7 +63,7 @@ pub fn table(image: &Path) -> Result<Table, LinkError> {
         reason,
     };
     if !image.is_file() {
-        return Err(LinkError::ImageMissing { path });
+        return Err(LinkError::ImageMissing(path));
     }
     let elf = std::fs::read(image).map_err(|error| unreadable(error.to_string()))?;
     Table::parse(&elf)

@@ -6,7 +6,6 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{CWD, Mode, OFlags, mkfifoat, open};
 use rustix::io::{Errno, read, write};
 use std::ffi::{CStr, OsStr};
-use std::io;
 use std::os::fd::{AsFd, OwnedFd};
 use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
@@ -23,54 +22,36 @@ pub enum Transfer {
     Closed,
 }
 
-/// The host's end of the pipe that the firmware writes.
-#[derive(Debug)]
-pub struct FromFirmware(OwnedFd);
+/// What fails when a pipe cannot be opened.
+const OPEN: &str = "open a named pipe";
 
-/// The host's end of the pipe that the firmware reads.
-#[derive(Debug)]
-pub struct ToFirmware(OwnedFd);
-
-/// Makes both pipes in the directory and opens the one that the firmware opens first.
-pub fn create(directory: &Path) -> Result<FromFirmware, LinkError> {
+/// Makes both pipes in the directory, and opens the one from the firmware, as the firmware does first.
+pub fn create(directory: &Path) -> Result<OwnedFd, LinkError> {
     for name in [TO_HOST, TO_FIRMWARE] {
         mkfifoat(CWD, path(directory, name), Mode::RUSR | Mode::WUSR)
-            .map_err(io::Error::from)
             .map_err(LinkError::system("make a named pipe"))?;
     }
-    open_now(directory, TO_HOST, OFlags::RDONLY)
-        .map(FromFirmware)
-        .map_err(io::Error::from)
-        .map_err(LinkError::system("open a named pipe"))
+    open_now(directory, TO_HOST, OFlags::RDONLY).map_err(LinkError::system(OPEN))
 }
 
-impl ToFirmware {
-    /// Opens the pipe; `None` if the firmware has not opened its side yet.
-    pub fn open(directory: &Path) -> Result<Option<Self>, LinkError> {
-        match open_now(directory, TO_FIRMWARE, OFlags::WRONLY) {
-            Ok(pipe) => Ok(Some(Self(pipe))),
-            Err(Errno::NXIO) => Ok(None),
-            Err(error) => Err(LinkError::system("open a named pipe")(error.into())),
-        }
-    }
-
-    /// Writes some of the bytes.
-    pub fn write(&self, bytes: &[u8], deadline: Instant) -> Result<Transfer, LinkError> {
-        transfer(&self.0, PollFlags::OUT, deadline, || write(&self.0, bytes))
-            .map_err(io::Error::from)
-            .map_err(LinkError::system("write to the firmware"))
+/// Opens the pipe to the firmware; `None` if the firmware has not opened its side yet.
+pub fn open_to_firmware(directory: &Path) -> Result<Option<OwnedFd>, LinkError> {
+    match open_now(directory, TO_FIRMWARE, OFlags::WRONLY) {
+        Err(Errno::NXIO) => Ok(None),
+        opened => opened.map(Some).map_err(LinkError::system(OPEN)),
     }
 }
 
-impl FromFirmware {
-    /// Reads what there is, at least one byte.
-    pub fn read(&self, bytes: &mut [u8], deadline: Instant) -> Result<Transfer, LinkError> {
-        transfer(&self.0, PollFlags::IN, deadline, || {
-            read(&self.0, &mut *bytes)
-        })
-        .map_err(io::Error::from)
+/// Writes some of the bytes.
+pub fn send(pipe: &OwnedFd, bytes: &[u8], deadline: Instant) -> Result<Transfer, LinkError> {
+    transfer(pipe, PollFlags::OUT, deadline, || write(pipe, bytes))
+        .map_err(LinkError::system("write to the firmware"))
+}
+
+/// Reads what there is, at least one byte.
+pub fn receive(pipe: &OwnedFd, bytes: &mut [u8], deadline: Instant) -> Result<Transfer, LinkError> {
+    transfer(pipe, PollFlags::IN, deadline, || read(pipe, &mut *bytes))
         .map_err(LinkError::system("read from the firmware"))
-    }
 }
 
 fn path(directory: &Path, name: &CStr) -> PathBuf {

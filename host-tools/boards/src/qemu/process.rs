@@ -49,7 +49,7 @@ impl Process {
             .stdout
             .take()
             .zip(self.0.stderr.take())
-            .ok_or_else(|| LinkError::system("capture QEMU's output")(ErrorKind::NotFound.into()))
+            .ok_or_else(|| LinkError::system("capture QEMU's output")(ErrorKind::NotFound))
     }
 
     /// How it ended, if it has.
@@ -69,18 +69,14 @@ impl Process {
             thread::sleep(POLL_INTERVAL);
         }
     }
-
-    /// Ends it and takes its exit status from the system, so that nothing of it stays.
-    pub fn kill(&mut self) {
-        // Both fail only if it has ended and was waited for: then there is nothing to do.
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
 }
 
 impl Drop for Process {
     fn drop(&mut self) {
-        self.kill();
+        // Its exit status is taken from the system, so that nothing of it stays. Both fail only if it has ended and was
+        // waited for: then there is nothing to do.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
     }
 }
 
@@ -103,7 +99,7 @@ mod tests {
     use std::process::ExitStatus;
 
     #[test]
-    fn an_end_is_told_in_words() {
+    fn an_end_is_described() {
         let exited = |code: i32| describe(ExitStatus::from_raw(code << 8));
         assert_eq!(
             exited(71),

@@ -8,11 +8,8 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum SetupError {
     /// The variable names no program.
-    #[error("{QEMU_VARIABLE} names `{program}`, which is no program; correct it or unset it")]
-    NamedQemuMissing {
-        /// What it names.
-        program: String,
-    },
+    #[error("{QEMU_VARIABLE} names `{0}`, which is no program; correct it or unset it")]
+    NamedQemuMissing(String),
     /// A program is missing and cannot be installed from here.
     #[error("`{name}` is missing; install it: {command}")]
     Missing {
@@ -22,11 +19,8 @@ pub enum SetupError {
         command: String,
     },
     /// A part of the Rust toolchain is missing.
-    #[error("`{program}` is missing; install Rust with rustup, which brings it")]
-    RustMissing {
-        /// The program.
-        program: &'static str,
-    },
+    #[error("`{0}` is missing; install Rust with rustup, which brings it")]
+    RustMissing(&'static str),
     /// A program ran and failed.
     #[error("`{command}` failed; run it by hand to see to it:\n{output}")]
     Failed {

@@ -103,9 +103,9 @@ fn find_qemu(programs: &Programs) -> Result<Option<PathBuf>, SetupError> {
     };
     match programs.find(named) {
         Some(path) => Ok(Some(path)),
-        None => Err(SetupError::NamedQemuMissing {
-            program: named.to_string_lossy().into_owned(),
-        }),
+        None => Err(SetupError::NamedQemuMissing(
+            named.to_string_lossy().into_owned(),
+        )),
     }
 }
 

@@ -30,9 +30,7 @@ impl Programs {
 
     /// A program of the Rust toolchain.
     pub fn rust(&self, program: &'static str) -> Result<Command, SetupError> {
-        let path = self
-            .find(program)
-            .ok_or(SetupError::RustMissing { program })?;
+        let path = self.find(program).ok_or(SetupError::RustMissing(program))?;
         let mut command = Command::new(path);
         // There the pinned toolchain is in force, and rustup adds to that one.
         command.current_dir(workspace_root());

@@ -153,8 +153,5 @@ fn a_named_qemu_that_is_not_there_is_not_replaced() {
 #[test]
 fn a_missing_rust_is_named() {
     let outcome = has_target(&only_in("/nowhere"));
-    assert!(matches!(
-        outcome,
-        Err(SetupError::RustMissing { program: "rustc" })
-    ));
+    assert!(matches!(outcome, Err(SetupError::RustMissing("rustc"))));
 }

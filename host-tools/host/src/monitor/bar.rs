@@ -4,14 +4,14 @@ use ratatui::style::{Color, Style};
 use ratatui::text::Span;
 
 /// How far beyond the maximum tension a bar reaches, as a part of it.
-const BEYOND: f32 = 1.1;
+const BAR_REACH: f32 = 1.1;
 
 /// Distance from a bound at which a bar warns, as a part of the maximum tension.
-const NEAR: f32 = 0.03;
+const WARNING_PART: f32 = 0.03;
 
 /// A bar of `width` places: full up to the value, with a mark at either bound.
 pub(super) fn bar(value: f32, [f_min_n, f_max_n]: [f32; 2], width: usize) -> Span<'static> {
-    let place = |at: f32| (at / (f_max_n * BEYOND) * width as f32).round() as usize;
+    let place = |at: f32| (at / (f_max_n * BAR_REACH) * width as f32).round() as usize;
     let (full, marks) = (place(value), [place(f_min_n), place(f_max_n)]);
     let text: String = (0..width)
         .map(|at| match (marks.contains(&at), at < full) {
@@ -25,7 +25,7 @@ pub(super) fn bar(value: f32, [f_min_n, f_max_n]: [f32; 2], width: usize) -> Spa
 }
 
 fn colour(value: f32, [f_min_n, f_max_n]: [f32; 2]) -> Color {
-    let near = NEAR * f_max_n;
+    let near = WARNING_PART * f_max_n;
     if value < f_min_n || value > f_max_n {
         Color::Red
     } else if value < f_min_n + near || value > f_max_n - near {

@@ -8,13 +8,13 @@ use leg_base::tick_time::tick_s;
 use leg_firmware::supervisor::{FaultSet, Reaction, State};
 use leg_firmware::telemetry::Telemetry;
 use ratatui::Frame;
-use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::layout::{Constraint, Layout};
 use ratatui::style::{Color, Stylize};
 use ratatui::text::Line;
 use ratatui::widgets::{Block, Paragraph, Wrap};
 
-/// Places beside a bar: number, value and unit, with their gaps.
-const BESIDE_BAR: u16 = 16;
+/// Columns that number, value and unit of a bar take, with their gaps.
+const BAR_LABEL_WIDTH: u16 = 16;
 
 /// Draws a leg on a whole screen.
 pub fn draw(frame: &mut Frame<'_>, view: &MonitorView) {
@@ -31,25 +31,20 @@ pub fn draw(frame: &mut Frame<'_>, view: &MonitorView) {
         let waiting = Paragraph::new("waiting for the leg").block(titled(&view.title));
         return frame.render_widget(waiting, state);
     };
-    show(frame, state, &view.title, state_lines(telemetry));
-    show(
-        frame,
-        tensions,
-        &bounds_title(view),
-        bar_lines(view, telemetry, tensions.width),
-    );
-    show(
-        frame,
-        load,
-        "Stiffness and load",
-        load_lines(view, telemetry),
-    );
-    let lines = fault_lines(telemetry.faults);
-    let faulty = Paragraph::new(lines).wrap(Wrap { trim: false });
-    frame.render_widget(
-        faulty.block(titled(&faults_title(telemetry.faults))),
-        faults,
-    );
+    let bars = bar_lines(view, telemetry, tensions.width);
+    for (area, title, lines) in [
+        (state, view.title.clone(), state_lines(telemetry)),
+        (tensions, bounds_title(view), bars),
+        (
+            load,
+            "Stiffness and load".into(),
+            load_lines(view, telemetry),
+        ),
+    ] {
+        frame.render_widget(Paragraph::new(lines).block(titled(&title)), area);
+    }
+    let lines = Paragraph::new(fault_lines(telemetry.faults)).wrap(Wrap { trim: false });
+    frame.render_widget(lines.block(titled(&faults_title(telemetry.faults))), faults);
 }
 
 fn last_line(view: &MonitorView) -> Line<'static> {
@@ -65,10 +60,6 @@ fn last_line(view: &MonitorView) -> Line<'static> {
 
 fn titled(title: &str) -> Block<'static> {
     Block::bordered().title(format!(" {title} "))
-}
-
-fn show(frame: &mut Frame<'_>, area: Rect, title: &str, lines: Vec<Line<'static>>) {
-    frame.render_widget(Paragraph::new(lines).block(titled(title)), area);
 }
 
 fn bounds_title(view: &MonitorView) -> String {
@@ -103,7 +94,7 @@ fn state_lines(telemetry: &Telemetry<f32>) -> Vec<Line<'static>> {
 }
 
 fn bar_lines(view: &MonitorView, telemetry: &Telemetry<f32>, width: u16) -> Vec<Line<'static>> {
-    let width = usize::from(width.saturating_sub(BESIDE_BAR));
+    let width = usize::from(width.saturating_sub(BAR_LABEL_WIDTH));
     let bars = (1..).zip(telemetry.tensions_n);
     bars.map(|(number, tension)| {
         Line::from(vec![

@@ -1,10 +1,12 @@
 //! The leg at a time: its telemetry, and what follows from it.
 
 use super::sag_model::SagModel;
-use crate::leg_report::LegReport;
+use crate::leg_report;
+use leg_base::failure::Failure;
+use leg_base::json_line::to_line;
+use leg_base::json_object;
 use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
-use serde::Serialize;
 
 /// What is shown of a leg.
 #[derive(Clone, Debug)]
@@ -16,24 +18,8 @@ pub struct MonitorView {
     pub(super) damaged_frames: u64,
 }
 
-/// A line of JSON: one moment of a leg.
-#[derive(Serialize)]
-struct MonitorLine<'a> {
-    #[serde(flatten)]
-    report: LegReport,
-    moving: bool,
-    target: [f32; 2],
-    target_tensions_n: [f32; 3],
-    pulled_m: [f32; 3],
-    residual_m: f32,
-    sag_m: Option<f64>,
-    tension_bounds_n: &'a [f32; 2],
-    damaged_frames: u64,
-}
-
 impl MonitorView {
     /// A leg without telemetry yet; `title` names it.
-    #[must_use]
     pub fn new(title: &str, settings: &Settings) -> Self {
         Self {
             title: title.into(),
@@ -50,26 +36,24 @@ impl MonitorView {
         self.damaged_frames = damaged_frames;
     }
 
-    /// A line of JSON, without its end; none before the first telemetry.
-    ///
-    /// # Errors
-    /// Numbers without a form in JSON.
-    pub fn json(&self) -> Result<Option<String>, serde_json::Error> {
+    /// A line of JSON; none before the first telemetry.
+    pub fn json(&self) -> Result<Option<String>, Failure> {
         let Some(telemetry) = &self.telemetry else {
             return Ok(None);
         };
-        serde_json::to_string(&MonitorLine {
-            report: LegReport::new(telemetry),
+        let line = to_line(&json_object! {
+            #[serde(flatten)]
+            report: leg_report::json(telemetry),
             moving: telemetry.moving,
             target: telemetry.target,
             target_tensions_n: telemetry.target_tensions_n,
             pulled_m: telemetry.pulled_m,
             residual_m: telemetry.residual_m,
             sag_m: self.sag_m(),
-            tension_bounds_n: &self.bounds_n,
+            tension_bounds_n: self.bounds_n,
             damaged_frames: self.damaged_frames,
-        })
-        .map(Some)
+        })?;
+        Ok(Some(line))
     }
 
     /// How far the tip would sag without compensation, m.

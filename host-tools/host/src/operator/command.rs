@@ -36,13 +36,13 @@ impl Operator {
         // From the moment that it is sent the leg may obey.
         self.drives |= !ends;
         let result = self.send_command(&command);
-        if let Err(OperatorError::Refused { asked, refusal }) = &result {
+        if let Err(OperatorError::Refused(asked, refusal)) = &result {
             self.drives = before;
             if *refusal == HostRefusal::Command(CommandRefusal::Faulted) {
                 let faults = self.telemetry()?.telemetry.faults.without_limits();
                 return Err(match command {
                     Command::Clear => OperatorError::NotCleared(faults),
-                    _ => OperatorError::Faulted { asked, faults },
+                    _ => OperatorError::Faulted(asked, faults),
                 });
             }
         }
@@ -102,7 +102,7 @@ pub(super) fn same_direction(a: &[f32; 2], b: &[f32; 2]) -> bool {
 }
 
 /// What a command asks of the leg.
-const fn name(command: &Command) -> &'static str {
+pub(super) const fn name(command: &Command) -> &'static str {
     match command {
         Command::KeepAlive => "hear the host",
         Command::Arm => "arm",

@@ -9,8 +9,8 @@ use std::io;
 use std::time::Duration;
 
 /// A transport with its frames, and the numbers of the requests.
-pub(super) struct LegConnection {
-    transport: Box<dyn Transport>,
+pub(super) struct FramedTransport {
+    pub transport: Box<dyn Transport>,
     decoder: Decoder,
     sequence: u16,
     /// Replies that came and were not read yet, with their numbers.
@@ -19,7 +19,7 @@ pub(super) struct LegConnection {
     damaged: u64,
 }
 
-impl LegConnection {
+impl FramedTransport {
     pub fn new(transport: Box<dyn Transport>, sequence: u16) -> Self {
         Self {
             transport,
@@ -30,20 +30,8 @@ impl LegConnection {
         }
     }
 
-    pub fn name(&self) -> String {
-        self.transport.name().into()
-    }
-
-    pub fn now(&self) -> Duration {
-        self.transport.now()
-    }
-
     pub fn damaged_frames(&self) -> u64 {
         self.damaged + self.transport.damaged()
-    }
-
-    pub fn clock_is_emulated(&self) -> bool {
-        self.transport.clock_is_emulated()
     }
 
     /// Sends a request and returns its number. It is never 0: that is of what the leg sends by itself.
@@ -63,7 +51,8 @@ impl LegConnection {
     ) -> Result<u16, OperatorError> {
         self.sequence = self.sequence.checked_add(1).unwrap_or(1);
         let mut out = [0; MAX_FRAME];
-        let bytes = frame::encode(self.sequence, request, &mut out)?;
+        let bytes =
+            frame::encode(self.sequence, request, &mut out).map_err(OperatorError::Frame)?;
         let sent = send(self.transport.as_mut(), bytes);
         sent.map_err(|source| self.lost(source))?;
         Ok(self.sequence)
@@ -75,7 +64,7 @@ impl LegConnection {
             if let Some(reply) = self.replies.pop_front() {
                 return Ok(Some(reply));
             }
-            let left = until.saturating_sub(self.now());
+            let left = until.saturating_sub(self.transport.now());
             let mut bytes = [0; MAX_FRAME];
             match self.transport.receive(&mut bytes, left) {
                 Ok(0) => return Err(self.lost(io::ErrorKind::UnexpectedEof.into())),
@@ -102,21 +91,21 @@ impl LegConnection {
         }
     }
 
+    pub fn name(&self) -> String {
+        self.transport.name().into()
+    }
+
     fn lost(&self, source: io::Error) -> OperatorError {
-        OperatorError::ConnectionLost {
-            name: self.name(),
-            source,
-        }
+        OperatorError::ConnectionLost(self.name(), source)
     }
 
     /// The error for a refusal.
     pub fn refused(&self, asked: &'static str, refusal: HostRefusal) -> OperatorError {
         match refusal {
-            HostRefusal::SchemaMismatch { schema } => OperatorError::OtherSchema {
-                name: self.name(),
-                firmware: schema,
-            },
-            refusal => OperatorError::Refused { asked, refusal },
+            HostRefusal::SchemaMismatch { schema } => {
+                OperatorError::OtherSchema(self.name(), schema)
+            }
+            refusal => OperatorError::Refused(asked, refusal),
         }
     }
 }

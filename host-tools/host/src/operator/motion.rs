@@ -1,6 +1,6 @@
 //! Homing and moving the leg, and leaving it in hold.
 
-use super::command::same_direction;
+use super::command::{name, same_direction};
 use super::{Operator, OperatorError};
 use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::host_link::HostRefusal;
@@ -23,42 +23,13 @@ const SETTLED_N: f32 = 2.0;
 /// Change from one poll to the next below which pretension and stiffness are settled, as a part of each.
 const SETTLED_PART: f32 = 1e-3;
 
-/// How hard the tendons shall pull.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum TensionDemand {
-    /// A pretension, N.
-    Pretension(f32),
-    /// A bending stiffness, N·m/rad: the smallest, or against a push towards (cos, sin).
-    Stiffness(f32, Option<[f32; 2]>),
-}
-
-impl TensionDemand {
-    const fn command(self) -> Command {
-        match self {
-            Self::Pretension(pretension_n) => Command::Pretension(pretension_n),
-            Self::Stiffness(demand_nm_per_rad, towards) => Command::Stiffness {
-                demand_nm_per_rad,
-                towards,
-            },
-        }
-    }
-}
-
-/// What the leg shall do.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct LegGoal {
-    /// Where it shall point: horizontal components; where it is if left out.
-    pub direction: Option<[f32; 2]>,
-    /// How hard its tendons shall pull; as before if left out.
-    pub demand: Option<TensionDemand>,
-}
-
 impl Operator {
     /// Does `work` with keep-alives, and leaves the leg in hold however that ends. A leg that obeyed nothing
     /// of it is left as it was.
     ///
     /// # Errors
-    /// That of `work`, unless no stop is acknowledged; [`OperatorError::CommandTimeTooShort`] before anything is done.
+    /// [`OperatorError::CommandTimeTooShort`] before any work. [`OperatorError::ConnectionLost`] by the work;
+    /// else [`OperatorError::NotStopped`] if no stop is acknowledged; else the error of the work.
     pub fn drive<T>(
         &mut self,
         work: impl FnOnce(&mut Self) -> Result<T, OperatorError>,
@@ -70,7 +41,7 @@ impl Operator {
         let halted = if self.drives { self.halt() } else { Ok(()) };
         match (result, halted) {
             // Without a line there can be no stop, and its error says what the leg does then.
-            (Err(error @ OperatorError::ConnectionLost { .. }), _) => Err(error),
+            (Err(error @ OperatorError::ConnectionLost(..)), _) => Err(error),
             // Worse than whatever went before: it is not known whether the leg rests.
             (_, Err(not_stopped)) => Err(not_stopped),
             (result, Ok(())) => result,
@@ -80,7 +51,7 @@ impl Operator {
     /// Finds the zero and leaves the leg in hold, straight down. A leg in hold is disarmed first.
     ///
     /// # Errors
-    /// As [`Self::command`]; [`OperatorError::Failed`] if a fault ends it.
+    /// As [`Self::drive`] and [`Self::command`]; [`OperatorError::Failed`] if a fault ends it.
     pub fn home(&mut self) -> Result<Telemetry<f32>, OperatorError> {
         let asked = "home";
         self.settle_state(asked)?;
@@ -96,33 +67,35 @@ impl Operator {
         })
     }
 
-    /// Brings the leg to a goal and leaves it in hold. Arms it if it is homed and disarmed, ends a hold that no fault
-    /// began.
+    /// Sends the commands in their order, a pretension or stiffness first and a move last; without any, holds the leg where it
+    /// is. Waits until the leg has come to rest, and leaves it in hold. Arms it if it is homed and disarmed, ends a hold that
+    /// no fault began.
     ///
     /// # Errors
-    /// As [`Self::command`]; [`OperatorError::Failed`], [`OperatorError::Limited`], [`OperatorError::StoppedByOtherHost`] or
-    /// [`OperatorError::TimedOut`] on the way.
-    pub fn reach(&mut self, goal: &LegGoal) -> Result<Telemetry<f32>, OperatorError> {
-        let asked = match (goal.direction, goal.demand) {
-            (Some(_), _) => "move",
-            (None, Some(_)) => "change its stiffness",
-            (None, None) => "hold",
-        };
+    /// As [`Self::drive`] and [`Self::command`]; [`OperatorError::Failed`], [`OperatorError::Limited`],
+    /// [`OperatorError::StoppedByOtherHost`] or [`OperatorError::TimedOut`] on the way; [`OperatorError::OtherPose`] at
+    /// the end of a move.
+    pub fn reach(&mut self, commands: &[Command]) -> Result<Telemetry<f32>, OperatorError> {
+        let asked = commands.last().map_or("hold", name);
         self.settle_state(asked)?;
         self.drive(|operator| {
             operator.activate(asked)?;
-            if let Some(demand) = goal.demand {
-                operator.command(demand.command())?;
-            }
-            if let Some([x, y]) = goal.direction {
-                operator.command(Command::Move { x, y })?;
-            }
-            if *goal == LegGoal::default() {
+            if commands.is_empty() {
                 // Also where the leg is active: it is this host then that holds it, or another that drives it is named.
                 operator.command(Command::Hold)?;
             }
-            let telemetry = unlimited(asked, &operator.settle(asked)?)?;
-            arrived(goal, &telemetry)
+            for command in commands {
+                operator.command(*command)?;
+            }
+            let telemetry = operator.settle(asked)?;
+            unlimited(asked, &telemetry)?;
+            match commands.last() {
+                // A board may give up a path that it cannot plan.
+                Some(Command::Move { x, y }) if !same_direction(&telemetry.target, &[*x, *y]) => {
+                    Err(OperatorError::OtherPose(telemetry.pose))
+                }
+                _ => Ok(telemetry),
+            }
         })
     }
 
@@ -133,7 +106,7 @@ impl Operator {
         })?;
         let faults = telemetry.faults.without_limits();
         if faults.any() {
-            return Err(OperatorError::Faulted { asked, faults });
+            return Err(OperatorError::Faulted(asked, faults));
         }
         Ok(())
     }
@@ -141,12 +114,7 @@ impl Operator {
     /// Makes a leg without faults follow commands, its tendons taut.
     fn activate(&mut self, asked: &'static str) -> Result<(), OperatorError> {
         let telemetry = self.telemetry()?.telemetry;
-        let refuse = |refusal| {
-            Err(OperatorError::Refused {
-                asked,
-                refusal: HostRefusal::Command(refusal),
-            })
-        };
+        let refuse = |refusal| Err(OperatorError::Refused(asked, HostRefusal::Command(refusal)));
         match telemetry.state {
             State::Homing => return refuse(CommandRefusal::State(State::Homing)),
             _ if !telemetry.homed => return refuse(CommandRefusal::NotHomed),
@@ -199,17 +167,10 @@ impl Operator {
 
 /// Why a leg that was driven no longer follows commands.
 fn not_following(asked: &'static str, telemetry: &Telemetry<f32>) -> OperatorError {
-    let state = telemetry.state;
-    let faults = telemetry.faults.without_limits();
-    if faults.any() {
-        OperatorError::Failed {
-            asked,
-            failed_tendon: telemetry.failed_tendon,
-            state,
-            faults,
-        }
+    if telemetry.faults.without_limits().any() {
+        OperatorError::Failed(asked, Box::new(*telemetry))
     } else {
-        OperatorError::StoppedByOtherHost { asked, state }
+        OperatorError::StoppedByOtherHost(asked, telemetry.state)
     }
 }
 
@@ -229,28 +190,9 @@ fn taut(measured_n: &[f32; 3], target_n: &[f32; 3]) -> bool {
     pairs.all(|(measured, target)| (measured - target).abs() <= SETTLED_N)
 }
 
-/// Whether the leg is where it shall be: a board may give up a path that it cannot plan.
-fn arrived(goal: &LegGoal, telemetry: &Telemetry<f32>) -> Result<Telemetry<f32>, OperatorError> {
-    match &goal.direction {
-        Some(direction) if !same_direction(&telemetry.target, direction) => {
-            Err(OperatorError::OtherPose(telemetry.pose))
-        }
-        _ => Ok(*telemetry),
+fn unlimited(asked: &'static str, telemetry: &Telemetry<f32>) -> Result<(), OperatorError> {
+    if telemetry.faults.limits().any() {
+        return Err(OperatorError::Limited(asked, Box::new(*telemetry)));
     }
-}
-
-fn unlimited(
-    asked: &'static str,
-    telemetry: &Telemetry<f32>,
-) -> Result<Telemetry<f32>, OperatorError> {
-    let faults = telemetry.faults.limits();
-    if faults.any() {
-        return Err(OperatorError::Limited {
-            asked,
-            faults,
-            stiffness_nm_per_rad: telemetry.stiffness_nm_per_rad,
-            pretension_n: telemetry.pretension_n,
-        });
-    }
-    Ok(*telemetry)
+    Ok(())
 }

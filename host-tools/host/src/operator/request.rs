@@ -67,7 +67,7 @@ impl Operator {
         Err(if busy {
             self.connection.refused(asked, HostRefusal::Busy)
         } else {
-            OperatorError::NoAnswer(self.name())
+            OperatorError::NoAnswer(self.name().into())
         })
     }
 
@@ -109,9 +109,6 @@ impl Operator {
     }
 
     /// Lets time pass.
-    ///
-    /// # Errors
-    /// A connection that fails; [`OperatorError::Cancelled`].
     pub fn pause(&mut self, time: Duration) -> Result<(), OperatorError> {
         let until = self.now() + time;
         while self.next_reply(until)?.is_some() {}

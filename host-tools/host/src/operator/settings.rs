@@ -13,9 +13,6 @@ const SAVE_TIME: Duration = Duration::from_secs(3);
 
 impl Operator {
     /// The settings in use.
-    ///
-    /// # Errors
-    /// As [`Self::command`].
     pub fn settings(&mut self) -> Result<Settings, OperatorError> {
         let request = HostRequest::GetSettings;
         self.ask("report its settings", &request, |reply| match reply {
@@ -27,7 +24,7 @@ impl Operator {
     /// Replaces the settings in use, reads them back and compares their bits. The leg has to be homed then.
     ///
     /// # Errors
-    /// As [`Self::command`]; [`OperatorError::ReadBack`].
+    /// As [`Self::command`]; [`OperatorError::ReadBack`]; [`OperatorError::Frame`] if they are too long for a message.
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), OperatorError> {
         let request = HostRequest::SetSettings(settings.clone());
         self.silence_max = None;
@@ -41,9 +38,6 @@ impl Operator {
     }
 
     /// Lets the board keep the settings in use over a reset.
-    ///
-    /// # Errors
-    /// As [`Self::command`].
     pub fn save_settings(&mut self) -> Result<(), OperatorError> {
         let asked = "keep its settings";
         let request = HostRequest::SaveSettings;
@@ -66,7 +60,6 @@ pub struct SettingDifference {
 /// Every setting whose bits differ. What was found while homing is left out.
 ///
 /// Equal values have equal bits: settings hold no NaN, and f32 is written without loss.
-#[must_use]
 pub fn setting_differences(ours: &Settings, theirs: &Settings) -> Vec<SettingDifference> {
     // Settings always have a form in JSON.
     let [ours, theirs] = [ours, theirs]

@@ -74,7 +74,7 @@ impl Operator {
                 _ => {}
             }
         }
-        Err(OperatorError::NotStopped(self.name()))
+        Err(OperatorError::NotStopped(self.name().into()))
     }
 
     /// Ramps the tendons down and waits until the drivers are off.
@@ -93,7 +93,7 @@ impl Operator {
     /// Clears the faults whose cause is gone, and leaves the leg in hold if it was held.
     ///
     /// # Errors
-    /// As [`Self::command`]; [`OperatorError::NotCleared`] where a cause is still there.
+    /// As [`Self::drive`] and [`Self::command`]; [`OperatorError::NotCleared`] where a cause is still present.
     pub fn clear(&mut self) -> Result<(), OperatorError> {
         self.drive(|operator| operator.command(Command::Clear))
     }

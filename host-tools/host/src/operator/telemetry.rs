@@ -27,18 +27,12 @@ impl TelemetryStream {
 
 impl Operator {
     /// The telemetry of the last tick.
-    ///
-    /// # Errors
-    /// As [`Self::command`].
     pub fn telemetry(&mut self) -> Result<TelemetryReport, OperatorError> {
-        let report = self.ask(
-            "send telemetry",
-            &HostRequest::Telemetry,
-            |reply| match reply {
-                HostReply::Telemetry(report) => Some(report),
-                _ => None,
-            },
-        )?;
+        let request = HostRequest::Telemetry;
+        let report = self.ask("send telemetry", &request, |reply| match reply {
+            HostReply::Telemetry(report) => Some(report),
+            _ => None,
+        })?;
         if let Some(watcher) = &mut self.watcher {
             watcher(&report.telemetry);
         }
@@ -46,24 +40,15 @@ impl Operator {
     }
 
     /// The raw codes of the sensors in the last tick.
-    ///
-    /// # Errors
-    /// As [`Self::command`].
     pub fn sensors(&mut self) -> Result<Sensors, OperatorError> {
-        self.ask(
-            "report its sensors",
-            &HostRequest::Sensors,
-            |reply| match reply {
-                HostReply::Sensors(sensors) => Some(sensors),
-                _ => None,
-            },
-        )
+        let request = HostRequest::Sensors;
+        self.ask("report its sensors", &request, |reply| match reply {
+            HostReply::Sensors(sensors) => Some(sensors),
+            _ => None,
+        })
     }
 
     /// Asks for telemetry every so many ticks, or for no more with 0.
-    ///
-    /// # Errors
-    /// As [`Self::command`].
     pub fn start_stream(&mut self, every_ticks: u16) -> Result<(), OperatorError> {
         self.ask("stream telemetry", &HostRequest::Stream(every_ticks), done)?;
         self.stream.every_ticks = every_ticks;
@@ -71,18 +56,12 @@ impl Operator {
     }
 
     /// Ends the stream, Ctrl-C or not: one that goes on takes room from the other hosts.
-    ///
-    /// # Errors
-    /// As [`Self::start_stream`].
     pub fn end_stream(&mut self) -> Result<(), OperatorError> {
         self.uncancelled(|operator| operator.start_stream(0))
     }
 
     /// The next telemetry of the stream; none if none comes in time. The stream is asked for again where another host's
     /// introduction has ended it.
-    ///
-    /// # Errors
-    /// As [`Self::command`].
     pub fn next_streamed(
         &mut self,
         timeout: Duration,
@@ -109,7 +88,7 @@ impl Operator {
         }
     }
 
-    /// Polls telemetry until `done` says so.
+    /// Polls telemetry until `done` says so, for `timeout` at most.
     ///
     /// # Errors
     /// [`OperatorError::TimedOut`] after `timeout`; as [`Self::command`].
@@ -136,12 +115,8 @@ impl Operator {
                 return Ok(telemetry);
             }
             if self.now() >= until {
-                return Err(OperatorError::TimedOut {
-                    asked,
-                    timeout,
-                    state: telemetry.state,
-                    faults: telemetry.faults,
-                });
+                let telemetry = Box::new(telemetry);
+                return Err(OperatorError::TimedOut(asked, timeout, telemetry));
             }
             self.pause(POLL_TIME)?;
         }

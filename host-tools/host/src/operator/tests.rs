@@ -17,9 +17,10 @@ mod scripted_board;
 mod settings;
 
 use crate::cancel_flag::CancelFlag;
-use crate::operator::{HostIdentity, LegGoal, Operator, TensionDemand};
+use crate::operator::{HostIdentity, Operator, OperatorError};
 use crate::transport::Transport;
 use crate::transport::emulated::{EmulatedLine, EmulatedTransport};
+use leg_base::failure::Failure;
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
@@ -50,19 +51,22 @@ fn operator(transport: impl Transport + 'static, cancel: &CancelFlag) -> Operato
     Operator::open(Box::new(transport), HostIdentity::FIXED, cancel.clone()).unwrap()
 }
 
-fn lean(tilt_deg: f64) -> LegGoal {
-    let sine = tilt_deg.to_radians().sin() as f32;
-    LegGoal {
-        direction: Some([0.0, sine]),
-        demand: None,
-    }
+fn lean(tilt_deg: f64) -> [Command; 1] {
+    let y = tilt_deg.to_radians().sin() as f32;
+    [Command::Move { x: 0.0, y }]
 }
 
-fn stiffness(nm_per_rad: f32) -> LegGoal {
-    LegGoal {
-        direction: None,
-        demand: Some(TensionDemand::Stiffness(nm_per_rad, None)),
-    }
+fn stiffness(demand_nm_per_rad: f32) -> [Command; 1] {
+    let towards = None;
+    [Command::Stiffness {
+        demand_nm_per_rad,
+        towards,
+    }]
+}
+
+/// Whether the work was done and failed: exit code 1.
+fn is_failed(error: &OperatorError) -> bool {
+    matches!(error.failure(), Failure::Failed(_))
 }
 
 fn telemetry(operator: &mut Operator) -> Telemetry<f32> {
@@ -91,37 +95,35 @@ fn cancel_in_mid_move(operator: &mut Operator, cancel: CancelFlag, then: impl Fn
     });
 }
 
+/// What a test does with the bytes of a frame.
+type OnSend = Box<dyn FnMut(&mut EmulatedTransport, &[u8]) -> io::Result<()>>;
+
 /// A line to an emulated leg on which a test decides what becomes of what is sent and received.
-struct BadLine<S, R> {
+struct BadLine {
     inner: EmulatedTransport,
-    /// Called with the bytes of a frame.
-    on_send: S,
+    on_send: OnSend,
     /// Called before bytes are waited for.
-    on_receive: R,
+    on_receive: Box<dyn FnMut(&mut EmulatedTransport)>,
     /// Whether urgent frames are sent as they are.
     urgent_passes: bool,
 }
 
-impl<S, R> BadLine<S, R>
-where
-    S: FnMut(&mut EmulatedTransport, &[u8]) -> io::Result<()>,
-    R: FnMut(&mut EmulatedTransport),
-{
-    fn new(leg: &EmulatedLine, on_send: S, on_receive: R) -> Self {
+impl BadLine {
+    fn new(
+        leg: &EmulatedLine,
+        on_send: impl FnMut(&mut EmulatedTransport, &[u8]) -> io::Result<()> + 'static,
+        on_receive: impl FnMut(&mut EmulatedTransport) + 'static,
+    ) -> Self {
         Self {
             inner: leg.connect(),
-            on_send,
-            on_receive,
+            on_send: Box::new(on_send),
+            on_receive: Box::new(on_receive),
             urgent_passes: false,
         }
     }
 }
 
-impl<S, R> Transport for BadLine<S, R>
-where
-    S: FnMut(&mut EmulatedTransport, &[u8]) -> io::Result<()>,
-    R: FnMut(&mut EmulatedTransport),
-{
+impl Transport for BadLine {
     fn name(&self) -> &str {
         self.inner.name()
     }

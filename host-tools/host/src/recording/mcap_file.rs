@@ -1,7 +1,7 @@
 //! A recording as MCAP: of a simulation the settings and every tick as a controller sees it; of all the telemetry, as JSON.
 
-use super::RecordingError;
 use super::tick_record::{TickRecord, to_bytes};
+use super::{RecordingError, to_json};
 use leg_base::description::hex;
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::settings::Settings;
@@ -82,18 +82,18 @@ impl McapFile {
         time_ns: u64,
         telemetry: &Telemetry<f32>,
     ) -> Result<(), RecordingError> {
-        let value = serde_json::to_value(telemetry)?;
+        let value = to_json(telemetry)?;
         let channel = match self.telemetry {
             Some(channel) => channel,
             None => {
-                let schema = serde_json::to_vec(&json_schema(&value))?;
+                let schema = json_schema(&value).to_string().into_bytes();
                 let id = self.writer.add_schema("Telemetry", "jsonschema", &schema)?;
                 self.writer
                     .add_channel(id, TELEMETRY, "json", &BTreeMap::new())?
             }
         };
         self.telemetry = Some(channel);
-        self.write(channel, number, time_ns, &serde_json::to_vec(&value)?)
+        self.write(channel, number, time_ns, value.to_string().as_bytes())
     }
 
     fn postcard_channel(&mut self, topic: &str) -> Result<u16, RecordingError> {

@@ -2,43 +2,14 @@
 
 use super::mcap_file::{SCHEMA_KEY, SETTINGS, TICKS, schema};
 use super::tick_record::{TickRecord, bits};
+use leg_base::failure::Failure;
 use leg_firmware::host_link::BoardKind;
-use leg_firmware::settings::{Settings, SettingsError};
 use leg_firmware_bench::protocol::TickRequest;
 use leg_firmware_bench::server::emulated;
 use leg_firmware_bench::virtual_leg::VirtualLeg;
-use mcap::{Message, MessageStream};
-use serde::Deserialize;
-use serde::Serialize;
+use mcap::{McapError, Message, MessageStream};
+use serde::{Deserialize, Serialize};
 use std::path::Path;
-
-/// Why a recording cannot be replayed.
-#[derive(Debug, thiserror::Error)]
-pub enum ReplayError {
-    /// It cannot be read.
-    #[error("cannot be read: {0}")]
-    Unreadable(#[from] std::io::Error),
-    /// It is no MCAP file, or it is cut off.
-    #[error("is no whole MCAP file: {0}")]
-    NoMcap(#[from] mcap::McapError),
-    /// Its messages are of another kind.
-    #[error("was recorded by other sources (schema {found}, this program {wanted})")]
-    OtherSchema {
-        /// Of the recording.
-        found: String,
-        /// Of this program.
-        wanted: String,
-    },
-    /// A message cannot be read.
-    #[error("message {0} cannot be read")]
-    BadMessage(u32),
-    /// It does not begin with settings.
-    #[error("holds no settings: it is no recording of `leg run`")]
-    NoSettings,
-    /// The settings are refused.
-    #[error("holds settings that are refused: {0}")]
-    Settings(SettingsError),
-}
 
 /// How a replay compares with its recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -65,47 +36,55 @@ pub struct TickDifference {
 }
 
 /// Replays a recording.
-///
-/// # Errors
-/// A [`ReplayError`].
-pub fn replay(file: &Path) -> Result<Replay, ReplayError> {
-    let bytes = std::fs::read(file)?;
+pub fn replay(file: &Path) -> Result<Replay, Failure> {
+    compare(file).map_err(|error| {
+        Failure::refused(
+            format!("{}: {error}", file.display()),
+            "record anew with `leg run --record FILE.mcap`",
+        )
+    })
+}
+
+fn compare(file: &Path) -> Result<Replay, String> {
+    let bytes = std::fs::read(file).map_err(|error| format!("cannot be read: {error}"))?;
+    let not_whole = |error: McapError| format!("is no whole MCAP file: {error}");
     let mut leg = None;
     let mut result = Replay {
         ticks: 0,
         other: 0,
         first: None,
     };
-    for message in MessageStream::new(&bytes)? {
-        let message = message?;
+    for message in MessageStream::new(&bytes).map_err(not_whole)? {
+        let message = message.map_err(not_whole)?;
         match (message.channel.topic.as_str(), &mut leg) {
             (SETTINGS, leg) => {
-                let settings: Settings = read(&message)?;
                 let identity = emulated(BoardKind::InProcess);
-                *leg = Some(VirtualLeg::new(identity, &settings).map_err(ReplayError::Settings)?);
+                let virtual_leg = VirtualLeg::new(identity, &read(&message)?)
+                    .map_err(|error| format!("holds settings that are refused: {error}"))?;
+                *leg = Some(virtual_leg);
             }
             (TICKS, Some(leg)) => result.take(leg, read(&message)?),
-            (TICKS, None) => return Err(ReplayError::NoSettings),
+            (TICKS, None) => break,
             _ => {}
         }
     }
-    if leg.is_none() {
-        return Err(ReplayError::NoSettings);
-    }
-    Ok(result)
+    leg.map(|_| result)
+        .ok_or_else(|| "holds no settings: it is no recording of `leg run`".into())
 }
 
 /// The content of a message, if it was written by the same sources.
-fn read<'a, T: Deserialize<'a>>(message: &'a Message<'_>) -> Result<T, ReplayError> {
-    let found = message.channel.metadata.get(SCHEMA_KEY);
+fn read<'a, T: Deserialize<'a>>(message: &'a Message<'_>) -> Result<T, String> {
     let wanted = schema();
-    if found != Some(&wanted) {
-        return Err(ReplayError::OtherSchema {
-            found: found.cloned().unwrap_or_else(|| "none".into()),
-            wanted,
-        });
+    match message.channel.metadata.get(SCHEMA_KEY) {
+        Some(found) if *found == wanted => postcard::from_bytes(&message.data)
+            .map_err(|_| format!("message {} cannot be read", message.sequence)),
+        found => {
+            let found = found.map_or("none", String::as_str);
+            Err(format!(
+                "was recorded by other sources (schema {found}, this program {wanted})"
+            ))
+        }
     }
-    postcard::from_bytes(&message.data).map_err(|_| ReplayError::BadMessage(message.sequence))
 }
 
 impl Replay {

@@ -1,6 +1,6 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{ReplayError, record, replay};
+use super::{record, replay};
 use leg_base::failure::Failure;
 use leg_firmware::drive::Drive;
 use leg_rig::rig_file::RigFile;
@@ -83,7 +83,9 @@ fn work_that_fails_leaves_no_recording() {
     let file = directory.path().join("leg.mcap");
     let failure = Failure::failed("no", "");
     let settings = simulation().settings().clone();
-    let failed = record(&file, Some(&settings), |_| Err::<(), _>(failure.clone()));
+    let failed = record(&file, Some(&settings), |_| {
+        Err::<(), _>(failure.clone().into())
+    });
     assert_eq!(failed, Err(failure));
     assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 0);
     assert!(replay(&file).is_err());
@@ -105,7 +107,8 @@ fn telemetry_alone_is_recorded_with_the_legs_time() {
         })
         .unwrap();
     }
-    assert!(matches!(replay(&mcap), Err(ReplayError::NoSettings)));
+    let error = replay(&mcap).unwrap_err().to_string();
+    assert!(error.contains("holds no settings"), "{error}");
     let bytes = std::fs::read(mcap).unwrap();
     let messages: Vec<_> = mcap::MessageStream::new(&bytes)
         .unwrap()
@@ -138,5 +141,5 @@ fn a_recording_of_other_sources_is_refused_by_name() {
     writer.finish().unwrap();
     let text = replay(&file).unwrap_err().to_string();
     let expected = "was recorded by other sources (schema abababababababab, this program ";
-    assert!(text.starts_with(expected), "{text}");
+    assert!(text.contains(expected), "{text}");
 }

@@ -8,8 +8,6 @@ mod sender_lock;
 mod socket;
 
 #[cfg(target_os = "linux")]
-pub use interface::InterfaceError;
-#[cfg(target_os = "linux")]
 pub use socket::SocketCan;
 
 use super::Transport;
@@ -26,16 +24,10 @@ pub trait CanPort {
     fn name(&self) -> &str;
 
     /// Hands a frame to the controller. Those under one identifier are sent in the order in which they were handed over;
-    /// an urgent one does not wait for ordinary ones.
-    ///
-    /// # Errors
-    /// [`io::ErrorKind::TimedOut`] if the controller does not take it; another error of the system.
+    /// an urgent one does not wait for ordinary ones. [`io::ErrorKind::TimedOut`] if the controller does not take it.
     fn send(&mut self, frame: &CanFrame) -> io::Result<()>;
 
-    /// Waits for the next frame.
-    ///
-    /// # Errors
-    /// [`io::ErrorKind::TimedOut`] if none came in time; another error of the system.
+    /// Waits for the next frame; [`io::ErrorKind::TimedOut`] if none came in time.
     fn receive(&mut self, timeout: Duration) -> io::Result<CanFrame>;
 }
 
@@ -57,7 +49,6 @@ pub struct CanTransport<P> {
 
 impl<P: CanPort> CanTransport<P> {
     /// The link to a leg by a port.
-    #[must_use]
     pub fn new(port: P, leg: LegAddress) -> Self {
         Self {
             ordinary: Some(Segmenter::new(Identifier::ToLeg(leg))),
@@ -67,7 +58,6 @@ impl<P: CanPort> CanTransport<P> {
 
     /// The link of a host that stops a leg which others drive: everything goes as urgent frames, and so has to be
     /// short.
-    #[must_use]
     pub fn urgent_only(port: P, leg: LegAddress) -> Self {
         Self {
             name: format!("{}, {leg}", port.name()),

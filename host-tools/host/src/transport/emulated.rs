@@ -9,7 +9,8 @@ use std::io;
 use std::rc::{Rc, Weak};
 use std::time::Duration;
 
-/// An emulated leg and the line to it, which any number of hosts share.
+/// An emulated leg and the line to it, which any number of hosts share, as do its clones.
+#[derive(Clone)]
 pub struct EmulatedLine {
     shared: Rc<RefCell<Shared>>,
     name: String,
@@ -17,9 +18,8 @@ pub struct EmulatedLine {
 
 /// One host's end of that line.
 pub struct EmulatedTransport {
-    shared: Rc<RefCell<Shared>>,
+    line: EmulatedLine,
     incoming: Incoming,
-    name: String,
 }
 
 /// What of the leg's bytes one host has not read yet.
@@ -50,7 +50,6 @@ impl Shared {
 
 impl EmulatedLine {
     /// A leg without a host yet; `name` is for messages.
-    #[must_use]
     pub fn new(leg: EmulatedLeg, name: &str) -> Self {
         Self {
             shared: Rc::new(RefCell::new(Shared {
@@ -63,16 +62,12 @@ impl EmulatedLine {
     }
 
     /// Connects another host: what the leg sends reaches all of them.
-    #[must_use]
     pub fn connect(&self) -> EmulatedTransport {
         let incoming = Incoming::default();
         let host = Rc::downgrade(&incoming);
         self.shared.borrow_mut().hosts.push(host);
-        EmulatedTransport {
-            shared: Rc::clone(&self.shared),
-            incoming,
-            name: self.name.clone(),
-        }
+        let line = self.clone();
+        EmulatedTransport { line, incoming }
     }
 
     /// Reads or changes the mechanism itself, as a hand or a measuring instrument does.
@@ -83,11 +78,11 @@ impl EmulatedLine {
 
 impl Transport for EmulatedTransport {
     fn name(&self) -> &str {
-        &self.name
+        &self.line.name
     }
 
     fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.shared.borrow_mut().outgoing.extend(bytes);
+        self.line.shared.borrow_mut().outgoing.extend(bytes);
         Ok(())
     }
 
@@ -101,12 +96,12 @@ impl Transport for EmulatedTransport {
             if self.now() >= until {
                 return Err(io::ErrorKind::TimedOut.into());
             }
-            self.shared.borrow_mut().tick()?;
+            self.line.shared.borrow_mut().tick()?;
         }
     }
 
     fn now(&self) -> Duration {
-        self.shared.borrow().leg.time()
+        self.line.shared.borrow().leg.time()
     }
 
     fn clock_is_emulated(&self) -> bool {

@@ -6,9 +6,10 @@ mod port;
 #[cfg(test)]
 mod tests;
 
-pub use port::{SerialError, find_board};
+pub use port::find_board;
 
 use super::Transport;
+use leg_base::failure::Failure;
 use serialport::TTYPort;
 use std::io::{self, Write};
 use std::os::unix::net::UnixStream;
@@ -32,8 +33,8 @@ impl Serial {
     /// Opens a port, or joins the `leg` that has opened it.
     ///
     /// # Errors
-    /// A [`SerialError`].
-    pub fn open(port: &str) -> Result<Self, SerialError> {
+    /// A port that cannot be opened or is busy, or whose `leg` does not respond, is refused (exit code 2).
+    pub fn open(port: &str) -> Result<Self, Failure> {
         let joined = join(port)?;
         Ok(Self {
             port: port.into(),
@@ -43,7 +44,6 @@ impl Serial {
     }
 
     /// Why no other program can use the port meanwhile, if so.
-    #[must_use]
     pub fn unshared(&self) -> Option<&str> {
         self.unshared.as_deref()
     }
@@ -84,26 +84,28 @@ impl Transport for Serial {
 }
 
 /// A place at the hub of a port; opens the port if nobody has.
-fn join(port: &str) -> Result<hub::Joined, SerialError> {
+fn join(port: &str) -> Result<hub::Joined, Failure> {
     let until = Instant::now() + OPEN_TIME;
     loop {
-        match port::open(port) {
-            Ok(tty) => {
-                return start_hub(tty, port).map_err(|error| SerialError::System {
-                    port: port.into(),
-                    reason: error.to_string(),
-                });
-            }
-            Err(SerialError::Busy(_)) => {}
-            Err(error) => return Err(error),
+        if let Some(tty) = port::open(port)? {
+            return start_hub(tty, port)
+                .map_err(|error| port::not_opened(port, &error.to_string()));
         }
         let left = until.saturating_duration_since(Instant::now());
         match hub::join(port, left) {
             Ok(joined) => return Ok(joined),
             Err(error) if error.kind() == io::ErrorKind::TimedOut => {
-                return Err(SerialError::Suspended(port.into()));
+                return Err(Failure::refused(
+                    format!("another `leg` has the port {port} and does not respond"),
+                    "resume or end it; `fuser` with the port's path names it. If the leg moves, press the emergency stop",
+                ));
             }
-            Err(_) if left.is_zero() => return Err(SerialError::Busy(port.into())),
+            Err(_) if left.is_zero() => {
+                return Err(Failure::refused(
+                    format!("the port {port} is busy: another program has opened it"),
+                    "end that program; `fuser` with the port's path names it",
+                ));
+            }
             Err(_) => std::thread::sleep(RETRY_TIME),
         }
     }

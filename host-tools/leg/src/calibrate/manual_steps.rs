@@ -1,8 +1,9 @@
 //! What a calibration needs done by hand: weights hung, motors turned.
 
+use crate::connection::LegConnection;
 use leg_base::failure::Failure;
 use leg_host::operator::Operator;
-use leg_host::transport::emulated::EmulatedLine;
+use leg_sim::plant::Plant;
 use std::io::BufRead;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
@@ -13,43 +14,17 @@ const EMULATED_TIME: Duration = Duration::from_millis(1500);
 /// How often a wait for the user checks whether it is interrupted.
 const POLL_TIME: Duration = Duration::from_millis(50);
 
-/// Who does the manual steps: the user on a real leg, the emulation on an emulated one.
-pub(super) enum ManualSteps<'a> {
-    User,
-    Emulated(&'a EmulatedLine),
-}
-
-impl<'a> ManualSteps<'a> {
-    pub(super) fn new(emulated: Option<&'a EmulatedLine>) -> Self {
-        emulated.map_or(Self::User, Self::Emulated)
-    }
-
-    /// Hangs a weight on a load cell in the place of its tendon; the cell is counted from 0.
-    pub(super) fn hang_weight(
-        &self,
-        operator: &mut Operator,
-        cell: usize,
-        [kg, newtons]: [f64; 2],
-    ) -> Result<(), Failure> {
-        let Self::Emulated(leg) = self else {
-            let number = cell + 1;
-            let step = format!("hang {kg} kg on load cell {number} in the place of its tendon");
-            return ask(operator, &step);
-        };
-        leg.with_plant(|plant| plant.hang_on_cell(cell, Some(newtons)));
-        Ok(operator.pause(EMULATED_TIME)?)
-    }
-
-    /// Turns a motor by one turn so that it reels its tendon in; the motor is counted from 0.
-    pub(super) fn turn_motor(&self, operator: &mut Operator, motor: usize) -> Result<(), Failure> {
-        let Self::Emulated(leg) = self else {
-            let number = motor + 1;
-            let step = format!("turn motor {number} by one turn, so that it reels its tendon in");
-            return ask(operator, &step);
-        };
-        leg.with_plant(|plant| plant.turn_motor(motor, 1.0));
-        Ok(operator.pause(EMULATED_TIME)?)
-    }
+/// Has a step done: by the user on a real leg, by the emulation on an emulated one.
+pub(super) fn manual_step(
+    connection: &mut LegConnection,
+    step: &str,
+    emulated: impl FnOnce(&mut Plant),
+) -> Result<(), Failure> {
+    let Some(leg) = &connection.emulated else {
+        return ask(&mut connection.operator, step);
+    };
+    leg.with_plant(emulated);
+    Ok(connection.operator.pause(EMULATED_TIME)?)
 }
 
 /// Asks the user for a step and waits for the Enter key.

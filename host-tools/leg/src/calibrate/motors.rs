@@ -1,6 +1,6 @@
 //! `leg calibrate motors`.
 
-use super::manual_steps::{ManualSteps, require_drivers_off};
+use super::manual_steps::{manual_step, require_drivers_off};
 use crate::connection::{ConnectionArgs, Purpose};
 use crate::options::Options;
 use leg_base::failure::Failure;
@@ -32,14 +32,14 @@ struct Turn {
     /// The encoder's direction; 0 if it counted nothing.
     sign: i8,
     passed: bool,
-    /// The same, under its former name.
+    /// The same under its former name, for one release.
     held: bool,
 }
 
 impl Turn {
     fn new(motor: usize, counts: i16, expected: f64) -> Self {
-        let off = (f64::from(counts) - expected).abs();
-        let passed = off <= HAND_PART * expected.abs();
+        let error = (f64::from(counts) - expected).abs();
+        let passed = error <= HAND_PART * expected.abs();
         Self {
             motor: motor + 1,
             counts,
@@ -82,21 +82,21 @@ pub(super) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         ));
     }
     let mut connection = args.connection.open(&rig, Purpose::Calibrate, options)?;
-    let operator = &mut connection.operator;
-    require_drivers_off(operator, "let itself be turned by hand")?;
-    let settings = operator.settings()?;
-    let steps = ManualSteps::new(connection.emulated.as_ref());
+    require_drivers_off(&mut connection.operator, "let itself be turned by hand")?;
+    let settings = connection.operator.settings()?;
     let mut turns = Vec::new();
     for (motor, axis) in settings.axes.iter().enumerate() {
-        let before = operator.sensors()?.encoder_counts[motor];
-        steps.turn_motor(operator, motor)?;
-        let after = operator.sensors()?.encoder_counts[motor];
+        let before = connection.operator.sensors()?.encoder_counts[motor];
+        let number = motor + 1;
+        let step = format!("turn motor {number} by one turn, so that it reels its tendon in");
+        manual_step(&mut connection, &step, |plant| plant.turn_motor(motor, 1.0))?;
+        let after = connection.operator.sensors()?.encoder_counts[motor];
         // The counter wraps; a turn is less than half of it.
         let counts = after.wrapping_sub(before) as i16;
         let expected = counts_per_turn * f64::from(axis.m_per_count.signum());
         turns.push(Turn::new(motor, counts, expected));
     }
-    options.report(&turns, |turns| table(turns))?;
+    options.report(&turns, || table(&turns))?;
     require_passed(&turns)
 }
 

@@ -32,7 +32,7 @@ pub(super) fn run(options: Options) -> Result<(), Failure> {
     board::prepare_target()?;
     let judged: Result<Vec<Judged>, Failure> = FirmwareImage::ALL.into_iter().map(judged).collect();
     let judged = judged?;
-    options.report(&judged, |judged| table(judged))?;
+    options.report(&judged, || table(&judged))?;
     require_passed(&judged)
 }
 
@@ -42,12 +42,12 @@ fn judged(board: FirmwareImage) -> Result<Judged, Failure> {
         let sentence = format!("cannot read {}: {error}", elf.display());
         Failure::refused(sentence, "build it again with `leg setup`")
     })?;
-    let needs = image_budget::needs(&bytes).map_err(|error| Failure::from_error(&error))?;
+    let needs = image_budget::needs(&bytes).map_err(Failure::from_error)?;
     let budget = ImageBudget::new(board);
     let checks = image_budget::checks(&needs, &budget);
     Ok(Judged {
         image: board.binary(),
-        checks: checks.map_err(|error| Failure::from_error(&error))?,
+        checks: checks.map_err(Failure::from_error)?,
         needs,
     })
 }

@@ -1,5 +1,6 @@
 //! What `leg curve` prints.
 
+use leg_base::json_object;
 use leg_base::paths::relative_path;
 use leg_model::CurvePoint;
 use leg_model_tools::tensile::{Fit, Hysteresis};
@@ -10,45 +11,29 @@ use std::path::{Path, PathBuf};
 const STRAIN_LIKELY: f64 = 0.2;
 
 /// Everything that `leg curve` found.
-#[derive(Serialize)]
 pub(super) struct CurveReport<'a> {
+    pub(super) fit: &'a Fit,
     /// Of the tendon: those of the fit, scaled.
-    points: &'a [CurvePoint<f64>],
-    take_up_m: f64,
-    taut_n: f64,
-    error_max_m: f64,
-    error_rms_m: f64,
-    hysteresis: Option<Hysteresis>,
-    plots: &'a [PathBuf],
-    /// The largest of the test piece, where its length is known.
-    strain_max: Option<f64>,
-    warning: Option<String>,
-    out: Option<&'a Path>,
-    #[serde(skip)]
-    fit: &'a Fit,
+    pub(super) points: &'a [CurvePoint<f64>],
+    /// Of the test piece, where it is known.
+    pub(super) length_mm: Option<f64>,
+    pub(super) out: Option<&'a Path>,
+    pub(super) plots: &'a [PathBuf],
 }
 
-impl<'a> CurveReport<'a> {
-    pub(super) fn new(
-        fit: &'a Fit,
-        points: &'a [CurvePoint<f64>],
-        length_mm: Option<f64>,
-        out: Option<&'a Path>,
-        plots: &'a [PathBuf],
-    ) -> Self {
-        let strain_max = length_mm.map(|length_mm| strain(fit, length_mm));
-        Self {
-            points,
-            take_up_m: fit.take_up_m,
-            taut_n: fit.taut_n,
-            error_max_m: fit.error_max_m,
-            error_rms_m: fit.error_rms_m,
-            hysteresis: fit.hysteresis,
-            plots,
-            strain_max,
-            warning: strain_max.and_then(warning),
-            out,
-            fit,
+impl CurveReport<'_> {
+    pub(super) fn json(&self) -> impl Serialize {
+        json_object! {
+            points: self.points,
+            take_up_m: self.fit.take_up_m,
+            taut_n: self.fit.taut_n,
+            error_max_m: self.fit.error_max_m,
+            error_rms_m: self.fit.error_rms_m,
+            hysteresis: self.fit.hysteresis,
+            plots: self.plots,
+            strain_max: self.strain_max(),
+            warning: self.warning(),
+            out: self.out,
         }
     }
 
@@ -71,7 +56,7 @@ impl<'a> CurveReport<'a> {
     }
 
     fn remarks(&self) -> String {
-        let hysteresis = match &self.hysteresis {
+        let hysteresis = match &self.fit.hysteresis {
             None => "no unloading branch".into(),
             Some(Hysteresis { elongation_m, lost }) => format!(
                 "up to {:.4} mm between the branches, {:.1} % of the energy lost",
@@ -79,19 +64,19 @@ impl<'a> CurveReport<'a> {
                 lost * 100.0
             ),
         };
-        let warning = self.warning.as_ref();
-        let warning = warning.map_or_else(String::new, |text| format!("warning     {text}\n"));
+        let warning = self.warning().map(|text| format!("warning     {text}\n"));
         format!(
             "rows        {} taut ones of the loading branch, from {:.3} N\n\
              take-up     {}\n\
              fit         {} points, off by at most {:.5} mm, {:.5} mm root mean square\n\
-             hysteresis  {hysteresis}\n{warning}",
+             hysteresis  {hysteresis}\n{}",
             self.fit.rows.len(),
-            self.taut_n,
-            take_up(self.take_up_m * 1e3),
+            self.fit.taut_n,
+            take_up(self.fit.take_up_m * 1e3),
             self.points.len(),
-            self.error_max_m * 1e3,
-            self.error_rms_m * 1e3,
+            self.fit.error_max_m * 1e3,
+            self.fit.error_rms_m * 1e3,
+            warning.unwrap_or_default(),
         )
     }
 
@@ -101,22 +86,21 @@ impl<'a> CurveReport<'a> {
         let out = self.out.map(|path| named("rig file    ", path));
         plots.chain(out).chain(["\n".into()]).collect()
     }
-}
 
-/// The largest strain of the test piece.
-fn strain(fit: &Fit, length_mm: f64) -> f64 {
-    let elongations_mm = fit.rows.iter().map(|row| row.elongation_m * 1e3);
-    elongations_mm.fold(0.0, f64::max) / length_mm
-}
+    /// The largest strain of the test piece, where its length is known.
+    fn strain_max(&self) -> Option<f64> {
+        let elongations_mm = self.fit.rows.iter().map(|row| row.elongation_m * 1e3);
+        Some(elongations_mm.fold(0.0, f64::max) / self.length_mm?)
+    }
 
-/// What is unlikely for a tendon.
-fn warning(strain: f64) -> Option<String> {
-    (strain > STRAIN_LIKELY).then(|| {
-        format!(
+    /// What is unlikely for a tendon.
+    fn warning(&self) -> Option<String> {
+        let strain = self.strain_max().filter(|strain| *strain > STRAIN_LIKELY)?;
+        Some(format!(
             "the test piece is stretched by {:.0} % of --length-mm: check the length and the unit of the elongation",
             strain * 100.0
-        )
-    })
+        ))
+    }
 }
 
 fn take_up(slack_mm: f64) -> String {

@@ -5,6 +5,7 @@ use crate::options::Options;
 use clap::ValueEnum;
 use leg_base::failure::Failure;
 use leg_base::json_line::to_line;
+use leg_base::json_object;
 use leg_boards::qemu::QemuClock;
 use leg_firmware_bench::protocol::{EvaluateRequest, Refusal, Reply, Request};
 use leg_firmware_bench::query::QueryMessage;
@@ -14,7 +15,6 @@ use leg_model_tools::line_error::LineError;
 use leg_model_tools::nonlinear;
 use leg_rig::rig_file::RigFile;
 use leg_sim::link::{InProcess, Link};
-use serde::Serialize;
 
 /// The choices of `--on`.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -66,9 +66,13 @@ impl Evaluator {
     pub(super) fn answer(&mut self, text: &[u8], rig: &RigFile) -> Result<String, NoAnswer> {
         let PoseLine { rig, query } = PoseLine::parse(text, rig)?;
         match self {
-            Self::Host => to_line(&HostAnswer {
+            Self::Host => to_line(&json_object! {
+                #[serde(flatten)]
                 evaluation: leg_model::evaluate(&rig, &query)?,
-                deviation_nonlinear_m: nonlinear::deviation_m(&rig, &query)?,
+                // Only f64 is precise enough for it.
+                #[serde(flatten)]
+                nonlinear: nonlinear::deviation_m(&rig, &query)?
+                    .map(|m| json_object! { deviation_nonlinear_m: m }),
             }),
             Self::Firmware(link) => to_line(&ask_firmware(link.as_mut(), &rig, &query)?),
         }
@@ -87,7 +91,7 @@ fn ask_firmware(
         query: QueryMessage::from_query(query, |value| value as f32),
     });
     let reply = link.ask(&request);
-    let reply = reply.map_err(|error| NoAnswer::Command(Failure::from_error(&error)))?;
+    let reply = reply.map_err(|error| NoAnswer::Command(Failure::from_error(error)))?;
     let wrong = match reply {
         Reply::Evaluation(evaluation) => return Ok(evaluation),
         Reply::Refused(Refusal::Model(error)) => return Err(error.into()),
@@ -98,24 +102,7 @@ fn ask_firmware(
     Err(NoAnswer::Command(Failure::refused(wrong, remedy)))
 }
 
-/// The host's answer: the model, and what only f64 is precise enough for.
-#[derive(Serialize)]
-struct HostAnswer {
-    #[serde(flatten)]
-    evaluation: Evaluation<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    deviation_nonlinear_m: Option<f64>,
-}
-
 /// The line in the place of an answer.
 pub(super) fn refusal(error: &LineError, line: usize) -> Result<String, Failure> {
-    #[derive(Serialize)]
-    struct Refusal {
-        error: String,
-        line: usize,
-    }
-    to_line(&Refusal {
-        error: error.to_string(),
-        line,
-    })
+    to_line(&json_object! { error: error.to_string(), line: line })
 }

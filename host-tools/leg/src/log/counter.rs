@@ -1,7 +1,7 @@
 //! Counts the telemetry that arrives, and what is lost.
 
+use leg_base::failure::Failure;
 use leg_base::tick_time::seconds;
-use leg_firmware::host_link::TelemetryReport;
 use serde::Serialize;
 
 /// How much later than requested a board reports, ticks: it checks about every millisecond, which is 8 ticks.
@@ -36,8 +36,26 @@ pub(super) enum Foreign {
     Every(f64),
 }
 
+impl Foreign {
+    pub(super) fn failure(self) -> Failure {
+        match self {
+            Self::Restarted => Failure::failed(
+                "the leg started anew, and its time begins again",
+                "the file ends there; log again for what follows",
+            ),
+            Self::Every(s) => Failure::failed(
+                format!(
+                    "another host has asked the leg to report every {} ms",
+                    s * 1000.0
+                ),
+                "the file ends there; end the other `leg log`, or give both the same --rate",
+            ),
+        }
+    }
+}
+
 /// Counts what comes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Counter {
     every_ticks: u32,
     /// Number and tick of the last.
@@ -51,21 +69,15 @@ pub(super) struct Counter {
 }
 
 impl Counter {
-    pub(super) const fn new(every_ticks: u16) -> Self {
+    pub(super) fn new(every_ticks: u16) -> Self {
         Self {
-            every_ticks: every_ticks as u32,
-            last: None,
-            late: 0,
-            ticks: 0,
-            longest_ticks: 0,
-            count: 0,
-            lost: 0,
+            every_ticks: every_ticks.into(),
+            ..Self::default()
         }
     }
 
-    /// Counts telemetry, unless it is not of this recording.
-    pub(super) fn take(&mut self, reply: &TelemetryReport) -> Result<(), Foreign> {
-        let (number, tick) = (reply.number, reply.telemetry.tick);
+    /// Counts telemetry by its number and tick, unless it is not of this recording.
+    pub(super) fn take(&mut self, number: u32, tick: u32) -> Result<(), Foreign> {
         if let Some((last_number, last_tick)) = self.last {
             let ticks = tick.wrapping_sub(last_tick);
             // The leg's count of ticks runs over after six days: it went back only if it seems to have gone far ahead.
@@ -135,16 +147,8 @@ impl Recorded {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::{Counter, Foreign};
-    use leg_firmware::host_link::TelemetryReport;
-    use leg_host::cancel_flag::CancelFlag;
-    use leg_host::operator::{HostIdentity, Operator};
-    use leg_host::transport::emulated::EmulatedLine;
-    use leg_rig::rig_file::RigFile;
-    use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
-    use leg_sim::link::InProcess;
 
     /// Requested ticks, number and tick of each telemetry, the end, and how much is counted and lost until then.
     type Case = (u16, &'static [(u32, u32)], Result<(), Foreign>, [u64; 2]);
@@ -192,20 +196,11 @@ mod tests {
 
     #[test]
     fn telemetry_is_counted_until_it_is_not_of_this_recording() {
-        let rig = RigFile::load(None).unwrap();
-        let link = Box::new(InProcess::new());
-        let leg = EmulatedLeg::new(&rig, InitialState::Homed, link).unwrap();
-        let transport = Box::new(EmulatedLine::new(leg, "a leg").connect());
-        let mut operator =
-            Operator::open(transport, HostIdentity::FIXED, CancelFlag::default()).unwrap();
-        let template = operator.telemetry().unwrap().telemetry;
         for (every_ticks, replies, expected, [count, lost]) in CASES {
             let mut counter = Counter::new(every_ticks);
-            let ended = replies.iter().try_for_each(|&(number, tick)| {
-                let mut telemetry = template;
-                telemetry.tick = tick;
-                counter.take(&TelemetryReport { number, telemetry })
-            });
+            let ended = replies
+                .iter()
+                .try_for_each(|&(number, tick)| counter.take(number, tick));
             assert_eq!(ended, expected);
             let recorded = counter.recorded(0);
             assert_eq!([recorded.count, recorded.lost], [count, lost]);

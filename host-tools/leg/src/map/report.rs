@@ -1,10 +1,9 @@
 //! What `leg map` prints.
 
+use leg_base::json_object;
 use leg_base::paths::relative_path;
 use leg_model::Error;
-use leg_model_tools::workspace_map::{
-    AtPretension, Cell, Counts, Extreme, MapQuantity, WorkspaceMap,
-};
+use leg_model_tools::workspace_map::{Cell, Extreme, MapQuantity, WorkspaceMap};
 use leg_rig::rig_file::RigFile;
 use serde::{Serialize, Serializer};
 use std::path::{Path, PathBuf};
@@ -14,43 +13,31 @@ quantity                      smallest at (azimuth, tilt)        largest at (azi
 ";
 
 /// Everything that `leg map` found.
-#[derive(Serialize)]
 pub(super) struct MapReport<'a> {
-    support: &'static str,
-    payload_kg: f64,
-    pretension_n: f64,
-    #[serde(flatten)]
-    counts: Counts,
-    extremes: Vec<QuantityExtremes>,
-    pictures: &'a [PathBuf],
-    #[serde(rename = "poses", serialize_with = "serialize_poses")]
-    map: &'a WorkspaceMap,
+    pub(super) rig: &'a RigFile,
+    pub(super) payload_kg: f64,
+    pub(super) map: &'a WorkspaceMap,
+    pub(super) pictures: &'a [PathBuf],
+    /// Those of every quantity of the map.
+    pub(super) extremes: Vec<QuantityExtremes>,
 }
 
+/// Where a quantity is smallest and largest.
 #[derive(Serialize)]
-struct QuantityExtremes {
+pub(super) struct QuantityExtremes {
     quantity: MapQuantity,
     unit: &'static str,
     smallest: Option<Extreme>,
     largest: Option<Extreme>,
 }
 
-#[derive(Serialize)]
-struct MapPose<'a> {
-    azimuth_deg: f64,
-    tilt_deg: f64,
-    #[serde(flatten)]
-    cell: Option<&'a Cell>,
-    #[serde(flatten)]
-    at_pretension: Option<AtPretension>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    deviation_nonlinear_mm: Option<f64>,
-    /// Why there is nothing at the rig's pretension or nothing at all.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    error: Option<String>,
-}
-
 impl QuantityExtremes {
+    /// Those of every quantity that the map has.
+    pub(super) fn all(map: &WorkspaceMap) -> Vec<Self> {
+        let quantities = map.quantities().iter();
+        quantities.map(|one| Self::new(map, *one)).collect()
+    }
+
     fn new(map: &WorkspaceMap, quantity: MapQuantity) -> Self {
         let [smallest, largest] = map.extremes(quantity).map_or([None; 2], |e| e.map(Some));
         Self {
@@ -81,49 +68,50 @@ impl QuantityExtremes {
     }
 }
 
-impl<'a> MapPose<'a> {
-    fn new(azimuth_deg: f64, tilt_deg: f64, found: &'a Result<Cell, Error>) -> Self {
-        let cell = found.as_ref().ok();
-        let error = found.as_ref().map_or_else(
-            |error| Some(*error),
-            |cell| cell.at_pretension.as_ref().err().copied(),
-        );
-        Self {
-            azimuth_deg,
-            tilt_deg,
-            cell,
-            at_pretension: cell.and_then(|cell| cell.at_pretension.ok()),
-            deviation_nonlinear_mm: cell
-                .and_then(|cell| MapQuantity::DeviationNonlinear.value(cell)),
-            error: error.map(|error| error.to_string()),
-        }
+fn pose_json(azimuth_deg: f64, tilt_deg: f64, found: &Result<Cell, Error>) -> impl Serialize {
+    let cell = found.as_ref().ok();
+    let error = found.as_ref().map_or_else(
+        |error| Some(*error),
+        |cell| cell.at_pretension.as_ref().err().copied(),
+    );
+    json_object! {
+        azimuth_deg: azimuth_deg,
+        tilt_deg: tilt_deg,
+        #[serde(flatten)]
+        cell: cell,
+        #[serde(flatten)]
+        at_pretension: cell.and_then(|cell| cell.at_pretension.ok()),
+        #[serde(flatten)]
+        nonlinear: cell
+            .and_then(|cell| MapQuantity::DeviationNonlinear.value(cell))
+            .map(|mm| json_object! { deviation_nonlinear_mm: mm }),
+        // Why there is nothing at the rig's pretension or nothing at all.
+        #[serde(flatten)]
+        error: error.map(|error| json_object! { error: error.to_string() }),
     }
 }
 
-/// One pose after the other: a map can have ten million.
-fn serialize_poses<S: Serializer>(map: &WorkspaceMap, serializer: S) -> Result<S::Ok, S::Error> {
-    let poses = map.poses();
-    serializer.collect_seq(poses.map(|(azimuth, tilt, cell)| MapPose::new(azimuth, tilt, cell)))
+/// Serialised one pose after the other: a map can have ten million.
+struct MapPoses<'a>(&'a WorkspaceMap);
+
+impl Serialize for MapPoses<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let poses = self.0.poses();
+        serializer.collect_seq(poses.map(|(azimuth, tilt, cell)| pose_json(azimuth, tilt, cell)))
+    }
 }
 
-impl<'a> MapReport<'a> {
-    pub(super) fn new(
-        rig: &RigFile,
-        payload_kg: f64,
-        map: &'a WorkspaceMap,
-        pictures: &'a [PathBuf],
-    ) -> Self {
-        let quantities = map.quantities().iter();
-        Self {
-            support: rig.support_name.word(),
-            payload_kg,
-            pretension_n: rig.pretension_n,
-            counts: map.counts(),
-            extremes: quantities
-                .map(|one| QuantityExtremes::new(map, *one))
-                .collect(),
-            pictures,
-            map,
+impl MapReport<'_> {
+    pub(super) fn json(&self) -> impl Serialize {
+        json_object! {
+            support: self.rig.support_name.word(),
+            payload_kg: self.payload_kg,
+            pretension_n: self.rig.pretension_n,
+            #[serde(flatten)]
+            counts: self.map.counts(),
+            extremes: &self.extremes,
+            pictures: self.pictures,
+            poses: MapPoses(self.map),
         }
     }
 
@@ -131,27 +119,30 @@ impl<'a> MapReport<'a> {
     pub(super) fn table(&self, csv: Option<&Path>) -> String {
         let title = format!(
             "Workspace to {}° with {} kg, pretension {} N, support {}\n\n",
-            self.map.tilt_max_deg, self.payload_kg, self.pretension_n, self.support
+            self.map.tilt_max_deg,
+            self.payload_kg,
+            self.rig.pretension_n,
+            self.rig.support_name.word()
         );
         let rows: String = self.extremes.iter().map(QuantityExtremes::row).collect();
         title + HEADING + &rows + &self.counts() + &self.missing() + &self.files(csv)
     }
 
     fn counts(&self) -> String {
-        let counts = &self.counts;
+        let counts = self.map.counts();
         let share = 100.0 * counts.feasible as f64 / counts.poses as f64;
         format!(
             "\nFeasible: {} of {} poses ({share:.1} %), {} at pretension {} N and {} only at another\n",
             counts.feasible,
             counts.poses,
             counts.pretension_keeps_bounds,
-            self.pretension_n,
+            self.rig.pretension_n,
             counts.only_another_pretension
         )
     }
 
     fn missing(&self) -> String {
-        let at_pretension = format!("No result at pretension {} N", self.pretension_n);
+        let at_pretension = format!("No result at pretension {} N", self.rig.pretension_n);
         let missing = [
             ("No result", self.map.without_result()),
             (at_pretension.as_str(), self.map.without_pretension()),

@@ -4,36 +4,32 @@ use leg_base::failure::Failure;
 use std::io::{self, ErrorKind};
 use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
 
-/// Where datagrams go.
+/// A socket and where its datagrams go.
 pub(super) struct Udp {
     socket: UdpSocket,
-    to: SocketAddr,
+    receiver: SocketAddr,
 }
 
 impl Udp {
-    pub(super) fn open(to: &str) -> Result<Self, Failure> {
-        let refused = |error: io::Error| refused(to, &error);
-        let no_address = || io::Error::other("the name has no address");
-        let address = to
-            .to_socket_addrs()
-            .and_then(|mut found| found.next().ok_or_else(no_address))
-            .map_err(refused)?;
-        let here = match address {
-            SocketAddr::V4(_) => "0.0.0.0:0",
-            SocketAddr::V6(_) => "[::]:0",
+    pub(super) fn open(receiver: &str) -> Result<Self, Failure> {
+        let open = || {
+            let no_address = || io::Error::other("the name has no address");
+            let receiver = receiver.to_socket_addrs()?.next().ok_or_else(no_address)?;
+            let local = match receiver {
+                SocketAddr::V4(_) => "0.0.0.0:0",
+                SocketAddr::V6(_) => "[::]:0",
+            };
+            let socket = UdpSocket::bind(local)?;
+            Ok(Self { socket, receiver })
         };
-        Ok(Self {
-            socket: UdpSocket::bind(here).map_err(refused)?,
-            to: address,
-        })
+        open().map_err(|error| refused(receiver, &error))
     }
 
     pub(super) fn send(&self, line: &str) -> Result<(), Failure> {
-        match self.socket.send_to(line.as_bytes(), self.to) {
-            Ok(_) => Ok(()),
+        match self.socket.send_to(line.as_bytes(), self.receiver) {
             // Nobody has to listen, and what is lost is lost.
-            Err(error) if lost(error.kind()) => Ok(()),
-            Err(error) => Err(refused(&self.to.to_string(), &error)),
+            Err(error) if !lost(error.kind()) => Err(refused(&self.receiver.to_string(), &error)),
+            _ => Ok(()),
         }
     }
 }
@@ -46,9 +42,9 @@ const fn lost(kind: ErrorKind) -> bool {
     )
 }
 
-fn refused(to: &str, error: &io::Error) -> Failure {
+fn refused(receiver: &str, error: &io::Error) -> Failure {
     let help = "give a host and a port, as 127.0.0.1:9870";
-    Failure::refused(format!("cannot send to {to}: {error}"), help)
+    Failure::refused(format!("cannot send to {receiver}: {error}"), help)
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ pub(super) fn run(
     let bar = progress::bar(runs as u64, "runs");
     let measured = sensitivity::measure(scenario, rig, || bar.inc(1));
     bar.finish_and_clear();
-    let all = measured.map_err(|error| Failure::from_error(&error))?;
+    let all = measured.map_err(Failure::from_error)?;
     let empty = |one: &Sensitivity| one.tip_mm.is_none() && one.stopped.is_none();
     if all.iter().all(empty) {
         return Err(Failure::refused(
@@ -32,12 +32,12 @@ pub(super) fn run(
     let chart = sensitivity::chart(&scenario.title, &all);
     let file = plot::save_both(&chart, &directory.join("errors"))
         .map_err(|error| not_saved("chart", directory, "--plots", &error))?;
-    options.report(&all, |all| {
+    options.report(&all, || {
         format!(
             "{}\nLargest distance of the compensated tip from its target, mm\n\n{}{}\nChart: {} (and .png)\n",
             scenario.title,
-            table(all),
-            stops(all),
+            table(&all),
+            stops(&all),
             relative_path(&file).display()
         )
     })

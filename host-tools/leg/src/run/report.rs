@@ -1,5 +1,6 @@
 //! What `leg run` prints.
 
+use leg_base::json_object;
 use leg_base::paths::relative_path;
 use leg_base::tick_time::tick_s;
 use leg_firmware::supervisor::Fault;
@@ -9,101 +10,74 @@ use std::path::PathBuf;
 
 const HEADING: &str = "   time       value  unit          lowest   highest            what\n";
 
-/// Everything that `leg run` found.
-#[derive(Serialize)]
+/// What a run was, and what it found.
 pub(super) struct RunReport<'a> {
-    title: &'a str,
+    pub(super) title: &'a str,
     /// Where the firmware ran.
-    firmware: &'a str,
-    ticks: u64,
-    ticks_per_s: f64,
-    tension_range_n: [f64; 2],
-    findings: &'a [Measurement],
-    faults: Vec<SeenFault>,
-    divergence: &'a Divergence,
-    stopped: Option<&'a str>,
-    passed: bool,
-    /// The same, under its former name.
-    held: bool,
+    pub(super) firmware: &'a str,
+    pub(super) summary: &'a Summary,
+    pub(super) ticks_per_s: f64,
     /// The SVG files; the PNG files are beside them.
-    plots: &'a [PathBuf],
+    pub(super) plots: &'a [PathBuf],
 }
 
-#[derive(Serialize)]
-struct SeenFault {
-    code: u8,
-    name: &'static str,
-    at_s: f64,
-    expected: bool,
-}
-
-impl<'a> RunReport<'a> {
-    pub(super) fn new(
-        title: &'a str,
-        firmware: &'a str,
-        summary: &'a Summary,
-        ticks_per_s: f64,
-        plots: &'a [PathBuf],
-    ) -> Self {
-        let fault = |&(fault, at_s): &(Fault, f64)| SeenFault {
-            code: fault.code(),
-            name: fault.entry().name,
-            at_s,
-            expected: !summary.unexpected.contains(&fault),
+impl RunReport<'_> {
+    pub(super) fn json(&self) -> impl Serialize {
+        let summary = self.summary;
+        let fault = |seen: &(Fault, f64)| {
+            json_object! {
+                code: seen.0.code(),
+                name: seen.0.entry().name,
+                at_s: seen.1,
+                expected: !summary.unexpected.contains(&seen.0),
+            }
         };
-        Self {
-            title,
-            firmware,
+        json_object! {
+            title: self.title,
+            firmware: self.firmware,
             ticks: summary.ticks,
-            ticks_per_s,
+            ticks_per_s: self.ticks_per_s,
             tension_range_n: summary.tension_range_n,
             findings: &summary.measurements,
-            faults: summary.faults.iter().map(fault).collect(),
+            faults: summary.faults.iter().map(fault).collect::<Vec<_>>(),
             divergence: &summary.divergence,
-            stopped: summary.stopped.as_deref(),
+            stopped: &summary.stopped,
             passed: summary.passes(),
+            // The same under its former name, for one release.
             held: summary.passes(),
-            plots,
+            plots: self.plots,
         }
     }
 
     /// A table for people.
     pub(super) fn table(&self) -> String {
-        let title = format!(
-            "{}\nFirmware {}, {:.1} s of the leg's time\n\n",
+        let (summary, [lowest, highest]) = (self.summary, self.summary.tension_range_n);
+        let rows: String = summary.measurements.iter().map(row).collect();
+        let plot =
+            |path: &PathBuf| format!("Chart: {} (and .png)\n", relative_path(path).display());
+        let plots: String = self.plots.iter().map(plot).collect();
+        format!(
+            "{}\nFirmware {}, {:.1} s of the leg's time\n\n{HEADING}{rows}\n\
+             Tensions: {lowest:.1} to {highest:.1} N\nFaults: {}\n{}Speed: {:.0} ticks a second\n{plots}",
             self.title,
             self.firmware,
-            self.ticks as f64 * tick_s()
-        );
-        let rows: String = self.findings.iter().map(row).collect();
-        title + HEADING + &rows + &self.remarks()
-    }
-
-    fn remarks(&self) -> String {
-        let [lowest, highest] = self.tension_range_n;
-        let plots: String = self
-            .plots
-            .iter()
-            .map(|path| format!("Chart: {} (and .png)\n", relative_path(path).display()))
-            .collect();
-        format!(
-            "\nTensions: {lowest:.1} to {highest:.1} N\nFaults: {}\n{}Speed: {:.0} ticks a second\n{plots}",
-            self.faults_text(),
-            divergence_text(self.divergence),
+            summary.ticks as f64 * tick_s(),
+            faults_text(summary),
+            divergence_text(&summary.divergence),
             self.ticks_per_s,
         )
     }
+}
 
-    fn faults_text(&self) -> String {
-        if self.faults.is_empty() {
-            return "none".into();
-        }
-        let text = |fault: &SeenFault| {
-            let remark = if fault.expected { "" } else { ", not expected" };
-            format!("{} ({:.3} s{remark})", fault.name, fault.at_s)
-        };
-        let faults: Vec<String> = self.faults.iter().map(text).collect();
-        faults.join(", ")
+fn faults_text(summary: &Summary) -> String {
+    let text = |seen: &(Fault, f64)| {
+        let expected = !summary.unexpected.contains(&seen.0);
+        let remark = if expected { "" } else { ", not expected" };
+        format!("{} ({:.3} s{remark})", seen.0.entry().name, seen.1)
+    };
+    match summary.faults.as_slice() {
+        [] => "none".into(),
+        faults => faults.iter().map(text).collect::<Vec<_>>().join(", "),
     }
 }
 

@@ -117,11 +117,11 @@ fn tendons(query: &Query<f64>, evaluation: &Evaluation<f64>) -> Result<[HeldTend
     }; 3];
     for (i, tendon) in tendons.iter_mut().enumerate() {
         let tension = evaluation.tensions_n[i];
-        let at = match query.stiffness_at {
+        let read_at_n = match query.stiffness_at {
             StiffnessAt::Pretension => query.pretension_n,
             StiffnessAt::Tension => tension,
         };
-        tendon.stiffness_n_per_m = query.tendons[i].stiffness(at)?;
+        tendon.stiffness_n_per_m = query.tendons[i].stiffness(read_at_n)?;
         tendon.unstretched_m = evaluation.lengths_m[i] - tension / tendon.stiffness_n_per_m;
     }
     Ok(tendons)

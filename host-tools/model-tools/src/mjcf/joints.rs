@@ -54,6 +54,14 @@ impl Joints {
         }
     }
 
+    const fn leg(leg: Vec<Joint>) -> Self {
+        Self {
+            pivot: None,
+            leg,
+            equal: None,
+        }
+    }
+
     /// The positions of all joints in MuJoCo's order.
     pub fn positions(&self) -> Vec<f64> {
         let joints = self.pivot.iter().chain(&self.leg);
@@ -77,9 +85,12 @@ fn torsion_free(
         ..hinge(name, X, half_alpha)
     };
     Ok(Joints {
-        pivot: None,
-        leg: vec![half("upper_x"), hinge("tilt_y", Y, beta), half("lower_x")],
         equal: Some(["upper_x", "lower_x"]),
+        ..Joints::leg(vec![
+            half("upper_x"),
+            hinge("tilt_y", Y, beta),
+            half("lower_x"),
+        ])
     })
 }
 
@@ -90,11 +101,7 @@ fn torsion_free(
 fn spherical(joint: &JointStiffness<f64>, rotation: &Rotation3<f64>) -> Result<Joints, MjcfError> {
     let (bending, torsion) = (joint.bending_nm_per_rad, joint.torsion_nm_per_rad);
     if bending == 0.0 && torsion == 0.0 {
-        return Ok(Joints {
-            pivot: None,
-            leg: vec![ball("ball", 0.0, rotation)],
-            equal: None,
-        });
+        return Ok(Joints::leg(vec![ball("ball", 0.0, rotation)]));
     }
     let turn = TiltAndTorsion::new(rotation);
     let ball_torsion = bending * turn.half_tilt_by_tangent();
@@ -106,46 +113,37 @@ fn spherical(joint: &JointStiffness<f64>, rotation: &Rotation3<f64>) -> Result<J
     let untwisted = rotation * Rotation3::from_euler_angles(0.0, 0.0, -twist);
     Ok(Joints {
         pivot: Some(ball("pivot", bending, &untwisted)),
-        leg: vec![Joint {
+        ..Joints::leg(vec![Joint {
             spring: torsion / hinge_share,
             ..hinge("torsion", Z, twist)
-        }],
-        equal: None,
+        }])
     })
 }
 
-/// R = Rx(α)·Ry(β), the first axis on the base.
-fn universal(joint: &JointStiffness<f64>, rotation: &Rotation3<f64>) -> Joints {
-    let elastic = elastic_universal(joint, rotation);
-    Joints {
-        leg: elastic.leg.into_iter().take(2).collect(),
-        ..elastic
-    }
-}
-
-/// R = Rx(α)·Ry(β)·Rz(γ).
+/// R = Rx(α)·Ry(β)·Rz(γ), the first axis on the base.
 fn elastic_universal(joint: &JointStiffness<f64>, rotation: &Rotation3<f64>) -> Joints {
     let r = rotation.matrix();
-    let alpha = (-r[(1, 2)]).atan2(r[(2, 2)]);
-    let beta = r[(0, 2)].asin();
-    let gamma = (-r[(0, 1)]).atan2(r[(0, 0)]);
-    let bending = |name, axis, angle| Joint {
-        spring: joint.bending_nm_per_rad,
+    let angles = [
+        (-r[(1, 2)]).atan2(r[(2, 2)]),
+        r[(0, 2)].asin(),
+        (-r[(0, 1)]).atan2(r[(0, 0)]),
+    ];
+    let names = [("tilt_x", X), ("tilt_y", Y), ("torsion", Z)];
+    let (bending, torsion) = (joint.bending_nm_per_rad, joint.torsion_nm_per_rad);
+    let springs = [bending, bending, torsion];
+    let joints = names.into_iter().zip(angles).zip(springs);
+    let elastic = |(((name, axis), angle), spring)| Joint {
+        spring,
         ..hinge(name, axis, angle)
     };
-    let torsion = Joint {
-        spring: joint.torsion_nm_per_rad,
-        ..hinge("torsion", Z, gamma)
-    };
-    Joints {
-        pivot: None,
-        leg: vec![
-            bending("tilt_x", X, alpha),
-            bending("tilt_y", Y, beta),
-            torsion,
-        ],
-        equal: None,
-    }
+    Joints::leg(joints.map(elastic).collect())
+}
+
+/// The same without torsion.
+fn universal(joint: &JointStiffness<f64>, rotation: &Rotation3<f64>) -> Joints {
+    let mut joints = elastic_universal(joint, rotation);
+    joints.leg.truncate(2);
+    joints
 }
 
 fn hinge(name: &'static str, shape: Shape, angle: f64) -> Joint {

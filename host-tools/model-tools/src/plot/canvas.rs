@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 pub(super) const WIDTH_PX: u32 = 1280;
 pub(super) const HEIGHT_PX: u32 = 800;
 pub(super) const MARGIN_PX: u32 = 18;
-pub(super) const TITLE_PX: u32 = 30;
+const TITLE_PX: u32 = 30;
 pub(super) const AXIS_TITLE_PX: u32 = 24;
 pub(super) const LABEL_PX: u32 = 22;
 /// Red, green and blue: what a [`BitMapBackend`] paints into a buffer.
@@ -88,6 +88,16 @@ fn draw<B: DrawingBackend>(backend: B, painter: &impl Painter) -> Result<(), Plo
 pub(super) fn provide_font() -> Result<(), PlotError> {
     register_font("sans-serif", FontStyle::Normal, dejavu::sans::regular())
         .map_err(|_| PlotError::Font)
+}
+
+/// What is left of a picture under its title, on white.
+pub(super) fn titled<B: DrawingBackend>(
+    root: &Area<B>,
+    title: &str,
+) -> Result<Area<B>, DrawingAreaErrorKind<B::ErrorType>> {
+    root.fill(&WHITE)?;
+    root.margin(MARGIN_PX, MARGIN_PX, MARGIN_PX, 0)
+        .titled(title, ("sans-serif", TITLE_PX))
 }
 
 /// The smallest and the largest value.

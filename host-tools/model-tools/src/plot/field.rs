@@ -7,7 +7,7 @@ mod polar;
 mod runs;
 pub(crate) mod scale;
 
-use super::canvas::{self, Area, Drawn, MARGIN_PX, Painter, PlotError, TITLE_PX, WIDTH_PX, range};
+use super::canvas::{self, Area, Drawn, MARGIN_PX, Painter, PlotError, WIDTH_PX, range};
 use bands::Bands;
 use plotters::prelude::*;
 use scale::SCALE_WIDTH_PX;
@@ -22,10 +22,10 @@ pub struct PlotField {
     pub quantity: String,
     /// Below that; empty for a ratio.
     pub unit: String,
-    /// What a pose outside the region, but inside the wider one is.
-    pub between: String,
-    /// What a pose outside both is.
-    pub outside: String,
+    /// The name of poses outside the region, but inside the wider one.
+    pub border_label: String,
+    /// The name of poses outside both.
+    pub exterior_label: String,
     /// Azimuths of the columns: evenly from 0°, the full turn not repeated.
     pub azimuths: usize,
     /// Tilts of the rows, degrees: evenly from 0.
@@ -48,11 +48,11 @@ pub struct PoseSample {
 impl PoseSample {
     /// The sample at a part of the way to another.
     fn blend(self, other: Self, part: f64) -> Self {
-        let between = |from: f64, to: f64| from * (1.0 - part) + to * part;
+        let mean = |start: f64, end: f64| start * (1.0 - part) + end * part;
         Self {
-            value: self.value.zip(other.value).map(|(a, b)| between(a, b)),
-            room: between(self.room, other.room),
-            wider_room: between(self.wider_room, other.wider_room),
+            value: self.value.zip(other.value).map(|(a, b)| mean(a, b)),
+            room: mean(self.room, other.room),
+            wider_room: mean(self.wider_room, other.wider_room),
         }
     }
 
@@ -62,11 +62,11 @@ impl PoseSample {
     }
 
     /// Outside the region, but inside the wider one.
-    fn is_between(&self) -> bool {
+    fn is_border(&self) -> bool {
         self.room < 0.0 && self.wider_room >= 0.0
     }
 
-    fn is_outside(&self) -> bool {
+    fn is_exterior(&self) -> bool {
         self.room < 0.0 && self.wider_room < 0.0
     }
 }
@@ -104,10 +104,7 @@ struct FieldPainter<'a> {
 impl Painter for FieldPainter<'_> {
     fn paint<B: DrawingBackend>(&self, root: &Area<B>) -> Drawn<B> {
         let Self { field, bands, .. } = self;
-        root.fill(&WHITE)?;
-        let body = root
-            .margin(MARGIN_PX, MARGIN_PX, MARGIN_PX, 0)
-            .titled(&field.title, ("sans-serif", TITLE_PX))?;
+        let body = canvas::titled(root, &field.title)?;
         let (map, scale) = body.split_horizontally(WIDTH_PX - SCALE_WIDTH_PX - MARGIN_PX);
         match self.layout {
             Layout::Flat => flat::paint(field, bands, &map)?,

@@ -18,13 +18,13 @@ impl Camera {
     /// Where a point of frame {A}, m, is on the paper, px.
     pub fn project(&self, point: &Vector3<f64>) -> [f64; 2] {
         let (sin, cos) = self.turn_deg.to_radians().sin_cos();
-        let across = cos * point.x - sin * point.y;
+        let right = cos * point.x - sin * point.y;
         let away = sin * point.x + cos * point.y;
         let (sin, cos) = self.elevation_deg.to_radians().sin_cos();
         let up = cos * point.z + sin * away;
         let scale = 1000.0 * self.px_per_mm;
         [
-            self.joint_px[0] + scale * across,
+            self.joint_px[0] + scale * right,
             self.joint_px[1] - scale * up,
         ]
     }

@@ -2,7 +2,7 @@
 
 use super::camera::Camera;
 use super::leg::DrawnLeg;
-use super::pen::{self, Label, Point2, TENDONS};
+use super::pen::{self, Label, Point2};
 use crate::xml_element::Element;
 use nalgebra::Vector3;
 
@@ -42,10 +42,10 @@ fn camera(leg: &DrawnLeg) -> Camera {
 
 /// Above the base plate the tendons go on to their screws, which pull them.
 fn to_screws(leg: &DrawnLeg, camera: &Camera) -> Vec<Element> {
-    let anchors = leg.base_anchors().map(|anchor| camera.project(&anchor));
-    let pull =
-        |([x, y], colour): (Point2, &str)| pen::arrow([x, y], [x, y - TO_SCREW_PX], colour, 2.0);
-    anchors.into_iter().zip(TENDONS).flat_map(pull).collect()
+    let tendons = leg.tendon_ends(camera).into_iter();
+    tendons
+        .flat_map(|([[x, y], _], colour)| pen::arrow([x, y], [x, y - TO_SCREW_PX], colour, 2.0))
+        .collect()
 }
 
 fn names(leg: &DrawnLeg, camera: &Camera) -> Vec<Element> {
@@ -57,33 +57,27 @@ fn names(leg: &DrawnLeg, camera: &Camera) -> Vec<Element> {
     let mut names = vec![
         Label::new("base plate")
             .right_aligned()
-            .at([top[0] - half_width - 8.0, top[1]]),
+            .place([top[0] - half_width - 8.0, top[1]]),
         Label::new("leg plate")
             .right_aligned()
-            .at([plate[0] - half_width - 4.0, plate[1] + 30.0]),
-        Label::new("joint").at([JOINT_PX[0] + 20.0, JOINT_PX[1]]),
-        Label::new("leg").at([stub[0] + 18.0, stub[1]]),
+            .place([plate[0] - half_width - 4.0, plate[1] + 30.0]),
+        Label::new("joint").place([JOINT_PX[0] + 20.0, JOINT_PX[1]]),
+        Label::new("leg").place([stub[0] + 18.0, stub[1]]),
     ];
-    let pairs = leg
-        .base_anchors()
-        .into_iter()
-        .zip(leg.leg_anchors())
-        .zip(TENDONS);
-    for (i, ((base, end), colour)) in (1..).zip(pairs) {
-        let [base, end] = [base, end].map(|point| camera.project(&point));
+    for (i, ([base, end], colour)) in (1..).zip(leg.tendon_ends(camera)) {
         let named = |name: &str, [x, y]: Point2, centre: Point2| {
             let label = Label::new(name).colour(colour).bold();
             if x < centre[0] {
-                label.right_aligned().at([x - 8.0, y])
+                label.right_aligned().place([x - 8.0, y])
             } else {
-                label.at([x + 8.0, y])
+                label.place([x + 8.0, y])
             }
         };
         names.push(named(&format!("B{i}"), [base[0], base[1] - 8.0], top));
         names.push(named(&format!("S{i}"), [end[0], end[1] + 8.0], plate));
         let tendon = format!("tendon {i}");
-        let above = [base[0], base[1] - TO_SCREW_PX - 10.0];
-        names.push(Label::new(&tendon).colour(colour).centred().at(above));
+        let label_px = [base[0], base[1] - TO_SCREW_PX - 10.0];
+        names.push(Label::new(&tendon).colour(colour).centred().place(label_px));
     }
     names
 }

@@ -32,22 +32,6 @@ impl DrawnLeg {
         }
     }
 
-    /// B_i, m.
-    pub fn base_anchors(&self) -> [Vector3<f64>; 3] {
-        let height = self.parameters.upper_length_m;
-        self.parameters
-            .base_anchors_m
-            .map(|[x, y]| Vector3::new(x, y, height))
-    }
-
-    /// e_i, m: where the tendons end on the leg's plate.
-    pub fn leg_anchors(&self) -> [Vector3<f64>; 3] {
-        let height = -self.parameters.joint_length_m;
-        self.parameters
-            .leg_anchors_m
-            .map(|[x, y]| self.rotation * Vector3::new(x, y, height))
-    }
-
     /// A point on the leg's axis, so far (m) below the joint.
     pub fn axis(&self, below: f64) -> Vector3<f64> {
         self.rotation * Vector3::new(0.0, 0.0, -below)
@@ -125,17 +109,25 @@ impl DrawnLeg {
 
     /// The three tendons, each with its two anchors.
     pub fn tendons(&self, camera: &Camera, width: f64) -> Vec<Element> {
-        let pairs = self
-            .base_anchors()
-            .into_iter()
-            .zip(self.leg_anchors())
-            .zip(TENDONS);
-        let draw = |((base, leg), colour)| {
-            let ends = [base, leg].map(|point| camera.project(&point));
+        let draw = |(ends, colour): ([Point2; 2], &str)| {
             let anchors = ends.map(|end| pen::disc(end, 0.9 * width, colour));
             core::iter::once(pen::line(&ends, colour, width)).chain(anchors)
         };
-        pairs.flat_map(draw).collect()
+        self.tendon_ends(camera)
+            .into_iter()
+            .flat_map(draw)
+            .collect()
+    }
+
+    /// Where each tendon's anchors on base and leg are on the paper, px, and its colour.
+    pub fn tendon_ends(&self, camera: &Camera) -> [([Point2; 2], &'static str); 3] {
+        let p = &self.parameters;
+        std::array::from_fn(|i| {
+            let ([base_x, base_y], [leg_x, leg_y]) = (p.base_anchors_m[i], p.leg_anchors_m[i]);
+            let base = Vector3::new(base_x, base_y, p.upper_length_m);
+            let leg = self.rotation * Vector3::new(leg_x, leg_y, -p.joint_length_m);
+            ([base, leg].map(|point| camera.project(&point)), TENDONS[i])
+        })
     }
 
     pub fn payload(&self, camera: &Camera) -> Element {

@@ -61,8 +61,8 @@ pub(super) fn disc([x, y]: Point2, radius: f64, fill: &str) -> Element {
 pub(super) fn arrow(from: Point2, to: Point2, colour: &str, width: f64) -> [Element; 2] {
     let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
     let length = dx.hypot(dy);
-    let (along, across) = ([dx / length, dy / length], [-dy / length, dx / length]);
-    let corner = |back: f64, side: f64| [0, 1].map(|i| to[i] - back * along[i] + side * across[i]);
+    let (axis, normal) = ([dx / length, dy / length], [-dy / length, dx / length]);
+    let corner = |back: f64, side: f64| [0, 1].map(|i| to[i] - back * axis[i] + side * normal[i]);
     let head = [to, corner(8.0, 3.5), corner(8.0, -3.5)];
     [
         line(&[from, corner(6.0, 0.0)], colour, width),
@@ -112,7 +112,7 @@ impl<'a> Label<'a> {
     }
 
     /// Places it with its middle at the height of a point.
-    pub fn at(self, [x, y]: Point2) -> Element {
+    pub fn place(self, [x, y]: Point2) -> Element {
         let weight = if self.bold { "bold" } else { "normal" };
         Element::new("text")
             .text("x", &short(x))
@@ -134,6 +134,6 @@ pub(super) fn dimension(x: f64, [top, bottom]: [f64; 2], edge: f64, text: &str) 
         thin(&[[x - 4.0, bottom], [edge, bottom]]),
         Label::new(text)
             .right_aligned()
-            .at([x - 8.0, 0.5 * (top + bottom)]),
+            .place([x - 8.0, 0.5 * (top + bottom)]),
     ]
 }

@@ -78,24 +78,24 @@ fn tilt(leg: &DrawnLeg, camera: &Camera) -> Vec<Element> {
     let text = format!("tilt {}°", short(leg.tilt_deg));
     vec![
         pen::line(&arc, DIMENSION, 1.2),
-        Label::new(&text).centred().at([x, y + 14.0]),
+        Label::new(&text).centred().place([x, y + 14.0]),
     ]
 }
 
 fn names(leg: &DrawnLeg, camera: &Camera) -> Vec<Element> {
-    let below = 1000.0 * camera.px_per_mm * leg.payload_radius_m() + 14.0;
+    let drop_px = 1000.0 * camera.px_per_mm * leg.payload_radius_m() + 14.0;
     let tip = camera.project(&leg.axis(leg.tip_m()));
     let plumb = camera.project(&Vector3::new(0.0, 0.0, -leg.tip_m()));
     let rod = camera.project(&leg.axis(0.45 * leg.tip_m()));
     vec![
         Label::new("tip with payload")
             .centred()
-            .at([tip[0], tip[1] + below]),
+            .place([tip[0], tip[1] + drop_px]),
         Label::new("vertical")
             .colour(DIMENSION)
             .centred()
-            .at([plumb[0], plumb[1] + below]),
-        Label::new("leg").at([rod[0] + 12.0, rod[1]]),
+            .place([plumb[0], plumb[1] + drop_px]),
+        Label::new("leg").place([rod[0] + 12.0, rod[1]]),
     ]
 }
 
@@ -108,11 +108,11 @@ fn axes() -> Vec<Element> {
     let arrows = ends.map(|end| pen::arrow(ORIGIN, end, DIMENSION, 1.4));
     let [right, top] = ends;
     let names = [
-        Label::new("x").colour(DIMENSION).at([right[0] + 6.0, y]),
+        Label::new("x").colour(DIMENSION).place([right[0] + 6.0, y]),
         Label::new("z")
             .colour(DIMENSION)
             .centred()
-            .at([x, top[1] - 10.0]),
+            .place([x, top[1] - 10.0]),
     ];
     arrows.into_iter().flatten().chain(names).collect()
 }

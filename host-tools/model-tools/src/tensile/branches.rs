@@ -1,6 +1,6 @@
 //! Loading and unloading, and the slack that is taken up before.
 
-use super::{TensileError, TensileTest, TestRow, faulty};
+use super::{TensileError, TestRow, faulty};
 
 /// The two branches of a test.
 pub(super) struct Branches {
@@ -11,29 +11,24 @@ pub(super) struct Branches {
 }
 
 /// Splits a test at its largest force. Rows below `taut_n` are the slack that is taken up.
-pub(super) fn split(test: &TensileTest, taut_n: f64) -> Result<Branches, TensileError> {
-    let forces = test.rows.iter().map(|row| row.force_n).enumerate();
+pub(super) fn split(rows: &[TestRow], taut_n: f64) -> Result<Branches, TensileError> {
+    let forces = rows.iter().map(|row| row.force_n).enumerate();
     let top = forces
         .max_by(|a, b| a.1.total_cmp(&b.1))
         .map_or(0, |(index, _)| index);
-    let (loading, unloading) = test.rows.split_at((top + 1).min(test.rows.len()));
+    let (loading, unloading) = rows.split_at((top + 1).min(rows.len()));
     // What comes before the last slack row is taking up, whatever its force.
     let start = loading
         .iter()
         .rposition(|row| row.force_n < taut_n)
         .map_or(0, |last| last + 1);
     let loading = loading[start..].to_vec();
-    let unloading: Vec<TestRow> = unloading
-        .iter()
-        .copied()
-        .filter(|row| row.force_n >= taut_n)
-        .collect();
+    let mut unloading = unloading.to_vec();
+    unloading.retain(|row| row.force_n >= taut_n);
     check(&loading, 1.0, "loaded")?;
     check(&unloading, -1.0, "unloaded")?;
     if loading.len() < 3 {
-        return Err(TensileError::TooFewRows {
-            found: loading.len(),
-        });
+        return Err(TensileError::TooFewRows(loading.len()));
     }
     Ok(Branches { loading, unloading })
 }

@@ -3,7 +3,7 @@
 use super::branches::split;
 use super::hysteresis::Hysteresis;
 use super::knots;
-use super::{TensileError, TensileTest, TestRow};
+use super::{TensileError, TestRow};
 use leg_model::{CurvePoint, Elasticity, TendonCurve};
 
 /// Rows below this part of the largest force are slack, unless the user says otherwise.
@@ -34,9 +34,12 @@ impl Fit {
     ///
     /// # Errors
     /// A [`TensileError`] with the line.
-    pub fn new(test: &TensileTest, taut_n: Option<f64>) -> Result<Self, TensileError> {
-        let largest = test.rows.iter().map(|row| row.force_n).fold(0.0, f64::max);
-        check_pull(test, largest)?;
+    pub fn new(test: &[TestRow], taut_n: Option<f64>) -> Result<Self, TensileError> {
+        let largest = test.iter().map(|row| row.force_n).fold(0.0, f64::max);
+        let pushed = test.iter().find(|row| row.force_n < 0.0);
+        if let Some(row) = pushed.filter(|_| largest <= 0.0) {
+            return Err(TensileError::Compression(row.line));
+        }
         let taut_n = taut_n.unwrap_or(TAUT * largest).max(f64::MIN_POSITIVE);
         let branches = split(test, taut_n)?;
         let spline = knots::best(&branches.loading)?;
@@ -56,14 +59,6 @@ impl Fit {
             take_up_m,
             taut_n,
         })
-    }
-}
-
-/// Refuses a test that only pushes.
-fn check_pull(test: &TensileTest, largest_n: f64) -> Result<(), TensileError> {
-    match test.rows.iter().find(|row| row.force_n < 0.0) {
-        Some(row) if largest_n <= 0.0 => Err(TensileError::Compression { line: row.line }),
-        _ => Ok(()),
     }
 }
 

@@ -52,11 +52,11 @@ fn criterion(squares: &[f64], knots: usize, rows: &[TestRow]) -> f64 {
 
 /// The row that halves the squares of the piece that has most of them; none when no piece has a row inside.
 fn next(knots: &[usize], squares: &[f64]) -> Option<usize> {
-    let inside = |pair: &[usize]| (pair[0] + 1, pair[1]);
+    let inner = |pair: &[usize]| (pair[0] + 1, pair[1]);
     let sum = |(start, end): (usize, usize)| squares[start..end].iter().sum::<f64>();
     let (start, end) = knots
         .windows(2)
-        .map(inside)
+        .map(inner)
         .filter(|(start, end)| start < end)
         .max_by(|a, b| sum(*a).total_cmp(&sum(*b)))?;
     let half = 0.5 * sum((start, end));

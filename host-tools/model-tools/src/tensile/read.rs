@@ -40,13 +40,6 @@ pub struct TestRow {
     pub elongation_m: f64,
 }
 
-/// The rows of a test, in their order.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TensileTest {
-    /// All rows.
-    pub rows: Vec<TestRow>,
-}
-
 /// Where a quantity is, and what its unit is in SI.
 #[derive(Clone, Copy)]
 struct Column {
@@ -54,18 +47,18 @@ struct Column {
     scale: f64,
 }
 
-/// Reads a file. Lines that begin with `#` are comments.
+/// Reads the rows of a file, in their order. Lines that begin with `#` are comments.
 ///
 /// # Errors
 /// A [`TensileError`] with line and column.
-pub fn read(path: &Path) -> Result<TensileTest, TensileError> {
+pub fn read(path: &Path) -> Result<Vec<TestRow>, TensileError> {
     let text = std::fs::read_to_string(path)?;
     let (data, lines) = without_comments(&text);
     let mut reader = ReaderBuilder::new()
         .trim(Trim::All)
         .from_reader(data.as_bytes());
     let header = reader.headers()?;
-    let (force, elongation) = columns(header, lines.number(header.position()))?;
+    let [force, elongation] = columns(header, lines.number(header.position()))?;
     let mut rows = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|error| lines.place_error(error))?;
@@ -76,7 +69,7 @@ pub fn read(path: &Path) -> Result<TensileTest, TensileError> {
             elongation_m: number(&record, line, elongation)?,
         });
     }
-    Ok(TensileTest { rows })
+    Ok(rows)
 }
 
 /// The lines of the file that hold data, and where each of them is: the CSV reader's own count is off after a comment.
@@ -102,34 +95,41 @@ impl LineNumbers {
         match error.kind() {
             ErrorKind::UnequalLengths {
                 pos,
-                expected_len: wanted,
-                len: found,
-            } => faulty(
-                self.number(pos.as_ref()),
-                None,
-                format!(
-                    "{found} fields under a header of {wanted}; give one each, with a point in decimals and no comma"
-                ),
-            ),
+                expected_len,
+                len,
+            } => {
+                let problem = format!(
+                    "{len} fields under a header of {expected_len}; give one each, with a point in decimals and no comma"
+                );
+                faulty(self.number(pos.as_ref()), None, problem)
+            }
             _ => error.into(),
         }
     }
 }
 
-fn columns(header: &StringRecord, line: u64) -> Result<(Column, Column), TensileError> {
-    let mut seen = [(FORCE, Vec::new()), (ELONGATION, Vec::new())];
+fn columns(header: &StringRecord, line: u64) -> Result<[Column; 2], TensileError> {
+    let mut found = [FORCE, ELONGATION].map(|known| (known, Vec::new()));
     for (index, name) in header.iter().enumerate() {
-        let found = seen.iter_mut().find_map(|(known, columns)| {
+        let column = found.iter_mut().find_map(|(known, columns)| {
             let &(_, scale) = known.columns.iter().find(|(unit, _)| *unit == name)?;
-            columns.push(Column { index, scale });
-            Some(())
+            Some((columns, Column { index, scale }))
         });
-        if found.is_none() {
-            return Err(unknown(line, index + 1, name));
+        match column {
+            Some((columns, column)) => columns.push(column),
+            None => return Err(unknown(line, index + 1, name)),
         }
     }
-    let [force, elongation] = seen.map(|(known, columns)| one(line, &known, &columns));
-    Ok((force?, elongation?))
+    let [force, elongation] = found.map(|(known, columns)| match columns[..] {
+        [column] => Ok(column),
+        _ => {
+            let (found, quantity, names) = (columns.len(), known.quantity, known.names);
+            let problem =
+                format!("the header names {found} columns for the {quantity}; give one, {names}");
+            Err(faulty(line, None, problem))
+        }
+    });
+    Ok([force?, elongation?])
 }
 
 fn unknown(line: u64, column: usize, name: &str) -> TensileError {
@@ -138,10 +138,8 @@ fn unknown(line: u64, column: usize, name: &str) -> TensileError {
         return faulty(line, None, problem);
     }
     let quantity = name.split('_').next().unwrap_or_default();
-    let known = [FORCE, ELONGATION]
-        .into_iter()
-        .find(|known| known.quantity == quantity);
-    let problem = match known {
+    let mut known = [FORCE, ELONGATION].into_iter();
+    let problem = match known.find(|known| known.quantity == quantity) {
         None => format!(
             "`{name}` is no known column; leave it out, and name {}, and {}",
             FORCE.names, ELONGATION.names
@@ -149,19 +147,6 @@ fn unknown(line: u64, column: usize, name: &str) -> TensileError {
         Some(known) => format!("the unit of `{name}` is not known; give {}", known.names),
     };
     faulty(line, Some(column), problem)
-}
-
-fn one(line: u64, known: &Known, columns: &[Column]) -> Result<Column, TensileError> {
-    let [column] = columns else {
-        let Known {
-            quantity, names, ..
-        } = known;
-        let found = columns.len();
-        let problem =
-            format!("the header names {found} columns for the {quantity}; give one, {names}");
-        return Err(faulty(line, None, problem));
-    };
-    Ok(*column)
 }
 
 fn number(record: &StringRecord, line: u64, column: Column) -> Result<f64, TensileError> {

@@ -36,21 +36,21 @@ impl Spline {
         };
         // All unknowns are lengths then.
         let unit = last - first;
-        let mut equations = WeightedEquations::new(2 * knots.len());
+        let mut equations = Vec::new();
         for row in rows {
             let (piece, place, width) = locate(&knots, row.force_n);
             let weights = value_weights(place, width / unit);
-            equations.add(2 * piece, weights, row.elongation_m, 1.0);
+            equations.push(equation(2 * piece, weights, row.elongation_m, 1.0));
         }
         let bending = BENDING * rows.len() as f64;
         for piece in 0..knots.len() - 1 {
             let width = (knots[piece + 1] - knots[piece]) / unit;
             for place in [0.5 - GAUSS, 0.5 + GAUSS] {
                 let weights = bending_weights(place, width);
-                equations.add(2 * piece, weights, 0.0, bending * 0.5 * width);
+                equations.push(equation(2 * piece, weights, 0.0, bending * 0.5 * width));
             }
         }
-        let solution = equations.solve()?;
+        let solution = solve(&equations, 2 * knots.len())?;
         let (elongations, slopes) = solution
             .as_slice()
             .chunks_exact(2)
@@ -70,8 +70,8 @@ impl Spline {
         };
         let averages: Vec<f64> = (0..self.knots.len() - 1).map(average).collect();
         for (i, slope) in self.slopes.iter_mut().enumerate() {
-            let beside = &averages[i.saturating_sub(1)..averages.len().min(i + 1)];
-            let smaller = beside.iter().copied().fold(f64::INFINITY, f64::min);
+            let neighbours = &averages[i.saturating_sub(1)..averages.len().min(i + 1)];
+            let smaller = neighbours.iter().copied().fold(f64::INFINITY, f64::min);
             *slope = slope.min(STEEPEST * smaller).max(FLATTEST * smaller);
         }
         self
@@ -129,46 +129,29 @@ fn bending_weights(s: f64, width: f64) -> [f64; 4] {
     [-end, (6.0 * s - 4.0) / width, end, (6.0 * s - 2.0) / width]
 }
 
-/// A weighted linear least-squares problem.
-struct WeightedEquations {
-    unknowns: usize,
-    /// The unknown that each begins at, its weights, and its value.
-    rows: Vec<(usize, [f64; 4], f64)>,
+/// An equation of weighted least squares: the unknown that it begins at, the weights of that and the next ones, its value.
+type Equation = (usize, [f64; 4], f64);
+
+/// An equation whose squared error counts `importance` times.
+fn equation(first: usize, weights: [f64; 4], value: f64, importance: f64) -> Equation {
+    let root = importance.sqrt();
+    (first, weights.map(|weight| root * weight), root * value)
 }
 
-impl WeightedEquations {
-    fn new(unknowns: usize) -> Self {
-        Self {
-            unknowns,
-            rows: Vec::new(),
+/// The solution of least squares, by orthogonal factors: normal equations would lose the bending in rounding.
+fn solve(equations: &[Equation], unknowns: usize) -> Option<DVector<f64>> {
+    let mut matrix = DMatrix::zeros(equations.len(), unknowns);
+    for (i, (first, weights, _)) in equations.iter().enumerate() {
+        for (j, weight) in weights.iter().enumerate() {
+            matrix[(i, first + j)] = *weight;
         }
     }
-
-    /// Adds one equation: `weights` times the unknowns from `first` on = `value`; its squared error counts
-    /// `importance` times.
-    fn add(&mut self, first: usize, weights: [f64; 4], value: f64, importance: f64) {
-        let root = importance.sqrt();
-        let weights = weights.map(|weight| root * weight);
-        self.rows.push((first, weights, root * value));
-    }
-
-    /// The solution of least squares, by orthogonal factors: normal equations would lose the bending in rounding.
-    fn solve(&self) -> Option<DVector<f64>> {
-        let mut matrix = DMatrix::zeros(self.rows.len(), self.unknowns);
-        for (i, (first, weights, _)) in self.rows.iter().enumerate() {
-            for (j, weight) in weights.iter().enumerate() {
-                matrix[(i, first + j)] = *weight;
-            }
-        }
-        let values = self.rows.iter().map(|(.., value)| *value);
-        let mut right = DVector::from_iterator(self.rows.len(), values);
-        let factors = matrix.qr();
-        factors.q_tr_mul(&mut right);
-        let right = right.rows(0, self.unknowns).into_owned();
-        let solution = factors.r().solve_upper_triangular(&right)?;
-        solution
-            .iter()
-            .all(|value| value.is_finite())
-            .then_some(solution)
-    }
+    let values = equations.iter().map(|(.., value)| *value);
+    let mut right = DVector::from_iterator(equations.len(), values);
+    let factors = matrix.qr();
+    factors.q_tr_mul(&mut right);
+    let right = right.rows(0, unknowns).into_owned();
+    let solution = factors.r().solve_upper_triangular(&right)?;
+    let finite = solution.iter().all(|value| value.is_finite());
+    finite.then_some(solution)
 }

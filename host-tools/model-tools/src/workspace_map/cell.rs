@@ -24,7 +24,7 @@ pub struct Cell {
     pub margin_n: Option<f64>,
     /// What the leg does at the rig's pretension, whether or not that keeps the bounds; why that is not known.
     #[serde(skip)]
-    pub at_pretension: Result<AtPretension, Error>,
+    pub at_pretension: Result<PretensionedPose, Error>,
     /// Nonlinear deviation at the rig's pretension, mm, or why there is none. Not there if it was not asked for, if there is
     /// no linear one, or if the pretension would have a tendon push before the weights come.
     #[serde(skip)]
@@ -33,7 +33,7 @@ pub struct Cell {
 
 /// What the leg does at the rig's pretension.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct AtPretension {
+pub struct PretensionedPose {
     /// Linear deviation, mm.
     pub deviation_mm: f64,
     /// Smallest bending stiffness, N·m/rad.
@@ -63,35 +63,28 @@ impl Prepared {
         })
     }
 
-    /// All poses of one tilt.
-    pub fn row(&self, tilt_deg: f64) -> TiltRow<'_> {
-        let tilt_rad = tilt_deg.to_radians();
-        let query = Query {
-            tilt_rad,
-            ..self.query
-        };
-        TiltRow {
-            prepared: self,
-            query,
-        }
+    /// The cells of one tilt.
+    pub fn row(
+        &self,
+        tilt_deg: f64,
+        azimuths_deg: impl Iterator<Item = f64>,
+    ) -> impl Iterator<Item = Result<Cell, Error>> {
+        // It carries three whole curves: not to be made for each pose.
+        let mut query = self.query;
+        query.tilt_rad = tilt_deg.to_radians();
+        azimuths_deg.map(move |azimuth_deg| {
+            query.azimuth_rad = azimuth_deg.to_radians();
+            self.cell(&query)
+        })
     }
-}
 
-/// The poses of one tilt. It keeps a query of its own, which carries three whole curves: not to be made for each pose.
-pub(super) struct TiltRow<'a> {
-    prepared: &'a Prepared,
-    query: Query<f64>,
-}
-
-impl TiltRow<'_> {
-    pub fn cell(&mut self, azimuth_deg: f64) -> Result<Cell, Error> {
-        self.query.azimuth_rad = azimuth_deg.to_radians();
+    fn cell(&self, query: &Query<f64>) -> Result<Cell, Error> {
         #[cfg(test)]
         super::tests::count_evaluation();
-        let found = evaluate_for_map(&self.prepared.rig, &self.query)?;
-        let mut cell = Cell::new(&found, &self.query);
-        if self.prepared.with_nonlinear && cell.at_pretension.is_ok() {
-            let deviation_m = nonlinear::deviation_m(&self.prepared.parameters, &self.query);
+        let found = evaluate_for_map(&self.rig, query)?;
+        let mut cell = Cell::new(&found, query);
+        if self.with_nonlinear && cell.at_pretension.is_ok() {
+            let deviation_m = nonlinear::deviation_m(&self.parameters, query);
             let deviation_m = deviation_m.transpose();
             cell.deviation_nonlinear_mm = deviation_m.map(|found| found.map(|m| m * 1000.0));
         }
@@ -115,13 +108,13 @@ impl Cell {
             pretension_max_n: highest,
             pretension_room_n,
             margin_n: found.tensions_n.ok().map(margin),
-            at_pretension: AtPretension::new(found),
+            at_pretension: PretensionedPose::new(found),
             deviation_nonlinear_mm: None,
         }
     }
 }
 
-impl AtPretension {
+impl PretensionedPose {
     fn new(found: &MapEvaluation<f64>) -> Result<Self, Error> {
         let [softest, stiffest] = found.bending_stiffness_nm_per_rad?;
         Ok(Self {

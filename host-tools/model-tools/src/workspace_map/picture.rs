@@ -12,7 +12,7 @@ impl WorkspaceMap {
     #[must_use]
     pub fn field(&self, quantity: MapQuantity, title: String) -> PlotField {
         let grid = self.grid;
-        let [between, outside] = SHADES.map(String::from);
+        let [border_label, exterior_label] = SHADES.map(String::from);
         let places =
             (0..grid.tilts).flat_map(|row| (0..grid.azimuths).map(move |column| (row, column)));
         let samples = places.map(|(row, column)| sample(quantity, self.cell(row, column)));
@@ -21,8 +21,8 @@ impl WorkspaceMap {
             title,
             quantity: quantity.words().into(),
             unit: quantity.unit().into(),
-            between,
-            outside,
+            border_label,
+            exterior_label,
             azimuths: grid.azimuths as usize,
             tilts_deg: tilts.collect(),
             samples: samples.collect(),

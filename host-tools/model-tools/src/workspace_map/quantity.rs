@@ -35,23 +35,10 @@ pub enum MapQuantity {
 const DEVIATION_ROUNDING_MM: f64 = 1e-9;
 
 impl MapQuantity {
-    /// Every quantity.
-    pub const ALL: [Self; 9] = [
-        Self::Deviation,
-        Self::StiffnessMin,
-        Self::StiffnessMax,
-        Self::Condition,
-        Self::Margin,
-        Self::PretensionMin,
-        Self::PretensionMax,
-        Self::DeviationNonlinear,
-        Self::LinearOverNonlinear,
-    ];
-
     /// Those of every map; the others only if asked for.
     #[must_use]
     pub fn plain() -> &'static [Self] {
-        Self::ALL.split_at(7).0
+        Self::value_variants().split_at(7).0
     }
 
     /// Whether it takes the nonlinear deviation.
@@ -63,44 +50,33 @@ impl MapQuantity {
     /// Its name in files and on the command line.
     #[must_use]
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Deviation => "deviation",
-            Self::StiffnessMin => "stiffness_min",
-            Self::StiffnessMax => "stiffness_max",
-            Self::Condition => "condition",
-            Self::Margin => "margin",
-            Self::PretensionMin => "pretension_min",
-            Self::PretensionMax => "pretension_max",
-            Self::DeviationNonlinear => "deviation_nonlinear",
-            Self::LinearOverNonlinear => "linear_over_nonlinear",
-        }
+        self.texts()[0]
     }
 
     /// Its name in words.
     #[must_use]
     pub const fn words(self) -> &'static str {
-        match self {
-            Self::Deviation => "deviation of the tip",
-            Self::StiffnessMin => "smallest bending stiffness",
-            Self::StiffnessMax => "largest bending stiffness",
-            Self::Condition => "condition number",
-            Self::Margin => "tension margin",
-            Self::PretensionMin => "lowest feasible pretension",
-            Self::PretensionMax => "highest feasible pretension",
-            Self::DeviationNonlinear => "nonlinear deviation",
-            Self::LinearOverNonlinear => "linear by nonlinear",
-        }
+        self.texts()[1]
     }
 
     /// Its unit; none for a ratio.
     #[must_use]
     pub const fn unit(self) -> &'static str {
+        self.texts()[2]
+    }
+
+    /// Name, name in words, unit.
+    const fn texts(self) -> [&'static str; 3] {
         match self {
-            Self::Deviation | Self::DeviationNonlinear => "mm",
-            Self::StiffnessMin | Self::StiffnessMax => "N·m/rad",
-            Self::Condition => "",
-            Self::Margin | Self::PretensionMin | Self::PretensionMax => "N",
-            Self::LinearOverNonlinear => "%",
+            Self::Deviation => ["deviation", "deviation of the tip", "mm"],
+            Self::StiffnessMin => ["stiffness_min", "smallest bending stiffness", "N·m/rad"],
+            Self::StiffnessMax => ["stiffness_max", "largest bending stiffness", "N·m/rad"],
+            Self::Condition => ["condition", "condition number", ""],
+            Self::Margin => ["margin", "tension margin", "N"],
+            Self::PretensionMin => ["pretension_min", "lowest feasible pretension", "N"],
+            Self::PretensionMax => ["pretension_max", "highest feasible pretension", "N"],
+            Self::DeviationNonlinear => ["deviation_nonlinear", "nonlinear deviation", "mm"],
+            Self::LinearOverNonlinear => ["linear_over_nonlinear", "linear by nonlinear", "%"],
         }
     }
 

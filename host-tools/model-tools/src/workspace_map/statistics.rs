@@ -1,6 +1,7 @@
 //! Statistics of a map: how many poses are feasible, and where a quantity is smallest and largest.
 
 use super::{Cell, MapQuantity, WorkspaceMap};
+use clap::ValueEnum;
 use leg_model::Error;
 use serde::Serialize;
 
@@ -38,7 +39,7 @@ impl WorkspaceMap {
     #[must_use]
     pub fn quantities(&self) -> &'static [MapQuantity] {
         if self.with_nonlinear {
-            &MapQuantity::ALL
+            MapQuantity::value_variants()
         } else {
             MapQuantity::plain()
         }
@@ -80,17 +81,11 @@ impl WorkspaceMap {
         Some(poses.fold([first; 2], |[smallest, largest], pose| {
             // Of those that are equal but for rounding the first: a symmetric rig has several.
             let rounding = 1e-9 * pose.value.abs().max(1e-3);
+            let smaller = pose.value < smallest.value - rounding;
+            let larger = pose.value > largest.value + rounding;
             [
-                if pose.value < smallest.value - rounding {
-                    pose
-                } else {
-                    smallest
-                },
-                if pose.value > largest.value + rounding {
-                    pose
-                } else {
-                    largest
-                },
+                if smaller { pose } else { smallest },
+                if larger { pose } else { largest },
             ]
         }))
     }

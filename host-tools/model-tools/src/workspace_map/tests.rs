@@ -9,6 +9,7 @@ pub(super) use work::count_evaluation;
 use super::picture::SHADES;
 use super::{Grid, MapQuantity, WorkspaceMap};
 use crate::plot::field::scale::room_px;
+use clap::ValueEnum;
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
 
@@ -66,14 +67,10 @@ fn the_pretensions_that_serve_every_pose_are_known() {
     for (payload_kg, lowest, highest) in expected {
         let map = WorkspaceMap::on_one_core(&table_1(), payload_kg, GRID);
         let cells: Vec<_> = map.cells.iter().map(|cell| cell.unwrap()).collect();
-        let least = cells
-            .iter()
-            .map(|cell| cell.pretension_min_n)
-            .fold(f64::MIN, f64::max);
-        let most = cells
-            .iter()
-            .map(|cell| cell.pretension_max_n)
-            .fold(f64::MAX, f64::min);
+        let least = cells.iter().map(|cell| cell.pretension_min_n);
+        let least = least.fold(f64::MIN, f64::max);
+        let most = cells.iter().map(|cell| cell.pretension_max_n);
+        let most = most.fold(f64::MAX, f64::min);
         assert!((least - lowest).abs() < 0.06, "{payload_kg} kg: {least}");
         assert!((most - highest).abs() < 0.06, "{payload_kg} kg: {most}");
         assert_eq!(map.counts().feasible, POSES);
@@ -110,11 +107,9 @@ fn extremes_are_at_the_first_pose_that_has_them() {
 
 #[test]
 fn heading_and_legend_of_every_map_fit_beside_it() {
-    let headings = MapQuantity::ALL.map(|quantity| (quantity.words(), false));
-    for (words, in_legend) in headings
-        .into_iter()
-        .chain(SHADES.map(|words| (words, true)))
-    {
+    let headings = MapQuantity::value_variants().iter();
+    let headings = headings.map(|quantity| (quantity.words(), false));
+    for (words, in_legend) in headings.chain(SHADES.map(|words| (words, true))) {
         let room = room_px(words, in_legend);
         assert!(room > 0, "{words}: {room} px");
     }

@@ -38,7 +38,7 @@ const MASS: [&str; 3] = ["leg_kg", "centroid_mm", "gravity_m_per_s2"];
 pub(super) fn parse(text: &str) -> Result<(RigFile, Vec<String>), TomlError> {
     let mut table = DeTable::parse(text)?.into_inner();
     let notes = renamed_keys::replace(&mut table)?;
-    let root = Section::new(&table, 0..0, &SECTIONS)?;
+    let root = Section::whole(&table).checked(&SECTIONS)?;
     let file = read(&root)?;
     if let Err((quantity, reason)) = check(&file)
         && let Some((section, key)) = key_of(quantity)
@@ -70,7 +70,7 @@ fn read(root: &Section<'_>) -> Result<RigFile, TomlError> {
         support_name,
         support,
         critical_n,
-        gains: gains::changed(gains::defaults(&actuator), &gains::read(root)?),
+        gains: gains::changed(gains::defaults(&actuator), &gains::read(root.table)?),
         calibration: Calibration::read(root, &actuator)?,
         actuator,
         plant: PlantSettings::read(root)?,

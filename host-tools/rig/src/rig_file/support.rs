@@ -19,18 +19,16 @@ pub(super) fn read(
     root: &Section<'_>,
     tilt_deg: f64,
 ) -> Result<(SupportName, Support<f64>, Option<f64>), TomlError> {
-    let first_look = root.any_section("support")?;
-    let name = read_name(&first_look)?;
-    let measured = first_look.has(MEASURED[0]);
-    let section = root.section("support", &keys(name, measured))?;
+    let section = root.any_section("support")?;
+    let name = read_name(&section)?;
+    let measured = section.has(MEASURED[0]);
+    let section = section.checked(&keys(name, measured))?;
     let refused = |error| refusal(&section, error);
-    let (joint, critical_n) = match (name.elastic(), measured) {
-        (false, _) => (rigid(&section)?, None),
-        (true, true) => (measured_joint(&section)?, None),
-        (true, false) => {
-            let (joint, critical_n) = flexures::read(&section, name, tilt_deg.to_radians())?;
-            (joint.map_err(refused)?, Some(critical_n))
-        }
+    let (joint, critical_n) = if name.elastic() && !measured {
+        let (joint, critical_n) = flexures::read(&section, name, tilt_deg.to_radians())?;
+        (joint.map_err(refused)?, Some(critical_n))
+    } else {
+        (measured_joint(&section, name.elastic())?, None)
     };
     let joint = JointStiffness {
         axial_compliance_m_per_n: joint.axial_compliance_m_per_n + shaft(&section)?,
@@ -43,7 +41,7 @@ pub(super) fn read(
 fn read_name(section: &Section<'_>) -> Result<SupportName, TomlError> {
     let word = section.word("kind")?;
     SupportName::parse(word.get_ref())
-        .map_err(|error| TomlError::new(word.span(), error.to_string(), error.fix()))
+        .map_err(|error| TomlError::new(word.span(), error.to_string(), error.help()))
 }
 
 /// The keys of the section for a support.
@@ -68,24 +66,17 @@ fn keys(name: SupportName, measured: bool) -> Vec<&'static str> {
     [&["kind", "shaft"], own, material].concat()
 }
 
-/// A rigid joint gives way along the leg at most.
-fn rigid(section: &Section<'_>) -> Result<JointStiffness<f64>, TomlError> {
-    Ok(JointStiffness {
-        axial_compliance_m_per_n: if section.has(MEASURED[2]) {
-            section.positive(MEASURED[2])?.recip()
-        } else {
-            0.0
-        },
-        ..JointStiffness::none()
-    })
-}
-
-fn measured_joint(section: &Section<'_>) -> Result<JointStiffness<f64>, TomlError> {
-    Ok(JointStiffness {
-        bending_nm_per_rad: section.positive(MEASURED[0])?,
-        torsion_nm_per_rad: section.positive(MEASURED[1])?,
-        axial_compliance_m_per_n: section.positive(MEASURED[2])?.recip(),
-    })
+/// A joint whose stiffness is given; one that is not elastic gives way along the leg at most.
+fn measured_joint(section: &Section<'_>, elastic: bool) -> Result<JointStiffness<f64>, TomlError> {
+    let mut joint = JointStiffness::none();
+    if elastic {
+        joint.bending_nm_per_rad = section.positive(MEASURED[0])?;
+        joint.torsion_nm_per_rad = section.positive(MEASURED[1])?;
+    }
+    if elastic || section.has(MEASURED[2]) {
+        joint.axial_compliance_m_per_n = section.positive(MEASURED[2])?.recip();
+    }
+    Ok(joint)
 }
 
 /// L/EA of the shaft between joint and leg, m/N; nothing where the file gives none.
@@ -102,8 +93,8 @@ fn shaft(section: &Section<'_>) -> Result<f64, TomlError> {
 fn refusal(section: &Section<'_>, error: Error) -> TomlError {
     let Error::Refused { quantity, reason } = error else {
         let sentence = format!("the model has no result for this: {error}");
-        let fix = "compare with the ready rigs, `leg rig list`";
-        return TomlError::new(section.span(), sentence, fix);
+        let help = "compare with the ready rigs, `leg rig list`";
+        return TomlError::new(section.span(), sentence, help);
     };
     let candidates: &[&str] = match quantity {
         Quantity::FlexureLength => &["length_mm"],

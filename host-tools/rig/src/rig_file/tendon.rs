@@ -61,8 +61,8 @@ pub(super) fn read_stiffness_at(section: &Section<'_>) -> Result<StiffnessAt, To
         "tension" => Ok(StiffnessAt::Tension),
         other => {
             let sentence = format!("`{key}` cannot be `{other}`");
-            let fix = "write \"pretension\" or \"tension\"";
-            Err(TomlError::new(word.span(), sentence, fix))
+            let help = "write \"pretension\" or \"tension\"";
+            Err(TomlError::new(word.span(), sentence, help))
         }
     }
 }
@@ -95,8 +95,8 @@ fn curve(section: &Section<'_>, key: &str) -> Result<Tendon<f64>, TomlError> {
                 "`{column}` has {found} entries, `{}` has {wanted}",
                 COLUMNS[0]
             );
-            let fix = "give one entry for each point of the curve in each array";
-            return Err(TomlError::new(other.span(), sentence, fix));
+            let help = "give one entry for each point of the curve in each array";
+            return Err(TomlError::new(other.span(), sentence, help));
         }
     }
     let rows = tensions.get_ref().iter().zip(elongations.get_ref());
@@ -126,8 +126,8 @@ fn check(
         };
         checked.map_err(|error| {
             let sentence = format!("point {} of the curve {}", index + 1, reason(error));
-            let fix = "correct the point; `leg curve` makes a curve from a tensile test";
-            TomlError::new(place(index), sentence, fix)
+            let help = "correct the point; `leg curve` makes a curve from a tensile test";
+            TomlError::new(place(index), sentence, help)
         })?;
         before = Some(point);
     }

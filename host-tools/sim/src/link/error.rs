@@ -8,11 +8,8 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum LinkError {
     /// The image to boot is not there.
-    #[error("there is no firmware image at {path}; build it with `cargo image-qemu`")]
-    ImageMissing {
-        /// Where it should be.
-        path: String,
-    },
+    #[error("there is no firmware image at {0}; build it with `cargo image-qemu`")]
+    ImageMissing(String),
     /// The image is no ELF file with the firmware's log table.
     #[error("{path} is no image of this firmware ({reason}); build it with `cargo image-qemu`")]
     ImageUnreadable {
@@ -92,8 +89,11 @@ pub enum LinkError {
 
 impl LinkError {
     /// The system refused `action`.
-    pub fn system(action: &'static str) -> impl FnOnce(std::io::Error) -> Self {
-        move |source| Self::System { action, source }
+    pub fn system<E: Into<std::io::Error>>(action: &'static str) -> impl FnOnce(E) -> Self {
+        move |error| Self::System {
+            action,
+            source: error.into(),
+        }
     }
 }
 

@@ -1,17 +1,16 @@
 //! The simulated leg at its start.
 
-use super::body::Body;
 use super::defect::Defects;
+use super::dynamics::Dynamics;
 use super::encoder::Encoder;
 use super::energy::Work;
 use super::hand::Hand;
-use super::mechanism::Mechanism;
+use super::inertia::Inertia;
 use super::motor::{Motor, MotorType};
 use super::payload::Payload;
 use super::push::Push;
 use super::sensing::Cells;
 use super::supply::Supply;
-use super::temperature::Temperature;
 use super::tendon_pull::RealTendon;
 use super::{Plant, Start};
 use leg_base::tick_time::tick_s;
@@ -33,15 +32,15 @@ impl Plant {
         seed: u64,
     ) -> Result<Self, Error> {
         let bare = bare_body(rig, settings)?;
-        let mut mechanism = mechanism(rig, settings, bare)?;
-        let started = start.started(rig, &mechanism.rig, &mechanism.tendons)?;
-        mechanism.load = Load::new(&mechanism.rig, started.payload_kg)?;
-        mechanism.body = bare.loaded(started.payload_kg, mechanism.rig.tip_m());
+        let mut dynamics = dynamics(rig, settings, bare)?;
+        let started = start.started(rig, &dynamics.rig, &dynamics.tendons)?;
+        dynamics.load = Load::new(&dynamics.rig, started.payload_kg)?;
+        dynamics.inertia = bare.loaded(started.payload_kg, dynamics.rig.tip_m());
         let actuator = &rig.actuator;
         let substeps = settings.substeps.max(1);
         let mut plant = Self {
             actuator: *actuator,
-            mechanism,
+            dynamics,
             bare,
             leg: started.leg,
             motor_type: MotorType::new(actuator, 0.5 * tick_s() / f64::from(substeps)),
@@ -50,8 +49,9 @@ impl Plant {
                 open_v: actuator.supply_v,
                 resistance_ohm: settings.supply_resistance_ohm,
             },
-            temperature: Temperature::new(settings.ambient_c),
-            encoders: rig.calibration.counts_sign.map(Encoder::new),
+            temperature_c: settings.ambient_c,
+            ambient_c: settings.ambient_c,
+            encoders: std::array::from_fn(|i| Encoder::new(i, rig.calibration.counts_sign[i])),
             cells: Cells::new(actuator, settings, seed),
             defects: Defects::default(),
             emergency_stop: false,
@@ -69,13 +69,13 @@ impl Plant {
     }
 }
 
-fn bare_body(rig: &RigFile, settings: &PlantSettings) -> Result<Body, Error> {
-    let body = Body {
+fn bare_body(rig: &RigFile, settings: &PlantSettings) -> Result<Inertia, Error> {
+    let inertia = Inertia {
         transverse_kg_m2: settings.transverse_inertia_kg_m2(&rig.parameters),
         axial_kg_m2: settings.leg_axial_inertia_kg_m2,
     };
-    if body.transverse_kg_m2 > 0.0 && body.axial_kg_m2 > 0.0 {
-        return Ok(body);
+    if inertia.transverse_kg_m2 > 0.0 && inertia.axial_kg_m2 > 0.0 {
+        return Ok(inertia);
     }
     Err(Error::Refused {
         quantity: Quantity::LegMass,
@@ -84,16 +84,16 @@ fn bare_body(rig: &RigFile, settings: &PlantSettings) -> Result<Body, Error> {
 }
 
 /// Without a payload.
-fn mechanism(file: &RigFile, settings: &PlantSettings, body: Body) -> Result<Mechanism, Error> {
+fn dynamics(file: &RigFile, settings: &PlantSettings, inertia: Inertia) -> Result<Dynamics, Error> {
     let [first, second, third] = &file.tendons;
     let real = |tendon| RealTendon::new(tendon, settings.curve_error);
     let rig = Rig::new(&file.parameters)?;
-    Ok(Mechanism {
+    Ok(Dynamics {
         rig,
         support: file.support,
         tendons: [real(first)?, real(second)?, real(third)?],
         cut: [false; 3],
-        body,
+        inertia,
         load: Load::new(&rig, 0.0)?,
         push_n: Vector3::zeros(),
         joint_damping_nm_s_per_rad: settings.joint_damping_nm_s_per_rad,

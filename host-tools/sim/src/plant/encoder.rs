@@ -1,18 +1,13 @@
 //! An encoder and its counter.
 
+use super::defect::{Defect, Defects};
 use std::f64::consts::TAU;
-
-/// What is wrong with an encoder.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct EncoderDefect {
-    pub lost: bool,
-    pub slipping: bool,
-    pub reversed: bool,
-}
 
 /// The counter of one motor; it wraps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Encoder {
+    /// Its motor.
+    motor: usize,
     /// What it shows.
     pub counter: u16,
     /// Counts that passed its head.
@@ -25,26 +20,27 @@ pub(super) struct Encoder {
 
 impl Encoder {
     /// At zero; `sign` is negative if it counts down while the tendon is pulled in.
-    pub fn new(sign: f64) -> Self {
+    pub fn new(motor: usize, sign: f64) -> Self {
         Self {
+            motor,
             downwards: sign < 0.0,
             ..Self::default()
         }
     }
 
     /// Follows the rotor, whose angle since the start is `angle_rad`.
-    pub fn follow(&mut self, angle_rad: f64, counts_per_turn: f64, defect: EncoderDefect) {
+    pub fn follow(&mut self, angle_rad: f64, counts_per_turn: f64, defects: &Defects) {
         // Far below 2⁵³ counts.
         let now = (angle_rad * (counts_per_turn / TAU)).floor() as i64;
         let mut seen = now - self.passed;
         self.passed = now;
-        if defect.slipping {
+        if defects.has(Defect::EncoderSlipping(self.motor)) {
             seen -= self.slipped(seen);
         }
-        if defect.reversed != self.downwards {
+        if defects.has(Defect::EncoderReversed(self.motor)) != self.downwards {
             seen = -seen;
         }
-        if !defect.lost {
+        if !defects.has(Defect::EncoderLost(self.motor)) {
             // The counter wraps: only the lowest bits of the sum matter.
             self.counter = self.counter.wrapping_add(seen as u16);
         }

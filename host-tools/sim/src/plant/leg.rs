@@ -1,6 +1,6 @@
 //! Where the leg is and how it turns.
 
-use super::body::{Body, Guided};
+use super::inertia::{Guided, Inertia};
 use leg_model::{Direction, Geometry, Support, Twist};
 use nalgebra::Vector3;
 
@@ -10,7 +10,7 @@ const STOP: [f64; 2] = [0.258_819_045_102_520_76, 0.965_925_826_289_068_3];
 
 /// The leg's posture and rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Leg {
+pub(super) struct LegState {
     pub direction: Direction<f64>,
     /// Torsion beyond that which the joint itself gives the leg, rad.
     pub torsion_rad: f64,
@@ -18,7 +18,7 @@ pub(super) struct Leg {
     pub rate: Vector3<f64>,
 }
 
-impl Leg {
+impl LegState {
     pub fn at_rest(direction: Direction<f64>, torsion_rad: f64) -> Self {
         Self {
             direction,
@@ -40,8 +40,8 @@ impl Leg {
         straight.twisted(&twist.then(&Twist::from_torsion(self.torsion_rad)))
     }
 
-    /// Turns on for `span_s` by the midpoint rule. What a blow on the stop takes of the kinetic energy comes back, J.
-    pub fn drift(&mut self, support: &Support<f64>, body: &Body, span_s: f64) -> f64 {
+    /// Turns on for `span_s` by the midpoint rule. Returns the kinetic energy that an impact at the stop takes, J.
+    pub fn drift(&mut self, support: &Support<f64>, inertia: &Inertia, span_s: f64) -> f64 {
         let start = self.direction.vector();
         let half =
             start + self.guided_rate(support, &self.direction).cross(&start) * (0.5 * span_s);
@@ -53,11 +53,13 @@ impl Leg {
         let (end, stopped) = limited_by_stop(&(start + rate.cross(&halfway.vector()) * span_s));
         self.direction = end;
         self.rate = self.guided_rate(support, &end);
-        if stopped {
-            self.meet_stop(&Guided::new(body, support, &end))
-        } else {
-            0.0
+        if !stopped {
+            return 0.0;
         }
+        let before_j = inertia.kinetic_j(&end, &self.rate);
+        let guided = Guided::new(inertia, support, &end);
+        self.rate = guided.stopped(&self.rate).unwrap_or(self.rate);
+        before_j - inertia.kinetic_j(&end, &self.rate)
     }
 
     /// The rotation with the same components about x and y as the support allows it at a direction, rad/s.
@@ -68,12 +70,6 @@ impl Leg {
         support
             .plane(direction)
             .rotation([self.rate.x, self.rate.y])
-    }
-
-    fn meet_stop(&mut self, guided: &Guided) -> f64 {
-        let before = guided.kinetic_j(&self.rate);
-        self.rate = guided.stopped(&self.rate).unwrap_or(self.rate);
-        before - guided.kinetic_j(&self.rate)
     }
 }
 

@@ -8,7 +8,7 @@ use leg_rig::actuator::Actuator;
 pub(super) struct MotorType {
     actuator: Actuator,
     /// Half a step of the integration, s.
-    half_s: f64,
+    pub half_s: f64,
     /// Part of a difference of currents that remains after half a step.
     decay: f64,
 }
@@ -21,28 +21,17 @@ impl MotorType {
             decay: (-half_s * actuator.resistance_ohm / actuator.inductance_h).exp(),
         }
     }
-
-    /// Half a step of the integration, s.
-    pub fn half_s(&self) -> f64 {
-        self.half_s
-    }
 }
 
-/// What the drivers and defects do to a motor.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Wiring {
+/// One motor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Motor {
     /// Part of the supply at the motor, −1 to 1.
     pub duty: f64,
     /// Whether the driver's outputs are off.
     pub open: bool,
     /// Whether the rotor is held.
     pub jammed: bool,
-}
-
-/// One motor.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Motor {
-    pub wiring: Wiring,
     pub current_a: f64,
     /// Speed of the rotor, rad/s.
     pub speed: f64,
@@ -54,7 +43,9 @@ pub(super) struct Motor {
 impl Motor {
     pub fn new(actuator: &Actuator) -> Self {
         Self {
-            wiring: Wiring::default(),
+            duty: 0.0,
+            open: false,
+            jammed: false,
             current_a: 0.0,
             speed: 0.0,
             angle_rad: 0.0,
@@ -62,18 +53,13 @@ impl Motor {
         }
     }
 
-    /// Current that the motor draws from the supply, A.
-    pub fn drawn_a(&self, current_a: f64) -> f64 {
-        self.wiring.duty * current_a
-    }
-
     /// The current after half a step at a supply, A: exact for a speed that stays.
     pub fn next_current_a(&self, kind: &MotorType, supply_v: f64) -> f64 {
-        if self.wiring.open {
+        if self.open {
             return 0.0;
         }
         let back_v = kind.actuator.torque_constant_nm_per_a * self.speed;
-        let final_a = (self.wiring.duty * supply_v - back_v) / kind.actuator.resistance_ohm;
+        let final_a = (self.duty * supply_v - back_v) / kind.actuator.resistance_ohm;
         final_a + (self.current_a - final_a) * kind.decay
     }
 
@@ -88,7 +74,7 @@ impl Motor {
         let free = self.speed + driving_nm * per_torque;
         let resisting_nm = actuator.friction_nm + self.screw.resistance_nm(free, pull_n);
         let left = (free.abs() - resisting_nm * per_torque).max(0.0);
-        self.speed = if self.wiring.jammed {
+        self.speed = if self.jammed {
             0.0
         } else {
             left.copysign(free)

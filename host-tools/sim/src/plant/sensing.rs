@@ -16,11 +16,6 @@ pub(super) fn code(value: f64, [low, high]: [f64; 2]) -> u16 {
     ((part * f64::from(CODE_MAX)).round() as u16).min(CODE_MAX)
 }
 
-/// Codes around half of the highest one, which is none.
-pub(super) fn code_around_none(value: f64, range: f64) -> u16 {
-    code(value, [-range, range])
-}
-
 /// The load cells.
 #[derive(Clone, Debug)]
 pub(super) struct Cells {

@@ -1,6 +1,6 @@
 //! How a simulated leg starts.
 
-use super::leg::Leg;
+use super::leg::LegState;
 use super::tendon_pull::RealTendon;
 use crate::range;
 use leg_base::angles;
@@ -21,7 +21,7 @@ pub enum Start {
         #[serde(deserialize_with = "range::slack_mm")]
         slack_mm: f64,
     },
-    /// The tendons hold it at a pose with a payload, as [`leg_model::inverse_statics`] says. It knows its zero.
+    /// The tendons hold it at a pose with a payload, as [`leg_model::inverse_statics`] says. Its zero is known.
     Held {
         /// Azimuth, degrees.
         #[serde(deserialize_with = "range::azimuth_deg")]
@@ -47,7 +47,7 @@ impl Default for Start {
 /// What a start says of the leg and its tendons.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Started {
-    pub leg: Leg,
+    pub leg: LegState,
     /// Length of each tendon without tension, m.
     pub unstretched_m: [f64; 3],
     pub payload_kg: f64,
@@ -90,19 +90,40 @@ impl Start {
         rig: &Rig<f64, 3>,
         tendons: &[RealTendon; 3],
     ) -> Result<Started, Error> {
-        match *self {
-            Self::Slack { slack_mm } => slack(rig, slack_mm / 1000.0),
+        let (azimuth_deg, tilt_deg, pretension_n, payload_kg) = match *self {
+            Self::Slack { slack_mm } => return slack(rig, slack_mm / 1000.0),
             Self::Held {
                 azimuth_deg,
                 tilt_deg,
                 pretension_n,
                 payload_kg,
-            } => {
-                let direction =
-                    Direction::from_angles(azimuth_deg.to_radians(), tilt_deg.to_radians())?;
-                held(file, rig, tendons, direction, pretension_n, payload_kg)
-            }
+            } => (azimuth_deg, tilt_deg, pretension_n, payload_kg),
+        };
+        let direction = Direction::from_angles(azimuth_deg.to_radians(), tilt_deg.to_radians())?;
+        let bounds = TensionBounds::new(file.f_min_n, file.f_max_n)?;
+        let moment = Load::new(rig, payload_kg)?.moment(&direction);
+        let support = &file.support;
+        let torsion = elastic_torsion(rig, support, &direction, &moment, &bounds, pretension_n)?;
+        let hold = inverse_statics(
+            rig,
+            support,
+            &direction,
+            &moment,
+            &bounds,
+            &file.tendons,
+            pretension_n,
+        )
+        .map_err(refusal)?;
+        let mut unstretched_m: [f64; 3] = hold.unstretched.into();
+        for (i, tendon) in tendons.iter().enumerate() {
+            let n = hold.tensions[i];
+            unstretched_m[i] += file.tendons[i].elongation(n)? - tendon.elongation_m(n)?;
         }
+        Ok(Started {
+            leg: LegState::at_rest(direction, torsion),
+            unstretched_m,
+            payload_kg,
+        })
     }
 }
 
@@ -111,43 +132,9 @@ fn slack(rig: &Rig<f64, 3>, slack_m: f64) -> Result<Started, Error> {
     let down = Direction::down();
     let lengths = inverse_kinematics(rig.geometry(), &down)?.lengths;
     Ok(Started {
-        leg: Leg::at_rest(down, 0.0),
+        leg: LegState::at_rest(down, 0.0),
         unstretched_m: lengths.add_scalar(slack_m).into(),
         payload_kg: 0.0,
-    })
-}
-
-fn held(
-    file: &RigFile,
-    rig: &Rig<f64, 3>,
-    tendons: &[RealTendon; 3],
-    direction: Direction<f64>,
-    pretension_n: f64,
-    payload_kg: f64,
-) -> Result<Started, Error> {
-    let bounds = TensionBounds::new(file.f_min_n, file.f_max_n)?;
-    let moment = Load::new(rig, payload_kg)?.moment(&direction);
-    let support = &file.support;
-    let torsion = elastic_torsion(rig, support, &direction, &moment, &bounds, pretension_n)?;
-    let hold = inverse_statics(
-        rig,
-        support,
-        &direction,
-        &moment,
-        &bounds,
-        &file.tendons,
-        pretension_n,
-    )
-    .map_err(refusal)?;
-    let mut unstretched_m: [f64; 3] = hold.unstretched.into();
-    for (i, tendon) in tendons.iter().enumerate() {
-        let tension = hold.tensions[i];
-        unstretched_m[i] += file.tendons[i].elongation(tension)? - tendon.elongation_m(tension)?;
-    }
-    Ok(Started {
-        leg: Leg::at_rest(direction, torsion),
-        unstretched_m,
-        payload_kg,
     })
 }
 

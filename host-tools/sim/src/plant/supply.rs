@@ -18,7 +18,7 @@ impl Supply {
 
     fn under(&self, motors: &[Motor; 3], currents_a: [f64; 3]) -> f64 {
         let pairs = motors.iter().zip(currents_a);
-        let drawn: f64 = pairs.map(|(motor, current)| motor.drawn_a(current)).sum();
+        let drawn: f64 = pairs.map(|(motor, current)| motor.duty * current).sum();
         (self.open_v - self.resistance_ohm * drawn).max(0.0)
     }
 

@@ -50,25 +50,18 @@ impl RealTendon {
     /// Tension at an elongation in m without its damping, N; none when slack.
     pub fn tension_n(&self, elongation_m: f64) -> f64 {
         let by_curve = elongation_m / self.scale;
-        let beyond = || self.end_n + (by_curve - self.end_m) * self.end_n_per_m;
-        if by_curve < self.end_m {
-            self.tendon.tension(by_curve).unwrap_or_else(|_| beyond())
-        } else {
-            beyond()
-        }
+        let farther = by_curve - self.end_m;
+        let curve = self.tendon.tension(by_curve).ok().filter(|_| farther < 0.0);
+        curve.unwrap_or(self.end_n + farther * self.end_n_per_m)
     }
 
     /// Elastic energy at an elongation in m, J.
     pub fn energy_j(&self, elongation_m: f64) -> f64 {
         let by_curve = elongation_m / self.scale;
         let farther = by_curve - self.end_m;
-        let beyond = || self.end_j + farther * (self.end_n + 0.5 * farther * self.end_n_per_m);
-        let energy = if farther < 0.0 {
-            self.tendon.energy(by_curve).unwrap_or_else(|_| beyond())
-        } else {
-            beyond()
-        };
-        energy * self.scale
+        let curve = self.tendon.energy(by_curve).ok().filter(|_| farther < 0.0);
+        let beyond = self.end_j + farther * (self.end_n + 0.5 * farther * self.end_n_per_m);
+        curve.unwrap_or(beyond) * self.scale
     }
 
     /// Elongation under a tension in N, m.

@@ -4,10 +4,12 @@ use crate::range;
 use leg_base::angles;
 use leg_firmware::command::{Command, Compensation};
 use serde::Deserialize;
+use strum::VariantNames;
 
 /// A command to the leg. What the leg itself refuses is let through, so that the refusal can be seen.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, VariantNames)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[strum(serialize_all = "snake_case")]
 pub enum CommandStep {
     /// To follow commands.
     Arm,
@@ -46,20 +48,6 @@ pub enum CommandStep {
 }
 
 impl CommandStep {
-    /// Their names in files.
-    pub(super) const NAMES: [&'static str; 10] = [
-        "arm",
-        "home",
-        "hold",
-        "stop",
-        "disarm",
-        "clear",
-        "move",
-        "pretension_n",
-        "stiffness",
-        "compensation",
-    ];
-
     /// What the host sends.
     #[must_use]
     pub fn command(&self) -> Command {

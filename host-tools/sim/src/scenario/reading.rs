@@ -1,34 +1,35 @@
 //! Reading a scenario, each refusal with its place in the text.
 
-use super::Scenario;
+use super::{Scenario, Step, refused};
 use leg_rig::toml_error::TomlError;
-use leg_rig::toml_section::Section;
 use leg_rig::{gains, renamed_keys};
 use serde::Deserialize;
-use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, Deserializer, Error};
 
 pub(super) fn read(text: &str) -> Result<Scenario, TomlError> {
-    let refused = |error: Error| refused(error.message().into(), error.span());
-    let mut table = DeTable::parse(text).map_err(refused)?;
+    let mut table = DeTable::parse(text).map_err(serde_refusal)?;
     let notes = renamed_keys::replace(table.get_mut())?;
-    let scenario = Scenario::deserialize(Deserializer::from(table.clone())).map_err(refused)?;
+    let scenario =
+        Scenario::deserialize(Deserializer::from(table.clone())).map_err(serde_refusal)?;
     let root = table.get_ref();
-    if scenario.steps.is_empty() {
-        let steps = root.get("steps").map(Spanned::span);
-        return Err(self::refused("there is no step".into(), steps));
+    let steps = root.get("steps");
+    let given = steps.and_then(|steps| steps.get_ref().as_array());
+    let given = given.map_or(&[][..], |given| &given[..]);
+    if given.is_empty() {
+        return Err(refused("there is no step".into(), steps.map(Spanned::span)));
     }
     Ok(Scenario {
-        control: gains::read(&Section::unchecked(root))?,
+        steps: given.iter().map(Step::read).collect::<Result<_, _>>()?,
+        control: gains::read(root)?,
         notes,
         ..scenario
     })
 }
 
-fn refused(sentence: String, span: Option<Range<usize>>) -> TomlError {
-    let fix = "see the ready scenarios for what there is".to_string();
-    TomlError::new(span.unwrap_or_default(), sentence, fix)
+/// What serde refuses, at its place.
+fn serde_refusal(error: Error) -> TomlError {
+    refused(error.message().into(), error.span())
 }
 
 #[cfg(test)]
@@ -46,6 +47,21 @@ mod tests {
     fn a_number_that_no_leg_can_meet_is_refused_at_its_place() {
         for (text, sentence, place) in [
             ("steps = []", "there is no step", "2:9"),
+            (
+                "steps = 3",
+                "invalid type: integer `3`, expected a sequence",
+                "2:9",
+            ),
+            (
+                "steps = [\"\"]",
+                "unknown variant ``, expected one of `arm`, `home`",
+                "2:10",
+            ),
+            (
+                "steps = [{ wait_s = \"x\" }]",
+                "invalid type: string \"x\", expected a number",
+                "2:21",
+            ),
             (
                 "steps = [\"arm\", { payload = { kg = nan } }]",
                 "kg = NaN is not from 0 to 50",

@@ -1,11 +1,12 @@
 //! What happens in a scenario: actions, commands, and waits and measurements.
 
-use super::{CommandStep, TestStep};
+use super::{CommandStep, TestStep, refused};
 use crate::action::Action;
-use serde::de::value::EnumAccessDeserializer;
-use serde::de::{DeserializeSeed, EnumAccess, Error, IntoDeserializer, VariantAccess, Visitor};
-use serde::{Deserialize, Deserializer};
-use std::fmt;
+use leg_rig::toml_error::TomlError;
+use serde::Deserialize;
+use strum::VariantNames;
+use toml::Spanned;
+use toml::de::{DeValue, ValueDeserializer};
 
 /// One step. A step that waits or measures takes its time; every other one is done in the same tick.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,89 +19,62 @@ pub enum Step {
     Test(TestStep),
 }
 
-/// All names of steps, for messages.
-fn names() -> impl Iterator<Item = &'static str> {
-    let names = CommandStep::NAMES.into_iter().chain(Action::NAMES);
-    names.chain(TestStep::NAMES)
-}
-
-impl<'de> Deserialize<'de> for Step {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_enum("Step", &[], StepVisitor)
-    }
-}
-
-/// Reads the name of a step, and then the one of the three that has it.
-struct StepVisitor;
-
-impl<'de> Visitor<'de> for StepVisitor {
-    type Value = Step;
-
-    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str("a step")
-    }
-
-    fn visit_enum<A: EnumAccess<'de>>(self, access: A) -> Result<Step, A::Error> {
-        let (StepName(name), variant) = access.variant()?;
-        let step = EnumAccessDeserializer::new(Named { name, variant });
-        if Action::NAMES.contains(&name) {
-            Action::deserialize(step).map(Step::Action)
-        } else if CommandStep::NAMES.contains(&name) {
-            CommandStep::deserialize(step).map(Step::Command)
+impl Step {
+    /// Reads an action, a command or a test, by the name of the step.
+    pub(super) fn read(value: &Spanned<DeValue<'_>>) -> Result<Self, TomlError> {
+        let table = value.get_ref().as_table().filter(|table| table.len() == 1);
+        let (name, place, argument) =
+            match (table.and_then(|table| table.iter().next()), value.get_ref()) {
+                (Some((name, argument)), _) => {
+                    (Some(name.get_ref().as_ref()), name.span(), argument.span())
+                }
+                (None, DeValue::String(name)) => (Some(name.as_ref()), value.span(), value.span()),
+                _ => (None, value.span(), value.span()),
+            };
+        let step = ValueDeserializer::from(value.clone());
+        let is_one_of = |names: &[&str]| name.is_some_and(|name| names.contains(&name));
+        let read = if is_one_of(Action::VARIANTS) {
+            Action::deserialize(step).map(Self::Action)
+        } else if is_one_of(CommandStep::VARIANTS) {
+            CommandStep::deserialize(step).map(Self::Command)
+        } else if let Some(name) = name.filter(|_| !is_one_of(TestStep::VARIANTS)) {
+            let known = [CommandStep::VARIANTS, Action::VARIANTS, TestStep::VARIANTS].concat();
+            let known = known.join("`, `");
+            let sentence = format!("unknown variant `{name}`, expected one of `{known}`");
+            return Err(refused(sentence, Some(place)));
         } else {
-            TestStep::deserialize(step).map(Step::Test)
-        }
-    }
-}
-
-/// A name that a step has.
-struct StepName(&'static str);
-
-impl<'de> Deserialize<'de> for StepName {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let found = String::deserialize(deserializer)?;
-        names()
-            .find(|name| *name == found)
-            .map(Self)
-            .ok_or_else(|| {
-                let known: Vec<_> = names().map(|name| format!("`{name}`")).collect();
-                D::Error::custom(format!(
-                    "unknown variant `{found}`, expected one of {}",
-                    known.join(", ")
-                ))
-            })
-    }
-}
-
-/// A step whose name has been read.
-struct Named<V> {
-    name: &'static str,
-    variant: V,
-}
-
-impl<'de, V: VariantAccess<'de>> EnumAccess<'de> for Named<V> {
-    type Error = V::Error;
-    type Variant = V;
-
-    fn variant_seed<S: DeserializeSeed<'de>>(
-        self,
-        seed: S,
-    ) -> Result<(S::Value, Self::Variant), Self::Error> {
-        let name = seed.deserialize(self.name.into_deserializer())?;
-        Ok((name, self.variant))
+            TestStep::deserialize(step).map(Self::Test)
+        };
+        read.map_err(|error| {
+            // Where a step has a single number, serde gives the place of the whole step.
+            let nearer = error.span().filter(|span| *span != value.span());
+            refused(error.message().into(), nearer.or(Some(argument)))
+        })
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Step, names};
+    use super::{Action, CommandStep, TestStep};
+    use serde::de::{DeserializeOwned, IntoDeserializer, value};
+    use strum::VariantNames;
+
+    /// What of the names serde takes for no variant.
+    fn unknown<T: DeserializeOwned + VariantNames>() -> Vec<&'static str> {
+        let is_unknown = |name: &&&'static str| {
+            let read = T::deserialize(IntoDeserializer::<value::Error>::into_deserializer(**name));
+            read.is_err_and(|error| error.to_string().contains("unknown variant"))
+        };
+        T::VARIANTS.iter().filter(is_unknown).copied().collect()
+    }
 
     #[test]
     fn every_name_is_that_of_a_step() {
-        for name in names() {
-            let refusal = serde_json::from_str::<Step>(&format!(r#"{{"{name}":[]}}"#)).err();
-            let refusal = refusal.map(|error| error.to_string()).unwrap_or_default();
-            assert!(!refusal.contains("unknown variant"), "{refusal}");
-        }
+        let unknown = [
+            unknown::<Action>(),
+            unknown::<CommandStep>(),
+            unknown::<TestStep>(),
+        ];
+        assert_eq!(unknown.concat(), [""; 0]);
     }
 }

@@ -4,10 +4,12 @@ use super::Measurand;
 use crate::range;
 use leg_firmware::supervisor::{Fault, State};
 use serde::{Deserialize, Deserializer, de::Error};
+use strum::VariantNames;
 
 /// Something that is awaited or measured, or done to the host's line.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, VariantNames)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[strum(serialize_all = "snake_case")]
 pub enum TestStep {
     /// Sends so many random bytes to the leg.
     Garbage(u32),
@@ -79,21 +81,6 @@ pub struct PushTest {
     /// How far from that it may be, percent.
     #[serde(deserialize_with = "range::within_percent")]
     pub within_percent: f64,
-}
-
-impl TestStep {
-    /// Their names in files.
-    pub(super) const NAMES: [&'static str; 9] = [
-        "garbage",
-        "silence",
-        "wait_s",
-        "await",
-        "arrive",
-        "mark",
-        "reaction",
-        "measure",
-        "push_test",
-    ];
 }
 
 /// A lower and a higher number.

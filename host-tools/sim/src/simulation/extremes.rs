@@ -7,11 +7,23 @@ use nalgebra::Vector3;
 /// How far beyond its bounds a tension may be for a short time, as a part of the bound.
 const BEYOND: f64 = 0.05;
 
+/// Lowest and highest of no tension.
+pub(super) const NO_RANGE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+
+/// The lowest and the highest of a range and the tensions, N.
+pub(super) fn range_with_tensions([low, high]: [f64; 2], truth: &Truth) -> [f64; 2] {
+    let tensions = truth.tensions_n.into_iter();
+    [
+        tensions.clone().fold(low, f64::min),
+        tensions.fold(high, f64::max),
+    ]
+}
+
 /// The extremes since a mark.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Extremes {
-    pub tension_min_n: f64,
-    pub tension_max_n: f64,
+    /// Lowest and highest tension, N.
+    pub tensions_n: [f64; 2],
     /// Longest time outside the bounds, ms.
     pub outside_ms: f64,
     pub tip_moved_mm: f64,
@@ -22,8 +34,7 @@ pub(super) struct Extremes {
 impl Extremes {
     pub fn new(truth: &Truth) -> Self {
         Self {
-            tension_min_n: f64::INFINITY,
-            tension_max_n: f64::NEG_INFINITY,
+            tensions_n: NO_RANGE,
             outside_ms: 0.0,
             tip_moved_mm: 0.0,
             tip_m: truth.tip_m,
@@ -32,13 +43,8 @@ impl Extremes {
     }
 
     pub fn take(&mut self, truth: &Truth, [f_min_n, f_max_n]: [f64; 2]) {
-        let lowest = truth.tensions_n.into_iter().fold(f64::INFINITY, f64::min);
-        let highest = truth
-            .tensions_n
-            .into_iter()
-            .fold(f64::NEG_INFINITY, f64::max);
-        self.tension_min_n = self.tension_min_n.min(lowest);
-        self.tension_max_n = self.tension_max_n.max(highest);
+        self.tensions_n = range_with_tensions(self.tensions_n, truth);
+        let [lowest, highest] = range_with_tensions(NO_RANGE, truth);
         let outside = lowest < f_min_n * (1.0 - BEYOND) || highest > f_max_n * (1.0 + BEYOND);
         self.outside_now_ms = if outside {
             self.outside_now_ms + tick_s() * 1000.0

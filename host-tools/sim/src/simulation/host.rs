@@ -2,6 +2,7 @@
 
 use super::SimulationError;
 use crate::emulated_leg::HostBytes;
+use crate::link::next_sequence;
 use leg_firmware::command::Command;
 use leg_firmware::frame::{self, MAX_FRAME};
 use leg_firmware::host_link::{HOST_SCHEMA, Hello, HostId, HostRequest};
@@ -47,7 +48,7 @@ impl Host {
     }
 
     fn ask(&mut self, request: &HostRequest) -> Result<(), SimulationError> {
-        self.sequence = self.sequence.checked_add(1).unwrap_or(1);
+        self.sequence = next_sequence(self.sequence);
         let mut out = [0; MAX_FRAME];
         let bytes =
             frame::encode(self.sequence, request, &mut out).map_err(SimulationError::Command)?;

@@ -5,17 +5,16 @@ use crate::scenario::Measurand;
 use leg_firmware::telemetry::Telemetry;
 
 pub(super) fn measure(measurand: Measurand, stand: &TestStand<'_>) -> f64 {
-    let seen = &stand.seen;
     let reported = |value: fn(&Telemetry<f32>) -> f32| {
-        let value = seen.telemetry.as_ref().map(value);
+        let value = stand.telemetry.as_ref().map(value);
         value.map_or(f64::NAN, f64::from)
     };
     match measurand {
-        Measurand::TipErrorMm => (seen.average_tip_m() - seen.commanded_m()).norm() * 1000.0,
-        Measurand::TipMovedMm => seen.extremes.tip_moved_mm,
-        Measurand::TensionMinN => seen.extremes.tension_min_n,
-        Measurand::TensionMaxN => seen.extremes.tension_max_n,
-        Measurand::OutsideMs => seen.extremes.outside_ms,
+        Measurand::TipErrorMm => (stand.average_tip_m() - stand.commanded_m()).norm() * 1000.0,
+        Measurand::TipMovedMm => stand.extremes.tip_moved_mm,
+        Measurand::TensionMinN => stand.extremes.tensions_n[0],
+        Measurand::TensionMaxN => stand.extremes.tensions_n[1],
+        Measurand::OutsideMs => stand.extremes.outside_ms,
         Measurand::PayloadKg => reported(|telemetry| telemetry.payload_kg),
         Measurand::PretensionN => reported(|telemetry| telemetry.pretension_n),
         Measurand::StiffnessNmPerRad => reported(|telemetry| telemetry.stiffness_nm_per_rad),
@@ -24,11 +23,11 @@ pub(super) fn measure(measurand: Measurand, stand: &TestStand<'_>) -> f64 {
 }
 
 fn homing_error_mm(stand: &TestStand<'_>) -> f64 {
-    let telemetry = stand.seen.telemetry;
+    let telemetry = stand.telemetry;
     let found = telemetry.map_or([f32::NAN; 3], |telemetry| telemetry.unstretched_at_zero_m);
     let errors = found
         .iter()
-        .zip(stand.plant().unstretched_at_zero_m())
+        .zip(stand.leg.plant().unstretched_at_zero_m())
         .map(|(found, real)| (f64::from(*found) - real).abs() * 1000.0);
     errors.fold(0.0, f64::max)
 }

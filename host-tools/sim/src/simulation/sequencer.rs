@@ -2,9 +2,9 @@
 
 use super::extremes::Extremes;
 use super::measure::measure;
-use super::summary::{Measurement, SimulationError};
+use super::summary::SimulationError;
 use super::test_stand::TestStand;
-use crate::scenario::{Measurand, PushTest, Scenario, Step, TestStep};
+use crate::scenario::{PushTest, Scenario, Step, TestStep};
 use leg_base::description;
 use leg_firmware::supervisor::{FaultSet, State};
 use nalgebra::Vector3;
@@ -30,8 +30,8 @@ pub(super) struct Sequencer<'a> {
     before_m: Option<Vector3<f64>>,
     /// Since when the leg has arrived, s.
     arrived_s: Option<f64>,
-    measurements: Vec<Measurement>,
-    expected: FaultSet,
+    /// Faults that may come.
+    pub expected: FaultSet,
 }
 
 impl<'a> Sequencer<'a> {
@@ -48,13 +48,7 @@ impl<'a> Sequencer<'a> {
             acted_s: 0.0,
             before_m: None,
             arrived_s: None,
-            measurements: Vec::new(),
         }
-    }
-
-    /// What was measured, and the faults that are expected.
-    pub fn finish(self) -> (Vec<Measurement>, FaultSet) {
-        (self.measurements, self.expected)
     }
 
     /// Does all steps that are due; the number of the step that takes time, or none at the end.
@@ -76,33 +70,30 @@ impl<'a> Sequencer<'a> {
         step: &Step,
         stand: &mut TestStand<'_>,
     ) -> Result<bool, SimulationError> {
-        if let Step::Test(step) = step
-            && let Some(done) = self.test(step, stand)?
-        {
-            return Ok(done);
-        }
-        self.acted_s = stand.time_s();
         match step {
-            Step::Action(action) => action.apply(stand.plant_mut()),
+            Step::Action(action) => action.apply(stand.leg.plant_mut()),
             Step::Command(command) => stand.command(command)?,
             Step::Test(TestStep::Garbage(count)) => stand.host.send_garbage(*count),
             Step::Test(TestStep::Silence(silent)) => stand.host.silent = *silent,
-            Step::Test(_) => stand.seen.extremes = Extremes::new(&stand.seen.truth),
+            Step::Test(TestStep::Mark) => stand.extremes = Extremes::new(&stand.truth),
+            Step::Test(step) => return self.test(step, stand),
         }
+        self.acted_s = stand.time_s();
         Ok(true)
     }
 
-    /// Whether a step that waits or measures is done; none for one that acts.
+    /// Whether a step that waits or measures is done.
     fn test(
         &mut self,
         step: &TestStep,
         stand: &mut TestStand<'_>,
-    ) -> Result<Option<bool>, SimulationError> {
-        let done = match step {
-            TestStep::Garbage(_) | TestStep::Silence(_) | TestStep::Mark => return Ok(None),
+    ) -> Result<bool, SimulationError> {
+        Ok(match step {
+            // These act when they begin and wait for nothing.
+            TestStep::Garbage(_) | TestStep::Silence(_) | TestStep::Mark => true,
             TestStep::WaitS(time_s) => stand.time_s() - self.began_s >= *time_s,
             TestStep::Await { state, timeout_s } => {
-                let there = stand.seen.state() == *state;
+                let there = stand.state() == *state;
                 self.in_time(there, description::state(*state), *timeout_s, stand)?
             }
             TestStep::Arrive { then_s, timeout_s } => self.arrive(*then_s, *timeout_s, stand)?,
@@ -112,7 +103,7 @@ impl<'a> Sequencer<'a> {
                 within_ms,
             } => {
                 self.expected.add(*fault, true);
-                let telemetry = stand.seen.telemetry;
+                let telemetry = stand.telemetry;
                 let seen = telemetry.is_some_and(|telemetry| telemetry.faults.has(*fault));
                 self.reaction(seen, fault.entry().name, *state, *within_ms, stand)?
             }
@@ -122,12 +113,11 @@ impl<'a> Sequencer<'a> {
                 between,
             } => {
                 let value = (measure(*quantity, stand), quantity.unit());
-                self.record(name, value, *between, Some(*quantity), stand);
+                stand.record(name, value, *between, Some(*quantity));
                 true
             }
             TestStep::PushTest(push) => self.push_test(push, stand),
-        };
-        Ok(Some(done))
+        })
     }
 
     fn in_time(
@@ -156,7 +146,7 @@ impl<'a> Sequencer<'a> {
     ) -> Result<bool, SimulationError> {
         let now_s = stand.time_s();
         let started = now_s - self.began_s > COMMAND_S;
-        let telemetry = stand.seen.telemetry;
+        let telemetry = stand.telemetry;
         let still = telemetry.is_some_and(|telemetry| !telemetry.moving);
         if started && still {
             self.arrived_s.get_or_insert(now_s);
@@ -172,13 +162,13 @@ impl<'a> Sequencer<'a> {
         name: &str,
         state: State,
         within_ms: f64,
-        stand: &TestStand<'_>,
+        stand: &mut TestStand<'_>,
     ) -> Result<bool, SimulationError> {
-        let there = seen && stand.seen.state() == state;
+        let there = seen && stand.state() == state;
         if there {
             let value_ms = (stand.time_s() - self.acted_s) * 1000.0;
             let name = format!("{name}: {}", description::state(state));
-            self.record(&name, (value_ms, "ms"), [0.0, within_ms], None, stand);
+            stand.record(&name, (value_ms, "ms"), [0.0, within_ms], None);
         }
         let timeout_s = REACTION_TIMEOUT_S + within_ms / 1000.0;
         self.in_time(there, name, timeout_s, stand)
@@ -186,11 +176,11 @@ impl<'a> Sequencer<'a> {
 
     /// Pushes across the leg and compares the moment with the angle.
     fn push_test(&mut self, push: &PushTest, stand: &mut TestStand<'_>) -> bool {
-        let across = stand.plant().across(push.azimuth_deg);
+        let across = stand.leg.plant().across(push.azimuth_deg);
         let Some(before_m) = self.before_m else {
-            self.before_m = Some(stand.seen.average_tip_m());
+            self.before_m = Some(stand.average_tip_m());
             let force_n = across * push.force_n;
-            let plant = stand.plant_mut();
+            let plant = stand.leg.plant_mut();
             plant.push(force_n, push.settle_s, PUSH_TEST_RISE_S);
             return false;
         };
@@ -198,40 +188,21 @@ impl<'a> Sequencer<'a> {
             return false;
         }
         let length_m = before_m.norm();
-        let moved_m = (stand.seen.average_tip_m() - before_m).dot(&across);
+        let moved_m = (stand.average_tip_m() - before_m).dot(&across);
         let stiffness = push.force_n * length_m / (moved_m / length_m);
         let off = push.nm_per_rad * push.within_percent / 100.0;
         let between = [push.nm_per_rad - off, push.nm_per_rad + off];
-        self.record(&push.name, (stiffness, "N·m/rad"), between, None, stand);
+        stand.record(&push.name, (stiffness, "N·m/rad"), between, None);
         self.before_m = None;
-        stand.plant_mut().push(Vector3::zeros(), 0.0, 0.0);
+        stand.leg.plant_mut().push(Vector3::zeros(), 0.0, 0.0);
         true
-    }
-
-    fn record(
-        &mut self,
-        name: &str,
-        (value, unit): (f64, &'static str),
-        between: [f64; 2],
-        quantity: Option<Measurand>,
-        stand: &TestStand<'_>,
-    ) {
-        self.measurements.push(Measurement {
-            name: name.into(),
-            value,
-            unit,
-            between,
-            at_s: stand.time_s(),
-            quantity,
-            compensated: stand.seen.compensated,
-        });
     }
 }
 
 /// The state of the leg and its faults as text.
 fn describe(stand: &TestStand<'_>) -> String {
-    let state = description::state(stand.seen.state());
-    match stand.seen.telemetry {
+    let state = description::state(stand.state());
+    match stand.telemetry {
         Some(telemetry) if telemetry.faults.any() => {
             format!("{state} ({})", description::faults(telemetry.faults))
         }

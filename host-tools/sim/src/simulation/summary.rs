@@ -27,20 +27,12 @@ pub enum SimulationError {
     },
     /// A number of the simulated leg is lost.
     #[error(
-        "at {time_s:.3} s the simulated leg has no finite place or tension any more; look what acts on it"
+        "at {0:.3} s the simulated leg has no finite place or tension any more; look what acts on it"
     )]
-    NotFinite {
-        /// s.
-        time_s: f64,
-    },
+    NotFinite(f64),
     /// It takes too long.
-    #[error(
-        "step {step} is not over after ten minutes of the leg's time; make the scenario shorter"
-    )]
-    Endless {
-        /// The step, counted from 1.
-        step: usize,
-    },
+    #[error("step {0} is not over after ten minutes of the leg's time; make the scenario shorter")]
+    Endless(usize),
     /// A command has no form.
     #[error("a command cannot be sent: {0}")]
     Command(leg_firmware::frame::FrameError),
@@ -89,7 +81,7 @@ pub struct Sample {
 }
 
 /// What came out.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Summary {
     /// What was measured.
     pub measurements: Vec<Measurement>,
@@ -117,7 +109,7 @@ impl SimulationError {
     pub(super) const fn midway(&self) -> bool {
         matches!(
             self,
-            Self::Timeout { .. } | Self::Endless { .. } | Self::NotFinite { .. }
+            Self::Timeout { .. } | Self::Endless(_) | Self::NotFinite(_)
         )
     }
 }

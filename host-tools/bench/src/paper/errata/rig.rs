@@ -23,9 +23,9 @@ impl LoadedPose<'_> {
     pub(super) fn centroid(&self) -> Result<Numbers, Error> {
         let p = &self.rig.parameters;
         // (28, 91, 0) in {A}: 91 mm beside the vertical axis.
-        let beside = 0.028_f64.hypot(0.091);
+        let distance_m = 0.028_f64.hypot(0.091);
         Ok((
-            beside * p.leg_mass_kg * p.gravity_m_per_s2,
+            distance_m * p.leg_mass_kg * p.gravity_m_per_s2,
             load_moment(p, &Matrix3::identity(), 0.0).norm(),
         ))
     }

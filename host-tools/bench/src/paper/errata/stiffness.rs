@@ -32,9 +32,9 @@ impl LoadedPose<'_> {
     pub(super) fn equation_18(&self) -> Result<Numbers, Error> {
         let joint = elastic_joint();
         let right = printed::joint_stiffness_leg_fixed(&joint, &self.direction);
-        let along = |k: &Matrix3<f64>| self.direction.vector().dot(&(k * self.direction.vector()));
+        let axial = |k: &Matrix3<f64>| self.direction.vector().dot(&(k * self.direction.vector()));
         let printed = printed::support_stiffness(&joint, &self.rotation);
-        Ok((printed.map_or(f64::NAN, |k| along(&k)), along(&right)))
+        Ok((printed.map_or(f64::NAN, |k| axial(&k)), axial(&right)))
     }
 
     pub(super) fn equation_20(&self) -> Result<Numbers, Error> {

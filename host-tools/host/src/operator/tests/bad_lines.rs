@@ -1,14 +1,13 @@
 //! Lines that lose frames, and lines on which nothing gets through any more.
 
 use super::{
-    BadLine, begin_move, cancel_in_mid_move, hanging_leg, host, lean, operator, state, stiffness,
-    telemetry,
+    BadLine, begin_move, cancel_in_mid_move, hanging_leg, host, is_failed, lean, operator, state,
+    stiffness, telemetry,
 };
 use crate::cancel_flag::CancelFlag;
 use crate::operator::{Operator, OperatorError};
 use crate::transport::Transport;
 use crate::transport::emulated::{EmulatedLine, EmulatedTransport};
-use leg_base::failure::Failure;
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::State;
 use std::cell::Cell;
@@ -48,11 +47,16 @@ fn a_stop_that_nobody_acknowledged_is_reported_whatever_went_before() {
         operator.reach(&lean(25.0))
     };
     let error = error_of!(interrupted(LineState::Silent), OperatorError::NotStopped(_));
-    assert!(error.remedy().contains("press the emergency stop"));
-    assert!(matches!(Failure::from(error), Failure::Failed(_)));
+    assert!(
+        error
+            .failure()
+            .render(false)
+            .contains("press the emergency stop")
+    );
+    assert!(is_failed(&error));
     error_of!(
         interrupted(LineState::Broken),
-        OperatorError::ConnectionLost { .. }
+        OperatorError::ConnectionLost(..)
     );
     error_of!(interrupted(LineState::Whole), OperatorError::Cancelled);
 }

@@ -1,12 +1,11 @@
-//! What a CAN interface of the machine has to be, and the errors if it is not.
+//! What a CAN interface of the machine has to be, and the errors if it is not, each with what to do.
 //!
 //! It is read from `/sys`: `socketcan` would ask by netlink, with a crate more and nothing that a test can stand in for.
 
-use leg_firmware::can::{DATA_BIT_RATE, LegAddress, NOMINAL_BIT_RATE};
+use leg_firmware::can::{DATA_BIT_RATE, NOMINAL_BIT_RATE};
 use std::fs;
 use std::io;
 use std::path::Path;
-use thiserror::Error;
 
 /// Where Linux lists its network interfaces.
 pub(super) const INTERFACES: &str = "/sys/class/net";
@@ -20,80 +19,73 @@ const UP: u32 = 1;
 /// `CANFD_MTU`: one with a smaller MTU carries classic CAN only.
 const CAN_FD_MTU: u32 = 72;
 
-/// Why a CAN interface cannot be used, and what to do. Each has the interface's name; where that is no CAN interface, those
-/// that there are.
-#[derive(Debug, PartialEq, Eq, Error)]
-pub enum InterfaceError {
-    /// The kernel has no CAN.
-    #[error(
-        "this system's kernel has no CAN; load it with `modprobe can-raw`, or use another kernel"
-    )]
-    NoCan,
-    /// There is no such interface.
-    #[error(
-        "there is no CAN interface `{name}`{}; plug its adapter in and load its driver, then {}",
-        there_is(.1), bring_up(.0), name = .0
-    )]
-    Missing(String, Vec<String>),
-    /// It is a network interface of another kind.
-    #[error("`{name}` is no CAN interface{}; name one that `ip link show type can` lists", there_is(.1), name = .0)]
-    NotCan(String, Vec<String>),
-    /// It is not up.
-    #[error("the CAN interface `{name}` is down; {}", bring_up(.0), name = .0)]
-    Down(String),
-    /// It is up without CAN FD.
-    #[error(
-        "the CAN interface `{name}` is up without CAN FD; `ip link set {name} down`, then {}; \
-         if that is refused, its adapter has no CAN FD",
-        bring_up(.0), name = .0
-    )]
-    Classic(String),
-    /// The controller went off the bus.
-    #[error(
-        "the controller of `{name}` is off the bus after too many errors; check cable, terminators and that all nodes \
-         have {} and {} kbit/s, then `ip link set {name} down` and {}",
-        NOMINAL_BIT_RATE / 1000, DATA_BIT_RATE / 1000, bring_up(.0), name = .0
-    )]
-    BusOff(String),
-    /// Another `leg` sends under this leg's identifier.
-    #[error(
-        "another `leg` uses the CAN identifier of {1} on `{0}`; wait for it or end it: only `leg stop` goes beside it"
-    )]
-    Taken(String, LegAddress),
-    /// What is sent is not acknowledged.
-    #[error(
-        "nobody on `{name}` acknowledges what is sent; is the leg powered, is the cable terminated at both ends, and have all \
-         nodes {} and {} kbit/s?",
-        NOMINAL_BIT_RATE / 1000, DATA_BIT_RATE / 1000, name = .0
-    )]
-    NotAcknowledged(String),
+pub(super) fn refused(kind: io::ErrorKind, text: impl Into<String>) -> io::Error {
+    io::Error::new(kind, text.into())
 }
 
-impl From<InterfaceError> for io::Error {
-    fn from(error: InterfaceError) -> Self {
-        let kind = match error {
-            InterfaceError::NoCan | InterfaceError::Classic(_) => io::ErrorKind::Unsupported,
-            InterfaceError::Missing(..) => io::ErrorKind::NotFound,
-            InterfaceError::NotCan(..) => io::ErrorKind::InvalidInput,
-            InterfaceError::Down(_) => io::ErrorKind::NetworkDown,
-            InterfaceError::BusOff(_) => io::ErrorKind::ConnectionAborted,
-            InterfaceError::NotAcknowledged(_) => io::ErrorKind::TimedOut,
-            InterfaceError::Taken(..) => io::ErrorKind::ResourceBusy,
-        };
-        Self::new(kind, error)
-    }
+pub(super) fn no_can_error() -> io::Error {
+    refused(
+        io::ErrorKind::Unsupported,
+        "this system's kernel has no CAN; load it with `modprobe can-raw`, or use another kernel",
+    )
+}
+
+/// There is no such interface; `others` are the CAN interfaces that there are.
+pub(super) fn interface_missing_error(name: &str, others: &[String]) -> io::Error {
+    let text = format!(
+        "there is no CAN interface `{name}`{}; plug its adapter in and load its driver, then {}",
+        there_is(others),
+        bring_up(name)
+    );
+    refused(io::ErrorKind::NotFound, text)
+}
+
+pub(super) fn interface_down_error(name: &str) -> io::Error {
+    let text = format!("the CAN interface `{name}` is down; {}", bring_up(name));
+    refused(io::ErrorKind::NetworkDown, text)
+}
+
+pub(super) fn bus_off_error(name: &str) -> io::Error {
+    let text = format!(
+        "the controller of `{name}` is off the bus after too many errors; check cable, terminators and that all nodes \
+         have {}, then `ip link set {name} down` and {}",
+        bit_rates(),
+        bring_up(name)
+    );
+    refused(io::ErrorKind::ConnectionAborted, text)
+}
+
+pub(super) fn not_acknowledged_error(name: &str) -> io::Error {
+    let text = format!(
+        "nobody on `{name}` acknowledges what is sent; is the leg powered, is the cable terminated at both ends, and have \
+         all nodes {}?",
+        bit_rates()
+    );
+    refused(io::ErrorKind::TimedOut, text)
 }
 
 /// Whether an interface can carry CAN FD now, by the files below `interfaces` (`/sys/class/net`).
-pub(super) fn check(interfaces: &Path, name: &str) -> Result<(), InterfaceError> {
+pub(super) fn check(interfaces: &Path, name: &str) -> io::Result<()> {
     let number = |what| number(interfaces, name, what);
-    let name = name.to_owned();
-    let others = || can_interfaces(interfaces);
+    let others = can_interfaces(interfaces);
     Err(match (number("type"), number("flags"), number("mtu")) {
-        (None, ..) => InterfaceError::Missing(name, others()),
-        (Some(kind), ..) if kind != CAN_TYPE => InterfaceError::NotCan(name, others()),
-        (_, Some(flags), _) if flags & UP == 0 => InterfaceError::Down(name),
-        (.., Some(mtu)) if mtu < CAN_FD_MTU => InterfaceError::Classic(name),
+        (None, ..) => interface_missing_error(name, &others),
+        (Some(kind), ..) if kind != CAN_TYPE => {
+            let others = there_is(&others);
+            let text = format!(
+                "`{name}` is no CAN interface{others}; name one that `ip link show type can` lists"
+            );
+            refused(io::ErrorKind::InvalidInput, text)
+        }
+        (_, Some(flags), _) if flags & UP == 0 => interface_down_error(name),
+        (.., Some(mtu)) if mtu < CAN_FD_MTU => {
+            let text = format!(
+                "the CAN interface `{name}` is up without CAN FD; `ip link set {name} down`, then {}; if that is refused, \
+                 its adapter has no CAN FD",
+                bring_up(name)
+            );
+            refused(io::ErrorKind::Unsupported, text)
+        }
         _ => return Ok(()),
     })
 }
@@ -128,6 +120,11 @@ fn there_is(names: &[String]) -> String {
     format!(" (there is {})", names.join(", "))
 }
 
+fn bit_rates() -> String {
+    let [nominal, data] = [NOMINAL_BIT_RATE, DATA_BIT_RATE].map(|rate| rate / 1000);
+    format!("{nominal} and {data} kbit/s")
+}
+
 fn bring_up(name: &str) -> String {
     format!(
         "`ip link set {name} up type can bitrate {NOMINAL_BIT_RATE} dbitrate {DATA_BIT_RATE} fd on`"
@@ -135,13 +132,14 @@ fn bring_up(name: &str) -> String {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{InterfaceError, check};
+    use super::check;
     use std::fs;
     use std::io;
 
     /// What is reported of `name` on a system with one interface of each kind: name, type, flags and MTU.
-    fn checked(name: &str) -> io::Result<Result<(), InterfaceError>> {
+    fn checked(name: &str) -> io::Result<Result<(), String>> {
         let directory = tempfile::tempdir()?;
         for [name, kind, flags, mtu] in [
             ["can0", "280", "0x40081", "72"],
@@ -155,7 +153,7 @@ mod tests {
                 fs::write(interface.join(what), format!("{value}\n"))?;
             }
         }
-        Ok(check(directory.path(), name))
+        Ok(check(directory.path(), name).map_err(|error| error.to_string()))
     }
 
     #[test]
@@ -187,8 +185,7 @@ mod tests {
                 ),
             ),
         ] {
-            let error = checked(name)?.map_err(|error| error.to_string());
-            assert_eq!(error, Err(expected));
+            assert_eq!(checked(name)?, Err(expected));
         }
         Ok(())
     }
@@ -196,8 +193,8 @@ mod tests {
     #[test]
     fn a_path_is_no_interface() -> io::Result<()> {
         for name in ["", ".", "..", "../can0", "can0/"] {
-            let missing = matches!(checked(name)?, Err(InterfaceError::Missing(..)));
-            assert!(missing, "{name}");
+            let error = checked(name)?.unwrap_err();
+            assert!(error.starts_with("there is no CAN interface"), "{error}");
         }
         Ok(())
     }

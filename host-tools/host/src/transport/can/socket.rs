@@ -1,8 +1,8 @@
 //! A CAN interface of Linux.
 
-use super::interface::{INTERFACES, check};
-use super::sender_lock::SenderLock;
-use super::{CanPort, InterfaceError};
+use super::CanPort;
+use super::interface::{self, INTERFACES, check};
+use super::sender_lock;
 use leg_firmware::can::{CanFrame, Identifier, LegAddress};
 use rustix::io::Errno;
 use socketcan::{
@@ -10,6 +10,7 @@ use socketcan::{
     SocketOptions, StandardId,
 };
 use std::io;
+use std::os::unix::net::UnixListener;
 use std::path::Path;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -32,31 +33,23 @@ pub struct SocketCan {
     ordinary: CanFdSocket,
     urgent: CanFdSocket,
     /// None where only urgent frames are sent.
-    _lock: Option<SenderLock>,
+    _lock: Option<UnixListener>,
 }
 
 impl SocketCan {
-    /// Opens an interface by its name, as `can0`, to talk to a leg. One program at a time may.
+    /// Opens an interface by its name, as `can0`, to talk to a leg. One program at a time may, but for those that send urgent
+    /// frames only.
     ///
     /// # Errors
-    /// An [`InterfaceError`] inside: no CAN in the kernel, no such interface, not up, without CAN FD, taken by another
-    /// program. Another error of the system.
-    pub fn open(name: &str, leg: LegAddress) -> io::Result<Self> {
+    /// No CAN in the kernel, no such interface, one that is down, without CAN FD or taken by another program: each with what
+    /// to do. Other errors of the system as they are.
+    pub fn open(name: &str, leg: LegAddress, urgent_only: bool) -> io::Result<Self> {
         check(Path::new(INTERFACES), name)?;
-        let lock = SenderLock::take(name, leg)?;
-        Self::open_sockets(name, leg, Some(lock))
-    }
-
-    /// The same for a program that sends urgent frames only, whatever other program talks to that leg.
-    ///
-    /// # Errors
-    /// As [`Self::open`].
-    pub fn open_urgent(name: &str, leg: LegAddress) -> io::Result<Self> {
-        check(Path::new(INTERFACES), name)?;
-        Self::open_sockets(name, leg, None)
-    }
-
-    fn open_sockets(name: &str, leg: LegAddress, lock: Option<SenderLock>) -> io::Result<Self> {
+        let lock = if urgent_only {
+            None
+        } else {
+            Some(sender_lock::take(name, leg)?)
+        };
         let open = || CanFdSocket::open(name).map_err(|error| explain(error, name));
         let (ordinary, urgent) = (open()?, open()?);
         let from_leg = CanFilter::new(u32::from(Identifier::ToHost(leg).bits()), EXACTLY);
@@ -123,12 +116,11 @@ fn full(error: &io::Error) -> bool {
 
 /// The error of the system, with its cause and remedy where they are known.
 fn explain(error: io::Error, name: &str) -> io::Error {
-    let name = name.to_owned();
     match Errno::from_io_error(&error) {
-        Some(Errno::AFNOSUPPORT | Errno::PROTONOSUPPORT) => InterfaceError::NoCan.into(),
-        Some(Errno::NODEV | Errno::NXIO) => InterfaceError::Missing(name, Vec::new()).into(),
-        Some(Errno::NETDOWN) => InterfaceError::Down(name).into(),
-        Some(Errno::NOBUFS | Errno::AGAIN) => InterfaceError::NotAcknowledged(name).into(),
+        Some(Errno::AFNOSUPPORT | Errno::PROTONOSUPPORT) => interface::no_can_error(),
+        Some(Errno::NODEV | Errno::NXIO) => interface::interface_missing_error(name, &[]),
+        Some(Errno::NETDOWN) => interface::interface_down_error(name),
+        Some(Errno::NOBUFS | Errno::AGAIN) => interface::not_acknowledged_error(name),
         _ => error,
     }
 }
@@ -146,7 +138,7 @@ fn from_socket(frame: &CanAnyFrame, name: &str) -> io::Result<Option<CanFrame>> 
     match frame {
         CanAnyFrame::Fd(frame) => Ok(from_fd(frame)),
         CanAnyFrame::Error(error) if error.error_bits() & libc::CAN_ERR_BUSOFF != 0 => {
-            Err(InterfaceError::BusOff(name.to_owned()).into())
+            Err(interface::bus_off_error(name))
         }
         _ => Ok(None),
     }
@@ -235,12 +227,13 @@ mod tests {
 
     #[test]
     fn an_interface_that_is_not_there_or_of_another_kind_is_refused() {
-        for open in [SocketCan::open, SocketCan::open_urgent] {
-            for (name, kind) in [
-                ("no-such-can", io::ErrorKind::NotFound),
-                ("lo", io::ErrorKind::InvalidInput),
-            ] {
-                assert_eq!(open(name, LEG).unwrap_err().kind(), kind);
+        for (name, kind) in [
+            ("no-such-can", io::ErrorKind::NotFound),
+            ("lo", io::ErrorKind::InvalidInput),
+        ] {
+            for urgent_only in [false, true] {
+                let error = SocketCan::open(name, LEG, urgent_only).unwrap_err();
+                assert_eq!(error.kind(), kind);
             }
         }
     }

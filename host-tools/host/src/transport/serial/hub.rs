@@ -52,11 +52,8 @@ pub(super) fn ended(error: &io::Error) -> bool {
     )
 }
 
-/// Joins the hub of another program.
-///
-/// # Errors
-/// [`io::ErrorKind::TimedOut`] if that program lets in whoever comes but does nothing for `timeout`; the error of the system if
-/// there is none.
+/// Joins the hub of another program; [`io::ErrorKind::TimedOut`] if that program lets in whoever comes but does nothing for
+/// `timeout`.
 pub(super) fn join(port: &str, timeout: Duration) -> io::Result<Joined> {
     let mut stream = UnixStream::connect(socket_path(port)?)?;
     match receive(&mut stream, &mut [0; WELCOME.len()], timeout)? {

@@ -10,7 +10,7 @@ pub(super) const LINE_PX: u32 = 2;
 /// The lines between the bands as points (azimuth, tilt), degrees. They end where the region or what is known ends.
 pub(super) fn isolines(field: &PlotField, bands: &Bands) -> Vec<Vec<(f64, f64)>> {
     // A column of the turn before and two of the next one, so that lines reach 0° and 360°.
-    let around = |row: &[Option<PoseSample>]| {
+    let wrapped = |row: &[Option<PoseSample>]| {
         let columns = (0..row.len() + 3).map(|i| (i + row.len() - 1) % row.len());
         let values = columns.map(|i| row[i].and_then(|s| s.value).unwrap_or(f64::NAN));
         values.collect::<Vec<f64>>()
@@ -18,7 +18,7 @@ pub(super) fn isolines(field: &PlotField, bands: &Bands) -> Vec<Vec<(f64, f64)>>
     let values: Vec<f64> = field
         .samples
         .chunks(field.azimuths)
-        .flat_map(around)
+        .flat_map(wrapped)
         .collect();
     let rows = field.tilts_deg.len();
     let edge = field.tilt_max_deg();

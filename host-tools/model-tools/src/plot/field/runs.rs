@@ -5,8 +5,8 @@ use super::{PlotField, PoseSample};
 use plotters::style::RGBColor;
 
 /// None of the colours of the bands, and none of the greys.
-pub(super) const BETWEEN: RGBColor = RGBColor(236, 200, 196);
-pub(super) const OUTSIDE: RGBColor = RGBColor(205, 205, 205);
+pub(super) const BORDER: RGBColor = RGBColor(236, 200, 196);
+pub(super) const EXTERIOR: RGBColor = RGBColor(205, 205, 205);
 pub(super) const NO_RESULT: RGBColor = RGBColor(120, 120, 120);
 
 /// Finer rows and columns than the poses, with values between them: the edges of the bands look smooth.
@@ -29,9 +29,9 @@ pub(super) enum Shade {
     /// A value in a band.
     Band(usize),
     /// Outside the region, but inside the wider one.
-    Between,
+    Border,
     /// Outside both.
-    Outside,
+    Exterior,
     /// Beside a pose of which nothing is known, or inside the region, but without a value.
     NoResult,
 }
@@ -43,8 +43,8 @@ impl Shade {
         };
         match sample.shown() {
             Some(value) => Self::Band(bands.band(value)),
-            None if sample.is_between() => Self::Between,
-            None if sample.is_outside() => Self::Outside,
+            None if sample.is_border() => Self::Border,
+            None if sample.is_exterior() => Self::Exterior,
             None => Self::NoResult,
         }
     }
@@ -52,8 +52,8 @@ impl Shade {
     pub fn colour(self, bands: &Bands) -> RGBColor {
         match self {
             Self::Band(band) => bands.colour(band),
-            Self::Between => BETWEEN,
-            Self::Outside => OUTSIDE,
+            Self::Border => BORDER,
+            Self::Exterior => EXTERIOR,
             Self::NoResult => NO_RESULT,
         }
     }

@@ -1,7 +1,7 @@
 //! The colours of a map with the levels between them: those of its lines.
 
 use super::bands::Bands;
-use super::runs::{BETWEEN, NO_RESULT, OUTSIDE};
+use super::runs::{BORDER, EXTERIOR, NO_RESULT};
 use super::{PlotField, PoseSample};
 use crate::plot::canvas::{Area, Drawn, LABEL_PX};
 use plotters::prelude::*;
@@ -46,8 +46,16 @@ fn paint_legend<B: DrawingBackend>(field: &PlotField, area: &Area<B>, bottom: i3
     let no_value = |sample: &PoseSample| sample.room >= 0.0 && sample.value.is_none();
     let no_result = any(no_value) || field.samples.iter().any(Option::is_none);
     let entries = [
-        (any(PoseSample::is_between), BETWEEN, field.between.as_str()),
-        (any(PoseSample::is_outside), OUTSIDE, field.outside.as_str()),
+        (
+            any(PoseSample::is_border),
+            BORDER,
+            field.border_label.as_str(),
+        ),
+        (
+            any(PoseSample::is_exterior),
+            EXTERIOR,
+            field.exterior_label.as_str(),
+        ),
         (no_result, NO_RESULT, "no result"),
     ];
     let shown = entries.into_iter().filter(|(shown, ..)| *shown);

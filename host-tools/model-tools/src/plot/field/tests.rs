@@ -28,8 +28,8 @@ fn field() -> PlotField {
         title: "Title".into(),
         quantity: "tilt".into(),
         unit: "°C".into(),
-        between: "little room".into(),
-        outside: "no room".into(),
+        border_label: "little room".into(),
+        exterior_label: "no room".into(),
         azimuths: 36,
         samples,
         tilts_deg,
@@ -69,9 +69,9 @@ fn every_place_is_in_one_run_of_its_shade() {
     let no_result = area(|shade| *shade == Shade::NoResult);
     assert!((no_result - 20.0 * 30.0).abs() < 1e-6, "{no_result}");
     // The border is between the poses at 20° and 25°, to the height of a fine one.
-    let outside = area(|shade| *shade == Shade::Outside);
+    let outside = area(|shade| *shade == Shade::Exterior);
     assert!((outside - 95.0 * 6.0).abs() < 100.0, "{outside}");
-    let between = area(|shade| *shade == Shade::Between);
+    let between = area(|shade| *shade == Shade::Border);
     assert!((between - 60.0 * 6.0).abs() < 65.0, "{between}");
     let sum = area(|_| true);
     assert!((sum - 360.0 * 30.0).abs() < 1e-6, "{sum}");

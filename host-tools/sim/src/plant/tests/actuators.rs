@@ -58,7 +58,6 @@ fn a_steady_motor_carries_its_pull() {
     actuator.lead_m *= 1e-3;
     actuator.friction_nm = 0.0;
     actuator.viscous_nm_s_per_rad = 0.0;
-    // As much torque as the real screw asks for.
     let settings = PlantSettings {
         supply_resistance_ohm: 0.0,
         ..PlantSettings::default()

@@ -8,8 +8,8 @@ use nalgebra::{Matrix3, Vector3};
 
 /// I = I_t(1 − ppᵀ) + I_a ppᵀ times the rotation's rate, N·m·s.
 fn momentum(plant: &Plant) -> Vector3<f64> {
-    let (p, body) = (plant.leg.direction.vector(), plant.bare);
-    let (across, along) = (body.transverse_kg_m2, body.axial_kg_m2);
+    let (p, inertia) = (plant.leg.direction.vector(), plant.bare);
+    let (across, along) = (inertia.transverse_kg_m2, inertia.axial_kg_m2);
     let inertia = (Matrix3::identity() - p * p.transpose()) * across + p * p.transpose() * along;
     inertia * plant.leg.rate
 }

@@ -5,7 +5,7 @@ use crate::plant::{Plant, Truth};
 use leg_firmware::drive::Drive;
 use leg_rig::rig_file::RigFile;
 
-/// The end of a swing after a push, while the motors pull or not. They let nothing out: where a gear crosses its play
+/// The end of a swing after a push, while the motors pull or not. They pay nothing out: where a gear crosses its play
 /// and strikes its screw, the order is the first.
 fn end(rig: &RigFile, substeps: u32, drive: &Drive<f32>) -> Truth {
     let settings = PlantSettings {

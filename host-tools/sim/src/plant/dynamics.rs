@@ -1,21 +1,21 @@
-//! The parts of the leg that stay as they are, with what it carries.
+//! The constant parts of the leg, what it carries, and how its tendons stretch.
 
-use super::body::Body;
-use super::leg::Leg;
+use super::inertia::Inertia;
+use super::leg::LegState;
 use super::tendon_pull::RealTendon;
 use leg_model::{Kinematics, Load, Rig, Support, inverse_kinematics};
 use nalgebra::{SMatrix, Vector3};
 
-/// The parts of the mechanism that stay as they are, and what they carry.
+/// The constant parts of the mechanism, and what they carry.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Mechanism {
+pub(super) struct Dynamics {
     pub rig: Rig<f64, 3>,
     pub support: Support<f64>,
     pub tendons: [RealTendon; 3],
     /// Which tendons are cut.
     pub cut: [bool; 3],
     /// The leg with its payload.
-    pub body: Body,
+    pub inertia: Inertia,
     pub load: Load<f64>,
     /// Force at the tip beside the weights, N.
     pub push_n: Vector3<f64>,
@@ -23,14 +23,14 @@ pub(super) struct Mechanism {
     pub tendon_damping_n_s_per_m: f64,
 }
 
-impl Mechanism {
+impl Dynamics {
     /// From the joint centre to the tip, m.
-    pub fn tip_m(&self, leg: &Leg) -> Vector3<f64> {
+    pub fn tip_m(&self, leg: &LegState) -> Vector3<f64> {
         leg.direction.vector() * self.rig.tip_m()
     }
 
     /// Elastic energy of the tendons, J.
-    pub fn springs_j(&self, leg: &Leg, unstretched_m: [f64; 3]) -> f64 {
+    pub fn springs_j(&self, leg: &LegState, unstretched_m: [f64; 3]) -> f64 {
         let elongations = self.elongations_m(&self.kinematics(leg), unstretched_m);
         let pairs = self.tendons.iter().zip(elongations);
         pairs
@@ -54,7 +54,7 @@ impl Mechanism {
     }
 
     /// Lengths and moments of the tendons. The stop keeps the leg away from where a tendon has no length.
-    pub fn kinematics(&self, leg: &Leg) -> Kinematics<f64, 3> {
+    pub fn kinematics(&self, leg: &LegState) -> Kinematics<f64, 3> {
         let geometry = leg.geometry(self.rig.geometry(), &self.support);
         inverse_kinematics(&geometry, &leg.direction).unwrap_or(Kinematics {
             lengths: nalgebra::SVector::zeros(),

@@ -1,18 +1,18 @@
-//! The leg as a rigid body: how it answers moments about the joint.
+//! The leg as a rigid body: how it responds to moments about the joint.
 
 use leg_model::{Direction, FreePlane, Support, SupportKind, solve2};
 use nalgebra::{Matrix3, Vector3};
 
 /// Inertia of the leg and its payload about the joint: I = I_t(1 − ppᵀ) + I_a ppᵀ, p along the leg.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Body {
+pub(super) struct Inertia {
     /// Across the leg, kg·m².
     pub transverse_kg_m2: f64,
     /// About the leg's own axis, kg·m².
     pub axial_kg_m2: f64,
 }
 
-impl Body {
+impl Inertia {
     /// With a payload as a point at the tip.
     pub fn loaded(&self, payload_kg: f64, tip_m: f64) -> Self {
         Self {
@@ -41,23 +41,25 @@ impl Body {
 /// How a leg that its support guides changes its rotation at one direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Guided {
-    body: Body,
-    direction: Direction<f64>,
+    inertia: Inertia,
     along: Vector3<f64>,
     /// Two freedoms: the free rotations, and the inverse of the inertia along them.
     plane: Option<(FreePlane<f64>, SupportKind, [[f64; 2]; 2])>,
 }
 
 impl Guided {
-    pub fn new(body: &Body, support: &Support<f64>, direction: &Direction<f64>) -> Self {
+    pub fn new(inertia: &Inertia, support: &Support<f64>, direction: &Direction<f64>) -> Self {
         let along = direction.vector();
         let plane = (!support.twists()).then(|| {
             let plane = support.plane(direction);
-            (plane, support.kind(), inverse(&body.matrix(&along), &plane))
+            (
+                plane,
+                support.kind(),
+                inverse(&inertia.matrix(&along), &plane),
+            )
         });
         Self {
-            body: *body,
-            direction: *direction,
+            inertia: *inertia,
             along,
             plane,
         }
@@ -72,8 +74,8 @@ impl Guided {
             }
             None => {
                 let (along, spin) = (&self.along, self.along.dot(moment));
-                (moment - along * spin) / self.body.transverse_kg_m2
-                    + along * (spin / self.body.axial_kg_m2)
+                (moment - along * spin) / self.inertia.transverse_kg_m2
+                    + along * (spin / self.inertia.axial_kg_m2)
             }
         }
     }
@@ -83,11 +85,11 @@ impl Guided {
     /// After d'Alembert: the support's own moments do no work along the free rotations, P, so that with ω = Pv
     /// PᵀIP v̇ = Pᵀ(M − ω × Iω − IṖv). The result is Pv̇.
     pub fn acceleration(&self, rate: &Vector3<f64>, moment: &Vector3<f64>) -> Vector3<f64> {
-        let momentum = self.body.momentum(&self.along, rate);
+        let momentum = self.inertia.momentum(&self.along, rate);
         let turning = match &self.plane {
             Some((_, kind, _)) => {
                 let tilting = Vector3::z() * self.plane_turning(*kind, rate);
-                self.body.momentum(&self.along, &tilting)
+                self.inertia.momentum(&self.along, &tilting)
             }
             None => Vector3::zeros(),
         };
@@ -110,12 +112,8 @@ impl Guided {
     pub fn stopped(&self, rate: &Vector3<f64>) -> Option<Vector3<f64>> {
         let outwards = Vector3::new(self.along.y, -self.along.x, 0.0);
         let tilting = outwards.dot(rate);
-        let blow = self.response(&outwards);
-        (tilting > 0.0).then(|| rate - blow * (tilting / outwards.dot(&blow)))
-    }
-
-    pub fn kinetic_j(&self, rate: &Vector3<f64>) -> f64 {
-        self.body.kinetic_j(&self.direction, rate)
+        let impact = self.response(&outwards);
+        (tilting > 0.0).then(|| rate - impact * (tilting / outwards.dot(&impact)))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Several files that are delivered together.
+//! Several files that are moved together.
 
 use super::new_directory;
 use std::io;
@@ -7,12 +7,12 @@ use tempfile::TempDir;
 
 /// Where several files of one directory are made before all of them are moved into it.
 #[derive(Debug)]
-pub struct Workshop {
+pub struct StagingDirectory {
     directory: PathBuf,
     made: TempDir,
 }
 
-impl Workshop {
+impl StagingDirectory {
     /// For the files of a directory, which is made if it is not there.
     ///
     /// # Errors
@@ -43,7 +43,7 @@ impl Workshop {
     ///
     /// # Errors
     /// As [`Self::check`], or the system's.
-    pub fn deliver(self) -> io::Result<()> {
+    pub fn commit(self) -> io::Result<()> {
         for (from, to) in self.moves()? {
             std::fs::rename(from, to)?;
         }
