@@ -48,6 +48,9 @@ mod sim {
 }
 
 mod board {
+    mod chip_boot;
+    mod chip_mistakes;
+    mod chip_scenarios;
     mod emulated_board;
     mod qemu_session;
 }

@@ -3,17 +3,31 @@
 use embassy_stm32::rcc::mux::{Adcsel, Fdcansel};
 use embassy_stm32::rcc::{Hse, HseMode, Pll, PllMul, PllPreDiv, PllRDiv, PllSource, Sysclk};
 use embassy_stm32::time::Hertz;
-use embassy_stm32::{Config, pac};
+use embassy_stm32::{Config, Peripherals, pac, rcc};
 
-/// 24 MHz / 6 × 85 / 2 = 170 MHz for processor, buses, timers, converters and CAN, with the core's voltage boosted as
-/// that speed asks: `leg_firmware::board::timing` counts on it.
-pub fn config() -> Config {
-    let mut config = Config::default();
-    config.rcc.hse = Some(Hse {
+/// PWR_CR5.R1MODE, set for the normal voltage of range 1, clear for the boosted one: bit 8 by RM0440 and by ST's own
+/// description of the registers. stm32-metapac 21.0.0 has it at bit 0, so that `config.boost` alone boosts nothing.
+const R1MODE: u32 = 1 << 8;
+
+/// Starts the chip at 170 MHz.
+///
+/// `init` resets PWR, and so its boost: it leaves the chip at 16 MHz. Above 150 MHz the voltage has to be boosted before.
+pub fn start() -> Peripherals {
+    let mut peripherals = embassy_stm32::init(Config::default());
+    pac::PWR.cr5().modify(|w| w.0 &= !R1MODE);
+    rcc::reinit(config(), &mut peripherals.RCC);
+    peripherals
+}
+
+/// 24 MHz / 6 × 85 / 2 = 170 MHz for processor, buses, timers, converters and CAN: `leg_firmware::board::timing` counts on
+/// it.
+fn config() -> rcc::Config {
+    let mut config = rcc::Config::default();
+    config.hse = Some(Hse {
         freq: Hertz::mhz(24),
         mode: HseMode::Oscillator,
     });
-    config.rcc.pll = Some(Pll {
+    config.pll = Some(Pll {
         source: PllSource::HSE,
         prediv: PllPreDiv::DIV6,
         mul: PllMul::MUL85,
@@ -21,11 +35,11 @@ pub fn config() -> Config {
         divq: None,
         divr: Some(PllRDiv::DIV2),
     });
-    config.rcc.sys = Sysclk::PLL1_R;
-    config.rcc.boost = true;
-    config.rcc.mux.adc12sel = Adcsel::SYS;
-    config.rcc.mux.adc345sel = Adcsel::SYS;
-    config.rcc.mux.fdcansel = Fdcansel::PCLK1;
+    config.sys = Sysclk::PLL1_R;
+    config.boost = true;
+    config.mux.adc12sel = Adcsel::SYS;
+    config.mux.adc345sel = Adcsel::SYS;
+    config.mux.fdcansel = Fdcansel::PCLK1;
     config
 }
 

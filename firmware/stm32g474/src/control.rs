@@ -98,11 +98,15 @@ impl SharedLeg {
     }
 }
 
+/// Where commands pass from the tasks to the leg. The functions keep their names in the image, so that an emulator can
+/// tell between which two ticks a command came.
 impl CommandedLeg for SharedLeg {
+    #[inline(never)]
     fn command(&mut self, number: u16, command: Command) -> bool {
         with_control(|control| control.leg.command(number, command)).unwrap_or(false)
     }
 
+    #[inline(never)]
     fn note_decode_error(&mut self) {
         with_control(|control| control.leg.note_decode_error());
     }
@@ -122,6 +126,7 @@ impl CommandedLeg for SharedLeg {
         with_control(|control| control.leg.sensors()).unwrap_or_default()
     }
 
+    #[inline(never)]
     fn restart(&mut self, settings: &Settings) -> Result<(), HostRefusal> {
         let fresh = SensingLeg::new(&settings.without_zero()).map_err(HostRefusal::Settings)?;
         *self.spare = fresh;

@@ -5,14 +5,19 @@
 //!
 //! # Not shown
 //!
-//! No test runs this image, for no emulator has the chip. What decides something is in the library and tested there;
-//! what is here are registers, written by the reference manual and by nothing else. Not shown to work are: the clocks;
-//! that the update falls where the timer is at zero, and that it starts the converters; that a code is the sum of 16
-//! conversions and comes in the time that `leg_firmware::board::timing` says; the breaks, their polarity and their
-//! filters, and that a debugger's halt switches the outputs off; direction and scale of encoders and currents; how long
-//! a tick takes; flash, its ECC and its NMI; what RAM keeps over which reset; the watchdog and its oscillator; both
-//! transports, bit timing and delay compensation above all; whether a driver needs time between its enable and its
-//! first pulse.
+//! This image runs on an emulated chip (`host-tools/stm32g474-emulator`), whose registers, clocks, pins and rules come from
+//! the makers' descriptions and from the reference manual as this project reads it. What decides something is in the
+//! library and tested there. Not shown to work are:
+//!
+//! - whatever is analogue: the converters' accuracy and noise, the crystal's start, levels at the pins, what a break's
+//!   filter makes of real pulses;
+//! - cycles: how long a tick takes with the flash's wait states and caches;
+//! - CAN from this image: bit timing and delay compensation on a real bus;
+//! - a debugger's halt, and that it switches the outputs off;
+//! - what RAM keeps over a real reset, and how a real flash behaves after a cut;
+//! - whether a driver needs time between its enable and its first pulse;
+//! - the change from 16 to 170 MHz in one step: the manual asks for a microsecond at half the frequency, and embassy does
+//!   not pass through it.
 #![no_std]
 #![no_main]
 
@@ -47,7 +52,7 @@ defmt::timestamp!("{=u64:us}", embassy_time::Instant::now().as_micros());
 async fn main(spawner: Spawner) {
     hot::load();
     let origin = fatal::origin();
-    let peripherals = embassy_stm32::init(clocks::config());
+    let peripherals = clocks::start();
     clocks::watch();
     priorities::set();
     start::start(spawner, peripherals, origin).await;

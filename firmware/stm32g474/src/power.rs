@@ -151,7 +151,11 @@ pub fn off() {
 }
 
 /// Lets the timer run, and with it the ticks.
+///
+/// Until their pins were routed and pulled up, the break inputs read whatever there was: what they caught then is cleared.
+/// A cause that is there keeps its flag set.
 pub fn start() {
+    take_breaks();
     pac::TIM1.cr1().modify(|w| w.set_cen(true));
 }
 

@@ -89,11 +89,18 @@ impl FirmwareImage {
     /// # Errors
     /// [`ImageError`] with what cargo wrote.
     pub fn build(self) -> Result<PathBuf, ImageError> {
-        let root = workspace_root();
+        self.build_in(&workspace_root())
+    }
+
+    /// The same from a copy of the workspace.
+    ///
+    /// # Errors
+    /// [`ImageError`] with what cargo wrote.
+    pub fn build_in(self, root: &Path) -> Result<PathBuf, ImageError> {
         if !root.join("firmware/library/Cargo.toml").is_file() {
             return Err(ImageError::NoSources(root.display().to_string()));
         }
-        let output = self.cargo(&root).output().map_err(ImageError::NoCargo)?;
+        let output = self.cargo(root).output().map_err(ImageError::NoCargo)?;
         if !output.status.success() {
             return Err(ImageError::Failed {
                 image: self,

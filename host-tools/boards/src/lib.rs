@@ -22,6 +22,7 @@
 //! # }
 //! ```
 
+pub mod chip;
 pub mod image;
 pub mod qemu;
 pub mod setup;

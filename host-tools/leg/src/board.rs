@@ -5,6 +5,7 @@ use clap::ValueEnum;
 use indicatif::ProgressBar;
 use leg_base::failure::Failure;
 use leg_base::json_object;
+use leg_boards::chip::ChipSession;
 use leg_boards::image::FirmwareImage;
 use leg_boards::qemu::{QemuClock, QemuConfig, QemuSession};
 use leg_boards::setup;
@@ -19,6 +20,8 @@ pub(crate) enum Emulation {
     Qemu,
     /// In this process.
     Sim,
+    /// The board's own image, on an emulated STM32G474.
+    Chip,
 }
 
 impl Emulation {
@@ -26,6 +29,7 @@ impl Emulation {
         match self {
             Self::Qemu => "under QEMU",
             Self::Sim => "in this process",
+            Self::Chip => "on an emulated STM32G474",
         }
     }
 
@@ -34,6 +38,7 @@ impl Emulation {
         match self {
             Self::Sim => Ok(Box::new(InProcess::new())),
             Self::Qemu => qemu(QemuClock::Normal, options),
+            Self::Chip => chip(),
         }
     }
 }
@@ -59,6 +64,15 @@ pub(crate) fn qemu(clock: QemuClock, options: Options) -> Result<Box<dyn Link>, 
     };
     Ok(Box::new(
         QemuSession::open(&config).map_err(Failure::from_error)?,
+    ))
+}
+
+/// The board's image on an emulated chip. Installs and builds first what is missing.
+fn chip() -> Result<Box<dyn Link>, Failure> {
+    prepare_target()?;
+    let image = build_image(FirmwareImage::Stm32g474)?;
+    Ok(Box::new(
+        ChipSession::open(&image).map_err(Failure::from_error)?,
     ))
 }
 

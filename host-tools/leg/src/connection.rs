@@ -80,10 +80,15 @@ pub(crate) fn emulated_leg(
     on: Emulation,
     options: Options,
 ) -> Result<EmulatedLeg, Failure> {
-    let start = if slack {
-        InitialState::Slack
-    } else {
-        InitialState::Homed
+    let start = match (slack, on) {
+        (true, _) => InitialState::Slack,
+        (false, Emulation::Chip) => {
+            return Err(Failure::refused(
+                "a leg on an emulated chip does not start homed: a board forgets its zero",
+                "`leg emulate --on chip --slack`, and home it first; or take --on sim or --on qemu",
+            ));
+        }
+        (false, _) => InitialState::Homed,
     };
     EmulatedLeg::new(rig, start, on.link(options)?).map_err(Failure::from_error)
 }

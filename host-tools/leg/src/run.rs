@@ -13,7 +13,7 @@ use leg_boards::image;
 use leg_host::recording;
 use leg_rig::rig_file::RigFile;
 use leg_sim::link::Link;
-use leg_sim::scenario::Scenario;
+use leg_sim::scenario::{Scenario, not_on_a_board};
 use leg_sim::simulation::{Simulation, Summary, Tick};
 use report::RunReport;
 use std::path::PathBuf;
@@ -47,7 +47,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
-    let scenario = Scenario::load(&args.scenario)?;
+    let scenario = scenario(args)?;
     for note in &scenario.notes {
         eprintln!("leg: {}: {note}", args.scenario.display());
     }
@@ -73,6 +73,22 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     };
     options.report(&report.json(), || report.table())?;
     require_passed(&summary)
+}
+
+/// The scenario as it can run there.
+fn scenario(args: &Args) -> Result<Scenario, Failure> {
+    let scenario = Scenario::load(&args.scenario)?;
+    if args.on != Emulation::Chip {
+        return Ok(scenario);
+    }
+    let name = args.scenario.display().to_string();
+    match not_on_a_board(&name) {
+        None => Ok(scenario.for_board()),
+        Some(why) => Err(Failure::refused(
+            format!("a board cannot run {name}: {why}"),
+            "run it with --on sim or --on qemu",
+        )),
+    }
 }
 
 fn simulate(

@@ -3,7 +3,7 @@
 use crate::link::{Link, LinkError};
 use crate::plant::{Plant, Start};
 use leg_firmware::linked_leg::LINK_BYTES_MAX;
-use leg_firmware::sensors::{Sensors, TICK_HZ};
+use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::settings::{Gains, Settings, SettingsError};
 use leg_firmware::supervisor::State;
 use leg_firmware_bench::protocol::{Refusal, Reply, Request, TickReply, TickRequest};
@@ -110,17 +110,18 @@ impl<L: Link> EmulatedLeg<L> {
         }
     }
 
-    /// One tick of firmware and leg: reads the sensors, lets the control law run, and moves the leg on.
+    /// One tick of firmware and leg: reads the sensors, lets the control law run, and moves the leg on. Gives what the leg
+    /// took, and what it made of it.
     pub(crate) fn advance(
         &mut self,
         link: HostBytes,
-    ) -> Result<(Sensors, TickReply), EmulationError> {
+    ) -> Result<(TickRequest, TickReply), EmulationError> {
         let sensors = self.plant.sense();
-        let request = TickRequest { sensors, link };
+        let tick = TickRequest { sensors, link };
         let request = if self.counting {
-            Request::CountTick(request)
+            Request::CountTick(tick.clone())
         } else {
-            Request::Tick(request)
+            Request::Tick(tick.clone())
         };
         let reply = match self.link.ask(&request)? {
             Reply::Ticked(reply) => reply,
@@ -128,7 +129,7 @@ impl<L: Link> EmulatedLeg<L> {
             _ => return Err(EmulationError::WrongReply),
         };
         self.plant.step(&reply.motors);
-        Ok((sensors, reply))
+        Ok((self.link.taken().unwrap_or(tick), reply))
     }
 
     /// The leg's time since its start.

@@ -7,7 +7,7 @@ pub use error::LinkError;
 pub use in_process::InProcess;
 
 use leg_firmware::host_link::Hello;
-use leg_firmware_bench::protocol::{BENCH_SCHEMA, BoardInfo, Refusal, Reply, Request};
+use leg_firmware_bench::protocol::{BENCH_SCHEMA, BoardInfo, Refusal, Reply, Request, TickRequest};
 
 /// Something that answers requests.
 pub trait Link {
@@ -18,17 +18,31 @@ pub trait Link {
     /// # Errors
     /// [`LinkError`] if no reply came that can be trusted.
     fn ask(&mut self, request: &Request) -> Result<Reply, LinkError>;
+
+    /// What the leg took in the last tick, where that is not what the request had: a board hears bytes at the rate of its
+    /// line, and converts slow sensors seldom.
+    fn taken(&mut self) -> Option<TickRequest> {
+        None
+    }
 }
 
 impl<L: Link + ?Sized> Link for &mut L {
     fn ask(&mut self, request: &Request) -> Result<Reply, LinkError> {
         (**self).ask(request)
     }
+
+    fn taken(&mut self) -> Option<TickRequest> {
+        (**self).taken()
+    }
 }
 
 impl<L: Link + ?Sized> Link for Box<L> {
     fn ask(&mut self, request: &Request) -> Result<Reply, LinkError> {
         (**self).ask(request)
+    }
+
+    fn taken(&mut self) -> Option<TickRequest> {
+        (**self).taken()
     }
 }
 

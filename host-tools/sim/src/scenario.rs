@@ -1,11 +1,13 @@
 //! A scenario: how a simulated leg starts, what is done to it, and what must come out.
 
+mod board_start;
 mod command_step;
 mod measurand;
 mod reading;
 mod step;
 mod test_step;
 
+pub use board_start::{BOARD_EXCEPTIONS, not_on_a_board};
 pub use command_step::CommandStep;
 pub use measurand::Measurand;
 pub use step::Step;

@@ -66,6 +66,9 @@ pub enum LinkError {
         /// Schema of the firmware.
         firmware: [u8; 8],
     },
+    /// The emulated chip, or the image on it, does something wrong: what, as a sentence.
+    #[error("{0}")]
+    Chip(String),
     /// A frame cannot be made, or the reply's was damaged.
     #[error("a frame was damaged on the way from the firmware ({0}); start again")]
     Frame(#[from] FrameError),

@@ -116,8 +116,8 @@ impl<'a> TestStand<'a> {
     ) -> Result<(), SimulationError> {
         let time_s = self.time_s();
         let link = self.host.outgoing(self.summary.ticks);
-        let (sensors, reply) = self.leg.advance(link.clone())?;
-        watch(&sensors, &link, &reply);
+        let (taken, reply) = self.leg.advance(link)?;
+        watch(&taken.sensors, &taken.link, &reply);
         let truth = self.leg.plant().truth();
         let numbers = truth.tensions_n.iter().chain(truth.tip_m.iter());
         if !numbers.copied().all(f64::is_finite) {

@@ -1,0 +1,106 @@
+//! The same library as in the image, in this process: what the chip's pins have to carry.
+
+use leg_firmware::board;
+use leg_firmware::command::Command;
+use leg_firmware::drive::Drive;
+use leg_firmware::host_link::{
+    BoardKind, CommandedLeg, HostLink, HostRefusal, Identity, ResetCause,
+};
+use leg_firmware::leg::Outcome;
+use leg_firmware::linked_leg::SensingLeg;
+use leg_firmware::sensors::Sensors;
+use leg_firmware::settings::{Settings, SettingsError};
+use leg_firmware::telemetry::Telemetry;
+use leg_firmware_bench::virtual_board::VirtualBoard;
+use std::collections::VecDeque;
+
+/// A leg that counts what passes to it from the line.
+struct CountingLeg {
+    leg: SensingLeg<f32>,
+    taken: u64,
+}
+
+/// The library, ticked as often as the chip, and given each command between the same two ticks.
+pub struct Twin {
+    leg: CountingLeg,
+    link: HostLink,
+    board: VirtualBoard,
+    /// Bytes that went to the chip, and whose commands it has not taken yet.
+    pub pending: VecDeque<u8>,
+    /// Bytes whose commands it has taken since the last tick.
+    pub received: VecDeque<u8>,
+    /// Commands that the chip has taken.
+    taken: u64,
+}
+
+impl Twin {
+    /// With the settings that the chip finds in its flash.
+    pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
+        let identity = Identity {
+            board: BoardKind::InProcess,
+            version: leg_firmware::version::VERSION,
+            reset: ResetCause::Emulated,
+            crash_report: Default::default(),
+        };
+        Ok(Self {
+            leg: CountingLeg {
+                leg: SensingLeg::new(settings)?,
+                taken: 0,
+            },
+            link: HostLink::new(identity, settings.clone()),
+            board: VirtualBoard::default(),
+            pending: VecDeque::new(),
+            received: VecDeque::new(),
+            taken: 0,
+        })
+    }
+
+    /// The chip takes a command: so does the twin.
+    pub fn take_command(&mut self) {
+        self.taken += 1;
+        while self.leg.taken < self.taken
+            && let Some(byte) = self.pending.pop_front()
+        {
+            self.received.push_back(byte);
+            self.link.receive(&[byte], &mut self.leg);
+        }
+    }
+
+    /// One tick: what is asked of the motors, what they get, and the leg after it.
+    pub fn tick(&mut self, sensors: &Sensors) -> (Drive<f32>, Drive<f32>, Telemetry<f32>) {
+        self.board.read(sensors);
+        let drive = board::tick(&mut self.board, &mut self.leg.leg);
+        self.link.report(&mut self.leg);
+        while self.link.transmit().is_some() {}
+        (drive, self.board.motors(), self.leg.leg.telemetry())
+    }
+}
+
+impl CommandedLeg for CountingLeg {
+    fn command(&mut self, number: u16, command: Command) -> bool {
+        self.taken += 1;
+        self.leg.command(number, command)
+    }
+
+    fn note_decode_error(&mut self) {
+        self.taken += 1;
+        self.leg.note_decode_error();
+    }
+
+    fn outcome(&mut self) -> Option<Outcome> {
+        self.leg.outcome()
+    }
+
+    fn telemetry(&mut self) -> Telemetry<f32> {
+        CommandedLeg::telemetry(&mut self.leg)
+    }
+
+    fn sensors(&mut self) -> Sensors {
+        self.leg.sensors()
+    }
+
+    fn restart(&mut self, settings: &Settings) -> Result<(), HostRefusal> {
+        self.taken += 1;
+        self.leg.restart(settings)
+    }
+}

@@ -1,0 +1,220 @@
+//! The wires between the chip and the simulated leg: `firmware/BOARD.md`.
+
+use leg_firmware::drive::Drive;
+use leg_firmware::sensors::Sensors;
+use stm32g474_emulator::facts::{Facts, Pin};
+use stm32g474_emulator::gpio::Outside;
+use stm32g474_emulator::peripherals::Peripherals;
+
+const fn pin(port: char, number: u8) -> Pin {
+    Pin { port, number }
+}
+
+const CELLS: [Pin; 3] = [pin('C', 0), pin('C', 1), pin('C', 2)];
+const CURRENTS: [Pin; 3] = [pin('A', 4), pin('A', 6), pin('A', 7)];
+const SUPPLY: Pin = pin('B', 1);
+const TEMPERATURE: Pin = pin('B', 0);
+const PULSES: [Pin; 3] = [pin('A', 8), pin('A', 9), pin('A', 10)];
+const DIRECTIONS: [Pin; 3] = [pin('C', 6), pin('C', 7), pin('C', 8)];
+const ENABLE: Pin = pin('C', 9);
+const FAULTS: [Pin; 3] = [pin('B', 2), pin('B', 11), pin('B', 15)];
+/// The drivers' common fault line, low when raised.
+pub const ANY_FAULT: Pin = pin('B', 10);
+/// The emergency stop, high when pressed.
+pub const STOP: Pin = pin('C', 3);
+/// Tracks of each encoder.
+const TRACKS: [[Pin; 2]; 3] = [
+    [pin('A', 0), pin('A', 1)],
+    [pin('B', 4), pin('B', 5)],
+    [pin('B', 6), pin('B', 7)],
+];
+const TRANSMIT: Pin = pin('A', 2);
+const RECEIVE: Pin = pin('A', 3);
+const CAN_RECEIVE: Pin = pin('B', 12);
+const CAN_TRANSMIT: Pin = pin('B', 13);
+
+/// The timers of the encoders.
+const TIMERS: [&str; 3] = ["TIM2", "TIM3", "TIM4"];
+
+/// A pin and the signal that has to be on it.
+#[derive(Clone, Copy, Debug)]
+pub struct Route {
+    /// The pin.
+    pub pin: Pin,
+    /// Its peripheral.
+    pub peripheral: &'static str,
+    /// The signal.
+    pub signal: &'static str,
+}
+
+/// What the host's line has to be routed to: the serial one, or CAN.
+pub const LINES: [[Route; 2]; 2] = [
+    [
+        route(TRANSMIT, "LPUART1", "TX"),
+        route(RECEIVE, "LPUART1", "RX"),
+    ],
+    [
+        route(CAN_TRANSMIT, "FDCAN2", "TX"),
+        route(CAN_RECEIVE, "FDCAN2", "RX"),
+    ],
+];
+
+const fn route(pin: Pin, peripheral: &'static str, signal: &'static str) -> Route {
+    Route {
+        pin,
+        peripheral,
+        signal,
+    }
+}
+
+/// What the pins of the timers have to be routed to.
+pub fn routes() -> Vec<Route> {
+    let pulses = PULSES.into_iter().zip(CHANNELS);
+    let pulses = pulses.map(|(pin, signal)| route(pin, "TIM1", signal));
+    let tracks = TRACKS.into_iter().zip(TIMERS).flat_map(|(tracks, timer)| {
+        let tracks = tracks.into_iter().zip(CHANNELS);
+        tracks.map(move |(pin, signal)| route(pin, timer, signal))
+    });
+    let others = [
+        route(ANY_FAULT, "TIM1", "BKIN"),
+        route(STOP, "TIM1", "BKIN2"),
+    ];
+    pulses.chain(tracks).chain(others).collect()
+}
+
+/// An input that a converter takes in the place of another, as a sentence.
+pub fn wrong_input(chip: &mut Peripherals) -> Option<String> {
+    for (converter, pins) in [("ADC1", CELLS), ("ADC2", CURRENTS)] {
+        let block = Facts::of_chip().block(converter)?;
+        let sequence = block.register("JSQR")?;
+        let word = chip.read(block.base + sequence.offset, 4);
+        for (rank, pin) in pins.into_iter().enumerate() {
+            let input = sequence.field(&format!("JSQ{rank}"))?.value(word);
+            let found = Facts::of_chip().converter_pin(converter, u8::try_from(input).ok()?);
+            if found != Some(pin) {
+                let found = found.map_or_else(|| "no pin".into(), name);
+                return Some(format!(
+                    "{converter}'s code {} is of {found}, and has to be of {}",
+                    rank + 1,
+                    name(pin)
+                ));
+            }
+        }
+    }
+    None
+}
+
+/// A code that a converter has, by its inputs' pins, which differs from what its pin is at: the difference in words. ADC2 is
+/// left out where it was not triggered.
+pub fn wrong_code(chip: &mut Peripherals, untriggered: bool) -> Option<String> {
+    let converters = [("ADC1", CELLS), ("ADC2", CURRENTS)];
+    for (converter, pins) in converters.into_iter().take(2 - usize::from(untriggered)) {
+        let base = Facts::of_chip().block(converter)?;
+        for (rank, pin) in (1..).zip(pins) {
+            let address = base.base + base.register(&format!("JDR{rank}"))?.offset;
+            let found = chip.read(address, 4);
+            let expected = chip.devices.analogue.get(&pin).copied().unwrap_or_default();
+            if found != u32::from(expected) {
+                return Some(format!(
+                    "{converter}'s code {rank} is {found}, and {} is at {expected}",
+                    name(pin)
+                ));
+            }
+        }
+    }
+    None
+}
+
+/// A pin's name.
+pub fn name(pin: Pin) -> String {
+    format!("P{}{}", pin.port, pin.number)
+}
+
+/// The rate of the host's line, baud.
+const BAUD: u32 = 921_600;
+
+/// What the sensors read, with the encoders counted from a first reading: a chip's counters start at zero.
+pub fn since(first: &Sensors, sensors: &Sensors) -> Sensors {
+    let mut counts = sensors.encoder_counts;
+    for (count, start) in counts.iter_mut().zip(first.encoder_counts) {
+        *count = count.wrapping_sub(start);
+    }
+    Sensors {
+        encoder_counts: counts,
+        ..*sensors
+    }
+}
+
+/// Puts what the sensors read on the chip's pins.
+pub fn apply(chip: &mut Peripherals, sensors: &Sensors) {
+    let cells = CELLS.into_iter().zip(sensors.cell_codes);
+    let currents = CURRENTS.into_iter().zip(sensors.current_codes);
+    let slow = [
+        (SUPPLY, sensors.supply_code),
+        (TEMPERATURE, sensors.temperature_code),
+    ];
+    chip.devices
+        .analogue
+        .extend(cells.chain(currents).chain(slow));
+    for (timer, (tracks, count)) in TRACKS.iter().zip(sensors.encoder_counts).enumerate() {
+        let mut signals = tracks.iter().zip(CHANNELS);
+        let routed =
+            signals.all(|(track, signal)| chip.devices.encoder_routed(timer, *track, signal));
+        chip.devices.set_encoder(timer, u32::from(count), routed);
+    }
+    let level = |high| if high { Outside::High } else { Outside::Low };
+    for (fault, raised) in FAULTS.into_iter().zip(sensors.driver_fault) {
+        chip.devices.set_outside(fault, level(!raised));
+    }
+    let any = sensors.driver_fault.contains(&true);
+    chip.devices.set_outside(ANY_FAULT, level(!any));
+    chip.devices
+        .set_outside(STOP, level(sensors.emergency_stop));
+    // The adapter's line rests high.
+    chip.devices.set_outside(RECEIVE, Outside::High);
+}
+
+/// What the pins of supply and temperature were when they were converted last.
+pub fn slow_codes(chip: &Peripherals) -> [Option<u16>; 2] {
+    [SUPPLY, TEMPERATURE].map(|pin| chip.devices.sampled(pin))
+}
+
+/// The codes of the currents as they were converted last; zero before.
+pub fn current_codes(chip: &Peripherals) -> [u16; 3] {
+    CURRENTS.map(|pin| chip.devices.sampled(pin).unwrap_or_default())
+}
+
+/// What the motors get from the pins.
+pub fn motors(chip: &Peripherals) -> Drive<f32> {
+    let outputs = chip.devices.tim1.outputs();
+    let mut duty = [0.0; 3];
+    let channels = outputs.compare.iter().zip(outputs.channel_enabled);
+    let pins = PULSES.into_iter().zip(DIRECTIONS).zip(CHANNELS);
+    for ((share, (&compare, enabled)), ((pulse, direction), channel)) in
+        duty.iter_mut().zip(channels).zip(pins)
+    {
+        let routed = chip.devices.is_routed(pulse, "TIM1", channel);
+        let width = f32::from(compare) / f32::from(outputs.top.max(1));
+        let forward = chip.devices.level(direction) == Some(true);
+        if routed && enabled {
+            *share = if forward { width } else { -width };
+        }
+    }
+    Drive {
+        duty,
+        enabled: outputs.on && chip.devices.level(ENABLE) == Some(true),
+    }
+}
+
+/// The signals of the pulses, and of tracks.
+const CHANNELS: [&str; 3] = ["CH1", "CH2", "CH3"];
+
+/// Whether the chip listens to the host's line.
+pub fn listens(chip: &Peripherals) -> bool {
+    chip.devices.lpuart.listens(chip.cycle)
+}
+
+/// Sends a byte on the host's line.
+pub fn send(chip: &mut Peripherals, byte: u8) {
+    chip.send(byte, BAUD);
+}

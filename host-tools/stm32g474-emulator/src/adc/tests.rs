@@ -1,0 +1,380 @@
+use super::*;
+use crate::bench::{BOARD_CLOCKS, Bench};
+use crate::device::Device;
+use crate::facts::Block;
+
+/// Cycles of the processor in a period of the converters' clock, and in the regulator's start.
+const PERIOD: u64 = 4;
+const REGULATOR: u64 = 3_400;
+
+/// The inputs of the board, by converter and number.
+struct Inputs(Vec<(&'static str, u8, u16)>);
+
+impl AnalogueInputs for Inputs {
+    fn sum16(&self, converter: &str, input: u8) -> Option<u16> {
+        let mut all = self.0.iter();
+        let found = all.find(|(name, number, _)| (*name, *number) == (converter, input));
+        found.map(|(_, _, sum)| *sum)
+    }
+}
+
+/// The converters behind one block's registers.
+struct Board {
+    converters: Converters,
+    block: &'static str,
+    inputs: Inputs,
+}
+
+impl Device for Board {
+    fn reset(&mut self) {
+        self.converters.reset(self.block);
+    }
+
+    fn read(&mut self, offset: u32, context: &mut Context<'_>) -> u32 {
+        self.converters
+            .read(self.block, offset, &self.inputs, context)
+    }
+
+    fn write(&mut self, offset: u32, value: u32, context: &mut Context<'_>) {
+        self.converters
+            .write(self.block, (offset, value), &self.inputs, context);
+    }
+
+    fn next_event(&self) -> Option<u64> {
+        self.converters.next_event()
+    }
+
+    fn advance(&mut self, context: &mut Context<'_>) {
+        self.converters.advance(&self.inputs, context);
+    }
+}
+
+fn bench() -> Bench<Board> {
+    let inputs = vec![
+        ("ADC1", 6, 1_003),
+        ("ADC1", 7, 65_520),
+        ("ADC1", 8, 30_017),
+        ("ADC2", 17, 1),
+        ("ADC2", 3, 0),
+        ("ADC2", 4, 4_095),
+        ("ADC3", 1, 47_001),
+    ];
+    let mut bench = Bench::new("ADC1", |_: &'static Block| Board {
+        converters: Converters::new(Facts::of_chip()),
+        block: "ADC1",
+        inputs: Inputs(inputs),
+    });
+    bench.set("CR", &[("DEEPPWD", 1), ("ADVREGEN", 0)]);
+    bench.set("CFGR", &[("JQDIS", 1)]);
+    bench
+}
+
+fn select(bench: &mut Bench<Board>, block: &'static str) {
+    bench.device.block = block;
+    bench.select(block);
+}
+
+/// As embassy-stm32 brings a converter up.
+fn bring_up(bench: &mut Bench<Board>, common: &'static str, name: &'static str) {
+    select(bench, common);
+    bench.set("CCR", &[("PRESC", 2)]);
+    select(bench, name);
+    bench.set("CR", &[("DEEPPWD", 0), ("ADVREGEN", 1)]);
+    bench.run(REGULATOR);
+    for differential in [0, 1] {
+        bench.set("CR", &[("ADCALDIF", differential)]);
+        bench.set("CR", &[("ADCAL", 1)]);
+        bench.run(111 * PERIOD);
+        assert_eq!(bench.get("CR", "ADCAL"), 1);
+        bench.run(PERIOD);
+        assert_eq!(bench.get("CR", "ADCAL"), 0);
+        bench.run(REGULATOR);
+    }
+    bench.set("CR", &[("ADEN", 1)]);
+    bench.run(15 * PERIOD);
+    assert_eq!(bench.get("ISR", "ADRDY"), 1);
+    bench.set("CFGR2", &[("OVSR", 3)]);
+}
+
+/// As the image sets up its injected sequences, up to their start.
+fn wait_for_timer(bench: &mut Bench<Board>, name: &'static str, inputs: [u32; 3]) {
+    bring_up(bench, "ADC12_COMMON", name);
+    bench.set("CFGR2", &[("JOVSE", 1)]);
+    for input in inputs {
+        let (register, number) = if input < 10 {
+            ("SMPR", input)
+        } else {
+            ("SMPR2", input - 10)
+        };
+        bench.set(register, &[(&format!("SMP{number}"), 4)]);
+    }
+    bench.set("JSQR", &[("JEXTSEL", 8), ("JEXTEN", 1), ("JL", 2)]);
+    for (rank, input) in inputs.into_iter().enumerate() {
+        bench.set("JSQR", &[(&format!("JSQ{rank}"), input)]);
+    }
+    bench.set("IER", &[("JEOSIE", u32::from(name == "ADC1"))]);
+}
+
+fn board() -> Bench<Board> {
+    let mut bench = bench();
+    wait_for_timer(&mut bench, "ADC2", [17, 3, 4]);
+    bench.set("CR", &[("JADSTART", 1)]);
+    wait_for_timer(&mut bench, "ADC1", [6, 7, 8]);
+    bench
+}
+
+fn trigger(bench: &mut Bench<Board>) {
+    let cycle = bench.cycle;
+    bench.with(|board, context| board.converters.trigger(cycle, &board.inputs, context));
+}
+
+#[test]
+fn the_board_reads_its_sums_in_time() {
+    let mut bench = board();
+    bench.set("CR", &[("JADSTART", 1)]);
+    for _ in 0..2 {
+        trigger(&mut bench);
+        bench.run(11_519);
+        assert!(!bench.device.converters.interrupts()[0].1);
+        bench.run(1);
+        assert_eq!(
+            bench.device.converters.interrupts(),
+            [("ADC1_2", true), ("ADC3", false)]
+        );
+        for (name, codes) in [("ADC1", [1_003, 65_520, 30_017]), ("ADC2", [1, 0, 4_095])] {
+            select(&mut bench, name);
+            assert_eq!(bench.get("ISR", "JEOS"), 1);
+            bench.write("ISR", 0b110_0000);
+            assert_eq!(bench.get("ISR", "JEOS"), 0);
+            assert_eq!(["JDR1", "JDR2", "JDR3"].map(|name| bench.read(name)), codes);
+        }
+        assert!(!bench.device.converters.interrupts()[0].1);
+    }
+    let time = bench
+        .device
+        .converters
+        .injected_cycles("ADC1", &BOARD_CLOCKS);
+    assert_eq!(time, Some(11_520));
+    assert_eq!(bench.findings(), [""; 0]);
+}
+
+#[test]
+fn a_program_reads_an_input() {
+    // Oversampled or not, with 12 and with 8 bits.
+    for (oversampled, bits, code, halves) in [
+        (1, 0, 47_001, 16 * (185 + 25)),
+        (0, 0, 47_001 / 16, 185 + 25),
+        (0, 2, 47_001 / 256, 185 + 17),
+    ] {
+        let mut bench = bench();
+        bring_up(&mut bench, "ADC345_COMMON", "ADC3");
+        bench.set("CFGR2", &[("ROVSE", oversampled), ("ROVSM", 0)]);
+        bench.set("CFGR", &[("RES", bits)]);
+        bench.set("SMPR", &[("SMP1", 5)]);
+        bench.set("SQR1", &[("L", 0), ("SQ0", 1)]);
+        for _ in 0..2 {
+            bench.write("ISR", 0b1100);
+            bench.set("CR", &[("ADSTART", 1)]);
+            bench.run(halves * PERIOD / 2 - 1);
+            assert_eq!(
+                (bench.get("ISR", "EOS"), bench.get("CR", "ADSTART")),
+                (0, 1)
+            );
+            bench.run(1);
+            assert_eq!(
+                (bench.get("ISR", "EOS"), bench.get("CR", "ADSTART")),
+                (1, 0)
+            );
+            assert_eq!((bench.read("DR"), bench.get("ISR", "EOC")), (code, 0));
+        }
+        assert_eq!((bench.get("ISR", "OVR"), bench.findings().len()), (0, 0));
+    }
+}
+
+#[test]
+fn what_is_not_read_is_overrun() {
+    let mut bench = bench();
+    bring_up(&mut bench, "ADC345_COMMON", "ADC3");
+    bench.set("SMPR", &[("SMP1", 5)]);
+    bench.set("SQR1", &[("L", 1), ("SQ0", 1), ("SQ1", 1)]);
+    bench.set("CR", &[("ADSTART", 1)]);
+    bench.run(1_000);
+    assert_eq!((bench.get("ISR", "OVR"), bench.get("ISR", "EOS")), (1, 1));
+}
+
+#[test]
+fn a_reset_forgets_the_calibration() {
+    let mut bench = board();
+    bench.with(|board, _| board.converters.reset("ADC12_COMMON"));
+    assert_eq!(bench.get("CR", "ADEN"), 0);
+    select(&mut bench, "ADC12_COMMON");
+    bench.set("CCR", &[("PRESC", 2)]);
+    select(&mut bench, "ADC1");
+    bench.set("CR", &[("DEEPPWD", 0), ("ADVREGEN", 1)]);
+    bench.run(REGULATOR);
+    bench.set("CR", &[("ADEN", 1)]);
+    bench.run(15 * PERIOD);
+    bench.set("SMPR", &[("SMP6", 4)]);
+    bench.set("JSQR", &[("JSQ0", 6)]);
+    assert_eq!(bench.findings(), [""; 0]);
+    bench.set("CR", &[("JADSTART", 1)]);
+    let expected = "ADC1 converts without a calibration since its power-up";
+    assert_eq!(bench.findings(), [expected]);
+}
+
+type Mistake = fn(&mut Bench<Board>);
+
+/// Mistakes made after the board's set-up of ADC1, before its start; then it is started and triggered.
+const MISTAKES: [(Mistake, &str); 9] = [
+    (
+        |b| b.set("SMPR", &[("SMP7", 2)]),
+        "ADC1 samples input 7 for 294 ns",
+    ),
+    (
+        |b| b.set("JSQR", &[("JSQ1", 9)]),
+        "ADC1 converts input 9, whose pin",
+    ),
+    (|b| b.clocks.adc12 = 0, "ADC1 is to work, but its clock"),
+    (
+        |b| b.clocks.adc12 = 340_000_000,
+        "ADC1 runs at 85000000 Hz, above its limit of 52000000 Hz",
+    ),
+    (
+        |b| b.set("CFGR2", &[("TROVS", 1)]),
+        "ADC1_CFGR2: TROVS is set, which",
+    ),
+    (
+        |b| b.set("CR", &[("ADCAL", 1)]),
+        "ADC1_CR: ADCAL is set while ADEN is set",
+    ),
+    (
+        |b| b.set("CR", &[("ADCALDIF", 0)]),
+        "ADC1_CR: ADCALDIF is changed while the converter",
+    ),
+    (
+        |b| b.set("DIFSEL", &[("DIFSEL6", 1)]),
+        "ADC1_DIFSEL is changed while",
+    ),
+    (
+        |b| {
+            select(b, "ADC12_COMMON");
+            b.set("CCR", &[("PRESC", 3)]);
+            select(b, "ADC1");
+        },
+        "ADC12_COMMON_CCR: PRESC is changed while ADC1 is switched on",
+    ),
+];
+
+/// Mistakes made after the start.
+const LATE_MISTAKES: [(Mistake, &str); 6] = [
+    (
+        |b| b.set("JSQR", &[]),
+        "ADC1_JSQR is written while JADSTART is set",
+    ),
+    (
+        |b| b.set("SMPR2", &[]),
+        "ADC1_SMPR2 is written while JADSTART is set",
+    ),
+    (
+        |b| b.set("CFGR", &[("RES", 1)]),
+        "ADC1_CFGR: RES is changed while JADSTART",
+    ),
+    (
+        |b| b.set("CFGR2", &[("OVSR", 1)]),
+        "ADC1_CFGR2: OVSR is changed while JADSTART",
+    ),
+    (
+        |b| b.set("CR", &[("ADDIS", 1)]),
+        "ADC1_CR: ADDIS is set during conversions",
+    ),
+    (
+        trigger,
+        "ADC1: the injected sequence is triggered while it still runs",
+    ),
+];
+
+/// Mistakes on the way up.
+const EARLY_MISTAKES: [(Mistake, &str); 5] = [
+    (
+        |b| b.set("CR", &[("ADCAL", 1)]),
+        "ADC1_CR: ADCAL is set without the regulator",
+    ),
+    (
+        |b| {
+            b.set("CR", &[("DEEPPWD", 0), ("ADVREGEN", 1)]);
+            b.run(REGULATOR - 1);
+            b.set("CR", &[("ADCAL", 1)]);
+        },
+        "ADC1_CR: ADCAL is set before the regulator has had its 20 µs",
+    ),
+    (
+        |b| b.set("CR", &[("ADVREGEN", 1)]),
+        "ADC1_CR: ADVREGEN is set in deep power-down",
+    ),
+    (
+        |b| {
+            b.set("CR", &[("DEEPPWD", 0), ("ADVREGEN", 1)]);
+            b.run(REGULATOR);
+            b.set("CR", &[("ADCAL", 1)]);
+            b.run(112 + 3);
+            b.set("CR", &[("ADEN", 1)]);
+            assert_eq!(b.get("CR", "ADEN"), 0);
+        },
+        "ADC1_CR: ADEN is set within 4 converter periods after the calibration",
+    ),
+    (
+        |b| b.set("CR", &[("JADSTART", 1)]),
+        "ADC1_CR: JADSTART is set while ADEN is clear",
+    ),
+];
+
+fn assert_found(bench: &mut Bench<Board>, expected: &str) {
+    let findings = bench.findings();
+    let found = findings.iter().any(|text| text.starts_with(expected));
+    assert!(found, "{expected}: {findings:?}");
+}
+
+#[test]
+fn mistakes_are_found() {
+    for (mistake, expected) in MISTAKES {
+        let mut bench = board();
+        assert_eq!(bench.findings(), [""; 0]);
+        mistake(&mut bench);
+        bench.set("CR", &[("JADSTART", 1)]);
+        trigger(&mut bench);
+        bench.run(15_000);
+        assert_found(&mut bench, expected);
+    }
+    for (mistake, expected) in LATE_MISTAKES {
+        let mut bench = board();
+        bench.set("CR", &[("JADSTART", 1)]);
+        trigger(&mut bench);
+        assert_eq!(bench.findings(), [""; 0]);
+        mistake(&mut bench);
+        assert_found(&mut bench, expected);
+    }
+    for (mistake, expected) in EARLY_MISTAKES {
+        let mut bench = bench();
+        mistake(&mut bench);
+        assert_found(&mut bench, expected);
+    }
+}
+
+#[test]
+fn a_change_of_the_queue_forgets_the_sequence() {
+    let mut bench = board();
+    bench.set("CFGR", &[("JQDIS", 0)]);
+    assert_eq!(bench.read("JSQR"), 0);
+}
+
+#[test]
+fn another_trigger_or_edge_does_not_start_it() {
+    for change in [("JEXTSEL", 9), ("JEXTEN", 2)] {
+        let mut bench = board();
+        bench.set("JSQR", &[change]);
+        bench.set("CR", &[("JADSTART", 1)]);
+        trigger(&mut bench);
+        bench.run(20_000);
+        assert_eq!(bench.get("ISR", "JEOS"), 0);
+    }
+}

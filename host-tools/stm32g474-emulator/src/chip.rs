@@ -1,0 +1,349 @@
+//! The chip: processor, memories and peripherals in step.
+
+use crate::devices::Board;
+use crate::facts::Facts;
+use crate::image::{FLASH, Image};
+use crate::peripherals::Peripherals;
+use crate::processor::{DEBUG, FIRST_INTERRUPT, MapError, PERIPHERALS, Processor, SECOND_BANK};
+use crate::rcc::ResetCause;
+use rsemu::core::error::BusError;
+use rsemu::core::space::{MemAttrs, MemOps, MemResult};
+use std::fmt;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// What processor and bus share: the time, and whether a peripheral was accessed.
+#[derive(Debug, Default)]
+struct Shared {
+    cycle: AtomicU64,
+    accessed: AtomicBool,
+}
+
+/// The peripherals as the processor's memory has them.
+struct Bus {
+    start: u32,
+    peripherals: Arc<Mutex<Peripherals>>,
+    shared: Arc<Shared>,
+}
+
+impl fmt::Debug for Bus {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Bus")
+    }
+}
+
+fn lock(peripherals: &Mutex<Peripherals>) -> MutexGuard<'_, Peripherals> {
+    peripherals.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Bus {
+    fn access(&self) -> MutexGuard<'_, Peripherals> {
+        let mut peripherals = lock(&self.peripherals);
+        peripherals.cycle = self.shared.cycle.load(Ordering::Relaxed);
+        self.shared.accessed.store(true, Ordering::Relaxed);
+        peripherals
+    }
+}
+
+/// An address and a width that a bus of 32 bits can have.
+fn checked(offset: u64, width: usize) -> MemResult<(u32, u32)> {
+    let offset = u32::try_from(offset).map_err(|_| BusError::Unassigned)?;
+    match width {
+        1 | 2 | 4 if (offset as usize).is_multiple_of(width) => Ok((offset, width as u32)),
+        _ => Err(BusError::BadAccess),
+    }
+}
+
+impl MemOps for Bus {
+    fn read(&self, offset: u64, bytes: &mut [u8], attributes: MemAttrs) -> MemResult {
+        let (offset, width) = checked(offset, bytes.len())?;
+        if attributes.debug {
+            bytes.fill(0);
+            return Ok(());
+        }
+        let word = self.access().read(self.start + offset, width);
+        for (byte, value) in bytes.iter_mut().zip(word.to_le_bytes()) {
+            *byte = value;
+        }
+        Ok(())
+    }
+
+    fn write(&self, offset: u64, bytes: &[u8], attributes: MemAttrs) -> MemResult {
+        let (offset, width) = checked(offset, bytes.len())?;
+        if attributes.debug {
+            return Err(BusError::Protected);
+        }
+        let mut word = [0; 4];
+        for (byte, value) in word.iter_mut().zip(bytes) {
+            *byte = *value;
+        }
+        let value = u32::from_le_bytes(word);
+        self.access().write(self.start + offset, width, value);
+        Ok(())
+    }
+}
+
+/// The second bank of the flash, which can be programmed while the first is run.
+struct SecondBank(Bus);
+
+impl fmt::Debug for SecondBank {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("SecondBank")
+    }
+}
+
+impl MemOps for SecondBank {
+    fn read(&self, offset: u64, bytes: &mut [u8], attributes: MemAttrs) -> MemResult {
+        let Self(bus) = self;
+        if attributes.debug {
+            bytes.fill(0);
+            return Ok(());
+        }
+        let (offset, width) = checked(offset, bytes.len())?;
+        let word = bus.access().read_flash(bus.start + offset, width);
+        for (byte, value) in bytes.iter_mut().zip(word.to_le_bytes()) {
+            *byte = value;
+        }
+        Ok(())
+    }
+
+    fn write(&self, offset: u64, bytes: &[u8], attributes: MemAttrs) -> MemResult {
+        let Self(bus) = self;
+        let (offset, width) = checked(offset, bytes.len())?;
+        if attributes.debug {
+            return Err(BusError::Protected);
+        }
+        let mut word = [0; 4];
+        for (byte, value) in word.iter_mut().zip(bytes) {
+            *byte = *value;
+        }
+        let value = u32::from_le_bytes(word);
+        bus.access().write_flash(bus.start + offset, width, value);
+        Ok(())
+    }
+}
+
+/// Why a chip stopped running.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// The pulse timer has come to its update.
+    Update,
+    /// ADC1 or ADC2 raises its interrupt, with which a tick begins.
+    Converted,
+    /// The program is at the first instruction of a watched function.
+    Watched,
+    /// The time is over.
+    Time,
+    /// The processor has locked up: a fault within a fault.
+    LockedUp,
+    /// The chip was reset, and starts again.
+    Reset(ResetCause),
+}
+
+/// A chip on a board.
+pub struct Chip {
+    watched: Vec<u32>,
+    watching: bool,
+    /// The interrupt of ADC1 and ADC2.
+    converted: u16,
+    processor: Processor,
+    peripherals: Arc<Mutex<Peripherals>>,
+    shared: Arc<Shared>,
+    cycle: u64,
+    next_event: u64,
+    /// Whether the counter of cycles goes on while the processor sleeps.
+    counts_asleep: bool,
+}
+
+impl Chip {
+    /// A chip that is about to start after a power-up.
+    ///
+    /// # Errors
+    /// [`MapError`]: a fault of this program.
+    pub fn new(image: &Image, board: &Board) -> Result<Self, MapError> {
+        let mut peripherals = Peripherals::new(board);
+        peripherals.devices.flash.load(FLASH.start, &image.flash);
+        peripherals.devices.flash.set_program(image.program());
+        // The first start is part of what an image sets.
+        peripherals.checks.record();
+        let peripherals = Arc::new(Mutex::new(peripherals));
+        let shared = Arc::new(Shared::default());
+        let bus = |start| Bus {
+            start,
+            peripherals: Arc::clone(&peripherals),
+            shared: Arc::clone(&shared),
+        };
+        let processor = Processor::new(
+            &image.flash,
+            Arc::new(SecondBank(bus(SECOND_BANK))),
+            Arc::new(bus(PERIPHERALS.start)),
+            Arc::new(bus(DEBUG.start)),
+        )?;
+        Ok(Self {
+            processor,
+            peripherals,
+            shared,
+            cycle: 0,
+            next_event: 0,
+            counts_asleep: false,
+            watched: Vec::new(),
+            watching: false,
+            converted: Facts::of_chip().interrupt("ADC1_2").unwrap_or(u16::MAX),
+        })
+    }
+
+    /// The peripherals. What is changed there takes effect with the next instruction.
+    pub fn peripherals(&self) -> MutexGuard<'_, Peripherals> {
+        self.shared.accessed.store(true, Ordering::Relaxed);
+        lock(&self.peripherals)
+    }
+
+    /// The processor.
+    pub fn processor(&self) -> &Processor {
+        &self.processor
+    }
+
+    /// Cycles since the power-up.
+    #[must_use]
+    pub fn cycle(&self) -> u64 {
+        self.cycle
+    }
+
+    /// Sets bytes of the flash, as a programmer does.
+    pub fn load_flash(&mut self, address: u32, bytes: &[u8]) {
+        lock(&self.peripherals).devices.flash.load(address, bytes);
+    }
+
+    /// Lets [`Self::run`] stop at the first instruction of these functions.
+    pub fn watch(&mut self, functions: Vec<u32>) {
+        self.watched = functions;
+    }
+
+    /// Runs until something of interest happens, or to a cycle.
+    pub fn run(&mut self, end: u64) -> Stop {
+        while self.cycle < end {
+            let accessed = self.shared.accessed.load(Ordering::Relaxed);
+            if (accessed || self.cycle >= self.next_event)
+                && let Some(stop) = self.service()
+            {
+                return stop;
+            }
+            if self.processor.sleeps() {
+                self.sleep_until(self.next_event.min(end));
+                continue;
+            }
+            self.cycle += self.processor.step();
+            self.shared.cycle.store(self.cycle, Ordering::Relaxed);
+            if self.watching && self.watched.contains(&self.processor.pc()) {
+                return Stop::Watched;
+            }
+        }
+        Stop::Time
+    }
+
+    /// Holds the processor for some cycles while everything else goes on, as a bus that does not answer does; what
+    /// happens meanwhile.
+    pub fn hold_processor(&mut self, cycles: u64) -> Option<Stop> {
+        let end = self.cycle + cycles;
+        while self.cycle < end {
+            if let Some(stop) = self.service() {
+                return Some(stop);
+            }
+            let passed = self.next_event.min(end).saturating_sub(self.cycle).max(1);
+            self.processor.count_asleep(passed);
+            self.cycle += passed;
+            self.shared.cycle.store(self.cycle, Ordering::Relaxed);
+        }
+        None
+    }
+
+    /// Whether [`Self::run`] stops at the watched functions: it runs slower meanwhile.
+    pub fn set_watching(&mut self, watching: bool) {
+        self.watching = watching;
+    }
+
+    fn sleep_until(&mut self, cycle: u64) {
+        let slept = cycle.saturating_sub(self.cycle).max(1);
+        if self.counts_asleep {
+            self.processor.count_asleep(slept);
+        }
+        self.cycle += slept;
+        self.shared.cycle.store(self.cycle, Ordering::Relaxed);
+    }
+
+    fn service(&mut self) -> Option<Stop> {
+        self.shared.accessed.store(false, Ordering::Relaxed);
+        if self.processor.locked_up() {
+            return Some(self.lock_up());
+        }
+        if self.processor.asks_for_reset() {
+            return Some(self.reset(ResetCause::Software));
+        }
+        let mut peripherals = lock(&self.peripherals);
+        peripherals.cycle = self.cycle;
+        peripherals.advance();
+        if peripherals
+            .devices
+            .iwdg
+            .expires_at()
+            .is_some_and(|at| at <= self.cycle)
+        {
+            drop(peripherals);
+            return Some(self.reset(ResetCause::IndependentWatchdog));
+        }
+        let place = self.processor.place();
+        if peripherals.take_fed() && place.exception >= FIRST_INTERRUPT {
+            peripherals
+                .findings
+                .add("IWDG is fed by an interrupt's handler, which may go on while all else hangs");
+        }
+        peripherals.findings.locate(place.pc);
+        if peripherals.devices.flash.take_nmi() {
+            self.processor.raise_nmi();
+        }
+        let mut converted = false;
+        for &(number, level) in peripherals.devices.interrupts() {
+            let risen = self.processor.set_line(number, level) && level;
+            converted |= risen && number == self.converted;
+        }
+        self.counts_asleep = peripherals.devices.debug_in_sleep();
+        self.next_event = peripherals.devices.next_event().unwrap_or(u64::MAX);
+        let update = peripherals.devices.take_update();
+        drop(peripherals);
+        match (update, converted) {
+            (true, _) => Some(Stop::Update),
+            (false, true) => Some(Stop::Converted),
+            (false, false) => None,
+        }
+    }
+
+    /// The processor has locked up, and switches the pulses off if the image asks for that.
+    fn lock_up(&mut self) -> Stop {
+        lock(&self.peripherals).break_by_lockup();
+        Stop::LockedUp
+    }
+
+    /// Resets the chip, whose supply stays, and its memories with it.
+    pub fn reset(&mut self, cause: ResetCause) -> Stop {
+        lock(&self.peripherals).reset(cause);
+        self.processor.reset();
+        self.next_event = self.cycle;
+        Stop::Reset(cause)
+    }
+
+    /// Takes the supply away and gives it back: RAM then holds anything, and what was being written to the flash is half
+    /// done.
+    pub fn cycle_power(&mut self, seed: u64) {
+        lock(&self.peripherals).devices.flash.cut_power();
+        self.processor.scramble_ram(seed);
+        self.reset(ResetCause::BrownOut);
+    }
+
+    /// Lets the crystal stop.
+    pub fn stop_crystal(&mut self) {
+        if lock(&self.peripherals).stop_crystal() {
+            self.processor.raise_nmi();
+        }
+        self.next_event = self.cycle;
+    }
+}

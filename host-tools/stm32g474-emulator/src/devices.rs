@@ -1,0 +1,455 @@
+//! The peripherals of the chip, and what passes between them.
+
+use crate::adc::{AnalogueInputs, Converters};
+use crate::clocks::LSI_HZ;
+use crate::device::{Context, Device, FieldPlace};
+use crate::encoder_timer::EncoderTimer;
+use crate::facts::{Block, Facts, Pin};
+use crate::fdcan::{Bus, Fdcan};
+use crate::flash::Flash;
+use crate::gpio::{Gpio, Outside, PinMode};
+use crate::iwdg::Iwdg;
+use crate::lpuart::Lpuart;
+use crate::plain::Plain;
+use crate::pwr::Pwr;
+use crate::rcc::Rcc;
+use crate::tim1::Tim1;
+use crate::tim15::Tim15;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use stm32_metapac::metadata::METADATA;
+
+/// The timers of the encoders, in the order of the motors.
+const ENCODER_TIMERS: [&str; 3] = ["TIM2", "TIM3", "TIM4"];
+
+/// The message RAM of FDCAN2.
+const MESSAGE_RAM: &str = "FDCANRAM2";
+
+/// The inputs of TIM1's breaks.
+const BREAK_INPUTS: [&str; 2] = ["BKIN", "BKIN2"];
+
+/// What the converters get at their inputs.
+struct Inputs<'a> {
+    ports: &'a [Gpio],
+    analogue: &'a BTreeMap<Pin, u16>,
+    sampled: &'a RefCell<BTreeMap<Pin, u16>>,
+}
+
+impl<'a> Inputs<'a> {
+    fn new(
+        ports: &'a [Gpio],
+        analogue: &'a BTreeMap<Pin, u16>,
+        sampled: &'a RefCell<BTreeMap<Pin, u16>>,
+    ) -> Self {
+        Self {
+            ports,
+            analogue,
+            sampled,
+        }
+    }
+}
+
+impl AnalogueInputs for Inputs<'_> {
+    fn sum16(&self, converter: &str, input: u8) -> Option<u16> {
+        let pin = Facts::of_chip().converter_pin(converter, input)?;
+        let port = self.ports.iter().find(|p| p.pin(0).port == pin.port)?;
+        if port.mode(pin.number) != PinMode::Analogue {
+            return None;
+        }
+        let value = self.analogue.get(&pin).copied()?;
+        self.sampled.borrow_mut().insert(pin, value);
+        Some(value)
+    }
+}
+
+/// What the chip stands on.
+#[derive(Clone, Copy, Debug)]
+pub struct Board {
+    /// The crystal, Hz.
+    pub crystal_hz: u32,
+    /// What the oscillator of the watchdog really does, Hz.
+    pub lsi_hz: u32,
+    /// The option byte DBANK, as the chip leaves the factory: set.
+    pub dual_bank: bool,
+    /// The bit rates of the CAN bus.
+    pub can: Bus,
+    /// For what is left to chance: RAM after a power-up, flash after a cut.
+    pub seed: u64,
+}
+
+impl Default for Board {
+    /// A NUCLEO-G474RE.
+    fn default() -> Self {
+        Self {
+            crystal_hz: 24_000_000,
+            lsi_hz: LSI_HZ,
+            dual_bank: true,
+            can: Bus {
+                nominal_hz: 1_000_000,
+                data_hz: 5_000_000,
+            },
+            seed: 0,
+        }
+    }
+}
+
+/// The peripherals.
+pub struct Devices {
+    /// RCC.
+    pub rcc: Rcc,
+    /// PWR.
+    pub pwr: Pwr,
+    /// The ports.
+    pub ports: Vec<Gpio>,
+    /// DBGMCU.
+    pub dbgmcu: Plain,
+    /// FLASH and its memory.
+    pub flash: Flash,
+    /// LPUART1.
+    pub lpuart: Lpuart,
+    /// FDCAN2 and its message RAM.
+    pub fdcan: Fdcan,
+    /// IWDG.
+    pub iwdg: Iwdg,
+    /// TIM1.
+    pub tim1: Tim1,
+    /// TIM15.
+    pub tim15: Tim15,
+    /// TIM2 to TIM4.
+    pub encoders: [EncoderTimer; 3],
+    /// ADC1 to ADC3.
+    pub converters: Converters,
+    /// What the board gives the converters, by pin: sums of 16 conversions.
+    pub analogue: BTreeMap<Pin, u16>,
+    /// What was converted last, by pin.
+    sampled: RefCell<BTreeMap<Pin, u16>>,
+    /// SYSCFG.
+    pub syscfg: Plain,
+    debug_in_sleep: FieldPlace,
+    lockup_breaks: FieldPlace,
+    updated: bool,
+    /// The pins that are routed to the breaks, and their levels.
+    break_pins: [Option<Pin>; 2],
+    break_levels: [bool; 2],
+    lines: Lines,
+}
+
+/// A block that the chip has.
+fn block(name: &str) -> &'static Block {
+    match Facts::of_chip().block(name) {
+        Some(block) => block,
+        None => panic!("the chip has no {name}"),
+    }
+}
+
+impl Devices {
+    /// After a power-up.
+    #[must_use]
+    pub fn new(board: &Board) -> Self {
+        let facts = Facts::of_chip();
+        let (dbgmcu, syscfg) = (Plain::new(block("DBGMCU")), Plain::new(block("SYSCFG")));
+        let ports = facts.blocks.iter().filter(|b| b.name.starts_with("GPIO"));
+        Self {
+            rcc: Rcc::new(block("RCC"), board.crystal_hz),
+            pwr: Pwr::new(block("PWR")),
+            ports: ports.map(|block| Gpio::new(block, facts)).collect(),
+            flash: Flash::new(board.dual_bank, board.seed),
+            lpuart: Lpuart::new(),
+            fdcan: Fdcan::new(board.can),
+            iwdg: Iwdg::new(board.lsi_hz),
+            tim1: Tim1::new(block("TIM1")),
+            tim15: Tim15::new(block("TIM15")),
+            encoders: ENCODER_TIMERS.map(|name| EncoderTimer::new(block(name))),
+            converters: Converters::new(facts),
+            analogue: BTreeMap::new(),
+            sampled: RefCell::default(),
+            debug_in_sleep: dbgmcu.registers().field("CR", "DBG_SLEEP"),
+            lockup_breaks: syscfg.registers().field("CFGR2", "CLL"),
+            dbgmcu,
+            syscfg,
+            updated: false,
+            break_pins: [None; 2],
+            break_levels: [false; 2],
+            lines: Lines::new(),
+        }
+    }
+
+    /// The processor reads a register; none where the block is not modelled.
+    pub fn read(&mut self, block: &str, offset: u32, context: &mut Context<'_>) -> Option<u32> {
+        if block.starts_with("ADC") {
+            let inputs = Inputs::new(&self.ports, &self.analogue, &self.sampled);
+            return Some(self.converters.read(block, offset, &inputs, context));
+        }
+        if block == MESSAGE_RAM {
+            return Some(self.fdcan.read_memory(offset));
+        }
+        Some(self.by_name(block)?.read(offset, context))
+    }
+
+    /// The processor writes a register; none where the block is not modelled.
+    pub fn write(
+        &mut self,
+        block: &str,
+        (offset, value): (u32, u32),
+        context: &mut Context<'_>,
+    ) -> Option<()> {
+        if block.starts_with("ADC") {
+            let inputs = Inputs::new(&self.ports, &self.analogue, &self.sampled);
+            self.converters
+                .write(block, (offset, value), &inputs, context);
+            return Some(());
+        }
+        if block == MESSAGE_RAM {
+            self.fdcan.write_memory(offset, value, context);
+            return Some(());
+        }
+        self.by_name(block)?.write(offset, value, context);
+        Some(())
+    }
+
+    /// What an input was when it was converted last; none before.
+    #[must_use]
+    pub fn sampled(&self, pin: Pin) -> Option<u16> {
+        self.sampled.borrow().get(&pin).copied()
+    }
+
+    /// The peripheral of a block; none where it is not modelled.
+    fn by_name(&mut self, name: &str) -> Option<&mut dyn Device> {
+        let named = |block: &Block| block.name == name;
+        Some(match name {
+            "RCC" => &mut self.rcc,
+            "PWR" => &mut self.pwr,
+            "DBGMCU" => &mut self.dbgmcu,
+            "FLASH" => &mut self.flash,
+            "LPUART1" => &mut self.lpuart,
+            "FDCAN2" => &mut self.fdcan,
+            "IWDG" => &mut self.iwdg,
+            "TIM1" => &mut self.tim1,
+            "TIM15" => &mut self.tim15,
+            _ if name.starts_with("GPIO") => self.ports.iter_mut().find(|p| named(p.block()))?,
+            "SYSCFG" => &mut self.syscfg,
+            _ => {
+                let timer = ENCODER_TIMERS.iter().position(|timer| *timer == name)?;
+                self.encoders.get_mut(timer)?
+            }
+        })
+    }
+
+    fn all(&mut self) -> impl Iterator<Item = &mut dyn Device> {
+        let single: [&mut dyn Device; 10] = [
+            &mut self.rcc,
+            &mut self.pwr,
+            &mut self.dbgmcu,
+            &mut self.syscfg,
+            &mut self.flash,
+            &mut self.lpuart,
+            &mut self.fdcan,
+            &mut self.iwdg,
+            &mut self.tim1,
+            &mut self.tim15,
+        ];
+        let encoders = self.encoders.iter_mut().map(|d| d as &mut dyn Device);
+        let ports = self.ports.iter_mut().map(|d| d as &mut dyn Device);
+        single.into_iter().chain(encoders).chain(ports)
+    }
+
+    /// All back to what a reset of the chip gives.
+    pub fn reset(&mut self) {
+        self.all().for_each(Device::reset);
+        self.converters.reset_all();
+        self.break_levels = [false; 2];
+        self.updated = false;
+    }
+
+    /// A block that the image holds in reset is as after a reset of the chip.
+    pub fn reset_block(&mut self, block: &str) {
+        if block.starts_with("ADC") {
+            self.converters.reset(block);
+        } else if let Some(device) = self.by_name(block) {
+            device.reset();
+        }
+        self.break_levels = [false; 2];
+    }
+
+    /// Lets everything happen that is due, and hands on what passes between peripherals.
+    pub fn advance(&mut self, context: &mut Context<'_>) {
+        self.route_breaks(context);
+        for device in self.acting() {
+            if device.next_event().is_some_and(|at| at <= context.cycle) {
+                device.advance(context);
+            }
+        }
+        let inputs = Inputs::new(&self.ports, &self.analogue, &self.sampled);
+        self.converters.advance(&inputs, context);
+        if let Some(cycle) = self.tim1.take_trigger() {
+            self.updated = true;
+            self.converters.trigger(cycle, &inputs, context);
+        }
+    }
+
+    /// Whether the processor's clock goes on while it sleeps, for a debugger.
+    #[must_use]
+    pub fn debug_in_sleep(&self) -> bool {
+        let registers = self.dbgmcu.registers();
+        registers.is_set(self.debug_in_sleep)
+    }
+
+    /// Whether a processor that is locked up breaks TIM1.
+    #[must_use]
+    pub fn breaks_by_lockup(&self) -> bool {
+        self.syscfg.registers().is_set(self.lockup_breaks)
+    }
+
+    /// Whether the pulse timer has come to its update since the last question.
+    pub fn take_update(&mut self) -> bool {
+        std::mem::take(&mut self.updated)
+    }
+
+    /// The next cycle in which something happens by itself.
+    pub fn next_event(&mut self) -> Option<u64> {
+        let acting = self.acting().into_iter();
+        let next = acting.filter_map(|device| device.next_event()).min();
+        next.into_iter().chain(self.converters.next_event()).min()
+    }
+
+    /// Those in which something happens by itself.
+    fn acting(&mut self) -> [&mut dyn Device; 6] {
+        [
+            &mut self.tim1,
+            &mut self.tim15,
+            &mut self.flash,
+            &mut self.lpuart,
+            &mut self.fdcan,
+            &mut self.iwdg,
+        ]
+    }
+
+    fn route_breaks(&mut self, context: &mut Context<'_>) {
+        let mut changed = false;
+        for port in &mut self.ports {
+            changed |= port.take_changed();
+        }
+        if changed {
+            self.break_pins = BREAK_INPUTS.map(|signal| self.pin_of("TIM1", signal));
+        }
+        for (index, pin) in self.break_pins.into_iter().enumerate() {
+            let level = pin.and_then(|pin| self.level(pin)).unwrap_or(false);
+            if self.break_levels.get(index) != Some(&level) {
+                self.tim1.set_break_input(index, level, context);
+            }
+            if let Some(before) = self.break_levels.get_mut(index) {
+                *before = level;
+            }
+        }
+    }
+
+    /// The pin that the image has given to a peripheral's signal.
+    #[must_use]
+    pub fn pin_of(&self, peripheral: &str, signal: &str) -> Option<Pin> {
+        let facts = Facts::of_chip();
+        self.ports.iter().find_map(|port| {
+            (0..16).map(|number| port.pin(number)).find(|pin| {
+                matches!(port.mode(pin.number), PinMode::Alternate(function)
+                    if facts.alternate_function(*pin, function).contains(&(peripheral, signal)))
+            })
+        })
+    }
+
+    fn port(&self, pin: Pin) -> Option<&Gpio> {
+        self.ports.iter().find(|port| port.pin(0).port == pin.port)
+    }
+
+    /// Says what drives a pin from outside.
+    pub fn set_outside(&mut self, pin: Pin, outside: Outside) {
+        let mut ports = self.ports.iter_mut();
+        if let Some(port) = ports.find(|port| port.pin(0).port == pin.port) {
+            port.set_outside(pin.number, outside);
+        }
+    }
+
+    /// Moves an encoder, 0 to 2, to a count, on tracks that are routed to its timer or not.
+    pub fn set_encoder(&mut self, encoder: usize, count: u32, routed: bool) {
+        if let Some(timer) = self.encoders.get_mut(encoder) {
+            timer.set_position(count, routed);
+        }
+    }
+
+    /// Whether a pin is routed to a signal of an encoder's timer.
+    #[must_use]
+    pub fn encoder_routed(&self, encoder: usize, pin: Pin, signal: &str) -> bool {
+        let timer = ENCODER_TIMERS.get(encoder);
+        timer.is_some_and(|timer| self.is_routed(pin, timer, signal))
+    }
+
+    /// Whether the image has given a pin to a peripheral's signal.
+    #[must_use]
+    pub fn is_routed(&self, pin: Pin, peripheral: &str, signal: &str) -> bool {
+        let mode = self.port(pin).map(|port| port.mode(pin.number));
+        matches!(mode, Some(PinMode::Alternate(function))
+            if Facts::of_chip().alternate_function(pin, function).contains(&(peripheral, signal)))
+    }
+
+    /// The level of a pin; none where nothing gives it one.
+    #[must_use]
+    pub fn level(&self, pin: Pin) -> Option<bool> {
+        self.port(pin)?.level(pin.number)
+    }
+
+    /// The numbers of the interrupts and the levels of their lines.
+    pub fn interrupts(&mut self) -> &[(u16, bool)] {
+        let lines = &mut self.lines;
+        lines.clear();
+        for (name, level) in self.tim1.interrupts() {
+            lines.raise(name, level);
+        }
+        for (name, level) in self.tim15.interrupts() {
+            lines.raise(name, level);
+        }
+        for (name, level) in self.converters.interrupts() {
+            lines.raise(name, level);
+        }
+        lines.raise("FLASH", self.flash.interrupt());
+        lines.raise("LPUART1", self.lpuart.interrupt());
+        let [first, second] = self.fdcan.interrupt_lines();
+        lines.raise("FDCAN2_IT0", first);
+        lines.raise("FDCAN2_IT1", second);
+        for (name, timer) in ENCODER_TIMERS.iter().zip(&self.encoders) {
+            lines.raise(name, timer.interrupt());
+        }
+        &lines.levels
+    }
+}
+
+/// The interrupts by their numbers; several peripherals may share one.
+struct Lines {
+    names: Vec<&'static str>,
+    levels: Vec<(u16, bool)>,
+}
+
+impl Lines {
+    fn new() -> Self {
+        let all = METADATA.interrupts.iter();
+        let known = all.filter_map(|one| Some((one.name, u16::try_from(one.number).ok()?)));
+        let (names, numbers): (Vec<_>, Vec<_>) = known.unzip();
+        Self {
+            names,
+            levels: numbers.into_iter().map(|number| (number, false)).collect(),
+        }
+    }
+
+    fn clear(&mut self) {
+        for (_, level) in &mut self.levels {
+            *level = false;
+        }
+    }
+
+    fn raise(&mut self, name: &str, level: bool) {
+        if !level {
+            return;
+        }
+        let place = self.names.iter().position(|known| *known == name);
+        if let Some((_, line)) = place.and_then(|place| self.levels.get_mut(place)) {
+            *line = true;
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! The flash and its controller: 512 KiB in two banks.
+//!
+//! | module | what is in it |
+//! |---|---|
+//! | [`mod@array`] | the memory |
+//! | [`operation`] | programming and erasing, and what a loss of power leaves of it |
+//!
+//! Not modelled: fast programming, option bytes that change, write and read protection, single wrong bits, caches that
+//! hold old data.
+
+pub mod array;
+mod control;
+pub mod operation;
+mod places;
+#[cfg(test)]
+mod tests;
+
+use crate::device::{Context, Device, RegisterFile};
+use crate::facts::Facts;
+use array::{Array, BANK_SIZE, DOUBLE_WORD, SIZE, START, double_word_of};
+use operation::{Chance, Operation};
+use places::{Flags, Offsets, Settings};
+use std::ops::Range;
+
+/// The flash with its registers.
+#[derive(Clone, Debug)]
+pub struct Flash {
+    registers: RegisterFile,
+    offsets: Offsets,
+    settings: Settings,
+    flags: Flags,
+    array: Array,
+    dual_bank: bool,
+    keys: Keys,
+    /// The first half of a double word: its offset and value.
+    first_half: Option<(u32, u32)>,
+    /// What is in progress, and the cycle in which it ends.
+    running: Option<(Operation, u64)>,
+    /// Where the program lies, addresses.
+    program: Range<u32>,
+    nmi: bool,
+    chance: Chance,
+}
+
+/// How far the lock of CR is open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Keys {
+    /// The first key is awaited.
+    First,
+    /// The second key is awaited.
+    Second,
+    /// A wrong key was written: locked until a reset.
+    Refused,
+}
+
+impl Flash {
+    /// An erased flash; `dual_bank` is the option byte DBANK, and `seed` chooses what a loss of power leaves.
+    ///
+    /// # Panics
+    /// If the facts do not know the controller's registers.
+    #[must_use]
+    pub fn new(dual_bank: bool, seed: u64) -> Self {
+        let Some(block) = Facts::of_chip().block("FLASH") else {
+            panic!("the facts have no block FLASH");
+        };
+        let registers = RegisterFile::new(block);
+        let mut flash = Self {
+            offsets: Offsets::new(&registers),
+            settings: Settings::new(&registers),
+            flags: Flags::new(&registers),
+            registers,
+            array: Array::default(),
+            dual_bank,
+            keys: Keys::First,
+            first_half: None,
+            running: None,
+            program: 0..0,
+            nmi: false,
+            chance: Chance::new(seed),
+        };
+        flash.reset();
+        flash
+    }
+
+    /// Says where the program lies that runs, addresses: whatever touches a page of it is a finding.
+    pub fn set_program(&mut self, addresses: Range<u32>) {
+        self.program = addresses;
+    }
+
+    /// Sets bytes from an address on, as a programmer does; false, and nothing is set, if they leave the flash.
+    pub fn load(&mut self, address: u32, bytes: &[u8]) -> bool {
+        match address.checked_sub(START) {
+            Some(offset) => self.array.load(offset, bytes),
+            None => false,
+        }
+    }
+
+    /// What the flash holds in a range of addresses; none if that leaves the flash.
+    #[must_use]
+    pub fn bytes(&self, addresses: Range<u32>) -> Option<&[u8]> {
+        let start = addresses.start.checked_sub(START)?;
+        self.array.bytes(start..addresses.end.checked_sub(START)?)
+    }
+
+    /// The memory.
+    #[must_use]
+    pub fn array(&self) -> &Array {
+        &self.array
+    }
+
+    /// Lets the double word of an address disagree with its ECC.
+    pub fn damage(&mut self, address: u32) {
+        self.array.damage(address.wrapping_sub(START));
+    }
+
+    /// The processor reads one, two or four bytes of the memory.
+    pub fn read_array(&mut self, address: u32, width: u32, context: &mut Context<'_>) -> u32 {
+        let offset = address.wrapping_sub(START);
+        if self.running.is_some() {
+            self.settle(context.cycle);
+        }
+        if self.array.is_damaged(offset) {
+            self.detect_error(offset);
+        }
+        self.array.value(offset, width)
+    }
+
+    /// The processor writes to the memory.
+    pub fn write_array(&mut self, address: u32, width: u32, value: u32, context: &mut Context<'_>) {
+        self.settle(context.cycle);
+        self.write_half(address, width, value, context);
+    }
+
+    /// The wait states that ACR asks for.
+    #[must_use]
+    pub fn latency(&self) -> u32 {
+        self.registers.value(self.settings.latency)
+    }
+
+    /// The cycle until which an access to an address waits, because its bank is being programmed or erased.
+    #[must_use]
+    pub fn stall_until(&self, address: u32) -> Option<u64> {
+        let offset = address.checked_sub(START).filter(|at| *at < SIZE)?;
+        let (operation, end) = self.running.as_ref()?;
+        operation.occupies(offset, self.dual_bank).then_some(*end)
+    }
+
+    /// Whether an NMI was asked for since the last question.
+    pub fn take_nmi(&mut self) -> bool {
+        std::mem::take(&mut self.nmi)
+    }
+
+    /// Whether the interrupt line `FLASH` is active.
+    #[must_use]
+    pub fn interrupt(&self) -> bool {
+        let both = |flag, enable| self.registers.is_set(flag) && self.registers.is_set(enable);
+        both(self.flags.end, self.settings.end_interrupt)
+            || both(self.flags.operation_error, self.settings.error_interrupt)
+            || both(self.flags.ecc_corrected, self.flags.ecc_interrupt)
+    }
+
+    /// The supply fails: what is in progress stays half done. A reset does the same.
+    pub fn cut_power(&mut self) {
+        if let Some((operation, _)) = self.running.take() {
+            operation.interrupt(&mut self.array, &mut self.chance);
+        }
+    }
+
+    /// A double word with two wrong bits was read.
+    fn detect_error(&mut self, offset: u32) {
+        let offset = double_word_of(offset);
+        let flags = &self.flags;
+        let [detected, other] = if self.dual_bank || offset.is_multiple_of(2 * DOUBLE_WORD) {
+            [flags.ecc_detected, flags.ecc_detected_above]
+        } else {
+            [flags.ecc_detected_above, flags.ecc_detected]
+        };
+        if self.registers.is_set(detected) {
+            return;
+        }
+        let first = !self.registers.is_set(other);
+        self.registers.set_value(detected, 1);
+        self.nmi = true;
+        if !first {
+            return;
+        }
+        let bank_2 = self.dual_bank && offset >= BANK_SIZE;
+        // Bytes from the start of the bank. By memory of the manual; drivers for the STM32U5, whose field is alike, read it so.
+        let address = if bank_2 { offset - BANK_SIZE } else { offset };
+        self.registers.set_value(self.flags.ecc_address, address);
+        let bank = u32::from(bank_2);
+        self.registers.set_value(self.flags.ecc_bank, bank);
+        self.registers.set_value(self.flags.ecc_system, 0);
+    }
+
+    /// Ends what is due.
+    fn settle(&mut self, cycle: u64) {
+        if self.running.as_ref().is_none_or(|(_, end)| cycle < *end) {
+            return;
+        }
+        if let Some((operation, _)) = self.running.take() {
+            operation.complete(&mut self.array);
+        }
+        self.registers.set_value(self.flags.busy, 0);
+        self.registers.set_value(self.settings.start, 0);
+        // RM0440, FLASH_SR: the flag is set only if its interrupt is enabled.
+        if self.registers.is_set(self.settings.end_interrupt) {
+            self.registers.set_value(self.flags.end, 1);
+        }
+    }
+}
+
+impl Device for Flash {
+    fn reset(&mut self) {
+        self.cut_power();
+        self.registers.reset();
+        let dual_bank = u32::from(self.dual_bank);
+        self.registers.set_value(self.flags.dual_bank, dual_bank);
+        self.keys = Keys::First;
+        self.first_half = None;
+        self.nmi = false;
+    }
+
+    fn read(&mut self, offset: u32, context: &mut Context<'_>) -> u32 {
+        self.settle(context.cycle);
+        self.registers.get(offset)
+    }
+
+    fn write(&mut self, offset: u32, value: u32, context: &mut Context<'_>) {
+        self.settle(context.cycle);
+        self.write_register(offset, value, context);
+    }
+
+    fn next_event(&self) -> Option<u64> {
+        self.running.as_ref().map(|(_, end)| *end)
+    }
+
+    fn advance(&mut self, context: &mut Context<'_>) {
+        self.settle(context.cycle);
+    }
+}

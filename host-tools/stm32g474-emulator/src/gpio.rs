@@ -1,0 +1,207 @@
+//! A port: pins as the image sets them, and the levels that the board gives them.
+
+use crate::device::{Context, Device, RegisterFile};
+use crate::facts::{Block, Facts, Pin};
+
+/// What drives a pin from outside.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Outside {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// A low level.
+    Low,
+    /// A high level.
+    High,
+}
+
+/// What the image has made of a pin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PinMode {
+    /// Read by the program.
+    Input,
+    /// Driven by the program.
+    Output,
+    /// Belongs to a peripheral, by the number of its alternate function.
+    Alternate(u8),
+    /// Belongs to a converter, or to nobody.
+    Analogue,
+}
+
+/// Offsets, by the makers' names.
+#[derive(Clone, Copy, Debug)]
+struct Offsets {
+    mode: u32,
+    pull: u32,
+    input: u32,
+    output: u32,
+    set_reset: u32,
+    functions: [u32; 2],
+}
+
+/// A port.
+#[derive(Clone, Debug)]
+pub struct Gpio {
+    registers: RegisterFile,
+    offsets: Offsets,
+    port: char,
+    outside: [Outside; 16],
+    /// Whether the image may have changed what a pin is since the last question.
+    changed: bool,
+    facts: &'static Facts,
+}
+
+impl Gpio {
+    /// A port by its block, whose name ends with its letter.
+    #[must_use]
+    pub fn new(block: &'static Block, facts: &'static Facts) -> Self {
+        let registers = RegisterFile::new(block);
+        let offset = |name| registers.offset(name);
+        Self {
+            offsets: Offsets {
+                mode: offset("MODER"),
+                pull: offset("PUPDR"),
+                input: offset("IDR"),
+                output: offset("ODR"),
+                set_reset: offset("BSRR"),
+                functions: [offset("AFRL"), offset("AFRH")],
+            },
+            port: block.name.chars().next_back().unwrap_or('?'),
+            registers,
+            outside: [Outside::Nothing; 16],
+            changed: true,
+            facts,
+        }
+    }
+
+    /// Its block.
+    #[must_use]
+    pub fn block(&self) -> &'static Block {
+        self.registers.block()
+    }
+
+    /// Whether the image may have changed what a pin is since the last question.
+    pub fn take_changed(&mut self) -> bool {
+        std::mem::take(&mut self.changed)
+    }
+
+    /// Says what drives a pin from outside.
+    pub fn set_outside(&mut self, pin: u8, outside: Outside) {
+        if let Some(place) = self.outside.get_mut(usize::from(pin)) {
+            *place = outside;
+        }
+    }
+
+    /// What the image has made of a pin.
+    #[must_use]
+    pub fn mode(&self, pin: u8) -> PinMode {
+        match self.registers.get(self.offsets.mode) >> (2 * pin) & 3 {
+            0 => PinMode::Input,
+            1 => PinMode::Output,
+            2 => PinMode::Alternate(self.function(pin)),
+            _ => PinMode::Analogue,
+        }
+    }
+
+    fn function(&self, pin: u8) -> u8 {
+        let [low, high] = self.offsets.functions;
+        let offset = if pin < 8 { low } else { high };
+        (self.registers.get(offset) >> (4 * (pin % 8)) & 0xf) as u8
+    }
+
+    /// The level of a pin; none where nothing gives it one.
+    #[must_use]
+    pub fn level(&self, pin: u8) -> Option<bool> {
+        let outside = self.outside.get(usize::from(pin)).copied();
+        match (self.mode(pin), outside.unwrap_or_default()) {
+            (PinMode::Output, _) => Some(self.registers.get(self.offsets.output) >> pin & 1 == 1),
+            (PinMode::Analogue, _) => Some(false),
+            (_, Outside::Low) => Some(false),
+            (_, Outside::High) => Some(true),
+            (_, Outside::Nothing) => match self.registers.get(self.offsets.pull) >> (2 * pin) & 3 {
+                1 => Some(true),
+                2 => Some(false),
+                _ => None,
+            },
+        }
+    }
+
+    /// Whether a pin is driven high by the program.
+    #[must_use]
+    pub fn drives_high(&self, pin: u8) -> bool {
+        self.mode(pin) == PinMode::Output && self.level(pin) == Some(true)
+    }
+
+    /// A pin of this port.
+    #[must_use]
+    pub fn pin(&self, number: u8) -> Pin {
+        Pin {
+            port: self.port,
+            number,
+        }
+    }
+
+    fn read_input(&self, context: &mut Context<'_>) -> u32 {
+        let mut word = 0;
+        for pin in 0..16 {
+            match self.level(pin) {
+                Some(level) => word |= u32::from(level) << pin,
+                None if self.mode(pin) == PinMode::Input => context.findings.add(format!(
+                    "P{}{pin} is read while nothing gives it a level: no pull, nothing outside",
+                    self.port
+                )),
+                None => {}
+            }
+        }
+        word
+    }
+
+    /// Reports pins that are given a function that they do not have.
+    fn check_functions(&self, before: u32, context: &mut Context<'_>) {
+        let changed = before ^ self.registers.get(self.offsets.mode);
+        for number in (0..16).filter(|pin| changed >> (2 * pin) & 3 != 0) {
+            if let PinMode::Alternate(function) = self.mode(number)
+                && self
+                    .facts
+                    .alternate_function(self.pin(number), function)
+                    .is_empty()
+            {
+                context.findings.add(format!(
+                    "P{}{number} is given alternate function {function}, which it does not have",
+                    self.port
+                ));
+            }
+        }
+    }
+}
+
+impl Device for Gpio {
+    fn reset(&mut self) {
+        self.changed = true;
+        self.registers.reset();
+    }
+
+    fn read(&mut self, offset: u32, context: &mut Context<'_>) -> u32 {
+        if offset == self.offsets.input {
+            self.read_input(context)
+        } else {
+            self.registers.get(offset)
+        }
+    }
+
+    fn write(&mut self, offset: u32, value: u32, context: &mut Context<'_>) {
+        let output = self.registers.get(self.offsets.output);
+        if offset == self.offsets.set_reset {
+            let (set, reset) = (value & 0xffff, value >> 16);
+            self.registers
+                .set(self.offsets.output, (output & !reset) | set);
+        } else {
+            let before = self.registers.get(offset);
+            self.registers.set(offset, value);
+            self.changed = true;
+            if offset == self.offsets.mode {
+                self.check_functions(before, context);
+            }
+        }
+    }
+}

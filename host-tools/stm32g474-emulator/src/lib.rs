@@ -1,0 +1,42 @@
+//! An STM32G474 that runs the image of the board, and reports what the image does wrong.
+//!
+//! The processor is [`rsemu`]'s; the peripherals that the image uses are here. What a register is (its address, fields,
+//! access, reset value, clock) is not typed by hand: see [`facts`]. An access or a state that the real chip forbids is a
+//! [`Finding`](findings::Finding), and a run with findings fails.
+//!
+//! | module | what is in it |
+//! |---|---|
+//! | [`facts`] | what the chip's makers say of its registers, pins and interrupts |
+//! | [`findings`] | what an image did wrong |
+//! | [`image`] | an image's bytes and names |
+//! | [`chip`] | processor, memories and peripherals in step |
+//! | [`device`] | what a peripheral is to the rest of the chip |
+//!
+//! Not modelled: cycles of instructions and of the flash, analogue behaviour.
+
+pub mod access;
+pub mod adc;
+#[cfg(test)]
+mod bench;
+pub mod chip;
+pub mod clocks;
+pub mod device;
+pub mod devices;
+pub mod encoder_timer;
+pub mod facts;
+pub mod fdcan;
+pub mod findings;
+pub mod flash;
+pub mod gpio;
+pub mod image;
+pub mod iwdg;
+pub mod lpuart;
+pub mod peripherals;
+pub mod plain;
+pub mod processor;
+pub mod pwr;
+pub mod rcc;
+pub mod tim1;
+pub mod tim15;
+pub mod timer;
+pub mod trace;

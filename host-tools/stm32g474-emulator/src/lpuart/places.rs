@@ -1,0 +1,159 @@
+//! Where the fields of LPUART1 are.
+
+use crate::device::{FieldPlace, RegisterFile};
+
+/// Offsets of the registers.
+#[derive(Clone, Debug)]
+pub struct Offsets {
+    pub cr1: u32,
+    pub cr2: u32,
+    pub cr3: u32,
+    pub brr: u32,
+    pub rqr: u32,
+    pub isr: u32,
+    pub icr: u32,
+    pub rdr: u32,
+    pub tdr: u32,
+    pub presc: u32,
+}
+
+/// Fields of the control registers.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    pub enable: FieldPlace,
+    pub receive: FieldPlace,
+    pub transmit: FieldPlace,
+    pub fifo: FieldPlace,
+    pub length_0: FieldPlace,
+    pub length_1: FieldPlace,
+    pub parity: FieldPlace,
+    pub stop: FieldPlace,
+    pub prescaler: FieldPlace,
+    pub receive_threshold: FieldPlace,
+    pub transmit_threshold: FieldPlace,
+    pub flush_received: FieldPlace,
+    pub flush_transmit: FieldPlace,
+    /// Bits of CR1, CR2 and CR3 that only change while the block is disabled.
+    pub fixed: [u32; 3],
+}
+
+/// Fields of ISR.
+#[derive(Clone, Debug)]
+pub struct Flags {
+    pub framing: u32,
+    pub noise: u32,
+    pub overrun: u32,
+    pub idle: u32,
+    pub received: u32,
+    pub complete: u32,
+    pub space: u32,
+    pub busy: u32,
+    pub transmit_ready: u32,
+    pub receive_ready: u32,
+    pub transmit_empty: u32,
+    pub receive_full: u32,
+    pub receive_threshold: u32,
+    pub transmit_threshold: u32,
+    /// The bits of ISR that ICR clears, each beside its bit there.
+    pub clears: Vec<(u32, u32)>,
+    /// Flags, and what lets each raise the interrupt: the number of the control register, from 0, and its bit.
+    pub interrupts: Vec<(u32, usize, u32)>,
+}
+
+impl Offsets {
+    pub fn new(file: &RegisterFile) -> Self {
+        Self {
+            cr1: file.offset("CR1"),
+            cr2: file.offset("CR2"),
+            cr3: file.offset("CR3"),
+            brr: file.offset("BRR"),
+            rqr: file.offset("RQR"),
+            isr: file.offset("ISR"),
+            icr: file.offset("ICR"),
+            rdr: file.offset("RDR"),
+            tdr: file.offset("TDR"),
+            presc: file.offset("PRESC"),
+        }
+    }
+}
+
+impl Settings {
+    pub fn new(file: &RegisterFile) -> Self {
+        let mask = |register: &'static str, names: &[&'static str]| {
+            names
+                .iter()
+                .fold(0, |mask, name| mask | file.field(register, name).mask)
+        };
+        Self {
+            enable: file.field("CR1", "UE"),
+            receive: file.field("CR1", "RE"),
+            transmit: file.field("CR1", "TE"),
+            fifo: file.field("CR1", "FIFOEN"),
+            length_0: file.field("CR1", "M0"),
+            length_1: file.field("CR1", "M1"),
+            parity: file.field("CR1", "PCE"),
+            stop: file.field("CR2", "STOP"),
+            prescaler: file.field("PRESC", "PRESCALER"),
+            receive_threshold: file.field("CR3", "RXFTCFG"),
+            transmit_threshold: file.field("CR3", "TXFTCFG"),
+            flush_received: file.field("RQR", "RXFRQ"),
+            flush_transmit: file.field("RQR", "TXFRQ"),
+            fixed: [
+                mask("CR1", &["M0", "M1", "FIFOEN", "PCE", "PS", "WAKE"]),
+                mask(
+                    "CR2",
+                    &["STOP", "SWAP", "RXINV", "TXINV", "DATAINV", "MSBFIRST"],
+                ),
+                mask("CR3", &["HDSEL", "OVRDIS", "DEM", "DEP"]),
+            ],
+        }
+    }
+}
+
+impl Flags {
+    pub fn new(file: &RegisterFile) -> Self {
+        let isr = |name| file.field("ISR", name).mask;
+        let clear = |name| (isr(name), file.field("ICR", name).mask);
+        let by = |flag, register, enable| {
+            let number = match register {
+                "CR1" => 0,
+                "CR2" => 1,
+                _ => 2,
+            };
+            (isr(flag), number, file.field(register, enable).mask)
+        };
+        Self {
+            framing: isr("FE"),
+            noise: isr("NE"),
+            overrun: isr("ORE"),
+            idle: isr("IDLE"),
+            received: isr("RXNE"),
+            complete: isr("TC"),
+            space: isr("TXE"),
+            busy: isr("BUSY"),
+            transmit_ready: isr("TEACK"),
+            receive_ready: isr("REACK"),
+            transmit_empty: isr("TXFE"),
+            receive_full: isr("RXFF"),
+            receive_threshold: isr("RXFT"),
+            transmit_threshold: isr("TXFT"),
+            clears: ["PE", "FE", "NE", "ORE", "IDLE", "TC"].map(clear).to_vec(),
+            // RM0440, LPUART interrupt requests.
+            interrupts: vec![
+                by("RXNE", "CR1", "RXNEIE"),
+                by("ORE", "CR1", "RXNEIE"),
+                by("TXE", "CR1", "TXEIE"),
+                by("TC", "CR1", "TCIE"),
+                by("IDLE", "CR1", "IDLEIE"),
+                by("PE", "CR1", "PEIE"),
+                by("TXFE", "CR1", "TXFEIE"),
+                by("RXFF", "CR1", "RXFFIE"),
+                by("FE", "CR3", "EIE"),
+                by("NE", "CR3", "EIE"),
+                by("ORE", "CR3", "EIE"),
+                by("RXFT", "CR3", "RXFTIE"),
+                by("TXFT", "CR3", "TXFTIE"),
+            ],
+        }
+    }
+}

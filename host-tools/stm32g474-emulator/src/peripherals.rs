@@ -1,0 +1,245 @@
+//! The bus between the processor and the peripherals, and what passes between these.
+
+use crate::access::AccessChecks;
+use crate::clocks::Clocks;
+use crate::device::Context;
+use crate::devices::{Board, Devices};
+use crate::facts::{Facts, Switch};
+use crate::findings::Findings;
+use crate::rcc::ResetCause;
+
+/// The peripherals, the time, and what the image did wrong.
+pub struct Peripherals {
+    /// Cycles since the power-up.
+    pub cycle: u64,
+    /// The frequencies of the moment.
+    pub clocks: Clocks,
+    /// What the image did wrong.
+    pub findings: Findings,
+    /// What holds for all accesses.
+    pub checks: AccessChecks,
+    /// The peripherals.
+    pub devices: Devices,
+    /// Whether the watchdog was fed since the last question.
+    fed: bool,
+    resets: Vec<(Switch, &'static str)>,
+}
+
+/// What feeds the watchdog.
+const FEED: u32 = 0xaaaa;
+
+impl Peripherals {
+    /// After a power-up.
+    #[must_use]
+    pub fn new(board: &Board) -> Self {
+        Self {
+            cycle: 0,
+            clocks: Clocks::RESET,
+            findings: Findings::default(),
+            checks: AccessChecks::default(),
+            devices: Devices::new(board),
+            fed: false,
+            resets: resets(),
+        }
+    }
+
+    /// The processor reads one, two or four bytes.
+    pub fn read(&mut self, address: u32, width: u32) -> u32 {
+        self.findings.at(self.cycle, 0);
+        let answering = self
+            .checks
+            .answering(address, &self.devices.rcc, &mut self.findings);
+        let Some((block, register)) = answering else {
+            return 0;
+        };
+        self.checks.read((block, register), &mut self.findings);
+        let mut context = Context {
+            cycle: self.cycle,
+            clocks: &self.clocks,
+            findings: &mut self.findings,
+        };
+        let word = self.devices.read(block.name, register.offset, &mut context);
+        match word {
+            Some(word) => part(word, address, width),
+            None => {
+                self.findings.add(format!("{} is not modelled", block.name));
+                0
+            }
+        }
+    }
+
+    /// The processor writes one, two or four bytes.
+    pub fn write(&mut self, address: u32, width: u32, value: u32) {
+        self.findings.at(self.cycle, 0);
+        let answering = self
+            .checks
+            .answering(address, &self.devices.rcc, &mut self.findings);
+        let Some((block, register)) = answering else {
+            return;
+        };
+        // Parts of a word are written to data registers only, and at their lowest byte.
+        let fits = register.name == "TDR" || register.known >> (8 * width.min(3)) == 0;
+        if width < 4 && (address & 3 != 0 || !fits) {
+            self.findings.add(format!(
+                "{}_{} is written by {width} bytes",
+                block.name, register.name
+            ));
+        }
+        let answering = (block, register);
+        if !self.checks.write(answering, value, &mut self.findings) {
+            return;
+        }
+        let mut context = Context {
+            cycle: self.cycle,
+            clocks: &self.clocks,
+            findings: &mut self.findings,
+        };
+        self.fed |= (block.name, register.name.as_str(), value) == ("IWDG", "KR", FEED);
+        let place = (register.offset, value);
+        if self
+            .devices
+            .write(block.name, place, &mut context)
+            .is_none()
+        {
+            self.findings.add(format!("{} is not modelled", block.name));
+        }
+    }
+
+    /// The processor reads from the flash's second bank.
+    pub fn read_flash(&mut self, address: u32, width: u32) -> u32 {
+        let mut context = Context {
+            cycle: self.cycle,
+            clocks: &self.clocks,
+            findings: &mut self.findings,
+        };
+        self.devices.flash.read_array(address, width, &mut context)
+    }
+
+    /// The processor writes to the flash's second bank.
+    pub fn write_flash(&mut self, address: u32, width: u32, value: u32) {
+        self.findings.at(self.cycle, 0);
+        let mut context = Context {
+            cycle: self.cycle,
+            clocks: &self.clocks,
+            findings: &mut self.findings,
+        };
+        self.devices
+            .flash
+            .write_array(address, width, value, &mut context);
+    }
+
+    /// The host sends a byte on the serial line.
+    pub fn send(&mut self, byte: u8, baud: u32) {
+        let mut context = Context {
+            cycle: self.cycle,
+            clocks: &self.clocks,
+            findings: &mut self.findings,
+        };
+        self.devices.lpuart.host_send(byte, baud, &mut context);
+    }
+
+    /// A reset of the chip, whose supply stays.
+    pub fn reset(&mut self, cause: ResetCause) {
+        self.devices.reset();
+        self.devices.rcc.note_cause(cause);
+        self.checks.reset();
+        self.fed = false;
+    }
+
+    /// The processor has locked up: TIM1 breaks if SYSCFG says so.
+    pub fn break_by_lockup(&mut self) {
+        if self.devices.breaks_by_lockup() {
+            self.system_break();
+        }
+    }
+
+    /// The crystal stops; true if the chip watches it, so that an NMI comes. TIM1 then breaks as well.
+    pub fn stop_crystal(&mut self) -> bool {
+        let watched = self.devices.rcc.stop_crystal();
+        if watched {
+            self.system_break();
+        }
+        watched
+    }
+
+    fn system_break(&mut self) {
+        let mut context = Context {
+            cycle: self.cycle,
+            clocks: &self.clocks,
+            findings: &mut self.findings,
+        };
+        self.devices.tim1.system_break(true, &mut context);
+    }
+
+    /// Whether the watchdog was fed since the last question.
+    pub fn take_fed(&mut self) -> bool {
+        std::mem::take(&mut self.fed)
+    }
+
+    /// Resets the blocks that the image holds in reset.
+    fn reset_blocks(&mut self) {
+        for (switch, block) in &self.resets {
+            if self.devices.rcc.enabled(*switch) {
+                self.devices.reset_block(block);
+            }
+        }
+    }
+
+    /// Lets everything happen that is due, and hands on what passes between peripherals.
+    pub fn advance(&mut self) {
+        if self.devices.rcc.take_changed() {
+            self.change_clocks();
+            self.reset_blocks();
+        }
+        let mut context = Context {
+            cycle: self.cycle,
+            clocks: &self.clocks,
+            findings: &mut self.findings,
+        };
+        self.devices.advance(&mut context);
+        self.check_speed();
+    }
+}
+
+impl Peripherals {
+    /// Takes over what the image has made of the clock tree, and whether the chip can run so.
+    fn change_clocks(&mut self) {
+        let before = self.clocks;
+        self.clocks = self.devices.rcc.clocks(self.cycle);
+        if before.hclk != self.clocks.hclk {
+            let rates = (before.hclk, self.clocks.hclk);
+            self.devices.iwdg.rate_changes(self.cycle, rates.0, rates.1);
+        }
+    }
+
+    /// Reports a processor that is too fast for its voltage or its flash.
+    fn check_speed(&mut self) {
+        let wait_states = self.devices.flash.latency();
+        let mut context = Context {
+            cycle: self.cycle,
+            clocks: &self.clocks,
+            findings: &mut self.findings,
+        };
+        self.devices
+            .pwr
+            .check(&self.clocks, wait_states, &mut context);
+    }
+}
+
+/// What holds each block in reset.
+fn resets() -> Vec<(Switch, &'static str)> {
+    let blocks = Facts::of_chip().blocks.iter();
+    blocks
+        .filter_map(|block| Some((block.reset?, block.name)))
+        .collect()
+}
+
+/// The bytes of a word that an access asks for, in the lowest.
+fn part(word: u32, address: u32, width: u32) -> u32 {
+    let shifted = word >> (8 * (address & 3));
+    match width {
+        1 => shifted & 0xff,
+        2 => shifted & 0xffff,
+        _ => shifted,
+    }
+}

@@ -1,0 +1,281 @@
+//! The processor: `rsemu`'s Cortex-M4F with the memories of this chip.
+
+use crate::image::{FLASH, RAM};
+use rsemu::core::space::{AddressSpace, MemAttrs, MemOps, RamStore, Region, RomStore, RomWrite};
+use rsemu::core::value::Width;
+use rsemu::cpu::arm::v7m::sys::{Exception, Sys};
+use rsemu::cpu::arm::v7m::{ArmV7m, Config, xpsr};
+use std::sync::Arc;
+
+/// The priorities that the chip's interrupt controller knows: 16.
+const PRIORITY_BITS: u8 = 4;
+
+/// The first address of the CCM, and its size.
+const CCM: u32 = 0x1000_0000;
+const CCM_SIZE: u64 = 0x8000;
+
+/// Half of the flash: its banks.
+const BANK_SIZE: usize = 0x4_0000;
+
+/// Where the second bank of the flash is.
+pub const SECOND_BANK: u32 = FLASH.start + BANK_SIZE as u32;
+
+/// Where the peripherals are.
+pub const PERIPHERALS: std::ops::Range<u32> = 0x4000_0000..0x6000_0000;
+
+/// Where DBGMCU is, among the processor's own.
+pub const DEBUG: std::ops::Range<u32> = 0xe004_2000..0xe004_2400;
+
+/// The exception in progress, and the stack pointer, of the moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The instruction to come.
+    pub pc: u32,
+    /// The exception's number; 0 for none.
+    pub exception: u16,
+}
+
+/// A processor and its memories.
+pub struct Processor {
+    core: ArmV7m,
+    space: Arc<AddressSpace>,
+    ram: Arc<RamStore>,
+    /// Interrupt lines as the peripherals have them, and as the core has been given them.
+    wanted: [bool; LINES],
+    given: [bool; LINES],
+    nmi: bool,
+    settled: bool,
+}
+
+/// The number of the first exception that is an interrupt.
+pub const FIRST_INTERRUPT: u16 = 16;
+
+/// Interrupts of the chip, rounded up.
+const LINES: usize = 128;
+
+/// Why the memories could not be put together: a fault of this program.
+#[derive(Debug, thiserror::Error)]
+#[error("the emulated chip's memories do not fit together: {0}")]
+pub struct MapError(String);
+
+impl Processor {
+    /// A processor that is about to start, with the first bank of the flash as it is, and what answers elsewhere.
+    ///
+    /// # Errors
+    /// [`MapError`] if two memories overlap.
+    pub fn new(
+        flash: &[u8],
+        second_bank: Arc<dyn MemOps>,
+        peripherals: Arc<dyn MemOps>,
+        debug: Arc<dyn MemOps>,
+    ) -> Result<Self, MapError> {
+        let space = AddressSpace::new("chip", 32);
+        let first = Arc::new(RomStore::from_slice(
+            flash.get(..BANK_SIZE).unwrap_or(flash),
+        ));
+        let rom = |name| Region::rom(name, Arc::clone(&first), RomWrite::Fault);
+        // The CCM has two addresses; what the second gives is the same memory.
+        let ram_size = u64::from(RAM.end - RAM.start) - CCM_SIZE;
+        let (ram, ccm) = (
+            Arc::new(RamStore::new(ram_size)),
+            Arc::new(RamStore::new(CCM_SIZE)),
+        );
+        let regions = [
+            (rom("first bank"), u64::from(FLASH.start)),
+            (rom("first bank at zero"), 0),
+            (
+                Region::io("second bank", BANK_SIZE as u64, second_bank),
+                u64::from(SECOND_BANK),
+            ),
+            (Region::ram("ram", Arc::clone(&ram)), u64::from(RAM.start)),
+            (Region::ram("ccm", Arc::clone(&ccm)), u64::from(CCM)),
+            (
+                Region::ram("ccm behind ram", ccm),
+                u64::from(RAM.start) + ram_size,
+            ),
+            (
+                Region::io(
+                    "peripherals",
+                    u64::from(PERIPHERALS.end - PERIPHERALS.start),
+                    peripherals,
+                ),
+                u64::from(PERIPHERALS.start),
+            ),
+            (
+                Region::io("debug", u64::from(DEBUG.end - DEBUG.start), debug),
+                u64::from(DEBUG.start),
+            ),
+        ];
+        {
+            let mut topology = space.topology();
+            for (region, base) in regions {
+                let mapped = topology.map(region, base);
+                mapped.map_err(|error| MapError(error.to_string()))?;
+            }
+        }
+        let space = Arc::new(space);
+        Ok(Self {
+            core: start(&space),
+            space,
+            ram,
+            wanted: [false; LINES],
+            given: [false; LINES],
+            nmi: false,
+            settled: true,
+        })
+    }
+
+    /// Starts anew: what the memories hold stays.
+    pub fn reset(&mut self) {
+        self.core = start(&self.space);
+        self.wanted = [false; LINES];
+        self.given = [false; LINES];
+        self.nmi = false;
+        self.settled = true;
+    }
+
+    /// One instruction, or one entry of an exception; the cycles that it took.
+    pub fn step(&mut self) -> u64 {
+        if !self.settled {
+            self.settle();
+        }
+        self.core.step()
+    }
+
+    /// Sets the level of an interrupt's line; true if it was another.
+    pub fn set_line(&mut self, interrupt: u16, level: bool) -> bool {
+        let Some(wanted) = self.wanted.get_mut(usize::from(interrupt)) else {
+            return false;
+        };
+        let changes = *wanted != level;
+        *wanted = level;
+        self.settled &= !changes;
+        changes
+    }
+
+    /// Hands changed lines to the core, outside of IT blocks only.
+    ///
+    /// `rsemu` 0.0.7 forgets on entry of an exception where in an IT block the program was, and goes on wrongly
+    /// afterwards. A line that waits for the end of the block, four instructions at most, is what the real core's own
+    /// latency could do as well. The test `an_interrupt_within_an_it_block` shows when this is no longer needed.
+    fn settle(&mut self) {
+        if self.core.xpsr() & xpsr::IT_MASK != 0 {
+            return;
+        }
+        for (number, (&wanted, given)) in self.wanted.iter().zip(&mut self.given).enumerate() {
+            if wanted != *given {
+                *given = wanted;
+                self.core.set_irq(number as u16, wanted);
+            }
+        }
+        if std::mem::take(&mut self.nmi) {
+            let pend = |system: &mut Sys| system.set_pending(Exception::NMI, true);
+            self.core.with_sys(pend);
+        }
+        self.settled = true;
+    }
+
+    /// Raises the interrupt that cannot be masked, once.
+    pub fn raise_nmi(&mut self) {
+        self.nmi = true;
+        self.settled = false;
+    }
+
+    /// Whether it sleeps until an interrupt.
+    #[must_use]
+    pub fn sleeps(&self) -> bool {
+        self.core.is_asleep() && self.settled
+    }
+
+    /// Lets the counter of cycles go on while the processor sleeps.
+    pub fn count_asleep(&mut self, cycles: u64) {
+        self.core.with_sys(|system| system.tick_cyccnt(cycles));
+    }
+
+    /// The stack pointer of exceptions, which the image uses for everything.
+    #[must_use]
+    pub fn stack_pointer(&self) -> u32 {
+        self.core.msp()
+    }
+
+    /// Whether an interrupt that is enabled would not be preempted by another one.
+    #[must_use]
+    pub fn withstands(&self, interrupt: u16, other: u16) -> bool {
+        let [interrupt, other] = [interrupt, other].map(|one| Exception(FIRST_INTERRUPT + one));
+        self.core.with_sys(|system| {
+            system.is_enabled(interrupt)
+                && system.priority_of(interrupt) <= system.priority_of(other)
+        })
+    }
+
+    /// Whether it has locked up: a fault within a fault.
+    #[must_use]
+    pub fn locked_up(&self) -> bool {
+        self.core.is_locked_up()
+    }
+
+    /// Whether the program asks for a reset.
+    #[must_use]
+    pub fn asks_for_reset(&self) -> bool {
+        self.core.reset_requested()
+    }
+
+    /// Where the program is.
+    #[must_use]
+    pub fn place(&self) -> Place {
+        Place {
+            pc: self.core.pc(),
+            exception: self.core.current_exception().0,
+        }
+    }
+
+    /// The address of the instruction to come.
+    #[must_use]
+    pub fn pc(&self) -> u32 {
+        self.core.pc()
+    }
+
+    /// Whether a task has switched interrupts off.
+    #[must_use]
+    pub fn in_critical_section(&self) -> bool {
+        self.core.current_exception().0 == 0 && self.core.regs().primask
+    }
+
+    /// How many accesses found nothing that answers, and where the last was.
+    #[must_use]
+    pub fn refused(&self) -> (u64, u32) {
+        self.core.bus_faults()
+    }
+
+    /// A word of memory, without side effects.
+    #[must_use]
+    pub fn word(&self, address: u32) -> Option<u32> {
+        let word = self
+            .space
+            .read(u64::from(address), Width::U32, MemAttrs::DEBUG);
+        word.ok().and_then(|word| u32::try_from(word).ok())
+    }
+
+    /// Fills RAM with a pattern, as a power-up leaves it: with anything.
+    pub fn scramble_ram(&mut self, seed: u64) {
+        let mut state = seed | 1;
+        for at in (0..self.ram.len()).step_by(4) {
+            // An odd multiplier of Knuth's: all that is asked for is that no word is zero by rule.
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            let word = ((state >> 32) as u32).to_le_bytes();
+            // The place is within the memory.
+            let _ = self.ram.write_at(at, &word);
+        }
+    }
+}
+
+fn start(space: &Arc<AddressSpace>) -> ArmV7m {
+    let config = Config::CORTEX_M4F
+        .with_priority_bits(PRIORITY_BITS)
+        .with_reset_vtor(FLASH.start);
+    let core = ArmV7m::new(config);
+    core.attach_space(Arc::clone(space));
+    core
+}

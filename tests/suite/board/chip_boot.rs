@@ -1,0 +1,275 @@
+//! The board's image from its reset to its first ticks, on the emulated chip.
+
+use leg_boards::chip::ChipSession;
+use leg_boards::image::{FirmwareImage, workspace_root};
+use leg_boards::setup;
+use leg_firmware::frame::{self, Decoder, MAX_FRAME};
+use leg_firmware::host_link::{
+    HOST_SCHEMA, Hello, HostReply, HostRequest, Identity, ResetCause as Told,
+};
+use leg_firmware::sensors::{CODE_MAX, Sensors};
+use leg_firmware::settings::Settings;
+use leg_firmware_bench::protocol::{Reply, Request, TickRequest};
+use leg_sim::link::{Link, LinkError};
+use std::error::Error;
+use std::path::PathBuf;
+use std::{env, fs};
+use stm32g474_emulator::chip::{Chip, Stop};
+use stm32g474_emulator::image::{Image, ImageError};
+use stm32g474_emulator::rcc::ResetCause;
+use stm32g474_emulator::trace;
+
+type Outcome = Result<(), Box<dyn Error>>;
+
+/// Cycles of 170 MHz in a millisecond.
+const MS: u64 = 170_000;
+
+/// The rate of the host's line, baud.
+const BAUD: u32 = 921_600;
+
+fn image(image: FirmwareImage) -> Result<PathBuf, Box<dyn Error>> {
+    setup::ensure_target(&mut |what: &str| eprintln!("{what}"))?;
+    Ok(image.build()?)
+}
+
+/// A leg at rest.
+fn at_rest() -> TickRequest {
+    TickRequest {
+        sensors: Sensors {
+            cell_codes: [CODE_MAX / 4; 3],
+            current_codes: [CODE_MAX / 2; 3],
+            supply_code: CODE_MAX / 2,
+            temperature_code: CODE_MAX / 4,
+            cell_fresh: [true; 3],
+            ..Sensors::default()
+        },
+        link: leg_sim::emulated_leg::HostBytes::new(),
+    }
+}
+
+/// A session after its first ticks.
+fn started(ticks: usize) -> Result<ChipSession, Box<dyn Error>> {
+    let mut session = ChipSession::open(&image(FirmwareImage::Stm32g474)?)?;
+    let settings = Settings::for_table_1().ok_or("no built-in settings")?;
+    assert_eq!(session.ask(&Request::Start(settings))?, Reply::Started);
+    for _ in 0..ticks {
+        session.ask(&Request::Tick(at_rest()))?;
+    }
+    Ok(session)
+}
+
+/// Runs until a reset; none if none comes in time.
+fn reset_within(chip: &mut Chip, cycles: u64) -> Option<ResetCause> {
+    let end = chip.cycle() + cycles;
+    while chip.cycle() < end {
+        if let Stop::Reset(cause) = chip.run(end) {
+            return Some(cause);
+        }
+    }
+    None
+}
+
+/// Sends a request over the chip's serial line.
+fn send(chip: &mut Chip, request: &HostRequest) -> Outcome {
+    let mut out = [0; MAX_FRAME];
+    for &byte in frame::encode(1, request, &mut out)? {
+        chip.peripherals().send(byte, BAUD);
+    }
+    Ok(())
+}
+
+/// Waits for the reply that is meant; earlier ones may still be on the line.
+fn reply<T>(chip: &mut Chip, meant: impl Fn(HostReply) -> Option<T>) -> Result<T, Box<dyn Error>> {
+    let mut decoder = Decoder::new();
+    let end = chip.cycle() + 200 * MS;
+    while chip.cycle() < end {
+        chip.run(chip.cycle() + MS);
+        while let Some(sent) = chip.peripherals().devices.lpuart.host_receive() {
+            if let Some(Ok(frame)) = decoder.push(sent.byte)
+                && let Some(found) = frame.message().and_then(&meant)
+            {
+                return Ok(found);
+            }
+        }
+    }
+    Err("the chip does not answer".into())
+}
+
+/// Asks for something, and waits until it is done.
+fn carry_out(chip: &mut Chip, request: &HostRequest) -> Outcome {
+    send(chip, request)?;
+    reply(chip, |reply| (reply == HostReply::Done).then_some(()))
+}
+
+/// Asks the chip what it is.
+fn identity(chip: &mut Chip) -> Result<Identity, Box<dyn Error>> {
+    let schema = HOST_SCHEMA;
+    send(chip, &HostRequest::Identify(Hello { schema }))?;
+    reply(chip, |reply| match reply {
+        HostReply::Identified(identity) => Some(identity),
+        _ => None,
+    })
+}
+
+/// Lets a chip that starts come to its tasks, and asks what it is.
+fn identity_after(chip: &mut Chip) -> Result<Identity, Box<dyn Error>> {
+    let end = chip.cycle() + 60 * MS;
+    while chip.cycle() < end {
+        chip.run(end);
+    }
+    // The reset may have cut a reply off, and the rest of it never comes.
+    while chip.peripherals().devices.lpuart.host_receive().is_some() {}
+    identity(chip)
+}
+
+/// The settings that the chip uses.
+fn settings(chip: &mut Chip) -> Result<Settings, Box<dyn Error>> {
+    send(chip, &HostRequest::GetSettings)?;
+    reply(chip, |reply| match reply {
+        HostReply::Settings(settings) => Some(settings),
+        _ => None,
+    })
+}
+
+/// What the image did wrong up to now.
+fn findings(chip: &Chip) -> Vec<String> {
+    let peripherals = chip.peripherals();
+    let list = peripherals.findings.list();
+    list.iter().map(ToString::to_string).collect()
+}
+
+/// Settings that differ from the built-in ones.
+fn other_settings() -> Result<Settings, Box<dyn Error>> {
+    let mut settings = Settings::for_table_1().ok_or("no built-in settings")?;
+    settings.limits.command_time_s *= 2.0;
+    Ok(settings)
+}
+
+#[test]
+fn the_boot_writes_what_was_reviewed() -> Outcome {
+    let mut session = started(1)?;
+    let chip = session.chip().ok_or("no chip")?;
+    let writes = chip.peripherals().checks.take_recorded();
+    let found = trace::lines(&writes).join("\n") + "\n";
+    let golden = workspace_root().join("tests/golden/chip_boot.txt");
+    if env::var_os("LEG_OVERWRITE").is_some() {
+        fs::write(&golden, &found)?;
+    }
+    let expected = fs::read_to_string(golden)?;
+    let differing = found.lines().zip(expected.lines()).find(|(a, b)| a != b);
+    assert!(
+        found == expected,
+        "the boot writes other registers than tests/golden/chip_boot.txt says, first (found, expected): {differing:?}; \
+         read the difference, and accept it with LEG_OVERWRITE=1"
+    );
+    Ok(())
+}
+
+#[test]
+fn the_chip_tells_why_it_started() -> Outcome {
+    let mut session = started(10)?;
+    let chip = session.chip().ok_or("no chip")?;
+    assert_eq!(identity(chip)?.reset, Told::Power);
+    chip.reset(ResetCause::Pin);
+    assert_eq!(identity_after(chip)?.reset, Told::Pin);
+    chip.cycle_power(1);
+    assert_eq!(identity_after(chip)?.reset, Told::Power);
+    assert_eq!(findings(chip), [""; 0]);
+    Ok(())
+}
+
+#[test]
+fn settings_are_kept_over_a_reset() -> Outcome {
+    let mut session = started(10)?;
+    let chip = session.chip().ok_or("no chip")?;
+    identity(chip)?;
+    let other = other_settings()?;
+    carry_out(chip, &HostRequest::SetSettings(other.clone()))?;
+    carry_out(chip, &HostRequest::SaveSettings)?;
+    chip.reset(ResetCause::Pin);
+    identity_after(chip)?;
+    assert_eq!(settings(chip)?, other);
+    assert_eq!(findings(chip), [""; 0]);
+    Ok(())
+}
+
+/// Power fails at a moment of a save: the chip then finds the old settings or the new ones.
+#[test]
+fn settings_survive_a_power_cut_at_any_moment_of_a_save() -> Outcome {
+    let built_in = Settings::for_table_1().ok_or("no built-in settings")?;
+    let other = other_settings()?;
+    let mut found = [0, 0];
+    for cut_us in (0..26_000).step_by(1_300) {
+        let mut session = started(10)?;
+        let chip = session.chip().ok_or("no chip")?;
+        identity(chip)?;
+        carry_out(chip, &HostRequest::SetSettings(other.clone()))?;
+        send(chip, &HostRequest::SaveSettings)?;
+        let end = chip.cycle() + cut_us * MS / 1_000;
+        while chip.cycle() < end {
+            chip.run(end);
+        }
+        chip.cycle_power(cut_us);
+        identity_after(chip)?;
+        let settings = settings(chip)?;
+        assert!(
+            settings == built_in || settings == other,
+            "cut after {cut_us} µs"
+        );
+        found[usize::from(settings == other)] += 1;
+        assert_eq!(findings(chip), [""; 0], "cut after {cut_us} µs");
+    }
+    assert!(found.iter().all(|&count| count > 0), "old, new: {found:?}");
+    Ok(())
+}
+
+#[test]
+fn a_host_with_another_rate_is_a_finding_and_the_next_one_is_heard() -> Outcome {
+    let mut session = started(10)?;
+    let chip = session.chip().ok_or("no chip")?;
+    for byte in 0..40 {
+        chip.peripherals().send(byte, BAUD * 9 / 10);
+    }
+    let end = chip.cycle() + 5 * MS;
+    while chip.cycle() < end {
+        chip.run(end);
+    }
+    let reported = findings(chip);
+    assert!(
+        reported.iter().any(|finding| finding.contains("baud")),
+        "{reported:?}"
+    );
+    send(chip, &HostRequest::Telemetry)?;
+    identity(chip)?;
+    Ok(())
+}
+
+#[test]
+fn a_crystal_that_stops_ends_the_pulses() -> Outcome {
+    let mut session = started(10)?;
+    let chip = session.chip().ok_or("no chip")?;
+    chip.stop_crystal();
+    assert!(!chip.peripherals().devices.tim1.outputs().on);
+    assert_eq!(reset_within(chip, 100 * MS), Some(ResetCause::Software));
+    Ok(())
+}
+
+#[test]
+fn what_is_no_image_of_the_chip_is_refused() -> Outcome {
+    let qemu = fs::read(image(FirmwareImage::Qemu)?)?;
+    let other = Image::parse(&qemu).err();
+    assert!(
+        matches!(other, Some(ImageError::Outside { address: 0, .. })),
+        "{other:?}"
+    );
+    let host = Image::parse(&fs::read(env::current_exe()?)?).err();
+    assert!(
+        matches!(host, Some(ImageError::OtherProcessor(_))),
+        "{host:?}"
+    );
+    let text = Image::parse(b"no ELF").err();
+    assert!(matches!(text, Some(ImageError::NotElf(_))), "{text:?}");
+    let missing = ChipSession::open("no-such-image".as_ref()).err();
+    assert!(matches!(missing, Some(LinkError::System { .. })));
+    Ok(())
+}

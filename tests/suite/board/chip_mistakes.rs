@@ -1,0 +1,73 @@
+//! The board's image with one mistake at a time, on the emulated chip: each has to be reported by name.
+//!
+//! A campaign of minutes, so it is left out unless it is asked for: `cargo test --test suite -- --ignored mistakes`.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod can_bus;
+mod clocks;
+mod links;
+mod power;
+mod program;
+mod runs;
+mod sensing;
+mod settings;
+mod tree;
+
+use std::path::Path;
+
+/// A mistake.
+struct Mistake {
+    /// The file, from the root of the workspace.
+    file: &'static str,
+    /// The piece of it that is replaced, which it has exactly once.
+    right: &'static str,
+    /// What it is replaced by.
+    wrong: &'static str,
+    /// The run that shows it: gives what is reported.
+    run: fn(&Path) -> String,
+    /// What the report has to contain.
+    report: &'static str,
+}
+
+impl Mistake {
+    fn has_to_be_found(&self, name: &str) {
+        let image = tree::image_with(self, name);
+        let report = (self.run)(&image);
+        println!("{name}: {report}");
+        assert!(
+            report.contains(self.report),
+            "{name} is not reported by `{}`, but so: {report}",
+            self.report
+        );
+    }
+}
+
+/// A test for each mistake.
+macro_rules! mistakes {
+    ($($name:ident: $mistake:expr;)*) => {$(
+        #[test]
+        #[ignore = "builds an image: run with --ignored"]
+        fn $name() {
+            $mistake.has_to_be_found(stringify!($name));
+        }
+    )*};
+}
+use mistakes;
+
+/// Without a mistake nothing is reported.
+#[test]
+#[ignore = "builds an image: run with --ignored"]
+fn none() {
+    let board_layer = "firmware/stm32g474/src/main.rs";
+    let all = [runs::moving, runs::saving, runs::answering_on_can];
+    let none = Mistake {
+        file: board_layer,
+        right: "    hot::load();\n",
+        wrong: "    hot::load();\n",
+        run: runs::moving,
+        report: "",
+    };
+    let image = tree::image_with(&none, "none");
+    assert_eq!(all.map(|run| run(&image)), [runs::NOTHING; 3]);
+}

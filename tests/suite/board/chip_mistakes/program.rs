@@ -1,0 +1,67 @@
+//! Interrupts, memory and the watchdog.
+
+use super::runs::{moving, resting};
+use super::{Mistake, mistakes};
+
+const fn board(
+    file: &'static str,
+    right: &'static str,
+    wrong: &'static str,
+    report: &'static str,
+) -> Mistake {
+    Mistake {
+        file,
+        right,
+        wrong,
+        run: moving,
+        report,
+    }
+}
+
+mistakes! {
+    control_interrupt_masked: board(
+        "firmware/stm32g474/src/control.rs",
+        "    unsafe { interrupt::ADC1_2.enable() };\n",
+        "",
+        "does not begin the control interrupt's handler within 600 cycles",
+    );
+    control_interrupt_at_a_lower_priority: board(
+        "firmware/stm32g474/src/priorities.rs",
+        "ADC1_2.set_priority(Priority::P0)",
+        "ADC1_2.set_priority(Priority::P7)",
+        "the control interrupt ADC1_2 does not preempt",
+    );
+    hot_code_not_copied: board(
+        "firmware/stm32g474/src/main.rs",
+        "    hot::load();\n",
+        "",
+        "the code of the CCM is not there",
+    );
+    stack_too_small: board(
+        "memory.x",
+        "_flash_start = ORIGIN(FLASH);\n",
+        "_flash_start = ORIGIN(FLASH);\n_stack_start = __sheap + 2048;\n",
+        "the stack has come down to the variables",
+    );
+    watchdog_not_fed: Mistake {
+        file: "firmware/stm32g474/src/watchdog.rs",
+        right: "None => self.dog.pet(),",
+        wrong: "None => {}",
+        // The first time may be longer: the watchdog takes its settings over after some periods of its oscillator.
+        run: resting,
+        report: "was reset (IndependentWatchdog)",
+    };
+    watchdog_fed_by_an_interrupt: board(
+        "firmware/stm32g474/src/control.rs",
+        "    let started = DWT::cycle_count();\n",
+        "    let started = DWT::cycle_count();
+    embassy_stm32::pac::IWDG.kr().write(|w| w.set_key(embassy_stm32::pac::iwdg::vals::Key::RESET));\n",
+        "IWDG is fed by an interrupt's handler",
+    );
+    watchdog_too_slow: board(
+        "firmware/stm32g474/src/watchdog.rs",
+        "TIMEOUT_US: u32 = 100_000;",
+        "TIMEOUT_US: u32 = 1_000_000;",
+        "the watchdog's time may come to",
+    );
+}

@@ -1,0 +1,114 @@
+//! Short runs of an image on the emulated chip, and what they report.
+
+use super::can_bus;
+use leg_boards::chip::ChipSession;
+use leg_host::cancel_flag::CancelFlag;
+use leg_host::operator::{HostIdentity, Operator};
+use leg_host::transport::emulated::EmulatedLine;
+use leg_rig::rig_file::RigFile;
+use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
+use leg_sim::scenario::Scenario;
+use leg_sim::simulation::Simulation;
+use std::error::Error;
+use std::path::Path;
+use stm32g474_emulator::devices::Board;
+
+/// The report where nothing is wrong.
+pub const NOTHING: &str = "nothing is wrong";
+
+const MOVING: &str = r#"
+title = "Homing begins, the emergency stop is pressed, and a driver reports a fault"
+steps = [
+    { await = { state = "disarmed", timeout_s = 1 } },
+    "home",
+    { wait_s = 0.1 },
+    { emergency_stop = true },
+    { reaction = { fault = "emergency_stop", state = "off", within_ms = 2 } },
+    { emergency_stop = false },
+    "clear",
+    "home",
+    { wait_s = 0.1 },
+    { fault = { driver_fault = 2 } },
+    { reaction = { fault = "driver_fault", state = "off", within_ms = 2 } },
+    { wait_s = 0.01 },
+]
+
+[start.slack]
+slack_mm = 3
+"#;
+
+const RESTING: &str = r#"
+title = "Nothing happens"
+steps = [{ wait_s = 1.5 }]
+
+[start.slack]
+slack_mm = 3
+"#;
+
+/// The motors run, and are stopped by both breaks.
+pub fn moving(image: &Path) -> String {
+    reported(play(MOVING, image))
+}
+
+/// Nothing is done for longer than the watchdog waits.
+pub fn resting(image: &Path) -> String {
+    reported(play(RESTING, image))
+}
+
+/// The host lets the board keep its settings.
+pub fn saving(image: &Path) -> String {
+    reported(save(image, Board::default()))
+}
+
+/// The same on a chip whose flash is one bank.
+pub fn saving_in_one_bank(image: &Path) -> String {
+    let dual_bank = false;
+    let board = Board {
+        dual_bank,
+        ..Board::default()
+    };
+    reported(save(image, board))
+}
+
+/// A host on a CAN bus asks the board what it is.
+pub fn answering_on_can(image: &Path) -> String {
+    reported(can_bus::asked(image))
+}
+
+fn reported(result: Result<(), Box<dyn Error>>) -> String {
+    let Err(error) = result else {
+        return NOTHING.into();
+    };
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        text = format!("{text}: {error}");
+        cause = error.source();
+    }
+    text
+}
+
+fn play(scenario: &str, image: &Path) -> Result<(), Box<dyn Error>> {
+    let scenario = Scenario::parse("a scenario", scenario).unwrap();
+    let rig = RigFile::load(None).unwrap();
+    let mut session = ChipSession::open(image)?;
+    let summary = Simulation::new(&scenario, &rig)?.run(&mut session, &mut |_| {})?;
+    if summary.passes() {
+        return Ok(());
+    }
+    let measured = &summary.measurements;
+    Err(format!(
+        "{:?} {:?} {measured:?}",
+        summary.stopped, summary.unexpected
+    )
+    .into())
+}
+
+fn save(image: &Path, board: Board) -> Result<(), Box<dyn Error>> {
+    let rig = RigFile::load(None).unwrap();
+    let session = Box::new(ChipSession::open(image)?.on_board(board));
+    let leg = EmulatedLeg::new(&rig, InitialState::Slack, session)?;
+    let line = Box::new(EmulatedLine::new(leg, "the leg on the chip").connect());
+    let mut operator = Operator::open(line, HostIdentity::FIXED, CancelFlag::default())?;
+    Ok(operator.save_settings()?)
+}

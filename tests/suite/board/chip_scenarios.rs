@@ -1,0 +1,152 @@
+//! The ready scenarios under the image that is flashed, on an emulated chip.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use leg_boards::chip::ChipSession;
+use leg_boards::image::FirmwareImage;
+use leg_boards::setup;
+use leg_rig::rig_file::RigFile;
+use leg_sim::link::{InProcess, Link};
+use leg_sim::ready_scenarios::READY_SCENARIOS;
+use leg_sim::scenario::{Scenario, not_on_a_board};
+use leg_sim::simulation::{Simulation, Summary};
+use rustix::time::{ClockId, clock_gettime};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+/// At most: a machine has two cores.
+const THREADS: usize = 2;
+
+/// A second of homing, and the emergency stop in it.
+const EMERGENCY_STOP: &str = r#"
+title = "The emergency stop is pressed while the leg homes"
+steps = [
+    { await = { state = "disarmed", timeout_s = 1 } },
+    "home",
+    { wait_s = 1 },
+    "mark",
+    { emergency_stop = true },
+    { reaction = { fault = "emergency_stop", state = "off", within_ms = 1 } },
+    { wait_s = 0.05 },
+    "arm",
+    { wait_s = 0.05 },
+    { await = { state = "off", timeout_s = 0.01 } },
+]
+[start.slack]
+slack_mm = 1
+"#;
+
+/// Motors that get so little voltage that homing fails: what a chip can show of `fault_following`.
+const FOLLOWING: &str = r#"
+title = "Motors that get too little voltage lag behind in homing"
+steps = [
+    { await = { state = "disarmed", timeout_s = 1 } },
+    "home",
+    { reaction = { fault = "following", state = "held", within_ms = 1500 } },
+    { wait_s = 0.1 },
+    "arm",
+    { wait_s = 0.1 },
+    { await = { state = "held", timeout_s = 0.01 } },
+]
+[start.slack]
+slack_mm = 1
+[control.servo]
+duty_max = 0.05
+"#;
+
+fn image() -> PathBuf {
+    setup::ensure_target(&mut |_| {}).unwrap();
+    FirmwareImage::Stm32g474.build().unwrap()
+}
+
+fn run(scenario: &Scenario, link: &mut dyn Link) -> Result<Summary, String> {
+    let rig = RigFile::load(Some(Path::new(&scenario.rig))).unwrap();
+    let simulation = Simulation::new(scenario, &rig).unwrap();
+    simulation.run(link, &mut |_| ()).map_err(|e| e.to_string())
+}
+
+/// Why a scenario does not pass; none if it does.
+fn failure(run: &Result<Summary, String>) -> Option<String> {
+    match run {
+        Ok(summary) if summary.passes() => None,
+        Ok(summary) => {
+            let measured = summary.measurements.iter().filter(|found| !found.passes());
+            let failed: Vec<_> = measured.map(|found| (&found.name, found.value)).collect();
+            Some(format!(
+                "{:?}, failed: {failed:?}, not expected: {:?}",
+                summary.stopped, summary.unexpected
+            ))
+        }
+        Err(error) => Some(error.clone()),
+    }
+}
+
+/// Time of the processor that this thread has taken, s.
+fn cpu_s() -> f64 {
+    let time = clock_gettime(ClockId::ThreadCPUTime);
+    time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
+}
+
+/// Runs a scenario in process and on the chip, and prints how it went; why it does not pass on both.
+fn compare(name: &str, scenario: &Scenario, image: &Path) -> Option<String> {
+    let here = failure(&run(scenario, &mut InProcess::new()));
+    let start_s = cpu_s();
+    let on_chip = run(scenario, &mut ChipSession::open(image).unwrap());
+    let took_s = cpu_s() - start_s;
+    let ticks = on_chip.as_ref().map_or(0, |summary| summary.ticks);
+    let on_chip = failure(&on_chip);
+    eprintln!(
+        "{name}: {}, {ticks} ticks in {took_s:.0} s of the processor, {:.0} in a second",
+        on_chip.as_deref().unwrap_or("passes"),
+        ticks as f64 / took_s
+    );
+    match (here, on_chip) {
+        (None, None) => None,
+        (here, on_chip) => Some(format!(
+            "{name}: in process {here:?}, on the chip {on_chip:?}"
+        )),
+    }
+}
+
+/// The duties at the pins are compared with those in process in every tick, and what the chip reports of itself every
+/// 25 ms: see [`ChipSession`].
+#[test]
+fn a_chip_homes_and_its_emergency_stop_ends_the_pulses() {
+    let scenario = Scenario::parse("stop", EMERGENCY_STOP).unwrap();
+    assert_eq!(compare("stop", &scenario, &image()), None);
+}
+
+/// Hours of the processor's time: `cargo test --test suite -- --ignored --nocapture chip_scenarios`.
+#[test]
+#[ignore = "takes the better part of an hour"]
+fn every_ready_scenario_passes_on_the_chip_as_in_process() {
+    let image = image();
+    let mut left: Vec<(&str, Scenario)> = vec![(
+        "following",
+        Scenario::parse("following", FOLLOWING).unwrap(),
+    )];
+    for ready in READY_SCENARIOS {
+        match not_on_a_board(ready.name) {
+            Some(why) => eprintln!("{}: not run: {why}", ready.name),
+            None => {
+                let scenario = Scenario::parse(ready.name, ready.text).unwrap();
+                left.push((ready.name, scenario.for_board()));
+            }
+        }
+    }
+    // The longest first.
+    left.sort_by_key(|(_, scenario)| scenario.steps.len());
+    let (left, failed) = (Mutex::new(left), Mutex::new(Vec::new()));
+    let next = || left.lock().unwrap().pop();
+    std::thread::scope(|scope| {
+        for _ in 0..THREADS {
+            scope.spawn(|| {
+                while let Some((name, scenario)) = next() {
+                    let found = compare(name, &scenario, &image);
+                    failed.lock().unwrap().extend(found);
+                }
+            });
+        }
+    });
+    assert_eq!(failed.into_inner().unwrap(), [""; 0]);
+}
