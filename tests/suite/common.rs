@@ -1,5 +1,6 @@
 //! What the tests across the crates share.
 
+pub mod chip;
 pub mod mujoco;
 pub mod panic_free;
 

@@ -53,6 +53,7 @@ mod board {
     mod chip_scenarios;
     mod emulated_board;
     mod qemu_session;
+    mod setup;
 }
 
 mod host {

@@ -5,6 +5,7 @@ mod pipes;
 mod process;
 mod session;
 
+pub use process::describe_exit;
 pub use session::QemuSession;
 
 use std::path::PathBuf;

@@ -5,13 +5,12 @@
 mod error;
 mod package;
 mod program;
-#[cfg(test)]
-mod tests;
 
 pub use error::SetupError;
+pub use package::{PYTHON, Package, QEMU};
+pub use program::Programs;
 
-use package::{PYTHON, Package, QEMU};
-use program::{Programs, run};
+use program::run;
 use rustix::process::geteuid;
 use std::env;
 use std::fs::File;
@@ -57,13 +56,21 @@ pub fn ensure_python(report: &mut dyn FnMut(&str)) -> Result<PathBuf, SetupError
     ensure(&PYTHON, &Programs::from_environment(), report)
 }
 
-fn has_target(programs: &Programs) -> Result<bool, SetupError> {
+/// Whether the Rust target [`TARGET`] is there.
+///
+/// # Errors
+/// [`SetupError`] if the compiler is missing or fails.
+pub fn has_target(programs: &Programs) -> Result<bool, SetupError> {
     let mut rustc = programs.rust("rustc")?;
     rustc.args(["--print", "target-libdir", "--target", TARGET]);
     Ok(Path::new(run(&mut rustc)?.trim()).is_dir())
 }
 
-fn ensure(
+/// A package's program among `programs`. Installs it where it is missing, and calls `report` before it does.
+///
+/// # Errors
+/// As [`ensure_qemu`].
+pub fn ensure(
     package: &Package,
     programs: &Programs,
     report: &mut dyn FnMut(&str),

@@ -1,127 +1,14 @@
 //! The chip: processor, memories and peripherals in step.
 
-use crate::devices::Board;
+use crate::board::Board;
+use crate::bus::{Answers, Bus, Shared, lock};
 use crate::facts::Facts;
 use crate::image::{FLASH, Image};
 use crate::peripherals::Peripherals;
 use crate::processor::{DEBUG, FIRST_INTERRUPT, MapError, PERIPHERALS, Processor, SECOND_BANK};
 use crate::rcc::ResetCause;
-use rsemu::core::error::BusError;
-use rsemu::core::space::{MemAttrs, MemOps, MemResult};
-use std::fmt;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
-/// What processor and bus share: the time, and whether a peripheral was accessed.
-#[derive(Debug, Default)]
-struct Shared {
-    cycle: AtomicU64,
-    accessed: AtomicBool,
-}
-
-/// The peripherals as the processor's memory has them.
-struct Bus {
-    start: u32,
-    peripherals: Arc<Mutex<Peripherals>>,
-    shared: Arc<Shared>,
-}
-
-impl fmt::Debug for Bus {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Bus")
-    }
-}
-
-fn lock(peripherals: &Mutex<Peripherals>) -> MutexGuard<'_, Peripherals> {
-    peripherals.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-impl Bus {
-    fn access(&self) -> MutexGuard<'_, Peripherals> {
-        let mut peripherals = lock(&self.peripherals);
-        peripherals.cycle = self.shared.cycle.load(Ordering::Relaxed);
-        self.shared.accessed.store(true, Ordering::Relaxed);
-        peripherals
-    }
-}
-
-/// An address and a width that a bus of 32 bits can have.
-fn checked(offset: u64, width: usize) -> MemResult<(u32, u32)> {
-    let offset = u32::try_from(offset).map_err(|_| BusError::Unassigned)?;
-    match width {
-        1 | 2 | 4 if (offset as usize).is_multiple_of(width) => Ok((offset, width as u32)),
-        _ => Err(BusError::BadAccess),
-    }
-}
-
-impl MemOps for Bus {
-    fn read(&self, offset: u64, bytes: &mut [u8], attributes: MemAttrs) -> MemResult {
-        let (offset, width) = checked(offset, bytes.len())?;
-        if attributes.debug {
-            bytes.fill(0);
-            return Ok(());
-        }
-        let word = self.access().read(self.start + offset, width);
-        for (byte, value) in bytes.iter_mut().zip(word.to_le_bytes()) {
-            *byte = value;
-        }
-        Ok(())
-    }
-
-    fn write(&self, offset: u64, bytes: &[u8], attributes: MemAttrs) -> MemResult {
-        let (offset, width) = checked(offset, bytes.len())?;
-        if attributes.debug {
-            return Err(BusError::Protected);
-        }
-        let mut word = [0; 4];
-        for (byte, value) in word.iter_mut().zip(bytes) {
-            *byte = *value;
-        }
-        let value = u32::from_le_bytes(word);
-        self.access().write(self.start + offset, width, value);
-        Ok(())
-    }
-}
-
-/// The second bank of the flash, which can be programmed while the first is run.
-struct SecondBank(Bus);
-
-impl fmt::Debug for SecondBank {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("SecondBank")
-    }
-}
-
-impl MemOps for SecondBank {
-    fn read(&self, offset: u64, bytes: &mut [u8], attributes: MemAttrs) -> MemResult {
-        let Self(bus) = self;
-        if attributes.debug {
-            bytes.fill(0);
-            return Ok(());
-        }
-        let (offset, width) = checked(offset, bytes.len())?;
-        let word = bus.access().read_flash(bus.start + offset, width);
-        for (byte, value) in bytes.iter_mut().zip(word.to_le_bytes()) {
-            *byte = value;
-        }
-        Ok(())
-    }
-
-    fn write(&self, offset: u64, bytes: &[u8], attributes: MemAttrs) -> MemResult {
-        let Self(bus) = self;
-        let (offset, width) = checked(offset, bytes.len())?;
-        if attributes.debug {
-            return Err(BusError::Protected);
-        }
-        let mut word = [0; 4];
-        for (byte, value) in word.iter_mut().zip(bytes) {
-            *byte = *value;
-        }
-        let value = u32::from_le_bytes(word);
-        bus.access().write_flash(bus.start + offset, width, value);
-        Ok(())
-    }
-}
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex, MutexGuard};
 
 /// Why a chip stopped running.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -164,21 +51,26 @@ impl Chip {
         let mut peripherals = Peripherals::new(board);
         peripherals.devices.flash.load(FLASH.start, &image.flash);
         peripherals.devices.flash.set_program(image.program());
-        // The first start is part of what an image sets.
-        peripherals.checks.record();
+        if board.records_writes {
+            peripherals.checks.record();
+        }
         let peripherals = Arc::new(Mutex::new(peripherals));
         let shared = Arc::new(Shared::default());
-        let bus = |start| Bus {
-            start,
-            peripherals: Arc::clone(&peripherals),
-            shared: Arc::clone(&shared),
+        let bus = |start, answers| {
+            Arc::new(Bus {
+                start,
+                answers,
+                peripherals: Arc::clone(&peripherals),
+                shared: Arc::clone(&shared),
+            })
         };
-        let processor = Processor::new(
+        let mut processor = Processor::new(
             &image.flash,
-            Arc::new(SecondBank(bus(SECOND_BANK))),
-            Arc::new(bus(PERIPHERALS.start)),
-            Arc::new(bus(DEBUG.start)),
+            bus(SECOND_BANK, Answers::Flash),
+            bus(PERIPHERALS.start, Answers::Registers),
+            bus(DEBUG.start, Answers::Registers),
         )?;
+        processor.scramble_ram(board.seed);
         Ok(Self {
             processor,
             peripherals,

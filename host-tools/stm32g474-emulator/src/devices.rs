@@ -1,11 +1,14 @@
 //! The peripherals of the chip, and what passes between them.
 
-use crate::adc::{AnalogueInputs, Converters};
-use crate::clocks::LSI_HZ;
+mod inputs;
+mod lines;
+
+use crate::adc::Converters;
+use crate::board::Board;
 use crate::device::{Context, Device, FieldPlace};
 use crate::encoder_timer::EncoderTimer;
 use crate::facts::{Block, Facts, Pin};
-use crate::fdcan::{Bus, Fdcan};
+use crate::fdcan::Fdcan;
 use crate::flash::Flash;
 use crate::gpio::{Gpio, Outside, PinMode};
 use crate::iwdg::Iwdg;
@@ -15,9 +18,10 @@ use crate::pwr::Pwr;
 use crate::rcc::Rcc;
 use crate::tim1::Tim1;
 use crate::tim15::Tim15;
+use inputs::Inputs;
+use lines::Lines;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
-use stm32_metapac::metadata::METADATA;
 
 /// The timers of the encoders, in the order of the motors.
 const ENCODER_TIMERS: [&str; 3] = ["TIM2", "TIM3", "TIM4"];
@@ -27,71 +31,6 @@ const MESSAGE_RAM: &str = "FDCANRAM2";
 
 /// The inputs of TIM1's breaks.
 const BREAK_INPUTS: [&str; 2] = ["BKIN", "BKIN2"];
-
-/// What the converters get at their inputs.
-struct Inputs<'a> {
-    ports: &'a [Gpio],
-    analogue: &'a BTreeMap<Pin, u16>,
-    sampled: &'a RefCell<BTreeMap<Pin, u16>>,
-}
-
-impl<'a> Inputs<'a> {
-    fn new(
-        ports: &'a [Gpio],
-        analogue: &'a BTreeMap<Pin, u16>,
-        sampled: &'a RefCell<BTreeMap<Pin, u16>>,
-    ) -> Self {
-        Self {
-            ports,
-            analogue,
-            sampled,
-        }
-    }
-}
-
-impl AnalogueInputs for Inputs<'_> {
-    fn sum16(&self, converter: &str, input: u8) -> Option<u16> {
-        let pin = Facts::of_chip().converter_pin(converter, input)?;
-        let port = self.ports.iter().find(|p| p.pin(0).port == pin.port)?;
-        if port.mode(pin.number) != PinMode::Analogue {
-            return None;
-        }
-        let value = self.analogue.get(&pin).copied()?;
-        self.sampled.borrow_mut().insert(pin, value);
-        Some(value)
-    }
-}
-
-/// What the chip stands on.
-#[derive(Clone, Copy, Debug)]
-pub struct Board {
-    /// The crystal, Hz.
-    pub crystal_hz: u32,
-    /// What the oscillator of the watchdog really does, Hz.
-    pub lsi_hz: u32,
-    /// The option byte DBANK, as the chip leaves the factory: set.
-    pub dual_bank: bool,
-    /// The bit rates of the CAN bus.
-    pub can: Bus,
-    /// For what is left to chance: RAM after a power-up, flash after a cut.
-    pub seed: u64,
-}
-
-impl Default for Board {
-    /// A NUCLEO-G474RE.
-    fn default() -> Self {
-        Self {
-            crystal_hz: 24_000_000,
-            lsi_hz: LSI_HZ,
-            dual_bank: true,
-            can: Bus {
-                nominal_hz: 1_000_000,
-                data_hz: 5_000_000,
-            },
-            seed: 0,
-        }
-    }
-}
 
 /// The peripherals.
 pub struct Devices {
@@ -177,7 +116,11 @@ impl Devices {
     /// The processor reads a register; none where the block is not modelled.
     pub fn read(&mut self, block: &str, offset: u32, context: &mut Context<'_>) -> Option<u32> {
         if block.starts_with("ADC") {
-            let inputs = Inputs::new(&self.ports, &self.analogue, &self.sampled);
+            let inputs = Inputs {
+                ports: &self.ports,
+                analogue: &self.analogue,
+                sampled: &self.sampled,
+            };
             return Some(self.converters.read(block, offset, &inputs, context));
         }
         if block == MESSAGE_RAM {
@@ -194,7 +137,11 @@ impl Devices {
         context: &mut Context<'_>,
     ) -> Option<()> {
         if block.starts_with("ADC") {
-            let inputs = Inputs::new(&self.ports, &self.analogue, &self.sampled);
+            let inputs = Inputs {
+                ports: &self.ports,
+                analogue: &self.analogue,
+                sampled: &self.sampled,
+            };
             self.converters
                 .write(block, (offset, value), &inputs, context);
             return Some(());
@@ -279,7 +226,11 @@ impl Devices {
                 device.advance(context);
             }
         }
-        let inputs = Inputs::new(&self.ports, &self.analogue, &self.sampled);
+        let inputs = Inputs {
+            ports: &self.ports,
+            analogue: &self.analogue,
+            sampled: &self.sampled,
+        };
         self.converters.advance(&inputs, context);
         if let Some(cycle) = self.tim1.take_trigger() {
             self.updated = true;
@@ -417,39 +368,5 @@ impl Devices {
             lines.raise(name, timer.interrupt());
         }
         &lines.levels
-    }
-}
-
-/// The interrupts by their numbers; several peripherals may share one.
-struct Lines {
-    names: Vec<&'static str>,
-    levels: Vec<(u16, bool)>,
-}
-
-impl Lines {
-    fn new() -> Self {
-        let all = METADATA.interrupts.iter();
-        let known = all.filter_map(|one| Some((one.name, u16::try_from(one.number).ok()?)));
-        let (names, numbers): (Vec<_>, Vec<_>) = known.unzip();
-        Self {
-            names,
-            levels: numbers.into_iter().map(|number| (number, false)).collect(),
-        }
-    }
-
-    fn clear(&mut self) {
-        for (_, level) in &mut self.levels {
-            *level = false;
-        }
-    }
-
-    fn raise(&mut self, name: &str, level: bool) {
-        if !level {
-            return;
-        }
-        let place = self.names.iter().position(|known| *known == name);
-        if let Some((_, line)) = place.and_then(|place| self.levels.get_mut(place)) {
-            *line = true;
-        }
     }
 }

@@ -18,6 +18,8 @@ pub mod access;
 pub mod adc;
 #[cfg(test)]
 mod bench;
+pub mod board;
+mod bus;
 pub mod chip;
 pub mod clocks;
 pub mod device;

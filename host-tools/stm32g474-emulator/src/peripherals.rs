@@ -1,9 +1,10 @@
 //! The bus between the processor and the peripherals, and what passes between these.
 
 use crate::access::AccessChecks;
+use crate::board::Board;
 use crate::clocks::Clocks;
 use crate::device::Context;
-use crate::devices::{Board, Devices};
+use crate::devices::Devices;
 use crate::facts::{Facts, Switch};
 use crate::findings::Findings;
 use crate::rcc::ResetCause;

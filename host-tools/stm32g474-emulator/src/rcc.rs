@@ -1,8 +1,13 @@
 //! RCC: oscillators, PLL, prescalers, and the switches of every other block's clock and reset.
 
+mod fields;
+mod oscillator;
+
 use crate::clocks::Clocks;
 use crate::device::{Context, Device, FieldPlace, RegisterFile};
 use crate::facts::{Block, Switch};
+use fields::Fields;
+use oscillator::Oscillator;
 
 /// Frequency of the internal oscillator, Hz.
 const HSI_HZ: u32 = 16_000_000;
@@ -31,96 +36,6 @@ pub enum ResetCause {
     IndependentWatchdog,
     /// The window watchdog.
     WindowWatchdog,
-}
-
-/// What is switched on, and since when it is ready.
-#[derive(Clone, Copy, Debug, Default)]
-struct Oscillator {
-    ready_at: Option<u64>,
-}
-
-impl Oscillator {
-    fn switch(&mut self, on: bool, start_us: u64, context: &Context<'_>) {
-        if on && self.ready_at.is_none() {
-            let cycles = start_us * u64::from(context.clocks.hclk) / 1_000_000;
-            self.ready_at = Some(context.cycle + cycles);
-        } else if !on {
-            self.ready_at = None;
-        }
-    }
-
-    fn ready(self, cycle: u64) -> bool {
-        self.ready_at.is_some_and(|at| cycle >= at)
-    }
-}
-
-/// Fields by their makers' names.
-#[derive(Clone, Copy, Debug)]
-struct Fields {
-    hsi_on: FieldPlace,
-    hsi_ready: FieldPlace,
-    hse_on: FieldPlace,
-    hse_ready: FieldPlace,
-    css_on: FieldPlace,
-    pll_on: FieldPlace,
-    pll_ready: FieldPlace,
-    source: FieldPlace,
-    source_status: FieldPlace,
-    ahb: FieldPlace,
-    apb1: FieldPlace,
-    apb2: FieldPlace,
-    pll_source: FieldPlace,
-    pll_divider: FieldPlace,
-    pll_factor: FieldPlace,
-    pll_r_on: FieldPlace,
-    pll_r: FieldPlace,
-    css_flag: FieldPlace,
-    css_clear: FieldPlace,
-    hsi48_on: FieldPlace,
-    hsi48_ready: FieldPlace,
-    lsi_on: FieldPlace,
-    lsi_ready: FieldPlace,
-    remove_flags: FieldPlace,
-    adc12: FieldPlace,
-    adc345: FieldPlace,
-    lpuart1: FieldPlace,
-    fdcan: FieldPlace,
-}
-
-impl Fields {
-    fn new(registers: &RegisterFile) -> Self {
-        let field = |register, name| registers.field(register, name);
-        Self {
-            hsi_on: field("CR", "HSION"),
-            hsi_ready: field("CR", "HSIRDY"),
-            hse_on: field("CR", "HSEON"),
-            hse_ready: field("CR", "HSERDY"),
-            css_on: field("CR", "CSSON"),
-            pll_on: field("CR", "PLLON"),
-            pll_ready: field("CR", "PLLRDY"),
-            source: field("CFGR", "SW"),
-            source_status: field("CFGR", "SWS"),
-            ahb: field("CFGR", "HPRE"),
-            apb1: field("CFGR", "PPRE1"),
-            apb2: field("CFGR", "PPRE2"),
-            pll_source: field("PLLCFGR", "PLLSRC"),
-            pll_divider: field("PLLCFGR", "PLLM"),
-            pll_factor: field("PLLCFGR", "PLLN"),
-            pll_r_on: field("PLLCFGR", "PLLREN"),
-            pll_r: field("PLLCFGR", "PLLR"),
-            css_flag: field("CIFR", "CSSF"),
-            css_clear: field("CICR", "CSSC"),
-            hsi48_on: field("CRRCR", "HSI48ON"),
-            hsi48_ready: field("CRRCR", "HSI48RDY"),
-            lsi_on: field("CSR", "LSION"),
-            lsi_ready: field("CSR", "LSIRDY"),
-            remove_flags: field("CSR", "RMVF"),
-            adc12: field("CCIPR", "ADC12SEL"),
-            adc345: field("CCIPR", "ADC345SEL"),
-            lpuart1: field("CCIPR", "LPUART1SEL"),
-            fdcan: field("CCIPR", "FDCANSEL"),
-        }
-    }
 }
 
 /// The block.

@@ -1,19 +1,18 @@
 //! The board's image from its reset to its first ticks, on the emulated chip.
 
+use crate::common::chip::{at_rest, image};
 use leg_boards::chip::ChipSession;
 use leg_boards::image::{FirmwareImage, workspace_root};
-use leg_boards::setup;
 use leg_firmware::frame::{self, Decoder, MAX_FRAME};
 use leg_firmware::host_link::{
     HOST_SCHEMA, Hello, HostReply, HostRequest, Identity, ResetCause as Told,
 };
-use leg_firmware::sensors::{CODE_MAX, Sensors};
 use leg_firmware::settings::Settings;
-use leg_firmware_bench::protocol::{Reply, Request, TickRequest};
+use leg_firmware_bench::protocol::{Reply, Request};
 use leg_sim::link::{Link, LinkError};
 use std::error::Error;
-use std::path::PathBuf;
 use std::{env, fs};
+use stm32g474_emulator::board::Board;
 use stm32g474_emulator::chip::{Chip, Stop};
 use stm32g474_emulator::image::{Image, ImageError};
 use stm32g474_emulator::rcc::ResetCause;
@@ -27,29 +26,13 @@ const MS: u64 = 170_000;
 /// The rate of the host's line, baud.
 const BAUD: u32 = 921_600;
 
-fn image(image: FirmwareImage) -> Result<PathBuf, Box<dyn Error>> {
-    setup::ensure_target(&mut |what: &str| eprintln!("{what}"))?;
-    Ok(image.build()?)
-}
-
-/// A leg at rest.
-fn at_rest() -> TickRequest {
-    TickRequest {
-        sensors: Sensors {
-            cell_codes: [CODE_MAX / 4; 3],
-            current_codes: [CODE_MAX / 2; 3],
-            supply_code: CODE_MAX / 2,
-            temperature_code: CODE_MAX / 4,
-            cell_fresh: [true; 3],
-            ..Sensors::default()
-        },
-        link: leg_sim::emulated_leg::HostBytes::new(),
-    }
-}
-
 /// A session after its first ticks.
 fn started(ticks: usize) -> Result<ChipSession, Box<dyn Error>> {
-    let mut session = ChipSession::open(&image(FirmwareImage::Stm32g474)?)?;
+    let board = Board {
+        records_writes: true,
+        ..Board::default()
+    };
+    let mut session = ChipSession::open(&image(FirmwareImage::Stm32g474)?)?.on_board(board);
     let settings = Settings::for_table_1().ok_or("no built-in settings")?;
     assert_eq!(session.ask(&Request::Start(settings))?, Reply::Started);
     for _ in 0..ticks {

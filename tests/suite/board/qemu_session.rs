@@ -1,7 +1,7 @@
 //! The firmware under QEMU, driven as the command `leg` drives it.
 
 use leg_boards::image::FirmwareImage;
-use leg_boards::qemu::{QemuClock, QemuConfig, QemuSession};
+use leg_boards::qemu::{QemuClock, QemuConfig, QemuSession, describe_exit};
 use leg_boards::setup;
 use leg_firmware::host_link::{BoardKind, Hello};
 use leg_firmware_bench::example;
@@ -15,7 +15,9 @@ use leg_sim::link::{InProcess, Link, LinkError};
 use rustix::process::{Pid, Signal, kill_process, test_kill_process};
 use std::error::Error;
 use std::fs;
+use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
+use std::process::ExitStatus;
 use std::time::{Duration, Instant};
 
 type Outcome = Result<(), Box<dyn Error>>;
@@ -60,6 +62,13 @@ fn directory(session: &QemuSession) -> Result<PathBuf, Box<dyn Error>> {
     ))?)
 }
 
+/// Neither the process nor the directory of a session is there any more.
+fn assert_gone(id: Pid, directory: &Path) {
+    assert!(test_kill_process(id).is_err(), "QEMU is still there");
+    let left = directory.display();
+    assert!(!directory.exists(), "{left} is still there");
+}
+
 #[test]
 fn the_firmware_boots_and_ends_with_its_link() -> Outcome {
     let session = QemuSession::open(&config(QemuClock::Normal)?)?;
@@ -75,12 +84,7 @@ fn the_firmware_boots_and_ends_with_its_link() -> Outcome {
     );
     let (id, directory) = (process(&session)?, directory(&session)?);
     session.close()?;
-    assert!(test_kill_process(id).is_err(), "QEMU is still there");
-    assert!(
-        !Path::new(&directory).exists(),
-        "{} is still there",
-        directory.display()
-    );
+    assert_gone(id, &directory);
     Ok(())
 }
 
@@ -89,12 +93,7 @@ fn a_dropped_session_leaves_nothing_behind() -> Outcome {
     let session = QemuSession::open(&config(QemuClock::Normal)?)?;
     let (id, directory) = (process(&session)?, directory(&session)?);
     drop(session);
-    assert!(test_kill_process(id).is_err(), "QEMU is still there");
-    assert!(
-        !Path::new(&directory).exists(),
-        "{} is still there",
-        directory.display()
-    );
+    assert_gone(id, &directory);
     Ok(())
 }
 
@@ -253,4 +252,18 @@ fn opening_error(config: &QemuConfig) -> String {
         Ok(_) => "(it started)".to_owned(),
         Err(error) => error.to_string(),
     }
+}
+
+#[test]
+fn an_end_is_described() {
+    let exited = |code: i32| describe_exit(ExitStatus::from_raw(code << 8));
+    assert_eq!(
+        exited(71),
+        "the firmware took a hard fault; the log names the address (exit code 71)"
+    );
+    assert_eq!(exited(1), "QEMU failed (exit code 1)");
+    assert_eq!(
+        describe_exit(ExitStatus::from_raw(9)),
+        "QEMU was ended by signal 9"
+    );
 }

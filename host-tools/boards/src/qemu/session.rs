@@ -3,7 +3,7 @@
 use super::QemuConfig;
 use super::log::{self, Log};
 use super::pipes::{self, Transfer};
-use super::process::{POLL_INTERVAL, Process, describe};
+use super::process::{POLL_INTERVAL, Process, describe_exit};
 use leg_firmware::frame::{self, Decoder, MAX_FRAME};
 use leg_firmware_bench::exit::Exit;
 use leg_firmware_bench::protocol::{BoardInfo, Refusal, Reply, Request};
@@ -191,7 +191,7 @@ fn timed_out(action: &'static str, timeout: Duration, log: &Log) -> LinkError {
 
 fn died(status: ExitStatus, log: &mut Log) -> LinkError {
     LinkError::Died {
-        reason: describe(status),
+        reason: describe_exit(status),
         log: log.finish(),
     }
 }

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 /// A program that package managers have.
+#[derive(Debug)]
 pub struct Package {
     /// What it is called in messages.
     pub name: &'static str,
@@ -65,12 +66,16 @@ const MANAGER_DIRECTORIES: &str =
 const PYTHON_CHECK: &str = "import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 11))";
 
 impl Package {
+    /// Where its program is, if it is there and fit for use.
+    ///
+    /// # Errors
+    /// [`SetupError`] for a program that is named and is not there.
     pub fn program(&self, programs: &Programs) -> Result<Option<PathBuf>, SetupError> {
         (self.find)(programs)
     }
 
     /// Installs it by `apt`, as [`Programs::apt`] gives it.
-    pub fn install(&self, apt: &[OsString]) -> Result<(), SetupError> {
+    pub(super) fn install(&self, apt: &[OsString]) -> Result<(), SetupError> {
         let [packages, ..] = self.packages;
         run(Command::new("env").args(apt).arg("update"))?;
         let install = ["install", "-y", "--no-install-recommends"];
@@ -78,7 +83,7 @@ impl Package {
     }
 
     /// The error that names the command for this machine.
-    pub fn missing(&self) -> SetupError {
+    pub(super) fn missing(&self) -> SetupError {
         let here = workspace_root();
         let is_there =
             |program: &str| which::which_in(program, Some(MANAGER_DIRECTORIES), &here).is_ok();

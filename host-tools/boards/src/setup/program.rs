@@ -10,13 +10,17 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Where programs are looked for.
+#[derive(Clone, Debug)]
 pub struct Programs {
+    /// The directories, as in the environment's PATH.
     pub path: Option<OsString>,
     /// The emulator that the user names.
     pub named_qemu: Option<OsString>,
 }
 
 impl Programs {
+    /// Those that the user's environment names.
+    #[must_use]
     pub fn from_environment() -> Self {
         Self {
             path: env::var_os("PATH"),
@@ -24,12 +28,12 @@ impl Programs {
         }
     }
 
-    pub fn find(&self, program: impl AsRef<OsStr>) -> Option<PathBuf> {
+    pub(super) fn find(&self, program: impl AsRef<OsStr>) -> Option<PathBuf> {
         which::which_in(program, self.path.as_ref(), workspace_root()).ok()
     }
 
     /// A program of the Rust toolchain.
-    pub fn rust(&self, program: &'static str) -> Result<Command, SetupError> {
+    pub(super) fn rust(&self, program: &'static str) -> Result<Command, SetupError> {
         let path = self.find(program).ok_or(SetupError::RustMissing(program))?;
         let mut command = Command::new(path);
         // There the pinned toolchain is in force, and rustup adds to that one.
@@ -39,7 +43,7 @@ impl Programs {
 
     /// The arguments with which `env` runs apt-get without questions, if this process may do so without a password. It
     /// waits for another apt-get that runs.
-    pub fn apt(&self) -> Option<Vec<OsString>> {
+    pub(super) fn apt(&self) -> Option<Vec<OsString>> {
         let apt = self.find("apt-get")?;
         let mut arguments = Vec::new();
         if !geteuid().is_root() {

@@ -1,13 +1,12 @@
 //! A chip that is leg 1 on a CAN bus, and a host there that asks it what it is.
 
+use crate::common::chip::at_rest;
 use leg_boards::chip::ChipSession;
 use leg_firmware::can::{CanFrame, Identifier, LegAddress, Segmenter};
 use leg_firmware::frame::{self, MAX_FRAME};
 use leg_firmware::host_link::{HOST_SCHEMA, Hello, HostRequest};
-use leg_firmware::sensors::{CODE_MAX, Sensors};
 use leg_firmware::settings::Settings;
-use leg_firmware_bench::protocol::{Request, TickRequest};
-use leg_sim::emulated_leg::HostBytes;
+use leg_firmware_bench::protocol::Request;
 use leg_sim::link::Link;
 use std::error::Error;
 use std::path::Path;
@@ -63,20 +62,6 @@ pub fn asked(image: &Path) -> Result<(), Box<dyn Error>> {
         }
     }
     Err("FDCAN2 sends no answer".into())
-}
-
-fn at_rest() -> TickRequest {
-    TickRequest {
-        sensors: Sensors {
-            cell_codes: [CODE_MAX / 4; 3],
-            current_codes: [CODE_MAX / 2; 3],
-            supply_code: CODE_MAX / 2,
-            temperature_code: CODE_MAX / 4,
-            cell_fresh: [true; 3],
-            ..Sensors::default()
-        },
-        link: HostBytes::new(),
-    }
 }
 
 /// The host's question, which fits into one frame.

@@ -11,7 +11,7 @@ use leg_sim::scenario::Scenario;
 use leg_sim::simulation::Simulation;
 use std::error::Error;
 use std::path::Path;
-use stm32g474_emulator::devices::Board;
+use stm32g474_emulator::board::Board;
 
 /// The report where nothing is wrong.
 pub const NOTHING: &str = "nothing is wrong";

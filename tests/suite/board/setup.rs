@@ -1,6 +1,6 @@
-use super::package::{PYTHON, Package, QEMU};
-use super::program::Programs;
-use super::{SetupError, ensure, has_target};
+//! What a first run installs, and what it asks the user to install.
+
+use leg_boards::setup::{PYTHON, Package, Programs, QEMU, SetupError, ensure, has_target};
 use std::ffi::OsString;
 use std::io;
 use std::path::Path;

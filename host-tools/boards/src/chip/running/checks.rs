@@ -1,0 +1,148 @@
+//! What has to hold while a chip runs, and how it is described where it does not.
+
+use super::{Running, take_command};
+use crate::chip::{expectations, hot, wiring};
+use leg_firmware::sensors::Sensors;
+use leg_sim::link::LinkError;
+use stm32g474_emulator::chip::{Chip, Stop};
+use stm32g474_emulator::image::Image;
+
+/// The tick after which the image has to have set up everything, its watchdog too: 1.5 ms.
+const SET_UP_TICKS: u64 = 12;
+
+/// Ticks from one look at the memories to the next.
+const MEMORY_TICKS: u64 = 64;
+
+/// Where the image keeps the codes of supply and temperature.
+const SLOW_CODES: [&str; 2] = [
+    "leg_stm32g474::slow_sensors::SUPPLY",
+    "leg_stm32g474::slow_sensors::TEMPERATURE",
+];
+
+impl Running {
+    /// What the breaks have to do at the beginning of a tick.
+    pub(super) fn check_breaks(
+        &mut self,
+        sensors: &Sensors,
+        image: &Image,
+    ) -> Result<(), LinkError> {
+        let (twin, commanding) = (&mut self.twin, &mut self.commanding);
+        let handler = self.handler;
+        let mut pass = |chip: &mut Chip, cycles| {
+            let end = chip.cycle() + cycles;
+            chip.set_watching(!twin.pending.is_empty());
+            while chip.cycle() < end {
+                let step = if *commanding { chip.cycle() + 1 } else { end };
+                let stop = chip.run(step);
+                *commanding |= stop == Stop::Watched && chip.processor().pc() != handler;
+                take_command(chip, twin, commanding);
+            }
+        };
+        let wrong = self.breaks.begin(&mut self.chip, sensors, &mut pass);
+        self.require(wrong, image)
+    }
+
+    /// What has to hold after every tick.
+    pub(super) fn check_tick(&mut self, image: &Image) -> Result<(), LinkError> {
+        let idle = (!self.converted).then(|| {
+            "ADC1 and ADC2 have ended no sequence from one update of TIM1 to the next".to_owned()
+        });
+        let unmet = || {
+            let due = self.ticks == SET_UP_TICKS;
+            due.then(|| expectations::unmet(&self.chip)).flatten()
+        };
+        let looked_at = self.ticks % MEMORY_TICKS == 1;
+        let memory = || looked_at.then(|| self.wrong_memory(image)).flatten();
+        self.require(idle.or_else(unmet).or_else(memory), image)
+    }
+
+    /// What is wrong in RAM or CCM, as a sentence.
+    fn wrong_memory(&self, image: &Image) -> Option<String> {
+        let processor = self.chip.processor();
+        if self.stack.is_reached(processor) {
+            return Some("the stack has come down to the variables".into());
+        }
+        // The code of the CCM is compared once: the program cannot change it by chance and go on.
+        let copied = self.ticks > 1 || !hot::differs(image, processor);
+        (!copied).then(|| "the code of the CCM is not there: it was not copied".into())
+    }
+
+    /// # Errors
+    /// [`LinkError::Chip`] with what is wrong, if anything is, and with what the chip found.
+    pub(super) fn require(&self, wrong: Option<String>, image: &Image) -> Result<(), LinkError> {
+        match wrong {
+            None => Ok(()),
+            Some(wrong) => Err(LinkError::Chip(format!(
+                "at tick {}: {wrong}{}",
+                self.ticks,
+                self.described_findings(image)
+            ))),
+        }
+    }
+
+    /// Reads the codes of supply and temperature that the tick uses: the program converts them every 10 ms, and keeps
+    /// them. They have to be those of the pins.
+    pub(super) fn read_slow_codes(&mut self, image: &Image) -> Result<(), LinkError> {
+        let converted = wiring::slow_codes(&self.chip.peripherals());
+        let codes = self.slow_codes.iter_mut().zip(converted);
+        for (name, (kept, converted)) in SLOW_CODES.into_iter().zip(codes) {
+            let address = image.variable(name);
+            let word = address.and_then(|address| {
+                let word = self.chip.processor().word(address & !3)?;
+                Some((word >> (8 * (address & 2))) as u16)
+            });
+            let Some(code) = word else {
+                return Err(LinkError::Chip(format!(
+                    "the image has no variable `{name}`"
+                )));
+            };
+            if code != *kept && Some(code) != converted {
+                return Err(LinkError::Chip(format!(
+                    "`{name}` is {code}, and its pin was {converted:?} when it was converted"
+                )));
+            }
+            *kept = code;
+        }
+        Ok(())
+    }
+
+    pub(super) fn stuck(&self, how: &str, image: &Image) -> LinkError {
+        let place = self.chip.processor().place();
+        let function = image.function_at(place.pc).unwrap_or("no function");
+        let memory = self.wrong_memory(image);
+        let mut memory = memory.map(|wrong| format!("; {wrong}")).unwrap_or_default();
+        let (refused, address) = self.chip.processor().refused();
+        if refused > 0 {
+            memory += &format!("; nothing answers at {address:#010x}, which it accessed");
+        }
+        LinkError::Chip(format!(
+            "the emulated chip {how}: it is at {:#010x} in {function}, exception {}{memory}{}",
+            place.pc,
+            place.exception,
+            self.described_findings(image)
+        ))
+    }
+
+    /// # Errors
+    /// [`LinkError::Chip`] if the image did something wrong up to now.
+    pub(super) fn report_findings(&self, image: &Image) -> Result<(), LinkError> {
+        let findings = self.described_findings(image);
+        if findings.is_empty() {
+            return Ok(());
+        }
+        Err(LinkError::Chip(format!(
+            "the image does what the chip forbids, up to tick {}:{findings}",
+            self.ticks
+        )))
+    }
+
+    pub(super) fn described_findings(&self, image: &Image) -> String {
+        let peripherals = self.chip.peripherals();
+        let list = peripherals.findings.list().iter();
+        list.map(|finding| {
+            let function = image.function_at(finding.pc).unwrap_or("no function");
+            format!("\n  {finding}, in {function}")
+        })
+        .collect()
+    }
+}
