@@ -3,12 +3,14 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use leg_bench::sensitivity;
+use leg_boards::image::workspace_root;
 use leg_firmware::supervisor::Fault;
 use leg_rig::rig_file::RigFile;
 use leg_sim::link::{InProcess, Link};
 use leg_sim::ready_scenarios::{self, READY_SCENARIOS};
-use leg_sim::scenario::{Scenario, Step, TestStep};
+use leg_sim::scenario::{BOARD_EXCEPTIONS, Scenario, Step, TestStep};
 use leg_sim::simulation::{Simulation, Summary};
+use std::fs;
 use std::path::Path;
 
 /// Everything of a tick that the firmware decides, as bits.
@@ -163,4 +165,14 @@ fn what_came_out_before_a_step_that_never_ends_is_kept() {
     assert_eq!(summary.measurements.len(), 1);
     assert!(summary.measurements[0].passes() && !summary.passes());
     assert!(bits.len() > 1600 && !summary.samples.is_empty());
+}
+
+#[test]
+fn the_page_says_what_a_board_does_otherwise() {
+    let page = workspace_root().join("host-tools/docs/scenarios.md");
+    let page = fs::read_to_string(page).unwrap();
+    for (scenarios, what, why) in BOARD_EXCEPTIONS {
+        let row = format!("| {scenarios} | {what} | {why} |");
+        assert!(page.contains(&row), "{row}");
+    }
 }

@@ -21,7 +21,7 @@ const SLOW_SENSORS_MS: f64 = 10.0;
 /// Bytes that a board's serial line takes in a second: 921 600 baud, ten bits for a byte.
 const LINE_BYTES_PER_S: f64 = 92_160.0;
 
-/// How far a board's run of a ready scenario is another than that in process, and why; README and SAFETY quote it.
+/// How far a board's run of a ready scenario differs from that in process, and why: `docs/scenarios.md` has the same table.
 pub const BOARD_EXCEPTIONS: &[(&str, &str, &str)] = &[
     (
         "every scenario that starts homed",

@@ -10,6 +10,9 @@ use stm32g474_emulator::image::Image;
 /// The tick after which the image has to have set up everything, its watchdog too: 1.5 ms.
 const SET_UP_TICKS: u64 = 12;
 
+/// The tick up to which a chip has to have reported of itself: it has been asked four times then.
+const ANSWER_TICKS: u64 = 1000;
+
 /// Ticks from one look at the memories to the next.
 const MEMORY_TICKS: u64 = 64;
 
@@ -53,7 +56,11 @@ impl Running {
         };
         let looked_at = self.ticks % MEMORY_TICKS == 1;
         let memory = || looked_at.then(|| self.wrong_memory(image)).flatten();
-        self.require(idle.or_else(unmet).or_else(memory), image)
+        let silent = || {
+            (self.ticks == ANSWER_TICKS && self.reports.compared == 0)
+                .then(|| "the chip has answered no question for its telemetry".to_owned())
+        };
+        self.require(idle.or_else(unmet).or_else(memory).or_else(silent), image)
     }
 
     /// What is wrong in RAM or CCM, as a sentence.
