@@ -1,5 +1,8 @@
 //! The processor: `rsemu`'s Cortex-M4F with the memories of this chip.
 
+#[cfg(test)]
+mod tests;
+
 use crate::image::{FLASH, RAM};
 use rsemu::core::space::{AddressSpace, MemAttrs, MemOps, RamStore, Region, RomStore, RomWrite};
 use rsemu::core::value::Width;
@@ -157,7 +160,7 @@ impl Processor {
     ///
     /// `rsemu` 0.0.7 forgets on entry of an exception where in an IT block the program was, and goes on wrongly
     /// afterwards. A line that waits for the end of the block, four instructions at most, is what the real core's own
-    /// latency could do as well. The test `an_interrupt_within_an_it_block` shows when this is no longer needed.
+    /// latency could do as well. The test `the_core_alone_still_forgets_the_it_block` fails when this is no longer needed.
     fn settle(&mut self) {
         if self.core.xpsr() & xpsr::IT_MASK != 0 {
             return;
