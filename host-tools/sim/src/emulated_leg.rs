@@ -49,6 +49,7 @@ pub enum EmulationError {
 }
 
 /// The firmware, wherever it runs, and the leg that it drives.
+#[derive(Clone)]
 pub struct EmulatedLeg<L = Box<dyn Link>> {
     plant: Plant,
     link: L,

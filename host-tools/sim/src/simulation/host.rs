@@ -15,7 +15,7 @@ const ALIVE_TICKS: u64 = 400;
 const HOST: HostId = 1;
 
 /// The host and its bytes on the way to the leg.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Host {
     /// Whether it sends no signs of life.
     pub silent: bool,
