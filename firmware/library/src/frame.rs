@@ -190,7 +190,7 @@ impl Decoder {
 
 impl Clone for Decoder {
     fn clone(&self) -> Self {
-        // The crate gives its state no `Clone`.
+        #[allow(clippy::needless_match, reason = "the crate gives its state no Clone")]
         let state = match self.state {
             DecoderState::Idle => DecoderState::Idle,
             DecoderState::Grab(left) => DecoderState::Grab(left),
