@@ -77,6 +77,19 @@ impl Defect {
         of_three.chain(OF_THE_LEG.iter().copied())
     }
 
+    /// How many kinds there are.
+    pub const KINDS: usize = KINDS.len() + OF_THE_LEG.len();
+
+    /// One of a kind, in the order of [`Self::descriptions`]; of a tendon, where each of the three can have it. None
+    /// beyond the last.
+    #[must_use]
+    pub fn of_kind(kind: usize, tendon: usize) -> Option<Self> {
+        match KINDS.get(kind) {
+            Some(of_three) => Some(of_three(tendon)),
+            None => OF_THE_LEG.get(kind - KINDS.len()).copied(),
+        }
+    }
+
     /// Each name in files, and what it does, as a sentence.
     pub fn descriptions() -> impl Iterator<Item = (&'static str, &'static str)> {
         let names = Self::VARIANTS.iter().copied();
