@@ -72,6 +72,7 @@ mod bench {
     mod image_budget;
     mod proof;
     mod server;
+    mod strikes;
 }
 
 mod commands {

@@ -22,7 +22,7 @@ pub trait Board: Counter {
 }
 
 /// One end of a link: it answers each request with one reply.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Server<B> {
     board: B,
     greeted: bool,

@@ -6,14 +6,14 @@ use leg_firmware::drive::Drive;
 use leg_firmware::sensors::Sensors;
 
 /// A board whose sensors an emulator reads and whose pins it looks at.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct VirtualBoard {
     sensors: Sensors,
     stage: PowerStage<Pins>,
 }
 
 /// Pins that are kept, behind the break of a timer.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct Pins {
     halves: [BridgeOutput; 3],
     on: bool,

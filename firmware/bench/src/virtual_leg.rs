@@ -12,7 +12,7 @@ use leg_firmware::sensors::Sensors;
 use leg_firmware::settings::{Settings, SettingsError};
 
 /// A leg, its line and its board.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct VirtualLeg {
     leg: LinkedLeg<f32>,
     board: VirtualBoard,

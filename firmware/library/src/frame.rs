@@ -188,6 +188,18 @@ impl Decoder {
     }
 }
 
+impl Clone for Decoder {
+    fn clone(&self) -> Self {
+        #[allow(clippy::needless_match, reason = "the crate gives its state no Clone")]
+        let state = match self.state {
+            DecoderState::Idle => DecoderState::Idle,
+            DecoderState::Grab(left) => DecoderState::Grab(left),
+            DecoderState::GrabChain(left) => DecoderState::GrabChain(left),
+        };
+        Self { state, ..*self }
+    }
+}
+
 impl Default for Decoder {
     fn default() -> Self {
         Self::new()

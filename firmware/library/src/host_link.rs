@@ -39,7 +39,7 @@ pub trait CommandedLeg {
 }
 
 /// The leg's end of the line.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct HostLink {
     decoder: Decoder,
     outbox: Outbox,
@@ -47,7 +47,7 @@ pub struct HostLink {
 }
 
 /// What there is beside the bytes.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Service {
     identity: Identity,
     identified: bool,

@@ -27,7 +27,7 @@ use phase::Phase;
 use shared::Shared;
 
 /// The controller of a leg.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Leg<T> {
     tick: u32,
     phase: Phase,

@@ -14,7 +14,7 @@ use leg_model::Scalar;
 pub const LINK_BYTES_MAX: usize = 64;
 
 /// A leg, and what it read last.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct SensingLeg<T> {
     leg: Leg<T>,
     sensors: Sensors,
@@ -113,7 +113,7 @@ commanded!(f32, |value| value);
 commanded!(f64, |value| value as f32);
 
 /// A leg and its line.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct LinkedLeg<T> {
     leg: SensingLeg<T>,
     link: HostLink,

@@ -10,6 +10,7 @@
 //! | `map`, `curve`, `export`, `rig` | maps of the workspace; tendon curves; MuJoCo; rig files |
 //! | `leg_commands` | `home`, `move`, `stiffness`, `hold`, `stop`, `disarm`, `clear` |
 //! | `sensors`, `monitor`, `log`, `settings`, `calibrate` | what a leg reports, records and is set to |
+//! | `strikes` | faults that strike a simulated leg in every state |
 //! | `emulate`, `flash`, `faults` | an emulated board; the image into a board; the fault table |
 //! | `board` | `setup`; links to the firmware in this process and under QEMU |
 //! | `completions`, `man` | for the shell and for `man` |
@@ -57,6 +58,7 @@ mod rig;
 mod run;
 mod sensors;
 mod settings;
+mod strikes;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use leg_base::failure::Failure;
@@ -114,6 +116,7 @@ enum Command {
     ///
     /// The other commands do the same on their first use, as far as they need it.
     Setup,
+    Strikes(strikes::Args),
 }
 
 /// The command line as clap describes it.
@@ -162,5 +165,6 @@ fn run(command: &Command, options: Options) -> Result<(), Failure> {
         Command::Sensors(args) => sensors::run(args, options),
         Command::Settings(args) => settings::run(args, options),
         Command::Setup => board::setup(options),
+        Command::Strikes(args) => strikes::run(args, options),
     }
 }

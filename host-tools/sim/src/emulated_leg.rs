@@ -1,6 +1,6 @@
 //! A leg without a board: the firmware behind a link and the simulated leg that it drives, tick by tick.
 
-use crate::link::{Link, LinkError};
+use crate::link::{InProcess, Link, LinkError};
 use crate::plant::{Plant, Start};
 use leg_firmware::linked_leg::LINK_BYTES_MAX;
 use leg_firmware::sensors::TICK_HZ;
@@ -49,6 +49,7 @@ pub enum EmulationError {
 }
 
 /// The firmware, wherever it runs, and the leg that it drives.
+#[derive(Clone)]
 pub struct EmulatedLeg<L = Box<dyn Link>> {
     plant: Plant,
     link: L,
@@ -90,6 +91,22 @@ impl EmulatedLeg {
     }
 }
 
+impl EmulatedLeg<InProcess> {
+    /// A leg in this process at a start, with errors of its own, whose noise follows from a seed. It can be cloned.
+    ///
+    /// # Errors
+    /// A rig whose start or whose settings are refused.
+    pub fn in_process(
+        rig: &RigFile,
+        plant: &PlantSettings,
+        start: Start,
+        seed: u64,
+    ) -> Result<Self, EmulationError> {
+        let (plant, settings) = assembled(rig, plant, &rig.gains, start, seed)?;
+        Self::start(plant, &settings, InProcess::new(), false)
+    }
+}
+
 impl<L: Link> EmulatedLeg<L> {
     /// Gives the firmware its settings. With `counting` it reports the instructions of each tick.
     pub(crate) fn start(
@@ -112,10 +129,10 @@ impl<L: Link> EmulatedLeg<L> {
 
     /// One tick of firmware and leg: reads the sensors, lets the control law run, and moves the leg on. Gives what the leg
     /// took, and what it made of it.
-    pub(crate) fn advance(
-        &mut self,
-        link: HostBytes,
-    ) -> Result<(TickRequest, TickReply), EmulationError> {
+    ///
+    /// # Errors
+    /// A link that fails.
+    pub fn advance(&mut self, link: HostBytes) -> Result<(TickRequest, TickReply), EmulationError> {
         let sensors = self.plant.sense();
         let tick = TickRequest { sensors, link };
         let request = if self.counting {

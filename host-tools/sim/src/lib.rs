@@ -35,6 +35,7 @@
 
 pub mod action;
 pub mod emulated_leg;
+pub mod host;
 pub mod link;
 pub mod plant;
 mod range;

@@ -7,6 +7,7 @@
 
 mod advance;
 mod build;
+mod cell_defects;
 mod configuration;
 pub(crate) mod defect;
 mod dynamics;
@@ -16,6 +17,7 @@ mod hand;
 mod inertia;
 mod leg;
 mod motor;
+mod noise;
 mod payload;
 mod push;
 mod screw;
@@ -36,6 +38,7 @@ use defect::Defects;
 use dynamics::Dynamics;
 use encoder::Encoder;
 use energy::Work;
+use fastrand::Rng;
 use hand::Hand;
 use inertia::Inertia;
 use leg::LegState;
@@ -66,6 +69,8 @@ pub struct Plant {
     encoders: [Encoder; 3],
     cells: Cells,
     defects: Defects,
+    /// Of the defects that are random, but for those of the cells.
+    rng: Rng,
     emergency_stop: bool,
     payload: Payload,
     push: Push,
@@ -82,20 +87,21 @@ pub struct Plant {
 /// What a defective current sensor reads too much, A.
 const CURRENT_OFFSET_A: f64 = 10.0;
 
+/// How far a tendon slips at its clamp, m.
+const SLIP_M: f64 = 5e-3;
+
 impl Plant {
     /// Reads every sensor.
     pub fn sense(&mut self) -> Sensors {
+        let pulls_n = self.hand.pulls_n(self.tensions_n);
+        let cell_codes = self.cells.read(pulls_n, &self.defects, self.ticks);
         let (actuator, defects) = (&self.actuator, &self.defects);
-        let offset = defects.of_three(Defect::CurrentOffset);
-        let current_code = |i: usize| {
-            let off = if offset[i] { CURRENT_OFFSET_A } else { 0.0 };
-            // Half of the highest code is no current.
-            let range_a = actuator.current_range_a;
-            code(self.motors[i].current_a + off, [-range_a, range_a])
-        };
+        // Half of the highest code is no current.
+        let range_a = actuator.current_range_a;
+        let current_code = |i: usize| code(self.current_shown_a(i), [-range_a, range_a]);
         Sensors {
             encoder_counts: self.encoders.map(|encoder| encoder.counter),
-            cell_codes: self.cells.read(self.hand.pulls_n(self.tensions_n), defects),
+            cell_codes,
             current_codes: std::array::from_fn(current_code),
             supply_code: code(
                 self.supply.voltage_v(&self.motors),
@@ -107,6 +113,21 @@ impl Plant {
             emergency_stop: self.emergency_stop,
             late: defects.has(Defect::LateTicks),
             settings_corrupt: defects.has(Defect::SettingsCorrupt),
+        }
+    }
+
+    /// What the sensor of a motor's current shows, A.
+    fn current_shown_a(&self, i: usize) -> f64 {
+        let (defects, motor) = (&self.defects, &self.motors[i]);
+        let disabled = motor.open && defects.has(Defect::CurrentFullScaleDisabled(i));
+        if defects.has(Defect::CurrentFullScale(i)) || disabled {
+            self.actuator.current_range_a
+        } else if defects.has(Defect::CurrentZero(i)) {
+            0.0
+        } else if defects.has(Defect::CurrentOffset(i)) {
+            motor.current_a + CURRENT_OFFSET_A
+        } else {
+            motor.current_a
         }
     }
 
@@ -123,7 +144,10 @@ impl Plant {
     /// Lets a defect begin or end.
     pub fn set_defect(&mut self, defect: Defect, on: bool) {
         let before_j = self.energy_j();
-        self.defects.set(defect, on);
+        let changed = self.defects.set(defect, on, self.ticks);
+        if let (Defect::TendonSlips(i), true) = (defect, changed && on) {
+            self.unstretched_at_zero_m[i] += SLIP_M;
+        }
         self.dynamics.cut = self.defects.of_three(Defect::TendonCut);
         self.work.cut_j += before_j - self.energy_j();
         self.tensions_n = self.pulls_n();

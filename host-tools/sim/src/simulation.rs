@@ -1,7 +1,6 @@
 //! A scenario with an emulated leg, and a shadow of the whole control law in f64 beside it.
 
 mod extremes;
-mod host;
 mod measure;
 mod sequencer;
 mod shadow;

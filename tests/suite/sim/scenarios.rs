@@ -7,6 +7,7 @@ use leg_boards::image::workspace_root;
 use leg_firmware::supervisor::Fault;
 use leg_rig::rig_file::RigFile;
 use leg_sim::link::{InProcess, Link};
+use leg_sim::plant::Defect;
 use leg_sim::ready_scenarios::{self, READY_SCENARIOS};
 use leg_sim::scenario::{BOARD_EXCEPTIONS, Scenario, Step, TestStep};
 use leg_sim::simulation::{Simulation, Summary};
@@ -175,4 +176,21 @@ fn the_page_says_what_a_board_does_otherwise() {
         let row = format!("| {scenarios} | {what} | {why} |");
         assert!(page.contains(&row), "{row}");
     }
+}
+
+#[test]
+fn the_page_lists_every_defect() {
+    let page = workspace_root().join("host-tools/docs/scenarios.md");
+    let page = fs::read_to_string(page).unwrap();
+    let (_, table) = page
+        .split_once("| fault | what happens |\n|---|---|\n")
+        .unwrap();
+    let rows: Vec<&str> = table
+        .lines()
+        .take_while(|row| row.starts_with('|'))
+        .collect();
+    let expected: Vec<String> = Defect::descriptions()
+        .map(|(name, text)| format!("| `{name}` | {text} |"))
+        .collect();
+    assert_eq!(rows, expected, "\n{}", expected.join("\n"));
 }

@@ -16,7 +16,7 @@ pub trait PowerPins {
 }
 
 /// The power stage of three motors.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct PowerStage<P> {
     pins: P,
     top: u16,

@@ -9,7 +9,7 @@ const ROOM: usize = 4096;
 const _: () = assert!(ROOM >= 3 * MAX_FRAME);
 
 /// A queue of whole frames.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Outbox(Deque<u8, ROOM>);
 
 impl Outbox {

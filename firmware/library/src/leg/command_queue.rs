@@ -16,7 +16,7 @@ pub struct Outcome {
 }
 
 /// Two queues: commands in, outcomes out.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct CommandQueue {
     waiting: Deque<(u16, Command), COMMANDS_MAX>,
     outcomes: Deque<Outcome, COMMANDS_MAX>,

@@ -13,7 +13,7 @@ const BOOT_TICKS: u32 = 16;
 /// The mode: the leg's [`State`] with the data that lives only as long as the state does.
 ///
 /// Its tag is the number of the state, so that reading the state costs one load.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 #[repr(u8)]
 #[allow(
     clippy::large_enum_variant,

@@ -11,7 +11,7 @@ use crate::supervisor::State;
 use leg_model::{Error, Scalar};
 
 /// The control law's state that outlasts a mode.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Shared<T> {
     pub mechanism: Mechanism<T>,
     pub estimator: Estimator<T>,

@@ -8,7 +8,7 @@ use leg_firmware_bench::protocol::{BENCH_SCHEMA, BoardInfo, Reply, Request};
 use leg_firmware_bench::server::{Board, Server};
 
 /// The firmware's library in the host's own process. Requests go to it as they are, without frames.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct InProcess(Server<ThisProcess>);
 
 impl InProcess {
@@ -36,7 +36,7 @@ impl Link for InProcess {
 
 /// The host's process as a board: it has no clock to check, counts nothing, and keeps no settings over a reset because
 /// it has none.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct ThisProcess;
 
 impl Counter for ThisProcess {

@@ -10,6 +10,10 @@ use leg_model::Load;
 /// The supply when it sags, V.
 const SAGGED_V: f64 = 11.0;
 
+/// The supply while it dips, V, and how long it does, s.
+const DIPPED_V: f64 = 12.0;
+const DIP_S: f64 = 5e-3;
+
 /// A supply that surges, V.
 const SURGED_V: f64 = 32.0;
 
@@ -27,13 +31,11 @@ impl Plant {
             self.substep();
         }
         for (encoder, motor) in self.encoders.iter_mut().zip(&self.motors) {
-            encoder.follow(
-                motor.angle_rad,
-                self.actuator.counts_per_turn,
-                &self.defects,
-            );
+            let counts_per_turn = self.actuator.counts_per_turn;
+            encoder.follow(motor.angle_rad, counts_per_turn, &self.defects);
+            encoder.jump(&self.defects, &mut self.rng);
         }
-        self.cells.drift(tick_s(), &self.defects);
+        self.cells.advance(tick_s(), &self.defects);
         let heating_k = RISE_K_PER_S * tick_s();
         self.temperature_c = if self.defects.has(Defect::Overheating) {
             self.temperature_c + heating_k
@@ -48,22 +50,30 @@ impl Plant {
     fn wire(&mut self, drive: &Drive<f32>) {
         let jammed = self.defects.of_three(Defect::MotorJammed);
         let failed = self.defects.of_three(Defect::DriverFault);
+        let inwards = self.defects.of_three(Defect::HalfBridgeOpen);
+        let outwards = self.defects.of_three(Defect::HalfBridgeOpenOutwards);
         for (i, motor) in self.motors.iter_mut().enumerate() {
-            motor.open = failed[i] || !drive.enabled || drive.duty[i].is_nan();
-            motor.duty = if motor.open {
-                0.0
-            } else {
-                f64::from(drive.duty[i]).clamp(-1.0, 1.0)
-            };
+            let duty = f64::from(drive.duty[i]).clamp(-1.0, 1.0);
+            let undriven = (inwards[i] && duty > 0.0) || (outwards[i] && duty < 0.0);
+            motor.open = failed[i] || undriven || !drive.enabled || duty.is_nan();
+            motor.duty = if motor.open { 0.0 } else { duty };
             motor.jammed = jammed[i];
         }
         self.supply.open_v = if self.defects.has(Defect::SupplySag) {
             SAGGED_V
+        } else if self.dips() {
+            DIPPED_V
         } else if self.defects.has(Defect::SupplySurge) {
             SURGED_V
         } else {
             self.actuator.supply_v
         };
+    }
+
+    /// Whether the supply's dip is not over.
+    fn dips(&self) -> bool {
+        let began = self.defects.since(Defect::SupplyDip);
+        began.is_some_and(|began| ((self.ticks - began) as f64) * tick_s() < DIP_S)
     }
 
     /// Lets the payload change; the leg keeps its rotation.

@@ -1,91 +1,128 @@
 //! Defects of the simulated leg: what can fail.
 
 use serde::{Deserialize, Serialize};
+use strum::VariantNames;
 
-/// One defect. A tendon, cell, encoder or motor is counted from 0 here, and from 1 in files.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Defect {
-    /// A tendon does not pull.
-    TendonCut(#[serde(with = "from_one")] usize),
-    /// A load cell repeats its last code and marks it as fresh.
-    CellStuck(#[serde(with = "from_one")] usize),
-    /// A load cell gives its highest code.
-    CellSaturated(#[serde(with = "from_one")] usize),
-    /// A load cell gives its lowest code.
-    CellDead(#[serde(with = "from_one")] usize),
-    /// A load cell converts no more: its last code stays, and is not fresh.
-    CellStale(#[serde(with = "from_one")] usize),
-    /// A load cell's offset grows by 5 N in a second, and stays when the defect ends.
-    CellDrifting(#[serde(with = "from_one")] usize),
-    /// An encoder's counter stands still.
-    EncoderLost(#[serde(with = "from_one")] usize),
-    /// An encoder loses every tenth count.
-    EncoderSlipping(#[serde(with = "from_one")] usize),
-    /// An encoder counts in the wrong direction.
-    EncoderReversed(#[serde(with = "from_one")] usize),
-    /// A motor does not turn.
-    MotorJammed(#[serde(with = "from_one")] usize),
-    /// A motor's current reads 10 A too high.
-    CurrentOffset(#[serde(with = "from_one")] usize),
-    /// A driver reports a fault and switches its motor off.
-    DriverFault(#[serde(with = "from_one")] usize),
-    /// The supply falls to 11 V.
-    SupplySag,
-    /// The supply rises to 32 V.
-    SupplySurge,
-    /// The drivers heat up by 20 K in a second.
-    Overheating,
-    /// Every tick ends too late.
-    LateTicks,
-    /// The board's stored settings fail their check.
-    SettingsCorrupt,
+macro_rules! defects {
+    (
+        of_three { $($kind:ident $kind_text:literal;)* }
+        of_the_leg { $($leg:ident $leg_text:literal;)* }
+    ) => {
+        /// One defect. A tendon, cell, encoder or motor is counted from 0 here, and from 1 in files.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantNames)]
+        #[serde(rename_all = "snake_case")]
+        #[strum(serialize_all = "snake_case")]
+        pub enum Defect {
+            $(#[doc = $kind_text] $kind(#[serde(with = "from_one")] usize),)*
+            $(#[doc = $leg_text] $leg,)*
+        }
+
+        /// Kinds of defects that each of the three tendons can have.
+        const KINDS: &[fn(usize) -> Defect] = &[$(Defect::$kind),*];
+
+        const OF_THE_LEG: &[Defect] = &[$(Defect::$leg),*];
+
+        /// What each does, in the order of their names.
+        const TEXTS: &[&str] = &[$($kind_text,)* $($leg_text,)*];
+    };
 }
 
-/// Kinds of defects that each of the three tendons can have.
-const KINDS: [fn(usize) -> Defect; 12] = [
-    Defect::TendonCut,
-    Defect::CellStuck,
-    Defect::CellSaturated,
-    Defect::CellDead,
-    Defect::CellStale,
-    Defect::CellDrifting,
-    Defect::EncoderLost,
-    Defect::EncoderSlipping,
-    Defect::EncoderReversed,
-    Defect::MotorJammed,
-    Defect::CurrentOffset,
-    Defect::DriverFault,
-];
+defects! {
+    of_three {
+        TendonCut "A tendon does not pull.";
+        TendonSlips "A tendon slips by 5 mm at its clamp, once; it stays so when the defect ends.";
+        CellStuck "A load cell repeats its last code and marks it as fresh.";
+        CellSaturated "A load cell gives its highest code.";
+        CellDead "A load cell gives its lowest code.";
+        CellStale "A load cell converts no more: its last code stays, and is not fresh.";
+        CellDrifting "A load cell's offset grows by 5 N in a second, and stays when the defect ends.";
+        CellExcitationLost "A load cell's bridge has no supply: the amplifier's offset and noise are left.";
+        CellFades "A load cell's gain falls to nothing within 0.5 s.";
+        CellWanders "A load cell's signal wire is torn: what it showed last wanders within the range, 20 N in a second, 40 N in four.";
+        CellHum "A load cell shows the middle of its range with 10 N of 50 Hz hum.";
+        CellFollows "A load cell's input shows the next cell: 1 shows 2, 2 shows 3, 3 shows 1.";
+        CellGainStep "A load cell shows 20 % more than the tension.";
+        CellGainStepDown "A load cell shows 20 % less than the tension.";
+        CellGainDrift "A load cell comes to show 20 % more within 10 s.";
+        CellGainDriftDown "A load cell comes to show 20 % less within 10 s.";
+        CellOffsetStep "A load cell shows 10 N more.";
+        CellOffsetStepDown "A load cell shows 10 N less.";
+        EncoderLost "An encoder's counter stands still.";
+        EncoderSlipping "An encoder loses every tenth count.";
+        EncoderReversed "An encoder counts in the wrong direction.";
+        EncoderJumps "An encoder counts bursts of 50 that are none, up or down, 20 in a second.";
+        MotorJammed "A motor does not turn.";
+        HalfBridgeOpen "A half bridge is open: nothing drives its motor inwards.";
+        HalfBridgeOpenOutwards "A half bridge is open: nothing drives its motor outwards.";
+        CurrentOffset "A motor's current reads 10 A too high.";
+        CurrentFullScale "A motor's current reads full scale.";
+        CurrentFullScaleDisabled "A motor's current reads full scale while its driver is off.";
+        CurrentZero "A motor's current reads none.";
+        DriverFault "A driver reports a fault and switches its motor off.";
+    }
+    of_the_leg {
+        SupplySag "The supply falls to 11 V.";
+        SupplyDip "The supply falls to 12 V for 5 ms, once.";
+        SupplySurge "The supply rises to 32 V.";
+        Overheating "The drivers heat up by 20 K in a second.";
+        LateTicks "Every tick ends too late.";
+        SettingsCorrupt "The board's stored settings fail their check.";
+    }
+}
 
 impl Defect {
     /// Every defect.
     pub fn all() -> impl Iterator<Item = Self> {
-        let of_three = KINDS.into_iter().flat_map(|kind| (0..3).map(kind));
-        of_three.chain([
-            Self::SupplySag,
-            Self::SupplySurge,
-            Self::Overheating,
-            Self::LateTicks,
-            Self::SettingsCorrupt,
-        ])
+        let of_three = KINDS.iter().flat_map(|kind| (0..3).map(kind));
+        of_three.chain(OF_THE_LEG.iter().copied())
     }
-}
 
-/// The defects at a time.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Defects(Vec<Defect>);
+    /// How many kinds there are.
+    pub const KINDS: usize = KINDS.len() + OF_THE_LEG.len();
 
-impl Defects {
-    pub fn set(&mut self, defect: Defect, on: bool) {
-        self.0.retain(|other| *other != defect);
-        if on {
-            self.0.push(defect);
+    /// One of a kind, in the order of [`Self::descriptions`]; of a tendon, where each of the three can have it. None
+    /// beyond the last.
+    #[must_use]
+    pub fn of_kind(kind: usize, tendon: usize) -> Option<Self> {
+        match KINDS.get(kind) {
+            Some(of_three) => Some(of_three(tendon)),
+            None => OF_THE_LEG.get(kind - KINDS.len()).copied(),
         }
     }
 
+    /// Each name in files, and what it does, as a sentence.
+    pub fn descriptions() -> impl Iterator<Item = (&'static str, &'static str)> {
+        let names = Self::VARIANTS.iter().copied();
+        names.zip(TEXTS.iter().copied())
+    }
+}
+
+/// The defects at a time, each with the tick in which it began.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Defects(Vec<(Defect, u64)>);
+
+impl Defects {
+    /// Lets one begin at a tick, unless it has begun already, or end. Whether that changes anything.
+    pub fn set(&mut self, defect: Defect, on: bool, tick: u64) -> bool {
+        if self.has(defect) == on {
+            return false;
+        }
+        if on {
+            self.0.push((defect, tick));
+        } else {
+            self.0.retain(|(other, _)| *other != defect);
+        }
+        true
+    }
+
     pub fn has(&self, defect: Defect) -> bool {
-        self.0.contains(&defect)
+        self.since(defect).is_some()
+    }
+
+    /// The tick in which one began.
+    pub fn since(&self, defect: Defect) -> Option<u64> {
+        let mut found = self.0.iter().filter(|(other, _)| *other == defect);
+        found.next().map(|(_, tick)| *tick)
     }
 
     /// Which of the three have a kind of defect.

@@ -1,7 +1,13 @@
 //! An encoder and its counter.
 
 use super::defect::{Defect, Defects};
+use fastrand::Rng;
+use leg_base::tick_time::tick_s;
 use std::f64::consts::TAU;
+
+/// Counts of a burst that are none, and bursts in a second.
+const BURST: u16 = 50;
+const BURSTS_PER_S: f64 = 20.0;
 
 /// The counter of one motor; it wraps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,6 +49,18 @@ impl Encoder {
         if !defects.has(Defect::EncoderLost(self.motor)) {
             // The counter wraps: only the lowest bits of the sum matter.
             self.counter = self.counter.wrapping_add(seen as u16);
+        }
+    }
+
+    /// Counts a burst now and then while it jumps.
+    pub fn jump(&mut self, defects: &Defects, rng: &mut Rng) {
+        if defects.has(Defect::EncoderJumps(self.motor)) && rng.f64() < BURSTS_PER_S * tick_s() {
+            let burst = if rng.bool() {
+                BURST
+            } else {
+                BURST.wrapping_neg()
+            };
+            self.counter = self.counter.wrapping_add(burst);
         }
     }
 

@@ -1,6 +1,8 @@
 //! What the board reads: codes with the sensors' errors.
 
+use super::cell_defects::CellDefects;
 use super::defect::{Defect, Defects};
+use super::noise::gaussian;
 use fastrand::Rng;
 use leg_firmware::sensors::CODE_MAX;
 use leg_rig::actuator::Actuator;
@@ -25,6 +27,7 @@ pub(super) struct Cells {
     offsets_n: [f64; 3],
     noise_n: f64,
     drift_n_per_s: f64,
+    defects: CellDefects,
     codes: [u16; 3],
 }
 
@@ -37,14 +40,16 @@ impl Cells {
             offsets_n: settings.cell_offset_n,
             noise_n: settings.cell_noise_n,
             drift_n_per_s: settings.cell_drift_n_per_s,
+            defects: CellDefects::new(actuator.cell_range_n, settings.cell_offset_n, seed),
             codes: settings
                 .cell_offset_n
                 .map(|offset| code(offset, actuator.cell_range_n)),
         }
     }
 
-    /// Lets the offsets drift for `span_s`.
-    pub fn drift(&mut self, span_s: f64, defects: &Defects) {
+    /// Lets `span_s`, a tick, pass.
+    pub fn advance(&mut self, span_s: f64, defects: &Defects) {
+        self.defects.advance(defects);
         let drifting = defects.of_three(Defect::CellDrifting);
         for (offset, drifting) in self.offsets_n.iter_mut().zip(drifting) {
             let defect = if drifting { DRIFT_N_PER_S } else { 0.0 };
@@ -52,9 +57,11 @@ impl Cells {
         }
     }
 
-    /// The codes under these tensions.
-    pub fn read(&mut self, tensions_n: [f64; 3], defects: &Defects) -> [u16; 3] {
-        for (i, tension) in tensions_n.into_iter().enumerate() {
+    /// The codes under these tensions at a tick.
+    pub fn read(&mut self, tensions_n: [f64; 3], defects: &Defects, tick: u64) -> [u16; 3] {
+        let pulls_n = std::array::from_fn(|i| tensions_n[i] * self.gains[i]);
+        let shown_n = self.defects.shown_n(pulls_n, self.offsets_n, defects, tick);
+        for (i, shown) in shown_n.into_iter().enumerate() {
             // Drawn whatever fails, so that a defect does not change the noise of the other cells.
             let noise = self.noise_n * gaussian(&mut self.rng);
             if defects.has(Defect::CellSaturated(i)) {
@@ -62,15 +69,9 @@ impl Cells {
             } else if defects.has(Defect::CellDead(i)) {
                 self.codes[i] = 0;
             } else if !defects.has(Defect::CellStuck(i)) && !defects.has(Defect::CellStale(i)) {
-                let shown = tension * self.gains[i] + self.offsets_n[i] + noise;
-                self.codes[i] = code(shown, self.range_n);
+                self.codes[i] = code(shown + noise, self.range_n);
             }
         }
         self.codes
     }
-}
-
-/// A number of mean 0 and variance 1, close to normal: a sum of twelve even ones, whose bits are the same everywhere.
-fn gaussian(rng: &mut Rng) -> f64 {
-    (0..12).map(|_| rng.f64()).sum::<f64>() - 6.0
 }

@@ -1,9 +1,9 @@
 //! The emulated leg of a scenario, its host, and what is seen of it.
 
 use super::extremes::{Extremes, NO_RANGE, range_with_tensions};
-use super::host::Host;
 use super::{Measurement, Sample, SimulationError, Summary};
 use crate::emulated_leg::EmulatedLeg;
+use crate::host::Host;
 use crate::link::Link;
 use crate::plant::Truth;
 use crate::scenario::{CommandStep, Measurand, Scenario};
@@ -83,7 +83,7 @@ impl<'a> TestStand<'a> {
             }
             _ => {}
         }
-        self.host.send(&command)
+        self.host.send(&command).map_err(SimulationError::Command)
     }
 
     /// Records a measured value with its unit, the range in which it has to be, and what was measured.

@@ -59,6 +59,180 @@ fn cells() {
     assert_eq!(drifting.cell_codes[..2], sound.cell_codes[..2]);
 }
 
+/// What cell 1 (0 here) of a leg at rest shows on average over 40 ms, N, so long after a defect began; and how far from that.
+fn shown(defect: Option<Defect>, after_s: f64, seed: u64) -> (f64, f64) {
+    let mut plant = Plant::new(&ready("table1"), &PlantSettings::default(), HELD, seed).unwrap();
+    plant.sense();
+    if let Some(defect) = defect {
+        plant.set_defect(defect, true);
+    }
+    run(&mut plant, (after_s * 8000.0) as u32, &OFF);
+    let readings: Vec<f64> = (0..320)
+        .map(|_| {
+            plant.step(&OFF);
+            f64::from(plant.sense().cell_codes[0]) * N_PER_CODE - 20.0
+        })
+        .collect();
+    let mean = readings.iter().sum::<f64>() / 320.0;
+    let off = readings.iter().map(|n| (n - mean).abs());
+    (mean, off.fold(0.0, f64::max))
+}
+
+#[test]
+fn cells_that_lie() {
+    let offset_n = PlantSettings::default().cell_offset_n;
+    let tensions_n = held().truth().tensions_n;
+    let [own, next] = [tensions_n[0], tensions_n[1]];
+    let sound = own + offset_n[0];
+    for (defect, after_s, expected) in [
+        (None, 1.0, sound),
+        (Some(Defect::CellExcitationLost(0)), 0.0, offset_n[0]),
+        (Some(Defect::CellFades(0)), 0.23, sound - 0.5 * own),
+        (Some(Defect::CellFades(0)), 1.0, offset_n[0]),
+        (Some(Defect::CellFollows(0)), 0.0, next + offset_n[1]),
+        (Some(Defect::CellHum(0)), 0.3, 105.0),
+        (Some(Defect::CellGainStep(0)), 0.0, sound + 0.2 * own),
+        (Some(Defect::CellGainStepDown(0)), 0.0, sound - 0.2 * own),
+        (Some(Defect::CellGainDrift(0)), 4.98, sound + 0.1 * own),
+        (Some(Defect::CellGainDrift(0)), 12.0, sound + 0.2 * own),
+        (Some(Defect::CellGainDriftDown(0)), 12.0, sound - 0.2 * own),
+        (Some(Defect::CellOffsetStep(0)), 0.0, sound + 10.0),
+        (Some(Defect::CellOffsetStepDown(0)), 0.0, sound - 10.0),
+        (Some(Defect::CellWanders(1)), 1.0, sound),
+        (Some(Defect::CellExcitationLost(1)), 1.0, sound),
+    ] {
+        let (mean, off) = shown(defect, after_s, 1);
+        let (swing, fading) = match defect {
+            Some(Defect::CellHum(_)) => (10.0, 0.0),
+            Some(Defect::CellFades(_)) if after_s < 0.5 => (0.0, 0.04 * own),
+            _ => (0.0, 0.0),
+        };
+        assert!(
+            (mean - expected).abs() < 0.1,
+            "{defect:?}: {mean} N, not {expected} N"
+        );
+        let noise = off - swing - fading;
+        assert!((-0.1..0.3).contains(&noise), "{defect:?}: {off} N");
+    }
+}
+
+/// As far as is said, on average over seeds, and another way for each; never beyond the range.
+#[test]
+fn a_torn_wire_wanders() {
+    let wandering = Some(Defect::CellWanders(0));
+    let start = shown(None, 0.0, 1).0;
+    let found: Vec<f64> = (1..=60)
+        .map(|seed| shown(wandering, 0.25, seed).0 - start)
+        .collect();
+    let mean_square = found.iter().map(|n| n * n).sum::<f64>() / 60.0;
+    // 20 N/√s for about 0.27 s.
+    assert!(
+        (7.0..14.0).contains(&mean_square.sqrt()),
+        "{mean_square} N²"
+    );
+    assert_eq!(shown(wandering, 0.25, 1), shown(wandering, 0.25, 1));
+    assert!(found.iter().any(|n| *n > 3.0) && found.iter().any(|n| *n < -3.0));
+    let (late, _) = shown(wandering, 60.0, 1);
+    assert!((-20.1..230.1).contains(&late), "{late} N");
+}
+
+#[test]
+fn currents() {
+    let shown_a = |plant: &mut Plant| {
+        let part = f64::from(plant.sense().current_codes[1]) / f64::from(CODE_MAX);
+        (2.0 * part - 1.0) * ready("table1").actuator.current_range_a
+    };
+    for (defect, driven_a, off_a) in [
+        (None, None, 0.0),
+        (Some(Defect::CurrentFullScale(1)), Some(12.0), 12.0),
+        (Some(Defect::CurrentFullScaleDisabled(1)), None, 12.0),
+        (Some(Defect::CurrentZero(1)), Some(0.0), 0.0),
+    ] {
+        let mut plant = driven_leg(defect, 400).0;
+        let (found, real) = (shown_a(&mut plant), plant.truth().currents_a[1]);
+        let expected = driven_a.unwrap_or(real);
+        assert!(
+            real > 0.1 && (found - expected).abs() < 1e-3,
+            "{defect:?}: {found} A"
+        );
+        run(&mut plant, 1, &OFF);
+        let found = shown_a(&mut plant);
+        assert!((found - off_a).abs() < 1e-3, "{defect:?}: {found} A");
+    }
+}
+
+#[test]
+fn an_open_half_bridge_drives_one_way_only() {
+    for (defect, moves) in [
+        (Defect::HalfBridgeOpen(0), [false, true]),
+        (Defect::HalfBridgeOpenOutwards(0), [true, false]),
+    ] {
+        for (duty, moves) in [0.3, -0.3].into_iter().zip(moves) {
+            let mut plant = held();
+            plant.set_defect(defect, true);
+            run(&mut plant, 400, &driven([duty; 3]));
+            let truth = plant.truth();
+            assert_eq!(
+                truth.speeds_rad_per_s[0] != 0.0,
+                moves,
+                "{defect:?}, {duty}"
+            );
+            assert_eq!(truth.currents_a[0] != 0.0, moves, "{defect:?}, {duty}");
+            assert!(truth.speeds_rad_per_s[1] != 0.0);
+        }
+    }
+}
+
+#[test]
+fn a_tendon_slips_once() {
+    let mut plant = held();
+    let before = plant.truth().unstretched_m;
+    for on in [true, true, false] {
+        plant.set_defect(Defect::TendonSlips(2), on);
+        let mut expected = before;
+        expected[2] += 5e-3;
+        assert_eq!(plant.truth().unstretched_m, expected);
+        assert_eq!(plant.truth().tensions_n[2], 0.0);
+    }
+    assert_eq!(plant.unstretched_at_zero_m()[2], before[2] + 5e-3);
+}
+
+#[test]
+fn a_jumping_encoder_counts_bursts() {
+    let (mut plant, mut last, mut bursts) = (held(), 0_u16, [0; 2]);
+    plant.set_defect(Defect::EncoderJumps(1), true);
+    for _ in 0..80_000 {
+        run(&mut plant, 1, &OFF);
+        let counts = plant.sense().encoder_counts;
+        assert_eq!([counts[0], counts[2]], [0; 2]);
+        match counts[1].wrapping_sub(last) {
+            0 => {}
+            50 => bursts[0] += 1,
+            down if down == 0_u16.wrapping_sub(50) => bursts[1] += 1,
+            other => panic!("a burst of {other}"),
+        }
+        last = counts[1];
+    }
+    assert!(
+        bursts.iter().all(|count| (75..125).contains(count)),
+        "{bursts:?}"
+    );
+}
+
+#[test]
+fn the_supply_dips_once() {
+    let mut plant = held();
+    plant.set_defect(Defect::SupplyDip, true);
+    let volts: Vec<f64> = (0..80)
+        .map(|_| {
+            run(&mut plant, 1, &OFF);
+            plant.truth().supply_v
+        })
+        .collect();
+    assert!(volts[..40].iter().all(|v| *v == 12.0), "{volts:?}");
+    assert!(volts[40..].iter().all(|v| *v == 24.0), "{volts:?}");
+}
+
 #[test]
 fn encoders() {
     let sound = sound(400).encoder_counts;
@@ -143,7 +317,8 @@ fn every_defect_has_a_name_of_its_own() {
     assert!(names.contains(&r#""supply_sag""#.into()));
     names.sort();
     names.dedup();
-    assert_eq!(names.len(), 41);
+    assert_eq!(names.len(), 3 * 30 + 6);
+    assert_eq!(Defect::descriptions().count(), 30 + 6);
     for number in [0, 4] {
         let line = format!(r#"{{"fault":{{"tendon_cut":{number}}}}}"#);
         assert!(Action::parse(&line).is_err());

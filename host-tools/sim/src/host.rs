@@ -1,22 +1,21 @@
-//! The user's host in a scenario: commands, signs of life and garbage, as bytes.
+//! The user's host beside an emulated leg: commands, signs of life and garbage, as bytes.
 
-use super::SimulationError;
 use crate::emulated_leg::HostBytes;
 use crate::link::next_sequence;
 use leg_firmware::command::Command;
-use leg_firmware::frame::{self, MAX_FRAME};
+use leg_firmware::frame::{self, FrameError, MAX_FRAME};
 use leg_firmware::host_link::{HOST_SCHEMA, Hello, HostId, HostRequest};
 use std::collections::VecDeque;
 
 /// Ticks between two signs of life of the host.
 const ALIVE_TICKS: u64 = 400;
 
-/// The only host of a scenario.
+/// The only host.
 const HOST: HostId = 1;
 
 /// The host and its bytes on the way to the leg.
-#[derive(Debug)]
-pub(super) struct Host {
+#[derive(Clone, Debug)]
+pub struct Host {
     /// Whether it sends no signs of life.
     pub silent: bool,
     queue: VecDeque<u8>,
@@ -26,6 +25,7 @@ pub(super) struct Host {
 
 impl Host {
     /// A host whose garbage follows from a seed.
+    #[must_use]
     pub fn new(seed: u64) -> Self {
         Self {
             silent: false,
@@ -36,7 +36,10 @@ impl Host {
     }
 
     /// Sends a command.
-    pub fn send(&mut self, command: &Command) -> Result<(), SimulationError> {
+    ///
+    /// # Errors
+    /// A command that fits into no frame.
+    pub fn send(&mut self, command: &Command) -> Result<(), FrameError> {
         if self.sequence == 0 {
             let schema = HOST_SCHEMA;
             self.ask(&HostRequest::Identify(Hello { schema }))?;
@@ -47,11 +50,10 @@ impl Host {
         })
     }
 
-    fn ask(&mut self, request: &HostRequest) -> Result<(), SimulationError> {
+    fn ask(&mut self, request: &HostRequest) -> Result<(), FrameError> {
         self.sequence = next_sequence(self.sequence);
         let mut out = [0; MAX_FRAME];
-        let bytes =
-            frame::encode(self.sequence, request, &mut out).map_err(SimulationError::Command)?;
+        let bytes = frame::encode(self.sequence, request, &mut out)?;
         self.queue.extend(bytes);
         Ok(())
     }

@@ -1,0 +1,165 @@
+//! Faults that strike a simulated leg wherever it is and whatever it does, and what they do to it.
+//!
+//! A [`Case`](case::Case) is a rig, a pose, a payload, a pretension and what the leg is doing. The leg is brought there
+//! once, and clones of it are struck by one fault each. Everything is measured on the true leg and judged by the
+//! [`bars`].
+
+mod bars;
+mod case;
+mod false_alarms;
+mod occasion;
+mod preparation;
+mod stand;
+mod strike;
+mod table;
+mod way;
+
+pub use case::Case;
+pub use false_alarms::{Alarm, Usage};
+pub use occasion::Occasion;
+pub use strike::{Moment, Struck};
+pub use table::{Row, Worst, rows};
+
+use case::{SLOTS, kind_of, mixed, name_of};
+use fastrand::Rng;
+use leg_rig::rig_file::RigFile;
+use leg_sim::plant::Defect;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Longest time that one user goes on, s.
+const PART_S: f64 = 600.0;
+
+/// Which strikes are made.
+#[derive(Clone, Debug)]
+pub struct Campaign {
+    /// Everything random follows from it.
+    pub seed: u64,
+    /// The rigs by name.
+    pub rigs: Vec<(String, RigFile)>,
+    /// What the leg may be doing; empty for all.
+    pub occasions: Vec<Occasion>,
+    /// The fault, by its name in scenarios, or `none`; all if left out.
+    pub fault: Option<String>,
+}
+
+impl Campaign {
+    /// Makes so many strikes, on so many threads, and calls `done` after each. They come in the order of their numbers.
+    pub fn run(&self, count: u64, threads: u64, done: impl Fn() + Sync) -> Vec<Struck> {
+        let work = |(number, slots): &(u64, Vec<u64>)| self.strike(*number, slots, &done);
+        let struck = shared(threads, &self.cases(count), work);
+        struck.into_iter().flatten().collect()
+    }
+
+    /// Uses each rig for a time, s, without a fault, on so many threads, and calls `done` with seconds that are over. Each
+    /// part takes ten minutes of the leg's time, and is as it is whatever the whole time.
+    pub fn use_legs(&self, time_s: f64, threads: u64, done: impl Fn(u64) + Sync) -> Vec<Usage> {
+        let parts = (time_s / PART_S).ceil() as u64;
+        let rigs = self.rigs.len() as u64;
+        let all: Vec<u64> = (0..parts * rigs).collect();
+        shared(threads, &all, |number| {
+            let (rig, file) = &self.rigs[(number % rigs) as usize];
+            let part_s = PART_S.min(time_s - PART_S * (number / rigs) as f64);
+            false_alarms::use_leg(self.seed, rig, file, *number, part_s, &done)
+        })
+    }
+
+    /// The strike of a number again, with its course every so many seconds.
+    #[must_use]
+    pub fn repeat(&self, index: u64, every_s: f64) -> (Struck, Vec<Moment>) {
+        let case = Case::new(self.seed, &self.rigs, index / SLOTS);
+        match preparation::prepare(&case) {
+            Ok(prepared) => strike::strike(&case, &prepared, &self.fault_of(index), Some(every_s)),
+            Err(reason) => (Struck::not_prepared(&case, index, reason), Vec::new()),
+        }
+    }
+
+    /// Strikes a case in some of its slots; once and without a fault where it cannot be brought there.
+    fn strike(&self, number: u64, slots: &[u64], done: &(impl Fn() + Sync)) -> Vec<Struck> {
+        let case = Case::new(self.seed, &self.rigs, number);
+        let first = number * SLOTS;
+        let prepared = match preparation::prepare(&case) {
+            Ok(prepared) => prepared,
+            Err(reason) => return vec![Struck::not_prepared(&case, first + slots[0], reason)],
+        };
+        let strike = |slot: &u64| {
+            let struck = strike::strike(&case, &prepared, &self.fault_of(first + slot), None).0;
+            done();
+            struck
+        };
+        slots.iter().map(strike).collect()
+    }
+
+    /// What strikes in a number.
+    fn fault_of(&self, index: u64) -> strike::Strike {
+        let mut rng = Rng::with_seed(mixed(self.seed, index) ^ 1);
+        let (kind, tendon) = (kind_of(index / SLOTS, index % SLOTS), rng.usize(0..3));
+        strike::Strike {
+            index,
+            defect: kind.and_then(|kind| Defect::of_kind(kind, tendon)),
+            name: name_of(kind),
+            tendon,
+        }
+    }
+
+    /// The numbers of the first cases that have so many strikes, each with its slots.
+    fn cases(&self, count: u64) -> Vec<(u64, Vec<u64>)> {
+        let (mut cases, mut left) = (Vec::new(), count as usize);
+        // A filter that nothing passes must not search for ever.
+        for number in 0..count.saturating_mul(200).max(10_000) {
+            if left == 0 {
+                break;
+            }
+            if !self.has(Occasion::of_case(number)) {
+                continue;
+            }
+            let mut slots: Vec<u64> = (0..SLOTS)
+                .filter(|slot| self.asks_for(kind_of(number, *slot)))
+                .collect();
+            slots.truncate(left);
+            left -= slots.len();
+            if !slots.is_empty() {
+                cases.push((number, slots));
+            }
+        }
+        cases
+    }
+
+    fn has(&self, occasion: Occasion) -> bool {
+        self.occasions.is_empty() || self.occasions.contains(&occasion)
+    }
+
+    fn asks_for(&self, kind: Option<usize>) -> bool {
+        let Some(name) = &self.fault else {
+            return true;
+        };
+        name == name_of(kind)
+    }
+}
+
+/// Does all of the work, shared by threads, in any order, and gives what comes of it in theirs.
+fn shared<T: Sync, R: Send>(threads: u64, all: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    let next = AtomicUsize::new(0);
+    let share = || {
+        let mut done = Vec::new();
+        loop {
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            match all.get(number) {
+                Some(one) => done.push((number, work(one))),
+                None => return done,
+            }
+        }
+    };
+    let mut done = std::thread::scope(|scope| {
+        let others: Vec<_> = (1..threads).map(|_| scope.spawn(share)).collect();
+        let mut done = share();
+        for other in others {
+            match other.join() {
+                Ok(shared) => done.extend(shared),
+                Err(panic) => std::panic::resume_unwind(panic),
+            }
+        }
+        done
+    });
+    done.sort_by_key(|(number, _)| *number);
+    done.into_iter().map(|(_, result)| result).collect()
+}

@@ -1,0 +1,110 @@
+//! What a strike may do at most.
+
+use super::occasion::Occasion;
+use leg_sim::plant::Defect;
+
+/// How far the leg may go beyond its maximum tension, as a part.
+const BEYOND: f64 = 0.1;
+
+/// The highest tension while homing, N.
+const HOMING_N: f64 = 40.0;
+
+/// How far the tip may move from where it rests, and off its way, mm.
+const REST_MM: f64 = 0.5;
+const WAY_MM: f64 = 3.0;
+
+/// The same where a gain is 20 % off, which cannot be told from a load, mm.
+const GAIN_MM: f64 = 1.1;
+
+/// How far the tip may come down where it has to: a tendon that is cut, one that slips by 5 mm, and a leg that relaxes
+/// because its drivers are too hot, mm.
+const CUT_MM: f64 = 250.0;
+const SLIP_MM: f64 = 120.0;
+const RELAXED_MM: f64 = 80.0;
+
+/// Time to the fault's name, s.
+const NAMED_S: f64 = 0.5;
+
+/// How far a cell has to lie before it must be told, N.
+const LIE_N: f64 = 8.0;
+
+/// The bars of one strike.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bars {
+    /// Highest tension, N.
+    pub tension_n: f64,
+    /// The same while homing, N.
+    pub homing_n: f64,
+    /// How far the tip may go, mm.
+    pub tip_mm: f64,
+    /// When a fault has to be named, s; none where nothing shows it.
+    pub named_s: Option<f64>,
+}
+
+impl Bars {
+    /// Of a defect at a true tension of each tendon, N.
+    pub fn new(
+        defect: Option<Defect>,
+        occasion: Occasion,
+        f_max_n: f64,
+        tensions_n: [f64; 3],
+    ) -> Self {
+        let usual_mm = if occasion.on_the_way() {
+            WAY_MM
+        } else {
+            REST_MM
+        };
+        let tip_mm = match defect {
+            Some(Defect::TendonCut(_)) => CUT_MM,
+            Some(Defect::TendonSlips(_)) => SLIP_MM,
+            Some(Defect::Overheating) => RELAXED_MM,
+            Some(
+                Defect::CellGainStep(_)
+                | Defect::CellGainStepDown(_)
+                | Defect::CellGainDrift(_)
+                | Defect::CellGainDriftDown(_),
+            ) => usual_mm.max(GAIN_MM),
+            _ => usual_mm,
+        };
+        Self {
+            tension_n: f_max_n * (1.0 + BEYOND),
+            homing_n: HOMING_N,
+            tip_mm,
+            named_s: defect.and_then(|defect| named_s(defect, occasion, tensions_n)),
+        }
+    }
+}
+
+/// When a defect has to be named.
+fn named_s(defect: Defect, occasion: Occasion, tensions_n: [f64; 3]) -> Option<f64> {
+    use Occasion::{Disarmed, Homing, Moving, RampingDown};
+    // Tendons that barely pull, or less and less, show little.
+    let pulls = !matches!(occasion, Homing | RampingDown | Disarmed);
+    let lies = |by_n: f64| (pulls && by_n.abs() >= LIE_N).then_some(NAMED_S);
+    let driven = occasion != Disarmed;
+    match defect {
+        Defect::DriverFault(_) | Defect::LateTicks | Defect::SettingsCorrupt => Some(NAMED_S),
+        Defect::SupplySag
+        | Defect::SupplySurge
+        | Defect::CellSaturated(_)
+        | Defect::CellDead(_)
+        | Defect::CellStale(_)
+        | Defect::CurrentOffset(_)
+        | Defect::CurrentFullScale(_) => driven.then_some(NAMED_S),
+        Defect::CellHum(_)
+        | Defect::CellStuck(_)
+        | Defect::TendonCut(_)
+        | Defect::TendonSlips(_) => pulls.then_some(NAMED_S),
+        Defect::CellExcitationLost(i) => lies(tensions_n[i]),
+        // Their own time besides.
+        Defect::CellFades(i) => lies(tensions_n[i]).map(|named_s| named_s + 0.5),
+        Defect::CellWanders(_) => pulls.then_some(2.0),
+        Defect::CellDrifting(_) => pulls.then_some(5.0),
+        Defect::CellFollows(i) => lies(tensions_n[(i + 1) % 3] - tensions_n[i]),
+        Defect::CellOffsetStep(_) | Defect::CellOffsetStepDown(_) => pulls.then_some(NAMED_S),
+        Defect::EncoderLost(_) | Defect::EncoderReversed(_) | Defect::MotorJammed(_) => {
+            (occasion == Moving).then_some(NAMED_S)
+        }
+        _ => None,
+    }
+}

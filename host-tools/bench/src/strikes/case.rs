@@ -1,0 +1,242 @@
+//! A leg that is to be struck: drawn from the seed and its number.
+
+use super::occasion::Occasion;
+use fastrand::Rng;
+use leg_firmware::command::Compensation;
+use leg_model::evaluate;
+use leg_rig::plant_settings::PlantSettings;
+use leg_rig::rig_file::RigFile;
+use leg_sim::plant::Defect;
+use std::fmt;
+
+/// Strikes of a case; the last is by no fault.
+pub(super) const SLOTS: u64 = 16;
+
+/// Farthest that a leg leans, degrees, and its heaviest payload, kg.
+const TILT_DEG: f64 = 30.0;
+const PAYLOAD_KG: f64 = 2.0;
+
+/// How far load cells may be off after their calibration, as a part, and tendons from their curve.
+const CELL_GAIN: f64 = 0.002;
+const CURVE: f64 = 0.01;
+
+/// How far a tared cell may be off, N, and one that homing has to tare.
+const TARED_N: f64 = 0.1;
+const UNTARED_N: f64 = 2.0;
+
+/// A leg and what it does.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Counted from 0.
+    pub number: u64,
+    /// The rig's name.
+    pub rig: String,
+    /// What the leg is doing.
+    pub occasion: Occasion,
+    /// Where it leans, degrees.
+    pub azimuth_deg: f64,
+    /// How far, degrees.
+    pub tilt_deg: f64,
+    /// kg.
+    pub payload_kg: f64,
+    /// N.
+    pub pretension_n: f64,
+    /// Which load it compensates.
+    pub compensation: Compensation,
+    /// Where it moves, if it does: azimuth and tilt, degrees.
+    pub target_deg: [f64; 2],
+    /// When it is struck, as a part of its way.
+    pub part: f64,
+    /// A push before: azimuth, degrees, and force, N.
+    pub push: Option<[f64; 2]>,
+    /// A change of payload before, kg.
+    pub step_kg: f64,
+    pub(super) file: RigFile,
+    pub(super) plant: PlantSettings,
+    pub(super) seed: u64,
+}
+
+/// The kind of fault of a slot; none is no fault.
+pub(super) fn kind_of(case: u64, slot: u64) -> Option<usize> {
+    let round = case / Occasion::ALL.len() as u64;
+    let kind = (round * (SLOTS - 1) + slot) % Defect::KINDS as u64;
+    (slot + 1 < SLOTS).then_some(kind as usize)
+}
+
+/// Its name in scenarios.
+pub(super) fn name_of(kind: Option<usize>) -> &'static str {
+    let named = kind.and_then(|kind| Defect::descriptions().nth(kind));
+    named.map_or("none", |(name, _)| name)
+}
+
+impl Case {
+    /// The case of a number, drawn from a seed.
+    pub(super) fn new(seed: u64, rigs: &[(String, RigFile)], number: u64) -> Self {
+        let seed = mixed(seed, number);
+        let mut rng = Rng::with_seed(seed);
+        let occasion = Occasion::of_case(number);
+        let round = number / Occasion::ALL.len() as u64;
+        let (rig, file) = &rigs[(round % rigs.len() as u64) as usize];
+        let mut case = Self {
+            number,
+            rig: rig.clone(),
+            occasion,
+            azimuth_deg: 0.0,
+            tilt_deg: 0.0,
+            payload_kg: 0.0,
+            pretension_n: file.pretension_n,
+            compensation: match rng.u32(0..10) {
+                0 => Compensation::Off,
+                1 => Compensation::Frozen,
+                _ => Compensation::Estimated,
+            },
+            target_deg: [0.0; 2],
+            part: rng.f64(),
+            push: (rng.f64() < 0.3).then(|| [360.0 * rng.f64(), 10.0 * rng.f64()]),
+            step_kg: 0.0,
+            file: *file,
+            plant: plant(file, occasion, &mut rng),
+            seed,
+        };
+        if occasion != Occasion::Homing {
+            case.draw_pose(&mut rng);
+        }
+        case
+    }
+
+    /// A pose, a payload, a pretension and a target that the rig allows.
+    fn draw_pose(&mut self, rng: &mut Rng) {
+        for _ in 0..1000 {
+            let [azimuth_deg, tilt_deg] = pose(&self.file, rng);
+            let target_deg = pose(&self.file, rng);
+            let payload_kg = drawn(rng, PAYLOAD_KG);
+            let step_kg = if rng.f64() < 0.3 {
+                rng.f64() - 0.5
+            } else {
+                0.0
+            };
+            let heavier_kg = payload_kg + step_kg;
+            let ranges = [
+                feasible(&self.file, [azimuth_deg, tilt_deg], payload_kg),
+                feasible(&self.file, [azimuth_deg, tilt_deg], heavier_kg),
+                feasible(&self.file, target_deg, payload_kg),
+                feasible(&self.file, [0.0, 0.0], 0.0),
+            ];
+            let low = ranges.iter().map(|range| range[0]).fold(0.0, f64::max);
+            let high = ranges
+                .iter()
+                .map(|range| range[1])
+                .fold(f64::INFINITY, f64::min);
+            if low < high {
+                self.azimuth_deg = azimuth_deg;
+                self.tilt_deg = tilt_deg;
+                self.target_deg = target_deg;
+                self.payload_kg = payload_kg;
+                self.step_kg = step_kg;
+                self.pretension_n = low + (high - low) * rng.f64();
+                return;
+            }
+        }
+    }
+}
+
+impl fmt::Display for Case {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            formatter,
+            "{} on {}: azimuth {:.1}°, tilt {:.1}°, {:.2} kg, pretension {:.1} N",
+            self.occasion.name(),
+            self.rig,
+            self.azimuth_deg,
+            self.tilt_deg,
+            self.payload_kg,
+            self.pretension_n,
+        )?;
+        if self.occasion == Occasion::Moving {
+            let [azimuth_deg, tilt_deg] = self.target_deg;
+            write!(
+                formatter,
+                ", to azimuth {azimuth_deg:.1}°, tilt {tilt_deg:.1}°"
+            )?;
+        }
+        write!(
+            formatter,
+            ", struck at {:.0} % of the way, compensation {:?}",
+            100.0 * self.part,
+            self.compensation
+        )?;
+        if self.step_kg != 0.0 {
+            write!(
+                formatter,
+                ", payload changed by {:.2} kg before",
+                self.step_kg
+            )?;
+        }
+        if let Some([azimuth_deg, force_n]) = self.push {
+            write!(
+                formatter,
+                ", pushed by {force_n:.1} N at {azimuth_deg:.0}° before"
+            )?;
+        }
+        Ok(())
+    }
+}
+
+fn plant(file: &RigFile, occasion: Occasion, rng: &mut Rng) -> PlantSettings {
+    let mut even = |half: f64| half * (2.0 * rng.f64() - 1.0);
+    let offset_n = if occasion == Occasion::Homing {
+        UNTARED_N
+    } else {
+        TARED_N
+    };
+    PlantSettings {
+        cell_gain_error: std::array::from_fn(|_| even(CELL_GAIN)),
+        cell_offset_n: std::array::from_fn(|_| even(offset_n)),
+        curve_error: even(CURVE),
+        ..file.plant
+    }
+}
+
+/// One in five at each end: that is where things break.
+fn drawn(rng: &mut Rng, highest: f64) -> f64 {
+    match rng.u32(0..10) {
+        0 | 1 => highest,
+        2 | 3 => 0.0,
+        _ => highest * rng.f64(),
+    }
+}
+
+fn pose(file: &RigFile, rng: &mut Rng) -> [f64; 2] {
+    let azimuth_deg = if rng.f64() < 0.3 {
+        // Planes of symmetry.
+        30.0 * f64::from(rng.u32(0..12))
+    } else {
+        360.0 * rng.f64()
+    };
+    // A number in f32 must not be beyond the end.
+    [azimuth_deg, drawn(rng, TILT_DEG.min(file.tilt_deg) - 1e-3)]
+}
+
+/// The lowest and highest pretension of a pose with a payload, N; of no width where there is none.
+pub(super) fn feasible(
+    file: &RigFile,
+    [azimuth_deg, tilt_deg]: [f64; 2],
+    payload_kg: f64,
+) -> [f64; 2] {
+    if !(0.0..=PAYLOAD_KG).contains(&payload_kg) {
+        return [f64::INFINITY, 0.0];
+    }
+    let query = file.query(azimuth_deg, tilt_deg, payload_kg);
+    let found = evaluate(&file.parameters, &query);
+    // What the estimate of the load is off by must not end a feasible pretension.
+    found.map_or([f64::INFINITY, 0.0], |found| {
+        let [low, high] = found.pretension_range_n;
+        [low + 1.0, high - 1.0]
+    })
+}
+
+/// Another number for every pair.
+pub(super) fn mixed(seed: u64, number: u64) -> u64 {
+    let mut rng = Rng::with_seed(seed);
+    rng.u64(..) ^ Rng::with_seed(number).u64(..)
+}

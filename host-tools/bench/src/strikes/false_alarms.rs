@@ -1,0 +1,293 @@
+//! What a user does to a leg without any fault: no fault may come.
+
+use super::case::{feasible, mixed};
+use super::stand::Stand;
+use fastrand::Rng;
+use leg_base::angles;
+use leg_firmware::command::{Command, Compensation};
+use leg_firmware::supervisor::{Fault, State};
+use leg_rig::plant_settings::PlantSettings;
+use leg_rig::rig_file::RigFile;
+use leg_sim::plant::Start;
+use serde::Serialize;
+use std::fmt::Write;
+
+/// Heaviest payload, kg, and strongest push, N.
+const PAYLOAD_KG: f64 = 1.0;
+const PUSH_N: f64 = 10.0;
+
+/// Pretensions that are asked for at most, N, and demands for stiffness, N·m/rad.
+const PRETENSION_N: [f64; 2] = [25.0, 110.0];
+const STIFFNESS_NM_PER_RAD: [f64; 2] = [10.0, 120.0];
+
+/// How far load cells and tendon curves may be off, as a part; and the offset of a tared cell, N.
+const CELL_GAIN: f64 = 0.002;
+const CURVE: f64 = 0.01;
+const OFFSET_N: f64 = 0.1;
+
+/// How far before an alarm the true tensions are looked at, s.
+const BEFORE_S: f64 = 0.25;
+
+/// The uses that are remembered for a report.
+const REMEMBERED: usize = 6;
+
+/// A fault that came although nothing had failed.
+#[derive(Clone, Debug, Serialize)]
+pub struct Alarm {
+    /// The fault.
+    pub fault: &'static str,
+    /// Time in the run, s.
+    pub time_s: f64,
+    /// Whether a true tension had left its bounds just before: the alarm then is true.
+    pub beyond: bool,
+    /// Lowest and highest true tension in the quarter of a second before, N.
+    pub tensions_n: [f64; 2],
+    /// What was done last.
+    pub uses: String,
+}
+
+/// What came of a time of use.
+#[derive(Clone, Debug, Serialize)]
+pub struct Usage {
+    /// The rig's name.
+    pub rig: String,
+    /// The part of the campaign.
+    pub part: u64,
+    /// s.
+    pub time_s: f64,
+    /// Things done.
+    pub uses: u64,
+    /// Faults.
+    pub alarms: Vec<Alarm>,
+    /// Why it ended early, if it did.
+    pub stopped: Option<String>,
+}
+
+/// Uses a leg for a time, in the way of a part of the campaign. After an alarm another leg goes on.
+pub(super) fn use_leg(
+    seed: u64,
+    rig: &str,
+    file: &RigFile,
+    part: u64,
+    time_s: f64,
+    done: &(impl Fn(u64) + Sync),
+) -> Usage {
+    let mut usage = Usage {
+        rig: rig.into(),
+        part,
+        time_s: 0.0,
+        uses: 0,
+        alarms: Vec::new(),
+        stopped: None,
+    };
+    let mut rng = Rng::with_seed(mixed(seed, part));
+    while usage.time_s < time_s && usage.stopped.is_none() {
+        let before_s = usage.time_s;
+        let ended = User::new(file, &mut rng).and_then(|user| user.go_on(&mut usage, time_s));
+        usage.stopped = ended.err();
+        done((usage.time_s - before_s) as u64);
+    }
+    usage
+}
+
+/// A user with a leg.
+struct User<'a> {
+    file: &'a RigFile,
+    rng: &'a mut Rng,
+    stand: Stand,
+    pose_deg: [f64; 2],
+    payload_kg: f64,
+    /// The extreme true tensions of now, and of the time before.
+    extremes_n: [[f64; 2]; 2],
+    extremes_s: f64,
+    uses: Vec<String>,
+}
+
+const NO_RANGE: [f64; 2] = [f64::INFINITY, 0.0];
+
+impl<'a> User<'a> {
+    /// With a leg that has been armed.
+    fn new(file: &'a RigFile, rng: &'a mut Rng) -> Result<Self, String> {
+        let mut even = |half: f64| half * (2.0 * rng.f64() - 1.0);
+        let plant = PlantSettings {
+            cell_gain_error: std::array::from_fn(|_| even(CELL_GAIN)),
+            cell_offset_n: std::array::from_fn(|_| even(OFFSET_N)),
+            curve_error: even(CURVE),
+            ..file.plant
+        };
+        let start = Start::hanging(file.pretension_n);
+        let mut stand = Stand::new(file, &plant, start, rng.u64(..))?;
+        stand.until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
+        stand.command(&Command::Arm)?;
+        stand.until(2.0, "active", |stand| stand.state() == State::Active)?;
+        Ok(Self {
+            file,
+            rng,
+            stand,
+            pose_deg: [0.0; 2],
+            payload_kg: 0.0,
+            extremes_n: [NO_RANGE; 2],
+            extremes_s: 0.0,
+            uses: Vec::new(),
+        })
+    }
+
+    /// Does one thing after another until the time is over or a fault comes.
+    fn go_on(mut self, usage: &mut Usage, end_s: f64) -> Result<(), String> {
+        let began_s = usage.time_s;
+        while usage.time_s < end_s {
+            let wait_s = self.do_something()?;
+            usage.uses += 1;
+            let waited = self.wait(wait_s)?;
+            usage.time_s = began_s + self.stand.time_s();
+            if let Some(fault) = waited {
+                usage.alarms.push(self.alarm(fault, usage.time_s));
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn alarm(&self, fault: Fault, time_s: f64) -> Alarm {
+        let [now, before] = self.extremes_n;
+        let tensions_n = [now[0].min(before[0]), now[1].max(before[1])];
+        Alarm {
+            fault: fault.entry().name,
+            time_s,
+            beyond: tensions_n[0] < 0.5 * self.file.f_min_n || tensions_n[1] > self.file.f_max_n,
+            tensions_n,
+            uses: self.uses.join("; "),
+        }
+    }
+
+    /// Waits, and gives the fault that comes.
+    fn wait(&mut self, time_s: f64) -> Result<Option<Fault>, String> {
+        let end_s = self.stand.time_s() + time_s;
+        while self.stand.time_s() < end_s {
+            self.stand.tick()?;
+            let now_s = self.stand.time_s();
+            if now_s - self.extremes_s > BEFORE_S {
+                self.extremes_n = [NO_RANGE, self.extremes_n[0]];
+                self.extremes_s = now_s;
+            }
+            let tensions = self.stand.truth.tensions_n;
+            let [low, high] = self.extremes_n[0];
+            self.extremes_n[0] = [
+                tensions.iter().copied().fold(low, f64::min),
+                tensions.iter().copied().fold(high, f64::max),
+            ];
+            if let Some(fault) = self.stand.faults().faults().next() {
+                return Ok(Some(fault));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Does something, and says how long to wait after it, s.
+    fn do_something(&mut self) -> Result<f64, String> {
+        let wait_s = 0.1 + 1.5 * self.rng.f64().powi(2);
+        match self.rng.u32(0..20) {
+            0..=6 => self.go_elsewhere()?,
+            7 => self.command(&Command::Hold, "hold")?,
+            8..=11 => self.push(),
+            12..=14 => self.load(),
+            15 | 16 => {
+                let n = self.between(PRETENSION_N);
+                self.command(
+                    &Command::Pretension(n as f32),
+                    &format!("pretension {n:.1} N"),
+                )?;
+            }
+            17 => {
+                let demand = self.between(STIFFNESS_NM_PER_RAD);
+                let towards_deg = self.rng.bool().then(|| 360.0 * self.rng.f64());
+                let command = Command::Stiffness {
+                    demand_nm_per_rad: demand as f32,
+                    towards: towards_deg.map(|deg| angles::unit_vector(deg).map(|c| c as f32)),
+                };
+                self.command(&command, &format!("stiffness {demand:.1} N·m/rad"))?;
+            }
+            18 => {
+                let all = [
+                    Compensation::Off,
+                    Compensation::Estimated,
+                    Compensation::Frozen,
+                ];
+                let compensation = all[self.rng.usize(0..3)];
+                let words = format!("compensation {compensation:?}");
+                self.command(&Command::Compensation(compensation), &words)?;
+            }
+            _ => self.stop_and_go()?,
+        }
+        Ok(wait_s)
+    }
+
+    fn between(&mut self, [low, high]: [f64; 2]) -> f64 {
+        low + (high - low) * self.rng.f64()
+    }
+
+    fn command(&mut self, command: &Command, words: &str) -> Result<(), String> {
+        self.note(words.into());
+        self.stand.command(command)
+    }
+
+    fn note(&mut self, words: String) {
+        let mut timed = format!("{:.2} s: ", self.stand.time_s());
+        // Writing to a string cannot fail.
+        let _ = write!(timed, "{words}");
+        self.uses.push(timed);
+        if self.uses.len() > REMEMBERED {
+            self.uses.remove(0);
+        }
+    }
+
+    /// To a pose that holds the payload.
+    fn go_elsewhere(&mut self) -> Result<(), String> {
+        let highest = self.file.tilt_deg.min(30.0) - 1e-3;
+        let pose_deg = [360.0 * self.rng.f64(), highest * self.rng.f64()];
+        if !self.holds(pose_deg, self.payload_kg) {
+            return Ok(());
+        }
+        self.pose_deg = pose_deg;
+        let [x, y] = angles::direction(pose_deg[0], pose_deg[1]).map(|c| c as f32);
+        let words = format!("move to {:.1}°, {:.1}°", pose_deg[0], pose_deg[1]);
+        self.command(&Command::Move { x, y }, &words)
+    }
+
+    fn holds(&self, pose_deg: [f64; 2], payload_kg: f64) -> bool {
+        let [low, high] = feasible(self.file, pose_deg, payload_kg);
+        low < high
+    }
+
+    fn push(&mut self) {
+        let (azimuth_deg, force_n) = (360.0 * self.rng.f64(), PUSH_N * self.rng.f64());
+        let (for_s, rise_s) = (self.between([0.05, 1.0]), self.between([0.02, 0.2]));
+        self.note(format!(
+            "push {force_n:.1} N at {azimuth_deg:.0}° for {for_s:.2} s, rising in {rise_s:.2} s"
+        ));
+        let force_n = self.stand.plant().across(azimuth_deg) * force_n;
+        self.stand.plant().push(force_n, for_s, rise_s);
+    }
+
+    fn load(&mut self) {
+        let (kg, over_s) = (PAYLOAD_KG * self.rng.f64(), self.between([0.05, 0.5]));
+        if self.holds(self.pose_deg, kg) {
+            self.payload_kg = kg;
+            self.note(format!("payload {kg:.2} kg in {over_s:.2} s"));
+            self.stand.plant().set_payload(kg, over_s);
+        }
+    }
+
+    /// Stops the leg, clears and arms it again.
+    fn stop_and_go(&mut self) -> Result<(), String> {
+        self.command(&Command::Stop, "stop, clear, arm")?;
+        for command in [Command::Clear, Command::Arm] {
+            let wait_s = self.between([0.05, 0.5]);
+            if self.wait(wait_s)?.is_some() {
+                return Ok(());
+            }
+            self.stand.command(&command)?;
+        }
+        Ok(())
+    }
+}

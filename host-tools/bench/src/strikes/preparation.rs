@@ -1,0 +1,189 @@
+//! Brings a leg to what it does when it is struck.
+
+use super::case::Case;
+use super::occasion::Occasion;
+use super::stand::Stand;
+use super::way::Way;
+use leg_base::angles;
+use leg_firmware::command::Command;
+use leg_firmware::supervisor::State;
+use leg_sim::plant::Start;
+
+/// Time of a change of payload and of a push, s, and in which the leg comes to rest after a move or one of them.
+const LOADING_S: f64 = 0.4;
+const REST_S: f64 = 1.0;
+
+/// Longest times of a move and of homing, s.
+const MOVE_S: f64 = 10.0;
+const HOMING_S: f64 = 30.0;
+
+/// Time in which an arming leg is struck, s.
+const ARMING_S: f64 = 0.8;
+
+/// How long the way goes on after its end, s: what swings there belongs to it.
+const AFTER_S: f64 = 1.0;
+
+/// How little a leg moves that has come to rest, m, in how many ticks; and how often that is awaited.
+const STILL_M: f64 = 1e-4;
+const SWING_TICKS: u32 = 8_000;
+const SWINGS: u32 = 40;
+
+/// How slack the tendons of a leg are before homing, mm.
+const SLACK_MM: f64 = 2.0;
+
+/// A leg that is about to be struck.
+pub(super) struct Prepared {
+    pub stand: Stand,
+    /// Where its tip may be.
+    pub way: Way,
+}
+
+/// # Errors
+/// Why the leg does not get there: a fault that nothing caused, or a time that is over.
+pub(super) fn prepare(case: &Case) -> Result<Prepared, String> {
+    let mut stand = started(case)?;
+    let command = match case.occasion {
+        Occasion::Following | Occasion::Rearmed | Occasion::Disarmed => None,
+        Occasion::Held => Some(Command::Stop),
+        Occasion::Moving => Some(move_to(case.target_deg)),
+        Occasion::Homing => Some(Command::Home),
+        Occasion::RampingDown => Some(Command::Disarm),
+        Occasion::Arming => Some(Command::Arm),
+    };
+    let Some(command) = command else {
+        if case.occasion == Occasion::Disarmed {
+            disarm(&mut stand)?;
+        }
+        return Ok(resting(stand));
+    };
+    match case.occasion {
+        Occasion::Held => {
+            stand.command(&command)?;
+            stand.until(1.0, "held", |stand| stand.state() == State::Held)?;
+            stand.wait(0.3)?;
+            Ok(resting(stand))
+        }
+        Occasion::Arming => {
+            let way = Way::at(stand.truth.tip_m);
+            stand.command(&command)?;
+            stand.wait(ARMING_S * case.part)?;
+            Ok(Prepared { stand, way })
+        }
+        _ => {
+            stand.command(&command)?;
+            on_the_way(case, stand)
+        }
+    }
+}
+
+fn resting(stand: Stand) -> Prepared {
+    let way = Way::at(stand.truth.tip_m);
+    Prepared { stand, way }
+}
+
+/// A leg in the state from which the command goes out.
+fn started(case: &Case) -> Result<Stand, String> {
+    let start = match case.occasion {
+        Occasion::Homing => Start::Slack { slack_mm: SLACK_MM },
+        Occasion::Arming => Start::Held {
+            azimuth_deg: case.azimuth_deg,
+            tilt_deg: case.tilt_deg,
+            pretension_n: case.pretension_n,
+            payload_kg: case.payload_kg,
+        },
+        _ => Start::hanging(case.pretension_n),
+    };
+    let mut stand = Stand::new(&case.file, &case.plant, start, case.seed)?;
+    stand.until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
+    stand.wait(0.1)?;
+    if !matches!(case.occasion, Occasion::Homing | Occasion::Arming) {
+        lead(case, &mut stand)?;
+    }
+    Ok(stand)
+}
+
+/// Arms the leg, loads it and moves it to its pose.
+fn lead(case: &Case, stand: &mut Stand) -> Result<(), String> {
+    stand.command(&Command::Arm)?;
+    stand.until(2.0, "active", |stand| stand.state() == State::Active)?;
+    stand.wait(0.3)?;
+    stand.command(&Command::Pretension(case.pretension_n as f32))?;
+    stand.plant().set_payload(case.payload_kg, LOADING_S);
+    stand.wait(LOADING_S + REST_S)?;
+    stand.command(&move_to([case.azimuth_deg, case.tilt_deg]))?;
+    stand.wait(0.05)?;
+    stand.until(MOVE_S, "the end of the move", |stand| !stand.moving())?;
+    stand.wait(REST_S)?;
+    stand.command(&Command::Compensation(case.compensation))?;
+    stand.wait(REST_S)?;
+    if case.step_kg != 0.0 {
+        stand
+            .plant()
+            .set_payload(case.payload_kg + case.step_kg, LOADING_S);
+        stand.wait(LOADING_S + REST_S)?;
+    }
+    if let Some([azimuth_deg, force_n]) = case.push {
+        let force_n = stand.plant().across(azimuth_deg) * force_n;
+        stand.plant().push(force_n, LOADING_S, 0.1);
+        stand.wait(LOADING_S + REST_S)?;
+    }
+    Ok(())
+}
+
+fn move_to([azimuth_deg, tilt_deg]: [f64; 2]) -> Command {
+    let [x, y] = angles::direction(azimuth_deg, tilt_deg).map(|c| c as f32);
+    Command::Move { x, y }
+}
+
+fn disarm(stand: &mut Stand) -> Result<(), String> {
+    stand.command(&Command::Disarm)?;
+    stand.until(MOVE_S, "disarmed", |stand| stand.state() == State::Disarmed)?;
+    // A relaxed leg swings for a while.
+    let mut before_m = stand.truth.tip_m;
+    for _ in 0..SWINGS {
+        let mut moved_m: f64 = 0.0;
+        for _ in 0..SWING_TICKS {
+            stand.tick()?;
+            moved_m = moved_m.max((stand.truth.tip_m - before_m).norm());
+        }
+        if moved_m < STILL_M {
+            return Ok(());
+        }
+        before_m = stand.truth.tip_m;
+    }
+    Err("the relaxed leg does not come to rest".into())
+}
+
+/// A leg that is struck on its way, which it has gone to its end before.
+fn on_the_way(case: &Case, stand: Stand) -> Result<Prepared, String> {
+    let mut way = Way::at(stand.truth.tip_m);
+    let mut whole = stand.clone();
+    let (began_s, mut ended_s) = (stand.time_s(), None);
+    while ended_s.is_none_or(|ended_s| whole.time_s() < ended_s + AFTER_S) {
+        whole.tick()?;
+        way.add(whole.truth.tip_m);
+        if whole.faults().any() {
+            let names = leg_base::description::faults(whole.faults());
+            return Err(format!("{names} without a strike"));
+        }
+        let now_s = whole.time_s();
+        if ended_s.is_none() && now_s > began_s + 0.05 && at_end(case, &whole) {
+            ended_s = Some(now_s);
+        }
+        if now_s > began_s + HOMING_S {
+            return Err(format!("no end within {HOMING_S} s"));
+        }
+    }
+    let mut stand = stand;
+    let all_s = ended_s.unwrap_or(began_s) - began_s;
+    stand.wait(case.part * all_s)?;
+    Ok(Prepared { stand, way })
+}
+
+fn at_end(case: &Case, stand: &Stand) -> bool {
+    match case.occasion {
+        Occasion::Homing => stand.state() == State::Active && !stand.moving(),
+        Occasion::RampingDown => stand.state() == State::Disarmed,
+        _ => !stand.moving(),
+    }
+}

@@ -1,0 +1,123 @@
+//! An emulated leg with its host, which can be cloned.
+
+use leg_firmware::command::Command;
+use leg_firmware::drive::Drive;
+use leg_firmware::sensors::Sensors;
+use leg_firmware::supervisor::{FaultSet, State};
+use leg_firmware::telemetry::Telemetry;
+use leg_rig::plant_settings::PlantSettings;
+use leg_rig::rig_file::RigFile;
+use leg_sim::emulated_leg::EmulatedLeg;
+use leg_sim::host::Host;
+use leg_sim::link::InProcess;
+use leg_sim::plant::{Plant, Start, Truth};
+
+/// An emulated leg, its host, and what was seen last.
+#[derive(Clone)]
+pub(super) struct Stand {
+    leg: EmulatedLeg<InProcess>,
+    host: Host,
+    ticks: u64,
+    pub truth: Truth,
+    pub telemetry: Option<Telemetry<f32>>,
+    pub sensors: Sensors,
+    /// What the motors get.
+    pub motors: Drive<f32>,
+}
+
+impl Stand {
+    /// A leg that has just started.
+    pub fn new(
+        rig: &RigFile,
+        plant: &PlantSettings,
+        start: Start,
+        seed: u64,
+    ) -> Result<Self, String> {
+        let leg = EmulatedLeg::in_process(rig, plant, start, seed);
+        let leg = leg.map_err(|error| error.to_string())?;
+        Ok(Self {
+            truth: leg.plant().truth(),
+            leg,
+            host: Host::new(seed),
+            ticks: 0,
+            telemetry: None,
+            sensors: Sensors::default(),
+            motors: Drive {
+                duty: [0.0; 3],
+                enabled: false,
+            },
+        })
+    }
+
+    pub fn plant(&mut self) -> &mut Plant {
+        self.leg.plant_mut()
+    }
+
+    pub fn time_s(&self) -> f64 {
+        self.leg.plant().time_s()
+    }
+
+    pub fn state(&self) -> State {
+        self.telemetry
+            .map_or(State::Boot, |telemetry| telemetry.state)
+    }
+
+    /// Faults beyond limits.
+    pub fn faults(&self) -> FaultSet {
+        let faults = self.telemetry.map(|telemetry| telemetry.faults);
+        faults.map_or(FaultSet::NONE, FaultSet::without_limits)
+    }
+
+    pub fn moving(&self) -> bool {
+        self.telemetry.is_some_and(|telemetry| telemetry.moving)
+    }
+
+    pub fn command(&mut self, command: &Command) -> Result<(), String> {
+        self.host.send(command).map_err(|error| error.to_string())
+    }
+
+    /// One tick.
+    pub fn tick(&mut self) -> Result<(), String> {
+        let bytes = self.host.outgoing(self.ticks);
+        let advanced = self.leg.advance(bytes);
+        let (taken, reply) = advanced.map_err(|error| error.to_string())?;
+        self.ticks += 1;
+        self.truth = self.leg.plant().truth();
+        self.telemetry = Some(reply.telemetry);
+        self.sensors = taken.sensors;
+        self.motors = reply.motors;
+        let numbers = self.truth.tensions_n.iter().chain(self.truth.tip_m.iter());
+        if numbers.copied().all(f64::is_finite) {
+            Ok(())
+        } else {
+            Err("a number of the simulated leg is lost".into())
+        }
+    }
+
+    /// Lets a time pass without a fault.
+    pub fn wait(&mut self, time_s: f64) -> Result<(), String> {
+        let end_s = self.time_s() + time_s;
+        self.until(f64::INFINITY, "", |stand| stand.time_s() >= end_s)
+    }
+
+    /// Ticks until something is so, without a fault.
+    pub fn until(
+        &mut self,
+        timeout_s: f64,
+        what: &str,
+        done: impl Fn(&Self) -> bool,
+    ) -> Result<(), String> {
+        let end_s = self.time_s() + timeout_s;
+        while !done(self) {
+            self.tick()?;
+            if self.faults().any() {
+                let names = leg_base::description::faults(self.faults());
+                return Err(format!("{names} before any strike"));
+            }
+            if self.time_s() > end_s {
+                return Err(format!("{what} does not come in {timeout_s} s"));
+            }
+        }
+        Ok(())
+    }
+}

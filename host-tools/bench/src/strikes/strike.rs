@@ -1,0 +1,333 @@
+//! One strike and its measures.
+
+use super::bars::Bars;
+use super::case::Case;
+use super::occasion::Occasion;
+use super::preparation::Prepared;
+use super::stand::Stand;
+use super::way::Way;
+use leg_base::description;
+use leg_firmware::command::Command;
+use leg_firmware::supervisor::{Fault, FaultSet, State};
+use leg_sim::plant::Defect;
+use serde::Serialize;
+
+/// How long a struck leg is watched, s: one whose fault comes slowly for longer, and one that homes to its end.
+const WATCHED_S: f64 = 2.0;
+const SLOW_S: f64 = 12.0;
+const HOMING_S: f64 = 16.0;
+
+/// How long a leg that has stopped is watched, s.
+const STOPPED_S: f64 = 1.5;
+
+/// When a motor may no longer be driven after the leg has stopped, s; and what counts as driven: speed, rad/s (0.04 mm/s
+/// of the tendon), or current, A.
+const RUN_OUT_S: f64 = 0.1;
+const DRIVEN_RAD_PER_S: f64 = 1.0;
+const DRIVEN_A: f64 = 0.3;
+
+/// When the user clears the fault, and how long after that he arms, s after the strike.
+const CLEARS_S: [f64; 2] = [0.6, 1.4];
+const ARMS_AFTER_S: f64 = 0.1;
+
+/// Ticks between two measures of the distance from a way.
+const WAY_TICKS: u64 = 8;
+
+/// What strikes.
+#[derive(Clone, Debug)]
+pub(super) struct Strike {
+    pub index: u64,
+    pub defect: Option<Defect>,
+    pub name: &'static str,
+    /// Counted from 0.
+    pub tendon: usize,
+}
+
+/// A strike and what it did.
+#[derive(Clone, Debug, Serialize)]
+pub struct Struck {
+    /// Its number: the seed and it repeat it.
+    pub index: u64,
+    /// The fault, by its name in scenarios; `none` for none.
+    pub fault: &'static str,
+    /// Its tendon, from 1.
+    pub tendon: usize,
+    /// What the leg did.
+    pub state: Occasion,
+    /// The leg as a sentence.
+    pub case: String,
+    /// Highest true tension, N.
+    pub tension_n: f64,
+    /// Highest true tension while the leg homed, N.
+    pub homing_n: f64,
+    /// How far the tip was from rest or off the way, mm.
+    pub tip_mm: f64,
+    /// The first fault that the leg named.
+    pub named: Option<&'static str>,
+    /// How long after the strike, s.
+    pub named_s: Option<f64>,
+    /// How long after the leg had stopped a motor was driven last, s; zero if none was 0.1 s after it.
+    pub driven_s: f64,
+    /// What was beyond its bar, as sentences.
+    pub failures: Vec<String>,
+}
+
+/// The leg at a time after a strike.
+#[derive(Clone, Debug, Serialize)]
+pub struct Moment {
+    /// Time since the strike, s.
+    pub time_s: f64,
+    /// What the leg reports.
+    pub state: &'static str,
+    /// Faults that it reports.
+    pub faults: String,
+    /// True tensions, N.
+    pub tensions_n: [f64; 3],
+    /// What the cells show, N.
+    pub measured_n: [f32; 3],
+    /// Duties.
+    pub duty: [f32; 3],
+    /// How far the tip is from rest or off the way, mm.
+    pub tip_mm: f64,
+}
+
+impl Struck {
+    fn new(case: &Case, strike: &Strike) -> Self {
+        Self {
+            index: strike.index,
+            fault: strike.name,
+            tendon: strike.tendon + 1,
+            state: case.occasion,
+            case: case.to_string(),
+            tension_n: 0.0,
+            homing_n: 0.0,
+            tip_mm: 0.0,
+            named: None,
+            named_s: None,
+            driven_s: 0.0,
+            failures: Vec::new(),
+        }
+    }
+
+    /// A leg that was not brought to where it should be struck.
+    pub(super) fn not_prepared(case: &Case, index: u64, reason: String) -> Self {
+        let strike = Strike {
+            index,
+            defect: None,
+            name: "none",
+            tendon: 0,
+        };
+        Self {
+            failures: vec![reason],
+            ..Self::new(case, &strike)
+        }
+    }
+
+    /// Whether everything was within its bar.
+    #[must_use]
+    pub fn passes(&self) -> bool {
+        self.failures.is_empty()
+    }
+
+    fn judge(&mut self, bars: &Bars, fault: bool) {
+        let mut failures = Vec::new();
+        if self.tension_n > bars.tension_n {
+            failures.push(format!("{:.1} N", self.tension_n));
+        }
+        if self.homing_n > bars.homing_n {
+            failures.push(format!("{:.1} N while homing", self.homing_n));
+        }
+        if self.tip_mm > bars.tip_mm {
+            failures.push(format!("tip {:.2} mm", self.tip_mm));
+        }
+        match (bars.named_s, self.named_s) {
+            (Some(_), None) => failures.push("no fault".into()),
+            (Some(bar), Some(found)) if found > bar => {
+                failures.push(format!("fault after {found:.2} s"))
+            }
+            (_, Some(_)) if !fault => {
+                failures.push(format!("false alarm: {}", self.named.unwrap_or_default()))
+            }
+            _ => {}
+        }
+        if self.driven_s > 0.0 {
+            failures.push(format!("driven {:.2} s after the stop", self.driven_s));
+        }
+        self.failures.extend(failures);
+    }
+}
+
+/// Strikes a clone of a leg. With a time between them, moments come, too.
+pub(super) fn strike(
+    case: &Case,
+    prepared: &Prepared,
+    strike: &Strike,
+    every_s: Option<f64>,
+) -> (Struck, Vec<Moment>) {
+    let mut stand = prepared.stand.clone();
+    let bars = Bars::new(
+        strike.defect,
+        case.occasion,
+        case.file.f_max_n,
+        stand.truth.tensions_n,
+    );
+    if let Some(defect) = strike.defect {
+        stand.plant().set_defect(defect, true);
+    }
+    let mut watch = Watch {
+        case,
+        way: &prepared.way,
+        began_s: stand.time_s(),
+        before: stand.faults(),
+        stopped_s: None,
+        given: 0,
+        every_s,
+        moments: Vec::new(),
+        struck: Struck::new(case, strike),
+    };
+    let watched_s = watched_s(case, strike.defect);
+    while !watch.over(&stand, watched_s) {
+        if let Err(error) = watch.advance(&mut stand) {
+            watch.struck.failures.push(error);
+            break;
+        }
+    }
+    watch.struck.judge(&bars, strike.defect.is_some());
+    (watch.struck, watch.moments)
+}
+
+fn watched_s(case: &Case, defect: Option<Defect>) -> f64 {
+    let usual_s = if case.occasion == Occasion::Homing {
+        HOMING_S
+    } else {
+        WATCHED_S
+    };
+    match defect {
+        Some(
+            Defect::CellDrifting(_)
+            | Defect::CellGainDrift(_)
+            | Defect::CellGainDriftDown(_)
+            | Defect::CellWanders(_)
+            | Defect::EncoderJumps(_)
+            | Defect::Overheating,
+        ) => usual_s.max(SLOW_S),
+        _ => usual_s,
+    }
+}
+
+/// A leg that was struck, while it is watched.
+struct Watch<'a> {
+    case: &'a Case,
+    way: &'a Way,
+    began_s: f64,
+    /// Faults that were there before.
+    before: FaultSet,
+    /// Since when the leg has stopped after a fault.
+    stopped_s: Option<f64>,
+    /// Commands that the user has given since.
+    given: usize,
+    every_s: Option<f64>,
+    moments: Vec<Moment>,
+    struck: Struck,
+}
+
+impl Watch<'_> {
+    fn over(&self, stand: &Stand, watched_s: f64) -> bool {
+        let now_s = stand.time_s() - self.began_s;
+        let rearms = self.case.occasion == Occasion::Rearmed && self.given < 2 * CLEARS_S.len();
+        let settled = self
+            .stopped_s
+            .is_some_and(|stopped_s| now_s - stopped_s > STOPPED_S);
+        !rearms && (settled || now_s >= watched_s)
+    }
+
+    fn advance(&mut self, stand: &mut Stand) -> Result<(), String> {
+        self.rearm(stand)?;
+        stand.tick()?;
+        let now_s = stand.time_s() - self.began_s;
+        let highest = stand.truth.tensions_n.into_iter().fold(0.0, f64::max);
+        self.struck.tension_n = self.struck.tension_n.max(highest);
+        if stand.state() == State::Homing {
+            self.struck.homing_n = self.struck.homing_n.max(highest);
+        }
+        let tick = (now_s * 8000.0).round() as u64;
+        if !self.case.occasion.on_the_way() || tick.is_multiple_of(WAY_TICKS) {
+            let tip_mm = self.way.distance_mm(&stand.truth.tip_m);
+            self.struck.tip_mm = self.struck.tip_mm.max(tip_mm);
+        }
+        self.name_fault(stand, now_s);
+        self.watch_motors(stand, now_s);
+        self.record(stand, now_s);
+        Ok(())
+    }
+
+    /// Clears and arms, as a user does who does not believe the fault.
+    fn rearm(&mut self, stand: &mut Stand) -> Result<(), String> {
+        let (round, clears) = (self.given / 2, self.given.is_multiple_of(2));
+        if self.case.occasion != Occasion::Rearmed || round >= CLEARS_S.len() {
+            return Ok(());
+        }
+        let due_s = CLEARS_S[round] + if clears { 0.0 } else { ARMS_AFTER_S };
+        if stand.time_s() - self.began_s >= due_s {
+            stand.command(if clears {
+                &Command::Clear
+            } else {
+                &Command::Arm
+            })?;
+            self.given += 1;
+        }
+        Ok(())
+    }
+
+    fn name_fault(&mut self, stand: &Stand, now_s: f64) {
+        if self.struck.named.is_some() {
+            return;
+        }
+        let found: Option<Fault> = stand
+            .faults()
+            .faults()
+            .find(|fault| !self.before.has(*fault));
+        self.struck.named = found.map(|fault| fault.entry().name);
+        self.struck.named_s = found.map(|_| now_s);
+    }
+
+    fn watch_motors(&mut self, stand: &Stand, now_s: f64) {
+        let stops = matches!(stand.state(), State::Held | State::Off | State::Disarmed);
+        if self.struck.named.is_none() || !stops {
+            self.stopped_s = None;
+            return;
+        }
+        let stopped_s = *self.stopped_s.get_or_insert(now_s);
+        let truth = &stand.truth;
+        let turns = truth
+            .speeds_rad_per_s
+            .iter()
+            .any(|speed| speed.abs() > DRIVEN_RAD_PER_S);
+        let draws = truth
+            .currents_a
+            .iter()
+            .any(|current| current.abs() > DRIVEN_A);
+        let since_s = now_s - stopped_s;
+        if since_s > RUN_OUT_S && stand.motors.enabled && (turns || draws) {
+            self.struck.driven_s = self.struck.driven_s.max(since_s);
+        }
+    }
+
+    fn record(&mut self, stand: &Stand, now_s: f64) {
+        let Some(every_s) = self.every_s else { return };
+        if now_s < self.moments.len() as f64 * every_s {
+            return;
+        }
+        if let Some(telemetry) = &stand.telemetry {
+            self.moments.push(Moment {
+                time_s: now_s,
+                state: description::state(telemetry.state),
+                faults: description::faults(telemetry.faults),
+                tensions_n: stand.truth.tensions_n,
+                measured_n: telemetry.tensions_n,
+                duty: stand.motors.duty,
+                tip_mm: self.way.distance_mm(&stand.truth.tip_m),
+            });
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! The strikes, grouped by fault and what the leg was doing.
+
+use super::occasion::Occasion;
+use super::strike::Struck;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The worst of a measure, and the strike that had it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Worst {
+    /// The measure.
+    pub value: f64,
+    /// The strike's number.
+    pub index: u64,
+}
+
+impl Worst {
+    fn take(&mut self, value: f64, index: u64) {
+        if value > self.value {
+            *self = Self { value, index };
+        }
+    }
+}
+
+/// The strikes of one fault while the leg did one thing.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The fault, by its name in scenarios.
+    pub fault: &'static str,
+    /// What the leg was doing.
+    pub state: Occasion,
+    /// Strikes.
+    pub count: u64,
+    /// Highest true tension, N.
+    pub tension_n: Worst,
+    /// Highest true tension while homing, N.
+    pub homing_n: Worst,
+    /// How far the tip was from rest or off the way, mm.
+    pub tip_mm: Worst,
+    /// Strikes after which the leg named a fault, and the longest time to it, s.
+    pub named: u64,
+    /// s.
+    pub named_s: Worst,
+    /// The first names, and how often.
+    pub names: BTreeMap<&'static str, u64>,
+    /// Longest time that a motor was driven after the stop, s.
+    pub driven_s: Worst,
+    /// Strikes that failed.
+    pub failed: u64,
+    /// The first of them, and why.
+    pub first_failed: Option<(u64, String)>,
+}
+
+/// The rows, by fault and what the leg was doing.
+#[must_use]
+pub fn rows(struck: &[Struck]) -> Vec<Row> {
+    let mut rows: BTreeMap<(&str, Occasion), Row> = BTreeMap::new();
+    for one in struck {
+        let row = rows.entry((one.fault, one.state));
+        row.or_insert_with(|| Row::new(one)).take(one);
+    }
+    rows.into_values().collect()
+}
+
+impl Row {
+    fn new(struck: &Struck) -> Self {
+        Self {
+            fault: struck.fault,
+            state: struck.state,
+            count: 0,
+            tension_n: Worst::default(),
+            homing_n: Worst::default(),
+            tip_mm: Worst::default(),
+            named: 0,
+            named_s: Worst::default(),
+            names: BTreeMap::new(),
+            driven_s: Worst::default(),
+            failed: 0,
+            first_failed: None,
+        }
+    }
+
+    fn take(&mut self, struck: &Struck) {
+        self.count += 1;
+        self.tension_n.take(struck.tension_n, struck.index);
+        self.homing_n.take(struck.homing_n, struck.index);
+        self.tip_mm.take(struck.tip_mm, struck.index);
+        self.driven_s.take(struck.driven_s, struck.index);
+        if let (Some(name), Some(named_s)) = (struck.named, struck.named_s) {
+            self.named += 1;
+            self.named_s.take(named_s, struck.index);
+            *self.names.entry(name).or_default() += 1;
+        }
+        if !struck.passes() {
+            self.failed += 1;
+            let why = || (struck.index, struck.failures.join(", "));
+            self.first_failed.get_or_insert_with(why);
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! `leg strikes`.
+
+mod report;
+
+use crate::numbers::positive;
+use crate::options::Options;
+use crate::progress;
+use leg_base::failure::Failure;
+use leg_base::json_object;
+use leg_bench::strikes::{self, Campaign, Occasion};
+use leg_rig::ready_rigs::READY_RIGS;
+use leg_rig::rig_file::RigFile;
+use leg_sim::plant::Defect;
+use std::path::{Path, PathBuf};
+
+/// Strikes a simulated leg by every fault that it can have, wherever it is and whatever it does, and judges what happens.
+///
+/// Each strike is drawn from the seed: rig, pose, payload up to 2 kg, feasible pretension, moment and tendon. The true
+/// tensions, the true tip, the time to the first fault and the motors after the stop are measured. The table shows the
+/// worst of each by fault and state, with the number of the strike behind `#`, which `--only` repeats.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// Everything random follows from it.
+    #[arg(long, default_value = "1")]
+    seed: u64,
+    /// How many strikes.
+    #[arg(long, default_value = "20000", value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
+    count: u64,
+    /// A rig file, the name of a ready rig, or `all` ready rigs.
+    #[arg(long, value_name = "FILE", default_value = "all")]
+    rig: PathBuf,
+    /// What the leg is doing; anything if left out.
+    #[arg(long, value_name = "STATE", value_parser = occasion)]
+    state: Vec<Occasion>,
+    /// The fault, by its name in scenarios, or `none`; every one if left out.
+    #[arg(long, value_name = "FAULT", value_parser = fault)]
+    fault: Option<String>,
+    /// Repeats the strike of a number, and shows its course. Seed and rigs have to be the same.
+    #[arg(long, value_name = "NUMBER", conflicts_with_all = ["count", "state", "fault"])]
+    only: Option<u64>,
+    /// Uses each rig for so many hours of the leg's time without a fault instead: random moves, pushes up to 10 N, payloads up
+    /// to 1 kg and commands, after which no fault may come.
+    #[arg(long, value_name = "HOURS", value_parser = positive, conflicts_with_all = ["count", "state", "fault", "only"])]
+    false_alarms: Option<f64>,
+}
+
+/// Threads beside each other.
+const THREADS: u64 = 2;
+
+/// Time between two moments of a strike's course, s.
+const EVERY_S: f64 = 0.02;
+
+pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
+    let campaign = Campaign {
+        seed: args.seed,
+        rigs: rigs(&args.rig)?,
+        occasions: args.state.clone(),
+        fault: args.fault.clone(),
+    };
+    if let Some(index) = args.only {
+        let (struck, course) = campaign.repeat(index, EVERY_S);
+        let json = json_object! { strike: &struck, course: &course };
+        options.report(&json, || report::course(&struck, &course))?;
+        return require(usize::from(!struck.passes()), 1);
+    }
+    if let Some(hours) = args.false_alarms {
+        return false_alarms(&campaign, hours, options);
+    }
+    let bar = progress::bar(args.count, "strikes");
+    let struck = campaign.run(args.count, THREADS, || bar.inc(1));
+    bar.finish_and_clear();
+    let rows = strikes::rows(&struck);
+    let failed = struck.iter().filter(|struck| !struck.passes()).count();
+    let json = json_object! {
+        seed: args.seed,
+        strikes: struck.len(),
+        failed: failed,
+        passed: failed == 0,
+        rows: &rows,
+    };
+    options.report(&json, || report::table(&rows, struck.len(), args.seed))?;
+    require(failed, struck.len())
+}
+
+fn false_alarms(campaign: &Campaign, hours: f64, options: Options) -> Result<(), Failure> {
+    let time_s = 3600.0 * hours;
+    let bar = progress::bar(time_s as u64 * campaign.rigs.len() as u64, "s");
+    let usages = campaign.use_legs(time_s, THREADS, |seconds| bar.inc(seconds));
+    bar.finish_and_clear();
+    let alarms = || usages.iter().flat_map(|usage| &usage.alarms);
+    let stopped = usages
+        .iter()
+        .filter(|usage| usage.stopped.is_some())
+        .count();
+    let false_ones = alarms().filter(|alarm| !alarm.beyond).count();
+    let passed = false_ones + stopped == 0;
+    let json = json_object! {
+        seed: campaign.seed,
+        hours: hours,
+        alarms: alarms().count(),
+        false_alarms: false_ones,
+        passed: passed,
+        usages: &usages,
+    };
+    options.report(&json, || report::usages(&usages))?;
+    if passed {
+        return Ok(());
+    }
+    Err(Failure::failed(
+        format!("{false_ones} false alarms, {stopped} parts that did not go on"),
+        "look at what was done before each; the same seed and rigs repeat it",
+    ))
+}
+
+fn rigs(path: &Path) -> Result<Vec<(String, RigFile)>, Failure> {
+    let load = |path: &Path| Ok((path.display().to_string(), RigFile::load(Some(path))?));
+    if path == Path::new("all") {
+        return READY_RIGS
+            .iter()
+            .map(|rig| load(rig.name.as_ref()))
+            .collect();
+    }
+    Ok(vec![load(path)?])
+}
+
+fn occasion(name: &str) -> Result<Occasion, String> {
+    let mut all = Occasion::ALL.iter();
+    match all.find(|(_, known)| *known == name) {
+        Some((occasion, _)) => Ok(*occasion),
+        None => Err(format!(
+            "it is none of {}",
+            Occasion::ALL.map(|(_, name)| name).join(", ")
+        )),
+    }
+}
+
+fn fault(name: &str) -> Result<String, String> {
+    let faults = Defect::descriptions().map(|(name, _)| name);
+    let names: Vec<_> = faults.chain(["none"]).collect();
+    if names.contains(&name) {
+        return Ok(name.into());
+    }
+    Err(format!("it is none of {}", names.join(", ")))
+}
+
+fn require(failed: usize, strikes: usize) -> Result<(), Failure> {
+    if failed == 0 {
+        return Ok(());
+    }
+    Err(Failure::failed(
+        format!("{failed} of {strikes} strikes failed"),
+        "repeat one with --only and its number, and the same seed and rigs",
+    ))
+}

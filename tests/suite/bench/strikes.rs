@@ -1,0 +1,90 @@
+//! A sample of the strikes: `leg strikes` makes all of them.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use leg_bench::strikes::{Campaign, Occasion, Struck, rows};
+use leg_rig::ready_rigs::READY_RIGS;
+use leg_rig::rig_file::RigFile;
+
+fn campaign(fault: &str) -> Campaign {
+    let load = |name: &str| (name.into(), RigFile::load(Some(name.as_ref())).unwrap());
+    Campaign {
+        seed: 1,
+        rigs: READY_RIGS.iter().map(|rig| load(rig.name)).collect(),
+        occasions: Vec::new(),
+        fault: Some(fault.into()),
+    }
+}
+
+fn require_passed(struck: &[Struck]) {
+    let failed: Vec<String> = struck
+        .iter()
+        .filter(|struck| !struck.passes())
+        .map(|one| {
+            format!(
+                "#{} {}: {} ({})",
+                one.index,
+                one.fault,
+                one.failures.join(", "),
+                one.case
+            )
+        })
+        .collect();
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+/// With nothing that strikes, and with what is found at once.
+#[test]
+fn a_sample_of_the_strikes_passes() {
+    for (fault, count) in [
+        ("none", 12),
+        ("cell_saturated", 4),
+        ("cell_stale", 4),
+        ("driver_fault", 4),
+        ("late_ticks", 4),
+    ] {
+        let campaign = Campaign {
+            occasions: vec![Occasion::Following, Occasion::Held],
+            ..campaign(fault)
+        };
+        let struck = campaign.run(count, 2, || ());
+        assert_eq!(struck.len() as u64, count);
+        let rows = rows(&struck);
+        assert!(rows.iter().all(|row| row.fault == fault));
+        assert_eq!(rows.iter().map(|row| row.count).sum::<u64>(), count);
+        require_passed(&struck);
+    }
+}
+
+#[test]
+fn a_strike_is_repeated_by_its_number() {
+    let campaign = Campaign {
+        occasions: vec![Occasion::Moving],
+        ..campaign("cell_wanders")
+    };
+    let struck = campaign.run(1, 1, || ());
+    let (again, course) = campaign.repeat(struck[0].index, 0.1);
+    assert_eq!(again.tip_mm.to_bits(), struck[0].tip_mm.to_bits());
+    assert_eq!(again.named_s, struck[0].named_s);
+    assert_eq!(
+        course.len(),
+        course
+            .iter()
+            .filter(|moment| moment.tip_mm <= again.tip_mm + 1e-3)
+            .count()
+    );
+    assert!(course.len() > 10);
+}
+
+/// A part of a use of each rig.
+#[test]
+fn a_leg_that_is_used_raises_no_alarm() {
+    let usages = campaign("none").use_legs(20.0, 2, |_| ());
+    assert_eq!(usages.len(), READY_RIGS.len());
+    for usage in &usages {
+        assert_eq!(usage.stopped, None, "{}", usage.rig);
+        assert!(usage.time_s >= 20.0 && usage.uses > 10);
+        let alarms: Vec<_> = usage.alarms.iter().filter(|alarm| !alarm.beyond).collect();
+        assert!(alarms.is_empty(), "{alarms:?}");
+    }
+}
