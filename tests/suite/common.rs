@@ -1,6 +1,7 @@
 //! What the tests across the crates share.
 
 pub mod chip;
+pub mod chip_bus;
 pub mod mujoco;
 pub mod panic_free;
 
@@ -24,6 +25,25 @@ pub fn qemu() -> Result<QemuSession, Box<dyn std::error::Error>> {
         qemu,
         FirmwareImage::Qemu.build()?,
     ))?)
+}
+
+/// Memory of this process that is in use, MiB.
+///
+/// # Panics
+/// Where the system has no /proc.
+#[must_use]
+pub fn memory_mib() -> f64 {
+    proc_status("VmRSS:")
+}
+
+fn proc_status(key: &str) -> f64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix(key));
+    let kib = line.and_then(|line| line.trim().strip_suffix(" kB")?.parse::<f64>().ok());
+    match kib {
+        Some(kib) => kib / 1024.0,
+        None => panic!("/proc/self/status has no {key}"),
+    }
 }
 
 /// Three tendons of one constant stiffness, N/m.

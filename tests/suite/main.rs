@@ -49,8 +49,12 @@ mod sim {
 
 mod board {
     mod chip_boot;
+    mod chip_bus;
+    mod chip_latency;
     mod chip_mistakes;
     mod chip_scenarios;
+    mod chip_speed;
+    mod chip_supply;
     mod emulated_board;
     mod qemu_session;
     mod setup;

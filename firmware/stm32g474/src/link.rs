@@ -5,6 +5,7 @@ use crate::control::SharedLeg;
 use crate::settings_task::{SAVED, TO_SAVE};
 use leg_firmware::board::WatchedTask;
 use leg_firmware::host_link::HostLink;
+use leg_firmware::settings::Settings;
 
 /// Time from one report to the next where nothing comes in, ms.
 pub const REPORT_MS: u64 = 1;
@@ -13,17 +14,15 @@ pub const REPORT_MS: u64 = 1;
 pub struct Session {
     link: HostLink,
     leg: SharedLeg,
-    saving: bool,
+    /// Where settings are put for the task that keeps them; none while it has them.
+    place: Option<&'static mut Settings>,
 }
 
 impl Session {
     /// A line on which nothing was said yet.
-    pub fn new(link: HostLink, leg: SharedLeg) -> Self {
-        Self {
-            link,
-            leg,
-            saving: false,
-        }
+    pub fn new(link: HostLink, leg: SharedLeg, place: &'static mut Settings) -> Self {
+        let place = Some(place);
+        Self { link, leg, place }
     }
 
     /// Takes bytes from the host.
@@ -45,14 +44,14 @@ impl Session {
 
     /// Passes settings on to the task that keeps them, and its answer to the host.
     fn save(&mut self) {
-        if self.saving {
-            if let Some(kept) = SAVED.try_take() {
-                self.saving = false;
-                self.link.saved(kept);
-            }
-        } else if let Some(settings) = self.link.to_save() {
-            self.saving = true;
-            TO_SAVE.signal(settings.clone());
+        if let Some((kept, place)) = SAVED.try_take() {
+            self.place = Some(place);
+            self.link.saved(kept);
+        } else if let Some(settings) = self.link.to_save()
+            && let Some(place) = self.place.take()
+        {
+            place.clone_from(settings);
+            TO_SAVE.signal(place);
         }
     }
 

@@ -12,9 +12,9 @@
 //! - whatever is analogue: the converters' accuracy and noise, the crystal's start, levels at the pins, what a break's
 //!   filter makes of real pulses;
 //! - cycles: how long a tick takes with the flash's wait states and caches;
-//! - CAN from this image: bit timing and delay compensation on a real bus;
+//! - CAN on a real bus: bit timing and delay compensation;
 //! - a debugger's halt, and that it switches the outputs off;
-//! - what RAM keeps over a real reset, and how a real flash behaves after a cut;
+//! - what RAM keeps over a real reset or a dip of the supply, and how a real flash behaves after a cut;
 //! - whether a driver needs time between its enable and its first pulse;
 //! - the change from 16 to 170 MHz in one step: the manual asks for a microsecond at half the frequency, and embassy does
 //!   not pass through it.

@@ -67,9 +67,11 @@ pub async fn start(spawner: Spawner, p: Peripherals, origin: (ResetCause, Option
     let loaded = settings_task::load(&mut store, built_in.clone()).await;
     let (leg, settings) = leg(loaded, built_in);
     let shared = SharedLeg::new(spare(&settings));
+    static TO_KEEP: StaticCell<Settings> = StaticCell::new();
+    let to_keep = TO_KEEP.init(settings.clone());
     let link = HostLink::new(identity(origin), settings);
     static SESSION: StaticCell<Session> = StaticCell::new();
-    let session = SESSION.init(Session::new(link, shared));
+    let session = SESSION.init(Session::new(link, shared, to_keep));
 
     let Some(cycles) = CycleCounter::start() else {
         fatal::end(&ShortText::new("the cycle counter is taken"));

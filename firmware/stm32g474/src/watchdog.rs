@@ -15,6 +15,10 @@ use leg_firmware::board::{CheckIns, ShortText, TaskWatchdog, WatchedTask};
 const TIMEOUT_US: u32 = 100_000;
 const _: () = assert!(TIMEOUT_US as u64 > 5 * 1000 * CheckIns::PERIOD_MS);
 
+/// At most 1 ms, in steps of 10 µs: the oscillator starts within 130 µs, and five of its periods follow.
+const SETTLING_STEPS: u32 = 100;
+const SETTLING_STEP_CYCLES: u32 = leg_firmware::board::timing::CLOCK_HZ / 100_000;
+
 /// The watchdog, and the count of missed tasks.
 pub struct Watchdog {
     dog: IndependentWatchdog<'static, IWDG>,
@@ -28,6 +32,7 @@ impl Watchdog {
         pac::DBGMCU.apb1lfzr().modify(|w| w.set_iwdg(true));
         let mut dog = IndependentWatchdog::new(dog, TIMEOUT_US);
         dog.unleash();
+        wait_for_settings();
         // Until it is fed for the first time it counts from its highest value.
         dog.pet();
         Self {
@@ -52,6 +57,18 @@ impl Watchdog {
                 give_up(absent);
             }
         }
+    }
+}
+
+/// Waits until the watchdog has taken its settings over, which it does in its own clock once it runs. A feeding before that
+/// lets it count from its highest value again: 512 ms.
+fn wait_for_settings() {
+    for _ in 0..SETTLING_STEPS {
+        let status = pac::IWDG.sr().read();
+        if !status.pvu() && !status.rvu() && !status.wvu() {
+            return;
+        }
+        cortex_m::asm::delay(SETTLING_STEP_CYCLES);
     }
 }
 

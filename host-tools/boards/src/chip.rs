@@ -6,6 +6,7 @@
 mod breaks;
 mod expectations;
 mod hot;
+mod log;
 mod reports;
 mod running;
 mod settings_page;
@@ -13,10 +14,14 @@ mod stack;
 mod twin;
 mod wiring;
 
+use defmt_decoder::Table;
 use leg_firmware::settings::Settings;
 use leg_firmware_bench::protocol::{Refusal, Reply, Request, TickRequest};
 use leg_sim::link::{InProcess, Link, LinkError};
+pub use running::LATENCY_CYCLES_MAX;
 use running::Running;
+pub use settings_page::PLACE as SETTINGS_PLACE;
+use settings_page::Page;
 use std::fs;
 use std::path::Path;
 use stm32g474_emulator::board::Board;
@@ -37,7 +42,11 @@ const COMMANDED: &str =
 /// An image on a chip that has been switched on, as something that answers a simulation's requests.
 pub struct ChipSession {
     image: Image,
+    /// Its log messages; none for an image without.
+    log: Option<Table>,
     board: Board,
+    /// What the flash holds where settings are kept; none for the settings that a leg starts with.
+    kept: Option<Vec<u8>>,
     /// What is no leg's business is answered here.
     bench: InProcess,
     running: Option<Running>,
@@ -53,7 +62,9 @@ impl ChipSession {
         let refused = |error| LinkError::Chip(format!("{}: {error}", image.display()));
         Ok(Self {
             image: Image::parse(&elf).map_err(refused)?,
+            log: Table::parse(&elf).ok().flatten(),
             board: Board::default(),
+            kept: None,
             bench: InProcess::new(),
             running: None,
         })
@@ -65,22 +76,44 @@ impl ChipSession {
         Self { board, ..self }
     }
 
+    /// The same with what the flash holds where settings are kept, in the place of the settings that a leg starts with; no
+    /// bytes for a new board.
+    #[must_use]
+    pub fn with_flash(self, bytes: &[u8]) -> Self {
+        let kept = Some(bytes.to_vec());
+        Self { kept, ..self }
+    }
+
+    /// What the image has logged since the last call, as a debugger reads it.
+    pub fn log_lines(&mut self) -> Vec<String> {
+        match (&mut self.running, &self.log) {
+            (Some(running), Some(table)) => log::lines(&self.image, table, &mut running.chip),
+            _ => Vec::new(),
+        }
+    }
+
     /// The chip, once a leg has started.
     pub fn chip(&mut self) -> Option<&mut Chip> {
         self.running.as_mut().map(|running| &mut running.chip)
     }
 
+    /// The longest from the control interrupt to the first instruction of its handler up to now, cycles.
+    #[must_use]
+    pub fn latency_max(&self) -> u64 {
+        self.running
+            .as_ref()
+            .map_or(0, |running| running.latency_max)
+    }
+
     fn start(&mut self, settings: &Settings) -> Result<Reply, LinkError> {
         let refused = |error| LinkError::Chip(error);
-        let settings = settings.without_zero();
+        let (settings, page, corrupt) = self.flash(settings)?;
         let twin = match Twin::new(&settings) {
             Ok(twin) => twin,
             Err(error) => return Ok(Reply::Refused(Refusal::Settings(error))),
         };
         let mut chip =
             Chip::new(&self.image, &self.board).map_err(|error| refused(error.to_string()))?;
-        let page = settings_page::page(&settings)
-            .ok_or_else(|| refused("the settings do not fit into their page".into()))?;
         chip.load_flash(page.address, &page.bytes);
         let watched = COMMAND_FUNCTIONS.iter().flat_map(|function| {
             self.image
@@ -88,8 +121,29 @@ impl ChipSession {
         });
         let handler = self.image.symbol(HANDLER).unwrap_or_default() & !1;
         chip.watch(watched.chain([handler]).collect());
-        self.running = Some(Running::new(&self.image, chip, twin, page, handler));
+        let running = Running::new(&self.image, chip, twin, (page, corrupt), handler);
+        self.running = Some(running);
         Ok(Reply::Started)
+    }
+
+    /// The settings that the board will use, what its flash holds, and whether they are others than those.
+    fn flash(&self, asked: &Settings) -> Result<(Settings, Page, bool), LinkError> {
+        let refused = |sentence: &str| LinkError::Chip(sentence.into());
+        let Some(bytes) = &self.kept else {
+            let settings = asked.without_zero();
+            let page = settings_page::page(&settings)
+                .ok_or_else(|| refused("the settings do not fit into their page"))?;
+            return Ok((settings, page, false));
+        };
+        let address = settings_page::PLACE.start;
+        let bytes = bytes.clone();
+        let page = Page { address, bytes };
+        if let Some(settings) = settings_page::kept(&page.bytes) {
+            return Ok((settings.without_zero(), page, false));
+        }
+        let built_in = Settings::for_table_1();
+        let built_in = built_in.ok_or_else(|| refused("the built-in settings are refused"))?;
+        Ok((built_in, page, true))
     }
 }
 

@@ -38,7 +38,7 @@ impl Emulation {
         match self {
             Self::Sim => Ok(Box::new(InProcess::new())),
             Self::Qemu => qemu(QemuClock::Normal, options),
-            Self::Chip => chip(),
+            Self::Chip => Ok(Box::new(chip()?)),
         }
     }
 }
@@ -68,12 +68,15 @@ pub(crate) fn qemu(clock: QemuClock, options: Options) -> Result<Box<dyn Link>, 
 }
 
 /// The board's image on an emulated chip. Installs and builds first what is missing.
-fn chip() -> Result<Box<dyn Link>, Failure> {
+fn chip() -> Result<ChipSession, Failure> {
     prepare_target()?;
     let image = build_image(FirmwareImage::Stm32g474)?;
-    Ok(Box::new(
-        ChipSession::open(&image).map_err(Failure::from_error)?,
-    ))
+    ChipSession::open(&image).map_err(Failure::from_error)
+}
+
+/// The same on a chip whose flash keeps no settings.
+pub(crate) fn new_chip() -> Result<Box<dyn Link>, Failure> {
+    Ok(Box::new(chip()?.with_flash(&[])))
 }
 
 /// Installs and builds what is missing, and says so on standard error: the emulator and the firmware's ELF file.

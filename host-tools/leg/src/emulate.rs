@@ -1,6 +1,6 @@
 //! `leg emulate`.
 
-use crate::board::Emulation;
+use crate::board::{Emulation, new_chip};
 use crate::connection::emulated_leg;
 use crate::numbers::seconds;
 use crate::options::Options;
@@ -11,6 +11,7 @@ use leg_host::emulated_board::EmulatedBoard;
 use leg_host::pseudo_terminal::PseudoTerminal;
 use leg_rig::rig_file::RigFile;
 use leg_sim::action::Action;
+use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
 use std::io::BufRead;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -33,6 +34,9 @@ pub(crate) struct Args {
     /// The leg starts with slack tendons and must be homed; without it, homed, hanging straight down and disarmed.
     #[arg(long)]
     slack: bool,
+    /// A new board: it keeps no settings yet. With --on chip only.
+    #[arg(long, requires = "slack")]
+    new_board: bool,
     /// Ends after so many seconds.
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     length: Option<Duration>,
@@ -45,7 +49,18 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let rig = RigFile::load(args.rig.as_deref())?;
-    let leg = emulated_leg(&rig, args.slack, args.on, options)?;
+    let leg = match (args.new_board, args.on) {
+        (false, on) => emulated_leg(&rig, args.slack, on, options)?,
+        (true, Emulation::Chip) => {
+            EmulatedLeg::new(&rig, InitialState::Slack, new_chip()?).map_err(Failure::from_error)?
+        }
+        (true, _) => {
+            return Err(Failure::refused(
+                "only a chip has a flash that can be empty",
+                "take --on chip, or leave --new-board out",
+            ));
+        }
+    };
     let port = PseudoTerminal::open().map_err(|error| {
         let help = "see that /dev/pts is mounted";
         Failure::refused(format!("no pseudo-terminal: {error}"), help)

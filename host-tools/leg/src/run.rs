@@ -2,6 +2,7 @@
 
 mod errors;
 mod report;
+mod resources;
 
 use crate::board::Emulation;
 use crate::options::Options;
@@ -60,7 +61,11 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     }
     let started = Instant::now();
     let mut link = args.on.link(options)?;
+    let processor_s = resources::processor_s();
     let summary = simulate(args, &scenario, &rig, link.as_mut())?;
+    // A child's time counts once it has ended.
+    drop(link);
+    let taken_s = resources::processor_s().zip(processor_s);
     let seconds = started.elapsed().as_secs_f64();
     let plots = run_charts::save(&scenario.title, &summary.samples, &directory)
         .map_err(|error| not_saved("charts", &directory, "--plots", &error))?;
@@ -69,6 +74,11 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         firmware: args.on.text(),
         summary: &summary,
         ticks_per_s: summary.ticks as f64 / seconds,
+        ticks_per_processor_s: taken_s
+            .filter(|(end, start)| end > start)
+            .map(|(end, start)| summary.ticks as f64 / (end - start)),
+        memory_mib: resources::memory_mib(),
+        shows_resources: args.on == Emulation::Chip,
         plots: &plots,
     };
     options.report(&report.json(), || report.table())?;

@@ -12,6 +12,8 @@ pub struct Board {
     pub lsi_hz: u32,
     /// The option byte DBANK; it is set as the chip leaves the factory.
     pub dual_bank: bool,
+    /// The option byte BOR_LEV, 0 to 4: below which supply the chip is reset. It is 0 as the chip leaves the factory.
+    pub brown_out_level: u8,
     /// The bit rates of the CAN bus.
     pub can: Bus,
     /// For what is left to chance: RAM after a power-up, flash after a cut.
@@ -27,6 +29,7 @@ impl Default for Board {
             crystal_hz: 24_000_000,
             lsi_hz: LSI_HZ,
             dual_bank: true,
+            brown_out_level: 0,
             can: Bus {
                 nominal_hz: 1_000_000,
                 data_hz: 5_000_000,

@@ -21,7 +21,7 @@ pub enum Stop {
     Watched,
     /// The time is over.
     Time,
-    /// The processor has locked up: a fault within a fault.
+    /// The processor has locked up: a fault within a fault. Only a reset ends that; until then time passes.
     LockedUp,
     /// The chip was reset, and starts again.
     Reset(ResetCause),
@@ -40,7 +40,18 @@ pub struct Chip {
     next_event: u64,
     /// Whether the counter of cycles goes on while the processor sleeps.
     counts_asleep: bool,
+    /// It is known that the processor has locked up.
+    locked_up: bool,
+    /// The cycle until which the processor waits for the flash.
+    waits_until: u64,
 }
+
+/// The supply below which the datasheet promises nothing, mV.
+const SUPPLY_MIN_MV: u32 = 1_710;
+
+/// The supply from which on RAM keeps what it holds, mV: the datasheet has no figure for a chip in reset, so this one is
+/// chosen.
+const RAM_KEPT_MV: u32 = 1_000;
 
 impl Chip {
     /// A chip that is about to start after a power-up.
@@ -78,6 +89,8 @@ impl Chip {
             cycle: 0,
             next_event: 0,
             counts_asleep: false,
+            locked_up: false,
+            waits_until: 0,
             watched: Vec::new(),
             watching: false,
             converted: Facts::of_chip().interrupt("ADC1_2").unwrap_or(u16::MAX),
@@ -106,6 +119,11 @@ impl Chip {
         lock(&self.peripherals).devices.flash.load(address, bytes);
     }
 
+    /// Sets a word of RAM or CCM, as a debugger does; false where neither is.
+    pub fn set_word(&mut self, address: u32, word: u32) -> bool {
+        self.processor.set_word(address, word)
+    }
+
     /// Lets [`Self::run`] stop at the first instruction of these functions.
     pub fn watch(&mut self, functions: Vec<u32>) {
         self.watched = functions;
@@ -114,23 +132,34 @@ impl Chip {
     /// Runs until something of interest happens, or to a cycle.
     pub fn run(&mut self, end: u64) -> Stop {
         while self.cycle < end {
-            let accessed = self.shared.accessed.load(Ordering::Relaxed);
-            if (accessed || self.cycle >= self.next_event)
-                && let Some(stop) = self.service()
-            {
+            if let Some(stop) = self.step(end) {
                 return stop;
-            }
-            if self.processor.sleeps() {
-                self.sleep_until(self.next_event.min(end));
-                continue;
-            }
-            self.cycle += self.processor.step();
-            self.shared.cycle.store(self.cycle, Ordering::Relaxed);
-            if self.watching && self.watched.contains(&self.processor.pc()) {
-                return Stop::Watched;
             }
         }
         Stop::Time
+    }
+
+    /// One instruction, or sleep up to a cycle.
+    #[inline]
+    pub fn step(&mut self, end: u64) -> Option<Stop> {
+        let accessed = self.shared.accessed.load(Ordering::Relaxed);
+        if (accessed || self.cycle >= self.next_event)
+            && let Some(stop) = self.service()
+        {
+            return Some(stop);
+        }
+        if self.cycle < self.waits_until {
+            self.wait_until(self.next_event.min(end).min(self.waits_until));
+            return None;
+        }
+        if self.locked_up || self.processor.sleeps() {
+            self.sleep_until(self.next_event.min(end));
+            return None;
+        }
+        self.cycle += self.processor.step();
+        self.shared.cycle.store(self.cycle, Ordering::Relaxed);
+        let stops = self.watching && self.watched.contains(&self.processor.pc());
+        stops.then_some(Stop::Watched)
     }
 
     /// Holds the processor for some cycles while everything else goes on, as a bus that does not answer does; what
@@ -141,12 +170,17 @@ impl Chip {
             if let Some(stop) = self.service() {
                 return Some(stop);
             }
-            let passed = self.next_event.min(end).saturating_sub(self.cycle).max(1);
-            self.processor.count_asleep(passed);
-            self.cycle += passed;
-            self.shared.cycle.store(self.cycle, Ordering::Relaxed);
+            self.wait_until(self.next_event.min(end));
         }
         None
+    }
+
+    /// The processor waits in the midst of an access.
+    fn wait_until(&mut self, cycle: u64) {
+        let passed = cycle.saturating_sub(self.cycle).max(1);
+        self.processor.count_asleep(passed);
+        self.cycle += passed;
+        self.shared.cycle.store(self.cycle, Ordering::Relaxed);
     }
 
     /// Whether [`Self::run`] stops at the watched functions: it runs slower meanwhile.
@@ -165,7 +199,7 @@ impl Chip {
 
     fn service(&mut self) -> Option<Stop> {
         self.shared.accessed.store(false, Ordering::Relaxed);
-        if self.processor.locked_up() {
+        if self.processor.locked_up() && !self.locked_up {
             return Some(self.lock_up());
         }
         if self.processor.asks_for_reset() {
@@ -190,6 +224,7 @@ impl Chip {
                 .add("IWDG is fed by an interrupt's handler, which may go on while all else hangs");
         }
         peripherals.findings.locate(place.pc);
+        self.waits_until = peripherals.devices.flash.take_stall().unwrap_or_default();
         if peripherals.devices.flash.take_nmi() {
             self.processor.raise_nmi();
         }
@@ -211,6 +246,7 @@ impl Chip {
 
     /// The processor has locked up, and switches the pulses off if the image asks for that.
     fn lock_up(&mut self) -> Stop {
+        self.locked_up = true;
         lock(&self.peripherals).break_by_lockup();
         Stop::LockedUp
     }
@@ -219,6 +255,8 @@ impl Chip {
     pub fn reset(&mut self, cause: ResetCause) -> Stop {
         lock(&self.peripherals).reset(cause);
         self.processor.reset();
+        self.locked_up = false;
+        self.waits_until = 0;
         self.next_event = self.cycle;
         Stop::Reset(cause)
     }
@@ -226,9 +264,30 @@ impl Chip {
     /// Takes the supply away and gives it back: RAM then holds anything, and what was being written to the flash is half
     /// done.
     pub fn cycle_power(&mut self, seed: u64) {
-        lock(&self.peripherals).devices.flash.cut_power();
-        self.processor.scramble_ram(seed);
+        self.dip_supply(0, seed);
+    }
+
+    /// Lets the supply fall to so many millivolts for a moment. Below the brown-out level of the option bytes that is a
+    /// reset; without one, a supply outside of the datasheet's range is a finding. True if the chip was reset.
+    pub fn dip_supply(&mut self, lowest_mv: u32, seed: u64) -> bool {
+        let mut peripherals = lock(&self.peripherals);
+        if lowest_mv >= peripherals.devices.flash.brown_out_mv() {
+            if lowest_mv < SUPPLY_MIN_MV {
+                peripherals.findings.add(format!(
+                    "the chip runs at {lowest_mv} mV, below its {SUPPLY_MIN_MV} mV"
+                ));
+            }
+            return false;
+        }
+        peripherals.cycle = self.cycle;
+        peripherals.advance();
+        peripherals.lose_power();
+        drop(peripherals);
+        if lowest_mv < RAM_KEPT_MV {
+            self.processor.scramble_ram(seed);
+        }
         self.reset(ResetCause::BrownOut);
+        true
     }
 
     /// Lets the crystal stop.

@@ -92,7 +92,7 @@ impl Devices {
             rcc: Rcc::new(block("RCC"), board.crystal_hz),
             pwr: Pwr::new(block("PWR")),
             ports: ports.map(|block| Gpio::new(block, facts)).collect(),
-            flash: Flash::new(board.dual_bank, board.seed),
+            flash: Flash::new(board.dual_bank, board.brown_out_level, board.seed),
             lpuart: Lpuart::new(),
             fdcan: Fdcan::new(board.can),
             iwdg: Iwdg::new(board.lsi_hz),
@@ -183,10 +183,9 @@ impl Devices {
     }
 
     fn all(&mut self) -> impl Iterator<Item = &mut dyn Device> {
-        let single: [&mut dyn Device; 10] = [
+        let single: [&mut dyn Device; 9] = [
             &mut self.rcc,
             &mut self.pwr,
-            &mut self.dbgmcu,
             &mut self.syscfg,
             &mut self.flash,
             &mut self.lpuart,
@@ -200,9 +199,10 @@ impl Devices {
         single.into_iter().chain(encoders).chain(ports)
     }
 
-    /// All back to what a reset of the chip gives.
+    /// All back to what a reset of the chip gives. DBGMCU is reset by a power-up alone: RM0440, DBGMCU_CR.
     pub fn reset(&mut self) {
         self.all().for_each(Device::reset);
+        self.tim1.end_system_break();
         self.converters.reset_all();
         self.break_levels = [false; 2];
         self.updated = false;

@@ -39,8 +39,15 @@ pub struct Flash {
     /// Where the program lies, addresses.
     program: Range<u32>,
     nmi: bool,
+    /// The cycle until which an access of the processor waits.
+    stall: Option<u64>,
+    brown_out_level: u8,
     chance: Chance,
 }
+
+/// The supply below which the chip is reset, by the option bytes' BOR_LEV, mV: STM32G474 datasheet (DS12288), falling, typical
+/// (by memory of the datasheet).
+const BROWN_OUT_MV: [u32; 5] = [1_640, 2_000, 2_200, 2_520, 2_810];
 
 /// How far the lock of CR is open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,12 +61,13 @@ enum Keys {
 }
 
 impl Flash {
-    /// An erased flash; `dual_bank` is the option byte DBANK, and `seed` chooses what a loss of power leaves.
+    /// An erased flash; `dual_bank` and `brown_out_level` are the option bytes DBANK and BOR_LEV, and `seed` chooses what a loss
+    /// of power leaves.
     ///
     /// # Panics
     /// If the facts do not know the controller's registers.
     #[must_use]
-    pub fn new(dual_bank: bool, seed: u64) -> Self {
+    pub fn new(dual_bank: bool, brown_out_level: u8, seed: u64) -> Self {
         let Some(block) = Facts::of_chip().block("FLASH") else {
             panic!("the facts have no block FLASH");
         };
@@ -76,6 +84,8 @@ impl Flash {
             running: None,
             program: 0..0,
             nmi: false,
+            stall: None,
+            brown_out_level,
             chance: Chance::new(seed),
         };
         flash.reset();
@@ -118,6 +128,9 @@ impl Flash {
         let offset = address.wrapping_sub(START);
         if self.running.is_some() {
             self.settle(context.cycle);
+            self.stall = self.stall_until(address);
+            // The access ends with the operation, and gives what there is then.
+            self.settle(self.stall.unwrap_or_default());
         }
         if self.array.is_damaged(offset) {
             self.detect_error(offset);
@@ -143,6 +156,18 @@ impl Flash {
         let offset = address.checked_sub(START).filter(|at| *at < SIZE)?;
         let (operation, end) = self.running.as_ref()?;
         operation.occupies(offset, self.dual_bank).then_some(*end)
+    }
+
+    /// The cycle until which an access since the last question waits.
+    pub fn take_stall(&mut self) -> Option<u64> {
+        self.stall.take()
+    }
+
+    /// The supply below which the chip is reset, mV.
+    #[must_use]
+    pub fn brown_out_mv(&self) -> u32 {
+        let level = BROWN_OUT_MV.get(usize::from(self.brown_out_level));
+        level.copied().unwrap_or_default()
     }
 
     /// Whether an NMI was asked for since the last question.
@@ -216,9 +241,12 @@ impl Device for Flash {
         self.registers.reset();
         let dual_bank = u32::from(self.dual_bank);
         self.registers.set_value(self.flags.dual_bank, dual_bank);
+        let level = u32::from(self.brown_out_level);
+        self.registers.set_value(self.flags.brown_out_level, level);
         self.keys = Keys::First;
         self.first_half = None;
         self.nmi = false;
+        self.stall = None;
     }
 
     fn read(&mut self, offset: u32, context: &mut Context<'_>) -> u32 {

@@ -36,6 +36,7 @@ struct Offsets {
     input: u32,
     output: u32,
     set_reset: u32,
+    reset: u32,
     functions: [u32; 2],
 }
 
@@ -64,6 +65,7 @@ impl Gpio {
                 input: offset("IDR"),
                 output: offset("ODR"),
                 set_reset: offset("BSRR"),
+                reset: offset("BRR"),
                 functions: [offset("AFRL"), offset("AFRH")],
             },
             port: block.name.chars().next_back().unwrap_or('?'),
@@ -195,6 +197,8 @@ impl Device for Gpio {
             let (set, reset) = (value & 0xffff, value >> 16);
             self.registers
                 .set(self.offsets.output, (output & !reset) | set);
+        } else if offset == self.offsets.reset {
+            self.registers.set(self.offsets.output, output & !value);
         } else {
             let before = self.registers.get(offset);
             self.registers.set(offset, value);

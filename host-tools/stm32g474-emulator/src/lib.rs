@@ -12,7 +12,7 @@
 //! | [`chip`] | processor, memories and peripherals in step |
 //! | [`device`] | what a peripheral is to the rest of the chip |
 //!
-//! Not modelled: cycles of instructions and of the flash, analogue behaviour.
+//! Not modelled: cycles of instructions, wait states and caches of the flash, analogue behaviour.
 
 pub mod access;
 pub mod adc;

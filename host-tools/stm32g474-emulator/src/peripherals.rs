@@ -3,7 +3,7 @@
 use crate::access::AccessChecks;
 use crate::board::Board;
 use crate::clocks::Clocks;
-use crate::device::Context;
+use crate::device::{Context, Device};
 use crate::devices::Devices;
 use crate::facts::{Facts, Switch};
 use crate::findings::Findings;
@@ -137,6 +137,13 @@ impl Peripherals {
             findings: &mut self.findings,
         };
         self.devices.lpuart.host_send(byte, baud, &mut context);
+    }
+
+    /// The supply is gone: what is being written to the flash stays half done, and what only a power-up resets is reset.
+    pub fn lose_power(&mut self) {
+        self.devices.flash.cut_power();
+        self.devices.dbgmcu.reset();
+        self.devices.rcc.forget_causes();
     }
 
     /// A reset of the chip, whose supply stays.

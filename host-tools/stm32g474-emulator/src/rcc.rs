@@ -90,6 +90,11 @@ impl Rcc {
         }
     }
 
+    /// The supply was gone: only what follows is told.
+    pub fn forget_causes(&mut self) {
+        self.registers.set(self.fields.remove_flags.offset, 0);
+    }
+
     /// Whether a block's clock is on.
     #[must_use]
     pub fn enabled(&self, switch: Switch) -> bool {

@@ -93,6 +93,11 @@ impl Tim1 {
         self.apply_breaks(context.cycle);
     }
 
+    /// The chip was reset: it asks for a break no longer.
+    pub fn end_system_break(&mut self) {
+        self.system = false;
+    }
+
     /// The cycle of a trigger of the converters since the last call.
     pub fn take_trigger(&mut self) -> Option<u64> {
         self.trigger.take()

@@ -1,136 +1,30 @@
 //! The board's image from its reset to its first ticks, on the emulated chip.
 
-use crate::common::chip::{at_rest, image};
+use crate::common::chip::{
+    BAUD, MS, Outcome, carry_out, driving, findings, identity, identity_after, image,
+    other_settings, reset_within, send, settings, started, started_with,
+};
 use leg_boards::chip::ChipSession;
 use leg_boards::image::{FirmwareImage, workspace_root};
-use leg_firmware::frame::{self, Decoder, MAX_FRAME};
-use leg_firmware::host_link::{
-    HOST_SCHEMA, Hello, HostReply, HostRequest, Identity, ResetCause as Told,
-};
+use leg_firmware::host_link::{HostRequest, ResetCause as Told};
 use leg_firmware::settings::Settings;
-use leg_firmware_bench::protocol::{Reply, Request};
-use leg_sim::link::{Link, LinkError};
-use std::error::Error;
+use leg_sim::link::LinkError;
 use std::{env, fs};
 use stm32g474_emulator::board::Board;
-use stm32g474_emulator::chip::{Chip, Stop};
 use stm32g474_emulator::image::{Image, ImageError};
 use stm32g474_emulator::rcc::ResetCause;
 use stm32g474_emulator::trace;
 
-type Outcome = Result<(), Box<dyn Error>>;
+/// After these the serial line is set up.
+const TRACED_TICKS: usize = 4;
 
-/// Cycles of 170 MHz in a millisecond.
-const MS: u64 = 170_000;
-
-/// The rate of the host's line, baud.
-const BAUD: u32 = 921_600;
-
-/// A session after its first ticks.
-fn started(ticks: usize) -> Result<ChipSession, Box<dyn Error>> {
+#[test]
+fn the_boot_writes_what_was_reviewed() -> Outcome {
     let board = Board {
         records_writes: true,
         ..Board::default()
     };
-    let mut session = ChipSession::open(&image(FirmwareImage::Stm32g474)?)?.on_board(board);
-    let settings = Settings::for_table_1().ok_or("no built-in settings")?;
-    assert_eq!(session.ask(&Request::Start(settings))?, Reply::Started);
-    for _ in 0..ticks {
-        session.ask(&Request::Tick(at_rest()))?;
-    }
-    Ok(session)
-}
-
-/// Runs until a reset; none if none comes in time.
-fn reset_within(chip: &mut Chip, cycles: u64) -> Option<ResetCause> {
-    let end = chip.cycle() + cycles;
-    while chip.cycle() < end {
-        if let Stop::Reset(cause) = chip.run(end) {
-            return Some(cause);
-        }
-    }
-    None
-}
-
-/// Sends a request over the chip's serial line.
-fn send(chip: &mut Chip, request: &HostRequest) -> Outcome {
-    let mut out = [0; MAX_FRAME];
-    for &byte in frame::encode(1, request, &mut out)? {
-        chip.peripherals().send(byte, BAUD);
-    }
-    Ok(())
-}
-
-/// Waits for the reply that is meant; earlier ones may still be on the line.
-fn reply<T>(chip: &mut Chip, meant: impl Fn(HostReply) -> Option<T>) -> Result<T, Box<dyn Error>> {
-    let mut decoder = Decoder::new();
-    let end = chip.cycle() + 200 * MS;
-    while chip.cycle() < end {
-        chip.run(chip.cycle() + MS);
-        while let Some(sent) = chip.peripherals().devices.lpuart.host_receive() {
-            if let Some(Ok(frame)) = decoder.push(sent.byte)
-                && let Some(found) = frame.message().and_then(&meant)
-            {
-                return Ok(found);
-            }
-        }
-    }
-    Err("the chip does not answer".into())
-}
-
-/// Asks for something, and waits until it is done.
-fn carry_out(chip: &mut Chip, request: &HostRequest) -> Outcome {
-    send(chip, request)?;
-    reply(chip, |reply| (reply == HostReply::Done).then_some(()))
-}
-
-/// Asks the chip what it is.
-fn identity(chip: &mut Chip) -> Result<Identity, Box<dyn Error>> {
-    let schema = HOST_SCHEMA;
-    send(chip, &HostRequest::Identify(Hello { schema }))?;
-    reply(chip, |reply| match reply {
-        HostReply::Identified(identity) => Some(identity),
-        _ => None,
-    })
-}
-
-/// Lets a chip that starts come to its tasks, and asks what it is.
-fn identity_after(chip: &mut Chip) -> Result<Identity, Box<dyn Error>> {
-    let end = chip.cycle() + 60 * MS;
-    while chip.cycle() < end {
-        chip.run(end);
-    }
-    // The reset may have cut a reply off, and the rest of it never comes.
-    while chip.peripherals().devices.lpuart.host_receive().is_some() {}
-    identity(chip)
-}
-
-/// The settings that the chip uses.
-fn settings(chip: &mut Chip) -> Result<Settings, Box<dyn Error>> {
-    send(chip, &HostRequest::GetSettings)?;
-    reply(chip, |reply| match reply {
-        HostReply::Settings(settings) => Some(settings),
-        _ => None,
-    })
-}
-
-/// What the image did wrong up to now.
-fn findings(chip: &Chip) -> Vec<String> {
-    let peripherals = chip.peripherals();
-    let list = peripherals.findings.list();
-    list.iter().map(ToString::to_string).collect()
-}
-
-/// Settings that differ from the built-in ones.
-fn other_settings() -> Result<Settings, Box<dyn Error>> {
-    let mut settings = Settings::for_table_1().ok_or("no built-in settings")?;
-    settings.limits.command_time_s *= 2.0;
-    Ok(settings)
-}
-
-#[test]
-fn the_boot_writes_what_was_reviewed() -> Outcome {
-    let mut session = started(1)?;
+    let mut session = started_with(&image(FirmwareImage::Stm32g474)?, board, TRACED_TICKS)?;
     let chip = session.chip().ok_or("no chip")?;
     let writes = chip.peripherals().checks.take_recorded();
     let found = trace::lines(&writes).join("\n") + "\n";
@@ -229,7 +123,8 @@ fn a_host_with_another_rate_is_a_finding_and_the_next_one_is_heard() -> Outcome 
 
 #[test]
 fn a_crystal_that_stops_ends_the_pulses() -> Outcome {
-    let mut session = started(10)?;
+    let image = image(FirmwareImage::Stm32g474)?;
+    let mut session = driving(&image, Board::default())?;
     let chip = session.chip().ok_or("no chip")?;
     chip.stop_crystal();
     assert!(!chip.peripherals().devices.tim1.outputs().on);

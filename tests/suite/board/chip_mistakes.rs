@@ -6,6 +6,7 @@
 
 mod can_bus;
 mod clocks;
+mod hangs;
 mod links;
 mod power;
 mod program;
@@ -13,6 +14,7 @@ mod runs;
 mod sensing;
 mod settings;
 mod tree;
+mod update;
 
 use std::path::Path;
 
@@ -60,7 +62,12 @@ use mistakes;
 #[ignore = "builds an image: run with --ignored"]
 fn none() {
     let board_layer = "firmware/stm32g474/src/main.rs";
-    let all = [runs::moving, runs::saving, runs::answering_on_can];
+    let all = [
+        runs::moving,
+        runs::saving,
+        runs::answering_on_can,
+        runs::latest,
+    ];
     let none = Mistake {
         file: board_layer,
         right: "    hot::load();\n",
@@ -69,5 +76,5 @@ fn none() {
         report: "",
     };
     let image = tree::image_with(&none, "none");
-    assert_eq!(all.map(|run| run(&image)), [runs::NOTHING; 3]);
+    assert_eq!(all.map(|run| run(&image)), [runs::NOTHING; 4]);
 }

@@ -36,6 +36,24 @@ steps = [
 slack_mm = 1
 "#;
 
+/// The motor supply sags while the leg homes: the chip converts it every 10 ms.
+const SUPPLY: &str = r#"
+title = "The motor supply sags while the leg homes"
+steps = [
+    { await = { state = "disarmed", timeout_s = 1 } },
+    "home",
+    { wait_s = 0.3 },
+    { fault = "supply_sag" },
+    { reaction = { fault = "supply_low", state = "held", within_ms = 12 } },
+    { wait_s = 0.05 },
+    "arm",
+    { wait_s = 0.05 },
+    { await = { state = "held", timeout_s = 0.01 } },
+]
+[start.slack]
+slack_mm = 1
+"#;
+
 /// Motors that get so little voltage that homing fails: what a chip can show of `fault_following`.
 const FOLLOWING: &str = r#"
 title = "Motors that get too little voltage lag behind in homing"
@@ -114,6 +132,12 @@ fn compare(name: &str, scenario: &Scenario, image: &Path) -> Option<String> {
 fn a_chip_homes_and_its_emergency_stop_ends_the_pulses() {
     let scenario = Scenario::parse("stop", EMERGENCY_STOP).unwrap();
     assert_eq!(compare("stop", &scenario, &image()), None);
+}
+
+#[test]
+fn a_sag_of_the_motor_supply_is_seen_and_held() {
+    let scenario = Scenario::parse("supply", SUPPLY).unwrap();
+    assert_eq!(compare("supply", &scenario, &image()), None);
 }
 
 /// Hours of the processor's time: `cargo test --test suite -- --ignored --nocapture chip_scenarios`.

@@ -6,6 +6,8 @@ mod board;
 mod calibration;
 mod first_power_up;
 mod logs;
+mod new_board;
+mod page;
 mod ports;
 mod qemu;
 

@@ -87,10 +87,12 @@ fn unrouted(chip: &Peripherals) -> Option<String> {
 
 fn watchdog(chip: &Peripherals) -> Option<String> {
     let iwdg = &chip.devices.iwdg;
-    if iwdg.expires_at().is_none() {
+    let Some(end) = iwdg.expires_at() else {
         return Some("the watchdog IWDG was not started".into());
-    }
-    let cycles = iwdg.timeout_cycles(LSI_RANGE_HZ[0], &chip.clocks);
+    };
+    // It may still count from another value than the one that it is set to.
+    let left = end.saturating_sub(chip.cycle);
+    let cycles = left.max(iwdg.timeout_cycles(LSI_RANGE_HZ[0], &chip.clocks));
     let us = cycles * 1_000_000 / u64::from(CLOCK_HZ);
     (us > WATCHDOG_US_MAX).then(|| {
         format!("the watchdog's time may come to {us} µs, and must not exceed {WATCHDOG_US_MAX}")

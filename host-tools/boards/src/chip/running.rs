@@ -33,8 +33,8 @@ const HELD_CYCLES: u64 = TICK_BUDGET_CYCLES as u64 + 1;
 const HANDLER_CYCLES: u64 = 100;
 
 /// The latest that the control interrupt's handler may begin, cycles after its interrupt: the longest critical section
-/// below it, with some room.
-const LATENCY_CYCLES_MAX: u64 = 600;
+/// below it, that of a line in the log, is 840.
+pub const LATENCY_CYCLES_MAX: u64 = 900;
 
 /// Updates of the pulse timer up to the end of the first tick.
 const UPDATES_TO_FIRST_TICK: u32 = 3;
@@ -53,6 +53,8 @@ pub struct Running {
     /// The first instruction of the control interrupt's handler, and the cycle by which it has to come.
     handler: u32,
     handler_due: Option<u64>,
+    /// The longest from the interrupt to that instruction, cycles.
+    pub latency_max: u64,
     /// Whether the sensors were converted in this tick.
     converted: bool,
     /// Supply and temperature as the program has them.
@@ -73,7 +75,9 @@ pub struct Running {
 /// Defects of the board, made the hardware's own way.
 #[derive(Clone, Copy, Debug, Default)]
 struct Defects {
-    /// A bit of the settings was wrong when the chip started.
+    /// It was asked for a wrong bit in the settings.
+    corrupted: bool,
+    /// The chip found no whole settings when it started, and has kept none since.
     settings_corrupt: bool,
     /// The last trigger did not reach ADC2.
     untriggered: bool,
@@ -83,12 +87,22 @@ struct Defects {
 
 impl Running {
     /// A chip that has just been switched on.
-    pub fn new(image: &Image, chip: Chip, twin: Twin, settings: Page, handler: u32) -> Self {
+    ///
+    /// `settings` are what its flash holds where they are kept, and whether it has to use others.
+    pub fn new(
+        image: &Image,
+        chip: Chip,
+        twin: Twin,
+        settings: (Page, bool),
+        handler: u32,
+    ) -> Self {
+        let (settings, settings_corrupt) = settings;
         Self {
             stack: StackGuard::new(image, chip.processor()),
             breaks: Breaks::default(),
             handler,
             handler_due: None,
+            latency_max: 0,
             converted: false,
             chip,
             twin,
@@ -103,7 +117,10 @@ impl Running {
             reports: Reports::new(),
             sent: 0,
             settings,
-            defects: Defects::default(),
+            defects: Defects {
+                settings_corrupt,
+                ..Defects::default()
+            },
         }
     }
 
@@ -163,7 +180,7 @@ impl Running {
     /// [`LinkError::Chip`] once it has started: it reads its settings then.
     fn corrupt_settings(&mut self, corrupt: bool) -> Result<(), LinkError> {
         let refused = |sentence: &str| Err(LinkError::Chip(sentence.into()));
-        if corrupt == self.defects.settings_corrupt {
+        if corrupt == self.defects.corrupted {
             return Ok(());
         }
         if self.ticks > 0 {
@@ -179,6 +196,7 @@ impl Running {
             return refused("the built-in settings are refused");
         };
         self.twin = twin;
+        self.defects.corrupted = true;
         self.defects.settings_corrupt = true;
         Ok(())
     }
@@ -224,7 +242,10 @@ impl Running {
             match stop {
                 Stop::Update => return Ok(()),
                 Stop::Watched if self.chip.processor().pc() == self.handler => {
-                    self.handler_due = None;
+                    if let Some(due) = self.handler_due.take() {
+                        let latency = self.chip.cycle() + LATENCY_CYCLES_MAX - due;
+                        self.latency_max = self.latency_max.max(latency);
+                    }
                     self.begin_tick(image)?;
                 }
                 Stop::Watched => self.commanding = true,
@@ -257,6 +278,7 @@ impl Running {
     /// The handler of the control interrupt is at its first instruction: the twin has the same tick.
     fn begin_tick(&mut self, image: &Image) -> Result<(), LinkError> {
         self.read_slow_codes(image)?;
+        self.read_corrupt(image)?;
         let [supply_code, temperature_code] = self.slow_codes;
         let sensors = Sensors {
             supply_code,

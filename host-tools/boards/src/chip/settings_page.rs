@@ -5,7 +5,11 @@ use embedded_storage_async::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 use leg_firmware::settings::Settings;
-use leg_firmware::store::{FLASH_SIZE, FLASH_START, PAGE_SIZE, REGION, Store, WORD_SIZE};
+use leg_firmware::store::{FLASH_SIZE, FLASH_START, Loaded, PAGE_SIZE, REGION, Store, WORD_SIZE};
+use std::ops::Range;
+
+/// Where a board keeps its settings, addresses.
+pub const PLACE: Range<u32> = FLASH_START + REGION.start..FLASH_START + REGION.end;
 
 /// Bytes of the flash from an address on.
 pub struct Page {
@@ -30,9 +34,20 @@ pub fn page(settings: &Settings) -> Option<Page> {
     block_on(Store::new(&mut flash, REGION).ok()?.save(settings)).ok()?;
     let bytes = flash.0.get(REGION.start as usize..REGION.end as usize)?;
     Some(Page {
-        address: FLASH_START + REGION.start,
+        address: PLACE.start,
         bytes: bytes.to_vec(),
     })
+}
+
+/// The settings that a board finds in these bytes; none where nothing whole is kept.
+pub fn kept(bytes: &[u8]) -> Option<Settings> {
+    let mut flash = Memory(vec![0xff; FLASH_SIZE as usize]);
+    let place = flash.0.iter_mut().skip(REGION.start as usize);
+    place.zip(bytes).for_each(|(to, from)| *to = *from);
+    match block_on(Store::new(&mut flash, REGION).ok()?.load()).ok()? {
+        Loaded::Settings(settings) => Some(settings),
+        Loaded::Empty | Loaded::Corrupt(_) => None,
+    }
 }
 
 /// A flash in this process's memory.

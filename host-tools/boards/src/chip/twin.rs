@@ -63,6 +63,10 @@ impl Twin {
         {
             self.received.push_back(byte);
             self.link.receive(&[byte], &mut self.leg);
+            // The chip has kept them before it takes another command.
+            if self.link.to_save().is_some() {
+                self.link.saved(true);
+            }
         }
     }
 

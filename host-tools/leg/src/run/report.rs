@@ -17,6 +17,12 @@ pub(super) struct RunReport<'a> {
     pub(super) firmware: &'a str,
     pub(super) summary: &'a Summary,
     pub(super) ticks_per_s: f64,
+    /// In a second of the processor's time; none where the system does not tell.
+    pub(super) ticks_per_processor_s: Option<f64>,
+    /// The most memory that was in use.
+    pub(super) memory_mib: Option<f64>,
+    /// Whether the table shows them.
+    pub(super) shows_resources: bool,
     /// The SVG files; the PNG files are beside them.
     pub(super) plots: &'a [PathBuf],
 }
@@ -37,6 +43,8 @@ impl RunReport<'_> {
             firmware: self.firmware,
             ticks: summary.ticks,
             ticks_per_s: self.ticks_per_s,
+            ticks_per_processor_s: self.ticks_per_processor_s,
+            memory_mib: self.memory_mib,
             tension_range_n: summary.tension_range_n,
             findings: &summary.measurements,
             faults: summary.faults.iter().map(fault).collect::<Vec<_>>(),
@@ -58,14 +66,26 @@ impl RunReport<'_> {
         let plots: String = self.plots.iter().map(plot).collect();
         format!(
             "{}\nFirmware {}, {:.1} s of the leg's time\n\n{HEADING}{rows}\n\
-             Tensions: {lowest:.1} to {highest:.1} N\nFaults: {}\n{}Speed: {:.0} ticks a second\n{plots}",
+             Tensions: {lowest:.1} to {highest:.1} N\nFaults: {}\n{}Speed: {:.0} ticks a second\n{}{plots}",
             self.title,
             self.firmware,
             summary.ticks as f64 * tick_s(),
             faults_text(summary),
             divergence_text(&summary.divergence),
             self.ticks_per_s,
+            self.resources_text(),
         )
+    }
+
+    fn resources_text(&self) -> String {
+        match (self.ticks_per_processor_s, self.memory_mib) {
+            (Some(ticks), Some(mib)) if self.shows_resources => {
+                format!(
+                    "Processor: {ticks:.0} ticks in a second of its time; memory: {mib:.0} MiB\n"
+                )
+            }
+            _ => String::new(),
+        }
     }
 }
 

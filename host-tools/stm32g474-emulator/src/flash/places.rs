@@ -63,6 +63,8 @@ pub struct Flags {
     /// All of ECCR that a one clears.
     pub ecc_clearable: u32,
     pub dual_bank: FieldPlace,
+    /// Below which supply the chip is reset.
+    pub brown_out_level: FieldPlace,
 }
 
 impl Offsets {
@@ -137,6 +139,7 @@ impl Flags {
                 .iter()
                 .fold(0, |mask, name| mask | eccr(name).mask),
             dual_bank: file.field("OPTR", "DBANK"),
+            brown_out_level: file.field("OPTR", "BOR_LEV"),
         }
     }
 }

@@ -24,7 +24,7 @@ struct Bench {
 impl Bench {
     fn new(dual_bank: bool, seed: u64) -> Self {
         let mut bench = Self {
-            flash: Flash::new(dual_bank, seed),
+            flash: Flash::new(dual_bank, 0, seed),
             findings: Findings::default(),
             cycle: 0,
         };
@@ -124,6 +124,21 @@ impl Bench {
             "{part}: {texts:?}"
         );
     }
+}
+
+/// RM0440, "Read-while-write": a read of the bank in work waits for the end, and gives what there is then.
+#[test]
+fn a_read_of_the_bank_in_work_waits() {
+    let mut bench = Bench::new(true, 1);
+    bench.open_for_program();
+    bench.word(PAGE, 0x0102_0304);
+    bench.word(PAGE + 4, 0x0506_0708);
+    let end = bench.flash.next_event().unwrap();
+    assert_eq!(bench.read(PAGE), 0x0102_0304);
+    assert_eq!(bench.flash.take_stall(), Some(end));
+    assert_eq!(bench.flash.take_stall(), None);
+    assert_eq!(bench.read(PAGE), 0x0102_0304);
+    assert_eq!(bench.flash.take_stall(), None);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! The work-around of the core's fault, on a program of a few instructions.
+//! The work-around of the core's faults, on programs of a few instructions.
 
 #![allow(clippy::unwrap_used)]
 
@@ -9,7 +9,7 @@ const START: u32 = FLASH.start + 0x80;
 const HANDLER: u32 = START + 0x40;
 
 /// Sets r3 and r5, and neither r4 nor r6, in one IT block.
-const PROGRAM: [u16; 7] = [
+const BLOCK: &[u16] = &[
     0x2000, // movs r0, #0
     0xbf0b, // itete eq
     0x2301, // moveq r3, #1
@@ -19,10 +19,25 @@ const PROGRAM: [u16; 7] = [
     0xe7fe, // b .
 ];
 
+/// Sets r3 to 1 where s0 is below s1, else to 2.
+const COMPARISON: &[u16] = &[
+    0xeeb4, 0x0a60, // vcmp.f32 s0, s1
+    0xbf00, // nop
+    0xeef1, 0xfa10, // vmrs apsr_nzcv, fpscr
+    0xbf4c, // ite mi
+    0x2301, // movmi r3, #1
+    0x2302, // movpl r3, #2
+    0xe7fe, // b .
+];
+
 const RETURN: u16 = 0x4770; // bx lr
 
 /// What r3 to r6 are in the end.
-const RIGHT: [u32; 4] = [1, 0, 1, 0];
+const AFTER_BLOCK: [u32; 4] = [1, 0, 1, 0];
+const AFTER_COMPARISON: [u32; 4] = [1, 0, 0, 0];
+
+/// The switch of the floating-point unit (CPACR), and both its fields.
+const FLOATING_POINT: (u32, u32) = (0xe000_ed88, 0xf << 20);
 
 /// Nothing answers here.
 #[derive(Debug)]
@@ -39,7 +54,7 @@ impl MemOps for Nothing {
 }
 
 /// A processor at the start of the program, with its first interrupt enabled.
-fn started() -> Processor {
+fn started(program: &[u16]) -> Processor {
     let mut flash = vec![0xff; FLASH.len()];
     let mut put = |address: u32, bytes: &[u8]| {
         let at = (address - FLASH.start) as usize;
@@ -53,7 +68,7 @@ fn started() -> Processor {
     ] {
         put(address, &word.to_le_bytes());
     }
-    for (address, instruction) in (START..).step_by(2).zip(PROGRAM) {
+    for (address, instruction) in (START..).step_by(2).zip(program) {
         put(address, &instruction.to_le_bytes());
     }
     put(HANDLER, &RETURN.to_le_bytes());
@@ -63,19 +78,28 @@ fn started() -> Processor {
         processor.core.set_reg(register, 0);
     }
     let interrupt = Exception(FIRST_INTERRUPT);
-    processor
-        .core
-        .with_sys(|system| system.set_enable(interrupt, true));
+    processor.core.with_sys(|system| {
+        system.set_enable(interrupt, true);
+        system.write_word(FLOATING_POINT.0, FLOATING_POINT.1);
+    });
     processor
 }
 
-/// Runs the program with an interrupt before one of its instructions, raised and lowered as it is told: r3 to r6.
-fn interrupted_before(instruction: u32, raise: impl Fn(&mut Processor, bool)) -> [u32; 4] {
-    let mut processor = started();
+/// Runs a program with an interrupt at one of its half words, raised and lowered as it is told: r3 to r6.
+fn interrupted_at(
+    program: &[u16],
+    half_word: u32,
+    raise: impl Fn(&mut Processor, bool),
+) -> [u32; 4] {
+    let mut processor = started(program);
     let mut handled = 0;
     let mut raised = false;
     for _ in 0..40 {
-        if processor.pc() == START + 2 * instruction && !raised && handled == 0 {
+        if processor.pc() == START {
+            processor.core.set_s(0, 1_f32.to_bits());
+            processor.core.set_s(1, 2_f32.to_bits());
+        }
+        if processor.pc() == START + 2 * half_word && !raised && handled == 0 {
             raised = true;
             raise(&mut processor, true);
         }
@@ -85,26 +109,50 @@ fn interrupted_before(instruction: u32, raise: impl Fn(&mut Processor, bool)) ->
         }
         processor.step();
     }
-    assert_eq!(handled, 1, "before instruction {instruction}");
+    assert_eq!(handled, 1, "at {half_word}");
     [3, 4, 5, 6].map(|register| processor.core.reg(register))
 }
 
+/// Instructions by their first half words.
+const BLOCK_STARTS: [u32; 7] = [0, 1, 2, 3, 4, 5, 6];
+const COMPARISON_STARTS: [u32; 6] = [0, 2, 3, 5, 6, 8];
+
 #[test]
-fn an_interrupt_within_an_it_block() {
-    for instruction in 0..PROGRAM.len() as u32 {
-        let found = interrupted_before(instruction, |processor, level| {
-            processor.set_line(0, level);
-        });
-        assert_eq!(found, RIGHT, "before instruction {instruction}");
+fn an_interrupt_within_an_it_block_or_a_comparison_changes_nothing() {
+    let cases = [
+        (BLOCK, &BLOCK_STARTS[..], AFTER_BLOCK),
+        (COMPARISON, &COMPARISON_STARTS, AFTER_COMPARISON),
+    ];
+    for (program, starts, right) in cases {
+        for &start in starts {
+            let found = interrupted_at(program, start, |processor, level| {
+                processor.set_line(0, level);
+            });
+            assert_eq!(found, right, "at {start}");
+        }
     }
 }
 
-/// Once this fails, `rsemu` keeps what an IT block has still to do: [`Processor::settle`] may then hand lines on at once.
+/// Once this fails, `rsemu` keeps what an IT block has still to do.
 #[test]
 fn the_core_alone_still_forgets_the_it_block() {
-    let found = interrupted_before(3, |processor, level| processor.core.set_irq(0, level));
+    let found = interrupted_at(BLOCK, 3, |processor, level| {
+        processor.core.set_irq(0, level)
+    });
     assert_ne!(
-        found, RIGHT,
-        "rsemu was mended: the work-around in `Processor::settle` can go"
+        found, AFTER_BLOCK,
+        "rsemu was mended: `Processor::settle` need not look at IT blocks"
+    );
+}
+
+/// Once this fails, `rsemu` keeps the flags of the interrupted program's comparison.
+#[test]
+fn the_core_alone_still_forgets_the_flags_of_a_comparison() {
+    let found = interrupted_at(COMPARISON, 3, |processor, level| {
+        processor.core.set_irq(0, level);
+    });
+    assert_ne!(
+        found, AFTER_COMPARISON,
+        "rsemu was mended: `Processor::settle` need not look at comparisons"
     );
 }

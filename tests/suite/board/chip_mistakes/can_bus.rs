@@ -1,29 +1,19 @@
 //! A chip that is leg 1 on a CAN bus, and a host there that asks it what it is.
 
-use crate::common::chip::at_rest;
-use leg_boards::chip::ChipSession;
+use crate::common::chip_bus::{on_bus, started_on_can, with_node};
 use leg_firmware::can::{CanFrame, Identifier, LegAddress, Segmenter};
 use leg_firmware::frame::{self, MAX_FRAME};
 use leg_firmware::host_link::{HOST_SCHEMA, Hello, HostRequest};
-use leg_firmware::settings::Settings;
-use leg_firmware_bench::protocol::Request;
-use leg_sim::link::Link;
 use std::error::Error;
 use std::path::Path;
 use stm32g474_emulator::chip::Chip;
-use stm32g474_emulator::device::Context;
-use stm32g474_emulator::facts::{Facts, Pin};
-use stm32g474_emulator::fdcan::{Fdcan, Frame, Outcome, Reception};
-use stm32g474_emulator::gpio::Outside;
+use stm32g474_emulator::facts::Facts;
+use stm32g474_emulator::fdcan::{Outcome, Reception};
 
-/// The switches' lowest bit: leg 1 where it is on.
-const SWITCH: Pin = Pin {
-    port: 'C',
-    number: 10,
-};
-
-/// Ticks after which the chip takes part in the bus, 5 ms, and cycles of 170 MHz in which it has to answer, 50 ms.
+/// Ticks after which the chip takes part in the bus: 5 ms.
 const BOOT_TICKS: usize = 40;
+
+/// Cycles of 170 MHz in which it has to answer, 50 ms.
 const ANSWER_CYCLES: u64 = 8_500_000;
 
 /// What passes from one look at the bus to the next, cycles.
@@ -31,13 +21,7 @@ const STEP: u64 = 17_000;
 
 /// Boots, and lets a host ask.
 pub fn asked(image: &Path) -> Result<(), Box<dyn Error>> {
-    let mut session = ChipSession::open(image)?;
-    session.ask(&Request::Start(Settings::for_table_1().unwrap()))?;
-    let chip = session.chip().unwrap();
-    chip.peripherals().devices.set_outside(SWITCH, Outside::Low);
-    for _ in 0..BOOT_TICKS {
-        session.ask(&Request::Tick(at_rest()))?;
-    }
+    let mut session = started_on_can(image, LegAddress::ALL[0], BOOT_TICKS)?;
     let chip = session.chip().unwrap();
     let [leg, other] = [1, 2].map(|number| LegAddress::new(number).unwrap());
     hear(chip, &question(other))?;
@@ -51,7 +35,7 @@ pub fn asked(image: &Path) -> Result<(), Box<dyn Error>> {
     let end = chip.cycle() + ANSWER_CYCLES;
     while chip.cycle() < end {
         chip.run(chip.cycle() + STEP);
-        let answer = with_bus(chip, |node, context| {
+        let answer = with_node(chip, |node, context| {
             let frame = node.take_transmission(context)?;
             node.transmission_ends(Outcome::Acknowledged, context);
             Some(frame)
@@ -76,15 +60,8 @@ fn question(leg: LegAddress) -> CanFrame {
 
 /// A frame comes over the bus, as the board's documents have it: 1 Mbit/s, and 5 Mbit/s for data.
 fn hear(chip: &mut Chip, frame: &CanFrame) -> Result<(), Box<dyn Error>> {
-    let frame = Frame {
-        identifier: frame.identifier().bits(),
-        fd: true,
-        bit_rate_switch: true,
-        payload: frame.payload().to_vec(),
-        nominal_hz: 1_000_000,
-        data_hz: 5_000_000,
-    };
-    let said = with_bus(chip, |node, context| node.bus_receive(&frame, context));
+    let frame = on_bus(frame);
+    let said = with_node(chip, |node, context| node.bus_receive(&frame, context));
     found(chip)?;
     match said {
         Reception::Acknowledged => Ok(()),
@@ -98,18 +75,6 @@ fn waiting(chip: &Chip) -> bool {
     let status = block.register("RXF0S").unwrap();
     let value = chip.peripherals().read(block.base + status.offset, 4);
     status.field("FFL").unwrap().value(value) > 0
-}
-
-fn with_bus<R>(chip: &Chip, work: impl FnOnce(&mut Fdcan, &mut Context<'_>) -> R) -> R {
-    let mut peripherals = chip.peripherals();
-    let peripherals = &mut *peripherals;
-    peripherals.cycle = chip.cycle();
-    let mut context = Context {
-        cycle: peripherals.cycle,
-        clocks: &peripherals.clocks,
-        findings: &mut peripherals.findings,
-    };
-    work(&mut peripherals.devices.fdcan, &mut context)
 }
 
 /// What the image does wrong.

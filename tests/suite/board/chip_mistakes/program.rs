@@ -1,6 +1,6 @@
 //! Interrupts, memory and the watchdog.
 
-use super::runs::{moving, resting};
+use super::runs::{latest, moving};
 use super::{Mistake, mistakes};
 
 const fn board(
@@ -23,7 +23,7 @@ mistakes! {
         "firmware/stm32g474/src/control.rs",
         "    unsafe { interrupt::ADC1_2.enable() };\n",
         "",
-        "does not begin the control interrupt's handler within 600 cycles",
+        "does not begin the control interrupt's handler within 900 cycles",
     );
     control_interrupt_at_a_lower_priority: board(
         "firmware/stm32g474/src/priorities.rs",
@@ -31,6 +31,13 @@ mistakes! {
         "ADC1_2.set_priority(Priority::P7)",
         "the control interrupt ADC1_2 does not preempt",
     );
+    control_interrupt_late: Mistake {
+        file: "firmware/stm32g474/src/priorities.rs",
+        right: "ADC1_2.set_priority(Priority::P0)",
+        wrong: "ADC1_2.set_priority(Priority::P7)",
+        run: latest,
+        report: "cycles after its interrupt",
+    };
     hot_code_not_copied: board(
         "firmware/stm32g474/src/main.rs",
         "    hot::load();\n",
@@ -43,20 +50,18 @@ mistakes! {
         "_flash_start = ORIGIN(FLASH);\n_stack_start = __sheap + 2048;\n",
         "the stack has come down to the variables",
     );
-    watchdog_not_fed: Mistake {
-        file: "firmware/stm32g474/src/watchdog.rs",
-        right: "None => self.dog.pet(),",
-        wrong: "None => {}",
-        // The first time may be longer: the watchdog takes its settings over after some periods of its oscillator.
-        run: resting,
-        report: "was reset (IndependentWatchdog)",
-    };
     watchdog_fed_by_an_interrupt: board(
         "firmware/stm32g474/src/control.rs",
         "    let started = DWT::cycle_count();\n",
         "    let started = DWT::cycle_count();
     embassy_stm32::pac::IWDG.kr().write(|w| w.set_key(embassy_stm32::pac::iwdg::vals::Key::RESET));\n",
         "IWDG is fed by an interrupt's handler",
+    );
+    watchdog_fed_before_its_settings_arrive: board(
+        "firmware/stm32g474/src/watchdog.rs",
+        "        wait_for_settings();\n",
+        "",
+        "the watchdog's time may come to",
     );
     watchdog_too_slow: board(
         "firmware/stm32g474/src/watchdog.rs",

@@ -1,7 +1,8 @@
 //! Short runs of an image on the emulated chip, and what they report.
 
 use super::can_bus;
-use leg_boards::chip::ChipSession;
+use crate::board::chip_latency;
+use leg_boards::chip::{ChipSession, LATENCY_CYCLES_MAX};
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{HostIdentity, Operator};
 use leg_host::transport::emulated::EmulatedLine;
@@ -37,22 +38,9 @@ steps = [
 slack_mm = 3
 "#;
 
-const RESTING: &str = r#"
-title = "Nothing happens"
-steps = [{ wait_s = 1.5 }]
-
-[start.slack]
-slack_mm = 3
-"#;
-
 /// The motors run, and are stopped by both breaks.
 pub fn moving(image: &Path) -> String {
     reported(play(MOVING, image))
-}
-
-/// Nothing is done for longer than the watchdog waits.
-pub fn resting(image: &Path) -> String {
-    reported(play(RESTING, image))
 }
 
 /// The host lets the board keep its settings.
@@ -73,6 +61,18 @@ pub fn saving_in_one_bank(image: &Path) -> String {
 /// A host on a CAN bus asks the board what it is.
 pub fn answering_on_can(image: &Path) -> String {
     reported(can_bus::asked(image))
+}
+
+/// The host talks and lets the board keep its settings: how late the control interrupt may be.
+pub fn latest(image: &Path) -> String {
+    let latest = chip_latency::latest(image);
+    if latest
+        .iter()
+        .all(|(cycles, _)| *cycles <= LATENCY_CYCLES_MAX)
+    {
+        return NOTHING.into();
+    }
+    format!("the control interrupt's handler may begin {latest:?} cycles after its interrupt")
 }
 
 fn reported(result: Result<(), Box<dyn Error>>) -> String {

@@ -1,7 +1,7 @@
 //! What has to hold while a chip runs, and how it is described where it does not.
 
 use super::{Running, take_command};
-use crate::chip::{expectations, hot, wiring};
+use crate::chip::{expectations, hot, settings_page, wiring};
 use leg_firmware::sensors::Sensors;
 use leg_sim::link::LinkError;
 use stm32g474_emulator::chip::{Chip, Stop};
@@ -15,6 +15,9 @@ const ANSWER_TICKS: u64 = 1000;
 
 /// Ticks from one look at the memories to the next.
 const MEMORY_TICKS: u64 = 64;
+
+/// Where the image notes that it uses other settings than those that were kept.
+const CORRUPT: &str = "leg_stm32g474::settings_task::CORRUPT";
 
 /// Where the image keeps the codes of supply and temperature.
 const SLOW_CODES: [&str; 2] = [
@@ -110,6 +113,36 @@ impl Running {
             }
             *kept = code;
         }
+        Ok(())
+    }
+
+    /// Reads whether the program uses other settings than those that were kept. Once it does, only whole settings in the
+    /// flash end that.
+    pub(super) fn read_corrupt(&mut self, image: &Image) -> Result<(), LinkError> {
+        let byte = image.variable(CORRUPT).and_then(|address| {
+            let word = self.chip.processor().word(address & !3)?;
+            Some((word >> (8 * (address & 3))) as u8)
+        });
+        let Some(byte) = byte else {
+            return Err(LinkError::Chip(format!(
+                "the image has no variable `{CORRUPT}`"
+            )));
+        };
+        let corrupt = byte != 0;
+        if corrupt == self.defects.settings_corrupt {
+            return Ok(());
+        }
+        let peripherals = self.chip.peripherals();
+        let bytes = peripherals.devices.flash.bytes(settings_page::PLACE);
+        let whole = bytes.is_some_and(|bytes| settings_page::kept(bytes).is_some());
+        drop(peripherals);
+        if corrupt || !whole {
+            return Err(LinkError::Chip(format!(
+                "`{CORRUPT}` is {corrupt}, and the flash holds {} settings",
+                if whole { "whole" } else { "no whole" }
+            )));
+        }
+        self.defects.settings_corrupt = false;
         Ok(())
     }
 

@@ -1,0 +1,84 @@
+//! The chip's supply dips, as its brown-out level sees it.
+
+use crate::common::chip::{
+    MS, Outcome, carry_out, driving, findings, identity, identity_after, image, other_settings,
+    send, settings, started,
+};
+use leg_boards::image::FirmwareImage;
+use leg_firmware::host_link::{HostRequest, ResetCause as Told};
+use leg_firmware::settings::Settings;
+use stm32g474_emulator::board::Board;
+
+/// The brown-out level, the lowest supply of a dip in mV, and what the chip tells afterwards.
+const DIPS: [(u8, u32, Told); 5] = [
+    (0, 2_000, Told::Power),
+    (0, 1_500, Told::BrownOut),
+    (0, 500, Told::Power),
+    (4, 2_700, Told::BrownOut),
+    (4, 2_900, Told::Power),
+];
+
+/// Dips that reset no chip: it goes on, and tells what it told before.
+const HARMLESS: [(u8, u32); 2] = [(0, 2_000), (4, 2_900)];
+
+#[test]
+fn a_dip_resets_the_chip_below_its_brown_out_level_and_is_told() -> Outcome {
+    let image = image(FirmwareImage::Stm32g474)?;
+    for (brown_out_level, lowest_mv, told) in DIPS {
+        let board = Board {
+            brown_out_level,
+            ..Board::default()
+        };
+        let mut session = driving(&image, board)?;
+        let chip = session.chip().ok_or("no chip")?;
+        let reset = chip.dip_supply(lowest_mv, 3);
+        let harmless = HARMLESS.contains(&(brown_out_level, lowest_mv));
+        let case = format!("level {brown_out_level}, {lowest_mv} mV");
+        assert_eq!(reset, !harmless, "{case}");
+        assert_eq!(
+            chip.peripherals().devices.tim1.outputs().on,
+            harmless,
+            "{case}"
+        );
+        assert_eq!(identity_after(chip)?.reset, told, "{case}");
+        assert_eq!(findings(chip), [""; 0], "{case}");
+    }
+    Ok(())
+}
+
+/// The factory's level lets the chip run below its range.
+#[test]
+fn a_supply_between_the_brown_out_level_and_the_range_is_a_finding() -> Outcome {
+    let mut session = started(10)?;
+    let chip = session.chip().ok_or("no chip")?;
+    assert!(!chip.dip_supply(1_680, 1));
+    let found = findings(chip);
+    assert!(
+        found.len() == 1 && found[0].contains("1680 mV, below its 1710 mV"),
+        "{found:?}"
+    );
+    Ok(())
+}
+
+#[test]
+fn a_dip_during_a_save_leaves_the_old_settings_or_the_new_ones() -> Outcome {
+    let built_in = Settings::for_table_1().ok_or("no built-in settings")?;
+    let other = other_settings()?;
+    for dip_us in [0, 700, 3_000, 9_000] {
+        let mut session = started(10)?;
+        let chip = session.chip().ok_or("no chip")?;
+        identity(chip)?;
+        carry_out(chip, &HostRequest::SetSettings(other.clone()))?;
+        send(chip, &HostRequest::SaveSettings)?;
+        let end = chip.cycle() + dip_us * MS / 1_000;
+        while chip.cycle() < end {
+            chip.run(end);
+        }
+        assert!(chip.dip_supply(1_500, dip_us));
+        assert_eq!(identity_after(chip)?.reset, Told::BrownOut);
+        let settings = settings(chip)?;
+        assert!(settings == built_in || settings == other, "{dip_us} µs");
+        assert_eq!(findings(chip), [""; 0], "{dip_us} µs");
+    }
+    Ok(())
+}
