@@ -24,9 +24,9 @@ const ARMING_S: f64 = 0.8;
 const AFTER_S: f64 = 1.0;
 
 /// How little a leg moves that has come to rest, m, in how many ticks; and how often that is awaited.
-const STILL_M: f64 = 1e-4;
-const SWING_TICKS: u32 = 8_000;
-const SWINGS: u32 = 40;
+const STILL_M: f64 = 5e-5;
+const STILL_TICKS: u32 = 4_000;
+const STILL_SPANS: u32 = 80;
 
 /// How slack the tendons of a leg are before homing, mm.
 const SLACK_MM: f64 = 2.0;
@@ -60,7 +60,7 @@ pub(super) fn prepare(case: &Case) -> Result<Prepared, String> {
         Occasion::Held => {
             stand.command(&command)?;
             stand.until(1.0, "held", |stand| stand.state() == State::Held)?;
-            stand.wait(0.3)?;
+            rest(&mut stand)?;
             Ok(resting(stand))
         }
         Occasion::Arming => {
@@ -120,14 +120,14 @@ fn lead(case: &Case, stand: &mut Stand) -> Result<(), String> {
         stand
             .plant()
             .set_payload(case.payload_kg + case.step_kg, LOADING_S);
-        stand.wait(LOADING_S + REST_S)?;
+        stand.wait(LOADING_S)?;
     }
     if let Some([azimuth_deg, force_n]) = case.push {
         let force_n = stand.plant().across(azimuth_deg) * force_n;
         stand.plant().push(force_n, LOADING_S, 0.1);
-        stand.wait(LOADING_S + REST_S)?;
+        stand.wait(LOADING_S)?;
     }
-    Ok(())
+    rest(stand)
 }
 
 fn move_to([azimuth_deg, tilt_deg]: [f64; 2]) -> Command {
@@ -138,20 +138,23 @@ fn move_to([azimuth_deg, tilt_deg]: [f64; 2]) -> Command {
 fn disarm(stand: &mut Stand) -> Result<(), String> {
     stand.command(&Command::Disarm)?;
     stand.until(MOVE_S, "disarmed", |stand| stand.state() == State::Disarmed)?;
-    // A relaxed leg swings for a while.
-    let mut before_m = stand.truth.tip_m;
-    for _ in 0..SWINGS {
-        let mut moved_m: f64 = 0.0;
-        for _ in 0..SWING_TICKS {
+    rest(stand)
+}
+
+/// Waits until the leg no longer moves: it swings, and it compensates a load slowly.
+fn rest(stand: &mut Stand) -> Result<(), String> {
+    for _ in 0..STILL_SPANS {
+        let (before_m, mut moved_m) = (stand.truth.tip_m, 0.0_f64);
+        for _ in 0..STILL_TICKS {
             stand.tick()?;
+            stand.require_no_fault()?;
             moved_m = moved_m.max((stand.truth.tip_m - before_m).norm());
         }
         if moved_m < STILL_M {
             return Ok(());
         }
-        before_m = stand.truth.tip_m;
     }
-    Err("the relaxed leg does not come to rest".into())
+    Err("the leg does not come to rest".into())
 }
 
 /// A leg that is struck on its way, which it has gone to its end before.

@@ -94,6 +94,16 @@ impl Stand {
         }
     }
 
+    /// # Errors
+    /// The faults that there are.
+    pub fn require_no_fault(&self) -> Result<(), String> {
+        if !self.faults().any() {
+            return Ok(());
+        }
+        let names = leg_base::description::faults(self.faults());
+        Err(format!("{names} before any strike"))
+    }
+
     /// Lets a time pass without a fault.
     pub fn wait(&mut self, time_s: f64) -> Result<(), String> {
         let end_s = self.time_s() + time_s;
@@ -110,10 +120,7 @@ impl Stand {
         let end_s = self.time_s() + timeout_s;
         while !done(self) {
             self.tick()?;
-            if self.faults().any() {
-                let names = leg_base::description::faults(self.faults());
-                return Err(format!("{names} before any strike"));
-            }
+            self.require_no_fault()?;
             if self.time_s() > end_s {
                 return Err(format!("{what} does not come in {timeout_s} s"));
             }
