@@ -48,7 +48,7 @@ pub use error::{Error, Quantity, Reason};
 pub use evaluation::{
     Evaluation, MapEvaluation, Query, StiffnessAt, StiffnessDemand, evaluate, evaluate_for_map,
 };
-pub use flexure::{FlexureMaterial, Leaf, Notch, Rod};
+pub use flexure::*;
 pub use forward::{ForwardKinematics, forward_kinematics, forward_kinematics_universal};
 pub use free_plane::FreePlane;
 pub use full_pass::{Deflection, FullPass, TendonStates, full_pass, full_pass_in_plane};

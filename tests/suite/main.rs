@@ -43,6 +43,7 @@ mod rig {
 
 mod sim {
     mod random_scenarios;
+    mod ready_runs;
     mod scenario_bits;
     mod scenarios;
 }

@@ -19,6 +19,7 @@
 //! nothing shows that it is older.
 
 mod error;
+mod max_size;
 mod record;
 mod region;
 mod sealed;

@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector, Vector3};
 
 /// Step of the differences, rad: the truncation of fourth order (1e-12 times the fifth derivative) and the rounding
 /// (1e-16 over the step) are about equal.
-const STEP_RAD: f64 = 1e-3;
+pub const STEP_RAD: f64 = 1e-3;
 
 /// Derivative of `f` at zero, by central differences of fourth order.
 #[must_use]

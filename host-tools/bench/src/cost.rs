@@ -74,8 +74,8 @@ pub fn measure(link: &mut dyn Link, mut done: impl FnMut()) -> Result<Vec<Cost>,
         costs.push(Cost::from_counts(kernel.name(), counts, budget));
         done();
     }
-    for counted in tick::COUNTED {
-        costs.push(tick::measure(link, counted)?);
+    for counted in tick::counted() {
+        costs.push(tick::measure(link, &counted)?);
         done();
     }
     Ok(costs)
@@ -84,7 +84,7 @@ pub fn measure(link: &mut dyn Link, mut done: impl FnMut()) -> Result<Vec<Cost>,
 /// How often [`measure`] calls `done`.
 #[must_use]
 pub const fn measurements() -> usize {
-    Kernel::ALL.len() + tick::COUNTED.len()
+    Kernel::ALL.len() + tick::COUNTED
 }
 
 impl Cost {

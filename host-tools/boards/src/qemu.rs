@@ -9,7 +9,6 @@ pub use process::describe_exit;
 pub use session::QemuSession;
 
 use std::path::PathBuf;
-use std::time::Duration;
 
 /// How QEMU's clock relates to the instructions that it executes. Both kinds give the same run every time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,21 +38,18 @@ pub struct QemuConfig {
     pub image: PathBuf,
     /// QEMU's clock.
     pub clock: QemuClock,
-    /// Longest wait for the boot, for a reply and for the end.
-    pub timeout: Duration,
     /// Whether the firmware's log goes to standard error as it comes.
     pub verbose: bool,
 }
 
 impl QemuConfig {
-    /// Runs `image` in `qemu` with the normal clock, a time-out of 20 s and without printing the log.
+    /// Runs `image` in `qemu` with the normal clock and without printing the log.
     #[must_use]
     pub const fn new(qemu: PathBuf, image: PathBuf) -> Self {
         Self {
             qemu,
             image,
             clock: QemuClock::Normal,
-            timeout: Duration::from_secs(20),
             verbose: false,
         }
     }

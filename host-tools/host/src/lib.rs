@@ -6,10 +6,9 @@
 //! process ([`transport::emulated`]), which needs no board:
 //!
 //! ```
-//! use leg_firmware::command::Command;
 //! use leg_host::cancel_flag::CancelFlag;
 //! use leg_host::leg_report::angles_deg;
-//! use leg_host::operator::{HostIdentity, Operator};
+//! use leg_host::operator::{Goal, HostIdentity, Operator};
 //! use leg_host::transport::emulated::EmulatedLine;
 //! use leg_rig::rig_file::RigFile;
 //! use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
@@ -26,7 +25,7 @@
 //!
 //! // Lean 10° towards azimuth 0° and stay there in hold. `Operator::home` would come first on a leg that is not homed.
 //! let x = 10_f32.to_radians().sin();
-//! let reached = operator.reach(&[Command::Move { x, y: 0.0 }])?;
+//! let reached = operator.reach(&Goal::direction(x, 0.0))?;
 //! let [_, tilt_deg] = angles_deg(reached.pose);
 //! assert!((tilt_deg - 10.0).abs() < 0.05);
 //! # Ok(())

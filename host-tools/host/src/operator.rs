@@ -3,6 +3,7 @@
 mod command;
 mod connection;
 mod error;
+mod goal;
 mod keep_alive;
 mod motion;
 mod refusal;
@@ -15,6 +16,7 @@ mod telemetry;
 mod tests;
 
 pub use error::OperatorError;
+pub use goal::{Goal, Tensioning};
 pub use settings::{SettingDifference, setting_differences};
 
 use crate::cancel_flag::CancelFlag;

@@ -1,6 +1,7 @@
 //! Recordings of a simulation or of a leg: MCAP, which Foxglove and PlotJuggler open and `leg replay` reproduces, or CSV.
 
 mod csv_file;
+mod error;
 mod mcap_file;
 mod replay;
 mod tick_record;
@@ -8,6 +9,7 @@ mod tick_record;
 #[cfg(test)]
 mod tests;
 
+pub use error::RecordingError;
 pub use replay::{Replay, TickDifference, replay};
 
 use csv_file::CsvFile;
@@ -20,7 +22,6 @@ use leg_sim::simulation::Tick;
 use mcap_file::McapFile;
 use serde::Serialize;
 use serde_json::Value;
-use std::error::Error;
 use std::ffi::OsStr;
 use std::path::Path;
 
@@ -39,21 +40,9 @@ enum RecordingFile {
     Csv(Box<CsvFile>),
 }
 
-/// Why a recording cannot be written, or a [`Failure`] of the recorded work.
-pub type RecordingError = Box<dyn Error>;
-
-/// A message that has no form in the format of the recording: another file name would not help.
-fn message_refused(error: impl Into<RecordingError>) -> RecordingError {
-    Failure::refused(
-        format!("a message cannot be written: {}", error.into()),
-        "report this as an error of the program",
-    )
-    .into()
-}
-
 /// A message as JSON.
 fn to_json(message: &impl Serialize) -> Result<Value, RecordingError> {
-    serde_json::to_value(message).map_err(message_refused)
+    serde_json::to_value(message).map_err(RecordingError::message)
 }
 
 impl Recording {
@@ -120,11 +109,5 @@ pub fn record<T>(
         recording.finish()?;
         Ok(result)
     });
-    done.map_err(|error: RecordingError| match error.downcast::<Failure>() {
-        Ok(failure) => *failure,
-        Err(error) => Failure::refused(
-            format!("cannot write {}: {error}", file.display()),
-            "name a file in a directory that may be written",
-        ),
-    })
+    done.map_err(|error: RecordingError| error.failure(file))
 }

@@ -3,6 +3,7 @@
 use crate::board::Emulation;
 use crate::notices::notices;
 use crate::options::Options;
+use crate::output::load_rig;
 use crate::progress;
 use leg_base::description;
 use leg_base::failure::Failure;
@@ -66,6 +67,16 @@ pub(crate) enum Purpose {
     Stop,
 }
 
+impl Purpose {
+    /// How an emulated leg starts.
+    const fn initial(self) -> InitialState {
+        match self {
+            Self::Calibrate => InitialState::Slack,
+            Self::Use | Self::Stop => InitialState::Homed,
+        }
+    }
+}
+
 /// A leg that knows this host.
 pub(crate) struct LegConnection {
     pub(crate) operator: Operator,
@@ -73,24 +84,20 @@ pub(crate) struct LegConnection {
     pub(crate) emulated: Option<EmulatedLine>,
 }
 
-/// A simulated leg with its firmware, slack and not homed, or homed.
+/// A simulated leg with its firmware.
 pub(crate) fn emulated_leg(
     rig: &RigFile,
-    slack: bool,
+    initial: InitialState,
     on: Emulation,
     options: Options,
 ) -> Result<EmulatedLeg, Failure> {
-    let start = match (slack, on) {
-        (true, _) => InitialState::Slack,
-        (false, Emulation::Chip) => {
-            return Err(Failure::refused(
-                "a leg on an emulated chip does not start homed: a board forgets its zero",
-                "`leg emulate --on chip --slack`, and home it first; or take --on sim or --on qemu",
-            ));
-        }
-        (false, _) => InitialState::Homed,
-    };
-    EmulatedLeg::new(rig, start, on.link(options)?).map_err(Failure::from_error)
+    if (initial, on) == (InitialState::Homed, Emulation::Chip) {
+        return Err(Failure::refused(
+            "a leg on an emulated chip does not start homed: a board forgets its zero",
+            "`leg emulate --on chip --slack`, and home it first; or take --on sim or --on qemu",
+        ));
+    }
+    EmulatedLeg::new(rig, initial, on.link(options)?).map_err(Failure::from_error)
 }
 
 impl LegArgs {
@@ -99,7 +106,7 @@ impl LegArgs {
         purpose: Purpose,
         options: Options,
     ) -> Result<LegConnection, Failure> {
-        let rig = RigFile::load(self.rig.as_deref())?;
+        let rig = load_rig(self.rig.as_deref())?;
         self.connection.open(&rig, purpose, options)
     }
 }
@@ -127,7 +134,7 @@ impl ConnectionArgs {
                 emulated: None,
             });
         };
-        let leg = emulated_leg(rig, purpose == Purpose::Calibrate, on, options)?;
+        let leg = emulated_leg(rig, purpose.initial(), on, options)?;
         let emulated = EmulatedLine::new(leg, &format!("the leg {}", on.text()));
         let host = Box::new(emulated.connect());
         Ok(LegConnection {
@@ -153,13 +160,15 @@ impl ConnectionArgs {
 
 #[cfg(target_os = "linux")]
 fn can(interface: &str, leg: LegAddress, purpose: Purpose) -> Result<Box<dyn Transport>, Failure> {
-    let urgent_only = purpose == Purpose::Stop;
-    let port = SocketCan::open(interface, leg, urgent_only).map_err(Failure::from_error)?;
-    Ok(Box::new(if urgent_only {
-        CanTransport::urgent_only(port, leg)
-    } else {
-        CanTransport::new(port, leg)
-    }))
+    let transport = match purpose {
+        Purpose::Stop => {
+            SocketCan::open_urgent(interface, leg).map(|port| CanTransport::urgent_only(port, leg))
+        }
+        Purpose::Use | Purpose::Calibrate => {
+            SocketCan::open(interface, leg).map(|port| CanTransport::new(port, leg))
+        }
+    };
+    Ok(Box::new(transport.map_err(Failure::from_error)?))
 }
 
 #[cfg(not(target_os = "linux"))]

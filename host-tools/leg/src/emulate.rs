@@ -4,12 +4,12 @@ use crate::board::{Emulation, new_chip};
 use crate::connection::emulated_leg;
 use crate::numbers::seconds;
 use crate::options::Options;
+use crate::output::load_rig;
 use leg_base::failure::Failure;
 use leg_base::json_object;
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::emulated_board::EmulatedBoard;
 use leg_host::pseudo_terminal::PseudoTerminal;
-use leg_rig::rig_file::RigFile;
 use leg_sim::action::Action;
 use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
 use std::io::BufRead;
@@ -48,11 +48,16 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
-    let rig = RigFile::load(args.rig.as_deref())?;
+    let rig = load_rig(args.rig.as_deref())?;
+    let initial = if args.slack {
+        InitialState::Slack
+    } else {
+        InitialState::Homed
+    };
     let leg = match (args.new_board, args.on) {
-        (false, on) => emulated_leg(&rig, args.slack, on, options)?,
+        (false, on) => emulated_leg(&rig, initial, on, options)?,
         (true, Emulation::Chip) => {
-            EmulatedLeg::new(&rig, InitialState::Slack, new_chip()?).map_err(Failure::from_error)?
+            EmulatedLeg::new(&rig, initial, new_chip()?).map_err(Failure::from_error)?
         }
         (true, _) => {
             return Err(Failure::refused(

@@ -3,11 +3,10 @@
 mod evaluator;
 
 use crate::options::Options;
-use crate::output::print;
+use crate::output::{load_rig, print};
 use evaluator::{Evaluator, EvaluatorKind, NoAnswer};
 use leg_base::failure::Failure;
 use leg_model_tools::jsonl;
-use leg_rig::rig_file::RigFile;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -56,7 +55,7 @@ would have to push before the weights are applied, where it has no meaning.";
 
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let input = open(&args.file)?;
-    let rig = RigFile::load(args.rig.as_deref())?;
+    let rig = load_rig(args.rig.as_deref())?;
     let mut evaluator = Evaluator::start(args.on, options)?;
     let (mut answered, mut failed) = (0, 0);
     for (index, text) in input.split(b'\n').enumerate() {

@@ -1,12 +1,11 @@
 //! `leg export`.
 
 use crate::numbers::{azimuth_deg, finite, payload_kg, tilt_deg};
-use crate::output::write;
+use crate::output::{load_rig, write};
 use leg_base::failure::Failure;
 use leg_model::{Quantity, Query};
 use leg_model_tools::line_error::LineError;
 use leg_model_tools::mjcf::{HeldLeg, Mjcf, MjcfError};
-use leg_rig::rig_file::RigFile;
 use std::path::PathBuf;
 
 /// Writes the rig for another program.
@@ -49,7 +48,7 @@ struct MjcfArgs {
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let Format::Mjcf(args) = &args.format;
-    let rig = RigFile::load(args.rig.as_deref())?;
+    let rig = load_rig(args.rig.as_deref())?;
     let query = rig.query(args.azimuth_deg, args.tilt_deg, args.payload_kg);
     let query = Query {
         pretension_n: args.pretension_n.unwrap_or(rig.pretension_n),

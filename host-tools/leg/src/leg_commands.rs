@@ -5,9 +5,8 @@ use crate::numbers::{azimuth_deg, direction, positive, tilt_deg, unit_vector};
 use crate::options::Options;
 use leg_base::failure::Failure;
 use leg_base::json_object;
-use leg_firmware::command::Command;
 use leg_host::leg_report;
-use leg_host::operator::{Operator, OperatorError};
+use leg_host::operator::{Goal, Operator, OperatorError, Tensioning};
 
 #[derive(Debug, clap::Subcommand)]
 pub(crate) enum LegCommand {
@@ -72,38 +71,43 @@ pub(crate) struct StiffnessArgs {
 
 impl LegCommand {
     pub(crate) fn run(&self, options: Options) -> Result<(), Failure> {
-        let reach = |leg: &LegArgs, commands: &[Command]| {
-            run(leg, Purpose::Use, options, |operator| {
-                operator.reach(commands)
-            })
+        let reach = |leg: &LegArgs, goal: Goal| {
+            run(leg, Purpose::Use, options, |operator| operator.reach(&goal))
         };
         match self {
             Self::Clear(leg) => run(leg, Purpose::Use, options, Operator::clear),
             Self::Disarm(leg) => run(leg, Purpose::Use, options, Operator::disarm),
-            Self::Hold(leg) => reach(leg, &[]),
+            Self::Hold(leg) => reach(leg, Goal::default()),
             Self::Home(leg) => home(leg, options),
-            Self::Move(args) => reach(&args.leg, &args.commands()),
-            Self::Stiffness(args) => reach(&args.leg, &[stiffness(args.stiffness, args.towards)]),
+            Self::Move(args) => reach(&args.leg, args.goal()),
+            Self::Stiffness(args) => reach(&args.leg, args.goal()),
             Self::Stop(leg) => run(leg, Purpose::Stop, options, Operator::stop),
         }
     }
 }
 
 impl MoveArgs {
-    fn commands(&self) -> Vec<Command> {
-        let pretension = self.pretension.map(|n| Command::Pretension(n as f32));
+    fn goal(&self) -> Goal {
+        let pretension = self.pretension.map(|n| Tensioning::Pretension(n as f32));
         let stiffness = self.stiffness.map(|demand| stiffness(demand, self.towards));
-        let [x, y] = direction(self.azimuth, self.tilt);
-        let tension = pretension.or(stiffness);
-        tension
-            .into_iter()
-            .chain([Command::Move { x, y }])
-            .collect()
+        Goal {
+            tensioning: pretension.or(stiffness),
+            direction: Some(direction(self.azimuth, self.tilt)),
+        }
     }
 }
 
-fn stiffness(nm_per_rad: f64, towards_deg: Option<f64>) -> Command {
-    Command::Stiffness {
+impl StiffnessArgs {
+    fn goal(&self) -> Goal {
+        Goal {
+            tensioning: Some(stiffness(self.stiffness, self.towards)),
+            direction: None,
+        }
+    }
+}
+
+fn stiffness(nm_per_rad: f64, towards_deg: Option<f64>) -> Tensioning {
+    Tensioning::Stiffness {
         demand_nm_per_rad: nm_per_rad as f32,
         towards: towards_deg.map(unit_vector),
     }

@@ -4,7 +4,7 @@ mod report;
 
 use crate::numbers::{finite, payload_kg};
 use crate::options::Options;
-use crate::output::not_saved;
+use crate::output::{load_rig, not_saved};
 use crate::progress;
 use leg_base::failure::Failure;
 use leg_boards::image;
@@ -77,7 +77,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
 
 /// The rig at the asked pretension, if the model accepts it with the payload.
 fn rig(args: &Args) -> Result<RigFile, Failure> {
-    let mut rig = RigFile::load(args.rig.as_deref())?;
+    let mut rig = load_rig(args.rig.as_deref())?;
     rig.pretension_n = args.pretension_n.unwrap_or(rig.pretension_n);
     let hanging = rig.query(0.0, 0.0, args.payload_kg);
     match leg_model::evaluate(&rig.parameters, &hanging) {

@@ -4,6 +4,7 @@ use leg_base::atomic_file::{self, StagingDirectory};
 use leg_base::failure::{Failure, Message};
 use leg_base::json_line::to_line;
 use leg_base::json_object;
+use leg_rig::rig_file::{RigFile, RigText};
 use std::error::Error;
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
@@ -17,6 +18,20 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
         let help = "see that the program that reads the output is still there";
         Failure::refused(format!("cannot write to standard output: {error}"), help)
     })
+}
+
+/// The rig of a file or of that name, the paper's where none is given; its notes go to standard error.
+pub(crate) fn load_rig(path: Option<&Path>) -> Result<RigFile, Failure> {
+    let (rig, notes) = RigText::load(path)?.read()?;
+    print_notes(&notes);
+    Ok(rig)
+}
+
+/// Prints notes on a file on standard error.
+pub(crate) fn print_notes(notes: &[String]) {
+    for note in notes {
+        eprintln!("{note}");
+    }
 }
 
 /// Writes a file whole or not at all; to standard output where none is named.

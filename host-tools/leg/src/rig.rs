@@ -1,7 +1,7 @@
 //! `leg rig`.
 
 use crate::options::Options;
-use crate::output::{print, write};
+use crate::output::{load_rig, print, print_notes, write};
 use clap::Subcommand;
 use leg_base::failure::Failure;
 use leg_base::json_line::to_line;
@@ -81,7 +81,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
             actuator,
             simulation,
         } => {
-            let file = RigFile::load(rig.as_deref())?;
+            let file = load_rig(rig.as_deref())?;
             let lists = [
                 (*control, rig_settings::control as List),
                 (*actuator, rig_settings::actuator),
@@ -96,20 +96,21 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
             })
         }
         RigAction::Draw { rig, out } => {
-            let svg =
-                rig_drawing::svg(&RigFile::load(rig.as_deref())?).map_err(Failure::from_error)?;
+            let svg = rig_drawing::svg(&load_rig(rig.as_deref())?).map_err(Failure::from_error)?;
             write(out.as_deref(), &svg)
         }
         RigAction::Validate { rig } => validate(rig, options),
         RigAction::Convert { rig, to, out } => {
             let source = RigText::load(Some(rig))?;
-            write(out.as_deref(), &rig_convert::convert(&source, *to)?)
+            let (text, notes) = rig_convert::convert(&source, *to)?;
+            print_notes(&notes);
+            write(out.as_deref(), &text)
         }
     }
 }
 
 fn validate(rig: &Path, options: Options) -> Result<(), Failure> {
-    let support = RigFile::load(Some(rig))?.support_name.word();
+    let support = load_rig(Some(rig))?.support_name.word();
     options.report(&json_object! { file: rig, support: support }, || {
         format!(
             "{}: a rig on the support `{support}`, nothing wrong with it\n",

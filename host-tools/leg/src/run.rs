@@ -6,7 +6,7 @@ mod resources;
 
 use crate::board::Emulation;
 use crate::options::Options;
-use crate::output::not_saved;
+use crate::output::{load_rig, not_saved};
 use crate::progress;
 use leg_base::failure::Failure;
 use leg_bench::run_charts;
@@ -53,7 +53,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         eprintln!("leg: {}: {note}", args.scenario.display());
     }
     let default_rig = || scenario.rig.clone().into();
-    let rig = RigFile::load(Some(&args.rig.clone().unwrap_or_else(default_rig)))?;
+    let rig = load_rig(Some(&args.rig.clone().unwrap_or_else(default_rig)))?;
     let default = || image::workspace_root().join("target/leg-run");
     let directory = args.plots.clone().unwrap_or_else(default);
     if args.errors {

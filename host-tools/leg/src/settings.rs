@@ -2,7 +2,7 @@
 
 use crate::connection::{ConnectionArgs, Purpose};
 use crate::options::Options;
-use crate::output::{print, write};
+use crate::output::{load_rig, print, write};
 use clap::Subcommand;
 use leg_base::failure::Failure;
 use leg_base::json_line::to_line;
@@ -90,7 +90,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
 
 /// The settings of a board that a rig file gives.
 fn load_settings(rig: &Path) -> Result<Settings, Failure> {
-    let rig = RigFile::load(Some(rig))?;
+    let rig = load_rig(Some(rig))?;
     Ok(control_settings::settings(&rig, &rig.gains, None))
 }
 

@@ -4,6 +4,7 @@ mod report;
 
 use crate::numbers::positive;
 use crate::options::Options;
+use crate::output::load_rig;
 use crate::progress;
 use leg_base::failure::Failure;
 use leg_base::json_object;
@@ -113,7 +114,7 @@ fn false_alarms(campaign: &Campaign, hours: f64, options: Options) -> Result<(),
 }
 
 fn rigs(path: &Path) -> Result<Vec<(String, RigFile)>, Failure> {
-    let load = |path: &Path| Ok((path.display().to_string(), RigFile::load(Some(path))?));
+    let load = |path: &Path| Ok((path.display().to_string(), load_rig(Some(path))?));
     if path == Path::new("all") {
         return READY_RIGS
             .iter()

@@ -13,17 +13,20 @@ pub struct ReadyRig {
     pub figure_2: &'static str,
     /// What it is.
     pub words: &'static str,
+    /// The same in two words at most.
+    pub joint: &'static str,
     /// The rig file.
     pub text: &'static str,
 }
 
 macro_rules! ready_rigs {
-    ($($name:literal $support:ident $figure_2:literal $words:literal;)*) => {
+    ($($name:literal $support:ident $figure_2:literal $words:literal $joint:literal;)*) => {
         [$(ReadyRig {
             name: $name,
             support: SupportName::$support,
             figure_2: $figure_2,
             words: $words,
+            joint: $joint,
             text: include_str!(concat!("../../rigs/", $name, ".toml")),
         },)*]
     };
@@ -31,13 +34,13 @@ macro_rules! ready_rigs {
 
 /// Every ready rig; the first is the default.
 pub const READY_RIGS: [ReadyRig; 7] = ready_rigs! {
-    "table1" TorsionFree "-" "idealised: tilts without torsion";
-    "spherical" Spherical "a" "ball joint";
-    "universal" Universal "b" "rigid universal joint";
-    "compliant_pivot" CompliantPivot "c" "one elastic rod";
-    "elastic_rod_universal" ElasticRodUniversal "d, g" "universal joint of elastic rods";
-    "notch_universal" NotchUniversal "e, h" "universal joint of notch hinges";
-    "leaf_spring_universal" LeafSpringUniversal "f, i" "universal joint of leaf springs";
+    "table1" TorsionFree "-" "idealised: tilts without torsion" "idealised";
+    "spherical" Spherical "a" "ball joint" "ball joint";
+    "universal" Universal "b" "rigid universal joint" "universal joint";
+    "compliant_pivot" CompliantPivot "c" "one elastic rod" "compliant pivot";
+    "elastic_rod_universal" ElasticRodUniversal "d, g" "universal joint of elastic rods" "elastic rods";
+    "notch_universal" NotchUniversal "e, h" "universal joint of notch hinges" "notch hinges";
+    "leaf_spring_universal" LeafSpringUniversal "f, i" "universal joint of leaf springs" "leaf springs";
 };
 
 /// The ready rig of a name.
@@ -53,11 +56,14 @@ mod tests {
     use crate::rig_file::RigFile;
 
     #[test]
-    fn every_ready_rig_has_its_support_and_is_table_1_otherwise_or_leans_less() {
+    fn every_support_of_fig_2_has_a_ready_rig_that_is_table_1_otherwise_or_leans_less() {
         let table_1 = RigFile::load(None).unwrap();
         for rig in READY_RIGS {
             let file = RigFile::parse(rig.name, rig.text).unwrap();
             assert_eq!(file.support_name, rig.support, "{}", rig.name);
+            if rig.figure_2 == "-" {
+                continue;
+            }
             let same = RigFile {
                 support_name: table_1.support_name,
                 support: table_1.support,

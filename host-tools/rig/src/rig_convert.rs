@@ -1,6 +1,6 @@
 //! Rig files as TOML and as JSON, with the same keys.
 
-use crate::rig_file::{RigFile, RigText};
+use crate::rig_file::RigText;
 use clap::ValueEnum;
 use leg_base::failure::Failure;
 
@@ -13,21 +13,24 @@ pub enum RigFormat {
     Json,
 }
 
-/// Converts a rig file, after a check of what it says.
+/// Converts a rig file, after a check of what it says; with the notes on it.
 ///
 /// # Errors
 /// A [`Failure`] that names the place in a TOML file; what is no JSON object.
-pub fn convert(source: &RigText, to: RigFormat) -> Result<String, Failure> {
-    let toml_text = if source.text.trim_start().starts_with('{') {
-        from_json(source)?
+pub fn convert(source: &RigText, to: RigFormat) -> Result<(String, Vec<String>), Failure> {
+    let toml = if source.text.trim_start().starts_with('{') {
+        let text = from_json(source)?;
+        let name = source.name.clone();
+        RigText { name, text }
     } else {
-        source.text.clone()
+        source.clone()
     };
-    RigFile::parse(&source.name, &toml_text)?;
-    match to {
-        RigFormat::Toml => Ok(toml_text),
-        RigFormat::Json => to_json(&source.name, &toml_text),
-    }
+    let (_, notes) = toml.read()?;
+    let text = match to {
+        RigFormat::Toml => toml.text,
+        RigFormat::Json => to_json(&toml.name, &toml.text)?,
+    };
+    Ok((text, notes))
 }
 
 fn from_json(source: &RigText) -> Result<String, Failure> {
@@ -98,8 +101,8 @@ mod tests {
                 name: "test".into(),
                 text: text.into(),
             };
-            let json = convert(&source(rig), RigFormat::Json).unwrap();
-            let back = convert(&source(&json), RigFormat::Toml).unwrap();
+            let json = convert(&source(rig), RigFormat::Json).unwrap().0;
+            let back = convert(&source(&json), RigFormat::Toml).unwrap().0;
             let [before, after] = [rig, &back].map(|text| RigFile::parse("test", text).unwrap());
             assert_eq!(before, after);
         }

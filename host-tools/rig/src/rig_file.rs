@@ -53,24 +53,22 @@ pub struct RigFile {
 
 impl RigFile {
     /// The rig of a file or, where there is no such file, the ready rig of that name; the paper's rig when neither is
-    /// given.
+    /// given. Notes on it are left out: [`RigText::read`] gives them.
     ///
     /// # Errors
     /// A [`Failure`] with the place.
     pub fn load(path: Option<&Path>) -> Result<Self, Failure> {
-        let RigText { name, text } = RigText::load(path)?;
-        Self::parse(&name, &text)
+        let (rig, _) = RigText::load(path)?.read()?;
+        Ok(rig)
     }
 
-    /// The text of a rig file; `file` is its name in messages.
+    /// The text of a rig file; `file` is its name in messages. Notes on it are left out, too.
     ///
     /// # Errors
     /// A [`Failure`] with the place.
     pub fn parse(file: &str, text: &str) -> Result<Self, Failure> {
-        let (rig, notes) = reading::parse(text).map_err(|error| error.failure(file, text))?;
-        for note in notes {
-            eprintln!("{file}: {note}");
-        }
+        let [name, text] = [file, text].map(str::to_owned);
+        let (rig, _) = RigText { name, text }.read()?;
         Ok(rig)
     }
 
@@ -111,6 +109,17 @@ pub struct RigText {
 }
 
 impl RigText {
+    /// The rig that it describes, with notes on what it should say otherwise.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the place.
+    pub fn read(&self) -> Result<(RigFile, Vec<String>), Failure> {
+        let Self { name, text } = self;
+        let (rig, notes) = reading::parse(text).map_err(|error| error.failure(name, text))?;
+        let notes = notes.iter().map(|note| format!("{name}: {note}"));
+        Ok((rig, notes.collect()))
+    }
+
     /// The text that [`RigFile::load`] reads.
     ///
     /// # Errors

@@ -3,13 +3,15 @@
 use crate::framed;
 use crate::requests::{payload, settings};
 use leg_firmware::command::{Command, Compensation};
+use leg_firmware::frame::MAX_PAYLOAD;
 use leg_firmware::host_link::HostRequest;
 use leg_firmware::host_link::{HOST_SCHEMA, Hello};
 use leg_firmware::linked_leg::LINK_BYTES_MAX;
 use leg_firmware::sensors::{CODE_MAX, Sensors};
 use leg_firmware_bench::protocol::{Request, TickRequest};
+use std::mem::discriminant;
 
-/// Every request of a user's host.
+/// Every request of a user's host; those that have no example here with zeros in them.
 pub(crate) fn every() -> Vec<HostRequest> {
     let mut requests = vec![
         identify(),
@@ -21,7 +23,19 @@ pub(crate) fn every() -> Vec<HostRequest> {
         HostRequest::SetSettings(settings()),
     ];
     requests.extend(COMMANDS.map(commanded));
+    let known: Vec<_> = requests.iter().map(discriminant).collect();
+    requests.extend(zeros().filter(|request| !known.contains(&discriminant(request))));
     requests
+}
+
+/// One request of every kind with nothing but zeros in it.
+fn zeros() -> impl Iterator<Item = HostRequest> {
+    let request = |kind| {
+        let mut bytes = [0; MAX_PAYLOAD];
+        bytes[0] = kind;
+        postcard::from_bytes(&bytes).ok()
+    };
+    (0..).map_while(request)
 }
 
 const COMMANDS: [Command; 12] = [

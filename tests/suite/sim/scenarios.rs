@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use super::ready_runs::{Run, ready, run, scenario};
 use leg_bench::sensitivity;
 use leg_boards::image::workspace_root;
 use leg_firmware::supervisor::Fault;
@@ -10,47 +11,27 @@ use leg_sim::link::{InProcess, Link};
 use leg_sim::plant::Defect;
 use leg_sim::ready_scenarios::{self, READY_SCENARIOS};
 use leg_sim::scenario::{BOARD_EXCEPTIONS, Scenario, Step, TestStep};
-use leg_sim::simulation::{Simulation, Summary};
+use leg_sim::simulation::Simulation;
 use std::fs;
-use std::path::Path;
-
-/// Everything of a tick that the firmware decides, as bits.
-type Bits = Vec<[u32; 3]>;
-
-fn scenario(name: &str) -> Scenario {
-    Scenario::parse(name, ready_scenarios::named(name).unwrap().text).unwrap()
-}
-
-fn run(scenario: &Scenario, link: &mut dyn Link) -> (Summary, Bits) {
-    let rig = RigFile::load(Some(Path::new(&scenario.rig))).unwrap();
-    let mut bits = Bits::new();
-    let summary = Simulation::new(scenario, &rig)
-        .unwrap()
-        .run(link, &mut |tick| {
-            let enabled = u32::from(tick.drive.enabled) << 31;
-            bits.push(tick.drive.duty.map(|duty| duty.to_bits() ^ enabled));
-        })
-        .unwrap();
-    (summary, bits)
-}
 
 #[test]
 fn every_ready_scenario_passes() {
-    for ready in READY_SCENARIOS {
-        let (summary, _) = run(&scenario(ready.name), &mut InProcess::new());
+    // From the last one on: another test begins with the first.
+    for scenario in READY_SCENARIOS.iter().rev() {
+        let summary = &ready(scenario.name).summary;
         let failed: Vec<_> = summary
             .measurements
             .iter()
             .filter(|measurement| !measurement.passes())
             .collect();
-        assert!(failed.is_empty(), "{}: {failed:?}", ready.name);
-        assert_eq!(summary.stopped, None, "{}", ready.name);
+        assert!(failed.is_empty(), "{}: {failed:?}", scenario.name);
+        assert_eq!(summary.stopped, None, "{}", scenario.name);
         let unexpected = &summary.unexpected;
-        assert!(unexpected.is_empty(), "{}: {unexpected:?}", ready.name);
+        assert!(unexpected.is_empty(), "{}: {unexpected:?}", scenario.name);
         assert!(
             !summary.measurements.is_empty(),
             "{} measures nothing",
-            ready.name
+            scenario.name
         );
     }
 }
@@ -79,11 +60,11 @@ fn the_emulated_core_asks_for_the_same_duties_to_the_last_bit() {
     let long = ["workspace", "tour"];
     let names = READY_SCENARIOS.iter().map(|ready| ready.name);
     for name in names.filter(|name| !long.contains(name)) {
-        let scenario = scenario(name);
-        let (here, expected) = run(&scenario, &mut InProcess::new());
-        let (emulated, found) = run(&scenario, link);
-        let first = expected.iter().zip(&found).position(|(a, b)| a != b);
+        let (here, emulated) = (ready(name), run(&scenario(name), link));
+        let mut pairs = here.bits.iter().zip(&emulated.bits);
+        let first = pairs.position(|(a, b)| a != b);
         assert_eq!(first, None, "{name}: first tick with other bits");
+        let (here, emulated) = (&here.summary, emulated.summary);
         assert_eq!(here.ticks, emulated.ticks, "{name}");
         assert_eq!(here.measurements, emulated.measurements, "{name}");
     }
@@ -93,8 +74,7 @@ fn the_emulated_core_asks_for_the_same_duties_to_the_last_bit() {
 #[test]
 fn the_shadow_in_f64_stays_near() {
     for name in ["fig9", "homing", "tour", "stiffness", "payload"] {
-        let (summary, _) = run(&scenario(name), &mut InProcess::new());
-        let divergence = summary.divergence;
+        let divergence = ready(name).summary.divergence;
         assert_eq!(divergence.other_state, 0, "{name}");
         // Tendons that come taut may do so a cycle apart: 5 mm/s for half a millisecond.
         assert!(divergence.reference_m < 3e-6, "{name}: {divergence:?}");
@@ -108,8 +88,8 @@ fn the_shadow_in_f64_stays_near() {
 fn cells_and_curves_that_are_off_move_the_tip_by_as_much_as_is_said() {
     let largest_mm = |cell_percent: f64, curve_percent: f64| {
         let scenario = scenario("support").with_errors(cell_percent, curve_percent);
-        let (summary, _) = run(&scenario, &mut InProcess::new());
-        sensitivity::largest_mm(&summary).unwrap()
+        let run = run(&scenario, &mut InProcess::new());
+        sensitivity::largest_mm(&run.summary).unwrap()
     };
     let (exact, cells, curves) = (
         largest_mm(0.0, 0.0),
@@ -157,7 +137,7 @@ fn a_cut_tendon_lets_the_tip_swing_no_farther_than_is_said() {
 fn what_came_out_before_a_step_that_never_ends_is_kept() {
     let text = "title = \"never\"\nsteps = [{ wait_s = 0.1 }, { measure = { name = \"level\", quantity = \"pretension_n\", between = [0, 0] } }, { await = { state = \"held\", timeout_s = 0.1 } }]";
     let scenario = Scenario::parse("never", text).unwrap();
-    let (summary, bits) = run(&scenario, &mut InProcess::new());
+    let Run { summary, bits, .. } = run(&scenario, &mut InProcess::new());
     let stopped = summary.stopped.clone().unwrap();
     assert!(
         stopped.starts_with("step 3: held did not come within 0.1 s"),

@@ -2,16 +2,17 @@
 
 use super::VERSION;
 use super::error::CorruptReason;
+use super::max_size::max_size;
 use crate::settings::Settings;
 use crc::{CRC_32_ISO_HDLC, Crc};
-use postcard_schema::key::Key;
+use postcard_schema::{Schema, key::Key};
 use sequential_storage::map::{SerializationError, Value};
 
 /// Hash of the type [`Settings`] alone: other messages may change without the settings being lost.
 pub const SETTINGS_SCHEMA: [u8; 8] = Key::for_path::<Settings>("settings").to_bytes();
 
 /// Most that settings take in postcard's format, bytes: three tendons with full curves.
-pub const SETTINGS_MAX: usize = 982;
+pub const SETTINGS_MAX: usize = max_size(Settings::SCHEMA);
 
 const HEAD: usize = size_of::<u8>() + SETTINGS_SCHEMA.len();
 const CHECKSUM: usize = size_of::<u32>();

@@ -15,6 +15,9 @@ use std::thread;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
+/// Longest wait for the boot, for a reply and for the end, unless another one is set.
+const TIMEOUT: Duration = Duration::from_secs(20);
+
 /// Time that QEMU may take to end once its side of the link is closed.
 const END_TIMEOUT: Duration = Duration::from_secs(5);
 
@@ -50,7 +53,7 @@ impl QemuSession {
         let mut process = Process::start(config, directory.path())?;
         let (stdout, stderr) = process.outputs()?;
         let mut log = Log::collect(table, stdout, stderr, config.verbose);
-        let to_firmware = meet(&mut process, &mut log, directory.path(), config.timeout)?;
+        let to_firmware = meet(&mut process, &mut log, directory.path())?;
         let mut session = Self {
             to_firmware,
             from_firmware,
@@ -59,11 +62,16 @@ impl QemuSession {
             _directory: directory,
             decoder: Decoder::new(),
             sequence: 0,
-            timeout: config.timeout,
+            timeout: TIMEOUT,
             info: None,
         };
         session.info = Some(link::greet(&mut session)?);
         Ok(session)
+    }
+
+    /// Sets the longest wait for a reply and for the end; 20 s if it is not set.
+    pub const fn set_timeout(&mut self, timeout: Duration) {
+        self.timeout = timeout;
     }
 
     /// What the firmware said of itself.
@@ -160,13 +168,8 @@ fn accepted(reply: Reply, received: u16, sent: u16) -> Result<Reply, LinkError> 
 }
 
 /// Waits until the firmware has opened both pipes.
-fn meet(
-    process: &mut Process,
-    log: &mut Log,
-    directory: &Path,
-    timeout: Duration,
-) -> Result<OwnedFd, LinkError> {
-    let deadline = Instant::now() + timeout;
+fn meet(process: &mut Process, log: &mut Log, directory: &Path) -> Result<OwnedFd, LinkError> {
+    let deadline = Instant::now() + TIMEOUT;
     loop {
         if let Some(pipe) = pipes::open_to_firmware(directory)? {
             return Ok(pipe);
@@ -175,7 +178,7 @@ fn meet(
             return Err(died(status, log));
         }
         if Instant::now() >= deadline {
-            return Err(timed_out("boot", timeout, log));
+            return Err(timed_out("boot", TIMEOUT, log));
         }
         thread::sleep(POLL_INTERVAL);
     }

@@ -1,9 +1,10 @@
 //! Homing and moving the leg, and leaving it in hold.
 
 use super::command::{name, same_direction};
-use super::{Operator, OperatorError};
+use super::{Goal, Operator, OperatorError};
 use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::host_link::HostRefusal;
+use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
 use std::time::Duration;
@@ -14,8 +15,11 @@ const HOMING_TIME: Duration = Duration::from_secs(120);
 /// Longest move with all that belongs to it.
 const MOVE_TIME: Duration = Duration::from_secs(60);
 
-/// How long the leg has to be settled.
-const SETTLED_TIME: Duration = Duration::from_millis(300);
+/// How long the leg has to be settled, in its own ticks: an emulated leg may be slower than the clock. 0.3 s.
+const SETTLED_TICKS: u32 = 3 * TICK_HZ as u32 / 10;
+
+/// Ticks from one telemetry to the next below which nothing can be said of a change: 10 ms.
+const COMPARED_TICKS: u32 = TICK_HZ as u32 / 100;
 
 /// Distance of every tension from its target below which a leg is settled, N.
 const SETTLED_N: f32 = 2.0;
@@ -60,38 +64,37 @@ impl Operator {
         }
         self.drive(|operator| {
             operator.command(Command::Home)?;
-            operator.follow(asked, HOMING_TIME, |_, telemetry| {
+            operator.follow(asked, HOMING_TIME, |telemetry| {
                 telemetry.state == State::Active
             })?;
             operator.settle(asked)
         })
     }
 
-    /// Sends the commands in their order, a pretension or stiffness first and a move last; without any, holds the leg where it
-    /// is. Waits until the leg has come to rest, and leaves it in hold. Arms it if it is homed and disarmed, ends a hold that
-    /// no fault began.
+    /// Leads the leg to the goal, waits until it has come to rest there, and leaves it in hold. Arms it if it is homed and
+    /// disarmed, ends a hold that no fault began.
     ///
     /// # Errors
     /// As [`Self::drive`] and [`Self::command`]; [`OperatorError::Failed`], [`OperatorError::Limited`],
     /// [`OperatorError::StoppedByOtherHost`] or [`OperatorError::TimedOut`] on the way; [`OperatorError::OtherPose`] at
     /// the end of a move.
-    pub fn reach(&mut self, commands: &[Command]) -> Result<Telemetry<f32>, OperatorError> {
-        let asked = commands.last().map_or("hold", name);
+    pub fn reach(&mut self, goal: &Goal) -> Result<Telemetry<f32>, OperatorError> {
+        let commands = goal.commands();
+        let asked = match commands.last() {
+            None | Some(Command::Hold) => "hold",
+            Some(command) => name(command),
+        };
         self.settle_state(asked)?;
         self.drive(|operator| {
             operator.activate(asked)?;
-            if commands.is_empty() {
-                // Also where the leg is active: it is this host then that holds it, or another that drives it is named.
-                operator.command(Command::Hold)?;
-            }
             for command in commands {
-                operator.command(*command)?;
+                operator.command(command)?;
             }
             let telemetry = operator.settle(asked)?;
             unlimited(asked, &telemetry)?;
-            match commands.last() {
+            match &goal.direction {
                 // A board may give up a path that it cannot plan.
-                Some(Command::Move { x, y }) if !same_direction(&telemetry.target, &[*x, *y]) => {
+                Some(direction) if !same_direction(&telemetry.target, direction) => {
                     Err(OperatorError::OtherPose(telemetry.pose))
                 }
                 _ => Ok(telemetry),
@@ -133,13 +136,17 @@ impl Operator {
     fn settle(&mut self, asked: &'static str) -> Result<Telemetry<f32>, OperatorError> {
         let mut last: Option<Telemetry<f32>> = None;
         let mut since = None;
-        self.follow(asked, MOVE_TIME, |now, telemetry| {
+        self.follow(asked, MOVE_TIME, |telemetry| {
+            let tick = telemetry.tick;
+            if last.is_some_and(|last| tick.wrapping_sub(last.tick) < COMPARED_TICKS) {
+                return false;
+            }
             let before = last.replace(*telemetry);
             if !before.is_some_and(|before| settled(&before, telemetry)) {
                 since = None;
                 return false;
             }
-            now >= *since.get_or_insert(now) + SETTLED_TIME
+            tick.wrapping_sub(*since.get_or_insert(tick)) >= SETTLED_TICKS
         })
     }
 
@@ -148,14 +155,14 @@ impl Operator {
         &mut self,
         asked: &'static str,
         timeout: Duration,
-        mut done: impl FnMut(Duration, &Telemetry<f32>) -> bool,
+        mut done: impl FnMut(&Telemetry<f32>) -> bool,
     ) -> Result<Telemetry<f32>, OperatorError> {
         let until = self.now() + timeout;
         self.poll(asked, timeout, |now, telemetry| {
             if !telemetry.state.follows() {
                 return Err(not_following(asked, telemetry));
             }
-            let done = done(now, telemetry);
+            let done = done(telemetry);
             if !done && now >= until {
                 // What limits the leg is why it does not arrive.
                 unlimited(asked, telemetry)?;

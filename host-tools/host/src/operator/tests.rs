@@ -17,7 +17,7 @@ mod scripted_board;
 mod settings;
 
 use crate::cancel_flag::CancelFlag;
-use crate::operator::{HostIdentity, Operator, OperatorError};
+use crate::operator::{Goal, HostIdentity, Operator, OperatorError, Tensioning};
 use crate::transport::Transport;
 use crate::transport::emulated::{EmulatedLine, EmulatedTransport};
 use leg_base::failure::Failure;
@@ -51,17 +51,20 @@ fn operator(transport: impl Transport + 'static, cancel: &CancelFlag) -> Operato
     Operator::open(Box::new(transport), HostIdentity::FIXED, cancel.clone()).unwrap()
 }
 
-fn lean(tilt_deg: f64) -> [Command; 1] {
-    let y = tilt_deg.to_radians().sin() as f32;
-    [Command::Move { x: 0.0, y }]
+fn lean(tilt_deg: f64) -> Goal {
+    Goal::direction(0.0, tilt_deg.to_radians().sin() as f32)
 }
 
-fn stiffness(demand_nm_per_rad: f32) -> [Command; 1] {
+fn stiffness(demand_nm_per_rad: f32) -> Goal {
     let towards = None;
-    [Command::Stiffness {
+    let tensioning = Tensioning::Stiffness {
         demand_nm_per_rad,
         towards,
-    }]
+    };
+    Goal {
+        tensioning: Some(tensioning),
+        direction: None,
+    }
 }
 
 /// Whether the work was done and failed: exit code 1.

@@ -1,6 +1,6 @@
 //! One tick as it is recorded: all that a controller gets, and the bits of what it gives.
 
-use super::{RecordingError, message_refused};
+use super::RecordingError;
 use leg_firmware::drive::Drive;
 use leg_firmware::linked_leg::LINK_BYTES_MAX;
 use leg_firmware::sensors::Sensors;
@@ -22,7 +22,7 @@ pub(super) struct TickRecord {
 impl TickRecord {
     pub fn new(tick: &Tick<'_>) -> Result<Self, RecordingError> {
         let link = heapless::Vec::from_slice(tick.link);
-        let link = link.map_err(|_| message_refused("too many bytes from the link"))?;
+        let link = link.map_err(|_| RecordingError::message("too many bytes from the link"))?;
         let (duty_bits, enabled) = bits(tick.drive);
         Ok(Self {
             sensors: *tick.sensors,
@@ -41,6 +41,6 @@ pub(super) fn bits(drive: &Drive<f32>) -> ([u32; 3], bool) {
 /// A message in postcard's format.
 pub(super) fn to_bytes<T: Serialize>(message: &T) -> Result<Vec<u8>, RecordingError> {
     let mut buffer = [0; BYTES_MAX];
-    let bytes = postcard::to_slice(message, &mut buffer).map_err(message_refused)?;
+    let bytes = postcard::to_slice(message, &mut buffer).map_err(RecordingError::message)?;
     Ok(bytes.to_vec())
 }

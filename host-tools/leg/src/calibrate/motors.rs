@@ -3,8 +3,8 @@
 use super::manual_steps::{manual_step, require_drivers_off};
 use crate::connection::{ConnectionArgs, Purpose};
 use crate::options::Options;
+use crate::output::load_rig;
 use leg_base::failure::Failure;
-use leg_rig::rig_file::RigFile;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -71,7 +71,7 @@ impl Turn {
 }
 
 pub(super) fn run(args: &Args, options: Options) -> Result<(), Failure> {
-    let rig = RigFile::load(args.rig.as_deref())?;
+    let rig = load_rig(args.rig.as_deref())?;
     let counts_per_turn = rig.actuator.counts_per_turn;
     if counts_per_turn * (1.0 + HAND_PART) > f64::from(i16::MAX) {
         return Err(Failure::refused(

@@ -46,24 +46,16 @@ fn read_name(section: &Section<'_>) -> Result<SupportName, TomlError> {
 
 /// The keys of the section for a support.
 fn keys(name: SupportName, measured: bool) -> Vec<&'static str> {
-    let own: &[&str] = match name {
-        _ if name.elastic() && measured => &MEASURED,
-        SupportName::TorsionFree | SupportName::Spherical | SupportName::Universal => {
-            &["axial_n_per_m"]
-        }
-        SupportName::CompliantPivot => &["length_mm", "diameter_mm"],
-        SupportName::ElasticRodUniversal => &["length_mm", "diameter_mm", "spacing_mm"],
-        SupportName::NotchUniversal => &["radius_mm", "thickness_mm", "width_mm", "spacing_mm"],
-        SupportName::LeafSpringUniversal => {
-            &["length_mm", "thickness_mm", "width_mm", "spacing_mm"]
-        }
-    };
-    let material: &[&str] = if name.elastic() && !measured {
-        &MATERIAL
+    let mut keys = vec!["kind", "shaft"];
+    if !name.elastic() {
+        keys.push("axial_n_per_m");
+    } else if measured {
+        keys.extend(MEASURED);
     } else {
-        &[]
-    };
-    [&["kind", "shaft"], own, material].concat()
+        keys.extend(flexures::keys(name));
+        keys.extend(MATERIAL);
+    }
+    keys
 }
 
 /// A joint whose stiffness is given; one that is not elastic gives way along the leg at most.

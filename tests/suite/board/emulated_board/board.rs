@@ -4,7 +4,6 @@ use leg_rig::ready_rigs::READY_RIGS;
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, Command, Output, Stdio};
-use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 const LEG: &str = env!("CARGO_BIN_EXE_leg-under-test");
@@ -38,7 +37,7 @@ impl BoardUnderTest {
         let rig = directory.path().join("rig.toml");
         std::fs::write(&rig, [READY_RIGS[0].text, PATIENT, sections].concat()).unwrap();
         let mut process = Command::new(LEG)
-            .args(["emulate", "--touch", "--for", "120", "--rig"])
+            .args(["emulate", "--touch", "--for", "600", "--rig"])
             .arg(&rig)
             .args(arguments)
             .stdin(Stdio::piped())
@@ -104,8 +103,8 @@ impl BoardUnderTest {
 
     pub fn act(&mut self, line: &str) {
         writeln!(self.actions, "{line}").unwrap();
-        // The board looks every millisecond.
-        sleep(Duration::from_millis(100));
+        // The board looks at least every 10 ms of its own time.
+        self.wait(0.1);
     }
 
     /// Runs a command with what is done by hand at each of its questions, after which the leg's time goes on. The standard

@@ -40,7 +40,7 @@ fn a_load_cell_is_calibrated_with_weights_and_the_board_is_set_to_it() {
         "--set",
         "--json",
     ];
-    let output = board.run_by_hand(board.command(&arguments), &hangs, 0.0);
+    let output = board.run_by_hand(board.command(&arguments), &hangs, 0.5);
     assert!(output.status.success(), "{}", errors(&output));
     let found: Value = serde_json::from_slice(&output.stdout).unwrap();
     let settings = board.json(&["settings", "get"]);

@@ -6,7 +6,7 @@ use leg_firmware::can::{Assembler, CanFrame, Identifier, LegAddress, Segmenter};
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::State;
 use leg_host::cancel_flag::CancelFlag;
-use leg_host::operator::{HostIdentity, Operator};
+use leg_host::operator::{Goal, HostIdentity, Operator};
 use leg_host::transport::Transport;
 use leg_host::transport::can::{CanPort, CanTransport};
 use leg_rig::rig_file::RigFile;
@@ -143,9 +143,8 @@ fn host(
     Operator::open(Box::new(line), host, CancelFlag::default()).unwrap()
 }
 
-fn lean(tilt_deg: f32) -> [Command; 1] {
-    let y = tilt_deg.to_radians().sin();
-    [Command::Move { x: 0.0, y }]
+fn lean(tilt_deg: f32) -> Goal {
+    Goal::direction(0.0, tilt_deg.to_radians().sin())
 }
 
 #[test]

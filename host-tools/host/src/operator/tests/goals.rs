@@ -2,8 +2,8 @@
 //! tests of the emulated board.
 
 use super::{emulated_line, hanging_leg, host, is_failed, lean, state, stiffness, telemetry};
-use crate::operator::OperatorError;
-use leg_firmware::command::{Command, CommandRefusal};
+use crate::operator::{Goal, OperatorError};
+use leg_firmware::command::CommandRefusal;
 use leg_firmware::host_link::HostRefusal;
 use leg_firmware::supervisor::{Fault, State};
 use leg_rig::rig_file::RigFile;
@@ -48,7 +48,7 @@ fn what_the_leg_cannot_do_is_named_and_leaves_it_in_hold() {
     ] {
         let expected = HostRefusal::Command(expected);
         error_of!(
-            operator.reach(&[Command::Move { x, y: 0.0 }]),
+            operator.reach(&Goal::direction(x, 0.0)),
             OperatorError::Refused(_, refusal) if *refusal == expected
         );
         assert_eq!(state(&mut operator), State::Held);

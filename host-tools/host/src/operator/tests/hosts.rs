@@ -1,7 +1,7 @@
 //! Several hosts of one leg.
 
 use super::{begin_move, hanging_leg, host, lean, state, telemetry};
-use crate::operator::OperatorError;
+use crate::operator::{Goal, OperatorError};
 use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::host_link::HostRefusal;
 use leg_firmware::supervisor::State;
@@ -12,9 +12,9 @@ fn a_second_host_may_read_and_stop_and_nothing_else() {
     let leg = hanging_leg();
     let (mut first, mut second) = (host(&leg, 1), host(&leg, 2));
     begin_move(&mut first);
-    for goal in [&lean(-10.0)[..], &[]] {
+    for goal in [lean(-10.0), Goal::default()] {
         error_of!(
-            second.reach(goal),
+            second.reach(&goal),
             OperatorError::Refused(_, HostRefusal::OtherHost)
         );
         assert_eq!(state(&mut second), State::Active);
@@ -32,7 +32,7 @@ fn to_hold_a_leg_that_moves_ends_its_move() {
     let leg = hanging_leg();
     let mut operator = host(&leg, 1);
     begin_move(&mut operator);
-    operator.reach(&[]).unwrap();
+    operator.reach(&Goal::default()).unwrap();
     let telemetry = telemetry(&mut operator);
     assert_eq!(telemetry.state, State::Held);
     assert!(telemetry.pose[0] < 0.3, "{:?}", telemetry.pose);

@@ -8,6 +8,7 @@ use leg_firmware::frame::{self, Decoder, MAX_FRAME};
 use leg_firmware::host_link::{
     BoardKind, HostReply, HostRequest, Identity, ResetCause, TelemetryReport,
 };
+use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
 use leg_firmware::version::VERSION;
@@ -15,7 +16,7 @@ use std::collections::VecDeque;
 use std::io;
 use std::time::Duration;
 
-/// It sends nothing by itself; time goes on only while its host waits.
+/// It sends nothing by itself; time, the leg's too, goes on only while its host waits.
 struct ScriptedBoard<F> {
     answer: F,
     decoder: Decoder,
@@ -33,7 +34,10 @@ impl<F: FnMut(&HostRequest) -> Option<HostReply>> Transport for ScriptedBoard<F>
             let Some(Ok(frame)) = self.decoder.push(byte) else {
                 continue;
             };
-            if let Some(reply) = (self.answer)(&frame.message().unwrap()) {
+            if let Some(mut reply) = (self.answer)(&frame.message().unwrap()) {
+                if let HostReply::Telemetry(report) = &mut reply {
+                    report.telemetry.tick = (self.now.as_secs_f64() * f64::from(TICK_HZ)) as u32;
+                }
                 let mut out = [0; MAX_FRAME];
                 let reply = frame::encode(frame.sequence, &reply, &mut out).unwrap();
                 self.answers.extend(reply);

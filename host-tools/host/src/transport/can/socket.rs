@@ -37,19 +37,27 @@ pub struct SocketCan {
 }
 
 impl SocketCan {
-    /// Opens an interface by its name, as `can0`, to talk to a leg. One program at a time may, but for those that send urgent
-    /// frames only.
+    /// Opens an interface by its name, as `can0`, to talk to a leg. One program at a time may.
     ///
     /// # Errors
     /// No CAN in the kernel, no such interface, one that is down, without CAN FD or taken by another program: each with what
     /// to do. Other errors of the system as they are.
-    pub fn open(name: &str, leg: LegAddress, urgent_only: bool) -> io::Result<Self> {
+    pub fn open(name: &str, leg: LegAddress) -> io::Result<Self> {
         check(Path::new(INTERFACES), name)?;
-        let lock = if urgent_only {
-            None
-        } else {
-            Some(sender_lock::take(name, leg)?)
-        };
+        let lock = sender_lock::take(name, leg)?;
+        Self::open_sockets(name, leg, Some(lock))
+    }
+
+    /// The same for urgent frames only, beside the program that talks to the leg.
+    ///
+    /// # Errors
+    /// As [`Self::open`], but that no program takes the interface.
+    pub fn open_urgent(name: &str, leg: LegAddress) -> io::Result<Self> {
+        check(Path::new(INTERFACES), name)?;
+        Self::open_sockets(name, leg, None)
+    }
+
+    fn open_sockets(name: &str, leg: LegAddress, lock: Option<UnixListener>) -> io::Result<Self> {
         let open = || CanFdSocket::open(name).map_err(|error| explain(error, name));
         let (ordinary, urgent) = (open()?, open()?);
         let from_leg = CanFilter::new(u32::from(Identifier::ToHost(leg).bits()), EXACTLY);
@@ -231,9 +239,8 @@ mod tests {
             ("no-such-can", io::ErrorKind::NotFound),
             ("lo", io::ErrorKind::InvalidInput),
         ] {
-            for urgent_only in [false, true] {
-                let error = SocketCan::open(name, LEG, urgent_only).unwrap_err();
-                assert_eq!(error.kind(), kind);
+            for open in [SocketCan::open, SocketCan::open_urgent] {
+                assert_eq!(open(name, LEG).unwrap_err().kind(), kind);
             }
         }
     }

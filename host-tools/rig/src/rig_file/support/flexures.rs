@@ -12,6 +12,19 @@ pub(super) const MATERIAL: [&str; 3] = [
     "strain_max_percent",
 ];
 
+/// The keys of their geometry.
+pub(super) const fn keys(name: SupportName) -> &'static [&'static str] {
+    match name {
+        SupportName::TorsionFree | SupportName::Spherical | SupportName::Universal => &[],
+        SupportName::CompliantPivot => &["length_mm", "diameter_mm"],
+        SupportName::ElasticRodUniversal => &["length_mm", "diameter_mm", "spacing_mm"],
+        SupportName::NotchUniversal => &["radius_mm", "thickness_mm", "width_mm", "spacing_mm"],
+        SupportName::LeafSpringUniversal => {
+            &["length_mm", "thickness_mm", "width_mm", "spacing_mm"]
+        }
+    }
+}
+
 /// How the joint resists when it bends by up to `tilt` rad, or what the model refuses of it; and the load along the leg
 /// under which it buckles, N.
 pub(super) fn read(

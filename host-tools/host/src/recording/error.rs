@@ -1,0 +1,70 @@
+//! Why there is no recording.
+
+use leg_base::failure::Failure;
+use mcap::McapError;
+use std::fmt::Display;
+use std::io;
+use std::path::Path;
+
+/// Why there is no recording.
+#[derive(Debug)]
+pub enum RecordingError {
+    /// Its file cannot be written.
+    File(io::Error),
+    /// A message has no form in its format: another file name would not help.
+    Message(String),
+    /// The recorded work failed.
+    Work(Failure),
+}
+
+impl RecordingError {
+    pub(super) fn message(error: impl Display) -> Self {
+        Self::Message(error.to_string())
+    }
+
+    /// What is wrong with the recording in this file, and what to do about it.
+    pub(super) fn failure(self, file: &Path) -> Failure {
+        let file = file.display();
+        match self {
+            Self::File(error) => Failure::refused(
+                format!("cannot write {file}: {error}"),
+                "name a file in a directory that may be written",
+            ),
+            Self::Message(reason) => Failure::refused(
+                format!("a message cannot be written to {file}: {reason}"),
+                "report this as an error of the program",
+            ),
+            Self::Work(failure) => failure,
+        }
+    }
+}
+
+impl From<io::Error> for RecordingError {
+    fn from(error: io::Error) -> Self {
+        Self::File(error)
+    }
+}
+
+impl From<McapError> for RecordingError {
+    fn from(error: McapError) -> Self {
+        match error {
+            McapError::Io(error) => Self::File(error),
+            other => Self::message(other),
+        }
+    }
+}
+
+impl From<csv::Error> for RecordingError {
+    fn from(error: csv::Error) -> Self {
+        match error.into_kind() {
+            csv::ErrorKind::Io(error) => Self::File(error),
+            other => Self::Message(format!("{other:?}")),
+        }
+    }
+}
+
+impl From<Failure> for RecordingError {
+    fn from(failure: Failure) -> Self {
+        Self::Work(failure)
+    }
+}
