@@ -71,6 +71,8 @@ pub struct Plant {
     defects: Defects,
     /// Of the defects that are random, but for those of the cells.
     rng: Rng,
+    /// Whether each motor's plug makes contact.
+    contacts: [bool; 3],
     emergency_stop: bool,
     payload: Payload,
     push: Push,
@@ -94,13 +96,14 @@ impl Plant {
     /// Reads every sensor.
     pub fn sense(&mut self) -> Sensors {
         let pulls_n = self.hand.pulls_n(self.tensions_n);
-        let cell_codes = self.cells.read(pulls_n, &self.defects, self.ticks);
+        let duties = self.motors.map(|motor| motor.duty);
+        let cell_codes = self.cells.read(pulls_n, duties, &self.defects, self.ticks);
         let (actuator, defects) = (&self.actuator, &self.defects);
         // Half of the highest code is no current.
         let range_a = actuator.current_range_a;
         let current_code = |i: usize| code(self.current_shown_a(i), [-range_a, range_a]);
         Sensors {
-            encoder_counts: self.encoders.map(|encoder| encoder.counter),
+            encoder_counts: self.encoder_counts(),
             cell_codes,
             current_codes: std::array::from_fn(current_code),
             supply_code: code(
@@ -122,6 +125,8 @@ impl Plant {
         let disabled = motor.open && defects.has(Defect::CurrentFullScaleDisabled(i));
         if defects.has(Defect::CurrentFullScale(i)) || disabled {
             self.actuator.current_range_a
+        } else if defects.has(Defect::CurrentDead(i)) {
+            -self.actuator.current_range_a
         } else if defects.has(Defect::CurrentZero(i)) {
             0.0
         } else if defects.has(Defect::CurrentOffset(i)) {
@@ -145,12 +150,35 @@ impl Plant {
     pub fn set_defect(&mut self, defect: Defect, on: bool) {
         let before_j = self.energy_j();
         let changed = self.defects.set(defect, on, self.ticks);
-        if let (Defect::TendonSlips(i), true) = (defect, changed && on) {
-            self.unstretched_at_zero_m[i] += SLIP_M;
+        if changed {
+            self.begin_or_end(defect, on);
         }
         self.dynamics.cut = self.defects.of_three(Defect::TendonCut);
         self.work.cut_j += before_j - self.energy_j();
         self.tensions_n = self.pulls_n();
+    }
+
+    /// What a defect does once, when it begins or ends.
+    fn begin_or_end(&mut self, defect: Defect, on: bool) {
+        match defect {
+            Defect::TendonSlips(i) if on => self.unstretched_at_zero_m[i] += SLIP_M,
+            Defect::EncoderSlipsQuarter(i) if on => {
+                let quarter = (0.25 * self.actuator.counts_per_turn) as u16;
+                let counter = &mut self.encoders[i].counter;
+                *counter = counter.wrapping_add(quarter);
+            }
+            Defect::LegGrasped => self.hand.grasped_m = on.then(|| self.tip_m()),
+            _ => {}
+        }
+    }
+
+    fn encoder_counts(&self) -> [u16; 3] {
+        let [first, second, third] = self.encoders.map(|encoder| encoder.counter);
+        if self.defects.has(Defect::EncodersSwapped) {
+            [second, first, third]
+        } else {
+            [first, second, third]
+        }
     }
 
     /// Length of each tendon without tension when its encoder has counted to zero, m: what a perfect homing finds. The

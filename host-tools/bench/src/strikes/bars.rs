@@ -22,6 +22,12 @@ const CUT_MM: f64 = 250.0;
 const SLIP_MM: f64 = 120.0;
 const RELAXED_MM: f64 = 80.0;
 
+/// The same where a tendon grows longer unseen, where a driver runs away until it is cut off, and where a hand holds the
+/// tip that should move, mm.
+const CREEP_MM: f64 = 5.0;
+const RUNAWAY_MM: f64 = 3.0;
+const GRASPED_MM: f64 = 250.0;
+
 /// Time to the fault's name, s.
 const NAMED_S: f64 = 0.5;
 
@@ -58,11 +64,15 @@ impl Bars {
             Some(Defect::TendonCut(_)) => CUT_MM,
             Some(Defect::TendonSlips(_)) => SLIP_MM,
             Some(Defect::Overheating) => RELAXED_MM,
+            Some(Defect::TendonCreeps(_)) => CREEP_MM,
+            Some(Defect::DriverFullOn(_) | Defect::DirectionStuck(_)) => RUNAWAY_MM,
+            Some(Defect::LegGrasped) => GRASPED_MM,
             Some(
                 Defect::CellGainStep(_)
                 | Defect::CellGainStepDown(_)
                 | Defect::CellGainDrift(_)
-                | Defect::CellGainDriftDown(_),
+                | Defect::CellGainDriftDown(_)
+                | Defect::ExcitationSags,
             ) => usual_mm.max(GAIN_MM),
             _ => usual_mm,
         };
@@ -90,11 +100,15 @@ fn named_s(defect: Defect, occasion: Occasion, tensions_n: [f64; 3]) -> Option<f
         | Defect::CellDead(_)
         | Defect::CellStale(_)
         | Defect::CurrentOffset(_)
-        | Defect::CurrentFullScale(_) => driven.then_some(NAMED_S),
+        | Defect::CurrentFullScale(_)
+        | Defect::CurrentDead(_)
+        | Defect::DriverFullOn(_) => driven.then_some(NAMED_S),
         Defect::CellHum(_)
         | Defect::CellStuck(_)
         | Defect::TendonCut(_)
         | Defect::TendonSlips(_) => pulls.then_some(NAMED_S),
+        Defect::CellReversed(_) | Defect::ExcitationLost => pulls.then_some(NAMED_S),
+        Defect::CellsSwapped => lies(tensions_n[1] - tensions_n[0]),
         Defect::CellExcitationLost(i) => lies(tensions_n[i]),
         // Their own time besides.
         Defect::CellFades(i) => lies(tensions_n[i]).map(|named_s| named_s + 0.5),

@@ -6,9 +6,11 @@ use fastrand::Rng;
 use leg_base::angles;
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::supervisor::{Fault, State};
+use leg_model::{Distribution, Error, Rig, TensionBounds, distribute, inverse_kinematics};
 use leg_rig::plant_settings::PlantSettings;
 use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Start;
+use nalgebra::Vector3;
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -28,8 +30,11 @@ const OFFSET_N: f64 = 0.1;
 /// How far before an alarm the true tensions are looked at, s.
 const BEFORE_S: f64 = 0.25;
 
+/// How much farther than by a steady force the tensions go when it begins or ends.
+const SWING: f64 = 1.2;
+
 /// The uses that are remembered for a report.
-const REMEMBERED: usize = 6;
+const REMEMBERED: usize = 8;
 
 /// A fault that came although nothing had failed.
 #[derive(Clone, Debug, Serialize)]
@@ -38,7 +43,7 @@ pub struct Alarm {
     pub fault: &'static str,
     /// Time in the run, s.
     pub time_s: f64,
-    /// Whether a true tension had left its bounds just before: the alarm then is true.
+    /// Whether it says that a tension has left its bounds, and the true one had: the alarm then is true.
     pub beyond: bool,
     /// Lowest and highest true tension in the quarter of a second before, N.
     pub tensions_n: [f64; 2],
@@ -154,7 +159,11 @@ impl<'a> User<'a> {
         Alarm {
             fault: fault.entry().name,
             time_s,
-            beyond: tensions_n[0] < 0.5 * self.file.f_min_n || tensions_n[1] > self.file.f_max_n,
+            beyond: match fault {
+                Fault::Slack => tensions_n[0] < 0.5 * self.file.f_min_n,
+                Fault::OverTension => tensions_n[1] > self.file.f_max_n,
+                _ => false,
+            },
             tensions_n,
             uses: self.uses.join("; "),
         }
@@ -259,14 +268,38 @@ impl<'a> User<'a> {
         low < high
     }
 
+    /// A push that leaves every tension in its bounds, also when it ends and the leg swings back.
     fn push(&mut self) {
-        let (azimuth_deg, force_n) = (360.0 * self.rng.f64(), PUSH_N * self.rng.f64());
+        let (azimuth_deg, asked_n) = (360.0 * self.rng.f64(), PUSH_N * self.rng.f64());
         let (for_s, rise_s) = (self.between([0.05, 1.0]), self.between([0.02, 0.2]));
+        let across = self.stand.plant().across(azimuth_deg);
+        let force_n = asked_n.min(self.strongest_n(&across));
         self.note(format!(
             "push {force_n:.1} N at {azimuth_deg:.0}° for {for_s:.2} s, rising in {rise_s:.2} s"
         ));
-        let force_n = self.stand.plant().across(azimuth_deg) * force_n;
-        self.stand.plant().push(force_n, for_s, rise_s);
+        self.stand.plant().push(across * force_n, for_s, rise_s);
+    }
+
+    /// The strongest push along a direction that lets no tension leave its bounds, N.
+    fn strongest_n(&self, across: &Vector3<f64>) -> f64 {
+        let truth = &self.stand.truth;
+        let change = || {
+            let rig = Rig::new(&self.file.parameters)?;
+            let kinematics = inverse_kinematics(rig.geometry(), &truth.direction)?;
+            let plane = self.file.support.plane(&truth.direction);
+            let bounds = TensionBounds::new(self.file.f_min_n, self.file.f_max_n)?;
+            let moment = truth.tip_m.cross(across);
+            distribute(&kinematics.moment_map, &plane, &moment, &bounds)
+        };
+        let Ok(change): Result<Distribution<f64, 3>, Error> = change() else {
+            return 0.0;
+        };
+        let pairs = truth.tensions_n.iter().zip(&change.particular);
+        let rooms = pairs.map(|(tension, per_newton)| {
+            let room_n = (tension - self.file.f_min_n).min(self.file.f_max_n - tension);
+            room_n / (SWING * per_newton.abs())
+        });
+        rooms.fold(f64::INFINITY, f64::min).max(0.0)
     }
 
     fn load(&mut self) {

@@ -209,6 +209,7 @@ fn watched_s(case: &Case, defect: Option<Defect>) -> f64 {
             | Defect::CellGainDriftDown(_)
             | Defect::CellWanders(_)
             | Defect::EncoderJumps(_)
+            | Defect::TendonCreeps(_)
             | Defect::Overheating,
         ) => usual_s.max(SLOW_S),
         _ => usual_s,

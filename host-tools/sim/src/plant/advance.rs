@@ -14,6 +14,14 @@ const SAGGED_V: f64 = 11.0;
 const DIPPED_V: f64 = 12.0;
 const DIP_S: f64 = 5e-3;
 
+/// How long a loose plug makes contact or not, ticks.
+const CONTACT_TICKS: u64 = 80;
+
+/// How fast a tendon creeps, m/s; what a dry screw takes at the motor, N·m; play of a worn gear, rad of the screw.
+const CREEP_M_PER_S: f64 = 1e-4;
+const DRY_NM: f64 = 0.05;
+const WORN_RAD: f64 = 1.0;
+
 /// A supply that surges, V.
 const SURGED_V: f64 = 32.0;
 
@@ -26,7 +34,8 @@ impl Plant {
         self.wire(drive);
         self.change_payload();
         self.turn_by_hand();
-        self.dynamics.push_n = self.push.force_n(self.time_s());
+        self.wear();
+        self.dynamics.push_n = self.push.force_n(self.time_s()) + self.grasp_n();
         for _ in 0..self.substeps {
             self.substep();
         }
@@ -52,10 +61,18 @@ impl Plant {
         let failed = self.defects.of_three(Defect::DriverFault);
         let inwards = self.defects.of_three(Defect::HalfBridgeOpen);
         let outwards = self.defects.of_three(Defect::HalfBridgeOpenOutwards);
+        let full = self.defects.of_three(Defect::DriverFullOn);
+        let stuck = self.defects.of_three(Defect::DirectionStuck);
+        let apart = self.apart();
         for (i, motor) in self.motors.iter_mut().enumerate() {
-            let duty = f64::from(drive.duty[i]).clamp(-1.0, 1.0);
+            let asked = f64::from(drive.duty[i]).clamp(-1.0, 1.0);
+            let duty = match (full[i], stuck[i]) {
+                (true, _) => 1.0,
+                (false, true) => asked.abs(),
+                (false, false) => asked,
+            };
             let undriven = (inwards[i] && duty > 0.0) || (outwards[i] && duty < 0.0);
-            motor.open = failed[i] || undriven || !drive.enabled || duty.is_nan();
+            motor.open = failed[i] || undriven || apart[i] || !drive.enabled || duty.is_nan();
             motor.duty = if motor.open { 0.0 } else { duty };
             motor.jammed = jammed[i];
         }
@@ -68,6 +85,35 @@ impl Plant {
         } else {
             self.actuator.supply_v
         };
+    }
+
+    /// Which motors' plugs make no contact.
+    fn apart(&mut self) -> [bool; 3] {
+        let loose = self.defects.of_three(Defect::MotorIntermittent);
+        if self.ticks.is_multiple_of(CONTACT_TICKS) && loose.contains(&true) {
+            self.contacts = std::array::from_fn(|_| self.rng.bool());
+        }
+        std::array::from_fn(|i| loose[i] && !self.contacts[i])
+    }
+
+    /// What wears or gives way a little in every tick.
+    fn wear(&mut self) {
+        let creeping = self.defects.of_three(Defect::TendonCreeps);
+        let dry = self.defects.of_three(Defect::ScrewDry);
+        let worn = self.defects.of_three(Defect::GearPlay);
+        let actuator = &self.actuator;
+        for (i, motor) in self.motors.iter_mut().enumerate() {
+            if creeping[i] {
+                self.unstretched_at_zero_m[i] += CREEP_M_PER_S * tick_s();
+            }
+            motor.dry_nm = if dry[i] { DRY_NM } else { 0.0 };
+            let play_rad = if worn[i] {
+                WORN_RAD
+            } else {
+                actuator.backlash_rad
+            };
+            motor.screw.set_play(actuator, play_rad);
+        }
     }
 
     /// Whether the supply's dip is not over.

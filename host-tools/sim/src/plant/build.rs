@@ -56,6 +56,7 @@ impl Plant {
             cells: Cells::new(actuator, settings, seed),
             defects: Defects::default(),
             rng: of_defects(seed.wrapping_add(1)),
+            contacts: [true; 3],
             emergency_stop: false,
             payload: Payload::new(started.payload_kg),
             push: Push::default(),

@@ -31,6 +31,7 @@ defects! {
     of_three {
         TendonCut "A tendon does not pull.";
         TendonSlips "A tendon slips by 5 mm at its clamp, once; it stays so when the defect ends.";
+        TendonCreeps "A tendon grows longer by 0.1 mm in a second, and stays so when the defect ends.";
         CellStuck "A load cell repeats its last code and marks it as fresh.";
         CellSaturated "A load cell gives its highest code.";
         CellDead "A load cell gives its lowest code.";
@@ -47,20 +48,37 @@ defects! {
         CellGainDriftDown "A load cell comes to show 20 % less within 10 s.";
         CellOffsetStep "A load cell shows 10 N more.";
         CellOffsetStepDown "A load cell shows 10 N less.";
+        CellReversed "A load cell's signal wires are swapped: more tension shows as less.";
+        CellCrosstalk "A load cell shows 15 % of the next cell's tension besides.";
+        CellSticks "A load cell sticks: it follows the tension at a distance of 5 N.";
+        CellLate "A load cell shows the tension of 20 ms ago.";
+        CellPwmNoise "A load cell's wire lies beside its motor's: noise of 20 N times the duty, and as much offset.";
         EncoderLost "An encoder's counter stands still.";
         EncoderSlipping "An encoder loses every tenth count.";
         EncoderReversed "An encoder counts in the wrong direction.";
         EncoderJumps "An encoder counts bursts of 50 that are none, up or down, 20 in a second.";
+        EncoderSlipsQuarter "An encoder slips by a quarter of a turn on its shaft, once; it stays so when the defect ends.";
         MotorJammed "A motor does not turn.";
+        MotorIntermittent "A motor's plug makes contact for about half of the time, 10 ms at a time.";
+        ScrewDry "A screw runs dry: it takes 0.05 N·m more at the motor.";
+        GearPlay "A gear is worn: its play is 1 rad of the screw.";
         HalfBridgeOpen "A half bridge is open: nothing drives its motor inwards.";
         HalfBridgeOpenOutwards "A half bridge is open: nothing drives its motor outwards.";
+        DriverFullOn "A driver's pulse line is torn: it drives its motor inwards with the whole supply while it is enabled.";
+        DirectionStuck "A driver's direction line is torn: its motor is driven inwards whatever is asked.";
         CurrentOffset "A motor's current reads 10 A too high.";
         CurrentFullScale "A motor's current reads full scale.";
         CurrentFullScaleDisabled "A motor's current reads full scale while its driver is off.";
+        CurrentDead "A motor's current reads its lowest code.";
         CurrentZero "A motor's current reads none.";
         DriverFault "A driver reports a fault and switches its motor off.";
     }
     of_the_leg {
+        CellsSwapped "The plugs of load cells 1 and 2 are swapped.";
+        EncodersSwapped "The plugs of encoders 1 and 2 are swapped.";
+        ExcitationLost "No load cell's bridge has a supply.";
+        ExcitationSags "The supply of all bridges sags: every load cell shows 20 % less than the tension.";
+        LegGrasped "A hand holds the tip where it is, with 5 N for each millimetre.";
         SupplySag "The supply falls to 11 V.";
         SupplyDip "The supply falls to 12 V for 5 ms, once.";
         SupplySurge "The supply rises to 32 V.";

@@ -2,10 +2,15 @@
 
 use super::Plant;
 use leg_base::tick_time::tick_s;
+use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
 /// How fast a hand turns a motor, rad/s.
 const TURNING_RAD_PER_S: f64 = TAU;
+
+/// How a hand holds the tip: stiffness, N/m, and damping, N·s/m.
+const GRASP_N_PER_M: f64 = 5e3;
+const GRASP_N_S_PER_M: f64 = 10.0;
 
 /// What is being done by hand.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -14,6 +19,8 @@ pub(super) struct Hand {
     pub left_rad: [f64; 3],
     /// What hangs on each load cell in the place of its tendon, N.
     pub hung_n: [Option<f64>; 3],
+    /// Where the tip is held, m.
+    pub grasped_m: Option<Vector3<f64>>,
 }
 
 impl Hand {
@@ -40,6 +47,15 @@ impl Plant {
         if let Some(hung) = self.hand.hung_n.get_mut(cell) {
             *hung = weight_n;
         }
+    }
+
+    /// What a hand that holds the tip pulls at it, N.
+    pub(super) fn grasp_n(&self) -> Vector3<f64> {
+        let tip_m = self.tip_m();
+        let speed = self.leg.rate.cross(&tip_m);
+        self.hand.grasped_m.map_or(Vector3::zeros(), |held_m| {
+            (held_m - tip_m) * GRASP_N_PER_M - speed * GRASP_N_S_PER_M
+        })
     }
 
     /// A tick of turning.

@@ -30,6 +30,8 @@ pub(super) struct Motor {
     pub duty: f64,
     /// Whether the driver's outputs are off.
     pub open: bool,
+    /// Friction beyond that of the actuator, N·m.
+    pub dry_nm: f64,
     /// Whether the rotor is held.
     pub jammed: bool,
     pub current_a: f64,
@@ -45,6 +47,7 @@ impl Motor {
         Self {
             duty: 0.0,
             open: false,
+            dry_nm: 0.0,
             jammed: false,
             current_a: 0.0,
             speed: 0.0,
@@ -72,7 +75,8 @@ impl Motor {
         let driving_nm = actuator.torque_constant_nm_per_a * self.current_a
             - actuator.viscous_nm_s_per_rad * self.speed;
         let free = self.speed + driving_nm * per_torque;
-        let resisting_nm = actuator.friction_nm + self.screw.resistance_nm(free, pull_n);
+        let resisting_nm =
+            actuator.friction_nm + self.dry_nm + self.screw.resistance_nm(free, pull_n);
         let left = (free.abs() - resisting_nm * per_torque).max(0.0);
         self.speed = if self.jammed {
             0.0

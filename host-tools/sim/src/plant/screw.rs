@@ -24,10 +24,15 @@ impl Screw {
         Self {
             slider_m: 0.0,
             behind_m: 0.0,
-            play_m: actuator.backlash_rad * actuator.lead_m / std::f64::consts::TAU,
+            play_m: play_m(actuator, actuator.backlash_rad),
             m_per_rad: actuator.m_per_rad(),
             torque_nm_per_n: torques_nm_per_n(actuator),
         }
+    }
+
+    /// Has another play from now on, as a rotation of the screw, rad.
+    pub fn set_play(&mut self, actuator: &Actuator, play_rad: f64) {
+        self.play_m = play_m(actuator, play_rad);
     }
 
     /// Follows the rotor, which turns by `turned_rad`. The pull never moves the screw: its friction is the greater.
@@ -65,6 +70,11 @@ impl Screw {
             (true, false) => outwards * pull_n,
         }
     }
+}
+
+/// A play as travel of the slider, m.
+fn play_m(actuator: &Actuator, play_rad: f64) -> f64 {
+    play_rad * actuator.lead_m / std::f64::consts::TAU
 }
 
 /// Torque at the rotor in one newton of pull, N·m/N, reeling in and paying out.

@@ -57,10 +57,18 @@ impl Cells {
         }
     }
 
-    /// The codes under these tensions at a tick.
-    pub fn read(&mut self, tensions_n: [f64; 3], defects: &Defects, tick: u64) -> [u16; 3] {
+    /// The codes under these tensions at a tick, while the motors have these duties.
+    pub fn read(
+        &mut self,
+        tensions_n: [f64; 3],
+        duties: [f64; 3],
+        defects: &Defects,
+        tick: u64,
+    ) -> [u16; 3] {
         let pulls_n = std::array::from_fn(|i| tensions_n[i] * self.gains[i]);
-        let shown_n = self.defects.shown_n(pulls_n, self.offsets_n, defects, tick);
+        let shown_n = self
+            .defects
+            .shown_n(pulls_n, self.offsets_n, duties, defects, tick);
         for (i, shown) in shown_n.into_iter().enumerate() {
             // Drawn whatever fails, so that a defect does not change the noise of the other cells.
             let noise = self.noise_n * gaussian(&mut self.rng);

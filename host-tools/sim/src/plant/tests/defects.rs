@@ -3,6 +3,7 @@
 use super::{HELD, OFF, PlantSettings, driven, plant, ready, run};
 use crate::action::Action;
 use crate::plant::{Defect, Plant};
+use leg_firmware::drive::Drive;
 use leg_firmware::sensors::{CODE_MAX, Sensors};
 
 const N_PER_CODE: f64 = 250.0 / CODE_MAX as f64;
@@ -66,7 +67,10 @@ fn shown(defect: Option<Defect>, after_s: f64, seed: u64) -> (f64, f64) {
     if let Some(defect) = defect {
         plant.set_defect(defect, true);
     }
-    run(&mut plant, (after_s * 8000.0) as u32, &OFF);
+    for _ in 0..(after_s * 8000.0) as u32 {
+        plant.step(&OFF);
+        plant.sense();
+    }
     let readings: Vec<f64> = (0..320)
         .map(|_| {
             plant.step(&OFF);
@@ -98,6 +102,14 @@ fn cells_that_lie() {
         (Some(Defect::CellGainDriftDown(0)), 12.0, sound - 0.2 * own),
         (Some(Defect::CellOffsetStep(0)), 0.0, sound + 10.0),
         (Some(Defect::CellOffsetStepDown(0)), 0.0, sound - 10.0),
+        (Some(Defect::CellReversed(0)), 0.0, -20.0),
+        (Some(Defect::CellCrosstalk(0)), 0.0, sound + 0.15 * next),
+        (Some(Defect::CellSticks(0)), 0.0, sound),
+        (Some(Defect::CellLate(0)), 0.03, sound),
+        (Some(Defect::CellPwmNoise(0)), 0.0, sound),
+        (Some(Defect::CellsSwapped), 0.0, next + offset_n[1]),
+        (Some(Defect::ExcitationLost), 0.0, offset_n[0]),
+        (Some(Defect::ExcitationSags), 0.0, sound - 0.2 * own),
         (Some(Defect::CellWanders(1)), 1.0, sound),
         (Some(Defect::CellExcitationLost(1)), 1.0, sound),
     ] {
@@ -114,6 +126,53 @@ fn cells_that_lie() {
         let noise = off - swing - fading;
         assert!((-0.1..0.3).contains(&noise), "{defect:?}: {off} N");
     }
+}
+
+/// Under a weight that is hung on in the place of the tendon.
+#[test]
+fn cells_that_follow_late_or_not_wholly() {
+    let before = held().truth().tensions_n[0] + PlantSettings::default().cell_offset_n[0];
+    let after = 120.0 + PlantSettings::default().cell_offset_n[0];
+    for (defect, ticks, expected) in [
+        (None, 0, after),
+        (Some(Defect::CellLate(0)), 150, before),
+        (Some(Defect::CellLate(0)), 170, after),
+        (Some(Defect::CellSticks(0)), 100, after - 5.0),
+    ] {
+        let mut plant = held();
+        for _ in 0..400 {
+            plant.sense();
+            plant.step(&OFF);
+        }
+        if let Some(defect) = defect {
+            plant.set_defect(defect, true);
+        }
+        plant.hang_on_cell(0, Some(120.0));
+        let mut shown = f64::NAN;
+        for _ in 0..=ticks {
+            shown = f64::from(plant.sense().cell_codes[0]) * N_PER_CODE - 20.0;
+            plant.step(&OFF);
+        }
+        assert!((shown - expected).abs() < 0.3, "{defect:?}: {shown} N");
+    }
+}
+
+#[test]
+fn a_motors_wire_disturbs_the_cell_beside_it_while_it_is_driven() {
+    let mut plant = held();
+    plant.set_defect(Defect::CellPwmNoise(1), true);
+    plant.hang_on_cell(1, Some(50.0));
+    let shown: Vec<f64> = (0..400)
+        .map(|_| {
+            plant.step(&driven([0.0, 0.5, 0.0]));
+            f64::from(plant.sense().cell_codes[1]) * N_PER_CODE - 20.0
+        })
+        .collect();
+    let mean = shown.iter().sum::<f64>() / 400.0;
+    let noise = (shown.iter().map(|n| (n - mean).powi(2)).sum::<f64>() / 400.0).sqrt();
+    let expected = 50.0 + PlantSettings::default().cell_offset_n[1] + 10.0;
+    assert!((mean - expected).abs() < 2.0, "{mean} N, not {expected} N");
+    assert!((8.0..12.0).contains(&noise), "{noise} N");
 }
 
 /// As far as is said, on average over seeds, and another way for each; never beyond the range.
@@ -147,6 +206,7 @@ fn currents() {
         (Some(Defect::CurrentFullScale(1)), Some(12.0), 12.0),
         (Some(Defect::CurrentFullScaleDisabled(1)), None, 12.0),
         (Some(Defect::CurrentZero(1)), Some(0.0), 0.0),
+        (Some(Defect::CurrentDead(1)), Some(-12.0), -12.0),
     ] {
         let mut plant = driven_leg(defect, 400).0;
         let (found, real) = (shown_a(&mut plant), plant.truth().currents_a[1]);
@@ -181,6 +241,68 @@ fn an_open_half_bridge_drives_one_way_only() {
             assert!(truth.speeds_rad_per_s[1] != 0.0);
         }
     }
+}
+
+#[test]
+fn lines_that_are_torn_drive_inwards() {
+    for (defect, duty, enabled, inwards) in [
+        (Defect::DriverFullOn(0), 0.0, true, true),
+        (Defect::DriverFullOn(0), 0.0, false, false),
+        (Defect::DirectionStuck(0), -0.3, true, true),
+        (Defect::DirectionStuck(0), 0.0, true, false),
+    ] {
+        let mut plant = held();
+        plant.set_defect(defect, true);
+        let duty = [duty; 3];
+        run(&mut plant, 40, &Drive { duty, enabled });
+        let speed = plant.truth().speeds_rad_per_s[0];
+        assert_eq!(speed > 0.0, inwards, "{defect:?}: {speed} rad/s");
+    }
+}
+
+/// A plug, a screw, a gear and a tendon against sound ones.
+#[test]
+fn worn_parts() {
+    let travel_m = |defect: Option<Defect>, duty: f32| {
+        let mut plant = held();
+        let before = plant.truth().unstretched_m[0];
+        defect
+            .iter()
+            .for_each(|defect| plant.set_defect(*defect, true));
+        run(&mut plant, 1600, &driven([duty, 0.0, 0.0]));
+        before - plant.truth().unstretched_m[0]
+    };
+    for (defect, duty, part) in [
+        (Defect::MotorIntermittent(0), 0.2, 0.2..0.8),
+        (Defect::ScrewDry(0), 0.5, 0.3..0.8),
+        (Defect::ScrewDry(0), 0.15, 0.0..0.1),
+        // It pays out only after 0.16 mm of play.
+        (Defect::GearPlay(0), -0.2, 0.5..0.95),
+    ] {
+        let found = travel_m(Some(defect), duty) / travel_m(None, duty);
+        assert!(part.contains(&found), "{defect:?}: {found}");
+    }
+    let mut plant = held();
+    let before = plant.truth().unstretched_m;
+    plant.set_defect(Defect::TendonCreeps(1), true);
+    run(&mut plant, 8000, &OFF);
+    let after = plant.truth().unstretched_m;
+    assert!((after[1] - before[1] - 1e-4).abs() < 1e-9);
+    assert_eq!([after[0], after[2]], [before[0], before[2]]);
+}
+
+#[test]
+fn a_hand_holds_the_tip() {
+    let moved_mm = |grasped: bool| {
+        let mut plant = held();
+        let before = plant.truth().tip_m;
+        plant.set_defect(Defect::LegGrasped, grasped);
+        plant.push(plant.across(0.0) * 5.0, 10.0, 0.2);
+        run(&mut plant, 8000, &OFF);
+        1000.0 * (plant.truth().tip_m - before).norm()
+    };
+    let [free, held] = [false, true].map(moved_mm);
+    assert!(free > 2.0 && held < 0.8, "{free} mm, {held} mm");
 }
 
 #[test]
@@ -235,7 +357,12 @@ fn the_supply_dips_once() {
 
 #[test]
 fn encoders() {
+    let mut slipped = held();
+    slipped.set_defect(Defect::EncoderSlipsQuarter(2), true);
+    assert_eq!(slipped.sense().encoder_counts, [0, 0, 512]);
     let sound = sound(400).encoder_counts;
+    let swapped = defective(Defect::EncodersSwapped, 400).1.encoder_counts;
+    assert_eq!(swapped, [sound[1], sound[0], sound[2]]);
     let counts = sound[1];
     assert!(counts > 1000, "{counts}");
     for (defect, expected) in [
@@ -317,8 +444,8 @@ fn every_defect_has_a_name_of_its_own() {
     assert!(names.contains(&r#""supply_sag""#.into()));
     names.sort();
     names.dedup();
-    assert_eq!(names.len(), 3 * 30 + 6);
-    assert_eq!(Defect::descriptions().count(), 30 + 6);
+    assert_eq!(names.len(), 3 * 43 + 11);
+    assert_eq!(Defect::descriptions().count(), 43 + 11);
     for number in [0, 4] {
         let line = format!(r#"{{"fault":{{"tendon_cut":{number}}}}}"#);
         assert!(Action::parse(&line).is_err());
