@@ -39,7 +39,6 @@ struct Places {
     inputs: [FieldPlace; 2],
     channels: [FieldPlace; 2],
     inverted: [FieldPlace; 2],
-    filters: [FieldPlace; 2],
     update: FieldPlace,
     update_flag: FieldPlace,
     update_interrupt: FieldPlace,
@@ -66,7 +65,6 @@ impl Places {
             inputs: both("CCMR1", "CCS"),
             channels: both("CCER", "CCE"),
             inverted: both("CCER", "CCP"),
-            filters: both("CCMR1", "ICF"),
             update: file.field("EGR", "UG"),
             update_flag: file.field("SR", "UIF"),
             update_interrupt: file.field("DIER", "UIE"),
@@ -112,12 +110,6 @@ impl EncoderTimer {
                 .inputs
                 .iter()
                 .all(|place| file.value(*place) == OWN_INPUT)
-    }
-
-    /// The values of the inputs' filters (`ICxF`).
-    #[must_use]
-    pub fn filters(&self) -> [u32; 2] {
-        self.places.filters.map(|place| self.file.value(place))
     }
 
     /// Its interrupt's level, on the line of the timer's own name.

@@ -32,6 +32,7 @@ pub enum PinMode {
 #[derive(Clone, Copy, Debug)]
 struct Offsets {
     mode: u32,
+    open_drain: u32,
     pull: u32,
     input: u32,
     output: u32,
@@ -61,6 +62,7 @@ impl Gpio {
         Self {
             offsets: Offsets {
                 mode: offset("MODER"),
+                open_drain: offset("OTYPER"),
                 pull: offset("PUPDR"),
                 input: offset("IDR"),
                 output: offset("ODR"),
@@ -115,8 +117,11 @@ impl Gpio {
     #[must_use]
     pub fn level(&self, pin: u8) -> Option<bool> {
         let outside = self.outside.get(usize::from(pin)).copied();
+        let bit = |offset| self.registers.get(offset) >> pin & 1 == 1;
+        let (output, open_drain) = (bit(self.offsets.output), bit(self.offsets.open_drain));
         match (self.mode(pin), outside.unwrap_or_default()) {
-            (PinMode::Output, _) => Some(self.registers.get(self.offsets.output) >> pin & 1 == 1),
+            // An open drain lets go of a high pin.
+            (PinMode::Output, _) if !(open_drain && output) => Some(output),
             (PinMode::Analogue, _) => Some(false),
             (_, Outside::Low) => Some(false),
             (_, Outside::High) => Some(true),
@@ -126,12 +131,6 @@ impl Gpio {
                 _ => None,
             },
         }
-    }
-
-    /// Whether a pin is driven high by the program.
-    #[must_use]
-    pub fn drives_high(&self, pin: u8) -> bool {
-        self.mode(pin) == PinMode::Output && self.level(pin) == Some(true)
     }
 
     /// A pin of this port.
@@ -207,5 +206,48 @@ impl Device for Gpio {
                 self.check_functions(before, context);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::Bench;
+
+    fn bench() -> Bench<Gpio> {
+        let mut bench = Bench::new("GPIOC", |block| Gpio::new(block, Facts::of_chip()));
+        bench.write("MODER", 0b01);
+        bench
+    }
+
+    #[test]
+    fn outputs_are_set_and_reset() {
+        let mut bench = bench();
+        for (register, value, level) in [
+            ("BSRR", 1, true),
+            ("BRR", 1, false),
+            ("ODR", 1, true),
+            ("BSRR", 1 << 16, false),
+            ("BSRR", 1 << 16 | 1, true),
+        ] {
+            bench.write(register, value);
+            assert_eq!(bench.device.level(0), Some(level), "{register} {value:#x}");
+        }
+        assert_eq!(bench.findings(), [""; 0]);
+    }
+
+    #[test]
+    fn an_open_drain_lets_go_of_a_high_pin() {
+        let mut bench = bench();
+        bench.write("OTYPER", 1);
+        bench.write("BSRR", 1);
+        assert_eq!(bench.device.level(0), None);
+        bench.device.set_outside(0, Outside::Low);
+        assert_eq!(bench.device.level(0), Some(false));
+        bench.write("PUPDR", 1);
+        bench.device.set_outside(0, Outside::Nothing);
+        assert_eq!(bench.device.level(0), Some(true));
+        bench.write("BRR", 1);
+        assert_eq!(bench.device.level(0), Some(false));
     }
 }

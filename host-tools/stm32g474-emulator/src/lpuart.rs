@@ -137,12 +137,6 @@ impl Lpuart {
         self.receives_from.is_some_and(|from| cycle >= from)
     }
 
-    /// Bytes of the host that are still on their way.
-    #[must_use]
-    pub fn host_pending(&self) -> usize {
-        self.arriving.len()
-    }
-
     /// The next byte that the host received.
     pub fn host_receive(&mut self) -> Option<Sent> {
         self.sent.pop_front()

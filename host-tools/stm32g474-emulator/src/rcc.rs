@@ -124,12 +124,6 @@ impl Rcc {
         watched
     }
 
-    /// Whether the interrupt of the clock security is raised.
-    #[must_use]
-    pub fn clock_failure(&self) -> bool {
-        self.registers.is_set(self.fields.css_flag)
-    }
-
     /// What the processor and the buses run from, Hz.
     fn system_hz(&self, cycle: u64) -> u32 {
         match self.source(cycle) {

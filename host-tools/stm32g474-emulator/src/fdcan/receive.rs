@@ -39,13 +39,6 @@ impl Fdcan {
         self.said(Reception::Acknowledged)
     }
 
-    /// Another node's frame was disturbed.
-    pub fn bus_error(&mut self) {
-        if self.takes_part() {
-            self.receive_error(false);
-        }
-    }
-
     fn receive_error(&mut self, in_data: bool) {
         if in_data {
             self.last_data_error = Kind::Stuff as u32;

@@ -106,7 +106,9 @@ fn play(scenario: &str, image: &Path) -> Result<(), Box<dyn Error>> {
 
 fn save(image: &Path, board: Board) -> Result<(), Box<dyn Error>> {
     let rig = RigFile::load(None).unwrap();
-    let session = Box::new(ChipSession::open(image)?.on_board(board));
+    // A new board: an image that looks for its settings elsewhere finds none there, as it would on the right one.
+    let session = ChipSession::open(image)?.on_board(board).with_flash(&[]);
+    let session = Box::new(session);
     let leg = EmulatedLeg::new(&rig, InitialState::Slack, session)?;
     let line = Box::new(EmulatedLine::new(leg, "the leg on the chip").connect());
     let mut operator = Operator::open(line, HostIdentity::FIXED, CancelFlag::default())?;
