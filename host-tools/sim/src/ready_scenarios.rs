@@ -28,6 +28,7 @@ pub const READY_SCENARIOS: &[ReadyScenario] = ready![
     "payload",
     "support",
     "hold",
+    "arm_lean",
     "trim",
     "workspace",
     "fault_bad_frame",

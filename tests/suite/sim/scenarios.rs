@@ -5,7 +5,7 @@
 use super::ready_runs::{Run, ready, run, scenario};
 use leg_bench::sensitivity;
 use leg_boards::image::workspace_root;
-use leg_firmware::supervisor::Fault;
+use leg_firmware::supervisor::{Fault, Reaction};
 use leg_rig::rig_file::RigFile;
 use leg_sim::link::{InProcess, Link};
 use leg_sim::plant::Defect;
@@ -110,26 +110,75 @@ fn a_cut_tendon_lets_the_tip_swing_no_farther_than_is_said() {
     for tendon in 1..=3 {
         for azimuth in (0..360).step_by(40) {
             for (tilt, payload) in [(0, 0.0), (15, 1.0), (30, 0.0), (30, 1.0), (30, 2.0)] {
-                let text = format!(
-                    "{}\n[start.held]\nazimuth_deg = {azimuth}\ntilt_deg = {tilt}\npretension_n = 70\npayload_kg = {payload}\n",
-                    steps.replace("tendon_cut = 1", &format!("tendon_cut = {tendon}"))
-                );
+                let text = |steps: &str| {
+                    format!(
+                        "{}\n[start.held]\nazimuth_deg = {azimuth}\ntilt_deg = {tilt}\npretension_n = 70\npayload_kg = {payload}\n",
+                        steps.replace("tendon_cut = 1", &format!("tendon_cut = {tendon}"))
+                    )
+                };
                 let rig = RigFile::load(None).unwrap();
-                let scenario = Scenario::parse("cut", &text).unwrap();
-                // A pose that its payload does not allow at the pretension is no start.
-                let Ok(simulation) = Simulation::new(&scenario, &rig) else {
+                // A tendon that pulled little is found slack.
+                let found_slack = steps.replace(
+                    "fault = \"tension_jump\", state = \"held\", within_ms = 2",
+                    "fault = \"slack\", state = \"held\", within_ms = 60",
+                );
+                let swing = |text: &String| {
+                    let scenario = Scenario::parse("cut", text).unwrap();
+                    // A pose that its payload does not allow at the pretension is no start.
+                    let simulation = Simulation::new(&scenario, &rig).ok()?;
+                    let link = &mut InProcess::new();
+                    let summary = simulation.run(link, &mut |_| ()).unwrap();
+                    let moved = summary.measurements.iter().find(|found| found.unit == "mm");
+                    Some(moved.map(|moved| moved.value))
+                };
+                let texts = [text(steps), text(&found_slack)];
+                let Some(by_jump) = swing(&texts[0]) else {
                     continue;
                 };
-                let link = &mut InProcess::new();
-                let summary = simulation.run(link, &mut |_| ()).unwrap();
-                let moved = summary.measurements.iter().find(|found| found.unit == "mm");
-                swings_mm.push((moved.unwrap().value, text));
+                let moved_mm = by_jump.or_else(|| swing(&texts[1]).flatten());
+                let [text, _] = texts;
+                assert!(moved_mm.is_some(), "neither fault came:\n{text}");
+                swings_mm.push((moved_mm.unwrap(), text));
             }
         }
     }
     assert!(swings_mm.len() > 100, "{} starts", swings_mm.len());
     let (farthest, text) = swings_mm.iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
     assert!((200.0..250.0).contains(farthest), "{farthest} mm:\n{text}");
+}
+
+/// Wherever the leg leans and whatever it carries, an arm leaves its tip where it is.
+#[test]
+fn a_leg_is_armed_where_it_stands() {
+    let steps = ready_scenarios::named("arm_lean").unwrap().text;
+    let (steps, _) = steps.split_once("[start.held]").unwrap();
+    let steps = steps.replace("wait_s = 3", "wait_s = 1");
+    let rig = RigFile::load(None).unwrap();
+    let mut starts = 0;
+    for azimuth in (0..360).step_by(60) {
+        for (tilt, payload, pretension) in [(20, 1, 110), (30, 1, 70), (30, 2, 65), (30, 2, 70)] {
+            let text = format!(
+                "{steps}\n[start.held]\nazimuth_deg = {azimuth}\ntilt_deg = {tilt}\npretension_n = {pretension}\npayload_kg = {payload}\n"
+            );
+            let scenario = Scenario::parse("arm", &text).unwrap();
+            // A pose that its payload does not allow at the pretension is no start.
+            let Ok(simulation) = Simulation::new(&scenario, &rig) else {
+                continue;
+            };
+            starts += 1;
+            let summary = simulation.run(&mut InProcess::new(), &mut |_| ()).unwrap();
+            let moved = summary.measurements.iter().find(|found| found.unit == "mm");
+            let moved_mm = moved.unwrap().value;
+            assert!(moved_mm < 0.5, "{moved_mm} mm:\n{text}");
+            let stops = |(fault, _): &(Fault, f64)| fault.reaction() != Reaction::Limit;
+            assert!(
+                !summary.faults.iter().any(stops),
+                "{:?}:\n{text}",
+                summary.faults
+            );
+        }
+    }
+    assert!(starts > 18, "{starts} starts");
 }
 
 /// A step that does not end stops a scenario, and what came out until then is kept.

@@ -35,7 +35,8 @@ pub struct Target<T> {
 /// Computes targets, one after the other.
 #[derive(Clone, Copy, Debug)]
 pub struct TargetGenerator<T> {
-    pretension_n: T,
+    /// None before the first target.
+    pretension_n: Option<T>,
     pretension_step_n: T,
     trim_n: T,
     trim_gain: T,
@@ -65,7 +66,7 @@ impl<T: Scalar> TargetGenerator<T> {
     /// At pretension zero.
     pub fn new(settings: &Settings) -> Self {
         Self {
-            pretension_n: T::zero(),
+            pretension_n: None,
             pretension_step_n: T::from(settings.motion.pretension_rate_n_per_s * CYCLE_S),
             trim_n: T::zero(),
             trim_gain: T::from(CYCLE_S / settings.estimation.trim_time_s),
@@ -76,9 +77,9 @@ impl<T: Scalar> TargetGenerator<T> {
         }
     }
 
-    /// Starts from a pretension, N, with the load held or left out.
-    pub fn start(&mut self, pretension_n: T, compensated: bool) {
-        self.pretension_n = pretension_n;
+    /// Starts anew from the pretension that the tensions have at the first target, with the load held or left out.
+    pub fn start(&mut self, compensated: bool) {
+        self.pretension_n = None;
         self.trim_n = T::zero();
         self.share = if compensated { T::one() } else { T::zero() };
     }
@@ -116,18 +117,22 @@ impl<T: Scalar> TargetGenerator<T> {
         if !distribution.feasible() {
             return Err(Error::Infeasible);
         }
-        let limited = self.step_pretension(demand.pretension_n, &distribution);
-        let tensions = distribution.tensions(self.pretension_n);
+        let measured_pretension_n = pretension(&distribution, measured_n);
+        let start_n = self.pretension_n.unwrap_or(measured_pretension_n);
+        let (pretension_n, limited) =
+            self.next_pretension(start_n, demand.pretension_n, &distribution);
+        self.pretension_n = Some(pretension_n);
+        let tensions = distribution.tensions(pretension_n);
         if mechanism.support.twists() {
             let third = (kinematics.moment_map * tensions + moment).dot(&plane.normal());
             self.torsion.step(third);
         }
         let trimmed = if demand.trimmed {
-            self.trim(&distribution, measured_n)
+            self.trim(pretension_n - measured_pretension_n)
         } else {
             T::zero()
         };
-        let stretched = distribution.tensions(self.pretension_n + trimmed);
+        let stretched = distribution.tensions(pretension_n + trimmed);
         let mut unstretched_m = [T::zero(); 3];
         let mut tensions_n = [T::zero(); 3];
         for (i, tendon) in mechanism.tendons.iter().enumerate() {
@@ -139,7 +144,7 @@ impl<T: Scalar> TargetGenerator<T> {
             torsion,
             kinematics,
             distribution,
-            pretension_n: self.pretension_n,
+            pretension_n,
             tensions_n,
             unstretched_m,
             limited: limited || (demand.trimmed && !(trimmed.abs() < self.trim_max_n)),
@@ -155,29 +160,39 @@ impl<T: Scalar> TargetGenerator<T> {
         share * share * (T::from(3.0) - T::TWO * share)
     }
 
-    /// Moves the pretension towards the demand, inside what the bounds allow; true if they hold it back.
+    /// The pretension a step nearer to the demand, inside what the bounds allow, and whether they hold it back.
     #[inline(always)]
-    fn step_pretension(&mut self, wish_n: T, distribution: &Distribution<T, 3>) -> bool {
+    fn next_pretension(
+        &self,
+        pretension_n: T,
+        wish_n: T,
+        distribution: &Distribution<T, 3>,
+    ) -> (T, bool) {
         let (lowest, highest) = (distribution.pretension_min, distribution.pretension_max);
         let allowed = min(max(wish_n, lowest), highest);
-        let step = clamp_symmetric(allowed - self.pretension_n, self.pretension_step_n);
+        let step = clamp_symmetric(allowed - pretension_n, self.pretension_step_n);
         // The pose may narrow the range faster than the pretension follows.
-        self.pretension_n = min(max(self.pretension_n + step, lowest), highest);
-        allowed != wish_n
+        let next_n = min(max(pretension_n + step, lowest), highest);
+        (next_n, allowed != wish_n)
     }
 
     /// What is added to the pretension so that the measured one becomes it: for what the curves leave out.
     #[inline(always)]
-    fn trim(&mut self, distribution: &Distribution<T, 3>, measured_n: &[T; 3]) -> T {
-        let mut measured = T::SUM_START;
-        for (i, &tension) in measured_n.iter().enumerate() {
-            measured += distribution.per_pretension[i] * tension;
-        }
-        // The squares of the tensions per pretension add up to three.
-        let error = self.pretension_n - measured * T::from(1.0 / 3.0);
+    fn trim(&mut self, error: T) -> T {
         self.trim_n = clamp_symmetric(self.trim_n + self.trim_gain * error, self.trim_max_n);
         self.trim_n
     }
+}
+
+/// The pretension that tensions have.
+#[inline(always)]
+fn pretension<T: Scalar>(distribution: &Distribution<T, 3>, tensions_n: &[T; 3]) -> T {
+    let mut sum = T::SUM_START;
+    for (i, &tension) in tensions_n.iter().enumerate() {
+        sum += distribution.per_pretension[i] * tension;
+    }
+    // The squares of the tensions per pretension add up to three.
+    sum * T::from(1.0 / 3.0)
 }
 
 /// The elastic torsion, found by one step of the secant method a cycle.

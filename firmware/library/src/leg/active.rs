@@ -38,12 +38,13 @@ impl<T: Scalar> Slack<T> {
 impl<T: Scalar> Active<T> {
     /// Follows commands from the present pose and pretension on.
     pub fn begin(shared: &mut Shared<T>, measured: &Measured<T>) -> Self {
-        let [a, b, c] = measured.tensions_n;
-        let pretension_n = (a + b + c) * T::from(1.0 / 3.0);
         let compensated = shared.compensation != Compensation::Off;
-        shared.targets.start(pretension_n, compensated);
+        shared.targets.start(compensated);
         shared.target = None;
         shared.residual_m = None;
+        // A leg whose tendons pull already stays as it is: relaxed first, it would swing.
+        let taut_n = shared.mechanism.f_min_n * T::HALF;
+        let taut = measured.steady_tensions_n.iter().all(|&n| n > taut_n);
         Self {
             trajectory: Trajectory::new(
                 shared.limits.motion,
@@ -51,7 +52,7 @@ impl<T: Scalar> Active<T> {
             ),
             tensioned: false,
             slack: Slack {
-                left_m: None,
+                left_m: taut.then(T::zero),
                 cycles: 0,
             },
         }
