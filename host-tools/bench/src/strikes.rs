@@ -1,8 +1,8 @@
 //! Faults that strike a simulated leg wherever it is and whatever it does, and what they do to it.
 //!
-//! A [`Case`](case::Case) is a rig, a pose, a payload, a pretension and what the leg is doing. The leg is brought there
-//! once, and clones of it are struck by one fault each. Everything is measured on the true leg and judged by the
-//! [`bars`].
+//! A [`Case`] is a rig, a pose, a payload, a pretension and what the leg is doing. The leg is brought there
+//! once, and clones of it are struck by one fault each. Everything is measured on the true leg and judged by bars:
+//! the highest tension, the way of the tip, the time until the fault is named, and motors that turn after the stop.
 
 mod bars;
 mod case;
