@@ -14,7 +14,7 @@ use leg_firmware::board::{CheckIns, WatchedTask};
 use leg_firmware::settings::Settings;
 use leg_firmware::store::{Loaded, REGION, Store, StoreError};
 
-/// Settings to keep. Their place is handed over, for to copy them would mask the control interrupt for 1 600 cycles.
+/// Settings to keep. Their place is handed over, because copying them would mask the control interrupt for 1 600 cycles.
 pub static TO_SAVE: Signal<CriticalSectionRawMutex, &'static mut Settings> = Signal::new();
 
 /// Whether they were kept, and their place back.

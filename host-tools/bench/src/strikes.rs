@@ -4,19 +4,19 @@
 //! once, and clones of it are struck by one fault each. Everything is measured on the true leg and judged by bars:
 //! the highest tension, the way of the tip, the time until the fault is named, and motors that turn after the stop.
 
+mod activity;
 mod bars;
 mod case;
 mod false_alarms;
-mod occasion;
 mod preparation;
 mod stand;
 mod strike;
 mod table;
 mod way;
 
+pub use activity::Activity;
 pub use case::Case;
 pub use false_alarms::{Alarm, Usage};
-pub use occasion::Occasion;
 pub use strike::{Moment, Struck};
 pub use table::{Row, Worst, rows};
 
@@ -24,7 +24,7 @@ use case::{SLOTS, kind_of, mixed, name_of};
 use fastrand::Rng;
 use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Defect;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use rayon::prelude::*;
 
 /// Longest time that one user goes on, s.
 const PART_S: f64 = 600.0;
@@ -37,30 +37,32 @@ pub struct Campaign {
     /// The rigs by name.
     pub rigs: Vec<(String, RigFile)>,
     /// What the leg may be doing; empty for all.
-    pub occasions: Vec<Occasion>,
+    pub activities: Vec<Activity>,
     /// The fault, by its name in scenarios, or `none`; all if left out.
     pub fault: Option<String>,
 }
 
 impl Campaign {
-    /// Makes so many strikes, on so many threads, and calls `done` after each. They come in the order of their numbers.
-    pub fn run(&self, count: u64, threads: u64, done: impl Fn() + Sync) -> Vec<Struck> {
-        let work = |(number, slots): &(u64, Vec<u64>)| self.strike(*number, slots, &done);
-        let struck = shared(threads, &self.cases(count), work);
-        struck.into_iter().flatten().collect()
+    /// Makes so many strikes, on all cores, and calls `done` after each. They come in the order of their numbers.
+    pub fn run(&self, count: u64, done: impl Fn() + Sync) -> Vec<Struck> {
+        let cases = self.cases(count);
+        let struck = cases
+            .par_iter()
+            .flat_map_iter(|(number, slots)| self.strike(*number, slots, &done));
+        struck.collect()
     }
 
-    /// Uses each rig for a time, s, without a fault, on so many threads, and calls `done` with seconds that are over. Each
+    /// Uses each rig for a time, s, without a fault, on all cores, and calls `done` with seconds that are over. Each
     /// part takes ten minutes of the leg's time, and is as it is whatever the whole time.
-    pub fn use_legs(&self, time_s: f64, threads: u64, done: impl Fn(u64) + Sync) -> Vec<Usage> {
+    pub fn use_legs(&self, time_s: f64, done: impl Fn(u64) + Sync) -> Vec<Usage> {
         let parts = (time_s / PART_S).ceil() as u64;
         let rigs = self.rigs.len() as u64;
-        let all: Vec<u64> = (0..parts * rigs).collect();
-        shared(threads, &all, |number| {
+        let usage = |number| {
             let (rig, file) = &self.rigs[(number % rigs) as usize];
             let part_s = PART_S.min(time_s - PART_S * (number / rigs) as f64);
-            false_alarms::use_leg(self.seed, rig, file, *number, part_s, &done)
-        })
+            false_alarms::use_leg(self.seed, rig, file, number, part_s, &done)
+        };
+        (0..parts * rigs).into_par_iter().map(usage).collect()
     }
 
     /// The strike of a number again, with its course every so many seconds.
@@ -109,7 +111,7 @@ impl Campaign {
             if left == 0 {
                 break;
             }
-            if !self.has(Occasion::of_case(number)) {
+            if !self.has(Activity::in_turn(number)) {
                 continue;
             }
             let mut slots: Vec<u64> = (0..SLOTS)
@@ -124,8 +126,8 @@ impl Campaign {
         cases
     }
 
-    fn has(&self, occasion: Occasion) -> bool {
-        self.occasions.is_empty() || self.occasions.contains(&occasion)
+    fn has(&self, activity: Activity) -> bool {
+        self.activities.is_empty() || self.activities.contains(&activity)
     }
 
     fn asks_for(&self, kind: Option<usize>) -> bool {
@@ -134,32 +136,4 @@ impl Campaign {
         };
         name == name_of(kind)
     }
-}
-
-/// Does all of the work, shared by threads, in any order, and gives what comes of it in theirs.
-fn shared<T: Sync, R: Send>(threads: u64, all: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
-    let next = AtomicUsize::new(0);
-    let share = || {
-        let mut done = Vec::new();
-        loop {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            match all.get(number) {
-                Some(one) => done.push((number, work(one))),
-                None => return done,
-            }
-        }
-    };
-    let mut done = std::thread::scope(|scope| {
-        let others: Vec<_> = (1..threads).map(|_| scope.spawn(share)).collect();
-        let mut done = share();
-        for other in others {
-            match other.join() {
-                Ok(shared) => done.extend(shared),
-                Err(panic) => std::panic::resume_unwind(panic),
-            }
-        }
-        done
-    });
-    done.sort_by_key(|(number, _)| *number);
-    done.into_iter().map(|(_, result)| result).collect()
 }

@@ -35,12 +35,17 @@ pub trait Transport {
 
     /// Time since some moment, by the clock of the timeouts: the host's, or that of an emulated leg.
     fn now(&self) -> Duration {
-        static START: LazyLock<Instant> = LazyLock::new(Instant::now);
-        START.elapsed()
+        host_time()
     }
 
     /// Whether that clock is an emulated leg's own, which goes on only while bytes are waited for.
     fn clock_is_emulated(&self) -> bool {
         false
     }
+}
+
+/// Time since some moment, by the host's clock.
+fn host_time() -> Duration {
+    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+    START.elapsed()
 }

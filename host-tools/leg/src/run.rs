@@ -14,7 +14,7 @@ use leg_boards::image;
 use leg_host::recording;
 use leg_rig::rig_file::RigFile;
 use leg_sim::link::Link;
-use leg_sim::scenario::{Scenario, not_on_a_board};
+use leg_sim::scenario::Scenario;
 use leg_sim::simulation::{Simulation, Summary, Tick};
 use report::RunReport;
 use std::path::PathBuf;
@@ -91,14 +91,13 @@ fn scenario(args: &Args) -> Result<Scenario, Failure> {
     if args.on != Emulation::Chip {
         return Ok(scenario);
     }
-    let name = args.scenario.display().to_string();
-    match not_on_a_board(&name) {
-        None => Ok(scenario.for_board()),
-        Some(why) => Err(Failure::refused(
+    scenario.for_board().map_err(|why| {
+        let name = args.scenario.display();
+        Failure::refused(
             format!("a board cannot run {name}: {why}"),
             "run it with --on sim or --on qemu",
-        )),
-    }
+        )
+    })
 }
 
 fn simulate(

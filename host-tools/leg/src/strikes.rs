@@ -6,9 +6,10 @@ use crate::numbers::positive;
 use crate::options::Options;
 use crate::output::load_rig;
 use crate::progress;
+use clap::builder::PossibleValuesParser;
 use leg_base::failure::Failure;
 use leg_base::json_object;
-use leg_bench::strikes::{self, Campaign, Occasion};
+use leg_bench::strikes::{self, Activity, Campaign};
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Defect;
@@ -31,10 +32,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE", default_value = "all")]
     rig: PathBuf,
     /// What the leg is doing; anything if left out.
-    #[arg(long, value_name = "STATE", value_parser = occasion)]
-    state: Vec<Occasion>,
-    /// The fault, by its name in scenarios, or `none`; every one if left out.
-    #[arg(long, value_name = "FAULT", value_parser = fault)]
+    #[arg(long, value_name = "STATE", value_enum)]
+    state: Vec<Activity>,
+    /// The fault, by its name in the table of scenarios.md, or `none`; every one if left out.
+    #[arg(long, value_name = "FAULT", value_parser = faults(), hide_possible_values = true)]
     fault: Option<String>,
     /// Repeats the strike of a number, and shows its course. Seed and rigs have to be the same.
     #[arg(long, value_name = "NUMBER", conflicts_with_all = ["count", "state", "fault"])]
@@ -45,9 +46,6 @@ pub(crate) struct Args {
     false_alarms: Option<f64>,
 }
 
-/// Threads beside each other.
-const THREADS: u64 = 2;
-
 /// Time between two moments of a strike's course, s.
 const EVERY_S: f64 = 0.02;
 
@@ -55,7 +53,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let campaign = Campaign {
         seed: args.seed,
         rigs: rigs(&args.rig)?,
-        occasions: args.state.clone(),
+        activities: args.state.clone(),
         fault: args.fault.clone(),
     };
     if let Some(index) = args.only {
@@ -68,7 +66,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         return false_alarms(&campaign, hours, options);
     }
     let bar = progress::bar(args.count, "strikes");
-    let struck = campaign.run(args.count, THREADS, || bar.inc(1));
+    let struck = campaign.run(args.count, || bar.inc(1));
     bar.finish_and_clear();
     let rows = strikes::rows(&struck);
     let failed = struck.iter().filter(|struck| !struck.passes()).count();
@@ -86,7 +84,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
 fn false_alarms(campaign: &Campaign, hours: f64, options: Options) -> Result<(), Failure> {
     let time_s = 3600.0 * hours;
     let bar = progress::bar(time_s as u64 * campaign.rigs.len() as u64, "s");
-    let usages = campaign.use_legs(time_s, THREADS, |seconds| bar.inc(seconds));
+    let usages = campaign.use_legs(time_s, |seconds| bar.inc(seconds));
     bar.finish_and_clear();
     let alarms = || usages.iter().flat_map(|usage| &usage.alarms);
     let stopped = usages
@@ -124,24 +122,10 @@ fn rigs(path: &Path) -> Result<Vec<(String, RigFile)>, Failure> {
     Ok(vec![load(path)?])
 }
 
-fn occasion(name: &str) -> Result<Occasion, String> {
-    let mut all = Occasion::ALL.iter();
-    match all.find(|(_, known)| *known == name) {
-        Some((occasion, _)) => Ok(*occasion),
-        None => Err(format!(
-            "it is none of {}",
-            Occasion::ALL.map(|(_, name)| name).join(", ")
-        )),
-    }
-}
-
-fn fault(name: &str) -> Result<String, String> {
+/// The names that `--fault` knows.
+fn faults() -> PossibleValuesParser {
     let faults = Defect::descriptions().map(|(name, _)| name);
-    let names: Vec<_> = faults.chain(["none"]).collect();
-    if names.contains(&name) {
-        return Ok(name.into());
-    }
-    Err(format!("it is none of {}", names.join(", ")))
+    faults.chain(["none"]).into()
 }
 
 fn require(failed: usize, strikes: usize) -> Result<(), Failure> {

@@ -18,6 +18,15 @@ pub struct GainChange {
     value: f32,
 }
 
+impl GainChange {
+    /// The key.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        let fields = SECTIONS.iter().flat_map(|(_, fields)| *fields);
+        fields.map(|field| field.name).nth(self.index).unwrap_or("")
+    }
+}
+
 /// The defaults for a motor: its own resistance and induced voltage. The currents that friction and a pull take are not
 /// computed: no data sheet gives them well, so another motor needs its own in `[control.servo]`.
 #[must_use]

@@ -89,6 +89,10 @@ pub struct Plant {
 /// What a defective current sensor reads too much, A.
 const CURRENT_OFFSET_A: f64 = 10.0;
 
+/// What a dry screw takes at the motor, N·m; play of a worn gear, rad of the screw.
+const DRY_NM: f64 = 0.05;
+const WORN_RAD: f64 = 1.0;
+
 /// How far a tendon slips at its clamp, m.
 const SLIP_M: f64 = 5e-3;
 
@@ -166,6 +170,12 @@ impl Plant {
                 let quarter = (0.25 * self.actuator.counts_per_turn) as u16;
                 let counter = &mut self.encoders[i].counter;
                 *counter = counter.wrapping_add(quarter);
+            }
+            Defect::ScrewDry(i) => self.motors[i].dry_nm = if on { DRY_NM } else { 0.0 },
+            Defect::GearPlay(i) => {
+                let actuator = &self.actuator;
+                let play_rad = if on { WORN_RAD } else { actuator.backlash_rad };
+                self.motors[i].screw.set_play(actuator, play_rad);
             }
             Defect::LegGrasped => self.hand.grasped_m = on.then(|| self.tip_m()),
             _ => {}

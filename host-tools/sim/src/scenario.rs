@@ -7,7 +7,7 @@ mod reading;
 mod step;
 mod test_step;
 
-pub use board_start::{BOARD_EXCEPTIONS, not_on_a_board};
+pub use board_start::BOARD_EXCEPTIONS;
 pub use command_step::CommandStep;
 pub use measurand::Measurand;
 pub use step::Step;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_bench::strikes::{Campaign, Occasion, Struck, rows};
+use leg_bench::strikes::{Activity, Campaign, Struck, rows};
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
 
@@ -11,7 +11,7 @@ fn campaign(fault: &str) -> Campaign {
     Campaign {
         seed: 1,
         rigs: READY_RIGS.iter().map(|rig| load(rig.name)).collect(),
-        occasions: Vec::new(),
+        activities: Vec::new(),
         fault: Some(fault.into()),
     }
 }
@@ -44,10 +44,10 @@ fn a_sample_of_the_strikes_passes() {
         ("late_ticks", 4),
     ] {
         let campaign = Campaign {
-            occasions: vec![Occasion::Following, Occasion::Held],
+            activities: vec![Activity::Following, Activity::Held],
             ..campaign(fault)
         };
-        let struck = campaign.run(count, 2, || ());
+        let struck = campaign.run(count, || ());
         assert_eq!(struck.len() as u64, count);
         let rows = rows(&struck);
         assert!(rows.iter().all(|row| row.fault == fault));
@@ -59,27 +59,25 @@ fn a_sample_of_the_strikes_passes() {
 #[test]
 fn a_strike_is_repeated_by_its_number() {
     let campaign = Campaign {
-        occasions: vec![Occasion::Moving],
+        activities: vec![Activity::Moving],
         ..campaign("cell_wanders")
     };
-    let struck = campaign.run(1, 1, || ());
+    let struck = campaign.run(1, || ());
     let (again, course) = campaign.repeat(struck[0].index, 0.1);
     assert_eq!(again.tip_mm.to_bits(), struck[0].tip_mm.to_bits());
     assert_eq!(again.named_s, struck[0].named_s);
-    assert_eq!(
-        course.len(),
+    assert!(course.len() > 10);
+    assert!(
         course
             .iter()
-            .filter(|moment| moment.tip_mm <= again.tip_mm + 1e-3)
-            .count()
+            .all(|moment| moment.tip_mm <= again.tip_mm + 1e-3)
     );
-    assert!(course.len() > 10);
 }
 
 /// A part of a use of each rig.
 #[test]
 fn a_leg_that_is_used_raises_no_alarm() {
-    let usages = campaign("none").use_legs(20.0, 2, |_| ());
+    let usages = campaign("none").use_legs(20.0, |_| ());
     assert_eq!(usages.len(), READY_RIGS.len());
     for usage in &usages {
         assert_eq!(usage.stopped, None, "{}", usage.rig);

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::common::chip::{findings, image};
-use crate::common::chip_bus::{ChipBus, ChipBusTransport};
+use crate::common::chip_bus::{ChipBus, ChipBusPort};
 use crate::common::memory_mib;
 use leg_boards::chip::{ChipSession, LATENCY_CYCLES_MAX};
 use leg_boards::image::FirmwareImage;
@@ -14,6 +14,7 @@ use leg_firmware::host_link::{BoardKind, HostRequest};
 use leg_firmware::supervisor::State;
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{HostIdentity, Operator};
+use leg_host::transport::can::CanTransport;
 use std::cell::RefCell;
 use std::rc::Rc;
 
@@ -26,7 +27,7 @@ const STOP_US: u64 = 2_000;
 fn host(bus: &Rc<RefCell<ChipBus>>, leg: LegAddress) -> Operator {
     let id = u32::from(leg.number());
     let sequence = 1000 * u16::from(leg.number());
-    let line = Box::new(ChipBusTransport::new(bus, leg));
+    let line = Box::new(CanTransport::new(ChipBusPort::attach(bus), leg));
     Operator::open(line, HostIdentity { id, sequence }, CancelFlag::default()).unwrap()
 }
 

@@ -5,13 +5,14 @@
 use crate::common::chip::{
     LatencyMeter, MS, image, other_settings, send, started_with, vary_cells,
 };
-use crate::common::chip_bus::{ChipBus, ChipBusTransport};
+use crate::common::chip_bus::{ChipBus, ChipBusPort};
 use leg_boards::chip::LATENCY_CYCLES_MAX;
 use leg_boards::image::FirmwareImage;
 use leg_firmware::can::LegAddress;
 use leg_firmware::host_link::HostRequest;
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{HostIdentity, Operator};
+use leg_host::transport::can::CanTransport;
 use std::path::Path;
 use stm32g474_emulator::board::Board;
 use stm32g474_emulator::image::Image;
@@ -57,7 +58,7 @@ pub fn latest(image: &Path) -> [(u64, String); 2] {
 fn by_can(image: &Path) -> (u64, u32) {
     let leg = LegAddress::ALL[0];
     let bus = ChipBus::new(image, &[leg]).unwrap();
-    let line = Box::new(ChipBusTransport::new(&bus, leg));
+    let line = Box::new(CanTransport::new(ChipBusPort::attach(&bus), leg));
     let mut host = Operator::open(line, HostIdentity::FIXED, CancelFlag::default()).unwrap();
     host.set_settings(&other_settings().unwrap()).unwrap();
     for round in 0..ROUNDS {

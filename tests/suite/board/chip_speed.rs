@@ -8,9 +8,9 @@ use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
 
-/// At least so many driven ticks in a second of the processor's time. On a machine of its own it is above 2 000; beside other
-/// tests each takes more of it.
-const TICKS_PER_S_MIN: f64 = 1_000.0;
+/// At least so many driven ticks in the time of the processor in which QEMU, whose core is as fast but which knows no board, does
+/// one: a ratio, which does not depend on the machine.
+const RATIO_MIN: f64 = 0.07;
 
 /// At most so much memory.
 const MEMORY_MAX_MIB: f64 = 200.0;
@@ -55,6 +55,6 @@ fn the_chip_is_fast_enough_and_small_enough() {
         "ticks in a second of the processor: {chip:.0} on the chip, {qemu:.0} under QEMU, ratio {:.2}; {memory:.0} MiB",
         chip / qemu
     );
-    assert!(chip >= TICKS_PER_S_MIN, "{chip} ticks a second");
+    assert!(chip >= RATIO_MIN * qemu, "{}", chip / qemu);
     assert!(memory <= MEMORY_MAX_MIB, "{memory} MiB");
 }

@@ -198,7 +198,9 @@ fn a_stopped_emulator_times_out() -> Outcome {
     let Err(error) = session.ask(&evaluate_request(0.1)) else {
         return Err("a stopped firmware does not answer".into());
     };
-    assert!(start.elapsed() >= Duration::from_millis(500));
+    // Not the time-out that a boot has, 20 s.
+    let waited = Duration::from_millis(500)..Duration::from_secs(15);
+    assert!(waited.contains(&start.elapsed()));
     let text = error.to_string();
     assert!(
         text.starts_with("the firmware did not answer within 0.5 s; is the machine overloaded?"),

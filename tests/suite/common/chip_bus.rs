@@ -8,8 +8,7 @@ use leg_boards::chip::ChipSession;
 use leg_firmware::can::{CanFrame, DATA_BIT_RATE, Identifier, LegAddress, NOMINAL_BIT_RATE};
 use leg_firmware::settings::Settings;
 use leg_firmware_bench::protocol::Request;
-use leg_host::transport::Transport;
-use leg_host::transport::can::{CanPort, CanTransport};
+use leg_host::transport::can::CanPort;
 use leg_sim::link::Link;
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -237,8 +236,14 @@ pub struct ChipBusPort {
 }
 
 impl ChipBusPort {
-    fn time(&self) -> Duration {
-        Duration::from_nanos(self.bus.borrow().now * 1_000 / (CLOCK_HZ / 1_000_000))
+    /// A host's node beside the others.
+    pub fn attach(bus: &Rc<RefCell<ChipBus>>) -> Self {
+        let inboxes = &mut bus.borrow_mut().inboxes;
+        inboxes.push(VecDeque::new());
+        Self {
+            inbox: inboxes.len() - 1,
+            bus: Rc::clone(bus),
+        }
     }
 }
 
@@ -253,7 +258,7 @@ impl CanPort for ChipBusPort {
     }
 
     fn receive(&mut self, timeout: Duration) -> io::Result<CanFrame> {
-        let until = self.time() + timeout;
+        let until = self.now() + timeout;
         loop {
             let mut bus = self.bus.borrow_mut();
             let received = bus.inboxes.get_mut(self.inbox);
@@ -261,54 +266,11 @@ impl CanPort for ChipBusPort {
                 return Ok(frame);
             }
             drop(bus);
-            if self.time() >= until {
+            if self.now() >= until {
                 return Err(io::ErrorKind::TimedOut.into());
             }
             self.bus.borrow_mut().step();
         }
-    }
-}
-
-/// A host's transport to a leg.
-pub struct ChipBusTransport {
-    inner: CanTransport<ChipBusPort>,
-    bus: Rc<RefCell<ChipBus>>,
-}
-
-impl ChipBusTransport {
-    pub fn new(bus: &Rc<RefCell<ChipBus>>, leg: LegAddress) -> Self {
-        let inboxes = &mut bus.borrow_mut().inboxes;
-        inboxes.push(VecDeque::new());
-        let port = ChipBusPort {
-            inbox: inboxes.len() - 1,
-            bus: Rc::clone(bus),
-        };
-        Self {
-            inner: CanTransport::new(port, leg),
-            bus: Rc::clone(bus),
-        }
-    }
-}
-
-impl Transport for ChipBusTransport {
-    fn name(&self) -> &str {
-        self.inner.name()
-    }
-
-    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.inner.send(bytes)
-    }
-
-    fn send_urgent(&mut self, link_frame: &[u8]) -> io::Result<()> {
-        self.inner.send_urgent(link_frame)
-    }
-
-    fn receive(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize> {
-        self.inner.receive(bytes, timeout)
-    }
-
-    fn damaged(&self) -> u64 {
-        self.inner.damaged()
     }
 
     fn now(&self) -> Duration {

@@ -5,9 +5,10 @@
 use fastrand::Rng;
 use leg_firmware::supervisor::{FaultSet, State};
 use leg_rig::rig_file::RigFile;
+use leg_sim::action::Action;
 use leg_sim::link::InProcess;
 use leg_sim::plant::Defect;
-use leg_sim::scenario::Scenario;
+use leg_sim::scenario::{Scenario, Step};
 use leg_sim::simulation::{Simulation, Tick};
 use std::fmt::Write;
 use std::path::Path;
@@ -19,8 +20,11 @@ const SCENARIOS: u64 = 1000;
 /// maximum. So much a swing of the leg adds before a motor gives way. Where they are held, what acts from outside decides.
 const F_MAX_N: f64 = 150.0 * 1.1;
 
-/// Faults that are left to `leg strikes`: with them 7 of 1000 scenarios end 1 to 4 N above that.
-const LEFT_OUT: [&str; 18] = [
+/// The same where a part is worn or a plug is swapped, N: these faults are not found at once, and so a swing adds more.
+const WORN_MAX_N: f64 = 150.0 * 1.15;
+
+/// Those faults.
+const WORN: [&str; 18] = [
     "tendon_creeps",
     "cell_reversed",
     "cell_crosstalk",
@@ -130,17 +134,10 @@ fn step(rng: &mut Rng) -> String {
             1.5 * rng.f64()
         ),
         _ => {
-            let all: Vec<Defect> = Defect::all().filter(|defect| !left_out(*defect)).collect();
+            let all: Vec<Defect> = Defect::all().collect();
             format!("{{ fault = {} }}", toml_of(all[rng.usize(0..all.len())]))
         }
     }
-}
-
-fn left_out(defect: Defect) -> bool {
-    let value = toml_of(defect);
-    let named =
-        |name: &str| value == format!("\"{name}\"") || value.starts_with(&format!("{{ {name} ="));
-    LEFT_OUT.into_iter().any(named)
 }
 
 /// A defect as the value of a key.
@@ -165,13 +162,22 @@ fn run(seed: u64, rig: &RigFile) -> Result<bool, String> {
     let summary = simulation
         .run(&mut InProcess::new(), &mut |tick| watch.check(tick))
         .map_err(|error| error.to_string())?;
+    let worn = |step: &Step| match step {
+        Step::Action(Action::Fault(defect)) => WORN.contains(&defect.into()),
+        _ => false,
+    };
+    let max_n = if scenario.steps.iter().any(worn) {
+        WORN_MAX_N
+    } else {
+        F_MAX_N
+    };
     let highest = summary.driven_max_n;
     if let Some(words) = summary.stopped {
         return Err(words);
     }
     match watch.complaint {
         Some(complaint) => Err(complaint),
-        None if highest > F_MAX_N => Err(format!("a tension of {highest} N")),
+        None if highest > max_n => Err(format!("a tension of {highest} N")),
         None => Ok(true),
     }
 }

@@ -63,7 +63,7 @@ pub struct TargetDemand<T> {
 }
 
 impl<T: Scalar> TargetGenerator<T> {
-    /// At pretension zero.
+    /// Before the first target.
     pub fn new(settings: &Settings) -> Self {
         Self {
             pretension_n: None,
@@ -117,8 +117,8 @@ impl<T: Scalar> TargetGenerator<T> {
         if !distribution.feasible() {
             return Err(Error::Infeasible);
         }
-        let measured_pretension_n = pretension(&distribution, measured_n);
-        let start_n = self.pretension_n.unwrap_or(measured_pretension_n);
+        let measured_pretension_n = || pretension(&distribution, measured_n);
+        let start_n = self.pretension_n.unwrap_or_else(measured_pretension_n);
         let (pretension_n, limited) =
             self.next_pretension(start_n, demand.pretension_n, &distribution);
         self.pretension_n = Some(pretension_n);
@@ -128,7 +128,7 @@ impl<T: Scalar> TargetGenerator<T> {
             self.torsion.step(third);
         }
         let trimmed = if demand.trimmed {
-            self.trim(pretension_n - measured_pretension_n)
+            self.trim(pretension_n - measured_pretension_n())
         } else {
             T::zero()
         };

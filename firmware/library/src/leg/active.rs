@@ -42,7 +42,8 @@ impl<T: Scalar> Active<T> {
         shared.targets.start(compensated);
         shared.target = None;
         shared.residual_m = None;
-        // A leg whose tendons pull already stays as it is: relaxed first, it would swing.
+        // A leg whose tendons pull already stays as it is: relaxed first, it would swing. Half of the minimum tension is below
+        // what any target asks for, and above what is left in tendons that were paid out.
         let taut_n = shared.mechanism.f_min_n * T::HALF;
         let taut = measured.steady_tensions_n.iter().all(|&n| n > taut_n);
         Self {

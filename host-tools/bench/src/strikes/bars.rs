@@ -1,6 +1,6 @@
 //! What a strike may do at most.
 
-use super::occasion::Occasion;
+use super::activity::Activity;
 use leg_sim::plant::Defect;
 
 /// How far the leg may go beyond its maximum tension, as a part.
@@ -31,6 +31,11 @@ const GRASPED_MM: f64 = 250.0;
 /// Time to the fault's name, s.
 const NAMED_S: f64 = 0.5;
 
+/// The same besides the time in which a cell fades, and for one that wanders or drifts, s.
+const FADE_S: f64 = 0.5;
+const WANDERS_S: f64 = 2.0;
+const DRIFTS_S: f64 = 5.0;
+
 /// How far a cell has to lie before it must be told, N.
 const LIE_N: f64 = 8.0;
 
@@ -51,11 +56,11 @@ impl Bars {
     /// Of a defect at a true tension of each tendon, N.
     pub fn new(
         defect: Option<Defect>,
-        occasion: Occasion,
+        activity: Activity,
         f_max_n: f64,
         tensions_n: [f64; 3],
     ) -> Self {
-        let usual_mm = if occasion.on_the_way() {
+        let usual_mm = if activity.on_the_way() {
             WAY_MM
         } else {
             REST_MM
@@ -80,18 +85,18 @@ impl Bars {
             tension_n: f_max_n * (1.0 + BEYOND),
             homing_n: HOMING_N,
             tip_mm,
-            named_s: defect.and_then(|defect| named_s(defect, occasion, tensions_n)),
+            named_s: defect.and_then(|defect| named_s(defect, activity, tensions_n)),
         }
     }
 }
 
 /// When a defect has to be named.
-fn named_s(defect: Defect, occasion: Occasion, tensions_n: [f64; 3]) -> Option<f64> {
-    use Occasion::{Disarmed, Homing, Moving, RampingDown};
+fn named_s(defect: Defect, activity: Activity, tensions_n: [f64; 3]) -> Option<f64> {
+    use Activity::{Disarmed, Homing, Moving, RampingDown};
     // Tendons that barely pull, or less and less, show little.
-    let pulls = !matches!(occasion, Homing | RampingDown | Disarmed);
+    let pulls = !matches!(activity, Homing | RampingDown | Disarmed);
     let lies = |by_n: f64| (pulls && by_n.abs() >= LIE_N).then_some(NAMED_S);
-    let driven = occasion != Disarmed;
+    let driven = activity != Disarmed;
     match defect {
         Defect::DriverFault(_) | Defect::LateTicks | Defect::SettingsCorrupt => Some(NAMED_S),
         Defect::SupplySag
@@ -110,15 +115,44 @@ fn named_s(defect: Defect, occasion: Occasion, tensions_n: [f64; 3]) -> Option<f
         Defect::CellReversed(_) | Defect::ExcitationLost => pulls.then_some(NAMED_S),
         Defect::CellsSwapped => lies(tensions_n[1] - tensions_n[0]),
         Defect::CellExcitationLost(i) => lies(tensions_n[i]),
-        // Their own time besides.
-        Defect::CellFades(i) => lies(tensions_n[i]).map(|named_s| named_s + 0.5),
-        Defect::CellWanders(_) => pulls.then_some(2.0),
-        Defect::CellDrifting(_) => pulls.then_some(5.0),
+        Defect::CellFades(i) => lies(tensions_n[i]).map(|named_s| named_s + FADE_S),
+        Defect::CellWanders(_) => pulls.then_some(WANDERS_S),
+        Defect::CellDrifting(_) => pulls.then_some(DRIFTS_S),
         Defect::CellFollows(i) => lies(tensions_n[(i + 1) % 3] - tensions_n[i]),
         Defect::CellOffsetStep(_) | Defect::CellOffsetStepDown(_) => pulls.then_some(NAMED_S),
         Defect::EncoderLost(_) | Defect::EncoderReversed(_) | Defect::MotorJammed(_) => {
-            (occasion == Moving).then_some(NAMED_S)
+            (activity == Moving).then_some(NAMED_S)
         }
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_says_the_bars() {
+        let page = include_str!("../../../docs/scenarios.md");
+        for words in [
+            format!(
+                "the maximum tension and {:.0} %; {HOMING_N} N while homing",
+                100.0 * BEYOND
+            ),
+            format!("{REST_MM} mm; {GAIN_MM} mm where a gain is 20 % off"),
+            format!("| tip off its way | {WAY_MM} mm |"),
+            format!(
+                "{CUT_MM} mm where a tendon is cut, {SLIP_MM} mm where it slips, {RELAXED_MM} mm where the drivers are too hot"
+            ),
+            format!(
+                "{CREEP_MM} mm where it creeps, {RUNAWAY_MM} mm where a driver runs away, {GRASPED_MM} mm where a hand holds the tip"
+            ),
+            format!(
+                "{NAMED_S} s where something shows it; a cell that fades {} s, wanders {WANDERS_S} s, drifts {DRIFTS_S} s",
+                NAMED_S + FADE_S
+            ),
+        ] {
+            assert!(page.contains(&words), "{words}");
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! A leg that is to be struck: drawn from the seed and its number.
 
-use super::occasion::Occasion;
+use super::activity::Activity;
 use fastrand::Rng;
 use leg_firmware::command::Compensation;
 use leg_model::evaluate;
@@ -21,7 +21,7 @@ const CELL_GAIN: f64 = 0.002;
 const CURVE: f64 = 0.01;
 
 /// How far a tared cell may be off, N, and one that homing has to tare.
-const TARED_N: f64 = 0.1;
+pub(super) const TARED_N: f64 = 0.1;
 const UNTARED_N: f64 = 2.0;
 
 /// A leg and what it does.
@@ -32,7 +32,7 @@ pub struct Case {
     /// The rig's name.
     pub rig: String,
     /// What the leg is doing.
-    pub occasion: Occasion,
+    pub activity: Activity,
     /// Where it leans, degrees.
     pub azimuth_deg: f64,
     /// How far, degrees.
@@ -58,7 +58,7 @@ pub struct Case {
 
 /// The kind of fault of a slot; none is no fault.
 pub(super) fn kind_of(case: u64, slot: u64) -> Option<usize> {
-    let round = case / Occasion::ALL.len() as u64;
+    let round = case / Activity::count();
     let kind = (round * (SLOTS - 1) + slot) % Defect::KINDS as u64;
     (slot + 1 < SLOTS).then_some(kind as usize)
 }
@@ -74,13 +74,18 @@ impl Case {
     pub(super) fn new(seed: u64, rigs: &[(String, RigFile)], number: u64) -> Self {
         let seed = mixed(seed, number);
         let mut rng = Rng::with_seed(seed);
-        let occasion = Occasion::of_case(number);
-        let round = number / Occasion::ALL.len() as u64;
+        let activity = Activity::in_turn(number);
+        let round = number / Activity::count();
         let (rig, file) = &rigs[(round % rigs.len() as u64) as usize];
+        let offset_n = if activity == Activity::Homing {
+            UNTARED_N
+        } else {
+            TARED_N
+        };
         let mut case = Self {
             number,
             rig: rig.clone(),
-            occasion,
+            activity,
             azimuth_deg: 0.0,
             tilt_deg: 0.0,
             payload_kg: 0.0,
@@ -95,10 +100,10 @@ impl Case {
             push: (rng.f64() < 0.3).then(|| [360.0 * rng.f64(), 10.0 * rng.f64()]),
             step_kg: 0.0,
             file: *file,
-            plant: plant(file, occasion, &mut rng),
+            plant: plant(file, offset_n, &mut rng),
             seed,
         };
-        if occasion != Occasion::Homing {
+        if activity != Activity::Homing {
             case.draw_pose(&mut rng);
         }
         case
@@ -145,14 +150,14 @@ impl fmt::Display for Case {
         write!(
             formatter,
             "{} on {}: azimuth {:.1}°, tilt {:.1}°, {:.2} kg, pretension {:.1} N",
-            self.occasion.name(),
+            self.activity.name(),
             self.rig,
             self.azimuth_deg,
             self.tilt_deg,
             self.payload_kg,
             self.pretension_n,
         )?;
-        if self.occasion == Occasion::Moving {
+        if self.activity == Activity::Moving {
             let [azimuth_deg, tilt_deg] = self.target_deg;
             write!(
                 formatter,
@@ -182,13 +187,9 @@ impl fmt::Display for Case {
     }
 }
 
-fn plant(file: &RigFile, occasion: Occasion, rng: &mut Rng) -> PlantSettings {
+/// A simulated leg whose cells are off by no more than an offset, N, and by what a calibration leaves.
+pub(super) fn plant(file: &RigFile, offset_n: f64, rng: &mut Rng) -> PlantSettings {
     let mut even = |half: f64| half * (2.0 * rng.f64() - 1.0);
-    let offset_n = if occasion == Occasion::Homing {
-        UNTARED_N
-    } else {
-        TARED_N
-    };
     PlantSettings {
         cell_gain_error: std::array::from_fn(|_| even(CELL_GAIN)),
         cell_offset_n: std::array::from_fn(|_| even(offset_n)),

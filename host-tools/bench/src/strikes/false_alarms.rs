@@ -1,13 +1,12 @@
 //! What a user does to a leg without any fault: no fault may come.
 
-use super::case::{feasible, mixed};
+use super::case::{TARED_N, feasible, mixed, plant};
 use super::stand::Stand;
 use fastrand::Rng;
 use leg_base::angles;
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::supervisor::{Fault, State};
 use leg_model::{Distribution, Error, Rig, TensionBounds, distribute, inverse_kinematics};
-use leg_rig::plant_settings::PlantSettings;
 use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Start;
 use nalgebra::Vector3;
@@ -21,11 +20,6 @@ const PUSH_N: f64 = 10.0;
 /// Pretensions that are asked for at most, N, and demands for stiffness, N·m/rad.
 const PRETENSION_N: [f64; 2] = [25.0, 110.0];
 const STIFFNESS_NM_PER_RAD: [f64; 2] = [10.0, 120.0];
-
-/// How far load cells and tendon curves may be off, as a part; and the offset of a tared cell, N.
-const CELL_GAIN: f64 = 0.002;
-const CURVE: f64 = 0.01;
-const OFFSET_N: f64 = 0.1;
 
 /// How far before an alarm the true tensions are looked at, s.
 const BEFORE_S: f64 = 0.25;
@@ -113,13 +107,7 @@ const NO_RANGE: [f64; 2] = [f64::INFINITY, 0.0];
 impl<'a> User<'a> {
     /// With a leg that has been armed.
     fn new(file: &'a RigFile, rng: &'a mut Rng) -> Result<Self, String> {
-        let mut even = |half: f64| half * (2.0 * rng.f64() - 1.0);
-        let plant = PlantSettings {
-            cell_gain_error: std::array::from_fn(|_| even(CELL_GAIN)),
-            cell_offset_n: std::array::from_fn(|_| even(OFFSET_N)),
-            curve_error: even(CURVE),
-            ..file.plant
-        };
+        let plant = plant(file, TARED_N, rng);
         let start = Start::hanging(file.pretension_n);
         let mut stand = Stand::new(file, &plant, start, rng.u64(..))?;
         stand.until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;

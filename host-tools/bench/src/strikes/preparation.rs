@@ -1,7 +1,7 @@
 //! Brings a leg to what it does when it is struck.
 
+use super::activity::Activity;
 use super::case::Case;
-use super::occasion::Occasion;
 use super::stand::Stand;
 use super::way::Way;
 use leg_base::angles;
@@ -42,28 +42,28 @@ pub(super) struct Prepared {
 /// Why the leg does not get there: a fault that nothing caused, or a time that is over.
 pub(super) fn prepare(case: &Case) -> Result<Prepared, String> {
     let mut stand = started(case)?;
-    let command = match case.occasion {
-        Occasion::Following | Occasion::Rearmed | Occasion::Disarmed => None,
-        Occasion::Held => Some(Command::Stop),
-        Occasion::Moving => Some(move_to(case.target_deg)),
-        Occasion::Homing => Some(Command::Home),
-        Occasion::RampingDown => Some(Command::Disarm),
-        Occasion::Arming => Some(Command::Arm),
+    let command = match case.activity {
+        Activity::Following | Activity::Rearmed | Activity::Disarmed => None,
+        Activity::Held => Some(Command::Stop),
+        Activity::Moving => Some(move_to(case.target_deg)),
+        Activity::Homing => Some(Command::Home),
+        Activity::RampingDown => Some(Command::Disarm),
+        Activity::Arming => Some(Command::Arm),
     };
     let Some(command) = command else {
-        if case.occasion == Occasion::Disarmed {
+        if case.activity == Activity::Disarmed {
             disarm(&mut stand)?;
         }
         return Ok(resting(stand));
     };
-    match case.occasion {
-        Occasion::Held => {
+    match case.activity {
+        Activity::Held => {
             stand.command(&command)?;
             stand.until(1.0, "held", |stand| stand.state() == State::Held)?;
             rest(&mut stand)?;
             Ok(resting(stand))
         }
-        Occasion::Arming => {
+        Activity::Arming => {
             let way = Way::at(stand.truth.tip_m);
             stand.command(&command)?;
             stand.wait(ARMING_S * case.part)?;
@@ -83,9 +83,9 @@ fn resting(stand: Stand) -> Prepared {
 
 /// A leg in the state from which the command goes out.
 fn started(case: &Case) -> Result<Stand, String> {
-    let start = match case.occasion {
-        Occasion::Homing => Start::Slack { slack_mm: SLACK_MM },
-        Occasion::Arming => Start::Held {
+    let start = match case.activity {
+        Activity::Homing => Start::Slack { slack_mm: SLACK_MM },
+        Activity::Arming => Start::Held {
             azimuth_deg: case.azimuth_deg,
             tilt_deg: case.tilt_deg,
             pretension_n: case.pretension_n,
@@ -96,7 +96,7 @@ fn started(case: &Case) -> Result<Stand, String> {
     let mut stand = Stand::new(&case.file, &case.plant, start, case.seed)?;
     stand.until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
     stand.wait(0.1)?;
-    if !matches!(case.occasion, Occasion::Homing | Occasion::Arming) {
+    if !matches!(case.activity, Activity::Homing | Activity::Arming) {
         lead(case, &mut stand)?;
     }
     Ok(stand)
@@ -184,9 +184,9 @@ fn on_the_way(case: &Case, stand: Stand) -> Result<Prepared, String> {
 }
 
 fn at_end(case: &Case, stand: &Stand) -> bool {
-    match case.occasion {
-        Occasion::Homing => stand.state() == State::Active && !stand.moving(),
-        Occasion::RampingDown => stand.state() == State::Disarmed,
+    match case.activity {
+        Activity::Homing => stand.state() == State::Active && !stand.moving(),
+        Activity::RampingDown => stand.state() == State::Disarmed,
         _ => !stand.moving(),
     }
 }

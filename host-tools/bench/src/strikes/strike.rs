@@ -1,8 +1,8 @@
 //! One strike and its measures.
 
+use super::activity::Activity;
 use super::bars::Bars;
 use super::case::Case;
-use super::occasion::Occasion;
 use super::preparation::Prepared;
 use super::stand::Stand;
 use super::way::Way;
@@ -53,7 +53,7 @@ pub struct Struck {
     /// Its tendon, from 1.
     pub tendon: usize,
     /// What the leg did.
-    pub state: Occasion,
+    pub state: Activity,
     /// The leg as a sentence.
     pub case: String,
     /// Highest true tension, N.
@@ -97,7 +97,7 @@ impl Struck {
             index: strike.index,
             fault: strike.name,
             tendon: strike.tendon + 1,
-            state: case.occasion,
+            state: case.activity,
             case: case.to_string(),
             tension_n: 0.0,
             homing_n: 0.0,
@@ -167,7 +167,7 @@ pub(super) fn strike(
     let mut stand = prepared.stand.clone();
     let bars = Bars::new(
         strike.defect,
-        case.occasion,
+        case.activity,
         case.file.f_max_n,
         stand.truth.tensions_n,
     );
@@ -197,7 +197,7 @@ pub(super) fn strike(
 }
 
 fn watched_s(case: &Case, defect: Option<Defect>) -> f64 {
-    let usual_s = if case.occasion == Occasion::Homing {
+    let usual_s = if case.activity == Activity::Homing {
         HOMING_S
     } else {
         WATCHED_S
@@ -235,7 +235,7 @@ struct Watch<'a> {
 impl Watch<'_> {
     fn over(&self, stand: &Stand, watched_s: f64) -> bool {
         let now_s = stand.time_s() - self.began_s;
-        let rearms = self.case.occasion == Occasion::Rearmed && self.given < 2 * CLEARS_S.len();
+        let rearms = self.case.activity == Activity::Rearmed && self.given < 2 * CLEARS_S.len();
         let settled = self
             .stopped_s
             .is_some_and(|stopped_s| now_s - stopped_s > STOPPED_S);
@@ -252,7 +252,7 @@ impl Watch<'_> {
             self.struck.homing_n = self.struck.homing_n.max(highest);
         }
         let tick = (now_s * 8000.0).round() as u64;
-        if !self.case.occasion.on_the_way() || tick.is_multiple_of(WAY_TICKS) {
+        if !self.case.activity.on_the_way() || tick.is_multiple_of(WAY_TICKS) {
             let tip_mm = self.way.distance_mm(&stand.truth.tip_m);
             self.struck.tip_mm = self.struck.tip_mm.max(tip_mm);
         }
@@ -265,7 +265,7 @@ impl Watch<'_> {
     /// Clears and arms, as a user does who does not believe the fault.
     fn rearm(&mut self, stand: &mut Stand) -> Result<(), String> {
         let (round, clears) = (self.given / 2, self.given.is_multiple_of(2));
-        if self.case.occasion != Occasion::Rearmed || round >= CLEARS_S.len() {
+        if self.case.activity != Activity::Rearmed || round >= CLEARS_S.len() {
             return Ok(());
         }
         let due_s = CLEARS_S[round] + if clears { 0.0 } else { ARMS_AFTER_S };

@@ -1,6 +1,6 @@
 //! The strikes, grouped by fault and what the leg was doing.
 
-use super::occasion::Occasion;
+use super::activity::Activity;
 use super::strike::Struck;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -28,7 +28,7 @@ pub struct Row {
     /// The fault, by its name in scenarios.
     pub fault: &'static str,
     /// What the leg was doing.
-    pub state: Occasion,
+    pub state: Activity,
     /// Strikes.
     pub count: u64,
     /// Highest true tension, N.
@@ -54,7 +54,7 @@ pub struct Row {
 /// The rows, by fault and what the leg was doing.
 #[must_use]
 pub fn rows(struck: &[Struck]) -> Vec<Row> {
-    let mut rows: BTreeMap<(&str, Occasion), Row> = BTreeMap::new();
+    let mut rows: BTreeMap<(&str, Activity), Row> = BTreeMap::new();
     for one in struck {
         let row = rows.entry((one.fault, one.state));
         row.or_insert_with(|| Row::new(one)).take(one);

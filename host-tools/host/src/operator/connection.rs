@@ -4,6 +4,7 @@ use super::OperatorError;
 use crate::transport::Transport;
 use leg_firmware::frame::{self, Decoder, MAX_FRAME};
 use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest};
+use leg_sim::link::next_sequence;
 use std::collections::VecDeque;
 use std::io;
 use std::time::Duration;
@@ -49,7 +50,7 @@ impl FramedTransport {
         send: fn(&mut (dyn Transport + 'static), &[u8]) -> io::Result<()>,
         request: &HostRequest,
     ) -> Result<u16, OperatorError> {
-        self.sequence = self.sequence.checked_add(1).unwrap_or(1);
+        self.sequence = next_sequence(self.sequence);
         let mut out = [0; MAX_FRAME];
         let bytes =
             frame::encode(self.sequence, request, &mut out).map_err(OperatorError::Frame)?;

@@ -25,18 +25,14 @@ pub(super) fn description(refusal: &HostRefusal) -> [String; 2] {
             [wrong, "home it: `leg home`"]
         }
         HostRefusal::Command(refusal) => refusal.description(),
-        HostRefusal::SchemaMismatch { .. } => [
-            "the firmware speaks another protocol",
-            "build and flash it from the sources of this program: `leg flash`",
-        ],
+        HostRefusal::SchemaMismatch { .. } => {
+            ["the firmware speaks another protocol", OTHER_SOURCES]
+        }
         HostRefusal::NotIdentified => [
             "the board has started anew and does not know this host",
             "command again: unless its power had gone, the board reports then why it started anew",
         ],
-        HostRefusal::BadRequest => [
-            "the request is not known to the firmware",
-            "build and flash it from the sources of this program: `leg flash`",
-        ],
+        HostRefusal::BadRequest => ["the request is not known to the firmware", OTHER_SOURCES],
         HostRefusal::Busy => [
             "the board is still busy with what it was asked before",
             "command again; if it stays so, end the other commands that use this line",

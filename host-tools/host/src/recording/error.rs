@@ -56,9 +56,10 @@ impl From<McapError> for RecordingError {
 
 impl From<csv::Error> for RecordingError {
     fn from(error: csv::Error) -> Self {
+        let reason = error.to_string();
         match error.into_kind() {
             csv::ErrorKind::Io(error) => Self::File(error),
-            other => Self::Message(format!("{other:?}")),
+            _ => Self::Message(reason),
         }
     }
 }

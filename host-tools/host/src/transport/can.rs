@@ -10,13 +10,13 @@ mod socket;
 #[cfg(target_os = "linux")]
 pub use socket::SocketCan;
 
-use super::Transport;
+use super::{Transport, host_time};
 use leg_firmware::can::{
     Assembler, CanError, CanFrame, Identifier, LegAddress, SegmentError, Segmenter,
 };
 use std::collections::VecDeque;
 use std::io;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A node on a CAN FD bus.
 pub trait CanPort {
@@ -29,6 +29,11 @@ pub trait CanPort {
 
     /// Waits for the next frame; [`io::ErrorKind::TimedOut`] if none came in time.
     fn receive(&mut self, timeout: Duration) -> io::Result<CanFrame>;
+
+    /// Time since some moment, by the clock of the timeouts: the host's, or that of an emulated bus.
+    fn now(&self) -> Duration {
+        host_time()
+    }
 }
 
 /// The link to one leg of a CAN FD bus.
@@ -107,11 +112,15 @@ impl<P: CanPort> Transport for CanTransport<P> {
     }
 
     fn receive(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize> {
-        let start = Instant::now();
+        let end = self.port.now() + timeout;
         while self.received.is_empty() && !bytes.is_empty() {
-            self.receive_frame(timeout.saturating_sub(start.elapsed()))?;
+            self.receive_frame(end.saturating_sub(self.port.now()))?;
         }
         io::Read::read(&mut self.received, bytes)
+    }
+
+    fn now(&self) -> Duration {
+        self.port.now()
     }
 }
 

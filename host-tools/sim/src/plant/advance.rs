@@ -17,10 +17,8 @@ const DIP_S: f64 = 5e-3;
 /// How long a loose plug makes contact or not, ticks.
 const CONTACT_TICKS: u64 = 80;
 
-/// How fast a tendon creeps, m/s; what a dry screw takes at the motor, N·m; play of a worn gear, rad of the screw.
+/// How fast a tendon creeps, m/s.
 const CREEP_M_PER_S: f64 = 1e-4;
-const DRY_NM: f64 = 0.05;
-const WORN_RAD: f64 = 1.0;
 
 /// A supply that surges, V.
 const SURGED_V: f64 = 32.0;
@@ -34,7 +32,7 @@ impl Plant {
         self.wire(drive);
         self.change_payload();
         self.turn_by_hand();
-        self.wear();
+        self.creep();
         self.dynamics.push_n = self.push.force_n(self.time_s()) + self.grasp_n();
         for _ in 0..self.substeps {
             self.substep();
@@ -96,23 +94,15 @@ impl Plant {
         std::array::from_fn(|i| loose[i] && !self.contacts[i])
     }
 
-    /// What wears or gives way a little in every tick.
-    fn wear(&mut self) {
+    /// What gives way a little in every tick.
+    fn creep(&mut self) {
         let creeping = self.defects.of_three(Defect::TendonCreeps);
-        let dry = self.defects.of_three(Defect::ScrewDry);
-        let worn = self.defects.of_three(Defect::GearPlay);
-        let actuator = &self.actuator;
-        for (i, motor) in self.motors.iter_mut().enumerate() {
-            if creeping[i] {
-                self.unstretched_at_zero_m[i] += CREEP_M_PER_S * tick_s();
-            }
-            motor.dry_nm = if dry[i] { DRY_NM } else { 0.0 };
-            let play_rad = if worn[i] {
-                WORN_RAD
+        for (unstretched_m, creeps) in self.unstretched_at_zero_m.iter_mut().zip(creeping) {
+            *unstretched_m += if creeps {
+                CREEP_M_PER_S * tick_s()
             } else {
-                actuator.backlash_rad
+                0.0
             };
-            motor.screw.set_play(actuator, play_rad);
         }
     }
 

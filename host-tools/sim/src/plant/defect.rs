@@ -1,7 +1,7 @@
 //! Defects of the simulated leg: what can fail.
 
 use serde::{Deserialize, Serialize};
-use strum::VariantNames;
+use strum::{IntoStaticStr, VariantNames};
 
 macro_rules! defects {
     (
@@ -9,7 +9,9 @@ macro_rules! defects {
         of_the_leg { $($leg:ident $leg_text:literal;)* }
     ) => {
         /// One defect. A tendon, cell, encoder or motor is counted from 0 here, and from 1 in files.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantNames)]
+        #[derive(
+            Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantNames, IntoStaticStr,
+        )]
         #[serde(rename_all = "snake_case")]
         #[strum(serialize_all = "snake_case")]
         pub enum Defect {

@@ -144,12 +144,11 @@ impl<'a> TestStand<'a> {
                 summary.faults.push((fault, time_s));
             }
         }
-        summary.ticks += 1;
         self.tips_m.push_back(truth.tip_m);
         if self.tips_m.len() > AVERAGE_TICKS {
             self.tips_m.pop_front();
         }
-        if (self.summary.ticks - 1).is_multiple_of(SAMPLE_TICKS) {
+        if self.summary.ticks.is_multiple_of(SAMPLE_TICKS) {
             self.summary.samples.push(Sample {
                 time_s,
                 tip_error_mm: (truth.tip_m - self.target_m()).norm() * 1000.0,
@@ -158,6 +157,7 @@ impl<'a> TestStand<'a> {
                 telemetry: *telemetry,
             });
         }
+        self.summary.ticks += 1;
     }
 
     /// Where the trajectory has the tip now, m.

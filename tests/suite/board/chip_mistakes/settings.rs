@@ -37,7 +37,7 @@ mistakes! {
     option_byte_of_the_banks_ignored: Mistake {
         file: FLASH,
         right: "if pac::FLASH.optr().read().dbank() {",
-        wrong: "if pac::FLASH.optr().read().dbank() || true {",
+        wrong: "if true {",
         run: saving_in_one_bank,
         report: "stalls the program, which runs from the same bank",
     };

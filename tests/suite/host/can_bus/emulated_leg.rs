@@ -7,7 +7,6 @@ use leg_firmware::command::Command;
 use leg_firmware::supervisor::State;
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{Goal, HostIdentity, Operator};
-use leg_host::transport::Transport;
 use leg_host::transport::can::{CanPort, CanTransport};
 use leg_rig::rig_file::RigFile;
 use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
@@ -92,33 +91,6 @@ impl CanPort for LegTimePort {
             }
         }
     }
-}
-
-struct LegTimeTransport {
-    inner: CanTransport<LegTimePort>,
-    wire: Rc<RefCell<LegOnBus>>,
-}
-
-impl Transport for LegTimeTransport {
-    fn name(&self) -> &str {
-        self.inner.name()
-    }
-
-    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.inner.send(bytes)
-    }
-
-    fn send_urgent(&mut self, link_frame: &[u8]) -> io::Result<()> {
-        self.inner.send_urgent(link_frame)
-    }
-
-    fn receive(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize> {
-        self.inner.receive(bytes, timeout)
-    }
-
-    fn damaged(&self) -> u64 {
-        self.inner.damaged()
-    }
 
     fn now(&self) -> Duration {
         self.wire.borrow().leg.time()
@@ -134,13 +106,9 @@ fn host(
         inner: BusPort::attach(&wire.borrow().bus),
         wire: Rc::clone(wire),
     };
-    let line = LegTimeTransport {
-        inner: link(port, LEG),
-        wire: Rc::clone(wire),
-    };
     let sequence = 1000 * id as u16;
     let host = HostIdentity { id, sequence };
-    Operator::open(Box::new(line), host, CancelFlag::default()).unwrap()
+    Operator::open(Box::new(link(port, LEG)), host, CancelFlag::default()).unwrap()
 }
 
 fn lean(tilt_deg: f32) -> Goal {

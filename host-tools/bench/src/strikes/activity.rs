@@ -1,11 +1,13 @@
 //! What the leg is doing when it is struck.
 
+use clap::ValueEnum;
 use serde::Serialize;
 
 /// What the leg is doing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, ValueEnum)]
 #[serde(rename_all = "snake_case")]
-pub enum Occasion {
+#[value(rename_all = "snake_case")]
+pub enum Activity {
     /// At rest after a move, still following commands.
     Following,
     /// Stopped by the user.
@@ -24,31 +26,25 @@ pub enum Occasion {
     Rearmed,
 }
 
-impl Occasion {
-    /// All, with their names.
-    pub const ALL: [(Self, &'static str); 8] = [
-        (Self::Following, "following"),
-        (Self::Held, "held"),
-        (Self::Moving, "moving"),
-        (Self::Homing, "homing"),
-        (Self::RampingDown, "ramping_down"),
-        (Self::Disarmed, "disarmed"),
-        (Self::Arming, "arming"),
-        (Self::Rearmed, "rearmed"),
-    ];
-
-    /// That of the case of a number.
+impl Activity {
+    /// That of the case of a number: all in turn.
     #[must_use]
-    pub const fn of_case(number: u64) -> Self {
-        Self::ALL[(number % Self::ALL.len() as u64) as usize].0
+    pub fn in_turn(number: u64) -> Self {
+        let all = Self::value_variants();
+        all[(number % all.len() as u64) as usize]
     }
 
-    /// Its name.
+    /// How many there are.
     #[must_use]
-    pub fn name(self) -> &'static str {
-        let mut all = Self::ALL.iter();
-        all.find(|(occasion, _)| *occasion == self)
-            .map_or("", |(_, name)| name)
+    pub fn count() -> u64 {
+        Self::value_variants().len() as u64
+    }
+
+    /// Its name, as options and reports have it.
+    #[must_use]
+    pub fn name(self) -> String {
+        let value = self.to_possible_value();
+        value.map_or_else(String::new, |value| value.get_name().into())
     }
 
     /// Whether the leg is on a way, and not at rest.
