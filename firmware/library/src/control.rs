@@ -2,6 +2,7 @@
 
 mod axis;
 pub(crate) mod bounds;
+mod debounce;
 mod estimate;
 mod filter;
 mod homing;
@@ -14,7 +15,9 @@ mod target;
 mod trajectory;
 
 pub use axis::{Axis, AxisGoal, AxisInput, AxisView};
-pub use estimate::{Estimate, Estimator, LoadEstimation};
+pub use debounce::Debounce;
+pub use estimate::{Estimate, Estimator, LengthError, LoadEstimation};
+pub use filter::LowPass;
 pub use homing::{HomingSequence, HomingStep};
 pub use measure::{Measured, Measurement};
 pub use mechanism::Mechanism;

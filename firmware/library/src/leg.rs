@@ -3,11 +3,12 @@
 mod active;
 mod command_queue;
 mod commands;
+mod held;
 mod homing;
 mod link_watch;
 mod mode;
 mod phase;
-mod resting;
+mod ramping_down;
 mod shadow;
 mod shared;
 
@@ -17,12 +18,14 @@ use crate::control::{LoadEstimation, Measured, Measurement};
 use crate::drive::Drive;
 use crate::sensors::Sensors;
 use crate::settings::{Settings, SettingsError};
-use crate::supervisor::{Event, Fault, FaultSet, MonitorInput, Monitors, State, Supervisor};
+use crate::supervisor::{
+    Agreement, Event, Fault, FaultSet, MonitorInput, Monitors, State, Supervisor,
+};
 use crate::telemetry::Telemetry;
 use command_queue::CommandQueue;
 use leg_model::{Error, Scalar};
 use link_watch::LinkWatch;
-use mode::{Mode, ModeStep};
+use mode::{Mode, ModeStep, Trust};
 use phase::Phase;
 use shared::Shared;
 
@@ -38,6 +41,7 @@ pub struct Leg<T> {
     shared: Shared<T>,
     mode: Mode<T>,
     monitors: Monitors<T>,
+    agreement: Agreement<T>,
     supervisor: Supervisor,
 }
 
@@ -58,6 +62,7 @@ impl<T: Scalar> Leg<T> {
             shared: Shared::new(settings)?,
             mode: Mode::boot(),
             monitors: Monitors::new(settings),
+            agreement: Agreement::new(&settings.limits),
             supervisor: Supervisor::default(),
         })
     }
@@ -88,7 +93,9 @@ impl<T: Scalar> Leg<T> {
             self.enter(state, &measured);
         }
         self.phase = self.phase.next();
-        let drive = self.shared.drive(state.driven(), &measured);
+        let drive = self
+            .shared
+            .drive(state.driven(), self.mode.turns(), &measured);
         self.measured = Some(measured);
         drive
     }
@@ -106,20 +113,20 @@ impl<T: Scalar> Leg<T> {
                 if let Err(error) = active.step(self.phase, shared, measured) {
                     step.faults = fault_of_error(error);
                 }
+                if active.led_down(shared) {
+                    step.event = Some(Event::Disarm);
+                }
                 return step;
             }
             Mode::Homing(homing) => {
                 return homing::step(homing, shared, &mut self.measurement, measured);
-            }
-            Mode::Held(held) => {
-                let latched = self.supervisor.latched();
-                held.keep_f_min(shared, measured, latched.overlaps(FaultSet::SUSPECT_CELLS));
             }
             Mode::RampingDown(ramping_down) => {
                 if ramping_down.relax(shared, measured) {
                     step.event = Some(Event::Relaxed);
                 }
             }
+            Mode::Held(held) => held.step(shared),
             Mode::Boot { .. } | Mode::Disarmed | Mode::Off => {}
         }
         // The estimate goes on while nothing is made of it, so that the leg starts from where it is.
@@ -133,6 +140,9 @@ impl<T: Scalar> Leg<T> {
     /// The faults of a tick, but those of the mode itself.
     #[inline(always)]
     fn faults(&mut self, state: State, sensors: &Sensors, measured: &Measured<T>) -> FaultSet {
+        if self.phase == Phase::Estimate {
+            self.watch_agreement();
+        }
         let active = self.mode.active();
         let tensioned = active.is_some_and(|active| active.tensioned);
         let input = MonitorInput {
@@ -142,12 +152,16 @@ impl<T: Scalar> Leg<T> {
             led: state.follows(),
             tensioned,
             residual_m: if tensioned {
-                self.shared.residual_m
+                self.shared.residual_m()
             } else {
                 None
             },
+            cells_trusted: self.agreement.trusts() && !self.supervisor.stopped(),
         };
         let mut faults = self.monitors.watch(&input);
+        // Once another fault has been named, what follows from it needs no name of its own.
+        let first = !self.supervisor.stopped_but_for(Fault::Residual);
+        faults.add(Fault::Residual, first && !self.agreement.agree());
         for &turn in self.phase.monitored_axes() {
             if let (Some(axis), Some(&pulled)) =
                 (self.shared.axes.get(turn), measured.pulled_m.get(turn))
@@ -166,16 +180,40 @@ impl<T: Scalar> Leg<T> {
             );
             faults.add(Fault::Slack, active.stays_slack(&self.shared));
         }
-        faults.union(self.link.step(state.follows()))
+        let listens = state.follows() && !active.is_some_and(|active| active.disarming);
+        faults.union(self.link.step(listens))
+    }
+
+    /// Watches whether the sensors agree on the pose: from when every tendon pulls until the tendons are paid out or the drivers
+    /// are off.
+    #[inline(always)]
+    fn watch_agreement(&mut self) {
+        let moving = match &self.mode {
+            Mode::Active(active) if active.tensioned => active.trajectory.moving(),
+            Mode::Held(_) if self.agreement.watches() => false,
+            _ => return self.agreement.end(),
+        };
+        if let Some(estimate) = &self.shared.estimate
+            && let Some(error) = &estimate.length_error
+        {
+            self.agreement.watch(error, moving);
+        }
     }
 
     /// Begins the mode of a state.
     #[inline(never)]
     fn enter(&mut self, state: State, measured: &Measured<T>) {
         self.link.restart_silence();
-        self.mode = Mode::begin(state, &mut self.shared, measured);
+        let latched = self.supervisor.latched();
+        let trust = Trust {
+            pose: self.agreement.watches() && !self.supervisor.stopped(),
+            counters: !latched.overlaps(FaultSet::SUSPECT_COUNTERS),
+        };
+        self.mode = Mode::begin(state, &mut self.shared, measured, trust);
         if state == State::Active {
-            self.phase = Phase::Estimate;
+            // There is no target yet to search a pretension for, so this tick has time for the command; pose and load have been
+            // estimated until now.
+            self.phase = Phase::Pretension;
         }
     }
 
@@ -214,13 +252,10 @@ impl<T: Scalar> Leg<T> {
             faults: self.supervisor.latched(),
             homed: shared.zero_m.is_some(),
             failed_tendon: shared.failed_tendon,
-            moving: self
-                .mode
-                .active()
-                .is_some_and(|active| active.trajectory.moving()),
+            moving: self.mode.moving(),
             target: [target.x, target.y],
             pose: [pose.x, pose.y],
-            residual_m: shared.residual_m.unwrap_or(T::zero()),
+            residual_m: shared.residual_m().unwrap_or(T::zero()),
             tensions_n,
             target_tensions_n: shared.target.map_or(zero, |target| target.tensions_n),
             pulled_m,

@@ -8,7 +8,7 @@ mod state;
 
 pub use fault::{FAULT_TABLE, Fault, FaultEntry};
 pub use fault_set::FaultSet;
-pub use monitors::{MonitorInput, Monitors};
+pub use monitors::{Agreement, MonitorInput, Monitors};
 pub use reaction::{Clearing, Reaction};
 pub use state::{Event, State};
 
@@ -58,8 +58,9 @@ impl Supervisor {
     }
 
     /// Clears the faults whose cause is gone; the next state if none is left. `homed`: whether the leg knows its zero.
-    pub fn clear(&mut self, state: State, homed: bool) -> Option<State> {
-        self.latched = self.present;
+    /// `causes` are those that are there, but were not named before.
+    pub fn clear(&mut self, state: State, homed: bool, causes: FaultSet) -> Option<State> {
+        self.latched = self.present.union(causes);
         if self.stopped() {
             return None;
         }
@@ -68,6 +69,13 @@ impl Supervisor {
         } else {
             Event::Clear
         })
+    }
+
+    /// Whether another fault than this one is latched that does more than limit.
+    #[must_use]
+    #[inline(always)]
+    pub fn stopped_but_for(&self, fault: Fault) -> bool {
+        self.latched.without_limits().without(fault).any()
     }
 
     /// Whether a fault is latched that does more than limit.

@@ -10,7 +10,7 @@ use std::process::Command;
 
 /// At least so many driven ticks in the time of the processor in which QEMU, whose core is as fast but which knows no board, does
 /// one: a ratio, which does not depend on the machine.
-const RATIO_MIN: f64 = 0.07;
+const RATIO_MIN: f64 = 0.05;
 
 /// At most so much memory.
 const MEMORY_MAX_MIB: f64 = 200.0;

@@ -11,6 +11,9 @@ use leg_model::Scalar;
 /// holds without voltage; without the decay the motor would keep drawing the last current. Scenario `hold` holds it.
 const RESTING_DECAY: f32 = 0.99;
 
+/// How far a motor that the maximum tension slows down may be behind its reference, m: a sixth of what would be a fault.
+const LIMITED_AHEAD_M: f32 = 1e-4;
+
 /// Where a motor shall be led.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisGoal<T> {
@@ -23,6 +26,8 @@ pub struct AxisGoal<T> {
 /// What an axis shows beside its sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisView<T> {
+    /// The tracked speed, m/s.
+    pub speed_m_per_s: T,
     /// How far the motor is from where it is led, m.
     pub following_m: T,
     /// The voltage at the motor beyond what its speed induces, V.
@@ -129,6 +134,7 @@ impl<T: Scalar> Axis<T> {
     #[inline(always)]
     pub fn view(&self, pulled_m: T) -> AxisView<T> {
         AxisView {
+            speed_m_per_s: self.speed_m_per_s,
             following_m: self.reference_m - pulled_m,
             driving_v: self.voltage_v - self.gains.back_emf * self.speed_m_per_s,
             voltage_v: self.voltage_v,
@@ -150,9 +156,16 @@ impl<T: Scalar> Axis<T> {
         self.step_m = clamp_symmetric((goal.pulled_m - self.reference_m) * share, fastest);
     }
 
-    /// Leads the axis no farther, until it is led again.
-    pub fn pause(&mut self) {
-        self.step_m = T::zero();
+    /// How far the axis is led in a tick, m.
+    #[inline(always)]
+    pub fn step_m(&self) -> T {
+        self.step_m
+    }
+
+    /// Leads the axis by so much in each tick from now, m.
+    #[inline(always)]
+    pub fn lead_by(&mut self, step_m: T) {
+        self.step_m = step_m;
     }
 
     /// Follows the motor without driving it.
@@ -186,6 +199,11 @@ impl<T: Scalar> Axis<T> {
         // The nearer to the maximum tension, the slower the pull; above it the tendon is paid out.
         let room = (input.f_max_n - input.tension_n) * gains.per_band_n;
         let fastest = clamp_symmetric(room, T::one()) * gains.speed_max;
+        if wanted > fastest {
+            // What the tension does not allow is caught up with, not insisted on.
+            let ahead = T::from(LIMITED_AHEAD_M);
+            self.reference_m = min(self.reference_m, input.pulled_m + ahead);
+        }
         let wanted = min(wanted, fastest);
         let wanted = if input.pulled_m <= input.lowest_m {
             max(wanted, T::zero())

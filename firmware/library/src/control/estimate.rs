@@ -3,10 +3,10 @@
 use super::{CYCLE_S, Mechanism, bounds::max, filter::LowPass};
 use crate::settings::Settings;
 use leg_model::{
-    Direction, Elasticity, Error, Geometry, Scalar, SupportKind, estimate_load, forward_kinematics,
-    forward_kinematics_universal,
+    Direction, Elasticity, Error, Scalar, SupportKind, estimate_moment, forward_kinematics,
+    forward_kinematics_universal, inverse_kinematics,
 };
-use nalgebra::SVector;
+use nalgebra::{SVector, Vector3};
 
 /// The pose that the tendons show.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,11 +15,24 @@ pub struct Estimate<T> {
     pub direction: Direction<T>,
     /// What forward kinematics leaves over, m: a tendon that jumped or a count that was lost shows there.
     pub residual_m: T,
+    /// The same with its sign, for the watch over time; none while the tendons are not taut.
+    pub length_error: Option<LengthError<T>>,
+}
+
+/// What the estimate of the pose leaves over, with its sign.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LengthError<T> {
+    /// Mean of measured lengths less those of the pose, m.
+    pub mean_m: T,
+    /// Elongation of each tendon by its load cell, m.
+    pub elongations_m: [T; 3],
 }
 
 /// How the load is estimated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LoadEstimation {
+    /// It stays as it is: the tendons are not taut yet.
+    Slack,
     /// It stays as it is.
     Frozen,
     /// It follows the tensions, filtered.
@@ -94,10 +107,12 @@ impl<T: Scalar> Estimator<T> {
         load_estimation: LoadEstimation,
     ) -> Result<Estimate<T>, Error> {
         let (mut lengths, mut pull) = (SVector::<T, 3>::zeros(), SVector::<T, 3>::zeros());
+        let mut elongations_m = [T::zero(); 3];
         for (i, tendon) in mechanism.tendons.iter().enumerate() {
             // A slack tendon is as long as it is; noise does not make it push.
             pull[i] = max(tensions_n[i], T::zero());
-            lengths[i] = unstretched_m[i] + tendon.elongation(pull[i])?;
+            elongations_m[i] = tendon.elongation(pull[i])?;
+            lengths[i] = unstretched_m[i] + elongations_m[i];
         }
         let mut twisted = None;
         let found = if mechanism.support.kind() == SupportKind::Universal {
@@ -107,32 +122,38 @@ impl<T: Scalar> Estimator<T> {
             forward_kinematics(geometry, &lengths, &self.direction)?
         };
         self.direction = found.direction;
-        if load_estimation != LoadEstimation::Frozen {
-            self.update_load(
-                mechanism,
-                mechanism.geometry(&found.direction, torsion, &mut twisted),
-                torsion,
-                &pull,
-                load_estimation,
-            )?;
+        let mut length_error = None;
+        if load_estimation != LoadEstimation::Slack {
+            let geometry = mechanism.geometry(&found.direction, torsion, &mut twisted);
+            let kinematics = inverse_kinematics(geometry, &found.direction)?;
+            length_error = Some(LengthError {
+                // At what forward kinematics found all three errors have one sign.
+                mean_m: (lengths - kinematics.lengths).sum() * T::from(1.0 / 3.0),
+                elongations_m,
+            });
+            if load_estimation != LoadEstimation::Frozen {
+                let tendons = estimate_moment(&kinematics.moment_map, &pull);
+                self.update_load(mechanism, &tendons, torsion, load_estimation);
+            }
         }
         Ok(Estimate {
             direction: found.direction,
             residual_m: found.residual_m,
+            length_error,
         })
     }
 
+    /// By the moment against that of the tendons, N·m.
     #[inline(always)]
     fn update_load(
         &mut self,
         mechanism: &Mechanism<T>,
-        geometry: &Geometry<T, 3>,
+        against: &Vector3<T>,
         torsion: T,
-        pull: &SVector<T, 3>,
         load_estimation: LoadEstimation,
-    ) -> Result<(), Error> {
+    ) {
         let (direction, support) = (&self.direction, &mechanism.support);
-        let load = estimate_load(geometry, support, direction, torsion, pull)?;
+        let load = against - support.joint_moment(direction, torsion);
         let [x, y] = support.plane(direction).project(&load);
         let own = mechanism.leg.moment(direction);
         let excess = [x - own.x, y - own.y];
@@ -144,7 +165,6 @@ impl<T: Scalar> Estimator<T> {
             second.step(first.step(input));
         }
         self.update_payload(mechanism);
-        Ok(())
     }
 
     /// A weight at the tip turns the leg about (−p_y, p_x), the more the further it leans.

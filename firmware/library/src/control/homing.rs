@@ -5,7 +5,7 @@
 
 mod rest_search;
 
-use super::{AxisGoal, Mechanism, filter::LowPass, ticks};
+use super::{AxisGoal, Debounce, Measured, Mechanism, filter::LowPass, ticks};
 use crate::settings;
 use leg_model::Scalar;
 use rest_search::RestSearch;
@@ -93,6 +93,8 @@ pub struct HomingSequence<T> {
     position_sum: T,
     count: u32,
     steady: [LowPass<T>; 3],
+    /// How long each motor has drawn more than [`Self::current_max_a`].
+    hauling: [Debounce; 3],
     found: [T; 3],
     rest: RestSearch<T>,
     start_m: T,
@@ -101,6 +103,10 @@ pub struct HomingSequence<T> {
     release_m: T,
     tare_max_n: T,
     touch_n: T,
+    /// A tendon that shows no more than this is slack, N.
+    slack_n: T,
+    /// What no motor draws for long, A.
+    current_max_a: T,
     travel_m: T,
 }
 
@@ -125,12 +131,21 @@ const TOUCH_TIME_S: f32 = 0.005;
 /// noise, and far below what a taut tendon loses over a step of 4 mm.
 const SLACK_PART: f32 = 0.25;
 
+/// Tension that a slack tendon may show after the tare, as a part of the tension of a touch: twice what [`SLACK_PART`] allows, for
+/// the zero has had time to drift, and half of what would be taken for a touch.
+const OTHER_PART: f32 = 0.5;
+
+/// Time for which a motor draws more than any tension of homing asks for, s, before homing ends: longer than a motor takes to
+/// start, short enough that the tension rises by 3 N at most.
+const HAUL_TIME_S: f32 = 0.03;
+
 /// A tendon this near to its goal has arrived, m: above what the servo leaves, far below a step of the release.
 const ARRIVED_M: f32 = 1e-4;
 
 impl<T: Scalar> HomingSequence<T> {
     /// Starts from where the tendons are, m.
-    pub fn new(homing: &settings::Homing, pulled_m: &[T; 3]) -> Self {
+    /// No motor may draw more than `current_max_a`, A, but for moments.
+    pub fn new(homing: &settings::Homing, pulled_m: &[T; 3], current_max_a: T) -> Self {
         let release_m = T::from(homing.release_m);
         Self {
             phase: HomingPhase::Release,
@@ -142,6 +157,7 @@ impl<T: Scalar> HomingSequence<T> {
             position_sum: T::zero(),
             count: 0,
             steady: [LowPass::new(TOUCH_TIME_S, super::TICK_S); 3],
+            hauling: [Debounce::new(ticks(HAUL_TIME_S)); 3],
             found: [T::zero(); 3],
             rest: RestSearch::new(T::zero(), T::zero()),
             start_m: T::zero(),
@@ -154,27 +170,52 @@ impl<T: Scalar> HomingSequence<T> {
             release_m,
             tare_max_n: homing.tare_max_n.into(),
             touch_n: homing.touch_n.into(),
+            slack_n: T::from(OTHER_PART * homing.touch_n),
+            current_max_a,
             travel_m: homing.travel_m.into(),
         }
     }
 
     /// One tick.
     #[inline(never)]
-    pub fn step(
-        &mut self,
-        mechanism: &Mechanism<T>,
-        pulled_m: &[T; 3],
-        tensions_n: &[T; 3],
-    ) -> HomingStep<T> {
+    pub fn step(&mut self, mechanism: &Mechanism<T>, measured: &Measured<T>) -> HomingStep<T> {
+        let (pulled_m, tensions_n) = (&measured.pulled_m, &measured.tensions_n);
+        if let Some(tendon) = self.contradicted(measured) {
+            return HomingStep::Failed(tendon);
+        }
         match self.phase {
             HomingPhase::Release => self.release(pulled_m, tensions_n),
             HomingPhase::Tare => self.tare(tensions_n),
-            HomingPhase::ReelIn(tendon) => self.reel_in(tendon, pulled_m, tensions_n),
+            HomingPhase::ReelIn(tendon) => self.reel_in(tendon, pulled_m),
             HomingPhase::Settle(tendon) => self.settle(tendon),
             HomingPhase::Average(tendon) => self.average(tendon, pulled_m, tensions_n),
             HomingPhase::Search(tendon) => self.search(mechanism, tendon),
             HomingPhase::PayOut(tendon) => self.pay_out(tendon, pulled_m),
         }
+    }
+
+    /// The first tendon, from 1, whose motor draws what no tension of homing asks for, or whose load cell shows a tension where it
+    /// is slack: all but the one that is reeled in.
+    fn contradicted(&mut self, measured: &Measured<T>) -> Option<u8> {
+        let taut = match self.phase {
+            HomingPhase::Release | HomingPhase::Tare => return None,
+            HomingPhase::ReelIn(tendon)
+            | HomingPhase::Settle(tendon)
+            | HomingPhase::Average(tendon)
+            | HomingPhase::Search(tendon)
+            | HomingPhase::PayOut(tendon) => tendon.number(),
+        };
+        let mut found = None;
+        let tendons = self.steady.iter_mut().zip(&mut self.hauling);
+        let shown = measured.tensions_n.iter().zip(&measured.currents_a);
+        for ((number, (steady, hauling)), (&tension, current)) in (1..).zip(tendons).zip(shown) {
+            let shows = !(steady.step(tension).abs() <= self.slack_n);
+            let hauls = hauling.update(!(current.abs() <= self.current_max_a));
+            if hauls || (shows && number != taut) {
+                found = Some(number);
+            }
+        }
+        found
     }
 
     fn lead(&self) -> HomingStep<T> {
@@ -259,14 +300,9 @@ impl<T: Scalar> HomingSequence<T> {
         HomingStep::Tare(offsets)
     }
 
-    fn reel_in(
-        &mut self,
-        tendon: TendonNumber,
-        pulled_m: &[T; 3],
-        tensions_n: &[T; 3],
-    ) -> HomingStep<T> {
+    fn reel_in(&mut self, tendon: TendonNumber, pulled_m: &[T; 3]) -> HomingStep<T> {
         let i = tendon.index();
-        if self.steady[i].step(tensions_n[i]) >= self.touch_n {
+        if self.steady[i].value() >= self.touch_n {
             self.goals_m[i] = pulled_m[i];
             (self.phase, self.left) = (HomingPhase::Settle(tendon), self.times.settle);
             return self.lead();
@@ -322,22 +358,25 @@ impl<T: Scalar> HomingSequence<T> {
             Ok(Some(unstretched_at_zero)) => self.found[i] = unstretched_at_zero,
             Err(_) => return HomingStep::Failed(tendon.number()),
         }
-        let Some(next) = tendon.next() else {
-            return HomingStep::Found(self.found);
-        };
         self.goals_m[i] -= self.release_m;
-        self.start_m = self.goals_m[next.index()];
         self.phase = HomingPhase::PayOut(tendon);
         self.lead()
     }
 
     fn pay_out(&mut self, tendon: TendonNumber, pulled_m: &[T; 3]) -> HomingStep<T> {
         let i = tendon.index();
-        if (pulled_m[i] - self.goals_m[i]).abs() < T::from(ARRIVED_M)
-            && let Some(next) = tendon.next()
-        {
-            self.phase = HomingPhase::ReelIn(next);
+        if !((pulled_m[i] - self.goals_m[i]).abs() < T::from(ARRIVED_M)) {
+            return self.lead();
         }
+        // Slack again, the load cell has to show nothing again: otherwise its zero has moved meanwhile.
+        if !(self.steady[i].value().abs() <= self.slack_n) {
+            return HomingStep::Failed(tendon.number());
+        }
+        let Some(next) = tendon.next() else {
+            return HomingStep::Found(self.found);
+        };
+        self.start_m = self.goals_m[next.index()];
+        self.phase = HomingPhase::ReelIn(next);
         self.lead()
     }
 }

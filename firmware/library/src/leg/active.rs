@@ -7,7 +7,7 @@ use crate::control::{
     Axis, AxisGoal, CYCLE_S, CYCLE_TICKS, LoadEstimation, Measured, TargetDemand, Trajectory,
     bounds,
 };
-use leg_model::{Error, Scalar};
+use leg_model::{Direction, Error, Scalar};
 
 /// The leg follows commands.
 #[derive(Clone, Copy, Debug)]
@@ -15,6 +15,8 @@ pub struct Active<T> {
     pub trajectory: Trajectory<T>,
     /// Whether every tendon has been above the minimum tension since the leg was armed.
     pub tensioned: bool,
+    /// Whether the leg is led straight down, to be disarmed there.
+    pub disarming: bool,
     slack: Slack<T>,
 }
 
@@ -41,7 +43,7 @@ impl<T: Scalar> Active<T> {
         let compensated = shared.compensation != Compensation::Off;
         shared.targets.start(compensated);
         shared.target = None;
-        shared.residual_m = None;
+shared.estimate = None;
         // A leg whose tendons pull already stays as it is: relaxed first, it would swing. Half of the minimum tension is below
         // what any target asks for, and above what is left in tendons that were paid out.
         let taut_n = shared.mechanism.f_min_n * T::HALF;
@@ -52,6 +54,7 @@ impl<T: Scalar> Active<T> {
                 shared.estimator.direction().half_tangent(),
             ),
             tensioned: false,
+            disarming: false,
             slack: Slack {
                 left_m: taut.then(T::zero),
                 cycles: 0,
@@ -81,6 +84,18 @@ impl<T: Scalar> Active<T> {
         }
     }
 
+    /// Leads the leg straight down, to be disarmed there.
+    pub fn disarm(&mut self) {
+        self.disarming = true;
+        self.trajectory.go(Direction::down().half_tangent());
+    }
+
+    /// Whether it was led down, or cannot be.
+    #[inline(always)]
+    pub fn led_down(&self, shared: &Shared<T>) -> bool {
+        self.disarming && (!self.trajectory.moving() || shared.refused)
+    }
+
     /// Whether the tendons take too long to become taut.
     #[inline(always)]
     pub fn stays_slack(&self, shared: &Shared<T>) -> bool {
@@ -90,7 +105,9 @@ impl<T: Scalar> Active<T> {
     /// Estimates pose and load. While the tendons come up from slack, their tensions do not show the load.
     #[inline(always)]
     fn estimate(&mut self, shared: &mut Shared<T>, measured: &Measured<T>) -> Result<(), Error> {
-        let load_estimation = if shared.compensation == Compensation::Frozen || !self.tensioned {
+        let load_estimation = if !self.tensioned {
+            LoadEstimation::Slack
+        } else if shared.compensation == Compensation::Frozen {
             LoadEstimation::Frozen
         } else {
             LoadEstimation::Filtered
@@ -161,7 +178,7 @@ impl<T: Scalar> Active<T> {
     #[cold]
     fn stay(&mut self, shared: &mut Shared<T>) {
         for axis in &mut shared.axes {
-            axis.pause();
+            axis.lead_by(T::zero());
         }
         if let Some(target) = &shared.target {
             self.trajectory.start(target.direction.half_tangent());

@@ -5,7 +5,7 @@ use super::mode::Mode;
 use super::{Leg, Outcome};
 use crate::command::{Command, CommandRefusal};
 use crate::control::{Measured, PretensionDemand};
-use crate::supervisor::{Event, State};
+use crate::supervisor::{Event, Fault, FaultSet, State};
 use leg_model::{BendingAxis, Direction, Scalar};
 
 /// Whether these are a cosine and a sine, but for their rounding. Of a direction of no length or of a huge one there is no
@@ -66,12 +66,16 @@ impl<T: Scalar> Leg<T> {
                 Ok(())
             }
             Command::Stop => self.end(Event::Stop, measured),
-            Command::Disarm => self.end(Event::Disarm, measured),
+            Command::Disarm => self.disarm(measured),
             Command::Clear => {
                 self.shared.refused = false;
                 self.link.clear_bad_frames();
                 let homed = self.shared.zero_m.is_some();
-                if let Some(state) = self.supervisor.clear(self.mode.state(), homed) {
+                // Whatever was named first: a leg whose sensors disagree does not follow them again.
+                let mut causes = FaultSet::NONE;
+                causes.add(Fault::Residual, !self.agreement.agree());
+                let state = self.mode.state();
+                if let Some(state) = self.supervisor.clear(state, homed, causes) {
                     self.enter(state, measured);
                 }
                 self.unfaulted()
@@ -105,6 +109,23 @@ impl<T: Scalar> Leg<T> {
         Ok(())
     }
 
+    /// Leads a leg that knows its pose down before its tendons are paid out; a second command pays them out at once.
+    fn disarm(&mut self, measured: &Measured<T>) -> Result<(), CommandRefusal> {
+        let trusted = self.agreement.watches() && self.unfaulted().is_ok();
+        let disarming = self.mode.active().is_some_and(|active| active.disarming);
+        if !trusted || disarming {
+            return self.end(Event::Disarm, measured);
+        }
+        if let Some(state) = self.supervisor.next(self.mode.state(), Event::LeadDown) {
+            self.enter(state, measured);
+        }
+        self.shared.refused = false;
+        if let Mode::Active(active) = &mut self.mode {
+            active.disarm();
+        }
+        Ok(())
+    }
+
     fn unfaulted(&self) -> Result<(), CommandRefusal> {
         if self.supervisor.stopped() {
             Err(CommandRefusal::Faulted)
@@ -118,6 +139,9 @@ impl<T: Scalar> Leg<T> {
         let refusal = self.unfaulted().err();
         let state = self.mode.state();
         match &mut self.mode {
+            Mode::Active(active) if active.disarming => {
+                Err(CommandRefusal::State(State::RampingDown))
+            }
             Mode::Active(active) => Ok(active),
             _ => Err(refusal.unwrap_or(CommandRefusal::State(state))),
         }

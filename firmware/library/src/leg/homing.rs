@@ -14,7 +14,7 @@ pub fn step<T: Scalar>(
     measurement: &mut Measurement<T>,
     measured: &Measured<T>,
 ) -> ModeStep {
-    let asked = homing.step(&shared.mechanism, &measured.pulled_m, &measured.tensions_n);
+    let asked = homing.step(&shared.mechanism, measured);
     let mut failed = false;
     if !homing.releases() {
         let f_max_n = shared.limits.homing_f_max_n;

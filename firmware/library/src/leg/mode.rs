@@ -1,9 +1,10 @@
 //! What the leg is doing, and what only that needs.
 
 use super::active::Active;
-use super::resting::{Held, RampingDown};
+use super::held::Held;
+use super::ramping_down::RampingDown;
 use super::shared::Shared;
-use crate::control::{HomingSequence, Measured};
+use crate::control::{Axis, HomingSequence, Measured};
 use crate::supervisor::{Event, FaultSet, State};
 use leg_model::Scalar;
 
@@ -67,6 +68,15 @@ impl<T: Scalar> Mode<T> {
         }
     }
 
+    /// Whether the leg is on its way, or brakes.
+    pub fn moving(&self) -> bool {
+        match self {
+            Self::Active(active) => active.trajectory.moving(),
+            Self::Held(held) => held.brakes(),
+            _ => false,
+        }
+    }
+
     /// Counts a tick of the boot; true if it was the last.
     #[inline(always)]
     pub fn boots_up(&mut self) -> bool {
@@ -79,23 +89,62 @@ impl<T: Scalar> Mode<T> {
         }
     }
 
+    /// Whether motors turn; those of a held leg rest on their screws.
+    #[inline(always)]
+    pub const fn turns(&self) -> bool {
+        match self {
+            Self::Homing(_) | Self::Active(_) | Self::RampingDown(_) => true,
+            Self::Held(held) => held.brakes(),
+            Self::Boot { .. } | Self::Disarmed | Self::Off => false,
+        }
+    }
+
     /// The mode of a state that begins now.
-    pub fn begin(state: State, shared: &mut Shared<T>, measured: &Measured<T>) -> Self {
+    pub fn begin(
+        state: State,
+        shared: &mut Shared<T>,
+        measured: &Measured<T>,
+        trust: Trust,
+    ) -> Self {
+        if state == State::Held && trust.counters {
+            let held = Held::braking(shared.axes.each_ref().map(Axis::step_m));
+            if held.brakes() {
+                shared.ignore_tensions();
+                return Self::Held(held);
+            }
+        }
         shared.come_to_rest(state, measured);
         match state {
             State::Boot => Self::boot(),
             State::Disarmed => Self::Disarmed,
             State::Homing => {
                 shared.failed_tendon = 0;
-                let settings = &shared.limits.homing;
-                Self::Homing(HomingSequence::new(settings, &measured.pulled_m))
+                let limits = &shared.limits;
+                Self::Homing(HomingSequence::new(
+                    &limits.homing,
+                    &measured.pulled_m,
+                    limits.homing_current_max_a,
+                ))
             }
             State::Active => Self::Active(Active::begin(shared, measured)),
-            State::Held => Self::Held(Held::new(measured.pulled_m)),
-            State::RampingDown => Self::RampingDown(RampingDown::new(measured.pulled_m)),
+            State::Held => Self::Held(Held::resting()),
+            State::RampingDown => Self::RampingDown(RampingDown::new(
+                shared.limits.relax_ticks,
+                measured.pulled_m,
+                trust.pose,
+            )),
             State::Off => Self::Off,
         }
     }
+}
+
+/// What a mode that begins may rely on.
+#[derive(Clone, Copy, Debug)]
+pub struct Trust {
+    /// The pose: every tendon pulls, the sensors agree, and no fault is latched.
+    pub pose: bool,
+    /// The counters: no fault is latched that they may cause.
+    pub counters: bool,
 }
 
 /// What one tick of a mode comes to.

@@ -4,11 +4,11 @@
 /// tick computes all of it; the axes' controllers run in every tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// Estimates pose and load; the monitors check axis 1.
+    /// Estimates pose and load, and watches whether the sensors agree.
     Estimate,
     /// Makes one step of the search for the pretension.
     Pretension,
-    /// Computes the next target and the goals of the axes.
+    /// Computes the next target and the goals of the axes; the monitors check axis 1.
     Target,
     /// Goes on with the plan of a trajectory; the monitors check axes 2 and 3.
     Plan,
@@ -30,8 +30,8 @@ impl Phase {
     #[inline(always)]
     pub const fn monitored_axes(self) -> &'static [usize] {
         match self {
-            Self::Estimate => &[0],
-            Self::Pretension | Self::Target => &[],
+            Self::Estimate | Self::Pretension => &[],
+            Self::Target => &[0],
             Self::Plan => &[1, 2],
         }
     }

@@ -2,13 +2,13 @@
 
 use crate::command::Compensation;
 use crate::control::{
-    Axis, AxisGoal, AxisInput, CYCLE_TICKS, Estimator, LoadEstimation, Measured, Mechanism,
+    Axis, AxisInput, CYCLE_TICKS, Estimate, Estimator, LoadEstimation, Measured, Mechanism,
     MotionLimits, PretensionSearch, Target, TargetGenerator, ticks,
 };
 use crate::drive::Drive;
 use crate::settings::{Homing, Settings, SettingsError};
 use crate::supervisor::State;
-use leg_model::{Error, Scalar};
+use leg_model::{Direction, Error, Scalar, inverse_kinematics};
 
 /// The control law's state that outlasts a mode.
 #[derive(Clone, Debug)]
@@ -23,7 +23,7 @@ pub struct Shared<T> {
     pub zero_m: Option<[T; 3]>,
     /// The last target, and the residual of the last estimate, m.
     pub target: Option<Target<T>>,
-    pub residual_m: Option<T>,
+    pub estimate: Option<Estimate<T>>,
     /// Tension above which a tendon is paid out now, N.
     pub f_max_n: T,
     /// No tendon is paid out beyond this, m.
@@ -35,36 +35,52 @@ pub struct Shared<T> {
     pub limits: LegLimits<T>,
 }
 
+/// Slack of each tendon of a relaxed leg whose zero is known, m: more than the servo leaves, and little enough that the tip of a
+/// hanging leg plays by a millimetre.
+const SLACK_M: f32 = 1e-4;
+
 /// Limits of the settings that the modes themselves apply.
 #[derive(Clone, Copy, Debug)]
 pub struct LegLimits<T> {
     pub motion: MotionLimits<T>,
     pub homing: Homing,
     pub homing_f_max_n: T,
+    /// What a motor draws at one and a half times that, with half more friction than the settings know, A.
+    pub homing_current_max_a: T,
     pub ramp_m_per_s: T,
-    pub hold_travel_m: T,
     pub relax_travel_m: T,
+    /// Ticks that this takes at that speed.
+    pub relax_ticks: u32,
+    /// Lengths of the tendons of a leg that hangs straight down, with their slack, m.
+    pub slack_lengths_m: [T; 3],
     pub taut_cycles: u32,
-    pub slack_n: T,
     pub servo_m_per_s: T,
     pub tilt_max_sine: T,
 }
 
 impl<T: Scalar> LegLimits<T> {
-    fn new(settings: &Settings) -> Self {
+    fn new(settings: &Settings, mechanism: &Mechanism<T>) -> Result<Self, Error> {
         let limits = &settings.limits;
-        Self {
+        let down = Direction::down();
+        let mut twisted = None;
+        let geometry = mechanism.geometry(&down, T::zero(), &mut twisted);
+        let hanging_m = inverse_kinematics(geometry, &down)?.lengths;
+        Ok(Self {
+            slack_lengths_m: (hanging_m.add_scalar(T::from(SLACK_M))).into(),
             motion: MotionLimits::new(&settings.motion),
             homing: settings.homing,
             homing_f_max_n: settings.homing.f_max_n.into(),
+            homing_current_max_a: T::from(
+                1.5 * (settings.servo.friction_a
+                    + settings.servo.pull_a_per_n * settings.homing.f_max_n),
+            ),
             ramp_m_per_s: limits.ramp_m_per_s.into(),
-            hold_travel_m: limits.hold_travel_m.into(),
             relax_travel_m: limits.relax_travel_m.into(),
+            relax_ticks: ticks(limits.relax_travel_m / limits.ramp_m_per_s),
             taut_cycles: ticks(limits.taut_time_s) / u32::from(CYCLE_TICKS),
-            slack_n: limits.slack_n.into(),
             servo_m_per_s: settings.servo.speed_m_per_s.into(),
             tilt_max_sine: settings.tilt_max_sine.into(),
-        }
+        })
     }
 }
 
@@ -76,8 +92,8 @@ impl<T: Scalar> Shared<T> {
             [Some(a), Some(b), Some(c)] => Some([a.into(), b.into(), c.into()]),
             _ => None,
         };
+        let mechanism = Mechanism::new(settings)?;
         Ok(Self {
-            mechanism: Mechanism::new(settings)?,
             estimator: Estimator::new(settings),
             pretension: PretensionSearch::new(settings.pretension_n.into()),
             targets: TargetGenerator::new(settings),
@@ -85,12 +101,13 @@ impl<T: Scalar> Shared<T> {
             compensation: Compensation::Estimated,
             zero_m,
             target: None,
-            residual_m: None,
+            estimate: None,
             f_max_n: settings.f_max_n.into(),
             lowest_m: [T::zero(); 3],
             refused: false,
             failed_tendon: 0,
-            limits: LegLimits::new(settings),
+            limits: LegLimits::new(settings, &mechanism)?,
+            mechanism,
         })
     }
 
@@ -99,17 +116,24 @@ impl<T: Scalar> Shared<T> {
         for (axis, &pulled) in self.axes.iter_mut().zip(&measured.pulled_m) {
             axis.rest(pulled);
         }
-        self.f_max_n = self.mechanism.f_max_n;
-        let travel_m = match state {
-            // All the way to slack, the last step of it, and once more for each tendon.
+        (self.f_max_n, self.lowest_m) = match state {
             State::Homing => {
+                // All the way to slack, the last step of it, and once more for each tendon.
                 let homing = &self.limits.homing;
-                T::from(homing.travel_m) + T::TWO * T::from(homing.release_m)
+                let travel_m = T::from(homing.travel_m) + T::TWO * T::from(homing.release_m);
+                (
+                    self.mechanism.f_max_n,
+                    measured.pulled_m.map(|rest| rest - travel_m),
+                )
             }
-            State::RampingDown => self.limits.relax_travel_m,
-            _ => T::MAX,
+            State::Active => (self.mechanism.f_max_n, [-T::MAX; 3]),
+            _ => return self.ignore_tensions(),
         };
-        self.lowest_m = measured.pulled_m.map(|rest| rest - travel_m);
+    }
+
+    /// Whatever turns from now on, turns by its counter alone.
+    pub fn ignore_tensions(&mut self) {
+        (self.f_max_n, self.lowest_m) = (T::MAX, [-T::MAX; 3]);
     }
 
     /// Estimates pose and load.
@@ -132,30 +156,24 @@ impl<T: Scalar> Shared<T> {
             self.targets.torsion(),
             load_estimation,
         )?;
-        self.residual_m = Some(estimate.residual_m);
+        self.estimate = Some(estimate);
         Ok(())
     }
 
-    /// Leads an axis to a goal at the speed of [`LegLimits::ramp_m_per_s`].
+    /// What forward kinematics left over in the last estimate, m.
     #[inline(always)]
-    pub fn ramp(axis: &mut Axis<T>, pulled_m: T, limits: &LegLimits<T>) {
-        axis.lead(
-            &AxisGoal {
-                pulled_m,
-                speed_m_per_s: limits.ramp_m_per_s,
-            },
-            T::one(),
-        );
+    pub fn residual_m(&self) -> Option<T> {
+        self.estimate.as_ref().map(|estimate| estimate.residual_m)
     }
 
-    /// The duties of a tick, if the drivers are on.
+    /// The duties of a tick: none where the motors rest.
     #[inline(always)]
-    pub fn drive(&mut self, enabled: bool, measured: &Measured<T>) -> Drive<T> {
+    pub fn drive(&mut self, enabled: bool, turns: bool, measured: &Measured<T>) -> Drive<T> {
         let mut drive = Drive {
             duty: [T::zero(); 3],
             enabled,
         };
-        if !enabled {
+        if !turns {
             return drive;
         }
         for (i, axis) in self.axes.iter_mut().enumerate() {

@@ -6,7 +6,7 @@ use crate::host_link::{CommandedLeg, HostRefusal};
 use crate::leg::Outcome;
 use crate::sensors::{CODE_MAX, Sensors};
 use crate::settings::Settings;
-use crate::supervisor::{Fault, State};
+use crate::supervisor::{Fault, FaultSet, State};
 
 /// Ticks in which a leg boots, and every fault of an axis that is not timed has shown.
 const SOME_TICKS: u32 = 40;
@@ -95,16 +95,31 @@ fn what_waits_while_settings_change_is_refused_and_the_ticks_go_on() {
 fn no_clear_passes_between_two_looks_at_an_axis() {
     for axis in 0..3 {
         let mut bench = Bench::new();
-        bench.sensors.current_codes[axis] = CODE_MAX;
+        let well = bench.sensors.cell_codes[axis];
+        bench.sensors.cell_codes[axis] = CODE_MAX;
         bench.run(SOME_TICKS);
-        assert_eq!(bench.leg.telemetry().state, State::Off);
         for _ in 0..8 {
             assert_eq!(bench.obey(Command::Clear), Err(CommandRefusal::Faulted));
-            assert_eq!(bench.leg.telemetry().state, State::Off);
         }
-        bench.sensors.current_codes[axis] = CODE_MAX / 2;
+        bench.sensors.cell_codes[axis] = well;
         bench.run(SOME_TICKS);
         assert_eq!(bench.obey(Command::Clear), Ok(()));
+    }
+}
+
+/// A driver that is off may report any current.
+#[test]
+fn the_current_of_a_driver_that_is_off_is_no_fault() {
+    for axis in 0..3 {
+        let mut bench = Bench::new();
+        bench.sensors.current_codes[axis] = CODE_MAX;
+        bench.run(SOME_TICKS);
+        assert_eq!(bench.leg.telemetry().faults, FaultSet::NONE);
+        assert_eq!(bench.obey(Command::Home), Ok(()));
+        bench.run(SOME_TICKS);
+        let telemetry = bench.leg.telemetry();
+        assert!(telemetry.faults.has(Fault::OverCurrent));
+        assert_eq!(telemetry.state, State::Off);
     }
 }
 

@@ -88,6 +88,8 @@ fields! {
         residual_m ["m"]: 1e-7..=0.1 = 1.5e-4;
         /// It is a fault after this time.
         residual_time_s ["s"]: 1.25e-4..=10.0 = 0.1;
+        /// The most that the mean of what forward kinematics leaves over may change without a motion or a load that explains it.
+        residual_change_m ["m"]: 1e-7..=0.1 = 1e-5;
         /// A load cell whose code has not changed for this time is stuck.
         stuck_time_s ["s"]: 1.25e-4..=10.0 = 0.02;
         /// A load cell whose code is not fresh for this time is stale.
@@ -120,8 +122,6 @@ fields! {
         ramp_m_per_s ["m/s"]: 1e-5..=0.1 = 5e-3;
         /// Longest time from an arm until every tendon pulls.
         taut_time_s ["s"]: 0.01..=60.0 = 5.0;
-        /// Farthest that a tendon is reeled in to keep the minimum tension, or paid out to keep the maximum tension, while the leg is held.
-        hold_travel_m ["m"]: 1e-6..=0.1 = 1e-3;
         /// Farthest that a tendon is paid out when it has to be relaxed.
         relax_travel_m ["m"]: 1e-6..=0.1 = 5e-3;
     }

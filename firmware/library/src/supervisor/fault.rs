@@ -76,7 +76,7 @@ faults! {
     2 OverTension {
         name: "too much tension",
         reaction: RampDown,
-        cause: "a tension is above the maximum tension by over_tension_part",
+        cause: "a tension is above the maximum tension by over_tension_part for 2 ms, and the counters agree",
         remedy: "look what pulls at the leg; check the load cell",
         clears: Command,
     }
@@ -90,7 +90,7 @@ faults! {
     4 Residual {
         name: "sensors disagree on the pose",
         reaction: Hold,
-        cause: "forward kinematics leaves over more than residual_m for residual_time_s",
+        cause: "forward kinematics leaves over more than residual_m for residual_time_s, or that changes by residual_change_m without a motion or a load that explains it",
         remedy: "home the leg; check the encoders, the load cells and the tendon curves",
         clears: Command,
     }
@@ -118,8 +118,8 @@ faults! {
     8 CurrentDisagrees {
         name: "current and tension disagree",
         reaction: Hold,
-        cause: "a motor draws disagreement_a more than its tension and friction ask, for disagreement_time_s",
-        remedy: "look for a stiff screw or a wrong current sensor",
+        cause: "a motor draws disagreement_a more than its tension and friction ask, or less than its voltage drives, for disagreement_time_s",
+        remedy: "look for a stiff screw, a wrong current sensor or an open wire of the motor",
         clears: Command,
     }
     9 Following {
@@ -173,7 +173,7 @@ faults! {
     }
     16 OverTemperature {
         name: "too hot",
-        reaction: RampDown,
+        reaction: Hold,
         cause: "the drivers are above temperature_c",
         remedy: "let them cool",
         clears: Command,
@@ -237,8 +237,15 @@ faults! {
     25 HomingFailed {
         name: "homing failed",
         reaction: RampDown,
-        cause: "a tendon does not become slack, or then taut, within travel_m, pulls more than twice the maximum tension of homing, or a slack load cell is off by tare_max_n",
+        cause: "a tendon does not become slack, or then taut, within travel_m, pulls more than twice the maximum tension of homing, its motor draws the current of that, a slack load cell is off by tare_max_n, or one shows half a touch_n where its tendon is slack",
         remedy: "let the leg hang free, without a payload; check the load cells",
+        clears: Command,
+    }
+    26 EncoderJump {
+        name: "encoder jumps",
+        reaction: Hold,
+        cause: "a counter goes farther than its motor can turn",
+        remedy: "check the encoder's wiring and its shield, then home the leg",
         clears: Command,
     }
 }

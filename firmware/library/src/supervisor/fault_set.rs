@@ -30,12 +30,12 @@ impl FaultSet {
     /// No fault.
     pub const NONE: Self = Self(0);
 
-    /// Those that make the load cells suspect: while one is latched, a held leg does not move by the measured tensions.
-    pub const SUSPECT_CELLS: Self = Self::single(Fault::CellStale)
-        .union(Self::single(Fault::CellStuck))
-        .union(Self::single(Fault::CellSaturated))
-        .union(Self::single(Fault::CurrentDisagrees))
-        .union(Self::single(Fault::Residual));
+    /// Those that a counter or its motor may cause: no motor follows its counter while one is latched.
+    pub const SUSPECT_COUNTERS: Self = Self::single(Fault::EncoderJump)
+        .union(Self::single(Fault::EncoderStill))
+        .union(Self::single(Fault::EncoderReversed))
+        .union(Self::single(Fault::Following))
+        .union(Self::single(Fault::LateTick));
 
     /// One fault.
     #[must_use]
@@ -74,6 +74,13 @@ impl FaultSet {
     #[inline(always)]
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
+    }
+
+    /// Every one but this.
+    #[must_use]
+    #[inline(always)]
+    pub const fn without(self, fault: Fault) -> Self {
+        Self(self.0 & !Self::single(fault).0)
     }
 
     /// Those that only limit.

@@ -1,14 +1,15 @@
 //! What raises each fault that the sensors and the axes show.
 
+mod agreement;
 mod axis;
-mod debounce;
 
 use super::{Fault, FaultSet};
-use crate::control::{AxisView, Measured, ticks};
+use crate::control::{AxisView, Debounce, Measured, ticks};
 use crate::sensors::Sensors;
 use crate::settings::Settings;
+pub use agreement::Agreement;
 use axis::AxisMonitor;
-use debounce::Debounce;
+
 use leg_model::Scalar;
 
 /// What the monitors check.
@@ -26,6 +27,8 @@ pub struct MonitorInput<'a, T> {
     pub tensioned: bool,
     /// What forward kinematics leaves over, m; none while the pose is not needed.
     pub residual_m: Option<T>,
+    /// Whether lengths and tensions are watched, and agree.
+    pub cells_trusted: bool,
 }
 
 /// Watches sensors and axes.

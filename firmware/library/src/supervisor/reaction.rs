@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 pub enum Reaction {
     /// The leg goes on with what is possible.
     Limit,
-    /// The leg stays where it is, its tendons kept above the minimum tension.
+    /// The leg stays where it is, its motors at rest on their screws.
     Hold,
-    /// The tendons are paid out until they barely pull, then the drivers are switched off.
+    /// The tendons are paid out until they are slack, then the drivers are switched off.
     RampDown,
     /// The drivers are switched off at once; the screws hold.
     GateOff,

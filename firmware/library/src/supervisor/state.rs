@@ -16,9 +16,9 @@ pub enum State {
     Homing,
     /// Commands are followed.
     Active,
-    /// The leg stays where it is, its tendons kept above the minimum tension.
+    /// The leg stays where it is, its motors at rest on their screws.
     Held,
-    /// The tendons are paid out until they barely pull.
+    /// The tendons are paid out until they are slack.
     RampingDown,
     /// The drivers are off after a fault; the screws hold.
     Off,
@@ -37,9 +37,11 @@ pub enum Event {
     Homed,
     /// The host stops the leg.
     Stop,
-    /// The host disarms the leg.
+    /// The host disarms the leg, or it was led down for that.
     Disarm,
-    /// Every tendon barely pulls.
+    /// The host disarms a held leg that knows its pose: it is led down first.
+    LeadDown,
+    /// Every tendon is paid out.
     Relaxed,
     /// The last fault is cleared, the zero is not known.
     Clear,
@@ -49,7 +51,7 @@ pub enum Event {
     Reaction(Reaction),
 }
 
-use Event::{Arm, Clear, ClearHomed, Disarm, Home, Homed, Ready, Relaxed, Stop};
+use Event::{Arm, Clear, ClearHomed, Disarm, Home, Homed, LeadDown, Ready, Relaxed, Stop};
 use State::{Active, Boot, Disarmed, Held, Homing, Off, RampingDown};
 
 impl State {
@@ -68,7 +70,7 @@ impl State {
             (Homing | Active, Stop) => Held,
             (Homing | Active | Held, Disarm) => RampingDown,
             (RampingDown, Relaxed) => Disarmed,
-            (Held, ClearHomed) => Active,
+            (Held, ClearHomed | LeadDown) => Active,
             (Held, Clear) => RampingDown,
             (Off, Clear | ClearHomed) => Disarmed,
             (Homing | Active, Event::Reaction(Reaction::Hold)) => Held,

@@ -37,7 +37,7 @@ impl Supervised {
     }
 
     fn clear(&mut self) -> bool {
-        let next = self.supervisor.clear(self.state, true);
+        let next = self.supervisor.clear(self.state, true, FaultSet::NONE);
         self.state = next.unwrap_or(self.state);
         next.is_some()
     }

@@ -294,7 +294,7 @@ impl Watch<'_> {
 
     fn watch_motors(&mut self, stand: &Stand, now_s: f64) {
         let stops = matches!(stand.state(), State::Held | State::Off | State::Disarmed);
-        if self.struck.named.is_none() || !stops {
+        if self.struck.named.is_none() || !stops || stand.moving() {
             self.stopped_s = None;
             return;
         }

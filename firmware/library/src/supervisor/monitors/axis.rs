@@ -1,7 +1,7 @@
 //! What raises the faults of one axis.
 
-use super::{Debounce, MonitorInput};
-use crate::control::{AxisView, CYCLE_TICKS, ticks};
+use super::MonitorInput;
+use crate::control::{AxisView, CYCLE_S, CYCLE_TICKS, Debounce, TICK_S, ticks};
 use crate::sensors::CODE_MAX;
 use crate::settings::Settings;
 use crate::supervisor::{Fault, FaultSet};
@@ -11,9 +11,17 @@ use leg_model::Scalar;
 /// for the index is masked.
 const JUMP_CHECKS: usize = 2;
 
-/// Checks after which a current is a fault: 2 ms, longer than the peak of a motor that reverses. Scenario `fault_over_current`
-/// holds it.
-const CURRENT_CHECKS: u32 = 4;
+/// Checks after which a current or a tension is a fault: 2 ms, longer than the peak of a motor that reverses, and than a load
+/// cell needs to jump. Scenario `fault_over_current` holds it.
+const OVER_CHECKS: u32 = 4;
+
+/// A counter that goes farther between two checks than at its speed has jumped, by this part of what the fastest motor goes in a
+/// tick: the third above one is what a motor gains in speed meanwhile.
+const STEP_PART: f32 = 1.33;
+
+/// A current that lacks this many times the current of friction of what the voltage drives is not measured: twice, as friction
+/// is known no better.
+const LACK_FRICTIONS: f32 = 2.0;
 
 /// Codes this near to an end of the range are saturated: four steps of the 12-bit converter, whose sixteenfold sum a code is.
 const SATURATED: u16 = 64;
@@ -31,6 +39,7 @@ pub struct AxisMonitor<T> {
     stuck: Debounce,
     still: Debounce,
     reversed: Debounce,
+    over_tension: Debounce,
     over_current: Debounce,
     disagrees: Debounce,
     last_code: u16,
@@ -46,8 +55,12 @@ struct AxisBounds<T> {
     slack_n: T,
     tension_n: T,
     jump_n: T,
+    step_m: T,
+    m_per_count: T,
     following_m: T,
     driven_v: T,
+    a_per_v: T,
+    lack_a: T,
     current_a: T,
     excess_a: T,
     a_per_n: T,
@@ -65,7 +78,8 @@ impl<T: Scalar> AxisMonitor<T> {
             stuck: Debounce::new(checks(limits.stuck_time_s)),
             still: Debounce::new(checks(limits.still_time_s)),
             reversed: Debounce::new(checks(limits.reversed_time_s)),
-            over_current: Debounce::new(CURRENT_CHECKS),
+            over_tension: Debounce::new(OVER_CHECKS),
+            over_current: Debounce::new(OVER_CHECKS),
             disagrees: Debounce::new(checks(limits.disagreement_time_s)),
             last_code: 0,
             last_count: 0,
@@ -73,10 +87,14 @@ impl<T: Scalar> AxisMonitor<T> {
             place: 0,
             filled: false,
             bounds: AxisBounds {
+                m_per_count: m_per_count.into(),
                 slack_n: limits.slack_n.into(),
                 tension_n: T::from(f_max_n + limits.over_tension_part * f_max_n),
                 jump_n: limits.jump_n.into(),
+                step_m: T::from(STEP_PART * servo.speed_m_per_s * TICK_S),
                 following_m: limits.following_m.into(),
+                a_per_v: T::from(1.0 / servo.resistance_ohm),
+                lack_a: T::from(LACK_FRICTIONS * servo.friction_a),
                 driven_v: T::from(limits.driven_part * servo.current_a * servo.resistance_ohm),
                 current_a: limits.current_a.into(),
                 excess_a: T::from(limits.disagreement_a + servo.friction_a),
@@ -121,7 +139,11 @@ impl<T: Scalar> AxisMonitor<T> {
         self.last_code = code;
         let slack = view.tensioned && !(tension >= bounds.slack_n);
         faults.add(Fault::Slack, self.slack.update(slack));
-        faults.add(Fault::OverTension, alive && !(tension <= bounds.tension_n));
+        let over = alive && !(tension <= bounds.tension_n);
+        let over = self.over_tension.update(over);
+        // A cell that the others contradict pays out no tendon.
+        faults.add(Fault::OverTension, over && view.cells_trusted);
+        faults.add(Fault::Residual, over && !view.cells_trusted && view.led);
         let place = self.place & (JUMP_CHECKS - 1);
         let before = core::mem::replace(&mut self.history[place], tension);
         self.place = place + 1;
@@ -158,17 +180,28 @@ impl<T: Scalar> AxisMonitor<T> {
             Fault::EncoderReversed,
             self.reversed.update(hard && against),
         );
+        let step_m = T::from(f32::from(step)) * bounds.m_per_count;
+        let beyond_m = step_m.abs() - axis.speed_m_per_s.abs() * T::from(CYCLE_S);
+        let jumps = view.driven && !(beyond_m <= bounds.step_m);
+        faults.add(Fault::EncoderJump, jumps);
         let lags = view.led && !(axis.following_m.abs() <= bounds.following_m);
         faults.add(Fault::Following, lags);
         let current = current.abs();
         faults.add(
             Fault::OverCurrent,
-            self.over_current.update(!(current <= bounds.current_a)),
+            // What a driver reports that is off means nothing.
+            self.over_current
+                .update(view.driven && !(current <= bounds.current_a)),
         );
         let explained = bounds.excess_a + bounds.a_per_n * tension.abs();
+        // The voltage that drives the current, and a tenth of what the speed induces, which is known no better.
+        let induced_v = axis.voltage_v - axis.driving_v;
+        let driving_v = axis.driving_v.abs() - induced_v.abs() * T::from(0.1);
+        let lacks = driving_v * bounds.a_per_v > current + bounds.lack_a;
         faults.add(
             Fault::CurrentDisagrees,
-            self.disagrees.update(!(current <= explained)),
+            self.disagrees
+                .update(view.driven && (lacks || !(current <= explained))),
         );
     }
 }

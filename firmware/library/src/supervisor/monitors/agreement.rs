@@ -1,0 +1,269 @@
+//! Whether lengths and tensions agree over time.
+//!
+//! Three counters and three load cells watch a leg of two freedoms that carries a load of two components: one number is
+//! left over, the mean by which measured lengths exceed those of the estimated pose. A motion, a load and a push leave it as it
+//! is. A load cell that lies changes it by its error over the stiffness of the tendon, and so does a lost count.
+
+use crate::control::{CYCLE_S, LengthError, LowPass, bounds::clamp_symmetric};
+use crate::settings::Limits;
+use leg_model::Scalar;
+
+/// Time constant of the filter of what is beyond the allowed change, s: a load cell that loses its tension is found within a
+/// third of it, before the filters of the load have moved the leg.
+const FILTER_TIME_S: f32 = 0.02;
+
+/// Time constant of the filter that shows how fast an elongation changes, s, and the part of what it shows that may be missing: a
+/// tendon is damped, and pulls otherwise than by its curve while the leg swings. A fifth of the period of a swing.
+const SWING_TIME_S: f32 = 0.02;
+const SWING_PART: f32 = 0.5;
+
+/// Time constant with which the elongations are forgotten from which changes count, s: longer than any swing of the leg.
+const FORGET_TIME_S: f32 = 1.0;
+
+/// Part of the change of the elongations that tendons may stretch otherwise than by their curves. A single lying cell changes
+/// the mean by about a third of its elongation, which is the mean change of elongations: eight times this.
+const CURVE_PART: f32 = 0.12;
+
+/// How fast the error may grow that is taken for one of the geometry or of a curve, m/s: in motion a tenth of a millimetre over
+/// the workspace, which the leg crosses in a second; at rest what a tendon creeps.
+const MOVING_M_PER_S: f32 = 1e-4;
+const RESTING_M_PER_S: f32 = 1e-6;
+
+/// Cycles after the last tendon came taut in which the error is not watched yet, 0.1 s: a tendon that is reeled in is damped, and
+/// shows up to a newton more than its elongation.
+const SETTLE_CYCLES: u16 = 200;
+
+/// Watches for a change that neither motion nor load explains.
+#[derive(Clone, Copy, Debug)]
+pub struct Agreement<T> {
+    reference: Option<Reference<T>>,
+    /// How far the change is beyond what is allowed, m.
+    beyond: LowPass<T>,
+    /// The same now.
+    beyond_now_m: T,
+    change_max_m: T,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Reference<T> {
+    mean_m: T,
+    /// Elongation of each tendon, slowly forgotten and quickly.
+    elongations: [[LowPass<T>; 2]; 3],
+    settle_cycles: u16,
+}
+
+impl<T: Scalar> Agreement<T> {
+    /// With the limits of the settings.
+    pub fn new(limits: &Limits) -> Self {
+        Self {
+            reference: None,
+            beyond: LowPass::new(FILTER_TIME_S, CYCLE_S),
+            beyond_now_m: T::zero(),
+            change_max_m: limits.residual_change_m.into(),
+        }
+    }
+
+    /// Forgets everything: the tendons need not pull any more.
+    pub fn end(&mut self) {
+        self.reference = None;
+        self.beyond.set(T::zero());
+    }
+
+    /// Whether every tendon has pulled since the last end.
+    #[inline(always)]
+    pub fn watches(&self) -> bool {
+        self.reference
+            .as_ref()
+            .is_some_and(|reference| reference.settle_cycles == 0)
+    }
+
+    /// Whether the sensors agree: not where the change is no number.
+    #[inline(always)]
+    pub fn agree(&self) -> bool {
+        self.beyond.value() <= T::zero()
+    }
+
+    /// Whether the sensors are watched, and agree at this moment: a fault is not yet one.
+    #[inline(always)]
+    pub fn trusts(&self) -> bool {
+        self.watches() && self.beyond_now_m <= T::zero()
+    }
+
+    /// One cycle while every tendon should pull.
+    #[inline(always)]
+    pub fn watch(&mut self, error: &LengthError<T>, moving: bool) {
+        let Some(reference) = &mut self.reference else {
+            self.reference = Some(Reference::new(error));
+            return;
+        };
+        if reference.settle_cycles > 0 {
+            reference.settle_cycles -= 1;
+            reference.mean_m = error.mean_m;
+        }
+        let change_m = error.mean_m - reference.mean_m;
+        let start = T::SUM_START;
+        let (mut stretched_m, mut swings_m, mut learned_m) = (start, start, start);
+        for ([slow, fast], &now_m) in reference.elongations.iter_mut().zip(&error.elongations_m) {
+            let before_m = slow.value();
+            let slow_m = slow.step(now_m);
+            stretched_m += (now_m - slow_m).abs();
+            swings_m += (now_m - fast.step(now_m)).abs();
+            learned_m += (slow_m - before_m).abs();
+        }
+        let part = T::from(CURVE_PART / 3.0);
+        let swings_m = swings_m * T::from(SWING_PART / 3.0);
+        let allowed_m = self.change_max_m + stretched_m * part + swings_m;
+        let rate = if moving {
+            MOVING_M_PER_S
+        } else {
+            RESTING_M_PER_S
+        };
+        // What a changed elongation was allowed to change stays.
+        let learned_m = T::from(rate * CYCLE_S) + learned_m * part;
+        reference.mean_m += clamp_symmetric(change_m, learned_m);
+        self.beyond_now_m = change_m.abs() - allowed_m;
+        self.beyond.step(self.beyond_now_m);
+    }
+}
+
+impl<T: Scalar> Reference<T> {
+    fn new(error: &LengthError<T>) -> Self {
+        let filter = |time_s: f32| LowPass::new(time_s, CYCLE_S);
+        let mut elongations = [[filter(FORGET_TIME_S), filter(SWING_TIME_S)]; 3];
+        for (filters, &now_m) in elongations.iter_mut().zip(&error.elongations_m) {
+            filters.iter_mut().for_each(|filter| filter.set(now_m));
+        }
+        Self {
+            mean_m: error.mean_m,
+            elongations,
+            settle_cycles: SETTLE_CYCLES,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Agreement, CURVE_PART, LengthError, SETTLE_CYCLES};
+    use crate::control::CYCLE_S;
+    use crate::settings::Limits;
+
+    /// Elongation of every tendon at first, m: that of the paper's leg at 70 N.
+    const ELONGATION_M: f64 = 1e-3;
+
+    struct Leg {
+        agreement: Agreement<f64>,
+        error: LengthError<f64>,
+    }
+
+    impl Leg {
+        fn taut() -> Self {
+            let mut leg = Self {
+                agreement: Agreement::new(&Limits::DEFAULT),
+                // What homing and the geometry leave over.
+                error: LengthError {
+                    mean_m: -4e-5,
+                    elongations_m: [ELONGATION_M; 3],
+                },
+            };
+            for _ in 0..=SETTLE_CYCLES {
+                assert!(!leg.agreement.watches());
+                leg.watch(false);
+            }
+            assert!(leg.agreement.trusts());
+            leg
+        }
+
+        fn watch(&mut self, moving: bool) {
+            self.agreement.watch(&self.error, moving);
+        }
+
+        /// Time until the sensors disagree, s, while `change` is made in every cycle; none within 20 s.
+        fn disagrees_after(
+            &mut self,
+            mut change: impl FnMut(f64, &mut LengthError<f64>),
+        ) -> Option<f64> {
+            let begun = self.error;
+            for cycle in 0..40_000 {
+                let time_s = f64::from(cycle) * f64::from(CYCLE_S);
+                self.error = begun;
+                change(time_s, &mut self.error);
+                self.watch(false);
+                if !self.agreement.agree() {
+                    return Some(time_s);
+                }
+            }
+            None
+        }
+    }
+
+    /// One cell shows `off_m` more than its tendon is stretched.
+    fn lie(error: &mut LengthError<f64>, cell: usize, off_m: f64) {
+        error.elongations_m[cell] += off_m;
+        error.mean_m += off_m / 3.0;
+    }
+
+    #[test]
+    fn a_cell_that_lies_is_found_before_the_load_is_believed() {
+        for cell in 0..3 {
+            for off_m in [6e-5, -6e-5, 5e-4, -1e-3] {
+                let found_s = Leg::taut().disagrees_after(|_, error| lie(error, cell, off_m));
+                assert!(found_s.is_some_and(|s| s < 0.05), "{off_m}: {found_s:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_cell_that_fades_in_seconds_is_found_while_little_is_missing() {
+        let found_s = Leg::taut().disagrees_after(|s, error| lie(error, 1, -1e-4 * s));
+        assert!(found_s.is_some_and(|s| s < 0.6), "{found_s:?}");
+    }
+
+    #[test]
+    fn a_count_that_is_lost_is_found() {
+        let found_s = Leg::taut().disagrees_after(|_, error| error.mean_m += 4e-5 / 3.0);
+        assert!(found_s.is_some_and(|s| s < 0.1), "{found_s:?}");
+    }
+
+    /// A load stretches one tendon more and the others less; curves that are wrong by a fifth show there.
+    #[test]
+    fn a_load_is_no_lie() {
+        for load_m in [1e-4, 6e-4, -6e-4] {
+            let found_s = Leg::taut().disagrees_after(|_, error| {
+                let stretched_m = [load_m, -0.5 * load_m, -0.5 * load_m];
+                for (elongation, more) in error.elongations_m.iter_mut().zip(stretched_m) {
+                    *elongation += more;
+                }
+                error.mean_m += 0.8 * f64::from(CURVE_PART) * 2.0 / 3.0 * load_m;
+            });
+            assert_eq!(found_s, None, "{load_m}");
+        }
+    }
+
+    #[test]
+    fn what_creeps_or_changes_with_the_pose_is_learned() {
+        let mut leg = Leg::taut();
+        let found_s = leg.disagrees_after(|s, error| error.mean_m += 0.9e-6 * s);
+        assert_eq!(found_s, None);
+        let mut leg = Leg::taut();
+        for _ in 0..2_000 {
+            leg.error.mean_m += 0.9e-4 * f64::from(CYCLE_S);
+            leg.watch(true);
+            assert!(leg.agreement.agree());
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_is_no_agreement() {
+        let mut leg = Leg::taut();
+        leg.error.mean_m = f64::NAN;
+        leg.watch(false);
+        assert!(!leg.agreement.agree() && !leg.agreement.trusts());
+    }
+
+    #[test]
+    fn nothing_is_watched_after_the_end() {
+        let mut leg = Leg::taut();
+        leg.agreement.end();
+        assert!(leg.agreement.agree() && !leg.agreement.watches());
+    }
+}
