@@ -67,7 +67,7 @@ impl<T: Scalar> Leg<T> {
         })
     }
 
-    /// One tick. It executes one of the commands that wait.
+    /// One tick. One in four executes a command, if one waits.
     #[inline(never)]
     pub fn tick(&mut self, sensors: &Sensors) -> Drive<T> {
         self.tick = self.tick.wrapping_add(1);
@@ -78,7 +78,10 @@ impl<T: Scalar> Leg<T> {
         if self.mode.boots_up() {
             self.mode = Mode::Disarmed;
         }
-        if let Some(command) = self.queue.pop() {
+        if self.phase == Phase::Pretension
+            && let Some(command) = self.queue.pop()
+        {
+            self.phase = Phase::Command;
             self.obey(command, &measured);
         }
         let before = self.mode.state();
@@ -140,7 +143,7 @@ impl<T: Scalar> Leg<T> {
     /// The faults of a tick, but those of the mode itself.
     #[inline(always)]
     fn faults(&mut self, state: State, sensors: &Sensors, measured: &Measured<T>) -> FaultSet {
-        if self.phase == Phase::Estimate {
+        if self.phase == Phase::Plan {
             self.watch_agreement();
         }
         let active = self.mode.active();
@@ -211,9 +214,8 @@ impl<T: Scalar> Leg<T> {
         };
         self.mode = Mode::begin(state, &mut self.shared, measured, trust);
         if state == State::Active {
-            // There is no target yet to search a pretension for, so this tick has time for the command; pose and load have been
-            // estimated until now.
-            self.phase = Phase::Pretension;
+            // The first target comes in the next tick: pose and load have been estimated until now.
+            self.phase = Phase::Command;
         }
     }
 

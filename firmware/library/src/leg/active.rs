@@ -43,7 +43,7 @@ impl<T: Scalar> Active<T> {
         let compensated = shared.compensation != Compensation::Off;
         shared.targets.start(compensated);
         shared.target = None;
-shared.estimate = None;
+        shared.estimate = None;
         // A leg whose tendons pull already stays as it is: relaxed first, it would swing. Half of the minimum tension is below
         // what any target asks for, and above what is left in tendons that were paid out.
         let taut_n = shared.mechanism.f_min_n * T::HALF;
@@ -73,6 +73,7 @@ shared.estimate = None;
         match phase {
             Phase::Estimate => self.estimate(shared, measured),
             Phase::Pretension => search_pretension(shared),
+            Phase::Command => Ok(()),
             Phase::Target => self.aim(shared, measured),
             Phase::Plan => {
                 // A leg that is not taut yet does not set out.

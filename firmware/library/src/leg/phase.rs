@@ -4,13 +4,15 @@
 /// tick computes all of it; the axes' controllers run in every tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// Estimates pose and load, and watches whether the sensors agree.
+    /// Estimates pose and load; the monitors check axis 1.
     Estimate,
     /// Makes one step of the search for the pretension.
     Pretension,
-    /// Computes the next target and the goals of the axes; the monitors check axis 1.
+    /// Executes a command in the place of that.
+    Command,
+    /// Computes the next target and the goals of the axes.
     Target,
-    /// Goes on with the plan of a trajectory; the monitors check axes 2 and 3.
+    /// Goes on with the plan of a trajectory, and watches whether the sensors agree; the monitors check axes 2 and 3.
     Plan,
 }
 
@@ -20,7 +22,7 @@ impl Phase {
     pub const fn next(self) -> Self {
         match self {
             Self::Estimate => Self::Pretension,
-            Self::Pretension => Self::Target,
+            Self::Pretension | Self::Command => Self::Target,
             Self::Target => Self::Plan,
             Self::Plan => Self::Estimate,
         }
@@ -30,8 +32,8 @@ impl Phase {
     #[inline(always)]
     pub const fn monitored_axes(self) -> &'static [usize] {
         match self {
-            Self::Estimate | Self::Pretension => &[],
-            Self::Target => &[0],
+            Self::Estimate => &[0],
+            Self::Pretension | Self::Command | Self::Target => &[],
             Self::Plan => &[1, 2],
         }
     }
