@@ -52,6 +52,8 @@ impl<T: Scalar> Leg<T> {
     /// Settings that are refused.
     pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
         settings.check()?;
+        let shared = Shared::new(settings)?;
+        let twists = shared.mechanism.support.twists();
         Ok(Self {
             tick: 0,
             phase: Phase::Estimate,
@@ -59,10 +61,10 @@ impl<T: Scalar> Leg<T> {
             link: LinkWatch::new(&settings.limits),
             measurement: Measurement::new(settings),
             measured: None,
-            shared: Shared::new(settings)?,
+            shared,
             mode: Mode::boot(),
             monitors: Monitors::new(settings),
-            agreement: Agreement::new(&settings.limits),
+            agreement: Agreement::new(&settings.limits, twists),
             supervisor: Supervisor::default(),
         })
     }

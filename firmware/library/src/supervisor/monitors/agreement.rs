@@ -24,6 +24,10 @@ const FORGET_TIME_S: f32 = 1.0;
 /// the mean by about a third of its elongation, which is the mean change of elongations: eight times this.
 const CURVE_PART: f32 = 0.12;
 
+/// The same where the leg can twist: a push turns it about its own axis, which shortens every way between the anchors, and the
+/// torsion that is known is that of the target. With 10 N at 30° it is a fifth of the change of the elongations.
+const TWIST_PART: f32 = 0.3;
+
 /// How fast the error may grow that is taken for one of the geometry or of a curve, m/s: in motion a tenth of a millimetre over
 /// the workspace, which the leg crosses in a second; at rest what a tendon creeps.
 const MOVING_M_PER_S: f32 = 1e-4;
@@ -42,6 +46,8 @@ pub struct Agreement<T> {
     /// The same now.
     beyond_now_m: T,
     change_max_m: T,
+    /// Part of the change of the elongations that is allowed, over the number of tendons.
+    part: T,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -53,13 +59,15 @@ struct Reference<T> {
 }
 
 impl<T: Scalar> Agreement<T> {
-    /// With the limits of the settings.
-    pub fn new(limits: &Limits) -> Self {
+    /// With the limits of the settings, of a leg that `twists` or does not.
+    pub fn new(limits: &Limits, twists: bool) -> Self {
+        let part = if twists { TWIST_PART } else { CURVE_PART };
         Self {
             reference: None,
             beyond: LowPass::new(FILTER_TIME_S, CYCLE_S),
             beyond_now_m: T::zero(),
             change_max_m: limits.residual_change_m.into(),
+            part: T::from(part / 3.0),
         }
     }
 
@@ -110,16 +118,15 @@ impl<T: Scalar> Agreement<T> {
             swings_m += (now_m - fast.step(now_m)).abs();
             learned_m += (slow_m - before_m).abs();
         }
-        let part = T::from(CURVE_PART / 3.0);
         let swings_m = swings_m * T::from(SWING_PART / 3.0);
-        let allowed_m = self.change_max_m + stretched_m * part + swings_m;
+        let allowed_m = self.change_max_m + stretched_m * self.part + swings_m;
         let rate = if moving {
             MOVING_M_PER_S
         } else {
             RESTING_M_PER_S
         };
         // What a changed elongation was allowed to change stays.
-        let learned_m = T::from(rate * CYCLE_S) + learned_m * part;
+        let learned_m = T::from(rate * CYCLE_S) + learned_m * self.part;
         reference.mean_m += clamp_symmetric(change_m, learned_m);
         self.beyond_now_m = change_m.abs() - allowed_m;
         self.beyond.step(self.beyond_now_m);
@@ -158,7 +165,7 @@ mod tests {
     impl Leg {
         fn taut() -> Self {
             let mut leg = Self {
-                agreement: Agreement::new(&Limits::DEFAULT),
+                agreement: Agreement::new(&Limits::DEFAULT, false),
                 // What homing and the geometry leave over.
                 error: LengthError {
                     mean_m: -4e-5,
