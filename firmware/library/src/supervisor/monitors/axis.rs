@@ -1,7 +1,7 @@
 //! What raises the faults of one axis.
 
 use super::MonitorInput;
-use crate::control::{AxisView, CYCLE_S, CYCLE_TICKS, Debounce, TICK_S, ticks};
+use crate::control::{AxisView, CYCLE_S, CYCLE_TICKS, Debounce, LowPass, TICK_S, ticks};
 use crate::sensors::CODE_MAX;
 use crate::settings::Settings;
 use crate::supervisor::{Fault, FaultSet};
@@ -23,6 +23,10 @@ const STEP_PART: f32 = 1.33;
 /// is known no better.
 const LACK_FRICTIONS: f32 = 2.0;
 
+/// Time constant of the filters by which current and voltage are compared, s: at the maximum tension a voltage changes its sign from
+/// tick to tick, and the current follows later. A fifth of the time after which it is a fault.
+const LACK_TIME_S: f32 = 0.01;
+
 /// Codes this near to an end of the range are saturated: four steps of the 12-bit converter, whose sixteenfold sum a code is.
 const SATURATED: u16 = 64;
 
@@ -42,6 +46,9 @@ pub struct AxisMonitor<T> {
     over_tension: Debounce,
     over_current: Debounce,
     disagrees: Debounce,
+    /// The current that the voltage drives and the measured one, filtered, A.
+    driving_a: LowPass<T>,
+    drawn_a: LowPass<T>,
     last_code: u16,
     last_count: u16,
     history: [T; JUMP_CHECKS],
@@ -81,6 +88,8 @@ impl<T: Scalar> AxisMonitor<T> {
             over_tension: Debounce::new(OVER_CHECKS),
             over_current: Debounce::new(OVER_CHECKS),
             disagrees: Debounce::new(checks(limits.disagreement_time_s)),
+            driving_a: LowPass::new(LACK_TIME_S, CYCLE_S),
+            drawn_a: LowPass::new(LACK_TIME_S, CYCLE_S),
             last_code: 0,
             last_count: 0,
             history: [T::zero(); JUMP_CHECKS],
@@ -186,22 +195,22 @@ impl<T: Scalar> AxisMonitor<T> {
         faults.add(Fault::EncoderJump, jumps);
         let lags = view.led && !(axis.following_m.abs() <= bounds.following_m);
         faults.add(Fault::Following, lags);
-        let current = current.abs();
         faults.add(
             Fault::OverCurrent,
             // What a driver reports that is off means nothing.
             self.over_current
-                .update(view.driven && !(current <= bounds.current_a)),
+                .update(view.driven && !(current.abs() <= bounds.current_a)),
         );
         let explained = bounds.excess_a + bounds.a_per_n * tension.abs();
-        // The voltage that drives the current, and a tenth of what the speed induces, which is known no better.
+        let driving = self.driving_a.step(axis.driving_v * bounds.a_per_v).abs();
+        let drawn = self.drawn_a.step(current).abs();
+        // A tenth of what the speed induces is known no better.
         let induced_v = axis.voltage_v - axis.driving_v;
-        let driving_v = axis.driving_v.abs() - induced_v.abs() * T::from(0.1);
-        let lacks = driving_v * bounds.a_per_v > current + bounds.lack_a;
+        let allowed = bounds.lack_a + induced_v.abs() * T::from(0.1) * bounds.a_per_v;
+        let disagrees = !(driving <= drawn + allowed && drawn <= explained);
         faults.add(
             Fault::CurrentDisagrees,
-            self.disagrees
-                .update(view.driven && (lacks || !(current <= explained))),
+            self.disagrees.update(view.driven && disagrees),
         );
     }
 }
