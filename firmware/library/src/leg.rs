@@ -73,6 +73,9 @@ impl<T: Scalar> Leg<T> {
     #[inline(never)]
     pub fn tick(&mut self, sensors: &Sensors) -> Drive<T> {
         self.tick = self.tick.wrapping_add(1);
+        if let Some(axis) = self.phase.monitored_axis() {
+            self.measurement.end_current(axis);
+        }
         let measured = self.measurement.convert(sensors);
         for (axis, &pulled) in self.shared.axes.iter_mut().zip(&measured.pulled_m) {
             axis.track(pulled);
@@ -118,7 +121,8 @@ impl<T: Scalar> Leg<T> {
                 if let Err(error) = active.step(self.phase, shared, measured) {
                     step.faults = fault_of_error(error);
                 }
-                if active.led_down(shared) {
+                // Where the next mode has time to begin.
+                if self.phase == Phase::Plan && active.led_down(shared) {
                     step.event = Some(Event::Disarm);
                 }
                 return step;
@@ -167,13 +171,12 @@ impl<T: Scalar> Leg<T> {
         // Once another fault has been named, what follows from it needs no name of its own.
         let first = !self.supervisor.stopped_but_for(Fault::Residual);
         faults.add(Fault::Residual, first && !self.agreement.agree());
-        for &turn in self.phase.monitored_axes() {
-            if let (Some(axis), Some(&pulled)) =
-                (self.shared.axes.get(turn), measured.pulled_m.get(turn))
-            {
-                let shown = axis.view(pulled);
-                self.monitors.watch_axis(turn, &input, &shown);
-            }
+        if let Some(turn) = self.phase.monitored_axis()
+            && let (Some(axis), Some(&pulled)) =
+                (self.shared.axes.get_mut(turn), measured.pulled_m.get(turn))
+        {
+            let shown = axis.view(pulled);
+            self.monitors.watch_axis(turn, &input, &shown);
         }
         faults = faults.union(self.monitors.axis_faults());
         faults.add(Fault::Infeasible, self.shared.refused);

@@ -1,7 +1,7 @@
 //! One motor: position and speed with feed-forward, inside what voltage, current and tension allow.
 
 use super::{
-    TICK_S,
+    CYCLE_TICKS, TICK_S,
     bounds::{clamp_symmetric, max, min},
 };
 use crate::settings::Settings;
@@ -34,6 +34,8 @@ pub struct AxisView<T> {
     pub driving_v: T,
     /// The voltage at the motor, V.
     pub voltage_v: T,
+    /// The mean of [`Self::voltage_v`] over a cycle, V: at low tension the voltage changes its sign from tick to tick.
+    pub mean_voltage_v: T,
 }
 
 /// The controller of one axis.
@@ -48,6 +50,8 @@ pub struct Axis<T> {
     speed_m_per_s: T,
     integral_v: T,
     voltage_v: T,
+    /// The voltages since the last view.
+    voltage_sum_v: T,
 }
 
 /// Gains in the units in which they are applied.
@@ -115,6 +119,7 @@ impl<T: Scalar> Axis<T> {
             speed_m_per_s: T::zero(),
             integral_v: T::zero(),
             voltage_v: T::zero(),
+            voltage_sum_v: T::zero(),
         }
     }
 
@@ -130,14 +135,16 @@ impl<T: Scalar> Axis<T> {
         self.speed_m_per_s
     }
 
-    /// What the monitors check; `pulled_m` is how far the tendon is pulled in.
+    /// What the monitors check once a cycle; `pulled_m` is how far the tendon is pulled in.
     #[inline(always)]
-    pub fn view(&self, pulled_m: T) -> AxisView<T> {
+    pub fn view(&mut self, pulled_m: T) -> AxisView<T> {
         AxisView {
             speed_m_per_s: self.speed_m_per_s,
             following_m: self.reference_m - pulled_m,
             driving_v: self.voltage_v - self.gains.back_emf * self.speed_m_per_s,
             voltage_v: self.voltage_v,
+            mean_voltage_v: core::mem::replace(&mut self.voltage_sum_v, T::SUM_START)
+                * T::from(1.0 / CYCLE_TICKS as f32),
         }
     }
 
@@ -228,6 +235,7 @@ impl<T: Scalar> Axis<T> {
             self.integral_v += gains.integral * missing;
         }
         self.voltage_v = voltage;
+        self.voltage_sum_v += voltage;
         if input.supply_v > T::one() {
             voltage / input.supply_v
         } else {

@@ -1,6 +1,6 @@
 //! From counts and codes to SI.
 
-use super::{TICK_S, bounds::clamp_symmetric, filter::LowPass};
+use super::{CYCLE_TICKS, TICK_S, bounds::clamp_symmetric, filter::LowPass};
 use crate::sensors::{CODE_MAX, Sensors};
 use crate::settings::Settings;
 use leg_model::Scalar;
@@ -14,7 +14,7 @@ pub struct Measured<T> {
     pub tensions_n: [T; 3],
     /// The same without noise.
     pub steady_tensions_n: [T; 3],
-    /// Current of each motor, A.
+    /// Mean current of each motor over the last whole cycle, A.
     pub currents_a: [T; 3],
     /// Supply, V.
     pub supply_v: T,
@@ -32,6 +32,9 @@ struct Channel<T> {
     n_per_code: T,
     zero_code: T,
     a_per_code: T,
+    /// Codes of the current since its last mean.
+    current_codes: u32,
+    current_a: T,
     steady: LowPass<T>,
 }
 
@@ -57,6 +60,8 @@ impl<T: Scalar> Measurement<T> {
                 n_per_code: axis.cell_n_per_code.into(),
                 zero_code: axis.cell_zero_code.into(),
                 a_per_code: axis.current_a_per_code.into(),
+                current_codes: 0,
+                current_a: T::zero(),
                 steady: LowPass::new(settings.estimation.tension_time_s, TICK_S),
             }
         };
@@ -89,9 +94,20 @@ impl<T: Scalar> Measurement<T> {
             let tension = channel.tension(sensors.cell_codes[i]);
             measured.tensions_n[i] = tension;
             measured.steady_tensions_n[i] = channel.steady.step(tension);
-            measured.currents_a[i] = channel.current(sensors.current_codes[i]);
+            channel.current_codes += u32::from(sensors.current_codes[i]);
+            measured.currents_a[i] = channel.current_a;
         }
         measured
+    }
+
+    /// Ends the mean of the current of an axis, from 0 to 2, after the readings of a cycle.
+    #[inline(always)]
+    pub fn end_current(&mut self, axis: usize) {
+        if let Some(channel) = self.channels.get_mut(axis) {
+            let codes = core::mem::take(&mut channel.current_codes);
+            let mean_code = T::from(codes as f32 * (1.0 / CYCLE_TICKS as f32));
+            channel.current_a = channel.current(mean_code);
+        }
     }
 
     /// Takes the present codes of the load cells, each an average, as those without tension.
@@ -107,6 +123,7 @@ impl<T: Scalar> Measurement<T> {
         self.started = true;
         for (i, channel) in self.channels.iter_mut().enumerate() {
             channel.last_count = sensors.encoder_counts[i];
+            channel.current_a = channel.current(code(sensors.current_codes[i]));
             let tension = channel.tension(sensors.cell_codes[i]);
             channel.steady.set(tension);
         }
@@ -130,9 +147,9 @@ impl<T: Scalar> Channel<T> {
     }
 
     #[inline(always)]
-    fn current(&self, current_code: u16) -> T {
+    fn current(&self, code: T) -> T {
         let half = T::from(f32::from(CODE_MAX) * 0.5);
-        clamp_symmetric(code::<T>(current_code) - half, half) * self.a_per_code
+        clamp_symmetric(code - half, half) * self.a_per_code
     }
 }
 

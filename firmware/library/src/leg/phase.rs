@@ -10,9 +10,9 @@ pub enum Phase {
     Pretension,
     /// Executes a command in the place of that.
     Command,
-    /// Computes the next target and the goals of the axes.
+    /// Computes the next target and the goals of the axes; the monitors check axis 2.
     Target,
-    /// Goes on with the plan of a trajectory, and watches whether the sensors agree; the monitors check axes 2 and 3.
+    /// Goes on with the plan of a trajectory, and watches whether the sensors agree; the monitors check axis 3.
     Plan,
 }
 
@@ -28,13 +28,14 @@ impl Phase {
         }
     }
 
-    /// The axes, from 0 to 2, that the monitors check in this tick: where the control law leaves most time.
+    /// The axis, from 0 to 2, that the monitors check in this tick.
     #[inline(always)]
-    pub const fn monitored_axes(self) -> &'static [usize] {
+    pub const fn monitored_axis(self) -> Option<usize> {
         match self {
-            Self::Estimate => &[0],
-            Self::Pretension | Self::Command | Self::Target => &[],
-            Self::Plan => &[1, 2],
+            Self::Estimate => Some(0),
+            Self::Pretension | Self::Command => None,
+            Self::Target => Some(1),
+            Self::Plan => Some(2),
         }
     }
 }

@@ -202,10 +202,11 @@ impl<T: Scalar> AxisMonitor<T> {
                 .update(view.driven && !(current.abs() <= bounds.current_a)),
         );
         let explained = bounds.excess_a + bounds.a_per_n * tension.abs();
-        let driving = self.driving_a.step(axis.driving_v * bounds.a_per_v).abs();
+        let induced_v = axis.voltage_v - axis.driving_v;
+        let driving_v = axis.mean_voltage_v - induced_v;
+        let driving = self.driving_a.step(driving_v * bounds.a_per_v).abs();
         let drawn = self.drawn_a.step(current).abs();
         // A tenth of what the speed induces is known no better.
-        let induced_v = axis.voltage_v - axis.driving_v;
         let allowed = bounds.lack_a + induced_v.abs() * T::from(0.1) * bounds.a_per_v;
         let disagrees = !(driving <= drawn + allowed && drawn <= explained);
         faults.add(
