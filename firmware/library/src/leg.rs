@@ -73,7 +73,7 @@ impl<T: Scalar> Leg<T> {
     #[inline(never)]
     pub fn tick(&mut self, sensors: &Sensors) -> Drive<T> {
         self.tick = self.tick.wrapping_add(1);
-        if let Some(axis) = self.phase.monitored_axis() {
+        for &axis in self.phase.monitored_motors() {
             self.measurement.end_current(axis);
         }
         let measured = self.measurement.convert(sensors);
@@ -171,12 +171,16 @@ impl<T: Scalar> Leg<T> {
         // Once another fault has been named, what follows from it needs no name of its own.
         let first = !self.supervisor.stopped_but_for(Fault::Residual);
         faults.add(Fault::Residual, first && !self.agreement.agree());
-        if let Some(turn) = self.phase.monitored_axis()
-            && let (Some(axis), Some(&pulled)) =
+        if let Some(turn) = self.phase.monitored_cell() {
+            self.monitors.watch_cell(turn, &input);
+        }
+        for &turn in self.phase.monitored_motors() {
+            if let (Some(axis), Some(&pulled)) =
                 (self.shared.axes.get_mut(turn), measured.pulled_m.get(turn))
-        {
-            let shown = axis.view(pulled);
-            self.monitors.watch_axis(turn, &input, &shown);
+            {
+                let shown = axis.view(pulled);
+                self.monitors.watch_motor(turn, &input, &shown);
+            }
         }
         faults = faults.union(self.monitors.axis_faults());
         faults.add(Fault::Infeasible, self.shared.refused);

@@ -163,10 +163,9 @@ impl<T: Scalar> Axis<T> {
         self.step_m = clamp_symmetric((goal.pulled_m - self.reference_m) * share, fastest);
     }
 
-    /// How far the axis is led in a tick, m.
-    #[inline(always)]
-    pub fn step_m(&self) -> T {
-        self.step_m
+    /// How far the motor goes in a tick, m, but no farther than it is led: at the maximum tension it stays behind.
+    pub fn moved_m(&self) -> T {
+        clamp_symmetric(self.speed_m_per_s * self.gains.tick_s, self.step_m.abs())
     }
 
     /// Leads the axis by so much in each tick from now, m.

@@ -17,13 +17,13 @@ const STILL_STEP_M: f32 = 1e-4 * TICK_S;
 /// The leg stays where it is. No load cell is asked.
 #[derive(Clone, Copy, Debug)]
 pub struct Held<T> {
-    /// How far each motor was led in a tick at first, m.
+    /// How far each motor went in a tick at first, m.
     steps_m: [T; 3],
     ticks_left: u32,
 }
 
 impl<T: Scalar> Held<T> {
-    /// From how far the motors are led in a tick now, m.
+    /// From how far the motors go in a tick now, m.
     pub fn braking(steps_m: [T; 3]) -> Self {
         let still = steps_m
             .iter()

@@ -107,7 +107,7 @@ impl<T: Scalar> Mode<T> {
         trust: Trust,
     ) -> Self {
         if state == State::Held && trust.counters {
-            let held = Held::braking(shared.axes.each_ref().map(Axis::step_m));
+            let held = Held::braking(shared.axes.each_ref().map(Axis::moved_m));
             if held.brakes() {
                 shared.ignore_tensions();
                 return Self::Held(held);

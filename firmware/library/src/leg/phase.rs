@@ -4,15 +4,16 @@
 /// tick computes all of it; the axes' controllers run in every tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// Estimates pose and load; the monitors check axis 1.
+    /// Estimates pose and load; the monitors check cell and motor of axis 1.
     Estimate,
     /// Makes one step of the search for the pretension.
     Pretension,
     /// Executes a command in the place of that.
     Command,
-    /// Computes the next target and the goals of the axes; the monitors check axis 2.
+    /// Computes the next target and the goals of the axes; the monitors check the cell of axis 2.
     Target,
-    /// Goes on with the plan of a trajectory, and watches whether the sensors agree; the monitors check axis 3.
+    /// Goes on with the plan of a trajectory, and watches whether the sensors agree; the monitors check the cell of axis 3 and both motors that are
+    /// left.
     Plan,
 }
 
@@ -28,14 +29,24 @@ impl Phase {
         }
     }
 
-    /// The axis, from 0 to 2, that the monitors check in this tick.
+    /// The load cell, from 0 to 2, that the monitors check in this tick.
     #[inline(always)]
-    pub const fn monitored_axis(self) -> Option<usize> {
+    pub const fn monitored_cell(self) -> Option<usize> {
         match self {
             Self::Estimate => Some(0),
             Self::Pretension | Self::Command => None,
             Self::Target => Some(1),
             Self::Plan => Some(2),
+        }
+    }
+
+    /// The motors, from 0 to 2, that the monitors check in this tick: where the control law leaves most time.
+    #[inline(always)]
+    pub const fn monitored_motors(self) -> &'static [usize] {
+        match self {
+            Self::Estimate => &[0],
+            Self::Pretension | Self::Command | Self::Target => &[],
+            Self::Plan => &[1, 2],
         }
     }
 }

@@ -45,7 +45,7 @@ pub struct LegLimits<T> {
     pub motion: MotionLimits<T>,
     pub homing: Homing,
     pub homing_f_max_n: T,
-    /// What a motor draws at one and a half times that, with half more friction than the settings know, A.
+    /// What a motor draws at that, with half more friction than the settings know, A.
     pub homing_current_max_a: T,
     pub ramp_m_per_s: T,
     pub relax_travel_m: T,
@@ -71,8 +71,8 @@ impl<T: Scalar> LegLimits<T> {
             homing: settings.homing,
             homing_f_max_n: settings.homing.f_max_n.into(),
             homing_current_max_a: T::from(
-                1.5 * (settings.servo.friction_a
-                    + settings.servo.pull_a_per_n * settings.homing.f_max_n),
+                1.5 * settings.servo.friction_a
+                    + settings.servo.pull_a_per_n * settings.homing.f_max_n,
             ),
             ramp_m_per_s: limits.ramp_m_per_s.into(),
             relax_travel_m: limits.relax_travel_m.into(),

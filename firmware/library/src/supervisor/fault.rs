@@ -243,9 +243,16 @@ faults! {
     }
     26 EncoderJump {
         name: "encoder jumps",
-        reaction: Hold,
+        reaction: GateOff,
         cause: "a counter goes farther than its motor can turn",
         remedy: "check the encoder's wiring and its shield, then home the leg",
+        clears: Command,
+    }
+    27 RunsAway {
+        name: "motor runs away",
+        reaction: GateOff,
+        cause: "a motor is a third of following_m away from where it is led, and goes farther",
+        remedy: "check the driver and the motor's wires",
         clears: Command,
     }
 }

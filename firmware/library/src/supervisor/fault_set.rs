@@ -37,6 +37,15 @@ impl FaultSet {
         .union(Self::single(Fault::Following))
         .union(Self::single(Fault::LateTick));
 
+    /// Those that the check of a load cell raises.
+    pub const OF_CELLS: Self = Self::single(Fault::Slack)
+        .union(Self::single(Fault::OverTension))
+        .union(Self::single(Fault::TensionJump))
+        .union(Self::single(Fault::Residual))
+        .union(Self::single(Fault::CellStale))
+        .union(Self::single(Fault::CellStuck))
+        .union(Self::single(Fault::CellSaturated));
+
     /// One fault.
     #[must_use]
     pub const fn single(fault: Fault) -> Self {
@@ -74,6 +83,20 @@ impl FaultSet {
     #[inline(always)]
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
+    }
+
+    /// Those that both have.
+    #[must_use]
+    #[inline(always)]
+    pub const fn intersection(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+
+    /// Those that the other has not.
+    #[must_use]
+    #[inline(always)]
+    pub const fn minus(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
     }
 
     /// Every one but this.

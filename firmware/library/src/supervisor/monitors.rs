@@ -59,14 +59,25 @@ impl<T: Scalar> Monitors<T> {
         }
     }
 
-    /// Checks one axis, from 0 to 2; each has its turn once a cycle.
+    /// Checks the load cell of an axis, from 0 to 2; each has its turn once a cycle.
     #[inline(never)]
-    pub fn watch_axis(&mut self, turn: usize, view: &MonitorInput<'_, T>, shown: &AxisView<T>) {
+    pub fn watch_cell(&mut self, axis: usize, view: &MonitorInput<'_, T>) {
         if let (Some(monitor), Some(faults)) =
-            (self.axes.get_mut(turn), self.axis_faults.get_mut(turn))
+            (self.axes.get_mut(axis), self.axis_faults.get_mut(axis))
         {
-            *faults = FaultSet::NONE;
-            monitor.watch(turn, view, shown, faults);
+            *faults = faults.minus(FaultSet::OF_CELLS);
+            monitor.watch_cell(axis, view, faults);
+        }
+    }
+
+    /// Checks the motor of an axis, from 0 to 2, and its encoder; each has its turn once a cycle.
+    #[inline(never)]
+    pub fn watch_motor(&mut self, axis: usize, view: &MonitorInput<'_, T>, shown: &AxisView<T>) {
+        if let (Some(monitor), Some(faults)) =
+            (self.axes.get_mut(axis), self.axis_faults.get_mut(axis))
+        {
+            *faults = faults.intersection(FaultSet::OF_CELLS);
+            monitor.watch_motor(axis, view, shown, faults);
         }
     }
 

@@ -50,6 +50,9 @@ impl Activity {
     /// Whether the leg is on a way, and not at rest.
     #[must_use]
     pub const fn on_the_way(self) -> bool {
-        matches!(self, Self::Moving | Self::Homing | Self::RampingDown)
+        matches!(
+            self,
+            Self::Moving | Self::Homing | Self::RampingDown | Self::Arming
+        )
     }
 }

@@ -15,6 +15,10 @@ const JUMP_CHECKS: usize = 2;
 /// cell needs to jump. Scenario `fault_over_current` holds it.
 const OVER_CHECKS: u32 = 4;
 
+/// Part of `following_m` by which a motor may be away from where it is led while it goes farther: the maximum tension makes a sixth
+/// of it, a motor that reverses less.
+const AWAY_PART: f32 = 0.6;
+
 /// A counter that goes farther between two checks than at its speed has jumped, by this part of what the fastest motor goes in a
 /// tick: the third above one is what a motor gains in speed meanwhile.
 const STEP_PART: f32 = 1.33;
@@ -23,8 +27,8 @@ const STEP_PART: f32 = 1.33;
 /// is known no better.
 const LACK_FRICTIONS: f32 = 2.0;
 
-/// Time constant of the filters by which current and voltage are compared, s: at the maximum tension a voltage changes its sign from
-/// tick to tick, and the current follows later. A fifth of the time after which it is a fault.
+/// Time constant of the filters by which current and voltage are compared, s: at low tension the voltage changes its sign from tick
+/// to tick, and the current follows later. A fifth of the time after which it is a fault.
 const LACK_TIME_S: f32 = 0.01;
 
 /// Codes this near to an end of the range are saturated: four steps of the 12-bit converter, whose sixteenfold sum a code is.
@@ -65,6 +69,7 @@ struct AxisBounds<T> {
     step_m: T,
     m_per_count: T,
     following_m: T,
+    away_m: T,
     driven_v: T,
     a_per_v: T,
     lack_a: T,
@@ -102,6 +107,7 @@ impl<T: Scalar> AxisMonitor<T> {
                 jump_n: limits.jump_n.into(),
                 step_m: T::from(STEP_PART * servo.speed_m_per_s * TICK_S),
                 following_m: limits.following_m.into(),
+                away_m: T::from(AWAY_PART * limits.following_m),
                 a_per_v: T::from(1.0 / servo.resistance_ohm),
                 lack_a: T::from(LACK_FRICTIONS * servo.friction_a),
                 driven_v: T::from(limits.driven_part * servo.current_a * servo.resistance_ohm),
@@ -113,21 +119,9 @@ impl<T: Scalar> AxisMonitor<T> {
         }
     }
 
-    #[inline(always)]
-    pub fn watch(
-        &mut self,
-        i: usize,
-        view: &MonitorInput<'_, T>,
-        shown: &AxisView<T>,
-        faults: &mut FaultSet,
-    ) {
-        self.cell(i, view, faults);
-        self.motor(i, view, shown, faults);
-    }
-
     /// The load cell and the tension that it reports.
     #[inline(always)]
-    fn cell(&mut self, i: usize, view: &MonitorInput<'_, T>, faults: &mut FaultSet) {
+    pub fn watch_cell(&mut self, i: usize, view: &MonitorInput<'_, T>, faults: &mut FaultSet) {
         let (sensors, bounds) = (view.sensors, &self.bounds);
         let (Some(&code), Some(&fresh), Some(&tension)) = (
             sensors.cell_codes.get(i),
@@ -163,7 +157,7 @@ impl<T: Scalar> AxisMonitor<T> {
 
     /// The motor and its encoder.
     #[inline(always)]
-    fn motor(
+    pub fn watch_motor(
         &mut self,
         i: usize,
         view: &MonitorInput<'_, T>,
@@ -193,8 +187,12 @@ impl<T: Scalar> AxisMonitor<T> {
         let beyond_m = step_m.abs() - axis.speed_m_per_s.abs() * T::from(CYCLE_S);
         let jumps = view.driven && !(beyond_m <= bounds.step_m);
         faults.add(Fault::EncoderJump, jumps);
-        let lags = view.led && !(axis.following_m.abs() <= bounds.following_m);
-        faults.add(Fault::Following, lags);
+        let off_m = axis.following_m.abs();
+        // Farther from where it is led with every tick: it does not obey its voltage.
+        let away = axis.following_m * axis.speed_m_per_s < T::zero();
+        let runs = away && !(off_m <= bounds.away_m);
+        faults.add(Fault::RunsAway, view.driven && runs);
+        faults.add(Fault::Following, view.led && !(off_m <= bounds.following_m));
         faults.add(
             Fault::OverCurrent,
             // What a driver reports that is off means nothing.
