@@ -222,10 +222,8 @@ impl<T: Scalar> Leg<T> {
             counters: !latched.overlaps(FaultSet::SUSPECT_COUNTERS),
         };
         self.mode = Mode::begin(state, &mut self.shared, measured, trust);
-        if state == State::Active {
-            // The first target comes in the next tick: pose and load have been estimated until now.
-            self.phase = Phase::Command;
-        }
+        // The first target comes in the next tick: pose and load have been estimated until now.
+        self.phase = Phase::Command;
     }
 
     /// Starts in the place of another leg on the same board: with its count of ticks and the faults that nobody has cleared.
