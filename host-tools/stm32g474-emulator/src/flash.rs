@@ -38,7 +38,6 @@ pub struct Flash {
     running: Option<(Operation, u64)>,
     /// Where the program lies, addresses.
     program: Range<u32>,
-    nmi: bool,
     /// The cycle until which an access of the processor waits.
     stall: Option<u64>,
     brown_out_level: u8,
@@ -83,7 +82,6 @@ impl Flash {
             first_half: None,
             running: None,
             program: 0..0,
-            nmi: false,
             stall: None,
             brown_out_level,
             chance: Chance::new(seed),
@@ -170,9 +168,11 @@ impl Flash {
         level.copied().unwrap_or_default()
     }
 
-    /// Whether an NMI was asked for since the last question.
-    pub fn take_nmi(&mut self) -> bool {
-        std::mem::take(&mut self.nmi)
+    /// Whether a double word with two wrong bits was read, and the program has not cleared its flag: an NMI is asked for.
+    #[must_use]
+    pub fn nmi(&self) -> bool {
+        let mut flags = [self.flags.ecc_detected, self.flags.ecc_detected_above].into_iter();
+        flags.any(|flag| self.registers.is_set(flag))
     }
 
     /// Whether the interrupt line `FLASH` is active.
@@ -205,7 +205,6 @@ impl Flash {
         }
         let first = !self.registers.is_set(other);
         self.registers.set_value(detected, 1);
-        self.nmi = true;
         if !first {
             return;
         }
@@ -245,7 +244,6 @@ impl Device for Flash {
         self.registers.set_value(self.flags.brown_out_level, level);
         self.keys = Keys::First;
         self.first_half = None;
-        self.nmi = false;
         self.stall = None;
     }
 

@@ -47,6 +47,7 @@ pub struct Processor {
     /// Interrupt lines as the peripherals have them, and as the core has been given them.
     wanted: [bool; LINES],
     given: [bool; LINES],
+    /// The level of the interrupt that cannot be masked.
     nmi: bool,
     settled: bool,
 }
@@ -173,11 +174,15 @@ impl Processor {
                 self.core.set_irq(number as u16, wanted);
             }
         }
-        if std::mem::take(&mut self.nmi) {
-            let pend = |system: &mut Sys| system.set_pending(Exception::NMI, true);
-            self.core.with_sys(pend);
+        if self.nmi {
+            // It is asked for anew while its level is high: once its handler has ended, it begins again.
+            self.core.with_sys(|system: &mut Sys| {
+                if !system.is_active(Exception::NMI) {
+                    system.set_pending(Exception::NMI, true);
+                }
+            });
         }
-        self.settled = true;
+        self.settled = !self.nmi;
     }
 
     /// Whether the flags of a floating-point comparison are still to be fetched: the instructions to come fetch them before
@@ -206,10 +211,10 @@ impl Processor {
         u16::try_from(read.ok()?).ok()
     }
 
-    /// Raises the interrupt that cannot be masked, once.
-    pub fn raise_nmi(&mut self) {
-        self.nmi = true;
-        self.settled = false;
+    /// Sets the level of the interrupt that cannot be masked.
+    pub fn set_nmi(&mut self, level: bool) {
+        self.nmi = level;
+        self.settled &= !level;
     }
 
     /// Whether it sleeps until an interrupt.

@@ -106,8 +106,8 @@ impl Rcc {
         std::mem::take(&mut self.changed)
     }
 
-    /// The crystal stops; true if the chip watches it, so that the processor gets an NMI and TIM1 a break.
-    pub fn stop_crystal(&mut self) -> bool {
+    /// The crystal stops: if the chip watches it, that is a failure of the clock.
+    pub fn stop_crystal(&mut self) {
         self.crystal_hz = 0;
         self.changed = true;
         let watched =
@@ -121,7 +121,12 @@ impl Rcc {
             self.pll = Oscillator::default();
             self.hsi.ready_at.get_or_insert(0);
         }
-        watched
+    }
+
+    /// Whether the crystal has failed, and the program has not cleared the flag: the processor gets an NMI, and TIM1 a break.
+    #[must_use]
+    pub fn clock_failed(&self) -> bool {
+        self.registers.is_set(self.fields.css_flag)
     }
 
     /// What the processor and the buses run from, Hz.
@@ -187,9 +192,9 @@ impl Rcc {
                 _ => 0,
             },
             fdcan: match chosen(self.fields.fdcan) {
-                0 => self.crystal_hz,
+                0 if self.hse.is_on() => self.crystal_hz,
                 2 => pclk1,
-                // PLL Q, which is not modelled.
+                // The crystal while it is off, or PLL Q, which is not modelled.
                 _ => 0,
             },
         }
@@ -214,12 +219,17 @@ impl Rcc {
         let fields = self.fields;
         let on = |field: FieldPlace| field.extract(value) != 0;
         let source = self.source(context.cycle);
-        let used = [
-            (SOURCE_HSE, fields.hse_on, "HSE"),
-            (SOURCE_PLL, fields.pll_on, "PLL"),
+        let used = |system, pll| {
+            let of_pll = self.registers.value(fields.pll_source);
+            source == system || source == SOURCE_PLL && of_pll == pll
+        };
+        let switches = [
+            (used(SOURCE_HSI, PLL_FROM_HSI), fields.hsi_on, "HSI"),
+            (used(SOURCE_HSE, PLL_FROM_HSE), fields.hse_on, "HSE"),
+            (source == SOURCE_PLL, fields.pll_on, "PLL"),
         ];
-        for (number, field, name) in used {
-            if source == number && !on(field) {
+        for (used, field, name) in switches {
+            if used && !on(field) {
                 let text = format!("RCC_CR: {name} is switched off while the chip runs from it");
                 context.findings.add(text);
             }
@@ -232,6 +242,15 @@ impl Rcc {
         );
         if on(fields.pll_on) && self.pll.ready_at.is_none() {
             self.check_pll(context);
+            let ready = match self.registers.value(fields.pll_source) {
+                PLL_FROM_HSI => self.hsi.ready(context.cycle),
+                PLL_FROM_HSE => self.hse.ready(context.cycle),
+                _ => true,
+            };
+            if !ready {
+                let text = "RCC_CR: PLLON is set while the PLL's source is not ready";
+                context.findings.add(text);
+            }
         }
         self.pll.switch(on(fields.pll_on), PLL_LOCK_US, context);
         self.registers.set(fields.hsi_on.offset, value);
@@ -247,6 +266,10 @@ impl Rcc {
                 .findings
                 .add("RCC_PLLCFGR: source, M or N is changed while the PLL is on");
         }
+        if self.source(context.cycle) == SOURCE_PLL && fields.pll_r_on.extract(value) == 0 {
+            let text = "RCC_PLLCFGR: PLLREN is cleared while the chip runs from the PLL";
+            context.findings.add(text);
+        }
         self.registers.set(fields.pll_source.offset, value);
     }
 
@@ -254,7 +277,9 @@ impl Rcc {
         let ready = match self.fields.source.extract(value) {
             SOURCE_HSI => self.hsi.ready(context.cycle),
             SOURCE_HSE => self.hse.ready(context.cycle),
-            SOURCE_PLL => self.pll.ready(context.cycle),
+            SOURCE_PLL => {
+                self.pll.ready(context.cycle) && self.registers.is_set(self.fields.pll_r_on)
+            }
             _ => false,
         };
         if !ready {

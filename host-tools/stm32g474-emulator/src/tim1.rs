@@ -87,15 +87,13 @@ impl Tim1 {
     }
 
     /// Whether the chip asks for a break, by a failed clock or a lockup.
-    pub fn system_break(&mut self, active: bool, context: &mut Context<'_>) {
+    pub fn set_system_break(&mut self, active: bool, context: &mut Context<'_>) {
+        if self.system == active {
+            return;
+        }
         self.advance(context);
         self.system = active;
         self.apply_breaks(context.cycle);
-    }
-
-    /// The chip was reset: it asks for a break no longer.
-    pub fn end_system_break(&mut self) {
-        self.system = false;
     }
 
     /// The cycle of a trigger of the converters since the last call.

@@ -33,11 +33,13 @@ impl Device for Board {
     fn read(&mut self, offset: u32, context: &mut Context<'_>) -> u32 {
         self.converters
             .read(self.block, offset, &self.inputs, context)
+            .unwrap()
     }
 
     fn write(&mut self, offset: u32, value: u32, context: &mut Context<'_>) {
         self.converters
-            .write(self.block, (offset, value), &self.inputs, context);
+            .write(self.block, (offset, value), &self.inputs, context)
+            .unwrap();
     }
 
     fn next_event(&self) -> Option<u64> {
