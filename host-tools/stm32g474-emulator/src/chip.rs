@@ -298,3 +298,7 @@ impl Chip {
         self.peripherals().stop_crystal();
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests;

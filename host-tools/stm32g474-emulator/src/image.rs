@@ -86,6 +86,17 @@ impl Image {
         Ok(image)
     }
 
+    /// The flash's bytes alone.
+    #[cfg(test)]
+    pub fn unnamed(flash: Vec<u8>) -> Self {
+        Self {
+            flash,
+            functions: BTreeMap::new(),
+            variables: BTreeMap::new(),
+            symbols: BTreeMap::new(),
+        }
+    }
+
     fn read_symbols(&mut self, file: &object::File<'_>) {
         for symbol in file.symbols() {
             let (Ok(name), Ok(address)) = (symbol.name(), u32::try_from(symbol.address())) else {

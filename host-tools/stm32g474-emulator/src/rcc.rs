@@ -143,16 +143,18 @@ impl Rcc {
         let chosen = self.registers.value(self.fields.source);
         let ready = match chosen {
             SOURCE_HSE => self.hse.ready(cycle),
-            SOURCE_PLL => self.pll.ready(cycle),
+            SOURCE_PLL => self.pll_gives(cycle),
             _ => true,
         };
         if ready { chosen } else { SOURCE_HSI }
     }
 
+    /// Whether the PLL has locked, and its output R is on.
+    fn pll_gives(&self, cycle: u64) -> bool {
+        self.pll.ready(cycle) && self.registers.is_set(self.fields.pll_r_on)
+    }
+
     fn pll_hz(&self) -> u32 {
-        if !self.registers.is_set(self.fields.pll_r_on) {
-            return 0;
-        }
         self.vco_hz() / (2 * (self.registers.value(self.fields.pll_r) + 1))
     }
 
@@ -192,9 +194,8 @@ impl Rcc {
                 _ => 0,
             },
             fdcan: match chosen(self.fields.fdcan) {
-                0 if self.hse.is_on() => self.crystal_hz,
-                2 => pclk1,
-                // The crystal while it is off, or PLL Q, which is not modelled.
+                FDCAN_FROM_HSE if self.hse.is_on() => self.crystal_hz,
+                FDCAN_FROM_PCLK => pclk1,
                 _ => 0,
             },
         }
@@ -219,18 +220,21 @@ impl Rcc {
         let fields = self.fields;
         let on = |field: FieldPlace| field.extract(value) != 0;
         let source = self.source(context.cycle);
-        let used = |system, pll| {
-            let of_pll = self.registers.value(fields.pll_source);
-            source == system || source == SOURCE_PLL && of_pll == pll
-        };
+        let of_pll = self.registers.value(fields.pll_source);
+        let pll_stays = self.pll.is_on() && on(fields.pll_on);
+        // What is switched off, under what.
+        let chip = |used: bool| used.then_some("the chip runs from it");
+        let pll = |used: bool| (used && pll_stays).then_some("the PLL runs from it");
         let switches = [
-            (used(SOURCE_HSI, PLL_FROM_HSI), fields.hsi_on, "HSI"),
-            (used(SOURCE_HSE, PLL_FROM_HSE), fields.hse_on, "HSE"),
-            (source == SOURCE_PLL, fields.pll_on, "PLL"),
+            (chip(source == SOURCE_HSI), fields.hsi_on, "HSI"),
+            (pll(of_pll == PLL_FROM_HSI), fields.hsi_on, "HSI"),
+            (chip(source == SOURCE_HSE), fields.hse_on, "HSE"),
+            (pll(of_pll == PLL_FROM_HSE), fields.hse_on, "HSE"),
+            (chip(source == SOURCE_PLL), fields.pll_on, "PLL"),
         ];
         for (used, field, name) in switches {
-            if used && !on(field) {
-                let text = format!("RCC_CR: {name} is switched off while the chip runs from it");
+            if let Some(how) = used.filter(|_| !on(field)) {
+                let text = format!("RCC_CR: {name} is switched off while {how}");
                 context.findings.add(text);
             }
         }
@@ -256,6 +260,21 @@ impl Rcc {
         self.registers.set(fields.hsi_on.offset, value);
     }
 
+    /// FDCAN needs the clock that it is given: HSE may be off, and PLL Q is not modelled.
+    fn check_fdcan(&self, context: &mut Context<'_>) {
+        let fields = &self.fields;
+        let text = match self.registers.value(fields.fdcan) {
+            FDCAN_FROM_HSE if !self.hse.is_on() => {
+                "RCC_CCIPR: FDCANSEL gives FDCAN HSE, which is off"
+            }
+            FDCAN_FROM_PLL => "RCC_CCIPR: FDCANSEL gives FDCAN PLL Q, which is not modelled",
+            _ => return,
+        };
+        if self.registers.is_set(fields.fdcan_on) {
+            context.findings.add(text);
+        }
+    }
+
     fn write_pll(&mut self, value: u32, context: &mut Context<'_>) {
         let fields = self.fields;
         let before = self.registers.get(fields.pll_source.offset);
@@ -277,9 +296,7 @@ impl Rcc {
         let ready = match self.fields.source.extract(value) {
             SOURCE_HSI => self.hsi.ready(context.cycle),
             SOURCE_HSE => self.hse.ready(context.cycle),
-            SOURCE_PLL => {
-                self.pll.ready(context.cycle) && self.registers.is_set(self.fields.pll_r_on)
-            }
+            SOURCE_PLL => self.pll_gives(context.cycle),
             _ => false,
         };
         if !ready {
@@ -299,6 +316,11 @@ const SOURCE_PLL: u32 = 3;
 /// Values of PLLSRC.
 const PLL_FROM_HSI: u32 = 2;
 const PLL_FROM_HSE: u32 = 3;
+
+/// Values of FDCANSEL.
+const FDCAN_FROM_HSE: u32 = 0;
+const FDCAN_FROM_PLL: u32 = 1;
+const FDCAN_FROM_PCLK: u32 = 2;
 
 /// HPRE: 8 is a half, 15 a 512th, without a 32nd.
 fn ahb_divider(value: u32) -> u32 {
@@ -389,5 +411,6 @@ impl Device for Rcc {
         } else {
             self.registers.set(offset, value);
         }
+        self.check_fdcan(context);
     }
 }

@@ -437,6 +437,12 @@ const fn no_register(
 /// Values after a reset that ST's description has wrong: the blocks, the register, the value, the reason.
 pub const RESETS: &[(&[&str], &str, u32, &str)] = &[
     (
+        &["RCC"],
+        "CR",
+        0x500,
+        "HSION and HSIRDY: the chip starts from HSI, whose bit is then set by hardware, as ST says at the field; what ST says here is of the STM32L4, in bits that this chip has not",
+    ),
+    (
         &["FLASH"],
         "ACR",
         0x0004_0600,

@@ -49,6 +49,7 @@ pub fn settle(block: &mut Block) -> Vec<Unsettled> {
             let difference;
             (theirs.fields, difference) =
                 settle_fields(block.name, &theirs.name, fields.0, fields.1);
+            ours.contradicted = difference.is_some();
             unsettled.extend(difference);
             ours.known = self::known(&theirs.fields, ours.bits);
             ours.fields = theirs.fields;
@@ -131,6 +132,7 @@ fn merged(views: &[description::Register]) -> Option<Register> {
         known: known(&fields, 32),
         fields,
         reset: first.reset,
+        contradicted: false,
     })
 }
 

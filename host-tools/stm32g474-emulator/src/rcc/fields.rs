@@ -33,6 +33,7 @@ pub struct Fields {
     pub adc345: FieldPlace,
     pub lpuart1: FieldPlace,
     pub fdcan: FieldPlace,
+    pub fdcan_on: FieldPlace,
 }
 
 impl Fields {
@@ -68,6 +69,7 @@ impl Fields {
             adc345: field("CCIPR", "ADC345SEL"),
             lpuart1: field("CCIPR", "LPUART1SEL"),
             fdcan: field("CCIPR", "FDCANSEL"),
+            fdcan_on: field("APB1ENR1", "FDCANEN"),
         }
     }
 }
