@@ -334,9 +334,44 @@ const CLOCK_TREE: &[Row] = &[
     ),
 ];
 
+const SPEEDS: &[Row] = &[
+    (
+        &[],
+        |b| {
+            b.lock_pll();
+            b.rcc("CFGR", "SW", 3);
+            b.wait();
+        },
+        "the processor runs at 170000000 Hz in range 1 normal, whose limit is 150000000 Hz",
+    ),
+    (
+        &["PWR"],
+        |b| {
+            b.set("PWR", "CR1", "VOS", 2);
+            b.lock_pll();
+            b.rcc("CFGR", "HPRE", 9);
+            b.rcc("CFGR", "SW", 3);
+            b.wait();
+        },
+        "the processor runs at 42500000 Hz in range 2, whose limit is 26000000 Hz",
+    ),
+    (
+        &[],
+        |b| {
+            b.lock_pll();
+            b.set("FLASH", "ACR", "LATENCY", 1);
+            b.rcc("CFGR", "HPRE", 8);
+            b.rcc("CFGR", "SW", 3);
+            b.wait();
+        },
+        "the flash has 1 wait states at 85000000 Hz in range 1 normal, and needs 2",
+    ),
+];
+
 #[test]
 fn mistakes_are_found() {
-    for (blocks, mistake, expected) in ACCESSES.iter().chain(PORTS).chain(CLOCK_TREE) {
+    let tables = [ACCESSES, PORTS, CLOCK_TREE, SPEEDS];
+    for (blocks, mistake, expected) in tables.into_iter().flatten() {
         let mut bus = Bus::new();
         for name in *blocks {
             bus.switch(block(name).enable);
