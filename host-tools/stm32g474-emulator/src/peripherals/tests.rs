@@ -347,6 +347,7 @@ const SPEEDS: &[Row] = &[
     (
         &["PWR"],
         |b| {
+            b.set("FLASH", "ACR", "LATENCY", 1);
             b.set("PWR", "CR1", "VOS", 2);
             b.lock_pll();
             b.rcc("CFGR", "HPRE", 9);
