@@ -18,7 +18,8 @@ mod tests;
 use crate::device::{Context, Device, RegisterFile};
 use crate::facts::Facts;
 use array::{Array, BANK_SIZE, DOUBLE_WORD, SIZE, START, double_word_of};
-use operation::{Chance, Operation};
+use fastrand::Rng;
+use operation::Operation;
 use places::{Flags, Offsets, Settings};
 use std::ops::Range;
 
@@ -41,7 +42,7 @@ pub struct Flash {
     /// The cycle until which an access of the processor waits.
     stall: Option<u64>,
     brown_out_level: u8,
-    chance: Chance,
+    chance: Rng,
 }
 
 /// The supply below which the chip is reset, by the option bytes' BOR_LEV, mV: STM32G474 datasheet (DS12288), falling, typical
@@ -84,7 +85,7 @@ impl Flash {
             program: 0..0,
             stall: None,
             brown_out_level,
-            chance: Chance::new(seed),
+            chance: Rng::with_seed(seed),
         };
         flash.reset();
         flash

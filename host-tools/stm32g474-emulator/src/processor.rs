@@ -4,6 +4,7 @@
 mod tests;
 
 use crate::image::{FLASH, RAM};
+use fastrand::Rng;
 use rsemu::core::space::{AddressSpace, MemAttrs, MemOps, RamStore, Region, RomStore, RomWrite};
 use rsemu::core::value::Width;
 use rsemu::cpu::arm::v7m::sys::{Exception, Sys};
@@ -29,12 +30,12 @@ pub const PERIPHERALS: std::ops::Range<u32> = 0x4000_0000..0x6000_0000;
 /// Where DBGMCU is, among the processor's own.
 pub const DEBUG: std::ops::Range<u32> = 0xe004_2000..0xe004_2400;
 
-/// The exception in progress, and the stack pointer, of the moment.
+/// Where the program is at a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
     /// The instruction to come.
     pub pc: u32,
-    /// The exception's number; 0 for none.
+    /// The number of the exception in progress; 0 for none.
     pub exception: u16,
 }
 
@@ -317,17 +318,13 @@ impl Processor {
 
     /// Fills RAM and CCM with a pattern, as a power-up leaves them: with anything.
     pub fn scramble_ram(&mut self, seed: u64) {
-        let mut state = seed | 1;
+        let mut chance = Rng::with_seed(seed);
         for (memory, at) in self
             .memories
             .iter()
             .flat_map(|memory| (0..memory.len()).step_by(4).map(move |at| (memory, at)))
         {
-            // An odd multiplier of Knuth's: all that is asked for is that no word is zero by rule.
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            let word = ((state >> 32) as u32).to_le_bytes();
+            let word = chance.u32(..).to_le_bytes();
             // The place is within the memory.
             let _ = memory.write_at(at, &word);
         }
