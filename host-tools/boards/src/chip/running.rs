@@ -271,7 +271,7 @@ impl Running {
     fn converted(&mut self, image: &Image) -> Result<(), LinkError> {
         self.converted = true;
         self.handler_due = Some(self.chip.cycle() + LATENCY_CYCLES_MAX);
-        let wrong = wiring::wrong_code(&mut self.chip.peripherals(), self.defects.untriggered);
+        let wrong = wiring::wrong_code(&self.chip.peripherals(), self.defects.untriggered);
         self.require(wrong.or_else(|| self.breaks.converted(&self.chip)), image)
     }
 
