@@ -1,3 +1,5 @@
+#![allow(clippy::unwrap_used)]
+
 use super::*;
 use crate::bench::{BOARD_CLOCKS, Bench};
 use crate::device::Device;
