@@ -96,7 +96,7 @@ impl Chip {
             waits_until: 0,
             watched: Vec::new(),
             watching: false,
-            converted: Facts::of_chip().interrupt("ADC1_2").unwrap_or(u16::MAX),
+            converted: Facts::of_chip().interrupt("ADC1_2").unwrap_or_default(),
         })
     }
 
@@ -231,11 +231,8 @@ impl Chip {
         peripherals.findings.locate(place.pc);
         self.waits_until = peripherals.devices.flash.take_stall().unwrap_or_default();
         self.processor.set_nmi(peripherals.devices.nmi());
-        let mut converted = false;
-        for &(number, level) in peripherals.devices.interrupts() {
-            let risen = self.processor.set_line(number, level) && level;
-            converted |= risen && number == self.converted;
-        }
+        let risen = self.processor.set_lines(peripherals.devices.interrupts());
+        let converted = risen >> self.converted & 1 == 1;
         self.counts_asleep = peripherals.devices.debug_in_sleep();
         let latest = self.cycle + LOOK_CYCLES;
         let event = peripherals.devices.next_event();

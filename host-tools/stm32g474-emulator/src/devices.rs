@@ -356,8 +356,8 @@ impl Devices {
         self.port(pin)?.level(pin.number)
     }
 
-    /// The numbers of the interrupts and the levels of their lines.
-    pub fn interrupts(&mut self) -> &[(u16, bool)] {
+    /// The lines of interrupts that are high, bit by number.
+    pub fn interrupts(&mut self) -> u128 {
         let lines = &mut self.lines;
         lines.clear();
         for (name, level) in self.tim1.interrupts() {
@@ -377,6 +377,6 @@ impl Devices {
         for (name, timer) in ENCODER_TIMERS.iter().zip(&self.encoders) {
             lines.raise(name, timer.interrupt());
         }
-        &lines.levels
+        lines.levels
     }
 }

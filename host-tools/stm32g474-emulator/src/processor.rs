@@ -45,9 +45,9 @@ pub struct Processor {
     space: Arc<AddressSpace>,
     /// RAM and CCM.
     memories: [Arc<RamStore>; 2],
-    /// Interrupt lines as the peripherals have them, and as the core has been given them.
-    wanted: [bool; LINES],
-    given: [bool; LINES],
+    /// Interrupt lines as the peripherals have them, and as the core has been given them, bit by number.
+    wanted: u128,
+    given: u128,
     /// The level of the interrupt that cannot be masked.
     nmi: bool,
     settled: bool,
@@ -55,9 +55,6 @@ pub struct Processor {
 
 /// The number of the first exception that is an interrupt.
 pub const FIRST_INTERRUPT: u16 = 16;
-
-/// Interrupts of the chip, rounded up.
-const LINES: usize = 128;
 
 /// Why the memories could not be put together: a fault of this program.
 #[derive(Debug, thiserror::Error)]
@@ -124,8 +121,8 @@ impl Processor {
             core: start(&space),
             space,
             memories: [ram, ccm],
-            wanted: [false; LINES],
-            given: [false; LINES],
+            wanted: 0,
+            given: 0,
             nmi: false,
             settled: true,
         })
@@ -134,8 +131,8 @@ impl Processor {
     /// Starts anew: what the memories hold stays.
     pub fn reset(&mut self) {
         self.core = start(&self.space);
-        self.wanted = [false; LINES];
-        self.given = [false; LINES];
+        self.wanted = 0;
+        self.given = 0;
         self.nmi = false;
         self.settled = true;
     }
@@ -148,15 +145,12 @@ impl Processor {
         self.core.step()
     }
 
-    /// Sets the level of an interrupt's line; true if it was another.
-    pub fn set_line(&mut self, interrupt: u16, level: bool) -> bool {
-        let Some(wanted) = self.wanted.get_mut(usize::from(interrupt)) else {
-            return false;
-        };
-        let changes = *wanted != level;
-        *wanted = level;
-        self.settled &= !changes;
-        changes
+    /// Sets the levels of the interrupts' lines, bit by number: those that have risen.
+    pub fn set_lines(&mut self, levels: u128) -> u128 {
+        let risen = levels & !self.wanted;
+        self.settled &= levels == self.wanted;
+        self.wanted = levels;
+        risen
     }
 
     /// Hands changed lines to the core, where an exception does no harm.
@@ -169,12 +163,14 @@ impl Processor {
         if self.core.xpsr() & xpsr::IT_MASK != 0 || self.awaits_comparison() {
             return;
         }
-        for (number, (&wanted, given)) in self.wanted.iter().zip(&mut self.given).enumerate() {
-            if wanted != *given {
-                *given = wanted;
-                self.core.set_irq(number as u16, wanted);
-            }
+        let mut changed = self.wanted ^ self.given;
+        while changed != 0 {
+            let number = changed.trailing_zeros();
+            let level = self.wanted >> number & 1 == 1;
+            self.core.set_irq(number as u16, level);
+            changed &= changed - 1;
         }
+        self.given = self.wanted;
         if self.nmi {
             // It is asked for anew while its level is high: once its handler has ended, it begins again.
             self.core.with_sys(|system: &mut Sys| {

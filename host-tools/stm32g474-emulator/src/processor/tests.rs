@@ -126,7 +126,7 @@ fn an_interrupt_within_an_it_block_or_a_comparison_changes_nothing() {
     for (program, starts, right) in cases {
         for &start in starts {
             let found = interrupted_at(program, start, |processor, level| {
-                processor.set_line(0, level);
+                processor.set_lines(u128::from(level));
             });
             assert_eq!(found, right, "at {start}");
         }
