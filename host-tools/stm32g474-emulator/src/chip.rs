@@ -3,9 +3,10 @@
 use crate::board::Board;
 use crate::bus::{Answers, Bus, Shared, lock};
 use crate::facts::Facts;
-use crate::image::{FLASH, Image};
+use crate::image::Image;
+use crate::memory_map::{DEBUG, FLASH, PERIPHERALS, SECOND_BANK};
 use crate::peripherals::Peripherals;
-use crate::processor::{DEBUG, FIRST_INTERRUPT, MapError, PERIPHERALS, Processor, SECOND_BANK};
+use crate::processor::{FIRST_INTERRUPT, MapError, Processor};
 use crate::rcc::ResetCause;
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, MutexGuard};

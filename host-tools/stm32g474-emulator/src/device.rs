@@ -181,13 +181,13 @@ macro_rules! places {
     (@find $file:ident $register:ident $field:ident) => {
         $file.field(stringify!($register), stringify!($field))
     };
-    ($(#[$about:meta])* pub struct $name:ident { $($places:tt)* }) => {
+    ($(#[$about:meta])* $seen:vis struct $name:ident { $($places:tt)* }) => {
         $crate::device::places! {
-            $(#[$about])* pub struct $name { $($places)* } |file| {}
+            $(#[$about])* $seen struct $name { $($places)* } |file| {}
         }
     };
     (
-        $(#[$about:meta])* pub struct $name:ident {
+        $(#[$about:meta])* $seen:vis struct $name:ident {
             $($(#[$note:meta])* $place:ident: $register:ident $(. $field:ident)?,)*
         }
         |$file:ident| {
@@ -195,7 +195,7 @@ macro_rules! places {
         }
     ) => {
         $(#[$about])*
-        pub struct $name {
+        $seen struct $name {
             $($(#[$note])* pub $place: $crate::device::places!(@kind $($field)?),)*
             $($(#[$remark])* pub $other: $kind,)*
         }

@@ -17,7 +17,8 @@ mod tests;
 
 use crate::device::{Context, Device, RegisterFile};
 use crate::facts::Facts;
-use array::{Array, BANK_SIZE, DOUBLE_WORD, SIZE, START, double_word_of};
+use crate::memory_map::BANK_SIZE;
+use array::{Array, DOUBLE_WORD, SIZE, START, double_word_of};
 use fastrand::Rng;
 use operation::Operation;
 use places::{Flags, Offsets, Settings};

@@ -33,6 +33,7 @@ pub mod gpio;
 pub mod image;
 pub mod iwdg;
 pub mod lpuart;
+mod memory_map;
 pub mod peripherals;
 pub mod plain;
 pub mod processor;

@@ -3,7 +3,7 @@
 #[cfg(test)]
 mod tests;
 
-use crate::image::{FLASH, RAM};
+use crate::memory_map::{BANK_SIZE, CCM, DEBUG, FLASH, PERIPHERALS, RAM, SECOND_BANK};
 use fastrand::Rng;
 use rsemu::core::space::{AddressSpace, MemAttrs, MemOps, RamStore, Region, RomStore, RomWrite};
 use rsemu::core::value::Width;
@@ -13,22 +13,6 @@ use std::sync::Arc;
 
 /// The priorities that the chip's interrupt controller knows: 16.
 const PRIORITY_BITS: u8 = 4;
-
-/// The first address of the CCM, and its size.
-const CCM: u32 = 0x1000_0000;
-const CCM_SIZE: u64 = 0x8000;
-
-/// Half of the flash: its banks.
-const BANK_SIZE: usize = 0x4_0000;
-
-/// Where the second bank of the flash is.
-pub const SECOND_BANK: u32 = FLASH.start + BANK_SIZE as u32;
-
-/// Where the peripherals are.
-pub const PERIPHERALS: std::ops::Range<u32> = 0x4000_0000..0x6000_0000;
-
-/// Where DBGMCU is, among the processor's own.
-pub const DEBUG: std::ops::Range<u32> = 0xe004_2000..0xe004_2400;
 
 /// Where the program is at a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,24 +58,25 @@ impl Processor {
     ) -> Result<Self, MapError> {
         let space = AddressSpace::new("chip", 32);
         let first = Arc::new(RomStore::from_slice(
-            flash.get(..BANK_SIZE).unwrap_or(flash),
+            flash.get(..BANK_SIZE as usize).unwrap_or(flash),
         ));
         let rom = |name| Region::rom(name, Arc::clone(&first), RomWrite::Fault);
         // The CCM has two addresses; what the second gives is the same memory.
-        let ram_size = u64::from(RAM.end - RAM.start) - CCM_SIZE;
+        let ccm_size = u64::from(CCM.end - CCM.start);
+        let ram_size = u64::from(RAM.end - RAM.start) - ccm_size;
         let (ram, ccm) = (
             Arc::new(RamStore::new(ram_size)),
-            Arc::new(RamStore::new(CCM_SIZE)),
+            Arc::new(RamStore::new(ccm_size)),
         );
         let regions = [
             (rom("first bank"), u64::from(FLASH.start)),
             (rom("first bank at zero"), 0),
             (
-                Region::io("second bank", BANK_SIZE as u64, second_bank),
+                Region::io("second bank", u64::from(BANK_SIZE), second_bank),
                 u64::from(SECOND_BANK),
             ),
             (Region::ram("ram", Arc::clone(&ram)), u64::from(RAM.start)),
-            (Region::ram("ccm", Arc::clone(&ccm)), u64::from(CCM)),
+            (Region::ram("ccm", Arc::clone(&ccm)), u64::from(CCM.start)),
             (
                 Region::ram("ccm behind ram", Arc::clone(&ccm)),
                 u64::from(RAM.start) + ram_size,

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::device::FieldPlace;
-use crate::image::RAM;
+use crate::memory_map::RAM;
 
 /// Start, and the handler of the interrupt that cannot be masked.
 const START: u32 = FLASH.start + 0x80;

@@ -1,7 +1,8 @@
 //! What takes the flash its time, and what a loss of power leaves of it.
 
-use super::array::{Array, BANK_SIZE, DOUBLE_WORD, START};
+use super::array::{Array, DOUBLE_WORD, START};
 use crate::clocks::Clocks;
+use crate::memory_map::BANK_SIZE;
 use fastrand::Rng;
 use std::ops::Range;
 

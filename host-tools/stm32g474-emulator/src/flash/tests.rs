@@ -3,10 +3,11 @@
 #![allow(clippy::unwrap_used)]
 
 use super::Flash;
-use super::array::{BANK_SIZE, START};
+use super::array::START;
 use crate::clocks::Clocks;
 use crate::device::{Context, Device};
 use crate::findings::Findings;
+use crate::memory_map::BANK_SIZE;
 
 const CLOCKS: Clocks = Clocks {
     hclk: 170_000_000,
