@@ -47,7 +47,7 @@ impl Peripherals {
     /// The peripherals at a moment, and what they see of the chip then: what is found belongs to it.
     pub fn at(&mut self, cycle: u64) -> (&mut Devices, Context<'_>) {
         self.cycle = cycle;
-        self.findings.at(cycle, 0);
+        self.findings.at(cycle);
         let context = Context {
             cycle,
             clocks: &self.clocks,
@@ -63,7 +63,6 @@ impl Peripherals {
 
     /// The processor reads one, two or four bytes.
     pub fn read(&mut self, address: u32, width: u32) -> u32 {
-        self.findings.at(self.cycle, 0);
         let answering = self
             .checks
             .answering(address, &self.devices.rcc, &mut self.findings);
@@ -83,7 +82,6 @@ impl Peripherals {
 
     /// The processor writes one, two or four bytes.
     pub fn write(&mut self, address: u32, width: u32, value: u32) {
-        self.findings.at(self.cycle, 0);
         let answering = self
             .checks
             .answering(address, &self.devices.rcc, &mut self.findings);
