@@ -201,6 +201,7 @@ impl Rcc {
         }
     }
 
+    /// The PLL is switched on: its source and its rates.
     fn check_pll(&self, context: &mut Context<'_>) {
         let within = |value, [low, high]: [u32; 2]| (low..=high).contains(&value);
         let (input, vco) = (self.pll_input_hz(), self.vco_hz());
@@ -214,15 +215,25 @@ impl Rcc {
                 "RCC_PLLCFGR: the PLL's oscillator is at {vco} Hz, outside of {PLL_VCO_HZ:?}"
             ));
         }
+        let ready = match self.registers.value(self.fields.pll_source) {
+            PLL_FROM_HSI => self.hsi.ready(context.cycle),
+            PLL_FROM_HSE => self.hse.ready(context.cycle),
+            _ => true,
+        };
+        if !ready {
+            let text = "RCC_CR: PLLON is set while the PLL's source is not ready";
+            context.findings.add(text);
+        }
     }
 
-    fn write_control(&mut self, value: u32, context: &mut Context<'_>) {
+    /// What the processor's clock depends on, directly or through the PLL, has to stay on; and the crystal's bypass must not
+    /// change under it. As ST's description says at the fields.
+    fn check_oscillators(&self, value: u32, context: &mut Context<'_>) {
         let fields = self.fields;
         let on = |field: FieldPlace| field.extract(value) != 0;
         let source = self.source(context.cycle);
         let of_pll = self.registers.value(fields.pll_source);
         let pll_stays = self.pll.is_on() && on(fields.pll_on);
-        // What is switched off, under what.
         let chip = |used: bool| used.then_some("the chip runs from it");
         let pll = |used: bool| (used && pll_stays).then_some("the PLL runs from it");
         let switches = [
@@ -238,23 +249,21 @@ impl Rcc {
                 context.findings.add(text);
             }
         }
+        if self.hse.is_on() && on(fields.hse_bypass) != self.registers.is_set(fields.hse_bypass) {
+            let text = "RCC_CR: HSEBYP is changed while HSE is on";
+            context.findings.add(text);
+        }
+    }
+
+    fn write_control(&mut self, value: u32, context: &mut Context<'_>) {
+        self.check_oscillators(value, context);
+        let fields = self.fields;
+        let on = |field: FieldPlace| field.extract(value) != 0;
+        let crystal = on(fields.hse_on) && self.crystal_hz > 0;
         self.hsi.switch(on(fields.hsi_on), HSI_START_US, context);
-        self.hse.switch(
-            on(fields.hse_on) && self.crystal_hz > 0,
-            HSE_START_US,
-            context,
-        );
-        if on(fields.pll_on) && self.pll.ready_at.is_none() {
+        self.hse.switch(crystal, HSE_START_US, context);
+        if on(fields.pll_on) && !self.pll.is_on() {
             self.check_pll(context);
-            let ready = match self.registers.value(fields.pll_source) {
-                PLL_FROM_HSI => self.hsi.ready(context.cycle),
-                PLL_FROM_HSE => self.hse.ready(context.cycle),
-                _ => true,
-            };
-            if !ready {
-                let text = "RCC_CR: PLLON is set while the PLL's source is not ready";
-                context.findings.add(text);
-            }
         }
         self.pll.switch(on(fields.pll_on), PLL_LOCK_US, context);
         self.registers.set(fields.hsi_on.offset, value);
@@ -278,12 +287,16 @@ impl Rcc {
     fn write_pll(&mut self, value: u32, context: &mut Context<'_>) {
         let fields = self.fields;
         let before = self.registers.get(fields.pll_source.offset);
-        let fixed = [fields.pll_source, fields.pll_divider, fields.pll_factor];
-        let running = self.pll.ready_at.is_some();
-        if running && fixed.iter().any(|f| f.extract(before) != f.extract(value)) {
+        let fixed = [
+            fields.pll_source,
+            fields.pll_divider,
+            fields.pll_factor,
+            fields.pll_r,
+        ];
+        if self.pll.is_on() && fixed.iter().any(|f| f.extract(before) != f.extract(value)) {
             context
                 .findings
-                .add("RCC_PLLCFGR: source, M or N is changed while the PLL is on");
+                .add("RCC_PLLCFGR: source, M, N or R is changed while the PLL is on");
         }
         if self.source(context.cycle) == SOURCE_PLL && fields.pll_r_on.extract(value) == 0 {
             let text = "RCC_PLLCFGR: PLLREN is cleared while the chip runs from the PLL";

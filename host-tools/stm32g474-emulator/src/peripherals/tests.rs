@@ -223,6 +223,14 @@ const CLOCK_TREE: &[Row] = &[
     (
         &[],
         |b| {
+            b.rcc("CR", "HSEON", 1);
+            b.rcc("CR", "HSEBYP", 1);
+        },
+        "RCC_CR: HSEBYP is changed while HSE is on",
+    ),
+    (
+        &[],
+        |b| {
             b.run_from_pll();
             b.rcc("CR", "PLLON", 0);
         },
@@ -286,7 +294,15 @@ const CLOCK_TREE: &[Row] = &[
             b.lock_pll();
             b.rcc("PLLCFGR", "PLLN", 80);
         },
-        "RCC_PLLCFGR: source, M or N is changed while the PLL is on",
+        "RCC_PLLCFGR: source, M, N or R is changed while the PLL is on",
+    ),
+    (
+        &[],
+        |b| {
+            b.lock_pll();
+            b.rcc("PLLCFGR", "PLLR", 1);
+        },
+        "RCC_PLLCFGR: source, M, N or R is changed while the PLL is on",
     ),
     (
         &[],

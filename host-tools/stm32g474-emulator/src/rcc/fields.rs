@@ -10,6 +10,7 @@ places! {
         hsi_ready: CR.HSIRDY,
         hse_on: CR.HSEON,
         hse_ready: CR.HSERDY,
+        hse_bypass: CR.HSEBYP,
         css_on: CR.CSSON,
         pll_on: CR.PLLON,
         pll_ready: CR.PLLRDY,
