@@ -69,18 +69,14 @@ impl AccessChecks {
             ));
             return None;
         };
-        Some((block, register))
-    }
-
-    /// Checks a read.
-    pub fn read(&self, (block, register): Answering, findings: &mut Findings) {
-        // Some registers that can only be written read as zero, and a change of one field reads them first.
-        if register.access == Access::Write && register.reset != 0 {
+        if register.contradicted {
             findings.add(format!(
-                "{}_{} is read, and can only be written",
+                "{}_{} is accessed, about which the makers' descriptions contradict each other, and no ruling says what holds",
                 block.name, register.name
             ));
+            return None;
         }
+        Some((block, register))
     }
 
     /// Checks a write; false if it has no effect.

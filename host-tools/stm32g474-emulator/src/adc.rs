@@ -65,33 +65,48 @@ impl Converters {
         self.groups.iter_mut().for_each(ConverterGroup::reset);
     }
 
-    /// The processor reads a register of a block.
+    /// The input that a rank of a converter's injected sequence, 0 to 3, converts.
+    #[must_use]
+    pub fn injected_input(&self, name: &str, rank: usize) -> Option<u8> {
+        self.named(name)?.injected_input(rank)
+    }
+
+    /// The code of a rank of a converter's injected sequence, 0 to 3, without what reading its register does.
+    #[must_use]
+    pub fn injected_code(&self, name: &str, rank: usize) -> Option<u32> {
+        self.named(name)?.injected_code(rank)
+    }
+
+    fn named(&self, name: &str) -> Option<&Converter> {
+        let mut converters = self.groups.iter().flat_map(|group| &group.converters);
+        converters.find(|one| one.name() == name)
+    }
+
+    /// The processor reads a register of a block; none where the block is not modelled.
     pub fn read(
         &mut self,
         block: &str,
         offset: u32,
         inputs: &dyn AnalogueInputs,
         context: &mut Context<'_>,
-    ) -> u32 {
-        let Some(group) = self.groups.iter_mut().find(|group| group.has(block)) else {
-            return 0;
-        };
+    ) -> Option<u32> {
+        let group = self.groups.iter_mut().find(|group| group.has(block))?;
         group.advance(inputs, context);
-        group.read(block, offset)
+        Some(group.read(block, offset))
     }
 
-    /// The processor writes a register of a block.
+    /// The processor writes a register of a block; none where the block is not modelled.
     pub fn write(
         &mut self,
         block: &str,
         (offset, value): (u32, u32),
         inputs: &dyn AnalogueInputs,
         context: &mut Context<'_>,
-    ) {
-        if let Some(group) = self.groups.iter_mut().find(|group| group.has(block)) {
-            group.advance(inputs, context);
-            group.write(block, offset, value, inputs, context);
-        }
+    ) -> Option<()> {
+        let group = self.groups.iter_mut().find(|group| group.has(block))?;
+        group.advance(inputs, context);
+        group.write(block, offset, value, inputs, context);
+        Some(())
     }
 
     /// TIM1's second trigger comes in a cycle, which is not after the moment.

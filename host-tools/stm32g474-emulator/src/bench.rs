@@ -33,7 +33,7 @@ pub struct Bench<D: Device> {
 }
 
 impl<D: Device> Bench<D> {
-    /// A device for a block of the chip.
+    /// A device for a block of the chip, at cycle 1000.
     pub fn new(block: &str, device: impl FnOnce(&'static Block) -> D) -> Self {
         let block = Facts::of_chip().block(block).unwrap();
         Self {
@@ -85,6 +85,14 @@ impl<D: Device> Bench<D> {
             let mask = self.mask(register, field);
             word = word & !mask | value << mask.trailing_zeros();
         }
+        self.write(register, word);
+    }
+
+    /// Writes a register: fields with values, and zeros beside them.
+    pub fn put(&mut self, register: &str, fields: &[(&str, u32)]) {
+        let word = fields.iter().fold(0, |word, (field, value)| {
+            word | value << self.mask(register, field).trailing_zeros()
+        });
         self.write(register, word);
     }
 

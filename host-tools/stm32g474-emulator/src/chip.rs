@@ -3,9 +3,10 @@
 use crate::board::Board;
 use crate::bus::{Answers, Bus, Shared, lock};
 use crate::facts::Facts;
-use crate::image::{FLASH, Image};
+use crate::image::Image;
+use crate::memory_map::{DEBUG, FLASH, PERIPHERALS, SECOND_BANK};
 use crate::peripherals::Peripherals;
-use crate::processor::{DEBUG, FIRST_INTERRUPT, MapError, PERIPHERALS, Processor, SECOND_BANK};
+use crate::processor::{FIRST_INTERRUPT, MapError, Processor};
 use crate::rcc::ResetCause;
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -45,6 +46,9 @@ pub struct Chip {
     /// The cycle until which the processor waits for the flash.
     waits_until: u64,
 }
+
+/// The longest from one look at the processor to the next, for a lock-up or a request for a reset, cycles: 0.1 ms.
+const LOOK_CYCLES: u64 = 17_000;
 
 /// The supply below which the datasheet promises nothing, mV.
 const SUPPLY_MIN_MV: u32 = 1_710;
@@ -93,14 +97,16 @@ impl Chip {
             waits_until: 0,
             watched: Vec::new(),
             watching: false,
-            converted: Facts::of_chip().interrupt("ADC1_2").unwrap_or(u16::MAX),
+            converted: Facts::of_chip().interrupt("ADC1_2").unwrap_or_default(),
         })
     }
 
     /// The peripherals. What is changed there takes effect with the next instruction.
     pub fn peripherals(&self) -> MutexGuard<'_, Peripherals> {
         self.shared.accessed.store(true, Ordering::Relaxed);
-        lock(&self.peripherals)
+        let mut peripherals = lock(&self.peripherals);
+        peripherals.at(self.cycle);
+        peripherals
     }
 
     /// The processor.
@@ -206,7 +212,7 @@ impl Chip {
             return Some(self.reset(ResetCause::Software));
         }
         let mut peripherals = lock(&self.peripherals);
-        peripherals.cycle = self.cycle;
+        peripherals.at(self.cycle);
         peripherals.advance();
         if peripherals
             .devices
@@ -225,16 +231,13 @@ impl Chip {
         }
         peripherals.findings.locate(place.pc);
         self.waits_until = peripherals.devices.flash.take_stall().unwrap_or_default();
-        if peripherals.devices.flash.take_nmi() {
-            self.processor.raise_nmi();
-        }
-        let mut converted = false;
-        for &(number, level) in peripherals.devices.interrupts() {
-            let risen = self.processor.set_line(number, level) && level;
-            converted |= risen && number == self.converted;
-        }
+        self.processor.set_nmi(peripherals.devices.nmi());
+        let risen = self.processor.set_lines(peripherals.devices.interrupts());
+        let converted = risen >> self.converted & 1 == 1;
         self.counts_asleep = peripherals.devices.debug_in_sleep();
-        self.next_event = peripherals.devices.next_event().unwrap_or(u64::MAX);
+        let latest = self.cycle + LOOK_CYCLES;
+        let event = peripherals.devices.next_event();
+        self.next_event = event.map_or(latest, |event| event.min(latest));
         let update = peripherals.devices.take_update();
         drop(peripherals);
         match (update, converted) {
@@ -247,17 +250,16 @@ impl Chip {
     /// The processor has locked up, and switches the pulses off if the image asks for that.
     fn lock_up(&mut self) -> Stop {
         self.locked_up = true;
-        lock(&self.peripherals).break_by_lockup();
+        self.peripherals().lock_up();
         Stop::LockedUp
     }
 
     /// Resets the chip, whose supply stays, and its memories with it.
     pub fn reset(&mut self, cause: ResetCause) -> Stop {
-        lock(&self.peripherals).reset(cause);
+        self.peripherals().reset(cause);
         self.processor.reset();
         self.locked_up = false;
         self.waits_until = 0;
-        self.next_event = self.cycle;
         Stop::Reset(cause)
     }
 
@@ -270,7 +272,7 @@ impl Chip {
     /// Lets the supply fall to so many millivolts for a moment. Below the brown-out level of the option bytes that is a
     /// reset; without one, a supply outside of the datasheet's range is a finding. True if the chip was reset.
     pub fn dip_supply(&mut self, lowest_mv: u32, seed: u64) -> bool {
-        let mut peripherals = lock(&self.peripherals);
+        let mut peripherals = self.peripherals();
         if lowest_mv >= peripherals.devices.flash.brown_out_mv() {
             if lowest_mv < SUPPLY_MIN_MV {
                 peripherals.findings.add(format!(
@@ -279,7 +281,6 @@ impl Chip {
             }
             return false;
         }
-        peripherals.cycle = self.cycle;
         peripherals.advance();
         peripherals.lose_power();
         drop(peripherals);
@@ -292,9 +293,10 @@ impl Chip {
 
     /// Lets the crystal stop.
     pub fn stop_crystal(&mut self) {
-        if lock(&self.peripherals).stop_crystal() {
-            self.processor.raise_nmi();
-        }
-        self.next_event = self.cycle;
+        self.peripherals().stop_crystal();
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests;

@@ -145,6 +145,16 @@ impl RegisterFile {
         }
     }
 
+    /// The bits of several fields of a register.
+    ///
+    /// # Panics
+    /// Without one of them.
+    #[must_use]
+    pub fn mask(&self, register: &str, fields: &[&str]) -> u32 {
+        let masks = fields.iter().map(|field| self.field(register, field).mask);
+        masks.fold(0, |all, mask| all | mask)
+    }
+
     /// The value that a field has.
     #[must_use]
     pub fn value(&self, field: FieldPlace) -> u32 {
@@ -162,3 +172,43 @@ impl RegisterFile {
         self.set(field.offset, field.insert(self.get(field.offset), value));
     }
 }
+
+/// A struct with the places of registers and fields by the makers' names, `CR1` or `CR1.CEN`, and with what is made of them.
+macro_rules! places {
+    (@kind) => { u32 };
+    (@kind $field:ident) => { $crate::device::FieldPlace };
+    (@find $file:ident $register:ident) => { $file.offset(stringify!($register)) };
+    (@find $file:ident $register:ident $field:ident) => {
+        $file.field(stringify!($register), stringify!($field))
+    };
+    ($(#[$about:meta])* $seen:vis struct $name:ident { $($places:tt)* }) => {
+        $crate::device::places! {
+            $(#[$about])* $seen struct $name { $($places)* } |file| {}
+        }
+    };
+    (
+        $(#[$about:meta])* $seen:vis struct $name:ident {
+            $($(#[$note:meta])* $place:ident: $register:ident $(. $field:ident)?,)*
+        }
+        |$file:ident| {
+            $($(#[$remark:meta])* $other:ident: $kind:ty = $value:expr,)*
+        }
+    ) => {
+        $(#[$about])*
+        $seen struct $name {
+            $($(#[$note])* pub $place: $crate::device::places!(@kind $($field)?),)*
+            $($(#[$remark])* pub $other: $kind,)*
+        }
+
+        impl $name {
+            /// Finds them.
+            pub fn new($file: &$crate::device::RegisterFile) -> Self {
+                Self {
+                    $($place: $crate::device::places!(@find $file $register $($field)?),)*
+                    $($other: $value,)*
+                }
+            }
+        }
+    };
+}
+pub(crate) use places;

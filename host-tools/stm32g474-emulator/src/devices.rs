@@ -64,6 +64,8 @@ pub struct Devices {
     sampled: RefCell<BTreeMap<Pin, u16>>,
     /// SYSCFG.
     pub syscfg: Plain,
+    /// The processor has locked up.
+    pub locked_up: bool,
     debug_in_sleep: FieldPlace,
     lockup_breaks: FieldPlace,
     updated: bool,
@@ -106,6 +108,7 @@ impl Devices {
             lockup_breaks: syscfg.registers().field("CFGR2", "CLL"),
             dbgmcu,
             syscfg,
+            locked_up: false,
             updated: false,
             break_pins: [None; 2],
             break_levels: [false; 2],
@@ -121,7 +124,7 @@ impl Devices {
                 analogue: &self.analogue,
                 sampled: &self.sampled,
             };
-            return Some(self.converters.read(block, offset, &inputs, context));
+            return self.converters.read(block, offset, &inputs, context);
         }
         if block == MESSAGE_RAM {
             return Some(self.fdcan.read_memory(offset));
@@ -142,9 +145,8 @@ impl Devices {
                 analogue: &self.analogue,
                 sampled: &self.sampled,
             };
-            self.converters
-                .write(block, (offset, value), &inputs, context);
-            return Some(());
+            let place = (offset, value);
+            return self.converters.write(block, place, &inputs, context);
         }
         if block == MESSAGE_RAM {
             self.fdcan.write_memory(offset, value, context);
@@ -202,8 +204,8 @@ impl Devices {
     /// All back to what a reset of the chip gives. DBGMCU is reset by a power-up alone: RM0440, DBGMCU_CR.
     pub fn reset(&mut self) {
         self.all().for_each(Device::reset);
-        self.tim1.end_system_break();
         self.converters.reset_all();
+        self.locked_up = false;
         self.break_levels = [false; 2];
         self.updated = false;
     }
@@ -221,6 +223,8 @@ impl Devices {
     /// Lets everything happen that is due, and hands on what passes between peripherals.
     pub fn advance(&mut self, context: &mut Context<'_>) {
         self.route_breaks(context);
+        let system = self.rcc.clock_failed() || self.locked_up && self.breaks_by_lockup();
+        self.tim1.set_system_break(system, context);
         for device in self.acting() {
             if device.next_event().is_some_and(|at| at <= context.cycle) {
                 device.advance(context);
@@ -245,9 +249,15 @@ impl Devices {
         registers.is_set(self.debug_in_sleep)
     }
 
-    /// Whether a processor that is locked up breaks TIM1.
+    /// The level of the interrupt that cannot be masked: wrong bits in the flash, or a failed clock, hold it up until the
+    /// program clears their flags.
     #[must_use]
-    pub fn breaks_by_lockup(&self) -> bool {
+    pub fn nmi(&self) -> bool {
+        self.flash.nmi() || self.rcc.clock_failed()
+    }
+
+    /// Whether a processor that is locked up breaks TIM1.
+    fn breaks_by_lockup(&self) -> bool {
         self.syscfg.registers().is_set(self.lockup_breaks)
     }
 
@@ -346,8 +356,8 @@ impl Devices {
         self.port(pin)?.level(pin.number)
     }
 
-    /// The numbers of the interrupts and the levels of their lines.
-    pub fn interrupts(&mut self) -> &[(u16, bool)] {
+    /// The lines of interrupts that are high, bit by number.
+    pub fn interrupts(&mut self) -> u128 {
         let lines = &mut self.lines;
         lines.clear();
         for (name, level) in self.tim1.interrupts() {
@@ -367,6 +377,6 @@ impl Devices {
         for (name, timer) in ENCODER_TIMERS.iter().zip(&self.encoders) {
             lines.raise(name, timer.interrupt());
         }
-        &lines.levels
+        lines.levels
     }
 }

@@ -3,7 +3,7 @@
 //! The tracks are not modelled edge by edge: the encoder's position moves, and the counter with it, as if that many edges
 //! had come. The filters of the inputs are checked by nobody here; they delay by less than a tick.
 
-use crate::device::{Context, Device, FieldPlace, RegisterFile};
+use crate::device::{Context, Device, FieldPlace, RegisterFile, places};
 use crate::facts::Block;
 
 /// Counts every edge of both tracks (`SMS`), those of one track (1 and 2).
@@ -22,53 +22,30 @@ pub struct EncoderTimer {
     down: bool,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Places {
-    control: u32,
-    status: u32,
-    events: u32,
-    count: u32,
-    top: u32,
-    modes: u32,
-    enabled: FieldPlace,
-    down: FieldPlace,
-    counter: FieldPlace,
-    flag_in_count: FieldPlace,
-    flag_copy: FieldPlace,
-    mode: FieldPlace,
-    inputs: [FieldPlace; 2],
-    channels: [FieldPlace; 2],
-    inverted: [FieldPlace; 2],
-    update: FieldPlace,
-    update_flag: FieldPlace,
-    update_interrupt: FieldPlace,
-}
-
-impl Places {
-    fn new(file: &RegisterFile) -> Self {
-        let both = |register: &str, name: &str| {
-            [0, 1].map(|channel| file.field(register, &format!("{name}{channel}")))
-        };
-        Self {
-            control: file.offset("CR1"),
-            status: file.offset("SR"),
-            events: file.offset("EGR"),
-            count: file.offset("CNT"),
-            top: file.offset("ARR"),
-            modes: file.offset("CCMR1"),
-            enabled: file.field("CR1", "CEN"),
-            down: file.field("CR1", "DIR"),
-            counter: file.field("CNT", "CNT"),
-            flag_in_count: file.field("CR1", "UIFREMAP"),
-            flag_copy: file.field("CNT", "UIFCPY"),
-            mode: file.field("SMCR", "SMS"),
-            inputs: both("CCMR1", "CCS"),
-            channels: both("CCER", "CCE"),
-            inverted: both("CCER", "CCP"),
-            update: file.field("EGR", "UG"),
-            update_flag: file.field("SR", "UIF"),
-            update_interrupt: file.field("DIER", "UIE"),
-        }
+places! {
+    /// Registers and fields.
+    #[derive(Clone, Copy, Debug)]
+    struct Places {
+        control: CR1,
+        status: SR,
+        events: EGR,
+        count: CNT,
+        top: ARR,
+        modes: CCMR1,
+        enabled: CR1.CEN,
+        down: CR1.DIR,
+        counter: CNT.CNT,
+        flag_in_count: CR1.UIFREMAP,
+        flag_copy: CNT.UIFCPY,
+        mode: SMCR.SMS,
+        update: EGR.UG,
+        update_flag: SR.UIF,
+        update_interrupt: DIER.UIE,
+    }
+    |file| {
+        inputs: [FieldPlace; 2] = ["CCS0", "CCS1"].map(|name| file.field("CCMR1", name)),
+        channels: [FieldPlace; 2] = ["CCE0", "CCE1"].map(|name| file.field("CCER", name)),
+        inverted: [FieldPlace; 2] = ["CCP0", "CCP1"].map(|name| file.field("CCER", name)),
     }
 }
 

@@ -6,6 +6,9 @@ use std::fmt;
 /// Findings of one kind at one place are reported once; more kinds than these are not kept.
 const FINDINGS_MAX: usize = 64;
 
+/// Where the program is not known yet.
+const UNKNOWN: u32 = 0;
+
 /// Something that the real chip forbids, or that only works by chance.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
@@ -32,28 +35,28 @@ impl fmt::Display for Finding {
 pub struct Findings {
     list: Vec<Finding>,
     known: BTreeSet<String>,
-    /// The cycle and the instruction that a finding belongs to.
-    now: (u64, u32),
+    /// The cycle that a finding belongs to.
+    now: u64,
 }
 
 impl Findings {
-    /// Says when and where what follows happens.
-    pub fn at(&mut self, cycle: u64, pc: u32) {
-        self.now = (cycle, pc);
+    /// Says when what follows happens; where the program is, [`Self::locate`] says afterwards.
+    pub fn at(&mut self, cycle: u64) {
+        self.now = cycle;
     }
 
     /// Adds a finding, unless the same text is known.
     pub fn add(&mut self, text: impl Into<String>) {
         let text = text.into();
         if self.list.len() < FINDINGS_MAX && self.known.insert(text.clone()) {
-            let (cycle, pc) = self.now;
+            let (cycle, pc) = (self.now, UNKNOWN);
             self.list.push(Finding { cycle, pc, text });
         }
     }
 
     /// Says where the program is, for the findings of the instruction that it has just executed.
     pub fn locate(&mut self, pc: u32) {
-        for finding in self.list.iter_mut().rev().take_while(|f| f.pc == 0) {
+        for finding in self.list.iter_mut().rev().take_while(|f| f.pc == UNKNOWN) {
             finding.pc = pc;
         }
     }

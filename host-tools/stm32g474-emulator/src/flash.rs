@@ -17,8 +17,10 @@ mod tests;
 
 use crate::device::{Context, Device, RegisterFile};
 use crate::facts::Facts;
-use array::{Array, BANK_SIZE, DOUBLE_WORD, SIZE, START, double_word_of};
-use operation::{Chance, Operation};
+use crate::memory_map::BANK_SIZE;
+use array::{Array, DOUBLE_WORD, SIZE, START, double_word_of};
+use fastrand::Rng;
+use operation::Operation;
 use places::{Flags, Offsets, Settings};
 use std::ops::Range;
 
@@ -38,11 +40,10 @@ pub struct Flash {
     running: Option<(Operation, u64)>,
     /// Where the program lies, addresses.
     program: Range<u32>,
-    nmi: bool,
     /// The cycle until which an access of the processor waits.
     stall: Option<u64>,
     brown_out_level: u8,
-    chance: Chance,
+    chance: Rng,
 }
 
 /// The supply below which the chip is reset, by the option bytes' BOR_LEV, mV: STM32G474 datasheet (DS12288), falling, typical
@@ -83,10 +84,9 @@ impl Flash {
             first_half: None,
             running: None,
             program: 0..0,
-            nmi: false,
             stall: None,
             brown_out_level,
-            chance: Chance::new(seed),
+            chance: Rng::with_seed(seed),
         };
         flash.reset();
         flash
@@ -170,9 +170,11 @@ impl Flash {
         level.copied().unwrap_or_default()
     }
 
-    /// Whether an NMI was asked for since the last question.
-    pub fn take_nmi(&mut self) -> bool {
-        std::mem::take(&mut self.nmi)
+    /// Whether a double word with two wrong bits was read, and the program has not cleared its flag: an NMI is asked for.
+    #[must_use]
+    pub fn nmi(&self) -> bool {
+        let mut flags = [self.flags.ecc_detected, self.flags.ecc_detected_above].into_iter();
+        flags.any(|flag| self.registers.is_set(flag))
     }
 
     /// Whether the interrupt line `FLASH` is active.
@@ -205,7 +207,6 @@ impl Flash {
         }
         let first = !self.registers.is_set(other);
         self.registers.set_value(detected, 1);
-        self.nmi = true;
         if !first {
             return;
         }
@@ -245,7 +246,6 @@ impl Device for Flash {
         self.registers.set_value(self.flags.brown_out_level, level);
         self.keys = Keys::First;
         self.first_half = None;
-        self.nmi = false;
         self.stall = None;
     }
 

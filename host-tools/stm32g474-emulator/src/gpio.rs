@@ -122,9 +122,10 @@ impl Gpio {
         match (self.mode(pin), outside.unwrap_or_default()) {
             // An open drain lets go of a high pin.
             (PinMode::Output, _) if !(open_drain && output) => Some(output),
-            (PinMode::Analogue, _) => Some(false),
             (_, Outside::Low) => Some(false),
             (_, Outside::High) => Some(true),
+            // RM0440, "Analog configuration": the pulls are off.
+            (PinMode::Analogue, Outside::Nothing) => None,
             (_, Outside::Nothing) => match self.registers.get(self.offsets.pull) >> (2 * pin) & 3 {
                 1 => Some(true),
                 2 => Some(false),
@@ -146,6 +147,8 @@ impl Gpio {
         let mut word = 0;
         for pin in 0..16 {
             match self.level(pin) {
+                // RM0440, "Analog configuration": reads as zero.
+                _ if self.mode(pin) == PinMode::Analogue => {}
                 Some(level) => word |= u32::from(level) << pin,
                 None if self.mode(pin) == PinMode::Input => context.findings.add(format!(
                     "P{}{pin} is read while nothing gives it a level: no pull, nothing outside",
@@ -157,11 +160,15 @@ impl Gpio {
         word
     }
 
+    fn modes(&self) -> [PinMode; 16] {
+        std::array::from_fn(|pin| self.mode(pin as u8))
+    }
+
     /// Reports pins that are given a function that they do not have.
-    fn check_functions(&self, before: u32, context: &mut Context<'_>) {
-        let changed = before ^ self.registers.get(self.offsets.mode);
-        for number in (0..16).filter(|pin| changed >> (2 * pin) & 3 != 0) {
-            if let PinMode::Alternate(function) = self.mode(number)
+    fn check_functions(&self, before: &[PinMode; 16], context: &mut Context<'_>) {
+        for (number, (before, mode)) in (0..).zip(before.iter().zip(self.modes())) {
+            if let PinMode::Alternate(function) = mode
+                && *before != mode
                 && self
                     .facts
                     .alternate_function(self.pin(number), function)
@@ -199,12 +206,10 @@ impl Device for Gpio {
         } else if offset == self.offsets.reset {
             self.registers.set(self.offsets.output, output & !value);
         } else {
-            let before = self.registers.get(offset);
+            let before = self.modes();
             self.registers.set(offset, value);
             self.changed = true;
-            if offset == self.offsets.mode {
-                self.check_functions(before, context);
-            }
+            self.check_functions(&before, context);
         }
     }
 }
@@ -234,6 +239,17 @@ mod tests {
             assert_eq!(bench.device.level(0), Some(level), "{register} {value:#x}");
         }
         assert_eq!(bench.findings(), [""; 0]);
+    }
+
+    #[test]
+    fn an_analogue_pin_floats_and_reads_as_zero() {
+        let mut bench = bench();
+        bench.write("MODER", 0b11);
+        bench.write("PUPDR", 1);
+        assert_eq!(bench.device.level(0), None);
+        bench.device.set_outside(0, Outside::High);
+        assert_eq!(bench.device.level(0), Some(true));
+        assert_eq!(bench.read("IDR") & 1, 0);
     }
 
     #[test]

@@ -1,15 +1,10 @@
 //! An image for the chip: its bytes and its names, from the ELF file that is flashed.
 
+use crate::memory_map::{FLASH, RAM};
 use object::{Architecture, Object, ObjectSegment, ObjectSymbol, SymbolKind};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use thiserror::Error;
-
-/// Where the flash is.
-pub const FLASH: Range<u32> = 0x0800_0000..0x0808_0000;
-
-/// SRAM1 and SRAM2, and behind them the other address of the CCM.
-pub const RAM: Range<u32> = 0x2000_0000..0x2002_0000;
 
 /// Why a file is no image for this chip.
 #[derive(Debug, Error, PartialEq, Eq)]
@@ -84,6 +79,17 @@ impl Image {
             return Err(ImageError::NoSymbols);
         }
         Ok(image)
+    }
+
+    /// The flash's bytes alone.
+    #[cfg(test)]
+    pub fn unnamed(flash: Vec<u8>) -> Self {
+        Self {
+            flash,
+            functions: BTreeMap::new(),
+            variables: BTreeMap::new(),
+            symbols: BTreeMap::new(),
+        }
     }
 
     fn read_symbols(&mut self, file: &object::File<'_>) {

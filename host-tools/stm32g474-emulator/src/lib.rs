@@ -12,7 +12,7 @@
 //! | [`chip`] | processor, memories and peripherals in step |
 //! | [`device`] | what a peripheral is to the rest of the chip |
 //!
-//! Not modelled: cycles of instructions, wait states and caches of the flash, analogue behaviour.
+//! What it does not show is in `README.md`.
 
 pub mod access;
 pub mod adc;
@@ -33,6 +33,7 @@ pub mod gpio;
 pub mod image;
 pub mod iwdg;
 pub mod lpuart;
+mod memory_map;
 pub mod peripherals;
 pub mod plain;
 pub mod processor;

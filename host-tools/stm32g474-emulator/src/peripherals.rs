@@ -44,22 +44,33 @@ impl Peripherals {
         }
     }
 
+    /// The peripherals at a moment, and what they see of the chip then: what is found belongs to it.
+    pub fn at(&mut self, cycle: u64) -> (&mut Devices, Context<'_>) {
+        self.cycle = cycle;
+        self.findings.at(cycle);
+        let context = Context {
+            cycle,
+            clocks: &self.clocks,
+            findings: &mut self.findings,
+        };
+        (&mut self.devices, context)
+    }
+
+    /// The same at the moment of the last call.
+    fn now(&mut self) -> (&mut Devices, Context<'_>) {
+        self.at(self.cycle)
+    }
+
     /// The processor reads one, two or four bytes.
     pub fn read(&mut self, address: u32, width: u32) -> u32 {
-        self.findings.at(self.cycle, 0);
         let answering = self
             .checks
             .answering(address, &self.devices.rcc, &mut self.findings);
         let Some((block, register)) = answering else {
             return 0;
         };
-        self.checks.read((block, register), &mut self.findings);
-        let mut context = Context {
-            cycle: self.cycle,
-            clocks: &self.clocks,
-            findings: &mut self.findings,
-        };
-        let word = self.devices.read(block.name, register.offset, &mut context);
+        let (devices, mut context) = self.now();
+        let word = devices.read(block.name, register.offset, &mut context);
         match word {
             Some(word) => part(word, address, width),
             None => {
@@ -71,7 +82,6 @@ impl Peripherals {
 
     /// The processor writes one, two or four bytes.
     pub fn write(&mut self, address: u32, width: u32, value: u32) {
-        self.findings.at(self.cycle, 0);
         let answering = self
             .checks
             .answering(address, &self.devices.rcc, &mut self.findings);
@@ -90,53 +100,31 @@ impl Peripherals {
         if !self.checks.write(answering, value, &mut self.findings) {
             return;
         }
-        let mut context = Context {
-            cycle: self.cycle,
-            clocks: &self.clocks,
-            findings: &mut self.findings,
-        };
         self.fed |= (block.name, register.name.as_str(), value) == ("IWDG", "KR", FEED);
         let place = (register.offset, value);
-        if self
-            .devices
-            .write(block.name, place, &mut context)
-            .is_none()
-        {
+        let (devices, mut context) = self.now();
+        if devices.write(block.name, place, &mut context).is_none() {
             self.findings.add(format!("{} is not modelled", block.name));
         }
     }
 
     /// The processor reads from the flash's second bank.
     pub fn read_flash(&mut self, address: u32, width: u32) -> u32 {
-        let mut context = Context {
-            cycle: self.cycle,
-            clocks: &self.clocks,
-            findings: &mut self.findings,
-        };
-        self.devices.flash.read_array(address, width, &mut context)
+        let (devices, mut context) = self.now();
+        devices.flash.read_array(address, width, &mut context)
     }
 
     /// The processor writes to the flash's second bank.
     pub fn write_flash(&mut self, address: u32, width: u32, value: u32) {
-        self.findings.at(self.cycle, 0);
-        let mut context = Context {
-            cycle: self.cycle,
-            clocks: &self.clocks,
-            findings: &mut self.findings,
-        };
-        self.devices
-            .flash
-            .write_array(address, width, value, &mut context);
+        let (devices, mut context) = self.now();
+        let flash = &mut devices.flash;
+        flash.write_array(address, width, value, &mut context);
     }
 
     /// The host sends a byte on the serial line.
     pub fn send(&mut self, byte: u8, baud: u32) {
-        let mut context = Context {
-            cycle: self.cycle,
-            clocks: &self.clocks,
-            findings: &mut self.findings,
-        };
-        self.devices.lpuart.host_send(byte, baud, &mut context);
+        let (devices, mut context) = self.now();
+        devices.lpuart.host_send(byte, baud, &mut context);
     }
 
     /// The supply is gone: what is being written to the flash stays half done, and what only a power-up resets is reset.
@@ -155,28 +143,15 @@ impl Peripherals {
     }
 
     /// The processor has locked up: TIM1 breaks if SYSCFG says so.
-    pub fn break_by_lockup(&mut self) {
-        if self.devices.breaks_by_lockup() {
-            self.system_break();
-        }
+    pub fn lock_up(&mut self) {
+        self.devices.locked_up = true;
+        self.advance();
     }
 
-    /// The crystal stops; true if the chip watches it, so that an NMI comes. TIM1 then breaks as well.
-    pub fn stop_crystal(&mut self) -> bool {
-        let watched = self.devices.rcc.stop_crystal();
-        if watched {
-            self.system_break();
-        }
-        watched
-    }
-
-    fn system_break(&mut self) {
-        let mut context = Context {
-            cycle: self.cycle,
-            clocks: &self.clocks,
-            findings: &mut self.findings,
-        };
-        self.devices.tim1.system_break(true, &mut context);
+    /// The crystal stops: if the chip watches it, an NMI comes, and TIM1 breaks.
+    pub fn stop_crystal(&mut self) {
+        self.devices.rcc.stop_crystal();
+        self.advance();
     }
 
     /// Whether the watchdog was fed since the last question.
@@ -199,12 +174,8 @@ impl Peripherals {
             self.change_clocks();
             self.reset_blocks();
         }
-        let mut context = Context {
-            cycle: self.cycle,
-            clocks: &self.clocks,
-            findings: &mut self.findings,
-        };
-        self.devices.advance(&mut context);
+        let (devices, mut context) = self.now();
+        devices.advance(&mut context);
         self.check_speed();
     }
 }
@@ -222,15 +193,9 @@ impl Peripherals {
 
     /// Reports a processor that is too fast for its voltage or its flash.
     fn check_speed(&mut self) {
-        let wait_states = self.devices.flash.latency();
-        let mut context = Context {
-            cycle: self.cycle,
-            clocks: &self.clocks,
-            findings: &mut self.findings,
-        };
-        self.devices
-            .pwr
-            .check(&self.clocks, wait_states, &mut context);
+        let (devices, mut context) = self.now();
+        let (clocks, wait_states) = (context.clocks, devices.flash.latency());
+        devices.pwr.check(clocks, wait_states, &mut context);
     }
 }
 
@@ -251,3 +216,7 @@ fn part(word: u32, address: u32, width: u32) -> u32 {
         _ => shifted,
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests;

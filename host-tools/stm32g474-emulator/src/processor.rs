@@ -3,7 +3,8 @@
 #[cfg(test)]
 mod tests;
 
-use crate::image::{FLASH, RAM};
+use crate::memory_map::{BANK_SIZE, CCM, DEBUG, FLASH, PERIPHERALS, RAM, SECOND_BANK};
+use fastrand::Rng;
 use rsemu::core::space::{AddressSpace, MemAttrs, MemOps, RamStore, Region, RomStore, RomWrite};
 use rsemu::core::value::Width;
 use rsemu::cpu::arm::v7m::sys::{Exception, Sys};
@@ -13,28 +14,12 @@ use std::sync::Arc;
 /// The priorities that the chip's interrupt controller knows: 16.
 const PRIORITY_BITS: u8 = 4;
 
-/// The first address of the CCM, and its size.
-const CCM: u32 = 0x1000_0000;
-const CCM_SIZE: u64 = 0x8000;
-
-/// Half of the flash: its banks.
-const BANK_SIZE: usize = 0x4_0000;
-
-/// Where the second bank of the flash is.
-pub const SECOND_BANK: u32 = FLASH.start + BANK_SIZE as u32;
-
-/// Where the peripherals are.
-pub const PERIPHERALS: std::ops::Range<u32> = 0x4000_0000..0x6000_0000;
-
-/// Where DBGMCU is, among the processor's own.
-pub const DEBUG: std::ops::Range<u32> = 0xe004_2000..0xe004_2400;
-
-/// The exception in progress, and the stack pointer, of the moment.
+/// Where the program is at a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
     /// The instruction to come.
     pub pc: u32,
-    /// The exception's number; 0 for none.
+    /// The number of the exception in progress; 0 for none.
     pub exception: u16,
 }
 
@@ -44,18 +29,16 @@ pub struct Processor {
     space: Arc<AddressSpace>,
     /// RAM and CCM.
     memories: [Arc<RamStore>; 2],
-    /// Interrupt lines as the peripherals have them, and as the core has been given them.
-    wanted: [bool; LINES],
-    given: [bool; LINES],
+    /// Interrupt lines as the peripherals have them, and as the core has been given them, bit by number.
+    wanted: u128,
+    given: u128,
+    /// The level of the interrupt that cannot be masked.
     nmi: bool,
     settled: bool,
 }
 
 /// The number of the first exception that is an interrupt.
 pub const FIRST_INTERRUPT: u16 = 16;
-
-/// Interrupts of the chip, rounded up.
-const LINES: usize = 128;
 
 /// Why the memories could not be put together: a fault of this program.
 #[derive(Debug, thiserror::Error)]
@@ -75,24 +58,25 @@ impl Processor {
     ) -> Result<Self, MapError> {
         let space = AddressSpace::new("chip", 32);
         let first = Arc::new(RomStore::from_slice(
-            flash.get(..BANK_SIZE).unwrap_or(flash),
+            flash.get(..BANK_SIZE as usize).unwrap_or(flash),
         ));
         let rom = |name| Region::rom(name, Arc::clone(&first), RomWrite::Fault);
         // The CCM has two addresses; what the second gives is the same memory.
-        let ram_size = u64::from(RAM.end - RAM.start) - CCM_SIZE;
+        let ccm_size = u64::from(CCM.end - CCM.start);
+        let ram_size = u64::from(RAM.end - RAM.start) - ccm_size;
         let (ram, ccm) = (
             Arc::new(RamStore::new(ram_size)),
-            Arc::new(RamStore::new(CCM_SIZE)),
+            Arc::new(RamStore::new(ccm_size)),
         );
         let regions = [
             (rom("first bank"), u64::from(FLASH.start)),
             (rom("first bank at zero"), 0),
             (
-                Region::io("second bank", BANK_SIZE as u64, second_bank),
+                Region::io("second bank", u64::from(BANK_SIZE), second_bank),
                 u64::from(SECOND_BANK),
             ),
             (Region::ram("ram", Arc::clone(&ram)), u64::from(RAM.start)),
-            (Region::ram("ccm", Arc::clone(&ccm)), u64::from(CCM)),
+            (Region::ram("ccm", Arc::clone(&ccm)), u64::from(CCM.start)),
             (
                 Region::ram("ccm behind ram", Arc::clone(&ccm)),
                 u64::from(RAM.start) + ram_size,
@@ -122,8 +106,8 @@ impl Processor {
             core: start(&space),
             space,
             memories: [ram, ccm],
-            wanted: [false; LINES],
-            given: [false; LINES],
+            wanted: 0,
+            given: 0,
             nmi: false,
             settled: true,
         })
@@ -132,8 +116,8 @@ impl Processor {
     /// Starts anew: what the memories hold stays.
     pub fn reset(&mut self) {
         self.core = start(&self.space);
-        self.wanted = [false; LINES];
-        self.given = [false; LINES];
+        self.wanted = 0;
+        self.given = 0;
         self.nmi = false;
         self.settled = true;
     }
@@ -146,15 +130,12 @@ impl Processor {
         self.core.step()
     }
 
-    /// Sets the level of an interrupt's line; true if it was another.
-    pub fn set_line(&mut self, interrupt: u16, level: bool) -> bool {
-        let Some(wanted) = self.wanted.get_mut(usize::from(interrupt)) else {
-            return false;
-        };
-        let changes = *wanted != level;
-        *wanted = level;
-        self.settled &= !changes;
-        changes
+    /// Sets the levels of the interrupts' lines, bit by number: those that have risen.
+    pub fn set_lines(&mut self, levels: u128) -> u128 {
+        let risen = levels & !self.wanted;
+        self.settled &= levels == self.wanted;
+        self.wanted = levels;
+        risen
     }
 
     /// Hands changed lines to the core, where an exception does no harm.
@@ -167,17 +148,23 @@ impl Processor {
         if self.core.xpsr() & xpsr::IT_MASK != 0 || self.awaits_comparison() {
             return;
         }
-        for (number, (&wanted, given)) in self.wanted.iter().zip(&mut self.given).enumerate() {
-            if wanted != *given {
-                *given = wanted;
-                self.core.set_irq(number as u16, wanted);
-            }
+        let mut changed = self.wanted ^ self.given;
+        while changed != 0 {
+            let number = changed.trailing_zeros();
+            let level = self.wanted >> number & 1 == 1;
+            self.core.set_irq(number as u16, level);
+            changed &= changed - 1;
         }
-        if std::mem::take(&mut self.nmi) {
-            let pend = |system: &mut Sys| system.set_pending(Exception::NMI, true);
-            self.core.with_sys(pend);
+        self.given = self.wanted;
+        if self.nmi {
+            // It is asked for anew while its level is high: once its handler has ended, it begins again.
+            self.core.with_sys(|system: &mut Sys| {
+                if !system.is_active(Exception::NMI) {
+                    system.set_pending(Exception::NMI, true);
+                }
+            });
         }
-        self.settled = true;
+        self.settled = !self.nmi;
     }
 
     /// Whether the flags of a floating-point comparison are still to be fetched: the instructions to come fetch them before
@@ -206,10 +193,10 @@ impl Processor {
         u16::try_from(read.ok()?).ok()
     }
 
-    /// Raises the interrupt that cannot be masked, once.
-    pub fn raise_nmi(&mut self) {
-        self.nmi = true;
-        self.settled = false;
+    /// Sets the level of the interrupt that cannot be masked.
+    pub fn set_nmi(&mut self, level: bool) {
+        self.nmi = level;
+        self.settled &= !level;
     }
 
     /// Whether it sleeps until an interrupt.
@@ -312,17 +299,13 @@ impl Processor {
 
     /// Fills RAM and CCM with a pattern, as a power-up leaves them: with anything.
     pub fn scramble_ram(&mut self, seed: u64) {
-        let mut state = seed | 1;
+        let mut chance = Rng::with_seed(seed);
         for (memory, at) in self
             .memories
             .iter()
             .flat_map(|memory| (0..memory.len()).step_by(4).map(move |at| (memory, at)))
         {
-            // An odd multiplier of Knuth's: all that is asked for is that no word is zero by rule.
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            let word = ((state >> 32) as u32).to_le_bytes();
+            let word = chance.u32(..).to_le_bytes();
             // The place is within the memory.
             let _ = memory.write_at(at, &word);
         }

@@ -106,8 +106,8 @@ impl Rcc {
         std::mem::take(&mut self.changed)
     }
 
-    /// The crystal stops; true if the chip watches it, so that the processor gets an NMI and TIM1 a break.
-    pub fn stop_crystal(&mut self) -> bool {
+    /// The crystal stops: if the chip watches it, that is a failure of the clock.
+    pub fn stop_crystal(&mut self) {
         self.crystal_hz = 0;
         self.changed = true;
         let watched =
@@ -121,7 +121,12 @@ impl Rcc {
             self.pll = Oscillator::default();
             self.hsi.ready_at.get_or_insert(0);
         }
-        watched
+    }
+
+    /// Whether the crystal has failed, and the program has not cleared the flag: the processor gets an NMI, and TIM1 a break.
+    #[must_use]
+    pub fn clock_failed(&self) -> bool {
+        self.registers.is_set(self.fields.css_flag)
     }
 
     /// What the processor and the buses run from, Hz.
@@ -138,16 +143,18 @@ impl Rcc {
         let chosen = self.registers.value(self.fields.source);
         let ready = match chosen {
             SOURCE_HSE => self.hse.ready(cycle),
-            SOURCE_PLL => self.pll.ready(cycle),
+            SOURCE_PLL => self.pll_gives(cycle),
             _ => true,
         };
         if ready { chosen } else { SOURCE_HSI }
     }
 
+    /// Whether the PLL has locked, and its output R is on.
+    fn pll_gives(&self, cycle: u64) -> bool {
+        self.pll.ready(cycle) && self.registers.is_set(self.fields.pll_r_on)
+    }
+
     fn pll_hz(&self) -> u32 {
-        if !self.registers.is_set(self.fields.pll_r_on) {
-            return 0;
-        }
         self.vco_hz() / (2 * (self.registers.value(self.fields.pll_r) + 1))
     }
 
@@ -187,14 +194,14 @@ impl Rcc {
                 _ => 0,
             },
             fdcan: match chosen(self.fields.fdcan) {
-                0 => self.crystal_hz,
-                2 => pclk1,
-                // PLL Q, which is not modelled.
+                FDCAN_FROM_HSE if self.hse.is_on() => self.crystal_hz,
+                FDCAN_FROM_PCLK => pclk1,
                 _ => 0,
             },
         }
     }
 
+    /// The PLL is switched on: its source and its rates.
     fn check_pll(&self, context: &mut Context<'_>) {
         let within = |value, [low, high]: [u32; 2]| (low..=high).contains(&value);
         let (input, vco) = (self.pll_input_hz(), self.vco_hz());
@@ -208,44 +215,92 @@ impl Rcc {
                 "RCC_PLLCFGR: the PLL's oscillator is at {vco} Hz, outside of {PLL_VCO_HZ:?}"
             ));
         }
+        let ready = match self.registers.value(self.fields.pll_source) {
+            PLL_FROM_HSI => self.hsi.ready(context.cycle),
+            PLL_FROM_HSE => self.hse.ready(context.cycle),
+            _ => true,
+        };
+        if !ready {
+            let text = "RCC_CR: PLLON is set while the PLL's source is not ready";
+            context.findings.add(text);
+        }
     }
 
-    fn write_control(&mut self, value: u32, context: &mut Context<'_>) {
+    /// What the processor's clock depends on, directly or through the PLL, has to stay on; and the crystal's bypass must not
+    /// change under it. As ST's description says at the fields.
+    fn check_oscillators(&self, value: u32, context: &mut Context<'_>) {
         let fields = self.fields;
         let on = |field: FieldPlace| field.extract(value) != 0;
         let source = self.source(context.cycle);
-        let used = [
-            (SOURCE_HSE, fields.hse_on, "HSE"),
-            (SOURCE_PLL, fields.pll_on, "PLL"),
+        let of_pll = self.registers.value(fields.pll_source);
+        let pll_stays = self.pll.is_on() && on(fields.pll_on);
+        let chip = |used: bool| used.then_some("the chip runs from it");
+        let pll = |used: bool| (used && pll_stays).then_some("the PLL runs from it");
+        let switches = [
+            (chip(source == SOURCE_HSI), fields.hsi_on, "HSI"),
+            (pll(of_pll == PLL_FROM_HSI), fields.hsi_on, "HSI"),
+            (chip(source == SOURCE_HSE), fields.hse_on, "HSE"),
+            (pll(of_pll == PLL_FROM_HSE), fields.hse_on, "HSE"),
+            (chip(source == SOURCE_PLL), fields.pll_on, "PLL"),
         ];
-        for (number, field, name) in used {
-            if source == number && !on(field) {
-                let text = format!("RCC_CR: {name} is switched off while the chip runs from it");
+        for (used, field, name) in switches {
+            if let Some(how) = used.filter(|_| !on(field)) {
+                let text = format!("RCC_CR: {name} is switched off while {how}");
                 context.findings.add(text);
             }
         }
+        if self.hse.is_on() && on(fields.hse_bypass) != self.registers.is_set(fields.hse_bypass) {
+            let text = "RCC_CR: HSEBYP is changed while HSE is on";
+            context.findings.add(text);
+        }
+    }
+
+    fn write_control(&mut self, value: u32, context: &mut Context<'_>) {
+        self.check_oscillators(value, context);
+        let fields = self.fields;
+        let on = |field: FieldPlace| field.extract(value) != 0;
+        let crystal = on(fields.hse_on) && self.crystal_hz > 0;
         self.hsi.switch(on(fields.hsi_on), HSI_START_US, context);
-        self.hse.switch(
-            on(fields.hse_on) && self.crystal_hz > 0,
-            HSE_START_US,
-            context,
-        );
-        if on(fields.pll_on) && self.pll.ready_at.is_none() {
+        self.hse.switch(crystal, HSE_START_US, context);
+        if on(fields.pll_on) && !self.pll.is_on() {
             self.check_pll(context);
         }
         self.pll.switch(on(fields.pll_on), PLL_LOCK_US, context);
         self.registers.set(fields.hsi_on.offset, value);
     }
 
+    /// FDCAN needs the clock that it is given: HSE may be off, and PLL Q is not modelled.
+    fn check_fdcan(&self, context: &mut Context<'_>) {
+        let fields = &self.fields;
+        let text = match self.registers.value(fields.fdcan) {
+            FDCAN_FROM_HSE if !self.hse.is_on() => {
+                "RCC_CCIPR: FDCANSEL gives FDCAN HSE, which is off"
+            }
+            FDCAN_FROM_PLL => "RCC_CCIPR: FDCANSEL gives FDCAN PLL Q, which is not modelled",
+            _ => return,
+        };
+        if self.registers.is_set(fields.fdcan_on) {
+            context.findings.add(text);
+        }
+    }
+
     fn write_pll(&mut self, value: u32, context: &mut Context<'_>) {
         let fields = self.fields;
         let before = self.registers.get(fields.pll_source.offset);
-        let fixed = [fields.pll_source, fields.pll_divider, fields.pll_factor];
-        let running = self.pll.ready_at.is_some();
-        if running && fixed.iter().any(|f| f.extract(before) != f.extract(value)) {
+        let fixed = [
+            fields.pll_source,
+            fields.pll_divider,
+            fields.pll_factor,
+            fields.pll_r,
+        ];
+        if self.pll.is_on() && fixed.iter().any(|f| f.extract(before) != f.extract(value)) {
             context
                 .findings
-                .add("RCC_PLLCFGR: source, M or N is changed while the PLL is on");
+                .add("RCC_PLLCFGR: source, M, N or R is changed while the PLL is on");
+        }
+        if self.source(context.cycle) == SOURCE_PLL && fields.pll_r_on.extract(value) == 0 {
+            let text = "RCC_PLLCFGR: PLLREN is cleared while the chip runs from the PLL";
+            context.findings.add(text);
         }
         self.registers.set(fields.pll_source.offset, value);
     }
@@ -254,7 +309,7 @@ impl Rcc {
         let ready = match self.fields.source.extract(value) {
             SOURCE_HSI => self.hsi.ready(context.cycle),
             SOURCE_HSE => self.hse.ready(context.cycle),
-            SOURCE_PLL => self.pll.ready(context.cycle),
+            SOURCE_PLL => self.pll_gives(context.cycle),
             _ => false,
         };
         if !ready {
@@ -274,6 +329,11 @@ const SOURCE_PLL: u32 = 3;
 /// Values of PLLSRC.
 const PLL_FROM_HSI: u32 = 2;
 const PLL_FROM_HSE: u32 = 3;
+
+/// Values of FDCANSEL.
+const FDCAN_FROM_HSE: u32 = 0;
+const FDCAN_FROM_PLL: u32 = 1;
+const FDCAN_FROM_PCLK: u32 = 2;
 
 /// HPRE: 8 is a half, 15 a 512th, without a 32nd.
 fn ahb_divider(value: u32) -> u32 {
@@ -364,5 +424,6 @@ impl Device for Rcc {
         } else {
             self.registers.set(offset, value);
         }
+        self.check_fdcan(context);
     }
 }

@@ -8,7 +8,7 @@ mod tests;
 
 pub use outputs::{CHANNELS, PowerOutputs};
 
-use crate::device::{Context, Device, FieldPlace};
+use crate::device::{Context, Device, FieldPlace, places};
 use crate::facts::Block;
 use crate::timer::registers::Timer;
 use breaks::BreakInput;
@@ -34,17 +34,22 @@ pub struct Tim1 {
     trigger: Option<u64>,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Places {
-    events: u32,
-    switch: FieldPlace,
-    switch_by_update: FieldPlace,
-    break_enabled: FieldPlace,
-    second_enabled: FieldPlace,
-    driven: [FieldPlace; 2],
-    system_flag: FieldPlace,
-    break_interrupt: FieldPlace,
-    trigger: FieldPlace,
+places! {
+    /// Registers and fields.
+    #[derive(Clone, Copy, Debug)]
+    struct Places {
+        events: EGR,
+        switch: BDTR.MOE,
+        switch_by_update: BDTR.AOE,
+        break_enabled: BDTR.BKE0,
+        second_enabled: BDTR.BKE1,
+        system_flag: SR.SBIF,
+        break_interrupt: DIER.BIE,
+        trigger: CR2.MMS2,
+    }
+    |file| {
+        driven: [FieldPlace; 2] = ["OSSI", "OSSR"].map(|name| file.field("BDTR", name)),
+    }
 }
 
 impl Tim1 {
@@ -60,17 +65,7 @@ impl Tim1 {
             lock: Lock::new(file),
             breaks: BreakInput::both(file),
             outputs: OutputPlaces::new(file),
-            places: Places {
-                events: file.offset("EGR"),
-                switch: file.field("BDTR", "MOE"),
-                switch_by_update: file.field("BDTR", "AOE"),
-                break_enabled: file.field("BDTR", "BKE0"),
-                second_enabled: file.field("BDTR", "BKE1"),
-                driven: ["OSSI", "OSSR"].map(|field| file.field("BDTR", field)),
-                system_flag: file.field("SR", "SBIF"),
-                break_interrupt: file.field("DIER", "BIE"),
-                trigger: file.field("CR2", "MMS2"),
-            },
+            places: Places::new(file),
             timer,
             system: false,
             trigger: None,
@@ -87,15 +82,13 @@ impl Tim1 {
     }
 
     /// Whether the chip asks for a break, by a failed clock or a lockup.
-    pub fn system_break(&mut self, active: bool, context: &mut Context<'_>) {
+    pub fn set_system_break(&mut self, active: bool, context: &mut Context<'_>) {
+        if self.system == active {
+            return;
+        }
         self.advance(context);
         self.system = active;
         self.apply_breaks(context.cycle);
-    }
-
-    /// The chip was reset: it asks for a break no longer.
-    pub fn end_system_break(&mut self) {
-        self.system = false;
     }
 
     /// The cycle of a trigger of the converters since the last call.

@@ -1,16 +1,19 @@
 //! The board's image from its reset to its first ticks, on the emulated chip.
 
 use crate::common::chip::{
-    BAUD, MS, Outcome, carry_out, driving, findings, identity, identity_after, image,
+    BAUD, MS, Outcome, at_rest, carry_out, driving, findings, identity, identity_after, image,
     other_settings, reset_within, send, settings, started, started_with,
 };
 use leg_boards::chip::ChipSession;
 use leg_boards::image::{FirmwareImage, workspace_root};
+use leg_firmware::board::timing::TICK_CYCLES;
 use leg_firmware::host_link::{HostRequest, ResetCause as Told};
 use leg_firmware::settings::Settings;
-use leg_sim::link::LinkError;
+use leg_firmware_bench::protocol::Request;
+use leg_sim::link::{Link, LinkError};
 use std::{env, fs};
 use stm32g474_emulator::board::Board;
+use stm32g474_emulator::chip::Stop;
 use stm32g474_emulator::image::{Image, ImageError};
 use stm32g474_emulator::rcc::ResetCause;
 use stm32g474_emulator::trace;
@@ -149,5 +152,24 @@ fn what_is_no_image_of_the_chip_is_refused() -> Outcome {
     assert!(matches!(text, Some(ImageError::NotElf(_))), "{text:?}");
     let missing = ChipSession::open("no-such-image".as_ref()).err();
     assert!(matches!(missing, Some(LinkError::System { .. })));
+    Ok(())
+}
+
+/// The harness lets some cycles of a tick pass to see a break end the pulses: an update of the timer meanwhile, or a reset,
+/// must not be taken for nothing.
+#[test]
+fn an_unexpected_stop_within_a_tick_is_told() -> Outcome {
+    let mut session = driving(&image(FirmwareImage::Stm32g474)?, Board::default())?;
+    let chip = session.chip().ok_or("no chip")?;
+    while chip.run(u64::MAX) != Stop::Update {}
+    let update = chip.cycle() + u64::from(TICK_CYCLES);
+    while chip.run(update - 40) != Stop::Time {}
+    let mut pressed = at_rest();
+    pressed.sensors.emergency_stop = true;
+    let Err(error) = session.ask(&Request::Tick(pressed)) else {
+        return Err("the tick passes".into());
+    };
+    let expected = "the emulated chip comes to the next update of TIM1 too soon";
+    assert!(error.to_string().contains(expected), "{error}");
     Ok(())
 }

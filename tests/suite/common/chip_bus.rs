@@ -76,14 +76,8 @@ pub fn on_bus(frame: &CanFrame) -> Frame {
 /// Does something with a chip's node.
 pub fn with_node<R>(chip: &Chip, work: impl FnOnce(&mut Fdcan, &mut Context<'_>) -> R) -> R {
     let mut peripherals = chip.peripherals();
-    let peripherals = &mut *peripherals;
-    peripherals.cycle = chip.cycle();
-    let mut context = Context {
-        cycle: peripherals.cycle,
-        clocks: &peripherals.clocks,
-        findings: &mut peripherals.findings,
-    };
-    work(&mut peripherals.devices.fdcan, &mut context)
+    let (devices, mut context) = peripherals.at(chip.cycle());
+    work(&mut devices.fdcan, &mut context)
 }
 
 /// A frame under way.

@@ -26,7 +26,7 @@ const WATCHDOG_US_MAX: u64 = 110_000;
 
 /// What a running image has not set up as the board needs it, as a sentence; none if everything is.
 pub fn unmet(chip: &Chip) -> Option<String> {
-    let peripherals = &mut *chip.peripherals();
+    let peripherals = &*chip.peripherals();
     numbers(peripherals)
         .or_else(|| unrouted(peripherals))
         .or_else(|| wiring::wrong_input(peripherals))

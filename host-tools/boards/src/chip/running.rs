@@ -8,6 +8,7 @@ use super::settings_page::Page;
 use super::stack::StackGuard;
 use super::twin::Twin;
 use super::wiring;
+use checks::described;
 use leg_firmware::board::timing::TICK_BUDGET_CYCLES;
 use leg_firmware::drive::Drive;
 use leg_firmware::linked_leg::LINK_BYTES_MAX;
@@ -157,6 +158,7 @@ impl Running {
             return Err(self.stuck("starts no tick", image));
         };
         let motors = wiring::motors(&self.chip.peripherals());
+        let motors = motors.or_else(|wrong| self.require(Some(wrong), image).map(|()| expected))?;
         if motors != expected {
             return Err(LinkError::Chip(format!(
                 "at tick {} the chip's pins carry {motors:?}, and the control law in process gives {expected:?}{}",
@@ -257,10 +259,8 @@ impl Running {
                     );
                     return Err(self.stuck(&how, image));
                 }
-                Stop::Time => return Err(self.stuck("starts no tick", image)),
-                Stop::LockedUp => return Err(self.stuck("is locked up", image)),
-                Stop::Reset(cause) => {
-                    return Err(self.stuck(&format!("was reset ({cause:?})"), image));
+                Stop::Time | Stop::LockedUp | Stop::Reset(_) => {
+                    return Err(self.stuck(&described(stop), image));
                 }
             }
             take_command(&self.chip, &mut self.twin, &mut self.commanding);
@@ -271,7 +271,7 @@ impl Running {
     fn converted(&mut self, image: &Image) -> Result<(), LinkError> {
         self.converted = true;
         self.handler_due = Some(self.chip.cycle() + LATENCY_CYCLES_MAX);
-        let wrong = wiring::wrong_code(&mut self.chip.peripherals(), self.defects.untriggered);
+        let wrong = wiring::wrong_code(&self.chip.peripherals(), self.defects.untriggered);
         self.require(wrong.or_else(|| self.breaks.converted(&self.chip)), image)
     }
 

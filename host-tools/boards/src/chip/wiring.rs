@@ -82,15 +82,15 @@ pub fn routes() -> Vec<Route> {
     pulses.chain(tracks).chain(others).collect()
 }
 
+/// The converters of the cells and of the currents, with their pins in the order of their injected sequences.
+const CONVERTERS: [(&str, [Pin; 3]); 2] = [("ADC1", CELLS), ("ADC2", CURRENTS)];
+
 /// An input that a converter takes in the place of another, as a sentence.
-pub fn wrong_input(chip: &mut Peripherals) -> Option<String> {
-    for (converter, pins) in [("ADC1", CELLS), ("ADC2", CURRENTS)] {
-        let block = Facts::of_chip().block(converter)?;
-        let sequence = block.register("JSQR")?;
-        let word = chip.read(block.base + sequence.offset, 4);
+pub fn wrong_input(chip: &Peripherals) -> Option<String> {
+    for (converter, pins) in CONVERTERS {
         for (rank, pin) in pins.into_iter().enumerate() {
-            let input = sequence.field(&format!("JSQ{rank}"))?.value(word);
-            let found = Facts::of_chip().converter_pin(converter, u8::try_from(input).ok()?);
+            let input = chip.devices.converters.injected_input(converter, rank);
+            let found = input.and_then(|input| Facts::of_chip().converter_pin(converter, input));
             if found != Some(pin) {
                 let found = found.map_or_else(|| "no pin".into(), name);
                 return Some(format!(
@@ -106,17 +106,16 @@ pub fn wrong_input(chip: &mut Peripherals) -> Option<String> {
 
 /// A code that a converter has, by its inputs' pins, which differs from what its pin is at: the difference in words. ADC2 is
 /// left out where it was not triggered.
-pub fn wrong_code(chip: &mut Peripherals, untriggered: bool) -> Option<String> {
-    let converters = [("ADC1", CELLS), ("ADC2", CURRENTS)];
-    for (converter, pins) in converters.into_iter().take(2 - usize::from(untriggered)) {
-        let base = Facts::of_chip().block(converter)?;
-        for (rank, pin) in (1..).zip(pins) {
-            let address = base.base + base.register(&format!("JDR{rank}"))?.offset;
-            let found = chip.read(address, 4);
+pub fn wrong_code(chip: &Peripherals, untriggered: bool) -> Option<String> {
+    for (converter, pins) in CONVERTERS.into_iter().take(2 - usize::from(untriggered)) {
+        for (rank, pin) in pins.into_iter().enumerate() {
+            let found = chip.devices.converters.injected_code(converter, rank);
             let expected = chip.devices.analogue.get(&pin).copied().unwrap_or_default();
-            if found != u32::from(expected) {
+            if found != Some(u32::from(expected)) {
                 return Some(format!(
-                    "{converter}'s code {rank} is {found}, and {} is at {expected}",
+                    "{converter}'s code {} is {}, and {} is at {expected}",
+                    rank + 1,
+                    found.unwrap_or_default(),
                     name(pin)
                 ));
             }
@@ -184,26 +183,43 @@ pub fn current_codes(chip: &Peripherals) -> [u16; 3] {
     CURRENTS.map(|pin| chip.devices.sampled(pin).unwrap_or_default())
 }
 
-/// What the motors get from the pins.
-pub fn motors(chip: &Peripherals) -> Drive<f32> {
+/// What the motors get from the pins: for which part of the pulses' period they are high.
+///
+/// # Errors
+/// A pin that floats while the timer's outputs are on, as a sentence.
+pub fn motors(chip: &Peripherals) -> Result<Drive<f32>, String> {
     let outputs = chip.devices.tim1.outputs();
-    let mut duty = [0.0; 3];
-    let channels = outputs.compare.iter().zip(outputs.channel_enabled);
-    let pins = PULSES.into_iter().zip(DIRECTIONS).zip(CHANNELS);
-    for ((share, (&compare, enabled)), ((pulse, direction), channel)) in
-        duty.iter_mut().zip(channels).zip(pins)
-    {
-        let routed = chip.devices.is_routed(pulse, "TIM1", channel);
-        let width = f32::from(compare) / f32::from(outputs.top.max(1));
-        let forward = chip.devices.level(direction) == Some(true);
-        if routed && enabled {
-            *share = if forward { width } else { -width };
+    let driven = |pin, value: Option<f32>| {
+        let floats = || format!("{} floats while TIM1's outputs are on", name(pin));
+        match value {
+            None if outputs.on => Err(floats()),
+            value => Ok(value.unwrap_or_default()),
         }
+    };
+    let level = |pin| {
+        chip.devices
+            .level(pin)
+            .map(|high| f32::from(u8::from(high)))
+    };
+    let mut duty = [0.0; 3];
+    let pins = PULSES.into_iter().zip(DIRECTIONS).zip(CHANNELS);
+    for ((share, counts), ((pulse, direction), channel)) in
+        duty.iter_mut().zip(outputs.high).zip(pins)
+    {
+        let top = f32::from(outputs.top.max(1));
+        let carried = if chip.devices.is_routed(pulse, "TIM1", channel) {
+            counts.map(|counts| f32::from(counts) / top)
+        } else {
+            level(pulse)
+        };
+        let width = driven(pulse, carried)?;
+        let forward = driven(direction, level(direction))? > 0.0;
+        *share = if forward { width } else { -width };
     }
-    Drive {
+    Ok(Drive {
         duty,
         enabled: outputs.on && chip.devices.level(ENABLE) == Some(true),
-    }
+    })
 }
 
 /// The signals of the pulses, and of tracks.

@@ -123,6 +123,19 @@ impl Converter {
         }
     }
 
+    /// The input that a rank of the injected sequence, 0 to 3, converts.
+    #[must_use]
+    pub fn injected_input(&self, rank: usize) -> Option<u8> {
+        let [_, injected] = &self.places.sequence;
+        u8::try_from(self.file.value(*injected.get(rank)?)).ok()
+    }
+
+    /// The code of a rank of the injected sequence, 0 to 3.
+    #[must_use]
+    pub fn injected_code(&self, rank: usize) -> Option<u32> {
+        Some(self.file.get(*self.places.injected_data.get(rank)?))
+    }
+
     /// The value of a register, with what reading it does.
     pub fn read(&mut self, offset: u32) -> u32 {
         let value = self.file.get(offset);

@@ -165,3 +165,110 @@ impl Rules {
         }
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::*;
+    use crate::bench::BOARD_CLOCKS;
+    use crate::facts::Facts;
+    use crate::findings::Findings;
+
+    const IDLE: Busy = Busy {
+        regular: false,
+        injected: false,
+        enabled: false,
+        queue: false,
+    };
+
+    /// What a converter may be busy with, what is then forbidden, and the words for it.
+    const STATES: [(Busy, &[While], &str); 3] = [
+        (
+            Busy {
+                regular: true,
+                ..IDLE
+            },
+            &[While::Regular, While::Either],
+            "ADSTART is set",
+        ),
+        (
+            Busy {
+                injected: true,
+                ..IDLE
+            },
+            &[While::Injected, While::Either],
+            "JADSTART is set",
+        ),
+        (
+            Busy {
+                enabled: true,
+                ..IDLE
+            },
+            &[While::Enabled],
+            "the converter is switched on",
+        ),
+    ];
+
+    /// What is found when a word is written to a converter in a state.
+    fn found(file: &RegisterFile, place: (u32, u32), busy: Busy) -> Vec<String> {
+        let mut findings = Findings::default();
+        let mut context = Context {
+            cycle: 0,
+            clocks: &BOARD_CLOCKS,
+            findings: &mut findings,
+        };
+        Rules::new(file).check(file, place, busy, &mut context);
+        let list = findings.list().iter();
+        list.map(|finding| finding.text.clone()).collect()
+    }
+
+    #[test]
+    fn every_field_and_register_is_kept_where_the_manual_says() {
+        let file = RegisterFile::new(Facts::of_chip().block("ADC1").unwrap());
+        for (busy, forbidden, cause) in STATES {
+            let expected = |when: &While, text: String| -> Vec<String> {
+                let text = format!("ADC1_{text} while {cause}");
+                forbidden
+                    .contains(when)
+                    .then_some(text)
+                    .into_iter()
+                    .collect()
+            };
+            let fields = FIELDS.iter();
+            for (when, register, field) in fields
+                .flat_map(|(when, register, all)| all.iter().map(move |f| (when, register, f)))
+            {
+                let place = file.field(register, field);
+                let word = file.get(place.offset) ^ place.mask;
+                let expected = expected(when, format!("{register}: {field} is changed"));
+                assert_eq!(found(&file, (place.offset, word), busy), expected);
+            }
+            for (when, register) in REGISTERS {
+                let offset = file.offset(register);
+                let expected = expected(&when, format!("{register} is written"));
+                assert_eq!(found(&file, (offset, file.get(offset)), busy), expected);
+            }
+        }
+    }
+
+    #[test]
+    fn every_unmodelled_function_is_found() {
+        for (register, fields) in UNMODELLED {
+            for field in fields {
+                let mut file = RegisterFile::new(Facts::of_chip().block("ADC1").unwrap());
+                file.set_value(file.field(register, field), 1);
+                let mut findings = Findings::default();
+                let mut context = Context {
+                    cycle: 0,
+                    clocks: &BOARD_CLOCKS,
+                    findings: &mut findings,
+                };
+                Rules::new(&file).check_unmodelled(&file, &mut context);
+                let expected =
+                    format!("ADC1_{register}: {field} is set, which the emulator does not model");
+                let found = findings.list().iter().map(|one| one.text.as_str());
+                assert_eq!(found.collect::<Vec<_>>(), [expected]);
+            }
+        }
+    }
+}

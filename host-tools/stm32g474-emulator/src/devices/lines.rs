@@ -5,28 +5,24 @@ use stm32_metapac::metadata::METADATA;
 /// The interrupts by their numbers; several peripherals may share one.
 #[derive(Clone, Debug)]
 pub struct Lines {
-    names: Vec<&'static str>,
-    /// The numbers and the levels.
-    pub levels: Vec<(u16, bool)>,
+    numbers: Vec<(&'static str, u32)>,
+    /// The lines that are high, bit by number.
+    pub levels: u128,
 }
 
 impl Lines {
     /// All lines low.
     pub fn new() -> Self {
         let all = METADATA.interrupts.iter();
-        let known = all.filter_map(|one| Some((one.name, u16::try_from(one.number).ok()?)));
-        let (names, numbers): (Vec<_>, Vec<_>) = known.unzip();
         Self {
-            names,
-            levels: numbers.into_iter().map(|number| (number, false)).collect(),
+            numbers: all.map(|one| (one.name, one.number)).collect(),
+            levels: 0,
         }
     }
 
     /// All lines low again.
     pub fn clear(&mut self) {
-        for (_, level) in &mut self.levels {
-            *level = false;
-        }
+        self.levels = 0;
     }
 
     /// A peripheral drives the line of an interrupt: high, or not.
@@ -34,9 +30,8 @@ impl Lines {
         if !level {
             return;
         }
-        let place = self.names.iter().position(|known| *known == name);
-        if let Some((_, line)) = place.and_then(|place| self.levels.get_mut(place)) {
-            *line = true;
+        if let Some((_, number)) = self.numbers.iter().find(|(known, _)| *known == name) {
+            self.levels |= 1 << number;
         }
     }
 }

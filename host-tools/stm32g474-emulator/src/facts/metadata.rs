@@ -138,6 +138,7 @@ fn view(
         known: known(&fields, register.bit_size),
         fields,
         reset: 0,
+        contradicted: false,
     }
 }
 

@@ -4,7 +4,7 @@
 
 use super::description;
 use super::metadata::{known, view_name};
-use super::rulings::{Holds, RESETS, RULINGS, Ruling};
+use super::rulings::{Holds, RESETS, RULINGS, Ruling, Source, complete_source};
 use super::{Access, Block, Field, Register};
 
 /// A difference that neither a rule nor a ruling settles; what both sources say is kept then.
@@ -25,16 +25,17 @@ pub struct Unsettled {
 /// - Where the names alone differ, both are kept; a register has the name that it has in stm32-metapac.
 /// - What the processor may do with a register is as ST says; stm32-metapac often says both for what can only be read.
 ///
-/// A [`Ruling`] settles the rest, and goes before the rules.
+/// The rulings settle the rest, and go before the rules.
 pub fn settle(block: &mut Block) -> Vec<Unsettled> {
     let described = description::registers(block.base);
     let mut unsettled = Vec::new();
     if described.is_empty() {
         return unsettled;
     }
+    let complete = |register: &str| complete_source(block.name, register);
     block.registers.retain(|register| {
         let unknown = described.iter().all(|view| view.offset != register.offset);
-        !(unknown && is_none(block.name, &register.name, Holds::Description))
+        !(unknown && complete(&register.name) == Some(Source::Description))
     });
     for register in described.chunk_by(|one, next| one.offset == next.offset) {
         let Some(mut theirs) = merged(register) else {
@@ -49,12 +50,13 @@ pub fn settle(block: &mut Block) -> Vec<Unsettled> {
             let difference;
             (theirs.fields, difference) =
                 settle_fields(block.name, &theirs.name, fields.0, fields.1);
+            ours.contradicted = difference.is_some();
             unsettled.extend(difference);
             ours.known = self::known(&theirs.fields, ours.bits);
             ours.fields = theirs.fields;
             ours.access = theirs.access;
             ours.reset = theirs.reset;
-        } else if !is_none(block.name, &theirs.name, Holds::Metapac) {
+        } else if complete(&theirs.name) != Some(Source::Metapac) {
             block.registers.push(theirs);
         }
     }
@@ -93,18 +95,6 @@ fn add_reset_values(register: &mut Register) {
     }
 }
 
-/// Whether a ruling says that a block has no such register, as one of the sources does.
-fn is_none(block: &str, register: &str, holds: Holds) -> bool {
-    let mut rulings = rulings(block, register);
-    rulings.any(|ruling| ruling.is_of_register() && ruling.holds == holds)
-}
-
-fn rulings<'r>(block: &'r str, register: &'r str) -> impl Iterator<Item = &'static Ruling> + 'r {
-    RULINGS
-        .iter()
-        .filter(move |ruling| ruling.register == register && ruling.blocks.contains(&block))
-}
-
 /// The register of its described views.
 fn merged(views: &[description::Register]) -> Option<Register> {
     let first = views.first()?;
@@ -131,6 +121,7 @@ fn merged(views: &[description::Register]) -> Option<Register> {
         known: known(&fields, 32),
         fields,
         reset: first.reset,
+        contradicted: false,
     })
 }
 
@@ -158,14 +149,20 @@ fn settle_fields(
         all_theirs.iter().any(|other| same(field, other))
     });
     theirs.retain(|field| !all_ours.iter().any(|other| same(field, other)));
-    for ruling in rulings(block, register) {
+    match complete_source(block, register) {
+        Some(Source::Metapac) => theirs.retain(|field| !is_lacking(field, &all_ours)),
+        Some(Source::Description) => ours.retain(|field| !is_lacking(field, &all_theirs)),
+        None => {}
+    }
+    let about = |one: &&Ruling| one.register == register && one.blocks.contains(&block);
+    for ruling in RULINGS.iter().filter(about) {
         let mut from_ours = take(&mut ours, |field| ruling.is_about(ruling.metapac, field));
         let mut from_theirs = take(&mut theirs, |field| {
             ruling.is_about(ruling.described, field)
         });
         match ruling.holds {
-            Holds::Metapac => settled.append(&mut from_ours),
-            Holds::Description => settled.append(&mut from_theirs),
+            Holds::Of(Source::Metapac) => settled.append(&mut from_ours),
+            Holds::Of(Source::Description) => settled.append(&mut from_theirs),
             Holds::Fields(fields) => {
                 settled.extend(fields.iter().map(|(name, mask)| field(name, *mask)));
             }

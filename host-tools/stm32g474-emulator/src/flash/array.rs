@@ -1,16 +1,14 @@
 //! The memory itself: what it holds, and which double words do not agree with their ECC.
 
+use crate::memory_map::FLASH;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
 /// Address of the memory.
-pub const START: u32 = 0x0800_0000;
+pub const START: u32 = FLASH.start;
 
 /// Its size, bytes.
-pub const SIZE: u32 = 0x8_0000;
-
-/// Where its second bank starts, bytes from [`START`].
-pub const BANK_SIZE: u32 = SIZE / 2;
+pub const SIZE: u32 = FLASH.end - FLASH.start;
 
 /// What is programmed at once, bytes.
 pub const DOUBLE_WORD: u32 = 8;

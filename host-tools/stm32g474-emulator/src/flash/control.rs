@@ -1,9 +1,10 @@
 //! What the processor writes: keys, commands, and the halves of double words.
 
-use super::array::{BANK_SIZE, DOUBLE_WORD, SIZE, START, double_word_of};
+use super::array::{DOUBLE_WORD, SIZE, START, double_word_of};
 use super::operation::Operation;
 use super::{Flash, Keys};
 use crate::device::{Context, FieldPlace};
+use crate::memory_map::BANK_SIZE;
 
 /// What opens CR, in this order: RM0440, FLASH_KEYR.
 const KEYS: [u32; 2] = [0x4567_0123, 0xcdef_89ab];

@@ -1,7 +1,9 @@
 //! What takes the flash its time, and what a loss of power leaves of it.
 
-use super::array::{Array, BANK_SIZE, DOUBLE_WORD, START};
+use super::array::{Array, DOUBLE_WORD, START};
 use crate::clocks::Clocks;
+use crate::memory_map::BANK_SIZE;
+use fastrand::Rng;
 use std::ops::Range;
 
 /// Time to program a double word, µs. STM32G474 datasheet (DS12288), table "Flash memory characteristics": 81.7 typical.
@@ -63,7 +65,7 @@ impl Operation {
     }
 
     /// Leaves what a loss of power in its midst may leave.
-    pub fn interrupt(self, array: &mut Array, chance: &mut Chance) {
+    pub fn interrupt(self, array: &mut Array, chance: &mut Rng) {
         match self {
             Self::Program { offset, value } => half_program(array, offset, value, chance),
             Self::Erase(range) => half_erase(array, range, chance),
@@ -85,12 +87,12 @@ impl Operation {
 }
 
 /// Nothing, all of it, or some of its bits and an ECC that does not agree.
-fn half_program(array: &mut Array, offset: u32, value: u64, chance: &mut Chance) {
-    match chance.below(3) {
+fn half_program(array: &mut Array, offset: u32, value: u64, chance: &mut Rng) {
+    match chance.u8(..3) {
         0 => {}
         1 => array.program(offset, value),
         _ => {
-            array.program(offset, value | chance.next());
+            array.program(offset, value | chance.u64(..));
             array.damage(offset);
         }
     }
@@ -98,41 +100,16 @@ fn half_program(array: &mut Array, offset: u32, value: u64, chance: &mut Chance)
 
 /// Each double word is as it was, erased, or anything between with an ECC that does not agree; in some pages one of
 /// them prevails.
-fn half_erase(array: &mut Array, range: Range<u32>, chance: &mut Chance) {
-    let progress = chance.below(5);
+fn half_erase(array: &mut Array, range: Range<u32>, chance: &mut Rng) {
+    let progress = chance.u8(..5);
     for offset in range.step_by(DOUBLE_WORD as usize) {
-        match chance.below(4) {
+        match chance.u8(..4) {
             turn if turn < progress => array.erase(offset..offset + DOUBLE_WORD),
             turn if turn == progress => {
-                array.set(offset, array.double_word(offset) | chance.next());
+                array.set(offset, array.double_word(offset) | chance.u64(..));
                 array.damage(offset);
             }
             _ => {}
         }
-    }
-}
-
-/// Numbers without a rule, the same for the same seed (SplitMix64).
-#[derive(Clone, Debug)]
-pub struct Chance(u64);
-
-impl Chance {
-    /// By a seed.
-    #[must_use]
-    pub const fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    /// 64 bits.
-    pub const fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ (mixed >> 31)
-    }
-
-    /// One of the first `count` numbers.
-    pub const fn below(&mut self, count: u64) -> u64 {
-        self.next() % count
     }
 }

@@ -1,40 +1,50 @@
 //! Where the fields of LPUART1 are.
 
-use crate::device::{FieldPlace, RegisterFile};
+use crate::device::{RegisterFile, places};
 
-/// Offsets of the registers.
-#[derive(Clone, Debug)]
-pub struct Offsets {
-    pub cr1: u32,
-    pub cr2: u32,
-    pub cr3: u32,
-    pub brr: u32,
-    pub rqr: u32,
-    pub isr: u32,
-    pub icr: u32,
-    pub rdr: u32,
-    pub tdr: u32,
-    pub presc: u32,
+places! {
+    /// Offsets of the registers.
+    #[derive(Clone, Debug)]
+    pub struct Offsets {
+        cr1: CR1,
+        cr2: CR2,
+        cr3: CR3,
+        brr: BRR,
+        rqr: RQR,
+        isr: ISR,
+        icr: ICR,
+        rdr: RDR,
+        tdr: TDR,
+        presc: PRESC,
+    }
 }
 
-/// Fields of the control registers.
-#[derive(Clone, Debug)]
-pub struct Settings {
-    pub enable: FieldPlace,
-    pub receive: FieldPlace,
-    pub transmit: FieldPlace,
-    pub fifo: FieldPlace,
-    pub length_0: FieldPlace,
-    pub length_1: FieldPlace,
-    pub parity: FieldPlace,
-    pub stop: FieldPlace,
-    pub prescaler: FieldPlace,
-    pub receive_threshold: FieldPlace,
-    pub transmit_threshold: FieldPlace,
-    pub flush_received: FieldPlace,
-    pub flush_transmit: FieldPlace,
-    /// Bits of CR1, CR2 and CR3 that only change while the block is disabled.
-    pub fixed: [u32; 3],
+places! {
+    /// Fields of the control registers.
+    #[derive(Clone, Debug)]
+    pub struct Settings {
+        enable: CR1.UE,
+        receive: CR1.RE,
+        transmit: CR1.TE,
+        fifo: CR1.FIFOEN,
+        length_0: CR1.M0,
+        length_1: CR1.M1,
+        parity: CR1.PCE,
+        stop: CR2.STOP,
+        prescaler: PRESC.PRESCALER,
+        receive_threshold: CR3.RXFTCFG,
+        transmit_threshold: CR3.TXFTCFG,
+        flush_received: RQR.RXFRQ,
+        flush_transmit: RQR.TXFRQ,
+    }
+    |file| {
+        /// Bits of CR1, CR2 and CR3 that only change while the block is disabled.
+        fixed: [u32; 3] = [
+            file.mask("CR1", &["M0", "M1", "FIFOEN", "PCE", "PS", "WAKE"]),
+            file.mask("CR2", &["STOP", "SWAP", "RXINV", "TXINV", "DATAINV", "MSBFIRST"]),
+            file.mask("CR3", &["HDSEL", "OVRDIS", "DEM", "DEP"]),
+        ],
+    }
 }
 
 /// Fields of ISR.
@@ -58,56 +68,6 @@ pub struct Flags {
     pub clears: Vec<(u32, u32)>,
     /// Flags, and what lets each raise the interrupt: the number of the control register, from 0, and its bit.
     pub interrupts: Vec<(u32, usize, u32)>,
-}
-
-impl Offsets {
-    pub fn new(file: &RegisterFile) -> Self {
-        Self {
-            cr1: file.offset("CR1"),
-            cr2: file.offset("CR2"),
-            cr3: file.offset("CR3"),
-            brr: file.offset("BRR"),
-            rqr: file.offset("RQR"),
-            isr: file.offset("ISR"),
-            icr: file.offset("ICR"),
-            rdr: file.offset("RDR"),
-            tdr: file.offset("TDR"),
-            presc: file.offset("PRESC"),
-        }
-    }
-}
-
-impl Settings {
-    pub fn new(file: &RegisterFile) -> Self {
-        let mask = |register: &'static str, names: &[&'static str]| {
-            names
-                .iter()
-                .fold(0, |mask, name| mask | file.field(register, name).mask)
-        };
-        Self {
-            enable: file.field("CR1", "UE"),
-            receive: file.field("CR1", "RE"),
-            transmit: file.field("CR1", "TE"),
-            fifo: file.field("CR1", "FIFOEN"),
-            length_0: file.field("CR1", "M0"),
-            length_1: file.field("CR1", "M1"),
-            parity: file.field("CR1", "PCE"),
-            stop: file.field("CR2", "STOP"),
-            prescaler: file.field("PRESC", "PRESCALER"),
-            receive_threshold: file.field("CR3", "RXFTCFG"),
-            transmit_threshold: file.field("CR3", "TXFTCFG"),
-            flush_received: file.field("RQR", "RXFRQ"),
-            flush_transmit: file.field("RQR", "TXFRQ"),
-            fixed: [
-                mask("CR1", &["M0", "M1", "FIFOEN", "PCE", "PS", "WAKE"]),
-                mask(
-                    "CR2",
-                    &["STOP", "SWAP", "RXINV", "TXINV", "DATAINV", "MSBFIRST"],
-                ),
-                mask("CR3", &["HDSEL", "OVRDIS", "DEM", "DEP"]),
-            ],
-        }
-    }
 }
 
 impl Flags {

@@ -3,159 +3,109 @@
 #![allow(clippy::unwrap_used)]
 
 use super::{Lpuart, Sent};
-use crate::clocks::Clocks;
-use crate::device::{Context, Device};
-use crate::findings::Findings;
+use crate::bench::Bench;
+use crate::device::Device;
 
 const BAUD: u32 = 921_600;
 /// 256 × 170 MHz / 921 600 baud, rounded.
 const BRR: u32 = 47_222;
 /// Ten bits at that rate, in cycles, rounded up.
 const CHARACTER: u64 = 1845;
-const CLOCKS: Clocks = Clocks {
-    hclk: 170_000_000,
-    lpuart1: 170_000_000,
-    ..Clocks::RESET
-};
-
-struct Bench {
-    line: Lpuart,
-    findings: Findings,
-    cycle: u64,
+/// As after a reset.
+fn closed() -> Bench<Lpuart> {
+    Bench::new("LPUART1", |_| Lpuart::new())
 }
 
-impl Bench {
-    fn new() -> Self {
-        Self {
-            line: Lpuart::new(),
-            findings: Findings::default(),
-            cycle: 0,
-        }
-    }
+/// As the driver of the board opens it.
+fn open(brr: u32) -> Bench<Lpuart> {
+    let mut bench = closed();
+    bench.write("BRR", brr);
+    bench.write("CR2", 0);
+    let switches = ["UE", "TE", "RE", "FIFOEN", "RXNEIE", "IDLEIE"];
+    bench.put("CR1", &switches.map(|name| (name, 1)));
+    bench.cycle = 10_000;
+    bench
+}
 
-    /// As the driver of the board opens it.
-    fn open(brr: u32) -> Self {
-        let mut bench = Self::new();
-        bench.put("BRR", brr);
-        bench.put("CR2", 0);
-        let cr1 = bench.bits("CR1", &["UE", "TE", "RE", "FIFOEN", "RXNEIE", "IDLEIE"]);
-        bench.put("CR1", cr1);
-        bench.cycle = 10_000;
-        bench
+fn send(bench: &mut Bench<Lpuart>, bytes: &[u8], baud: u32) {
+    for byte in bytes {
+        bench.with(|line, context| line.host_send(*byte, baud, context));
     }
+}
 
-    fn context<T>(&mut self, action: impl FnOnce(&mut Lpuart, &mut Context<'_>) -> T) -> T {
-        let mut context = Context {
-            cycle: self.cycle,
-            clocks: &CLOCKS,
-            findings: &mut self.findings,
-        };
-        action(&mut self.line, &mut context)
-    }
-
-    fn bits(&self, register: &str, names: &[&str]) -> u32 {
-        let file = &self.line.registers;
-        names
-            .iter()
-            .fold(0, |word, name| word | file.field(register, name).mask)
-    }
-
-    fn put(&mut self, register: &str, value: u32) {
-        let offset = self.line.registers.offset(register);
-        self.context(|line, context| line.write(offset, value, context));
-    }
-
-    fn get(&mut self, register: &str) -> u32 {
-        let offset = self.line.registers.offset(register);
-        self.context(|line, context| line.read(offset, context))
-    }
-
+impl Bench<Lpuart> {
     fn flag(&mut self, name: &str) -> bool {
-        let mask = self.bits("ISR", &[name]);
-        self.get("ISR") & mask != 0
-    }
-
-    fn send(&mut self, bytes: &[u8], baud: u32) {
-        for byte in bytes {
-            self.context(|line, context| line.host_send(*byte, baud, context));
-        }
-    }
-
-    fn texts(&self) -> Vec<&str> {
-        let list = self.findings.list();
-        list.iter().map(|finding| finding.text.as_str()).collect()
+        self.get("ISR", name) != 0
     }
 }
 
 #[test]
 fn bytes_leave_one_after_the_other_at_the_rate_of_brr() {
-    let mut bench = Bench::open(BRR);
-    bench.line.set_host_baud(BAUD);
+    let mut bench = open(BRR);
+    bench.device.set_host_baud(BAUD);
     for byte in 1..=9 {
-        bench.put("TDR", byte);
+        bench.write("TDR", byte);
     }
     assert!(!bench.flag("TXE") && !bench.flag("TC"));
     let start = bench.cycle;
     bench.cycle = start + CHARACTER;
     assert!(bench.flag("TXE") && !bench.flag("TC"));
     bench.cycle = start + 9 * CHARACTER;
-    bench.context(Lpuart::advance);
+    bench.with(Lpuart::advance);
     assert!(bench.flag("TC") && bench.flag("TXFE"));
-    let sent = std::iter::from_fn(|| bench.line.host_receive()).collect::<Vec<_>>();
+    let sent = std::iter::from_fn(|| bench.device.host_receive()).collect::<Vec<_>>();
     let expected = (1..=9u8).map(|byte| Sent {
         byte,
         cycle: start + u64::from(byte) * CHARACTER,
     });
     assert_eq!(sent, expected.collect::<Vec<_>>());
-    assert!(bench.texts().is_empty(), "{:?}", bench.texts());
+    assert_eq!(bench.findings(), [""; 0]);
 }
 
 #[test]
 fn bytes_arrive_raise_the_interrupt_and_then_the_line_is_idle() {
-    let mut bench = Bench::open(BRR);
-    bench.send(b"ab", BAUD);
+    let mut bench = open(BRR);
+    send(&mut bench, b"ab", BAUD);
     let start = bench.cycle;
-    assert_eq!(bench.line.next_event(), Some(start + CHARACTER));
+    assert_eq!(bench.device.next_event(), Some(start + CHARACTER));
     bench.cycle = start + 2 * CHARACTER;
-    bench.context(Lpuart::advance);
-    assert!(bench.line.interrupt());
+    bench.with(Lpuart::advance);
+    assert!(bench.device.interrupt());
     assert_eq!(
-        (bench.get("RDR"), bench.get("RDR")),
+        (bench.read("RDR"), bench.read("RDR")),
         (b'a'.into(), b'b'.into())
     );
-    assert!(!bench.line.interrupt() && !bench.flag("IDLE"));
-    bench.cycle = bench.line.next_event().unwrap();
+    assert!(!bench.device.interrupt() && !bench.flag("IDLE"));
+    bench.cycle = bench.device.next_event().unwrap();
     assert_eq!(bench.cycle, start + 3 * CHARACTER);
-    assert!(bench.flag("IDLE") && bench.line.interrupt());
-    let clear = bench.bits("ICR", &["IDLE"]);
-    bench.put("ICR", clear);
-    assert!(!bench.line.interrupt());
-    assert_eq!(bench.line.next_event(), None);
-    assert!(bench.texts().is_empty(), "{:?}", bench.texts());
+    assert!(bench.flag("IDLE") && bench.device.interrupt());
+    bench.put("ICR", &[("IDLE", 1)]);
+    assert!(!bench.device.interrupt());
+    assert_eq!(bench.device.next_event(), None);
+    assert_eq!(bench.findings(), [""; 0]);
 }
 
 #[test]
 fn bytes_before_the_receiver_is_ready_are_lost() {
-    let mut bench = Bench::open(BRR);
-    bench.line.reset();
-    bench.send(b"x", BAUD);
+    let mut bench = open(BRR);
+    bench.device.reset();
+    send(&mut bench, b"x", BAUD);
     bench.cycle += 100;
-    bench.put("BRR", BRR);
-    let cr1 = bench.bits("CR1", &["UE", "RE"]);
-    bench.put("CR1", cr1);
+    bench.write("BRR", BRR);
+    bench.put("CR1", &[("UE", 1), ("RE", 1)]);
     bench.cycle += CHARACTER;
     assert!(!bench.flag("RXNE") && bench.flag("REACK") && !bench.flag("TEACK"));
 }
 
 #[test]
 fn the_fifo_holds_eight_and_one_more_is_an_overrun() {
-    let mut bench = Bench::open(BRR);
-    bench.send(b"123456789", BAUD);
+    let mut bench = open(BRR);
+    send(&mut bench, b"123456789", BAUD);
     bench.cycle += 8 * CHARACTER;
     assert!(bench.flag("RXFF") && !bench.flag("ORE"));
     bench.cycle += CHARACTER;
     assert!(bench.flag("ORE"));
-    let received = (0..8).map(|_| bench.get("RDR")).collect::<Vec<_>>();
+    let received = (0..8).map(|_| bench.read("RDR")).collect::<Vec<_>>();
     assert_eq!(received, b"12345678".map(u32::from));
 }
 
@@ -163,59 +113,77 @@ fn the_fifo_holds_eight_and_one_more_is_an_overrun() {
 fn another_rate_damages_bytes_in_both_directions_and_is_named() {
     // 460 800 and 115 200 baud on the chip, 921 600 on the host.
     for (brr, part) in [(2 * BRR, "46080"), (8 * BRR, "11520")] {
-        let mut bench = Bench::open(brr);
+        let mut bench = open(brr);
         bench.cycle = 1_000_000;
-        bench.send(&[0x55], BAUD);
-        bench.put("TDR", 0x55);
+        send(&mut bench, &[0x55], BAUD);
+        bench.write("TDR", 0x55);
         bench.cycle += 20 * CHARACTER;
         assert!(bench.flag("NE"));
-        assert_ne!(bench.get("RDR"), 0x55);
-        assert_ne!(bench.line.host_receive().unwrap().byte, 0x55);
-        let texts = bench.texts();
+        assert_ne!(bench.read("RDR"), 0x55);
+        assert_ne!(bench.device.host_receive().unwrap().byte, 0x55);
+        let texts = bench.findings();
         assert!(
             texts.len() == 1 && texts[0].contains(part) && texts[0].contains("921600"),
             "{texts:?}"
         );
     }
     // 1 % apart is nothing.
-    let mut bench = Bench::open(BRR + BRR / 100);
-    bench.send(&[0x55], BAUD);
+    let mut bench = open(BRR + BRR / 100);
+    send(&mut bench, &[0x55], BAUD);
     bench.cycle += 2 * CHARACTER;
-    assert_eq!(bench.get("RDR"), 0x55);
-    assert!(bench.texts().is_empty(), "{:?}", bench.texts());
+    assert_eq!(bench.read("RDR"), 0x55);
+    assert_eq!(bench.findings(), [""; 0]);
 }
 
 #[test]
 fn mistakes_are_found() {
-    type Mistake = fn(&mut Bench);
-    let cases: [(&str, Mistake); 6] = [
-        ("LPUART1_BRR: 0x2ff is outside", |b| {
-            *b = Bench::new();
-            b.put("BRR", 0x2ff);
+    type Mistake = fn(&mut Bench<Lpuart>);
+    let cases: &[(&str, Mistake)] = &[
+        ("LPUART1_BRR: 0x2ff is outside of 0x300 to 0xfffff", |b| {
+            *b = closed();
+            b.write("BRR", 0x2ff);
         }),
-        ("LPUART1_TDR is written while the transmitter", |b| {
-            *b = Bench::new();
-            b.put("TDR", 1);
+        (
+            "LPUART1_BRR is 0x0 where TE or RE is set, outside of 0x300 to 0xfffff",
+            |b| {
+                *b = closed();
+                b.put("CR1", &[("UE", 1), ("TE", 1)]);
+            },
+        ),
+        (
+            "LPUART1_CR1: characters are not of 8 bits without parity, as the host's are",
+            |b| {
+                *b = closed();
+                b.put("CR1", &[("PCE", 1)]);
+                b.put("CR1", &[("PCE", 1), ("UE", 1)]);
+            },
+        ),
+        ("LPUART1_TDR is written while the transmitter is off", |b| {
+            *b = closed();
+            b.write("TDR", 1);
         }),
-        ("there is no space", |b| {
-            (0..10).for_each(|byte| b.put("TDR", byte));
+        (
+            "LPUART1_TDR is written while there is no space, and a byte is lost",
+            |b| (0..10).for_each(|byte| b.write("TDR", byte)),
+        ),
+        (
+            "LPUART1_BRR or LPUART1_PRESC is written while UE is set, and has no effect",
+            |b| b.write("BRR", 0x400),
+        ),
+        (
+            "LPUART1_CR1: 0x20000000 is changed while UE is set, and has no effect",
+            |b| b.put("CR1", &[("UE", 1), ("TE", 1), ("RE", 1)]),
+        ),
+        ("LPUART1_RDR is read while nothing has been received", |b| {
+            b.read("RDR");
         }),
-        ("LPUART1_BRR or LPUART1_PRESC", |b| b.put("BRR", 0x400)),
-        ("LPUART1_CR1: 0x20000000 is changed while UE", |b| {
-            let cr1 = b.bits("CR1", &["UE", "TE", "RE"]);
-            b.put("CR1", cr1);
-        }),
-        ("LPUART1_RDR is read while nothing", |b| {
-            b.get("RDR");
+        ("LPUART1_RQR: 0x2 asks for what the emulator has not", |b| {
+            b.put("RQR", &[("SBKRQ", 1)]);
         }),
     ];
-    for (part, mistake) in cases {
-        let mut bench = Bench::open(BRR);
+    for (expected, mistake) in cases {
+        let mut bench = open(BRR);
         mistake(&mut bench);
-        let texts = bench.texts();
-        assert!(
-            texts.len() == 1 && texts[0].contains(part),
-            "{part}: {texts:?}"
-        );
+        assert_eq!(bench.findings(), [*expected]);
     }
 }

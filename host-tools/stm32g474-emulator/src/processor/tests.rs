@@ -4,7 +4,7 @@
 
 use super::*;
 
-/// Sixteen bytes of instructions each: start, and the handler of the first interrupt.
+/// Where the instructions are: of the start, and of the first interrupt's handler.
 const START: u32 = FLASH.start + 0x80;
 const HANDLER: u32 = START + 0x40;
 
@@ -126,7 +126,7 @@ fn an_interrupt_within_an_it_block_or_a_comparison_changes_nothing() {
     for (program, starts, right) in cases {
         for &start in starts {
             let found = interrupted_at(program, start, |processor, level| {
-                processor.set_line(0, level);
+                processor.set_lines(u128::from(level));
             });
             assert_eq!(found, right, "at {start}");
         }
@@ -155,4 +155,18 @@ fn the_core_alone_still_forgets_the_flags_of_a_comparison() {
         found, AFTER_COMPARISON,
         "rsemu was mended: `Processor::settle` need not look at comparisons"
     );
+}
+
+#[test]
+fn every_seed_leaves_another_ram() {
+    let ram = |seed| {
+        let mut processor = started(BLOCK);
+        processor.scramble_ram(seed);
+        [RAM.start, CCM.start, RAM.end - 4].map(|address| processor.word(address).unwrap())
+    };
+    let all = [0, 1, 2, 3].map(ram);
+    for (seed, words) in all.iter().enumerate() {
+        assert_eq!(ram(seed as u64), *words);
+        assert!(all.iter().skip(seed + 1).all(|other| other != words));
+    }
 }

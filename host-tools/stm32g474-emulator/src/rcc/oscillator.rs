@@ -20,6 +20,11 @@ impl Oscillator {
         }
     }
 
+    /// Whether it is switched on, ready or not.
+    pub fn is_on(self) -> bool {
+        self.ready_at.is_some()
+    }
+
     /// Whether it can be used.
     pub fn ready(self, cycle: u64) -> bool {
         self.ready_at.is_some_and(|at| cycle >= at)

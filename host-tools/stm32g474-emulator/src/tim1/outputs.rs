@@ -15,17 +15,11 @@ const PWM_MODE_2: u32 = 7;
 pub struct PowerOutputs {
     /// The outputs are switched on (`MOE`) and the counter runs.
     pub on: bool,
-    /// The compare values in use.
-    pub compare: [u16; CHANNELS],
     /// The top in use.
     pub top: u16,
-    /// The channels whose pin the timer drives while the outputs are on.
-    pub channel_enabled: [bool; CHANNELS],
-    /// For how many of `top` counts the pin is high: with mode, polarity, enable, `MOE` and idle level taken into account.
-    /// A pin that the timer leaves floating counts as low.
-    pub high: [u16; CHANNELS],
-    /// The pins that the timer leaves floating.
-    pub floating: [bool; CHANNELS],
+    /// For how many of `top` counts the pin is high: with mode, polarity, enable, `MOE` and idle level taken into account;
+    /// none for a pin that the timer leaves floating.
+    pub high: [Option<u16>; CHANNELS],
 }
 
 /// Where the registers say it.
@@ -71,24 +65,16 @@ impl OutputPlaces {
         top: u32,
         compare: [u32; CHANNELS],
     ) -> PowerOutputs {
-        let switched = file.is_set(self.switch);
-        let mut outputs = PowerOutputs {
-            on: switched && runs,
-            compare: compare.map(narrow),
-            top: narrow(top),
-            channel_enabled: self.channels.map(|channel| file.is_set(channel.enabled)),
-            high: [0; CHANNELS],
-            floating: [false; CHANNELS],
-        };
+        let mut high = [None; CHANNELS];
         let values = compare.into_iter().zip(self.channels);
-        let pins = outputs.high.iter_mut().zip(&mut outputs.floating);
-        for ((compare, channel), (high, floating)) in values.zip(pins) {
-            match self.pin(file, channel, compare, top) {
-                Some(counts) => *high = narrow(counts),
-                None => *floating = true,
-            }
+        for (high, (compare, channel)) in high.iter_mut().zip(values) {
+            *high = self.pin(file, channel, compare, top).map(narrow);
         }
-        outputs
+        PowerOutputs {
+            on: file.is_set(self.switch) && runs,
+            top: narrow(top),
+            high,
+        }
     }
 
     /// Counts of `top` in which a pin is high; none if it floats.

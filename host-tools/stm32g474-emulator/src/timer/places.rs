@@ -1,6 +1,6 @@
 //! Where a timer's registers have what.
 
-use crate::device::{FieldPlace, RegisterFile};
+use crate::device::{FieldPlace, RegisterFile, places};
 use crate::facts::Facts;
 
 /// A channel that compares.
@@ -18,47 +18,33 @@ pub struct Channel {
     pub value: u32,
 }
 
-/// Registers and fields.
-#[derive(Clone, Copy, Debug)]
-pub struct Places {
-    /// `CR1`.
-    pub control: u32,
-    /// `SR`.
-    pub status: u32,
-    /// `EGR`.
-    pub events: u32,
-    /// `CNT`.
-    pub count: u32,
-    /// `PSC`.
-    pub prescaler: u32,
-    /// `ARR`.
-    pub top: u32,
-    /// `RCR`, where there is one.
-    pub repetitions: Option<u32>,
-    /// `CEN`.
-    pub enabled: FieldPlace,
-    /// `UDIS`.
-    pub no_updates: FieldPlace,
-    /// `URS`.
-    pub counter_only: FieldPlace,
-    /// `OPM`.
-    pub one_pulse: FieldPlace,
-    /// `DIR`.
-    pub down: FieldPlace,
-    /// `CMS`.
-    pub centre: FieldPlace,
-    /// `ARPE`.
-    pub preloaded: FieldPlace,
-    /// `UIFREMAP`.
-    pub flag_in_count: FieldPlace,
-    /// `UIFCPY`.
-    pub flag_copy: FieldPlace,
-    /// `UIF`.
-    pub update_flag: FieldPlace,
-    /// `UIE`.
-    pub update_interrupt: FieldPlace,
-    /// `UG`.
-    pub generate_update: FieldPlace,
+places! {
+    /// Registers and fields.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Places {
+        control: CR1,
+        status: SR,
+        events: EGR,
+        count: CNT,
+        prescaler: PSC,
+        top: ARR,
+        enabled: CR1.CEN,
+        no_updates: CR1.UDIS,
+        counter_only: CR1.URS,
+        one_pulse: CR1.OPM,
+        preloaded: CR1.ARPE,
+        flag_in_count: CR1.UIFREMAP,
+        flag_copy: CNT.UIFCPY,
+        update_flag: SR.UIF,
+        update_interrupt: DIER.UIE,
+        generate_update: EGR.UG,
+    }
+    |file| {
+        /// Where there is one.
+        repetitions: Option<u32> = file.block().register("RCR").map(|r| r.offset),
+        down: FieldPlace = optional(file, "CR1", "DIR"),
+        centre: FieldPlace = optional(file, "CR1", "CMS"),
+    }
 }
 
 /// A field, or one without bits where the block has none of that name.
@@ -81,34 +67,6 @@ fn common(file: &RegisterFile, register: &str, field: &str) -> FieldPlace {
     let own = optional(file, register, field);
     let model = Facts::of_chip().block("TIM1").filter(|_| own.mask == 0);
     model.map_or(own, |block| RegisterFile::new(block).field(register, field))
-}
-
-impl Places {
-    /// Finds them.
-    pub fn new(file: &RegisterFile) -> Self {
-        let control = |field| file.field("CR1", field);
-        Self {
-            control: file.offset("CR1"),
-            status: file.offset("SR"),
-            events: file.offset("EGR"),
-            count: file.offset("CNT"),
-            prescaler: file.offset("PSC"),
-            top: file.offset("ARR"),
-            repetitions: file.block().register("RCR").map(|r| r.offset),
-            enabled: control("CEN"),
-            no_updates: control("UDIS"),
-            counter_only: control("URS"),
-            one_pulse: control("OPM"),
-            down: optional(file, "CR1", "DIR"),
-            centre: optional(file, "CR1", "CMS"),
-            preloaded: control("ARPE"),
-            flag_in_count: control("UIFREMAP"),
-            flag_copy: file.field("CNT", "UIFCPY"),
-            update_flag: file.field("SR", "UIF"),
-            update_interrupt: file.field("DIER", "UIE"),
-            generate_update: file.field("EGR", "UG"),
-        }
-    }
 }
 
 impl Channel {

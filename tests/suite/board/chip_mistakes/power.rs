@@ -36,6 +36,16 @@ mistakes! {
         "BREAK_2_AF: u8 = 2;",
         "PC3 is not routed to TIM1_BKIN2",
     );
+    pulses_of_pwm_mode_2: power(
+        "w.set_ocm(channel % 2, Ocm::PWM_MODE1);",
+        "w.set_ocm(channel % 2, Ocm::PWM_MODE2);",
+        "the chip's pins carry Drive { duty: [",
+    );
+    pulses_of_inverted_polarity: power(
+        "w.set_cce(channel, true));",
+        "{ w.set_cce(channel, true); w.set_ccp(channel, true); });",
+        "the chip's pins carry Drive { duty: [",
+    );
     repetitions_too_few: power(
         "w.set_rep(REPETITIONS)",
         "w.set_rep(REPETITIONS - 2)",

@@ -34,17 +34,25 @@ impl Running {
     ) -> Result<(), LinkError> {
         let (twin, commanding) = (&mut self.twin, &mut self.commanding);
         let handler = self.handler;
+        let mut unexpected = None;
         let mut pass = |chip: &mut Chip, cycles| {
             let end = chip.cycle() + cycles;
             chip.set_watching(!twin.pending.is_empty());
-            while chip.cycle() < end {
+            while chip.cycle() < end && unexpected.is_none() {
                 let step = if *commanding { chip.cycle() + 1 } else { end };
                 let stop = chip.run(step);
-                *commanding |= stop == Stop::Watched && chip.processor().pc() != handler;
+                match stop {
+                    Stop::Watched => *commanding |= chip.processor().pc() != handler,
+                    Stop::Time => {}
+                    _ => unexpected = Some(stop),
+                }
                 take_command(chip, twin, commanding);
             }
         };
         let wrong = self.breaks.begin(&mut self.chip, sensors, &mut pass);
+        if let Some(stop) = unexpected {
+            return Err(self.stuck(&described(stop), image));
+        }
         self.require(wrong, image)
     }
 
@@ -184,5 +192,17 @@ impl Running {
             format!("\n  {finding}, in {function}")
         })
         .collect()
+    }
+}
+
+/// What a chip does when it stops.
+pub(super) fn described(stop: Stop) -> String {
+    match stop {
+        Stop::Update => "comes to the next update of TIM1 too soon".into(),
+        Stop::Converted => "has converted its sensors too soon".into(),
+        Stop::Watched => "is at a watched function".into(),
+        Stop::Time => "starts no tick".into(),
+        Stop::LockedUp => "is locked up".into(),
+        Stop::Reset(cause) => format!("was reset ({cause:?})"),
     }
 }

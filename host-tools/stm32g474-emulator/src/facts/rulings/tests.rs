@@ -1,5 +1,5 @@
 use super::super::settle::settle;
-use super::super::{Facts, description, metadata};
+use super::super::{Block, Facts, description, metadata};
 use super::*;
 
 const BLOCKS: &[&str] = &[
@@ -47,57 +47,72 @@ fn every_contradiction_is_settled() {
     }
 }
 
+/// The names and masks of a register's fields, as both sources have them; none where a source has no such register.
+fn fields(blocks: &[Block], block: &str, register: &str) -> [Option<Vec<(String, u32)>>; 2] {
+    let block = blocks.iter().find(|known| known.name == block).unwrap();
+    let views = description::registers(block.base).iter();
+    let views: Vec<_> = views
+        .filter(|view| metadata::view_name(view.name) == register)
+        .collect();
+    let metapac = match views.first() {
+        Some(view) => block.register_at(view.offset),
+        None => block.register(register),
+    };
+    let ours = metapac.map(|register| {
+        let fields = register.fields.iter();
+        fields.map(|f| (f.name_by_st.clone(), f.mask)).collect()
+    });
+    let theirs = views.iter().flat_map(|view| view.fields);
+    let theirs = theirs.map(|(name, mask)| ((*name).to_owned(), *mask));
+    [ours, (!views.is_empty()).then(|| theirs.collect())]
+}
+
 #[test]
 fn every_ruling_settles_a_contradiction() {
     let blocks = metadata::blocks();
     for ruling in RULINGS {
-        for name in ruling.blocks {
-            let place = format!("{name}_{}: {}", ruling.register, ruling.reason);
-            let block = blocks.iter().find(|block| block.name == *name).unwrap();
-            let known = description::registers(block.base).iter();
-            let described: Vec<_> = known
-                .filter(|view| metadata::view_name(view.name) == ruling.register)
-                .collect();
-            let offset = described.first().map(|view| view.offset);
-            let metapac = match offset {
-                Some(offset) => block.register_at(offset),
-                None => block.register(ruling.register),
+        for block in ruling.blocks {
+            let place = format!("{block}_{}: {}", ruling.register, ruling.reason);
+            let [ours, theirs] = fields(&blocks, block, ruling.register).map(Option::unwrap);
+            for (listed, has, lacks) in [
+                (ruling.metapac, &ours, &theirs),
+                (ruling.described, &theirs, &ours),
+            ] {
+                for (name, mask) in listed {
+                    let field = ((*name).to_owned(), *mask);
+                    assert!(
+                        has.contains(&field) && !lacks.contains(&field),
+                        "{place}: {field:x?}"
+                    );
+                }
+            }
+            assert!(!ruling.described.is_empty(), "{place}");
+        }
+    }
+}
+
+/// Each drops something: the register itself, or bits that the complete source leaves reserved.
+#[test]
+fn every_complete_register_lacks_something() {
+    let blocks = metadata::blocks();
+    for ruling in COMPLETE {
+        for (block, register) in ruling.blocks.iter().flat_map(|block| {
+            ruling
+                .registers
+                .iter()
+                .map(move |register| (block, register))
+        }) {
+            let place = format!("{block}_{register}: {}", ruling.reason);
+            let [ours, theirs] = fields(&blocks, block, register);
+            let (complete, other) = match ruling.source {
+                Source::Metapac => (ours, theirs),
+                Source::Description => (theirs, ours),
             };
-            if ruling.is_of_register() {
-                let lacks = match ruling.holds {
-                    Holds::Metapac => metapac.is_none() && !described.is_empty(),
-                    Holds::Description => metapac.is_some() && described.is_empty(),
-                    Holds::Fields(_) => false,
-                };
-                assert!(lacks, "{place}");
-                continue;
-            }
-            let ours: Vec<_> = metapac
-                .unwrap()
-                .fields
-                .iter()
-                .map(|field| (field.name_by_st.as_str(), field.mask))
-                .collect();
-            let theirs: Vec<_> = described
-                .iter()
-                .flat_map(|view| view.fields.iter().copied())
-                .collect();
-            for field in ruling.metapac {
-                assert!(
-                    ours.contains(field) && !theirs.contains(field),
-                    "{place}: {field:x?}"
-                );
-            }
-            for field in ruling.described {
-                assert!(
-                    theirs.contains(field) && !ours.contains(field),
-                    "{place}: {field:x?}"
-                );
-            }
-            // Reserved bits of one source are ruled on only where the other holds.
-            let reserved = ruling.metapac.is_empty() && ruling.holds == Holds::Description
-                || ruling.described.is_empty() && ruling.holds == Holds::Metapac;
-            assert!(!reserved, "{place}");
+            let other = other.unwrap_or_else(|| panic!("{place}: neither has it"));
+            let Some(complete) = complete else { continue };
+            let known = complete.iter().fold(0, |bits, (_, mask)| bits | mask);
+            let mut beyond = other.iter().filter(|(_, mask)| mask & known == 0);
+            assert!(beyond.next().is_some(), "{place}");
         }
     }
 }
