@@ -77,6 +77,7 @@ mod bench {
 }
 
 mod commands {
+    mod broken_ends;
     mod golden;
     mod json_entries;
     mod mjcf;

@@ -6,7 +6,7 @@ mod resources;
 
 use crate::board::Emulation;
 use crate::options::Options;
-use crate::output::{load_rig, not_saved};
+use crate::output::{load_rig, not_saved, note, note_unfinished};
 use crate::progress;
 use leg_base::failure::Failure;
 use leg_bench::run_charts;
@@ -49,8 +49,8 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let scenario = scenario(args)?;
-    for note in &scenario.notes {
-        eprintln!("leg: {}: {note}", args.scenario.display());
+    for renamed in &scenario.notes {
+        note(&format!("leg: {}: {renamed}", args.scenario.display()));
     }
     let default_rig = || scenario.rig.clone().into();
     let rig = load_rig(Some(&args.rig.clone().unwrap_or_else(default_rig)))?;
@@ -115,6 +115,9 @@ fn simulate(
         bar.finish_and_clear();
         result.map_err(Failure::from_error)
     };
+    if let Some(file) = &args.record {
+        note_unfinished(file);
+    }
     match &args.record {
         None => watched(&mut |_| bar.inc(1)),
         Some(file) => recording::record(file, Some(&settings), |recording| {
