@@ -59,6 +59,7 @@ mod board {
     mod emulated_board;
     mod qemu_session;
     mod setup;
+    mod wiring_page;
 }
 
 mod host {

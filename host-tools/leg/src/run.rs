@@ -145,6 +145,13 @@ fn require_passed(summary: &Summary) -> Result<(), Failure> {
     let failed = summary.measurements.iter().filter(|found| !found.passes());
     let mut names: Vec<_> = failed.map(|found| found.name.as_str()).collect();
     names.extend(summary.unexpected.iter().map(|fault| fault.entry().name));
+    if names.is_empty() {
+        let first = summary.divergence.first_other_tick.unwrap_or_default();
+        return Err(Failure::failed(
+            format!("the control law in f64 left the firmware's state, first in tick {first}"),
+            "rounding decides there: find the limit that is met in that tick, or an error in the law; keep a recording with --record",
+        ));
+    }
     Err(Failure::failed(
         format!("failed: {}", names.join("; ")),
         "look at the charts, then at the scenario's bounds",
