@@ -76,10 +76,22 @@ impl Page {
         names.map(|name| self.value(name))
     }
 
+    /// The table of broken wires.
+    fn broken_rows(&self) -> impl Iterator<Item = &str> {
+        let (_, table) = self
+            .0
+            .split_once("| broken | volts at the pin | found as |")
+            .unwrap();
+        table.lines().skip(2).take_while(|row| row.starts_with('|'))
+    }
+
     /// What the table of broken wires says of one: volts, and what it is found as.
     fn broken(&self, wire: &str) -> [&str; 2] {
         let start = format!("| {wire} |");
-        let row = self.0.lines().find(|row| row.starts_with(&start)).unwrap();
+        let row = self
+            .broken_rows()
+            .find(|row| row.starts_with(&start))
+            .unwrap();
         let mut cells = row.split('|').skip(2).map(str::trim);
         [cells.next().unwrap(), cells.next().unwrap()]
     }
@@ -309,9 +321,9 @@ fn the_motor_supply_is_measured_fused_and_takes_what_the_motors_give_back() {
     let bounds_v = [limits.supply_min_v, limits.supply_max_v].map(f64::from);
     assert!(bounds_v[0] < supply && supply < bounds_v[1] && bounds_v[1] < range_v);
     assert!(r18 * r19 / (r18 + r19) * c4 < 2e-3);
-    assert_eq!(page.broken("R18"), ["0", "supply too low"]);
+    assert_eq!(page.broken("resistor R18"), ["0", "supply too low"]);
     assert_eq!(
-        page.broken("R19"),
+        page.broken("resistor R19"),
         ["above 3.3, clamped", "supply too high"]
     );
     assert!(supply / r18 < 1e-3, "through the clamp");
@@ -386,15 +398,7 @@ fn the_section_of_the_page_is_that_of_the_kit() {
 #[test]
 fn broken_wires_are_found_as_faults_that_there_are() {
     let page = Page::read();
-    let (_, table) = page
-        .0
-        .split_once("| broken | volts at the pin | found as |")
-        .unwrap();
-    let rows: Vec<&str> = table
-        .lines()
-        .skip(2)
-        .take_while(|row| row.starts_with('|'))
-        .collect();
+    let rows: Vec<&str> = page.broken_rows().collect();
     assert_eq!(rows.len(), 14);
     for row in rows {
         let found = row.split('|').nth(3).unwrap().trim();
