@@ -42,6 +42,7 @@ mod rig {
 }
 
 mod sim {
+    mod fmea_page;
     mod random_scenarios;
     mod ready_runs;
     mod scenario_bits;
