@@ -126,7 +126,7 @@ mod tests {
 
     #[test]
     fn a_text_that_is_no_short_line_is_refused_at_its_place() {
-        let steps = "steps = [{ measure = { name = \"NAME\", quantity = \"tilt_deg\", between = [1, 2] } }]";
+        let steps = "steps = [{ measure = { name = \"NAME\", quantity = \"pretension_n\", between = [1, 2] } }]";
         let file = |title: &str, name: &str| {
             format!("title = \"{title}\"\n{}", steps.replace("NAME", name))
         };
