@@ -30,6 +30,21 @@ const DRIVER_LOW_V: f64 = 0.8;
 /// What a pin of the chip drives, A.
 const PIN_A: f64 = 8e-3;
 
+/// What the converter takes in to sample, F: what it is taken from has a thousand times as much.
+const SAMPLED_F: f64 = 5e-12;
+
+/// What an amplifier's output and a clamp are asked for at most, A.
+const OUTPUT_A: f64 = 2e-3;
+
+/// The highest supply of the LM7705, V.
+const NEGATIVE_SUPPLY_V: f64 = 5.25;
+
+/// From one pulse of the motors to the next, s.
+const PULSE_S: f64 = 1.0 / 40e3;
+
+/// What a driver's input that floats may take or give, A.
+const LEAK_A: f64 = 10e-6;
+
 /// INA826: largest offsets of input and output, V; bias current, A; how near its output comes to its supplies, V.
 const AMPLIFIER_OFFSET_V: [f64; 2] = [150e-6, 700e-6];
 const AMPLIFIER_BIAS_A: f64 = 65e-9;
@@ -184,9 +199,13 @@ fn the_load_cell_covers_the_tensions_and_reaches_both_ends_of_the_range() {
     assert!(cell.reach_v[0] < 0.0 && cell.reach_v[1] > FULL_V);
     // The inputs stay a volt below the supply.
     let [supply, positive] = page.values(["VE", "VP"]);
-    assert!(supply <= positive - 1.0);
+    assert!(supply <= positive - 1.0 && positive < NEGATIVE_SUPPLY_V);
     // The low pass is faster than the firmware's, and slower than the converter samples 16 times.
-    let [r7, c1] = page.values(["R7", "C1"]);
+    let [r6, r7, c1] = page.values(["R6", "R7", "C1"]);
+    assert!(c1 > 1e3 * SAMPLED_F);
+    // What the amplifier drives, and what the clamp takes at a diode's 0.3 V.
+    let most_v = cell.reach_v[1];
+    assert!(most_v / r6 < OUTPUT_A && (most_v - FULL_V - 0.3) / r7 < OUTPUT_A);
     assert!(r7 * c1 < 0.1 * f64::from(settings.estimation.tension_time_s));
     // The resistors at the inputs disturb the zero by less than is tared, were one of them 1 % off.
     let [r2] = page.values(["R2"]);
@@ -225,6 +244,7 @@ fn a_broken_wire_of_a_load_cell_is_an_end_of_its_range() {
     assert!(fall_n > 1.2 * f64::from(settings.limits.jump_n));
     // A signal wire that is broken is at ground, but for the amplifier's bias; the other one is at half the supply.
     let [supply] = page.values(["VE"]);
+    assert!(AMPLIFIER_BIAS_A * r2 < 0.1 * supply / 2.0);
     let apart_v = supply / 2.0 - AMPLIFIER_BIAS_A * r2;
     assert_eq!(saturated("signal + of the cell"), "below 0");
     assert!(code(cell.limited(cell.zero_v - cell.gain * apart_v)) < SATURATED);
@@ -255,7 +275,8 @@ fn the_current_sensor_covers_the_limits_in_both_directions() {
     let limit_v = FULL_V / 2.0 - limit_a * gain * shunt;
     let time_s = (r8 + r9) * c2 * (FULL_V / 2.0 / limit_v).ln() + 2e-3;
     assert!(time_s < 3e-3, "{time_s} s");
-    assert!(r9 * c2 < 1.0 / f64::from(TICK_HZ));
+    assert!(r9 * c2 < 0.2 / f64::from(TICK_HZ));
+    assert!(c2 > 1e3 * SAMPLED_F && FULL_V / r8 < OUTPUT_A);
 }
 
 #[test]
@@ -273,6 +294,11 @@ fn the_encoder_is_fast_enough_and_an_open_collector_is_not() {
     assert!(8.0 * 8.0 / 170e6 < 0.1 * half_s);
     // Differences of 16 bits are taken every tick.
     assert!(4.0 * track_hz / f64::from(TICK_HZ) < 1e3);
+    let [between] = page.values(["R10"]);
+    assert!(
+        (100.0..=130.0).contains(&between),
+        "no end of a line: {between} Ω"
+    );
     let rise_s = PULL_UP[1] * cable * (FULL_V / (FULL_V - HIGH_V)).ln();
     assert!(
         rise_s > half_s,
@@ -307,7 +333,8 @@ fn drivers_are_off_while_the_chip_is_in_reset() {
     let [enable, pulse, pulled_up] = page.values(["R15", "R16", "R17"]);
     assert!(FULL_V * enable / (enable + pulled_up) < DRIVER_LOW_V);
     // Three drivers are at one pin.
-    assert!(3.0 * FULL_V / enable < PIN_A && FULL_V / pulse < PIN_A);
+    assert!(3.0 * FULL_V / enable < PIN_A && 3.0 * FULL_V / pulse < PIN_A);
+    assert!(LEAK_A * pulse < 0.5 * DRIVER_LOW_V);
 }
 
 #[test]
@@ -320,7 +347,8 @@ fn the_motor_supply_is_measured_fused_and_takes_what_the_motors_give_back() {
     near(supply, Actuator::DEFAULT.supply_v, 1e-9);
     let bounds_v = [limits.supply_min_v, limits.supply_max_v].map(f64::from);
     assert!(bounds_v[0] < supply && supply < bounds_v[1] && bounds_v[1] < range_v);
-    assert!(r18 * r19 / (r18 + r19) * c4 < 2e-3);
+    let mean_s = r18 * r19 / (r18 + r19) * c4;
+    assert!(mean_s > 10.0 * PULSE_S && mean_s < 2e-3, "{mean_s} s");
     assert_eq!(page.broken("resistor R18"), ["0", "supply too low"]);
     assert_eq!(
         page.broken("resistor R19"),
@@ -360,7 +388,7 @@ fn the_temperature_sensor_shows_its_limit_by_either_settings() {
     // Whoever forgets to set the kit's range is told the limit to 2 K.
     near(cold_c + (hot_c - cold_c) * limit_v / FULL_V, limit_c, 0.02);
     // The sensor drives 100 µA.
-    assert!(FULL_V / r20 < 100e-6 && r20 * c6 < 0.1);
+    assert!(FULL_V / r20 < 100e-6 && r20 * c6 > 100.0 * PULSE_S && r20 * c6 < 0.1);
     let [volts, fault] = page.broken("temperature sensor");
     assert_eq!(volts, format!("0, which is −{:.1} °C", zero_v / v_per_k));
     assert!(fault.starts_with("not found: "));

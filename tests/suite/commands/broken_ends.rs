@@ -137,7 +137,7 @@ fn an_input_without_an_end_is_refused_at_once() {
             "it is larger than 1 MiB",
         ),
         (&["curve", "/dev/zero"], 2, "it is larger than 32 MiB"),
-        (&["replay", "/dev/zero"], 2, "is no MCAP file"),
+        (&["replay", "/dev/zero"], 2, "is no whole MCAP file"),
     ] {
         let output = after(memory, directory.path(), arguments);
         let told = errors(&output);

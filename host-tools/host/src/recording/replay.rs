@@ -60,7 +60,7 @@ fn read_file(file: &Path) -> Result<Vec<u8>, String> {
             return Err(unreadable(error));
         }
         Ok(()) if bytes == MAGIC => {}
-        _ => return Err(format!("is no MCAP file: {}", McapError::BadMagic)),
+        _ => return Err(format!("is no whole MCAP file: {}", McapError::BadMagic)),
     }
     file.read_to_end(&mut bytes).map_err(unreadable)?;
     Ok(bytes)
