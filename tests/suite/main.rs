@@ -42,6 +42,7 @@ mod rig {
 }
 
 mod sim {
+    mod fmea_page;
     mod random_scenarios;
     mod ready_runs;
     mod scenario_bits;
@@ -59,6 +60,7 @@ mod board {
     mod emulated_board;
     mod qemu_session;
     mod setup;
+    mod wiring_page;
 }
 
 mod host {
@@ -77,6 +79,7 @@ mod bench {
 }
 
 mod commands {
+    mod broken_ends;
     mod golden;
     mod json_entries;
     mod mjcf;

@@ -1,7 +1,9 @@
 //! Files that are there as a whole or not at all.
 
+mod part;
 mod staging;
 
+pub use part::PartFile;
 pub use staging::StagingDirectory;
 
 use std::ffi::OsStr;

@@ -16,9 +16,11 @@
 pub mod angles;
 pub mod atomic_file;
 pub mod description;
+pub mod disk;
 pub mod failure;
 pub mod json_line;
 pub mod numeric;
 pub mod paths;
 pub mod suggest;
+pub mod text_input;
 pub mod tick_time;

@@ -13,7 +13,7 @@ pub use error::RecordingError;
 pub use replay::{Replay, TickDifference, replay};
 
 use csv_file::CsvFile;
-use leg_base::atomic_file;
+use leg_base::atomic_file::PartFile;
 use leg_base::failure::Failure;
 use leg_base::tick_time::{seconds, tick_s};
 use leg_firmware::settings::Settings;
@@ -23,16 +23,21 @@ use mcap_file::McapFile;
 use serde::Serialize;
 use serde_json::Value;
 use std::ffi::OsStr;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Ticks of a simulation between two rows of a table: a row a millisecond.
 const ROW_TICKS: u32 = 8;
+
+/// From one time at which a recording is on the disk to the next, s of the recording.
+const FLUSH_S: f64 = 1.0;
 
 /// A recording that is being written.
 pub struct Recording {
     file: RecordingFile,
     /// What was taken so far.
     count: u32,
+    /// Up to when the file is on the disk, s of the recording.
+    flushed_s: f64,
 }
 
 enum RecordingFile {
@@ -56,8 +61,7 @@ impl Recording {
             }
             RecordingFile::Csv(_) => {}
         }
-        self.count += 1;
-        Ok(())
+        self.taken(f64::from(self.count) * tick_s())
     }
 
     /// Takes telemetry of a leg. Its time is that of the leg since its board started.
@@ -70,24 +74,38 @@ impl Recording {
             }
             RecordingFile::Csv(file) => file.write_row(time_s, &[&to_json(telemetry)?])?,
         }
+        self.taken(time_s)
+    }
+
+    /// Counts it, and lets the system have what is older than a second: a program that is killed loses no more.
+    fn taken(&mut self, time_s: f64) -> Result<(), RecordingError> {
         self.count += 1;
-        Ok(())
+        // The leg's time may begin again.
+        if (0.0..FLUSH_S).contains(&(time_s - self.flushed_s)) {
+            return Ok(());
+        }
+        self.flushed_s = time_s;
+        match &mut self.file {
+            RecordingFile::Mcap(file) => file.flush(),
+            RecordingFile::Csv(file) => file.flush(),
+        }
     }
 
     fn finish(self) -> Result<(), RecordingError> {
         match self.file {
-            RecordingFile::Mcap(mut file) => file.finish(),
-            RecordingFile::Csv(mut file) => file.finish(),
+            RecordingFile::Mcap(file) => file.finish(),
+            RecordingFile::Csv(mut file) => file.flush(),
         }
     }
 }
 
-/// Records in `file`, by the extension of its name, while `work` is done; the file is put in its place, whole, when the work
-/// is done. A simulation is recorded with its settings, so that it can be replayed; telemetry of a leg without.
+/// Records in `file`, by the extension of its name, while `work` is done. Until the work is done the recording is beside it,
+/// as `leg.part.mcap`, and can be read: up to its last second, whatever becomes of this program. A simulation is recorded
+/// with its settings, so that it can be replayed; telemetry of a leg without.
 ///
 /// # Errors
-/// A [`Failure`]: another extension and a file that cannot be written are refused (exit code 2); that of the work is passed
-/// on as it is.
+/// A [`Failure`]: another extension and a file that cannot be written are refused (exit code 2), what was recorded until
+/// then is kept; that of the work is passed on as it is, and nothing is kept.
 pub fn record<T>(
     file: &Path,
     settings: Option<&Settings>,
@@ -98,16 +116,36 @@ pub fn record<T>(
         let sentence = format!("{} is no name of a recording", file.display());
         return Err(Failure::refused(sentence, "end it with .mcap or .csv"));
     }
-    let done = atomic_file::replace(file, |new| {
+    let (part, new) =
+        PartFile::create(file).map_err(|error| RecordingError::File(error).failure(file, None))?;
+    let done = (|| {
         let file = if extension == Some("csv") {
-            RecordingFile::Csv(Box::new(CsvFile::create(new)?))
+            RecordingFile::Csv(Box::new(CsvFile::new(new)))
         } else {
-            RecordingFile::Mcap(Box::new(McapFile::create(new, settings)?))
+            RecordingFile::Mcap(Box::new(McapFile::new(new, settings)?))
         };
-        let mut recording = Recording { file, count: 0 };
+        let mut recording = Recording {
+            file,
+            count: 0,
+            flushed_s: 0.0,
+        };
         let result = work(&mut recording)?;
         recording.finish()?;
         Ok(result)
-    });
-    done.map_err(|error: RecordingError| error.failure(file))
+    })();
+    match done {
+        Ok(result) => {
+            let committed = part.commit().map_err(RecordingError::File);
+            committed.map_err(|error| error.failure(file, None))?;
+            Ok(result)
+        }
+        Err(error @ RecordingError::File(_)) => Err(error.failure(file, part.keep().ok())),
+        Err(error) => Err(error.failure(file, None)),
+    }
+}
+
+/// A recording of that name which did not come to its end, or not yet.
+#[must_use]
+pub fn unfinished(file: &Path) -> Option<PathBuf> {
+    PartFile::unfinished(file)
 }

@@ -1,6 +1,7 @@
 //! Links to the firmware without a board, and what they need: the Rust target, QEMU, images.
 
 use crate::options::Options;
+use crate::output::note;
 use clap::ValueEnum;
 use indicatif::ProgressBar;
 use leg_base::failure::Failure;
@@ -92,7 +93,7 @@ pub(crate) fn prepare_target() -> Result<(), Failure> {
 }
 
 fn report(doing: &str) {
-    eprintln!("leg: {doing}");
+    note(&format!("leg: {doing}"));
 }
 
 /// Builds a board's firmware, with a spinner on a terminal: the first time takes half a minute.

@@ -3,7 +3,7 @@
 use crate::board::Emulation;
 use crate::notices::notices;
 use crate::options::Options;
-use crate::output::load_rig;
+use crate::output::{load_rig, note};
 use crate::progress;
 use leg_base::description;
 use leg_base::failure::Failure;
@@ -127,7 +127,7 @@ impl ConnectionArgs {
             };
             let operator = Operator::open(transport, HostIdentity::random(), cancel)?;
             for notice in notices(operator.identity()) {
-                eprintln!("leg: {notice}");
+                note(&format!("leg: {notice}"));
             }
             return Ok(LegConnection {
                 operator,
@@ -150,9 +150,9 @@ impl ConnectionArgs {
         };
         let serial = opened?;
         if let Some(reason) = serial.unshared() {
-            eprintln!(
+            note(&format!(
                 "leg: other commands cannot use this port meanwhile ({reason}): let TMPDIR be a directory that may be written, with a short path"
-            );
+            ));
         }
         Ok(Box::new(serial))
     }

@@ -4,15 +4,15 @@ use crate::board::{Emulation, new_chip};
 use crate::connection::emulated_leg;
 use crate::numbers::seconds;
 use crate::options::Options;
-use crate::output::load_rig;
+use crate::output::{load_rig, note};
 use leg_base::failure::Failure;
 use leg_base::json_object;
+use leg_base::text_input::{self, Line};
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::emulated_board::EmulatedBoard;
 use leg_host::pseudo_terminal::PseudoTerminal;
 use leg_sim::action::Action;
 use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
-use std::io::BufRead;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
@@ -81,9 +81,9 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let part = missed.as_secs_f64() / started.elapsed().as_secs_f64();
     if part > MISSED_PART {
         let percent = 100.0 * part;
-        eprintln!(
+        note(&format!(
             "leg: this machine is too slow for real time: the leg missed {percent:.0} % of it"
-        );
+        ));
     }
     Ok(())
 }
@@ -98,16 +98,25 @@ fn disturbances(read: bool) -> Receiver<Action> {
 }
 
 fn read_disturbances(sender: &Sender<Action>) {
-    for line in std::io::stdin().lock().lines().map_while(Result::ok) {
-        match Action::parse(&line) {
+    let mut input = std::io::stdin().lock();
+    while let Ok(Some(line)) = text_input::next_line(&mut input) {
+        let (line, action) = match line {
+            Line::Whole(bytes) => {
+                let line = String::from_utf8_lossy(&bytes).into_owned();
+                let action = Action::parse(&line);
+                (line, action)
+            }
+            Line::TooLong => ("a disturbance".into(), Err(text_input::too_long())),
+        };
+        match action {
             Ok(disturbance) => {
                 if sender.send(disturbance).is_err() {
                     return;
                 }
             }
-            Err(error) => {
-                eprintln!("leg: {line}: {error}; `leg emulate --help` lists the disturbances")
-            }
+            Err(error) => note(&format!(
+                "leg: {line}: {error}; `leg emulate --help` lists the disturbances"
+            )),
         }
     }
 }

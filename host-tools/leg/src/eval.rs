@@ -6,7 +6,9 @@ use crate::options::Options;
 use crate::output::{load_rig, print};
 use evaluator::{Evaluator, EvaluatorKind, NoAnswer};
 use leg_base::failure::Failure;
+use leg_base::text_input::{self, Line};
 use leg_model_tools::jsonl;
+use leg_model_tools::line_error::LineError;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -54,21 +56,26 @@ deviation_nonlinear_m is computed in f64 only. It is left out at a pretension at
 would have to push before the weights are applied, where it has no meaning.";
 
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
-    let input = open(&args.file)?;
+    let mut input = open(&args.file)?;
     let rig = load_rig(args.rig.as_deref())?;
     let mut evaluator = Evaluator::start(args.on, options)?;
     let (mut answered, mut failed) = (0, 0);
-    for (index, text) in input.split(b'\n').enumerate() {
-        let text = text.map_err(|error| unreadable(&args.file, &error))?;
-        if text.trim_ascii().is_empty() {
-            continue;
-        }
+    for number in 1.. {
+        let line = text_input::next_line(&mut input);
+        let Some(line) = line.map_err(|error| unreadable(&args.file, &error))? else {
+            break;
+        };
+        let answer = match &line {
+            Line::Whole(text) if text.trim_ascii().is_empty() => continue,
+            Line::Whole(text) => evaluator.answer(text, &rig),
+            Line::TooLong => Err(LineError::TooLong.into()),
+        };
         answered += 1;
-        let answer = match evaluator.answer(&text, &rig) {
+        let answer = match answer {
             Ok(answer) => answer,
             Err(NoAnswer::Line(error)) => {
                 failed += 1;
-                evaluator::refusal(&error, index + 1)?
+                evaluator::refusal(&error, number)?
             }
             Err(NoAnswer::Command(failure)) => return Err(failure),
         };

@@ -2,7 +2,7 @@
 
 use crate::board;
 use crate::options::Options;
-use crate::output::print;
+use crate::output::{note, print};
 use leg_base::failure::Failure;
 use leg_base::json_object;
 use leg_boards::image::FirmwareImage;
@@ -50,6 +50,6 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         return Ok(());
     }
     let cancel = CancelFlag::on_ctrl_c();
-    eprintln!("leg: the firmware's log follows; Ctrl-C ends it");
+    note("leg: the firmware's log follows; Ctrl-C ends it");
     probe.attach(&image, &cancel)
 }

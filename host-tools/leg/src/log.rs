@@ -5,6 +5,7 @@ mod counter;
 use crate::connection::{LegArgs, Purpose};
 use crate::numbers::{positive, seconds};
 use crate::options::Options;
+use crate::output::note_unfinished;
 use crate::progress;
 use counter::{Counter, Foreign};
 use leg_base::failure::Failure;
@@ -25,7 +26,8 @@ const SILENCES_MAX: u32 = 20;
 
 /// Records the leg's telemetry, beside other commands; not on CAN.
 ///
-/// Ctrl-C ends the recording early; the file is whole.
+/// Ctrl-C ends the recording early; the file is whole. Until then it is FILE.part.mcap or FILE.part.csv, of which at most the
+/// last second is missing when the command is killed.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// The file: FILE.mcap for Foxglove and PlotJuggler, or FILE.csv.
@@ -57,6 +59,7 @@ fn rate(text: &str) -> Result<u16, String> {
 
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let mut operator = args.leg.open(Purpose::Use, options)?.operator;
+    note_unfinished(&args.out);
     let (recorded, ended) = recording::record(&args.out, None, |file| {
         let mut counter = Counter::new(args.every_ticks);
         let bar = progress::counter("times");

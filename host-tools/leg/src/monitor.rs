@@ -1,5 +1,6 @@
 //! `leg monitor`.
 
+mod keys;
 mod udp;
 
 use crate::connection::{LegArgs, Purpose};
@@ -7,10 +8,10 @@ use crate::notices::version_text;
 use crate::numbers::{monitor_rate_hz, seconds};
 use crate::options::Options;
 use crate::output::print;
+use keys::Keys;
 use leg_base::failure::Failure;
 use leg_host::monitor::{MonitorView, draw};
 use leg_host::operator::{Operator, OperatorError};
-use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyModifiers};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 use udp::Udp;
@@ -132,6 +133,7 @@ impl Monitor {
     }
 
     fn on_screen(&mut self, operator: &mut Operator) -> Result<(), Failure> {
+        let mut keys = Keys::open().map_err(|error| no_screen(&error))?;
         let mut terminal = ratatui::try_init().map_err(|error| no_screen(&error))?;
         // An emulated leg does not wait for the clock: without this its time would pass at once.
         let start = (Instant::now(), operator.now());
@@ -145,31 +147,11 @@ impl Monitor {
                 let drawn = terminal.draw(|frame| draw(frame, view));
                 drawn.map_err(|error| no_screen(&error))?;
             }
-            Ok(!end_wanted().map_err(|error| no_screen(&error))?)
+            Ok(!keys.end_wanted())
         });
-        ratatui::restore();
+        // A terminal that has gone needs no restoring.
+        let _ = ratatui::try_restore();
         watched
-    }
-}
-
-/// Whether the user has pressed a key that ends the screen.
-fn end_wanted() -> std::io::Result<bool> {
-    while event::poll(Duration::ZERO)? {
-        if let Event::Key(key) = event::read()?
-            && ends(key)
-        {
-            return Ok(true);
-        }
-    }
-    Ok(false)
-}
-
-fn ends(key: KeyEvent) -> bool {
-    let control = key.modifiers.contains(KeyModifiers::CONTROL);
-    match key.code {
-        KeyCode::Char('c') => control,
-        KeyCode::Char('q') | KeyCode::Esc => true,
-        _ => false,
     }
 }
 

@@ -1,9 +1,11 @@
 //! Printing, files and errors, the same for every command.
 
 use leg_base::atomic_file::{self, StagingDirectory};
+use leg_base::disk::help_for;
 use leg_base::failure::{Failure, Message};
 use leg_base::json_line::to_line;
 use leg_base::json_object;
+use leg_host::recording;
 use leg_rig::rig_file::{RigFile, RigText};
 use std::error::Error;
 use std::fmt::Display;
@@ -15,7 +17,8 @@ use std::process::ExitCode;
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let written = io::stdout().lock().write_all(text.as_bytes());
     written.map_err(|error| {
-        let help = "see that the program that reads the output is still there";
+        let reader = "see that the program that reads the output is still there";
+        let help = help_for(&error, reader);
         Failure::refused(format!("cannot write to standard output: {error}"), help)
     })
 }
@@ -29,9 +32,24 @@ pub(crate) fn load_rig(path: Option<&Path>) -> Result<RigFile, Failure> {
 
 /// Prints notes on a file on standard error.
 pub(crate) fn print_notes(notes: &[String]) {
-    for note in notes {
-        eprintln!("{note}");
+    for text in notes {
+        note(text);
     }
+}
+
+/// Tells of a recording of that name that did not come to its end.
+pub(crate) fn note_unfinished(file: &Path) {
+    if let Some(part) = recording::unfinished(file) {
+        note(&format!(
+            "leg: {} is a recording that did not come to its end; it is left as it is",
+            part.display()
+        ));
+    }
+}
+
+/// Prints a line on standard error; nothing is left to say where that cannot be written, as on a terminal that has gone.
+pub(crate) fn note(text: &str) {
+    let _ = writeln!(io::stderr().lock(), "{text}");
 }
 
 /// Writes a file whole or not at all; to standard output where none is named.
@@ -42,7 +60,8 @@ pub(crate) fn write(file: Option<&Path>, text: &str) -> Result<(), Failure> {
     let written = atomic_file::replace(file, |new| std::fs::write(new, text));
     written.map_err(|error: io::Error| {
         let sentence = format!("cannot write {}: {error}", file.display());
-        Failure::refused(sentence, "name a file in a directory that may be written")
+        let elsewhere = "name a file in a directory that may be written";
+        Failure::refused(sentence, help_for(&error, elsewhere))
     })
 }
 
@@ -89,9 +108,9 @@ pub(crate) fn require_none(what: &str, failed: &[String], help: &str) -> Result<
 /// Prints an error on standard error.
 pub(crate) fn print_failure(failure: &Failure, json: bool) {
     if json {
-        eprint!("{}", failure_line(failure));
+        note(failure_line(failure).trim_end());
     } else {
-        eprintln!("{}", failure.render(io::stderr().is_terminal()));
+        note(&failure.render(io::stderr().is_terminal()));
     }
 }
 

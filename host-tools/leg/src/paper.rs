@@ -39,7 +39,8 @@ fn write(computed: &Paper, directory: &Path) -> Result<PathBuf, Failure> {
         |path| {
             let figures = paper::draw(path)?;
             let text = paper::markdown(computed, &figures);
-            Ok(std::fs::write(path.join(REPORT), text)?)
+            let written = std::fs::write(path.join(REPORT), text);
+            Ok(written.map_err(|error| format!("{REPORT} cannot be written ({error})"))?)
         },
         || Ok(()),
     )?;

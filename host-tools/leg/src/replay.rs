@@ -25,14 +25,18 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
 }
 
 fn text(replay: &Replay) -> String {
+    let unfinished = match replay.finished {
+        true => "",
+        false => "The recording did not come to its end: it is replayed as far as it goes.\n",
+    };
     let Some(first) = &replay.first else {
         return format!(
-            "{} ticks, each with the bits that were recorded\n",
+            "{unfinished}{} ticks, each with the bits that were recorded\n",
             replay.ticks
         );
     };
     format!(
-        "First difference in tick {} ({:.6} s): duties recorded {:?}, now {:?}\nDrivers on: recorded {}, now {}\n",
+        "{unfinished}First difference in tick {} ({:.6} s): duties recorded {:?}, now {:?}\nDrivers on: recorded {}, now {}\n",
         first.tick,
         f64::from(first.tick) * tick_s(),
         first.recorded,

@@ -6,7 +6,7 @@ mod resources;
 
 use crate::board::Emulation;
 use crate::options::Options;
-use crate::output::{load_rig, not_saved};
+use crate::output::{load_rig, not_saved, note, note_unfinished};
 use crate::progress;
 use leg_base::failure::Failure;
 use leg_bench::run_charts;
@@ -49,8 +49,8 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let scenario = scenario(args)?;
-    for note in &scenario.notes {
-        eprintln!("leg: {}: {note}", args.scenario.display());
+    for renamed in &scenario.notes {
+        note(&format!("leg: {}: {renamed}", args.scenario.display()));
     }
     let default_rig = || scenario.rig.clone().into();
     let rig = load_rig(Some(&args.rig.clone().unwrap_or_else(default_rig)))?;
@@ -114,6 +114,9 @@ fn simulate(
         bar.finish_and_clear();
         result.map_err(Failure::from_error)
     };
+    if let Some(file) = &args.record {
+        note_unfinished(file);
+    }
     match &args.record {
         None => watched(&mut |_| bar.inc(1)),
         Some(file) => recording::record(file, Some(&settings), |recording| {
@@ -141,6 +144,13 @@ fn require_passed(summary: &Summary) -> Result<(), Failure> {
     let failed = summary.measurements.iter().filter(|found| !found.passes());
     let mut names: Vec<_> = failed.map(|found| found.name.as_str()).collect();
     names.extend(summary.unexpected.iter().map(|fault| fault.entry().name));
+    if names.is_empty() {
+        let first = summary.divergence.first_other_tick.unwrap_or_default();
+        return Err(Failure::failed(
+            format!("the control law in f64 left the firmware's state, first in tick {first}"),
+            "rounding decides there: find the limit that is met in that tick, or an error in the law; keep a recording with --record",
+        ));
+    }
     Err(Failure::failed(
         format!("failed: {}", names.join("; ")),
         "look at the charts, then at the scenario's bounds",

@@ -9,6 +9,9 @@ pub enum LineError {
     /// It is not one JSON object.
     #[error("not a JSON object: {0}; `leg eval --help` lists the keys of one")]
     NotAnObject(String),
+    /// It is too long to be a pose.
+    #[error("{}: write one pose a line", leg_base::text_input::too_long())]
+    TooLong,
     /// A key that the contract does not have.
     #[error("unknown key `{key}`: {remedy}")]
     UnknownKey {

@@ -2,6 +2,7 @@
 
 use crate::workspace_map::{Cell, MapQuantity, WorkspaceMap};
 use leg_base::atomic_file;
+use leg_base::disk::help_for;
 use leg_base::failure::Failure;
 use std::io;
 use std::path::Path;
@@ -44,7 +45,10 @@ pub fn save_around<T>(
         SaveError::Work(failure) => failure,
         SaveError::File(error) => Failure::refused(
             format!("cannot write {}: {error}", file.display()),
-            "name a file in a directory that may be written with --csv",
+            help_for(
+                &error,
+                "name a file in a directory that may be written with --csv",
+            ),
         ),
     })
 }

@@ -14,6 +14,7 @@ use crate::plant_settings::PlantSettings;
 use crate::ready_rigs::{self, READY_RIGS};
 use crate::support_name::SupportName;
 use leg_base::failure::Failure;
+use leg_base::text_input::{self, FILE_BYTES_MAX};
 use leg_firmware::settings::Gains;
 use leg_model::{Elasticity, Query, RigParameters, StiffnessAt, Support, Tendon};
 use std::path::Path;
@@ -127,7 +128,7 @@ impl RigText {
     pub fn load(path: Option<&Path>) -> Result<Self, Failure> {
         let path = path.unwrap_or(Path::new(READY_RIGS[0].name));
         let name = path.display().to_string();
-        match std::fs::read_to_string(path) {
+        match text_input::read_file(path, FILE_BYTES_MAX) {
             Ok(text) => Ok(Self { name, text }),
             Err(error) => match ready_rigs::named(&name) {
                 Some(ready) => Ok(Self {

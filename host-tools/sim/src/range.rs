@@ -73,6 +73,52 @@ fn read<'de, D: Deserializer<'de>, T: Ranged<'de>>(
     }
 }
 
+/// The most letters of a title: two lines of a terminal.
+const TITLE_LETTERS: usize = 200;
+
+/// The most letters of what is measured: it stands in a row of a table.
+const NAME_LETTERS: usize = 100;
+
+/// The most bytes that are sent at once: what the line carries in a second.
+const GARBAGE_BYTES: u32 = 100_000;
+
+/// A title: one line.
+pub(crate) fn title<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    line(deserializer, "title", TITLE_LETTERS)
+}
+
+/// A name in a table: one line.
+pub(crate) fn name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    line(deserializer, "name", NAME_LETTERS)
+}
+
+fn line<'de, D: Deserializer<'de>>(
+    deserializer: D,
+    key: &str,
+    letters_max: usize,
+) -> Result<String, D::Error> {
+    let text = String::deserialize(deserializer)?;
+    if text.chars().nth(letters_max).is_some() {
+        let sentence = format!("{key} has more than {letters_max} letters");
+        return Err(D::Error::custom(sentence));
+    }
+    if text.contains(char::is_control) {
+        let sentence = format!("{key} is not one line of plain letters");
+        return Err(D::Error::custom(sentence));
+    }
+    Ok(text)
+}
+
+/// A number of bytes.
+pub(crate) fn garbage<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
+    let count = u32::deserialize(deserializer)?;
+    if count > GARBAGE_BYTES {
+        let sentence = format!("garbage = {count} is not from 0 to {GARBAGE_BYTES}");
+        return Err(D::Error::custom(sentence));
+    }
+    Ok(count)
+}
+
 /// One number or several.
 pub(crate) trait Ranged<'de>: Sized {
     fn read<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error>;

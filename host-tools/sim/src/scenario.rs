@@ -17,6 +17,7 @@ use crate::plant::Start;
 use crate::range;
 use crate::ready_scenarios;
 use leg_base::failure::Failure;
+use leg_base::text_input::{self, FILE_BYTES_MAX};
 use leg_firmware::supervisor::Fault;
 use leg_rig::gains::GainChange;
 use leg_rig::plant_settings::PlantSettings;
@@ -32,6 +33,7 @@ use std::path::Path;
 #[serde(deny_unknown_fields)]
 pub struct Scenario {
     /// One sentence: what it shows.
+    #[serde(deserialize_with = "range::title")]
     pub title: String,
     /// Seed of the noise.
     #[serde(default)]
@@ -102,7 +104,7 @@ impl Scenario {
     /// A [`Failure`] with the place.
     pub fn load(path: &Path) -> Result<Self, Failure> {
         let name = path.display().to_string();
-        match std::fs::read_to_string(path) {
+        match text_input::read_file(path, FILE_BYTES_MAX) {
             Ok(text) => Self::parse(&name, &text),
             Err(error) => match ready_scenarios::named(&name) {
                 Some(ready) => Self::parse(&format!("scenarios/{name}.toml"), ready.text),

@@ -7,7 +7,7 @@ mod shadow;
 mod summary;
 mod test_stand;
 
-pub use shadow::Divergence;
+pub use shadow::{Divergence, OTHER_TICKS_MAX};
 pub use summary::{Measurement, Sample, SimulationError, Summary};
 
 use crate::emulated_leg::{EmulatedLeg, assembled};

@@ -10,6 +10,7 @@ mod new_board;
 mod page;
 mod ports;
 mod qemu;
+mod terminal;
 
 use board::{BoardUnderTest, errors, move_to, signal};
 use serde_json::Value;

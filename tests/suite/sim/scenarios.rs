@@ -5,13 +5,14 @@
 use super::ready_runs::{Run, ready, run, scenario};
 use leg_bench::sensitivity;
 use leg_boards::image::workspace_root;
-use leg_firmware::supervisor::{Fault, Reaction};
+use leg_firmware::supervisor::{Fault, Reaction, State};
+use leg_firmware_bench::protocol::{Reply, Request};
 use leg_rig::rig_file::RigFile;
-use leg_sim::link::{InProcess, Link};
+use leg_sim::link::{InProcess, Link, LinkError};
 use leg_sim::plant::Defect;
 use leg_sim::ready_scenarios::{self, READY_SCENARIOS};
 use leg_sim::scenario::{BOARD_EXCEPTIONS, Scenario, Step, TestStep};
-use leg_sim::simulation::Simulation;
+use leg_sim::simulation::{OTHER_TICKS_MAX, Simulation};
 use std::fs;
 
 #[test]
@@ -26,6 +27,7 @@ fn every_ready_scenario_passes() {
             .collect();
         assert!(failed.is_empty(), "{}: {failed:?}", scenario.name);
         assert_eq!(summary.stopped, None, "{}", scenario.name);
+        assert!(summary.divergence.stays(), "{}", scenario.name);
         let unexpected = &summary.unexpected;
         assert!(unexpected.is_empty(), "{}: {unexpected:?}", scenario.name);
         assert!(
@@ -80,6 +82,48 @@ fn the_shadow_in_f64_stays_near() {
         assert!(divergence.reference_m < 3e-6, "{name}: {divergence:?}");
         assert!(divergence.pose < 2e-5, "{name}: {divergence:?}");
         assert!(divergence.reference_m > 0.0, "{name}: nothing was compared");
+    }
+}
+
+/// A firmware that says from a tick on that it is in another state than the law leads to, for so many ticks.
+struct Astray {
+    firmware: InProcess,
+    tick: u64,
+    ticks: u64,
+}
+
+impl Link for Astray {
+    fn ask(&mut self, request: &Request) -> Result<Reply, LinkError> {
+        let mut reply = self.firmware.ask(request)?;
+        if let Reply::Ticked(ticked) = &mut reply {
+            self.tick += 1;
+            if (1000..1000 + self.ticks).contains(&self.tick) {
+                ticked.telemetry.state = State::Held;
+            }
+        }
+        Ok(reply)
+    }
+}
+
+/// Where all else is well, a run that the shadow does not follow fails.
+#[test]
+fn a_run_whose_shadow_leaves_the_firmwares_state_does_not_pass() {
+    let text = "title = \"waits\"\nsteps = [{ wait_s = 0.2 }]";
+    let scenario = Scenario::parse("waits", text).unwrap();
+    for (ticks, passes) in [
+        (0, true),
+        (OTHER_TICKS_MAX, true),
+        (OTHER_TICKS_MAX + 1, false),
+        (400, false),
+    ] {
+        let mut link = Astray {
+            firmware: InProcess::new(),
+            tick: 0,
+            ticks,
+        };
+        let summary = run(&scenario, &mut link).summary;
+        assert_eq!(summary.divergence.other_state, ticks);
+        assert_eq!(summary.passes(), passes, "{ticks} ticks");
     }
 }
 

@@ -5,7 +5,6 @@ use super::RecordingError;
 use crate::flat_json::flatten;
 use serde_json::Value;
 use std::fs::File;
-use std::path::Path;
 
 /// A table that is being written; its first row names the columns.
 pub(super) struct CsvFile {
@@ -14,11 +13,11 @@ pub(super) struct CsvFile {
 }
 
 impl CsvFile {
-    pub fn create(file: &Path) -> Result<Self, RecordingError> {
-        Ok(Self {
-            writer: csv::Writer::from_path(file)?,
+    pub fn new(file: File) -> Self {
+        Self {
+            writer: csv::Writer::from_writer(file),
             named: false,
-        })
+        }
     }
 
     pub fn write_row(&mut self, time_s: f64, objects: &[&Value]) -> Result<(), RecordingError> {
@@ -37,7 +36,7 @@ impl CsvFile {
         Ok(())
     }
 
-    pub fn finish(&mut self) -> Result<(), RecordingError> {
+    pub fn flush(&mut self) -> Result<(), RecordingError> {
         Ok(self.writer.flush()?)
     }
 }

@@ -1,10 +1,11 @@
 //! Why there is no recording.
 
+use leg_base::disk::help_for;
 use leg_base::failure::Failure;
 use mcap::McapError;
 use std::fmt::Display;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Why there is no recording.
 #[derive(Debug)]
@@ -22,14 +23,20 @@ impl RecordingError {
         Self::Message(error.to_string())
     }
 
-    /// What is wrong with the recording in this file, and what to do about it.
-    pub(super) fn failure(self, file: &Path) -> Failure {
+    /// What is wrong with the recording in this file, and what to do about it. `part` is what was recorded until then, if it
+    /// is kept.
+    pub(super) fn failure(self, file: &Path, part: Option<PathBuf>) -> Failure {
         let file = file.display();
         match self {
-            Self::File(error) => Failure::refused(
-                format!("cannot write {file}: {error}"),
-                "name a file in a directory that may be written",
-            ),
+            Self::File(error) => {
+                let kept = part.map_or_else(String::new, |part| {
+                    format!("; what was recorded until then is {}", part.display())
+                });
+                Failure::refused(
+                    format!("cannot write {file}: {error}{kept}"),
+                    help_for(&error, "name a file in a directory that may be written"),
+                )
+            }
             Self::Message(reason) => Failure::refused(
                 format!("a message cannot be written to {file}: {reason}"),
                 "report this as an error of the program",

@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::BufWriter;
-use std::path::Path;
+use std::mem::ManuallyDrop;
 
 /// Topics.
 pub(super) const SETTINGS: &str = "/settings";
@@ -32,7 +32,8 @@ const TICK_NS: u64 = 1_000_000_000 / TICK_HZ as u64;
 
 /// A file that is being written. A channel is made with its first message.
 pub(super) struct McapFile {
-    writer: Writer<BufWriter<File>>,
+    /// Dropped once it has finished alone: its own drop tries to, and panics where the disk is full.
+    writer: ManuallyDrop<Writer<BufWriter<File>>>,
     ticks: Option<u16>,
     telemetry: Option<u16>,
 }
@@ -43,16 +44,17 @@ pub(super) fn schema() -> String {
 }
 
 impl McapFile {
-    pub fn create(file: &Path, settings: Option<&Settings>) -> Result<Self, RecordingError> {
+    pub fn new(file: File, settings: Option<&Settings>) -> Result<Self, RecordingError> {
         let options = WriteOptions::new().compression(None).library("leg");
         let mut file = Self {
-            writer: options.create(BufWriter::new(File::create(file)?))?,
+            writer: ManuallyDrop::new(options.create(BufWriter::new(file))?),
             ticks: None,
             telemetry: None,
         };
         if let Some(settings) = settings {
             let channel = file.postcard_channel(SETTINGS)?;
             file.write(channel, 0, 0, &to_bytes(settings)?)?;
+            file.flush()?;
         }
         Ok(file)
     }
@@ -117,8 +119,14 @@ impl McapFile {
         Ok(self.writer.write_to_known_channel(&header, message)?)
     }
 
-    pub fn finish(&mut self) -> Result<(), RecordingError> {
+    /// Ends the chunk, and lets the system have it.
+    pub fn flush(&mut self) -> Result<(), RecordingError> {
+        Ok(self.writer.flush()?)
+    }
+
+    pub fn finish(mut self) -> Result<(), RecordingError> {
         self.writer.finish()?;
+        drop(ManuallyDrop::into_inner(self.writer));
         Ok(())
     }
 }

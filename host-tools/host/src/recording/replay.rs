@@ -7,8 +7,11 @@ use leg_firmware::host_link::BoardKind;
 use leg_firmware_bench::protocol::TickRequest;
 use leg_firmware_bench::server::emulated;
 use leg_firmware_bench::virtual_leg::VirtualLeg;
-use mcap::{McapError, Message, MessageStream};
+use mcap::read::Options;
+use mcap::{MAGIC, McapError, Message, MessageStream};
 use serde::{Deserialize, Serialize};
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::Path;
 
 /// How a replay compares with its recording.
@@ -16,6 +19,8 @@ use std::path::Path;
 pub struct Replay {
     /// Ticks that were replayed.
     pub ticks: u32,
+    /// Whether the recording came to its end; otherwise it is replayed as far as it goes.
+    pub finished: bool,
     /// Ticks whose duties have other bits.
     pub other: u32,
     /// The first of them, if any.
@@ -45,17 +50,41 @@ pub fn replay(file: &Path) -> Result<Replay, Failure> {
     })
 }
 
+/// All of a file that begins as a recording: another one may have no end.
+fn read_file(file: &Path) -> Result<Vec<u8>, String> {
+    let unreadable = |error: io::Error| format!("cannot be read: {error}");
+    let mut bytes = vec![0; MAGIC.len()];
+    let mut file = File::open(file).map_err(unreadable)?;
+    match file.read_exact(&mut bytes) {
+        Err(error) if error.kind() != io::ErrorKind::UnexpectedEof => {
+            return Err(unreadable(error));
+        }
+        Ok(()) if bytes == MAGIC => {}
+        _ => return Err(format!("is no whole MCAP file: {}", McapError::BadMagic)),
+    }
+    file.read_to_end(&mut bytes).map_err(unreadable)?;
+    Ok(bytes)
+}
+
 fn compare(file: &Path) -> Result<Replay, String> {
-    let bytes = std::fs::read(file).map_err(|error| format!("cannot be read: {error}"))?;
+    let bytes = read_file(file)?;
     let not_whole = |error: McapError| format!("is no whole MCAP file: {error}");
+    // What a program that was killed leaves is whole up to a place.
+    let finished = bytes.len() > MAGIC.len() && bytes.ends_with(MAGIC);
+    let options = (!finished).then_some(Options::IgnoreEndMagic);
     let mut leg = None;
     let mut result = Replay {
         ticks: 0,
+        finished,
         other: 0,
         first: None,
     };
-    for message in MessageStream::new(&bytes).map_err(not_whole)? {
-        let message = message.map_err(not_whole)?;
+    let options = options.into_iter().collect();
+    for message in MessageStream::new_with_options(&bytes, options).map_err(not_whole)? {
+        let message = match message {
+            Err(McapError::UnexpectedEof | McapError::UnexpectedEoc) if !finished => break,
+            message => message.map_err(not_whole)?,
+        };
         match (message.channel.topic.as_str(), &mut leg) {
             (SETTINGS, leg) => {
                 let identity = emulated(BoardKind::InProcess);

@@ -91,6 +91,88 @@ fn work_that_fails_leaves_no_recording() {
     assert!(replay(&file).is_err());
 }
 
+/// A recording that is cut anywhere, as by a program that is killed, is replayed as far as it goes.
+#[test]
+fn a_recording_that_is_cut_is_replayed_up_to_there() {
+    let directory = TempDir::new().unwrap();
+    let file = directory.path().join("leg.mcap");
+    let ticks = record_spoilt(&file, |_, _| ());
+    let bytes = std::fs::read(&file).unwrap();
+    let cut = |count: usize| {
+        std::fs::write(&file, &bytes[..count]).unwrap();
+        replay(&file)
+    };
+    let mut most = 0;
+    for part in 1..40 {
+        let count = bytes.len() * part / 40;
+        let replayed = cut(count).unwrap();
+        assert_eq!((replayed.other, replayed.finished), (0, false), "{count}");
+        assert!(replayed.ticks >= most, "{count}");
+        most = replayed.ticks;
+    }
+    assert!(u64::from(most) > ticks / 2, "{most} of {ticks}");
+    for count in bytes.len() - 40..bytes.len() {
+        let replayed = cut(count).unwrap();
+        assert_eq!((replayed.ticks.into(), replayed.finished), (ticks, false));
+    }
+    assert!(cut(bytes.len()).unwrap().finished);
+    // Nothing, or no more than where it begins.
+    for count in 0..100 {
+        assert!(cut(count).is_err(), "{count}");
+    }
+}
+
+#[test]
+fn a_recording_is_beside_its_name_until_it_is_whole_and_is_never_overwritten() {
+    let directory = TempDir::new().unwrap();
+    let place = |name: &str| directory.path().join(name);
+    let file = place("leg.mcap");
+    std::fs::write(&file, "old").unwrap();
+    std::fs::write(place("leg.part.mcap"), "of a program that was killed").unwrap();
+    let settings = simulation().settings().clone();
+    record(&file, Some(&settings), |recording| {
+        let mut ticks = 0;
+        let watch = &mut |tick: &Tick<'_>| {
+            recording.take_tick(tick).unwrap();
+            ticks += 1;
+        };
+        simulation().run(&mut InProcess::new(), watch).unwrap();
+        // What is on the disk now is what there would be if the program were killed.
+        let replayed = replay(&place("leg.part2.mcap"))?;
+        let missing = ticks - replayed.ticks;
+        assert!(!replayed.finished && missing <= 8000, "{missing}");
+        assert_eq!(std::fs::read(&file).unwrap(), b"old");
+        Ok(())
+    })
+    .unwrap();
+    assert!(replay(&file).unwrap().finished);
+    assert!(!place("leg.part2.mcap").exists());
+    let other = std::fs::read(super::unfinished(&file).unwrap()).unwrap();
+    assert_eq!(other, b"of a program that was killed");
+}
+
+#[test]
+fn a_full_disk_is_an_error_and_no_panic() {
+    let full = || {
+        let full = File::options().write(true).open("/dev/full");
+        full.unwrap()
+    };
+    let settings = simulation().settings().clone();
+    let error = super::McapFile::new(full(), Some(&settings)).err().unwrap();
+    let failure = error.failure(Path::new("leg.mcap"), Some("leg.part.mcap".into()));
+    let text = failure.render(false);
+    assert!(
+        text.starts_with("error: cannot write leg.mcap: No space left on device (os error 28); what was recorded until then is leg.part.mcap")
+            && text.ends_with("help: make room on the disk, or write to another one"),
+        "{text}"
+    );
+    let mut table = super::CsvFile::new(full());
+    table
+        .write_row(0.0, &[&serde_json::json!({"a": 1})])
+        .unwrap();
+    assert!(table.flush().is_err());
+}
+
 #[test]
 fn telemetry_alone_is_recorded_with_the_legs_time() {
     let directory = TempDir::new().unwrap();

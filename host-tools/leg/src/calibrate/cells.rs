@@ -4,6 +4,7 @@ use super::manual_steps::{manual_step, require_drivers_off};
 use crate::connection::{LegArgs, LegConnection, Purpose};
 use crate::numbers::not_negative;
 use crate::options::Options;
+use crate::output::note;
 use crate::settings::next_step;
 use leg_base::failure::Failure;
 use leg_base::json_object;
@@ -149,6 +150,8 @@ fn set(operator: &mut Operator, settings: &Settings, save: bool) -> Result<(), F
         operator.save_settings()?;
     }
     let next = next_step(operator)?;
-    eprintln!("leg: the board is set to it; put the tendon back; {next}");
+    note(&format!(
+        "leg: the board is set to it; put the tendon back; {next}"
+    ));
     Ok(())
 }

@@ -1,10 +1,11 @@
 //! What a calibration needs done by hand: weights hung, motors turned.
 
 use crate::connection::LegConnection;
+use crate::output::note;
 use leg_base::failure::Failure;
+use leg_base::text_input;
 use leg_host::operator::Operator;
 use leg_sim::plant::Plant;
-use std::io::BufRead;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
@@ -29,13 +30,12 @@ pub(super) fn manual_step(
 
 /// Asks the user for a step and waits for the Enter key.
 fn ask(operator: &mut Operator, step: &str) -> Result<(), Failure> {
-    eprintln!("leg: {step}, then press Enter");
+    note(&format!("leg: {step}, then press Enter"));
     let (sender, entered) = channel();
     std::thread::spawn(move || {
-        let mut line = String::new();
-        let read = std::io::stdin().lock().read_line(&mut line);
+        let line = text_input::next_line(&mut std::io::stdin().lock());
         // Nobody waits any more if the user has ended the calibration.
-        let _ = sender.send(read.is_ok_and(|count| count > 0));
+        let _ = sender.send(matches!(line, Ok(Some(_))));
     });
     loop {
         match entered.recv_timeout(POLL_TIME) {

@@ -4,8 +4,7 @@ use leg_base::atomic_file;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
-use std::fs::File;
-use std::io::BufWriter;
+use std::io;
 use std::path::{Path, PathBuf};
 
 pub(super) const WIDTH_PX: u32 = 1280;
@@ -30,20 +29,21 @@ pub enum PlotError {
     /// The bundled font is damaged.
     #[error("the bundled font cannot be read: build the tool anew")]
     Font,
-    /// The file could not be put in its place.
+    /// A file could not be written.
     #[error(
-        "the chart cannot be written ({0}): see that the directory is writable and the disk not full"
+        "{file} cannot be written ({error}): see that the directory is writable and the disk not full"
     )]
-    Write(#[from] std::io::Error),
+    Write {
+        /// Its name, in the directory that was asked for.
+        file: String,
+        /// The system's.
+        error: io::Error,
+    },
     /// The drawing could not be made.
-    #[error(
-        "the chart cannot be drawn ({0}): see that the directory is writable and the disk not full"
-    )]
+    #[error("the chart cannot be drawn ({0})")]
     Draw(String),
     /// The bitmap could not be made.
-    #[error(
-        "the bitmap cannot be written ({0}): see that the directory is writable and the disk not full"
-    )]
+    #[error("the chart has no bitmap ({0})")]
     Png(#[from] png::EncodingError),
 }
 
@@ -56,23 +56,34 @@ pub(super) trait Painter {
 /// Paints `stem.svg` and `stem.png`, each whole or not at all, and names the first.
 pub(super) fn save_both(painter: &impl Painter, stem: &Path) -> Result<PathBuf, PlotError> {
     let size = (WIDTH_PX, HEIGHT_PX);
-    let (svg, png) = (stem.with_extension("svg"), stem.with_extension("png"));
-    atomic_file::replace(&svg, |new| draw(SVGBackend::new(new, size), painter))?;
-    atomic_file::replace(&png, |new| {
-        let mut pixels = vec![0; (WIDTH_PX * HEIGHT_PX) as usize * BYTES_PER_PIXEL];
-        draw(BitMapBackend::with_buffer(&mut pixels, size), painter)?;
-        write_png(&pixels, new)
-    })?;
+    let mut vectors = String::new();
+    draw(SVGBackend::with_string(&mut vectors, size), painter)?;
+    let svg = write(stem.with_extension("svg"), vectors.as_bytes())?;
+    let mut pixels = vec![0; (WIDTH_PX * HEIGHT_PX) as usize * BYTES_PER_PIXEL];
+    draw(BitMapBackend::with_buffer(&mut pixels, size), painter)?;
+    write(stem.with_extension("png"), &png(&pixels)?)?;
     Ok(svg)
 }
 
-fn write_png(pixels: &[u8], path: &Path) -> Result<(), PlotError> {
-    let file = BufWriter::new(File::create(path)?);
-    let mut encoder = png::Encoder::new(file, WIDTH_PX, HEIGHT_PX);
+fn write(file: PathBuf, bytes: &[u8]) -> Result<PathBuf, PlotError> {
+    match atomic_file::replace(&file, |new| std::fs::write(new, bytes)) {
+        Ok(()) => Ok(file),
+        Err(error) => {
+            let name = file.file_name().unwrap_or_default();
+            let file = name.to_string_lossy().into_owned();
+            Err(PlotError::Write { file, error })
+        }
+    }
+}
+
+fn png(pixels: &[u8]) -> Result<Vec<u8>, PlotError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, WIDTH_PX, HEIGHT_PX);
     encoder.set_color(png::ColorType::Rgb);
     let mut image = encoder.write_header()?;
     image.write_image_data(pixels)?;
-    Ok(image.finish()?)
+    image.finish()?;
+    Ok(bytes)
 }
 
 fn draw<B: DrawingBackend>(backend: B, painter: &impl Painter) -> Result<(), PlotError> {

@@ -2,7 +2,11 @@
 
 use super::{TensileError, faulty};
 use csv::{ErrorKind, Position, ReaderBuilder, StringRecord, Trim};
+use leg_base::text_input;
 use std::path::Path;
+
+/// The longest file: an hour at 400 rows a second.
+const BYTES_MAX: u64 = 32 << 20;
 
 /// A measured quantity and the units it may have in the header.
 struct Known {
@@ -52,7 +56,7 @@ struct Column {
 /// # Errors
 /// A [`TensileError`] with line and column.
 pub fn read(path: &Path) -> Result<Vec<TestRow>, TensileError> {
-    let text = std::fs::read_to_string(path)?;
+    let text = text_input::read_file(path, BYTES_MAX)?;
     let (data, lines) = without_comments(&text);
     let mut reader = ReaderBuilder::new()
         .trim(Trim::All)

@@ -98,6 +98,11 @@ mod tests {
                 "2:73",
             ),
             (
+                "steps = [{ garbage = 4294967295 }]",
+                "garbage = 4294967295 is not from 0 to 100000",
+                "2:22",
+            ),
+            (
                 "steps = [\"arm\"]\n[start.slack]\nslack_mm = -50",
                 "slack_mm = -50 is not from 0 to 50",
                 "4:12",
@@ -117,6 +122,41 @@ mod tests {
             assert!(message.contains("help: "), "{text}: {message}");
         }
         assert_eq!(refusal("steps = [\"arm\"]"), "");
+    }
+
+    #[test]
+    fn a_text_that_is_no_short_line_is_refused_at_its_place() {
+        let steps = "steps = [{ measure = { name = \"NAME\", quantity = \"pretension_n\", between = [1, 2] } }]";
+        let file = |title: &str, name: &str| {
+            format!("title = \"{title}\"\n{}", steps.replace("NAME", name))
+        };
+        let (title, name) = ("ä".repeat(200), "ä".repeat(100));
+        assert!(Scenario::parse("a.toml", &file(&title, &name)).is_ok());
+        for (text, sentence, place) in [
+            (
+                file(&[&title, "x"].concat(), "x"),
+                "title has more than 200 letters",
+                "1:9",
+            ),
+            (
+                file("x", &[&name, "x"].concat()),
+                "name has more than 100 letters",
+                "2:31",
+            ),
+            (
+                file("a\\u001b[2J", "x"),
+                "title is not one line of plain letters",
+                "1:9",
+            ),
+        ] {
+            let message = match Scenario::parse("a.toml", &text) {
+                Ok(_) => String::new(),
+                Err(failure) => failure.render(false),
+            };
+            assert!(message.contains(sentence), "{sentence}: {message}");
+            let place = format!("a.toml:{place}");
+            assert!(message.contains(&place), "{place}: {message}");
+        }
     }
 
     #[test]

@@ -12,7 +12,7 @@ use strum::VariantNames;
 #[strum(serialize_all = "snake_case")]
 pub enum TestStep {
     /// Sends so many random bytes to the leg.
-    Garbage(u32),
+    Garbage(#[serde(deserialize_with = "range::garbage")] u32),
     /// Stops the host's signs of life, or lets them go on.
     Silence(bool),
     /// Waits, s.
@@ -49,6 +49,7 @@ pub enum TestStep {
     /// Measures.
     Measure {
         /// What it is called in the table.
+        #[serde(deserialize_with = "range::name")]
         name: String,
         /// What.
         quantity: Measurand,
@@ -65,6 +66,7 @@ pub enum TestStep {
 #[serde(deny_unknown_fields)]
 pub struct PushTest {
     /// What it is called in the table.
+    #[serde(deserialize_with = "range::name")]
     pub name: String,
     /// Azimuth of the push, degrees.
     #[serde(deserialize_with = "range::azimuth_deg")]

@@ -30,7 +30,16 @@ pub struct Divergence {
     pub other_state: u64,
     /// The first of them: the differences above are of the other ticks alone.
     pub first_other_tick: Option<u32>,
+    /// The most of them in a row.
+    pub longest_other_ticks: u64,
+    /// Those in a row up to now.
+    #[serde(skip)]
+    other_ticks: u64,
 }
+
+/// For so many ticks the two may differ in state or faults: rounded otherwise, a limit is passed a little sooner or later.
+/// One that stays in another state has left it.
+pub const OTHER_TICKS_MAX: u64 = 8;
 
 impl Shadow {
     pub fn new(settings: &Settings) -> Result<Self, EmulationError> {
@@ -55,13 +64,22 @@ impl Shadow {
 }
 
 impl Divergence {
+    /// Whether the two came to the same states and faults.
+    #[must_use]
+    pub const fn stays(&self) -> bool {
+        self.longest_other_ticks <= OTHER_TICKS_MAX
+    }
+
     fn compare(&mut self, reply: &TickReply, shadow: &Drive<f64>, reported: &Telemetry<f64>) {
         let (drive, telemetry) = (&reply.drive, &reply.telemetry);
         if telemetry.state != reported.state || telemetry.faults != reported.faults {
             self.other_state += 1;
+            self.other_ticks += 1;
+            self.longest_other_ticks = self.longest_other_ticks.max(self.other_ticks);
             self.first_other_tick.get_or_insert(telemetry.tick);
             return;
         }
+        self.other_ticks = 0;
         for (largest, difference) in [
             (&mut self.duty, largest(&drive.duty, &shadow.duty)),
             (

@@ -115,11 +115,13 @@ impl SimulationError {
 }
 
 impl Summary {
-    /// Whether it came to its end, every value is where it must be, and no fault came that is not expected.
+    /// Whether it came to its end, every value is where it must be, no fault came that is not expected, and the shadow in f64
+    /// stayed in the firmware's state.
     #[must_use]
     pub fn passes(&self) -> bool {
         self.stopped.is_none()
             && self.measurements.iter().all(Measurement::passes)
             && self.unexpected.is_empty()
+            && self.divergence.stays()
     }
 }

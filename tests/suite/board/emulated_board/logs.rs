@@ -1,23 +1,33 @@
 //! Read-only commands: logs, monitors, datagrams.
 
 use super::board::{BoardUnderTest, errors, move_to, signal};
+use leg_host::recording;
 use leg_host::transport::Transport;
 use leg_host::transport::serial::Serial;
 use serde_json::Value;
 use std::io::ErrorKind;
 use std::thread::sleep;
-use std::time::Duration;
+use std::time::{Duration, Instant};
+
+/// More than a command takes to start.
+const PATIENCE: Duration = Duration::from_secs(20);
 
 #[test]
 fn monitor_and_log_run_beside_a_move() {
     let directory = tempfile::tempdir().unwrap();
     let file = directory.path().join("leg.csv");
     let board = BoardUnderTest::new(&[]);
-    let monitor = board.begin(&["monitor", "--json", "--rate", "50", "--for", "3"]);
     let name = file.display().to_string();
     let log = board.begin(&[
-        "log", "--out", &name, "--rate", "200", "--for", "2", "--json",
+        "log", "--out", &name, "--rate", "200", "--for", "4", "--json",
     ]);
+    // The log is the one that has the port: what is on its way is lost where the one that has it ends, as the move does.
+    let begun = Instant::now();
+    while recording::unfinished(&file).is_none() {
+        assert!(begun.elapsed() < PATIENCE, "nothing is recorded");
+        sleep(Duration::from_millis(10));
+    }
+    let monitor = board.begin(&["monitor", "--json", "--rate", "50", "--for", "3"]);
     assert_eq!(board.json(&move_to("15"))["state"], "held");
     let seen = String::from_utf8(monitor.wait_with_output().unwrap().stdout).unwrap();
     let states: Vec<Value> = seen
