@@ -29,6 +29,12 @@ const RENAMED_KEYS: [RenamedKey; 8] = [
     renamed("steps", "level_n", "pretension_n"),
 ];
 
+/// Keys of `[control.limits]` that mean nothing any more, each with the reason.
+const REMOVED_LIMITS: [(&str, &str); 1] = [(
+    "hold_travel_m",
+    "the motors of a held leg rest on their screws",
+)];
+
 /// Replaces the old keys of a file by the new ones, each at its place, and gives a note for each that was found.
 ///
 /// # Errors
@@ -43,6 +49,17 @@ pub fn replace(file: &mut DeTable<'_>) -> Result<Vec<String>, TomlError> {
             notes.push(format!(
                 "note: `{old}` in `{section}` is named `{new}` now; the old name is read for this release only"
             ));
+        }
+    }
+    if let Some(DeValue::Table(control)) = file.get_mut("control").map(Spanned::get_mut)
+        && let Some(DeValue::Table(limits)) = control.get_mut("limits").map(Spanned::get_mut)
+    {
+        for (removed, reason) in REMOVED_LIMITS {
+            if limits.remove(removed).is_some() {
+                notes.push(format!(
+                    "note: `{removed}` in `control.limits` has no effect any more: {reason}; remove it, this release only ignores it"
+                ));
+            }
         }
     }
     Ok(notes)
@@ -116,6 +133,19 @@ mod tests {
         assert_eq!(replace(&mut table).unwrap().len(), of_rig_files.len());
         let [old, new] = [&old, &new].map(|text| RigFile::parse("test", text).unwrap());
         assert_eq!(old, new);
+    }
+
+    #[test]
+    fn a_removed_limit_is_noted_and_ignored() {
+        let text = "[control.limits]\nhold_travel_m = 1e-3\nslack_n = 2\n";
+        let mut table = DeTable::parse(text).unwrap().into_inner();
+        let notes = replace(&mut table).unwrap();
+        assert!(
+            notes.len() == 1 && notes[0].contains("hold_travel_m"),
+            "{notes:?}"
+        );
+        let rest = format!("{table:?}");
+        assert!(!rest.contains("hold_travel_m") && rest.contains("slack_n"));
     }
 
     #[test]

@@ -191,6 +191,67 @@ fn a_cut_tendon_lets_the_tip_swing_no_farther_than_is_said() {
     assert!((200.0..250.0).contains(farthest), "{farthest} mm:\n{text}");
 }
 
+/// Wherever the leg leans and whatever it carries, a disarm leads it down, and its tip sags no farther than SAFETY.md says when its
+/// tendons are paid out; a second disarm on the way, which pays them out at once, lets it sag farther.
+#[test]
+fn a_disarmed_leg_sags_no_farther_than_is_said() {
+    const LED_DOWN_MM: f64 = 2.0;
+    const PAID_OUT_MM: f64 = 130.0;
+    let sags = |second: &str, azimuth: u32, tilt: u32, payload: f64| {
+        let text = format!(
+            r#"
+title = "disarm"
+steps = [
+    {{ await = {{ state = "disarmed", timeout_s = 1 }} }},
+    "arm",
+    {{ wait_s = 0.5 }},
+    "disarm",
+    {second}
+    {{ await = {{ state = "disarmed", timeout_s = 20 }} }},
+    {{ wait_s = 1 }},
+    {{ measure = {{ name = "sag", quantity = "tip_moved_mm", between = [0, 1000] }} }},
+]
+[start.held]
+azimuth_deg = {azimuth}
+tilt_deg = {tilt}
+pretension_n = 70
+payload_kg = {payload}
+"#
+        );
+        let scenario = Scenario::parse("disarm", &text).unwrap();
+        // A pose that its payload does not allow at the pretension is no start.
+        let simulation = Simulation::new(&scenario, &RigFile::load(None).unwrap()).ok()?;
+        let summary = simulation.run(&mut InProcess::new(), &mut |_| ()).unwrap();
+        let sag = summary.measurements.iter().find(|found| found.unit == "mm");
+        Some(sag.unwrap().value)
+    };
+    let down = "{ await = { state = \"ramping_down\", timeout_s = 10 } }, \"mark\",";
+    let at_once = "\"mark\", \"disarm\",";
+    let mut farthest_mm = [0.0_f64; 2];
+    let mut starts = 0;
+    for azimuth in (0..360).step_by(60) {
+        for (tilt, payload) in [(0, 1.0), (20, 1.0), (30, 0.0), (30, 1.0), (30, 2.0)] {
+            for (farthest, second) in farthest_mm.iter_mut().zip([down, at_once]) {
+                if let Some(sag_mm) = sags(second, azimuth, tilt, payload) {
+                    *farthest = farthest.max(sag_mm);
+                    starts += 1;
+                }
+            }
+        }
+    }
+    assert!(starts > 50, "{starts} starts");
+    let [led_down, paid_out] = farthest_mm;
+    assert!(led_down <= LED_DOWN_MM, "{led_down} mm");
+    assert!(paid_out <= PAID_OUT_MM, "{paid_out} mm");
+    let page = fs::read_to_string(workspace_root().join("firmware/SAFETY.md")).unwrap();
+    for words in [
+        format!("sags by less than {LED_DOWN_MM} mm"),
+        format!("by up to {PAID_OUT_MM} mm"),
+    ] {
+        assert!(page.contains(&words), "{words}");
+    }
+}
+
 /// Wherever the leg leans and whatever it carries, an arm leaves its tip where it is.
 #[test]
 fn a_leg_is_armed_where_it_stands() {

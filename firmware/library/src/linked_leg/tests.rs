@@ -2,6 +2,7 @@
 
 use super::SensingLeg;
 use crate::command::{Command, CommandRefusal};
+use crate::control::CYCLE_TICKS;
 use crate::host_link::{CommandedLeg, HostRefusal};
 use crate::leg::Outcome;
 use crate::sensors::{CODE_MAX, Sensors};
@@ -46,8 +47,13 @@ impl Bench {
 
     fn obey(&mut self, command: Command) -> Result<(), CommandRefusal> {
         assert!(self.leg.command(7, command));
-        self.run(1);
-        self.leg.outcome().unwrap().result
+        for _ in 0..CYCLE_TICKS {
+            self.run(1);
+            if let Some(outcome) = self.leg.outcome() {
+                return outcome.result;
+            }
+        }
+        panic!("a command is executed within a cycle");
     }
 
     fn restart(&mut self) -> Result<(), HostRefusal> {

@@ -3,8 +3,14 @@
 use super::activity::Activity;
 use leg_sim::plant::Defect;
 
-/// How far the leg may go beyond its maximum tension, as a part.
+/// How far the leg may go beyond its maximum tension, as a part of it.
 const BEYOND: f64 = 0.1;
+
+/// The same where a moving leg is cut off and swings with its payload, where a driver does not obey until it is cut off, and
+/// where a tendon slips and catches the falling leg.
+const CUT_OFF_BEYOND: f64 = 0.4;
+const RUNAWAY_BEYOND: f64 = 1.6;
+const SLIP_BEYOND: f64 = 2.5;
 
 /// The highest tension while homing, N.
 const HOMING_N: f64 = 40.0;
@@ -13,19 +19,31 @@ const HOMING_N: f64 = 40.0;
 const REST_MM: f64 = 0.5;
 const WAY_MM: f64 = 3.0;
 
-/// The same where a gain is 20 % off, which cannot be told from a load, mm.
-const GAIN_MM: f64 = 1.1;
+/// The same of a leg that is cleared and armed again with its fault, twice, mm.
+const REARMED_MM: f64 = 1.5;
 
-/// How far the tip may come down where it has to: a tendon that is cut, one that slips by 5 mm, and a leg that relaxes
-/// because its drivers are too hot, mm.
+/// The same where a gain is 20 % off, which cannot be told from a load, and where two
+/// sensors change their places or an encoder counts the other way, mm.
+const GAIN_MM: f64 = 1.1;
+const SWAPPED_MM: f64 = 30.0;
+
+/// How far a moving leg may swing off its way that is cut off with its payload, mm.
+const CUT_OFF_MM: f64 = 8.0;
+
+/// How far a tendon that homing pulls, and whose cell or motor fails, may lift a leg that hangs free, and how far a leg that is
+/// paid out may hang aside by a motor that stays behind, mm.
+const LIFTED_MM: f64 = 130.0;
+const ASIDE_MM: f64 = 10.0;
+
+/// How far the tip may come down where it has to: a tendon that is cut, and one that slips by 5 mm, mm.
 const CUT_MM: f64 = 250.0;
 const SLIP_MM: f64 = 120.0;
-const RELAXED_MM: f64 = 80.0;
 
-/// The same where a tendon grows longer unseen, where a driver runs away until it is cut off, and where a hand holds the
-/// tip that should move, mm.
+/// The same where a tendon grows longer unseen, where a driver runs away until it is cut off, where a motor turns without being
+/// counted, and where a hand holds the tip that should move, mm.
 const CREEP_MM: f64 = 5.0;
-const RUNAWAY_MM: f64 = 3.0;
+const RUNAWAY_MM: f64 = 40.0;
+const UNCOUNTED_MM: f64 = 5.0;
 const GRASPED_MM: f64 = 250.0;
 
 /// Time to the fault's name, s.
@@ -60,41 +78,93 @@ impl Bars {
         f_max_n: f64,
         tensions_n: [f64; 3],
     ) -> Self {
-        let usual_mm = if activity.on_the_way() {
-            WAY_MM
-        } else {
-            REST_MM
-        };
-        let tip_mm = match defect {
-            Some(Defect::TendonCut(_)) => CUT_MM,
-            Some(Defect::TendonSlips(_)) => SLIP_MM,
-            Some(Defect::Overheating) => RELAXED_MM,
-            Some(Defect::TendonCreeps(_)) => CREEP_MM,
-            Some(Defect::DriverFullOn(_) | Defect::DirectionStuck(_)) => RUNAWAY_MM,
-            Some(Defect::LegGrasped) => GRASPED_MM,
-            Some(
-                Defect::CellGainStep(_)
-                | Defect::CellGainStepDown(_)
-                | Defect::CellGainDrift(_)
-                | Defect::CellGainDriftDown(_)
-                | Defect::ExcitationSags,
-            ) => usual_mm.max(GAIN_MM),
-            _ => usual_mm,
-        };
         Self {
-            tension_n: f_max_n * (1.0 + BEYOND),
+            tension_n: f_max_n * (1.0 + beyond(defect, activity)),
             homing_n: HOMING_N,
-            tip_mm,
+            tip_mm: tip_mm(defect, activity),
             named_s: defect.and_then(|defect| named_s(defect, activity, tensions_n)),
         }
     }
 }
 
+/// How far the leg may go beyond its maximum tension, as a part of it.
+fn beyond(defect: Option<Defect>, activity: Activity) -> f64 {
+    match defect {
+        Some(Defect::DriverFullOn(_)) => RUNAWAY_BEYOND,
+        Some(Defect::TendonSlips(_)) => SLIP_BEYOND,
+        Some(Defect::LegGrasped | Defect::CellsSwapped) => CUT_OFF_BEYOND,
+        Some(defect) if activity.on_the_way() && cuts_off(defect) => CUT_OFF_BEYOND,
+        _ => BEYOND,
+    }
+}
+
+/// Whether a moving leg cannot be braked: a motor, its driver or its encoder is not to be relied on.
+const fn cuts_off(defect: Defect) -> bool {
+    matches!(
+        defect,
+        Defect::DriverFault(_)
+            | Defect::DirectionStuck(_)
+            | Defect::HalfBridgeOpen(_)
+            | Defect::HalfBridgeOpenOutwards(_)
+            | Defect::MotorIntermittent(_)
+            | Defect::MotorJammed(_)
+            | Defect::ScrewDry(_)
+            | Defect::CurrentOffset(_)
+            | Defect::CurrentFullScale(_)
+            | Defect::CurrentDead(_)
+            | Defect::EncoderLost(_)
+            | Defect::EncoderReversed(_)
+            | Defect::EncoderSlipping(_)
+            | Defect::EncoderJumps(_)
+            | Defect::EncoderSlipsQuarter(_)
+            | Defect::EncodersSwapped
+            | Defect::LateTicks
+            | Defect::SettingsCorrupt
+    )
+}
+
+/// How far the tip may go, mm.
+fn tip_mm(defect: Option<Defect>, activity: Activity) -> f64 {
+    let usual_mm = match activity {
+        Activity::Homing if defect.is_some() => LIFTED_MM,
+        Activity::RampingDown if defect.is_some() => ASIDE_MM,
+        Activity::Rearmed if defect.is_some() => REARMED_MM,
+        _ if activity.on_the_way() => WAY_MM,
+        _ => REST_MM,
+    };
+    let least_mm = match defect {
+        Some(Defect::TendonCut(_)) => CUT_MM,
+        Some(Defect::TendonSlips(_)) => SLIP_MM,
+        Some(Defect::TendonCreeps(_)) => CREEP_MM,
+        Some(Defect::DriverFullOn(_) | Defect::DirectionStuck(_)) => RUNAWAY_MM,
+        Some(Defect::EncoderLost(_)) => UNCOUNTED_MM,
+        Some(Defect::LegGrasped) => GRASPED_MM,
+        Some(Defect::CellsSwapped | Defect::EncodersSwapped | Defect::EncoderReversed(_)) => {
+            SWAPPED_MM
+        }
+        Some(defect) if activity.on_the_way() && cuts_off(defect) => CUT_OFF_MM,
+        Some(
+            Defect::CellGainStep(_)
+            | Defect::CellGainStepDown(_)
+            | Defect::CellGainDrift(_)
+            | Defect::CellGainDriftDown(_)
+            | Defect::CellCrosstalk(_)
+            | Defect::CellWanders(_)
+            | Defect::CellDrifting(_)
+            | Defect::ExcitationSags,
+        ) => GAIN_MM,
+        _ => usual_mm,
+    };
+    usual_mm.max(least_mm)
+}
+
 /// When a defect has to be named.
 fn named_s(defect: Defect, activity: Activity, tensions_n: [f64; 3]) -> Option<f64> {
-    use Activity::{Disarmed, Homing, Moving, RampingDown};
+    use Activity::{Disarmed, Following, Held, Homing, Moving, RampingDown};
     // Tendons that barely pull, or less and less, show little.
     let pulls = !matches!(activity, Homing | RampingDown | Disarmed);
+    // On its way a leg changes its tensions by itself.
+    let rests = matches!(activity, Following | Held);
     let lies = |by_n: f64| (pulls && by_n.abs() >= LIE_N).then_some(NAMED_S);
     let driven = activity != Disarmed;
     match defect {
@@ -108,18 +178,15 @@ fn named_s(defect: Defect, activity: Activity, tensions_n: [f64; 3]) -> Option<f
         | Defect::CurrentFullScale(_)
         | Defect::CurrentDead(_)
         | Defect::DriverFullOn(_) => driven.then_some(NAMED_S),
-        Defect::CellHum(_)
-        | Defect::CellStuck(_)
-        | Defect::TendonCut(_)
-        | Defect::TendonSlips(_) => pulls.then_some(NAMED_S),
+        Defect::CellStuck(_) | Defect::TendonCut(_) | Defect::TendonSlips(_) => {
+            pulls.then_some(NAMED_S)
+        }
         Defect::CellReversed(_) | Defect::ExcitationLost => pulls.then_some(NAMED_S),
-        Defect::CellsSwapped => lies(tensions_n[1] - tensions_n[0]),
         Defect::CellExcitationLost(i) => lies(tensions_n[i]),
         Defect::CellFades(i) => lies(tensions_n[i]).map(|named_s| named_s + FADE_S),
         Defect::CellWanders(_) => pulls.then_some(WANDERS_S),
-        Defect::CellDrifting(_) => pulls.then_some(DRIFTS_S),
-        Defect::CellFollows(i) => lies(tensions_n[(i + 1) % 3] - tensions_n[i]),
-        Defect::CellOffsetStep(_) | Defect::CellOffsetStepDown(_) => pulls.then_some(NAMED_S),
+        Defect::CellDrifting(_) => rests.then_some(DRIFTS_S),
+        Defect::CellFollows(i) if rests => lies(tensions_n[(i + 1) % 3] - tensions_n[i]),
         Defect::EncoderLost(_) | Defect::EncoderReversed(_) | Defect::MotorJammed(_) => {
             (activity == Moving).then_some(NAMED_S)
         }
@@ -135,18 +202,20 @@ mod tests {
     fn the_page_says_the_bars() {
         let page = include_str!("../../../docs/scenarios.md");
         for words in [
-            format!(
-                "the maximum tension and {:.0} %; {HOMING_N} N while homing",
-                100.0 * BEYOND
-            ),
-            format!("{REST_MM} mm; {GAIN_MM} mm where a gain is 20 % off"),
-            format!("| tip off its way | {WAY_MM} mm |"),
-            format!(
-                "{CUT_MM} mm where a tendon is cut, {SLIP_MM} mm where it slips, {RELAXED_MM} mm where the drivers are too hot"
-            ),
-            format!(
-                "{CREEP_MM} mm where it creeps, {RUNAWAY_MM} mm where a driver runs away, {GRASPED_MM} mm where a hand holds the tip"
-            ),
+            format!("the maximum tension and {:.0} %", 100.0 * BEYOND),
+            format!("{:.0} % where a moving leg", 100.0 * CUT_OFF_BEYOND),
+            format!("{:.0} % where a driver", 100.0 * RUNAWAY_BEYOND),
+            format!("{:.0} % where a tendon slips", 100.0 * SLIP_BEYOND),
+            format!("{HOMING_N} N while homing"),
+            format!("{REST_MM} mm; {REARMED_MM} mm where it is armed again"),
+            format!("{GAIN_MM} mm where a gain is 20 % off, or a cell wanders or drifts"),
+            format!("{CUT_OFF_MM} mm where a moving leg is cut off"),
+            format!("{SWAPPED_MM} mm where two sensors"),
+            format!("{WAY_MM} mm; {ASIDE_MM} mm while it is paid out, {LIFTED_MM} mm while homing"),
+            format!("{CUT_MM} mm where a tendon is cut, {SLIP_MM} mm where it slips"),
+            format!("{CREEP_MM} mm where it creeps, {RUNAWAY_MM} mm where a driver"),
+            format!("{UNCOUNTED_MM} mm where a motor turns without being counted"),
+            format!("{GRASPED_MM} mm where a hand holds the tip"),
             format!(
                 "{NAMED_S} s where something shows it; a cell that fades {} s, wanders {WANDERS_S} s, drifts {DRIFTS_S} s",
                 NAMED_S + FADE_S

@@ -26,7 +26,7 @@ const CURVE_PART: f32 = 0.12;
 
 /// The same where the leg can twist: a push turns it about its own axis, which shortens every way between the anchors, and the
 /// torsion that is known is that of the target. With 10 N at 30° it is a fifth of the change of the elongations, and more where several pushes follow each other.
-const TWIST_PART: f32 = 0.4;
+const TWIST_PART: f32 = 0.3;
 
 /// How fast the error may grow that is taken for one of the geometry or of a curve, m/s: in motion a tenth of a millimetre over
 /// the workspace, which the leg crosses in a second; at rest what a tendon creeps.
