@@ -41,6 +41,7 @@ mod settings_task;
 mod slow_sensors;
 mod start;
 mod switches;
+mod tick_watchdog;
 mod watchdog;
 
 use defmt_rtt as _;

@@ -5,6 +5,7 @@
 //! contact to ground that opens: a torn wire stops the leg as well. A lockup of the processor is a break, too, and so
 //! is a halt by a debugger. The drivers' enable line (PC9) is a plain pin: it follows within a tick.
 
+use crate::tick_watchdog;
 use embassy_stm32::gpio::{AfType, AnyPin, Flex, Level, Output, OutputType, Pull, Speed};
 use embassy_stm32::pac;
 use embassy_stm32::pac::timer::regs::SrAdv;
@@ -130,10 +131,12 @@ impl PowerPins for Power {
     #[inline(always)]
     fn switch(&mut self, on: bool) {
         if on {
+            tick_watchdog::rests_in_halt(false);
             pac::TIM1.bdtr().modify(|w| w.set_moe(true));
             pac::GPIOC.bsrr().write(|w| w.set_bs(ENABLE_PIN, true));
         } else {
             off();
+            tick_watchdog::rests_in_halt(true);
         }
     }
 
@@ -157,6 +160,7 @@ pub fn off() {
 pub fn start() {
     take_breaks();
     pac::TIM1.cr1().modify(|w| w.set_cen(true));
+    tick_watchdog::start();
 }
 
 fn set_up_timer(_timer: Peri<'static, TIM1>) {
@@ -189,7 +193,7 @@ fn set_up_timer(_timer: Peri<'static, TIM1>) {
     timer.sr().write_value(SrAdv(0));
 }
 
-/// One write of BDTR: it locks itself against later ones but for the switch.
+/// One write of BDTR: it locks itself, and all that shapes the outputs, against later ones but for the switch.
 fn set_up_breaks() {
     let timer = pac::TIM1;
     timer.af1().write(|w| {
@@ -211,7 +215,7 @@ fn set_up_breaks() {
         w.set_ossr(Ossr::IDLE_LEVEL);
         w.set_aoe(false);
         w.set_moe(false);
-        w.set_lock(Lock::LEVEL1);
+        w.set_lock(Lock::LEVEL3);
     });
 }
 

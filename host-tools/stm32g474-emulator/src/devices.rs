@@ -18,6 +18,7 @@ use crate::pwr::Pwr;
 use crate::rcc::Rcc;
 use crate::tim1::Tim1;
 use crate::tim15::Tim15;
+use crate::wwdg::Wwdg;
 use inputs::Inputs;
 use lines::Lines;
 use std::cell::RefCell;
@@ -50,6 +51,8 @@ pub struct Devices {
     pub fdcan: Fdcan,
     /// IWDG.
     pub iwdg: Iwdg,
+    /// WWDG.
+    pub wwdg: Wwdg,
     /// TIM1.
     pub tim1: Tim1,
     /// TIM15.
@@ -65,6 +68,7 @@ pub struct Devices {
     /// SYSCFG.
     pub syscfg: Plain,
     debug_in_sleep: FieldPlace,
+    watchdog_halts: [FieldPlace; 2],
     lockup_breaks: FieldPlace,
     updated: bool,
     /// The pins that are routed to the breaks, and their levels.
@@ -96,6 +100,7 @@ impl Devices {
             lpuart: Lpuart::new(),
             fdcan: Fdcan::new(board.can),
             iwdg: Iwdg::new(board.lsi_hz),
+            wwdg: Wwdg::new(block("WWDG")),
             tim1: Tim1::new(block("TIM1")),
             tim15: Tim15::new(block("TIM15")),
             encoders: ENCODER_TIMERS.map(|name| EncoderTimer::new(block(name))),
@@ -103,6 +108,7 @@ impl Devices {
             analogue: BTreeMap::new(),
             sampled: RefCell::default(),
             debug_in_sleep: dbgmcu.registers().field("CR", "DBG_SLEEP"),
+            watchdog_halts: ["IWDG", "WWDG"].map(|dog| dbgmcu.registers().field("APB1LFZR", dog)),
             lockup_breaks: syscfg.registers().field("CFGR2", "CLL"),
             dbgmcu,
             syscfg,
@@ -171,6 +177,7 @@ impl Devices {
             "LPUART1" => &mut self.lpuart,
             "FDCAN2" => &mut self.fdcan,
             "IWDG" => &mut self.iwdg,
+            "WWDG" => &mut self.wwdg,
             "TIM1" => &mut self.tim1,
             "TIM15" => &mut self.tim15,
             _ if name.starts_with("GPIO") => self.ports.iter_mut().find(|p| named(p.block()))?,
@@ -183,7 +190,7 @@ impl Devices {
     }
 
     fn all(&mut self) -> impl Iterator<Item = &mut dyn Device> {
-        let single: [&mut dyn Device; 9] = [
+        let single: [&mut dyn Device; 10] = [
             &mut self.rcc,
             &mut self.pwr,
             &mut self.syscfg,
@@ -191,6 +198,7 @@ impl Devices {
             &mut self.lpuart,
             &mut self.fdcan,
             &mut self.iwdg,
+            &mut self.wwdg,
             &mut self.tim1,
             &mut self.tim15,
         ];
@@ -245,6 +253,18 @@ impl Devices {
         registers.is_set(self.debug_in_sleep)
     }
 
+    /// A debugger has halted the processor for some cycles: the watchdogs that DBGMCU stops meanwhile count later.
+    pub fn halt_watchdogs(&mut self, cycles: u64) {
+        let halts = |place| self.dbgmcu.registers().is_set(place);
+        let [iwdg, wwdg] = self.watchdog_halts.map(halts);
+        if iwdg {
+            self.iwdg.halt(cycles);
+        }
+        if wwdg {
+            self.wwdg.halt(cycles);
+        }
+    }
+
     /// Whether a processor that is locked up breaks TIM1.
     #[must_use]
     pub fn breaks_by_lockup(&self) -> bool {
@@ -264,7 +284,7 @@ impl Devices {
     }
 
     /// Those in which something happens by itself.
-    fn acting(&mut self) -> [&mut dyn Device; 6] {
+    fn acting(&mut self) -> [&mut dyn Device; 7] {
         [
             &mut self.tim1,
             &mut self.tim15,
@@ -272,6 +292,7 @@ impl Devices {
             &mut self.lpuart,
             &mut self.fdcan,
             &mut self.iwdg,
+            &mut self.wwdg,
         ]
     }
 
@@ -360,6 +381,7 @@ impl Devices {
             lines.raise(name, level);
         }
         lines.raise("FLASH", self.flash.interrupt());
+        lines.raise("WWDG", self.wwdg.interrupt());
         lines.raise("LPUART1", self.lpuart.interrupt());
         let [first, second] = self.fdcan.interrupt_lines();
         lines.raise("FDCAN2_IT0", first);
