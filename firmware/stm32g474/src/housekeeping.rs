@@ -1,6 +1,7 @@
 //! What has to be looked after now and then: slow sensors, the watchdog, the LED.
 
 use crate::cycles::CycleCounter;
+use crate::encoders::Encoders;
 use crate::slow_sensors::SlowSensors;
 use crate::watchdog::Watchdog;
 use crate::{control, fatal};
@@ -35,6 +36,7 @@ pub async fn keep_house(
         sensors.read();
         cycles.keep_running();
         watchdog.round();
+        report_errors();
         if rounds.is_multiple_of(ROUNDS_PER_STEP) {
             let step = rounds / ROUNDS_PER_STEP;
             show(step, &mut led);
@@ -43,6 +45,16 @@ pub async fn keep_house(
             }
         }
         rounds = rounds.wrapping_add(1);
+    }
+}
+
+/// Errors of the encoders' signals are told, and nothing else: what they add up to is found by the supervisor, which compares
+/// encoders with load cells.
+fn report_errors() {
+    for (motor, error) in (1_u8..).zip(Encoders::take_errors()) {
+        if error {
+            defmt::warn!("encoder {=u8}: both tracks changed at once", motor);
+        }
     }
 }
 

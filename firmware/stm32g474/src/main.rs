@@ -33,6 +33,7 @@ mod flash;
 mod hot;
 mod housekeeping;
 mod link;
+mod memory_guard;
 mod nucleo;
 mod power;
 mod priorities;
@@ -40,6 +41,7 @@ mod serial;
 mod settings_task;
 mod slow_sensors;
 mod start;
+mod supply_watch;
 mod switches;
 mod tick_watchdog;
 mod watchdog;
@@ -54,7 +56,9 @@ async fn main(spawner: Spawner) {
     hot::load();
     let origin = fatal::origin();
     let peripherals = clocks::start();
+    memory_guard::set();
     clocks::watch();
+    supply_watch::start();
     priorities::set();
     start::start(spawner, peripherals, origin).await;
 }

@@ -2,8 +2,8 @@
 //!
 //! TIM1 counts up and down (centre-aligned). The break inputs force its outputs low, and only software can switch them
 //! on again. Break 1 (PB10) is the drivers' common fault line, low when raised; break 2 (PC3) the emergency stop, a
-//! contact to ground that opens: a torn wire stops the leg as well. A lockup of the processor is a break, too, and so
-//! is a halt by a debugger. The drivers' enable line (PC9) is a plain pin: it follows within a tick.
+//! contact to ground that opens: a torn wire stops the leg as well. What the chip finds of itself is a break, too: a
+//! lockup of the processor, a crystal that stops, a supply below 2.9 V, an ECC or parity error; and so is a halt by a debugger. The drivers' enable line (PC9) is a plain pin: it follows within a tick.
 
 use crate::tick_watchdog;
 use embassy_stm32::gpio::{AfType, AnyPin, Flex, Level, Output, OutputType, Pull, Speed};
@@ -108,7 +108,9 @@ impl Power {
         FaultLines {
             drivers: FAULT_PINS.map(|pin| !high(port_b, pin)),
             stop: high(port_c, STOP_PIN),
-            driver_break: breaks.bif(0) || breaks.sbif(),
+            // A system break shows where something was driven: the outputs are lost. Elsewhere, as where settings are read
+            // that a loss of power has damaged, it is no fault of the drivers.
+            driver_break: breaks.bif(0),
             stop_break: breaks.bif(1),
             lost,
         }
@@ -167,8 +169,14 @@ fn set_up_timer(_timer: Peri<'static, TIM1>) {
     rcc::enable_and_reset::<TIM1>();
     // A debugger that halts the processor stops the timer, which then switches its outputs off.
     pac::DBGMCU.apb2fzr().modify(|w| w.set_tim1(true));
-    // A processor that is locked up switches them off as well.
-    pac::SYSCFG.cfgr2().modify(|w| w.set_cll(true));
+    // So does a processor that is locked up, a supply that is too low, and a memory that has lost what it held. SRAM has its
+    // parity checked only where the option byte SRAM_PE says so.
+    pac::SYSCFG.cfgr2().modify(|w| {
+        w.set_cll(true);
+        w.set_pvdl(true);
+        w.set_eccl(true);
+        w.set_spl(true);
+    });
     let timer = pac::TIM1;
     timer.cr1().write(|w| {
         w.set_cms(Cms::CENTER_ALIGNED1);

@@ -2,6 +2,7 @@
 
 use crate::board::Board;
 use crate::bus::{Answers, Bus, Shared, lock};
+use crate::devices::SystemBreak;
 use crate::facts::Facts;
 use crate::image::{FLASH, Image};
 use crate::peripherals::Peripherals;
@@ -259,6 +260,7 @@ impl Chip {
         self.waits_until = peripherals.devices.flash.take_stall().unwrap_or_default();
         if peripherals.devices.flash.take_nmi() {
             self.processor.raise_nmi();
+            peripherals.break_by(SystemBreak::Ecc);
         }
         let mut converted = false;
         for &(number, level) in peripherals.devices.interrupts() {
@@ -279,7 +281,7 @@ impl Chip {
     /// The processor has locked up, and switches the pulses off if the image asks for that.
     fn lock_up(&mut self) -> Stop {
         self.locked_up = true;
-        lock(&self.peripherals).break_by_lockup();
+        lock(&self.peripherals).break_by(SystemBreak::Lockup);
         Stop::LockedUp
     }
 
@@ -308,6 +310,11 @@ impl Chip {
                 peripherals.findings.add(format!(
                     "the chip runs at {lowest_mv} mV, below its {SUPPLY_MIN_MV} mV"
                 ));
+            }
+            if peripherals.devices.pwr.detects(lowest_mv) {
+                peripherals.cycle = self.cycle;
+                peripherals.advance();
+                peripherals.break_by(SystemBreak::Supply);
             }
             return false;
         }

@@ -33,6 +33,17 @@ const MESSAGE_RAM: &str = "FDCANRAM2";
 /// The inputs of TIM1's breaks.
 const BREAK_INPUTS: [&str; 2] = ["BKIN", "BKIN2"];
 
+/// What of the chip itself breaks TIM1, where SYSCFG_CFGR2 says so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SystemBreak {
+    /// The processor has locked up.
+    Lockup,
+    /// The voltage detector finds the supply too low.
+    Supply,
+    /// The flash has read a double word with two wrong bits.
+    Ecc,
+}
+
 /// The peripherals.
 pub struct Devices {
     /// RCC.
@@ -69,7 +80,7 @@ pub struct Devices {
     pub syscfg: Plain,
     debug_in_sleep: FieldPlace,
     watchdog_halts: [FieldPlace; 2],
-    lockup_breaks: FieldPlace,
+    system_breaks: [FieldPlace; 3],
     updated: bool,
     /// The pins that are routed to the breaks, and their levels.
     break_pins: [Option<Pin>; 2],
@@ -109,7 +120,8 @@ impl Devices {
             sampled: RefCell::default(),
             debug_in_sleep: dbgmcu.registers().field("CR", "DBG_SLEEP"),
             watchdog_halts: ["IWDG", "WWDG"].map(|dog| dbgmcu.registers().field("APB1LFZR", dog)),
-            lockup_breaks: syscfg.registers().field("CFGR2", "CLL"),
+            system_breaks: ["CLL", "PVDL", "ECCL"]
+                .map(|break_| syscfg.registers().field("CFGR2", break_)),
             dbgmcu,
             syscfg,
             updated: false,
@@ -265,10 +277,11 @@ impl Devices {
         }
     }
 
-    /// Whether a processor that is locked up breaks TIM1.
+    /// Whether something of the chip breaks TIM1.
     #[must_use]
-    pub fn breaks_by_lockup(&self) -> bool {
-        self.syscfg.registers().is_set(self.lockup_breaks)
+    pub fn breaks_by(&self, cause: SystemBreak) -> bool {
+        let place = self.system_breaks.get(cause as usize);
+        place.is_some_and(|place| self.syscfg.registers().is_set(*place))
     }
 
     /// Whether the pulse timer has come to its update since the last question.

@@ -42,6 +42,7 @@ struct Places {
     update: FieldPlace,
     update_flag: FieldPlace,
     update_interrupt: FieldPlace,
+    transition_error: FieldPlace,
 }
 
 impl Places {
@@ -68,6 +69,7 @@ impl Places {
             update: file.field("EGR", "UG"),
             update_flag: file.field("SR", "UIF"),
             update_interrupt: file.field("DIER", "UIE"),
+            transition_error: file.field("SR", "TERRIF"),
         }
     }
 }
@@ -97,6 +99,13 @@ impl EncoderTimer {
             let inverted = self.places.inverted.map(|place| self.file.is_set(place));
             let backwards = inverted[0] != inverted[1];
             self.move_by(if backwards { -moved } else { moved });
+        }
+    }
+
+    /// Both tracks change at once, which is counted as nothing here.
+    pub fn break_sequence(&mut self) {
+        if self.counts() {
+            self.file.set_value(self.places.transition_error, 1);
         }
     }
 

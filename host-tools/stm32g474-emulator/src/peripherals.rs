@@ -4,7 +4,7 @@ use crate::access::AccessChecks;
 use crate::board::Board;
 use crate::clocks::Clocks;
 use crate::device::{Context, Device};
-use crate::devices::Devices;
+use crate::devices::{Devices, SystemBreak};
 use crate::facts::{Facts, Switch};
 use crate::findings::Findings;
 use crate::rcc::ResetCause;
@@ -154,10 +154,13 @@ impl Peripherals {
         self.fed = false;
     }
 
-    /// The processor has locked up: TIM1 breaks if SYSCFG says so.
-    pub fn break_by_lockup(&mut self) {
-        if self.devices.breaks_by_lockup() {
+    /// Something of the chip itself: TIM1 breaks if SYSCFG says so. All but a lockup passes.
+    pub fn break_by(&mut self, cause: SystemBreak) {
+        if self.devices.breaks_by(cause) {
             self.system_break();
+        }
+        if cause != SystemBreak::Lockup {
+            self.devices.tim1.end_system_break();
         }
     }
 
