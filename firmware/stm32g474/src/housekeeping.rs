@@ -1,8 +1,7 @@
-//! What has to be looked after now and then: slow sensors, the watchdog, the LED.
+//! What has to be looked after now and then: the watchdog, errors of the encoders, the LED.
 
 use crate::cycles::CycleCounter;
 use crate::encoders::Encoders;
-use crate::slow_sensors::SlowSensors;
 use crate::watchdog::Watchdog;
 use crate::{control, fatal};
 use embassy_stm32::gpio::Output;
@@ -22,7 +21,6 @@ const LOG_STEPS: u32 = 50;
 /// Does it for ever.
 #[embassy_executor::task]
 pub async fn keep_house(
-    mut sensors: SlowSensors,
     mut watchdog: Watchdog,
     mut cycles: CycleCounter,
     mut led: Output<'static>,
@@ -33,7 +31,6 @@ pub async fn keep_house(
         ticker.next().await;
         // After a stall or a debugger's halt no rounds are made up for: two within a tick would miss the control interrupt.
         ticker.reset();
-        sensors.read();
         cycles.keep_running();
         watchdog.round();
         report_errors();

@@ -30,6 +30,9 @@ const ENCODER_TIMERS: [&str; 3] = ["TIM2", "TIM3", "TIM4"];
 /// The message RAM of FDCAN2.
 const MESSAGE_RAM: &str = "FDCANRAM2";
 
+/// The chip's own voltage of 1.212 V with a supply of 3.3 V.
+const REFERENCE: u16 = (1_212 * 16 * 4_095 / 3_300) as u16;
+
 /// The inputs of TIM1's breaks.
 const BREAK_INPUTS: [&str; 2] = ["BKIN", "BKIN2"];
 
@@ -74,6 +77,8 @@ pub struct Devices {
     pub converters: Converters,
     /// What the board gives the converters, by pin: sums of 16 conversions.
     pub analogue: BTreeMap<Pin, u16>,
+    /// The chip's own voltage at a converter, which the supply of the chip is the reference of: a sum of 16 conversions.
+    pub reference: u16,
     /// What was converted last, by pin.
     sampled: RefCell<BTreeMap<Pin, u16>>,
     /// SYSCFG.
@@ -117,6 +122,7 @@ impl Devices {
             encoders: ENCODER_TIMERS.map(|name| EncoderTimer::new(block(name))),
             converters: Converters::new(facts),
             analogue: BTreeMap::new(),
+            reference: REFERENCE,
             sampled: RefCell::default(),
             debug_in_sleep: dbgmcu.registers().field("CR", "DBG_SLEEP"),
             watchdog_halts: ["IWDG", "WWDG"].map(|dog| dbgmcu.registers().field("APB1LFZR", dog)),
@@ -137,6 +143,7 @@ impl Devices {
             let inputs = Inputs {
                 ports: &self.ports,
                 analogue: &self.analogue,
+                reference: self.reference,
                 sampled: &self.sampled,
             };
             return Some(self.converters.read(block, offset, &inputs, context));
@@ -158,6 +165,7 @@ impl Devices {
             let inputs = Inputs {
                 ports: &self.ports,
                 analogue: &self.analogue,
+                reference: self.reference,
                 sampled: &self.sampled,
             };
             self.converters
@@ -249,6 +257,7 @@ impl Devices {
         let inputs = Inputs {
             ports: &self.ports,
             analogue: &self.analogue,
+            reference: self.reference,
             sampled: &self.sampled,
         };
         self.converters.advance(&inputs, context);

@@ -79,6 +79,41 @@ fn a_system_break_of_a_leg_that_is_off_raises_no_fault() -> Outcome {
     Ok(())
 }
 
+/// The converters' reference is the supply of the chip: if it leaves its range, no code is what it seems.
+#[test]
+fn a_reference_out_of_its_range_holds_the_leg() -> Outcome {
+    let path = image(FirmwareImage::Stm32g474)?;
+    for (reference_mv, fault) in [
+        (2_850, Some(Fault::SupplyLow)),
+        (3_150, None),
+        (3_450, None),
+        (3_750, Some(Fault::SupplyHigh)),
+    ] {
+        let mut session = driving(&path, Board::default())?;
+        let chip = session.chip().ok_or("no chip")?;
+        chip.peripherals().devices.reference = u16::try_from(1_212 * 16 * 4_095 / reference_mv)?;
+        let begun = chip.cycle();
+        let end = begun + 2 * MS;
+        while chip.cycle() < end {
+            chip.run(end);
+        }
+        let telemetry = telemetry(chip)?;
+        let supply = [Fault::SupplyLow, Fault::SupplyHigh];
+        let raised: Vec<_> = supply
+            .into_iter()
+            .filter(|one| telemetry.faults.has(*one))
+            .collect();
+        assert_eq!(raised, Vec::from_iter(fault), "{reference_mv} mV");
+        let expected = if fault.is_some() {
+            State::Held
+        } else {
+            State::Homing
+        };
+        assert_eq!(telemetry.state, expected, "{reference_mv} mV");
+    }
+    Ok(())
+}
+
 #[test]
 fn errors_of_an_encoders_signals_are_told() -> Outcome {
     let mut session = started(40)?;

@@ -2,7 +2,9 @@
 //! watchdog that ends a hung program soon.
 
 use super::wiring::{self, Route};
-use leg_firmware::board::timing::{CLOCK_HZ, PWM_TOP, SENSING_CYCLES, TICK_CYCLES};
+use leg_firmware::board::timing::{
+    CLOCK_HZ, PWM_TOP, SENSING_CYCLES, SLOW_SENSING_CYCLES, TICK_CYCLES,
+};
 use stm32g474_emulator::chip::Chip;
 use stm32g474_emulator::facts::Facts;
 use stm32g474_emulator::iwdg::LSI_RANGE_HZ;
@@ -64,6 +66,11 @@ fn numbers(chip: &Peripherals) -> Option<String> {
             "the time of ADC2's sequence, cycles,",
             injected("ADC2"),
             sensing,
+        ),
+        (
+            "the time of ADC3's sequence, cycles,",
+            injected("ADC3"),
+            Some(SLOW_SENSING_CYCLES.into()),
         ),
     ];
     let wrong = numbers

@@ -14,6 +14,12 @@ const CELLS: [Pin; 3] = [pin('C', 0), pin('C', 1), pin('C', 2)];
 const CURRENTS: [Pin; 3] = [pin('A', 4), pin('A', 6), pin('A', 7)];
 const SUPPLY: Pin = pin('B', 1);
 const TEMPERATURE: Pin = pin('B', 0);
+/// What each converter takes in a tick.
+const CONVERTED: [(&str, &[Pin]); 3] = [
+    ("ADC1", &CELLS),
+    ("ADC2", &CURRENTS),
+    ("ADC3", &[SUPPLY, TEMPERATURE]),
+];
 const PULSES: [Pin; 3] = [pin('A', 8), pin('A', 9), pin('A', 10)];
 const DIRECTIONS: [Pin; 3] = [pin('C', 6), pin('C', 7), pin('C', 8)];
 const ENABLE: Pin = pin('C', 9);
@@ -84,11 +90,11 @@ pub fn routes() -> Vec<Route> {
 
 /// An input that a converter takes in the place of another, as a sentence.
 pub fn wrong_input(chip: &mut Peripherals) -> Option<String> {
-    for (converter, pins) in [("ADC1", CELLS), ("ADC2", CURRENTS)] {
+    for (converter, pins) in CONVERTED {
         let block = Facts::of_chip().block(converter)?;
         let sequence = block.register("JSQR")?;
         let word = chip.read(block.base + sequence.offset, 4);
-        for (rank, pin) in pins.into_iter().enumerate() {
+        for (rank, &pin) in pins.iter().enumerate() {
             let input = sequence.field(&format!("JSQ{rank}"))?.value(word);
             let found = Facts::of_chip().converter_pin(converter, u8::try_from(input).ok()?);
             if found != Some(pin) {
@@ -105,12 +111,11 @@ pub fn wrong_input(chip: &mut Peripherals) -> Option<String> {
 }
 
 /// A code that a converter has, by its inputs' pins, which differs from what its pin is at: the difference in words. ADC2 is
-/// left out where it was not triggered.
+/// left out where it was not triggered; ADC3, as to read its codes clears a flag that the image looks at.
 pub fn wrong_code(chip: &mut Peripherals, untriggered: bool) -> Option<String> {
-    let converters = [("ADC1", CELLS), ("ADC2", CURRENTS)];
-    for (converter, pins) in converters.into_iter().take(2 - usize::from(untriggered)) {
+    for (converter, pins) in CONVERTED.into_iter().take(2 - usize::from(untriggered)) {
         let base = Facts::of_chip().block(converter)?;
-        for (rank, pin) in (1..).zip(pins) {
+        for (rank, &pin) in (1..).zip(pins) {
             let address = base.base + base.register(&format!("JDR{rank}"))?.offset;
             let found = chip.read(address, 4);
             let expected = chip.devices.analogue.get(&pin).copied().unwrap_or_default();
@@ -174,9 +179,15 @@ pub fn apply(chip: &mut Peripherals, sensors: &Sensors) {
     chip.devices.set_outside(RECEIVE, Outside::High);
 }
 
-/// What the pins of supply and temperature were when they were converted last.
-pub fn slow_codes(chip: &Peripherals) -> [Option<u16>; 2] {
-    [SUPPLY, TEMPERATURE].map(|pin| chip.devices.sampled(pin))
+/// The codes of supply and temperature as they were converted last; zero before. The image doubles them.
+pub fn slow_codes(chip: &Peripherals) -> [u16; 2] {
+    let level = |pin| chip.devices.sampled(pin).unwrap_or_default();
+    [SUPPLY, TEMPERATURE].map(|pin| 2 * sum_of_eight(level(pin)))
+}
+
+/// What eight conversions add up to where sixteen add up to a sum.
+fn sum_of_eight(sum: u16) -> u16 {
+    (0..8).map(|count| (sum + count) / 16).sum()
 }
 
 /// The codes of the currents as they were converted last; zero before.

@@ -16,6 +16,11 @@ const HANG_MS: u64 = 150;
 /// The longest from a hang to the reset: 109 ms of the watchdog, 60 ms to miss a task, and the start.
 const RESET_MS: u64 = 180;
 
+/// What happens to a program that makes an access that is forbidden.
+pub fn failing(image: &Path) -> String {
+    told(image, HANG_MS + 20)
+}
+
 /// The longest from a hang of the control tick to the reset.
 const HUNG_TICK_MS: u64 = 2;
 
