@@ -15,11 +15,11 @@ use leg_firmware::host_link::ResetCause;
 /// Failures in a row from which on the next start is put off, so that a debugger has time to attach.
 const HASTY_FAILURES: u32 = 3;
 
-/// How long it is put off, in steps of 1 ms.
-const REST_STEPS: u32 = 1_000;
+/// How long it is put off, in steps of 0.5 ms.
+const REST_STEPS: u32 = 2_000;
 
-/// 1 ms.
-const REST_STEP_CYCLES: u32 = leg_firmware::board::timing::CLOCK_HZ / 1_000;
+/// 0.5 ms at least, half as long again at most.
+const REST_STEP_CYCLES: u32 = leg_firmware::board::timing::CLOCK_HZ / 2_000;
 
 /// Set by the first failure: a second one, say while the first is reported, ends at once.
 static FAILING: AtomicBool = AtomicBool::new(false);

@@ -13,7 +13,8 @@
 //!   filter makes of real pulses;
 //! - cycles: how long a tick takes with the flash's wait states and caches;
 //! - CAN on a real bus: bit timing and delay compensation;
-//! - a debugger's halt, and that it switches the outputs off;
+//! - that a debugger's halt switches the timer's outputs off at once; that it resets the chip of a driven leg is shown;
+//! - what the write protection of the CCM makes of a write, which the MPU refuses before it;
 //! - what RAM keeps over a real reset or a dip of the supply, and how a real flash behaves after a cut;
 //! - whether a driver needs time between its enable and its first pulse;
 //! - the change from 16 to 170 MHz in one step: the manual asks for a microsecond at half the frequency, and embassy does

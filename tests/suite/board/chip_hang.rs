@@ -12,8 +12,8 @@ use stm32g474_emulator::chip::{Chip, Stop};
 use stm32g474_emulator::image::Image;
 use stm32g474_emulator::rcc::ResetCause;
 
-/// From the last duty that was written to the end of the pulses, at most.
-const CUT_MAX: u64 = 2 * MS;
+/// From the last duty that was written to the end of the pulses, at most: 1.6 ms, as SAFETY.md promises.
+const CUT_MAX: u64 = MS * 8 / 5;
 
 /// `b .`, an instruction that is its own successor.
 const ENDLESS: u32 = 0xe7fe;
