@@ -47,7 +47,7 @@ mistakes! {
     stack_too_small: board(
         "memory.x",
         "_flash_start = ORIGIN(FLASH);\n",
-        "_flash_start = ORIGIN(FLASH);\n_stack_start = __sheap + 2048;\n",
+        "_flash_start = ORIGIN(FLASH);\n_stack_start = (__sheap + 2055) & ~7;\n",
         "the stack has come down to the variables",
     );
     stack_that_overflows: Mistake {
