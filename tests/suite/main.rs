@@ -52,6 +52,8 @@ mod sim {
 mod board {
     mod chip_boot;
     mod chip_bus;
+    mod chip_guards;
+    mod chip_hang;
     mod chip_latency;
     mod chip_mistakes;
     mod chip_scenarios;

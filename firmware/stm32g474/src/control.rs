@@ -5,6 +5,7 @@
 
 use crate::check_ins::CHECK_INS;
 use crate::nucleo::Nucleo;
+use crate::tick_watchdog;
 use core::cell::RefCell;
 use cortex_m::peripheral::DWT;
 use critical_section::Mutex;
@@ -33,6 +34,7 @@ impl Control {
     fn tick(&mut self, started: u32) {
         self.board.late = self.timer.start(started);
         board::tick(&mut self.board, self.leg);
+        tick_watchdog::refresh();
         self.timer.end(DWT::cycle_count());
     }
 }

@@ -4,7 +4,7 @@
 //! is. The end of ADC1's sequence raises the control interrupt; ADC2, which runs in step, is then done as well.
 
 use embassy_stm32::Peri;
-use embassy_stm32::adc::{Adc, AdcConfig, Resolution};
+use embassy_stm32::adc::{Adc, AdcConfig, Instance, Resolution};
 use embassy_stm32::gpio::Flex;
 use embassy_stm32::pac;
 use embassy_stm32::pac::adc::vals::{Exten, SampleTime, Trovs};
@@ -22,7 +22,7 @@ const FROM_TIMER_1: u8 = 8;
 const SAMPLE_TIME: SampleTime = SampleTime::CYCLES47_5;
 
 /// 16 conversions make a code.
-pub const SIXTEEN: u8 = 3;
+const SIXTEEN: u8 = 3;
 
 /// Converters and pins.
 pub struct ConverterParts {
@@ -70,11 +70,11 @@ impl Converters {
             analogue(Flex::new(parts.current_2)),
             analogue(Flex::new(parts.current_3)),
         ];
-        // Calibrated and switched on, at a quarter of 170 MHz.
-        let _ = Adc::new(parts.cells, config());
-        let _ = Adc::new(parts.currents, config());
-        wait_for_timer(pac::ADC2, CURRENT_INPUTS, false);
-        wait_for_timer(pac::ADC1, CELL_INPUTS, true);
+        calibrate(parts.cells, SIXTEEN);
+        calibrate(parts.currents, SIXTEEN);
+        let sampled = |inputs: [u8; 3]| inputs.map(|input| (input, SAMPLE_TIME));
+        wait_for_timer(pac::ADC2, sampled(CURRENT_INPUTS), false);
+        wait_for_timer(pac::ADC1, sampled(CELL_INPUTS), true);
         Self { _pins: pins }
     }
 
@@ -93,21 +93,39 @@ impl Converters {
     }
 }
 
-fn config() -> AdcConfig {
-    AdcConfig {
+/// Calibrates a converter and switches it on, at a quarter of 170 MHz.
+pub fn calibrate<T: Instance<Regs = pac::adc::Adc>>(
+    converter: Peri<'static, T>,
+    oversampling_ratio: u8,
+) {
+    let config = AdcConfig {
         resolution: Some(Resolution::BITS12),
-        oversampling_ratio: Some(SIXTEEN),
+        oversampling_ratio: Some(oversampling_ratio),
         oversampling_shift: Some(0),
         ..AdcConfig::default()
-    }
+    };
+    let _ = Adc::new(converter, config);
 }
 
-fn analogue(mut pin: Flex<'static>) -> Flex<'static> {
+/// Takes a pin for a converter.
+pub fn analogue(mut pin: Flex<'static>) -> Flex<'static> {
     pin.set_as_analog();
     pin
 }
 
-fn wait_for_timer(converter: pac::adc::Adc, inputs: [u8; 3], interrupts: bool) {
+/// Lets a converter take a sequence of inputs once, and waits for it: until then it has no codes.
+pub fn convert_once(converter: pac::adc::Adc, inputs: [(u8, SampleTime); 3]) {
+    set_up(converter, inputs, Exten::DISABLED, false);
+    while !converter.isr().read().jeos() {}
+    clear(converter);
+}
+
+/// Lets a converter take a sequence of inputs at each update of TIM1.
+pub fn wait_for_timer(converter: pac::adc::Adc, inputs: [(u8, SampleTime); 3], interrupts: bool) {
+    set_up(converter, inputs, Exten::RISING_EDGE, interrupts);
+}
+
+fn set_up(converter: pac::adc::Adc, inputs: [(u8, SampleTime); 3], edge: Exten, interrupts: bool) {
     converter.cfgr().modify(|w| {
         w.set_jqdis(true);
         w.set_jdiscen(false);
@@ -117,22 +135,20 @@ fn wait_for_timer(converter: pac::adc::Adc, inputs: [u8; 3], interrupts: bool) {
         w.set_jovse(true);
         w.set_trovs(Trovs::AUTOMATIC);
     });
-    for input in inputs {
+    for (input, time) in inputs {
         let input = usize::from(input);
         if input < 10 {
-            converter.smpr().modify(|w| w.set_smp(input, SAMPLE_TIME));
+            converter.smpr().modify(|w| w.set_smp(input, time));
         } else {
-            converter
-                .smpr2()
-                .modify(|w| w.set_smp(input - 10, SAMPLE_TIME));
+            converter.smpr2().modify(|w| w.set_smp(input - 10, time));
         }
     }
     converter.jsqr().write(|w| {
         w.set_jextsel(FROM_TIMER_1);
-        w.set_jexten(Exten::RISING_EDGE);
+        w.set_jexten(edge);
         // One less than there are.
         w.set_jl(2);
-        for (rank, input) in inputs.into_iter().enumerate() {
+        for (rank, (input, _)) in inputs.into_iter().enumerate() {
             w.set_jsq(rank, input);
         }
     });
@@ -140,14 +156,15 @@ fn wait_for_timer(converter: pac::adc::Adc, inputs: [u8; 3], interrupts: bool) {
     converter.cr().modify(|w| w.set_jadstart(true));
 }
 
+/// The codes of a sequence.
 #[inline(always)]
-fn codes(converter: pac::adc::Adc) -> [u16; 3] {
+pub fn codes(converter: pac::adc::Adc) -> [u16; 3] {
     [0, 1, 2].map(|rank| converter.jdr(rank).read().jdata())
 }
 
 /// Clears the flags of a finished sequence, which ones clear.
 #[inline(always)]
-fn clear(converter: pac::adc::Adc) {
+pub fn clear(converter: pac::adc::Adc) {
     converter.isr().write(|w| {
         w.set_jeoc(true);
         w.set_jeos(true);

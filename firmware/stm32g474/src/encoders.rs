@@ -5,6 +5,7 @@
 use embassy_stm32::Peri;
 use embassy_stm32::gpio::Pull;
 use embassy_stm32::pac;
+use embassy_stm32::pac::timer::regs::SrGp16;
 use embassy_stm32::pac::timer::vals::FilterValue;
 use embassy_stm32::peripherals::{PA0, PA1, PB4, PB5, PB6, PB7, TIM2, TIM3, TIM4};
 use embassy_stm32::timer::qei::{Config, Qei};
@@ -55,6 +56,21 @@ impl Encoders {
             pac::TIM4.ccmr_input(0).modify(|w| w.set_icf(track, FILTER));
         }
         encoders
+    }
+
+    /// Which of the timers have seen both tracks change at once since the last call: noise, or a motor that is too fast for the
+    /// filter. The count is then off by two at most.
+    pub fn take_errors() -> [bool; 3] {
+        [pac::TIM2.sr(), pac::TIM3.sr(), pac::TIM4.sr()].map(|status| {
+            let error = status.read().terrif();
+            if error {
+                // Zeros clear flags and ones leave them alone.
+                let mut clear = SrGp16(u32::MAX);
+                clear.set_terrif(false);
+                status.write_value(clear);
+            }
+            error
+        })
     }
 
     /// What the counters read.

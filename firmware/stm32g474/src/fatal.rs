@@ -1,6 +1,6 @@
 //! What happens when nothing can go on: first the outputs are switched off, then the cause is kept over a reset.
 
-use crate::{clocks, power};
+use crate::{clocks, power, tick_watchdog};
 use core::mem::MaybeUninit;
 use core::panic::PanicInfo;
 use core::ptr;
@@ -15,11 +15,11 @@ use leg_firmware::host_link::ResetCause;
 /// Failures in a row from which on the next start is put off, so that a debugger has time to attach.
 const HASTY_FAILURES: u32 = 3;
 
-/// How long it is put off, in steps of 10 ms.
-const REST_STEPS: u32 = 100;
+/// How long it is put off, in steps of 0.5 ms.
+const REST_STEPS: u32 = 2_000;
 
-/// 10 ms.
-const REST_STEP_CYCLES: u32 = leg_firmware::board::timing::CLOCK_HZ / 100;
+/// 0.5 ms at least, half as long again at most.
+const REST_STEP_CYCLES: u32 = leg_firmware::board::timing::CLOCK_HZ / 2_000;
 
 /// Set by the first failure: a second one, say while the first is reported, ends at once.
 static FAILING: AtomicBool = AtomicBool::new(false);
@@ -76,6 +76,7 @@ pub fn settle() {
 pub fn end(text: &ShortText) -> ! {
     cortex_m::interrupt::disable();
     power::off();
+    tick_watchdog::refresh_if_started();
     if FAILING.swap(true, Ordering::Relaxed) {
         SCB::sys_reset();
     }
@@ -87,10 +88,11 @@ pub fn end(text: &ShortText) -> ! {
     SCB::sys_reset()
 }
 
-/// Waits, and keeps the watchdog quiet if it runs already.
+/// Waits, and keeps the watchdogs quiet if they run already.
 fn rest() {
     for _ in 0..REST_STEPS {
         pac::IWDG.kr().write(|w| w.set_key(Key::RESET));
+        tick_watchdog::refresh_if_started();
         cortex_m::asm::delay(REST_STEP_CYCLES);
     }
 }

@@ -1,7 +1,7 @@
-//! What has to be looked after now and then: slow sensors, the watchdog, the LED.
+//! What has to be looked after now and then: the watchdog, errors of the encoders, the LED.
 
 use crate::cycles::CycleCounter;
-use crate::slow_sensors::SlowSensors;
+use crate::encoders::Encoders;
 use crate::watchdog::Watchdog;
 use crate::{control, fatal};
 use embassy_stm32::gpio::Output;
@@ -21,7 +21,6 @@ const LOG_STEPS: u32 = 50;
 /// Does it for ever.
 #[embassy_executor::task]
 pub async fn keep_house(
-    mut sensors: SlowSensors,
     mut watchdog: Watchdog,
     mut cycles: CycleCounter,
     mut led: Output<'static>,
@@ -32,9 +31,9 @@ pub async fn keep_house(
         ticker.next().await;
         // After a stall or a debugger's halt no rounds are made up for: two within a tick would miss the control interrupt.
         ticker.reset();
-        sensors.read();
         cycles.keep_running();
         watchdog.round();
+        report_errors();
         if rounds.is_multiple_of(ROUNDS_PER_STEP) {
             let step = rounds / ROUNDS_PER_STEP;
             show(step, &mut led);
@@ -43,6 +42,16 @@ pub async fn keep_house(
             }
         }
         rounds = rounds.wrapping_add(1);
+    }
+}
+
+/// Errors of the encoders' signals are told, and nothing else: what they add up to is found by the supervisor, which compares
+/// encoders with load cells.
+fn report_errors() {
+    for (motor, error) in (1_u8..).zip(Encoders::take_errors()) {
+        if error {
+            defmt::warn!("encoder {=u8}: both tracks changed at once", motor);
+        }
     }
 }
 

@@ -13,7 +13,8 @@
 //!   filter makes of real pulses;
 //! - cycles: how long a tick takes with the flash's wait states and caches;
 //! - CAN on a real bus: bit timing and delay compensation;
-//! - a debugger's halt, and that it switches the outputs off;
+//! - that a debugger's halt switches the timer's outputs off at once; that it resets the chip of a driven leg is shown;
+//! - what the write protection of the CCM makes of a write, which the MPU refuses before it;
 //! - what RAM keeps over a real reset or a dip of the supply, and how a real flash behaves after a cut;
 //! - whether a driver needs time between its enable and its first pulse;
 //! - the change from 16 to 170 MHz in one step: the manual asks for a microsecond at half the frequency, and embassy does
@@ -33,6 +34,7 @@ mod flash;
 mod hot;
 mod housekeeping;
 mod link;
+mod memory_guard;
 mod nucleo;
 mod power;
 mod priorities;
@@ -40,7 +42,9 @@ mod serial;
 mod settings_task;
 mod slow_sensors;
 mod start;
+mod supply_watch;
 mod switches;
+mod tick_watchdog;
 mod watchdog;
 
 use defmt_rtt as _;
@@ -53,7 +57,9 @@ async fn main(spawner: Spawner) {
     hot::load();
     let origin = fatal::origin();
     let peripherals = clocks::start();
+    memory_guard::set();
     clocks::watch();
+    supply_watch::start();
     priorities::set();
     start::start(spawner, peripherals, origin).await;
 }

@@ -3,7 +3,8 @@
 use crate::converters::Converters;
 use crate::encoders::Encoders;
 use crate::power::Power;
-use crate::{settings_task, slow_sensors};
+use crate::settings_task;
+use crate::slow_sensors::SlowSensors;
 use leg_firmware::board::timing::PWM_TOP;
 use leg_firmware::board::{LowerHalf, PowerStage};
 use leg_firmware::drive::Drive;
@@ -14,17 +15,24 @@ pub struct Nucleo {
     stage: PowerStage<Power>,
     encoders: Encoders,
     converters: Converters,
+    slow_sensors: SlowSensors,
     /// Whether the tick under way is late, for [`LowerHalf::sense`].
     pub late: bool,
 }
 
 impl Nucleo {
     /// With the outputs off.
-    pub fn new(power: Power, encoders: Encoders, converters: Converters) -> Self {
+    pub fn new(
+        power: Power,
+        encoders: Encoders,
+        converters: Converters,
+        slow_sensors: SlowSensors,
+    ) -> Self {
         Self {
             stage: PowerStage::new(power, PWM_TOP),
             encoders,
             converters,
+            slow_sensors,
             late: false,
         }
     }
@@ -34,16 +42,17 @@ impl LowerHalf for Nucleo {
     #[inline(always)]
     fn sense(&mut self) -> Sensors {
         let codes = self.converters.take();
+        let slow = self.slow_sensors.take();
         let lost = self.stage.lost();
         let faults = self.stage.pins().fault_lines(lost).faults();
         Sensors {
             encoder_counts: self.encoders.counts(),
             cell_codes: codes.cells,
             current_codes: codes.currents,
-            supply_code: slow_sensors::supply_code(),
-            temperature_code: slow_sensors::temperature_code(),
-            // The converters run as a pair: where either stands still, neither's codes are of this tick.
-            cell_fresh: [codes.fresh; 3],
+            supply_code: slow.supply,
+            temperature_code: slow.temperature,
+            // The converters run in step: where one stands still, no code is of this tick.
+            cell_fresh: [codes.fresh && slow.fresh; 3],
             driver_fault: faults.drivers,
             emergency_stop: faults.stop,
             late: self.late,

@@ -2,9 +2,10 @@
 //!
 //! TIM1 counts up and down (centre-aligned). The break inputs force its outputs low, and only software can switch them
 //! on again. Break 1 (PB10) is the drivers' common fault line, low when raised; break 2 (PC3) the emergency stop, a
-//! contact to ground that opens: a torn wire stops the leg as well. A lockup of the processor is a break, too, and so
-//! is a halt by a debugger. The drivers' enable line (PC9) is a plain pin: it follows within a tick.
+//! contact to ground that opens: a torn wire stops the leg as well. What the chip finds of itself is a break, too: a
+//! lockup of the processor, a crystal that stops, a supply below 2.9 V, an ECC or parity error; and so is a halt by a debugger. The drivers' enable line (PC9) is a plain pin: it follows within a tick.
 
+use crate::tick_watchdog;
 use embassy_stm32::gpio::{AfType, AnyPin, Flex, Level, Output, OutputType, Pull, Speed};
 use embassy_stm32::pac;
 use embassy_stm32::pac::timer::regs::SrAdv;
@@ -107,7 +108,9 @@ impl Power {
         FaultLines {
             drivers: FAULT_PINS.map(|pin| !high(port_b, pin)),
             stop: high(port_c, STOP_PIN),
-            driver_break: breaks.bif(0) || breaks.sbif(),
+            // A system break shows where something was driven: the outputs are lost. Elsewhere, as where settings are read
+            // that a loss of power has damaged, it is no fault of the drivers.
+            driver_break: breaks.bif(0),
             stop_break: breaks.bif(1),
             lost,
         }
@@ -130,10 +133,12 @@ impl PowerPins for Power {
     #[inline(always)]
     fn switch(&mut self, on: bool) {
         if on {
+            tick_watchdog::rests_in_halt(false);
             pac::TIM1.bdtr().modify(|w| w.set_moe(true));
             pac::GPIOC.bsrr().write(|w| w.set_bs(ENABLE_PIN, true));
         } else {
             off();
+            tick_watchdog::rests_in_halt(true);
         }
     }
 
@@ -157,14 +162,21 @@ pub fn off() {
 pub fn start() {
     take_breaks();
     pac::TIM1.cr1().modify(|w| w.set_cen(true));
+    tick_watchdog::start();
 }
 
 fn set_up_timer(_timer: Peri<'static, TIM1>) {
     rcc::enable_and_reset::<TIM1>();
     // A debugger that halts the processor stops the timer, which then switches its outputs off.
     pac::DBGMCU.apb2fzr().modify(|w| w.set_tim1(true));
-    // A processor that is locked up switches them off as well.
-    pac::SYSCFG.cfgr2().modify(|w| w.set_cll(true));
+    // So does a processor that is locked up, a supply that is too low, and a memory that has lost what it held. SRAM has its
+    // parity checked only where the option byte SRAM_PE says so.
+    pac::SYSCFG.cfgr2().modify(|w| {
+        w.set_cll(true);
+        w.set_pvdl(true);
+        w.set_eccl(true);
+        w.set_spl(true);
+    });
     let timer = pac::TIM1;
     timer.cr1().write(|w| {
         w.set_cms(Cms::CENTER_ALIGNED1);
@@ -189,7 +201,7 @@ fn set_up_timer(_timer: Peri<'static, TIM1>) {
     timer.sr().write_value(SrAdv(0));
 }
 
-/// One write of BDTR: it locks itself against later ones but for the switch.
+/// One write of BDTR: it locks itself, and all that shapes the outputs, against later ones but for the switch.
 fn set_up_breaks() {
     let timer = pac::TIM1;
     timer.af1().write(|w| {
@@ -211,7 +223,7 @@ fn set_up_breaks() {
         w.set_ossr(Ossr::IDLE_LEVEL);
         w.set_aoe(false);
         w.set_moe(false);
-        w.set_lock(Lock::LEVEL1);
+        w.set_lock(Lock::LEVEL3);
     });
 }
 

@@ -76,7 +76,8 @@ pub async fn start(spawner: Spawner, p: Peripherals, origin: (ResetCause, Option
     let Some(cycles) = CycleCounter::start() else {
         fatal::end(&ShortText::new("the cycle counter is taken"));
     };
-    control::start(Nucleo::new(power, encoders, converters), leg);
+    let board = Nucleo::new(power, encoders, converters, slow_sensors);
+    control::start(board, leg);
     power::start();
     spawn(&spawner, settings_task::keep_settings(store));
     // Before the line is opened, which may wait for its hardware.
@@ -91,10 +92,7 @@ pub async fn start(spawner: Spawner, p: Peripherals, origin: (ResetCause, Option
             spawn(&spawner, can_bus::serve(node, session));
         }
     }
-    spawn(
-        &spawner,
-        housekeeping::keep_house(slow_sensors, watchdog, cycles, led),
-    );
+    spawn(&spawner, housekeeping::keep_house(watchdog, cycles, led));
 }
 
 fn spawn<S>(spawner: &Spawner, task: Result<SpawnToken<S>, SpawnError>) {

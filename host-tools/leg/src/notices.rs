@@ -21,6 +21,7 @@ pub(crate) fn notices(identity: &Identity) -> Vec<String> {
         ResetCause::BrownOut => "its supply was too low",
         ResetCause::Software => "its firmware had stopped by itself",
         ResetCause::Watchdog => "a task had not checked in with its watchdog",
+        ResetCause::HungTick => "its control tick hung",
         ResetCause::Power | ResetCause::Pin | ResetCause::Other | ResetCause::Emulated => {
             return notices;
         }
@@ -55,6 +56,12 @@ mod tests {
                 ResetCause::BrownOut,
                 "",
                 vec!["the board started anew because its supply was too low"],
+            ),
+            (
+                VERSION,
+                ResetCause::HungTick,
+                "",
+                vec!["the board started anew because its control tick hung"],
             ),
             (
                 VERSION,

@@ -2,6 +2,7 @@
 
 use crate::board::Board;
 use crate::bus::{Answers, Bus, Shared, lock};
+use crate::devices::SystemBreak;
 use crate::facts::Facts;
 use crate::image::Image;
 use crate::memory_map::{DEBUG, FLASH, PERIPHERALS, SECOND_BANK};
@@ -181,6 +182,25 @@ impl Chip {
         None
     }
 
+    /// A debugger halts the processor for some cycles, and the watchdogs that DBGMCU tells to; what happens meanwhile.
+    ///
+    /// Not modelled: timers that stand still. Their updates are no event of the halt.
+    pub fn halt_by_debugger(&mut self, cycles: u64) -> Option<Stop> {
+        let end = self.cycle + cycles;
+        while self.cycle < end {
+            let before = self.cycle;
+            let happened = self.service();
+            if matches!(happened, Some(Stop::Reset(_))) {
+                return happened;
+            }
+            self.wait_until(self.next_event.min(end));
+            let mut peripherals = lock(&self.peripherals);
+            peripherals.devices.halt_watchdogs(self.cycle - before);
+            self.next_event = self.cycle;
+        }
+        None
+    }
+
     /// The processor waits in the midst of an access.
     fn wait_until(&mut self, cycle: u64) {
         let passed = cycle.saturating_sub(self.cycle).max(1);
@@ -214,16 +234,29 @@ impl Chip {
         let mut peripherals = lock(&self.peripherals);
         peripherals.at(self.cycle);
         peripherals.advance();
-        if peripherals
-            .devices
-            .iwdg
-            .expires_at()
-            .is_some_and(|at| at <= self.cycle)
-        {
+        let watchdogs = [
+            (
+                peripherals.devices.wwdg.expires_at(),
+                ResetCause::WindowWatchdog,
+            ),
+            (
+                peripherals.devices.iwdg.expires_at(),
+                ResetCause::IndependentWatchdog,
+            ),
+        ];
+        let expired = |(at, _): &&(Option<u64>, _)| at.is_some_and(|at| at <= self.cycle);
+        if let Some((_, cause)) = watchdogs.iter().find(expired) {
             drop(peripherals);
-            return Some(self.reset(ResetCause::IndependentWatchdog));
+            return Some(self.reset(*cause));
         }
         let place = self.processor.place();
+        let driven = peripherals.devices.tim1.outputs().on;
+        if peripherals.devices.wwdg.take_refreshed() && place.exception < FIRST_INTERRUPT && driven
+        {
+            peripherals
+                .findings
+                .add("WWDG is refreshed by a task while the pulses are on: it may go on while the control interrupt hangs");
+        }
         if peripherals.take_fed() && place.exception >= FIRST_INTERRUPT {
             peripherals
                 .findings
@@ -250,7 +283,7 @@ impl Chip {
     /// The processor has locked up, and switches the pulses off if the image asks for that.
     fn lock_up(&mut self) -> Stop {
         self.locked_up = true;
-        self.peripherals().lock_up();
+        self.peripherals().break_by(SystemBreak::Lockup);
         Stop::LockedUp
     }
 
@@ -278,6 +311,9 @@ impl Chip {
                 peripherals.findings.add(format!(
                     "the chip runs at {lowest_mv} mV, below its {SUPPLY_MIN_MV} mV"
                 ));
+            }
+            if peripherals.devices.pwr.detects(lowest_mv) {
+                peripherals.break_by(SystemBreak::Supply);
             }
             return false;
         }

@@ -18,6 +18,7 @@ use crate::pwr::Pwr;
 use crate::rcc::Rcc;
 use crate::tim1::Tim1;
 use crate::tim15::Tim15;
+use crate::wwdg::Wwdg;
 use inputs::Inputs;
 use lines::Lines;
 use std::cell::RefCell;
@@ -29,8 +30,22 @@ const ENCODER_TIMERS: [&str; 3] = ["TIM2", "TIM3", "TIM4"];
 /// The message RAM of FDCAN2.
 const MESSAGE_RAM: &str = "FDCANRAM2";
 
+/// The chip's own voltage of 1.212 V with a supply of 3.3 V.
+const REFERENCE: u16 = (1_212 * 16 * 4_095 / 3_300) as u16;
+
 /// The inputs of TIM1's breaks.
 const BREAK_INPUTS: [&str; 2] = ["BKIN", "BKIN2"];
+
+/// What of the chip itself breaks TIM1, where SYSCFG_CFGR2 says so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SystemBreak {
+    /// The processor has locked up.
+    Lockup,
+    /// The voltage detector finds the supply too low.
+    Supply,
+    /// The flash has read a double word with two wrong bits.
+    Ecc,
+}
 
 /// The peripherals.
 pub struct Devices {
@@ -50,6 +65,8 @@ pub struct Devices {
     pub fdcan: Fdcan,
     /// IWDG.
     pub iwdg: Iwdg,
+    /// WWDG.
+    pub wwdg: Wwdg,
     /// TIM1.
     pub tim1: Tim1,
     /// TIM15.
@@ -60,6 +77,8 @@ pub struct Devices {
     pub converters: Converters,
     /// What the board gives the converters, by pin: sums of 16 conversions.
     pub analogue: BTreeMap<Pin, u16>,
+    /// The chip's own voltage at a converter, which the supply of the chip is the reference of: a sum of 16 conversions.
+    pub reference: u16,
     /// What was converted last, by pin.
     sampled: RefCell<BTreeMap<Pin, u16>>,
     /// SYSCFG.
@@ -67,7 +86,8 @@ pub struct Devices {
     /// The processor has locked up.
     pub locked_up: bool,
     debug_in_sleep: FieldPlace,
-    lockup_breaks: FieldPlace,
+    watchdog_halts: [FieldPlace; 2],
+    system_breaks: [FieldPlace; 3],
     updated: bool,
     /// The pins that are routed to the breaks, and their levels.
     break_pins: [Option<Pin>; 2],
@@ -98,14 +118,18 @@ impl Devices {
             lpuart: Lpuart::new(),
             fdcan: Fdcan::new(board.can),
             iwdg: Iwdg::new(board.lsi_hz),
+            wwdg: Wwdg::new(block("WWDG")),
             tim1: Tim1::new(block("TIM1")),
             tim15: Tim15::new(block("TIM15")),
             encoders: ENCODER_TIMERS.map(|name| EncoderTimer::new(block(name))),
             converters: Converters::new(facts),
             analogue: BTreeMap::new(),
+            reference: REFERENCE,
             sampled: RefCell::default(),
             debug_in_sleep: dbgmcu.registers().field("CR", "DBG_SLEEP"),
-            lockup_breaks: syscfg.registers().field("CFGR2", "CLL"),
+            watchdog_halts: ["IWDG", "WWDG"].map(|dog| dbgmcu.registers().field("APB1LFZR", dog)),
+            system_breaks: ["CLL", "PVDL", "ECCL"]
+                .map(|break_| syscfg.registers().field("CFGR2", break_)),
             dbgmcu,
             syscfg,
             locked_up: false,
@@ -122,6 +146,7 @@ impl Devices {
             let inputs = Inputs {
                 ports: &self.ports,
                 analogue: &self.analogue,
+                reference: self.reference,
                 sampled: &self.sampled,
             };
             return self.converters.read(block, offset, &inputs, context);
@@ -143,6 +168,7 @@ impl Devices {
             let inputs = Inputs {
                 ports: &self.ports,
                 analogue: &self.analogue,
+                reference: self.reference,
                 sampled: &self.sampled,
             };
             let place = (offset, value);
@@ -173,6 +199,7 @@ impl Devices {
             "LPUART1" => &mut self.lpuart,
             "FDCAN2" => &mut self.fdcan,
             "IWDG" => &mut self.iwdg,
+            "WWDG" => &mut self.wwdg,
             "TIM1" => &mut self.tim1,
             "TIM15" => &mut self.tim15,
             _ if name.starts_with("GPIO") => self.ports.iter_mut().find(|p| named(p.block()))?,
@@ -185,7 +212,7 @@ impl Devices {
     }
 
     fn all(&mut self) -> impl Iterator<Item = &mut dyn Device> {
-        let single: [&mut dyn Device; 9] = [
+        let single: [&mut dyn Device; 10] = [
             &mut self.rcc,
             &mut self.pwr,
             &mut self.syscfg,
@@ -193,6 +220,7 @@ impl Devices {
             &mut self.lpuart,
             &mut self.fdcan,
             &mut self.iwdg,
+            &mut self.wwdg,
             &mut self.tim1,
             &mut self.tim15,
         ];
@@ -223,8 +251,7 @@ impl Devices {
     /// Lets everything happen that is due, and hands on what passes between peripherals.
     pub fn advance(&mut self, context: &mut Context<'_>) {
         self.route_breaks(context);
-        let system = self.rcc.clock_failed() || self.locked_up && self.breaks_by_lockup();
-        self.tim1.set_system_break(system, context);
+        self.tim1.set_system_break(self.system_break(), context);
         for device in self.acting() {
             if device.next_event().is_some_and(|at| at <= context.cycle) {
                 device.advance(context);
@@ -233,6 +260,7 @@ impl Devices {
         let inputs = Inputs {
             ports: &self.ports,
             analogue: &self.analogue,
+            reference: self.reference,
             sampled: &self.sampled,
         };
         self.converters.advance(&inputs, context);
@@ -256,9 +284,33 @@ impl Devices {
         self.flash.nmi() || self.rcc.clock_failed()
     }
 
-    /// Whether a processor that is locked up breaks TIM1.
-    fn breaks_by_lockup(&self) -> bool {
-        self.syscfg.registers().is_set(self.lockup_breaks)
+    /// A debugger has halted the processor for some cycles: the watchdogs that DBGMCU stops meanwhile count later.
+    pub fn halt_watchdogs(&mut self, cycles: u64) {
+        let halts = |place| self.dbgmcu.registers().is_set(place);
+        let [iwdg, wwdg] = self.watchdog_halts.map(halts);
+        if iwdg {
+            self.iwdg.halt(cycles);
+        }
+        if wwdg {
+            self.wwdg.halt(cycles);
+        }
+    }
+
+    /// What lasts of what breaks TIM1: a failed clock, a lockup, wrong bits in the flash.
+    fn system_break(&self) -> bool {
+        let lasting = [
+            (self.locked_up, SystemBreak::Lockup),
+            (self.flash.nmi(), SystemBreak::Ecc),
+        ];
+        let mut lasting = lasting.into_iter();
+        self.rcc.clock_failed() || lasting.any(|(lasts, cause)| lasts && self.breaks_by(cause))
+    }
+
+    /// Whether something of the chip breaks TIM1, by SYSCFG.
+    #[must_use]
+    pub fn breaks_by(&self, cause: SystemBreak) -> bool {
+        let place = self.system_breaks.get(cause as usize);
+        place.is_some_and(|place| self.syscfg.registers().is_set(*place))
     }
 
     /// Whether the pulse timer has come to its update since the last question.
@@ -274,7 +326,7 @@ impl Devices {
     }
 
     /// Those in which something happens by itself.
-    fn acting(&mut self) -> [&mut dyn Device; 6] {
+    fn acting(&mut self) -> [&mut dyn Device; 7] {
         [
             &mut self.tim1,
             &mut self.tim15,
@@ -282,6 +334,7 @@ impl Devices {
             &mut self.lpuart,
             &mut self.fdcan,
             &mut self.iwdg,
+            &mut self.wwdg,
         ]
     }
 
@@ -370,6 +423,7 @@ impl Devices {
             lines.raise(name, level);
         }
         lines.raise("FLASH", self.flash.interrupt());
+        lines.raise("WWDG", self.wwdg.interrupt());
         lines.raise("LPUART1", self.lpuart.interrupt());
         let [first, second] = self.fdcan.interrupt_lines();
         lines.raise("FDCAN2_IT0", first);

@@ -41,6 +41,7 @@ places! {
         update: EGR.UG,
         update_flag: SR.UIF,
         update_interrupt: DIER.UIE,
+        transition_error: SR.TERRIF,
     }
     |file| {
         inputs: [FieldPlace; 2] = ["CCS0", "CCS1"].map(|name| file.field("CCMR1", name)),
@@ -74,6 +75,13 @@ impl EncoderTimer {
             let inverted = self.places.inverted.map(|place| self.file.is_set(place));
             let backwards = inverted[0] != inverted[1];
             self.move_by(if backwards { -moved } else { moved });
+        }
+    }
+
+    /// Both tracks change at once, which is counted as nothing here.
+    pub fn break_sequence(&mut self) {
+        if self.counts() {
+            self.file.set_value(self.places.transition_error, 1);
         }
     }
 

@@ -3,7 +3,7 @@
 //! It counts a clock of its own, LSI, which is as slow as 29.5 kHz and as fast as 34 kHz: STM32G474 datasheet, LSI
 //! oscillator characteristics (by memory of the datasheet; the board layer names the same). The chip says which it is.
 //!
-//! Not modelled: the halt under a debugger, low-power modes, the option byte that starts it at a reset.
+//! Not modelled: low-power modes, the option byte that starts it at a reset.
 
 #[cfg(test)]
 mod tests;
@@ -113,6 +113,13 @@ impl Iwdg {
         }
         for setting in self.settings() {
             setting.arrives = setting.arrives.map(scale);
+        }
+    }
+
+    /// A debugger halts it for some cycles.
+    pub fn halt(&mut self, cycles: u64) {
+        if let Some((fed, end)) = &mut self.running {
+            (*fed, *end) = (*fed + cycles, *end + cycles);
         }
     }
 

@@ -43,3 +43,4 @@ pub mod tim1;
 pub mod tim15;
 pub mod timer;
 pub mod trace;
+pub mod wwdg;

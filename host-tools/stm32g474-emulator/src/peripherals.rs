@@ -4,7 +4,7 @@ use crate::access::AccessChecks;
 use crate::board::Board;
 use crate::clocks::Clocks;
 use crate::device::{Context, Device};
-use crate::devices::Devices;
+use crate::devices::{Devices, SystemBreak};
 use crate::facts::{Facts, Switch};
 use crate::findings::Findings;
 use crate::rcc::ResetCause;
@@ -142,9 +142,13 @@ impl Peripherals {
         self.fed = false;
     }
 
-    /// The processor has locked up: TIM1 breaks if SYSCFG says so.
-    pub fn lock_up(&mut self) {
-        self.devices.locked_up = true;
+    /// Something of the chip itself: TIM1 breaks if SYSCFG says so. All but a lockup passes.
+    pub fn break_by(&mut self, cause: SystemBreak) {
+        self.devices.locked_up |= cause == SystemBreak::Lockup;
+        let (devices, mut context) = self.now();
+        if devices.breaks_by(cause) {
+            devices.tim1.set_system_break(true, &mut context);
+        }
         self.advance();
     }
 

@@ -7,7 +7,7 @@ use crate::memory_map::{BANK_SIZE, CCM, DEBUG, FLASH, PERIPHERALS, RAM, SECOND_B
 use fastrand::Rng;
 use rsemu::core::space::{AddressSpace, MemAttrs, MemOps, RamStore, Region, RomStore, RomWrite};
 use rsemu::core::value::Width;
-use rsemu::cpu::arm::v7m::sys::{Exception, Sys};
+use rsemu::cpu::arm::v7m::sys::{Access, Exception, Sys};
 use rsemu::cpu::arm::v7m::{ArmV7m, Config, xpsr};
 use std::sync::Arc;
 
@@ -36,6 +36,9 @@ pub struct Processor {
     nmi: bool,
     settled: bool,
 }
+
+/// The priority of a program that handles no exception.
+const BASE_PRIORITY: i32 = 256;
 
 /// The number of the first exception that is an interrupt.
 pub const FIRST_INTERRUPT: u16 = 16;
@@ -284,6 +287,14 @@ impl Processor {
             .space
             .read(u64::from(address), Width::U32, MemAttrs::DEBUG);
         word.ok().and_then(|word| u32::try_from(word).ok())
+    }
+
+    /// Whether the MPU lets the program write to an address.
+    #[must_use]
+    pub fn permits_write(&self, address: u32) -> bool {
+        let permits =
+            |system: &mut Sys| system.mpu_permits(address, Access::Write, true, BASE_PRIORITY);
+        self.core.with_sys(permits)
     }
 
     /// Sets a word of memory, as a debugger does; false where it cannot be written.

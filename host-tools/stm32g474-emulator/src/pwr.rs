@@ -1,4 +1,4 @@
-//! PWR, as far as the speed of the processor depends on it; and the limits of that speed.
+//! PWR, as far as the speed of the processor depends on it, and the limits of that speed; and the voltage detector.
 
 use crate::clocks::Clocks;
 use crate::device::{Context, Device, FieldPlace, RegisterFile};
@@ -16,12 +16,18 @@ const BOOST: &[u32] = &[
 const RANGE_1: &[u32] = &[30_000_000, 60_000_000, 90_000_000, 120_000_000, 150_000_000];
 const RANGE_2: &[u32] = &[12_000_000, 24_000_000, 26_000_000];
 
+/// The supply below which the voltage detector acts, by PLS, mV: "around" these, says ST's driver of a sister
+/// (stm32l4xx_ll_pwr.h); level 7 is a pin.
+const DETECTOR_MV: [u32; 7] = [2_000, 2_200, 2_400, 2_500, 2_600, 2_800, 2_900];
+
 /// The block.
 #[derive(Clone, Debug)]
 pub struct Pwr {
     registers: RegisterFile,
     range: FieldPlace,
     normal_mode: FieldPlace,
+    detects: FieldPlace,
+    level: FieldPlace,
 }
 
 impl Pwr {
@@ -32,6 +38,8 @@ impl Pwr {
         Self {
             range: registers.field("CR1", "VOS"),
             normal_mode: registers.field("CR5", "R1MODE"),
+            detects: registers.field("CR2", "PVDE"),
+            level: registers.field("CR2", "PLS"),
             registers,
         }
     }
@@ -46,6 +54,13 @@ impl Pwr {
             (1, true) => ("range 1 normal", RANGE_1),
             _ => ("range 2", RANGE_2),
         }
+    }
+
+    /// Whether the voltage detector finds a supply of so many millivolts too low.
+    #[must_use]
+    pub fn detects(&self, supply_mv: u32) -> bool {
+        let level = DETECTOR_MV.get(self.registers.value(self.level) as usize);
+        self.registers.is_set(self.detects) && level.is_some_and(|level| supply_mv < *level)
     }
 
     /// Reports a processor that is too fast for its voltage, or for the flash's wait states.

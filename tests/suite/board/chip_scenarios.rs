@@ -36,7 +36,7 @@ steps = [
 slack_mm = 1
 "#;
 
-/// The motor supply sags while the leg homes: the chip converts it every 10 ms.
+/// The motor supply sags while the leg homes.
 const SUPPLY: &str = r#"
 title = "The motor supply sags while the leg homes"
 steps = [
@@ -44,7 +44,7 @@ steps = [
     "home",
     { wait_s = 0.3 },
     { fault = "supply_sag" },
-    { reaction = { fault = "supply_low", state = "held", within_ms = 12 } },
+    { reaction = { fault = "supply_low", state = "held", within_ms = 2 } },
     { wait_s = 0.05 },
     "arm",
     { wait_s = 0.05 },

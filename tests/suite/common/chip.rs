@@ -31,7 +31,7 @@ pub fn at_rest() -> TickRequest {
         sensors: Sensors {
             cell_codes: [CODE_MAX / 4; 3],
             current_codes: [CODE_MAX / 2; 3],
-            supply_code: CODE_MAX / 2,
+            supply_code: CODE_MAX / 3 * 2,
             temperature_code: CODE_MAX / 4,
             cell_fresh: [true; 3],
             ..Sensors::default()

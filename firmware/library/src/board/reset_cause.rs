@@ -22,7 +22,9 @@ const LOW_POWER: u32 = 1 << 31;
 pub fn reset_cause(flags: u32, kept: Option<&CrashReport>) -> ResetCause {
     let has = |bits: u32| flags & bits != 0;
     let reported = kept.is_some_and(|kept| !kept.text.is_empty());
-    if has(INDEPENDENT_WATCHDOG | WINDOW_WATCHDOG) {
+    if has(WINDOW_WATCHDOG) {
+        ResetCause::HungTick
+    } else if has(INDEPENDENT_WATCHDOG) {
         ResetCause::Watchdog
     } else if has(BROWN_OUT) && kept.is_some() {
         ResetCause::BrownOut
@@ -56,7 +58,7 @@ mod tests {
             (PIN, ResetCause::Pin),
             (PIN | SOFTWARE, ResetCause::Pin),
             (PIN | INDEPENDENT_WATCHDOG, ResetCause::Watchdog),
-            (PIN | WINDOW_WATCHDOG, ResetCause::Watchdog),
+            (PIN | WINDOW_WATCHDOG, ResetCause::HungTick),
             (PIN | OPTION_BYTES, ResetCause::Other),
             (PIN | LOW_POWER, ResetCause::Other),
             (0, ResetCause::Other),
@@ -90,5 +92,7 @@ mod tests {
     fn a_watchdog_goes_before_what_came_with_it() {
         let all = PIN | SOFTWARE | BROWN_OUT | INDEPENDENT_WATCHDOG;
         assert_eq!(reset_cause(all, Some(&silent())), ResetCause::Watchdog);
+        let both = all | WINDOW_WATCHDOG;
+        assert_eq!(reset_cause(both, Some(&silent())), ResetCause::HungTick);
     }
 }

@@ -45,6 +45,18 @@ const CONVERSION_HALF_CYCLES: u32 = 95 + 25;
 pub const SENSING_CYCLES: u32 =
     CODES_PER_TICK * CONVERSIONS_PER_CODE * CONVERSION_HALF_CYCLES * CONVERTER_DIVISOR / 2;
 
+/// Conversions that are added up to a code of supply, temperature and the chip's own voltage.
+const SLOW_CONVERSIONS_PER_CODE: u32 = 8;
+
+/// Half cycles of the converter's clock in a conversion of the chip's own voltage: 247.5 of sampling and 12.5 of converting.
+const REFERENCE_HALF_CYCLES: u32 = 495 + 25;
+
+/// Cycles from an update to the end of the conversions of supply, temperature and the chip's own voltage.
+pub const SLOW_SENSING_CYCLES: u32 = SLOW_CONVERSIONS_PER_CODE
+    * (2 * CONVERSION_HALF_CYCLES + REFERENCE_HALF_CYCLES)
+    * CONVERTER_DIVISOR
+    / 2;
+
 /// The most that a tick may take in the control interrupt, cycles: 35 µs.
 pub const TICK_BUDGET_CYCLES: u32 = 6_000;
 
@@ -54,4 +66,5 @@ pub const START_SLACK_CYCLES: u32 = 3_000;
 
 const _: () = assert!(TICK_CYCLES == 2 * PWM_TOP as u32 * PERIODS_PER_TICK);
 const _: () = assert!(CLOCK_HZ == TICK_CYCLES * TICK_HZ as u32);
+const _: () = assert!(SLOW_SENSING_CYCLES < TICK_CYCLES);
 const _: () = assert!(SENSING_CYCLES + START_SLACK_CYCLES + TICK_BUDGET_CYCLES < TICK_CYCLES);

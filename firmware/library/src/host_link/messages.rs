@@ -125,6 +125,8 @@ pub enum ResetCause {
     Software,
     /// The watchdog: a task had not checked in.
     Watchdog,
+    /// The window watchdog: a control tick did not end, or did not come.
+    HungTick,
     /// Something else.
     Other,
     /// It was started by an emulator or in the host's process.

@@ -2,7 +2,9 @@
 //! watchdog that ends a hung program soon.
 
 use super::wiring::{self, Route};
-use leg_firmware::board::timing::{CLOCK_HZ, PWM_TOP, SENSING_CYCLES, TICK_CYCLES};
+use leg_firmware::board::timing::{
+    CLOCK_HZ, PWM_TOP, SENSING_CYCLES, SLOW_SENSING_CYCLES, TICK_CYCLES,
+};
 use stm32g474_emulator::chip::Chip;
 use stm32g474_emulator::facts::Facts;
 use stm32g474_emulator::iwdg::LSI_RANGE_HZ;
@@ -21,6 +23,9 @@ const OTHERS: [&str; 5] = [
     "FLASH",
 ];
 
+/// The longest time of the window watchdog, µs.
+const TICK_WATCHDOG_US_MAX: u64 = 2_000;
+
 /// The longest time of the watchdog, µs, where its oscillator is slowest.
 const WATCHDOG_US_MAX: u64 = 110_000;
 
@@ -31,6 +36,7 @@ pub fn unmet(chip: &Chip) -> Option<String> {
         .or_else(|| unrouted(peripherals))
         .or_else(|| wiring::wrong_input(peripherals))
         .or_else(|| watchdog(peripherals))
+        .or_else(|| tick_watchdog(peripherals))
         .or_else(|| not_preempted(chip.processor()))
 }
 
@@ -60,6 +66,11 @@ fn numbers(chip: &Peripherals) -> Option<String> {
             "the time of ADC2's sequence, cycles,",
             injected("ADC2"),
             sensing,
+        ),
+        (
+            "the time of ADC3's sequence, cycles,",
+            injected("ADC3"),
+            Some(SLOW_SENSING_CYCLES.into()),
         ),
     ];
     let wrong = numbers
@@ -96,6 +107,18 @@ fn watchdog(chip: &Peripherals) -> Option<String> {
     let us = cycles * 1_000_000 / u64::from(CLOCK_HZ);
     (us > WATCHDOG_US_MAX).then(|| {
         format!("the watchdog's time may come to {us} µs, and must not exceed {WATCHDOG_US_MAX}")
+    })
+}
+
+/// The watchdog that a tick has to refresh.
+fn tick_watchdog(chip: &Peripherals) -> Option<String> {
+    let wwdg = &chip.devices.wwdg;
+    if wwdg.expires_at().is_none() {
+        return Some("the window watchdog WWDG was not started".into());
+    }
+    let us = wwdg.timeout_cycles(&chip.clocks) * 1_000_000 / u64::from(CLOCK_HZ);
+    (us > TICK_WATCHDOG_US_MAX).then(|| {
+        format!("the window watchdog's time may come to {us} µs, and must not exceed {TICK_WATCHDOG_US_MAX}")
     })
 }
 

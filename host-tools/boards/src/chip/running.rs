@@ -58,8 +58,6 @@ pub struct Running {
     pub latency_max: u64,
     /// Whether the sensors were converted in this tick.
     converted: bool,
-    /// Supply and temperature as the program has them.
-    slow_codes: [u16; 2],
     ticks: u64,
     /// What the sensors read in this tick, with what the twin made of it once the chip has begun it.
     sensors: Sensors,
@@ -110,7 +108,6 @@ impl Running {
             waiting: VecDeque::new(),
             first: None,
             taken: None,
-            slow_codes: [0; 2],
             ticks: 0,
             sensors: Sensors::default(),
             ticked: None,
@@ -277,9 +274,8 @@ impl Running {
 
     /// The handler of the control interrupt is at its first instruction: the twin has the same tick.
     fn begin_tick(&mut self, image: &Image) -> Result<(), LinkError> {
-        self.read_slow_codes(image)?;
         self.read_corrupt(image)?;
-        let [supply_code, temperature_code] = self.slow_codes;
+        let [supply_code, temperature_code] = wiring::slow_codes(&self.chip.peripherals());
         let sensors = Sensors {
             supply_code,
             temperature_code,

@@ -14,6 +14,14 @@ const CELLS: [Pin; 3] = [pin('C', 0), pin('C', 1), pin('C', 2)];
 const CURRENTS: [Pin; 3] = [pin('A', 4), pin('A', 6), pin('A', 7)];
 const SUPPLY: Pin = pin('B', 1);
 const TEMPERATURE: Pin = pin('B', 0);
+/// What each converter takes in a tick: its pins in the order of its injected sequence, and how many conversions make a code.
+/// ADC3 takes the chip's own voltage after these.
+const CONVERTED: [(&str, &[Pin], u16); 3] = [
+    ("ADC1", &CELLS, 16),
+    ("ADC2", &CURRENTS, 16),
+    ("ADC3", &[SUPPLY, TEMPERATURE], SLOW_CONVERSIONS),
+];
+const SLOW_CONVERSIONS: u16 = 8;
 const PULSES: [Pin; 3] = [pin('A', 8), pin('A', 9), pin('A', 10)];
 const DIRECTIONS: [Pin; 3] = [pin('C', 6), pin('C', 7), pin('C', 8)];
 const ENABLE: Pin = pin('C', 9);
@@ -82,13 +90,10 @@ pub fn routes() -> Vec<Route> {
     pulses.chain(tracks).chain(others).collect()
 }
 
-/// The converters of the cells and of the currents, with their pins in the order of their injected sequences.
-const CONVERTERS: [(&str, [Pin; 3]); 2] = [("ADC1", CELLS), ("ADC2", CURRENTS)];
-
 /// An input that a converter takes in the place of another, as a sentence.
 pub fn wrong_input(chip: &Peripherals) -> Option<String> {
-    for (converter, pins) in CONVERTERS {
-        for (rank, pin) in pins.into_iter().enumerate() {
+    for (converter, pins, _) in CONVERTED {
+        for (rank, &pin) in pins.iter().enumerate() {
             let input = chip.devices.converters.injected_input(converter, rank);
             let found = input.and_then(|input| Facts::of_chip().converter_pin(converter, input));
             if found != Some(pin) {
@@ -107,10 +112,14 @@ pub fn wrong_input(chip: &Peripherals) -> Option<String> {
 /// A code that a converter has, by its inputs' pins, which differs from what its pin is at: the difference in words. ADC2 is
 /// left out where it was not triggered.
 pub fn wrong_code(chip: &Peripherals, untriggered: bool) -> Option<String> {
-    for (converter, pins) in CONVERTERS.into_iter().take(2 - usize::from(untriggered)) {
-        for (rank, pin) in pins.into_iter().enumerate() {
+    for (converter, pins, conversions) in CONVERTED {
+        if untriggered && converter == "ADC2" {
+            continue;
+        }
+        for (rank, &pin) in pins.iter().enumerate() {
             let found = chip.devices.converters.injected_code(converter, rank);
-            let expected = chip.devices.analogue.get(&pin).copied().unwrap_or_default();
+            let sum = chip.devices.analogue.get(&pin).copied().unwrap_or_default();
+            let expected = sum_of(sum, conversions);
             if found != Some(u32::from(expected)) {
                 return Some(format!(
                     "{converter}'s code {} is {}, and {} is at {expected}",
@@ -173,9 +182,15 @@ pub fn apply(chip: &mut Peripherals, sensors: &Sensors) {
     chip.devices.set_outside(RECEIVE, Outside::High);
 }
 
-/// What the pins of supply and temperature were when they were converted last.
-pub fn slow_codes(chip: &Peripherals) -> [Option<u16>; 2] {
-    [SUPPLY, TEMPERATURE].map(|pin| chip.devices.sampled(pin))
+/// The codes of supply and temperature as they were converted last; zero before. The image doubles them.
+pub fn slow_codes(chip: &Peripherals) -> [u16; 2] {
+    let level = |pin| chip.devices.sampled(pin).unwrap_or_default();
+    [SUPPLY, TEMPERATURE].map(|pin| 2 * sum_of(level(pin), SLOW_CONVERSIONS))
+}
+
+/// What so many conversions add up to where sixteen add up to a sum.
+fn sum_of(sum: u16, conversions: u16) -> u16 {
+    (0..conversions).map(|count| (sum + count) / 16).sum()
 }
 
 /// The codes of the currents as they were converted last; zero before.

@@ -3,7 +3,7 @@
 use super::{CommandStep, Measurand, Scenario, Step, TestStep};
 use crate::action::Action;
 use crate::plant::{Defect, Start};
-use leg_firmware::supervisor::{Fault, State};
+use leg_firmware::supervisor::State;
 
 /// Slack of each tendon before homing, mm.
 const SLACK_MM: f64 = 1.0;
@@ -14,9 +14,6 @@ const REST_S: f64 = 2.0;
 
 /// What homing leaves of error in the zero moves the tip by up to as much, mm: the bound of the ready scenario `homing`.
 const HOMED_TIP_MM: f64 = 0.04;
-
-/// A board converts supply and temperature as seldom, ms.
-const SLOW_SENSORS_MS: f64 = 10.0;
 
 /// Bytes that a board's serial line takes in a second: 921 600 baud, ten bits for a byte.
 const LINE_BYTES_PER_S: f64 = 92_160.0;
@@ -32,11 +29,6 @@ pub const BOARD_EXCEPTIONS: &[(&str, &str, &str)] = &[
         "every `tip_error_mm` after that",
         "may be 0.04 mm larger, and has no lower bound",
         "the bounds are for a zero without error, and homing leaves one of up to 0.01 mm",
-    ),
-    (
-        "fault_supply_low, fault_supply_high, fault_over_temperature",
-        "may take 10 ms longer",
-        "supply and temperature are converted every 10 ms, not in every tick",
     ),
     (
         "fault_bad_frame",
@@ -104,7 +96,6 @@ impl Scenario {
             scenario.steps = steps;
             scenario.start = Start::Slack { slack_mm: SLACK_MM };
         }
-        scenario.steps.iter_mut().for_each(allow_slow_sensors);
         scenario.steps = with_a_free_line(scenario.steps);
         Ok(scenario)
     }
@@ -173,17 +164,6 @@ fn with_homed_bounds(mut step: Step) -> Step {
         *between = [0.0, between[1] + HOMED_TIP_MM];
     }
     step
-}
-
-fn allow_slow_sensors(step: &mut Step) {
-    if let Step::Test(TestStep::Reaction {
-        fault: Fault::SupplyLow | Fault::SupplyHigh | Fault::OverTemperature,
-        within_ms,
-        ..
-    }) = step
-    {
-        *within_ms += SLOW_SENSORS_MS;
-    }
 }
 
 /// Before a command, a wait until what was sent as garbage is over.

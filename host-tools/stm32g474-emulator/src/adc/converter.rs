@@ -19,6 +19,8 @@ pub struct Surroundings<'a> {
     pub clock: ConverterClock,
     /// More than one converter of the group is switched on.
     pub several: bool,
+    /// The chip's own voltage is switched on.
+    pub reference: bool,
     /// What the board gives.
     pub inputs: &'a dyn AnalogueInputs,
 }

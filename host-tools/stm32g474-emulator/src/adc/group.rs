@@ -22,6 +22,7 @@ pub struct ConverterGroup {
     common: RegisterFile,
     clock: ClockPlaces,
     dual: FieldPlace,
+    reference: FieldPlace,
     /// The second converter's flags in the common status.
     second: FieldPlace,
     /// Its converters.
@@ -48,6 +49,7 @@ impl ConverterGroup {
         Some(Self {
             clock: ClockPlaces::new(&common),
             dual: common.field("CCR", "DUAL"),
+            reference: common.field("CCR", "VREFEN"),
             second: common.field("CSR", "ADRDY_SLV"),
             common,
             converters: blocks.map(Converter::new).collect(),
@@ -85,6 +87,7 @@ impl ConverterGroup {
         Surroundings {
             clock: self.clock_of(context.clocks),
             several: enabled.count() > 1,
+            reference: self.common.is_set(self.reference),
             inputs,
         }
     }

@@ -21,6 +21,11 @@ pub trait AnalogueInputs {
     /// The sum of 16 conversions of an input, 0 to 65 520; none where its pin is not in analogue mode or is not connected.
     fn sum16(&self, converter: &str, input: u8) -> Option<u16>;
 
+    /// Whether an input is the chip's own voltage, which has to be switched on.
+    fn is_reference(&self, _converter: &str, _input: u8) -> bool {
+        false
+    }
+
     /// The resistance of what drives an input, ohms.
     fn source_ohms(&self, _converter: &str, _input: u8) -> u32 {
         SOURCE_OHMS

@@ -83,13 +83,18 @@ fn without_crystal() -> Chip {
     set(&chip, "RCC", "CR", "HSEON", 1);
     set(&chip, "RCC", "CR", "CSSON", 1);
     run(&mut chip, 40_000);
-    // Its other input has no pin, and rests low.
-    for field in ["BKP0", "BKE0", "MOE"] {
-        set(&chip, "TIM1", "BDTR", field, 1);
-    }
+    listen_to_breaks(&chip);
     assert_eq!(handled(&mut chip), 0);
     chip.stop_crystal();
     chip
+}
+
+/// TIM1 is switched on, and listens to breaks of the chip.
+fn listen_to_breaks(chip: &Chip) {
+    // Its other input has no pin, and rests low.
+    for field in ["BKP0", "BKE0", "MOE"] {
+        set(chip, "TIM1", "BDTR", field, 1);
+    }
 }
 
 #[test]
@@ -133,6 +138,24 @@ fn wrong_bits_in_the_flash_interrupt_until_their_flag_is_cleared() {
     set(&chip, "FLASH", "ECCR", "ECCD", 1);
     handled(&mut chip);
     assert_eq!(handled(&mut chip), 0);
+}
+
+#[test]
+fn wrong_bits_in_the_flash_break_where_syscfg_says_so() {
+    for listens in [0, 1] {
+        let mut chip = chip(STAY);
+        set(&chip, "RCC", "APB2ENR", "TIM1EN", 1);
+        set(&chip, "RCC", "APB2ENR", "SYSCFGEN", 1);
+        set(&chip, "SYSCFG", "CFGR2", "ECCL", listens);
+        listen_to_breaks(&chip);
+        chip.peripherals().devices.flash.damage(SECOND_BANK);
+        run(&mut chip, 100);
+        assert_eq!(set(&chip, "TIM1", "SR", "SBIF", 0), 0);
+        chip.peripherals().read_flash(SECOND_BANK, 4);
+        run(&mut chip, 100);
+        assert_eq!(set(&chip, "TIM1", "BDTR", "MOE", 1), 1 - listens);
+        assert_eq!(set(&chip, "TIM1", "SR", "SBIF", 0), listens);
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Interrupts, memory and the watchdog.
 
 use super::runs::{latest, moving};
-use super::{Mistake, mistakes};
+use super::{Mistake, hangs, mistakes};
 
 const fn board(
     file: &'static str,
@@ -47,9 +47,36 @@ mistakes! {
     stack_too_small: board(
         "memory.x",
         "_flash_start = ORIGIN(FLASH);\n",
-        "_flash_start = ORIGIN(FLASH);\n_stack_start = __sheap + 2048;\n",
+        "_flash_start = ORIGIN(FLASH);\n_stack_start = (__sheap + 2055) & ~7;\n",
         "the stack has come down to the variables",
     );
+    stack_that_overflows: Mistake {
+        file: "firmware/stm32g474/src/housekeeping.rs",
+        right: "        watchdog.round();\n",
+        wrong: "        watchdog.round();
+        if embassy_time::Instant::now().as_millis() > 150 {
+            #[inline(never)]
+            fn deeper(depth: u32) -> u32 {
+                let place = [depth; 64];
+                let below = if depth == 0 { 0 } else { deeper(depth - 1) };
+                below + core::hint::black_box(&place).iter().sum::<u32>()
+            }
+            core::hint::black_box(deeper(core::hint::black_box(1_000_000)));
+        }\n",
+        run: hangs::failing,
+        report: "Software, Software, `hard fault at ",
+    };
+    write_to_the_hot_code: Mistake {
+        file: "firmware/stm32g474/src/housekeeping.rs",
+        right: "        watchdog.round();\n",
+        wrong: "        watchdog.round();
+        if embassy_time::Instant::now().as_millis() > 150 {
+            #[allow(unsafe_code)]
+            unsafe { core::ptr::write_volatile(0x1000_0100 as *mut u32, 0) };
+        }\n",
+        run: hangs::failing,
+        report: "Software, Software, `hard fault at ",
+    };
     watchdog_fed_by_an_interrupt: board(
         "firmware/stm32g474/src/control.rs",
         "    let started = DWT::cycle_count();\n",

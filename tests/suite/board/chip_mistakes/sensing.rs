@@ -13,6 +13,16 @@ const fn converters(right: &'static str, wrong: &'static str, report: &'static s
     }
 }
 
+const fn slow(right: &'static str, wrong: &'static str, report: &'static str) -> Mistake {
+    Mistake {
+        file: "firmware/stm32g474/src/slow_sensors.rs",
+        right,
+        wrong,
+        run: moving,
+        report,
+    }
+}
+
 mistakes! {
     trigger_of_another_timer: converters(
         "FROM_TIMER_1: u8 = 8;",
@@ -54,6 +64,26 @@ mistakes! {
     while !converter.isr().read().adrdy() {}
     converter.cfgr().modify(|w| {\n",
         "converts without a calibration since its power-up",
+    );
+    own_voltage_not_switched_on: slow(
+        "        pac::ADC345_COMMON.ccr().modify(|w| w.set_vrefen(true));\n",
+        "",
+        "ADC3 converts VREFINT, which VREFEN has not switched on",
+    );
+    own_voltage_sampled_too_short: slow(
+        "(18, SampleTime::CYCLES247_5)",
+        "(18, SampleTime::CYCLES92_5)",
+        "ADC3 samples input 18 for 2176 ns, too short",
+    );
+    supply_and_temperature_interchanged: slow(
+        "    (1, SampleTime::CYCLES47_5),\n    (12, SampleTime::CYCLES47_5),\n",
+        "    (12, SampleTime::CYCLES47_5),\n    (1, SampleTime::CYCLES47_5),\n",
+        "ADC3's code 1 is",
+    );
+    slow_codes_of_too_many_conversions: slow(
+        "const EIGHT: u8 = 2;",
+        "const EIGHT: u8 = 3;",
+        "ADC3",
     );
     track_with_another_function: Mistake {
         file: "firmware/stm32g474/src/encoders.rs",

@@ -1,7 +1,7 @@
 //! What has to hold while a chip runs, and how it is described where it does not.
 
 use super::{Running, take_command};
-use crate::chip::{expectations, hot, settings_page, wiring};
+use crate::chip::{expectations, hot, settings_page};
 use leg_firmware::sensors::Sensors;
 use leg_sim::link::LinkError;
 use stm32g474_emulator::chip::{Chip, Stop};
@@ -18,12 +18,6 @@ const MEMORY_TICKS: u64 = 64;
 
 /// Where the image notes that it uses other settings than those that were kept.
 const CORRUPT: &str = "leg_stm32g474::settings_task::CORRUPT";
-
-/// Where the image keeps the codes of supply and temperature.
-const SLOW_CODES: [&str; 2] = [
-    "leg_stm32g474::slow_sensors::SUPPLY",
-    "leg_stm32g474::slow_sensors::TEMPERATURE",
-];
 
 impl Running {
     /// What the breaks have to do at the beginning of a tick.
@@ -96,32 +90,6 @@ impl Running {
                 self.described_findings(image)
             ))),
         }
-    }
-
-    /// Reads the codes of supply and temperature that the tick uses: the program converts them every 10 ms, and keeps
-    /// them. They have to be those of the pins.
-    pub(super) fn read_slow_codes(&mut self, image: &Image) -> Result<(), LinkError> {
-        let converted = wiring::slow_codes(&self.chip.peripherals());
-        let codes = self.slow_codes.iter_mut().zip(converted);
-        for (name, (kept, converted)) in SLOW_CODES.into_iter().zip(codes) {
-            let address = image.variable(name);
-            let word = address.and_then(|address| {
-                let word = self.chip.processor().word(address & !3)?;
-                Some((word >> (8 * (address & 2))) as u16)
-            });
-            let Some(code) = word else {
-                return Err(LinkError::Chip(format!(
-                    "the image has no variable `{name}`"
-                )));
-            };
-            if code != *kept && Some(code) != converted {
-                return Err(LinkError::Chip(format!(
-                    "`{name}` is {code}, and its pin was {converted:?} when it was converted"
-                )));
-            }
-            *kept = code;
-        }
-        Ok(())
     }
 
     /// Reads whether the program uses other settings than those that were kept. Once it does, only whole settings in the

@@ -231,6 +231,12 @@ impl Converter {
                 " converts without a calibration since its power-up",
             );
         }
+        if around.inputs.is_reference(self.name(), input) && !around.reference {
+            self.report(
+                context,
+                " converts VREFINT, which VREFEN has not switched on",
+            );
+        }
         let ohms = around.inputs.source_ohms(self.name(), input);
         let sampled = around.clock.nanoseconds(self.sampling_halves(input));
         let needed = shortest_sampling(ohms);

@@ -1,0 +1,185 @@
+//! What the board layer sets up beside the control law: memory that nothing may write, breaks that the chip makes by itself,
+//! and what a leg that was held does after a reset.
+
+use crate::common::chip::{
+    MS, Outcome, carry_out, driving, findings, identity, identity_after, image, reply, send,
+    started, started_with, telemetry,
+};
+use leg_boards::image::FirmwareImage;
+use leg_firmware::command::Command;
+use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest, ResetCause as Told};
+use leg_firmware::supervisor::{Fault, State};
+use std::fs;
+use stm32g474_emulator::board::Board;
+use stm32g474_emulator::chip::Chip;
+use stm32g474_emulator::devices::SystemBreak;
+use stm32g474_emulator::image::Image;
+use stm32g474_emulator::rcc::ResetCause;
+
+/// The size of the stack's guard, which begins at a multiple of it.
+const GUARD: u32 = 1_024;
+
+fn outputs_on(chip: &Chip) -> bool {
+    chip.peripherals().devices.tim1.outputs().on
+}
+
+#[test]
+fn nothing_can_write_below_the_stack_or_into_the_code_of_the_ccm() -> Outcome {
+    let parsed = Image::parse(&fs::read(image(FirmwareImage::Stm32g474)?)?)?;
+    let end = parsed.symbol("__sheap").ok_or("no variables")?;
+    let stack = parsed.symbol("_stack_start").ok_or("no stack")?;
+    let mut session = started(10)?;
+    let chip = session.chip().ok_or("no chip")?;
+    let guard = end.next_multiple_of(GUARD);
+    let permits = |address| chip.processor().permits_write(address);
+    for address in (guard..guard + GUARD).step_by(4) {
+        assert!(!permits(address), "{address:#010x}");
+    }
+    assert!(
+        [end - 4, guard - 4, guard + GUARD, stack - 4]
+            .into_iter()
+            .all(permits)
+    );
+    for ccm in [0x1000_0000, 0x2001_8000] {
+        assert!(
+            (ccm..ccm + 0x8000)
+                .step_by(4)
+                .all(|address| !permits(address)),
+            "{ccm:#x}"
+        );
+    }
+    Ok(())
+}
+
+/// A word of the flash with two wrong bits, and a locked-up processor, end the pulses without a program.
+#[test]
+fn what_the_chip_finds_of_itself_ends_the_pulses() -> Outcome {
+    let path = image(FirmwareImage::Stm32g474)?;
+    for cause in [SystemBreak::Lockup, SystemBreak::Supply, SystemBreak::Ecc] {
+        let mut session = driving(&path, Board::default())?;
+        let chip = session.chip().ok_or("no chip")?;
+        chip.peripherals().break_by(cause);
+        assert!(!outputs_on(chip), "{cause:?}");
+        chip.run(chip.cycle() + MS);
+        assert!(!outputs_on(chip), "{cause:?}");
+        assert!(telemetry(chip)?.faults.has(Fault::DriverFault), "{cause:?}");
+    }
+    Ok(())
+}
+
+/// A break of the chip itself while nothing is driven, as by a damaged word among the settings, is no fault of the drivers.
+#[test]
+fn a_system_break_of_a_leg_that_is_off_raises_no_fault() -> Outcome {
+    let mut session = started(40)?;
+    let chip = session.chip().ok_or("no chip")?;
+    identity(chip)?;
+    chip.peripherals().break_by(SystemBreak::Ecc);
+    chip.run(chip.cycle() + MS);
+    assert!(!telemetry(chip)?.faults.has(Fault::DriverFault));
+    Ok(())
+}
+
+/// The converters' reference is the supply of the chip: if it leaves its range, no code is what it seems.
+#[test]
+fn a_reference_out_of_its_range_holds_the_leg() -> Outcome {
+    let path = image(FirmwareImage::Stm32g474)?;
+    for (reference_mv, fault) in [
+        (2_850, Some(Fault::SupplyLow)),
+        (3_150, None),
+        (3_450, None),
+        (3_750, Some(Fault::SupplyHigh)),
+    ] {
+        let mut session = driving(&path, Board::default())?;
+        let chip = session.chip().ok_or("no chip")?;
+        chip.peripherals().devices.reference = u16::try_from(1_212 * 16 * 4_095 / reference_mv)?;
+        let begun = chip.cycle();
+        let end = begun + 2 * MS;
+        while chip.cycle() < end {
+            chip.run(end);
+        }
+        let telemetry = telemetry(chip)?;
+        let supply = [Fault::SupplyLow, Fault::SupplyHigh];
+        let raised: Vec<_> = supply
+            .into_iter()
+            .filter(|one| telemetry.faults.has(*one))
+            .collect();
+        assert_eq!(raised, Vec::from_iter(fault), "{reference_mv} mV");
+        let expected = if fault.is_some() {
+            State::Held
+        } else {
+            State::Homing
+        };
+        assert_eq!(telemetry.state, expected, "{reference_mv} mV");
+    }
+    Ok(())
+}
+
+#[test]
+fn errors_of_an_encoders_signals_are_told() -> Outcome {
+    let mut session = started(40)?;
+    session.log_lines();
+    let chip = session.chip().ok_or("no chip")?;
+    chip.peripherals().devices.encoders[1].break_sequence();
+    let end = chip.cycle() + 25 * MS;
+    while chip.cycle() < end {
+        chip.run(end);
+    }
+    let log = session.log_lines();
+    let told = log
+        .iter()
+        .filter(|line| line.contains("encoder 2: both tracks changed at once"));
+    assert_eq!(told.count(), 1, "{log:?}");
+    Ok(())
+}
+
+#[test]
+fn a_low_brown_out_level_is_told_once_the_board_starts() -> Outcome {
+    let path = image(FirmwareImage::Stm32g474)?;
+    for (brown_out_level, expected) in [(0, 1), (4, 0)] {
+        let board = Board {
+            brown_out_level,
+            ..Board::default()
+        };
+        let mut session = started_with(&path, board, 10)?;
+        let log = session.log_lines();
+        let told = log.iter().filter(|line| line.contains("BOR_LEV"));
+        assert_eq!(told.count(), expected, "{log:?}");
+    }
+    Ok(())
+}
+
+/// A leg was held; the host clears, and the board is reset: nothing moves, whatever that host goes on to ask.
+#[test]
+fn a_held_leg_is_not_driven_after_a_clear_and_a_reset() -> Outcome {
+    let mut session = driving(&image(FirmwareImage::Stm32g474)?, Board::default())?;
+    let chip = session.chip().ok_or("no chip")?;
+    let ask = |command| HostRequest::Command { host: 1, command };
+    carry_out(chip, &ask(Command::Stop))?;
+    assert_eq!(telemetry(chip)?.state, State::Held);
+    send(chip, &ask(Command::Clear))?;
+    chip.reset(ResetCause::Pin);
+    // The host goes on as if nothing had happened.
+    for command in [Command::Clear, Command::Arm, Command::KeepAlive] {
+        let end = chip.cycle() + 60 * MS;
+        while chip.cycle() < end {
+            chip.run(end);
+            assert!(!outputs_on(chip), "before {command:?}");
+        }
+        send(chip, &ask(command))?;
+        let refused = |reply| match reply {
+            HostReply::Refused(refusal) => Some(refusal),
+            _ => None,
+        };
+        assert_eq!(reply(chip, refused)?, HostRefusal::NotIdentified);
+    }
+    assert!(!outputs_on(chip));
+    assert_eq!(identity_after(chip)?.reset, Told::Pin);
+    // One that knows of the reset has to home it first.
+    send(chip, &ask(Command::Clear))?;
+    send(chip, &ask(Command::Arm))?;
+    chip.run(chip.cycle() + 20 * MS);
+    assert!(!outputs_on(chip));
+    assert_ne!(telemetry(chip)?.state, State::Held);
+    assert_eq!(findings(chip), [""; 0]);
+    Ok(())
+}

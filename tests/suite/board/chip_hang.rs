@@ -1,0 +1,94 @@
+//! A control tick that hangs, or does not come: the window watchdog ends the pulses, and the next start tells why.
+
+use crate::common::chip::{
+    MS, Outcome, carry_out, driving, findings, identity, identity_after, image, other_settings,
+    reset_within, started,
+};
+use leg_boards::image::FirmwareImage;
+use leg_firmware::host_link::{HostRequest, ResetCause as Told};
+use std::fs;
+use stm32g474_emulator::board::Board;
+use stm32g474_emulator::chip::{Chip, Stop};
+use stm32g474_emulator::image::Image;
+use stm32g474_emulator::rcc::ResetCause;
+
+/// From the last duty that was written to the end of the pulses, at most: 1.6 ms, as SAFETY.md promises.
+const CUT_MAX: u64 = MS * 8 / 5;
+
+/// `b .`, an instruction that is its own successor.
+const ENDLESS: u32 = 0xe7fe;
+
+/// Lets a function hang at its first instruction, as a debugger would.
+fn hang(chip: &mut Chip, image: &Image, function: &str) -> Outcome {
+    let address = image.symbol(function).ok_or("no such function")? & !1;
+    let shift = 8 * (address & 2);
+    let word = chip.processor().word(address & !3).ok_or("no memory")?;
+    let word = word & !(0xffff << shift) | ENDLESS << shift;
+    assert!(chip.set_word(address & !3, word));
+    Ok(())
+}
+
+#[test]
+fn a_tick_that_hangs_ends_the_pulses_within_two_milliseconds_and_is_told() -> Outcome {
+    let path = image(FirmwareImage::Stm32g474)?;
+    let parsed = Image::parse(&fs::read(&path)?)?;
+    let mut session = driving(&path, Board::default())?;
+    let chip = session.chip().ok_or("no chip")?;
+    let begun = chip.cycle();
+    hang(chip, &parsed, "ADC1_2")?;
+    assert_eq!(
+        reset_within(chip, CUT_MAX),
+        Some(ResetCause::WindowWatchdog)
+    );
+    eprintln!(
+        "a tick that hangs: pulses end after {} µs",
+        (chip.cycle() - begun) * 1_000 / MS
+    );
+    assert!(!chip.peripherals().devices.tim1.outputs().on);
+    // The debugger's instruction is copied over when the program starts.
+    let identity = identity_after(chip)?;
+    assert_eq!(
+        (identity.reset, identity.crash_report.as_str()),
+        (Told::HungTick, "")
+    );
+    assert!(!chip.peripherals().devices.tim1.outputs().on);
+    assert_eq!(findings(chip), [""; 0]);
+    // The independent watchdog is told apart.
+    chip.reset(ResetCause::IndependentWatchdog);
+    assert_eq!(identity_after(chip)?.reset, Told::Watchdog);
+    Ok(())
+}
+
+/// In the second bank a page is erased while ticks go on.
+#[test]
+fn ticks_go_on_while_settings_are_saved() -> Outcome {
+    let mut session = started(10)?;
+    let chip = session.chip().ok_or("no chip")?;
+    identity(chip)?;
+    carry_out(chip, &HostRequest::SetSettings(other_settings()?))?;
+    // The first tick comes later than the others.
+    chip.peripherals().devices.wwdg.take_longest_steps();
+    // Two records fill a page: some of these erase.
+    for _ in 0..4 {
+        carry_out(chip, &HostRequest::SaveSettings)?;
+    }
+    let steps = chip.peripherals().devices.wwdg.take_longest_steps();
+    eprintln!("the longest between two ticks' ends: {steps} of 64 steps of the window watchdog");
+    assert!(steps <= 8, "{steps}");
+    assert_eq!(identity(chip)?.reset, Told::Power);
+    assert_eq!(findings(chip), [""; 0]);
+    Ok(())
+}
+
+#[test]
+fn a_debugger_that_halts_a_driven_leg_resets_the_chip() -> Outcome {
+    let mut session = driving(&image(FirmwareImage::Stm32g474)?, Board::default())?;
+    let chip = session.chip().ok_or("no chip")?;
+    let reset = Stop::Reset(ResetCause::WindowWatchdog);
+    assert_eq!(chip.halt_by_debugger(CUT_MAX), Some(reset));
+    assert_eq!(identity_after(chip)?.reset, Told::HungTick);
+    // Nothing is driven: it may be halted for as long as somebody likes, and goes on.
+    assert_eq!(chip.halt_by_debugger(500 * MS), None);
+    assert_eq!(reset_within(chip, 20 * MS), None);
+    Ok(())
+}
