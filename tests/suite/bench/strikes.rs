@@ -33,24 +33,17 @@ fn require_passed(struck: &[Struck]) {
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 
-/// With nothing that strikes, and with what is found at once.
+/// With nothing that strikes, and with every fault in every state.
 #[test]
 fn a_sample_of_the_strikes_passes() {
-    for (fault, count) in [
-        ("none", 12),
-        ("cell_saturated", 4),
-        ("cell_stale", 4),
-        ("driver_fault", 4),
-        ("late_ticks", 4),
-    ] {
+    for (fault, count) in [(Some("none"), 16), (None, 160)] {
         let campaign = Campaign {
-            activities: vec![Activity::Following, Activity::Held],
-            ..campaign(fault)
+            fault: fault.map(String::from),
+            ..campaign("none")
         };
         let struck = campaign.run(count, || ());
         assert_eq!(struck.len() as u64, count);
         let rows = rows(&struck);
-        assert!(rows.iter().all(|row| row.fault == fault));
         assert_eq!(rows.iter().map(|row| row.count).sum::<u64>(), count);
         require_passed(&struck);
     }
