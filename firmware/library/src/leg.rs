@@ -52,8 +52,6 @@ impl<T: Scalar> Leg<T> {
     /// Settings that are refused.
     pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
         settings.check()?;
-        let shared = Shared::new(settings)?;
-        let twists = shared.mechanism.support.twists();
         Ok(Self {
             tick: 0,
             phase: Phase::Estimate,
@@ -61,10 +59,10 @@ impl<T: Scalar> Leg<T> {
             link: LinkWatch::new(&settings.limits),
             measurement: Measurement::new(settings),
             measured: None,
-            shared,
+            shared: Shared::new(settings)?,
             mode: Mode::boot(),
             monitors: Monitors::new(settings),
-            agreement: Agreement::new(&settings.limits, twists),
+            agreement: Agreement::new(settings),
             supervisor: Supervisor::default(),
         })
     }
@@ -118,12 +116,11 @@ impl<T: Scalar> Leg<T> {
         };
         match &mut self.mode {
             Mode::Active(active) => {
-                if let Err(error) = active.step(self.phase, shared, measured) {
-                    step.faults = fault_of_error(error);
-                }
-                // Where the next mode has time to begin.
-                if self.phase == Phase::Plan && active.led_down(shared) {
+                // In the place of the search, so that the next mode has time to begin.
+                if self.phase == Phase::Pretension && active.led_down() {
                     step.event = Some(Event::Disarm);
+                } else if let Err(error) = active.step(self.phase, shared, measured) {
+                    step.faults = fault_of_error(error);
                 }
                 return step;
             }
@@ -131,7 +128,7 @@ impl<T: Scalar> Leg<T> {
                 return homing::step(homing, shared, &mut self.measurement, measured);
             }
             Mode::RampingDown(ramping_down) => {
-                if ramping_down.relax(shared, measured) {
+                if ramping_down.relax(self.phase, shared, measured) {
                     step.event = Some(Event::Relaxed);
                 }
             }
@@ -140,8 +137,13 @@ impl<T: Scalar> Leg<T> {
         }
         // The estimate goes on while nothing is made of it, so that the leg starts from where it is.
         if self.phase == Phase::Estimate && shared.zero_m.is_some() {
-            // Where there is no result, the last pose stands.
-            let _ = shared.estimate(measured, LoadEstimation::Immediate);
+            if shared
+                .estimate(measured, LoadEstimation::Immediate)
+                .is_err()
+            {
+                // The last pose stands, but nothing is compared with it.
+                shared.estimate = None;
+            }
         }
         step
     }
@@ -205,10 +207,10 @@ impl<T: Scalar> Leg<T> {
             Mode::Held(_) if self.agreement.watches() => false,
             _ => return self.agreement.end(),
         };
-        if let Some(estimate) = &self.shared.estimate
-            && let Some(error) = &estimate.length_error
-        {
-            self.agreement.watch(error, moving);
+        let estimate = self.shared.estimate.as_ref();
+        match estimate.and_then(|estimate| estimate.length_error.as_ref()) {
+            Some(error) => self.agreement.watch(error, moving),
+            None => self.agreement.end(),
         }
     }
 
@@ -222,8 +224,14 @@ impl<T: Scalar> Leg<T> {
             counters: !latched.overlaps(FaultSet::SUSPECT_COUNTERS),
         };
         self.mode = Mode::begin(state, &mut self.shared, measured, trust);
-        // The first target comes in the next tick: pose and load have been estimated until now.
-        self.phase = Phase::Command;
+        if state == State::Active {
+            // The first target comes in the next tick: pose and load have been estimated until now.
+            self.phase = Phase::Command;
+        }
+        if latched.has(Fault::EncoderJump) {
+            // What was counted is lost.
+            self.shared.zero_m = None;
+        }
     }
 
     /// Starts in the place of another leg on the same board: with its count of ticks and the faults that nobody has cleared.

@@ -40,8 +40,8 @@ fn table() -> String {
     format!(
         "code  fault                         reaction   raised when\n{rows}\n\
          limit: the leg goes on with what is possible; ends with its cause.\n\
-         hold: the leg stays where it is, its tendons kept above the minimum tension.\n\
-         ramp down: the tendons are paid out until they barely pull, then the drivers are off.\n\
+         hold: the leg brakes and rests on its screws; its drivers stay on.\n\
+         ramp down: the tendons are paid out by their counters, then the drivers are off.\n\
          gate off: the drivers are off at once; the screws hold.\n\
          All but limits end by `clear` alone, once their cause is gone.\n"
     )

@@ -14,9 +14,9 @@ pub(crate) enum LegCommand {
     ///
     /// A leg in hold stays in hold; one whose drivers a fault switched off is then disarmed.
     Clear(LegArgs),
-    /// Pays the tendons out until they barely pull and switches the drivers off; the screws hold.
+    /// Leads the leg straight down, pays its tendons out and switches the drivers off; the screws hold.
     Disarm(LegArgs),
-    /// Holds the leg where it is, with its tendons taut.
+    /// Holds the leg where it is, on its screws.
     ///
     /// A leg that is homed and disarmed is armed first.
     Hold(LegArgs),

@@ -54,6 +54,7 @@ pub fn named(name: &str) -> Option<&'static ReadyRig> {
 mod tests {
     use super::READY_RIGS;
     use crate::rig_file::RigFile;
+    use leg_firmware::settings::Gains;
 
     #[test]
     fn every_support_of_fig_2_has_a_ready_rig_that_is_table_1_otherwise_or_leans_less() {
@@ -69,6 +70,11 @@ mod tests {
                 support: table_1.support,
                 critical_n: table_1.critical_n,
                 tilt_deg: table_1.tilt_deg,
+                // The limit on what a push twists.
+                gains: Gains {
+                    limits: table_1.gains.limits,
+                    ..file.gains
+                },
                 ..file
             };
             assert_eq!(same, table_1, "{}", rig.name);

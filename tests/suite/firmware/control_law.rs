@@ -17,7 +17,10 @@ const TICK_S: f64 = 1.0 / TICK_HZ as f64;
 
 fn settings(zero: Option<[f64; 3]>) -> Settings {
     let rig = RigFile::load(None).unwrap();
-    control_settings::settings(&rig, &rig.gains, zero)
+    let mut settings = control_settings::settings(&rig, &rig.gains, zero);
+    // The motors of the bench draw nothing.
+    settings.limits.disagreement_time_s = 10.0;
+    settings
 }
 
 /// A motor at a place, without a tension.
@@ -211,11 +214,13 @@ impl Bench {
 
     fn obey(&mut self, command: Command) -> Result<(), CommandRefusal> {
         assert!(self.leg.command(7, command));
-        self.run(1);
-        let Some(Outcome { number: 7, result }) = self.leg.outcome() else {
-            panic!("no outcome of {command:?}");
-        };
-        result
+        for _ in 0..CYCLE_TICKS {
+            self.run(1);
+            if let Some(Outcome { number: 7, result }) = self.leg.outcome() {
+                return result;
+            }
+        }
+        panic!("no outcome of {command:?}");
     }
 
     fn has(&self, fault: Fault) -> bool {
@@ -304,7 +309,7 @@ fn a_stop_overtakes_what_waits() {
     }
     assert_eq!(taken, 8);
     assert!(bench.leg.command(100, Command::Stop));
-    bench.run(1);
+    bench.run(u16::from(CYCLE_TICKS));
     assert_eq!(bench.leg.state(), State::Held);
     let outcomes: Vec<_> = std::iter::from_fn(|| bench.leg.outcome()).collect();
     assert_eq!(outcomes.len(), 8);

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use leg_firmware::command::Command;
+use leg_firmware::control::CYCLE_TICKS;
 use leg_firmware::leg::Leg;
 use leg_firmware::sensors::Sensors;
 use leg_firmware::supervisor::State;
@@ -27,7 +28,9 @@ fn active_leg() -> (Leg<f32>, Sensors) {
     }
     assert!(leg.command(1, Command::Arm));
     let last = *sensors.last().unwrap();
-    leg.tick(&last);
+    for _ in 0..CYCLE_TICKS {
+        leg.tick(&last);
+    }
     assert_eq!(leg.telemetry().state, State::Active);
     (leg, last)
 }

@@ -23,7 +23,10 @@ const F_MAX_N: f64 = 150.0 * 1.1;
 /// The same where a part is worn or a plug is swapped, N: these faults are not found at once, and so a swing adds more.
 const WORN_MAX_N: f64 = 150.0 * 1.15;
 
-/// Those faults.
+/// The same where a driver switches on fully by itself, N: it pulls until the motor is seen to run away.
+const RUNAWAY_MAX_N: f64 = 150.0 * 2.6;
+
+/// The faults of worn parts.
 const WORN: [&str; 18] = [
     "tendon_creeps",
     "cell_reversed",
@@ -162,11 +165,15 @@ fn run(seed: u64, rig: &RigFile) -> Result<bool, String> {
     let summary = simulation
         .run(&mut InProcess::new(), &mut |tick| watch.check(tick))
         .map_err(|error| error.to_string())?;
-    let worn = |step: &Step| match step {
-        Step::Action(Action::Fault(defect)) => WORN.contains(&defect.into()),
-        _ => false,
+    let any = |names: &[&str]| {
+        scenario.steps.iter().any(|step| match step {
+            Step::Action(Action::Fault(defect)) => names.contains(&defect.into()),
+            _ => false,
+        })
     };
-    let max_n = if scenario.steps.iter().any(worn) {
+    let max_n = if any(&["driver_full_on"]) {
+        RUNAWAY_MAX_N
+    } else if any(&WORN) {
         WORN_MAX_N
     } else {
         F_MAX_N

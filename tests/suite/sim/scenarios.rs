@@ -175,12 +175,15 @@ fn a_cut_tendon_lets_the_tip_swing_no_farther_than_is_said() {
                     let moved = summary.measurements.iter().find(|found| found.unit == "mm");
                     Some(moved.map(|moved| moved.value))
                 };
-                let texts = [text(steps), text(&found_slack)];
+                // Or by lengths and tensions that do not agree.
+                let found_apart = found_slack.replace("fault = \"slack\"", "fault = \"residual\"");
+                let texts = [text(steps), text(&found_slack), text(&found_apart)];
                 let Some(by_jump) = swing(&texts[0]) else {
                     continue;
                 };
-                let moved_mm = by_jump.or_else(|| swing(&texts[1]).flatten());
-                let [text, _] = texts;
+                let later = || texts[1..].iter().find_map(|text| swing(text).flatten());
+                let moved_mm = by_jump.or_else(later);
+                let [text, ..] = texts;
                 assert!(moved_mm.is_some(), "neither fault came:\n{text}");
                 swings_mm.push((moved_mm.unwrap(), text));
             }
@@ -192,21 +195,21 @@ fn a_cut_tendon_lets_the_tip_swing_no_farther_than_is_said() {
 }
 
 /// Wherever the leg leans and whatever it carries, a disarm leads it down, and its tip sags no farther than SAFETY.md says when its
-/// tendons are paid out; a second disarm on the way, which pays them out at once, lets it sag farther.
+/// tendons are paid out. One whose sensors are not watched yet, 0.05 s after the arm, is paid out where it is, and sags farther.
 #[test]
 fn a_disarmed_leg_sags_no_farther_than_is_said() {
     const LED_DOWN_MM: f64 = 2.0;
     const PAID_OUT_MM: f64 = 130.0;
-    let sags = |second: &str, azimuth: u32, tilt: u32, payload: f64| {
+    let sags = |[before, after]: [&str; 2], azimuth: u32, tilt: u32, payload: f64| {
         let text = format!(
             r#"
 title = "disarm"
 steps = [
     {{ await = {{ state = "disarmed", timeout_s = 1 }} }},
     "arm",
-    {{ wait_s = 0.5 }},
+    {before}
     "disarm",
-    {second}
+    {after}
     {{ await = {{ state = "disarmed", timeout_s = 20 }} }},
     {{ wait_s = 1 }},
     {{ measure = {{ name = "sag", quantity = "tip_moved_mm", between = [0, 1000] }} }},
@@ -225,14 +228,17 @@ payload_kg = {payload}
         let sag = summary.measurements.iter().find(|found| found.unit == "mm");
         Some(sag.unwrap().value)
     };
-    let down = "{ await = { state = \"ramping_down\", timeout_s = 10 } }, \"mark\",";
-    let at_once = "\"mark\", \"disarm\",";
+    let down = [
+        "{ wait_s = 0.5 },",
+        "{ await = { state = \"ramping_down\", timeout_s = 10 } }, \"mark\",",
+    ];
+    let at_once = ["{ wait_s = 0.05 }, \"mark\",", ""];
     let mut farthest_mm = [0.0_f64; 2];
     let mut starts = 0;
     for azimuth in (0..360).step_by(60) {
         for (tilt, payload) in [(0, 1.0), (20, 1.0), (30, 0.0), (30, 1.0), (30, 2.0)] {
-            for (farthest, second) in farthest_mm.iter_mut().zip([down, at_once]) {
-                if let Some(sag_mm) = sags(second, azimuth, tilt, payload) {
+            for (farthest, around) in farthest_mm.iter_mut().zip([down, at_once]) {
+                if let Some(sag_mm) = sags(around, azimuth, tilt, payload) {
                     *farthest = farthest.max(sag_mm);
                     starts += 1;
                 }

@@ -17,6 +17,8 @@ pub struct Active<T> {
     pub tensioned: bool,
     /// Whether the leg is led straight down, to be disarmed there.
     pub disarming: bool,
+    /// Whether there was no target on the way since then.
+    stuck: bool,
     slack: Slack<T>,
 }
 
@@ -55,6 +57,7 @@ impl<T: Scalar> Active<T> {
             ),
             tensioned: false,
             disarming: false,
+            stuck: false,
             slack: Slack {
                 left_m: taut.then(T::zero),
                 cycles: 0,
@@ -88,13 +91,14 @@ impl<T: Scalar> Active<T> {
     /// Leads the leg straight down, to be disarmed there.
     pub fn disarm(&mut self) {
         self.disarming = true;
+        self.stuck = false;
         self.trajectory.go(Direction::down().half_tangent());
     }
 
     /// Whether it was led down, or cannot be.
     #[inline(always)]
-    pub fn led_down(&self, shared: &Shared<T>) -> bool {
-        self.disarming && (!self.trajectory.moving() || shared.refused)
+    pub fn led_down(&self) -> bool {
+        self.disarming && (!self.trajectory.moving() || self.stuck)
     }
 
     /// Whether the tendons take too long to become taut.
@@ -185,6 +189,7 @@ impl<T: Scalar> Active<T> {
             self.trajectory.start(target.direction.half_tangent());
         }
         shared.refused = true;
+        self.stuck = true;
     }
 
     /// Takes from the goals how far the tendons are still kept from them, m, and lessens that.

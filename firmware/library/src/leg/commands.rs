@@ -109,11 +109,13 @@ impl<T: Scalar> Leg<T> {
         Ok(())
     }
 
-    /// Leads a leg that knows its pose down before its tendons are paid out; a second command pays them out at once.
+    /// Leads a leg that knows its pose down before its tendons are paid out. A command that is repeated changes nothing.
     fn disarm(&mut self, measured: &Measured<T>) -> Result<(), CommandRefusal> {
         let trusted = self.agreement.watches() && self.unfaulted().is_ok();
-        let disarming = self.mode.active().is_some_and(|active| active.disarming);
-        if !trusted || disarming {
+        if self.mode.active().is_some_and(|active| active.disarming) {
+            return Ok(());
+        }
+        if !trusted {
             return self.end(Event::Disarm, measured);
         }
         if let Some(state) = self.supervisor.next(self.mode.state(), Event::LeadDown) {

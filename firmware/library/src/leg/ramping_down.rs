@@ -1,5 +1,6 @@
 //! Ramping down: the leg follows no command, and its tendons are paid out by their counters alone.
 
+use super::phase::Phase;
 use super::shared::Shared;
 use crate::control::{AxisGoal, Measured, bounds, ticks};
 use leg_model::Scalar;
@@ -34,7 +35,11 @@ impl<T: Scalar> RampingDown<T> {
 
     /// One tick: true when every tendon has arrived, or a motor did not in time.
     #[inline(never)]
-    pub fn relax(&mut self, shared: &mut Shared<T>, measured: &Measured<T>) -> bool {
+    pub fn relax(&mut self, phase: Phase, shared: &mut Shared<T>, measured: &Measured<T>) -> bool {
+        if self.goals.is_none() && phase == Phase::Estimate {
+            // There is no time for both.
+            return false;
+        }
         let goals = *self
             .goals
             .get_or_insert_with(|| goals(shared, self.rest_m, self.trusted));

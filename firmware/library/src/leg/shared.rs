@@ -59,6 +59,8 @@ pub struct LegLimits<T> {
 }
 
 impl<T: Scalar> LegLimits<T> {
+    // Apart, so that its kinematics take stack only as long as they run.
+    #[inline(never)]
     fn new(settings: &Settings, mechanism: &Mechanism<T>) -> Result<Self, Error> {
         let limits = &settings.limits;
         let down = Direction::down();

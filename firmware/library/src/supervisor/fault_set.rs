@@ -30,7 +30,7 @@ impl FaultSet {
     /// No fault.
     pub const NONE: Self = Self(0);
 
-    /// Those that a counter or its motor may cause: no motor follows its counter while one is latched.
+    /// Those that a counter or its motor may cause: a moving leg is not braked by its counters once one is latched.
     pub const SUSPECT_COUNTERS: Self = Self::single(Fault::EncoderJump)
         .union(Self::single(Fault::EncoderStill))
         .union(Self::single(Fault::EncoderReversed))

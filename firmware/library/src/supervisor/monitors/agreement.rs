@@ -5,8 +5,8 @@
 //! is. A load cell that lies changes it by its error over the stiffness of the tendon, and so does a lost count.
 
 use crate::control::{CYCLE_S, LengthError, LowPass, bounds::clamp_symmetric};
-use crate::settings::Limits;
-use leg_model::Scalar;
+use crate::settings::Settings;
+use leg_model::{Scalar, SupportKind};
 
 /// Time constant of the filter of what is beyond the allowed change, s: a load cell that loses its tension is found within a
 /// third of it, before the filters of the load have moved the leg.
@@ -43,7 +43,7 @@ pub struct Agreement<T> {
     reference: Option<Reference<T>>,
     /// How far the change is beyond what is allowed, m.
     beyond: LowPass<T>,
-    /// The same now.
+    /// The same now, with nothing allowed for a swing.
     beyond_now_m: T,
     change_max_m: T,
     /// Part of the change of the elongations that is allowed, over the number of tendons.
@@ -59,14 +59,17 @@ struct Reference<T> {
 }
 
 impl<T: Scalar> Agreement<T> {
-    /// With the limits of the settings, of a leg that `twists` or does not.
-    pub fn new(limits: &Limits, twists: bool) -> Self {
-        let part = if twists { TWIST_PART } else { CURVE_PART };
+    /// With the limits of the settings.
+    pub fn new(settings: &Settings) -> Self {
+        let part = match settings.support {
+            SupportKind::Spherical | SupportKind::ElasticUniversal => TWIST_PART,
+            SupportKind::TorsionFree | SupportKind::Universal => CURVE_PART,
+        };
         Self {
             reference: None,
             beyond: LowPass::new(FILTER_TIME_S, CYCLE_S),
             beyond_now_m: T::zero(),
-            change_max_m: limits.residual_change_m.into(),
+            change_max_m: settings.limits.residual_change_m.into(),
             part: T::from(part / 3.0),
         }
     }
@@ -119,7 +122,7 @@ impl<T: Scalar> Agreement<T> {
             learned_m += (slow_m - before_m).abs();
         }
         let swings_m = swings_m * T::from(SWING_PART / 3.0);
-        let allowed_m = self.change_max_m + stretched_m * self.part + swings_m;
+        let allowed_m = self.change_max_m + stretched_m * self.part;
         let rate = if moving {
             MOVING_M_PER_S
         } else {
@@ -129,7 +132,7 @@ impl<T: Scalar> Agreement<T> {
         let learned_m = T::from(rate * CYCLE_S) + learned_m * self.part;
         reference.mean_m += clamp_symmetric(change_m, learned_m);
         self.beyond_now_m = change_m.abs() - allowed_m;
-        self.beyond.step(self.beyond_now_m);
+        self.beyond.step(self.beyond_now_m - swings_m);
     }
 }
 
@@ -152,7 +155,7 @@ impl<T: Scalar> Reference<T> {
 mod tests {
     use super::{Agreement, CURVE_PART, LengthError, SETTLE_CYCLES};
     use crate::control::CYCLE_S;
-    use crate::settings::Limits;
+    use crate::settings::Settings;
 
     /// Elongation of every tendon at first, m: that of the paper's leg at 70 N.
     const ELONGATION_M: f64 = 1e-3;
@@ -165,7 +168,7 @@ mod tests {
     impl Leg {
         fn taut() -> Self {
             let mut leg = Self {
-                agreement: Agreement::new(&Limits::DEFAULT, false),
+                agreement: Agreement::new(&Settings::for_table_1().unwrap()),
                 // What homing and the geometry leave over.
                 error: LengthError {
                     mean_m: -4e-5,
