@@ -136,14 +136,14 @@ impl<T: Scalar> Leg<T> {
             Mode::Boot { .. } | Mode::Disarmed | Mode::Off => {}
         }
         // The estimate goes on while nothing is made of it, so that the leg starts from where it is.
-        if self.phase == Phase::Estimate && shared.zero_m.is_some() {
-            if shared
+        if self.phase == Phase::Estimate
+            && shared.zero_m.is_some()
+            && shared
                 .estimate(measured, LoadEstimation::Immediate)
                 .is_err()
-            {
-                // The last pose stands, but nothing is compared with it.
-                shared.estimate = None;
-            }
+        {
+            // The last pose stands, but nothing is compared with it.
+            shared.estimate = None;
         }
         step
     }

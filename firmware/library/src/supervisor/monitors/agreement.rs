@@ -152,6 +152,7 @@ impl<T: Scalar> Reference<T> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::{Agreement, CURVE_PART, LengthError, SETTLE_CYCLES};
     use crate::control::CYCLE_S;
