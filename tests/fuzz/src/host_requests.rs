@@ -79,7 +79,12 @@ pub fn brought(sequence: u16, host_payload: &[u8]) -> Vec<Vec<u8>> {
 
 /// A quiet leg at 70 N, 24 V and 25 °C, which hears these bytes in as many ticks as they take.
 pub(crate) fn ticks(bytes: &[u8]) -> Vec<TickRequest> {
-    let ticks = bytes.chunks(LINK_BYTES_MAX).map(|bytes| TickRequest {
+    bytes.chunks(LINK_BYTES_MAX).map(tick).collect()
+}
+
+/// One tick of that leg, in which it hears these bytes.
+pub(crate) fn tick(bytes: &[u8]) -> TickRequest {
+    TickRequest {
         sensors: Sensors {
             cell_codes: [23_590; 3],
             current_codes: [CODE_MAX / 2; 3],
@@ -89,6 +94,5 @@ pub(crate) fn ticks(bytes: &[u8]) -> Vec<TickRequest> {
             ..Sensors::default()
         },
         link: bytes.iter().copied().collect(),
-    });
-    ticks.collect()
+    }
 }

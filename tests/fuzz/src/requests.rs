@@ -1,8 +1,9 @@
 //! Requests of every kind that the firmware answers, for a fuzz target to damage.
 
 use crate::framed;
-use crate::host_requests::{self, commanded, identify, ticks};
+use crate::host_requests::{self, commanded, identify, tick, ticks};
 use leg_firmware::command::Command;
+use leg_firmware::control::CYCLE_TICKS;
 use leg_firmware::drive::Drive;
 use leg_firmware::frame::MAX_PAYLOAD;
 use leg_firmware::host_link::Hello;
@@ -28,11 +29,13 @@ pub fn armed() -> Vec<Vec<u8>> {
         }),
         Request::Start(settings()),
     ];
-    let boot = std::iter::repeat_n(commanded(Command::KeepAlive), BOOT_TICKS);
-    let said = std::iter::once(identify()).chain(boot);
-    for request in said.chain([commanded(Command::Arm)]) {
-        requests.extend(hears(&request).into_iter().map(Request::Tick));
-    }
+    let quiet = |ticks: usize| std::iter::repeat_with(|| tick(&[])).take(ticks);
+    let ticks = hears(&identify())
+        .into_iter()
+        .chain(quiet(BOOT_TICKS))
+        .chain(hears(&commanded(Command::Arm)))
+        .chain(quiet(usize::from(CYCLE_TICKS)));
+    requests.extend(ticks.map(Request::Tick));
     requests.iter().map(payload).collect()
 }
 
