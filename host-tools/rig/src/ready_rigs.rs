@@ -54,7 +54,7 @@ pub fn named(name: &str) -> Option<&'static ReadyRig> {
 mod tests {
     use super::READY_RIGS;
     use crate::rig_file::RigFile;
-    use leg_firmware::settings::Gains;
+    use leg_firmware::settings::{Gains, Limits};
 
     #[test]
     fn every_support_of_fig_2_has_a_ready_rig_that_is_table_1_otherwise_or_leans_less() {
@@ -72,7 +72,10 @@ mod tests {
                 tilt_deg: table_1.tilt_deg,
                 // The limit on what a push twists.
                 gains: Gains {
-                    limits: table_1.gains.limits,
+                    limits: Limits {
+                        residual_m: table_1.gains.limits.residual_m,
+                        ..file.gains.limits
+                    },
                     ..file.gains
                 },
                 ..file

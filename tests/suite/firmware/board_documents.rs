@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use crate::common::sources::sources;
 use leg_firmware::supervisor::FAULT_TABLE;
 use std::collections::BTreeSet;
 use std::fs;
@@ -147,18 +148,6 @@ fn every_fault_that_is_named_is_in_the_table() {
             let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
             let known = FAULT_TABLE.iter().any(|entry| entry.name == words);
             assert!(known, "{name}: no fault is called {words}");
-        }
-    }
-}
-
-/// Every Rust source below a directory.
-fn sources(directory: &Path, text: &mut String) {
-    for entry in fs::read_dir(directory).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            sources(&path, text);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            text.push_str(&fs::read_to_string(path).unwrap());
         }
     }
 }

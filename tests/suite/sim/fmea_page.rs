@@ -2,12 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use crate::common::sources::sources;
 use leg_boards::image::workspace_root;
-use leg_firmware::supervisor::FAULT_TABLE;
+use leg_firmware::supervisor::{FAULT_TABLE, Reaction};
 use leg_sim::plant::Defect;
 use leg_sim::ready_scenarios;
 use std::fs;
-use std::path::Path;
 
 const PARTS: [&str; 15] = [
     "Load cell",
@@ -42,18 +42,6 @@ fn rows(page: &str) -> Vec<Vec<&str>> {
 /// The words between backticks.
 fn quoted(text: &str) -> impl Iterator<Item = &str> {
     text.split('`').skip(1).step_by(2)
-}
-
-/// All Rust sources of a directory.
-fn sources(directory: &Path, text: &mut String) {
-    for entry in fs::read_dir(directory).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            sources(&path, text);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            *text += &fs::read_to_string(path).unwrap();
-        }
-    }
 }
 
 #[test]
@@ -107,12 +95,40 @@ fn what_shows_a_row_is_there() {
     }
 }
 
-/// Bold words are faults.
+/// The words between pairs of asterisks.
+fn bold(text: &str) -> impl Iterator<Item = &str> {
+    text.split("**").skip(1).step_by(2)
+}
+
+/// Bold words are faults, and every fault is in the page.
 #[test]
-fn every_fault_that_is_named_is_in_the_table() {
+fn every_fault_is_named_by_its_name() {
     let page = page();
-    for words in page.split("**").skip(1).step_by(2) {
-        let known = FAULT_TABLE.iter().any(|entry| entry.name == words);
+    let named: Vec<&str> = bold(&page).collect();
+    for words in &named {
+        let known = FAULT_TABLE.iter().any(|entry| entry.name == *words);
         assert!(known, "no fault is called {words}");
+    }
+    for entry in FAULT_TABLE {
+        assert!(named.contains(&entry.name), "no row names {}", entry.name);
+    }
+}
+
+/// A row whose faults stop the leg says how.
+#[test]
+fn the_leg_does_what_its_faults_lead_to() {
+    for row in rows(&page()) {
+        let found = FAULT_TABLE
+            .iter()
+            .filter(|entry| bold(row[1]).any(|words| words == entry.name));
+        for entry in found {
+            let words = match entry.reaction {
+                Reaction::Limit => continue,
+                Reaction::Hold => "held",
+                Reaction::RampDown => "ramps down",
+                Reaction::GateOff => "off",
+            };
+            assert!(row[3].contains(words), "{}: {row:?}", entry.name);
+        }
     }
 }

@@ -90,7 +90,7 @@ faults! {
     4 Residual {
         name: "sensors disagree on the pose",
         reaction: Hold,
-        cause: "forward kinematics leaves over more than residual_m for residual_time_s, or that changes by residual_change_m without a motion or a load that explains it",
+        cause: "forward kinematics leaves over more than residual_m for residual_time_s, that changes by residual_change_m without a motion or a load that explains it, or a tension is above the maximum tension by over_tension_part before or while that is in doubt",
         remedy: "home the leg; check the encoders, the load cells and the tendon curves",
         clears: Command,
     }

@@ -15,8 +15,8 @@ const JUMP_CHECKS: usize = 2;
 /// cell needs to jump. Scenario `fault_over_current` holds it.
 const OVER_CHECKS: u32 = 4;
 
-/// Part of `following_m` by which a motor may be away from where it is led while it goes farther: the maximum tension makes a sixth
-/// of it, a motor that reverses less.
+/// Part of `following_m` by which a motor may be away from where it is led while it goes farther. A third was too little: motors
+/// that give way to the maximum tension came there in `leg strikes --false-alarms`.
 const AWAY_PART: f32 = 0.6;
 
 /// A counter that goes farther between two checks than at its speed has jumped, by this part of what the fastest motor goes in a
@@ -28,8 +28,8 @@ const STEP_PART: f32 = 1.33;
 const LACK_FRICTIONS: f32 = 2.0;
 
 /// Time constant of the filters by which current and voltage are compared, s: at low tension the voltage changes its sign from tick
-/// to tick, and the current follows later. A fifth of the time after which it is a fault.
-const LACK_TIME_S: f32 = 0.01;
+/// to tick, and the current follows later. A tenth of the time after which it is a fault.
+const LACK_TIME_S: f32 = 0.005;
 
 /// Codes this near to an end of the range are saturated: four steps of the 12-bit converter, whose sixteenfold sum a code is.
 const SATURATED: u16 = 64;
