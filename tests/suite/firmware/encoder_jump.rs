@@ -2,11 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_firmware::command::Command;
+use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::control::CYCLE_TICKS;
 use leg_firmware::leg::Leg;
 use leg_firmware::sensors::Sensors;
-use leg_firmware::supervisor::State;
+use leg_firmware::supervisor::{Fault, State};
 use leg_rig::rig_file::RigFile;
 use leg_sim::link::InProcess;
 use leg_sim::scenario::Scenario;
@@ -48,4 +48,31 @@ fn a_jump_of_any_size_asks_for_no_more_than_the_supply() {
             }
         }
     }
+}
+
+/// What was counted is lost: the leg is switched off, and does not follow its zero again.
+#[test]
+fn a_jump_ends_the_zero() {
+    let (mut leg, mut sensors) = active_leg();
+    sensors.encoder_counts[1] = sensors.encoder_counts[1].wrapping_add(1000);
+    let obeys = |leg: &mut Leg<f32>, command| {
+        assert!(leg.command(2, command));
+        let outcome = (0..CYCLE_TICKS).find_map(|_| {
+            leg.tick(&sensors);
+            leg.outcome()
+        });
+        outcome.unwrap().result
+    };
+    // Found in the first cycle; gone in the second.
+    for _ in 0..2 * CYCLE_TICKS {
+        leg.tick(&sensors);
+    }
+    let telemetry = leg.telemetry();
+    assert_eq!(telemetry.state, State::Off);
+    assert!(telemetry.faults.has(Fault::EncoderJump) && !telemetry.homed);
+    while leg.outcome().is_some() {}
+    assert_eq!(obeys(&mut leg, Command::Clear), Ok(()));
+    assert_eq!(leg.telemetry().state, State::Disarmed);
+    let refused = obeys(&mut leg, Command::Arm);
+    assert_eq!(refused, Err(CommandRefusal::NotHomed));
 }
