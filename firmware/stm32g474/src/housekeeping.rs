@@ -33,8 +33,8 @@ pub async fn keep_house(
         ticker.reset();
         cycles.keep_running();
         watchdog.round();
-        report_errors();
         if rounds.is_multiple_of(ROUNDS_PER_STEP) {
+            report_errors();
             let step = rounds / ROUNDS_PER_STEP;
             show(step, &mut led);
             if step == SETTLED && !watchdog.resets() {

@@ -13,7 +13,7 @@ unsafe extern "C" {
     static __sheap: u32;
 }
 
-/// The bytes below the stack: more than any frame but the largest.
+/// The bytes between variables and stack. A frame that is larger may step over them; `leg cost --image` bounds the whole stack.
 const GUARD: u32 = 1_024;
 
 /// The CCM, and where its second address is.
@@ -42,7 +42,8 @@ pub fn set() {
     // SAFETY: nothing else uses the MPU; no reference goes into the guarded places.
     let mpu = unsafe { &*MPU::PTR };
     for (number, (base, attributes)) in (0..).zip(regions) {
-        // SAFETY: the MPU is off, and these are regions that no access of this program goes to.
+        // SAFETY: the MPU is off. This program reads code from the CCM, writes nothing there from here on, and has no object in
+        // the guard.
         unsafe {
             mpu.rbar.write(base | VALID | number);
             mpu.rasr.write(attributes | NORMAL | ENABLE);

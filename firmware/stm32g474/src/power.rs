@@ -133,12 +133,12 @@ impl PowerPins for Power {
     #[inline(always)]
     fn switch(&mut self, on: bool) {
         if on {
-            tick_watchdog::rests_in_halt(false);
+            tick_watchdog::set_rest_in_halt(false);
             pac::TIM1.bdtr().modify(|w| w.set_moe(true));
             pac::GPIOC.bsrr().write(|w| w.set_bs(ENABLE_PIN, true));
         } else {
             off();
-            tick_watchdog::rests_in_halt(true);
+            tick_watchdog::set_rest_in_halt(true);
         }
     }
 

@@ -2,7 +2,7 @@
 //! pull-downs then take pulses and enable away.
 //!
 //! The control interrupt has the highest priority and masks the others: if it hangs, no program is left that could end
-//! the pulses. The last duties stand for 1.55 ms at most. The window stays open: a late tick may be followed by one in time.
+//! the pulses. The last duties stand for 1.6 ms at most. The window stays open: a late tick may be followed by one in time.
 //! No early warning is used, for nothing would run that could hear it.
 
 use embassy_stm32::pac;
@@ -42,6 +42,6 @@ pub fn refresh_if_started() {
 /// Whether it stands still while a debugger halts the processor: only while nothing is driven. A halt of a leg that is driven
 /// ends in a reset, and so takes the drivers' enable line away, too.
 #[inline(always)]
-pub fn rests_in_halt(rests: bool) {
+pub fn set_rest_in_halt(rests: bool) {
     pac::DBGMCU.apb1lfzr().modify(|w| w.set_wwdg(rests));
 }
