@@ -9,7 +9,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// Lowest ratio of the chip's driven ticks in a second of the processor's time to those of QEMU: it depends on the machine less
-/// than either. A quiet one shows 0.08 to 0.1.
+/// than either. Beside other work 0.08 was seen.
 const RATIO_MIN: f64 = 0.05;
 
 /// At most so much memory.
