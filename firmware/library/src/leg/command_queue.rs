@@ -1,9 +1,9 @@
-//! Commands that wait for their tick, and what became of those that were executed.
+//! Commands that wait for their cycle, and what became of those that were executed.
 
 use crate::command::{Command, CommandRefusal};
 use heapless::Deque;
 
-/// Commands that may wait: a tick executes one.
+/// Commands that may wait: a cycle executes one.
 const COMMANDS_MAX: usize = 8;
 
 /// What became of a command.
