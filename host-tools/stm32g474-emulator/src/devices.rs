@@ -34,8 +34,8 @@ const ENCODER_TIMERS: [&str; 3] = ["TIM2", "TIM3", "TIM4"];
 /// The message RAM of FDCAN2.
 const MESSAGE_RAM: &str = "FDCANRAM2";
 
-/// The chip's own voltage of 1.212 V with a supply of 3.3 V.
-const REFERENCE: u16 = (1_212 * 16 * 4_095 / 3_300) as u16;
+/// The chip's own voltage of 1.212 V with a supply of 3.3 V: a sum of 16 conversions.
+const REFERENCE_SUM: u16 = (1_212 * 16 * 4_095 / 3_300) as u16;
 
 /// The peripherals.
 pub struct Devices {
@@ -77,7 +77,6 @@ pub struct Devices {
     pub locked_up: bool,
     debug_in_sleep: FieldPlace,
     watchdog_halts: [FieldPlace; 2],
-    system_breaks: [FieldPlace; 3],
     updated: bool,
     /// The pins that are routed to the breaks, and their levels.
     break_pins: [Option<Pin>; 2],
@@ -114,12 +113,10 @@ impl Devices {
             encoders: ENCODER_TIMERS.map(|name| EncoderTimer::new(block(name))),
             converters: Converters::new(facts),
             analogue: BTreeMap::new(),
-            reference: REFERENCE,
+            reference: REFERENCE_SUM,
             sampled: RefCell::default(),
             debug_in_sleep: dbgmcu.registers().field("CR", "DBG_SLEEP"),
             watchdog_halts: ["IWDG", "WWDG"].map(|dog| dbgmcu.registers().field("APB1LFZR", dog)),
-            system_breaks: ["CLL", "PVDL", "ECCL"]
-                .map(|break_| syscfg.registers().field("CFGR2", break_)),
             dbgmcu,
             syscfg,
             locked_up: false,

@@ -13,6 +13,17 @@ pub enum SystemBreak {
     Ecc,
 }
 
+impl SystemBreak {
+    /// The field of SYSCFG_CFGR2 that lets it break TIM1.
+    fn field(self) -> &'static str {
+        match self {
+            Self::Lockup => "CLL",
+            Self::Supply => "PVDL",
+            Self::Ecc => "ECCL",
+        }
+    }
+}
+
 impl Devices {
     /// The level of the interrupt that cannot be masked: wrong bits in the flash, or a failed clock, hold it up until the
     /// program clears their flags.
@@ -34,7 +45,7 @@ impl Devices {
     /// Whether something of the chip breaks TIM1, by SYSCFG.
     #[must_use]
     pub fn breaks_by(&self, cause: SystemBreak) -> bool {
-        let place = self.system_breaks.get(cause as usize);
-        place.is_some_and(|place| self.syscfg.registers().is_set(*place))
+        let registers = self.syscfg.registers();
+        registers.is_set(registers.field("CFGR2", cause.field()))
     }
 }

@@ -60,7 +60,7 @@ impl Bus {
     /// Lets 2.5 ms of the internal oscillator pass.
     fn wait(&mut self) {
         let cycle = self.0.cycle + 40_000;
-        self.0.at(cycle);
+        self.0.set_cycle(cycle);
         self.0.advance();
     }
 
@@ -248,10 +248,22 @@ fn what_is_right_is_not_found() {
 fn a_finding_has_the_cycle_in_which_it_came() {
     let mut bus = Bus::new();
     bus.wait();
-    bus.0.at(50_000);
+    bus.0.set_cycle(50_000);
     bus.write("TIM1", "CR1", 0);
-    bus.0.at(70_000);
+    bus.0.set_cycle(70_000);
     bus.rcc("CFGR", "SW", 2);
     let cycles: Vec<_> = bus.0.findings.list().iter().map(|one| one.cycle).collect();
     assert_eq!(cycles, [50_000, 70_000]);
+}
+
+#[test]
+fn each_cause_breaks_tim1_by_its_field_alone() {
+    let causes = [SystemBreak::Lockup, SystemBreak::Supply, SystemBreak::Ecc];
+    for (field, cause) in ["CLL", "PVDL", "ECCL"].into_iter().zip(causes) {
+        let mut bus = Bus::new();
+        bus.switch(block("SYSCFG").enable);
+        bus.set("SYSCFG", "CFGR2", field, 1);
+        let breaking = causes.map(|one| bus.0.devices.breaks_by(one));
+        assert_eq!(breaking, causes.map(|one| one == cause));
+    }
 }
