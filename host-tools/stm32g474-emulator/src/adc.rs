@@ -15,7 +15,7 @@ mod rules;
 #[cfg(test)]
 mod tests;
 
-pub use inputs::{AnalogueInputs, SOURCE_OHMS};
+pub use inputs::{AnalogueInputs, SOURCE_OHMS, sum_of};
 
 use crate::clocks::Clocks;
 use crate::device::Context;

@@ -51,7 +51,7 @@ impl fmt::Debug for Bus {
 impl Bus {
     fn access(&self) -> MutexGuard<'_, Peripherals> {
         let mut peripherals = lock(&self.peripherals);
-        peripherals.at(self.shared.cycle.load(Ordering::Relaxed));
+        peripherals.set_cycle(self.shared.cycle.load(Ordering::Relaxed));
         self.shared.accessed.store(true, Ordering::Relaxed);
         peripherals
     }

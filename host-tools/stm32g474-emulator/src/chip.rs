@@ -106,7 +106,7 @@ impl Chip {
     pub fn peripherals(&self) -> MutexGuard<'_, Peripherals> {
         self.shared.accessed.store(true, Ordering::Relaxed);
         let mut peripherals = lock(&self.peripherals);
-        peripherals.at(self.cycle);
+        peripherals.set_cycle(self.cycle);
         peripherals
     }
 
@@ -232,7 +232,7 @@ impl Chip {
             return Some(self.reset(ResetCause::Software));
         }
         let mut peripherals = lock(&self.peripherals);
-        peripherals.at(self.cycle);
+        peripherals.set_cycle(self.cycle);
         peripherals.advance();
         let watchdogs = [
             (
@@ -250,14 +250,15 @@ impl Chip {
             return Some(self.reset(*cause));
         }
         let place = self.processor.place();
-        let driven = peripherals.devices.tim1.outputs().on;
-        if peripherals.devices.wwdg.take_refreshed() && place.exception < FIRST_INTERRUPT && driven
+        if peripherals.devices.wwdg.take_refreshed()
+            && place.exception < FIRST_INTERRUPT
+            && peripherals.devices.tim1.outputs().on
         {
             peripherals
                 .findings
                 .add("WWDG is refreshed by a task while the pulses are on: it may go on while the control interrupt hangs");
         }
-        if peripherals.take_fed() && place.exception >= FIRST_INTERRUPT {
+        if peripherals.devices.iwdg.take_refreshed() && place.exception >= FIRST_INTERRUPT {
             peripherals
                 .findings
                 .add("IWDG is fed by an interrupt's handler, which may go on while all else hangs");

@@ -2,6 +2,10 @@
 
 mod inputs;
 mod lines;
+mod pins;
+mod system_breaks;
+
+pub use system_breaks::SystemBreak;
 
 use crate::adc::Converters;
 use crate::board::Board;
@@ -10,7 +14,7 @@ use crate::encoder_timer::EncoderTimer;
 use crate::facts::{Block, Facts, Pin};
 use crate::fdcan::Fdcan;
 use crate::flash::Flash;
-use crate::gpio::{Gpio, Outside, PinMode};
+use crate::gpio::Gpio;
 use crate::iwdg::Iwdg;
 use crate::lpuart::Lpuart;
 use crate::plain::Plain;
@@ -30,22 +34,8 @@ const ENCODER_TIMERS: [&str; 3] = ["TIM2", "TIM3", "TIM4"];
 /// The message RAM of FDCAN2.
 const MESSAGE_RAM: &str = "FDCANRAM2";
 
-/// The chip's own voltage of 1.212 V with a supply of 3.3 V.
-const REFERENCE: u16 = (1_212 * 16 * 4_095 / 3_300) as u16;
-
-/// The inputs of TIM1's breaks.
-const BREAK_INPUTS: [&str; 2] = ["BKIN", "BKIN2"];
-
-/// What of the chip itself breaks TIM1, where SYSCFG_CFGR2 says so.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SystemBreak {
-    /// The processor has locked up.
-    Lockup,
-    /// The voltage detector finds the supply too low.
-    Supply,
-    /// The flash has read a double word with two wrong bits.
-    Ecc,
-}
+/// The chip's own voltage of 1.212 V with a supply of 3.3 V: a sum of 16 conversions.
+const REFERENCE_SUM: u16 = (1_212 * 16 * 4_095 / 3_300) as u16;
 
 /// The peripherals.
 pub struct Devices {
@@ -87,7 +77,6 @@ pub struct Devices {
     pub locked_up: bool,
     debug_in_sleep: FieldPlace,
     watchdog_halts: [FieldPlace; 2],
-    system_breaks: [FieldPlace; 3],
     updated: bool,
     /// The pins that are routed to the breaks, and their levels.
     break_pins: [Option<Pin>; 2],
@@ -124,12 +113,10 @@ impl Devices {
             encoders: ENCODER_TIMERS.map(|name| EncoderTimer::new(block(name))),
             converters: Converters::new(facts),
             analogue: BTreeMap::new(),
-            reference: REFERENCE,
+            reference: REFERENCE_SUM,
             sampled: RefCell::default(),
             debug_in_sleep: dbgmcu.registers().field("CR", "DBG_SLEEP"),
             watchdog_halts: ["IWDG", "WWDG"].map(|dog| dbgmcu.registers().field("APB1LFZR", dog)),
-            system_breaks: ["CLL", "PVDL", "ECCL"]
-                .map(|break_| syscfg.registers().field("CFGR2", break_)),
             dbgmcu,
             syscfg,
             locked_up: false,
@@ -277,13 +264,6 @@ impl Devices {
         registers.is_set(self.debug_in_sleep)
     }
 
-    /// The level of the interrupt that cannot be masked: wrong bits in the flash, or a failed clock, hold it up until the
-    /// program clears their flags.
-    #[must_use]
-    pub fn nmi(&self) -> bool {
-        self.flash.nmi() || self.rcc.clock_failed()
-    }
-
     /// A debugger has halted the processor for some cycles: the watchdogs that DBGMCU stops meanwhile count later.
     pub fn halt_watchdogs(&mut self, cycles: u64) {
         let halts = |place| self.dbgmcu.registers().is_set(place);
@@ -294,23 +274,6 @@ impl Devices {
         if wwdg {
             self.wwdg.halt(cycles);
         }
-    }
-
-    /// What lasts of what breaks TIM1: a failed clock, a lockup, wrong bits in the flash.
-    fn system_break(&self) -> bool {
-        let lasting = [
-            (self.locked_up, SystemBreak::Lockup),
-            (self.flash.nmi(), SystemBreak::Ecc),
-        ];
-        let mut lasting = lasting.into_iter();
-        self.rcc.clock_failed() || lasting.any(|(lasts, cause)| lasts && self.breaks_by(cause))
-    }
-
-    /// Whether something of the chip breaks TIM1, by SYSCFG.
-    #[must_use]
-    pub fn breaks_by(&self, cause: SystemBreak) -> bool {
-        let place = self.system_breaks.get(cause as usize);
-        place.is_some_and(|place| self.syscfg.registers().is_set(*place))
     }
 
     /// Whether the pulse timer has come to its update since the last question.
@@ -336,77 +299,6 @@ impl Devices {
             &mut self.iwdg,
             &mut self.wwdg,
         ]
-    }
-
-    fn route_breaks(&mut self, context: &mut Context<'_>) {
-        let mut changed = false;
-        for port in &mut self.ports {
-            changed |= port.take_changed();
-        }
-        if changed {
-            self.break_pins = BREAK_INPUTS.map(|signal| self.pin_of("TIM1", signal));
-        }
-        for (index, pin) in self.break_pins.into_iter().enumerate() {
-            let level = pin.and_then(|pin| self.level(pin)).unwrap_or(false);
-            if self.break_levels.get(index) != Some(&level) {
-                self.tim1.set_break_input(index, level, context);
-            }
-            if let Some(before) = self.break_levels.get_mut(index) {
-                *before = level;
-            }
-        }
-    }
-
-    /// The pin that the image has given to a peripheral's signal.
-    #[must_use]
-    pub fn pin_of(&self, peripheral: &str, signal: &str) -> Option<Pin> {
-        let facts = Facts::of_chip();
-        self.ports.iter().find_map(|port| {
-            (0..16).map(|number| port.pin(number)).find(|pin| {
-                matches!(port.mode(pin.number), PinMode::Alternate(function)
-                    if facts.alternate_function(*pin, function).contains(&(peripheral, signal)))
-            })
-        })
-    }
-
-    fn port(&self, pin: Pin) -> Option<&Gpio> {
-        self.ports.iter().find(|port| port.pin(0).port == pin.port)
-    }
-
-    /// Says what drives a pin from outside.
-    pub fn set_outside(&mut self, pin: Pin, outside: Outside) {
-        let mut ports = self.ports.iter_mut();
-        if let Some(port) = ports.find(|port| port.pin(0).port == pin.port) {
-            port.set_outside(pin.number, outside);
-        }
-    }
-
-    /// Moves an encoder, 0 to 2, to a count, on tracks that are routed to its timer or not.
-    pub fn set_encoder(&mut self, encoder: usize, count: u32, routed: bool) {
-        if let Some(timer) = self.encoders.get_mut(encoder) {
-            timer.set_position(count, routed);
-        }
-    }
-
-    /// Whether a pin is routed to a signal of an encoder's timer.
-    #[must_use]
-    pub fn encoder_routed(&self, encoder: usize, pin: Pin, signal: &str) -> bool {
-        let timer = ENCODER_TIMERS.get(encoder);
-        timer.is_some_and(|timer| self.is_routed(pin, timer, signal))
-    }
-
-    /// Whether the image has given a pin to a peripheral's signal.
-    #[must_use]
-    pub fn is_routed(&self, pin: Pin, peripheral: &str, signal: &str) -> bool {
-        let mode = self.port(pin).map(|port| port.mode(pin.number));
-        matches!(mode, Some(PinMode::Alternate(function))
-            if Facts::of_chip().alternate_function(pin, function).contains(&(peripheral, signal)))
-    }
-
-    /// The level of a pin; none where nothing gives it one.
-    #[must_use]
-    pub fn level(&self, pin: Pin) -> Option<bool> {
-        self.port(pin)?.level(pin.number)
     }
 
     /// The lines of interrupts that are high, bit by number.

@@ -41,7 +41,7 @@ pub struct Findings {
 
 impl Findings {
     /// Says when what follows happens; where the program is, [`Self::locate`] says afterwards.
-    pub fn at(&mut self, cycle: u64) {
+    pub fn set_cycle(&mut self, cycle: u64) {
         self.now = cycle;
     }
 

@@ -47,8 +47,10 @@ pub struct Iwdg {
     window: Setting,
     unlocked: bool,
     lsi_hz: u32,
-    /// The cycle in which it was last fed, and the one in which it resets the chip; none before it is started.
+    /// The cycle in which it was last refreshed, and the one in which it resets the chip; none before it is started.
     running: Option<(u64, u64)>,
+    /// The key of a refresh was written since the last question.
+    refreshed: bool,
 }
 
 impl Iwdg {
@@ -80,6 +82,7 @@ impl Iwdg {
             unlocked: false,
             lsi_hz: lsi_hz.max(1),
             running: None,
+            refreshed: false,
         };
         dog.reset();
         dog
@@ -91,7 +94,7 @@ impl Iwdg {
         self.running.map(|(_, end)| end)
     }
 
-    /// Cycles from a feeding to the reset, by what its registers hold, with an oscillator of `lsi_hz`.
+    /// Cycles from a refresh to the reset, by what its registers hold, with an oscillator of `lsi_hz`.
     #[must_use]
     pub fn timeout_cycles(&self, lsi_hz: u32, clocks: &Clocks) -> u64 {
         let prescaler = self.registers.value(self.prescaler.value);
@@ -100,14 +103,19 @@ impl Iwdg {
         clocks.cycles(periods, lsi_hz).unwrap_or(u64::MAX)
     }
 
+    /// Whether the key of a refresh was written since the last question.
+    pub fn take_refreshed(&mut self) -> bool {
+        std::mem::take(&mut self.refreshed)
+    }
+
     /// The processor's clock changes its rate: what is due later is due in other cycles.
     pub fn rate_changes(&mut self, cycle: u64, from_hz: u32, to_hz: u32) {
         let scale = |due: u64| {
             let left = u128::from(due.saturating_sub(cycle)) * u128::from(to_hz);
             cycle + u64::try_from(left / u128::from(from_hz.max(1))).unwrap_or(u64::MAX / 2)
         };
-        if let Some((fed, end)) = self.running {
-            let since = u128::from(cycle - fed.min(cycle)) * u128::from(to_hz);
+        if let Some((refreshed_at, end)) = self.running {
+            let since = u128::from(cycle - refreshed_at.min(cycle)) * u128::from(to_hz);
             let since = u64::try_from(since / u128::from(from_hz.max(1))).unwrap_or(cycle);
             self.running = Some((cycle.saturating_sub(since), scale(end)));
         }
@@ -118,8 +126,8 @@ impl Iwdg {
 
     /// A debugger halts it for some cycles.
     pub fn halt(&mut self, cycles: u64) {
-        if let Some((fed, end)) = &mut self.running {
-            (*fed, *end) = (*fed + cycles, *end + cycles);
+        if let Some((refreshed_at, end)) = &mut self.running {
+            (*refreshed_at, *end) = (*refreshed_at + cycles, *end + cycles);
         }
     }
 
@@ -133,7 +141,7 @@ impl Iwdg {
 
     /// Takes over what has arrived.
     fn settle(&mut self, cycle: u64) {
-        let Some((fed, end)) = self.running else {
+        let Some((refreshed_at, end)) = self.running else {
             return;
         };
         let before = divider(self.prescaler.used);
@@ -146,7 +154,7 @@ impl Iwdg {
         }
         let after = divider(self.prescaler.used);
         if after != before && end > cycle {
-            self.running = Some((fed, cycle + (end - cycle) * after / before));
+            self.running = Some((refreshed_at, cycle + (end - cycle) * after / before));
         }
     }
 
@@ -154,7 +162,7 @@ impl Iwdg {
         self.unlocked = key == UNLOCK;
         match key {
             START if self.running.is_none() => self.start(context),
-            // A second start is a feeding: RM0440 has no other effect of it.
+            // A second start is a refresh: RM0440 has no other effect of it.
             START | REFRESH => self.refresh(context),
             UNLOCK => {}
             _ => context.findings.add(format!(
@@ -168,26 +176,26 @@ impl Iwdg {
         for setting in self.settings() {
             setting.arrives = setting.arrives.map(|_| arrives);
         }
-        self.feed(context);
+        self.count_again(context);
     }
 
     fn refresh(&mut self, context: &mut Context<'_>) {
-        let Some((fed, _)) = self.running else {
+        let Some((refreshed_at, _)) = self.running else {
             return;
         };
         let open = u64::from(self.reload.used.saturating_sub(self.window.used));
         let closed = self.cycles(open * divider(self.prescaler.used), context.clocks);
-        if context.cycle < fed + closed {
+        if context.cycle < refreshed_at + closed {
             context
                 .findings
                 .add("IWDG_KR: the watchdog is fed before its window opens");
-            self.running = Some((fed, context.cycle));
+            self.running = Some((refreshed_at, context.cycle));
             return;
         }
-        self.feed(context);
+        self.count_again(context);
     }
 
-    fn feed(&mut self, context: &mut Context<'_>) {
+    fn count_again(&mut self, context: &mut Context<'_>) {
         let periods = u64::from(self.reload.used + 1) * divider(self.prescaler.used);
         let end = context.cycle + self.cycles(periods, context.clocks);
         self.running = Some((context.cycle, end));
@@ -214,9 +222,9 @@ impl Iwdg {
         let flag = setting.busy;
         self.registers.set(offset, value);
         self.registers.set_value(flag, 1);
-        // A write of WINR feeds, says ST's own driver (HAL_IWDG_Init).
+        // A write of WINR refreshes, says ST's own driver (HAL_IWDG_Init).
         if offset == self.window.offset && self.running.is_some() {
-            self.feed(context);
+            self.count_again(context);
         }
     }
 }
@@ -231,6 +239,7 @@ impl Device for Iwdg {
         self.registers.reset();
         self.unlocked = false;
         self.running = None;
+        self.refreshed = false;
         for setting in [&mut self.prescaler, &mut self.reload, &mut self.window] {
             setting.used = self.registers.value(setting.value);
             setting.arrives = None;
@@ -248,6 +257,7 @@ impl Device for Iwdg {
     fn write(&mut self, offset: u32, value: u32, context: &mut Context<'_>) {
         self.settle(context.cycle);
         if offset == self.key {
+            self.refreshed |= value == REFRESH;
             self.write_key(value, context);
         } else if offset != self.status {
             self.write_setting(offset, value, context);

@@ -21,13 +21,8 @@ pub struct Peripherals {
     pub checks: AccessChecks,
     /// The peripherals.
     pub devices: Devices,
-    /// Whether the watchdog was fed since the last question.
-    fed: bool,
     resets: Vec<(Switch, &'static str)>,
 }
-
-/// What feeds the watchdog.
-const FEED: u32 = 0xaaaa;
 
 impl Peripherals {
     /// After a power-up.
@@ -39,26 +34,30 @@ impl Peripherals {
             findings: Findings::default(),
             checks: AccessChecks::default(),
             devices: Devices::new(board),
-            fed: false,
             resets: resets(),
         }
     }
 
-    /// The peripherals at a moment, and what they see of the chip then: what is found belongs to it.
-    pub fn at(&mut self, cycle: u64) -> (&mut Devices, Context<'_>) {
+    /// Says the moment: what follows happens then, and what is found belongs to it.
+    pub fn set_cycle(&mut self, cycle: u64) {
         self.cycle = cycle;
-        self.findings.at(cycle);
-        let context = Context {
-            cycle,
-            clocks: &self.clocks,
-            findings: &mut self.findings,
-        };
-        (&mut self.devices, context)
+        self.findings.set_cycle(cycle);
+    }
+
+    /// The peripherals at a moment, and what they see of the chip then.
+    pub fn at(&mut self, cycle: u64) -> (&mut Devices, Context<'_>) {
+        self.set_cycle(cycle);
+        self.now()
     }
 
     /// The same at the moment of the last call.
     fn now(&mut self) -> (&mut Devices, Context<'_>) {
-        self.at(self.cycle)
+        let context = Context {
+            cycle: self.cycle,
+            clocks: &self.clocks,
+            findings: &mut self.findings,
+        };
+        (&mut self.devices, context)
     }
 
     /// The processor reads one, two or four bytes.
@@ -100,7 +99,6 @@ impl Peripherals {
         if !self.checks.write(answering, value, &mut self.findings) {
             return;
         }
-        self.fed |= (block.name, register.name.as_str(), value) == ("IWDG", "KR", FEED);
         let place = (register.offset, value);
         let (devices, mut context) = self.now();
         if devices.write(block.name, place, &mut context).is_none() {
@@ -139,7 +137,6 @@ impl Peripherals {
         self.devices.reset();
         self.devices.rcc.note_cause(cause);
         self.checks.reset();
-        self.fed = false;
     }
 
     /// Something of the chip itself: TIM1 breaks if SYSCFG says so. All but a lockup passes.
@@ -156,11 +153,6 @@ impl Peripherals {
     pub fn stop_crystal(&mut self) {
         self.devices.rcc.stop_crystal();
         self.advance();
-    }
-
-    /// Whether the watchdog was fed since the last question.
-    pub fn take_fed(&mut self) -> bool {
-        std::mem::take(&mut self.fed)
     }
 
     /// Resets the blocks that the image holds in reset.

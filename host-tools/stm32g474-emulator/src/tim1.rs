@@ -29,7 +29,7 @@ pub struct Tim1 {
     breaks: [BreakInput; 2],
     outputs: OutputPlaces,
     places: Places,
-    /// The chip asks for a break: clock failure, lockup.
+    /// The chip asks for a break: see [`Self::set_system_break`].
     system: bool,
     trigger: Option<u64>,
 }
@@ -81,7 +81,7 @@ impl Tim1 {
         self.apply_breaks(context.cycle);
     }
 
-    /// Whether the chip asks for a break, by a failed clock or a lockup.
+    /// Whether the chip asks for a break: a failed clock, a lockup, too low a supply, or wrong bits in the flash.
     pub fn set_system_break(&mut self, active: bool, context: &mut Context<'_>) {
         if self.system == active {
             return;

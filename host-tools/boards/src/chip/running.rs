@@ -155,7 +155,10 @@ impl Running {
             return Err(self.stuck("starts no tick", image));
         };
         let motors = wiring::motors(&self.chip.peripherals());
-        let motors = motors.or_else(|wrong| self.require(Some(wrong), image).map(|()| expected))?;
+        let motors = match motors {
+            Ok(motors) => motors,
+            Err(wrong) => return Err(self.violation(&wrong, image)),
+        };
         if motors != expected {
             return Err(LinkError::Chip(format!(
                 "at tick {} the chip's pins carry {motors:?}, and the control law in process gives {expected:?}{}",

@@ -2,6 +2,7 @@
 
 use leg_firmware::drive::Drive;
 use leg_firmware::sensors::Sensors;
+use stm32g474_emulator::adc::sum_of;
 use stm32g474_emulator::facts::{Facts, Pin};
 use stm32g474_emulator::gpio::Outside;
 use stm32g474_emulator::peripherals::Peripherals;
@@ -16,12 +17,12 @@ const SUPPLY: Pin = pin('B', 1);
 const TEMPERATURE: Pin = pin('B', 0);
 /// What each converter takes in a tick: its pins in the order of its injected sequence, and how many conversions make a code.
 /// ADC3 takes the chip's own voltage after these.
-const CONVERTED: [(&str, &[Pin], u16); 3] = [
+const CONVERTED: [(&str, &[Pin], u32); 3] = [
     ("ADC1", &CELLS, 16),
     ("ADC2", &CURRENTS, 16),
     ("ADC3", &[SUPPLY, TEMPERATURE], SLOW_CONVERSIONS),
 ];
-const SLOW_CONVERSIONS: u16 = 8;
+const SLOW_CONVERSIONS: u32 = 8;
 const PULSES: [Pin; 3] = [pin('A', 8), pin('A', 9), pin('A', 10)];
 const DIRECTIONS: [Pin; 3] = [pin('C', 6), pin('C', 7), pin('C', 8)];
 const ENABLE: Pin = pin('C', 9);
@@ -119,8 +120,8 @@ pub fn wrong_code(chip: &Peripherals, untriggered: bool) -> Option<String> {
         for (rank, &pin) in pins.iter().enumerate() {
             let found = chip.devices.converters.injected_code(converter, rank);
             let sum = chip.devices.analogue.get(&pin).copied().unwrap_or_default();
-            let expected = sum_of(sum, conversions);
-            if found != Some(u32::from(expected)) {
+            let expected = sum_of(sum, conversions, 0);
+            if found != Some(expected) {
                 return Some(format!(
                     "{converter}'s code {} is {}, and {} is at {expected}",
                     rank + 1,
@@ -185,12 +186,10 @@ pub fn apply(chip: &mut Peripherals, sensors: &Sensors) {
 /// The codes of supply and temperature as they were converted last; zero before. The image doubles them.
 pub fn slow_codes(chip: &Peripherals) -> [u16; 2] {
     let level = |pin| chip.devices.sampled(pin).unwrap_or_default();
-    [SUPPLY, TEMPERATURE].map(|pin| 2 * sum_of(level(pin), SLOW_CONVERSIONS))
-}
-
-/// What so many conversions add up to where sixteen add up to a sum.
-fn sum_of(sum: u16, conversions: u16) -> u16 {
-    (0..conversions).map(|count| (sum + count) / 16).sum()
+    [SUPPLY, TEMPERATURE].map(|pin| {
+        let code = 2 * sum_of(level(pin), SLOW_CONVERSIONS, 0);
+        u16::try_from(code).unwrap_or(u16::MAX)
+    })
 }
 
 /// The codes of the currents as they were converted last; zero before.

@@ -16,6 +16,16 @@ const SAMPLING: [(u32, u64); 7] = [
     (33_000, 10_675),
 ];
 
+/// Conversions that the board's sum is made of.
+const SIXTEEN: u32 = 16;
+
+/// What so many conversions of an input add up to where sixteen of 12 bits add up to a sum, each without its lowest bits.
+#[must_use]
+pub fn sum_of(sum16: u16, conversions: u32, bits_dropped: u32) -> u32 {
+    let conversion = |count| ((u32::from(sum16) + count % SIXTEEN) / SIXTEEN) >> bits_dropped;
+    (0..conversions).map(conversion).sum()
+}
+
 /// What the board gives the inputs of the converters.
 pub trait AnalogueInputs {
     /// The sum of 16 conversions of an input, 0 to 65 520; none where its pin is not in analogue mode or is not connected.

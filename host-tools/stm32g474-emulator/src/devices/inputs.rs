@@ -7,7 +7,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 /// Where the chip's own voltage is converted: embassy-stm32 names the same for `VrefInt`.
-const REFERENCE: (&str, u8) = ("ADC3", 18);
+const REFERENCE_INPUT: (&str, u8) = ("ADC3", 18);
 
 /// The chip's own voltage has to be sampled for 4 µs (datasheet, tS_vrefint): as a source of so many ohms.
 const REFERENCE_OHMS: u32 = 10_000;
@@ -26,7 +26,7 @@ pub struct Inputs<'a> {
 
 impl AnalogueInputs for Inputs<'_> {
     fn sum16(&self, converter: &str, input: u8) -> Option<u16> {
-        if (converter, input) == REFERENCE {
+        if (converter, input) == REFERENCE_INPUT {
             return Some(self.reference);
         }
         let pin = Facts::of_chip().converter_pin(converter, input)?;
@@ -40,11 +40,11 @@ impl AnalogueInputs for Inputs<'_> {
     }
 
     fn is_reference(&self, converter: &str, input: u8) -> bool {
-        (converter, input) == REFERENCE
+        (converter, input) == REFERENCE_INPUT
     }
 
     fn source_ohms(&self, converter: &str, input: u8) -> u32 {
-        if (converter, input) == REFERENCE {
+        if (converter, input) == REFERENCE_INPUT {
             REFERENCE_OHMS
         } else {
             SOURCE_OHMS

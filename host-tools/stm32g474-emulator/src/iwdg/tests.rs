@@ -1,4 +1,4 @@
-//! The watchdog as the board starts and feeds it, and mistakes.
+//! The watchdog as the board starts and refreshes it, and mistakes.
 
 use super::*;
 use crate::bench::{BOARD_CLOCKS, Bench};
@@ -28,9 +28,12 @@ const OPENING: [(&str, u32); 5] = [
 ];
 
 #[test]
-fn it_counts_from_its_highest_value_until_it_is_fed_again() {
+fn it_counts_from_its_highest_value_until_it_is_refreshed_again() {
     let mut bench = bench();
-    write(&mut bench, &OPENING);
+    write(&mut bench, &OPENING[..4]);
+    assert!(!bench.device.take_refreshed(), "a start is no refresh");
+    write(&mut bench, &OPENING[4..]);
+    assert!(bench.device.take_refreshed() && !bench.device.take_refreshed());
     assert_eq!(bench.device.expires_at(), Some(512 * MS));
     bench.cycle = 20 * MS;
     bench.write("KR", REFRESH);
@@ -46,7 +49,7 @@ fn it_counts_from_its_highest_value_until_it_is_fed_again() {
 }
 
 #[test]
-fn a_write_of_the_window_feeds() {
+fn a_write_of_the_window_refreshes() {
     let mut bench = bench();
     write(&mut bench, &OPENING);
     bench.cycle = 20 * MS;
@@ -56,7 +59,7 @@ fn a_write_of_the_window_feeds() {
 }
 
 #[test]
-fn feeding_a_watchdog_that_was_not_started_does_nothing() {
+fn refreshing_a_watchdog_that_was_not_started_does_nothing() {
     let mut bench = bench();
     bench.write("KR", REFRESH);
     assert_eq!(bench.device.next_event(), None);

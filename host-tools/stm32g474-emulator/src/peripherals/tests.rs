@@ -1,8 +1,11 @@
 //! Every check of the bus, of the ports and of the clock tree: a mistake, and the sentence that it is reported by.
 
+mod clock_tree;
+
 use super::*;
 use crate::device::FieldPlace;
 use crate::facts::{Block, Register};
+use clock_tree::{CLOCK_TREE, SPEEDS};
 
 /// The processor's side of the peripherals.
 struct Bus(Peripherals);
@@ -57,7 +60,7 @@ impl Bus {
     /// Lets 2.5 ms of the internal oscillator pass.
     fn wait(&mut self) {
         let cycle = self.0.cycle + 40_000;
-        self.0.at(cycle);
+        self.0.set_cycle(cycle);
         self.0.advance();
     }
 
@@ -203,188 +206,6 @@ const PORTS: &[Row] = &[
     ),
 ];
 
-const CLOCK_TREE: &[Row] = &[
-    (
-        &[],
-        |b| b.rcc("CR", "HSION", 0),
-        "RCC_CR: HSI is switched off while the chip runs from it",
-    ),
-    (
-        &[],
-        |b| {
-            b.rcc("CR", "HSEON", 1);
-            b.wait();
-            b.rcc("CFGR", "HPRE", 8);
-            b.rcc("CFGR", "SW", 2);
-            b.rcc("CR", "HSEON", 0);
-        },
-        "RCC_CR: HSE is switched off while the chip runs from it",
-    ),
-    (
-        &[],
-        |b| {
-            b.rcc("CR", "HSEON", 1);
-            b.rcc("CR", "HSEBYP", 1);
-        },
-        "RCC_CR: HSEBYP is changed while HSE is on",
-    ),
-    (
-        &[],
-        |b| {
-            b.run_from_pll();
-            b.rcc("CR", "PLLON", 0);
-        },
-        "RCC_CR: PLL is switched off while the chip runs from it",
-    ),
-    (
-        &[],
-        |b| {
-            b.lock_pll();
-            b.rcc("CR", "HSEON", 0);
-        },
-        "RCC_CR: HSE is switched off while the PLL runs from it",
-    ),
-    (
-        &[],
-        |b| {
-            b.rcc("PLLCFGR", "PLLSRC", 2);
-            b.rcc("PLLCFGR", "PLLM", 3);
-            b.rcc("PLLCFGR", "PLLN", 85);
-            b.rcc("PLLCFGR", "PLLREN", 1);
-            b.rcc("CR", "PLLON", 1);
-            b.wait();
-            b.rcc("CFGR", "HPRE", 12);
-            b.rcc("CFGR", "SW", 3);
-            b.rcc("CR", "HSION", 0);
-        },
-        "RCC_CR: HSI is switched off while the PLL runs from it",
-    ),
-    (
-        &[],
-        |b| {
-            b.divide_crystal();
-            b.rcc("CR", "HSEON", 1);
-            b.rcc("CR", "PLLON", 1);
-        },
-        "RCC_CR: PLLON is set while the PLL's source is not ready",
-    ),
-    (
-        &[],
-        |b| {
-            b.rcc("PLLCFGR", "PLLSRC", 2);
-            b.rcc("PLLCFGR", "PLLM", 7);
-            b.rcc("PLLCFGR", "PLLN", 85);
-            b.rcc("CR", "PLLON", 1);
-        },
-        "RCC_PLLCFGR: the PLL's input is 2000000 Hz, outside of [2660000, 16000000]",
-    ),
-    (
-        &[],
-        |b| {
-            b.rcc("PLLCFGR", "PLLSRC", 2);
-            b.rcc("PLLCFGR", "PLLM", 3);
-            b.rcc("PLLCFGR", "PLLN", 87);
-            b.rcc("CR", "PLLON", 1);
-        },
-        "RCC_PLLCFGR: the PLL's oscillator is at 348000000 Hz, outside of [96000000, 344000000]",
-    ),
-    (
-        &[],
-        |b| {
-            b.lock_pll();
-            b.rcc("PLLCFGR", "PLLN", 80);
-        },
-        "RCC_PLLCFGR: source, M, N or R is changed while the PLL is on",
-    ),
-    (
-        &[],
-        |b| {
-            b.lock_pll();
-            b.rcc("PLLCFGR", "PLLR", 1);
-        },
-        "RCC_PLLCFGR: source, M, N or R is changed while the PLL is on",
-    ),
-    (
-        &[],
-        |b| {
-            b.run_from_pll();
-            b.rcc("PLLCFGR", "PLLREN", 0);
-        },
-        "RCC_PLLCFGR: PLLREN is cleared while the chip runs from the PLL",
-    ),
-    (
-        &[],
-        |b| b.rcc("CFGR", "SW", 2),
-        "RCC_CFGR: SW chooses a source that is not ready",
-    ),
-    (
-        &[],
-        |b| {
-            b.lock_pll();
-            b.rcc("PLLCFGR", "PLLREN", 0);
-            b.rcc("CFGR", "SW", 3);
-        },
-        "RCC_CFGR: SW chooses a source that is not ready",
-    ),
-    (
-        &[],
-        |b| b.switch(block("FDCAN2").enable),
-        "RCC_CCIPR: FDCANSEL gives FDCAN HSE, which is off",
-    ),
-    (
-        &[],
-        |b| {
-            b.rcc("CR", "HSEON", 1);
-            b.switch(block("FDCAN2").enable);
-            b.rcc("CR", "HSEON", 0);
-        },
-        "RCC_CCIPR: FDCANSEL gives FDCAN HSE, which is off",
-    ),
-    (
-        &[],
-        |b| {
-            b.rcc("CCIPR", "FDCANSEL", 1);
-            b.switch(block("FDCAN2").enable);
-        },
-        "RCC_CCIPR: FDCANSEL gives FDCAN PLL Q, which is not modelled",
-    ),
-];
-
-const SPEEDS: &[Row] = &[
-    (
-        &[],
-        |b| {
-            b.lock_pll();
-            b.rcc("CFGR", "SW", 3);
-            b.wait();
-        },
-        "the processor runs at 170000000 Hz in range 1 normal, whose limit is 150000000 Hz",
-    ),
-    (
-        &["PWR"],
-        |b| {
-            b.set("FLASH", "ACR", "LATENCY", 1);
-            b.set("PWR", "CR1", "VOS", 2);
-            b.lock_pll();
-            b.rcc("CFGR", "HPRE", 9);
-            b.rcc("CFGR", "SW", 3);
-            b.wait();
-        },
-        "the processor runs at 42500000 Hz in range 2, whose limit is 26000000 Hz",
-    ),
-    (
-        &[],
-        |b| {
-            b.lock_pll();
-            b.set("FLASH", "ACR", "LATENCY", 1);
-            b.rcc("CFGR", "HPRE", 8);
-            b.rcc("CFGR", "SW", 3);
-            b.wait();
-        },
-        "the flash has 1 wait states at 85000000 Hz in range 1 normal, and needs 2",
-    ),
-];
-
 #[test]
 fn mistakes_are_found() {
     let tables = [ACCESSES, PORTS, CLOCK_TREE, SPEEDS];
@@ -427,10 +248,22 @@ fn what_is_right_is_not_found() {
 fn a_finding_has_the_cycle_in_which_it_came() {
     let mut bus = Bus::new();
     bus.wait();
-    bus.0.at(50_000);
+    bus.0.set_cycle(50_000);
     bus.write("TIM1", "CR1", 0);
-    bus.0.at(70_000);
+    bus.0.set_cycle(70_000);
     bus.rcc("CFGR", "SW", 2);
     let cycles: Vec<_> = bus.0.findings.list().iter().map(|one| one.cycle).collect();
     assert_eq!(cycles, [50_000, 70_000]);
+}
+
+#[test]
+fn each_cause_breaks_tim1_by_its_field_alone() {
+    let causes = [SystemBreak::Lockup, SystemBreak::Supply, SystemBreak::Ecc];
+    for (field, cause) in ["CLL", "PVDL", "ECCL"].into_iter().zip(causes) {
+        let mut bus = Bus::new();
+        bus.switch(block("SYSCFG").enable);
+        bus.set("SYSCFG", "CFGR2", field, 1);
+        let breaking = causes.map(|one| bus.0.devices.breaks_by(one));
+        assert_eq!(breaking, causes.map(|one| one == cause));
+    }
 }

@@ -84,12 +84,17 @@ impl Running {
     pub(super) fn require(&self, wrong: Option<String>, image: &Image) -> Result<(), LinkError> {
         match wrong {
             None => Ok(()),
-            Some(wrong) => Err(LinkError::Chip(format!(
-                "at tick {}: {wrong}{}",
-                self.ticks,
-                self.described_findings(image)
-            ))),
+            Some(wrong) => Err(self.violation(&wrong, image)),
         }
+    }
+
+    /// What the chip does wrong in this tick, and its findings.
+    pub(super) fn violation(&self, wrong: &str, image: &Image) -> LinkError {
+        LinkError::Chip(format!(
+            "at tick {}: {wrong}{}",
+            self.ticks,
+            self.described_findings(image)
+        ))
     }
 
     /// Reads whether the program uses other settings than those that were kept. Once it does, only whole settings in the

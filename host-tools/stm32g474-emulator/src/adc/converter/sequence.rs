@@ -1,7 +1,7 @@
 //! Sequences of conversions: when they end, and what they give.
 
 use super::{Converter, Surroundings};
-use crate::adc::inputs::shortest_sampling;
+use crate::adc::inputs::{shortest_sampling, sum_of};
 use crate::device::Context;
 
 /// Half periods of sampling by the value of `SMPx`.
@@ -10,9 +10,6 @@ const SAMPLING: [u64; 8] = [5, 13, 25, 49, 95, 185, 495, 1281];
 const LONGER: u64 = 2;
 /// Half periods of converting 12 bits; each two bits less take two periods less.
 const CONVERTING: u64 = 25;
-
-/// Conversions that the board's sum is made of.
-const SIXTEEN: u64 = 16;
 
 /// Rising edges start an injected sequence at these values of `JEXTEN`.
 const RISING: [u32; 2] = [1, 3];
@@ -209,8 +206,7 @@ impl Converter {
             return 0;
         };
         let narrower = 2 * self.file.value(self.places.resolution);
-        let conversion = |count: u64| ((u64::from(sum) + count % SIXTEEN) / SIXTEEN) >> narrower;
-        let total: u64 = (0..self.conversions(group)).map(conversion).sum();
+        let total = sum_of(sum, self.conversions(group), narrower);
         let shift = if self.is(group.of(self.places.oversampling)) {
             self.file.value(self.places.shift)
         } else {
@@ -218,7 +214,7 @@ impl Converter {
         };
         // Rounded to the nearest.
         let rounded = (total + ((1 << shift) >> 1)) >> shift;
-        u32::try_from(rounded & u64::from(u16::MAX)).unwrap_or_default()
+        rounded & u32::from(u16::MAX)
     }
 
     /// An input has to be calibrated for, and sampled long enough for its source.
@@ -249,7 +245,7 @@ impl Converter {
     }
 
     /// Conversions in a code.
-    fn conversions(&self, group: Group) -> u64 {
+    fn conversions(&self, group: Group) -> u32 {
         if self.is(group.of(self.places.oversampling)) {
             2 << self.file.value(self.places.ratio)
         } else {
@@ -260,7 +256,7 @@ impl Converter {
     fn code_halves(&self, group: Group, input: u8) -> u64 {
         let fewer = 4 * u64::from(self.file.value(self.places.resolution));
         let conversion = self.sampling_halves(input) + CONVERTING - fewer;
-        conversion * self.conversions(group)
+        conversion * u64::from(self.conversions(group))
     }
 
     fn sampling_halves(&self, input: u8) -> u64 {
