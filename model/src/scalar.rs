@@ -49,6 +49,8 @@ pub trait Scalar:
     fn abs(self) -> Self;
     /// Whether it is neither infinite nor NaN.
     fn is_finite(self) -> bool;
+    /// The whole number towards zero, within those of `i32`; zero for what is no number.
+    fn whole(self) -> i32;
     /// `N` as a number, at compile time.
     fn count<const N: usize>() -> Self;
 }
@@ -88,6 +90,10 @@ macro_rules! scalar {
             #[inline(always)]
             fn is_finite(self) -> bool {
                 $t::is_finite(self)
+            }
+            #[inline(always)]
+            fn whole(self) -> i32 {
+                self as i32
             }
             #[inline(always)]
             fn count<const N: usize>() -> Self {

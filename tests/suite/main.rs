@@ -28,6 +28,7 @@ mod firmware {
     mod control_law;
     mod default_settings;
     mod encoder_jump;
+    mod set_points;
 }
 
 mod base {

@@ -11,18 +11,23 @@ mod mechanism;
 mod plan;
 mod pretension;
 mod quintic;
+mod stream;
+mod stream_limits;
 mod target;
 mod trajectory;
 
 pub use axis::{Axis, AxisGoal, AxisInput, AxisView};
 pub use debounce::Debounce;
-pub use estimate::{Estimate, Estimator, LengthError, LoadEstimation};
+pub use estimate::{Estimate, Estimator, LengthError, LoadEstimate, LoadEstimation};
 pub use filter::LowPass;
 pub use homing::{HomingSequence, HomingStep};
 pub use measure::{Measured, Measurement};
 pub use mechanism::Mechanism;
 pub use plan::MotionLimits;
 pub use pretension::{PretensionDemand, PretensionSearch};
+pub use quintic::MotionState;
+pub use stream::{Knot, POINTS_MAX, Stream};
+pub use stream_limits::StreamLimits;
 pub use target::{Target, TargetDemand, TargetGenerator};
 pub use trajectory::{Point, Trajectory};
 

@@ -30,19 +30,22 @@ use phase::Phase;
 use shared::Shared;
 
 /// The controller of a leg.
+///
+/// In this order in memory, for the reason given at [`Shared`].
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Leg<T> {
     tick: u32,
     phase: Phase,
-    queue: CommandQueue,
+    supervisor: Supervisor,
     link: LinkWatch,
     measurement: Measurement<T>,
     measured: Option<Measured<T>>,
-    shared: Shared<T>,
-    mode: Mode<T>,
     monitors: Monitors<T>,
     agreement: Agreement<T>,
-    supervisor: Supervisor,
+    mode: Mode<T>,
+    shared: Shared<T>,
+    queue: CommandQueue,
 }
 
 impl<T: Scalar> Leg<T> {
@@ -192,6 +195,7 @@ impl<T: Scalar> Leg<T> {
                 Fault::Unreachable,
                 limited || self.shared.pretension.unreachable(),
             );
+            faults.add(Fault::PointMissing, active.trajectory.point_missing());
             faults.add(Fault::Slack, active.stays_slack(&self.shared));
         }
         let listens = state.follows() && !active.is_some_and(|active| active.disarming);
@@ -281,7 +285,7 @@ impl<T: Scalar> Leg<T> {
                 .target
                 .map_or(T::zero(), |target| target.pretension_n),
             stiffness_nm_per_rad: shared.pretension.stiffness_nm_per_rad(),
-            load_nm: shared.estimator.excess_nm(),
+            load_nm: shared.estimator.excess_nm(&shared.mechanism),
             payload_kg: shared.estimator.payload_kg(),
             unstretched_at_zero_m: shared.zero_m.unwrap_or(zero),
         }

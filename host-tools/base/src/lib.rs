@@ -24,3 +24,4 @@ pub mod paths;
 pub mod suggest;
 pub mod text_input;
 pub mod tick_time;
+pub mod timed_path;

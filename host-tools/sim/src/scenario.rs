@@ -2,6 +2,7 @@
 
 mod board_start;
 mod command_step;
+mod follow_step;
 mod measurand;
 mod reading;
 mod step;
@@ -9,6 +10,7 @@ mod test_step;
 
 pub use board_start::BOARD_EXCEPTIONS;
 pub use command_step::CommandStep;
+pub use follow_step::{CircleStep, FollowStep};
 pub use measurand::Measurand;
 pub use step::Step;
 pub use test_step::{PushTest, TestStep};

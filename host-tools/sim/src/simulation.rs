@@ -1,6 +1,8 @@
 //! A scenario with an emulated leg, and a shadow of the whole control law in f64 beside it.
 
 mod extremes;
+mod follow_error;
+mod follower;
 mod measure;
 mod sequencer;
 mod shadow;
@@ -96,7 +98,7 @@ impl Simulation {
     ) -> Result<Summary, SimulationError> {
         let mut shadow = Shadow::new(&self.settings)?;
         let leg = EmulatedLeg::start(self.plant, &self.settings, link, self.counting)?;
-        let mut stand = TestStand::new(leg, &self.rig, &self.scenario);
+        let mut stand = TestStand::new(leg, &self.rig, &self.settings, &self.scenario);
         let mut sequencer = Sequencer::new(&self.scenario);
         let stopped = loop {
             match advance(&mut sequencer, &mut stand, &mut shadow, watch) {

@@ -4,7 +4,9 @@
 
 use leg_base::angles;
 use leg_firmware::command::{Command, CommandRefusal};
-use leg_firmware::control::{Axis, AxisGoal, AxisInput, CYCLE_TICKS, MotionLimits, Trajectory};
+use leg_firmware::control::{
+    Axis, AxisGoal, AxisInput, CYCLE_TICKS, MotionLimits, Stream, StreamLimits, Trajectory,
+};
 use leg_firmware::leg::{Leg, Outcome};
 use leg_firmware::sensors::{CODE_MAX, Sensors, TICK_HZ};
 use leg_firmware::settings::Settings;
@@ -15,7 +17,7 @@ use leg_rig::rig_file::RigFile;
 
 const TICK_S: f64 = 1.0 / TICK_HZ as f64;
 
-fn settings(zero: Option<[f64; 3]>) -> Settings {
+pub(super) fn settings(zero: Option<[f64; 3]>) -> Settings {
     let rig = RigFile::load(None).unwrap();
     let mut settings = control_settings::settings(&rig, &rig.gains, zero);
     // The motors of the bench draw nothing.
@@ -105,6 +107,7 @@ fn trajectories_keep_their_limits() {
         MotionLimits::new(&settings.motion),
         HalfTangent::new(0.0, 0.0),
     );
+    let mut stream = Stream::new(StreamLimits::new(&settings));
     let mut last: [[f64; 2]; 4] = [[0.0; 2]; 4];
     let mut peaks = [0.0_f64; 3];
     for cycle in 0..200_000_u32 {
@@ -117,7 +120,7 @@ fn trajectories_keep_their_limits() {
         if cycle % 7000 == 900 {
             trajectory.stop();
         }
-        trajectory.advance_plan();
+        trajectory.advance_plan(&mut stream);
         let now = trajectory.step().xy();
         last = [now, last[0], last[1], last[2]];
         if cycle < 4 {

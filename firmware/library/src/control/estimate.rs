@@ -41,13 +41,66 @@ pub enum LoadEstimation {
     Immediate,
 }
 
+/// A load, as what the target is made for: the payload turns with the leg, the push does not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoadEstimate<T> {
+    /// The payload at the tip, kg.
+    pub payload_kg: T,
+    /// A horizontal moment (x, y) beside it, N·m.
+    pub push_nm: [T; 2],
+}
+
+impl<T: Scalar> LoadEstimate<T> {
+    /// The load as a horizontal moment (x, y) at a direction, with the moment of a payload of 1 kg at the horizontal, N·m.
+    #[inline(always)]
+    pub fn moment(&self, direction: &Direction<T>, payload_lever: T) -> [T; 2] {
+        let down = direction.vector();
+        let weight_nm = self.payload_kg * payload_lever;
+        let [x, y] = self.push_nm;
+        [x - weight_nm * down.y, y + weight_nm * down.x]
+    }
+}
+
+/// Two low-pass filters in series.
+#[derive(Clone, Copy, Debug)]
+struct Smoothed<T> {
+    first: LowPass<T>,
+    second: LowPass<T>,
+}
+
+impl<T: Scalar> Smoothed<T> {
+    fn new(time_s: f32) -> Self {
+        let filter = LowPass::new(time_s, CYCLE_S);
+        Self {
+            first: filter,
+            second: filter,
+        }
+    }
+
+    #[inline(always)]
+    fn value(&self) -> T {
+        self.second.value()
+    }
+
+    fn set(&mut self, value: T) {
+        self.first.set(value);
+        self.second.set(value);
+    }
+
+    #[inline(always)]
+    fn step(&mut self, input: T) {
+        self.second.step(self.first.step(input));
+    }
+}
+
 /// Estimates pose and load, warm-started from the last estimate.
 #[derive(Clone, Copy, Debug)]
 pub struct Estimator<T> {
     direction: Direction<T>,
-    /// Moment beyond that of the leg's own weight, as a horizontal one (x, y) of the same effect, N·m.
-    excess: [[LowPass<T>; 2]; 2],
-    payload_kg: T,
+    /// The payload, kg: below zero where something lifts the leg.
+    payload_kg: Smoothed<T>,
+    /// The horizontal moment (x, y) that is neither that of the payload nor that of the leg's own weight, N·m.
+    push_nm: [Smoothed<T>; 2],
     /// Square of the sine of the tilt from which the payload is estimated.
     payload_sine_squared: T,
 }
@@ -56,12 +109,12 @@ impl<T: Scalar> Estimator<T> {
     /// Straight down, without a payload.
     pub fn new(settings: &Settings) -> Self {
         let estimation = &settings.estimation;
-        let filter = LowPass::new(estimation.load_time_s, CYCLE_S);
+        let smoothed = Smoothed::new(estimation.load_time_s);
         let sine = T::from(estimation.payload_sine);
         Self {
             direction: Direction::down(),
-            excess: [[filter; 2]; 2],
-            payload_kg: T::zero(),
+            payload_kg: smoothed,
+            push_nm: [smoothed; 2],
             payload_sine_squared: sine * sine,
         }
     }
@@ -75,22 +128,30 @@ impl<T: Scalar> Estimator<T> {
     /// Starts anew, straight down, without a load.
     pub fn straight_down(&mut self) {
         self.direction = Direction::down();
-        self.payload_kg = T::zero();
-        for filter in self.excess.iter_mut().flatten() {
-            filter.set(T::zero());
+        self.payload_kg.set(T::zero());
+        for push in &mut self.push_nm {
+            push.set(T::zero());
         }
     }
 
-    /// The load beyond the leg's own weight, as a horizontal moment (x, y), N·m.
+    /// The load beyond the leg's own weight.
     #[inline(always)]
-    pub fn excess_nm(&self) -> [T; 2] {
-        self.excess.map(|[_, second]| second.value())
+    pub fn load(&self) -> LoadEstimate<T> {
+        LoadEstimate {
+            payload_kg: self.payload_kg.value(),
+            push_nm: self.push_nm.each_ref().map(Smoothed::value),
+        }
     }
 
-    /// The payload that such a load would be, kg.
+    /// The load beyond the leg's own weight at the last direction, as a horizontal moment (x, y), N·m.
+    pub fn excess_nm(&self, mechanism: &Mechanism<T>) -> [T; 2] {
+        self.load().moment(&self.direction, mechanism.payload_lever)
+    }
+
+    /// The payload, kg; nothing weighs less than nothing.
     #[inline(always)]
     pub fn payload_kg(&self) -> T {
-        self.payload_kg
+        max(self.payload_kg.value(), T::zero())
     }
 
     /// Estimates the pose and, as `load_estimation` says, the load. `torsion` is the elastic one, rad.
@@ -157,25 +218,31 @@ impl<T: Scalar> Estimator<T> {
         let [x, y] = support.plane(direction).project(&load);
         let own = mechanism.leg.moment(direction);
         let excess = [x - own.x, y - own.y];
-        for ([first, second], input) in self.excess.iter_mut().zip(excess) {
-            if load_estimation == LoadEstimation::Immediate {
-                first.set(input);
-                second.set(input);
-            }
-            second.step(first.step(input));
-        }
-        self.update_payload(mechanism);
+        let immediate = load_estimation == LoadEstimation::Immediate;
+        self.split(excess, mechanism.payload_lever, immediate);
     }
 
-    /// A weight at the tip turns the leg about (−p_y, p_x), the more the further it leans.
+    /// Splits a moment into that of a payload, which turns with the leg, and the rest. A weight at the tip turns the leg about
+    /// (−p_y, p_x), the more the further it leans; near the vertical it stays what it was.
     #[inline(always)]
-    fn update_payload(&mut self, mechanism: &Mechanism<T>) {
+    fn split(&mut self, [x, y]: [T; 2], payload_lever: T, immediate: bool) {
         let down = self.direction.vector();
         let sine_squared = down.x * down.x + down.y * down.y;
-        let lever = sine_squared * mechanism.payload_lever;
-        if sine_squared > self.payload_sine_squared && lever > T::zero() {
-            let [x, y] = self.excess_nm();
-            self.payload_kg = max((down.x * y - down.y * x) / lever, T::zero());
+        let mut payload_kg = self.payload_kg.value();
+        if sine_squared > self.payload_sine_squared {
+            payload_kg = (down.x * y - down.y * x) / (sine_squared * payload_lever);
+            if immediate {
+                self.payload_kg.set(payload_kg);
+            }
+            self.payload_kg.step(payload_kg);
+        }
+        let weight_nm = payload_kg * payload_lever;
+        let rest = [x + weight_nm * down.y, y - weight_nm * down.x];
+        for (push, rest) in self.push_nm.iter_mut().zip(rest) {
+            if immediate {
+                push.set(rest);
+            }
+            push.step(rest);
         }
     }
 }

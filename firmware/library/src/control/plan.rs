@@ -1,5 +1,6 @@
 //! The time that a path needs so that rate, acceleration and jerk keep their limits.
 
+use super::CYCLE_S;
 use super::bounds::max;
 use super::quintic::{MotionState, Peaks, Quintic};
 use crate::settings;
@@ -19,11 +20,16 @@ const LONGER: f32 = 1.15;
 /// Shortest trajectory, s: forty cycles, so that rounding up to whole cycles changes it little.
 pub const SHORTEST_S: f32 = 0.02;
 
+/// Longest trajectory, s: one that would need more is given up, and the leg stays on the old one. Its ticks, 4.8 million, are
+/// exact in f32.
+pub const LONGEST_S: f32 = 600.0;
+
 /// The limits as squares, in half-tangent coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionLimits<T> {
+    /// The limits themselves.
+    pub(super) peaks: Peaks<T>,
     squares: Peaks<T>,
-    rate: T,
 }
 
 impl<T: Scalar> MotionLimits<T> {
@@ -31,14 +37,18 @@ impl<T: Scalar> MotionLimits<T> {
     pub fn new(motion: &settings::Motion) -> Self {
         let half = |limit: f32| T::from(0.5 * MARGIN * limit);
         let square = |value: T| value * value;
-        let rate = half(motion.speed_rad_per_s);
+        let peaks = Peaks {
+            rate: half(motion.speed_rad_per_s),
+            acceleration: half(motion.acceleration_rad_per_s2),
+            jerk: half(motion.jerk_rad_per_s3),
+        };
         Self {
+            peaks,
             squares: Peaks {
-                rate: square(rate),
-                acceleration: square(half(motion.acceleration_rad_per_s2)),
-                jerk: square(half(motion.jerk_rad_per_s3)),
+                rate: square(peaks.rate),
+                acceleration: square(peaks.acceleration),
+                jerk: square(peaks.jerk),
             },
-            rate,
         }
     }
 
@@ -58,7 +68,7 @@ impl<T: Scalar> MotionLimits<T> {
         let (x, y) = (end[0] - start.position[0], end[1] - start.position[1]);
         // The fastest place of a path from rest to rest is at 15/8 of the average. A little more, so that rounding does
         // not decide.
-        let s = (x * x + y * y).sqrt() * T::from(1.89) / self.rate;
+        let s = (x * x + y * y).sqrt() * T::from(1.89) / self.peaks.rate;
         max(s, T::from(SHORTEST_S))
     }
 }
@@ -67,4 +77,16 @@ impl<T: Scalar> MotionLimits<T> {
 #[inline(always)]
 pub fn longer<T: Scalar>(duration_s: T) -> T {
     duration_s * T::from(LONGER)
+}
+
+/// Whole cycles in a time, rounded up: from one to those of [`LONGEST_S`].
+#[inline(always)]
+pub fn cycles<T: Scalar>(duration_s: T) -> i32 {
+    const MOST: i32 = (LONGEST_S / CYCLE_S) as i32 + 1;
+    // Rounded down twice, so that the search for the first that is long enough starts before it.
+    let mut cycles = (duration_s * T::from(1.0 / CYCLE_S)).whole().clamp(2, MOST) - 1;
+    while cycles < MOST && T::from(cycles as f32 * CYCLE_S) < duration_s {
+        cycles += 1;
+    }
+    cycles
 }

@@ -1,4 +1,4 @@
-//! A smooth path from a moving start to a resting end: a polynomial of fifth degree in each coordinate.
+//! A smooth path from one motion to another: a polynomial of fifth degree in each coordinate.
 
 use leg_model::Scalar;
 
@@ -22,6 +22,20 @@ impl<T: Scalar> MotionState<T> {
             acceleration: [T::zero(); 2],
         }
     }
+
+    /// The acceleration that a cubic path from this motion has at `end`, where position and rate are given: the third
+    /// derivative is then constant, and points of a smooth motion that are `time_s` apart give its acceleration to the second
+    /// order.
+    #[inline(always)]
+    pub fn acceleration_at_end(&self, end: &Self, time_s: T) -> [T; 2] {
+        let per_second = T::one() / time_s;
+        let coordinate = |i: usize| {
+            let mean = (end.position[i] - self.position[i]) * per_second;
+            let rates = T::TWO * end.rate[i] + self.rate[i];
+            T::TWO * (rates - T::from(3.0) * mean) * per_second
+        };
+        [coordinate(0), coordinate(1)]
+    }
 }
 
 /// The path, over a time that goes from 0 to 1.
@@ -31,14 +45,14 @@ pub struct Quintic<T> {
     duration_s: T,
 }
 
-/// The largest squares of rate, acceleration and jerk.
+/// The largest rate, acceleration and jerk, or their squares.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Peaks<T> {
-    /// (1/s)².
+    /// 1/s.
     pub rate: T,
-    /// (1/s²)².
+    /// 1/s².
     pub acceleration: T,
-    /// (1/s³)².
+    /// 1/s³.
     pub jerk: T,
 }
 
@@ -63,6 +77,43 @@ impl<T: Scalar> Quintic<T> {
             coefficients: [coordinate(0), coordinate(1)],
             duration_s,
         }
+    }
+
+    /// From one motion to another within a time in s.
+    pub fn between(start: &MotionState<T>, end: &MotionState<T>, duration_s: T) -> Self {
+        let mut path = Self::new(start, end.position, duration_s);
+        for (i, coefficients) in path.coefficients.iter_mut().enumerate() {
+            let rate = end.rate[i] * duration_s;
+            let half = T::HALF * end.acceleration[i] * duration_s * duration_s;
+            let [_, _, _, c3, c4, c5] = coefficients;
+            *c3 += half - T::from(4.0) * rate;
+            *c4 += T::from(7.0) * rate - T::TWO * half;
+            *c5 += half - T::from(3.0) * rate;
+        }
+        path
+    }
+
+    /// The control points of its Bézier form, for each coordinate: the path and its derivatives stay within the convex hulls
+    /// of theirs.
+    #[inline(always)]
+    pub fn control_points(&self) -> [[T; 6]; 2] {
+        let part = |share: f32| T::from(share);
+        self.coefficients.map(|[c0, c1, c2, c3, c4, c5]| {
+            [
+                c0,
+                c0 + part(0.2) * c1,
+                c0 + part(0.4) * c1 + part(0.1) * c2,
+                c0 + part(0.6) * c1 + part(0.3) * c2 + part(0.1) * c3,
+                c0 + part(0.8) * c1 + part(0.6) * c2 + part(0.4) * c3 + part(0.2) * c4,
+                c0 + c1 + c2 + c3 + c4 + c5,
+            ]
+        })
+    }
+
+    /// Its time, s.
+    #[inline(always)]
+    pub fn duration_s(&self) -> T {
+        self.duration_s
     }
 
     /// The position at a part of the time.

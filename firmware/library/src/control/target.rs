@@ -1,7 +1,7 @@
 //! The lengths that put the loaded leg on its target.
 
 use super::{
-    CYCLE_S, Mechanism,
+    CYCLE_S, LoadEstimate, Mechanism,
     bounds::{clamp_symmetric, max, min},
 };
 use crate::settings::Settings;
@@ -52,8 +52,8 @@ pub struct TargetGenerator<T> {
 pub struct TargetDemand<T> {
     /// The pose.
     pub q: HalfTangent<T>,
-    /// The load beyond the leg's own weight, as a horizontal moment, N·m.
-    pub excess_nm: [T; 2],
+    /// The load beyond the leg's own weight.
+    pub load: LoadEstimate<T>,
     /// Whether the weights shall be held, or left out.
     pub compensated: bool,
     /// Whether the pretension is trimmed by the measured tensions: not before every tendon pulls.
@@ -110,7 +110,7 @@ impl<T: Scalar> TargetGenerator<T> {
         )?;
         let plane = mechanism.support.plane(&direction);
         let mut moment = mechanism.support.joint_moment(&direction, torsion);
-        let [x, y] = demand.excess_nm;
+        let [x, y] = demand.load.moment(&direction, mechanism.payload_lever);
         let load = mechanism.leg.moment(&direction) + Vector3::new(x, y, T::zero());
         moment += load * self.step_share(demand.compensated);
         let distribution = distribute(&kinematics.moment_map, &plane, &moment, &mechanism.bounds)?;

@@ -1,14 +1,12 @@
 //! Where the leg shall be at any time: jerk-limited paths through half-tangent coordinates, which are smooth at the
 //! vertical.
 
-use super::CYCLE_S;
-use super::plan::{MotionLimits, PLACES, SHORTEST_S, longer};
+use super::plan::{LONGEST_S, MotionLimits, PLACES, SHORTEST_S, cycles, longer};
 use super::quintic::{MotionState, Quintic};
+use super::stream::Stream;
+use super::stream_limits::Segment;
+use super::{CYCLE_S, CYCLE_TICKS};
 use leg_model::{HalfTangent, Scalar};
-
-/// Longest trajectory, s: one that would need more is given up, and the leg stays on the old one. Its cycles, 1.2 million, are
-/// exact in f32.
-const LONGEST_S: f32 = 600.0;
 
 /// A point of the trajectory.
 pub type Point<T> = HalfTangent<T>;
@@ -18,10 +16,21 @@ pub type Point<T> = HalfTangent<T>;
 pub struct Trajectory<T> {
     limits: MotionLimits<T>,
     path: Quintic<T>,
-    cycle: u32,
-    cycles: u32,
+    /// Ticks since its start, and to its end. A segment of a stream may start between two cycles, in the next one: then they
+    /// are negative.
+    elapsed: i32,
+    duration: i32,
+    /// Whether the path is a segment of a stream.
+    streamed: bool,
+    /// Whether that begins in this cycle: the path is still the one before it.
+    begins: bool,
+    /// Whether the last stream ended without its last point, and nothing was commanded since.
+    point_missing: bool,
     planned: Option<Plan<T>>,
 }
+
+/// Ticks of a cycle.
+const CYCLE: i32 = CYCLE_TICKS as i32;
 
 /// A path that is tried with ever more time, and checked place by place.
 #[derive(Clone, Copy, Debug)]
@@ -35,15 +44,15 @@ struct Plan<T> {
 #[derive(Clone, Copy, Debug)]
 struct Attempt<T> {
     path: Quintic<T>,
-    cycles: u32,
+    cycles: i32,
     /// Cycles until it starts.
-    ahead: u32,
+    ahead: i32,
     /// The next place to check.
     place: u8,
 }
 
 /// Cycles that are given to check a path: enough for all its places.
-const AHEAD: u32 = PLACES as u32 / PLACES_A_CYCLE as u32 + 1;
+const AHEAD: i32 = PLACES as i32 / PLACES_A_CYCLE as i32 + 1;
 
 /// Places checked in a cycle: as many as fit beside the monitors of two axes in a tick of the instruction budget.
 const PLACES_A_CYCLE: u8 = 2;
@@ -64,8 +73,11 @@ impl<T: Scalar> Trajectory<T> {
         Self {
             limits,
             path: Quintic::new(&MotionState::at_rest(start), start, T::one()),
-            cycle: 1,
-            cycles: 1,
+            elapsed: 0,
+            duration: 0,
+            streamed: false,
+            begins: false,
+            point_missing: false,
             planned: None,
         }
     }
@@ -73,7 +85,48 @@ impl<T: Scalar> Trajectory<T> {
     /// Starts anew, at rest.
     pub fn start(&mut self, q: Point<T>) {
         self.path = Quintic::new(&MotionState::at_rest(q.xy()), q.xy(), T::one());
-        (self.cycle, self.cycles, self.planned) = (1, 1, None);
+        (self.elapsed, self.duration) = (0, 0);
+        (self.streamed, self.begins, self.planned) = (false, false, None);
+    }
+
+    /// Follows a stream from [`Self::next_motion`] on.
+    pub fn begin_stream(&mut self) {
+        self.planned = None;
+        (self.streamed, self.begins) = (true, true);
+        self.point_missing = false;
+    }
+
+    /// Leaves a stream: the segment leads to rest.
+    pub fn leave_stream(&mut self, segment: &Segment<T>) {
+        (self.streamed, self.begins) = (false, false);
+        self.enter(segment, 0);
+    }
+
+    /// Whether it follows a stream.
+    #[inline(always)]
+    pub fn streamed(&self) -> bool {
+        self.streamed
+    }
+
+    /// Whether the last stream ended without its last point, and nothing was commanded since.
+    #[inline(always)]
+    pub fn point_missing(&self) -> bool {
+        self.point_missing
+    }
+
+    /// The motion at the next point.
+    pub fn next_motion(&self) -> MotionState<T> {
+        self.path.motion(self.part(CYCLE))
+    }
+
+    /// The motion at the last point.
+    pub fn motion(&self) -> MotionState<T> {
+        self.path.motion(self.part(0))
+    }
+
+    fn enter(&mut self, segment: &Segment<T>, elapsed: i32) {
+        self.path = segment.path;
+        (self.elapsed, self.duration) = (elapsed, segment.ticks);
     }
 
     /// Goes to a point, from wherever the trajectory is and however it moves.
@@ -87,6 +140,7 @@ impl<T: Scalar> Trajectory<T> {
     }
 
     fn plan(&mut self, end: End<T>) {
+        self.point_missing = false;
         self.planned = Some(Plan {
             end,
             duration_s: None,
@@ -97,23 +151,25 @@ impl<T: Scalar> Trajectory<T> {
     /// Whether it moves, or a plan is being made.
     #[inline(always)]
     pub fn moving(&self) -> bool {
-        self.cycle < self.cycles || self.planned.is_some()
+        self.elapsed < self.duration || self.streamed || self.planned.is_some()
     }
 
     /// The point of the next cycle.
     #[inline(always)]
     pub fn step(&mut self) -> Point<T> {
-        if self.cycle < self.cycles {
-            self.cycle += 1;
+        if self.elapsed < self.duration {
+            self.elapsed += CYCLE;
         }
         let [x, y] = self.path.position(self.part(0));
         HalfTangent::new(x, y)
     }
 
-    /// Goes on with the plan of another path, once a cycle.
+    /// Goes on with the plan of another path, or with a stream, once a cycle.
     #[inline(never)]
-    pub fn advance_plan(&mut self) {
-        if let Some(plan) = self.planned {
+    pub fn advance_plan(&mut self, stream: &mut Stream<T>) {
+        if self.streamed {
+            self.advance_stream(stream);
+        } else if let Some(plan) = self.planned {
             self.planned = match plan.tried {
                 Some(attempt) => self.check(plan, attempt),
                 None => self.attempt(plan),
@@ -121,12 +177,31 @@ impl<T: Scalar> Trajectory<T> {
         }
     }
 
-    /// The part of the path that will be done in some cycles.
+    /// Enters the next segment if the next point is in it: without one, that to rest.
     #[inline(always)]
-    fn part(&self, ahead: u32) -> T {
-        let cycle = self.cycle + ahead;
-        if cycle < self.cycles {
-            T::from(cycle as f32) / T::from(self.cycles as f32)
+    fn advance_stream(&mut self, stream: &mut Stream<T>) {
+        let beyond = if core::mem::take(&mut self.begins) {
+            0
+        } else {
+            self.elapsed - self.duration
+        };
+        if beyond + CYCLE <= 0 {
+            return;
+        }
+        let segment = stream.next_segment().unwrap_or_else(|| {
+            let (to_rest, missing) = stream.end();
+            (self.streamed, self.point_missing) = (false, missing);
+            to_rest
+        });
+        self.enter(&segment, beyond);
+    }
+
+    /// The part of the path that will be done in some ticks.
+    #[inline(always)]
+    fn part(&self, ahead: i32) -> T {
+        let elapsed = self.elapsed + ahead;
+        if elapsed < self.duration {
+            T::from(elapsed as f32) / T::from(self.duration as f32)
         } else {
             T::one()
         }
@@ -135,7 +210,7 @@ impl<T: Scalar> Trajectory<T> {
     /// Makes a path from where the trajectory will be; no plan if it would take too long.
     #[inline(always)]
     fn attempt(&self, plan: Plan<T>) -> Option<Plan<T>> {
-        let start = self.path.motion(self.part(AHEAD));
+        let start = self.path.motion(self.part(AHEAD * CYCLE));
         let duration_s = match (plan.duration_s, plan.end) {
             (Some(duration_s), _) => duration_s,
             (None, End::At(end)) => self.limits.shortest_s(&start, end),
@@ -172,7 +247,7 @@ impl<T: Scalar> Trajectory<T> {
     /// is taken when its start has come.
     #[inline(always)]
     fn check(&mut self, plan: Plan<T>, mut attempt: Attempt<T>) -> Option<Plan<T>> {
-        attempt.ahead = attempt.ahead.saturating_sub(1);
+        attempt.ahead -= 1;
         for _ in 0..PLACES_A_CYCLE {
             if attempt.place > PLACES {
                 break;
@@ -192,23 +267,7 @@ impl<T: Scalar> Trajectory<T> {
                 ..plan
             });
         }
-        (self.path, self.cycle, self.cycles) = (attempt.path, 0, attempt.cycles);
+        (self.path, self.elapsed, self.duration) = (attempt.path, 0, attempt.cycles * CYCLE);
         None
     }
-}
-
-/// Whole cycles in a time, rounded up.
-#[inline(always)]
-fn cycles<T: Scalar>(duration_s: T) -> u32 {
-    // By counting up in halves: a number of the model's type cannot be cast.
-    let (mut low, mut high) = (1_u32, (LONGEST_S / CYCLE_S) as u32 + 1);
-    while low < high {
-        let middle = low + (high - low) / 2;
-        if T::from(middle as f32 * CYCLE_S) < duration_s {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    low
 }

@@ -2,12 +2,12 @@
 
 use super::phase::Phase;
 use super::shared::Shared;
-use crate::command::Compensation;
+use crate::command::{CommandRefusal, Compensation, SetPoint, StreamPart};
 use crate::control::{
-    Axis, AxisGoal, CYCLE_S, CYCLE_TICKS, LoadEstimation, Measured, TargetDemand, Trajectory,
+    Axis, AxisGoal, CYCLE_S, CYCLE_TICKS, Knot, LoadEstimation, Measured, TargetDemand, Trajectory,
     bounds,
 };
-use leg_model::{Direction, Error, Scalar};
+use leg_model::{Direction, Error, HalfTangent, Scalar};
 
 /// The leg follows commands.
 #[derive(Clone, Copy, Debug)]
@@ -81,18 +81,70 @@ impl<T: Scalar> Active<T> {
             Phase::Plan => {
                 // A leg that is not taut yet does not set out.
                 if self.slack.taken_up() {
-                    self.trajectory.advance_plan();
+                    self.trajectory.advance_plan(&mut shared.stream);
                 }
                 Ok(())
             }
         }
     }
 
+    /// Goes to a point.
+    pub fn go(&mut self, shared: &mut Shared<T>, to: HalfTangent<T>) {
+        self.rest(shared);
+        self.trajectory.go(to);
+    }
+
+    /// Comes to rest.
+    pub fn hold(&mut self, shared: &mut Shared<T>) {
+        if !self.rest(shared) {
+            self.trajectory.stop();
+        }
+    }
+
+    /// Leaves a stream, if one is followed.
+    fn rest(&mut self, shared: &mut Shared<T>) -> bool {
+        let streamed = self.trajectory.streamed();
+        if streamed {
+            let motion = self.trajectory.motion();
+            self.trajectory
+                .leave_stream(&shared.stream.limits.to_rest(&motion));
+        }
+        streamed
+    }
+
+    /// Takes a set-point; `tick` is the present one, which is that of the last target, too: a target is reached in the tick
+    /// that executes the next command.
+    pub fn follow(
+        &mut self,
+        shared: &mut Shared<T>,
+        tick: u32,
+        point: &SetPoint,
+    ) -> Result<(), CommandRefusal> {
+        let stream = &mut shared.stream;
+        match (point.part, self.trajectory.streamed()) {
+            (StreamPart::First, true) if stream.repeats(point) => Ok(()),
+            (StreamPart::First, true) => Err(CommandRefusal::Following),
+            (StreamPart::First, false) if !self.slack.taken_up() => Err(CommandRefusal::NotTaut),
+            (StreamPart::First, false) => {
+                let start = Knot {
+                    tick: tick.wrapping_add(u32::from(CYCLE_TICKS)),
+                    motion: self.trajectory.next_motion(),
+                };
+                stream.begin(start, point)?;
+                self.trajectory.begin_stream();
+                shared.refused = false;
+                Ok(())
+            }
+            (_, false) => Err(CommandRefusal::NoStream),
+            (_, true) => stream.extend(tick, point),
+        }
+    }
+
     /// Leads the leg straight down, to be disarmed there.
-    pub fn disarm(&mut self) {
+    pub fn disarm(&mut self, shared: &mut Shared<T>) {
         self.disarming = true;
         self.stuck = false;
-        self.trajectory.go(Direction::down().half_tangent());
+        self.go(shared, Direction::down().half_tangent());
     }
 
     /// Whether it was led down, or cannot be.
@@ -136,7 +188,7 @@ impl<T: Scalar> Active<T> {
         let taut = self.slack.taken_up();
         let demand = TargetDemand {
             q: self.trajectory.step(),
-            excess_nm: shared.estimator.excess_nm(),
+            load: shared.estimator.load(),
             compensated: shared.compensation != Compensation::Off,
             trimmed: shared.compensation == Compensation::Estimated && self.tensioned,
             // The pretension comes up when every tendon is as far from slack as every other.

@@ -2,8 +2,9 @@
 
 use super::active::Active;
 use super::mode::Mode;
+use super::shared::Shared;
 use super::{Leg, Outcome};
-use crate::command::{Command, CommandRefusal};
+use crate::command::{Command, CommandRefusal, SetPoint};
 use crate::control::{Measured, PretensionDemand};
 use crate::supervisor::{Event, Fault, FaultSet, State};
 use leg_model::{BendingAxis, Direction, Scalar};
@@ -52,8 +53,10 @@ impl<T: Scalar> Leg<T> {
             Command::Arm => self.start(Event::Arm, measured),
             Command::Home => self.start(Event::Home, measured),
             Command::Move { x, y } => self.start_move(x.into(), y.into()),
+            Command::Follow(point) => self.follow(&point),
             Command::Hold => {
-                self.active()?.trajectory.stop();
+                let (active, shared) = self.active()?;
+                active.hold(shared);
                 Ok(())
             }
             Command::Pretension(pretension_n) => self.demand_pretension(pretension_n),
@@ -123,7 +126,7 @@ impl<T: Scalar> Leg<T> {
         }
         self.shared.refused = false;
         if let Mode::Active(active) = &mut self.mode {
-            active.disarm();
+            active.disarm(&mut self.shared);
         }
         Ok(())
     }
@@ -136,17 +139,24 @@ impl<T: Scalar> Leg<T> {
         }
     }
 
-    /// The active mode; refused in every other.
-    fn active(&mut self) -> Result<&mut Active<T>, CommandRefusal> {
+    /// The active mode, and what it works with; refused in every other.
+    fn active(&mut self) -> Result<(&mut Active<T>, &mut Shared<T>), CommandRefusal> {
         let refusal = self.unfaulted().err();
         let state = self.mode.state();
         match &mut self.mode {
             Mode::Active(active) if active.disarming => {
                 Err(CommandRefusal::State(State::RampingDown))
             }
-            Mode::Active(active) => Ok(active),
+            Mode::Active(active) => Ok((active, &mut self.shared)),
             _ => Err(refusal.unwrap_or(CommandRefusal::State(state))),
         }
+    }
+
+    /// Takes a set-point of a stream.
+    fn follow(&mut self, point: &SetPoint) -> Result<(), CommandRefusal> {
+        let tick = self.tick;
+        let (active, shared) = self.active()?;
+        active.follow(shared, tick, point)
     }
 
     fn demand_pretension(&mut self, pretension_n: f32) -> Result<(), CommandRefusal> {
@@ -179,12 +189,12 @@ impl<T: Scalar> Leg<T> {
     /// A move inside the workspace; another is refused.
     fn start_move(&mut self, x: T, y: T) -> Result<(), CommandRefusal> {
         let reach = self.shared.limits.tilt_max_sine;
-        let active = self.active()?;
+        let (active, shared) = self.active()?;
         let inside = x * x + y * y <= reach * reach;
         match Direction::from_xy(x, y) {
             Ok(direction) if inside => {
-                active.trajectory.go(direction.half_tangent());
-                self.shared.refused = false;
+                active.go(shared, direction.half_tangent());
+                shared.refused = false;
                 Ok(())
             }
             _ => self.refuse(if x.is_finite() && y.is_finite() {

@@ -3,7 +3,7 @@
 use crate::command::Compensation;
 use crate::control::{
     Axis, AxisInput, CYCLE_TICKS, Estimate, Estimator, LoadEstimation, Measured, Mechanism,
-    MotionLimits, PretensionSearch, Target, TargetGenerator, ticks,
+    MotionLimits, PretensionSearch, Stream, StreamLimits, Target, TargetGenerator, ticks,
 };
 use crate::drive::Drive;
 use crate::settings::{Homing, Settings, SettingsError};
@@ -11,13 +11,14 @@ use crate::supervisor::State;
 use leg_model::{Direction, Error, Scalar, inverse_kinematics};
 
 /// The control law's state that outlasts a mode.
+///
+/// In this order in memory: a load instruction reaches 1020 bytes, and what every tick uses is within them.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Shared<T> {
-    pub mechanism: Mechanism<T>,
-    pub estimator: Estimator<T>,
-    pub pretension: PretensionSearch<T>,
-    pub targets: TargetGenerator<T>,
     pub axes: [Axis<T>; 3],
+    pub estimator: Estimator<T>,
+    pub targets: TargetGenerator<T>,
     pub compensation: Compensation,
     /// Length of each tendon without tension when the board started, m.
     pub zero_m: Option<[T; 3]>,
@@ -33,6 +34,9 @@ pub struct Shared<T> {
     /// Tendon at which homing failed the last time, from 1; 0 for none.
     pub failed_tendon: u8,
     pub limits: LegLimits<T>,
+    pub pretension: PretensionSearch<T>,
+    pub mechanism: Mechanism<T>,
+    pub stream: Stream<T>,
 }
 
 /// Slack of each tendon of a relaxed leg whose zero is known, m: more than the servo leaves, and little enough that the tip of a
@@ -99,6 +103,7 @@ impl<T: Scalar> Shared<T> {
             estimator: Estimator::new(settings),
             pretension: PretensionSearch::new(settings.pretension_n.into()),
             targets: TargetGenerator::new(settings),
+            stream: Stream::new(StreamLimits::new(settings)),
             axes: [Axis::new(settings); 3],
             compensation: Compensation::Estimated,
             zero_m,

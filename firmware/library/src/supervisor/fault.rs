@@ -255,6 +255,13 @@ faults! {
         remedy: "check the driver and the motor's wires",
         clears: Command,
     }
+    28 PointMissing {
+        name: "set-point missing",
+        reaction: Limit,
+        cause: "a stream of set-points ends without its last one: the leg comes to rest after the last that came",
+        remedy: "send set-points earlier; begin a new stream",
+        clears: CauseGone,
+    }
 }
 
 impl Fault {

@@ -27,9 +27,9 @@ pub(super) struct CountedScenario {
 }
 
 /// How many scenarios are counted.
-pub(super) const COUNTED: usize = READY_RIGS.len() + 1;
+pub(super) const COUNTED: usize = READY_RIGS.len() + 2;
 
-/// Everything that is counted: every ready rig as it moves, and the paper's as it is homed, too.
+/// Everything that is counted: every ready rig as it moves, and the paper's as it is homed and as it follows set-points, too.
 pub(super) fn counted() -> impl Iterator<Item = CountedScenario> {
     let [paper, others @ ..] = READY_RIGS;
     let counted = |what: &str, scenario, rig| CountedScenario {
@@ -41,6 +41,7 @@ pub(super) fn counted() -> impl Iterator<Item = CountedScenario> {
     [
         counted("", "cost", paper),
         counted(", homing", "cost_homing", paper),
+        counted(", set-points", "cost_follow", paper),
     ]
     .into_iter()
     .chain(others)

@@ -10,6 +10,10 @@ pub enum Measurand {
     TipErrorMm,
     /// Largest distance of the tip from where it was at the mark, mm.
     TipMovedMm,
+    /// Largest distance of the true tip from where the last path that was streamed had it at that time, mm.
+    FollowErrorMm,
+    /// How far behind that path the true tip was in time, on average, ms.
+    FollowLagMs,
     /// Lowest true tension since the mark, N.
     TensionMinN,
     /// Highest true tension since the mark, N.
@@ -31,9 +35,9 @@ impl Measurand {
     #[must_use]
     pub const fn unit(self) -> &'static str {
         match self {
-            Self::TipErrorMm | Self::TipMovedMm | Self::HomingErrorMm => "mm",
+            Self::TipErrorMm | Self::FollowErrorMm | Self::TipMovedMm | Self::HomingErrorMm => "mm",
             Self::TensionMinN | Self::TensionMaxN | Self::PretensionN => "N",
-            Self::OutsideMs => "ms",
+            Self::OutsideMs | Self::FollowLagMs => "ms",
             Self::PayloadKg => "kg",
             Self::StiffnessNmPerRad => "N·m/rad",
         }

@@ -1,6 +1,6 @@
 //! The steps of a scenario that wait and measure, and those that act on the host's line.
 
-use super::Measurand;
+use super::{CircleStep, FollowStep, Measurand};
 use crate::range;
 use leg_firmware::supervisor::{Fault, State};
 use serde::{Deserialize, Deserializer, de::Error};
@@ -34,6 +34,10 @@ pub enum TestStep {
         #[serde(deserialize_with = "range::timeout_s")]
         timeout_s: f64,
     },
+    /// Moves the leg to the start of a path, streams the path, and waits until the leg is at rest.
+    Follow(FollowStep),
+    /// The same with a circle.
+    Circle(CircleStep),
     /// Starts the extremes anew.
     Mark,
     /// Waits for a fault and the state that it leads to, and measures the time since the last action or command.

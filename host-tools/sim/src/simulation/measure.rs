@@ -11,6 +11,8 @@ pub(super) fn measure(measurand: Measurand, stand: &TestStand<'_>) -> f64 {
     };
     match measurand {
         Measurand::TipErrorMm => (stand.average_tip_m() - stand.commanded_m()).norm() * 1000.0,
+        Measurand::FollowErrorMm => stand.follow_error.largest_mm(),
+        Measurand::FollowLagMs => stand.follow_error.lag_ms(),
         Measurand::TipMovedMm => stand.extremes.tip_moved_mm,
         Measurand::TensionMinN => stand.extremes.tensions_n[0],
         Measurand::TensionMaxN => stand.extremes.tensions_n[1],

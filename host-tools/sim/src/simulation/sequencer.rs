@@ -1,11 +1,13 @@
 //! Carries out the steps of a scenario.
 
 use super::extremes::Extremes;
+use super::follower::Follower;
 use super::measure::measure;
 use super::summary::SimulationError;
 use super::test_stand::TestStand;
 use crate::scenario::{PushTest, Scenario, Step, TestStep};
 use leg_base::description;
+use leg_base::timed_path::TimedPath;
 use leg_firmware::supervisor::{FaultSet, State};
 use nalgebra::Vector3;
 
@@ -30,6 +32,8 @@ pub(super) struct Sequencer<'a> {
     before_m: Option<Vector3<f64>>,
     /// Since when the leg has arrived, s.
     arrived_s: Option<f64>,
+    /// The path that is being streamed.
+    follower: Option<Follower>,
     /// Faults that may come.
     pub expected: FaultSet,
 }
@@ -48,6 +52,7 @@ impl<'a> Sequencer<'a> {
             acted_s: 0.0,
             before_m: None,
             arrived_s: None,
+            follower: None,
         }
     }
 
@@ -96,6 +101,8 @@ impl<'a> Sequencer<'a> {
                 let there = stand.state() == *state;
                 self.in_time(there, description::state(*state), *timeout_s, stand)?
             }
+            TestStep::Follow(step) => self.follow(|| step.rows.clone(), step.ends, stand)?,
+            TestStep::Circle(step) => self.follow(|| step.path(), true, stand)?,
             TestStep::Arrive { then_s, timeout_s } => self.arrive(*then_s, *timeout_s, stand)?,
             TestStep::Reaction {
                 fault,
@@ -118,6 +125,27 @@ impl<'a> Sequencer<'a> {
             }
             TestStep::PushTest(push) => self.push_test(push, stand),
         })
+    }
+
+    /// Whether a path has been followed to its end, and the leg rests.
+    fn follow(
+        &mut self,
+        path: impl FnOnce() -> TimedPath,
+        ends: bool,
+        stand: &mut TestStand<'_>,
+    ) -> Result<bool, SimulationError> {
+        let mut follower = match self.follower.take() {
+            Some(follower) => follower,
+            None => Follower::new(path(), ends, stand)?,
+        };
+        let done = follower.advance(stand)?;
+        if done {
+            // Whatever follows from it counts from its end.
+            self.acted_s = stand.time_s();
+        } else {
+            self.follower = Some(follower);
+        }
+        Ok(done)
     }
 
     fn in_time(

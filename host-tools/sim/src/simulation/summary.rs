@@ -36,6 +36,9 @@ pub enum SimulationError {
     /// A command has no form.
     #[error("a command cannot be sent: {0}")]
     Command(leg_firmware::frame::FrameError),
+    /// A path has no rest before it.
+    #[error("no rest before the path leads to its start within the limits: {}; let it begin at rest", .0.description()[0])]
+    RunUp(leg_firmware::command::CommandRefusal),
 }
 
 /// One measured value.

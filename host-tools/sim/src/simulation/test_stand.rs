@@ -1,6 +1,7 @@
 //! The emulated leg of a scenario, its host, and what is seen of it.
 
 use super::extremes::{Extremes, NO_RANGE, range_with_tensions};
+use super::follow_error::FollowError;
 use super::{Measurement, Sample, SimulationError, Summary};
 use crate::emulated_leg::EmulatedLeg;
 use crate::host::Host;
@@ -9,6 +10,7 @@ use crate::plant::Truth;
 use crate::scenario::{CommandStep, Measurand, Scenario};
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::sensors::Sensors;
+use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
 use leg_firmware_bench::protocol::TickReply;
@@ -30,8 +32,12 @@ pub(super) struct TestStand<'a> {
     pub telemetry: Option<Telemetry<f32>>,
     /// Since the last mark.
     pub extremes: Extremes,
+    /// Since the last path began.
+    pub follow_error: FollowError,
     /// What has come out up to now.
     pub summary: Summary,
+    /// Those that the firmware started with.
+    pub settings: Settings,
     /// Whether the leg compensates its load.
     compensated: bool,
     /// Where the host has sent the leg, as horizontal components; none after a hold.
@@ -42,12 +48,19 @@ pub(super) struct TestStand<'a> {
 }
 
 impl<'a> TestStand<'a> {
-    pub fn new(leg: EmulatedLeg<&'a mut dyn Link>, rig: &RigFile, scenario: &Scenario) -> Self {
+    pub fn new(
+        leg: EmulatedLeg<&'a mut dyn Link>,
+        rig: &RigFile,
+        settings: &Settings,
+        scenario: &Scenario,
+    ) -> Self {
         let (truth, parameters) = (leg.plant().truth(), &rig.parameters);
         Self {
             leg,
             host: Host::new(scenario.seed),
             extremes: Extremes::new(&truth),
+            follow_error: FollowError::default(),
+            settings: settings.clone(),
             truth,
             telemetry: None,
             summary: Summary {
@@ -83,7 +96,28 @@ impl<'a> TestStand<'a> {
             }
             _ => {}
         }
-        self.host.send(&command).map_err(SimulationError::Command)
+        self.send(&command)
+    }
+
+    /// Sends a command.
+    pub fn send(&mut self, command: &Command) -> Result<(), SimulationError> {
+        self.host.send(command).map_err(SimulationError::Command)
+    }
+
+    /// Nothing is commanded beside what the leg itself takes for its target.
+    pub fn forget_commanded(&mut self) {
+        self.commanded = None;
+    }
+
+    /// Compares the true tip with a direction and its rate, as horizontal components.
+    pub fn compare_with(&mut self, [direction, rate]: [[f64; 2]; 2]) {
+        let commanded_m = self.tip_m(direction);
+        let [[x, y], [x_rate, y_rate]] = [direction, rate];
+        let z_rate = -(x * x_rate + y * y_rate) / commanded_m.z * self.tip_length_m;
+        let velocity = Vector3::new(x_rate, y_rate, z_rate) * self.tip_length_m;
+        self.follow_error
+            .take(&(self.truth.tip_m - commanded_m), &velocity);
+        self.commanded = Some(direction);
     }
 
     /// Records a measured value with its unit, the range in which it has to be, and what was measured.

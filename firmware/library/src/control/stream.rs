@@ -1,0 +1,169 @@
+//! Set-points that a host streams: checked when they come, kept until their time.
+
+use super::quintic::{MotionState, Quintic};
+use super::stream_limits::{Segment, StreamLimits};
+use super::{CYCLE_TICKS, TICK_S};
+use crate::command::{CommandRefusal, SetPoint, StreamPart};
+use heapless::Deque;
+use leg_model::Scalar;
+
+/// Set-points that may wait: a third of a second at 100 Hz.
+pub const POINTS_MAX: usize = 32;
+
+/// Ticks between two points, at least: 2 ms. Nearer to each other, their acceleration would be rounding.
+const SPACING_MIN_TICKS: u32 = 4 * CYCLE_TICKS as u32;
+
+/// Ticks from now to a point, at most: 10 s.
+const AHEAD_MAX_TICKS: u32 = 80_000;
+
+/// How the leg shall move at a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Knot<T> {
+    /// The tick.
+    pub tick: u32,
+    /// The motion, in half-tangent coordinates.
+    pub motion: MotionState<T>,
+}
+
+impl<T: Scalar> Segment<T> {
+    fn between(from: &Knot<T>, to: &Knot<T>) -> Self {
+        // At most 10 s: it was checked when the point came.
+        let ticks = to.tick.wrapping_sub(from.tick) as i32;
+        let time_s = T::from(ticks as f32 * TICK_S);
+        Self {
+            path: Quintic::between(&from.motion, &to.motion, time_s),
+            ticks,
+        }
+    }
+}
+
+/// The set-points that wait, and where the path to them has come to.
+#[derive(Clone, Debug)]
+pub struct Stream<T> {
+    /// What every path keeps to.
+    pub limits: StreamLimits<T>,
+    waiting: Deque<Knot<T>, POINTS_MAX>,
+    /// Where the segment that is followed ends.
+    reached: Knot<T>,
+    /// The last point that was accepted.
+    last: Knot<T>,
+    /// Whether more points may come.
+    open: bool,
+}
+
+impl<T: Scalar> Stream<T> {
+    /// Without points.
+    pub fn new(limits: StreamLimits<T>) -> Self {
+        let nowhere = Knot {
+            tick: 0,
+            motion: MotionState::at_rest([T::zero(); 2]),
+        };
+        Self {
+            limits,
+            waiting: Deque::new(),
+            reached: nowhere,
+            last: nowhere,
+            open: false,
+        }
+    }
+
+    /// Starts a stream from `start`, where the leg is led, with its first point.
+    ///
+    /// # Errors
+    /// As [`Self::extend`]; whatever was there before stays.
+    pub fn begin(&mut self, start: Knot<T>, point: &SetPoint) -> Result<(), CommandRefusal> {
+        let knot = self.checked(&start, start.tick, point)?;
+        self.waiting.clear();
+        self.reached = start;
+        self.push(knot);
+        self.open = true;
+        Ok(())
+    }
+
+    /// Whether a point is the last one again: its answer was lost.
+    pub fn repeats(&self, point: &SetPoint) -> bool {
+        point.tick == self.last.tick && {
+            let motion = self.limits.motion(point);
+            motion.is_ok_and(|motion| motion.position == self.last.motion.position)
+        }
+    }
+
+    /// Takes the next point of a stream.
+    ///
+    /// # Errors
+    /// Why the point is refused. The points before it stay.
+    pub fn extend(&mut self, now: u32, point: &SetPoint) -> Result<(), CommandRefusal> {
+        if self.repeats(point) {
+            return Ok(());
+        }
+        if !self.open {
+            return Err(CommandRefusal::NoStream);
+        }
+        if self.waiting.is_full() {
+            return Err(CommandRefusal::StreamFull);
+        }
+        let knot = self.checked(&self.last, now, point)?;
+        self.open = point.part != StreamPart::Last;
+        self.push(knot);
+        Ok(())
+    }
+
+    fn push(&mut self, knot: Knot<T>) {
+        self.last = knot;
+        // There is room: it was just checked, or made.
+        let _ = self.waiting.push_back(knot);
+    }
+
+    /// The knot of a point that may follow on `before`: the segment to it keeps the limits, and after it the leg can come to rest
+    /// within them.
+    fn checked(
+        &self,
+        before: &Knot<T>,
+        now: u32,
+        point: &SetPoint,
+    ) -> Result<Knot<T>, CommandRefusal> {
+        let ticks = spacing(before.tick, now, point.tick)?;
+        let mut motion = self.limits.motion(point)?;
+        if point.acceleration.is_none() {
+            let time_s = T::from(ticks as f32 * TICK_S);
+            motion.acceleration = before.motion.acceleration_at_end(&motion, time_s);
+        }
+        let knot = Knot {
+            tick: point.tick,
+            motion,
+        };
+        self.limits.keeps(&Segment::between(before, &knot).path)?;
+        self.limits.keeps_to_rest(&motion)?;
+        Ok(knot)
+    }
+
+    /// The segment to the next point; none without one.
+    pub fn next_segment(&mut self) -> Option<Segment<T>> {
+        let to = self.waiting.pop_front()?;
+        let from = core::mem::replace(&mut self.reached, to);
+        Some(Segment::between(&from, &to))
+    }
+
+    /// The segment that ends a stream in rest, and whether it ends before its last point came.
+    pub fn end(&mut self) -> (Segment<T>, bool) {
+        let missing = core::mem::take(&mut self.open);
+        (self.limits.to_rest(&self.reached.motion), missing)
+    }
+}
+
+/// Ticks between two points.
+fn spacing(before: u32, now: u32, tick: u32) -> Result<u32, CommandRefusal> {
+    // The count of ticks wraps after six days: what is half of that ahead is behind.
+    let ahead = tick.wrapping_sub(now);
+    if ahead == 0 || ahead > u32::MAX / 2 {
+        return Err(CommandRefusal::LatePoint);
+    }
+    if ahead > AHEAD_MAX_TICKS {
+        return Err(CommandRefusal::EarlyPoint);
+    }
+    let ticks = tick.wrapping_sub(before);
+    if !(SPACING_MIN_TICKS..=u32::MAX / 2).contains(&ticks) {
+        return Err(CommandRefusal::PointOrder);
+    }
+    Ok(ticks)
+}

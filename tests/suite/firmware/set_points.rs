@@ -1,0 +1,310 @@
+//! Streams of set-points, whatever a host sends.
+
+use super::control_law::settings;
+use leg_base::angles;
+use leg_firmware::command::{CommandRefusal, MotionLimit, SetPoint, StreamPart};
+use leg_firmware::control::{
+    CYCLE_S, CYCLE_TICKS, Knot, MotionLimits, POINTS_MAX, Stream, StreamLimits, Trajectory,
+};
+use leg_model::HalfTangent;
+
+/// The trajectory of a leg, its stream, and the tick.
+struct Bench {
+    trajectory: Trajectory<f64>,
+    stream: Stream<f64>,
+    tick: u32,
+    /// Half-tangents of the last four cycles, the newest first.
+    places: [[f64; 2]; 4],
+}
+
+impl Bench {
+    fn new(tick: u32) -> Self {
+        let settings = settings(None);
+        Self {
+            trajectory: Trajectory::new(
+                MotionLimits::new(&settings.motion),
+                HalfTangent::new(0.0, 0.0),
+            ),
+            stream: Stream::new(StreamLimits::new(&settings)),
+            tick,
+            places: [[0.0; 2]; 4],
+        }
+    }
+
+    /// What a leg does with a point.
+    fn follow(&mut self, point: &SetPoint) -> Result<(), CommandRefusal> {
+        if self.trajectory.streamed() {
+            return self.stream.extend(self.tick, point);
+        }
+        if point.part != StreamPart::First {
+            return Err(CommandRefusal::NoStream);
+        }
+        let start = Knot {
+            tick: self.tick.wrapping_add(u32::from(CYCLE_TICKS)),
+            motion: self.trajectory.next_motion(),
+        };
+        self.stream.begin(start, point)?;
+        self.trajectory.begin_stream();
+        Ok(())
+    }
+
+    fn hold(&mut self) {
+        if self.trajectory.streamed() {
+            let motion = self.trajectory.motion();
+            let to_rest = self.stream.limits.to_rest(&motion);
+            self.trajectory.leave_stream(&to_rest);
+        }
+    }
+
+    /// The rest of a cycle, after its command.
+    fn advance(&mut self) {
+        let [a, b, c, _] = self.places;
+        self.places = [self.trajectory.step().xy(), a, b, c];
+        self.trajectory.advance_plan(&mut self.stream);
+        self.tick = self.tick.wrapping_add(u32::from(CYCLE_TICKS));
+    }
+
+    /// Rate, acceleration and jerk of the last cycles.
+    fn motion(&self) -> [f64; 3] {
+        let difference = |weights: [f64; 4], order: i32| {
+            let part = |i: usize| -> f64 {
+                let terms = weights.iter().zip(self.places);
+                terms.map(|(weight, place)| weight * place[i]).sum()
+            };
+            part(0).hypot(part(1)) / f64::from(CYCLE_S).powi(order)
+        };
+        [
+            difference([1.0, -1.0, 0.0, 0.0], 1),
+            difference([1.0, -2.0, 1.0, 0.0], 2),
+            difference([1.0, -3.0, 3.0, -1.0], 3),
+        ]
+    }
+}
+
+fn point(part: StreamPart, tick: u32, [azimuth_deg, tilt_deg]: [f64; 2]) -> SetPoint {
+    SetPoint {
+        part,
+        tick,
+        direction: angles::direction(azimuth_deg, tilt_deg).map(|component| component as f32),
+        rate: [0.0; 2],
+        acceleration: Some([0.0; 2]),
+    }
+}
+
+/// Half a million points, most of them refused, with holds between: what the leg is led by keeps half of the limits in
+/// half-tangent coordinates, as a move does, and the reach. The margins: 9 % of speed where a hold comes in the middle of a
+/// segment, what the rounding of points that are 10 ms apart makes of the jerk, and the bulge of 0.5 % of the reach.
+#[test]
+fn no_points_lead_beyond_the_limits() {
+    let settings = settings(None);
+    let reach = f64::from(settings.tilt_max_sine).asin();
+    let reach = (0.5 * reach).tan();
+    let motion = settings.motion;
+    let limits = [
+        1.09 * motion.speed_rad_per_s,
+        motion.acceleration_rad_per_s2,
+        1.6 * motion.jerk_rad_per_s3,
+    ]
+    .map(|limit| 0.5 * f64::from(limit));
+    let mut rng = fastrand::Rng::with_seed(13);
+    let mut bench = Bench::new(u32::MAX - 1_000_000);
+    let mut peaks = [0.0_f64; 4];
+    let (mut accepted, mut refused) = (0, 0);
+    let mut last = point(StreamPart::First, bench.tick, [0.0, 0.0]);
+    for cycle in 0..2_000_000_u32 {
+        if rng.u32(..1000) == 0 {
+            bench.hold();
+        }
+        if rng.u32(..4) == 0 {
+            let next = wild(&mut rng, &last, bench.trajectory.streamed(), bench.tick);
+            match bench.follow(&next) {
+                Ok(()) => (accepted, last) = (accepted + 1, next),
+                Err(_) => refused += 1,
+            }
+            if !bench.trajectory.moving() {
+                let [x, y] = bench.places[0];
+                let direction = HalfTangent::new(x, y).direction().vector();
+                last = SetPoint {
+                    direction: [direction.x as f32, direction.y as f32],
+                    ..point(StreamPart::First, bench.tick, [0.0, 0.0])
+                };
+            }
+        }
+        bench.advance();
+        if cycle < 4 {
+            continue;
+        }
+        let [x, y] = bench.places[0];
+        let [rate, acceleration, jerk] = bench.motion();
+        for (peak, now) in peaks.iter_mut().zip([x.hypot(y), rate, acceleration, jerk]) {
+            assert!(now.is_finite());
+            *peak = peak.max(now);
+        }
+    }
+    let [place, motion @ ..] = peaks;
+    assert!(
+        accepted > 20_000 && refused > 100_000,
+        "{accepted} {refused}"
+    );
+    assert!(
+        place <= 1.005 * reach && place > 0.9 * reach,
+        "{place} of {reach}"
+    );
+    for (peak, limit) in motion.into_iter().zip(limits) {
+        assert!(peak <= limit, "{motion:?} beyond {limits:?}");
+        assert!(peak > 0.5 * limit, "{motion:?} far below {limits:?}");
+    }
+}
+
+/// A point that follows from the last one by a jerk that is drawn, or is anywhere.
+fn wild(rng: &mut fastrand::Rng, last: &SetPoint, streamed: bool, now: u32) -> SetPoint {
+    let ticks = 10.0_f64.powf(1.9 + rng.f64());
+    let time_s = ticks / 8000.0;
+    let anywhere = rng.u8(..10) == 0;
+    let mut motion = [[0.0; 3]; 2];
+    for (i, [place, rate, acceleration]) in motion.iter_mut().enumerate() {
+        let number = |values: [f32; 2]| f64::from(values[i]);
+        let mut drawn = |scale: f64| scale * (2.0 * rng.f64() - 1.0);
+        let (p, v) = (number(last.direction), number(last.rate));
+        let a = number(last.acceleration.unwrap_or_default());
+        // Jerks that lead back to the vertical, more or less.
+        let j = drawn(60.0) - 9.0 * a - 25.0 * v - 25.0 * p;
+        *place = p + time_s * (v + time_s * (a / 2.0 + time_s * j / 6.0));
+        *rate = v + time_s * (a + time_s * j / 2.0);
+        *acceleration = a + time_s * j;
+        if anywhere {
+            *place += drawn(0.1);
+            *rate += drawn(0.5);
+        }
+    }
+    let pair = |order: usize| motion.map(|derivatives| derivatives[order] as f32);
+    let (from, part) = match (streamed, rng.u8(..50)) {
+        (false, _) => (now, StreamPart::First),
+        (true, 0) => (last.tick, StreamPart::Last),
+        (true, _) => (last.tick, StreamPart::Next),
+    };
+    SetPoint {
+        part,
+        tick: from.wrapping_add(ticks as u32),
+        direction: pair(0),
+        rate: pair(1),
+        acceleration: (rng.u8(..20) > 0).then(|| pair(2)),
+    }
+}
+
+/// A stream that stops leads to rest, without a jump, and says that a point is missing unless it was told the last.
+#[test]
+fn a_stream_that_stops_ends_in_rest() {
+    for (part, missing) in [(StreamPart::Next, true), (StreamPart::Last, false)] {
+        let mut bench = Bench::new(0);
+        assert_eq!(
+            bench.follow(&point(StreamPart::First, 4000, [0.0, 1.0])),
+            Ok(())
+        );
+        let moving = SetPoint {
+            rate: [0.1, 0.0],
+            ..point(part, 8000, [0.0, 3.0])
+        };
+        assert_eq!(bench.follow(&moving), Ok(()));
+        for _ in 0..4000 {
+            bench.advance();
+        }
+        assert!(!bench.trajectory.moving());
+        assert_eq!(bench.trajectory.point_missing(), missing);
+        assert_eq!(bench.motion(), [0.0; 3]);
+        let [x, _] = bench.places[0];
+        assert!(
+            x > f64::to_radians(1.5).tan(),
+            "it stops after the point, at {x}"
+        );
+    }
+}
+
+/// Each thing that is wrong with a point has its name, and the stream goes on as if it had not come.
+#[test]
+fn a_point_is_refused_by_name() {
+    let second = point(StreamPart::Next, 8000, [0.0, 1.2]);
+    let number = SetPoint {
+        rate: [f32::NAN, 0.0],
+        ..second
+    };
+    let fast = SetPoint {
+        rate: [1.0, 0.0],
+        ..second
+    };
+    let limit = CommandRefusal::Limit;
+    for (refused, refusal) in [
+        (number, CommandRefusal::Number),
+        (
+            point(StreamPart::Next, 8000, [0.0, 50.0]),
+            CommandRefusal::OutOfReach,
+        ),
+        (
+            point(StreamPart::Next, 3900, [0.0, 1.2]),
+            CommandRefusal::PointOrder,
+        ),
+        (
+            point(StreamPart::Next, 4015, [0.0, 1.0]),
+            CommandRefusal::PointOrder,
+        ),
+        (
+            point(StreamPart::Next, 0, [0.0, 1.2]),
+            CommandRefusal::LatePoint,
+        ),
+        (
+            point(StreamPart::Next, 80_001, [0.0, 1.2]),
+            CommandRefusal::EarlyPoint,
+        ),
+        (fast, limit(MotionLimit::Speed)),
+        (
+            point(StreamPart::Next, 5600, [0.0, 1.8]),
+            limit(MotionLimit::Acceleration),
+        ),
+        (
+            point(StreamPart::Next, 4800, [0.0, 1.08]),
+            limit(MotionLimit::Jerk),
+        ),
+    ] {
+        let mut bench = Bench::new(0);
+        assert_eq!(bench.follow(&second), Err(CommandRefusal::NoStream));
+        assert_eq!(
+            bench.follow(&point(StreamPart::First, 4000, [0.0, 1.0])),
+            Ok(())
+        );
+        assert_eq!(bench.follow(&refused), Err(refusal), "{refused:?}");
+        assert_eq!(bench.follow(&second), Ok(()));
+        assert_eq!(
+            bench.follow(&second),
+            Ok(()),
+            "a repetition changes nothing"
+        );
+        let last = point(StreamPart::Last, 12_000, [0.0, 1.2]);
+        assert_eq!(bench.follow(&last), Ok(()));
+        let after = point(StreamPart::Next, 16_000, [0.0, 1.2]);
+        assert_eq!(bench.follow(&after), Err(CommandRefusal::NoStream));
+    }
+}
+
+#[test]
+fn a_full_stream_refuses_points_until_there_is_room() {
+    let mut bench = Bench::new(0);
+    let next = |number: u32| point(StreamPart::Next, 4000 + 40 * number, [0.0, 1.0]);
+    assert_eq!(
+        bench.follow(&point(StreamPart::First, 4000, [0.0, 1.0])),
+        Ok(())
+    );
+    // The first is followed from the next cycle on.
+    bench.advance();
+    let count = POINTS_MAX as u32;
+    for number in 1..=count {
+        assert_eq!(bench.follow(&next(number)), Ok(()));
+    }
+    assert_eq!(
+        bench.follow(&next(count + 1)),
+        Err(CommandRefusal::StreamFull)
+    );
+    while bench.tick < 4040 {
+        bench.advance();
+    }
+    assert_eq!(bench.follow(&next(count + 1)), Ok(()));
+}
