@@ -54,6 +54,7 @@ mod flat_json;
 pub mod leg_report;
 pub mod monitor;
 pub mod operator;
+pub mod path_reader;
 pub mod pseudo_terminal;
 pub mod recording;
 pub mod sensor_report;

@@ -3,6 +3,7 @@
 mod command;
 mod connection;
 mod error;
+mod follow;
 mod goal;
 mod keep_alive;
 mod motion;

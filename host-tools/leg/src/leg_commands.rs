@@ -1,12 +1,18 @@
 //! The commands that make a leg do something: home, move, stiffness, hold, stop, disarm, clear.
 
 use crate::connection::{LegArgs, Purpose};
-use crate::numbers::{azimuth_deg, direction, positive, tilt_deg, unit_vector};
+use crate::numbers::{azimuth_deg, direction, positive, seconds, tilt_deg, unit_vector};
 use crate::options::Options;
 use leg_base::failure::Failure;
 use leg_base::json_object;
+use leg_base::timed_path::{TimedPath, TimedPoint};
 use leg_host::leg_report;
 use leg_host::operator::{Goal, Operator, OperatorError, Tensioning};
+use leg_host::path_reader::{PathReader, PathSource};
+use std::fs::File;
+use std::io::{self, BufReader};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 #[derive(Debug, clap::Subcommand)]
 pub(crate) enum LegCommand {
@@ -16,6 +22,11 @@ pub(crate) enum LegCommand {
     Clear(LegArgs),
     /// Leads the leg straight down, pays its tendons out and switches the drivers off; the screws hold.
     Disarm(LegArgs),
+    /// Follows a path in time, streamed as set-points, and leaves the leg in hold.
+    ///
+    /// The leg goes to where it rests before the path, follows it from there within the limits of speed, acceleration and jerk,
+    /// and comes to rest after it. A file is checked before the leg moves. A leg that is homed and disarmed is armed first.
+    Follow(FollowArgs),
     /// Holds the leg where it is, on its screws.
     ///
     /// A leg that is homed and disarmed is armed first.
@@ -34,6 +45,19 @@ pub(crate) enum LegCommand {
     ///
     /// The stop is repeated until the leg acknowledges it, and works beside another command that drives the leg, on CAN too.
     Stop(LegArgs),
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct FollowArgs {
+    /// The path: a CSV file with the columns time_s, azimuth_deg and tilt_deg, or - for standard input.
+    #[arg(value_name = "FILE")]
+    path: PathBuf,
+    /// The time from the rest before the path to its first point, beside the run-up, s: how long a point may be on its way to
+    /// the leg.
+    #[arg(long = "lead", value_name = "SECONDS", value_parser = seconds, default_value = "0.2")]
+    lead: Duration,
+    #[command(flatten)]
+    leg: LegArgs,
 }
 
 #[derive(Debug, clap::Args)]
@@ -77,6 +101,7 @@ impl LegCommand {
         match self {
             Self::Clear(leg) => run(leg, Purpose::Use, options, Operator::clear),
             Self::Disarm(leg) => run(leg, Purpose::Use, options, Operator::disarm),
+            Self::Follow(args) => args.run(options),
             Self::Hold(leg) => reach(leg, Goal::default()),
             Self::Home(leg) => home(leg, options),
             Self::Move(args) => reach(&args.leg, args.goal()),
@@ -84,6 +109,37 @@ impl LegCommand {
             Self::Stop(leg) => run(leg, Purpose::Stop, options, Operator::stop),
         }
     }
+}
+
+impl FollowArgs {
+    fn run(&self, options: Options) -> Result<(), Failure> {
+        if self.path.as_os_str() == "-" {
+            let reader = PathReader::new(BufReader::new(io::stdin()), "standard input");
+            let mut source = PathSource::live(reader);
+            return run(&self.leg, Purpose::Use, options, |operator| {
+                operator.follow(&mut source, self.lead)
+            });
+        }
+        let points = whole_path(&self.path)?;
+        run(&self.leg, Purpose::Use, options, |operator| {
+            operator.follow_whole(&points, self.lead)
+        })
+    }
+}
+
+/// The points of a file.
+fn whole_path(path: &Path) -> Result<Vec<TimedPoint>, Failure> {
+    let name = path.display().to_string();
+    let file = File::open(path).map_err(|error| {
+        let sentence = format!("cannot read the path {name}: {error}");
+        Failure::refused(sentence, "give a file that exists, or - for standard input")
+    })?;
+    let mut reader = PathReader::new(BufReader::new(file), &name);
+    let mut rows = Vec::new();
+    while let Some(row) = reader.next_row()? {
+        rows.push(row);
+    }
+    Ok(TimedPath::new(&rows).points().to_vec())
 }
 
 impl MoveArgs {

@@ -2,7 +2,7 @@
 
 use crate::framed;
 use crate::requests::{payload, settings};
-use leg_firmware::command::{Command, Compensation};
+use leg_firmware::command::{Command, Compensation, SetPoint, StreamPart};
 use leg_firmware::frame::MAX_PAYLOAD;
 use leg_firmware::host_link::HostRequest;
 use leg_firmware::host_link::{HOST_SCHEMA, Hello};
@@ -38,11 +38,25 @@ fn zeros() -> impl Iterator<Item = HostRequest> {
     (0..).map_while(request)
 }
 
-const COMMANDS: [Command; 12] = [
+const COMMANDS: [Command; 14] = [
     Command::KeepAlive,
     Command::Arm,
     Command::Home,
     Command::Move { x: 0.2, y: -0.1 },
+    Command::Follow(SetPoint {
+        part: StreamPart::First,
+        tick: 4000,
+        direction: [0.01, 0.0],
+        rate: [0.1, 0.0],
+        acceleration: Some([0.0, 0.5]),
+    }),
+    Command::Follow(SetPoint {
+        part: StreamPart::Next,
+        tick: 4080,
+        direction: [0.011, 0.0],
+        rate: [0.1, 0.0],
+        acceleration: None,
+    }),
     Command::Hold,
     Command::Pretension(60.0),
     Command::Stiffness {

@@ -108,6 +108,7 @@ pub(super) const fn name(command: &Command) -> &'static str {
         Command::Arm => "arm",
         Command::Home => "home",
         Command::Move { .. } => "move",
+        Command::Follow(_) => "follow set-points",
         Command::Hold => "come to rest",
         Command::Pretension(_) => "change its pretension",
         Command::Stiffness { .. } => "change its stiffness",

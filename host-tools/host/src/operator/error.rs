@@ -38,6 +38,8 @@ pub enum OperatorError {
     StoppedByOtherHost(&'static str, State),
     /// The leg came to rest at another pose: horizontal components of its direction.
     OtherPose([f32; 2]),
+    /// The path that the leg shall follow is refused.
+    Path(Failure),
     /// It is not known whether the leg does what it was asked to do.
     Unacknowledged(&'static str),
     /// No stop was acknowledged by what is named.
@@ -136,6 +138,7 @@ impl OperatorError {
                 ),
                 "go there by way of other poses",
             ),
+            Self::Path(failure) => failure.clone(),
             Self::Unacknowledged(asked) => Failure::refused(
                 format!("the leg did not acknowledge that it will {asked}"),
                 "look at the cable, and with `leg monitor` at what the leg does",

@@ -64,7 +64,7 @@ impl Operator {
         }
         self.drive(|operator| {
             operator.command(Command::Home)?;
-            operator.follow(asked, HOMING_TIME, |telemetry| {
+            operator.poll_followed(asked, HOMING_TIME, |telemetry| {
                 telemetry.state == State::Active
             })?;
             operator.settle(asked)
@@ -103,7 +103,7 @@ impl Operator {
     }
 
     /// Waits while the leg starts or relaxes; refuses a leg with a fault.
-    fn settle_state(&mut self, asked: &'static str) -> Result<(), OperatorError> {
+    pub(super) fn settle_state(&mut self, asked: &'static str) -> Result<(), OperatorError> {
         let telemetry = self.wait_until("come to rest", MOVE_TIME, |telemetry| {
             !matches!(telemetry.state, State::Boot | State::RampingDown)
         })?;
@@ -115,7 +115,7 @@ impl Operator {
     }
 
     /// Makes a leg without faults follow commands, its tendons taut.
-    fn activate(&mut self, asked: &'static str) -> Result<(), OperatorError> {
+    pub(super) fn activate(&mut self, asked: &'static str) -> Result<(), OperatorError> {
         let telemetry = self.telemetry()?.telemetry;
         let refuse = |refusal| Err(OperatorError::Refused(asked, HostRefusal::Command(refusal)));
         match telemetry.state {
@@ -133,10 +133,10 @@ impl Operator {
     }
 
     /// Waits until an armed leg is where it shall be, and stays so.
-    fn settle(&mut self, asked: &'static str) -> Result<Telemetry<f32>, OperatorError> {
+    pub(super) fn settle(&mut self, asked: &'static str) -> Result<Telemetry<f32>, OperatorError> {
         let mut last: Option<Telemetry<f32>> = None;
         let mut since = None;
-        self.follow(asked, MOVE_TIME, |telemetry| {
+        self.poll_followed(asked, MOVE_TIME, |telemetry| {
             let tick = telemetry.tick;
             if last.is_some_and(|last| tick.wrapping_sub(last.tick) < COMPARED_TICKS) {
                 return false;
@@ -151,7 +151,7 @@ impl Operator {
     }
 
     /// Polls a leg that follows commands until `done` says so; what else it may come to is an error.
-    fn follow(
+    pub(super) fn poll_followed(
         &mut self,
         asked: &'static str,
         timeout: Duration,
@@ -197,7 +197,10 @@ fn taut(measured_n: &[f32; 3], target_n: &[f32; 3]) -> bool {
     pairs.all(|(measured, target)| (measured - target).abs() <= SETTLED_N)
 }
 
-fn unlimited(asked: &'static str, telemetry: &Telemetry<f32>) -> Result<(), OperatorError> {
+pub(super) fn unlimited(
+    asked: &'static str,
+    telemetry: &Telemetry<f32>,
+) -> Result<(), OperatorError> {
     if telemetry.faults.limits().any() {
         return Err(OperatorError::Limited(asked, Box::new(*telemetry)));
     }

@@ -1,0 +1,214 @@
+//! Paths as rows of text: `time_s,azimuth_deg,tilt_deg`, from a file or a program.
+
+use csv::{ReaderBuilder, StringRecord};
+use leg_base::failure::Failure;
+use leg_base::text_input::{Line, next_line, too_long};
+use leg_base::timed_path::{PathBuilder, Row, TimedPoint};
+use serde::Deserialize;
+use std::collections::VecDeque;
+use std::io::BufRead;
+use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
+use std::thread;
+
+/// Rows of a program that wait to be followed.
+const ROWS_MAX: usize = 1024;
+
+/// What is said of a path that is refused.
+const HELP: &str =
+    "give rows as `0.01,45,20` under the header `time_s,azimuth_deg,tilt_deg`, the times rising";
+
+/// A row as it is written.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RowText {
+    time_s: f64,
+    azimuth_deg: f64,
+    tilt_deg: f64,
+}
+
+/// Reads a path row by row.
+pub struct PathReader<R> {
+    input: R,
+    name: String,
+    /// None before the first line.
+    header: Option<StringRecord>,
+    line: u64,
+    last_s: f64,
+}
+
+impl<R: BufRead> PathReader<R> {
+    /// A path from the first line on; `name` is what messages call it.
+    pub fn new(input: R, name: &str) -> Self {
+        Self {
+            input,
+            name: name.into(),
+            header: None,
+            line: 0,
+            last_s: f64::NEG_INFINITY,
+        }
+    }
+
+    /// The next row; none at the end.
+    ///
+    /// # Errors
+    /// What is wrong with its line.
+    pub fn next_row(&mut self) -> Result<Option<Row>, Failure> {
+        while let Some(record) = self.next_record()? {
+            let Some(header) = &self.header else {
+                self.check_header(&record)?;
+                self.header = Some(record);
+                continue;
+            };
+            let row = record.deserialize(Some(header));
+            return self
+                .row(row.map_err(|error| self.refused(&plain(&error)))?)
+                .map(Some);
+        }
+        Ok(None)
+    }
+
+    /// The next line that is not empty.
+    fn next_record(&mut self) -> Result<Option<StringRecord>, Failure> {
+        loop {
+            let line =
+                next_line(&mut self.input).map_err(|error| self.refused(&error.to_string()))?;
+            self.line += 1;
+            let line = match line {
+                None => return Ok(None),
+                Some(Line::TooLong) => return Err(self.refused(&too_long())),
+                Some(Line::Whole(line)) => line,
+            };
+            let mut reader = ReaderBuilder::new()
+                .has_headers(false)
+                .trim(csv::Trim::All)
+                .from_reader(line.as_slice());
+            match reader.records().next() {
+                None => {}
+                Some(record) => {
+                    return record
+                        .map(Some)
+                        .map_err(|error| self.refused(&plain(&error)));
+                }
+            }
+        }
+    }
+
+    fn check_header(&self, header: &StringRecord) -> Result<(), Failure> {
+        for column in ["time_s", "azimuth_deg", "tilt_deg"] {
+            if !header.iter().any(|name| name == column) {
+                return Err(self.refused(&format!("the header has no column {column}")));
+            }
+        }
+        Ok(())
+    }
+
+    fn row(&mut self, text: RowText) -> Result<Row, Failure> {
+        let RowText {
+            time_s,
+            azimuth_deg,
+            tilt_deg,
+        } = text;
+        for (name, value, most) in [
+            ("time_s", time_s, 1e9),
+            ("azimuth_deg", azimuth_deg, 1e6),
+            ("tilt_deg", tilt_deg, 90.0),
+        ] {
+            if !(-most..=most).contains(&value) {
+                return Err(
+                    self.refused(&format!("{name} = {value} is not from -{most} to {most}"))
+                );
+            }
+        }
+        if time_s <= self.last_s {
+            let sentence = format!("time_s = {time_s} is not after {}", self.last_s);
+            return Err(self.refused(&sentence));
+        }
+        self.last_s = time_s;
+        Ok(Row::from_angles(time_s, azimuth_deg, tilt_deg))
+    }
+
+    fn refused(&self, what: &str) -> Failure {
+        Failure::refused(format!("{}, line {}: {what}", self.name, self.line), HELP)
+    }
+}
+
+/// A csv error without the place: here each line is a text of its own.
+fn plain(error: &csv::Error) -> String {
+    match error.kind() {
+        csv::ErrorKind::Deserialize { err, .. } => match err.field() {
+            Some(field) => format!("column {}: {}", field + 1, err.kind()),
+            None => err.kind().to_string(),
+        },
+        _ => error.to_string(),
+    }
+}
+
+/// What there is next of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PathStep {
+    /// A point.
+    Point(TimedPoint),
+    /// None yet.
+    Wait,
+    /// None any more.
+    End,
+}
+
+/// A path whose points come one after the other.
+pub struct PathSource {
+    points: VecDeque<TimedPoint>,
+    live: Option<(PathBuilder, Receiver<Result<Row, Failure>>)>,
+}
+
+impl PathSource {
+    /// Points that are all known.
+    pub fn whole(points: Vec<TimedPoint>) -> Self {
+        Self {
+            points: points.into(),
+            live: None,
+        }
+    }
+
+    /// Rows as a program writes them. They are read by a thread of its own: the leg hears from its host meanwhile.
+    pub fn live<R: BufRead + Send + 'static>(mut reader: PathReader<R>) -> Self {
+        let (sender, receiver) = sync_channel(ROWS_MAX);
+        thread::spawn(move || {
+            while let Some(row) = reader.next_row().transpose() {
+                let failed = row.is_err();
+                if sender.send(row).is_err() || failed {
+                    break;
+                }
+            }
+        });
+        Self {
+            points: VecDeque::new(),
+            live: Some((PathBuilder::default(), receiver)),
+        }
+    }
+
+    /// The next point.
+    ///
+    /// # Errors
+    /// A row that is refused.
+    pub fn next_step(&mut self) -> Result<PathStep, Failure> {
+        loop {
+            if let Some(point) = self.points.pop_front() {
+                return Ok(PathStep::Point(point));
+            }
+            let Some((builder, rows)) = &mut self.live else {
+                return Ok(PathStep::End);
+            };
+            match rows.try_recv() {
+                Ok(row) => self.points.extend(builder.push(row?)),
+                Err(TryRecvError::Empty) => return Ok(PathStep::Wait),
+                Err(TryRecvError::Disconnected) => {
+                    self.points.extend(builder.finish());
+                    self.live = None;
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

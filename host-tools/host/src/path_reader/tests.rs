@@ -1,0 +1,68 @@
+use super::{PathReader, PathSource, PathStep};
+use leg_base::failure::Failure;
+
+fn rows(text: &'static str) -> Result<Vec<f64>, Failure> {
+    let mut reader = PathReader::new(text.as_bytes(), "path.csv");
+    let mut times_s = Vec::new();
+    while let Some(row) = reader.next_row()? {
+        times_s.push(row.time_s);
+    }
+    Ok(times_s)
+}
+
+#[test]
+fn rows_are_read_in_any_order_of_the_columns() {
+    let text = "tilt_deg, azimuth_deg ,time_s\n\n20,45,0\n21 , 46,0.5\n";
+    assert_eq!(rows(text), Ok(vec![0.0, 0.5]));
+}
+
+#[test]
+fn what_is_wrong_with_a_row_is_said_with_its_line() {
+    for (text, expected) in [
+        ("0,0,0\n", "line 1: the header has no column time_s"),
+        (
+            "time_s,azimuth_deg\n",
+            "line 1: the header has no column tilt_deg",
+        ),
+        (
+            "time_s,azimuth_deg,tilt_deg\n0,0\n",
+            "line 2: missing field `tilt_deg`",
+        ),
+        (
+            "time_s,azimuth_deg,tilt_deg\n0,0,x\n",
+            "line 2: column 3: invalid float literal",
+        ),
+        (
+            "time_s,azimuth_deg,tilt_deg\n0,0,NaN\n",
+            "line 2: tilt_deg = NaN is not from -90 to 90",
+        ),
+        (
+            "time_s,azimuth_deg,tilt_deg\n0,0,1\n0,0,2\n",
+            "line 3: time_s = 0 is not after 0",
+        ),
+        (
+            "time_s,azimuth_deg,tilt_deg,force_n\n0,0,1,2\n",
+            "unknown field `force_n`",
+        ),
+    ] {
+        let refusal = rows(text).err().map(|failure| failure.to_string());
+        let refusal = refusal.unwrap_or_default();
+        assert!(refusal.contains(expected), "{text}: {refusal}");
+    }
+}
+
+#[test]
+fn a_program_s_rows_become_points_as_they_come() {
+    let text = "time_s,azimuth_deg,tilt_deg\n0,0,1\n1,0,2\n2,0,3\n3,0,4\n";
+    let mut source = PathSource::live(PathReader::new(text.as_bytes(), "standard input"));
+    let mut times_s = Vec::new();
+    loop {
+        match source.next_step() {
+            Ok(PathStep::Point(point)) => times_s.push(point.time_s),
+            Ok(PathStep::Wait) => std::thread::yield_now(),
+            Ok(PathStep::End) => break,
+            Err(failure) => panic!("{failure}"),
+        }
+    }
+    assert_eq!(times_s, [0.0, 1.0, 2.0, 3.0]);
+}
