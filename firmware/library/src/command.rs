@@ -1,5 +1,6 @@
 //! What a host commands the leg to do.
 
+use crate::set_point::{PointRefusal, SetPoint};
 use crate::supervisor::State;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -14,46 +15,6 @@ pub enum Compensation {
     Estimated,
     /// The last estimate: the leg answers a push with its stiffness, and does not take it for a load.
     Frozen,
-}
-
-/// Which point of a stream a set-point is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
-pub enum StreamPart {
-    /// The first: the leg goes to it from where it is and however it moves.
-    First,
-    /// One that others follow.
-    Next,
-    /// The last: the leg comes to rest after it.
-    Last,
-}
-
-/// A point of a stream: how the leg shall move at a tick.
-///
-/// Between two points the direction follows a polynomial of fifth degree (in half-tangent coordinates) that has position, rate
-/// and acceleration of both. After the last that came the leg comes to rest: smoothly, within its limits.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
-pub struct SetPoint {
-    /// Which point of the stream it is.
-    pub part: StreamPart,
-    /// The tick of the leg, as its telemetry counts: at least 16 after that of the point before, at most 80 000 after now.
-    pub tick: u32,
-    /// Horizontal components of the direction: sin θ cos φ and sin θ sin φ.
-    pub direction: [f32; 2],
-    /// Their rates, 1/s.
-    pub rate: [f32; 2],
-    /// Their accelerations, 1/s²; none for those that a smooth motion through the points has.
-    pub acceleration: Option<[f32; 2]>,
-}
-
-/// A limit on the motion of a set-point stream: those of a move.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
-pub enum MotionLimit {
-    /// `speed_rad_per_s`.
-    Speed,
-    /// `acceleration_rad_per_s2`.
-    Acceleration,
-    /// `jerk_rad_per_s3`.
-    Jerk,
 }
 
 /// A command. A tick obeys one, or refuses it by name.
@@ -111,22 +72,8 @@ pub enum CommandRefusal {
     Number,
     /// A stop came first.
     Superseded,
-    /// The tendons are not taut yet.
-    NotTaut,
-    /// A stream is followed already.
-    Following,
-    /// No stream is followed: it has ended, or has not begun.
-    NoStream,
-    /// As many points wait as there is room for.
-    StreamFull,
-    /// The time of the point has passed.
-    LatePoint,
-    /// The time of the point is too far ahead.
-    EarlyPoint,
-    /// The point is not after the one before, or too near to it.
-    PointOrder,
-    /// The way to the point, or from it to rest, is beyond a limit of the motion.
-    Limit(MotionLimit),
+    /// The set-point is refused.
+    Point(PointRefusal),
 }
 
 impl CommandRefusal {
@@ -154,34 +101,7 @@ impl CommandRefusal {
                 "give another number",
             ],
             Self::Superseded => ["a stop came first", "find out why, then command again"],
-            Self::NotTaut => ["the tendons are not taut yet", "wait until they are"],
-            Self::Following => ["a stream is followed already", "hold the leg first"],
-            Self::NoStream => [
-                "no stream is followed: it has ended, or has not begun",
-                "begin a new one",
-            ],
-            Self::StreamFull => ["as many set-points wait as there is room for", "wait"],
-            Self::LatePoint => ["the time of the set-point has passed", "send it earlier"],
-            Self::EarlyPoint => [
-                "the time of the set-point is more than 10 s ahead",
-                "send it later",
-            ],
-            Self::PointOrder => [
-                "the set-point is not 2 ms or more after the one before",
-                "send points in their order, at 500 Hz or less",
-            ],
-            Self::Limit(MotionLimit::Speed) => [
-                "the set-point asks for more than speed_rad_per_s",
-                "take more time",
-            ],
-            Self::Limit(MotionLimit::Acceleration) => [
-                "the set-point asks for more than acceleration_rad_per_s2",
-                "take more time; begin at rest where the leg is",
-            ],
-            Self::Limit(MotionLimit::Jerk) => [
-                "the set-point asks for more than jerk_rad_per_s3",
-                "take more time; begin at rest where the leg is",
-            ],
+            Self::Point(refusal) => refusal.description(),
         }
     }
 }

@@ -81,6 +81,7 @@ pub mod host_link;
 pub mod leg;
 pub mod linked_leg;
 pub mod sensors;
+pub mod set_point;
 pub mod settings;
 pub mod store;
 pub mod supervisor;

@@ -1,9 +1,9 @@
 //! A path in time, given row by row, as a stream of set-points: rates from the rows beside each other, a run-up to its start.
 
 use crate::angles;
-use leg_firmware::command::{CommandRefusal, SetPoint, StreamPart};
 use leg_firmware::control::{Knot, Stream, StreamLimits};
 use leg_firmware::sensors::TICK_HZ;
+use leg_firmware::set_point::{PointRefusal, SetPoint, StreamPart};
 use leg_firmware::settings::Settings;
 use leg_model::HalfTangent;
 
@@ -137,8 +137,8 @@ impl TimedPath {
     ///
     /// # Errors
     /// Why there is no such rest.
-    pub fn with_run_up(&self, settings: &Settings) -> Result<Vec<TimedPoint>, CommandRefusal> {
-        let first = self.points.first().ok_or(CommandRefusal::NoStream)?;
+    pub fn with_run_up(&self, settings: &Settings) -> Result<Vec<TimedPoint>, PointRefusal> {
+        let first = self.points.first().ok_or(PointRefusal::NoStream)?;
         let mut points = vec![run_up(first, settings)?];
         points.extend_from_slice(&self.points);
         Ok(points)
@@ -179,8 +179,8 @@ impl TimedPath {
 ///
 /// # Errors
 /// Why there is none.
-pub fn run_up(first: &TimedPoint, settings: &Settings) -> Result<TimedPoint, CommandRefusal> {
-    let mut refusal = CommandRefusal::OutOfReach;
+pub fn run_up(first: &TimedPoint, settings: &Settings) -> Result<TimedPoint, PointRefusal> {
+    let mut refusal = PointRefusal::OutOfReach;
     let mut time_s = RUN_UP_S[0];
     while time_s < RUN_UP_S[1] {
         match run_up_lasting(time_s, first, settings) {
@@ -196,7 +196,7 @@ fn run_up_lasting(
     time_s: f64,
     first: &TimedPoint,
     settings: &Settings,
-) -> Result<TimedPoint, CommandRefusal> {
+) -> Result<TimedPoint, PointRefusal> {
     let limits = StreamLimits::<f32>::new(settings);
     let ticks = (time_s * f64::from(TICK_HZ)).round() as u32;
     let start = TimedPoint {
@@ -230,7 +230,7 @@ fn run_up_lasting(
 ///
 /// # Errors
 /// The point that is refused, counted from 0, and why.
-pub fn check(points: &[TimedPoint], settings: &Settings) -> Result<(), (usize, CommandRefusal)> {
+pub fn check(points: &[TimedPoint], settings: &Settings) -> Result<(), (usize, PointRefusal)> {
     let mut stream = Stream::new(StreamLimits::<f32>::new(settings));
     let mut before = None;
     for (number, point) in points.iter().enumerate() {

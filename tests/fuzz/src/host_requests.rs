@@ -2,12 +2,13 @@
 
 use crate::framed;
 use crate::requests::{payload, settings};
-use leg_firmware::command::{Command, Compensation, SetPoint, StreamPart};
+use leg_firmware::command::{Command, Compensation};
 use leg_firmware::frame::MAX_PAYLOAD;
 use leg_firmware::host_link::HostRequest;
 use leg_firmware::host_link::{HOST_SCHEMA, Hello};
 use leg_firmware::linked_leg::LINK_BYTES_MAX;
 use leg_firmware::sensors::{CODE_MAX, Sensors};
+use leg_firmware::set_point::{SetPoint, StreamPart};
 use leg_firmware_bench::protocol::{Request, TickRequest};
 use std::mem::discriminant;
 

@@ -8,6 +8,7 @@ mod first_power_up;
 mod logs;
 mod new_board;
 mod page;
+mod paths;
 mod ports;
 mod qemu;
 mod terminal;

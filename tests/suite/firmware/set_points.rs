@@ -2,10 +2,10 @@
 
 use super::control_law::settings;
 use leg_base::angles;
-use leg_firmware::command::{CommandRefusal, MotionLimit, SetPoint, StreamPart};
 use leg_firmware::control::{
     CYCLE_S, CYCLE_TICKS, Knot, MotionLimits, POINTS_MAX, Stream, StreamLimits, Trajectory,
 };
+use leg_firmware::set_point::{MotionLimit, PointRefusal, SetPoint, StreamPart};
 use leg_model::HalfTangent;
 
 /// The trajectory of a leg, its stream, and the tick.
@@ -32,12 +32,12 @@ impl Bench {
     }
 
     /// What a leg does with a point.
-    fn follow(&mut self, point: &SetPoint) -> Result<(), CommandRefusal> {
+    fn follow(&mut self, point: &SetPoint) -> Result<(), PointRefusal> {
         if self.trajectory.streamed() {
             return self.stream.extend(self.tick, point);
         }
         if point.part != StreamPart::First {
-            return Err(CommandRefusal::NoStream);
+            return Err(PointRefusal::NoStream);
         }
         let start = Knot {
             tick: self.tick.wrapping_add(u32::from(CYCLE_TICKS)),
@@ -232,28 +232,25 @@ fn a_point_is_refused_by_name() {
         rate: [1.0, 0.0],
         ..second
     };
-    let limit = CommandRefusal::Limit;
+    let limit = PointRefusal::Limit;
     for (refused, refusal) in [
-        (number, CommandRefusal::Number),
+        (number, PointRefusal::Number),
         (
             point(StreamPart::Next, 8000, [0.0, 50.0]),
-            CommandRefusal::OutOfReach,
+            PointRefusal::OutOfReach,
         ),
         (
             point(StreamPart::Next, 3900, [0.0, 1.2]),
-            CommandRefusal::PointOrder,
+            PointRefusal::Order,
         ),
         (
             point(StreamPart::Next, 4015, [0.0, 1.0]),
-            CommandRefusal::PointOrder,
+            PointRefusal::Order,
         ),
-        (
-            point(StreamPart::Next, 0, [0.0, 1.2]),
-            CommandRefusal::LatePoint,
-        ),
+        (point(StreamPart::Next, 0, [0.0, 1.2]), PointRefusal::Late),
         (
             point(StreamPart::Next, 80_001, [0.0, 1.2]),
-            CommandRefusal::EarlyPoint,
+            PointRefusal::Early,
         ),
         (fast, limit(MotionLimit::Speed)),
         (
@@ -266,7 +263,7 @@ fn a_point_is_refused_by_name() {
         ),
     ] {
         let mut bench = Bench::new(0);
-        assert_eq!(bench.follow(&second), Err(CommandRefusal::NoStream));
+        assert_eq!(bench.follow(&second), Err(PointRefusal::NoStream));
         assert_eq!(
             bench.follow(&point(StreamPart::First, 4000, [0.0, 1.0])),
             Ok(())
@@ -281,7 +278,7 @@ fn a_point_is_refused_by_name() {
         let last = point(StreamPart::Last, 12_000, [0.0, 1.2]);
         assert_eq!(bench.follow(&last), Ok(()));
         let after = point(StreamPart::Next, 16_000, [0.0, 1.2]);
-        assert_eq!(bench.follow(&after), Err(CommandRefusal::NoStream));
+        assert_eq!(bench.follow(&after), Err(PointRefusal::NoStream));
     }
 }
 
@@ -299,10 +296,7 @@ fn a_full_stream_refuses_points_until_there_is_room() {
     for number in 1..=count {
         assert_eq!(bench.follow(&next(number)), Ok(()));
     }
-    assert_eq!(
-        bench.follow(&next(count + 1)),
-        Err(CommandRefusal::StreamFull)
-    );
+    assert_eq!(bench.follow(&next(count + 1)), Err(PointRefusal::Full));
     while bench.tick < 4040 {
         bench.advance();
     }

@@ -3,7 +3,7 @@
 use super::quintic::{MotionState, Quintic};
 use super::stream_limits::{Segment, StreamLimits};
 use super::{CYCLE_TICKS, TICK_S};
-use crate::command::{CommandRefusal, SetPoint, StreamPart};
+use crate::set_point::{PointRefusal, SetPoint, StreamPart};
 use heapless::Deque;
 use leg_model::Scalar;
 
@@ -71,7 +71,7 @@ impl<T: Scalar> Stream<T> {
     ///
     /// # Errors
     /// As [`Self::extend`]; whatever was there before stays.
-    pub fn begin(&mut self, start: Knot<T>, point: &SetPoint) -> Result<(), CommandRefusal> {
+    pub fn begin(&mut self, start: Knot<T>, point: &SetPoint) -> Result<(), PointRefusal> {
         let knot = self.checked(&start, start.tick, point)?;
         self.waiting.clear();
         self.reached = start;
@@ -92,15 +92,15 @@ impl<T: Scalar> Stream<T> {
     ///
     /// # Errors
     /// Why the point is refused. The points before it stay.
-    pub fn extend(&mut self, now: u32, point: &SetPoint) -> Result<(), CommandRefusal> {
+    pub fn extend(&mut self, now: u32, point: &SetPoint) -> Result<(), PointRefusal> {
         if self.repeats(point) {
             return Ok(());
         }
         if !self.open {
-            return Err(CommandRefusal::NoStream);
+            return Err(PointRefusal::NoStream);
         }
         if self.waiting.is_full() {
-            return Err(CommandRefusal::StreamFull);
+            return Err(PointRefusal::Full);
         }
         let knot = self.checked(&self.last, now, point)?;
         self.open = point.part != StreamPart::Last;
@@ -121,7 +121,7 @@ impl<T: Scalar> Stream<T> {
         before: &Knot<T>,
         now: u32,
         point: &SetPoint,
-    ) -> Result<Knot<T>, CommandRefusal> {
+    ) -> Result<Knot<T>, PointRefusal> {
         let ticks = spacing(before.tick, now, point.tick)?;
         let mut motion = self.limits.motion(point)?;
         if point.acceleration.is_none() {
@@ -152,18 +152,18 @@ impl<T: Scalar> Stream<T> {
 }
 
 /// Ticks between two points.
-fn spacing(before: u32, now: u32, tick: u32) -> Result<u32, CommandRefusal> {
+fn spacing(before: u32, now: u32, tick: u32) -> Result<u32, PointRefusal> {
     // The count of ticks wraps after six days: what is half of that ahead is behind.
     let ahead = tick.wrapping_sub(now);
     if ahead == 0 || ahead > u32::MAX / 2 {
-        return Err(CommandRefusal::LatePoint);
+        return Err(PointRefusal::Late);
     }
     if ahead > AHEAD_MAX_TICKS {
-        return Err(CommandRefusal::EarlyPoint);
+        return Err(PointRefusal::Early);
     }
     let ticks = tick.wrapping_sub(before);
     if !(SPACING_MIN_TICKS..=u32::MAX / 2).contains(&ticks) {
-        return Err(CommandRefusal::PointOrder);
+        return Err(PointRefusal::Order);
     }
     Ok(ticks)
 }

@@ -4,7 +4,7 @@ use super::bounds::max;
 use super::plan::{LONGEST_S, MotionLimits, SHORTEST_S, cycles};
 use super::quintic::{MotionState, Peaks, Quintic};
 use super::{CYCLE_TICKS, TICK_S};
-use crate::command::{CommandRefusal, MotionLimit, SetPoint};
+use crate::set_point::{MotionLimit, PointRefusal, SetPoint};
 use crate::settings::Settings;
 use leg_model::{Direction, Scalar};
 
@@ -53,18 +53,18 @@ impl<T: Scalar> StreamLimits<T> {
     ///
     /// # Errors
     /// A number that is not finite, a direction out of reach.
-    pub fn motion(&self, point: &SetPoint) -> Result<MotionState<T>, CommandRefusal> {
+    pub fn motion(&self, point: &SetPoint) -> Result<MotionState<T>, PointRefusal> {
         let acceleration = point.acceleration.unwrap_or([0.0; 2]);
         let numbers = [point.direction, point.rate, acceleration];
         if !numbers.iter().flatten().all(|number| number.is_finite()) {
-            return Err(CommandRefusal::Number);
+            return Err(PointRefusal::Number);
         }
         let [p, v, a] = numbers.map(|pair| pair.map(T::from));
         if square(p) > self.reach_sine_square {
-            return Err(CommandRefusal::OutOfReach);
+            return Err(PointRefusal::OutOfReach);
         }
         let [x, y] = p;
-        let direction = Direction::from_xy(x, y).map_err(|_| CommandRefusal::OutOfReach)?;
+        let direction = Direction::from_xy(x, y).map_err(|_| PointRefusal::OutOfReach)?;
         // z² + p² = 1, twice differentiated.
         let z = -direction.vector().z;
         let per_z = T::one() / z;
@@ -95,9 +95,9 @@ impl<T: Scalar> StreamLimits<T> {
     /// # Errors
     /// The limit that it leaves.
     #[inline(never)]
-    pub fn keeps(&self, path: &Quintic<T>) -> Result<(), CommandRefusal> {
+    pub fn keeps(&self, path: &Quintic<T>) -> Result<(), PointRefusal> {
         let [xs, ys] = path.control_points();
-        within(&xs, &ys, self.reach_square).ok_or(CommandRefusal::OutOfReach)?;
+        within(&xs, &ys, self.reach_square).ok_or(PointRefusal::OutOfReach)?;
         let ([rates_x, bends_x, jerks_x], [rates_y, bends_y, jerks_y]) =
             (differences(&xs), differences(&ys));
         let peaks = &self.peaks;
@@ -107,7 +107,7 @@ impl<T: Scalar> StreamLimits<T> {
         let bend = peaks.acceleration * duration_s * duration_s * T::from(1.0 / 20.0) + rounding;
         let jerk = peaks.jerk * duration_s * duration_s * duration_s * T::from(1.0 / 60.0)
             + T::TWO * rounding;
-        let limit = |limit| CommandRefusal::Limit(limit);
+        let limit = |limit| PointRefusal::Limit(limit);
         within(&rates_x, &rates_y, rate * rate).ok_or(limit(MotionLimit::Speed))?;
         within(&bends_x, &bends_y, bend * bend).ok_or(limit(MotionLimit::Acceleration))?;
         within(&jerks_x, &jerks_y, jerk * jerk).ok_or(limit(MotionLimit::Jerk))
@@ -117,20 +117,20 @@ impl<T: Scalar> StreamLimits<T> {
     ///
     /// # Errors
     /// The limit that is left.
-    pub fn keeps_to_rest(&self, motion: &MotionState<T>) -> Result<(), CommandRefusal> {
+    pub fn keeps_to_rest(&self, motion: &MotionState<T>) -> Result<(), PointRefusal> {
         let time_s = self.time_to_rest_s(motion);
         let step = |share: f32| time_s * T::from(share);
         // The control points of the rate are v, v + aT/4 and three times zero.
         let fastest = moved(motion.rate, motion.acceleration, step(0.25));
         if square(fastest) > self.peaks.rate * self.peaks.rate {
-            return Err(CommandRefusal::Limit(MotionLimit::Speed));
+            return Err(PointRefusal::Limit(MotionLimit::Speed));
         }
         let first = moved(motion.position, motion.rate, step(0.2));
         let rest = moved(first, fastest, step(0.2));
         let inside = time_s < T::from(LONGEST_S)
             && square(first) <= self.reach_square
             && square(rest) <= self.reach_square;
-        inside.then_some(()).ok_or(CommandRefusal::OutOfReach)
+        inside.then_some(()).ok_or(PointRefusal::OutOfReach)
     }
 
     /// The path from a motion to rest, with rate (1 − s)³((1 + 3s)v + s·aT) at the part s of its time T.

@@ -2,11 +2,12 @@
 
 use super::phase::Phase;
 use super::shared::Shared;
-use crate::command::{CommandRefusal, Compensation, SetPoint, StreamPart};
+use crate::command::Compensation;
 use crate::control::{
     Axis, AxisGoal, CYCLE_S, CYCLE_TICKS, Knot, LoadEstimation, Measured, TargetDemand, Trajectory,
     bounds,
 };
+use crate::set_point::{PointRefusal, SetPoint, StreamPart};
 use leg_model::{Direction, Error, HalfTangent, Scalar};
 
 /// The leg follows commands.
@@ -119,12 +120,12 @@ impl<T: Scalar> Active<T> {
         shared: &mut Shared<T>,
         tick: u32,
         point: &SetPoint,
-    ) -> Result<(), CommandRefusal> {
+    ) -> Result<(), PointRefusal> {
         let stream = &mut shared.stream;
         match (point.part, self.trajectory.streamed()) {
             (StreamPart::First, true) if stream.repeats(point) => Ok(()),
-            (StreamPart::First, true) => Err(CommandRefusal::Following),
-            (StreamPart::First, false) if !self.slack.taken_up() => Err(CommandRefusal::NotTaut),
+            (StreamPart::First, true) => Err(PointRefusal::Following),
+            (StreamPart::First, false) if !self.slack.taken_up() => Err(PointRefusal::NotTaut),
             (StreamPart::First, false) => {
                 let start = Knot {
                     tick: tick.wrapping_add(u32::from(CYCLE_TICKS)),
@@ -135,7 +136,7 @@ impl<T: Scalar> Active<T> {
                 shared.refused = false;
                 Ok(())
             }
-            (_, false) => Err(CommandRefusal::NoStream),
+            (_, false) => Err(PointRefusal::NoStream),
             (_, true) => stream.extend(tick, point),
         }
     }

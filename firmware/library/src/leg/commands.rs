@@ -4,8 +4,9 @@ use super::active::Active;
 use super::mode::Mode;
 use super::shared::Shared;
 use super::{Leg, Outcome};
-use crate::command::{Command, CommandRefusal, SetPoint};
+use crate::command::{Command, CommandRefusal};
 use crate::control::{Measured, PretensionDemand};
+use crate::set_point::SetPoint;
 use crate::supervisor::{Event, Fault, FaultSet, State};
 use leg_model::{BendingAxis, Direction, Scalar};
 
@@ -156,7 +157,8 @@ impl<T: Scalar> Leg<T> {
     fn follow(&mut self, point: &SetPoint) -> Result<(), CommandRefusal> {
         let tick = self.tick;
         let (active, shared) = self.active()?;
-        active.follow(shared, tick, point)
+        let taken = active.follow(shared, tick, point);
+        taken.map_err(CommandRefusal::Point)
     }
 
     fn demand_pretension(&mut self, pretension_n: f32) -> Result<(), CommandRefusal> {

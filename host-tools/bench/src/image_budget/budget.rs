@@ -58,13 +58,13 @@ impl ByteBounds {
 }
 
 const STM32G474_TASKS: &[(&str, ByteBounds)] = &[
-    ("can_bus::serve", ByteBounds::new(18_100, 24_100)),
+    ("can_bus::serve", ByteBounds::new(21_000, 28_000)),
     ("housekeeping::keep_house", ByteBounds::new(1_900, 2_500)),
     (
         "leg_stm32g474::embassy_main",
         ByteBounds::new(25_000, 33_300),
     ),
-    ("serial::serve", ByteBounds::new(17_500, 23_300)),
+    ("serial::serve", ByteBounds::new(20_400, 27_200)),
     (
         "settings_task::keep_settings",
         ByteBounds::new(12_700, 16_900),

@@ -5,10 +5,11 @@ use super::{Operator, OperatorError};
 use crate::path_reader::{PathSource, PathStep};
 use leg_base::failure::Failure;
 use leg_base::timed_path::{self, TimedPoint};
-use leg_firmware::command::{Command, CommandRefusal, StreamPart};
+use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::control::StreamLimits;
 use leg_firmware::host_link::HostRefusal;
 use leg_firmware::sensors::TICK_HZ;
+use leg_firmware::set_point::{PointRefusal, StreamPart};
 use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
 use std::time::Duration;
@@ -114,12 +115,14 @@ impl Operator {
             let Err(error) = self.command(command) else {
                 return Ok(());
             };
-            let OperatorError::Refused(_, HostRefusal::Command(refusal)) = error else {
+            let OperatorError::Refused(_, HostRefusal::Command(CommandRefusal::Point(refusal))) =
+                error
+            else {
                 return Err(error);
             };
             match refusal {
-                CommandRefusal::StreamFull | CommandRefusal::EarlyPoint => self.pause(WAIT_TIME)?,
-                CommandRefusal::NoStream => {
+                PointRefusal::Full | PointRefusal::Early => self.pause(WAIT_TIME)?,
+                PointRefusal::NoStream => {
                     // Why the stream has ended says more.
                     let telemetry = self.telemetry()?.telemetry;
                     unlimited(ASKED, &telemetry)?;
@@ -135,7 +138,7 @@ fn rest_before(first: &TimedPoint, settings: &Settings) -> Result<TimedPoint, Op
     timed_path::run_up(first, settings).map_err(|refusal| refused_point(first, refusal))
 }
 
-fn refused_point(point: &TimedPoint, refusal: CommandRefusal) -> OperatorError {
+fn refused_point(point: &TimedPoint, refusal: PointRefusal) -> OperatorError {
     let [wrong, remedy] = refusal.description();
     let sentence = format!("the path {:.3} s after its start: {wrong}", point.time_s);
     OperatorError::Path(Failure::refused(sentence, remedy))

@@ -4,8 +4,9 @@ use super::SimulationError;
 use super::follow_error::FollowError;
 use super::test_stand::TestStand;
 use leg_base::timed_path::{TimedPath, TimedPoint};
-use leg_firmware::command::{Command, StreamPart};
+use leg_firmware::command::Command;
 use leg_firmware::sensors::TICK_HZ;
+use leg_firmware::set_point::StreamPart;
 
 /// Time by which a point is sent before that of the point before it, ticks: 0.1 s, so ten points at 100 Hz wait on the board.
 const AHEAD_TICKS: u32 = TICK_HZ as u32 / 10;

@@ -38,7 +38,7 @@ pub enum SimulationError {
     Command(leg_firmware::frame::FrameError),
     /// A path has no rest before it.
     #[error("no rest before the path leads to its start within the limits: {}; let it begin at rest", .0.description()[0])]
-    RunUp(leg_firmware::command::CommandRefusal),
+    RunUp(leg_firmware::set_point::PointRefusal),
 }
 
 /// One measured value.
