@@ -3,7 +3,7 @@
 use crate::command::Compensation;
 use crate::control::{
     Axis, AxisInput, CYCLE_TICKS, Estimate, Estimator, LoadEstimation, Measured, Mechanism,
-    MotionLimits, PretensionSearch, Target, TargetGenerator, ticks,
+    MotionLimits, PretensionSearch, Target, TargetGenerator, bounds, ticks,
 };
 use crate::drive::Drive;
 use crate::settings::{Homing, Settings, SettingsError};
@@ -130,6 +130,21 @@ impl<T: Scalar> Shared<T> {
             }
             State::Active => (self.mechanism.f_max_n, [-T::MAX; 3]),
             _ => return self.ignore_tensions(),
+        };
+    }
+
+    /// The tension above which a tendon is paid out. In doubt none is: a cell that shows too much near the maximum tension would
+    /// pay its tendon out until it is found.
+    #[inline(always)]
+    pub fn limit_tensions(&mut self, measured: &Measured<T>, doubts: bool) {
+        let f_max_n = self.mechanism.f_max_n;
+        self.f_max_n = if doubts {
+            measured
+                .tensions_n
+                .iter()
+                .fold(f_max_n, |a, &b| bounds::max(a, b))
+        } else {
+            f_max_n
         };
     }
 
