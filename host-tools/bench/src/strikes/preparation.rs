@@ -2,6 +2,7 @@
 
 use super::activity::Activity;
 use super::case::Case;
+use super::push::strongest_n;
 use super::stand::Stand;
 use super::way::Way;
 use leg_base::angles;
@@ -123,8 +124,10 @@ fn lead(case: &Case, stand: &mut Stand) -> Result<(), String> {
         stand.wait(LOADING_S)?;
     }
     if let Some([azimuth_deg, force_n]) = case.push {
-        let force_n = stand.plant().across(azimuth_deg) * force_n;
-        stand.plant().push(force_n, LOADING_S, 0.1);
+        let across = stand.plant().across(azimuth_deg);
+        // No harder than the pose can bear: what a push does beyond that is no matter of a fault.
+        let force_n = force_n.min(strongest_n(&case.file, &stand.truth, &across));
+        stand.plant().push(across * force_n, LOADING_S, 0.1);
         stand.wait(LOADING_S)?;
     }
     rest(stand)
