@@ -81,7 +81,9 @@ impl<T: Scalar> Leg<T> {
         if self.mode.boots_up() {
             self.mode = Mode::Disarmed;
         }
+        // Whoever disarms or clears a leg that brakes waits until it stands: stopped at once it would swing with its payload.
         if self.phase == Phase::Pretension
+            && !self.mode.brakes()
             && let Some(command) = self.queue.pop()
         {
             self.phase = Phase::Command;
@@ -117,7 +119,7 @@ impl<T: Scalar> Leg<T> {
         match &mut self.mode {
             Mode::Active(active) => {
                 if self.phase == Phase::Target {
-                    shared.limit_tensions(measured, self.agreement.doubts());
+                    shared.limit_tensions(measured, self.agreement.trusts());
                 }
                 // In the place of the search, so that the next mode has time to begin.
                 if self.phase == Phase::Pretension && active.led_down() {
@@ -164,6 +166,7 @@ impl<T: Scalar> Leg<T> {
             measured,
             driven: state.driven(),
             led: state.follows(),
+            homing: state == State::Homing,
             tensioned,
             residual_m: if tensioned {
                 self.shared.residual_m()

@@ -49,6 +49,8 @@ pub struct LegLimits<T> {
     pub homing_current_max_a: T,
     pub ramp_m_per_s: T,
     pub relax_travel_m: T,
+    /// What a motor leaves of its way, m.
+    pub dead_band_m: T,
     /// Ticks that this takes at that speed.
     pub relax_ticks: u32,
     /// Lengths of the tendons of a leg that hangs straight down, with their slack, m.
@@ -78,6 +80,7 @@ impl<T: Scalar> LegLimits<T> {
             ),
             ramp_m_per_s: limits.ramp_m_per_s.into(),
             relax_travel_m: limits.relax_travel_m.into(),
+            dead_band_m: settings.servo.dead_band_m.into(),
             relax_ticks: ticks(limits.relax_travel_m / limits.ramp_m_per_s),
             taut_cycles: ticks(limits.taut_time_s) / u32::from(CYCLE_TICKS),
             servo_m_per_s: settings.servo.speed_m_per_s.into(),
@@ -133,18 +136,18 @@ impl<T: Scalar> Shared<T> {
         };
     }
 
-    /// The tension above which a tendon is paid out. In doubt none is: a cell that shows too much near the maximum tension would
-    /// pay its tendon out until it is found.
+    /// The tension above which a tendon is paid out. None is before lengths and tensions agree: a cell that shows too much would pay
+    /// its tendon out until it is found.
     #[inline(always)]
-    pub fn limit_tensions(&mut self, measured: &Measured<T>, doubts: bool) {
+    pub fn limit_tensions(&mut self, measured: &Measured<T>, trusted: bool) {
         let f_max_n = self.mechanism.f_max_n;
-        self.f_max_n = if doubts {
+        self.f_max_n = if trusted {
+            f_max_n
+        } else {
             measured
                 .tensions_n
                 .iter()
                 .fold(f_max_n, |a, &b| bounds::max(a, b))
-        } else {
-            f_max_n
         };
     }
 

@@ -42,6 +42,7 @@ impl FaultSet {
         .union(Self::single(Fault::OverTension))
         .union(Self::single(Fault::TensionJump))
         .union(Self::single(Fault::Residual))
+        .union(Self::single(Fault::HomingFailed))
         .union(Self::single(Fault::CellStale))
         .union(Self::single(Fault::CellStuck))
         .union(Self::single(Fault::CellSaturated));

@@ -23,6 +23,8 @@ pub struct MonitorInput<'a, T> {
     pub driven: bool,
     /// Whether the motors follow where they are led; at rest, one that gives way to a tension does not.
     pub led: bool,
+    /// Whether the zero is searched for.
+    pub homing: bool,
     /// Whether every tendon should pull.
     pub tensioned: bool,
     /// What forward kinematics leaves over, m; none while the pose is not needed.

@@ -21,6 +21,9 @@ const HOMING_S: f64 = 30.0;
 /// Time in which an arming leg is struck, s.
 const ARMING_S: f64 = 0.8;
 
+/// The latest part of a way at which a leg is struck: what comes after its end is another state.
+const LATEST: f64 = 0.98;
+
 /// How long the way goes on after its end, s: what swings there belongs to it.
 const AFTER_S: f64 = 1.0;
 
@@ -182,7 +185,7 @@ fn on_the_way(case: &Case, stand: Stand) -> Result<Prepared, String> {
     }
     let mut stand = stand;
     let all_s = ended_s.unwrap_or(began_s) - began_s;
-    stand.wait(case.part * all_s)?;
+    stand.wait(LATEST * case.part * all_s)?;
     Ok(Prepared { stand, way })
 }
 

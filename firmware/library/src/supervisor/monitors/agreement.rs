@@ -93,12 +93,6 @@ impl<T: Scalar> Agreement<T> {
         self.watches() && self.beyond_now_m <= T::zero()
     }
 
-    /// Whether the sensors are watched, and disagree at this moment.
-    #[inline(always)]
-    pub fn doubts(&self) -> bool {
-        self.watches() && !(self.beyond_now_m <= T::zero())
-    }
-
     /// One cycle while every tendon should pull.
     #[inline(always)]
     pub fn watch(&mut self, error: &LengthError<T>, moving: bool) {
