@@ -166,14 +166,14 @@ impl<T: Scalar> Leg<T> {
             measured,
             driven: state.driven(),
             led: state.follows(),
-            homing: state == State::Homing,
             tensioned,
             residual_m: if tensioned {
                 self.shared.residual_m()
             } else {
                 None
             },
-            cells_trusted: self.agreement.trusts() && !self.supervisor.stopped(),
+            cells_trusted: state == State::Homing
+                || self.agreement.trusts() && !self.supervisor.stopped(),
         };
         let mut faults = self.monitors.watch(&input);
         // Once another fault has been named, what follows from it needs no name of its own.

@@ -185,13 +185,13 @@ fn a_tension_beyond_the_maximum_ends_homing_by_that_name() {
         tilt: 0,
         payload: 0.0,
         pretension: 120.0,
-        steps: r#"{ push = { azimuth_deg = 180, force_n = 4, for_s = 1 } }, { wait_s = 0.2 }, "home", { wait_s = 0.3 },"#,
-        expected: "\"homing_failed\", \"cell_saturated\"",
+        steps: r#"{ push = { azimuth_deg = 180, force_n = 8, for_s = 3 } }, { wait_s = 1.5 }, "home", { wait_s = 0.3 },"#,
+        expected: "\"over_tension\"",
         control: "[control.limits]\njump_n = 1000\n",
     };
     let summary = course.run(&mut |_| ()).unwrap();
     let named: Vec<Fault> = summary.faults.iter().map(|(fault, _)| *fault).collect();
-    assert_eq!(named.first(), Some(&Fault::HomingFailed), "{named:?}");
+    assert_eq!(named.first(), Some(&Fault::OverTension), "{named:?}");
     assert!(summary.unexpected.is_empty(), "{named:?}");
 }
 

@@ -42,7 +42,6 @@ impl FaultSet {
         .union(Self::single(Fault::OverTension))
         .union(Self::single(Fault::TensionJump))
         .union(Self::single(Fault::Residual))
-        .union(Self::single(Fault::HomingFailed))
         .union(Self::single(Fault::CellStale))
         .union(Self::single(Fault::CellStuck))
         .union(Self::single(Fault::CellSaturated));

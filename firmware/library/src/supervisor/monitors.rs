@@ -23,13 +23,11 @@ pub struct MonitorInput<'a, T> {
     pub driven: bool,
     /// Whether the motors follow where they are led; at rest, one that gives way to a tension does not.
     pub led: bool,
-    /// Whether the zero is searched for.
-    pub homing: bool,
     /// Whether every tendon should pull.
     pub tensioned: bool,
     /// What forward kinematics leaves over, m; none while the pose is not needed.
     pub residual_m: Option<T>,
-    /// Whether lengths and tensions are watched, and agree.
+    /// Whether lengths and tensions are watched, and agree; in homing, that pays its tendons out anyway, nothing is compared.
     pub cells_trusted: bool,
 }
 

@@ -149,10 +149,7 @@ impl<T: Scalar> AxisMonitor<T> {
         let over = self.over_tension.update(over);
         // A cell that the others contradict pays out no tendon.
         faults.add(Fault::OverTension, over && view.cells_trusted);
-        let doubted = over && !view.cells_trusted && view.led;
-        // Homing compares no lengths with tensions: that much is all there is to say.
-        faults.add(Fault::Residual, doubted && !view.homing);
-        faults.add(Fault::HomingFailed, doubted && view.homing);
+        faults.add(Fault::Residual, over && !view.cells_trusted && view.led);
         let place = self.place & (JUMP_CHECKS - 1);
         let before = core::mem::replace(&mut self.history[place], tension);
         self.place = place + 1;
@@ -258,7 +255,6 @@ mod tests {
                 measured: &measured,
                 driven: true,
                 led: true,
-                homing: false,
                 tensioned: true,
                 residual_m: None,
                 cells_trusted: true,
