@@ -48,6 +48,7 @@ mod sim {
     mod ready_runs;
     mod scenario_bits;
     mod scenarios;
+    mod ways_down;
 }
 
 mod board {

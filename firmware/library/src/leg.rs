@@ -74,7 +74,7 @@ impl<T: Scalar> Leg<T> {
     #[inline(never)]
     pub fn tick(&mut self, sensors: &Sensors) -> Drive<T> {
         self.tick = self.tick.wrapping_add(1);
-        for &axis in self.phase.monitored_motors() {
+        if let Some(axis) = self.phase.monitored_motor() {
             self.measurement.end_current(axis);
         }
         let measured = self.measurement.convert(sensors);
@@ -84,7 +84,9 @@ impl<T: Scalar> Leg<T> {
         if self.mode.boots_up() {
             self.mode = Mode::Disarmed;
         }
+        // Whoever disarms or clears a leg that brakes waits until it stands: stopped at once it would swing with its payload.
         if self.phase == Phase::Pretension
+            && !self.mode.brakes()
             && let Some(command) = self.queue.pop()
         {
             self.phase = Phase::Command;
@@ -119,6 +121,9 @@ impl<T: Scalar> Leg<T> {
         };
         match &mut self.mode {
             Mode::Active(active) => {
+                if self.phase == Phase::Target {
+                    shared.limit_tensions(measured, self.agreement.trusts());
+                }
                 // In the place of the search, so that the next mode has time to begin.
                 if self.phase == Phase::Pretension && active.led_down() {
                     step.event = Some(Event::Disarm);
@@ -170,22 +175,24 @@ impl<T: Scalar> Leg<T> {
             } else {
                 None
             },
-            cells_trusted: self.agreement.trusts() && !self.supervisor.stopped(),
+            cells_trusted: state == State::Homing
+                || self.agreement.trusts() && !self.supervisor.stopped(),
         };
         let mut faults = self.monitors.watch(&input);
         // Once another fault has been named, what follows from it needs no name of its own.
         let first = !self.supervisor.stopped_but_for(Fault::Residual);
         faults.add(Fault::Residual, first && !self.agreement.agree());
-        if let Some(turn) = self.phase.monitored_cell() {
-            self.monitors.watch_cell(turn, &input);
-        }
-        for &turn in self.phase.monitored_motors() {
-            if let (Some(axis), Some(&pulled)) =
-                (self.shared.axes.get_mut(turn), measured.pulled_m.get(turn))
-            {
-                let shown = axis.view(pulled);
-                self.monitors.watch_motor(turn, &input, &shown);
+        if self.phase.monitors_cells() {
+            for turn in 0..self.shared.axes.len() {
+                self.monitors.watch_cell(turn, &input);
             }
+        }
+        if let Some(turn) = self.phase.monitored_motor()
+            && let (Some(axis), Some(&pulled)) =
+                (self.shared.axes.get_mut(turn), measured.pulled_m.get(turn))
+        {
+            let shown = axis.view(pulled);
+            self.monitors.watch_motor(turn, &input, &shown);
         }
         faults = faults.union(self.monitors.axis_faults());
         faults.add(Fault::Infeasible, self.shared.refused);

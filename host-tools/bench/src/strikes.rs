@@ -9,6 +9,7 @@ mod bars;
 mod case;
 mod false_alarms;
 mod preparation;
+mod push;
 mod stand;
 mod strike;
 mod table;

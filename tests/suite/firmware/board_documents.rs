@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::common::sources::sources;
+use leg_firmware::board::{CheckIns, TaskWatchdog, WatchedTask};
 use leg_firmware::supervisor::FAULT_TABLE;
 use std::collections::BTreeSet;
 use std::fs;
@@ -183,5 +184,50 @@ fn every_message_that_is_quoted_is_in_the_sources() {
         for part in parts.filter(|part| part.contains(' ')) {
             assert!(sources.contains(part), "{message}: {part}");
         }
+    }
+}
+
+/// The longest time from the last check-in of a task to the round that finds it missing: one round counts it still, and it may
+/// miss a number of them.
+#[test]
+fn the_page_says_when_a_task_is_missed_and_how_long_a_hasty_chip_waits() {
+    let check_ins = CheckIns::new();
+    let found_after_ms = |away: WatchedTask| {
+        let mut watchdog = TaskWatchdog::default();
+        check_ins.check_in(away);
+        for round in 1_u64.. {
+            for task in WatchedTask::ALL {
+                if task != away {
+                    check_ins.check_in(task);
+                }
+            }
+            if watchdog.poll(&check_ins).is_some() {
+                return round * CheckIns::PERIOD_MS;
+            }
+        }
+        0
+    };
+    let [link_ms, settings_ms] = [WatchedTask::Link, WatchedTask::Settings].map(found_after_ms);
+    let settings_s = settings_ms as f64 * 1e-3;
+    let fatal = fs::read_to_string(Path::new(FIRMWARE).join("stm32g474/src/fatal.rs")).unwrap();
+    let number = |name: &str| -> u32 {
+        let (_, rest) = fatal.split_once(&format!("const {name}: u32 = ")).unwrap();
+        let (number, _) = rest.split_once(';').unwrap();
+        number.replace('_', "").parse().unwrap()
+    };
+    assert!(
+        fatal.contains(
+            "const REST_STEP_CYCLES: u32 = leg_firmware::board::timing::CLOCK_HZ / 2_000;"
+        )
+    );
+    assert!(fatal.contains("if failures >= HASTY_FAILURES {\n        rest();"));
+    let (failures, rest_s) = (number("HASTY_FAILURES"), number("REST_STEPS") / 2_000);
+    assert_eq!(failures, 3);
+    let page = page("SAFETY.md");
+    for words in [
+        format!("within {link_ms} ms for the link, {settings_s} s for the settings"),
+        format!("After the third in a row the next start waits {rest_s} s"),
+    ] {
+        assert!(page.contains(&words), "{words}");
     }
 }

@@ -284,6 +284,8 @@ fn commands_that_mean_nothing_now_are_refused_by_name() {
     );
     assert_eq!(bench.obey(Command::Stop), Ok(()));
     assert_eq!(bench.leg.state(), State::Held);
+    // It brakes first.
+    bench.run(1300);
     assert_eq!(
         bench.obey(Command::Arm),
         Err(CommandRefusal::State(State::Held))

@@ -1,12 +1,23 @@
 //! Where the leg is and what it carries, by the lengths and tensions of its tendons.
 
-use super::{CYCLE_S, Mechanism, bounds::max, filter::LowPass};
+use super::{
+    CYCLE_S, Mechanism,
+    bounds::{clamp_symmetric, max},
+    filter::LowPass,
+};
 use crate::settings::Settings;
 use leg_model::{
     Direction, Elasticity, Error, Scalar, SupportKind, estimate_moment, forward_kinematics,
     forward_kinematics_universal, inverse_kinematics,
 };
 use nalgebra::{SVector, Vector3};
+
+/// Farthest that the torsion goes in a cycle, rad: 4 rad/s, as that of a target.
+const TORSION_CYCLE_RAD: f32 = 2e-3;
+
+/// The least torsion stiffness of tendons by their tensions that the search for the torsion divides by, m/rad: a tenth of that of the
+/// paper's rig.
+const LEAST_M_PER_RAD: f32 = 1.6e-3;
 
 /// The pose that the tendons show.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,6 +112,13 @@ pub struct Estimator<T> {
     payload_kg: Smoothed<T>,
     /// The horizontal moment (x, y) that is neither that of the payload nor that of the leg's own weight, N·m.
     push_nm: [Smoothed<T>; 2],
+    /// Elastic torsion of a leg that can twist, rad.
+    torsion: T,
+    /// What holds it, twice: torsion stiffness of the joint, N·m/rad, and that of the tendons by their tensions, m/rad.
+    torsion_nm_per_rad: T,
+    torsion_m_per_rad: T,
+    /// The least tension, as a sum, that is taken to hold it, N.
+    taut_n: T,
     /// Square of the sine of the tilt from which the payload is estimated.
     payload_sine_squared: T,
 }
@@ -115,6 +133,10 @@ impl<T: Scalar> Estimator<T> {
             direction: Direction::down(),
             payload_kg: smoothed,
             push_nm: [smoothed; 2],
+            torsion: T::zero(),
+            torsion_nm_per_rad: T::from(2.0 * settings.joint.torsion_nm_per_rad),
+            torsion_m_per_rad: T::from(2.0 * torsion_m_per_rad(settings)),
+            taut_n: settings.f_min_n.into(),
             payload_sine_squared: sine * sine,
         }
     }
@@ -154,7 +176,8 @@ impl<T: Scalar> Estimator<T> {
         max(self.payload_kg.value(), T::zero())
     }
 
-    /// Estimates the pose and, as `load_estimation` says, the load. `torsion` is the elastic one, rad.
+    /// Estimates the pose and, as `load_estimation` says, the load. `target_torsion`, rad, is the elastic one of a leg whose
+    /// tendons are slack; taut ones show it by themselves.
     ///
     /// # Errors
     /// A tension beyond a tendon's curve; what forward kinematics refuses.
@@ -164,7 +187,7 @@ impl<T: Scalar> Estimator<T> {
         mechanism: &Mechanism<T>,
         unstretched_m: &[T; 3],
         tensions_n: &[T; 3],
-        torsion: T,
+        target_torsion: T,
         load_estimation: LoadEstimation,
     ) -> Result<Estimate<T>, Error> {
         let (mut lengths, mut pull) = (SVector::<T, 3>::zeros(), SVector::<T, 3>::zeros());
@@ -175,6 +198,11 @@ impl<T: Scalar> Estimator<T> {
             elongations_m[i] = tendon.elongation(pull[i])?;
             lengths[i] = unstretched_m[i] + elongations_m[i];
         }
+        let slack = load_estimation == LoadEstimation::Slack;
+        if slack {
+            self.torsion = target_torsion;
+        }
+        let torsion = self.torsion;
         let mut twisted = None;
         let found = if mechanism.support.kind() == SupportKind::Universal {
             forward_kinematics_universal(mechanism.rig.geometry(), &lengths, &self.direction)?
@@ -184,7 +212,7 @@ impl<T: Scalar> Estimator<T> {
         };
         self.direction = found.direction;
         let mut length_error = None;
-        if load_estimation != LoadEstimation::Slack {
+        if !slack {
             let geometry = mechanism.geometry(&found.direction, torsion, &mut twisted);
             let kinematics = inverse_kinematics(geometry, &found.direction)?;
             length_error = Some(LengthError {
@@ -192,9 +220,16 @@ impl<T: Scalar> Estimator<T> {
                 mean_m: (lengths - kinematics.lengths).sum() * T::from(1.0 / 3.0),
                 elongations_m,
             });
-            if load_estimation != LoadEstimation::Frozen {
+            let twists = mechanism.support.twists();
+            if twists || load_estimation != LoadEstimation::Frozen {
                 let tendons = estimate_moment(&kinematics.moment_map, &pull);
-                self.update_load(mechanism, &tendons, torsion, load_estimation);
+                let load = tendons - mechanism.support.joint_moment(&found.direction, torsion);
+                if twists {
+                    self.update_torsion(&load, &pull);
+                }
+                if load_estimation != LoadEstimation::Frozen {
+                    self.update_load(mechanism, &load, load_estimation);
+                }
             }
         }
         Ok(Estimate {
@@ -204,18 +239,26 @@ impl<T: Scalar> Estimator<T> {
         })
     }
 
-    /// By the moment against that of the tendons, N·m.
+    /// One step of the search for the torsion at which the load, N·m, has no moment about the leg: weights and pushes act on
+    /// its axis. Half a step, for the stiffness is that of a leg that hangs.
+    #[inline(always)]
+    fn update_torsion(&mut self, load: &Vector3<T>, pull: &SVector<T, 3>) {
+        let stiffness =
+            self.torsion_nm_per_rad + self.torsion_m_per_rad * max(pull.sum(), self.taut_n);
+        let step = load.dot(&self.direction.vector()) / stiffness;
+        self.torsion += clamp_symmetric(step, T::from(TORSION_CYCLE_RAD));
+    }
+
+    /// By the load, N·m.
     #[inline(always)]
     fn update_load(
         &mut self,
         mechanism: &Mechanism<T>,
-        against: &Vector3<T>,
-        torsion: T,
+        load: &Vector3<T>,
         load_estimation: LoadEstimation,
     ) {
         let (direction, support) = (&self.direction, &mechanism.support);
-        let load = against - support.joint_moment(direction, torsion);
-        let [x, y] = support.plane(direction).project(&load);
+        let [x, y] = support.plane(direction).project(load);
         let own = mechanism.leg.moment(direction);
         let excess = [x - own.x, y - own.y];
         let immediate = load_estimation == LoadEstimation::Immediate;
@@ -229,7 +272,7 @@ impl<T: Scalar> Estimator<T> {
         let down = self.direction.vector();
         let sine_squared = down.x * down.x + down.y * down.y;
         let mut payload_kg = self.payload_kg.value();
-        if sine_squared > self.payload_sine_squared {
+        if sine_squared > self.payload_sine_squared && payload_lever > T::zero() {
             payload_kg = (down.x * y - down.y * x) / (sine_squared * payload_lever);
             if immediate {
                 self.payload_kg.set(payload_kg);
@@ -243,6 +286,70 @@ impl<T: Scalar> Estimator<T> {
                 push.set(rest);
             }
             push.step(rest);
+        }
+    }
+}
+
+/// Moment about a leg that hangs straight down, by tension and torsion, m/rad: b·s/l of the anchors of a tendon, as a mean.
+fn torsion_m_per_rad(settings: &Settings) -> f32 {
+    let rig = &settings.rig;
+    let height = rig.upper_length_m + rig.joint_length_m;
+    let mut sum = 0.0;
+    for ([base_x, base_y], [leg_x, leg_y]) in rig.base_anchors_m.iter().zip(&rig.leg_anchors_m) {
+        let (x, y) = (base_x - leg_x, base_y - leg_y);
+        let square = x * x + y * y + height * height;
+        sum += (base_x * leg_x + base_y * leg_y) / Scalar::sqrt(square);
+    }
+    // Anchors that cross hold no torsion: the search takes small steps then.
+    (sum * (1.0 / 3.0)).max(LEAST_M_PER_RAD)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::{Estimator, LoadEstimation, Mechanism};
+    use crate::settings::Settings;
+    use leg_model::nalgebra::Vector3;
+    use leg_model::{Direction, Elasticity, SupportKind, inverse_kinematics};
+
+    /// A push across the way to which a leg on a ball joint leans twists it: tensions without a moment about the leg.
+    #[test]
+    fn a_push_that_twists_a_leg_moves_neither_the_pose_nor_the_length_error() {
+        let mut settings = Settings::for_table_1().unwrap();
+        settings.support = SupportKind::Spherical;
+        let mechanism = Mechanism::<f64>::new(&settings).unwrap();
+        for (x, y, torsion) in [(0.0, 0.0, 0.05), (0.3, 0.1, 0.1), (-0.1, 0.45, -0.15)] {
+            let direction = Direction::from_xy(x, y).unwrap();
+            let mut twisted = None;
+            let geometry = mechanism.geometry(&direction, torsion, &mut twisted);
+            let kinematics = inverse_kinematics(geometry, &direction).unwrap();
+            let turning = kinematics.moment_map.transpose() * direction.vector();
+            let even = Vector3::repeat(70.0);
+            let tensions = even - turning * (turning.dot(&even) / turning.norm_squared());
+            assert!(tensions.min() > 5.0, "{tensions}");
+            let unstretched_m = [0, 1, 2].map(|i| {
+                kinematics.lengths[i] - mechanism.tendons[i].elongation(tensions[i]).unwrap()
+            });
+            let mut estimator = Estimator::new(&settings);
+            estimator.direction = direction;
+            let mut estimate = None;
+            for _ in 0..200 {
+                let (tensions, load) = (tensions.into(), LoadEstimation::Filtered);
+                let found = estimator.update(&mechanism, &unstretched_m, &tensions, 0.0, load);
+                estimate = Some(found.unwrap());
+            }
+            let estimate = estimate.unwrap();
+            let off = (estimate.direction.vector() - direction.vector()).norm();
+            assert!(
+                (estimator.torsion - torsion).abs() < 1e-6,
+                "{}",
+                estimator.torsion
+            );
+            assert!(
+                off < 1e-7 && estimate.residual_m < 1e-8,
+                "{off} {estimate:?}"
+            );
+            assert!(estimate.length_error.unwrap().mean_m.abs() < 1e-8);
         }
     }
 }

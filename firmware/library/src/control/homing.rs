@@ -108,6 +108,8 @@ pub struct HomingSequence<T> {
     /// What no motor draws for long, A.
     current_max_a: T,
     travel_m: T,
+    /// How near to its goal a tendon has arrived, m.
+    arrived_m: T,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -139,13 +141,18 @@ const OTHER_PART: f32 = 0.5;
 /// start, short enough that the tension rises by 3 N at most.
 const HAUL_TIME_S: f32 = 0.03;
 
-/// A tendon this near to its goal has arrived, m: above what the servo leaves, far below a step of the release.
+/// A tendon this near to its goal, beside the servo's dead band, has arrived, m: far below a step of the release.
 const ARRIVED_M: f32 = 1e-4;
 
 impl<T: Scalar> HomingSequence<T> {
     /// Starts from where the tendons are, m.
-    /// No motor may draw more than `current_max_a`, A, but for moments.
-    pub fn new(homing: &settings::Homing, pulled_m: &[T; 3], current_max_a: T) -> Self {
+    /// No motor may draw more than `current_max_a`, A, but for moments, and none comes nearer to its goal than `dead_band_m`, m.
+    pub fn new(
+        homing: &settings::Homing,
+        pulled_m: &[T; 3],
+        current_max_a: T,
+        dead_band_m: T,
+    ) -> Self {
         let release_m = T::from(homing.release_m);
         Self {
             phase: HomingPhase::Release,
@@ -173,6 +180,7 @@ impl<T: Scalar> HomingSequence<T> {
             slack_n: T::from(OTHER_PART * homing.touch_n),
             current_max_a,
             travel_m: homing.travel_m.into(),
+            arrived_m: dead_band_m + T::from(ARRIVED_M),
         }
     }
 
@@ -238,7 +246,7 @@ impl<T: Scalar> HomingSequence<T> {
         for (now, steady) in now_n.iter_mut().zip(&mut self.steady) {
             *now = steady.step(*now);
         }
-        let near = T::from(ARRIVED_M);
+        let near = self.arrived_m;
         let arrived = pulled_m
             .iter()
             .zip(&self.goals_m)
@@ -308,7 +316,7 @@ impl<T: Scalar> HomingSequence<T> {
             return self.lead();
         }
         self.goals_m[i] = self.start_m + self.travel_m;
-        if pulled_m[i] >= self.start_m + self.travel_m - T::from(ARRIVED_M) {
+        if pulled_m[i] >= self.start_m + self.travel_m - self.arrived_m {
             return HomingStep::Failed(tendon.number());
         }
         self.lead()
@@ -365,7 +373,7 @@ impl<T: Scalar> HomingSequence<T> {
 
     fn pay_out(&mut self, tendon: TendonNumber, pulled_m: &[T; 3]) -> HomingStep<T> {
         let i = tendon.index();
-        if !((pulled_m[i] - self.goals_m[i]).abs() < T::from(ARRIVED_M)) {
+        if !((pulled_m[i] - self.goals_m[i]).abs() < self.arrived_m) {
             return self.lead();
         }
         // Slack again, the load cell has to show nothing again: otherwise its zero has moved meanwhile.

@@ -72,9 +72,14 @@ impl<T: Scalar> Mode<T> {
     pub fn moving(&self) -> bool {
         match self {
             Self::Active(active) => active.trajectory.moving(),
-            Self::Held(held) => held.brakes(),
-            _ => false,
+            _ => self.brakes(),
         }
+    }
+
+    /// Whether a held leg still brakes.
+    #[inline(always)]
+    pub const fn brakes(&self) -> bool {
+        matches!(self, Self::Held(held) if held.brakes())
     }
 
     /// Counts a tick of the boot; true if it was the last.
@@ -124,6 +129,7 @@ impl<T: Scalar> Mode<T> {
                     &limits.homing,
                     &measured.pulled_m,
                     limits.homing_current_max_a,
+                    limits.dead_band_m,
                 ))
             }
             State::Active => Self::Active(Active::begin(shared, measured)),

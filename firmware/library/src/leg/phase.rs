@@ -4,16 +4,16 @@
 /// tick computes all of it; the axes' controllers run in every tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// Estimates pose and load; the monitors check cell and motor of axis 1.
+    /// Estimates pose and load; the monitors check the motor of axis 1.
     Estimate,
     /// Makes one step of the search for the pretension.
     Pretension,
     /// Executes a command in the place of that.
     Command,
-    /// Computes the next target and the goals of the axes; the monitors check the cell of axis 2.
+    /// Computes the next target and the goals of the axes; the monitors check the motor of axis 2.
     Target,
-    /// Goes on with the plan of a trajectory, and watches whether the sensors agree; the monitors check the cell of axis 3 and both motors that are
-    /// left.
+    /// Goes on with the plan of a trajectory, and watches whether the sensors agree; the monitors check the
+    /// load cells, and the motor of axis 3.
     Plan,
 }
 
@@ -29,24 +29,20 @@ impl Phase {
         }
     }
 
-    /// The load cell, from 0 to 2, that the monitors check in this tick.
+    /// Whether the monitors check the load cells in this tick: in the one that has the most time left.
     #[inline(always)]
-    pub const fn monitored_cell(self) -> Option<usize> {
+    pub const fn monitors_cells(self) -> bool {
+        matches!(self, Self::Plan)
+    }
+
+    /// The motor, from 0 to 2, that the monitors check in this tick.
+    #[inline(always)]
+    pub const fn monitored_motor(self) -> Option<usize> {
         match self {
             Self::Estimate => Some(0),
             Self::Pretension | Self::Command => None,
             Self::Target => Some(1),
             Self::Plan => Some(2),
-        }
-    }
-
-    /// The motors, from 0 to 2, that the monitors check in this tick: where the control law leaves most time.
-    #[inline(always)]
-    pub const fn monitored_motors(self) -> &'static [usize] {
-        match self {
-            Self::Estimate => &[0],
-            Self::Pretension | Self::Command | Self::Target => &[],
-            Self::Plan => &[1, 2],
         }
     }
 }

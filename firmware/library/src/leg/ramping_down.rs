@@ -5,7 +5,7 @@ use super::shared::Shared;
 use crate::control::{AxisGoal, Measured, bounds, ticks};
 use leg_model::Scalar;
 
-/// A tendon this near to its goal has arrived, m: above what the servo leaves.
+/// A tendon this near to its goal, beside the servo's dead band, has arrived, m.
 const ARRIVED_M: f32 = 2e-5;
 
 /// Time after which a motor that did not arrive is waited for no longer, s, beside twice the time that the way takes.
@@ -43,7 +43,7 @@ impl<T: Scalar> RampingDown<T> {
         let goals = *self
             .goals
             .get_or_insert_with(|| goals(shared, self.rest_m, self.trusted));
-        let near = T::from(ARRIVED_M);
+        let near = shared.limits.dead_band_m + T::from(ARRIVED_M);
         let mut arrived = true;
         for ((axis, goal), &pulled) in shared.axes.iter_mut().zip(&goals).zip(&measured.pulled_m) {
             axis.lead(goal, T::one());

@@ -3,7 +3,7 @@
 use crate::command::Compensation;
 use crate::control::{
     Axis, AxisInput, CYCLE_TICKS, Estimate, Estimator, LoadEstimation, Measured, Mechanism,
-    MotionLimits, PretensionSearch, Stream, StreamLimits, Target, TargetGenerator, ticks,
+    MotionLimits, PretensionSearch, Stream, StreamLimits, Target, TargetGenerator, bounds, ticks,
 };
 use crate::drive::Drive;
 use crate::settings::{Homing, Settings, SettingsError};
@@ -53,6 +53,8 @@ pub struct LegLimits<T> {
     pub homing_current_max_a: T,
     pub ramp_m_per_s: T,
     pub relax_travel_m: T,
+    /// What a motor leaves of its way, m.
+    pub dead_band_m: T,
     /// Ticks that this takes at that speed.
     pub relax_ticks: u32,
     /// Lengths of the tendons of a leg that hangs straight down, with their slack, m.
@@ -82,6 +84,7 @@ impl<T: Scalar> LegLimits<T> {
             ),
             ramp_m_per_s: limits.ramp_m_per_s.into(),
             relax_travel_m: limits.relax_travel_m.into(),
+            dead_band_m: settings.servo.dead_band_m.into(),
             relax_ticks: ticks(limits.relax_travel_m / limits.ramp_m_per_s),
             taut_cycles: ticks(limits.taut_time_s) / u32::from(CYCLE_TICKS),
             servo_m_per_s: settings.servo.speed_m_per_s.into(),
@@ -135,6 +138,21 @@ impl<T: Scalar> Shared<T> {
             }
             State::Active => (self.mechanism.f_max_n, [-T::MAX; 3]),
             _ => return self.ignore_tensions(),
+        };
+    }
+
+    /// The tension above which a tendon is paid out. None is before lengths and tensions agree: a cell that shows too much would pay
+    /// its tendon out until it is found.
+    #[inline(always)]
+    pub fn limit_tensions(&mut self, measured: &Measured<T>, trusted: bool) {
+        let f_max_n = self.mechanism.f_max_n;
+        self.f_max_n = if trusted {
+            f_max_n
+        } else {
+            measured
+                .tensions_n
+                .iter()
+                .fold(f_max_n, |a, &b| bounds::max(a, b))
         };
     }
 

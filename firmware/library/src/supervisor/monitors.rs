@@ -27,7 +27,7 @@ pub struct MonitorInput<'a, T> {
     pub tensioned: bool,
     /// What forward kinematics leaves over, m; none while the pose is not needed.
     pub residual_m: Option<T>,
-    /// Whether lengths and tensions are watched, and agree.
+    /// Whether lengths and tensions are watched, and agree; in homing, that pays its tendons out anyway, nothing is compared.
     pub cells_trusted: bool,
 }
 

@@ -6,10 +6,23 @@ use leg_sim::plant::Defect;
 /// How far the leg may go beyond its maximum tension, as a part of it.
 const BEYOND: f64 = 0.1;
 
-/// The same where a moving leg is cut off and swings with its payload, where a driver does not obey until it is cut off, and
-/// where a tendon slips and catches the falling leg.
+/// The same where a moving leg is cut off: its motors stop at once, and it swings on with up to 2 kg, which adds the weight that it
+/// held back once more.
 const CUT_OFF_BEYOND: f64 = 0.4;
+
+/// The same where one driver pulls inwards whatever is asked, for the 5 ms and more until its counter contradicts, and is then cut
+/// off.
+const STUCK_BEYOND: f64 = 0.5;
+
+/// The same where a hand holds the tip of a moving leg: its motors stretch the tendons by what the tip stays behind, until one is
+/// above the maximum.
+const GRASPED_BEYOND: f64 = 0.8;
+
+/// The same where a driver gives the whole supply: at 37 mm/s of the free motor the tendon is 0.4 mm shorter before its motor
+/// is far enough away to tell, and turns on by its inertia.
 const RUNAWAY_BEYOND: f64 = 1.6;
+
+/// The same where a tendon slips by 5 mm and catches the leg, which has fallen by the 46 mm of the tip that belong to it.
 const SLIP_BEYOND: f64 = 2.5;
 
 /// The highest tension while homing, N.
@@ -19,32 +32,45 @@ const HOMING_N: f64 = 40.0;
 const REST_MM: f64 = 0.5;
 const WAY_MM: f64 = 3.0;
 
-/// The same of a leg that is cleared and armed again with its fault, twice, mm.
-const REARMED_MM: f64 = 1.5;
+/// The same of a leg that is cleared and armed again with its fault, twice, mm: each arm learns anew what the cell shows, and
+/// goes by what it lies until it lies otherwise.
+const REARMED_MM: f64 = 2.0;
 
-/// The same where a gain is 20 % off, which cannot be told from a load, and where two
-/// sensors change their places or an encoder counts the other way, mm.
+/// The same where a gain is 20 % off, which cannot be told from a load, mm.
 const GAIN_MM: f64 = 1.1;
-const SWAPPED_MM: f64 = 30.0;
+
+/// The same where such a cell comes to show the maximum tension: its tendon is paid out, as under a load that is too heavy, until
+/// another is slack, mm.
+const GAIN_AT_MAX_MM: f64 = 4.5;
+
+/// The same where two sensors change their places or an encoder counts the other way, mm: a controller with its sign reversed runs
+/// for the time until a counter contradicts.
+const SWAPPED_MM: f64 = 10.0;
 
 /// How far a moving leg may swing off its way that is cut off with its payload, mm.
-const CUT_OFF_MM: f64 = 8.0;
+const CUT_OFF_MM: f64 = 6.0;
 
-/// How far a tendon that homing pulls, and whose cell or motor fails, may lift a leg that hangs free, and how far a leg that is
-/// paid out may hang aside by a motor that stays behind, mm.
+/// How far a tendon that homing pulls, and whose cell or motor fails, may lift a leg that hangs free, mm: by what its motor can pull
+/// below the current at which homing ends, which holds the leg's own weight far aside.
 const LIFTED_MM: f64 = 130.0;
+
+/// How far a leg that is paid out may hang aside by a motor that stays behind, mm.
 const ASIDE_MM: f64 = 10.0;
 
-/// How far the tip may come down where it has to: a tendon that is cut, and one that slips by 5 mm, mm.
+/// How far the tip may come down where it has to: a tendon that is cut, and one that slips by 5 mm, which is 46 mm at the tip, and
+/// swings, mm.
 const CUT_MM: f64 = 250.0;
-const SLIP_MM: f64 = 120.0;
+const SLIP_MM: f64 = 80.0;
 
-/// The same where a tendon grows longer unseen, where a driver runs away until it is cut off, where a motor turns without being
-/// counted, and where a hand holds the tip that should move, mm.
-const CREEP_MM: f64 = 5.0;
-const RUNAWAY_MM: f64 = 40.0;
+/// The same where a tendon grows longer unseen, by 0.1 mm or 0.9 mm of the tip in a second, mm.
+const CREEP_MM: f64 = 4.0;
+
+/// The same where a driver runs away until it is cut off, and where a motor turns without being counted, mm.
+const RUNAWAY_MM: f64 = 35.0;
 const UNCOUNTED_MM: f64 = 5.0;
-const GRASPED_MM: f64 = 250.0;
+
+/// The same where a hand holds the tip that should move, with 5 N for each millimetre, mm: the leg gives way by its stiffness.
+const GRASPED_MM: f64 = 10.0;
 
 /// Time to the fault's name, s.
 const NAMED_S: f64 = 0.5;
@@ -81,7 +107,7 @@ impl Bars {
         Self {
             tension_n: f_max_n * (1.0 + beyond(defect, activity)),
             homing_n: HOMING_N,
-            tip_mm: tip_mm(defect, activity),
+            tip_mm: tip_mm(defect, activity).max(gain_at_max_mm(defect, f_max_n, tensions_n)),
             named_s: defect.and_then(|defect| named_s(defect, activity, tensions_n)),
         }
     }
@@ -92,7 +118,9 @@ fn beyond(defect: Option<Defect>, activity: Activity) -> f64 {
     match defect {
         Some(Defect::DriverFullOn(_)) => RUNAWAY_BEYOND,
         Some(Defect::TendonSlips(_)) => SLIP_BEYOND,
-        Some(Defect::LegGrasped | Defect::CellsSwapped) => CUT_OFF_BEYOND,
+        Some(Defect::DirectionStuck(_)) => STUCK_BEYOND,
+        Some(Defect::LegGrasped) => GRASPED_BEYOND,
+        Some(Defect::CellsSwapped) => CUT_OFF_BEYOND,
         Some(defect) if activity.on_the_way() && cuts_off(defect) => CUT_OFF_BEYOND,
         _ => BEYOND,
     }
@@ -121,6 +149,21 @@ const fn cuts_off(defect: Defect) -> bool {
             | Defect::LateTicks
             | Defect::SettingsCorrupt
     )
+}
+
+/// How far the tip may go where a cell that shows ever more comes to the maximum tension, mm.
+fn gain_at_max_mm(defect: Option<Defect>, f_max_n: f64, tensions_n: [f64; 3]) -> f64 {
+    let shows_n = match defect {
+        Some(Defect::CellGainDrift(i)) => 1.2 * tensions_n[i],
+        // 5 N in a second, for the time in which it is to be told.
+        Some(Defect::CellDrifting(i)) => tensions_n[i] + 5.0 * DRIFTS_S,
+        _ => return 0.0,
+    };
+    if shows_n > f_max_n {
+        GAIN_AT_MAX_MM
+    } else {
+        0.0
+    }
 }
 
 /// How far the tip may go, mm.
@@ -204,11 +247,14 @@ mod tests {
         for words in [
             format!("the maximum tension and {:.0} %", 100.0 * BEYOND),
             format!("{:.0} % where a moving leg", 100.0 * CUT_OFF_BEYOND),
-            format!("{:.0} % where a driver", 100.0 * RUNAWAY_BEYOND),
+            format!("{:.0} % where a driver pulls", 100.0 * STUCK_BEYOND),
+            format!("{:.0} % where a hand holds", 100.0 * GRASPED_BEYOND),
+            format!("{:.0} % where a driver switches", 100.0 * RUNAWAY_BEYOND),
             format!("{:.0} % where a tendon slips", 100.0 * SLIP_BEYOND),
             format!("{HOMING_N} N while homing"),
             format!("{REST_MM} mm; {REARMED_MM} mm where it is armed again"),
             format!("{GAIN_MM} mm where a gain is 20 % off, or a cell wanders or drifts"),
+            format!("{GAIN_AT_MAX_MM} mm where such a cell comes to show the maximum tension"),
             format!("{CUT_OFF_MM} mm where a moving leg is cut off"),
             format!("{SWAPPED_MM} mm where two sensors"),
             format!("{WAY_MM} mm; {ASIDE_MM} mm while it is paid out, {LIFTED_MM} mm while homing"),

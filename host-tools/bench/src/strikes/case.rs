@@ -47,7 +47,7 @@ pub struct Case {
     pub target_deg: [f64; 2],
     /// When it is struck, as a part of its way.
     pub part: f64,
-    /// A push before: azimuth, degrees, and force, N.
+    /// A push before: azimuth, degrees, and force, N; it is no harder than the pose can bear.
     pub push: Option<[f64; 2]>,
     /// A change of payload before, kg.
     pub step_kg: f64,
@@ -180,7 +180,7 @@ impl fmt::Display for Case {
         if let Some([azimuth_deg, force_n]) = self.push {
             write!(
                 formatter,
-                ", pushed by {force_n:.1} N at {azimuth_deg:.0}° before"
+                ", pushed by up to {force_n:.1} N at {azimuth_deg:.0}° before"
             )?;
         }
         Ok(())

@@ -1,15 +1,14 @@
 //! What a user does to a leg without any fault: no fault may come.
 
 use super::case::{TARED_N, feasible, mixed, plant};
+use super::push::strongest_n;
 use super::stand::Stand;
 use fastrand::Rng;
 use leg_base::angles;
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::supervisor::{Fault, State};
-use leg_model::{Distribution, Error, Rig, TensionBounds, distribute, inverse_kinematics};
 use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Start;
-use nalgebra::Vector3;
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -23,9 +22,6 @@ const STIFFNESS_NM_PER_RAD: [f64; 2] = [10.0, 120.0];
 
 /// How far before an alarm the true tensions are looked at, s.
 const BEFORE_S: f64 = 0.25;
-
-/// How much farther than by a steady force the tensions go when it begins or ends.
-const SWING: f64 = 1.2;
 
 /// The uses that are remembered for a report.
 const REMEMBERED: usize = 8;
@@ -261,33 +257,11 @@ impl<'a> User<'a> {
         let (azimuth_deg, asked_n) = (360.0 * self.rng.f64(), PUSH_N * self.rng.f64());
         let (for_s, rise_s) = (self.between([0.05, 1.0]), self.between([0.02, 0.2]));
         let across = self.stand.plant().across(azimuth_deg);
-        let force_n = asked_n.min(self.strongest_n(&across));
+        let force_n = asked_n.min(strongest_n(self.file, &self.stand.truth, &across));
         self.note(format!(
             "push {force_n:.1} N at {azimuth_deg:.0}° for {for_s:.2} s, rising in {rise_s:.2} s"
         ));
         self.stand.plant().push(across * force_n, for_s, rise_s);
-    }
-
-    /// The strongest push along a direction that lets no tension leave its bounds, N.
-    fn strongest_n(&self, across: &Vector3<f64>) -> f64 {
-        let truth = &self.stand.truth;
-        let change = || {
-            let rig = Rig::new(&self.file.parameters)?;
-            let kinematics = inverse_kinematics(rig.geometry(), &truth.direction)?;
-            let plane = self.file.support.plane(&truth.direction);
-            let bounds = TensionBounds::new(self.file.f_min_n, self.file.f_max_n)?;
-            let moment = truth.tip_m.cross(across);
-            distribute(&kinematics.moment_map, &plane, &moment, &bounds)
-        };
-        let Ok(change): Result<Distribution<f64, 3>, Error> = change() else {
-            return 0.0;
-        };
-        let pairs = truth.tensions_n.iter().zip(&change.particular);
-        let rooms = pairs.map(|(tension, per_newton)| {
-            let room_n = (tension - self.file.f_min_n).min(self.file.f_max_n - tension);
-            room_n / (SWING * per_newton.abs())
-        });
-        rooms.fold(f64::INFINITY, f64::min).max(0.0)
     }
 
     fn load(&mut self) {

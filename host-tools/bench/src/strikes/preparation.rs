@@ -2,6 +2,7 @@
 
 use super::activity::Activity;
 use super::case::Case;
+use super::push::strongest_n;
 use super::stand::Stand;
 use super::way::Way;
 use leg_base::angles;
@@ -19,6 +20,9 @@ const HOMING_S: f64 = 30.0;
 
 /// Time in which an arming leg is struck, s.
 const ARMING_S: f64 = 0.8;
+
+/// The latest part of a way at which a leg is struck: what comes after its end is another state.
+const LATEST: f64 = 0.98;
 
 /// How long the way goes on after its end, s: what swings there belongs to it.
 const AFTER_S: f64 = 1.0;
@@ -123,8 +127,10 @@ fn lead(case: &Case, stand: &mut Stand) -> Result<(), String> {
         stand.wait(LOADING_S)?;
     }
     if let Some([azimuth_deg, force_n]) = case.push {
-        let force_n = stand.plant().across(azimuth_deg) * force_n;
-        stand.plant().push(force_n, LOADING_S, 0.1);
+        let across = stand.plant().across(azimuth_deg);
+        // No harder than the pose can bear: what a push does beyond that is no matter of a fault.
+        let force_n = force_n.min(strongest_n(&case.file, &stand.truth, &across));
+        stand.plant().push(across * force_n, LOADING_S, 0.1);
         stand.wait(LOADING_S)?;
     }
     rest(stand)
@@ -179,7 +185,7 @@ fn on_the_way(case: &Case, stand: Stand) -> Result<Prepared, String> {
     }
     let mut stand = stand;
     let all_s = ended_s.unwrap_or(began_s) - began_s;
-    stand.wait(case.part * all_s)?;
+    stand.wait(LATEST * case.part * all_s)?;
     Ok(Prepared { stand, way })
 }
 

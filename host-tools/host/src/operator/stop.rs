@@ -13,8 +13,13 @@ const STOP_TIME: Duration = Duration::from_millis(50);
 /// Stops without an answer before the leg is taken for unreachable: two seconds.
 const STOPS: u32 = 40;
 
-/// Longest ramp of the tendons from the maximum tension to slack.
-const RAMP_DOWN_TIME: Duration = Duration::from_secs(30);
+/// How long a leg that is disarmed may stand still before it is waited for no longer, and what counts as that, m. How long the
+/// whole takes is up to its settings.
+const STILL_TIME: Duration = Duration::from_secs(5);
+const STILL_M: f32 = 1e-6;
+
+/// Longest wait for a leg that moves.
+const LONGEST_TIME: Duration = Duration::from_secs(24 * 3600);
 
 impl Operator {
     /// Stops the leg, whatever else is going on: repeated until it is acknowledged, whoever drives, Ctrl-C or not. A leg
@@ -77,15 +82,24 @@ impl Operator {
         Err(OperatorError::NotStopped(self.name().into()))
     }
 
-    /// Ramps the tendons down and waits until the drivers are off.
+    /// Ramps the tendons down and waits until the drivers are off, as long as motors move.
     ///
     /// # Errors
-    /// As [`Self::command`]; [`OperatorError::TimedOut`].
+    /// As [`Self::command`]; [`OperatorError::TimedOut`] where the leg stands still for five seconds.
     pub fn disarm(&mut self) -> Result<(), OperatorError> {
         self.command(Command::Disarm)?;
         self.drives = false;
-        self.wait_until("relax", RAMP_DOWN_TIME, |telemetry| {
-            matches!(telemetry.state, State::Disarmed | State::Off)
+        let mut moved = (self.now(), [f32::MAX; 3]);
+        self.poll("relax", LONGEST_TIME, |now, telemetry| {
+            let pulled_m = telemetry.pulled_m;
+            let mut pairs = pulled_m.iter().zip(&moved.1);
+            if pairs.any(|(pulled, before)| (pulled - before).abs() > STILL_M) {
+                moved = (now, pulled_m);
+            } else if now > moved.0 + STILL_TIME {
+                let telemetry = Box::new(*telemetry);
+                return Err(OperatorError::TimedOut("relax", STILL_TIME, telemetry));
+            }
+            Ok(matches!(telemetry.state, State::Disarmed | State::Off))
         })?;
         Ok(())
     }

@@ -2,12 +2,12 @@
 //!
 //! Three counters and three load cells watch a leg of two freedoms that carries a load of two components: one number is
 //! left over, the mean by which measured lengths exceed those of the estimated pose. A motion, a load and a push leave it as it
-//! is. A load cell that lies changes it by a third of its error over the stiffness of the tendon, and a lost count by a third
+//! is. A leg that can twist has a third freedom, but no load turns it about its own axis, and so the tensions show how far it twists. A load cell that lies changes it by a third of its error over the stiffness of the tendon, and a lost count by a third
 //! of its length.
 
 use crate::control::{CYCLE_S, LengthError, LowPass, bounds::clamp_symmetric};
 use crate::settings::Settings;
-use leg_model::{Scalar, SupportKind};
+use leg_model::Scalar;
 
 /// Time constant of the filter of what is beyond the allowed change, s: a load cell that loses its tension is found within a
 /// third of it, before the filters of the load have moved the leg.
@@ -24,10 +24,6 @@ const FORGET_TIME_S: f32 = 1.0;
 /// Part of the change of the elongations that tendons may stretch otherwise than by their curves. A single lying cell changes
 /// the mean by about a third of its elongation, which is the mean change of elongations: eight times this.
 const CURVE_PART: f32 = 0.12;
-
-/// The same where the leg can twist: a push turns it about its own axis, which shortens every way between the anchors, and the
-/// torsion that is known is that of the target. With 10 N at 30° it is a fifth of the change of the elongations, and more where several pushes follow each other.
-const TWIST_PART: f32 = 0.3;
 
 /// How fast the error may grow that is taken for one of the geometry or of a curve, m/s: in motion a tenth of a millimetre over
 /// the workspace, which the leg crosses in a second; at rest what a tendon creeps.
@@ -62,16 +58,12 @@ struct Reference<T> {
 impl<T: Scalar> Agreement<T> {
     /// With the limits of the settings.
     pub fn new(settings: &Settings) -> Self {
-        let part = match settings.support {
-            SupportKind::Spherical | SupportKind::ElasticUniversal => TWIST_PART,
-            SupportKind::TorsionFree | SupportKind::Universal => CURVE_PART,
-        };
         Self {
             reference: None,
             beyond: LowPass::new(FILTER_TIME_S, CYCLE_S),
             beyond_now_m: T::zero(),
             change_max_m: settings.limits.residual_change_m.into(),
-            part: T::from(part / 3.0),
+            part: T::from(CURVE_PART / 3.0),
         }
     }
 
