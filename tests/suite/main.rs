@@ -19,6 +19,7 @@ mod model {
     mod round_trip;
     mod statics;
     mod stiffness_command;
+    mod tendon_curves;
     mod tension_distribution;
 }
 
