@@ -380,3 +380,6 @@ impl<T: Scalar> HomingSequence<T> {
         self.lead()
     }
 }
+
+#[cfg(test)]
+mod tests;
