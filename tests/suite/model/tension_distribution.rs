@@ -178,7 +178,9 @@ fn inverse_statics_name_the_bound_that_a_pretension_breaks() {
     let tendons = constant_tendons(1e5).unwrap();
     let support = SupportKind::TorsionFree.into();
     let held = |bounds: &TensionBounds<f64>, pretension: f64| {
-        inverse_statics(&rig, &support, &leaning, &moment, bounds, &tendons, pretension)
+        inverse_statics(
+            &rig, &support, &leaning, &moment, bounds, &tendons, pretension,
+        )
     };
     let found = distribution(0.1, 30_f64.to_radians(), 2.0, &bounds());
     let [lowest, highest] = found.limits(&bounds());
