@@ -6,6 +6,7 @@ mod structure;
 mod model {
     mod any_input;
     mod arithmetic;
+    mod bending;
     mod closed_forms;
     mod compensation;
     mod derivatives;
@@ -28,7 +29,9 @@ mod firmware {
     mod board_documents;
     mod control_law;
     mod default_settings;
+    mod disarm;
     mod encoder_jump;
+    mod still_leg;
 }
 
 mod base {

@@ -184,13 +184,23 @@ impl Bench {
         }
     }
 
+    /// With a host that keeps alive.
     fn run(&mut self, ticks: u16) -> [f64; 3] {
         let mut duty = [0.0; 3];
         for _ in 0..ticks {
-            self.tick += 1;
-            if self.tick.is_multiple_of(800) {
+            if (self.tick + 1).is_multiple_of(800) {
                 assert!(self.leg.command(0, Command::KeepAlive));
             }
+            duty = self.run_silent(1);
+        }
+        duty
+    }
+
+    /// With a host that says nothing.
+    fn run_silent(&mut self, ticks: u16) -> [f64; 3] {
+        let mut duty = [0.0; 3];
+        for _ in 0..ticks {
+            self.tick += 1;
             if self.tick.is_multiple_of(CYCLE_TICKS.into()) {
                 // A living cell is never quite still.
                 for code in &mut self.sensors.cell_codes {
@@ -246,6 +256,56 @@ fn homing_gives_way_above_its_ceiling_and_gives_up_at_twice_that() {
     bench.run(1);
     assert!(bench.has(Fault::HomingFailed));
     assert_eq!(bench.leg.state(), State::RampingDown);
+}
+
+/// A host that falls silent is missed while the leg is homed as while it follows.
+#[test]
+fn silence_holds_a_leg_whatever_it_is_asked_for() {
+    for (zero, command, state) in [
+        (None, Command::Home, State::Homing),
+        (Some([0.2; 3]), Command::Arm, State::Active),
+    ] {
+        let mut bench = Bench::new(zero);
+        assert_eq!(bench.obey(command), Ok(()));
+        let silence = bench.settings.limits.command_time_s * f32::from(TICK_HZ);
+        bench.run_silent(silence as u16 - u16::from(CYCLE_TICKS));
+        assert!(!bench.has(Fault::CommandTimeout));
+        assert_eq!(bench.leg.state(), state);
+        bench.run_silent(2 * u16::from(CYCLE_TICKS));
+        assert!(bench.has(Fault::CommandTimeout));
+        assert_eq!(bench.leg.state(), State::Held);
+    }
+}
+
+/// Where nothing is known of the pose, every tendon is paid out by the same way at the same speed, and no farther.
+#[test]
+fn a_leg_is_relaxed_by_the_travel_and_at_the_speed_of_its_settings() {
+    let mut bench = Bench::new(Some([0.2; 3]));
+    assert_eq!(bench.obey(Command::Arm), Ok(()));
+    bench.run(400);
+    let begun_m = bench.leg.telemetry().pulled_m;
+    assert_eq!(bench.obey(Command::Disarm), Ok(()));
+    let limits = bench.settings.limits;
+    let (travel_m, speed) = (
+        f64::from(limits.relax_travel_m),
+        f64::from(limits.ramp_m_per_s),
+    );
+    let mut ticks = 0;
+    while bench.leg.state() == State::RampingDown {
+        let before_m = bench.leg.telemetry().reference_m;
+        bench.run(1);
+        ticks += 1;
+        for (before, after) in before_m.into_iter().zip(bench.leg.telemetry().reference_m) {
+            assert!(before - after <= 1.001 * speed * TICK_S, "{before} {after}");
+        }
+    }
+    assert_eq!(bench.leg.state(), State::Disarmed);
+    let time_s = f64::from(ticks) * TICK_S;
+    assert!((time_s * speed / travel_m - 1.0).abs() < 0.02, "{time_s} s");
+    for (before, after) in begun_m.into_iter().zip(bench.leg.telemetry().pulled_m) {
+        // To within what counts as arrived.
+        assert!((before - after - travel_m).abs() < 5e-5, "{before} {after}");
+    }
 }
 
 #[test]

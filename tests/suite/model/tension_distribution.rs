@@ -272,7 +272,15 @@ fn tensions_of_three_four_five_and_six_tendons_balance_the_load_and_are_the_smal
 fn tendons_that_cannot_turn_the_leg_are_called_singular() {
     let moment_map =
         SMatrix::<f64, 3, 3>::from_row_slice(&[1.0, 2.0, 3.0, 2.0, 4.0, 6.0, 0.0, 0.0, 0.0]);
+    // The third one takes no part in the pretension of the other two.
+    let [alone_last, alone_first] = [
+        [1.0, -1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0],
+        [0.0, 1.0, -1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    ]
+    .map(|rows| SMatrix::<f64, 3, 3>::from_row_slice(&rows));
     let plane = FreePlane::torsion_free(&Direction::down());
-    let found = distribute(&moment_map, &plane, &Vector3::zeros(), &bounds());
-    assert_eq!(found, Err(Error::Singular));
+    for moment_map in [moment_map, alone_last, alone_first] {
+        let found = distribute(&moment_map, &plane, &Vector3::zeros(), &bounds());
+        assert_eq!(found, Err(Error::Singular));
+    }
 }

@@ -43,3 +43,15 @@ fn the_torsion_goes_where_the_third_axis_is_balanced() {
         }
     }
 }
+
+/// No support is as soft: what looks so is rounding.
+#[test]
+fn what_is_no_stiffness_against_torsion_turns_nothing() {
+    let mut torsion = Torsion::<f64>::new();
+    for moment in [5e-6, -5e-6] {
+        let before = torsion.angle;
+        torsion.step(moment);
+        let turned = torsion.angle - before;
+        assert!(turned.abs() < 1e-5, "{moment} N·m: {turned} rad");
+    }
+}

@@ -307,6 +307,32 @@ fn a_current_that_is_missing_is_a_fault() {
     }
 }
 
+/// What the speed induces drives no current, and is known to a tenth.
+#[test]
+fn the_voltage_that_a_speed_induces_needs_no_current() {
+    let servo = Settings::for_table_1().unwrap().servo;
+    let (ohm, friction) = (f64::from(servo.resistance_ohm), f64::from(servo.friction_a));
+    let allowed_a = |induced_v: f64| 2.0 * friction + 0.1 * induced_v / ohm;
+    for sign in [1.0, -1.0] {
+        let turns = |induced_v: f64, driving_a: f64| {
+            move |_: &Limits, s: &mut Seen| {
+                let driving_v = driving_a * ohm;
+                (s.view.voltage_v, s.view.mean_voltage_v) = (
+                    sign * (induced_v + driving_v),
+                    sign * (induced_v + driving_v),
+                );
+                s.view.driving_v = sign * driving_v;
+            }
+        };
+        for induced_v in [3.0, 10.0] {
+            let most_a = allowed_a(induced_v);
+            is_no_fault("induced", turns(induced_v, 0.0));
+            is_no_fault("induced, and friction", turns(induced_v, most_a - 0.001));
+            disagrees(turns(induced_v, most_a + 0.05));
+        }
+    }
+}
+
 #[test]
 fn a_motor_that_is_driven_turns_and_the_way_it_is_driven() {
     let servo = Settings::for_table_1().unwrap().servo;
