@@ -31,6 +31,7 @@ mod firmware {
     mod default_settings;
     mod disarm;
     mod encoder_jump;
+    mod residual;
     mod still_leg;
 }
 

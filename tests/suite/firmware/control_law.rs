@@ -178,10 +178,14 @@ impl Bench {
 
     fn tensions(&mut self, tensions_n: [f32; 3]) {
         for (i, tension_n) in tensions_n.into_iter().enumerate() {
-            let axis = &self.settings.axes[i];
-            let code = tension_n / axis.cell_n_per_code + axis.cell_zero_code;
-            self.sensors.cell_codes[i] = code as u16;
+            self.tension(i, tension_n);
         }
+    }
+
+    fn tension(&mut self, i: usize, tension_n: f32) {
+        let axis = &self.settings.axes[i];
+        let code = tension_n / axis.cell_n_per_code + axis.cell_zero_code;
+        self.sensors.cell_codes[i] = code as u16;
     }
 
     /// With a host that keeps alive.
@@ -236,6 +240,34 @@ impl Bench {
     fn has(&self, fault: Fault) -> bool {
         self.leg.telemetry().faults.has(fault)
     }
+}
+
+/// As far as its travel and two steps of the release: a tendon may need all of it to become slack.
+#[test]
+fn homing_pays_out_as_far_as_its_settings_allow() {
+    let mut bench = Bench::new(None);
+    assert_eq!(bench.leg.telemetry().failed_tendon, 0);
+    bench.tension(1, 100.0);
+    bench.run(20);
+    assert_eq!(bench.obey(Command::Home), Ok(()));
+    let mut lowest_m = 0.0_f64;
+    while bench.leg.state() == State::Homing {
+        let telemetry = bench.leg.telemetry();
+        // It stays taut: it loses 4 N with each step.
+        bench.tension(1, 100.0 + 1e3 * telemetry.pulled_m[1] as f32);
+        let before_m = telemetry.reference_m[1];
+        let duty = bench.run(1);
+        let led_m = bench.leg.telemetry().reference_m[1] - before_m;
+        if led_m < -1e-7 {
+            assert!(duty[1] < 0.0, "{duty:?} at {before_m} m");
+        }
+        lowest_m = lowest_m.min(before_m);
+    }
+    let telemetry = bench.leg.telemetry();
+    assert!(bench.has(Fault::HomingFailed), "{telemetry:?}");
+    assert_eq!(telemetry.failed_tendon, 2);
+    let homing = bench.settings.homing;
+    assert!(-lowest_m >= f64::from(homing.travel_m), "{lowest_m} m");
 }
 
 #[test]

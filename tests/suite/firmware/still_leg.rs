@@ -6,6 +6,7 @@ use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::control::CYCLE_TICKS;
 use leg_firmware::leg::{Leg, Outcome};
 use leg_firmware::sensors::Sensors;
+use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::State;
 use leg_rig::rig_file::RigFile;
 use leg_sim::link::InProcess;
@@ -22,11 +23,18 @@ pub struct StillLeg {
 impl StillLeg {
     /// At 10° and 70 N, just armed.
     pub fn armed() -> Self {
+        Self::armed_with(|_| ())
+    }
+
+    /// The same with other settings than those that fit it.
+    pub fn armed_with(change: impl Fn(&mut Settings)) -> Self {
         let text = "title = \"still\"\nseed = 1\nsteps = [{ wait_s = 0.01 }]\n\n[start.held]\nazimuth_deg = 0\ntilt_deg = 10\npretension_n = 70\npayload_kg = 0\n";
         let rig = RigFile::load(Some(Path::new("table1"))).unwrap();
         let scenario = Scenario::parse("still", text).unwrap();
         let simulation = Simulation::new(&scenario, &rig).unwrap();
-        let leg = Leg::new(simulation.settings()).unwrap();
+        let mut settings = simulation.settings().clone();
+        change(&mut settings);
+        let leg = Leg::new(&settings).unwrap();
         let mut read = Vec::new();
         let watch = &mut |tick: &Tick<'_>| read.push(*tick.sensors);
         simulation.run(&mut InProcess::new(), watch).unwrap();
