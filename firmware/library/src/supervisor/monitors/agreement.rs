@@ -155,9 +155,10 @@ impl<T: Scalar> Reference<T> {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{Agreement, CURVE_PART, LengthError, SETTLE_CYCLES};
+    use super::{Agreement, CURVE_PART, LengthError, SETTLE_CYCLES, TWIST_PART};
     use crate::control::CYCLE_S;
     use crate::settings::Settings;
+    use leg_model::SupportKind;
 
     /// Elongation of every tendon at first, m: that of the paper's leg at 70 N.
     const ELONGATION_M: f64 = 1e-3;
@@ -169,8 +170,15 @@ mod tests {
 
     impl Leg {
         fn taut() -> Self {
+            Self::taut_on(SupportKind::TorsionFree)
+        }
+
+        fn taut_on(support: SupportKind) -> Self {
             let mut leg = Self {
-                agreement: Agreement::new(&Settings::for_table_1().unwrap()),
+                agreement: Agreement::new(&Settings {
+                    support,
+                    ..Settings::for_table_1().unwrap()
+                }),
                 // What homing and the geometry leave over.
                 error: LengthError {
                     mean_m: -4e-5,
@@ -248,6 +256,29 @@ mod tests {
                 error.mean_m += 0.8 * f64::from(CURVE_PART) * 2.0 / 3.0 * load_m;
             });
             assert_eq!(found_s, None, "{load_m}");
+        }
+    }
+
+    /// Where the leg can twist, tendons may stretch otherwise by more than twice as much.
+    #[test]
+    fn what_a_twist_explains_is_no_lie_where_the_leg_can_twist() {
+        for (support, part) in [
+            (SupportKind::TorsionFree, CURVE_PART),
+            (SupportKind::Universal, CURVE_PART),
+            (SupportKind::Spherical, TWIST_PART),
+            (SupportKind::ElasticUniversal, TWIST_PART),
+        ] {
+            let found = |part_of_it: f64| {
+                Leg::taut_on(support).disagrees_after(|_, error| {
+                    for (elongation, part) in error.elongations_m.iter_mut().zip([1.0, -0.5, -0.5])
+                    {
+                        *elongation += 6e-4 * part;
+                    }
+                    error.mean_m += part_of_it * f64::from(part) * 4e-4;
+                })
+            };
+            assert_eq!(found(0.9), None, "{support:?}");
+            assert!(found(1.5).is_some_and(|s| s < 0.1), "{support:?}");
         }
     }
 
