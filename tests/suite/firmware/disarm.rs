@@ -32,6 +32,17 @@ fn a_leg_that_was_just_armed_is_paid_out_where_it_is() {
     assert_eq!(still.leg.state(), State::RampingDown);
 }
 
+/// Nor are they from the stop on: it may hang in slack tendons.
+#[test]
+fn a_leg_that_was_stopped_before_it_was_watched_is_paid_out_where_it_is() {
+    let mut still = StillLeg::armed();
+    assert_eq!(still.obey(Command::Stop), Ok(()));
+    still.run(WATCHED_TICKS);
+    assert_eq!(still.leg.state(), State::Held);
+    assert_eq!(still.obey(Command::Disarm), Ok(()));
+    assert_eq!(still.leg.state(), State::RampingDown);
+}
+
 /// A leg with a fault follows nothing any more, not even downwards.
 #[test]
 fn a_leg_with_a_fault_is_paid_out_where_it_is() {
