@@ -359,6 +359,29 @@ fn a_leg_is_relaxed_by_the_travel_and_at_the_speed_of_its_settings() {
     }
 }
 
+/// Twice the time of its way, and half a second.
+#[test]
+fn a_motor_that_does_not_arrive_is_not_waited_for_any_longer() {
+    let mut bench = Bench::new(Some([0.2; 3]));
+    assert_eq!(bench.obey(Command::Arm), Ok(()));
+    bench.run(400);
+    let count = bench.sensors.encoder_counts[0];
+    assert_eq!(bench.obey(Command::Disarm), Ok(()));
+    let mut ticks: u16 = 0;
+    while bench.leg.state() == State::RampingDown {
+        // It creeps: 0.2 mm/s.
+        bench.sensors.encoder_counts[0] = count.wrapping_sub(ticks / u16::from(CYCLE_TICKS));
+        bench.run(1);
+        ticks += 1;
+    }
+    let telemetry = bench.leg.telemetry();
+    assert_eq!(telemetry.state, State::Disarmed, "{telemetry:?}");
+    let limits = bench.settings.limits;
+    let way_s = f64::from(limits.relax_travel_m / limits.ramp_m_per_s);
+    let time_s = f64::from(ticks) * TICK_S;
+    assert!((time_s - 2.0 * way_s - 0.5).abs() < 0.01, "{time_s} s");
+}
+
 #[test]
 fn commands_that_mean_nothing_now_are_refused_by_name() {
     let mut bench = Bench::new(None);
