@@ -99,14 +99,12 @@ fn trajectories_keep_their_limits() {
         motion.jerk_rad_per_s3,
     ]
     .map(|limit| 0.5 * f64::from(limit));
-    let cycle_s = TICK_S * f64::from(CYCLE_TICKS);
     let mut rng = fastrand::Rng::with_seed(5);
     let mut trajectory = Trajectory::<f64>::new(
         MotionLimits::new(&settings.motion),
         HalfTangent::new(0.0, 0.0),
     );
-    let mut last: [[f64; 2]; 4] = [[0.0; 2]; 4];
-    let mut peaks = [0.0_f64; 3];
+    let mut course = Course::default();
     for cycle in 0..200_000_u32 {
         if cycle % 1500 == 3 {
             let (tilt, azimuth) = (30.0 * rng.f64(), 360.0 * rng.f64());
@@ -118,27 +116,69 @@ fn trajectories_keep_their_limits() {
             trajectory.stop();
         }
         trajectory.advance_plan();
-        let now = trajectory.step().xy();
-        last = [now, last[0], last[1], last[2]];
-        if cycle < 4 {
-            continue;
-        }
+        course.step(trajectory.step().xy());
+    }
+    let peaks = course.peaks;
+    for (peak, limit) in peaks.into_iter().zip(limits) {
+        assert!(peak <= limit * 1.001, "{peaks:?} beyond {limits:?}");
+        assert!(peak > 0.5 * limit, "{peaks:?} far below {limits:?}");
+    }
+}
+
+/// The last points of a trajectory, and the greatest rate, acceleration and jerk so far.
+#[derive(Default)]
+struct Course {
+    points: Vec<[f64; 2]>,
+    peaks: [f64; 3],
+}
+
+impl Course {
+    fn step(&mut self, now: [f64; 2]) {
+        const CYCLE_S: f64 = TICK_S * CYCLE_TICKS as f64;
+        self.points.push(now);
+        let [.., c, b, a, now] = self.points[..] else {
+            return;
+        };
         let of = |weights: [f64; 4], order: i32| {
-            let part = |i: usize| (0..4).map(|k| weights[k] * last[k][i]).sum::<f64>();
-            part(0).hypot(part(1)) / cycle_s.powi(order)
+            let points = [now, a, b, c];
+            let part = |i: usize| (0..4).map(|k| weights[k] * points[k][i]).sum::<f64>();
+            part(0).hypot(part(1)) / CYCLE_S.powi(order)
         };
         let now = [
             of([1.0, -1.0, 0.0, 0.0], 1),
             of([1.0, -2.0, 1.0, 0.0], 2),
             of([1.0, -3.0, 3.0, -1.0], 3),
         ];
-        for (peak, now) in peaks.iter_mut().zip(now) {
+        for (peak, now) in self.peaks.iter_mut().zip(now) {
             *peak = peak.max(now);
         }
     }
-    for (peak, limit) in peaks.into_iter().zip(limits) {
-        assert!(peak <= limit * 1.001, "{peaks:?} beyond {limits:?}");
-        assert!(peak > 0.5 * limit, "{peaks:?} far below {limits:?}");
+}
+
+/// A way that is made longer while the leg is on it has its greatest jerk at its very end.
+#[test]
+fn a_trajectory_keeps_its_jerk_to_the_end() {
+    let settings = settings(None);
+    let limit = 0.5 * f64::from(settings.motion.jerk_rad_per_s3);
+    for first in [2e-3, 5e-3, 2e-2] {
+        for second in [1.3, 2.0, 4.0] {
+            for after in (20..400).step_by(20) {
+                let limits = MotionLimits::new(&settings.motion);
+                let mut trajectory = Trajectory::<f64>::new(limits, HalfTangent::new(0.0, 0.0));
+                let mut course = Course::default();
+                trajectory.go(HalfTangent::new(first, 0.0));
+                for cycle in 0..2000 {
+                    if cycle == after {
+                        trajectory.go(HalfTangent::new(first * second, 0.0));
+                    }
+                    trajectory.advance_plan();
+                    course.step(trajectory.step().xy());
+                }
+                let [.., jerk] = course.peaks;
+                let way = format!("{first}, {second} times as far after {after} cycles");
+                assert!(jerk <= limit * 1.001, "{way}: {jerk} beyond {limit}");
+            }
+        }
     }
 }
 
