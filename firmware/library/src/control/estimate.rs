@@ -179,3 +179,6 @@ impl<T: Scalar> Estimator<T> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
