@@ -33,6 +33,7 @@ mod firmware {
     mod encoder_jump;
     mod residual;
     mod still_leg;
+    mod trajectories;
 }
 
 mod base {
