@@ -6,6 +6,7 @@ mod structure;
 mod model {
     mod any_input;
     mod arithmetic;
+    mod bending;
     mod closed_forms;
     mod compensation;
     mod derivatives;
@@ -19,6 +20,7 @@ mod model {
     mod round_trip;
     mod statics;
     mod stiffness_command;
+    mod tendon_curves;
     mod tension_distribution;
 }
 
@@ -27,8 +29,12 @@ mod firmware {
     mod board_documents;
     mod control_law;
     mod default_settings;
+    mod disarm;
     mod encoder_jump;
+    mod residual;
     mod set_points;
+    mod still_leg;
+    mod trajectories;
 }
 
 mod base {

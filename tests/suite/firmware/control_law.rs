@@ -2,16 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_base::angles;
 use leg_firmware::command::{Command, CommandRefusal};
-use leg_firmware::control::{
-    Axis, AxisGoal, AxisInput, CYCLE_TICKS, MotionLimits, Stream, StreamLimits, Trajectory,
-};
+use leg_firmware::control::{Axis, AxisGoal, AxisInput, CYCLE_TICKS};
 use leg_firmware::leg::{Leg, Outcome};
 use leg_firmware::sensors::{CODE_MAX, Sensors, TICK_HZ};
 use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::{Fault, State};
-use leg_model::{HalfTangent, Scalar};
 use leg_rig::control_settings;
 use leg_rig::rig_file::RigFile;
 
@@ -89,62 +85,6 @@ fn a_tension_above_the_ceiling_turns_the_motor_round() {
     assert!(duty(151.0, 0.0).abs() < 1e-9);
 }
 
-/// Whatever way is taken, and however often it is changed, rate, acceleration and jerk keep half of the settings' limits in
-/// half-tangent coordinates, and so the limits themselves in angles.
-#[test]
-fn trajectories_keep_their_limits() {
-    let settings = settings(None);
-    let motion = settings.motion;
-    let limits = [
-        motion.speed_rad_per_s,
-        motion.acceleration_rad_per_s2,
-        motion.jerk_rad_per_s3,
-    ]
-    .map(|limit| 0.5 * f64::from(limit));
-    let cycle_s = TICK_S * f64::from(CYCLE_TICKS);
-    let mut rng = fastrand::Rng::with_seed(5);
-    let mut trajectory = Trajectory::<f64>::new(
-        MotionLimits::new(&settings.motion),
-        HalfTangent::new(0.0, 0.0),
-    );
-    let mut stream = Stream::new(StreamLimits::new(&settings));
-    let mut last: [[f64; 2]; 4] = [[0.0; 2]; 4];
-    let mut peaks = [0.0_f64; 3];
-    for cycle in 0..200_000_u32 {
-        if cycle % 1500 == 3 {
-            let (tilt, azimuth) = (30.0 * rng.f64(), 360.0 * rng.f64());
-            let q = (0.5 * tilt.to_radians()).tan();
-            let [x, y] = angles::unit_vector(azimuth);
-            trajectory.go(HalfTangent::new(q * x, q * y));
-        }
-        if cycle % 7000 == 900 {
-            trajectory.stop();
-        }
-        trajectory.advance_plan(&mut stream);
-        let now = trajectory.step().xy();
-        last = [now, last[0], last[1], last[2]];
-        if cycle < 4 {
-            continue;
-        }
-        let of = |weights: [f64; 4], order: i32| {
-            let part = |i: usize| (0..4).map(|k| weights[k] * last[k][i]).sum::<f64>();
-            part(0).hypot(part(1)) / cycle_s.powi(order)
-        };
-        let now = [
-            of([1.0, -1.0, 0.0, 0.0], 1),
-            of([1.0, -2.0, 1.0, 0.0], 2),
-            of([1.0, -3.0, 3.0, -1.0], 3),
-        ];
-        for (peak, now) in peaks.iter_mut().zip(now) {
-            *peak = peak.max(now);
-        }
-    }
-    for (peak, limit) in peaks.into_iter().zip(limits) {
-        assert!(peak <= limit * 1.001, "{peaks:?} beyond {limits:?}");
-        assert!(peak > 0.5 * limit, "{peaks:?} far below {limits:?}");
-    }
-}
-
 /// A leg on sensors that a test makes up.
 struct Bench {
     leg: Leg<f64>,
@@ -181,19 +121,33 @@ impl Bench {
 
     fn tensions(&mut self, tensions_n: [f32; 3]) {
         for (i, tension_n) in tensions_n.into_iter().enumerate() {
-            let axis = &self.settings.axes[i];
-            let code = tension_n / axis.cell_n_per_code + axis.cell_zero_code;
-            self.sensors.cell_codes[i] = code as u16;
+            self.tension(i, tension_n);
         }
     }
 
+    fn tension(&mut self, i: usize, tension_n: f32) {
+        let axis = &self.settings.axes[i];
+        let code = tension_n / axis.cell_n_per_code + axis.cell_zero_code;
+        self.sensors.cell_codes[i] = code as u16;
+    }
+
+    /// With a host that keeps alive.
     fn run(&mut self, ticks: u16) -> [f64; 3] {
         let mut duty = [0.0; 3];
         for _ in 0..ticks {
-            self.tick += 1;
-            if self.tick.is_multiple_of(800) {
+            if (self.tick + 1).is_multiple_of(800) {
                 assert!(self.leg.command(0, Command::KeepAlive));
             }
+            duty = self.run_silent(1);
+        }
+        duty
+    }
+
+    /// With a host that says nothing.
+    fn run_silent(&mut self, ticks: u16) -> [f64; 3] {
+        let mut duty = [0.0; 3];
+        for _ in 0..ticks {
+            self.tick += 1;
             if self.tick.is_multiple_of(CYCLE_TICKS.into()) {
                 // A living cell is never quite still.
                 for code in &mut self.sensors.cell_codes {
@@ -231,6 +185,53 @@ impl Bench {
     }
 }
 
+/// As far as its travel and two steps of the release: a tendon may need all of it to become slack.
+#[test]
+fn homing_pays_out_as_far_as_its_settings_allow() {
+    let mut bench = Bench::new(None);
+    assert_eq!(bench.leg.telemetry().failed_tendon, 0);
+    bench.tension(1, 100.0);
+    bench.run(20);
+    assert_eq!(bench.obey(Command::Home), Ok(()));
+    let mut lowest_m = 0.0_f64;
+    while bench.leg.state() == State::Homing {
+        let telemetry = bench.leg.telemetry();
+        // It stays taut: it loses 4 N with each step.
+        bench.tension(1, 100.0 + 1e3 * telemetry.pulled_m[1] as f32);
+        let before_m = telemetry.reference_m[1];
+        let duty = bench.run(1);
+        let led_m = bench.leg.telemetry().reference_m[1] - before_m;
+        if led_m < -1e-7 {
+            assert!(duty[1] < 0.0, "{duty:?} at {before_m} m");
+        }
+        lowest_m = lowest_m.min(before_m);
+    }
+    let telemetry = bench.leg.telemetry();
+    assert!(bench.has(Fault::HomingFailed), "{telemetry:?}");
+    assert_eq!(telemetry.failed_tendon, 2);
+    let homing = bench.settings.homing;
+    assert!(-lowest_m >= f64::from(homing.travel_m), "{lowest_m} m");
+}
+
+/// Whatever its load cell says: half more than friction and the highest tension of homing ask for is too much.
+#[test]
+fn homing_gives_up_above_its_current() {
+    for sign in [1.0, -1.0] {
+        for (part, fails) in [(0.9, false), (1.1, true)] {
+            let mut bench = Bench::new(None);
+            assert_eq!(bench.obey(Command::Home), Ok(()));
+            // Let out, and tared.
+            bench.run(7000);
+            let (servo, homing) = (bench.settings.servo, bench.settings.homing);
+            let most_a = 1.5 * servo.friction_a + servo.pull_a_per_n * homing.f_max_n;
+            let codes = sign * part * most_a / bench.settings.axes[0].current_a_per_code;
+            bench.sensors.current_codes[0] = (f32::from(CODE_MAX / 2) + codes) as u16;
+            bench.run(400);
+            assert_eq!(bench.has(Fault::HomingFailed), fails, "{}", sign * part);
+        }
+    }
+}
+
 #[test]
 fn homing_gives_way_above_its_ceiling_and_gives_up_at_twice_that() {
     let mut bench = Bench::new(None);
@@ -249,6 +250,79 @@ fn homing_gives_way_above_its_ceiling_and_gives_up_at_twice_that() {
     bench.run(1);
     assert!(bench.has(Fault::HomingFailed));
     assert_eq!(bench.leg.state(), State::RampingDown);
+}
+
+/// A host that falls silent is missed while the leg is homed as while it follows.
+#[test]
+fn silence_holds_a_leg_whatever_it_is_asked_for() {
+    for (zero, command, state) in [
+        (None, Command::Home, State::Homing),
+        (Some([0.2; 3]), Command::Arm, State::Active),
+    ] {
+        let mut bench = Bench::new(zero);
+        assert_eq!(bench.obey(command), Ok(()));
+        let silence = bench.settings.limits.command_time_s * f32::from(TICK_HZ);
+        bench.run_silent(silence as u16 - u16::from(CYCLE_TICKS));
+        assert!(!bench.has(Fault::CommandTimeout));
+        assert_eq!(bench.leg.state(), state);
+        bench.run_silent(2 * u16::from(CYCLE_TICKS));
+        assert!(bench.has(Fault::CommandTimeout));
+        assert_eq!(bench.leg.state(), State::Held);
+    }
+}
+
+/// Where nothing is known of the pose, every tendon is paid out by the same way at the same speed, and no farther.
+#[test]
+fn a_leg_is_relaxed_by_the_travel_and_at_the_speed_of_its_settings() {
+    let mut bench = Bench::new(Some([0.2; 3]));
+    assert_eq!(bench.obey(Command::Arm), Ok(()));
+    bench.run(400);
+    let begun_m = bench.leg.telemetry().pulled_m;
+    assert_eq!(bench.obey(Command::Disarm), Ok(()));
+    let limits = bench.settings.limits;
+    let (travel_m, speed) = (
+        f64::from(limits.relax_travel_m),
+        f64::from(limits.ramp_m_per_s),
+    );
+    let mut ticks = 0;
+    while bench.leg.state() == State::RampingDown {
+        let before_m = bench.leg.telemetry().reference_m;
+        bench.run(1);
+        ticks += 1;
+        for (before, after) in before_m.into_iter().zip(bench.leg.telemetry().reference_m) {
+            assert!(before - after <= 1.001 * speed * TICK_S, "{before} {after}");
+        }
+    }
+    assert_eq!(bench.leg.state(), State::Disarmed);
+    let time_s = f64::from(ticks) * TICK_S;
+    assert!((time_s * speed / travel_m - 1.0).abs() < 0.02, "{time_s} s");
+    for (before, after) in begun_m.into_iter().zip(bench.leg.telemetry().pulled_m) {
+        // To within what counts as arrived.
+        assert!((before - after - travel_m).abs() < 5e-5, "{before} {after}");
+    }
+}
+
+/// Twice the time of its way, and half a second.
+#[test]
+fn a_motor_that_does_not_arrive_is_not_waited_for_any_longer() {
+    let mut bench = Bench::new(Some([0.2; 3]));
+    assert_eq!(bench.obey(Command::Arm), Ok(()));
+    bench.run(400);
+    let count = bench.sensors.encoder_counts[0];
+    assert_eq!(bench.obey(Command::Disarm), Ok(()));
+    let mut ticks: u16 = 0;
+    while bench.leg.state() == State::RampingDown {
+        // It creeps: 0.2 mm/s.
+        bench.sensors.encoder_counts[0] = count.wrapping_sub(ticks / u16::from(CYCLE_TICKS));
+        bench.run(1);
+        ticks += 1;
+    }
+    let telemetry = bench.leg.telemetry();
+    assert_eq!(telemetry.state, State::Disarmed, "{telemetry:?}");
+    let limits = bench.settings.limits;
+    let way_s = f64::from(limits.relax_travel_m / limits.ramp_m_per_s);
+    let time_s = f64::from(ticks) * TICK_S;
+    assert!((time_s - 2.0 * way_s - 0.5).abs() < 0.01, "{time_s} s");
 }
 
 #[test]
@@ -331,12 +405,4 @@ fn a_stop_overtakes_what_waits() {
             .iter()
             .all(|outcome| outcome.result == overtaken)
     );
-}
-
-/// The tangent of half of the tilt is what a trajectory runs in.
-#[test]
-fn a_half_tangent_is_that_of_half_the_tilt() {
-    let direction = HalfTangent::new(0.25_f64, 0.0).direction();
-    let tilt = direction.vector().x.atan2(-direction.vector().z);
-    assert!((tilt - 2.0 * 0.25_f64.atan()).abs() < 1e-15 && Scalar::is_finite(tilt));
 }

@@ -2,11 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use crate::common::constant_tendons;
 use crate::common::numeric::{by_rotation, derivative};
 use crate::common::reference::{Tendons, load_moment, poses, rotation, turn};
 use leg_model::{
-    Direction, FreePlane, Load, Rig, RigParameters, TendonStates, Twist, full_pass,
-    inverse_kinematics, structural_stiffness, tendon_stiffness,
+    Direction, FreePlane, JointStiffness, Load, Query, Rig, RigParameters, StiffnessAt, Support,
+    SupportKind, TendonStates, Twist, evaluate, full_pass, inverse_kinematics, solve3,
+    structural_stiffness, tendon_stiffness,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -231,5 +233,68 @@ fn the_solve_in_a_plane_balances_the_moment_along_two_orthonormal_axes() {
             let rest = axis.dot(&(k * psi - moment));
             assert!(rest.abs() < 1e-12, "{rest} N·m");
         }
+    }
+}
+
+/// What unit tensions pull the leg up along its own axis by: −n·p.
+fn along_leg(tendons: &Tendons<3>, pose: &Matrix3<f64>) -> Vector3<f64> {
+    let up = pose.column(2).into_owned();
+    Vector3::from_fn(|i, _| tendons.pulls[i].dot(&up))
+}
+
+#[test]
+fn the_pull_along_the_leg_is_that_of_the_tendons_directions() {
+    for (azimuth, tilt, torsion) in twisted_poses() {
+        let pose = rotation(azimuth, tilt, torsion);
+        let geometry = rig().geometry().twisted(&Twist::from_torsion(torsion));
+        let direction = Direction::from_angles(azimuth, tilt).unwrap();
+        let kinematics = inverse_kinematics(&geometry, &direction).unwrap();
+        let found = geometry.along_leg(&direction, &kinematics);
+        let expected = along_leg(&Tendons::new(&TABLE_1, &pose), &pose);
+        assert!((found - expected).amax() < 1e-12, "{found} {expected}");
+    }
+}
+
+/// Joint and shaft give way to the weights along the leg, less what the tendons pull otherwise in the pose that has sagged.
+#[test]
+fn the_stretch_of_joint_and_shaft_is_that_of_the_change_of_the_force_along_the_leg() {
+    const COMPLIANCE_M_PER_N: f64 = 1e-7;
+    const STIFFNESS_N_PER_M: f64 = 1e5;
+    let joint = JointStiffness {
+        bending_nm_per_rad: 5.0,
+        torsion_nm_per_rad: 4.0,
+        axial_compliance_m_per_n: COMPLIANCE_M_PER_N,
+    };
+    for (azimuth_rad, tilt_rad) in poses(30, 10) {
+        let query = Query {
+            azimuth_rad,
+            tilt_rad,
+            payload_kg: PAYLOAD_KG,
+            pretension_n: 70.0,
+            f_min_n: 8.0,
+            f_max_n: 150.0,
+            tendons: constant_tendons(STIFFNESS_N_PER_M).unwrap(),
+            stiffness_at: StiffnessAt::Pretension,
+            support: Support::new(SupportKind::Spherical, joint).unwrap(),
+            demand: None,
+        };
+        let found = evaluate(&TABLE_1, &query).unwrap();
+        let direction = Direction::from_angles(azimuth_rad, tilt_rad).unwrap();
+        let own = Load::new(&rig(), PAYLOAD_KG).unwrap().stiffness(&direction);
+        let stiffness = own + Matrix3::from_fn(|i, j| found.stiffness_nm_per_rad[i][j]);
+        let sagged = solve3(&stiffness, &found.load_moment_nm.into()).unwrap();
+        let pose = rotation(azimuth_rad, tilt_rad, found.torsion_rad);
+        let pull = |part: f64| {
+            let turned = turn(&(sagged * part)) * pose;
+            let tendons = Tendons::new(&TABLE_1, &turned);
+            let stretched = tendons.lengths - Vector3::from(found.lengths_m);
+            let tensions = Vector3::from(found.tensions_n) + stretched * STIFFNESS_N_PER_M;
+            along_leg(&tendons, &turned).dot(&tensions)
+        };
+        let change_n = (pull(1e-3) - pull(-1e-3)) / 2e-3;
+        let weight_n = (TABLE_1.leg_mass_kg + PAYLOAD_KG) * TABLE_1.gravity_m_per_s2;
+        let expected_m = COMPLIANCE_M_PER_N * (weight_n * tilt_rad.cos() - change_n);
+        let off = (found.axial_stretch_m - expected_m).abs() / COMPLIANCE_M_PER_N;
+        assert!(off < 1e-4, "{off} N at {azimuth_rad}, {tilt_rad}");
     }
 }

@@ -4,8 +4,8 @@
 
 use crate::common::constant_tendons;
 use leg_model::{
-    Direction, Error, Quantity, Query, Reason, RigParameters, StiffnessAt, SupportKind, Tendon,
-    TendonStates, TensionBounds, evaluate,
+    Direction, Error, Load, Quantity, Query, Reason, Rig, RigParameters, StiffnessAt, SupportKind,
+    Tendon, TendonStates, TensionBounds, evaluate, evaluate_for_map, full_pass,
 };
 use nalgebra::Vector3;
 
@@ -195,4 +195,30 @@ fn a_tendon_whose_ends_meet_is_named_as_collapsed() {
     };
     let evaluated = evaluate(&parameters, &query);
     assert_eq!(evaluated, Err(Error::TendonCollapsed));
+    // Also where nothing but the stiffness shows it.
+    let rig = Rig::new(&parameters).unwrap();
+    let direction = Direction::from_angles(0.0, lean).unwrap();
+    let load = Load::new(&rig, 1.0).unwrap();
+    let states = TendonStates::new(Vector3::repeat(70.0), Vector3::repeat(1e5)).unwrap();
+    let deflection = full_pass(&rig, &direction, &load, &states).deflection;
+    assert_eq!(deflection.map(|_| ()), Err(Error::TendonCollapsed));
+}
+
+/// The range of pretensions is that of the middle of the bounds where nothing holds the leg's twist at the asked one.
+#[test]
+fn a_map_knows_the_range_of_a_pose_that_the_pretension_does_not_hold() {
+    let loose = Query {
+        tilt_rad: 0.0,
+        pretension_n: 0.0,
+        ..query(SupportKind::Spherical)
+    };
+    let rig = Rig::new(&TABLE_1).unwrap();
+    let mapped = evaluate_for_map(&rig, &loose).unwrap();
+    assert_eq!(mapped.tensions_n, Err(Error::Unstable));
+    let middle = Query {
+        pretension_n: 0.5 * (loose.f_min_n + loose.f_max_n),
+        ..loose
+    };
+    let held = evaluate(&TABLE_1, &middle).unwrap();
+    assert_eq!(mapped.pretension_range_n, held.pretension_range_n);
 }

@@ -82,6 +82,12 @@ fn a_demand_between_the_ends_of_a_range_that_dips_is_met() {
     assert!((softest.pretension_n - 8.0).abs() < 6.0, "{softest:?}");
     assert!(softest.stiffness_nm_per_rad < 17.5, "{softest:?}");
     assert_eq!(softest.limit, None);
+    // Also where the upper end of the range is the nearer one.
+    file.f_max_n = 12.0;
+    let from_above = answer(&file, pose, 10.0, None).unwrap();
+    let (a, b) = (softest.pretension_n, from_above.pretension_n);
+    assert!((a - b).abs() < 0.2, "{softest:?} {from_above:?}");
+    assert_eq!(from_above.limit, None);
     let pushed_m = pushed(&file, pose, met.pretension_n, 0.0);
     assert!((pushed_m / 20.0 - 1.0).abs() < 0.05, "{pushed_m}");
 }

@@ -2,10 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use crate::common::constant_tendons;
 use crate::common::reference::poses;
 use leg_model::{
-    Bound, Direction, Distribution, Error, FreePlane, Geometry, Limit, Load, Rig, RigParameters,
-    TensionBounds, Twist, distribute, inverse_kinematics,
+    Bound, Direction, Distribution, Error, FreePlane, Geometry, HoldError, Limit, Load, Rig,
+    RigParameters, SupportKind, TensionBounds, Twist, distribute, inverse_kinematics,
+    inverse_statics,
 };
 use nalgebra::{SMatrix, SVector, Vector3};
 
@@ -137,6 +139,68 @@ fn an_infeasible_load_names_both_tendons_and_bounds() {
     );
 }
 
+/// Beyond 64.25° a tendon loses tension while the pretension rises, and meets the bounds in the other order.
+#[test]
+fn a_tendon_that_falls_with_the_pretension_is_named_with_its_bound() {
+    let rig = Rig::new(&TABLE_1).unwrap();
+    let mut lower_ends_at_max = 0;
+    let mut upper_ends_at_min = 0;
+    for azimuth_deg in (0..360).step_by(10) {
+        let azimuth = f64::from(azimuth_deg).to_radians();
+        let sine = 70_f64.to_radians().sin();
+        let direction = Direction::from_xy(sine * azimuth.cos(), sine * azimuth.sin()).unwrap();
+        let plane = FreePlane::torsion_free(&direction);
+        let moment_map = inverse_kinematics(rig.geometry(), &direction)
+            .unwrap()
+            .moment_map;
+        let weight = Load::new(&rig, 10.0).unwrap().moment(&direction);
+        for part in [0.0, 1.0, -1.0, -5.0] {
+            let moment = weight * part;
+            let found = distribute(&moment_map, &plane, &moment, &bounds()).unwrap();
+            assert_limits(&found, 8.0, 150.0);
+            let [below, above] = found.limits(&bounds());
+            lower_ends_at_max += u32::from(below.bound == Bound::Max);
+            upper_ends_at_min += u32::from(above.bound == Bound::Min);
+        }
+    }
+    assert!(
+        lower_ends_at_max > 0 && upper_ends_at_min > 0,
+        "{lower_ends_at_max}, {upper_ends_at_min}"
+    );
+}
+
+/// A pretension that is no answer is refused with the tendon and the bound that it breaks.
+#[test]
+fn inverse_statics_name_the_bound_that_a_pretension_breaks() {
+    let rig = Rig::new(&TABLE_1).unwrap();
+    let leaning = direction(0.1, 30_f64.to_radians());
+    let moment = Load::new(&rig, 2.0).unwrap().moment(&leaning);
+    let tendons = constant_tendons(1e5).unwrap();
+    let support = SupportKind::TorsionFree.into();
+    let held = |bounds: &TensionBounds<f64>, pretension: f64| {
+        inverse_statics(
+            &rig, &support, &leaning, &moment, bounds, &tendons, pretension,
+        )
+    };
+    let found = distribution(0.1, 30_f64.to_radians(), 2.0, &bounds());
+    let [lowest, highest] = found.limits(&bounds());
+    let (min, max) = (found.pretension_min, found.pretension_max);
+    for pretension in [min + 1e-9, 0.5 * (min + max), max - 1e-9] {
+        let tensions = held(&bounds(), pretension).unwrap().tensions;
+        assert!(tensions.min() > 8.0 - 1e-6 && tensions.max() < 150.0 + 1e-6);
+    }
+    for (pretension, limit) in [(min - 0.01, lowest), (max + 0.01, highest), (0.0, lowest)] {
+        let refused = HoldError::OutOfBounds(limit);
+        assert_eq!(held(&bounds(), pretension), Err(refused), "{pretension} N");
+    }
+    let narrow = TensionBounds::new(60.0, 70.0).unwrap();
+    let limits = distribution(0.1, 30_f64.to_radians(), 2.0, &narrow).limits(&narrow);
+    for pretension in [60.0, 65.0, 70.0] {
+        let refused = HoldError::Infeasible(limits);
+        assert_eq!(held(&narrow, pretension), Err(refused));
+    }
+}
+
 /// A symmetric rig with `N` tendons.
 fn ring<const N: usize>() -> RigParameters<f64, N> {
     let anchors: [[f64; 2]; N] = std::array::from_fn(|i| {
@@ -208,7 +272,15 @@ fn tensions_of_three_four_five_and_six_tendons_balance_the_load_and_are_the_smal
 fn tendons_that_cannot_turn_the_leg_are_called_singular() {
     let moment_map =
         SMatrix::<f64, 3, 3>::from_row_slice(&[1.0, 2.0, 3.0, 2.0, 4.0, 6.0, 0.0, 0.0, 0.0]);
+    // The third one takes no part in the pretension of the other two.
+    let [alone_last, alone_first] = [
+        [1.0, -1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0],
+        [0.0, 1.0, -1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    ]
+    .map(|rows| SMatrix::<f64, 3, 3>::from_row_slice(&rows));
     let plane = FreePlane::torsion_free(&Direction::down());
-    let found = distribute(&moment_map, &plane, &Vector3::zeros(), &bounds());
-    assert_eq!(found, Err(Error::Singular));
+    for moment_map in [moment_map, alone_last, alone_first] {
+        let found = distribute(&moment_map, &plane, &Vector3::zeros(), &bounds());
+        assert_eq!(found, Err(Error::Singular));
+    }
 }

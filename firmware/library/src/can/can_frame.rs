@@ -72,10 +72,10 @@ impl CanFrame {
         self.bytes.get(..self.size).unwrap_or_default()
     }
 
-    /// A frame with a segment of 1 to [`SEGMENT_MAX`] bytes; `None` if it is empty or longer.
+    /// A frame with a segment of at most [`SEGMENT_MAX`] bytes; `None` if it is longer.
     pub(super) fn pack(identifier: Identifier, header: Header, segment: &[u8]) -> Option<Self> {
         let size = fitting(HEADER + segment.len())?;
-        let length = u8::try_from(segment.len()).ok().filter(|&n| n > 0)?;
+        let length = u8::try_from(segment.len()).ok()?;
         let mut bytes = [PADDING; PAYLOAD_MAX];
         let (head, rest) = bytes.split_at_mut(HEADER);
         let begins = if header.begins { BEGINS } else { 0 };

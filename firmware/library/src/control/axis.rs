@@ -129,12 +129,6 @@ impl<T: Scalar> Axis<T> {
         self.reference_m
     }
 
-    /// The tracked speed, m/s.
-    #[inline(always)]
-    pub fn speed_m_per_s(&self) -> T {
-        self.speed_m_per_s
-    }
-
     /// What the monitors check once a cycle; `pulled_m` is how far the tendon is pulled in.
     #[inline(always)]
     pub fn view(&mut self, pulled_m: T) -> AxisView<T> {

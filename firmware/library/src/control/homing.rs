@@ -388,3 +388,6 @@ impl<T: Scalar> HomingSequence<T> {
         self.lead()
     }
 }
+
+#[cfg(test)]
+mod tests;

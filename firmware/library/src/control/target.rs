@@ -230,3 +230,6 @@ impl<T: Scalar> Torsion<T> {
         self.angle -= clamp_symmetric(moment / self.slope, T::from(2e-3));
     }
 }
+
+#[cfg(test)]
+mod tests;

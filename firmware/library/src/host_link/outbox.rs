@@ -17,21 +17,20 @@ impl Outbox {
         Self(Deque::new())
     }
 
-    /// Puts in a frame. False, and nothing is put in, if `spare` bytes would not be left free.
-    pub fn put(&mut self, sequence: u16, reply: &HostReply, spare: usize) -> bool {
+    /// Puts in a frame, or nothing of it if `spare` bytes would not be left free.
+    pub fn put(&mut self, sequence: u16, reply: &HostReply, spare: usize) {
         let mut out = [0; MAX_FRAME];
         let Ok(bytes) = frame::encode(sequence, reply, &mut out) else {
-            return false;
+            return;
         };
         let free = ROOM - self.0.len();
         if free < bytes.len() + spare {
-            return false;
+            return;
         }
         for &byte in bytes {
             // There is room: it was just counted.
             let _ = self.0.push_back(byte);
         }
-        true
     }
 
     /// Takes the next byte.

@@ -283,3 +283,41 @@ fn search_pretension<T: Scalar>(shared: &mut Shared<T>) -> Result<(), Error> {
         None => Ok(()),
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::Active;
+    use crate::control::Measured;
+    use crate::leg::shared::Shared;
+    use crate::settings::Settings;
+
+    /// Every tendon has to pull by half of what any target asks for: a leg that was led down is left with more, one that was
+    /// paid out with less.
+    #[test]
+    fn tendons_that_pull_already_are_not_taken_up_from_slack() {
+        let settings = Settings::for_table_1().unwrap();
+        let f_min_n = f64::from(settings.f_min_n);
+        for (parts, taut) in [
+            ([1.0; 3], true),
+            ([0.51; 3], true),
+            ([0.49; 3], false),
+            ([0.0; 3], false),
+            ([9.0, 0.49, 9.0], false),
+            ([9.0, 9.0, 0.51], true),
+        ] {
+            let tensions_n = parts.map(|part| part * f_min_n);
+            let measured = Measured {
+                pulled_m: [0.0; 3],
+                tensions_n,
+                steady_tensions_n: tensions_n,
+                currents_a: [0.0; 3],
+                supply_v: 24.0,
+                temperature_c: 30.0,
+            };
+            let active = Active::begin(&mut Shared::new(&settings).unwrap(), &measured);
+            assert_eq!(active.slack.taken_up(), taut, "{tensions_n:?}");
+            assert!(!active.tensioned);
+        }
+    }
+}

@@ -68,3 +68,37 @@ fn ceiling(number: f32) -> u16 {
     let whole = number as u16;
     whole.saturating_add(u16::from(f32::from(whole) < number))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::LinkWatch;
+    use crate::settings::Limits;
+    use crate::supervisor::{Fault, FaultSet};
+
+    fn bad_frames_until_a_fault(watch: &mut LinkWatch) -> usize {
+        let fault = FaultSet::single(Fault::BadFrame);
+        let mut count = 0;
+        while watch.step(true) != fault {
+            watch.note_decode_error();
+            count += 1;
+        }
+        count
+    }
+
+    #[test]
+    fn bad_frames_count_anew_from_a_good_one_and_from_a_clear() {
+        let limits = Limits::DEFAULT;
+        for bad_frames in [1.0, 2.5, 3.0] {
+            let mut watch = LinkWatch::new(&Limits {
+                bad_frames,
+                ..limits
+            });
+            let expected = bad_frames.ceil() as usize;
+            assert_eq!(bad_frames_until_a_fault(&mut watch), expected);
+            watch.clear_bad_frames();
+            assert_eq!(bad_frames_until_a_fault(&mut watch), expected);
+            watch.heard();
+            assert_eq!(bad_frames_until_a_fault(&mut watch), expected);
+        }
+    }
+}

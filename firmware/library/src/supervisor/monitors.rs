@@ -115,3 +115,6 @@ impl<T: Scalar> Monitors<T> {
         faults
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -120,6 +120,39 @@ fn nothing_but_a_clear_leads_back() {
     }
 }
 
+/// Not for a tick: a fault that is latched would end it in the same one.
+#[test]
+fn no_start_leads_anywhere_while_a_fault_is_latched() {
+    for fault in Fault::ALL {
+        let mut leg = Supervised::active();
+        leg.watch(FaultSet::single(fault));
+        let limits = fault.reaction() == Reaction::Limit;
+        for (event, started) in [(Event::Arm, State::Active), (Event::Home, State::Homing)] {
+            let next = leg.supervisor.next(State::Disarmed, event);
+            assert_eq!(next, limits.then_some(started), "{fault:?} {event:?}");
+        }
+    }
+}
+
+/// What holds the leg does not keep it from a more severe reaction.
+#[test]
+fn a_held_leg_is_let_down_or_switched_off_by_a_more_severe_fault() {
+    for first in [Fault::Slack, Fault::CommandTimeout] {
+        for fault in Fault::ALL {
+            let mut leg = Supervised::active();
+            leg.watch(FaultSet::single(first));
+            assert_eq!(leg.state, State::Held);
+            leg.watch(FaultSet::single(fault));
+            let expected = match fault.reaction() {
+                Reaction::Limit | Reaction::Hold => State::Held,
+                Reaction::RampDown => State::RampingDown,
+                Reaction::GateOff => State::Off,
+            };
+            assert_eq!(leg.state, expected, "{first:?}, then {fault:?}");
+        }
+    }
+}
+
 #[test]
 fn a_clear_does_nothing_while_the_cause_is_there() {
     let mut leg = Supervised::active();

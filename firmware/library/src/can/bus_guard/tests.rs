@@ -47,6 +47,22 @@ fn each_restart_waits_longer_than_the_one_before_up_to_a_second() {
     assert_eq!(guard.bus_offs(), 1);
 }
 
+/// However seldom the controller is looked at: not a microsecond early, and not late.
+#[test]
+fn a_restart_comes_when_its_wait_is_over() {
+    const WAIT_US: u32 = RECOVERY_US + 10_000;
+    for before_us in [1, WAIT_US / 2, WAIT_US - 1] {
+        let mut guard = BusGuard::new(BIT_RATE);
+        guard.watch(BusOff, STEP_US);
+        assert_eq!(guard.watch(BusOff, before_us), BusAction::None);
+        let left_us = WAIT_US - before_us;
+        if left_us > 1 {
+            assert_eq!(guard.watch(BusOff, left_us - 1), BusAction::None);
+        }
+        assert_eq!(guard.watch(BusOff, 1), BusAction::Restart);
+    }
+}
+
 #[test]
 fn the_delay_grows_over_restarts_that_succeed_for_a_moment() {
     let mut guard = BusGuard::new(BIT_RATE);
@@ -72,6 +88,14 @@ fn a_second_without_errors_makes_the_delay_short_again() {
         let expected = at_step(RECOVERY_US + delay_ms * 1000);
         assert_eq!(until_restart(&mut guard), expected, "{calm_us} µs");
     }
+    // Also in one look.
+    let mut guard = BusGuard::new(BIT_RATE);
+    guard.watch(BusOff, STEP_US);
+    until_restart(&mut guard);
+    guard.watch(ErrorActive, STEP_US);
+    guard.watch(ErrorActive, 1_100_000);
+    guard.watch(BusOff, STEP_US);
+    assert_eq!(until_restart(&mut guard), at_step(RECOVERY_US + 10_000));
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use super::{Heard, Line, ONE};
 use crate::command::Command;
+use crate::frame::MAX_FRAME;
 use crate::host_link::{HostReply, HostRequest};
 use crate::sensors::Sensors;
 
@@ -123,6 +124,15 @@ fn a_gap_in_the_numbers_is_what_found_no_room() {
     assert_eq!(numbers, first);
     line.tick();
     assert_eq!(told(&line.heard()), [(MANY + 1, MANY + 1)]);
+}
+
+/// No more room is kept free than a reply may need.
+#[test]
+fn a_line_that_is_full_of_telemetry_has_room_for_one_reply_alone() {
+    let mut line = full();
+    let waiting = core::iter::from_fn(|| line.link.transmit()).count();
+    // Of room for more than three of the longest frames.
+    assert!(waiting > 2 * MAX_FRAME, "{waiting} bytes");
 }
 
 #[test]

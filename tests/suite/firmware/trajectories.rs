@@ -1,0 +1,116 @@
+//! Trajectories: the limits that they keep, and the coordinates that they run in.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use leg_base::angles;
+use leg_firmware::control::{CYCLE_TICKS, MotionLimits, Stream, StreamLimits, Trajectory};
+use leg_firmware::sensors::TICK_HZ;
+use leg_firmware::settings::Settings;
+use leg_model::{HalfTangent, Scalar};
+
+/// Time of a cycle, s.
+const CYCLE_S: f64 = CYCLE_TICKS as f64 / TICK_HZ as f64;
+
+/// Whatever way is taken, and however often it is changed, rate, acceleration and jerk keep half of the settings' limits in
+/// half-tangent coordinates, and so the limits themselves in angles.
+#[test]
+fn trajectories_keep_their_limits() {
+    let settings = Settings::for_table_1().unwrap();
+    let motion = settings.motion;
+    let limits = [
+        motion.speed_rad_per_s,
+        motion.acceleration_rad_per_s2,
+        motion.jerk_rad_per_s3,
+    ]
+    .map(|limit| 0.5 * f64::from(limit));
+    let mut rng = fastrand::Rng::with_seed(5);
+    let mut trajectory = Trajectory::<f64>::new(
+        MotionLimits::new(&settings.motion),
+        HalfTangent::new(0.0, 0.0),
+    );
+    let mut stream = Stream::new(StreamLimits::new(&settings));
+    let mut course = Course::default();
+    for cycle in 0..200_000_u32 {
+        if cycle % 1500 == 3 {
+            let (tilt, azimuth) = (30.0 * rng.f64(), 360.0 * rng.f64());
+            let q = (0.5 * tilt.to_radians()).tan();
+            let [x, y] = angles::unit_vector(azimuth);
+            trajectory.go(HalfTangent::new(q * x, q * y));
+        }
+        if cycle % 7000 == 900 {
+            trajectory.stop();
+        }
+        trajectory.advance_plan(&mut stream);
+        course.step(trajectory.step().xy());
+    }
+    let peaks = course.peaks;
+    for (peak, limit) in peaks.into_iter().zip(limits) {
+        assert!(peak <= limit * 1.001, "{peaks:?} beyond {limits:?}");
+        assert!(peak > 0.5 * limit, "{peaks:?} far below {limits:?}");
+    }
+}
+
+/// The last points of a trajectory, and the greatest rate, acceleration and jerk so far.
+#[derive(Default)]
+struct Course {
+    points: Vec<[f64; 2]>,
+    peaks: [f64; 3],
+}
+
+impl Course {
+    fn step(&mut self, now: [f64; 2]) {
+        self.points.push(now);
+        let [.., c, b, a, now] = self.points[..] else {
+            return;
+        };
+        let of = |weights: [f64; 4], order: i32| {
+            let points = [now, a, b, c];
+            let part = |i: usize| (0..4).map(|k| weights[k] * points[k][i]).sum::<f64>();
+            part(0).hypot(part(1)) / CYCLE_S.powi(order)
+        };
+        let now = [
+            of([1.0, -1.0, 0.0, 0.0], 1),
+            of([1.0, -2.0, 1.0, 0.0], 2),
+            of([1.0, -3.0, 3.0, -1.0], 3),
+        ];
+        for (peak, now) in self.peaks.iter_mut().zip(now) {
+            *peak = peak.max(now);
+        }
+    }
+}
+
+/// A way that is made longer while the leg is on it has its greatest jerk at its very end.
+#[test]
+fn a_trajectory_keeps_its_jerk_to_the_end() {
+    let settings = Settings::for_table_1().unwrap();
+    let limit = 0.5 * f64::from(settings.motion.jerk_rad_per_s3);
+    for first in [2e-3, 5e-3, 2e-2] {
+        for second in [1.3, 2.0, 4.0] {
+            for after in (20..400).step_by(20) {
+                let limits = MotionLimits::new(&settings.motion);
+                let mut trajectory = Trajectory::<f64>::new(limits, HalfTangent::new(0.0, 0.0));
+                let mut stream = Stream::new(StreamLimits::new(&settings));
+                let mut course = Course::default();
+                trajectory.go(HalfTangent::new(first, 0.0));
+                for cycle in 0..2000 {
+                    if cycle == after {
+                        trajectory.go(HalfTangent::new(first * second, 0.0));
+                    }
+                    trajectory.advance_plan(&mut stream);
+                    course.step(trajectory.step().xy());
+                }
+                let [.., jerk] = course.peaks;
+                let way = format!("{first}, {second} times as far after {after} cycles");
+                assert!(jerk <= limit * 1.001, "{way}: {jerk} beyond {limit}");
+            }
+        }
+    }
+}
+
+/// The tangent of half of the tilt is what a trajectory runs in.
+#[test]
+fn a_half_tangent_is_that_of_half_the_tilt() {
+    let direction = HalfTangent::new(0.25_f64, 0.0).direction();
+    let tilt = direction.vector().x.atan2(-direction.vector().z);
+    assert!((tilt - 2.0 * 0.25_f64.atan()).abs() < 1e-15 && Scalar::is_finite(tilt));
+}

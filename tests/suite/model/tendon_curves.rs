@@ -1,0 +1,82 @@
+//! Tendons with a curve: which points make one, and what it says between and beside them.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use leg_model::{CURVE_POINTS_MAX, CurvePoint, Elasticity, Error, Quantity, Reason, Tendon};
+
+fn point(tension_n: f64, elongation_m: f64, stiffness_n_per_m: f64) -> CurvePoint<f64> {
+    CurvePoint {
+        tension_n,
+        elongation_m,
+        stiffness_n_per_m,
+    }
+}
+
+/// The slack tendon.
+fn slack() -> CurvePoint<f64> {
+    point(0.0, 0.0, 1e5)
+}
+
+#[test]
+fn points_that_make_no_curve_are_refused_by_name() {
+    let many: Vec<_> = (0..=CURVE_POINTS_MAX)
+        .map(|i| point(10.0 * i as f64, 1e-4 * i as f64, 1e5))
+        .collect();
+    let taut = point(100.0, 1e-3, 1e5);
+    for (points, reason) in [
+        (&[][..], Reason::TooFew),
+        (&[slack()], Reason::TooFew),
+        (&many, Reason::TooMany),
+        (&[point(1.0, 0.0, 1e5), taut], Reason::NotFromZero),
+        (&[point(0.0, 1e-5, 1e5), taut], Reason::NotFromZero),
+        (&[slack(), point(0.0, 1e-3, 1e5)], Reason::NotRising),
+        (&[slack(), point(100.0, 0.0, 1e5)], Reason::NotRising),
+        (&[slack(), taut, point(90.0, 2e-3, 1e5)], Reason::NotRising),
+        (&[point(0.0, 0.0, 3e4), taut], Reason::NotMonotone),
+        (&[slack(), point(100.0, 1e-3, 3e4)], Reason::NotMonotone),
+    ] {
+        let refused = Err(Error::Refused {
+            quantity: Quantity::TendonCurve,
+            reason,
+        });
+        assert_eq!(Tendon::curve(points), refused, "{points:?}");
+    }
+    assert!(Tendon::curve(&many[..CURVE_POINTS_MAX]).is_ok());
+}
+
+/// Below zero the law goes on in the straight line of the slack tendon.
+#[test]
+fn below_zero_a_curve_goes_on_in_a_straight_line() {
+    let curve = Tendon::curve(&CurvePoint::<f64>::PAPER).unwrap();
+    let slack = curve.stiffness(0.0).unwrap();
+    for tension_n in [-1e-3, -1.0, -70.0, -1e3] {
+        let elongation = curve.elongation(tension_n).unwrap();
+        assert!((elongation - tension_n / slack).abs() <= 1e-15 * tension_n.abs());
+        assert_eq!(curve.stiffness(tension_n), Ok(slack));
+    }
+}
+
+/// Also where the curve is as steep at both ends, and as flat between them, as one may be: Newton's steps alone would not come
+/// to an end there.
+#[test]
+fn the_tension_at_an_elongation_is_the_one_that_stretches_so_far() {
+    let steep = [
+        point(0.0, 0.0, 1e5 / 2.99),
+        point(100.0, 1e-3, 1e5 / 2.99),
+        point(200.0, 2e-3, 1e6),
+    ];
+    for points in [&CurvePoint::<f64>::PAPER[..], &steep] {
+        let curve = Tendon::curve(points).unwrap();
+        let highest_n = points.last().unwrap().tension_n;
+        for part in 0..1000 {
+            let tension_n = highest_n * f64::from(part) / 1000.0;
+            let elongation = curve.elongation(tension_n).unwrap();
+            let found_n = curve.tension(elongation).unwrap();
+            let back = curve.elongation(found_n).unwrap();
+            assert!(
+                (back - elongation).abs() < 1e-15,
+                "{found_n} N for {tension_n} N"
+            );
+        }
+    }
+}
