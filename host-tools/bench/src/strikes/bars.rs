@@ -45,7 +45,7 @@ const GAIN_AT_MAX_MM: f64 = 4.5;
 
 /// The same where two sensors change their places or an encoder counts the other way, mm: a controller with its sign reversed runs
 /// for the time until a counter contradicts.
-const SWAPPED_MM: f64 = 10.0;
+const SWAPPED_MM: f64 = 20.0;
 
 /// How far a moving leg may swing off its way that is cut off with its payload, mm.
 const CUT_OFF_MM: f64 = 6.0;
