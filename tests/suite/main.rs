@@ -41,6 +41,7 @@ mod base {
     mod atomic_file;
     mod numeric;
     mod suggest;
+    mod timed_path;
 }
 
 mod rig {

@@ -17,12 +17,13 @@ pub enum StreamPart {
 /// A point of a stream: how the leg shall move at a tick.
 ///
 /// Between two points the direction follows a polynomial of fifth degree (in half-tangent coordinates) that has position, rate
-/// and acceleration of both. After the last that came the leg comes to rest: smoothly, within its limits.
+/// and acceleration of both. The limits are checked by the control points of that: points 20 ms apart lose nothing by it, points
+/// half a second apart half of the speed. After the last that came the leg comes to rest: smoothly, within its limits.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct SetPoint {
     /// Which point of the stream it is.
     pub part: StreamPart,
-    /// The tick of the leg, as its telemetry counts: at least 16 after that of the point before, at most 80 000 after now.
+    /// The tick of the leg, as its telemetry counts: at least 40 after that of the point before, at most 80 000 after now.
     pub tick: u32,
     /// Horizontal components of the direction: sin θ cos φ and sin θ sin φ.
     pub direction: [f32; 2],
@@ -94,8 +95,8 @@ impl PointRefusal {
                 "send it later",
             ],
             Self::Order => [
-                "the set-point is not 2 ms or more after the one before",
-                "send points in their order, at 500 Hz or less",
+                "the set-point is not 5 ms or more after the one before",
+                "send points in their order, at 200 Hz or less",
             ],
             Self::Limit(MotionLimit::Speed) => [
                 "the set-point asks for more than speed_rad_per_s",

@@ -5,10 +5,11 @@ use leg_firmware::control::{Knot, Stream, StreamLimits};
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::set_point::{PointRefusal, SetPoint, StreamPart};
 use leg_firmware::settings::Settings;
-use leg_model::HalfTangent;
+use std::ops::RangeInclusive;
 
-/// Shortest and longest run-up that is tried, s, and by how much each is longer than the one before.
-const RUN_UP_S: [f64; 2] = [0.05, 10.0];
+/// First and longest run-up that is tried, s, and by how much each is longer than the one before. A leg with 1 kg that is at
+/// speed in less than 0.6 s swings; see scenario `circle`.
+const RUN_UP_S: [f64; 2] = [0.6, 10.0];
 const RUN_UP_LONGER: f64 = 1.1;
 
 /// Where the leg shall point at a time.
@@ -41,16 +42,19 @@ pub struct TimedPoint {
 }
 
 impl TimedPoint {
-    /// The point as a leg takes it, where the path begins at the tick `start`.
+    /// The point as a leg takes it, where the path begins at the tick `start`: at the nearest tick, and where the leg is then.
     #[must_use]
     pub fn set_point(&self, start: u32, part: StreamPart) -> SetPoint {
-        let [direction, rate, acceleration] = self
-            .derivatives
-            .map(|pair| pair.map(|number| number as f32));
-        let ticks = (self.time_s * f64::from(TICK_HZ)).round() as i64;
+        let ticks = (self.time_s * f64::from(TICK_HZ)).round();
+        let later_s = ticks / f64::from(TICK_HZ) - self.time_s;
+        let [p, v, a] = self.derivatives;
+        let moved = |from: [f64; 2], by: [f64; 2]| [0, 1].map(|i| from[i] + by[i] * later_s);
+        let derivatives = [moved(p, moved(v, a.map(|a| a / 2.0))), moved(v, a), a];
+        let [direction, rate, acceleration] =
+            derivatives.map(|pair| pair.map(|number| number as f32));
         SetPoint {
             part,
-            tick: start.wrapping_add(ticks as u32),
+            tick: start.wrapping_add(ticks as i64 as u32),
             direction,
             rate,
             acceleration: Some(acceleration),
@@ -58,12 +62,56 @@ impl TimedPoint {
     }
 }
 
-/// Makes points of rows that come one after the other: each point when the row after it is known, and the first with the
-/// third row.
+/// Longest time between two points that are sent, s: over a longer one the leg's check of the limits, by control points, refuses
+/// more than it has to.
+const SPACING_MAX_S: f64 = 0.02;
+
+/// The points on the way from one to the next, and that one: the path of fifth degree between them, cut into short pieces.
+#[must_use]
+pub fn way(from: &TimedPoint, to: &TimedPoint) -> Vec<TimedPoint> {
+    let span_s = to.time_s - from.time_s;
+    let pieces = (span_s / SPACING_MAX_S).ceil().max(1.0) as u32;
+    let between = |i: u32| {
+        let part = f64::from(i) / f64::from(pieces);
+        let coordinates = [0, 1].map(|i| {
+            let [p, v, a] = from.derivatives.map(|pair| pair[i]);
+            let [q, w, b] = to.derivatives.map(|pair| pair[i]);
+            let (v, w) = (v * span_s, w * span_s);
+            let (a, b) = (a * span_s * span_s / 2.0, b * span_s * span_s / 2.0);
+            let d = q - p;
+            let c3 = 10.0 * d - 6.0 * v - 4.0 * w - 3.0 * a + b;
+            let c4 = 8.0 * v + 7.0 * w + 3.0 * a - 2.0 * b - 15.0 * d;
+            let c5 = 6.0 * d - 3.0 * v - 3.0 * w - a + b;
+            let s = part;
+            [
+                p + s * (v + s * (a + s * (c3 + s * (c4 + s * c5)))),
+                (v + s * (2.0 * a + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))) / span_s,
+                (2.0 * a + s * (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5))) / (span_s * span_s),
+            ]
+        });
+        let pair = |order: usize| coordinates.map(|coordinate| coordinate[order]);
+        TimedPoint {
+            time_s: from.time_s + part * span_s,
+            derivatives: [pair(0), pair(1), pair(2)],
+        }
+    };
+    let mut points: Vec<_> = (1..pieces).map(between).collect();
+    points.push(*to);
+    points
+}
+
+/// Rows that a point is made of: two on each side. With fewer the rates would be off by the third derivative, and the jerk
+/// between the points by twenty times that.
+const ROWS: usize = 5;
+
+/// Makes points of rows that come one after the other: each point when the second row after it is known.
 #[derive(Clone, Debug, Default)]
 pub struct PathBuilder {
-    rows: Vec<Row>,
     first_s: f64,
+    /// The last rows.
+    rows: Vec<Row>,
+    /// Whether there were more.
+    begun: bool,
 }
 
 impl PathBuilder {
@@ -72,48 +120,59 @@ impl PathBuilder {
         if self.rows.is_empty() {
             self.first_s = row.time_s;
         }
-        self.rows.push(row);
-        match self.rows.len() {
-            0..3 => Vec::new(),
-            3 => vec![self.point(0), self.point(1)],
-            _ => {
-                self.rows.remove(0);
-                vec![self.point(1)]
-            }
+        if self.rows.len() == ROWS {
+            self.rows.remove(0);
         }
+        self.rows.push(row);
+        let first = if self.begun { ROWS / 2 } else { 0 };
+        if self.rows.len() < ROWS {
+            return Vec::new();
+        }
+        self.begun = true;
+        self.points(first..=ROWS / 2)
     }
 
     /// The points that no other row changes, after the last row. Of two rows or less, each is a rest.
     #[must_use]
     pub fn finish(&self) -> Vec<TimedPoint> {
-        if let [_, _, _] = *self.rows {
-            return vec![self.point(2)];
-        }
-        let rest = |row: &Row| TimedPoint {
-            time_s: row.time_s - self.first_s,
-            derivatives: [row.direction, [0.0; 2], [0.0; 2]],
-        };
-        self.rows.iter().map(rest).collect()
+        let first = if self.begun { ROWS / 2 + 1 } else { 0 };
+        self.points(first..=self.rows.len().saturating_sub(1))
     }
 
-    /// The motion of the parabola through the three rows, at one of them.
-    fn point(&self, at: usize) -> TimedPoint {
-        let [a, b, c] = [self.rows[0], self.rows[1], self.rows[2]];
-        let here = self.rows[at];
-        let derivatives = [0, 1].map(|i| {
-            let slope = |from: Row, to: Row| {
-                (to.direction[i] - from.direction[i]) / (to.time_s - from.time_s)
-            };
-            let (before, after) = (slope(a, b), slope(b, c));
-            let bend = 2.0 * (after - before) / (c.time_s - a.time_s);
-            let middle = before + bend * 0.5 * (b.time_s - a.time_s);
-            [middle + bend * (here.time_s - b.time_s), bend]
-        });
-        let [[x_rate, x_bend], [y_rate, y_bend]] = derivatives;
-        TimedPoint {
-            time_s: here.time_s - self.first_s,
-            derivatives: [here.direction, [x_rate, y_rate], [x_bend, y_bend]],
+    /// The motion of the polynomial through the last rows, at some of them.
+    fn points(&self, at: RangeInclusive<usize>) -> Vec<TimedPoint> {
+        let rows = self.rows.get(at).unwrap_or_default();
+        let motion = |row: &Row| TimedPoint {
+            time_s: row.time_s - self.first_s,
+            derivatives: self.derivatives(row),
+        };
+        rows.iter().map(motion).collect()
+    }
+
+    fn derivatives(&self, at: &Row) -> [[f64; 2]; 3] {
+        if self.rows.len() < 3 {
+            return [at.direction, [0.0; 2], [0.0; 2]];
         }
+        let [[_, x_rate, x_bend], [_, y_rate, y_bend]] = [0, 1].map(|i| {
+            // Newton's form: its coefficients are divided differences.
+            let mut coefficients: Vec<_> = self.rows.iter().map(|row| row.direction[i]).collect();
+            for order in 1..self.rows.len() {
+                for k in (order..self.rows.len()).rev() {
+                    let span_s = self.rows[k].time_s - self.rows[k - order].time_s;
+                    coefficients[k] = (coefficients[k] - coefficients[k - 1]) / span_s;
+                }
+            }
+            let pairs = self.rows.iter().zip(coefficients).rev();
+            pairs.fold([0.0; 3], |[value, rate, bend], (row, coefficient)| {
+                let x = at.time_s - row.time_s;
+                [
+                    coefficient + x * value,
+                    value + x * rate,
+                    2.0 * rate + x * bend,
+                ]
+            })
+        });
+        [at.direction, [x_rate, y_rate], [x_bend, y_bend]]
     }
 }
 
@@ -133,14 +192,24 @@ impl TimedPath {
         Self { points }
     }
 
-    /// The points of the path, after the rest from which a leg gets to its start.
+    /// What is streamed of the path: a rest from which a leg gets to its start, and points that are near enough to each other.
     ///
     /// # Errors
-    /// Why there is no such rest.
-    pub fn with_run_up(&self, settings: &Settings) -> Result<Vec<TimedPoint>, PointRefusal> {
-        let first = self.points.first().ok_or(PointRefusal::NoStream)?;
-        let mut points = vec![run_up(first, settings)?];
-        points.extend_from_slice(&self.points);
+    /// The time of the point that is refused, s, and why.
+    pub fn streamed(&self, settings: &Settings) -> Result<Vec<TimedPoint>, (f64, PointRefusal)> {
+        let limits = StreamLimits::<f32>::new(settings);
+        for point in &self.points {
+            let motion = limits.motion(&point.set_point(0, StreamPart::Next));
+            motion.map_err(|refusal| (point.time_s, refusal))?;
+        }
+        let Some(first) = self.points.first() else {
+            return Err((0.0, PointRefusal::NoStream));
+        };
+        let mut points = run_up(first, settings).map_err(|refusal| (first.time_s, refusal))?;
+        for (from, to) in self.points.iter().zip(self.points.iter().skip(1)) {
+            points.extend(way(from, to));
+        }
+        check(&points, settings)?;
         Ok(points)
     }
 
@@ -174,20 +243,34 @@ impl TimedPath {
     }
 }
 
-/// Where a leg has to rest before a moving start, so that it comes there within its limits: the way to rest from that start,
-/// gone backwards.
+/// A rest before a start, and the points from there to it within the limits: the way to rest from that start, gone backwards.
 ///
 /// # Errors
 /// Why there is none.
-pub fn run_up(first: &TimedPoint, settings: &Settings) -> Result<TimedPoint, PointRefusal> {
+pub fn run_up(first: &TimedPoint, settings: &Settings) -> Result<Vec<TimedPoint>, PointRefusal> {
+    let [direction, rate, acceleration] = first.derivatives;
+    if [rate, acceleration] == [[0.0; 2]; 2] {
+        let rest = TimedPoint {
+            time_s: first.time_s - SPACING_MAX_S,
+            derivatives: [direction, rate, acceleration],
+        };
+        return Ok(vec![rest, *first]);
+    }
     let mut refusal = PointRefusal::OutOfReach;
-    let mut time_s = RUN_UP_S[0];
-    while time_s < RUN_UP_S[1] {
+    let longer = std::iter::successors(Some(RUN_UP_S[0]), |time_s| {
+        Some(time_s * RUN_UP_LONGER).filter(|time_s| *time_s < RUN_UP_S[1])
+    });
+    // At the edge of the workspace a shorter one may be all there is room for.
+    let shorter = std::iter::successors(Some(RUN_UP_S[0]), |time_s| {
+        Some(time_s / RUN_UP_LONGER).filter(|time_s| *time_s > SPACING_MAX_S)
+    });
+    for time_s in longer.chain(shorter) {
         match run_up_lasting(time_s, first, settings) {
-            Ok(rest) => return Ok(rest),
-            Err(error) => refusal = error,
+            Ok(points) => return Ok(points),
+            // That a limit is left says more than that a long run-up leads too far, or that a short one is short.
+            Err(error @ PointRefusal::Limit(_)) if time_s >= RUN_UP_S[0] => refusal = error,
+            Err(_) => {}
         }
-        time_s *= RUN_UP_LONGER;
     }
     Err(refusal)
 }
@@ -196,56 +279,44 @@ fn run_up_lasting(
     time_s: f64,
     first: &TimedPoint,
     settings: &Settings,
-) -> Result<TimedPoint, PointRefusal> {
-    let limits = StreamLimits::<f32>::new(settings);
-    let ticks = (time_s * f64::from(TICK_HZ)).round() as u32;
-    let start = TimedPoint {
-        time_s: 0.0,
-        ..*first
-    };
-    let start = start.set_point(ticks, StreamPart::First);
-    let backwards = SetPoint {
-        rate: start.rate.map(|rate| -rate),
-        ..start
-    };
-    let time_s = f64::from(ticks) / f64::from(TICK_HZ);
-    let motion = limits.rest_after(&limits.motion(&backwards)?, time_s as f32);
-    // In f32 the leg checks once more: the same path from the same rest.
-    Stream::new(limits).begin(Knot { tick: 0, motion }, &start)?;
-    let [x, y] = motion.position;
-    let direction = HalfTangent::new(x, y).direction().vector();
+) -> Result<Vec<TimedPoint>, PointRefusal> {
+    let [direction, rate, acceleration] = first.derivatives;
+    // As the leg's own way to rest.
+    let start = [0, 1]
+        .map(|i| direction[i] - 0.4 * rate[i] * time_s + 0.05 * acceleration[i] * time_s * time_s);
     let rest = TimedPoint {
         time_s: first.time_s - time_s,
-        derivatives: [
-            [direction.x, direction.y].map(f64::from),
-            [0.0; 2],
-            [0.0; 2],
-        ],
+        derivatives: [start, [0.0; 2], [0.0; 2]],
     };
-    limits.motion(&rest.set_point(0, StreamPart::First))?;
-    Ok(rest)
+    let mut points = vec![rest];
+    points.extend(way(&rest, first));
+    check(&points, settings).map_err(|(_, refusal)| refusal)?;
+    Ok(points)
 }
 
-/// Whether a leg at rest at the first point may follow a path to its end.
+/// Whether a leg at rest at the first point may follow the others to their end.
 ///
 /// # Errors
-/// The point that is refused, counted from 0, and why.
-pub fn check(points: &[TimedPoint], settings: &Settings) -> Result<(), (usize, PointRefusal)> {
+/// The time of the point that is refused, s, and why.
+pub fn check(points: &[TimedPoint], settings: &Settings) -> Result<(), (f64, PointRefusal)> {
     let mut stream = Stream::new(StreamLimits::<f32>::new(settings));
+    // Any will do: far from where the count of ticks begins again.
+    let start = u32::MAX / 2;
     let mut before = None;
-    for (number, point) in points.iter().enumerate() {
-        let set_point = point.set_point(u32::MAX / 2, StreamPart::Next);
+    for point in points {
+        let set_point = point.set_point(start, StreamPart::Next);
         let taken = match before.replace(set_point.tick) {
             None => stream.limits.motion(&set_point).and_then(|motion| {
                 let tick = set_point.tick.wrapping_sub(u32::from(TICK_HZ));
                 stream.begin(Knot { tick, motion }, &set_point)
             }),
-            Some(now) => stream.extend(now, &set_point).map(|()| {
-                // Otherwise there is no room for the next.
+            Some(now) => {
+                // Otherwise there is no room for it.
                 let _ = stream.next_segment();
-            }),
+                stream.extend(now, &set_point)
+            }
         };
-        taken.map_err(|refusal| (number, refusal))?;
+        taken.map_err(|refusal| (point.time_s, refusal))?;
     }
     Ok(())
 }

@@ -59,6 +59,12 @@ pub fn angles_deg([x, y]: [f32; 2]) -> [f64; 2] {
 /// A direction in words.
 pub fn pose_words(pose: [f32; 2]) -> String {
     let [azimuth_deg, tilt_deg] = angles_deg(pose);
+    // What rounds to a whole turn is none.
+    let azimuth_deg = if azimuth_deg >= 359.995 {
+        0.0
+    } else {
+        azimuth_deg
+    };
     if tilt_deg < UPRIGHT_DEG {
         "straight down".into()
     } else {

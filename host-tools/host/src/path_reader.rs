@@ -13,6 +13,9 @@ use std::thread;
 /// Rows of a program that wait to be followed.
 const ROWS_MAX: usize = 1024;
 
+/// The longest path, s: within half of the leg's count of ticks.
+const LONGEST_S: f64 = 2e5;
+
 /// What is said of a path that is refused.
 const HELP: &str =
     "give rows as `0.01,45,20` under the header `time_s,azimuth_deg,tilt_deg`, the times rising";
@@ -33,6 +36,7 @@ pub struct PathReader<R> {
     /// None before the first line.
     header: Option<StringRecord>,
     line: u64,
+    first_s: Option<f64>,
     last_s: f64,
 }
 
@@ -44,6 +48,7 @@ impl<R: BufRead> PathReader<R> {
             name: name.into(),
             header: None,
             line: 0,
+            first_s: None,
             last_s: f64::NEG_INFINITY,
         }
     }
@@ -118,6 +123,10 @@ impl<R: BufRead> PathReader<R> {
                     self.refused(&format!("{name} = {value} is not from -{most} to {most}"))
                 );
             }
+        }
+        let first_s = *self.first_s.get_or_insert(time_s);
+        if time_s - first_s > LONGEST_S {
+            return Err(self.refused(&format!("the path is longer than {LONGEST_S} s")));
         }
         if time_s <= self.last_s {
             let sentence = format!("time_s = {time_s} is not after {}", self.last_s);

@@ -5,7 +5,7 @@ use crate::numbers::{azimuth_deg, direction, positive, seconds, tilt_deg, unit_v
 use crate::options::Options;
 use leg_base::failure::Failure;
 use leg_base::json_object;
-use leg_base::timed_path::{TimedPath, TimedPoint};
+use leg_base::timed_path::TimedPath;
 use leg_host::leg_report;
 use leg_host::operator::{Goal, Operator, OperatorError, Tensioning};
 use leg_host::path_reader::{PathReader, PathSource};
@@ -53,7 +53,7 @@ pub(crate) struct FollowArgs {
     #[arg(value_name = "FILE")]
     path: PathBuf,
     /// The time from the rest before the path to its first point, beside the run-up, s: how long a point may be on its way to
-    /// the leg.
+    /// the leg. A point is sent when the third row after it is known.
     #[arg(long = "lead", value_name = "SECONDS", value_parser = seconds, default_value = "0.2")]
     lead: Duration,
     #[command(flatten)]
@@ -120,15 +120,15 @@ impl FollowArgs {
                 operator.follow(&mut source, self.lead)
             });
         }
-        let points = whole_path(&self.path)?;
+        let path = whole_path(&self.path)?;
         run(&self.leg, Purpose::Use, options, |operator| {
-            operator.follow_whole(&points, self.lead)
+            operator.follow_whole(&path, self.lead)
         })
     }
 }
 
-/// The points of a file.
-fn whole_path(path: &Path) -> Result<Vec<TimedPoint>, Failure> {
+/// The path of a file.
+fn whole_path(path: &Path) -> Result<TimedPath, Failure> {
     let name = path.display().to_string();
     let file = File::open(path).map_err(|error| {
         let sentence = format!("cannot read the path {name}: {error}");
@@ -139,7 +139,7 @@ fn whole_path(path: &Path) -> Result<Vec<TimedPoint>, Failure> {
     while let Some(row) = reader.next_row()? {
         rows.push(row);
     }
-    Ok(TimedPath::new(&rows).points().to_vec())
+    Ok(TimedPath::new(&rows))
 }
 
 impl MoveArgs {

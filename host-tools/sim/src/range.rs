@@ -40,9 +40,9 @@ ranges! {
     newtons "newtons" 0.0, 1e4;
     over_s "over_s" 0.0, LONGEST_S;
     for_s "for_s" 0.0, LONGEST_S;
-    period_s "period_s" 0.1, LONGEST_S;
-    circle_turns "turns" 0.01, 100.0;
-    points_per_s "points_per_s" 0.1, 500.0;
+    period_s "period_s" 0.1, 60.0;
+    circle_turns "turns" 0.01, 5.0;
+    points_per_s "points_per_s" 0.1, 200.0;
     wait_s "wait_s" 0.0, LONGEST_S;
     then_s "then_s" 0.0, LONGEST_S;
     timeout_s "timeout_s" 0.0, LONGEST_S;

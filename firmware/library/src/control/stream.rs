@@ -10,8 +10,8 @@ use leg_model::Scalar;
 /// Set-points that may wait: a third of a second at 100 Hz.
 pub const POINTS_MAX: usize = 32;
 
-/// Ticks between two points, at least: 2 ms. Nearer to each other, their acceleration would be rounding.
-const SPACING_MIN_TICKS: u32 = 4 * CYCLE_TICKS as u32;
+/// Ticks between two points, at least: 5 ms. Nearer to each other, too much of their acceleration would be rounding.
+const SPACING_MIN_TICKS: u32 = 10 * CYCLE_TICKS as u32;
 
 /// Ticks from now to a point, at most: 10 s.
 const AHEAD_MAX_TICKS: u32 = 80_000;
@@ -45,8 +45,9 @@ pub struct Stream<T> {
     waiting: Deque<Knot<T>, POINTS_MAX>,
     /// Where the segment that is followed ends.
     reached: Knot<T>,
-    /// The last point that was accepted.
+    /// The last point that was accepted, as a knot and as it came.
     last: Knot<T>,
+    last_point: Option<SetPoint>,
     /// Whether more points may come.
     open: bool,
 }
@@ -54,15 +55,16 @@ pub struct Stream<T> {
 impl<T: Scalar> Stream<T> {
     /// Without points.
     pub fn new(limits: StreamLimits<T>) -> Self {
-        let nowhere = Knot {
+        let origin = Knot {
             tick: 0,
             motion: MotionState::at_rest([T::zero(); 2]),
         };
         Self {
             limits,
             waiting: Deque::new(),
-            reached: nowhere,
-            last: nowhere,
+            reached: origin,
+            last: origin,
+            last_point: None,
             open: false,
         }
     }
@@ -75,17 +77,14 @@ impl<T: Scalar> Stream<T> {
         let knot = self.checked(&start, start.tick, point)?;
         self.waiting.clear();
         self.reached = start;
-        self.push(knot);
+        self.push(knot, point);
         self.open = true;
         Ok(())
     }
 
     /// Whether a point is the last one again: its answer was lost.
     pub fn repeats(&self, point: &SetPoint) -> bool {
-        point.tick == self.last.tick && {
-            let motion = self.limits.motion(point);
-            motion.is_ok_and(|motion| motion.position == self.last.motion.position)
-        }
+        self.last_point == Some(*point)
     }
 
     /// Takes the next point of a stream.
@@ -93,9 +92,6 @@ impl<T: Scalar> Stream<T> {
     /// # Errors
     /// Why the point is refused. The points before it stay.
     pub fn extend(&mut self, now: u32, point: &SetPoint) -> Result<(), PointRefusal> {
-        if self.repeats(point) {
-            return Ok(());
-        }
         if !self.open {
             return Err(PointRefusal::NoStream);
         }
@@ -104,12 +100,12 @@ impl<T: Scalar> Stream<T> {
         }
         let knot = self.checked(&self.last, now, point)?;
         self.open = point.part != StreamPart::Last;
-        self.push(knot);
+        self.push(knot, point);
         Ok(())
     }
 
-    fn push(&mut self, knot: Knot<T>) {
-        self.last = knot;
+    fn push(&mut self, knot: Knot<T>, point: &SetPoint) {
+        (self.last, self.last_point) = (knot, Some(*point));
         // There is room: it was just checked, or made.
         let _ = self.waiting.push_back(knot);
     }

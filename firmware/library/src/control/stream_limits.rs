@@ -9,7 +9,8 @@ use crate::settings::Settings;
 use leg_model::{Direction, Scalar};
 
 /// What the rounding of two set-points in f32 may change in their distance, as half-tangents: four units in the last place of
-/// 0.5. The limits are kept up to what that makes of acceleration and jerk: 0.024 1/s² and 14 1/s³ at 10 ms.
+/// 0.5. The limits are kept up to what that makes of acceleration and jerk: 0.024 1/s² and 14 1/s³ over 10 ms, 0.1 1/s² and
+/// 115 1/s³ over the shortest 5 ms.
 const ROUNDING: f32 = 1.2e-7;
 
 /// A path between two points of a circle at the edge bulges out of it, and so does the path on which the leg then stops: by

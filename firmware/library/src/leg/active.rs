@@ -123,7 +123,7 @@ impl<T: Scalar> Active<T> {
     ) -> Result<(), PointRefusal> {
         let stream = &mut shared.stream;
         match (point.part, self.trajectory.streamed()) {
-            (StreamPart::First, true) if stream.repeats(point) => Ok(()),
+            _ if stream.repeats(point) => Ok(()),
             (StreamPart::First, true) => Err(PointRefusal::Following),
             (StreamPart::First, false) if !self.slack.taken_up() => Err(PointRefusal::NotTaut),
             (StreamPart::First, false) => {

@@ -1,54 +1,51 @@
 //! Streaming a path to the leg as set-points.
 
-use super::motion::unlimited;
+use super::motion::{not_following, unlimited};
 use super::{Operator, OperatorError};
 use crate::path_reader::{PathSource, PathStep};
 use leg_base::failure::Failure;
-use leg_base::timed_path::{self, TimedPoint};
+use leg_base::timed_path::{TimedPath, TimedPoint, run_up, way};
 use leg_firmware::command::{Command, CommandRefusal};
-use leg_firmware::control::StreamLimits;
 use leg_firmware::host_link::HostRefusal;
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::set_point::{PointRefusal, StreamPart};
-use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
 use std::time::Duration;
 
 /// What the leg is asked to do.
-const ASKED: &str = "follow set-points";
+const ASKED: &str = "follow the path";
 
 /// Wait for room on the board, or for the next row of a program.
 const WAIT_TIME: Duration = Duration::from_millis(5);
 
+/// Such waits after which it is looked at what the leg does.
+const WAITS: u32 = 20;
+
 /// Longest way to rest after the last point.
 const REST_TIME: Duration = Duration::from_secs(60);
 
+/// A stream that is being sent.
+struct Sending {
+    /// The tick at which the path begins.
+    begins: u32,
+    /// The point that is sent as soon as it is known whether another follows.
+    held_back: Option<TimedPoint>,
+}
+
 impl Operator {
-    /// Follows a path whose points are all known; refused before the leg moves where a point is.
+    /// Follows a path that is known to its end; refused before the leg moves where a point is.
     ///
     /// # Errors
     /// As [`Self::follow`].
     pub fn follow_whole(
         &mut self,
-        points: &[TimedPoint],
+        path: &TimedPath,
         lead: Duration,
     ) -> Result<Telemetry<f32>, OperatorError> {
         let settings = self.settings()?;
-        let Some(first) = points.first() else {
-            return Err(no_points());
-        };
-        let limits = StreamLimits::<f32>::new(&settings);
-        for point in points {
-            let motion = limits.motion(&point.set_point(0, StreamPart::Next));
-            motion.map_err(|refusal| refused_point(point, refusal))?;
-        }
-        let mut all = vec![rest_before(first, &settings)?];
-        all.extend_from_slice(points);
-        timed_path::check(&all, &settings).map_err(|(number, refusal)| {
-            let refused = all.get(number).unwrap_or(first);
-            refused_point(refused, refusal)
-        })?;
-        self.follow(&mut PathSource::whole(points.to_vec()), lead)
+        let checked = path.streamed(&settings);
+        checked.map_err(|(time_s, refusal)| refused_point(time_s, refusal))?;
+        self.follow(&mut PathSource::whole(path.points().to_vec()), lead)
     }
 
     /// Leads the leg to where it rests before a path, streams the path from `lead` after that on, waits until the leg rests, and
@@ -63,44 +60,97 @@ impl Operator {
     ) -> Result<Telemetry<f32>, OperatorError> {
         self.settle_state(ASKED)?;
         let settings = self.settings()?;
-        let first = self.first_point(path)?;
-        let rest = rest_before(&first, &settings)?;
+        let Some(first) = self.next_point(path)? else {
+            let failure = Failure::refused("the path has no rows", "give one or more");
+            return Err(OperatorError::Path(failure));
+        };
+        let start = run_up(&first, &settings);
+        let start = start.map_err(|refusal| refused_point(first.time_s, refusal))?;
+        let rest = *start.first().unwrap_or(&first);
         self.drive(|operator| {
             operator.activate(ASKED)?;
             let [x, y] = rest.derivatives[0].map(|component| component as f32);
             operator.command(Command::Move { x, y })?;
             let telemetry = operator.settle(ASKED)?;
             unlimited(ASKED, &telemetry)?;
-            let begins_s = lead.as_secs_f64() + first.time_s - rest.time_s;
+            let begins_s = lead.as_secs_f64() - rest.time_s;
             let begins = (begins_s * f64::from(TICK_HZ)) as u32;
             let begins = operator.telemetry()?.telemetry.tick.wrapping_add(begins);
             operator.send_point(&rest, begins, StreamPart::First)?;
-            let mut last = first;
-            while let Some(next) = operator.next_point(path)? {
-                operator.send_point(&last, begins, StreamPart::Next)?;
-                last = next;
+            let mut sending = Sending {
+                begins,
+                held_back: None,
+            };
+            let mut sent = operator.send_points(start.iter().skip(1), &mut sending);
+            if sent.is_ok() {
+                sent = operator.send_rest(path, first, &mut sending);
             }
-            operator.send_point(&last, begins, StreamPart::Last)?;
+            // Whatever is wrong with the path: the leg comes to rest first.
+            if !matches!(sent, Ok(()) | Err(OperatorError::Path(_))) {
+                return sent.and_then(|()| operator.settle(ASKED));
+            }
+            if let Some(last) = sending.held_back {
+                operator.send_point(&last, begins, StreamPart::Last)?;
+            }
             let telemetry =
                 operator.poll_followed(ASKED, REST_TIME, |telemetry| !telemetry.moving)?;
+            sent?;
             unlimited(ASKED, &telemetry)?;
             operator.settle(ASKED)
         })
     }
 
-    fn first_point(&mut self, path: &mut PathSource) -> Result<TimedPoint, OperatorError> {
-        self.next_point(path)?.ok_or_else(no_points)
+    /// Sends what is left of a path, with points between those that are far from each other.
+    fn send_rest(
+        &mut self,
+        path: &mut PathSource,
+        first: TimedPoint,
+        sending: &mut Sending,
+    ) -> Result<(), OperatorError> {
+        let mut from = first;
+        while let Some(to) = self.next_point(path)? {
+            self.send_points(way(&from, &to).iter(), sending)?;
+            from = to;
+        }
+        Ok(())
+    }
+
+    /// Sends the point that was held back and all of these but the last, which is held back then.
+    fn send_points<'a>(
+        &mut self,
+        points: impl Iterator<Item = &'a TimedPoint>,
+        sending: &mut Sending,
+    ) -> Result<(), OperatorError> {
+        for point in points {
+            if let Some(before) = sending.held_back.replace(*point) {
+                self.send_point(&before, sending.begins, StreamPart::Next)?;
+            }
+        }
+        Ok(())
     }
 
     /// The next point of a path, once it is there; none at the end.
     fn next_point(&mut self, path: &mut PathSource) -> Result<Option<TimedPoint>, OperatorError> {
-        loop {
+        for waits in 1_u32.. {
             match path.next_step().map_err(OperatorError::Path)? {
                 PathStep::Point(point) => return Ok(Some(point)),
                 PathStep::Wait => self.pause(WAIT_TIME)?,
-                PathStep::End => return Ok(None),
+                PathStep::End => break,
+            }
+            if self.drives && waits.is_multiple_of(WAITS) {
+                self.require_stream()?;
             }
         }
+        Ok(None)
+    }
+
+    /// Fails if the leg does not follow the stream any more, with the reason.
+    fn require_stream(&mut self) -> Result<(), OperatorError> {
+        let telemetry = self.telemetry()?.telemetry;
+        if !telemetry.state.follows() {
+            return Err(not_following(ASKED, &telemetry));
+        }
+        unlimited(ASKED, &telemetry)
     }
 
     /// Sends a point, as soon as there is room for it.
@@ -112,38 +162,38 @@ impl Operator {
     ) -> Result<(), OperatorError> {
         let command = Command::Follow(point.set_point(begins, part));
         loop {
-            let Err(error) = self.command(command) else {
-                return Ok(());
+            let error = match self.command(command) {
+                Ok(()) => return Ok(()),
+                Err(error) => error,
             };
-            let OperatorError::Refused(_, HostRefusal::Command(CommandRefusal::Point(refusal))) =
-                error
-            else {
-                return Err(error);
-            };
-            match refusal {
-                PointRefusal::Full | PointRefusal::Early => self.pause(WAIT_TIME)?,
-                PointRefusal::NoStream => {
-                    // Why the stream has ended says more.
-                    let telemetry = self.telemetry()?.telemetry;
-                    unlimited(ASKED, &telemetry)?;
+            match error {
+                OperatorError::Refused(_, HostRefusal::Command(CommandRefusal::Point(refusal))) => {
+                    match refusal {
+                        PointRefusal::Full | PointRefusal::Early => self.pause(WAIT_TIME)?,
+                        PointRefusal::NoStream => {
+                            self.require_stream()?;
+                            return Err(error);
+                        }
+                        _ => return Err(refused_point(point.time_s, refusal)),
+                    }
+                }
+                OperatorError::Refused(..) | OperatorError::Faulted(..) => {
+                    // Why it no longer follows says more.
+                    self.require_stream()?;
                     return Err(error);
                 }
-                _ => return Err(refused_point(point, refusal)),
+                _ => return Err(error),
             }
         }
     }
 }
 
-fn rest_before(first: &TimedPoint, settings: &Settings) -> Result<TimedPoint, OperatorError> {
-    timed_path::run_up(first, settings).map_err(|refusal| refused_point(first, refusal))
-}
-
-fn refused_point(point: &TimedPoint, refusal: PointRefusal) -> OperatorError {
+fn refused_point(time_s: f64, refusal: PointRefusal) -> OperatorError {
     let [wrong, remedy] = refusal.description();
-    let sentence = format!("the path {:.3} s after its start: {wrong}", point.time_s);
-    OperatorError::Path(Failure::refused(sentence, remedy))
-}
-
-fn no_points() -> OperatorError {
-    OperatorError::Path(Failure::refused("the path has no rows", "give two or more"))
+    let place = if time_s < 0.0 {
+        "on the way to the start of the path".into()
+    } else {
+        format!("the path {time_s:.3} s after its start")
+    };
+    OperatorError::Path(Failure::refused(format!("{place}: {wrong}"), remedy))
 }

@@ -173,7 +173,7 @@ impl Operator {
 }
 
 /// Why a leg that was driven no longer follows commands.
-fn not_following(asked: &'static str, telemetry: &Telemetry<f32>) -> OperatorError {
+pub(super) fn not_following(asked: &'static str, telemetry: &Telemetry<f32>) -> OperatorError {
     if telemetry.faults.without_limits().any() {
         OperatorError::Failed(asked, Box::new(*telemetry))
     } else {

@@ -4,8 +4,11 @@ use crate::range;
 use leg_base::timed_path::{Row, TimedPath};
 use serde::{Deserialize, Deserializer, de::Error};
 
-/// The most points of a path.
-const POINTS_MAX: usize = 100_000;
+/// The most rows of a path.
+const ROWS_MAX: usize = 10_000;
+
+/// The longest path, s.
+const LONGEST_S: f64 = 300.0;
 
 /// A path, streamed as set-points.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -59,17 +62,29 @@ impl CircleStep {
 /// Rows in the order of their times.
 fn path<'de, D: Deserializer<'de>>(deserializer: D) -> Result<TimedPath, D::Error> {
     let rows = Vec::<[f64; 3]>::deserialize(deserializer)?;
-    if !(2..=POINTS_MAX).contains(&rows.len()) {
-        let sentence = format!("rows has {} rows, not 2 to {POINTS_MAX}", rows.len());
+    if !(2..=ROWS_MAX).contains(&rows.len()) {
+        let sentence = format!("rows has {} rows, not 2 to {ROWS_MAX}", rows.len());
         return Err(D::Error::custom(sentence));
     }
     let mut last_s = f64::NEG_INFINITY;
     for (number, row) in (1..).zip(&rows) {
-        if !row.iter().all(|value| value.is_finite()) || row[0] <= last_s {
-            let sentence = format!("row {number} is not finite, or not after the one before");
+        let [time_s, azimuth_deg, tilt_deg] = *row;
+        for (key, value, most) in [
+            ("time_s", time_s, LONGEST_S),
+            ("azimuth_deg", azimuth_deg, 3600.0),
+            ("tilt_deg", tilt_deg, 90.0),
+        ] {
+            if !(-most..=most).contains(&value) {
+                let sentence =
+                    format!("row {number}: {key} = {value} is not from -{most} to {most}");
+                return Err(D::Error::custom(sentence));
+            }
+        }
+        if time_s <= last_s {
+            let sentence = format!("row {number}: time_s = {time_s} is not after {last_s}");
             return Err(D::Error::custom(sentence));
         }
-        last_s = row[0];
+        last_s = time_s;
     }
     let rows: Vec<_> = rows
         .into_iter()

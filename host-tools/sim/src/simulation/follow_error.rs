@@ -29,8 +29,12 @@ impl FollowError {
         self.largest_m * 1000.0
     }
 
-    /// The time by which the tip is behind, ms: that which leaves the least squares of the errors, to the first order.
+    /// The time by which the tip is behind, ms: that which leaves the least squares of the errors, to the first order. None is
+    /// behind a path that stands.
     pub fn lag_ms(&self) -> f64 {
+        if self.ticks > 0 && self.velocity_square == 0.0 {
+            return 0.0;
+        }
         -self.error_by_velocity / self.velocity_square * 1000.0
     }
 }

@@ -7,6 +7,7 @@ use leg_base::timed_path::{TimedPath, TimedPoint};
 use leg_firmware::command::Command;
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::set_point::StreamPart;
+use leg_firmware::supervisor::State;
 
 /// Time by which a point is sent before that of the point before it, ticks: 0.1 s, so ten points at 100 Hz wait on the board.
 const AHEAD_TICKS: u32 = TICK_HZ as u32 / 10;
@@ -37,9 +38,9 @@ impl Follower {
         ends: bool,
         stand: &mut TestStand<'_>,
     ) -> Result<Self, SimulationError> {
-        let points = path
-            .with_run_up(&stand.settings)
-            .map_err(SimulationError::RunUp)?;
+        let points = path.streamed(&stand.settings);
+        let points =
+            points.map_err(|(time_s, refusal)| SimulationError::Path { time_s, refusal })?;
         let [x, y] = points[0].derivatives[0].map(|number| number as f32);
         stand.send(&Command::Move { x, y })?;
         stand.follow_error = FollowError::default();
@@ -61,7 +62,8 @@ impl Follower {
         };
         let now = telemetry.tick;
         let Some(begins) = self.begins else {
-            self.begins = self.beginning(now, telemetry.moving);
+            let rests = telemetry.state == State::Active && !telemetry.moving;
+            self.begins = self.beginning(now, rests);
             self.last_tick = now;
             return Ok(false);
         };
@@ -92,8 +94,8 @@ impl Follower {
     }
 
     /// The tick at which the path begins, once the leg has rested long enough.
-    fn beginning(&mut self, now: u32, moving: bool) -> Option<u32> {
-        if moving {
+    fn beginning(&mut self, now: u32, rests: bool) -> Option<u32> {
+        if !rests {
             self.rests_from = None;
             return None;
         }

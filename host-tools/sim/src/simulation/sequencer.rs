@@ -17,6 +17,9 @@ const PUSH_TEST_RISE_S: f64 = 0.5;
 /// Time that a command takes to reach the leg, s, at most.
 const COMMAND_S: f64 = 0.02;
 
+/// Longest time that a path takes, with the way to its start and to rest, s.
+const FOLLOW_TIMEOUT_S: f64 = 300.0;
+
 /// Longest time to a fault beyond that in which it has to be there, s: so a late one still has its time measured.
 const REACTION_TIMEOUT_S: f64 = 10.0;
 
@@ -145,7 +148,7 @@ impl<'a> Sequencer<'a> {
         } else {
             self.follower = Some(follower);
         }
-        Ok(done)
+        self.in_time(done, "the end of the path", FOLLOW_TIMEOUT_S, stand)
     }
 
     fn in_time(

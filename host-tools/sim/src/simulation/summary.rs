@@ -36,9 +36,14 @@ pub enum SimulationError {
     /// A command has no form.
     #[error("a command cannot be sent: {0}")]
     Command(leg_firmware::frame::FrameError),
-    /// A path has no rest before it.
-    #[error("no rest before the path leads to its start within the limits: {}; let it begin at rest", .0.description()[0])]
-    RunUp(leg_firmware::set_point::PointRefusal),
+    /// The leg would refuse a point of a path.
+    #[error("the path {time_s:.3} s after its start: {}; {}", .refusal.description()[0], .refusal.description()[1])]
+    Path {
+        /// The time of the point, s.
+        time_s: f64,
+        /// Why it would.
+        refusal: leg_firmware::set_point::PointRefusal,
+    },
 }
 
 /// One measured value.

@@ -50,12 +50,12 @@ fn a_program_that_stops_writing_ends_in_rest() {
             board.state()
         );
     }
-    rows_in.write_all(rows()[80..].concat().as_bytes()).unwrap();
-    drop(rows_in);
+    // It does not wait for the next row to say so.
     let output = following.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     let told = errors(&output);
     assert!(told.contains("fault 28, set-point missing"), "{told}");
+    drop(rows_in);
     assert_eq!(board.state()["state"], "held");
 }
 
