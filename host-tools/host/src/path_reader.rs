@@ -64,6 +64,11 @@ impl<R: BufRead> PathReader<R> {
                 self.header = Some(record);
                 continue;
             };
+            if record.len() != header.len() {
+                let counts = (record.len(), header.len());
+                let what = format!("{} columns, and the header has {}", counts.0, counts.1);
+                return Err(self.refused(&what));
+            }
             let row = record.deserialize(Some(header));
             return self
                 .row(row.map_err(|error| self.refused(&plain(&error)))?)

@@ -26,7 +26,7 @@ fn what_is_wrong_with_a_row_is_said_with_its_line() {
         ),
         (
             "time_s,azimuth_deg,tilt_deg\n0,0\n",
-            "line 2: missing field `tilt_deg`",
+            "line 2: 2 columns, and the header has 3",
         ),
         (
             "time_s,azimuth_deg,tilt_deg\n0,0,x\n",
