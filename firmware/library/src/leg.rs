@@ -31,7 +31,7 @@ use shared::Shared;
 
 /// The controller of a leg.
 ///
-/// In this order in memory, for the reason given at [`Shared`].
+/// In this order in memory: a load instruction reaches 1020 bytes, and what every tick uses is within them.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub struct Leg<T> {
