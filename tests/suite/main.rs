@@ -25,6 +25,7 @@ mod model {
 }
 
 mod firmware {
+    mod axis;
     mod board_contract;
     mod board_documents;
     mod control_law;

@@ -1,7 +1,7 @@
 //! A path in time, given row by row, as a stream of set-points: rates from the rows beside each other, a run-up to its start.
 
 use crate::angles;
-use leg_firmware::control::{Knot, Stream, StreamLimits};
+use leg_firmware::control::{Knot, MotionState, Quintic, Stream, StreamLimits};
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::set_point::{PointRefusal, SetPoint, StreamPart};
 use leg_firmware::settings::Settings;
@@ -37,8 +37,8 @@ impl Row {
 pub struct TimedPoint {
     /// s since the first row; negative before it.
     pub time_s: f64,
-    /// Horizontal components of the direction, their rates (1/s) and the changes of these (1/s²).
-    pub derivatives: [[f64; 2]; 3],
+    /// The motion of the direction's horizontal components.
+    pub motion: MotionState<f64>,
 }
 
 impl TimedPoint {
@@ -47,17 +47,18 @@ impl TimedPoint {
     pub fn set_point(&self, start: u32, part: StreamPart) -> SetPoint {
         let ticks = (self.time_s * f64::from(TICK_HZ)).round();
         let later_s = ticks / f64::from(TICK_HZ) - self.time_s;
-        let [p, v, a] = self.derivatives;
-        let moved = |from: [f64; 2], by: [f64; 2]| [0, 1].map(|i| from[i] + by[i] * later_s);
-        let derivatives = [moved(p, moved(v, a.map(|a| a / 2.0))), moved(v, a), a];
-        let [direction, rate, acceleration] =
-            derivatives.map(|pair| pair.map(|number| number as f32));
+        let MotionState {
+            position: p,
+            rate: v,
+            acceleration: a,
+        } = self.motion;
+        let later = |from: f64, by: f64| (from + by * later_s) as f32;
         SetPoint {
             part,
             tick: start.wrapping_add(ticks as i64 as u32),
-            direction,
-            rate,
-            acceleration: Some(acceleration),
+            direction: [0, 1].map(|i| later(p[i], v[i] + a[i] * later_s / 2.0)),
+            rate: [0, 1].map(|i| later(v[i], a[i])),
+            acceleration: Some(a.map(|a| a as f32)),
         }
     }
 }
@@ -71,28 +72,12 @@ const SPACING_MAX_S: f64 = 0.02;
 pub fn way(from: &TimedPoint, to: &TimedPoint) -> Vec<TimedPoint> {
     let span_s = to.time_s - from.time_s;
     let pieces = (span_s / SPACING_MAX_S).ceil().max(1.0) as u32;
+    let path = Quintic::between(&from.motion, &to.motion, span_s);
     let between = |i: u32| {
         let part = f64::from(i) / f64::from(pieces);
-        let coordinates = [0, 1].map(|i| {
-            let [p, v, a] = from.derivatives.map(|pair| pair[i]);
-            let [q, w, b] = to.derivatives.map(|pair| pair[i]);
-            let (v, w) = (v * span_s, w * span_s);
-            let (a, b) = (a * span_s * span_s / 2.0, b * span_s * span_s / 2.0);
-            let d = q - p;
-            let c3 = 10.0 * d - 6.0 * v - 4.0 * w - 3.0 * a + b;
-            let c4 = 8.0 * v + 7.0 * w + 3.0 * a - 2.0 * b - 15.0 * d;
-            let c5 = 6.0 * d - 3.0 * v - 3.0 * w - a + b;
-            let s = part;
-            [
-                p + s * (v + s * (a + s * (c3 + s * (c4 + s * c5)))),
-                (v + s * (2.0 * a + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))) / span_s,
-                (2.0 * a + s * (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5))) / (span_s * span_s),
-            ]
-        });
-        let pair = |order: usize| coordinates.map(|coordinate| coordinate[order]);
         TimedPoint {
             time_s: from.time_s + part * span_s,
-            derivatives: [pair(0), pair(1), pair(2)],
+            motion: path.motion(part),
         }
     };
     let mut points: Vec<_> = (1..pieces).map(between).collect();
@@ -144,14 +129,14 @@ impl PathBuilder {
         let rows = self.rows.get(at).unwrap_or_default();
         let motion = |row: &Row| TimedPoint {
             time_s: row.time_s - self.first_s,
-            derivatives: self.derivatives(row),
+            motion: self.motion(row),
         };
         rows.iter().map(motion).collect()
     }
 
-    fn derivatives(&self, at: &Row) -> [[f64; 2]; 3] {
+    fn motion(&self, at: &Row) -> MotionState<f64> {
         if self.rows.len() < 3 {
-            return [at.direction, [0.0; 2], [0.0; 2]];
+            return MotionState::at_rest(at.direction);
         }
         let [[_, x_rate, x_bend], [_, y_rate, y_bend]] = [0, 1].map(|i| {
             // Newton's form: its coefficients are divided differences.
@@ -172,7 +157,11 @@ impl PathBuilder {
                 ]
             })
         });
-        [at.direction, [x_rate, y_rate], [x_bend, y_bend]]
+        MotionState {
+            position: at.direction,
+            rate: [x_rate, y_rate],
+            acceleration: [x_bend, y_bend],
+        }
     }
 }
 
@@ -219,27 +208,17 @@ impl TimedPath {
         &self.points
     }
 
-    /// The direction, as horizontal components, and its rate at a time in s: the cubic between the points beside it; none
-    /// before the first and after the last.
+    /// The motion at a time in s; none before the first point and after the last.
     #[must_use]
-    pub fn at(&self, time_s: f64) -> Option<[[f64; 2]; 2]> {
+    pub fn at(&self, time_s: f64) -> Option<MotionState<f64>> {
         let next = self.points.partition_point(|point| point.time_s < time_s);
         let (from, to) = (
             self.points.get(next.checked_sub(1)?)?,
             self.points.get(next)?,
         );
         let span_s = to.time_s - from.time_s;
-        let part = (time_s - from.time_s) / span_s;
-        let ([p, v, _], [q, w, _]) = (from.derivatives, to.derivatives);
-        let at = [0, 1].map(|i| {
-            let (d, v, w) = (q[i] - p[i], v[i] * span_s, w[i] * span_s);
-            let (square, cube) = (3.0 * d - 2.0 * v - w, v + w - 2.0 * d);
-            let position = p[i] + part * (v + part * (square + part * cube));
-            let rate = (v + part * (2.0 * square + part * 3.0 * cube)) / span_s;
-            [position, rate]
-        });
-        let [[x, x_rate], [y, y_rate]] = at;
-        Some([[x, y], [x_rate, y_rate]])
+        let path = Quintic::between(&from.motion, &to.motion, span_s);
+        Some(path.motion((time_s - from.time_s) / span_s))
     }
 }
 
@@ -248,13 +227,12 @@ impl TimedPath {
 /// # Errors
 /// Why there is none.
 pub fn run_up(first: &TimedPoint, settings: &Settings) -> Result<Vec<TimedPoint>, PointRefusal> {
-    let [direction, rate, acceleration] = first.derivatives;
-    if [rate, acceleration] == [[0.0; 2]; 2] {
-        let rest = TimedPoint {
+    if first.motion == MotionState::at_rest(first.motion.position) {
+        let before = TimedPoint {
             time_s: first.time_s - SPACING_MAX_S,
-            derivatives: [direction, rate, acceleration],
+            ..*first
         };
-        return Ok(vec![rest, *first]);
+        return Ok(vec![before, *first]);
     }
     let mut refusal = PointRefusal::OutOfReach;
     let longer = std::iter::successors(Some(RUN_UP_S[0]), |time_s| {
@@ -280,13 +258,13 @@ fn run_up_lasting(
     first: &TimedPoint,
     settings: &Settings,
 ) -> Result<Vec<TimedPoint>, PointRefusal> {
-    let [direction, rate, acceleration] = first.derivatives;
-    // As the leg's own way to rest.
-    let start = [0, 1]
-        .map(|i| direction[i] - 0.4 * rate[i] * time_s + 0.05 * acceleration[i] * time_s * time_s);
+    let backwards = MotionState {
+        rate: first.motion.rate.map(|rate| -rate),
+        ..first.motion
+    };
     let rest = TimedPoint {
         time_s: first.time_s - time_s,
-        derivatives: [start, [0.0; 2], [0.0; 2]],
+        motion: backwards.rest_after(time_s),
     };
     let mut points = vec![rest];
     points.extend(way(&rest, first));

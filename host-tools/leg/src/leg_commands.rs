@@ -127,6 +127,9 @@ impl FollowArgs {
     }
 }
 
+/// The most rows of a path that is checked as a whole: an hour and more at 200 Hz.
+const ROWS_MAX: usize = 1_000_000;
+
 /// The path of a file.
 fn whole_path(path: &Path) -> Result<TimedPath, Failure> {
     let name = path.display().to_string();
@@ -138,6 +141,12 @@ fn whole_path(path: &Path) -> Result<TimedPath, Failure> {
     let mut rows = Vec::new();
     while let Some(row) = reader.next_row()? {
         rows.push(row);
+        if rows.len() > ROWS_MAX {
+            return Err(Failure::refused(
+                format!("the path {name} has more than {ROWS_MAX} rows"),
+                "stream it: `leg follow - < FILE`",
+            ));
+        }
     }
     Ok(TimedPath::new(&rows))
 }

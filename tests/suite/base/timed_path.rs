@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use leg_base::timed_path::{Row, TimedPath, TimedPoint, check, run_up, way};
+use leg_firmware::control::MotionState;
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::set_point::{MotionLimit, PointRefusal, StreamPart};
 use leg_firmware::settings::Settings;
@@ -10,21 +11,20 @@ use leg_firmware::settings::Settings;
 const RADIUS: f64 = 0.3;
 const PER_S: f64 = 1.3;
 
-/// A circle, with its derivatives.
-fn circle(time_s: f64) -> [[f64; 2]; 3] {
+fn circle(time_s: f64) -> MotionState<f64> {
     let (sin, cos) = (PER_S * time_s).sin_cos();
     let [r, v, a] = [RADIUS, RADIUS * PER_S, RADIUS * PER_S * PER_S];
-    [
-        [r * cos, r * sin],
-        [-v * sin, v * cos],
-        [-a * cos, -a * sin],
-    ]
+    MotionState {
+        position: [r * cos, r * sin],
+        rate: [-v * sin, v * cos],
+        acceleration: [-a * cos, -a * sin],
+    }
 }
 
 fn rows(times_s: &[f64]) -> Vec<Row> {
     let row = |&time_s: &f64| Row {
         time_s: 100.0 + time_s,
-        direction: circle(time_s)[0],
+        direction: circle(time_s).position,
     };
     times_s.iter().map(row).collect()
 }
@@ -33,13 +33,15 @@ fn settings() -> Settings {
     Settings::for_table_1().unwrap()
 }
 
-/// The farthest that one of the numbers of a point is from the circle's, by order.
+/// How far position, rate and acceleration of a point are from the circle's.
 fn off(point: &TimedPoint) -> [f64; 3] {
-    let expected = circle(point.time_s);
-    [0, 1, 2].map(|order| {
-        let [x, y] = [0, 1].map(|i| point.derivatives[order][i] - expected[order][i]);
-        x.hypot(y)
-    })
+    let (found, expected) = (point.motion, circle(point.time_s));
+    [
+        (found.position, expected.position),
+        (found.rate, expected.rate),
+        (found.acceleration, expected.acceleration),
+    ]
+    .map(|([x, y], [u, v])| (x - u).hypot(y - v))
 }
 
 /// At the ends, too, and with times that are not even.
@@ -64,7 +66,7 @@ fn points_have_the_rates_of_the_motion_through_the_rows() {
 fn few_rows_are_a_path_too() {
     let two = TimedPath::new(&rows(&[0.0, 1.0]));
     for point in two.points() {
-        assert_eq!(point.derivatives[1..], [[0.0; 2]; 2]);
+        assert_eq!(point.motion, MotionState::at_rest(point.motion.position));
     }
     for count in 1..8 {
         let times_s: Vec<_> = (0..count).map(f64::from).collect();
@@ -75,9 +77,9 @@ fn few_rows_are_a_path_too() {
     }
     let path = TimedPath::new(&rows(&[0.0, 0.1, 0.2, 0.3]));
     for time_s in [0.05, 0.15, 0.29] {
-        let [direction, _] = path.at(time_s).unwrap();
-        let [x, y] = circle(time_s)[0];
-        assert!((direction[0] - x).hypot(direction[1] - y) < 1e-5);
+        let motion = path.at(time_s).unwrap();
+        let [position, ..] = off(&TimedPoint { time_s, motion });
+        assert!(position < 1e-5, "{position}");
     }
     assert_eq!((path.at(-0.01), path.at(0.31)), (None, None));
 }
@@ -88,14 +90,14 @@ fn a_set_point_is_where_the_leg_is_at_its_tick() {
     for time_s in [0.1, 0.100_05, 0.100_1] {
         let point = TimedPoint {
             time_s,
-            derivatives: circle(time_s),
+            motion: circle(time_s),
         };
         let sent = point.set_point(u32::MAX, StreamPart::Next);
         let at_s = f64::from(sent.tick.wrapping_add(1)) / f64::from(TICK_HZ);
         assert!((at_s - time_s).abs() <= 0.5 / f64::from(TICK_HZ) + 1e-12);
-        let [direction, rate, _] = circle(at_s);
+        let MotionState { position, rate, .. } = circle(at_s);
         for i in 0..2 {
-            assert!((f64::from(sent.direction[i]) - direction[i]).abs() < 3e-8);
+            assert!((f64::from(sent.direction[i]) - position[i]).abs() < 3e-8);
             assert!((f64::from(sent.rate[i]) - rate[i]).abs() < 1e-7);
         }
     }
@@ -105,7 +107,7 @@ fn a_set_point_is_where_the_leg_is_at_its_tick() {
 fn rows_far_from_each_other_have_points_between() {
     let [from, to] = [0.0, 0.5].map(|time_s| TimedPoint {
         time_s,
-        derivatives: circle(time_s),
+        motion: circle(time_s),
     });
     let points = way(&from, &to);
     assert_eq!((points.len(), points.last()), (25, Some(&to)));
@@ -123,16 +125,19 @@ fn rows_far_from_each_other_have_points_between() {
 fn a_start_in_motion_has_a_run_up() {
     let first = TimedPoint {
         time_s: 0.0,
-        derivatives: circle(0.0),
+        motion: circle(0.0),
     };
     let points = run_up(&first, &settings()).unwrap();
     assert_eq!(points.last(), Some(&first));
     let rest = points.first().unwrap();
-    assert!(rest.time_s <= -0.5 && rest.derivatives[1..] == [[0.0; 2]; 2]);
+    assert!(rest.time_s <= -0.5);
+    assert_eq!(rest.motion, MotionState::at_rest(rest.motion.position));
     assert_eq!(check(&points, &settings()), Ok(()));
-    let [position, rate, acceleration] = first.derivatives;
     let fast = TimedPoint {
-        derivatives: [position, rate.map(|rate| 3.0 * rate), acceleration],
+        motion: MotionState {
+            rate: first.motion.rate.map(|rate| 3.0 * rate),
+            ..first.motion
+        },
         ..first
     };
     let refusal = PointRefusal::Limit(MotionLimit::Speed);

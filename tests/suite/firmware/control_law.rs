@@ -1,9 +1,9 @@
-//! The parts of the control law by themselves.
+//! A leg on sensors that a test makes up: how it homes, obeys and relaxes.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use leg_firmware::command::{Command, CommandRefusal};
-use leg_firmware::control::{Axis, AxisGoal, AxisInput, CYCLE_TICKS};
+use leg_firmware::control::CYCLE_TICKS;
 use leg_firmware::leg::{Leg, Outcome};
 use leg_firmware::sensors::{CODE_MAX, Sensors, TICK_HZ};
 use leg_firmware::settings::Settings;
@@ -13,7 +13,7 @@ use leg_rig::rig_file::RigFile;
 
 const TICK_S: f64 = 1.0 / TICK_HZ as f64;
 
-pub(super) fn settings(zero: Option<[f64; 3]>) -> Settings {
+fn settings(zero: Option<[f64; 3]>) -> Settings {
     let rig = RigFile::load(None).unwrap();
     let mut settings = control_settings::settings(&rig, &rig.gains, zero);
     // The motors of the bench draw nothing.
@@ -21,71 +21,7 @@ pub(super) fn settings(zero: Option<[f64; 3]>) -> Settings {
     settings
 }
 
-/// A motor at a place, without a tension.
-fn input(pulled_m: f64) -> AxisInput<f64> {
-    AxisInput {
-        pulled_m,
-        tension_n: 0.0,
-        f_max_n: 150.0,
-        supply_v: 24.0,
-        lowest_m: f64::MIN,
-    }
-}
-
-fn goal(pulled_m: f64) -> AxisGoal<f64> {
-    AxisGoal {
-        pulled_m,
-        speed_m_per_s: 0.03,
-    }
-}
-
-/// A motor that cannot turn for half a second is driven with what its current allows; freed of its task, it is not driven
-/// on by what an integral has gathered.
-#[test]
-fn an_integral_gathers_nothing_while_the_voltage_is_limited() {
-    let settings = settings(None);
-    let limit_v = f64::from(settings.servo.current_a * settings.servo.resistance_ohm);
-    let mut axis = Axis::<f64>::new(&settings);
-    axis.rest(0.0);
-    let mut duty = 0.0;
-    for _ in 0..TICK_HZ / 2 {
-        axis.track(0.0);
-        axis.lead(&goal(1e-3), 1.0);
-        duty = axis.drive(&input(0.0));
-    }
-    assert!((duty * 24.0 - limit_v).abs() < 1e-3, "{} V", duty * 24.0);
-    let mut ticks = 0;
-    while duty > 0.01 && ticks < TICK_HZ {
-        axis.track(0.0);
-        axis.lead(&goal(-1e-4), 1.0);
-        duty = axis.drive(&input(0.0));
-        ticks += 1;
-    }
-    // The reference itself needs 1 mm / 30 mm/s, 267 ticks, to come back.
-    assert!((200..300).contains(&ticks), "{ticks} ticks");
-}
-
-/// Above the maximum tension a tendon is let out, wherever it is led; but not beyond where it may go.
-#[test]
-fn a_tension_above_the_ceiling_turns_the_motor_round() {
-    let settings = settings(None);
-    let duty = |tension_n: f64, lowest_m: f64| {
-        let mut axis = Axis::<f64>::new(&settings);
-        axis.rest(0.0);
-        axis.track(0.0);
-        axis.lead(&goal(1e-3), 1.0);
-        axis.drive(&AxisInput {
-            tension_n,
-            lowest_m,
-            ..input(0.0)
-        })
-    };
-    assert!(duty(140.0, f64::MIN) > 0.1);
-    assert!(duty(151.0, f64::MIN) < -0.1);
-    assert!(duty(151.0, 0.0).abs() < 1e-9);
-}
-
-/// A leg on sensors that a test makes up.
+/// The leg, and what its sensors read.
 struct Bench {
     leg: Leg<f64>,
     settings: Settings,

@@ -24,12 +24,16 @@ fn a_leg_that_is_led_down_follows_no_other_command_but_a_stop() {
     assert_eq!(still.leg.state(), State::Held);
 }
 
+/// Disarms it, and finds it paid out where it is.
+fn is_paid_out(still: &mut StillLeg) {
+    assert_eq!(still.obey(Command::Disarm), Ok(()));
+    assert_eq!(still.leg.state(), State::RampingDown);
+}
+
 /// Its sensors are not watched yet.
 #[test]
 fn a_leg_that_was_just_armed_is_paid_out_where_it_is() {
-    let mut still = StillLeg::armed();
-    assert_eq!(still.obey(Command::Disarm), Ok(()));
-    assert_eq!(still.leg.state(), State::RampingDown);
+    is_paid_out(&mut StillLeg::armed());
 }
 
 /// Nor are they from the stop on: it may hang in slack tendons.
@@ -39,8 +43,7 @@ fn a_leg_that_was_stopped_before_it_was_watched_is_paid_out_where_it_is() {
     assert_eq!(still.obey(Command::Stop), Ok(()));
     still.run(WATCHED_TICKS);
     assert_eq!(still.leg.state(), State::Held);
-    assert_eq!(still.obey(Command::Disarm), Ok(()));
-    assert_eq!(still.leg.state(), State::RampingDown);
+    is_paid_out(&mut still);
 }
 
 /// A leg with a fault follows nothing any more, not even downwards.
@@ -52,6 +55,5 @@ fn a_leg_with_a_fault_is_paid_out_where_it_is() {
     let telemetry = still.leg.telemetry();
     assert!(telemetry.faults.has(Fault::CommandTimeout));
     assert_eq!(telemetry.state, State::Held);
-    assert_eq!(still.obey(Command::Disarm), Ok(()));
-    assert_eq!(still.leg.state(), State::RampingDown);
+    is_paid_out(&mut still);
 }

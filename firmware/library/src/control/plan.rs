@@ -83,7 +83,7 @@ pub fn longer<T: Scalar>(duration_s: T) -> T {
 #[inline(always)]
 pub fn cycles<T: Scalar>(duration_s: T) -> i32 {
     const MOST: i32 = (LONGEST_S / CYCLE_S) as i32 + 1;
-    // Rounded down twice, so that the search for the first that is long enough starts before it.
+    // Whole cycles, and one less: the search for the first that is long enough starts before it, however these are rounded.
     let mut cycles = (duration_s * T::from(1.0 / CYCLE_S)).whole().clamp(2, MOST) - 1;
     while cycles < MOST && T::from(cycles as f32 * CYCLE_S) < duration_s {
         cycles += 1;

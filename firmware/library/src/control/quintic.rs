@@ -23,6 +23,18 @@ impl<T: Scalar> MotionState<T> {
         }
     }
 
+    /// Where the leg comes to rest from this motion, rate v and acceleration a, after a time T in s: by the rate
+    /// (1 − s)³((1 + 3s)v + s·aT) at the part s of it, which never changes the sign of what either asks for, and ends without
+    /// acceleration and jerk.
+    pub fn rest_after(&self, time_s: T) -> Self {
+        let coordinate = |i: usize| {
+            let braked =
+                T::from(0.4) * self.rate[i] + T::from(0.05) * time_s * self.acceleration[i];
+            self.position[i] + time_s * braked
+        };
+        Self::at_rest([coordinate(0), coordinate(1)])
+    }
+
     /// The acceleration that a cubic path from this motion has at `end`, where position and rate are given: the third
     /// derivative is then constant, and points of a smooth motion that are `time_s` apart give its acceleration to the second
     /// order.

@@ -1,7 +1,8 @@
 //! Set-points that a host streams: checked when they come, kept until their time.
 
-use super::quintic::{MotionState, Quintic};
-use super::stream_limits::{Segment, StreamLimits};
+use super::quintic::MotionState;
+use super::segment::{Knot, Segment};
+use super::stream_limits::StreamLimits;
 use super::{CYCLE_TICKS, TICK_S};
 use crate::set_point::{PointRefusal, SetPoint, StreamPart};
 use heapless::Deque;
@@ -15,27 +16,6 @@ const SPACING_MIN_TICKS: u32 = 10 * CYCLE_TICKS as u32;
 
 /// Ticks from now to a point, at most: 10 s.
 const AHEAD_MAX_TICKS: u32 = 80_000;
-
-/// How the leg shall move at a tick.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Knot<T> {
-    /// The tick.
-    pub tick: u32,
-    /// The motion, in half-tangent coordinates.
-    pub motion: MotionState<T>,
-}
-
-impl<T: Scalar> Segment<T> {
-    fn between(from: &Knot<T>, to: &Knot<T>) -> Self {
-        // At most 10 s: it was checked when the point came.
-        let ticks = to.tick.wrapping_sub(from.tick) as i32;
-        let time_s = T::from(ticks as f32 * TICK_S);
-        Self {
-            path: Quintic::between(&from.motion, &to.motion, time_s),
-            ticks,
-        }
-    }
-}
 
 /// The set-points that wait, and where the path to them has come to.
 #[derive(Clone, Debug)]
@@ -85,6 +65,11 @@ impl<T: Scalar> Stream<T> {
     /// Whether a point is the last one again: its answer was lost.
     pub fn repeats(&self, point: &SetPoint) -> bool {
         self.last_point == Some(*point)
+    }
+
+    /// Forgets it: the stream was left, and a point that comes again is not followed.
+    pub fn leave(&mut self) {
+        self.last_point = None;
     }
 
     /// Takes the next point of a stream.

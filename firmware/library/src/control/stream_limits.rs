@@ -3,6 +3,7 @@
 use super::bounds::max;
 use super::plan::{LONGEST_S, MotionLimits, SHORTEST_S, cycles};
 use super::quintic::{MotionState, Peaks, Quintic};
+use super::segment::Segment;
 use super::{CYCLE_TICKS, TICK_S};
 use crate::set_point::{MotionLimit, PointRefusal, SetPoint};
 use crate::settings::Settings;
@@ -13,18 +14,9 @@ use leg_model::{Direction, Scalar};
 /// 115 1/s³ over the shortest 5 ms.
 const ROUNDING: f32 = 1.2e-7;
 
-/// A path between two points of a circle at the edge bulges out of it, and so does the path on which the leg then stops: by
-/// less than this part of the reach at any speed that is allowed.
+/// A path between two points of a circle at the edge bulges out of it, and so does the path on which the leg then stops: by no more
+/// than this part of the reach, or the point is refused.
 const BULGE: f32 = 1.005;
-
-/// A path, and its time in ticks.
-#[derive(Clone, Copy, Debug)]
-pub struct Segment<T> {
-    /// The path.
-    pub path: Quintic<T>,
-    /// Ticks.
-    pub ticks: i32,
-}
 
 /// The limits of a stream.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,22 +126,15 @@ impl<T: Scalar> StreamLimits<T> {
         inside.then_some(()).ok_or(PointRefusal::OutOfReach)
     }
 
-    /// The path from a motion to rest, with rate (1 − s)³((1 + 3s)v + s·aT) at the part s of its time T.
+    /// The path from a motion to rest within the limits: see [`MotionState::rest_after`].
     pub fn to_rest(&self, motion: &MotionState<T>) -> Segment<T> {
         let ticks = cycles(self.time_to_rest_s(motion)) * i32::from(CYCLE_TICKS);
         let time_s = T::from(ticks as f32 * TICK_S);
-        let rest = self.rest_after(motion, time_s);
+        let rest = motion.rest_after(time_s);
         Segment {
             path: Quintic::new(motion, rest.position, time_s),
             ticks,
         }
-    }
-
-    /// Where that path ends if it takes a time in s.
-    pub fn rest_after(&self, motion: &MotionState<T>, time_s: T) -> MotionState<T> {
-        let step = |share: f32| time_s * T::from(share);
-        let coasted = moved(motion.position, motion.rate, step(0.4));
-        MotionState::at_rest(moved(coasted, motion.acceleration, step(0.05) * time_s))
     }
 
     /// The time T to rest: enough for acceleration and jerk whatever the directions of rate v and acceleration a.

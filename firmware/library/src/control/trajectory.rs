@@ -3,8 +3,8 @@
 
 use super::plan::{LONGEST_S, MotionLimits, PLACES, SHORTEST_S, cycles, longer};
 use super::quintic::{MotionState, Quintic};
+use super::segment::Segment;
 use super::stream::Stream;
-use super::stream_limits::Segment;
 use super::{CYCLE_S, CYCLE_TICKS};
 use leg_model::{HalfTangent, Scalar};
 
@@ -16,8 +16,8 @@ pub type Point<T> = HalfTangent<T>;
 pub struct Trajectory<T> {
     limits: MotionLimits<T>,
     path: Quintic<T>,
-    /// Ticks since its start, and to its end. A segment of a stream may start between two cycles, in the next one: then they
-    /// are negative.
+    /// Ticks since its start, and from there to its end. A segment of a stream may start within the next cycle: then the first are
+    /// negative.
     elapsed: i32,
     duration: i32,
     /// Whether the path is a segment of a stream.
@@ -221,12 +221,7 @@ impl<T: Scalar> Trajectory<T> {
         }
         let end = match plan.end {
             End::At(end) => end,
-            End::Soon => {
-                // With two fifths of rate × time the rate falls as (1 − s)³(1 + 3s): it never changes its sign, and both
-                // acceleration and jerk end at zero.
-                let on = |i: usize| start.position[i] + start.rate[i] * duration_s * T::from(0.4);
-                [on(0), on(1)]
-            }
+            End::Soon => start.rest_after(duration_s).position,
         };
         // Whole cycles: the path is stretched to them.
         let cycles = cycles(duration_s);

@@ -45,6 +45,7 @@ impl<T: Scalar> Active<T> {
     pub fn begin(shared: &mut Shared<T>, measured: &Measured<T>) -> Self {
         let compensated = shared.compensation != Compensation::Off;
         shared.targets.start(compensated);
+        shared.stream.leave();
         shared.target = None;
         shared.estimate = None;
         // A leg whose tendons pull already stays as it is: relaxed first, it would swing. Half of the minimum tension is below
@@ -91,19 +92,20 @@ impl<T: Scalar> Active<T> {
 
     /// Goes to a point.
     pub fn go(&mut self, shared: &mut Shared<T>, to: HalfTangent<T>) {
-        self.rest(shared);
+        self.leave_stream(shared);
         self.trajectory.go(to);
     }
 
     /// Comes to rest.
     pub fn hold(&mut self, shared: &mut Shared<T>) {
-        if !self.rest(shared) {
+        if !self.leave_stream(shared) {
             self.trajectory.stop();
         }
     }
 
-    /// Leaves a stream, if one is followed.
-    fn rest(&mut self, shared: &mut Shared<T>) -> bool {
+    /// Leaves a stream for rest; false if none is followed.
+    fn leave_stream(&mut self, shared: &mut Shared<T>) -> bool {
+        shared.stream.leave();
         let streamed = self.trajectory.streamed();
         if streamed {
             let motion = self.trajectory.motion();
@@ -113,8 +115,8 @@ impl<T: Scalar> Active<T> {
         streamed
     }
 
-    /// Takes a set-point; `tick` is the present one, which is that of the last target, too: a target is reached in the tick
-    /// that executes the next command.
+    /// Takes a set-point; `tick` is the present one. The motors come to a target in the tick that executes the next command, so a
+    /// stream begins at the next target, a cycle later.
     pub fn follow(
         &mut self,
         shared: &mut Shared<T>,
@@ -290,10 +292,11 @@ mod tests {
     use super::Active;
     use crate::control::Measured;
     use crate::leg::shared::Shared;
+    use crate::set_point::{PointRefusal, SetPoint, StreamPart};
     use crate::settings::Settings;
 
     /// Every tendon has to pull by half of what any target asks for: a leg that was led down is left with more, one that was
-    /// paid out with less.
+    /// paid out with less. Nothing is followed before.
     #[test]
     fn tendons_that_pull_already_are_not_taken_up_from_slack() {
         let settings = Settings::for_table_1().unwrap();
@@ -315,9 +318,24 @@ mod tests {
                 supply_v: 24.0,
                 temperature_c: 30.0,
             };
-            let active = Active::begin(&mut Shared::new(&settings).unwrap(), &measured);
+            let mut shared = Shared::new(&settings).unwrap();
+            let mut active = Active::begin(&mut shared, &measured);
             assert_eq!(active.slack.taken_up(), taut, "{tensions_n:?}");
             assert!(!active.tensioned);
+            let point = SetPoint {
+                part: StreamPart::First,
+                tick: 4000,
+                direction: [0.0; 2],
+                rate: [0.0; 2],
+                acceleration: None,
+            };
+            let followed = active.follow(&mut shared, 0, &point);
+            let expected = if taut {
+                Ok(())
+            } else {
+                Err(PointRefusal::NotTaut)
+            };
+            assert_eq!(followed, expected);
         }
     }
 }

@@ -141,8 +141,8 @@ impl<T: Scalar> Shared<T> {
         };
     }
 
-    /// The tension above which a tendon is paid out. None is before lengths and tensions agree: a cell that shows too much would pay
-    /// its tendon out until it is found.
+    /// Sets the tension above which a tendon is paid out: beyond all that are measured before lengths and tensions agree, for a
+    /// load cell that shows too much would pay its tendon out until it is found.
     #[inline(always)]
     pub fn limit_tensions(&mut self, measured: &Measured<T>, trusted: bool) {
         let f_max_n = self.mechanism.f_max_n;

@@ -27,7 +27,8 @@ pub struct MonitorInput<'a, T> {
     pub tensioned: bool,
     /// What forward kinematics leaves over, m; none while the pose is not needed.
     pub residual_m: Option<T>,
-    /// Whether lengths and tensions are watched, and agree; in homing, that pays its tendons out anyway, nothing is compared.
+    /// Whether a tension is called too much by its cell alone: lengths and tensions are watched and agree; and while homing, where
+    /// nothing compares them and the tendons are paid out anyway.
     pub cells_trusted: bool,
 }
 

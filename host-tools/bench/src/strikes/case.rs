@@ -2,6 +2,7 @@
 
 use super::activity::Activity;
 use fastrand::Rng;
+use leg_base::angles;
 use leg_firmware::command::Compensation;
 use leg_model::evaluate;
 use leg_rig::plant_settings::PlantSettings;
@@ -15,6 +16,9 @@ pub(super) const SLOTS: u64 = 16;
 /// Farthest that a leg leans, degrees, and its heaviest payload, kg.
 const TILT_DEG: f64 = 30.0;
 const PAYLOAD_KG: f64 = 2.0;
+
+/// Shortest way of a leg that is to be struck on it: 2°. On a shorter one there is nothing to see of a motor that does not turn.
+const SHORTEST_WAY: f64 = 0.035;
 
 /// How far load cells may be off after their calibration, as a part, and tendons from their curve.
 const CELL_GAIN: f64 = 0.002;
@@ -132,7 +136,9 @@ impl Case {
                 .iter()
                 .map(|range| range[1])
                 .fold(f64::INFINITY, f64::min);
-            if low < high {
+            let moves = self.activity != Activity::Moving
+                || between(&[azimuth_deg, tilt_deg], &target_deg) > SHORTEST_WAY;
+            if low < high && moves {
                 self.azimuth_deg = azimuth_deg;
                 self.tilt_deg = tilt_deg;
                 self.target_deg = target_deg;
@@ -216,6 +222,12 @@ fn pose(file: &RigFile, rng: &mut Rng) -> [f64; 2] {
     };
     // A number in f32 must not be beyond the end.
     [azimuth_deg, drawn(rng, TILT_DEG.min(file.tilt_deg) - 1e-3)]
+}
+
+/// The distance of two poses as directions' horizontal components.
+fn between(a: &[f64; 2], b: &[f64; 2]) -> f64 {
+    let [[ax, ay], [bx, by]] = [a, b].map(|&[azimuth, tilt]| angles::direction(azimuth, tilt));
+    (ax - bx).hypot(ay - by)
 }
 
 /// The lowest and highest pretension of a pose with a payload, N; of no width where there is none.

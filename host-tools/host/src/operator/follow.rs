@@ -69,7 +69,7 @@ impl Operator {
         let rest = *start.first().unwrap_or(&first);
         self.drive(|operator| {
             operator.activate(ASKED)?;
-            let [x, y] = rest.derivatives[0].map(|component| component as f32);
+            let [x, y] = rest.motion.position.map(|component| component as f32);
             operator.command(Command::Move { x, y })?;
             let telemetry = operator.settle(ASKED)?;
             unlimited(ASKED, &telemetry)?;

@@ -41,7 +41,7 @@ impl Follower {
         let points = path.streamed(&stand.settings);
         let points =
             points.map_err(|(time_s, refusal)| SimulationError::Path { time_s, refusal })?;
-        let [x, y] = points[0].derivatives[0].map(|number| number as f32);
+        let [x, y] = points[0].motion.position.map(|number| number as f32);
         stand.send(&Command::Move { x, y })?;
         stand.follow_error = FollowError::default();
         Ok(Self {
@@ -83,7 +83,7 @@ impl Follower {
         }
         let time_s = f64::from(now.wrapping_sub(begins) as i32) / f64::from(TICK_HZ);
         if let Some(at) = self.path.at(time_s) {
-            stand.compare_with(at);
+            stand.compare_with(&at);
         }
         let last = self.points.last();
         let over = last.is_none_or(|last| time_s > last.time_s);

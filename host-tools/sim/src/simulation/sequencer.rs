@@ -18,7 +18,7 @@ const PUSH_TEST_RISE_S: f64 = 0.5;
 const COMMAND_S: f64 = 0.02;
 
 /// Longest time that a path takes, with the way to its start and to rest, s.
-const FOLLOW_TIMEOUT_S: f64 = 300.0;
+const FOLLOW_TIMEOUT_S: f64 = 400.0;
 
 /// Longest time to a fault beyond that in which it has to be there, s: so a late one still has its time measured.
 const REACTION_TIMEOUT_S: f64 = 10.0;

@@ -9,6 +9,7 @@ use crate::link::Link;
 use crate::plant::Truth;
 use crate::scenario::{CommandStep, Measurand, Scenario};
 use leg_firmware::command::{Command, Compensation};
+use leg_firmware::control::MotionState;
 use leg_firmware::sensors::Sensors;
 use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::State;
@@ -109,10 +110,11 @@ impl<'a> TestStand<'a> {
         self.commanded = None;
     }
 
-    /// Compares the true tip with a direction and its rate, as horizontal components.
-    pub fn compare_with(&mut self, [direction, rate]: [[f64; 2]; 2]) {
+    /// Compares the true tip with the motion of a direction, as horizontal components.
+    pub fn compare_with(&mut self, motion: &MotionState<f64>) {
+        let direction = motion.position;
         let commanded_m = self.tip_m(direction);
-        let [[x, y], [x_rate, y_rate]] = [direction, rate];
+        let ([x, y], [x_rate, y_rate]) = (direction, motion.rate);
         let z_rate = -(x * x_rate + y * y_rate) / commanded_m.z * self.tip_length_m;
         let velocity = Vector3::new(x_rate, y_rate, z_rate) * self.tip_length_m;
         self.follow_error

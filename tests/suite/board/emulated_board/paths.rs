@@ -86,7 +86,7 @@ fn a_program_whose_host_dies_leaves_the_leg_in_hold() {
 }
 
 fn follow_program(board: &BoardUnderTest) -> Child {
-    let mut command = board.command(&["follow", "-"]);
+    let mut command = board.command(&["follow", "-", "--lead", "2"]);
     command
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())

@@ -2,8 +2,9 @@
 //!
 //! Three counters and three load cells watch a leg of two freedoms that carries a load of two components: one number is
 //! left over, the mean by which measured lengths exceed those of the estimated pose. A motion, a load and a push leave it as it
-//! is. A leg that can twist has a third freedom, but no load turns it about its own axis, and so the tensions show how far it twists. A load cell that lies changes it by a third of its error over the stiffness of the tendon, and a lost count by a third
-//! of its length.
+//! is. A leg that can twist has a third freedom, but no load turns it about its own axis, and so the tensions show how far it
+//! twists. A load cell that lies changes the mean by a third of its error over the stiffness of the tendon, and a lost count by a
+//! third of its length.
 
 use crate::control::{CYCLE_S, LengthError, LowPass, bounds::clamp_symmetric};
 use crate::settings::Settings;
