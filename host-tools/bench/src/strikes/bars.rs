@@ -270,4 +270,34 @@ mod tests {
             assert!(page.contains(&words), "{words}");
         }
     }
+
+    #[test]
+    fn the_page_on_safety_says_how_far_beyond_the_maximum_tension() {
+        let page = include_str!("../../../../firmware/SAFETY.md");
+        let page: Vec<_> = page.split_whitespace().collect();
+        let page = page.join(" ");
+        let percent = |part: f64| format!("{:.0} %", 100.0 * part);
+        for words in [
+            format!(
+                "cut off from full speed: up to {} more",
+                percent(CUT_OFF_BEYOND)
+            ),
+            format!(
+                "switches on fully by itself: up to {} more",
+                percent(RUNAWAY_BEYOND)
+            ),
+            format!(
+                "catches the falling leg: up to {} more",
+                percent(SLIP_BEYOND)
+            ),
+            format!(
+                "up to {} and {} more",
+                percent(STUCK_BEYOND),
+                percent(GRASPED_BEYOND)
+            ),
+            format!("up to {HOMING_N} N where a load cell fails"),
+        ] {
+            assert!(page.contains(&words), "{words}");
+        }
+    }
 }
