@@ -38,6 +38,7 @@
 //! | one waiting [`Command`](command::Command) is executed or refused | [`leg`] |
 //! | lengths and tensions → direction, residual, load | [`control::Estimator`] |
 //! | demanded stiffness → pretension | [`control::PretensionSearch`] |
+//! | set-points of a stream → segments of the trajectory | [`control::Stream`] |
 //! | trajectory point, load, pretension → tensions → unstretched lengths | [`control::TargetGenerator`] |
 //! | faults → reaction → state; it can only take authority away | [`supervisor`] |
 //! | goal of each tendon → duty, within voltage, current and tension | [`control::Axis`] |

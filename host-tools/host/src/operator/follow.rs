@@ -122,8 +122,13 @@ impl Operator {
         sending: &mut Sending,
     ) -> Result<(), OperatorError> {
         for point in points {
-            if let Some(before) = sending.held_back.replace(*point) {
-                self.send_point(&before, sending.begins, StreamPart::Next)?;
+            let Some(before) = sending.held_back.replace(*point) else {
+                continue;
+            };
+            if let Err(error) = self.send_point(&before, sending.begins, StreamPart::Next) {
+                // What comes after a point that is refused is none of the leg's.
+                sending.held_back = None;
+                return Err(error);
             }
         }
         Ok(())
