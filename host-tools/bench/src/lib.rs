@@ -21,9 +21,12 @@
 
 pub mod check;
 pub mod cost;
+mod draw;
 pub mod image_budget;
+pub mod moves;
 pub mod paper;
 pub mod precision;
 pub mod run_charts;
 pub mod sensitivity;
+mod stand;
 pub mod strikes;

@@ -10,7 +10,6 @@ mod case;
 mod false_alarms;
 mod preparation;
 mod push;
-mod stand;
 mod strike;
 mod table;
 mod way;
@@ -21,7 +20,8 @@ pub use false_alarms::{Alarm, Usage};
 pub use strike::{Moment, Struck};
 pub use table::{Row, Worst, rows};
 
-use case::{SLOTS, kind_of, mixed, name_of};
+use crate::draw::mixed;
+use case::{SLOTS, kind_of, name_of};
 use fastrand::Rng;
 use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Defect;

@@ -10,6 +10,7 @@
 //! | `map`, `curve`, `export`, `rig` | maps of the workspace; tendon curves; MuJoCo; rig files |
 //! | `leg_commands` | `home`, `move`, `stiffness`, `hold`, `stop`, `disarm`, `clear` |
 //! | `sensors`, `monitor`, `log`, `settings`, `calibrate` | what a leg reports, records and is set to |
+//! | `moves` | how the true tip of a simulated leg goes, with payloads that it is not told |
 //! | `strikes` | faults that strike a simulated leg in every state |
 //! | `emulate`, `flash`, `faults` | an emulated board; the image into a board; the fault table |
 //! | `board` | `setup`; links to the firmware in this process and under QEMU |
@@ -47,6 +48,7 @@ mod log;
 mod man;
 mod map;
 mod monitor;
+mod moves;
 mod notices;
 mod numbers;
 mod options;
@@ -116,6 +118,7 @@ enum Command {
     ///
     /// The other commands do the same on their first use, as far as they need it.
     Setup,
+    Moves(moves::Args),
     Strikes(strikes::Args),
 }
 
@@ -165,6 +168,7 @@ fn run(command: &Command, options: Options) -> Result<(), Failure> {
         Command::Sensors(args) => sensors::run(args, options),
         Command::Settings(args) => settings::run(args, options),
         Command::Setup => board::setup(options),
+        Command::Moves(args) => moves::run(args, options),
         Command::Strikes(args) => strikes::run(args, options),
     }
 }

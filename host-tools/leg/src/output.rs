@@ -6,6 +6,7 @@ use leg_base::failure::{Failure, Message};
 use leg_base::json_line::to_line;
 use leg_base::json_object;
 use leg_host::recording;
+use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::{RigFile, RigText};
 use std::error::Error;
 use std::fmt::Display;
@@ -28,6 +29,18 @@ pub(crate) fn load_rig(path: Option<&Path>) -> Result<RigFile, Failure> {
     let (rig, notes) = RigText::load(path)?.read()?;
     print_notes(&notes);
     Ok(rig)
+}
+
+/// The rig of a file or of that name, or, for `all`, every ready rig, with their names.
+pub(crate) fn load_rigs(path: &Path) -> Result<Vec<(String, RigFile)>, Failure> {
+    let load = |path: &Path| Ok((path.display().to_string(), load_rig(Some(path))?));
+    if path == Path::new("all") {
+        return READY_RIGS
+            .iter()
+            .map(|rig| load(rig.name.as_ref()))
+            .collect();
+    }
+    Ok(vec![load(path)?])
 }
 
 /// Prints notes on a file on standard error.

@@ -4,16 +4,14 @@ mod report;
 
 use crate::numbers::positive;
 use crate::options::Options;
-use crate::output::load_rig;
+use crate::output::load_rigs;
 use crate::progress;
 use clap::builder::PossibleValuesParser;
 use leg_base::failure::Failure;
 use leg_base::json_object;
 use leg_bench::strikes::{self, Activity, Campaign};
-use leg_rig::ready_rigs::READY_RIGS;
-use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Defect;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Strikes a simulated leg by every fault that it can have, wherever it is and whatever it does, and judges what happens.
 ///
@@ -52,7 +50,7 @@ const EVERY_S: f64 = 0.02;
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let campaign = Campaign {
         seed: args.seed,
-        rigs: rigs(&args.rig)?,
+        rigs: load_rigs(&args.rig)?,
         activities: args.state.clone(),
         fault: args.fault.clone(),
     };
@@ -109,17 +107,6 @@ fn false_alarms(campaign: &Campaign, hours: f64, options: Options) -> Result<(),
         format!("{false_ones} false alarms, {stopped} parts that did not go on"),
         "look at what was done before each; the same seed and rigs repeat it",
     ))
-}
-
-fn rigs(path: &Path) -> Result<Vec<(String, RigFile)>, Failure> {
-    let load = |path: &Path| Ok((path.display().to_string(), load_rig(Some(path))?));
-    if path == Path::new("all") {
-        return READY_RIGS
-            .iter()
-            .map(|rig| load(rig.name.as_ref()))
-            .collect();
-    }
-    Ok(vec![load(path)?])
 }
 
 /// The names that `--fault` knows.

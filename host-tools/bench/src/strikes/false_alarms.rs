@@ -1,8 +1,9 @@
 //! What a user does to a leg without any fault: no fault may come.
 
-use super::case::{TARED_N, feasible, mixed, plant};
+use super::case::TARED_N;
 use super::push::strongest_n;
-use super::stand::Stand;
+use crate::draw::{feasible, mixed, plant};
+use crate::stand::Stand;
 use fastrand::Rng;
 use leg_base::angles;
 use leg_firmware::command::{Command, Compensation};

@@ -3,9 +3,8 @@
 use super::activity::Activity;
 use super::case::Case;
 use super::push::strongest_n;
-use super::stand::Stand;
 use super::way::Way;
-use leg_base::angles;
+use crate::stand::{self, Stand};
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::State;
 use leg_sim::plant::Start;
@@ -27,11 +26,6 @@ const LATEST: f64 = 0.98;
 /// How long the way goes on after its end, s: what swings there belongs to it.
 const AFTER_S: f64 = 1.0;
 
-/// How little a leg moves that has come to rest, m, in how many ticks; and how often that is awaited.
-const STILL_M: f64 = 5e-5;
-const STILL_TICKS: u32 = 4_000;
-const STILL_SPANS: u32 = 80;
-
 /// How slack the tendons of a leg are before homing, mm.
 const SLACK_MM: f64 = 2.0;
 
@@ -49,7 +43,7 @@ pub(super) fn prepare(case: &Case) -> Result<Prepared, String> {
     let command = match case.activity {
         Activity::Following | Activity::Rearmed | Activity::Disarmed => None,
         Activity::Held => Some(Command::Stop),
-        Activity::Moving => Some(move_to(case.target_deg)),
+        Activity::Moving => Some(stand::move_to(case.target_deg)),
         Activity::Homing => Some(Command::Home),
         Activity::RampingDown => Some(Command::Disarm),
         Activity::Arming => Some(Command::Arm),
@@ -64,7 +58,7 @@ pub(super) fn prepare(case: &Case) -> Result<Prepared, String> {
         Activity::Held => {
             stand.command(&command)?;
             stand.until(1.0, "held", |stand| stand.state() == State::Held)?;
-            rest(&mut stand)?;
+            stand.rest()?;
             Ok(resting(stand))
         }
         Activity::Arming => {
@@ -114,7 +108,7 @@ fn lead(case: &Case, stand: &mut Stand) -> Result<(), String> {
     stand.command(&Command::Pretension(case.pretension_n as f32))?;
     stand.plant().set_payload(case.payload_kg, LOADING_S);
     stand.wait(LOADING_S + REST_S)?;
-    stand.command(&move_to([case.azimuth_deg, case.tilt_deg]))?;
+    stand.command(&stand::move_to([case.azimuth_deg, case.tilt_deg]))?;
     stand.wait(0.05)?;
     stand.until(MOVE_S, "the end of the move", |stand| !stand.moving())?;
     stand.wait(REST_S)?;
@@ -133,34 +127,13 @@ fn lead(case: &Case, stand: &mut Stand) -> Result<(), String> {
         stand.plant().push(across * force_n, LOADING_S, 0.1);
         stand.wait(LOADING_S)?;
     }
-    rest(stand)
-}
-
-fn move_to([azimuth_deg, tilt_deg]: [f64; 2]) -> Command {
-    let [x, y] = angles::direction(azimuth_deg, tilt_deg).map(|c| c as f32);
-    Command::Move { x, y }
+    stand.rest()
 }
 
 fn disarm(stand: &mut Stand) -> Result<(), String> {
     stand.command(&Command::Disarm)?;
     stand.until(MOVE_S, "disarmed", |stand| stand.state() == State::Disarmed)?;
-    rest(stand)
-}
-
-/// Waits until the leg no longer moves: it swings, and it compensates a load slowly.
-fn rest(stand: &mut Stand) -> Result<(), String> {
-    for _ in 0..STILL_SPANS {
-        let (before_m, mut moved_m) = (stand.truth.tip_m, 0.0_f64);
-        for _ in 0..STILL_TICKS {
-            stand.tick()?;
-            stand.require_no_fault()?;
-            moved_m = moved_m.max((stand.truth.tip_m - before_m).norm());
-        }
-        if moved_m < STILL_M {
-            return Ok(());
-        }
-    }
-    Err("the leg does not come to rest".into())
+    stand.rest()
 }
 
 /// A leg that is struck on its way, which it has gone to its end before.

@@ -1,5 +1,6 @@
 //! An emulated leg with its host, which can be cloned.
 
+use leg_base::angles;
 use leg_firmware::command::Command;
 use leg_firmware::drive::Drive;
 use leg_firmware::sensors::Sensors;
@@ -12,9 +13,14 @@ use leg_sim::host::Host;
 use leg_sim::link::InProcess;
 use leg_sim::plant::{Plant, Start, Truth};
 
+/// How little a leg moves that has come to rest, m, in how many ticks; and how often that is awaited.
+const STILL_M: f64 = 5e-5;
+const STILL_TICKS: u32 = 4_000;
+const STILL_SPANS: u32 = 80;
+
 /// An emulated leg, its host, and what was seen last.
 #[derive(Clone)]
-pub(super) struct Stand {
+pub(crate) struct Stand {
     leg: EmulatedLeg<InProcess>,
     host: Host,
     ticks: u64,
@@ -101,7 +107,7 @@ impl Stand {
             return Ok(());
         }
         let names = leg_base::description::faults(self.faults());
-        Err(format!("{names} before any strike"))
+        Err(format!("{names}, which nothing caused"))
     }
 
     /// Lets a time pass without a fault.
@@ -127,4 +133,26 @@ impl Stand {
         }
         Ok(())
     }
+
+    /// Waits until the leg no longer moves: it swings, and it compensates a load slowly.
+    pub fn rest(&mut self) -> Result<(), String> {
+        for _ in 0..STILL_SPANS {
+            let (before_m, mut moved_m) = (self.truth.tip_m, 0.0_f64);
+            for _ in 0..STILL_TICKS {
+                self.tick()?;
+                self.require_no_fault()?;
+                moved_m = moved_m.max((self.truth.tip_m - before_m).norm());
+            }
+            if moved_m < STILL_M {
+                return Ok(());
+            }
+        }
+        Err("the leg does not come to rest".into())
+    }
+}
+
+/// The command to go to a pose.
+pub(crate) fn move_to([azimuth_deg, tilt_deg]: [f64; 2]) -> Command {
+    let [x, y] = angles::direction(azimuth_deg, tilt_deg).map(|c| c as f32);
+    Command::Move { x, y }
 }

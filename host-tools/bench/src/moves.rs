@@ -1,0 +1,151 @@
+//! Moves of the simulated leg with payloads that nobody tells it, judged by where the true tip is.
+
+mod drawn_move;
+mod reference;
+
+pub use drawn_move::Drawn;
+
+use crate::stand::{self, Stand};
+use leg_firmware::command::Command;
+use leg_firmware::supervisor::State;
+use leg_rig::rig_file::RigFile;
+use leg_sim::plant::Start;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+use reference::Reference;
+use serde::Serialize;
+
+/// How long the leg is watched after a move, s; over the last part of it the tip's mean is where it rests, s.
+const WATCHED_S: f64 = 3.0;
+const RESTING_S: f64 = 0.5;
+
+/// From when the tip counts as at rest, mm.
+const SETTLED_MM: f64 = 0.02;
+
+/// Longest move, s.
+const MOVE_S: f64 = 10.0;
+
+/// Time of a change of payload, s, and in which the leg then comes to rest.
+const LOADING_S: f64 = 0.4;
+const REST_S: f64 = 1.0;
+
+/// Which moves are made.
+#[derive(Clone, Debug)]
+pub struct Campaign {
+    /// Everything random follows from it.
+    pub seed: u64,
+    /// The rigs by name.
+    pub rigs: Vec<(String, RigFile)>,
+}
+
+/// A move, and how it went.
+#[derive(Clone, Debug, Serialize)]
+pub struct Moved {
+    /// What was drawn.
+    pub drawn: Drawn,
+    /// From the command to the end of the trajectory, s.
+    pub took_s: f64,
+    /// Farthest that the true tip was off the trajectory on the way, mm.
+    pub off_mm: f64,
+    /// Farthest that it was from where it comes to rest after the end, mm.
+    pub swing_mm: f64,
+    /// How long after the end it came within 0.02 mm of that for good, s.
+    pub settled_s: f64,
+    /// How far from the commanded point it rests, mm.
+    pub rest_mm: f64,
+    /// Why it did not come to its end, if it did not.
+    pub stopped: Option<String>,
+}
+
+impl Campaign {
+    /// Makes so many moves, on all cores, and calls `done` after each. They come in the order of their numbers.
+    pub fn run(&self, count: u64, done: impl Fn() + Sync) -> Vec<Moved> {
+        let moved = |number| {
+            let drawn = Drawn::new(self.seed, &self.rigs, number);
+            let moved = make(&drawn);
+            done();
+            moved
+        };
+        (0..count).into_par_iter().map(moved).collect()
+    }
+}
+
+/// Makes a move.
+fn make(drawn: &Drawn) -> Moved {
+    let mut moved = Moved {
+        drawn: drawn.clone(),
+        took_s: 0.0,
+        off_mm: 0.0,
+        swing_mm: 0.0,
+        settled_s: 0.0,
+        rest_mm: 0.0,
+        stopped: None,
+    };
+    let went = prepared(drawn).and_then(|mut stand| go(drawn, &mut stand, &mut moved));
+    moved.stopped = went.err();
+    moved
+}
+
+/// A leg at rest where the move begins.
+fn prepared(drawn: &Drawn) -> Result<Stand, String> {
+    let start = Start::hanging(drawn.pretension_n);
+    let mut stand = Stand::new(&drawn.file, &drawn.plant, start, drawn.number)?;
+    stand.until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
+    stand.wait(0.1)?;
+    stand.command(&Command::Arm)?;
+    stand.until(2.0, "active", |stand| stand.state() == State::Active)?;
+    stand.wait(0.3)?;
+    stand.command(&Command::Pretension(drawn.pretension_n as f32))?;
+    stand.plant().set_payload(drawn.payload_kg, LOADING_S);
+    stand.wait(LOADING_S + REST_S)?;
+    stand.command(&stand::move_to(drawn.begin_deg))?;
+    stand.wait(0.05)?;
+    stand.until(MOVE_S, "the start of the move", |stand| !stand.moving())?;
+    stand.wait(REST_S)?;
+    stand.rest()?;
+    Ok(stand)
+}
+
+fn go(drawn: &Drawn, stand: &mut Stand, moved: &mut Moved) -> Result<(), String> {
+    let began_s = stand.time_s();
+    stand.command(&stand::move_to(drawn.end_deg))?;
+    let mut reference = Reference::new(drawn.tip_length_m());
+    loop {
+        stand.tick()?;
+        stand.require_no_fault()?;
+        if let Some(off_m) = reference.off_m(stand) {
+            moved.off_mm = moved.off_mm.max(off_m * 1000.0);
+        }
+        moved.took_s = stand.time_s() - began_s;
+        if moved.took_s > 0.05 && !stand.moving() {
+            break;
+        }
+        if moved.took_s > MOVE_S {
+            return Err("the move does not end".into());
+        }
+    }
+    let mut tips_m = Vec::new();
+    let ended_s = stand.time_s();
+    while stand.time_s() < ended_s + WATCHED_S {
+        stand.tick()?;
+        stand.require_no_fault()?;
+        tips_m.push(stand.truth.tip_m);
+    }
+    rest(drawn, &tips_m, moved);
+    Ok(())
+}
+
+/// How the tip comes to rest.
+fn rest(drawn: &Drawn, tips_m: &[Vector3<f64>], moved: &mut Moved) {
+    let resting = (RESTING_S / WATCHED_S * tips_m.len() as f64) as usize;
+    let last = &tips_m[tips_m.len() - resting..];
+    let rest_m = last.iter().sum::<Vector3<f64>>() / resting as f64;
+    for (i, tip_m) in tips_m.iter().enumerate() {
+        let away_mm = (tip_m - rest_m).norm() * 1000.0;
+        moved.swing_mm = moved.swing_mm.max(away_mm);
+        if away_mm > SETTLED_MM {
+            moved.settled_s = (i + 1) as f64 / tips_m.len() as f64 * WATCHED_S;
+        }
+    }
+    moved.rest_mm = (rest_m - drawn.end_tip_m()).norm() * 1000.0;
+}

@@ -1,0 +1,79 @@
+//! A move that is drawn from the seed and its number.
+
+use crate::draw::{PAYLOAD_KG, between, drawn, feasible, mixed, pose};
+use fastrand::Rng;
+use leg_base::angles;
+use leg_rig::plant_settings::PlantSettings;
+use leg_rig::rig_file::RigFile;
+use nalgebra::Vector3;
+use serde::Serialize;
+
+/// Shortest move, as a distance of directions: 3°.
+const SHORTEST: f64 = 0.052;
+
+/// A move.
+#[derive(Clone, Debug, Serialize)]
+pub struct Drawn {
+    /// Counted from 0.
+    pub number: u64,
+    /// The rig's name.
+    pub rig: String,
+    /// Azimuth and tilt at its begin, degrees.
+    pub begin_deg: [f64; 2],
+    /// The same at its end.
+    pub end_deg: [f64; 2],
+    /// kg.
+    pub payload_kg: f64,
+    /// N.
+    pub pretension_n: f64,
+    #[serde(skip)]
+    pub(super) file: RigFile,
+    #[serde(skip)]
+    pub(super) plant: PlantSettings,
+}
+
+impl Drawn {
+    /// The move of a number.
+    pub(super) fn new(seed: u64, rigs: &[(String, RigFile)], number: u64) -> Self {
+        let mut rng = Rng::with_seed(mixed(seed, number));
+        let (rig, file) = &rigs[(number % rigs.len() as u64) as usize];
+        loop {
+            let (begin_deg, end_deg) = (pose(file, &mut rng), pose(file, &mut rng));
+            let payload_kg = drawn(&mut rng, PAYLOAD_KG);
+            let ranges = [begin_deg, end_deg, [0.0; 2]].map(|at| feasible(file, at, payload_kg));
+            let low = ranges.iter().map(|range| range[0]).fold(0.0, f64::max);
+            let high = ranges
+                .iter()
+                .map(|range| range[1])
+                .fold(f64::INFINITY, f64::min);
+            let pretension_n = low + (high - low) * rng.f64();
+            if low < high && between(&begin_deg, &end_deg) > SHORTEST {
+                return Self {
+                    number,
+                    rig: rig.clone(),
+                    begin_deg,
+                    end_deg,
+                    payload_kg,
+                    pretension_n,
+                    file: *file,
+                    // A homed leg has tared its cells.
+                    plant: PlantSettings {
+                        cell_offset_n: [0.0; 3],
+                        ..file.plant
+                    },
+                };
+            }
+        }
+    }
+
+    pub(super) fn tip_length_m(&self) -> f64 {
+        let parameters = &self.file.parameters;
+        parameters.joint_length_m + parameters.leg_length_m
+    }
+
+    /// The commanded tip, m.
+    pub(super) fn end_tip_m(&self) -> Vector3<f64> {
+        let [x, y] = angles::direction(self.end_deg[0], self.end_deg[1]);
+        Vector3::new(x, y, -(1.0 - x * x - y * y).max(0.0).sqrt()) * self.tip_length_m()
+    }
+}

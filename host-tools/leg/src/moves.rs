@@ -1,0 +1,68 @@
+//! `leg moves`.
+
+use crate::options::Options;
+use crate::output::load_rigs;
+use crate::progress;
+use leg_base::failure::Failure;
+use leg_base::json_object;
+use leg_bench::moves::{Campaign, Moved};
+use std::path::PathBuf;
+
+/// Moves a simulated leg between random poses with payloads that nobody tells it, and measures how its true tip goes.
+///
+/// Each move is drawn from the seed: two poses of the workspace, a payload up to 2 kg and a feasible pretension. Off is how far
+/// the tip is from the trajectory on the way, swing how far from where it comes to rest after the end; it has settled when it
+/// stays within 0.02 mm of that.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// Everything random follows from it.
+    #[arg(long, default_value = "1")]
+    seed: u64,
+    /// How many moves.
+    #[arg(long, default_value = "60", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    count: u64,
+    /// A rig file, the name of a ready rig, or `all` ready rigs.
+    #[arg(long, value_name = "FILE", default_value = "table1")]
+    rig: PathBuf,
+}
+
+pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
+    let campaign = Campaign {
+        seed: args.seed,
+        rigs: load_rigs(&args.rig)?,
+    };
+    let bar = progress::bar(args.count, "moves");
+    let moved = campaign.run(args.count, || bar.inc(1));
+    bar.finish_and_clear();
+    let json = json_object! { seed: args.seed, moves: &moved };
+    options.report(&json, || table(&moved))
+}
+
+fn table(moved: &[Moved]) -> String {
+    let lines: String = moved.iter().map(line).collect();
+    format!(
+        "  #  from °         to °            kg      N    took s  off mm  swing mm  settled s  rest mm\n{lines}"
+    )
+}
+
+fn line(moved: &Moved) -> String {
+    let drawn = &moved.drawn;
+    let pose = |[azimuth, tilt]: [f64; 2]| format!("{azimuth:6.1} {tilt:5.1}");
+    let stopped = moved
+        .stopped
+        .as_ref()
+        .map_or(String::new(), |why| format!("  {why}"));
+    format!(
+        "{:3}  {}  {}  {:5.2}  {:5.1}  {:6.2}  {:6.3}  {:8.3}  {:9.2}  {:7.3}{stopped}\n",
+        drawn.number,
+        pose(drawn.begin_deg),
+        pose(drawn.end_deg),
+        drawn.payload_kg,
+        drawn.pretension_n,
+        moved.took_s,
+        moved.off_mm,
+        moved.swing_mm,
+        moved.settled_s,
+        moved.rest_mm,
+    )
+}
