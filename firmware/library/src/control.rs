@@ -6,6 +6,7 @@ mod debounce;
 mod estimate;
 mod filter;
 mod homing;
+mod inertia;
 mod measure;
 mod mechanism;
 mod plan;

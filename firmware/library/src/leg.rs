@@ -26,6 +26,7 @@ use command_queue::CommandQueue;
 use leg_model::{Error, Scalar};
 use link_watch::LinkWatch;
 use mode::{Mode, ModeStep, Trust};
+use nalgebra::Vector3;
 use phase::Phase;
 use shared::Shared;
 
@@ -147,7 +148,7 @@ impl<T: Scalar> Leg<T> {
         if self.phase == Phase::Estimate
             && shared.zero_m.is_some()
             && shared
-                .estimate(measured, LoadEstimation::Immediate)
+                .estimate(measured, LoadEstimation::Immediate, &Vector3::zeros())
                 .is_err()
         {
             // The last pose stands, but nothing is compared with it.

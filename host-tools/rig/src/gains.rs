@@ -2,9 +2,11 @@
 
 use crate::actuator::Actuator;
 use crate::number::decimal;
+use crate::plant_settings::slender_inertia_kg_m2;
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;
-use leg_firmware::settings::{Field, Gains, SECTIONS, Servo};
+use leg_firmware::settings::{Field, Gains, Motion, SECTIONS, Servo};
+use leg_model::RigParameters;
 use toml::de::DeTable;
 
 /// The common beginning of the sections.
@@ -27,15 +29,19 @@ impl GainChange {
     }
 }
 
-/// The defaults for a motor: its own resistance and induced voltage. The currents that friction and a pull take are not
+/// The defaults for a motor and a leg: its own resistance, induced voltage and inertia. The currents that friction and a pull take are not
 /// computed: no data sheet gives them well, so another motor needs its own in `[control.servo]`.
 #[must_use]
-pub fn defaults(actuator: &Actuator) -> Gains {
+pub fn defaults(actuator: &Actuator, rig: &RigParameters<f64, 3>) -> Gains {
     Gains {
         servo: Servo {
             back_emf_v_s_per_m: actuator.back_emf_v_s_per_m() as f32,
             resistance_ohm: actuator.resistance_ohm as f32,
             ..Servo::DEFAULT
+        },
+        motion: Motion {
+            inertia_kg_m2: slender_inertia_kg_m2(rig) as f32,
+            ..Motion::DEFAULT
         },
         ..Gains::default()
     }

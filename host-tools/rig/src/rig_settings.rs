@@ -67,7 +67,7 @@ fn numbers(
 /// Gains and limits of the control law.
 #[must_use]
 pub fn control(file: &RigFile) -> Vec<Setting> {
-    let defaults = gains::defaults(&file.actuator);
+    let defaults = gains::defaults(&file.actuator, &file.parameters);
     let mut values = file.gains.values().map(decimal);
     let mut defaults = defaults.values().map(decimal);
     let settings = SECTIONS.map(|(name, fields)| {

@@ -177,7 +177,8 @@ impl<T: Scalar> Estimator<T> {
     }
 
     /// Estimates the pose and, as `load_estimation` says, the load. `target_torsion`, rad, is the elastic one of a leg whose
-    /// tendons are slack; taut ones show it by themselves.
+    /// tendons are slack; taut ones show it by themselves. What the motion of the leg takes, by its `angular_acceleration` in 1/s², is
+    /// no load.
     ///
     /// # Errors
     /// A tension beyond a tendon's curve; what forward kinematics refuses.
@@ -189,6 +190,7 @@ impl<T: Scalar> Estimator<T> {
         tensions_n: &[T; 3],
         target_torsion: T,
         load_estimation: LoadEstimation,
+        angular_acceleration: &Vector3<T>,
     ) -> Result<Estimate<T>, Error> {
         let (mut lengths, mut pull) = (SVector::<T, 3>::zeros(), SVector::<T, 3>::zeros());
         let mut elongations_m = [T::zero(); 3];
@@ -223,7 +225,8 @@ impl<T: Scalar> Estimator<T> {
             let twists = mechanism.support.twists();
             if twists || load_estimation != LoadEstimation::Frozen {
                 let tendons = estimate_moment(&kinematics.moment_map, &pull);
-                let load = tendons - mechanism.support.joint_moment(&found.direction, torsion);
+                let load = tendons - mechanism.support.joint_moment(&found.direction, torsion)
+                    + angular_acceleration * mechanism.inertia(self.payload_kg());
                 if twists {
                     self.update_torsion(&load, &pull);
                 }

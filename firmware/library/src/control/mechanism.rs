@@ -24,6 +24,9 @@ pub struct Mechanism<T> {
     pub leg: Load<T>,
     /// Moment of a payload of 1 kg with the leg horizontal, N·m/kg.
     pub payload_lever: T,
+    /// Inertia of the leg without a payload across its axis, about the joint, kg·m², and that of a payload of 1 kg.
+    pub leg_inertia: T,
+    pub payload_inertia: T,
 }
 
 impl<T: Scalar> Mechanism<T> {
@@ -44,6 +47,8 @@ impl<T: Scalar> Mechanism<T> {
             f_max_n,
             leg: Load::new(&rig, T::zero())?,
             payload_lever: parameters.gravity_m_per_s2 * rig.tip_m(),
+            leg_inertia: settings.motion.inertia_kg_m2.into(),
+            payload_inertia: rig.tip_m() * rig.tip_m(),
             rig,
         })
     }
@@ -68,6 +73,12 @@ impl<T: Scalar> Mechanism<T> {
         } else {
             self.rig.geometry()
         }
+    }
+
+    /// Inertia across the leg with a payload, kg·m².
+    #[inline(always)]
+    pub fn inertia(&self, payload_kg: T) -> T {
+        self.leg_inertia + payload_kg * self.payload_inertia
     }
 
     /// The weights with a payload.

@@ -6,8 +6,8 @@ use super::{
 };
 use crate::settings::Settings;
 use leg_model::{
-    Direction, Distribution, Elasticity, Error, HalfTangent, Kinematics, Scalar, distribute,
-    inverse_kinematics,
+    Direction, Distribution, Elasticity, Error, FreePlane, HalfTangent, Kinematics, Scalar,
+    distribute, inverse_kinematics,
 };
 use nalgebra::Vector3;
 
@@ -18,6 +18,8 @@ pub struct Target<T> {
     pub direction: Direction<T>,
     /// Its elastic torsion there, rad.
     pub torsion: T,
+    /// The angular acceleration there, 1/s².
+    pub angular_acceleration: Vector3<T>,
     /// Lengths and moments of the tendons there.
     pub kinematics: Kinematics<T, 3>,
     /// The tensions that balance the load there.
@@ -54,6 +56,10 @@ pub struct TargetDemand<T> {
     pub q: HalfTangent<T>,
     /// The load beyond the leg's own weight.
     pub load: LoadEstimate<T>,
+    /// The angular acceleration there, 1/s².
+    pub angular_acceleration: Vector3<T>,
+    /// The payload whose inertia is moved, kg.
+    pub payload_kg: T,
     /// Whether the weights shall be held, or left out.
     pub compensated: bool,
     /// Whether the pretension is trimmed by the measured tensions: not before every tendon pulls.
@@ -113,8 +119,11 @@ impl<T: Scalar> TargetGenerator<T> {
         let [x, y] = demand.load.moment(&direction, mechanism.payload_lever);
         let load = mechanism.leg.moment(&direction) + Vector3::new(x, y, T::zero());
         moment += load * self.step_share(demand.compensated);
+        let held = moment;
+        moment -= demand.angular_acceleration * mechanism.inertia(demand.payload_kg);
         let distribution = distribute(&kinematics.moment_map, &plane, &moment, &mechanism.bounds)?;
-        if !distribution.feasible() {
+        // At the edge of what the bounds allow, a motion may take more for a moment; the pose itself has to be held within them.
+        if !distribution.feasible() && !holds(mechanism, &kinematics, &plane, &held)? {
             return Err(Error::Infeasible);
         }
         let measured_pretension_n = || pretension(&distribution, measured_n);
@@ -142,6 +151,7 @@ impl<T: Scalar> TargetGenerator<T> {
         Ok(Target {
             direction,
             torsion,
+            angular_acceleration: demand.angular_acceleration,
             kinematics,
             distribution,
             pretension_n,
@@ -182,6 +192,18 @@ impl<T: Scalar> TargetGenerator<T> {
         self.trim_n = clamp_symmetric(self.trim_n + self.trim_gain * error, self.trim_max_n);
         self.trim_n
     }
+}
+
+/// Whether some tensions inside the bounds hold a moment.
+#[cold]
+fn holds<T: Scalar>(
+    mechanism: &Mechanism<T>,
+    kinematics: &Kinematics<T, 3>,
+    plane: &FreePlane<T>,
+    moment: &Vector3<T>,
+) -> Result<bool, Error> {
+    let distribution = distribute(&kinematics.moment_map, plane, moment, &mechanism.bounds)?;
+    Ok(distribution.feasible())
 }
 
 /// The pretension that tensions have.

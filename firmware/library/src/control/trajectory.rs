@@ -7,6 +7,7 @@ use super::segment::Segment;
 use super::stream::Stream;
 use super::{CYCLE_S, CYCLE_TICKS};
 use leg_model::{HalfTangent, Scalar};
+use nalgebra::Vector3;
 
 /// A point of the trajectory.
 pub type Point<T> = HalfTangent<T>;
@@ -27,6 +28,8 @@ pub struct Trajectory<T> {
     /// Whether the last stream ended without its last point, and nothing was commanded since.
     point_missing: bool,
     planned: Option<Plan<T>>,
+    /// Angular acceleration at the next point, 1/s².
+    angular_acceleration: Vector3<T>,
 }
 
 /// Ticks of a cycle.
@@ -79,6 +82,7 @@ impl<T: Scalar> Trajectory<T> {
             begins: false,
             point_missing: false,
             planned: None,
+            angular_acceleration: Vector3::zeros(),
         }
     }
 
@@ -87,6 +91,7 @@ impl<T: Scalar> Trajectory<T> {
         self.path = Quintic::new(&MotionState::at_rest(q.xy()), q.xy(), T::one());
         (self.elapsed, self.duration) = (0, 0);
         (self.streamed, self.begins, self.planned) = (false, false, None);
+        self.angular_acceleration = Vector3::zeros();
     }
 
     /// Follows a stream from [`Self::next_motion`] on.
@@ -175,6 +180,18 @@ impl<T: Scalar> Trajectory<T> {
                 None => self.attempt(plan),
             };
         }
+        // A path that ends in rest ends without an acceleration.
+        self.angular_acceleration = if self.moving() {
+            self.next_motion().angular_acceleration()
+        } else {
+            Vector3::zeros()
+        };
+    }
+
+    /// The angular acceleration p × p̈ at the next point, 1/s².
+    #[inline(always)]
+    pub fn angular_acceleration(&self) -> Vector3<T> {
+        self.angular_acceleration
     }
 
     /// Enters the next segment if the next point is in it: without one, that to rest.

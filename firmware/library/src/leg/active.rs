@@ -9,6 +9,7 @@ use crate::control::{
 };
 use crate::set_point::{PointRefusal, SetPoint, StreamPart};
 use leg_model::{Direction, Error, HalfTangent, Scalar};
+use nalgebra::Vector3;
 
 /// The leg follows commands.
 #[derive(Clone, Copy, Debug)]
@@ -179,7 +180,10 @@ impl<T: Scalar> Active<T> {
             self.tensioned =
                 self.slack.taken_up() && tensions_n.iter().all(|&tension| tension > f_min_n);
         }
-        shared.estimate(measured, load_estimation)
+        let angular_acceleration = shared
+            .target
+            .map_or(Vector3::zeros(), |target| target.angular_acceleration);
+        shared.estimate(measured, load_estimation, &angular_acceleration)
     }
 
     /// Computes the next target, and leads the axes there.
@@ -191,6 +195,8 @@ impl<T: Scalar> Active<T> {
         let taut = self.slack.taken_up();
         let demand = TargetDemand {
             q: self.trajectory.step(),
+            angular_acceleration: self.trajectory.angular_acceleration(),
+            payload_kg: shared.estimator.payload_kg(),
             load: shared.estimator.load(),
             compensated: shared.compensation != Compensation::Off,
             trimmed: shared.compensation == Compensation::Estimated && self.tensioned,

@@ -9,6 +9,7 @@ use crate::drive::Drive;
 use crate::settings::{Homing, Settings, SettingsError};
 use crate::supervisor::State;
 use leg_model::{Direction, Error, Scalar, inverse_kinematics};
+use nalgebra::Vector3;
 
 /// The control law's state that outlasts a mode.
 ///
@@ -161,12 +162,13 @@ impl<T: Scalar> Shared<T> {
         (self.f_max_n, self.lowest_m) = (T::MAX, [-T::MAX; 3]);
     }
 
-    /// Estimates pose and load.
+    /// Estimates pose and load of a leg that shall turn with an angular acceleration, 1/s².
     #[inline(never)]
     pub fn estimate(
         &mut self,
         measured: &Measured<T>,
         load_estimation: LoadEstimation,
+        angular_acceleration: &Vector3<T>,
     ) -> Result<(), Error> {
         let Some(mut unstretched_m) = self.zero_m else {
             return Err(Error::NotConverged);
@@ -180,6 +182,7 @@ impl<T: Scalar> Shared<T> {
             &measured.steady_tensions_n,
             self.targets.torsion(),
             load_estimation,
+            angular_acceleration,
         )?;
         self.estimate = Some(estimate);
         Ok(())

@@ -19,6 +19,8 @@ fields! {
         pretension_rate_n_per_s ["N/s"]: 0.1..=1e4 = 120.0;
         /// Time in which the compensation of the load comes and goes.
         load_time_s ["s"]: 1e-3..=60.0 = 0.6;
+        /// Inertia of the leg without a payload across its axis, about the joint: a slender leg of its mass and centroid unless given.
+        inertia_kg_m2 ["kg·m²"]: 0.0..=1e3 = 0.016562;
     }
 }
 

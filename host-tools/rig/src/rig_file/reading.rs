@@ -70,7 +70,10 @@ fn read(root: &Section<'_>) -> Result<RigFile, TomlError> {
         support_name,
         support,
         critical_n,
-        gains: gains::changed(gains::defaults(&actuator), &gains::read(root.table)?),
+        gains: gains::changed(
+            gains::defaults(&actuator, &parameters),
+            &gains::read(root.table)?,
+        ),
         calibration: Calibration::read(root, &actuator)?,
         actuator,
         plant: PlantSettings::read(root)?,
