@@ -2,6 +2,7 @@
 
 mod axis;
 pub(crate) mod bounds;
+mod damping;
 mod debounce;
 mod estimate;
 mod filter;
@@ -19,6 +20,7 @@ mod target;
 mod trajectory;
 
 pub use axis::{Axis, AxisGoal, AxisInput, AxisView};
+pub use damping::SwingDamping;
 pub use debounce::Debounce;
 pub use estimate::{Estimate, Estimator, LengthError, LoadEstimate, LoadEstimation};
 pub use filter::LowPass;

@@ -26,6 +26,8 @@ pub struct Estimate<T> {
     pub direction: Direction<T>,
     /// What forward kinematics leaves over, m: a tendon that jumped or a count that was lost shows there.
     pub residual_m: T,
+    /// Length of each tendon, m.
+    pub lengths_m: [T; 3],
     /// The same with its sign, for the watch over time; none while the tendons are not taut.
     pub length_error: Option<LengthError<T>>,
 }
@@ -238,6 +240,7 @@ impl<T: Scalar> Estimator<T> {
         Ok(Estimate {
             direction: found.direction,
             residual_m: found.residual_m,
+            lengths_m: lengths.into(),
             length_error,
         })
     }

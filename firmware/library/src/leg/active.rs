@@ -46,6 +46,7 @@ impl<T: Scalar> Active<T> {
     pub fn begin(shared: &mut Shared<T>, measured: &Measured<T>) -> Self {
         let compensated = shared.compensation != Compensation::Off;
         shared.targets.start(compensated);
+        shared.damping.start();
         shared.stream.leave();
         shared.target = None;
         shared.estimate = None;
@@ -218,8 +219,9 @@ impl<T: Scalar> Active<T> {
             }
         };
         let mut pulled_m = zero_m;
-        for (pulled, &unstretched) in pulled_m.iter_mut().zip(&target.unstretched_m) {
-            *pulled -= unstretched;
+        let longer_m = self.brake_swing(shared);
+        for (i, pulled) in pulled_m.iter_mut().enumerate() {
+            *pulled -= target.unstretched_m[i] + longer_m[i];
         }
         let speed_m_per_s = if taut {
             shared.limits.servo_m_per_s
@@ -238,6 +240,26 @@ impl<T: Scalar> Active<T> {
         target.limited &= taut;
         shared.target = Some(target);
         Ok(())
+    }
+
+    /// By how much each tendon shall be longer to brake a swing about the last target, m.
+    #[inline(always)]
+    fn brake_swing(&self, shared: &mut Shared<T>) -> [T; 3] {
+        let (true, Some(target), Some(estimate)) =
+            (self.tensioned, &shared.target, &shared.estimate)
+        else {
+            return [T::zero(); 3];
+        };
+        let mut beside_m = estimate.lengths_m;
+        for (i, beside) in beside_m.iter_mut().enumerate() {
+            *beside -= target.kinematics.lengths[i];
+        }
+        let inertia = shared.mechanism.inertia(shared.estimator.payload_kg());
+        let stiffness = bounds::max(shared.pretension.stiffness_nm_per_rad(), T::one());
+        let period_s = (inertia / stiffness).sqrt();
+        shared
+            .damping
+            .step(&beside_m, &target.distribution.per_pretension, period_s)
     }
 
     /// Stays where the last target was: there is none where the trajectory is now.

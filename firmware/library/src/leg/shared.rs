@@ -3,7 +3,8 @@
 use crate::command::Compensation;
 use crate::control::{
     Axis, AxisInput, CYCLE_TICKS, Estimate, Estimator, LoadEstimation, Measured, Mechanism,
-    MotionLimits, PretensionSearch, Stream, StreamLimits, Target, TargetGenerator, bounds, ticks,
+    MotionLimits, PretensionSearch, Stream, StreamLimits, SwingDamping, Target, TargetGenerator,
+    bounds, ticks,
 };
 use crate::drive::Drive;
 use crate::settings::{Homing, Settings, SettingsError};
@@ -20,6 +21,7 @@ pub struct Shared<T> {
     pub axes: [Axis<T>; 3],
     pub estimator: Estimator<T>,
     pub targets: TargetGenerator<T>,
+    pub damping: SwingDamping<T>,
     pub compensation: Compensation,
     /// Length of each tendon without tension when the board started, m.
     pub zero_m: Option<[T; 3]>,
@@ -107,6 +109,7 @@ impl<T: Scalar> Shared<T> {
             estimator: Estimator::new(settings),
             pretension: PretensionSearch::new(settings.pretension_n.into()),
             targets: TargetGenerator::new(settings),
+            damping: SwingDamping::new(settings),
             stream: Stream::new(StreamLimits::new(settings)),
             axes: [Axis::new(settings); 3],
             compensation: Compensation::Estimated,

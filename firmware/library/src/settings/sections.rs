@@ -21,6 +21,8 @@ fields! {
         load_time_s ["s"]: 1e-3..=60.0 = 0.6;
         /// Inertia of the leg without a payload across its axis, about the joint: a slender leg of its mass and centroid unless given.
         inertia_kg_m2 ["kg·m²"]: 0.0..=1e3 = 0.016562;
+        /// Damping ratio that the tendons give the leg's first mode; 0 for none.
+        damping_ratio ["1"]: 0.0..=0.5 = 0.35;
     }
 }
 

@@ -1,0 +1,119 @@
+//! Damping of the leg's own swing: the tendons brake what the leg moves beside its trajectory.
+
+use super::{
+    CYCLE_S,
+    bounds::{clamp_symmetric, min},
+};
+use crate::settings::Settings;
+use leg_model::Scalar;
+use nalgebra::SVector;
+
+/// Time constant of each of the two filters of the speeds by the period of the mode, rad. The lag of both is 48° there. Faster ones
+/// would see the damping of the tendons themselves: they pull harder while they are reeled in, and look longer.
+const FILTER_RAD: f32 = 0.45;
+
+/// Angular frequency up to which the mode gets the whole damping ratio, rad/s: 8 Hz. Above it, it rings down fast by less.
+const WHOLE_RAD_PER_S: f32 = 50.0;
+
+/// The longest period that the filters are made for, s/rad: 1 Hz.
+const LONGEST_S: f32 = 0.16;
+
+/// Speed of a tendon that is not braked, m/s: above the noise of the load cells, or the motors would never rest.
+const LEAST_M_PER_S: f32 = 5e-5;
+
+/// Brakes the swing.
+#[derive(Clone, Copy, Debug)]
+pub struct SwingDamping<T> {
+    /// How far each tendon is longer than the trajectory asks, m; and how fast that grows, m/s. None at first.
+    tendons: Option<[Speed<T>; 3]>,
+    /// Twice the damping ratio.
+    twice_ratio: T,
+}
+
+/// The filtered change of a length.
+#[derive(Clone, Copy, Debug)]
+struct Speed<T> {
+    length_m: T,
+    m_per_s: T,
+}
+
+impl<T: Scalar> Speed<T> {
+    fn new(length_m: T) -> Self {
+        Self {
+            length_m,
+            m_per_s: T::zero(),
+        }
+    }
+
+    /// `share` of what is new passes each filter.
+    #[inline(always)]
+    fn step(&mut self, length_m: T, share: T) -> T {
+        let step_m = (length_m - self.length_m) * share;
+        self.length_m += step_m;
+        self.m_per_s += (step_m * T::from(1.0 / CYCLE_S) - self.m_per_s) * share;
+        self.m_per_s
+    }
+}
+
+impl<T: Scalar> SwingDamping<T> {
+    /// Before the first cycle.
+    pub fn new(settings: &Settings) -> Self {
+        Self {
+            tendons: None,
+            twice_ratio: T::from(2.0 * settings.motion.damping_ratio),
+        }
+    }
+
+    /// Starts anew.
+    pub fn start(&mut self) {
+        self.tendons = None;
+    }
+
+    /// By how much each tendon shall be longer, m, for lengths that are beside those of the trajectory by `beside_m`. The tensions per
+    /// pretension tell a swing from a sensor that lies: a swing changes no length along them. `period_s` is the inverse of
+    /// the angular frequency of the first mode, s/rad.
+    #[inline(always)]
+    pub fn step(
+        &mut self,
+        beside_m: &[T; 3],
+        per_pretension: &SVector<T, 3>,
+        period_s: T,
+    ) -> [T; 3] {
+        let period_s = min(period_s, T::from(LONGEST_S));
+        let share = T::from(CYCLE_S) / (T::from(CYCLE_S) + T::from(FILTER_RAD) * period_s);
+        let tendons = self.tendons.get_or_insert_with(|| beside_m.map(Speed::new));
+        let mut speeds = [T::zero(); 3];
+        for (speed, (tendon, &length_m)) in speeds.iter_mut().zip(tendons.iter_mut().zip(beside_m))
+        {
+            *speed = tendon.step(length_m, share);
+        }
+        let swing = common(speeds, per_pretension);
+        let slow = min(period_s * T::from(WHOLE_RAD_PER_S), T::one());
+        let gain_s = self.twice_ratio * period_s * slow;
+        swing.map(|speed| {
+            let braked = speed - clamp_symmetric(speed, T::from(LEAST_M_PER_S));
+            -gain_s * braked
+        })
+    }
+}
+
+/// The swing that two tendons show without the third, for the third whose leaving out leaves the least: what one sensor alone
+/// shows is no swing.
+#[inline(always)]
+fn common<T: Scalar>(speeds: [T; 3], per_pretension: &SVector<T, 3>) -> [T; 3] {
+    let mut along = T::SUM_START;
+    for (i, &speed) in speeds.iter().enumerate() {
+        along += per_pretension[i] * speed;
+    }
+    let mut least = T::MAX;
+    let mut found = speeds;
+    for i in 0..3 {
+        let mut without = speeds;
+        without[i] -= along / per_pretension[i];
+        let square = without[0] * without[0] + without[1] * without[1] + without[2] * without[2];
+        if square < least {
+            (least, found) = (square, without);
+        }
+    }
+    found
+}
