@@ -83,6 +83,15 @@ impl<T: Scalar> Bending<T> {
         }
     }
 
+    /// The mean stiffness over all tilts, N·m/rad: that of two which are across each other.
+    #[must_use]
+    #[inline(always)]
+    pub fn mean(&self) -> T {
+        let ([xx, xy, yy], [gxx, gxy, gyy]) = (self.stiffness, self.gram);
+        let scale = T::HALF / (gxx * gyy - gxy * gxy);
+        scale * (xx * gyy - T::TWO * xy * gxy + yy * gxx)
+    }
+
     /// The smallest and the largest stiffness over all tilts, N·m/rad.
     ///
     /// # Errors

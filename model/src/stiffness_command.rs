@@ -93,18 +93,26 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
     /// A tension beyond a tendon's curve; [`Error::Unstable`].
     #[inline(always)]
     pub fn stiffness_at(&self, pretension: T, axis: &BendingAxis<T>) -> Result<T, Error> {
+        self.bending_at(pretension)?.stiffness_about(axis)
+    }
+
+    /// The stiffness against tilts at a pretension in N, with each tendon at its own tension.
+    ///
+    /// # Errors
+    /// A tension beyond a tendon's curve; [`Error::Unstable`].
+    #[inline(always)]
+    pub fn bending_at(&self, pretension: T) -> Result<Bending<T>, Error> {
         let mut total = self.base.plus_scaled(&self.per_pretension, pretension);
         let tensions = self.distribution.tensions(pretension);
         for (i, tendon) in self.tendons.iter().enumerate() {
             let stiffness = tendon.stiffness(tensions[i])?;
             total.add_square(&self.kinematics.moment_map, i, stiffness);
         }
-        let bending = if self.twists {
-            Bending::twisting(&total, &self.direction)?
+        if self.twists {
+            Bending::twisting(&total, &self.direction)
         } else {
-            Bending::guided(&total, &self.direction, &self.plane)
-        };
-        bending.stiffness_about(axis)
+            Ok(Bending::guided(&total, &self.direction, &self.plane))
+        }
     }
 
     /// The pretension that gives a demanded bending stiffness (N·m/rad) within the bounds on the tensions.

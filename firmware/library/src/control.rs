@@ -10,6 +10,7 @@ mod homing;
 mod inertia;
 mod measure;
 mod mechanism;
+mod payload_estimate;
 mod plan;
 mod pretension;
 mod quintic;

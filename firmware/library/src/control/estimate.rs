@@ -4,6 +4,7 @@ use super::{
     CYCLE_S, Mechanism,
     bounds::{clamp_symmetric, max},
     filter::LowPass,
+    payload_estimate::PayloadEstimate,
 };
 use crate::settings::Settings;
 use leg_model::{
@@ -110,8 +111,7 @@ impl<T: Scalar> Smoothed<T> {
 #[derive(Clone, Copy, Debug)]
 pub struct Estimator<T> {
     direction: Direction<T>,
-    /// The payload, kg: below zero where something lifts the leg.
-    payload_kg: Smoothed<T>,
+    payload: PayloadEstimate<T>,
     /// The horizontal moment (x, y) that is neither that of the payload nor that of the leg's own weight, N·m.
     push_nm: [Smoothed<T>; 2],
     /// Elastic torsion of a leg that can twist, rad.
@@ -121,8 +121,6 @@ pub struct Estimator<T> {
     torsion_m_per_rad: T,
     /// The least tension, as a sum, that is taken to hold it, N.
     taut_n: T,
-    /// Square of the sine of the tilt from which the payload is estimated.
-    payload_sine_squared: T,
 }
 
 impl<T: Scalar> Estimator<T> {
@@ -130,16 +128,14 @@ impl<T: Scalar> Estimator<T> {
     pub fn new(settings: &Settings) -> Self {
         let estimation = &settings.estimation;
         let smoothed = Smoothed::new(estimation.load_time_s);
-        let sine = T::from(estimation.payload_sine);
         Self {
             direction: Direction::down(),
-            payload_kg: smoothed,
+            payload: PayloadEstimate::new(settings),
             push_nm: [smoothed; 2],
             torsion: T::zero(),
             torsion_nm_per_rad: T::from(2.0 * settings.joint.torsion_nm_per_rad),
             torsion_m_per_rad: T::from(2.0 * torsion_m_per_rad(settings)),
             taut_n: settings.f_min_n.into(),
-            payload_sine_squared: sine * sine,
         }
     }
 
@@ -152,7 +148,7 @@ impl<T: Scalar> Estimator<T> {
     /// Starts anew, straight down, without a load.
     pub fn straight_down(&mut self) {
         self.direction = Direction::down();
-        self.payload_kg.set(T::zero());
+        self.payload.forget();
         for push in &mut self.push_nm {
             push.set(T::zero());
         }
@@ -162,7 +158,7 @@ impl<T: Scalar> Estimator<T> {
     #[inline(always)]
     pub fn load(&self) -> LoadEstimate<T> {
         LoadEstimate {
-            payload_kg: self.payload_kg.value(),
+            payload_kg: self.payload.kg,
             push_nm: self.push_nm.each_ref().map(Smoothed::value),
         }
     }
@@ -175,7 +171,7 @@ impl<T: Scalar> Estimator<T> {
     /// The payload, kg; nothing weighs less than nothing.
     #[inline(always)]
     pub fn payload_kg(&self) -> T {
-        max(self.payload_kg.value(), T::zero())
+        max(self.payload.kg, T::zero())
     }
 
     /// Estimates the pose and, as `load_estimation` says, the load. `target_torsion`, rad, is the elastic one of a leg whose
@@ -227,13 +223,12 @@ impl<T: Scalar> Estimator<T> {
             let twists = mechanism.support.twists();
             if twists || load_estimation != LoadEstimation::Frozen {
                 let tendons = estimate_moment(&kinematics.moment_map, &pull);
-                let load = tendons - mechanism.support.joint_moment(&found.direction, torsion)
-                    + angular_acceleration * mechanism.inertia(self.payload_kg());
+                let load = tendons - mechanism.support.joint_moment(&found.direction, torsion);
                 if twists {
                     self.update_torsion(&load, &pull);
                 }
                 if load_estimation != LoadEstimation::Frozen {
-                    self.update_load(mechanism, &load, load_estimation);
+                    self.update_load(mechanism, &load, angular_acceleration, load_estimation);
                 }
             }
         }
@@ -255,39 +250,34 @@ impl<T: Scalar> Estimator<T> {
         self.torsion += clamp_symmetric(step, T::from(TORSION_CYCLE_RAD));
     }
 
-    /// By the load, N·m.
+    /// By the load, N·m, of a leg that turns with an angular acceleration, 1/s².
     #[inline(always)]
     fn update_load(
         &mut self,
         mechanism: &Mechanism<T>,
         load: &Vector3<T>,
+        angular_acceleration: &Vector3<T>,
         load_estimation: LoadEstimation,
     ) {
         let (direction, support) = (&self.direction, &mechanism.support);
-        let [x, y] = support.plane(direction).project(load);
-        let own = mechanism.leg.moment(direction);
-        let excess = [x - own.x, y - own.y];
+        let plane = support.plane(direction);
+        let [x, y] = plane.project(load);
+        let [x_turn, y_turn] = plane.project(angular_acceleration);
+        let (own, down) = (mechanism.leg.moment(direction), direction.vector());
+        let excess = [
+            x - own.x + x_turn * mechanism.leg_inertia,
+            y - own.y + y_turn * mechanism.leg_inertia,
+        ];
+        // A weight at the tip turns the leg about (−p_y, p_x), the more the further it leans, and resists its acceleration.
+        let per_kg = [
+            -down.y * mechanism.payload_lever - x_turn * mechanism.payload_inertia,
+            down.x * mechanism.payload_lever - y_turn * mechanism.payload_inertia,
+        ];
         let immediate = load_estimation == LoadEstimation::Immediate;
-        self.split(excess, mechanism.payload_lever, immediate);
-    }
-
-    /// Splits a moment into that of a payload, which turns with the leg, and the rest. A weight at the tip turns the leg about
-    /// (−p_y, p_x), the more the further it leans; near the vertical it stays what it was.
-    #[inline(always)]
-    fn split(&mut self, [x, y]: [T; 2], payload_lever: T, immediate: bool) {
-        let down = self.direction.vector();
-        let sine_squared = down.x * down.x + down.y * down.y;
-        let mut payload_kg = self.payload_kg.value();
-        if sine_squared > self.payload_sine_squared && payload_lever > T::zero() {
-            payload_kg = (down.x * y - down.y * x) / (sine_squared * payload_lever);
-            if immediate {
-                self.payload_kg.set(payload_kg);
-            }
-            self.payload_kg.step(payload_kg);
-        }
-        let weight_nm = payload_kg * payload_lever;
-        let rest = [x + weight_nm * down.y, y - weight_nm * down.x];
-        for (push, rest) in self.push_nm.iter_mut().zip(rest) {
+        self.payload.step(excess, per_kg, immediate);
+        let payload_kg = self.payload.kg;
+        for (i, push) in self.push_nm.iter_mut().enumerate() {
+            let rest = excess[i] - payload_kg * per_kg[i];
             if immediate {
                 push.set(rest);
             }

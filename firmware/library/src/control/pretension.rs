@@ -29,6 +29,7 @@ pub struct PretensionSearch<T> {
     pretension_n: T,
     last_pretension_n: T,
     last_stiffness: T,
+    mean_stiffness: T,
     /// Stiffness per pretension.
     slope: T,
     unreachable: bool,
@@ -42,6 +43,7 @@ impl<T: Scalar> PretensionSearch<T> {
             pretension_n,
             last_pretension_n: T::zero(),
             last_stiffness: T::zero(),
+            mean_stiffness: T::zero(),
             slope: T::one(),
             unreachable: false,
         }
@@ -66,6 +68,12 @@ impl<T: Scalar> PretensionSearch<T> {
     #[inline(always)]
     pub fn stiffness_nm_per_rad(&self) -> T {
         self.last_stiffness
+    }
+
+    /// Mean stiffness against a tilt at that pretension, N·m/rad.
+    #[inline(always)]
+    pub fn mean_stiffness_nm_per_rad(&self) -> T {
+        self.mean_stiffness
     }
 
     /// Whether the bounds on the tensions stop the search short of the demand.
@@ -105,7 +113,9 @@ impl<T: Scalar> PretensionSearch<T> {
             target.distribution.pretension_max,
         );
         let pretension = min(max(self.pretension_n, lowest), highest);
-        let stiffness = command.stiffness_at(pretension, &axis)?;
+        let bending = command.bending_at(pretension)?;
+        let stiffness = bending.stiffness_about(&axis)?;
+        self.mean_stiffness = bending.mean();
         if let Some(demand) = demand {
             self.search(pretension, stiffness, demand, [lowest, highest]);
         }

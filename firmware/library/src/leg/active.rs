@@ -255,7 +255,7 @@ impl<T: Scalar> Active<T> {
             *beside -= target.kinematics.lengths[i];
         }
         let inertia = shared.mechanism.inertia(shared.estimator.payload_kg());
-        let stiffness = bounds::max(shared.pretension.stiffness_nm_per_rad(), T::one());
+        let stiffness = bounds::max(shared.pretension.mean_stiffness_nm_per_rad(), T::one());
         let period_s = (inertia / stiffness).sqrt();
         shared
             .damping

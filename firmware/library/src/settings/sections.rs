@@ -66,13 +66,15 @@ fields! {
         /// Time constant of the tensions.
         tension_time_s ["s"]: 1.25e-4..=1.0 = 4e-4;
         /// Time constant of each of the two filters of the load: faster ones meet the leg's own swing.
-        load_time_s ["s"]: 1e-3..=10.0 = 0.15;
+        load_time_s ["s"]: 1e-3..=10.0 = 0.25;
         /// Time in which the pretension is trimmed by the tensions.
         trim_time_s ["s"]: 1e-3..=100.0 = 0.5;
         /// Most that the pretension is trimmed.
         trim_max_n ["N"]: 0.0..=1e3 = 20.0;
-        /// Sine of the tilt from which the payload is estimated from the load; nearer to the vertical the last one stands.
+        /// Sine of the tilt from which an armed leg takes its payload from the load at once; nearer to the vertical it waits for a motion.
         payload_sine ["1"]: 0.01..=1.0 = 0.15;
+        /// Heaviest payload: what pulls harder is a push.
+        payload_max_kg ["kg"]: 0.0..=1e4 = 3.0;
     }
 }
 
