@@ -8,6 +8,9 @@ use crate::settings::Settings;
 use leg_model::Scalar;
 use nalgebra::SVector;
 
+/// Time between two steps, s: every other cycle.
+const STEP_S: f32 = 2.0 * CYCLE_S;
+
 /// Time constant of each of the two filters of the speeds by the period of the mode, rad. The lag of both is 48° there. Faster ones
 /// would see the damping of the tendons themselves: they pull harder while they are reeled in, and look longer.
 const FILTER_RAD: f32 = 0.45;
@@ -50,7 +53,7 @@ impl<T: Scalar> Speed<T> {
     fn step(&mut self, length_m: T, share: T) -> T {
         let step_m = (length_m - self.length_m) * share;
         self.length_m += step_m;
-        self.m_per_s += (step_m * T::from(1.0 / CYCLE_S) - self.m_per_s) * share;
+        self.m_per_s += (step_m * T::from(1.0 / STEP_S) - self.m_per_s) * share;
         self.m_per_s
     }
 }
@@ -80,7 +83,7 @@ impl<T: Scalar> SwingDamping<T> {
         period_s: T,
     ) -> [T; 3] {
         let period_s = min(period_s, T::from(LONGEST_S));
-        let share = T::from(CYCLE_S) / (T::from(CYCLE_S) + T::from(FILTER_RAD) * period_s);
+        let share = T::from(STEP_S) / (T::from(STEP_S) + T::from(FILTER_RAD) * period_s);
         let tendons = self.tendons.get_or_insert_with(|| beside_m.map(Speed::new));
         let mut speeds = [T::zero(); 3];
         for (speed, (tendon, &length_m)) in speeds.iter_mut().zip(tendons.iter_mut().zip(beside_m))
@@ -105,15 +108,21 @@ fn common<T: Scalar>(speeds: [T; 3], per_pretension: &SVector<T, 3>) -> [T; 3] {
     for (i, &speed) in speeds.iter().enumerate() {
         along += per_pretension[i] * speed;
     }
-    let mut least = T::MAX;
-    let mut found = speeds;
-    for i in 0..3 {
-        let mut without = speeds;
-        without[i] -= along / per_pretension[i];
-        let square = without[0] * without[0] + without[1] * without[1] + without[2] * without[2];
-        if square < least {
-            (least, found) = (square, without);
+    let mut corrections = [T::zero(); 3];
+    let (mut least, mut at) = (T::MAX, 0);
+    for (i, correction) in corrections.iter_mut().enumerate() {
+        *correction = along / per_pretension[i];
+        // By so much the sum of the squares grows.
+        let growth = *correction * (*correction - T::TWO * speeds[i]);
+        if growth < least {
+            (least, at) = (growth, i);
         }
     }
-    found
+    let mut swing = speeds;
+    for (i, speed) in swing.iter_mut().enumerate() {
+        if i == at {
+            *speed -= corrections[i];
+        }
+    }
+    swing
 }

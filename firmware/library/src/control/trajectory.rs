@@ -28,7 +28,8 @@ pub struct Trajectory<T> {
     /// Whether the last stream ended without its last point, and nothing was commanded since.
     point_missing: bool,
     planned: Option<Plan<T>>,
-    /// Angular acceleration at the next point, 1/s².
+    /// The next point, and the angular acceleration there, 1/s².
+    next: [T; 2],
     angular_acceleration: Vector3<T>,
 }
 
@@ -82,6 +83,7 @@ impl<T: Scalar> Trajectory<T> {
             begins: false,
             point_missing: false,
             planned: None,
+            next: start,
             angular_acceleration: Vector3::zeros(),
         }
     }
@@ -91,7 +93,7 @@ impl<T: Scalar> Trajectory<T> {
         self.path = Quintic::new(&MotionState::at_rest(q.xy()), q.xy(), T::one());
         (self.elapsed, self.duration) = (0, 0);
         (self.streamed, self.begins, self.planned) = (false, false, None);
-        self.angular_acceleration = Vector3::zeros();
+        (self.next, self.angular_acceleration) = (q.xy(), Vector3::zeros());
     }
 
     /// Follows a stream from [`Self::next_motion`] on.
@@ -165,7 +167,7 @@ impl<T: Scalar> Trajectory<T> {
         if self.elapsed < self.duration {
             self.elapsed += CYCLE;
         }
-        let [x, y] = self.path.position(self.part(0));
+        let [x, y] = self.next;
         HalfTangent::new(x, y)
     }
 
@@ -180,12 +182,9 @@ impl<T: Scalar> Trajectory<T> {
                 None => self.attempt(plan),
             };
         }
-        // A path that ends in rest ends without an acceleration.
-        self.angular_acceleration = if self.moving() {
-            self.next_motion().angular_acceleration()
-        } else {
-            Vector3::zeros()
-        };
+        let motion = self.next_motion();
+        self.next = motion.position;
+        self.angular_acceleration = motion.angular_acceleration();
     }
 
     /// The angular acceleration p × p̈ at the next point, 1/s².

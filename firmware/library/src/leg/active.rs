@@ -21,6 +21,10 @@ pub struct Active<T> {
     pub disarming: bool,
     /// Whether there was no target on the way since then.
     stuck: bool,
+    /// Whether the swing was braked in the last cycle, and not the pretension searched for.
+    brakes: bool,
+    /// By how much each tendon is longer to brake the swing, m.
+    longer_m: [T; 3],
     slack: Slack<T>,
 }
 
@@ -62,6 +66,8 @@ impl<T: Scalar> Active<T> {
             tensioned: false,
             disarming: false,
             stuck: false,
+            brakes: false,
+            longer_m: [T::zero(); 3],
             slack: Slack {
                 left_m: taut.then(T::zero),
                 cycles: 0,
@@ -79,7 +85,16 @@ impl<T: Scalar> Active<T> {
     ) -> Result<(), Error> {
         match phase {
             Phase::Estimate => self.estimate(shared, measured),
-            Phase::Pretension => search_pretension(shared),
+            // In turn, for each takes most of the time that is left.
+            Phase::Pretension => {
+                self.brakes = !self.brakes;
+                if self.brakes {
+                    self.brake_swing(shared);
+                    Ok(())
+                } else {
+                    search_pretension(shared)
+                }
+            }
             Phase::Command => Ok(()),
             Phase::Target => self.aim(shared, measured),
             Phase::Plan => {
@@ -219,9 +234,8 @@ impl<T: Scalar> Active<T> {
             }
         };
         let mut pulled_m = zero_m;
-        let longer_m = self.brake_swing(shared);
         for (i, pulled) in pulled_m.iter_mut().enumerate() {
-            *pulled -= target.unstretched_m[i] + longer_m[i];
+            *pulled -= target.unstretched_m[i] + self.longer_m[i];
         }
         let speed_m_per_s = if taut {
             shared.limits.servo_m_per_s
@@ -242,13 +256,13 @@ impl<T: Scalar> Active<T> {
         Ok(())
     }
 
-    /// By how much each tendon shall be longer to brake a swing about the last target, m.
-    #[inline(always)]
-    fn brake_swing(&self, shared: &mut Shared<T>) -> [T; 3] {
+    /// Computes by how much each tendon shall be longer to brake a swing about the last target.
+    #[inline(never)]
+    fn brake_swing(&mut self, shared: &mut Shared<T>) {
         let (true, Some(target), Some(estimate)) =
             (self.tensioned, &shared.target, &shared.estimate)
         else {
-            return [T::zero(); 3];
+            return;
         };
         let mut beside_m = estimate.lengths_m;
         for (i, beside) in beside_m.iter_mut().enumerate() {
@@ -257,9 +271,10 @@ impl<T: Scalar> Active<T> {
         let inertia = shared.mechanism.inertia(shared.estimator.payload_kg());
         let stiffness = bounds::max(shared.pretension.mean_stiffness_nm_per_rad(), T::one());
         let period_s = (inertia / stiffness).sqrt();
-        shared
-            .damping
-            .step(&beside_m, &target.distribution.per_pretension, period_s)
+        self.longer_m =
+            shared
+                .damping
+                .step(&beside_m, &target.distribution.per_pretension, period_s);
     }
 
     /// Stays where the last target was: there is none where the trajectory is now.
