@@ -20,6 +20,9 @@ const TORSION_CYCLE_RAD: f32 = 2e-3;
 /// paper's rig.
 const LEAST_M_PER_RAD: f32 = 1.6e-3;
 
+/// Part of what is new in a push that is taken up while the leg moves.
+const MOVING_SHARE: f32 = 0.1;
+
 /// The pose that the tendons show.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate<T> {
@@ -51,6 +54,8 @@ pub enum LoadEstimation {
     Frozen,
     /// It follows the tensions, filtered.
     Filtered,
+    /// The same while the leg moves: more slowly, for the joint's friction is no load.
+    Moving,
     /// It is what the tensions show now, unfiltered.
     Immediate,
 }
@@ -101,9 +106,12 @@ impl<T: Scalar> Smoothed<T> {
         self.second.set(value);
     }
 
+    /// Takes up a share of what is new.
     #[inline(always)]
-    fn step(&mut self, input: T) {
-        self.second.step(self.first.step(input));
+    fn step(&mut self, input: T, share: T) {
+        let first = self.first.value();
+        self.second
+            .step(self.first.step(first + (input - first) * share));
     }
 }
 
@@ -276,12 +284,17 @@ impl<T: Scalar> Estimator<T> {
         let immediate = load_estimation == LoadEstimation::Immediate;
         self.payload.step(excess, per_kg, immediate);
         let payload_kg = self.payload.kg;
+        let share = if load_estimation == LoadEstimation::Moving {
+            T::from(MOVING_SHARE)
+        } else {
+            T::one()
+        };
         for (i, push) in self.push_nm.iter_mut().enumerate() {
             let rest = excess[i] - payload_kg * per_kg[i];
             if immediate {
                 push.set(rest);
             }
-            push.step(rest);
+            push.step(rest, share);
         }
     }
 }

@@ -186,6 +186,8 @@ impl<T: Scalar> Active<T> {
             LoadEstimation::Slack
         } else if shared.compensation == Compensation::Frozen {
             LoadEstimation::Frozen
+        } else if self.trajectory.moving() {
+            LoadEstimation::Moving
         } else {
             LoadEstimation::Filtered
         };
