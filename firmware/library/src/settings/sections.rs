@@ -66,7 +66,7 @@ fields! {
         /// Time constant of the tensions.
         tension_time_s ["s"]: 1.25e-4..=1.0 = 4e-4;
         /// Time constant of each of the two filters of the load: faster ones meet the leg's own swing.
-        load_time_s ["s"]: 1e-3..=10.0 = 0.25;
+        load_time_s ["s"]: 1e-3..=10.0 = 0.15;
         /// Time in which the pretension is trimmed by the tensions.
         trim_time_s ["s"]: 1e-3..=100.0 = 0.5;
         /// Most that the pretension is trimmed.
