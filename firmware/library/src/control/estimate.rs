@@ -106,6 +106,13 @@ impl<T: Scalar> Smoothed<T> {
         self.second.set(value);
     }
 
+    /// Moves it as a whole.
+    #[inline(always)]
+    fn shift(&mut self, by: T) {
+        self.first.set(self.first.value() + by);
+        self.second.set(self.second.value() + by);
+    }
+
     /// Takes up a share of what is new.
     #[inline(always)]
     fn step(&mut self, input: T, share: T) {
@@ -282,15 +289,17 @@ impl<T: Scalar> Estimator<T> {
             down.x * mechanism.payload_lever - y_turn * mechanism.payload_inertia,
         ];
         let immediate = load_estimation == LoadEstimation::Immediate;
-        self.payload.step(excess, per_kg, immediate);
+        let found_kg = self.payload.step(excess, per_kg, immediate);
         let payload_kg = self.payload.kg;
-        let share = if load_estimation == LoadEstimation::Moving {
-            T::from(MOVING_SHARE)
+        // At rest the load as a whole stays what it was, whichever part of it is the payload.
+        let (share, shifted_kg) = if load_estimation == LoadEstimation::Moving {
+            (T::from(MOVING_SHARE), T::zero())
         } else {
-            T::one()
+            (T::one(), found_kg)
         };
         for (i, push) in self.push_nm.iter_mut().enumerate() {
             let rest = excess[i] - payload_kg * per_kg[i];
+            push.shift(-shifted_kg * per_kg[i]);
             if immediate {
                 push.set(rest);
             }

@@ -47,9 +47,11 @@ impl<T: Scalar> PayloadEstimate<T> {
         self.variance_kg2 = T::from(UNKNOWN_KG2);
     }
 
-    /// By a moment, N·m, and that which 1 kg makes. `immediate` takes what they show now.
+    /// By a moment, N·m, and that which 1 kg makes; gives by how much the payload has changed, kg. `immediate` takes what they show
+    /// now.
     #[inline(always)]
-    pub fn step(&mut self, [x, y]: [T; 2], [x_per_kg, y_per_kg]: [T; 2], immediate: bool) {
+    pub fn step(&mut self, [x, y]: [T; 2], [x_per_kg, y_per_kg]: [T; 2], immediate: bool) -> T {
+        let before_kg = self.kg;
         let square = x_per_kg * x_per_kg + y_per_kg * y_per_kg;
         let product = x * x_per_kg + y * y_per_kg;
         if immediate {
@@ -66,5 +68,6 @@ impl<T: Scalar> PayloadEstimate<T> {
             self.variance_kg2 = gain * self.noise;
         }
         self.kg = max(min(self.kg, self.max_kg), -self.max_kg);
+        self.kg - before_kg
     }
 }
