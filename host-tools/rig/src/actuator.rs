@@ -113,6 +113,12 @@ impl Actuator {
         self.lead_m / (self.gear_ratio * std::f64::consts::TAU)
     }
 
+    /// Play of the gear, as travel of the tendon, m.
+    #[must_use]
+    pub fn play_m(&self) -> f64 {
+        self.backlash_rad * self.lead_m / std::f64::consts::TAU
+    }
+
     /// Voltage that the motor induces, by the speed of the tendon, V·s/m.
     #[must_use]
     pub fn back_emf_v_s_per_m(&self) -> f64 {

@@ -29,7 +29,7 @@ impl GainChange {
     }
 }
 
-/// The defaults for a motor and a leg: its own resistance, induced voltage and inertia. The currents that friction and a pull take are not
+/// The defaults for a motor and a leg: its own resistance, induced voltage, play and inertia. The currents that friction and a pull take are not
 /// computed: no data sheet gives them well, so another motor needs its own in `[control.servo]`.
 #[must_use]
 pub fn defaults(actuator: &Actuator, rig: &RigParameters<f64, 3>) -> Gains {
@@ -37,6 +37,7 @@ pub fn defaults(actuator: &Actuator, rig: &RigParameters<f64, 3>) -> Gains {
         servo: Servo {
             back_emf_v_s_per_m: actuator.back_emf_v_s_per_m() as f32,
             resistance_ohm: actuator.resistance_ohm as f32,
+            play_m: actuator.play_m() as f32,
             ..Servo::DEFAULT
         },
         motion: Motion {

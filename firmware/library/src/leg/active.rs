@@ -236,8 +236,9 @@ impl<T: Scalar> Active<T> {
             }
         };
         let mut pulled_m = zero_m;
+        let behind_m = shared.play.behind_m();
         for (i, pulled) in pulled_m.iter_mut().enumerate() {
-            *pulled -= target.unstretched_m[i] + self.longer_m[i];
+            *pulled -= target.unstretched_m[i] + self.longer_m[i] + behind_m[i];
         }
         let speed_m_per_s = if taut {
             shared.limits.servo_m_per_s

@@ -3,8 +3,8 @@
 use crate::command::Compensation;
 use crate::control::{
     Axis, AxisInput, CYCLE_TICKS, Estimate, Estimator, LoadEstimation, Measured, Mechanism,
-    MotionLimits, PretensionSearch, Stream, StreamLimits, SwingDamping, Target, TargetGenerator,
-    bounds, ticks,
+    MotionLimits, Play, PretensionSearch, Stream, StreamLimits, SwingDamping, Target,
+    TargetGenerator, bounds, ticks,
 };
 use crate::drive::Drive;
 use crate::settings::{Homing, Settings, SettingsError};
@@ -22,6 +22,7 @@ pub struct Shared<T> {
     pub estimator: Estimator<T>,
     pub targets: TargetGenerator<T>,
     pub damping: SwingDamping<T>,
+    pub play: Play<T>,
     pub compensation: Compensation,
     /// Length of each tendon without tension when the board started, m.
     pub zero_m: Option<[T; 3]>,
@@ -110,6 +111,7 @@ impl<T: Scalar> Shared<T> {
             pretension: PretensionSearch::new(settings.pretension_n.into()),
             targets: TargetGenerator::new(settings),
             damping: SwingDamping::new(settings),
+            play: Play::new(settings.servo.play_m),
             stream: Stream::new(StreamLimits::new(settings)),
             axes: [Axis::new(settings); 3],
             compensation: Compensation::Estimated,
@@ -176,8 +178,9 @@ impl<T: Scalar> Shared<T> {
         let Some(mut unstretched_m) = self.zero_m else {
             return Err(Error::NotConverged);
         };
-        for (unstretched, &pulled) in unstretched_m.iter_mut().zip(&measured.pulled_m) {
-            *unstretched -= pulled;
+        let behind_m = self.play.behind_m();
+        for (i, unstretched) in unstretched_m.iter_mut().enumerate() {
+            *unstretched -= measured.pulled_m[i] + behind_m[i];
         }
         let estimate = self.estimator.update(
             &self.mechanism,

@@ -52,6 +52,8 @@ fields! {
         speed_m_per_s ["m/s"]: 1e-4..=1.0 = 0.03;
         /// An error of the position that is left alone: less than the play of the gear makes the motor hunt.
         dead_band_m ["m"]: 0.0..=1e-3 = 2e-7;
+        /// Play of the gear, as travel of the tendon.
+        play_m ["m"]: 0.0..=1e-3 = 2.3873242e-6;
         /// Part of a new reading of the counter that the tracked speed takes up.
         tracking ["1"]: 0.01..=1.0 = 0.3;
         /// Below the maximum tension by this much a tendon is pulled ever more slowly.
