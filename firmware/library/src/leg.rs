@@ -82,7 +82,7 @@ impl<T: Scalar> Leg<T> {
         for (axis, &pulled) in self.shared.axes.iter_mut().zip(&measured.pulled_m) {
             axis.track(pulled);
         }
-        if self.phase == Phase::Estimate {
+        if self.phase == Phase::Plan {
             self.shared.play.follow(&measured.pulled_m);
         }
         if self.mode.boots_up() {
