@@ -21,8 +21,9 @@ const WHOLE_RAD_PER_S: f32 = 50.0;
 /// The longest period that the filters are made for, s/rad: 1 Hz.
 const LONGEST_S: f32 = 0.16;
 
-/// Speed of a tendon that is not braked, m/s: above the noise of the load cells, or the motors would never rest.
-const LEAST_M_PER_S: f32 = 5e-5;
+/// Amplitude of a tendon's swing that is not braked, m: above the noise of the load cells, or the motors would never rest. It is 6 µm
+/// at the tip of the paper's leg.
+const LEAST_M: f32 = 6e-7;
 
 /// Brakes the swing.
 #[derive(Clone, Copy, Debug)]
@@ -90,23 +91,30 @@ impl<T: Scalar> SwingDamping<T> {
         {
             *speed = tendon.step(length_m, share);
         }
-        let swing = common(speeds, per_pretension);
+        let swing = swing(speeds, per_pretension);
         let slow = min(period_s * T::from(WHOLE_RAD_PER_S), T::one());
         let gain_s = self.twice_ratio * period_s * slow;
+        let least = T::from(LEAST_M) / period_s;
         swing.map(|speed| {
-            let braked = speed - clamp_symmetric(speed, T::from(LEAST_M_PER_S));
+            let braked = speed - clamp_symmetric(speed, least);
             -gain_s * braked
         })
     }
 }
 
-/// The swing that two tendons show without the third, for the third whose leaving out leaves the least: what one sensor alone
-/// shows is no swing.
+/// The swing that speeds show. Where most of them is along the tensions per pretension it is none: something has happened to all
+/// load cells. Otherwise it is what two tendons show without the third, for the third whose leaving out leaves the least: what
+/// one sensor alone shows is no swing.
 #[inline(always)]
-fn common<T: Scalar>(speeds: [T; 3], per_pretension: &SVector<T, 3>) -> [T; 3] {
-    let mut along = T::SUM_START;
+fn swing<T: Scalar>(speeds: [T; 3], per_pretension: &SVector<T, 3>) -> [T; 3] {
+    let (mut along, mut square) = (T::SUM_START, T::SUM_START);
     for (i, &speed) in speeds.iter().enumerate() {
         along += per_pretension[i] * speed;
+        square += speed * speed;
+    }
+    // The squares of the tensions per pretension add up to three: a third of the square of the sum is along them.
+    if square < along * along {
+        return [T::zero(); 3];
     }
     let mut corrections = [T::zero(); 3];
     let (mut least, mut at) = (T::MAX, 0);
