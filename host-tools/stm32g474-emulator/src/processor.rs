@@ -5,7 +5,9 @@ mod tests;
 
 use crate::memory_map::{BANK_SIZE, CCM, DEBUG, FLASH, PERIPHERALS, RAM, SECOND_BANK};
 use fastrand::Rng;
-use rsemu::core::space::{AddressSpace, MemAttrs, MemOps, RamStore, Region, RomStore, RomWrite};
+use rsemu::core::space::{
+    AddressSpace, DispatchPolicy, MemAttrs, MemOps, RamStore, Region, RomStore, RomWrite,
+};
 use rsemu::core::value::Width;
 use rsemu::cpu::arm::v7m::sys::{Access, Exception, Sys};
 use rsemu::cpu::arm::v7m::{ArmV7m, Config, xpsr};
@@ -13,6 +15,12 @@ use std::sync::Arc;
 
 /// The priorities that the chip's interrupt controller knows: 16.
 const PRIORITY_BITS: u8 = 4;
+
+/// What answers is looked up by pages of 32 KiB, up to the end of RAM: a search by address takes longer.
+const PAGES: DispatchPolicy = DispatchPolicy::Dense {
+    page_bits: 15,
+    cover: RAM.end as u64,
+};
 
 /// Where the program is at a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,7 +67,7 @@ impl Processor {
         peripherals: Arc<dyn MemOps>,
         debug: Arc<dyn MemOps>,
     ) -> Result<Self, MapError> {
-        let space = AddressSpace::new("chip", 32);
+        let space = AddressSpace::new("chip", 32).with_dispatch(PAGES);
         let first = Arc::new(RomStore::from_slice(
             flash.get(..BANK_SIZE as usize).unwrap_or(flash),
         ));
