@@ -43,6 +43,8 @@ pub struct Processor {
     /// The level of the interrupt that cannot be masked.
     nmi: bool,
     settled: bool,
+    /// It may sleep: what it did last took a cycle, as falling asleep and sleeping do. To ask the core takes longer.
+    may_sleep: bool,
 }
 
 /// The priority of a program that handles no exception.
@@ -121,6 +123,7 @@ impl Processor {
             given: 0,
             nmi: false,
             settled: true,
+            may_sleep: false,
         })
     }
 
@@ -131,6 +134,7 @@ impl Processor {
         self.given = 0;
         self.nmi = false;
         self.settled = true;
+        self.may_sleep = false;
     }
 
     /// One instruction, or one entry of an exception; the cycles that it took.
@@ -138,7 +142,9 @@ impl Processor {
         if !self.settled {
             self.settle();
         }
-        self.core.step()
+        let cycles = self.core.step();
+        self.may_sleep = cycles == 1;
+        cycles
     }
 
     /// Sets the levels of the interrupts' lines, bit by number: those that have risen.
@@ -213,7 +219,7 @@ impl Processor {
     /// Whether it sleeps until an interrupt.
     #[must_use]
     pub fn sleeps(&self) -> bool {
-        self.core.is_asleep() && self.settled
+        self.may_sleep && self.settled && self.core.is_asleep()
     }
 
     /// Lets the counter of cycles go on while the processor sleeps.
