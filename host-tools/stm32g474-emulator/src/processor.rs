@@ -5,7 +5,9 @@ mod tests;
 
 use crate::memory_map::{BANK_SIZE, CCM, DEBUG, FLASH, PERIPHERALS, RAM, SECOND_BANK};
 use fastrand::Rng;
-use rsemu::core::space::{AddressSpace, MemAttrs, MemOps, RamStore, Region, RomStore, RomWrite};
+use rsemu::core::space::{
+    AddressSpace, DispatchPolicy, MemAttrs, MemOps, RamStore, Region, RomStore, RomWrite,
+};
 use rsemu::core::value::Width;
 use rsemu::cpu::arm::v7m::sys::{Access, Exception, Sys};
 use rsemu::cpu::arm::v7m::{ArmV7m, Config, xpsr};
@@ -13,6 +15,12 @@ use std::sync::Arc;
 
 /// The priorities that the chip's interrupt controller knows: 16.
 const PRIORITY_BITS: u8 = 4;
+
+/// What answers is looked up by pages of 32 KiB, up to the end of RAM: a search by address takes longer.
+const PAGES: DispatchPolicy = DispatchPolicy::Dense {
+    page_bits: 15,
+    cover: RAM.end as u64,
+};
 
 /// Where the program is at a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,6 +43,8 @@ pub struct Processor {
     /// The level of the interrupt that cannot be masked.
     nmi: bool,
     settled: bool,
+    /// It may sleep: what it did last took a cycle, as falling asleep and sleeping do. To ask the core takes longer.
+    may_sleep: bool,
 }
 
 /// The priority of a program that handles no exception.
@@ -59,7 +69,7 @@ impl Processor {
         peripherals: Arc<dyn MemOps>,
         debug: Arc<dyn MemOps>,
     ) -> Result<Self, MapError> {
-        let space = AddressSpace::new("chip", 32);
+        let space = AddressSpace::new("chip", 32).with_dispatch(PAGES);
         let first = Arc::new(RomStore::from_slice(
             flash.get(..BANK_SIZE as usize).unwrap_or(flash),
         ));
@@ -113,6 +123,7 @@ impl Processor {
             given: 0,
             nmi: false,
             settled: true,
+            may_sleep: false,
         })
     }
 
@@ -123,6 +134,7 @@ impl Processor {
         self.given = 0;
         self.nmi = false;
         self.settled = true;
+        self.may_sleep = false;
     }
 
     /// One instruction, or one entry of an exception; the cycles that it took.
@@ -130,7 +142,9 @@ impl Processor {
         if !self.settled {
             self.settle();
         }
-        self.core.step()
+        let cycles = self.core.step();
+        self.may_sleep = cycles == 1;
+        cycles
     }
 
     /// Sets the levels of the interrupts' lines, bit by number: those that have risen.
@@ -205,7 +219,7 @@ impl Processor {
     /// Whether it sleeps until an interrupt.
     #[must_use]
     pub fn sleeps(&self) -> bool {
-        self.core.is_asleep() && self.settled
+        self.may_sleep && self.settled && self.core.is_asleep()
     }
 
     /// Lets the counter of cycles go on while the processor sleeps.

@@ -9,8 +9,8 @@ use std::path::Path;
 use std::process::Command;
 
 /// Lowest ratio of the chip's driven ticks in a second of the processor's time to those of QEMU: it depends on the machine less
-/// than either. Beside other work 0.08 was seen.
-const RATIO_MIN: f64 = 0.05;
+/// than either. Beside other work 0.11 was seen.
+const RATIO_MIN: f64 = 0.075;
 
 /// At most so much memory.
 const MEMORY_MAX_MIB: f64 = 200.0;

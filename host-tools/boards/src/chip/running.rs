@@ -33,9 +33,9 @@ const HELD_CYCLES: u64 = TICK_BUDGET_CYCLES as u64 + 1;
 /// By then the control interrupt has read when it started.
 const HANDLER_CYCLES: u64 = 100;
 
-/// The latest that the control interrupt's handler may begin, cycles after its interrupt: the longest critical section
-/// below it, that of a line in the log, is 840.
-pub const LATENCY_CYCLES_MAX: u64 = 900;
+/// The latest that the control interrupt's handler may begin, cycles after its interrupt: 2.5 µs. The longest critical
+/// section below it takes 267.
+pub const LATENCY_CYCLES_MAX: u64 = 423;
 
 /// Updates of the pulse timer up to the end of the first tick.
 const UPDATES_TO_FIRST_TICK: u32 = 3;

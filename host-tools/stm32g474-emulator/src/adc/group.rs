@@ -94,6 +94,10 @@ impl ConverterGroup {
 
     /// Does what is due.
     pub fn advance(&mut self, inputs: &dyn AnalogueInputs, context: &mut Context<'_>) {
+        let mut events = self.converters.iter().filter_map(Converter::next_event);
+        if !events.any(|due| due <= context.cycle) {
+            return;
+        }
         let around = self.surroundings(inputs, context);
         for converter in &mut self.converters {
             converter.advance(&around, context);

@@ -124,10 +124,9 @@ impl Timer {
     /// The next cycle in which the timer updates, or raises a compare interrupt.
     #[must_use]
     pub fn next_event(&self) -> Option<u64> {
-        let compare = self.channels.iter().filter_map(|channel| {
-            let wanted = self.file.is_set(channel.interrupt) && !self.file.is_set(channel.flag);
-            self.next_match(channel).filter(|_| wanted)
-        });
+        let wanted = |c: &&Channel| self.file.is_set(c.interrupt) && !self.file.is_set(c.flag);
+        let compare = self.channels.iter().filter(wanted);
+        let compare = compare.filter_map(|channel| self.next_match(channel));
         let tick = self.next_update().into_iter().chain(compare).min();
         self.time.cycle(tick?)
     }

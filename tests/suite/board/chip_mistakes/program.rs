@@ -23,7 +23,7 @@ mistakes! {
         "firmware/stm32g474/src/control.rs",
         "    unsafe { interrupt::ADC1_2.enable() };\n",
         "",
-        "does not begin the control interrupt's handler within 900 cycles",
+        "does not begin the control interrupt's handler within 423 cycles",
     );
     control_interrupt_at_a_lower_priority: board(
         "firmware/stm32g474/src/priorities.rs",
