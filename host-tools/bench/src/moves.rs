@@ -96,12 +96,16 @@ fn prepared(drawn: &Drawn) -> Result<Stand, String> {
     stand.until(2.0, "active", |stand| stand.state() == State::Active)?;
     stand.wait(0.3)?;
     stand.command(&Command::Pretension(drawn.pretension_n as f32))?;
+    stand.wait(REST_S)?;
+    // The leg has learnt that it carries nothing before a payload is hung on it.
+    for pose_deg in [drawn.end_deg, drawn.begin_deg] {
+        stand.command(&stand::move_to(pose_deg))?;
+        stand.wait(0.05)?;
+        stand.until(MOVE_S, "the start of the move", |stand| !stand.moving())?;
+        stand.wait(REST_S)?;
+    }
     stand.plant().set_payload(drawn.payload_kg, LOADING_S);
     stand.wait(LOADING_S + REST_S)?;
-    stand.command(&stand::move_to(drawn.begin_deg))?;
-    stand.wait(0.05)?;
-    stand.until(MOVE_S, "the start of the move", |stand| !stand.moving())?;
-    stand.wait(REST_S)?;
     stand.rest()?;
     Ok(stand)
 }

@@ -134,3 +134,61 @@ fn swing<T: Scalar>(speeds: [T; 3], per_pretension: &SVector<T, 3>) -> [T; 3] {
     }
     swing
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::{LEAST_M, SwingDamping};
+    use crate::settings::Settings;
+    use nalgebra::SVector;
+
+    /// A leg of 4 Hz whose tendons are alike, and how the lengths of one swing in it.
+    const PERIOD_S: f64 = 0.04;
+    const SWING: [f64; 3] = [1.0, -0.5, -0.5];
+
+    /// Offsets over two swings of tendons that are longer by `amplitude_m` times `parts`.
+    fn offsets(parts: [f64; 3], amplitude_m: f64) -> Vec<[f64; 3]> {
+        let mut damping = SwingDamping::<f64>::new(&Settings::for_table_1().unwrap());
+        let step = |i: u32| {
+            let phase = f64::from(i) * 1e-3 / PERIOD_S;
+            let beside_m = parts.map(|part| part * amplitude_m * phase.sin());
+            damping.step(&beside_m, &SVector::repeat(1.0), PERIOD_S)
+        };
+        (0..500).map(step).collect()
+    }
+
+    fn largest(offsets: &[[f64; 3]]) -> f64 {
+        offsets.iter().flatten().fold(0.0, |a, b| a.max(b.abs()))
+    }
+
+    /// The tendons give way behind the leg: over a swing they take energy from it, as much as a damper of most of the ratio would.
+    #[test]
+    fn a_swing_is_braked() {
+        let amplitude_m = 1e-4;
+        let offsets = offsets(SWING, amplitude_m);
+        let steps = (core::f64::consts::TAU * PERIOD_S / 1e-3).round() as usize;
+        // Work of the offset of the first tendon by its length, m², against that of the damper: 2 * 0.35 * PERIOD_S * speed.
+        let mut work = 0.0;
+        for (i, offset_m) in offsets.iter().enumerate().skip(500 - steps) {
+            let speed = amplitude_m * (i as f64 * 1e-3 / PERIOD_S).cos() / PERIOD_S;
+            work -= offset_m[0] * speed * 1e-3;
+        }
+        let ideal = 0.7 * core::f64::consts::PI * amplitude_m * amplitude_m;
+        assert!((0.45..0.8).contains(&(work / ideal)), "{}", work / ideal);
+        assert!(largest(&offsets) < 0.7 * amplitude_m);
+    }
+
+    /// One length that changes alone is a sensor that lies; so are three that change as pretension does.
+    #[test]
+    fn what_no_swing_explains_moves_nothing() {
+        for parts in [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [1.0; 3]] {
+            assert_eq!(largest(&offsets(parts, 1e-4)), 0.0, "{parts:?}");
+        }
+    }
+
+    /// The motors rest while the load cells are noisy.
+    #[test]
+    fn the_least_swing_is_left_alone() {
+        assert_eq!(largest(&offsets(SWING, f64::from(LEAST_M))), 0.0);
+    }
+}

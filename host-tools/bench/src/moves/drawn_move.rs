@@ -40,12 +40,12 @@ impl Drawn {
         loop {
             let (begin_deg, end_deg) = (pose(file, &mut rng), pose(file, &mut rng));
             let payload_kg = drawn(&mut rng, PAYLOAD_KG);
-            let ranges = [begin_deg, end_deg, [0.0; 2]].map(|at| feasible(file, at, payload_kg));
-            let low = ranges.iter().map(|range| range[0]).fold(0.0, f64::max);
-            let high = ranges
-                .iter()
-                .map(|range| range[1])
-                .fold(f64::INFINITY, f64::min);
+            let empty = [begin_deg, end_deg, [0.0; 2]].map(|at| feasible(file, at, 0.0));
+            let loaded = [begin_deg, end_deg].map(|at| feasible(file, at, payload_kg));
+            let (mut low, mut high) = (0.0_f64, f64::INFINITY);
+            for [lowest, highest] in empty.into_iter().chain(loaded) {
+                (low, high) = (low.max(lowest), high.min(highest));
+            }
             let pretension_n = low + (high - low) * rng.f64();
             if low < high && between(&begin_deg, &end_deg) > SHORTEST {
                 return Self {
