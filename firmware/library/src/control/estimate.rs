@@ -289,10 +289,16 @@ impl<T: Scalar> Estimator<T> {
             down.x * mechanism.payload_lever - y_turn * mechanism.payload_inertia,
         ];
         let immediate = load_estimation == LoadEstimation::Immediate;
-        let found_kg = self.payload.step(excess, per_kg, immediate);
+        let moving = load_estimation == LoadEstimation::Moving;
+        let found_kg = if immediate {
+            self.payload.set(excess, per_kg);
+            T::zero()
+        } else {
+            self.payload.step(excess, per_kg, moving)
+        };
         let payload_kg = self.payload.kg;
         // At rest the load as a whole stays what it was, whichever part of it is the payload.
-        let (share, shifted_kg) = if load_estimation == LoadEstimation::Moving {
+        let (share, shifted_kg) = if moving {
             (T::from(MOVING_SHARE), T::zero())
         } else {
             (T::one(), found_kg)

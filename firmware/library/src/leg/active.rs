@@ -23,8 +23,9 @@ pub struct Active<T> {
     stuck: bool,
     /// Whether the swing was braked in the last cycle, and not the pretension searched for.
     brakes: bool,
-    /// By how much each tendon is longer to brake the swing, m.
+    /// By how much each tendon is longer to brake the swing, m, and how that changes in a cycle.
     longer_m: [T; 3],
+    longer_step_m: [T; 3],
     slack: Slack<T>,
 }
 
@@ -68,6 +69,7 @@ impl<T: Scalar> Active<T> {
             stuck: false,
             brakes: false,
             longer_m: [T::zero(); 3],
+            longer_step_m: [T::zero(); 3],
             slack: Slack {
                 left_m: taut.then(T::zero),
                 cycles: 0,
@@ -238,6 +240,7 @@ impl<T: Scalar> Active<T> {
         let mut pulled_m = zero_m;
         let behind_m = shared.play.behind_m();
         for (i, pulled) in pulled_m.iter_mut().enumerate() {
+            self.longer_m[i] += self.longer_step_m[i];
             *pulled -= target.unstretched_m[i] + self.longer_m[i] + behind_m[i];
         }
         let speed_m_per_s = if taut {
@@ -259,13 +262,23 @@ impl<T: Scalar> Active<T> {
         Ok(())
     }
 
-    /// Computes by how much each tendon shall be longer to brake a swing about the last target.
+    /// Brakes a swing about the last target: the tendons become longer in the two cycles until the next step. In one, their speed
+    /// would go up and down with the cycles.
     #[inline(never)]
     fn brake_swing(&mut self, shared: &mut Shared<T>) {
+        let goals_m = self.lengths_to_brake(shared);
+        for (i, step) in self.longer_step_m.iter_mut().enumerate() {
+            *step = (goals_m[i] - self.longer_m[i]) * T::HALF;
+        }
+    }
+
+    /// By how much each tendon shall be longer to brake a swing, m.
+    #[inline(always)]
+    fn lengths_to_brake(&self, shared: &mut Shared<T>) -> [T; 3] {
         let (true, Some(target), Some(estimate)) =
             (self.tensioned, &shared.target, &shared.estimate)
         else {
-            return;
+            return [T::zero(); 3];
         };
         let mut beside_m = estimate.lengths_m;
         for (i, beside) in beside_m.iter_mut().enumerate() {
@@ -274,10 +287,9 @@ impl<T: Scalar> Active<T> {
         let inertia = shared.mechanism.inertia(shared.estimator.payload_kg());
         let stiffness = bounds::max(shared.pretension.mean_stiffness_nm_per_rad(), T::one());
         let period_s = (inertia / stiffness).sqrt();
-        self.longer_m =
-            shared
-                .damping
-                .step(&beside_m, &target.distribution.per_pretension, period_s);
+        shared
+            .damping
+            .step(&beside_m, &target.distribution.per_pretension, period_s)
     }
 
     /// Stays where the last target was: there is none where the trajectory is now.
