@@ -46,6 +46,7 @@ mod base {
 }
 
 mod rig {
+    mod other_motors;
     mod refused_rigs;
     mod rig_settings;
 }

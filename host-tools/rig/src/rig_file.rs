@@ -10,6 +10,7 @@ pub use buckling::Buckling;
 
 use crate::actuator::Actuator;
 use crate::calibration::Calibration;
+use crate::derived::GivenGains;
 use crate::plant_settings::PlantSettings;
 use crate::ready_rigs::{self, READY_RIGS};
 use crate::support_name::SupportName;
@@ -46,8 +47,10 @@ pub struct RigFile {
     pub actuator: Actuator,
     /// What was measured of the sensors.
     pub calibration: Calibration,
-    /// Gains and limits of the control law, those that are not given at their defaults.
+    /// Gains and limits of the control law.
     pub gains: Gains,
+    /// Which of them the file gives; the others follow from the motors, or are at their defaults.
+    pub given_gains: GivenGains,
     /// What else the simulated leg is.
     pub plant: PlantSettings,
 }
@@ -170,8 +173,10 @@ mod tests {
         let left_out = RigFile::parse("left out", text).unwrap();
         let nominal = left_out.calibration;
         assert_ne!(given.calibration.cell_n_per_code, nominal.cell_n_per_code);
+        assert_ne!(given.given_gains, left_out.given_gains);
         let with_nominal = RigFile {
             calibration: nominal,
+            given_gains: left_out.given_gains,
             ..given
         };
         assert_eq!(with_nominal, left_out);
