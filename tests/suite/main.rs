@@ -79,6 +79,7 @@ mod board {
 mod host {
     mod can_bus;
     mod flash;
+    mod jog;
     mod link_damage;
     mod monitor_screen;
 }

@@ -25,7 +25,6 @@ pub mod actuator;
 pub mod calibration;
 pub mod control_settings;
 pub mod curve_toml;
-pub mod derived;
 pub mod gains;
 pub mod number;
 pub mod plant_settings;

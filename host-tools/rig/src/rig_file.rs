@@ -2,6 +2,7 @@
 
 mod buckling;
 mod consistency;
+pub mod derived;
 mod reading;
 mod support;
 mod tendon;
@@ -10,10 +11,10 @@ pub use buckling::Buckling;
 
 use crate::actuator::Actuator;
 use crate::calibration::Calibration;
-use crate::derived::GivenGains;
 use crate::plant_settings::PlantSettings;
 use crate::ready_rigs::{self, READY_RIGS};
 use crate::support_name::SupportName;
+use derived::GivenGains;
 use leg_base::failure::Failure;
 use leg_base::text_input::{self, FILE_BYTES_MAX};
 use leg_firmware::settings::Gains;

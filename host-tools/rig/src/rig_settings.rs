@@ -2,11 +2,11 @@
 
 use crate::actuator::{ACTUATOR, Actuator, CELL_RANGE, TEMPERATURE_RANGE, THERMAL};
 use crate::calibration::{CALIBRATION, Calibration};
-use crate::derived::{self, Basis, GivenGains};
 use crate::gains::{CONTROL, widened};
 use crate::number::{decimal, plain};
 use crate::plant_settings::{PlantSettings, SIMULATION, TRANSVERSE_INERTIA};
 use crate::rig_file::RigFile;
+use crate::rig_file::derived::{self, Basis, GivenGains};
 use leg_firmware::settings::{Field, Gains, SECTIONS};
 use serde::Serialize;
 

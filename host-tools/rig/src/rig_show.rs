@@ -1,6 +1,6 @@
 //! What the model makes of a rig file.
 
-use crate::derived::{self, DerivedGain, derived_gains};
+use crate::rig_file::derived::{self, DerivedGain, derived_gains};
 use crate::rig_file::{Buckling, RigFile};
 use crate::rig_settings;
 use leg_base::failure::Failure;

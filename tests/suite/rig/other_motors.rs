@@ -4,8 +4,8 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use leg_base::failure::Failure;
-use leg_rig::derived::derived_gains;
 use leg_rig::ready_rigs::READY_RIGS;
+use leg_rig::rig_file::derived::derived_gains;
 use leg_rig::rig_file::{RigFile, RigText};
 use leg_sim::link::InProcess;
 use leg_sim::scenario::Scenario;

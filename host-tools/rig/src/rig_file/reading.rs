@@ -1,10 +1,10 @@
 //! From the text of a rig file to its values, every one checked.
 
 use super::consistency::Warning;
-use super::{RigFile, buckling, consistency, support, tendon};
+use super::derived::{Basis, GivenGains};
+use super::{RigFile, buckling, consistency, derived, support, tendon};
 use crate::actuator::{ACTUATOR, Actuator};
 use crate::calibration::{CALIBRATION, Calibration};
-use crate::derived::{self, Basis, GivenGains};
 use crate::gains::{self, CONTROL};
 use crate::plant_settings::{PlantSettings, SIMULATION};
 use crate::renamed_keys;
