@@ -5,7 +5,7 @@ use crate::numbers::{finite, positive};
 use crate::options::Options;
 use crate::output::print;
 use leg_base::failure::Failure;
-use leg_firmware::jog::JogDemand;
+use leg_firmware::jog::{JogDemand, JogEnd};
 use leg_host::jog_report::{self, Finding};
 use leg_host::operator::OperatorError;
 
@@ -45,9 +45,12 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     options.report(&jog_report::json(&report, &findings), || {
         jog_report::text(&report, &findings)
     })?;
+    let asked = "jog a motor";
     if telemetry.faults.without_limits().any() {
-        let error = OperatorError::Failed("jog a motor", Box::new(telemetry));
-        return Err(error.failure());
+        return Err(OperatorError::Failed(asked, Box::new(telemetry)).failure());
+    }
+    if report.end == JogEnd::CutOff {
+        return Err(OperatorError::StoppedByOtherHost(asked, telemetry.state).failure());
     }
     findings
         .first()

@@ -216,7 +216,7 @@ mod tests {
     fn another_motor_gives_the_same_bits_again() {
         let text = READY_RIGS[0].text.replace("f_max_n = 150", "f_max_n = 200");
         let more = "[actuator]\nsupply_v = 48\nsupply_range_v = 72\ncurrent_range_a = 40\nresistance_ohm = 0.3\n\
-                    torque_constant_nm_per_a = 0.05\nfriction_nm = 0.02\ncell_range_n = [-30, 400]\ncounts_per_turn = 64\n";
+                    torque_constant_nm_per_a = 0.05\nfriction_nm = 0.02\ninertia_kg_m2 = 1e-5\ncell_range_n = [-30, 400]\ncounts_per_turn = 64\n";
         let before = settings("other", &[&text, more].concat());
         assert_eq!(settings("text", &rig_file(&before)), before);
     }
