@@ -46,6 +46,7 @@ mod base {
 }
 
 mod rig {
+    mod other_motors;
     mod refused_rigs;
     mod rig_settings;
 }
@@ -78,6 +79,7 @@ mod board {
 mod host {
     mod can_bus;
     mod flash;
+    mod jog;
     mod link_damage;
     mod monitor_screen;
 }

@@ -1,5 +1,6 @@
 //! What a host commands the leg to do.
 
+use crate::jog::{JogDemand, JogRefusal};
 use crate::set_point::{PointRefusal, SetPoint};
 use crate::supervisor::State;
 use postcard_schema::Schema;
@@ -55,6 +56,8 @@ pub enum Command {
     Disarm,
     /// Clears the faults whose cause is gone.
     Clear,
+    /// Turns one motor of a disarmed leg slowly.
+    Jog(JogDemand),
 }
 
 /// Why a command is not obeyed.
@@ -74,6 +77,10 @@ pub enum CommandRefusal {
     Superseded,
     /// The set-point is refused.
     Point(PointRefusal),
+    /// The jog is refused.
+    Jog(JogRefusal),
+    /// A motor is jogged only while the leg is disarmed.
+    NotDisarmed(State),
 }
 
 impl CommandRefusal {
@@ -92,6 +99,7 @@ impl CommandRefusal {
                 ["the leg is ramping down", "wait until it is disarmed"]
             }
             Self::State(State::Off) => ["the drivers are off after a fault", "clear it"],
+            Self::State(State::Jogging) => ["a motor is jogged", "wait for its end, or stop it"],
             Self::OutOfReach => [
                 "the leg cannot lean that far",
                 "stay within the rig's greatest tilt",
@@ -102,6 +110,29 @@ impl CommandRefusal {
             ],
             Self::Superseded => ["a stop came first", "find out why, then command again"],
             Self::Point(refusal) => refusal.description(),
+            Self::Jog(refusal) => refusal.description(),
+            Self::NotDisarmed(State::Boot) => ["the leg is still starting", "ask again"],
+            Self::NotDisarmed(State::Homing) => [
+                "the leg is homing, and a motor is jogged while it is disarmed",
+                "wait for its end, then disarm it",
+            ],
+            Self::NotDisarmed(State::Active) => [
+                "the leg is armed, and a motor is jogged while it is disarmed",
+                "disarm it",
+            ],
+            Self::NotDisarmed(State::Held) => [
+                "the leg is held, and a motor is jogged while it is disarmed",
+                "disarm it",
+            ],
+            Self::NotDisarmed(State::RampingDown) => {
+                ["the leg is ramping down", "wait until it is disarmed"]
+            }
+            Self::NotDisarmed(State::Jogging) => {
+                ["another motor is jogged", "wait for its end, or stop it"]
+            }
+            Self::NotDisarmed(State::Disarmed | State::Off) => {
+                ["the drivers are off after a fault", "clear it"]
+            }
         }
     }
 }

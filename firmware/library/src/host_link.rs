@@ -10,6 +10,7 @@ pub use messages::{
 
 use crate::command::Command;
 use crate::frame::{Decoder, Frame, FrameError, MAX_FRAME};
+use crate::jog::JogReport;
 use crate::leg::Outcome;
 use crate::sensors::Sensors;
 use crate::settings::Settings;
@@ -29,6 +30,8 @@ pub trait CommandedLeg {
     fn outcome(&mut self) -> Option<Outcome>;
     /// The leg after the last tick.
     fn telemetry(&mut self) -> Telemetry<f32>;
+    /// What the last jog saw.
+    fn jog_report(&mut self) -> Option<JogReport<f32>>;
     /// What the sensors read last.
     fn sensors(&mut self) -> Sensors;
     /// Starts again with other settings and without its zero. Faults stay latched.
@@ -203,6 +206,7 @@ impl Service {
                 HostReply::Done
             }
             HostRequest::Sensors => HostReply::Sensors(leg.sensors()),
+            HostRequest::JogReport => HostReply::Jog(leg.jog_report()),
             HostRequest::GetSettings => HostReply::Settings(self.settings.clone()),
             HostRequest::SetSettings(settings) => {
                 if self.saving.is_some() {
@@ -250,7 +254,10 @@ impl Service {
         leg: &mut impl CommandedLeg,
     ) -> Result<Option<HostReply>, HostRefusal> {
         let ends = matches!(command, Command::Stop | Command::Disarm);
-        let begins = matches!(command, Command::Arm | Command::Home | Command::Clear);
+        let begins = matches!(
+            command,
+            Command::Arm | Command::Home | Command::Jog(_) | Command::Clear
+        );
         let follows = leg.telemetry().state.follows();
         if follows && !ends && self.driver.is_some_and(|driver| driver != host) {
             return Err(HostRefusal::OtherHost);

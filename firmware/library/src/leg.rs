@@ -5,6 +5,7 @@ mod command_queue;
 mod commands;
 mod held;
 mod homing;
+mod jogging;
 mod link_watch;
 mod mode;
 mod phase;
@@ -16,6 +17,7 @@ pub use command_queue::Outcome;
 
 use crate::control::{LoadEstimation, Measured, Measurement};
 use crate::drive::Drive;
+use crate::jog::{JogEnd, JogReport};
 use crate::sensors::Sensors;
 use crate::settings::{Settings, SettingsError};
 use crate::supervisor::{
@@ -108,9 +110,13 @@ impl<T: Scalar> Leg<T> {
             self.enter(state, &measured);
         }
         self.phase = self.phase.next();
-        let drive = self
+        let mut drive = self
             .shared
             .drive(state.driven(), self.mode.turns(), &measured);
+        if let Mode::Jogging(jogging) = &self.mode {
+            let (motor, voltage_v) = jogging.voltage();
+            drive.push(motor, voltage_v, measured.supply_v);
+        }
         self.measured = Some(measured);
         drive
     }
@@ -145,6 +151,11 @@ impl<T: Scalar> Leg<T> {
                 }
             }
             Mode::Held(held) => held.step(shared),
+            Mode::Jogging(jogging) => {
+                if jogging.step(shared, measured) {
+                    step.event = Some(Event::Jogged);
+                }
+            }
             Mode::Boot { .. } | Mode::Disarmed | Mode::Off => {}
         }
         // The estimate goes on while nothing is made of it, so that the leg starts from where it is.
@@ -172,14 +183,14 @@ impl<T: Scalar> Leg<T> {
             sensors,
             measured,
             driven: state.driven(),
-            led: state.follows(),
+            led: state.led(),
             tensioned,
             residual_m: if tensioned {
                 self.shared.residual_m()
             } else {
                 None
             },
-            cells_trusted: state == State::Homing
+            cells_trusted: matches!(state, State::Homing | State::Jogging)
                 || self.agreement.trusts() && !self.supervisor.stopped(),
         };
         let mut faults = self.monitors.watch(&input);
@@ -234,6 +245,11 @@ impl<T: Scalar> Leg<T> {
     fn enter(&mut self, state: State, measured: &Measured<T>) {
         self.link.restart_silence();
         let latched = self.supervisor.latched();
+        if let Some(report) = &mut self.shared.jog_report
+            && report.end == JogEnd::Running
+        {
+            report.end = JogEnd::CutOff;
+        }
         let trust = Trust {
             pose: self.agreement.watches() && !self.supervisor.stopped(),
             counters: !latched.overlaps(FaultSet::SUSPECT_COUNTERS),
@@ -263,6 +279,12 @@ impl<T: Scalar> Leg<T> {
     #[must_use]
     pub fn state(&self) -> State {
         self.mode.state()
+    }
+
+    /// What the last jog saw; none since the start.
+    #[must_use]
+    pub fn jog_report(&self) -> Option<JogReport<T>> {
+        self.shared.jog_report
     }
 
     /// What the leg reports of itself.

@@ -79,6 +79,7 @@ pub mod control;
 pub mod drive;
 pub mod frame;
 pub mod host_link;
+pub mod jog;
 pub mod leg;
 pub mod linked_leg;
 pub mod sensors;

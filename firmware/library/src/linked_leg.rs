@@ -3,6 +3,7 @@
 use crate::command::Command;
 use crate::drive::Drive;
 use crate::host_link::{CommandedLeg, HostLink, HostRefusal, Identity};
+use crate::jog::JogReport;
 use crate::leg::{Leg, Outcome};
 use crate::sensors::Sensors;
 use crate::settings::{Settings, SettingsError};
@@ -89,6 +90,10 @@ macro_rules! commanded {
 
             fn telemetry(&mut self) -> Telemetry<f32> {
                 self.leg.telemetry().map($narrowed)
+            }
+
+            fn jog_report(&mut self) -> Option<JogReport<f32>> {
+                self.leg.jog_report().map(|report| report.map($narrowed))
             }
 
             fn sensors(&mut self) -> Sensors {

@@ -45,12 +45,12 @@ impl Supervisor {
         }
     }
 
-    /// The state after an event; none where the event leads nowhere. An arm or a start of homing leads nowhere while a fault is
+    /// The state after an event; none where the event leads nowhere. An arm, a start of homing or a jog leads nowhere while a fault is
     /// latched.
     #[must_use]
     #[inline(always)]
     pub fn next(&self, state: State, event: Event) -> Option<State> {
-        let starts = matches!(event, Event::Arm | Event::Home);
+        let starts = matches!(event, Event::Arm | Event::Home | Event::Jog);
         if starts && self.stopped() {
             return None;
         }

@@ -14,6 +14,7 @@ use embassy_stm32::interrupt::InterruptExt;
 use leg_firmware::board::{self, LowerHalf, TickTimer, WatchedTask};
 use leg_firmware::command::Command;
 use leg_firmware::host_link::{CommandedLeg, HostRefusal};
+use leg_firmware::jog::JogReport;
 use leg_firmware::leg::Outcome;
 use leg_firmware::linked_leg::SensingLeg;
 use leg_firmware::sensors::Sensors;
@@ -122,6 +123,10 @@ impl CommandedLeg for SharedLeg {
             self.telemetry = telemetry;
         }
         self.telemetry
+    }
+
+    fn jog_report(&mut self) -> Option<JogReport<f32>> {
+        with_control(|control| control.leg.jog_report())?
     }
 
     fn sensors(&mut self) -> Sensors {

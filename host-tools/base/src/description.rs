@@ -13,6 +13,7 @@ pub const fn state(state: State) -> &'static str {
         State::Held => "held",
         State::RampingDown => "ramping down",
         State::Off => "off",
+        State::Jogging => "jogging",
     }
 }
 

@@ -51,6 +51,7 @@ pub mod cell_fit;
 pub mod emulated_board;
 pub mod flash;
 mod flat_json;
+pub mod jog_report;
 pub mod leg_report;
 pub mod monitor;
 pub mod operator;

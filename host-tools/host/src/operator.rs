@@ -5,6 +5,7 @@ mod connection;
 mod error;
 mod follow;
 mod goal;
+mod jog;
 mod keep_alive;
 mod motion;
 mod refusal;

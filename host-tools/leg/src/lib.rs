@@ -9,6 +9,7 @@
 //! | `eval`, `check`, `cost`, `paper` | the model at poses; accuracy; instructions and memory; the paper's numbers |
 //! | `map`, `curve`, `export`, `rig` | maps of the workspace; tendon curves; MuJoCo; rig files |
 //! | `leg_commands` | `home`, `move`, `stiffness`, `hold`, `stop`, `disarm`, `clear` |
+//! | `jog` | one motor of a disarmed leg |
 //! | `sensors`, `monitor`, `log`, `settings`, `calibrate` | what a leg reports, records and is set to |
 //! | `moves` | how the true tip of a simulated leg goes, with payloads that it is not told |
 //! | `strikes` | faults that strike a simulated leg in every state |
@@ -43,6 +44,7 @@ mod eval;
 mod export;
 mod faults;
 mod flash;
+mod jog;
 mod leg_commands;
 mod log;
 mod man;
@@ -102,6 +104,7 @@ enum Command {
     /// Prints the fault table: what each fault is, what raises it, what it leads to and how it ends.
     Faults,
     Flash(flash::Args),
+    Jog(jog::Args),
     #[command(flatten)]
     Leg(LegCommand),
     Log(log::Args),
@@ -156,6 +159,7 @@ fn run(command: &Command, options: Options) -> Result<(), Failure> {
         Command::Export(args) => export::run(args),
         Command::Faults => faults::run(options),
         Command::Flash(args) => flash::run(args, options),
+        Command::Jog(args) => jog::run(args, options),
         Command::Leg(command) => command.run(options),
         Command::Log(args) => log::run(args, options),
         Command::Man(args) => man::run(args),

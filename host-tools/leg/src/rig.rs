@@ -26,7 +26,9 @@ pub(crate) struct Args {
 enum RigAction {
     /// Lists the ready rigs; `--rig` takes their names.
     List,
-    /// Prints the mechanism of a rig file as the model sees it.
+    /// Prints the mechanism of a rig file as the model sees it, and what follows from its motors.
+    ///
+    /// Gains and limits that follow from `[actuator]` stand with their formula; one that the file gives wins.
     Show {
         /// The rig file or a ready rig's name; the paper's rig if left out.
         rig: Option<PathBuf>,
@@ -48,7 +50,7 @@ enum RigAction {
         #[arg(long, value_name = "FILE")]
         out: Option<PathBuf>,
     },
-    /// Checks a rig file and reports line and column of the first error.
+    /// Checks a rig file and reports line and column of the first error; what is doubtful is a warning.
     Validate {
         /// The rig file.
         rig: PathBuf,
@@ -110,10 +112,18 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
 }
 
 fn validate(rig: &Path, options: Options) -> Result<(), Failure> {
-    let support = load_rig(Some(rig))?.support_name.word();
-    options.report(&json_object! { file: rig, support: support }, || {
+    let (file, notes) = RigText::load(Some(rig))?.read()?;
+    print_notes(&notes);
+    let support = file.support_name.word();
+    let json = json_object! { file: rig, support: support, notes: &notes };
+    options.report(&json, || {
+        let warnings = notes.iter().filter(|note| note.contains(": warning: "));
+        let doubts = match warnings.count() {
+            0 => "nothing wrong with it".into(),
+            count => format!("nothing that cannot work; warnings: {count}"),
+        };
         format!(
-            "{}: a rig on the support `{support}`, nothing wrong with it\n",
+            "{}: a rig on the support `{support}`, {doubts}\n",
             rig.display()
         )
     })

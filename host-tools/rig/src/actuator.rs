@@ -45,6 +45,10 @@ fields! {
         supply_v ["V"]: 1.0..=1e3 = 24.0;
     }
     and {
+        /// Highest continuous current of the motor, A; none where the file does not say.
+        continuous_a: Option<f64> = None;
+        /// Thermal time constant of the winding, s; none where the file does not say.
+        thermal_time_s: Option<f64> = None;
         /// Tension at a load cell's code 0 and at its highest, N.
         cell_range_n: [f64; 2] = [-20.0, 230.0];
         /// Temperature at code 0 and at the highest, °C.
@@ -79,6 +83,24 @@ pub const TEMPERATURE_RANGE: [Field<f64>; 2] = {
     ]
 };
 
+/// [`Actuator::continuous_a`] and [`Actuator::thermal_time_s`], which have no default.
+pub(crate) const THERMAL: [Field<f64>; 2] = [
+    Field::new(
+        "continuous_a",
+        "A",
+        "Highest continuous current of the motor; with `thermal_time_s` it bounds the current of the servo.",
+        [0.01, 1e3],
+        f64::NAN,
+    ),
+    Field::new(
+        "thermal_time_s",
+        "s",
+        "Thermal time constant of the winding.",
+        [0.1, 1e4],
+        f64::NAN,
+    ),
+];
+
 /// The section `[actuator]`: motors, gears, screws and sensors by their data sheets.
 pub const ACTUATOR: &str = "actuator";
 
@@ -88,10 +110,14 @@ impl Actuator {
         let mut actuator = Self::DEFAULT;
         let mut keys: Vec<_> = Self::FIELDS.iter().map(|field| field.name).collect();
         keys.extend([CELL_RANGE[0].name, TEMPERATURE_RANGE[0].name]);
+        keys.extend(THERMAL.map(|field| field.name));
         let Some(section) = root.optional(ACTUATOR, &keys)? else {
             return Ok(actuator);
         };
         section.read(Self::FIELDS, actuator.values_mut())?;
+        let [continuous, time] = THERMAL.each_ref();
+        actuator.continuous_a = section.values([continuous])?.map(|[current]| current);
+        actuator.thermal_time_s = section.values([time])?.map(|[time]| time);
         if let Some(range) = section.values(CELL_RANGE.each_ref())? {
             actuator.cell_range_n = range;
         }
@@ -123,6 +149,34 @@ impl Actuator {
     #[must_use]
     pub fn back_emf_v_s_per_m(&self) -> f64 {
         self.torque_constant_nm_per_a / self.m_per_rad()
+    }
+
+    /// Current that a pull takes beside friction, by the tension, A/N.
+    #[must_use]
+    pub fn pull_a_per_n(&self) -> f64 {
+        let efficiency = self.gear_efficiency * self.screw_efficiency;
+        self.m_per_rad() / (efficiency * self.torque_constant_nm_per_a)
+    }
+
+    /// The current that a cold motor bears for a time, A: the heat I²t approaches that of the continuous current with the
+    /// winding's time constant. None where the file does not give both.
+    #[must_use]
+    pub fn current_borne_a(&self, time_s: f64) -> Option<f64> {
+        let (continuous_a, thermal_s) = (self.continuous_a?, self.thermal_time_s?);
+        Some(continuous_a / (-(-time_s / thermal_s).exp_m1()).sqrt())
+    }
+
+    /// The time for which a cold motor bears a current, s: infinite up to the continuous one. None where the file does not give
+    /// both.
+    #[must_use]
+    pub fn bears_s(&self, current_a: f64) -> Option<f64> {
+        let (continuous_a, thermal_s) = (self.continuous_a?, self.thermal_time_s?);
+        let part = (continuous_a / current_a).powi(2);
+        Some(if part >= 1.0 {
+            f64::INFINITY
+        } else {
+            -thermal_s * (-part).ln_1p()
+        })
     }
 
     /// Time in which the motor comes up to speed at a voltage: RJ/k², s.

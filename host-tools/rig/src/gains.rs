@@ -1,12 +1,9 @@
 //! Gains and limits of the control law: the sections `[control.…]` of rig files and scenarios.
 
-use crate::actuator::Actuator;
 use crate::number::decimal;
-use crate::plant_settings::slender_inertia_kg_m2;
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;
-use leg_firmware::settings::{Field, Gains, Motion, SECTIONS, Servo};
-use leg_model::RigParameters;
+use leg_firmware::settings::{Field, Gains, SECTIONS};
 use toml::de::DeTable;
 
 /// The common beginning of the sections.
@@ -21,6 +18,11 @@ pub struct GainChange {
 }
 
 impl GainChange {
+    /// Which one, counted through the sections.
+    pub(crate) fn index(&self) -> usize {
+        self.index
+    }
+
     /// The key.
     #[must_use]
     pub fn name(&self) -> &'static str {
@@ -29,23 +31,12 @@ impl GainChange {
     }
 }
 
-/// The defaults for a motor and a leg: its own resistance, induced voltage, play and inertia. The currents that friction and a pull take are not
-/// computed: no data sheet gives them well, so another motor needs its own in `[control.servo]`.
-#[must_use]
-pub fn defaults(actuator: &Actuator, rig: &RigParameters<f64, 3>) -> Gains {
-    Gains {
-        servo: Servo {
-            back_emf_v_s_per_m: actuator.back_emf_v_s_per_m() as f32,
-            resistance_ohm: actuator.resistance_ohm as f32,
-            play_m: actuator.play_m() as f32,
-            ..Servo::DEFAULT
-        },
-        motion: Motion {
-            inertia_kg_m2: slender_inertia_kg_m2(rig) as f32,
-            ..Motion::DEFAULT
-        },
-        ..Gains::default()
-    }
+/// The place of a gain, counted through the sections.
+pub(crate) fn index_of(section: &str, key: &str) -> Option<usize> {
+    let keys = SECTIONS
+        .iter()
+        .flat_map(|(name, fields)| fields.iter().map(move |field| (*name, field.name)));
+    keys.into_iter().position(|path| path == (section, key))
 }
 
 /// The gains with other values where any are given.

@@ -70,6 +70,7 @@ mod tests {
                 support: table_1.support,
                 critical_n: table_1.critical_n,
                 tilt_deg: table_1.tilt_deg,
+                given_gains: table_1.given_gains,
                 // The limit on what a push twists.
                 gains: Gains {
                     limits: Limits {

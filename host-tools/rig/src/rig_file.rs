@@ -2,6 +2,7 @@
 
 mod buckling;
 mod consistency;
+pub mod derived;
 mod reading;
 mod support;
 mod tendon;
@@ -13,6 +14,7 @@ use crate::calibration::Calibration;
 use crate::plant_settings::PlantSettings;
 use crate::ready_rigs::{self, READY_RIGS};
 use crate::support_name::SupportName;
+use derived::GivenGains;
 use leg_base::failure::Failure;
 use leg_base::text_input::{self, FILE_BYTES_MAX};
 use leg_firmware::settings::Gains;
@@ -46,8 +48,10 @@ pub struct RigFile {
     pub actuator: Actuator,
     /// What was measured of the sensors.
     pub calibration: Calibration,
-    /// Gains and limits of the control law, those that are not given at their defaults.
+    /// Gains and limits of the control law.
     pub gains: Gains,
+    /// Which of them the file gives; the others follow from the motors, or are at their defaults.
+    pub given_gains: GivenGains,
     /// What else the simulated leg is.
     pub plant: PlantSettings,
 }
@@ -170,8 +174,10 @@ mod tests {
         let left_out = RigFile::parse("left out", text).unwrap();
         let nominal = left_out.calibration;
         assert_ne!(given.calibration.cell_n_per_code, nominal.cell_n_per_code);
+        assert_ne!(given.given_gains, left_out.given_gains);
         let with_nominal = RigFile {
             calibration: nominal,
+            given_gains: left_out.given_gains,
             ..given
         };
         assert_eq!(with_nominal, left_out);

@@ -1,12 +1,13 @@
 //! What a rig file may leave out, as it stands: each value with its unit, range, default and meaning.
 
-use crate::actuator::{ACTUATOR, Actuator, CELL_RANGE, TEMPERATURE_RANGE};
+use crate::actuator::{ACTUATOR, Actuator, CELL_RANGE, TEMPERATURE_RANGE, THERMAL};
 use crate::calibration::{CALIBRATION, Calibration};
-use crate::gains::{self, CONTROL, widened};
+use crate::gains::{CONTROL, widened};
 use crate::number::{decimal, plain};
 use crate::plant_settings::{PlantSettings, SIMULATION, TRANSVERSE_INERTIA};
 use crate::rig_file::RigFile;
-use leg_firmware::settings::{Field, SECTIONS};
+use crate::rig_file::derived::{self, Basis, GivenGains};
+use leg_firmware::settings::{Field, Gains, SECTIONS};
 use serde::Serialize;
 
 /// One number of a rig, or one for each end of a range or each axis.
@@ -67,7 +68,7 @@ fn numbers(
 /// Gains and limits of the control law.
 #[must_use]
 pub fn control(file: &RigFile) -> Vec<Setting> {
-    let defaults = gains::defaults(&file.actuator, &file.parameters);
+    let defaults = derived::gains(&Basis::new(file), &Gains::default(), GivenGains::default());
     let mut values = file.gains.values().map(decimal);
     let mut defaults = defaults.values().map(decimal);
     let settings = SECTIONS.map(|(name, fields)| {
@@ -85,6 +86,12 @@ pub fn actuator(file: &RigFile) -> Vec<Setting> {
     let (actuator, default) = (&file.actuator, Actuator::DEFAULT);
     let (values, defaults) = (actuator.values(), default.values());
     let mut all = numbers(ACTUATOR, Actuator::FIELDS, values, defaults);
+    for (field, value) in THERMAL
+        .iter()
+        .zip([actuator.continuous_a, actuator.thermal_time_s])
+    {
+        all.extend(Setting::new(ACTUATOR, &[*field], value.as_slice(), []));
+    }
     let cells = [actuator.cell_range_n, default.cell_range_n];
     let temperatures = [actuator.temperature_range_c, default.temperature_range_c];
     for (fields, [value, default]) in [(CELL_RANGE, cells), (TEMPERATURE_RANGE, temperatures)] {
@@ -158,9 +165,10 @@ pub fn changes(file: &RigFile) -> String {
         .collect()
 }
 
-/// A number, or an array of them that are not all the same.
+/// A number, or an array of them that are not all the same; a dash where the file gives none.
 fn written(values: &[f64]) -> String {
     match values {
+        [] => "-".into(),
         [first, rest @ ..] if rest.iter().all(|other| other == first) => plain(*first),
         _ => {
             let entries: Vec<String> = values.iter().copied().map(plain).collect();

@@ -1,5 +1,6 @@
 //! What the model makes of a rig file.
 
+use crate::rig_file::derived::{self, DerivedGain, derived_gains};
 use crate::rig_file::{Buckling, RigFile};
 use crate::rig_settings;
 use leg_base::failure::Failure;
@@ -24,6 +25,7 @@ struct RigSummary {
     f_max_n: f64,
     stiffness_at_pretension_n_per_m: [f64; 3],
     tilt_deg: f64,
+    derived: Vec<DerivedGain>,
 }
 
 impl RigSummary {
@@ -44,6 +46,7 @@ impl RigSummary {
             f_max_n: file.f_max_n,
             stiffness_at_pretension_n_per_m: file.stiffnesses_n_per_m(),
             tilt_deg: file.tilt_deg,
+            derived: derived_gains(file),
         }
     }
 }
@@ -64,7 +67,7 @@ pub fn words(file: &RigFile) -> String {
          tensions               {} to {} N, pretension {} N\n\
          tendons at pretension  {first:.0}, {second:.0}, {third:.0} N/m\n\
          workspace              tilt to {}°\n\
-         {}",
+         {}{}",
         summary.support,
         summary.joint.bending_nm_per_rad,
         summary.joint.torsion_nm_per_rad,
@@ -78,6 +81,7 @@ pub fn words(file: &RigFile) -> String {
         summary.pretension_n,
         summary.tilt_deg,
         rig_settings::changes(file),
+        derived::table(&summary.derived),
     )
 }
 

@@ -1,7 +1,7 @@
 //! The settings of a board as a rig file that gives the same bits again.
 
 use crate::gains::CONTROL;
-use crate::number::{exact, exact_mm, exact_through};
+use crate::number::{decimal, exact, exact_mm, exact_through, plain};
 use crate::support_name::SupportName;
 use leg_firmware::sensors::CODE_MAX;
 use leg_firmware::settings::{AxisCalibration, SECTIONS, Settings, TendonParameters};
@@ -151,9 +151,19 @@ fn actuator(settings: &Settings) -> String {
         board.temperature_c_per_code,
         |hot| (hot - cold) / codes,
     );
+    let limits = &settings.limits;
+    let nominal_v = plain(0.5 * (decimal(limits.supply_min_v) + decimal(limits.supply_max_v)));
+    let [first, ..] = &settings.axes;
+    let current_a = plain(0.5 * codes * f64::from(first.current_a_per_code));
+    let cell_n = [0.0, codes].map(|code| {
+        let zero_code = f64::from(first.cell_zero_code);
+        plain((code - zero_code) * f64::from(first.cell_n_per_code))
+    });
     format!(
-        "\n# Only what the board knows of its sensors; what else there is of the actuators is by default.\n[actuator]\n\
-         supply_range_v = {supply_v}\ntemperature_range_c = [{cold_c}, {hot_c}]\n"
+        "\n# Only what the board knows of its sensors and its supply; what else there is of the actuators is by default.\n\
+         [actuator]\nsupply_v = {nominal_v}\nsupply_range_v = {supply_v}\ncurrent_range_a = {current_a}\n\
+         cell_range_n = {}\ntemperature_range_c = [{cold_c}, {hot_c}]\n",
+        list(cell_n)
     )
 }
 
@@ -199,6 +209,16 @@ mod tests {
             let text = rig_file(&before);
             assert_eq!(settings("text", &text), before, "{}:\n{text}", rig.name);
         }
+    }
+
+    /// A motor, a supply and a load cell beyond what the defaults allow.
+    #[test]
+    fn another_motor_gives_the_same_bits_again() {
+        let text = READY_RIGS[0].text.replace("f_max_n = 150", "f_max_n = 200");
+        let more = "[actuator]\nsupply_v = 48\nsupply_range_v = 72\ncurrent_range_a = 40\nresistance_ohm = 0.3\n\
+                    torque_constant_nm_per_a = 0.05\nfriction_nm = 0.02\ninertia_kg_m2 = 1e-5\ncell_range_n = [-30, 400]\ncounts_per_turn = 64\n";
+        let before = settings("other", &[&text, more].concat());
+        assert_eq!(settings("text", &rig_file(&before)), before);
     }
 
     #[test]

@@ -29,6 +29,8 @@ ranges! {
     // What the leg itself refuses is let through, so that the refusal can be seen.
     pretension_n "pretension_n" -ANY, ANY;
     demand_nm_per_rad "nm_per_rad" -ANY, ANY;
+    travel_mm "travel_mm" -ANY, ANY;
+    volts "volts" -ANY, ANY;
     start_pretension_n "pretension_n" 0.0, 1e3;
     slack_mm "slack_mm" 0.0, 50.0;
     // The tendons of no rig here hold more.

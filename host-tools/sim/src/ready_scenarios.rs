@@ -33,6 +33,7 @@ pub const READY_SCENARIOS: &[ReadyScenario] = ready![
     "trim",
     "workspace",
     "circle",
+    "jog",
     "fault_bad_frame",
     "fault_cell_dead",
     "fault_cell_saturated",

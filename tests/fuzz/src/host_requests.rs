@@ -6,6 +6,7 @@ use leg_firmware::command::{Command, Compensation};
 use leg_firmware::frame::MAX_PAYLOAD;
 use leg_firmware::host_link::HostRequest;
 use leg_firmware::host_link::{HOST_SCHEMA, Hello};
+use leg_firmware::jog::JogDemand;
 use leg_firmware::linked_leg::LINK_BYTES_MAX;
 use leg_firmware::sensors::{CODE_MAX, Sensors};
 use leg_firmware::set_point::{SetPoint, StreamPart};
@@ -39,7 +40,7 @@ fn zeros() -> impl Iterator<Item = HostRequest> {
     (0..).map_while(request)
 }
 
-const COMMANDS: [Command; 14] = [
+const COMMANDS: [Command; 15] = [
     Command::KeepAlive,
     Command::Arm,
     Command::Home,
@@ -57,6 +58,11 @@ const COMMANDS: [Command; 14] = [
         direction: [0.011, 0.0],
         rate: [0.1, 0.0],
         acceleration: None,
+    }),
+    Command::Jog(JogDemand {
+        motor: 1,
+        travel_m: 1e-3,
+        voltage_v: 2.0,
     }),
     Command::Hold,
     Command::Pretension(60.0),

@@ -55,6 +55,15 @@ fn a_scenarios_gain_wins_over_the_rigs_and_the_rigs_over_the_default() {
     assert_eq!(found.homing.touch_n, 3.0, "the rig's");
     let by_default = settings(&RigFile::load(None).unwrap(), &self::scenario(""));
     let mut others = found;
+    assert_eq!(
+        others.servo.speed_gain_v_s_per_m, 1300.0,
+        "by the rig's gain"
+    );
+    others.servo.speed_gain_v_s_per_m = by_default.servo.speed_gain_v_s_per_m;
+    others.servo.integral_time_s = by_default.servo.integral_time_s;
+    others.homing.speed_m_per_s = by_default.homing.speed_m_per_s;
+    others.limits.ramp_m_per_s = by_default.limits.ramp_m_per_s;
+    others.servo.speed_m_per_s = by_default.servo.speed_m_per_s;
     others.servo.position_gain_per_s = by_default.servo.position_gain_per_s;
     others.servo.duty_max = by_default.servo.duty_max;
     others.limits.jump_n = by_default.limits.jump_n;

@@ -20,6 +20,7 @@ pub const BLINK_STEP_MS: u64 = 100;
 /// | held                      | on and off by turns, 1 s |
 /// | ramping down             | two flashes             |
 /// | off after a fault         | on and off by turns, 0.1 s |
+/// | jogging                   | on, three gaps          |
 #[must_use]
 pub const fn led_on(state: State, faulted: bool, step: u32) -> bool {
     // The first step is the lowest bit.
@@ -32,6 +33,7 @@ pub const fn led_on(state: State, faulted: bool, step: u32) -> bool {
         (State::Held, _) => 0b0000_0000_0011_1111_1111,
         (State::RampingDown, _) => 0b0000_0000_0000_0000_0101,
         (State::Off, _) => 0b0101_0101_0101_0101_0101,
+        (State::Jogging, _) => 0b1111_1111_1111_1110_1010,
     };
     pattern >> (step % STEPS) & 1 == 1
 }

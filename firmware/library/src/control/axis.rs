@@ -177,6 +177,13 @@ impl<T: Scalar> Axis<T> {
         self.speed_m_per_s += self.gains.track_speed * off;
     }
 
+    /// Turns at a voltage, V, and is led nowhere.
+    pub fn apply_voltage(&mut self, voltage_v: T, pulled_m: T) {
+        self.rest(pulled_m);
+        self.voltage_v = voltage_v;
+        self.voltage_sum_v += voltage_v;
+    }
+
     /// Goes on from the voltage that another controller of the same motor has applied: the integral becomes what it had to be.
     pub fn adopt_voltage(&mut self, applied_v: T) {
         self.integral_v += applied_v - self.voltage_v;

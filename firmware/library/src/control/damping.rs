@@ -11,9 +11,14 @@ use nalgebra::SVector;
 /// Time between two steps, s: every other cycle.
 const STEP_S: f32 = 2.0 * CYCLE_S;
 
-/// Time constant of each of the two filters of the speeds by the period of the mode, rad. The lag of both is 48° there. Faster ones
-/// would see the damping of the tendons themselves: they pull harder while they are reeled in, and look longer.
-const FILTER_RAD: f32 = 0.45;
+/// Time constant of each of the two filters of the speeds by the period of the mode, rad: the lag of both is 39° there. Slower ones
+/// leave too little phase where the loop ends, a third above the mode.
+const FILTER_RAD: f32 = 0.35;
+
+/// The damping of the tendons themselves makes them pull harder while they are reeled in, and look longer: the loop would be
+/// unstable by itself at a gain of one. It is kept to this part, so that the tendons may be damped three times as much as the
+/// settings say.
+const TENDON_LOOP: f32 = 0.3;
 
 /// Angular frequency up to which the mode gets the whole damping ratio, rad/s: 8 Hz. Above it, it rings down fast by less.
 const WHOLE_RAD_PER_S: f32 = 50.0;
@@ -32,6 +37,8 @@ pub struct SwingDamping<T> {
     tendons: Option<[Speed<T>; 3]>,
     /// Twice the damping ratio.
     twice_ratio: T,
+    /// The highest gain by the inertia, s/(kg·m²).
+    gain_by_inertia: T,
 }
 
 /// The filtered change of a length.
@@ -62,9 +69,18 @@ impl<T: Scalar> Speed<T> {
 impl<T: Scalar> SwingDamping<T> {
     /// Before the first cycle.
     pub fn new(settings: &Settings) -> Self {
+        let motion = &settings.motion;
+        // Lengths that swing with a leg have the levers of the tendons: their damping by its rotation, N·m·s/rad, is about 3/2 of
+        // that of one at the mean lever.
+        let anchors = &settings.rig.leg_anchors_m;
+        let squares: f32 = anchors.iter().map(|[x, y]| x * x + y * y).sum();
+        let tendons_nm_s = 0.5 * squares * motion.tendon_damping_n_s_per_m;
         Self {
             tendons: None,
-            twice_ratio: T::from(2.0 * settings.motion.damping_ratio),
+            twice_ratio: T::from(2.0 * motion.damping_ratio),
+            gain_by_inertia: T::from(
+                TENDON_LOOP * FILTER_RAD * FILTER_RAD / tendons_nm_s.max(1e-6),
+            ),
         }
     }
 
@@ -74,16 +90,17 @@ impl<T: Scalar> SwingDamping<T> {
     }
 
     /// By how much each tendon shall be longer, m, for lengths that are beside those of the trajectory by `beside_m`. The tensions per
-    /// pretension tell a swing from a sensor that lies: a swing changes no length along them. `period_s` is the inverse of
-    /// the angular frequency of the first mode, s/rad.
+    /// pretension tell a swing from a sensor that lies: a swing changes no length along them. `inertia` of the leg, kg·m², and
+    /// `stiffness` against a tilt, N·m/rad, make the first mode.
     #[inline(always)]
     pub fn step(
         &mut self,
         beside_m: &[T; 3],
         per_pretension: &SVector<T, 3>,
-        period_s: T,
+        inertia: T,
+        stiffness: T,
     ) -> [T; 3] {
-        let period_s = min(period_s, T::from(LONGEST_S));
+        let period_s = min((inertia / stiffness).sqrt(), T::from(LONGEST_S));
         let share = T::from(STEP_S) / (T::from(STEP_S) + T::from(FILTER_RAD) * period_s);
         let tendons = self.tendons.get_or_insert_with(|| beside_m.map(Speed::new));
         let mut speeds = [T::zero(); 3];
@@ -93,7 +110,10 @@ impl<T: Scalar> SwingDamping<T> {
         }
         let swing = swing(speeds, per_pretension);
         let slow = min(period_s * T::from(WHOLE_RAD_PER_S), T::one());
-        let gain_s = self.twice_ratio * period_s * slow;
+        let gain_s = min(
+            self.twice_ratio * period_s * slow,
+            self.gain_by_inertia * inertia,
+        );
         let least = T::from(LEAST_M) / period_s;
         swing.map(|speed| {
             let braked = speed - clamp_symmetric(speed, least);
@@ -144,6 +164,7 @@ mod tests {
 
     /// A leg of 4 Hz whose tendons are alike, and how the lengths of one swing in it.
     const PERIOD_S: f64 = 0.04;
+    const INERTIA: f64 = 0.11;
     const SWING: [f64; 3] = [1.0, -0.5, -0.5];
 
     /// Offsets over two swings of tendons that are longer by `amplitude_m` times `parts`.
@@ -152,7 +173,12 @@ mod tests {
         let step = |i: u32| {
             let phase = f64::from(i) * 1e-3 / PERIOD_S;
             let beside_m = parts.map(|part| part * amplitude_m * phase.sin());
-            damping.step(&beside_m, &SVector::repeat(1.0), PERIOD_S)
+            damping.step(
+                &beside_m,
+                &SVector::repeat(1.0),
+                INERTIA,
+                INERTIA / (PERIOD_S * PERIOD_S),
+            )
         };
         (0..500).map(step).collect()
     }
@@ -167,15 +193,15 @@ mod tests {
         let amplitude_m = 1e-4;
         let offsets = offsets(SWING, amplitude_m);
         let steps = (core::f64::consts::TAU * PERIOD_S / 1e-3).round() as usize;
-        // Work of the offset of the first tendon by its length, m², against that of the damper: 2 * 0.35 * PERIOD_S * speed.
+        // Work of the offset of the first tendon by its length, m², against that of the damper: twice the ratio of 0.25 times PERIOD_S times the speed.
         let mut work = 0.0;
         for (i, offset_m) in offsets.iter().enumerate().skip(500 - steps) {
             let speed = amplitude_m * (i as f64 * 1e-3 / PERIOD_S).cos() / PERIOD_S;
             work -= offset_m[0] * speed * 1e-3;
         }
-        let ideal = 0.7 * core::f64::consts::PI * amplitude_m * amplitude_m;
+        let ideal = 0.5 * core::f64::consts::PI * amplitude_m * amplitude_m;
         assert!((0.45..0.8).contains(&(work / ideal)), "{}", work / ideal);
-        assert!(largest(&offsets) < 0.7 * amplitude_m);
+        assert!(largest(&offsets) < 0.5 * amplitude_m);
     }
 
     /// One length that changes alone is a sensor that lies; so are three that change as pretension does.

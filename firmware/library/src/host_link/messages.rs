@@ -2,6 +2,7 @@
 
 use crate::command::{Command, CommandRefusal};
 use crate::frame::FrameError;
+use crate::jog::JogReport;
 use crate::sensors::Sensors;
 use crate::settings::{Settings, SettingsError};
 use crate::telemetry::Telemetry;
@@ -64,6 +65,8 @@ pub enum HostRequest {
     SetSettings(Settings),
     /// Keeps the settings in use over a reset.
     SaveSettings,
+    /// Asks for what the last jog saw.
+    JogReport,
 }
 
 /// What the leg answers, and sends by itself.
@@ -88,6 +91,8 @@ pub enum HostReply {
     Sensors(Sensors),
     /// The settings in use.
     Settings(Settings),
+    /// What the last jog saw; none since the start.
+    Jog(Option<JogReport<f32>>),
 }
 
 /// Telemetry with its number.

@@ -286,10 +286,10 @@ impl<T: Scalar> Active<T> {
         }
         let inertia = shared.mechanism.inertia(shared.estimator.payload_kg());
         let stiffness = bounds::max(shared.pretension.mean_stiffness_nm_per_rad(), T::one());
-        let period_s = (inertia / stiffness).sqrt();
+        let per_pretension = &target.distribution.per_pretension;
         shared
             .damping
-            .step(&beside_m, &target.distribution.per_pretension, period_s)
+            .step(&beside_m, per_pretension, inertia, stiffness)
     }
 
     /// Stays where the last target was: there is none where the trajectory is now.

@@ -1,11 +1,13 @@
 //! What the host's commands make the leg do.
 
 use super::active::Active;
+use super::jogging::Jogging;
 use super::mode::Mode;
 use super::shared::Shared;
 use super::{Leg, Outcome};
 use crate::command::{Command, CommandRefusal};
 use crate::control::{Measured, PretensionDemand};
+use crate::jog::JogDemand;
 use crate::set_point::SetPoint;
 use crate::supervisor::{Event, Fault, FaultSet, State};
 use leg_model::{BendingAxis, Direction, Scalar};
@@ -53,6 +55,7 @@ impl<T: Scalar> Leg<T> {
             Command::Arm if self.shared.zero_m.is_none() => Err(CommandRefusal::NotHomed),
             Command::Arm => self.start(Event::Arm, measured),
             Command::Home => self.start(Event::Home, measured),
+            Command::Jog(demand) => self.jog(&demand, measured),
             Command::Move { x, y } => self.start_move(x.into(), y.into()),
             Command::Follow(point) => self.follow(&point),
             Command::Hold => {
@@ -95,6 +98,19 @@ impl<T: Scalar> Leg<T> {
             return Err(CommandRefusal::State(before));
         };
         self.enter(state, measured);
+        Ok(())
+    }
+
+    /// Turns one motor of a disarmed leg.
+    fn jog(&mut self, demand: &JogDemand, measured: &Measured<T>) -> Result<(), CommandRefusal> {
+        let checked = self.shared.limits.jog.check(demand);
+        checked.map_err(CommandRefusal::Jog)?;
+        self.start(Event::Jog, measured)
+            .map_err(|refusal| match refusal {
+                CommandRefusal::State(state) => CommandRefusal::NotDisarmed(state),
+                other => other,
+            })?;
+        self.mode = Mode::Jogging(Jogging::begin(&mut self.shared, demand, measured));
         Ok(())
     }
 

@@ -2,6 +2,7 @@
 
 use super::active::Active;
 use super::held::Held;
+use super::jogging::Jogging;
 use super::ramping_down::RampingDown;
 use super::shared::Shared;
 use crate::control::{Axis, HomingSequence, Measured};
@@ -35,6 +36,8 @@ pub enum Mode<T> {
     RampingDown(RampingDown<T>),
     /// The drivers are off after a fault.
     Off,
+    /// One motor turns at a voltage.
+    Jogging(Jogging<T>),
 }
 
 impl<T: Scalar> Mode<T> {
@@ -56,6 +59,7 @@ impl<T: Scalar> Mode<T> {
             Self::Held(_) => State::Held,
             Self::RampingDown(_) => State::RampingDown,
             Self::Off => State::Off,
+            Self::Jogging(_) => State::Jogging,
         }
     }
 
@@ -100,7 +104,8 @@ impl<T: Scalar> Mode<T> {
         match self {
             Self::Homing(_) | Self::Active(_) | Self::RampingDown(_) => true,
             Self::Held(held) => held.brakes(),
-            Self::Boot { .. } | Self::Disarmed | Self::Off => false,
+            // A jogged motor obeys no axis.
+            Self::Boot { .. } | Self::Disarmed | Self::Off | Self::Jogging(_) => false,
         }
     }
 
@@ -139,7 +144,8 @@ impl<T: Scalar> Mode<T> {
                 measured.pulled_m,
                 trust.pose,
             )),
-            State::Off => Self::Off,
+            // A jog begins by its command alone, which has its demand.
+            State::Off | State::Jogging => Self::Off,
         }
     }
 }

@@ -2,11 +2,12 @@
 
 use crate::command::Compensation;
 use crate::control::{
-    Axis, AxisInput, CYCLE_TICKS, Estimate, Estimator, LoadEstimation, Measured, Mechanism,
-    MotionLimits, Play, PretensionSearch, Stream, StreamLimits, SwingDamping, Target,
+    Axis, AxisInput, CYCLE_TICKS, Estimate, Estimator, JogBounds, LoadEstimation, Measured,
+    Mechanism, MotionLimits, Play, PretensionSearch, Stream, StreamLimits, SwingDamping, Target,
     TargetGenerator, bounds, ticks,
 };
 use crate::drive::Drive;
+use crate::jog::JogReport;
 use crate::settings::{Homing, Settings, SettingsError};
 use crate::supervisor::State;
 use leg_model::{Direction, Error, Scalar, inverse_kinematics};
@@ -41,6 +42,8 @@ pub struct Shared<T> {
     pub pretension: PretensionSearch<T>,
     pub mechanism: Mechanism<T>,
     pub stream: Stream<T>,
+    /// What the last jog saw.
+    pub jog_report: Option<JogReport<T>>,
 }
 
 /// Slack of each tendon of a relaxed leg whose zero is known, m: more than the servo leaves, and little enough that the tip of a
@@ -66,6 +69,7 @@ pub struct LegLimits<T> {
     pub taut_cycles: u32,
     pub servo_m_per_s: T,
     pub tilt_max_sine: T,
+    pub jog: JogBounds<T>,
 }
 
 impl<T: Scalar> LegLimits<T> {
@@ -77,15 +81,15 @@ impl<T: Scalar> LegLimits<T> {
         let mut twisted = None;
         let geometry = mechanism.geometry(&down, T::zero(), &mut twisted);
         let hanging_m = inverse_kinematics(geometry, &down)?.lengths;
+        let homing_current_max_a =
+            1.5 * settings.servo.friction_a + settings.servo.pull_a_per_n * settings.homing.f_max_n;
         Ok(Self {
+            jog: JogBounds::new(settings, homing_current_max_a),
             slack_lengths_m: (hanging_m.add_scalar(T::from(SLACK_M))).into(),
             motion: MotionLimits::new(&settings.motion),
             homing: settings.homing,
             homing_f_max_n: settings.homing.f_max_n.into(),
-            homing_current_max_a: T::from(
-                1.5 * settings.servo.friction_a
-                    + settings.servo.pull_a_per_n * settings.homing.f_max_n,
-            ),
+            homing_current_max_a: homing_current_max_a.into(),
             ramp_m_per_s: limits.ramp_m_per_s.into(),
             relax_travel_m: limits.relax_travel_m.into(),
             dead_band_m: settings.servo.dead_band_m.into(),
@@ -124,6 +128,7 @@ impl<T: Scalar> Shared<T> {
             failed_tendon: 0,
             limits: LegLimits::new(settings, &mechanism)?,
             mechanism,
+            jog_report: None,
         })
     }
 

@@ -22,6 +22,8 @@ pub enum State {
     RampingDown,
     /// The drivers are off after a fault; the screws hold.
     Off,
+    /// One motor of a leg that was disarmed turns slowly.
+    Jogging,
 }
 
 /// What happens to the leg.
@@ -33,6 +35,10 @@ pub enum Event {
     Arm,
     /// The host starts homing.
     Home,
+    /// The host has one motor turned.
+    Jog,
+    /// That motor has come to its end.
+    Jogged,
     /// Homing has found the zero.
     Homed,
     /// The host stops the leg.
@@ -51,12 +57,23 @@ pub enum Event {
     Reaction(Reaction),
 }
 
-use Event::{Arm, Clear, ClearHomed, Disarm, Home, Homed, LeadDown, Ready, Relaxed, Stop};
-use State::{Active, Boot, Disarmed, Held, Homing, Off, RampingDown};
+use Event::{
+    Arm, Clear, ClearHomed, Disarm, Home, Homed, Jog, Jogged, LeadDown, Ready, Relaxed, Stop,
+};
+use State::{Active, Boot, Disarmed, Held, Homing, Jogging, Off, RampingDown};
 
 impl State {
     /// Every state.
-    pub const ALL: [Self; 7] = [Boot, Disarmed, Homing, Active, Held, RampingDown, Off];
+    pub const ALL: [Self; 8] = [
+        Boot,
+        Disarmed,
+        Homing,
+        Active,
+        Held,
+        RampingDown,
+        Off,
+        Jogging,
+    ];
 
     /// The state after an event; none if the event means nothing here. This is the whole table.
     #[must_use]
@@ -66,6 +83,10 @@ impl State {
             (Boot, Ready) => Disarmed,
             (Disarmed, Arm) => Active,
             (Disarmed, Home) => Homing,
+            (Disarmed, Jog) => Jogging,
+            (Jogging, Jogged | Stop | Disarm) => Disarmed,
+            // No tendon is led anywhere: the screws hold.
+            (Jogging, Event::Reaction(Reaction::Hold | Reaction::RampDown)) => Off,
             (Homing, Homed) => Active,
             (Homing | Active, Stop) => Held,
             (Homing | Active | Held, Disarm) => RampingDown,
@@ -85,13 +106,20 @@ impl State {
     #[must_use]
     #[inline(always)]
     pub const fn driven(self) -> bool {
-        matches!(self, Homing | Active | Held | RampingDown)
+        matches!(self, Homing | Active | Held | RampingDown | Jogging)
     }
 
     /// Whether the leg does what a host asks, and wants to hear from it.
     #[must_use]
     #[inline(always)]
     pub const fn follows(self) -> bool {
+        matches!(self, Homing | Active | Jogging)
+    }
+
+    /// Whether the motors are led to where the control law wants them.
+    #[must_use]
+    #[inline(always)]
+    pub const fn led(self) -> bool {
         matches!(self, Homing | Active)
     }
 }

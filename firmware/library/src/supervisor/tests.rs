@@ -67,7 +67,7 @@ fn a_reaction_only_ever_takes_authority_away() {
     let authority = |state| match state {
         State::Active | State::Homing => 3,
         State::Held => 2,
-        State::RampingDown => 1,
+        State::RampingDown | State::Jogging => 1,
         State::Boot | State::Disarmed | State::Off => 0,
     };
     for state in State::ALL {
@@ -88,6 +88,8 @@ fn nothing_but_a_clear_leads_back() {
         Event::Ready,
         Event::Arm,
         Event::Home,
+        Event::Jog,
+        Event::Jogged,
         Event::Homed,
         Event::Stop,
         Event::Disarm,

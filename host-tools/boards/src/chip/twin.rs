@@ -6,6 +6,7 @@ use leg_firmware::drive::Drive;
 use leg_firmware::host_link::{
     BoardKind, CommandedLeg, HostLink, HostRefusal, Identity, ResetCause,
 };
+use leg_firmware::jog::JogReport;
 use leg_firmware::leg::Outcome;
 use leg_firmware::linked_leg::SensingLeg;
 use leg_firmware::sensors::Sensors;
@@ -97,6 +98,10 @@ impl CommandedLeg for CountingLeg {
 
     fn telemetry(&mut self) -> Telemetry<f32> {
         CommandedLeg::telemetry(&mut self.leg)
+    }
+
+    fn jog_report(&mut self) -> Option<JogReport<f32>> {
+        CommandedLeg::jog_report(&mut self.leg)
     }
 
     fn sensors(&mut self) -> Sensors {

@@ -77,9 +77,9 @@ impl Operator {
 fn evidence(command: &Command, telemetry: &Telemetry<f32>) -> Evidence {
     let no_fault = !telemetry.faults.without_limits().any();
     match (command, telemetry.state) {
-        (Command::Arm, State::Active) | (Command::Home, State::Homing | State::Active) => {
-            Evidence::Obeyed
-        }
+        (Command::Arm, State::Active)
+        | (Command::Home, State::Homing | State::Active)
+        | (Command::Jog(_), State::Jogging) => Evidence::Obeyed,
         (Command::Clear, State::Active | State::RampingDown | State::Disarmed) if no_fault => {
             Evidence::Obeyed
         }
@@ -116,12 +116,15 @@ pub(super) const fn name(command: &Command) -> &'static str {
         Command::Stop => "stop",
         Command::Disarm => "disarm",
         Command::Clear => "clear its faults",
+        Command::Jog(_) => "jog a motor",
     }
 }
 
 const fn repeat(command: &Command) -> Repeat {
     match command {
-        Command::Arm | Command::Home | Command::Move { .. } | Command::Clear => Repeat::IfLost,
+        Command::Arm | Command::Home | Command::Jog(_) | Command::Move { .. } | Command::Clear => {
+            Repeat::IfLost
+        }
         _ => Repeat::Always,
     }
 }

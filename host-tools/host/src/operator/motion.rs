@@ -119,7 +119,9 @@ impl Operator {
         let telemetry = self.telemetry()?.telemetry;
         let refuse = |refusal| Err(OperatorError::Refused(asked, HostRefusal::Command(refusal)));
         match telemetry.state {
-            State::Homing => return refuse(CommandRefusal::State(State::Homing)),
+            state @ (State::Homing | State::Jogging) => {
+                return refuse(CommandRefusal::State(state));
+            }
             _ if !telemetry.homed => return refuse(CommandRefusal::NotHomed),
             State::Disarmed => self.command(Command::Arm)?,
             State::Held | State::Off => self.command(Command::Clear)?,

@@ -1,5 +1,7 @@
 //! Whether motors, sensors and limits go together.
 
+mod motors;
+
 use super::RigFile;
 use crate::actuator::{ACTUATOR, Actuator};
 use crate::gains::{CONTROL, widened};
@@ -7,16 +9,25 @@ use crate::number::{decimal, plain};
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;
 use leg_firmware::settings::{AxisCalibration, Field, Servo};
+use std::ops::Range;
 
-/// Refuses what does not go together. A file without these sections may describe no more than a mechanism.
-pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
+/// Something doubtful at a place of the file.
+pub(super) struct Warning {
+    pub span: Range<usize>,
+    pub text: String,
+}
+
+/// Refuses what does not go together, and warns of what is doubtful. A file without these sections may describe no more than
+/// a mechanism.
+pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<Vec<Warning>, TomlError> {
     if root.has(ACTUATOR) {
         check_actuator(&file.actuator, root)?;
     }
     if root.has(ACTUATOR) || root.has(CONTROL) {
         check_limits(file, root)?;
+        return motors::check(file, root);
     }
-    Ok(())
+    Ok(Vec::new())
 }
 
 /// What several values of `[actuator]` make up together.

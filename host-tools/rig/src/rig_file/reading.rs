@@ -1,6 +1,8 @@
 //! From the text of a rig file to its values, every one checked.
 
-use super::{RigFile, buckling, consistency, support, tendon};
+use super::consistency::Warning;
+use super::derived::{Basis, GivenGains};
+use super::{RigFile, buckling, consistency, derived, support, tendon};
 use crate::actuator::{ACTUATOR, Actuator};
 use crate::calibration::{CALIBRATION, Calibration};
 use crate::gains::{self, CONTROL};
@@ -8,6 +10,7 @@ use crate::plant_settings::{PlantSettings, SIMULATION};
 use crate::renamed_keys;
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;
+use leg_firmware::settings::Gains;
 use leg_model::{Elasticity, Error, Quantity, Reason, RigParameters};
 use toml::de::DeTable;
 
@@ -37,7 +40,7 @@ const MASS: [&str; 3] = ["leg_kg", "centroid_mm", "gravity_m_per_s2"];
 /// Reads the file and lets the model check it; with notes on what it should say otherwise.
 pub(super) fn parse(text: &str) -> Result<(RigFile, Vec<String>), TomlError> {
     let mut table = DeTable::parse(text)?.into_inner();
-    let notes = renamed_keys::replace(&mut table)?;
+    let mut notes = renamed_keys::replace(&mut table)?;
     let root = Section::whole(&table).checked(&SECTIONS)?;
     let file = read(&root)?;
     if let Err((quantity, reason)) = check(&file)
@@ -47,7 +50,14 @@ pub(super) fn parse(text: &str) -> Result<(RigFile, Vec<String>), TomlError> {
         return Err(TomlError::refused(span, key, reason));
     }
     buckling::check(&file, root.place(&["tendon", "pretension_n"]))?;
-    consistency::check(&file, &root)?;
+    let warnings = consistency::check(&file, &root)?;
+    notes.extend(warnings.iter().map(|Warning { span, text: words }| {
+        let before = text.get(..span.start).unwrap_or_default();
+        format!(
+            "warning: {words} (line {})",
+            1 + before.matches('\n').count()
+        )
+    }));
     Ok((file, notes))
 }
 
@@ -59,7 +69,8 @@ fn read(root: &Section<'_>) -> Result<RigFile, TomlError> {
         .number("tilt_deg")?;
     let (support_name, support, critical_n) = support::read(root, tilt_deg)?;
     let actuator = Actuator::read(root)?;
-    Ok(RigFile {
+    let changes = gains::read(root.table)?;
+    let mut file = RigFile {
         parameters,
         tendons: tendon::read(&tendon)?,
         stiffness_at: tendon::read_stiffness_at(&tendon)?,
@@ -70,14 +81,14 @@ fn read(root: &Section<'_>) -> Result<RigFile, TomlError> {
         support_name,
         support,
         critical_n,
-        gains: gains::changed(
-            gains::defaults(&actuator, &parameters),
-            &gains::read(root.table)?,
-        ),
+        gains: gains::changed(Gains::default(), &changes),
+        given_gains: GivenGains::new(&changes),
         calibration: Calibration::read(root, &actuator)?,
         actuator,
         plant: PlantSettings::read(root)?,
-    })
+    };
+    file.gains = derived::gains(&Basis::new(&file), &file.gains, file.given_gains);
+    Ok(file)
 }
 
 fn read_parameters(root: &Section<'_>) -> Result<RigParameters<f64, 3>, TomlError> {

@@ -3,6 +3,7 @@
 use crate::range;
 use leg_base::angles;
 use leg_firmware::command::{Command, Compensation};
+use leg_firmware::jog::JogDemand;
 use serde::Deserialize;
 use strum::VariantNames;
 
@@ -45,6 +46,17 @@ pub enum CommandStep {
     },
     /// Chooses the load that is compensated.
     Compensation(Compensation),
+    /// To turn one motor, disarmed.
+    Jog {
+        /// From 1.
+        motor: u8,
+        /// How far its tendon is pulled in; negative pays out.
+        #[serde(deserialize_with = "range::travel_mm")]
+        travel_mm: f64,
+        /// At the motor.
+        #[serde(deserialize_with = "range::volts")]
+        volts: f64,
+    },
 }
 
 impl CommandStep {
@@ -74,6 +86,15 @@ impl CommandStep {
                 towards: towards_deg.map(|deg| angles::unit_vector(deg).map(|c| c as f32)),
             },
             Self::Compensation(compensation) => Command::Compensation(compensation),
+            Self::Jog {
+                motor,
+                travel_mm,
+                volts,
+            } => Command::Jog(JogDemand {
+                motor,
+                travel_m: (travel_mm / 1000.0) as f32,
+                voltage_v: volts as f32,
+            }),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::command::{Command, CommandRefusal};
 use crate::host_link::{CommandedLeg, HostRefusal};
+use crate::jog::JogReport;
 use crate::leg::{Leg, Outcome};
 use crate::sensors::Sensors;
 use crate::settings::Settings;
@@ -81,6 +82,10 @@ impl CommandedLeg for NotedLeg {
             state: self.state,
             ..self.telemetry
         }
+    }
+
+    fn jog_report(&mut self) -> Option<JogReport<f32>> {
+        None
     }
 
     fn sensors(&mut self) -> Sensors {

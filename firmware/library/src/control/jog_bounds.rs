@@ -1,0 +1,63 @@
+//! How far, how hard and how long a motor may be jogged.
+
+use crate::jog::{JOG_TRAVEL_MAX_M, JogDemand, JogRefusal};
+use crate::settings::Settings;
+use leg_model::Scalar;
+
+/// Time in which the voltage of a jog comes up, s: at once, the motor would draw more than any tension of a jog asks for.
+pub const JOG_RISE_S: f32 = 0.1;
+
+/// Slowest jog that is waited for, m/s, and the time for all that is beside the way, s.
+const SLOWEST_M_PER_S: f32 = 2e-4;
+const GRACE_S: f32 = 1.0;
+
+/// The bounds of every jog, from the settings.
+#[derive(Clone, Copy, Debug)]
+pub struct JogBounds<T> {
+    /// Voltage from which the monitors take a motor for driven, V.
+    voltage_max_v: f32,
+    /// Highest tension: that of homing, N.
+    pub tension_max_n: T,
+    /// Highest current: that of homing, A.
+    pub current_max_a: T,
+    /// Voltage that this current takes, V, and what the speed induces, V·s/m.
+    dropped_v: f32,
+    back_emf_v_s_per_m: f32,
+}
+
+impl<T: Scalar> JogBounds<T> {
+    /// Those of the settings; `current_max_a` is that of homing.
+    pub fn new(settings: &Settings, current_max_a: f32) -> Self {
+        let servo = &settings.servo;
+        Self {
+            voltage_max_v: settings.limits.driven_part * servo.current_a * servo.resistance_ohm,
+            tension_max_n: settings.homing.f_max_n.into(),
+            current_max_a: current_max_a.into(),
+            dropped_v: servo.resistance_ohm * current_max_a,
+            back_emf_v_s_per_m: servo.back_emf_v_s_per_m,
+        }
+    }
+
+    /// Whether a jog may begin.
+    pub fn check(&self, demand: &JogDemand) -> Result<(), JogRefusal> {
+        let travel_m = demand.travel_m.abs();
+        if !(1..=3).contains(&demand.motor) {
+            Err(JogRefusal::Motor)
+        } else if !(travel_m > 0.0 && travel_m <= JOG_TRAVEL_MAX_M) {
+            Err(JogRefusal::Travel)
+        } else if !(demand.voltage_v > 0.0 && demand.voltage_v <= self.voltage_max_v) {
+            Err(JogRefusal::Voltage)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// The longest time of a jog, s: twice what it takes at the most that it may draw.
+    pub fn time_max_s(&self, demand: &JogDemand) -> f32 {
+        let left_v = demand.voltage_v - self.dropped_v;
+        let slowest = SLOWEST_M_PER_S * self.back_emf_v_s_per_m;
+        let induced_v = if left_v > slowest { left_v } else { slowest };
+        let way_s = demand.travel_m.abs() * self.back_emf_v_s_per_m / induced_v;
+        JOG_RISE_S + GRACE_S + 2.0 * way_s
+    }
+}

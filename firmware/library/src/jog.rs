@@ -1,0 +1,102 @@
+//! A jog: one motor turns slowly at a low voltage while the leg is disarmed, to see whether its wires are right.
+
+use postcard_schema::Schema;
+use serde::{Deserialize, Serialize};
+
+/// Farthest that a jog turns, m of tendon.
+pub const JOG_TRAVEL_MAX_M: f32 = 0.01;
+
+/// What a jog shall do.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct JogDemand {
+    /// The motor, from 1.
+    pub motor: u8,
+    /// How far it shall pull its tendon in, m; below zero it pays out.
+    pub travel_m: f32,
+    /// The voltage at the motor, without its sign, V.
+    pub voltage_v: f32,
+}
+
+/// Why a jog is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub enum JogRefusal {
+    /// There is no motor of that number.
+    Motor,
+    /// The travel is none, or too far.
+    Travel,
+    /// The voltage is none, or so high that the motor counts as driven.
+    Voltage,
+}
+
+impl JogRefusal {
+    /// What is wrong, and what to do about it.
+    #[must_use]
+    pub const fn description(self) -> [&'static str; 2] {
+        match self {
+            Self::Motor => ["there is no motor of that number", "give 1, 2 or 3"],
+            Self::Travel => [
+                "a jog turns by no more than 10 mm of tendon, and by more than nothing",
+                "give another travel",
+            ],
+            Self::Voltage => [
+                "the voltage is not above zero, or above driven_part of what drives current_a through resistance_ohm",
+                "give a lower voltage",
+            ],
+        }
+    }
+}
+
+/// What ended a jog.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[serde(rename_all = "snake_case")]
+pub enum JogEnd {
+    /// Nothing: it goes on.
+    Running,
+    /// The travel was reached.
+    Arrived,
+    /// The motor's encoder counted nothing for 0.1 s.
+    NoCounts,
+    /// It counted the other way.
+    WrongWay,
+    /// The encoder of another motor, from 1, counted.
+    OtherEncoder(u8),
+    /// A load cell, from 1, showed more than the highest tension of homing.
+    Tension(u8),
+    /// The motor drew more than homing allows for 30 ms.
+    Current,
+    /// It took longer than it should.
+    Time,
+    /// A fault, a command or the silence of the host.
+    CutOff,
+}
+
+/// What a jog saw.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct JogReport<T> {
+    /// What was asked for.
+    pub demand: JogDemand,
+    /// What ended it.
+    pub end: JogEnd,
+    /// How long the motor was driven, s.
+    pub time_s: T,
+    /// How far each encoder has counted since the start, as pull, m.
+    pub pulled_m: [T; 3],
+    /// The tension of each tendon at the start and at the end, N.
+    pub tensions_n: [[T; 3]; 2],
+    /// The mean current of the motor at the full voltage, A; the last one where it did not come to that.
+    pub current_a: T,
+}
+
+impl<T: Copy> JogReport<T> {
+    /// The same in another precision.
+    pub fn map<U>(&self, number: impl Fn(T) -> U) -> JogReport<U> {
+        JogReport {
+            demand: self.demand,
+            end: self.end,
+            time_s: number(self.time_s),
+            pulled_m: self.pulled_m.map(&number),
+            tensions_n: self.tensions_n.map(|tensions| tensions.map(&number)),
+            current_a: number(self.current_a),
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! Jogging: one motor turns at a voltage, the others rest. Whatever ends it, the motor is braked and then switched off.
+
+use super::shared::Shared;
+use crate::control::{Debounce, JOG_RISE_S, Measured, TICK_S, bounds, ticks};
+use crate::jog::{JogDemand, JogEnd, JogReport};
+use leg_model::Scalar;
+
+/// Time without a count, from the full voltage on, after which an encoder counts nothing, s.
+const SILENT_S: f32 = 0.1;
+
+/// Time for which a motor draws more than any tension of a jog asks for before it ends, s: as in homing.
+const HAUL_S: f32 = 0.03;
+
+/// Time for which the motor is braked without a voltage, s: ten times what the default motor takes.
+const BRAKE_S: f32 = 0.05;
+
+/// Counts of another encoder, or of this one the wrong way, that end a jog, m of tendon: less than what a motor turns before the
+/// monitors find that its current disagrees with a voltage that it does not count.
+const STRAY_M: f32 = 3e-5;
+
+/// A motor that turns on by this while it is braked does not obey, m.
+const DISOBEYED_M: f32 = 2e-4;
+
+/// A motor that comes no further than this has not turned, m.
+const TURNED_M: f32 = 5e-6;
+
+/// One motor turns.
+#[derive(Clone, Copy, Debug)]
+pub struct Jogging<T> {
+    /// The motor, from 0.
+    motor: usize,
+    /// 1 to pull in, −1 to pay out.
+    sign: T,
+    travel_m: T,
+    voltage_v: T,
+    applied_v: T,
+    start_m: [T; 3],
+    /// Tension above which it ends, N.
+    tension_max_n: T,
+    current_max_a: T,
+    last_m: T,
+    silent: Debounce,
+    hauling: Debounce,
+    /// Ticks driven, and those at the full voltage.
+    ticks: u32,
+    full_ticks: u32,
+    ticks_max: u32,
+    /// Ticks for which the motor is still braked, once it has ended.
+    brake_ticks: Option<u32>,
+}
+
+impl<T: Scalar> Jogging<T> {
+    /// From where the motors are; the demand has been checked. What it sees is kept in `shared`.
+    pub fn begin(shared: &mut Shared<T>, demand: &JogDemand, measured: &Measured<T>) -> Self {
+        let jog_bounds = &shared.limits.jog;
+        let pays_out = demand.travel_m < 0.0;
+        // A tendon that pulls already may be paid out, but no cell may show more for it.
+        let taut_n = measured
+            .steady_tensions_n
+            .iter()
+            .fold(T::zero(), |a, &b| bounds::max(a, b));
+        let eased_n = taut_n + T::from(shared.limits.homing.touch_n);
+        let tension_max_n = if pays_out {
+            bounds::max(jog_bounds.tension_max_n, eased_n)
+        } else {
+            jog_bounds.tension_max_n
+        };
+        let motor = usize::from(demand.motor.saturating_sub(1));
+        shared.jog_report = Some(JogReport {
+            demand: *demand,
+            end: JogEnd::Running,
+            time_s: T::zero(),
+            pulled_m: [T::zero(); 3],
+            tensions_n: [measured.steady_tensions_n; 2],
+            current_a: T::zero(),
+        });
+        Self {
+            motor,
+            sign: T::from(if pays_out { -1.0 } else { 1.0 }),
+            travel_m: T::from(demand.travel_m.abs()),
+            voltage_v: demand.voltage_v.into(),
+            applied_v: T::zero(),
+            start_m: measured.pulled_m,
+            tension_max_n,
+            current_max_a: jog_bounds.current_max_a,
+            last_m: measured.pulled_m.get(motor).copied().unwrap_or(T::zero()),
+            silent: Debounce::new(ticks(SILENT_S)),
+            hauling: Debounce::new(ticks(HAUL_S)),
+            ticks: 0,
+            full_ticks: 0,
+            ticks_max: ticks(jog_bounds.time_max_s(demand)),
+            brake_ticks: None,
+        }
+    }
+
+    /// The motor, from 0, and the voltage at it, V.
+    #[inline(always)]
+    pub fn voltage(&self) -> (usize, T) {
+        (self.motor, self.applied_v)
+    }
+
+    /// One tick; true when the motor has been braked.
+    #[inline(never)]
+    pub fn step(&mut self, shared: &mut Shared<T>, measured: &Measured<T>) -> bool {
+        let (Some(&pulled), Some(&current)) = (
+            measured.pulled_m.get(self.motor),
+            measured.currents_a.get(self.motor),
+        ) else {
+            return true;
+        };
+        if let Some(report) = &mut shared.jog_report {
+            for ((moved, now), start) in report
+                .pulled_m
+                .iter_mut()
+                .zip(measured.pulled_m)
+                .zip(self.start_m)
+            {
+                *moved = now - start;
+            }
+            report.tensions_n[1] = measured.steady_tensions_n;
+            if self.brake_ticks.is_none() {
+                self.ticks += 1;
+                report.time_s = T::from(self.ticks as f32 * TICK_S);
+                self.drive();
+                if self.at_full() {
+                    self.full_ticks += 1;
+                    let share = T::one() / T::from(self.full_ticks as f32);
+                    report.current_a += (current - report.current_a) * share;
+                } else {
+                    report.current_a = current;
+                }
+                report.end = self.end(report, pulled, current);
+                if report.end != JogEnd::Running {
+                    self.brake_ticks = Some(ticks(BRAKE_S));
+                }
+            }
+        }
+        if let Some(left) = &mut self.brake_ticks {
+            self.applied_v = T::zero();
+            // One that turns on all the same does not obey its voltage: off with it.
+            let obeys = (pulled - self.last_m).abs() <= T::from(DISOBEYED_M);
+            *left = if obeys { left.saturating_sub(1) } else { 0 };
+        }
+        if let Some(axis) = shared.axes.get_mut(self.motor) {
+            axis.apply_voltage(self.applied_v, pulled);
+        }
+        self.brake_ticks == Some(0)
+    }
+
+    /// The next voltage.
+    fn drive(&mut self) {
+        let risen = self.voltage_v * T::from(self.ticks as f32 * (TICK_S / JOG_RISE_S));
+        self.applied_v = bounds::min(risen, self.voltage_v) * self.sign;
+    }
+
+    fn at_full(&self) -> bool {
+        self.ticks >= ticks(JOG_RISE_S)
+    }
+
+    /// What ends it now, if anything does.
+    fn end(&mut self, report: &JogReport<T>, pulled: T, current: T) -> JogEnd {
+        let moved = report
+            .pulled_m
+            .get(self.motor)
+            .map_or(T::zero(), |&moved| moved * self.sign);
+        let silent = self.silent.update(self.at_full() && pulled == self.last_m);
+        self.last_m = pulled;
+        let hauls = self.hauling.update(!(current.abs() <= self.current_max_a));
+        let stray = T::from(STRAY_M);
+        let mut others = (1..).zip(&report.pulled_m);
+        let other = others
+            .find(|&(number, by)| usize::from(number) != self.motor + 1 && !(by.abs() <= stray));
+        let mut cells = (1..).zip(&report.tensions_n[1]);
+        let taut = cells.find(|&(_, &tension)| !(tension <= self.tension_max_n));
+        if let Some((number, _)) = other {
+            JogEnd::OtherEncoder(number)
+        } else if !(moved >= -stray) {
+            JogEnd::WrongWay
+        } else if let Some((number, _)) = taut {
+            JogEnd::Tension(number)
+        } else if moved >= self.travel_m {
+            JogEnd::Arrived
+        } else if silent || (hauls && moved <= T::from(TURNED_M)) {
+            JogEnd::NoCounts
+        } else if hauls {
+            JogEnd::Current
+        } else if self.ticks >= self.ticks_max {
+            JogEnd::Time
+        } else {
+            JogEnd::Running
+        }
+    }
+}

@@ -1,0 +1,307 @@
+//! Whether the motors can do what the settings ask of them.
+
+use super::{RigFile, Warning};
+use crate::actuator::ACTUATOR;
+use crate::number::{decimal, plain};
+use crate::rig_file::derived::rules::{BORNE_S, MARGIN_DEG, pulling_a, reachable_m_per_s};
+use crate::rig_file::derived::{Basis, ServoLoop, two_digits, two_digits_above, two_digits_below};
+use crate::toml_error::TomlError;
+use crate::toml_section::Section;
+use std::ops::Range;
+
+/// Phase margin below which a servo rings whatever the motor, degrees.
+const LEAST_MARGIN_DEG: f64 = 30.0;
+
+/// What the tip may be off by the dead band of the motors before it is worth a warning, m.
+const TIP_M: f64 = 5e-5;
+
+/// Keys of `[actuator]` that say which motor it is.
+const MOTOR_KEYS: [&str; 6] = [
+    "resistance_ohm",
+    "inductance_h",
+    "torque_constant_nm_per_a",
+    "inertia_kg_m2",
+    "gear_ratio",
+    "lead_m",
+];
+
+/// What all checks use.
+struct Motors<'a> {
+    file: &'a RigFile,
+    root: &'a Section<'a>,
+    basis: Basis,
+    warnings: Vec<Warning>,
+}
+
+pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<Vec<Warning>, TomlError> {
+    let mut motors = Motors {
+        file,
+        root,
+        basis: Basis::new(file),
+        warnings: Vec::new(),
+    };
+    motors.check_current()?;
+    motors.check_heat()?;
+    motors.check_speed()?;
+    motors.check_counts()?;
+    motors.check_bandwidth()?;
+    Ok(motors.warnings)
+}
+
+impl Motors<'_> {
+    /// The place of the first of the keys that the file gives.
+    fn place(&self, keys: &[&str]) -> Range<usize> {
+        let path = |key: &&str| self.root.place(&key.split('.').collect::<Vec<_>>());
+        let given = keys.iter().find_map(path);
+        given.or(self.root.place(&[ACTUATOR])).unwrap_or(0..0)
+    }
+
+    fn refuse<T>(&self, keys: &[&str], sentence: String, help: String) -> Result<T, TomlError> {
+        Err(TomlError::new(self.place(keys), sentence, help))
+    }
+
+    fn warn(&mut self, keys: &[&str], text: String) {
+        let span = self.place(keys);
+        self.warnings.push(Warning { span, text });
+    }
+
+    /// The current that the servo may drive has to pull the highest tension, and the supply has to drive it.
+    fn check_current(&self) -> Result<(), TomlError> {
+        let gains = &self.file.gains;
+        let pulling_a = pulling_a(self.file.f_max_n, gains);
+        let needed = plain(two_digits_above(pulling_a));
+        let f_max = plain(self.file.f_max_n);
+        let limit_a = decimal(gains.servo.current_a);
+        let asked = format!(
+            "a pull with `tendon.f_max_n` ({f_max} N) takes {} A",
+            plain(two_digits(pulling_a))
+        );
+        if limit_a < pulling_a {
+            let range = "actuator.current_range_a";
+            let given = self.file.given_gains.has("servo", "current_a");
+            let range_a = two_digits_above(pulling_a / 0.45);
+            let help = if given {
+                format!("give `control.servo.current_a` at least {needed}, or lower `f_max_n`")
+            } else if self.basis.actuator.current_range_a < range_a {
+                format!(
+                    "give `{range}` at least {}, or lower `f_max_n`",
+                    plain(range_a)
+                )
+            } else {
+                format!(
+                    "take a motor whose `continuous_a` is at least {needed}, or lower `f_max_n`"
+                )
+            };
+            let keys = [
+                "control.servo.current_a",
+                range,
+                "actuator.continuous_a",
+                "tendon.f_max_n",
+            ];
+            let sentence = format!(
+                "`control.servo.current_a` ({}) cannot pull the maximum tension: {asked}",
+                plain(limit_a)
+            );
+            return self.refuse(&keys, sentence, help);
+        }
+        let supply_v = decimal(gains.servo.duty_max) * self.basis.actuator.supply_v;
+        let dropped_v = decimal(gains.servo.resistance_ohm) * pulling_a;
+        if supply_v <= dropped_v {
+            let needed = plain(two_digits_above(
+                1.5 * dropped_v / decimal(gains.servo.duty_max),
+            ));
+            let sentence = format!(
+                "`actuator.supply_v` ({}) cannot drive a motor at the maximum tension: {asked}, which is {} V at its \
+                 resistance alone",
+                plain(self.basis.actuator.supply_v),
+                plain(two_digits(dropped_v))
+            );
+            let help = format!("give `supply_v` at least {needed}, or lower `f_max_n`");
+            let keys = [
+                "actuator.supply_v",
+                "control.servo.resistance_ohm",
+                "actuator.resistance_ohm",
+                "tendon.f_max_n",
+            ];
+            return self.refuse(&keys, sentence, help);
+        }
+        Ok(())
+    }
+
+    /// Where the file says what the winding bears.
+    fn check_heat(&mut self) -> Result<(), TomlError> {
+        let (actuator, gains) = (self.basis.actuator, self.file.gains);
+        let limit_a = decimal(gains.servo.current_a);
+        let monitored_s = decimal(gains.limits.disagreement_time_s);
+        let keys = ["control.servo.current_a", "actuator.continuous_a"];
+        if let Some(borne_s) = actuator.bears_s(limit_a)
+            && borne_s < 0.99 * BORNE_S
+        {
+            let borne_a = actuator.current_borne_a(BORNE_S).unwrap_or_default();
+            let words = format!(
+                "`control.servo.current_a` ({}) is more than the winding bears for {} s",
+                plain(limit_a),
+                plain(two_digits(borne_s))
+            );
+            let help = format!("give at most {}", plain(two_digits_below(borne_a)));
+            if borne_s < monitored_s {
+                let words = format!(
+                    "{words}, and the monitors end it after {} s",
+                    plain(monitored_s)
+                );
+                return self.refuse(&keys, words, help);
+            }
+            self.warn(&keys, format!("{words}: {help}"));
+        }
+        let pulling_a = pulling_a(self.file.f_max_n, &gains);
+        if let Some(borne_s) = actuator.bears_s(pulling_a)
+            && borne_s.is_finite()
+        {
+            let sentence = format!(
+                "a motor that goes on pulling with `tendon.f_max_n` draws {} A, and bears that for {} s: `continuous_a` of {} \
+                 would do",
+                plain(two_digits(pulling_a)),
+                plain(two_digits(borne_s)),
+                plain(two_digits_above(pulling_a))
+            );
+            self.warn(&["actuator.continuous_a"], sentence);
+        }
+        Ok(())
+    }
+
+    /// The speed that the servo may ask for.
+    fn check_speed(&mut self) -> Result<(), TomlError> {
+        let gains = &self.file.gains;
+        let servo = &gains.servo;
+        let speed = decimal(servo.speed_m_per_s);
+        let reachable = reachable_m_per_s(&self.basis, gains);
+        let highest_v = decimal(servo.duty_max) * decimal(gains.limits.supply_max_v);
+        let highest = highest_v / decimal(servo.back_emf_v_s_per_m).max(1e-9);
+        let keys = [
+            "control.servo.speed_m_per_s",
+            "control.servo.back_emf_v_s_per_m",
+            "actuator.supply_v",
+        ];
+        let words = format!("`control.servo.speed_m_per_s` ({})", plain(speed));
+        let do_this = format!("give at most {}", plain(two_digits_below(reachable)));
+        if speed > highest {
+            let sentence = format!(
+                "{words} is beyond every supply: at `supply_max_v` a motor without a load reaches {} m/s",
+                plain(two_digits(highest))
+            );
+            return self.refuse(&keys, sentence, do_this);
+        }
+        if speed > 1.001 * reachable {
+            let text = format!(
+                "{words} is not reached at the nominal supply and the maximum tension: {do_this}"
+            );
+            self.warn(&keys, text);
+        }
+        let turn = decimal(gains.motion.speed_rad_per_s);
+        if turn * self.basis.lever_m > 1.001 * speed {
+            let fit = 0.9 * speed / self.basis.lever_m;
+            let text = format!(
+                "`control.motion.speed_rad_per_s` ({}) asks the tendons for more than `control.servo.speed_m_per_s` ({}): give \
+                 at most {}",
+                plain(turn),
+                plain(speed),
+                plain(two_digits_below(fit))
+            );
+            self.warn(&["control.motion.speed_rad_per_s"], text);
+        }
+        Ok(())
+    }
+
+    /// A motor comes to rest within the dead band only if its counts are fine enough.
+    fn check_counts(&mut self) -> Result<(), TomlError> {
+        let (count_m, band_m) = (
+            self.basis.m_per_count,
+            decimal(self.file.gains.servo.dead_band_m),
+        );
+        let keys = [
+            "control.servo.dead_band_m",
+            "calibration.m_per_count",
+            "actuator.counts_per_turn",
+        ];
+        let words = format!(
+            "`control.servo.dead_band_m` ({}) is narrower than a count of the encoder, {} m",
+            plain(band_m),
+            plain(two_digits(count_m))
+        );
+        let help = format!(
+            "give at least {}, or an encoder of more counts",
+            plain(two_digits_above(1.8 * count_m))
+        );
+        // Half a count away from every count there is a place that none is nearer to.
+        if band_m < 0.499 * count_m {
+            return self.refuse(
+                &keys,
+                format!("{words}: the motor never comes to rest"),
+                help,
+            );
+        }
+        if band_m < 0.999 * count_m {
+            self.warn(&keys, format!("{words}: {help}"));
+        }
+        let parameters = &self.file.parameters;
+        let tip_m = parameters.joint_length_m + parameters.leg_length_m;
+        let off_m = band_m * tip_m / self.basis.lever_m.max(1e-9);
+        if off_m > TIP_M {
+            let counts = self.basis.actuator.counts_per_turn * off_m / TIP_M;
+            let text = format!(
+                "a motor rests anywhere within `control.servo.dead_band_m` ({}), which is {} mm at the tip: `counts_per_turn` of \
+                 {} would do",
+                plain(band_m),
+                plain(two_digits(off_m * 1000.0)),
+                plain(two_digits_above(counts))
+            );
+            self.warn(&keys, text);
+        }
+        Ok(())
+    }
+
+    /// The servo with the delays of its sampling, its speed and its winding.
+    fn check_bandwidth(&mut self) -> Result<(), TomlError> {
+        let given = self.file.given_gains;
+        // What a board was set to says nothing of inertia and inductance.
+        let known = MOTOR_KEYS
+            .iter()
+            .any(|key| self.root.place(&[ACTUATOR, key]).is_some());
+        if !known && given.has("servo", "back_emf_v_s_per_m") {
+            return Ok(());
+        }
+        let servo = &self.file.gains.servo;
+        let servo_loop = ServoLoop::new(&self.basis.actuator, servo);
+        let margin = servo_loop.phase_margin_deg(servo);
+        if margin >= MARGIN_DEG - 1.0 {
+            return Ok(());
+        }
+        let fit = two_digits_below(servo_loop.highest_gain_per_s(MARGIN_DEG))
+            .min(decimal(servo.position_gain_per_s));
+        let keys = [
+            "control.servo.position_gain_per_s",
+            "control.servo.speed_gain_v_s_per_m",
+            "control.servo.integral_time_s",
+            "control.servo.tracking",
+        ];
+        let words = format!(
+            "the servo with `control.servo.position_gain_per_s` ({}) and `speed_gain_v_s_per_m` ({}) has a phase margin of {margin:.0}° \
+             with the delays of sampling, `tracking` and winding",
+            plain(decimal(servo.position_gain_per_s)),
+            plain(decimal(servo.speed_gain_v_s_per_m))
+        );
+        let help = format!(
+            "give `position_gain_per_s` at most {}, and `speed_gain_v_s_per_m` {} or none of its own",
+            plain(fit),
+            plain(two_digits_below(ServoLoop::speed_gain_v_s_per_m(
+                &self.basis.actuator,
+                fit
+            )))
+        );
+        if margin < LEAST_MARGIN_DEG {
+            return self.refuse(&keys, format!("{words}: it rings"), help);
+        }
+        self.warn(&keys, format!("{words}: {help}"));
+        Ok(())
+    }
+}

@@ -1,0 +1,263 @@
+//! Gains and limits that follow from the motors and the leg: each by a formula, unless the file gives it.
+//!
+//! The rules are applied in their order, so that a formula may use what stands above it, derived or given. What comes out has
+//! two digits: no data sheet gives friction and efficiencies better. For the default actuator the rules give the defaults.
+
+pub(crate) mod rules;
+mod servo_loop;
+
+pub(crate) use servo_loop::ServoLoop;
+
+use crate::actuator::Actuator;
+use crate::gains::{GainChange, index_of, widened};
+use crate::number::{decimal, plain};
+use crate::plant_settings::slender_inertia_kg_m2;
+use crate::rig_file::RigFile;
+use leg_firmware::settings::{Gains, SECTIONS};
+use rules::{RULES, Rule};
+use serde::Serialize;
+
+/// From what the rules derive.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Basis {
+    pub actuator: Actuator,
+    /// Highest tension allowed, N.
+    pub f_max_n: f64,
+    /// The coarsest count of the three axes, m.
+    pub m_per_count: f64,
+    /// The fastest that a tendon moves while the leg turns, m by rad.
+    pub lever_m: f64,
+    /// Inertia of the leg without a payload, kg·m².
+    pub inertia_kg_m2: f64,
+}
+
+impl Basis {
+    pub fn new(file: &RigFile) -> Self {
+        let counts = file.calibration.m_per_count;
+        Self {
+            actuator: file.actuator,
+            f_max_n: file.f_max_n,
+            m_per_count: counts.into_iter().fold(0.0, f64::max),
+            lever_m: lever_m(file),
+            inertia_kg_m2: slender_inertia_kg_m2(&file.parameters),
+        }
+    }
+}
+
+/// The longest lever of a tendon over the workspace, m: at its edge and straight down, without a payload. Poses that the model
+/// cannot balance are left out.
+fn lever_m(file: &RigFile) -> f64 {
+    let edge = (0..12).map(|part| (30.0 * f64::from(part), file.tilt_deg));
+    let mut longest = 0.0_f64;
+    for (azimuth_deg, tilt_deg) in edge.chain([(0.0, 0.0)]) {
+        let query = file.query(azimuth_deg, tilt_deg, 0.0);
+        let Ok(pose) = leg_model::evaluate(&file.parameters, &query) else {
+            continue;
+        };
+        let [x, y, _] = pose.moment_map_m;
+        for tendon in 0..x.len() {
+            longest = longest.max(x[tendon].hypot(y[tendon]));
+        }
+    }
+    longest
+}
+
+/// Which gains a file gives, one bit each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GivenGains(u128);
+
+impl GivenGains {
+    /// Those of the changes.
+    pub(crate) fn new(changes: &[GainChange]) -> Self {
+        let bits = changes.iter().map(|change| 1_u128 << change.index());
+        Self(bits.fold(0, |all, bit| all | bit))
+    }
+
+    /// Whether the file gives this one.
+    pub(crate) fn has(self, section: &str, key: &str) -> bool {
+        index_of(section, key).is_some_and(|index| self.0 & (1 << index) != 0)
+    }
+}
+
+/// The gains of a file: the given ones, those that follow from its motors, and the defaults.
+pub(crate) fn gains(basis: &Basis, given: &Gains, which: GivenGains) -> Gains {
+    let mut gains = *given;
+    for rule in RULES {
+        if !which.has(rule.section, rule.key) {
+            let value = rule.value(basis, &gains);
+            set(&mut gains, rule, value as f32);
+        }
+    }
+    gains
+}
+
+fn set(gains: &mut Gains, rule: &Rule, value: f32) {
+    let index = index_of(rule.section, rule.key).unwrap_or(usize::MAX);
+    if let Some(place) = gains.values_mut().nth(index) {
+        *place = value;
+    }
+}
+
+fn get(gains: &Gains, rule: &Rule) -> f64 {
+    let index = index_of(rule.section, rule.key).unwrap_or(usize::MAX);
+    gains.values().nth(index).map_or(f64::NAN, decimal)
+}
+
+/// A gain that can be derived.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DerivedGain {
+    /// The section of the rig file.
+    pub section: String,
+    /// Its key, which ends with its unit.
+    pub key: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// The value in use.
+    pub value: f64,
+    /// What the formula gives.
+    pub derived: f64,
+    /// Whether the file gives the value in use.
+    pub given: bool,
+    /// The formula, by the keys that it uses.
+    pub formula: &'static str,
+}
+
+/// What follows from the motors of a file, in the order in which it is derived.
+#[must_use]
+pub fn derived_gains(file: &RigFile) -> Vec<DerivedGain> {
+    let basis = Basis::new(file);
+    let derived = |rule: &Rule| DerivedGain {
+        section: format!("control.{}", rule.section),
+        key: rule.key,
+        unit: rule.unit(),
+        value: get(&file.gains, rule),
+        derived: decimal(rule.value(&basis, &file.gains) as f32),
+        given: file.given_gains.has(rule.section, rule.key),
+        formula: rule.formula,
+    };
+    RULES.iter().map(derived).collect()
+}
+
+/// The same as a table for people.
+#[must_use]
+pub fn table(gains: &[DerivedGain]) -> String {
+    let mut table = format!(
+        "\n{:<36} {:>9}  {:<7} {:<8}  formula\n",
+        "follows from motors and leg", "value", "unit", ""
+    );
+    for gain in gains {
+        let path = format!("{}.{}", gain.section, gain.key);
+        let (origin, instead) = if gain.given {
+            ("given", format!("instead of {}: ", plain(gain.derived)))
+        } else {
+            ("derived", String::new())
+        };
+        let value = plain(gain.value);
+        table += &format!(
+            "{path:<36} {value:>9}  {:<7} {origin:<8}  {instead}{}\n",
+            gain.unit, gain.formula
+        );
+    }
+    table
+}
+
+impl Rule {
+    fn unit(&self) -> &'static str {
+        self.field().unit
+    }
+
+    fn field(&self) -> leg_firmware::settings::Field<f64> {
+        let fields = SECTIONS.iter().flat_map(|(_, fields)| *fields);
+        let index = index_of(self.section, self.key).unwrap_or(0);
+        fields.map(widened).nth(index).unwrap_or(rules::NO_FIELD)
+    }
+
+    /// What the formula gives, with two digits and within the range of the key.
+    pub fn value(&self, basis: &Basis, gains: &Gains) -> f64 {
+        let [low, high] = self.field().range;
+        let value = (self.formula_value)(basis, gains);
+        let value = if self.exact { value } else { two_digits(value) };
+        value.clamp(low, high)
+    }
+}
+
+/// The nearest number of two digits.
+pub(crate) fn two_digits(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
+}
+
+/// A number of two digits that is not greater: one that would do where no more than `value` does.
+pub(crate) fn two_digits_below(value: f64) -> f64 {
+    let near = two_digits(value);
+    if near <= value {
+        return near;
+    }
+    let unit = 10_f64.powf(value.abs().log10().floor() - 1.0);
+    two_digits(near - unit)
+}
+
+/// The same where no less does.
+pub(crate) fn two_digits_above(value: f64) -> f64 {
+    let near = two_digits(value);
+    if near >= value {
+        return near;
+    }
+    let unit = 10_f64.powf(value.abs().log10().floor() - 1.0);
+    two_digits(near + unit)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::{Basis, derived_gains, rules::RULES, two_digits_above, two_digits_below};
+    use crate::gains::index_of;
+    use crate::ready_rigs::READY_RIGS;
+    use crate::rig_file::RigFile;
+    use leg_firmware::settings::Gains;
+
+    /// The defaults are those of the default actuator: its rules lead there again.
+    #[test]
+    fn the_default_actuator_derives_the_default_gains() {
+        let rig = RigFile::load(None).unwrap();
+        let basis = Basis::new(&rig);
+        let defaults: Vec<f32> = Gains::default().values().collect();
+        for rule in RULES {
+            let default = defaults[index_of(rule.section, rule.key).unwrap()];
+            let derived = rule.value(&basis, &Gains::default()) as f32;
+            if rule.exact {
+                assert!((derived / default - 1.0).abs() < 1e-3, "{}", rule.key);
+            } else {
+                assert_eq!(derived, default, "{}", rule.key);
+            }
+        }
+    }
+
+    #[test]
+    fn a_given_value_stays_and_what_follows_from_it_changes() {
+        let more = "[control.servo]\nfriction_a = 0.2\n[control.limits]\ncurrent_a = 9\n";
+        let rig = RigFile::parse("more", &[READY_RIGS[0].text, more].concat()).unwrap();
+        let found = derived_gains(&rig);
+        let gain = |section: &str, key: &str| {
+            let mut found = found.iter();
+            found
+                .find(|gain| gain.section == section && gain.key == key)
+                .unwrap()
+                .clone()
+        };
+        let friction = gain("control.servo", "friction_a");
+        assert!(friction.given && friction.value == 0.2 && friction.derived == 0.1);
+        let current = gain("control.servo", "current_a");
+        assert!(!current.given && current.value == 4.4 && current.derived == 4.4);
+        let limit = gain("control.limits", "current_a");
+        assert!(limit.given && limit.value == 9.0 && limit.derived == 8.8);
+    }
+
+    #[test]
+    fn numbers_that_would_do_have_two_digits_on_the_right_side() {
+        for value in [0.0316, 99.6, 1.04, 0.0999, 12.0, 1005.0] {
+            let (below, above) = (two_digits_below(value), two_digits_above(value));
+            assert!(below <= value && value <= above, "{below} {value} {above}");
+            assert!(above - below <= 0.1001 * value);
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! The rules by which gains and limits follow from the motors and the leg.
+
+use super::{Basis, ServoLoop};
+use leg_firmware::settings::{Field, Gains};
+use std::f64::consts::TAU;
+
+/// How one gain is derived.
+pub(crate) struct Rule {
+    /// The section below `control`.
+    pub section: &'static str,
+    pub key: &'static str,
+    /// The formula as a user reads it, by the keys that it uses.
+    pub formula: &'static str,
+    /// Whether the number stands as it comes out; else with two digits.
+    pub exact: bool,
+    pub formula_value: fn(&Basis, &Gains) -> f64,
+}
+
+/// For a rule whose key is none, which a test excludes.
+pub(super) const NO_FIELD: Field<f64> = Field::new("", "", "", [0.0, f64::MAX], 0.0);
+
+/// Time for which a motor has to bear the highest current of its servo, s: twenty times what the monitors need to end it.
+pub(crate) const BORNE_S: f64 = 1.0;
+
+/// Part of the phase in which a servo is not near to ringing, degrees.
+pub(crate) const MARGIN_DEG: f64 = 45.0;
+
+macro_rules! rules {
+    ($($section:ident.$key:ident = $formula:literal $($exact:ident)?, $value:expr;)*) => {
+        pub(crate) const RULES: &[Rule] = &[$(Rule {
+            section: stringify!($section),
+            key: stringify!($key),
+            formula: $formula,
+            exact: rules!(@exact $($exact)?),
+            formula_value: $value,
+        },)*];
+    };
+    (@exact) => { false };
+    (@exact exact) => { true };
+}
+
+rules! {
+    servo.resistance_ohm = "resistance_ohm" exact,
+        |basis, _| basis.actuator.resistance_ohm;
+    servo.back_emf_v_s_per_m = "2π gear_ratio torque_constant_nm_per_a / lead_m" exact,
+        |basis, _| basis.actuator.back_emf_v_s_per_m();
+    servo.friction_a = "2.6 friction_nm / torque_constant_nm_per_a, at least 0.005 current_range_a",
+        |basis, _| friction_a(basis);
+    servo.pull_a_per_n = "1.05 lead_m / (2π gear_ratio gear_efficiency screw_efficiency torque_constant_nm_per_a)",
+        |basis, _| 1.05 * basis.actuator.pull_a_per_n();
+    servo.current_a = "2 (friction_a + pull_a_per_n f_max_n) / driven_part, at most 0.45 current_range_a and what continuous_a and thermal_time_s bear for 1 s",
+        current_a;
+    servo.speed_m_per_s = "0.95 (duty_max supply_v - resistance_ohm (friction_a + pull_a_per_n f_max_n)) / back_emf_v_s_per_m, at most 0.03",
+        |basis, gains| (0.95 * reachable_m_per_s(basis, gains)).min(0.03);
+    servo.position_gain_per_s = "the highest at which speed and position loop keep a phase margin of 45°, at most 120",
+        |basis, gains| ServoLoop::new(&basis.actuator, &gains.servo).highest_gain_per_s(MARGIN_DEG).min(120.0);
+    servo.speed_gain_v_s_per_m = "4.5 position_gain_per_s × 2π gear_ratio resistance_ohm inertia_kg_m2 / (torque_constant_nm_per_a lead_m)",
+        |basis, gains| ServoLoop::speed_gain_v_s_per_m(&basis.actuator, f64::from(gains.servo.position_gain_per_s));
+    servo.integral_time_s = "2.4 / position_gain_per_s",
+        |_, gains| ServoLoop::integral_time_s(f64::from(gains.servo.position_gain_per_s));
+    servo.play_m = "backlash_rad lead_m / 2π" exact,
+        |basis, _| basis.actuator.play_m();
+    motion.inertia_kg_m2 = "4/3 leg_kg centroid²: of a slender leg" exact,
+        |basis, _| basis.inertia_kg_m2;
+    servo.dead_band_m = "1.8 counts, at least 2e-7: lead_m / (gear_ratio counts_per_turn) is a count",
+        |basis, _| (1.8 * basis.m_per_count).max(2e-7);
+    motion.speed_rad_per_s = "0.9 servo.speed_m_per_s / the longest lever of a tendon, at most 0.8",
+        |basis, gains| (0.9 * f64::from(gains.servo.speed_m_per_s) / basis.lever_m.max(1e-9)).min(0.8);
+    homing.speed_m_per_s = "servo.speed_m_per_s / 3, at most 0.01 and what servo.current_a gives the rotor in 5 ms",
+        |basis, gains| (f64::from(gains.servo.speed_m_per_s) / 3.0).min(0.01).min(started_m_per_s(basis, gains));
+    limits.ramp_m_per_s = "homing.speed_m_per_s / 2",
+        |_, gains| 0.5 * f64::from(gains.homing.speed_m_per_s);
+    limits.current_a = "2 servo.current_a, at most 0.9 current_range_a",
+        |basis, gains| (2.0 * f64::from(gains.servo.current_a)).min(0.9 * basis.actuator.current_range_a);
+    limits.disagreement_a = "servo.current_a / 2",
+        |_, gains| 0.5 * f64::from(gains.servo.current_a);
+    limits.still_time_s = "4 times what driven_part current_a needs to turn the rotor by a count, at least 0.005",
+        |basis, gains| (4.0 * first_count_s(basis, gains)).max(0.005);
+    limits.reversed_time_s = "0.9 resistance_ohm inertia_kg_m2 / torque_constant_nm_per_a², at least 0.005",
+        |basis, _| (0.9 * basis.actuator.mechanical_time_s()).max(0.005);
+    limits.supply_min_v = "0.75 supply_v",
+        |basis, _| 0.75 * basis.actuator.supply_v;
+    limits.supply_max_v = "1.25 supply_v",
+        |basis, _| 1.25 * basis.actuator.supply_v;
+}
+
+/// Friction with what the gear adds and viscosity at speed; a current sensor is off by half a percent anyway.
+fn friction_a(basis: &Basis) -> f64 {
+    let actuator = &basis.actuator;
+    let friction = 2.6 * actuator.friction_nm / actuator.torque_constant_nm_per_a;
+    friction.max(0.005 * actuator.current_range_a)
+}
+
+/// The current of a pull at the highest tension, A.
+pub(crate) fn pulling_a(f_max_n: f64, gains: &Gains) -> f64 {
+    let servo = &gains.servo;
+    f64::from(servo.friction_a) + f64::from(servo.pull_a_per_n) * f_max_n
+}
+
+/// Twice the current of the hardest pull still counts as not driven: a motor that pulls is not taken for one that is jammed.
+fn current_a(basis: &Basis, gains: &Gains) -> f64 {
+    let asked = 2.0 * pulling_a(basis.f_max_n, gains) / f64::from(gains.limits.driven_part);
+    let seen = 0.45 * basis.actuator.current_range_a;
+    let borne = basis.actuator.current_borne_a(BORNE_S);
+    asked.min(seen).min(borne.unwrap_or(f64::INFINITY))
+}
+
+/// How fast a motor pulls its tendon at the highest tension and the nominal supply, m/s.
+pub(crate) fn reachable_m_per_s(basis: &Basis, gains: &Gains) -> f64 {
+    let servo = &gains.servo;
+    let dropped_v = f64::from(servo.resistance_ohm) * pulling_a(basis.f_max_n, gains);
+    let left_v = f64::from(servo.duty_max) * basis.actuator.supply_v - dropped_v;
+    left_v / f64::from(servo.back_emf_v_s_per_m).max(1e-9)
+}
+
+/// The speed to which the servo's current brings a motor in 5 ms, m/s: one that starts for longer is taken for one that hauls at
+/// a taut tendon.
+fn started_m_per_s(basis: &Basis, gains: &Gains) -> f64 {
+    let actuator = &basis.actuator;
+    let free_a = f64::from(gains.servo.current_a) - f64::from(gains.servo.friction_a);
+    let acceleration = free_a * actuator.torque_constant_nm_per_a / actuator.inertia_kg_m2;
+    5e-3 * acceleration * actuator.m_per_rad()
+}
+
+/// Time in which the least current that counts as driven turns a rotor at rest by a count, s.
+fn first_count_s(basis: &Basis, gains: &Gains) -> f64 {
+    let actuator = &basis.actuator;
+    let current_a = f64::from(gains.limits.driven_part) * f64::from(gains.servo.current_a);
+    let free_nm = actuator.torque_constant_nm_per_a * current_a - actuator.friction_nm;
+    let acceleration = free_nm.max(1e-9) / actuator.inertia_kg_m2;
+    let count_rad = TAU / actuator.counts_per_turn;
+    (2.0 * count_rad / acceleration).sqrt()
+}

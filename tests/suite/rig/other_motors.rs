@@ -1,0 +1,184 @@
+//! Motors of other kinds: with nothing but their data sheets in the rig file the leg homes, moves and holds without a fault; and
+//! what cannot work is refused at its key with a number that would do.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use leg_base::failure::Failure;
+use leg_rig::ready_rigs::READY_RIGS;
+use leg_rig::rig_file::derived::derived_gains;
+use leg_rig::rig_file::{RigFile, RigText};
+use leg_sim::link::InProcess;
+use leg_sim::scenario::Scenario;
+use leg_sim::simulation::Simulation;
+
+/// A rig of the default mechanism with a section `[actuator]` and what comes after it.
+fn text(actuator: &str) -> String {
+    [READY_RIGS[0].text, "[actuator]\n", actuator].concat()
+}
+
+const WORK: &str = "title = \"other motors\"\nseed = 6\nsteps = [ { await = { state = \"disarmed\", timeout_s = 1 } }, \"home\", \
+                    { await = { state = \"active\", timeout_s = 90 } }, { wait_s = 3 }, \
+                    { move = { azimuth_deg = 30, tilt_deg = 15 } }, { arrive = { then_s = 2, timeout_s = 20 } }, \
+                    { measure = { name = \"tip\", quantity = \"tip_error_mm\", between = [0, 0.1] } }, \
+                    { pretension_n = 100 }, { wait_s = 2 }, \
+                    { move = { azimuth_deg = 210, tilt_deg = 10 } }, { arrive = { then_s = 2, timeout_s = 20 } }, \
+                    { measure = { name = \"tip\", quantity = \"tip_error_mm\", between = [0, 0.1] } } ]\n\
+                    [start.slack]\nslack_mm = 1\n";
+
+/// Data sheets of motors between 10 and 150 W, and of poor ones.
+const MOTORS: [(&str, &str); 7] = [
+    ("a slow gear", "gear_ratio = 14\n"),
+    (
+        "48 V, flat, brushless, Hall sensors with 4096 lines added",
+        "resistance_ohm = 1.03\ninductance_h = 0.57e-3\ntorque_constant_nm_per_a = 0.0705\ninertia_kg_m2 = 1.21e-5\n\
+         friction_nm = 4e-3\nviscous_nm_s_per_rad = 3e-6\ngear_ratio = 3.5\ncounts_per_turn = 16384\nsupply_v = 48\n\
+         supply_range_v = 72\ncontinuous_a = 2.3\nthermal_time_s = 30\n",
+    ),
+    (
+        "12 V, small",
+        "resistance_ohm = 1.4\ninductance_h = 0.1e-3\ntorque_constant_nm_per_a = 0.0105\ninertia_kg_m2 = 6e-7\n\
+         friction_nm = 6e-4\ngear_ratio = 8\ncounts_per_turn = 1024\nsupply_v = 12\nsupply_range_v = 20\n\
+         continuous_a = 1.5\nthermal_time_s = 10\n",
+    ),
+    ("a heavy rotor", "inertia_kg_m2 = 6e-6\n"),
+    (
+        "a stiff gear",
+        "friction_nm = 3.6e-3\ngear_efficiency = 0.7\n",
+    ),
+    ("a winding with much iron", "inductance_h = 4e-3\n"),
+    ("few counts", "counts_per_turn = 256\n"),
+];
+
+#[test]
+fn a_leg_works_with_what_its_motors_data_sheets_say() {
+    let mut failed = Vec::new();
+    for (name, actuator) in MOTORS {
+        let rig = RigFile::parse(name, &text(actuator)).unwrap();
+        let simulation = Simulation::new(&Scenario::parse("work", WORK).unwrap(), &rig).unwrap();
+        let found = simulation.run(&mut InProcess::new(), &mut |_| ());
+        let ok = found
+            .as_ref()
+            .is_ok_and(leg_sim::simulation::Summary::passes);
+        let derived: Vec<_> = derived_gains(&rig)
+            .iter()
+            .map(|gain| format!("{} {}", gain.key, gain.value))
+            .collect();
+        println!("{name}: {ok}\n  {}", derived.join(", "));
+        if !ok {
+            failed.push(format!(
+                "{name}: {:?}",
+                found.map(|summary| (summary.stopped, summary.faults, summary.measurements))
+            ));
+        }
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+/// What the file is refused for: the key at the place, words of the sentence, and what the help would have.
+#[test]
+fn motors_that_cannot_work_are_refused_at_their_key() {
+    for (actuator, place, words, help) in [
+        (
+            "[control.servo]\ncurrent_a = 0.6\n",
+            "0.6",
+            "cannot pull the maximum tension",
+            "at least 1",
+        ),
+        (
+            "current_range_a = 2\n",
+            "2",
+            "cannot pull the maximum tension",
+            "`actuator.current_range_a` at least 2.3",
+        ),
+        (
+            "continuous_a = 0.2\nthermal_time_s = 20\n",
+            "0.2",
+            "cannot pull the maximum tension",
+            "`continuous_a` is at least 1",
+        ),
+        (
+            "resistance_ohm = 30\n",
+            "30",
+            "cannot drive a motor at the maximum tension",
+            "`supply_v` at least 48",
+        ),
+        (
+            "[control.servo]\nspeed_m_per_s = 0.06\n",
+            "0.06",
+            "beyond every supply",
+            "at most 0.031",
+        ),
+        (
+            "[control.servo]\ndead_band_m = 5e-8\n",
+            "5e-8",
+            "narrower than a count",
+            "at least 2e-7",
+        ),
+        (
+            "[control.servo]\nposition_gain_per_s = 500\n",
+            "500",
+            "it rings",
+            "at most 1",
+        ),
+        (
+            "continuous_a = 1.1\nthermal_time_s = 1\n[control.servo]\ncurrent_a = 5.4\n",
+            "5.4",
+            "more than the winding bears",
+            "at most 1.3",
+        ),
+    ] {
+        let file = text(actuator);
+        let error = RigFile::parse("refused", &file).unwrap_err();
+        let shown = error.render(false);
+        assert!(
+            shown.contains(words) && shown.contains(help),
+            "{actuator}{shown}"
+        );
+        let (Failure::Refused(message) | Failure::Failed(message)) = error;
+        let at = &file[message.place.unwrap().span];
+        assert!(at.starts_with(place), "{actuator}{at}");
+    }
+}
+
+/// What is doubtful is told with its line, and does not stop anybody.
+#[test]
+fn what_is_doubtful_is_a_warning_with_its_line() {
+    for (actuator, words) in [
+        (
+            "continuous_a = 0.9\nthermal_time_s = 20\n",
+            "goes on pulling",
+        ),
+        (
+            "continuous_a = 0.9\nthermal_time_s = 20\n[control.servo]\ncurrent_a = 5\n",
+            "more than the winding bears for",
+        ),
+        (
+            "[control.servo]\nspeed_m_per_s = 0.034\n",
+            "give at most 0.031",
+        ),
+        (
+            "[control.motion]\nspeed_rad_per_s = 1.6\n",
+            "asks the tendons for more",
+        ),
+        (
+            "[control.servo]\ndead_band_m = 1e-7\n",
+            "narrower than a count",
+        ),
+        ("counts_per_turn = 16\n", "at the tip"),
+        (
+            "[control.servo]\nspeed_gain_v_s_per_m = 2700\n",
+            "phase margin",
+        ),
+    ] {
+        let file = text(actuator);
+        let line = file.lines().count();
+        let name = String::from("doubtful");
+        let (_, notes) = RigText { name, text: file }.read().unwrap();
+        let found = notes.iter().any(|note| {
+            note.starts_with("doubtful: warning: ")
+                && note.contains(words)
+                && (note.contains(&format!("(line {line})")) || actuator.lines().count() > 1)
+        });
+        assert!(found, "{actuator}{notes:?}");
+    }
+}
