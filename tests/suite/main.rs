@@ -87,6 +87,7 @@ mod host {
 mod bench {
     mod check;
     mod image_budget;
+    mod moves;
     mod proof;
     mod server;
     mod strikes;

@@ -1,11 +1,13 @@
 //! Moves of the simulated leg with payloads that nobody tells it, judged by where the true tip is.
 
+mod bars;
 mod drawn_move;
 mod reference;
 
 pub use drawn_move::Drawn;
 
 use crate::stand::{self, Stand};
+use bars::Bars;
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::State;
 use leg_rig::rig_file::RigFile;
@@ -53,8 +55,16 @@ pub struct Moved {
     pub settled_s: f64,
     /// How far from the commanded point it rests, mm.
     pub rest_mm: f64,
-    /// Why it did not come to its end, if it did not.
-    pub stopped: Option<String>,
+    /// What was beyond its bar, or why the move did not come to its end.
+    pub failures: Vec<String>,
+}
+
+impl Moved {
+    /// Whether everything was within its bar.
+    #[must_use]
+    pub fn passes(&self) -> bool {
+        self.failures.is_empty()
+    }
 }
 
 impl Campaign {
@@ -79,10 +89,13 @@ fn make(drawn: &Drawn) -> Moved {
         swing_mm: 0.0,
         settled_s: 0.0,
         rest_mm: 0.0,
-        stopped: None,
+        failures: Vec::new(),
     };
     let went = prepared(drawn).and_then(|mut stand| go(drawn, &mut stand, &mut moved));
-    moved.stopped = went.err();
+    moved.failures = match went {
+        Ok(()) => Bars::new(drawn.begin_deg[1]).failures(&moved),
+        Err(reason) => vec![reason],
+    };
     moved
 }
 

@@ -193,15 +193,15 @@ mod tests {
         let amplitude_m = 1e-4;
         let offsets = offsets(SWING, amplitude_m);
         let steps = (core::f64::consts::TAU * PERIOD_S / 1e-3).round() as usize;
-        // Work of the offset of the first tendon by its length, m², against that of the damper: twice the ratio of 0.25 times PERIOD_S times the speed.
+        // Work of the offset of the first tendon by its length, m², against that of the damper: twice the ratio of 0.4 times PERIOD_S times the speed.
         let mut work = 0.0;
         for (i, offset_m) in offsets.iter().enumerate().skip(500 - steps) {
             let speed = amplitude_m * (i as f64 * 1e-3 / PERIOD_S).cos() / PERIOD_S;
             work -= offset_m[0] * speed * 1e-3;
         }
-        let ideal = 0.5 * core::f64::consts::PI * amplitude_m * amplitude_m;
+        let ideal = 0.8 * core::f64::consts::PI * amplitude_m * amplitude_m;
         assert!((0.45..0.8).contains(&(work / ideal)), "{}", work / ideal);
-        assert!(largest(&offsets) < 0.5 * amplitude_m);
+        assert!(largest(&offsets) < 0.8 * amplitude_m);
     }
 
     /// One length that changes alone is a sensor that lies; so are three that change as pretension does.

@@ -24,8 +24,9 @@ pub struct Mechanism<T> {
     pub leg: Load<T>,
     /// Moment of a payload of 1 kg with the leg horizontal, N·m/kg.
     pub payload_lever: T,
-    /// Inertia of the leg without a payload across its axis, about the joint, kg·m², and that of a payload of 1 kg.
+    /// Inertia of the leg without a payload across its axis, about the joint, kg·m².
     pub leg_inertia: T,
+    /// The same of a payload of 1 kg.
     pub payload_inertia: T,
 }
 

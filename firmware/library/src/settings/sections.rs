@@ -22,7 +22,7 @@ fields! {
         /// Inertia of the leg without a payload across its axis, about the joint: a slender leg of its mass and centroid unless given.
         inertia_kg_m2 ["kg·m²"]: 0.0..=1e3 = 0.016562;
         /// Damping ratio that the tendons give the leg's first mode; 0 for none.
-        damping_ratio ["1"]: 0.0..=0.5 = 0.25;
+        damping_ratio ["1"]: 0.0..=0.5 = 0.4;
         /// Damping that a tendon has by itself: the more it has, the less of that ratio is added.
         tendon_damping_n_s_per_m ["N·s/m"]: 0.0..=1e5 = 200.0;
     }

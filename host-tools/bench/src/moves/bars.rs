@@ -1,0 +1,54 @@
+//! What a move may do.
+
+use super::Moved;
+
+/// The most that a move may do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Bars {
+    off_mm: f64,
+    swing_mm: f64,
+    settled_s: f64,
+}
+
+/// A leg that leans less shows nothing of its payload before it moves, degrees.
+const HIDDEN_DEG: f64 = 2.0;
+
+/// A move from where the payload shows.
+const SHOWN: Bars = Bars {
+    off_mm: 0.25,
+    swing_mm: 0.15,
+    settled_s: 1.5,
+};
+
+/// A move from straight down with a payload that nothing has shown yet: it is found on the way, later at low pretension.
+const HIDDEN: Bars = Bars {
+    off_mm: 1.5,
+    swing_mm: 0.7,
+    settled_s: 2.0,
+};
+
+impl Bars {
+    pub fn new(begin_tilt_deg: f64) -> Self {
+        if begin_tilt_deg < HIDDEN_DEG {
+            HIDDEN
+        } else {
+            SHOWN
+        }
+    }
+
+    /// What is beyond, as words.
+    pub fn failures(&self, moved: &Moved) -> Vec<String> {
+        let beyond = [
+            ("off", moved.off_mm, self.off_mm, "mm"),
+            ("swing", moved.swing_mm, self.swing_mm, "mm"),
+            ("settled after", moved.settled_s, self.settled_s, "s"),
+        ];
+        beyond
+            .into_iter()
+            .filter(|(_, value, bar, _)| value > bar)
+            .map(|(what, value, bar, unit)| {
+                format!("{what} {value:.2} {unit}, more than {bar} {unit}")
+            })
+            .collect()
+    }
+}
