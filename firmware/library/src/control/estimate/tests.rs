@@ -26,7 +26,14 @@ fn a_pose_is_found_in_one_cycle() {
             let mut estimator = Estimator::new(&settings);
             let slack = LoadEstimation::Slack;
             let found = estimator
-                .update(&mechanism, &unstretched_m, &[70.0; 3], 0.0, slack)
+                .update(
+                    &mechanism,
+                    &unstretched_m,
+                    &[70.0; 3],
+                    0.0,
+                    slack,
+                    &Vector3::zeros(),
+                )
                 .unwrap();
             let off = found.direction.vector() - direction.vector();
             assert!(off.dot(&off) < 1e-12, "{support:?}, {azimuth_deg}°: {off}");
@@ -56,7 +63,14 @@ fn a_push_that_twists_a_leg_moves_neither_the_pose_nor_the_length_error() {
         let mut estimate = None;
         for _ in 0..200 {
             let (tensions, load) = (tensions.into(), LoadEstimation::Filtered);
-            let found = estimator.update(&mechanism, &unstretched_m, &tensions, 0.0, load);
+            let found = estimator.update(
+                &mechanism,
+                &unstretched_m,
+                &tensions,
+                0.0,
+                load,
+                &Vector3::zeros(),
+            );
             estimate = Some(found.unwrap());
         }
         let estimate = estimate.unwrap();
