@@ -76,17 +76,12 @@ impl PlantSettings {
         }
     }
 
-    /// Inertia of the leg without a payload across its axis, about the joint, kg·m²: that of a slender leg unless it is given.
+    /// Inertia of the leg without a payload across its axis, about the joint, kg·m². A slender uniform leg reaches twice
+    /// as far as its centroid c, so it is m(2c)²/3.
     #[must_use]
     pub fn transverse_inertia_kg_m2(&self, rig: &RigParameters<f64, 3>) -> f64 {
-        let given = self.leg_transverse_inertia_kg_m2;
-        given.unwrap_or_else(|| slender_inertia_kg_m2(rig))
+        let (mass, centroid) = (rig.leg_mass_kg, rig.leg_centroid_m);
+        let slender = mass * centroid * centroid * 4.0 / 3.0;
+        self.leg_transverse_inertia_kg_m2.unwrap_or(slender)
     }
-}
-
-/// Inertia of a slender uniform leg without a payload across its axis, about the joint, kg·m²: it reaches twice as far as its
-/// centroid c, so it is m(2c)²/3.
-#[must_use]
-pub fn slender_inertia_kg_m2(rig: &RigParameters<f64, 3>) -> f64 {
-    rig.leg_mass_kg * rig.leg_centroid_m * rig.leg_centroid_m * 4.0 / 3.0
 }

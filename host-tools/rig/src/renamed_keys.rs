@@ -29,11 +29,19 @@ const RENAMED_KEYS: [RenamedKey; 8] = [
     renamed("steps", "level_n", "pretension_n"),
 ];
 
-/// Keys of `[control.limits]` that mean nothing any more, each with the reason.
-const REMOVED_LIMITS: [(&str, &str); 1] = [(
-    "hold_travel_m",
-    "the motors of a held leg rest on their screws",
-)];
+/// Keys below `[control]` that mean nothing any more: section, key and reason.
+const REMOVED_KEYS: [(&str, &str, &str); 2] = [
+    (
+        "limits",
+        "hold_travel_m",
+        "the motors of a held leg rest on their screws",
+    ),
+    (
+        "estimation",
+        "payload_sine",
+        "the payload is found by what shows it, a motion too",
+    ),
+];
 
 /// Replaces the old keys of a file by the new ones, each at its place, and gives a note for each that was found.
 ///
@@ -51,13 +59,13 @@ pub fn replace(file: &mut DeTable<'_>) -> Result<Vec<String>, TomlError> {
             ));
         }
     }
-    if let Some(DeValue::Table(control)) = file.get_mut("control").map(Spanned::get_mut)
-        && let Some(DeValue::Table(limits)) = control.get_mut("limits").map(Spanned::get_mut)
-    {
-        for (removed, reason) in REMOVED_LIMITS {
-            if limits.remove(removed).is_some() {
+    if let Some(DeValue::Table(control)) = file.get_mut("control").map(Spanned::get_mut) {
+        for (section, key, reason) in REMOVED_KEYS {
+            if let Some(DeValue::Table(keys)) = control.get_mut(section).map(Spanned::get_mut)
+                && keys.remove(key).is_some()
+            {
                 notes.push(format!(
-                    "note: `{removed}` in `control.limits` has no effect any more: {reason}; remove it, this release only ignores it"
+                    "note: `{key}` in `control.{section}` has no effect any more: {reason}; remove it, this release only ignores it"
                 ));
             }
         }

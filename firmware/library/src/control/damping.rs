@@ -16,9 +16,11 @@ const STEP_S: f32 = 2.0 * CYCLE_S;
 const FILTER_RAD: f32 = 0.35;
 
 /// The damping of the tendons themselves makes them pull harder while they are reeled in, and look longer: the loop would be
-/// unstable by itself at a gain of one. It is kept to this part, so that the tendons may be damped three times as much as the
-/// settings say.
+/// unstable by itself at a gain of one. It is kept to this part, so that the tendons may be damped three times as much as is assumed.
 const TENDON_LOOP: f32 = 0.3;
+
+/// The damping of a tendon that is assumed, N·s/m: that of the simulated leg.
+const TENDON_N_S_PER_M: f32 = 200.0;
 
 /// Angular frequency up to which the mode gets the whole damping ratio, rad/s: 8 Hz. Above it, it rings down fast by less.
 const WHOLE_RAD_PER_S: f32 = 50.0;
@@ -74,7 +76,7 @@ impl<T: Scalar> SwingDamping<T> {
         // that of one at the mean lever.
         let anchors = &settings.rig.leg_anchors_m;
         let squares: f32 = anchors.iter().map(|[x, y]| x * x + y * y).sum();
-        let tendons_nm_s = 0.5 * squares * motion.tendon_damping_n_s_per_m;
+        let tendons_nm_s = 0.5 * squares * TENDON_N_S_PER_M;
         Self {
             tendons: None,
             twice_ratio: T::from(2.0 * motion.damping_ratio),

@@ -24,7 +24,7 @@ pub struct Mechanism<T> {
     pub leg: Load<T>,
     /// Moment of a payload of 1 kg with the leg horizontal, N·m/kg.
     pub payload_lever: T,
-    /// Inertia of the leg without a payload across its axis, about the joint, kg·m².
+    /// Inertia of the leg without a payload across its axis, about the joint, kg·m²: that of a slender one.
     pub leg_inertia: T,
     /// The same of a payload of 1 kg.
     pub payload_inertia: T,
@@ -48,7 +48,11 @@ impl<T: Scalar> Mechanism<T> {
             f_max_n,
             leg: Load::new(&rig, T::zero())?,
             payload_lever: parameters.gravity_m_per_s2 * rig.tip_m(),
-            leg_inertia: settings.motion.inertia_kg_m2.into(),
+            // A slender leg reaches twice as far as its centroid c: m(2c)²/3.
+            leg_inertia: parameters.leg_mass_kg
+                * parameters.leg_centroid_m
+                * parameters.leg_centroid_m
+                * T::from(4.0 / 3.0),
             payload_inertia: rig.tip_m() * rig.tip_m(),
             rig,
         })

@@ -4,6 +4,9 @@ use super::bounds::{clamp_symmetric, min};
 use crate::settings::Settings;
 use leg_model::Scalar;
 
+/// Sine of the tilt from which a leg at rest shows its payload.
+const SHOWN_SINE: f32 = 0.15;
+
 /// Variance of a payload of which nothing is known, kg².
 const UNKNOWN_KG2: f32 = 1.0;
 
@@ -28,22 +31,28 @@ pub struct PayloadEstimate<T> {
     noise: T,
     /// Square of the moment of 1 kg, N·m/kg, from which the payload shows.
     shown: T,
+    /// What the tendons could hold at the farthest tilt; what pulls harder is a push.
     max_kg: T,
 }
 
 impl<T: Scalar> PayloadEstimate<T> {
     /// Nothing is known.
     pub fn new(settings: &Settings) -> Self {
-        let estimation = &settings.estimation;
         let rig = &settings.rig;
         let lever = rig.gravity_m_per_s2 * (rig.joint_length_m + rig.leg_length_m);
-        let shown = lever * estimation.payload_sine;
+        let shown = lever * SHOWN_SINE;
+        let anchors = &rig.leg_anchors_m;
+        let reach_m: f32 = anchors
+            .iter()
+            .map(|[x, y]| Scalar::sqrt(x * x + y * y))
+            .sum();
+        let held_nm = 0.5 * reach_m * settings.f_max_n;
         Self {
             kg: T::zero(),
             variance_kg2: T::from(UNKNOWN_KG2),
             noise: T::from(NOISE_PART * lever * lever),
             shown: T::from(shown * shown),
-            max_kg: estimation.payload_max_kg.into(),
+            max_kg: T::from(held_nm / (lever * settings.tilt_max_sine)),
         }
     }
 
@@ -154,9 +163,14 @@ mod tests {
             for _ in 0..5_000 {
                 estimate.step([0.0, 5.0 * sign], LEANING, false);
             }
-            assert_eq!(estimate.kg, 3.0 * sign);
+            assert!(
+                (4.9..5.2).contains(&(estimate.kg * sign)),
+                "{}",
+                estimate.kg
+            );
+            let heaviest_kg = estimate.kg;
             estimate.set([0.0, 5.0 * sign], LEANING);
-            assert_eq!(estimate.kg, 3.0 * sign);
+            assert_eq!(estimate.kg, heaviest_kg);
         }
     }
 }

@@ -19,12 +19,8 @@ fields! {
         pretension_rate_n_per_s ["N/s"]: 0.1..=1e4 = 120.0;
         /// Time in which the compensation of the load comes and goes.
         load_time_s ["s"]: 1e-3..=60.0 = 0.6;
-        /// Inertia of the leg without a payload across its axis, about the joint: a slender leg of its mass and centroid unless given.
-        inertia_kg_m2 ["kg·m²"]: 0.0..=1e3 = 0.016562;
         /// Damping ratio that the tendons give the leg's first mode; 0 for none.
         damping_ratio ["1"]: 0.0..=0.5 = 0.4;
-        /// Damping that a tendon has by itself: the more it has, the less of that ratio is added.
-        tendon_damping_n_s_per_m ["N·s/m"]: 0.0..=1e5 = 200.0;
     }
 }
 
@@ -75,10 +71,6 @@ fields! {
         trim_time_s ["s"]: 1e-3..=100.0 = 0.5;
         /// Most that the pretension is trimmed.
         trim_max_n ["N"]: 0.0..=1e3 = 20.0;
-        /// Sine of the tilt from which an armed leg takes its payload from the load at once; nearer to the vertical it waits for a motion.
-        payload_sine ["1"]: 0.01..=1.0 = 0.15;
-        /// Heaviest payload: what pulls harder is a push.
-        payload_max_kg ["kg"]: 0.0..=1e4 = 3.0;
     }
 }
 

@@ -1,4 +1,4 @@
-//! Gains and limits that follow from the motors and the leg: each by a formula, unless the file gives it.
+//! Gains and limits that follow from the motors: each by a formula, unless the file gives it.
 //!
 //! The rules are applied in their order, so that a formula may use what stands above it, derived or given. What comes out has
 //! two digits: no data sheet gives friction and efficiencies better. For the default actuator the rules give the defaults.
@@ -11,7 +11,6 @@ pub(crate) use servo_loop::ServoLoop;
 use crate::actuator::Actuator;
 use crate::gains::{GainChange, index_of, widened};
 use crate::number::{decimal, plain};
-use crate::plant_settings::slender_inertia_kg_m2;
 use crate::rig_file::RigFile;
 use leg_firmware::settings::{Gains, SECTIONS};
 use rules::{RULES, Rule};
@@ -27,8 +26,6 @@ pub(crate) struct Basis {
     pub m_per_count: f64,
     /// The fastest that a tendon moves while the leg turns, m by rad.
     pub lever_m: f64,
-    /// Inertia of the leg without a payload, kg·m².
-    pub inertia_kg_m2: f64,
 }
 
 impl Basis {
@@ -39,7 +36,6 @@ impl Basis {
             f_max_n: file.f_max_n,
             m_per_count: counts.into_iter().fold(0.0, f64::max),
             lever_m: lever_m(file),
-            inertia_kg_m2: slender_inertia_kg_m2(&file.parameters),
         }
     }
 }
@@ -143,7 +139,7 @@ pub fn derived_gains(file: &RigFile) -> Vec<DerivedGain> {
 pub fn table(gains: &[DerivedGain]) -> String {
     let mut table = format!(
         "\n{:<36} {:>9}  {:<7} {:<8}  formula\n",
-        "follows from motors and leg", "value", "unit", ""
+        "follows from the motors", "value", "unit", ""
     );
     for gain in gains {
         let path = format!("{}.{}", gain.section, gain.key);

@@ -1,4 +1,4 @@
-//! The rules by which gains and limits follow from the motors and the leg.
+//! The rules by which gains and limits follow from the motors.
 
 use super::{Basis, ServoLoop};
 use leg_firmware::settings::{Field, Gains};
@@ -60,8 +60,6 @@ rules! {
         |_, gains| ServoLoop::integral_time_s(f64::from(gains.servo.position_gain_per_s));
     servo.play_m = "backlash_rad lead_m / 2π" exact,
         |basis, _| basis.actuator.play_m();
-    motion.inertia_kg_m2 = "4/3 leg_kg centroid²: of a slender leg" exact,
-        |basis, _| basis.inertia_kg_m2;
     servo.dead_band_m = "1.8 counts, at least 2e-7: lead_m / (gear_ratio counts_per_turn) is a count",
         |basis, _| (1.8 * basis.m_per_count).max(2e-7);
     motion.speed_rad_per_s = "0.9 servo.speed_m_per_s / the longest lever of a tendon, at most 0.8",
