@@ -83,13 +83,13 @@ impl<T: Scalar> Bending<T> {
         }
     }
 
-    /// The mean stiffness over all tilts, N·m/rad: that of two which are across each other.
+    /// The mean of the stiffnesses about the two axes of the plane, N·m/rad: between the smallest and the largest over all tilts, and
+    /// their mean where the axes are across each other.
     #[must_use]
     #[inline(always)]
     pub fn mean(&self) -> T {
-        let ([xx, xy, yy], [gxx, gxy, gyy]) = (self.stiffness, self.gram);
-        let scale = T::HALF / (gxx * gyy - gxy * gxy);
-        scale * (xx * gyy - T::TWO * xy * gxy + yy * gxx)
+        let ([xx, _, yy], [gxx, _, gyy]) = (self.stiffness, self.gram);
+        T::HALF * (xx / gxx + yy / gyy)
     }
 
     /// The smallest and the largest stiffness over all tilts, N·m/rad.
