@@ -102,7 +102,7 @@ fn make(drawn: &Drawn) -> Moved {
 /// A leg at rest where the move begins.
 fn prepared(drawn: &Drawn) -> Result<Stand, String> {
     let start = Start::hanging(drawn.pretension_n);
-    let mut stand = Stand::new(&drawn.file, &drawn.plant, start, drawn.number)?;
+    let mut stand = Stand::new(&drawn.file, &drawn.plant, start, drawn.seed)?;
     stand.until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
     stand.wait(0.1)?;
     stand.command(&Command::Arm)?;

@@ -1,4 +1,4 @@
-//! A sample of `leg moves`, on a leg as it is and on legs that are not as the firmware takes them to be.
+//! A sample of `leg moves`, and that its bars can fail.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -32,4 +32,19 @@ fn the_tip_of_every_rig_stays_on_its_trajectory() {
         rigs: READY_RIGS.iter().map(|ready| rig(ready.name)).collect(),
     };
     require_passed(&campaign.run(14, || ()));
+}
+
+/// Without the brake heavy legs swing for longer than the bars allow.
+#[test]
+fn a_leg_whose_swing_is_not_braked_fails() {
+    let text = [READY_RIGS[0].text, "[control.motion]\ndamping_ratio = 0\n"].concat();
+    let campaign = Campaign {
+        seed: 7,
+        rigs: vec![(
+            "undamped".into(),
+            RigFile::parse("undamped", &text).unwrap(),
+        )],
+    };
+    let moved = campaign.run(20, || ());
+    assert!(moved.iter().any(|moved| !moved.passes()));
 }

@@ -79,8 +79,9 @@ fn the_shadow_in_f64_stays_near() {
     for name in ["fig9", "homing", "tour", "stiffness", "payload"] {
         let divergence = ready(name).summary.divergence;
         assert_eq!(divergence.other_state, 0, "{name}");
-        // Tendons that come taut may do so a cycle apart: 5 mm/s for half a millisecond.
-        assert!(divergence.reference_m < 3e-6, "{name}: {divergence:?}");
+        // Tendons that come taut may do so a cycle apart, 5 mm/s for half a millisecond, and motors may cross the play of their
+        // gears, 2.4 µm, a cycle apart.
+        assert!(divergence.reference_m < 6e-6, "{name}: {divergence:?}");
         assert!(divergence.pose < 2e-5, "{name}: {divergence:?}");
         assert!(divergence.reference_m > 0.0, "{name}: nothing was compared");
     }
@@ -311,6 +312,33 @@ fn a_leg_is_armed_where_it_stands() {
         }
     }
     assert!(starts > 18, "{starts} starts");
+}
+
+/// A command takes the tick in which the swing is braked: many of them, one after the other, must not let the brake run on.
+#[test]
+fn commands_in_the_middle_of_a_swing_leave_the_leg_at_rest() {
+    let commands = "{ pretension_n = 70 },".repeat(8);
+    let burst = format!("{{ wait_s = 0.03 }}, {commands}").repeat(6);
+    let text = format!(
+        "title = \"burst\"\nsteps = [\n\
+         {{ await = {{ state = \"disarmed\", timeout_s = 1 }} }}, \"arm\", {{ wait_s = 0.5 }},\n\
+         {{ payload = {{ kg = 1.5, over_s = 0.3 }} }},\n\
+         {{ move = {{ azimuth_deg = 30, tilt_deg = 15 }} }}, {{ arrive = {{ then_s = 1, timeout_s = 5 }} }},\n\
+         \"mark\", {{ push = {{ azimuth_deg = 90, force_n = 5, for_s = 0.1 }} }}, {burst}\n\
+         {{ wait_s = 2 }},\n\
+         {{ measure = {{ name = \"tip\", quantity = \"tip_error_mm\", between = [0, 0.02] }} }},\n\
+         {{ measure = {{ name = \"tension\", quantity = \"tension_max_n\", between = [70, 130] }} }},\n]\n"
+    );
+    let scenario = Scenario::parse("burst", &text).unwrap();
+    let rig = RigFile::load(None).unwrap();
+    let simulation = Simulation::new(&scenario, &rig).unwrap();
+    let summary = simulation.run(&mut InProcess::new(), &mut |_| ()).unwrap();
+    assert!(
+        summary.passes(),
+        "{:#?} {:?}",
+        summary.measurements,
+        summary.faults
+    );
 }
 
 /// A step that does not end stops a scenario, and what came out until then is kept.

@@ -32,6 +32,9 @@ const LONGEST_S: f32 = 0.16;
 /// at the tip of the paper's leg.
 const LEAST_M: f32 = 6e-7;
 
+/// The most that a tendon is longer or shorter for it, m: a swing of the paper's leg by 5 mm at the tip asks for no more.
+const MOST_M: f32 = 3e-4;
+
 /// Brakes the swing.
 #[derive(Clone, Copy, Debug)]
 pub struct SwingDamping<T> {
@@ -119,14 +122,14 @@ impl<T: Scalar> SwingDamping<T> {
         let least = T::from(LEAST_M) / period_s;
         swing.map(|speed| {
             let braked = speed - clamp_symmetric(speed, least);
-            -gain_s * braked
+            clamp_symmetric(-gain_s * braked, T::from(MOST_M))
         })
     }
 }
 
-/// The swing that speeds show. Where most of them is along the tensions per pretension it is none: something has happened to all
-/// load cells. Otherwise it is what two tendons show without the third, for the third whose leaving out leaves the least: what
-/// one sensor alone shows is no swing.
+/// The swing that speeds show. A swing has no part along the tensions per pretension. Where a third of the sum of the squares or more is
+/// such a part, something has happened to all load cells: there is no swing. Otherwise one of the speeds is replaced by what
+/// the other two ask for, the one for which the sum of the squares becomes least: what one sensor alone shows is no swing.
 #[inline(always)]
 fn swing<T: Scalar>(speeds: [T; 3], per_pretension: &SVector<T, 3>) -> [T; 3] {
     let (mut along, mut square) = (T::SUM_START, T::SUM_START);
@@ -134,7 +137,7 @@ fn swing<T: Scalar>(speeds: [T; 3], per_pretension: &SVector<T, 3>) -> [T; 3] {
         along += per_pretension[i] * speed;
         square += speed * speed;
     }
-    // The squares of the tensions per pretension add up to three: a third of the square of the sum is along them.
+    // The squares of the tensions per pretension add up to three, so that a third of `along` squared is that part.
     if square < along * along {
         return [T::zero(); 3];
     }

@@ -1,8 +1,11 @@
 //! The payload by the moments that it makes: a Kalman filter of one state.
 
-use super::bounds::{clamp_symmetric, min};
+use super::bounds::{clamp_symmetric, max, min};
 use crate::settings::Settings;
 use leg_model::Scalar;
+
+/// Gravity by which moments are judged, whatever that of the rig is: where a payload weighs nothing it shows by its inertia alone.
+const EARTH_M_PER_S2: f32 = 9.81;
 
 /// Sine of the tilt from which a leg at rest shows its payload.
 const SHOWN_SINE: f32 = 0.15;
@@ -39,7 +42,7 @@ impl<T: Scalar> PayloadEstimate<T> {
     /// Nothing is known.
     pub fn new(settings: &Settings) -> Self {
         let rig = &settings.rig;
-        let lever = rig.gravity_m_per_s2 * (rig.joint_length_m + rig.leg_length_m);
+        let lever = EARTH_M_PER_S2 * (rig.joint_length_m + rig.leg_length_m);
         let shown = lever * SHOWN_SINE;
         let anchors = &rig.leg_anchors_m;
         let reach_m: f32 = anchors
@@ -62,8 +65,10 @@ impl<T: Scalar> PayloadEstimate<T> {
         self.variance_kg2 = T::from(UNKNOWN_KG2);
     }
 
-    /// By a moment, N·m, and that which 1 kg makes, with those of now alone. Where the payload does not show it stays.
+    /// By a moment, N·m, and that which 1 kg makes, with those of now alone. Where the payload does not show it stays. It may have been
+    /// changed meanwhile: nothing is certain.
     pub fn set(&mut self, moment: [T; 2], per_kg: [T; 2]) {
+        self.variance_kg2 = T::from(UNKNOWN_KG2);
         let square = dot(per_kg, per_kg);
         if square > self.shown {
             self.kg = clamp_symmetric(dot(moment, per_kg) / square, self.max_kg);
@@ -86,7 +91,13 @@ impl<T: Scalar> PayloadEstimate<T> {
         let before = min(self.variance_kg2 + T::from(change), T::from(UNKNOWN_KG2));
         let gain = before / (square * before + self.noise);
         self.variance_kg2 = gain * self.noise;
-        self.kg = clamp_symmetric(before_kg + gain * missing, self.max_kg);
+        // A push near the vertical looks like less than nothing, the more the farther the leg gives way: it stays a push.
+        let least_kg = if moving || square > self.shown {
+            -self.max_kg
+        } else {
+            T::zero()
+        };
+        self.kg = max(min(before_kg + gain * missing, self.max_kg), least_kg);
         self.kg - before_kg
     }
 }
@@ -153,6 +164,21 @@ mod tests {
         assert!(estimate.variance_kg2 > before);
         estimate.set([0.5, 0.0], [0.0, 0.1]);
         assert_eq!(estimate.kg, known_kg);
+    }
+
+    /// Without gravity a payload shows by what its acceleration takes, and at rest by nothing.
+    #[test]
+    fn without_gravity_every_number_stays_finite() {
+        let mut settings = Settings::for_table_1().unwrap();
+        settings.rig.gravity_m_per_s2 = 0.0;
+        let mut estimate = PayloadEstimate::<f64>::new(&settings);
+        for per_kg in [[0.0; 2], [0.1, 0.0], [0.0; 2]] {
+            for _ in 0..2_000 {
+                estimate.step(per_kg.map(|moment| moment * 1.5), per_kg, true);
+            }
+            assert!(estimate.kg.is_finite() && estimate.variance_kg2 > 0.0);
+        }
+        assert!((estimate.kg - 1.5).abs() < 0.1, "{}", estimate.kg);
     }
 
     /// What would be more than the heaviest payload is a push.

@@ -34,7 +34,7 @@ impl<T: Scalar> Play<T> {
     #[inline(always)]
     pub fn follow(&mut self, pulled_m: &[T; 3]) {
         for (i, &pulled) in pulled_m.iter().enumerate() {
-            let behind = self.behind_m[i] + self.pulled_m[i] - pulled;
+            let behind = self.behind_m[i] + (self.pulled_m[i] - pulled);
             self.behind_m[i] = min(max(behind, T::zero()), self.play_m);
         }
         self.pulled_m = *pulled_m;

@@ -123,7 +123,8 @@ impl<T: Scalar> TargetGenerator<T> {
         moment -= demand.angular_acceleration * mechanism.inertia(demand.payload_kg);
         let distribution = distribute(&kinematics.moment_map, &plane, &moment, &mechanism.bounds)?;
         // At the edge of what the bounds allow, a motion may take more for a moment; the pose itself has to be held within them.
-        if !distribution.feasible() && !holds(mechanism, &kinematics, &plane, &held)? {
+        let feasible = distribution.feasible();
+        if !feasible && !holds(mechanism, &kinematics, &plane, &held)? {
             return Err(Error::Infeasible);
         }
         let measured_pretension_n = || pretension(&distribution, measured_n);
@@ -157,7 +158,7 @@ impl<T: Scalar> TargetGenerator<T> {
             pretension_n,
             tensions_n,
             unstretched_m,
-            limited: limited || (demand.trimmed && !(trimmed.abs() < self.trim_max_n)),
+            limited: limited || !feasible || (demand.trimmed && !(trimmed.abs() < self.trim_max_n)),
         })
     }
 

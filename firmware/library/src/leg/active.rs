@@ -97,7 +97,11 @@ impl<T: Scalar> Active<T> {
                     search_pretension(shared)
                 }
             }
-            Phase::Command => Ok(()),
+            // No step of the brake in this cycle: what the last one has left would go on.
+            Phase::Command => {
+                self.longer_step_m = [T::zero(); 3];
+                Ok(())
+            }
             Phase::Target => self.aim(shared, measured),
             Phase::Plan => {
                 // A leg that is not taut yet does not set out.
@@ -301,6 +305,7 @@ impl<T: Scalar> Active<T> {
         if let Some(target) = &shared.target {
             self.trajectory.start(target.direction.half_tangent());
         }
+        self.longer_step_m = [T::zero(); 3];
         shared.refused = true;
         self.stuck = true;
     }

@@ -8,6 +8,7 @@ pub(super) struct Bars {
     off_mm: f64,
     swing_mm: f64,
     settled_s: f64,
+    rest_mm: f64,
 }
 
 /// A leg that leans less shows nothing of its payload before it moves, degrees.
@@ -18,6 +19,7 @@ const SHOWN: Bars = Bars {
     off_mm: 0.25,
     swing_mm: 0.15,
     settled_s: 1.5,
+    rest_mm: 0.02,
 };
 
 /// A move from straight down with a payload that nothing has shown yet: it is found on the way, later at low pretension.
@@ -25,6 +27,7 @@ const HIDDEN: Bars = Bars {
     off_mm: 1.5,
     swing_mm: 0.7,
     settled_s: 2.0,
+    rest_mm: 0.02,
 };
 
 impl Bars {
@@ -42,6 +45,7 @@ impl Bars {
             ("off", moved.off_mm, self.off_mm, "mm"),
             ("swing", moved.swing_mm, self.swing_mm, "mm"),
             ("settled after", moved.settled_s, self.settled_s, "s"),
+            ("at rest off by", moved.rest_mm, self.rest_mm, "mm"),
         ];
         beyond
             .into_iter()

@@ -27,6 +27,8 @@ pub struct Drawn {
     /// N.
     pub pretension_n: f64,
     #[serde(skip)]
+    pub(super) seed: u64,
+    #[serde(skip)]
     pub(super) file: RigFile,
     #[serde(skip)]
     pub(super) plant: PlantSettings,
@@ -35,7 +37,8 @@ pub struct Drawn {
 impl Drawn {
     /// The move of a number.
     pub(super) fn new(seed: u64, rigs: &[(String, RigFile)], number: u64) -> Self {
-        let mut rng = Rng::with_seed(mixed(seed, number));
+        let seed = mixed(seed, number);
+        let mut rng = Rng::with_seed(seed);
         let (rig, file) = &rigs[(number % rigs.len() as u64) as usize];
         loop {
             let (begin_deg, end_deg) = (pose(file, &mut rng), pose(file, &mut rng));
@@ -50,6 +53,7 @@ impl Drawn {
             if low < high && between(&begin_deg, &end_deg) > SHORTEST {
                 return Self {
                     number,
+                    seed,
                     rig: rig.clone(),
                     begin_deg,
                     end_deg,
