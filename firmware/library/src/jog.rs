@@ -40,7 +40,7 @@ impl JogRefusal {
             ],
             Self::Voltage => [
                 "the voltage is not above zero, or above driven_part of what drives current_a through resistance_ohm",
-                "give a lower voltage",
+                "give another voltage",
             ],
         }
     }

@@ -12,6 +12,7 @@ mod phase;
 mod ramping_down;
 mod shadow;
 mod shared;
+mod swing_brake;
 
 pub use command_queue::Outcome;
 
@@ -244,6 +245,9 @@ impl<T: Scalar> Leg<T> {
     #[inline(never)]
     fn enter(&mut self, state: State, measured: &Measured<T>) {
         self.link.restart_silence();
+        if let Mode::Active(active) = &self.mode {
+            active.end(&mut self.shared);
+        }
         let latched = self.supervisor.latched();
         if let Some(report) = &mut self.shared.jog_report
             && report.end == JogEnd::Running

@@ -68,15 +68,15 @@ impl Moved {
 }
 
 impl Campaign {
-    /// Makes so many moves, on all cores, and calls `done` after each. They come in the order of their numbers.
+    /// Makes so many moves, on all cores, and calls `done` after each. They come in the order of their numbers, without those of a
+    /// rig that holds no two poses.
     pub fn run(&self, count: u64, done: impl Fn() + Sync) -> Vec<Moved> {
         let moved = |number| {
-            let drawn = Drawn::new(self.seed, &self.rigs, number);
-            let moved = make(&drawn);
+            let moved = Drawn::new(self.seed, &self.rigs, number).map(|drawn| make(&drawn));
             done();
             moved
         };
-        (0..count).into_par_iter().map(moved).collect()
+        (0..count).into_par_iter().filter_map(moved).collect()
     }
 }
 

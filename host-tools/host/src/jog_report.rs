@@ -134,7 +134,10 @@ impl Finding {
 #[must_use]
 pub fn findings(report: &JogReport<f32>, settings: &Settings) -> Vec<Finding> {
     let found = of_end(report, settings);
-    found.into_iter().chain(of_tensions(report)).collect()
+    // A motor that turned another way, or another motor, says nothing of the cells.
+    let asked = !matches!(report.end, JogEnd::WrongWay | JogEnd::OtherEncoder(_));
+    let tensions = asked.then(|| of_tensions(report)).flatten();
+    found.into_iter().chain(tensions).collect()
 }
 
 fn of_end(report: &JogReport<f32>, settings: &Settings) -> Option<Finding> {
@@ -217,7 +220,11 @@ fn of_tensions(report: &JogReport<f32>) -> Option<Finding> {
     let motor = report.demand.motor;
     if rise < -TELLING_N {
         return Some(Finding::new(
-            format!("load cell {motor} shows less where its tendon pulls more"),
+            if sign > 0.0 {
+                format!("load cell {motor} shows less where its tendon pulls more")
+            } else {
+                format!("load cell {motor} shows more where its tendon pulls less")
+            },
             "swap the signal wires of the load cell",
         ));
     }

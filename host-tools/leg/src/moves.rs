@@ -35,6 +35,12 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let bar = progress::bar(args.count, "moves");
     let moved = campaign.run(args.count, || bar.inc(1));
     bar.finish_and_clear();
+    if moved.is_empty() {
+        return Err(Failure::refused(
+            "the rig holds no two poses that are 3° apart, at any pretension",
+            "look at the range of pretensions with leg map, and at tilt_deg, f_min_n and f_max_n",
+        ));
+    }
     let failed = moved.iter().filter(|moved| !moved.passes()).count();
     let json = json_object! { seed: args.seed, failed: failed, passed: failed == 0, moves: &moved };
     options.report(&json, || table(&moved))?;

@@ -1,4 +1,4 @@
-//! Damping of the leg's own swing: the tendons brake what the leg moves beside its trajectory.
+//! Damping of the leg's own swing: the tendons brake how the leg deviates from its trajectory.
 
 use super::{
     CYCLE_S,
@@ -11,9 +11,9 @@ use nalgebra::SVector;
 /// Time between two steps, s: every other cycle.
 const STEP_S: f32 = 2.0 * CYCLE_S;
 
-/// Time constant of each of the two filters of the speeds by the period of the mode, rad: the lag of both is 39° there. Slower ones
+/// Time constant of each of the two filters of the speeds by that of the mode, 1/ω: the lag of both is 39° there. Slower ones
 /// leave too little phase where the loop ends, a third above the mode.
-const FILTER_RAD: f32 = 0.35;
+const FILTER_PART: f32 = 0.35;
 
 /// The damping of the tendons themselves makes them pull harder while they are reeled in, and look longer: the loop would be
 /// unstable by itself at a gain of one. It is kept to this part, so that the tendons may be damped three times as much as is assumed.
@@ -25,7 +25,7 @@ const TENDON_N_S_PER_M: f32 = 200.0;
 /// Angular frequency up to which the mode gets the whole damping ratio, rad/s: 8 Hz. Above it, it rings down fast by less.
 const WHOLE_RAD_PER_S: f32 = 50.0;
 
-/// The longest period that the filters are made for, s/rad: 1 Hz.
+/// The longest time constant of a mode, 1/ω, that the filters are made for, s: 1 Hz.
 const LONGEST_S: f32 = 0.16;
 
 /// Amplitude of a tendon's swing that is not braked, m: above the noise of the load cells, or the motors would never rest. It is 6 µm
@@ -84,7 +84,7 @@ impl<T: Scalar> SwingDamping<T> {
             tendons: None,
             twice_ratio: T::from(2.0 * motion.damping_ratio),
             gain_by_inertia: T::from(
-                TENDON_LOOP * FILTER_RAD * FILTER_RAD / tendons_nm_s.max(1e-6),
+                TENDON_LOOP * FILTER_PART * FILTER_PART / tendons_nm_s.max(1e-6),
             ),
         }
     }
@@ -94,32 +94,35 @@ impl<T: Scalar> SwingDamping<T> {
         self.tendons = None;
     }
 
-    /// By how much each tendon shall be longer, m, for lengths that are beside those of the trajectory by `beside_m`. The tensions per
+    /// By how much each tendon shall be longer, m, for lengths that deviate from those of the trajectory by `deviations_m`. The tensions per
     /// pretension tell a swing from a sensor that lies: a swing changes no length along them. `inertia` of the leg, kg·m², and
     /// `stiffness` against a tilt, N·m/rad, make the first mode.
     #[inline(always)]
     pub fn step(
         &mut self,
-        beside_m: &[T; 3],
+        deviations_m: &[T; 3],
         per_pretension: &SVector<T, 3>,
         inertia: T,
         stiffness: T,
     ) -> [T; 3] {
-        let period_s = min((inertia / stiffness).sqrt(), T::from(LONGEST_S));
-        let share = T::from(STEP_S) / (T::from(STEP_S) + T::from(FILTER_RAD) * period_s);
-        let tendons = self.tendons.get_or_insert_with(|| beside_m.map(Speed::new));
+        let time_constant_s = min((inertia / stiffness).sqrt(), T::from(LONGEST_S));
+        let share = T::from(STEP_S) / (T::from(STEP_S) + T::from(FILTER_PART) * time_constant_s);
+        let tendons = self
+            .tendons
+            .get_or_insert_with(|| deviations_m.map(Speed::new));
         let mut speeds = [T::zero(); 3];
-        for (speed, (tendon, &length_m)) in speeds.iter_mut().zip(tendons.iter_mut().zip(beside_m))
+        for (speed, (tendon, &length_m)) in
+            speeds.iter_mut().zip(tendons.iter_mut().zip(deviations_m))
         {
             *speed = tendon.step(length_m, share);
         }
         let swing = swing(speeds, per_pretension);
-        let slow = min(period_s * T::from(WHOLE_RAD_PER_S), T::one());
+        let slow = min(time_constant_s * T::from(WHOLE_RAD_PER_S), T::one());
         let gain_s = min(
-            self.twice_ratio * period_s * slow,
+            self.twice_ratio * time_constant_s * slow,
             self.gain_by_inertia * inertia,
         );
-        let least = T::from(LEAST_M) / period_s;
+        let least = T::from(LEAST_M) / time_constant_s;
         swing.map(|speed| {
             let braked = speed - clamp_symmetric(speed, least);
             clamp_symmetric(-gain_s * braked, T::from(MOST_M))
@@ -167,8 +170,8 @@ mod tests {
     use crate::settings::Settings;
     use nalgebra::SVector;
 
-    /// A leg of 4 Hz whose tendons are alike, and how the lengths of one swing in it.
-    const PERIOD_S: f64 = 0.04;
+    /// The time constant 1/ω of a leg of 4 Hz whose tendons are alike, and how the lengths of one swing in it.
+    const TIME_CONSTANT_S: f64 = 0.04;
     const INERTIA: f64 = 0.11;
     const SWING: [f64; 3] = [1.0, -0.5, -0.5];
 
@@ -176,13 +179,13 @@ mod tests {
     fn offsets(parts: [f64; 3], amplitude_m: f64) -> Vec<[f64; 3]> {
         let mut damping = SwingDamping::<f64>::new(&Settings::for_table_1().unwrap());
         let step = |i: u32| {
-            let phase = f64::from(i) * 1e-3 / PERIOD_S;
-            let beside_m = parts.map(|part| part * amplitude_m * phase.sin());
+            let phase = f64::from(i) * 1e-3 / TIME_CONSTANT_S;
+            let deviations_m = parts.map(|part| part * amplitude_m * phase.sin());
             damping.step(
-                &beside_m,
+                &deviations_m,
                 &SVector::repeat(1.0),
                 INERTIA,
-                INERTIA / (PERIOD_S * PERIOD_S),
+                INERTIA / (TIME_CONSTANT_S * TIME_CONSTANT_S),
             )
         };
         (0..500).map(step).collect()
@@ -197,11 +200,11 @@ mod tests {
     fn a_swing_is_braked() {
         let amplitude_m = 1e-4;
         let offsets = offsets(SWING, amplitude_m);
-        let steps = (core::f64::consts::TAU * PERIOD_S / 1e-3).round() as usize;
-        // Work of the offset of the first tendon by its length, m², against that of the damper: twice the ratio of 0.4 times PERIOD_S times the speed.
+        let steps = (core::f64::consts::TAU * TIME_CONSTANT_S / 1e-3).round() as usize;
+        // Work of the offset of the first tendon by its length, m², against that of a damper: 2 × 0.4 × time constant × speed.
         let mut work = 0.0;
         for (i, offset_m) in offsets.iter().enumerate().skip(500 - steps) {
-            let speed = amplitude_m * (i as f64 * 1e-3 / PERIOD_S).cos() / PERIOD_S;
+            let speed = amplitude_m * (i as f64 * 1e-3 / TIME_CONSTANT_S).cos() / TIME_CONSTANT_S;
             work -= offset_m[0] * speed * 1e-3;
         }
         let ideal = 0.8 * core::f64::consts::PI * amplitude_m * amplitude_m;

@@ -13,7 +13,8 @@ const SHOWN_SINE: f32 = 0.15;
 /// Variance of a payload of which nothing is known, kg².
 const UNKNOWN_KG2: f32 = 1.0;
 
-/// How much that grows in a cycle of a leg at rest, kg²: a payload of a leg that leans by 15° is followed within 0.3 s.
+/// How much that grows in a cycle of a leg at rest, kg²: a payload of a leg that leans by 15° is followed with a
+/// time constant of 0.3 s.
 const CHANGE_KG2: f32 = 1e-5;
 
 /// The same where nothing shows the payload, kg²: after two seconds it may have been changed.

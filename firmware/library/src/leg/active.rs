@@ -2,6 +2,7 @@
 
 use super::phase::Phase;
 use super::shared::Shared;
+use super::swing_brake::SwingBrake;
 use crate::command::Compensation;
 use crate::control::{
     Axis, AxisGoal, CYCLE_S, CYCLE_TICKS, Knot, LoadEstimation, Measured, TargetDemand, Trajectory,
@@ -21,11 +22,7 @@ pub struct Active<T> {
     pub disarming: bool,
     /// Whether there was no target on the way since then.
     stuck: bool,
-    /// Whether the swing was braked in the last cycle, and not the pretension searched for.
-    brakes: bool,
-    /// By how much each tendon is longer to brake the swing, m, and how that changes in a cycle.
-    longer_m: [T; 3],
-    longer_step_m: [T; 3],
+    brake: SwingBrake<T>,
     slack: Slack<T>,
 }
 
@@ -67,9 +64,7 @@ impl<T: Scalar> Active<T> {
             tensioned: false,
             disarming: false,
             stuck: false,
-            brakes: false,
-            longer_m: [T::zero(); 3],
-            longer_step_m: [T::zero(); 3],
+            brake: SwingBrake::new(),
             slack: Slack {
                 left_m: taut.then(T::zero),
                 cycles: 0,
@@ -89,17 +84,15 @@ impl<T: Scalar> Active<T> {
             Phase::Estimate => self.estimate(shared, measured),
             // In turn, for each takes most of the time that is left.
             Phase::Pretension => {
-                self.brakes = !self.brakes;
-                if self.brakes {
-                    self.brake_swing(shared);
+                if self.brake.takes_turn() {
+                    self.brake.step(shared, self.tensioned);
                     Ok(())
                 } else {
                     search_pretension(shared)
                 }
             }
-            // No step of the brake in this cycle: what the last one has left would go on.
             Phase::Command => {
-                self.longer_step_m = [T::zero(); 3];
+                self.brake.stay();
                 Ok(())
             }
             Phase::Target => self.aim(shared, measured),
@@ -173,6 +166,11 @@ impl<T: Scalar> Active<T> {
         self.go(shared, Direction::down().half_tangent());
     }
 
+    /// Ends: the axes are led as the trajectory alone does.
+    pub fn end(&self, shared: &mut Shared<T>) {
+        self.brake.release(&mut shared.axes);
+    }
+
     /// Whether it was led down, or cannot be.
     #[inline(always)]
     pub fn led_down(&self) -> bool {
@@ -243,9 +241,9 @@ impl<T: Scalar> Active<T> {
         };
         let mut pulled_m = zero_m;
         let behind_m = shared.play.behind_m();
+        let longer_m = self.brake.advance();
         for (i, pulled) in pulled_m.iter_mut().enumerate() {
-            self.longer_m[i] += self.longer_step_m[i];
-            *pulled -= target.unstretched_m[i] + self.longer_m[i] + behind_m[i];
+            *pulled -= target.unstretched_m[i] + longer_m[i] + behind_m[i];
         }
         let speed_m_per_s = if taut {
             shared.limits.servo_m_per_s
@@ -266,36 +264,6 @@ impl<T: Scalar> Active<T> {
         Ok(())
     }
 
-    /// Brakes a swing about the last target: the tendons become longer in the two cycles until the next step. In one, their speed
-    /// would go up and down with the cycles.
-    #[inline(never)]
-    fn brake_swing(&mut self, shared: &mut Shared<T>) {
-        let goals_m = self.lengths_to_brake(shared);
-        for (i, step) in self.longer_step_m.iter_mut().enumerate() {
-            *step = (goals_m[i] - self.longer_m[i]) * T::HALF;
-        }
-    }
-
-    /// By how much each tendon shall be longer to brake a swing, m.
-    #[inline(always)]
-    fn lengths_to_brake(&self, shared: &mut Shared<T>) -> [T; 3] {
-        let (true, Some(target), Some(estimate)) =
-            (self.tensioned, &shared.target, &shared.estimate)
-        else {
-            return [T::zero(); 3];
-        };
-        let mut beside_m = estimate.lengths_m;
-        for (i, beside) in beside_m.iter_mut().enumerate() {
-            *beside -= target.kinematics.lengths[i];
-        }
-        let inertia = shared.mechanism.inertia(shared.estimator.payload_kg());
-        let stiffness = bounds::max(shared.pretension.mean_stiffness_nm_per_rad(), T::one());
-        let per_pretension = &target.distribution.per_pretension;
-        shared
-            .damping
-            .step(&beside_m, per_pretension, inertia, stiffness)
-    }
-
     /// Stays where the last target was: there is none where the trajectory is now.
     #[cold]
     fn stay(&mut self, shared: &mut Shared<T>) {
@@ -305,7 +273,7 @@ impl<T: Scalar> Active<T> {
         if let Some(target) = &shared.target {
             self.trajectory.start(target.direction.half_tangent());
         }
-        self.longer_step_m = [T::zero(); 3];
+        self.brake.stay();
         shared.refused = true;
         self.stuck = true;
     }

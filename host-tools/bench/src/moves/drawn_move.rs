@@ -11,6 +11,9 @@ use serde::Serialize;
 /// Shortest move, as a distance of directions: 3°.
 const SHORTEST: f64 = 0.052;
 
+/// How often two poses are drawn until a pretension serves both: as good as always after ten.
+const TRIES: u32 = 10_000;
+
 /// A move.
 #[derive(Clone, Debug, Serialize)]
 pub struct Drawn {
@@ -35,12 +38,12 @@ pub struct Drawn {
 }
 
 impl Drawn {
-    /// The move of a number.
-    pub(super) fn new(seed: u64, rigs: &[(String, RigFile)], number: u64) -> Self {
+    /// The move of a number; none for a rig that holds no pair of poses.
+    pub(super) fn new(seed: u64, rigs: &[(String, RigFile)], number: u64) -> Option<Self> {
         let seed = mixed(seed, number);
         let mut rng = Rng::with_seed(seed);
         let (rig, file) = &rigs[(number % rigs.len() as u64) as usize];
-        loop {
+        for _ in 0..TRIES {
             let (begin_deg, end_deg) = (pose(file, &mut rng), pose(file, &mut rng));
             let payload_kg = drawn(&mut rng, PAYLOAD_KG);
             let empty = [begin_deg, end_deg, [0.0; 2]].map(|at| feasible(file, at, 0.0));
@@ -51,7 +54,7 @@ impl Drawn {
             }
             let pretension_n = low + (high - low) * rng.f64();
             if low < high && between(&begin_deg, &end_deg) > SHORTEST {
-                return Self {
+                return Some(Self {
                     number,
                     seed,
                     rig: rig.clone(),
@@ -65,9 +68,10 @@ impl Drawn {
                         cell_offset_n: [0.0; 3],
                         ..file.plant
                     },
-                };
+                });
             }
         }
+        None
     }
 
     pub(super) fn tip_length_m(&self) -> f64 {

@@ -1,6 +1,6 @@
 //! The rules by which gains and limits follow from the motors.
 
-use super::{Basis, ServoLoop};
+use super::{Basis, ServoLoop, two_digits_below};
 use leg_firmware::settings::{Field, Gains};
 use std::f64::consts::TAU;
 
@@ -53,7 +53,7 @@ rules! {
     servo.speed_m_per_s = "0.95 (duty_max supply_v - resistance_ohm (friction_a + pull_a_per_n f_max_n)) / back_emf_v_s_per_m, at most 0.03",
         |basis, gains| (0.95 * reachable_m_per_s(basis, gains)).min(0.03);
     servo.position_gain_per_s = "the highest at which speed and position loop keep a phase margin of 45°, at most 120",
-        |basis, gains| ServoLoop::new(&basis.actuator, &gains.servo).highest_gain_per_s(MARGIN_DEG).min(120.0);
+        |basis, gains| two_digits_below(ServoLoop::new(&basis.actuator, &gains.servo).highest_gain_per_s(MARGIN_DEG)).min(120.0);
     servo.speed_gain_v_s_per_m = "4.5 position_gain_per_s × 2π gear_ratio resistance_ohm inertia_kg_m2 / (torque_constant_nm_per_a lead_m)",
         |basis, gains| ServoLoop::speed_gain_v_s_per_m(&basis.actuator, f64::from(gains.servo.position_gain_per_s));
     servo.integral_time_s = "2.4 / position_gain_per_s",
@@ -69,7 +69,7 @@ rules! {
     limits.ramp_m_per_s = "homing.speed_m_per_s / 2",
         |_, gains| 0.5 * f64::from(gains.homing.speed_m_per_s);
     limits.current_a = "2 servo.current_a, at most 0.9 current_range_a",
-        |basis, gains| (2.0 * f64::from(gains.servo.current_a)).min(0.9 * basis.actuator.current_range_a);
+        |basis, gains| (2.0 * f64::from(gains.servo.current_a)).min(two_digits_below(0.9 * basis.actuator.current_range_a));
     limits.disagreement_a = "servo.current_a / 2",
         |_, gains| 0.5 * f64::from(gains.servo.current_a);
     limits.still_time_s = "4 times what driven_part current_a needs to turn the rotor by a count, at least 0.005",
@@ -98,8 +98,12 @@ pub(crate) fn pulling_a(f_max_n: f64, gains: &Gains) -> f64 {
 /// Twice the current of the hardest pull still counts as not driven: a motor that pulls is not taken for one that is jammed.
 fn current_a(basis: &Basis, gains: &Gains) -> f64 {
     let asked = 2.0 * pulling_a(basis.f_max_n, gains) / f64::from(gains.limits.driven_part);
-    let seen = 0.45 * basis.actuator.current_range_a;
-    let borne = basis.actuator.current_borne_a(BORNE_S);
+    // Rounded down first: what comes out is rounded to the nearest, and must not be beyond.
+    let seen = two_digits_below(0.45 * basis.actuator.current_range_a);
+    let borne = basis
+        .actuator
+        .current_borne_a(BORNE_S)
+        .map(two_digits_below);
     asked.min(seen).min(borne.unwrap_or(f64::INFINITY))
 }
 
