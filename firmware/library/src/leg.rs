@@ -245,9 +245,6 @@ impl<T: Scalar> Leg<T> {
     #[inline(never)]
     fn enter(&mut self, state: State, measured: &Measured<T>) {
         self.link.restart_silence();
-        if let Mode::Active(active) = &self.mode {
-            active.end(&mut self.shared);
-        }
         let latched = self.supervisor.latched();
         if let Some(report) = &mut self.shared.jog_report
             && report.end == JogEnd::Running

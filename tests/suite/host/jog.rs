@@ -209,6 +209,12 @@ fn a_jog_of_a_leg_with_a_mistake_ends_by_its_name_and_within_bounds() {
             fault.is_none_or(|fault| faults.has(fault)),
             "{defects:?} {faults:?}"
         );
+        assert_eq!(
+            seen.finding.is_empty(),
+            words.is_empty(),
+            "{defects:?} {}",
+            seen.finding
+        );
         assert!(seen.finding.contains(words), "{defects:?} {}", seen.finding);
         let off = if fault.is_some() {
             State::Off
@@ -226,6 +232,33 @@ fn a_jog_of_a_leg_with_a_mistake_ends_by_its_name_and_within_bounds() {
             "{defects:?} {} N",
             seen.tension_n
         );
+    }
+}
+
+/// A motor with swapped wires pays a taut tendon out: its load cell is not to blame.
+#[test]
+fn a_motor_that_turns_the_other_way_says_nothing_of_the_load_cells() {
+    let settings = leg(InitialState::Homed).1.settings().unwrap();
+    for (end, count) in [
+        (JogEnd::WrongWay, 1),
+        (JogEnd::OtherEncoder(2), 1),
+        (JogEnd::Arrived, 1),
+        (JogEnd::Tension(1), 2),
+    ] {
+        let report = JogReport {
+            demand: JogDemand {
+                motor: 1,
+                travel_m: 1e-3,
+                voltage_v: 1.8,
+            },
+            end,
+            time_s: 0.3,
+            pulled_m: [-3e-5, 0.0, 0.0],
+            tensions_n: [[12.0, 12.0, 12.0], [8.0, 11.5, 11.5]],
+            current_a: 0.1,
+        };
+        let found = findings(&report, &settings);
+        assert_eq!(found.len(), count, "{end:?}: {found:?}");
     }
 }
 

@@ -140,6 +140,29 @@ fn motors_that_cannot_work_are_refused_at_their_key() {
     }
 }
 
+/// What follows from a motor keeps to its own limits: the file is not warned of what it did not give.
+#[test]
+fn derived_limits_are_not_warned_of() {
+    let mut files = 0;
+    for continuous_a in [1.0, 1.034, 1.05, 1.234, 1.5] {
+        for thermal_time_s in [3, 7, 20, 60] {
+            let text = text(&format!(
+                "continuous_a = {continuous_a}\nthermal_time_s = {thermal_time_s}\n"
+            ));
+            let read = RigText {
+                name: "derived".into(),
+                text,
+            }
+            .read();
+            let Ok((_, notes)) = read else { continue };
+            files += 1;
+            let beyond = notes.iter().find(|note| note.contains("winding bears for"));
+            assert_eq!(beyond, None, "{continuous_a} A, {thermal_time_s} s");
+        }
+    }
+    assert!(files > 10, "{files} files");
+}
+
 /// What is doubtful is told with its line, and does not stop anybody.
 #[test]
 fn what_is_doubtful_is_a_warning_with_its_line() {

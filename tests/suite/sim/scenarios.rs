@@ -341,6 +341,43 @@ fn commands_in_the_middle_of_a_swing_leave_the_leg_at_rest() {
     );
 }
 
+/// The motors of a leg that is stopped in the middle of a swing, while they brake it, go on by a tenth of a millimetre at the most.
+#[test]
+fn a_leg_that_swings_is_held_where_it_is() {
+    for wait_ms in [110, 130, 150, 170] {
+        let text = format!(
+            "title = \"stop\"\nsteps = [\n\
+             {{ await = {{ state = \"disarmed\", timeout_s = 1 }} }}, \"arm\", {{ wait_s = 0.5 }},\n\
+             {{ payload = {{ kg = 1.5, over_s = 0.3 }} }}, {{ wait_s = 1.5 }},\n\
+             {{ push = {{ azimuth_deg = 90, force_n = 6, for_s = 0.1 }} }},\n\
+             {{ wait_s = {} }}, \"stop\", {{ wait_s = 0.3 }},\n\
+             {{ measure = {{ name = \"tension\", quantity = \"tension_max_n\", between = [70, 165] }} }},\n]\n",
+            f64::from(wait_ms) / 1000.0
+        );
+        let scenario = Scenario::parse("stop", &text).unwrap();
+        let rig = RigFile::load(None).unwrap();
+        let simulation = Simulation::new(&scenario, &rig).unwrap();
+        let mut pulled_m: Vec<[f32; 3]> = Vec::new();
+        let mut braked = false;
+        let mut watch = |tick: &leg_sim::simulation::Tick<'_>| {
+            let telemetry = tick.telemetry;
+            if telemetry.state == State::Held {
+                pulled_m.push(telemetry.pulled_m);
+            } else {
+                braked |= tick.drive.duty.iter().any(|duty| duty.abs() > 0.05);
+            }
+        };
+        let summary = simulation.run(&mut InProcess::new(), &mut watch).unwrap();
+        assert!(summary.passes(), "{wait_ms} ms: {:?}", summary.measurements);
+        assert!(braked, "{wait_ms} ms: nothing was braked");
+        let (first, last) = (pulled_m[0], pulled_m[pulled_m.len() - 1]);
+        for (before, after) in first.iter().zip(last) {
+            let moved_m = (after - before).abs();
+            assert!(moved_m < 1e-4, "{wait_ms} ms: {moved_m} m");
+        }
+    }
+}
+
 /// A step that does not end stops a scenario, and what came out until then is kept.
 #[test]
 fn what_came_out_before_a_step_that_never_ends_is_kept() {

@@ -168,11 +168,6 @@ impl<T: Scalar> Axis<T> {
         self.step_m = step_m;
     }
 
-    /// Leads the axis by so much more in each tick from now, m.
-    pub fn lead_further_by(&mut self, step_m: T) {
-        self.step_m += step_m;
-    }
-
     /// Follows the motor without driving it.
     #[inline(always)]
     pub fn track(&mut self, pulled_m: T) {

@@ -166,11 +166,6 @@ impl<T: Scalar> Active<T> {
         self.go(shared, Direction::down().half_tangent());
     }
 
-    /// Ends: the axes are led as the trajectory alone does.
-    pub fn end(&self, shared: &mut Shared<T>) {
-        self.brake.release(&mut shared.axes);
-    }
-
     /// Whether it was led down, or cannot be.
     #[inline(always)]
     pub fn led_down(&self) -> bool {

@@ -1,7 +1,7 @@
 //! The brake of the leg's swing, in every other cycle: what it asks of the tendons comes in the two cycles until its next step.
 
 use super::shared::Shared;
-use crate::control::{Axis, CYCLE_TICKS, bounds};
+use crate::control::bounds;
 use leg_model::Scalar;
 
 /// By how much the tendons are longer than the trajectory asks.
@@ -57,14 +57,6 @@ impl<T: Scalar> SwingBrake<T> {
             *longer += step;
         }
         &self.longer_m
-    }
-
-    /// Leads the axes as the trajectory alone does: who holds the leg goes on with no brake.
-    pub fn release(&self, axes: &mut [Axis<T>; 3]) {
-        let per_tick = T::from(1.0 / CYCLE_TICKS as f32);
-        for (axis, &step_m) in axes.iter_mut().zip(&self.step_m) {
-            axis.lead_further_by(step_m * per_tick);
-        }
     }
 }
 
