@@ -10,8 +10,8 @@ use std::time::Duration;
 /// Wait for the answer to a stop before it is repeated.
 const STOP_TIME: Duration = Duration::from_millis(50);
 
-/// Stops without an answer before the leg is taken for unreachable: two seconds.
-const STOPS: u32 = 40;
+/// How long a stop is repeated before the leg is taken for unreachable.
+const STOPS_TIME: Duration = Duration::from_secs(2);
 
 /// How long a leg that is disarmed may stand still before it is waited for no longer, and what counts as that, m. How long the
 /// whole takes is up to its settings.
@@ -60,26 +60,38 @@ impl Operator {
             host: self.host,
             command: Command::Stop,
         };
-        let schema = HOST_SCHEMA;
         let mut numbers = Vec::new();
-        for _ in 0..STOPS {
+        let end = self.now() + STOPS_TIME;
+        while self.now() < end {
             numbers.push(self.connection.send_urgent(&request)?);
-            let until = self.now() + STOP_TIME;
-            match self.reply(&numbers, until)?.0 {
-                Some(HostReply::Done) => return Ok(()),
-                // It ramps down or starts: nothing of it follows commands.
-                Some(HostReply::Refused(HostRefusal::Command(CommandRefusal::State(_)))) => {
-                    return Ok(());
-                }
-                Some(HostReply::Refused(HostRefusal::NotIdentified)) => {
-                    self.connection
-                        .send(&HostRequest::Identify(Hello { schema }))?;
-                }
-                // No room, or superseded by another stop: again.
-                _ => {}
+            if self.stop_acknowledged(&numbers)? {
+                return Ok(());
             }
         }
         Err(OperatorError::NotStopped(self.name().into()))
+    }
+
+    /// Whether one of these stops is acknowledged before it is time for the next.
+    fn stop_acknowledged(&mut self, numbers: &[u16]) -> Result<bool, OperatorError> {
+        let until = self.now() + STOP_TIME;
+        while let Some(reply) = self.reply(numbers, until)?.0 {
+            match reply {
+                // Where the state does not allow it, the leg ramps down or starts: nothing of it follows commands.
+                HostReply::Done
+                | HostReply::Refused(HostRefusal::Command(CommandRefusal::State(_))) => {
+                    return Ok(true);
+                }
+                HostReply::Refused(HostRefusal::NotIdentified) => {
+                    let schema = HOST_SCHEMA;
+                    self.connection
+                        .send(&HostRequest::Identify(Hello { schema }))?;
+                    return Ok(false);
+                }
+                // No room, or superseded by another stop: to send the next at once would use up the time of a busy leg.
+                _ => {}
+            }
+        }
+        Ok(false)
     }
 
     /// Ramps the tendons down and waits until the drivers are off, as long as motors move.

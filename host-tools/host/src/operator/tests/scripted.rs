@@ -5,6 +5,8 @@ use super::{is_failed, lean};
 use crate::operator::OperatorError;
 use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest};
 use leg_firmware::supervisor::State;
+use std::cell::Cell;
+use std::rc::Rc;
 use std::time::Duration;
 
 #[test]
@@ -66,6 +68,23 @@ fn a_busy_board_is_not_taken_for_a_silent_one() {
         error.to_string(),
         "the leg does not keep its settings: the board is still busy with what it was asked before"
     );
+}
+
+#[test]
+fn a_stop_is_repeated_at_its_pace_however_soon_it_is_refused() {
+    let asked = Rc::new(Cell::new(0));
+    let counted = Rc::clone(&asked);
+    let mut operator = scripted(move |request| {
+        if matches!(request, HostRequest::Telemetry) {
+            return Some(telemetry_reply(&at_rest().0));
+        }
+        counted.set(counted.get() + 1);
+        (counted.get() < 39).then_some(HostReply::Refused(HostRefusal::Busy))
+    });
+    let begun = operator.now();
+    error_of!(operator.stop(), OperatorError::NotStopped(_));
+    assert_eq!(asked.get(), 40, "one in 50 ms");
+    assert_eq!(operator.now() - begun, Duration::from_secs(2));
 }
 
 #[test]
