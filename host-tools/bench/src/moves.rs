@@ -1,9 +1,11 @@
 //! Moves of the simulated leg with payloads that nobody tells it, judged by where the true tip is.
 
 mod bars;
+mod chart;
 mod drawn_move;
 mod reference;
 
+pub use chart::save_comparison;
 pub use drawn_move::Drawn;
 
 use crate::stand::{self, Stand};
@@ -16,10 +18,14 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 use reference::Reference;
 use serde::Serialize;
+use std::ops::Range;
 
 /// How long the leg is watched after a move, s; over the last part of it the tip's mean is where it rests, s.
 const WATCHED_S: f64 = 3.0;
 const RESTING_S: f64 = 0.5;
+
+/// How many ticks lie between two points of a move's way after its end.
+const WATCHED_TICKS: usize = 8;
 
 /// From when the tip counts as at rest, mm.
 const SETTLED_MM: f64 = 0.02;
@@ -38,6 +44,8 @@ pub struct Campaign {
     pub seed: u64,
     /// The rigs by name.
     pub rigs: Vec<(String, RigFile)>,
+    /// The payload of every move, kg; drawn where none is given.
+    pub payload_kg: Option<f64>,
 }
 
 /// A move, and how it went.
@@ -57,6 +65,9 @@ pub struct Moved {
     pub rest_mm: f64,
     /// What was beyond its bar, or why the move did not come to its end.
     pub failures: Vec<String>,
+    /// Time since the command, s, and how far the true tip was off, mm: off the trajectory, and off its end after that.
+    #[serde(skip)]
+    pub way: Vec<(f64, f64)>,
 }
 
 impl Moved {
@@ -68,15 +79,16 @@ impl Moved {
 }
 
 impl Campaign {
-    /// Makes so many moves, on all cores, and calls `done` after each. They come in the order of their numbers, without those of a
-    /// rig that holds no two poses.
-    pub fn run(&self, count: u64, done: impl Fn() + Sync) -> Vec<Moved> {
+    /// Makes the moves of these numbers, on all cores, and calls `done` after each. They come in the order of their numbers,
+    /// without those of a rig that holds no two poses.
+    pub fn run(&self, numbers: Range<u64>, done: impl Fn() + Sync) -> Vec<Moved> {
         let moved = |number| {
-            let moved = Drawn::new(self.seed, &self.rigs, number).map(|drawn| make(&drawn));
+            let drawn = Drawn::new(self.seed, &self.rigs, self.payload_kg, number);
+            let moved = drawn.map(|drawn| make(&drawn));
             done();
             moved
         };
-        (0..count).into_par_iter().filter_map(moved).collect()
+        numbers.into_par_iter().filter_map(moved).collect()
     }
 }
 
@@ -90,6 +102,7 @@ fn make(drawn: &Drawn) -> Moved {
         settled_s: 0.0,
         rest_mm: 0.0,
         failures: Vec::new(),
+        way: Vec::new(),
     };
     let went = prepared(drawn).and_then(|mut stand| go(drawn, &mut stand, &mut moved));
     moved.failures = match went {
@@ -130,10 +143,11 @@ fn go(drawn: &Drawn, stand: &mut Stand, moved: &mut Moved) -> Result<(), String>
     loop {
         stand.tick()?;
         stand.require_no_fault()?;
+        moved.took_s = stand.time_s() - began_s;
         if let Some(off_m) = reference.off_m(stand) {
             moved.off_mm = moved.off_mm.max(off_m * 1000.0);
+            moved.way.push((moved.took_s, off_m * 1000.0));
         }
-        moved.took_s = stand.time_s() - began_s;
         if moved.took_s > 0.05 && !stand.moving() {
             break;
         }
@@ -147,6 +161,10 @@ fn go(drawn: &Drawn, stand: &mut Stand, moved: &mut Moved) -> Result<(), String>
         stand.tick()?;
         stand.require_no_fault()?;
         tips_m.push(stand.truth.tip_m);
+        if tips_m.len() % WATCHED_TICKS == 0 {
+            let off_m = (stand.truth.tip_m - drawn.end_tip_m()).norm();
+            moved.way.push((stand.time_s() - began_s, off_m * 1000.0));
+        }
     }
     rest(drawn, &tips_m, moved);
     Ok(())

@@ -1,12 +1,13 @@
 //! `leg moves`.
 
+use crate::numbers::payload_kg;
 use crate::options::Options;
-use crate::output::load_rigs;
+use crate::output::{chart_line, load_rigs, not_saved};
 use crate::progress;
 use leg_base::failure::Failure;
 use leg_base::json_object;
-use leg_bench::moves::{Campaign, Moved};
-use std::path::PathBuf;
+use leg_bench::moves::{self, Campaign, Moved};
+use std::path::{Path, PathBuf};
 
 /// Moves a simulated leg between random poses with payloads that nobody tells it, and measures how its true tip goes.
 ///
@@ -22,35 +23,63 @@ pub(crate) struct Args {
     /// How many moves.
     #[arg(long, default_value = "60", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     count: u64,
+    /// Only the move of this number.
+    #[arg(long, value_name = "N", conflicts_with = "count", value_parser = clap::value_parser!(u64).range(..1_000_000))]
+    only: Option<u64>,
     /// A rig file, the name of a ready rig, or `all` ready rigs.
     #[arg(long, value_name = "FILE", default_value = "table1")]
     rig: PathBuf,
+    /// The payload of every move, kg, in the place of a drawn one.
+    #[arg(long, value_name = "KG", value_parser = payload_kg)]
+    payload: Option<f64>,
+    /// Draws the move that swung the most into this directory, beside the same move with the damping of the swing off.
+    #[arg(long, value_name = "DIR")]
+    plots: Option<PathBuf>,
 }
 
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let campaign = Campaign {
         seed: args.seed,
         rigs: load_rigs(&args.rig)?,
+        payload_kg: args.payload,
     };
-    let bar = progress::bar(args.count, "moves");
-    let moved = campaign.run(args.count, || bar.inc(1));
+    let numbers = args.only.map_or(0..args.count, |only| only..only + 1);
+    let bar = progress::bar(numbers.end - numbers.start, "moves");
+    let moved = campaign.run(numbers, || bar.inc(1));
     bar.finish_and_clear();
-    if moved.is_empty() {
+    let swings = |a: &&Moved, b: &&Moved| a.swing_mm.total_cmp(&b.swing_mm);
+    let Some(worst) = moved.iter().max_by(swings) else {
         return Err(Failure::refused(
-            "the rig holds no two poses that are 3° apart, at any pretension",
-            "look at the range of pretensions with leg map, and at tilt_deg, f_min_n and f_max_n",
+            "the rig holds no two poses that are 3° apart with the payload, at any pretension",
+            "give a smaller --payload; look at the range of pretensions with leg map, and at tilt_deg, f_min_n and f_max_n",
         ));
-    }
+    };
     let failed = moved.iter().filter(|moved| !moved.passes()).count();
-    let json = json_object! { seed: args.seed, failed: failed, passed: failed == 0, moves: &moved };
-    options.report(&json, || table(&moved))?;
+    let plot = args.plots.as_deref();
+    let plot = plot.map(|directory| draw(worst, directory)).transpose()?;
+    let json = json_object! {
+        seed: args.seed,
+        failed: failed,
+        passed: failed == 0,
+        moves: &moved,
+        plot: plot.as_deref(),
+    };
+    options.report(&json, || {
+        let chart = plot.as_deref().map(chart_line);
+        table(&moved) + &chart.unwrap_or_default()
+    })?;
     if failed == 0 {
         return Ok(());
     }
     Err(Failure::failed(
         format!("{failed} of {} moves failed", moved.len()),
-        "the same seed and rig repeat them",
+        "the same seed, rig and --payload repeat them, --only N a single one",
     ))
+}
+
+fn draw(moved: &Moved, directory: &Path) -> Result<PathBuf, Failure> {
+    moves::save_comparison(moved, directory)
+        .map_err(|error| not_saved("chart", directory, "--plots", &error))
 }
 
 fn table(moved: &[Moved]) -> String {

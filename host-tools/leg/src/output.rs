@@ -5,6 +5,7 @@ use leg_base::disk::help_for;
 use leg_base::failure::{Failure, Message};
 use leg_base::json_line::to_line;
 use leg_base::json_object;
+use leg_base::paths::relative_path;
 use leg_host::recording;
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::{RigFile, RigText};
@@ -76,6 +77,11 @@ pub(crate) fn write(file: Option<&Path>, text: &str) -> Result<(), Failure> {
         let elsewhere = "name a file in a directory that may be written";
         Failure::refused(sentence, help_for(&error, elsewhere))
     })
+}
+
+/// The line that names a chart.
+pub(crate) fn chart_line(svg: &Path) -> String {
+    format!("Chart: {} (and .png)\n", relative_path(svg).display())
 }
 
 /// A directory into which something cannot be written; `option` is the one that names it.

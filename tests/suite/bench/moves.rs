@@ -21,8 +21,9 @@ fn the_tip_stays_on_its_trajectory() {
     let campaign = Campaign {
         seed: 7,
         rigs: vec![rig("table1")],
+        payload_kg: None,
     };
-    require_passed(&campaign.run(30, || ()));
+    require_passed(&campaign.run(0..30, || ()));
 }
 
 #[test]
@@ -30,8 +31,9 @@ fn the_tip_of_every_rig_stays_on_its_trajectory() {
     let campaign = Campaign {
         seed: 9,
         rigs: READY_RIGS.iter().map(|ready| rig(ready.name)).collect(),
+        payload_kg: None,
     };
-    require_passed(&campaign.run(14, || ()));
+    require_passed(&campaign.run(0..14, || ()));
 }
 
 /// Without the brake heavy legs swing for longer than the bars allow.
@@ -44,7 +46,8 @@ fn a_leg_whose_swing_is_not_braked_fails() {
             "undamped".into(),
             RigFile::parse("undamped", &text).unwrap(),
         )],
+        payload_kg: None,
     };
-    let moved = campaign.run(20, || ());
+    let moved = campaign.run(0..20, || ());
     assert!(moved.iter().any(|moved| !moved.passes()));
 }

@@ -38,14 +38,20 @@ pub struct Drawn {
 }
 
 impl Drawn {
-    /// The move of a number; none for a rig that holds no pair of poses.
-    pub(super) fn new(seed: u64, rigs: &[(String, RigFile)], number: u64) -> Option<Self> {
+    /// The move of a number, with a payload that is drawn where none is given; none for a rig that holds no pair of poses.
+    pub(super) fn new(
+        seed: u64,
+        rigs: &[(String, RigFile)],
+        payload_kg: Option<f64>,
+        number: u64,
+    ) -> Option<Self> {
         let seed = mixed(seed, number);
         let mut rng = Rng::with_seed(seed);
         let (rig, file) = &rigs[(number % rigs.len() as u64) as usize];
         for _ in 0..TRIES {
             let (begin_deg, end_deg) = (pose(file, &mut rng), pose(file, &mut rng));
-            let payload_kg = drawn(&mut rng, PAYLOAD_KG);
+            let drawn_kg = drawn(&mut rng, PAYLOAD_KG);
+            let payload_kg = payload_kg.unwrap_or(drawn_kg);
             let empty = [begin_deg, end_deg, [0.0; 2]].map(|at| feasible(file, at, 0.0));
             let loaded = [begin_deg, end_deg].map(|at| feasible(file, at, payload_kg));
             let (mut low, mut high) = (0.0_f64, f64::INFINITY);
@@ -72,6 +78,13 @@ impl Drawn {
             }
         }
         None
+    }
+
+    /// The same with a leg whose swing is not braked.
+    pub(super) fn undamped(&self) -> Self {
+        let mut same = self.clone();
+        same.file.gains.motion.damping_ratio = 0.0;
+        same
     }
 
     pub(super) fn tip_length_m(&self) -> f64 {

@@ -1,10 +1,9 @@
 //! `leg run --errors`.
 
 use crate::options::Options;
-use crate::output::not_saved;
+use crate::output::{chart_line, not_saved};
 use crate::progress;
 use leg_base::failure::Failure;
-use leg_base::paths::relative_path;
 use leg_bench::sensitivity::{self, CELLS_PERCENT, CURVES_PERCENT, Sensitivity};
 use leg_model_tools::plot;
 use leg_rig::rig_file::RigFile;
@@ -34,11 +33,11 @@ pub(super) fn run(
         .map_err(|error| not_saved("chart", directory, "--plots", &error))?;
     options.report(&all, || {
         format!(
-            "{}\nLargest distance of the compensated tip from its target, mm\n\n{}{}\nChart: {} (and .png)\n",
+            "{}\nLargest distance of the compensated tip from its target, mm\n\n{}{}\n{}",
             scenario.title,
             table(&all),
             stops(&all),
-            relative_path(&file).display()
+            chart_line(&file)
         )
     })
 }

@@ -1,7 +1,7 @@
 //! What `leg run` prints.
 
+use crate::output::chart_line;
 use leg_base::json_object;
-use leg_base::paths::relative_path;
 use leg_base::tick_time::tick_s;
 use leg_firmware::supervisor::Fault;
 use leg_sim::simulation::{Divergence, Measurement, Summary};
@@ -61,9 +61,7 @@ impl RunReport<'_> {
     pub(super) fn table(&self) -> String {
         let (summary, [lowest, highest]) = (self.summary, self.summary.tension_range_n);
         let rows: String = summary.measurements.iter().map(row).collect();
-        let plot =
-            |path: &PathBuf| format!("Chart: {} (and .png)\n", relative_path(path).display());
-        let plots: String = self.plots.iter().map(plot).collect();
+        let plots: String = self.plots.iter().map(|svg| chart_line(svg)).collect();
         format!(
             "{}\nFirmware {}, {:.1} s of the leg's time\n\n{HEADING}{rows}\n\
              Tensions: {lowest:.1} to {highest:.1} N\nFaults: {}\n{}Speed: {:.0} ticks a second\n{}{plots}",
