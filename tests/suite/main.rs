@@ -52,6 +52,7 @@ mod rig {
 }
 
 mod sim {
+    mod comparison;
     mod fmea_page;
     mod random_scenarios;
     mod ready_runs;

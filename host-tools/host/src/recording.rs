@@ -57,7 +57,12 @@ impl Recording {
             RecordingFile::Mcap(file) => file.take_tick(self.count, tick)?,
             RecordingFile::Csv(file) if self.count.is_multiple_of(ROW_TICKS) => {
                 let time_s = f64::from(self.count) * tick_s();
-                file.write_row(time_s, &[&to_json(tick.telemetry)?, &to_json(tick.drive)?])?;
+                let parts = [
+                    to_json(tick.telemetry)?,
+                    to_json(tick.drive)?,
+                    to_json(tick.comparison)?,
+                ];
+                file.write_row(time_s, &parts.each_ref())?;
             }
             RecordingFile::Csv(_) => {}
         }

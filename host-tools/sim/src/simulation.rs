@@ -1,5 +1,6 @@
 //! A scenario with an emulated leg, and a shadow of the whole control law in f64 beside it.
 
+mod comparison;
 mod extremes;
 mod follow_error;
 mod follower;
@@ -9,6 +10,7 @@ mod shadow;
 mod summary;
 mod test_stand;
 
+pub use comparison::Comparison;
 pub use shadow::{Divergence, OTHER_TICKS_MAX};
 pub use summary::{Measurement, Sample, SimulationError, Summary};
 
@@ -42,6 +44,8 @@ pub struct Tick<'a> {
     pub telemetry: &'a Telemetry<f32>,
     /// Instructions that it took, if they are counted.
     pub instructions: Option<u32>,
+    /// The simulated leg beside what it reports.
+    pub comparison: &'a Comparison,
 }
 
 /// A scenario on a rig, ready to run.
@@ -134,7 +138,8 @@ fn advance(
     if stand.time_s() > LONGEST_S {
         return Err(SimulationError::Endless(step));
     }
-    stand.tick(|sensors, link, reply| {
+    let comparison = stand.comparison();
+    stand.tick(&comparison, |sensors, link, reply| {
         shadow.tick(sensors, link, reply);
         watch(&Tick {
             sensors,
@@ -142,6 +147,7 @@ fn advance(
             drive: &reply.drive,
             telemetry: &reply.telemetry,
             instructions: reply.instructions,
+            comparison: &comparison,
         });
     })?;
     Ok(true)

@@ -1,4 +1,5 @@
-//! A recording as MCAP: of a simulation the settings and every tick as a controller sees it; of all the telemetry, as JSON.
+//! A recording as MCAP: of a simulation the settings, every tick as a controller sees it, and the leg beside what it reports; of
+//! all the telemetry. What is not needed to run it again is JSON.
 
 use super::tick_record::{TickRecord, to_bytes};
 use super::{RecordingError, to_json};
@@ -19,7 +20,11 @@ use std::mem::ManuallyDrop;
 /// Topics.
 pub(super) const SETTINGS: &str = "/settings";
 pub(super) const TICKS: &str = "/ticks";
-const TELEMETRY: &str = "/leg";
+const TELEMETRY: Topic = ("/leg", "Telemetry");
+const COMPARISON: Topic = ("/simulation", "Comparison");
+
+/// A topic of JSON, and the name of its messages' schema.
+type Topic = (&'static str, &'static str);
 
 /// The key of a channel's metadata under which the schema of its messages stands.
 pub(super) const SCHEMA_KEY: &str = "schema";
@@ -36,6 +41,7 @@ pub(super) struct McapFile {
     writer: ManuallyDrop<Writer<BufWriter<File>>>,
     ticks: Option<u16>,
     telemetry: Option<u16>,
+    comparison: Option<u16>,
 }
 
 /// The hash of all message types, in words: a recording is replayed by the sources that made it.
@@ -50,6 +56,7 @@ impl McapFile {
             writer: ManuallyDrop::new(options.create(BufWriter::new(file))?),
             ticks: None,
             telemetry: None,
+            comparison: None,
         };
         if let Some(settings) = settings {
             let channel = file.postcard_channel(SETTINGS)?;
@@ -74,6 +81,10 @@ impl McapFile {
         )?;
         if number.is_multiple_of(TELEMETRY_TICKS) {
             self.write_telemetry(number, time_ns, tick.telemetry)?;
+            let value = to_json(tick.comparison)?;
+            let channel = self.json_channel(self.comparison, COMPARISON, &value)?;
+            self.comparison = Some(channel);
+            self.write(channel, number, time_ns, value.to_string().as_bytes())?;
         }
         Ok(())
     }
@@ -85,17 +96,26 @@ impl McapFile {
         telemetry: &Telemetry<f32>,
     ) -> Result<(), RecordingError> {
         let value = to_json(telemetry)?;
-        let channel = match self.telemetry {
-            Some(channel) => channel,
-            None => {
-                let schema = json_schema(&value).to_string().into_bytes();
-                let id = self.writer.add_schema("Telemetry", "jsonschema", &schema)?;
-                self.writer
-                    .add_channel(id, TELEMETRY, "json", &BTreeMap::new())?
-            }
-        };
+        let channel = self.json_channel(self.telemetry, TELEMETRY, &value)?;
         self.telemetry = Some(channel);
         self.write(channel, number, time_ns, value.to_string().as_bytes())
+    }
+
+    /// A topic's channel; made for messages like this one where there is none yet.
+    fn json_channel(
+        &mut self,
+        made: Option<u16>,
+        (topic, name): Topic,
+        message: &Value,
+    ) -> Result<u16, RecordingError> {
+        if let Some(channel) = made {
+            return Ok(channel);
+        }
+        let schema = json_schema(message).to_string().into_bytes();
+        let id = self.writer.add_schema(name, "jsonschema", &schema)?;
+        Ok(self
+            .writer
+            .add_channel(id, topic, "json", &BTreeMap::new())?)
     }
 
     fn postcard_channel(&mut self, topic: &str) -> Result<u16, RecordingError> {

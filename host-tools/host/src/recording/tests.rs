@@ -73,8 +73,48 @@ fn a_table_has_a_row_a_millisecond_and_units_in_its_names() {
     let directory = TempDir::new().unwrap();
     let file = directory.path().join("leg.csv");
     let ticks = record_spoilt(&file, |_, _| ());
-    let names = ["time_s", "tensions_n_1", "pulled_m_3", "state", "duty_2"];
+    let names = [
+        "time_s",
+        "tensions_n_1",
+        "pulled_m_3",
+        "state",
+        "duty_2",
+        "tip_commanded_mm_1",
+        "tip_reference_mm_2",
+        "tip_estimated_mm_3",
+        "tip_true_mm_1",
+        "tensions_true_n_2",
+        "payload_true_kg",
+    ];
     assert_eq!(rows(&file, &names), ticks.div_ceil(8));
+}
+
+#[test]
+fn the_true_leg_stands_beside_what_it_reports() {
+    let directory = TempDir::new().unwrap();
+    let file = directory.path().join("leg.mcap");
+    record_spoilt(&file, |_, _| ());
+    let bytes = std::fs::read(file).unwrap();
+    let messages = mcap::MessageStream::new(&bytes)
+        .unwrap()
+        .map(Result::unwrap);
+    let (mut telemetry, mut comparisons) = (0, Vec::new());
+    for message in messages {
+        match &*message.channel.topic {
+            "/leg" => telemetry += 1,
+            "/simulation" => comparisons.push(message.data.into_owned()),
+            _ => {}
+        }
+    }
+    assert!(telemetry > 0);
+    assert_eq!(comparisons.len(), telemetry);
+    let last: serde_json::Value = serde_json::from_slice(comparisons.last().unwrap()).unwrap();
+    let depth = |tip: &str| last[tip][2].as_f64().unwrap();
+    assert!(depth("tip_true_mm") < -200.0, "{last}");
+    assert!(
+        (depth("tip_true_mm") - depth("tip_reference_mm")).abs() < 5.0,
+        "{last}"
+    );
 }
 
 #[test]

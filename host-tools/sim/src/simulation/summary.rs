@@ -1,5 +1,6 @@
 //! What came out of a simulation.
 
+use super::Comparison;
 use super::shadow::Divergence;
 use crate::emulated_leg::EmulationError;
 use crate::scenario::Measurand;
@@ -78,12 +79,10 @@ impl Measurement {
 pub struct Sample {
     /// s.
     pub time_s: f64,
-    /// Distance of the true tip from its target, mm.
-    pub tip_error_mm: f64,
-    /// True tensions, N.
-    pub tensions_n: [f64; 3],
-    /// True payload, kg.
-    pub payload_kg: f64,
+    /// The simulated leg beside what it reports.
+    pub comparison: Comparison,
+    /// Distance of the true tip from where a streamed path has it at that time, mm; none where no path is followed.
+    pub path_error_mm: Option<f64>,
     /// What the leg reports.
     pub telemetry: Telemetry<f32>,
 }

@@ -2,7 +2,7 @@
 
 use super::extremes::{Extremes, NO_RANGE, range_with_tensions};
 use super::follow_error::FollowError;
-use super::{Measurement, Sample, SimulationError, Summary};
+use super::{Comparison, Measurement, Sample, SimulationError, Summary};
 use crate::emulated_leg::EmulatedLeg;
 use crate::host::Host;
 use crate::link::Link;
@@ -44,6 +44,8 @@ pub(super) struct TestStand<'a> {
     /// Where the host has sent the leg, as horizontal components; none after a hold.
     commanded: Option<[f64; 2]>,
     bounds_n: [f64; 2],
+    /// Distance of the true tip from where the path that is followed has it now, m.
+    path_error_m: Option<f64>,
     tip_length_m: f64,
     tips_m: VecDeque<Vector3<f64>>,
 }
@@ -70,6 +72,7 @@ impl<'a> TestStand<'a> {
             },
             compensated: true,
             commanded: Some(scenario.start.direction()),
+            path_error_m: None,
             bounds_n: [rig.f_min_n, rig.f_max_n],
             tip_length_m: parameters.joint_length_m + parameters.leg_length_m,
             tips_m: VecDeque::new(),
@@ -85,10 +88,14 @@ impl<'a> TestStand<'a> {
             .map_or(State::Boot, |telemetry| telemetry.state)
     }
 
-    /// Sends a command, and notes where it sends the leg.
+    /// Sends the command of a step.
     pub fn command(&mut self, step: &CommandStep) -> Result<(), SimulationError> {
-        let command = step.command();
-        match command {
+        self.send(&step.command())
+    }
+
+    /// Sends a command, and notes where it sends the leg.
+    pub fn send(&mut self, command: &Command) -> Result<(), SimulationError> {
+        match *command {
             Command::Move { x, y } => self.commanded = Some([x, y].map(f64::from)),
             Command::Home => self.commanded = Some([0.0; 2]),
             Command::Hold | Command::Stop => self.commanded = None,
@@ -97,16 +104,12 @@ impl<'a> TestStand<'a> {
             }
             _ => {}
         }
-        self.send(&command)
-    }
-
-    /// Sends a command.
-    pub fn send(&mut self, command: &Command) -> Result<(), SimulationError> {
         self.host.send(command).map_err(SimulationError::Command)
     }
 
     /// Nothing is commanded beside what the leg itself takes for its target.
     pub fn forget_commanded(&mut self) {
+        self.path_error_m = None;
         self.commanded = None;
     }
 
@@ -117,8 +120,9 @@ impl<'a> TestStand<'a> {
         let ([x, y], [x_rate, y_rate]) = (direction, motion.rate);
         let z_rate = -(x * x_rate + y * y_rate) / commanded_m.z * self.tip_length_m;
         let velocity = Vector3::new(x_rate, y_rate, z_rate) * self.tip_length_m;
-        self.follow_error
-            .take(&(self.truth.tip_m - commanded_m), &velocity);
+        let error_m = self.truth.tip_m - commanded_m;
+        self.follow_error.take(&error_m, &velocity);
+        self.path_error_m = Some(error_m.norm());
         self.commanded = Some(direction);
     }
 
@@ -148,6 +152,7 @@ impl<'a> TestStand<'a> {
     /// [`SimulationError::NotFinite`] if a number is lost; a link that fails.
     pub fn tick(
         &mut self,
+        comparison: &Comparison,
         watch: impl FnOnce(&Sensors, &[u8], &TickReply),
     ) -> Result<(), SimulationError> {
         let time_s = self.time_s();
@@ -159,6 +164,7 @@ impl<'a> TestStand<'a> {
         if !numbers.copied().all(f64::is_finite) {
             return Err(SimulationError::NotFinite(time_s));
         }
+        self.sample(time_s, comparison, &reply.telemetry);
         self.take(time_s, truth, &reply);
         Ok(())
     }
@@ -184,16 +190,32 @@ impl<'a> TestStand<'a> {
         if self.tips_m.len() > AVERAGE_TICKS {
             self.tips_m.pop_front();
         }
+        self.summary.ticks += 1;
+    }
+
+    fn sample(&mut self, time_s: f64, comparison: &Comparison, telemetry: &Telemetry<f32>) {
         if self.summary.ticks.is_multiple_of(SAMPLE_TICKS) {
             self.summary.samples.push(Sample {
                 time_s,
-                tip_error_mm: (truth.tip_m - self.target_m()).norm() * 1000.0,
-                tensions_n: truth.tensions_n,
-                payload_kg: truth.payload_kg,
+                comparison: *comparison,
+                path_error_mm: self.path_error_m.map(|m| m * 1000.0),
                 telemetry: *telemetry,
             });
         }
-        self.summary.ticks += 1;
+    }
+
+    /// The leg as the next tick finds it.
+    pub fn comparison(&self) -> Comparison {
+        let pose = self.telemetry.map_or([0.0; 2], |telemetry| telemetry.pose);
+        let mm = |tip_m: Vector3<f64>| (tip_m * 1000.0).into();
+        Comparison {
+            tip_commanded_mm: mm(self.commanded_m()),
+            tip_reference_mm: mm(self.target_m()),
+            tip_estimated_mm: mm(self.tip_m(pose.map(f64::from))),
+            tip_true_mm: mm(self.truth.tip_m),
+            tensions_true_n: self.truth.tensions_n,
+            payload_true_kg: self.truth.payload_kg,
+        }
     }
 
     /// Where the trajectory has the tip now, m.

@@ -1,0 +1,30 @@
+//! What was commanded, what the trajectory asks for, what the leg estimates, and what is true.
+
+use serde::Serialize;
+
+/// The simulated leg beside what it reports, as a tick finds them. Tips are in frame {A}.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Comparison {
+    /// Where the host has sent the tip: the end of a move, or the point of a streamed path at that time; the reference after a
+    /// hold, mm.
+    pub tip_commanded_mm: [f64; 3],
+    /// Where the trajectory has the tip, mm.
+    pub tip_reference_mm: [f64; 3],
+    /// Where the leg estimates its tip, mm; without meaning before homing.
+    pub tip_estimated_mm: [f64; 3],
+    /// Where the tip is, mm.
+    pub tip_true_mm: [f64; 3],
+    /// Tension of each tendon, N.
+    pub tensions_true_n: [f64; 3],
+    /// kg.
+    pub payload_true_kg: f64,
+}
+
+impl Comparison {
+    /// How far the true tip is from where the trajectory has it, mm.
+    #[must_use]
+    pub fn reference_error_mm(&self) -> f64 {
+        let pairs = self.tip_true_mm.iter().zip(self.tip_reference_mm);
+        pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+    }
+}
