@@ -15,11 +15,15 @@ use std::io::{self, Write};
 use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
 
-/// How long a port is tried whose `leg` does not respond: this machine may be so busy that it has to wait for seconds.
-const OPEN_TIME: Duration = Duration::from_secs(10);
-
-/// How often it is said meanwhile that it does not respond: if the leg moves, who has an emergency stop shall not wait for the end.
+/// How long a `leg` that has the port is waited for before it is said that it does not respond: if the leg moves, who has an
+/// emergency stop shall not wait for the end.
 const LATE_TIME: Duration = Duration::from_secs(2);
+
+/// How often it is waited for: this machine may be so busy that it has to wait for seconds.
+const SILENCES: u32 = 5;
+
+/// How long a port is tried on which a hub ends again and again: within it this program, too, may have to wait.
+const REJOIN_TIME: Duration = Duration::from_secs(10);
 
 /// Wait before a port is tried again that another `leg` is about to open or to leave.
 const RETRY_TIME: Duration = Duration::from_millis(20);
@@ -78,7 +82,7 @@ impl Transport for Serial {
     }
 
     fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
-        let until = Instant::now() + OPEN_TIME;
+        let until = Instant::now() + REJOIN_TIME;
         loop {
             match self.stream.write_all(bytes) {
                 Err(error) if hub::ended(&error) && Instant::now() < until => self.rejoin()?,
@@ -88,7 +92,7 @@ impl Transport for Serial {
     }
 
     fn receive(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize> {
-        let until = Instant::now() + OPEN_TIME;
+        let until = Instant::now() + REJOIN_TIME;
         loop {
             match hub::receive(&mut self.stream, bytes, timeout) {
                 Ok(0) if !bytes.is_empty() && Instant::now() < until => self.rejoin()?,
@@ -100,8 +104,7 @@ impl Transport for Serial {
 
 /// A place at the hub of a port; opens the port if nobody has.
 fn join(port: &str, mut late: impl FnMut(&Failure) -> bool) -> Result<hub::Joined, Failure> {
-    let begun = Instant::now();
-    let mut retries = 0;
+    let (mut silences, mut retries) = (0, 0);
     loop {
         if let Some(tty) = port::open(port)? {
             return start_hub(tty, port)
@@ -111,7 +114,8 @@ fn join(port: &str, mut late: impl FnMut(&Failure) -> bool) -> Result<hub::Joine
             Ok(joined) => return Ok(joined),
             Err(error) if error.kind() == io::ErrorKind::TimedOut => {
                 let failure = not_responding(port);
-                if begun.elapsed() >= OPEN_TIME || !late(&failure) {
+                silences += 1;
+                if silences == SILENCES || !late(&failure) {
                     return Err(failure);
                 }
             }
