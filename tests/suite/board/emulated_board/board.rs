@@ -185,6 +185,7 @@ impl BoardUnderTest {
     /// Homes nothing, arms nothing: what the leg does now.
     pub fn state(&self) -> Value {
         let output = self.run(&["monitor", "--json", "--for", "0.01"]);
+        assert!(output.status.success(), "{}", errors(&output));
         let text = String::from_utf8(output.stdout).unwrap();
         serde_json::from_str(text.lines().next().unwrap()).unwrap()
     }
