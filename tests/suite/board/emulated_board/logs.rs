@@ -114,9 +114,11 @@ fn a_log_that_is_ended_lets_the_line_go() {
     // Where it had to ask more than once to be let go, answers may still come.
     wait_for("silence", || {
         let heard = line.receive(&mut [0; 99], Duration::from_millis(500));
-        heard
-            .map_err(|error| assert_eq!(error.kind(), ErrorKind::TimedOut))
-            .err()
+        let error = heard.err()?.kind();
+        // A process that goes on after a stop is interrupted.
+        let known = [ErrorKind::TimedOut, ErrorKind::Interrupted];
+        assert!(known.contains(&error), "{error}");
+        (error == ErrorKind::TimedOut).then_some(())
     });
 }
 
