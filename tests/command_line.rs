@@ -57,13 +57,14 @@ fn a_missing_emulator_is_refused_with_the_fix() {
     assert!(output.stdout.is_empty());
 }
 
-/// A program in the emulator's place: it runs the emulator and kills it after a moment.
-fn dying_emulator(directory: &Path) -> PathBuf {
+/// A program in the emulator's place: it runs the emulator and kills it when there is something in a file.
+fn dying_emulator(directory: &Path, answers: &Path) -> PathBuf {
     let emulator = setup::ensure_qemu(&mut |_| {}).unwrap();
     let script = directory.join("dying-emulator");
     let text = format!(
-        "#!/bin/sh\n'{}' \"$@\" &\nsleep 1\nkill -9 $!\nwait $!\n",
-        emulator.display()
+        "#!/bin/sh\n'{}' \"$@\" &\nwhile kill -0 $! && ! [ -s '{}' ]; do sleep 0.1; done\nkill -9 $!\nwait $!\n",
+        emulator.display(),
+        answers.display()
     );
     std::fs::write(&script, text).unwrap();
     std::fs::set_permissions(&script, Permissions::from_mode(0o755)).unwrap();
@@ -74,15 +75,17 @@ fn dying_emulator(directory: &Path) -> PathBuf {
 fn an_emulator_that_dies_during_a_run_is_reported() {
     let directory = tempfile::tempdir().unwrap();
     FirmwareImage::Qemu.build().unwrap();
-    // Enough poses that a second does not suffice.
+    // Enough poses that there are many left after the first answers.
     let line = br#"{"azimuth_deg":30,"tilt_deg":20,"payload_kg":1}
 "#;
     let poses = directory.path().join("poses.jsonl");
     std::fs::write(&poses, line.repeat(200_000)).unwrap();
+    let answers = directory.path().join("answers.jsonl");
     let output = Command::new(LEG)
         .args(["eval", "--on", "qemu"])
         .arg(&poses)
-        .env("LEG_QEMU", dying_emulator(directory.path()))
+        .env("LEG_QEMU", dying_emulator(directory.path(), &answers))
+        .stdout(std::fs::File::create(&answers).unwrap())
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(2));
@@ -91,7 +94,7 @@ fn an_emulator_that_dies_during_a_run_is_reported() {
         error.contains("QEMU") && error.contains("start again"),
         "{error}"
     );
-    let answers = String::from_utf8(output.stdout).unwrap();
+    let answers = std::fs::read_to_string(answers).unwrap();
     let count = answers.lines().count();
     assert!((1..200_000).contains(&count), "{count} answers");
     assert!(answers.ends_with("}\n"), "the last answer is whole");

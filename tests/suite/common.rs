@@ -5,6 +5,7 @@ pub mod chip_bus;
 pub mod mujoco;
 pub mod panic_free;
 pub mod sources;
+pub mod stalls;
 
 pub use leg_base::numeric;
 pub use leg_model_tools::plain_vectors as reference;

@@ -56,6 +56,9 @@ impl HostIdentity {
 /// What is called with the telemetry that the operator asks for while it waits.
 type Watcher = Box<dyn FnMut(&Telemetry<f32>)>;
 
+/// What is called while the leg does not answer, with the error in which that ends if it goes on.
+type LateWatcher = Box<dyn FnMut(&OperatorError)>;
+
 /// A host that has introduced itself to a leg.
 pub struct Operator {
     connection: FramedTransport,
@@ -63,6 +66,7 @@ pub struct Operator {
     identity: Identity,
     cancel: CancelFlag,
     watcher: Option<Watcher>,
+    late_watcher: LateWatcher,
     stream: TelemetryStream,
     /// When the leg was last sent a command.
     commanded_at: Duration,
@@ -88,8 +92,11 @@ struct TelemetryStream {
 /// Wait for the answer to an introduction: a board that was just opened may still be starting.
 const INTRODUCTION_TIME: Duration = Duration::from_millis(300);
 
-/// Introductions before the leg is taken for silent.
-const INTRODUCTIONS: u32 = 6;
+/// Introductions before the leg is taken for silent: ten seconds, as [`request`] waits.
+const INTRODUCTIONS: u32 = 34;
+
+/// After how many it is said that the leg does not answer: about two seconds.
+const INTRODUCTIONS_LATE: u32 = 6;
 
 impl Operator {
     /// Introduces the host to the leg at the other end.
@@ -101,8 +108,23 @@ impl Operator {
         host: HostIdentity,
         cancel: CancelFlag,
     ) -> Result<Self, OperatorError> {
+        Self::open_watched(transport, host, cancel, |_| ())
+    }
+
+    /// The same, and calls `late` whenever the leg has not answered for seconds, or acknowledged a stop, with the error in which
+    /// that ends if it goes on.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub fn open_watched(
+        transport: Box<dyn Transport>,
+        host: HostIdentity,
+        cancel: CancelFlag,
+        late: impl FnMut(&OperatorError) + 'static,
+    ) -> Result<Self, OperatorError> {
+        let mut late_watcher: LateWatcher = Box::new(late);
         let mut connection = FramedTransport::new(transport, host.sequence);
-        let identity = introduce(&mut connection)?;
+        let identity = introduce(&mut connection, &cancel, &mut late_watcher)?;
         Ok(Self {
             commanded_at: connection.transport.now(),
             connection,
@@ -110,6 +132,7 @@ impl Operator {
             identity,
             cancel,
             watcher: None,
+            late_watcher,
             stream: TelemetryStream::default(),
             silence_max: None,
             keeps_alive: false,
@@ -146,11 +169,27 @@ impl Operator {
     pub fn set_watcher(&mut self, watcher: impl FnMut(&Telemetry<f32>) + 'static) {
         self.watcher = Some(Box::new(watcher));
     }
+
+    /// Calls `watcher` from now on where [`Self::open_watched`] would call its `late`.
+    pub fn set_late_watcher(&mut self, watcher: impl FnMut(&OperatorError) + 'static) {
+        self.late_watcher = Box::new(watcher);
+    }
 }
 
-fn introduce(connection: &mut FramedTransport) -> Result<Identity, OperatorError> {
+fn introduce(
+    connection: &mut FramedTransport,
+    cancel: &CancelFlag,
+    late_watcher: &mut LateWatcher,
+) -> Result<Identity, OperatorError> {
     let schema = HOST_SCHEMA;
-    for _ in 0..INTRODUCTIONS {
+    for introduction in 0..INTRODUCTIONS {
+        if introduction == INTRODUCTIONS_LATE {
+            late_watcher(&OperatorError::NoAnswer(connection.name()));
+        }
+        // Before that, what was asked is done: it may be a stop.
+        if introduction >= INTRODUCTIONS_LATE && cancel.is_set() {
+            return Err(OperatorError::Cancelled);
+        }
         let number = connection.send(&HostRequest::Identify(Hello { schema }))?;
         let until = connection.transport.now() + INTRODUCTION_TIME;
         while let Some((sequence, reply)) = connection.receive(until)? {

@@ -122,10 +122,13 @@ impl ConnectionArgs {
         let cancel = CancelFlag::on_ctrl_c();
         let Some(on) = self.on else {
             let transport = match &self.can {
-                None => self.serial()?,
+                None => self.serial(&cancel)?,
                 Some(interface) => can(interface, self.leg, purpose)?,
             };
-            let operator = Operator::open(transport, HostIdentity::random(), cancel)?;
+            let host = HostIdentity::random();
+            let operator = Operator::open_watched(transport, host, cancel, |error| {
+                note_late(&error.failure());
+            })?;
             for notice in notices(operator.identity()) {
                 note(&format!("leg: {notice}"));
             }
@@ -143,12 +146,13 @@ impl ConnectionArgs {
         })
     }
 
-    fn serial(&self) -> Result<Box<dyn Transport>, Failure> {
-        let opened = match &self.port {
-            Some(port) => Serial::open(port),
-            None => serial::find_board().and_then(|port| Serial::open(&port)),
-        };
-        let serial = opened?;
+    fn serial(&self, cancel: &CancelFlag) -> Result<Box<dyn Transport>, Failure> {
+        let port = self.port.clone();
+        let port = port.map_or_else(serial::find_board, Ok)?;
+        let serial = Serial::open_watched(&port, |failure| {
+            note_late(failure);
+            !cancel.is_set()
+        })?;
         if let Some(reason) = serial.unshared() {
             note(&format!(
                 "leg: other commands cannot use this port meanwhile ({reason}): let TMPDIR be a directory that may be written, with a short path"
@@ -156,6 +160,15 @@ impl ConnectionArgs {
         }
         Ok(Box::new(serial))
     }
+}
+
+/// Says what goes wrong before it is given up.
+fn note_late(failure: &Failure) {
+    let (Failure::Failed(message) | Failure::Refused(message)) = failure;
+    let help = message.help.as_deref().unwrap_or_default();
+    note(&format!(
+        "leg: {failure}; it is tried again for some seconds. {help}"
+    ));
 }
 
 #[cfg(target_os = "linux")]

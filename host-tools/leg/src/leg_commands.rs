@@ -3,11 +3,9 @@
 use crate::connection::{LegArgs, Purpose};
 use crate::numbers::{azimuth_deg, direction, positive, seconds, tilt_deg, unit_vector};
 use crate::options::Options;
-use crate::output::note;
 use leg_base::failure::Failure;
 use leg_base::json_object;
 use leg_base::timed_path::TimedPath;
-use leg_firmware::telemetry::Telemetry;
 use leg_host::leg_report;
 use leg_host::operator::{Goal, Operator, OperatorError, Tensioning};
 use leg_host::path_reader::{PathReader, PathSource};
@@ -108,7 +106,7 @@ impl LegCommand {
             Self::Home(leg) => home(leg, options),
             Self::Move(args) => reach(&args.leg, args.goal()),
             Self::Stiffness(args) => reach(&args.leg, args.goal()),
-            Self::Stop(leg) => run(leg, Purpose::Stop, options, stop),
+            Self::Stop(leg) => run(leg, Purpose::Stop, options, Operator::stop),
         }
     }
 }
@@ -178,23 +176,6 @@ fn stiffness(nm_per_rad: f64, towards_deg: Option<f64>) -> Tensioning {
         demand_nm_per_rad: nm_per_rad as f32,
         towards: towards_deg.map(unit_vector),
     }
-}
-
-/// How often an operator's stop, which is repeated for two seconds, is begun again: this machine may be so busy that a leg
-/// which it emulates, or this program, has to wait for seconds.
-const STOP_ATTEMPTS: u32 = 5;
-
-/// Stops the leg, and says early where it does not acknowledge that.
-fn stop(operator: &mut Operator) -> Result<Telemetry<f32>, OperatorError> {
-    for _ in 1..STOP_ATTEMPTS {
-        match operator.stop() {
-            Err(error @ OperatorError::NotStopped(_)) => note(&format!(
-                "leg: {error}: press the emergency stop; the stop is sent again"
-            )),
-            result => return result,
-        }
-    }
-    operator.stop()
 }
 
 /// Does `work` and reports what the leg does in the end.

@@ -61,6 +61,8 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         length: args.length,
     };
     if screen {
+        // Nothing else is written on the screen.
+        operator.set_late_watcher(|_| ());
         monitor.on_screen(&mut operator)
     } else {
         monitor.watch(&mut operator, |_, _| Ok(true))
@@ -85,7 +87,7 @@ struct Monitor {
 }
 
 impl Monitor {
-    /// Reads telemetry until `shown` returns false or the time is over. `shown` gets the time and, where there is a new one,
+    /// Reads telemetry, once at least, until `shown` returns false or the time is over. `shown` gets the time and, where there is a new one,
     /// the picture; it is called in between, too.
     fn watch(
         &mut self,
@@ -93,7 +95,7 @@ impl Monitor {
         mut shown: impl FnMut(Duration, Option<&MonitorView>) -> Result<bool, Failure>,
     ) -> Result<(), Failure> {
         let end = self.length.map(|length| operator.now() + length);
-        while end.is_none_or(|end| operator.now() < end) {
+        loop {
             let due = operator.now() + self.period;
             let Some(reply) = unless_ended(operator.telemetry())? else {
                 return Ok(());
@@ -111,8 +113,10 @@ impl Monitor {
                     return Ok(());
                 }
             }
+            if end.is_some_and(|end| operator.now() >= end) {
+                return Ok(());
+            }
         }
-        Ok(())
     }
 
     /// Prints and sends the line that is asked for.

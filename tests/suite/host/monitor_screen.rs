@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use crate::common::stalls::PATIENCE;
 use leg_host::pseudo_terminal::PseudoTerminal;
 use rustix::termios::{Winsize, tcsetwinsize};
 use std::fs::OpenOptions;
@@ -9,7 +10,8 @@ use std::process::{Child, Command};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-const PATIENCE: Duration = Duration::from_secs(20);
+/// Time from one picture to the next in which an end shows that it waits for none.
+const PERIOD: Duration = Duration::from_secs(10);
 
 /// What enters the screen and leaves it.
 const ENTERS: &str = "\x1b[?1049h";
@@ -77,5 +79,6 @@ fn a_key_does_not_wait_for_the_next_picture() {
     terminal.write(b"q").unwrap();
     read_until(&terminal, &mut shown, LEAVES);
     assert!(monitor.wait().unwrap().success());
-    assert!(begun.elapsed() < Duration::from_secs(5));
+    // Nearly all of it: the machine may stall single processes for seconds.
+    assert!(begun.elapsed() < PERIOD * 9 / 10);
 }

@@ -7,8 +7,12 @@ use std::time::Duration;
 /// Wait for a reply before the request is taken for lost.
 pub(super) const REPLY_TIME: Duration = Duration::from_millis(250);
 
-/// How often a request is sent at most: for three seconds, as the machine may have much else to do.
-const ATTEMPTS: u32 = 12;
+/// How often a request is sent at most: for ten seconds, as this machine may be so busy that this program, or a leg which it
+/// emulates, has to wait for seconds.
+const ATTEMPTS: u32 = 40;
+
+/// After how many it is said that the leg does not answer: three seconds.
+const ATTEMPTS_LATE: u32 = 12;
 
 /// Wait before a busy leg is asked again.
 const BUSY_TIME: Duration = Duration::from_millis(50);
@@ -49,7 +53,11 @@ impl Operator {
     ) -> Result<HostReply, OperatorError> {
         let mut numbers = Vec::new();
         let mut busy = false;
-        for _ in 0..ATTEMPTS {
+        for attempt in 0..ATTEMPTS {
+            if attempt == ATTEMPTS_LATE && !busy {
+                let error = OperatorError::NoAnswer(self.name().into());
+                (self.late_watcher)(&error);
+            }
             numbers.push(self.connection.send(request)?);
             let until = self.now() + reply_time;
             let (reply, lost) = self.reply(&numbers, until)?;

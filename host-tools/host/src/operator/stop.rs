@@ -10,8 +10,12 @@ use std::time::Duration;
 /// Wait for the answer to a stop before it is repeated.
 const STOP_TIME: Duration = Duration::from_millis(50);
 
-/// How long a stop is repeated before the leg is taken for unreachable.
-const STOPS_TIME: Duration = Duration::from_secs(2);
+/// How long a stop is repeated before the leg is taken for unreachable: this machine may be so busy that this program, or a leg
+/// which it emulates, has to wait for seconds.
+const STOPS_TIME: Duration = Duration::from_secs(10);
+
+/// How often it is said meanwhile that nobody acknowledges it: who has an emergency stop shall not wait for the end.
+const STOPS_LATE_TIME: Duration = Duration::from_secs(2);
 
 /// How long a leg that is disarmed may stand still before it is waited for no longer, and what counts as that, m. How long the
 /// whole takes is up to its settings.
@@ -61,14 +65,20 @@ impl Operator {
             command: Command::Stop,
         };
         let mut numbers = Vec::new();
-        let end = self.now() + STOPS_TIME;
-        while self.now() < end {
+        let error = OperatorError::NotStopped(self.name().into());
+        let begun = self.now();
+        let mut told = begun;
+        while self.now() < begun + STOPS_TIME {
+            if self.now() >= told + STOPS_LATE_TIME {
+                told = self.now();
+                (self.late_watcher)(&error);
+            }
             numbers.push(self.connection.send_urgent(&request)?);
             if self.stop_acknowledged(&numbers)? {
                 return Ok(());
             }
         }
-        Err(OperatorError::NotStopped(self.name().into()))
+        Err(error)
     }
 
     /// Whether one of these stops is acknowledged before it is time for the next.

@@ -1,18 +1,25 @@
 //! An emulated board in the background, and the commands for it.
 
+use crate::common::stalls::{PATIENCE, wait_for};
+use leg_host::recording;
 use leg_rig::ready_rigs::READY_RIGS;
 use serde_json::Value;
+use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
 use std::process::{Child, ChildStdin, Command, Output, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 const LEG: &str = env!("CARGO_BIN_EXE_leg-under-test");
 
-/// A board that waits longer for its host: the machine may have much else to do.
-pub const PATIENT: &str = "\n[control.limits]\ncommand_time_s = 2\n";
+/// A board that waits longer for its host: the machine may have much else to do, and stall single processes for seconds.
+pub const PATIENT: &str = "\n[control.limits]\ncommand_time_s = 30\n";
 
-/// A leg that takes five seconds for what others do in one.
-pub const SLOW: &str = "\n[control.motion]\nspeed_rad_per_s = 0.1\n";
+/// A board that holds in the time of a test when its host has died, and not yet when it is stalled.
+pub const IMPATIENT: &str = "\n[control.limits]\ncommand_time_s = 6\n";
+
+/// A leg that takes 50 s for a move: some commands, and what they are stalled, have room beside it.
+pub const SLOW: &str = "\n[control.motion]\nspeed_rad_per_s = 0.01\n";
 
 /// `leg emulate` in the background.
 pub struct BoardUnderTest {
@@ -23,21 +30,21 @@ pub struct BoardUnderTest {
 
 impl BoardUnderTest {
     pub fn new(arguments: &[&str]) -> Self {
-        Self::with_sections("", arguments)
+        Self::with_sections(PATIENT, arguments)
     }
 
     /// A leg that moves slowly.
     pub fn slow() -> Self {
-        Self::with_sections(SLOW, &[])
+        Self::with_sections(&[PATIENT, SLOW].concat(), &[])
     }
 
     /// A leg of the default rig with more sections.
     pub fn with_sections(sections: &str, arguments: &[&str]) -> Self {
         let directory = tempfile::tempdir().unwrap();
         let rig = directory.path().join("rig.toml");
-        std::fs::write(&rig, [READY_RIGS[0].text, PATIENT, sections].concat()).unwrap();
+        std::fs::write(&rig, [READY_RIGS[0].text, sections].concat()).unwrap();
         let mut process = Command::new(LEG)
-            .args(["emulate", "--touch", "--for", "600", "--rig"])
+            .args(["emulate", "--touch", "--for", "3600", "--rig"])
             .arg(&rig)
             .args(arguments)
             .stdin(Stdio::piped())
@@ -56,10 +63,10 @@ impl BoardUnderTest {
 
     /// Begins a move and waits until the leg is on its way.
     pub fn begin_move(&self) -> Child {
-        let moving = self.begin(&move_to("29"));
+        let mut moving = self.begin(&move_to("29"));
         let begun = Instant::now();
         while self.state()["moving"] != true {
-            if begun.elapsed() > Duration::from_secs(20) {
+            if begun.elapsed() > PATIENCE || moving.try_wait().unwrap().is_some() {
                 let told = errors(&moving.wait_with_output().unwrap());
                 panic!("it does not move: {told} {}", self.state());
             }
@@ -101,6 +108,34 @@ impl BoardUnderTest {
         command.spawn().unwrap()
     }
 
+    /// The same with its standard output in a file: what it prints may be more than a pipe holds.
+    pub fn begin_into(&self, file: &Path, arguments: &[&str]) -> Child {
+        let mut command = self.command(arguments);
+        command.stdout(File::create(file).unwrap());
+        command.stderr(Stdio::piped()).spawn().unwrap()
+    }
+
+    /// Waits until a command has opened the port: it passes on what others send then, not they what it sends.
+    pub fn wait_for_port(&self, command: &Child) {
+        let files = format!("/proc/{}/fd", command.id());
+        let has_port = || {
+            let mut files = std::fs::read_dir(&files).unwrap().flatten();
+            files.any(|file| std::fs::read_link(file.path()).is_ok_and(|to| to == *self.port))
+        };
+        wait_for("an open port", || has_port().then_some(()));
+    }
+
+    /// Begins a log; comes back when the leg sends it telemetry.
+    pub fn begin_log(&self, file: &Path, arguments: &[&str]) -> Child {
+        let name = file.display().to_string();
+        let log = [&["log", "--out", &name, "--for", "3600"], arguments].concat();
+        let log = self.begin(&log);
+        wait_for("a recording", || recording::unfinished(file));
+        // Its line is asked for its first row.
+        self.wait(0.2);
+        log
+    }
+
     pub fn act(&mut self, line: &str) {
         writeln!(self.actions, "{line}").unwrap();
         // The board looks at least every 10 ms of its own time.
@@ -121,7 +156,10 @@ impl BoardUnderTest {
             .stderr(Stdio::piped());
         let mut running = command.spawn().unwrap();
         let mut enter = running.stdin.take().unwrap();
-        let mut questions = BufReader::new(running.stderr.take().unwrap()).lines();
+        // A leg that is late is waited for, and is no question.
+        let lines = BufReader::new(running.stderr.take().unwrap()).lines();
+        let mut questions =
+            lines.filter(|line| !line.as_ref().is_ok_and(|line| line.contains("tried again")));
         for action in actions {
             let question = questions.next().unwrap().unwrap();
             assert!(question.ends_with("then press Enter"), "{question}");
@@ -141,12 +179,13 @@ impl BoardUnderTest {
     pub fn wait(&self, seconds: f64) {
         let time = || self.state()["time_s"].as_f64().unwrap();
         let until = time() + seconds;
-        while time() < until {}
+        wait_for("the leg's time", || (time() >= until).then_some(()));
     }
 
     /// Homes nothing, arms nothing: what the leg does now.
     pub fn state(&self) -> Value {
         let output = self.run(&["monitor", "--json", "--for", "0.01"]);
+        assert!(output.status.success(), "{}", errors(&output));
         let text = String::from_utf8(output.stdout).unwrap();
         serde_json::from_str(text.lines().next().unwrap()).unwrap()
     }

@@ -2,6 +2,7 @@
 
 use super::board::BoardUnderTest;
 use super::page::{PageStep, board_page, one_line, typed};
+use crate::common::stalls::wait_for;
 use leg_boards::chip::ChipSession;
 use leg_boards::image::FirmwareImage;
 use leg_boards::setup;
@@ -13,7 +14,6 @@ use std::fs::{self, Permissions};
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::Command;
-use std::time::{Duration, Instant};
 
 const LEG: &str = env!("CARGO_BIN_EXE_leg-under-test");
 
@@ -22,9 +22,6 @@ const LOG_TICKS: usize = 160;
 
 /// The longest tick that step 2 allows, cycles.
 const LONGEST_TICK: u32 = 6_000;
-
-/// How long a state may take to show: the machine may have much else to do.
-const PATIENCE: Duration = Duration::from_secs(30);
 
 /// In the place of probe-rs: keeps the file that is to be flashed, and shows the log that its image has on the chip.
 fn probe_rs(directory: &Path) {
@@ -80,15 +77,8 @@ fn flash(step: &PageStep<'_>, directory: &Path) {
 }
 
 /// Waits until a state shows.
-fn wait_for(board: &BoardUnderTest, what: impl Fn(&Value) -> bool) -> Value {
-    let begun = Instant::now();
-    loop {
-        let state = board.state();
-        if what(&state) {
-            return state;
-        }
-        assert!(begun.elapsed() < PATIENCE, "{state}");
-    }
+fn wait_for_state(board: &BoardUnderTest, what: impl Fn(&Value) -> bool) -> Value {
+    wait_for("a state", || Some(board.state()).filter(&what))
 }
 
 fn has(state: &Value, fault: &str) -> bool {
@@ -99,13 +89,11 @@ fn has(state: &Value, fault: &str) -> bool {
 /// Something is done by hand and undone: the fault shows, switches off, and can be cleared afterwards.
 fn tried(board: &mut BoardUnderTest, [done, undone]: [&str; 2], fault: &str) {
     board.act(done);
-    let state = wait_for(board, |state| has(state, fault));
+    let state = wait_for_state(board, |state| has(state, fault));
     assert_eq!(state["state"], "off");
     board.act(undone);
-    let begun = Instant::now();
-    while !board.run(&["clear"]).status.success() {
-        assert!(begun.elapsed() < PATIENCE, "{fault} cannot be cleared");
-    }
+    let cleared = || board.run(&["clear"]).status.success().then_some(());
+    wait_for("a clear", cleared);
     assert!(!has(&board.state(), fault));
 }
 
@@ -123,7 +111,7 @@ fn a_new_board_is_flashed_set_cleared_stopped_and_faulted_as_the_page_says() {
     // Nothing is wired yet.
     board.act(r#"{"emergency_stop":true}"#);
     assert_eq!(step(3).commands(), ["leg monitor"]);
-    let state = wait_for(&board, |state| has(state, "emergency_stop"));
+    let state = wait_for_state(&board, |state| has(state, "emergency_stop"));
     assert_eq!(state["state"], "off");
     assert!(has(&state, "settings_corrupt"), "{state}");
 

@@ -1,9 +1,13 @@
 //! `leg follow` on an emulated board: a file, a program that stops, a host that dies.
 
-use super::board::{BoardUnderTest, errors};
+use super::board::{BoardUnderTest, IMPATIENT, errors};
+use crate::common::stalls::{StallWatch, unless_stalled, wait_for};
 use std::io::Write;
-use std::process::{Child, Stdio};
-use std::time::{Duration, Instant};
+use std::process::{Child, Output, Stdio};
+use std::time::Duration;
+
+/// For longer the host must not be stalled: about half of what the leg has of the path beforehand.
+const HOST_STALL: Duration = Duration::from_millis(300);
 
 /// Rows of a lean to 20° in 4 s, and back again.
 fn rows() -> Vec<String> {
@@ -27,62 +31,80 @@ fn a_file_is_followed_to_its_end() {
     let rows = rows();
     std::fs::write(&path, rows[..101].concat()).unwrap();
     let path = path.to_str().unwrap();
-    // The machine may have much else to do.
-    let state = board.json(&["follow", path, "--lead", "2"]);
-    assert_eq!(state["state"], "held");
-    assert_eq!(state["faults"].as_array().unwrap().len(), 0);
-    let tilt = state["tilt_deg"].as_f64().unwrap();
-    assert!((tilt - 20.0).abs() < 0.1, "{tilt}");
+    unless_stalled(HOST_STALL, || {
+        // The machine may have much else to do.
+        let following = board.begin(&["follow", path, "--lead", "2"]);
+        let watch = StallWatch::begin(&following);
+        let output = following.wait_with_output().unwrap();
+        let stall = watch.longest();
+        if !output.status.success() {
+            let _ = board.run(&["clear"]);
+            return (Err(errors(&output)), stall);
+        }
+        let state = board.state();
+        assert_eq!(state["state"], "held");
+        assert_eq!(state["faults"].as_array().unwrap().len(), 0);
+        let tilt = state["tilt_deg"].as_f64().unwrap();
+        assert!((tilt - 20.0).abs() < 0.1, "{tilt}");
+        (Ok(()), stall)
+    });
 }
 
 /// The program writes half of its rows, and then nothing.
 #[test]
 fn a_program_that_stops_writing_ends_in_rest() {
-    let board = BoardUnderTest::new(&[]);
-    let mut following = follow_program(&board);
-    let mut rows_in = following.stdin.take().unwrap();
-    rows_in.write_all(rows()[..80].concat().as_bytes()).unwrap();
-    let begun = Instant::now();
-    while board.state()["faults"][0]["fault"] != "point_missing" {
-        assert!(
-            begun.elapsed() < Duration::from_secs(60),
-            "{}",
-            board.state()
-        );
-    }
-    // It does not wait for the next row to say so.
-    let output = following.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(1));
-    let told = errors(&output);
-    assert!(told.contains("fault 28, set-point missing"), "{told}");
-    drop(rows_in);
-    assert_eq!(board.state()["state"], "held");
+    unless_stalled(HOST_STALL, || {
+        let board = BoardUnderTest::new(&[]);
+        let mut following = follow_program(&board);
+        let watch = StallWatch::begin(&following);
+        let mut rows_in = following.stdin.take().unwrap();
+        rows_in.write_all(rows()[..80].concat().as_bytes()).unwrap();
+        // It does not wait for the next row to say so.
+        let output = wait_for_end(following);
+        let stall = watch.longest();
+        drop(rows_in);
+        let told = errors(&output);
+        if !told.contains("fault 28, set-point missing") {
+            return (Err(told), stall);
+        }
+        assert_eq!(output.status.code(), Some(1));
+        assert_eq!(board.state()["state"], "held");
+        (Ok(()), stall)
+    });
+}
+
+/// Waits for the end of a command that prints little.
+fn wait_for_end(mut command: Child) -> Output {
+    wait_for("the end", || command.try_wait().unwrap());
+    command.wait_with_output().unwrap()
 }
 
 #[test]
 fn a_program_whose_host_dies_leaves_the_leg_in_hold() {
-    let board = BoardUnderTest::new(&[]);
-    let mut following = follow_program(&board);
-    let mut rows_in = following.stdin.take().unwrap();
-    rows_in.write_all(rows().concat().as_bytes()).unwrap();
-    let begun = Instant::now();
-    while board.state()["tilt_deg"].as_f64().unwrap() < 5.0 {
-        assert!(
-            begun.elapsed() < Duration::from_secs(60),
-            "{}",
-            board.state()
-        );
-    }
-    following.kill().unwrap();
-    following.wait().unwrap();
-    while board.state()["state"] != "held" {
-        assert!(
-            begun.elapsed() < Duration::from_secs(60),
-            "{}",
-            board.state()
-        );
-    }
-    assert_eq!(board.state()["faults"][0]["fault"], "command_timeout");
+    unless_stalled(HOST_STALL, || {
+        let board = BoardUnderTest::with_sections(IMPATIENT, &[]);
+        let mut following = follow_program(&board);
+        let watch = StallWatch::begin(&following);
+        board.wait_for_port(&following);
+        let mut rows_in = following.stdin.take().unwrap();
+        rows_in.write_all(rows().concat().as_bytes()).unwrap();
+        let on_its_way = wait_for("a tilt of 5°, or the end", || {
+            let there = board.state()["tilt_deg"].as_f64().unwrap() > 5.0;
+            let ended = following.try_wait().unwrap().is_some();
+            (there || ended).then_some(!ended)
+        });
+        let _ = following.kill();
+        let output = following.wait_with_output().unwrap();
+        let stall = watch.longest();
+        if !on_its_way {
+            return (Err(errors(&output)), stall);
+        }
+        wait_for("a hold", || {
+            (board.state()["state"] == "held").then_some(())
+        });
+        assert_eq!(board.state()["faults"][0]["fault"], "command_timeout");
+        (Ok(()), stall)
+    });
 }
 
 fn follow_program(board: &BoardUnderTest) -> Child {

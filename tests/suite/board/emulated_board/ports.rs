@@ -1,22 +1,39 @@
 //! The port, and who shares it.
 
 use super::board::{BoardUnderTest, errors, signal};
+use serde_json::Value;
 use std::fs::File;
 use std::io::{BufRead, BufReader};
-use std::thread::sleep;
-use std::time::Duration;
+use std::process::Child;
 
 #[test]
 fn a_monitor_goes_on_when_the_command_that_had_the_port_ends() {
     let board = BoardUnderTest::new(&[]);
     // The first to open the port passes it on to the others.
-    let first = board.begin(&["monitor", "--json", "--for", "0.7"]);
-    sleep(Duration::from_millis(300));
-    let second = board.begin(&["monitor", "--json", "--for", "2"]);
-    assert!(first.wait_with_output().unwrap().status.success());
+    let mut first = board.begin(&["monitor", "--json", "--for", "3600"]);
+    let mut next_of_first = printed(&mut first);
+    next_of_first();
+    let mut second = board.begin(&["monitor", "--json", "--for", "3600"]);
+    let mut next = printed(&mut second);
+    next();
+    signal(&first, "-INT");
+    assert!(first.wait().unwrap().success());
+    // More than what the first may have passed on before its end.
+    let end_s = next();
+    while next() < end_s + 2.0 {}
+    signal(&second, "-INT");
     let output = second.wait_with_output().unwrap();
     assert!(output.status.success(), "{}", errors(&output));
-    assert!(output.stdout.iter().filter(|byte| **byte == b'\n').count() > 5);
+}
+
+/// Reads what a monitor prints, line by line: the leg's time in each.
+fn printed(monitor: &mut Child) -> impl FnMut() -> f64 + use<> {
+    let mut lines = BufReader::new(monitor.stdout.take().unwrap()).lines();
+    move || {
+        let line = lines.next().unwrap().unwrap();
+        let line: Value = serde_json::from_str(&line).unwrap();
+        line["time_s"].as_f64().unwrap()
+    }
 }
 
 #[test]
@@ -49,11 +66,10 @@ fn a_busy_port_is_named() {
 #[test]
 fn a_suspended_command_that_has_the_port_is_named() {
     let board = BoardUnderTest::new(&[]);
-    let mut first = board.begin(&["monitor", "--json", "--for", "60"]);
+    let mut first = board.begin(&["monitor", "--json", "--for", "3600"]);
     // It has the port once it prints.
-    let mut line = String::new();
-    let stdout = first.stdout.take().unwrap();
-    BufReader::new(stdout).read_line(&mut line).unwrap();
+    let mut next = printed(&mut first);
+    next();
     signal(&first, "-STOP");
     let (code, told) = board.refused(&["stop"]);
     signal(&first, "-CONT");
@@ -62,6 +78,8 @@ fn a_suspended_command_that_has_the_port_is_named() {
         told.contains("another `leg` has the port") && told.contains("resume or end it"),
         "{told}"
     );
+    // It is said early, too.
+    assert!(told.contains("tried again"), "{told}");
     assert_eq!(board.json(&["stop"])["state"], "disarmed");
     first.kill().unwrap();
     first.wait().unwrap();

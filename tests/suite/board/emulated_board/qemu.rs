@@ -1,6 +1,6 @@
 //! The firmware under QEMU behind the pseudo-terminal.
 
-use super::board::{BoardUnderTest, SLOW, errors};
+use super::board::{BoardUnderTest, PATIENT, SLOW, errors};
 use leg_boards::image::FirmwareImage;
 use leg_boards::setup;
 
@@ -9,7 +9,8 @@ fn a_leg_under_qemu_homes_moves_and_is_stopped_on_its_way() {
     setup::ensure_target(&mut |_| {}).unwrap();
     setup::ensure_qemu(&mut |_| {}).unwrap();
     FirmwareImage::Qemu.build().unwrap();
-    let board = BoardUnderTest::with_sections(SLOW, &["--on", "qemu", "--slack"]);
+    let board =
+        BoardUnderTest::with_sections(&[PATIENT, SLOW].concat(), &["--on", "qemu", "--slack"]);
     assert_eq!(board.json(&["home"])["state"], "held");
     let moving = board.begin_move();
     let stopped = board.json(&["stop"]);

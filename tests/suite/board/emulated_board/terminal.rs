@@ -1,14 +1,12 @@
 //! The screen of `leg monitor` and its terminal.
 
 use super::board::{BoardUnderTest, signal};
+use crate::common::stalls::{PATIENCE, wait_for};
 use leg_host::pseudo_terminal::PseudoTerminal;
 use std::fs::OpenOptions;
 use std::process::{Child, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
-
-/// More than any end takes.
-const PATIENCE: Duration = Duration::from_secs(20);
 
 /// A monitor on a terminal, once it shows its screen.
 fn monitor(board: &BoardUnderTest) -> (Child, PseudoTerminal) {
@@ -24,11 +22,9 @@ fn monitor(board: &BoardUnderTest) -> (Child, PseudoTerminal) {
     let mut command = board.command(&["monitor"]);
     command.stdin(end()).stdout(end()).stderr(Stdio::null());
     let monitor = command.spawn().unwrap();
-    let begun = Instant::now();
-    while terminal.read(&mut [0; 4096]).unwrap() == 0 {
-        assert!(begun.elapsed() < PATIENCE, "it shows no screen");
-        sleep(Duration::from_millis(10));
-    }
+    wait_for("a screen", || {
+        (terminal.read(&mut [0; 4096]).unwrap() > 0).then_some(())
+    });
     (monitor, terminal)
 }
 

@@ -2,10 +2,10 @@
 
 use super::scripted_board::{at_rest, scripted, scripted_from_start, telemetry_reply};
 use super::{is_failed, lean};
-use crate::operator::OperatorError;
+use crate::operator::{Operator, OperatorError};
 use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest};
 use leg_firmware::supervisor::State;
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 use std::time::Duration;
 
@@ -81,10 +81,38 @@ fn a_stop_is_repeated_at_its_pace_however_soon_it_is_refused() {
         counted.set(counted.get() + 1);
         (counted.get() < 39).then_some(HostReply::Refused(HostRefusal::Busy))
     });
+    let told = watch_late(&mut operator);
     let begun = operator.now();
     error_of!(operator.stop(), OperatorError::NotStopped(_));
-    assert_eq!(asked.get(), 40, "one in 50 ms");
-    assert_eq!(operator.now() - begun, Duration::from_secs(2));
+    assert_eq!(asked.get(), 200, "one in 50 ms");
+    assert_eq!(operator.now() - begun, Duration::from_secs(10));
+    // After two seconds each.
+    let late = "a scripted board did not acknowledge the stop";
+    assert_eq!(*told.borrow(), [late; 4]);
+}
+
+/// What the operator says while the board does not answer.
+fn watch_late(operator: &mut Operator) -> Rc<RefCell<Vec<String>>> {
+    let told = Rc::<RefCell<Vec<String>>>::default();
+    let tell = Rc::clone(&told);
+    operator.set_late_watcher(move |error| tell.borrow_mut().push(error.to_string()));
+    told
+}
+
+#[test]
+fn a_board_that_answers_late_is_waited_for_and_said_to_be_late() {
+    let late_s = 8;
+    let answer = at_rest().0;
+    let asked = Rc::new(Cell::new(0));
+    let counted = Rc::clone(&asked);
+    let mut operator = scripted(move |_| {
+        counted.set(counted.get() + 1);
+        (counted.get() > 4 * late_s).then(|| telemetry_reply(&answer))
+    });
+    let told = watch_late(&mut operator);
+    operator.telemetry().unwrap();
+    assert_eq!(*told.borrow(), ["a scripted board does not answer"]);
+    assert_eq!(asked.get(), 4 * late_s + 1);
 }
 
 #[test]
