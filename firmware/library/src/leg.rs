@@ -12,6 +12,7 @@ mod phase;
 mod ramping_down;
 mod shadow;
 mod shared;
+mod station;
 mod swing_brake;
 
 pub use command_queue::Outcome;
@@ -22,7 +23,7 @@ use crate::jog::{JogEnd, JogReport};
 use crate::sensors::Sensors;
 use crate::settings::{Settings, SettingsError};
 use crate::supervisor::{
-    Agreement, Event, Fault, FaultSet, MonitorInput, Monitors, State, Supervisor,
+    Agreement, ErrorGrowth, Event, Fault, FaultSet, MonitorInput, Monitors, State, Supervisor,
 };
 use crate::telemetry::Telemetry;
 use command_queue::CommandQueue;
@@ -130,19 +131,26 @@ impl<T: Scalar> Leg<T> {
             faults: FaultSet::NONE,
             event: None,
         };
-        match &mut self.mode {
-            Mode::Active(active) => {
-                if self.phase == Phase::Target {
-                    shared.limit_tensions(measured, self.agreement.trusts());
-                }
-                // In the place of the search, so that the next mode has time to begin.
-                if self.phase == Phase::Pretension && active.led_down() {
-                    step.event = Some(Event::Disarm);
-                } else if let Err(error) = active.step(self.phase, shared, measured) {
-                    step.faults = fault_of_error(error);
-                }
-                return step;
+        if let Some((active, mut station)) = self.mode.following() {
+            if self.phase == Phase::Target {
+                shared.limit_tensions(measured, self.agreement.trusts());
             }
+            // In the place of the search, so that the next mode has time to begin.
+            if self.phase == Phase::Pretension && active.led_down() {
+                step.event = Some(Event::Disarm);
+            } else if let Err(error) =
+                active.step(self.phase, shared, measured, station.as_deref_mut())
+            {
+                step.faults = fault_of_error(error);
+                // Nobody gives a leg that keeps station another target.
+                step.event = station.is_some().then_some(Event::Stop);
+            }
+            if let Some(station) = station {
+                step.faults.add(Fault::OffStation, station.too_far());
+            }
+            return step;
+        }
+        match &mut self.mode {
             Mode::Homing(homing) => {
                 return homing::step(homing, shared, &mut self.measurement, measured);
             }
@@ -157,7 +165,11 @@ impl<T: Scalar> Leg<T> {
                     step.event = Some(Event::Jogged);
                 }
             }
-            Mode::Boot { .. } | Mode::Disarmed | Mode::Off => {}
+            Mode::Boot { .. }
+            | Mode::Disarmed
+            | Mode::Active(_)
+            | Mode::KeepingStation(..)
+            | Mode::Off => {}
         }
         // The estimate goes on while nothing is made of it, so that the leg starts from where it is.
         if self.phase == Phase::Estimate
@@ -229,14 +241,21 @@ impl<T: Scalar> Leg<T> {
     /// are off.
     #[inline(always)]
     fn watch_agreement(&mut self) {
-        let moving = match &self.mode {
-            Mode::Active(active) if active.tensioned => active.trajectory.moving(),
-            Mode::Held(_) if self.agreement.watches() => false,
+        let growth = match &self.mode {
+            Mode::Active(active) if active.tensioned => {
+                if active.trajectory.moving() {
+                    ErrorGrowth::MOVING
+                } else {
+                    ErrorGrowth::RESTING
+                }
+            }
+            Mode::KeepingStation(..) => ErrorGrowth::KEEPING_STATION,
+            Mode::Held(_) if self.agreement.watches() => ErrorGrowth::RESTING,
             _ => return self.agreement.end(),
         };
         let estimate = self.shared.estimate.as_ref();
         match estimate.and_then(|estimate| estimate.length_error.as_ref()) {
-            Some(error) => self.agreement.watch(error, moving),
+            Some(error) => self.agreement.watch(error, growth),
             None => self.agreement.end(),
         }
     }
@@ -245,6 +264,9 @@ impl<T: Scalar> Leg<T> {
     #[inline(never)]
     fn enter(&mut self, state: State, measured: &Measured<T>) {
         self.link.restart_silence();
+        if self.mode.changes_over(state) {
+            return;
+        }
         let latched = self.supervisor.latched();
         if let Some(report) = &mut self.shared.jog_report
             && report.end == JogEnd::Running

@@ -2,6 +2,7 @@
 
 use super::phase::Phase;
 use super::shared::Shared;
+use super::station::Station;
 use super::swing_brake::SwingBrake;
 use crate::command::Compensation;
 use crate::control::{
@@ -72,13 +73,14 @@ impl<T: Scalar> Active<T> {
         }
     }
 
-    /// One tick.
+    /// One tick, which a leg that keeps station follows no faster and no farther than that allows.
     #[inline(always)]
     pub fn step(
         &mut self,
         phase: Phase,
         shared: &mut Shared<T>,
         measured: &Measured<T>,
+        station: Option<&mut Station<T>>,
     ) -> Result<(), Error> {
         match phase {
             Phase::Estimate => self.estimate(shared, measured),
@@ -95,7 +97,7 @@ impl<T: Scalar> Active<T> {
                 self.brake.stay();
                 Ok(())
             }
-            Phase::Target => self.aim(shared, measured),
+            Phase::Target => self.aim(shared, measured, station),
             Phase::Plan => {
                 // A leg that is not taut yet does not set out.
                 if self.slack.taken_up() {
@@ -159,6 +161,16 @@ impl<T: Scalar> Active<T> {
         }
     }
 
+    /// Whether it rests at its target with its load compensated, so that it can be left there.
+    pub fn may_keep_station(&self, shared: &Shared<T>) -> bool {
+        let compensated = shared.compensation == Compensation::Estimated;
+        shared.station.allowed
+            && compensated
+            && self.tensioned
+            && !self.trajectory.moving()
+            && !shared.refused
+    }
+
     /// Leads the leg straight down, to be disarmed there.
     pub fn disarm(&mut self, shared: &mut Shared<T>) {
         self.disarming = true;
@@ -205,7 +217,12 @@ impl<T: Scalar> Active<T> {
 
     /// Computes the next target, and leads the axes there.
     #[inline(never)]
-    fn aim(&mut self, shared: &mut Shared<T>, measured: &Measured<T>) -> Result<(), Error> {
+    fn aim(
+        &mut self,
+        shared: &mut Shared<T>,
+        measured: &Measured<T>,
+        station: Option<&mut Station<T>>,
+    ) -> Result<(), Error> {
         let Some(zero_m) = shared.zero_m else {
             return Err(Error::NotConverged);
         };
@@ -239,6 +256,9 @@ impl<T: Scalar> Active<T> {
         let longer_m = self.brake.advance();
         for (i, pulled) in pulled_m.iter_mut().enumerate() {
             *pulled -= target.unstretched_m[i] + longer_m[i] + behind_m[i];
+        }
+        if let Some(station) = station {
+            station.limit(&shared.station, longer_m, &mut pulled_m);
         }
         let speed_m_per_s = if taut {
             shared.limits.servo_m_per_s

@@ -74,6 +74,7 @@ impl<T: Scalar> Leg<T> {
             }
             Command::Stop => self.end(Event::Stop, measured),
             Command::Disarm => self.disarm(measured),
+            Command::KeepStation => self.keep_station(measured),
             Command::Clear => {
                 self.shared.refused = false;
                 self.link.clear_bad_frames();
@@ -146,6 +147,25 @@ impl<T: Scalar> Leg<T> {
             active.disarm(&mut self.shared);
         }
         Ok(())
+    }
+
+    /// Leaves the leg to itself. A command that is repeated changes nothing.
+    fn keep_station(&mut self, measured: &Measured<T>) -> Result<(), CommandRefusal> {
+        self.unfaulted()?;
+        if matches!(self.mode, Mode::KeepingStation(..) | Mode::Held(_)) {
+            return Ok(());
+        }
+        let trusted = self.agreement.trusts();
+        let (active, shared) = self.active()?;
+        let keeps = trusted && active.may_keep_station(shared);
+        self.end(
+            if keeps {
+                Event::KeepStation
+            } else {
+                Event::Stop
+            },
+            measured,
+        )
     }
 
     fn unfaulted(&self) -> Result<(), CommandRefusal> {

@@ -5,6 +5,7 @@ use super::held::Held;
 use super::jogging::Jogging;
 use super::ramping_down::RampingDown;
 use super::shared::Shared;
+use super::station::Station;
 use crate::control::{Axis, HomingSequence, Measured};
 use crate::supervisor::{Event, FaultSet, State};
 use leg_model::Scalar;
@@ -30,6 +31,8 @@ pub enum Mode<T> {
     Homing(HomingSequence<T>),
     /// Commands are followed.
     Active(Active<T>),
+    /// The load is compensated where the leg was left.
+    KeepingStation(Active<T>, Station<T>),
     /// The leg stays where it is.
     Held(Held<T>),
     /// The tendons are paid out.
@@ -56,6 +59,7 @@ impl<T: Scalar> Mode<T> {
             Self::Disarmed => State::Disarmed,
             Self::Homing(_) => State::Homing,
             Self::Active(_) => State::Active,
+            Self::KeepingStation(..) => State::KeepingStation,
             Self::Held(_) => State::Held,
             Self::RampingDown(_) => State::RampingDown,
             Self::Off => State::Off,
@@ -63,11 +67,21 @@ impl<T: Scalar> Mode<T> {
         }
     }
 
-    /// The active mode, if it is that.
+    /// The active mode, if it is that or keeps station.
     #[inline(always)]
     pub const fn active(&self) -> Option<&Active<T>> {
         match self {
-            Self::Active(active) => Some(active),
+            Self::Active(active) | Self::KeepingStation(active, _) => Some(active),
+            _ => None,
+        }
+    }
+
+    /// The mode that follows commands or keeps station, and what limits the latter.
+    #[inline(always)]
+    pub const fn following(&mut self) -> Option<(&mut Active<T>, Option<&mut Station<T>>)> {
+        match self {
+            Self::Active(active) => Some((active, None)),
+            Self::KeepingStation(active, station) => Some((active, Some(station))),
             _ => None,
         }
     }
@@ -76,6 +90,7 @@ impl<T: Scalar> Mode<T> {
     pub fn moving(&self) -> bool {
         match self {
             Self::Active(active) => active.trajectory.moving(),
+            Self::KeepingStation(_, station) => station.corrects(),
             _ => self.brakes(),
         }
     }
@@ -102,11 +117,26 @@ impl<T: Scalar> Mode<T> {
     #[inline(always)]
     pub const fn turns(&self) -> bool {
         match self {
-            Self::Homing(_) | Self::Active(_) | Self::RampingDown(_) => true,
+            Self::Homing(_) | Self::Active(_) | Self::KeepingStation(..) | Self::RampingDown(_) => {
+                true
+            }
             Self::Held(held) => held.brakes(),
             // A jogged motor obeys no axis.
             Self::Boot { .. } | Self::Disarmed | Self::Off | Self::Jogging(_) => false,
         }
+    }
+
+    /// Leaves a leg that follows commands to itself, or lets one that keeps station follow them again: it goes on from where it is.
+    /// False if that is not what the state is.
+    pub fn changes_over(&mut self, state: State) -> bool {
+        *self = match (&*self, state) {
+            (Self::Active(active), State::KeepingStation) => {
+                Self::KeepingStation(*active, Station::new())
+            }
+            (Self::KeepingStation(active, _), State::Active) => Self::Active(*active),
+            _ => return false,
+        };
+        true
     }
 
     /// The mode of a state that begins now.
@@ -144,8 +174,8 @@ impl<T: Scalar> Mode<T> {
                 measured.pulled_m,
                 trust.pose,
             )),
-            // A jog begins by its command alone, which has its demand.
-            State::Off | State::Jogging => Self::Off,
+            // A jog begins by its command alone, which has its demand; station is kept from the active mode alone.
+            State::Off | State::Jogging | State::KeepingStation => Self::Off,
         }
     }
 }
