@@ -264,8 +264,8 @@ impl<T: Scalar> Leg<T> {
     #[inline(never)]
     fn enter(&mut self, state: State, measured: &Measured<T>) {
         self.link.restart_silence();
-        if self.mode.changes_over(state) {
-            return;
+        if self.mode.goes_on_as(state) {
+            return self.mode.go_on();
         }
         let latched = self.supervisor.latched();
         if let Some(report) = &mut self.shared.jog_report

@@ -251,14 +251,14 @@ impl<T: Scalar> Active<T> {
                 return Err(error);
             }
         };
+        if let Some(station) = station {
+            station.limit(&shared.station, &mut target.unstretched_m);
+        }
         let mut pulled_m = zero_m;
         let behind_m = shared.play.behind_m();
         let longer_m = self.brake.advance();
         for (i, pulled) in pulled_m.iter_mut().enumerate() {
             *pulled -= target.unstretched_m[i] + longer_m[i] + behind_m[i];
-        }
-        if let Some(station) = station {
-            station.limit(&shared.station, longer_m, &mut pulled_m);
         }
         let speed_m_per_s = if taut {
             shared.limits.servo_m_per_s

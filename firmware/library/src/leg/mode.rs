@@ -126,17 +126,24 @@ impl<T: Scalar> Mode<T> {
         }
     }
 
-    /// Leaves a leg that follows commands to itself, or lets one that keeps station follow them again: it goes on from where it is.
-    /// False if that is not what the state is.
-    pub fn changes_over(&mut self, state: State) -> bool {
-        *self = match (&*self, state) {
-            (Self::Active(active), State::KeepingStation) => {
-                Self::KeepingStation(*active, Station::new())
-            }
-            (Self::KeepingStation(active, _), State::Active) => Self::Active(*active),
-            _ => return false,
+    /// Whether a state goes on from where this one is: a leg that follows commands is left to itself, or one that keeps station follows
+    /// them again.
+    #[inline(always)]
+    pub const fn goes_on_as(&self, state: State) -> bool {
+        matches!(
+            (self, state),
+            (Self::Active(_), State::KeepingStation) | (Self::KeepingStation(..), State::Active)
+        )
+    }
+
+    /// Goes on so.
+    #[inline(never)]
+    pub fn go_on(&mut self) {
+        *self = match self {
+            Self::Active(active) => Self::KeepingStation(*active, Station::new()),
+            Self::KeepingStation(active, _) => Self::Active(*active),
+            _ => return,
         };
-        true
     }
 
     /// The mode of a state that begins now.
