@@ -131,26 +131,21 @@ impl<T: Scalar> Leg<T> {
             faults: FaultSet::NONE,
             event: None,
         };
-        if let Some((active, mut station)) = self.mode.following() {
-            if self.phase == Phase::Target {
-                shared.limit_tensions(measured, self.agreement.trusts());
-            }
-            // In the place of the search, so that the next mode has time to begin.
-            if self.phase == Phase::Pretension && active.led_down() {
-                step.event = Some(Event::Disarm);
-            } else if let Err(error) =
-                active.step(self.phase, shared, measured, station.as_deref_mut())
-            {
-                step.faults = fault_of_error(error);
-                // Nobody gives a leg that keeps station another target.
-                step.event = station.is_some().then_some(Event::Stop);
-            }
-            if let Some(station) = station {
-                step.faults.add(Fault::OffStation, station.too_far());
-            }
-            return step;
-        }
         match &mut self.mode {
+            Mode::Active(active) => {
+                if self.phase == Phase::Target {
+                    shared.limit_tensions(measured, self.agreement.trusts());
+                }
+                // In the place of the search, so that the next mode has time to begin.
+                if self.phase == Phase::Pretension && active.led_down() {
+                    step.event = Some(Event::Disarm);
+                } else if let Err(error) = active.step(self.phase, shared, measured) {
+                    step.faults = fault_of_error(error);
+                    // Nobody gives a leg that keeps station another target.
+                    step.event = active.station.is_some().then_some(Event::Stop);
+                }
+                return step;
+            }
             Mode::Homing(homing) => {
                 return homing::step(homing, shared, &mut self.measurement, measured);
             }
@@ -165,11 +160,7 @@ impl<T: Scalar> Leg<T> {
                     step.event = Some(Event::Jogged);
                 }
             }
-            Mode::Boot { .. }
-            | Mode::Disarmed
-            | Mode::Active(_)
-            | Mode::KeepingStation(..)
-            | Mode::Off => {}
+            Mode::Boot { .. } | Mode::Disarmed | Mode::Off => {}
         }
         // The estimate goes on while nothing is made of it, so that the leg starts from where it is.
         if self.phase == Phase::Estimate
@@ -232,6 +223,7 @@ impl<T: Scalar> Leg<T> {
             );
             faults.add(Fault::PointMissing, active.trajectory.point_missing());
             faults.add(Fault::Slack, active.stays_slack(&self.shared));
+            faults.add(Fault::OffStation, active.off_station);
         }
         let listens = state.follows() && !active.is_some_and(|active| active.disarming);
         faults.union(self.link.step(listens))
@@ -243,13 +235,14 @@ impl<T: Scalar> Leg<T> {
     fn watch_agreement(&mut self) {
         let growth = match &self.mode {
             Mode::Active(active) if active.tensioned => {
-                if active.trajectory.moving() {
+                if active.station.is_some() {
+                    ErrorGrowth::KEEPING_STATION
+                } else if active.trajectory.moving() {
                     ErrorGrowth::MOVING
                 } else {
                     ErrorGrowth::RESTING
                 }
             }
-            Mode::KeepingStation(..) => ErrorGrowth::KEEPING_STATION,
             Mode::Held(_) if self.agreement.watches() => ErrorGrowth::RESTING,
             _ => return self.agreement.end(),
         };
@@ -264,8 +257,8 @@ impl<T: Scalar> Leg<T> {
     #[inline(never)]
     fn enter(&mut self, state: State, measured: &Measured<T>) {
         self.link.restart_silence();
-        if self.mode.goes_on_as(state) {
-            return self.mode.go_on();
+        if self.mode.goes_on(state) {
+            return;
         }
         let latched = self.supervisor.latched();
         if let Some(report) = &mut self.shared.jog_report

@@ -21,6 +21,10 @@ pub struct Active<T> {
     pub tensioned: bool,
     /// Whether the leg is led straight down, to be disarmed there.
     pub disarming: bool,
+    /// What limits a leg that keeps station; none while it follows commands.
+    pub station: Option<Station<T>>,
+    /// Whether that would have to go farther than it may.
+    pub off_station: bool,
     /// Whether there was no target on the way since then.
     stuck: bool,
     brake: SwingBrake<T>,
@@ -64,6 +68,8 @@ impl<T: Scalar> Active<T> {
             ),
             tensioned: false,
             disarming: false,
+            station: None,
+            off_station: false,
             stuck: false,
             brake: SwingBrake::new(),
             slack: Slack {
@@ -73,21 +79,22 @@ impl<T: Scalar> Active<T> {
         }
     }
 
-    /// One tick, which a leg that keeps station follows no faster and no farther than that allows.
+    /// One tick.
     #[inline(always)]
     pub fn step(
         &mut self,
         phase: Phase,
         shared: &mut Shared<T>,
         measured: &Measured<T>,
-        station: Option<&mut Station<T>>,
     ) -> Result<(), Error> {
         match phase {
             Phase::Estimate => self.estimate(shared, measured),
             // In turn, for each takes most of the time that is left.
             Phase::Pretension => {
                 if self.brake.takes_turn() {
-                    self.brake.step(shared, self.tensioned);
+                    self.brake
+                        .step(shared, self.tensioned, self.station.as_mut());
+                    self.off_station = self.station.as_ref().is_some_and(Station::too_far);
                     Ok(())
                 } else {
                     search_pretension(shared)
@@ -97,7 +104,7 @@ impl<T: Scalar> Active<T> {
                 self.brake.stay();
                 Ok(())
             }
-            Phase::Target => self.aim(shared, measured, station),
+            Phase::Target => self.aim(shared, measured),
             Phase::Plan => {
                 // A leg that is not taut yet does not set out.
                 if self.slack.taken_up() {
@@ -217,12 +224,7 @@ impl<T: Scalar> Active<T> {
 
     /// Computes the next target, and leads the axes there.
     #[inline(never)]
-    fn aim(
-        &mut self,
-        shared: &mut Shared<T>,
-        measured: &Measured<T>,
-        station: Option<&mut Station<T>>,
-    ) -> Result<(), Error> {
+    fn aim(&mut self, shared: &mut Shared<T>, measured: &Measured<T>) -> Result<(), Error> {
         let Some(zero_m) = shared.zero_m else {
             return Err(Error::NotConverged);
         };
@@ -251,9 +253,6 @@ impl<T: Scalar> Active<T> {
                 return Err(error);
             }
         };
-        if let Some(station) = station {
-            station.limit(&shared.station, &mut target.unstretched_m);
-        }
         let mut pulled_m = zero_m;
         let behind_m = shared.play.behind_m();
         let longer_m = self.brake.advance();

@@ -152,7 +152,7 @@ impl<T: Scalar> Leg<T> {
     /// Leaves the leg to itself. A command that is repeated changes nothing.
     fn keep_station(&mut self, measured: &Measured<T>) -> Result<(), CommandRefusal> {
         self.unfaulted()?;
-        if matches!(self.mode, Mode::KeepingStation(..) | Mode::Held(_)) {
+        if matches!(self.mode.state(), State::KeepingStation | State::Held) {
             return Ok(());
         }
         let trusted = self.agreement.trusts();
@@ -181,6 +181,7 @@ impl<T: Scalar> Leg<T> {
         let refusal = self.unfaulted().err();
         let state = self.mode.state();
         match &mut self.mode {
+            Mode::Active(active) if active.station.is_some() => Err(CommandRefusal::State(state)),
             Mode::Active(active) if active.disarming => {
                 Err(CommandRefusal::State(State::RampingDown))
             }

@@ -15,7 +15,6 @@ const BOOT_TICKS: u32 = 16;
 
 /// The mode: the leg's [`State`] with the data that lives only as long as the state does.
 ///
-/// Its tag is the number of the state, so that reading the state costs one load.
 #[derive(Clone, Debug)]
 #[repr(u8)]
 #[allow(
@@ -29,10 +28,8 @@ pub enum Mode<T> {
     Disarmed,
     /// The zero is searched for.
     Homing(HomingSequence<T>),
-    /// Commands are followed.
+    /// Commands are followed, or station is kept.
     Active(Active<T>),
-    /// The load is compensated where the leg was left.
-    KeepingStation(Active<T>, Station<T>),
     /// The leg stays where it is.
     Held(Held<T>),
     /// The tendons are paid out.
@@ -58,8 +55,8 @@ impl<T: Scalar> Mode<T> {
             Self::Boot { .. } => State::Boot,
             Self::Disarmed => State::Disarmed,
             Self::Homing(_) => State::Homing,
+            Self::Active(active) if active.station.is_some() => State::KeepingStation,
             Self::Active(_) => State::Active,
-            Self::KeepingStation(..) => State::KeepingStation,
             Self::Held(_) => State::Held,
             Self::RampingDown(_) => State::RampingDown,
             Self::Off => State::Off,
@@ -71,17 +68,7 @@ impl<T: Scalar> Mode<T> {
     #[inline(always)]
     pub const fn active(&self) -> Option<&Active<T>> {
         match self {
-            Self::Active(active) | Self::KeepingStation(active, _) => Some(active),
-            _ => None,
-        }
-    }
-
-    /// The mode that follows commands or keeps station, and what limits the latter.
-    #[inline(always)]
-    pub const fn following(&mut self) -> Option<(&mut Active<T>, Option<&mut Station<T>>)> {
-        match self {
-            Self::Active(active) => Some((active, None)),
-            Self::KeepingStation(active, station) => Some((active, Some(station))),
+            Self::Active(active) => Some(active),
             _ => None,
         }
     }
@@ -89,8 +76,10 @@ impl<T: Scalar> Mode<T> {
     /// Whether the leg is on its way, or brakes.
     pub fn moving(&self) -> bool {
         match self {
-            Self::Active(active) => active.trajectory.moving(),
-            Self::KeepingStation(_, station) => station.corrects(),
+            Self::Active(active) => {
+                let station = active.station.as_ref();
+                active.trajectory.moving() || station.is_some_and(Station::corrects)
+            }
             _ => self.brakes(),
         }
     }
@@ -117,33 +106,22 @@ impl<T: Scalar> Mode<T> {
     #[inline(always)]
     pub const fn turns(&self) -> bool {
         match self {
-            Self::Homing(_) | Self::Active(_) | Self::KeepingStation(..) | Self::RampingDown(_) => {
-                true
-            }
+            Self::Homing(_) | Self::Active(_) | Self::RampingDown(_) => true,
             Self::Held(held) => held.brakes(),
             // A jogged motor obeys no axis.
             Self::Boot { .. } | Self::Disarmed | Self::Off | Self::Jogging(_) => false,
         }
     }
 
-    /// Whether a state goes on from where this one is: a leg that follows commands is left to itself, or one that keeps station follows
-    /// them again.
-    #[inline(always)]
-    pub const fn goes_on_as(&self, state: State) -> bool {
-        matches!(
-            (self, state),
-            (Self::Active(_), State::KeepingStation) | (Self::KeepingStation(..), State::Active)
-        )
-    }
-
-    /// Goes on so.
-    #[inline(never)]
-    pub fn go_on(&mut self) {
-        *self = match self {
-            Self::Active(active) => Self::KeepingStation(*active, Station::new()),
-            Self::KeepingStation(active, _) => Self::Active(*active),
-            _ => return,
-        };
+    /// Leaves a leg that follows commands to itself, or lets one that keeps station follow them again: it goes on from where it is.
+    /// False if that is not what the state is.
+    pub fn goes_on(&mut self, state: State) -> bool {
+        match (self, state) {
+            (Self::Active(active), State::KeepingStation) => active.station = Some(Station::new()),
+            (Self::Active(active), State::Active) => active.station = None,
+            _ => return false,
+        }
+        true
     }
 
     /// The mode of a state that begins now.

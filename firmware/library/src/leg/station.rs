@@ -4,6 +4,9 @@ use crate::control::CYCLE_S;
 use crate::settings::Settings;
 use leg_model::Scalar;
 
+/// Time between two steps, s: those of the brake, in whose turn there is time.
+const STEP_S: f32 = 2.0 * CYCLE_S;
+
 /// Fastest correction at the tip of a leg that hangs straight down, m/s; at a tilt of 30° it is up to 2 mm/s, for the levers of the
 /// tendons are shorter there.
 const TIP_M_PER_S: f32 = 1.9e-3;
@@ -19,7 +22,7 @@ const FARTHEST_RAD: f32 = 0.0524;
 pub struct StationLimits<T> {
     /// Whether the settings allow it at all.
     pub allowed: bool,
-    /// In a cycle, m, and its square.
+    /// In a step, m, and its square.
     step_m: T,
     step_square: T,
     /// The dead band and the farthest correction, squared, m².
@@ -35,7 +38,7 @@ impl<T: Scalar> StationLimits<T> {
         let lever_m = Scalar::sqrt(0.5 * squares);
         let per_tip = lever_m / (rig.joint_length_m + rig.leg_length_m);
         let square = |length_m: f32| T::from(length_m * length_m);
-        let step_m = TIP_M_PER_S * per_tip * CYCLE_S;
+        let step_m = TIP_M_PER_S * per_tip * STEP_S;
         Self {
             allowed: settings.keeps_station,
             step_m: step_m.into(),
@@ -49,7 +52,7 @@ impl<T: Scalar> StationLimits<T> {
 /// How far the tendons are corrected. What brakes a swing and what takes up the play of a gear is beside that.
 #[derive(Clone, Copy, Debug)]
 pub struct Station<T> {
-    /// The lengths without tension with which the leg was left, m; none before the first cycle.
+    /// The lengths without tension with which the leg was left, m; none before the first step.
     left_m: Option<[T; 3]>,
     /// How far each is corrected since, m.
     correction_m: [T; 3],
@@ -79,9 +82,14 @@ impl<T: Scalar> Station<T> {
         self.too_far
     }
 
-    /// Limits the lengths without tension that the tendons shall have in a cycle, m.
+    /// A step to the lengths without tension that the tendons shall have, m; adds to `longer_m` what is left of the way.
     #[inline(never)]
-    pub fn limit(&mut self, limits: &StationLimits<T>, unstretched_m: &mut [T; 3]) {
+    pub fn limit(
+        &mut self,
+        limits: &StationLimits<T>,
+        unstretched_m: &[T; 3],
+        longer_m: &mut [T; 3],
+    ) {
         let left_m = *self.left_m.get_or_insert(*unstretched_m);
         let (mut steps_m, mut square) = ([T::zero(); 3], T::SUM_START);
         for (i, step) in steps_m.iter_mut().enumerate() {
@@ -94,14 +102,14 @@ impl<T: Scalar> Station<T> {
             *correction += steps_m[i] * share;
             sum += *correction;
             square += *correction * *correction;
-            unstretched_m[i] = left_m[i] + *correction;
+            longer_m[i] += left_m[i] + *correction - unstretched_m[i];
         }
         // What all tendons have in common tilts nothing.
         let tilting_square = square - sum * sum * T::from(1.0 / 3.0);
         self.too_far = !(tilting_square <= limits.farthest_square);
     }
 
-    /// The part of what is missing, with the sum of its squares, m², that is corrected in this cycle. A correction that has begun goes on
+    /// The part of what is missing, with the sum of its squares, m², that is corrected in this step. A correction that has begun goes on
     /// to its end.
     fn share(&mut self, limits: &StationLimits<T>, square: T) -> T {
         let within = square <= limits.step_square;
@@ -137,51 +145,58 @@ mod tests {
         StationLimits::new(&Settings::for_table_1().unwrap())
     }
 
-    /// Cycles until a leg has corrected what moves its tip so far.
-    fn cycles(tip_m: f64) -> u32 {
-        let (limits, mut station) = (limits(), Station::new());
-        station.limit(&limits, &mut [0.0; 3]);
-        (0..100_000)
-            .find(|_| {
-                let mut pulled_m = tilting(tip_m);
-                station.limit(&limits, &mut pulled_m);
-                let left = |(now, wanted): (f64, f64)| (now - wanted).abs() > 1e-12;
-                !pulled_m.into_iter().zip(tilting(tip_m)).any(left)
-            })
-            .unwrap()
+    /// A step; what is left of the way after it.
+    fn limit(station: &mut Station<f64>, unstretched_m: [f64; 3]) -> [f64; 3] {
+        let mut longer_m = [0.0; 3];
+        station.limit(&limits(), &unstretched_m, &mut longer_m);
+        longer_m
+    }
+
+    fn left() -> Station<f64> {
+        let mut station = Station::new();
+        assert_eq!(limit(&mut station, [0.0; 3]), [0.0; 3]);
+        station
+    }
+
+    /// Steps until a leg has corrected what moves its tip so far.
+    fn steps(tip_m: f64) -> u32 {
+        let mut station = left();
+        let there = |_: &u32| {
+            let longer_m = limit(&mut station, tilting(tip_m));
+            longer_m.iter().all(|longer| longer.abs() < 1e-12)
+        };
+        (0..100_000).find(there).unwrap()
     }
 
     #[test]
     fn the_tip_is_led_at_its_speed_and_no_faster() {
-        let cycles = f64::from(cycles(3.8e-3));
-        assert!((3_990.0..4_010.0).contains(&cycles), "{cycles}");
+        let steps = steps(3.8e-3);
+        assert!((1_990..2_010).contains(&steps), "{steps}");
     }
 
     /// Inside the dead band the motors rest; what is begun beyond it is done to its end.
     #[test]
     fn little_is_left_alone() {
-        let (limits, mut station) = (limits(), Station::new());
-        station.limit(&limits, &mut [0.0; 3]);
+        let (little, mut station) = (tilting(2.9e-5), left());
         for _ in 0..1_000 {
-            let mut pulled_m = tilting(2.9e-5);
-            station.limit(&limits, &mut pulled_m);
-            assert!(pulled_m == [0.0; 3] && !station.corrects());
+            assert_eq!(limit(&mut station, little), little.map(|m| -m));
+            assert!(!station.corrects());
         }
-        assert!((20..50).contains(&cycles(3.1e-5)));
+        assert!((10..25).contains(&steps(3.1e-5)));
     }
 
     #[test]
     fn farther_than_it_may_it_is_too_far_and_a_pretension_is_not() {
+        let farthest_m = f64::from(FARTHEST_RAD) * TIP_M;
         for (lengths_m, too_far) in [
-            (tilting(0.99 * f64::from(FARTHEST_RAD) * TIP_M), false),
-            (tilting(1.01 * f64::from(FARTHEST_RAD) * TIP_M), true),
+            (tilting(0.99 * farthest_m), false),
+            (tilting(1.01 * farthest_m), true),
             ([2e-3; 3], false),
             ([f64::NAN; 3], true),
         ] {
-            let (limits, mut station) = (limits(), Station::new());
-            station.limit(&limits, &mut [0.0; 3]);
-            for _ in 0..50_000 {
-                station.limit(&limits, &mut lengths_m.clone());
+            let mut station = left();
+            for _ in 0..30_000 {
+                limit(&mut station, lengths_m);
             }
             assert_eq!(station.too_far(), too_far, "{lengths_m:?}");
         }
