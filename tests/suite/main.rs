@@ -58,6 +58,7 @@ mod sim {
     mod ready_runs;
     mod scenario_bits;
     mod scenarios;
+    mod station;
     mod ways_down;
 }
 

@@ -58,6 +58,9 @@ pub enum Command {
     Clear,
     /// Turns one motor of a disarmed leg slowly.
     Jog(JogDemand),
+    /// Leaves a leg that rests: it keeps station without a host where its setting allows that and its sensors agree, and is
+    /// stopped otherwise.
+    KeepStation,
 }
 
 /// Why a command is not obeyed.
@@ -94,6 +97,7 @@ impl CommandRefusal {
             Self::State(State::Disarmed) => ["the leg is disarmed", "arm it"],
             Self::State(State::Homing) => ["the leg is homing", "wait for its end, or stop it"],
             Self::State(State::Active) => ["the leg is armed already", "disarm it first"],
+            Self::State(State::KeepingStation) => ["the leg keeps station", "arm it to go on"],
             Self::State(State::Held) => ["the leg is held", "clear it to go on"],
             Self::State(State::RampingDown) => {
                 ["the leg is ramping down", "wait until it is disarmed"]
@@ -118,6 +122,10 @@ impl CommandRefusal {
             ],
             Self::NotDisarmed(State::Active) => [
                 "the leg is armed, and a motor is jogged while it is disarmed",
+                "disarm it",
+            ],
+            Self::NotDisarmed(State::KeepingStation) => [
+                "the leg keeps station, and a motor is jogged while it is disarmed",
                 "disarm it",
             ],
             Self::NotDisarmed(State::Held) => [

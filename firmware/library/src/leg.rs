@@ -12,6 +12,7 @@ mod phase;
 mod ramping_down;
 mod shadow;
 mod shared;
+mod station;
 mod swing_brake;
 
 pub use command_queue::Outcome;
@@ -22,7 +23,7 @@ use crate::jog::{JogEnd, JogReport};
 use crate::sensors::Sensors;
 use crate::settings::{Settings, SettingsError};
 use crate::supervisor::{
-    Agreement, Event, Fault, FaultSet, MonitorInput, Monitors, State, Supervisor,
+    Agreement, ErrorGrowth, Event, Fault, FaultSet, MonitorInput, Monitors, State, Supervisor,
 };
 use crate::telemetry::Telemetry;
 use command_queue::CommandQueue;
@@ -140,6 +141,8 @@ impl<T: Scalar> Leg<T> {
                     step.event = Some(Event::Disarm);
                 } else if let Err(error) = active.step(self.phase, shared, measured) {
                     step.faults = fault_of_error(error);
+                    // Nobody gives a leg that keeps station another target.
+                    step.event = active.station.is_some().then_some(Event::Stop);
                 }
                 return step;
             }
@@ -220,6 +223,7 @@ impl<T: Scalar> Leg<T> {
             );
             faults.add(Fault::PointMissing, active.trajectory.point_missing());
             faults.add(Fault::Slack, active.stays_slack(&self.shared));
+            faults.add(Fault::OffStation, active.off_station);
         }
         let listens = state.follows() && !active.is_some_and(|active| active.disarming);
         faults.union(self.link.step(listens))
@@ -229,14 +233,22 @@ impl<T: Scalar> Leg<T> {
     /// are off.
     #[inline(always)]
     fn watch_agreement(&mut self) {
-        let moving = match &self.mode {
-            Mode::Active(active) if active.tensioned => active.trajectory.moving(),
-            Mode::Held(_) if self.agreement.watches() => false,
+        let growth = match &self.mode {
+            Mode::Active(active) if active.tensioned => {
+                if active.station.is_some() {
+                    ErrorGrowth::KEEPING_STATION
+                } else if active.trajectory.moving() {
+                    ErrorGrowth::MOVING
+                } else {
+                    ErrorGrowth::RESTING
+                }
+            }
+            Mode::Held(_) if self.agreement.watches() => ErrorGrowth::RESTING,
             _ => return self.agreement.end(),
         };
         let estimate = self.shared.estimate.as_ref();
         match estimate.and_then(|estimate| estimate.length_error.as_ref()) {
-            Some(error) => self.agreement.watch(error, moving),
+            Some(error) => self.agreement.watch(error, growth),
             None => self.agreement.end(),
         }
     }
@@ -245,6 +257,9 @@ impl<T: Scalar> Leg<T> {
     #[inline(never)]
     fn enter(&mut self, state: State, measured: &Measured<T>) {
         self.link.restart_silence();
+        if self.mode.goes_on(state) {
+            return;
+        }
         let latched = self.supervisor.latched();
         if let Some(report) = &mut self.shared.jog_report
             && report.end == JogEnd::Running

@@ -54,6 +54,8 @@ pub struct Settings {
     pub limits: Limits,
     /// How the zero is found.
     pub homing: Homing,
+    /// Whether the leg may keep station after a command.
+    pub keeps_station: bool,
 }
 
 /// Why settings are refused.

@@ -10,6 +10,7 @@ pub const fn state(state: State) -> &'static str {
         State::Disarmed => "disarmed",
         State::Homing => "homing",
         State::Active => "active",
+        State::KeepingStation => "keeping station",
         State::Held => "held",
         State::RampingDown => "ramping down",
         State::Off => "off",

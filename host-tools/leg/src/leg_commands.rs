@@ -18,11 +18,11 @@ use std::time::Duration;
 pub(crate) enum LegCommand {
     /// Clears the faults whose cause is gone.
     ///
-    /// A leg in hold stays in hold; one whose drivers a fault switched off is then disarmed.
+    /// A leg in hold stays in hold, one that keeps station goes on; one whose drivers a fault switched off is then disarmed.
     Clear(LegArgs),
     /// Leads the leg straight down, pays its tendons out and switches the drivers off; the screws hold.
     Disarm(LegArgs),
-    /// Follows a path in time, streamed as set-points, and leaves the leg in hold.
+    /// Follows a path in time, streamed as set-points; the leg keeps station then.
     ///
     /// The leg goes to where it rests before the path, follows it from there within the limits of speed, acceleration and jerk,
     /// and comes to rest after it. A file is checked before the leg moves. A leg that is homed and disarmed is armed first.
@@ -33,13 +33,13 @@ pub(crate) enum LegCommand {
     Hold(LegArgs),
     /// Finds the zero of the tendons and leaves the leg in hold, straight down.
     ///
-    /// The leg must hang free, without a payload. A leg in hold is disarmed first.
+    /// The leg must hang free, without a payload. A leg in hold, or one that keeps station, is disarmed first.
     Home(LegArgs),
-    /// Moves the leg to a pose and leaves it in hold.
+    /// Moves the leg to a pose, where it keeps station.
     ///
     /// A leg that is homed and disarmed is armed first; a hold without a fault ends.
     Move(MoveArgs),
-    /// Changes the bending stiffness of the leg where it is, and leaves it in hold.
+    /// Changes the bending stiffness of the leg where it is, and lets it keep station.
     Stiffness(StiffnessArgs),
     /// Stops the leg, whatever else is going on, and leaves it in hold.
     ///

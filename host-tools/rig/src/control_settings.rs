@@ -33,6 +33,7 @@ pub fn settings(rig: &RigFile, gains: &Gains, unstretched_at_zero_m: Option<[f64
         estimation: gains.estimation,
         limits: gains.limits,
         homing: gains.homing,
+        keeps_station: rig.keeps_station,
     }
 }
 

@@ -9,6 +9,9 @@ use toml::de::DeTable;
 /// The common beginning of the sections.
 pub const CONTROL: &str = "control";
 
+/// The key beside them of rig files alone: whether the leg may keep station after a command.
+pub const KEEPS_STATION: &str = "keeps_station";
+
 /// One gain that is given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainChange {
@@ -67,11 +70,22 @@ pub(crate) fn widened(field: &Field) -> Field<f64> {
 /// # Errors
 /// An unknown section or key, a value of another type or outside its range.
 pub fn read(file: &DeTable<'_>) -> Result<Vec<GainChange>, TomlError> {
-    let mut changes = Vec::new();
-    let Some(control) = Section::whole(file).optional(CONTROL, &SECTIONS.map(|(name, _)| name))?
-    else {
-        return Ok(changes);
+    let control = Section::whole(file).optional(CONTROL, &SECTIONS.map(|(name, _)| name))?;
+    control.map_or(Ok(Vec::new()), |control| read_sections(&control))
+}
+
+/// The same of a rig file, with whether the leg may keep station.
+pub(crate) fn read_rig(file: &Section<'_>) -> Result<(Vec<GainChange>, bool), TomlError> {
+    let known: Vec<_> = SECTIONS.iter().map(|(name, _)| *name).collect();
+    let Some(control) = file.optional(CONTROL, &[&known[..], &[KEEPS_STATION]].concat())? else {
+        return Ok((Vec::new(), true));
     };
+    let keeps_station = !control.has(KEEPS_STATION) || control.truth(KEEPS_STATION)?;
+    Ok((read_sections(&control)?, keeps_station))
+}
+
+fn read_sections(control: &Section<'_>) -> Result<Vec<GainChange>, TomlError> {
+    let mut changes = Vec::new();
     let mut first = 0;
     for (name, fields) in SECTIONS {
         let keys: Vec<_> = fields.iter().map(|field| field.name).collect();

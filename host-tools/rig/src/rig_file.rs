@@ -48,6 +48,8 @@ pub struct RigFile {
     pub actuator: Actuator,
     /// What was measured of the sensors.
     pub calibration: Calibration,
+    /// Whether the leg may keep station after a command.
+    pub keeps_station: bool,
     /// Gains and limits of the control law.
     pub gains: Gains,
     /// Which of them the file gives; the others follow from the motors, or are at their defaults.

@@ -25,6 +25,7 @@ struct RigSummary {
     f_max_n: f64,
     stiffness_at_pretension_n_per_m: [f64; 3],
     tilt_deg: f64,
+    keeps_station: bool,
     derived: Vec<DerivedGain>,
 }
 
@@ -46,6 +47,7 @@ impl RigSummary {
             f_max_n: file.f_max_n,
             stiffness_at_pretension_n_per_m: file.stiffnesses_n_per_m(),
             tilt_deg: file.tilt_deg,
+            keeps_station: file.keeps_station,
             derived: derived_gains(file),
         }
     }
@@ -67,6 +69,7 @@ pub fn words(file: &RigFile) -> String {
          tensions               {} to {} N, pretension {} N\n\
          tendons at pretension  {first:.0}, {second:.0}, {third:.0} N/m\n\
          workspace              tilt to {}°\n\
+         after a command        {}\n\
          {}{}",
         summary.support,
         summary.joint.bending_nm_per_rad,
@@ -80,6 +83,11 @@ pub fn words(file: &RigFile) -> String {
         summary.f_max_n,
         summary.pretension_n,
         summary.tilt_deg,
+        if summary.keeps_station {
+            "keeps station"
+        } else {
+            "held"
+        },
         rig_settings::changes(file),
         derived::table(&summary.derived),
     )

@@ -1,6 +1,6 @@
 //! The settings of a board as a rig file that gives the same bits again.
 
-use crate::gains::CONTROL;
+use crate::gains::{CONTROL, KEEPS_STATION};
 use crate::number::{decimal, exact, exact_mm, exact_through, plain};
 use crate::support_name::SupportName;
 use leg_firmware::sensors::CODE_MAX;
@@ -126,7 +126,10 @@ fn support(settings: &Settings) -> String {
 fn control(settings: &Settings) -> String {
     let gains = settings.gains();
     let mut values = gains.values();
-    let mut text = String::new();
+    let mut text = format!(
+        "\n[{CONTROL}]\n{KEEPS_STATION} = {}\n",
+        settings.keeps_station
+    );
     for (name, fields) in SECTIONS {
         text += &format!("\n[{CONTROL}.{name}]\n");
         for (field, value) in fields.iter().zip(values.by_ref()) {
@@ -230,6 +233,7 @@ mod tests {
             spread(&mut before.rig.leg_length_m);
             spread(&mut before.tilt_max_sine);
             spread(&mut before.limits.following_m);
+            before.keeps_station = rng.bool();
             spread(&mut before.board.supply_v_per_code);
             spread(&mut before.board.temperature_c_per_code);
             for axis in &mut before.axes {

@@ -159,6 +159,15 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// `true` or `false`.
+    pub fn truth(&self, key: &str) -> Result<bool, TomlError> {
+        let value = self.get(key)?;
+        match value.get_ref() {
+            DeValue::Boolean(truth) => Ok(*truth),
+            _ => Err(wrong_type(key, "true or false", value)),
+        }
+    }
+
     /// Three points in a plane in millimetres, as `[[x, y], [x, y], [x, y]]`, in m.
     pub fn points_m(&self, key: &str) -> Result<[[f64; 2]; 3], TomlError> {
         let value = self.get(key)?;

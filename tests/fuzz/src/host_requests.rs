@@ -40,7 +40,7 @@ fn zeros() -> impl Iterator<Item = HostRequest> {
     (0..).map_while(request)
 }
 
-const COMMANDS: [Command; 15] = [
+const COMMANDS: [Command; 16] = [
     Command::KeepAlive,
     Command::Arm,
     Command::Home,
@@ -75,6 +75,7 @@ const COMMANDS: [Command; 15] = [
     Command::Stop,
     Command::Disarm,
     Command::Clear,
+    Command::KeepStation,
 ];
 
 pub(crate) fn identify() -> HostRequest {

@@ -17,6 +17,7 @@ pub const BLINK_STEP_MS: u64 = 100;
 /// | disarmed, fault latched   | three flashes           |
 /// | homing                    | on and off by turns, 0.2 s |
 /// | active                    | on, one gap             |
+/// | keeping station           | on, two gaps            |
 /// | held                      | on and off by turns, 1 s |
 /// | ramping down             | two flashes             |
 /// | off after a fault         | on and off by turns, 0.1 s |
@@ -30,6 +31,7 @@ pub const fn led_on(state: State, faulted: bool, step: u32) -> bool {
         (State::Disarmed, true) => 0b0000_0000_0000_0001_0101,
         (State::Homing, _) => 0b0011_0011_0011_0011_0011,
         (State::Active, _) => 0b1111_1111_1111_1111_1110,
+        (State::KeepingStation, _) => 0b1111_1111_1111_1111_1010,
         (State::Held, _) => 0b0000_0000_0011_1111_1111,
         (State::RampingDown, _) => 0b0000_0000_0000_0000_0101,
         (State::Off, _) => 0b0101_0101_0101_0101_0101,

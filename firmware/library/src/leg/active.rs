@@ -2,6 +2,7 @@
 
 use super::phase::Phase;
 use super::shared::Shared;
+use super::station::Station;
 use super::swing_brake::SwingBrake;
 use crate::command::Compensation;
 use crate::control::{
@@ -20,6 +21,10 @@ pub struct Active<T> {
     pub tensioned: bool,
     /// Whether the leg is led straight down, to be disarmed there.
     pub disarming: bool,
+    /// What limits a leg that keeps station; none while it follows commands.
+    pub station: Option<Station<T>>,
+    /// Whether that would have to go farther than it may.
+    pub off_station: bool,
     /// Whether there was no target on the way since then.
     stuck: bool,
     brake: SwingBrake<T>,
@@ -63,6 +68,8 @@ impl<T: Scalar> Active<T> {
             ),
             tensioned: false,
             disarming: false,
+            station: None,
+            off_station: false,
             stuck: false,
             brake: SwingBrake::new(),
             slack: Slack {
@@ -85,7 +92,9 @@ impl<T: Scalar> Active<T> {
             // In turn, for each takes most of the time that is left.
             Phase::Pretension => {
                 if self.brake.takes_turn() {
-                    self.brake.step(shared, self.tensioned);
+                    self.brake
+                        .step(shared, self.tensioned, self.station.as_mut());
+                    self.off_station = self.station.as_ref().is_some_and(Station::too_far);
                     Ok(())
                 } else {
                     search_pretension(shared)
@@ -157,6 +166,16 @@ impl<T: Scalar> Active<T> {
             (_, false) => Err(PointRefusal::NoStream),
             (_, true) => stream.extend(tick, point),
         }
+    }
+
+    /// Whether it rests at its target with its load compensated, so that it can be left there.
+    pub fn may_keep_station(&self, shared: &Shared<T>) -> bool {
+        let compensated = shared.compensation == Compensation::Estimated;
+        shared.station.allowed
+            && compensated
+            && self.tensioned
+            && !self.trajectory.moving()
+            && !shared.refused
     }
 
     /// Leads the leg straight down, to be disarmed there.

@@ -74,6 +74,7 @@ impl<T: Scalar> Leg<T> {
             }
             Command::Stop => self.end(Event::Stop, measured),
             Command::Disarm => self.disarm(measured),
+            Command::KeepStation => self.keep_station(measured),
             Command::Clear => {
                 self.shared.refused = false;
                 self.link.clear_bad_frames();
@@ -148,6 +149,25 @@ impl<T: Scalar> Leg<T> {
         Ok(())
     }
 
+    /// Leaves the leg to itself. A command that is repeated changes nothing.
+    fn keep_station(&mut self, measured: &Measured<T>) -> Result<(), CommandRefusal> {
+        self.unfaulted()?;
+        if matches!(self.mode.state(), State::KeepingStation | State::Held) {
+            return Ok(());
+        }
+        let trusted = self.agreement.trusts();
+        let (active, shared) = self.active()?;
+        let keeps = trusted && active.may_keep_station(shared);
+        self.end(
+            if keeps {
+                Event::KeepStation
+            } else {
+                Event::Stop
+            },
+            measured,
+        )
+    }
+
     fn unfaulted(&self) -> Result<(), CommandRefusal> {
         if self.supervisor.stopped() {
             Err(CommandRefusal::Faulted)
@@ -161,6 +181,7 @@ impl<T: Scalar> Leg<T> {
         let refusal = self.unfaulted().err();
         let state = self.mode.state();
         match &mut self.mode {
+            Mode::Active(active) if active.station.is_some() => Err(CommandRefusal::State(state)),
             Mode::Active(active) if active.disarming => {
                 Err(CommandRefusal::State(State::RampingDown))
             }

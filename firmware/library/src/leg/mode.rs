@@ -5,6 +5,7 @@ use super::held::Held;
 use super::jogging::Jogging;
 use super::ramping_down::RampingDown;
 use super::shared::Shared;
+use super::station::Station;
 use crate::control::{Axis, HomingSequence, Measured};
 use crate::supervisor::{Event, FaultSet, State};
 use leg_model::Scalar;
@@ -14,7 +15,6 @@ const BOOT_TICKS: u32 = 16;
 
 /// The mode: the leg's [`State`] with the data that lives only as long as the state does.
 ///
-/// Its tag is the number of the state, so that reading the state costs one load.
 #[derive(Clone, Debug)]
 #[repr(u8)]
 #[allow(
@@ -28,7 +28,7 @@ pub enum Mode<T> {
     Disarmed,
     /// The zero is searched for.
     Homing(HomingSequence<T>),
-    /// Commands are followed.
+    /// Commands are followed, or station is kept.
     Active(Active<T>),
     /// The leg stays where it is.
     Held(Held<T>),
@@ -55,6 +55,7 @@ impl<T: Scalar> Mode<T> {
             Self::Boot { .. } => State::Boot,
             Self::Disarmed => State::Disarmed,
             Self::Homing(_) => State::Homing,
+            Self::Active(active) if active.station.is_some() => State::KeepingStation,
             Self::Active(_) => State::Active,
             Self::Held(_) => State::Held,
             Self::RampingDown(_) => State::RampingDown,
@@ -63,7 +64,7 @@ impl<T: Scalar> Mode<T> {
         }
     }
 
-    /// The active mode, if it is that.
+    /// The active mode, if it is that or keeps station.
     #[inline(always)]
     pub const fn active(&self) -> Option<&Active<T>> {
         match self {
@@ -75,7 +76,10 @@ impl<T: Scalar> Mode<T> {
     /// Whether the leg is on its way, or brakes.
     pub fn moving(&self) -> bool {
         match self {
-            Self::Active(active) => active.trajectory.moving(),
+            Self::Active(active) => {
+                let station = active.station.as_ref();
+                active.trajectory.moving() || station.is_some_and(Station::corrects)
+            }
             _ => self.brakes(),
         }
     }
@@ -107,6 +111,17 @@ impl<T: Scalar> Mode<T> {
             // A jogged motor obeys no axis.
             Self::Boot { .. } | Self::Disarmed | Self::Off | Self::Jogging(_) => false,
         }
+    }
+
+    /// Leaves a leg that follows commands to itself, or lets one that keeps station follow them again: it goes on from where it is.
+    /// False if that is not what the state is.
+    pub fn goes_on(&mut self, state: State) -> bool {
+        match (self, state) {
+            (Self::Active(active), State::KeepingStation) => active.station = Some(Station::new()),
+            (Self::Active(active), State::Active) => active.station = None,
+            _ => return false,
+        }
+        true
     }
 
     /// The mode of a state that begins now.
@@ -144,8 +159,8 @@ impl<T: Scalar> Mode<T> {
                 measured.pulled_m,
                 trust.pose,
             )),
-            // A jog begins by its command alone, which has its demand.
-            State::Off | State::Jogging => Self::Off,
+            // A jog begins by its command alone, which has its demand; station is kept from the active mode alone.
+            State::Off | State::Jogging | State::KeepingStation => Self::Off,
         }
     }
 }

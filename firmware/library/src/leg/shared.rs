@@ -1,5 +1,6 @@
 //! What more than one mode of the leg uses.
 
+use super::station::StationLimits;
 use crate::command::Compensation;
 use crate::control::{
     Axis, AxisInput, CYCLE_TICKS, Estimate, Estimator, JogBounds, LoadEstimation, Measured,
@@ -8,6 +9,7 @@ use crate::control::{
 };
 use crate::drive::Drive;
 use crate::jog::JogReport;
+
 use crate::settings::{Homing, Settings, SettingsError};
 use crate::supervisor::State;
 use leg_model::{Direction, Error, Scalar, inverse_kinematics};
@@ -44,6 +46,7 @@ pub struct Shared<T> {
     pub stream: Stream<T>,
     /// What the last jog saw.
     pub jog_report: Option<JogReport<T>>,
+    pub station: StationLimits<T>,
 }
 
 /// Slack of each tendon of a relaxed leg whose zero is known, m: more than the servo leaves, and little enough that the tip of a
@@ -129,6 +132,7 @@ impl<T: Scalar> Shared<T> {
             limits: LegLimits::new(settings, &mechanism)?,
             mechanism,
             jog_report: None,
+            station: StationLimits::new(settings),
         })
     }
 

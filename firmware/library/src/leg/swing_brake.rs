@@ -1,10 +1,11 @@
 //! The brake of the leg's swing, in every other cycle: what it asks of the tendons comes in the two cycles until its next step.
 
 use super::shared::Shared;
+use super::station::Station;
 use crate::control::bounds;
 use leg_model::Scalar;
 
-/// By how much the tendons are longer than the trajectory asks.
+/// By how much the tendons are longer than the trajectory asks; with what is kept from a leg that keeps station.
 #[derive(Clone, Copy, Debug)]
 pub struct SwingBrake<T> {
     /// Whether the last cycle that had time for it braked, so that the next one searches for the pretension.
@@ -31,14 +32,23 @@ impl<T: Scalar> SwingBrake<T> {
         self.braked
     }
 
-    /// Brakes a swing about the last target. In one cycle, the speed of the tendons would go up and down with the cycles.
+    /// Brakes a swing about the last target, and keeps a leg at its station from going there too fast. In one cycle, the speed of the
+    /// tendons would go up and down with the cycles.
     #[inline(never)]
-    pub fn step(&mut self, shared: &mut Shared<T>, tensioned: bool) {
-        let goals_m = if tensioned {
+    pub fn step(
+        &mut self,
+        shared: &mut Shared<T>,
+        tensioned: bool,
+        station: Option<&mut Station<T>>,
+    ) {
+        let mut goals_m = if tensioned {
             lengths_m(shared)
         } else {
             [T::zero(); 3]
         };
+        if let (Some(station), Some(target)) = (station, &shared.target) {
+            station.limit(&shared.station, &target.unstretched_m, &mut goals_m);
+        }
         for (i, step) in self.step_m.iter_mut().enumerate() {
             *step = (goals_m[i] - self.longer_m[i]) * T::HALF;
         }

@@ -90,6 +90,7 @@ fn small(number: usize) -> Settings {
         estimation: Default::default(),
         limits: Default::default(),
         homing: Default::default(),
+        keeps_station: true,
     }
 }
 

@@ -262,6 +262,13 @@ faults! {
         remedy: "send set-points earlier; begin a new stream",
         clears: CauseGone,
     }
+    29 OffStation {
+        name: "too far off station",
+        reaction: Hold,
+        cause: "a leg that keeps station would go farther than 3° from where it was left, by its load or by what a load cell makes of it",
+        remedy: "look what pulls at the leg, and check the load cells; move the leg again",
+        clears: Command,
+    }
 }
 
 impl Fault {

@@ -7,7 +7,7 @@ use super::{Fault, FaultSet};
 use crate::control::{AxisView, Debounce, Measured, ticks};
 use crate::sensors::Sensors;
 use crate::settings::Settings;
-pub use agreement::Agreement;
+pub use agreement::{Agreement, ErrorGrowth};
 use axis::AxisMonitor;
 
 use leg_model::Scalar;

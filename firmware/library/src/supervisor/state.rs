@@ -16,6 +16,8 @@ pub enum State {
     Homing,
     /// Commands are followed.
     Active,
+    /// The leg compensates its load slowly where it was left; it needs no host.
+    KeepingStation,
     /// The leg stays where it is, its motors at rest on their screws.
     Held,
     /// The tendons are paid out until they are slack.
@@ -31,8 +33,10 @@ pub enum State {
 pub enum Event {
     /// The first ticks are over.
     Ready,
-    /// The host arms a leg that knows its zero.
+    /// The host arms a leg that knows its zero, or lets one follow commands again that keeps station.
     Arm,
+    /// The host leaves a leg that rests where it was led.
+    KeepStation,
     /// The host starts homing.
     Home,
     /// The host has one motor turned.
@@ -45,7 +49,7 @@ pub enum Event {
     Stop,
     /// The host disarms the leg, or it was led down for that.
     Disarm,
-    /// The host disarms a held leg that knows its pose: it is led down first.
+    /// The host disarms a leg that is held or keeps station and knows its pose: it is led down first.
     LeadDown,
     /// Every tendon is paid out.
     Relaxed,
@@ -58,17 +62,19 @@ pub enum Event {
 }
 
 use Event::{
-    Arm, Clear, ClearHomed, Disarm, Home, Homed, Jog, Jogged, LeadDown, Ready, Relaxed, Stop,
+    Arm, Clear, ClearHomed, Disarm, Home, Homed, Jog, Jogged, KeepStation, LeadDown, Ready,
+    Relaxed, Stop,
 };
-use State::{Active, Boot, Disarmed, Held, Homing, Jogging, Off, RampingDown};
+use State::{Active, Boot, Disarmed, Held, Homing, Jogging, KeepingStation, Off, RampingDown};
 
 impl State {
     /// Every state.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Boot,
         Disarmed,
         Homing,
         Active,
+        KeepingStation,
         Held,
         RampingDown,
         Off,
@@ -88,14 +94,18 @@ impl State {
             // No tendon is led anywhere: the screws hold.
             (Jogging, Event::Reaction(Reaction::Hold | Reaction::RampDown)) => Off,
             (Homing, Homed) => Active,
-            (Homing | Active, Stop) => Held,
-            (Homing | Active | Held, Disarm) => RampingDown,
+            (Active, KeepStation) => KeepingStation,
+            (KeepingStation, Arm | LeadDown) => Active,
+            (Homing | Active | KeepingStation, Stop) => Held,
+            (Homing | Active | KeepingStation | Held, Disarm) => RampingDown,
             (RampingDown, Relaxed) => Disarmed,
             (Held, ClearHomed | LeadDown) => Active,
             (Held, Clear) => RampingDown,
             (Off, Clear | ClearHomed) => Disarmed,
-            (Homing | Active, Event::Reaction(Reaction::Hold)) => Held,
-            (Homing | Active | Held, Event::Reaction(Reaction::RampDown)) => RampingDown,
+            (Homing | Active | KeepingStation, Event::Reaction(Reaction::Hold)) => Held,
+            (Homing | Active | KeepingStation | Held, Event::Reaction(Reaction::RampDown)) => {
+                RampingDown
+            }
             (Off, Event::Reaction(_)) => return None,
             (_, Event::Reaction(Reaction::GateOff)) => Off,
             _ => return None,
@@ -106,7 +116,10 @@ impl State {
     #[must_use]
     #[inline(always)]
     pub const fn driven(self) -> bool {
-        matches!(self, Homing | Active | Held | RampingDown | Jogging)
+        matches!(
+            self,
+            Homing | Active | KeepingStation | Held | RampingDown | Jogging
+        )
     }
 
     /// Whether the leg does what a host asks, and wants to hear from it.
@@ -120,6 +133,6 @@ impl State {
     #[must_use]
     #[inline(always)]
     pub const fn led(self) -> bool {
-        matches!(self, Homing | Active)
+        matches!(self, Homing | Active | KeepingStation)
     }
 }

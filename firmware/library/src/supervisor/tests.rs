@@ -65,7 +65,8 @@ fn each_fault_has_its_reaction_in_the_same_tick() {
 #[test]
 fn a_reaction_only_ever_takes_authority_away() {
     let authority = |state| match state {
-        State::Active | State::Homing => 3,
+        State::Active | State::Homing => 4,
+        State::KeepingStation => 3,
         State::Held => 2,
         State::RampingDown | State::Jogging => 1,
         State::Boot | State::Disarmed | State::Off => 0,
@@ -88,6 +89,7 @@ fn nothing_but_a_clear_leads_back() {
         Event::Ready,
         Event::Arm,
         Event::Home,
+        Event::KeepStation,
         Event::Jog,
         Event::Jogged,
         Event::Homed,
@@ -112,7 +114,7 @@ fn nothing_but_a_clear_leads_back() {
                     }
                     let state = tried.state;
                     assert!(
-                        !matches!(state, State::Active | State::Homing),
+                        !matches!(state, State::Active | State::KeepingStation | State::Homing),
                         "{fault:?} {first:?} {second:?} {third:?}"
                     );
                 }

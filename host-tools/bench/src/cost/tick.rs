@@ -27,9 +27,10 @@ pub(super) struct CountedScenario {
 }
 
 /// How many scenarios are counted.
-pub(super) const COUNTED: usize = READY_RIGS.len() + 2;
+pub(super) const COUNTED: usize = READY_RIGS.len() + 3;
 
-/// Everything that is counted: every ready rig as it moves, and the paper's as it is homed and as it follows set-points, too.
+/// Everything that is counted: every ready rig as it moves, and the paper's as it is homed, follows set-points and keeps station,
+/// too.
 pub(super) fn counted() -> impl Iterator<Item = CountedScenario> {
     let [paper, others @ ..] = READY_RIGS;
     let counted = |what: &str, scenario, rig| CountedScenario {
@@ -42,6 +43,7 @@ pub(super) fn counted() -> impl Iterator<Item = CountedScenario> {
         counted("", "cost", paper),
         counted(", homing", "cost_homing", paper),
         counted(", set-points", "cost_follow", paper),
+        counted(", keeping station", "cost_station", paper),
     ]
     .into_iter()
     .chain(others)

@@ -69,7 +69,7 @@ fn bounds_title(view: &MonitorView) -> String {
 
 fn state_lines(telemetry: &Telemetry<f32>) -> Vec<Line<'static>> {
     let colour = match telemetry.state {
-        State::Active | State::Homing | State::Jogging => Color::Green,
+        State::Active | State::Homing | State::Jogging | State::KeepingStation => Color::Green,
         State::Held | State::RampingDown => Color::Yellow,
         State::Off => Color::Red,
         State::Boot | State::Disarmed => Color::Reset,

@@ -83,6 +83,10 @@ fn evidence(command: &Command, telemetry: &Telemetry<f32>) -> Evidence {
         (Command::Clear, State::Active | State::RampingDown | State::Disarmed) if no_fault => {
             Evidence::Obeyed
         }
+        (Command::KeepStation, State::KeepingStation | State::Held) if no_fault => Evidence::Obeyed,
+        (Command::Arm, State::KeepingStation) | (Command::KeepStation, State::Active) => {
+            Evidence::Lost
+        }
         (Command::Arm | Command::Home, State::Disarmed) if no_fault => Evidence::Lost,
         (Command::Move { x, y }, State::Active)
             if telemetry.moving || same_direction(&telemetry.target, &[*x, *y]) =>
@@ -117,6 +121,7 @@ pub(super) const fn name(command: &Command) -> &'static str {
         Command::Disarm => "disarm",
         Command::Clear => "clear its faults",
         Command::Jog(_) => "jog a motor",
+        Command::KeepStation => "keep station",
     }
 }
 

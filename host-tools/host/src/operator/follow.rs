@@ -49,7 +49,7 @@ impl Operator {
     }
 
     /// Leads the leg to where it rests before a path, streams the path from `lead` after that on, waits until the leg rests, and
-    /// leaves it in hold.
+    /// leaves it to itself.
     ///
     /// # Errors
     /// [`OperatorError::Path`]; as [`Self::reach`].
@@ -67,7 +67,7 @@ impl Operator {
         let start = run_up(&first, &settings);
         let start = start.map_err(|refusal| refused_point(first.time_s, refusal))?;
         let rest = *start.first().unwrap_or(&first);
-        self.drive(|operator| {
+        self.drive_to_station(|operator| {
             operator.activate(ASKED)?;
             let [x, y] = rest.motion.position.map(|component| component as f32);
             operator.command(Command::Move { x, y })?;

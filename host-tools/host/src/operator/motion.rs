@@ -52,6 +52,19 @@ impl Operator {
         }
     }
 
+    /// The same, but where the work succeeds the leg is left to itself: it keeps station where its settings allow that.
+    pub(super) fn drive_to_station<T>(
+        &mut self,
+        work: impl FnOnce(&mut Self) -> Result<T, OperatorError>,
+    ) -> Result<T, OperatorError> {
+        self.drive(|operator| {
+            let result = work(operator)?;
+            operator.command(Command::KeepStation)?;
+            operator.drives = false;
+            Ok(result)
+        })
+    }
+
     /// Finds the zero and leaves the leg in hold, straight down. A leg in hold is disarmed first.
     ///
     /// # Errors
@@ -59,7 +72,8 @@ impl Operator {
     pub fn home(&mut self) -> Result<Telemetry<f32>, OperatorError> {
         let asked = "home";
         self.settle_state(asked)?;
-        if self.telemetry()?.telemetry.state == State::Held {
+        let state = self.telemetry()?.telemetry.state;
+        if matches!(state, State::Held | State::KeepingStation) {
             self.disarm()?;
         }
         self.drive(|operator| {
@@ -71,8 +85,8 @@ impl Operator {
         })
     }
 
-    /// Leads the leg to the goal, waits until it has come to rest there, and leaves it in hold. Arms it if it is homed and
-    /// disarmed, ends a hold that no fault began.
+    /// Leads the leg to the goal, waits until it has come to rest there, and leaves it to itself; in hold where it shall only come to
+    /// rest. Arms it if it is homed and disarmed, ends a hold that no fault began.
     ///
     /// # Errors
     /// As [`Self::drive`] and [`Self::command`]; [`OperatorError::Failed`], [`OperatorError::Limited`],
@@ -85,7 +99,7 @@ impl Operator {
             Some(command) => name(command),
         };
         self.settle_state(asked)?;
-        self.drive(|operator| {
+        let lead = |operator: &mut Self| {
             operator.activate(asked)?;
             for command in commands {
                 operator.command(command)?;
@@ -99,7 +113,12 @@ impl Operator {
                 }
                 _ => Ok(telemetry),
             }
-        })
+        };
+        if *goal == Goal::default() {
+            self.drive(lead)
+        } else {
+            self.drive_to_station(lead)
+        }
     }
 
     /// Waits while the leg starts or relaxes; refuses a leg with a fault.
@@ -124,6 +143,7 @@ impl Operator {
             }
             _ if !telemetry.homed => return refuse(CommandRefusal::NotHomed),
             State::Disarmed => self.command(Command::Arm)?,
+            State::KeepingStation => self.take_over(asked)?,
             State::Held | State::Off => self.command(Command::Clear)?,
             // Another host's, or not yet ended by its silence: the commands that follow show it.
             State::Active | State::Boot | State::RampingDown => return Ok(()),
@@ -132,6 +152,15 @@ impl Operator {
             self.settle(asked)?;
         }
         Ok(())
+    }
+
+    /// Makes a leg that keeps station follow commands, once it has corrected what it has begun to: it would go the rest of that way
+    /// at once.
+    fn take_over(&mut self, asked: &'static str) -> Result<(), OperatorError> {
+        self.wait_until(asked, MOVE_TIME, |telemetry| {
+            telemetry.state != State::KeepingStation || !telemetry.moving
+        })?;
+        self.command(Command::Arm)
     }
 
     /// Waits until an armed leg is where it shall be, and stays so.

@@ -126,11 +126,16 @@ impl Operator {
         Ok(())
     }
 
-    /// Clears the faults whose cause is gone, and leaves the leg in hold if it was held.
+    /// Clears the faults whose cause is gone, and leaves the leg in hold if it was held. One that keeps station has none, and goes on.
     ///
     /// # Errors
     /// As [`Self::drive`] and [`Self::command`]; [`OperatorError::NotCleared`] where a cause is still present.
     pub fn clear(&mut self) -> Result<(), OperatorError> {
+        if self.telemetry()?.telemetry.state == State::KeepingStation {
+            let cleared = self.command(Command::Clear);
+            self.drives = false;
+            return cleared;
+        }
         self.drive(|operator| operator.command(Command::Clear))
     }
 }

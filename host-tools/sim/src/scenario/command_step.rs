@@ -24,6 +24,8 @@ pub enum CommandStep {
     Disarm,
     /// To clear the faults whose cause is gone.
     Clear,
+    /// To keep station where it is.
+    KeepStation,
     /// To move.
     Move {
         /// Degrees.
@@ -70,6 +72,7 @@ impl CommandStep {
             Self::Stop => Command::Stop,
             Self::Disarm => Command::Disarm,
             Self::Clear => Command::Clear,
+            Self::KeepStation => Command::KeepStation,
             Self::Move {
                 azimuth_deg,
                 tilt_deg,

@@ -122,9 +122,9 @@ fn a_leg_on_can_is_moved_and_set_and_stopped_beside_its_host() {
     assert_eq!(operator.name(), "simulated bus, leg 3");
     operator.reach(&lean(10.0)).unwrap();
     let telemetry = operator.telemetry().unwrap().telemetry;
-    assert_eq!(telemetry.state, State::Held);
+    assert_eq!(telemetry.state, State::KeepingStation);
     assert!((telemetry.pose[1] - 10_f32.to_radians().sin()).abs() < 1e-3);
-    operator.command(Command::Clear).unwrap();
+    operator.command(Command::Arm).unwrap();
     operator.command(Command::Move { x: 0.3, y: 0.0 }).unwrap();
     let mut stopping = host(&wire, 2, CanTransport::urgent_only);
     assert_eq!(stopping.stop().unwrap().state, State::Held);
@@ -144,6 +144,7 @@ fn a_bus_that_loses_frames_costs_time_and_is_counted() {
     });
     let mut operator = host(&wire, 1, CanTransport::new);
     operator.reach(&lean(5.0)).unwrap();
-    assert_eq!(operator.telemetry().unwrap().telemetry.state, State::Held);
+    let state = operator.telemetry().unwrap().telemetry.state;
+    assert_eq!(state, State::KeepingStation);
     assert!(operator.damaged_frames() > 0);
 }

@@ -26,10 +26,18 @@ const FORGET_TIME_S: f32 = 1.0;
 /// the mean by about a third of its elongation, which is the mean change of elongations: eight times this.
 const CURVE_PART: f32 = 0.12;
 
-/// How fast the error may grow that is taken for one of the geometry or of a curve, m/s: in motion a tenth of a millimetre over
-/// the workspace, which the leg crosses in a second; at rest what a tendon creeps.
-const MOVING_M_PER_S: f32 = 1e-4;
-const RESTING_M_PER_S: f32 = 1e-6;
+/// How fast the error may grow that is taken for one of the geometry or of a curve, m/s.
+#[derive(Clone, Copy, Debug)]
+pub struct ErrorGrowth(f32);
+
+impl ErrorGrowth {
+    /// In motion a tenth of a millimetre over the workspace, which the leg crosses in a second.
+    pub const MOVING: Self = Self(1e-4);
+    /// At rest what a tendon creeps.
+    pub const RESTING: Self = Self(1e-6);
+    /// A leg that keeps station would follow a load cell that drifts as slowly: 0.03 N/s are left.
+    pub const KEEPING_STATION: Self = Self(1e-7);
+}
 
 /// Cycles after the last tendon came taut in which the error is not watched yet, 0.1 s: a tendon that is reeled in is damped, and
 /// shows up to a newton more than its elongation.
@@ -96,7 +104,7 @@ impl<T: Scalar> Agreement<T> {
 
     /// One cycle while every tendon should pull.
     #[inline(always)]
-    pub fn watch(&mut self, error: &LengthError<T>, moving: bool) {
+    pub fn watch(&mut self, error: &LengthError<T>, growth: ErrorGrowth) {
         let Some(reference) = &mut self.reference else {
             self.reference = Some(Reference::new(error));
             return;
@@ -117,13 +125,8 @@ impl<T: Scalar> Agreement<T> {
         }
         let swings_m = swings_m * T::from(SWING_PART / 3.0);
         let allowed_m = self.change_max_m + stretched_m * self.part;
-        let rate = if moving {
-            MOVING_M_PER_S
-        } else {
-            RESTING_M_PER_S
-        };
         // What a changed elongation was allowed to change stays.
-        let learned_m = T::from(rate * CYCLE_S) + learned_m * self.part;
+        let learned_m = T::from(growth.0 * CYCLE_S) + learned_m * self.part;
         reference.mean_m += clamp_symmetric(change_m, learned_m);
         self.beyond_now_m = change_m.abs() - allowed_m;
         self.beyond.step(self.beyond_now_m - swings_m);
@@ -148,7 +151,7 @@ impl<T: Scalar> Reference<T> {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{Agreement, CURVE_PART, LengthError, SETTLE_CYCLES};
+    use super::{Agreement, CURVE_PART, ErrorGrowth, LengthError, SETTLE_CYCLES};
     use crate::control::CYCLE_S;
     use crate::settings::Settings;
     use leg_model::SupportKind;
@@ -187,7 +190,12 @@ mod tests {
         }
 
         fn watch(&mut self, moving: bool) {
-            self.agreement.watch(&self.error, moving);
+            let growth = if moving {
+                ErrorGrowth::MOVING
+            } else {
+                ErrorGrowth::RESTING
+            };
+            self.agreement.watch(&self.error, growth);
         }
 
         /// Time until the sensors disagree, s, while `change` is made in every cycle; none within 20 s.
@@ -286,6 +294,21 @@ mod tests {
             leg.watch(true);
             assert!(leg.agreement.agree());
         }
+    }
+
+    /// A leg at rest learns it as creep; one that keeps station would follow it.
+    #[test]
+    fn what_drifts_is_no_creep_to_a_leg_that_keeps_station() {
+        let agrees_after = |growth| {
+            let mut leg = Leg::taut();
+            for _ in 0..60_000 {
+                leg.error.mean_m += 0.5e-6 * f64::from(CYCLE_S);
+                leg.agreement.watch(&leg.error, growth);
+            }
+            leg.agreement.agree()
+        };
+        assert!(agrees_after(ErrorGrowth::RESTING));
+        assert!(!agrees_after(ErrorGrowth::KEEPING_STATION));
     }
 
     #[test]

@@ -11,18 +11,57 @@ use leg_sim::emulated_leg::InitialState;
 use std::time::Duration;
 
 #[test]
-fn a_move_ends_in_hold_at_its_goal() {
+fn a_move_ends_at_its_goal_and_the_leg_keeps_station_there() {
     let leg = hanging_leg();
     let mut operator = host(&leg, 1);
     operator.reach(&lean(20.0)).unwrap();
-    assert_eq!(state(&mut operator), State::Held);
+    assert_eq!(state(&mut operator), State::KeepingStation);
     let tilt = leg.with_plant(|plant| plant.truth().direction.vector().y.asin());
     assert!((tilt.to_degrees() - 20.0).abs() < 0.02, "{tilt}");
-    // From hold to hold, and nothing of it is a fault.
+    // From station to station, and nothing of it is a fault.
     operator.reach(&lean(-10.0)).unwrap();
     assert!(!telemetry(&mut operator).faults.any());
     operator.pause(Duration::from_secs(1)).unwrap();
-    assert_eq!(state(&mut operator), State::Held);
+    assert_eq!(state(&mut operator), State::KeepingStation);
+}
+
+/// What another host does from there.
+#[test]
+fn a_leg_that_keeps_station_obeys_any_host() {
+    let leg = hanging_leg();
+    let (mut first, mut second) = (host(&leg, 1), host(&leg, 2));
+    first.reach(&lean(10.0)).unwrap();
+    second.clear().unwrap();
+    assert_eq!(state(&mut second), State::KeepingStation);
+    second.reach(&lean(12.0)).unwrap();
+    first.reach(&stiffness(60.0)).unwrap();
+    assert_eq!(state(&mut first), State::KeepingStation);
+    second.reach(&Goal::default()).unwrap();
+    assert_eq!(state(&mut second), State::Held);
+    first.reach(&lean(11.0)).unwrap();
+    assert_eq!(second.stop().unwrap().state, State::Held);
+    first.reach(&lean(10.0)).unwrap();
+    second.home().unwrap();
+    assert_eq!(state(&mut second), State::Held);
+    first.reach(&lean(10.0)).unwrap();
+    second.disarm().unwrap();
+    assert_eq!(state(&mut first), State::Disarmed);
+}
+
+/// A move knows its payload where the leg kept station.
+#[test]
+fn a_loaded_move_takes_no_longer_from_station() {
+    let leg = hanging_leg();
+    let mut operator = host(&leg, 1);
+    operator.reach(&lean(20.0)).unwrap();
+    leg.with_plant(|plant| plant.set_payload(2.0, 0.2));
+    operator.pause(Duration::from_secs(4)).unwrap();
+    for tilt_deg in [15.0, 20.0, 10.0] {
+        let began = operator.now();
+        operator.reach(&lean(tilt_deg)).unwrap();
+        let took = operator.now() - began;
+        assert!(took < Duration::from_millis(2_500), "{tilt_deg}: {took:?}");
+    }
 }
 
 #[test]

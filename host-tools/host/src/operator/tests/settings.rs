@@ -49,7 +49,11 @@ fn a_leg_that_waits_less_long_hears_of_its_host_more_often() {
     for (command_time_s, silence_ms) in [(0.02, 5.0), (0.06, 15.0), (0.2, 50.0), (100.0, 50.0)] {
         let (_leg, mut operator) = waiting(command_time_s);
         operator.reach(&lean(10.0)).unwrap();
-        assert_eq!(state(&mut operator), State::Held, "{command_time_s} s");
+        assert_eq!(
+            state(&mut operator),
+            State::KeepingStation,
+            "{command_time_s} s"
+        );
         let silence_max = operator.silence_max.unwrap();
         let difference_ms = silence_max.as_secs_f64() * 1000.0 - silence_ms;
         assert!(difference_ms.abs() < 1e-3, "{command_time_s} s");
