@@ -19,6 +19,7 @@
 //! # }
 //! ```
 
+pub mod bode;
 pub mod check;
 pub mod cost;
 mod draw;

@@ -33,6 +33,7 @@
 //! ```
 
 mod board;
+mod bode;
 mod calibrate;
 mod check;
 mod completions;
@@ -90,6 +91,7 @@ Exit codes:
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Bode(bode::Args),
     Calibrate(calibrate::Args),
     /// Checks the firmware under QEMU: its f32 against f64, and its bits against f32 on the host.
     ///
@@ -149,6 +151,7 @@ pub fn main() -> ExitCode {
 
 fn run(command: &Command, options: Options) -> Result<(), Failure> {
     match command {
+        Command::Bode(args) => bode::run(args, options),
         Command::Calibrate(args) => calibrate::run(args, options),
         Command::Check => check::run(options),
         Command::Completions(args) => completions::run(args),
