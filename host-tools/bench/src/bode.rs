@@ -6,12 +6,14 @@ mod feedback;
 mod frequency_response;
 mod margins;
 mod patterns;
+mod row;
 mod sweep;
 
 pub use drawn_state::DrawnState;
 pub use feedback::Feedback;
 pub use frequency_response::{ClosedLoop, Excitation, Point, Sides};
 pub use margins::Margins;
+pub use row::{Margin, Row, Worst, rows};
 pub use sweep::Sweep;
 
 use crate::stand::Stand;
@@ -23,8 +25,10 @@ use leg_sim::plant::Start;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// The least margins that a loop may have: of the gain, dB, and of the phase, degrees.
+/// The least margin of the gain that a loop may have, dB.
 pub const GAIN_DB: f64 = 6.0;
+
+/// The least margin of the phase, degrees.
 pub const PHASE_DEG: f64 = 45.0;
 
 /// Time in which the leg finds what it carries, s.
@@ -48,7 +52,7 @@ pub struct Swept {
     pub feedback: Feedback,
     /// Where: a motor, or the tilt.
     pub place: &'static str,
-    /// Of what was added: V, m or N.
+    /// Of what was added: at the motor V, at the load cell that gets most N.
     pub amplitude: f64,
     /// Whether it is the smaller of two amplitudes.
     pub smaller: bool,
@@ -66,10 +70,8 @@ impl Swept {
     /// Whether both margins are above their bars.
     #[must_use]
     pub fn passes(&self) -> bool {
-        let Margins { gain_db, phase_deg, .. } = self.margins;
-        self.failure.is_none()
-            && gain_db.is_none_or(|margin| margin >= GAIN_DB)
-            && phase_deg.is_none_or(|margin| margin >= PHASE_DEG)
+        let enough = |margin: Margin| margin.of(self).is_none_or(|[value, _]| value >= margin.bar());
+        self.failure.is_none() && Margin::ALL.into_iter().all(enough)
     }
 }
 
@@ -92,29 +94,30 @@ impl Campaign {
         let places = self.loops.iter().flat_map(|&feedback| {
             (0..feedback.places().len()).map(move |place| (feedback, place))
         });
+        let places: Vec<_> = places.collect();
         let stand = prepared(&state);
         let swept = |(feedback, place)| match &stand {
             Ok(stand) => sweeps(&state, stand, feedback, place),
             Err(failure) => vec![Swept::failed(&state, feedback, place, failure)],
         };
-        places.flat_map(swept).collect()
+        places.into_par_iter().flat_map_iter(swept).collect()
     }
 }
 
 /// A loop at a place, at each amplitude.
 fn sweeps(state: &DrawnState, stand: &Stand, feedback: Feedback, place: usize) -> Vec<Swept> {
-    let (broken, sweeps) = match feedback.broken(&state.file, stand, place) {
+    let (broken, amplitudes) = match feedback.broken(&state.file, stand, place) {
         Ok(broken) => broken,
         Err(failure) => return vec![Swept::failed(state, feedback, place, &failure)],
     };
-    let swept = |(i, sweep): (usize, &Sweep)| {
+    let swept = |(i, (amplitude, sweep)): (usize, &(f64, Sweep))| {
         let empty = Swept::failed(state, feedback, place, "");
         let (points, failure) = match sweep.run(&broken) {
             Ok(points) => (points, None),
             Err(failure) => (Vec::new(), Some(failure)),
         };
         Swept {
-            amplitude: sweep.excitation.amplitude,
+            amplitude: *amplitude,
             smaller: i > 0,
             margins: Margins::new(&points),
             points,
@@ -122,7 +125,7 @@ fn sweeps(state: &DrawnState, stand: &Stand, feedback: Feedback, place: usize) -
             ..empty
         }
     };
-    sweeps.iter().enumerate().map(swept).collect()
+    amplitudes.iter().enumerate().map(swept).collect()
 }
 
 impl Swept {

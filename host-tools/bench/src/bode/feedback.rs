@@ -64,7 +64,7 @@ impl Feedback {
         file: &RigFile,
         stand: &Stand,
         place: usize,
-    ) -> Result<(BrokenLoop, Vec<Sweep>), String> {
+    ) -> Result<(BrokenLoop, Vec<(f64, Sweep)>), String> {
         let mut stand = stand.clone();
         if self == Self::Servo {
             let servo = &file.gains.servo;
@@ -73,7 +73,7 @@ impl Feedback {
                 motor: place,
                 supply_v: file.actuator.supply_v,
             };
-            let sweeps = VOLTAGE_PARTS.map(|part| self.sweep(part * highest_v));
+            let sweeps = VOLTAGE_PARTS.map(|part| (part * highest_v, self.sweep(part * highest_v)));
             return Ok((BrokenLoop { stand, at }, sweeps.into()));
         }
         if self == Self::Damping {
@@ -82,11 +82,14 @@ impl Feedback {
         }
         let patterns = Patterns::new(file, &stand).map_err(|error| error.to_string())?;
         let cells = match self {
-            Self::Damping => patterns.tilt(place, true),
-            Self::Tension => patterns.tilt(place, false),
+            Self::Damping => patterns.lengths(place),
+            Self::Tension => patterns.moment(place),
             _ => patterns.pretension(),
         };
-        let sweep = |cells: &CellBreak, part| self.sweep(cells.amplitude(part * file.f_max_n));
+        let sweep = |cells: &CellBreak, part: f64| {
+            let tension_n = part * file.f_max_n;
+            (tension_n, self.sweep(cells.amplitude(tension_n)))
+        };
         let sweeps = match self {
             // An integral in f32 answers in proportion.
             Self::Trim => vec![sweep(&cells, TENSION_PARTS[0])],
@@ -99,9 +102,9 @@ impl Feedback {
     fn sweep(self, amplitude: f64) -> Sweep {
         let ([from_hz, to_hz], points, settle_s, window_s) = match self {
             Self::Servo => ([20.0, 700.0], 12, 0.05, 0.05),
-            Self::Damping => ([1.0, 100.0], 14, 0.6, 0.3),
-            Self::Tension => ([0.4, 100.0], 16, 1.0, 0.3),
-            Self::Trim => ([0.15, 5.0], 6, 2.0, 0.3),
+            Self::Damping => ([1.0, 100.0], 14, 0.5, 0.25),
+            Self::Tension => ([0.5, 100.0], 14, 0.8, 0.3),
+            Self::Trim => ([0.2, 5.0], 5, 2.0, 0.3),
         };
         Sweep {
             excitation: Excitation {

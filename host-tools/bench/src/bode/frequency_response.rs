@@ -30,11 +30,13 @@ pub struct Excitation {
     pub tick_hz: f64,
     /// Of the sine that is added.
     pub amplitude: f64,
-    /// Least time until transients have ended, s, and in periods.
+    /// Least time until transients have ended, s.
     pub settle_s: f64,
+    /// The same in periods.
     pub settle_periods: f64,
-    /// Least time over which is correlated, s, and in periods.
+    /// Least time over which is correlated, s.
     pub window_s: f64,
+    /// The same in periods.
     pub window_periods: f64,
 }
 

@@ -13,7 +13,7 @@ const TENSION_N: f64 = 0.1;
 /// The patterns at a state of the leg.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Patterns {
-    /// Lengths by a tilt: farther, and across.
+    /// Lengths by a tilt, m/rad, which are the levers of the tensions: farther, and across.
     tilts: [Vector3<f64>; 2],
     stiffnesses_n_per_m: Vector3<f64>,
     n_per_code: [f64; 3],
@@ -38,7 +38,7 @@ impl Patterns {
         };
         let pattern = |to: Vector3<f64>| {
             let change = lengths(leg + to * TILT_RAD)? - lengths(leg - to * TILT_RAD)?;
-            Ok::<_, leg_model::Error>(change.normalize())
+            Ok::<_, leg_model::Error>(change / (2.0 * TILT_RAD))
         };
         let mut stiffnesses_n_per_m = Vector3::zeros();
         for (i, tendon) in file.tendons.iter().enumerate() {
@@ -54,15 +54,26 @@ impl Patterns {
         })
     }
 
-    /// The elongations that a tilt makes; what is added is the elongation, m, by the tensions. With `lengths`, what comes back is
-    /// the length of the tendons: what motors and tensions make of it together.
-    pub fn tilt(&self, axis: usize, lengths: bool) -> CellBreak {
-        let tilt = self.tilts[axis];
-        let length_weights = if lengths { tilt } else { Vector3::zeros() };
+    /// The elongations that a tilt makes: what is added is an elongation by the tensions, as a length, m, and what comes back the
+    /// lengths that motors and tensions make together.
+    pub fn lengths(&self, axis: usize) -> CellBreak {
+        let tilt = self.tilts[axis].normalize();
         CellBreak {
             per_added_n: tilt.component_mul(&self.stiffnesses_n_per_m).into(),
             weights: tilt.component_div(&self.stiffnesses_n_per_m).into(),
-            length_weights: length_weights.into(),
+            length_weights: tilt.into(),
+            n_per_code: self.n_per_code,
+        }
+    }
+
+    /// The moment of the tensions about an axis, N·m: what is added has no part about the other one, and no pretension.
+    pub fn moment(&self, axis: usize) -> CellBreak {
+        let [lever, other] = [self.tilts[axis], self.tilts[1 - axis]];
+        let alone = lever - other * (lever.dot(&other) / other.norm_squared());
+        CellBreak {
+            per_added_n: (alone / alone.dot(&lever)).into(),
+            weights: lever.into(),
+            length_weights: [0.0; 3],
             n_per_code: self.n_per_code,
         }
     }
