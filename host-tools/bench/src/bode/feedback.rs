@@ -103,7 +103,7 @@ impl Feedback {
         let ([from_hz, to_hz], points, settle_s, window_s) = match self {
             Self::Servo => ([20.0, 700.0], 12, 0.05, 0.05),
             Self::Damping => ([1.0, 100.0], 14, 0.5, 0.25),
-            Self::Tension => ([0.5, 100.0], 14, 0.8, 0.3),
+            Self::Tension => ([1.0, 100.0], 13, 0.8, 0.3),
             Self::Trim => ([0.2, 5.0], 5, 2.0, 0.3),
         };
         Sweep {
@@ -111,7 +111,7 @@ impl Feedback {
                 tick_hz: f64::from(TICK_HZ),
                 amplitude,
                 settle_s,
-                settle_periods: 2.0,
+                settle_periods: 1.0,
                 window_s,
                 window_periods: 2.0,
             },

@@ -51,13 +51,16 @@ pub struct Point {
     pub phase_deg: f64,
 }
 
+/// Square of the least gain: nothing may come back.
+const LEAST: f64 = 1e-12;
+
 impl Point {
     /// From a transfer.
     #[must_use]
     pub fn new(hz: f64, transfer: Complex<f64>) -> Self {
         Self {
             hz,
-            gain_db: 10.0 * transfer.norm_sqr().log10(),
+            gain_db: 10.0 * transfer.norm_sqr().max(LEAST).log10(),
             phase_deg: transfer.im.atan2(transfer.re).to_degrees(),
         }
     }

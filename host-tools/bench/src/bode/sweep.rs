@@ -1,10 +1,15 @@
-//! A loop at frequencies that are evenly spaced on a logarithmic scale, and closer where its margins are.
+//! A loop at frequencies that are evenly spaced on a logarithmic scale, and closer at margins and resonances.
 
 use super::frequency_response::{ClosedLoop, Excitation, Point};
 use super::margins::crosses;
 
-/// How often the space between two points is halved where a margin is between them.
-const REFINEMENTS: u32 = 2;
+/// How close two points come that have a margin between them, as a ratio of their frequencies: a mode that is damped by 0.05
+/// turns the phase by 180° over a tenth of its frequency.
+const CLOSE: f64 = 1.025;
+
+/// The same beside a resonance that may hide a margin, and its least gain, dB.
+const CLOSE_TO_PEAK: f64 = 1.08;
+const PEAK_DB: f64 = -10.0;
 
 /// The frequencies of a loop.
 #[derive(Clone, Copy, Debug)]
@@ -31,18 +36,36 @@ impl Sweep {
         let mut points = (0..self.points)
             .map(|i| measure(hz(i)))
             .collect::<Result<Vec<_>, _>>()?;
-        for _ in 0..REFINEMENTS {
-            let mut finer = Vec::with_capacity(points.len());
-            for (i, point) in points.iter().enumerate() {
-                finer.push(*point);
-                if let Some(next) = points.get(i + 1)
-                    && crosses(point, next)
-                {
-                    finer.push(measure((point.hz * next.hz).sqrt())?);
-                }
+        loop {
+            let between = wide(&points);
+            if between.is_empty() {
+                return Ok(points);
             }
-            points = finer;
+            for hz in between {
+                points.push(measure(hz)?);
+            }
+            points.sort_by(|a, b| a.hz.total_cmp(&b.hz));
         }
-        Ok(points)
     }
+}
+
+/// The middle of each space that is too wide for what is in it, Hz.
+fn wide(points: &[Point]) -> Vec<f64> {
+    let peak = |i: usize| {
+        let gain_db = |i: usize| points.get(i).map_or(f64::NEG_INFINITY, |point| point.gain_db);
+        let now = gain_db(i);
+        let before = i.checked_sub(1).map_or(f64::NEG_INFINITY, gain_db);
+        now > PEAK_DB && now >= before && now >= gain_db(i + 1)
+    };
+    let mut middles = Vec::new();
+    for (i, pair) in points.windows(2).enumerate() {
+        let [before, after] = pair else { continue };
+        let ratio = after.hz / before.hz;
+        if ratio > CLOSE && crosses(before, after)
+            || ratio > CLOSE_TO_PEAK && (peak(i) || peak(i + 1))
+        {
+            middles.push((before.hz * after.hz).sqrt());
+        }
+    }
+    middles
 }

@@ -7,7 +7,6 @@ use leg_bench::bode::{Feedback, Margin, Point, Row, Swept};
 use leg_boards::image;
 use leg_model_tools::plot::bode::{self, BodeLine, BodeMargin, BodePlot, BodePoint};
 use std::error::Error;
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 const CSV: &str = "bode.csv";
@@ -30,7 +29,7 @@ pub(super) fn save(
     Ok(names.into_iter().map(|name| directory.join(name)).collect())
 }
 
-fn draw(staging: &Path, swept: &[Swept], rows: &[Row]) -> Result<Vec<String>, Box<dyn Error>> {
+fn draw(staging: &Path, swept: &[Swept], rows: &[Row]) -> Result<Vec<PathBuf>, Box<dyn Error>> {
     let mut names = Vec::new();
     for feedback in Feedback::ALL {
         let measured = || swept.iter().filter(|one| one.feedback == feedback);
@@ -42,11 +41,11 @@ fn draw(staging: &Path, swept: &[Swept], rows: &[Row]) -> Result<Vec<String>, Bo
                 others,
                 named: named(feedback, swept, rows),
             };
-            bode::save_both(&plot, &staging.join(feedback.name()))?;
-            names.push(format!("{}.svg", feedback.name()));
+            let picture = bode::save_both(&plot, &staging.join(feedback.name()))?;
+            names.extend(picture.file_name().map(PathBuf::from));
         }
     }
-    std::fs::write(staging.join(CSV), csv(swept)?)?;
+    write_points(&staging.join(CSV), swept)?;
     names.push(CSV.into());
     Ok(names)
 }
@@ -93,29 +92,39 @@ fn named(feedback: Feedback, swept: &[Swept], rows: &[Row]) -> Vec<BodeLine> {
     rows.filter_map(line).collect()
 }
 
-fn csv(swept: &[Swept]) -> Result<String, std::fmt::Error> {
-    let mut text = String::from(
-        "loop,place,amplitude,state,rig,azimuth_deg,tilt_deg,payload_kg,pretension_n,hz,gain_db,phase_deg\n",
-    );
+const COLUMNS: [&str; 12] = [
+    "loop",
+    "place",
+    "amplitude",
+    "state",
+    "rig",
+    "azimuth_deg",
+    "tilt_deg",
+    "payload_kg",
+    "pretension_n",
+    "hz",
+    "gain_db",
+    "phase_deg",
+];
+
+fn write_points(file: &Path, swept: &[Swept]) -> Result<(), Box<dyn Error>> {
+    let mut writer = csv::Writer::from_path(file)?;
+    writer.write_record(COLUMNS)?;
     for one in swept {
         let state = &one.state;
         let [azimuth, tilt] = state.pose_deg;
         for point in &one.points {
-            writeln!(
-                text,
-                "{},{},{},{},{},{azimuth},{tilt},{},{},{},{},{}",
-                one.feedback.name(),
-                one.place,
-                one.amplitude,
-                state.number,
-                state.rig,
-                state.payload_kg,
-                state.pretension_n,
-                point.hz,
-                point.gain_db,
-                point.phase_deg,
-            )?;
+            let numbers = [azimuth, tilt, state.payload_kg, state.pretension_n];
+            let numbers = numbers.into_iter().chain([point.hz, point.gain_db, point.phase_deg]);
+            let what = [
+                one.feedback.name().into(),
+                one.place.into(),
+                one.amplitude.to_string(),
+                state.number.to_string(),
+                state.rig.clone(),
+            ];
+            writer.write_record(what.into_iter().chain(numbers.map(|n| n.to_string())))?;
         }
     }
-    Ok(text)
+    Ok(writer.flush()?)
 }

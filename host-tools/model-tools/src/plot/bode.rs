@@ -21,8 +21,12 @@ const LIMIT: RGBColor = RGBColor(90, 90, 90);
 /// Gains below are not drawn, dB.
 const LOWEST_DB: f64 = -60.0;
 
-/// The phases of a plot, degrees: a loop becomes unstable at −180°, in the middle of what matters.
-const PHASES_DEG: Range<f64> = -300.0..90.0;
+/// The first phase of a transfer, degrees, is not above; from there on it is drawn as it turns.
+const FIRST_DEG: f64 = 90.0;
+
+/// The phases of a plot at most, and at least, degrees.
+const PHASES_DEG: [f64; 2] = [-450.0, 180.0];
+const PHASES_SHOWN_DEG: [f64; 2] = [-270.0, 0.0];
 
 /// What to draw.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,10 +77,14 @@ pub enum BodeMargin {
 /// # Errors
 /// A [`PlotError`] when there is nothing to draw or a file cannot be written.
 pub fn save_both(plot: &BodePlot, stem: &Path) -> Result<PathBuf, PlotError> {
+    let plot = &unwrapped(plot);
     let points = || plot.all().flatten();
     let (from, to) = range(points().map(|point| point.hz)).ok_or(PlotError::Empty)?;
     let gains = points().map(|point| point.gain_db.max(LOWEST_DB));
     let (low, high) = range(gains.chain([-20.0, 10.0])).ok_or(PlotError::Empty)?;
+    let [lowest, highest] = PHASES_DEG;
+    let phases = points().map(|point| point.phase_deg.clamp(lowest, highest));
+    let phases = range(phases.chain(PHASES_SHOWN_DEG)).ok_or(PlotError::Empty)?;
     if from >= to || from <= 0.0 {
         return Err(PlotError::Empty);
     }
@@ -84,6 +92,8 @@ pub fn save_both(plot: &BodePlot, stem: &Path) -> Result<PathBuf, PlotError> {
         plot,
         hz: from..to,
         gains_db: low - 2.0..high + 2.0,
+        // Whole quarters of a turn, which the axis names.
+        phases_deg: (phases.0 / 90.0).floor() * 90.0..(phases.1 / 90.0).ceil() * 90.0,
     };
     canvas::save_both(&painter, stem)
 }
@@ -100,6 +110,7 @@ struct BodePainter<'a> {
     plot: &'a BodePlot,
     hz: Range<f64>,
     gains_db: Range<f64>,
+    phases_deg: Range<f64>,
 }
 
 type Plane = Cartesian2d<LogCoord<f64>, RangedCoordf64>;
@@ -115,7 +126,7 @@ impl Panel {
     fn value(self, point: &BodePoint) -> f64 {
         match self {
             Self::Gain => point.gain_db.max(LOWEST_DB),
-            Self::Phase => turned(point.phase_deg),
+            Self::Phase => point.phase_deg.clamp(PHASES_DEG[0], PHASES_DEG[1]),
         }
     }
 
@@ -142,13 +153,20 @@ impl Panel {
     }
 }
 
-/// A phase within those that are drawn.
-fn turned(phase_deg: f64) -> f64 {
-    if phase_deg > PHASES_DEG.end {
-        phase_deg - 360.0
-    } else {
-        phase_deg
+/// The same with phases that do not jump.
+fn unwrapped(plot: &BodePlot) -> BodePlot {
+    let mut plot = plot.clone();
+    let named = plot.named.iter_mut().map(|line| &mut line.points);
+    for points in plot.others.iter_mut().chain(named) {
+        let mut before = None;
+        for point in points {
+            let near = before.map_or(FIRST_DEG - 180.0, |phase: f64| phase);
+            let turns = ((point.phase_deg - near) / 360.0).round();
+            point.phase_deg -= 360.0 * turns;
+            before = Some(point.phase_deg);
+        }
     }
+    plot
 }
 
 impl Painter for BodePainter<'_> {
@@ -171,9 +189,13 @@ impl BodePainter<'_> {
         y_title: &str,
         x_title: &str,
     ) -> Drawn<B> {
-        let y = match panel {
-            Panel::Gain => self.gains_db.clone(),
-            Panel::Phase => PHASES_DEG,
+        let (y, labels) = match panel {
+            Panel::Gain => (self.gains_db.clone(), 9),
+            // 90° apart.
+            Panel::Phase => {
+                let quarters = (self.phases_deg.end - self.phases_deg.start) / 90.0;
+                (self.phases_deg.clone(), quarters as usize + 1)
+            }
         };
         let mut context = ChartBuilder::on(area)
             .margin_right(MARGIN_PX)
@@ -186,7 +208,8 @@ impl BodePainter<'_> {
             .light_line_style(TRANSPARENT)
             .bold_line_style(GRID)
             .axis_style(BLACK)
-            .y_labels(9)
+            .y_labels(labels)
+            .y_label_formatter(&|value: &f64| format!("{value:.0}"))
             .x_label_formatter(&|hz: &f64| format!("{hz}"))
             .label_style(("sans-serif", LABEL_PX))
             .axis_desc_style(("sans-serif", AXIS_TITLE_PX))
@@ -230,20 +253,14 @@ impl BodePainter<'_> {
     }
 }
 
-/// A curve; where the phase turns round it begins anew.
+/// A curve of a transfer.
 fn curve<B: DrawingBackend>(
     points: &[BodePoint],
     panel: Panel,
     style: ShapeStyle,
     context: &mut ChartContext<B, Plane>,
 ) -> Drawn<B> {
-    let whole = |pair: &[BodePoint]| {
-        panel == Panel::Gain || (panel.value(&pair[0]) - panel.value(&pair[1])).abs() < 180.0
-    };
-    let pieces = points.windows(2).filter(|pair| whole(pair)).map(|pair| {
-        let ends = pair.iter().map(|point| (point.hz, panel.value(point)));
-        PathElement::new(ends.collect::<Vec<_>>(), style)
-    });
-    context.draw_series(pieces)?;
+    let line = points.iter().map(|point| (point.hz, panel.value(point)));
+    context.draw_series(LineSeries::new(line, style))?;
     Ok(())
 }
