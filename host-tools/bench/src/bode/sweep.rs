@@ -5,10 +5,10 @@ use super::margins::crosses;
 
 /// How close two points come that have a margin between them, as a ratio of their frequencies: a mode that is damped by 0.05
 /// turns the phase by 180° over a tenth of its frequency.
-const CLOSE: f64 = 1.025;
+const CLOSE: f64 = 1.04;
 
 /// The same beside a resonance that may hide a margin, and its least gain, dB.
-const CLOSE_TO_PEAK: f64 = 1.08;
+const CLOSE_TO_PEAK: f64 = 1.12;
 const PEAK_DB: f64 = -10.0;
 
 /// The frequencies of a loop.

@@ -21,12 +21,8 @@ const LIMIT: RGBColor = RGBColor(90, 90, 90);
 /// Gains below are not drawn, dB.
 const LOWEST_DB: f64 = -60.0;
 
-/// The first phase of a transfer, degrees, is not above; from there on it is drawn as it turns.
-const FIRST_DEG: f64 = 90.0;
-
-/// The phases of a plot at most, and at least, degrees.
-const PHASES_DEG: [f64; 2] = [-450.0, 180.0];
-const PHASES_SHOWN_DEG: [f64; 2] = [-270.0, 0.0];
+/// The phases of a plot, degrees: a loop becomes unstable at −180°, in the middle of what matters.
+const PHASES_DEG: Range<f64> = -270.0..90.0;
 
 /// What to draw.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,14 +73,10 @@ pub enum BodeMargin {
 /// # Errors
 /// A [`PlotError`] when there is nothing to draw or a file cannot be written.
 pub fn save_both(plot: &BodePlot, stem: &Path) -> Result<PathBuf, PlotError> {
-    let plot = &unwrapped(plot);
     let points = || plot.all().flatten();
     let (from, to) = range(points().map(|point| point.hz)).ok_or(PlotError::Empty)?;
     let gains = points().map(|point| point.gain_db.max(LOWEST_DB));
     let (low, high) = range(gains.chain([-20.0, 10.0])).ok_or(PlotError::Empty)?;
-    let [lowest, highest] = PHASES_DEG;
-    let phases = points().map(|point| point.phase_deg.clamp(lowest, highest));
-    let phases = range(phases.chain(PHASES_SHOWN_DEG)).ok_or(PlotError::Empty)?;
     if from >= to || from <= 0.0 {
         return Err(PlotError::Empty);
     }
@@ -92,8 +84,6 @@ pub fn save_both(plot: &BodePlot, stem: &Path) -> Result<PathBuf, PlotError> {
         plot,
         hz: from..to,
         gains_db: low - 2.0..high + 2.0,
-        // Whole quarters of a turn, which the axis names.
-        phases_deg: (phases.0 / 90.0).floor() * 90.0..(phases.1 / 90.0).ceil() * 90.0,
     };
     canvas::save_both(&painter, stem)
 }
@@ -110,7 +100,6 @@ struct BodePainter<'a> {
     plot: &'a BodePlot,
     hz: Range<f64>,
     gains_db: Range<f64>,
-    phases_deg: Range<f64>,
 }
 
 type Plane = Cartesian2d<LogCoord<f64>, RangedCoordf64>;
@@ -126,7 +115,7 @@ impl Panel {
     fn value(self, point: &BodePoint) -> f64 {
         match self {
             Self::Gain => point.gain_db.max(LOWEST_DB),
-            Self::Phase => point.phase_deg.clamp(PHASES_DEG[0], PHASES_DEG[1]),
+            Self::Phase => turned(point.phase_deg),
         }
     }
 
@@ -153,20 +142,10 @@ impl Panel {
     }
 }
 
-/// The same with phases that do not jump.
-fn unwrapped(plot: &BodePlot) -> BodePlot {
-    let mut plot = plot.clone();
-    let named = plot.named.iter_mut().map(|line| &mut line.points);
-    for points in plot.others.iter_mut().chain(named) {
-        let mut before = None;
-        for point in points {
-            let near = before.map_or(FIRST_DEG - 180.0, |phase: f64| phase);
-            let turns = ((point.phase_deg - near) / 360.0).round();
-            point.phase_deg -= 360.0 * turns;
-            before = Some(point.phase_deg);
-        }
-    }
-    plot
+/// A phase within those that are drawn.
+fn turned(phase_deg: f64) -> f64 {
+    let from = PHASES_DEG.start;
+    from + (phase_deg - from).rem_euclid(360.0)
 }
 
 impl Painter for BodePainter<'_> {
@@ -192,10 +171,7 @@ impl BodePainter<'_> {
         let (y, labels) = match panel {
             Panel::Gain => (self.gains_db.clone(), 9),
             // 90° apart.
-            Panel::Phase => {
-                let quarters = (self.phases_deg.end - self.phases_deg.start) / 90.0;
-                (self.phases_deg.clone(), quarters as usize + 1)
-            }
+            Panel::Phase => (PHASES_DEG, 5),
         };
         let mut context = ChartBuilder::on(area)
             .margin_right(MARGIN_PX)
@@ -253,14 +229,17 @@ impl BodePainter<'_> {
     }
 }
 
-/// A curve of a transfer.
+/// A curve; where the phase leaves what is drawn it goes on at the other end.
 fn curve<B: DrawingBackend>(
     points: &[BodePoint],
     panel: Panel,
     style: ShapeStyle,
     context: &mut ChartContext<B, Plane>,
 ) -> Drawn<B> {
-    let line = points.iter().map(|point| (point.hz, panel.value(point)));
-    context.draw_series(LineSeries::new(line, style))?;
+    let joined = |a: &BodePoint, b: &BodePoint| (panel.value(a) - panel.value(b)).abs() < 180.0;
+    for piece in points.chunk_by(joined) {
+        let line = piece.iter().map(|point| (point.hz, panel.value(point)));
+        context.draw_series(LineSeries::new(line, style))?;
+    }
     Ok(())
 }
