@@ -85,6 +85,7 @@ mod host {
 }
 
 mod bench {
+    mod bode;
     mod check;
     mod image_budget;
     mod moves;

@@ -113,18 +113,30 @@ enum Panel {
 
 impl Panel {
     fn value(self, point: &BodePoint) -> f64 {
-        match self {
+        self.drawn(match self {
             Self::Gain => point.gain_db.max(LOWEST_DB),
             Self::Phase => turned(point.phase_deg),
+        })
+    }
+
+    /// What is one on the axis: of phases a quarter of a turn, so that the labels are at multiples of it.
+    const fn unit(self) -> f64 {
+        match self {
+            Self::Gain => 1.0,
+            Self::Phase => 90.0,
         }
     }
 
+    fn drawn(self, value: f64) -> f64 {
+        value / self.unit()
+    }
+
     /// Where the closed loop is at its limit.
-    const fn limit(self) -> f64 {
-        match self {
+    fn limit(self) -> f64 {
+        self.drawn(match self {
             Self::Gain => 0.0,
             Self::Phase => -180.0,
-        }
+        })
     }
 
     /// The ends of the line that marks a margin, if it is of this quantity.
@@ -138,7 +150,7 @@ impl Panel {
         let near = |point: &&BodePoint| (point.hz / hz).ln().abs();
         let nearest = line.points.iter().min_by(|a, b| near(a).total_cmp(&near(b)))?;
         let side = (self.value(nearest) - self.limit()).signum();
-        Some([(hz, self.limit()), (hz, self.limit() + side * to)])
+        Some([(hz, self.limit()), (hz, self.limit() + side * self.drawn(to))])
     }
 }
 
@@ -170,8 +182,7 @@ impl BodePainter<'_> {
     ) -> Drawn<B> {
         let (y, labels) = match panel {
             Panel::Gain => (self.gains_db.clone(), 9),
-            // 90° apart.
-            Panel::Phase => (PHASES_DEG, 5),
+            Panel::Phase => (panel.drawn(PHASES_DEG.start)..panel.drawn(PHASES_DEG.end), 5),
         };
         let mut context = ChartBuilder::on(area)
             .margin_right(MARGIN_PX)
@@ -185,7 +196,7 @@ impl BodePainter<'_> {
             .bold_line_style(GRID)
             .axis_style(BLACK)
             .y_labels(labels)
-            .y_label_formatter(&|value: &f64| format!("{value:.0}"))
+            .y_label_formatter(&|value: &f64| format!("{:.0}", value * panel.unit()))
             .x_label_formatter(&|hz: &f64| format!("{hz}"))
             .label_style(("sans-serif", LABEL_PX))
             .axis_desc_style(("sans-serif", AXIS_TITLE_PX))
@@ -236,7 +247,11 @@ fn curve<B: DrawingBackend>(
     style: ShapeStyle,
     context: &mut ChartContext<B, Plane>,
 ) -> Drawn<B> {
-    let joined = |a: &BodePoint, b: &BodePoint| (panel.value(a) - panel.value(b)).abs() < 180.0;
+    let half = match panel {
+        Panel::Gain => f64::INFINITY,
+        Panel::Phase => panel.drawn(180.0),
+    };
+    let joined = |a: &BodePoint, b: &BodePoint| (panel.value(a) - panel.value(b)).abs() < half;
     for piece in points.chunk_by(joined) {
         let line = piece.iter().map(|point| (point.hz, panel.value(point)));
         context.draw_series(LineSeries::new(line, style))?;
