@@ -70,7 +70,11 @@ impl Swept {
     /// Whether both margins are above their bars.
     #[must_use]
     pub fn passes(&self) -> bool {
-        let enough = |margin: Margin| margin.of(self).is_none_or(|[value, _]| value >= margin.bar());
+        let enough = |margin: Margin| {
+            margin
+                .of(self)
+                .is_none_or(|[value, _]| value >= margin.bar())
+        };
         self.failure.is_none() && Margin::ALL.into_iter().all(enough)
     }
 }
@@ -91,9 +95,10 @@ impl Campaign {
         let Some(state) = DrawnState::new(self.seed, &self.rigs, number) else {
             return Vec::new();
         };
-        let places = self.loops.iter().flat_map(|&feedback| {
-            (0..feedback.places().len()).map(move |place| (feedback, place))
-        });
+        let places = self
+            .loops
+            .iter()
+            .flat_map(|&feedback| (0..feedback.places().len()).map(move |place| (feedback, place)));
         let places: Vec<_> = places.collect();
         let stand = prepared(&state);
         let swept = |(feedback, place)| match &stand {

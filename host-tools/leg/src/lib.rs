@@ -12,6 +12,7 @@
 //! | `jog` | one motor of a disarmed leg |
 //! | `sensors`, `monitor`, `log`, `settings`, `calibrate` | what a leg reports, records and is set to |
 //! | `moves` | how the true tip of a simulated leg goes, with payloads that it is not told |
+//! | `bode` | margins of the feedback loops around a simulated leg |
 //! | `strikes` | faults that strike a simulated leg in every state |
 //! | `emulate`, `flash`, `faults` | an emulated board; the image into a board; the fault table |
 //! | `board` | `setup`; links to the firmware in this process and under QEMU |

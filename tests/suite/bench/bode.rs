@@ -3,73 +3,80 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use leg_bench::bode::{Campaign, Feedback, Margin, Row, Swept, rows};
-use leg_rig::ready_rigs::READY_RIGS;
+use leg_firmware::settings::Servo;
 use leg_rig::rig_file::RigFile;
 
-/// The paper's rig with settings of its own.
-fn campaign(settings: &str, seed: u64, loops: &[Feedback]) -> Campaign {
-    let text = [READY_RIGS[0].text, settings].concat();
-    Campaign {
-        seed,
-        rigs: vec![("rig".into(), RigFile::parse("rig", &text).unwrap())],
-        loops: loops.to_vec(),
-    }
-}
-
-fn measured(settings: &str, seed: u64, loops: &[Feedback], count: u64) -> Vec<Swept> {
+/// Measures the paper's rig with settings of its own.
+fn measured(set: impl Fn(&mut Servo), seed: u64, loops: &[Feedback], count: u64) -> Vec<Swept> {
     println!("seed {seed}");
-    campaign(settings, seed, loops).run(count, || ())
+    let mut file = RigFile::load(None).unwrap();
+    set(&mut file.gains.servo);
+    let campaign = Campaign {
+        seed,
+        rigs: vec![("table1".into(), file)],
+        loops: loops.to_vec(),
+    };
+    let swept = campaign.run(count, || ());
+    let ended = swept.iter().filter_map(|one| one.failure.as_ref());
+    assert_eq!(ended.collect::<Vec<_>>(), Vec::<&String>::new());
+    swept
 }
 
 /// The worst margin of a loop at any amplitude; none where it has none.
 fn worst(rows: &[Row], feedback: Feedback, margin: Margin) -> Option<f64> {
-    let rows = rows.iter().filter(|row| row.feedback == feedback && row.margin == margin);
-    rows.filter_map(|row| Some(row.worst.as_ref()?.value)).min_by(f64::total_cmp)
+    let rows = rows
+        .iter()
+        .filter(|row| row.feedback == feedback && row.margin == margin);
+    rows.filter_map(|row| Some(row.worst.as_ref()?.value))
+        .min_by(f64::total_cmp)
 }
 
-/// What the loops of the paper's rig have at a leg that leans by 30° with 1.8 kg, among the worst that there are. The bars of 6 dB and
-/// 45° are met by the trim alone: the rest is kept from becoming less. The servo's goal follows its motor inside the play of the gear;
-/// the damping meets a mode that is slow on one axis.
+/// What the loops of the paper's rig have at a leg that leans by 30° with 1.8 kg, near the worst that there is. The bars of 6 dB and
+/// 45° are met by the trim alone; the others are kept from having less than they have now. The servo has little because its goal
+/// follows the motor inside the play of the gear, damping and tension because the leg swings more slowly about one axis.
 #[test]
 fn the_loops_keep_the_margins_that_they_have() {
-    let rows = rows(&measured("", 3, &Feedback::ALL, 1));
+    let rows = rows(&measured(|_| (), 3, &Feedback::ALL, 1));
     for (feedback, least_db, least_deg) in [
         (Feedback::Servo, 3.5, 25.0),
         (Feedback::Damping, 4.8, 30.0),
-        (Feedback::Tension, 4.5, 17.0),
+        (Feedback::Tension, 5.0, 18.0),
         (Feedback::Trim, Margin::Gain.bar(), Margin::Phase.bar()),
     ] {
         for (margin, least) in [(Margin::Gain, least_db), (Margin::Phase, least_deg)] {
             let found = worst(&rows, feedback, margin);
             println!("{feedback:?} {margin:?} {found:?}");
-            assert!(found.is_none_or(|found| found >= least), "{feedback:?} {margin:?} {found:?}");
+            assert!(found.unwrap() >= least, "{feedback:?} {margin:?} {found:?}");
         }
     }
-    let ended = rows.iter().all(|row| row.measured > 0 && row.worst.as_ref().is_none_or(|worst| worst.hz > 0.0));
-    assert!(ended, "{rows:#?}");
 }
 
-/// Without the play that its goal follows, the servo has what its transfer function has: 42.5° and 11.6 dB by calculation without
-/// friction, which adds a few degrees.
+/// With a goal that does not follow the motor, the servo is what its transfer function is: 11.6 dB and 42.5° by calculation without
+/// friction, which takes up some of the motion and adds to the phase.
 #[test]
 fn a_servo_whose_goal_stands_still_has_the_margins_of_its_transfer_function() {
-    let swept = measured("[control.servo]\nplay_m = 0\n", 7, &[Feedback::Servo], 4);
-    for one in &swept {
-        let [gain_db, phase_deg] = Margin::ALL.map(|margin| margin.of(one).unwrap()[0]);
-        assert!((10.5..13.5).contains(&gain_db), "{one:?}");
-        assert!((42.0..60.0).contains(&phase_deg), "{one:?}");
+    for one in measured(|servo| servo.play_m = 0.0, 7, &[Feedback::Servo], 1) {
+        let [gain_db, phase_deg] = Margin::ALL.map(|margin| margin.of(&one).unwrap()[0]);
+        assert!((10.5..14.0).contains(&gain_db), "{:?}", one.margins);
+        assert!((42.0..70.0).contains(&phase_deg), "{:?}", one.margins);
     }
 }
 
-/// A loop whose gain is raised by the rig's settings is below the bars, and it is the one that is named.
+/// A loop whose gain is raised by a setting is below the bars, and it is the one that is named.
 #[test]
 fn a_loop_with_too_much_gain_is_named() {
-    let settings = "[control.servo]\nplay_m = 0\nspeed_gain_v_s_per_m = 5400\n";
-    let rows = rows(&measured(settings, 7, &[Feedback::Servo, Feedback::Trim], 1));
-    for row in &rows {
-        let expected = row.feedback == Feedback::Servo;
-        assert_eq!(row.failed > 0, expected, "{row:#?}");
+    let loops = [Feedback::Servo, Feedback::Trim];
+    for (gain, passes) in [(1.0, true), (2.5, false)] {
+        let set = |servo: &mut Servo| {
+            servo.play_m = 0.0;
+            servo.speed_gain_v_s_per_m *= gain;
+        };
+        let rows = rows(&measured(set, 7, &loops, 1));
+        let gains = rows
+            .iter()
+            .filter(|row| row.margin == Margin::Gain && row.failed > 0);
+        let named: Vec<_> = gains.map(|row| row.feedback.name()).collect();
+        assert_eq!(named.is_empty(), passes, "{named:?}");
+        assert!(named.iter().all(|name| *name == "servo"), "{named:?}");
     }
-    let named = rows.iter().find(|row| row.failed > 0).unwrap();
-    assert_eq!(named.feedback.name(), "servo");
 }

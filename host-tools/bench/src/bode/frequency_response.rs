@@ -91,6 +91,9 @@ impl Excitation {
                 injected += turned * sides.injected;
             }
         }
-        Ok(Point::new(periods * self.tick_hz / window, -returned / injected))
+        Ok(Point::new(
+            periods * self.tick_hz / window,
+            -returned / injected,
+        ))
     }
 }

@@ -34,7 +34,8 @@ impl Margins {
             let [before, after] = pair else { continue };
             if let Some(crossing) = phase_crossing(before, after) {
                 let gain_db = crossing.other.abs();
-                if crossing.other > FLOOR_DB && margins.gain_db.is_none_or(|least| gain_db < least) {
+                if crossing.other > FLOOR_DB && margins.gain_db.is_none_or(|least| gain_db < least)
+                {
                     (margins.gain_db, margins.gain_hz) = (Some(gain_db), Some(crossing.hz));
                 }
             }
@@ -149,17 +150,29 @@ mod tests {
                 let omega = point.hz / hertz(1.0);
                 let gain_db = 20.0 * (gain / (2.0 * (0.5 * omega).sin())).log10();
                 let phase_deg = -90.0 - 1.5 * omega.to_degrees();
-                assert!((point.gain_db - gain_db).abs() < 0.05, "{point:?} {gain_db}");
+                assert!(
+                    (point.gain_db - gain_db).abs() < 0.05,
+                    "{point:?} {gain_db}"
+                );
                 let off = (point.phase_deg - phase_deg + 180.0).rem_euclid(360.0) - 180.0;
                 assert!(off.abs() < 0.3, "{point:?} {phase_deg}");
             }
             let found = Margins::new(&points);
             let crossover = 2.0 * (0.5 * gain).asin();
             let expected = [-20.0 * gain.log10(), 90.0 - 1.5 * crossover.to_degrees()];
-            assert!((found.gain_db.unwrap() - expected[0]).abs() < 0.2, "{found:?}");
-            assert!((found.phase_deg.unwrap() - expected[1]).abs() < 1.0, "{found:?}");
+            assert!(
+                (found.gain_db.unwrap() - expected[0]).abs() < 0.2,
+                "{found:?}"
+            );
+            assert!(
+                (found.phase_deg.unwrap() - expected[1]).abs() < 1.0,
+                "{found:?}"
+            );
             let at = hertz(std::f64::consts::FRAC_PI_3);
-            assert!((found.gain_hz.unwrap() / at - 1.0).abs() < 0.02, "{found:?}");
+            assert!(
+                (found.gain_hz.unwrap() / at - 1.0).abs() < 0.02,
+                "{found:?}"
+            );
             assert!((found.phase_hz.unwrap() / hertz(crossover) - 1.0).abs() < 0.02);
         }
     }

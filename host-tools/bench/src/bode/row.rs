@@ -100,11 +100,7 @@ pub fn rows(swept: &[Swept]) -> Vec<Row> {
     rows
 }
 
-fn row<'a>(
-    margin: Margin,
-    first: &Swept,
-    all: impl Iterator<Item = (usize, &'a Swept)>,
-) -> Row {
+fn row<'a>(margin: Margin, first: &Swept, all: impl Iterator<Item = (usize, &'a Swept)>) -> Row {
     let mut row = Row {
         feedback: first.feedback,
         amplitude: first.amplitude,

@@ -52,7 +52,11 @@ impl Sweep {
 /// The middle of each space that is too wide for what is in it, Hz.
 fn wide(points: &[Point]) -> Vec<f64> {
     let peak = |i: usize| {
-        let gain_db = |i: usize| points.get(i).map_or(f64::NEG_INFINITY, |point| point.gain_db);
+        let gain_db = |i: usize| {
+            points
+                .get(i)
+                .map_or(f64::NEG_INFINITY, |point| point.gain_db)
+        };
         let now = gain_db(i);
         let before = i.checked_sub(1).map_or(f64::NEG_INFINITY, gain_db);
         now > PEAK_DB && now >= before && now >= gain_db(i + 1)

@@ -73,7 +73,8 @@ fn named(feedback: Feedback, swept: &[Swept], rows: &[Row]) -> Vec<BodeLine> {
     let rows = rows.iter().filter(|row| row.feedback == feedback);
     let line = |row: &Row| {
         let worst = row.worst.as_ref()?;
-        let (value, hz, bar, unit_of) = (worst.value, worst.hz, row.margin.bar(), row.margin.unit());
+        let (value, hz, bar, unit_of) =
+            (worst.value, worst.hz, row.margin.bar(), row.margin.unit());
         let (name, margin) = match row.margin {
             Margin::Gain => ("gain", BodeMargin::Gain(hz, value)),
             Margin::Phase => ("phase", BodeMargin::Phase(hz, value)),
@@ -115,7 +116,9 @@ fn write_points(file: &Path, swept: &[Swept]) -> Result<(), Box<dyn Error>> {
         let [azimuth, tilt] = state.pose_deg;
         for point in &one.points {
             let numbers = [azimuth, tilt, state.payload_kg, state.pretension_n];
-            let numbers = numbers.into_iter().chain([point.hz, point.gain_db, point.phase_deg]);
+            let numbers = numbers
+                .into_iter()
+                .chain([point.hz, point.gain_db, point.phase_deg]);
             let what = [
                 one.feedback.name().into(),
                 one.place.into(),

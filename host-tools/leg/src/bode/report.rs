@@ -4,13 +4,16 @@ use leg_base::paths::relative_path;
 use leg_bench::bode::{Feedback, Margin, Row, Swept, Worst};
 use std::path::PathBuf;
 
-const HEADING: &str = "loop      added   margin       at Hz  place         azimuth  tilt    kg       N\n";
+const HEADING: &str =
+    "loop      added   margin       at Hz  place         azimuth  tilt    kg       N\n";
 
 /// A table for people.
 pub(super) fn table(rows: &[Row], swept: &[Swept], files: &[PathBuf]) -> String {
     let lines: String = rows.iter().map(line).collect();
     let ended: String = swept.iter().filter_map(failure).collect();
-    let files = files.iter().map(|file| format!("File: {}\n", relative_path(file).display()));
+    let files = files
+        .iter()
+        .map(|file| format!("File: {}\n", relative_path(file).display()));
     format!("{HEADING}{lines}{ended}\n{}", files.collect::<String>())
 }
 
@@ -21,7 +24,10 @@ fn line(row: &Row) -> String {
     let verdict = if row.failed == 0 {
         "pass".to_string()
     } else {
-        format!("FAIL: {} of {} below {bar} {unit}", row.failed, row.measured)
+        format!(
+            "FAIL: {} of {} below {bar} {unit}",
+            row.failed, row.measured
+        )
     };
     let Some(worst) = &row.worst else {
         let none = match row.margin {
@@ -30,7 +36,13 @@ fn line(row: &Row) -> String {
         };
         return format!("{name:8}  {added:6}  {none:60}  {verdict}\n");
     };
-    let Worst { value, hz, place, state, .. } = worst;
+    let Worst {
+        value,
+        hz,
+        place,
+        state,
+        ..
+    } = worst;
     let [azimuth, tilt] = state.pose_deg;
     format!(
         "{name:8}  {added:6}  {value:6.1} {unit:3}  {hz:7.2}  {place:12}  {azimuth:7.1}  {tilt:4.1}  {:4.2}  {:6.1}  {verdict}\n",
@@ -42,7 +54,10 @@ fn line(row: &Row) -> String {
 fn failure(swept: &Swept) -> Option<String> {
     let why = swept.failure.as_ref()?;
     let (name, number) = (swept.feedback.name(), swept.state.number);
-    Some(format!("{name} at {} in state {number}: {why}\n", swept.place))
+    Some(format!(
+        "{name} at {} in state {number}: {why}\n",
+        swept.place
+    ))
 }
 
 /// The unit of what is added.

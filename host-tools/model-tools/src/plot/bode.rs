@@ -148,9 +148,15 @@ impl Panel {
         };
         // On the side on which the curve is.
         let near = |point: &&BodePoint| (point.hz / hz).ln().abs();
-        let nearest = line.points.iter().min_by(|a, b| near(a).total_cmp(&near(b)))?;
+        let nearest = line
+            .points
+            .iter()
+            .min_by(|a, b| near(a).total_cmp(&near(b)))?;
         let side = (self.value(nearest) - self.limit()).signum();
-        Some([(hz, self.limit()), (hz, self.limit() + side * self.drawn(to))])
+        Some([
+            (hz, self.limit()),
+            (hz, self.limit() + side * self.drawn(to)),
+        ])
     }
 }
 
@@ -182,12 +188,18 @@ impl BodePainter<'_> {
     ) -> Drawn<B> {
         let (y, labels) = match panel {
             Panel::Gain => (self.gains_db.clone(), 9),
-            Panel::Phase => (panel.drawn(PHASES_DEG.start)..panel.drawn(PHASES_DEG.end), 5),
+            Panel::Phase => (
+                panel.drawn(PHASES_DEG.start)..panel.drawn(PHASES_DEG.end),
+                5,
+            ),
         };
         let mut context = ChartBuilder::on(area)
             .margin_right(MARGIN_PX)
             .margin_top(8)
-            .set_label_area_size(LabelAreaPosition::Bottom, if x_title.is_empty() { 32 } else { 66 })
+            .set_label_area_size(
+                LabelAreaPosition::Bottom,
+                if x_title.is_empty() { 32 } else { 66 },
+            )
             .set_label_area_size(LabelAreaPosition::Left, 90)
             .build_cartesian_2d(self.hz.clone().log_scale(), y)?;
         context
@@ -209,7 +221,12 @@ impl BodePainter<'_> {
         let limit = [self.hz.start, self.hz.end].map(|hz| (hz, panel.limit()));
         context.draw_series(LineSeries::new(limit, LIMIT.stroke_width(1)))?;
         for (line, colour) in self.plot.named.iter().zip(COLOURS.iter().cycle()) {
-            curve(&line.points, panel, colour.stroke_width(LINE_PX), &mut context)?;
+            curve(
+                &line.points,
+                panel,
+                colour.stroke_width(LINE_PX),
+                &mut context,
+            )?;
         }
         for (line, colour) in self.plot.named.iter().zip(COLOURS.iter().cycle()) {
             if let Some(mark) = panel.mark(line) {
@@ -235,7 +252,10 @@ impl BodePainter<'_> {
             }
             y += 12;
         }
-        area.draw(&PathElement::new(vec![(0, y), (30, y)], OTHERS.stroke_width(1)))?;
+        area.draw(&PathElement::new(
+            vec![(0, y), (30, y)],
+            OTHERS.stroke_width(1),
+        ))?;
         area.draw(&Text::new(self.plot.others_label.as_str(), (40, y), text))
     }
 }
