@@ -1,10 +1,88 @@
-//! A sample of `leg bode`, and that its bars can fail.
+//! The method of `leg bode` on a loop that is known, a sample of it, and that its bars can fail.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_bench::bode::{Campaign, Feedback, Margin, Row, Swept, rows};
+use leg_bench::bode::{
+    Campaign, ClosedLoop, Excitation, Feedback, Margin, Margins, Row, Sides, Sweep, Swept, rows,
+};
 use leg_firmware::settings::Servo;
 use leg_rig::rig_file::RigFile;
+
+/// An integrator of a gain with two ticks of delay, in a closed loop: L(z) = k z⁻²/(1 − z⁻¹), |L| = k/(2 sin(Ω/2)),
+/// arg L = −90° − 1.5 Ω.
+#[derive(Clone)]
+struct Integrator {
+    gain: f64,
+    sum: f64,
+    delayed: [f64; 2],
+    /// A constant that is no part of the loop.
+    offset: f64,
+}
+
+impl ClosedLoop for Integrator {
+    fn tick(&mut self, added: f64) -> Result<Sides, String> {
+        self.sum += self.delayed[1];
+        let returned = -self.gain * self.sum + self.offset;
+        let injected = returned + added;
+        self.delayed = [injected, self.delayed[0]];
+        Ok(Sides { returned, injected })
+    }
+}
+
+#[test]
+fn the_margins_of_a_known_loop_are_found() {
+    for gain in [0.1_f64, 0.3, 0.5, 0.8] {
+        let closed = Integrator {
+            gain,
+            sum: 0.0,
+            delayed: [0.0; 2],
+            offset: 3.0,
+        };
+        let sweep = Sweep {
+            excitation: Excitation {
+                tick_hz: 8000.0,
+                amplitude: 1.0,
+                settle_s: 0.1,
+                settle_periods: 4.0,
+                window_s: 0.05,
+                window_periods: 3.0,
+            },
+            from_hz: 40.0,
+            to_hz: 3000.0,
+            points: 20,
+        };
+        let points = sweep.run(&closed).unwrap();
+        let hertz = |omega: f64| omega * 8000.0 / std::f64::consts::TAU;
+        for point in &points {
+            let omega = point.hz / hertz(1.0);
+            let gain_db = 20.0 * (gain / (2.0 * (0.5 * omega).sin())).log10();
+            let phase_deg = -90.0 - 1.5 * omega.to_degrees();
+            assert!(
+                (point.gain_db - gain_db).abs() < 0.05,
+                "{point:?} {gain_db}"
+            );
+            let off = (point.phase_deg - phase_deg + 180.0).rem_euclid(360.0) - 180.0;
+            assert!(off.abs() < 0.3, "{point:?} {phase_deg}");
+        }
+        let found = Margins::new(&points);
+        let crossover = 2.0 * (0.5 * gain).asin();
+        let expected = [-20.0 * gain.log10(), 90.0 - 1.5 * crossover.to_degrees()];
+        assert!(
+            (found.gain_db.unwrap() - expected[0]).abs() < 0.2,
+            "{found:?}"
+        );
+        assert!(
+            (found.phase_deg.unwrap() - expected[1]).abs() < 1.0,
+            "{found:?}"
+        );
+        let at = hertz(std::f64::consts::FRAC_PI_3);
+        assert!(
+            (found.gain_hz.unwrap() / at - 1.0).abs() < 0.02,
+            "{found:?}"
+        );
+        assert!((found.phase_hz.unwrap() / hertz(crossover) - 1.0).abs() < 0.02);
+    }
+}
 
 /// Measures the paper's rig with settings of its own.
 fn measured(set: impl Fn(&mut Servo), seed: u64, loops: &[Feedback], count: u64) -> Vec<Swept> {
