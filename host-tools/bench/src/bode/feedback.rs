@@ -24,8 +24,8 @@ pub enum Feedback {
     Trim,
 }
 
-/// Amplitudes of what is added to a motor's voltage, as parts of what drives the servo's highest current. Half of the larger one
-/// is still several times what friction takes.
+/// Amplitudes of what is added to a motor's voltage, as parts of what drives the servo's highest current. The
+/// smaller one is still more than what friction takes at the highest tension.
 const VOLTAGE_PARTS: [f64; 2] = [0.65, 0.325];
 
 /// The same of tensions, as parts of the highest.
