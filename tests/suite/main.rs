@@ -87,6 +87,7 @@ mod host {
 }
 
 mod bench {
+    mod bode;
     mod check;
     mod image_budget;
     mod moves;

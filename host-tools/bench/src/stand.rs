@@ -8,7 +8,7 @@ use leg_firmware::supervisor::{FaultSet, State};
 use leg_firmware::telemetry::Telemetry;
 use leg_rig::plant_settings::PlantSettings;
 use leg_rig::rig_file::RigFile;
-use leg_sim::emulated_leg::EmulatedLeg;
+use leg_sim::emulated_leg::{Between, EmulatedLeg};
 use leg_sim::host::Host;
 use leg_sim::link::InProcess;
 use leg_sim::plant::{Plant, Start, Truth};
@@ -84,8 +84,13 @@ impl Stand {
 
     /// One tick.
     pub fn tick(&mut self) -> Result<(), String> {
+        self.tick_through(&mut ())
+    }
+
+    /// One tick with something between firmware and leg.
+    pub fn tick_through(&mut self, between: &mut impl Between) -> Result<(), String> {
         let bytes = self.host.outgoing(self.ticks);
-        let advanced = self.leg.advance(bytes);
+        let advanced = self.leg.advance_through(between, bytes);
         let (taken, reply) = advanced.map_err(|error| error.to_string())?;
         self.ticks += 1;
         self.truth = self.leg.plant().truth();

@@ -12,6 +12,7 @@
 //! | `jog` | one motor of a disarmed leg |
 //! | `sensors`, `monitor`, `log`, `settings`, `calibrate` | what a leg reports, records and is set to |
 //! | `moves` | how the true tip of a simulated leg goes, with payloads that it is not told |
+//! | `bode` | margins of the feedback loops around a simulated leg |
 //! | `strikes` | faults that strike a simulated leg in every state |
 //! | `emulate`, `flash`, `faults` | an emulated board; the image into a board; the fault table |
 //! | `board` | `setup`; links to the firmware in this process and under QEMU |
@@ -33,6 +34,7 @@
 //! ```
 
 mod board;
+mod bode;
 mod calibrate;
 mod check;
 mod completions;
@@ -90,6 +92,7 @@ Exit codes:
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Bode(bode::Args),
     Calibrate(calibrate::Args),
     /// Checks the firmware under QEMU: its f32 against f64, and its bits against f32 on the host.
     ///
@@ -149,6 +152,7 @@ pub fn main() -> ExitCode {
 
 fn run(command: &Command, options: Options) -> Result<(), Failure> {
     match command {
+        Command::Bode(args) => bode::run(args, options),
         Command::Calibrate(args) => calibrate::run(args, options),
         Command::Check => check::run(options),
         Command::Completions(args) => completions::run(args),

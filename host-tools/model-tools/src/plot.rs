@@ -1,5 +1,6 @@
 //! Line charts as SVG and PNG.
 
+pub mod bode;
 mod canvas;
 pub mod field;
 

@@ -2,8 +2,9 @@
 
 use crate::link::{InProcess, Link, LinkError};
 use crate::plant::{Plant, Start};
+use leg_firmware::drive::Drive;
 use leg_firmware::linked_leg::LINK_BYTES_MAX;
-use leg_firmware::sensors::TICK_HZ;
+use leg_firmware::sensors::{Sensors, TICK_HZ};
 use leg_firmware::settings::{Gains, Settings, SettingsError};
 use leg_firmware::supervisor::State;
 use leg_firmware_bench::protocol::{Refusal, Reply, Request, TickReply, TickRequest};
@@ -47,6 +48,17 @@ pub enum EmulationError {
     #[error(transparent)]
     Link(#[from] LinkError),
 }
+
+/// What changes the signals between the firmware and its leg, where a loop is broken to measure it.
+pub trait Between {
+    /// Changes what the sensors read.
+    fn sensors(&mut self, _sensors: &mut Sensors) {}
+    /// Changes what the motors get.
+    fn motors(&mut self, _motors: &mut Drive<f32>) {}
+}
+
+/// Nothing.
+impl Between for () {}
 
 /// The firmware, wherever it runs, and the leg that it drives.
 #[derive(Clone)]
@@ -133,18 +145,32 @@ impl<L: Link> EmulatedLeg<L> {
     /// # Errors
     /// A link that fails.
     pub fn advance(&mut self, link: HostBytes) -> Result<(TickRequest, TickReply), EmulationError> {
-        let sensors = self.plant.sense();
+        self.advance_through(&mut (), link)
+    }
+
+    /// The same with something between firmware and leg.
+    ///
+    /// # Errors
+    /// A link that fails.
+    pub fn advance_through(
+        &mut self,
+        between: &mut impl Between,
+        link: HostBytes,
+    ) -> Result<(TickRequest, TickReply), EmulationError> {
+        let mut sensors = self.plant.sense();
+        between.sensors(&mut sensors);
         let tick = TickRequest { sensors, link };
         let request = if self.counting {
             Request::CountTick(tick.clone())
         } else {
             Request::Tick(tick.clone())
         };
-        let reply = match self.link.ask(&request)? {
+        let mut reply = match self.link.ask(&request)? {
             Reply::Ticked(reply) => reply,
             Reply::Refused(refusal) => return Err(EmulationError::Refused(refusal)),
             _ => return Err(EmulationError::WrongReply),
         };
+        between.motors(&mut reply.motors);
         self.plant.step(&reply.motors);
         Ok((self.link.taken().unwrap_or(tick), reply))
     }

@@ -1,0 +1,99 @@
+//! The transfer of a loop at one frequency, measured while it is closed: a sine is added at a break point, and both sides of
+//! it are correlated with the sine over whole periods.
+
+use nalgebra::Complex;
+use serde::Serialize;
+use std::f64::consts::TAU;
+
+/// The two sides of a break point in one tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sides {
+    /// What comes back round the loop.
+    pub returned: f64,
+    /// What goes into it: the same with what was added.
+    pub injected: f64,
+}
+
+/// A closed loop that runs tick by tick.
+pub trait ClosedLoop: Clone {
+    /// One tick, with so much added at the break point.
+    ///
+    /// # Errors
+    /// What ended the run.
+    fn tick(&mut self, added: f64) -> Result<Sides, String>;
+}
+
+/// How a loop is excited.
+#[derive(Clone, Copy, Debug)]
+pub struct Excitation {
+    /// Ticks in a second.
+    pub tick_hz: f64,
+    /// Of the sine that is added.
+    pub amplitude: f64,
+    /// Least time until transients have ended, s.
+    pub settle_s: f64,
+    /// The same in periods.
+    pub settle_periods: f64,
+    /// Least time over which is correlated, s.
+    pub window_s: f64,
+    /// The same in periods.
+    pub window_periods: f64,
+}
+
+/// A measured point of a loop's transfer.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Point {
+    /// Hz.
+    pub hz: f64,
+    /// dB.
+    pub gain_db: f64,
+    /// Degrees, −180 to 180; of the transfer that is −1 where the closed loop is at its limit.
+    pub phase_deg: f64,
+}
+
+/// Square of the least gain: nothing may come back.
+const LEAST: f64 = 1e-12;
+
+impl Point {
+    /// From a transfer.
+    #[must_use]
+    pub fn new(hz: f64, transfer: Complex<f64>) -> Self {
+        Self {
+            hz,
+            gain_db: 10.0 * transfer.norm_sqr().max(LEAST).log10(),
+            phase_deg: transfer.im.atan2(transfer.re).to_degrees(),
+        }
+    }
+}
+
+impl Excitation {
+    /// The transfer near a frequency; the loop is left as it is.
+    ///
+    /// # Errors
+    /// What ended the run.
+    pub fn measure<L: ClosedLoop>(&self, at_rest: &L, hz: f64) -> Result<Point, String> {
+        let mut closed = at_rest.clone();
+        let ticks = |seconds: f64, periods: f64| (seconds.max(periods / hz) * self.tick_hz).ceil();
+        let settle = ticks(self.settle_s, self.settle_periods) as u64;
+        // Whole periods in whole ticks: the frequency moves a little for it.
+        let periods = (ticks(self.window_s, self.window_periods) / self.tick_hz * hz).ceil();
+        let window = (periods * self.tick_hz / hz).round();
+        let turn = TAU * periods / window;
+        let (mut returned, mut injected) = (Complex::new(0.0, 0.0), Complex::new(0.0, 0.0));
+        for tick in 0..settle + window as u64 {
+            let phase = turn * tick as f64;
+            // Comes up over half of the transient, so that it excites little else.
+            let part = (2.0 * tick as f64 / settle.max(1) as f64).min(1.0);
+            let sides = closed.tick(self.amplitude * part * phase.sin())?;
+            if tick >= settle {
+                let turned = Complex::new(phase.cos(), -phase.sin());
+                returned += turned * sides.returned;
+                injected += turned * sides.injected;
+            }
+        }
+        Ok(Point::new(
+            periods * self.tick_hz / window,
+            -returned / injected,
+        ))
+    }
+}
