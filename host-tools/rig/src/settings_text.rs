@@ -229,11 +229,11 @@ mod tests {
         let mut rng = fastrand::Rng::with_seed(7);
         for _ in 0..200 {
             let mut before = settings(READY_RIGS[0].name, READY_RIGS[0].text);
+            before.keeps_station = rng.bool();
             let mut spread = |value: &mut f32| *value *= 1.0 + 0.01 * rng.f32();
             spread(&mut before.rig.leg_length_m);
             spread(&mut before.tilt_max_sine);
             spread(&mut before.limits.following_m);
-            before.keeps_station = rng.bool();
             spread(&mut before.board.supply_v_per_code);
             spread(&mut before.board.temperature_c_per_code);
             for axis in &mut before.axes {
