@@ -28,7 +28,7 @@ fn monitor_and_log_run_beside_a_move() {
         sleep(Duration::from_millis(10));
     }
     let monitor = board.begin(&["monitor", "--json", "--rate", "50", "--for", "3"]);
-    assert_eq!(board.json(&move_to("15"))["state"], "held");
+    assert_eq!(board.json(&move_to("15"))["state"], "keeping_station");
     let seen = String::from_utf8(monitor.wait_with_output().unwrap().stdout).unwrap();
     let states: Vec<Value> = seen
         .lines()

@@ -29,7 +29,7 @@ fn a_file_is_followed_to_its_end() {
     let path = path.to_str().unwrap();
     // The machine may have much else to do.
     let state = board.json(&["follow", path, "--lead", "2"]);
-    assert_eq!(state["state"], "held");
+    assert_eq!(state["state"], "keeping_station");
     assert_eq!(state["faults"].as_array().unwrap().len(), 0);
     let tilt = state["tilt_deg"].as_f64().unwrap();
     assert!((tilt - 20.0).abs() < 0.1, "{tilt}");
