@@ -42,7 +42,7 @@ fn a_file_is_followed_to_its_end() {
             return (Err(errors(&output)), stall);
         }
         let state = board.state();
-        assert_eq!(state["state"], "held");
+        assert_eq!(state["state"], "keeping_station");
         assert_eq!(state["faults"].as_array().unwrap().len(), 0);
         let tilt = state["tilt_deg"].as_f64().unwrap();
         assert!((tilt - 20.0).abs() < 0.1, "{tilt}");
