@@ -291,6 +291,19 @@ fn every_command_does_what_is_said_from_station() {
         (Command::Hold, State::KeepingStation),
         (Command::Home, State::KeepingStation),
         (Command::Move { x: 0.1, y: 0.0 }, State::KeepingStation),
+        (Command::Pretension(140.0), State::KeepingStation),
+        (Command::Pretension(f32::NAN), State::KeepingStation),
+        (
+            Command::Stiffness {
+                demand_nm_per_rad: 120.0,
+                towards: None,
+            },
+            State::KeepingStation,
+        ),
+        (
+            Command::Compensation(Compensation::Off),
+            State::KeepingStation,
+        ),
         (Command::Arm, State::Active),
         // It is led straight down first.
         (Command::Disarm, State::Active),
@@ -301,6 +314,13 @@ fn every_command_does_what_is_said_from_station() {
         assert_eq!(bench.state(), state, "{command:?}");
         assert_eq!(bench.faults(), FaultSet::NONE, "{command:?}");
     }
+    // What a leg that keeps station does is not changed by a command: the load is still compensated.
+    let mut bench = sound.clone();
+    bench.command(&Command::Compensation(Compensation::Off));
+    bench.command(&Command::Pretension(140.0));
+    let before_m = bench.tip_m();
+    bench.wait(2.0);
+    assert!((bench.tip_m() - before_m).norm() < 5e-5);
     let mut bench = sound.clone();
     bench.command(&Command::Disarm);
     bench.wait(5.0);

@@ -52,6 +52,12 @@ impl<T: Scalar> Leg<T> {
     fn execute(&mut self, command: Command, measured: &Measured<T>) -> Result<(), CommandRefusal> {
         match command {
             Command::KeepAlive => Ok(()),
+            // Who changes what a leg does that moves by itself, takes it over first.
+            Command::Pretension(_) | Command::Stiffness { .. } | Command::Compensation(_)
+                if self.mode.state() == State::KeepingStation =>
+            {
+                Err(CommandRefusal::State(State::KeepingStation))
+            }
             Command::Arm if self.shared.zero_m.is_none() => Err(CommandRefusal::NotHomed),
             Command::Arm => self.start(Event::Arm, measured),
             Command::Home => self.start(Event::Home, measured),

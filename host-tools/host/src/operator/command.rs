@@ -83,6 +83,7 @@ fn evidence(command: &Command, telemetry: &Telemetry<f32>) -> Evidence {
         (Command::Clear, State::Active | State::RampingDown | State::Disarmed) if no_fault => {
             Evidence::Obeyed
         }
+        (Command::Clear, State::KeepingStation) => Evidence::Obeyed,
         (Command::KeepStation, State::KeepingStation | State::Held) if no_fault => Evidence::Obeyed,
         (Command::Arm, State::KeepingStation) | (Command::KeepStation, State::Active) => {
             Evidence::Lost

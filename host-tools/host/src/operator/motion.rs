@@ -99,6 +99,11 @@ impl Operator {
             Some(command) => name(command),
         };
         self.settle_state(asked)?;
+        let holds = *goal == Goal::default();
+        if holds && self.telemetry()?.telemetry.state == State::KeepingStation {
+            // At once, also in the middle of a correction.
+            return self.stop();
+        }
         let lead = |operator: &mut Self| {
             operator.activate(asked)?;
             for command in commands {
@@ -114,7 +119,7 @@ impl Operator {
                 _ => Ok(telemetry),
             }
         };
-        if *goal == Goal::default() {
+        if holds {
             self.drive(lead)
         } else {
             self.drive_to_station(lead)

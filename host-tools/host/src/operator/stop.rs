@@ -132,9 +132,12 @@ impl Operator {
     /// As [`Self::drive`] and [`Self::command`]; [`OperatorError::NotCleared`] where a cause is still present.
     pub fn clear(&mut self) -> Result<(), OperatorError> {
         if self.telemetry()?.telemetry.state == State::KeepingStation {
-            let cleared = self.command(Command::Clear);
-            self.drives = false;
-            return cleared;
+            self.command(Command::Clear)?;
+            if self.telemetry()?.telemetry.state == State::KeepingStation {
+                self.drives = false;
+                return Ok(());
+            }
+            // A fault has come meanwhile, and the leg may follow commands now.
         }
         self.drive(|operator| operator.command(Command::Clear))
     }
