@@ -73,34 +73,57 @@ fn interrupted(mut command: Child) -> Output {
 
 #[test]
 fn two_logs_share_a_rate_and_not_two() {
-    let directory = tempfile::tempdir().unwrap();
-    let board = BoardUnderTest::new(&[]);
-    let log =
-        |name: &str, rate: &str| board.begin_log(&directory.path().join(name), &["--rate", rate]);
-    let logs = [log("a.csv", "100"), log("b.csv", "100")];
-    board.wait(2.0);
-    for log in logs {
-        let output = interrupted(log);
-        assert!(output.status.success(), "{}", errors(&output));
-    }
-    let mut logs = [log("a.csv", "100"), log("b.csv", "40")];
-    let failed = wait_for("the end of a log", || {
-        let mut ended = logs.iter_mut().map(|log| log.try_wait().unwrap().is_some());
-        ended.position(|ended| ended)
+    unless_stalled(LOG_STALL, || {
+        let directory = tempfile::tempdir().unwrap();
+        let board = BoardUnderTest::new(&[]);
+        let begin = |rates: [&str; 2]| {
+            let named = ["a.csv", "b.csv"].into_iter().zip(rates);
+            let logs: Vec<Child> = named
+                .map(|(name, rate)| {
+                    board.begin_log(&directory.path().join(name), &["--rate", rate])
+                })
+                .collect();
+            let watches: Vec<StallWatch> = logs.iter().map(StallWatch::begin).collect();
+            (logs, watches)
+        };
+        let (logs, watches) = begin(["100", "100"]);
+        board.wait(2.0);
+        let shared = all_go_on(logs);
+        let (mut logs, more_watches) = begin(["100", "40"]);
+        let ended = wait_for("the end of a log", || {
+            let mut ended = logs.iter_mut().map(|log| log.try_wait().unwrap().is_some());
+            ended.position(|ended| ended)
+        });
+        let ended = logs.remove(ended).wait_with_output().unwrap();
+        board.wait(0.5);
+        let other = all_go_on(logs);
+        let stalls = watches.into_iter().chain(more_watches);
+        let stall = stalls.map(StallWatch::longest).max().unwrap();
+        assert_eq!(ended.status.code(), Some(1));
+        let told = errors(&ended);
+        assert!(
+            told.contains("another host has asked the leg to report every")
+                && told.contains("end the other `leg log`"),
+            "{told}"
+        );
+        (shared.and(other), stall)
     });
-    board.wait(0.5);
-    let [a, b] = logs;
-    let [failed, other] = if failed == 0 { [a, b] } else { [b, a] };
-    let output = interrupted(other);
-    assert!(output.status.success(), "{}", errors(&output));
-    let failed = failed.wait_with_output().unwrap();
-    assert_eq!(failed.status.code(), Some(1));
-    let told = errors(&failed);
-    assert!(
-        told.contains("another host has asked the leg to report every")
-            && told.contains("end the other `leg log`"),
-        "{told}"
-    );
+}
+
+/// Ends logs; the errors of those that had ended by themselves.
+fn all_go_on(logs: Vec<Child>) -> Result<(), String> {
+    let ends = |mut log: Child| {
+        let went_on = log.try_wait().unwrap().is_none();
+        if went_on {
+            signal(&log, "-INT");
+        }
+        let output = log.wait_with_output().unwrap();
+        let passes = went_on && output.status.success();
+        passes.then_some(()).ok_or_else(|| errors(&output))
+    };
+    // Every one is ended, whatever came of the others.
+    let ended: Vec<_> = logs.into_iter().map(ends).collect();
+    ended.into_iter().collect()
 }
 
 #[test]
