@@ -59,6 +59,9 @@ mod sim {
     mod scenario_bits;
     mod scenarios;
     mod station;
+    mod station_defects;
+    mod station_stand;
+    mod swing;
     mod ways_down;
 }
 

@@ -142,7 +142,7 @@ impl<T: Scalar> Leg<T> {
                 } else if let Err(error) = active.step(self.phase, shared, measured) {
                     step.faults = fault_of_error(error);
                     // Nobody gives a leg that keeps station another target.
-                    step.event = active.station.is_some().then_some(Event::Stop);
+                    step.event = active.station.kept().map(|_| Event::Stop);
                 }
                 return step;
             }
@@ -235,7 +235,7 @@ impl<T: Scalar> Leg<T> {
     fn watch_agreement(&mut self) {
         let growth = match &self.mode {
             Mode::Active(active) if active.tensioned => {
-                if active.station.is_some() {
+                if active.station.kept().is_some() {
                     ErrorGrowth::KEEPING_STATION
                 } else if active.trajectory.moving() {
                     ErrorGrowth::MOVING
@@ -257,7 +257,7 @@ impl<T: Scalar> Leg<T> {
     #[inline(never)]
     fn enter(&mut self, state: State, measured: &Measured<T>) {
         self.link.restart_silence();
-        if self.mode.goes_on(state) {
+        if self.mode.change_station(state, &self.shared) {
             return;
         }
         let latched = self.supervisor.latched();

@@ -25,6 +25,26 @@ pub(crate) fn plant(file: &RigFile, offset_n: f64, rng: &mut Rng) -> PlantSettin
     }
 }
 
+/// The simulated leg of a rig after homing, which has tared its cells.
+pub(crate) fn homed(file: &RigFile) -> PlantSettings {
+    PlantSettings {
+        cell_offset_n: [0.0; 3],
+        ..file.plant
+    }
+}
+
+/// What the number of a campaign begins with: its own seed, and its rig, in turn.
+pub(crate) fn numbered(
+    seed: u64,
+    rigs: &[(String, RigFile)],
+    number: u64,
+) -> (u64, &(String, RigFile)) {
+    (
+        mixed(seed, number),
+        &rigs[(number % rigs.len() as u64) as usize],
+    )
+}
+
 /// One in five at each end: that is where things break.
 pub(crate) fn drawn(rng: &mut Rng, highest: f64) -> f64 {
     match rng.u32(0..10) {

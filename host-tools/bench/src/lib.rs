@@ -3,9 +3,8 @@
 //! Begin with [`check`], which compares a firmware with f64 by the [`precision`] table, and bit by bit with the same code
 //! on the host. [`cost`] counts instructions on an emulated board, [`image_budget`] bounds flash, RAM and stack of an
 //! image from its ELF file, and [`paper`] compares the model with the published numbers. [`strikes`] lets faults
-//! strike the simulated leg in every state, and [`moves`] judges how it moves, and
-//! [`bode`] measures the margins of its loops. [`sensitivity`] and
-//! [`run_charts`] serve `leg run`.
+//! strike the simulated leg in every state, [`moves`] judges how it moves, and [`bode`] measures the margins of its
+//! loops; all three on a [`stand`]. [`sensitivity`] and [`run_charts`] serve `leg run`.
 //!
 //! ```
 //! use leg_bench::{check, precision};
@@ -30,5 +29,5 @@ pub mod paper;
 pub mod precision;
 pub mod run_charts;
 pub mod sensitivity;
-mod stand;
+pub mod stand;
 pub mod strikes;

@@ -8,7 +8,7 @@ use leg_firmware::supervisor::{FaultSet, State};
 use leg_firmware::telemetry::Telemetry;
 use leg_rig::plant_settings::PlantSettings;
 use leg_rig::rig_file::RigFile;
-use leg_sim::emulated_leg::{Between, EmulatedLeg};
+use leg_sim::emulated_leg::{EmulatedLeg, SignalChange};
 use leg_sim::host::Host;
 use leg_sim::link::InProcess;
 use leg_sim::plant::{Plant, Start, Truth};
@@ -20,12 +20,15 @@ const STILL_SPANS: u32 = 80;
 
 /// An emulated leg, its host, and what was seen last.
 #[derive(Clone)]
-pub(crate) struct Stand {
+pub struct Stand {
     leg: EmulatedLeg<InProcess>,
     host: Host,
     ticks: u64,
+    /// What is true after the last tick.
     pub truth: Truth,
+    /// What the leg reported in it; none before the first.
     pub telemetry: Option<Telemetry<f32>>,
+    /// What the sensors read in it.
     pub sensors: Sensors,
     /// What the motors get.
     pub motors: Drive<f32>,
@@ -33,6 +36,9 @@ pub(crate) struct Stand {
 
 impl Stand {
     /// A leg that has just started.
+    ///
+    /// # Errors
+    /// Settings or a start that are refused, as all errors here in words.
     pub fn new(
         rig: &RigFile,
         plant: &PlantSettings,
@@ -55,14 +61,17 @@ impl Stand {
         })
     }
 
+    /// The simulated leg.
     pub fn plant(&mut self) -> &mut Plant {
         self.leg.plant_mut()
     }
 
+    /// Time since the start, s.
     pub fn time_s(&self) -> f64 {
         self.leg.plant().time_s()
     }
 
+    /// What the leg may do.
     pub fn state(&self) -> State {
         self.telemetry
             .map_or(State::Boot, |telemetry| telemetry.state)
@@ -74,23 +83,39 @@ impl Stand {
         faults.map_or(FaultSet::NONE, FaultSet::without_limits)
     }
 
+    /// Whether it is on its way.
     pub fn moving(&self) -> bool {
         self.telemetry.is_some_and(|telemetry| telemetry.moving)
     }
 
+    /// Sends a command.
+    ///
+    /// # Errors
+    /// One that cannot be sent.
     pub fn command(&mut self, command: &Command) -> Result<(), String> {
         self.host.send(command).map_err(|error| error.to_string())
     }
 
+    /// Nothing is heard of the host any more but commands.
+    pub fn silence(&mut self) {
+        self.host.silent = true;
+    }
+
     /// One tick.
+    ///
+    /// # Errors
+    /// A link that fails; a number of the simulated leg that is lost.
     pub fn tick(&mut self) -> Result<(), String> {
         self.tick_through(&mut ())
     }
 
-    /// One tick with something between firmware and leg.
-    pub fn tick_through(&mut self, between: &mut impl Between) -> Result<(), String> {
+    /// One tick with changed signals.
+    ///
+    /// # Errors
+    /// As [`Self::tick`].
+    pub fn tick_through(&mut self, change: &mut impl SignalChange) -> Result<(), String> {
         let bytes = self.host.outgoing(self.ticks);
-        let advanced = self.leg.advance_through(between, bytes);
+        let advanced = self.leg.advance_through(change, bytes);
         let (taken, reply) = advanced.map_err(|error| error.to_string())?;
         self.ticks += 1;
         self.truth = self.leg.plant().truth();
@@ -116,12 +141,18 @@ impl Stand {
     }
 
     /// Lets a time pass without a fault.
+    ///
+    /// # Errors
+    /// A fault; as [`Self::tick`].
     pub fn wait(&mut self, time_s: f64) -> Result<(), String> {
         let end_s = self.time_s() + time_s;
         self.until(f64::INFINITY, "", |stand| stand.time_s() >= end_s)
     }
 
     /// Ticks until something is so, without a fault.
+    ///
+    /// # Errors
+    /// A fault, or that it does not come in time; as [`Self::tick`].
     pub fn until(
         &mut self,
         timeout_s: f64,
@@ -140,6 +171,9 @@ impl Stand {
     }
 
     /// Waits until the leg no longer moves: it swings, and it compensates a load slowly.
+    ///
+    /// # Errors
+    /// A fault, or that it does not come to rest; as [`Self::tick`].
     pub fn rest(&mut self) -> Result<(), String> {
         for _ in 0..STILL_SPANS {
             let (before_m, mut moved_m) = (self.truth.tip_m, 0.0_f64);
@@ -157,7 +191,7 @@ impl Stand {
 }
 
 /// The command to go to a pose.
-pub(crate) fn move_to([azimuth_deg, tilt_deg]: [f64; 2]) -> Command {
+pub fn move_to([azimuth_deg, tilt_deg]: [f64; 2]) -> Command {
     let [x, y] = angles::direction(azimuth_deg, tilt_deg).map(|c| c as f32);
     Command::Move { x, y }
 }

@@ -50,7 +50,7 @@ pub enum EmulationError {
 }
 
 /// What changes the signals between the firmware and its leg, where a loop is broken to measure it.
-pub trait Between {
+pub trait SignalChange {
     /// Changes what the sensors read.
     fn sensors(&mut self, _sensors: &mut Sensors) {}
     /// Changes what the motors get.
@@ -58,7 +58,7 @@ pub trait Between {
 }
 
 /// Nothing.
-impl Between for () {}
+impl SignalChange for () {}
 
 /// The firmware, wherever it runs, and the leg that it drives.
 #[derive(Clone)]
@@ -154,11 +154,11 @@ impl<L: Link> EmulatedLeg<L> {
     /// A link that fails.
     pub fn advance_through(
         &mut self,
-        between: &mut impl Between,
+        change: &mut impl SignalChange,
         link: HostBytes,
     ) -> Result<(TickRequest, TickReply), EmulationError> {
         let mut sensors = self.plant.sense();
-        between.sensors(&mut sensors);
+        change.sensors(&mut sensors);
         let tick = TickRequest { sensors, link };
         let request = if self.counting {
             Request::CountTick(tick.clone())
@@ -170,7 +170,7 @@ impl<L: Link> EmulatedLeg<L> {
             Reply::Refused(refusal) => return Err(EmulationError::Refused(refusal)),
             _ => return Err(EmulationError::WrongReply),
         };
-        between.motors(&mut reply.motors);
+        change.motors(&mut reply.motors);
         self.plant.step(&reply.motors);
         Ok((self.link.taken().unwrap_or(tick), reply))
     }

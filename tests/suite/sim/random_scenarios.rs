@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use fastrand::Rng;
-use leg_firmware::supervisor::{FaultSet, State};
+use leg_firmware::supervisor::FaultSet;
 use leg_rig::rig_file::RigFile;
 use leg_sim::action::Action;
 use leg_sim::link::InProcess;
@@ -44,8 +44,7 @@ impl Watch {
         if !sound || !numbers.iter().all(|number| number.is_finite()) {
             self.complain(tick, "a number is lost");
         }
-        let driven = matches!(telemetry.state, State::Active | State::Homing);
-        if self.faulty && driven {
+        if self.faulty && telemetry.state.led() {
             self.complain(tick, "the leg re-armed by itself");
         }
         if !telemetry.state.driven() && tick.drive.enabled {
@@ -111,7 +110,15 @@ fn step(rng: &mut Rng) -> String {
             ["off", "estimated", "frozen"][rng.usize(0..3)]
         ),
         8 => format!("{{ garbage = {} }}", rng.u32(1..600)),
-        9 => ["\"arm\"", "\"home\"", "\"hold\"", "\"stop\"", "\"disarm\""][rng.usize(0..5)].into(),
+        9 => [
+            "\"arm\"",
+            "\"home\"",
+            "\"hold\"",
+            "\"stop\"",
+            "\"disarm\"",
+            "\"keep_station\"",
+        ][rng.usize(0..6)]
+        .into(),
         10 => format!(
             "{{ push = {{ azimuth_deg = {}, force_n = {}, for_s = 0.2 }} }}",
             360.0 * rng.f64(),

@@ -2,7 +2,7 @@
 
 use super::phase::Phase;
 use super::shared::Shared;
-use super::station::Station;
+use super::station::{Station, StationKeeping};
 use super::swing_brake::SwingBrake;
 use crate::command::Compensation;
 use crate::control::{
@@ -21,11 +21,11 @@ pub struct Active<T> {
     pub tensioned: bool,
     /// Whether the leg is led straight down, to be disarmed there.
     pub disarming: bool,
-    /// What limits a leg that keeps station; none while it follows commands.
-    pub station: Option<Station<T>>,
+    /// What limits a leg that keeps station.
+    pub station: StationKeeping<T>,
     /// Whether that would have to go farther than it may.
     pub off_station: bool,
-    /// Whether there was no target on the way since then.
+    /// Whether there was no target on the way since it was last led straight down.
     stuck: bool,
     brake: SwingBrake<T>,
     slack: Slack<T>,
@@ -68,7 +68,7 @@ impl<T: Scalar> Active<T> {
             ),
             tensioned: false,
             disarming: false,
-            station: None,
+            station: StationKeeping::No,
             off_station: false,
             stuck: false,
             brake: SwingBrake::new(),
@@ -92,9 +92,8 @@ impl<T: Scalar> Active<T> {
             // In turn, for each takes most of the time that is left.
             Phase::Pretension => {
                 if self.brake.takes_turn() {
-                    self.brake
-                        .step(shared, self.tensioned, self.station.as_mut());
-                    self.off_station = self.station.as_ref().is_some_and(Station::too_far);
+                    self.brake.step(shared, self.tensioned, &mut self.station);
+                    self.off_station = self.station.kept().is_some_and(Station::too_far);
                     Ok(())
                 } else {
                     search_pretension(shared)
@@ -171,11 +170,12 @@ impl<T: Scalar> Active<T> {
     /// Whether it rests at its target with its load compensated, so that it can be left there.
     pub fn may_keep_station(&self, shared: &Shared<T>) -> bool {
         let compensated = shared.compensation == Compensation::Estimated;
-        shared.station.allowed
-            && compensated
-            && self.tensioned
-            && !self.trajectory.moving()
-            && !shared.refused
+        shared.station.allowed && compensated && self.tensioned && !self.moving() && !shared.refused
+    }
+
+    /// Whether it is on its way, or corrects where it keeps station.
+    pub fn moving(&self) -> bool {
+        self.trajectory.moving() || self.station.corrects()
     }
 
     /// Leads the leg straight down, to be disarmed there.

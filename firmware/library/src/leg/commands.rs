@@ -187,7 +187,9 @@ impl<T: Scalar> Leg<T> {
         let refusal = self.unfaulted().err();
         let state = self.mode.state();
         match &mut self.mode {
-            Mode::Active(active) if active.station.is_some() => Err(CommandRefusal::State(state)),
+            Mode::Active(active) if active.station.kept().is_some() => {
+                Err(CommandRefusal::State(state))
+            }
             Mode::Active(active) if active.disarming => {
                 Err(CommandRefusal::State(State::RampingDown))
             }

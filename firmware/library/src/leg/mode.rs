@@ -5,7 +5,7 @@ use super::held::Held;
 use super::jogging::Jogging;
 use super::ramping_down::RampingDown;
 use super::shared::Shared;
-use super::station::Station;
+use super::station::{Station, StationKeeping};
 use crate::control::{Axis, HomingSequence, Measured};
 use crate::supervisor::{Event, FaultSet, State};
 use leg_model::Scalar;
@@ -14,7 +14,6 @@ use leg_model::Scalar;
 const BOOT_TICKS: u32 = 16;
 
 /// The mode: the leg's [`State`] with the data that lives only as long as the state does.
-///
 #[derive(Clone, Debug)]
 #[repr(u8)]
 #[allow(
@@ -55,7 +54,7 @@ impl<T: Scalar> Mode<T> {
             Self::Boot { .. } => State::Boot,
             Self::Disarmed => State::Disarmed,
             Self::Homing(_) => State::Homing,
-            Self::Active(active) if active.station.is_some() => State::KeepingStation,
+            Self::Active(active) if active.station.kept().is_some() => State::KeepingStation,
             Self::Active(_) => State::Active,
             Self::Held(_) => State::Held,
             Self::RampingDown(_) => State::RampingDown,
@@ -76,10 +75,7 @@ impl<T: Scalar> Mode<T> {
     /// Whether the leg is on its way, or brakes.
     pub fn moving(&self) -> bool {
         match self {
-            Self::Active(active) => {
-                let station = active.station.as_ref();
-                active.trajectory.moving() || station.is_some_and(Station::corrects)
-            }
+            Self::Active(active) => active.moving(),
             _ => self.brakes(),
         }
     }
@@ -115,10 +111,17 @@ impl<T: Scalar> Mode<T> {
 
     /// Leaves a leg that follows commands to itself, or lets one that keeps station follow them again: it goes on from where it is.
     /// False if that is not what the state is.
-    pub fn goes_on(&mut self, state: State) -> bool {
+    pub fn change_station(&mut self, state: State, shared: &Shared<T>) -> bool {
         match (self, state) {
-            (Self::Active(active), State::KeepingStation) => active.station = Some(Station::new()),
-            (Self::Active(active), State::Active) => active.station = None,
+            (Self::Active(active), State::KeepingStation) => {
+                active.station = StationKeeping::Keeping(Station::new());
+            }
+            (Self::Active(active), State::Active) => {
+                let target = shared.target.as_ref();
+                active
+                    .station
+                    .release(target.map(|target| &target.unstretched_m));
+            }
             _ => return false,
         }
         true

@@ -9,7 +9,6 @@ use crate::control::{
 };
 use crate::drive::Drive;
 use crate::jog::JogReport;
-
 use crate::settings::{Homing, Settings, SettingsError};
 use crate::supervisor::State;
 use leg_model::{Direction, Error, Scalar, inverse_kinematics};

@@ -47,6 +47,96 @@ impl<T: Scalar> StationLimits<T> {
             farthest_square: square(FARTHEST_RAD * lever_m),
         }
     }
+
+    /// The part of a way, with the sum of its squares, m², that is gone in a step.
+    #[inline(always)]
+    fn part(&self, square: T) -> T {
+        if square <= self.step_square {
+            T::one()
+        } else {
+            self.step_m / square.sqrt()
+        }
+    }
+
+    /// Goes a step of what was left of the way of a leg that follows commands again.
+    #[inline(always)]
+    fn release(&self, rest_m: &mut [T; 3]) {
+        let mut square = T::SUM_START;
+        for rest in &*rest_m {
+            square += *rest * *rest;
+        }
+        let kept = T::one() - self.part(square);
+        for rest in rest_m {
+            *rest *= kept;
+        }
+    }
+}
+
+/// Whether a leg that follows a target keeps station there.
+#[derive(Clone, Copy, Debug)]
+pub enum StationKeeping<T> {
+    /// It follows commands.
+    No,
+    /// It does.
+    Keeping(Station<T>),
+    /// It follows commands again, and goes the rest of a correction: by so much each tendon is longer yet, m.
+    Releasing([T; 3]),
+}
+
+impl<T: Scalar> StationKeeping<T> {
+    /// The station that is kept.
+    #[inline(always)]
+    pub const fn kept(&self) -> Option<&Station<T>> {
+        match self {
+            Self::Keeping(station) => Some(station),
+            Self::No | Self::Releasing(_) => None,
+        }
+    }
+
+    /// Whether the leg is not yet where it shall be.
+    pub fn corrects(&self) -> bool {
+        match self {
+            Self::No => false,
+            Self::Keeping(station) => station.corrects,
+            Self::Releasing(_) => true,
+        }
+    }
+
+    /// Lets the leg follow commands again; the lengths without tension that its tendons shall have, m, if there is a target.
+    pub fn release(&mut self, unstretched_m: Option<&[T; 3]>) {
+        *self = match (&*self, unstretched_m) {
+            (Self::Keeping(station), Some(unstretched_m)) => {
+                Self::Releasing(station.rest_m(unstretched_m))
+            }
+            _ => Self::No,
+        };
+    }
+
+    /// A step on the way to the lengths without tension that the tendons shall have, m: adds to `longer_m` what is left of it.
+    #[inline(always)]
+    pub fn step(
+        &mut self,
+        limits: &StationLimits<T>,
+        unstretched_m: &[T; 3],
+        longer_m: &mut [T; 3],
+    ) {
+        let rest_m = match self {
+            Self::No => return,
+            Self::Keeping(station) => station.step(limits, unstretched_m),
+            Self::Releasing(rest_m) => {
+                limits.release(rest_m);
+                *rest_m
+            }
+        };
+        let mut there = true;
+        for (longer, rest) in longer_m.iter_mut().zip(rest_m) {
+            *longer += rest;
+            there &= rest == T::zero();
+        }
+        if there && matches!(self, Self::Releasing(_)) {
+            *self = Self::No;
+        }
+    }
 }
 
 /// How far the tendons are corrected. What brakes a swing and what takes up the play of a gear is beside that.
@@ -71,58 +161,54 @@ impl<T: Scalar> Station<T> {
         }
     }
 
-    /// Whether the leg is not yet where it shall be.
-    pub fn corrects(&self) -> bool {
-        self.corrects
-    }
-
     /// Whether it would have to go farther than it may.
     #[inline(always)]
     pub fn too_far(&self) -> bool {
         self.too_far
     }
 
-    /// A step to the lengths without tension that the tendons shall have, m; adds to `longer_m` what is left of the way.
+    /// A step to the lengths without tension that the tendons shall have, m. What is left of the way after it, by which each tendon
+    /// stays longer, m.
     #[inline(never)]
-    pub fn limit(
-        &mut self,
-        limits: &StationLimits<T>,
-        unstretched_m: &[T; 3],
-        longer_m: &mut [T; 3],
-    ) {
+    fn step(&mut self, limits: &StationLimits<T>, unstretched_m: &[T; 3]) -> [T; 3] {
         let left_m = *self.left_m.get_or_insert(*unstretched_m);
         let (mut steps_m, mut square) = ([T::zero(); 3], T::SUM_START);
         for (i, step) in steps_m.iter_mut().enumerate() {
             *step = unstretched_m[i] - (left_m[i] + self.correction_m[i]);
             square += *step * *step;
         }
-        let share = self.share(limits, square);
+        let part = self.part(limits, square);
         let (mut sum, mut square) = (T::SUM_START, T::SUM_START);
         for (i, correction) in self.correction_m.iter_mut().enumerate() {
-            *correction += steps_m[i] * share;
+            *correction += steps_m[i] * part;
             sum += *correction;
             square += *correction * *correction;
-            longer_m[i] += left_m[i] + *correction - unstretched_m[i];
         }
         // What all tendons have in common tilts nothing.
         let tilting_square = square - sum * sum * T::from(1.0 / 3.0);
         self.too_far = !(tilting_square <= limits.farthest_square);
+        self.rest_m(unstretched_m)
+    }
+
+    /// What is left of the way to the lengths without tension that the tendons shall have, m.
+    fn rest_m(&self, unstretched_m: &[T; 3]) -> [T; 3] {
+        let mut rest_m = self.left_m.unwrap_or(*unstretched_m);
+        for (i, rest) in rest_m.iter_mut().enumerate() {
+            *rest += self.correction_m[i] - unstretched_m[i];
+        }
+        rest_m
     }
 
     /// The part of what is missing, with the sum of its squares, m², that is corrected in this step. A correction that has begun goes on
     /// to its end.
-    fn share(&mut self, limits: &StationLimits<T>, square: T) -> T {
-        let within = square <= limits.step_square;
+    fn part(&mut self, limits: &StationLimits<T>, square: T) -> T {
         self.corrects |= square > limits.dead_square;
         if !self.corrects {
             return T::zero();
         }
-        self.corrects = !within;
-        if within {
-            T::one()
-        } else {
-            limits.step_m / square.sqrt()
-        }
+        let part = limits.part(square);
+        self.corrects = part < T::one();
+        part
     }
 }
 
@@ -146,15 +232,13 @@ mod tests {
     }
 
     /// A step; what is left of the way after it.
-    fn limit(station: &mut Station<f64>, unstretched_m: [f64; 3]) -> [f64; 3] {
-        let mut longer_m = [0.0; 3];
-        station.limit(&limits(), &unstretched_m, &mut longer_m);
-        longer_m
+    fn step(station: &mut Station<f64>, unstretched_m: [f64; 3]) -> [f64; 3] {
+        station.step(&limits(), &unstretched_m)
     }
 
     fn left() -> Station<f64> {
         let mut station = Station::new();
-        assert_eq!(limit(&mut station, [0.0; 3]), [0.0; 3]);
+        assert_eq!(step(&mut station, [0.0; 3]), [0.0; 3]);
         station
     }
 
@@ -162,10 +246,22 @@ mod tests {
     fn steps(tip_m: f64) -> u32 {
         let mut station = left();
         let there = |_: &u32| {
-            let longer_m = limit(&mut station, tilting(tip_m));
-            longer_m.iter().all(|longer| longer.abs() < 1e-12)
+            let rest_m = step(&mut station, tilting(tip_m));
+            rest_m.iter().all(|rest| rest.abs() < 1e-12)
         };
         (0..100_000).find(there).unwrap()
+    }
+
+    /// What is left when the leg is taken over is gone no faster, and to its end.
+    #[test]
+    fn what_is_left_is_released_at_the_same_speed() {
+        let mut rest_m = tilting(3.8e-3);
+        let there = |_: &u32| {
+            limits().release(&mut rest_m);
+            rest_m == [0.0; 3]
+        };
+        let steps = (0..100_000).find(there).unwrap();
+        assert!((1_990..2_010).contains(&steps), "{steps}");
     }
 
     #[test]
@@ -179,8 +275,8 @@ mod tests {
     fn little_is_left_alone() {
         let (little, mut station) = (tilting(2.9e-5), left());
         for _ in 0..1_000 {
-            assert_eq!(limit(&mut station, little), little.map(|m| -m));
-            assert!(!station.corrects());
+            assert_eq!(step(&mut station, little), little.map(|m| -m));
+            assert!(!station.corrects);
         }
         assert!((10..25).contains(&steps(3.1e-5)));
     }
@@ -196,7 +292,7 @@ mod tests {
         ] {
             let mut station = left();
             for _ in 0..30_000 {
-                limit(&mut station, lengths_m);
+                step(&mut station, lengths_m);
             }
             assert_eq!(station.too_far(), too_far, "{lengths_m:?}");
         }

@@ -1,11 +1,12 @@
-//! The brake of the leg's swing, in every other cycle: what it asks of the tendons comes in the two cycles until its next step.
+//! The brake of the leg's swing and the pace of its station, in every other cycle: what they ask of the tendons comes in the two
+//! cycles until the next step.
 
 use super::shared::Shared;
-use super::station::Station;
+use super::station::StationKeeping;
 use crate::control::bounds;
 use leg_model::Scalar;
 
-/// By how much the tendons are longer than the trajectory asks; with what is kept from a leg that keeps station.
+/// By how much the tendons are longer than the trajectory asks.
 #[derive(Clone, Copy, Debug)]
 pub struct SwingBrake<T> {
     /// Whether the last cycle that had time for it braked, so that the next one searches for the pretension.
@@ -39,15 +40,15 @@ impl<T: Scalar> SwingBrake<T> {
         &mut self,
         shared: &mut Shared<T>,
         tensioned: bool,
-        station: Option<&mut Station<T>>,
+        station: &mut StationKeeping<T>,
     ) {
         let mut goals_m = if tensioned {
             lengths_m(shared)
         } else {
             [T::zero(); 3]
         };
-        if let (Some(station), Some(target)) = (station, &shared.target) {
-            station.limit(&shared.station, &target.unstretched_m, &mut goals_m);
+        if let Some(target) = &shared.target {
+            station.step(&shared.station, &target.unstretched_m, &mut goals_m);
         }
         for (i, step) in self.step_m.iter_mut().enumerate() {
             *step = (goals_m[i] - self.longer_m[i]) * T::HALF;

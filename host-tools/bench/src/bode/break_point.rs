@@ -5,7 +5,7 @@ use crate::stand::Stand;
 use leg_firmware::drive::Drive;
 use leg_firmware::sensors::{CODE_MAX, Sensors};
 use leg_firmware::supervisor::State;
-use leg_sim::emulated_leg::Between;
+use leg_sim::emulated_leg::SignalChange;
 
 /// A break point.
 #[derive(Clone, Debug)]
@@ -65,7 +65,7 @@ struct Tap<'a> {
     sides: Sides,
 }
 
-impl Between for Tap<'_> {
+impl SignalChange for Tap<'_> {
     fn sensors(&mut self, sensors: &mut Sensors) {
         let BreakPoint::Cells(cells) = self.at else {
             return;

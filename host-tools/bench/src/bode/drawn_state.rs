@@ -1,7 +1,7 @@
 //! A state of the leg that is drawn from the seed and its number.
 
 use super::feedback::TENSION_PARTS;
-use crate::draw::{PAYLOAD_KG, drawn, feasible, mixed, pose};
+use crate::draw::{PAYLOAD_KG, drawn, feasible, homed, numbered, pose};
 use fastrand::Rng;
 use leg_rig::plant_settings::PlantSettings;
 use leg_rig::rig_file::RigFile;
@@ -34,9 +34,8 @@ pub struct DrawnState {
 impl DrawnState {
     /// The state of a number, whose tensions stay within their bounds by what is added to them; none for a rig that has no such state.
     pub(super) fn new(seed: u64, rigs: &[(String, RigFile)], number: u64) -> Option<Self> {
-        let seed = mixed(seed, number);
+        let (seed, (rig, file)) = numbered(seed, rigs, number);
         let mut rng = Rng::with_seed(seed);
-        let (rig, file) = &rigs[(number % rigs.len() as u64) as usize];
         for _ in 0..TRIES {
             let pose_deg = pose(file, &mut rng);
             let payload_kg = drawn(&mut rng, PAYLOAD_KG);
@@ -53,11 +52,7 @@ impl DrawnState {
                     pretension_n,
                     seed,
                     file: *file,
-                    // A homed leg has tared its cells.
-                    plant: PlantSettings {
-                        cell_offset_n: [0.0; 3],
-                        ..file.plant
-                    },
+                    plant: homed(file),
                 });
             }
         }

@@ -102,8 +102,8 @@ impl Feedback {
     fn sweep(self, amplitude: f64) -> Sweep {
         let ([from_hz, to_hz], points, settle_s, window_s) = match self {
             Self::Servo => ([20.0, 700.0], 12, 0.05, 0.05),
-            Self::Damping => ([1.0, 100.0], 14, 0.5, 0.25),
-            Self::Tension => ([1.0, 100.0], 13, 0.8, 0.3),
+            Self::Damping => ([1.0, 400.0], 18, 0.5, 0.25),
+            Self::Tension => ([1.0, 400.0], 17, 0.8, 0.3),
             Self::Trim => ([0.2, 5.0], 5, 2.0, 0.3),
         };
         Sweep {

@@ -1,6 +1,6 @@
 //! A move that is drawn from the seed and its number.
 
-use crate::draw::{PAYLOAD_KG, between, drawn, feasible, mixed, pose};
+use crate::draw::{PAYLOAD_KG, between, drawn, feasible, homed, numbered, pose};
 use fastrand::Rng;
 use leg_base::angles;
 use leg_rig::plant_settings::PlantSettings;
@@ -45,9 +45,8 @@ impl Drawn {
         payload_kg: Option<f64>,
         number: u64,
     ) -> Option<Self> {
-        let seed = mixed(seed, number);
+        let (seed, (rig, file)) = numbered(seed, rigs, number);
         let mut rng = Rng::with_seed(seed);
-        let (rig, file) = &rigs[(number % rigs.len() as u64) as usize];
         for _ in 0..TRIES {
             let (begin_deg, end_deg) = (pose(file, &mut rng), pose(file, &mut rng));
             let drawn_kg = drawn(&mut rng, PAYLOAD_KG);
@@ -69,11 +68,7 @@ impl Drawn {
                     payload_kg,
                     pretension_n,
                     file: *file,
-                    // A homed leg has tared its cells.
-                    plant: PlantSettings {
-                        cell_offset_n: [0.0; 3],
-                        ..file.plant
-                    },
+                    plant: homed(file),
                 });
             }
         }

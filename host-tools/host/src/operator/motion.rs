@@ -1,4 +1,4 @@
-//! Homing and moving the leg, and leaving it in hold.
+//! Homing and moving the leg, and leaving it to itself or in hold.
 
 use super::command::{name, same_direction};
 use super::{Goal, Operator, OperatorError};
@@ -147,8 +147,7 @@ impl Operator {
                 return refuse(CommandRefusal::State(state));
             }
             _ if !telemetry.homed => return refuse(CommandRefusal::NotHomed),
-            State::Disarmed => self.command(Command::Arm)?,
-            State::KeepingStation => self.take_over(asked)?,
+            State::Disarmed | State::KeepingStation => self.command(Command::Arm)?,
             State::Held | State::Off => self.command(Command::Clear)?,
             // Another host's, or not yet ended by its silence: the commands that follow show it.
             State::Active | State::Boot | State::RampingDown => return Ok(()),
@@ -157,15 +156,6 @@ impl Operator {
             self.settle(asked)?;
         }
         Ok(())
-    }
-
-    /// Makes a leg that keeps station follow commands, once it has corrected what it has begun to: it would go the rest of that way
-    /// at once.
-    fn take_over(&mut self, asked: &'static str) -> Result<(), OperatorError> {
-        self.wait_until(asked, MOVE_TIME, |telemetry| {
-            telemetry.state != State::KeepingStation || !telemetry.moving
-        })?;
-        self.command(Command::Arm)
     }
 
     /// Waits until an armed leg is where it shall be, and stays so.

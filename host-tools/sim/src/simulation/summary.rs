@@ -98,8 +98,8 @@ pub struct Summary {
     pub ticks: u64,
     /// Lowest and highest true tension over all ticks, N.
     pub tension_range_n: [f64; 2],
-    /// Highest true tension while the motors followed commands or homed, N: where they are held or off, what acts on the leg
-    /// from outside decides alone.
+    /// Highest true tension while the motors followed commands, homed or kept station, N: where they are held or off, what acts on
+    /// the leg from outside decides alone.
     pub driven_max_n: f64,
     /// Against the shadow in f64.
     pub divergence: Divergence,

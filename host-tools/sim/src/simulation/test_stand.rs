@@ -177,7 +177,7 @@ impl<'a> TestStand<'a> {
         self.extremes.take(&truth, self.bounds_n);
         let summary = &mut self.summary;
         summary.tension_range_n = range_with_tensions(summary.tension_range_n, &truth);
-        if reply.motors.enabled && telemetry.state.follows() {
+        if reply.motors.enabled && telemetry.state.led() {
             let [_, highest] = range_with_tensions([0.0; 2], &truth);
             summary.driven_max_n = summary.driven_max_n.max(highest);
         }

@@ -9,9 +9,10 @@ use crate::sensors::{CODE_MAX, Sensors};
 use crate::settings::{OutOfRange, Settings, SettingsError};
 use crate::supervisor::{Fault, FaultSet, State};
 
-const DRIVEN: [State; 4] = [
+const DRIVEN: [State; 5] = [
     State::Homing,
     State::Active,
+    State::KeepingStation,
     State::Held,
     State::RampingDown,
 ];

@@ -48,6 +48,21 @@ fn a_leg_that_keeps_station_obeys_any_host() {
     assert_eq!(state(&mut first), State::Disarmed);
 }
 
+/// A hold does not wait for the end of a correction.
+#[test]
+fn a_hold_ends_a_correction_at_once() {
+    let leg = hanging_leg();
+    let mut operator = host(&leg, 1);
+    operator.reach(&lean(20.0)).unwrap();
+    leg.with_plant(|plant| plant.set_payload(2.0, 0.2));
+    operator.pause(Duration::from_millis(800)).unwrap();
+    assert!(telemetry(&mut operator).moving);
+    let begun = operator.now();
+    operator.reach(&Goal::default()).unwrap();
+    assert_eq!(state(&mut operator), State::Held);
+    assert!(operator.now() - begun < Duration::from_millis(300));
+}
+
 /// A move knows its payload where the leg kept station.
 #[test]
 fn a_loaded_move_takes_no_longer_from_station() {

@@ -1,0 +1,73 @@
+//! A leg that swings, and what interrupts its brake.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use leg_firmware::supervisor::State;
+use leg_rig::rig_file::RigFile;
+use leg_sim::link::InProcess;
+use leg_sim::scenario::Scenario;
+use leg_sim::simulation::{Simulation, Tick};
+
+/// A command takes the tick in which the swing is braked: many of them, one after the other, must not let the brake run on.
+#[test]
+fn commands_in_the_middle_of_a_swing_leave_the_leg_at_rest() {
+    let commands = "{ pretension_n = 70 },".repeat(8);
+    let burst = format!("{{ wait_s = 0.03 }}, {commands}").repeat(6);
+    let text = format!(
+        "title = \"burst\"\nsteps = [\n\
+         {{ await = {{ state = \"disarmed\", timeout_s = 1 }} }}, \"arm\", {{ wait_s = 0.5 }},\n\
+         {{ payload = {{ kg = 1.5, over_s = 0.3 }} }},\n\
+         {{ move = {{ azimuth_deg = 30, tilt_deg = 15 }} }}, {{ arrive = {{ then_s = 1, timeout_s = 5 }} }},\n\
+         \"mark\", {{ push = {{ azimuth_deg = 90, force_n = 5, for_s = 0.1 }} }}, {burst}\n\
+         {{ wait_s = 2 }},\n\
+         {{ measure = {{ name = \"tip\", quantity = \"tip_error_mm\", between = [0, 0.02] }} }},\n\
+         {{ measure = {{ name = \"tension\", quantity = \"tension_max_n\", between = [70, 130] }} }},\n]\n"
+    );
+    let scenario = Scenario::parse("burst", &text).unwrap();
+    let rig = RigFile::load(None).unwrap();
+    let simulation = Simulation::new(&scenario, &rig).unwrap();
+    let summary = simulation.run(&mut InProcess::new(), &mut |_| ()).unwrap();
+    assert!(
+        summary.passes(),
+        "{:#?} {:?}",
+        summary.measurements,
+        summary.faults
+    );
+}
+
+/// The motors of a leg that is stopped in the middle of a swing, while they brake it, go on by a tenth of a millimetre at the most.
+#[test]
+fn a_leg_that_swings_is_held_where_it_is() {
+    for wait_ms in [110, 130, 150, 170] {
+        let text = format!(
+            "title = \"stop\"\nsteps = [\n\
+             {{ await = {{ state = \"disarmed\", timeout_s = 1 }} }}, \"arm\", {{ wait_s = 0.5 }},\n\
+             {{ payload = {{ kg = 1.5, over_s = 0.3 }} }}, {{ wait_s = 1.5 }},\n\
+             {{ push = {{ azimuth_deg = 90, force_n = 6, for_s = 0.1 }} }},\n\
+             {{ wait_s = {} }}, \"stop\", {{ wait_s = 0.3 }},\n\
+             {{ measure = {{ name = \"tension\", quantity = \"tension_max_n\", between = [70, 165] }} }},\n]\n",
+            f64::from(wait_ms) / 1000.0
+        );
+        let scenario = Scenario::parse("stop", &text).unwrap();
+        let rig = RigFile::load(None).unwrap();
+        let simulation = Simulation::new(&scenario, &rig).unwrap();
+        let mut pulled_m: Vec<[f32; 3]> = Vec::new();
+        let mut braked = false;
+        let mut watch = |tick: &Tick<'_>| {
+            let telemetry = tick.telemetry;
+            if telemetry.state == State::Held {
+                pulled_m.push(telemetry.pulled_m);
+            } else {
+                braked |= tick.drive.duty.iter().any(|duty| duty.abs() > 0.05);
+            }
+        };
+        let summary = simulation.run(&mut InProcess::new(), &mut watch).unwrap();
+        assert!(summary.passes(), "{wait_ms} ms: {:?}", summary.measurements);
+        assert!(braked, "{wait_ms} ms: nothing was braked");
+        let (first, last) = (pulled_m[0], pulled_m[pulled_m.len() - 1]);
+        for (before, after) in first.iter().zip(last) {
+            let moved_m = (after - before).abs();
+            assert!(moved_m < 1e-4, "{wait_ms} ms: {moved_m} m");
+        }
+    }
+}
