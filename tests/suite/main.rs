@@ -56,6 +56,7 @@ mod sim {
     mod fmea_page;
     mod random_scenarios;
     mod ready_runs;
+    mod ring_down;
     mod scenario_bits;
     mod scenarios;
     mod station;

@@ -270,7 +270,8 @@ impl<T: Scalar> Leg<T> {
             pose: self.agreement.watches() && !self.supervisor.stopped(),
             counters: !latched.overlaps(FaultSet::SUSPECT_COUNTERS),
         };
-        self.mode = Mode::begin(state, &mut self.shared, measured, trust);
+        let steps_m = self.mode.steps_m(&self.shared);
+        self.mode = Mode::begin(state, &mut self.shared, measured, steps_m, trust);
         if state == State::Active {
             // The first target comes in the next tick: pose and load have been estimated until now.
             self.phase = Phase::Command;

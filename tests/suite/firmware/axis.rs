@@ -13,6 +13,7 @@ fn input(pulled_m: f64) -> AxisInput<f64> {
         tension_n: 0.0,
         f_max_n: 150.0,
         supply_v: 24.0,
+        duty_per_v: 1.0 / 24.0,
         lowest_m: f64::MIN,
     }
 }

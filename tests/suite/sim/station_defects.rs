@@ -126,7 +126,7 @@ fn a_cell_that_lies_after_a_payload_has_come_moves_the_tip_by_little() {
                 farthest_mm = farthest_mm.max(found.end_mm);
             } else {
                 assert_eq!(bench.state(), State::Held, "{:?}", defect(cell));
-                assert!(found.largest_mm < 4.0, "{:?}: {found:?}", defect(cell));
+                assert!(found.largest_mm < 4.5, "{:?}: {found:?}", defect(cell));
             }
         }
     }
@@ -177,7 +177,7 @@ fn a_push_to_the_maximum_tension_is_given_way_to() {
     let plant = bench.plant();
     plant.push(plant.across(60.0) * 9.0, 2.0, 0.0);
     let found = Excursion::new(&mut bench, home_m, 8.0);
-    assert!(found.largest_mm < 9.0 && found.end_mm < 0.1, "{found:?}");
+    assert!(found.largest_mm < 9.5 && found.end_mm < 0.1, "{found:?}");
     assert!(found.mm_per_s > 10.0, "it is held back: {found:?}");
     assert_eq!(bench.state(), State::KeepingStation);
     assert_eq!(faults(&bench), FaultSet::NONE);

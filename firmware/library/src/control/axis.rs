@@ -1,7 +1,7 @@
 //! One motor: position and speed with feed-forward, inside what voltage, current and tension allow.
 
 use super::{
-    CYCLE_TICKS, TICK_S,
+    CYCLE_TICKS, Friction, TICK_S,
     bounds::{clamp_symmetric, max, min},
 };
 use crate::settings::Settings;
@@ -49,6 +49,8 @@ pub struct Axis<T> {
     tracked_m: T,
     speed_m_per_s: T,
     integral_v: T,
+    /// The part of the integral that is fed against friction, V.
+    fed_v: T,
     voltage_v: T,
     /// The voltages since the last view.
     voltage_sum_v: T,
@@ -84,6 +86,8 @@ pub struct AxisInput<T> {
     pub f_max_n: T,
     /// The supply, V.
     pub supply_v: T,
+    /// Its inverse, 1/V; none of a supply that drives nothing.
+    pub duty_per_v: T,
     /// The tendon is not paid out beyond this, m, whatever its load cell says.
     pub lowest_m: T,
 }
@@ -118,6 +122,7 @@ impl<T: Scalar> Axis<T> {
             tracked_m: T::zero(),
             speed_m_per_s: T::zero(),
             integral_v: T::zero(),
+            fed_v: T::zero(),
             voltage_v: T::zero(),
             voltage_sum_v: T::zero(),
         }
@@ -147,14 +152,21 @@ impl<T: Scalar> Axis<T> {
         self.reference_m = pulled_m;
         self.step_m = T::zero();
         self.integral_v = T::zero();
+        self.fed_v = T::zero();
         self.voltage_v = T::zero();
     }
 
     /// Leads the axis to a goal by `share` of the way in each tick from now or, if that is too fast, more slowly.
     #[inline(always)]
     pub fn lead(&mut self, goal: &AxisGoal<T>, share: T) {
-        let fastest = min(goal.speed_m_per_s, self.gains.speed_max) * self.gains.tick_s;
-        self.step_m = clamp_symmetric((goal.pulled_m - self.reference_m) * share, fastest);
+        let fastest = min(goal.speed_m_per_s, self.gains.speed_max);
+        self.lead_within(goal.pulled_m, fastest * self.gains.tick_s, share);
+    }
+
+    /// Leads the axis to where its tendon shall be pulled in, m, by `share` of the way in each tick, but by no more than `step_max_m`.
+    #[inline(always)]
+    pub fn lead_within(&mut self, pulled_m: T, step_max_m: T, share: T) {
+        self.step_m = clamp_symmetric((pulled_m - self.reference_m) * share, step_max_m);
     }
 
     /// How far the motor goes in a tick, m, but no farther than it is led: at the maximum tension it stays behind.
@@ -166,6 +178,15 @@ impl<T: Scalar> Axis<T> {
     #[inline(always)]
     pub fn lead_by(&mut self, step_m: T) {
         self.step_m = step_m;
+    }
+
+    /// Feeds the voltage against friction at a tension that is asked for, N. The integral takes it, so that a tick of the servo costs no
+    /// more.
+    #[inline(always)]
+    pub fn feed_friction(&mut self, friction: &Friction<T>, tension_n: T) {
+        let fed_v = friction.voltage_v(self.step_m, tension_n);
+        self.integral_v += fed_v - self.fed_v;
+        self.fed_v = fed_v;
     }
 
     /// Follows the motor without driving it.
@@ -236,10 +257,6 @@ impl<T: Scalar> Axis<T> {
         }
         self.voltage_v = voltage;
         self.voltage_sum_v += voltage;
-        if input.supply_v > T::one() {
-            voltage / input.supply_v
-        } else {
-            T::zero()
-        }
+        voltage * input.duty_per_v
     }
 }

@@ -11,6 +11,10 @@ use leg_model::{
 };
 use nalgebra::Vector3;
 
+/// An error of the pretension that is not trimmed, N. What play and dead band of the motors leave is less; the sum of it would have them
+/// turn to and fro for ever.
+const TRIM_LEAST_N: f32 = 0.1;
+
 /// What the tendons shall do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target<T> {
@@ -190,7 +194,12 @@ impl<T: Scalar> TargetGenerator<T> {
     /// What is added to the pretension so that the measured one becomes it: for what the curves leave out.
     #[inline(always)]
     fn trim(&mut self, error: T) -> T {
-        self.trim_n = clamp_symmetric(self.trim_n + self.trim_gain * error, self.trim_max_n);
+        let missing = if error.abs() > T::from(TRIM_LEAST_N) {
+            error
+        } else {
+            T::zero()
+        };
+        self.trim_n = clamp_symmetric(self.trim_n + self.trim_gain * missing, self.trim_max_n);
         self.trim_n
     }
 }

@@ -6,7 +6,7 @@ use super::station::{Station, StationKeeping};
 use super::swing_brake::SwingBrake;
 use crate::command::Compensation;
 use crate::control::{
-    Axis, AxisGoal, CYCLE_S, CYCLE_TICKS, Knot, LoadEstimation, Measured, TargetDemand, Trajectory,
+    Axis, CYCLE_S, CYCLE_TICKS, Knot, LoadEstimation, Measured, TICK_S, TargetDemand, Trajectory,
     bounds,
 };
 use crate::set_point::{PointRefusal, SetPoint, StreamPart};
@@ -54,6 +54,7 @@ impl<T: Scalar> Active<T> {
         let compensated = shared.compensation != Compensation::Off;
         shared.targets.start(compensated);
         shared.damping.start();
+        shared.play.start();
         shared.stream.leave();
         shared.target = None;
         shared.estimate = None;
@@ -71,7 +72,7 @@ impl<T: Scalar> Active<T> {
             station: StationKeeping::No,
             off_station: false,
             stuck: false,
-            brake: SwingBrake::new(),
+            brake: SwingBrake::new(shared.play.behind_m()),
             slack: Slack {
                 left_m: taut.then(T::zero),
                 cycles: 0,
@@ -93,6 +94,9 @@ impl<T: Scalar> Active<T> {
             Phase::Pretension => {
                 if self.brake.takes_turn() {
                     self.brake.step(shared, self.tensioned, &mut self.station);
+                    if self.tensioned {
+                        shared.feed_friction();
+                    }
                     self.off_station = self.station.kept().is_some_and(Station::too_far);
                     Ok(())
                 } else {
@@ -254,24 +258,21 @@ impl<T: Scalar> Active<T> {
             }
         };
         let mut pulled_m = zero_m;
-        let behind_m = shared.play.behind_m();
         let longer_m = self.brake.advance();
         for (i, pulled) in pulled_m.iter_mut().enumerate() {
-            *pulled -= target.unstretched_m[i] + longer_m[i] + behind_m[i];
+            *pulled -= target.unstretched_m[i] + longer_m[i];
         }
+        let servo_m_per_s = shared.limits.servo_m_per_s;
         let speed_m_per_s = if taut {
-            shared.limits.servo_m_per_s
+            servo_m_per_s
         } else {
             self.reel_in(shared, &mut pulled_m);
-            shared.limits.ramp_m_per_s
+            bounds::min(shared.limits.ramp_m_per_s, servo_m_per_s)
         };
+        let step_max_m = speed_m_per_s * T::from(TICK_S);
         let per_ticks = T::one() / T::from(f32::from(CYCLE_TICKS));
         for (axis, &pulled_m) in shared.axes.iter_mut().zip(&pulled_m) {
-            let goal = AxisGoal {
-                pulled_m,
-                speed_m_per_s,
-            };
-            axis.lead(&goal, per_ticks);
+            axis.lead_within(pulled_m, step_max_m, per_ticks);
         }
         target.limited &= taut;
         shared.target = Some(target);

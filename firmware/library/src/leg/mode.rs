@@ -127,15 +127,26 @@ impl<T: Scalar> Mode<T> {
         true
     }
 
-    /// The mode of a state that begins now.
+    /// How far each motor goes in a tick on the leg's way, m. Those of a leg at rest only brake a swing or follow its load: what they do
+    /// then may be the error of a sensor, and is not gone on with.
+    #[inline(always)]
+    pub fn steps_m(&self, shared: &Shared<T>) -> [T; 3] {
+        match self {
+            Self::Active(active) if !active.trajectory.moving() => [T::zero(); 3],
+            _ => shared.axes.each_ref().map(Axis::moved_m),
+        }
+    }
+
+    /// The mode of a state that begins now, in which the motors went by `steps_m` in the last tick.
     pub fn begin(
         state: State,
         shared: &mut Shared<T>,
         measured: &Measured<T>,
+        steps_m: [T; 3],
         trust: Trust,
     ) -> Self {
         if state == State::Held && trust.counters {
-            let held = Held::braking(shared.axes.each_ref().map(Axis::moved_m));
+            let held = Held::braking(steps_m);
             if held.brakes() {
                 shared.ignore_tensions();
                 return Self::Held(held);

@@ -3,9 +3,9 @@
 use super::station::StationLimits;
 use crate::command::Compensation;
 use crate::control::{
-    Axis, AxisInput, CYCLE_TICKS, Estimate, Estimator, JogBounds, LoadEstimation, Measured,
-    Mechanism, MotionLimits, Play, PretensionSearch, Stream, StreamLimits, SwingDamping, Target,
-    TargetGenerator, bounds, ticks,
+    Axis, AxisInput, CYCLE_TICKS, Estimate, Estimator, Friction, JogBounds, LoadEstimation,
+    Measured, Mechanism, MotionLimits, Play, PretensionSearch, Stream, StreamLimits, SwingDamping,
+    Target, TargetGenerator, bounds, ticks,
 };
 use crate::drive::Drive;
 use crate::jog::JogReport;
@@ -46,6 +46,7 @@ pub struct Shared<T> {
     /// What the last jog saw.
     pub jog_report: Option<JogReport<T>>,
     pub station: StationLimits<T>,
+    pub friction: Friction<T>,
 }
 
 /// Slack of each tendon of a relaxed leg whose zero is known, m: more than the servo leaves, and little enough that the tip of a
@@ -132,6 +133,7 @@ impl<T: Scalar> Shared<T> {
             mechanism,
             jog_report: None,
             station: StationLimits::new(settings),
+            friction: Friction::new(settings),
         })
     }
 
@@ -208,6 +210,15 @@ impl<T: Scalar> Shared<T> {
         self.estimate.as_ref().map(|estimate| estimate.residual_m)
     }
 
+    /// Feeds each motor the voltage against its friction, at the tensions of the last target.
+    #[inline(always)]
+    pub fn feed_friction(&mut self) {
+        let Some(target) = &self.target else { return };
+        for (axis, &tension_n) in self.axes.iter_mut().zip(&target.tensions_n) {
+            axis.feed_friction(&self.friction, tension_n);
+        }
+    }
+
     /// The duties of a tick: none where the motors rest.
     #[inline(always)]
     pub fn drive(&mut self, enabled: bool, turns: bool, measured: &Measured<T>) -> Drive<T> {
@@ -218,12 +229,19 @@ impl<T: Scalar> Shared<T> {
         if !turns {
             return drive;
         }
+        let supply_v = measured.supply_v;
+        let duty_per_v = if supply_v > T::one() {
+            T::one() / supply_v
+        } else {
+            T::zero()
+        };
         for (i, axis) in self.axes.iter_mut().enumerate() {
             drive.duty[i] = axis.drive(&AxisInput {
                 pulled_m: measured.pulled_m[i],
                 tension_n: measured.tensions_n[i],
                 f_max_n: self.f_max_n,
-                supply_v: measured.supply_v,
+                supply_v,
+                duty_per_v,
                 lowest_m: self.lowest_m[i],
             });
         }

@@ -6,7 +6,7 @@ use super::station::StationKeeping;
 use crate::control::bounds;
 use leg_model::Scalar;
 
-/// By how much the tendons are longer than the trajectory asks.
+/// By how much the tendons are longer than the trajectory asks, and their motors behind.
 #[derive(Clone, Copy, Debug)]
 pub struct SwingBrake<T> {
     /// Whether the last cycle that had time for it braked, so that the next one searches for the pretension.
@@ -17,11 +17,11 @@ pub struct SwingBrake<T> {
 }
 
 impl<T: Scalar> SwingBrake<T> {
-    /// At rest.
-    pub fn new() -> Self {
+    /// At rest, with motors that are so far behind their screws, m.
+    pub fn new(behind_m: &[T; 3]) -> Self {
         Self {
             braked: false,
-            longer_m: [T::zero(); 3],
+            longer_m: *behind_m,
             step_m: [T::zero(); 3],
         }
     }
@@ -49,6 +49,13 @@ impl<T: Scalar> SwingBrake<T> {
         };
         if let Some(target) = &shared.target {
             station.step(&shared.station, &target.unstretched_m, &mut goals_m);
+            let mut lengths_m = target.unstretched_m;
+            for (length, goal) in lengths_m.iter_mut().zip(goals_m) {
+                *length += goal;
+            }
+            for (goal, lead) in goals_m.iter_mut().zip(shared.play.lead_m(&lengths_m)) {
+                *goal += lead;
+            }
         }
         for (i, step) in self.step_m.iter_mut().enumerate() {
             *step = (goals_m[i] - self.longer_m[i]) * T::HALF;

@@ -20,7 +20,7 @@ fields! {
         /// Time in which the compensation of the load comes and goes.
         load_time_s ["s"]: 1e-3..=60.0 = 0.6;
         /// Damping ratio that is asked of the tendons for the leg's first mode, of which lag leaves half or more; 0 for none.
-        damping_ratio ["1"]: 0.0..=0.5 = 0.4;
+        damping_ratio ["1"]: 0.0..=0.5 = 0.22;
     }
 }
 
@@ -53,7 +53,7 @@ fields! {
         /// Play of the gear, as travel of the tendon.
         play_m ["m"]: 0.0..=1e-3 = 2.3873242e-6;
         /// Part of a new reading of the counter that the tracked speed takes up.
-        tracking ["1"]: 0.01..=1.0 = 0.3;
+        tracking ["1"]: 0.01..=1.0 = 0.4;
         /// Below the maximum tension by this much a tendon is pulled ever more slowly.
         f_max_band_n ["N"]: 0.1..=1e3 = 4.0;
     }

@@ -18,7 +18,7 @@ const HIDDEN_DEG: f64 = 2.0;
 const SHOWN: Bars = Bars {
     off_mm: 0.25,
     swing_mm: 0.15,
-    settled_s: 1.5,
+    settled_s: 0.8,
     rest_mm: 0.02,
 };
 

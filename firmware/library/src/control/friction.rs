@@ -1,0 +1,95 @@
+//! The voltage that a motor needs against the friction of motor, gear and screw, fed forward by where it is led.
+
+use super::{TICK_S, bounds::min};
+use crate::settings::Settings;
+use leg_model::Scalar;
+
+/// Part of the current of friction in the settings that is fed: they allow for 2.6 times what the data sheet of a motor gives, so
+/// that no monitor errs. More than there is would drive a motor that shall stand.
+const FRICTION_PART: f32 = 1.0 / 2.6;
+
+/// The same of the current of a pull: the settings allow for 5 % more.
+const PULL_PART: f32 = 1.0 / 1.05;
+
+/// Speed of a tendon below which its direction is that of noise, m/s: nothing is fed.
+const LEAST_M_PER_S: f32 = 1e-5;
+
+/// How much faster the whole friction is fed, m/s.
+const WHOLE_M_PER_S: f32 = 1e-4;
+
+/// The friction of the motors, as voltages.
+#[derive(Clone, Copy, Debug)]
+pub struct Friction<T> {
+    /// Without a tension, V.
+    dry_v: T,
+    /// By the tension, V/N: while the tendon is reeled in, and while it is paid out.
+    inwards_v_per_n: T,
+    outwards_v_per_n: T,
+}
+
+impl<T: Scalar> Friction<T> {
+    /// What the settings tell. Of a screw with the efficiency η a pull takes 1/η of the frictionless torque to reel in, and 1/η − 2
+    /// to pay out. η is what is left of the back-EMF constant's torque when a pull takes its current; the loss of the gear is
+    /// counted as the screw's.
+    pub fn new(settings: &Settings) -> Self {
+        let servo = &settings.servo;
+        let pull_a_per_n = PULL_PART * servo.pull_a_per_n;
+        let twice_efficiency = 2.0 / (servo.back_emf_v_s_per_m * pull_a_per_n).max(1.0);
+        let inwards_v_per_n = servo.resistance_ohm * pull_a_per_n;
+        let outwards_v_per_n = inwards_v_per_n * (1.0 - twice_efficiency).max(0.0);
+        Self {
+            dry_v: T::from(servo.resistance_ohm * FRICTION_PART * servo.friction_a),
+            inwards_v_per_n: inwards_v_per_n.into(),
+            outwards_v_per_n: outwards_v_per_n.into(),
+        }
+    }
+
+    /// The voltage of a motor that is led by `step_m` in a tick, at a tension that is asked for, N: a load cell that lies drives no motor
+    /// here.
+    #[inline(always)]
+    pub fn voltage_v(&self, step_m: T, tension_n: T) -> T {
+        let faster_m = step_m.abs() - T::from(LEAST_M_PER_S * TICK_S);
+        if !(faster_m > T::zero()) {
+            return T::zero();
+        }
+        let part = min(faster_m * T::from(1.0 / (WHOLE_M_PER_S * TICK_S)), T::one());
+        if step_m > T::zero() {
+            part * (self.dry_v + self.inwards_v_per_n * tension_n)
+        } else {
+            -part * (self.dry_v + self.outwards_v_per_n * tension_n)
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::Friction;
+    use crate::control::TICK_S;
+    use crate::settings::Settings;
+
+    /// By the data of the default motor: 0.9 mN·m at 23.4 mN·m/A and 2.32 Ω are 0.089 V; a pull of 100 N takes 0.58 A to reel in, of
+    /// which a screw and gear of 27 % together leave 46 % to pay out.
+    #[test]
+    fn the_friction_of_the_default_motor_is_fed() {
+        let friction = Friction::<f64>::new(&Settings::for_table_1().unwrap());
+        let voltage = |mm_per_s: f64, tension_n: f64| {
+            friction.voltage_v(mm_per_s * 1e-3 * f64::from(TICK_S), tension_n)
+        };
+        for (mm_per_s, tension_n, expected_v) in [
+            (5.0, 0.0, 0.089),
+            (-5.0, 0.0, -0.089),
+            (5.0, 100.0, 0.089 + 1.33),
+            (-5.0, 100.0, -0.089 - 0.61),
+            (0.06, 0.0, 0.5 * 0.089),
+            (0.01, 100.0, 0.0),
+            (-0.01, 100.0, 0.0),
+        ] {
+            let found_v = voltage(mm_per_s, tension_n);
+            assert!(
+                (found_v - expected_v).abs() < 0.02,
+                "{mm_per_s} mm/s, {tension_n} N: {found_v} V"
+            );
+        }
+    }
+}
