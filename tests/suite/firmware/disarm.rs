@@ -2,6 +2,7 @@
 
 use super::still_leg::StillLeg;
 use leg_firmware::command::{Command, CommandRefusal};
+use leg_firmware::sensors::CODE_MAX;
 use leg_firmware::supervisor::{Fault, State};
 
 /// Ticks after which lengths and tensions are watched: 0.15 s.
@@ -51,9 +52,10 @@ fn a_leg_that_was_stopped_before_it_was_watched_is_paid_out_where_it_is() {
 fn a_leg_with_a_fault_is_paid_out_where_it_is() {
     let mut still = StillLeg::armed();
     still.run(WATCHED_TICKS);
-    still.run_silent(2000);
+    still.sensors.temperature_code = CODE_MAX;
+    still.run(400);
     let telemetry = still.leg.telemetry();
-    assert!(telemetry.faults.has(Fault::CommandTimeout));
+    assert!(telemetry.faults.has(Fault::OverTemperature));
     assert_eq!(telemetry.state, State::Held);
     is_paid_out(&mut still);
 }

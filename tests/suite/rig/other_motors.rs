@@ -189,7 +189,7 @@ fn what_is_doubtful_is_a_warning_with_its_line() {
         ),
         ("counts_per_turn = 16\n", "at the tip"),
         (
-            "[control.servo]\nspeed_gain_v_s_per_m = 2700\n",
+            "[control.servo]\nspeed_gain_v_s_per_m = 3500\n",
             "phase margin",
         ),
     ] {
