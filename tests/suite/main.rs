@@ -72,6 +72,7 @@ mod board {
     mod chip_guards;
     mod chip_hang;
     mod chip_latency;
+    mod chip_line;
     mod chip_mistakes;
     mod chip_scenarios;
     mod chip_speed;

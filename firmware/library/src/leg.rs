@@ -285,7 +285,6 @@ impl<T: Scalar> Leg<T> {
     /// Starts in the place of another leg on the same board: with its count of ticks and the faults that nobody has cleared.
     /// The commands that wait are refused, and their outcomes reported from here.
     pub fn inherit_from(&mut self, before: &mut Self) {
-        before.queue.supersede();
         self.queue.inherit_outcomes(&mut before.queue);
         self.tick = before.tick;
         self.mode = Mode::boot();

@@ -1,14 +1,15 @@
 //! The control interrupt, and the leg that it shares with the tasks below it.
 //!
 //! The leg is touched by the interrupt, and by tasks inside short critical sections only, so that neither ever finds it
-//! taken; if it did, the tick would be left out and be reported as late, not panic.
+//! taken; if it did, the tick would be left out and be reported as late, not panic. These sections mask every interrupt;
+//! those of the drivers do not delay a tick: see `task_sections`.
 
 use crate::check_ins::CHECK_INS;
 use crate::nucleo::Nucleo;
 use crate::tick_watchdog;
 use core::cell::RefCell;
+use cortex_m::interrupt::Mutex;
 use cortex_m::peripheral::DWT;
-use critical_section::Mutex;
 use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::InterruptExt;
 use leg_firmware::board::{self, LowerHalf, TickTimer, WatchedTask};
@@ -52,7 +53,7 @@ fn ADC1_2() {
 /// What `body` makes of the control; `None` before [`start`].
 #[inline(always)]
 fn with_control<R>(body: impl FnOnce(&mut Control) -> R) -> Option<R> {
-    critical_section::with(|section| {
+    cortex_m::interrupt::free(|section| {
         let mut control = CONTROL.borrow(section).try_borrow_mut().ok()?;
         control.as_mut().map(body)
     })
@@ -69,9 +70,10 @@ pub fn start(board: Nucleo, leg: &'static mut SensingLeg<f32>) {
         leg,
         timer: TickTimer::new(),
     };
-    critical_section::with(|section| CONTROL.replace(section, Some(control)));
+    cortex_m::interrupt::free(|section| CONTROL.borrow(section).replace(Some(control)));
     interrupt::ADC1_2.unpend();
-    // SAFETY: all critical sections stop every interrupt and rely on no mask.
+    // SAFETY: the sections of this module stop every interrupt, those of the tasks share nothing with this one, and none
+    // relies on its mask.
     unsafe { interrupt::ADC1_2.enable() };
 }
 

@@ -44,6 +44,7 @@ mod slow_sensors;
 mod start;
 mod supply_watch;
 mod switches;
+mod task_sections;
 mod tick_watchdog;
 mod watchdog;
 
@@ -56,10 +57,10 @@ defmt::timestamp!("{=u64:us}", embassy_time::Instant::now().as_micros());
 async fn main(spawner: Spawner) {
     hot::load();
     let origin = fatal::origin();
+    priorities::set();
     let peripherals = clocks::start();
     memory_guard::set();
     clocks::watch();
     supply_watch::start();
-    priorities::set();
     start::start(spawner, peripherals, origin).await;
 }

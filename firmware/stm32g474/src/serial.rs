@@ -2,8 +2,11 @@
 
 use crate::link::{REPORT_MS, Session};
 use embassy_futures::select::{Either, select};
+use embassy_stm32::interrupt::{self, InterruptExt};
 use embassy_stm32::peripherals::{LPUART1, PA2, PA3};
-use embassy_stm32::usart::{BufferedInterruptHandler, BufferedUart, Config, ConfigError};
+use embassy_stm32::usart::{
+    BufferedInterruptHandler, BufferedUart, BufferedUartTx, Config, ConfigError,
+};
 use embassy_stm32::{Peri, bind_interrupts};
 use embassy_time::Timer;
 use embedded_io_async::{Read, Write};
@@ -66,7 +69,21 @@ pub async fn serve(uart: BufferedUart<'static>, session: &'static mut Session) {
             // There is room: it was just checked.
             let _ = chunk.push(byte);
         }
-        // The line has no flow control, so it takes every byte in its time.
-        let _ = to_host.write_all(&chunk).await;
+        send(&mut to_host, &chunk).await;
     }
+}
+
+/// Hands bytes over to the line, which has no flow control and takes every byte in its time.
+///
+/// Where there is no room for all of them, the driver of embassy-stm32 0.6.0 takes none, and does not wake who waits for
+/// room: so it is asked again. It starts the line only if nothing was left to send when it began to copy, though the last
+/// byte may leave meanwhile: so its interrupt is asked for whatever was left.
+async fn send(to_host: &mut BufferedUartTx<'static>, bytes: &[u8]) {
+    if bytes.is_empty() {
+        return;
+    }
+    while let Either::Second(()) =
+        select(to_host.write(bytes), Timer::after_millis(REPORT_MS)).await
+    {}
+    interrupt::LPUART1.pend();
 }

@@ -248,10 +248,9 @@ impl Processor {
     #[must_use]
     pub fn holds_off(&self, interrupt: u16) -> bool {
         let exception = Exception(FIRST_INTERRUPT + interrupt);
-        let masked = self.core.regs().primask;
+        let reached = self.core.execution_priority();
         self.core.with_sys(|system| {
-            let outranked = system.active_priority() <= system.priority_of(exception);
-            !system.is_active(exception) && (masked || outranked)
+            !system.is_active(exception) && reached <= system.priority_of(exception)
         })
     }
 

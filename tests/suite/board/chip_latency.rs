@@ -3,52 +3,105 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::common::chip::{
-    LatencyMeter, MS, image, other_settings, send, started_with, vary_cells,
+    LatencyMeter, MS, identity, image, other_settings, send, started_with, vary_cells,
 };
 use crate::common::chip_bus::{ChipBus, ChipBusPort};
 use leg_boards::chip::LATENCY_CYCLES_MAX;
 use leg_boards::image::FirmwareImage;
-use leg_firmware::can::LegAddress;
-use leg_firmware::host_link::HostRequest;
+use leg_firmware::can::{Identifier, LegAddress, Segmenter};
+use leg_firmware::command::Command;
+use leg_firmware::frame::{self, Decoder, MAX_FRAME};
+use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest};
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{HostIdentity, Operator};
 use leg_host::transport::can::CanTransport;
 use std::path::Path;
 use stm32g474_emulator::board::Board;
+use stm32g474_emulator::chip::Chip;
 use stm32g474_emulator::image::Image;
 
-/// How often the host asks on the serial line, once in a millisecond.
-const TALK_MS: u64 = 120;
+/// How often the host saves on the serial line: with two records in a page, some saves erase.
+const SAVES: usize = 3;
 
-/// How often the host asks on CAN; it saves every twentieth time: with two records in a page, some saves erase.
+/// The longest that a request on the serial line takes, ms.
+const REPLY_MS: u64 = 200;
+
+/// How often the host asks on CAN; it saves every twentieth time.
 const ROUNDS: u64 = 60;
+
+/// Commands on CAN one after another: more than the leg's queue holds, faster than its cycles execute them.
+const FLOOD: u16 = 24;
+
+/// When something else follows the commands, µs after the first: from the first refusal for want of room on, at places of
+/// the cycle that differ.
+const FLOOD_US: [u64; 6] = [900, 1_100, 1_300, 1_500, 1_700, 1_900];
+
+/// What follows has been sent and obeyed by then, µs.
+const FLOOD_END_US: u64 = 10_000;
+
+fn commanded(command: Command) -> HostRequest {
+    let host = HostIdentity::FIXED.id;
+    HostRequest::Command { host, command }
+}
+
+/// One command of each kind, with zeros in it.
+fn every_command() -> impl Iterator<Item = Command> {
+    (0..).map_while(|kind| {
+        let mut bytes = [0; MAX_FRAME];
+        bytes[0] = kind;
+        postcard::from_bytes(&bytes).ok()
+    })
+}
+
+/// Asks for something, and measures until the reply.
+fn ask(chip: &mut Chip, meter: &mut LatencyMeter, request: &HostRequest) -> HostReply {
+    send(chip, request).unwrap();
+    let mut decoder = Decoder::new();
+    let end = chip.cycle() + REPLY_MS * MS;
+    while chip.cycle() < end {
+        vary_cells(chip);
+        meter.run(chip, chip.cycle() + MS / 2);
+        while let Some(sent) = chip.peripherals().devices.lpuart.host_receive() {
+            // What the leg sends by itself has the number 0.
+            if let Some(Ok(frame)) = decoder.push(sent.byte)
+                && frame.sequence != 0
+            {
+                return frame.message().unwrap();
+            }
+        }
+    }
+    panic!("no reply to {request:?}")
+}
 
 /// The latest on the serial line, cycles.
 fn by_serial(image: &Path) -> (u64, u32) {
     let mut session = started_with(image, Board::default(), 10).unwrap();
     let chip = session.chip().unwrap();
+    identity(chip).unwrap();
     let mut meter = LatencyMeter::new().unwrap();
-    let settings = other_settings().unwrap();
-    for ms in 0..TALK_MS {
-        send(chip, &HostRequest::Telemetry).unwrap();
-        let request = match ms {
-            5 => Some(HostRequest::SetSettings(settings.clone())),
-            30 | 60 | 90 => Some(HostRequest::SaveSettings),
-            _ => None,
-        };
-        if let Some(request) = request {
-            send(chip, &request).unwrap();
-        }
-        vary_cells(chip);
-        meter.run(chip, chip.cycle() + MS);
+    let save = vec![HostRequest::SaveSettings; SAVES];
+    let settings = HostRequest::SetSettings(other_settings().unwrap());
+    for request in [HostRequest::Stream(1), settings].into_iter().chain(save) {
+        let reply = ask(chip, &mut meter, &request);
+        assert_eq!(reply, HostReply::Done, "{request:?}");
+    }
+    let questions = [
+        HostRequest::Sensors,
+        HostRequest::JogReport,
+        HostRequest::GetSettings,
+    ];
+    for request in every_command().map(commanded).chain(questions) {
+        let reply = ask(chip, &mut meter, &request);
+        let refused = HostReply::Refused(HostRefusal::NotIdentified);
+        assert_ne!(reply, refused, "{request:?}");
     }
     meter.worst
 }
 
-/// The longest on either line, cycles, and the function in which it ends.
-pub fn latest(image: &Path) -> [(u64, String); 2] {
+/// The longest on the serial line, on CAN, and where commands wait, cycles, and the function in which it ends.
+pub fn latest(image: &Path) -> [(u64, String); 3] {
     let parsed = Image::parse(&std::fs::read(image).unwrap()).unwrap();
-    [by_serial(image), by_can(image)].map(|(cycles, place)| {
+    [by_serial(image), by_can(image), by_flood(image)].map(|(cycles, place)| {
         let function = parsed.function_at(place).unwrap_or("no function");
         (cycles, function.to_owned())
     })
@@ -71,11 +124,47 @@ fn by_can(image: &Path) -> (u64, u32) {
     bus.borrow().worst_latency()
 }
 
+/// The latest where so many commands wait that one of them finds no room, and a stop or new settings end them all.
+fn by_flood(image: &Path) -> (u64, u32) {
+    let leg = LegAddress::ALL[0];
+    let bus = ChipBus::new(image, &[leg]).unwrap();
+    let line = Box::new(CanTransport::new(ChipBusPort::attach(&bus), leg));
+    Operator::open(line, HostIdentity::FIXED, CancelFlag::default()).unwrap();
+    let mut ordinary = Segmenter::new(Identifier::ToLeg(leg));
+    let mut urgent = Segmenter::new(Identifier::Urgent(leg));
+    let send = |segmenter: &mut Segmenter, number, request: &HostRequest| {
+        let mut out = [0; MAX_FRAME];
+        let link_frame = frame::encode(number, request, &mut out).unwrap();
+        for segment in segmenter.segments(link_frame).unwrap() {
+            bus.borrow_mut().send(segment);
+        }
+    };
+    let settings = HostRequest::SetSettings(other_settings().unwrap());
+    for after_us in FLOOD_US {
+        for (ending, is_urgent) in [(&commanded(Command::Stop), true), (&settings, false)] {
+            for number in 0..FLOOD {
+                send(&mut ordinary, number + 1, &commanded(Command::KeepAlive));
+            }
+            bus.borrow_mut().pass(after_us);
+            let segmenter = if is_urgent {
+                &mut urgent
+            } else {
+                &mut ordinary
+            };
+            send(segmenter, FLOOD + 1, ending);
+            bus.borrow_mut().pass(FLOOD_END_US);
+        }
+    }
+    bus.borrow().worst_latency()
+}
+
 #[test]
 fn nothing_delays_the_control_interrupt_for_longer_than_is_allowed() {
     let image = image(FirmwareImage::Stm32g474).unwrap();
     let latest = latest(&image);
-    eprintln!("latest control interrupt by serial line and CAN, cycles: {latest:?}");
+    eprintln!(
+        "latest control interrupt by serial line, by CAN and where commands wait, cycles: {latest:?}"
+    );
     assert!(
         latest
             .iter()

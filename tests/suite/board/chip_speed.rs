@@ -9,8 +9,12 @@ use std::path::Path;
 use std::process::Command;
 
 /// Lowest ratio of the chip's driven ticks in a second of the processor's time to those of QEMU: it depends on the machine less
-/// than either. Beside other work 0.11 was seen.
+/// than either. It asks 2 000 ticks of the chip where QEMU does 27 600; 0.12 to 0.15 are reached there, and 0.11 was seen beside
+/// other work.
 const RATIO_MIN: f64 = 0.075;
+
+/// QEMU's fastest of so many counts: its run takes 0.3 s, and beside other work twice as long, which would hide a slow chip.
+const QEMU_RUNS: usize = 3;
 
 /// At most so much memory.
 const MEMORY_MAX_MIB: f64 = 200.0;
@@ -50,7 +54,10 @@ fn the_chip_is_fast_enough_and_small_enough() {
     let directory = tempfile::tempdir().unwrap();
     let scenario = directory.path().join("homing.toml");
     std::fs::write(&scenario, HOMING).unwrap();
-    let [[chip, memory], [qemu, _]] = ["chip", "qemu"].map(|on| run(&scenario, on));
+    let [chip, memory] = run(&scenario, "chip");
+    let qemu = (0..QEMU_RUNS)
+        .map(|_| run(&scenario, "qemu")[0])
+        .fold(0.0, f64::max);
     eprintln!(
         "ticks in a second of the processor: {chip:.0} on the chip, {qemu:.0} under QEMU, ratio {:.2}; {memory:.0} MiB",
         chip / qemu

@@ -313,6 +313,30 @@ fn commands_that_mean_nothing_now_are_refused_by_name() {
     assert_eq!(bench.leg.state(), State::Disarmed);
 }
 
+/// What a stop overtakes is refused before a tick comes, and leaves its room to others.
+#[test]
+fn what_a_stop_overtakes_is_refused_at_once_and_in_order() {
+    let mut bench = Bench::new(Some([0.2; 3]));
+    assert_eq!(bench.obey(Command::Arm), Ok(()));
+    for number in 0..8 {
+        assert!(bench.leg.command(number, Command::KeepAlive));
+    }
+    assert!(bench.leg.command(8, Command::Stop));
+    for number in 9..16 {
+        assert!(bench.leg.command(number, Command::KeepAlive));
+    }
+    assert!(!bench.leg.command(16, Command::KeepAlive));
+    let outcomes: Vec<_> = std::iter::from_fn(|| bench.leg.outcome()).collect();
+    let refused = |number| Outcome {
+        number,
+        result: Err(CommandRefusal::Superseded),
+    };
+    assert_eq!(outcomes, (0..8).map(refused).collect::<Vec<_>>());
+    bench.run(u16::from(CYCLE_TICKS));
+    let result = Ok(());
+    assert_eq!(bench.leg.outcome(), Some(Outcome { number: 8, result }));
+}
+
 /// A stop goes before everything that waits, and what waited is told so.
 #[test]
 fn a_stop_overtakes_what_waits() {

@@ -25,15 +25,21 @@ mistakes! {
         "",
         "does not begin the control interrupt's handler within 423 cycles",
     );
+    section_of_the_tasks_in_the_control_interrupt: board(
+        "firmware/stm32g474/src/control.rs",
+        "        CHECK_INS.check_in(WatchedTask::Control);\n",
+        "        critical_section::with(|_| CHECK_INS.check_in(WatchedTask::Control));\n",
+        "was reset (Software)",
+    );
     control_interrupt_at_a_lower_priority: board(
         "firmware/stm32g474/src/priorities.rs",
-        "ADC1_2.set_priority(Priority::P0)",
+        "ADC1_2.set_priority(CONTROL)",
         "ADC1_2.set_priority(Priority::P7)",
         "the control interrupt ADC1_2 does not preempt",
     );
     control_interrupt_late: Mistake {
         file: "firmware/stm32g474/src/priorities.rs",
-        right: "ADC1_2.set_priority(Priority::P0)",
+        right: "ADC1_2.set_priority(CONTROL)",
         wrong: "ADC1_2.set_priority(Priority::P7)",
         run: latest,
         report: "cycles after its interrupt",
