@@ -72,6 +72,11 @@ pub fn settle() {
     write(CrashRecord::empty(0));
 }
 
+/// Whether the program has ended: nothing but its report is left.
+pub fn ending() -> bool {
+    FAILING.load(Ordering::Relaxed)
+}
+
 /// Ends everything, safely.
 pub fn end(text: &ShortText) -> ! {
     cortex_m::interrupt::disable();

@@ -4,6 +4,7 @@
 //! shares nothing with them, and takes no such section itself. What it shares with the tasks is in `control`, whose sections
 //! mask every interrupt.
 
+use crate::fatal;
 use crate::priorities::CONTROL;
 use core::arch::asm;
 use core::sync::atomic::{Ordering, compiler_fence};
@@ -32,7 +33,8 @@ unsafe impl Impl for TaskSection {
         unsafe {
             asm!("mrs {}, IPSR", out(reg) exception, options(nomem, nostack, preserves_flags));
         }
-        if exception == CONTROL_EXCEPTION {
+        // The last report of a program that has ended masks every interrupt by itself.
+        if exception == CONTROL_EXCEPTION && !fatal::ending() {
             panic!("a section of the tasks in the control interrupt");
         }
         let before = basepri::read();
