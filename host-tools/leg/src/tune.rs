@@ -106,7 +106,7 @@ fn measure(
         bar.set_message("the leg is homed, and its pretension changed");
         bar.tick();
         measure_swing(operator, plan, rig, &mut |swing| {
-            let hz = swing.ring.frequency_hz.value;
+            let hz = swing.frequency_hz.value;
             bar.set_message(format!("{:.0} N: {hz:.2} Hz", swing.pretension_n));
             bar.tick();
         })

@@ -111,7 +111,7 @@ fn swing_rows(swings: &Swings, rig: &RigFile) -> Vec<Row> {
     let first_mode = swings.all.iter().map(|swing| Row {
         name: format!("first mode at {:.0} N", swing.pretension_n),
         unit: "Hz",
-        measured: swing.ring.frequency_hz,
+        measured: swing.frequency_hz,
         configured: Some(swing.configured_hz),
         key: None,
     });

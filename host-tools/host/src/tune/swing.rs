@@ -31,9 +31,6 @@ const BRAKE_S: f64 = 0.17;
 const RECORDED: Duration = Duration::from_millis(900);
 const TAKEN_S: f64 = 0.45;
 
-/// Swings at each pretension, towards one side and the other in turn.
-const SWINGS: usize = 2;
-
 /// Part of its frequency that a swing may be off.
 const OFF_PART: f64 = 0.03;
 
@@ -65,14 +62,16 @@ impl SwingPlan {
     }
 }
 
-/// One swing.
+/// The swings at one pretension.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Swing {
     /// The pretension, N.
     pub pretension_n: f64,
-    /// The moment of the tendons against the tilt over the time, (s, N·m).
+    /// The frequency without damping, Hz: the mean of both sides.
+    pub frequency_hz: Estimate,
+    /// The moment of the tendons against the tilt towards azimuth 0° over the time, (s, N·m).
     pub moments_nm: Vec<(f64, f64)>,
-    /// The oscillation in it, about the mean of the swings of this pretension.
+    /// The oscillation in it.
     pub ring: Ring,
     /// The frequency that the rig file implies, Hz.
     pub configured_hz: f64,
@@ -83,7 +82,7 @@ pub struct Swing {
 /// All swings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Swings {
-    /// One of each pretension.
+    /// Those of each pretension.
     pub all: Vec<Swing>,
     /// The inertia with which the stiffnesses of the rig file give the frequencies, kg·m².
     pub inertia_kg_m2: Estimate,
@@ -130,18 +129,16 @@ fn straight_down(pretension_n: f64) -> Goal {
     }
 }
 
-/// The swings at a pretension.
+/// The swings at a pretension, towards both sides: a leg whose tendons are not the same on both does not swing there at the same
+/// frequency, and the mean is that of the leg straight down.
 fn swing_at(
     operator: &mut Operator,
     plan: &SwingPlan,
     rig: &RigFile,
     level_n: f64,
 ) -> Result<Swing, TuneError> {
-    let mut frequencies = Vec::new();
-    let mut last = None;
-    for i in 0..SWINGS {
+    let mut one_side = |azimuth_deg: f64| {
         operator.reach(&straight_down(level_n))?;
-        let azimuth_deg = if i % 2 == 0 { 0.0 } else { 180.0 };
         let [x, y] = angles::direction(azimuth_deg, plan.tilt_deg).map(|one| one as f32);
         // It is the fastest there.
         let half_way = |telemetry: &Telemetry<f32>| {
@@ -149,17 +146,20 @@ fn swing_at(
             now_x.hypot(now_y) >= 0.5 * x.hypot(y)
         };
         let recorded = operator.interrupt(Command::Move { x, y }, half_way, RECORDED)?;
-        let swing = one_swing(&recorded, rig, level_n, azimuth_deg)?;
-        frequencies.push(swing.ring.frequency_hz);
-        last = Some(swing);
-    }
-    let mean = Estimate::of_repeated(&frequencies);
-    let mut swing = last.ok_or_else(|| no_swing(level_n))?;
-    swing.ring.frequency_hz = mean;
-    if mean.part() > OFF_PART {
+        one_swing(&recorded, rig, level_n, azimuth_deg)
+    };
+    let (one, other) = (one_side(0.0)?, one_side(180.0)?);
+    let frequency_hz = one.frequency_hz.mean(other.frequency_hz);
+    if frequency_hz.part() > OFF_PART {
         return Err(no_swing(level_n));
     }
-    Ok(swing)
+    Ok(Swing {
+        frequency_hz,
+        pretension_n: 0.5 * (one.pretension_n + other.pretension_n),
+        configured_hz: 0.5 * (one.configured_hz + other.configured_hz),
+        stiffness_nm_per_rad: 0.5 * (one.stiffness_nm_per_rad + other.stiffness_nm_per_rad),
+        ..one
+    })
 }
 
 fn no_swing(level_n: f64) -> TuneError {
@@ -204,6 +204,7 @@ fn one_swing(
     let inertia = rig.plant.transverse_inertia_kg_m2(&rig.parameters);
     Ok(Swing {
         pretension_n: query.pretension_n,
+        frequency_hz: ring.frequency_hz,
         moments_nm,
         ring,
         configured_hz: (stiffness_nm_per_rad / inertia).sqrt() / TAU,
@@ -244,7 +245,7 @@ fn inertia(all: &[Swing]) -> Estimate {
     let each: Vec<_> = all
         .iter()
         .map(|swing| {
-            let angular = swing.ring.frequency_hz.scaled(TAU);
+            let angular = swing.frequency_hz.scaled(TAU);
             angular
                 .times(angular)
                 .inverse()

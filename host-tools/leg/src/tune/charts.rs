@@ -127,7 +127,7 @@ fn swing(swings: &Swings) -> Chart {
         ChartLine {
             label: format!(
                 "{:.1} N: {:.2} Hz",
-                swing.pretension_n, swing.ring.frequency_hz.value
+                swing.pretension_n, swing.frequency_hz.value
             ),
             points: (0..=LINE_POINTS).map(at).collect(),
             marks: swing.moments_nm.iter().step_by(4).copied().collect(),
@@ -155,7 +155,7 @@ fn modes(swings: &Swings) -> Chart {
         vec![ChartLine {
             label: "by the rig file".into(),
             points: of(|swing| swing.configured_hz).collect(),
-            marks: of(|swing| swing.ring.frequency_hz.value).collect(),
+            marks: of(|swing| swing.frequency_hz.value).collect(),
         }],
     )
 }
