@@ -89,6 +89,7 @@ mod host {
     mod jog;
     mod link_damage;
     mod monitor_screen;
+    mod tune;
 }
 
 mod bench {

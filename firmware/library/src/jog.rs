@@ -83,8 +83,15 @@ pub struct JogReport<T> {
     pub pulled_m: [T; 3],
     /// The tension of each tendon at the start and at the end, N.
     pub tensions_n: [[T; 3]; 2],
-    /// The mean current of the motor at the full voltage, A; the last one where it did not come to that.
+    /// How long the voltage was full and the motor up to speed, s: `current_a`, `speed_m_per_s` and `tension_n` are means over
+    /// that time.
+    pub steady_s: T,
+    /// The current of the motor, A; the last one where `steady_s` is 0.
     pub current_a: T,
+    /// The speed of its tendon by its encoder, m/s.
+    pub speed_m_per_s: T,
+    /// The tension of its tendon, N.
+    pub tension_n: T,
 }
 
 impl<T: Copy> JogReport<T> {
@@ -96,7 +103,10 @@ impl<T: Copy> JogReport<T> {
             time_s: number(self.time_s),
             pulled_m: self.pulled_m.map(&number),
             tensions_n: self.tensions_n.map(|tensions| tensions.map(&number)),
+            steady_s: number(self.steady_s),
             current_a: number(self.current_a),
+            speed_m_per_s: number(self.speed_m_per_s),
+            tension_n: number(self.tension_n),
         }
     }
 }

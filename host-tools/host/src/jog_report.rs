@@ -66,12 +66,14 @@ pub fn text(report: &JogReport<f32>, findings: &[Finding]) -> String {
         "counts     {} mm pulled in\n\
          tensions   {} N, before {} N\n\
          current    {:.2} A\n\
+         speed      {:.2} mm/s\n\
          time       {:.2} s\n\
          end        {}\n",
         row(&report.pulled_m.map(|m| 1000.0 * m), 3),
         row(after, 1),
         row(before, 1),
         report.current_a,
+        1000.0 * report.speed_m_per_s,
         report.time_s,
         end(report.end),
     );
@@ -92,7 +94,10 @@ pub fn json(report: &JogReport<f32>, findings: &[Finding]) -> impl Serialize + u
         pulled_m: report.pulled_m,
         tensions_before_n: report.tensions_n[0],
         tensions_n: report.tensions_n[1],
+        steady_s: report.steady_s,
         current_a: report.current_a,
+        speed_m_per_s: report.speed_m_per_s,
+        tension_n: report.tension_n,
         time_s: report.time_s,
         findings: findings.to_vec(),
     }

@@ -44,6 +44,7 @@
 //! | [`recording`] | simulations and telemetry as MCAP or CSV, and the replay of a simulation |
 //! | [`leg_report`], [`sensor_report`], [`monitor`] | what people and machines are shown of a leg |
 //! | [`cell_fit`] | a load cell's calibration from weights |
+//! | [`tune`] | motors, play and swing of a leg, measured |
 //! | [`flash`] | writing the firmware by `probe-rs` |
 
 pub mod cancel_flag;
@@ -60,3 +61,4 @@ pub mod pseudo_terminal;
 pub mod recording;
 pub mod sensor_report;
 pub mod transport;
+pub mod tune;

@@ -12,6 +12,7 @@ mod refusal;
 mod request;
 mod settings;
 mod stop;
+mod swing;
 mod telemetry;
 
 #[cfg(test)]

@@ -4,6 +4,8 @@ mod cells;
 mod manual_steps;
 mod motors;
 
+pub(crate) use manual_steps::confirm;
+
 use crate::connection::LegArgs;
 use crate::leg_commands::home;
 use crate::options::Options;

@@ -112,6 +112,11 @@ impl LegArgs {
 }
 
 impl ConnectionArgs {
+    /// Whether the leg is on a CAN bus.
+    pub(crate) const fn is_can(&self) -> bool {
+        self.can.is_some()
+    }
+
     /// Opens the connection. `rig` is that of an emulated leg.
     pub(crate) fn open(
         &self,

@@ -9,7 +9,7 @@
 //! | `eval`, `check`, `cost`, `paper` | the model at poses; accuracy; instructions and memory; the paper's numbers |
 //! | `map`, `curve`, `export`, `rig` | maps of the workspace; tendon curves; MuJoCo; rig files |
 //! | `leg_commands` | `home`, `move`, `stiffness`, `hold`, `stop`, `disarm`, `clear` |
-//! | `jog` | one motor of a disarmed leg |
+//! | `jog`, `tune` | one motor of a disarmed leg, turned; measured, with the swing of the leg |
 //! | `sensors`, `monitor`, `log`, `settings`, `calibrate` | what a leg reports, records and is set to |
 //! | `moves` | how the true tip of a simulated leg goes, with payloads that it is not told |
 //! | `bode` | margins of the feedback loops around a simulated leg |
@@ -65,6 +65,7 @@ mod run;
 mod sensors;
 mod settings;
 mod strikes;
+mod tune;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use leg_base::failure::Failure;
@@ -126,6 +127,7 @@ enum Command {
     Setup,
     Moves(moves::Args),
     Strikes(strikes::Args),
+    Tune(tune::Args),
 }
 
 /// The command line as clap describes it.
@@ -178,5 +180,6 @@ fn run(command: &Command, options: Options) -> Result<(), Failure> {
         Command::Setup => board::setup(options),
         Command::Moves(args) => moves::run(args, options),
         Command::Strikes(args) => strikes::run(args, options),
+        Command::Tune(args) => tune::run(args, options),
     }
 }

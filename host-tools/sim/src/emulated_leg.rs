@@ -89,6 +89,25 @@ impl EmulatedLeg {
         Ok(leg)
     }
 
+    /// A leg that is another one than its firmware is set to: `real` is the mechanism with its motors, not homed and slack. Its noise
+    /// follows from the seed.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn unlike(
+        configured: &RigFile,
+        real: &RigFile,
+        link: Box<dyn Link>,
+        seed: u64,
+    ) -> Result<Self, EmulationError> {
+        let start = Start::Slack { slack_mm: SLACK_MM };
+        let plant = Plant::new(real, &real.plant, start, seed).map_err(EmulationError::Start)?;
+        let settings = control_settings::settings(configured, &configured.gains, None);
+        let mut leg = Self::start(plant, &settings, link, false)?;
+        while leg.advance(HostBytes::new())?.1.telemetry.state == State::Boot {}
+        Ok(leg)
+    }
+
     /// One tick: takes what of the host's bytes reaches the leg in it, and gives what the host gets.
     ///
     /// # Errors

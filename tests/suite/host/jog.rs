@@ -255,7 +255,10 @@ fn a_motor_that_turns_the_other_way_says_nothing_of_the_load_cells() {
             time_s: 0.3,
             pulled_m: [-3e-5, 0.0, 0.0],
             tensions_n: [[12.0, 12.0, 12.0], [8.0, 11.5, 11.5]],
+            steady_s: 0.1,
             current_a: 0.1,
+            speed_m_per_s: 2e-3,
+            tension_n: 10.0,
         };
         let found = findings(&report, &settings);
         assert_eq!(found.len(), count, "{end:?}: {found:?}");

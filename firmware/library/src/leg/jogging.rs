@@ -5,6 +5,10 @@ use crate::control::{Debounce, JOG_RISE_S, Measured, TICK_S, bounds, ticks};
 use crate::jog::{JogDemand, JogEnd, JogReport};
 use leg_model::Scalar;
 
+/// Time after the rise of the voltage until the speed is steady, s: ten times what the default motor takes. Before it the current
+/// also accelerates the rotor.
+const SETTLE_S: f32 = 0.05;
+
 /// Time without a count, from the full voltage on, after which an encoder counts nothing, s.
 const SILENT_S: f32 = 0.1;
 
@@ -41,9 +45,11 @@ pub struct Jogging<T> {
     last_m: T,
     silent: Debounce,
     hauling: Debounce,
-    /// Ticks driven, and those at the full voltage.
+    /// Ticks driven, and those at a steady speed.
     ticks: u32,
-    full_ticks: u32,
+    steady_ticks: u32,
+    /// Where the motor was when they began, m.
+    steady_from_m: T,
     ticks_max: u32,
     /// Ticks for which the motor is still braked, once it has ended.
     brake_ticks: Option<u32>,
@@ -72,7 +78,10 @@ impl<T: Scalar> Jogging<T> {
             time_s: T::zero(),
             pulled_m: [T::zero(); 3],
             tensions_n: [measured.steady_tensions_n; 2],
+            steady_s: T::zero(),
             current_a: T::zero(),
+            speed_m_per_s: T::zero(),
+            tension_n: T::zero(),
         });
         Self {
             motor,
@@ -87,7 +96,8 @@ impl<T: Scalar> Jogging<T> {
             silent: Debounce::new(ticks(SILENT_S)),
             hauling: Debounce::new(ticks(HAUL_S)),
             ticks: 0,
-            full_ticks: 0,
+            steady_ticks: 0,
+            steady_from_m: T::zero(),
             ticks_max: ticks(jog_bounds.time_max_s(demand)),
             brake_ticks: None,
         }
@@ -122,13 +132,8 @@ impl<T: Scalar> Jogging<T> {
                 self.ticks += 1;
                 report.time_s = T::from(self.ticks as f32 * TICK_S);
                 self.drive();
-                if self.at_full() {
-                    self.full_ticks += 1;
-                    let share = T::one() / T::from(self.full_ticks as f32);
-                    report.current_a += (current - report.current_a) * share;
-                } else {
-                    report.current_a = current;
-                }
+                let tension = measured.tensions_n.get(self.motor);
+                self.average(report, pulled, current, tension.copied());
                 report.end = self.end(report, pulled, current);
                 if report.end != JogEnd::Running {
                     self.brake_ticks = Some(ticks(BRAKE_S));
@@ -151,6 +156,23 @@ impl<T: Scalar> Jogging<T> {
     fn drive(&mut self) {
         let risen = self.voltage_v * T::from(self.ticks as f32 * (TICK_S / JOG_RISE_S));
         self.applied_v = bounds::min(risen, self.voltage_v) * self.sign;
+    }
+
+    /// Adds a tick to the means of the report.
+    fn average(&mut self, report: &mut JogReport<T>, pulled: T, current: T, tension: Option<T>) {
+        if self.ticks <= ticks(JOG_RISE_S + SETTLE_S) {
+            self.steady_from_m = pulled;
+            report.current_a = current;
+            return;
+        }
+        self.steady_ticks += 1;
+        report.steady_s = T::from(self.steady_ticks as f32 * TICK_S);
+        report.speed_m_per_s = (pulled - self.steady_from_m) / report.steady_s;
+        let share = T::one() / T::from(self.steady_ticks as f32);
+        report.current_a += (current - report.current_a) * share;
+        if let Some(tension) = tension {
+            report.tension_n += (tension - report.tension_n) * share;
+        }
     }
 
     fn at_full(&self) -> bool {

@@ -7,7 +7,7 @@ use leg_firmware::host_link::HostRequest;
 use std::time::Duration;
 
 /// How often the host looks for Ctrl-C: 50 ms, which nobody feels as a delay.
-pub(super) const WAKE_TIME: Duration = Duration::from_millis(50);
+const WAKE_TIME: Duration = Duration::from_millis(50);
 
 /// Keep-alives within a command timeout: that many less one may be lost.
 const KEEP_ALIVES: u32 = 4;

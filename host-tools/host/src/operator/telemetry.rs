@@ -1,6 +1,5 @@
 //! Telemetry and sensors, asked for or streamed.
 
-use super::keep_alive::WAKE_TIME;
 use super::request::done;
 use super::{Operator, OperatorError, TelemetryStream};
 use leg_firmware::host_link::{HostReply, HostRequest, TelemetryReport};
@@ -78,7 +77,8 @@ impl Operator {
                 self.start_stream(self.stream.every_ticks)?;
                 continue;
             }
-            let wake = until.min(self.now() + WAKE_TIME);
+            self.keep_alive()?;
+            let wake = until.min(self.wake_at());
             match self.connection.receive(wake)? {
                 Some((0, HostReply::Telemetry(report))) => return Ok(Some(report)),
                 Some((_, reply)) => self.stream.note_introduction(&reply),

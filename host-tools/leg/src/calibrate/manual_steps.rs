@@ -28,6 +28,14 @@ pub(super) fn manual_step(
     Ok(connection.operator.pause(EMULATED_TIME)?)
 }
 
+/// Asks the user for a step before a real leg moves; an emulated one does not wait.
+pub(crate) fn confirm(connection: &mut LegConnection, step: &str) -> Result<(), Failure> {
+    match connection.emulated {
+        Some(_) => Ok(()),
+        None => ask(&mut connection.operator, step),
+    }
+}
+
 /// Asks the user for a step and waits for the Enter key.
 fn ask(operator: &mut Operator, step: &str) -> Result<(), Failure> {
     note(&format!("leg: {step}, then press Enter"));

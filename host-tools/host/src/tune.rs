@@ -1,0 +1,96 @@
+//! What a leg's motors, gears and tendons are, measured by the leg itself: `leg tune`.
+//!
+//! [`measure_motor`] jogs one motor of a disarmed leg, without a tension and against one; [`measure_swing`] homes the leg and lets
+//! it swing a little at several pretensions. [`comparison`] sets what was found beside what a rig file says, and [`section`] writes
+//! it as a part of one.
+
+mod comparison;
+mod error;
+mod estimate;
+mod jogs;
+mod motor;
+mod play;
+mod ring;
+mod swing;
+
+pub use comparison::{Row, comparison, section, table};
+pub use error::TuneError;
+pub use estimate::Estimate;
+pub use jogs::{JogPlan, Jogged};
+pub use motor::MotorConstants;
+pub use ring::Ring;
+pub use swing::{Swing, SwingPlan, Swings, measure_swing};
+
+use crate::operator::{Operator, OperatorError};
+use leg_firmware::settings::Settings;
+
+/// One motor, as it was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasuredMotor {
+    /// Its number, from 1.
+    pub motor: u8,
+    /// What it is.
+    pub constants: MotorConstants,
+    /// The jogs from which that follows.
+    pub jogs: Vec<Jogged>,
+}
+
+impl MeasuredMotor {
+    /// What its load cell shows without a tension, N.
+    #[must_use]
+    pub fn slack_n(&self) -> f64 {
+        motor::slack_n(&self.jogs)
+    }
+}
+
+/// The voltage of the motors' supply, V.
+///
+/// # Errors
+/// As [`Operator::sensors`].
+pub fn supply_v(operator: &mut Operator, settings: &Settings) -> Result<f32, OperatorError> {
+    Ok(f32::from(operator.sensors()?.supply_code) * settings.board.supply_v_per_code)
+}
+
+/// Jogs a motor of a disarmed leg by the plan, calls `seen` after each jog that counts, and leaves the tendon where it was.
+///
+/// # Errors
+/// A [`TuneError`]: whatever ends a jog but its travel and the tension.
+pub fn measure_motor(
+    operator: &mut Operator,
+    plan: &JogPlan,
+    settings: &Settings,
+    seen: &mut dyn FnMut(&Jogged),
+) -> Result<MeasuredMotor, TuneError> {
+    let jogs = jogs::jog_all(operator, plan, settings, seen)?;
+    let own = usize::from(plan.motor).saturating_sub(1);
+    let axis = settings.axes.get(own);
+    let current_step_a = axis.map_or(0.0, |axis| f64::from(axis.current_a_per_code));
+    Ok(MeasuredMotor {
+        motor: plan.motor,
+        constants: MotorConstants::fit(&jogs, current_step_a)?,
+        jogs,
+    })
+}
+
+/// What the user is told before anything moves.
+#[must_use]
+pub fn plan_text(jogs: &JogPlan, swing: Option<&SwingPlan>) -> String {
+    let [low_v, high_v] = jogs.voltages_v;
+    let mut text = format!(
+        "motor {} turns slowly both ways, from {low_v:.2} V to {high_v:.2} V, each time by {:.1} mm of tendon at the most, and reels in\n\
+         by up to {:.0} mm until the tendon pulls; no load cell above {} N\n",
+        jogs.motor,
+        1000.0 * jogs.travel_m,
+        1000.0 * jogs::REEL_MAX_M,
+        jogs.tension_max_n,
+    );
+    if let Some(swing) = swing {
+        let levels: Vec<_> = swing.levels_n.iter().map(|n| format!("{n:.0}")).collect();
+        text += &format!(
+            "the leg is homed, and at pretensions of {} N it begins to lean by {:.0}°, is stopped half way and swings on its screws\n",
+            levels.join(", "),
+            swing.tilt_deg,
+        );
+    }
+    text + "any fault, Ctrl-C and `leg stop` end it: the motors are off or held then, and nothing is written\n"
+}

@@ -1,0 +1,225 @@
+//! What was measured beside what a rig file says, and as a section for one.
+
+use super::estimate::Estimate;
+use super::motor::MotorConstants;
+use super::swing::Swings;
+use leg_rig::actuator::Actuator;
+use leg_rig::number::plain;
+use leg_rig::plant_settings::TRANSVERSE_INERTIA;
+use leg_rig::rig_file::RigFile;
+use serde::Serialize;
+
+/// A quantity, as measured and as configured.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// What it is.
+    pub name: String,
+    /// Its unit.
+    pub unit: &'static str,
+    /// As measured.
+    pub measured: Estimate,
+    /// As the rig file says or implies; none where that says nothing.
+    pub configured: Option<f64>,
+    /// The section and the key that hold it; none where it follows from others.
+    pub key: Option<(&'static str, &'static str)>,
+}
+
+/// All that was measured, beside what the rig says.
+#[must_use]
+pub fn comparison(motor: &MotorConstants, swings: Option<&Swings>, rig: &RigFile) -> Vec<Row> {
+    let mut rows = motor_rows(motor, &rig.actuator);
+    rows.extend(
+        swings
+            .into_iter()
+            .flat_map(|swings| swing_rows(swings, rig)),
+    );
+    rows
+}
+
+fn motor_rows(motor: &MotorConstants, actuator: &Actuator) -> Vec<Row> {
+    let row = |name: &str, unit, measured, configured| Row {
+        name: name.into(),
+        unit,
+        measured,
+        configured: Some(configured),
+        key: None,
+    };
+    let keyed = |key, unit, measured, configured| Row {
+        key: Some((leg_rig::actuator::ACTUATOR, key)),
+        ..row(key, unit, measured, configured)
+    };
+    let m_per_rad = actuator.m_per_rad();
+    let torque_constant = motor.back_emf_v_s_per_m.scaled(m_per_rad);
+    let [friction_in, friction_out] = motor.friction_a.map(|amps| amps.times(torque_constant));
+    let [pull_in, pull_out] = motor.pull_a_per_n;
+    let efficiency = pull_in
+        .times(torque_constant)
+        .inverse()
+        .scaled(m_per_rad / actuator.gear_efficiency);
+    let pays_out = (1.0 - 2.0 * actuator.screw_efficiency) * actuator.pull_a_per_n();
+    let viscous = motor.viscous_a_s_per_m.times(torque_constant);
+    vec![
+        keyed(
+            "resistance_ohm",
+            "Ω",
+            motor.resistance_ohm,
+            actuator.resistance_ohm,
+        ),
+        keyed(
+            "torque_constant_nm_per_a",
+            "N·m/A",
+            torque_constant,
+            actuator.torque_constant_nm_per_a,
+        ),
+        row(
+            "friction, pulling in",
+            "N·m",
+            friction_in,
+            actuator.friction_nm,
+        ),
+        row(
+            "friction, paying out",
+            "N·m",
+            friction_out,
+            actuator.friction_nm,
+        ),
+        keyed(
+            "friction_nm",
+            "N·m",
+            friction_in.mean(friction_out),
+            actuator.friction_nm,
+        ),
+        keyed(
+            "viscous_nm_s_per_rad",
+            "N·m·s/rad",
+            viscous.scaled(m_per_rad),
+            actuator.viscous_nm_s_per_rad,
+        ),
+        keyed(
+            "screw_efficiency",
+            "1",
+            efficiency,
+            actuator.screw_efficiency,
+        ),
+        row("pull, pulling in", "A/N", pull_in, actuator.pull_a_per_n()),
+        row("pull, paying out", "A/N", pull_out, pays_out),
+        row("voltage lost in the driver", "V", motor.driver_loss_v, 0.0),
+    ]
+}
+
+fn swing_rows(swings: &Swings, rig: &RigFile) -> Vec<Row> {
+    let first_mode = swings.all.iter().map(|swing| Row {
+        name: format!("first mode at {:.0} N", swing.pretension_n),
+        unit: "Hz",
+        measured: swing.frequency_hz,
+        configured: Some(swing.configured_hz),
+        key: None,
+    });
+    let inertia = Row {
+        name: TRANSVERSE_INERTIA.name.into(),
+        unit: TRANSVERSE_INERTIA.unit,
+        measured: swings.inertia_kg_m2,
+        configured: Some(rig.plant.transverse_inertia_kg_m2(&rig.parameters)),
+        key: Some((leg_rig::plant_settings::SIMULATION, TRANSVERSE_INERTIA.name)),
+    };
+    let play = swings.play_m.map(|play_m| Row {
+        name: "backlash_rad".into(),
+        unit: "rad",
+        measured: play_m.scaled(std::f64::consts::TAU / rig.actuator.lead_m),
+        configured: Some(rig.actuator.backlash_rad),
+        key: Some((leg_rig::actuator::ACTUATOR, "backlash_rad")),
+    });
+    play.into_iter()
+        .chain(first_mode)
+        .chain([inertia])
+        .collect()
+}
+
+/// A table for people.
+#[must_use]
+pub fn table(rows: &[Row]) -> String {
+    let mut table = format!(
+        "{:<30} {:>10} {:>10} {:>10} {:>11}  unit\n",
+        "", "measured", "±", "configured", "difference"
+    );
+    for row in rows {
+        let Estimate { value, uncertainty } = row.measured;
+        let configured = row
+            .configured
+            .map_or_else(String::new, |number| plain(four_digits(number)));
+        let difference = row
+            .configured
+            .filter(|&number| number != 0.0)
+            .map_or_else(String::new, |number| {
+                format!("{:+.1} %", 100.0 * (value / number - 1.0))
+            });
+        table += &format!(
+            "{:<30} {:>10} {:>10} {configured:>10} {difference:>11}  {}\n",
+            row.name,
+            written(value, uncertainty),
+            plain(two_digits(uncertainty)),
+            row.unit,
+        );
+    }
+    table
+}
+
+/// What was measured with certainty, as sections of a rig file.
+#[must_use]
+pub fn section(motor: u8, rows: &[Row]) -> String {
+    let mut text =
+        format!("# Measured by leg tune at motor {motor}; ± is twice the standard deviation.\n");
+    let mut last = "";
+    for row in rows {
+        let Some((section, key)) = row.key else {
+            continue;
+        };
+        let Estimate { value, uncertainty } = row.measured;
+        if !row.measured.is_certain() || value <= 0.0 {
+            text += &format!(
+                "# {key} is too uncertain: {} ± {}\n",
+                plain(two_digits(value)),
+                plain(two_digits(uncertainty))
+            );
+            continue;
+        }
+        if section != last {
+            text += &format!("\n[{section}]\n");
+            last = section;
+        }
+        let configured = row.configured.map_or_else(String::new, |number| {
+            format!(", was {}", plain(four_digits(number)))
+        });
+        text += &format!(
+            "{key} = {}  # ± {}{configured}\n",
+            written(value, uncertainty),
+            plain(two_digits(uncertainty)),
+        );
+    }
+    text
+}
+
+/// A number with the digits that its uncertainty leaves.
+fn written(value: f64, uncertainty: f64) -> String {
+    let unit = 10_f64.powf(uncertainty.max(f64::MIN_POSITIVE).log10().floor() - 1.0);
+    let rounded = (value / unit).round();
+    if rounded.is_finite() && rounded.abs() < 1e6 {
+        // Once more by its digits, so that no 0.30000000000000004 comes out.
+        let digits = rounded.abs().max(1.0).log10().floor() as usize;
+        plain(format!("{value:.digits$e}").parse().unwrap_or(value))
+    } else {
+        plain(six_digits(value))
+    }
+}
+
+fn two_digits(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
+}
+
+fn four_digits(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
+
+fn six_digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}

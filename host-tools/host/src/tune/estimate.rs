@@ -1,0 +1,152 @@
+//! Numbers with their uncertainty, by least squares.
+
+use nalgebra::{SMatrix, SVector};
+use serde::Serialize;
+
+/// A number and how far it may be off.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Estimate {
+    /// The number.
+    pub value: f64,
+    /// Twice its standard deviation.
+    pub uncertainty: f64,
+}
+
+impl Estimate {
+    /// From a standard deviation.
+    #[must_use]
+    pub const fn new(value: f64, deviation: f64) -> Self {
+        Self {
+            value,
+            uncertainty: 2.0 * deviation,
+        }
+    }
+
+    /// The same in another unit.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        Self {
+            value: self.value * factor,
+            uncertainty: (self.uncertainty * factor).abs(),
+        }
+    }
+
+    /// The product with another number that is independent of it.
+    #[must_use]
+    pub fn times(self, other: Self) -> Self {
+        Self {
+            value: self.value * other.value,
+            uncertainty: (self.uncertainty * other.value).hypot(other.uncertainty * self.value),
+        }
+    }
+
+    /// One divided by it.
+    #[must_use]
+    pub fn inverse(self) -> Self {
+        Self {
+            value: self.value.recip(),
+            uncertainty: self.uncertainty / self.value.powi(2),
+        }
+    }
+
+    /// The mean with another number that is independent of it.
+    #[must_use]
+    pub fn mean(self, other: Self) -> Self {
+        Self {
+            value: 0.5 * (self.value + other.value),
+            uncertainty: 0.5 * self.uncertainty.hypot(other.uncertainty),
+        }
+    }
+
+    /// The mean of what was measured again and again: as uncertain as the numbers themselves, or as they differ.
+    #[must_use]
+    pub fn of_repeated(numbers: &[Self]) -> Self {
+        let count = numbers.len().max(1) as f64;
+        let value = numbers.iter().map(|one| one.value).sum::<f64>() / count;
+        let own: f64 = numbers.iter().map(|one| one.uncertainty.powi(2)).sum();
+        let apart: f64 = numbers.iter().map(|one| (one.value - value).powi(2)).sum();
+        let spread = 2.0 * (apart / (count * (count - 1.0).max(1.0))).sqrt();
+        Self {
+            value,
+            uncertainty: (own.sqrt() / count).max(spread),
+        }
+    }
+
+    /// Whether it is greater than what it may be off.
+    #[must_use]
+    pub fn is_certain(self) -> bool {
+        self.uncertainty < self.value.abs()
+    }
+
+    /// Its uncertainty as a part of it.
+    #[must_use]
+    pub fn part(self) -> f64 {
+        self.uncertainty / self.value.abs()
+    }
+}
+
+/// One equation: the factors of the unknowns, and what their products sum up to.
+pub(super) type Equation<const N: usize> = ([f64; N], f64);
+
+/// The unknowns that leave the smallest squares. `deviation` is the least that an equation is off by: what is left over may be
+/// less by chance. None where the equations do not determine them.
+pub(super) fn least_squares<const N: usize>(
+    equations: &[Equation<N>],
+    deviation: f64,
+) -> Option<[Estimate; N]> {
+    let mut normal = SMatrix::<f64, N, N>::zeros();
+    let mut right = SVector::<f64, N>::zeros();
+    for (factors, sum) in equations {
+        let factors = SVector::from(*factors);
+        normal += factors * factors.transpose();
+        right += factors * *sum;
+    }
+    // Unknowns of very different size would hide that they are not determined.
+    let scale = normal.diagonal().map(f64::sqrt);
+    let scaled = SMatrix::<f64, N, N>::from_fn(|row, column| {
+        normal[(row, column)] / (scale[row] * scale[column])
+    });
+    let inverse = scaled.cholesky()?.inverse();
+    let unknowns: SVector<f64, N> = (inverse * right.component_div(&scale)).component_div(&scale);
+    let squares = equations.iter().map(|(factors, sum)| {
+        let left = sum - SVector::from(*factors).dot(&unknowns);
+        left * left
+    });
+    let free = equations.len().checked_sub(N).filter(|&free| free > 0)?;
+    let left = (squares.sum::<f64>() / free as f64).sqrt().max(deviation);
+    let estimates = std::array::from_fn(|i| {
+        Estimate::new(unknowns[i], left * inverse[(i, i)].sqrt() / scale[i])
+    });
+    let finite =
+        |estimate: &Estimate| estimate.value.is_finite() && estimate.uncertainty.is_finite();
+    estimates.iter().all(finite).then_some(estimates)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::least_squares;
+
+    #[test]
+    fn a_line_through_points_is_found_with_its_uncertainty() {
+        let points = [(0.0, 1.01), (1.0, 2.99), (2.0, 5.01), (3.0, 6.99)];
+        let equations = points.map(|(x, y)| ([1.0, x], y));
+        let [offset, slope] = least_squares(&equations, 0.0).unwrap();
+        assert!((offset.value - 1.006).abs() < 1e-9, "{offset:?}");
+        assert!((slope.value - 1.996).abs() < 1e-9, "{slope:?}");
+        assert!((slope.value - 2.0).abs() < slope.uncertainty);
+        // What each equation may be off by counts where little is left over.
+        let [_, coarse] = least_squares(&equations, 0.1).unwrap();
+        assert!(coarse.uncertainty > 5.0 * slope.uncertainty);
+    }
+
+    #[test]
+    fn what_is_not_determined_is_none() {
+        let same = [([1.0, 2.0], 3.0); 5];
+        assert_eq!(least_squares(&same, 0.1), None);
+        assert_eq!(
+            least_squares(&[([1.0, 0.0], 1.0), ([0.0, 1.0], 1.0)], 0.1),
+            None
+        );
+    }
+}

@@ -1,0 +1,180 @@
+//! `leg tune`.
+
+mod charts;
+
+use crate::calibrate::confirm;
+use crate::connection::{ConnectionArgs, LegConnection, Purpose};
+use crate::options::Options;
+use crate::output::{chart_line, load_rig, note, print, write};
+use crate::progress;
+use leg_base::failure::Failure;
+use leg_base::json_object;
+use leg_base::paths::relative_path;
+use leg_firmware::settings::Settings;
+use leg_host::operator::setting_differences;
+use leg_host::tune::{
+    JogPlan, MeasuredMotor, SwingPlan, Swings, comparison, measure_motor, measure_swing, plan_text,
+    section, supply_v, table,
+};
+use leg_rig::control_settings;
+use leg_rig::rig_file::RigFile;
+use std::path::{Path, PathBuf};
+
+/// Measures one motor and the swing of the leg, and prints what was measured beside what the rig file says.
+///
+/// The leg must be disarmed and hang free, without a payload. One motor is jogged both ways, without a tension and against one:
+/// resistance, torque constant, friction, pull. Then the leg is homed and swings a little at three pretensions: play of the gears,
+/// first mode, inertia. It says before what it will do, and asks on a real leg. Any fault, counts the wrong way and Ctrl-C end it
+/// with the motors off or held, and nothing is written.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// The motor.
+    #[arg(value_name = "MOTOR", value_parser = clap::value_parser!(u8).range(1..=3))]
+    motor: u8,
+    /// Jogs the motor alone: the leg is not homed, and does not swing.
+    #[arg(long)]
+    jogs_only: bool,
+    /// Does not ask before a real leg moves.
+    #[arg(long)]
+    yes: bool,
+    /// Writes what was measured as sections of a rig file; refuses a file that exists.
+    #[arg(long, value_name = "FILE")]
+    write: Option<PathBuf>,
+    /// Draws the measured points and the curves through them, SVG and PNG.
+    #[arg(long, value_name = "DIR")]
+    plots: Option<PathBuf>,
+    /// The rig file or the name of a ready rig with which the leg is compared, that of an emulated leg too; the paper's rig if
+    /// left out.
+    #[arg(long, value_name = "FILE")]
+    rig: Option<PathBuf>,
+    #[command(flatten)]
+    connection: ConnectionArgs,
+}
+
+/// All that was measured.
+struct Measured {
+    motor: MeasuredMotor,
+    swings: Option<Swings>,
+}
+
+pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
+    require_absent(args.write.as_deref())?;
+    if !args.jogs_only && args.connection.is_can() {
+        return Err(Failure::refused(
+            "the swing of a leg cannot be measured on CAN: it carries no stream of telemetry",
+            "use the serial port, or give --jogs-only",
+        ));
+    }
+    let rig = load_rig(args.rig.as_deref())?;
+    let mut connection = args.connection.open(&rig, Purpose::Calibrate, options)?;
+    let settings = connection.operator.settings()?;
+    note_differences(&rig, &settings);
+    let supply_v = supply_v(&mut connection.operator, &settings)?;
+    let jogs = JogPlan::new(args.motor, &settings, supply_v);
+    let swing = (!args.jogs_only).then(|| SwingPlan::new(&rig));
+    if !options.json {
+        print(&plan_text(&jogs, swing.as_ref()))?;
+    }
+    if !args.yes {
+        let look = "see that the leg is disarmed and hangs free, keep fingers off it and your hand at the emergency stop";
+        confirm(&mut connection, look)?;
+    }
+    let measured = measure(&mut connection, &jogs, swing.as_ref(), &rig, &settings)?;
+    report(args, options, &rig, &measured)
+}
+
+fn measure(
+    connection: &mut LegConnection,
+    jogs: &JogPlan,
+    swing: Option<&SwingPlan>,
+    rig: &RigFile,
+    settings: &Settings,
+) -> Result<Measured, Failure> {
+    let operator = &mut connection.operator;
+    let bar = progress::message();
+    let motor = measure_motor(operator, jogs, settings, &mut |jogged| {
+        bar.set_message(format!(
+            "motor {}: {:+.2} V, {:+.2} mm/s, {:+.3} A",
+            jogs.motor,
+            jogged.voltage_v,
+            1000.0 * jogged.speed_m_per_s,
+            jogged.current_a
+        ));
+        bar.tick();
+    });
+    let swings = motor.as_ref().ok().and(swing).map(|plan| {
+        bar.set_message("the leg is homed, and its pretension changed");
+        bar.tick();
+        measure_swing(operator, plan, rig, &mut |swing| {
+            let hz = swing.frequency_hz.value;
+            bar.set_message(format!("{:.0} N: {hz:.2} Hz", swing.pretension_n));
+            bar.tick();
+        })
+    });
+    bar.finish_and_clear();
+    Ok(Measured {
+        motor: motor?,
+        swings: swings.transpose()?,
+    })
+}
+
+fn report(
+    args: &Args,
+    options: Options,
+    rig: &RigFile,
+    measured: &Measured,
+) -> Result<(), Failure> {
+    let Measured { motor, swings } = measured;
+    let rows = comparison(&motor.constants, swings.as_ref(), rig);
+    let text = section(motor.motor, &rows);
+    let charts = match &args.plots {
+        Some(directory) => charts::save(directory, motor, swings.as_ref())?,
+        None => Vec::new(),
+    };
+    if let Some(file) = &args.write {
+        require_absent(Some(file))?;
+        write(Some(file), &text)?;
+    }
+    let json = json_object! {
+        motor: motor.motor,
+        rows: &rows,
+        jogs: &motor.jogs,
+        charts: &charts,
+        written: &args.write,
+    };
+    options.report(&json, || {
+        let charts: String = charts.iter().map(|svg| chart_line(svg)).collect();
+        let written = args.write.as_deref().map_or_else(
+            || format!("\n{text}"),
+            |file| {
+                format!(
+                    "Sections for the rig file: {}\n",
+                    relative_path(file).display()
+                )
+            },
+        );
+        format!("{}{charts}{written}", table(&rows))
+    })
+}
+
+/// Refuses a file that exists: what somebody measured before is not to be lost.
+fn require_absent(file: Option<&Path>) -> Result<(), Failure> {
+    match file {
+        Some(file) if file.exists() => Err(Failure::refused(
+            format!("{} exists", file.display()),
+            "name another file with --write, or remove it",
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Says where the board is set to something else than the rig file.
+fn note_differences(rig: &RigFile, settings: &Settings) {
+    let expected = control_settings::settings(rig, &rig.gains, None);
+    let count = setting_differences(&expected, settings).len();
+    if count > 0 {
+        note(&format!(
+            "leg: {count} settings of the board are not those of the rig file; see `leg settings diff`"
+        ));
+    }
+}

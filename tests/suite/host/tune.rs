@@ -1,0 +1,259 @@
+//! `leg tune` on simulated legs whose true values it is not told: what it measures is what they are.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use fastrand::Rng;
+use leg_firmware::drive::Drive;
+use leg_firmware::supervisor::{Fault, State};
+use leg_host::cancel_flag::CancelFlag;
+use leg_host::operator::{HostIdentity, Operator, OperatorError};
+use leg_host::transport::emulated::EmulatedLine;
+use leg_host::tune::{
+    JogPlan, Jogged, MeasuredMotor, Row, SwingPlan, TuneError, comparison, measure_motor,
+    measure_swing, section, supply_v,
+};
+use leg_rig::ready_rigs::READY_RIGS;
+use leg_rig::rig_file::RigFile;
+use leg_sim::emulated_leg::EmulatedLeg;
+use leg_sim::link::InProcess;
+use leg_sim::plant::{Defect, Plant, Start};
+
+/// Nothing is driven: the screws hold.
+const OFF: Drive<f32> = Drive {
+    duty: [0.0; 3],
+    enabled: false,
+};
+
+/// A leg that is not as configured: friction within a half of it, resistance and torque constant within a fifth, play from the half
+/// to the double, tendons and inertia so that it swings at another frequency.
+fn drawn(configured: &RigFile, seed: u64) -> RigFile {
+    let mut rng = Rng::with_seed(seed);
+    let mut part = |low: f64, high: f64| low + (high - low) * rng.f64();
+    let mut real = *configured;
+    let actuator = &mut real.actuator;
+    actuator.friction_nm *= part(0.5, 1.5);
+    actuator.resistance_ohm *= part(0.8, 1.2);
+    actuator.torque_constant_nm_per_a *= part(0.8, 1.2);
+    actuator.viscous_nm_s_per_rad *= part(0.5, 1.5);
+    actuator.screw_efficiency *= part(0.9, 1.1);
+    actuator.backlash_rad *= part(0.5, 2.0);
+    real.plant.curve_error = part(-0.03, 0.03);
+    let inertia = configured
+        .plant
+        .transverse_inertia_kg_m2(&configured.parameters);
+    real.plant.leg_transverse_inertia_kg_m2 = Some(inertia * part(0.8, 1.2));
+    real
+}
+
+/// A leg, its host and what cancels that.
+fn leg(real: &RigFile, seed: u64) -> (EmulatedLine, Operator, CancelFlag) {
+    let configured = RigFile::load(None).unwrap();
+    let leg = EmulatedLeg::unlike(&configured, real, Box::new(InProcess::new()), seed).unwrap();
+    let line = EmulatedLine::new(leg, "the leg");
+    let host = Box::new(line.connect());
+    let cancel = CancelFlag::default();
+    let operator = Operator::open(host, HostIdentity::FIXED, cancel.clone()).unwrap();
+    (line, operator, cancel)
+}
+
+fn jog(
+    operator: &mut Operator,
+    motor: u8,
+    seen: &mut dyn FnMut(&Jogged),
+) -> Result<MeasuredMotor, TuneError> {
+    let settings = operator.settings().unwrap();
+    let supply_v = supply_v(operator, &settings).unwrap();
+    let plan = JogPlan::new(motor, &settings, supply_v);
+    measure_motor(operator, &plan, &settings, seen)
+}
+
+/// How far a row is off what it is compared with, as a part of it; not farther than twice its uncertainty.
+fn off(row: &Row) -> f64 {
+    let (measured, real) = (row.measured, row.configured.unwrap());
+    println!("{row:?}");
+    assert!(
+        (measured.value - real).abs() < 2.0 * measured.uncertainty,
+        "{row:?}"
+    );
+    (measured.value / real - 1.0).abs()
+}
+
+#[test]
+fn the_constants_of_a_motor_are_found_within_five_percent() {
+    let configured = RigFile::load(None).unwrap();
+    for seed in 1..=6 {
+        let real = drawn(&configured, seed);
+        let (line, mut operator, _) = leg(&real, seed);
+        let before = line.with_plant(|plant| plant.truth().unstretched_m);
+        let motor = 1 + (seed % 3) as u8;
+        let mut hardest_n = 0.0_f64;
+        let found = jog(&mut operator, motor, &mut |_| {
+            let tensions_n = line.with_plant(|plant| plant.truth().tensions_n);
+            hardest_n = tensions_n.into_iter().fold(hardest_n, f64::max);
+        });
+        // Compared with what the leg is, not with what it is configured to.
+        let rows = comparison(&found.unwrap().constants, None, &real);
+        for name in [
+            "resistance_ohm",
+            "torque_constant_nm_per_a",
+            "friction, pulling in",
+            "friction, paying out",
+            "friction_nm",
+            "screw_efficiency",
+            "pull, pulling in",
+            "pull, paying out",
+        ] {
+            let row = rows.iter().find(|row| row.name == name).unwrap();
+            assert!(off(row) < 0.05, "seed {seed}");
+        }
+        let after = line.with_plant(|plant| plant.truth().unstretched_m);
+        for (before, after) in before.iter().zip(after) {
+            assert!((before - after).abs() < 1e-3, "seed {seed}: not put back");
+        }
+        assert!((5.0..16.0).contains(&hardest_n), "{hardest_n} N");
+        let telemetry = operator.telemetry().unwrap().telemetry;
+        assert_eq!(telemetry.state, State::Disarmed);
+    }
+}
+
+/// The frequency of the leg after a push, without any damping, by the times at which its tip passes the vertical, Hz.
+fn true_frequency_hz(real: &RigFile, pretension_n: f64) -> f64 {
+    let start = Start::Held {
+        azimuth_deg: 0.0,
+        tilt_deg: 0.0,
+        pretension_n,
+        payload_kg: 0.0,
+    };
+    let mut plant = Plant::new(real, &real.plant.undamped(), start, 1).unwrap();
+    plant.push([0.5, 0.0, 0.0].into(), 0.01, 0.0);
+    let mut passes = Vec::new();
+    let mut before = plant.truth();
+    while passes.len() < 11 {
+        plant.step(&OFF);
+        let now = plant.truth();
+        if before.tip_m.x < 0.0 && now.tip_m.x >= 0.0 {
+            let part = before.tip_m.x / (before.tip_m.x - now.tip_m.x);
+            passes.push(before.time_s + part * (now.time_s - before.time_s));
+        }
+        before = now;
+    }
+    10.0 / (passes[10] - passes[0])
+}
+
+#[test]
+fn the_first_mode_is_found_within_three_percent_and_the_play_within_ten() {
+    let configured = RigFile::load(None).unwrap();
+    for seed in 1..=3 {
+        let real = drawn(&configured, seed);
+        let (_, mut operator, _) = leg(&real, seed);
+        let plan = SwingPlan::new(&configured);
+        let swings = measure_swing(&mut operator, &plan, &configured, &mut |_| ()).unwrap();
+        assert_eq!(swings.all.len(), 3);
+        let mut changed = 0.0_f64;
+        for swing in &swings.all {
+            let real_hz = true_frequency_hz(&real, swing.pretension_n);
+            let found = swing.frequency_hz;
+            println!("{:.1} N: {found:?}, true {real_hz} Hz", swing.pretension_n);
+            assert!((found.value / real_hz - 1.0).abs() < 0.03, "seed {seed}");
+            changed = changed.max((swing.configured_hz / real_hz - 1.0).abs());
+        }
+        // It is measured, not taken from the rig file.
+        assert!(changed > 0.03, "seed {seed}: {changed}");
+        let play_m = swings.play_m.unwrap();
+        let real_m = real.actuator.play_m();
+        println!("play {play_m:?}, true {real_m}");
+        assert!((play_m.value / real_m - 1.0).abs() < 0.1, "seed {seed}");
+        let telemetry = operator.telemetry().unwrap().telemetry;
+        assert_eq!(telemetry.state, State::Held);
+    }
+}
+
+/// The section stands in a rig file as it is, and gives what was measured.
+#[test]
+fn what_is_written_is_a_part_of_a_rig_file() {
+    let configured = RigFile::load(None).unwrap();
+    let real = drawn(&configured, 1);
+    let (_, mut operator, _) = leg(&real, 1);
+    let found = jog(&mut operator, 2, &mut |_| ()).unwrap();
+    let rows = comparison(&found.constants, None, &configured);
+    let text = [READY_RIGS[0].text, &section(2, &rows)].concat();
+    let written = RigFile::parse("measured", &text).unwrap().actuator;
+    for (written, real) in [
+        (written.resistance_ohm, real.actuator.resistance_ohm),
+        (written.friction_nm, real.actuator.friction_nm),
+        (written.screw_efficiency, real.actuator.screw_efficiency),
+    ] {
+        assert!((written / real - 1.0).abs() < 0.05, "{written} {real}");
+    }
+}
+
+/// What is wrong from the beginning is named by the first jog that shows it.
+#[test]
+fn a_mistake_of_the_wires_is_named_and_ends_it() {
+    let rig = RigFile::load(None).unwrap();
+    for (defect, words) in [
+        (Defect::EncoderReversed(0), "counts the wrong way"),
+        (Defect::EncodersSwapped, "encoder 2 counted"),
+        (Defect::MotorJammed(0), "does not turn"),
+        (
+            Defect::CellReversed(0),
+            "shows less where its tendon pulls more",
+        ),
+        (Defect::TendonCut(0), "does not come to pull"),
+    ] {
+        let (line, mut operator, _) = leg(&rig, 1);
+        line.with_plant(|plant| plant.set_defect(defect, true));
+        let failure = jog(&mut operator, 1, &mut |_| ()).unwrap_err().failure();
+        println!("{defect:?}: {failure}");
+        assert!(failure.to_string().contains(words), "{defect:?}: {failure}");
+        let telemetry = operator.telemetry().unwrap().telemetry;
+        assert_eq!(telemetry.state, State::Disarmed, "{defect:?}");
+    }
+}
+
+/// A fault in the middle: by its name, and the motors are at rest.
+#[test]
+fn a_fault_in_the_middle_ends_it_by_its_name() {
+    let rig = RigFile::load(None).unwrap();
+    for after in [1, 12] {
+        let (line, mut operator, _) = leg(&rig, 1);
+        let mut count = 0;
+        let ended = jog(&mut operator, 1, &mut |_| {
+            count += 1;
+            if count == after {
+                line.with_plant(|plant| plant.set_defect(Defect::SupplySag, true));
+            }
+        });
+        assert_eq!(count, after);
+        let Err(TuneError::Operator(OperatorError::Failed(_, telemetry))) = ended else {
+            panic!("{ended:?}");
+        };
+        assert!(telemetry.faults.has(Fault::SupplyLow), "{telemetry:?}");
+        let truth = line.with_plant(|plant| plant.truth());
+        assert_eq!(truth.speeds_rad_per_s, [0.0; 3]);
+    }
+    let (line, mut operator, _) = leg(&rig, 1);
+    let plan = SwingPlan::new(&rig);
+    let mut count = 0;
+    let ended = measure_swing(&mut operator, &plan, &rig, &mut |_| {
+        count += 1;
+        line.with_plant(|plant| plant.set_defect(Defect::CellDead(1), true));
+    });
+    assert_eq!(count, 1);
+    let words = ended.unwrap_err().failure().to_string();
+    assert!(words.contains("load cell"), "{words}");
+    assert!(!operator.telemetry().unwrap().telemetry.state.follows());
+}
+
+#[test]
+fn a_user_who_interrupts_it_leaves_the_motors_at_rest() {
+    let rig = RigFile::load(None).unwrap();
+    let (line, mut operator, cancel) = leg(&rig, 1);
+    let ended = jog(&mut operator, 1, &mut |_| cancel.set());
+    assert!(
+        matches!(ended, Err(TuneError::Operator(OperatorError::Cancelled))),
+        "{ended:?}"
+    );
+    let truth = line.with_plant(|plant| plant.truth());
+    assert_eq!(truth.speeds_rad_per_s, [0.0; 3]);
+}
