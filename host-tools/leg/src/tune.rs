@@ -153,7 +153,12 @@ fn report(
                 )
             },
         );
-        format!("{}{charts}{written}", table(&rows))
+        // Whatever is not so ends the jogs.
+        let directions = format!(
+            "Motor {} counts the way that it is driven, alone, and its load cell shows what its tendon pulls.\n",
+            motor.motor
+        );
+        format!("{}{directions}{charts}{written}", table(&rows))
     })
 }
 

@@ -28,8 +28,8 @@ pub struct MotorConstants {
 impl MotorConstants {
     /// From jogs without and against a tension. A current sensor shows steps of `current_step_a`.
     pub(super) fn fit(jogs: &[Jogged], current_step_a: f64) -> Result<Self, TuneError> {
-        // Of even errors within a step.
-        let current_off_a = current_step_a / 12_f64.sqrt();
+        // Half a step, not the deviation of even errors within it: at steady currents they are the same in many jogs.
+        let current_off_a = 0.5 * current_step_a;
         let slack_n = slack_n(jogs);
         let currents: Vec<_> = jogs.iter().map(|jog| current(jog, slack_n)).collect();
         let voltages: Vec<_> = jogs.iter().map(voltage).collect();
