@@ -28,7 +28,7 @@ pub use damping::SwingDamping;
 pub use debounce::Debounce;
 pub use estimate::{Estimate, Estimator, LengthError, LoadEstimate, LoadEstimation};
 pub use filter::LowPass;
-pub use friction::Friction;
+pub use friction::{FRICTION_ALLOWANCE, Friction, PULL_ALLOWANCE};
 pub use homing::{HomingSequence, HomingStep};
 pub use jog_bounds::{JOG_RISE_S, JogBounds};
 pub use measure::{Measured, Measurement};

@@ -6,6 +6,7 @@ mod commands;
 mod held;
 mod homing;
 mod jogging;
+mod length_offsets;
 mod link_watch;
 mod mode;
 mod phase;
@@ -13,7 +14,6 @@ mod ramping_down;
 mod shadow;
 mod shared;
 mod station;
-mod swing_brake;
 
 pub use command_queue::Outcome;
 
@@ -269,8 +269,9 @@ impl<T: Scalar> Leg<T> {
         let trust = Trust {
             pose: self.agreement.watches() && !self.supervisor.stopped(),
             counters: !latched.overlaps(FaultSet::SUSPECT_COUNTERS),
+            cells: !latched.overlaps(FaultSet::OF_CELLS),
         };
-        let steps_m = self.mode.steps_m(&self.shared);
+        let steps_m = self.mode.steps_m(&self.shared, trust);
         self.mode = Mode::begin(state, &mut self.shared, measured, steps_m, trust);
         if state == State::Active {
             // The first target comes in the next tick: pose and load have been estimated until now.

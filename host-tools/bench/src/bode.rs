@@ -24,6 +24,7 @@ use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Start;
 use rayon::prelude::*;
 use serde::Serialize;
+use std::ops::Range;
 
 /// The least margin of the gain that a loop may have, dB.
 pub const GAIN_DB: f64 = 6.0;
@@ -80,14 +81,14 @@ impl Swept {
 }
 
 impl Campaign {
-    /// Measures so many states, on all cores, and calls `done` after each. They come in the order of their numbers.
-    pub fn run(&self, count: u64, done: impl Fn() + Sync) -> Vec<Swept> {
+    /// Measures the states of some numbers, on all cores, and calls `done` after each. They come in the order of their numbers.
+    pub fn run(&self, numbers: Range<u64>, done: impl Fn() + Sync) -> Vec<Swept> {
         let swept = |number| {
             let swept = self.swept(number);
             done();
             swept
         };
-        let all: Vec<Vec<_>> = (0..count).into_par_iter().map(swept).collect();
+        let all: Vec<Vec<_>> = numbers.into_par_iter().map(swept).collect();
         all.into_iter().flatten().collect()
     }
 

@@ -41,7 +41,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         loops: Feedback::ALL.to_vec(),
     };
     let bar = progress::bar(args.count, "states");
-    let swept = campaign.run(args.count, || bar.inc(1));
+    let swept = campaign.run(0..args.count, || bar.inc(1));
     bar.finish_and_clear();
     if swept.is_empty() {
         return Err(Failure::refused(

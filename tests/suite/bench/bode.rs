@@ -84,9 +84,9 @@ fn the_margins_of_a_known_loop_are_found() {
     }
 }
 
-/// Measures the paper's rig with settings of its own.
-fn measured(set: impl Fn(&mut Servo), seed: u64, loops: &[Feedback], count: u64) -> Vec<Swept> {
-    println!("seed {seed}");
+/// Measures the paper's rig with settings of its own in the state of a number.
+fn measured(set: impl Fn(&mut Servo), [seed, number]: [u64; 2], loops: &[Feedback]) -> Vec<Swept> {
+    println!("seed {seed}, {number}");
     let mut file = RigFile::load(None).unwrap();
     set(&mut file.gains.servo);
     let campaign = Campaign {
@@ -94,7 +94,7 @@ fn measured(set: impl Fn(&mut Servo), seed: u64, loops: &[Feedback], count: u64)
         rigs: vec![("table1".into(), file)],
         loops: loops.to_vec(),
     };
-    let swept = campaign.run(count, || ());
+    let swept = campaign.run(number..number + 1, || ());
     let ended = swept.iter().filter_map(|one| one.failure.as_ref());
     assert_eq!(ended.collect::<Vec<_>>(), Vec::<&String>::new());
     swept
@@ -109,33 +109,42 @@ fn worst(rows: &[Row], feedback: Feedback, margin: Margin) -> Option<f64> {
         .min_by(f64::total_cmp)
 }
 
-/// What the loops of the paper's rig have at a leg that leans by 30° with 1.8 kg, near the worst that there is. All meet the bars of 6 dB
-/// and 45° there.
+/// What the loops of the paper's rig have: at 30° with 1.8 kg, where all meet the bars of 6 dB and 45°, and at 30° with 1.4 kg, where the
+/// tension loop has the least phase of the twelve states of `leg bode`, and is kept from having less. The trim alone has no gain margin:
+/// its phase does not come to ±180°.
 #[test]
-fn the_loops_meet_the_bars() {
-    let rows = rows(&measured(|_| (), 3, &Feedback::ALL, 1));
-    for feedback in Feedback::ALL {
-        for margin in Margin::ALL {
-            let found = worst(&rows, feedback, margin);
-            println!("{feedback:?} {margin:?} {found:?}");
-            assert!(
-                found.is_none_or(|found| found >= margin.bar()),
-                "{feedback:?} {margin:?} {found:?}"
-            );
+fn the_loops_keep_their_margins() {
+    for (state, tension_deg) in [([3, 0], Margin::Phase.bar()), ([1, 5], 36.0)] {
+        let rows = rows(&measured(|_| (), state, &Feedback::ALL));
+        for feedback in Feedback::ALL {
+            for margin in Margin::ALL {
+                let least = match (feedback, margin) {
+                    (Feedback::Tension, Margin::Phase) => tension_deg,
+                    _ => margin.bar(),
+                };
+                let found = worst(&rows, feedback, margin);
+                println!("{feedback:?} {margin:?} {found:?}");
+                let kept = match found {
+                    Some(found) => found >= least,
+                    None => feedback == Feedback::Trim && margin == Margin::Gain,
+                };
+                assert!(kept, "{feedback:?} {margin:?} {found:?}");
+            }
         }
     }
 }
 
 /// The play of the gears takes nothing of the servo: its goal crosses the play with the direction that is asked for. While it followed the
-/// motor there, the servo had 7 dB and 18° less.
+/// motor there, the servo had 7 dB and 18° less. It has 12.0 dB and 53° without play.
 #[test]
 fn play_takes_no_margin_of_the_servo() {
     let margins = |set: fn(&mut Servo)| {
-        let swept = measured(set, 7, &[Feedback::Servo], 1);
+        let swept = measured(set, [7, 0], &[Feedback::Servo]);
         Margin::ALL.map(|margin| worst(&rows(&swept), Feedback::Servo, margin).unwrap())
     };
     let [with, without] = [margins(|_| ()), margins(|servo| servo.play_m = 0.0)];
     println!("{with:?} {without:?}");
+    assert!((10.5..14.0).contains(&without[0]) && (48.0..60.0).contains(&without[1]));
     assert!(with[0] > without[0] - 2.0 && with[1] > without[1] - 6.0);
 }
 
@@ -146,7 +155,7 @@ fn a_loop_with_too_much_gain_is_named() {
         servo.play_m = 0.0;
         servo.speed_gain_v_s_per_m *= 2.5;
     };
-    let rows = rows(&measured(set, 7, &[Feedback::Servo, Feedback::Trim], 1));
+    let rows = rows(&measured(set, [7, 0], &[Feedback::Servo, Feedback::Trim]));
     let failed = rows.iter().filter(|row| row.failed > 0);
     let named: Vec<_> = failed.map(|row| row.feedback.name()).collect();
     assert!(

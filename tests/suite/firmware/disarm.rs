@@ -52,6 +52,7 @@ fn a_leg_that_was_stopped_before_it_was_watched_is_paid_out_where_it_is() {
 fn a_leg_with_a_fault_is_paid_out_where_it_is() {
     let mut still = StillLeg::armed();
     still.run(WATCHED_TICKS);
+    // Not a host that falls silent: before that is a fault, motors that are driven and never draw a current are one.
     still.sensors.temperature_code = CODE_MAX;
     still.run(400);
     let telemetry = still.leg.telemetry();

@@ -111,16 +111,26 @@ fn disturbed(stand: &mut Stand, for_s: f64) -> (Option<[f64; 2]>, f64) {
     (ring_down(&half_swings(&tips_m)), largest_m)
 }
 
-/// Pushed by 5 N for a tenth of a second, or loaded by half a kilogram in 50 ms: without damping the ratio is 0.03 to 0.06, and it takes
-/// two seconds. The bar that is wished for is 0.2.
-#[test]
-fn a_leg_that_is_pushed_or_loaded_rings_down() {
+/// What becomes of legs that are drawn, pushed by 5 N for a tenth of a second, or loaded by half a kilogram in 50 ms.
+struct Found {
+    /// Damping ratios of those that swing, from the lowest, for pushes and for payloads.
+    ratios: [Vec<f64>; 2],
+    /// The longest time to a tenth, s, for both.
+    tenth_s: [f64; 2],
+    /// The farthest that any of them swings in the end, m.
+    last_m: f64,
+}
+
+fn ring_downs(rig: &RigFile, count: u32) -> Found {
     const SEED: u64 = 17;
-    let rig = paper();
     let mut rng = Rng::with_seed(SEED);
-    let mut ratios = [Vec::new(), Vec::new()];
-    for number in 0..24 {
-        let (sound, payload_kg) = drawn(&rig, &mut rng);
+    let mut all = Found {
+        ratios: [Vec::new(), Vec::new()],
+        tenth_s: [0.0; 2],
+        last_m: 0.0,
+    };
+    for number in 0..count {
+        let (sound, payload_kg) = drawn(rig, &mut rng);
         let mut pushed = sound.clone();
         let plant = pushed.plant();
         plant.push(plant.across(360.0 * rng.f64()) * 5.0, 0.1, 0.0);
@@ -128,19 +138,42 @@ fn a_leg_that_is_pushed_or_loaded_rings_down() {
         loaded.plant().set_payload(payload_kg + 0.5, 0.05);
         for (i, (mut stand, for_s)) in [(pushed, 0.1), (loaded, 0.05)].into_iter().enumerate() {
             let (found, last_m) = disturbed(&mut stand, for_s);
-            let what = format!("seed {SEED}, {number}, {i}: {found:?}, {last_m} m in the end");
-            assert!(last_m < 2.0 * LEAST_M, "it swings on: {what}");
+            println!("seed {SEED}, {number}, {i}: {found:?}, {last_m} m in the end");
+            all.last_m = all.last_m.max(last_m);
             if let Some([ratio, tenth_s]) = found {
-                println!("{what}");
-                assert!(tenth_s < [0.6, 1.2][i], "{what}");
-                ratios[i].push(ratio);
+                all.tenth_s[i] = all.tenth_s[i].max(tenth_s);
+                all.ratios[i].push(ratio);
             }
         }
     }
-    for (ratios, [least, median]) in ratios.iter_mut().zip([[0.09, 0.13], [0.05, 0.13]]) {
+    for ratios in &mut all.ratios {
         ratios.sort_by(f64::total_cmp);
-        let found = [ratios[0], ratios[ratios.len() / 2]];
-        println!("damping ratio: {found:.3?} of {}", ratios.len());
-        assert!(found[0] > least && found[1] > median, "{ratios:?}");
     }
+    println!("damping ratios {:.3?}", all.ratios);
+    println!("to a tenth in {:.2?} s", all.tenth_s);
+    all
+}
+
+#[test]
+fn a_leg_that_is_pushed_or_loaded_rings_down() {
+    let found = ring_downs(&paper(), 24);
+    for (ratios, [least, median]) in found.ratios.iter().zip([[0.09, 0.13], [0.06, 0.13]]) {
+        assert!(ratios.len() >= 22, "{} swing", ratios.len());
+        assert!(ratios[0] > least && ratios[ratios.len() / 2] > median);
+    }
+    let [pushed_s, loaded_s] = found.tenth_s;
+    assert!(pushed_s < 0.6 && loaded_s < 1.2);
+    assert!(found.last_m < 2.0 * LEAST_M, "one swings on");
+}
+
+/// Without the brake the ratios are 0.02 to 0.06, and some swing for longer than is watched: the bounds above can fail.
+#[test]
+fn a_leg_that_is_not_braked_rings_on() {
+    let mut rig = paper();
+    rig.gains.motion.damping_ratio = 0.0;
+    let found = ring_downs(&rig, 6);
+    for ratios in &found.ratios {
+        assert!(ratios[ratios.len() / 2] < 0.07);
+    }
+    assert!(found.last_m > 2.0 * LEAST_M);
 }

@@ -126,6 +126,7 @@ fn a_cell_that_lies_after_a_payload_has_come_moves_the_tip_by_little() {
                 farthest_mm = farthest_mm.max(found.end_mm);
             } else {
                 assert_eq!(bench.state(), State::Held, "{:?}", defect(cell));
+                // No farther than the payload took it.
                 assert!(found.largest_mm < 4.5, "{:?}: {found:?}", defect(cell));
             }
         }
@@ -169,7 +170,8 @@ fn a_motor_that_fails_in_a_correction_ends_it() {
     }
 }
 
-/// What pulls a tendon above the maximum tension has it paid out: faster than a correction, and the leg comes back as slowly.
+/// What pulls a tendon above the maximum tension has it paid out: faster than a correction, and the leg comes back as slowly. The push
+/// comes at once, and the tip swings beyond where it rests: by 9.1 mm, or 8.7 mm with a `damping_ratio` of 0.4.
 #[test]
 fn a_push_to_the_maximum_tension_is_given_way_to() {
     let mut bench = keeping(&paper(), [60.0, 20.0], 2.0, 24);

@@ -2,9 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use super::station_stand::{armed, paper, pass, ticks};
+use leg_bench::stand::Stand;
+use leg_firmware::command::{Command, Compensation};
 use leg_firmware::supervisor::State;
 use leg_rig::rig_file::RigFile;
 use leg_sim::link::InProcess;
+use leg_sim::plant::Defect;
 use leg_sim::scenario::Scenario;
 use leg_sim::simulation::{Simulation, Tick};
 
@@ -70,4 +74,54 @@ fn a_leg_that_swings_is_held_where_it_is() {
             assert!(moved_m < 1e-4, "{wait_ms} ms: {moved_m} m");
         }
     }
+}
+
+/// How far the motors go from when it is held, m, until they rest, and how far the tip swings about its end, mm.
+fn held_ways(stand: &mut Stand) -> (f64, f64) {
+    let pulled_m = stand.telemetry.unwrap().pulled_m;
+    let mut tips_m = Vec::new();
+    for _ in 0..ticks(1.0) {
+        stand.tick().unwrap();
+        tips_m.push(stand.truth.tip_m);
+    }
+    assert_eq!(stand.state(), State::Held);
+    let gone = stand.telemetry.unwrap().pulled_m;
+    let farthest_m = gone.iter().zip(pulled_m).fold(0.0_f64, |farthest, (a, b)| {
+        farthest.max(f64::from(a - b).abs())
+    });
+    let end_m = tips_m[tips_m.len() - 1];
+    let swings = tips_m.iter().map(|tip| (tip - end_m).norm() * 1e3);
+    (farthest_m, swings.fold(0.0, f64::max))
+}
+
+/// A leg at rest whose compensation comes on is led by its motors: stopped, they brake; held by a load cell in doubt, they stand within
+/// a few counts, for what they did may have been its error.
+#[test]
+fn a_leg_at_rest_is_held_at_once_where_a_load_cell_is_in_doubt() {
+    let mut rising = armed(&paper(), [0.0, 25.0], 2.0, 5);
+    rising
+        .command(&Command::Compensation(Compensation::Off))
+        .unwrap();
+    pass(&mut rising, 2.0);
+    rising
+        .command(&Command::Compensation(Compensation::Estimated))
+        .unwrap();
+    pass(&mut rising, 0.3);
+    assert_eq!(rising.state(), State::Active);
+    let mut stopped = rising.clone();
+    stopped.command(&Command::Stop).unwrap();
+    pass(&mut stopped, 0.002);
+    assert!(stopped.moving(), "it brakes");
+    let (braking_m, swing_mm) = held_ways(&mut stopped);
+    println!("stopped: {braking_m} m, swing {swing_mm} mm");
+    assert!(braking_m > 5e-5 && swing_mm < 2.0);
+    let mut doubted = rising;
+    doubted.plant().set_defect(Defect::CellSaturated(0), true);
+    while doubted.state() == State::Active {
+        doubted.tick().unwrap();
+    }
+    assert!(!doubted.moving(), "it is held at once");
+    let (gone_m, swing_mm) = held_ways(&mut doubted);
+    println!("in doubt: {gone_m} m, swing {swing_mm} mm");
+    assert!(gone_m < 1e-5 && swing_mm < 2.0);
 }

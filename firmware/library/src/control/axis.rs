@@ -86,7 +86,7 @@ pub struct AxisInput<T> {
     pub f_max_n: T,
     /// The supply, V.
     pub supply_v: T,
-    /// Its inverse, 1/V; none of a supply that drives nothing.
+    /// Duty of a volt, 1/V: the inverse of the supply, or 0 at one that drives nothing.
     pub duty_per_v: T,
     /// The tendon is not paid out beyond this, m, whatever its load cell says.
     pub lowest_m: T,
@@ -231,6 +231,9 @@ impl<T: Scalar> Axis<T> {
             // What the tension does not allow is caught up with, not insisted on.
             let ahead = T::from(LIMITED_AHEAD_M);
             self.reference_m = min(self.reference_m, input.pulled_m + ahead);
+            // Nor is it helped against friction where it does not go.
+            self.integral_v -= self.fed_v;
+            self.fed_v = T::zero();
         }
         let wanted = min(wanted, fastest);
         let wanted = if input.pulled_m <= input.lowest_m {
@@ -252,6 +255,7 @@ impl<T: Scalar> Axis<T> {
         if resting {
             // The screw holds by itself.
             self.integral_v *= T::from(RESTING_DECAY);
+            self.fed_v *= T::from(RESTING_DECAY);
         } else if !saturated {
             self.integral_v += gains.integral * missing;
         }

@@ -4,17 +4,19 @@ use super::{TICK_S, bounds::min};
 use crate::settings::Settings;
 use leg_model::Scalar;
 
-/// Part of the current of friction in the settings that is fed: they allow for 2.6 times what the data sheet of a motor gives, so
-/// that no monitor errs. More than there is would drive a motor that shall stand.
-const FRICTION_PART: f32 = 1.0 / 2.6;
+/// By how many times as much the settings allow for as the data sheet of a motor gives, so that no monitor errs: that is not fed, for
+/// with more than there is a motor runs ahead until its servo takes it back.
+pub const FRICTION_ALLOWANCE: f64 = 2.6;
 
-/// The same of the current of a pull: the settings allow for 5 % more.
-const PULL_PART: f32 = 1.0 / 1.05;
+/// The same of the current of a pull.
+pub const PULL_ALLOWANCE: f64 = 1.05;
 
-/// Speed of a tendon below which its direction is that of noise, m/s: nothing is fed.
+/// Speed of a tendon below which its direction is that of noise, m/s: nothing is fed. The target of a leg at rest on the paper's rig
+/// wanders at 1 µm/s, ten times as slowly.
 const LEAST_M_PER_S: f32 = 1e-5;
 
-/// How much faster the whole friction is fed, m/s.
+/// How much faster the whole friction is fed, m/s. At a fifth of it motors at rest turn to and fro by a count; at all of it a swing of
+/// the tip by 0.1 mm is still braked.
 const WHOLE_M_PER_S: f32 = 1e-4;
 
 /// The friction of the motors, as voltages.
@@ -33,19 +35,21 @@ impl<T: Scalar> Friction<T> {
     /// counted as the screw's.
     pub fn new(settings: &Settings) -> Self {
         let servo = &settings.servo;
-        let pull_a_per_n = PULL_PART * servo.pull_a_per_n;
+        let pull_a_per_n = servo.pull_a_per_n / PULL_ALLOWANCE as f32;
+        // No more than the servo may drive: a setting far beyond any motor's would leave the integral without digits.
+        let dry_a = (servo.friction_a / FRICTION_ALLOWANCE as f32).min(servo.current_a);
         let twice_efficiency = 2.0 / (servo.back_emf_v_s_per_m * pull_a_per_n).max(1.0);
         let inwards_v_per_n = servo.resistance_ohm * pull_a_per_n;
         let outwards_v_per_n = inwards_v_per_n * (1.0 - twice_efficiency).max(0.0);
         Self {
-            dry_v: T::from(servo.resistance_ohm * FRICTION_PART * servo.friction_a),
+            dry_v: T::from(servo.resistance_ohm * dry_a),
             inwards_v_per_n: inwards_v_per_n.into(),
             outwards_v_per_n: outwards_v_per_n.into(),
         }
     }
 
-    /// The voltage of a motor that is led by `step_m` in a tick, at a tension that is asked for, N: a load cell that lies drives no motor
-    /// here.
+    /// The voltage of a motor that is led by `step_m` in a tick, at a tension that is asked for, N. That is between the bounds of the
+    /// tensions, whatever a load cell shows.
     #[inline(always)]
     pub fn voltage_v(&self, step_m: T, tension_n: T) -> T {
         let faster_m = step_m.abs() - T::from(LEAST_M_PER_S * TICK_S);

@@ -3,9 +3,13 @@
 use super::bounds::{max, min};
 use leg_model::Scalar;
 
-/// Change of a length that is asked for in which a motor is led across the whole play, m: on the paper's rig 4 µm at the tip. Less would
-/// pass on the noise of what is asked for, more would leave the leg beside its target where the direction changes.
-const TURN_M: f32 = 4e-7;
+/// The least change of a length that is asked for in which a motor is led across the whole play, m: on the paper's rig 4 µm at the tip.
+/// Less would pass on the noise of what is asked for, more would leave the leg beside its target where the direction changes.
+const TURN_MIN_M: f32 = 4e-7;
+
+/// The same by the play: so many times as far as what is asked for goes a motor while it crosses the play. More would have a motor
+/// with a large play turn to and fro by what rounding changes.
+const CROSSING_GAIN: f32 = 6.0;
 
 /// The gears, followed by the counts of their motors. A gear touches its screw on one side while the tendon is reeled in, on the
 /// other while it is paid out, and the screw stays between them.
@@ -16,55 +20,57 @@ pub struct Play<T> {
     pulled_m: [T; 3],
     /// How far each motor is behind its screw, m: the play or less.
     behind_m: [T; 3],
-    /// The lengths that were asked for, m, where they changed their direction last: no farther from the present ones than [`TURN_M`].
-    /// None where no motor is led.
+    /// The lengths that were asked for, m, where they changed their direction last: no farther from the present ones than `turn_m`. None
+    /// where no motor is led.
     turned_m: Option<[T; 3]>,
-    /// The play by [`TURN_M`], and the inverse of that; both are zero where there is no play.
-    play_per_turn: T,
-    turn_per_play: T,
+    /// The change of a length in which a motor crosses the play, m.
+    turn_m: T,
+    /// The play by that.
+    gain: T,
 }
 
 impl<T: Scalar> Play<T> {
     /// Gears with a play, m, that touch as after reeling in: so homing leaves them.
     pub fn new(play_m: f32) -> Self {
+        let turn_m = (play_m / CROSSING_GAIN).max(TURN_MIN_M);
         Self {
             play_m: play_m.into(),
             pulled_m: [T::zero(); 3],
             behind_m: [T::zero(); 3],
             turned_m: None,
-            play_per_turn: T::from(play_m / TURN_M),
-            turn_per_play: if play_m > 0.0 {
-                T::from(TURN_M / play_m)
-            } else {
-                T::zero()
-            },
+            turn_m: turn_m.into(),
+            gain: T::from(play_m / turn_m),
         }
     }
 
-    /// Leads the motors from where they are.
+    /// Crosses from where the motors are when it is asked next.
     pub fn start(&mut self) {
         self.turned_m = None;
     }
 
     /// How far each motor shall be behind its screw, m, for lengths without tension that are asked for, m: by the play while a tendon is
-    /// paid out, by nothing while it is reeled in. It does not depend on where the motors are: a goal that goes with its motor takes
-    /// 18° of the servo's phase margin.
+    /// paid out, by nothing while it is reeled in. From the first time on it does not depend on where the motors are: a goal that goes with
+    /// its motor takes 18° of the servo's phase margin.
     #[inline(always)]
-    pub fn lead_m(&mut self, lengths_m: &[T; 3]) -> [T; 3] {
+    pub fn cross_m(&mut self, lengths_m: &[T; 3]) -> [T; 3] {
         let mut turned_m = self.turned_m.unwrap_or_else(|| {
             let mut turned_m = *lengths_m;
             for (turned, &behind) in turned_m.iter_mut().zip(&self.behind_m) {
-                *turned -= behind * self.turn_per_play;
+                // Without play both are zero.
+                if behind > T::zero() {
+                    *turned -= behind / self.gain;
+                }
             }
             turned_m
         });
-        let mut lead_m = *lengths_m;
-        for (lead, turned) in lead_m.iter_mut().zip(&mut turned_m) {
-            *turned = min(max(*turned, *lead - T::from(TURN_M)), *lead);
-            *lead = (*lead - *turned) * self.play_per_turn;
+        let mut behind_m = *lengths_m;
+        for (behind, turned) in behind_m.iter_mut().zip(&mut turned_m) {
+            let length_m = *behind;
+            *turned = min(max(*turned, length_m - self.turn_m), length_m);
+            *behind = (length_m - *turned) * self.gain;
         }
         self.turned_m = Some(turned_m);
-        lead_m
+        behind_m
     }
 
     /// How far each motor is behind its screw, m.
@@ -86,7 +92,7 @@ impl<T: Scalar> Play<T> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Play, TURN_M};
+    use super::{Play, TURN_MIN_M};
 
     #[test]
     fn a_screw_stays_while_its_motor_crosses_the_play() {
@@ -108,10 +114,10 @@ mod tests {
     }
 
     /// Reeling in, the motors touch their screws; turned about, they have crossed the play when the lengths have changed by
-    /// [`TURN_M`], wherever they are themselves.
+    /// [`TURN_MIN_M`], wherever they are themselves.
     #[test]
     fn a_motor_is_led_across_the_play_with_the_direction_that_is_asked_for() {
-        let turn_m = f64::from(TURN_M);
+        let turn_m = f64::from(TURN_MIN_M);
         let mut play = Play::<f64>::new(2e-6);
         for (turns, part) in [
             (0.0, 0.0),
@@ -124,18 +130,23 @@ mod tests {
             (6.9, 0.9),
             (6.0, 0.0),
         ] {
-            let lead_m = play.lead_m(&[turns * turn_m; 3]);
+            let behind_m = play.cross_m(&[turns * turn_m; 3]);
             assert!(
-                (lead_m[2] - part * 2e-6).abs() < 1e-12,
-                "{turns}: {lead_m:?}"
+                (behind_m[2] - part * 2e-6).abs() < 1e-12,
+                "{turns}: {behind_m:?}"
             );
         }
         play.follow(&[-1e-6; 3]);
         play.start();
         assert!(
-            (play.lead_m(&[0.1; 3])[0] - 1e-6).abs() < 1e-12,
+            (play.cross_m(&[0.1; 3])[0] - 1e-6).abs() < 1e-12,
             "from where it is"
         );
-        assert_eq!(Play::<f64>::new(0.0).lead_m(&[0.1; 3]), [0.0; 3]);
+        assert_eq!(Play::<f64>::new(0.0).cross_m(&[0.1; 3]), [0.0; 3]);
+        // A large play is crossed over a longer way: six times as far as what is asked for goes the motor.
+        let mut large = Play::<f64>::new(1.4e-5);
+        assert_eq!(large.cross_m(&[0.1; 3]), [0.0; 3]);
+        let behind_m = large.cross_m(&[0.1 + 1e-6; 3]);
+        assert!((behind_m[0] - 6e-6).abs() < 1e-9, "{behind_m:?}");
     }
 }

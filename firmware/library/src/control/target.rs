@@ -11,8 +11,8 @@ use leg_model::{
 };
 use nalgebra::Vector3;
 
-/// An error of the pretension that is not trimmed, N. What play and dead band of the motors leave is less; the sum of it would have them
-/// turn to and fro for ever.
+/// An error of the pretension that is not trimmed, N. The motors leave the dead band and a part of the play: on the paper's rig 0.04 N;
+/// summed up, that has a leg that keeps station correct to and fro once a second.
 const TRIM_LEAST_N: f32 = 0.1;
 
 /// What the tendons shall do.

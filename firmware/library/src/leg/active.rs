@@ -1,9 +1,9 @@
 //! Following commands: estimate, pretension, target and plan in turn, one a tick.
 
+use super::length_offsets::LengthOffsets;
 use super::phase::Phase;
 use super::shared::Shared;
 use super::station::{Station, StationKeeping};
-use super::swing_brake::SwingBrake;
 use crate::command::Compensation;
 use crate::control::{
     Axis, CYCLE_S, CYCLE_TICKS, Knot, LoadEstimation, Measured, TICK_S, TargetDemand, Trajectory,
@@ -27,7 +27,7 @@ pub struct Active<T> {
     pub off_station: bool,
     /// Whether there was no target on the way since it was last led straight down.
     stuck: bool,
-    brake: SwingBrake<T>,
+    offsets: LengthOffsets<T>,
     slack: Slack<T>,
 }
 
@@ -72,7 +72,7 @@ impl<T: Scalar> Active<T> {
             station: StationKeeping::No,
             off_station: false,
             stuck: false,
-            brake: SwingBrake::new(shared.play.behind_m()),
+            offsets: LengthOffsets::new(shared.play.behind_m()),
             slack: Slack {
                 left_m: taut.then(T::zero),
                 cycles: 0,
@@ -92,8 +92,8 @@ impl<T: Scalar> Active<T> {
             Phase::Estimate => self.estimate(shared, measured),
             // In turn, for each takes most of the time that is left.
             Phase::Pretension => {
-                if self.brake.takes_turn() {
-                    self.brake.step(shared, self.tensioned, &mut self.station);
+                if self.offsets.take_turn() {
+                    self.offsets.step(shared, self.tensioned, &mut self.station);
                     if self.tensioned {
                         shared.feed_friction();
                     }
@@ -103,10 +103,7 @@ impl<T: Scalar> Active<T> {
                     search_pretension(shared)
                 }
             }
-            Phase::Command => {
-                self.brake.stay();
-                Ok(())
-            }
+            Phase::Command => Ok(()),
             Phase::Target => self.aim(shared, measured),
             Phase::Plan => {
                 // A leg that is not taut yet does not set out.
@@ -258,7 +255,7 @@ impl<T: Scalar> Active<T> {
             }
         };
         let mut pulled_m = zero_m;
-        let longer_m = self.brake.advance();
+        let longer_m = self.offsets.advance();
         for (i, pulled) in pulled_m.iter_mut().enumerate() {
             *pulled -= target.unstretched_m[i] + longer_m[i];
         }
@@ -288,7 +285,7 @@ impl<T: Scalar> Active<T> {
         if let Some(target) = &shared.target {
             self.trajectory.start(target.direction.half_tangent());
         }
-        self.brake.stay();
+        self.offsets.stay();
         shared.refused = true;
         self.stuck = true;
     }

@@ -127,12 +127,12 @@ impl<T: Scalar> Mode<T> {
         true
     }
 
-    /// How far each motor goes in a tick on the leg's way, m. Those of a leg at rest only brake a swing or follow its load: what they do
-    /// then may be the error of a sensor, and is not gone on with.
+    /// How far each motor goes in a tick, m, that a leg which is held goes on with while it brakes. Those of a leg at rest follow its load
+    /// and its swing by the load cells: once one of these is in doubt, that is not gone on with.
     #[inline(always)]
-    pub fn steps_m(&self, shared: &Shared<T>) -> [T; 3] {
+    pub fn steps_m(&self, shared: &Shared<T>, trust: Trust) -> [T; 3] {
         match self {
-            Self::Active(active) if !active.trajectory.moving() => [T::zero(); 3],
+            Self::Active(active) if !trust.cells && !active.trajectory.moving() => [T::zero(); 3],
             _ => shared.axes.each_ref().map(Axis::moved_m),
         }
     }
@@ -186,6 +186,8 @@ pub struct Trust {
     pub pose: bool,
     /// The counters: no fault is latched that they may cause.
     pub counters: bool,
+    /// The load cells: no fault is latched that the check of one raises.
+    pub cells: bool,
 }
 
 /// What one tick of a mode comes to.

@@ -1,6 +1,7 @@
 //! The rules by which gains and limits follow from the motors.
 
 use super::{Basis, ServoLoop, two_digits_below};
+use leg_firmware::control::{FRICTION_ALLOWANCE, PULL_ALLOWANCE};
 use leg_firmware::settings::{Field, Gains};
 use std::f64::consts::TAU;
 
@@ -47,7 +48,7 @@ rules! {
     servo.friction_a = "2.6 friction_nm / torque_constant_nm_per_a, at least 0.005 current_range_a",
         |basis, _| friction_a(basis);
     servo.pull_a_per_n = "1.05 lead_m / (2π gear_ratio gear_efficiency screw_efficiency torque_constant_nm_per_a)",
-        |basis, _| 1.05 * basis.actuator.pull_a_per_n();
+        |basis, _| PULL_ALLOWANCE * basis.actuator.pull_a_per_n();
     servo.current_a = "2 (friction_a + pull_a_per_n f_max_n) / driven_part, at most 0.45 current_range_a and what continuous_a and thermal_time_s bear for 1 s",
         current_a;
     servo.speed_m_per_s = "0.95 (duty_max supply_v - resistance_ohm (friction_a + pull_a_per_n f_max_n)) / back_emf_v_s_per_m, at most 0.03",
@@ -85,7 +86,7 @@ rules! {
 /// Friction with what the gear adds and viscosity at speed; a current sensor is off by half a percent anyway.
 fn friction_a(basis: &Basis) -> f64 {
     let actuator = &basis.actuator;
-    let friction = 2.6 * actuator.friction_nm / actuator.torque_constant_nm_per_a;
+    let friction = FRICTION_ALLOWANCE * actuator.friction_nm / actuator.torque_constant_nm_per_a;
     friction.max(0.005 * actuator.current_range_a)
 }
 

@@ -1,40 +1,47 @@
-//! The brake of the leg's swing and the pace of its station, in every other cycle: what they ask of the tendons comes in the two
-//! cycles until the next step.
+//! What is added to the lengths of a target, in every other cycle: the brake of the leg's swing, what a station still lacks, and the
+//! play of the gears. Each step comes in the two cycles after it.
 
 use super::shared::Shared;
 use super::station::StationKeeping;
 use crate::control::bounds;
 use leg_model::Scalar;
 
-/// By how much the tendons are longer than the trajectory asks, and their motors behind.
+/// Cycles from one step to the next.
+const CYCLES: u8 = 2;
+
+/// By how much the tendons are longer than the target asks, and their motors behind.
 #[derive(Clone, Copy, Debug)]
-pub struct SwingBrake<T> {
-    /// Whether the last cycle that had time for it braked, so that the next one searches for the pretension.
-    braked: bool,
+pub struct LengthOffsets<T> {
+    /// Whether they had the last turn, so that the search for the pretension has the next one.
+    had_turn: bool,
+    /// Cycles in which the last step still comes.
+    cycles_left: u8,
     longer_m: [T; 3],
     /// How that changes in a cycle, m.
     step_m: [T; 3],
 }
 
-impl<T: Scalar> SwingBrake<T> {
+impl<T: Scalar> LengthOffsets<T> {
     /// At rest, with motors that are so far behind their screws, m.
     pub fn new(behind_m: &[T; 3]) -> Self {
         Self {
-            braked: false,
+            had_turn: false,
+            cycles_left: 0,
             longer_m: *behind_m,
             step_m: [T::zero(); 3],
         }
     }
 
-    /// Whether it has its turn, of two.
+    /// Whether they have their turn, of two. A cycle that executes a command has none, so that commands in every other cycle make a step
+    /// of every fourth.
     #[inline(always)]
-    pub fn takes_turn(&mut self) -> bool {
-        self.braked = !self.braked;
-        self.braked
+    pub fn take_turn(&mut self) -> bool {
+        self.had_turn = !self.had_turn;
+        self.had_turn
     }
 
-    /// Brakes a swing about the last target, and keeps a leg at its station from going there too fast. In one cycle, the speed of the
-    /// tendons would go up and down with the cycles.
+    /// Brakes a swing about the last target, keeps a leg at its station from going there too fast, and leads the motors across the play.
+    /// In one cycle, the speed of the tendons would go up and down with the cycles.
     #[inline(never)]
     pub fn step(
         &mut self,
@@ -43,7 +50,7 @@ impl<T: Scalar> SwingBrake<T> {
         station: &mut StationKeeping<T>,
     ) {
         let mut goals_m = if tensioned {
-            lengths_m(shared)
+            brake_m(shared)
         } else {
             [T::zero(); 3]
         };
@@ -53,26 +60,29 @@ impl<T: Scalar> SwingBrake<T> {
             for (length, goal) in lengths_m.iter_mut().zip(goals_m) {
                 *length += goal;
             }
-            for (goal, lead) in goals_m.iter_mut().zip(shared.play.lead_m(&lengths_m)) {
-                *goal += lead;
+            for (goal, behind) in goals_m.iter_mut().zip(shared.play.cross_m(&lengths_m)) {
+                *goal += behind;
             }
         }
         for (i, step) in self.step_m.iter_mut().enumerate() {
             *step = (goals_m[i] - self.longer_m[i]) * T::HALF;
         }
+        self.cycles_left = CYCLES;
     }
 
-    /// Stays as it is: in a cycle without a step, what the last one has left would go on.
-    #[inline(always)]
+    /// Stays as it is.
     pub fn stay(&mut self) {
-        self.step_m = [T::zero(); 3];
+        self.cycles_left = 0;
     }
 
-    /// By how much each tendon shall be longer in the next cycle, m.
+    /// By how much each tendon shall be longer in the next cycle, m. Nothing is added in a cycle beyond those of a step.
     #[inline(always)]
     pub fn advance(&mut self) -> &[T; 3] {
-        for (longer, &step) in self.longer_m.iter_mut().zip(&self.step_m) {
-            *longer += step;
+        if self.cycles_left > 0 {
+            self.cycles_left -= 1;
+            for (longer, &step) in self.longer_m.iter_mut().zip(&self.step_m) {
+                *longer += step;
+            }
         }
         &self.longer_m
     }
@@ -80,7 +90,7 @@ impl<T: Scalar> SwingBrake<T> {
 
 /// By how much each tendon shall be longer to brake a swing, m; not at all before there are a target and an estimate.
 #[inline(always)]
-fn lengths_m<T: Scalar>(shared: &mut Shared<T>) -> [T; 3] {
+fn brake_m<T: Scalar>(shared: &mut Shared<T>) -> [T; 3] {
     let (Some(target), Some(estimate)) = (&shared.target, &shared.estimate) else {
         return [T::zero(); 3];
     };
