@@ -128,12 +128,10 @@ impl<T: Scalar> StationKeeping<T> {
                 *rest_m
             }
         };
-        let mut there = true;
         for (longer, rest) in longer_m.iter_mut().zip(rest_m) {
             *longer += rest;
-            there &= rest == T::zero();
         }
-        if there && matches!(self, Self::Releasing(_)) {
+        if matches!(self, Self::Releasing(rest_m) if *rest_m == [T::zero(); 3]) {
             *self = Self::No;
         }
     }
