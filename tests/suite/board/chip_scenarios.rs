@@ -141,9 +141,9 @@ fn a_sag_of_the_motor_supply_is_seen_and_held() {
 }
 
 /// All of them, before a release: `cargo test --test suite -- --ignored --nocapture chip_scenarios` prints each as it ends. The samples
-/// above are run always. Each scenario is homed first, and the chip is emulated five times as slowly as the leg moves.
+/// above are run always. Each scenario is homed first.
 #[test]
-#[ignore = "takes an hour on two cores: before a release"]
+#[ignore = "takes 20 minutes on two cores: before a release"]
 fn every_ready_scenario_passes_on_the_chip_as_in_process() {
     let image = image();
     let mut left: Vec<(&str, Scenario)> = vec![(

@@ -292,6 +292,8 @@ impl Running {
         let ticked = self.twin.tick(&sensors);
         self.reports.learn(ticked.2);
         self.ticked = Some(ticked);
+        let room = LINK_BYTES_MAX.saturating_sub(self.twin.received.len());
+        self.twin.take_unended(room);
         let fitting = self.twin.received.len().min(LINK_BYTES_MAX);
         self.taken = Some(TickRequest {
             sensors,

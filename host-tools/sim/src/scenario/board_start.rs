@@ -55,7 +55,12 @@ pub const BOARD_EXCEPTIONS: &[(&str, &str, &str)] = &[
         "is not run",
         "its motors get too little voltage for homing, and other settings would end the zero",
     ),
+    ("arm_lean", "is not run", LEANS_DISARMED),
 ];
+
+/// Why a leg that is armed where it leans is not run.
+const LEANS_DISARMED: &str =
+    "a leg with a zero is led straight down before it is disarmed: it is not disarmed where it leans";
 
 /// The key of a scenario's `[control.servo]` without which a board cannot home its leg.
 const DUTY_MAX: &str = "duty_max";
@@ -87,6 +92,7 @@ impl Scenario {
             let mut steps = preparation(scenario.start);
             match scenario.steps.strip_prefix(&arming) {
                 Some(rest) => steps.extend(rest.iter().cloned().map(with_homed_bounds)),
+                None if leans(scenario.start) => return Err(LEANS_DISARMED),
                 None => {
                     steps.push(Step::Command(CommandStep::Disarm));
                     steps.push(await_state(State::Disarmed, 10.0));
@@ -110,6 +116,10 @@ fn needs_zero(scenario: &Scenario) -> bool {
         _ => None,
     });
     !scenario.start.is_slack() && first.unwrap_or(false)
+}
+
+fn leans(start: Start) -> bool {
+    matches!(start, Start::Held { tilt_deg, .. } if tilt_deg > 0.0)
 }
 
 /// From slack tendons to where a scenario starts.
@@ -195,7 +205,7 @@ mod tests {
         for ready in READY_SCENARIOS {
             let scenario = Scenario::parse(ready.name, ready.text).expect("it is ready");
             let on_board = scenario.for_board();
-            let not_run = ready.name == "fault_following";
+            let not_run = ["fault_following", "arm_lean"].contains(&ready.name);
             assert_eq!(on_board.is_err(), not_run, "{}", ready.name);
             let Ok(scenario) = on_board else { continue };
             assert!(!needs_zero(&scenario), "{}", ready.name);
