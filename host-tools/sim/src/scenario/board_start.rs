@@ -59,8 +59,7 @@ pub const BOARD_EXCEPTIONS: &[(&str, &str, &str)] = &[
 ];
 
 /// Why a leg that is armed where it leans is not run.
-const LEANS_DISARMED: &str =
-    "a leg with a zero is led straight down before it is disarmed: it is not disarmed where it leans";
+const LEANS_DISARMED: &str = "a leg with a zero is led straight down before it is disarmed: it is not disarmed where it leans";
 
 /// The key of a scenario's `[control.servo]` without which a board cannot home its leg.
 const DUTY_MAX: &str = "duty_max";
