@@ -54,6 +54,23 @@ steps = [
 slack_mm = 1
 "#;
 
+/// Bytes that are no frames come in while the leg homes.
+const GARBAGE: &str = r#"
+title = "Damaged bytes while the leg homes"
+steps = [
+    { await = { state = "disarmed", timeout_s = 1 } },
+    "home",
+    { wait_s = 0.3 },
+    { garbage = 4000 },
+    { reaction = { fault = "bad_frame", state = "homing", within_ms = 60 } },
+    { wait_s = 0.1 },
+    "disarm",
+    { await = { state = "disarmed", timeout_s = 2 } },
+]
+[start.slack]
+slack_mm = 1
+"#;
+
 /// Motors that get so little voltage that homing fails: what a chip can show of `fault_following`.
 const FOLLOWING: &str = r#"
 title = "Motors that get too little voltage lag behind in homing"
@@ -138,6 +155,13 @@ fn a_chip_homes_and_its_emergency_stop_ends_the_pulses() {
 fn a_sag_of_the_motor_supply_is_seen_and_held() {
     let scenario = Scenario::parse("supply", SUPPLY).unwrap();
     assert_eq!(compare("supply", &scenario, &image()), None);
+}
+
+/// The frames are longer than the bytes that a tick records.
+#[test]
+fn damaged_bytes_are_found_by_a_chip_and_its_shadow_in_the_same_tick() {
+    let scenario = Scenario::parse("garbage", GARBAGE).unwrap();
+    assert_eq!(compare("garbage", &scenario, &image()), None);
 }
 
 /// All of them, before a release: `cargo test --test suite -- --ignored --nocapture chip_scenarios` prints each as it ends. The samples
