@@ -149,7 +149,7 @@ mod tests {
             (6.0, 0.0),
         ] {
             let behind_m = led_m(&mut play, turns * turn_m);
-            // Each step corrects a fiftieth, by 3 % of the play at most.
+            // Each step corrects a fiftieth, by 3 % of the play in all.
             assert!(
                 (behind_m - part * 2e-6).abs() < 0.03 * 2e-6,
                 "{turns}: {behind_m:?}"
