@@ -5,6 +5,7 @@ use crate::notices::notices;
 use crate::options::Options;
 use crate::output::{load_rig, note};
 use crate::progress;
+use indicatif::ProgressBar;
 use leg_base::description;
 use leg_base::failure::Failure;
 use leg_firmware::can::LegAddress;
@@ -25,7 +26,7 @@ use std::path::PathBuf;
 #[command(next_help_heading = "Connection")]
 pub(crate) struct ConnectionArgs {
     /// Commands an emulated leg, a fresh one for each command: homed, hanging straight down and disarmed; for `leg home` and
-    /// `leg calibrate` slack and not homed. It has its own time and does not wait for the clock.
+    /// `leg calibrate` slack and not homed. One on a chip is homed first. It has its own time and does not wait for the clock.
     #[arg(long, value_enum)]
     on: Option<Emulation>,
     /// The serial port of the board; the port of its ST-LINK if left out.
@@ -68,11 +69,11 @@ pub(crate) enum Purpose {
 }
 
 impl Purpose {
-    /// How an emulated leg starts.
-    const fn initial(self) -> InitialState {
-        match self {
-            Self::Calibrate => InitialState::Slack,
-            Self::Use | Self::Stop => InitialState::Homed,
+    /// How an emulated leg starts. A chip forgets its zero when it starts.
+    const fn initial(self, on: Emulation) -> InitialState {
+        match (self, on) {
+            (Self::Calibrate, _) | (_, Emulation::Chip) => InitialState::Slack,
+            (Self::Use | Self::Stop, _) => InitialState::Homed,
         }
     }
 }
@@ -91,12 +92,6 @@ pub(crate) fn emulated_leg(
     on: Emulation,
     options: Options,
 ) -> Result<EmulatedLeg, Failure> {
-    if (initial, on) == (InitialState::Homed, Emulation::Chip) {
-        return Err(Failure::refused(
-            "a leg on an emulated chip does not start homed: a board forgets its zero",
-            "`leg emulate --on chip --slack`, and home it first; or take --on sim or --on qemu",
-        ));
-    }
     EmulatedLeg::new(rig, initial, on.link(options)?).map_err(Failure::from_error)
 }
 
@@ -142,11 +137,15 @@ impl ConnectionArgs {
                 emulated: None,
             });
         };
-        let leg = emulated_leg(rig, purpose.initial(), on, options)?;
+        let leg = emulated_leg(rig, purpose.initial(on), on, options)?;
         let emulated = EmulatedLine::new(leg, &format!("the leg {}", on.text()));
         let host = Box::new(emulated.connect());
+        let mut operator = Operator::open(host, HostIdentity::FIXED, cancel)?;
+        if (purpose, on) == (Purpose::Use, Emulation::Chip) {
+            home_first(&mut operator)?;
+        }
         Ok(LegConnection {
-            operator: Operator::open(host, HostIdentity::FIXED, cancel)?,
+            operator,
             emulated: Some(emulated),
         })
     }
@@ -165,6 +164,27 @@ impl ConnectionArgs {
         }
         Ok(Box::new(serial))
     }
+}
+
+/// Homes a leg that has just started, and disarms it: as a leg starts that keeps its zero.
+fn home_first(operator: &mut Operator) -> Result<(), OperatorError> {
+    note("leg: a board forgets its zero when it starts: the leg is homed first");
+    let bar = show_progress(operator);
+    let homed = operator.home().and_then(|_| operator.disarm());
+    operator.set_watcher(|_| ());
+    bar.finish_and_clear();
+    homed
+}
+
+/// Shows on a terminal what the leg does.
+fn show_progress(operator: &mut Operator) -> ProgressBar {
+    let bar = progress::message();
+    let watching = bar.clone();
+    operator.set_watcher(move |telemetry| {
+        watching.set_message(progress_text(telemetry));
+        watching.tick();
+    });
+    bar
 }
 
 /// Says what goes wrong before it is given up.
@@ -203,12 +223,7 @@ impl LegConnection {
         mut self,
         work: impl FnOnce(&mut Operator) -> Result<T, OperatorError>,
     ) -> Result<Telemetry<f32>, Failure> {
-        let bar = progress::message();
-        let watching = bar.clone();
-        self.operator.set_watcher(move |telemetry| {
-            watching.set_message(progress_text(telemetry));
-            watching.tick();
-        });
+        let bar = show_progress(&mut self.operator);
         let result = work(&mut self.operator);
         bar.finish_and_clear();
         result?;

@@ -55,6 +55,12 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         InitialState::Homed
     };
     let leg = match (args.new_board, args.on) {
+        (false, Emulation::Chip) if !args.slack => {
+            return Err(Failure::refused(
+                "a leg on an emulated chip does not start homed: a board forgets its zero",
+                "give --slack, and home it first; or take --on sim or --on qemu",
+            ));
+        }
         (false, on) => emulated_leg(&rig, initial, on, options)?,
         (true, Emulation::Chip) => {
             EmulatedLeg::new(&rig, initial, new_chip()?).map_err(Failure::from_error)?
