@@ -223,7 +223,7 @@ impl<T: Scalar> Leg<T> {
             );
             faults.add(Fault::PointMissing, active.trajectory.point_missing());
             faults.add(Fault::Slack, active.stays_slack(&self.shared));
-            faults.add(Fault::OffStation, active.off_station);
+            faults = faults.union(active.faults);
         }
         let listens = state.follows() && !active.is_some_and(|active| active.disarming);
         faults.union(self.link.step(listens))

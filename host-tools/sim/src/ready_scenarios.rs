@@ -68,6 +68,7 @@ pub const READY_SCENARIOS: &[ReadyScenario] = ready![
     "fault_slack",
     "fault_supply_high",
     "fault_supply_low",
+    "fault_swings",
     "fault_tension_jump",
     "fault_unreachable"
 ];

@@ -35,7 +35,24 @@ const LEAST_M: f32 = 6e-7;
 /// The most that a tendon is longer or shorter for it, m: a swing of the paper's leg by 5 mm at the tip asks for no more.
 const MOST_M: f32 = 3e-4;
 
-/// Brakes the swing.
+/// Amplitude of a tendon's swing beyond which a leg swings, m: 0.3 mm at the tip of the paper's rig.
+const SWINGING_M: f32 = 3e-5;
+
+/// The mean over a swing of the sum of the squares of the tendons' lengths by the square of that amplitude: one tendon has the whole of
+/// it, the other two have half, and the mean of a sine's square is a half.
+const MEAN_SQUARES: f32 = 0.75;
+
+/// Time constant of that mean, s: a swing at 2 Hz changes it by a fifth.
+const MEAN_S: f32 = 0.25;
+
+/// A leg whose mean square falls to this part of what it was rings down. A swing at 2 Hz that stays as it is makes it vary by no more.
+const RINGS_DOWN: f32 = 0.7;
+
+/// A leg that swings at rest for so many steps, 1.2 s, and does not ring down meanwhile, does so by itself: at 3 Hz with a damping ratio
+/// of 0.02, less than tendons and joint have by themselves, it rings down to that part in half a second.
+const SWINGING_STEPS: u16 = (1.2 / STEP_S) as u16;
+
+/// Brakes the swing, and finds one that does not end.
 #[derive(Clone, Copy, Debug)]
 pub struct SwingDamping<T> {
     /// How far each tendon is longer than the trajectory asks, m; and how fast that grows, m/s. None at first.
@@ -44,6 +61,12 @@ pub struct SwingDamping<T> {
     twice_ratio: T,
     /// The highest gain by the inertia, s/(kg·m²).
     gain_by_inertia: T,
+    /// Mean of the sum of the squares of the tendons' swings, m².
+    mean_square: T,
+    /// The highest since it rang down last, m².
+    highest_square: T,
+    /// Steps since then for which it has been beyond [`SWINGING_M`].
+    swinging_steps: u16,
 }
 
 /// The filtered change of a length.
@@ -86,12 +109,50 @@ impl<T: Scalar> SwingDamping<T> {
             gain_by_inertia: T::from(
                 TENDON_LOOP * FILTER_PART * FILTER_PART / tendons_nm_s.max(1e-6),
             ),
+            mean_square: T::zero(),
+            highest_square: T::zero(),
+            swinging_steps: 0,
         }
     }
 
     /// Starts anew.
     pub fn start(&mut self) {
         self.tendons = None;
+        self.mean_square = T::zero();
+        self.swinging_steps = 0;
+    }
+
+    /// Counts the swing from now on: the leg is on its way.
+    #[inline(always)]
+    pub const fn excuse(&mut self) {
+        self.swinging_steps = 0;
+    }
+
+    /// Whether the leg swings and does not ring down.
+    #[inline(always)]
+    pub const fn lasts(&self) -> bool {
+        self.swinging_steps >= SWINGING_STEPS
+    }
+
+    /// Watches for how long the leg swings, by the speeds of its tendons and the time constant of the mode.
+    #[inline(always)]
+    fn watch(&mut self, swing_m_per_s: &[T; 3], time_constant_s: T) {
+        let mut square = T::SUM_START;
+        for &speed in swing_m_per_s {
+            square += speed * speed;
+        }
+        let square = square * (time_constant_s * time_constant_s);
+        self.mean_square += (square - self.mean_square) * T::from(STEP_S / MEAN_S);
+        let decayed = self.mean_square < self.highest_square * T::from(RINGS_DOWN);
+        if decayed || self.mean_square > self.highest_square {
+            self.highest_square = self.mean_square;
+        }
+        let least = T::from(MEAN_SQUARES * SWINGING_M * SWINGING_M);
+        self.swinging_steps = if decayed || self.mean_square < least {
+            0
+        } else {
+            self.swinging_steps.saturating_add(1)
+        };
     }
 
     /// By how much each tendon shall be longer, m, for lengths that deviate from those of the trajectory by `deviations_m`. The tensions per
@@ -117,6 +178,7 @@ impl<T: Scalar> SwingDamping<T> {
             *speed = tendon.step(length_m, share);
         }
         let swing = swing(speeds, per_pretension);
+        self.watch(&swing, time_constant_s);
         let slow = min(time_constant_s * T::from(WHOLE_RAD_PER_S), T::one());
         let gain_s = min(
             self.twice_ratio * time_constant_s * slow,
@@ -166,7 +228,7 @@ fn swing<T: Scalar>(speeds: [T; 3], per_pretension: &SVector<T, 3>) -> [T; 3] {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{LEAST_M, SwingDamping};
+    use super::{LEAST_M, SWINGING_M, SwingDamping};
     use crate::settings::Settings;
     use nalgebra::SVector;
 
@@ -225,5 +287,39 @@ mod tests {
     #[test]
     fn the_least_swing_is_left_alone() {
         assert_eq!(largest(&offsets(SWING, f64::from(LEAST_M))), 0.0);
+    }
+
+    /// How long a swing whose amplitude, m, changes by so much in a second, 1/s, takes until it is said to last, s.
+    fn lasts_after_s(amplitude_m: f64, growth_per_s: f64, moving: bool) -> Option<f64> {
+        let mut damping = SwingDamping::<f64>::new(&Settings::for_table_1().unwrap());
+        (0..5000).map(|i| f64::from(i) * 1e-3).find(|&time_s| {
+            let amplitude_m = amplitude_m * (growth_per_s * time_s).exp();
+            let length_m = amplitude_m * (time_s / TIME_CONSTANT_S).sin();
+            damping.step(
+                &SWING.map(|part| part * length_m),
+                &SVector::repeat(1.0),
+                INERTIA,
+                INERTIA / (TIME_CONSTANT_S * TIME_CONSTANT_S),
+            );
+            if moving {
+                damping.excuse();
+            }
+            damping.lasts()
+        })
+    }
+
+    /// A damping ratio of 0.02 at 25 rad/s lets a swing fall by 0.5 in a second.
+    #[test]
+    fn a_swing_that_does_not_ring_down_is_found() {
+        let swinging_m = f64::from(SWINGING_M);
+        for growth_per_s in [0.0, 1.5] {
+            let after_s = lasts_after_s(1.3 * swinging_m, growth_per_s, false).unwrap();
+            assert!((1.2..2.0).contains(&after_s), "{growth_per_s}: {after_s}");
+        }
+        assert_eq!(lasts_after_s(0.9 * swinging_m, 0.0, false), None);
+        assert_eq!(lasts_after_s(10.0 * swinging_m, 0.0, true), None);
+        for growth_per_s in [-0.5, -2.0] {
+            assert_eq!(lasts_after_s(20.0 * swinging_m, growth_per_s, false), None);
+        }
     }
 }

@@ -10,6 +10,7 @@ use crate::control::{
     bounds,
 };
 use crate::set_point::{PointRefusal, SetPoint, StreamPart};
+use crate::supervisor::{Fault, FaultSet};
 use leg_model::{Direction, Error, HalfTangent, Scalar};
 use nalgebra::Vector3;
 
@@ -23,8 +24,8 @@ pub struct Active<T> {
     pub disarming: bool,
     /// What limits a leg that keeps station.
     pub station: StationKeeping<T>,
-    /// Whether that would have to go farther than it may.
-    pub off_station: bool,
+    /// What was found in the last turn of the offsets: a station too far away, a swing that does not end.
+    pub faults: FaultSet,
     /// Whether there was no target on the way since it was last led straight down.
     stuck: bool,
     offsets: LengthOffsets<T>,
@@ -70,7 +71,7 @@ impl<T: Scalar> Active<T> {
             tensioned: false,
             disarming: false,
             station: StationKeeping::No,
-            off_station: false,
+            faults: FaultSet::NONE,
             stuck: false,
             offsets: LengthOffsets::new(shared.play.behind_m()),
             slack: Slack {
@@ -97,7 +98,13 @@ impl<T: Scalar> Active<T> {
                     if self.tensioned {
                         shared.feed_friction();
                     }
-                    self.off_station = self.station.kept().is_some_and(Station::too_far);
+                    if self.trajectory.moving() {
+                        shared.damping.excuse();
+                    }
+                    let off_station = self.station.kept().is_some_and(Station::too_far);
+                    self.faults = FaultSet::NONE;
+                    self.faults.add(Fault::OffStation, off_station);
+                    self.faults.add(Fault::Swings, shared.damping.lasts());
                     Ok(())
                 } else {
                     search_pretension(shared)

@@ -269,6 +269,13 @@ faults! {
         remedy: "look what pulls at the leg, and check the load cells; move the leg again",
         clears: Command,
     }
+    30 Swings {
+        name: "leg swings",
+        reaction: Hold,
+        cause: "the tip of a leg that rests swings by about 0.3 mm or more, and does not ring down for 1.2 s",
+        remedy: "see that each load cell is on its own tendon; look what shakes the leg; check gains and damping_ratio with `leg bode`",
+        clears: Command,
+    }
 }
 
 impl Fault {
