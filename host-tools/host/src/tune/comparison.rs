@@ -4,7 +4,7 @@ use super::estimate::Estimate;
 use super::motor::MotorConstants;
 use super::swing::Swings;
 use leg_rig::actuator::Actuator;
-use leg_rig::number::plain;
+use leg_rig::number::{plain, significant};
 use leg_rig::plant_settings::TRANSVERSE_INERTIA;
 use leg_rig::rig_file::RigFile;
 use serde::Serialize;
@@ -86,7 +86,7 @@ fn motor_rows(motor: &MotorConstants, actuator: &Actuator) -> Vec<Row> {
         keyed(
             "friction_nm",
             "N·m",
-            friction_in.mean(friction_out),
+            friction_in.mean_of_one_fit(friction_out),
             actuator.friction_nm,
         ),
         keyed(
@@ -146,7 +146,7 @@ pub fn table(rows: &[Row]) -> String {
         let Estimate { value, uncertainty } = row.measured;
         let configured = row
             .configured
-            .map_or_else(String::new, |number| plain(four_digits(number)));
+            .map_or_else(String::new, |number| plain(significant(number, 4)));
         let difference = row
             .configured
             .filter(|&number| number != 0.0)
@@ -157,7 +157,7 @@ pub fn table(rows: &[Row]) -> String {
             "{:<30} {:>10} {:>10} {configured:>10} {difference:>11}  {}\n",
             row.name,
             written(value, uncertainty),
-            plain(two_digits(uncertainty)),
+            plain(significant(uncertainty, 2)),
             row.unit,
         );
     }
@@ -168,7 +168,7 @@ pub fn table(rows: &[Row]) -> String {
 #[must_use]
 pub fn section(motor: u8, rows: &[Row]) -> String {
     let mut text =
-        format!("# Measured by leg tune at motor {motor}; ± is twice the standard deviation.\n");
+        format!("# Measured by leg tune at motor {motor}; 95 of 100 measurements are within ±.\n");
     let mut last = "";
     for row in rows {
         let Some((section, key)) = row.key else {
@@ -178,8 +178,8 @@ pub fn section(motor: u8, rows: &[Row]) -> String {
         if !row.measured.is_certain() || value <= 0.0 {
             text += &format!(
                 "# {key} is too uncertain: {} ± {}\n",
-                plain(two_digits(value)),
-                plain(two_digits(uncertainty))
+                plain(significant(value, 2)),
+                plain(significant(uncertainty, 2))
             );
             continue;
         }
@@ -188,38 +188,20 @@ pub fn section(motor: u8, rows: &[Row]) -> String {
             last = section;
         }
         let configured = row.configured.map_or_else(String::new, |number| {
-            format!(", was {}", plain(four_digits(number)))
+            format!(", was {}", plain(significant(number, 4)))
         });
         text += &format!(
             "{key} = {}  # ± {}{configured}\n",
             written(value, uncertainty),
-            plain(two_digits(uncertainty)),
+            plain(significant(uncertainty, 2)),
         );
     }
     text
 }
 
-/// A number with the digits that its uncertainty leaves.
+/// A number to the second digit of its uncertainty.
 fn written(value: f64, uncertainty: f64) -> String {
-    let unit = 10_f64.powf(uncertainty.max(f64::MIN_POSITIVE).log10().floor() - 1.0);
-    let rounded = (value / unit).round();
-    if rounded.is_finite() && rounded.abs() < 1e6 {
-        // Once more by its digits, so that no 0.30000000000000004 comes out.
-        let digits = rounded.abs().max(1.0).log10().floor() as usize;
-        plain(format!("{value:.digits$e}").parse().unwrap_or(value))
-    } else {
-        plain(six_digits(value))
-    }
-}
-
-fn two_digits(value: f64) -> f64 {
-    format!("{value:.1e}").parse().unwrap_or(value)
-}
-
-fn four_digits(value: f64) -> f64 {
-    format!("{value:.3e}").parse().unwrap_or(value)
-}
-
-fn six_digits(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
+    let last = significant(uncertainty, 2).log10().floor() - 1.0;
+    let digits = 1.0 + value.abs().log10().floor() - last;
+    plain(significant(value, digits.clamp(1.0, 6.0) as usize))
 }
