@@ -18,6 +18,7 @@ pub use error::TuneError;
 pub use estimate::Estimate;
 pub use jogs::{JogPlan, Jogged};
 pub use motor::MotorConstants;
+pub use play::Travels;
 pub use ring::Ring;
 pub use swing::{Swing, SwingPlan, Swings, measure_swing};
 

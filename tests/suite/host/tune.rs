@@ -45,10 +45,15 @@ fn drawn(configured: &RigFile, seed: u64) -> RigFile {
     real
 }
 
+/// One of the ready rigs, another one for each seed.
+fn ready_rig(seed: u64) -> RigFile {
+    let ready = READY_RIGS[seed as usize % READY_RIGS.len()];
+    RigFile::parse(ready.name, ready.text).unwrap()
+}
+
 /// A leg, its host and what cancels that.
-fn leg(real: &RigFile, seed: u64) -> (EmulatedLine, Operator, CancelFlag) {
-    let configured = RigFile::load(None).unwrap();
-    let leg = EmulatedLeg::unlike(&configured, real, Box::new(InProcess::new()), seed).unwrap();
+fn leg(configured: &RigFile, real: &RigFile, seed: u64) -> (EmulatedLine, Operator, CancelFlag) {
+    let leg = EmulatedLeg::unlike(configured, real, Box::new(InProcess::new()), seed).unwrap();
     let line = EmulatedLine::new(leg, "the leg");
     let host = Box::new(line.connect());
     let cancel = CancelFlag::default();
@@ -80,10 +85,10 @@ fn off(row: &Row) -> f64 {
 
 #[test]
 fn the_constants_of_a_motor_are_found_within_five_percent() {
-    let configured = RigFile::load(None).unwrap();
     for seed in 1..=6 {
+        let configured = ready_rig(seed);
         let real = drawn(&configured, seed);
-        let (line, mut operator, _) = leg(&real, seed);
+        let (line, mut operator, _) = leg(&configured, &real, seed);
         let before = line.with_plant(|plant| plant.truth().unstretched_m);
         let motor = 1 + (seed % 3) as u8;
         let mut hardest_n = 0.0_f64;
@@ -142,10 +147,10 @@ fn true_frequency_hz(real: &RigFile, pretension_n: f64) -> f64 {
 
 #[test]
 fn the_first_mode_is_found_within_three_percent_and_the_play_within_ten() {
-    let configured = RigFile::load(None).unwrap();
     for seed in 1..=3 {
+        let configured = ready_rig(seed);
         let real = drawn(&configured, seed);
-        let (_, mut operator, _) = leg(&real, seed);
+        let (_, mut operator, _) = leg(&configured, &real, seed);
         let plan = SwingPlan::new(&configured);
         let swings = measure_swing(&mut operator, &plan, &configured, &mut |_| ()).unwrap();
         assert_eq!(swings.all.len(), 3);
@@ -159,10 +164,24 @@ fn the_first_mode_is_found_within_three_percent_and_the_play_within_ten() {
         }
         // It is measured, not taken from the rig file.
         assert!(changed > 0.03, "seed {seed}: {changed}");
-        let play_m = swings.play_m.unwrap();
+        let travels = swings.travels.unwrap();
+        let play_m = travels.play_m;
         let real_m = real.actuator.play_m();
         println!("play {play_m:?}, true {real_m}");
         assert!((play_m.value / real_m - 1.0).abs() < 0.1, "seed {seed}");
+        let stretched = travels.stretch_m.value / swings.configured_stretch_m.unwrap();
+        let real_stretched = 1.0 + real.plant.curve_error;
+        println!("stretch {stretched}, true {real_stretched}");
+        assert!((stretched / real_stretched - 1.0).abs() < 0.01);
+        // The stiffness of the rig file is wrong by as much as the stretch.
+        let inertia = swings.inertia_kg_m2;
+        let real_inertia = real.plant.transverse_inertia_kg_m2(&real.parameters);
+        println!("inertia {inertia:?}, true {real_inertia}");
+        let off = (inertia.value - real_inertia).abs();
+        assert!(
+            off < (1.5 * inertia.uncertainty).min(0.01 * real_inertia),
+            "seed {seed}"
+        );
         let telemetry = operator.telemetry().unwrap().telemetry;
         assert_eq!(telemetry.state, State::Held);
     }
@@ -173,7 +192,7 @@ fn the_first_mode_is_found_within_three_percent_and_the_play_within_ten() {
 fn what_is_written_is_a_part_of_a_rig_file() {
     let configured = RigFile::load(None).unwrap();
     let real = drawn(&configured, 1);
-    let (_, mut operator, _) = leg(&real, 1);
+    let (_, mut operator, _) = leg(&configured, &real, 1);
     let found = jog(&mut operator, 2, &mut |_| ()).unwrap();
     let rows = comparison(&found.constants, None, &configured);
     let text = [READY_RIGS[0].text, &section(2, &rows)].concat();
@@ -201,7 +220,7 @@ fn a_mistake_of_the_wires_is_named_and_ends_it() {
         ),
         (Defect::TendonCut(0), "does not come to pull"),
     ] {
-        let (line, mut operator, _) = leg(&rig, 1);
+        let (line, mut operator, _) = leg(&rig, &rig, 1);
         line.with_plant(|plant| plant.set_defect(defect, true));
         let failure = jog(&mut operator, 1, &mut |_| ()).unwrap_err().failure();
         println!("{defect:?}: {failure}");
@@ -216,7 +235,7 @@ fn a_mistake_of_the_wires_is_named_and_ends_it() {
 fn a_fault_in_the_middle_ends_it_by_its_name() {
     let rig = RigFile::load(None).unwrap();
     for after in [1, 12] {
-        let (line, mut operator, _) = leg(&rig, 1);
+        let (line, mut operator, _) = leg(&rig, &rig, 1);
         let mut count = 0;
         let ended = jog(&mut operator, 1, &mut |_| {
             count += 1;
@@ -232,7 +251,7 @@ fn a_fault_in_the_middle_ends_it_by_its_name() {
         let truth = line.with_plant(|plant| plant.truth());
         assert_eq!(truth.speeds_rad_per_s, [0.0; 3]);
     }
-    let (line, mut operator, _) = leg(&rig, 1);
+    let (line, mut operator, _) = leg(&rig, &rig, 1);
     let plan = SwingPlan::new(&rig);
     let mut count = 0;
     let ended = measure_swing(&mut operator, &plan, &rig, &mut |_| {
@@ -248,7 +267,7 @@ fn a_fault_in_the_middle_ends_it_by_its_name() {
 #[test]
 fn a_user_who_interrupts_it_leaves_the_motors_at_rest() {
     let rig = RigFile::load(None).unwrap();
-    let (line, mut operator, cancel) = leg(&rig, 1);
+    let (line, mut operator, cancel) = leg(&rig, &rig, 1);
     let ended = jog(&mut operator, 1, &mut |_| cancel.set());
     assert!(
         matches!(ended, Err(TuneError::Operator(OperatorError::Cancelled))),

@@ -122,14 +122,29 @@ fn swing_rows(swings: &Swings, rig: &RigFile) -> Vec<Row> {
         configured: Some(rig.plant.transverse_inertia_kg_m2(&rig.parameters)),
         key: Some((leg_rig::plant_settings::SIMULATION, TRANSVERSE_INERTIA.name)),
     };
-    let play = swings.play_m.map(|play_m| Row {
-        name: "backlash_rad".into(),
-        unit: "rad",
-        measured: play_m.scaled(std::f64::consts::TAU / rig.actuator.lead_m),
-        configured: Some(rig.actuator.backlash_rad),
-        key: Some((leg_rig::actuator::ACTUATOR, "backlash_rad")),
+    let travels = swings.travels.map(|travels| {
+        let [low_n, high_n] = travels.tensions_n;
+        let play = Row {
+            name: "backlash_rad".into(),
+            unit: "rad",
+            measured: travels
+                .play_m
+                .scaled(std::f64::consts::TAU / rig.actuator.lead_m),
+            configured: Some(rig.actuator.backlash_rad),
+            key: Some((leg_rig::actuator::ACTUATOR, "backlash_rad")),
+        };
+        let stretch = Row {
+            name: format!("stretch, {low_n:.0} to {high_n:.0} N"),
+            unit: "mm",
+            measured: travels.stretch_m.scaled(1000.0),
+            configured: swings.configured_stretch_m.map(|m| 1000.0 * m),
+            key: None,
+        };
+        [play, stretch]
     });
-    play.into_iter()
+    travels
+        .into_iter()
+        .flatten()
         .chain(first_mode)
         .chain([inertia])
         .collect()
