@@ -194,16 +194,58 @@ fn what_is_written_is_a_part_of_a_rig_file() {
     let real = drawn(&configured, 1);
     let (_, mut operator, _) = leg(&configured, &real, 1);
     let found = jog(&mut operator, 2, &mut |_| ()).unwrap();
-    let rows = comparison(&found.constants, None, &configured);
+    let plan = SwingPlan::new(&configured);
+    let swings = measure_swing(&mut operator, &plan, &configured, &mut |_| ()).unwrap();
+    let rows = comparison(&found.constants, Some(&swings), &configured);
     let text = [READY_RIGS[0].text, &section(2, &rows)].concat();
-    let written = RigFile::parse("measured", &text).unwrap().actuator;
+    let file = RigFile::parse("measured", &text).unwrap();
+    let written = &file.actuator;
+    let inertia = |rig: &RigFile| rig.plant.leg_transverse_inertia_kg_m2.unwrap();
     for (written, real) in [
         (written.resistance_ohm, real.actuator.resistance_ohm),
+        (
+            written.torque_constant_nm_per_a,
+            real.actuator.torque_constant_nm_per_a,
+        ),
         (written.friction_nm, real.actuator.friction_nm),
         (written.screw_efficiency, real.actuator.screw_efficiency),
+        (written.backlash_rad, real.actuator.backlash_rad),
+        (inertia(&file), inertia(&real)),
     ] {
         assert!((written / real - 1.0).abs() < 0.05, "{written} {real}");
     }
+}
+
+/// What a rig file would refuse stands in the section as a comment.
+#[test]
+fn what_a_rig_file_does_not_take_is_a_comment() {
+    let configured = RigFile::load(None).unwrap();
+    let (_, mut operator, _) = leg(&configured, &configured, 1);
+    let found = jog(&mut operator, 1, &mut |_| ()).unwrap();
+    let mut rows = comparison(&found.constants, None, &configured);
+    for row in &mut rows {
+        match row.name.as_str() {
+            "screw_efficiency" => row.measured.value = 0.55,
+            "viscous_nm_s_per_rad" => row.measured.uncertainty = 1.0,
+            "friction_nm" => row.measured.value = -1.0,
+            _ => {}
+        }
+    }
+    let text = section(1, &rows);
+    println!("{text}");
+    for line in [
+        "# screw_efficiency is not within 0.01 to 0.499: 0.55",
+        "# viscous_nm_s_per_rad is too uncertain: ",
+        "# friction_nm is too uncertain: -1",
+    ] {
+        assert!(text.contains(line), "{line}");
+    }
+    let text = [READY_RIGS[0].text, &text].concat();
+    let written = RigFile::parse("measured", &text).unwrap().actuator;
+    assert_eq!(
+        written.screw_efficiency,
+        configured.actuator.screw_efficiency
+    );
 }
 
 /// What is wrong from the beginning is named by the first jog that shows it.
@@ -244,9 +286,11 @@ fn a_fault_in_the_middle_ends_it_by_its_name() {
             }
         });
         assert_eq!(count, after);
-        let Err(TuneError::Operator(OperatorError::Failed(_, telemetry))) = ended else {
-            panic!("{ended:?}");
+        let (cause, by_m) = cause(ended.unwrap_err());
+        let TuneError::Operator(OperatorError::Failed(_, telemetry)) = cause else {
+            panic!("{cause:?}");
         };
+        assert!(by_m.abs() > 1e-3, "{by_m}");
         assert!(telemetry.faults.has(Fault::SupplyLow), "{telemetry:?}");
         let truth = line.with_plant(|plant| plant.truth());
         assert_eq!(truth.speeds_rad_per_s, [0.0; 3]);
@@ -264,15 +308,83 @@ fn a_fault_in_the_middle_ends_it_by_its_name() {
     assert!(!operator.telemetry().unwrap().telemetry.state.follows());
 }
 
+/// Why it ended, and how far the tendon is from where it was, m.
+fn cause(error: TuneError) -> (TuneError, f32) {
+    match error {
+        TuneError::Displaced { error, by_m, .. } => (*error, by_m),
+        error => (error, 0.0),
+    }
+}
+
+/// A motor that obeys pays out what a load cell in doubt has let it reel in.
 #[test]
-fn a_user_who_interrupts_it_leaves_the_motors_at_rest() {
+fn no_tendon_is_left_loaded_where_a_load_cell_ends_it() {
     let rig = RigFile::load(None).unwrap();
+    for defect in [
+        Defect::CellExcitationLost(0),
+        Defect::CellFollows(0),
+        Defect::CellReversed(0),
+    ] {
+        let (line, mut operator, _) = leg(&rig, &rig, 1);
+        line.with_plant(|plant| plant.set_defect(defect, true));
+        let ended = jog(&mut operator, 1, &mut |_| ()).unwrap_err();
+        let truth = line.with_plant(|plant| plant.truth());
+        println!("{defect:?}: {ended}, {:?} N", truth.tensions_n);
+        assert!(truth.tensions_n.iter().all(|&n| n < 0.1), "{defect:?}");
+        let telemetry = operator.telemetry().unwrap().telemetry;
+        assert_eq!(telemetry.state, State::Disarmed, "{defect:?}");
+    }
+}
+
+/// In the middle of any jog: nothing moves any more, and how far the tendon is from where it was is told.
+#[test]
+fn a_user_who_interrupts_it_leaves_the_motors_at_rest_and_knows_where() {
+    let rig = RigFile::load(None).unwrap();
+    for after in [1, 4, 12, 17] {
+        let (line, mut operator, cancel) = leg(&rig, &rig, 1);
+        let [before_m, ..] = line.with_plant(|plant| plant.truth().unstretched_m);
+        let mut count = 0;
+        let ended = jog(&mut operator, 1, &mut |_| {
+            count += 1;
+            if count == after {
+                cancel.set();
+            }
+        });
+        assert_eq!(count, after);
+        let error = ended.unwrap_err();
+        let help = format!("{:?}", error.failure());
+        let (cause, by_m) = cause(error);
+        assert!(
+            matches!(cause, TuneError::Operator(OperatorError::Cancelled)),
+            "{cause:?}"
+        );
+        let truth = line.with_plant(|plant| plant.truth());
+        assert_eq!(truth.speeds_rad_per_s, [0.0; 3]);
+        let [after_m, ..] = truth.unstretched_m;
+        let real_m = before_m - after_m;
+        println!("after {after}: {by_m} m, true {real_m} m");
+        // All but the play of the gear.
+        assert!((f64::from(by_m) - real_m).abs() < 1e-5, "{by_m} {real_m}");
+        let told = format!("`leg jog 1 --travel {:.1}`", -1000.0 * by_m);
+        assert!(help.contains(&told), "{help}");
+    }
+}
+
+#[test]
+fn a_user_who_interrupts_the_swing_leaves_the_leg_held() {
+    let rig = RigFile::load(None).unwrap();
+    let plan = SwingPlan::new(&rig);
     let (line, mut operator, cancel) = leg(&rig, &rig, 1);
-    let ended = jog(&mut operator, 1, &mut |_| cancel.set());
+    let ended = measure_swing(&mut operator, &plan, &rig, &mut |_| cancel.set());
     assert!(
         matches!(ended, Err(TuneError::Operator(OperatorError::Cancelled))),
         "{ended:?}"
     );
-    let truth = line.with_plant(|plant| plant.truth());
-    assert_eq!(truth.speeds_rad_per_s, [0.0; 3]);
+    let speeds = line.with_plant(|plant| plant.truth().speeds_rad_per_s);
+    assert_eq!(speeds, [0.0; 3]);
+    // Another host: all that this one asks is ended.
+    drop(operator);
+    let host = Box::new(line.connect());
+    let mut other = Operator::open(host, HostIdentity::random(), CancelFlag::default()).unwrap();
+    assert_eq!(other.telemetry().unwrap().telemetry.state, State::Held);
 }

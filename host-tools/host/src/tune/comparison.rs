@@ -179,23 +179,26 @@ pub fn table(rows: &[Row]) -> String {
     table
 }
 
-/// What was measured with certainty, as sections of a rig file.
+/// What was measured with certainty, as sections of a rig file; what such a file does not take, or is uncertain, as a comment.
 #[must_use]
 pub fn section(motor: u8, rows: &[Row]) -> String {
     let mut text =
-        format!("# Measured by leg tune at motor {motor}; 95 of 100 measurements are within ±.\n");
+        format!("# Measured by leg tune at motor {motor}; ± holds in 95 of 100 cases.\n");
     let mut last = "";
     for row in rows {
         let Some((section, key)) = row.key else {
             continue;
         };
         let Estimate { value, uncertainty } = row.measured;
+        let number = written(value, uncertainty);
+        let off = plain(significant(uncertainty, 2));
         if !row.measured.is_certain() || value <= 0.0 {
-            text += &format!(
-                "# {key} is too uncertain: {} ± {}\n",
-                plain(significant(value, 2)),
-                plain(significant(uncertainty, 2))
-            );
+            text += &format!("# {key} is too uncertain: {number} ± {off}\n");
+            continue;
+        }
+        if let Some([low, high]) = range(key).filter(|&[low, high]| value < low || value > high) {
+            let [low, high] = [low, high].map(plain);
+            text += &format!("# {key} is not within {low} to {high}: {number} ± {off}\n");
             continue;
         }
         if section != last {
@@ -205,13 +208,17 @@ pub fn section(motor: u8, rows: &[Row]) -> String {
         let configured = row.configured.map_or_else(String::new, |number| {
             format!(", was {}", plain(significant(number, 4)))
         });
-        text += &format!(
-            "{key} = {}  # ± {}{configured}\n",
-            written(value, uncertainty),
-            plain(significant(uncertainty, 2)),
-        );
+        text += &format!("{key} = {number}  # ± {off}{configured}\n");
     }
     text
+}
+
+/// What a rig file may say of a key.
+fn range(key: &str) -> Option<[f64; 2]> {
+    let mut fields = Actuator::FIELDS.iter().chain([&TRANSVERSE_INERTIA]);
+    fields
+        .find(|field| field.name == key)
+        .map(|field| field.range)
 }
 
 /// A number to the second digit of its uncertainty.
