@@ -216,6 +216,29 @@ fn what_is_written_is_a_part_of_a_rig_file() {
     }
 }
 
+/// A leg whose motors are so far from its settings that it does not home.
+#[test]
+fn what_the_jogs_tell_lets_a_leg_home_that_did_not() {
+    let configured = RigFile::load(None).unwrap();
+    let real = drawn(&configured, 106);
+    let swing = |operator: &mut Operator, rig: &RigFile| {
+        measure_swing(operator, &SwingPlan::new(rig), rig, &mut |_| ())
+    };
+    let (_, mut operator, _) = leg(&configured, &real, 1);
+    let found = jog(&mut operator, 1, &mut |_| ()).unwrap();
+    let ended = swing(&mut operator, &configured).unwrap_err();
+    println!("{ended}");
+    assert!(matches!(
+        ended,
+        TuneError::Operator(OperatorError::Failed("home", _))
+    ));
+    let rows = comparison(&found.constants, None, &configured);
+    let text = [READY_RIGS[0].text, &section(1, &rows)].concat();
+    let measured = RigFile::parse("measured", &text).unwrap();
+    let (_, mut operator, _) = leg(&measured, &real, 1);
+    swing(&mut operator, &measured).unwrap();
+}
+
 /// What a rig file would refuse stands in the section as a comment.
 #[test]
 fn what_a_rig_file_does_not_take_is_a_comment() {
