@@ -14,7 +14,7 @@ use leg_host::tune::{
 };
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
-use leg_sim::emulated_leg::EmulatedLeg;
+use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
 use leg_sim::link::InProcess;
 use leg_sim::plant::{Defect, Plant, Start};
 
@@ -293,6 +293,21 @@ fn a_mistake_of_the_wires_is_named_and_ends_it() {
         let telemetry = operator.telemetry().unwrap().telemetry;
         assert_eq!(telemetry.state, State::Disarmed, "{defect:?}");
     }
+}
+
+/// One tendon pays out, so two that pull would take the leg along.
+#[test]
+fn a_leg_whose_tendons_pull_is_refused() {
+    let rig = RigFile::load(None).unwrap();
+    let link = Box::new(InProcess::new());
+    let homed = EmulatedLeg::new(&rig, InitialState::Homed, link).unwrap();
+    let line = EmulatedLine::new(homed, "the leg");
+    let host = Box::new(line.connect());
+    let mut operator = Operator::open(host, HostIdentity::FIXED, CancelFlag::default()).unwrap();
+    let before = line.with_plant(|plant| plant.truth().unstretched_m);
+    let failure = jog(&mut operator, 1, &mut |_| ()).unwrap_err().to_string();
+    assert!(failure.contains("tendon 2 pulls by 70 N"), "{failure}");
+    assert_eq!(line.with_plant(|plant| plant.truth().unstretched_m), before);
 }
 
 /// A fault in the middle: by its name, and the motors are at rest.

@@ -151,7 +151,9 @@ pub(super) fn jog_all(
     seen: &mut dyn FnMut(&Jogged),
 ) -> Result<Vec<Jogged>, TuneError> {
     let own = |telemetry: &Telemetry<f32>| own_of(plan.motor, &telemetry.pulled_m);
-    let start_m = own(&operator.telemetry().map_err(TuneError::from)?.telemetry);
+    let start = operator.telemetry()?.telemetry;
+    require_loose(plan, &start.tensions_n)?;
+    let start_m = own(&start);
     let mut jogs = Jogs {
         operator,
         plan,
@@ -182,6 +184,19 @@ pub(super) fn jog_all(
         motor: plan.motor,
         by_m,
     })
+}
+
+/// Refuses a leg whose other tendons pull: where one is paid out, they pull the leg to their side, and the more.
+fn require_loose(plan: &JogPlan, tensions_n: &[f32; 3]) -> Result<(), TuneError> {
+    let taut_n = LOADED_PART * plan.tension_max_n;
+    let mut others = (1_u8..).zip(tensions_n);
+    match others.find(|&(number, &tension_n)| number != plan.motor && tension_n > taut_n) {
+        Some((number, tension_n)) => Err(TuneError::undetermined(
+            format!("tendon {number} pulls by {tension_n:.0} N before a motor is jogged"),
+            "let the leg relax: `leg hold`, then `leg disarm`; before it is homed, pay its tendons out with `leg jog`",
+        )),
+        None => Ok(()),
+    }
 }
 
 /// What is of a motor's, from 1, own axis.
