@@ -18,6 +18,7 @@ pub use error::TuneError;
 pub use estimate::Estimate;
 pub use jogs::{JogPlan, Jogged};
 pub use motor::MotorConstants;
+pub use play::Travels;
 pub use ring::Ring;
 pub use swing::{Swing, SwingPlan, Swings, measure_swing};
 
@@ -54,7 +55,8 @@ pub fn supply_v(operator: &mut Operator, settings: &Settings) -> Result<f32, Ope
 /// Jogs a motor of a disarmed leg by the plan, calls `seen` after each jog that counts, and leaves the tendon where it was.
 ///
 /// # Errors
-/// A [`TuneError`]: whatever ends a jog but its travel and the tension.
+/// A [`TuneError`]: whatever ends a jog but its travel and the tension. The motor is off then. Where the motor obeyed, the tendon
+/// is paid out to where it was all the same; else the error tells how far it is from there.
 pub fn measure_motor(
     operator: &mut Operator,
     plan: &JogPlan,
@@ -76,21 +78,30 @@ pub fn measure_motor(
 #[must_use]
 pub fn plan_text(jogs: &JogPlan, swing: Option<&SwingPlan>) -> String {
     let [low_v, high_v] = jogs.voltages_v;
+    let [out_mm, in_mm] = jogs.reach_m().map(|reach_m| 1000.0 * reach_m);
     let mut text = format!(
-        "motor {} turns slowly both ways, from {low_v:.2} V to {high_v:.2} V, each time by {:.1} mm of tendon at the most, and reels in\n\
-         by up to {:.0} mm until the tendon pulls; no load cell above {} N\n",
-        jogs.motor,
-        1000.0 * jogs.travel_m,
-        1000.0 * jogs::REEL_MAX_M,
-        jogs.tension_max_n,
+        "motor {} turns slowly both ways, from {low_v:.2} V to {high_v:.2} V: it pays out by up to {out_mm:.0} mm, until its tendon is slack,\n\
+         reels in by up to {in_mm:.0} mm, until that pulls, ends a jog where a load cell shows more than {} N, and goes back\n",
+        jogs.motor, jogs.tension_max_n,
     );
     if let Some(swing) = swing {
-        let levels: Vec<_> = swing.levels_n.iter().map(|n| format!("{n:.0}")).collect();
-        text += &format!(
-            "the leg is homed, and at pretensions of {} N it begins to lean by {:.0}°, is stopped half way and swings on its screws\n",
-            levels.join(", "),
-            swing.tilt_deg,
-        );
+        text += &swing_text(swing);
     }
     text + "any fault, Ctrl-C and `leg stop` end it: the motors are off or held then, and nothing is written\n"
+}
+
+fn swing_text(swing: &SwingPlan) -> String {
+    let levels: Vec<_> = swing.levels_n.iter().map(|n| format!("{n:.0}")).collect();
+    let play = swing.travels_n.map_or_else(
+        || "its range of pretensions is too small to find play and stretch".into(),
+        |[low_n, high_n]| {
+            format!("its pretension goes up and down between {low_n:.0} and {high_n:.0} N")
+        },
+    );
+    format!(
+        "the leg is homed if it is not; {play};\n\
+         at pretensions of {} N it begins to lean by {:.0}°, is stopped half way and swings on its screws; it is held then\n",
+        levels.join(", "),
+        swing.tilt_deg,
+    )
 }

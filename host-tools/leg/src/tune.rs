@@ -3,18 +3,20 @@
 mod charts;
 
 use crate::calibrate::confirm;
-use crate::connection::{ConnectionArgs, LegConnection, Purpose};
+use crate::connection::{ConnectionArgs, Purpose};
 use crate::options::Options;
 use crate::output::{chart_line, load_rig, note, print, write};
 use crate::progress;
+use indicatif::ProgressBar;
+use leg_base::description;
 use leg_base::failure::Failure;
 use leg_base::json_object;
 use leg_base::paths::relative_path;
 use leg_firmware::settings::Settings;
-use leg_host::operator::setting_differences;
+use leg_host::operator::{Operator, OperatorError, setting_differences};
 use leg_host::tune::{
-    JogPlan, MeasuredMotor, SwingPlan, Swings, comparison, measure_motor, measure_swing, plan_text,
-    section, supply_v, table,
+    JogPlan, Jogged, MeasuredMotor, Row, Swing, SwingPlan, Swings, comparison, measure_motor,
+    measure_swing, plan_text, section, supply_v, table,
 };
 use leg_rig::control_settings;
 use leg_rig::rig_file::RigFile;
@@ -24,8 +26,8 @@ use std::path::{Path, PathBuf};
 ///
 /// The leg must be disarmed and hang free, without a payload. One motor is jogged both ways, without a tension and against one:
 /// resistance, torque constant, friction, pull. Then the leg is homed and swings a little at three pretensions: play of the gears,
-/// first mode, inertia. It says before what it will do, and asks on a real leg. Any fault, counts the wrong way and Ctrl-C end it
-/// with the motors off or held, and nothing is written.
+/// stretch of the tendons, first mode, inertia. It says before what it will do, and asks on a real leg. Any fault, counts the wrong
+/// way and Ctrl-C end it with the motors off or held, and nothing is written; what jogs told by then is printed.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// The motor.
@@ -57,6 +59,12 @@ struct Measured {
     swings: Option<Swings>,
 }
 
+impl Measured {
+    fn rows(&self, rig: &RigFile) -> Vec<Row> {
+        comparison(&self.motor.constants, self.swings.as_ref(), rig)
+    }
+}
+
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     require_absent(args.write.as_deref())?;
     if !args.jogs_only && args.connection.is_can() {
@@ -67,6 +75,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     }
     let rig = load_rig(args.rig.as_deref())?;
     let mut connection = args.connection.open(&rig, Purpose::Calibrate, options)?;
+    require_disarmed(&mut connection.operator)?;
     let settings = connection.operator.settings()?;
     note_differences(&rig, &settings);
     let supply_v = supply_v(&mut connection.operator, &settings)?;
@@ -79,20 +88,33 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         let look = "see that the leg is disarmed and hangs free, keep fingers off it and your hand at the emergency stop";
         confirm(&mut connection, look)?;
     }
-    let measured = measure(&mut connection, &jogs, swing.as_ref(), &rig, &settings)?;
-    report(args, options, &rig, &measured)
+    let bar = progress::message();
+    let motor = motor(&mut connection.operator, &jogs, &settings, &bar);
+    let swings = match (&motor, &swing) {
+        (Ok(_), Some(plan)) => swings(&mut connection.operator, plan, &rig, &bar).map(Some),
+        _ => Ok(None),
+    };
+    bar.finish_and_clear();
+    let motor = motor?;
+    match swings {
+        Ok(swings) => report(args, options, &rig, &Measured { motor, swings }),
+        Err(error) => {
+            // The motor may be why, as one with more friction than is configured: what it is must not be lost.
+            let swings = None;
+            let measured = Measured { motor, swings };
+            show(options, &rig, &measured, &Saved::default())?;
+            Err(error)
+        }
+    }
 }
 
-fn measure(
-    connection: &mut LegConnection,
+fn motor(
+    operator: &mut Operator,
     jogs: &JogPlan,
-    swing: Option<&SwingPlan>,
-    rig: &RigFile,
     settings: &Settings,
-) -> Result<Measured, Failure> {
-    let operator = &mut connection.operator;
-    let bar = progress::message();
-    let motor = measure_motor(operator, jogs, settings, &mut |jogged| {
+    bar: &ProgressBar,
+) -> Result<MeasuredMotor, Failure> {
+    let seen = &mut |jogged: &Jogged| {
         bar.set_message(format!(
             "motor {}: {:+.2} V, {:+.2} mm/s, {:+.3} A",
             jogs.motor,
@@ -101,51 +123,78 @@ fn measure(
             jogged.current_a
         ));
         bar.tick();
-    });
-    let swings = motor.as_ref().ok().and(swing).map(|plan| {
-        bar.set_message("the leg is homed, and its pretension changed");
-        bar.tick();
-        measure_swing(operator, plan, rig, &mut |swing| {
-            let hz = swing.frequency_hz.value;
-            bar.set_message(format!("{:.0} N: {hz:.2} Hz", swing.pretension_n));
-            bar.tick();
-        })
-    });
-    bar.finish_and_clear();
-    Ok(Measured {
-        motor: motor?,
-        swings: swings.transpose()?,
-    })
+    };
+    Ok(measure_motor(operator, jogs, settings, seen)?)
 }
 
+fn swings(
+    operator: &mut Operator,
+    plan: &SwingPlan,
+    rig: &RigFile,
+    bar: &ProgressBar,
+) -> Result<Swings, Failure> {
+    bar.set_message("the leg is homed, and its pretension changed");
+    bar.tick();
+    let seen = &mut |swing: &Swing| {
+        let hz = swing.frequency_hz.value;
+        bar.set_message(format!("{:.0} N: {hz:.2} Hz", swing.pretension_n));
+        bar.tick();
+    };
+    Ok(measure_swing(operator, plan, rig, seen)?)
+}
+
+/// What was saved of it.
+#[derive(Default)]
+struct Saved {
+    charts: Vec<PathBuf>,
+    section: Option<PathBuf>,
+}
+
+/// Saves what was measured where it shall be, and prints it even where that cannot be.
 fn report(
     args: &Args,
     options: Options,
     rig: &RigFile,
     measured: &Measured,
 ) -> Result<(), Failure> {
+    let mut saved = Saved::default();
+    let result = save(args, rig, measured, &mut saved);
+    show(options, rig, measured, &saved)?;
+    result
+}
+
+fn save(args: &Args, rig: &RigFile, measured: &Measured, saved: &mut Saved) -> Result<(), Failure> {
     let Measured { motor, swings } = measured;
-    let rows = comparison(&motor.constants, swings.as_ref(), rig);
-    let text = section(motor.motor, &rows);
-    let charts = match &args.plots {
-        Some(directory) => charts::save(directory, motor, swings.as_ref())?,
-        None => Vec::new(),
-    };
     if let Some(file) = &args.write {
         require_absent(Some(file))?;
-        write(Some(file), &text)?;
+        write(Some(file), &section(motor.motor, &measured.rows(rig)))?;
+        saved.section = Some(file.clone());
     }
+    if let Some(directory) = &args.plots {
+        saved.charts = charts::save(directory, motor, swings.as_ref())?;
+    }
+    Ok(())
+}
+
+fn show(
+    options: Options,
+    rig: &RigFile,
+    measured: &Measured,
+    saved: &Saved,
+) -> Result<(), Failure> {
+    let motor = &measured.motor;
+    let rows = measured.rows(rig);
     let json = json_object! {
         motor: motor.motor,
         rows: &rows,
         jogs: &motor.jogs,
-        charts: &charts,
-        written: &args.write,
+        charts: &saved.charts,
+        written: &saved.section,
     };
     options.report(&json, || {
-        let charts: String = charts.iter().map(|svg| chart_line(svg)).collect();
-        let written = args.write.as_deref().map_or_else(
-            || format!("\n{text}"),
+        let charts: String = saved.charts.iter().map(|svg| chart_line(svg)).collect();
+        let written = saved.section.as_deref().map_or_else(
+            || format!("\n{}", section(motor.motor, &rows)),
             |file| {
                 format!(
                     "Sections for the rig file: {}\n",
@@ -160,6 +209,25 @@ fn report(
         );
         format!("{}{directions}{charts}{written}", table(&rows))
     })
+}
+
+/// Refuses a leg that cannot be jogged, before anybody is asked to stand by.
+fn require_disarmed(operator: &mut Operator) -> Result<(), Failure> {
+    let telemetry = operator.telemetry()?.telemetry;
+    let faults = telemetry.faults.without_limits();
+    if faults.any() {
+        return Err(OperatorError::Faulted("jog a motor", faults).failure());
+    }
+    if telemetry.state.driven() {
+        return Err(Failure::refused(
+            format!(
+                "the leg is {}, and its motors are measured while it is disarmed",
+                description::state(telemetry.state)
+            ),
+            "run `leg disarm` first",
+        ));
+    }
+    Ok(())
 }
 
 /// Refuses a file that exists: what somebody measured before is not to be lost.

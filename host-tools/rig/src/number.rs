@@ -16,8 +16,14 @@ pub fn plain(value: f64) -> String {
     if exact.len() <= SHORT {
         return exact;
     }
-    let rounded = format!("{value:.5e}").parse();
-    rounded.map_or(exact, |rounded| written(rounded, 1e5))
+    written(significant(value, 6), 1e5)
+}
+
+/// The nearest number of so many significant digits.
+#[must_use]
+pub fn significant(value: f64, digits: usize) -> f64 {
+    let decimals = digits.saturating_sub(1);
+    format!("{value:.decimals$e}").parse().unwrap_or(value)
 }
 
 /// With an exponent where that is easier to read.
@@ -58,7 +64,7 @@ pub(crate) fn exact_through(value: f64, wanted: f32, back: impl Fn(f64) -> f64) 
 
 #[cfg(test)]
 mod tests {
-    use super::{decimal, exact, exact_mm, exact_through, plain};
+    use super::{decimal, exact, exact_mm, exact_through, plain, significant};
 
     #[test]
     fn numbers_are_written_short() {
@@ -66,6 +72,9 @@ mod tests {
         let short = ["0", "0.3", "-20", "1e5", "2e-7", "0.3", "3.33333e-6"];
         assert_eq!(written, short);
         assert_eq!(decimal(0.05), 0.05);
+        let rounded = [(0.12345, 2), (-98_765.0, 3), (0.1 + 0.2, 6), (0.0, 4)];
+        let rounded = rounded.map(|(value, digits)| significant(value, digits));
+        assert_eq!(rounded, [0.12, -98_800.0, 0.3, 0.0]);
         let tilt_deg = exact_through(30.000_000_000_000_004, 0.5, |tilt| tilt.to_radians().sin());
         let exact = [
             exact(0.1),

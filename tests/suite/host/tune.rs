@@ -14,7 +14,7 @@ use leg_host::tune::{
 };
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
-use leg_sim::emulated_leg::EmulatedLeg;
+use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
 use leg_sim::link::InProcess;
 use leg_sim::plant::{Defect, Plant, Start};
 
@@ -45,10 +45,15 @@ fn drawn(configured: &RigFile, seed: u64) -> RigFile {
     real
 }
 
+/// One of the ready rigs, another one for each seed.
+fn ready_rig(seed: u64) -> RigFile {
+    let ready = READY_RIGS[seed as usize % READY_RIGS.len()];
+    RigFile::parse(ready.name, ready.text).unwrap()
+}
+
 /// A leg, its host and what cancels that.
-fn leg(real: &RigFile, seed: u64) -> (EmulatedLine, Operator, CancelFlag) {
-    let configured = RigFile::load(None).unwrap();
-    let leg = EmulatedLeg::unlike(&configured, real, Box::new(InProcess::new()), seed).unwrap();
+fn leg(configured: &RigFile, real: &RigFile, seed: u64) -> (EmulatedLine, Operator, CancelFlag) {
+    let leg = EmulatedLeg::unlike(configured, real, Box::new(InProcess::new()), seed).unwrap();
     let line = EmulatedLine::new(leg, "the leg");
     let host = Box::new(line.connect());
     let cancel = CancelFlag::default();
@@ -80,10 +85,10 @@ fn off(row: &Row) -> f64 {
 
 #[test]
 fn the_constants_of_a_motor_are_found_within_five_percent() {
-    let configured = RigFile::load(None).unwrap();
     for seed in 1..=6 {
+        let configured = ready_rig(seed);
         let real = drawn(&configured, seed);
-        let (line, mut operator, _) = leg(&real, seed);
+        let (line, mut operator, _) = leg(&configured, &real, seed);
         let before = line.with_plant(|plant| plant.truth().unstretched_m);
         let motor = 1 + (seed % 3) as u8;
         let mut hardest_n = 0.0_f64;
@@ -142,10 +147,10 @@ fn true_frequency_hz(real: &RigFile, pretension_n: f64) -> f64 {
 
 #[test]
 fn the_first_mode_is_found_within_three_percent_and_the_play_within_ten() {
-    let configured = RigFile::load(None).unwrap();
     for seed in 1..=3 {
+        let configured = ready_rig(seed);
         let real = drawn(&configured, seed);
-        let (_, mut operator, _) = leg(&real, seed);
+        let (_, mut operator, _) = leg(&configured, &real, seed);
         let plan = SwingPlan::new(&configured);
         let swings = measure_swing(&mut operator, &plan, &configured, &mut |_| ()).unwrap();
         assert_eq!(swings.all.len(), 3);
@@ -159,10 +164,24 @@ fn the_first_mode_is_found_within_three_percent_and_the_play_within_ten() {
         }
         // It is measured, not taken from the rig file.
         assert!(changed > 0.03, "seed {seed}: {changed}");
-        let play_m = swings.play_m.unwrap();
+        let travels = swings.travels.unwrap();
+        let play_m = travels.play_m;
         let real_m = real.actuator.play_m();
         println!("play {play_m:?}, true {real_m}");
         assert!((play_m.value / real_m - 1.0).abs() < 0.1, "seed {seed}");
+        let stretched = travels.stretch_m.value / swings.configured_stretch_m.unwrap();
+        let real_stretched = 1.0 + real.plant.curve_error;
+        println!("stretch {stretched}, true {real_stretched}");
+        assert!((stretched / real_stretched - 1.0).abs() < 0.01);
+        // The stiffness of the rig file is wrong by as much as the stretch.
+        let inertia = swings.inertia_kg_m2;
+        let real_inertia = real.plant.transverse_inertia_kg_m2(&real.parameters);
+        println!("inertia {inertia:?}, true {real_inertia}");
+        let off = (inertia.value - real_inertia).abs();
+        assert!(
+            off < (1.5 * inertia.uncertainty).min(0.01 * real_inertia),
+            "seed {seed}"
+        );
         let telemetry = operator.telemetry().unwrap().telemetry;
         assert_eq!(telemetry.state, State::Held);
     }
@@ -173,18 +192,83 @@ fn the_first_mode_is_found_within_three_percent_and_the_play_within_ten() {
 fn what_is_written_is_a_part_of_a_rig_file() {
     let configured = RigFile::load(None).unwrap();
     let real = drawn(&configured, 1);
-    let (_, mut operator, _) = leg(&real, 1);
+    let (_, mut operator, _) = leg(&configured, &real, 1);
     let found = jog(&mut operator, 2, &mut |_| ()).unwrap();
-    let rows = comparison(&found.constants, None, &configured);
+    let plan = SwingPlan::new(&configured);
+    let swings = measure_swing(&mut operator, &plan, &configured, &mut |_| ()).unwrap();
+    let rows = comparison(&found.constants, Some(&swings), &configured);
     let text = [READY_RIGS[0].text, &section(2, &rows)].concat();
-    let written = RigFile::parse("measured", &text).unwrap().actuator;
+    let file = RigFile::parse("measured", &text).unwrap();
+    let written = &file.actuator;
+    let inertia = |rig: &RigFile| rig.plant.leg_transverse_inertia_kg_m2.unwrap();
     for (written, real) in [
         (written.resistance_ohm, real.actuator.resistance_ohm),
+        (
+            written.torque_constant_nm_per_a,
+            real.actuator.torque_constant_nm_per_a,
+        ),
         (written.friction_nm, real.actuator.friction_nm),
         (written.screw_efficiency, real.actuator.screw_efficiency),
+        (written.backlash_rad, real.actuator.backlash_rad),
+        (inertia(&file), inertia(&real)),
     ] {
         assert!((written / real - 1.0).abs() < 0.05, "{written} {real}");
     }
+}
+
+/// A leg whose motors are so far from its settings that it does not home.
+#[test]
+fn what_the_jogs_tell_lets_a_leg_home_that_did_not() {
+    let configured = RigFile::load(None).unwrap();
+    let real = drawn(&configured, 106);
+    let swing = |operator: &mut Operator, rig: &RigFile| {
+        measure_swing(operator, &SwingPlan::new(rig), rig, &mut |_| ())
+    };
+    let (_, mut operator, _) = leg(&configured, &real, 1);
+    let found = jog(&mut operator, 1, &mut |_| ()).unwrap();
+    let ended = swing(&mut operator, &configured).unwrap_err();
+    println!("{ended}");
+    assert!(matches!(
+        ended,
+        TuneError::Operator(OperatorError::Failed("home", _))
+    ));
+    let rows = comparison(&found.constants, None, &configured);
+    let text = [READY_RIGS[0].text, &section(1, &rows)].concat();
+    let measured = RigFile::parse("measured", &text).unwrap();
+    let (_, mut operator, _) = leg(&measured, &real, 1);
+    swing(&mut operator, &measured).unwrap();
+}
+
+/// What a rig file would refuse stands in the section as a comment.
+#[test]
+fn what_a_rig_file_does_not_take_is_a_comment() {
+    let configured = RigFile::load(None).unwrap();
+    let (_, mut operator, _) = leg(&configured, &configured, 1);
+    let found = jog(&mut operator, 1, &mut |_| ()).unwrap();
+    let mut rows = comparison(&found.constants, None, &configured);
+    for row in &mut rows {
+        match row.name.as_str() {
+            "screw_efficiency" => row.measured.value = 0.55,
+            "viscous_nm_s_per_rad" => row.measured.uncertainty = 1.0,
+            "friction_nm" => row.measured.value = -1.0,
+            _ => {}
+        }
+    }
+    let text = section(1, &rows);
+    println!("{text}");
+    for line in [
+        "# screw_efficiency is not within 0.01 to 0.499: 0.55",
+        "# viscous_nm_s_per_rad is too uncertain: ",
+        "# friction_nm is too uncertain: -1",
+    ] {
+        assert!(text.contains(line), "{line}");
+    }
+    let text = [READY_RIGS[0].text, &text].concat();
+    let written = RigFile::parse("measured", &text).unwrap().actuator;
+    assert_eq!(
+        written.screw_efficiency,
+        configured.actuator.screw_efficiency
+    );
 }
 
 /// What is wrong from the beginning is named by the first jog that shows it.
@@ -201,7 +285,7 @@ fn a_mistake_of_the_wires_is_named_and_ends_it() {
         ),
         (Defect::TendonCut(0), "does not come to pull"),
     ] {
-        let (line, mut operator, _) = leg(&rig, 1);
+        let (line, mut operator, _) = leg(&rig, &rig, 1);
         line.with_plant(|plant| plant.set_defect(defect, true));
         let failure = jog(&mut operator, 1, &mut |_| ()).unwrap_err().failure();
         println!("{defect:?}: {failure}");
@@ -211,12 +295,27 @@ fn a_mistake_of_the_wires_is_named_and_ends_it() {
     }
 }
 
+/// One tendon pays out, so two that pull would take the leg along.
+#[test]
+fn a_leg_whose_tendons_pull_is_refused() {
+    let rig = RigFile::load(None).unwrap();
+    let link = Box::new(InProcess::new());
+    let homed = EmulatedLeg::new(&rig, InitialState::Homed, link).unwrap();
+    let line = EmulatedLine::new(homed, "the leg");
+    let host = Box::new(line.connect());
+    let mut operator = Operator::open(host, HostIdentity::FIXED, CancelFlag::default()).unwrap();
+    let before = line.with_plant(|plant| plant.truth().unstretched_m);
+    let failure = jog(&mut operator, 1, &mut |_| ()).unwrap_err().to_string();
+    assert!(failure.contains("tendon 2 pulls by 70 N"), "{failure}");
+    assert_eq!(line.with_plant(|plant| plant.truth().unstretched_m), before);
+}
+
 /// A fault in the middle: by its name, and the motors are at rest.
 #[test]
 fn a_fault_in_the_middle_ends_it_by_its_name() {
     let rig = RigFile::load(None).unwrap();
     for after in [1, 12] {
-        let (line, mut operator, _) = leg(&rig, 1);
+        let (line, mut operator, _) = leg(&rig, &rig, 1);
         let mut count = 0;
         let ended = jog(&mut operator, 1, &mut |_| {
             count += 1;
@@ -225,14 +324,16 @@ fn a_fault_in_the_middle_ends_it_by_its_name() {
             }
         });
         assert_eq!(count, after);
-        let Err(TuneError::Operator(OperatorError::Failed(_, telemetry))) = ended else {
-            panic!("{ended:?}");
+        let (cause, by_m) = cause(ended.unwrap_err());
+        let TuneError::Operator(OperatorError::Failed(_, telemetry)) = cause else {
+            panic!("{cause:?}");
         };
+        assert!(by_m.abs() > 1e-3, "{by_m}");
         assert!(telemetry.faults.has(Fault::SupplyLow), "{telemetry:?}");
         let truth = line.with_plant(|plant| plant.truth());
         assert_eq!(truth.speeds_rad_per_s, [0.0; 3]);
     }
-    let (line, mut operator, _) = leg(&rig, 1);
+    let (line, mut operator, _) = leg(&rig, &rig, 1);
     let plan = SwingPlan::new(&rig);
     let mut count = 0;
     let ended = measure_swing(&mut operator, &plan, &rig, &mut |_| {
@@ -245,15 +346,83 @@ fn a_fault_in_the_middle_ends_it_by_its_name() {
     assert!(!operator.telemetry().unwrap().telemetry.state.follows());
 }
 
+/// Why it ended, and how far the tendon is from where it was, m.
+fn cause(error: TuneError) -> (TuneError, f32) {
+    match error {
+        TuneError::Displaced { error, by_m, .. } => (*error, by_m),
+        error => (error, 0.0),
+    }
+}
+
+/// A motor that obeys pays out what a load cell in doubt has let it reel in.
 #[test]
-fn a_user_who_interrupts_it_leaves_the_motors_at_rest() {
+fn no_tendon_is_left_loaded_where_a_load_cell_ends_it() {
     let rig = RigFile::load(None).unwrap();
-    let (line, mut operator, cancel) = leg(&rig, 1);
-    let ended = jog(&mut operator, 1, &mut |_| cancel.set());
+    for defect in [
+        Defect::CellExcitationLost(0),
+        Defect::CellFollows(0),
+        Defect::CellReversed(0),
+    ] {
+        let (line, mut operator, _) = leg(&rig, &rig, 1);
+        line.with_plant(|plant| plant.set_defect(defect, true));
+        let ended = jog(&mut operator, 1, &mut |_| ()).unwrap_err();
+        let truth = line.with_plant(|plant| plant.truth());
+        println!("{defect:?}: {ended}, {:?} N", truth.tensions_n);
+        assert!(truth.tensions_n.iter().all(|&n| n < 0.1), "{defect:?}");
+        let telemetry = operator.telemetry().unwrap().telemetry;
+        assert_eq!(telemetry.state, State::Disarmed, "{defect:?}");
+    }
+}
+
+/// In the middle of any jog: nothing moves any more, and how far the tendon is from where it was is told.
+#[test]
+fn a_user_who_interrupts_it_leaves_the_motors_at_rest_and_knows_where() {
+    let rig = RigFile::load(None).unwrap();
+    for after in [1, 4, 12, 17] {
+        let (line, mut operator, cancel) = leg(&rig, &rig, 1);
+        let [before_m, ..] = line.with_plant(|plant| plant.truth().unstretched_m);
+        let mut count = 0;
+        let ended = jog(&mut operator, 1, &mut |_| {
+            count += 1;
+            if count == after {
+                cancel.set();
+            }
+        });
+        assert_eq!(count, after);
+        let error = ended.unwrap_err();
+        let help = format!("{:?}", error.failure());
+        let (cause, by_m) = cause(error);
+        assert!(
+            matches!(cause, TuneError::Operator(OperatorError::Cancelled)),
+            "{cause:?}"
+        );
+        let truth = line.with_plant(|plant| plant.truth());
+        assert_eq!(truth.speeds_rad_per_s, [0.0; 3]);
+        let [after_m, ..] = truth.unstretched_m;
+        let real_m = before_m - after_m;
+        println!("after {after}: {by_m} m, true {real_m} m");
+        // All but the play of the gear.
+        assert!((f64::from(by_m) - real_m).abs() < 1e-5, "{by_m} {real_m}");
+        let told = format!("`leg jog 1 --travel {:.1}`", -1000.0 * by_m);
+        assert!(help.contains(&told), "{help}");
+    }
+}
+
+#[test]
+fn a_user_who_interrupts_the_swing_leaves_the_leg_held() {
+    let rig = RigFile::load(None).unwrap();
+    let plan = SwingPlan::new(&rig);
+    let (line, mut operator, cancel) = leg(&rig, &rig, 1);
+    let ended = measure_swing(&mut operator, &plan, &rig, &mut |_| cancel.set());
     assert!(
         matches!(ended, Err(TuneError::Operator(OperatorError::Cancelled))),
         "{ended:?}"
     );
-    let truth = line.with_plant(|plant| plant.truth());
-    assert_eq!(truth.speeds_rad_per_s, [0.0; 3]);
+    let speeds = line.with_plant(|plant| plant.truth().speeds_rad_per_s);
+    assert_eq!(speeds, [0.0; 3]);
+    // Another host: all that this one asks is ended.
+    drop(operator);
+    let host = Box::new(line.connect());
+    let mut other = Operator::open(host, HostIdentity::random(), CancelFlag::default()).unwrap();
+    assert_eq!(other.telemetry().unwrap().telemetry.state, State::Held);
 }

@@ -48,7 +48,7 @@ impl Operator {
     }
 
     /// Does `work` to its end even after Ctrl-C, and without keep-alives.
-    pub(super) fn uncancelled<T>(
+    pub(crate) fn uncancelled<T>(
         &mut self,
         work: impl FnOnce(&mut Self) -> Result<T, OperatorError>,
     ) -> Result<T, OperatorError> {

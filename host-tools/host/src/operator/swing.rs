@@ -12,10 +12,11 @@ use std::time::Duration;
 /// Ticks from one telemetry to the next: 500 Hz, what the serial line carries.
 const EVERY_TICKS: u16 = 16;
 
-/// Longest wait for the next telemetry.
-const SILENT_TIME: Duration = Duration::from_secs(2);
+/// Longest wait for the next telemetry: this machine may be so busy that this program, or a leg which it emulates, has to wait for
+/// seconds.
+const SILENT_TIME: Duration = Duration::from_secs(10);
 
-/// Longest time of a command until it is stopped.
+/// Longest time of a command until it is stopped, by the leg's ticks.
 const COMMAND_TIME: Duration = Duration::from_secs(5);
 
 /// What is done with each telemetry: true when it was the last.
@@ -41,7 +42,7 @@ impl Operator {
                 operator.activate(asked)?;
                 let begun = operator.telemetry()?.telemetry.tick;
                 operator.command(command)?;
-                operator.watch(COMMAND_TIME, &mut |telemetry| {
+                operator.watch(asked, COMMAND_TIME, &mut |telemetry| {
                     if telemetry.tick.wrapping_sub(begun).cast_signed() < 0 {
                         // From before it was activated.
                         return false;
@@ -50,7 +51,7 @@ impl Operator {
                     passed(telemetry) || telemetry.state != State::Active
                 })?;
                 operator.command(Command::Stop)?;
-                operator.collect(time, &mut recorded)
+                operator.collect(asked, time, &mut recorded)
             })
         })?;
         match recorded.last() {
@@ -76,28 +77,40 @@ impl Operator {
     /// Keeps the telemetry of a time.
     fn collect(
         &mut self,
+        asked: &'static str,
         time: Duration,
         recorded: &mut Vec<Telemetry<f32>>,
     ) -> Result<(), OperatorError> {
-        let ticks = (time.as_secs_f64() * f64::from(TICK_HZ)) as u32;
+        let ticks = ticks(time);
         let mut first = None;
-        self.watch(time + SILENT_TIME, &mut |telemetry| {
+        self.watch(asked, 2 * time, &mut |telemetry| {
             recorded.push(*telemetry);
             let first = *first.get_or_insert(telemetry.tick);
             telemetry.tick.wrapping_sub(first) >= ticks
         })
     }
 
-    fn watch(&mut self, longest: Duration, done: Watch<'_>) -> Result<(), OperatorError> {
-        let until = self.now() + longest;
-        while self.now() < until {
-            let Some(report) = self.next_streamed(SILENT_TIME)? else {
-                break;
-            };
-            if done(&report.telemetry) {
+    fn watch(
+        &mut self,
+        asked: &'static str,
+        longest: Duration,
+        done: Watch<'_>,
+    ) -> Result<(), OperatorError> {
+        let mut first = None;
+        while let Some(report) = self.next_streamed(SILENT_TIME)? {
+            let telemetry = report.telemetry;
+            if done(&telemetry) {
                 return Ok(());
+            }
+            let first = *first.get_or_insert(telemetry.tick);
+            if telemetry.tick.wrapping_sub(first) > ticks(longest) {
+                return Err(OperatorError::TimedOut(asked, longest, Box::new(telemetry)));
             }
         }
         Err(OperatorError::NoAnswer(self.name().into()))
     }
+}
+
+fn ticks(time: Duration) -> u32 {
+    (time.as_secs_f64() * f64::from(TICK_HZ)) as u32
 }

@@ -4,7 +4,7 @@ use super::estimate::Estimate;
 use super::motor::MotorConstants;
 use super::swing::Swings;
 use leg_rig::actuator::Actuator;
-use leg_rig::number::plain;
+use leg_rig::number::{plain, significant};
 use leg_rig::plant_settings::TRANSVERSE_INERTIA;
 use leg_rig::rig_file::RigFile;
 use serde::Serialize;
@@ -86,7 +86,7 @@ fn motor_rows(motor: &MotorConstants, actuator: &Actuator) -> Vec<Row> {
         keyed(
             "friction_nm",
             "N·m",
-            friction_in.mean(friction_out),
+            friction_in.mean_of_one_fit(friction_out),
             actuator.friction_nm,
         ),
         keyed(
@@ -122,14 +122,29 @@ fn swing_rows(swings: &Swings, rig: &RigFile) -> Vec<Row> {
         configured: Some(rig.plant.transverse_inertia_kg_m2(&rig.parameters)),
         key: Some((leg_rig::plant_settings::SIMULATION, TRANSVERSE_INERTIA.name)),
     };
-    let play = swings.play_m.map(|play_m| Row {
-        name: "backlash_rad".into(),
-        unit: "rad",
-        measured: play_m.scaled(std::f64::consts::TAU / rig.actuator.lead_m),
-        configured: Some(rig.actuator.backlash_rad),
-        key: Some((leg_rig::actuator::ACTUATOR, "backlash_rad")),
+    let travels = swings.travels.map(|travels| {
+        let [low_n, high_n] = travels.tensions_n;
+        let play = Row {
+            name: "backlash_rad".into(),
+            unit: "rad",
+            measured: travels
+                .play_m
+                .scaled(std::f64::consts::TAU / rig.actuator.lead_m),
+            configured: Some(rig.actuator.backlash_rad),
+            key: Some((leg_rig::actuator::ACTUATOR, "backlash_rad")),
+        };
+        let stretch = Row {
+            name: format!("stretch, {low_n:.0} to {high_n:.0} N"),
+            unit: "mm",
+            measured: travels.stretch_m.scaled(1000.0),
+            configured: swings.configured_stretch_m.map(|m| 1000.0 * m),
+            key: None,
+        };
+        [play, stretch]
     });
-    play.into_iter()
+    travels
+        .into_iter()
+        .flatten()
         .chain(first_mode)
         .chain([inertia])
         .collect()
@@ -146,7 +161,7 @@ pub fn table(rows: &[Row]) -> String {
         let Estimate { value, uncertainty } = row.measured;
         let configured = row
             .configured
-            .map_or_else(String::new, |number| plain(four_digits(number)));
+            .map_or_else(String::new, |number| plain(significant(number, 4)));
         let difference = row
             .configured
             .filter(|&number| number != 0.0)
@@ -157,30 +172,33 @@ pub fn table(rows: &[Row]) -> String {
             "{:<30} {:>10} {:>10} {configured:>10} {difference:>11}  {}\n",
             row.name,
             written(value, uncertainty),
-            plain(two_digits(uncertainty)),
+            plain(significant(uncertainty, 2)),
             row.unit,
         );
     }
     table
 }
 
-/// What was measured with certainty, as sections of a rig file.
+/// What was measured with certainty, as sections of a rig file; what such a file does not take, or is uncertain, as a comment.
 #[must_use]
 pub fn section(motor: u8, rows: &[Row]) -> String {
     let mut text =
-        format!("# Measured by leg tune at motor {motor}; ± is twice the standard deviation.\n");
+        format!("# Measured by leg tune at motor {motor}; ± holds in 95 of 100 cases.\n");
     let mut last = "";
     for row in rows {
         let Some((section, key)) = row.key else {
             continue;
         };
         let Estimate { value, uncertainty } = row.measured;
+        let number = written(value, uncertainty);
+        let off = plain(significant(uncertainty, 2));
         if !row.measured.is_certain() || value <= 0.0 {
-            text += &format!(
-                "# {key} is too uncertain: {} ± {}\n",
-                plain(two_digits(value)),
-                plain(two_digits(uncertainty))
-            );
+            text += &format!("# {key} is too uncertain: {number} ± {off}\n");
+            continue;
+        }
+        if let Some([low, high]) = range(key).filter(|&[low, high]| value < low || value > high) {
+            let [low, high] = [low, high].map(plain);
+            text += &format!("# {key} is not within {low} to {high}: {number} ± {off}\n");
             continue;
         }
         if section != last {
@@ -188,38 +206,24 @@ pub fn section(motor: u8, rows: &[Row]) -> String {
             last = section;
         }
         let configured = row.configured.map_or_else(String::new, |number| {
-            format!(", was {}", plain(four_digits(number)))
+            format!(", was {}", plain(significant(number, 4)))
         });
-        text += &format!(
-            "{key} = {}  # ± {}{configured}\n",
-            written(value, uncertainty),
-            plain(two_digits(uncertainty)),
-        );
+        text += &format!("{key} = {number}  # ± {off}{configured}\n");
     }
     text
 }
 
-/// A number with the digits that its uncertainty leaves.
+/// What a rig file may say of a key.
+fn range(key: &str) -> Option<[f64; 2]> {
+    let mut fields = Actuator::FIELDS.iter().chain([&TRANSVERSE_INERTIA]);
+    fields
+        .find(|field| field.name == key)
+        .map(|field| field.range)
+}
+
+/// A number to the second digit of its uncertainty.
 fn written(value: f64, uncertainty: f64) -> String {
-    let unit = 10_f64.powf(uncertainty.max(f64::MIN_POSITIVE).log10().floor() - 1.0);
-    let rounded = (value / unit).round();
-    if rounded.is_finite() && rounded.abs() < 1e6 {
-        // Once more by its digits, so that no 0.30000000000000004 comes out.
-        let digits = rounded.abs().max(1.0).log10().floor() as usize;
-        plain(format!("{value:.digits$e}").parse().unwrap_or(value))
-    } else {
-        plain(six_digits(value))
-    }
-}
-
-fn two_digits(value: f64) -> f64 {
-    format!("{value:.1e}").parse().unwrap_or(value)
-}
-
-fn four_digits(value: f64) -> f64 {
-    format!("{value:.3e}").parse().unwrap_or(value)
-}
-
-fn six_digits(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
+    let last = significant(uncertainty, 2).log10().floor() - 1.0;
+    let digits = 1.0 + value.abs().log10().floor() - last;
+    plain(significant(value, digits.clamp(1.0, 6.0) as usize))
 }

@@ -3,8 +3,9 @@
 use crate::jog_report::Finding;
 use crate::operator::OperatorError;
 use leg_base::failure::Failure;
+use leg_firmware::jog::JOG_TRAVEL_MAX_M;
 
-/// Why a leg was not measured to the end. It rests then, and nothing is written.
+/// Why a leg was not measured to the end. It rests then.
 #[derive(Debug)]
 pub enum TuneError {
     /// The leg did not do what it was asked.
@@ -17,6 +18,15 @@ pub enum TuneError {
         what: String,
         /// What to do.
         help: &'static str,
+    },
+    /// The same, and a tendon is not where it was.
+    Displaced {
+        /// Why.
+        error: Box<Self>,
+        /// The motor, from 1.
+        motor: u8,
+        /// How far its tendon is pulled in beyond where it was, m.
+        by_m: f32,
     },
 }
 
@@ -35,8 +45,26 @@ impl TuneError {
             Self::Operator(error) => error.failure(),
             Self::Finding(finding) => Failure::failed(finding.what.clone(), finding.remedy.clone()),
             Self::Undetermined { what, help } => Failure::failed(what.clone(), *help),
+            Self::Displaced { error, motor, by_m } => {
+                let mut failure = error.failure();
+                let (Failure::Failed(message) | Failure::Refused(message)) = &mut failure;
+                let help = message.help.take().unwrap_or_default();
+                message.help = Some(format!("{help}; {}", displaced(*motor, *by_m)));
+                failure
+            }
         }
     }
+}
+
+fn displaced(motor: u8, by_m: f32) -> String {
+    let by_mm = 1000.0 * by_m;
+    let way = if by_m < 0.0 { "out" } else { "in" };
+    // A jog turns by no more.
+    let back_mm = (-by_mm).clamp(-1000.0 * JOG_TRAVEL_MAX_M, 1000.0 * JOG_TRAVEL_MAX_M);
+    format!(
+        "tendon {motor} is {:.1} mm farther {way} than it was: `leg jog {motor} --travel {back_mm:.1}` turns it back",
+        by_mm.abs()
+    )
 }
 
 impl From<OperatorError> for TuneError {

@@ -6,9 +6,10 @@ use crate::operator::{Operator, OperatorError};
 use leg_firmware::board::timing::PWM_TOP;
 use leg_firmware::jog::{JOG_TRAVEL_MAX_M, JogDemand, JogEnd, JogReport};
 use leg_firmware::settings::Settings;
+use leg_firmware::telemetry::Telemetry;
 
 /// How far a tendon is reeled in at the most until it pulls, beyond where the measurement began, m.
-pub(super) const REEL_MAX_M: f32 = 0.012;
+const REEL_MAX_M: f32 = 0.012;
 
 /// Travel between two looks at the tension, m.
 const STEP_M: f32 = 1e-3;
@@ -133,28 +134,75 @@ impl JogPlan {
     fn slow_v(&self) -> f32 {
         self.loaded_v
     }
+
+    /// How far the tendon is paid out and reeled in at the most beside where it began, m.
+    #[must_use]
+    pub fn reach_m(&self) -> [f32; 2] {
+        let out_m = PAY_OUT_STEPS as f32 * STEP_M + self.travel_m;
+        [out_m, REEL_MAX_M + LOADED_TRAVEL_M]
+    }
 }
 
-/// Jogs the motor of a disarmed leg, and leaves its tendon where it was.
+/// Jogs the motor of a disarmed leg, and leaves its tendon where it was; where that cannot be, the error tells it.
 pub(super) fn jog_all(
     operator: &mut Operator,
     plan: &JogPlan,
     settings: &Settings,
     seen: &mut dyn FnMut(&Jogged),
 ) -> Result<Vec<Jogged>, TuneError> {
+    let own = |telemetry: &Telemetry<f32>| own_of(plan.motor, &telemetry.pulled_m);
+    let start = operator.telemetry()?.telemetry;
+    require_loose(plan, &start.tensions_n)?;
+    let start_m = own(&start);
     let mut jogs = Jogs {
         operator,
         plan,
         settings,
         pulled_m: 0.0,
+        turned: false,
         all: Vec::new(),
         seen,
     };
-    jogs.slacken()?;
-    jogs.free()?;
-    jogs.loaded()?;
-    jogs.put_back()?;
-    Ok(jogs.all)
+    let Err(error) = jogs.in_order() else {
+        return Ok(jogs.all);
+    };
+    jogs.ease();
+    // A jog that was cut off has told nothing, so the leg is asked; not one that no longer answers.
+    let answers = !matches!(
+        error,
+        TuneError::Operator(OperatorError::ConnectionLost(..) | OperatorError::NoAnswer(_))
+    );
+    let now = answers.then(|| operator.uncancelled(Operator::telemetry));
+    let by_m = now
+        .and_then(Result::ok)
+        .map_or(0.0, |report| own(&report.telemetry) - start_m);
+    if by_m.abs() <= TRAVEL_MIN_M {
+        return Err(error);
+    }
+    Err(TuneError::Displaced {
+        error: Box::new(error),
+        motor: plan.motor,
+        by_m,
+    })
+}
+
+/// Refuses a leg whose other tendons pull: where one is paid out, they pull the leg to their side, and the more.
+fn require_loose(plan: &JogPlan, tensions_n: &[f32; 3]) -> Result<(), TuneError> {
+    let taut_n = LOADED_PART * plan.tension_max_n;
+    let mut others = (1_u8..).zip(tensions_n);
+    match others.find(|&(number, &tension_n)| number != plan.motor && tension_n > taut_n) {
+        Some((number, tension_n)) => Err(TuneError::undetermined(
+            format!("tendon {number} pulls by {tension_n:.0} N before a motor is jogged"),
+            "let the leg relax: `leg hold`, then `leg disarm`; before it is homed, pay its tendons out with `leg jog`",
+        )),
+        None => Ok(()),
+    }
+}
+
+/// What is of a motor's, from 1, own axis.
+fn own_of(motor: u8, of_three: &[f32; 3]) -> f32 {
+    let own = usize::from(motor).saturating_sub(1);
+    of_three.get(own).copied().unwrap_or_default()
 }
 
 /// The jogs that are under way.
@@ -164,11 +212,29 @@ struct Jogs<'a> {
     settings: &'a Settings,
     /// How far the tendon is pulled in since the beginning, m.
     pulled_m: f32,
+    /// Whether the last jog turned the motor as it was driven.
+    turned: bool,
     all: Vec<Jogged>,
     seen: &'a mut dyn FnMut(&Jogged),
 }
 
 impl Jogs<'_> {
+    fn in_order(&mut self) -> Result<(), TuneError> {
+        self.slacken()?;
+        self.free()?;
+        self.loaded()?;
+        self.put_back()
+    }
+
+    /// Lets no tendon pull on after an error. A motor that did not do what it was asked, a fault, Ctrl-C and a stop leave it where
+    /// it is, and nothing is pulled in by a load cell in doubt.
+    fn ease(&mut self) {
+        if self.turned && self.pulled_m > 0.0 {
+            // What comes of it shows where the tendon is then.
+            let _ = self.put_back();
+        }
+    }
+
     /// Pays the tendon out until its tension stays, and then by the longest jog, so that none of the free ones makes it pull.
     fn slacken(&mut self) -> Result<(), TuneError> {
         for _ in 0..PAY_OUT_STEPS {
@@ -178,10 +244,14 @@ impl Jogs<'_> {
                 return Ok(());
             }
         }
-        Err(TuneError::undetermined(
+        Err(self.not_slack())
+    }
+
+    fn not_slack(&self) -> TuneError {
+        TuneError::undetermined(
             format!("tendon {} does not become slack", self.plan.motor),
             "disarm the leg, and see that nothing pulls at it; pay the tendon out with `leg jog` and a negative travel",
-        ))
+        )
     }
 
     fn free(&mut self) -> Result<(), TuneError> {
@@ -189,6 +259,9 @@ impl Jogs<'_> {
             let travel_m = self.plan.travel_m(voltage_v);
             for travel_m in [travel_m, -travel_m] {
                 let report = self.jog(travel_m, voltage_v)?;
+                if report.end != JogEnd::Arrived {
+                    return Err(self.not_slack());
+                }
                 self.keep(&report, false);
             }
         }
@@ -212,7 +285,7 @@ impl Jogs<'_> {
     fn reel_in(&mut self) -> Result<(), TuneError> {
         let free = self.all.iter().map(|jogged| jogged.tension_n);
         let slack_n = free.sum::<f64>() / self.all.len().max(1) as f64;
-        while self.pulled_m < REEL_MAX_M {
+        while self.pulled_m + STEP_M <= REEL_MAX_M {
             let report = self.jog(STEP_M, self.plan.slow_v())?;
             let pull_n = f64::from(self.own(&report.tensions_n[1])) - slack_n;
             if pull_n >= f64::from(LOADED_PART * self.plan.tension_max_n) {
@@ -247,6 +320,7 @@ impl Jogs<'_> {
             travel_m,
             voltage_v,
         };
+        self.turned = false;
         let (report, telemetry) = self.operator.jog(&demand)?;
         let asked = "jog a motor";
         if telemetry.faults.without_limits().any() {
@@ -256,6 +330,7 @@ impl Jogs<'_> {
             return Err(OperatorError::StoppedByOtherHost(asked, telemetry.state).into());
         }
         self.pulled_m += self.own(&report.pulled_m);
+        self.turned = matches!(report.end, JogEnd::Arrived | JogEnd::Tension(_));
         // To come to pull is what some of them are for.
         let pulls = report.end == JogEnd::Tension(self.plan.motor) && travel_m > 0.0;
         match findings(&report, self.settings).into_iter().next() {
@@ -296,7 +371,6 @@ impl Jogs<'_> {
 
     /// What is of the motor's own axis.
     fn own(&self, of_three: &[f32; 3]) -> f32 {
-        let own = usize::from(self.plan.motor).saturating_sub(1);
-        of_three.get(own).copied().unwrap_or_default()
+        own_of(self.plan.motor, of_three)
     }
 }

@@ -8,6 +8,11 @@ use super::error::TuneError;
 use super::estimate::{Equation, Estimate, least_squares};
 use super::jogs::Jogged;
 
+/// Part of the current by the tension that it may be off beside: while a motor pulls, the tension grows and the motor becomes slower,
+/// so that the inertia of its rotor drives, too. That is the mechanical time constant, 5 to 10 ms, by the time in which the tension
+/// grows by itself, about a second.
+const PULL_OFF_PART: f64 = 0.01;
+
 /// What a motor shows by the quantities of its terminals and of its tendon.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct MotorConstants {
@@ -46,7 +51,7 @@ impl MotorConstants {
             driver_loss_v,
             friction_a: [friction_in, friction_out],
             viscous_a_s_per_m: viscous,
-            pull_a_per_n: [pull_in, pull_out],
+            pull_a_per_n: [pull_in, pull_out].map(|pull| pull.widened(PULL_OFF_PART)),
         };
         let positive = [
             resistance_ohm,

@@ -1,7 +1,7 @@
 //! The play of the gears: how much farther the motors turn until a tension is what it was, when they come from the other side.
 //!
 //! A leg that has settled does not tell from which side its motors came. So the pretension is raised and lowered, and stopped on
-//! the way: a motor that is stopped does not turn back.
+//! the way: a motor that is stopped does not turn back. The same travels tell how much the tendons stretch.
 
 use super::error::TuneError;
 use super::estimate::{Equation, Estimate, least_squares};
@@ -41,17 +41,36 @@ struct Way {
     stop_n: f64,
 }
 
-/// The mean play of the three gears as travel of the tendon, m, between two pretensions; none where it is less than what it may be
-/// off.
-pub(super) fn measure_play(
+/// What the travels of the motors tell about a pretension, means of the three axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Travels {
+    /// Play of the gears as travel of the tendon, m.
+    pub play_m: Estimate,
+    /// Two mean tensions, N.
+    pub tensions_n: [f64; 2],
+    /// How much farther the motors have pulled in at the greater one, m: the tendons are stretched by it.
+    pub stretch_m: Estimate,
+}
+
+/// Whether two pretensions, N, are far enough from each other.
+pub(super) fn is_wide([low_n, high_n]: [f64; 2]) -> bool {
+    0.5 * (high_n - low_n) >= HALF_MIN_N
+}
+
+/// The pretensions, N, between which the leg is stopped when it goes from one to another: there the stretch is told.
+pub(super) fn stopped_n([low_n, high_n]: [f64; 2]) -> [f64; 2] {
+    let [first, .., last] = STOPS;
+    let at = |part: f64| 0.5 * (low_n + high_n + part * (high_n - low_n));
+    [at(first), at(last)]
+}
+
+/// Raises and lowers the pretension between two. `tensions_n` are the mean tensions by the rig file at what [`stopped_n`] gives.
+pub(super) fn measure_travels(
     operator: &mut Operator,
-    range_n: [f64; 2],
-) -> Result<Option<Estimate>, TuneError> {
-    let [low, high] = range_n;
+    [low, high]: [f64; 2],
+    tensions_n: [f64; 2],
+) -> Result<Travels, TuneError> {
     let (middle_n, half_n) = (0.5 * (low + high), 0.5 * (high - low));
-    if half_n < HALF_MIN_N {
-        return Ok(None);
-    }
     let mut rests = Vec::new();
     let mut overshoot_n = OVERSHOOT * half_n;
     for part in STOPS {
@@ -66,17 +85,27 @@ pub(super) fn measure_play(
             rests.push(rest);
         }
     }
-    let found = least_squares(&equations(&rests, middle_n), 0.0);
-    let play = found.map(|[_, _, _, play]| play);
-    Ok(play.filter(|play| play.value > 0.0 && play.is_certain()))
+    let found = least_squares(&equations(&rests, tensions_n), 0.0);
+    let [_, stretch_m, _, play_m] = found.ok_or_else(|| {
+        TuneError::undetermined(
+            "the travels of the motors between two pretensions do not tell the play of their gears",
+            "see that nothing touches the leg, and look at the noise of the load cells in `leg sensors`",
+        )
+    })?;
+    Ok(Travels {
+        play_m,
+        tensions_n,
+        stretch_m,
+    })
 }
 
-/// The travel is a parabola over the tension, and the play between two of them.
-fn equations(rests: &[Rest], middle_n: f64) -> Vec<Equation<4>> {
+/// The travel is a parabola over the tension, and the play between two of them. Its second number is the travel from the one
+/// tension to the other, as the third does not change that.
+fn equations(rests: &[Rest], [low_n, high_n]: [f64; 2]) -> Vec<Equation<4>> {
     let equation = |rest: &Rest| {
-        let off = rest.tension_n / middle_n - 1.0;
+        let part = (rest.tension_n - low_n) / (high_n - low_n);
         let play = if rest.pulled_in { 0.0 } else { -1.0 };
-        ([1.0, off, off * off, play], rest.pulled_m)
+        ([1.0, part, part * (1.0 - part), play], rest.pulled_m)
     };
     rests.iter().map(equation).collect()
 }

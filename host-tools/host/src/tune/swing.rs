@@ -2,7 +2,7 @@
 
 use super::error::TuneError;
 use super::estimate::Estimate;
-use super::play::measure_play;
+use super::play::{Travels, is_wide, measure_travels, stopped_n};
 use super::ring::Ring;
 use crate::operator::{Goal, Operator, Tensioning};
 use leg_base::angles;
@@ -41,6 +41,8 @@ pub struct SwingPlan {
     pub levels_n: Vec<f64>,
     /// How far the leg leans at the most, degrees.
     pub tilt_deg: f64,
+    /// The pretensions, N, between which play and stretch are measured; none where they are too close to each other.
+    pub travels_n: Option<[f64; 2]>,
 }
 
 impl SwingPlan {
@@ -55,8 +57,13 @@ impl SwingPlan {
             .map(|part| (part * rig.pretension_n).min(high).max(low).round())
             .collect();
         levels_n.dedup();
+        let travels_n = match levels_n.as_slice() {
+            [low, .., high] => Some([*low, *high]).filter(|&range_n| is_wide(range_n)),
+            _ => None,
+        };
         Self {
             levels_n,
+            travels_n,
             tilt_deg: TILT_DEG.min(0.5 * rig.tilt_deg),
         }
     }
@@ -77,6 +84,8 @@ pub struct Swing {
     pub configured_hz: f64,
     /// The stiffness against a tilt by the rig file, N·m/rad.
     pub stiffness_nm_per_rad: f64,
+    /// What of that the tendons give by their stretch, N·m/rad.
+    pub tendons_nm_per_rad: f64,
 }
 
 /// All swings.
@@ -84,10 +93,13 @@ pub struct Swing {
 pub struct Swings {
     /// Those of each pretension.
     pub all: Vec<Swing>,
-    /// The inertia with which the stiffnesses of the rig file give the frequencies, kg·m².
+    /// The inertia with which the stiffnesses of the rig file give the frequencies, kg·m²; with those tendons whose stretch was
+    /// measured where it was.
     pub inertia_kg_m2: Estimate,
-    /// The play of the gears as travel of the tendon, m; none where it was not found.
-    pub play_m: Option<Estimate>,
+    /// Play and stretch; none where the pretensions are too close to each other.
+    pub travels: Option<Travels>,
+    /// The stretch by the rig file, m.
+    pub configured_stretch_m: Option<f64>,
 }
 
 /// Homes the leg, and lets it swing by the plan; calls `seen` after each pretension.
@@ -103,9 +115,16 @@ pub fn measure_swing(
     if !operator.telemetry()?.telemetry.homed {
         operator.home()?;
     }
-    let play_m = match plan.levels_n.as_slice() {
-        [low, .., high] => measure_play(operator, [*low, *high])?,
-        _ => None,
+    let (travels, configured_stretch_m) = match plan.travels_n {
+        Some(range_n) => {
+            let [low_n, high_n] = stopped_n(range_n);
+            let [low, high] = [hanging(rig, low_n)?, hanging(rig, high_n)?];
+            let tensions_n = [low, high].map(|leg| sum(&leg.tensions_n) / 3.0);
+            let stretch_m = (sum(&low.unstretched_m) - sum(&high.unstretched_m)) / 3.0;
+            let travels = measure_travels(operator, range_n, tensions_n)?;
+            (Some(travels), Some(stretch_m))
+        }
+        None => (None, None),
     };
     let mut all = Vec::new();
     for &level_n in &plan.levels_n {
@@ -115,11 +134,24 @@ pub fn measure_swing(
     }
     operator.reach(&straight_down(rig.pretension_n))?;
     operator.stop()?;
+    let stretched = travels
+        .zip(configured_stretch_m)
+        .map_or(Estimate::new(1.0, 0.0), |(travels, configured_m)| {
+            travels.stretch_m.scaled(configured_m.recip())
+        });
     Ok(Swings {
-        inertia_kg_m2: inertia(&all),
+        inertia_kg_m2: inertia(&all, stretched),
         all,
-        play_m,
+        travels,
+        configured_stretch_m,
     })
+}
+
+/// The leg straight down, by the rig file.
+fn hanging(rig: &RigFile, pretension_n: f64) -> Result<Evaluation<f64>, TuneError> {
+    let mut query = rig.query(0.0, 0.0, 0.0);
+    query.pretension_n = pretension_n;
+    evaluate(&rig.parameters, &query).map_err(|_| no_swing(pretension_n))
 }
 
 fn straight_down(pretension_n: f64) -> Goal {
@@ -158,6 +190,7 @@ fn swing_at(
         pretension_n: 0.5 * (one.pretension_n + other.pretension_n),
         configured_hz: 0.5 * (one.configured_hz + other.configured_hz),
         stiffness_nm_per_rad: 0.5 * (one.stiffness_nm_per_rad + other.stiffness_nm_per_rad),
+        tendons_nm_per_rad: 0.5 * (one.tendons_nm_per_rad + other.tendons_nm_per_rad),
         ..one
     })
 }
@@ -209,6 +242,7 @@ fn one_swing(
         ring,
         configured_hz: (stiffness_nm_per_rad / inertia).sqrt() / TAU,
         stiffness_nm_per_rad,
+        tendons_nm_per_rad: tendons_nm_per_rad(&pose),
     })
 }
 
@@ -240,17 +274,25 @@ fn stiffness_nm_per_rad(pose: &Evaluation<f64>, rig: &RigFile) -> f64 {
     about_y + weight
 }
 
-/// K/ω² on the mean.
-fn inertia(all: &[Swing]) -> Estimate {
+/// The part of it that goes with the stretch of the tendons: neither that of the tensions themselves nor that of the joint.
+fn tendons_nm_per_rad(pose: &Evaluation<f64>) -> f64 {
+    let about_y = |[_, [_, about_y, _], _]: [[f64; 3]; 3]| about_y;
+    about_y(pose.stiffness_nm_per_rad)
+        - about_y(pose.stiffness_k2_exact_nm_per_rad)
+        - about_y(pose.stiffness_joint_nm_per_rad)
+}
+
+/// K/ω² on the mean, with tendons that stretch by so much of what the rig file says.
+fn inertia(all: &[Swing], stretched: Estimate) -> Estimate {
     let each: Vec<_> = all
         .iter()
         .map(|swing| {
             let angular = swing.frequency_hz.scaled(TAU);
-            angular
-                .times(angular)
-                .inverse()
-                .scaled(swing.stiffness_nm_per_rad)
+            angular.squared().inverse().scaled(
+                swing.stiffness_nm_per_rad
+                    - swing.tendons_nm_per_rad * (1.0 - stretched.value.recip()),
+            )
         })
         .collect();
-    Estimate::of_repeated(&each)
+    Estimate::of_repeated(&each).widened(stretched.part())
 }

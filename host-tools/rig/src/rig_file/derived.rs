@@ -10,7 +10,7 @@ pub(crate) use servo_loop::ServoLoop;
 
 use crate::actuator::Actuator;
 use crate::gains::{GainChange, index_of, widened};
-use crate::number::{decimal, plain};
+use crate::number::{decimal, plain, significant};
 use crate::rig_file::RigFile;
 use leg_firmware::settings::{Gains, SECTIONS};
 use rules::{RULES, Rule};
@@ -179,7 +179,7 @@ impl Rule {
 
 /// The nearest number of two digits.
 pub(crate) fn two_digits(value: f64) -> f64 {
-    format!("{value:.1e}").parse().unwrap_or(value)
+    significant(value, 2)
 }
 
 /// A number of two digits that is not greater: one that would do where no more than `value` does.
