@@ -122,9 +122,9 @@ impl<T: Scalar> SwingDamping<T> {
         self.swinging_steps = 0;
     }
 
-    /// Counts the swing from now on: the leg is on its way.
+    /// A leg on its way swings by its commands: what lasts is counted anew.
     #[inline(always)]
-    pub const fn excuse(&mut self) {
+    pub const fn forget_swing(&mut self) {
         self.swinging_steps = 0;
     }
 
@@ -302,7 +302,7 @@ mod tests {
                 INERTIA / (TIME_CONSTANT_S * TIME_CONSTANT_S),
             );
             if moving {
-                damping.excuse();
+                damping.forget_swing();
             }
             damping.lasts()
         })

@@ -99,7 +99,7 @@ impl<T: Scalar> Active<T> {
                         shared.feed_friction();
                     }
                     if self.trajectory.moving() {
-                        shared.damping.excuse();
+                        shared.damping.forget_swing();
                     }
                     let off_station = self.station.kept().is_some_and(Station::too_far);
                     self.faults = FaultSet::NONE;
