@@ -1,16 +1,20 @@
 //! The chip: processor, memories and peripherals in step.
 
+mod unserved;
+
 use crate::board::Board;
 use crate::bus::{Answers, Bus, Shared, lock};
 use crate::devices::SystemBreak;
 use crate::facts::Facts;
+use crate::findings::Findings;
 use crate::image::Image;
 use crate::memory_map::{DEBUG, FLASH, PERIPHERALS, SECOND_BANK};
 use crate::peripherals::Peripherals;
-use crate::processor::{FIRST_INTERRUPT, MapError, Processor};
+use crate::processor::{FIRST_INTERRUPT, MapError, Place, Processor};
 use crate::rcc::ResetCause;
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, MutexGuard};
+use unserved::Unserved;
 
 /// Why a chip stopped running.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,10 +50,18 @@ pub struct Chip {
     locked_up: bool,
     /// The cycle until which the processor waits for the flash.
     waits_until: u64,
+    unserved: Unserved,
+    /// The pages of the CCM that SYSCFG_SWPR protects, bit by number, and what the CCM held when it began to.
+    protected: (u32, Vec<u8>),
+    /// The cycle of the last reset, and where the program and its stack were then.
+    before_reset: Option<(u64, Place, u32)>,
 }
 
 /// The longest from one look at the processor to the next, for a lock-up or a request for a reset, cycles: 0.1 ms.
 const LOOK_CYCLES: u64 = 17_000;
+
+/// A page of the CCM, as SYSCFG_SWPR protects them, bytes: RM0440, SYSCFG_SWPR, of which a chip with 32 KiB has all 32.
+const CCM_PAGE: usize = 1_024;
 
 /// The supply below which the datasheet promises nothing, mV.
 const SUPPLY_MIN_MV: u32 = 1_710;
@@ -96,6 +108,9 @@ impl Chip {
             counts_asleep: false,
             locked_up: false,
             waits_until: 0,
+            unserved: Unserved::new(image),
+            protected: (0, Vec::new()),
+            before_reset: None,
             watched: Vec::new(),
             watching: false,
             converted: Facts::of_chip().interrupt("ADC1_2").unwrap_or_default(),
@@ -108,6 +123,31 @@ impl Chip {
         let mut peripherals = lock(&self.peripherals);
         peripherals.set_cycle(self.cycle);
         peripherals
+    }
+
+    /// Where the program is, and its stack pointer; just after a reset, where they were before it.
+    #[must_use]
+    pub fn place(&self) -> (Place, u32) {
+        let reset = self.before_reset.filter(|(at, ..)| *at == self.cycle);
+        let now = || (self.processor.place(), self.processor.stack_pointer());
+        reset.map_or_else(now, |(_, place, stack)| (place, stack))
+    }
+
+    /// Reports a page of the CCM that was written although SYSCFG_SWPR protects it.
+    pub fn check_protected(&self) {
+        self.find_written_page(&mut self.peripherals().findings);
+    }
+
+    fn find_written_page(&self, findings: &mut Findings) {
+        let (pages, before) = &self.protected;
+        let now = self.processor.ccm();
+        let both = now.chunks(CCM_PAGE).zip(before.chunks(CCM_PAGE));
+        let mut changed = both.enumerate().filter(|(_, (now, before))| now != before);
+        if let Some((page, _)) = changed.find(|(page, _)| pages >> page & 1 == 1) {
+            findings.add(format!(
+                "page {page} of the CCM is written, which SYSCFG_SWPR protects: the chip keeps what was there"
+            ));
+        }
     }
 
     /// The processor.
@@ -197,6 +237,7 @@ impl Chip {
             let mut peripherals = lock(&self.peripherals);
             peripherals.devices.halt_watchdogs(self.cycle - before);
             self.next_event = self.cycle;
+            self.unserved.restart(self.cycle);
         }
         None
     }
@@ -263,10 +304,21 @@ impl Chip {
                 .findings
                 .add("IWDG is fed by an interrupt's handler, which may go on while all else hangs");
         }
+        let levels = peripherals.devices.interrupts();
+        if !self.locked_up {
+            let now = (self.cycle, levels);
+            let findings = &mut peripherals.findings;
+            self.unserved.look(&self.processor, now, findings);
+        }
+        let pages = peripherals.devices.protected_ccm_pages();
+        if pages != self.protected.0 {
+            self.find_written_page(&mut peripherals.findings);
+            self.protected = (pages, self.processor.ccm());
+        }
         peripherals.findings.locate(place.pc);
         self.waits_until = peripherals.devices.flash.take_stall().unwrap_or_default();
         self.processor.set_nmi(peripherals.devices.nmi());
-        let risen = self.processor.set_lines(peripherals.devices.interrupts());
+        let risen = self.processor.set_lines(levels);
         let converted = risen >> self.converted & 1 == 1;
         self.counts_asleep = peripherals.devices.debug_in_sleep();
         let latest = self.cycle + LOOK_CYCLES;
@@ -291,6 +343,10 @@ impl Chip {
     /// Resets the chip, whose supply stays, and its memories with it.
     pub fn reset(&mut self, cause: ResetCause) -> Stop {
         self.peripherals().reset(cause);
+        let stack = self.processor.stack_pointer();
+        self.before_reset = Some((self.cycle, self.processor.place(), stack));
+        self.unserved.restart(self.cycle);
+        self.protected = (0, Vec::new());
         self.processor.reset();
         self.locked_up = false;
         self.waits_until = 0;

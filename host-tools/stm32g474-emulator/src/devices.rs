@@ -76,6 +76,8 @@ pub struct Devices {
     /// The processor has locked up.
     pub locked_up: bool,
     debug_in_sleep: FieldPlace,
+    /// The offset of SYSCFG_SWPR.
+    ccm_protection: u32,
     watchdog_halts: [FieldPlace; 2],
     updated: bool,
     /// The pins that are routed to the breaks, and their levels.
@@ -118,6 +120,7 @@ impl Devices {
             debug_in_sleep: dbgmcu.registers().field("CR", "DBG_SLEEP"),
             watchdog_halts: ["IWDG", "WWDG"].map(|dog| dbgmcu.registers().field("APB1LFZR", dog)),
             dbgmcu,
+            ccm_protection: syscfg.registers().offset("SWPR"),
             syscfg,
             locked_up: false,
             updated: false,
@@ -167,6 +170,12 @@ impl Devices {
         }
         self.by_name(block)?.write(offset, value, context);
         Some(())
+    }
+
+    /// The pages of the CCM that SYSCFG protects, bit by number.
+    #[must_use]
+    pub fn protected_ccm_pages(&self) -> u32 {
+        self.syscfg.registers().get(self.ccm_protection)
     }
 
     /// What an input was when it was converted last; none before.

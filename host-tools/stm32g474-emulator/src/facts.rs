@@ -169,6 +169,14 @@ impl Facts {
         u16::try_from(known.number).ok()
     }
 
+    /// The name of an interrupt, by its number.
+    #[must_use]
+    pub fn interrupt_name(&self, number: u16) -> Option<&'static str> {
+        let mut known = METADATA.interrupts.iter();
+        let known = known.find(|known| known.number == u32::from(number))?;
+        Some(known.name)
+    }
+
     /// The peripheral and signal that an alternate function of a pin is: `("TIM1", "CH1")`; several where the makers name
     /// several, none where the pin has no such function.
     #[must_use]
@@ -310,6 +318,7 @@ mod tests {
             ("LPUART1", 91),
         ] {
             assert_eq!(facts.interrupt(name), Some(number), "{name}");
+            assert_eq!(facts.interrupt_name(number), Some(name));
         }
         assert_eq!(facts.interrupt("NONE"), None);
         let timer = facts.block("TIM1").unwrap();

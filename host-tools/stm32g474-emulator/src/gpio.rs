@@ -113,12 +113,18 @@ impl Gpio {
         (self.registers.get(offset) >> (4 * (pin % 8)) & 0xf) as u8
     }
 
+    /// Whether a pin is an open drain, if it is an output.
+    #[must_use]
+    pub fn is_open_drain(&self, pin: u8) -> bool {
+        self.registers.get(self.offsets.open_drain) >> pin & 1 == 1
+    }
+
     /// The level of a pin; none where nothing gives it one.
     #[must_use]
     pub fn level(&self, pin: u8) -> Option<bool> {
         let outside = self.outside.get(usize::from(pin)).copied();
         let bit = |offset| self.registers.get(offset) >> pin & 1 == 1;
-        let (output, open_drain) = (bit(self.offsets.output), bit(self.offsets.open_drain));
+        let (output, open_drain) = (bit(self.offsets.output), self.is_open_drain(pin));
         match (self.mode(pin), outside.unwrap_or_default()) {
             // An open drain lets go of a high pin.
             (PinMode::Output, _) if !(open_drain && output) => Some(output),

@@ -233,6 +233,20 @@ impl Processor {
         self.core.msp()
     }
 
+    /// The instruction at which the exception in progress came, by what is on the stack from its pointer on: the registers that
+    /// the processor puts there, of which PC and xPSR are known by their form. None where there is no such pair.
+    #[must_use]
+    pub fn interrupted_at(&self, stack_pointer: u32) -> Option<u32> {
+        let is_code = |pc: u32| pc & 1 == 0 && (FLASH.contains(&pc) || CCM.contains(&pc));
+        let is_xpsr = |word: u32| word & xpsr::T != 0 && word & XPSR_RESERVED == 0;
+        let mut places = (stack_pointer..).step_by(4).take(FRAME_SPAN);
+        places.find_map(|at| {
+            let xpsr = self.word(at.checked_add(4)?);
+            self.word(at)
+                .filter(|pc| is_code(*pc) && xpsr.is_some_and(is_xpsr))
+        })
+    }
+
     /// Whether an interrupt that is enabled would not be preempted by another one.
     #[must_use]
     pub fn withstands(&self, interrupt: u16, other: u16) -> bool {
@@ -252,6 +266,23 @@ impl Processor {
         self.core.with_sys(|system| {
             !system.is_active(exception) && reached <= system.priority_of(exception)
         })
+    }
+
+    /// Whether the program has enabled an interrupt.
+    #[must_use]
+    pub fn lets_through(&self, interrupt: u16) -> bool {
+        let exception = Exception(FIRST_INTERRUPT + interrupt);
+        self.core.with_sys(|system| system.is_enabled(exception))
+    }
+
+    /// What the CCM holds.
+    #[must_use]
+    pub fn ccm(&self) -> Vec<u8> {
+        let [_, ccm] = &self.memories;
+        let mut bytes = vec![0; (CCM.end - CCM.start) as usize];
+        // It is as long as the memory.
+        let _ = ccm.read_at(0, &mut bytes);
+        bytes
     }
 
     /// Whether it has locked up: a fault within a fault.
@@ -335,6 +366,13 @@ impl Processor {
         }
     }
 }
+
+/// Words from the stack pointer in which the registers of what was interrupted are looked for: the handlers of faults have
+/// short texts there.
+const FRAME_SPAN: usize = 256;
+
+/// Bits of xPSR that are always zero.
+const XPSR_RESERVED: u32 = 0xf << 20;
 
 /// Instructions in which the flags of a comparison are fetched: the compiler moves few others between.
 const COMPARISON_SPAN: u32 = 8;

@@ -41,6 +41,7 @@ places! {
         events: EGR,
         switch: BDTR.MOE,
         switch_by_update: BDTR.AOE,
+        lock: BDTR.LOCK,
         break_enabled: BDTR.BKE0,
         second_enabled: BDTR.BKE1,
         system_flag: SR.SBIF,
@@ -49,6 +50,9 @@ places! {
     }
     |file| {
         driven: [FieldPlace; 2] = ["OSSI", "OSSR"].map(|name| file.field("BDTR", name)),
+        preloads: [FieldPlace; 4] = [
+            ("CR1", "ARPE"), ("CCMR1", "OCPE0"), ("CCMR1", "OCPE1"), ("CCMR2", "OCPE0"),
+        ].map(|(register, name)| file.field(register, name)),
     }
 }
 
@@ -103,6 +107,19 @@ impl Tim1 {
         let compare = [0, 1, 2].map(|channel| self.timer.compare_value(channel));
         self.outputs
             .outputs(&self.timer.file, counter.runs(), counter.top(), compare)
+    }
+
+    /// Whether top and compare values wait for the next update: else a pulse that has begun may change its length.
+    #[must_use]
+    pub fn preloads(&self) -> bool {
+        let file = &self.timer.file;
+        self.places.preloads.iter().all(|place| file.is_set(*place))
+    }
+
+    /// The level of `LOCK`.
+    #[must_use]
+    pub fn lock_level(&self) -> u32 {
+        self.timer.file.value(self.places.lock)
     }
 
     /// The flags of both breaks.

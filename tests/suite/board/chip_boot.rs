@@ -2,7 +2,7 @@
 
 use crate::common::chip::{
     BAUD, MS, Outcome, at_rest, carry_out, driving, findings, identity, identity_after, image,
-    other_settings, reset_within, send, settings, started, started_with,
+    other_settings, reset_within, send, settings, started, started_with, ticked,
 };
 use leg_boards::chip::ChipSession;
 use leg_boards::image::{FirmwareImage, workspace_root};
@@ -11,6 +11,7 @@ use leg_firmware::host_link::{HostRequest, ResetCause as Told};
 use leg_firmware::settings::Settings;
 use leg_firmware_bench::protocol::Request;
 use leg_sim::link::{Link, LinkError};
+use std::ops::Range;
 use std::{env, fs};
 use stm32g474_emulator::board::Board;
 use stm32g474_emulator::chip::Stop;
@@ -135,6 +136,13 @@ fn a_crystal_that_stops_ends_the_pulses() -> Outcome {
     Ok(())
 }
 
+/// Fields of the header of an ELF file of 32 bits, and its length: where the program headers are, where the section headers
+/// are, and how many these are.
+const PROGRAM_HEADERS: Range<usize> = 0x1c..0x20;
+const SECTION_HEADERS: Range<usize> = 0x20..0x24;
+const SECTION_COUNTS: Range<usize> = 0x30..0x34;
+const ELF_HEADER: usize = 0x34;
+
 #[test]
 fn what_is_no_image_of_the_chip_is_refused() -> Outcome {
     let qemu = fs::read(image(FirmwareImage::Qemu)?)?;
@@ -147,6 +155,32 @@ fn what_is_no_image_of_the_chip_is_refused() -> Outcome {
     assert!(
         matches!(host, Some(ImageError::OtherProcessor(_))),
         "{host:?}"
+    );
+    let mut elf = fs::read(image(FirmwareImage::Stm32g474)?)?;
+    let start = usize::try_from(u32::from_le_bytes(elf[PROGRAM_HEADERS].try_into()?))?;
+    assert_eq!(start, ELF_HEADER, "the first program header");
+    // It begins with the vector table.
+    let vectors = usize::try_from(u32::from_le_bytes(elf[start + 4..start + 8].try_into()?))?;
+    let mut stripped = elf.clone();
+    stripped[SECTION_HEADERS].fill(0);
+    stripped[SECTION_COUNTS].fill(0);
+    let stripped = Image::parse(&stripped).err();
+    assert!(
+        matches!(stripped, Some(ImageError::NoSymbols)),
+        "{stripped:?}"
+    );
+    // A stack at the end of the RAM of a larger chip.
+    elf[vectors..vectors + 4].copy_from_slice(&0x2004_0000_u32.to_le_bytes());
+    let larger = Image::parse(&elf).err();
+    assert!(
+        matches!(
+            larger,
+            Some(ImageError::NoVectorTable {
+                stack: 0x2004_0000,
+                ..
+            })
+        ),
+        "{larger:?}"
     );
     let text = Image::parse(b"no ELF").err();
     assert!(matches!(text, Some(ImageError::NotElf(_))), "{text:?}");
@@ -171,5 +205,50 @@ fn an_unexpected_stop_within_a_tick_is_told() -> Outcome {
     };
     let expected = "the emulated chip comes to the next update of TIM1 too soon";
     assert!(error.to_string().contains(expected), "{error}");
+    Ok(())
+}
+
+/// `udf` and `b .`.
+const UNDEFINED: u16 = 0xde00;
+const ENDLESS: u16 = 0xe7fe;
+
+/// Where the instruction at an address is in an ELF file.
+fn place_in_file(elf: &[u8], address: u32) -> Option<Range<usize>> {
+    let word = |at: usize| Some(u32::from_le_bytes(elf.get(at..at + 4)?.try_into().ok()?));
+    // Program headers of 32 bytes: type, place in the file, two addresses, size.
+    let headers = (0..).map(|header| ELF_HEADER + 32 * header);
+    for header in headers.take(6) {
+        let [place, start, size] = [word(header + 4)?, word(header + 8)?, word(header + 16)?];
+        if (start..start + size).contains(&address) {
+            let at = (place + address - start) as usize;
+            return Some(at..at + 2);
+        }
+    }
+    None
+}
+
+/// A program that faults, one that faults in its fault's handler, and one that never comes to a tick: each ends with where it
+/// was.
+#[test]
+fn a_program_without_a_tick_is_told_with_its_place() -> Outcome {
+    let elf = fs::read(image(FirmwareImage::Stm32g474)?)?;
+    let parsed = Image::parse(&elf)?;
+    for (functions, instruction, how) in [
+        (&["main"][..], UNDEFINED, "was reset (Software)"),
+        (&["main", "HardFault"], UNDEFINED, "is locked up"),
+        (&["main"], ENDLESS, "starts no tick"),
+    ] {
+        let mut changed = elf.clone();
+        for function in functions {
+            let address = parsed.symbol(function).ok_or("no such function")? & !1;
+            let at = place_in_file(&elf, address).ok_or("no such place")?;
+            changed[at].copy_from_slice(&instruction.to_le_bytes());
+        }
+        let file = tempfile::NamedTempFile::new()?;
+        fs::write(file.path(), changed)?;
+        let error = ticked(ChipSession::open(file.path())?, 1).err();
+        let told = error.ok_or("the tick passes")?.to_string();
+        assert!(told.contains(how) && told.contains(" in main"), "{told}");
+    }
     Ok(())
 }

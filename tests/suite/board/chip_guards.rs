@@ -56,7 +56,12 @@ fn nothing_can_write_below_the_stack_or_into_the_code_of_the_ccm() -> Outcome {
 #[test]
 fn what_the_chip_finds_of_itself_ends_the_pulses() -> Outcome {
     let path = image(FirmwareImage::Stm32g474)?;
-    for cause in [SystemBreak::Lockup, SystemBreak::Supply, SystemBreak::Ecc] {
+    for cause in [
+        SystemBreak::Lockup,
+        SystemBreak::Supply,
+        SystemBreak::Ecc,
+        SystemBreak::Parity,
+    ] {
         let mut session = driving(&path, Board::default())?;
         let chip = session.chip().ok_or("no chip")?;
         chip.peripherals().break_by(cause);

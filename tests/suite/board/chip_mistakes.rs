@@ -6,6 +6,7 @@
 
 mod can_bus;
 mod clocks;
+mod guards;
 mod hangs;
 mod links;
 mod power;
@@ -63,6 +64,8 @@ use mistakes;
 fn none() {
     let board_layer = "firmware/stm32g474/src/main.rs";
     let all = [
+        runs::losing_its_crystal,
+        runs::losing_its_supply,
         runs::moving,
         runs::saving,
         runs::answering_on_can,
@@ -76,5 +79,5 @@ fn none() {
         report: "",
     };
     let image = tree::image_with(&none, "none");
-    assert_eq!(all.map(|run| run(&image)), [runs::NOTHING; 4]);
+    assert_eq!(all.map(|run| run(&image)), [runs::NOTHING; 6]);
 }

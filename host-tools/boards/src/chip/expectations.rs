@@ -23,6 +23,9 @@ const OTHERS: [&str; 5] = [
     "FLASH",
 ];
 
+/// What shapes the pulses cannot be written again: the level that `firmware/BOARD.md` promises.
+const LOCK_LEVEL: u64 = 3;
+
 /// The longest time of the window watchdog, µs.
 const TICK_WATCHDOG_US_MAX: u64 = 2_000;
 
@@ -34,6 +37,8 @@ pub fn unmet(chip: &Chip) -> Option<String> {
     let peripherals = &*chip.peripherals();
     numbers(peripherals)
         .or_else(|| unrouted(peripherals))
+        .or_else(|| wiring::open_drain(peripherals))
+        .or_else(|| not_preloaded(peripherals))
         .or_else(|| wiring::wrong_input(peripherals))
         .or_else(|| watchdog(peripherals))
         .or_else(|| tick_watchdog(peripherals))
@@ -55,6 +60,11 @@ fn numbers(chip: &Peripherals) -> Option<String> {
             "TIM1's update period, cycles,",
             Some(devices.tim1.update_period_cycles()),
             Some(TICK_CYCLES.into()),
+        ),
+        (
+            "TIM1's level of LOCK",
+            Some(devices.tim1.lock_level().into()),
+            Some(LOCK_LEVEL),
         ),
         ("TIM1's top", Some(outputs.top.into()), Some(PWM_TOP.into())),
         (
@@ -80,6 +90,11 @@ fn numbers(chip: &Peripherals) -> Option<String> {
         let [found, expected] = [found, expected].map(|number| number.unwrap_or_default());
         format!("{name} is {found}, and has to be {expected}")
     })
+}
+
+fn not_preloaded(chip: &Peripherals) -> Option<String> {
+    let wrong = "TIM1's compare values are not preloaded: a pulse may get the length of two ticks";
+    (!chip.devices.tim1.preloads()).then(|| wrong.into())
 }
 
 fn unrouted(chip: &Peripherals) -> Option<String> {

@@ -28,9 +28,9 @@ impl StackGuard {
     }
 
     /// Whether they have changed, or the stack is below them: a large frame may leave them alone.
-    pub fn is_reached(&self, processor: &Processor) -> bool {
+    pub fn is_reached(&self, processor: &Processor, stack_pointer: u32) -> bool {
         let end = self.start + 4 * WORDS;
-        processor.stack_pointer() < end || words(self.start, processor) != self.words
+        stack_pointer < end || words(self.start, processor) != self.words
     }
 }
 

@@ -91,6 +91,21 @@ pub fn routes() -> Vec<Route> {
     pulses.chain(tracks).chain(others).collect()
 }
 
+/// A pin that has to be driven high as well as low, and is an open drain, as a sentence.
+pub fn open_drain(chip: &Peripherals) -> Option<String> {
+    let lines = LINES.iter().map(|[transmit, _]| *transmit);
+    let lines = lines.filter(|line| {
+        let Route { pin, .. } = *line;
+        chip.devices.is_routed(pin, line.peripheral, line.signal)
+    });
+    let mut driven = PULSES.into_iter().chain(lines.map(|line| line.pin));
+    let pin = driven.find(|pin| chip.devices.is_open_drain(*pin))?;
+    Some(format!(
+        "{} is an open drain: nothing makes it high",
+        name(pin)
+    ))
+}
+
 /// An input that a converter takes in the place of another, as a sentence.
 pub fn wrong_input(chip: &Peripherals) -> Option<String> {
     for (converter, pins, _) in CONVERTED {
@@ -200,7 +215,7 @@ pub fn current_codes(chip: &Peripherals) -> [u16; 3] {
 /// What the motors get from the pins: for which part of the pulses' period they are high.
 ///
 /// # Errors
-/// A pin that floats while the timer's outputs are on, as a sentence.
+/// A pin that floats, or drivers that are not enabled, while the timer's outputs are on, as a sentence.
 pub fn motors(chip: &Peripherals) -> Result<Drive<f32>, String> {
     let outputs = chip.devices.tim1.outputs();
     let driven = |pin, value: Option<f32>| {
@@ -230,9 +245,13 @@ pub fn motors(chip: &Peripherals) -> Result<Drive<f32>, String> {
         let forward = driven(direction, level(direction))? > 0.0;
         *share = if forward { width } else { -width };
     }
+    let enabled = chip.devices.level(ENABLE) == Some(true);
+    if outputs.on && !enabled {
+        return Err("TIM1's outputs are on while the drivers are not enabled".into());
+    }
     Ok(Drive {
         duty,
-        enabled: outputs.on && chip.devices.level(ENABLE) == Some(true),
+        enabled: outputs.on,
     })
 }
 

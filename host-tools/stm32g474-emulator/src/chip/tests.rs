@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::device::FieldPlace;
-use crate::memory_map::RAM;
+use crate::memory_map::{CCM, RAM};
 
 /// Start, and the handler of the interrupt that cannot be masked.
 const START: u32 = FLASH.start + 0x80;
@@ -164,4 +164,67 @@ fn a_lock_up_is_seen_within_a_tenth_of_a_millisecond() {
     let mut chip = chip(UNDEFINED);
     assert_eq!(run(&mut chip, 1_000_000), Stop::LockedUp);
     assert!(chip.cycle() <= LOOK_CYCLES, "{}", chip.cycle());
+}
+
+fn texts(chip: &Chip) -> Vec<String> {
+    let peripherals = chip.peripherals();
+    let list = peripherals.findings.list().iter();
+    list.map(|finding| finding.text.clone()).collect()
+}
+
+#[test]
+fn an_interrupt_that_is_asked_for_and_not_enabled_is_found() {
+    for asked in [0, 1] {
+        let mut chip = chip(STAY);
+        set(&chip, "RCC", "APB2ENR", "TIM1EN", 1);
+        set(&chip, "TIM1", "DIER", "UIE", asked);
+        set(&chip, "TIM1", "EGR", "UG", 1);
+        run(&mut chip, unserved::STEADY_CYCLES / 2);
+        assert_eq!(texts(&chip), [""; 0]);
+        run(&mut chip, 2 * unserved::STEADY_CYCLES);
+        let text = "the interrupt TIM1_UP_TIM16 stays pending: the program asks for it, and has not enabled it";
+        assert_eq!(texts(&chip), vec![text; asked as usize]);
+    }
+}
+
+#[test]
+fn a_write_to_a_protected_page_of_the_ccm_is_found() {
+    let mut chip = chip(STAY);
+    set(&chip, "RCC", "APB2ENR", "SYSCFGEN", 1);
+    let syscfg = Facts::of_chip().block("SYSCFG").unwrap();
+    let protection = syscfg.base + syscfg.register("SWPR").unwrap().offset;
+    chip.peripherals().write(protection, 4, 0b10);
+    run(&mut chip, 100);
+    for (page, found) in [(0, 0), (2, 0), (1, 1)] {
+        let address = CCM.start + page * CCM_PAGE as u32;
+        let word = chip.processor().word(address).unwrap();
+        assert!(chip.set_word(address, !word));
+        chip.check_protected();
+        let text = "page 1 of the CCM is written, which SYSCFG_SWPR protects: the chip keeps what was there";
+        assert_eq!(texts(&chip), vec![text; found], "page {page}");
+    }
+}
+
+#[test]
+fn a_reset_ends_the_protection_of_the_ccm() {
+    let mut chip = chip(STAY);
+    set(&chip, "RCC", "APB2ENR", "SYSCFGEN", 1);
+    let syscfg = Facts::of_chip().block("SYSCFG").unwrap();
+    let protection = syscfg.base + syscfg.register("SWPR").unwrap().offset;
+    chip.peripherals().write(protection, 4, u32::MAX);
+    run(&mut chip, 100);
+    chip.cycle_power(7);
+    run(&mut chip, 100);
+    chip.check_protected();
+    assert_eq!(texts(&chip), [""; 0]);
+}
+
+#[test]
+fn a_reset_tells_where_the_program_was() {
+    let mut chip = chip(STAY);
+    run(&mut chip, 100);
+    chip.reset(ResetCause::Pin);
+    assert_eq!(chip.place().0.pc, START);
+    run(&mut chip, 100);
+    assert_eq!(chip.place().0, chip.processor().place());
 }

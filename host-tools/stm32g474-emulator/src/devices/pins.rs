@@ -74,6 +74,13 @@ impl Devices {
             if Facts::of_chip().alternate_function(pin, function).contains(&(peripheral, signal)))
     }
 
+    /// Whether a pin that the chip drives is let go of where it should be high.
+    #[must_use]
+    pub fn is_open_drain(&self, pin: Pin) -> bool {
+        self.port(pin)
+            .is_some_and(|port| port.is_open_drain(pin.number))
+    }
+
     /// The level of a pin; none where nothing gives it one.
     #[must_use]
     pub fn level(&self, pin: Pin) -> Option<bool> {

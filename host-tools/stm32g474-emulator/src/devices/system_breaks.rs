@@ -11,6 +11,8 @@ pub enum SystemBreak {
     Supply,
     /// The flash has read a double word with two wrong bits.
     Ecc,
+    /// SRAM1 has a word of wrong parity, which it looks for where the option byte SRAM_PE says so.
+    Parity,
 }
 
 impl SystemBreak {
@@ -20,6 +22,7 @@ impl SystemBreak {
             Self::Lockup => "CLL",
             Self::Supply => "PVDL",
             Self::Ecc => "ECCL",
+            Self::Parity => "SPL",
         }
     }
 }

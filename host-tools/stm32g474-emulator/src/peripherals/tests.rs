@@ -258,8 +258,13 @@ fn a_finding_has_the_cycle_in_which_it_came() {
 
 #[test]
 fn each_cause_breaks_tim1_by_its_field_alone() {
-    let causes = [SystemBreak::Lockup, SystemBreak::Supply, SystemBreak::Ecc];
-    for (field, cause) in ["CLL", "PVDL", "ECCL"].into_iter().zip(causes) {
+    let causes = [
+        SystemBreak::Lockup,
+        SystemBreak::Supply,
+        SystemBreak::Ecc,
+        SystemBreak::Parity,
+    ];
+    for (field, cause) in ["CLL", "PVDL", "ECCL", "SPL"].into_iter().zip(causes) {
         let mut bus = Bus::new();
         bus.switch(block("SYSCFG").enable);
         bus.set("SYSCFG", "CFGR2", field, 1);

@@ -2,6 +2,7 @@
 
 use super::can_bus;
 use crate::board::chip_latency;
+use crate::common::chip::driving;
 use leg_boards::chip::{ChipSession, LATENCY_CYCLES_MAX};
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{HostIdentity, Operator};
@@ -13,6 +14,7 @@ use leg_sim::simulation::Simulation;
 use std::error::Error;
 use std::path::Path;
 use stm32g474_emulator::board::Board;
+use stm32g474_emulator::chip::Chip;
 
 /// The report where nothing is wrong.
 pub const NOTHING: &str = "nothing is wrong";
@@ -61,6 +63,31 @@ pub fn saving_in_one_bank(image: &Path) -> String {
 /// A host on a CAN bus asks the board what it is.
 pub fn answering_on_can(image: &Path) -> String {
     reported(can_bus::asked(image))
+}
+
+/// The crystal stops while the motors are driven.
+pub fn losing_its_crystal(image: &Path) -> String {
+    reported(pulses_end(image, |chip| chip.stop_crystal()))
+}
+
+/// The chip's supply falls below what its converters are right at, and not so far that it is reset.
+pub fn losing_its_supply(image: &Path) -> String {
+    reported(pulses_end(image, |chip| {
+        chip.dip_supply(DIP_MV, 1);
+    }))
+}
+
+/// Between the levels of voltage detector and brown-out reset, mV.
+const DIP_MV: u32 = 2_700;
+
+fn pulses_end(image: &Path, failure: impl Fn(&mut Chip)) -> Result<(), Box<dyn Error>> {
+    let mut session = driving(image, Board::default())?;
+    let chip = session.chip().ok_or("no chip")?;
+    failure(chip);
+    if chip.peripherals().devices.tim1.outputs().on {
+        return Err("TIM1's pulses go on".into());
+    }
+    Ok(())
 }
 
 /// The host talks and lets the board keep its settings: how late the control interrupt may be.

@@ -71,9 +71,11 @@ impl Running {
     /// What is wrong in RAM or CCM, as a sentence.
     fn wrong_memory(&self, image: &Image) -> Option<String> {
         let processor = self.chip.processor();
-        if self.stack.is_reached(processor) {
+        let (_, stack_pointer) = self.chip.place();
+        if self.stack.is_reached(processor, stack_pointer) {
             return Some("the stack has come down to the variables".into());
         }
+        self.chip.check_protected();
         // The code of the CCM is compared once: the program cannot change it by chance and go on.
         let copied = self.ticks > 1 || !hot::differs(image, processor);
         (!copied).then(|| "the code of the CCM is not there: it was not copied".into())
@@ -128,10 +130,15 @@ impl Running {
     }
 
     pub(super) fn stuck(&self, how: &str, image: &Image) -> LinkError {
-        let place = self.chip.processor().place();
+        let (place, stack_pointer) = self.chip.place();
         let function = image.function_at(place.pc).unwrap_or("no function");
         let memory = self.wrong_memory(image);
         let mut memory = memory.map(|wrong| format!("; {wrong}")).unwrap_or_default();
+        let interrupted = self.chip.processor().interrupted_at(stack_pointer);
+        if let Some(pc) = interrupted.filter(|_| place.exception != 0) {
+            let function = image.function_at(pc).unwrap_or("no function");
+            memory = format!(", which came at {pc:#010x} in {function}{memory}");
+        }
         let (refused, address) = self.chip.processor().refused();
         if refused > 0 {
             memory += &format!("; nothing answers at {address:#010x}, which it accessed");
