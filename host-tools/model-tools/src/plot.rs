@@ -16,6 +16,9 @@ use std::path::{Path, PathBuf};
 const LEGEND_WIDTH_PX: u32 = 260;
 const LEGEND_ROW_PX: i32 = 36;
 const LINE_PX: u32 = 3;
+/// A line turns back where it goes on by more than 154° from how it came: beyond that, the joint of two strokes of [`LINE_PX`] reaches
+/// more than twice their width.
+const SHARP_COS: f64 = 0.9;
 /// The two arms of a mark: rectangles along the pixels, so that a bitmap keeps them sharp.
 const MARK_ARMS_PX: [[(i32, i32); 2]; 2] = [[(-10, -1), (10, 1)], [(-1, -10), (1, 10)]];
 
@@ -116,12 +119,41 @@ fn draw_line<B: DrawingBackend>(
     context: &mut ChartContext<B, Plane>,
 ) -> Drawn<B> {
     let stroke = colour.stroke_width(LINE_PX);
-    context.draw_series(LineSeries::new(line.points.iter().copied(), stroke))?;
+    let pixels = line.points.iter().map(|point| context.backend_coord(point));
+    let turns = sharp_turns(&pixels.collect::<Vec<_>>());
+    let mut begin = 0;
+    for end in turns.into_iter().chain([line.points.len()]) {
+        // The point of a turn belongs to both pieces.
+        let piece = line.points.iter().take(end + 1).skip(begin);
+        context.draw_series(LineSeries::new(piece.copied(), stroke))?;
+        begin = end;
+    }
     for arm in MARK_ARMS_PX {
         let arm_at = |&mark| EmptyElement::at(mark) + Rectangle::new(arm, colour.filled());
         context.draw_series(line.marks.iter().map(arm_at))?;
     }
     Ok(())
+}
+
+/// The points, by number, at which a line all but turns back. A bitmap's joint would reach far beyond such a point, and show a value
+/// that is not there: the line is drawn in pieces.
+fn sharp_turns(pixels: &[(i32, i32)]) -> Vec<usize> {
+    let turns_back = |&[a, b, c]: &[(i32, i32); 3]| {
+        let [came, goes] =
+            [(b, a), (c, b)].map(|(to, from)| [to.0 - from.0, to.1 - from.1].map(f64::from));
+        let along = came[0] * goes[0] + came[1] * goes[1];
+        along < -SHARP_COS * came[0].hypot(came[1]) * goes[0].hypot(goes[1])
+    };
+    // Points on the same pixel tell no direction.
+    let mut distinct: Vec<_> = pixels.iter().copied().enumerate().collect();
+    distinct.dedup_by_key(|(_, pixel)| *pixel);
+    let corners = distinct.windows(3).filter(|corner| match corner {
+        [a, b, c] => turns_back(&[a.1, b.1, c.1]),
+        _ => false,
+    });
+    corners
+        .filter_map(|corner| corner.get(1).map(|(at, _)| *at))
+        .collect()
 }
 
 fn draw_legend<B: DrawingBackend>(chart: &Chart, area: &Area<B>) -> Drawn<B> {

@@ -1,5 +1,6 @@
 //! The processor: `rsemu`'s Cortex-M4F with the memories of this chip.
 
+mod comparison;
 #[cfg(test)]
 mod tests;
 
@@ -162,7 +163,9 @@ impl Processor {
     /// what the real core's own latency could do as well. The tests `the_core_alone_still_forgets_…` fail when this is no
     /// longer needed.
     fn settle(&mut self) {
-        if self.core.xpsr() & xpsr::IT_MASK != 0 || self.awaits_comparison() {
+        if self.core.xpsr() & xpsr::IT_MASK != 0
+            || comparison::is_awaited(self.core.pc(), |address| self.half_word(address))
+        {
             return;
         }
         let mut changed = self.wanted ^ self.given;
@@ -182,25 +185,6 @@ impl Processor {
             });
         }
         self.settled = !self.nmi;
-    }
-
-    /// Whether the flags of a floating-point comparison are still to be fetched: the instructions to come fetch them before
-    /// they compare anew or branch.
-    fn awaits_comparison(&self) -> bool {
-        let mut address = self.core.pc();
-        for _ in 0..COMPARISON_SPAN {
-            let (Some(first), Some(second)) =
-                (self.half_word(address), self.half_word(address + 2))
-            else {
-                return false;
-            };
-            match (first, second) {
-                FETCH_FLAGS => return true,
-                _ if is_end_of_block(first, second) => return false,
-                _ => address += if is_wide(first) { 4 } else { 2 },
-            }
-        }
-        false
     }
 
     fn half_word(&self, address: u32) -> Option<u16> {
@@ -373,25 +357,6 @@ const FRAME_SPAN: usize = 256;
 
 /// Bits of xPSR that are always zero.
 const XPSR_RESERVED: u32 = 0xf << 20;
-
-/// Instructions in which the flags of a comparison are fetched: the compiler moves few others between.
-const COMPARISON_SPAN: u32 = 8;
-
-/// `vmrs apsr_nzcv, fpscr`.
-const FETCH_FLAGS: (u16, u16) = (0xeef1, 0xfa10);
-
-/// Whether an instruction has two half words.
-fn is_wide(first: u16) -> bool {
-    first >= 0xe800
-}
-
-/// Whether an instruction compares floating-point numbers, or branches.
-fn is_end_of_block(first: u16, second: u16) -> bool {
-    let compares = first & 0xffbe == 0xeeb4 && second & 0x0e50 == 0x0a40;
-    let branches = matches!(first >> 12, 0xd) || first >> 11 == 0b11100 || first >> 8 == 0x47;
-    let branches_far = first >> 11 == 0b11110 && second & 0x8000 != 0;
-    compares || branches || branches_far
-}
 
 fn start(space: &Arc<AddressSpace>) -> ArmV7m {
     let config = Config::CORTEX_M4F

@@ -34,6 +34,22 @@ struct Mistake {
 }
 
 impl Mistake {
+    const fn new(
+        file: &'static str,
+        right: &'static str,
+        wrong: &'static str,
+        run: fn(&Path) -> String,
+        report: &'static str,
+    ) -> Self {
+        Self {
+            file,
+            right,
+            wrong,
+            run,
+            report,
+        }
+    }
+
     fn has_to_be_found(&self, name: &str) {
         let image = tree::image_with(self, name);
         let report = (self.run)(&image);

@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::station_stand::{armed, paper, pass, ticks};
-use leg_bench::stand::Stand;
+use leg_bench::stand::{Stand, move_to};
 use leg_firmware::command::{Command, Compensation};
-use leg_firmware::supervisor::State;
+use leg_firmware::supervisor::{Fault, State};
 use leg_rig::rig_file::RigFile;
 use leg_sim::link::InProcess;
 use leg_sim::plant::Defect;
@@ -124,4 +124,39 @@ fn a_leg_at_rest_is_held_at_once_where_a_load_cell_is_in_doubt() {
     let (gone_m, swing_mm) = held_ways(&mut doubted);
     println!("in doubt: {gone_m} m, swing {swing_mm} mm");
     assert!(gone_m < 1e-5 && swing_mm < 2.0);
+}
+
+/// Time from one push of a hand that shakes a leg to the next, s: a period of 4 Hz has two.
+const SHAKE_S: f64 = 0.125;
+
+/// Shakes a leg for as long, or until it is no longer active; `between` comes before each push.
+fn shake(stand: &mut Stand, pushes: u32, mut between: impl FnMut(&mut Stand, u32)) {
+    let across = stand.plant().across(90.0);
+    for push in 0..pushes {
+        between(stand, push);
+        let force_n = if push % 2 == 0 { 4.0 } else { -4.0 };
+        stand.plant().push(across * force_n, 0.06, 0.01);
+        pass(stand, SHAKE_S);
+        if stand.state() != State::Active {
+            return;
+        }
+    }
+}
+
+/// On its way it swings by what it is asked for, so that it is not stopped.
+#[test]
+fn a_leg_that_is_shaken_at_rest_is_held_and_one_on_its_way_goes_on() {
+    let resting = armed(&paper(), [0.0, 10.0], 0.5, 5);
+    let mut moving = resting.clone();
+    shake(&mut moving, 32, |stand, push| {
+        if push % 3 == 0 {
+            let tilt_deg = if push % 2 == 0 { 25.0 } else { 10.0 };
+            stand.command(&move_to([0.0, tilt_deg])).unwrap();
+        }
+    });
+    assert_eq!(moving.state(), State::Active, "{:?}", moving.faults());
+    let mut shaken = resting;
+    shake(&mut shaken, 16, |_, _| ());
+    assert_eq!(shaken.state(), State::Held);
+    assert!(shaken.faults().has(Fault::Swings), "{:?}", shaken.faults());
 }

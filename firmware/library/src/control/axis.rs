@@ -71,7 +71,7 @@ struct ServoGains<T> {
     track_position: T,
     track_speed: T,
     /// Speed for each newton that is left to the maximum tension, m/(s N).
-    speed_per_room: T,
+    m_per_s_per_n: T,
     tick_s: T,
     per_tick: T,
 }
@@ -112,7 +112,7 @@ impl<T: Scalar> Axis<T> {
             track_position: tracking.into(),
             // Both poles of the tracking filter in one place: critically damped.
             track_speed: T::from(0.25 * tracking * tracking / TICK_S),
-            speed_per_room: T::from(servo.speed_m_per_s / servo.f_max_band_n),
+            m_per_s_per_n: T::from(servo.speed_m_per_s / servo.f_max_band_n),
             tick_s: T::from(TICK_S),
             per_tick: T::from(1.0 / TICK_S),
         };
@@ -227,7 +227,7 @@ impl<T: Scalar> Axis<T> {
         let wanted = clamp_symmetric(wanted, gains.speed_max);
         // The nearer to the maximum tension, the slower the pull; above it the tendon is paid out.
         let room_n = input.f_max_n - input.tension_n;
-        let fastest = clamp_symmetric(room_n * gains.speed_per_room, gains.speed_max);
+        let fastest = clamp_symmetric(room_n * gains.m_per_s_per_n, gains.speed_max);
         if wanted > fastest {
             // What the tension does not allow is caught up with, not insisted on.
             let ahead = T::from(LIMITED_AHEAD_M);

@@ -49,7 +49,7 @@ const MEAN_S: f32 = 0.25;
 const RINGS_DOWN: f32 = 0.7;
 
 /// A leg that swings at rest for so many steps, 1.2 s, and does not ring down meanwhile, does so by itself: at 3 Hz with a damping ratio
-/// of 0.02, less than tendons and joint have by themselves, it rings down to that part in half a second.
+/// of 0.02, the least that tendons and joint have without the brake, it rings down to that part in half a second.
 const SWINGING_STEPS: u16 = (1.2 / STEP_S) as u16;
 
 /// Brakes the swing, and finds one that does not end.
@@ -119,6 +119,7 @@ impl<T: Scalar> SwingDamping<T> {
     pub fn start(&mut self) {
         self.tendons = None;
         self.mean_square = T::zero();
+        self.highest_square = T::zero();
         self.swinging_steps = 0;
     }
 
@@ -130,7 +131,7 @@ impl<T: Scalar> SwingDamping<T> {
 
     /// Whether the leg swings and does not ring down.
     #[inline(always)]
-    pub const fn lasts(&self) -> bool {
+    pub const fn keeps_swinging(&self) -> bool {
         self.swinging_steps >= SWINGING_STEPS
     }
 
@@ -289,8 +290,8 @@ mod tests {
         assert_eq!(largest(&offsets(SWING, f64::from(LEAST_M))), 0.0);
     }
 
-    /// How long a swing whose amplitude, m, changes by so much in a second, 1/s, takes until it is said to last, s.
-    fn lasts_after_s(amplitude_m: f64, growth_per_s: f64, moving: bool) -> Option<f64> {
+    /// How long a swing whose amplitude, m, changes by so much in a second, 1/s, takes until it is found, s.
+    fn found_after_s(amplitude_m: f64, growth_per_s: f64, moving: bool) -> Option<f64> {
         let mut damping = SwingDamping::<f64>::new(&Settings::for_table_1().unwrap());
         (0..5000).map(|i| f64::from(i) * 1e-3).find(|&time_s| {
             let amplitude_m = amplitude_m * (growth_per_s * time_s).exp();
@@ -304,7 +305,7 @@ mod tests {
             if moving {
                 damping.forget_swing();
             }
-            damping.lasts()
+            damping.keeps_swinging()
         })
     }
 
@@ -313,13 +314,13 @@ mod tests {
     fn a_swing_that_does_not_ring_down_is_found() {
         let swinging_m = f64::from(SWINGING_M);
         for growth_per_s in [0.0, 1.5] {
-            let after_s = lasts_after_s(1.3 * swinging_m, growth_per_s, false).unwrap();
+            let after_s = found_after_s(1.3 * swinging_m, growth_per_s, false).unwrap();
             assert!((1.2..2.0).contains(&after_s), "{growth_per_s}: {after_s}");
         }
-        assert_eq!(lasts_after_s(0.9 * swinging_m, 0.0, false), None);
-        assert_eq!(lasts_after_s(10.0 * swinging_m, 0.0, true), None);
+        assert_eq!(found_after_s(0.9 * swinging_m, 0.0, false), None);
+        assert_eq!(found_after_s(10.0 * swinging_m, 0.0, true), None);
         for growth_per_s in [-0.5, -2.0] {
-            assert_eq!(lasts_after_s(20.0 * swinging_m, growth_per_s, false), None);
+            assert_eq!(found_after_s(20.0 * swinging_m, growth_per_s, false), None);
         }
     }
 }

@@ -157,8 +157,7 @@ mod tests {
         }
     }
 
-    /// Turned about by half of what takes a motor across the play, its screw has not moved. At rest it comes to the length that is
-    /// asked for, and stays there.
+    /// Turned about by a part of what takes a motor across the play, its screw is not where it shall be. At rest it comes there.
     #[test]
     fn at_rest_a_screw_comes_to_its_length() {
         let turn_m = f64::from(TURN_MIN_M);

@@ -104,7 +104,8 @@ impl<T: Scalar> Active<T> {
                     let off_station = self.station.kept().is_some_and(Station::too_far);
                     self.faults = FaultSet::NONE;
                     self.faults.add(Fault::OffStation, off_station);
-                    self.faults.add(Fault::Swings, shared.damping.lasts());
+                    self.faults
+                        .add(Fault::Swings, shared.damping.keeps_swinging());
                     Ok(())
                 } else {
                     search_pretension(shared)

@@ -293,7 +293,7 @@ impl Running {
         self.reports.learn(ticked.2);
         self.ticked = Some(ticked);
         let room = LINK_BYTES_MAX.saturating_sub(self.twin.received.len());
-        self.twin.take_unended(room);
+        self.twin.take_incomplete(room);
         let fitting = self.twin.received.len().min(LINK_BYTES_MAX);
         self.taken = Some(TickRequest {
             sensors,

@@ -73,9 +73,9 @@ impl Twin {
 
     /// Takes up to `most` of the bytes up to the next zero, which alone ends a frame: nothing comes of them before it. They
     /// are then recorded as the line brings them, and a long frame that is damaged ends in the record when it ends on the chip.
-    pub fn take_unended(&mut self, most: usize) {
-        let unended = self.pending.iter().take_while(|byte| **byte != 0);
-        let count = unended.take(most).count();
+    pub fn take_incomplete(&mut self, most: usize) {
+        let incomplete = self.pending.iter().take_while(|byte| **byte != 0);
+        let count = incomplete.take(most).count();
         for byte in self.pending.drain(..count) {
             self.received.push_back(byte);
             self.link.receive(&[byte], &mut self.leg);

@@ -2,7 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{Chart, ChartLine, PlotError, save_both};
+use super::canvas::WIDTH_PX;
+use super::{COLOURS, Chart, ChartLine, PlotError, save_both};
 
 fn chart(points: Vec<(f64, f64)>) -> Chart {
     Chart {
@@ -64,4 +65,38 @@ fn nothing_to_draw_is_refused() {
         ));
     }
     assert!(!stem.with_extension("svg").exists());
+}
+
+/// A joint at a spike reaches no farther than the points: at the top as at the bottom.
+#[test]
+fn a_spike_shows_no_value_that_is_not_there() {
+    let directory = tempfile::tempdir().unwrap();
+    let lowest_row = |spike: f64| {
+        let points = vec![
+            (0.0, 0.0),
+            (4.0, 0.0),
+            (4.01, spike),
+            (4.02, 0.2 * spike),
+            (4.1, 0.0),
+            (10.0, 0.0),
+        ];
+        let mut chart = chart(points);
+        chart.lines[0].marks = vec![(10.0, 1.0)];
+        let svg = save_both(&chart, &directory.path().join("chart")).unwrap();
+        let file = std::fs::File::open(svg.with_extension("png")).unwrap();
+        let mut reader = png::Decoder::new(std::io::BufReader::new(file))
+            .read_info()
+            .unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut pixels).unwrap();
+        let rows = pixels.chunks(3 * WIDTH_PX as usize);
+        let [line, ..] = COLOURS;
+        let shown = |row: &[u8]| row.as_chunks::<3>().0.contains(&[line.0, line.1, line.2]);
+        rows.enumerate()
+            .filter(|(_, row)| shown(row))
+            .map(|(number, _)| number)
+            .max()
+    };
+    let (spike, flat) = (lowest_row(1.0), lowest_row(0.0));
+    assert!(spike <= flat, "{spike:?} {flat:?}");
 }

@@ -6,13 +6,7 @@ use super::{Mistake, mistakes};
 const CLOCKS: &str = "firmware/stm32g474/src/clocks.rs";
 
 const fn clocks(right: &'static str, wrong: &'static str, report: &'static str) -> Mistake {
-    Mistake {
-        file: CLOCKS,
-        right,
-        wrong,
-        run: moving,
-        report,
-    }
+    Mistake::new(CLOCKS, right, wrong, moving, report)
 }
 
 mistakes! {

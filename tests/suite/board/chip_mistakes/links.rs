@@ -4,13 +4,13 @@ use super::runs::{answering_on_can, moving};
 use super::{Mistake, mistakes};
 
 const fn can(right: &'static str, wrong: &'static str, report: &'static str) -> Mistake {
-    Mistake {
-        file: "firmware/stm32g474/src/can_bus.rs",
+    Mistake::new(
+        "firmware/stm32g474/src/can_bus.rs",
         right,
         wrong,
-        run: answering_on_can,
+        answering_on_can,
         report,
-    }
+    )
 }
 
 mistakes! {

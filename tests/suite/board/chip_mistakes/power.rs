@@ -6,13 +6,7 @@ use super::{Mistake, mistakes};
 const POWER: &str = "firmware/stm32g474/src/power.rs";
 
 const fn power(right: &'static str, wrong: &'static str, report: &'static str) -> Mistake {
-    Mistake {
-        file: POWER,
-        right,
-        wrong,
-        run: moving,
-        report,
-    }
+    Mistake::new(POWER, right, wrong, moving, report)
 }
 
 mistakes! {

@@ -9,13 +9,7 @@ const fn board(
     wrong: &'static str,
     report: &'static str,
 ) -> Mistake {
-    Mistake {
-        file,
-        right,
-        wrong,
-        run: moving,
-        report,
-    }
+    Mistake::new(file, right, wrong, moving, report)
 }
 
 mistakes! {

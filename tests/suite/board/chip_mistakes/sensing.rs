@@ -4,23 +4,23 @@ use super::runs::moving;
 use super::{Mistake, mistakes};
 
 const fn converters(right: &'static str, wrong: &'static str, report: &'static str) -> Mistake {
-    Mistake {
-        file: "firmware/stm32g474/src/converters.rs",
+    Mistake::new(
+        "firmware/stm32g474/src/converters.rs",
         right,
         wrong,
-        run: moving,
+        moving,
         report,
-    }
+    )
 }
 
 const fn slow(right: &'static str, wrong: &'static str, report: &'static str) -> Mistake {
-    Mistake {
-        file: "firmware/stm32g474/src/slow_sensors.rs",
+    Mistake::new(
+        "firmware/stm32g474/src/slow_sensors.rs",
         right,
         wrong,
-        run: moving,
+        moving,
         report,
-    }
+    )
 }
 
 mistakes! {
