@@ -16,9 +16,7 @@
 //! - that a debugger's halt switches the timer's outputs off at once; that it resets the chip of a driven leg is shown;
 //! - what the write protection of the CCM makes of a write, which the MPU refuses before it;
 //! - what RAM keeps over a real reset or a dip of the supply, and how a real flash behaves after a cut;
-//! - whether a driver needs time between its enable and its first pulse;
-//! - the change from 16 to 170 MHz in one step: the manual asks for a microsecond at half the frequency, and embassy does
-//!   not pass through it.
+//! - whether a driver needs time between its enable and its first pulse.
 #![no_std]
 #![no_main]
 

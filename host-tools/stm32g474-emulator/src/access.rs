@@ -35,6 +35,19 @@ impl AccessChecks {
         self.last.clear();
     }
 
+    /// Forgets what was written to a block: after its reset.
+    pub fn reset_block(&mut self, block: &Block) {
+        self.last
+            .retain(|address, _| !(block.base..block.base + block.size).contains(address));
+    }
+
+    /// What was written to a register last, or what a reset gives.
+    #[must_use]
+    pub fn last_written(&self, (block, register): Answering) -> u32 {
+        let address = block.base + register.offset;
+        self.last.get(&address).copied().unwrap_or(register.reset)
+    }
+
     /// Records all writes from now on.
     pub fn record(&mut self) {
         self.recorded = Some(Vec::new());
@@ -91,8 +104,7 @@ impl AccessChecks {
             findings.add(format!("{} is written, and can only be read", name()));
             return false;
         }
-        let address = block.base + register.offset;
-        let before = self.last.get(&address).copied().unwrap_or(register.reset);
+        let before = self.last_written((block, register));
         let reserved = !register.known & (value ^ register.reset);
         if reserved != 0 && !is_tolerated(block.name, &register.name) {
             findings.add(format!(
@@ -121,7 +133,7 @@ impl AccessChecks {
                 value,
             });
         }
-        self.last.insert(address, value);
+        self.last.insert(block.base + register.offset, value);
         true
     }
 }

@@ -53,6 +53,13 @@ impl Converters {
         }
     }
 
+    /// The clock of a converter, Hz; 0 for one that is not here.
+    #[must_use]
+    pub fn hz(&self, name: &str, clocks: &Clocks) -> u32 {
+        let group = self.groups.iter().find(|group| group.has(name));
+        group.map_or(0, |group| group.clock_of(clocks).hz())
+    }
+
     /// As after a reset of the group that a block belongs to: `ADC1`, `ADC12_COMMON`.
     pub fn reset(&mut self, block: &str) {
         for group in self.groups.iter_mut().filter(|group| group.has(block)) {

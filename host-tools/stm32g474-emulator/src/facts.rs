@@ -243,6 +243,14 @@ impl Field {
     pub const fn value(&self, word: u32) -> u32 {
         gather(self.mask, word)
     }
+
+    /// What the makers call the field's value in a word of its register; the number where they do not name it.
+    #[must_use]
+    pub fn name_of(&self, word: u32) -> String {
+        let value = self.value(word);
+        let known = self.names.iter().find(|(known, _)| *known == value);
+        known.map_or_else(|| value.to_string(), |(_, name)| (*name).to_owned())
+    }
 }
 
 /// The bits of a mask in a word, close together from bit 0: a timer's `OCM0` is at bits 4 to 6 and 16.

@@ -22,6 +22,7 @@ pub mod board;
 mod bus;
 pub mod chip;
 pub mod clocks;
+pub mod configuration;
 pub mod device;
 pub mod devices;
 pub mod encoder_timer;

@@ -5,9 +5,16 @@ use crate::board::Board;
 use crate::clocks::Clocks;
 use crate::device::{Context, Device};
 use crate::devices::{Devices, SystemBreak};
-use crate::facts::{Facts, Switch};
+use crate::facts::{Block, Facts, Switch};
 use crate::findings::Findings;
 use crate::rcc::ResetCause;
+
+/// Up to this frequency, Hz, the processor's clock may be raised in one step: half of the chip's highest, to which RM0440's
+/// own sequence, and ST's driver (stm32g4xx_hal_rcc.c), go at once.
+const LARGE_STEP_HZ: u32 = 85_000_000;
+
+/// How long the processor has to run at half of a higher frequency, µs: RM0440, change to range 1 boost mode.
+const STEP_PAUSE_US: u64 = 1;
 
 /// The peripherals, the time, and what the image did wrong.
 pub struct Peripherals {
@@ -15,13 +22,15 @@ pub struct Peripherals {
     pub cycle: u64,
     /// The frequencies of the moment.
     pub clocks: Clocks,
+    /// Since when the processor has had its frequency, in cycles since the power-up.
+    clocked_since: u64,
     /// What the image did wrong.
     pub findings: Findings,
     /// What holds for all accesses.
     pub checks: AccessChecks,
     /// The peripherals.
     pub devices: Devices,
-    resets: Vec<(Switch, &'static str)>,
+    resets: Vec<(Switch, &'static Block)>,
 }
 
 impl Peripherals {
@@ -31,6 +40,7 @@ impl Peripherals {
         Self {
             cycle: 0,
             clocks: Clocks::RESET,
+            clocked_since: 0,
             findings: Findings::default(),
             checks: AccessChecks::default(),
             devices: Devices::new(board),
@@ -159,7 +169,8 @@ impl Peripherals {
     fn reset_blocks(&mut self) {
         for (switch, block) in &self.resets {
             if self.devices.rcc.enabled(*switch) {
-                self.devices.reset_block(block);
+                self.devices.reset_block(block.name);
+                self.checks.reset_block(block);
             }
         }
     }
@@ -184,6 +195,20 @@ impl Peripherals {
         if before.hclk != self.clocks.hclk {
             let rates = (before.hclk, self.clocks.hclk);
             self.devices.iwdg.rate_changes(self.cycle, rates.0, rates.1);
+            self.check_step(before.hclk);
+            self.clocked_since = self.cycle;
+        }
+    }
+
+    /// Reports a step to a high frequency that is too large, or that follows another too soon.
+    fn check_step(&mut self, before_hz: u32) {
+        let after_hz = self.clocks.hclk;
+        let waited = (self.cycle - self.clocked_since) * 1_000_000;
+        let settled = waited >= STEP_PAUSE_US * u64::from(before_hz);
+        if after_hz > LARGE_STEP_HZ && (before_hz < after_hz / 2 || !settled) {
+            self.findings.add(format!(
+                "the processor's clock goes from {before_hz} Hz to {after_hz} Hz without {STEP_PAUSE_US} µs at half of that"
+            ));
         }
     }
 
@@ -196,10 +221,10 @@ impl Peripherals {
 }
 
 /// What holds each block in reset.
-fn resets() -> Vec<(Switch, &'static str)> {
+fn resets() -> Vec<(Switch, &'static Block)> {
     let blocks = Facts::of_chip().blocks.iter();
     blocks
-        .filter_map(|block| Some((block.reset?, block.name)))
+        .filter_map(|block| Some((block.reset?, block)))
         .collect()
 }
 

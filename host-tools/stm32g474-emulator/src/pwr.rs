@@ -56,6 +56,12 @@ impl Pwr {
         }
     }
 
+    /// The core's voltage, in words.
+    #[must_use]
+    pub fn voltage(&self) -> &'static str {
+        self.limits().0
+    }
+
     /// Whether the voltage detector finds a supply of so many millivolts too low.
     #[must_use]
     pub fn detects(&self, supply_mv: u32) -> bool {

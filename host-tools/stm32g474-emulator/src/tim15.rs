@@ -1,5 +1,6 @@
 //! TIM15: the time of the tasks. It counts up; its compare channels and its update wake the processor.
 
+use crate::clocks::Clocks;
 use crate::device::{Context, Device};
 use crate::facts::Block;
 use crate::timer::registers::Timer;
@@ -23,6 +24,12 @@ impl Tim15 {
         Self {
             timer: Timer::new(block, CHANNELS, |clocks| clocks.timers2),
         }
+    }
+
+    /// Counts a second, with the prescaler in use.
+    #[must_use]
+    pub fn counts_hz(&self, clocks: &Clocks) -> u32 {
+        clocks.timers2 / (self.timer.counter.prescaler + 1)
     }
 
     /// Its interrupts and their levels. The line is shared with the breaks of TIM1.

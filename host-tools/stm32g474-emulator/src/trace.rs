@@ -1,7 +1,7 @@
 //! What an image writes to registers, in words.
 
 use crate::access::Write;
-use crate::facts::Field;
+use crate::facts::{Access, Field};
 
 /// One line for each write: what it changes, by the makers' names; writes that change nothing are left out.
 #[must_use]
@@ -21,7 +21,12 @@ pub fn lines(writes: &[Write]) -> Vec<String> {
 
 fn line(write: &Write) -> Option<String> {
     let register = format!("{}_{}", write.block.name, write.register.name);
-    let changed = write.before ^ write.value;
+    // A register that cannot be read keeps nothing: each write does something.
+    let before = match write.register.access {
+        Access::Write => 0,
+        Access::Read | Access::ReadWrite => write.before,
+    };
+    let changed = before ^ write.value;
     if write.register.fields.is_empty() {
         return (changed != 0).then(|| format!("{register} = {:#x}", write.value));
     }
@@ -34,9 +39,5 @@ fn line(write: &Write) -> Option<String> {
 }
 
 fn word(field: &Field, value: u32) -> String {
-    let value = field.value(value);
-    match field.names.iter().find(|(known, _)| *known == value) {
-        Some((_, name)) => format!("{} = {name}", field.name),
-        None => format!("{} = {value}", field.name),
-    }
+    format!("{} = {}", field.name, field.name_of(value))
 }

@@ -15,12 +15,15 @@ use std::ops::Range;
 use std::{env, fs};
 use stm32g474_emulator::board::Board;
 use stm32g474_emulator::chip::Stop;
+use stm32g474_emulator::configuration;
 use stm32g474_emulator::image::{Image, ImageError};
 use stm32g474_emulator::rcc::ResetCause;
 use stm32g474_emulator::trace;
 
 /// After these the serial line is set up.
 const TRACED_TICKS: usize = 4;
+/// After these it is open.
+const CONFIGURED_TICKS: usize = 10;
 
 #[test]
 fn the_boot_writes_what_was_reviewed() -> Outcome {
@@ -31,17 +34,31 @@ fn the_boot_writes_what_was_reviewed() -> Outcome {
     let mut session = started_with(&image(FirmwareImage::Stm32g474)?, board, TRACED_TICKS)?;
     let chip = session.chip().ok_or("no chip")?;
     let writes = chip.peripherals().checks.take_recorded();
-    let found = trace::lines(&writes).join("\n") + "\n";
-    let golden = workspace_root().join("tests/golden/chip_boot.txt");
+    is_as_reviewed("chip_boot.txt", &trace::lines(&writes))
+}
+
+/// The same in words: clocks, pins, pulses and breaks, converters, line, watchdogs.
+#[test]
+fn the_boot_sets_up_what_was_reviewed() -> Outcome {
+    let mut session = started(CONFIGURED_TICKS)?;
+    let chip = session.chip().ok_or("no chip")?;
+    let lines = configuration::lines(&chip.peripherals());
+    is_as_reviewed("chip_configuration.txt", &lines)
+}
+
+fn is_as_reviewed(golden: &str, lines: &[String]) -> Outcome {
+    let found = lines.join("\n") + "\n";
+    let golden = workspace_root().join("tests/golden").join(golden);
     if env::var_os("LEG_OVERWRITE").is_some() {
         fs::write(&golden, &found)?;
     }
-    let expected = fs::read_to_string(golden)?;
+    let expected = fs::read_to_string(&golden)?;
     let differing = found.lines().zip(expected.lines()).find(|(a, b)| a != b);
     assert!(
         found == expected,
-        "the boot writes other registers than tests/golden/chip_boot.txt says, first (found, expected): {differing:?}; \
-         read the difference, and accept it with LEG_OVERWRITE=1"
+        "the boot differs from {}, first (found, expected): {differing:?}; read the difference, and accept it with \
+         LEG_OVERWRITE=1",
+        golden.display()
     );
     Ok(())
 }

@@ -14,6 +14,9 @@ use crate::sensors::TICK_HZ;
 /// Clock of processor, timers and buses, Hz.
 pub const CLOCK_HZ: u32 = 170_000_000;
 
+/// Counts a second of the timer by which the tasks wait.
+pub const TASK_TIMER_HZ: u32 = 1_000_000;
+
 /// Cycles from a tick to the next.
 pub const TICK_CYCLES: u32 = CLOCK_HZ / TICK_HZ as u32;
 

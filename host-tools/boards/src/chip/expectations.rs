@@ -3,7 +3,7 @@
 
 use super::wiring::{self, Route};
 use leg_firmware::board::timing::{
-    CLOCK_HZ, PWM_TOP, SENSING_CYCLES, SLOW_SENSING_CYCLES, TICK_CYCLES,
+    CLOCK_HZ, PWM_TOP, SENSING_CYCLES, SLOW_SENSING_CYCLES, TASK_TIMER_HZ, TICK_CYCLES,
 };
 use stm32g474_emulator::chip::Chip;
 use stm32g474_emulator::facts::Facts;
@@ -65,6 +65,11 @@ fn numbers(chip: &Peripherals) -> Option<String> {
             "TIM1's level of LOCK",
             Some(devices.tim1.lock_level().into()),
             Some(LOCK_LEVEL),
+        ),
+        (
+            "TIM15's rate, counts a second,",
+            Some(devices.tim15.counts_hz(&chip.clocks).into()),
+            Some(TASK_TIMER_HZ.into()),
         ),
         ("TIM1's top", Some(outputs.top.into()), Some(PWM_TOP.into())),
         (

@@ -88,6 +88,15 @@ impl Bus {
         self.wait();
     }
 
+    /// Lets the processor run at half of the PLL's 170 MHz, with the wait states of the whole.
+    fn run_at_half(&mut self) {
+        self.lock_pll();
+        self.set("FLASH", "ACR", "LATENCY", 4);
+        self.rcc("CFGR", "HPRE", 8);
+        self.rcc("CFGR", "SW", 3);
+        self.0.advance();
+    }
+
     fn texts(&self) -> Vec<&str> {
         let list = self.0.findings.list();
         list.iter().map(|finding| finding.text.as_str()).collect()
@@ -241,6 +250,19 @@ fn what_is_right_is_not_found() {
     bus.rcc("CR", "HSION", 0);
     bus.rcc("CCIPR", "FDCANSEL", 2);
     bus.switch(block("FDCAN2").enable);
+    assert_eq!(bus.texts(), [""; 0]);
+}
+
+#[test]
+fn a_microsecond_at_half_of_the_frequency_is_right() {
+    let mut bus = Bus::new();
+    bus.switch(block("PWR").enable);
+    bus.set("PWR", "CR5", "R1MODE", 0);
+    bus.run_at_half();
+    bus.0.set_cycle(bus.0.cycle + 85);
+    bus.rcc("CFGR", "HPRE", 0);
+    bus.0.advance();
+    assert_eq!(bus.0.clocks.hclk, 170_000_000);
     assert_eq!(bus.texts(), [""; 0]);
 }
 

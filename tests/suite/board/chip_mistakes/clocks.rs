@@ -21,9 +21,23 @@ mistakes! {
         "the processor runs at 170000000 Hz in range 1 normal, whose limit is 150000000 Hz",
     );
     wait_states_too_few: clocks(
-        "    rcc::reinit(config(), &mut peripherals.RCC);\n",
-        "    rcc::reinit(config(), &mut peripherals.RCC);
-    pac::FLASH.acr().modify(|w| w.set_latency(pac::flash::vals::Latency::WS2));\n",
+        "Latency::WS4",
+        "Latency::WS2",
         "the flash has 2 wait states at 170000000 Hz in range 1 boost, and needs 4",
+    );
+    full_clock_in_one_step: clocks(
+        "AHBPrescaler::DIV2",
+        "AHBPrescaler::DIV1",
+        "to 170000000 Hz without 1 µs at half of that",
+    );
+    task_timer_counts_twice_as_fast: clocks(
+        "    timer.psc().write_value(TASK_TIMER_DIVISOR - 1);\n",
+        "",
+        "TIM15's rate, counts a second, is 2000000",
+    );
+    serial_line_runs_from_the_bus: clocks(
+        "    config.mux.lpuart1sel = Uartsel::SYS;\n",
+        "",
+        "baud",
     );
 }

@@ -155,8 +155,9 @@ pub const SPEEDS: &[Row] = &[
     (
         &[],
         |b| {
-            b.lock_pll();
-            b.rcc("CFGR", "SW", 3);
+            b.run_at_half();
+            b.wait();
+            b.rcc("CFGR", "HPRE", 0);
             b.wait();
         },
         "the processor runs at 170000000 Hz in range 1 normal, whose limit is 150000000 Hz",
@@ -183,5 +184,27 @@ pub const SPEEDS: &[Row] = &[
             b.wait();
         },
         "the flash has 1 wait states at 85000000 Hz in range 1 normal, and needs 2",
+    ),
+    (
+        &["PWR"],
+        |b| {
+            b.set("PWR", "CR5", "R1MODE", 0);
+            b.set("FLASH", "ACR", "LATENCY", 4);
+            b.lock_pll();
+            b.rcc("CFGR", "SW", 3);
+            b.wait();
+        },
+        "the processor's clock goes from 16000000 Hz to 170000000 Hz without 1 µs at half of that",
+    ),
+    (
+        &["PWR"],
+        |b| {
+            b.set("PWR", "CR5", "R1MODE", 0);
+            b.run_at_half();
+            b.0.set_cycle(b.0.cycle + 84);
+            b.rcc("CFGR", "HPRE", 0);
+            b.0.advance();
+        },
+        "the processor's clock goes from 85000000 Hz to 170000000 Hz without 1 µs at half of that",
     ),
 ];
