@@ -69,6 +69,7 @@ mod sim {
 mod board {
     mod chip_boot;
     mod chip_bus;
+    mod chip_cuts;
     mod chip_guards;
     mod chip_hang;
     mod chip_latency;

@@ -38,6 +38,8 @@ pub struct Flash {
     first_half: Option<(u32, u32)>,
     /// What is in progress, and the cycle in which it ends.
     running: Option<(Operation, u64)>,
+    /// How many there were.
+    operations: u64,
     /// Where the program lies, addresses.
     program: Range<u32>,
     /// The cycle until which an access of the processor waits.
@@ -83,6 +85,7 @@ impl Flash {
             keys: Keys::First,
             first_half: None,
             running: None,
+            operations: 0,
             program: 0..0,
             stall: None,
             brown_out_level,
@@ -116,6 +119,12 @@ impl Flash {
     #[must_use]
     pub fn array(&self) -> &Array {
         &self.array
+    }
+
+    /// How many double words and pages were begun to be programmed or erased.
+    #[must_use]
+    pub fn operations(&self) -> u64 {
+        self.operations
     }
 
     /// Lets the double word of an address disagree with its ECC.

@@ -8,7 +8,6 @@ use leg_boards::chip::ChipSession;
 use leg_boards::image::{FirmwareImage, workspace_root};
 use leg_firmware::board::timing::TICK_CYCLES;
 use leg_firmware::host_link::{HostRequest, ResetCause as Told};
-use leg_firmware::settings::Settings;
 use leg_firmware_bench::protocol::Request;
 use leg_sim::link::{Link, LinkError};
 use std::ops::Range;
@@ -88,36 +87,6 @@ fn settings_are_kept_over_a_reset() -> Outcome {
     identity_after(chip)?;
     assert_eq!(settings(chip)?, other);
     assert_eq!(findings(chip), [""; 0]);
-    Ok(())
-}
-
-/// Power fails at a moment of a save: the chip then finds the old settings or the new ones.
-#[test]
-fn settings_survive_a_power_cut_at_any_moment_of_a_save() -> Outcome {
-    let built_in = Settings::for_table_1().ok_or("no built-in settings")?;
-    let other = other_settings()?;
-    let mut found = [0, 0];
-    for cut_us in (0..26_000).step_by(1_300) {
-        let mut session = started(10)?;
-        let chip = session.chip().ok_or("no chip")?;
-        identity(chip)?;
-        carry_out(chip, &HostRequest::SetSettings(other.clone()))?;
-        send(chip, &HostRequest::SaveSettings)?;
-        let end = chip.cycle() + cut_us * MS / 1_000;
-        while chip.cycle() < end {
-            chip.run(end);
-        }
-        chip.cycle_power(cut_us);
-        identity_after(chip)?;
-        let settings = settings(chip)?;
-        assert!(
-            settings == built_in || settings == other,
-            "cut after {cut_us} µs"
-        );
-        found[usize::from(settings == other)] += 1;
-        assert_eq!(findings(chip), [""; 0], "cut after {cut_us} µs");
-    }
-    assert!(found.iter().all(|&count| count > 0), "old, new: {found:?}");
     Ok(())
 }
 

@@ -214,6 +214,7 @@ impl Flash {
         let end = context.cycle + operation.cycles(context.clocks);
         self.registers.set_value(self.flags.busy, 1);
         self.running = Some((operation, end));
+        self.operations += 1;
     }
 
     /// What is allowed, and yet wrong.
