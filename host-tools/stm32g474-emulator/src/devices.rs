@@ -37,6 +37,9 @@ const MESSAGE_RAM: &str = "FDCANRAM2";
 /// The chip's own voltage of 1.212 V with a supply of 3.3 V: a sum of 16 conversions.
 const REFERENCE_SUM: u16 = (1_212 * 16 * 4_095 / 3_300) as u16;
 
+/// Registers of SYSCFG whose bits only a reset clears: RM0440, SYSCFG_CFGR2 and SYSCFG_SWPR.
+const LASTING: [&str; 2] = ["CFGR2", "SWPR"];
+
 /// The peripherals.
 pub struct Devices {
     /// RCC.
@@ -99,7 +102,8 @@ impl Devices {
     #[must_use]
     pub fn new(board: &Board) -> Self {
         let facts = Facts::of_chip();
-        let (dbgmcu, syscfg) = (Plain::new(block("DBGMCU")), Plain::new(block("SYSCFG")));
+        let dbgmcu = Plain::new(block("DBGMCU"));
+        let syscfg = Plain::new(block("SYSCFG")).with_lasting(&LASTING);
         let ports = facts.blocks.iter().filter(|b| b.name.starts_with("GPIO"));
         Self {
             rcc: Rcc::new(block("RCC"), board.crystal_hz),

@@ -49,6 +49,8 @@ places! {
         trigger: CR2.MMS2,
     }
     |file| {
+        complementary: [FieldPlace; 4] =
+            [0, 1, 2, 3].map(|channel| file.field("CCER", &format!("CCNE{channel}"))),
         driven: [FieldPlace; 2] = ["OSSI", "OSSR"].map(|name| file.field("BDTR", name)),
         preloads: [FieldPlace; 4] = [
             ("CR1", "ARPE"), ("CCMR1", "OCPE0"), ("CCMR1", "OCPE1"), ("CCMR2", "OCPE0"),
@@ -193,6 +195,18 @@ impl Tim1 {
         }
     }
 
+    /// Only complementary outputs have a dead time, and neither is modelled.
+    fn check_complementary(&self, offset: u32, context: &mut Context<'_>) {
+        let (file, fields) = (&self.timer.file, &self.places.complementary);
+        if fields
+            .iter()
+            .any(|one| one.offset == offset && file.is_set(*one))
+        {
+            let text = "TIM1_CCER: a complementary output is enabled, which is not modelled";
+            context.findings.add(text);
+        }
+    }
+
     /// Breaks that the program asks for.
     fn generate_breaks(&mut self, value: u32) {
         for input in &self.breaks {
@@ -229,6 +243,7 @@ impl Device for Tim1 {
         if offset == self.places.switch.offset {
             self.check_second_break(context);
         }
+        self.check_complementary(offset, context);
         self.take_update();
         self.apply_breaks(context.cycle);
     }

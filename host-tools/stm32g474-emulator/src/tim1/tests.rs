@@ -215,6 +215,14 @@ fn the_second_break_wants_driven_pins() {
 }
 
 #[test]
+fn complementary_outputs_are_reported() {
+    let mut bench = bench();
+    bench.set("CCER", &[("CCNE1", 1)]);
+    let expected = "TIM1_CCER: a complementary output is enabled, which is not modelled";
+    assert_eq!(bench.findings(), [expected]);
+}
+
+#[test]
 fn alignment_stays_while_it_counts() {
     let mut bench = board();
     bench.set("CR1", &[("CMS", 2)]);
