@@ -164,10 +164,10 @@ fn damaged_bytes_are_found_by_a_chip_and_its_shadow_in_the_same_tick() {
     assert_eq!(compare("garbage", &scenario, &image()), None);
 }
 
-/// All of them, before a release: `cargo test --test suite -- --ignored --nocapture chip_scenarios` prints each as it ends. The samples
-/// above are run always. Each scenario is homed first.
+/// All of them, each homed first: `cargo test --test suite -- --ignored --nocapture chip_scenarios` prints each as it ends. The
+/// samples above are run always.
 #[test]
-#[ignore = "takes 20 minutes on two cores: before a release"]
+#[ignore = "takes 20 minutes on two cores: run with --ignored"]
 fn every_ready_scenario_passes_on_the_chip_as_in_process() {
     let image = image();
     let mut left: Vec<(&str, Scenario)> = vec![(
