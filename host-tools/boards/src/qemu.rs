@@ -1,11 +1,21 @@
-//! The firmware under QEMU: one emulator for one session, reached by two named pipes.
+//! The firmware under QEMU: one emulator for one session, reached by two named pipes, as Linux and macOS have them.
 
+#[cfg(not(unix))]
+mod absent;
+#[cfg(unix)]
 mod log;
+#[cfg(unix)]
 mod pipes;
+#[cfg(unix)]
 mod process;
+#[cfg(unix)]
 mod session;
 
+#[cfg(not(unix))]
+pub use absent::QemuSession;
+#[cfg(unix)]
 pub use process::describe_exit;
+#[cfg(unix)]
 pub use session::QemuSession;
 
 use std::path::PathBuf;
@@ -19,6 +29,7 @@ pub enum QemuClock {
     Counting,
 }
 
+#[cfg(unix)]
 impl QemuClock {
     /// QEMU's `-icount`. Without it QEMU's clock is the host's, and the boot check of a busy machine would fail.
     const fn icount(self) -> &'static str {

@@ -5,13 +5,13 @@
 mod error;
 mod package;
 mod program;
+mod user;
 
 pub use error::SetupError;
 pub use package::{PYTHON, Package, QEMU};
 pub use program::Programs;
 
 use program::run;
-use rustix::process::geteuid;
 use std::env;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -92,7 +92,7 @@ pub fn ensure(
 
 /// Waits until no other process of this user installs anything; released when dropped.
 fn lock() -> Result<File, SetupError> {
-    let user = geteuid().as_raw();
+    let user = user::number();
     let path = env::temp_dir().join(format!("leg-setup-{user}.lock"));
     let open = File::options()
         .create(true)

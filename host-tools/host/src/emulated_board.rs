@@ -1,7 +1,7 @@
-//! An emulated leg behind a pseudo-terminal, in real time: to every command it is a board on a serial port.
+//! An emulated leg behind a port, in real time: to every command it is a board.
 
+use crate::byte_port::BytePort;
 use crate::cancel_flag::CancelFlag;
-use crate::pseudo_terminal::PseudoTerminal;
 use leg_base::failure::Failure;
 use leg_sim::action::Action;
 use leg_sim::emulated_leg::EmulatedLeg;
@@ -23,7 +23,7 @@ const ADAPTER_BYTES: usize = 16 * 1024;
 /// A leg and its port.
 pub struct EmulatedBoard {
     leg: EmulatedLeg,
-    port: PseudoTerminal,
+    port: Box<dyn BytePort>,
     incoming: VecDeque<u8>,
     outgoing: VecDeque<u8>,
     /// Time that the leg has skipped.
@@ -32,7 +32,7 @@ pub struct EmulatedBoard {
 
 impl EmulatedBoard {
     /// Connects a leg to a port.
-    pub fn new(leg: EmulatedLeg, port: PseudoTerminal) -> Self {
+    pub fn new(leg: EmulatedLeg, port: Box<dyn BytePort>) -> Self {
         Self {
             leg,
             port,
@@ -64,7 +64,7 @@ impl EmulatedBoard {
     /// Lets the leg's time come to that of the clock.
     fn exchange(&mut self, clock: Duration) -> Result<(), Failure> {
         let mut bytes = [0; 4096];
-        let count = self.port.read(&mut bytes).map_err(terminal_failed)?;
+        let count = self.port.read(&mut bytes).map_err(port_failed)?;
         self.incoming.extend(bytes.get(..count).unwrap_or_default());
         let behind = clock.saturating_sub(self.leg.time() + self.skipped);
         self.skipped += behind.saturating_sub(BEHIND_MAX);
@@ -76,16 +76,16 @@ impl EmulatedBoard {
         }
         if !self.outgoing.is_empty() {
             let written = self.port.write(self.outgoing.make_contiguous());
-            let count = written.map_err(terminal_failed)?;
+            let count = written.map_err(port_failed)?;
             self.outgoing.drain(..count);
         }
         Ok(())
     }
 }
 
-fn terminal_failed(error: io::Error) -> Failure {
+fn port_failed(error: io::Error) -> Failure {
     Failure::refused(
-        format!("the pseudo-terminal failed: {error}"),
+        format!("the port failed: {error}"),
         "start `leg emulate` again",
     )
 }

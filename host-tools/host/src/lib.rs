@@ -2,8 +2,8 @@
 //!
 //! # Where to begin
 //! An [`operator::Operator`] introduces itself to a leg over a [`transport::Transport`] and commands it. The transport is
-//! a board's serial port ([`transport::serial`]), a CAN FD interface ([`transport::can`]) or an emulated leg in this
-//! process ([`transport::emulated`]), which needs no board:
+//! a board's serial port ([`transport::serial`]), a CAN FD interface ([`transport::can`]), an emulated board of another
+//! process ([`transport::tcp`]) or an emulated leg in this process ([`transport::emulated`]), which needs no board:
 //!
 //! ```
 //! use leg_host::cancel_flag::CancelFlag;
@@ -40,13 +40,14 @@
 //! |---|---|
 //! | [`operator`] | commands, settings, telemetry of one leg, and every error with its remedy |
 //! | [`transport`] | what carries the bytes |
-//! | [`emulated_board`], [`pseudo_terminal`] | an emulated leg behind a serial port, for other programs (`leg emulate`) |
+//! | [`emulated_board`], [`pseudo_terminal`], [`tcp_port`] | an emulated leg behind a port, for other programs (`leg emulate`) |
 //! | [`recording`] | simulations and telemetry as MCAP or CSV, and the replay of a simulation |
 //! | [`leg_report`], [`sensor_report`], [`monitor`] | what people and machines are shown of a leg |
 //! | [`cell_fit`] | a load cell's calibration from weights |
 //! | [`tune`] | motors, play and swing of a leg, measured |
 //! | [`flash`] | writing the firmware by `probe-rs` |
 
+pub mod byte_port;
 pub mod cancel_flag;
 pub mod cell_fit;
 pub mod emulated_board;
@@ -57,8 +58,13 @@ pub mod leg_report;
 pub mod monitor;
 pub mod operator;
 pub mod path_reader;
+#[cfg(not(unix))]
+#[path = "no_pseudo_terminal.rs"]
+pub mod pseudo_terminal;
+#[cfg(unix)]
 pub mod pseudo_terminal;
 pub mod recording;
 pub mod sensor_report;
+pub mod tcp_port;
 pub mod transport;
 pub mod tune;

@@ -2,12 +2,22 @@
 //!
 //! Not `serialport::TTYPort::pair`, whose ends are inherited by every program that this one starts.
 
+use crate::byte_port::BytePort;
 use rustix::fs::{OFlags, fcntl_getfl, fcntl_setfl};
+use rustix::io::{FdFlags, fcntl_setfd};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 use std::fs::{File, OpenOptions};
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
+
+/// Programs that this one starts do not inherit it: asked for at once where the system can.
+#[cfg(target_os = "linux")]
+const OPEN_FLAGS: OpenptFlags = OpenptFlags::RDWR
+    .union(OpenptFlags::NOCTTY)
+    .union(OpenptFlags::CLOEXEC);
+#[cfg(not(target_os = "linux"))]
+const OPEN_FLAGS: OpenptFlags = OpenptFlags::RDWR.union(OpenptFlags::NOCTTY);
 
 /// The end that stands for the device.
 #[derive(Debug)]
@@ -21,7 +31,8 @@ pub struct PseudoTerminal {
 impl PseudoTerminal {
     /// Makes one. It passes every byte as it is.
     pub fn open() -> io::Result<Self> {
-        let device = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
+        let device = openpt(OPEN_FLAGS)?;
+        fcntl_setfd(&device, FdFlags::CLOEXEC)?;
         grantpt(&device)?;
         unlockpt(&device)?;
         let name = ptsname(&device, Vec::new())?;
@@ -51,6 +62,20 @@ impl PseudoTerminal {
     /// Writes, and returns how many bytes there was room for.
     pub fn write(&self, bytes: &[u8]) -> io::Result<usize> {
         zero_if_blocked((&self.device).write(bytes))
+    }
+}
+
+impl BytePort for PseudoTerminal {
+    fn name(&self) -> String {
+        self.path.display().to_string()
+    }
+
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        Self::read(self, bytes)
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        Self::write(self, bytes)
     }
 }
 

@@ -3,6 +3,7 @@
 pub mod can;
 pub mod emulated;
 pub mod serial;
+pub mod tcp;
 
 use std::io;
 use std::sync::LazyLock;

@@ -18,6 +18,7 @@ use leg_host::transport::Transport;
 use leg_host::transport::can::{CanTransport, SocketCan};
 use leg_host::transport::emulated::EmulatedLine;
 use leg_host::transport::serial::{self, Serial};
+use leg_host::transport::tcp::{self, Tcp};
 use leg_rig::rig_file::RigFile;
 use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
 use std::path::PathBuf;
@@ -29,8 +30,8 @@ pub(crate) struct ConnectionArgs {
     /// `leg calibrate` slack and not homed. One on a chip is homed first. It has its own time and does not wait for the clock.
     #[arg(long, value_enum)]
     on: Option<Emulation>,
-    /// The serial port of the board; the port of its ST-LINK if left out.
-    #[arg(long, value_name = "PATH", conflicts_with = "on")]
+    /// The serial port of the board, or what `leg emulate` prints; the port of the board's ST-LINK if left out.
+    #[arg(long, value_name = "PORT", conflicts_with = "on")]
     port: Option<String>,
     /// The CAN FD interface to which the board is connected, as `can0`; Linux only. One command at a time may use a leg on
     /// CAN; only `leg stop` works beside another.
@@ -153,6 +154,9 @@ impl ConnectionArgs {
     fn serial(&self, cancel: &CancelFlag) -> Result<Box<dyn Transport>, Failure> {
         let port = self.port.clone();
         let port = port.map_or_else(serial::find_board, Ok)?;
+        if let Some(address) = port.strip_prefix(tcp::SCHEME) {
+            return Ok(Box::new(Tcp::open(address)?));
+        }
         let serial = Serial::open_watched(&port, |failure| {
             note_late(failure);
             !cancel.is_set()

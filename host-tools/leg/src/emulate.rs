@@ -8,21 +8,26 @@ use crate::output::{load_rig, note};
 use leg_base::failure::Failure;
 use leg_base::json_object;
 use leg_base::text_input::{self, Line};
+use leg_host::byte_port::BytePort;
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::emulated_board::EmulatedBoard;
 use leg_host::pseudo_terminal::PseudoTerminal;
+use leg_host::tcp_port::TcpPort;
 use leg_sim::action::Action;
 use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
+/// This machine alone, and a free port.
+const LOOPBACK: &str = "127.0.0.1:0";
+
 /// Part of the time that may be missed before the user is warned.
 const MISSED_PART: f64 = 0.05;
 
-/// Emulates a board with a leg on a serial port, in real time.
+/// Emulates a board with a leg on a port, in real time.
 ///
-/// The path of the port is printed: give it to --port of the other commands. Ctrl-C ends the emulation.
+/// The port's name is printed: give it to --port of the other commands. Ctrl-C ends the emulation.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// Where the firmware runs.
@@ -37,6 +42,10 @@ pub(crate) struct Args {
     /// A new board: it keeps no settings yet. With --on chip only.
     #[arg(long, requires = "slack")]
     new_board: bool,
+    /// Listens on TCP in the place of a serial port; on a free port of this machine if no address is given. Whoever can
+    /// connect can command the leg.
+    #[arg(long, value_name = "HOST:PORT", num_args = 0..=1, default_missing_value = LOOPBACK)]
+    tcp: Option<String>,
     /// Ends after so many seconds.
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     length: Option<Duration>,
@@ -72,15 +81,11 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
             ));
         }
     };
-    let port = PseudoTerminal::open().map_err(|error| {
-        let help = "see that /dev/pts is mounted";
-        Failure::refused(format!("no pseudo-terminal: {error}"), help)
-    })?;
+    let port = open_port(args.tcp.as_deref())?;
     let cancel = CancelFlag::on_ctrl_c();
     let disturbances = disturbances(args.disturbances);
-    options.report(&json_object! { port: port.path() }, || {
-        format!("{}\n", port.path().display())
-    })?;
+    let name = port.name();
+    options.report(&json_object! { port: &name }, || format!("{name}\n"))?;
     let board = EmulatedBoard::new(leg, port);
     let started = Instant::now();
     let missed = board.run(&cancel, args.length, &disturbances)?;
@@ -92,6 +97,27 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         ));
     }
     Ok(())
+}
+
+fn open_port(tcp: Option<&str>) -> Result<Box<dyn BytePort>, Failure> {
+    let Some(address) = tcp else {
+        let terminal = PseudoTerminal::open().map_err(|error| {
+            let help = if cfg!(unix) {
+                "see that /dev/pts is mounted, or give --tcp"
+            } else {
+                "this system has none: give --tcp"
+            };
+            Failure::refused(format!("no pseudo-terminal: {error}"), help)
+        })?;
+        return Ok(Box::new(terminal));
+    };
+    let port = TcpPort::listen(address).map_err(|error| {
+        Failure::refused(
+            format!("cannot listen on {address}: {error}"),
+            "give an address of this machine and a port that is not in use, as 127.0.0.1:5000",
+        )
+    })?;
+    Ok(Box::new(port))
 }
 
 /// What the user does to the leg, read in a thread of its own.

@@ -1,5 +1,9 @@
 //! `leg monitor`.
 
+#[cfg(not(unix))]
+#[path = "monitor/events.rs"]
+mod keys;
+#[cfg(unix)]
 mod keys;
 mod udp;
 

@@ -11,6 +11,7 @@ mod page;
 mod paths;
 mod ports;
 mod qemu;
+mod tcp;
 mod terminal;
 
 use crate::common::stalls::wait_for;

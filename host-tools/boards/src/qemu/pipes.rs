@@ -3,12 +3,15 @@
 use leg_firmware_bench::pipes::{TO_FIRMWARE, TO_HOST};
 use leg_sim::link::LinkError;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use rustix::fs::{CWD, Mode, OFlags, mkfifoat, open};
+use rustix::fs::{Mode, OFlags, open};
 use rustix::io::{Errno, read, write};
 use std::ffi::{CStr, OsStr};
+use std::io;
 use std::os::fd::{AsFd, OwnedFd};
 use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
+#[cfg(target_os = "macos")]
+use std::process::Command;
 use std::time::Instant;
 
 /// What a wait for the firmware ended with.
@@ -28,10 +31,29 @@ const OPEN: &str = "open a named pipe";
 /// Makes both pipes in the directory, and opens the one from the firmware, as the firmware does first.
 pub fn create(directory: &Path) -> Result<OwnedFd, LinkError> {
     for name in [TO_HOST, TO_FIRMWARE] {
-        mkfifoat(CWD, path(directory, name), Mode::RUSR | Mode::WUSR)
-            .map_err(LinkError::system("make a named pipe"))?;
+        make(&path(directory, name)).map_err(LinkError::system("make a named pipe"))?;
     }
     open_now(directory, TO_HOST, OFlags::RDONLY).map_err(LinkError::system(OPEN))
+}
+
+/// Makes a pipe for this user alone.
+#[cfg(not(target_os = "macos"))]
+fn make(path: &Path) -> io::Result<()> {
+    use rustix::fs::{CWD, mkfifoat};
+    Ok(mkfifoat(CWD, path, Mode::RUSR | Mode::WUSR)?)
+}
+
+/// The same by the system's program: `rustix` has no such call there.
+#[cfg(target_os = "macos")]
+fn make(path: &Path) -> io::Result<()> {
+    let made = Command::new("mkfifo")
+        .args(["-m", "600"])
+        .arg(path)
+        .status()?;
+    if made.success() {
+        return Ok(());
+    }
+    Err(io::Error::other("`mkfifo` failed"))
 }
 
 /// Opens the pipe to the firmware; `None` if the firmware has not opened its side yet.

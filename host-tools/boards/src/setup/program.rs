@@ -1,9 +1,8 @@
 //! Finding and running other programs.
 
 use super::QEMU_VARIABLE;
-use super::SetupError;
+use super::{SetupError, user};
 use crate::image::workspace_root;
-use rustix::process::geteuid;
 use std::env;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
@@ -46,7 +45,7 @@ impl Programs {
     pub(super) fn apt(&self) -> Option<Vec<OsString>> {
         let apt = self.find("apt-get")?;
         let mut arguments = Vec::new();
-        if !geteuid().is_root() {
+        if !user::is_root() {
             let sudo = self.find("sudo")?;
             run(Command::new(&sudo).args(["-n", "true"])).ok()?;
             arguments.extend([sudo.into(), "-n".into(), "env".into()]);

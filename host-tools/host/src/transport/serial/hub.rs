@@ -7,7 +7,7 @@
 mod frame_writer;
 mod service;
 
-use serialport::TTYPort;
+use super::port::NativePort;
 use std::io::{self, Read};
 use std::os::unix::fs::{DirBuilderExt, MetadataExt};
 use std::os::unix::net::{UnixListener, UnixStream};
@@ -67,7 +67,7 @@ pub(super) fn join(port: &str, timeout: Duration) -> io::Result<Joined> {
 
 /// Starts the hub of a port that this program has opened, and joins it. It ends with the program or the port. Where other
 /// programs cannot join, it serves this one alone: to stop a leg has to be possible without a directory to write in.
-pub(super) fn start(tty: TTYPort, port: &str) -> io::Result<Joined> {
+pub(super) fn start(tty: NativePort, port: &str) -> io::Result<Joined> {
     let (listener, unshared) = match listen(port) {
         Ok(listener) => (Some(listener), None),
         Err(error) => (None, Some(error)),

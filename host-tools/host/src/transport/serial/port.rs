@@ -1,11 +1,14 @@
 //! Finding and opening a board's serial port.
 
 use leg_base::failure::Failure;
-use serialport::{
-    ClearBuffer, ErrorKind, SerialPort, SerialPortInfo, SerialPortType, TTYPort, UsbPortInfo,
-};
+use serialport::{ClearBuffer, ErrorKind, SerialPort, SerialPortInfo, SerialPortType, UsbPortInfo};
 use std::io;
 use std::time::Duration;
+
+#[cfg(not(unix))]
+pub(super) use serialport::COMPort as NativePort;
+#[cfg(unix)]
+pub(super) use serialport::TTYPort as NativePort;
 
 /// Speed of the board's line.
 const BAUD: u32 = 921_600;
@@ -60,12 +63,12 @@ fn is_st_link(port: &SerialPortInfo) -> bool {
 }
 
 /// Opens a port for this program alone; none where another program has it.
-pub(super) fn open(port: &str) -> Result<Option<TTYPort>, Failure> {
-    let opened = serialport::new(port, BAUD)
-        .timeout(STEP_TIME)
-        .exclusive(true)
-        .open_native();
-    match opened {
+pub(super) fn open(port: &str) -> Result<Option<NativePort>, Failure> {
+    let builder = serialport::new(port, BAUD).timeout(STEP_TIME);
+    // Elsewhere each port is.
+    #[cfg(unix)]
+    let builder = builder.exclusive(true);
+    match builder.open_native() {
         Ok(tty) => {
             // What an earlier host did not read is not for this one. A port that cannot discard it is as good.
             let _ = tty.clear(ClearBuffer::All);
@@ -88,6 +91,18 @@ pub(super) fn refused(port: &str, error: &serialport::Error) -> Failure {
         ),
         _ => not_opened(port, &error.description),
     }
+}
+
+pub(super) fn busy(port: &str) -> Failure {
+    let help = if cfg!(unix) {
+        "end that program; `fuser` with the port's path names it"
+    } else {
+        "end that program: on this system one program at a time may use a port"
+    };
+    Failure::refused(
+        format!("the port {port} is busy: another program has opened it"),
+        help,
+    )
 }
 
 pub(super) fn not_opened(port: &str, reason: &str) -> Failure {

@@ -1,9 +1,9 @@
 //! The threads of a hub.
 
+use super::super::port::NativePort;
 use super::WELCOME;
 use super::frame_writer::FrameWriter;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use serialport::TTYPort;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::net::Shutdown;
 use std::os::unix::net::{UnixListener, UnixStream};
@@ -26,7 +26,7 @@ const WATCH_TIME: Timespec = Timespec {
 /// What all threads of a hub share.
 struct Hub {
     clients: Mutex<Clients>,
-    to_board: Mutex<FrameWriter<TTYPort>>,
+    to_board: Mutex<FrameWriter<NativePort>>,
 }
 
 /// The streams to all clients.
@@ -38,7 +38,7 @@ struct Clients {
 }
 
 /// Serves a port to whoever comes to `listener`, and to the other end of the stream that it returns.
-pub(super) fn start(tty: TTYPort, listener: Option<UnixListener>) -> io::Result<UnixStream> {
+pub(super) fn start(tty: NativePort, listener: Option<UnixListener>) -> io::Result<UnixStream> {
     let (own, hubs) = UnixStream::pair()?;
     let to_board = tty.try_clone_native().map_err(io::Error::from)?;
     let hub = Arc::new(Hub {
@@ -108,7 +108,7 @@ fn serve(stream: UnixStream, hub: &Arc<Hub>) -> io::Result<()> {
 /// Passes whole frames to the board until the client or the port ends, or what comes is no frame.
 fn pass_on_from_client(
     stream: &UnixStream,
-    to_board: &Mutex<FrameWriter<TTYPort>>,
+    to_board: &Mutex<FrameWriter<NativePort>>,
 ) -> io::Result<()> {
     let mut reader = BufReader::new(stream);
     loop {
@@ -122,7 +122,7 @@ fn pass_on_from_client(
 }
 
 /// Passes bytes from the board to every client until the port ends, and then drops them all.
-fn pass_on_from_board(mut tty: TTYPort, hub: &Hub) {
+fn pass_on_from_board(mut tty: NativePort, hub: &Hub) {
     let mut bytes = [0; 4096];
     loop {
         match tty.read(&mut bytes) {
