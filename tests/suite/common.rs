@@ -2,8 +2,8 @@
 
 pub mod chip;
 pub mod chip_bus;
-pub mod mujoco;
 pub mod panic_free;
+pub mod python;
 pub mod sources;
 pub mod stalls;
 

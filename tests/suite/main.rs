@@ -78,7 +78,7 @@ mod board {
     mod chip_scenarios;
     mod chip_speed;
     mod chip_supply;
-    mod emulated_board;
+    pub mod emulated_board;
     mod qemu_session;
     mod setup;
     mod wiring_page;
@@ -90,6 +90,7 @@ mod host {
     mod jog;
     mod link_damage;
     mod monitor_screen;
+    mod protocol_page;
     mod tune;
 }
 

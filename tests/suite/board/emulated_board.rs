@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-mod board;
+pub mod board;
 mod calibration;
 mod first_power_up;
 mod logs;

@@ -1,9 +1,9 @@
-//! The exported MuJoCo models, judged by MuJoCo: `tests/mujoco/compare.py` runs in a virtual environment under the
+//! The exported MuJoCo models, judged by MuJoCo: `tests/python/compare_with_mujoco.py` runs in a virtual environment under the
 //! target directory.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use crate::common::{mujoco, numbers};
+use crate::common::{numbers, python};
 use leg_model::{Direction, Evaluation, Load, Query, Rig, Tendon, evaluate};
 use leg_model_tools::mjcf::{HeldLeg, HeldTendon, Mjcf};
 use leg_model_tools::nonlinear::{Balance, Posture};
@@ -176,10 +176,12 @@ fn export(case: &Case, directory: &Path, i: usize) -> PathBuf {
 }
 
 fn compare(jobs: &str) -> Vec<Value> {
-    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("mujoco");
-    let python = mujoco::python(&directory).unwrap_or_else(|error| panic!("{error}"));
+    let python = python::python().unwrap_or_else(|error| panic!("{error}"));
     let mut child = Command::new(python)
-        .arg(concat!(env!("CARGO_MANIFEST_DIR"), "/mujoco/compare.py"))
+        .arg(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/python/compare_with_mujoco.py"
+        ))
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .spawn()
@@ -191,7 +193,10 @@ fn compare(jobs: &str) -> Vec<Value> {
         .write_all(jobs.as_bytes())
         .unwrap();
     let output = child.wait_with_output().unwrap();
-    assert!(output.status.success(), "compare.py failed, see above");
+    assert!(
+        output.status.success(),
+        "compare_with_mujoco.py failed, see above"
+    );
     serde_json::from_slice(&output.stdout).unwrap()
 }
 

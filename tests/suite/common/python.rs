@@ -1,4 +1,4 @@
-//! Python with MuJoCo, in a virtual environment of its own.
+//! Python with the packages of the tests, in a virtual environment of its own.
 
 use leg_boards::setup::{self, SetupError};
 use std::fs::{self, File};
@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The packages and their versions.
-const REQUIREMENTS: &str = include_str!("../../mujoco/requirements.txt");
+const REQUIREMENTS: &str = include_str!("../../python/requirements.txt");
 
-/// Why there is no MuJoCo.
+/// Why there is no such Python.
 #[derive(Debug, thiserror::Error)]
-pub enum MujocoError {
+pub enum PythonError {
     /// The environment's directory cannot be written to, or a program there does not start.
     #[error("cannot make a Python environment in {}: {error}; see that the target directory is writable", directory.display())]
     Directory {
@@ -24,16 +24,17 @@ pub enum MujocoError {
     #[error(transparent)]
     NoPython(#[from] SetupError),
     /// The environment or its packages cannot be had.
-    #[error("python3 does not install tests/mujoco/requirements.txt: a way to PyPI is needed\n{0}")]
+    #[error("python3 does not install tests/python/requirements.txt: a way to PyPI is needed\n{0}")]
     NoPackages(String),
 }
 
-/// The Python of an environment with MuJoCo in `directory`, made on first use and when the requirements change.
+/// The Python of that environment, which is made on first use and when the requirements change.
 ///
 /// # Errors
-/// A [`MujocoError`] that says what to install.
-pub fn python(directory: &Path) -> Result<PathBuf, MujocoError> {
-    let failed = |error| MujocoError::Directory {
+/// A [`PythonError`] that says what to install.
+pub fn python() -> Result<PathBuf, PythonError> {
+    let directory = &Path::new(env!("CARGO_TARGET_TMPDIR")).join("python");
+    let failed = |error| PythonError::Directory {
         directory: directory.into(),
         error,
     };
@@ -51,8 +52,8 @@ pub fn python(directory: &Path) -> Result<PathBuf, MujocoError> {
         let system_python = setup::ensure_python(&mut |doing| eprintln!("{doing}"))?;
         let venv = ["-m", "venv", "--clear"];
         let made = run(Command::new(system_python).args(venv).arg(&environment));
-        made.map_err(failed)?.map_err(MujocoError::NoPackages)?;
-        let requirements = concat!(env!("CARGO_MANIFEST_DIR"), "/mujoco/requirements.txt");
+        made.map_err(failed)?.map_err(PythonError::NoPackages)?;
+        let requirements = concat!(env!("CARGO_MANIFEST_DIR"), "/python/requirements.txt");
         let install = [
             "-m",
             "pip",
@@ -62,7 +63,7 @@ pub fn python(directory: &Path) -> Result<PathBuf, MujocoError> {
             requirements,
         ];
         let made = run(Command::new(&python).args(install));
-        made.map_err(failed)?.map_err(MujocoError::NoPackages)?;
+        made.map_err(failed)?.map_err(PythonError::NoPackages)?;
         fs::write(&installed, REQUIREMENTS).map_err(failed)?;
     }
     Ok(python)

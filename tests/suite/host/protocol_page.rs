@@ -1,0 +1,147 @@
+//! `firmware/PROTOCOL.md`: its messages are those of the firmware, its exchange is decoded, its client commands a leg.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod grammar;
+
+use crate::board::emulated_board::board::{BoardUnderTest, errors};
+use crate::common::python;
+use leg_boards::image::workspace_root;
+use leg_firmware::command::Command;
+use leg_firmware::frame::{self, Decoder, MAX_FRAME};
+use leg_firmware::host_link::{
+    BoardKind, HOST_SCHEMA, Hello, HostRefusal, HostReply, HostRequest, Identity, ResetCause,
+};
+use leg_firmware::version::VERSION;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::fmt::Write;
+use std::path::PathBuf;
+use std::{env, fs, process};
+
+/// What stands before the client's schema.
+const SCHEMA_OF_CLIENT: &str = "SCHEMA = bytes.fromhex(\"";
+
+/// Lines of the client, at most.
+const CLIENT_LINES_MAX: usize = 60;
+
+fn page() -> PathBuf {
+    workspace_root().join("firmware/PROTOCOL.md")
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut text, byte| {
+        write!(text, "{byte:02x}").unwrap();
+        text
+    })
+}
+
+/// A frame as hexadecimal digits; they are decoded again before they are shown.
+fn frame_hex<T>(number: u16, message: &T) -> String
+where
+    T: Serialize + DeserializeOwned + PartialEq + std::fmt::Debug,
+{
+    let mut out = [0; MAX_FRAME];
+    let bytes = frame::encode(number, message, &mut out).unwrap();
+    let mut decoder = Decoder::new();
+    let (last, first) = bytes.split_last().unwrap();
+    assert!(first.iter().all(|byte| decoder.push(*byte).is_none()));
+    let decoded = decoder.push(*last).unwrap().unwrap();
+    assert_eq!(decoded.sequence, number);
+    assert_eq!(decoded.message::<T>().as_ref(), Some(message));
+    hex(bytes)
+}
+
+/// A host introduces itself, lets the leg lean by 0.1 towards x, and a second host is refused.
+fn exchange() -> String {
+    let identity = Identity {
+        board: BoardKind::Stm32g474,
+        version: VERSION,
+        reset: ResetCause::Power,
+        crash_report: Default::default(),
+    };
+    let schema = HOST_SCHEMA;
+    let lean = |host| HostRequest::Command {
+        host,
+        command: Command::Move { x: 0.1, y: 0.0 },
+    };
+    let lines = [
+        (
+            "host: Identify",
+            frame_hex(1, &HostRequest::Identify(Hello { schema })),
+        ),
+        (
+            "leg:  Identified",
+            frame_hex(1, &HostReply::Identified(identity)),
+        ),
+        (
+            "host: Command, host 7, Move x 0.1, y 0",
+            frame_hex(2, &lean(7)),
+        ),
+        ("leg:  Done", frame_hex(2, &HostReply::Done)),
+        ("host: the same, host 300", frame_hex(3, &lean(300))),
+        (
+            "leg:  Refused, OtherHost",
+            frame_hex(3, &HostReply::Refused(HostRefusal::OtherHost)),
+        ),
+    ];
+    lines
+        .map(|(what, bytes)| format!("{what}\n    {bytes}\n"))
+        .concat()
+}
+
+/// The part of a text between two lines, which stay.
+fn with_part(text: &str, name: &str, part: &str) -> String {
+    let [begin, end] = ["begin", "end"].map(|edge| format!("<!-- {edge} {name} -->\n"));
+    let (before, rest) = text.split_once(&begin).unwrap();
+    let (_, after) = rest.split_once(&end).unwrap();
+    format!("{before}{begin}```text\n{part}```\n{end}{after}")
+}
+
+/// `LEG_OVERWRITE=1` writes it anew.
+#[test]
+fn the_page_has_the_messages_of_the_firmware() {
+    let text = fs::read_to_string(page()).unwrap();
+    let messages = format!("schema {}\n\n{}", hex(&HOST_SCHEMA), grammar::of_messages());
+    let expected = with_part(&text, "messages", &messages);
+    let expected = with_part(&expected, "exchange", &exchange());
+    let (before, rest) = expected.split_once(SCHEMA_OF_CLIENT).unwrap();
+    let (_, after) = rest.split_once('"').unwrap();
+    let schema = hex(&HOST_SCHEMA);
+    let expected = format!("{before}{SCHEMA_OF_CLIENT}{schema}\"{after}");
+    if env::var_os("LEG_OVERWRITE").is_some() {
+        fs::write(page(), &expected).unwrap();
+    }
+    let differing = text.lines().zip(expected.lines()).find(|(a, b)| a != b);
+    assert!(
+        text == expected || env::var_os("LEG_OVERWRITE").is_some(),
+        "PROTOCOL.md is not that of the firmware, first (page, firmware): {differing:?}; LEG_OVERWRITE=1 writes it anew"
+    );
+}
+
+/// The client of the page, as it stands there.
+#[test]
+fn the_client_of_the_page_leans_a_leg() {
+    let text = fs::read_to_string(page()).unwrap();
+    let (_, rest) = text.split_once("```python\n").unwrap();
+    let (client, _) = rest.split_once("```\n").unwrap();
+    let lines = client.lines().count();
+    assert!(lines <= CLIENT_LINES_MAX, "{lines} lines");
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("client.py");
+    fs::write(&path, client).unwrap();
+
+    let board = BoardUnderTest::new(&[]);
+    let output = process::Command::new(python::python().unwrap())
+        .arg(&path)
+        .arg(&board.port)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", errors(&output));
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(told.starts_with("x 0.200, y"), "{told}");
+    let state = board.state();
+    assert_eq!(state["state"], "held");
+    let tilt = state["tilt_deg"].as_f64().unwrap();
+    assert!((tilt - 0.2_f64.asin().to_degrees()).abs() < 0.05, "{tilt}");
+}
