@@ -110,5 +110,6 @@ mod commands {
     mod json_entries;
     mod mjcf;
     mod supports;
+    mod urdf;
     mod written_whole;
 }

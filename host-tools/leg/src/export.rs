@@ -1,11 +1,13 @@
 //! `leg export`.
 
-use crate::numbers::{azimuth_deg, finite, payload_kg, tilt_deg};
+use crate::numbers::{azimuth_deg, body_kg, finite, payload_kg, radius_m, tilt_deg};
 use crate::output::{load_rig, write};
+use clap::value_parser;
 use leg_base::failure::Failure;
 use leg_model::{Quantity, Query};
 use leg_model_tools::line_error::LineError;
 use leg_model_tools::mjcf::{HeldLeg, Mjcf, MjcfError};
+use leg_model_tools::urdf::{Body, Urdf};
 use std::path::PathBuf;
 
 /// Writes the rig for another program.
@@ -18,6 +20,33 @@ pub(crate) struct Args {
 #[derive(Debug, clap::Subcommand)]
 enum Format {
     Mjcf(MjcfArgs),
+    Urdf(UrdfArgs),
+}
+
+/// Writes the rig as a URDF robot: two revolute joints a leg, bodies of primitives, inertias and limits.
+///
+/// URDF has no tendons: the joints are those of a universal joint, and a comment says which angles are which pose. With
+/// --legs the legs are spread around a body, which a simulator may let float.
+#[derive(Debug, clap::Args)]
+struct UrdfArgs {
+    /// The rig file or the name of a ready rig; the paper's rig if left out.
+    #[arg(long, value_name = "FILE")]
+    rig: Option<PathBuf>,
+    /// Mass at the tip, kg.
+    #[arg(long, value_name = "KG", default_value = "0", value_parser = payload_kg, allow_negative_numbers = true)]
+    payload_kg: f64,
+    /// Legs around a body, 2 to 12; one leg without a body if left out.
+    #[arg(long, value_name = "N", requires_all = ["radius_m", "body_kg"], value_parser = value_parser!(u32).range(2..=12))]
+    legs: Option<u32>,
+    /// From the body's centre to the legs' joint centres, m, 0.01 to 10.
+    #[arg(long, value_name = "M", requires = "legs", value_parser = radius_m)]
+    radius_m: Option<f64>,
+    /// Mass of the body without its legs, kg, 0.001 to 1000.
+    #[arg(long, value_name = "KG", requires = "legs", value_parser = body_kg)]
+    body_kg: Option<f64>,
+    /// The file to write; standard output if left out.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
 }
 
 /// Writes the rig as a MuJoCo model whose tendons hold the loaded leg at a pose.
@@ -47,7 +76,28 @@ struct MjcfArgs {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let Format::Mjcf(args) = &args.format;
+    match &args.format {
+        Format::Mjcf(args) => write_mjcf(args),
+        Format::Urdf(args) => write_urdf(args),
+    }
+}
+
+fn write_urdf(args: &UrdfArgs) -> Result<(), Failure> {
+    let rig = load_rig(args.rig.as_deref())?;
+    let body = args.legs.zip(args.radius_m).zip(args.body_kg);
+    let body = body.map(|((legs, radius_m), mass_kg)| Body {
+        legs,
+        radius_m,
+        mass_kg,
+    });
+    let robot = Urdf::new(&rig, args.payload_kg, body).map_err(Failure::from_error)?;
+    let mut text = Vec::new();
+    let written = robot.write(&mut text);
+    written.map_err(Failure::from_error)?;
+    write(args.out.as_deref(), &String::from_utf8_lossy(&text))
+}
+
+fn write_mjcf(args: &MjcfArgs) -> Result<(), Failure> {
     let rig = load_rig(args.rig.as_deref())?;
     let query = rig.query(args.azimuth_deg, args.tilt_deg, args.payload_kg);
     let query = Query {

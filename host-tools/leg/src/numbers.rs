@@ -41,6 +41,16 @@ pub(crate) fn payload_kg(text: &str) -> Result<f64, String> {
     in_range(text, 0.0..=1e6, " kg")
 }
 
+/// How far a leg is from the centre of a body of several, m.
+pub(crate) fn radius_m(text: &str) -> Result<f64, String> {
+    in_range(text, 0.01..=10.0, " m")
+}
+
+/// The mass of such a body, kg.
+pub(crate) fn body_kg(text: &str) -> Result<f64, String> {
+    in_range(text, 0.001..=1e3, " kg")
+}
+
 /// Telemetry of `leg monitor` per second, Hz.
 pub(crate) fn monitor_rate_hz(text: &str) -> Result<f64, String> {
     in_range(text, 0.1..=100.0, " Hz")

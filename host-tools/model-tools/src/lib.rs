@@ -7,7 +7,7 @@
 //! | a pose from a line of JSON | [`jsonl::PoseLine`] | `leg eval` |
 //! | a quantity over the workspace, its extremes, a table of it | [`workspace_map::WorkspaceMap`], [`map_csv`] | `leg map` |
 //! | a tendon's curve from a tensile test | [`tensile::Fit`] | `leg curve` |
-//! | a MuJoCo model | [`mjcf::Mjcf`] | `leg export` |
+//! | a MuJoCo model, a URDF robot | [`mjcf::Mjcf`], [`urdf::Urdf`] | `leg export` |
 //! | a picture of the leg | [`rig_drawing::svg`] | `leg rig draw` |
 //! | charts and maps as SVG and PNG | [`plot::Chart`], [`plot::field::PlotField`] | `leg run --plots`, `leg map` |
 //! | Eqs. (3–7) as they stand, to check the model by | [`plain_vectors`] | none: tests |
@@ -31,6 +31,7 @@
 
 pub mod json_entries;
 pub mod jsonl;
+mod leg_shape;
 pub mod line_error;
 pub mod map_csv;
 pub mod mjcf;
@@ -39,5 +40,6 @@ pub mod plain_vectors;
 pub mod plot;
 pub mod rig_drawing;
 pub mod tensile;
+pub mod urdf;
 pub mod workspace_map;
 mod xml_element;

@@ -13,9 +13,9 @@ mod scenery;
 
 pub use held::{HeldLeg, HeldTendon};
 
+use crate::leg_shape::LegShape;
 use crate::line_error::LineError;
 use crate::xml_element::{self, Element};
-use bodies::Sizes;
 use joints::Joints;
 use std::io::{self, Write};
 
@@ -84,7 +84,7 @@ impl Mjcf {
     /// # Errors
     /// [`MjcfError::Springs`] and [`MjcfError::Massless`].
     pub fn new(leg: &HeldLeg) -> Result<Self, MjcfError> {
-        let sizes = Sizes::new(leg)?;
+        let sizes = LegShape::new(&leg.parameters, leg.payload_kg).ok_or(MjcfError::Massless)?;
         let joints = Joints::new(&leg.support, &leg.rotation)?;
         let root = Element::new("mujoco")
             .text("model", "leg")

@@ -11,9 +11,7 @@ use leg_rig::rig_file::RigFile;
 use nalgebra::{Matrix3, Matrix3x2, Vector3};
 use serde_json::{Value, json};
 use std::fs::File;
-use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 
 /// For lengths, m, and their rates, m/rad.
 const KINEMATICS: f64 = 1e-9;
@@ -163,7 +161,7 @@ fn ask(cases: &[Case]) -> Vec<Value> {
             })
         })
         .collect();
-    let answers = compare(&Value::from(jobs).to_string());
+    let answers = python::answers("compare_with_mujoco.py", &jobs);
     assert_eq!(answers.len(), cases.len());
     answers
 }
@@ -173,31 +171,6 @@ fn export(case: &Case, directory: &Path, i: usize) -> PathBuf {
     let model = Mjcf::new(&case.leg).unwrap();
     model.write(File::create(&path).unwrap()).unwrap();
     path
-}
-
-fn compare(jobs: &str) -> Vec<Value> {
-    let python = python::python().unwrap_or_else(|error| panic!("{error}"));
-    let mut child = Command::new(python)
-        .arg(concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/python/compare_with_mujoco.py"
-        ))
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
-    child
-        .stdin
-        .take()
-        .unwrap()
-        .write_all(jobs.as_bytes())
-        .unwrap();
-    let output = child.wait_with_output().unwrap();
-    assert!(
-        output.status.success(),
-        "compare_with_mujoco.py failed, see above"
-    );
-    serde_json::from_slice(&output.stdout).unwrap()
 }
 
 /// Exports a ready rig over the grid of poses and sets MuJoCo's answers beside the model.

@@ -1,10 +1,13 @@
 //! Python with the packages of the tests, in a virtual environment of its own.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
 use leg_boards::setup::{self, SetupError};
+use serde_json::Value;
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 /// The packages and their versions.
 const REQUIREMENTS: &str = include_str!("../../python/requirements.txt");
@@ -67,6 +70,23 @@ pub fn python() -> Result<PathBuf, PythonError> {
         fs::write(&installed, REQUIREMENTS).map_err(failed)?;
     }
     Ok(python)
+}
+
+/// What a script of `tests/python` answers to jobs, both as JSON.
+pub fn answers(script: &str, jobs: &[Value]) -> Vec<Value> {
+    let python = python().unwrap_or_else(|error| panic!("{error}"));
+    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("python");
+    let mut child = Command::new(python)
+        .arg(directory.join(script))
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let jobs = serde_json::to_vec(jobs).unwrap();
+    child.stdin.take().unwrap().write_all(&jobs).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{script} failed, see above");
+    serde_json::from_slice(&output.stdout).unwrap()
 }
 
 /// Runs a command to its end; one that fails gives what it said.

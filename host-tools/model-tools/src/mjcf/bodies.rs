@@ -1,14 +1,10 @@
 //! The bodies: the base, the leg and its payload, with the shapes that are shown.
 
-use super::MjcfError;
 use super::held::HeldLeg;
 use super::joints::{Joint, Joints, Shape};
 use super::scenery;
+use crate::leg_shape::LegShape;
 use crate::xml_element::Element;
-use std::f64::consts::PI;
-
-/// Density of the payload, kg/m³: steel.
-const PAYLOAD_DENSITY_KG_PER_M3: f64 = 7850.0;
 
 /// Mass of the body between a pivot's two joints, kg. It lies at the joint centre and loads nothing.
 const PIVOT_MASS_KG: f64 = 1e-6;
@@ -25,43 +21,6 @@ const PLATE: [f64; 4] = [0.25, 0.30, 0.36, 1.0];
 const SEE_THROUGH: [f64; 4] = [0.25, 0.30, 0.36, 0.35];
 const BRASS: [f64; 4] = [0.80, 0.62, 0.25, 1.0];
 
-/// Sizes of what the eye sees, and the inertia that follows from them.
-pub(super) struct Sizes {
-    /// From the joint centre to the tip, m.
-    pub tip: f64,
-    /// Radius of the ring of the leg's anchors, m.
-    pub ring: f64,
-    /// Radius of the leg, m.
-    rod: f64,
-    /// Inertia of the leg across and along its axis, about its centroid, kg·m².
-    inertia: [f64; 2],
-    /// Radius of the payload, m.
-    payload: f64,
-}
-
-impl Sizes {
-    pub fn new(leg: &HeldLeg) -> Result<Self, MjcfError> {
-        let mass = leg.parameters.leg_mass_kg;
-        if mass + leg.payload_kg <= 0.0 {
-            return Err(MjcfError::Massless);
-        }
-        let radii = leg.parameters.leg_anchors_m.map(|[x, y]| x.hypot(y));
-        let ring = radii.iter().copied().fold(0.0, f64::max);
-        let (tip, rod) = (leg.tip_m(), ring / 4.0);
-        let volume = leg.payload_kg / PAYLOAD_DENSITY_KG_PER_M3;
-        Ok(Self {
-            tip,
-            ring,
-            rod,
-            inertia: [
-                mass * (3.0 * rod * rod + tip * tip) / 12.0,
-                mass * rod * rod / 2.0,
-            ],
-            payload: (3.0 * volume / (4.0 * PI)).cbrt(),
-        })
-    }
-}
-
 /// Name of the site where tendon `i` is fixed on the base plate.
 pub(super) fn base_site(i: usize) -> String {
     format!("base_{}", i + 1)
@@ -73,7 +32,7 @@ pub(super) fn leg_site(i: usize) -> String {
 }
 
 /// The base plate, its anchors and all that hangs on the joint.
-pub(super) fn world(leg: &HeldLeg, sizes: &Sizes, joints: &Joints) -> Element {
+pub(super) fn world(leg: &HeldLeg, sizes: &LegShape, joints: &Joints) -> Element {
     let p = &leg.parameters;
     let world = Element::new("worldbody")
         .child(scenery::light(sizes.tip))
@@ -87,8 +46,8 @@ pub(super) fn world(leg: &HeldLeg, sizes: &Sizes, joints: &Joints) -> Element {
 }
 
 /// A body between two joints.
-fn pivot_body(leg: &HeldLeg, sizes: &Sizes, pivot: &Joint) -> Element {
-    let inertia = PIVOT_INERTIA_RATIO * leg_axial_inertia(leg, sizes);
+fn pivot_body(leg: &HeldLeg, sizes: &LegShape, pivot: &Joint) -> Element {
+    let inertia = PIVOT_INERTIA_RATIO * leg_axial_inertia(sizes);
     Element::new("body")
         .text("name", "pivot")
         .child(inertial(0.0, PIVOT_MASS_KG, [inertia; 3]))
@@ -96,11 +55,11 @@ fn pivot_body(leg: &HeldLeg, sizes: &Sizes, pivot: &Joint) -> Element {
 }
 
 /// Of the leg and its payload.
-fn leg_axial_inertia(leg: &HeldLeg, sizes: &Sizes) -> f64 {
-    sizes.inertia[1] + 0.4 * leg.payload_kg * sizes.payload * sizes.payload
+fn leg_axial_inertia(sizes: &LegShape) -> f64 {
+    sizes.inertia[1] + sizes.payload_inertia
 }
 
-fn leg_body(leg: &HeldLeg, sizes: &Sizes, joints: &Joints) -> Element {
+fn leg_body(leg: &HeldLeg, sizes: &LegShape, joints: &Joints) -> Element {
     let p = &leg.parameters;
     let [across, along] = sizes.inertia;
     let weight = (p.leg_mass_kg > 0.0)
@@ -155,23 +114,23 @@ fn anchors(name: fn(usize) -> String, points: &[[f64; 2]; 3], height: f64) -> Ve
     points.iter().enumerate().map(site).collect()
 }
 
-fn plate(name: &str, sizes: &Sizes, height: f64, rgba: &[f64]) -> Element {
+fn plate(name: &str, sizes: &LegShape, height: f64, rgba: &[f64]) -> Element {
     shape(name, "cylinder", rgba)
         .numbers("size", &[1.15 * sizes.ring, sizes.ring / 32.0])
         .numbers("pos", &[0.0, 0.0, height])
 }
 
-fn centre(sizes: &Sizes) -> Element {
+fn centre(sizes: &LegShape) -> Element {
     shape("joint", "sphere", &BRASS).numbers("size", &[sizes.ring / 8.0])
 }
 
-fn rod(sizes: &Sizes) -> Element {
+fn rod(sizes: &LegShape) -> Element {
     shape("rod", "cylinder", &STEEL)
         .numbers("size", &[sizes.rod])
         .numbers("fromto", &[0.0, 0.0, 0.0, 0.0, 0.0, -sizes.tip])
 }
 
-fn payload(leg: &HeldLeg, sizes: &Sizes) -> Element {
+fn payload(leg: &HeldLeg, sizes: &LegShape) -> Element {
     let ball = shape("payload", "sphere", &BRASS)
         .numbers("size", &[sizes.payload])
         .numbers("mass", &[leg.payload_kg]);

@@ -1,0 +1,110 @@
+//! Legs as a URDF robot, for other programs: two revolute joints a leg, bodies of primitives, inertias and limits.
+//!
+//! URDF has no tendons and no closed chains: the leg of a rig is a universal joint, R = Rx(α)·Ry(β), that the tendons turn.
+//! Its tip goes where that of any support goes; only on `universal` does it twist as the support does. Each joint ends at the
+//! rig's greatest tilt, so that the corners of the joints' range are beyond it.
+
+mod links;
+
+use crate::leg_shape::LegShape;
+use crate::xml_element::{self, Element};
+use leg_model::{Error, evaluate};
+use leg_rig::number::decimal;
+use leg_rig::rig_file::RigFile;
+use links::{body, leg};
+use std::f64::consts::TAU;
+use std::io::{self, Write};
+
+/// Several legs on a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// How many, evenly spread.
+    pub legs: u32,
+    /// From the body's centre to each joint centre, m.
+    pub radius_m: f64,
+    /// Without the legs, kg: a disc.
+    pub mass_kg: f64,
+}
+
+/// Why there is no robot.
+#[derive(Debug, thiserror::Error)]
+pub enum UrdfError {
+    /// The model refuses the payload.
+    #[error(transparent)]
+    Model(#[from] Error),
+    /// Nothing has a mass.
+    #[error("neither the leg nor the payload has a mass: give a payload")]
+    Massless,
+}
+
+/// What the joints of a leg can do.
+#[derive(Clone, Copy, Debug)]
+struct JointLimits {
+    tilt_rad: f64,
+    /// About x and y, N·m: what the tendons give straight down, one side at its highest tension and the other at its lowest.
+    moment_nm: [f64; 2],
+    speed_rad_per_s: f64,
+}
+
+/// A robot that is ready to be written.
+#[derive(Clone, Debug)]
+pub struct Urdf {
+    root: Element,
+    comment: String,
+}
+
+impl Urdf {
+    /// One leg, whose first link is the base: its origin is the joint centre, z points up. Or several on a body, whose origin is
+    /// in the plane of the joint centres; the first is towards x.
+    ///
+    /// # Errors
+    /// [`UrdfError`].
+    pub fn new(rig: &RigFile, payload_kg: f64, several: Option<Body>) -> Result<Self, UrdfError> {
+        let shape = LegShape::new(&rig.parameters, payload_kg).ok_or(UrdfError::Massless)?;
+        let limits = limits(rig, payload_kg)?;
+        let of_leg = |prefix: &str| leg(rig, payload_kg, &shape, limits, prefix);
+        let root = Element::new("robot").text("name", "leg");
+        let root = match several {
+            None => root.children(of_leg("")),
+            Some(several) => {
+                let legs = (0..several.legs).flat_map(|i| {
+                    let prefix = format!("leg_{}_", i + 1);
+                    let angle = TAU * f64::from(i) / f64::from(several.legs);
+                    let mount = links::mount(&prefix, several.radius_m, angle);
+                    [mount].into_iter().chain(of_leg(&prefix))
+                });
+                root.child(body(&several, &shape)).children(legs)
+            }
+        };
+        let comment = " Not from the rig file: the leg's inertia (a solid cylinder from joint to tip) and the payload's (a steel ball).\n  \
+             A leg that leans by t towards azimuth a has tilt_x = atan2(sin t sin a, cos t), tilt_y = -asin(sin t cos a). "
+            .to_owned();
+        Ok(Self { root, comment })
+    }
+
+    /// Writes the XML.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write(&self, out: impl Write) -> io::Result<()> {
+        xml_element::write(&self.root, &self.comment, out)
+    }
+}
+
+fn limits(rig: &RigFile, payload_kg: f64) -> Result<JointLimits, Error> {
+    let evaluation = evaluate(&rig.parameters, &rig.query(0.0, 0.0, payload_kg))?;
+    let [x, y, _] = evaluation.moment_map_m;
+    let moment = |row: [f64; 3]| {
+        let of = |sign: f64| {
+            let arms = row.map(|arm| sign * arm);
+            let pull = |arm: f64| arm * if arm > 0.0 { rig.f_max_n } else { rig.f_min_n };
+            arms.into_iter().map(pull).sum::<f64>()
+        };
+        of(1.0).min(of(-1.0))
+    };
+    Ok(JointLimits {
+        tilt_rad: rig.tilt_deg.to_radians(),
+        moment_nm: [moment(x), moment(y)],
+        speed_rad_per_s: decimal(rig.gains.motion.speed_rad_per_s),
+    })
+}
