@@ -90,6 +90,7 @@ mod host {
     mod jog;
     mod link_damage;
     mod monitor_screen;
+    mod plot;
     mod protocol_page;
     mod tune;
 }

@@ -31,3 +31,4 @@ pub mod run_charts;
 pub mod sensitivity;
 pub mod stand;
 pub mod strikes;
+mod time_charts;

@@ -1,9 +1,11 @@
 //! Recordings of a simulation or of a leg: MCAP, which Foxglove and PlotJuggler open and `leg replay` reproduces, or CSV.
 
+mod contents;
 mod csv_file;
 mod error;
 mod mcap_file;
 mod replay;
+mod samples;
 mod tick_record;
 
 #[cfg(test)]
@@ -11,6 +13,7 @@ mod tests;
 
 pub use error::RecordingError;
 pub use replay::{Replay, TickDifference, replay};
+pub use samples::{Recorded, Samples, read_samples};
 
 use csv_file::CsvFile;
 use leg_base::atomic_file::PartFile;
@@ -20,7 +23,7 @@ use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
 use leg_sim::simulation::Tick;
 use mcap_file::McapFile;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -30,6 +33,35 @@ const ROW_TICKS: u32 = 8;
 
 /// From one time at which a recording is on the disk to the next, s of the recording.
 const FLUSH_S: f64 = 1.0;
+
+/// What a recording is of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct About {
+    /// In words: what a chart of it is called.
+    pub title: String,
+    /// Version of this program.
+    pub version: String,
+    /// The scenario's file or name; none for a log of a leg.
+    pub scenario: Option<String>,
+    /// The rig's file or name; none for a log of a leg.
+    pub rig: Option<String>,
+    /// What everything random in it follows from; none for a log of a leg.
+    pub seed: Option<u64>,
+}
+
+impl About {
+    /// Of a log of a leg.
+    #[must_use]
+    pub fn log(title: &str) -> Self {
+        Self {
+            title: title.into(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            scenario: None,
+            rig: None,
+            seed: None,
+        }
+    }
+}
 
 /// A recording that is being written.
 pub struct Recording {
@@ -113,6 +145,7 @@ impl Recording {
 /// then is kept; that of the work is passed on as it is, and nothing is kept.
 pub fn record<T>(
     file: &Path,
+    about: &About,
     settings: Option<&Settings>,
     work: impl FnOnce(&mut Recording) -> Result<T, RecordingError>,
 ) -> Result<T, Failure> {
@@ -127,7 +160,7 @@ pub fn record<T>(
         let file = if extension == Some("csv") {
             RecordingFile::Csv(Box::new(CsvFile::new(new)))
         } else {
-            RecordingFile::Mcap(Box::new(McapFile::new(new, settings)?))
+            RecordingFile::Mcap(Box::new(McapFile::new(new, about, settings)?))
         };
         let mut recording = Recording {
             file,

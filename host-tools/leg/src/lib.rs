@@ -58,6 +58,7 @@ mod numbers;
 mod options;
 mod output;
 mod paper;
+mod plot;
 mod progress;
 mod replay;
 mod rig;
@@ -116,6 +117,7 @@ enum Command {
     Map(map::Args),
     Monitor(monitor::Args),
     Paper(paper::Args),
+    Plot(plot::Args),
     Replay(replay::Args),
     Rig(rig::Args),
     Run(run::Args),
@@ -172,6 +174,7 @@ fn run(command: &Command, options: Options) -> Result<(), Failure> {
         Command::Map(args) => map::run(args, options),
         Command::Monitor(args) => monitor::run(args, options),
         Command::Paper(args) => paper::run(args, options),
+        Command::Plot(args) => plot::run(args, options),
         Command::Replay(args) => replay::run(args, options),
         Command::Rig(args) => rig::run(args, options),
         Command::Run(args) => run::run(args, options),

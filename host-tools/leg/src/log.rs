@@ -11,7 +11,7 @@ use counter::{Counter, Foreign};
 use leg_base::failure::Failure;
 use leg_firmware::sensors::TICK_HZ;
 use leg_host::operator::{Operator, OperatorError};
-use leg_host::recording::{self, Recording, RecordingError};
+use leg_host::recording::{self, About, Recording, RecordingError};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -60,7 +60,8 @@ fn rate(text: &str) -> Result<u16, String> {
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let mut operator = args.leg.open(Purpose::Use, options)?.operator;
     note_unfinished(&args.out);
-    let (recorded, ended) = recording::record(&args.out, None, |file| {
+    let about = About::log(operator.name());
+    let (recorded, ended) = recording::record(&args.out, &about, None, |file| {
         let mut counter = Counter::new(args.every_ticks);
         let bar = progress::counter("times");
         let ended = record(&mut operator, args, file, &mut counter, || bar.inc(1));

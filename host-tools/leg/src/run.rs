@@ -11,7 +11,7 @@ use crate::progress;
 use leg_base::failure::Failure;
 use leg_bench::run_charts;
 use leg_boards::image;
-use leg_host::recording;
+use leg_host::recording::{self, About};
 use leg_rig::rig_file::RigFile;
 use leg_sim::link::Link;
 use leg_sim::scenario::Scenario;
@@ -119,17 +119,29 @@ fn simulate(
     }
     match &args.record {
         None => watched(&mut |_| bar.inc(1)),
-        Some(file) => recording::record(file, Some(&settings), |recording| {
-            let mut written = Ok(());
-            let summary = watched(&mut |tick| {
-                bar.inc(1);
-                if written.is_ok() {
-                    written = recording.take_tick(tick);
-                }
-            })?;
-            written?;
-            Ok(summary)
-        }),
+        Some(file) => {
+            recording::record(file, &about(args, scenario), Some(&settings), |recording| {
+                let mut written = Ok(());
+                let summary = watched(&mut |tick| {
+                    bar.inc(1);
+                    if written.is_ok() {
+                        written = recording.take_tick(tick);
+                    }
+                })?;
+                written?;
+                Ok(summary)
+            })
+        }
+    }
+}
+
+fn about(args: &Args, scenario: &Scenario) -> About {
+    let rig = args.rig.as_ref().map(|rig| rig.display().to_string());
+    About {
+        scenario: Some(args.scenario.display().to_string()),
+        rig: Some(rig.unwrap_or_else(|| scenario.rig.clone())),
+        seed: Some(scenario.seed),
+        ..About::log(&scenario.title)
     }
 }
 

@@ -13,6 +13,7 @@ mod test_stand;
 pub use comparison::Comparison;
 pub use shadow::{Divergence, OTHER_TICKS_MAX};
 pub use summary::{Measurement, Sample, SimulationError, Summary};
+pub use test_stand::SAMPLE_TICKS;
 
 use crate::emulated_leg::{EmulatedLeg, assembled};
 use crate::link::Link;

@@ -55,7 +55,11 @@ fn a_leg_that_sags_knows_where_it_is() {
         commanded > 50.0 && reference < 5.0
     });
     assert!(ahead);
-    assert!(sampled.iter().all(|sample| sample.path_error_mm.is_none()));
+    assert!(
+        sampled
+            .iter()
+            .all(|sample| sample.comparison.path_error_mm.is_none())
+    );
 }
 
 /// Along a path the command is the path: the chart's error is that of the measurement.
@@ -68,7 +72,7 @@ fn the_error_along_a_path_is_that_of_its_measurement() {
     let along: Vec<f64> = summary
         .samples
         .iter()
-        .filter_map(|sample| sample.path_error_mm)
+        .filter_map(|sample| sample.comparison.path_error_mm)
         .collect();
     assert!((900..1100).contains(&along.len()), "{}", along.len());
     let highest = along.iter().copied().fold(0.0, f64::max);
@@ -80,7 +84,7 @@ fn the_error_along_a_path_is_that_of_its_measurement() {
     for sample in summary
         .samples
         .iter()
-        .filter(|sample| sample.path_error_mm.is_some())
+        .filter(|sample| sample.comparison.path_error_mm.is_some())
     {
         let [estimated, reference, commanded] = errors_mm(&sample.comparison);
         let errors_mm = [estimated, reference, commanded];
@@ -89,6 +93,6 @@ fn the_error_along_a_path_is_that_of_its_measurement() {
             "{:?}",
             sample.comparison
         );
-        assert!((commanded - sample.path_error_mm.unwrap()).abs() < 1e-9);
+        assert!((commanded - sample.comparison.path_error_mm.unwrap()).abs() < 1e-9);
     }
 }

@@ -29,6 +29,7 @@ impl CsvFile {
         }
         let texts = columns().map(|(_, value)| match value {
             Value::String(text) => text.clone(),
+            Value::Null => String::new(),
             value => value.to_string(),
         });
         self.writer

@@ -2,13 +2,13 @@
 //! all the telemetry. What is not needed to run it again is JSON.
 
 use super::tick_record::{TickRecord, to_bytes};
-use super::{RecordingError, to_json};
+use super::{About, RecordingError, to_json};
 use leg_base::description::hex;
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
 use leg_firmware_bench::protocol::BENCH_SCHEMA;
-use leg_sim::simulation::Tick;
+use leg_sim::simulation::{SAMPLE_TICKS, Tick};
 use mcap::records::MessageHeader;
 use mcap::{WriteOptions, Writer};
 use serde_json::{Value, json};
@@ -20,17 +20,15 @@ use std::mem::ManuallyDrop;
 /// Topics.
 pub(super) const SETTINGS: &str = "/settings";
 pub(super) const TICKS: &str = "/ticks";
-const TELEMETRY: Topic = ("/leg", "Telemetry");
-const COMPARISON: Topic = ("/simulation", "Comparison");
+pub(super) const ABOUT: Topic = ("/about", "About");
+pub(super) const TELEMETRY: Topic = ("/leg", "Telemetry");
+pub(super) const COMPARISON: Topic = ("/simulation", "Comparison");
 
 /// A topic of JSON, and the name of its messages' schema.
-type Topic = (&'static str, &'static str);
+pub(super) type Topic = (&'static str, &'static str);
 
 /// The key of a channel's metadata under which the schema of its messages stands.
 pub(super) const SCHEMA_KEY: &str = "schema";
-
-/// Ticks of a simulation between two messages of telemetry: 250 a second.
-const TELEMETRY_TICKS: u32 = 32;
 
 /// A tick in ns.
 const TICK_NS: u64 = 1_000_000_000 / TICK_HZ as u64;
@@ -50,7 +48,11 @@ pub(super) fn schema() -> String {
 }
 
 impl McapFile {
-    pub fn new(file: File, settings: Option<&Settings>) -> Result<Self, RecordingError> {
+    pub fn new(
+        file: File,
+        about: &About,
+        settings: Option<&Settings>,
+    ) -> Result<Self, RecordingError> {
         let options = WriteOptions::new().compression(None).library("leg");
         let mut file = Self {
             writer: ManuallyDrop::new(options.create(BufWriter::new(file))?),
@@ -58,6 +60,9 @@ impl McapFile {
             telemetry: None,
             comparison: None,
         };
+        let value = to_json(about)?;
+        let channel = file.json_channel(None, ABOUT, &value)?;
+        file.write(channel, 0, 0, value.to_string().as_bytes())?;
         if let Some(settings) = settings {
             let channel = file.postcard_channel(SETTINGS)?;
             file.write(channel, 0, 0, &to_bytes(settings)?)?;
@@ -79,7 +84,7 @@ impl McapFile {
             time_ns,
             &to_bytes(&TickRecord::new(tick)?)?,
         )?;
-        if number.is_multiple_of(TELEMETRY_TICKS) {
+        if number.is_multiple_of(SAMPLE_TICKS) {
             self.write_telemetry(number, time_ns, tick.telemetry)?;
             let value = to_json(tick.comparison)?;
             let channel = self.json_channel(self.comparison, COMPARISON, &value)?;

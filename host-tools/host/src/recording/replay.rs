@@ -1,5 +1,6 @@
 //! Reproduces a recording with the present code, bit for bit.
 
+use super::contents::Contents;
 use super::mcap_file::{SCHEMA_KEY, SETTINGS, TICKS, schema};
 use super::tick_record::{TickRecord, bits};
 use leg_base::failure::Failure;
@@ -7,11 +8,8 @@ use leg_firmware::host_link::BoardKind;
 use leg_firmware_bench::protocol::TickRequest;
 use leg_firmware_bench::server::emulated;
 use leg_firmware_bench::virtual_leg::VirtualLeg;
-use mcap::read::Options;
-use mcap::{MAGIC, McapError, Message, MessageStream};
+use mcap::Message;
 use serde::{Deserialize, Serialize};
-use std::fs::File;
-use std::io::{self, Read};
 use std::path::Path;
 
 /// How a replay compares with its recording.
@@ -50,53 +48,29 @@ pub fn replay(file: &Path) -> Result<Replay, Failure> {
     })
 }
 
-/// All of a file that begins as a recording: another one may have no end.
-fn read_file(file: &Path) -> Result<Vec<u8>, String> {
-    let unreadable = |error: io::Error| format!("cannot be read: {error}");
-    let mut bytes = vec![0; MAGIC.len()];
-    let mut file = File::open(file).map_err(unreadable)?;
-    match file.read_exact(&mut bytes) {
-        Err(error) if error.kind() != io::ErrorKind::UnexpectedEof => {
-            return Err(unreadable(error));
-        }
-        Ok(()) if bytes == MAGIC => {}
-        _ => return Err(format!("is no whole MCAP file: {}", McapError::BadMagic)),
-    }
-    file.read_to_end(&mut bytes).map_err(unreadable)?;
-    Ok(bytes)
-}
-
 fn compare(file: &Path) -> Result<Replay, String> {
-    let bytes = read_file(file)?;
-    let not_whole = |error: McapError| format!("is no whole MCAP file: {error}");
-    // What a program that was killed leaves is whole up to a place.
-    let finished = bytes.len() > MAGIC.len() && bytes.ends_with(MAGIC);
-    let options = (!finished).then_some(Options::IgnoreEndMagic);
+    let contents = Contents::read(file)?;
     let mut leg = None;
     let mut result = Replay {
         ticks: 0,
-        finished,
+        finished: contents.finished,
         other: 0,
         first: None,
     };
-    let options = options.into_iter().collect();
-    for message in MessageStream::new_with_options(&bytes, options).map_err(not_whole)? {
-        let message = match message {
-            Err(McapError::UnexpectedEof | McapError::UnexpectedEoc) if !finished => break,
-            message => message.map_err(not_whole)?,
-        };
+    contents.each(|message| {
         match (message.channel.topic.as_str(), &mut leg) {
             (SETTINGS, leg) => {
                 let identity = emulated(BoardKind::InProcess);
-                let virtual_leg = VirtualLeg::new(identity, &read(&message)?)
+                let virtual_leg = VirtualLeg::new(identity, &read(message)?)
                     .map_err(|error| format!("holds settings that are refused: {error}"))?;
                 *leg = Some(virtual_leg);
             }
-            (TICKS, Some(leg)) => result.take(leg, read(&message)?),
-            (TICKS, None) => break,
+            (TICKS, Some(leg)) => result.take(leg, read(message)?),
+            (TICKS, None) => return Ok(false),
             _ => {}
         }
-    }
+        Ok(true)
+    })?;
     leg.map(|_| result)
         .ok_or_else(|| "holds no settings: it is no recording of `leg run`".into())
 }

@@ -1,6 +1,6 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{record, replay};
+use super::{About, record, replay};
 use leg_base::failure::Failure;
 use leg_firmware::drive::Drive;
 use leg_rig::rig_file::RigFile;
@@ -25,7 +25,7 @@ fn simulation() -> Simulation {
 fn record_spoilt(file: &Path, spoil: impl Fn(&mut Drive<f32>, u32)) -> u64 {
     let simulation = simulation();
     let settings = simulation.settings().clone();
-    record(file, Some(&settings), |recording| {
+    record(file, &About::log("test"), Some(&settings), |recording| {
         let watch = &mut |tick: &Tick<'_>| {
             let mut drive = *tick.drive;
             spoil(&mut drive, tick.telemetry.tick - 1);

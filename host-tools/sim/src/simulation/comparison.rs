@@ -1,9 +1,9 @@
 //! What was commanded, what the trajectory asks for, what the leg estimates, and what is true.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The simulated leg beside what it reports, as a tick finds them. Tips are in frame {A}.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     /// Where the host has sent the tip: the end of a move, or the point of a streamed path at that time; the reference after a
     /// hold, mm.
@@ -18,6 +18,8 @@ pub struct Comparison {
     pub tensions_true_n: [f64; 3],
     /// kg.
     pub payload_true_kg: f64,
+    /// Distance of the true tip from where a streamed path has it at that time, mm; none where no path is followed.
+    pub path_error_mm: Option<f64>,
 }
 
 impl Comparison {

@@ -81,8 +81,6 @@ pub struct Sample {
     pub time_s: f64,
     /// The simulated leg beside what it reports.
     pub comparison: Comparison,
-    /// Distance of the true tip from where a streamed path has it at that time, mm; none where no path is followed.
-    pub path_error_mm: Option<f64>,
     /// What the leg reports.
     pub telemetry: Telemetry<f32>,
 }

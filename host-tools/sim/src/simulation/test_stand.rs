@@ -23,7 +23,7 @@ use std::collections::VecDeque;
 const AVERAGE_TICKS: usize = 2000;
 
 /// Ticks between two samples.
-const SAMPLE_TICKS: u64 = 16;
+pub const SAMPLE_TICKS: u32 = 16;
 
 /// Everything but the steps.
 pub(super) struct TestStand<'a> {
@@ -194,11 +194,10 @@ impl<'a> TestStand<'a> {
     }
 
     fn sample(&mut self, time_s: f64, comparison: &Comparison, telemetry: &Telemetry<f32>) {
-        if self.summary.ticks.is_multiple_of(SAMPLE_TICKS) {
+        if self.summary.ticks.is_multiple_of(SAMPLE_TICKS.into()) {
             self.summary.samples.push(Sample {
                 time_s,
                 comparison: *comparison,
-                path_error_mm: self.path_error_m.map(|m| m * 1000.0),
                 telemetry: *telemetry,
             });
         }
@@ -215,6 +214,7 @@ impl<'a> TestStand<'a> {
             tip_true_mm: mm(self.truth.tip_m),
             tensions_true_n: self.truth.tensions_n,
             payload_true_kg: self.truth.payload_kg,
+            path_error_mm: self.path_error_m.map(|m| m * 1000.0),
         }
     }
 

@@ -1,0 +1,91 @@
+//! `leg plot`: the charts of a run from its recording, and of a leg from a log.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn leg(arguments: &[&str], directory: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_leg-under-test"))
+        .args(arguments)
+        .current_dir(directory)
+        .output()
+        .unwrap()
+}
+
+fn succeeds(arguments: &[&str], directory: &Path) -> String {
+    let output = leg(arguments, directory);
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}: {told}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Every file of a directory by its name.
+fn files(directory: &Path) -> BTreeMap<String, Vec<u8>> {
+    let entries = fs::read_dir(directory).unwrap().map(Result::unwrap);
+    entries
+        .map(|entry| {
+            let name = entry.file_name().into_string().unwrap();
+            (name, fs::read(entry.path()).unwrap())
+        })
+        .collect()
+}
+
+/// A step of payload, and a path that is followed, whose charts have a curve more.
+#[test]
+fn the_charts_of_a_run_are_drawn_again_to_the_pixel() {
+    for scenario in ["payload", "circle", "homing"] {
+        let directory = tempfile::tempdir().unwrap();
+        let run = ["run", "--on", "sim", "--scenario", scenario];
+        let record = ["--record", "run.mcap", "--plots", "run"];
+        succeeds(&[run.as_slice(), &record].concat(), directory.path());
+        let plot = ["plot", "run.mcap", "--plots", "again"];
+        succeeds(&plot, directory.path());
+        let [run, again] = ["run", "again"].map(|name| files(&directory.path().join(name)));
+        assert_eq!(run.len(), 10, "five charts as SVG and PNG");
+        let names = |all: &BTreeMap<String, Vec<u8>>| all.keys().cloned().collect::<Vec<_>>();
+        assert_eq!(names(&run), names(&again));
+        for (name, picture) in &run {
+            assert!(again[name] == *picture, "{scenario}: {name} differs");
+        }
+    }
+}
+
+#[test]
+fn a_log_of_a_leg_is_drawn() {
+    let directory = tempfile::tempdir().unwrap();
+    let log = ["log", "--on", "sim", "--for", "0.5", "--out", "leg.mcap"];
+    succeeds(&log, directory.path());
+    succeeds(&["plot", "leg.mcap", "--plots", "charts"], directory.path());
+    let charts = files(&directory.path().join("charts"));
+    let names: Vec<_> = charts
+        .keys()
+        .filter(|name| name.ends_with(".svg"))
+        .collect();
+    assert_eq!(
+        names,
+        ["payload.svg", "stiffness.svg", "tensions.svg", "tilt.svg"]
+    );
+    let tensions = String::from_utf8_lossy(&charts["tensions.svg"]);
+    assert!(tensions.contains("measured tension (N)"), "{tensions}");
+}
+
+#[test]
+fn what_is_no_recording_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    fs::write(directory.path().join("text.mcap"), "time_s\n").unwrap();
+    for (file, told) in [
+        ("text.mcap", "is no whole MCAP file"),
+        ("missing.mcap", "cannot be read"),
+    ] {
+        let output = leg(&["plot", file], directory.path());
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        assert!(
+            error.contains(told) && error.contains("leg run --record"),
+            "{error}"
+        );
+    }
+}
