@@ -40,6 +40,8 @@ pub(super) struct McapFile {
     ticks: Option<u16>,
     telemetry: Option<u16>,
     comparison: Option<u16>,
+    /// What it is of, until it is written: with the first message, for a leg's time does not begin at zero.
+    about: Option<Value>,
 }
 
 /// The hash of all message types, in words: a recording is replayed by the sources that made it.
@@ -59,10 +61,8 @@ impl McapFile {
             ticks: None,
             telemetry: None,
             comparison: None,
+            about: Some(to_json(about)?),
         };
-        let value = to_json(about)?;
-        let channel = file.json_channel(None, ABOUT, &value)?;
-        file.write(channel, 0, 0, value.to_string().as_bytes())?;
         if let Some(settings) = settings {
             let channel = file.postcard_channel(SETTINGS)?;
             file.write(channel, 0, 0, &to_bytes(settings)?)?;
@@ -100,6 +100,10 @@ impl McapFile {
         time_ns: u64,
         telemetry: &Telemetry<f32>,
     ) -> Result<(), RecordingError> {
+        if let Some(about) = self.about.take() {
+            let channel = self.json_channel(None, ABOUT, &about)?;
+            self.write(channel, 0, time_ns, about.to_string().as_bytes())?;
+        }
         let value = to_json(telemetry)?;
         let channel = self.json_channel(self.telemetry, TELEMETRY, &value)?;
         self.telemetry = Some(channel);

@@ -123,7 +123,7 @@ fn work_that_fails_leaves_no_recording() {
     let file = directory.path().join("leg.mcap");
     let failure = Failure::failed("no", "");
     let settings = simulation().settings().clone();
-    let failed = record(&file, Some(&settings), |_| {
+    let failed = record(&file, &About::log("test"), Some(&settings), |_| {
         Err::<(), _>(failure.clone().into())
     });
     assert_eq!(failed, Err(failure));
@@ -170,7 +170,7 @@ fn a_recording_is_beside_its_name_until_it_is_whole_and_is_never_overwritten() {
     std::fs::write(&file, "old").unwrap();
     std::fs::write(place("leg.part.mcap"), "of a program that was killed").unwrap();
     let settings = simulation().settings().clone();
-    record(&file, Some(&settings), |recording| {
+    record(&file, &About::log("test"), Some(&settings), |recording| {
         let mut ticks = 0;
         let watch = &mut |tick: &Tick<'_>| {
             recording.take_tick(tick).unwrap();
@@ -198,7 +198,9 @@ fn a_full_disk_is_an_error_and_no_panic() {
         full.unwrap()
     };
     let settings = simulation().settings().clone();
-    let error = super::McapFile::new(full(), Some(&settings)).err().unwrap();
+    let error = super::McapFile::new(full(), &About::log("test"), Some(&settings))
+        .err()
+        .unwrap();
     let failure = error.failure(Path::new("leg.mcap"), Some("leg.part.mcap".into()));
     let text = failure.render(false);
     assert!(
@@ -221,7 +223,7 @@ fn telemetry_alone_is_recorded_with_the_legs_time() {
     simulation().run(&mut InProcess::new(), watch).unwrap();
     let [mcap, csv] = ["leg.mcap", "leg.csv"].map(|name| directory.path().join(name));
     for file in [&mcap, &csv] {
-        record(file, None, |recording| {
+        record(file, &About::log("test"), None, |recording| {
             for telemetry in &telemetry {
                 recording.take_telemetry(telemetry).unwrap();
             }
@@ -236,7 +238,10 @@ fn telemetry_alone_is_recorded_with_the_legs_time() {
         .unwrap()
         .map(Result::unwrap)
         .collect();
-    assert_eq!(messages.len(), telemetry.len());
+    assert_eq!(messages.len(), 1 + telemetry.len());
+    let (about, first) = (&messages[0], &messages[1]);
+    assert_eq!(about.channel.topic, "/about");
+    assert_eq!(about.log_time, first.log_time);
     let (last, tick) = (messages.last().unwrap(), telemetry.last().unwrap().tick);
     assert_eq!(last.channel.topic, "/leg");
     assert_eq!(last.log_time, u64::from(tick) * 125_000);
