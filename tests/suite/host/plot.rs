@@ -2,8 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use mcap::Writer;
 use std::collections::BTreeMap;
-use std::fs;
+use std::fs::{self, File};
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -76,9 +77,12 @@ fn a_log_of_a_leg_is_drawn() {
 fn what_is_no_recording_is_refused() {
     let directory = tempfile::tempdir().unwrap();
     fs::write(directory.path().join("text.mcap"), "time_s\n").unwrap();
+    let other = File::create(directory.path().join("other.mcap")).unwrap();
+    Writer::new(other).unwrap().finish().unwrap();
     for (file, told) in [
         ("text.mcap", "is no whole MCAP file"),
         ("missing.mcap", "cannot be read"),
+        ("other.mcap", "holds no telemetry of a leg"),
     ] {
         let output = leg(&["plot", file], directory.path());
         let error = String::from_utf8_lossy(&output.stderr);

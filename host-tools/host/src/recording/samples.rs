@@ -64,14 +64,18 @@ fn read(file: &Path) -> Result<Recorded, String> {
         }
         Ok(true)
     })?;
+    if log.is_empty() {
+        return Err("holds no telemetry of a leg".into());
+    }
     let samples = if simulation.is_empty() {
         Samples::Log(log)
     } else {
         Samples::Simulation(simulation)
     };
+    // Recordings of earlier versions do not say it.
+    let named = || About::log(&file.display().to_string());
     Ok(Recorded {
-        about: about
-            .ok_or("does not say what it is of: it is no recording of this version of `leg`")?,
+        about: about.unwrap_or_else(named),
         finished: contents.finished,
         samples,
     })
