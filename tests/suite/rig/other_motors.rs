@@ -17,17 +17,19 @@ fn text(actuator: &str) -> String {
 }
 
 const WORK: &str = "title = \"other motors\"\nseed = 6\nsteps = [ { await = { state = \"disarmed\", timeout_s = 1 } }, \"home\", \
-                    { await = { state = \"active\", timeout_s = 90 } }, { wait_s = 3 }, \
-                    { move = { azimuth_deg = 30, tilt_deg = 15 } }, { arrive = { then_s = 2, timeout_s = 20 } }, \
+                    { await = { state = \"active\", timeout_s = 150 } }, { wait_s = 3 }, \
+                    { move = { azimuth_deg = 30, tilt_deg = 15 } }, { arrive = { then_s = 2, timeout_s = 60 } }, \
                     { measure = { name = \"tip\", quantity = \"tip_error_mm\", between = [0, 0.1] } }, \
                     { pretension_n = 100 }, { wait_s = 2 }, \
-                    { move = { azimuth_deg = 210, tilt_deg = 10 } }, { arrive = { then_s = 2, timeout_s = 20 } }, \
+                    { move = { azimuth_deg = 210, tilt_deg = 10 } }, { arrive = { then_s = 2, timeout_s = 60 } }, \
                     { measure = { name = \"tip\", quantity = \"tip_error_mm\", between = [0, 0.1] } } ]\n\
                     [start.slack]\nslack_mm = 1\n";
 
 /// Data sheets of motors between 10 and 150 W, and of poor ones.
-const MOTORS: [(&str, &str); 7] = [
+const MOTORS: [(&str, &str); 9] = [
+    ("no gear", "gear_ratio = 1\n"),
     ("a slow gear", "gear_ratio = 14\n"),
+    ("a slower gear", "gear_ratio = 30\n"),
     (
         "48 V, flat, brushless, Hall sensors with 4096 lines added",
         "resistance_ohm = 1.03\ninductance_h = 0.57e-3\ntorque_constant_nm_per_a = 0.0705\ninertia_kg_m2 = 1.21e-5\n\

@@ -13,6 +13,7 @@ use crate::gains::{GainChange, index_of, widened};
 use crate::number::{decimal, plain, significant};
 use crate::rig_file::RigFile;
 use leg_firmware::settings::{Gains, SECTIONS};
+use leg_model::Elasticity;
 use rules::{RULES, Rule};
 use serde::Serialize;
 
@@ -26,6 +27,8 @@ pub(crate) struct Basis {
     pub m_per_count: f64,
     /// The fastest that a tendon moves while the leg turns, m by rad.
     pub lever_m: f64,
+    /// The least stiffness of a tendon at the pretension, N/m.
+    pub stiffness_n_per_m: f64,
 }
 
 impl Basis {
@@ -36,6 +39,7 @@ impl Basis {
             f_max_n: file.f_max_n,
             m_per_count: counts.into_iter().fold(0.0, f64::max),
             lever_m: lever_m(file),
+            stiffness_n_per_m: stiffness_n_per_m(file),
         }
     }
 }
@@ -56,6 +60,13 @@ fn lever_m(file: &RigFile) -> f64 {
         }
     }
     longest
+}
+
+/// Of the softest tendon; one whose curve does not reach the pretension is refused elsewhere.
+fn stiffness_n_per_m(file: &RigFile) -> f64 {
+    let all = file.tendons.iter();
+    let known = all.filter_map(|tendon| tendon.stiffness(file.pretension_n).ok());
+    known.fold(f64::INFINITY, f64::min)
 }
 
 /// Which gains a file gives, one bit each.

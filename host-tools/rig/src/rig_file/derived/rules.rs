@@ -65,10 +65,16 @@ rules! {
         |basis, _| (1.8 * basis.m_per_count).max(2e-7);
     motion.speed_rad_per_s = "0.9 servo.speed_m_per_s / the longest lever of a tendon, at most 0.8",
         |basis, gains| (0.9 * f64::from(gains.servo.speed_m_per_s) / basis.lever_m.max(1e-9)).min(0.8);
+    motion.acceleration_rad_per_s2 = "what a quarter of servo.current_a gives the rotor / the longest lever of a tendon, at most 4",
+        |basis, gains| (rotor_m_per_s2(basis, 0.25 * f64::from(gains.servo.current_a)) / basis.lever_m.max(1e-9)).min(4.0);
     homing.speed_m_per_s = "servo.speed_m_per_s / 3, at most 0.01 and what servo.current_a gives the rotor in 5 ms",
         |basis, gains| (f64::from(gains.servo.speed_m_per_s) / 3.0).min(0.01).min(started_m_per_s(basis, gains));
+    motion.pretension_rate_n_per_s = "homing.speed_m_per_s / 2 × the least stiffness of a tendon at its pretension, at most 120",
+        |basis, gains| (0.5 * f64::from(gains.homing.speed_m_per_s) * basis.stiffness_n_per_m).min(120.0);
     limits.ramp_m_per_s = "homing.speed_m_per_s / 2",
         |_, gains| 0.5 * f64::from(gains.homing.speed_m_per_s);
+    limits.taut_time_s = "1.5 homing.release_m / ramp_m_per_s, at least 5 and at most 60",
+        |_, gains| taut_time_s(gains);
     limits.current_a = "2 servo.current_a, at most 0.9 current_range_a",
         |basis, gains| (2.0 * f64::from(gains.servo.current_a)).min(two_digits_below(0.9 * basis.actuator.current_range_a));
     limits.disagreement_a = "servo.current_a / 2",
@@ -119,10 +125,21 @@ pub(crate) fn reachable_m_per_s(basis: &Basis, gains: &Gains) -> f64 {
 /// The speed to which the servo's current brings a motor in 5 ms, m/s: one that starts for longer is taken for one that hauls at
 /// a taut tendon.
 fn started_m_per_s(basis: &Basis, gains: &Gains) -> f64 {
-    let actuator = &basis.actuator;
     let free_a = f64::from(gains.servo.current_a) - f64::from(gains.servo.friction_a);
-    let acceleration = free_a * actuator.torque_constant_nm_per_a / actuator.inertia_kg_m2;
-    5e-3 * acceleration * actuator.m_per_rad()
+    5e-3 * rotor_m_per_s2(basis, free_a)
+}
+
+/// What a current that nothing else needs gives a rotor, as an acceleration of the tendon, m/s².
+fn rotor_m_per_s2(basis: &Basis, current_a: f64) -> f64 {
+    let actuator = &basis.actuator;
+    let acceleration = current_a * actuator.torque_constant_nm_per_a / actuator.inertia_kg_m2;
+    acceleration * actuator.m_per_rad()
+}
+
+/// Homing pays each tendon out by a step until it is slack: so far at most it is taken up again, before the tensions rise.
+fn taut_time_s(gains: &Gains) -> f64 {
+    let taken_up_s = f64::from(gains.homing.release_m) / f64::from(gains.limits.ramp_m_per_s);
+    (1.5 * taken_up_s).clamp(5.0, 60.0)
 }
 
 /// Time in which the least current that counts as driven turns a rotor at rest by a count, s.
