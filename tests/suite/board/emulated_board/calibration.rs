@@ -79,3 +79,26 @@ fn a_driven_leg_is_not_calibrated() {
     assert_eq!(code, Some(2));
     assert!(told.contains("run `leg disarm` first"), "{told}");
 }
+
+/// `leg tune` says what it will do, and does nothing before Enter is pressed.
+#[test]
+fn a_tuning_that_nobody_confirms_moves_nothing() {
+    let board = BoardUnderTest::new(&["--slack"]);
+    let mut command = board.command(&["tune", "1"]);
+    let output = command.stdin(Stdio::null()).output().unwrap();
+    let told = errors(&output);
+    assert_eq!(output.status.code(), Some(2), "{told}");
+    assert!(
+        told.contains("your hand at the emergency stop, then press Enter")
+            && told.contains("standard input has ended"),
+        "{told}"
+    );
+    let plan = String::from_utf8(output.stdout).unwrap();
+    assert!(plan.contains("jog") && plan.contains("swing"), "{plan}");
+    let state = board.state();
+    assert_eq!(state["state"], "disarmed");
+    for motor in 0..3 {
+        let pulled_mm = state["pulled_m"][motor].as_f64().unwrap() * 1e3;
+        assert!(pulled_mm.abs() < 1e-3, "{state}");
+    }
+}
