@@ -62,6 +62,7 @@ mod sim {
     mod station;
     mod station_defects;
     mod station_stand;
+    mod stiffness_floor;
     mod swing;
     mod ways_down;
 }

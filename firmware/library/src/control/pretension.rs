@@ -143,7 +143,9 @@ impl<T: Scalar> PretensionSearch<T> {
             clamp_symmetric(error / slope, T::from(STEP_N))
         };
         let wanted = pretension + step;
-        self.pretension_n = min(max(wanted, lowest), highest);
+        // Not clamped: the bounds of the next target are others. One that stood still at the last ones while they move would let
+        // the targets go to and fro, and the motors with them.
+        self.pretension_n = wanted;
         self.unreachable = wanted < lowest || wanted > highest;
     }
 }
