@@ -1,6 +1,5 @@
 //! A scenario with an emulated leg, and a shadow of the whole control law in f64 beside it.
 
-mod comparison;
 mod extremes;
 mod follow_error;
 mod follower;
@@ -10,7 +9,7 @@ mod shadow;
 mod summary;
 mod test_stand;
 
-pub use comparison::Comparison;
+pub use crate::hosted_leg::Comparison;
 pub use shadow::{Divergence, OTHER_TICKS_MAX};
 pub use summary::{Measurement, Sample, SimulationError, Summary};
 
@@ -135,10 +134,10 @@ fn advance(
     let Some(step) = sequencer.advance(stand)? else {
         return Ok(false);
     };
-    if stand.time_s() > LONGEST_S {
+    if stand.leg.time_s() > LONGEST_S {
         return Err(SimulationError::Endless(step));
     }
-    let comparison = stand.comparison();
+    let comparison = stand.leg.comparison();
     stand.tick(&comparison, |sensors, link, reply| {
         shadow.tick(sensors, link, reply);
         watch(&Tick {
