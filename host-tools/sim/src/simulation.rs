@@ -8,10 +8,12 @@ mod sequencer;
 mod shadow;
 mod summary;
 mod test_stand;
+mod tick_hash;
 
 pub use crate::hosted_leg::Comparison;
 pub use shadow::{Divergence, OTHER_TICKS_MAX};
 pub use summary::{Measurement, Sample, SimulationError, Summary};
+pub use tick_hash::TickHash;
 
 use crate::emulated_leg::{EmulatedLeg, assembled};
 use crate::link::Link;
