@@ -2,7 +2,7 @@
 
 use leg_base::atomic_file::{self, StagingDirectory};
 use leg_base::disk::help_for;
-use leg_base::failure::{Failure, Message};
+use leg_base::failure::Failure;
 use leg_base::json_line::to_line;
 use leg_base::json_object;
 use leg_base::paths::relative_path;
