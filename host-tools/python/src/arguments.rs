@@ -1,11 +1,12 @@
 //! Arguments from Python, each refused by its name.
 
+use crate::rig::Rig;
 use leg_base::angles;
 use leg_base::timed_path::{Row, TimedPath};
 use leg_rig::rig_file::RigFile;
 use leg_sim::action::Action;
 use leg_sim::scenario::CommandStep;
-use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use serde::de::DeserializeOwned;
@@ -93,18 +94,79 @@ fn with_numbers(name: &str, numbers: &[(&str, f64)]) -> PyResult<Value> {
     Ok(json!({ name: entries }))
 }
 
-/// The rig of a name or a file; the paper's rig when neither is given.
-pub fn rig(argument: Option<&Bound<'_, PyAny>>) -> PyResult<RigFile> {
-    let path: Option<PathBuf> = argument.map(|rig| rig.extract()).transpose().map_err(|_| {
-        PyTypeError::new_err("rig is no name of a ready rig and no path of a rig file")
-    })?;
-    RigFile::load(path.as_deref()).map_err(|failure| crate::errors::rig_error(&failure))
+/// A name or a path of a file.
+pub fn path_of(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<PathBuf> {
+    let no_path = |_| PyTypeError::new_err(format!("{name} is no name and no path of a file"));
+    argument.extract().map_err(no_path)
+}
+
+/// A `Rig`, or that of a name or a file; none stays none.
+pub fn rig(argument: Option<&Bound<'_, PyAny>>) -> PyResult<Option<RigFile>> {
+    let Some(argument) = argument else {
+        return Ok(None);
+    };
+    if let Ok(rig) = argument.cast::<Rig>() {
+        return Ok(Some(rig.get().file));
+    }
+    Ok(Some(Rig::load(Some(&path_of("rig", argument)?))?.file))
+}
+
+/// Numbers in the order of an array, and its shape.
+pub struct Numbers {
+    /// Row by row.
+    pub values: Vec<f64>,
+    /// None for a single number.
+    pub shape: Vec<usize>,
+}
+
+/// The shape that arguments have together, by numpy's rules.
+pub fn common_shape(given: &[(&str, &Numbers)]) -> PyResult<Vec<usize>> {
+    let mut common: Vec<usize> = Vec::new();
+    for (name, numbers) in given {
+        let shape = &numbers.shape;
+        let length = common.len().max(shape.len());
+        let from_end = |shape: &[usize], i: usize| {
+            shape
+                .len()
+                .checked_sub(i + 1)
+                .map_or(1, |place| shape[place])
+        };
+        let mut together = Vec::with_capacity(length);
+        for i in (0..length).rev() {
+            together.push(match (from_end(&common, i), from_end(shape, i)) {
+                (a, b) if a == b => a,
+                (1, b) => b,
+                (a, 1) => a,
+                _ => {
+                    let sentence = format!(
+                        "{name} has the shape {shape:?}, which does not go with {common:?} of those before it"
+                    );
+                    return Err(PyValueError::new_err(sentence));
+                }
+            });
+        }
+        common = together;
+    }
+    Ok(common)
+}
+
+/// The same numbers in a shape that goes with theirs.
+pub fn broadcast(py: Python<'_>, numbers: Numbers, shape: &[usize]) -> PyResult<Vec<f64>> {
+    if numbers.shape == shape {
+        return Ok(numbers.values);
+    }
+    let numpy = py.import("numpy")?;
+    let array = PyArray1::from_vec(py, numbers.values).reshape(numbers.shape)?;
+    let wide = numpy.call_method1("broadcast_to", (array, shape.to_vec()))?;
+    let wide = numpy.call_method1("ascontiguousarray", (wide,))?;
+    Ok(wide.cast_into::<PyArrayDyn<f64>>()?.to_vec()?)
 }
 
 /// An array of finite numbers, with its shape; whatever numpy makes an array of.
-pub fn numbers(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, Vec<usize>)> {
+pub fn numbers(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Numbers> {
     let numpy = argument.py().import("numpy")?;
-    let converted = numpy.call_method1("ascontiguousarray", (argument, "float64"));
+    // Not `ascontiguousarray`: that makes an array of a single number.
+    let converted = numpy.call_method1("asarray", (argument, "float64", "C"));
     let no_numbers =
         |error: PyErr| PyTypeError::new_err(format!("{name} is no array of numbers: {error}"));
     let array = converted.map_err(no_numbers)?;
@@ -115,12 +177,13 @@ pub fn numbers(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, V
         let sentence = format!("{name} holds {} at index {index}", values[index]);
         return Err(PyValueError::new_err(sentence));
     }
-    Ok((values, array.shape().to_vec()))
+    let shape = array.shape().to_vec();
+    Ok(Numbers { values, shape })
 }
 
 /// A path: rows of time in s, azimuth and tilt in degrees.
 pub fn path(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<TimedPath> {
-    let (values, shape) = numbers(name, argument)?;
+    let Numbers { values, shape } = numbers(name, argument)?;
     let refuse = |what: String| Err(PyValueError::new_err(format!("{name} {what}")));
     if !matches!(shape[..], [2..=POINTS_MAX, 3]) {
         return refuse(format!(

@@ -5,8 +5,10 @@ use leg_base::description;
 use leg_base::failure::Failure;
 use leg_firmware::host_link::HostRefusal;
 use leg_firmware::supervisor::{FaultSet, State};
+use leg_model::Error;
 use leg_sim::simulation::SimulationError;
 use pyo3::PyErr;
+use pyo3::exceptions::PyValueError;
 
 mod python {
     use pyo3::import_exception;
@@ -14,16 +16,25 @@ mod python {
     import_exception!(tendon_leg.errors, LegError);
     import_exception!(tendon_leg.errors, LegFault);
     import_exception!(tendon_leg.errors, LegTimeout);
+    import_exception!(tendon_leg.errors, NoResult);
     import_exception!(tendon_leg.errors, Refused);
     import_exception!(tendon_leg.errors, RigError);
     import_exception!(tendon_leg.errors, ScenarioError);
 }
 
-use python::{LegError, LegFault, LegTimeout, Refused, RigError, ScenarioError};
+use python::{LegError, LegFault, LegTimeout, NoResult, Refused, RigError, ScenarioError};
 
 /// A leg that cannot be used.
 pub fn leg_error(sentence: &'static str) -> PyErr {
     LegError::new_err(sentence)
+}
+
+/// A pose that the model refuses, or for which it has no result.
+pub fn model_error(error: Error, words: String) -> PyErr {
+    match error {
+        Error::Refused { .. } => PyValueError::new_err(words),
+        _ => NoResult::new_err(words),
+    }
 }
 
 /// A rig file that is refused.

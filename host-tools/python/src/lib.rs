@@ -1,12 +1,15 @@
 //! The Python package `tendon_leg`: the model and the simulated leg, numpy in and out.
 //!
 //! Where to begin: [`simulated_leg`] is the class `SimulatedLeg`; what it does tick by tick is in [`session`], without
-//! Python. [`signals`] declares what can be read and recorded. What Python sees of it is in `python/tendon_leg`: types and
+//! Python. [`rig`] is the class `Rig`, [`evaluation`] the model at many poses, [`outputs`] what it gives. [`signals`] declares what can be read and recorded. What Python sees of it is in `python/tendon_leg`: types and
 //! docstrings in `_native.pyi`, exceptions in `errors.py`.
 
 mod arguments;
 mod errors;
+mod evaluation;
+mod outputs;
 mod recorder;
+mod rig;
 mod scenarios;
 mod session;
 mod signals;
@@ -18,6 +21,7 @@ use leg_firmware::supervisor::State;
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_sim::plant::Defect;
 use leg_sim::ready_scenarios::READY_SCENARIOS;
+use outputs::OUTPUTS;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use signals::SIGNALS;
@@ -26,6 +30,7 @@ use signals::SIGNALS;
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();
+    module.add_class::<rig::Rig>()?;
     module.add_class::<simulated_leg::SimulatedLeg>()?;
     module.add_function(wrap_pyfunction!(scenarios::run_scenario, module)?)?;
     module.add("TICKS_PER_SECOND", TICK_HZ)?;
@@ -46,6 +51,8 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
         defects.set_item(name, meaning)?;
     }
     module.add("DEFECTS", defects)?;
+    let outputs = OUTPUTS.iter().map(|output| output.name);
+    module.add("OUTPUTS", PyTuple::new(py, outputs.collect::<Vec<_>>())?)?;
     let signals = PyDict::new(py);
     for signal in SIGNALS {
         signals.set_item(signal.name, signal.meaning)?;

@@ -1,15 +1,16 @@
 //! Scenarios, run as `leg run --on sim` runs them.
 
-use crate::errors::{SimulationFailed, rig_error, scenario_error};
+use crate::arguments;
+use crate::errors::{SimulationFailed, scenario_error};
+use crate::rig::Rig;
 use leg_firmware::supervisor::Fault;
 use leg_rig::rig_file::RigFile;
 use leg_sim::link::InProcess;
 use leg_sim::scenario::Scenario;
 use leg_sim::simulation::{Simulation, Summary, TickHash};
-use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// A scenario that has been run.
 struct Run {
@@ -18,12 +19,14 @@ struct Run {
     hash: TickHash,
 }
 
-fn run(scenario: &Path, rig: Option<&Path>, seed: Option<u64>) -> PyResult<Run> {
+fn run(scenario: &Path, rig: Option<RigFile>, seed: Option<u64>) -> PyResult<Run> {
     let loaded = Scenario::load(scenario);
     let mut scenario = loaded.map_err(|failure| scenario_error(&failure))?;
     scenario.seed = seed.unwrap_or(scenario.seed);
-    let rig = RigFile::load(Some(rig.unwrap_or(Path::new(&scenario.rig))));
-    let rig = rig.map_err(|failure| rig_error(&failure))?;
+    let rig = match rig {
+        Some(rig) => rig,
+        None => Rig::load(Some(Path::new(&scenario.rig)))?.file,
+    };
     let simulation = Simulation::new(&scenario, &rig).map_err(SimulationFailed)?;
     let mut hash = TickHash::default();
     let summary = simulation.run(&mut InProcess::new(), &mut |tick| hash.take(tick));
@@ -32,11 +35,6 @@ fn run(scenario: &Path, rig: Option<&Path>, seed: Option<u64>) -> PyResult<Run> 
         summary: summary.map_err(SimulationFailed)?,
         hash,
     })
-}
-
-fn path(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<PathBuf> {
-    let no_path = |_| PyTypeError::new_err(format!("{name} is no name and no path of a file"));
-    argument.extract().map_err(no_path)
 }
 
 /// See `_native.pyi`.
@@ -48,13 +46,13 @@ pub fn run_scenario<'py>(
     rig: Option<&Bound<'py, PyAny>>,
     seed: Option<u64>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let scenario = path("scenario", scenario)?;
-    let rig = rig.map(|rig| path("rig", rig)).transpose()?;
+    let scenario = arguments::path_of("scenario", scenario)?;
+    let rig = arguments::rig(rig)?;
     let Run {
         title,
         summary,
         hash,
-    } = py.detach(|| run(&scenario, rig.as_deref(), seed))?;
+    } = py.detach(|| run(&scenario, rig, seed))?;
     let result = PyDict::new(py);
     result.set_item("title", title)?;
     result.set_item("passed", summary.passes())?;

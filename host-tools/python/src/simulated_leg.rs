@@ -3,6 +3,7 @@
 use crate::arguments::{self, time_s, within};
 use crate::errors::leg_error;
 use crate::recorder::Recorder;
+use crate::rig::Rig;
 use crate::session::{Session, SessionError};
 use crate::signals::{self, Origin, SIGNALS, Signal};
 use leg_base::description;
@@ -125,7 +126,10 @@ impl SimulatedLeg {
         payload_kg: f64,
         pretension_n: Option<f64>,
     ) -> PyResult<Self> {
-        let rig = arguments::rig(rig)?;
+        let rig = match arguments::rig(rig)? {
+            Some(rig) => rig,
+            None => Rig::load(None)?.file,
+        };
         let start = if slack {
             let given = [azimuth_deg, tilt_deg, payload_kg]
                 .iter()

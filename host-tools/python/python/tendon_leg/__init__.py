@@ -10,18 +10,21 @@
 
 from ._native import (
     DEFECTS,
+    OUTPUTS,
     READY_RIGS,
     READY_SCENARIOS,
     SIGNALS,
     STATES,
     TICKS_PER_SECOND,
+    Rig,
     SimulatedLeg,
     run_scenario,
 )
-from .errors import FileRefused, LegError, LegFault, LegTimeout, Refused, RigError, ScenarioError
+from .errors import FileRefused, LegError, LegFault, LegTimeout, NoResult, Refused, RigError, ScenarioError
 
 __all__ = [
     "DEFECTS",
+    "OUTPUTS",
     "READY_RIGS",
     "READY_SCENARIOS",
     "SIGNALS",
@@ -31,7 +34,9 @@ __all__ = [
     "LegError",
     "LegFault",
     "LegTimeout",
+    "NoResult",
     "Refused",
+    "Rig",
     "RigError",
     "ScenarioError",
     "SimulatedLeg",

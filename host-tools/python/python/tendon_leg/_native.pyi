@@ -21,8 +21,121 @@ READY_SCENARIOS: tuple[str, ...]
 #: What can fail of a simulated leg: the names that `SimulatedLeg.fault` takes, and what each does.
 DEFECTS: dict[str, str]
 
+#: What `Rig.evaluate` gives: the names of `leg eval`, in SI units.
+OUTPUTS: tuple[str, ...]
+
 #: What can be read of a simulated leg and recorded: each name, which ends with its unit, and its meaning.
 SIGNALS: dict[str, str]
+
+class Rig:
+    """A rig file, read and checked: a leg with its tendons, support, motors, sensors, gains and limits.
+
+    To edit one, change what `to_dict` gives and read it again: `Rig.from_dict`.
+    """
+
+    def __new__(cls, rig: str | PathLike[str] | None = None) -> Rig:
+        """A rig file or a ready rig (`READY_RIGS`); the paper's rig if left out.
+
+        Raises RigError with file, line, column and remedy where the file is refused.
+        """
+
+    @staticmethod
+    def parse(text: str, name: str = "rig") -> Rig:
+        """The rig of a TOML text; `name` stands in messages."""
+
+    @staticmethod
+    def from_dict(values: dict[str, Any], name: str = "rig") -> Rig:
+        """The rig of a dictionary with the keys of a rig file. The lines of a RigError are those of the TOML made of it."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """The keys of its file. What the file leaves out is left out."""
+
+    @property
+    def name(self) -> str:
+        """Its name in messages."""
+
+    @property
+    def text(self) -> str:
+        """Its TOML text."""
+
+    @property
+    def notes(self) -> list[str]:
+        """What the file should say otherwise, though it is understood."""
+
+    @property
+    def support(self) -> str:
+        """Its central support."""
+
+    @property
+    def pretension_n(self) -> float:
+        """Its pretension, N per tendon at the vertical pose."""
+
+    @property
+    def tilt_max_deg(self) -> float:
+        """How far the leg leans at most, degrees."""
+
+    @property
+    def tension_bounds_n(self) -> tuple[float, float]:
+        """Lowest and highest tension allowed, N."""
+
+    def evaluate(
+        self,
+        azimuth_deg: ArrayLike,
+        tilt_deg: ArrayLike,
+        payload_kg: ArrayLike | None = None,
+        *,
+        level_n: ArrayLike | None = None,
+        f_min_n: ArrayLike | None = None,
+        f_max_n: ArrayLike | None = None,
+        demand_nm_per_rad: ArrayLike | None = None,
+        demand_towards_deg: ArrayLike | None = None,
+        stiffness_n_per_m: float | None = None,
+        stiffness_at: str | None = None,
+        leg_mass_kg: float | None = None,
+        l_upper_m: float | None = None,
+        support: str | None = None,
+        outputs: list[str] | None = None,
+        raises: bool = True,
+    ) -> dict[str, Any]:
+        """The whole model in f64 at one pose or at many: what `leg eval` answers, to the last bit, on all cores.
+
+        azimuth_deg, tilt_deg: where the leg leans; a tilt is within 60°, a negative one is the opposite azimuth.
+        payload_kg: mass at the tip; 0 if left out. Whatever else is left out is the rig's:
+        level_n: pretension, N per tendon at the vertical pose.
+        f_min_n, f_max_n: lowest and highest tension allowed.
+        demand_nm_per_rad, demand_towards_deg: a bending stiffness to find the pretension for: of the softest tilt, or against
+            a push at an azimuth. `commanded_level_n` is the pretension that gives it, or the nearest within the bounds, each tendon's stiffness
+            at its own tension.
+        stiffness_n_per_m: a constant stiffness of every tendon. stiffness_at: "pretension" or "tension".
+        leg_mass_kg, l_upper_m, support: as in `leg eval`.
+        outputs: those that are wanted, of `OUTPUTS`; all but `deviation_nonlinear_m`, which is much slower, if left out. Few
+            are faster than many; those that a map has (`tensions_n`, `level_range_n`, `feasible`, `bending_stiffness_nm_per_rad`,
+            `deviation_m`) are fastest alone.
+        raises: whether a pose without a result raises ValueError, or NoResult where no argument is to blame. Otherwise its
+            outputs are not a number (`feasible` false), and `errors` in the result says why, by the pose's number.
+
+        Arrays go together by numpy's rules. Of an array of shape s an output has the shape s, or s and its own 2, 3 or 3 × 3
+        (rows first). SI units, frame {A}: x and y horizontal, z upwards from the joint's centre.
+        """
+
+    def workspace_map(
+        self,
+        payload_kg: float = 0.0,
+        *,
+        azimuths: int = 360,
+        tilts: int = 31,
+        nonlinear: bool = False,
+    ) -> dict[str, NDArray[float64]]:
+        """The quantities of `leg map` over the workspace: `azimuth_deg`, `tilt_deg`, and arrays with a row for each tilt.
+
+        What is not known at a pose is not a number; `feasible` and `pretension_keeps_bounds` are 0 or 1. `nonlinear` adds
+        `deviation_nonlinear_mm`, which takes far longer than all the rest.
+        """
+
+    def tendon_curve(
+        self, tensions_n: ArrayLike, *, tendon: int = 1
+    ) -> dict[str, NDArray[float64]]:
+        """`elongation_m` and `stiffness_n_per_m` of a tendon under tensions, N; not a number beyond what its curve knows."""
 
 class SimulatedLeg:
     """A leg without a board: the firmware's own code and the simulated mechanism, as `leg run --on sim` has them.
@@ -34,7 +147,7 @@ class SimulatedLeg:
 
     def __new__(
         cls,
-        rig: str | PathLike[str] | None = None,
+        rig: str | PathLike[str] | Rig | None = None,
         *,
         seed: int = 0,
         slack: bool = False,
@@ -45,7 +158,7 @@ class SimulatedLeg:
     ) -> SimulatedLeg:
         """A leg at rest, disarmed, its zero known and its load cells tared.
 
-        rig: a rig file or the name of a ready rig (`READY_RIGS`); the paper's rig if left out.
+        rig: a `Rig`, a rig file or the name of a ready rig (`READY_RIGS`); the paper's rig if left out.
         seed: of the sensors' noise.
         slack: hangs straight down with 3 mm of slack in each tendon and does not know its zero: `home` it first.
         azimuth_deg, tilt_deg: where it leans, within 60° of tilt.
@@ -177,13 +290,13 @@ class SimulatedLeg:
 def run_scenario(
     scenario: str | PathLike[str],
     *,
-    rig: str | PathLike[str] | None = None,
+    rig: str | PathLike[str] | Rig | None = None,
     seed: int | None = None,
 ) -> dict[str, Any]:
     """Runs a scenario as `leg run --on sim` does, the control law in f64 beside it.
 
     scenario: a scenario file or the name of a ready one (`READY_SCENARIOS`).
-    rig: a rig file or the name of a ready rig; the scenario's if left out.
+    rig: a `Rig`, a rig file or the name of a ready rig; the scenario's if left out.
     seed: of the sensors' noise; the scenario's if left out.
 
     Gives `title`, `passed`, `measurements` (`name`, `value`, `unit`, `between`, `time_s`, `passed` of each), `faults` and

@@ -78,3 +78,7 @@ class RigError(FileRefused):
 
 class ScenarioError(FileRefused):
     """A scenario file is refused."""
+
+
+class NoResult(LegError, ValueError):
+    """The model has no result at a pose: nothing holds the leg there, or it would buckle."""
