@@ -111,6 +111,16 @@ impl Message {
         }
     }
 
+    /// Line and column where its place begins, from 1; none without a place.
+    #[must_use]
+    pub fn position(&self) -> Option<[usize; 2]> {
+        let place = self.place.as_ref()?;
+        let before = place.text.get(..place.span.start)?;
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let line = before.matches('\n').count() + 1;
+        Some([line, before.get(line_start..)?.chars().count() + 1])
+    }
+
     fn error_group(&self) -> Group<'_> {
         let title = Level::ERROR.primary_title(self.sentence.as_str());
         match &self.place {

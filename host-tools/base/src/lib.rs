@@ -21,6 +21,7 @@ pub mod failure;
 pub mod json_line;
 pub mod numeric;
 pub mod paths;
+pub mod settling;
 pub mod suggest;
 pub mod text_input;
 pub mod tick_time;

@@ -93,7 +93,8 @@ impl Stand {
     /// # Errors
     /// One that cannot be sent.
     pub fn command(&mut self, command: &Command) -> Result<(), String> {
-        self.host.send(command).map_err(|error| error.to_string())
+        let sent = self.host.send(command).map(|_| ());
+        sent.map_err(|error| error.to_string())
     }
 
     /// Nothing is heard of the host any more but commands.

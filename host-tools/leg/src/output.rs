@@ -2,7 +2,7 @@
 
 use leg_base::atomic_file::{self, StagingDirectory};
 use leg_base::disk::help_for;
-use leg_base::failure::{Failure, Message};
+use leg_base::failure::Failure;
 use leg_base::json_line::to_line;
 use leg_base::json_object;
 use leg_base::paths::relative_path;
@@ -161,20 +161,11 @@ fn failure_line(failure: &Failure) -> String {
         #[serde(flatten)]
         file: message.place.as_ref().map(|place| json_object! { file: &place.file }),
         #[serde(flatten)]
-        place: place(message).map(|[line, column]| json_object! { line: line, column: column }),
+        place: message.position().map(|[line, column]| json_object! { line: line, column: column }),
         exit_code: exit_code,
     };
     // Strings and integers always have a form in JSON.
     to_line(&json).unwrap_or_default()
-}
-
-/// Line and column where the message's place begins, from 1.
-fn place(message: &Message) -> Option<[usize; 2]> {
-    let place = message.place.as_ref()?;
-    let before = place.text.get(..place.span.start)?;
-    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-    let line = before.matches('\n').count() + 1;
-    Some([line, before.get(line_start..)?.chars().count() + 1])
 }
 
 #[cfg(test)]

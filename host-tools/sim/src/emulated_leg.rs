@@ -44,6 +44,11 @@ pub enum EmulationError {
     /// The reply is of another kind.
     #[error("the firmware's reply is no tick: build host and firmware from the same sources")]
     WrongReply,
+    /// A number of the simulated leg is lost.
+    #[error(
+        "at {0:.3} s the simulated leg has no finite place or tension any more; look what acts on it"
+    )]
+    NotFinite(f64),
     /// The link failed.
     #[error(transparent)]
     Link(#[from] LinkError),

@@ -3,8 +3,8 @@
 use crate::emulated_leg::HostBytes;
 use crate::link::next_sequence;
 use leg_firmware::command::Command;
-use leg_firmware::frame::{self, FrameError, MAX_FRAME};
-use leg_firmware::host_link::{HOST_SCHEMA, Hello, HostId, HostRequest};
+use leg_firmware::frame::{self, Decoder, FrameError, MAX_FRAME};
+use leg_firmware::host_link::{HOST_SCHEMA, Hello, HostId, HostRefusal, HostReply, HostRequest};
 use std::collections::VecDeque;
 
 /// Ticks between two signs of life of the host.
@@ -21,6 +21,17 @@ pub struct Host {
     queue: VecDeque<u8>,
     sequence: u16,
     rng: fastrand::Rng,
+    decoder: Decoder,
+    answers: Vec<Answer>,
+}
+
+/// What became of a request.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Answer {
+    /// The request's number; 0 is of one that could not be read.
+    pub number: u16,
+    /// Why it is not done.
+    pub result: Result<(), HostRefusal>,
 }
 
 impl Host {
@@ -32,14 +43,16 @@ impl Host {
             queue: VecDeque::new(),
             sequence: 0,
             rng: fastrand::Rng::with_seed(seed),
+            decoder: Decoder::new(),
+            answers: Vec::new(),
         }
     }
 
-    /// Sends a command.
+    /// Sends a command, and gives the number of its [`Answer`].
     ///
     /// # Errors
     /// A command that fits into no frame.
-    pub fn send(&mut self, command: &Command) -> Result<(), FrameError> {
+    pub fn send(&mut self, command: &Command) -> Result<u16, FrameError> {
         if self.sequence == 0 {
             let schema = HOST_SCHEMA;
             self.ask(&HostRequest::Identify(Hello { schema }))?;
@@ -50,12 +63,38 @@ impl Host {
         })
     }
 
-    fn ask(&mut self, request: &HostRequest) -> Result<(), FrameError> {
+    fn ask(&mut self, request: &HostRequest) -> Result<u16, FrameError> {
         self.sequence = next_sequence(self.sequence);
         let mut out = [0; MAX_FRAME];
         let bytes = frame::encode(self.sequence, request, &mut out)?;
         self.queue.extend(bytes);
-        Ok(())
+        Ok(self.sequence)
+    }
+
+    /// Takes what the leg sent in a tick.
+    pub fn receive(&mut self, bytes: &[u8]) {
+        self.answers.clear();
+        for byte in bytes {
+            // A frame that cannot be read answers nothing.
+            let Some(Ok(frame)) = self.decoder.push(*byte) else {
+                continue;
+            };
+            let result = match frame.message() {
+                Some(HostReply::Done) => Ok(()),
+                Some(HostReply::Refused(refusal)) => Err(refusal),
+                _ => continue,
+            };
+            self.answers.push(Answer {
+                number: frame.sequence,
+                result,
+            });
+        }
+    }
+
+    /// What the leg answered in the last tick.
+    #[must_use]
+    pub fn answers(&self) -> &[Answer] {
+        &self.answers
     }
 
     /// Sends bytes that mean nothing.

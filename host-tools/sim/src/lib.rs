@@ -30,13 +30,17 @@
 //! | [`action`] | what can be done to the plant from outside, in scenarios and on the lines of `leg emulate` |
 //! | [`link`] | requests to the firmware and its replies, wherever it runs |
 //! | [`emulated_leg`] | firmware and plant, tick by tick: the one place where they meet |
+//! | [`hosted_leg`] | an emulated leg with its host, for programs that step one themselves |
+//! | [`path_sender`] | a path as a stream of set-points, each sent in time |
 //! | [`scenario`], [`ready_scenarios`] | scenario files, and those that come with the program |
 //! | [`simulation`] | a scenario with an emulated leg, and a shadow of the control law in f64 beside it |
 
 pub mod action;
 pub mod emulated_leg;
 pub mod host;
+pub mod hosted_leg;
 pub mod link;
+pub mod path_sender;
 pub mod plant;
 mod range;
 pub mod ready_scenarios;

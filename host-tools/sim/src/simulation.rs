@@ -1,6 +1,5 @@
 //! A scenario with an emulated leg, and a shadow of the whole control law in f64 beside it.
 
-mod comparison;
 mod extremes;
 mod follow_error;
 mod follower;
@@ -9,11 +8,13 @@ mod sequencer;
 mod shadow;
 mod summary;
 mod test_stand;
+mod tick_hash;
 
-pub use comparison::Comparison;
+pub use crate::hosted_leg::Comparison;
 pub use shadow::{Divergence, OTHER_TICKS_MAX};
 pub use summary::{Measurement, Sample, SimulationError, Summary};
 pub use test_stand::SAMPLE_TICKS;
+pub use tick_hash::TickHash;
 
 use crate::emulated_leg::{EmulatedLeg, assembled};
 use crate::link::Link;
@@ -136,7 +137,7 @@ fn advance(
     let Some(step) = sequencer.advance(stand)? else {
         return Ok(false);
     };
-    if stand.time_s() > LONGEST_S {
+    if stand.leg.time_s() > LONGEST_S {
         return Err(SimulationError::Endless(step));
     }
     let comparison = stand.comparison();

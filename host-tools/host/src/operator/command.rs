@@ -2,6 +2,7 @@
 
 use super::request::{REPLY_TIME, Repeat};
 use super::{Operator, OperatorError};
+use leg_base::settling::same_direction;
 use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest};
 use leg_firmware::supervisor::State;
@@ -9,9 +10,6 @@ use leg_firmware::telemetry::Telemetry;
 
 /// How often a command is sent at most, with telemetry read after each.
 const COMMAND_ATTEMPTS: u32 = 3;
-
-/// Distance of two directions below which they are the same: 0.03°.
-const SAME_DIRECTION: f32 = 5e-4;
 
 /// What telemetry shows of a command that got no answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,13 +95,6 @@ fn evidence(command: &Command, telemetry: &Telemetry<f32>) -> Evidence {
         (Command::Move { .. }, State::Active) => Evidence::Lost,
         _ => Evidence::Unclear,
     }
-}
-
-/// Whether two directions, as horizontal components, are the same.
-pub(super) fn same_direction(a: &[f32; 2], b: &[f32; 2]) -> bool {
-    a.iter()
-        .zip(b)
-        .all(|(a, b)| (a - b).abs() <= SAME_DIRECTION)
 }
 
 /// What a command asks of the leg.

@@ -1,10 +1,10 @@
 //! Homing and moving the leg, and leaving it to itself or in hold.
 
-use super::command::{name, same_direction};
+use super::command::name;
 use super::{Goal, Operator, OperatorError};
+use leg_base::settling::{Settling, same_direction};
 use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::host_link::HostRefusal;
-use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
 use std::time::Duration;
@@ -14,18 +14,6 @@ const HOMING_TIME: Duration = Duration::from_secs(120);
 
 /// Longest move with all that belongs to it.
 const MOVE_TIME: Duration = Duration::from_secs(60);
-
-/// How long the leg has to be settled, in its own ticks: an emulated leg may be slower than the clock. 0.3 s.
-const SETTLED_TICKS: u32 = 3 * TICK_HZ as u32 / 10;
-
-/// Ticks from one telemetry to the next below which nothing can be said of a change: 10 ms.
-const COMPARED_TICKS: u32 = TICK_HZ as u32 / 100;
-
-/// Distance of every tension from its target below which a leg is settled, N.
-const SETTLED_N: f32 = 2.0;
-
-/// Change from one poll to the next below which pretension and stiffness are settled, as a part of each.
-const SETTLED_PART: f32 = 1e-3;
 
 impl Operator {
     /// Does `work` with keep-alives, and leaves the leg in hold however that ends. A leg that obeyed nothing
@@ -160,20 +148,8 @@ impl Operator {
 
     /// Waits until an armed leg is where it shall be, and stays so.
     pub(super) fn settle(&mut self, asked: &'static str) -> Result<Telemetry<f32>, OperatorError> {
-        let mut last: Option<Telemetry<f32>> = None;
-        let mut since = None;
-        self.poll_followed(asked, MOVE_TIME, |telemetry| {
-            let tick = telemetry.tick;
-            if last.is_some_and(|last| tick.wrapping_sub(last.tick) < COMPARED_TICKS) {
-                return false;
-            }
-            let before = last.replace(*telemetry);
-            if !before.is_some_and(|before| settled(&before, telemetry)) {
-                since = None;
-                return false;
-            }
-            tick.wrapping_sub(*since.get_or_insert(tick)) >= SETTLED_TICKS
-        })
+        let mut settling = Settling::default();
+        self.poll_followed(asked, MOVE_TIME, |telemetry| settling.take(telemetry))
     }
 
     /// Polls a leg that follows commands until `done` says so; what else it may come to is an error.
@@ -205,22 +181,6 @@ pub(super) fn not_following(asked: &'static str, telemetry: &Telemetry<f32>) -> 
     } else {
         OperatorError::StoppedByOtherHost(asked, telemetry.state)
     }
-}
-
-fn settled(before: &Telemetry<f32>, now: &Telemetry<f32>) -> bool {
-    let steady = |value: fn(&Telemetry<f32>) -> f32| {
-        (value(now) - value(before)).abs() <= SETTLED_PART * value(now).abs()
-    };
-    !now.moving
-        && steady(|telemetry| telemetry.pretension_n)
-        && steady(|telemetry| telemetry.stiffness_nm_per_rad)
-        && same_direction(&now.pose, &now.target)
-        && taut(&now.tensions_n, &now.target_tensions_n)
-}
-
-fn taut(measured_n: &[f32; 3], target_n: &[f32; 3]) -> bool {
-    let mut pairs = measured_n.iter().zip(target_n);
-    pairs.all(|(measured, target)| (measured - target).abs() <= SETTLED_N)
 }
 
 pub(super) fn unlimited(

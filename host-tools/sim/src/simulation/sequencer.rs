@@ -66,7 +66,7 @@ impl<'a> Sequencer<'a> {
                 return Ok(Some(self.next + 1));
             }
             self.next += 1;
-            self.began_s = stand.time_s();
+            self.began_s = stand.leg.time_s();
             self.arrived_s = None;
         }
         Ok(None)
@@ -79,14 +79,14 @@ impl<'a> Sequencer<'a> {
         stand: &mut TestStand<'_>,
     ) -> Result<bool, SimulationError> {
         match step {
-            Step::Action(action) => action.apply(stand.leg.plant_mut()),
+            Step::Action(action) => action.apply(stand.leg.leg_mut().plant_mut()),
             Step::Command(command) => stand.command(command)?,
-            Step::Test(TestStep::Garbage(count)) => stand.host.send_garbage(*count),
-            Step::Test(TestStep::Silence(silent)) => stand.host.silent = *silent,
-            Step::Test(TestStep::Mark) => stand.extremes = Extremes::new(&stand.truth),
+            Step::Test(TestStep::Garbage(count)) => stand.leg.host_mut().send_garbage(*count),
+            Step::Test(TestStep::Silence(silent)) => stand.leg.host_mut().silent = *silent,
+            Step::Test(TestStep::Mark) => stand.extremes = Extremes::new(stand.leg.truth()),
             Step::Test(step) => return self.test(step, stand),
         }
-        self.acted_s = stand.time_s();
+        self.acted_s = stand.leg.time_s();
         Ok(true)
     }
 
@@ -99,9 +99,9 @@ impl<'a> Sequencer<'a> {
         Ok(match step {
             // These act when they begin and wait for nothing.
             TestStep::Garbage(_) | TestStep::Silence(_) | TestStep::Mark => true,
-            TestStep::WaitS(time_s) => stand.time_s() - self.began_s >= *time_s,
+            TestStep::WaitS(time_s) => stand.leg.time_s() - self.began_s >= *time_s,
             TestStep::Await { state, timeout_s } => {
-                let there = stand.state() == *state;
+                let there = stand.leg.state() == *state;
                 self.in_time(there, description::state(*state), *timeout_s, stand)?
             }
             TestStep::Follow(step) => self.follow(|| step.rows.clone(), step.ends, stand)?,
@@ -113,7 +113,7 @@ impl<'a> Sequencer<'a> {
                 within_ms,
             } => {
                 self.expected.add(*fault, true);
-                let telemetry = stand.telemetry;
+                let telemetry = stand.leg.telemetry();
                 let seen = telemetry.is_some_and(|telemetry| telemetry.faults.has(*fault));
                 self.reaction(seen, fault.entry().name, *state, *within_ms, stand)?
             }
@@ -144,7 +144,7 @@ impl<'a> Sequencer<'a> {
         let done = follower.advance(stand)?;
         if done {
             // Whatever follows from it counts from its end.
-            self.acted_s = stand.time_s();
+            self.acted_s = stand.leg.time_s();
         } else {
             self.follower = Some(follower);
         }
@@ -158,7 +158,7 @@ impl<'a> Sequencer<'a> {
         timeout_s: f64,
         stand: &TestStand<'_>,
     ) -> Result<bool, SimulationError> {
-        if !there && stand.time_s() - self.began_s > timeout_s {
+        if !there && stand.leg.time_s() - self.began_s > timeout_s {
             return Err(SimulationError::Timeout {
                 step: self.next + 1,
                 what: what.into(),
@@ -175,9 +175,9 @@ impl<'a> Sequencer<'a> {
         timeout_s: f64,
         stand: &TestStand<'_>,
     ) -> Result<bool, SimulationError> {
-        let now_s = stand.time_s();
+        let now_s = stand.leg.time_s();
         let started = now_s - self.began_s > COMMAND_S;
-        let telemetry = stand.telemetry;
+        let telemetry = stand.leg.telemetry();
         let still = telemetry.is_some_and(|telemetry| !telemetry.moving);
         if started && still {
             self.arrived_s.get_or_insert(now_s);
@@ -195,9 +195,9 @@ impl<'a> Sequencer<'a> {
         within_ms: f64,
         stand: &mut TestStand<'_>,
     ) -> Result<bool, SimulationError> {
-        let there = seen && stand.state() == state;
+        let there = seen && stand.leg.state() == state;
         if there {
-            let value_ms = (stand.time_s() - self.acted_s) * 1000.0;
+            let value_ms = (stand.leg.time_s() - self.acted_s) * 1000.0;
             let name = format!("{name}: {}", description::state(state));
             stand.record(&name, (value_ms, "ms"), [0.0, within_ms], None);
         }
@@ -207,15 +207,15 @@ impl<'a> Sequencer<'a> {
 
     /// Pushes across the leg and compares the moment with the angle.
     fn push_test(&mut self, push: &PushTest, stand: &mut TestStand<'_>) -> bool {
-        let across = stand.leg.plant().across(push.azimuth_deg);
+        let across = stand.leg.leg().plant().across(push.azimuth_deg);
         let Some(before_m) = self.before_m else {
             self.before_m = Some(stand.average_tip_m());
             let force_n = across * push.force_n;
-            let plant = stand.leg.plant_mut();
+            let plant = stand.leg.leg_mut().plant_mut();
             plant.push(force_n, push.settle_s, PUSH_TEST_RISE_S);
             return false;
         };
-        if stand.time_s() - self.began_s < push.settle_s {
+        if stand.leg.time_s() - self.began_s < push.settle_s {
             return false;
         }
         let length_m = before_m.norm();
@@ -225,15 +225,19 @@ impl<'a> Sequencer<'a> {
         let between = [push.nm_per_rad - off, push.nm_per_rad + off];
         stand.record(&push.name, (stiffness, "N·m/rad"), between, None);
         self.before_m = None;
-        stand.leg.plant_mut().push(Vector3::zeros(), 0.0, 0.0);
+        stand
+            .leg
+            .leg_mut()
+            .plant_mut()
+            .push(Vector3::zeros(), 0.0, 0.0);
         true
     }
 }
 
 /// The state of the leg and its faults as text.
 fn describe(stand: &TestStand<'_>) -> String {
-    let state = description::state(stand.state());
-    match stand.telemetry {
+    let state = description::state(stand.leg.state());
+    match stand.leg.telemetry() {
         Some(telemetry) if telemetry.faults.any() => {
             format!("{state} ({})", description::faults(telemetry.faults))
         }

@@ -26,11 +26,6 @@ pub enum SimulationError {
         /// What the leg was doing, and its faults.
         state: String,
     },
-    /// A number of the simulated leg is lost.
-    #[error(
-        "at {0:.3} s the simulated leg has no finite place or tension any more; look what acts on it"
-    )]
-    NotFinite(f64),
     /// It takes too long.
     #[error("step {0} is not over after ten minutes of the leg's time; make the scenario shorter")]
     Endless(usize),
@@ -114,7 +109,7 @@ impl SimulationError {
     pub(super) const fn midway(&self) -> bool {
         matches!(
             self,
-            Self::Timeout { .. } | Self::Endless(_) | Self::NotFinite(_)
+            Self::Timeout { .. } | Self::Endless(_) | Self::Emulation(EmulationError::NotFinite(_))
         )
     }
 }

@@ -1,0 +1,69 @@
+//! When a leg that was commanded has come to rest where it shall be.
+
+use leg_firmware::sensors::TICK_HZ;
+use leg_firmware::telemetry::Telemetry;
+
+/// How long the leg has to be settled, in its own ticks: an emulated leg may be slower than the clock. 0.3 s.
+const SETTLED_TICKS: u32 = 3 * TICK_HZ as u32 / 10;
+
+/// Ticks from one telemetry to the next below which nothing can be said of a change: 10 ms.
+const COMPARED_TICKS: u32 = TICK_HZ as u32 / 100;
+
+/// Distance of every tension from its target below which a leg is settled, N.
+const SETTLED_N: f32 = 2.0;
+
+/// Change from one telemetry to the next below which pretension and stiffness are settled, as a part of each.
+const SETTLED_PART: f32 = 1e-3;
+
+/// Distance of two directions below which they are the same: 0.03°.
+const SAME_DIRECTION: f32 = 5e-4;
+
+/// Watches a leg until it is where it shall be, and stays so.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Settling {
+    last: Option<Telemetry<f32>>,
+    /// Since which tick it is settled.
+    since: Option<u32>,
+}
+
+impl Settling {
+    /// Takes telemetry; whether the leg has been settled for 0.3 s. Give it every 10 ms or more seldom: what comes earlier is
+    /// left out.
+    pub fn take(&mut self, telemetry: &Telemetry<f32>) -> bool {
+        let tick = telemetry.tick;
+        let before = self.last;
+        if before.is_some_and(|before| tick.wrapping_sub(before.tick) < COMPARED_TICKS) {
+            return false;
+        }
+        self.last = Some(*telemetry);
+        if !before.is_some_and(|before| settled(&before, telemetry)) {
+            self.since = None;
+            return false;
+        }
+        tick.wrapping_sub(*self.since.get_or_insert(tick)) >= SETTLED_TICKS
+    }
+}
+
+fn settled(before: &Telemetry<f32>, now: &Telemetry<f32>) -> bool {
+    let steady = |value: fn(&Telemetry<f32>) -> f32| {
+        (value(now) - value(before)).abs() <= SETTLED_PART * value(now).abs()
+    };
+    !now.moving
+        && steady(|telemetry| telemetry.pretension_n)
+        && steady(|telemetry| telemetry.stiffness_nm_per_rad)
+        && same_direction(&now.pose, &now.target)
+        && taut(&now.tensions_n, &now.target_tensions_n)
+}
+
+/// Whether two directions, as horizontal components, are the same.
+#[must_use]
+pub fn same_direction(a: &[f32; 2], b: &[f32; 2]) -> bool {
+    a.iter()
+        .zip(b)
+        .all(|(a, b)| (a - b).abs() <= SAME_DIRECTION)
+}
+
+fn taut(measured_n: &[f32; 3], target_n: &[f32; 3]) -> bool {
+    let mut pairs = measured_n.iter().zip(target_n);
+    pairs.all(|(measured, target)| (measured - target).abs() <= SETTLED_N)
+}

@@ -1,0 +1,307 @@
+"""What is written in Rust: its types and what it does."""
+
+from os import PathLike
+from typing import Any
+
+from numpy import float64
+from numpy.typing import ArrayLike, NDArray
+
+#: Ticks of the control law in a second.
+TICKS_PER_SECOND: int
+
+#: The names of the states; the signal `state_index` counts them from 0.
+STATES: tuple[str, ...]
+
+#: The ready rigs: what each is.
+READY_RIGS: dict[str, str]
+
+#: The names of the ready scenarios, which `run_scenario` takes.
+READY_SCENARIOS: tuple[str, ...]
+
+#: What can fail of a simulated leg: the names that `SimulatedLeg.fault` takes, and what each does.
+DEFECTS: dict[str, str]
+
+#: What `Rig.evaluate` gives: the names of `leg eval`, in SI units.
+OUTPUTS: tuple[str, ...]
+
+#: What can be read of a simulated leg and recorded: each name, which ends with its unit, and its meaning.
+SIGNALS: dict[str, str]
+
+class Rig:
+    """A rig file, read and checked: a leg with its tendons, support, motors, sensors, gains and limits.
+
+    To edit one, change what `to_dict` gives and read it again: `Rig.from_dict`.
+    """
+
+    def __new__(cls, rig: str | PathLike[str] | None = None) -> Rig:
+        """A rig file or a ready rig (`READY_RIGS`); the paper's rig if left out.
+
+        Raises RigError with file, line, column and remedy where the file is refused.
+        """
+
+    @staticmethod
+    def parse(text: str, name: str = "rig") -> Rig:
+        """The rig of a TOML text; `name` stands in messages."""
+
+    @staticmethod
+    def from_dict(values: dict[str, Any], name: str = "rig") -> Rig:
+        """The rig of a dictionary with the keys of a rig file. The lines of a RigError are those of the TOML made of it."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """The keys of its file. What the file leaves out is left out."""
+
+    @property
+    def name(self) -> str:
+        """Its name in messages."""
+
+    @property
+    def text(self) -> str:
+        """Its TOML text."""
+
+    @property
+    def notes(self) -> list[str]:
+        """What the file should say otherwise, though it is understood."""
+
+    @property
+    def support(self) -> str:
+        """Its central support."""
+
+    @property
+    def pretension_n(self) -> float:
+        """Its pretension, N per tendon at the vertical pose."""
+
+    @property
+    def tilt_max_deg(self) -> float:
+        """How far the leg leans at most, degrees."""
+
+    @property
+    def tension_bounds_n(self) -> tuple[float, float]:
+        """Lowest and highest tension allowed, N."""
+
+    def evaluate(
+        self,
+        azimuth_deg: ArrayLike,
+        tilt_deg: ArrayLike,
+        payload_kg: ArrayLike | None = None,
+        *,
+        level_n: ArrayLike | None = None,
+        f_min_n: ArrayLike | None = None,
+        f_max_n: ArrayLike | None = None,
+        demand_nm_per_rad: ArrayLike | None = None,
+        demand_towards_deg: ArrayLike | None = None,
+        stiffness_n_per_m: float | None = None,
+        stiffness_at: str | None = None,
+        leg_mass_kg: float | None = None,
+        l_upper_m: float | None = None,
+        support: str | None = None,
+        outputs: list[str] | None = None,
+        raises: bool = True,
+    ) -> dict[str, Any]:
+        """The whole model in f64 at one pose or at many: what `leg eval` answers, to the last bit, on all cores.
+
+        azimuth_deg, tilt_deg: where the leg leans; a tilt is within 60°, a negative one is the opposite azimuth.
+        payload_kg: mass at the tip; 0 if left out. Whatever else is left out is the rig's:
+        level_n: pretension, N per tendon at the vertical pose.
+        f_min_n, f_max_n: lowest and highest tension allowed.
+        demand_nm_per_rad, demand_towards_deg: a bending stiffness to find the pretension for: of the softest tilt, or against
+            a push at an azimuth. `commanded_level_n` is the pretension that gives it, or the nearest within the bounds, each tendon's stiffness
+            at its own tension.
+        stiffness_n_per_m: a constant stiffness of every tendon. stiffness_at: "pretension" or "tension".
+        leg_mass_kg, l_upper_m, support: as in `leg eval`.
+        outputs: those that are wanted, of `OUTPUTS`; all but `deviation_nonlinear_m`, which is much slower, if left out. Few
+            are faster than many; those that a map has (`tensions_n`, `level_range_n`, `feasible`, `bending_stiffness_nm_per_rad`,
+            `deviation_m`) are fastest alone.
+        raises: whether a pose without a result raises ValueError, or NoResult where no argument is to blame. Otherwise its
+            outputs are not a number (`feasible` false), and `errors` in the result says why, by the pose's number.
+
+        Arrays go together by numpy's rules. Of an array of shape s an output has the shape s, or s and its own 2, 3 or 3 × 3
+        (rows first). SI units, frame {A}: x and y horizontal, z upwards from the joint's centre.
+        """
+
+    def workspace_map(
+        self,
+        payload_kg: float = 0.0,
+        *,
+        azimuths: int = 360,
+        tilts: int = 31,
+        nonlinear: bool = False,
+    ) -> dict[str, NDArray[float64]]:
+        """The quantities of `leg map` over the workspace: `azimuth_deg`, `tilt_deg`, and arrays with a row for each tilt.
+
+        What is not known at a pose is not a number; `feasible` and `pretension_keeps_bounds` are 0 or 1. `nonlinear` adds
+        `deviation_nonlinear_mm`, which takes far longer than all the rest.
+        """
+
+    def tendon_curve(
+        self, tensions_n: ArrayLike, *, tendon: int = 1
+    ) -> dict[str, NDArray[float64]]:
+        """`elongation_m` and `stiffness_n_per_m` of a tendon under tensions, N; not a number beyond what its curve knows."""
+
+class SimulatedLeg:
+    """A leg without a board: the firmware's own code and the simulated mechanism, as `leg run --on sim` has them.
+
+    Time passes only in calls: in `step` and `run`, and in commands, which wait for their end unless `wait=False`. The
+    same calls on a leg with the same seed give the same bits. Other Python threads run meanwhile, so that many legs can be
+    stepped in as many threads; one leg belongs to one thread at a time.
+    """
+
+    def __new__(
+        cls,
+        rig: str | PathLike[str] | Rig | None = None,
+        *,
+        seed: int = 0,
+        slack: bool = False,
+        azimuth_deg: float = 0.0,
+        tilt_deg: float = 0.0,
+        payload_kg: float = 0.0,
+        pretension_n: float | None = None,
+    ) -> SimulatedLeg:
+        """A leg at rest, disarmed, its zero known and its load cells tared.
+
+        rig: a `Rig`, a rig file or the name of a ready rig (`READY_RIGS`); the paper's rig if left out.
+        seed: of the sensors' noise.
+        slack: hangs straight down with 3 mm of slack in each tendon and does not know its zero: `home` it first.
+        azimuth_deg, tilt_deg: where it leans, within 60° of tilt.
+        payload_kg: mass at its tip.
+        pretension_n: that its tendons have, N per tendon at the vertical pose; the rig's if left out.
+
+        Raises RigError for a rig file that is refused, at its place.
+        """
+
+    @property
+    def time_s(self) -> float:
+        """Time of the leg since its start, s."""
+
+    @property
+    def ticks(self) -> int:
+        """The same in ticks."""
+
+    @property
+    def state(self) -> str:
+        """What the leg may do: one of `STATES`."""
+
+    @property
+    def following(self) -> bool:
+        """Whether a path is followed, the way to its start included."""
+
+    @property
+    def faults(self) -> list[dict[str, Any]]:
+        """Faults that are latched or limit now: `code`, `name`, `cause`, `remedy`, `reaction` of each."""
+
+    def step(self, ticks: int = 8) -> None:
+        """Lets some ticks pass, 125 µs each: 1 ms if left out. A fault shows in `faults` and `state`, and raises nothing."""
+
+    def run(self, seconds: float) -> None:
+        """Lets a time pass, to the nearest tick, s."""
+
+    def wait(self, timeout_s: float = 60.0) -> None:
+        """Lets time pass until the leg has rested for 0.3 s where it shall be, at the end of what it follows.
+
+        Raises LegFault if a fault ends or limits that, LegTimeout after `timeout_s` of the leg's time.
+        """
+
+    def arm(self, *, wait: bool = True) -> None:
+        """Lets the leg follow commands from now on, its tendons taut.
+
+        Raises Refused with the firmware's words, LegFault if a fault is latched. So do all commands.
+        """
+
+    def home(self, *, wait: bool = True) -> None:
+        """Finds the zero of a slack leg; it is armed then and hangs straight down."""
+
+    def move(self, azimuth_deg: float, tilt_deg: float, *, wait: bool = True) -> None:
+        """Leans the leg: towards an azimuth, degrees, by a tilt, degrees. A negative tilt is the opposite azimuth."""
+
+    def follow(self, points: ArrayLike, *, wait: bool = True) -> None:
+        """Streams a path to the leg as set-points: rows of time in s, azimuth and tilt in degrees, in the order of their times.
+
+        The leg is led to a run-up first, and comes to rest at the end. With `wait=False` later ticks send the points.
+        Refused, before the leg moves, where a point is beyond a limit of the motion; the message has its time.
+        """
+
+    def stiffness(
+        self, nm_per_rad: float, towards_deg: float | None = None, *, wait: bool = True
+    ) -> None:
+        """Demands a bending stiffness, N·m/rad: of the softest tilt, or against a push towards an azimuth, degrees.
+
+        LegFault (`stiffness out of reach`) where the tension bounds stop the pretension short of it.
+        """
+
+    def pretension(self, newtons: float, *, wait: bool = True) -> None:
+        """Sets the pretension, N per tendon at the vertical pose."""
+
+    def compensation(self, load: str) -> None:
+        """Chooses the load that the tendons hold: `"off"`, `"estimated"` (from the tensions) or `"frozen"` (as it is now)."""
+
+    def hold(self, *, wait: bool = True) -> None:
+        """Comes to rest on the way; the leg goes on following commands."""
+
+    def stop(self) -> None:
+        """Stays where it is, at once, until `clear`."""
+
+    def disarm(self, *, wait: bool = True) -> None:
+        """Leads the leg straight down, pays its tendons out and switches the drivers off."""
+
+    def clear(self) -> None:
+        """Clears the faults whose cause is gone, and ends a stop."""
+
+    def keep_station(self) -> None:
+        """Leaves a leg that rests: it compensates its load slowly where it is, and needs no host."""
+
+    def payload(self, kg: float, over_s: float = 0.0) -> None:
+        """Changes the mass at the tip, at once or over a time, kg, s."""
+
+    def push(self, azimuth_deg: float, force_n: float, for_s: float) -> None:
+        """Pushes at the tip, across the leg, for a time: degrees, N, s. The force rises within 20 ms."""
+
+    def fault(self, fault: str, tendon: int | None = None) -> None:
+        """Lets a defect begin: a name of `DEFECTS`, and which tendon (1 to 3) has it unless the whole leg does."""
+
+    def repair(self, fault: str, tendon: int | None = None) -> None:
+        """Ends a defect."""
+
+    def emergency_stop(self, pressed: bool) -> None:
+        """Presses or releases the emergency stop."""
+
+    def silence(self, silent: bool) -> None:
+        """Lets the host send no more signs of life, or again. An armed leg comes to rest without them."""
+
+    def truth(self) -> dict[str, Any]:
+        """How the leg really is: every signal of the mechanism, by name, and `time_s`."""
+
+    def telemetry(self) -> dict[str, Any]:
+        """What the firmware reports: its signals by name, and `state`, `faults`, `homed` and `time_s`."""
+
+    def read(self, name: str) -> float | NDArray[float64]:
+        """One signal of `SIGNALS` now: a number, or an array of three or two."""
+
+    def record(self, signals: list[str], *, every_ticks: int = 16) -> None:
+        """Records signals from the next tick on, in whatever calls the ticks pass: 500 rows a second if left out.
+
+        What was recorded before is forgotten.
+        """
+
+    def recording(self) -> dict[str, NDArray[float64]]:
+        """What was recorded until now: `time_s`, and each signal as an array with a row for each time."""
+
+    def clone(self) -> SimulatedLeg:
+        """The same leg in the same state, to try something else with: both go on alike, bit for bit, where they are treated alike."""
+
+def run_scenario(
+    scenario: str | PathLike[str],
+    *,
+    rig: str | PathLike[str] | Rig | None = None,
+    seed: int | None = None,
+) -> dict[str, Any]:
+    """Runs a scenario as `leg run --on sim` does, the control law in f64 beside it.
+
+    scenario: a scenario file or the name of a ready one (`READY_SCENARIOS`).
+    rig: a `Rig`, a rig file or the name of a ready rig; the scenario's if left out.
+    seed: of the sensors' noise; the scenario's if left out.
+
+    Gives `title`, `passed`, `measurements` (`name`, `value`, `unit`, `between`, `time_s`, `passed` of each), `faults` and
+    `unexpected_faults` by name, `stopped` (why it ended before its last step, or None), `tension_range_n`, `ticks`, and
+    `bits`: a hash of all that the firmware decided, which is equal where every bit of it is.
+
+    Raises ScenarioError and RigError for a file that is refused, at its place.
+    """

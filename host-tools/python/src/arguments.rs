@@ -1,0 +1,214 @@
+//! Arguments from Python, each refused by its name.
+
+use crate::rig::Rig;
+use leg_base::angles;
+use leg_base::timed_path::{Row, TimedPath};
+use leg_rig::rig_file::RigFile;
+use leg_sim::action::Action;
+use leg_sim::scenario::CommandStep;
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+use std::path::PathBuf;
+
+/// Longest time that is simulated by one call, s: a day.
+const LONGEST_S: f64 = 86_400.0;
+
+/// Most points of a path: three hours at 100 Hz.
+const POINTS_MAX: usize = 1_000_000;
+
+/// A finite number.
+pub fn finite(name: &str, value: f64) -> PyResult<f64> {
+    within(name, value, f64::MIN, f64::MAX)
+}
+
+/// A finite number in a range.
+pub fn within(name: &str, value: f64, low: f64, high: f64) -> PyResult<f64> {
+    if !value.is_finite() {
+        let sentence = format!("{name} = {value} is not a finite number");
+        return Err(PyValueError::new_err(sentence));
+    }
+    if !(low..=high).contains(&value) {
+        let sentence = format!("{name} = {value} is not from {low} to {high}");
+        return Err(PyValueError::new_err(sentence));
+    }
+    Ok(value)
+}
+
+/// A time to simulate, s.
+pub fn time_s(name: &str, value: f64) -> PyResult<f64> {
+    within(name, value, 0.0, LONGEST_S)
+}
+
+/// The tendon of a defect, from 1.
+fn defect(name: &str, tendon: Option<u8>) -> PyResult<Value> {
+    let value = tendon.map_or_else(|| json!(name), |tendon| json!({ name: tendon }));
+    let known = leg_sim::plant::Defect::descriptions().any(|(known, _)| known == name);
+    if !known {
+        let sentence = format!("fault = {name:?} is no defect; DEFECTS lists them");
+        return Err(PyValueError::new_err(sentence));
+    }
+    let mut all = leg_sim::plant::Defect::all();
+    let of_leg = all.any(|defect| serde_json::to_value(defect).ok().as_ref() == Some(&json!(name)));
+    match (of_leg, tendon) {
+        (true, Some(_)) => Err(PyValueError::new_err(format!(
+            "tendon is given, but {name} is a defect of the whole leg"
+        ))),
+        (false, None) => Err(PyValueError::new_err(format!(
+            "tendon is not given: {name} is a defect of tendon 1, 2 or 3"
+        ))),
+        (false, Some(number)) if !(1..=3).contains(&number) => Err(PyValueError::new_err(format!(
+            "tendon = {number} is none of 1, 2 and 3"
+        ))),
+        _ => Ok(value),
+    }
+}
+
+/// A defect that begins or ends.
+pub fn defect_action(action: &str, name: &str, tendon: Option<u8>) -> PyResult<Action> {
+    read(&json!({ action: defect(name, tendon)? }))
+}
+
+/// What is done to the leg from outside, its numbers checked as those of a scenario.
+pub fn action(name: &str, numbers: &[(&str, f64)]) -> PyResult<Action> {
+    read(&with_numbers(name, numbers)?)
+}
+
+/// A command, its numbers checked as those of a scenario.
+pub fn command(name: &str, numbers: &[(&str, f64)]) -> PyResult<CommandStep> {
+    read(&with_numbers(name, numbers)?)
+}
+
+/// A command or an action with words.
+pub fn read<T: DeserializeOwned>(value: &Value) -> PyResult<T> {
+    T::deserialize(value).map_err(|error| PyValueError::new_err(error.to_string()))
+}
+
+fn with_numbers(name: &str, numbers: &[(&str, f64)]) -> PyResult<Value> {
+    let mut entries = serde_json::Map::new();
+    for (key, value) in numbers {
+        entries.insert((*key).into(), json!(finite(key, *value)?));
+    }
+    Ok(json!({ name: entries }))
+}
+
+/// A name or a path of a file.
+pub fn path_of(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<PathBuf> {
+    let no_path = |_| PyTypeError::new_err(format!("{name} is no name and no path of a file"));
+    argument.extract().map_err(no_path)
+}
+
+/// A `Rig`, or that of a name or a file; none stays none.
+pub fn rig(argument: Option<&Bound<'_, PyAny>>) -> PyResult<Option<RigFile>> {
+    let Some(argument) = argument else {
+        return Ok(None);
+    };
+    if let Ok(rig) = argument.cast::<Rig>() {
+        return Ok(Some(rig.get().file));
+    }
+    Ok(Some(Rig::load(Some(&path_of("rig", argument)?))?.file))
+}
+
+/// Numbers in the order of an array, and its shape.
+pub struct Numbers {
+    /// Row by row.
+    pub values: Vec<f64>,
+    /// None for a single number.
+    pub shape: Vec<usize>,
+}
+
+/// The shape that arguments have together, by numpy's rules.
+pub fn common_shape(given: &[(&str, &Numbers)]) -> PyResult<Vec<usize>> {
+    let mut common: Vec<usize> = Vec::new();
+    for (name, numbers) in given {
+        let shape = &numbers.shape;
+        let length = common.len().max(shape.len());
+        let from_end = |shape: &[usize], i: usize| {
+            shape
+                .len()
+                .checked_sub(i + 1)
+                .map_or(1, |place| shape[place])
+        };
+        let mut together = Vec::with_capacity(length);
+        for i in (0..length).rev() {
+            together.push(match (from_end(&common, i), from_end(shape, i)) {
+                (a, b) if a == b => a,
+                (1, b) => b,
+                (a, 1) => a,
+                _ => {
+                    let sentence = format!(
+                        "{name} has the shape {shape:?}, which does not go with {common:?} of those before it"
+                    );
+                    return Err(PyValueError::new_err(sentence));
+                }
+            });
+        }
+        common = together;
+    }
+    Ok(common)
+}
+
+/// The same numbers in a shape that goes with theirs.
+pub fn broadcast(py: Python<'_>, numbers: Numbers, shape: &[usize]) -> PyResult<Vec<f64>> {
+    if numbers.shape == shape {
+        return Ok(numbers.values);
+    }
+    let numpy = py.import("numpy")?;
+    let array = PyArray1::from_vec(py, numbers.values).reshape(numbers.shape)?;
+    let wide = numpy.call_method1("broadcast_to", (array, shape.to_vec()))?;
+    let wide = numpy.call_method1("ascontiguousarray", (wide,))?;
+    Ok(wide.cast_into::<PyArrayDyn<f64>>()?.to_vec()?)
+}
+
+/// An array of finite numbers, with its shape; whatever numpy makes an array of.
+pub fn numbers(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Numbers> {
+    let numpy = argument.py().import("numpy")?;
+    // Not `ascontiguousarray`: that makes an array of a single number.
+    let converted = numpy.call_method1("asarray", (argument, "float64", "C"));
+    let no_numbers =
+        |error: PyErr| PyTypeError::new_err(format!("{name} is no array of numbers: {error}"));
+    let array = converted.map_err(no_numbers)?;
+    let array = array.cast_into::<PyArrayDyn<f64>>();
+    let array = array.map_err(|error| no_numbers(error.into()))?;
+    let values = array.to_vec()?;
+    if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+        let sentence = format!("{name} holds {} at index {index}", values[index]);
+        return Err(PyValueError::new_err(sentence));
+    }
+    let shape = array.shape().to_vec();
+    Ok(Numbers { values, shape })
+}
+
+/// A path: rows of time in s, azimuth and tilt in degrees.
+pub fn path(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<TimedPath> {
+    let Numbers { values, shape } = numbers(name, argument)?;
+    let refuse = |what: String| Err(PyValueError::new_err(format!("{name} {what}")));
+    if !matches!(shape[..], [2..=POINTS_MAX, 3]) {
+        return refuse(format!(
+            "has the shape {shape:?}, not (n, 3) with 2 to {POINTS_MAX} rows of time_s, azimuth_deg, tilt_deg"
+        ));
+    }
+    let mut rows = Vec::with_capacity(shape[0]);
+    let mut last_s = f64::NEG_INFINITY;
+    for (index, row) in values.chunks_exact(3).enumerate() {
+        let [time_s, azimuth_deg, tilt_deg] = [row[0], row[1], row[2]];
+        if time_s <= last_s || time_s - values[0] > LONGEST_S {
+            return refuse(format!(
+                "has the time {time_s} s at index {index}, which is not after {last_s} s and within a day"
+            ));
+        }
+        if azimuth_deg.abs() > 1e6 || tilt_deg.abs() > 90.0 {
+            return refuse(format!(
+                "leads to azimuth {azimuth_deg}°, tilt {tilt_deg}° at index {index}; a tilt is from -90 to 90"
+            ));
+        }
+        last_s = time_s;
+        rows.push(Row {
+            time_s,
+            direction: angles::direction(azimuth_deg, tilt_deg),
+        });
+    }
+    Ok(TimedPath::new(&rows))
+}

@@ -1,0 +1,61 @@
+"""Types and docstrings say what there is."""
+
+import ast
+import inspect
+from pathlib import Path
+
+import tendon_leg
+from tendon_leg import _native
+
+STUB = ast.parse((Path(tendon_leg.__file__).parent / "_native.pyi").read_text())
+
+
+def functions(body):
+    return {node.name: node for node in body if isinstance(node, ast.FunctionDef)}
+
+
+def arguments(node):
+    """Name, kind and default of each, but for `self` and `cls`."""
+    names = [(each.arg, "free") for each in node.args.args if each.arg not in ("self", "cls")]
+    defaults = [ast.literal_eval(each) for each in node.args.defaults]
+    given = [None] * (len(names) - len(defaults)) + [(each,) for each in defaults]
+    keyword = [(each.arg, "keyword") for each in node.args.kwonlyargs]
+    given += [(ast.literal_eval(each),) for each in node.args.kw_defaults]
+    return [(*name, default) for name, default in zip(names + keyword, given, strict=True)]
+
+
+def real_arguments(callable_):
+    kinds = {inspect.Parameter.KEYWORD_ONLY: "keyword"}
+    found = inspect.signature(callable_).parameters.values()
+    return [
+        (each.name, kinds.get(each.kind, "free"), None if each.default is each.empty else (each.default,))
+        for each in found
+        if each.name != "self"
+    ]
+
+
+def test_the_stub_has_every_name_and_no_other():
+    stubbed = {node.target.id for node in STUB.body if isinstance(node, ast.AnnAssign)}
+    stubbed |= {node.name for node in STUB.body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
+    real = {name for name in dir(_native) if not name.startswith("__")}
+    assert stubbed == real
+    assert set(tendon_leg.__all__) == real | {name for name in dir(tendon_leg.errors) if name[0].isupper()}
+
+
+def test_every_signature_is_that_of_the_stub():
+    for node in STUB.body:
+        if isinstance(node, ast.FunctionDef):
+            assert arguments(node) == real_arguments(getattr(_native, node.name)), node.name
+        if isinstance(node, ast.ClassDef):
+            assert_class(node, getattr(_native, node.name))
+
+
+def assert_class(node, class_):
+    methods = functions(node.body)
+    real = {name for name in vars(class_) if not name.startswith("_")}
+    assert {name for name in methods if not name.startswith("_")} == real
+    assert arguments(methods["__new__"]) == real_arguments(class_)
+    for name, method in methods.items():
+        assert ast.get_docstring(method), name
+        if name != "__new__" and not method.decorator_list:
+            assert arguments(method) == real_arguments(getattr(class_, name)), name
