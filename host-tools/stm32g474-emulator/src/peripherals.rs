@@ -13,7 +13,8 @@ use crate::rcc::ResetCause;
 /// own sequence, and ST's driver (stm32g4xx_hal_rcc.c), go at once.
 const LARGE_STEP_HZ: u32 = 85_000_000;
 
-/// How long the processor has to run at half of a higher frequency, µs: RM0440, change to range 1 boost mode.
+/// How long the processor has to run at half of a higher frequency, with the voltage for that, µs: RM0440, change to range 1
+/// boost mode.
 const STEP_PAUSE_US: u64 = 1;
 
 /// The peripherals, the time, and what the image did wrong.
@@ -22,8 +23,10 @@ pub struct Peripherals {
     pub cycle: u64,
     /// The frequencies of the moment.
     pub clocks: Clocks,
-    /// Since when the processor has had its frequency, in cycles since the power-up.
+    /// Since when the processor has had its frequency and its voltage, in cycles since the power-up.
     clocked_since: u64,
+    /// The core's voltage, in words.
+    voltage: &'static str,
     /// What the image did wrong.
     pub findings: Findings,
     /// What holds for all accesses.
@@ -37,13 +40,15 @@ impl Peripherals {
     /// After a power-up.
     #[must_use]
     pub fn new(board: &Board) -> Self {
+        let devices = Devices::new(board);
         Self {
             cycle: 0,
             clocks: Clocks::RESET,
             clocked_since: 0,
+            voltage: devices.pwr.voltage(),
             findings: Findings::default(),
             checks: AccessChecks::default(),
-            devices: Devices::new(board),
+            devices,
             resets: resets(),
         }
     }
@@ -177,6 +182,7 @@ impl Peripherals {
 
     /// Lets everything happen that is due, and hands on what passes between peripherals.
     pub fn advance(&mut self) {
+        self.note_voltage();
         if self.devices.rcc.take_changed() {
             self.change_clocks();
             self.reset_blocks();
@@ -200,7 +206,16 @@ impl Peripherals {
         }
     }
 
-    /// Reports a step to a high frequency that is too large, or that follows another too soon.
+    /// The time at half of a frequency counts from the change of the voltage, too.
+    fn note_voltage(&mut self) {
+        let voltage = self.devices.pwr.voltage();
+        if voltage != self.voltage {
+            self.voltage = voltage;
+            self.clocked_since = self.cycle;
+        }
+    }
+
+    /// Reports a step to a high frequency that is too large, or that follows another, or a change of the voltage, too soon.
     fn check_step(&mut self, before_hz: u32) {
         let after_hz = self.clocks.hclk;
         let waited = (self.cycle - self.clocked_since) * 1_000_000;

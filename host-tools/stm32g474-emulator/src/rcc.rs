@@ -101,6 +101,12 @@ impl Rcc {
         std::mem::take(&mut self.changed)
     }
 
+    /// A crystal that stood still swings again, at so many Hz: who switches it on then finds it ready in its time.
+    pub fn start_crystal(&mut self, crystal_hz: u32) {
+        self.crystal_hz = crystal_hz;
+        self.changed = true;
+    }
+
     /// The crystal stops: if the chip watches it, that is a failure of the clock.
     pub fn stop_crystal(&mut self) {
         self.crystal_hz = 0;

@@ -112,13 +112,21 @@ fn a_host_with_another_rate_is_a_finding_and_the_next_one_is_heard() -> Outcome 
 }
 
 #[test]
-fn a_crystal_that_stops_ends_the_pulses() -> Outcome {
+fn a_crystal_that_stops_ends_the_pulses_and_is_told() -> Outcome {
     let image = image(FirmwareImage::Stm32g474)?;
     let mut session = driving(&image, Board::default())?;
     let chip = session.chip().ok_or("no chip")?;
     chip.stop_crystal();
     assert!(!chip.peripherals().devices.tim1.outputs().on);
     assert_eq!(reset_within(chip, 100 * MS), Some(ResetCause::Software));
+    // Without it the chip does not start again.
+    let hz = Board::default().crystal_hz;
+    chip.peripherals().devices.rcc.start_crystal(hz);
+    let identity = identity_after(chip)?;
+    assert_eq!(
+        (identity.reset, identity.crash_report.as_str()),
+        (Told::Software, "the crystal has stopped")
+    );
     Ok(())
 }
 

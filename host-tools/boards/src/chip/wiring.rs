@@ -215,7 +215,8 @@ pub fn current_codes(chip: &Peripherals) -> [u16; 3] {
 /// What the motors get from the pins: for which part of the pulses' period they are high.
 ///
 /// # Errors
-/// A pin that floats, or drivers that are not enabled, while the timer's outputs are on, as a sentence.
+/// A pin that floats while the timer's outputs are on, or drivers that are enabled while these are off or the other way
+/// round, as a sentence.
 pub fn motors(chip: &Peripherals) -> Result<Drive<f32>, String> {
     let outputs = chip.devices.tim1.outputs();
     let driven = |pin, value: Option<f32>| {
@@ -246,8 +247,14 @@ pub fn motors(chip: &Peripherals) -> Result<Drive<f32>, String> {
         *share = if forward { width } else { -width };
     }
     let enabled = chip.devices.level(ENABLE) == Some(true);
-    if outputs.on && !enabled {
-        return Err("TIM1's outputs are on while the drivers are not enabled".into());
+    match (outputs.on, enabled) {
+        (true, false) => {
+            return Err("TIM1's outputs are on while the drivers are not enabled".into());
+        }
+        (false, true) => {
+            return Err("the drivers are enabled while TIM1's outputs are off".into());
+        }
+        _ => {}
     }
     Ok(Drive {
         duty,

@@ -15,6 +15,13 @@ mistakes! {
         moving,
         "TIM1's outputs are on while the drivers are not enabled",
     );
+    drivers_left_enabled: Mistake::new(
+        POWER,
+        "    pac::GPIOC.bsrr().write(|w| w.set_br(ENABLE_PIN, true));\n",
+        "",
+        moving,
+        "the drivers are enabled while TIM1's outputs are off",
+    );
     outputs_that_float_when_off: Mistake::new(
         POWER,
         "w.set_ossi(Ossi::IDLE_LEVEL);",

@@ -207,4 +207,15 @@ pub const SPEEDS: &[Row] = &[
         },
         "the processor's clock goes from 85000000 Hz to 170000000 Hz without 1 µs at half of that",
     ),
+    (
+        &["PWR"],
+        |b| {
+            b.run_at_half();
+            b.wait();
+            b.set("PWR", "CR5", "R1MODE", 0);
+            b.rcc("CFGR", "HPRE", 0);
+            b.0.advance();
+        },
+        "the processor's clock goes from 85000000 Hz to 170000000 Hz without 1 µs at half of that",
+    ),
 ];
