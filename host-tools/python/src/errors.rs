@@ -1,10 +1,12 @@
 //! What Python raises for what goes wrong here. The classes are in `python/tendon_leg/errors.py`.
 
+use crate::operator_thread::LegFailure;
 use crate::session::SessionError;
 use leg_base::description;
 use leg_base::failure::Failure;
 use leg_firmware::host_link::HostRefusal;
 use leg_firmware::supervisor::{FaultSet, State};
+use leg_host::operator::OperatorError;
 use leg_model::Error;
 use leg_sim::simulation::SimulationError;
 use pyo3::PyErr;
@@ -71,6 +73,43 @@ impl From<SimulationFailed> for PyErr {
 
 /// A [`SimulationError`], for Python.
 pub struct SimulationFailed(pub SimulationError);
+
+/// What a leg answers through its operator.
+pub fn leg_failure(failure: LegFailure) -> PyErr {
+    let (error, state) = match failure {
+        LegFailure::Open(failure) => return LegError::new_err(sentence(&failure)),
+        LegFailure::Closed => return leg_error("the leg's own thread has ended; open it again"),
+        LegFailure::Operator(error, state) => (error, state),
+    };
+    let failure = error.failure();
+    let (reason, remedy, ..) = words_and_place(&failure);
+    match *error {
+        OperatorError::Failed(_, telemetry) => {
+            faulted(telemetry.faults.without_limits(), telemetry.state)
+        }
+        OperatorError::Limited(_, telemetry) => faulted(telemetry.faults.limits(), telemetry.state),
+        OperatorError::Faulted(_, faults) | OperatorError::NotCleared(faults) => {
+            faulted(faults, state.unwrap_or(State::Boot))
+        }
+        OperatorError::Refused(..) | OperatorError::Path(_) | OperatorError::OtherPose(_) => {
+            Refused::new_err((reason, remedy))
+        }
+        OperatorError::TimedOut(..) => LegTimeout::new_err(sentence(&failure)),
+        OperatorError::Cancelled => {
+            leg_error("another thread stopped the leg; it is in hold if it was driven")
+        }
+        _ => LegError::new_err(sentence(&failure)),
+    }
+}
+
+fn sentence(failure: &Failure) -> String {
+    let (reason, remedy, ..) = words_and_place(failure);
+    if remedy.is_empty() {
+        reason
+    } else {
+        format!("{reason}; {remedy}")
+    }
+}
 
 impl From<SessionError> for PyErr {
     fn from(error: SessionError) -> Self {

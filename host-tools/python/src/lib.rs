@@ -1,12 +1,14 @@
 //! The Python package `tendon_leg`: the model and the simulated leg, numpy in and out.
 //!
 //! Where to begin: [`simulated_leg`] is the class `SimulatedLeg`; what it does tick by tick is in [`session`], without
-//! Python. [`rig`] is the class `Rig`, [`evaluation`] the model at many poses, [`outputs`] what it gives. [`signals`] declares what can be read and recorded. What Python sees of it is in `python/tendon_leg`: types and
+//! Python. [`leg`] is the class `Leg` for a leg on a port, [`rig`] is the class `Rig`, [`evaluation`] the model at many poses, [`outputs`] what it gives. [`signals`] declares what can be read and recorded. What Python sees of it is in `python/tendon_leg`: types and
 //! docstrings in `_native.pyi`, exceptions in `errors.py`.
 
 mod arguments;
 mod errors;
 mod evaluation;
+mod leg;
+mod operator_thread;
 mod outputs;
 mod recorder;
 mod rig;
@@ -14,6 +16,7 @@ mod scenarios;
 mod session;
 mod signals;
 mod simulated_leg;
+mod telemetry;
 
 use leg_base::description;
 use leg_firmware::sensors::TICK_HZ;
@@ -30,6 +33,7 @@ use signals::SIGNALS;
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();
+    module.add_class::<leg::Leg>()?;
     module.add_class::<rig::Rig>()?;
     module.add_class::<simulated_leg::SimulatedLeg>()?;
     module.add_function(wrap_pyfunction!(scenarios::run_scenario, module)?)?;

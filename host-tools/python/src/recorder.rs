@@ -46,7 +46,7 @@ impl Recorder {
         }
         self.times_s.push(snapshot.truth.time_s);
         for (signal, numbers) in &mut self.columns {
-            (signal.read)(snapshot, numbers);
+            signal.read(snapshot, numbers);
         }
         true
     }

@@ -55,7 +55,35 @@ pub struct Signal {
     /// How many numbers.
     pub width: usize,
     /// Writes them.
-    pub read: fn(&Snapshot<'_>, &mut Vec<f64>),
+    read: Read,
+}
+
+/// Reads the numbers of a signal.
+enum Read {
+    /// Of the simulated leg.
+    Leg(fn(&Snapshot<'_>, &mut Vec<f64>)),
+    /// Of what any leg reports.
+    Telemetry(fn(&Telemetry<f32>, &mut Vec<f64>)),
+}
+
+impl Signal {
+    /// Its numbers at a snapshot of the simulated leg.
+    pub fn read(&self, snapshot: &Snapshot<'_>, out: &mut Vec<f64>) {
+        match self.read {
+            Read::Leg(read) => read(snapshot, out),
+            Read::Telemetry(read) => read(snapshot.telemetry, out),
+        }
+    }
+
+    /// Its numbers in what a leg reports; none of a signal that no leg reports.
+    pub fn reported(&self, telemetry: &Telemetry<f32>) -> Option<Vec<f64>> {
+        let Read::Telemetry(read) = self.read else {
+            return None;
+        };
+        let mut numbers = Vec::with_capacity(self.width);
+        read(telemetry, &mut numbers);
+        Some(numbers)
+    }
 }
 
 macro_rules! signals {
@@ -66,11 +94,14 @@ macro_rules! signals {
             origin: Origin::$origin,
             meaning: $meaning,
             width: $width,
-            read: |$at, out| {
-                let values: [f64; $width] = $value;
-                out.extend(values);
-            },
+            read: signals!(@read $origin, $width, $at, $value),
         },)*];
+    };
+    (@read Telemetry, $width:literal, $at:ident, $value:expr) => {
+        Read::Telemetry(|$at, out| out.extend::<[f64; $width]>($value))
+    };
+    (@read $origin:ident, $width:literal, $at:ident, $value:expr) => {
+        Read::Leg(|$at, out| out.extend::<[f64; $width]>($value))
     };
 }
 
@@ -112,33 +143,33 @@ signals! {
     Truth "supply_true_v" [1] "Voltage at the drivers, V."
         = |at| [at.truth.supply_v];
     Telemetry "azimuth_deg" [1] "Where the leg is estimated to lean, 0 to 360°."
-        = |at| [azimuth_deg(at.telemetry.pose.map(f64::from))];
+        = |at| [azimuth_deg(at.pose.map(f64::from))];
     Telemetry "tilt_deg" [1] "How far it is estimated to lean, degrees."
-        = |at| [tilt_deg(at.telemetry.pose.map(f64::from))];
+        = |at| [tilt_deg(at.pose.map(f64::from))];
     Telemetry "tensions_n" [3] "Tensions as measured, N."
-        = |at| at.telemetry.tensions_n.map(f64::from);
+        = |at| at.tensions_n.map(f64::from);
     Telemetry "target_tensions_n" [3] "Tensions that the target asks for, N."
-        = |at| at.telemetry.target_tensions_n.map(f64::from);
+        = |at| at.target_tensions_n.map(f64::from);
     Telemetry "pretension_n" [1] "Pretension of the target, N; 0 before the first."
-        = |at| [at.telemetry.pretension_n.into()];
+        = |at| [at.pretension_n.into()];
     Telemetry "stiffness_nm_per_rad" [1] "Bending stiffness at that pretension, N·m/rad."
-        = |at| [at.telemetry.stiffness_nm_per_rad.into()];
+        = |at| [at.stiffness_nm_per_rad.into()];
     Telemetry "load_nm" [2] "Load beyond the leg's own weight, as a horizontal moment, N·m."
-        = |at| at.telemetry.load_nm.map(f64::from);
+        = |at| at.load_nm.map(f64::from);
     Telemetry "payload_kg" [1] "The payload that this load would be, kg."
-        = |at| [at.telemetry.payload_kg.into()];
+        = |at| [at.payload_kg.into()];
     Telemetry "residual_m" [1] "What forward kinematics leaves over, m."
-        = |at| [at.telemetry.residual_m.into()];
+        = |at| [at.residual_m.into()];
     Telemetry "pulled_m" [3] "How far each tendon is pulled in since the start, m."
-        = |at| at.telemetry.pulled_m.map(f64::from);
+        = |at| at.pulled_m.map(f64::from);
     Telemetry "reference_m" [3] "How far each shall be, m."
-        = |at| at.telemetry.reference_m.map(f64::from);
-    Telemetry "duties" [3] "What each motor gets, as a part of the supply's voltage, -1 to 1; 0 while the drivers are off."
+        = |at| at.reference_m.map(f64::from);
+    Truth "duties" [3] "What each motor gets, as a part of the supply's voltage, -1 to 1; 0 while the drivers are off."
         = |at| if at.motors.enabled { at.motors.duty.map(f64::from) } else { [0.0; 3] };
     Telemetry "moving" [1] "1 while the trajectory moves, 0 else."
-        = |at| [f64::from(u8::from(at.telemetry.moving))];
+        = |at| [f64::from(u8::from(at.moving))];
     Telemetry "state_index" [1] "What the leg may do, as the index of the state's name in STATES."
-        = |at| [state_index(at.telemetry.state) as f64];
+        = |at| [state_index(at.state) as f64];
 }
 
 /// The signal of a name.

@@ -6,6 +6,7 @@ use crate::recorder::Recorder;
 use crate::rig::Rig;
 use crate::session::{Session, SessionError};
 use crate::signals::{self, Origin, SIGNALS, Signal};
+use crate::telemetry::{self, numbers_as};
 use leg_base::description;
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::sensors::TICK_HZ;
@@ -76,32 +77,6 @@ impl SimulatedLeg {
                 Ok(())
             }
         })
-    }
-
-    fn signals_of<'py>(&self, py: Python<'py>, origin: Origin) -> PyResult<Bound<'py, PyDict>> {
-        let session = self.session()?;
-        let values = PyDict::new(py);
-        if let Some(snapshot) = session.snapshot() {
-            for signal in SIGNALS.iter().filter(|signal| signal.origin == origin) {
-                let mut numbers = Vec::with_capacity(signal.width);
-                (signal.read)(&snapshot, &mut numbers);
-                values.set_item(signal.name, numbers_as(py, signal, numbers)?)?;
-            }
-        }
-        values.set_item("time_s", session.leg().time_s())?;
-        Ok(values)
-    }
-}
-
-/// One number as a float, several as an array.
-fn numbers_as<'py>(
-    py: Python<'py>,
-    signal: &Signal,
-    numbers: Vec<f64>,
-) -> PyResult<Bound<'py, PyAny>> {
-    match numbers[..] {
-        [number] if signal.width == 1 => Ok(number.into_pyobject(py)?.into_any()),
-        _ => Ok(PyArray1::from_vec(py, numbers).into_any()),
     }
 }
 
@@ -175,19 +150,7 @@ impl SimulatedLeg {
 
     #[getter]
     fn faults<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
-        let reported = self.session()?.reported();
-        let faults = PyList::empty(py);
-        for fault in reported.faults() {
-            let entry = fault.entry();
-            let row = PyDict::new(py);
-            row.set_item("code", fault.code())?;
-            row.set_item("name", entry.name)?;
-            row.set_item("cause", entry.cause)?;
-            row.set_item("remedy", entry.remedy)?;
-            row.set_item("reaction", description::reaction(entry.reaction))?;
-            faults.append(row)?;
-        }
-        Ok(faults)
+        telemetry::faults(py, self.session()?.reported())
     }
 
     #[pyo3(signature = (ticks = 8))]
@@ -353,17 +316,28 @@ impl SimulatedLeg {
     }
 
     fn truth<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        self.signals_of(py, Origin::Truth)
+        let session = self.session()?;
+        let values = PyDict::new(py);
+        if let Some(snapshot) = session.snapshot() {
+            for signal in SIGNALS
+                .iter()
+                .filter(|signal| signal.origin == Origin::Truth)
+            {
+                let mut numbers = Vec::with_capacity(signal.width);
+                signal.read(&snapshot, &mut numbers);
+                values.set_item(signal.name, numbers_as(py, signal, numbers)?)?;
+            }
+        }
+        values.set_item("time_s", session.leg().time_s())?;
+        Ok(values)
     }
 
     fn telemetry<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let telemetry = self.signals_of(py, Origin::Telemetry)?;
-        telemetry.set_item("state", self.state()?)?;
-        telemetry.set_item("faults", self.faults(py)?)?;
-        let session = self.session()?;
-        let reported = session.leg().telemetry();
-        telemetry.set_item("homed", reported.is_some_and(|reported| reported.homed))?;
-        Ok(telemetry)
+        let reported = self.session()?.leg().telemetry().copied();
+        reported.map_or_else(
+            || Ok(PyDict::new(py)),
+            |reported| telemetry::dictionary(py, &reported),
+        )
     }
 
     fn read<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
@@ -371,7 +345,7 @@ impl SimulatedLeg {
         let session = self.session()?;
         let mut numbers = Vec::with_capacity(signal.width);
         if let Some(snapshot) = session.snapshot() {
-            (signal.read)(&snapshot, &mut numbers);
+            signal.read(&snapshot, &mut numbers);
         }
         numbers_as(py, signal, numbers)
     }

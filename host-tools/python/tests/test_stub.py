@@ -4,6 +4,7 @@ import ast
 import inspect
 from pathlib import Path
 
+import pytest
 import tendon_leg
 from tendon_leg import _native
 
@@ -54,8 +55,11 @@ def assert_class(node, class_):
     methods = functions(node.body)
     real = {name for name in vars(class_) if not name.startswith("_")}
     assert {name for name in methods if not name.startswith("_")} == real
-    assert arguments(methods["__new__"]) == real_arguments(class_)
+    if "__new__" in methods:
+        assert arguments(methods["__new__"]) == real_arguments(class_)
+    else:
+        pytest.raises(TypeError, class_)
     for name, method in methods.items():
         assert ast.get_docstring(method), name
-        if name != "__new__" and not method.decorator_list:
+        if not name.startswith("__") and not method.decorator_list:
             assert arguments(method) == real_arguments(getattr(class_, name)), name

@@ -1,4 +1,5 @@
-"""The controller for tendon-driven legs, in Python: the model, and a leg simulated with the firmware's own code.
+"""The controller for tendon-driven legs, in Python: the model, a leg simulated with the firmware's own code, and a leg
+on a port.
 
 >>> from tendon_leg import SimulatedLeg
 >>> leg = SimulatedLeg("table1", payload_kg=1.0)
@@ -16,6 +17,7 @@ from ._native import (
     SIGNALS,
     STATES,
     TICKS_PER_SECOND,
+    Leg,
     Rig,
     SimulatedLeg,
     run_scenario,
@@ -31,6 +33,7 @@ __all__ = [
     "STATES",
     "TICKS_PER_SECOND",
     "FileRefused",
+    "Leg",
     "LegError",
     "LegFault",
     "LegTimeout",

@@ -27,6 +27,69 @@ OUTPUTS: tuple[str, ...]
 #: What can be read of a simulated leg and recorded: each name, which ends with its unit, and its meaning.
 SIGNALS: dict[str, str]
 
+class Leg:
+    """A leg on a serial port, commanded as by `leg home`, `leg move` and so on; or the same emulated in this process.
+
+    Each call returns at its end, with telemetry. After `move`, `stiffness` and `follow` the leg keeps station; after `home`,
+    `hold` and `stop`, after Ctrl-C and after an error it is in hold. A leg that hears no more of this program holds by itself.
+    Raises LegFault, Refused, LegTimeout, or LegError where the connection fails.
+    """
+
+    @staticmethod
+    def open(port: str | None = None) -> Leg:
+        """The leg on a serial port, such as `/dev/ttyACM0`; on the port of the board's ST-LINK if left out."""
+
+    @staticmethod
+    def emulated(rig: str | PathLike[str] | Rig | None = None, *, slack: bool = False) -> Leg:
+        """A leg in this process, whose time goes on only in calls: homed, or slack and not homed. For programs to be tried on."""
+
+    def home(self) -> dict[str, Any]:
+        """Finds the zero. The leg must hang free, without a payload."""
+
+    def move(
+        self,
+        azimuth_deg: float,
+        tilt_deg: float,
+        *,
+        pretension_n: float | None = None,
+        stiffness_nm_per_rad: float | None = None,
+        towards_deg: float | None = None,
+    ) -> dict[str, Any]:
+        """Leans the leg, degrees, with a pretension or a bending stiffness if one is given. A leg with a zero is armed first."""
+
+    def stiffness(self, nm_per_rad: float, towards_deg: float | None = None) -> dict[str, Any]:
+        """Changes the bending stiffness where the leg is: of the softest tilt, or against a push towards an azimuth."""
+
+    def follow(self, points: ArrayLike, *, lead_s: float = 0.2) -> dict[str, Any]:
+        """Streams a path: rows of time in s, azimuth and tilt in degrees. It is checked as a whole before the leg moves.
+
+        lead_s: how long a point may be on its way to the leg, s.
+        """
+
+    def hold(self) -> dict[str, Any]:
+        """Holds the leg where it is."""
+
+    def stop(self) -> None:
+        """Stops the leg. From another thread it ends the call that drives the leg, which raises LegError."""
+
+    def disarm(self) -> None:
+        """Leads the leg straight down, pays its tendons out and switches the drivers off."""
+
+    def clear(self) -> None:
+        """Clears the faults whose cause is gone; the leg is in hold then, or disarmed."""
+
+    def telemetry(self) -> dict[str, Any]:
+        """What the leg reports, by the names of `SimulatedLeg.telemetry`."""
+
+    def close(self) -> None:
+        """Closes the connection. The end of a `with` does, too."""
+
+    def __enter__(self) -> Leg:
+        """The leg itself."""
+
+    def __exit__(self, *_exception: object) -> None:
+        """Closes the connection."""
+
 class Rig:
     """A rig file, read and checked: a leg with its tendons, support, motors, sensors, gains and limits.
 
