@@ -131,6 +131,7 @@ impl From<SessionError> for PyErr {
             SessionError::TimedOut(what, time_s) => {
                 LegTimeout::new_err(format!("the leg did not {what} within {time_s} s"))
             }
+            SessionError::Interrupted(error) => error,
             SessionError::RecordingFull => LegError::new_err(
                 "the recording has no room for more and was given up; record fewer signals, or more seldom",
             ),
