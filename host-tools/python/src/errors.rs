@@ -85,11 +85,13 @@ pub fn leg_failure(failure: LegFailure) -> PyErr {
     let (reason, remedy, ..) = words_and_place(&failure);
     match *error {
         OperatorError::Failed(_, telemetry) => {
-            faulted(telemetry.faults.without_limits(), telemetry.state)
+            faulted(telemetry.faults.without_limits(), Some(telemetry.state))
         }
-        OperatorError::Limited(_, telemetry) => faulted(telemetry.faults.limits(), telemetry.state),
+        OperatorError::Limited(_, telemetry) => {
+            faulted(telemetry.faults.limits(), Some(telemetry.state))
+        }
         OperatorError::Faulted(_, faults) | OperatorError::NotCleared(faults) => {
-            faulted(faults, state.unwrap_or(State::Boot))
+            faulted(faults, state)
         }
         OperatorError::Refused(..) | OperatorError::Path(_) | OperatorError::OtherPose(_) => {
             Refused::new_err((reason, remedy))
@@ -123,7 +125,7 @@ impl From<SessionError> for PyErr {
                 let place = format!("the path {time_s:.3} s after its start: {wrong}");
                 Refused::new_err((place, remedy))
             }
-            SessionError::Faulted(faults, state) => faulted(faults, state),
+            SessionError::Faulted(faults, state) => faulted(faults, Some(state)),
             SessionError::NotFollowing(state) => {
                 let state = description::state(state);
                 LegError::new_err(format!("the leg follows no commands now: it is {state}"))
@@ -131,6 +133,7 @@ impl From<SessionError> for PyErr {
             SessionError::TimedOut(what, time_s) => {
                 LegTimeout::new_err(format!("the leg did not {what} within {time_s} s"))
             }
+            SessionError::Interrupted(error) => error,
             SessionError::RecordingFull => LegError::new_err(
                 "the recording has no room for more and was given up; record fewer signals, or more seldom",
             ),
@@ -152,8 +155,8 @@ fn refused(refusal: HostRefusal) -> PyErr {
     }
 }
 
-/// The first of some faults.
-fn faulted(faults: FaultSet, state: State) -> PyErr {
+/// The first of some faults, and what the leg does, if that is known.
+fn faulted(faults: FaultSet, state: Option<State>) -> PyErr {
     let Some(fault) = faults.faults().next() else {
         return LegError::new_err("a fault is latched");
     };
@@ -163,6 +166,6 @@ fn faulted(faults: FaultSet, state: State) -> PyErr {
         entry.name,
         entry.cause,
         entry.remedy,
-        description::state(state),
+        state.map_or("out of reach", description::state),
     ))
 }

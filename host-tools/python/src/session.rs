@@ -1,4 +1,4 @@
-//! A simulated leg that is commanded and stepped: tick by tick, without Python.
+//! A simulated leg that is commanded and stepped: tick by tick, without the interpreter's lock.
 
 use crate::recorder::Recorder;
 use crate::signals::Snapshot;
@@ -19,12 +19,16 @@ use leg_sim::emulated_leg::{EmulatedLeg, EmulationError};
 use leg_sim::hosted_leg::HostedLeg;
 use leg_sim::path_sender::PathSender;
 use leg_sim::plant::Start;
+use pyo3::PyErr;
 
 /// Ticks within which a command is answered: it takes two, with the introduction before the first.
 const ANSWER_TICKS: u32 = 80;
 
 /// Ticks from one look at a leg that settles to the next: 10 ms, what [`Settling`] compares.
 const LOOK_TICKS: u64 = TICK_HZ as u64 / 100;
+
+/// Ticks from one look for Ctrl-C to the next: about a tenth of a second of this machine's time.
+const INTERRUPT_TICKS: u64 = 40_000;
 
 /// Why a leg did not do what it was asked.
 #[derive(Debug)]
@@ -47,6 +51,8 @@ pub enum SessionError {
     TimedOut(&'static str, f64),
     /// There is no room for more of a recording.
     RecordingFull,
+    /// The user ended it.
+    Interrupted(PyErr),
 }
 
 impl From<EmulationError> for SessionError {
@@ -66,11 +72,18 @@ pub struct Session {
     /// The path that is being sent.
     path: Option<PathSender>,
     recorder: Option<Recorder>,
+    /// Fails if the user wants an end.
+    interrupted: fn() -> std::result::Result<(), PyErr>,
 }
 
 impl Session {
     /// A leg of a rig at a start, which has booted. Its noise follows from the seed. One with a zero has its load cells tared.
-    pub fn new(rig: &RigFile, start: Start, seed: u64) -> Result<Self> {
+    pub fn new(
+        rig: &RigFile,
+        start: Start,
+        seed: u64,
+        interrupted: fn() -> std::result::Result<(), PyErr>,
+    ) -> Result<Self> {
         let plant = if start.is_slack() {
             rig.plant
         } else {
@@ -89,6 +102,7 @@ impl Session {
             },
             path: None,
             recorder: None,
+            interrupted,
         };
         while session.leg.state() == State::Boot {
             session.tick()?;
@@ -135,7 +149,11 @@ impl Session {
         self.motors = reply.motors;
         self.note_commanded();
         self.take_row()?;
-        self.look_at_points()
+        self.look_at_points()?;
+        if self.leg.ticks().is_multiple_of(INTERRUPT_TICKS) {
+            (self.interrupted)().map_err(SessionError::Interrupted)?;
+        }
+        Ok(())
     }
 
     /// Records the tick, if a row is due.

@@ -80,6 +80,11 @@ impl SimulatedLeg {
     }
 }
 
+/// Fails on Ctrl-C.
+fn interrupted() -> PyResult<()> {
+    Python::attach(|py| py.check_signals())
+}
+
 fn signal(name: &str) -> PyResult<&'static Signal> {
     signals::named(name).ok_or_else(|| {
         let sentence = format!("signals holds {name:?}, which is none; SIGNALS lists them");
@@ -125,7 +130,12 @@ impl SimulatedLeg {
             }});
             arguments::read(&start)?
         };
-        Ok(Self(Mutex::new(Session::new(&rig, start, seed)?)))
+        Ok(Self(Mutex::new(Session::new(
+            &rig,
+            start,
+            seed,
+            interrupted,
+        )?)))
     }
 
     #[getter]

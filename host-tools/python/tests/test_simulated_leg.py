@@ -1,5 +1,7 @@
 """The simulated leg: commands, what it answers, what is seen of it, copies and threads."""
 
+import os
+import signal
 import threading
 
 import numpy as np
@@ -197,6 +199,15 @@ def test_a_clone_goes_on_alike_and_apart():
     for each in (leg, alike, pushed):
         each.run(0.05)
     assert bits(leg) == bits(alike) != bits(pushed)
+
+
+def test_ctrl_c_ends_a_long_run_between_two_ticks():
+    leg = armed()
+    threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        leg.run(3600.0)
+    assert leg.state == "active" and 0.0 < leg.time_s < 3600.0
+    leg.move(30.0, 10.0)
 
 
 def test_other_threads_run_while_a_leg_is_stepped():

@@ -1,7 +1,7 @@
 """What is written in Rust: its types and what it does."""
 
 from os import PathLike
-from typing import Any
+from typing import Any, final
 
 from numpy import float64
 from numpy.typing import ArrayLike, NDArray
@@ -27,6 +27,7 @@ OUTPUTS: tuple[str, ...]
 #: What can be read of a simulated leg and recorded: each name, which ends with its unit, and its meaning.
 SIGNALS: dict[str, str]
 
+@final
 class Leg:
     """A leg on a serial port, commanded as by `leg home`, `leg move` and so on; or the same emulated in this process.
 
@@ -90,6 +91,7 @@ class Leg:
     def __exit__(self, *_exception: object) -> None:
         """Closes the connection."""
 
+@final
 class Rig:
     """A rig file, read and checked: a leg with its tendons, support, motors, sensors, gains and limits.
 
@@ -200,6 +202,7 @@ class Rig:
     ) -> dict[str, NDArray[float64]]:
         """`elongation_m` and `stiffness_n_per_m` of a tendon under tensions, N; not a number beyond what its curve knows."""
 
+@final
 class SimulatedLeg:
     """A leg without a board: the firmware's own code and the simulated mechanism, as `leg run --on sim` has them.
 
@@ -346,6 +349,12 @@ class SimulatedLeg:
 
     def recording(self) -> dict[str, NDArray[float64]]:
         """What was recorded until now: `time_s`, and each signal as an array with a row for each time."""
+
+    def __copy__(self) -> SimulatedLeg:
+        """A clone."""
+
+    def __deepcopy__(self, _memo: dict[int, Any]) -> SimulatedLeg:
+        """A clone."""
 
     def clone(self) -> SimulatedLeg:
         """The same leg in the same state, to try something else with: both go on alike, bit for bit, where they are treated alike."""
