@@ -2,6 +2,7 @@
 
 use crate::clocks::LSI_HZ;
 use crate::facts::{Facts, Field, Pin};
+use crate::fdcan::timing::BitTiming;
 use crate::gpio::{Gpio, PinMode};
 use crate::peripherals::Peripherals;
 
@@ -22,7 +23,8 @@ pub fn lines(chip: &Peripherals) -> Vec<String> {
     lines.extend(["TIM2", "TIM3", "TIM4"].map(|name| encoder(chip, name)));
     lines.push(clock_timer(chip));
     lines.extend(["ADC1", "ADC2", "ADC3"].map(|name| converter(chip, name)));
-    lines.push(serial_line(chip));
+    lines.extend(serial_line(chip));
+    lines.extend(can_node(chip));
     lines.extend(guards(chip));
     lines
 }
@@ -67,6 +69,20 @@ fn set<'a>(chip: &Peripherals, place: [&str; 2], names: &[&'a str]) -> Vec<&'a s
     names
         .filter(|name| value(chip, [block, register, name]) != 0)
         .collect()
+}
+
+/// Names of all fields of a register that are set.
+fn all_set(chip: &Peripherals, [block, register]: [&str; 2]) -> String {
+    let register = Facts::of_chip()
+        .block(block)
+        .and_then(|block| Some((block, block.register(register)?)));
+    let Some((block, register)) = register else {
+        return String::new();
+    };
+    let word = chip.checks.last_written((block, register));
+    let fields = register.fields.iter();
+    let names = fields.filter(|field| field.value(word) != 0);
+    listed(&names.map(|field| field.name.as_str()).collect::<Vec<_>>())
 }
 
 fn mhz(hz: u32) -> String {
@@ -201,7 +217,7 @@ fn clock_timer(chip: &Peripherals) -> String {
     format!(
         "TIM15: counts at {}, interrupts {}",
         mhz(chip.devices.tim15.counts_hz(&chip.clocks)),
-        listed(&set(chip, ["TIM15", "DIER"], &["UIE", "CCIE0", "CCIE1"])),
+        all_set(chip, ["TIM15", "DIER"]),
     )
 }
 
@@ -218,11 +234,7 @@ fn converter(chip: &Peripherals, name: &str) -> String {
         codes.join(", "),
         plain(chip, [name, "JSQR", "JEXTEN"]),
         number("JSQR", "JEXTSEL"),
-        listed(&set(
-            chip,
-            [name, "IER"],
-            &["EOCIE", "JEOCIE", "JEOSIE", "OVRIE"]
-        )),
+        all_set(chip, [name, "IER"]),
     )
 }
 
@@ -241,19 +253,45 @@ fn input(chip: &Peripherals, converter: &str, input: u32) -> String {
     format!("input {input} ({pin}) for {sampling}")
 }
 
-fn serial_line(chip: &Peripherals) -> String {
-    let baud = chip.devices.lpuart.baud(&chip.clocks).unwrap_or_default();
-    format!(
-        "LPUART1: {baud:.0} baud, {}, parity {}, {}; {} are on",
-        plain(chip, ["LPUART1", "CR1", "M0"]),
-        switch(chip, ["LPUART1", "CR1", "PCE"]),
-        plain(chip, ["LPUART1", "CR2", "STOP"]),
-        listed(&set(
-            chip,
-            ["LPUART1", "CR1"],
-            &["UE", "RE", "TE", "RXNEIE", "IDLEIE"]
-        )),
-    )
+/// LPUART1, once it is on.
+fn serial_line(chip: &Peripherals) -> Option<String> {
+    let baud = chip.devices.lpuart.baud(&chip.clocks)?;
+    let on = value(chip, ["LPUART1", "CR1", "UE"]) != 0;
+    let line = || {
+        format!(
+            "LPUART1: {baud:.0} baud, {}, parity {}, {}; {} are on",
+            plain(chip, ["LPUART1", "CR1", "M0"]),
+            switch(chip, ["LPUART1", "CR1", "PCE"]),
+            plain(chip, ["LPUART1", "CR2", "STOP"]),
+            listed(&set(
+                chip,
+                ["LPUART1", "CR1"],
+                &["UE", "RE", "TE", "RXNEIE", "IDLEIE"]
+            )),
+        )
+    };
+    on.then(line)
+}
+
+/// FDCAN2, once it takes part in the bus.
+fn can_node(chip: &Peripherals) -> Option<String> {
+    let node = &chip.devices.fdcan;
+    let phase = |timing: BitTiming| {
+        let percent = f64::from(timing.sample_permille) / 10.0;
+        format!("{} bit/s sampled at {percent} %", timing.hz)
+    };
+    let nominal = node.nominal_timing(&chip.clocks).map(phase)?;
+    let data = node.data_timing(&chip.clocks).map(phase)?;
+    node.takes_part().then(|| {
+        format!(
+            "FDCAN2: {nominal}, data {data}; {} are on; delay compensated {}; {} filters, other frames: {}; interrupts {}",
+            listed(&set(chip, ["FDCAN2", "CCCR"], &["FDOE", "BRSE", "DAR", "TXP"])),
+            switch(chip, ["FDCAN2", "DBTP", "TDC"]),
+            value(chip, ["FDCAN2", "RXGFC", "LSS"]),
+            plain(chip, ["FDCAN2", "RXGFC", "ANFS"]),
+            all_set(chip, ["FDCAN2", "IE"]),
+        )
+    })
 }
 
 fn listed(names: &[&str]) -> String {

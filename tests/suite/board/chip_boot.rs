@@ -4,12 +4,15 @@ use crate::common::chip::{
     BAUD, MS, Outcome, at_rest, carry_out, driving, findings, identity, identity_after, image,
     other_settings, reset_within, send, settings, started, started_with, ticked,
 };
+use crate::common::chip_bus::started_on_can;
 use leg_boards::chip::ChipSession;
 use leg_boards::image::{FirmwareImage, workspace_root};
 use leg_firmware::board::timing::TICK_CYCLES;
+use leg_firmware::can::LegAddress;
 use leg_firmware::host_link::{HostRequest, ResetCause as Told};
 use leg_firmware_bench::protocol::Request;
 use leg_sim::link::{Link, LinkError};
+use std::error::Error;
 use std::ops::Range;
 use std::{env, fs};
 use stm32g474_emulator::board::Board;
@@ -23,6 +26,8 @@ use stm32g474_emulator::trace;
 const TRACED_TICKS: usize = 4;
 /// After these it is open.
 const CONFIGURED_TICKS: usize = 10;
+/// After these the chip takes part in the CAN bus.
+const TICKS_TO_BUS: usize = 60;
 
 #[test]
 fn the_boot_writes_what_was_reviewed() -> Outcome {
@@ -43,6 +48,25 @@ fn the_boot_sets_up_what_was_reviewed() -> Outcome {
     let chip = session.chip().ok_or("no chip")?;
     let lines = configuration::lines(&chip.peripherals());
     is_as_reviewed("chip_configuration.txt", &lines)
+}
+
+/// On a CAN bus: what differs from that, `-` on the serial line alone and `+` on the bus alone.
+#[test]
+fn the_boot_on_a_bus_sets_up_what_was_reviewed() -> Outcome {
+    let image = image(FirmwareImage::Stm32g474)?;
+    let [_, leg, ..] = LegAddress::ALL;
+    let lines = |mut session: ChipSession| -> Result<Vec<String>, Box<dyn Error>> {
+        let chip = session.chip().ok_or("no chip")?;
+        Ok(configuration::lines(&chip.peripherals()))
+    };
+    let serial = lines(started(CONFIGURED_TICKS)?)?;
+    let on_can = lines(started_on_can(&image, leg, TICKS_TO_BUS)?)?;
+    let only = |sign: char, one: &[String], other: &[String]| {
+        let alone = one.iter().filter(|line| !other.contains(line));
+        alone.map(|line| format!("{sign} {line}")).collect()
+    };
+    let differing: [Vec<_>; 2] = [only('-', &serial, &on_can), only('+', &on_can, &serial)];
+    is_as_reviewed("chip_configuration_can.txt", &differing.concat())
 }
 
 fn is_as_reviewed(golden: &str, lines: &[String]) -> Outcome {
