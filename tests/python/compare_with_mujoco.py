@@ -1,7 +1,9 @@
 """What MuJoCo says of exported legs.
 
-Reads a JSON list of jobs from standard input and writes a JSON list of answers. A job names a model file (`model`),
-other payloads for it (`other_payloads_kg`) and whether to let it fall into place from the vertical (`settle`). SI units.
+Reads a JSON list of jobs from standard input and writes a JSON list of answers. A job names
+a model file (`model`) and, for a leg at rest, other payloads for it (`other_payloads_kg`) and whether to let it fall into
+place from the vertical (`settle`); for a swing, a force at the tip that ends (`force_n`); for legs around a body, how long
+they shall stand (`stands_s`). SI units.
 """
 
 import json
@@ -15,10 +17,16 @@ CONVERGED_RAD = 1e-11
 STEPS_MAX = 50
 SETTLED_RAD_PER_S = 1e-8
 SETTLE_STEPS_MAX = 200_000
+SETTLE_DAMPING = 20.0  # times that of the joints, so that it comes to rest soon
+FREE_SPAN_S = 1.0
 
 
 def answer(job):
     model = mujoco.MjModel.from_xml_path(job["model"])
+    if "force_n" in job:
+        return free_response(model, job["force_n"])
+    if "stands_s" in job:
+        return standing(model, job["stands_s"])
     model.opt.tolerance = 0.0  # the constraint solver goes on to its rounding
     held = model.key("held").qpos
     found = at_pose(model, held)
@@ -85,11 +93,49 @@ def tip_at_rest(model, position):
 def tip_settled(model):
     """The tip after the simulation has come to rest, let go at the vertical."""
     data = mujoco.MjData(model)
+    damping = model.dof_damping.copy()
+    model.dof_damping[:] *= SETTLE_DAMPING
     for _ in range(SETTLE_STEPS_MAX):
         mujoco.mj_step(model, data)
         if np.abs(data.qvel).max() < SETTLED_RAD_PER_S and np.abs(data.qacc).max() < SETTLED_RAD_PER_S:
+            model.dof_damping[:] = damping
             return data.site("tip").xpos.tolist()
     sys.exit(f"the leg does not come to rest within {data.time} s: it still moves at {data.qvel} rad/s")
+
+
+def free_response(model, force_n):
+    """The tip over time after a force there, under which the leg has come to rest, has ended; and what the sensors say at rest."""
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, model.key("held").id)
+    mujoco.mj_forward(model, data)
+    sensors = data.sensordata.tolist()
+    leg = model.body("leg").id
+    steps = round(FREE_SPAN_S / model.opt.timestep)
+    damping = model.dof_damping.copy()
+    model.dof_damping[:] *= SETTLE_DAMPING
+    for _ in range(2 * steps):
+        data.qfrc_applied[:] = 0.0
+        mujoco.mj_applyFT(model, data, np.array(force_n), np.zeros(3), data.site("tip").xpos, leg, data.qfrc_applied)
+        mujoco.mj_step(model, data)
+    model.dof_damping[:] = damping
+    data.qfrc_applied[:] = 0.0
+    data.qvel[:] = 0.0
+    tips = []
+    for _ in range(steps):
+        tips.append(data.site("tip").xpos.tolist())
+        mujoco.mj_step(model, data)
+    return {"sensors": sensors, "step_s": model.opt.timestep, "tips_m": tips}
+
+
+def standing(model, span_s):
+    """How far a body on its legs has sunk and leans after a while."""
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, model.key("held").id)
+    height = data.qpos[2]
+    while data.time < span_s:
+        mujoco.mj_step(model, data)
+    up = data.body("body").xmat[8]
+    return {"sunk_m": height - data.qpos[2], "leans": 1.0 - up, "actuators": model.nu}
 
 
 json.dump([answer(job) for job in json.load(sys.stdin)], sys.stdout)

@@ -5,9 +5,10 @@ use crate::output::{load_rig, write};
 use clap::value_parser;
 use leg_base::failure::Failure;
 use leg_model::{Quantity, Query};
+use leg_model_tools::leg_shape::Body;
 use leg_model_tools::line_error::LineError;
 use leg_model_tools::mjcf::{HeldLeg, Mjcf, MjcfError};
-use leg_model_tools::urdf::{Body, Urdf};
+use leg_model_tools::urdf::Urdf;
 use std::path::PathBuf;
 
 /// Writes the rig for another program.
@@ -35,15 +36,8 @@ struct UrdfArgs {
     /// Mass at the tip, kg.
     #[arg(long, value_name = "KG", default_value = "0", value_parser = payload_kg, allow_negative_numbers = true)]
     payload_kg: f64,
-    /// Legs around a body, 2 to 12; one leg without a body if left out.
-    #[arg(long, value_name = "N", requires_all = ["radius_m", "body_kg"], value_parser = value_parser!(u32).range(2..=12))]
-    legs: Option<u32>,
-    /// From the body's centre to the legs' joint centres, m, 0.01 to 10.
-    #[arg(long, value_name = "M", requires = "legs", value_parser = radius_m)]
-    radius_m: Option<f64>,
-    /// Mass of the body without its legs, kg, 0.001 to 1000.
-    #[arg(long, value_name = "KG", requires = "legs", value_parser = body_kg)]
-    body_kg: Option<f64>,
+    #[command(flatten)]
+    several: Several,
     /// The file to write; standard output if left out.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -51,8 +45,9 @@ struct UrdfArgs {
 
 /// Writes the rig as a MuJoCo model whose tendons hold the loaded leg at a pose.
 ///
-/// MuJoCo's springs are straight: the stiffness of each tendon is the tangent of its curve where the rig file's
-/// `stiffness_at` reads it. The keyframe `held` is the pose. Joint and shaft do not stretch.
+/// MuJoCo's springs are straight: the stiffness of each tendon is the tangent of its curve at its tension. The keyframe `held`
+/// is the pose; the controls are what each motor reels in from there. Inertia and damping are those of the simulated leg. Joint
+/// and shaft do not stretch. With --legs the legs stand around a body that floats.
 #[derive(Debug, clap::Args)]
 struct MjcfArgs {
     /// The rig file or the name of a ready rig; the paper's rig if left out.
@@ -70,9 +65,37 @@ struct MjcfArgs {
     /// Pretension, N; that of the rig if left out.
     #[arg(long, alias = "level-n", value_name = "N", value_parser = finite, allow_negative_numbers = true)]
     pretension_n: Option<f64>,
+    #[command(flatten)]
+    several: Several,
     /// The file to write; standard output if left out.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+}
+
+/// Several legs on a body that may float.
+#[derive(Debug, clap::Args)]
+struct Several {
+    /// Legs around a body, 2 to 12; one leg without a body if left out.
+    #[arg(long, value_name = "N", requires_all = ["radius_m", "body_kg"], value_parser = value_parser!(u32).range(2..=12))]
+    legs: Option<u32>,
+    /// From the body's centre to the legs' joint centres, m, 0.01 to 10.
+    #[arg(long, value_name = "M", requires = "legs", value_parser = radius_m)]
+    radius_m: Option<f64>,
+    /// Mass of the body without its legs, kg, 0.001 to 1000.
+    #[arg(long, value_name = "KG", requires = "legs", value_parser = body_kg)]
+    body_kg: Option<f64>,
+}
+
+impl Several {
+    fn body(&self) -> Option<Body> {
+        let given = self.legs.zip(self.radius_m).zip(self.body_kg)?;
+        let ((legs, radius_m), mass_kg) = given;
+        Some(Body {
+            legs,
+            radius_m,
+            mass_kg,
+        })
+    }
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
@@ -84,13 +107,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
 fn write_urdf(args: &UrdfArgs) -> Result<(), Failure> {
     let rig = load_rig(args.rig.as_deref())?;
-    let body = args.legs.zip(args.radius_m).zip(args.body_kg);
-    let body = body.map(|((legs, radius_m), mass_kg)| Body {
-        legs,
-        radius_m,
-        mass_kg,
-    });
-    let robot = Urdf::new(&rig, args.payload_kg, body).map_err(Failure::from_error)?;
+    let robot =
+        Urdf::new(&rig, args.payload_kg, args.several.body()).map_err(Failure::from_error)?;
     let mut text = Vec::new();
     let written = robot.write(&mut text);
     written.map_err(Failure::from_error)?;
@@ -104,8 +122,8 @@ fn write_mjcf(args: &MjcfArgs) -> Result<(), Failure> {
         pretension_n: args.pretension_n.unwrap_or(rig.pretension_n),
         ..query
     };
-    let model = HeldLeg::new(&rig.parameters, &query)
-        .and_then(|leg| Mjcf::new(&leg))
+    let model = HeldLeg::new(&rig, &query)
+        .and_then(|leg| Mjcf::new(&leg, args.several.body()))
         .map_err(|error| refused(&error))?;
     let mut text = Vec::new();
     let written = model.write(&mut text);

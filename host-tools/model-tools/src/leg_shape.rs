@@ -1,13 +1,52 @@
-//! Sizes and inertias of a leg that its rig file does not give, for the models of other programs.
+//! Sizes and inertias of a leg, for the models of other programs.
 
-use leg_model::RigParameters;
+use leg_rig::plant_settings::TRANSVERSE_INERTIA;
+use leg_rig::rig_file::RigFile;
 use std::f64::consts::PI;
 
 /// Density of the payload, kg/m³: steel.
 const PAYLOAD_DENSITY_KG_PER_M3: f64 = 7850.0;
 
-/// Sizes of what the eye sees, and the inertia that follows from them: the leg's is that of a solid cylinder from the joint
-/// to the tip, the payload's that of a steel ball.
+/// Several legs on a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// How many, evenly spread.
+    pub legs: u32,
+    /// From the body's centre to each joint centre, m.
+    pub radius_m: f64,
+    /// Without the legs, kg: a disc.
+    pub mass_kg: f64,
+}
+
+/// Why a leg is no body for other programs.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ShapeError {
+    /// Nothing has a mass.
+    #[error(
+        "neither the leg nor the payload has a mass, and other programs move no body without: give a payload"
+    )]
+    Massless,
+    /// No body has these inertias: those about three axes keep the triangle's inequality.
+    #[error(
+        "no body of the leg's mass and centroid has {across_kg_m2:.2e} kg·m² across its axis at the centroid and {along_kg_m2:.2e} \
+         along it: in [simulation] give `{transverse}` at least {lowest_kg_m2:.2e}, or a smaller `{AXIAL_INERTIA}`",
+        transverse = TRANSVERSE_INERTIA.name
+    )]
+    Inertia {
+        /// Across, at the centroid, kg·m².
+        across_kg_m2: f64,
+        /// Along, kg·m².
+        along_kg_m2: f64,
+        /// The lowest across at the joint that would do, kg·m².
+        lowest_kg_m2: f64,
+    },
+}
+
+/// The key of the inertia along the leg.
+const AXIAL_INERTIA: &str = "leg_axial_inertia_kg_m2";
+
+/// Sizes of what the eye sees, which no rig file gives, and inertias: the leg's are those of the simulated leg, the payload's
+/// that of a steel ball.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LegShape {
     /// From the joint centre to the tip, m.
@@ -25,27 +64,50 @@ pub(crate) struct LegShape {
 }
 
 impl LegShape {
-    /// Of a rig with a payload; none where neither has a mass.
-    pub fn new(rig: &RigParameters<f64, 3>, payload_kg: f64) -> Option<Self> {
-        let mass = rig.leg_mass_kg;
+    /// Of a rig with a payload.
+    ///
+    /// # Errors
+    /// [`ShapeError`].
+    pub fn new(rig: &RigFile, payload_kg: f64) -> Result<Self, ShapeError> {
+        let parameters = &rig.parameters;
+        let mass = parameters.leg_mass_kg;
         if mass + payload_kg <= 0.0 {
-            return None;
+            return Err(ShapeError::Massless);
         }
-        let radii = rig.leg_anchors_m.map(|[x, y]| x.hypot(y));
+        let radii = parameters.leg_anchors_m.map(|[x, y]| x.hypot(y));
         let ring = radii.iter().copied().fold(0.0, f64::max);
-        let (tip, rod) = (rig.joint_length_m + rig.leg_length_m, ring / 4.0);
+        let (tip, rod) = (
+            parameters.joint_length_m + parameters.leg_length_m,
+            ring / 4.0,
+        );
         let volume = payload_kg / PAYLOAD_DENSITY_KG_PER_M3;
         let payload = (3.0 * volume / (4.0 * PI)).cbrt();
-        Some(Self {
+        Ok(Self {
             tip,
             ring,
             rod,
-            inertia: [
-                mass * (3.0 * rod * rod + tip * tip) / 12.0,
-                mass * rod * rod / 2.0,
-            ],
+            inertia: inertia(rig)?,
             payload,
             payload_inertia: 0.4 * payload_kg * payload * payload,
         })
     }
+}
+
+/// Of the simulated leg, about its centroid; none of a leg without a mass.
+fn inertia(rig: &RigFile) -> Result<[f64; 2], ShapeError> {
+    let (mass, centroid) = (rig.parameters.leg_mass_kg, rig.parameters.leg_centroid_m);
+    if mass <= 0.0 {
+        return Ok([0.0; 2]);
+    }
+    let along = rig.plant.leg_axial_inertia_kg_m2;
+    let at_joint = rig.plant.transverse_inertia_kg_m2(&rig.parameters);
+    let across = at_joint - mass * centroid * centroid;
+    if across < along / 2.0 {
+        return Err(ShapeError::Inertia {
+            across_kg_m2: across,
+            along_kg_m2: along,
+            lowest_kg_m2: mass * centroid * centroid + along / 2.0,
+        });
+    }
+    Ok([across, along])
 }

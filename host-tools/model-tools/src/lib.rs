@@ -31,7 +31,7 @@
 
 pub mod json_entries;
 pub mod jsonl;
-mod leg_shape;
+pub mod leg_shape;
 pub mod line_error;
 pub mod map_csv;
 pub mod mjcf;

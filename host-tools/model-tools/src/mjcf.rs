@@ -1,11 +1,11 @@
 //! The rig as a MuJoCo model (MJCF), its tendons made to hold the loaded leg at a pose.
 //!
 //! MuJoCo's world frame is frame {A}: the joint centre is its origin, z points up. The tendons are springs that only
-//! pull. What a rig file does not say is chosen here and nowhere else: the inertia of the leg is that of a solid
-//! cylinder from the joint to the tip about the file's centroid, the payload is a steel ball, and the joint's damping
-//! is a tenth of the critical. None of it has a part in the statics. Joint and shaft do not stretch: for that see
-//! `axial_stretch_m` of `leg eval`.
+//! pull, straight where the leg is held; inertia and damping are those of the simulated leg. What neither says is chosen
+//! here and in [`leg_shape`](crate::leg_shape): the payload is a steel ball. Joint and shaft do not stretch: for that see
+//! `axial_stretch_m` of `leg eval`. Several legs stand around a body that floats; then the world's origin is on the floor.
 
+mod actuators;
 mod bodies;
 mod held;
 mod joints;
@@ -13,7 +13,7 @@ mod scenery;
 
 pub use held::{HeldLeg, HeldTendon};
 
-use crate::leg_shape::LegShape;
+use crate::leg_shape::{Body, ShapeError};
 use crate::line_error::LineError;
 use crate::xml_element::{self, Element};
 use joints::Joints;
@@ -64,11 +64,9 @@ pub enum MjcfError {
         /// Against torsion, N·m/rad.
         torsion_nm_per_rad: f64,
     },
-    /// Nothing has a mass.
-    #[error(
-        "neither the leg nor the payload has a mass, and MuJoCo moves no body without: give a payload"
-    )]
-    Massless,
+    /// No body is like the leg.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
 }
 
 /// A MuJoCo model that is ready to be written.
@@ -79,24 +77,46 @@ pub struct Mjcf {
 }
 
 impl Mjcf {
-    /// The model of a leg.
+    /// The model of a leg, or of several such legs on a body that stands on a floor; the first is towards x.
     ///
     /// # Errors
-    /// [`MjcfError::Springs`] and [`MjcfError::Massless`].
-    pub fn new(leg: &HeldLeg) -> Result<Self, MjcfError> {
-        let sizes = LegShape::new(&leg.parameters, leg.payload_kg).ok_or(MjcfError::Massless)?;
+    /// [`MjcfError::Springs`].
+    pub fn new(leg: &HeldLeg, several: Option<Body>) -> Result<Self, MjcfError> {
         let joints = Joints::new(&leg.support, &leg.rotation)?;
+        let prefixes: Vec<String> = match several {
+            None => vec![String::new()],
+            Some(body) => (0..body.legs).map(bodies::prefix).collect(),
+        };
+        let of_each = |make: &dyn Fn(&str) -> Vec<Element>| -> Vec<Element> {
+            prefixes.iter().flat_map(|prefix| make(prefix)).collect()
+        };
+        let equalities = of_each(&|prefix| {
+            let names = joints.equal.into_iter();
+            names.map(|pair| equality(prefix, pair)).collect()
+        });
+        let some = |name, elements: Vec<Element>| {
+            (!elements.is_empty()).then(|| Element::new(name).children(elements))
+        };
         let root = Element::new("mujoco")
             .text("model", "leg")
             .child(Element::new("compiler").text("angle", "radian"))
             .child(option(leg))
-            .child(scenery::view(sizes.tip))
+            .child(scenery::view(leg.shape.tip))
             .child(scenery::sky())
-            .child(scenery::defaults(sizes.ring))
-            .child(bodies::world(leg, &sizes, &joints))
-            .child(tendons(leg))
-            .children(joints.equal.map(equality))
-            .child(keyframe(&joints));
+            .child(scenery::defaults(leg.shape.ring))
+            .child(world(leg, &joints, several.as_ref()))
+            .children(some("tendon", of_each(&|prefix| actuators::paths(prefix))))
+            .children(some("equality", equalities))
+            .children(some(
+                "actuator",
+                of_each(&|prefix| actuators::motors(leg, prefix)),
+            ))
+            .children(some(
+                "sensor",
+                of_each(&|prefix| actuators::sensors(prefix)),
+            ))
+            .child(actuators::counts(leg))
+            .child(keyframe(leg, &joints, several.as_ref()));
         let comment = comment(leg);
         Ok(Self { root, comment })
     }
@@ -120,8 +140,9 @@ fn comment(leg: &HeldLeg) -> String {
     } = leg;
     format!(
         " Key `held`: azimuth {azimuth_deg:.3} deg, tilt {tilt_deg:.3} deg, payload {payload_kg} kg, pretension {pretension_n} N.\n  \
-         Not from the rig file: the leg's inertia (a solid cylinder from joint to tip), the payload's (a steel ball),\n  \
-         and the joint's damping (a tenth of the critical). Joint and shaft do not stretch. "
+         Controls: how far each motor shall have reeled in from there, m; `counts_per_m` times an activation is an encoder's count.\n  \
+         Inertia and damping are those of the simulated leg; not from the rig file: the payload's inertia (a steel ball).\n  \
+         Joint and shaft do not stretch. "
     )
 }
 
@@ -132,32 +153,37 @@ fn option(leg: &HeldLeg) -> Element {
         .text("integrator", "implicitfast")
 }
 
-/// Springs with a dead band from zero to the unstretched length: they do not push.
-fn tendons(leg: &HeldLeg) -> Element {
-    let spatial = |(i, tendon): (usize, &HeldTendon)| {
-        Element::new("spatial")
-            .text("name", &format!("tendon_{}", i + 1))
-            .numbers("stiffness", &[tendon.stiffness_n_per_m])
-            .numbers("springlength", &[0.0, tendon.unstretched_m])
-            .child(Element::new("site").text("site", &bodies::base_site(i)))
-            .child(Element::new("site").text("site", &bodies::leg_site(i)))
-    };
-    Element::new("tendon").children(leg.tendons.iter().enumerate().map(spatial))
+fn world(leg: &HeldLeg, joints: &Joints, several: Option<&Body>) -> Element {
+    let world = Element::new("worldbody").child(scenery::light(leg.shape.tip));
+    match several {
+        None => world.children(bodies::hanging(leg, joints, "")),
+        Some(body) => world
+            .child(scenery::floor())
+            .child(bodies::floating(leg, joints, body)),
+    }
 }
 
-fn equality([first, second]: [&str; 2]) -> Element {
-    let equal = Element::new("joint")
-        .text("joint1", first)
-        .text("joint2", second)
+fn equality(prefix: &str, [first, second]: [&str; 2]) -> Element {
+    Element::new("joint")
+        .text("joint1", &bodies::name(prefix, first))
+        .text("joint2", &bodies::name(prefix, second))
         .numbers("solref", &SOLREF)
-        .numbers("solimp", &SOLIMP);
-    Element::new("equality").child(equal)
+        .numbers("solimp", &SOLIMP)
 }
 
-fn keyframe(joints: &Joints) -> Element {
+fn keyframe(leg: &HeldLeg, joints: &Joints, several: Option<&Body>) -> Element {
+    let of_leg = joints.positions();
+    let positions = several.map_or_else(
+        || of_leg.clone(),
+        |body| {
+            let mut all = vec![0.0, 0.0, bodies::height_m(leg), 1.0, 0.0, 0.0, 0.0];
+            all.extend((0..body.legs).flat_map(|_| of_leg.clone()));
+            all
+        },
+    );
     let key = Element::new("key")
         .text("name", "held")
-        .numbers("qpos", &joints.positions());
+        .numbers("qpos", &positions);
     Element::new("keyframe").child(key)
 }
 

@@ -6,7 +6,7 @@
 
 mod links;
 
-use crate::leg_shape::LegShape;
+use crate::leg_shape::{Body, LegShape, ShapeError};
 use crate::xml_element::{self, Element};
 use leg_model::{Error, evaluate};
 use leg_rig::number::decimal;
@@ -15,26 +15,15 @@ use links::{body, leg};
 use std::f64::consts::TAU;
 use std::io::{self, Write};
 
-/// Several legs on a body.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Body {
-    /// How many, evenly spread.
-    pub legs: u32,
-    /// From the body's centre to each joint centre, m.
-    pub radius_m: f64,
-    /// Without the legs, kg: a disc.
-    pub mass_kg: f64,
-}
-
 /// Why there is no robot.
 #[derive(Debug, thiserror::Error)]
 pub enum UrdfError {
     /// The model refuses the payload.
     #[error(transparent)]
     Model(#[from] Error),
-    /// Nothing has a mass.
-    #[error("neither the leg nor the payload has a mass: give a payload")]
-    Massless,
+    /// No body is like the leg.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
 }
 
 /// What the joints of a leg can do.
@@ -60,7 +49,7 @@ impl Urdf {
     /// # Errors
     /// [`UrdfError`].
     pub fn new(rig: &RigFile, payload_kg: f64, several: Option<Body>) -> Result<Self, UrdfError> {
-        let shape = LegShape::new(&rig.parameters, payload_kg).ok_or(UrdfError::Massless)?;
+        let shape = LegShape::new(rig, payload_kg)?;
         let limits = limits(rig, payload_kg)?;
         let of_leg = |prefix: &str| leg(rig, payload_kg, &shape, limits, prefix);
         let root = Element::new("robot").text("name", "leg");
@@ -76,7 +65,7 @@ impl Urdf {
                 root.child(body(&several, &shape)).children(legs)
             }
         };
-        let comment = " Not from the rig file: the leg's inertia (a solid cylinder from joint to tip) and the payload's (a steel ball).\n  \
+        let comment = " The leg's inertia is that of the simulated leg; not from the rig file: the payload's (a steel ball).\n  \
              A leg that leans by t towards azimuth a has tilt_x = atan2(sin t sin a, cos t), tilt_y = -asin(sin t cos a). "
             .to_owned();
         Ok(Self { root, comment })

@@ -4,12 +4,18 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::common::{numbers, python};
+use leg_firmware::drive::Drive;
+use leg_firmware::sensors::TICK_HZ;
 use leg_model::{Direction, Evaluation, Load, Query, Rig, Tendon, evaluate};
+use leg_model_tools::leg_shape::Body;
 use leg_model_tools::mjcf::{HeldLeg, HeldTendon, Mjcf};
 use leg_model_tools::nonlinear::{Balance, Posture};
+use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
+use leg_sim::plant::{Plant, Start};
 use nalgebra::{Matrix3, Matrix3x2, Vector3};
 use serde_json::{Value, json};
+use std::f64::consts::PI;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
@@ -18,6 +24,13 @@ const KINEMATICS: f64 = 1e-9;
 
 /// For the tip at rest, m.
 const STATICS_M: f64 = 1e-6;
+
+/// For frequency and damping of a swing, as a part of them.
+const SWING: f64 = 0.02;
+
+/// How long the simulated leg is pushed before, and how long it is looked at after, s.
+const PUSHED_S: f64 = 6.0;
+const SWINGING_S: f64 = 1.0;
 
 const PAYLOAD_KG: f64 = 1.0;
 const OTHER_PAYLOADS_KG: [f64; 2] = [0.0, 2.0];
@@ -46,7 +59,7 @@ impl Case {
             ..at_the_rigs_pretension
         };
         Self {
-            leg: HeldLeg::new(&rig.parameters, &query).unwrap(),
+            leg: HeldLeg::new(rig, &query).unwrap(),
             evaluation: evaluate(&rig.parameters, &query).unwrap(),
             direction: Direction::from_angles(query.azimuth_rad, query.tilt_rad).unwrap(),
         }
@@ -168,7 +181,7 @@ fn ask(cases: &[Case]) -> Vec<Value> {
 
 fn export(case: &Case, directory: &Path, i: usize) -> PathBuf {
     let path = directory.join(format!("{i}.xml"));
-    let model = Mjcf::new(&case.leg).unwrap();
+    let model = Mjcf::new(&case.leg, None).unwrap();
     model.write(File::create(&path).unwrap()).unwrap();
     path
 }
@@ -219,4 +232,131 @@ fn notch_universal() {
 #[test]
 fn leaf_spring_universal() {
     agrees("leaf_spring_universal");
+}
+
+/// How an exported leg swings, beside the simulated one.
+#[derive(Debug)]
+struct Swing {
+    hz: f64,
+    damping_ratio: f64,
+}
+
+impl Swing {
+    /// By the zeros of what is left of a push, m, and the extrema between them: half a period each, as many as are above a
+    /// fiftieth of where it begins.
+    fn new(offsets_m: &[f64], step_s: f64) -> Self {
+        let sides: Vec<&[f64]> = offsets_m.chunk_by(|one, next| one * next > 0.0).collect();
+        let highest_m = |side: &&[f64]| side.iter().fold(0.0, |most: f64, m| most.max(m.abs()));
+        let first_m = highest_m(&sides[0]);
+        let high = |side: &&&[f64]| highest_m(side) > 0.02 * first_m;
+        // The first begins at an extremum, the last is not whole.
+        let whole: Vec<_> = sides[1..sides.len() - 1].iter().take_while(high).collect();
+        let halves = whole.len() as f64;
+        let samples: usize = whole.iter().map(|side| side.len()).sum();
+        let decrement = (first_m / highest_m(whole[whole.len() - 1])).ln() / halves;
+        Self {
+            hz: halves / (2.0 * samples as f64 * step_s),
+            damping_ratio: decrement / decrement.hypot(PI),
+        }
+    }
+
+    fn agrees(&self, other: &Self) -> bool {
+        let close = |one: f64, other: f64| (one / other - 1.0).abs() <= SWING;
+        close(self.hz, other.hz) && close(self.damping_ratio, other.damping_ratio)
+    }
+}
+
+/// The tip of the simulated leg after a force there has ended, motors off, beside where it was before, m.
+fn plant_offsets(rig: &RigFile, case: &Case, force_n: Vector3<f64>) -> Vec<Vector3<f64>> {
+    let start = Start::Held {
+        azimuth_deg: case.leg.azimuth_deg,
+        tilt_deg: case.leg.tilt_deg,
+        pretension_n: case.leg.pretension_n,
+        payload_kg: case.leg.payload_kg,
+    };
+    let mut plant = Plant::new(rig, &rig.plant, start, 1).unwrap();
+    let off = Drive::<f32> {
+        duty: [0.0; 3],
+        enabled: false,
+    };
+    let rest_m = plant.truth().tip_m;
+    plant.push(force_n, PUSHED_S, 0.5 * PUSHED_S);
+    let ticks = |span_s: f64| (span_s * f64::from(TICK_HZ)).round() as usize;
+    (0..ticks(PUSHED_S)).for_each(|_| plant.step(&off));
+    let tip_m = |plant: &mut Plant| {
+        plant.step(&off);
+        plant.truth().tip_m - rest_m
+    };
+    (0..ticks(SWINGING_S)).map(|_| tip_m(&mut plant)).collect()
+}
+
+/// Straight down, and leaning in the plane of a tendon, pushed along and across.
+#[test]
+fn it_swings_as_the_simulated_leg() {
+    let rig = RigFile::load(None).unwrap();
+    let pushes = [
+        (0.0, Vector3::x()),
+        (20.0, Vector3::x()),
+        (20.0, Vector3::y()),
+    ];
+    let cases = pushes.map(|(tilt_deg, _)| Case::new(&rig, 0.0, tilt_deg));
+    let directory = tempfile::tempdir().unwrap();
+    let job = |(i, case): (usize, &Case)| {
+        json!({
+            "model": export(case, directory.path(), i),
+            "force_n": pushes[i].1.as_slice(),
+        })
+    };
+    let jobs: Vec<Value> = cases.iter().enumerate().map(job).collect();
+    let answers = python::answers("compare_with_mujoco.py", &jobs);
+    for ((case, (tilt_deg, force_n)), free) in cases.iter().zip(pushes).zip(&answers) {
+        let rest_m = case.target_m();
+        let tips = free["tips_m"].as_array().unwrap();
+        let tips = tips.iter().map(|tip| Vector3::from_vec(numbers(tip)));
+        let exported: Vec<f64> = tips.map(|tip| (tip - rest_m).dot(&force_n)).collect();
+        let exported = Swing::new(&exported, free["step_s"].as_f64().unwrap());
+        let simulated = plant_offsets(&rig, case, force_n);
+        let simulated: Vec<f64> = simulated.iter().map(|off| off.dot(&force_n)).collect();
+        let simulated = Swing::new(&simulated, 1.0 / f64::from(TICK_HZ));
+        assert!(
+            exported.agrees(&simulated),
+            "tilt {tilt_deg}, along {force_n:?}: MuJoCo {exported:?}, simulated {simulated:?}"
+        );
+        // The sensors: three tensions, the tip, and the leg's axis, which points upwards.
+        let mut measured = case.evaluation.tensions_n.to_vec();
+        measured.extend(rest_m.iter().chain(&(-rest_m / case.leg.tip_m())));
+        let far = largest_difference(&numbers(&free["sensors"]), &measured);
+        assert!(far < 1e-6, "tilt {tilt_deg}: sensors differ by {far:e}");
+    }
+}
+
+/// With their feet apart, on every rig.
+#[test]
+fn six_legs_stand_around_a_body() {
+    let body = Body {
+        legs: 6,
+        radius_m: 0.2,
+        mass_kg: 3.0,
+    };
+    let directory = tempfile::tempdir().unwrap();
+    let jobs = READY_RIGS.iter().map(|ready| {
+        let rig = RigFile::load(Some(Path::new(ready.name))).unwrap();
+        let leg = HeldLeg::new(&rig, &rig.query(0.0, 10.0, 0.0)).unwrap();
+        let path = directory.path().join(format!("{}.xml", ready.name));
+        let model = Mjcf::new(&leg, Some(body)).unwrap();
+        model.write(File::create(&path).unwrap()).unwrap();
+        json!({ "model": path, "stands_s": 1.0 })
+    });
+    let jobs: Vec<Value> = jobs.collect();
+    let answers = python::answers("compare_with_mujoco.py", &jobs);
+    for (ready, found) in READY_RIGS.iter().zip(&answers) {
+        let [sunk_m, leans] = ["sunk_m", "leans"].map(|key| found[key].as_f64().unwrap());
+        let at_most_m = 0.01;
+        assert!(
+            sunk_m.abs() < at_most_m && leans < 0.01,
+            "{}: {found}",
+            ready.name
+        );
+        assert_eq!(found["actuators"], 18, "{}", ready.name);
+    }
 }

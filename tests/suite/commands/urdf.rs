@@ -4,7 +4,8 @@
 
 use crate::common::{numbers, python};
 use leg_model::Direction;
-use leg_model_tools::urdf::{Body, Urdf};
+use leg_model_tools::leg_shape::Body;
+use leg_model_tools::urdf::Urdf;
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
 use nalgebra::{Rotation3, Vector3};

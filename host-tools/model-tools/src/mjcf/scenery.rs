@@ -3,6 +3,7 @@
 use crate::xml_element::Element;
 
 const ROPE: [f64; 4] = [0.80, 0.20, 0.15, 1.0];
+const FLOOR: [f64; 4] = [0.80, 0.80, 0.78, 1.0];
 const ZENITH: [f64; 3] = [0.45, 0.60, 0.80];
 const HORIZON: [f64; 3] = [0.95, 0.96, 0.98];
 
@@ -44,4 +45,15 @@ pub(super) fn defaults(ring: f64) -> Element {
         .numbers("width", &[ring / 48.0])
         .numbers("rgba", &ROPE);
     Element::new("default").children([geom, site, tendon])
+}
+
+/// What feet stand on.
+pub(super) fn floor() -> Element {
+    Element::new("geom")
+        .text("name", "floor")
+        .text("type", "plane")
+        .numbers("size", &[0.0, 0.0, 0.1])
+        .numbers("rgba", &FLOOR)
+        .numbers("contype", &[1.0])
+        .numbers("conaffinity", &[1.0])
 }

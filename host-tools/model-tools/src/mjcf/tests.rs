@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::{HeldLeg, Mjcf, MjcfError};
+use crate::leg_shape::ShapeError;
 use leg_model::{JointStiffness, Query, Support, SupportKind};
 use leg_rig::rig_file::RigFile;
 
@@ -19,7 +20,7 @@ fn with_springs(kind: SupportKind, bending: f64, torsion: f64) -> Result<Mjcf, M
         support: Support::new(kind, joint).unwrap(),
         ..rig().query(30.0, 20.0, 1.0)
     };
-    Mjcf::new(&HeldLeg::new(&rig().parameters, &query)?)
+    Mjcf::new(&HeldLeg::new(&rig(), &query)?, None)
 }
 
 #[test]
@@ -42,11 +43,11 @@ fn springs_that_mujoco_has_not_are_refused() {
 fn a_leg_without_any_mass_is_refused() {
     let mut rig = rig();
     rig.parameters.leg_mass_kg = 0.0;
-    let model = |payload_kg| {
-        let leg = HeldLeg::new(&rig.parameters, &rig.query(0.0, 0.0, payload_kg)).unwrap();
-        Mjcf::new(&leg)
-    };
-    assert!(matches!(model(0.0), Err(MjcfError::Massless)));
+    let model = |payload_kg| HeldLeg::new(&rig, &rig.query(0.0, 0.0, payload_kg));
+    assert!(matches!(
+        model(0.0),
+        Err(MjcfError::Shape(ShapeError::Massless))
+    ));
     assert!(model(0.5).is_ok());
 }
 
@@ -57,7 +58,7 @@ fn a_pretension_that_the_tendons_cannot_hold_is_refused_with_the_range() {
             pretension_n,
             ..rig().query(30.0, 30.0, payload_kg)
         };
-        HeldLeg::new(&rig().parameters, &query)
+        HeldLeg::new(&rig(), &query)
     };
     let Err(MjcfError::Pretension {
         lowest_n,
@@ -76,10 +77,23 @@ fn a_pretension_that_the_tendons_cannot_hold_is_refused_with_the_range() {
 
 #[test]
 fn an_unstretched_tendon_is_shorter_by_its_tension_over_its_stiffness() {
-    let leg = HeldLeg::new(&rig().parameters, &rig().query(0.0, 0.0, 1.0)).unwrap();
+    let leg = HeldLeg::new(&rig(), &rig().query(0.0, 0.0, 1.0)).unwrap();
     for tendon in leg.tendons {
         // Straight down no weight turns the leg: each tendon has the tension of the pretension, 70 N, and 35 mm.
         assert!((tendon.stiffness_n_per_m - 99_450.0).abs() < 1e-6);
         assert!((0.035 - tendon.unstretched_m - 70.0 / 99_450.0).abs() < 1e-12);
     }
+}
+
+#[test]
+fn an_inertia_that_no_body_has_is_refused_with_the_lowest() {
+    let leg = |transverse_kg_m2| {
+        let mut rig = rig();
+        rig.plant.leg_transverse_inertia_kg_m2 = Some(transverse_kg_m2);
+        HeldLeg::new(&rig, &rig.query(0.0, 0.0, 1.0))
+    };
+    let Err(MjcfError::Shape(ShapeError::Inertia { lowest_kg_m2, .. })) = leg(1e-3) else {
+        panic!("1e-3 kg·m² is less than the leg's mass at its centroid has");
+    };
+    assert!(leg(lowest_kg_m2).is_ok() && leg(0.999 * lowest_kg_m2).is_err());
 }

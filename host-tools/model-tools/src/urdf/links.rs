@@ -1,7 +1,7 @@
 //! Links and joints of a leg, and the body of several.
 
-use super::{Body, JointLimits};
-use crate::leg_shape::LegShape;
+use super::JointLimits;
+use crate::leg_shape::{Body, LegShape};
 use crate::xml_element::Element;
 use leg_rig::rig_file::RigFile;
 

@@ -1,0 +1,84 @@
+//! What pulls the tendons, and what is measured.
+//!
+//! The tendon and its motor are one actuator of MuJoCo: its control is how far the motor shall have reeled in from the pose
+//! of the key `held`, m, which it follows with the servo's time constant; its force is the tension, a spring's and a
+//! damper's that only pull.
+
+use super::bodies::{base_site, leg_site, name};
+use super::held::{HeldLeg, HeldTendon};
+use crate::xml_element::Element;
+
+/// Highest tension, N: none, which MuJoCo has to be told as a number. The simulated tendon does not break either.
+const TENSION_MAX_N: f64 = 1e6;
+
+/// The tendons' paths.
+pub(super) fn paths(prefix: &str) -> Vec<Element> {
+    let path = |i: usize| {
+        Element::new("spatial")
+            .text("name", &tendon_name(prefix, i))
+            .child(Element::new("site").text("site", &base_site(prefix, i)))
+            .child(Element::new("site").text("site", &leg_site(prefix, i)))
+    };
+    (0..3).map(path).collect()
+}
+
+/// One actuator a tendon: with gear −1, its force is positive where it pulls.
+pub(super) fn motors(leg: &HeldLeg, prefix: &str) -> Vec<Element> {
+    let motor = |(i, tendon): (usize, &HeldTendon)| {
+        let stiffness = tendon.stiffness_n_per_m;
+        Element::new("general")
+            .text("name", &motor_name(prefix, i))
+            .text("tendon", &tendon_name(prefix, i))
+            .numbers("gear", &[-1.0])
+            .numbers("ctrlrange", &tendon.travel_m)
+            .numbers("forcerange", &[0.0, TENSION_MAX_N])
+            .text("dyntype", "filterexact")
+            .numbers("dynprm", &[leg.servo_time_s])
+            .numbers("gainprm", &[stiffness])
+            .text("biastype", "affine")
+            .numbers(
+                "biasprm",
+                &[
+                    -stiffness * tendon.unstretched_m,
+                    -stiffness,
+                    -leg.tendon_damping_n_s_per_m,
+                ],
+            )
+    };
+    leg.tendons.iter().enumerate().map(motor).collect()
+}
+
+/// Tensions, N; where the tip is, m, and the leg's axis, in the world.
+pub(super) fn sensors(prefix: &str) -> Vec<Element> {
+    let tension = |i: usize| {
+        Element::new("actuatorfrc")
+            .text("name", &format!("{prefix}tension_{}", i + 1))
+            .text("actuator", &motor_name(prefix, i))
+    };
+    let tip = Element::new("framepos")
+        .text("name", &name(prefix, "tip"))
+        .text("objtype", "site")
+        .text("objname", &name(prefix, "tip"));
+    let axis = Element::new("framezaxis")
+        .text("name", &name(prefix, "axis"))
+        .text("objtype", "xbody")
+        .text("objname", &name(prefix, "leg"));
+    (0..3).map(tension).chain([tip, axis]).collect()
+}
+
+/// Counts of each encoder for a metre that is reeled in: counts are its product with the actuator's activation.
+pub(super) fn counts(leg: &HeldLeg) -> Element {
+    let per_m = leg.tendons.map(|tendon| 1.0 / tendon.m_per_count);
+    let numeric = Element::new("numeric")
+        .text("name", "counts_per_m")
+        .numbers("data", &per_m);
+    Element::new("custom").child(numeric)
+}
+
+fn tendon_name(prefix: &str, i: usize) -> String {
+    format!("{prefix}tendon_{}", i + 1)
+}
+
+fn motor_name(prefix: &str, i: usize) -> String {
+    format!("{prefix}motor_{}", i + 1)
+}
