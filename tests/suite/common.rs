@@ -2,6 +2,7 @@
 
 pub mod chip;
 pub mod chip_bus;
+pub mod homed_chip;
 pub mod panic_free;
 pub mod python;
 pub mod sources;

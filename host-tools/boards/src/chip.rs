@@ -84,6 +84,23 @@ impl ChipSession {
         Self { kept, ..self }
     }
 
+    /// The same session once more, its chip as it is now, without its log: what is asked of one does not happen to the other.
+    ///
+    /// # Errors
+    /// [`LinkError::Chip`] for a fault of the emulator.
+    pub fn copy(&self) -> Result<Self, LinkError> {
+        let running = self.running.as_ref();
+        let copied = running.map(|running| running.copy(&self.image)).transpose();
+        Ok(Self {
+            image: self.image.clone(),
+            log: None,
+            board: self.board,
+            kept: self.kept.clone(),
+            bench: InProcess::new(),
+            running: copied.map_err(|error| LinkError::Chip(error.to_string()))?,
+        })
+    }
+
     /// What the image has logged since the last call, as a debugger reads it.
     pub fn log_lines(&mut self) -> Vec<String> {
         match (&mut self.running, &self.log) {

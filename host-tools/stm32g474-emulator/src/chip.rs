@@ -82,22 +82,11 @@ impl Chip {
         if board.records_writes {
             peripherals.checks.record();
         }
-        let peripherals = Arc::new(Mutex::new(peripherals));
-        let shared = Arc::new(Shared::default());
-        let bus = |start, answers| {
-            Arc::new(Bus {
-                start,
-                answers,
-                peripherals: Arc::clone(&peripherals),
-                shared: Arc::clone(&shared),
-            })
-        };
-        let mut processor = Processor::new(
-            &image.flash,
-            bus(SECOND_BANK, Answers::Flash),
-            bus(PERIPHERALS.start, Answers::Registers),
-            bus(DEBUG.start, Answers::Registers),
-        )?;
+        let Coupled {
+            mut processor,
+            peripherals,
+            shared,
+        } = couple(image, peripherals)?;
         processor.scramble_ram(board.seed);
         Ok(Self {
             processor,
@@ -114,6 +103,31 @@ impl Chip {
             watched: Vec::new(),
             watching: false,
             converted: Facts::of_chip().interrupt("ADC1_2").unwrap_or_default(),
+        })
+    }
+
+    /// The same chip once more, with the same image: what happens to one does not happen to the other.
+    ///
+    /// # Errors
+    /// [`MapError`]: a fault of this program.
+    pub fn copy(&self, image: &Image) -> Result<Self, MapError> {
+        let Coupled {
+            mut processor,
+            peripherals,
+            shared,
+        } = couple(image, lock(&self.peripherals).clone())?;
+        processor.continue_from(&self.processor)?;
+        shared.cycle.store(self.cycle, Ordering::Relaxed);
+        // At worst the peripherals are asked once more.
+        shared.accessed.store(true, Ordering::Relaxed);
+        Ok(Self {
+            processor,
+            peripherals,
+            shared,
+            watched: self.watched.clone(),
+            unserved: self.unserved.clone(),
+            protected: self.protected.clone(),
+            ..*self
         })
     }
 
@@ -388,6 +402,37 @@ impl Chip {
     pub fn stop_crystal(&mut self) {
         self.peripherals().stop_crystal();
     }
+}
+
+/// A processor with the image's first bank, its memories not set yet, and the peripherals that answer it.
+struct Coupled {
+    processor: Processor,
+    peripherals: Arc<Mutex<Peripherals>>,
+    shared: Arc<Shared>,
+}
+
+fn couple(image: &Image, peripherals: Peripherals) -> Result<Coupled, MapError> {
+    let peripherals = Arc::new(Mutex::new(peripherals));
+    let shared = Arc::new(Shared::default());
+    let bus = |start, answers| {
+        Arc::new(Bus {
+            start,
+            answers,
+            peripherals: Arc::clone(&peripherals),
+            shared: Arc::clone(&shared),
+        })
+    };
+    let processor = Processor::new(
+        &image.flash,
+        bus(SECOND_BANK, Answers::Flash),
+        bus(PERIPHERALS.start, Answers::Registers),
+        bus(DEBUG.start, Answers::Registers),
+    )?;
+    Ok(Coupled {
+        processor,
+        peripherals,
+        shared,
+    })
 }
 
 #[cfg(test)]

@@ -41,6 +41,7 @@ const REFERENCE_SUM: u16 = (1_212 * 16 * 4_095 / 3_300) as u16;
 const LASTING: [&str; 2] = ["CFGR2", "SWPR"];
 
 /// The peripherals.
+#[derive(Clone)]
 pub struct Devices {
     /// RCC.
     pub rcc: Rcc,

@@ -18,6 +18,7 @@ const LARGE_STEP_HZ: u32 = 85_000_000;
 const STEP_PAUSE_US: u64 = 1;
 
 /// The peripherals, the time, and what the image did wrong.
+#[derive(Clone)]
 pub struct Peripherals {
     /// Cycles since the power-up.
     pub cycle: u64,

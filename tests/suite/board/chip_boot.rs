@@ -9,7 +9,10 @@ use leg_boards::chip::ChipSession;
 use leg_boards::image::{FirmwareImage, workspace_root};
 use leg_firmware::board::timing::TICK_CYCLES;
 use leg_firmware::can::LegAddress;
-use leg_firmware::host_link::{HostRequest, ResetCause as Told};
+use leg_firmware::command::Command;
+use leg_firmware::frame::{self, MAX_FRAME};
+use leg_firmware::host_link::{HOST_SCHEMA, Hello, HostRequest, ResetCause as Told};
+use leg_firmware::sensors::CODE_MAX;
 use leg_firmware_bench::protocol::Request;
 use leg_sim::link::{Link, LinkError};
 use std::error::Error;
@@ -26,6 +29,11 @@ use stm32g474_emulator::trace;
 const TRACED_TICKS: usize = 4;
 /// After these it is open.
 const CONFIGURED_TICKS: usize = 10;
+/// The chip is asked something every so many ticks; by then a leg that was asked to home is driven.
+const ASKED_TICKS: usize = 100;
+const HOMING_TICKS: usize = 2 * ASKED_TICKS + 30;
+/// For so long a copy is compared.
+const COPIED_TICKS: usize = 800;
 /// After these the chip takes part in the CAN bus.
 const TICKS_TO_BUS: usize = 60;
 
@@ -83,6 +91,52 @@ fn is_as_reviewed(golden: &str, lines: &[String]) -> Outcome {
          LEG_OVERWRITE=1",
         golden.display()
     );
+    Ok(())
+}
+
+/// In the midst of homing: what is asked of both has the same answers, to the bit, and at the same cycle.
+#[test]
+fn a_copied_chip_goes_on_as_its_original() -> Outcome {
+    let mut original = started(0)?;
+    let schema = HOST_SCHEMA;
+    let command = Command::Home;
+    let mut asked = [
+        HostRequest::Identify(Hello { schema }),
+        HostRequest::Command { host: 1, command },
+    ]
+    .into_iter();
+    let mut ask = |session: &mut ChipSession, tick: usize| {
+        let mut request = at_rest();
+        // Constant codes are a fault.
+        request.sensors.cell_codes = [CODE_MAX / 4 + tick as u16 % 8; 3];
+        if tick % ASKED_TICKS == ASKED_TICKS - 1
+            && let Some(next) = asked.next()
+        {
+            let mut out = [0; MAX_FRAME];
+            let bytes = frame::encode(tick as u16, &next, &mut out).unwrap_or_default();
+            request.link.extend_from_slice(bytes).unwrap_or_default();
+        }
+        session.ask(&Request::Tick(request))
+    };
+    for tick in 0..HOMING_TICKS {
+        ask(&mut original, tick)?;
+    }
+    let chip = original.chip().ok_or("no chip")?;
+    assert!(chip.peripherals().devices.tim1.outputs().on);
+    let mut copy = original.copy()?;
+    for tick in HOMING_TICKS..HOMING_TICKS + COPIED_TICKS {
+        let replies = [ask(&mut original, tick)?, ask(&mut copy, tick)?];
+        assert_eq!(replies[0], replies[1], "tick {tick}");
+    }
+    let [first, second] = [&mut original, &mut copy].map(|session| {
+        let chip = session.chip().map(|chip| (chip.cycle(), chip.place()));
+        (chip, session.latency_max())
+    });
+    assert_eq!(first, second);
+    // What happens to one does not happen to the other.
+    let chip = copy.chip().ok_or("no chip")?;
+    chip.reset(ResetCause::Pin);
+    assert!(original.ask(&Request::Tick(at_rest())).is_ok());
     Ok(())
 }
 

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_boards::chip::ChipSession;
+use crate::common::homed_chip::{HomedChip, Homings};
 use leg_boards::image::FirmwareImage;
 use leg_boards::setup;
 use leg_rig::rig_file::RigFile;
@@ -123,17 +123,19 @@ fn cpu_s() -> f64 {
 }
 
 /// Runs a scenario in process and on the chip, and prints how it went; why it does not pass on both.
-fn compare(name: &str, scenario: &Scenario, image: &Path) -> Option<String> {
+fn compare(name: &str, scenario: &Scenario, image: &Path, homings: &Homings) -> Option<String> {
     let here = failure(&run(scenario, &mut InProcess::new()));
     let start_s = cpu_s();
-    let on_chip = run(scenario, &mut ChipSession::open(image).unwrap());
+    let mut chip = HomedChip::new(image, homings);
+    let on_chip = run(scenario, &mut chip);
     let took_s = cpu_s() - start_s;
     let ticks = on_chip.as_ref().map_or(0, |summary| summary.ticks);
     let on_chip = failure(&on_chip);
     eprintln!(
-        "{name}: {}, {ticks} ticks in {took_s:.0} s of the processor, {:.0} in a second",
+        "{name}: {}, {} ticks in {took_s:.0} s of the processor, and {} of a homing before",
         on_chip.as_deref().unwrap_or("passes"),
-        ticks as f64 / took_s
+        ticks - chip.repeated as u64,
+        chip.repeated,
     );
     match (here, on_chip) {
         (None, None) => None,
@@ -148,24 +150,33 @@ fn compare(name: &str, scenario: &Scenario, image: &Path) -> Option<String> {
 #[test]
 fn a_chip_homes_and_its_emergency_stop_ends_the_pulses() {
     let scenario = Scenario::parse("stop", EMERGENCY_STOP).unwrap();
-    assert_eq!(compare("stop", &scenario, &image()), None);
+    assert_eq!(
+        compare("stop", &scenario, &image(), &Homings::default()),
+        None
+    );
 }
 
 #[test]
 fn a_sag_of_the_motor_supply_is_seen_and_held() {
     let scenario = Scenario::parse("supply", SUPPLY).unwrap();
-    assert_eq!(compare("supply", &scenario, &image()), None);
+    assert_eq!(
+        compare("supply", &scenario, &image(), &Homings::default()),
+        None
+    );
 }
 
 /// The frames are longer than the bytes that a tick records.
 #[test]
 fn damaged_bytes_are_found_by_a_chip_and_its_shadow_in_the_same_tick() {
     let scenario = Scenario::parse("garbage", GARBAGE).unwrap();
-    assert_eq!(compare("garbage", &scenario, &image()), None);
+    assert_eq!(
+        compare("garbage", &scenario, &image(), &Homings::default()),
+        None
+    );
 }
 
-/// All of them, each homed first: `cargo test --test suite -- --ignored --nocapture chip_scenarios` prints each as it ends. The
-/// samples above are run always.
+/// All of them, homed first: `cargo test --test suite -- --ignored --nocapture chip_scenarios` prints each as it ends. The samples
+/// above are run always.
 #[test]
 #[ignore = "takes 20 minutes on two cores: run with --ignored"]
 fn every_ready_scenario_passes_on_the_chip_as_in_process() {
@@ -183,13 +194,14 @@ fn every_ready_scenario_passes_on_the_chip_as_in_process() {
     }
     // The longest first.
     left.sort_by_key(|(_, scenario)| scenario.steps.len());
+    let homings = Homings::default();
     let (left, failed) = (Mutex::new(left), Mutex::new(Vec::new()));
     let next = || left.lock().unwrap().pop();
     std::thread::scope(|scope| {
         for _ in 0..THREADS {
             scope.spawn(|| {
                 while let Some((name, scenario)) = next() {
-                    let found = compare(name, &scenario, &image);
+                    let found = compare(name, &scenario, &image, &homings);
                     failed.lock().unwrap().extend(found);
                 }
             });

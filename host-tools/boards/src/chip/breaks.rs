@@ -22,7 +22,7 @@ const LINES: [(&str, Pin, Outside, Outside); 2] = [
 ];
 
 /// What is known of the lines.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Breaks {
     /// Ticks since a line was raised.
     quiet: u32,

@@ -16,6 +16,7 @@ const TICKS_KEPT: usize = 4000;
 const NUMBER: u16 = 0xfffe;
 
 /// The reports of a chip.
+#[derive(Clone)]
 pub struct Reports {
     decoder: Decoder,
     known: VecDeque<Telemetry<f32>>,

@@ -21,6 +21,7 @@ use leg_sim::link::LinkError;
 use std::collections::VecDeque;
 use stm32g474_emulator::chip::{Chip, Stop};
 use stm32g474_emulator::image::Image;
+use stm32g474_emulator::processor::MapError;
 
 /// The longest that a chip may take to its first tick, and from one to the next, cycles of 170 MHz: 200 ms and 10 ms.
 const BOOT_CYCLES: u64 = 34_000_000;
@@ -120,6 +121,24 @@ impl Running {
                 ..Defects::default()
             },
         }
+    }
+
+    /// The same chip and the same twin once more.
+    ///
+    /// # Errors
+    /// [`MapError`]: a fault of the emulator.
+    pub fn copy(&self, image: &Image) -> Result<Self, MapError> {
+        Ok(Self {
+            chip: self.chip.copy(image)?,
+            twin: self.twin.clone(),
+            waiting: self.waiting.clone(),
+            taken: self.taken.clone(),
+            breaks: self.breaks.clone(),
+            stack: self.stack.clone(),
+            reports: self.reports.clone(),
+            settings: self.settings.clone(),
+            ..*self
+        })
     }
 
     /// One tick of the chip, and of its twin.

@@ -12,6 +12,7 @@ use std::ops::Range;
 pub const PLACE: Range<u32> = FLASH_START + REGION.start..FLASH_START + REGION.end;
 
 /// Bytes of the flash from an address on.
+#[derive(Clone)]
 pub struct Page {
     pub address: u32,
     pub bytes: Vec<u8>,

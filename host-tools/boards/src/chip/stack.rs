@@ -11,7 +11,7 @@ const WORDS: u32 = 256;
 const END: &str = "__sheap";
 
 /// The words above the variables.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct StackGuard {
     start: u32,
     words: Vec<Option<u32>>,

@@ -16,12 +16,14 @@ use leg_firmware_bench::virtual_board::VirtualBoard;
 use std::collections::VecDeque;
 
 /// A leg that counts what passes to it from the line.
+#[derive(Clone)]
 struct CountingLeg {
     leg: SensingLeg<f32>,
     taken: u64,
 }
 
 /// The library, ticked as often as the chip, and given each command between the same two ticks.
+#[derive(Clone)]
 pub struct Twin {
     leg: CountingLeg,
     link: HostLink,
