@@ -45,11 +45,11 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
         rigs.set_item(rig.name, rig.words)?;
     }
     module.add("READY_RIGS", rigs)?;
-    let scenarios = READY_SCENARIOS.iter().map(|scenario| scenario.name);
-    module.add(
-        "READY_SCENARIOS",
-        PyTuple::new(py, scenarios.collect::<Vec<_>>())?,
-    )?;
+    let scenarios = PyDict::new(py);
+    for scenario in READY_SCENARIOS {
+        scenarios.set_item(scenario.name, scenario.text)?;
+    }
+    module.add("READY_SCENARIOS", scenarios)?;
     let defects = PyDict::new(py);
     for (name, meaning) in Defect::descriptions() {
         defects.set_item(name, meaning)?;

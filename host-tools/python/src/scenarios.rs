@@ -19,9 +19,7 @@ struct Run {
     hash: TickHash,
 }
 
-fn run(scenario: &Path, rig: Option<RigFile>, seed: Option<u64>) -> PyResult<Run> {
-    let loaded = Scenario::load(scenario);
-    let mut scenario = loaded.map_err(|failure| scenario_error(&failure))?;
+fn run(mut scenario: Scenario, rig: Option<RigFile>, seed: Option<u64>) -> PyResult<Run> {
     scenario.seed = seed.unwrap_or(scenario.seed);
     let rig = match rig {
         Some(rig) => rig,
@@ -37,6 +35,16 @@ fn run(scenario: &Path, rig: Option<RigFile>, seed: Option<u64>) -> PyResult<Run
     })
 }
 
+/// A scenario by its text, which has more than one line, its file or its name.
+fn scenario_of(argument: &Bound<'_, PyAny>) -> PyResult<Scenario> {
+    let text = argument.extract::<&str>().ok();
+    let loaded = match text.filter(|text| text.contains('\n')) {
+        Some(text) => Scenario::parse("scenario", text),
+        None => Scenario::load(&arguments::path_of("scenario", argument)?),
+    };
+    loaded.map_err(|failure| scenario_error(&failure))
+}
+
 /// See `_native.pyi`.
 #[pyfunction]
 #[pyo3(signature = (scenario, *, rig = None, seed = None))]
@@ -46,13 +54,13 @@ pub fn run_scenario<'py>(
     rig: Option<&Bound<'py, PyAny>>,
     seed: Option<u64>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let scenario = arguments::path_of("scenario", scenario)?;
+    let scenario = scenario_of(scenario)?;
     let rig = arguments::rig(rig)?;
     let Run {
         title,
         summary,
         hash,
-    } = py.detach(|| run(&scenario, rig, seed))?;
+    } = py.detach(|| run(scenario, rig, seed))?;
     let result = PyDict::new(py);
     result.set_item("title", title)?;
     result.set_item("passed", summary.passes())?;

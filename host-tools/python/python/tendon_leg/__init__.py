@@ -1,5 +1,5 @@
-"""The controller for tendon-driven legs, in Python: the model, a leg simulated with the firmware's own code, and a leg
-on a port.
+"""The controller for tendon-driven legs, in Python: the model, a leg simulated with the firmware's own code, many scenarios
+at once, and a leg on a port.
 
 >>> from tendon_leg import SimulatedLeg
 >>> leg = SimulatedLeg("table1", payload_kg=1.0)
@@ -22,6 +22,8 @@ from ._native import (
     SimulatedLeg,
     run_scenario,
 )
+from .aio import AsyncLeg
+from .campaign import campaign
 from .errors import FileRefused, LegError, LegFault, LegTimeout, NoResult, Refused, RigError, ScenarioError
 
 __all__ = [
@@ -32,6 +34,7 @@ __all__ = [
     "SIGNALS",
     "STATES",
     "TICKS_PER_SECOND",
+    "AsyncLeg",
     "FileRefused",
     "Leg",
     "LegError",
@@ -43,5 +46,6 @@ __all__ = [
     "RigError",
     "ScenarioError",
     "SimulatedLeg",
+    "campaign",
     "run_scenario",
 ]

@@ -15,8 +15,8 @@ STATES: tuple[str, ...]
 #: The ready rigs: what each is.
 READY_RIGS: dict[str, str]
 
-#: The names of the ready scenarios, which `run_scenario` takes.
-READY_SCENARIOS: tuple[str, ...]
+#: The ready scenarios, which `run_scenario` takes by name: the TOML text of each.
+READY_SCENARIOS: dict[str, str]
 
 #: What can fail of a simulated leg: the names that `SimulatedLeg.fault` takes, and what each does.
 DEFECTS: dict[str, str]
@@ -367,7 +367,7 @@ def run_scenario(
 ) -> dict[str, Any]:
     """Runs a scenario as `leg run --on sim` does, the control law in f64 beside it.
 
-    scenario: a scenario file or the name of a ready one (`READY_SCENARIOS`).
+    scenario: a scenario file, the name of a ready one (`READY_SCENARIOS`), or a TOML text.
     rig: a `Rig`, a rig file or the name of a ready rig; the scenario's if left out.
     seed: of the sensors' noise; the scenario's if left out.
 

@@ -1,0 +1,60 @@
+"""A leg on a port, awaited."""
+
+import asyncio
+
+import pytest
+from tendon_leg import AsyncLeg, LegError
+
+
+def test_other_tasks_go_on_while_the_leg_moves():
+    async def main():
+        ticks = 0
+
+        async def count():
+            nonlocal ticks
+            while True:
+                await asyncio.sleep(0.001)
+                ticks += 1
+
+        counting = asyncio.create_task(count())
+        async with await AsyncLeg.emulated() as leg:
+            await leg.move(azimuth_deg=30, tilt_deg=20)
+            await leg.follow([[0.0, 30.0, 20.0], [0.5, 30.0, 18.0], [1.0, 30.0, 18.0]])
+            seen = await leg.telemetry()
+            assert seen["state"] == "keeping station"
+            assert seen["tilt_deg"] == pytest.approx(18.0, abs=0.1)
+        counting.cancel()
+        return ticks
+
+    assert asyncio.run(main()) > 10
+
+
+def test_two_legs_move_at_once_and_one_call_waits_for_the_other():
+    async def main():
+        legs = await asyncio.gather(AsyncLeg.emulated(), AsyncLeg.emulated("universal"))
+        moves = [leg.move(azimuth_deg=azimuth, tilt_deg=15) for leg in legs for azimuth in (0, 90)]
+        reached = await asyncio.gather(*moves)
+        for leg in legs:
+            await leg.close()
+        return [one["azimuth_deg"] for one in reached]
+
+    off_deg = [(found - asked + 180) % 360 - 180 for found, asked in zip(asyncio.run(main()), [0, 90, 0, 90], strict=True)]
+    assert off_deg == pytest.approx([0, 0, 0, 0], abs=0.3)
+
+
+def test_a_cancelled_call_and_a_stop_leave_the_leg_in_hold():
+    async def main():
+        async with await AsyncLeg.emulated() as leg:
+            with pytest.raises(TimeoutError):
+                async with asyncio.timeout(0.05):
+                    await leg.follow([[t, 0.0, 10.0 * t / 60.0] for t in range(61)])
+            cancelled = (await leg.telemetry())["state"]
+            await leg.clear()
+            moving = asyncio.create_task(leg.follow([[t, 0.0, 10.0 * t / 60.0] for t in range(61)]))
+            await asyncio.sleep(0.05)
+            await leg.stop()
+            with pytest.raises(LegError):
+                await moving
+            return cancelled, (await leg.telemetry())["state"]
+
+    assert asyncio.run(main()) == ("held", "held")

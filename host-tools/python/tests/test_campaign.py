@@ -1,0 +1,161 @@
+"""Many scenarios at once: the same rows wherever they run, going on after a kill, and what repeats a failure."""
+
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from tendon_leg import READY_SCENARIOS, Rig, campaign, run_scenario
+
+LEAN = """
+title = "A leg leans"
+steps = [
+    {{ await = {{ state = "disarmed", timeout_s = 1 }} }},
+    "arm",
+    {{ move = {{ azimuth_deg = {azimuth_deg}, tilt_deg = 20 }} }},
+    {{ arrive = {{ then_s = 0.3, timeout_s = 3 }} }},
+    {{ measure = {{ name = "error", quantity = "tip_error_mm", between = [0, {bound_mm}] }} }},
+]
+seed = 5
+[start.held]
+azimuth_deg = 0
+tilt_deg = 0
+pretension_n = 70
+payload_kg = 0
+"""
+
+
+def lean(azimuth_deg, bound_mm=0.05):
+    return LEAN.format(azimuth_deg=azimuth_deg, bound_mm=bound_mm)
+
+
+def heavier():
+    values = Rig("table1").to_dict()
+    values["mass"]["leg_kg"] = 2.0
+    return Rig.from_dict(values, name="heavier")
+
+
+def cases():
+    rigs = {"paper": None, "universal": "universal", "heavier": heavier()}
+    return [
+        {"scenario": lean(azimuth_deg), "rig": rig, "seed": seed, "design": design, "azimuth_deg": azimuth_deg}
+        for design, rig in rigs.items()
+        for azimuth_deg in (0, 130)
+        for seed in (1, 2)
+    ]
+
+
+def test_rows_are_those_of_single_runs_in_the_order_of_the_cases(tmp_path):
+    listed = cases()
+    seen = []
+    rows = campaign(listed, tmp_path, progress=seen.append)
+    assert len(seen) == len(rows) == 12
+    for case, row in zip(listed, rows, strict=True):
+        single = run_scenario(case["scenario"], rig=case["rig"], seed=case["seed"])
+        assert row["passed"] and row["error"] is None
+        assert (row["bits"], row["design"], row["seed"]) == (single["bits"], case["design"], case["seed"])
+        assert row["error"] is None and row["title"] == "A leg leans"
+    assert len({row["bits"] for row in rows}) == 12
+
+
+def test_a_failure_keeps_what_repeats_it(tmp_path):
+    strict = {"scenario": lean(40, bound_mm=1e-9), "rig": heavier(), "seed": 11}
+    broken = {"scenario": "title = 3\n"}
+    ready = {"scenario": "fault_cell_dead", "rig": "universal"}
+    failed, refused, passed = campaign([strict, broken, ready], tmp_path)
+    assert not failed["passed"] and not refused["passed"] and passed["passed"]
+    assert "line 1, column 9" in refused["error"] and "repeat" not in passed
+    words = failed["repeat"].split()
+    assert words[:4] == ["leg", "run", "--on", "sim"]
+    again = run_scenario(Path(words[5]), rig=Path(words[7]))
+    assert (again["bits"], again["passed"]) == (failed["bits"], False)
+
+
+def test_only_what_is_missing_is_run_again(tmp_path):
+    listed = cases()
+    first = campaign(listed[:5], tmp_path)
+    results = tmp_path / "results.jsonl"
+    # Killed in the midst of a line.
+    lines = results.read_text().splitlines(keepends=True)
+    results.write_text("".join(lines[:4]) + lines[4][:20])
+    fresh = []
+    second = campaign(listed[:5], tmp_path, executor=Counting(fresh))
+    assert second == first and len(fresh) == 1
+    # Equal cases are run once.
+    assert len(campaign([listed[7]] * 3, tmp_path, executor=Counting(fresh))) == 3
+    assert len(fresh) == 2
+    assert len(results.read_text().splitlines()) == 6
+
+
+class Counting:
+    """An executor that runs at once, and knows what."""
+
+    def __init__(self, ran):
+        self.ran = ran
+
+    def submit(self, call, run):
+        from concurrent.futures import Future
+
+        self.ran.append(run)
+        future = Future()
+        future.set_result(call(run))
+        return future
+
+
+PROGRAM = """
+import sys
+from tendon_leg import campaign
+cases = [{"scenario": "tour", "seed": seed} for seed in range(8)]
+campaign(cases, sys.argv[1], progress=lambda row: print(row["seed"], flush=True))
+"""
+
+
+def test_a_killed_campaign_goes_on_where_it_was(tmp_path):
+    with subprocess.Popen([sys.executable, "-c", PROGRAM, tmp_path], stdout=subprocess.PIPE, text=True) as child:
+        assert child.stdout is not None
+        child.stdout.readline()
+        child.kill()
+    done = len([line for line in (tmp_path / "results.jsonl").read_text().splitlines() if line.endswith("}}")])
+    assert 1 <= done < 8
+    fresh = []
+    rows = campaign([{"scenario": "tour", "seed": seed} for seed in range(8)], tmp_path, executor=Counting(fresh))
+    assert len(fresh) == 8 - done and all(row["passed"] for row in rows)
+
+
+def test_a_dask_cluster_gives_the_same_rows(tmp_path):
+    distributed = pytest.importorskip("distributed")
+    listed = cases()[:4]
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
+        distributed.Client(cluster) as client,
+        client.get_executor() as executor,
+    ):
+        on_cluster = campaign(listed, tmp_path / "cluster", executor=executor)
+    assert on_cluster == campaign(listed, tmp_path / "here")
+
+
+@pytest.mark.parametrize(
+    ("case", "words"),
+    [
+        ({}, "case 1: it has no `scenario`"),
+        ({"scenario": 3}, "case 1: scenario: 3"),
+        ({"scenario": "no such file"}, "no such file"),
+        ({"scenario": "tour", "seed": -1}, "case 1: its seed -1"),
+        ({"scenario": "tour", "seed": 1.5}, "case 1: its seed 1.5"),
+        ({"scenario": "tour", "rig": "no such rig"}, "no such rig"),
+        ({"scenario": "tour", "rig": 7}, "case 1: rig"),
+    ],
+)
+def test_a_case_that_is_none_is_refused_before_anything_runs(tmp_path, case, words):
+    began = time.monotonic()
+    with pytest.raises(ValueError, match="case 1") as refusal:
+        campaign([{"scenario": "tour"}, case], tmp_path)
+    assert words in str(refusal.value) and time.monotonic() - began < 1.0
+    assert not (tmp_path / "results.jsonl").exists()
+
+
+def test_every_ready_scenario_has_its_text():
+    assert all("title" in text for text in READY_SCENARIOS.values())
+    assert json.dumps(READY_SCENARIOS)
