@@ -230,11 +230,14 @@ impl<T: Scalar> Leg<T> {
     }
 
     /// Watches whether the sensors agree on the pose: from when every tendon pulls until the tendons are paid out or the drivers
-    /// are off.
+    /// are off. A held leg that is armed again goes on from what was known of it: it may swing, and what it shows meanwhile is
+    /// no measure of what it shows at rest.
     #[inline(always)]
     fn watch_agreement(&mut self) {
-        let growth = match &self.mode {
-            Mode::Active(active) if active.tensioned => {
+        let estimate = self.shared.estimate.as_ref();
+        let error = estimate.and_then(|estimate| estimate.length_error.as_ref());
+        let growth = match (&self.mode, error) {
+            (Mode::Active(active), Some(_)) if active.tensioned => {
                 if active.station.kept().is_some() {
                     ErrorGrowth::KEEPING_STATION
                 } else if active.trajectory.moving() {
@@ -243,13 +246,12 @@ impl<T: Scalar> Leg<T> {
                     ErrorGrowth::RESTING
                 }
             }
-            Mode::Held(_) if self.agreement.watches() => ErrorGrowth::RESTING,
+            (Mode::Active(active), None) if active.begins_taut() => return self.agreement.pause(),
+            (Mode::Held(_), Some(_)) if self.agreement.watches() => ErrorGrowth::RESTING,
             _ => return self.agreement.end(),
         };
-        let estimate = self.shared.estimate.as_ref();
-        match estimate.and_then(|estimate| estimate.length_error.as_ref()) {
-            Some(error) => self.agreement.watch(error, growth),
-            None => self.agreement.end(),
+        if let Some(error) = error {
+            self.agreement.watch(error, growth);
         }
     }
 

@@ -1,6 +1,9 @@
 //! What forward kinematics leaves of the three lengths.
 
 use super::still_leg::StillLeg;
+use leg_firmware::command::Command;
+use leg_firmware::control::CYCLE_TICKS;
+use leg_firmware::supervisor::{Fault, State};
 
 #[test]
 fn a_zero_that_is_not_the_legs_shows_as_a_residual() {
@@ -20,4 +23,34 @@ fn a_zero_that_is_not_the_legs_shows_as_a_residual() {
         );
         assert!(residual_m != 0.0);
     }
+}
+
+/// What the sensors showed before a leg was held stands when it follows commands again: otherwise a load cell that fades in the
+/// tenth of a second after would be believed, and a swing in it would be taken for how the leg is at rest.
+#[test]
+fn a_held_leg_that_follows_again_remembers_what_its_sensors_showed() {
+    let disagrees = |lies: bool| {
+        let mut still = StillLeg::armed();
+        still.run(1000);
+        assert_eq!(still.obey(Command::Stop), Ok(()));
+        still.run(100);
+        assert_eq!(still.leg.state(), State::Held);
+        let faults = still.leg.telemetry().faults;
+        assert!(!faults.any(), "{faults:?}");
+        assert_eq!(still.obey(Command::Clear), Ok(()));
+        assert_eq!(still.leg.state(), State::Active);
+        let before_n = still.leg.telemetry().tensions_n[0];
+        for _ in 0..50 {
+            if lies {
+                still.sensors.cell_codes[0] -= 30;
+            }
+            still.run_silent(CYCLE_TICKS.into());
+        }
+        still.run_silent(600);
+        let change_n = still.leg.telemetry().tensions_n[0] - before_n;
+        assert_eq!(change_n < -5.0, lies, "{change_n} N");
+        still.leg.telemetry().faults.has(Fault::Residual)
+    };
+    assert!(disagrees(true));
+    assert!(!disagrees(false));
 }

@@ -14,6 +14,9 @@ use crate::supervisor::{Fault, FaultSet};
 use leg_model::{Direction, Error, HalfTangent, Scalar};
 use nalgebra::Vector3;
 
+/// Cycles in which a tendon that pulls reaches the minimum tension after the leg was armed, 0.1 s: about a period of its swing.
+const BEGIN_CYCLES: u32 = 200;
+
 /// The leg follows commands.
 #[derive(Clone, Copy, Debug)]
 pub struct Active<T> {
@@ -198,6 +201,12 @@ impl<T: Scalar> Active<T> {
     #[inline(always)]
     pub fn led_down(&self) -> bool {
         self.disarming && (!self.trajectory.moving() || self.stuck)
+    }
+
+    /// Whether the tendons pulled already when it was armed just now, but one by less than the minimum tension since.
+    #[inline(always)]
+    pub fn begins_taut(&self) -> bool {
+        self.slack.taken_up() && self.slack.cycles <= BEGIN_CYCLES
     }
 
     /// Whether the tendons take too long to become taut.

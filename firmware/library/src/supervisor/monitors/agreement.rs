@@ -82,6 +82,12 @@ impl<T: Scalar> Agreement<T> {
         self.beyond.set(T::zero());
     }
 
+    /// Nothing can be compared now, but what was known holds; nothing is trusted meanwhile.
+    #[inline(always)]
+    pub fn pause(&mut self) {
+        self.beyond_now_m = self.change_max_m;
+    }
+
     /// Whether every tendon has pulled since the last end.
     #[inline(always)]
     pub fn watches(&self) -> bool {
@@ -317,6 +323,18 @@ mod tests {
         leg.error.mean_m = f64::NAN;
         leg.watch(false);
         assert!(!leg.agreement.agree() && !leg.agreement.trusts());
+    }
+
+    #[test]
+    fn a_pause_forgets_nothing_and_nothing_is_trusted_in_it() {
+        let mut leg = Leg::taut();
+        leg.agreement.pause();
+        assert!(leg.agreement.watches() && leg.agreement.agree() && !leg.agreement.trusts());
+        leg.watch(false);
+        assert!(leg.agreement.trusts());
+        leg.agreement.pause();
+        let found_s = leg.disagrees_after(|_, error| lie(error, 1, -1e-4));
+        assert!(found_s.is_some_and(|s| s < 0.05), "{found_s:?}");
     }
 
     #[test]
