@@ -2,7 +2,7 @@
 
 Reads a JSON list of jobs from standard input and writes a JSON list of answers. A job names
 a model file (`model`) and, for a leg at rest, other payloads for it (`other_payloads_kg`) and whether to let it fall into
-place from the vertical (`settle`); for a swing, a force at the tip that ends (`force_n`); for legs around a body, how long
+place from the vertical (`settle`); for a swing, a force at the tip that ends (`force_n`); for motors, how far each reels in (`controls_m`); for legs around a body, how long
 they shall stand (`stands_s`). SI units.
 """
 
@@ -25,6 +25,8 @@ def answer(job):
     model = mujoco.MjModel.from_xml_path(job["model"])
     if "force_n" in job:
         return free_response(model, job["force_n"])
+    if "controls_m" in job:
+        return controlled(model, job["controls_m"])
     if "stands_s" in job:
         return standing(model, job["stands_s"])
     model.opt.tolerance = 0.0  # the constraint solver goes on to its rounding
@@ -125,6 +127,24 @@ def free_response(model, force_n):
         tips.append(data.site("tip").xpos.tolist())
         mujoco.mj_step(model, data)
     return {"sensors": sensors, "step_s": model.opt.timestep, "tips_m": tips}
+
+
+def controlled(model, controls_m):
+    """The tip at rest after motors have reeled in, where they are after each time constant of the first, and the counts."""
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, model.key("held").id)
+    data.ctrl[:] = controls_m
+    model.dof_damping[:] *= SETTLE_DAMPING
+    time_s = model.actuator_dynprm[0, 0]
+    reeled_m = []
+    while data.time < FREE_SPAN_S:
+        mujoco.mj_step(model, data)
+        if data.time >= (len(reeled_m) + 1) * time_s - 0.5 * model.opt.timestep and len(reeled_m) < 3:
+            reeled_m.append(data.act.tolist())
+    while np.abs(data.qvel).max() > SETTLED_RAD_PER_S:
+        mujoco.mj_step(model, data)
+    counts = (model.numeric("counts_per_m").data * data.act).tolist()
+    return {"tip_m": data.site("tip").xpos.tolist(), "servo_time_s": time_s, "reeled_m": reeled_m, "counts": counts}
 
 
 def standing(model, span_s):

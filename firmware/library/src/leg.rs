@@ -13,6 +13,7 @@ mod phase;
 mod ramping_down;
 mod shadow;
 mod shared;
+mod slack;
 mod station;
 
 pub use command_queue::Outcome;

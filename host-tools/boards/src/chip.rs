@@ -24,6 +24,7 @@ pub use settings_page::PLACE as SETTINGS_PLACE;
 use settings_page::Page;
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 use stm32g474_emulator::board::Board;
 use stm32g474_emulator::chip::Chip;
 use stm32g474_emulator::image::Image;
@@ -43,7 +44,7 @@ const COMMANDED: &str =
 pub struct ChipSession {
     image: Image,
     /// Its log messages; none for an image without.
-    log: Option<Table>,
+    log: Option<Arc<Table>>,
     board: Board,
     /// What the flash holds where settings are kept; none for the settings that a leg starts with.
     kept: Option<Vec<u8>>,
@@ -62,7 +63,7 @@ impl ChipSession {
         let refused = |error| LinkError::Chip(format!("{}: {error}", image.display()));
         Ok(Self {
             image: Image::parse(&elf).map_err(refused)?,
-            log: Table::parse(&elf).ok().flatten(),
+            log: Table::parse(&elf).ok().flatten().map(Arc::new),
             board: Board::default(),
             kept: None,
             bench: InProcess::new(),
@@ -84,7 +85,7 @@ impl ChipSession {
         Self { kept, ..self }
     }
 
-    /// The same session once more, its chip as it is now, without its log: what is asked of one does not happen to the other.
+    /// The same session once more, its chip as it is now: what is asked of one does not happen to the other.
     ///
     /// # Errors
     /// [`LinkError::Chip`] for a fault of the emulator.
@@ -93,7 +94,7 @@ impl ChipSession {
         let copied = running.map(|running| running.copy(&self.image)).transpose();
         Ok(Self {
             image: self.image.clone(),
-            log: None,
+            log: self.log.clone(),
             board: self.board,
             kept: self.kept.clone(),
             bench: InProcess::new(),

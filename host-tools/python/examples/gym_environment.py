@@ -62,7 +62,7 @@ class LegReaching(gymnasium.Env[np.ndarray, np.ndarray]):
     @staticmethod
     def _direction(azimuth_deg: float, tilt_deg: float) -> np.ndarray:
         azimuth, tilt = np.radians([azimuth_deg, tilt_deg])
-        return np.sin(tilt) * np.array([np.cos(azimuth), np.sin(azimuth)])
+        return np.array([np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth)])
 
     def _observation(self) -> np.ndarray:
         seen = self.leg.telemetry()

@@ -8,6 +8,7 @@ mod arguments;
 mod errors;
 mod evaluation;
 mod leg;
+mod map_quantities;
 mod operator_thread;
 mod outputs;
 mod recorder;
@@ -16,6 +17,7 @@ mod scenarios;
 mod session;
 mod signals;
 mod simulated_leg;
+mod start;
 mod telemetry;
 
 use leg_base::description;

@@ -5,11 +5,12 @@ use crate::errors::{model_error, rig_error};
 use crate::evaluation::{
     self, Argument, NoResult, Poses, Put, Varying, put_demand, put_demand_towards,
 };
+use crate::map_quantities::MAP_QUANTITIES;
 use crate::outputs::{self, FEASIBLE, NONLINEAR, OUTPUTS, Output};
 use leg_base::failure::Failure;
 use leg_model::{Elasticity, Query};
 use leg_model_tools::jsonl::PoseLine;
-use leg_model_tools::workspace_map::{Cell, Grid, WorkspaceMap};
+use leg_model_tools::workspace_map::{Grid, WorkspaceMap};
 use leg_rig::rig_convert::{self, RigFormat};
 use leg_rig::rig_file::{RigFile, RigText};
 use numpy::{PyArray1, PyArrayMethods};
@@ -385,29 +386,3 @@ fn put_azimuth(query: &mut Query<f64>, deg: f64) {
 fn put_tilt(query: &mut Query<f64>, deg: f64) {
     query.tilt_rad = deg.to_radians();
 }
-
-/// A number of a cell of a map.
-type CellValue = fn(&Cell) -> Option<f64>;
-
-/// The quantities of a map: those of `leg map`, each with its unit.
-const MAP_QUANTITIES: [(&str, CellValue); 9] = [
-    ("feasible", |cell| Some(f64::from(u8::from(cell.feasible)))),
-    ("pretension_keeps_bounds", |cell| {
-        Some(f64::from(u8::from(cell.pretension_keeps_bounds)))
-    }),
-    ("pretension_min_n", |cell| Some(cell.pretension_min_n)),
-    ("pretension_max_n", |cell| Some(cell.pretension_max_n)),
-    ("margin_n", |cell| cell.margin_n),
-    ("deviation_mm", |cell| {
-        Some(cell.at_pretension.ok()?.deviation_mm)
-    }),
-    ("stiffness_min_nm_per_rad", |cell| {
-        Some(cell.at_pretension.ok()?.stiffness_min_nm_per_rad)
-    }),
-    ("stiffness_max_nm_per_rad", |cell| {
-        Some(cell.at_pretension.ok()?.stiffness_max_nm_per_rad)
-    }),
-    ("deviation_nonlinear_mm", |cell| {
-        cell.deviation_nonlinear_mm?.ok()
-    }),
-];

@@ -6,22 +6,19 @@ use crate::recorder::Recorder;
 use crate::rig::Rig;
 use crate::session::{Session, SessionError};
 use crate::signals::{self, Origin, SIGNALS, Signal};
+use crate::start;
 use crate::telemetry::{self, numbers_as};
 use leg_base::description;
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::supervisor::State;
 use leg_sim::action::Action;
-use leg_sim::plant::Start;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use serde_json::json;
 use std::sync::{Mutex, MutexGuard, TryLockError};
-
-/// Slack of a leg that has to be homed, mm: that of `leg emulate --slack`.
-const SLACK_MM: f64 = 3.0;
 
 /// Longest homing, longest move and longest relaxing with all that belongs to them, s: those of the command line.
 const HOMING_S: f64 = 120.0;
@@ -110,26 +107,8 @@ impl SimulatedLeg {
             Some(rig) => rig,
             None => Rig::load(None)?.file,
         };
-        let start = if slack {
-            let given = [azimuth_deg, tilt_deg, payload_kg]
-                .iter()
-                .any(|value| *value != 0.0);
-            if given || pretension_n.is_some() {
-                return Err(PyValueError::new_err(
-                    "slack is given: such a leg hangs straight down, without payload and pretension",
-                ));
-            }
-            Start::Slack { slack_mm: SLACK_MM }
-        } else {
-            let pretension_n = pretension_n.unwrap_or(rig.pretension_n);
-            let start = json!({ "held": {
-                "azimuth_deg": arguments::finite("azimuth_deg", azimuth_deg)?,
-                "tilt_deg": arguments::finite("tilt_deg", tilt_deg)?,
-                "pretension_n": arguments::finite("pretension_n", pretension_n)?,
-                "payload_kg": arguments::finite("payload_kg", payload_kg)?,
-            }});
-            arguments::read(&start)?
-        };
+        let pose = [azimuth_deg, tilt_deg, payload_kg];
+        let start = start::start(&rig, slack, pose, pretension_n)?;
         Ok(Self(Mutex::new(Session::new(
             &rig,
             start,

@@ -49,6 +49,16 @@ def test_a_cancelled_call_and_a_stop_leave_the_leg_in_hold():
                 async with asyncio.timeout(0.05):
                     await leg.follow([[t, 0.0, 10.0 * t / 60.0] for t in range(61)])
             cancelled = (await leg.telemetry())["state"]
+            # What only asks does not stop the leg when it is cancelled.
+            await leg.clear()
+            await leg.move(azimuth_deg=0, tilt_deg=5)
+            asking = asyncio.create_task(leg.telemetry())
+            await asyncio.sleep(0)
+            asking.cancel()
+            with pytest.raises(asyncio.CancelledError):
+                await asking
+            assert (await leg.telemetry())["state"] == "keeping station"
+            await leg.stop()
             await leg.clear()
             moving = asyncio.create_task(leg.follow([[t, 0.0, 10.0 * t / 60.0] for t in range(61)]))
             await asyncio.sleep(0.05)

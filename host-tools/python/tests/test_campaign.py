@@ -142,6 +142,7 @@ def test_a_dask_cluster_gives_the_same_rows(tmp_path):
         ({}, "case 1: it has no `scenario`"),
         ({"scenario": 3}, "case 1: scenario: 3"),
         ({"scenario": "no such file"}, "no such file"),
+        ({"scenario": "tour", "passed": True}, "case 1: its key 'passed'"),
         ({"scenario": "tour", "seed": -1}, "case 1: its seed -1"),
         ({"scenario": "tour", "seed": 1.5}, "case 1: its seed 1.5"),
         ({"scenario": "tour", "rig": "no such rig"}, "no such rig"),
@@ -154,6 +155,14 @@ def test_a_case_that_is_none_is_refused_before_anything_runs(tmp_path, case, wor
         campaign([{"scenario": "tour"}, case], tmp_path)
     assert words in str(refusal.value) and time.monotonic() - began < 1.0
     assert not (tmp_path / "results.jsonl").exists()
+
+
+def test_results_of_another_build_are_not_taken(tmp_path, monkeypatch):
+    listed, fresh = cases()[:2], []
+    campaign(listed, tmp_path, executor=Counting(fresh))
+    monkeypatch.setattr(sys.modules["tendon_leg.campaign"], "_build", lambda: "another")
+    campaign(listed, tmp_path, executor=Counting(fresh))
+    assert len(fresh) == 4
 
 
 def test_every_ready_scenario_has_its_text():

@@ -1,17 +1,20 @@
 //! The chip: processor, memories and peripherals in step.
 
+mod coupling;
+mod supply;
 mod unserved;
 
 use crate::board::Board;
-use crate::bus::{Answers, Bus, Shared, lock};
+use crate::bus::{Shared, lock};
 use crate::devices::SystemBreak;
 use crate::facts::Facts;
 use crate::findings::Findings;
 use crate::image::Image;
-use crate::memory_map::{DEBUG, FLASH, PERIPHERALS, SECOND_BANK};
+use crate::memory_map::FLASH;
 use crate::peripherals::Peripherals;
 use crate::processor::{FIRST_INTERRUPT, MapError, Place, Processor};
 use crate::rcc::ResetCause;
+use coupling::{Coupled, couple};
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, MutexGuard};
 use unserved::Unserved;
@@ -62,13 +65,6 @@ const LOOK_CYCLES: u64 = 17_000;
 
 /// A page of the CCM, as SYSCFG_SWPR protects them, bytes: RM0440, SYSCFG_SWPR, of which a chip with 32 KiB has all 32.
 const CCM_PAGE: usize = 1_024;
-
-/// The supply below which the datasheet promises nothing, mV.
-const SUPPLY_MIN_MV: u32 = 1_710;
-
-/// The supply from which on RAM keeps what it holds, mV: the datasheet has no figure for a chip in reset, so this one is
-/// chosen.
-const RAM_KEPT_MV: u32 = 1_000;
 
 impl Chip {
     /// A chip that is about to start after a power-up.
@@ -366,73 +362,6 @@ impl Chip {
         self.waits_until = 0;
         Stop::Reset(cause)
     }
-
-    /// Takes the supply away and gives it back: RAM then holds anything, and what was being written to the flash is half
-    /// done.
-    pub fn cycle_power(&mut self, seed: u64) {
-        self.dip_supply(0, seed);
-    }
-
-    /// Lets the supply fall to so many millivolts for a moment. Below the brown-out level of the option bytes that is a
-    /// reset; without one, a supply outside of the datasheet's range is a finding. True if the chip was reset.
-    pub fn dip_supply(&mut self, lowest_mv: u32, seed: u64) -> bool {
-        let mut peripherals = self.peripherals();
-        if lowest_mv >= peripherals.devices.flash.brown_out_mv() {
-            if lowest_mv < SUPPLY_MIN_MV {
-                peripherals.findings.add(format!(
-                    "the chip runs at {lowest_mv} mV, below its {SUPPLY_MIN_MV} mV"
-                ));
-            }
-            if peripherals.devices.pwr.detects(lowest_mv) {
-                peripherals.break_by(SystemBreak::Supply);
-            }
-            return false;
-        }
-        peripherals.advance();
-        peripherals.lose_power();
-        drop(peripherals);
-        if lowest_mv < RAM_KEPT_MV {
-            self.processor.scramble_ram(seed);
-        }
-        self.reset(ResetCause::BrownOut);
-        true
-    }
-
-    /// Lets the crystal stop.
-    pub fn stop_crystal(&mut self) {
-        self.peripherals().stop_crystal();
-    }
-}
-
-/// A processor with the image's first bank, its memories not set yet, and the peripherals that answer it.
-struct Coupled {
-    processor: Processor,
-    peripherals: Arc<Mutex<Peripherals>>,
-    shared: Arc<Shared>,
-}
-
-fn couple(image: &Image, peripherals: Peripherals) -> Result<Coupled, MapError> {
-    let peripherals = Arc::new(Mutex::new(peripherals));
-    let shared = Arc::new(Shared::default());
-    let bus = |start, answers| {
-        Arc::new(Bus {
-            start,
-            answers,
-            peripherals: Arc::clone(&peripherals),
-            shared: Arc::clone(&shared),
-        })
-    };
-    let processor = Processor::new(
-        &image.flash,
-        bus(SECOND_BANK, Answers::Flash),
-        bus(PERIPHERALS.start, Answers::Registers),
-        bus(DEBUG.start, Answers::Registers),
-    )?;
-    Ok(Coupled {
-        processor,
-        peripherals,
-        shared,
-    })
 }
 
 #[cfg(test)]

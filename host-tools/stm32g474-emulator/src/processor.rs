@@ -1,19 +1,18 @@
 //! The processor: `rsemu`'s Cortex-M4F with the memories of this chip.
 
 mod comparison;
+mod state;
 #[cfg(test)]
 mod tests;
 
 use crate::memory_map::{BANK_SIZE, CCM, DEBUG, FLASH, PERIPHERALS, RAM, SECOND_BANK};
 use fastrand::Rng;
-use rsemu::core::device::Device;
 use rsemu::core::space::{
     AddressSpace, DispatchPolicy, MemAttrs, MemOps, RamStore, Region, RomStore, RomWrite,
 };
-use rsemu::core::state::{MachineShape, Migrations, StateReader, StateWriter};
 use rsemu::core::value::Width;
 use rsemu::cpu::arm::v7m::sys::{Access, Exception, Sys};
-use rsemu::cpu::arm::v7m::{ArmV7m, CLASS, Config, xpsr};
+use rsemu::cpu::arm::v7m::{ArmV7m, Config, xpsr};
 use std::sync::Arc;
 
 /// The priorities that the chip's interrupt controller knows: 16.
@@ -24,9 +23,6 @@ const PAGES: DispatchPolicy = DispatchPolicy::Dense {
     page_bits: 15,
     cover: RAM.end as u64,
 };
-
-/// The name of the core in a saved state.
-const CORE: &str = "cpu";
 
 /// Where the program is at a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -131,26 +127,6 @@ impl Processor {
             settled: true,
             may_sleep: false,
         })
-    }
-
-    /// Goes on from where another processor is, with what its memories hold.
-    ///
-    /// # Errors
-    /// [`MapError`] if `rsemu` does not read its own state.
-    pub fn continue_from(&mut self, other: &Self) -> Result<(), MapError> {
-        for (to, from) in self.memories.iter().zip(&other.memories) {
-            let mut bytes = vec![0; usize::try_from(from.len()).unwrap_or_default()];
-            // Both are as long as the memory.
-            let _ = from.read_at(0, &mut bytes);
-            let _ = to.write_at(0, &bytes);
-        }
-        copy_core(&other.core, &self.core).map_err(|error| MapError(error.to_string()))?;
-        self.wanted = other.wanted;
-        self.given = other.given;
-        self.nmi = other.nmi;
-        self.settled = other.settled;
-        self.may_sleep = other.may_sleep;
-        Ok(())
     }
 
     /// Starts anew: what the memories hold stays.
@@ -382,19 +358,6 @@ const FRAME_SPAN: usize = 256;
 
 /// Bits of xPSR that are always zero.
 const XPSR_RESERVED: u32 = 0xf << 20;
-
-/// Copies a core's state, by the format in which `rsemu` saves machines.
-fn copy_core(from: &ArmV7m, to: &ArmV7m) -> Result<(), rsemu::core::error::Error> {
-    let mut shape = MachineShape::new();
-    shape.add_device(CORE, CLASS.name)?;
-    let mut writer = StateWriter::new(shape);
-    from.save(&mut writer.chunk(CORE, CLASS.name, CLASS.version)?)?;
-    let bytes = writer.to_vec()?;
-    let migrations = Migrations::new();
-    let saved = StateReader::new(&bytes)?;
-    let chunk = saved.load(CORE, CLASS.name, CLASS.version, &migrations)?;
-    to.load(&mut chunk.reader())
-}
 
 fn start(space: &Arc<AddressSpace>) -> ArmV7m {
     let config = Config::CORTEX_M4F

@@ -132,9 +132,8 @@ fn compare(name: &str, scenario: &Scenario, image: &Path, homings: &Homings) -> 
     let ticks = on_chip.as_ref().map_or(0, |summary| summary.ticks);
     let on_chip = failure(&on_chip);
     eprintln!(
-        "{name}: {}, {} ticks in {took_s:.0} s of the processor, and {} of a homing before",
+        "{name}: {}, {ticks} ticks in {took_s:.0} s of the processor, {} of them repeated from another's homing",
         on_chip.as_deref().unwrap_or("passes"),
-        ticks - chip.repeated as u64,
         chip.repeated,
     );
     match (here, on_chip) {
@@ -178,7 +177,7 @@ fn damaged_bytes_are_found_by_a_chip_and_its_shadow_in_the_same_tick() {
 /// All of them, homed first: `cargo test --test suite -- --ignored --nocapture chip_scenarios` prints each as it ends. The samples
 /// above are run always.
 #[test]
-#[ignore = "takes 20 minutes on two cores: run with --ignored"]
+#[ignore = "takes a quarter of an hour on two cores: run with --ignored"]
 fn every_ready_scenario_passes_on_the_chip_as_in_process() {
     let image = image();
     let mut left: Vec<(&str, Scenario)> = vec![(

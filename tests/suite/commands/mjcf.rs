@@ -69,8 +69,9 @@ impl Case {
         self.direction.vector() * self.leg.tip_m()
     }
 
-    /// The tip at rest with a payload, by the host's nonlinear equilibrium. As in the export nothing stretches.
-    fn tip_at_rest_m(&self, payload_kg: f64) -> Vector3<f64> {
+    /// The tip at rest with a payload, each tendon reeled in by so much, m, by the host's nonlinear equilibrium. As in the export
+    /// nothing stretches.
+    fn tip_at_rest_m(&self, payload_kg: f64, reeled_m: [f64; 3]) -> Vector3<f64> {
         let rig = Rig::new(&self.leg.parameters).unwrap();
         let tendon = |tendon: HeldTendon| Tendon::constant(tendon.stiffness_n_per_m).unwrap();
         let balance = Balance::new(
@@ -78,7 +79,8 @@ impl Case {
             Load::new(&rig, payload_kg).unwrap(),
             self.leg.support,
             self.leg.tendons.map(tendon),
-            self.leg.tendons.map(|tendon| tendon.unstretched_m).into(),
+            Vector3::from(self.leg.tendons.map(|tendon| tendon.unstretched_m))
+                - Vector3::from(reeled_m),
         );
         let start = Posture {
             direction: self.direction,
@@ -123,7 +125,7 @@ impl Case {
         if !found["tip_settled_m"].is_null() {
             near("tip_settled_m", target.as_slice());
         }
-        let others = OTHER_PAYLOADS_KG.map(|payload_kg| self.tip_at_rest_m(payload_kg));
+        let others = OTHER_PAYLOADS_KG.map(|payload_kg| self.tip_at_rest_m(payload_kg, [0.0; 3]));
         near(
             "other_tips_at_rest_m",
             Matrix3x2::from_columns(&others).as_slice(),
@@ -328,6 +330,33 @@ fn it_swings_as_the_simulated_leg() {
         let far = largest_difference(&numbers(&free["sensors"]), &measured);
         assert!(far < 1e-6, "tilt {tilt_deg}: sensors differ by {far:e}");
     }
+}
+
+/// A control reels its tendon in, with the time constant of the servo, and the leg comes to rest where the model says.
+#[test]
+fn a_control_reels_its_tendon_in() {
+    let rig = RigFile::load(None).unwrap();
+    let case = Case::new(&rig, 30.0, 10.0);
+    let controls_m = [4e-4, -2e-4, 1e-4];
+    let directory = tempfile::tempdir().unwrap();
+    let job = json!({ "model": export(&case, directory.path(), 0), "controls_m": controls_m });
+    let found = &python::answers("compare_with_mujoco.py", &[job])[0];
+    let expected_m = case.tip_at_rest_m(PAYLOAD_KG, controls_m);
+    assert!((expected_m - case.target_m()).norm() > 1e-3);
+    case.assert_close(found, "tip_m", expected_m.as_slice(), STATICS_M);
+    let servo_time_s = found["servo_time_s"].as_f64().unwrap();
+    assert!((servo_time_s * f64::from(rig.gains.servo.position_gain_per_s) - 1.0).abs() < 1e-6);
+    let reeled = found["reeled_m"].as_array().unwrap();
+    assert_eq!(reeled.len(), 3);
+    for (times, reeled_m) in (1..).zip(reeled) {
+        let share = 1.0 - f64::from(-times).exp();
+        for (reeled_m, control_m) in numbers(reeled_m).iter().zip(controls_m) {
+            // To a step of the simulation.
+            assert!((reeled_m / control_m - share).abs() < 0.015, "{found}");
+        }
+    }
+    let counts = controls_m.map(|m| m / rig.calibration.m_per_count[0]);
+    case.assert_close(found, "counts", &counts, 1e-3);
 }
 
 /// With their feet apart, on every rig.

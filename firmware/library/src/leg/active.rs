@@ -3,19 +3,16 @@
 use super::length_offsets::LengthOffsets;
 use super::phase::Phase;
 use super::shared::Shared;
+use super::slack::Slack;
 use super::station::{Station, StationKeeping};
 use crate::command::Compensation;
 use crate::control::{
-    Axis, CYCLE_S, CYCLE_TICKS, Knot, LoadEstimation, Measured, TICK_S, TargetDemand, Trajectory,
-    bounds,
+    CYCLE_TICKS, Knot, LoadEstimation, Measured, TICK_S, TargetDemand, Trajectory, bounds,
 };
 use crate::set_point::{PointRefusal, SetPoint, StreamPart};
-use crate::supervisor::{Fault, FaultSet};
+use crate::supervisor::{Fault, FaultSet, SETTLE_CYCLES};
 use leg_model::{Direction, Error, HalfTangent, Scalar};
 use nalgebra::Vector3;
-
-/// Cycles in which a tendon that pulls reaches the minimum tension after the leg was armed, 0.1 s: about a period of its swing.
-const BEGIN_CYCLES: u32 = 200;
 
 /// The leg follows commands.
 #[derive(Clone, Copy, Debug)]
@@ -33,23 +30,6 @@ pub struct Active<T> {
     stuck: bool,
     offsets: LengthOffsets<T>,
     slack: Slack<T>,
-}
-
-/// The travel from slack to taut: every tendon is as far from its target as every other, so that the leg does not swing.
-#[derive(Clone, Copy, Debug)]
-struct Slack<T> {
-    /// How much travel is left, m; none before the first target.
-    left_m: Option<T>,
-    /// Cycles since the leg was armed.
-    cycles: u32,
-}
-
-impl<T: Scalar> Slack<T> {
-    /// Whether every tendon is led to its target itself.
-    #[inline(always)]
-    fn taken_up(&self) -> bool {
-        self.left_m.is_some_and(|left| left <= T::zero())
-    }
 }
 
 impl<T: Scalar> Active<T> {
@@ -203,10 +183,10 @@ impl<T: Scalar> Active<T> {
         self.disarming && (!self.trajectory.moving() || self.stuck)
     }
 
-    /// Whether the tendons pulled already when it was armed just now, but one by less than the minimum tension since.
+    /// Whether it was armed just now with tendons that pulled already, one of which is below the minimum tension since.
     #[inline(always)]
     pub fn begins_taut(&self) -> bool {
-        self.slack.taken_up() && self.slack.cycles <= BEGIN_CYCLES
+        self.slack.taken_up() && self.slack.cycles <= u32::from(SETTLE_CYCLES)
     }
 
     /// Whether the tendons take too long to become taut.
@@ -280,7 +260,7 @@ impl<T: Scalar> Active<T> {
         let speed_m_per_s = if taut {
             servo_m_per_s
         } else {
-            self.reel_in(shared, &mut pulled_m);
+            self.slack.reel_in(shared, &mut pulled_m);
             bounds::min(shared.limits.ramp_m_per_s, servo_m_per_s)
         };
         let step_max_m = speed_m_per_s * T::from(TICK_S);
@@ -305,31 +285,6 @@ impl<T: Scalar> Active<T> {
         self.offsets.stay();
         shared.refused = true;
         self.stuck = true;
-    }
-
-    /// Takes from the goals how far the tendons are still kept from them, m, and lessens that.
-    #[inline(never)]
-    fn reel_in(&mut self, shared: &Shared<T>, goals_m: &mut [T; 3]) {
-        let mut left_m = self.slack.left_m.unwrap_or_else(|| {
-            let farthest = |farthest: T, (axis, &goal): (&Axis<T>, &T)| {
-                bounds::max(farthest, goal - axis.reference_m())
-            };
-            shared
-                .axes
-                .iter()
-                .zip(goals_m.iter())
-                .fold(T::zero(), farthest)
-        });
-        let step_m = shared.limits.ramp_m_per_s * T::from(CYCLE_S);
-        let mut there = true;
-        for (axis, goal) in shared.axes.iter().zip(goals_m) {
-            *goal -= left_m;
-            there &= (*goal - axis.reference_m()).abs() <= T::TWO * step_m;
-        }
-        if there {
-            left_m -= step_m;
-        }
-        self.slack.left_m = Some(left_m);
     }
 }
 

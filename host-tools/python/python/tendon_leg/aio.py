@@ -1,23 +1,55 @@
 """A leg on a port for programs of asyncio."""
 
 import asyncio
-from collections.abc import Callable
+import functools
+from collections.abc import Awaitable, Callable
 from concurrent.futures import ThreadPoolExecutor
-from os import PathLike
-from typing import Any, Self, TypeVar
+from typing import Any, Concatenate, ParamSpec, Self, TypeVar
 
-from numpy.typing import ArrayLike
+from ._native import Leg
 
-from ._native import Leg, Rig
-
+Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")
+
+
+def _opened(open_leg: Callable[Arguments, Leg]) -> Callable[Arguments, Awaitable["AsyncLeg"]]:
+    """Opens a leg while other tasks go on."""
+
+    @functools.wraps(open_leg)
+    async def opened(*args: Arguments.args, **kwargs: Arguments.kwargs) -> "AsyncLeg":
+        return AsyncLeg(await asyncio.to_thread(open_leg, *args, **kwargs))
+
+    return opened
+
+
+def _awaited(
+    method: Callable[Concatenate[Leg, Arguments], Result], *, drives: bool
+) -> Callable[Concatenate["AsyncLeg", Arguments], Awaitable[Result]]:
+    """A method of `Leg` with the same arguments, awaited. One that drives the leg stops it when it is cancelled."""
+
+    @functools.wraps(method)
+    async def awaited(self: "AsyncLeg", /, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Result:
+        called = self._thread.submit(method, self._leg, *args, **kwargs)
+        ended = asyncio.wrap_future(called)
+        try:
+            return await asyncio.shield(ended)
+        except asyncio.CancelledError:
+            if not called.cancel():
+                if drives:
+                    await asyncio.to_thread(self._leg.stop)
+                await asyncio.wait([ended])
+                # The error with which a stop ends a call is nobody's.
+                ended.exception()
+            raise
+
+    return awaited
 
 
 class AsyncLeg:
     """`Leg`, whose calls are awaited: other tasks go on meanwhile.
 
     One call at a time: a second one waits for the first. `stop` does not wait: it ends the call that drives the leg. A task
-    that is cancelled in a call stops the leg, which is in hold then.
+    that is cancelled in a call that drives the leg stops it; it is in hold then.
     """
 
     def __init__(self, leg: Leg) -> None:
@@ -26,90 +58,32 @@ class AsyncLeg:
         # The leg's calls belong to one thread at a time.
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="leg")
 
-    @classmethod
-    async def open(cls, port: str | None = None) -> Self:
-        """As `Leg.open`."""
-        return cls(await asyncio.to_thread(Leg.open, port))
+    open = staticmethod(_opened(Leg.open))
+    emulated = staticmethod(_opened(Leg.emulated))
 
-    @classmethod
-    async def emulated(cls, rig: str | PathLike[str] | Rig | None = None, *, slack: bool = False) -> Self:
-        """As `Leg.emulated`."""
-        return cls(await asyncio.to_thread(lambda: Leg.emulated(rig, slack=slack)))
-
-    async def home(self) -> dict[str, Any]:
-        """As `Leg.home`."""
-        return await self._call(self._leg.home)
-
-    async def move(
-        self,
-        azimuth_deg: float,
-        tilt_deg: float,
-        *,
-        pretension_n: float | None = None,
-        stiffness_nm_per_rad: float | None = None,
-        towards_deg: float | None = None,
-    ) -> dict[str, Any]:
-        """As `Leg.move`."""
-        return await self._call(
-            lambda: self._leg.move(
-                azimuth_deg,
-                tilt_deg,
-                pretension_n=pretension_n,
-                stiffness_nm_per_rad=stiffness_nm_per_rad,
-                towards_deg=towards_deg,
-            )
-        )
-
-    async def stiffness(self, nm_per_rad: float, towards_deg: float | None = None) -> dict[str, Any]:
-        """As `Leg.stiffness`."""
-        return await self._call(lambda: self._leg.stiffness(nm_per_rad, towards_deg))
-
-    async def follow(self, points: ArrayLike, *, lead_s: float = 0.2) -> dict[str, Any]:
-        """As `Leg.follow`."""
-        return await self._call(lambda: self._leg.follow(points, lead_s=lead_s))
-
-    async def hold(self) -> dict[str, Any]:
-        """As `Leg.hold`."""
-        return await self._call(self._leg.hold)
+    home = _awaited(Leg.home, drives=True)
+    move = _awaited(Leg.move, drives=True)
+    stiffness = _awaited(Leg.stiffness, drives=True)
+    follow = _awaited(Leg.follow, drives=True)
+    hold = _awaited(Leg.hold, drives=True)
+    disarm = _awaited(Leg.disarm, drives=True)
+    clear = _awaited(Leg.clear, drives=False)
+    telemetry = _awaited(Leg.telemetry, drives=False)
+    _close = _awaited(Leg.close, drives=False)
 
     async def stop(self) -> None:
         """As `Leg.stop`, whatever call is under way."""
         await asyncio.to_thread(self._leg.stop)
 
-    async def disarm(self) -> None:
-        """As `Leg.disarm`."""
-        await self._call(self._leg.disarm)
-
-    async def clear(self) -> None:
-        """As `Leg.clear`."""
-        await self._call(self._leg.clear)
-
-    async def telemetry(self) -> dict[str, Any]:
-        """As `Leg.telemetry`."""
-        return await self._call(self._leg.telemetry)
-
     async def close(self) -> None:
         """As `Leg.close`, once the call that is under way has ended."""
-        await self._call(self._leg.close)
+        await self._close()
         self._thread.shutdown()
 
     async def __aenter__(self) -> Self:
         """The leg itself."""
         return self
 
-    async def __aexit__(self, *_exception: object) -> None:
+    async def __aexit__(self, *_exception: Any) -> None:
         """Closes the connection."""
         await self.close()
-
-    async def _call(self, call: Callable[[], Result]) -> Result:
-        called = self._thread.submit(call)
-        ended = asyncio.wrap_future(called)
-        try:
-            return await asyncio.shield(ended)
-        except asyncio.CancelledError:
-            if not called.cancel():
-                await asyncio.to_thread(self._leg.stop)
-                await asyncio.wait([ended])
-                # The error with which a stop ends a call is nobody's.
-                ended.exception()
-            raise

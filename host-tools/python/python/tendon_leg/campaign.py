@@ -1,5 +1,6 @@
 """Many scenarios at once: on all cores of this machine, or on a cluster by an executor of another package."""
 
+import functools
 import hashlib
 import json
 import os
@@ -11,11 +12,21 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from . import _native
 from ._native import READY_RIGS, READY_SCENARIOS, Rig, run_scenario
 from .errors import LegError
 
 #: What a case says of its run; its other keys are only copied to its row.
 RUN_KEYS = ("scenario", "rig", "seed")
+
+#: What a row says of its run, which no other key of a case can be called.
+RESULT_KEYS = ("title", "passed", "stopped", "faults", "unexpected_faults", "ticks", "bits", "error", "repeat")
+
+
+@functools.cache
+def _build() -> str:
+    """What the results of this build of the package are known by: those of another one are not its own."""
+    return hashlib.sha256(Path(_native.__file__).read_bytes()).hexdigest()
 
 
 @dataclass(frozen=True)
@@ -29,8 +40,8 @@ class Run:
 
     @property
     def key(self) -> str:
-        """Equal for equal runs, and for no others."""
-        return hashlib.sha256(repr(self).encode()).hexdigest()[:16]
+        """Equal for equal runs of the same build, and for no others."""
+        return hashlib.sha256(f"{_build()} {self!r}".encode()).hexdigest()[:16]
 
 
 def campaign(
@@ -45,7 +56,7 @@ def campaign(
     cases: dictionaries with `scenario` (a file, a ready one's name, or a TOML text), and if wanted `rig` (a `Rig`, a file or a
         ready one's name) and `seed`. What else they have is copied to their rows.
     directory: where results are kept, a line each in `results.jsonl`. Called again with the same directory, cases that are
-        there are not run again: a campaign that was killed goes on where it was. Of each run that does not pass, `failures`
+        there are not run again, unless another build of this package ran them: a campaign that was killed goes on where it was. Of each run that does not pass, `failures`
         keeps scenario and rig; `repeat` in its row is the command that runs it again.
     executor: where they run; one thread a core of this machine if left out. Dask's `Client.get_executor()`, for instance,
         runs them on a cluster, whose workers need this package.
@@ -119,6 +130,9 @@ def _run_of(number: int, case: Mapping[str, Any]) -> Run:
 
     if not isinstance(case, Mapping) or "scenario" not in case:
         raise refuse("it has no `scenario`")
+    for key in RESULT_KEYS:
+        if key in case:
+            raise refuse(f"its key {key!r} is that of a result; give it another name")
     scenario, rig, seed = (case.get(key) for key in RUN_KEYS)
     if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**64):
         raise refuse(f"its seed {seed!r} is no integer from 0 to 2⁶⁴ − 1")
@@ -164,8 +178,10 @@ def _keep(directory: Path, run: Run) -> str:
     scenario = run.scenario
     if run.seed is not None:
         # Keys of the file itself come before its first table.
-        keys, table, rest = re.match(r"(.*?)(^\[|\Z)(.*)", scenario, re.DOTALL | re.MULTILINE).groups()
-        scenario = f"seed = {run.seed}\n" + re.sub(r"^seed *=.*\n", "", keys, flags=re.MULTILINE) + table + rest
+        table = re.search(r"^\[", scenario, re.MULTILINE)
+        end = table.start() if table else len(scenario)
+        keys = re.sub(r"^seed *=.*\n", "", scenario[:end], flags=re.MULTILINE)
+        scenario = f"seed = {run.seed}\n{keys}{scenario[end:]}"
     path = directory / "scenario.toml"
     path.write_text(scenario, encoding="utf-8")
     command = f"leg run --on sim --scenario {path}"

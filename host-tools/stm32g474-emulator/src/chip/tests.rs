@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::device::FieldPlace;
-use crate::memory_map::{CCM, RAM};
+use crate::memory_map::{CCM, RAM, SECOND_BANK};
 
 /// Start, and the handler of the interrupt that cannot be masked.
 const START: u32 = FLASH.start + 0x80;

@@ -41,7 +41,7 @@ impl ErrorGrowth {
 
 /// Cycles after the last tendon came taut in which the error is not watched yet, 0.1 s: a tendon that is reeled in is damped, and
 /// shows up to a newton more than its elongation.
-const SETTLE_CYCLES: u16 = 200;
+pub const SETTLE_CYCLES: u16 = 200;
 
 /// Watches for a change that neither motion nor load explains.
 #[derive(Clone, Copy, Debug)]
