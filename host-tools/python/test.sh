@@ -18,4 +18,5 @@ from_clone=$(blocks sh)
 (cd ../.. && bash -euxc "$from_clone")
 test -s circle.png
 blocks python | .venv/bin/python -W error -
+.venv/bin/python -m mypy --strict python/tendon_leg examples
 .venv/bin/python -W error -m pytest -q
