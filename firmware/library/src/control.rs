@@ -22,6 +22,7 @@ mod stream;
 mod stream_limits;
 mod target;
 mod trajectory;
+mod unloaded;
 
 pub use axis::{Axis, AxisGoal, AxisInput, AxisView};
 pub use damping::SwingDamping;
@@ -42,6 +43,7 @@ pub use stream::{POINTS_MAX, Stream};
 pub use stream_limits::StreamLimits;
 pub use target::{Target, TargetDemand, TargetGenerator};
 pub use trajectory::{Point, Trajectory};
+pub(crate) use unloaded::unloaded_direction;
 
 use crate::sensors::TICK_HZ;
 

@@ -218,7 +218,7 @@ fn holds<T: Scalar>(
 
 /// The pretension that tensions have.
 #[inline(always)]
-fn pretension<T: Scalar>(distribution: &Distribution<T, 3>, tensions_n: &[T; 3]) -> T {
+pub(crate) fn pretension<T: Scalar>(distribution: &Distribution<T, 3>, tensions_n: &[T; 3]) -> T {
     let mut sum = T::SUM_START;
     for (i, &tension) in tensions_n.iter().enumerate() {
         sum += distribution.per_pretension[i] * tension;

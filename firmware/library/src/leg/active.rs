@@ -46,11 +46,13 @@ impl<T: Scalar> Active<T> {
         // what any target asks for, and above what is left in tendons that were paid out.
         let taut_n = shared.mechanism.f_min_n * T::HALF;
         let taut = measured.steady_tensions_n.iter().all(|&n| n > taut_n);
+        let from = if taut && !compensated {
+            shared.unloaded_direction(measured)
+        } else {
+            *shared.estimator.direction()
+        };
         Self {
-            trajectory: Trajectory::new(
-                shared.limits.motion,
-                shared.estimator.direction().half_tangent(),
-            ),
+            trajectory: Trajectory::new(shared.limits.motion, from.half_tangent()),
             tensioned: false,
             disarming: false,
             station: StationKeeping::No,
