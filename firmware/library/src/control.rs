@@ -43,7 +43,7 @@ pub use stream::{POINTS_MAX, Stream};
 pub use stream_limits::StreamLimits;
 pub use target::{Target, TargetDemand, TargetGenerator};
 pub use trajectory::{Point, Trajectory};
-pub(crate) use unloaded::unloaded_direction;
+pub use unloaded::Unloaded;
 
 use crate::sensors::TICK_HZ;
 

@@ -94,6 +94,11 @@ impl<T: Scalar> TargetGenerator<T> {
         self.share = if compensated { T::one() } else { T::zero() };
     }
 
+    /// Has the first target this pretension, N, whatever the tensions show.
+    pub fn start_at(&mut self, pretension_n: T) {
+        self.pretension_n = Some(pretension_n);
+    }
+
     /// The torsion that the last target has, rad.
     #[inline(always)]
     pub fn torsion(&self) -> T {
@@ -218,7 +223,7 @@ fn holds<T: Scalar>(
 
 /// The pretension that tensions have.
 #[inline(always)]
-pub(crate) fn pretension<T: Scalar>(distribution: &Distribution<T, 3>, tensions_n: &[T; 3]) -> T {
+fn pretension<T: Scalar>(distribution: &Distribution<T, 3>, tensions_n: &[T; 3]) -> T {
     let mut sum = T::SUM_START;
     for (i, &tension) in tensions_n.iter().enumerate() {
         sum += distribution.per_pretension[i] * tension;

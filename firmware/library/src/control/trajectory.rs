@@ -96,6 +96,13 @@ impl<T: Scalar> Trajectory<T> {
         (self.next, self.angular_acceleration) = (q.xy(), Vector3::zeros());
     }
 
+    /// Rests at another point; where it shall lead stays.
+    pub fn shift(&mut self, q: Point<T>) {
+        let planned = self.planned;
+        self.start(q);
+        self.planned = planned;
+    }
+
     /// Follows a stream from [`Self::next_motion`] on.
     pub fn begin_stream(&mut self) {
         self.planned = None;

@@ -7,7 +7,7 @@ use super::slack::Slack;
 use super::station::{Station, StationKeeping};
 use crate::command::Compensation;
 use crate::control::{
-    CYCLE_TICKS, Knot, LoadEstimation, Measured, TICK_S, TargetDemand, Trajectory, bounds,
+    CYCLE_TICKS, Knot, LoadEstimation, Measured, TICK_S, TargetDemand, Trajectory, Unloaded, bounds,
 };
 use crate::set_point::{PointRefusal, SetPoint, StreamPart};
 use crate::supervisor::{Fault, FaultSet, SETTLE_CYCLES};
@@ -30,6 +30,8 @@ pub struct Active<T> {
     stuck: bool,
     offsets: LengthOffsets<T>,
     slack: Slack<T>,
+    /// The search for where a taut leg begins that leaves its load out; none once it is over.
+    unloaded: Option<Unloaded<T>>,
 }
 
 impl<T: Scalar> Active<T> {
@@ -46,13 +48,11 @@ impl<T: Scalar> Active<T> {
         // what any target asks for, and above what is left in tendons that were paid out.
         let taut_n = shared.mechanism.f_min_n * T::HALF;
         let taut = measured.steady_tensions_n.iter().all(|&n| n > taut_n);
-        let from = if taut && !compensated {
-            shared.unloaded_direction(measured)
-        } else {
-            *shared.estimator.direction()
-        };
+        let loaded = shared.estimator.direction();
+        let unloaded =
+            (taut && !compensated).then(|| Unloaded::search(loaded, &measured.steady_tensions_n));
         Self {
-            trajectory: Trajectory::new(shared.limits.motion, from.half_tangent()),
+            trajectory: Trajectory::new(shared.limits.motion, loaded.half_tangent()),
             tensioned: false,
             disarming: false,
             station: StationKeeping::No,
@@ -60,9 +60,10 @@ impl<T: Scalar> Active<T> {
             stuck: false,
             offsets: LengthOffsets::new(shared.play.behind_m()),
             slack: Slack {
-                left_m: taut.then(T::zero),
+                left_m: (taut && compensated).then(T::zero),
                 cycles: 0,
             },
+            unloaded,
         }
     }
 
@@ -228,6 +229,10 @@ impl<T: Scalar> Active<T> {
         let Some(zero_m) = shared.zero_m else {
             return Err(Error::NotConverged);
         };
+        if self.unloaded.is_some() {
+            self.search_unloaded(shared, measured);
+            return Ok(());
+        }
         let taut = self.slack.taken_up();
         let demand = TargetDemand {
             q: self.trajectory.step(),
@@ -273,6 +278,28 @@ impl<T: Scalar> Active<T> {
         target.limited &= taut;
         shared.target = Some(target);
         Ok(())
+    }
+
+    /// A step of the search for where a leg begins that leaves its load out; where it points, if it is not found. It stays as it is until
+    /// then.
+    #[cold]
+    fn search_unloaded(&mut self, shared: &mut Shared<T>, measured: &Measured<T>) {
+        let (Some(unloaded), Some(unstretched_m)) =
+            (&mut self.unloaded, shared.unstretched_m(measured))
+        else {
+            return;
+        };
+        let torsion = shared.targets.torsion();
+        match unloaded.step(&shared.mechanism, &unstretched_m, torsion) {
+            Ok(false) => return,
+            Ok(true) => {
+                self.trajectory.shift(unloaded.direction().half_tangent());
+                shared.targets.start_at(unloaded.pretension_n());
+            }
+            Err(_) => {}
+        }
+        self.unloaded = None;
+        self.slack.left_m = Some(T::zero());
     }
 
     /// Stays where the last target was: there is none where the trajectory is now.

@@ -5,7 +5,7 @@ use crate::command::Compensation;
 use crate::control::{
     Axis, AxisInput, CYCLE_TICKS, Estimate, Estimator, Friction, JogBounds, LoadEstimation,
     Measured, Mechanism, MotionLimits, Play, PretensionSearch, Stream, StreamLimits, SwingDamping,
-    Target, TargetGenerator, bounds, ticks, unloaded_direction,
+    Target, TargetGenerator, bounds, ticks,
 };
 use crate::drive::Drive;
 use crate::jog::JogReport;
@@ -179,30 +179,13 @@ impl<T: Scalar> Shared<T> {
 
     /// The lengths without tension that the tendons have, m; none where the zero is not known.
     #[inline(always)]
-    fn unstretched_m(&self, measured: &Measured<T>) -> Option<[T; 3]> {
+    pub fn unstretched_m(&self, measured: &Measured<T>) -> Option<[T; 3]> {
         let mut unstretched_m = self.zero_m?;
         let behind_m = self.play.behind_m();
         for (i, unstretched) in unstretched_m.iter_mut().enumerate() {
             *unstretched -= measured.pulled_m[i] + behind_m[i];
         }
         Some(unstretched_m)
-    }
-
-    /// Where the leg would point if it carried nothing: the start of one that leaves its load out. Where that is not found, where it
-    /// points.
-    pub fn unloaded_direction(&self, measured: &Measured<T>) -> Direction<T> {
-        let loaded = self.estimator.direction();
-        let found = self.unstretched_m(measured).and_then(|unstretched_m| {
-            unloaded_direction(
-                &self.mechanism,
-                &unstretched_m,
-                &measured.steady_tensions_n,
-                loaded,
-                self.targets.torsion(),
-            )
-            .ok()
-        });
-        found.unwrap_or(*loaded)
     }
 
     /// Estimates pose and load of a leg that shall turn with an angular acceleration, 1/s².
