@@ -54,6 +54,7 @@ mod rig {
 mod sim {
     mod comparison;
     mod fmea_page;
+    mod load_left_out;
     mod random_scenarios;
     mod ready_runs;
     mod ring_down;

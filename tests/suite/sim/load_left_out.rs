@@ -1,0 +1,102 @@
+//! A leg that leaves its load out, and one whose tensions are at a bound.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use super::station_stand::{armed, pass};
+use leg_bench::stand::Stand;
+use leg_firmware::command::{Command, Compensation};
+use leg_firmware::supervisor::State;
+use leg_rig::rig_file::RigFile;
+
+fn rig(name: &str) -> RigFile {
+    RigFile::load(Some(name.as_ref())).unwrap()
+}
+
+/// How far the tip goes at most in a time, s, and the highest tension, mm and N.
+fn excursion(stand: &mut Stand, time_s: f64) -> [f64; 2] {
+    let (home_m, mut largest) = (stand.truth.tip_m, [0.0_f64; 2]);
+    let end_s = stand.time_s() + time_s;
+    while stand.time_s() < end_s {
+        pass(stand, 1.3e-4);
+        let tip_mm = (stand.truth.tip_m - home_m).norm() * 1e3;
+        let highest_n = stand.truth.tensions_n.into_iter().fold(0.0, f64::max);
+        largest = [largest[0].max(tip_mm), largest[1].max(highest_n)];
+    }
+    largest
+}
+
+/// It sags by millimetres; begun from where it points, it would by as much once more, and swing. One rig for each way in which a
+/// support guides the leg.
+#[test]
+fn a_leg_that_leaves_its_load_out_stays_where_it_is_when_it_goes_on() {
+    for name in ["table1", "spherical", "universal", "leaf_spring_universal"] {
+        let mut stand = armed(&rig(name), [50.0, 22.0], 1.0, 3);
+        let held_mm = stand.truth.tip_m;
+        stand
+            .command(&Command::Compensation(Compensation::Off))
+            .unwrap();
+        stand.wait(2.0).unwrap();
+        let sag_mm = (stand.truth.tip_m - held_mm).norm() * 1e3;
+        assert!(sag_mm > 1.5, "{name}: it cannot fail, {sag_mm} mm");
+        stand.command(&Command::Stop).unwrap();
+        stand.wait(0.3).unwrap();
+        assert_eq!(stand.state(), State::Held);
+        let before_n = stand.truth.tensions_n.into_iter().fold(0.0, f64::max);
+        stand.command(&Command::Clear).unwrap();
+        let [tip_mm, highest_n] = excursion(&mut stand, 1.0);
+        assert_eq!(stand.state(), State::Active);
+        assert!(stand.faults() == leg_firmware::supervisor::FaultSet::NONE);
+        assert!(tip_mm < 0.15, "{name}: {tip_mm} mm");
+        assert!(highest_n < before_n + 3.0, "{name}: {highest_n} N");
+    }
+}
+
+/// A command that comes at once is not lost: it goes on from where the leg is.
+#[test]
+fn it_goes_where_it_is_led_at_once() {
+    let mut stand = armed(&rig("table1"), [50.0, 22.0], 1.0, 3);
+    stand
+        .command(&Command::Compensation(Compensation::Off))
+        .unwrap();
+    stand.wait(1.5).unwrap();
+    stand.command(&Command::Stop).unwrap();
+    stand.wait(0.3).unwrap();
+    stand.command(&Command::Clear).unwrap();
+    stand
+        .command(&leg_bench::stand::move_to([50.0, 5.0]))
+        .unwrap();
+    stand.wait(2.0).unwrap();
+    let [x, y] = stand.telemetry.unwrap().target;
+    let tilt_deg = x.hypot(y).asin().to_degrees();
+    assert!((tilt_deg - 5.0).abs() < 0.01, "{tilt_deg}°");
+}
+
+/// Where a bound of the tensions changes while less of the load is held, the tendons follow it in every cycle: kept to the one of the last
+/// search, they go to and fro by 3 µm a millisecond, and motors near 8 N are taken for jammed.
+#[test]
+fn a_stiffness_out_of_reach_does_not_shake_the_tendons() {
+    for name in ["table1", "spherical"] {
+        let mut stand = armed(&rig(name), [52.6, 26.4], 0.5, 3);
+        let softest = Command::Stiffness {
+            demand_nm_per_rad: 10.0,
+            towards: None,
+        };
+        stand.command(&softest).unwrap();
+        stand.wait(1.5).unwrap();
+        stand
+            .command(&Command::Compensation(Compensation::Off))
+            .unwrap();
+        let mut references_m = vec![];
+        for _ in 0..1200 {
+            pass(&mut stand, 5e-4);
+            references_m.push(stand.telemetry.unwrap().reference_m);
+        }
+        let lowest_n = stand.telemetry.unwrap().target_tensions_n;
+        assert!(lowest_n.iter().any(|n| *n < 8.5), "{name}: {lowest_n:?}");
+        let shaken_m = references_m
+            .windows(3)
+            .flat_map(|three| [0, 1, 2].map(|i| three[0][i] - 2.0 * three[1][i] + three[2][i]))
+            .fold(0.0, |largest: f32, bend| largest.max(bend.abs()));
+        assert!(shaken_m < 8e-7, "{name}: {:.2} µm", shaken_m * 1e6);
+    }
+}
