@@ -72,8 +72,8 @@ fn a_strike_is_repeated_by_its_number() {
     );
 }
 
-/// Strikes that failed once: legs that leave their load out and are armed again. Each began where it pointed, and sagged by its load
-/// once more, up to 13 mm.
+/// Strikes that failed once: legs with their compensation off that are armed again. Each target began where the leg pointed, so
+/// that the leg sagged by its load once more, up to 13 mm.
 #[test]
 fn a_leg_that_leaves_its_load_out_is_armed_again_where_it_is() {
     let campaign = Campaign {

@@ -1,4 +1,4 @@
-//! Where a leg would point, and how taut it would be, without its weights.
+//! Where a leg would point, and its pretension, without weight and payload.
 
 use super::{
     Mechanism,
@@ -10,12 +10,14 @@ use leg_model::{
 };
 use nalgebra::SVector;
 
-/// Steps of the search: each squares the error, and the curves of the tendons make the first two short.
+/// Steps of the search. It is Newton's: the error is squared in each step, but for the first two, where the tendons' curves
+/// make the steps too short.
 const STEPS: u8 = 4;
 
-/// The pose and the pretension at which a leg that carried nothing, not even itself, would have the lengths without tension that its
-/// tendons have. A target that leaves the weights out has these lengths there: a leg that begins there stays where it is. One that began
-/// where it points would sag by its weights once more. No load cell is asked but for where the search starts.
+/// The search for the pose and the pretension at which a leg without weight and payload would have the unstretched lengths that
+/// its tendons have. With compensation off, the target of that pose has these lengths, so that a leg that begins there does not
+/// move. One that began where it points would sag by its weights once more. The load cells give the start of the search, not its
+/// result.
 #[derive(Clone, Copy, Debug)]
 pub struct Unloaded<T> {
     direction: Direction<T>,
@@ -24,7 +26,7 @@ pub struct Unloaded<T> {
 }
 
 impl<T: Scalar> Unloaded<T> {
-    /// A search from where the leg points, at the tensions that it has, N.
+    /// A search that starts where the leg points, with its mean tension, N.
     pub fn search(loaded: &Direction<T>, tensions_n: &[T; 3]) -> Self {
         let [a, b, c] = *tensions_n;
         Self {
@@ -44,7 +46,7 @@ impl<T: Scalar> Unloaded<T> {
         self.pretension_n
     }
 
-    /// A step by the lengths without tension, m, at an elastic torsion, rad: true if it was the last.
+    /// A step by the unstretched lengths, m, at an elastic torsion, rad: true if it was the last.
     ///
     /// # Errors
     /// What kinematics and distribution refuse; a tension beyond a tendon's curve.
@@ -66,7 +68,8 @@ impl<T: Scalar> Unloaded<T> {
         let pretension_n = min(max(self.pretension_n, lowest), highest);
         let tensions = distribution.tensions(pretension_n);
         let (mut lengths, mut per_n) = (SVector::<T, 3>::zeros(), SVector::<T, 3>::zeros());
-        // No tilt changes the lengths along the tensions per pretension: what they lack there, the pretension has to give.
+        // The tensions per pretension do no work at the joint: no tilt changes the lengths along them. What is missing along them
+        // is due to the pretension.
         let (mut along_m, mut along_m_per_n) = (T::SUM_START, T::SUM_START);
         for (i, tendon) in mechanism.tendons.iter().enumerate() {
             let part = distribution.per_pretension[i];

@@ -30,7 +30,7 @@ pub struct Active<T> {
     stuck: bool,
     offsets: LengthOffsets<T>,
     slack: Slack<T>,
-    /// The search for where a taut leg begins that leaves its load out; none once it is over.
+    /// The search for where a taut leg with its compensation off begins; none once it is over.
     unloaded: Option<Unloaded<T>>,
 }
 
@@ -280,8 +280,8 @@ impl<T: Scalar> Active<T> {
         Ok(())
     }
 
-    /// A step of the search for where a leg begins that leaves its load out; where it points, if it is not found. It stays as it is until
-    /// then.
+    /// A step of the search for where a leg with its compensation off begins: where it points, if it is not found. Until then the
+    /// motors stay where they are.
     #[cold]
     fn search_unloaded(&mut self, shared: &mut Shared<T>, measured: &Measured<T>) {
         let (Some(unloaded), Some(unstretched_m)) =

@@ -177,7 +177,7 @@ impl<T: Scalar> Shared<T> {
         (self.f_max_n, self.lowest_m) = (T::MAX, [-T::MAX; 3]);
     }
 
-    /// The lengths without tension that the tendons have, m; none where the zero is not known.
+    /// The unstretched lengths of the tendons, m; none where the zero is not known.
     #[inline(always)]
     pub fn unstretched_m(&self, measured: &Measured<T>) -> Option<[T; 3]> {
         let mut unstretched_m = self.zero_m?;
