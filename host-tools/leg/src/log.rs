@@ -5,7 +5,7 @@ mod counter;
 use crate::connection::{LegArgs, Purpose};
 use crate::numbers::{positive, seconds};
 use crate::options::Options;
-use crate::output::note_unfinished;
+use crate::output::{note_unfinished, wall_time_s};
 use crate::progress;
 use counter::{Counter, Foreign};
 use leg_base::failure::Failure;
@@ -61,7 +61,8 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let mut operator = args.leg.open(Purpose::Use, options)?.operator;
     note_unfinished(&args.out);
     let about = About::log(operator.name());
-    let (recorded, ended) = recording::record(&args.out, &about, None, |file| {
+    let settings = operator.settings()?;
+    let (recorded, ended) = recording::record(&args.out, &about, &settings, |file| {
         let mut counter = Counter::new(args.every_ticks);
         let bar = progress::counter("times");
         let ended = record(&mut operator, args, file, &mut counter, || bar.inc(1));
@@ -131,7 +132,8 @@ fn record(
         silences = 0;
         let taken = counter.take(reply.number, reply.telemetry.tick);
         taken.map_err(Ended::Foreign)?;
-        let recorded = file.take_telemetry(&reply.telemetry);
+        let damaged = operator.damaged_frames();
+        let recorded = file.take_telemetry(&reply.telemetry, wall_time_s(operator), damaged);
         recorded.map_err(Ended::File)?;
         written();
     }
