@@ -130,11 +130,11 @@ fn record(
         };
         silences = 0;
         let taken = counter.take(reply.number, reply.telemetry.tick);
-        let due = taken.map_err(Ended::Restarted)?;
-        if counter.take_slowed() {
+        let taken = taken.map_err(Ended::Restarted)?;
+        if taken.ask_again {
             operator.start_stream(args.every_ticks)?;
         }
-        if !due {
+        if !taken.due {
             continue;
         }
         let damaged = operator.damaged_frames();

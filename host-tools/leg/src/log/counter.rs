@@ -7,8 +7,8 @@ use serde::Serialize;
 /// How much later than requested a board reports, ticks: it checks about every millisecond, which is 8 ticks.
 const LATE_TICKS: u32 = 24;
 
-/// So many late ones in a row mean that another host has asked for a lower rate.
-const LATE_MAX: u32 = 3;
+/// How many late ones after the first in a row are left alone, where the leg was asked again for its rate.
+const LATE_ASKED: u32 = 3;
 
 /// What was recorded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -40,6 +40,15 @@ impl From<Restarted> for Failure {
     }
 }
 
+/// What is to be done with telemetry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Taken {
+    /// It belongs into the file.
+    pub due: bool,
+    /// It came late, as where another host has asked for a lower rate: the leg has to be asked again.
+    pub ask_again: bool,
+}
+
 /// Counts what comes, and chooses what is recorded: another host may have asked for a higher rate.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Counter {
@@ -67,8 +76,9 @@ impl Counter {
         }
     }
 
-    /// Counts telemetry by its number and tick; true if it is due, and belongs into the file.
-    pub(super) fn take(&mut self, number: u32, tick: u32) -> Result<bool, Restarted> {
+    /// Counts telemetry by its number and tick.
+    pub(super) fn take(&mut self, number: u32, tick: u32) -> Result<Taken, Restarted> {
+        let mut ask_again = false;
         if let Some((last_number, last_tick)) = self.last {
             let ticks = tick.wrapping_sub(last_tick);
             // The leg's count of ticks runs over after six days: it went back only if it seems to have gone far ahead.
@@ -78,6 +88,7 @@ impl Counter {
             let steps = number.wrapping_sub(last_number);
             self.lost += u64::from(steps.saturating_sub(1));
             let late = steps == 1 && ticks > self.every_ticks + LATE_TICKS;
+            ask_again = late && self.late.is_multiple_of(LATE_ASKED);
             self.late = if late { self.late + 1 } else { 0 };
             self.ticks += u64::from(ticks);
             self.since_due = self.since_due.map(|since| since.saturating_add(ticks));
@@ -90,7 +101,7 @@ impl Counter {
             self.recorded_ticks = self.ticks;
             self.count += 1;
         }
-        Ok(due)
+        Ok(Taken { due, ask_again })
     }
 
     /// Whether the last belongs into the file. The rate is kept on the average: what came late makes the next one due earlier.
@@ -103,15 +114,6 @@ impl Counter {
         // After a gap nothing is made up for.
         self.since_due = Some(if over < self.every_ticks { over } else { 0 });
         true
-    }
-
-    /// Whether another host has asked for a lower rate since the last question.
-    pub(super) fn take_slowed(&mut self) -> bool {
-        let slowed = self.late >= LATE_MAX;
-        if slowed {
-            self.late = 0;
-        }
-        slowed
     }
 
     /// From the first to the last, ticks.
@@ -153,6 +155,7 @@ impl Recorded {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::{Counter, Restarted};
 
@@ -170,12 +173,7 @@ mod tests {
             [5, 1],
         ),
         // A leg that restarts ends the recording.
-        (
-            80,
-            &[(5, 8000), (6, 8080), (7, 40)],
-            Err(Restarted),
-            [2, 0],
-        ),
+        (80, &[(5, 8000), (6, 8080), (7, 40)], Err(Restarted), [2, 0]),
         // Ticks and numbers may wrap.
         (80, &[(MAX, MAX - 39), (0, 40), (1, 120)], Ok(()), [3, 0]),
         // Another host has a higher rate: of its telemetry every second is recorded, and of a rate between on the average as much.
@@ -200,19 +198,21 @@ mod tests {
         ),
     ];
 
-    fn take_all(counter: &mut Counter, replies: &[(u32, u32)]) -> Result<(), Restarted> {
-        let mut taken = replies.iter().map(|&(number, tick)| counter.take(number, tick));
-        taken.try_for_each(|taken| taken.map(|_| ()))
-    }
-
     #[test]
     fn telemetry_is_recorded_as_often_as_it_was_asked_for() {
         for (every_ticks, replies, expected, [count, lost]) in CASES {
             let mut counter = Counter::new(every_ticks);
-            assert_eq!(take_all(&mut counter, replies), expected);
+            let mut taken = replies
+                .iter()
+                .map(|&(number, tick)| counter.take(number, tick));
+            let ended = taken.try_for_each(|taken| taken.map(|_| ()));
+            assert_eq!(ended, expected);
             let recorded = counter.recorded(0);
-            assert_eq!([recorded.count, recorded.lost], [count, lost], "{replies:?}");
-            assert!(!counter.take_slowed());
+            assert_eq!(
+                [recorded.count, recorded.lost],
+                [count, lost],
+                "{replies:?}"
+            );
             if every_ticks == 27 {
                 let times = [recorded.every_s, recorded.longest_s, recorded.length_s];
                 assert_eq!(times, [40.0 / 8000.0, 64.0 / 8000.0, 160.0 / 8000.0]);
@@ -220,16 +220,23 @@ mod tests {
         }
     }
 
-    /// Another host's lower rate is told once. A pause, as while that host introduces itself, is none.
+    /// At once, and then not every time: the leg may not be able to do more. A loss is none.
     #[test]
-    fn a_lower_rate_is_noticed() {
+    fn a_lower_rate_has_the_leg_asked_again() {
         let mut counter = Counter::new(40);
-        take_all(&mut counter, &[(5, 100), (6, 180), (7, 260)]).unwrap();
-        assert!(!counter.take_slowed());
-        take_all(&mut counter, &[(8, 340)]).unwrap();
-        assert!(counter.take_slowed());
-        assert!(!counter.take_slowed());
-        take_all(&mut counter, &[(9, 380), (10, 1200), (11, 1240)]).unwrap();
-        assert!(!counter.take_slowed());
+        let replies = [
+            (5, 100, false),
+            (6, 180, true),
+            (7, 260, false),
+            (8, 340, false),
+            (9, 420, true),
+            (10, 460, false),
+            (12, 540, false),
+            (13, 620, true),
+        ];
+        for (number, tick, ask_again) in replies {
+            let taken = counter.take(number, tick).unwrap();
+            assert_eq!(taken.ask_again, ask_again, "{number}");
+        }
     }
 }
