@@ -94,6 +94,7 @@ mod host {
     mod monitor_screen;
     mod plot;
     mod protocol_page;
+    mod telemetry_page;
     mod tune;
 }
 

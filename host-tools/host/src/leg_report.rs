@@ -50,7 +50,11 @@ pub fn json(telemetry: &Telemetry<f32>) -> impl Serialize + use<> {
 
 /// Azimuth (0 to 360) and tilt of a direction, degrees, to a ten-thousandth.
 pub fn angles_deg([x, y]: [f32; 2]) -> [f64; 2] {
-    let (x, y) = (f64::from(x), f64::from(y));
+    rounded_angles_deg([x, y].map(f64::from))
+}
+
+/// The same of a direction in f64.
+pub(crate) fn rounded_angles_deg([x, y]: [f64; 2]) -> [f64; 2] {
     let tilt_deg = x.hypot(y).min(1.0).asin().to_degrees();
     // Beyond that, machines differ.
     [y.atan2(x).to_degrees().rem_euclid(360.0), tilt_deg].map(|deg| (deg * 1e4).round() / 1e4)

@@ -42,6 +42,7 @@
 //! | [`transport`] | what carries the bytes |
 //! | [`emulated_board`], [`pseudo_terminal`], [`tcp_port`] | an emulated leg behind a port, for other programs (`leg emulate`) |
 //! | [`recording`] | simulations and telemetry as MCAP or CSV, and the replay of a simulation |
+//! | [`signals`] | every signal of a leg, declared once |
 //! | [`leg_report`], [`sensor_report`], [`monitor`] | what people and machines are shown of a leg |
 //! | [`cell_fit`] | a load cell's calibration from weights |
 //! | [`tune`] | motors, play and swing of a leg, measured |
@@ -64,7 +65,9 @@ pub mod pseudo_terminal;
 #[cfg(unix)]
 pub mod pseudo_terminal;
 pub mod recording;
+mod sag_model;
 pub mod sensor_report;
+pub mod signals;
 pub mod tcp_port;
 pub mod transport;
 pub mod tune;

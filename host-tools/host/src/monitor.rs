@@ -1,7 +1,6 @@
 //! What `leg monitor` shows: the state of a leg, drawn on a terminal or written as a line of JSON.
 
 mod bar;
-mod sag_model;
 mod screen;
 mod view;
 

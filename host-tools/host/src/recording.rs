@@ -15,16 +15,16 @@ pub use error::RecordingError;
 pub use replay::{Replay, TickDifference, replay};
 pub use samples::{Recorded, Samples, read_samples};
 
+use crate::signals::{LegConstants, Report, Simulated};
 use csv_file::CsvFile;
 use leg_base::atomic_file::PartFile;
 use leg_base::failure::Failure;
 use leg_base::tick_time::{seconds, tick_s};
 use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
-use leg_sim::simulation::Tick;
+use leg_sim::simulation::{SAMPLE_TICKS, Tick};
 use mcap_file::McapFile;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
@@ -66,6 +66,7 @@ impl About {
 /// A recording that is being written.
 pub struct Recording {
     file: RecordingFile,
+    leg: LegConstants,
     /// What was taken so far.
     count: u32,
     /// Up to when the file is on the disk, s of the recording.
@@ -77,39 +78,54 @@ enum RecordingFile {
     Csv(Box<CsvFile>),
 }
 
-/// A message as JSON.
-fn to_json(message: &impl Serialize) -> Result<Value, RecordingError> {
-    serde_json::to_value(message).map_err(RecordingError::message)
+impl LegConstants {
+    /// A tick of a simulation as signals.
+    fn simulation(&self, tick: &Tick<'_>) -> (Report, Simulated) {
+        let report = Report::new(tick.telemetry, self).compared(tick.comparison);
+        let simulated = Simulated {
+            truth: *tick.truth,
+            motors: *tick.motors,
+            comparison: *tick.comparison,
+        };
+        (report, simulated)
+    }
 }
 
 impl Recording {
     /// Takes a tick of a simulation.
     pub fn take_tick(&mut self, tick: &Tick<'_>) -> Result<(), RecordingError> {
         match &mut self.file {
-            RecordingFile::Mcap(file) => file.take_tick(self.count, tick)?,
+            RecordingFile::Mcap(file) => {
+                file.write_tick(self.count, tick)?;
+                if self.count.is_multiple_of(SAMPLE_TICKS) {
+                    file.write_simulation(self.count, &self.leg.simulation(tick))?;
+                }
+            }
             RecordingFile::Csv(file) if self.count.is_multiple_of(ROW_TICKS) => {
-                let time_s = f64::from(self.count) * tick_s();
-                let parts = [
-                    to_json(tick.telemetry)?,
-                    to_json(tick.drive)?,
-                    to_json(tick.comparison)?,
-                ];
-                file.write_row(time_s, &parts.each_ref())?;
+                file.write_simulation(&self.leg.simulation(tick))?;
             }
             RecordingFile::Csv(_) => {}
         }
         self.taken(f64::from(self.count) * tick_s())
     }
 
-    /// Takes telemetry of a leg. Its time is that of the leg since its board started.
-    pub fn take_telemetry(&mut self, telemetry: &Telemetry<f32>) -> Result<(), RecordingError> {
+    /// Takes telemetry of a leg, received at a time of the day, s since 1970, if that is known, over a line that has damaged so
+    /// many frames. Its own time is that of the leg since its board started.
+    pub fn take_telemetry(
+        &mut self,
+        telemetry: &Telemetry<f32>,
+        wall_time_s: Option<f64>,
+        damaged_frames: u64,
+    ) -> Result<(), RecordingError> {
         let time_s = seconds(telemetry.tick.into());
+        let report = Report::new(telemetry, &self.leg);
+        let report = report.received(wall_time_s.unwrap_or(f64::NAN), damaged_frames);
         match &mut self.file {
             RecordingFile::Mcap(file) => {
-                let time_ns = (time_s * 1e9).round() as u64;
-                file.write_telemetry(self.count, time_ns, telemetry)?;
+                let time_ns = (wall_time_s.unwrap_or(time_s) * 1e9).round() as u64;
+                file.write_report(self.count, time_ns, &report)?;
             }
-            RecordingFile::Csv(file) => file.write_row(time_s, &[&to_json(telemetry)?])?,
+            RecordingFile::Csv(file) => file.write_report(&report)?,
         }
         self.taken(time_s)
     }
@@ -137,8 +153,7 @@ impl Recording {
 }
 
 /// Records in `file`, by the extension of its name, while `work` is done. Until the work is done the recording is beside it,
-/// as `leg.part.mcap`, and can be read: up to its last second, whatever becomes of this program. A simulation is recorded
-/// with its settings, so that it can be replayed; telemetry of a leg without.
+/// as `leg.part.mcap`, and can be read: up to its last second, whatever becomes of this program. The leg has these settings.
 ///
 /// # Errors
 /// A [`Failure`]: another extension and a file that cannot be written are refused (exit code 2), what was recorded until
@@ -146,7 +161,7 @@ impl Recording {
 pub fn record<T>(
     file: &Path,
     about: &About,
-    settings: Option<&Settings>,
+    settings: &Settings,
     work: impl FnOnce(&mut Recording) -> Result<T, RecordingError>,
 ) -> Result<T, Failure> {
     let extension = file.extension().and_then(OsStr::to_str);
@@ -164,6 +179,7 @@ pub fn record<T>(
         };
         let mut recording = Recording {
             file,
+            leg: LegConstants::new(settings),
             count: 0,
             flushed_s: 0.0,
         };

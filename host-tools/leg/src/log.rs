@@ -5,9 +5,9 @@ mod counter;
 use crate::connection::{LegArgs, Purpose};
 use crate::numbers::{positive, seconds};
 use crate::options::Options;
-use crate::output::note_unfinished;
+use crate::output::{note_unfinished, wall_time_s};
 use crate::progress;
-use counter::{Counter, Foreign};
+use counter::{Counter, Restarted};
 use leg_base::failure::Failure;
 use leg_firmware::sensors::TICK_HZ;
 use leg_host::operator::{Operator, OperatorError};
@@ -26,7 +26,7 @@ const SILENCES_MAX: u32 = 20;
 
 /// Records the leg's telemetry, beside other commands; not on CAN.
 ///
-/// Ctrl-C ends the recording early; the file is whole. Until then it is FILE.part.mcap or FILE.part.csv, of which at most the
+/// Another `leg log` may run beside it, at its own rate. Ctrl-C ends the recording early; the file is whole. Until then it is FILE.part.mcap or FILE.part.csv, of which at most the
 /// last second is missing when the command is killed.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -61,7 +61,8 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let mut operator = args.leg.open(Purpose::Use, options)?.operator;
     note_unfinished(&args.out);
     let about = About::log(operator.name());
-    let (recorded, ended) = recording::record(&args.out, &about, None, |file| {
+    let settings = operator.settings()?;
+    let (recorded, ended) = recording::record(&args.out, &about, &settings, |file| {
         let mut counter = Counter::new(args.every_ticks);
         let bar = progress::counter("times");
         let ended = record(&mut operator, args, file, &mut counter, || bar.inc(1));
@@ -72,7 +73,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
             Ok(()) | Err(Ended::Line(OperatorError::Cancelled)) => Ok(()),
             // What was recorded until then is kept.
             Err(Ended::Line(error)) => Err(error.into()),
-            Err(Ended::Foreign(foreign)) => Err(foreign.failure()),
+            Err(Ended::Restarted(restarted)) => Err(restarted.into()),
         };
         Ok((counter.recorded(operator.damaged_frames()), ended))
     })?;
@@ -84,7 +85,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
 enum Ended {
     Line(OperatorError),
     File(RecordingError),
-    Foreign(Foreign),
+    Restarted(Restarted),
 }
 
 impl From<OperatorError> for Ended {
@@ -93,11 +94,10 @@ impl From<OperatorError> for Ended {
     }
 }
 
-/// Ends the telemetry, unless it is another host's now, or nothing gets through.
+/// Ends the telemetry, unless nothing gets through. Another log asks for its own again.
 fn end_stream(operator: &mut Operator, ended: Result<(), Ended>) -> Result<(), Ended> {
     match ended {
         Ok(()) => Ok(operator.end_stream()?),
-        Err(Ended::Foreign(Foreign::Every(_))) => ended,
         Err(Ended::Line(ref error)) if !matches!(error, OperatorError::Cancelled) => ended,
         Err(_) => {
             // The first error is the one to report.
@@ -130,8 +130,15 @@ fn record(
         };
         silences = 0;
         let taken = counter.take(reply.number, reply.telemetry.tick);
-        taken.map_err(Ended::Foreign)?;
-        let recorded = file.take_telemetry(&reply.telemetry);
+        let taken = taken.map_err(Ended::Restarted)?;
+        if taken.ask_again {
+            operator.start_stream(args.every_ticks)?;
+        }
+        if !taken.due {
+            continue;
+        }
+        let damaged = operator.damaged_frames();
+        let recorded = file.take_telemetry(&reply.telemetry, wall_time_s(operator), damaged);
         recorded.map_err(Ended::File)?;
         written();
     }

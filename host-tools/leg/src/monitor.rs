@@ -11,7 +11,7 @@ use crate::connection::{LegArgs, Purpose};
 use crate::notices::version_text;
 use crate::numbers::{monitor_rate_hz, seconds};
 use crate::options::Options;
-use crate::output::print;
+use crate::output::{print, wall_time_s};
 use keys::Keys;
 use leg_base::failure::Failure;
 use leg_host::monitor::{MonitorView, draw};
@@ -104,7 +104,9 @@ impl Monitor {
             let Some(reply) = unless_ended(operator.telemetry())? else {
                 return Ok(());
             };
-            self.view.take(&reply.telemetry, operator.damaged_frames());
+            let received_s = wall_time_s(operator).unwrap_or(f64::NAN);
+            self.view
+                .take(&reply.telemetry, received_s, operator.damaged_frames());
             self.send()?;
             if !shown(operator.now(), Some(&self.view))? {
                 return Ok(());

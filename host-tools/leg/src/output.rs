@@ -6,6 +6,7 @@ use leg_base::failure::Failure;
 use leg_base::json_line::to_line;
 use leg_base::json_object;
 use leg_base::paths::relative_path;
+use leg_host::operator::Operator;
 use leg_host::recording;
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::{RigFile, RigText};
@@ -14,6 +15,7 @@ use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::SystemTime;
 
 /// Writes to standard output.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
@@ -166,6 +168,13 @@ fn failure_line(failure: &Failure) -> String {
     };
     // Strings and integers always have a form in JSON.
     to_line(&json).unwrap_or_default()
+}
+
+/// The time of the day, s since 1970; none beside a leg whose time is emulated.
+pub(crate) fn wall_time_s(operator: &Operator) -> Option<f64> {
+    let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
+    let known = since.ok().filter(|_| !operator.clock_is_emulated());
+    known.map(|since| since.as_secs_f64())
 }
 
 #[cfg(test)]

@@ -119,19 +119,17 @@ fn simulate(
     }
     match &args.record {
         None => watched(&mut |_| bar.inc(1)),
-        Some(file) => {
-            recording::record(file, &about(args, scenario), Some(&settings), |recording| {
-                let mut written = Ok(());
-                let summary = watched(&mut |tick| {
-                    bar.inc(1);
-                    if written.is_ok() {
-                        written = recording.take_tick(tick);
-                    }
-                })?;
-                written?;
-                Ok(summary)
-            })
-        }
+        Some(file) => recording::record(file, &about(args, scenario), &settings, |recording| {
+            let mut written = Ok(());
+            let summary = watched(&mut |tick| {
+                bar.inc(1);
+                if written.is_ok() {
+                    written = recording.take_tick(tick);
+                }
+            })?;
+            written?;
+            Ok(summary)
+        }),
     }
 }
 

@@ -9,11 +9,12 @@ use leg_base::angles;
 use leg_firmware::telemetry::Telemetry;
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{Goal, Operator, OperatorError, Tensioning};
+use leg_host::signals::LegConstants;
 use leg_sim::emulated_leg::InitialState;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::sync::{Mutex, MutexGuard, TryLockError};
+use std::sync::{Mutex, MutexGuard, OnceLock, TryLockError};
 use std::time::Duration;
 
 /// See `_native.pyi`.
@@ -22,6 +23,8 @@ pub struct Leg {
     /// None once it is closed.
     thread: Mutex<Option<OperatorThread>>,
     cancel: CancelFlag,
+    /// What its reports need of its settings; asked for when it is opened.
+    constants: OnceLock<LegConstants>,
 }
 
 impl Leg {
@@ -30,13 +33,17 @@ impl Leg {
         let mut signal = None;
         let thread =
             py.detach(|| OperatorThread::open(place, &cancel, || interrupted(&mut signal)));
-        match signal {
-            Some(signal) => Err(signal),
-            None => Ok(Self {
-                thread: Mutex::new(Some(thread.map_err(leg_failure)?)),
-                cancel,
-            }),
+        if let Some(signal) = signal {
+            return Err(signal);
         }
+        let leg = Self {
+            thread: Mutex::new(Some(thread.map_err(leg_failure)?)),
+            cancel,
+            constants: OnceLock::new(),
+        };
+        let settings = leg.ask(py, Operator::settings)?;
+        leg.constants.get_or_init(|| LegConstants::new(&settings));
+        Ok(leg)
     }
 
     /// The leg for this thread alone.
@@ -76,7 +83,17 @@ impl Leg {
 
     fn reach<'py>(&self, py: Python<'py>, goal: Goal) -> PyResult<Bound<'py, PyDict>> {
         let reached = self.ask(py, move |operator| operator.reach(&goal))?;
-        telemetry::dictionary(py, &reached)
+        self.report(py, &reached)
+    }
+
+    fn report<'py>(
+        &self,
+        py: Python<'py>,
+        telemetry: &Telemetry<f32>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let constants = self.constants.get();
+        let constants = constants.ok_or_else(|| leg_error("this leg was not opened"))?;
+        telemetry::dictionary(py, telemetry, constants)
     }
 }
 
@@ -123,10 +140,6 @@ fn tensioning(
     }
 }
 
-fn last<'py>(py: Python<'py>, reached: PyResult<Telemetry<f32>>) -> PyResult<Bound<'py, PyDict>> {
-    telemetry::dictionary(py, &reached?)
-}
-
 #[pymethods]
 impl Leg {
     #[staticmethod]
@@ -151,7 +164,8 @@ impl Leg {
     }
 
     fn home<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        last(py, self.ask(py, Operator::home))
+        let homed = self.ask(py, Operator::home)?;
+        self.report(py, &homed)
     }
 
     #[pyo3(name = "move", signature = (azimuth_deg, tilt_deg, *, pretension_n = None, stiffness_nm_per_rad = None, towards_deg = None))]
@@ -198,10 +212,8 @@ impl Leg {
     ) -> PyResult<Bound<'py, PyDict>> {
         let path = arguments::path("points", points)?;
         let lead = Duration::from_secs_f64(within("lead_s", lead_s, 0.0, 10.0)?);
-        last(
-            py,
-            self.ask(py, move |operator| operator.follow_whole(&path, lead)),
-        )
+        let followed = self.ask(py, move |operator| operator.follow_whole(&path, lead))?;
+        self.report(py, &followed)
     }
 
     fn hold<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -232,7 +244,7 @@ impl Leg {
 
     fn telemetry<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let report = self.ask(py, Operator::telemetry)?;
-        telemetry::dictionary(py, &report.telemetry)
+        self.report(py, &report.telemetry)
     }
 
     fn close(&self, py: Python<'_>) -> PyResult<()> {

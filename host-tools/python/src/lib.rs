@@ -29,7 +29,7 @@ use leg_sim::ready_scenarios::READY_SCENARIOS;
 use outputs::OUTPUTS;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use signals::SIGNALS;
+use signals::NumericSignal;
 
 /// What the package's own files are made of.
 #[pymodule]
@@ -60,8 +60,8 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let outputs = OUTPUTS.iter().map(|output| output.name);
     module.add("OUTPUTS", PyTuple::new(py, outputs.collect::<Vec<_>>())?)?;
     let signals = PyDict::new(py);
-    for signal in SIGNALS {
-        signals.set_item(signal.name, signal.meaning)?;
+    for signal in NumericSignal::all() {
+        signals.set_item(signal.name(), signal.meaning())?;
     }
     module.add("SIGNALS", signals)
 }

@@ -1,6 +1,6 @@
 //! Signals over time.
 
-use crate::signals::{Signal, Snapshot};
+use crate::signals::{NumericSignal, Snapshot};
 
 /// Most numbers that one recording keeps: 2 GB.
 const NUMBERS_MAX: usize = 250_000_000;
@@ -14,12 +14,12 @@ pub struct Recorder {
     /// s.
     pub times_s: Vec<f64>,
     /// The signals, and the numbers of each, row by row.
-    pub columns: Vec<(&'static Signal, Vec<f64>)>,
+    pub columns: Vec<(NumericSignal, Vec<f64>)>,
 }
 
 impl Recorder {
     /// Of some signals, every so many ticks, from the next tick on.
-    pub fn new(signals: &[&'static Signal], every_ticks: u64) -> Self {
+    pub fn new(signals: &[NumericSignal], every_ticks: u64) -> Self {
         Self {
             every_ticks,
             left: 1,
@@ -39,12 +39,12 @@ impl Recorder {
     }
 
     /// Takes a row; false if there is no room for it.
-    pub fn take(&mut self, snapshot: &Snapshot<'_>) -> bool {
-        let width: usize = self.columns.iter().map(|(signal, _)| signal.width).sum();
+    pub fn take(&mut self, snapshot: &Snapshot) -> bool {
+        let width: usize = self.columns.iter().map(|(signal, _)| signal.width()).sum();
         if (self.times_s.len() + 1) * (width + 1) > NUMBERS_MAX {
             return false;
         }
-        self.times_s.push(snapshot.truth.time_s);
+        self.times_s.push(snapshot.simulated.truth.time_s);
         for (signal, numbers) in &mut self.columns {
             signal.read(snapshot, numbers);
         }

@@ -12,6 +12,7 @@ use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::set_point::PointRefusal;
 use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::{FaultSet, State};
+use leg_host::signals::LegConstants;
 use leg_rig::control_settings;
 use leg_rig::plant_settings::PlantSettings;
 use leg_rig::rig_file::RigFile;
@@ -68,6 +69,7 @@ type Result<T> = std::result::Result<T, SessionError>;
 pub struct Session {
     leg: HostedLeg,
     settings: Settings,
+    constants: LegConstants,
     motors: Drive<f32>,
     /// The path that is being sent.
     path: Option<PathSender>,
@@ -93,9 +95,11 @@ impl Session {
             }
         };
         let leg = EmulatedLeg::in_process(rig, &plant, start, seed)?;
+        let settings = control_settings::settings(rig, &rig.gains, None);
         let mut session = Self {
             leg: HostedLeg::new(leg, rig, start.direction(), seed),
-            settings: control_settings::settings(rig, &rig.gains, None),
+            constants: LegConstants::new(&settings),
+            settings,
             motors: Drive {
                 duty: [0.0; 3],
                 enabled: false,
@@ -115,6 +119,11 @@ impl Session {
         &self.leg
     }
 
+    /// What its reports need of its settings.
+    pub fn constants(&self) -> &LegConstants {
+        &self.constants
+    }
+
     /// The same, for what is done to it from outside.
     pub fn leg_mut(&mut self) -> &mut HostedLeg {
         &mut self.leg
@@ -131,8 +140,8 @@ impl Session {
     }
 
     /// The leg now. There is one: it has booted.
-    pub fn snapshot(&self) -> Option<Snapshot<'_>> {
-        Snapshot::new(&self.leg, &self.motors, self.on_path())
+    pub fn snapshot(&self) -> Option<Snapshot> {
+        Snapshot::new(&self.leg, &self.constants, &self.motors, self.on_path())
     }
 
     /// Some ticks.
@@ -165,7 +174,7 @@ impl Session {
             return Ok(());
         }
         let on_path = on_path(self.path.as_ref(), &self.leg);
-        let snapshot = Snapshot::new(&self.leg, &self.motors, on_path);
+        let snapshot = Snapshot::new(&self.leg, &self.constants, &self.motors, on_path);
         if snapshot.is_some_and(|snapshot| !recorder.take(&snapshot)) {
             self.recorder = None;
             return Err(SessionError::RecordingFull);

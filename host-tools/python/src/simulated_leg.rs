@@ -5,7 +5,7 @@ use crate::errors::leg_error;
 use crate::recorder::Recorder;
 use crate::rig::Rig;
 use crate::session::{Session, SessionError};
-use crate::signals::{self, Origin, SIGNALS, Signal};
+use crate::signals::NumericSignal;
 use crate::start;
 use crate::telemetry::{self, numbers_as};
 use leg_base::description;
@@ -82,8 +82,8 @@ fn interrupted() -> PyResult<()> {
     Python::attach(|py| py.check_signals())
 }
 
-fn signal(name: &str) -> PyResult<&'static Signal> {
-    signals::named(name).ok_or_else(|| {
+fn signal(name: &str) -> PyResult<NumericSignal> {
+    NumericSignal::named(name).ok_or_else(|| {
         let sentence = format!("signals holds {name:?}, which is none; SIGNALS lists them");
         PyValueError::new_err(sentence)
     })
@@ -308,13 +308,12 @@ impl SimulatedLeg {
         let session = self.session()?;
         let values = PyDict::new(py);
         if let Some(snapshot) = session.snapshot() {
-            for signal in SIGNALS
-                .iter()
-                .filter(|signal| signal.origin == Origin::Truth)
-            {
-                let mut numbers = Vec::with_capacity(signal.width);
-                signal.read(&snapshot, &mut numbers);
-                values.set_item(signal.name, numbers_as(py, signal, numbers)?)?;
+            for signal in NumericSignal::all() {
+                if let NumericSignal::Simulated(_) = signal {
+                    let mut numbers = Vec::with_capacity(signal.width());
+                    signal.read(&snapshot, &mut numbers);
+                    values.set_item(signal.name(), numbers_as(py, numbers)?)?;
+                }
             }
         }
         values.set_item("time_s", session.leg().time_s())?;
@@ -322,21 +321,21 @@ impl SimulatedLeg {
     }
 
     fn telemetry<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let reported = self.session()?.leg().telemetry().copied();
-        reported.map_or_else(
+        let session = self.session()?;
+        session.leg().telemetry().map_or_else(
             || Ok(PyDict::new(py)),
-            |reported| telemetry::dictionary(py, &reported),
+            |reported| telemetry::dictionary(py, reported, session.constants()),
         )
     }
 
     fn read<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let signal = signal(name)?;
         let session = self.session()?;
-        let mut numbers = Vec::with_capacity(signal.width);
+        let mut numbers = Vec::with_capacity(signal.width());
         if let Some(snapshot) = session.snapshot() {
             signal.read(&snapshot, &mut numbers);
         }
-        numbers_as(py, signal, numbers)
+        numbers_as(py, numbers)
     }
 
     #[pyo3(signature = (signals, *, every_ticks = 16))]
@@ -359,11 +358,11 @@ impl SimulatedLeg {
         arrays.set_item("time_s", PyArray1::from_slice(py, &recorder.times_s))?;
         for (signal, numbers) in &recorder.columns {
             let flat = PyArray1::from_slice(py, numbers);
-            if signal.width == 1 {
-                arrays.set_item(signal.name, flat)?;
+            if signal.width() == 1 {
+                arrays.set_item(signal.name(), flat)?;
             } else {
-                let shape = [recorder.times_s.len(), signal.width];
-                arrays.set_item(signal.name, flat.reshape(shape)?)?;
+                let shape = [recorder.times_s.len(), signal.width()];
+                arrays.set_item(signal.name(), flat.reshape(shape)?)?;
             }
         }
         Ok(arrays)

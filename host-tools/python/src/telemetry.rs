@@ -1,28 +1,39 @@
 //! What a leg reports, as Python has it.
 
-use crate::signals::{SIGNALS, Signal};
 use leg_base::description;
-use leg_base::tick_time::seconds;
 use leg_firmware::supervisor::FaultSet;
 use leg_firmware::telemetry::Telemetry;
+use leg_host::signals::{LegConstants, REPORT_SIGNALS, Report, Values};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-/// Every signal of telemetry by name, with the state, the faults, whether the zero is known, and the time of the leg.
+/// The signals of a report by name. Of the faults it has not only the names.
 pub fn dictionary<'py>(
     py: Python<'py>,
     telemetry: &Telemetry<f32>,
+    constants: &LegConstants,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let report = Report::new(telemetry, constants);
     let values = PyDict::new(py);
-    values.set_item("time_s", seconds(telemetry.tick.into()))?;
-    values.set_item("state", description::state(telemetry.state))?;
-    values.set_item("faults", faults(py, telemetry.faults)?)?;
-    values.set_item("homed", telemetry.homed)?;
-    for signal in SIGNALS {
-        if let Some(numbers) = signal.reported(telemetry) {
-            values.set_item(signal.name, numbers_as(py, signal, numbers)?)?;
-        }
+    for signal in REPORT_SIGNALS {
+        let value = match signal.values {
+            Values::Word(read) => read(&report).into_pyobject(py)?.into_any(),
+            Values::Flag(read) => read(&report).into_pyobject(py)?.to_owned().into_any(),
+            Values::Count(read) => read(&report).into_pyobject(py)?.into_any(),
+            Values::Names(_) => faults(py, telemetry.faults)?.into_any(),
+            Values::Number(_)
+            | Values::Two(_)
+            | Values::Three(_)
+            | Values::Single(_)
+            | Values::SingleTwo(_)
+            | Values::SingleThree(_) => {
+                let mut numbers = Vec::new();
+                signal.numbers(&report, &mut numbers);
+                numbers_as(py, numbers)?
+            }
+        };
+        values.set_item(signal.name, value)?;
     }
     Ok(values)
 }
@@ -44,13 +55,9 @@ pub fn faults(py: Python<'_>, reported: FaultSet) -> PyResult<Bound<'_, PyList>>
 }
 
 /// One number as a float, several as an array.
-pub fn numbers_as<'py>(
-    py: Python<'py>,
-    signal: &Signal,
-    numbers: Vec<f64>,
-) -> PyResult<Bound<'py, PyAny>> {
+pub fn numbers_as(py: Python<'_>, numbers: Vec<f64>) -> PyResult<Bound<'_, PyAny>> {
     match numbers[..] {
-        [number] if signal.width == 1 => Ok(number.into_pyobject(py)?.into_any()),
+        [number] => Ok(number.into_pyobject(py)?.into_any()),
         _ => Ok(PyArray1::from_vec(py, numbers).into_any()),
     }
 }

@@ -18,7 +18,7 @@ pub use tick_hash::TickHash;
 
 use crate::emulated_leg::{EmulatedLeg, assembled};
 use crate::link::Link;
-use crate::plant::Plant;
+use crate::plant::{Plant, Truth};
 use crate::scenario::Scenario;
 use leg_firmware::drive::Drive;
 use leg_firmware::sensors::Sensors;
@@ -48,6 +48,10 @@ pub struct Tick<'a> {
     pub instructions: Option<u32>,
     /// The simulated leg beside what it reports.
     pub comparison: &'a Comparison,
+    /// The simulated leg as the tick finds it.
+    pub truth: &'a Truth,
+    /// What its motors get.
+    pub motors: &'a Drive<f32>,
 }
 
 /// A scenario on a rig, ready to run.
@@ -140,7 +144,7 @@ fn advance(
     if stand.leg.time_s() > LONGEST_S {
         return Err(SimulationError::Endless(step));
     }
-    let comparison = stand.comparison();
+    let (comparison, truth) = (stand.comparison(), *stand.leg.truth());
     stand.tick(&comparison, |sensors, link, reply| {
         shadow.tick(sensors, link, reply);
         watch(&Tick {
@@ -150,6 +154,8 @@ fn advance(
             telemetry: &reply.telemetry,
             instructions: reply.instructions,
             comparison: &comparison,
+            truth: &truth,
+            motors: &reply.motors,
         });
     })?;
     Ok(true)

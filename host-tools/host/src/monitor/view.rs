@@ -1,10 +1,8 @@
 //! The leg at a time: its telemetry, and what follows from it.
 
-use super::sag_model::SagModel;
-use crate::leg_report;
+use crate::signals::{LegConstants, REPORT_SIGNALS, Report, json_object};
 use leg_base::failure::Failure;
 use leg_base::json_line::to_line;
-use leg_base::json_object;
 use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
 
@@ -13,8 +11,9 @@ use leg_firmware::telemetry::Telemetry;
 pub struct MonitorView {
     pub(super) title: String,
     pub(super) bounds_n: [f32; 2],
-    sag_model: Option<SagModel>,
+    leg: LegConstants,
     pub(super) telemetry: Option<Telemetry<f32>>,
+    report: Option<Report>,
     pub(super) damaged_frames: u64,
 }
 
@@ -24,40 +23,30 @@ impl MonitorView {
         Self {
             title: title.into(),
             bounds_n: [settings.f_min_n, settings.f_max_n],
-            sag_model: SagModel::new(settings),
+            leg: LegConstants::new(settings),
             telemetry: None,
+            report: None,
             damaged_frames: 0,
         }
     }
 
-    /// Takes new telemetry, and how many frames could not be read so far.
-    pub fn take(&mut self, telemetry: &Telemetry<f32>, damaged_frames: u64) {
+    /// Takes new telemetry, received at a time of the day in s since 1970, and how many frames could not be read so far.
+    pub fn take(&mut self, telemetry: &Telemetry<f32>, wall_time_s: f64, damaged_frames: u64) {
+        let report = Report::new(telemetry, &self.leg);
         self.telemetry = Some(*telemetry);
+        self.report = Some(report.received(wall_time_s, damaged_frames));
         self.damaged_frames = damaged_frames;
     }
 
-    /// A line of JSON; none before the first telemetry.
+    /// A line of JSON, the signals of a report; none before the first telemetry.
     pub fn json(&self) -> Result<Option<String>, Failure> {
-        let Some(telemetry) = &self.telemetry else {
-            return Ok(None);
-        };
-        let line = to_line(&json_object! {
-            #[serde(flatten)]
-            report: leg_report::json(telemetry),
-            moving: telemetry.moving,
-            target: telemetry.target,
-            target_tensions_n: telemetry.target_tensions_n,
-            pulled_m: telemetry.pulled_m,
-            residual_m: telemetry.residual_m,
-            sag_m: self.sag_m(),
-            tension_bounds_n: self.bounds_n,
-            damaged_frames: self.damaged_frames,
-        })?;
-        Ok(Some(line))
+        let report = self.report.as_ref();
+        let line = report.map(|report| to_line(&json_object(REPORT_SIGNALS, report)));
+        line.transpose()
     }
 
     /// How far the tip would sag without compensation, m.
     pub(super) fn sag_m(&self) -> Option<f64> {
-        self.sag_model.as_ref()?.sag_m(self.telemetry.as_ref()?)
+        self.report.as_ref()?.sag_m()
     }
 }

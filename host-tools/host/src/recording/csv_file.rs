@@ -1,9 +1,7 @@
-//! A recording as CSV: the time, and each single value in a column of its own, units in the names of the columns. `csv`
-//! itself writes no nested lists.
+//! A recording as CSV: the signals, each single number in a column of its own.
 
 use super::RecordingError;
-use crate::flat_json::flatten;
-use serde_json::Value;
+use crate::signals::{REPORT_SIGNALS, Report, SIMULATED_SIGNALS, Simulated, columns, row};
 use std::fs::File;
 
 /// A table that is being written; its first row names the columns.
@@ -20,21 +18,23 @@ impl CsvFile {
         }
     }
 
-    pub fn write_row(&mut self, time_s: f64, objects: &[&Value]) -> Result<(), RecordingError> {
-        let columns = || objects.iter().flat_map(|object| flatten(object, "_"));
+    pub fn write_report(&mut self, report: &Report) -> Result<(), RecordingError> {
         if !std::mem::replace(&mut self.named, true) {
-            let names = columns().map(|(name, _)| name);
-            self.writer
-                .write_record(std::iter::once("time_s".into()).chain(names))?;
+            self.writer.write_record(columns(REPORT_SIGNALS))?;
         }
-        let texts = columns().map(|(_, value)| match value {
-            Value::String(text) => text.clone(),
-            Value::Null => String::new(),
-            value => value.to_string(),
-        });
-        self.writer
-            .write_record(std::iter::once(time_s.to_string()).chain(texts))?;
-        Ok(())
+        Ok(self.writer.write_record(row(REPORT_SIGNALS, report))?)
+    }
+
+    pub fn write_simulation(
+        &mut self,
+        (report, simulated): &(Report, Simulated),
+    ) -> Result<(), RecordingError> {
+        if !std::mem::replace(&mut self.named, true) {
+            let names = columns(REPORT_SIGNALS).chain(columns(SIMULATED_SIGNALS));
+            self.writer.write_record(names)?;
+        }
+        let cells = row(REPORT_SIGNALS, report).chain(row(SIMULATED_SIGNALS, simulated));
+        Ok(self.writer.write_record(cells)?)
     }
 
     pub fn flush(&mut self) -> Result<(), RecordingError> {

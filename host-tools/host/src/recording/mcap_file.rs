@@ -1,15 +1,18 @@
-//! A recording as MCAP: of a simulation the settings, every tick as a controller sees it, and the leg beside what it reports; of
-//! all the telemetry. What is not needed to run it again is JSON.
+//! A recording as MCAP: the settings, of a simulation every tick as a controller sees it, and the signals. What is not needed to
+//! run a simulation again is JSON.
 
 use super::tick_record::{TickRecord, to_bytes};
-use super::{About, RecordingError, to_json};
+use super::{About, RecordingError};
+use crate::signals::{
+    REPORT_SIGNALS, Report, SIMULATED_SIGNALS, Signal, Simulated, json_object, json_schema,
+};
 use leg_base::description::hex;
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::settings::Settings;
-use leg_firmware::telemetry::Telemetry;
 use leg_firmware_bench::protocol::BENCH_SCHEMA;
-use leg_sim::simulation::{SAMPLE_TICKS, Tick};
-use mcap::records::MessageHeader;
+use leg_rig::settings_text;
+use leg_sim::simulation::Tick;
+use mcap::records::{MessageHeader, Metadata};
 use mcap::{WriteOptions, Writer};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -20,12 +23,12 @@ use std::mem::ManuallyDrop;
 /// Topics.
 pub(super) const SETTINGS: &str = "/settings";
 pub(super) const TICKS: &str = "/ticks";
-pub(super) const ABOUT: Topic = ("/about", "About");
-pub(super) const TELEMETRY: Topic = ("/leg", "Telemetry");
-pub(super) const COMPARISON: Topic = ("/simulation", "Comparison");
+pub(super) const ABOUT: &str = "/about";
+pub(super) const REPORT: &str = "/leg";
+pub(super) const SIMULATED: &str = "/simulation";
 
-/// A topic of JSON, and the name of its messages' schema.
-pub(super) type Topic = (&'static str, &'static str);
+/// The name of the metadata that says what a recording is of.
+const METADATA: &str = "leg";
 
 /// The key of a channel's metadata under which the schema of its messages stands.
 pub(super) const SCHEMA_KEY: &str = "schema";
@@ -38,8 +41,8 @@ pub(super) struct McapFile {
     /// Dropped once it has finished alone: its own drop tries to, and panics where the disk is full.
     writer: ManuallyDrop<Writer<BufWriter<File>>>,
     ticks: Option<u16>,
-    telemetry: Option<u16>,
-    comparison: Option<u16>,
+    reports: Option<u16>,
+    simulated: Option<u16>,
     /// What it is of, until it is written: with the first message, for a leg's time does not begin at zero.
     about: Option<Value>,
 }
@@ -50,78 +53,81 @@ pub(super) fn schema() -> String {
 }
 
 impl McapFile {
-    pub fn new(
-        file: File,
-        about: &About,
-        settings: Option<&Settings>,
-    ) -> Result<Self, RecordingError> {
+    pub fn new(file: File, about: &About, settings: &Settings) -> Result<Self, RecordingError> {
         let options = WriteOptions::new().compression(None).library("leg");
         let mut file = Self {
             writer: ManuallyDrop::new(options.create(BufWriter::new(file))?),
             ticks: None,
-            telemetry: None,
-            comparison: None,
-            about: Some(to_json(about)?),
+            reports: None,
+            simulated: None,
+            about: Some(serde_json::to_value(about).map_err(RecordingError::message)?),
         };
-        if let Some(settings) = settings {
-            let channel = file.postcard_channel(SETTINGS)?;
-            file.write(channel, 0, 0, &to_bytes(settings)?)?;
-            file.flush()?;
-        }
+        file.writer.write_metadata(&metadata(about, settings))?;
+        let channel = file.postcard_channel(SETTINGS)?;
+        file.write(channel, 0, 0, &to_bytes(settings)?)?;
+        file.flush()?;
         Ok(file)
     }
 
-    pub fn take_tick(&mut self, number: u32, tick: &Tick<'_>) -> Result<(), RecordingError> {
-        let time_ns = u64::from(number) * TICK_NS;
+    /// What a controller gets and gives in a tick of a simulation.
+    pub fn write_tick(&mut self, number: u32, tick: &Tick<'_>) -> Result<(), RecordingError> {
         let channel = match self.ticks {
             Some(channel) => channel,
             None => self.postcard_channel(TICKS)?,
         };
         self.ticks = Some(channel);
-        self.write(
-            channel,
-            number,
-            time_ns,
-            &to_bytes(&TickRecord::new(tick)?)?,
-        )?;
-        if number.is_multiple_of(SAMPLE_TICKS) {
-            self.write_telemetry(number, time_ns, tick.telemetry)?;
-            let value = to_json(tick.comparison)?;
-            let channel = self.json_channel(self.comparison, COMPARISON, &value)?;
-            self.comparison = Some(channel);
-            self.write(channel, number, time_ns, value.to_string().as_bytes())?;
-        }
-        Ok(())
+        let bytes = to_bytes(&TickRecord::new(tick)?)?;
+        self.write(channel, number, simulated_ns(number), &bytes)
     }
 
-    pub fn write_telemetry(
+    /// The leg in a tick of a simulation.
+    pub fn write_simulation(
+        &mut self,
+        number: u32,
+        (report, simulated): &(Report, Simulated),
+    ) -> Result<(), RecordingError> {
+        let time_ns = simulated_ns(number);
+        self.write_report(number, time_ns, report)?;
+        let channel = match self.simulated {
+            Some(channel) => channel,
+            None => self.signal_channel(SIMULATED, SIMULATED_SIGNALS)?,
+        };
+        self.simulated = Some(channel);
+        let message = Value::Object(json_object(SIMULATED_SIGNALS, simulated));
+        self.write(channel, number, time_ns, message.to_string().as_bytes())
+    }
+
+    /// What a leg reports.
+    pub fn write_report(
         &mut self,
         number: u32,
         time_ns: u64,
-        telemetry: &Telemetry<f32>,
+        report: &Report,
     ) -> Result<(), RecordingError> {
         if let Some(about) = self.about.take() {
-            let channel = self.json_channel(None, ABOUT, &about)?;
+            let channel = self.json_channel(ABOUT, &about_schema())?;
             self.write(channel, 0, time_ns, about.to_string().as_bytes())?;
         }
-        let value = to_json(telemetry)?;
-        let channel = self.json_channel(self.telemetry, TELEMETRY, &value)?;
-        self.telemetry = Some(channel);
-        self.write(channel, number, time_ns, value.to_string().as_bytes())
+        let channel = match self.reports {
+            Some(channel) => channel,
+            None => self.signal_channel(REPORT, REPORT_SIGNALS)?,
+        };
+        self.reports = Some(channel);
+        let message = Value::Object(json_object(REPORT_SIGNALS, report));
+        self.write(channel, number, time_ns, message.to_string().as_bytes())
     }
 
-    /// A topic's channel; made for messages like this one where there is none yet.
-    fn json_channel(
+    fn signal_channel<S>(
         &mut self,
-        made: Option<u16>,
-        (topic, name): Topic,
-        message: &Value,
+        topic: &str,
+        signals: &[Signal<S>],
     ) -> Result<u16, RecordingError> {
-        if let Some(channel) = made {
-            return Ok(channel);
-        }
-        let schema = json_schema(message).to_string().into_bytes();
-        let id = self.writer.add_schema(name, "jsonschema", &schema)?;
+        self.json_channel(topic, &json_schema(topic, signals))
+    }
+
+    fn json_channel(&mut self, topic: &str, schema: &Value) -> Result<u16, RecordingError> {
+        let schema = schema.to_string().into_bytes();
+        let id = self.writer.add_schema(topic, "jsonschema", &schema)?;
         Ok(self
             .writer
             .add_channel(id, topic, "json", &BTreeMap::new())?)
@@ -160,21 +166,41 @@ impl McapFile {
     }
 }
 
-/// The JSON schema of a value, by which Foxglove lists its fields.
-fn json_schema(value: &Value) -> Value {
-    match value {
-        Value::Object(map) => {
-            let properties: serde_json::Map<String, Value> = map
-                .iter()
-                .map(|(key, value)| (key.clone(), json_schema(value)))
-                .collect();
-            json!({"type": "object", "properties": properties})
-        }
-        Value::Array(values) => {
-            json!({"type": "array", "items": values.first().map(json_schema)})
-        }
-        Value::String(_) => json!({"type": "string"}),
-        Value::Bool(_) => json!({"type": "boolean"}),
-        _ => json!({"type": "number"}),
+/// The time of a tick of a simulation, which begins at zero: the same simulation gives the same file.
+fn simulated_ns(tick: u32) -> u64 {
+    u64::from(tick) * TICK_NS
+}
+
+/// What a recording is of, for programs that read no topics.
+fn metadata(about: &About, settings: &Settings) -> Metadata {
+    let seed = about.seed.map(|seed| seed.to_string());
+    let entries = [
+        ("title", Some(about.title.clone())),
+        ("version", Some(about.version.clone())),
+        ("scenario", about.scenario.clone()),
+        ("rig", about.rig.clone()),
+        ("seed", seed),
+        ("settings", Some(settings_text::rig_file(settings))),
+    ];
+    let known = entries.into_iter();
+    let known = known.filter_map(|(key, value)| Some((key.to_string(), value?)));
+    Metadata {
+        name: METADATA.into(),
+        metadata: known.collect(),
     }
+}
+
+fn about_schema() -> Value {
+    let text = json!({ "type": ["string", "null"] });
+    json!({
+        "title": ABOUT,
+        "type": "object",
+        "properties": {
+            "title": text,
+            "version": text,
+            "scenario": text,
+            "rig": text,
+            "seed": { "type": ["integer", "null"] },
+        },
+    })
 }

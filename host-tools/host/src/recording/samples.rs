@@ -2,11 +2,12 @@
 
 use super::About;
 use super::contents::Contents;
-use super::mcap_file::{ABOUT, COMPARISON, TELEMETRY};
+use super::mcap_file::{ABOUT, REPORT, SIMULATED};
+use crate::signals;
 use leg_base::failure::Failure;
-use leg_base::tick_time::tick_s;
+use leg_base::tick_time::{seconds, tick_s};
 use leg_firmware::telemetry::Telemetry;
-use leg_sim::simulation::{Comparison, Sample};
+use leg_sim::simulation::Sample;
 use mcap::Message;
 use serde::de::DeserializeOwned;
 use std::path::Path;
@@ -46,19 +47,22 @@ fn read(file: &Path) -> Result<Recorded, String> {
     let contents = Contents::read(file)?;
     let mut about = None;
     let (mut log, mut simulation) = (Vec::new(), Vec::new());
+    let mut last_report = Vec::new();
     contents.each(|message| {
         let topic = message.channel.topic.as_str();
-        if topic == ABOUT.0 {
+        let unread = |error: String| unreadable(message, &error);
+        if topic == ABOUT {
             about = Some(parse(message)?);
-        } else if topic == TELEMETRY.0 {
-            log.push((message.log_time as f64 * 1e-9, parse(message)?));
-        } else if topic == COMPARISON.0 {
-            // It follows the telemetry of the same tick.
-            let (_, telemetry) = log.last().ok_or("has a comparison with no telemetry")?;
-            let comparison: Comparison = parse(message)?;
+        } else if topic == REPORT {
+            let telemetry = signals::telemetry(&message.data).map_err(unread)?;
+            log.push((seconds(telemetry.tick.into()), telemetry));
+            last_report = message.data.to_vec();
+        } else if topic == SIMULATED {
+            // It follows the report of the same tick.
+            let (_, telemetry) = log.last().ok_or("has a simulated leg with no report")?;
             simulation.push(Sample {
                 time_s: f64::from(message.sequence) * tick_s(),
-                comparison,
+                comparison: signals::comparison(&last_report, &message.data).map_err(unread)?,
                 telemetry: *telemetry,
             });
         }
@@ -82,11 +86,13 @@ fn read(file: &Path) -> Result<Recorded, String> {
 }
 
 fn parse<T: DeserializeOwned>(message: &Message<'_>) -> Result<T, String> {
-    serde_json::from_slice(&message.data).map_err(|error| {
-        let topic = &message.channel.topic;
-        format!(
-            "message {} of {topic} cannot be read: {error}",
-            message.sequence
-        )
-    })
+    serde_json::from_slice(&message.data).map_err(|error| unreadable(message, &error.to_string()))
+}
+
+fn unreadable(message: &Message<'_>, error: &str) -> String {
+    let topic = &message.channel.topic;
+    format!(
+        "message {} of {topic} cannot be read: {error}",
+        message.sequence
+    )
 }

@@ -1,8 +1,10 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{About, record, replay};
+use super::{About, Samples, read_samples, record, replay};
+use crate::signals::{LegConstants, Report};
 use leg_base::failure::Failure;
 use leg_firmware::drive::Drive;
+use leg_firmware::leg::Leg;
 use leg_rig::rig_file::RigFile;
 use leg_sim::link::InProcess;
 use leg_sim::ready_scenarios;
@@ -25,7 +27,7 @@ fn simulation() -> Simulation {
 fn record_spoilt(file: &Path, spoil: impl Fn(&mut Drive<f32>, u32)) -> u64 {
     let simulation = simulation();
     let settings = simulation.settings().clone();
-    record(file, &About::log("test"), Some(&settings), |recording| {
+    record(file, &About::log("test"), &settings, |recording| {
         let watch = &mut |tick: &Tick<'_>| {
             let mut drive = *tick.drive;
             spoil(&mut drive, tick.telemetry.tick - 1);
@@ -75,10 +77,14 @@ fn a_table_has_a_row_a_millisecond_and_units_in_its_names() {
     let ticks = record_spoilt(&file, |_, _| ());
     let names = [
         "time_s",
+        "faults",
+        "tilt_deg",
+        "motor_currents_true_a_2",
+        "supply_true_v",
         "tensions_n_1",
         "pulled_m_3",
         "state",
-        "duty_2",
+        "duties_2",
         "tip_commanded_mm_1",
         "tip_reference_mm_2",
         "tip_estimated_mm_3",
@@ -98,22 +104,25 @@ fn the_true_leg_stands_beside_what_it_reports() {
     let messages = mcap::MessageStream::new(&bytes)
         .unwrap()
         .map(Result::unwrap);
-    let (mut telemetry, mut comparisons) = (0, Vec::new());
+    let (mut reports, mut simulated) = (Vec::new(), Vec::new());
     for message in messages {
         match &*message.channel.topic {
-            "/leg" => telemetry += 1,
-            "/simulation" => comparisons.push(message.data.into_owned()),
+            "/leg" => reports.push(message.data.into_owned()),
+            "/simulation" => simulated.push(message.data.into_owned()),
             _ => {}
         }
     }
-    assert!(telemetry > 0);
-    assert_eq!(comparisons.len(), telemetry);
-    let last: serde_json::Value = serde_json::from_slice(comparisons.last().unwrap()).unwrap();
-    let depth = |tip: &str| last[tip][2].as_f64().unwrap();
-    assert!(depth("tip_true_mm") < -200.0, "{last}");
+    assert_eq!(simulated.len(), reports.len());
+    let last = |of: &[Vec<u8>]| -> serde_json::Value {
+        serde_json::from_slice(of.last().unwrap()).unwrap()
+    };
+    let [report, truth] = [last(&reports), last(&simulated)];
+    let depth = |of: &serde_json::Value, tip: &str| of[tip][2].as_f64().unwrap();
+    let true_mm = depth(&truth, "tip_true_mm");
+    assert!(true_mm < -200.0, "{truth}");
     assert!(
-        (depth("tip_true_mm") - depth("tip_reference_mm")).abs() < 5.0,
-        "{last}"
+        (true_mm - depth(&report, "tip_reference_mm")).abs() < 5.0,
+        "{report}"
     );
 }
 
@@ -123,7 +132,7 @@ fn work_that_fails_leaves_no_recording() {
     let file = directory.path().join("leg.mcap");
     let failure = Failure::failed("no", "");
     let settings = simulation().settings().clone();
-    let failed = record(&file, &About::log("test"), Some(&settings), |_| {
+    let failed = record(&file, &About::log("test"), &settings, |_| {
         Err::<(), _>(failure.clone().into())
     });
     assert_eq!(failed, Err(failure));
@@ -170,7 +179,7 @@ fn a_recording_is_beside_its_name_until_it_is_whole_and_is_never_overwritten() {
     std::fs::write(&file, "old").unwrap();
     std::fs::write(place("leg.part.mcap"), "of a program that was killed").unwrap();
     let settings = simulation().settings().clone();
-    record(&file, &About::log("test"), Some(&settings), |recording| {
+    record(&file, &About::log("test"), &settings, |recording| {
         let mut ticks = 0;
         let watch = &mut |tick: &Tick<'_>| {
             recording.take_tick(tick).unwrap();
@@ -198,7 +207,7 @@ fn a_full_disk_is_an_error_and_no_panic() {
         full.unwrap()
     };
     let settings = simulation().settings().clone();
-    let error = super::McapFile::new(full(), &About::log("test"), Some(&settings))
+    let error = super::McapFile::new(full(), &About::log("test"), &settings)
         .err()
         .unwrap();
     let failure = error.failure(Path::new("leg.mcap"), Some("leg.part.mcap".into()));
@@ -209,9 +218,9 @@ fn a_full_disk_is_an_error_and_no_panic() {
         "{text}"
     );
     let mut table = super::CsvFile::new(full());
-    table
-        .write_row(0.0, &[&serde_json::json!({"a": 1})])
-        .unwrap();
+    let leg = LegConstants::new(&settings);
+    let telemetry = Leg::<f32>::new(&settings).unwrap().telemetry();
+    table.write_report(&Report::new(&telemetry, &leg)).unwrap();
     assert!(table.flush().is_err());
 }
 
@@ -222,32 +231,86 @@ fn telemetry_alone_is_recorded_with_the_legs_time() {
     let watch = &mut |tick: &Tick<'_>| telemetry.push(*tick.telemetry);
     simulation().run(&mut InProcess::new(), watch).unwrap();
     let [mcap, csv] = ["leg.mcap", "leg.csv"].map(|name| directory.path().join(name));
+    let settings = simulation().settings().clone();
+    let wall_s = |tick: u32| (tick > 8).then(|| 1.7e9 + f64::from(tick) / 8000.0);
     for file in [&mcap, &csv] {
-        record(file, &About::log("test"), None, |recording| {
+        record(file, &About::log("test"), &settings, |recording| {
             for telemetry in &telemetry {
-                recording.take_telemetry(telemetry).unwrap();
+                let wall_time_s = wall_s(telemetry.tick);
+                recording.take_telemetry(telemetry, wall_time_s, 3).unwrap();
             }
             Ok(())
         })
         .unwrap();
     }
     let error = replay(&mcap).unwrap_err().to_string();
-    assert!(error.contains("holds no settings"), "{error}");
+    assert!(error.contains("holds no ticks"), "{error}");
+    let Samples::Log(read) = read_samples(&mcap).unwrap().samples else {
+        panic!("a log is no simulation");
+    };
+    assert_eq!(read.len(), telemetry.len());
+    for ((time_s, read), written) in read.iter().zip(&telemetry) {
+        assert_eq!(read, written);
+        assert_eq!(*time_s, f64::from(written.tick) / 8000.0);
+    }
     let bytes = std::fs::read(mcap).unwrap();
     let messages: Vec<_> = mcap::MessageStream::new(&bytes)
         .unwrap()
         .map(Result::unwrap)
         .collect();
-    assert_eq!(messages.len(), 1 + telemetry.len());
-    let (about, first) = (&messages[0], &messages[1]);
-    assert_eq!(about.channel.topic, "/about");
-    assert_eq!(about.log_time, first.log_time);
+    let topics: Vec<_> = messages[..3].iter().map(|m| &*m.channel.topic).collect();
+    assert_eq!(topics, ["/settings", "/about", "/leg"]);
+    assert_eq!(messages.len(), 2 + telemetry.len());
+    assert_eq!(messages[1].log_time, messages[2].log_time);
     let (last, tick) = (messages.last().unwrap(), telemetry.last().unwrap().tick);
-    assert_eq!(last.channel.topic, "/leg");
-    assert_eq!(last.log_time, u64::from(tick) * 125_000);
+    let wall_ns = 1_700_000_000_000_000_000 + u64::from(tick) * 125_000;
+    assert!(last.log_time.abs_diff(wall_ns) < 1000, "{}", last.log_time);
     let value: serde_json::Value = serde_json::from_slice(&last.data).unwrap();
-    assert_eq!(value["tick"], tick);
-    assert_eq!(rows(&csv, &["tensions_n_2"]), telemetry.len() as u64);
+    assert_eq!(
+        (&value["tick"], &value["damaged_frames"]),
+        (&tick.into(), &3.into())
+    );
+    assert_eq!(
+        rows(&csv, &["tensions_n_2", "wall_time_s", "state"]),
+        telemetry.len() as u64
+    );
+}
+
+/// Every number of a simulation comes back from its recording as it was, so that its charts are the same.
+#[test]
+fn the_samples_of_a_simulation_are_read_as_they_were() {
+    let directory = TempDir::new().unwrap();
+    let file = directory.path().join("leg.mcap");
+    record_spoilt(&file, |_, _| ());
+    let mut written = Vec::new();
+    let watch = &mut |tick: &Tick<'_>| written.push((*tick.comparison, *tick.telemetry));
+    simulation().run(&mut InProcess::new(), watch).unwrap();
+    let Samples::Simulation(read) = read_samples(&file).unwrap().samples else {
+        panic!("a simulation is no log");
+    };
+    let every = leg_sim::simulation::SAMPLE_TICKS as usize;
+    assert_eq!(read.len(), written.len().div_ceil(every));
+    for (read, written) in read.iter().zip(written.iter().step_by(every)) {
+        assert_eq!((read.comparison, read.telemetry), *written);
+    }
+}
+
+#[test]
+fn what_a_recording_is_of_is_in_its_metadata() {
+    let directory = TempDir::new().unwrap();
+    let file = directory.path().join("leg.mcap");
+    record_spoilt(&file, |_, _| ());
+    let bytes = std::fs::read(&file).unwrap();
+    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+    let [index] = &summary.metadata_indexes[..] else {
+        panic!("{:?}", summary.metadata_indexes);
+    };
+    let metadata = mcap::read::metadata(&bytes, index).unwrap();
+    assert_eq!(
+        (&*metadata.name, &*metadata.metadata["title"]),
+        ("leg", "test")
+    );
+    assert!(metadata.metadata["settings"].contains("f_max_n = 150"));
 }
 
 #[test]

@@ -7,8 +7,8 @@ use serde::Serialize;
 /// How much later than requested a board reports, ticks: it checks about every millisecond, which is 8 ticks.
 const LATE_TICKS: u32 = 24;
 
-/// So many late ones in a row mean that another host has asked for another rate.
-const LATE_MAX: u32 = 3;
+/// How many late ones after the first in a row are left alone, where the leg was asked again for its rate.
+const LATE_ASKED: u32 = 3;
 
 /// What was recorded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -21,49 +21,49 @@ pub(super) struct Recorded {
     pub damaged_frames: u64,
     /// From the first to the last, s.
     pub length_s: f64,
-    /// From one that the leg sent to the next, on the average, s.
+    /// From one in the file to the next, on the average, s.
     pub every_s: f64,
     /// From one in the file to the next at most, s.
     pub longest_s: f64,
 }
 
-/// Why telemetry does not belong to the recording.
+/// The leg has started anew: its time begins again.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Foreign {
-    /// The leg has started anew: its time begins again.
-    Restarted,
-    /// It comes as often as another host has asked, s.
-    Every(f64),
-}
+pub(super) struct Restarted;
 
-impl Foreign {
-    pub(super) fn failure(self) -> Failure {
-        match self {
-            Self::Restarted => Failure::failed(
-                "the leg started anew, and its time begins again",
-                "the file ends there; log again for what follows",
-            ),
-            Self::Every(s) => Failure::failed(
-                format!(
-                    "another host has asked the leg to report every {} ms",
-                    s * 1000.0
-                ),
-                "the file ends there; end the other `leg log`, or give both the same --rate",
-            ),
-        }
+impl From<Restarted> for Failure {
+    fn from(_: Restarted) -> Self {
+        Self::failed(
+            "the leg started anew, and its time begins again",
+            "the file ends there; log again for what follows",
+        )
     }
 }
 
-/// Counts what comes.
+/// What is to be done with telemetry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Taken {
+    /// It belongs into the file.
+    pub due: bool,
+    /// It came late, as where another host has asked for a lower rate: the leg has to be asked again.
+    pub ask_again: bool,
+}
+
+/// Counts what comes, and chooses what is recorded: another host may have asked for a higher rate.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Counter {
     every_ticks: u32,
-    /// Number and tick of the last.
+    /// Number and tick of the last that came.
     last: Option<(u32, u32)>,
+    /// Ticks since the one in the file before it was due; none before the first.
+    since_due: Option<u32>,
     /// How many came late, one after the other.
     late: u32,
+    /// From the first in the file to the last that came.
     ticks: u64,
-    longest_ticks: u32,
+    /// From the first in the file to the last there.
+    recorded_ticks: u64,
+    longest_ticks: u64,
     count: u64,
     lost: u64,
 }
@@ -76,35 +76,44 @@ impl Counter {
         }
     }
 
-    /// Counts telemetry by its number and tick, unless it is not of this recording.
-    pub(super) fn take(&mut self, number: u32, tick: u32) -> Result<(), Foreign> {
+    /// Counts telemetry by its number and tick.
+    pub(super) fn take(&mut self, number: u32, tick: u32) -> Result<Taken, Restarted> {
+        let mut ask_again = false;
         if let Some((last_number, last_tick)) = self.last {
             let ticks = tick.wrapping_sub(last_tick);
             // The leg's count of ticks runs over after six days: it went back only if it seems to have gone far ahead.
             if ticks > u32::MAX / 2 {
-                return Err(Foreign::Restarted);
+                return Err(Restarted);
             }
             let steps = number.wrapping_sub(last_number);
-            if steps == 1 {
-                self.check_rate(ticks)?;
-            }
             self.lost += u64::from(steps.saturating_sub(1));
+            let late = steps == 1 && ticks > self.every_ticks + LATE_TICKS;
+            ask_again = late && self.late.is_multiple_of(LATE_ASKED);
+            self.late = if late { self.late + 1 } else { 0 };
             self.ticks += u64::from(ticks);
-            self.longest_ticks = self.longest_ticks.max(ticks);
+            self.since_due = self.since_due.map(|since| since.saturating_add(ticks));
         }
         self.last = Some((number, tick));
-        self.count += 1;
-        Ok(())
+        let due = self.is_due();
+        if due {
+            let apart = self.ticks - self.recorded_ticks;
+            self.longest_ticks = self.longest_ticks.max(apart);
+            self.recorded_ticks = self.ticks;
+            self.count += 1;
+        }
+        Ok(Taken { due, ask_again })
     }
 
-    /// Checks that this is the rate for which this host has asked.
-    fn check_rate(&mut self, ticks: u32) -> Result<(), Foreign> {
-        let late = ticks > self.every_ticks + LATE_TICKS;
-        self.late = if late { self.late + 1 } else { 0 };
-        if ticks < self.every_ticks || self.late >= LATE_MAX {
-            return Err(Foreign::Every(seconds(u64::from(ticks))));
-        }
-        Ok(())
+    /// Whether the last belongs into the file. The rate is kept on the average: what came late makes the next one due earlier.
+    fn is_due(&mut self) -> bool {
+        let over = match self.since_due {
+            Some(since) if since < self.every_ticks => return false,
+            Some(since) => since - self.every_ticks,
+            None => 0,
+        };
+        // After a gap nothing is made up for.
+        self.since_due = Some(if over < self.every_ticks { over } else { 0 });
+        true
     }
 
     /// From the first to the last, ticks.
@@ -113,18 +122,17 @@ impl Counter {
     }
 
     pub(super) fn recorded(&self, damaged_frames: u64) -> Recorded {
-        let sent = self.count + self.lost;
-        let every_s = match sent {
+        let every_s = match self.count {
             0 | 1 => seconds(u64::from(self.every_ticks)),
-            sent => seconds(self.ticks) / (sent - 1) as f64,
+            count => seconds(self.recorded_ticks) / (count - 1) as f64,
         };
         Recorded {
             count: self.count,
             lost: self.lost,
             damaged_frames,
-            length_s: seconds(self.ticks),
+            length_s: seconds(self.recorded_ticks),
             every_s,
-            longest_s: seconds(u64::from(self.longest_ticks)),
+            longest_s: seconds(self.longest_ticks),
         }
     }
 }
@@ -147,11 +155,12 @@ impl Recorded {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{Counter, Foreign};
+    use super::{Counter, Restarted};
 
-    /// Requested ticks, number and tick of each telemetry, the end, and how much is counted and lost until then.
-    type Case = (u16, &'static [(u32, u32)], Result<(), Foreign>, [u64; 2]);
+    /// Requested ticks, number and tick of each telemetry, the end, and how much is recorded and lost until then.
+    type Case = (u16, &'static [(u32, u32)], Result<(), Restarted>, [u64; 2]);
 
     const MAX: u32 = u32::MAX;
 
@@ -164,50 +173,70 @@ mod tests {
             [5, 1],
         ),
         // A leg that restarts ends the recording.
-        (
-            80,
-            &[(5, 8000), (6, 8080), (7, 40)],
-            Err(Foreign::Restarted),
-            [2, 0],
-        ),
+        (80, &[(5, 8000), (6, 8080), (7, 40)], Err(Restarted), [2, 0]),
         // Ticks and numbers may wrap.
         (80, &[(MAX, MAX - 39), (0, 40), (1, 120)], Ok(()), [3, 0]),
-        // A second log with another rate is noticed by the one that loses.
+        // Another host has a higher rate: of its telemetry every second is recorded, and of a rate between on the average as much.
         (
             80,
-            &[(5, 100), (6, 180), (7, 220)],
-            Err(Foreign::Every(0.005)),
-            [2, 0],
-        ),
-        (
-            40,
-            &[(5, 100), (6, 180), (7, 260), (8, 340)],
-            Err(Foreign::Every(0.01)),
+            &[(5, 100), (6, 140), (7, 180), (8, 220), (9, 260)],
+            Ok(()),
             [3, 0],
         ),
-        // A pause, as while another host introduces itself, is none.
+        (
+            80,
+            &[(1, 0), (2, 48), (3, 96), (4, 144), (5, 192), (6, 240)],
+            Ok(()),
+            [4, 0],
+        ),
+        // After a gap the next is not followed by one that makes up for it.
         (
             40,
-            &[(5, 100), (6, 140), (7, 900), (8, 940)],
+            &[(5, 100), (6, 140), (7, 900), (8, 920), (9, 940)],
             Ok(()),
             [4, 0],
         ),
     ];
 
     #[test]
-    fn telemetry_is_counted_until_it_is_not_of_this_recording() {
+    fn telemetry_is_recorded_as_often_as_it_was_asked_for() {
         for (every_ticks, replies, expected, [count, lost]) in CASES {
             let mut counter = Counter::new(every_ticks);
-            let ended = replies
+            let mut taken = replies
                 .iter()
-                .try_for_each(|&(number, tick)| counter.take(number, tick));
+                .map(|&(number, tick)| counter.take(number, tick));
+            let ended = taken.try_for_each(|taken| taken.map(|_| ()));
             assert_eq!(ended, expected);
             let recorded = counter.recorded(0);
-            assert_eq!([recorded.count, recorded.lost], [count, lost]);
+            assert_eq!(
+                [recorded.count, recorded.lost],
+                [count, lost],
+                "{replies:?}"
+            );
             if every_ticks == 27 {
                 let times = [recorded.every_s, recorded.longest_s, recorded.length_s];
-                assert_eq!(times, [32.0 / 8000.0, 64.0 / 8000.0, 160.0 / 8000.0]);
+                assert_eq!(times, [40.0 / 8000.0, 64.0 / 8000.0, 160.0 / 8000.0]);
             }
+        }
+    }
+
+    /// At once, and then not every time: the leg may not be able to do more. A loss is none.
+    #[test]
+    fn a_lower_rate_has_the_leg_asked_again() {
+        let mut counter = Counter::new(40);
+        let replies = [
+            (5, 100, false),
+            (6, 180, true),
+            (7, 260, false),
+            (8, 340, false),
+            (9, 420, true),
+            (10, 460, false),
+            (12, 540, false),
+            (13, 620, true),
+        ];
+        for (number, tick, ask_again) in replies {
+            let taken = counter.take(number, tick).unwrap();
+            assert_eq!(taken.ask_again, ask_again, "{number}");
         }
     }
 }

@@ -26,7 +26,17 @@ impl Comparison {
     /// How far the true tip is from where the trajectory has it, mm.
     #[must_use]
     pub fn reference_error_mm(&self) -> f64 {
-        let pairs = self.tip_true_mm.iter().zip(self.tip_reference_mm);
+        self.error_mm(&self.tip_reference_mm)
+    }
+
+    /// How far the true tip is from where the host has sent it, mm.
+    #[must_use]
+    pub fn commanded_error_mm(&self) -> f64 {
+        self.error_mm(&self.tip_commanded_mm)
+    }
+
+    fn error_mm(&self, tip_mm: &[f64; 3]) -> f64 {
+        let pairs = self.tip_true_mm.iter().zip(tip_mm);
         pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
     }
 }

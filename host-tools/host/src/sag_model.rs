@@ -6,7 +6,7 @@ use leg_model::{Query, RigParameters, StiffnessAt, Support, Tendon, evaluate};
 
 /// The mechanism of a leg, to compute what its board does not report.
 #[derive(Clone, Debug)]
-pub(super) struct SagModel {
+pub(crate) struct SagModel {
     parameters: RigParameters<f64, 3>,
     tendons: [Tendon<f64>; 3],
     support: Support<f64>,
