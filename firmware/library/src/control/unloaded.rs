@@ -108,10 +108,13 @@ mod tests {
             SupportKind::Spherical,
             SupportKind::ElasticUniversal,
         ] {
-            let settings = Settings {
+            let mut settings = Settings {
                 support,
                 ..Settings::for_table_1().unwrap()
             };
+            if support == SupportKind::ElasticUniversal {
+                settings.joint.torsion_nm_per_rad = 40.0;
+            }
             let mechanism = Mechanism::<f64>::new(&settings).unwrap();
             for (x, y) in [(0.0, 0.0), (0.2, -0.1), (-0.3, 0.35), (0.45, 0.1)] {
                 let unloaded = Direction::from_xy(x, y).unwrap();
