@@ -44,13 +44,13 @@
 //! | [`recording`] | simulations and telemetry as MCAP or CSV, and the replay of a simulation |
 //! | [`signals`] | every signal of a leg, declared once |
 //! | [`leg_report`], [`sensor_report`], [`monitor`] | what people and machines are shown of a leg |
-//! | [`cell_fit`] | a load cell's calibration from weights |
+//! | [`calibration`] | calibration by hand: a load cell by known weights |
 //! | [`tune`] | motors, play and swing of a leg, measured |
 //! | [`flash`] | writing the firmware by `probe-rs` |
 
 pub mod byte_port;
+pub mod calibration;
 pub mod cancel_flag;
-pub mod cell_fit;
 pub mod emulated_board;
 pub mod flash;
 mod flat_json;

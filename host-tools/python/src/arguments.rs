@@ -3,12 +3,15 @@
 use crate::rig::Rig;
 use leg_base::angles;
 use leg_base::timed_path::{Row, TimedPath};
+use leg_host::operator::Tensioning;
 use leg_rig::rig_file::RigFile;
 use leg_sim::action::Action;
 use leg_sim::scenario::CommandStep;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -84,6 +87,64 @@ pub fn command(name: &str, numbers: &[(&str, f64)]) -> PyResult<CommandStep> {
 /// A command or an action with words.
 pub fn read<T: DeserializeOwned>(value: &Value) -> PyResult<T> {
     T::deserialize(value).map_err(|error| PyValueError::new_err(error.to_string()))
+}
+
+/// What the tendons shall be tensioned to.
+pub fn tensioning(
+    pretension_n: Option<f64>,
+    stiffness_nm_per_rad: Option<f64>,
+    towards_deg: Option<f64>,
+) -> PyResult<Option<Tensioning>> {
+    let tensioning = match (pretension_n, stiffness_nm_per_rad) {
+        (Some(_), Some(_)) => {
+            return Err(PyValueError::new_err(
+                "pretension_n and stiffness_nm_per_rad are given; give one of them",
+            ));
+        }
+        (Some(n), None) => Some(Tensioning::Pretension(
+            within("pretension_n", n, 0.0, 1e9)? as f32
+        )),
+        (None, Some(demand)) => {
+            let demand = within("stiffness_nm_per_rad", demand, 0.0, 1e9)?;
+            let azimuth = towards_deg.map(|deg| within("towards_deg", deg, -3600.0, 3600.0));
+            let towards = azimuth.transpose()?.map(angles::unit_vector);
+            Some(Tensioning::Stiffness {
+                demand_nm_per_rad: demand as f32,
+                towards: towards.map(|towards| towards.map(|component| component as f32)),
+            })
+        }
+        (None, None) => None,
+    };
+    match (&tensioning, towards_deg) {
+        (None | Some(Tensioning::Pretension(_)), Some(_)) => Err(PyValueError::new_err(
+            "towards_deg is given without stiffness_nm_per_rad",
+        )),
+        _ => Ok(tensioning),
+    }
+}
+
+/// A dictionary as JSON.
+pub fn to_json(name: &str, values: &Bound<'_, PyDict>) -> PyResult<String> {
+    let json = values.py().import("json")?;
+    let strict = PyDict::new(values.py());
+    strict.set_item("allow_nan", false)?;
+    let dumped = json.call_method("dumps", (values,), Some(&strict));
+    let no_json = |error| PyValueError::new_err(format!("{name} cannot be JSON: {error}"));
+    dumped.map_err(no_json)?.extract()
+}
+
+/// What a JSON text says, as Python has it.
+pub fn loads<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
+    py.import("json")?.call_method1("loads", (text,))
+}
+
+/// The same of what can be written as JSON.
+pub fn from_json<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
+    let text = serde_json::to_string(value);
+    loads(
+        py,
+        &text.map_err(|error| PyValueError::new_err(error.to_string()))?,
+    )
 }
 
 fn with_numbers(name: &str, numbers: &[(&str, f64)]) -> PyResult<Value> {

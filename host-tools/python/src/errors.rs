@@ -77,7 +77,7 @@ pub struct SimulationFailed(pub SimulationError);
 /// What a leg answers through its operator.
 pub fn leg_failure(failure: LegFailure) -> PyErr {
     let (error, state) = match failure {
-        LegFailure::Open(failure) => return LegError::new_err(sentence(&failure)),
+        LegFailure::Refused(failure) => return LegError::new_err(sentence(&failure)),
         LegFailure::Closed => return leg_error("the leg's own thread has ended; open it again"),
         LegFailure::Operator(error, state) => (error, state),
     };

@@ -1,19 +1,26 @@
 //! The class `Leg`: a leg on a serial port, or emulated in this process, commanded as by the command line.
 
-use crate::arguments::{self, within};
+use crate::arguments::{self, tensioning, within};
 use crate::errors::{leg_error, leg_failure};
 use crate::operator_thread::{LegFailure, OperatorThread, Place};
 use crate::rig::Rig;
 use crate::telemetry;
 use leg_base::angles;
+use leg_firmware::can::LegAddress;
+use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
+use leg_host::calibration::{KnownWeight, fit, mean_code, require_drivers_off};
 use leg_host::cancel_flag::CancelFlag;
-use leg_host::operator::{Goal, Operator, OperatorError, Tensioning};
+use leg_host::operator::{Goal, Operator, OperatorError, setting_differences};
+use leg_host::sensor_report;
 use leg_host::signals::LegConstants;
+use leg_rig::{control_settings, settings_text};
+use leg_sim::action::Action;
 use leg_sim::emulated_leg::InitialState;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use serde_json::json;
 use std::sync::{Mutex, MutexGuard, OnceLock, TryLockError};
 use std::time::Duration;
 
@@ -62,6 +69,21 @@ impl Leg {
         py: Python<'_>,
         work: impl FnOnce(&mut Operator) -> Result<T, OperatorError> + Send + 'static,
     ) -> PyResult<T> {
+        self.with_thread(py, |thread, cancel, interrupted| {
+            thread.ask(cancel, interrupted, work)
+        })
+    }
+
+    fn with_thread<T: Send>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(
+            &OperatorThread,
+            &CancelFlag,
+            &mut dyn FnMut() -> bool,
+        ) -> Result<T, LegFailure>
+        + Send,
+    ) -> PyResult<T> {
         let mut signal = None;
         let result = py.detach(|| {
             let thread = self.thread()?;
@@ -69,7 +91,7 @@ impl Leg {
                 return Err(leg_error("this leg is closed; open it again"));
             };
             self.cancel.clear();
-            Ok(thread.ask(&self.cancel, || interrupted(&mut signal), work))
+            Ok(work(thread, &self.cancel, &mut || interrupted(&mut signal)))
         })?;
         match (result, signal) {
             (Err(LegFailure::Operator(error, _)), Some(signal))
@@ -97,6 +119,24 @@ impl Leg {
     }
 }
 
+/// The settings of a board that a rig gives.
+fn settings_of(rig: &Bound<'_, PyAny>) -> PyResult<Settings> {
+    let rig = match arguments::rig(Some(rig))? {
+        Some(rig) => rig,
+        None => Rig::load(None)?.file,
+    };
+    Ok(control_settings::settings(&rig, &rig.gains, None))
+}
+
+/// Replaces the settings of a leg, and keeps them over a reset if that is asked for.
+fn set(operator: &mut Operator, settings: &Settings, save: bool) -> Result<(), OperatorError> {
+    operator.set_settings(settings)?;
+    if save {
+        operator.save_settings()?;
+    }
+    Ok(())
+}
+
 /// Whether Python has a signal, as Ctrl-C; it is kept for later.
 fn interrupted(signal: &mut Option<PyErr>) -> bool {
     if signal.is_none() {
@@ -106,46 +146,21 @@ fn interrupted(signal: &mut Option<PyErr>) -> bool {
     false
 }
 
-/// What the tendons shall be tensioned to.
-fn tensioning(
-    pretension_n: Option<f64>,
-    stiffness_nm_per_rad: Option<f64>,
-    towards_deg: Option<f64>,
-) -> PyResult<Option<Tensioning>> {
-    let tensioning = match (pretension_n, stiffness_nm_per_rad) {
-        (Some(_), Some(_)) => {
-            return Err(PyValueError::new_err(
-                "pretension_n and stiffness_nm_per_rad are given; give one of them",
-            ));
-        }
-        (Some(n), None) => Some(Tensioning::Pretension(
-            within("pretension_n", n, 0.0, 1e9)? as f32
-        )),
-        (None, Some(demand)) => {
-            let demand = within("stiffness_nm_per_rad", demand, 0.0, 1e9)?;
-            let azimuth = towards_deg.map(|deg| within("towards_deg", deg, -3600.0, 3600.0));
-            let towards = azimuth.transpose()?.map(angles::unit_vector);
-            Some(Tensioning::Stiffness {
-                demand_nm_per_rad: demand as f32,
-                towards: towards.map(|towards| towards.map(|component| component as f32)),
-            })
-        }
-        (None, None) => None,
-    };
-    match (&tensioning, towards_deg) {
-        (None | Some(Tensioning::Pretension(_)), Some(_)) => Err(PyValueError::new_err(
-            "towards_deg is given without stiffness_nm_per_rad",
-        )),
-        _ => Ok(tensioning),
-    }
-}
-
 #[pymethods]
 impl Leg {
     #[staticmethod]
     #[pyo3(signature = (port = None))]
     fn open(py: Python<'_>, port: Option<String>) -> PyResult<Self> {
         Self::opened(py, Place::Port(port))
+    }
+
+    #[staticmethod]
+    #[pyo3(signature = (interface, leg = 1))]
+    fn can(py: Python<'_>, interface: String, leg: u8) -> PyResult<Self> {
+        let address = LegAddress::new(leg);
+        let address = address
+            .ok_or_else(|| PyValueError::new_err(format!("leg = {leg} is none of 1 to 6")))?;
+        Self::opened(py, Place::Can(interface, address))
     }
 
     #[staticmethod]
@@ -245,6 +260,97 @@ impl Leg {
     fn telemetry<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let report = self.ask(py, Operator::telemetry)?;
         self.report(py, &report.telemetry)
+    }
+
+    fn sensors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let both = self.ask(py, |operator| {
+            Ok((operator.sensors()?, operator.settings()?))
+        })?;
+        arguments::from_json(py, &sensor_report::json(&both.0, &both.1))
+    }
+
+    fn wait(&self, py: Python<'_>, seconds: f64) -> PyResult<()> {
+        let time = Duration::from_secs_f64(arguments::time_s("seconds", seconds)?);
+        self.ask(py, move |operator| operator.pause(time))
+    }
+
+    fn disturb(&self, py: Python<'_>, action: &Bound<'_, PyDict>) -> PyResult<()> {
+        let text = arguments::to_json("action", action)?;
+        let action = Action::parse(&text).map_err(PyValueError::new_err)?;
+        self.with_thread(py, |thread, cancel, interrupted| {
+            thread.disturb(cancel, interrupted, action)
+        })
+    }
+
+    fn settings(&self, py: Python<'_>) -> PyResult<Rig> {
+        let settings = self.ask(py, Operator::settings)?;
+        Rig::read_text("the leg's settings", settings_text::rig_file(&settings))
+    }
+
+    fn settings_differences<'py>(
+        &self,
+        py: Python<'py>,
+        rig: &Bound<'_, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let given = settings_of(rig)?;
+        let found = setting_differences(&given, &self.ask(py, Operator::settings)?);
+        let rows = found.iter().map(|difference| {
+            json!({ "name": difference.name, "rig": difference.ours, "leg": difference.theirs })
+        });
+        arguments::from_json(py, &rows.collect::<Vec<_>>())
+    }
+
+    #[pyo3(signature = (rig, *, save = false))]
+    fn set_settings(&self, py: Python<'_>, rig: &Bound<'_, PyAny>, save: bool) -> PyResult<()> {
+        let settings = settings_of(rig)?;
+        self.ask(py, move |operator| set(operator, &settings, save))
+    }
+
+    #[pyo3(signature = (cell, weights_kg, hang, *, set = false, save = false))]
+    fn calibrate_cell<'py>(
+        &self,
+        py: Python<'py>,
+        cell: u8,
+        weights_kg: Vec<f64>,
+        hang: &Bound<'_, PyAny>,
+        set: bool,
+        save: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        if !(1..=3).contains(&cell) {
+            return Err(PyValueError::new_err(format!(
+                "cell = {cell} is none of 1 to 3"
+            )));
+        }
+        if save && !set {
+            return Err(PyValueError::new_err("save is given without set"));
+        }
+        let refused = |failure| leg_failure(LegFailure::Refused(failure));
+        let axis = usize::from(cell) - 1;
+        let off = self.ask(py, |operator| {
+            Ok(require_drivers_off(
+                operator,
+                "let weights be hung on its cells",
+            ))
+        })?;
+        off.map_err(refused)?;
+        let mut settings = self.ask(py, Operator::settings)?;
+        let gravity = f64::from(settings.rig.gravity_m_per_s2);
+        let mut weighings = Vec::new();
+        for kg in weights_kg {
+            let newtons = within("weights_kg", kg, 0.0, 1e3)? * gravity;
+            hang.call1((kg,))?;
+            let code = self.ask(py, move |operator| mean_code(operator, axis))?;
+            weighings.push(KnownWeight { newtons, code });
+        }
+        let fit = fit(&weighings).map_err(refused)?;
+        fit.require_straight(cell, &weighings).map_err(refused)?;
+        if set {
+            settings.axes[axis].cell_n_per_code = fit.n_per_code as f32;
+            settings.axes[axis].cell_zero_code = fit.zero_code as f32;
+            let settings = settings.without_zero();
+            self.ask(py, move |operator| self::set(operator, &settings, save))?;
+        }
+        arguments::from_json(py, &fit)
     }
 
     fn close(&self, py: Python<'_>) -> PyResult<()> {

@@ -1,13 +1,18 @@
 //! An operator in a thread of its own, which Python asks: it cannot leave the thread in which its transport was opened.
 
 use leg_base::failure::Failure;
+use leg_firmware::can::LegAddress;
 use leg_firmware::supervisor::State;
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{HostIdentity, Operator, OperatorError};
 use leg_host::transport::Transport;
+#[cfg(target_os = "linux")]
+use leg_host::transport::can::{CanTransport, SocketCan};
 use leg_host::transport::emulated::EmulatedLine;
 use leg_host::transport::serial::{self, Serial};
+use leg_host::transport::tcp::{self, Tcp};
 use leg_rig::rig_file::RigFile;
+use leg_sim::action::Action;
 use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
 use leg_sim::link::InProcess;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -19,20 +24,28 @@ const LOOK_TIME: Duration = Duration::from_millis(50);
 
 /// Where a leg is.
 pub enum Place {
-    /// On a serial port; that of the board's ST-LINK if none is named.
+    /// On a serial port, or emulated at the other end of a TCP connection; that of the board's ST-LINK if none is named.
     Port(Option<String>),
+    /// On a CAN FD bus: the interface.
+    Can(String, LegAddress),
     /// In this process.
     Emulated(Box<RigFile>, InitialState),
 }
 
 /// Why a leg did not do what it was asked.
 pub enum LegFailure {
-    /// It cannot be reached.
-    Open(Failure),
+    /// It cannot be reached, or not do that.
+    Refused(Failure),
     /// The operator's error, and what the leg does then where the error does not say it.
     Operator(Box<OperatorError>, Option<State>),
     /// The thread has ended.
     Closed,
+}
+
+impl From<Failure> for LegFailure {
+    fn from(failure: Failure) -> Self {
+        Self::Refused(failure)
+    }
 }
 
 impl From<OperatorError> for LegFailure {
@@ -41,8 +54,15 @@ impl From<OperatorError> for LegFailure {
     }
 }
 
+/// A leg that knows this host.
+struct Connection {
+    operator: Operator,
+    /// The leg itself, if it is emulated here.
+    emulated: Option<EmulatedLine>,
+}
+
 /// What the thread is asked to do.
-type Job = Box<dyn FnOnce(&mut Operator) + Send>;
+type Job = Box<dyn FnOnce(&mut Connection) + Send>;
 
 /// The operator in its thread.
 pub struct OperatorThread {
@@ -61,9 +81,9 @@ impl OperatorThread {
         let (opened, result) = channel();
         let flag = cancel.clone();
         let thread = thread::spawn(move || match connect(place, flag) {
-            Ok(operator) => {
+            Ok(connection) => {
                 if opened.send(Ok(())).is_ok() {
-                    serve(operator, &to_do);
+                    serve(connection, &to_do);
                 }
             }
             Err(failure) => {
@@ -82,11 +102,38 @@ impl OperatorThread {
         interrupted: impl FnMut() -> bool,
         work: impl FnOnce(&mut Operator) -> Result<T, OperatorError> + Send + 'static,
     ) -> Result<T, LegFailure> {
+        self.submit(cancel, interrupted, |Connection { operator, .. }| {
+            work(operator).map_err(|error| with_state(error, operator))
+        })
+    }
+
+    /// Does something to an emulated leg.
+    pub fn disturb(
+        &self,
+        cancel: &CancelFlag,
+        interrupted: impl FnMut() -> bool,
+        action: Action,
+    ) -> Result<(), LegFailure> {
+        self.submit(cancel, interrupted, move |connection| {
+            let Some(leg) = &connection.emulated else {
+                let remedy = "open it with Leg.emulated";
+                return Err(Failure::refused("only an emulated leg is disturbed", remedy).into());
+            };
+            leg.with_plant(|plant| action.apply(plant));
+            Ok(())
+        })
+    }
+
+    fn submit<T: Send + 'static>(
+        &self,
+        cancel: &CancelFlag,
+        interrupted: impl FnMut() -> bool,
+        work: impl FnOnce(&mut Connection) -> Result<T, LegFailure> + Send + 'static,
+    ) -> Result<T, LegFailure> {
         let (done, result) = channel();
-        let job: Job = Box::new(move |operator| {
-            let result = work(operator).map_err(|error| with_state(error, operator));
+        let job: Job = Box::new(move |connection| {
             // Whoever asked may have gone.
-            let _ = done.send(result);
+            let _ = done.send(work(connection));
         });
         self.jobs.send(job).map_err(|_| LegFailure::Closed)?;
         wait(&result, cancel, interrupted)?
@@ -100,22 +147,40 @@ impl OperatorThread {
     }
 }
 
-fn connect(place: Place, cancel: CancelFlag) -> Result<Operator, LegFailure> {
-    let (transport, host): (Box<dyn Transport>, _) = match place {
-        Place::Port(port) => {
-            let port = port.map_or_else(serial::find_board, Ok);
-            let open = |port: String| Serial::open_watched(&port, |_| !cancel.is_set());
-            let serial = port.and_then(open).map_err(LegFailure::Open)?;
-            (Box::new(serial), HostIdentity::random())
-        }
+fn connect(place: Place, cancel: CancelFlag) -> Result<Connection, LegFailure> {
+    let (transport, host, emulated): (Box<dyn Transport>, _, _) = match place {
+        Place::Port(port) => (serial_or_tcp(port, &cancel)?, HostIdentity::random(), None),
+        Place::Can(interface, leg) => (can(&interface, leg)?, HostIdentity::random(), None),
         Place::Emulated(rig, initial) => {
             let leg = EmulatedLeg::new(&rig, initial, Box::new(InProcess::new()));
-            let leg = leg.map_err(|error| LegFailure::Open(Failure::from_error(error)))?;
-            let line = EmulatedLine::new(leg, "the emulated leg");
-            (Box::new(line.connect()), HostIdentity::FIXED)
+            let line = EmulatedLine::new(leg.map_err(Failure::from_error)?, "the emulated leg");
+            (Box::new(line.connect()), HostIdentity::FIXED, Some(line))
         }
     };
-    Ok(Operator::open(transport, host, cancel)?)
+    let operator = Operator::open(transport, host, cancel)?;
+    Ok(Connection { operator, emulated })
+}
+
+fn serial_or_tcp(port: Option<String>, cancel: &CancelFlag) -> Result<Box<dyn Transport>, Failure> {
+    let port = port.map_or_else(serial::find_board, Ok)?;
+    Ok(match port.strip_prefix(tcp::SCHEME) {
+        Some(address) => Box::new(Tcp::open(address)?),
+        None => Box::new(Serial::open_watched(&port, |_| !cancel.is_set())?),
+    })
+}
+
+#[cfg(target_os = "linux")]
+fn can(interface: &str, leg: LegAddress) -> Result<Box<dyn Transport>, Failure> {
+    let port = SocketCan::open(interface, leg).map_err(Failure::from_error)?;
+    Ok(Box::new(CanTransport::new(port, leg)))
+}
+
+#[cfg(not(target_os = "linux"))]
+fn can(_: &str, _: LegAddress) -> Result<Box<dyn Transport>, Failure> {
+    Err(Failure::refused(
+        "CAN is supported on Linux only",
+        "connect the board's serial port",
+    ))
 }
 
 /// The error with what the leg does now, where it leaves that out.
@@ -130,9 +195,9 @@ fn with_state(error: OperatorError, operator: &mut Operator) -> LegFailure {
     LegFailure::Operator(Box::new(error), state)
 }
 
-fn serve(mut operator: Operator, to_do: &Receiver<Job>) {
+fn serve(mut connection: Connection, to_do: &Receiver<Job>) {
     while let Ok(job) = to_do.recv() {
-        job(&mut operator);
+        job(&mut connection);
     }
 }
 

@@ -46,6 +46,12 @@ impl Rig {
         loaded.map_err(|failure| rig_error(&failure))
     }
 
+    /// The rig that a text describes, by a name.
+    pub fn read_text(name: &str, text: String) -> PyResult<Self> {
+        let name = name.to_owned();
+        Self::read(RigText { name, text }).map_err(|failure| rig_error(&failure))
+    }
+
     /// The mechanism and the query with what a call changes of them for all poses, by the names of `leg eval`.
     fn changed(&self, changes: &[(&str, Option<Value>)]) -> PyResult<PoseLine> {
         let mut line = json!({"azimuth_deg": 0, "tilt_deg": 0, "payload_kg": 0});
@@ -136,20 +142,13 @@ impl Rig {
     #[staticmethod]
     #[pyo3(signature = (text, name = "rig"))]
     fn parse(text: &str, name: &str) -> PyResult<Self> {
-        let [name, text] = [name, text].map(str::to_owned);
-        Self::read(RigText { name, text }).map_err(|failure| rig_error(&failure))
+        Self::read_text(name, text.to_owned())
     }
 
     #[staticmethod]
     #[pyo3(signature = (values, name = "rig"))]
     fn from_dict(values: &Bound<'_, PyDict>, name: &str) -> PyResult<Self> {
-        let json = values.py().import("json")?;
-        let strict = PyDict::new(values.py());
-        strict.set_item("allow_nan", false)?;
-        let dumped = json.call_method("dumps", (values,), Some(&strict));
-        let no_values =
-            |error| PyValueError::new_err(format!("values cannot be a rig file: {error}"));
-        let text: String = dumped.map_err(no_values)?.extract()?;
+        let text = arguments::to_json("values", values)?;
         let name = name.to_owned();
         let source = RigText {
             name: name.clone(),
@@ -163,7 +162,7 @@ impl Rig {
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let converted = rig_convert::convert(&self.text, RigFormat::Json);
         let (text, _) = converted.map_err(|failure| rig_error(&failure))?;
-        py.import("json")?.call_method1("loads", (text,))
+        arguments::loads(py, &text)
     }
 
     #[getter]

@@ -7,11 +7,12 @@ import subprocess
 import sys
 import threading
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 import pytest
-from tendon_leg import Leg, LegError, LegFault, Refused
+from tendon_leg import Leg, LegError, LegFault, Refused, Rig, RigError
 
 ROOT = Path(__file__).parents[3]
 needs_leg = pytest.mark.skipif("LEG" not in os.environ, reason="the variable LEG names no built `leg`; CI's does")
@@ -51,6 +52,70 @@ def test_refusals_and_faults_have_their_words():
     assert (fault.value.code, fault.value.name) == (14, "stiffness out of reach")
     leg.stop()
     assert leg.telemetry()["state"] == "held"
+
+
+def test_settings_are_read_compared_and_replaced():
+    leg = Leg.emulated()
+    assert leg.settings_differences("table1") == []
+    values = leg.settings().to_dict()
+    values["mass"]["leg_kg"] = 2.0
+    heavier = Rig.from_dict(values)
+    [difference] = leg.settings_differences(heavier)
+    assert "mass" in difference["name"] and difference["rig"] == 2.0 != difference["leg"]
+    leg.set_settings(heavier, save=True)
+    assert leg.settings_differences(heavier) == []
+    with pytest.raises(Refused, match="the leg does not know its zero"):
+        leg.move(10, 5)
+    with pytest.raises(RigError, match="nope"):
+        leg.set_settings("nope")
+
+
+def test_settings_are_not_replaced_while_the_leg_is_armed():
+    leg = Leg.emulated()
+    leg.move(30, 10)
+    with pytest.raises(LegError, match="disarm"):
+        leg.set_settings("table1")
+    with pytest.raises(LegError, match="weights be hung on its cells while its drivers are on"):
+        leg.calibrate_cell(1, [0, 5], lambda kg: None)
+    assert leg.settings_differences("table1") == []
+
+
+def hang_on(leg, cell, error_kg=0.0):
+    """Hangs weights on an emulated cell, one of them another than is said."""
+
+    def hang(kg):
+        newtons = 9.81 * (kg + error_kg * (kg == 2.0))
+        leg.disturb({"hang": {"cell": cell, "newtons": newtons}})
+        leg.wait(1.5)
+
+    return hang
+
+
+def test_a_load_cell_is_calibrated_by_weights():
+    leg = Leg.emulated(slack=True)
+    before = leg.settings()
+    with pytest.raises(LegError, match="off a straight line"):
+        leg.calibrate_cell(2, [0, 1, 2, 5], hang_on(leg, 2, error_kg=0.2), set=True)
+    assert leg.settings_differences(before) == []
+    found = leg.calibrate_cell(2, [0, 1, 2, 5], hang_on(leg, 2), set=True, save=True)
+    assert found["residual_n"] < 0.05
+    for difference in leg.settings_differences(before):
+        assert "cell" in difference["name"]
+    leg.disturb({"hang": {"cell": 2, "newtons": 30.0}})
+    leg.wait(1.5)
+    assert leg.sensors()["axes"][1]["tension_n"] == pytest.approx(30.0, abs=0.1)
+
+
+def test_an_emulated_leg_is_disturbed_and_no_other():
+    leg = Leg.emulated()
+    leg.move(30, 20)
+    leg.disturb({"payload": {"kg": 1.0, "over_s": 0.2}})
+    leg.wait(2.0)
+    assert leg.telemetry()["payload_kg"] == pytest.approx(1.0, abs=0.05)
+    leg.disturb({"emergency_stop": True})
+    leg.wait(0.1)
+    assert leg.sensors()["emergency_stop"]
+    assert leg.telemetry()["state"] == "off"
 
 
 def test_a_closed_leg_is_refused_by_name():
@@ -98,6 +163,15 @@ def test_ctrl_c_leaves_the_leg_in_hold():
         (lambda leg: leg.follow(circle(1.0), lead_s=np.inf), ValueError, "lead_s = inf"),
         (lambda leg: leg.follow([[0, 0]]), ValueError, "points has the shape [1, 2]"),
         (lambda leg: Leg.open("/dev/nope"), LegError, "/dev/nope"),
+        (lambda leg: Leg.open("tcp://127.0.0.1:1"), LegError, "tcp://127.0.0.1:1"),
+        (lambda leg: Leg.can("nope"), LegError, "nope"),
+        (lambda leg: Leg.can("can0", 7), ValueError, "leg = 7 is none of 1 to 6"),
+        (lambda leg: leg.disturb({"payload": {"kg": np.nan}}), ValueError, "action cannot be JSON"),
+        (lambda leg: leg.disturb({"kick": 1}), ValueError, "kick"),
+        (lambda leg: leg.calibrate_cell(4, [0, 1], print), ValueError, "cell = 4"),
+        (lambda leg: leg.calibrate_cell(1, [0, 1], print, save=True), ValueError, "save is given without set"),
+        (lambda leg: leg.calibrate_cell(1, [1, 1], lambda kg: None), LegError, "two different weights"),
+        (lambda leg: leg.wait(-1), ValueError, "seconds = -1"),
         (lambda leg: Leg.emulated(3), TypeError, "rig is no name"),
     ],
 )
@@ -107,13 +181,28 @@ def test_an_argument_is_refused_by_its_name(call, error, words):
     assert words in str(refusal.value)
 
 
+@contextmanager
+def emulator(*arguments):
+    """The port of a leg that is emulated in real time."""
+    command = [ROOT / os.environ["LEG"], "emulate", "--json", *arguments]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stdin=subprocess.PIPE, text=True) as process:
+        yield json.loads(process.stdout.readline())["port"]
+        process.terminate()
+
+
 @pytest.fixture
 def port():
-    """The port of a leg that is emulated in real time."""
-    command = [ROOT / os.environ["LEG"], "emulate", "--json"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stdin=subprocess.PIPE, text=True) as emulator:
-        yield json.loads(emulator.stdout.readline())["port"]
-        emulator.terminate()
+    with emulator() as name:
+        yield name
+
+
+@needs_leg
+@pytest.mark.parametrize("arguments", [["--tcp"], ["--on", "qemu"], ["--on", "chip", "--slack"]])
+def test_a_leg_is_reached_wherever_its_firmware_runs(arguments):
+    with emulator(*arguments) as name, Leg.open(name) as leg:
+        assert leg.telemetry()["state"] == "disarmed"
+        assert leg.settings_differences("table1") == []
+        assert 23 < leg.sensors()["supply_v"] < 25
 
 
 KILLED = """

@@ -204,7 +204,7 @@ def test_a_rig_is_refused_at_its_place(section, key, value, words):
         (lambda rig: rig.tendon_curve([1.0], tendon=0), ValueError, "tendon = 0 is none of"),
         (lambda rig: rig.tendon_curve("x"), TypeError, "tensions_n is no array"),
         (lambda rig: Rig(3), TypeError, "rig is no name"),
-        (lambda rig: Rig.from_dict({"mass": np.nan}), ValueError, "values cannot be a rig file"),
+        (lambda rig: Rig.from_dict({"mass": np.nan}), ValueError, "values cannot be JSON"),
         (lambda rig: Rig.from_dict({"mass": None}), RigError, "a rig file has no null"),
         (lambda rig: Rig.parse("[mass"), RigError, "not TOML"),
     ],

@@ -1,6 +1,6 @@
 //! `leg calibrate cells`.
 
-use super::manual_steps::{manual_step, require_drivers_off};
+use super::manual_steps::manual_step;
 use crate::connection::{LegArgs, LegConnection, Purpose};
 use crate::numbers::not_negative;
 use crate::options::Options;
@@ -9,19 +9,11 @@ use crate::settings::next_step;
 use leg_base::failure::Failure;
 use leg_base::json_object;
 use leg_firmware::settings::Settings;
-use leg_host::cell_fit::{CellFit, KnownWeight, fit, too_few_weights};
+use leg_host::calibration::{
+    CellFit, KnownWeight, fit, mean_code, require_drivers_off, too_few_weights,
+};
 use leg_host::operator::Operator;
 use leg_rig::number::decimal;
-use std::time::Duration;
-
-/// Readings that are averaged: noise of a few codes falls below a tenth of a code.
-const READINGS: u32 = 200;
-
-/// How far a weight may be off the straight line, as a part of the heaviest.
-const RESIDUAL_PART: f64 = 0.01;
-
-/// Time between two readings: at least a tick.
-const READING_TIME: Duration = Duration::from_millis(2);
 
 /// Finds zero and gain of a load cell by known weights, drivers off. Each hangs on the cell in the place of its tendon.
 #[derive(Debug, clap::Args)]
@@ -73,7 +65,7 @@ pub(super) fn run(args: &Args, options: Options) -> Result<(), Failure> {
             list(zero_code),
         )
     })?;
-    require_straight(args.cell, &weighings, &fit)?;
+    fit.require_straight(args.cell, &weighings)?;
     if args.set {
         set(&mut connection.operator, &settings, args.save)?;
     }
@@ -100,15 +92,6 @@ fn weigh(
     Ok(weighings)
 }
 
-fn mean_code(operator: &mut Operator, cell: usize) -> Result<f64, Failure> {
-    let mut sum = 0.0;
-    for _ in 0..READINGS {
-        sum += f64::from(operator.sensors()?.cell_codes[cell]);
-        operator.pause(READING_TIME)?;
-    }
-    Ok(sum / f64::from(READINGS))
-}
-
 fn table(args: &Args, weighings: &[KnownWeight], fit: &CellFit) -> String {
     let row = |(kg, &KnownWeight { newtons, code }): (&f64, &KnownWeight)| {
         let cell_n = whole_mn((code - fit.zero_code) * fit.n_per_code);
@@ -121,22 +104,6 @@ fn table(args: &Args, weighings: &[KnownWeight], fit: &CellFit) -> String {
          Load cell {}: {:.6} N per code, {:.1} without tension, off by at most {:.3} N\n",
         args.cell, fit.n_per_code, fit.zero_code, fit.residual_n,
     )
-}
-
-/// Fails where no straight line explains the weights: one was not what was said, or hung somewhere else.
-fn require_straight(cell: u8, weighings: &[KnownWeight], fit: &CellFit) -> Result<(), Failure> {
-    let newtons = weighings.iter().map(|weighing| weighing.newtons);
-    if fit.residual_n <= RESIDUAL_PART * newtons.fold(0.0, f64::max) {
-        return Ok(());
-    }
-    Err(Failure::failed(
-        format!(
-            "load cell {cell} is off a straight line by {:.3} N, more than {} % of the heaviest weight",
-            fit.residual_n,
-            RESIDUAL_PART * 100.0
-        ),
-        "hang the weights again, in the order in which they were given; nothing was set",
-    ))
 }
 
 /// Rounded to a millinewton, without a sign where that is zero.

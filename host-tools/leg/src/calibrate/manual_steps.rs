@@ -57,17 +57,3 @@ fn ask(operator: &mut Operator, step: &str) -> Result<(), Failure> {
         }
     }
 }
-
-/// Refuses a leg that drives its motors.
-pub(super) fn require_drivers_off(
-    operator: &mut Operator,
-    asked: &'static str,
-) -> Result<(), Failure> {
-    if operator.telemetry()?.telemetry.state.driven() {
-        return Err(Failure::refused(
-            format!("the leg does not {asked} while its drivers are on"),
-            "run `leg disarm` first",
-        ));
-    }
-    Ok(())
-}

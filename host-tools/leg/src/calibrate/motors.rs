@@ -1,10 +1,11 @@
 //! `leg calibrate motors`.
 
-use super::manual_steps::{manual_step, require_drivers_off};
+use super::manual_steps::manual_step;
 use crate::connection::{ConnectionArgs, Purpose};
 use crate::options::Options;
 use crate::output::load_rig;
 use leg_base::failure::Failure;
+use leg_host::calibration::require_drivers_off;
 use serde::Serialize;
 use std::path::PathBuf;
 

@@ -1,5 +1,6 @@
 """What is written in Rust: its types and what it does."""
 
+from collections.abc import Callable, Sequence
 from os import PathLike
 from typing import Any, final
 
@@ -38,7 +39,15 @@ class Leg:
 
     @staticmethod
     def open(port: str | None = None) -> Leg:
-        """The leg on a serial port, such as `/dev/ttyACM0`; on the port of the board's ST-LINK if left out."""
+        """The leg on a serial port, such as `/dev/ttyACM0`; on the port of the board's ST-LINK if left out.
+
+        What `leg emulate` prints is a port, too: with `--on chip` the board's own image on an emulated chip, with `--tcp`
+        `tcp://HOST:PORT`.
+        """
+
+    @staticmethod
+    def can(interface: str, leg: int = 1) -> Leg:
+        """The leg with an address, 1 to 6, on a CAN FD bus: its interface, such as `can0`. Linux only."""
 
     @staticmethod
     def emulated(rig: str | PathLike[str] | Rig | None = None, *, slack: bool = False) -> Leg:
@@ -81,6 +90,45 @@ class Leg:
 
     def telemetry(self) -> dict[str, Any]:
         """What the leg reports, by the names of `SimulatedLeg.telemetry`."""
+
+    def sensors(self) -> dict[str, Any]:
+        """What the sensors read now, as codes and in SI units: `axes` has one dictionary for each tendon."""
+
+    def wait(self, seconds: float) -> None:
+        """Lets a time pass; an emulated leg's passes in no other way but in calls."""
+
+    def disturb(self, action: dict[str, Any]) -> None:
+        """Does something to an emulated leg: `{"payload": {"kg": 2}}` and all else that `leg emulate --help` lists."""
+
+    def settings(self) -> Rig:
+        """The settings in use, as a rig that gives the same bits again."""
+
+    def settings_differences(self, rig: str | PathLike[str] | Rig) -> list[dict[str, Any]]:
+        """Every setting that a rig has differently: `name`, its value of the `rig` and of the `leg`."""
+
+    def set_settings(self, rig: str | PathLike[str] | Rig, *, save: bool = False) -> None:
+        """Replaces the settings by a rig's, and reads them back. The leg must be disarmed, and homed afterwards.
+
+        save: whether the board keeps them over a reset.
+        """
+
+    def calibrate_cell(
+        self,
+        cell: int,
+        weights_kg: Sequence[float],
+        hang: Callable[[float], object],
+        *,
+        set: bool = False,
+        save: bool = False,
+    ) -> dict[str, float]:
+        """Finds `n_per_code`, `zero_code` and `residual_n` of a load cell, 1 to 3, by known weights, drivers off.
+
+        weights_kg: at least two different ones; 0 is the empty hook.
+        hang: is called with each weight, and returns when it hangs on the cell in the place of the tendon.
+        set: whether the leg is set to the result; it must be homed afterwards. save: whether it keeps it over a reset.
+
+        Raises LegError, and sets nothing, where no straight line explains the weights.
+        """
 
     def close(self) -> None:
         """Closes the connection. The end of a `with` does, too."""

@@ -59,6 +59,7 @@ class AsyncLeg:
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="leg")
 
     open = staticmethod(_opened(Leg.open))
+    can = staticmethod(_opened(Leg.can))
     emulated = staticmethod(_opened(Leg.emulated))
 
     home = _awaited(Leg.home, drives=True)
@@ -69,6 +70,13 @@ class AsyncLeg:
     disarm = _awaited(Leg.disarm, drives=True)
     clear = _awaited(Leg.clear, drives=False)
     telemetry = _awaited(Leg.telemetry, drives=False)
+    sensors = _awaited(Leg.sensors, drives=False)
+    wait = _awaited(Leg.wait, drives=False)
+    disturb = _awaited(Leg.disturb, drives=False)
+    settings = _awaited(Leg.settings, drives=False)
+    settings_differences = _awaited(Leg.settings_differences, drives=False)
+    set_settings = _awaited(Leg.set_settings, drives=False)
+    calibrate_cell = _awaited(Leg.calibrate_cell, drives=False)
     _close = _awaited(Leg.close, drives=False)
 
     async def stop(self) -> None:

@@ -1,7 +1,46 @@
-//! Calibration of a load cell by known weights.
+//! Calibration by hand: what a leg has to be like for it, and a load cell by known weights.
 
+use crate::operator::{Operator, OperatorError};
 use leg_base::failure::Failure;
 use leg_firmware::sensors::CODE_MAX;
+use std::time::Duration;
+
+/// Readings that are averaged: noise of a few codes falls below a tenth of a code.
+const READINGS: u32 = 200;
+
+/// Time between two readings: at least a tick.
+const READING_TIME: Duration = Duration::from_millis(2);
+
+/// How far a weight may be off the straight line, as a part of the heaviest.
+const RESIDUAL_PART: f64 = 0.01;
+
+/// Refuses a leg that drives its motors; `asked` is what it does not do meanwhile.
+///
+/// # Errors
+/// That [`Failure`]; the operator's.
+pub fn require_drivers_off(operator: &mut Operator, asked: &str) -> Result<(), Failure> {
+    if operator.telemetry()?.telemetry.state.driven() {
+        return Err(Failure::refused(
+            format!("the leg does not {asked} while its drivers are on"),
+            "run `leg disarm` first",
+        ));
+    }
+    Ok(())
+}
+
+/// Mean of the codes of a load cell, 0 to 2.
+///
+/// # Errors
+/// The operator's.
+pub fn mean_code(operator: &mut Operator, cell: usize) -> Result<f64, OperatorError> {
+    let mut sum = 0.0;
+    for _ in 0..READINGS {
+        let codes = operator.sensors()?.cell_codes;
+        sum += codes.get(cell).copied().map_or(0.0, f64::from);
+        operator.pause(READING_TIME)?;
+    }
+    Ok(sum / f64::from(READINGS))
+}
 
 /// A weight on a load cell and what the cell then reads.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +60,27 @@ pub struct CellFit {
     pub zero_code: f64,
     /// Greatest distance of a weight from what its code means, N.
     pub residual_n: f64,
+}
+
+impl CellFit {
+    /// Fails where no straight line explains the weights of a cell, 1 to 3: one was not what was said, or hung somewhere else.
+    ///
+    /// # Errors
+    /// That [`Failure`].
+    pub fn require_straight(&self, cell: u8, weighings: &[KnownWeight]) -> Result<(), Failure> {
+        let newtons = weighings.iter().map(|weighing| weighing.newtons);
+        if self.residual_n <= RESIDUAL_PART * newtons.fold(0.0, f64::max) {
+            return Ok(());
+        }
+        Err(Failure::failed(
+            format!(
+                "load cell {cell} is off a straight line by {:.3} N, more than {} % of the heaviest weight",
+                self.residual_n,
+                RESIDUAL_PART * 100.0
+            ),
+            "hang the weights again, in the order in which they were given; nothing was set",
+        ))
+    }
 }
 
 /// Codes that a whole calibration has to span.
