@@ -25,7 +25,7 @@ pub fn json(telemetry: &Telemetry<f32>) -> impl Serialize + use<> {
     };
     json_object! {
         // What it may do.
-        state: telemetry.state,
+        state: description::state(telemetry.state),
         faults: telemetry.faults.faults().map(fault).collect::<Vec<_>>(),
         // Whether its zero is known.
         homed: telemetry.homed,
