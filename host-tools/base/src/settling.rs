@@ -22,11 +22,22 @@ const SAME_DIRECTION: f32 = 5e-4;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Settling {
     last: Option<Telemetry<f32>>,
-    /// Since which tick it is settled.
-    since: Option<u32>,
+    /// Since which tick it is settled, and where it was then.
+    since: Option<(u32, [f32; 2])>,
+    /// Whether the leg leaves its load out: it does not come to its target, but to rest.
+    uncompensated: bool,
 }
 
 impl Settling {
+    /// The same of a leg whose compensation is off.
+    #[must_use]
+    pub fn uncompensated() -> Self {
+        Self {
+            uncompensated: true,
+            ..Self::default()
+        }
+    }
+
     /// Takes telemetry; whether the leg has been settled for 0.3 s. Give it every 10 ms or more seldom: what comes earlier is
     /// left out.
     pub fn take(&mut self, telemetry: &Telemetry<f32>) -> bool {
@@ -36,23 +47,29 @@ impl Settling {
             return false;
         }
         self.last = Some(*telemetry);
-        if !before.is_some_and(|before| settled(&before, telemetry)) {
+        let there = if self.uncompensated {
+            let rests = |(_, pose)| same_direction(&pose, &telemetry.pose);
+            self.since.is_none_or(rests)
+        } else {
+            same_direction(&telemetry.pose, &telemetry.target)
+                && taut(&telemetry.tensions_n, &telemetry.target_tensions_n)
+        };
+        if !there || !before.is_some_and(|before| steady(&before, telemetry)) {
             self.since = None;
             return false;
         }
-        tick.wrapping_sub(*self.since.get_or_insert(tick)) >= SETTLED_TICKS
+        let (since, _) = *self.since.get_or_insert((tick, telemetry.pose));
+        tick.wrapping_sub(since) >= SETTLED_TICKS
     }
 }
 
-fn settled(before: &Telemetry<f32>, now: &Telemetry<f32>) -> bool {
+fn steady(before: &Telemetry<f32>, now: &Telemetry<f32>) -> bool {
     let steady = |value: fn(&Telemetry<f32>) -> f32| {
         (value(now) - value(before)).abs() <= SETTLED_PART * value(now).abs()
     };
     !now.moving
         && steady(|telemetry| telemetry.pretension_n)
         && steady(|telemetry| telemetry.stiffness_nm_per_rad)
-        && same_direction(&now.pose, &now.target)
-        && taut(&now.tensions_n, &now.target_tensions_n)
 }
 
 /// Whether two directions, as horizontal components, are the same.

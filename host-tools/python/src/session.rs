@@ -4,7 +4,7 @@ use crate::recorder::Recorder;
 use crate::signals::Snapshot;
 use leg_base::settling::Settling;
 use leg_base::timed_path::TimedPath;
-use leg_firmware::command::{Command, CommandRefusal};
+use leg_firmware::command::{Command, CommandRefusal, Compensation};
 use leg_firmware::drive::Drive;
 use leg_firmware::frame::FrameError;
 use leg_firmware::host_link::HostRefusal;
@@ -22,8 +22,8 @@ use leg_sim::path_sender::PathSender;
 use leg_sim::plant::Start;
 use pyo3::PyErr;
 
-/// Ticks within which a command is answered: it takes two, with the introduction before the first.
-const ANSWER_TICKS: u32 = 80;
+/// Ticks within which a command is answered: a leg that brakes executes none until it stands. 1 s.
+const ANSWER_TICKS: u32 = TICK_HZ as u32;
 
 /// Ticks from one look at a leg that settles to the next: 10 ms, what [`Settling`] compares.
 const LOOK_TICKS: u64 = TICK_HZ as u64 / 100;
@@ -71,6 +71,8 @@ pub struct Session {
     settings: Settings,
     constants: LegConstants,
     motors: Drive<f32>,
+    /// Whether the leg holds its load.
+    compensated: bool,
     /// The path that is being sent.
     path: Option<PathSender>,
     recorder: Option<Recorder>,
@@ -104,6 +106,7 @@ impl Session {
                 duty: [0.0; 3],
                 enabled: false,
             },
+            compensated: true,
             path: None,
             recorder: None,
             interrupted,
@@ -248,7 +251,12 @@ impl Session {
                 continue;
             };
             return match answer.result {
-                Ok(()) => Ok(()),
+                Ok(()) => {
+                    if let Command::Compensation(compensation) = command {
+                        self.compensated = *compensation != Compensation::Off;
+                    }
+                    Ok(())
+                }
                 Err(HostRefusal::Command(CommandRefusal::Faulted)) => {
                     Err(SessionError::Faulted(self.faults(), self.leg.state()))
                 }
@@ -286,7 +294,11 @@ impl Session {
 
     /// Lets the leg tick until it has been for 0.3 s where it shall be, at the end of its path.
     pub fn settle(&mut self, timeout_s: f64) -> Result<()> {
-        let mut settling = Settling::default();
+        let mut settling = if self.compensated {
+            Settling::default()
+        } else {
+            Settling::uncompensated()
+        };
         self.wait("come to rest where it shall be", timeout_s, |session| {
             session.require_following()?;
             let telemetry = session.leg.telemetry();

@@ -1,12 +1,54 @@
 """The examples that README.md does not run."""
 
+import runpy
 import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 sys.path.insert(0, str(EXAMPLES))
+
+
+def run(name, directory, monkeypatch):
+    """What an example has when it has drawn its picture."""
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    monkeypatch.chdir(directory)
+    values = runpy.run_path(str(EXAMPLES / f"{name}.py"))
+    assert (directory / f"{name}.png").stat().st_size > 10_000
+    return values
+
+
+def test_a_payload_is_estimated(tmp_path, monkeypatch):
+    seen = run("payload", tmp_path, monkeypatch)["seen"]
+    for time_s in [1.4, 2.9, 4.4, 5.9]:
+        row = np.searchsorted(seen["time_s"] - seen["time_s"][0], time_s)
+        assert seen["payload_kg"][row] == pytest.approx(seen["payload_true_kg"][row], abs=0.05)
+        assert seen["tip_error_mm"][row] < 0.1
+
+
+def test_more_pretension_makes_the_leg_stiffer_everywhere(tmp_path, monkeypatch):
+    softest = np.array(run("stiffness_map", tmp_path, monkeypatch)["softest"])
+    assert np.all(np.diff(softest, axis=0) > 0)
+
+
+def test_a_torn_wire_is_named_and_the_leg_held(tmp_path, monkeypatch):
+    values = run("fault", tmp_path, monkeypatch)
+    assert values["told"] == "fault 3, jump of a tension: the leg is held"
+    assert np.ptp(values["seen"]["tilt_true_deg"][-200:]) < 0.5
+
+
+def test_a_leg_of_an_own_rig_sags_more_and_moves_as_it_is_told(tmp_path, monkeypatch):
+    values = run("own_rig", tmp_path, monkeypatch)
+    assert np.all(values["sag_mm"]["mine"][1:] > values["sag_mm"]["rigs/table1.toml"][1:])
+    assert values["leg"].truth()["tilt_true_deg"] == pytest.approx(25.0, abs=0.02)
+
+
+def test_the_sag_of_fig_9_ends_with_the_compensation(tmp_path, monkeypatch):
+    values = run("fig9", tmp_path, monkeypatch)
+    errors_mm = np.interp([0.9, 3.4, 6.4], values["time_s"], values["seen"]["tip_error_mm"])
+    assert 1.5 < errors_mm[0] < 2.5 and 7.0 < errors_mm[1] < 7.5 and errors_mm[2] < 0.1
 
 
 def test_the_gymnasium_environment_is_one():

@@ -254,3 +254,25 @@ def test_many_legs_in_threads_do_what_one_does():
     for thread in threads:
         thread.join()
     assert len({tuple(bits(leg).items()) for leg in legs}) == 1
+
+
+def test_a_command_to_a_leg_that_brakes_waits_until_it_stands():
+    leg = armed()
+    leg.move(azimuth_deg=30, tilt_deg=25, wait=False)
+    leg.run(0.3)
+    leg.stop()
+    leg.clear()
+    leg.move(azimuth_deg=30, tilt_deg=5)
+    assert leg.truth()["tilt_true_deg"] == pytest.approx(5.0, abs=0.1)
+
+
+def test_a_leg_whose_compensation_is_off_settles_where_it_sags_to():
+    leg = SimulatedLeg("table1", azimuth_deg=30, tilt_deg=30, payload_kg=1.0)
+    leg.compensation("off")
+    leg.arm()
+    leg.move(azimuth_deg=30, tilt_deg=20)
+    sag_mm = leg.truth()["tip_error_mm"]
+    assert 1.0 < sag_mm < 10.0
+    leg.compensation("estimated")
+    leg.move(azimuth_deg=30, tilt_deg=20)
+    assert leg.truth()["tip_error_mm"] < 0.1
