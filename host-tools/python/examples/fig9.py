@@ -17,7 +17,7 @@ time_s = seen["time_s"] - begun_s
 
 figure, (tip, tension) = plt.subplots(2, 1, sharex=True, figsize=(7, 5), layout="constrained")
 tip.plot(time_s, seen["tip_error_mm"])
-tip.set(title="Fig. 9: sag under the leg's weight, with 2 kg from 1 s on; compensated from 3.5 s on", ylabel="mm", ylim=(0, None))
+tip.set(title="Fig. 9: sag of the tip; 2 kg from 1 s on, compensated from 3.5 s on", ylabel="mm", ylim=(0, None))
 tension.plot(time_s, seen["tensions_true_n"], label=["tendon 1", "tendon 2", "tendon 3"])
 tension.set(xlabel="time, s", ylabel="true tension, N", ylim=(0, None))
 tension.legend()
