@@ -6,19 +6,28 @@ use leg_model_tools::plot::PlotError;
 use leg_sim::simulation::Sample;
 use std::path::{Path, PathBuf};
 
+/// What has a meaning once the leg knows its zero.
+fn once_homed(sample: &Sample, value: f64) -> Option<f64> {
+    sample.telemetry.homed.then_some(value)
+}
+
+/// A stiffness: there is none before the first target.
+fn above_zero(stiffness: f32) -> Option<f64> {
+    (stiffness > 0.0).then(|| stiffness.into())
+}
+
 /// One coordinate of the tip: what was commanded, what the trajectory asks for, what the leg estimates, and what is true.
 macro_rules! tip_curves {
     ($axis:literal) => {
         [
             ("commanded", |sample| {
-                Some(sample.comparison.tip_commanded_mm[$axis])
+                once_homed(sample, sample.comparison.tip_commanded_mm[$axis])
             }),
             ("reference", |sample| {
-                Some(sample.comparison.tip_reference_mm[$axis])
+                once_homed(sample, sample.comparison.tip_reference_mm[$axis])
             }),
             ("estimated", |sample| {
-                let known = sample.telemetry.homed;
-                known.then_some(sample.comparison.tip_estimated_mm[$axis])
+                once_homed(sample, sample.comparison.tip_estimated_mm[$axis])
             }),
             ("true", |sample| Some(sample.comparison.tip_true_mm[$axis])),
         ]
@@ -28,26 +37,30 @@ macro_rules! tip_curves {
 const SIMULATION: [TimeChart<Sample>; 5] = [
     TimeChart {
         name: "tip",
+        title: "Distance of the true tip",
         y_title: "distance of the true tip (mm)",
         curves: &[
             ("from the reference", |sample| {
-                Some(sample.comparison.reference_error_mm())
+                once_homed(sample, sample.comparison.reference_error_mm())
             }),
             ("from the path", |sample| sample.comparison.path_error_mm),
         ],
     },
     TimeChart {
         name: "tip_towards_0",
+        title: "Tip towards azimuth 0°",
         y_title: "tip towards azimuth 0° (mm)",
         curves: &tip_curves!(0),
     },
     TimeChart {
         name: "tip_towards_90",
+        title: "Tip towards azimuth 90°",
         y_title: "tip towards azimuth 90° (mm)",
         curves: &tip_curves!(1),
     },
     TimeChart {
         name: "tensions",
+        title: "True tensions",
         y_title: "true tension (N)",
         curves: &[
             ("tendon 1", |sample| {
@@ -63,9 +76,10 @@ const SIMULATION: [TimeChart<Sample>; 5] = [
     },
     TimeChart {
         name: "stiffness",
+        title: "Bending stiffness",
         y_title: "bending stiffness (N·m/rad)",
         curves: &[("estimated", |sample| {
-            Some(f64::from(sample.telemetry.stiffness_nm_per_rad))
+            above_zero(sample.telemetry.stiffness_nm_per_rad)
         })],
     },
 ];
@@ -85,9 +99,12 @@ fn tilt_deg([x, y]: [f32; 2]) -> f64 {
 const LOG: [TimeChart<Report>; 4] = [
     TimeChart {
         name: "tilt",
+        title: "Tilt",
         y_title: "tilt (°)",
         curves: &[
-            ("reference", |(_, report)| Some(tilt_deg(report.target))),
+            ("reference", |(_, report)| {
+                report.homed.then(|| tilt_deg(report.target))
+            }),
             ("estimated", |(_, report)| {
                 report.homed.then(|| tilt_deg(report.pose))
             }),
@@ -95,6 +112,7 @@ const LOG: [TimeChart<Report>; 4] = [
     },
     TimeChart {
         name: "tensions",
+        title: "Measured tensions",
         y_title: "measured tension (N)",
         curves: &[
             ("tendon 1", |(_, report)| Some(report.tensions_n[0].into())),
@@ -104,15 +122,19 @@ const LOG: [TimeChart<Report>; 4] = [
     },
     TimeChart {
         name: "stiffness",
+        title: "Bending stiffness",
         y_title: "bending stiffness (N·m/rad)",
         curves: &[("estimated", |(_, report)| {
-            Some(report.stiffness_nm_per_rad.into())
+            above_zero(report.stiffness_nm_per_rad)
         })],
     },
     TimeChart {
         name: "payload",
+        title: "Payload",
         y_title: "payload (kg)",
-        curves: &[("estimated", |(_, report)| Some(report.payload_kg.into()))],
+        curves: &[("estimated", |(_, report)| {
+            report.homed.then(|| report.payload_kg.into())
+        })],
     },
 ];
 
@@ -125,7 +147,7 @@ pub fn save(title: &str, samples: &[Sample], directory: &Path) -> Result<Vec<Pat
         &SIMULATION,
         title,
         samples,
-        |sample| sample.time_s,
+        |sample| (sample.time_s, sample.telemetry.state),
         directory,
     )
 }
@@ -139,5 +161,6 @@ pub fn save_log(
     reports: &[Report],
     directory: &Path,
 ) -> Result<Vec<PathBuf>, PlotError> {
-    time_charts::save(&LOG, title, reports, |(time_s, _)| *time_s, directory)
+    let at = |(time_s, report): &Report| (*time_s, report.state);
+    time_charts::save(&LOG, title, reports, at, directory)
 }

@@ -100,5 +100,6 @@ pub fn chart(title: &str, all: &[Sensitivity]) -> Chart {
         y_title: "largest distance of the tip from its target (mm)".into(),
         lines: CURVES_PERCENT.map(line).to_vec(),
         marks_label: "simulated".into(),
+        ..Chart::default()
     }
 }

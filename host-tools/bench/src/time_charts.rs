@@ -1,6 +1,8 @@
-//! Charts of quantities over time, from one list of samples.
+//! Charts of quantities over time, from one list of samples, over the states of the leg.
 
-use leg_model_tools::plot::{self, Chart, ChartLine, PlotError};
+use leg_base::description;
+use leg_firmware::supervisor::State;
+use leg_model_tools::plot::{self, Chart, ChartLine, PlotError, Span};
 use std::path::{Path, PathBuf};
 
 /// A quantity of a sample, with its label; none where there is nothing to draw.
@@ -10,6 +12,8 @@ type Curve<S> = (&'static str, fn(&S) -> Option<f64>);
 pub(crate) struct TimeChart<S: 'static> {
     /// Of its files.
     pub name: &'static str,
+    /// Above it.
+    pub title: &'static str,
     pub y_title: &'static str,
     pub curves: &'static [Curve<S>],
 }
@@ -17,12 +21,13 @@ pub(crate) struct TimeChart<S: 'static> {
 /// More points than this do not show in a chart.
 const POINTS_MAX: usize = 1500;
 
-/// Draws charts, each as SVG and PNG, and names the SVG files.
+/// Draws charts, each as SVG and PNG, and names the SVG files; one of which nothing is known is left out, unless that is all of them.
+/// `title` is that of the run, `at` gives time, s, and state of a sample.
 pub(crate) fn save<S>(
     charts: &[TimeChart<S>],
     title: &str,
     samples: &[S],
-    time_s: fn(&S) -> f64,
+    at: fn(&S) -> (f64, State),
     directory: &Path,
 ) -> Result<Vec<PathBuf>, PlotError> {
     let line = |&(label, quantity): &Curve<S>| ChartLine {
@@ -30,20 +35,47 @@ pub(crate) fn save<S>(
         points: samples
             .iter()
             .step_by(samples.len().div_ceil(POINTS_MAX).max(1))
-            .filter_map(|sample| Some((time_s(sample), quantity(sample)?)))
+            .filter_map(|sample| Some((at(sample).0, quantity(sample)?)))
             .collect(),
         marks: Vec::new(),
     };
-    let draw = |chart: &TimeChart<S>| {
+    let spans = states(samples.iter().map(at));
+    let drawn = |chart: &TimeChart<S>| {
         let lines = chart.curves.iter().map(line);
         let drawn = Chart {
-            title: title.into(),
+            title: chart.title.into(),
+            subtitle: title.into(),
             x_title: "time (s)".into(),
             y_title: chart.y_title.into(),
             lines: lines.filter(|line| !line.points.is_empty()).collect(),
-            marks_label: String::new(),
+            spans: spans.clone(),
+            ..Chart::default()
         };
-        plot::save_both(&drawn, &directory.join(chart.name))
+        (chart.name, drawn)
     };
-    charts.iter().map(draw).collect()
+    let mut drawn: Vec<_> = charts.iter().map(drawn).collect();
+    drawn.retain(|(_, chart)| !chart.lines.is_empty());
+    if drawn.is_empty() {
+        return Err(PlotError::Empty);
+    }
+    let save = |(name, chart): &(&str, Chart)| plot::save_both(chart, &directory.join(name));
+    drawn.iter().map(save).collect()
+}
+
+/// The spans of time in which a leg is in one state.
+fn states(samples: impl Iterator<Item = (f64, State)>) -> Vec<Span> {
+    let mut spans: Vec<Span> = Vec::new();
+    for (time_s, state) in samples {
+        let label = description::state(state);
+        if let Some(last) = spans.last_mut() {
+            last.x.end = time_s;
+        }
+        if spans.last().is_none_or(|last| last.label != label) {
+            spans.push(Span {
+                label: label.into(),
+                x: time_s..time_s,
+            });
+        }
+    }
+    spans
 }

@@ -3,8 +3,10 @@
 pub mod bode;
 mod canvas;
 pub mod field;
+mod spans;
 
 pub use canvas::PlotError;
+pub use spans::Span;
 
 use canvas::{AXIS_TITLE_PX, Area, Drawn, GRID, LABEL_PX, MARGIN_PX, Painter, WIDTH_PX, range};
 use plotters::coord::types::RangedCoordf64;
@@ -33,10 +35,12 @@ const COLOURS: [RGBColor; 6] = [
 ];
 
 /// What to draw. Titles carry their units.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Chart {
     /// Above the chart.
     pub title: String,
+    /// Under the title, smaller; none if it is empty.
+    pub subtitle: String,
     /// Under the horizontal axis.
     pub x_title: String,
     /// Beside the vertical axis.
@@ -45,6 +49,8 @@ pub struct Chart {
     pub lines: Vec<ChartLine>,
     /// What the lines' marks mean, for the legend; left out when no line has any.
     pub marks_label: String,
+    /// Shaded spans of the horizontal axis, in their order.
+    pub spans: Vec<Span>,
 }
 
 /// One line of a [`Chart`].
@@ -77,18 +83,23 @@ struct ChartPainter<'a> {
 impl Painter for ChartPainter<'_> {
     fn paint<B: DrawingBackend>(&self, root: &Area<B>) -> Drawn<B> {
         let Self { chart, ranges } = self;
-        let body = canvas::titled(root, &chart.title)?;
+        let mut body = canvas::titled(root, &chart.title)?;
+        if !chart.subtitle.is_empty() {
+            body = body.titled(&chart.subtitle, ("sans-serif", AXIS_TITLE_PX))?;
+        }
         let (plot, legend) = body.split_horizontally(WIDTH_PX - LEGEND_WIDTH_PX - MARGIN_PX);
         let [x, y] = ranges.clone();
         let mut context = ChartBuilder::on(&plot)
             .margin(MARGIN_PX)
             .set_label_area_size(LabelAreaPosition::Bottom, 70)
             .set_label_area_size(LabelAreaPosition::Left, 90)
-            .build_cartesian_2d(x, y)?;
+            .build_cartesian_2d(x, y.clone())?;
+        spans::shade(&chart.spans, &y, &mut context)?;
         draw_axes(chart, &mut context)?;
         for (line, colour) in chart.lines.iter().zip(COLOURS.iter().cycle()) {
             draw_line(line, colour, &mut context)?;
         }
+        spans::label(&chart.spans, &y, &mut context)?;
         draw_legend(chart, &legend)
     }
 }
@@ -176,16 +187,28 @@ fn draw_legend<B: DrawingBackend>(chart: &Chart, area: &Area<B>) -> Drawn<B> {
     Ok(())
 }
 
-/// The axes take in every point and mark, y = 0 as well, with some room above.
+/// The axes take in every point and mark, y = 0 as well, with some room above; the horizontal one the spans, too.
 fn axis_ranges(chart: &Chart) -> Result<[Range<f64>; 2], PlotError> {
     let points = |line: &ChartLine| [line.points.as_slice(), line.marks.as_slice()].concat();
     let all: Vec<(f64, f64)> = chart.lines.iter().flat_map(points).collect();
-    let x = range(all.iter().map(|point| point.0)).ok_or(PlotError::Empty)?;
+    if all.is_empty() {
+        return Err(PlotError::Empty);
+    }
+    let ends = chart
+        .spans
+        .iter()
+        .flat_map(|span| [span.x.start, span.x.end]);
+    let x = range(all.iter().map(|point| point.0).chain(ends)).ok_or(PlotError::Empty)?;
     let y = range(all.iter().map(|point| point.1).chain([0.0])).ok_or(PlotError::Empty)?;
     if x.0 >= x.1 {
         return Err(PlotError::Empty);
     }
-    let room = 0.06 * (y.1 - y.0);
+    let labelled = if chart.spans.is_empty() {
+        0.0
+    } else {
+        spans::LABEL_PART
+    };
+    let room = (0.06 + labelled) * (y.1 - y.0);
     let top = if room > 0.0 { y.1 + room } else { 1.0 };
     Ok([x.0..x.1, y.0..top])
 }

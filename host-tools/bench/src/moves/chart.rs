@@ -29,7 +29,7 @@ pub fn save_comparison(moved: &Moved, directory: &Path) -> Result<PathBuf, PlotE
             line("damping off", &make(&drawn.undamped())),
             line("damping on", moved),
         ],
-        marks_label: String::new(),
+        ..Chart::default()
     };
     plot::save_both(&chart, &directory.join("move"))
 }

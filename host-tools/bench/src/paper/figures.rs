@@ -115,6 +115,7 @@ fn tendon_chart(y_title: &str, points: Vec<(f64, f64)>, marks: &[(f64, f64)]) ->
             marks: marks.into(),
         }],
         marks_label: "published".into(),
+        ..Chart::default()
     }
 }
 
@@ -147,6 +148,7 @@ fn deviation_chart([title, y_title]: [&str; 2], lines: Vec<ChartLine>) -> Chart 
         y_title: y_title.into(),
         lines,
         marks_label: "nonlinear".into(),
+        ..Chart::default()
     }
 }
 

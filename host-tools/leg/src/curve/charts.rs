@@ -88,6 +88,7 @@ fn save((name, y_title, points, marks): Panel, directory: &Path) -> Result<PathB
             marks,
         }],
         marks_label: "measured".into(),
+        ..Chart::default()
     };
     plot::save_both(&chart, &directory.join(name))
 }

@@ -38,6 +38,7 @@ fn chart(title: String, x_title: &str, y_title: &str, lines: Vec<ChartLine>) -> 
         y_title: y_title.into(),
         lines,
         marks_label: "measured".into(),
+        ..Chart::default()
     }
 }
 

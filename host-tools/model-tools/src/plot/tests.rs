@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::canvas::WIDTH_PX;
-use super::{COLOURS, Chart, ChartLine, PlotError, save_both};
+use super::{COLOURS, Chart, ChartLine, PlotError, Span, save_both};
 
 fn chart(points: Vec<(f64, f64)>) -> Chart {
     Chart {
@@ -16,6 +16,7 @@ fn chart(points: Vec<(f64, f64)>) -> Chart {
             points,
         }],
         marks_label: "published".into(),
+        ..Chart::default()
     }
 }
 
@@ -99,4 +100,38 @@ fn a_spike_shows_no_value_that_is_not_there() {
     };
     let (spike, flat) = (lowest_row(1.0), lowest_row(0.0));
     assert!(spike <= flat, "{spike:?} {flat:?}");
+}
+
+/// Spans with one label have one shade, a span without room for its label has none, and the axis takes them in.
+#[test]
+fn spans_are_shaded_and_labelled() {
+    let directory = tempfile::tempdir().unwrap();
+    let span = |label: &str, x| Span {
+        label: label.into(),
+        x,
+    };
+    let chart = Chart {
+        subtitle: "Subtitle".into(),
+        spans: vec![
+            span("homing", 0.0..4.0),
+            span("short", 4.0..4.01),
+            span("homing", 4.01..8.0),
+            span("active", 8.0..20.0),
+        ],
+        ..chart(vec![(5.0, 1.0), (9.0, 2.0)])
+    };
+    let path = save_both(&chart, &directory.path().join("chart")).unwrap();
+    let svg = std::fs::read_to_string(path).unwrap();
+    let count = |text: &str| svg.matches(text).count();
+    assert_eq!(
+        ["homing", "short", "active", "Subtitle"].map(count),
+        [2, 0, 1, 1]
+    );
+    let shades = [(242, 242, 242), (253, 243, 224), (230, 245, 239)];
+    let fills = shades.map(|(r, g, b)| count(&format!("#{r:02X}{g:02X}{b:02X}")));
+    assert_eq!(fills, [2, 1, 1]);
+    assert!(
+        svg.lines().any(|line| line.trim() == "20"),
+        "the axis ends with the spans"
+    );
 }

@@ -1,0 +1,78 @@
+//! Spans of a chart's horizontal axis: shaded and labelled, as the states of a leg over time.
+
+use super::Plane;
+use super::canvas::Drawn;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use std::ops::Range;
+
+/// A span of the horizontal axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Span {
+    /// Written at its top, where there is room. Spans with the same label have the same shade.
+    pub label: String,
+    /// Its begin and end.
+    pub x: Range<f64>,
+}
+
+/// Light enough for lines and labels on them.
+const SHADES: [RGBColor; 6] = [
+    RGBColor(242, 242, 242),
+    RGBColor(253, 243, 224),
+    RGBColor(230, 245, 239),
+    RGBColor(230, 240, 250),
+    RGBColor(250, 233, 226),
+    RGBColor(247, 236, 243),
+];
+
+const SPAN_LABEL_PX: i32 = 18;
+
+/// Width of a letter at most, on the average.
+const LETTER_PX: i32 = 10;
+
+/// Part of the vertical axis that the labels take.
+pub(super) const LABEL_PART: f64 = 0.06;
+
+/// Shades the spans, up to the top of the vertical axis. Draw it first.
+pub(super) fn shade<B: DrawingBackend>(
+    spans: &[Span],
+    y: &Range<f64>,
+    context: &mut ChartContext<B, Plane>,
+) -> Drawn<B> {
+    let mut labels: Vec<&str> = Vec::new();
+    for span in spans {
+        let known = labels.iter().position(|label| *label == span.label);
+        let place = known.unwrap_or_else(|| {
+            labels.push(&span.label);
+            labels.len() - 1
+        });
+        let shade = SHADES.iter().cycle().nth(place).copied();
+        let corners = [(span.x.start, y.start), (span.x.end, y.end)];
+        let area = Rectangle::new(corners, shade.unwrap_or(WHITE).filled());
+        context.draw_series([area])?;
+    }
+    Ok(())
+}
+
+/// Writes the labels of the spans that have room for them.
+pub(super) fn label<B: DrawingBackend>(
+    spans: &[Span],
+    y: &Range<f64>,
+    context: &mut ChartContext<B, Plane>,
+) -> Drawn<B> {
+    let style = ("sans-serif", SPAN_LABEL_PX)
+        .into_font()
+        .color(&BLACK.mix(0.6))
+        .pos(Pos::new(HPos::Center, VPos::Top));
+    let top = y.end - 0.01 * (y.end - y.start);
+    for span in spans {
+        let [begin, end] = [span.x.start, span.x.end].map(|x| context.backend_coord(&(x, top)).0);
+        let width = LETTER_PX * span.label.chars().count() as i32;
+        if end - begin >= width {
+            let middle = (span.x.start + span.x.end) / 2.0;
+            let text = Text::new(span.label.clone(), (middle, top), style.clone());
+            context.draw_series([text])?;
+        }
+    }
+    Ok(())
+}
