@@ -40,9 +40,9 @@ pub(crate) fn save<S>(
         marks: Vec::new(),
     };
     let spans = states(samples.iter().map(at));
-    let drawn = |chart: &TimeChart<S>| {
+    let fill = |chart: &TimeChart<S>| {
         let lines = chart.curves.iter().map(line);
-        let drawn = Chart {
+        let filled = Chart {
             title: chart.title.into(),
             subtitle: title.into(),
             x_title: "time (s)".into(),
@@ -51,9 +51,9 @@ pub(crate) fn save<S>(
             spans: spans.clone(),
             ..Chart::default()
         };
-        (chart.name, drawn)
+        (chart.name, filled)
     };
-    let mut drawn: Vec<_> = charts.iter().map(drawn).collect();
+    let mut drawn: Vec<_> = charts.iter().map(fill).collect();
     drawn.retain(|(_, chart)| !chart.lines.is_empty());
     if drawn.is_empty() {
         return Err(PlotError::Empty);
