@@ -9,7 +9,9 @@ use leg_base::angles;
 use leg_firmware::can::LegAddress;
 use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
-use leg_host::calibration::{KnownWeight, fit, mean_code, require_drivers_off};
+use leg_host::calibration::{
+    KnownWeight, fit, mean_code, require_drivers_off, too_few_weights,
+};
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{Goal, Operator, OperatorError, setting_differences};
 use leg_host::sensor_report;
@@ -156,8 +158,8 @@ impl Leg {
 
     #[staticmethod]
     #[pyo3(signature = (interface, leg = 1))]
-    fn can(py: Python<'_>, interface: String, leg: u8) -> PyResult<Self> {
-        let address = LegAddress::new(leg);
+    fn can(py: Python<'_>, interface: String, leg: i64) -> PyResult<Self> {
+        let address = u8::try_from(leg).ok().and_then(LegAddress::new);
         let address = address
             .ok_or_else(|| PyValueError::new_err(format!("leg = {leg} is none of 1 to 6")))?;
         Self::opened(py, Place::Can(interface, address))
@@ -276,7 +278,10 @@ impl Leg {
 
     fn disturb(&self, py: Python<'_>, action: &Bound<'_, PyDict>) -> PyResult<()> {
         let text = arguments::to_json("action", action)?;
-        let action = Action::parse(&text).map_err(PyValueError::new_err)?;
+        let action = Action::parse(&text).map_err(|error| {
+            let list = "`leg emulate --help` lists the disturbances";
+            PyValueError::new_err(format!("action = {text}: {error}; {list}"))
+        })?;
         self.with_thread(py, |thread, cancel, interrupted| {
             thread.disturb(cancel, interrupted, action)
         })
@@ -310,22 +315,26 @@ impl Leg {
     fn calibrate_cell<'py>(
         &self,
         py: Python<'py>,
-        cell: u8,
+        cell: i64,
         weights_kg: Vec<f64>,
         hang: &Bound<'_, PyAny>,
         set: bool,
         save: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
-        if !(1..=3).contains(&cell) {
-            return Err(PyValueError::new_err(format!(
-                "cell = {cell} is none of 1 to 3"
-            )));
-        }
+        let mut cells = [1_u8, 2, 3].into_iter().enumerate();
+        let found = cells.find(|(_, number)| i64::from(*number) == cell);
+        let (axis, number) = found
+            .ok_or_else(|| PyValueError::new_err(format!("cell = {cell} is none of 1 to 3")))?;
         if save && !set {
             return Err(PyValueError::new_err("save is given without set"));
         }
         let refused = |failure| leg_failure(LegFailure::Refused(failure));
-        let axis = usize::from(cell) - 1;
+        for kg in &weights_kg {
+            within("weights_kg", *kg, 0.0, 1e3)?;
+        }
+        if weights_kg.iter().all(|kg| Some(kg) == weights_kg.first()) {
+            return Err(refused(too_few_weights()));
+        }
         let off = self.ask(py, |operator| {
             Ok(require_drivers_off(
                 operator,
@@ -337,13 +346,13 @@ impl Leg {
         let gravity = f64::from(settings.rig.gravity_m_per_s2);
         let mut weighings = Vec::new();
         for kg in weights_kg {
-            let newtons = within("weights_kg", kg, 0.0, 1e3)? * gravity;
             hang.call1((kg,))?;
+            let newtons = kg * gravity;
             let code = self.ask(py, move |operator| mean_code(operator, axis))?;
             weighings.push(KnownWeight { newtons, code });
         }
         let fit = fit(&weighings).map_err(refused)?;
-        fit.require_straight(cell, &weighings).map_err(refused)?;
+        fit.require_straight(number, &weighings).map_err(refused)?;
         if set {
             settings.axes[axis].cell_n_per_code = fit.n_per_code as f32;
             settings.axes[axis].cell_zero_code = fit.zero_code as f32;
