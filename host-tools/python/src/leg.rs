@@ -9,9 +9,7 @@ use leg_base::angles;
 use leg_firmware::can::LegAddress;
 use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
-use leg_host::calibration::{
-    KnownWeight, fit, mean_code, require_drivers_off, too_few_weights,
-};
+use leg_host::calibration::{KnownWeight, fit, mean_code, require_drivers_off, too_few_weights};
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{Goal, Operator, OperatorError, setting_differences};
 use leg_host::sensor_report;
