@@ -47,10 +47,17 @@ impl Transport for Tcp {
     }
 
     fn receive(&mut self, bytes: &mut [u8], timeout: Duration) -> io::Result<usize> {
-        // The system takes a timeout of zero for none.
-        let timeout = timeout.max(Duration::from_micros(1));
-        self.stream.set_read_timeout(Some(timeout))?;
-        match self.stream.read(bytes) {
+        // Without time it takes what is there: the system's shortest wait is some milliseconds.
+        let read = if timeout.is_zero() {
+            self.stream.set_nonblocking(true)?;
+            let read = self.stream.read(bytes);
+            self.stream.set_nonblocking(false)?;
+            read
+        } else {
+            self.stream.set_read_timeout(Some(timeout))?;
+            self.stream.read(bytes)
+        };
+        match read {
             Err(error) if error.kind() == ErrorKind::WouldBlock => Err(ErrorKind::TimedOut.into()),
             result => result,
         }

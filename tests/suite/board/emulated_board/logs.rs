@@ -115,6 +115,24 @@ fn two_logs_record_at_their_own_rates() {
     });
 }
 
+/// A stream that comes more often than the system's shortest wait does not keep a monitor from asking.
+#[test]
+fn a_monitor_keeps_its_rate_beside_a_fast_log() {
+    unless_stalled(LOG_STALL, || {
+        let directory = tempfile::tempdir().unwrap();
+        let board = BoardUnderTest::new(&[]);
+        let log = board.begin_log(&directory.path().join("leg.csv"), &["--rate", "400"]);
+        let watches = [&board.process, &log].map(StallWatch::begin);
+        let shown = board.run(&["monitor", "--json", "--rate", "50", "--for", "2"]);
+        let lines = shown.stdout.iter().filter(|byte| **byte == b'\n').count();
+        let ended = unless_ended(log).map(|_| ());
+        let stall = watches.map(StallWatch::longest).into_iter().max();
+        let enough = (lines > 50).then_some(());
+        let outcome = ended.and(enough.ok_or_else(|| format!("{lines} lines in 2 s")));
+        (outcome, stall.unwrap())
+    });
+}
+
 /// Whether a log had a rate, but for the moments in which another host came or went.
 fn recorded_at(output: &Output, rate_hz: f64) -> Result<(), String> {
     let logged: Value = serde_json::from_slice(&output.stdout)

@@ -26,16 +26,23 @@ pub(super) struct Joined {
     pub unshared: Option<io::Error>,
 }
 
-/// Waits for bytes; 0 if the hub has ended.
+/// Waits for bytes; 0 if the hub has ended. Without time, it takes what is there: the system's shortest wait is some milliseconds,
+/// and where telemetry comes more often, somebody who takes all that is there would never be done.
 pub(super) fn receive(
     stream: &mut UnixStream,
     bytes: &mut [u8],
     timeout: Duration,
 ) -> io::Result<usize> {
-    // The system takes a timeout of zero for none.
-    let timeout = timeout.max(Duration::from_micros(1));
-    stream.set_read_timeout(Some(timeout))?;
-    match stream.read(bytes) {
+    let read = if timeout.is_zero() {
+        stream.set_nonblocking(true)?;
+        let read = stream.read(bytes);
+        stream.set_nonblocking(false)?;
+        read
+    } else {
+        stream.set_read_timeout(Some(timeout))?;
+        stream.read(bytes)
+    };
+    match read {
         Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
             Err(io::ErrorKind::TimedOut.into())
         }
