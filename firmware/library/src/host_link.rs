@@ -165,7 +165,7 @@ impl Service {
         let (number, result) = match found {
             Ok(frame) => {
                 let request = frame.message().ok_or(HostRefusal::BadRequest);
-                let result = request.and_then(|request| self.serve(frame.sequence, request, leg));
+                let result = request.and_then(|request| self.serve(frame.sequence, &request, leg));
                 (frame.sequence, result)
             }
             Err(error) => (0, Err(HostRefusal::BadFrame(error))),
@@ -183,7 +183,7 @@ impl Service {
     fn serve(
         &mut self,
         number: u16,
-        request: HostRequest,
+        request: &HostRequest,
         leg: &mut impl CommandedLeg,
     ) -> Result<Option<HostReply>, HostRefusal> {
         if let HostRequest::Identify(hello) = request {
@@ -192,7 +192,7 @@ impl Service {
         if !self.identified {
             return Err(HostRefusal::NotIdentified);
         }
-        Ok(Some(match request {
+        Ok(Some(match *request {
             HostRequest::Identify(_) => return Err(HostRefusal::BadRequest),
             HostRequest::Command { host, command } => {
                 return self.command(number, host, command, leg);
@@ -208,12 +208,12 @@ impl Service {
             HostRequest::Sensors => HostReply::Sensors(leg.sensors()),
             HostRequest::JogReport => HostReply::Jog(leg.jog_report()),
             HostRequest::GetSettings => HostReply::Settings(self.settings.clone()),
-            HostRequest::SetSettings(settings) => {
+            HostRequest::SetSettings(ref settings) => {
                 if self.saving.is_some() {
                     // What would be acknowledged as kept is not what is in use then.
                     return Err(HostRefusal::Busy);
                 }
-                leg.restart(&settings)?;
+                leg.restart(settings)?;
                 // The leg has started without it.
                 self.settings = settings.without_zero();
                 HostReply::Done
@@ -231,7 +231,7 @@ impl Service {
         }))
     }
 
-    fn identify(&mut self, hello: Hello) -> Result<HostReply, HostRefusal> {
+    fn identify(&mut self, hello: &Hello) -> Result<HostReply, HostRefusal> {
         if hello.schema != HOST_SCHEMA {
             // Whoever is known on the line stays so: a stranger must not take the leg from its host.
             return Err(HostRefusal::SchemaMismatch {

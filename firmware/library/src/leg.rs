@@ -33,6 +33,7 @@ use link_watch::LinkWatch;
 use mode::{Mode, ModeStep, Trust};
 use nalgebra::Vector3;
 use phase::Phase;
+pub use shared::Checked;
 use shared::Shared;
 
 /// The controller of a leg.
@@ -60,20 +61,25 @@ impl<T: Scalar> Leg<T> {
     /// # Errors
     /// Settings that are refused.
     pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
-        settings.check()?;
-        Ok(Self {
+        Ok(Self::assembled(settings, Checked::new(settings)?))
+    }
+
+    /// The same of settings that were checked: it cannot fail, so that a board builds its leg at its place.
+    #[inline(always)]
+    pub fn assembled(settings: &Settings, checked: Checked<T>) -> Self {
+        Self {
             tick: 0,
             phase: Phase::Estimate,
             queue: CommandQueue::default(),
             link: LinkWatch::new(&settings.limits),
             measurement: Measurement::new(settings),
             measured: None,
-            shared: Shared::new(settings)?,
+            shared: Shared::new(settings, checked),
             mode: Mode::boot(),
             monitors: Monitors::new(settings),
             agreement: Agreement::new(settings),
             supervisor: Supervisor::default(),
-        })
+        }
     }
 
     /// One tick. One in four executes a command, if one waits.
@@ -284,6 +290,11 @@ impl<T: Scalar> Leg<T> {
             // What was counted is lost.
             self.shared.zero_m = None;
         }
+    }
+
+    /// Forgets where its tendons are: it has to home.
+    pub fn forget_zero(&mut self) {
+        self.shared.zero_m = None;
     }
 
     /// Starts in the place of another leg on the same board: with its count of ticks and the faults that nobody has cleared.

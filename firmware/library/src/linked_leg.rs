@@ -4,7 +4,7 @@ use crate::command::Command;
 use crate::drive::Drive;
 use crate::host_link::{CommandedLeg, HostLink, HostRefusal, Identity};
 use crate::jog::JogReport;
-use crate::leg::{Leg, Outcome};
+use crate::leg::{Checked, Leg, Outcome};
 use crate::sensors::Sensors;
 use crate::settings::{Settings, SettingsError};
 use crate::telemetry::Telemetry;
@@ -27,10 +27,16 @@ impl<T: Scalar> SensingLeg<T> {
     /// # Errors
     /// Settings that are refused.
     pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
-        Ok(Self {
-            leg: Leg::new(settings)?,
+        Ok(Self::assembled(settings, Checked::new(settings)?))
+    }
+
+    /// The same of settings that were checked: see [`Leg::assembled`].
+    #[inline(always)]
+    pub fn assembled(settings: &Settings, checked: Checked<T>) -> Self {
+        Self {
+            leg: Leg::assembled(settings, checked),
             sensors: Sensors::default(),
-        })
+        }
     }
 
     /// Keeps what the sensors read, for the host, and gives the leg for its tick.
@@ -44,6 +50,11 @@ impl<T: Scalar> SensingLeg<T> {
     #[inline(always)]
     pub fn tick(&mut self, sensors: &Sensors) -> Drive<T> {
         self.store_sensors(sensors).tick(sensors)
+    }
+
+    /// See [`Leg::forget_zero`].
+    pub fn forget_zero(&mut self) {
+        self.leg.forget_zero();
     }
 
     /// Lets another leg take this one's place on the board: see [`Leg::inherit_from`].
@@ -101,14 +112,11 @@ macro_rules! commanded {
             }
 
             fn restart(&mut self, settings: &Settings) -> Result<(), HostRefusal> {
-                match Self::new(&settings.without_zero()) {
-                    Ok(mut fresh) => {
-                        self.hand_over(&mut fresh)?;
-                        *self = fresh;
-                        Ok(())
-                    }
-                    Err(error) => Err(HostRefusal::Settings(error)),
-                }
+                let mut fresh = Self::new(settings).map_err(HostRefusal::Settings)?;
+                fresh.forget_zero();
+                self.hand_over(&mut fresh)?;
+                *self = fresh;
+                Ok(())
             }
         }
     };

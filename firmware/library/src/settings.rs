@@ -95,10 +95,15 @@ impl Settings {
     #[must_use]
     pub fn without_zero(&self) -> Self {
         let mut settings = self.clone();
-        for axis in &mut settings.axes {
+        settings.forget_zero();
+        settings
+    }
+
+    /// Forgets the zero: the leg has to home.
+    pub fn forget_zero(&mut self) {
+        for axis in &mut self.axes {
             axis.unstretched_at_zero_m = None;
         }
-        settings
     }
 
     /// Gains and limits.

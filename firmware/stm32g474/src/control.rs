@@ -16,10 +16,10 @@ use leg_firmware::board::{self, LowerHalf, TickTimer, WatchedTask};
 use leg_firmware::command::Command;
 use leg_firmware::host_link::{CommandedLeg, HostRefusal};
 use leg_firmware::jog::JogReport;
-use leg_firmware::leg::Outcome;
+use leg_firmware::leg::{Checked, Outcome};
 use leg_firmware::linked_leg::SensingLeg;
 use leg_firmware::sensors::Sensors;
-use leg_firmware::settings::Settings;
+use leg_firmware::settings::{Settings, SettingsError};
 use leg_firmware::telemetry::Telemetry;
 
 static CONTROL: Mutex<RefCell<Option<Control>>> = Mutex::new(RefCell::new(None));
@@ -137,8 +137,7 @@ impl CommandedLeg for SharedLeg {
 
     #[inline(never)]
     fn restart(&mut self, settings: &Settings) -> Result<(), HostRefusal> {
-        let fresh = SensingLeg::new(&settings.without_zero()).map_err(HostRefusal::Settings)?;
-        *self.spare = fresh;
+        rebuild(self.spare, settings).map_err(HostRefusal::Settings)?;
         let spare = &mut self.spare;
         let changed = with_control(|control| {
             control.leg.hand_over(spare)?;
@@ -147,6 +146,16 @@ impl CommandedLeg for SharedLeg {
         });
         changed.unwrap_or(Err(HostRefusal::Busy))
     }
+}
+
+/// Builds a leg anew at its place, without its zero. Refused settings leave it as it was.
+// Apart, so that it takes stack only as long as it runs.
+#[inline(never)]
+fn rebuild(leg: &mut SensingLeg<f32>, settings: &Settings) -> Result<(), SettingsError> {
+    let checked = Checked::new(settings)?;
+    *leg = SensingLeg::assembled(settings, checked);
+    leg.forget_zero();
+    Ok(())
 }
 
 /// The leg after the last tick; `None` before the first start.

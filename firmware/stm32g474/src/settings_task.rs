@@ -5,6 +5,7 @@
 
 use crate::check_ins::CHECK_INS;
 use crate::flash::CheckedFlash;
+use core::fmt::Display;
 use core::sync::atomic::{AtomicBool, Ordering};
 use embassy_stm32::flash::Error;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
@@ -40,24 +41,31 @@ pub fn store(flash: CheckedFlash) -> Result<BoardStore, StoreError<Error>> {
     Store::new(flash, REGION)
 }
 
-/// The settings that were kept, or `others` where there are none: then the fault is raised, and the leg is not driven until settings
-/// have been kept anew. A board that was never set counts as such.
-pub async fn load(store: &mut BoardStore, others: Settings) -> Settings {
+/// Puts the settings that were kept into a place. Where there are none the place stays as it is and the fault is raised: the leg
+/// is not driven until settings have been kept anew. A board that was never set counts as such.
+pub async fn load(store: &mut BoardStore, place: &mut Settings) {
     match store.load().await {
-        Ok(Loaded::Settings(settings)) => return settings,
-        Ok(Loaded::Empty) => defmt::warn!("no settings are kept"),
-        Ok(Loaded::Corrupt(why)) => {
-            defmt::warn!("settings: {}", defmt::Display2Format(&why));
+        Ok(Loaded::Settings(settings)) => {
+            *place = settings;
+            return;
         }
-        Err(error) => defmt::warn!("settings: {}", defmt::Display2Format(&error)),
+        Ok(Loaded::Empty) => defmt::warn!("no settings are kept"),
+        Ok(Loaded::Corrupt(why)) => warn(&why),
+        Err(error) => warn(&error),
     }
-    unfit();
-    others
+    refuse();
 }
 
 /// The settings that were kept are of no use.
-pub fn unfit() {
+pub fn refuse() {
     CORRUPT.store(true, Ordering::Relaxed);
+}
+
+/// Logs what is wrong with settings.
+// Apart, because formatting numbers takes stack.
+#[inline(never)]
+pub fn warn(why: &dyn Display) {
+    defmt::warn!("settings: {}", defmt::Display2Format(why));
 }
 
 /// Keeps what it is asked to keep, for ever.
@@ -78,7 +86,7 @@ pub async fn keep_settings(mut store: BoardStore) {
 
 async fn save(store: &mut BoardStore, settings: &Settings) -> bool {
     if let Err(error) = store.save(settings).await {
-        defmt::warn!("settings: {}", defmt::Display2Format(&error));
+        warn(&error);
         return false;
     }
     matches!(store.load().await, Ok(Loaded::Settings(kept)) if kept == *settings)

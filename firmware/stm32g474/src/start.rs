@@ -17,8 +17,9 @@ use embassy_stm32::gpio::{Level, Output, Speed};
 use leg_firmware::board::{CrashReport, LinkChoice, ShortText};
 use leg_firmware::host_link::BoardKind;
 use leg_firmware::host_link::{HostLink, Identity, ResetCause};
+use leg_firmware::leg::Checked;
 use leg_firmware::linked_leg::SensingLeg;
-use leg_firmware::settings::{Settings, SettingsError};
+use leg_firmware::settings::Settings;
 use leg_firmware::version::VERSION;
 use static_cell::StaticCell;
 
@@ -63,15 +64,16 @@ pub async fn start(spawner: Spawner, p: Peripherals, origin: (ResetCause, Option
     let Ok(mut store) = settings_task::store(CheckedFlash::new(p.FLASH)) else {
         fatal::end(&ShortText::new("the settings' place is not in the flash"));
     };
-    let built_in = built_in();
-    let loaded = settings_task::load(&mut store, built_in.clone()).await;
-    let (leg, settings) = leg(loaded, built_in);
-    let shared = SharedLeg::new(spare(&settings));
-    static TO_KEEP: StaticCell<Settings> = StaticCell::new();
-    let to_keep = TO_KEEP.init(settings.clone());
-    let link = HostLink::new(identity(origin), settings);
-    static SESSION: StaticCell<Session> = StaticCell::new();
-    let session = SESSION.init(Session::new(link, shared, to_keep));
+    static SETTINGS: StaticCell<Settings> = StaticCell::new();
+    let settings = SETTINGS.init_with(built_in);
+    settings_task::load(&mut store, settings).await;
+    refuse_unfit(settings);
+    static LEG: StaticCell<SensingLeg<f32>> = StaticCell::new();
+    let leg = placed(&LEG, settings);
+    // To be built anew when the settings change.
+    static SPARE: StaticCell<SensingLeg<f32>> = StaticCell::new();
+    let spare = SharedLeg::new(placed(&SPARE, settings));
+    let session = session(origin, settings, spare);
 
     let Some(cycles) = CycleCounter::start() else {
         fatal::end(&ShortText::new("the cycle counter is taken"));
@@ -118,29 +120,38 @@ fn built_in() -> Settings {
     }
 }
 
-/// A leg with the settings that were kept, or with others where those describe no leg.
-fn leg(kept: Settings, others: Settings) -> (&'static mut SensingLeg<f32>, Settings) {
-    static LEG: StaticCell<SensingLeg<f32>> = StaticCell::new();
-    let kept = kept.without_zero();
-    match SensingLeg::new(&kept) {
-        Ok(leg) => (LEG.init(leg), kept),
-        Err(error) => {
-            defmt::warn!("settings: {}", defmt::Display2Format(&error));
-            settings_task::unfit();
-            (LEG.init(accepted(SensingLeg::new(&others))), others)
-        }
+/// Puts the built-in settings in the place of those that describe no leg.
+// Apart, as those below, so that it takes stack only as long as it runs.
+#[inline(never)]
+fn refuse_unfit(settings: &mut Settings) {
+    settings.forget_zero();
+    if let Err(error) = Checked::<f32>::new(settings) {
+        settings_task::warn(&error);
+        settings_task::refuse();
+        *settings = built_in();
     }
 }
 
-/// A second leg with the same settings, to be built anew when they change.
-fn spare(settings: &Settings) -> &'static mut SensingLeg<f32> {
-    static SPARE: StaticCell<SensingLeg<f32>> = StaticCell::new();
-    SPARE.init(accepted(SensingLeg::new(settings)))
-}
-
-fn accepted(leg: Result<SensingLeg<f32>, SettingsError>) -> SensingLeg<f32> {
-    match leg {
-        Ok(leg) => leg,
+/// A leg at its place.
+#[inline(never)]
+fn placed(
+    place: &'static StaticCell<SensingLeg<f32>>,
+    settings: &Settings,
+) -> &'static mut SensingLeg<f32> {
+    match Checked::new(settings) {
+        Ok(checked) => place.init_with(|| SensingLeg::assembled(settings, checked)),
         Err(_) => fatal::end(&ShortText::new("the built-in settings are refused")),
     }
+}
+
+/// The host's line. The settings' place serves the task that keeps them from now on.
+#[inline(never)]
+fn session(
+    origin: (ResetCause, Option<CrashReport>),
+    settings: &'static mut Settings,
+    leg: SharedLeg,
+) -> &'static mut Session {
+    static SESSION: StaticCell<Session> = StaticCell::new();
+    let link = HostLink::new(identity(origin), settings.clone());
+    SESSION.init_with(|| Session::new(link, leg, settings))
 }

@@ -335,7 +335,7 @@ fn search_pretension<T: Scalar>(shared: &mut Shared<T>) -> Result<(), Error> {
 mod tests {
     use super::Active;
     use crate::control::Measured;
-    use crate::leg::shared::Shared;
+    use crate::leg::shared::{Checked, Shared};
     use crate::set_point::{PointRefusal, SetPoint, StreamPart};
     use crate::settings::Settings;
 
@@ -362,7 +362,7 @@ mod tests {
                 supply_v: 24.0,
                 temperature_c: 30.0,
             };
-            let mut shared = Shared::new(&settings).unwrap();
+            let mut shared = Shared::new(&settings, Checked::new(&settings).unwrap());
             let mut active = Active::begin(&mut shared, &measured);
             assert_eq!(active.slack.taken_up(), taut, "{tensions_n:?}");
             assert!(!active.tensioned);

@@ -104,16 +104,38 @@ impl<T: Scalar> LegLimits<T> {
     }
 }
 
+/// What of a leg can be refused. It is made first, so that the rest is written at its place without a copy on the stack.
+#[derive(Debug)]
+pub struct Checked<T> {
+    mechanism: Mechanism<T>,
+    limits: LegLimits<T>,
+}
+
+impl<T: Scalar> Checked<T> {
+    /// Checks settings.
+    ///
+    /// # Errors
+    /// Settings that are refused.
+    // Apart, so that its checks take stack only as long as they run.
+    #[inline(never)]
+    pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
+        settings.check()?;
+        let mechanism = Mechanism::new(settings)?;
+        let limits = LegLimits::new(settings, &mechanism)?;
+        Ok(Self { mechanism, limits })
+    }
+}
+
 impl<T: Scalar> Shared<T> {
     /// Before the first tick.
-    pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
+    #[inline(always)]
+    pub fn new(settings: &Settings, checked: Checked<T>) -> Self {
         let zero = |i: usize| settings.axes[i].unstretched_at_zero_m;
         let zero_m = match [zero(0), zero(1), zero(2)] {
             [Some(a), Some(b), Some(c)] => Some([a.into(), b.into(), c.into()]),
             _ => None,
         };
-        let mechanism = Mechanism::new(settings)?;
-        Ok(Self {
+        Self {
             estimator: Estimator::new(settings),
             pretension: PretensionSearch::new(settings.pretension_n.into()),
             targets: TargetGenerator::new(settings),
@@ -129,12 +151,12 @@ impl<T: Scalar> Shared<T> {
             lowest_m: [T::zero(); 3],
             refused: false,
             failed_tendon: 0,
-            limits: LegLimits::new(settings, &mechanism)?,
-            mechanism,
+            limits: checked.limits,
+            mechanism: checked.mechanism,
             jog_report: None,
             station: StationLimits::new(settings),
             friction: Friction::new(settings),
-        })
+        }
     }
 
     /// Every axis stays where it is; sets how far and at which tension a tendon may be paid out in a state.

@@ -58,13 +58,13 @@ impl ByteBounds {
 }
 
 const STM32G474_TASKS: &[(&str, ByteBounds)] = &[
-    ("can_bus::serve", ByteBounds::new(21_000, 28_000)),
+    ("can_bus::serve", ByteBounds::new(17_500, 23_400)),
     ("housekeeping::keep_house", ByteBounds::new(1_900, 2_500)),
     (
         "leg_stm32g474::embassy_main",
-        ByteBounds::new(25_000, 33_300),
+        ByteBounds::new(14_200, 19_000),
     ),
-    ("serial::serve", ByteBounds::new(20_400, 27_200)),
+    ("serial::serve", ByteBounds::new(17_000, 22_700)),
     (
         "settings_task::keep_settings",
         ByteBounds::new(12_700, 16_900),
@@ -82,7 +82,7 @@ impl ImageBudget {
             FirmwareImage::Stm32g474 => Self {
                 flash: ByteBounds::new(165_000, 220_000),
                 ram: ByteBounds::new(31_300, 41_700),
-                stack: ByteBounds::new(38_000, 51_000),
+                stack: ByteBounds::new(32_300, 43_200),
                 tasks: STM32G474_TASKS,
                 hot: &["ADC1_2"],
             },
