@@ -41,6 +41,7 @@ mod firmware {
 mod base {
     mod atomic_file;
     mod numeric;
+    mod recorder_rows;
     mod suggest;
     mod timed_path;
 }
@@ -77,6 +78,7 @@ mod board {
     mod chip_latency;
     mod chip_line;
     mod chip_mistakes;
+    mod chip_recorder;
     mod chip_scenarios;
     mod chip_speed;
     mod chip_supply;

@@ -118,6 +118,8 @@ pub struct TickReply {
     pub telemetry: Telemetry<f32>,
     /// Instructions that the tick took, if they were counted.
     pub instructions: Option<u32>,
+    /// Instructions that its recording took, if they were counted.
+    pub recorder_instructions: Option<u32>,
     /// The bytes for the user's host.
     pub link: Vec<u8, LINK_BYTES_MAX>,
 }

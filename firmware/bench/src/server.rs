@@ -7,8 +7,10 @@ use crate::protocol::{
     TickRequest,
 };
 use crate::virtual_leg::VirtualLeg;
+use core::borrow::BorrowMut;
 use leg_firmware::frame::{self, Frame, FrameError, MAX_FRAME};
 use leg_firmware::host_link::{BoardKind, Hello, Identity, ResetCause};
+use leg_firmware::recorder::{Recorder, RecorderSetup};
 use leg_firmware::settings::Settings;
 use leg_firmware::version::VERSION;
 
@@ -21,19 +23,21 @@ pub trait Board: Counter {
     fn save(&mut self, settings: &Settings) -> bool;
 }
 
-/// One end of a link: it answers each request with one reply.
+/// One end of a link: it answers each request with one reply. `R` is where its leg's recorder is.
 #[derive(Clone, Debug)]
-pub struct Server<B> {
+pub struct Server<B, R> {
     board: B,
+    recorder: R,
     greeted: bool,
     leg: Option<VirtualLeg>,
 }
 
-impl<B: Board> Server<B> {
+impl<B: Board, R: BorrowMut<Recorder>> Server<B, R> {
     /// A server whose host has not said [`Request::Hello`] yet.
-    pub const fn new(board: B) -> Self {
+    pub const fn new(board: B, recorder: R) -> Self {
         Self {
             board,
+            recorder,
             greeted: false,
             leg: None,
         }
@@ -95,6 +99,8 @@ impl<B: Board> Server<B> {
     fn start(&mut self, settings: &Settings) -> Result<Reply, Refusal> {
         let identity = emulated(self.board.info().board);
         self.leg = Some(VirtualLeg::new(identity, settings).map_err(Refusal::Settings)?);
+        let setup = RecorderSetup::new(settings);
+        self.recorder.borrow_mut().begin(&setup);
         Ok(Reply::Started)
     }
 
@@ -103,13 +109,15 @@ impl<B: Board> Server<B> {
         let leg = self.leg.as_mut().ok_or(Refusal::NoLeg)?;
         let board = &mut self.board;
         let save = |settings: &Settings| board.save(settings);
-        Ok(Reply::Ticked(leg.tick(request, save)))
+        let recorder = self.recorder.borrow_mut();
+        Ok(Reply::Ticked(leg.tick(request, recorder, save)))
     }
 
     #[inline(never)]
     fn count_tick(&mut self, request: &TickRequest) -> Result<Reply, Refusal> {
         let leg = self.leg.as_mut().ok_or(Refusal::NoLeg)?;
-        leg.count_tick(request, &mut self.board, B::save)
+        let recorder = self.recorder.borrow_mut();
+        leg.count_tick(request, recorder, &mut self.board, B::save)
             .map(Reply::Ticked)
             .ok_or(Refusal::NoCounter)
     }

@@ -8,6 +8,7 @@ use leg_firmware::drive::Drive;
 use leg_firmware::host_link::Identity;
 use leg_firmware::leg::Leg;
 use leg_firmware::linked_leg::LinkedLeg;
+use leg_firmware::recorder::Recorder;
 use leg_firmware::sensors::Sensors;
 use leg_firmware::settings::{Settings, SettingsError};
 
@@ -34,22 +35,24 @@ impl VirtualLeg {
     pub fn tick(
         &mut self,
         request: &TickRequest,
+        recorder: &mut Recorder,
         save: impl FnMut(&Settings) -> bool,
     ) -> TickReply {
-        self.leg.receive(&request.link);
+        self.leg.receive(&request.link, recorder);
         self.board.read(&request.sensors);
-        let drive = board::tick(&mut self.board, self.leg.leg());
-        self.reply(drive, save)
+        let drive = board::tick(&mut self.board, self.leg.leg(), recorder);
+        self.reply(drive, recorder, save)
     }
 
-    /// The same, and how many instructions the control law took; `None` where there is nothing to count with.
+    /// The same, and how many instructions the control law and the recorder took; `None` where there is nothing to count with.
     pub fn count_tick<B: Counter>(
         &mut self,
         request: &TickRequest,
+        recorder: &mut Recorder,
         counter: &mut B,
         save: impl FnOnce(&mut B, &Settings) -> bool,
     ) -> Option<TickReply> {
-        self.leg.receive(&request.link);
+        self.leg.receive(&request.link, recorder);
         self.board.read(&request.sensors);
         let sensors = self.board.sense();
         let mut ticking = Ticking {
@@ -59,12 +62,18 @@ impl VirtualLeg {
         let instructions = counter.count(tick, &sensors, &mut ticking)?;
         let drive = ticking.drive?;
         self.board.drive(&drive);
+        let mut recording = Recording {
+            leg: ticking.leg,
+            recorder,
+        };
+        let recorder_instructions = counter.count(record, &drive, &mut recording)?;
         let mut save = Some(save);
-        let reply = self.reply(drive, |settings| {
+        let reply = self.reply(drive, recorder, |settings| {
             save.take().is_some_and(|save| save(counter, settings))
         });
         Some(TickReply {
             instructions: Some(instructions),
+            recorder_instructions: Some(recorder_instructions),
             ..reply
         })
     }
@@ -82,13 +91,19 @@ impl VirtualLeg {
         }
     }
 
-    fn reply(&mut self, drive: Drive<f32>, save: impl FnMut(&Settings) -> bool) -> TickReply {
+    fn reply(
+        &mut self,
+        drive: Drive<f32>,
+        recorder: &mut Recorder,
+        save: impl FnMut(&Settings) -> bool,
+    ) -> TickReply {
         TickReply {
             drive,
             motors: self.board.motors(),
             telemetry: self.leg.leg().telemetry(),
             instructions: None,
-            link: self.leg.sent(save),
+            recorder_instructions: None,
+            link: self.leg.sent(recorder, save),
         }
     }
 }
@@ -97,6 +112,16 @@ impl VirtualLeg {
 struct Ticking<'a> {
     leg: &'a mut Leg<f32>,
     drive: Option<Drive<f32>>,
+}
+
+/// What a counted recording works on.
+struct Recording<'a> {
+    leg: &'a Leg<f32>,
+    recorder: &'a mut Recorder,
+}
+
+fn record(drive: &Drive<f32>, recording: &mut Recording<'_>) {
+    recording.recorder.record(recording.leg, drive);
 }
 
 fn tick(sensors: &Sensors, ticking: &mut Ticking<'_>) {

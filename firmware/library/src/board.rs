@@ -31,6 +31,7 @@ pub use tick_timer::TickTimer;
 
 use crate::drive::Drive;
 use crate::linked_leg::SensingLeg;
+use crate::recorder::Recorder;
 use crate::sensors::Sensors;
 
 /// What a leg needs of the board under it.
@@ -52,11 +53,17 @@ pub trait LowerHalf {
     fn cut(&mut self);
 }
 
-/// One tick of a leg on a board; gives what the leg asked of the motors.
+/// One tick of a leg on a board, which is recorded once the motors have what the leg asks of them; gives that.
 #[inline(always)]
-pub fn tick(board: &mut impl LowerHalf, leg: &mut SensingLeg<f32>) -> Drive<f32> {
+pub fn tick(
+    board: &mut impl LowerHalf,
+    leg: &mut SensingLeg<f32>,
+    recorder: &mut Recorder,
+) -> Drive<f32> {
     let sensors = board.sense();
+    let leg = leg.store_sensors(&sensors);
     let drive = leg.tick(&sensors);
     board.drive(&drive);
+    recorder.record(leg, &drive);
     drive
 }

@@ -12,6 +12,7 @@ use crate::command::Command;
 use crate::frame::{Decoder, Frame, FrameError, MAX_FRAME};
 use crate::jog::JogReport;
 use crate::leg::Outcome;
+use crate::recorder::{RecorderReply, RecorderRequest};
 use crate::sensors::Sensors;
 use crate::settings::Settings;
 use crate::telemetry::Telemetry;
@@ -39,6 +40,8 @@ pub trait CommandedLeg {
     /// # Errors
     /// [`HostRefusal::Driven`] and [`HostRefusal::Settings`]; the old settings stay in use.
     fn restart(&mut self, settings: &Settings) -> Result<(), HostRefusal>;
+    /// Asks something of its recorder; `None` to a read while it records.
+    fn recorder(&mut self, request: RecorderRequest) -> Option<RecorderReply>;
 }
 
 /// The leg's end of the line.
@@ -207,6 +210,10 @@ impl Service {
             }
             HostRequest::Sensors => HostReply::Sensors(leg.sensors()),
             HostRequest::JogReport => HostReply::Jog(leg.jog_report()),
+            HostRequest::Recorder(request) => {
+                let reply = leg.recorder(request).ok_or(HostRefusal::Recording)?;
+                HostReply::Recorder(reply)
+            }
             HostRequest::GetSettings => HostReply::Settings(self.settings.clone()),
             HostRequest::SetSettings(ref settings) => {
                 if self.saving.is_some() {

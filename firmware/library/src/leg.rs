@@ -11,6 +11,7 @@ mod link_watch;
 mod mode;
 mod phase;
 mod ramping_down;
+mod recorded;
 mod shadow;
 mod shared;
 mod slack;

@@ -82,6 +82,7 @@ pub mod host_link;
 pub mod jog;
 pub mod leg;
 pub mod linked_leg;
+pub mod recorder;
 pub mod sensors;
 pub mod set_point;
 pub mod settings;

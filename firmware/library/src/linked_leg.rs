@@ -5,6 +5,7 @@ use crate::drive::Drive;
 use crate::host_link::{CommandedLeg, HostLink, HostRefusal, Identity};
 use crate::jog::JogReport;
 use crate::leg::{Checked, Leg, Outcome};
+use crate::recorder::{Recorder, RecorderReply, RecorderRequest, RecorderSetup};
 use crate::sensors::Sensors;
 use crate::settings::{Settings, SettingsError};
 use crate::telemetry::Telemetry;
@@ -70,6 +71,45 @@ impl<T: Scalar> SensingLeg<T> {
         Ok(())
     }
 
+    /// See [`Leg::command`].
+    pub fn command(&mut self, number: u16, command: Command) -> bool {
+        self.leg.command(number, command)
+    }
+
+    /// See [`Leg::note_decode_error`].
+    pub fn note_decode_error(&mut self) {
+        self.leg.note_decode_error();
+    }
+
+    /// See [`Leg::outcome`].
+    pub fn outcome(&mut self) -> Option<Outcome> {
+        self.leg.outcome()
+    }
+
+    /// See [`Leg::jog_report`].
+    #[must_use]
+    pub fn jog_report(&self) -> Option<JogReport<T>> {
+        self.leg.jog_report()
+    }
+
+    /// What the sensors read last.
+    #[must_use]
+    pub fn sensors(&self) -> Sensors {
+        self.sensors
+    }
+
+    /// Starts again with other settings: see [`CommandedLeg::restart`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn restart(&mut self, settings: &Settings) -> Result<(), HostRefusal> {
+        let mut fresh = Self::new(settings).map_err(HostRefusal::Settings)?;
+        fresh.forget_zero();
+        self.hand_over(&mut fresh)?;
+        *self = fresh;
+        Ok(())
+    }
+
     /// See [`Leg::telemetry`].
     #[must_use]
     pub fn telemetry(&self) -> Telemetry<T> {
@@ -84,9 +124,18 @@ impl SensingLeg<f64> {
     }
 }
 
+/// A leg and the recorder of its ticks, as a host commands them.
+#[derive(Debug)]
+pub struct RecordedLeg<'a, T> {
+    /// The leg.
+    pub leg: &'a mut SensingLeg<T>,
+    /// Its recorder: apart, because it is too large to be moved.
+    pub recorder: &'a mut Recorder,
+}
+
 macro_rules! commanded {
     ($number:ty, $narrowed:expr) => {
-        impl CommandedLeg for SensingLeg<$number> {
+        impl CommandedLeg for RecordedLeg<'_, $number> {
             fn command(&mut self, number: u16, command: Command) -> bool {
                 self.leg.command(number, command)
             }
@@ -108,15 +157,17 @@ macro_rules! commanded {
             }
 
             fn sensors(&mut self) -> Sensors {
-                self.sensors
+                self.leg.sensors()
             }
 
             fn restart(&mut self, settings: &Settings) -> Result<(), HostRefusal> {
-                let mut fresh = Self::new(settings).map_err(HostRefusal::Settings)?;
-                fresh.forget_zero();
-                self.hand_over(&mut fresh)?;
-                *self = fresh;
+                self.leg.restart(settings)?;
+                self.recorder.begin(&RecorderSetup::new(settings));
                 Ok(())
+            }
+
+            fn recorder(&mut self, request: RecorderRequest) -> Option<RecorderReply> {
+                self.recorder.answer(request)
             }
         }
     };
@@ -134,7 +185,7 @@ pub struct LinkedLeg<T> {
 
 impl<T: Scalar> LinkedLeg<T>
 where
-    SensingLeg<T>: CommandedLeg,
+    for<'a> RecordedLeg<'a, T>: CommandedLeg,
 {
     /// A leg that has not seen its sensors yet, on a line on which nothing was said yet.
     ///
@@ -148,8 +199,9 @@ where
     }
 
     /// Takes bytes from the host.
-    pub fn receive(&mut self, bytes: &[u8]) {
-        self.link.receive(bytes, &mut self.leg);
+    pub fn receive(&mut self, bytes: &[u8], recorder: &mut Recorder) {
+        let leg = &mut self.leg;
+        self.link.receive(bytes, &mut RecordedLeg { leg, recorder });
     }
 
     /// The leg alone, for its tick.
@@ -158,8 +210,13 @@ where
     }
 
     /// What the host gets after a tick, as far as it fits. `save` keeps settings over a reset; false if that failed.
-    pub fn sent(&mut self, mut save: impl FnMut(&Settings) -> bool) -> Vec<u8, LINK_BYTES_MAX> {
-        self.link.report(&mut self.leg);
+    pub fn sent(
+        &mut self,
+        recorder: &mut Recorder,
+        mut save: impl FnMut(&Settings) -> bool,
+    ) -> Vec<u8, LINK_BYTES_MAX> {
+        let leg = &mut self.leg;
+        self.link.report(&mut RecordedLeg { leg, recorder });
         if let Some(settings) = self.link.to_save() {
             let kept = save(settings);
             self.link.saved(kept);

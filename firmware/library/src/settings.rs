@@ -4,12 +4,14 @@ mod default;
 mod field;
 mod gains;
 mod out_of_range;
+mod recorded;
 mod sections;
 mod tendon;
 
 pub use field::Field;
 pub use gains::{Gains, SECTIONS};
 pub use out_of_range::OutOfRange;
+pub use recorded::{RECORDED_SIGNALS, RecordedSignal, SignalSet};
 pub use sections::{AxisCalibration, BoardCalibration, Estimation, Homing, Limits, Motion, Servo};
 pub use tendon::TendonParameters;
 
@@ -56,6 +58,8 @@ pub struct Settings {
     pub homing: Homing,
     /// Whether the leg may keep station after a command.
     pub keeps_station: bool,
+    /// What the recorder keeps of the last ticks.
+    pub recorded: SignalSet,
 }
 
 /// Why settings are refused.

@@ -40,9 +40,6 @@ use sequential_storage::Error;
 use sequential_storage::cache::{Cache, Uncached};
 use sequential_storage::map::{MapConfig, MapStorage};
 
-/// Version of a record's layout.
-pub const VERSION: u8 = 1;
-
 /// One value needs no key.
 const KEY: () = ();
 

@@ -5,14 +5,18 @@
 use crate::boot::QemuBoard;
 use embassy_futures::yield_now;
 use leg_firmware::frame::{Decoder, MAX_FRAME};
+use leg_firmware::recorder::Recorder;
 use leg_firmware_bench::exit::Exit;
 use leg_firmware_bench::pipes::{TO_FIRMWARE, TO_HOST};
 use leg_firmware_bench::server::Server;
 use semihosting::fs::File;
 use semihosting::io::{Read, Write};
 
+/// The server of this board.
+type BoardServer = Server<QemuBoard, &'static mut Recorder>;
+
 /// Answers the host until it closes the link; returns why it ended.
-pub async fn serve(server: &mut Server<QemuBoard>) -> Exit {
+pub async fn serve(server: &mut BoardServer) -> Exit {
     let Ok((mut to_host, mut from_host)) = open() else {
         return Exit::NoLink;
     };
@@ -40,7 +44,7 @@ fn open() -> semihosting::io::Result<(File, File)> {
 
 /// Answers every request that ends within `bytes`.
 fn answer(
-    server: &mut Server<QemuBoard>,
+    server: &mut BoardServer,
     decoder: &mut Decoder,
     bytes: &[u8],
     to_host: &mut File,

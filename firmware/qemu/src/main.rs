@@ -16,8 +16,10 @@ mod vectors;
 use boot::QemuBoard;
 use defmt_semihosting as _;
 use embassy_executor::InterruptExecutor;
+use leg_firmware::recorder::Recorder;
 use leg_firmware_bench::exit::Exit;
 use leg_firmware_bench::server::Server;
+use static_cell::ConstStaticCell;
 use vectors::Interrupt;
 
 /// Runs the task that answers the host. The clock's interrupts stand above it.
@@ -44,7 +46,9 @@ async fn answer_host() {
         Ok(board) => board,
         Err(exit) => fatal::end(exit),
     };
-    fatal::end(link::serve(&mut Server::new(board)).await);
+    static RECORDER: ConstStaticCell<Recorder> = ConstStaticCell::new(Recorder::new());
+    let mut server = Server::new(board, RECORDER.take());
+    fatal::end(link::serve(&mut server).await);
 }
 
 #[allow(

@@ -12,12 +12,14 @@ use cortex_m::interrupt::Mutex;
 use cortex_m::peripheral::DWT;
 use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::InterruptExt;
+use heapless::Vec;
 use leg_firmware::board::{self, LowerHalf, TickTimer, WatchedTask};
 use leg_firmware::command::Command;
 use leg_firmware::host_link::{CommandedLeg, HostRefusal};
 use leg_firmware::jog::JogReport;
 use leg_firmware::leg::{Checked, Outcome};
 use leg_firmware::linked_leg::SensingLeg;
+use leg_firmware::recorder::{Recorder, RecorderReply, RecorderRequest, RecorderSetup};
 use leg_firmware::sensors::Sensors;
 use leg_firmware::settings::{Settings, SettingsError};
 use leg_firmware::telemetry::Telemetry;
@@ -28,6 +30,7 @@ static CONTROL: Mutex<RefCell<Option<Control>>> = Mutex::new(RefCell::new(None))
 struct Control {
     board: Nucleo,
     leg: &'static mut SensingLeg<f32>,
+    recorder: &'static mut Recorder,
     timer: TickTimer,
 }
 
@@ -35,7 +38,7 @@ impl Control {
     #[inline(always)]
     fn tick(&mut self, started: u32) {
         self.board.late = self.timer.start(started);
-        board::tick(&mut self.board, self.leg);
+        board::tick(&mut self.board, self.leg, self.recorder);
         tick_watchdog::refresh();
         self.timer.end(DWT::cycle_count());
     }
@@ -64,10 +67,11 @@ fn with_control<R>(body: impl FnOnce(&mut Control) -> R) -> Option<R> {
     unsafe_code,
     reason = "unmasking an interrupt can break critical sections that rely on masks"
 )]
-pub fn start(board: Nucleo, leg: &'static mut SensingLeg<f32>) {
+pub fn start(board: Nucleo, leg: &'static mut SensingLeg<f32>, recorder: &'static mut Recorder) {
     let control = Control {
         board,
         leg,
+        recorder,
         timer: TickTimer::new(),
     };
     cortex_m::interrupt::free(|section| CONTROL.borrow(section).replace(Some(control)));
@@ -144,7 +148,25 @@ impl CommandedLeg for SharedLeg {
             core::mem::swap(&mut control.leg, spare);
             Ok(())
         });
-        changed.unwrap_or(Err(HostRefusal::Busy))
+        changed.unwrap_or(Err(HostRefusal::Busy))?;
+        // Apart: the interrupt may come between the two.
+        let setup = RecorderSetup::new(settings);
+        with_control(|control| control.recorder.begin(&setup));
+        Ok(())
+    }
+
+    fn recorder(&mut self, request: RecorderRequest) -> Option<RecorderReply> {
+        let RecorderRequest::Read(first) = request else {
+            with_control(|control| control.recorder.obey(request))?;
+            // A waiting interrupt comes between the two.
+            cortex_m::asm::isb();
+            let report = with_control(|control| control.recorder.report())?;
+            return Some(RecorderReply::Report(report));
+        };
+        // Into its place: the interrupt waits no longer than for one copy.
+        let mut read = Vec::new();
+        let ended = with_control(|control| control.recorder.read(first, &mut read))?;
+        ended.then_some(RecorderReply::Triples(read))
     }
 }
 

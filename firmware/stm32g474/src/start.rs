@@ -19,9 +19,10 @@ use leg_firmware::host_link::BoardKind;
 use leg_firmware::host_link::{HostLink, Identity, ResetCause};
 use leg_firmware::leg::Checked;
 use leg_firmware::linked_leg::SensingLeg;
+use leg_firmware::recorder::{Recorder, RecorderSetup};
 use leg_firmware::settings::Settings;
 use leg_firmware::version::VERSION;
-use static_cell::StaticCell;
+use static_cell::{ConstStaticCell, StaticCell};
 
 /// Sets everything up and lets it run.
 pub async fn start(spawner: Spawner, p: Peripherals, origin: (ResetCause, Option<CrashReport>)) {
@@ -73,13 +74,16 @@ pub async fn start(spawner: Spawner, p: Peripherals, origin: (ResetCause, Option
     // To be built anew when the settings change.
     static SPARE: StaticCell<SensingLeg<f32>> = StaticCell::new();
     let spare = SharedLeg::new(placed(&SPARE, settings));
+    static RECORDER: ConstStaticCell<Recorder> = ConstStaticCell::new(Recorder::new());
+    let recorder = RECORDER.take();
+    recorder.begin(&RecorderSetup::new(settings));
     let session = session(origin, settings, spare);
 
     let Some(cycles) = CycleCounter::start() else {
         fatal::end(&ShortText::new("the cycle counter is taken"));
     };
     let board = Nucleo::new(power, encoders, converters, slow_sensors);
-    control::start(board, leg);
+    control::start(board, leg, recorder);
     power::start();
     spawn(&spawner, settings_task::keep_settings(store));
     // Before the line is opened, which may wait for its hardware.

@@ -21,6 +21,7 @@ pub mod failure;
 pub mod json_line;
 pub mod numeric;
 pub mod paths;
+pub mod recorder_rows;
 pub mod settling;
 pub mod suggest;
 pub mod text_input;

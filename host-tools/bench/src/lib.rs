@@ -27,6 +27,7 @@ pub mod image_budget;
 pub mod moves;
 pub mod paper;
 pub mod precision;
+pub mod recorder_charts;
 pub mod run_charts;
 pub mod sensitivity;
 pub mod stand;

@@ -147,7 +147,7 @@ pub fn save(title: &str, samples: &[Sample], directory: &Path) -> Result<Vec<Pat
         &SIMULATION,
         title,
         samples,
-        |sample| (sample.time_s, sample.telemetry.state),
+        |sample| (sample.time_s, Some(sample.telemetry.state)),
         directory,
     )
 }
@@ -161,6 +161,6 @@ pub fn save_log(
     reports: &[Report],
     directory: &Path,
 ) -> Result<Vec<PathBuf>, PlotError> {
-    let at = |(time_s, report): &Report| (*time_s, report.state);
+    let at = |(time_s, report): &Report| (*time_s, Some(report.state));
     time_charts::save(&LOG, title, reports, at, directory)
 }

@@ -19,15 +19,15 @@ pub(crate) struct TimeChart<S: 'static> {
 }
 
 /// More points than this do not show in a chart.
-const POINTS_MAX: usize = 1500;
+const POINTS_MAX: usize = 1600;
 
 /// Draws charts, each as SVG and PNG, and names the SVG files; one of which nothing is known is left out, unless that is all of them.
-/// `title` is that of the run, `at` gives time, s, and state of a sample.
+/// `title` is that of the run, `at` gives time, s, and state of a sample, if that is known.
 pub(crate) fn save<S>(
     charts: &[TimeChart<S>],
     title: &str,
     samples: &[S],
-    at: fn(&S) -> (f64, State),
+    at: fn(&S) -> (f64, Option<State>),
     directory: &Path,
 ) -> Result<Vec<PathBuf>, PlotError> {
     let line = |&(label, quantity): &Curve<S>| ChartLine {
@@ -63,9 +63,10 @@ pub(crate) fn save<S>(
 }
 
 /// The spans of time in which a leg is in one state.
-fn states(samples: impl Iterator<Item = (f64, State)>) -> Vec<Span> {
+fn states(samples: impl Iterator<Item = (f64, Option<State>)>) -> Vec<Span> {
     let mut spans: Vec<Span> = Vec::new();
     for (time_s, state) in samples {
+        let Some(state) = state else { continue };
         let label = description::state(state);
         if let Some(last) = spans.last_mut() {
             last.x.end = time_s;

@@ -8,6 +8,7 @@ mod goal;
 mod jog;
 mod keep_alive;
 mod motion;
+mod recorder;
 mod refusal;
 mod request;
 mod settings;
@@ -20,6 +21,7 @@ mod tests;
 
 pub use error::OperatorError;
 pub use goal::{Goal, Tensioning};
+pub use recorder::Scope;
 pub use settings::{SettingDifference, setting_differences};
 
 use crate::cancel_flag::CancelFlag;

@@ -19,6 +19,7 @@ use crate::signals::{LegConstants, Report, Simulated};
 use csv_file::CsvFile;
 use leg_base::atomic_file::PartFile;
 use leg_base::failure::Failure;
+use leg_base::recorder_rows::RecorderRow;
 use leg_base::tick_time::{seconds, tick_s};
 use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
@@ -126,6 +127,23 @@ impl Recording {
                 file.write_report(self.count, time_ns, &report)?;
             }
             RecordingFile::Csv(file) => file.write_report(&report)?,
+        }
+        self.taken(time_s)
+    }
+
+    /// Takes a row of a board's recorder, whose tick was at a time of the day, s since 1970, if that is known.
+    pub fn take_recorder_row(
+        &mut self,
+        row: &RecorderRow,
+        wall_time_s: Option<f64>,
+    ) -> Result<(), RecordingError> {
+        let time_s = seconds(row.tick.into());
+        match &mut self.file {
+            RecordingFile::Mcap(file) => {
+                let time_ns = (wall_time_s.unwrap_or(time_s) * 1e9).round() as u64;
+                file.write_recorder_row(self.count, time_ns, row)?;
+            }
+            RecordingFile::Csv(file) => file.write_recorder_row(row)?,
         }
         self.taken(time_s)
     }

@@ -63,6 +63,7 @@ mod progress;
 mod replay;
 mod rig;
 mod run;
+mod scope;
 mod sensors;
 mod settings;
 mod strikes;
@@ -121,6 +122,7 @@ enum Command {
     Replay(replay::Args),
     Rig(rig::Args),
     Run(run::Args),
+    Scope(scope::Args),
     Sensors(sensors::Args),
     Settings(settings::Args),
     /// Installs what the other commands and the tests need: the Rust target, QEMU, the firmware built for it, and Python.
@@ -178,6 +180,7 @@ fn run(command: &Command, options: Options) -> Result<(), Failure> {
         Command::Replay(args) => replay::run(args, options),
         Command::Rig(args) => rig::run(args, options),
         Command::Run(args) => run::run(args, options),
+        Command::Scope(args) => scope::run(args, options),
         Command::Sensors(args) => sensors::run(args, options),
         Command::Settings(args) => settings::run(args, options),
         Command::Setup => board::setup(options),

@@ -4,12 +4,12 @@ use crate::options::Options;
 use crate::output::{chart_line, not_saved, note};
 use leg_base::failure::Failure;
 use leg_base::json_object;
-use leg_bench::run_charts;
+use leg_bench::{recorder_charts, run_charts};
 use leg_boards::image;
 use leg_host::recording::{self, Samples};
 use std::path::PathBuf;
 
-/// Draws the charts of a recording: those of `leg run` from what it recorded, and a leg's telemetry from a log.
+/// Draws the charts of a recording: those of `leg run` from what it recorded, a leg's telemetry from a log, and what `leg scope` read.
 ///
 /// A recording that did not come to its end is drawn as far as it goes.
 #[derive(Debug, clap::Args)]
@@ -32,6 +32,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let plots = match &recorded.samples {
         Samples::Simulation(samples) => run_charts::save(title, samples, &directory),
         Samples::Log(reports) => run_charts::save_log(title, reports, &directory),
+        Samples::Recorder(rows) => recorder_charts::save(title, rows, &directory),
     };
     let plots = plots.map_err(|error| not_saved("charts", &directory, "--plots", &error))?;
     let json = json_object! { about: &recorded.about, finished: recorded.finished, plots: &plots };

@@ -4,6 +4,7 @@ use crate::arguments::{self, tensioning, within};
 use crate::errors::{leg_error, leg_failure};
 use crate::operator_thread::{LegFailure, OperatorThread, Place};
 use crate::rig::Rig;
+use crate::scope;
 use crate::telemetry;
 use leg_base::angles;
 use leg_firmware::can::LegAddress;
@@ -260,6 +261,14 @@ impl Leg {
     fn telemetry<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let report = self.ask(py, Operator::telemetry)?;
         self.report(py, &report.telemetry)
+    }
+
+    fn scope<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let scope = self.ask(py, |operator| {
+            let settings = operator.settings()?;
+            operator.scope(&settings)
+        })?;
+        scope::arrays(py, &scope)
     }
 
     fn sensors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {

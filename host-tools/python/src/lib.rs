@@ -14,6 +14,7 @@ mod outputs;
 mod recorder;
 mod rig;
 mod scenarios;
+mod scope;
 mod session;
 mod signals;
 mod simulated_leg;

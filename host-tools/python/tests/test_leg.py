@@ -112,8 +112,15 @@ def test_an_emulated_leg_is_disturbed_and_no_other():
     leg.disturb({"payload": {"kg": 1.0, "over_s": 0.2}})
     leg.wait(2.0)
     assert leg.telemetry()["payload_kg"] == pytest.approx(1.0, abs=0.05)
+    before = leg.scope()
+    assert "since_fault_s" not in before
     leg.disturb({"emergency_stop": True})
     leg.wait(0.1)
+    kept = leg.scope()
+    assert set(kept) == {"time_s", "tick", "since_fault_s", "tensions_n", "pulled_m", "duties"}
+    assert kept["tensions_n"].shape == (1600, 3)
+    assert kept["since_fault_s"] == pytest.approx(np.arange(-1200, 400) / 8000)
+    assert np.all(kept["duties"][1200:] == 0)
     assert leg.sensors()["emergency_stop"]
     assert leg.telemetry()["state"] == "off"
 

@@ -34,6 +34,7 @@ pub fn settings(rig: &RigFile, gains: &Gains, unstretched_at_zero_m: Option<[f64
         limits: gains.limits,
         homing: gains.homing,
         keeps_station: rig.keeps_station,
+        recorded: rig.recorded,
     }
 }
 

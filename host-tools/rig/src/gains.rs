@@ -1,8 +1,10 @@
 //! Gains and limits of the control law: the sections `[control.…]` of rig files and scenarios.
 
 use crate::number::decimal;
+use crate::recorded_signals::{self, RECORDED};
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;
+use leg_firmware::settings::SignalSet;
 use leg_firmware::settings::{Field, Gains, SECTIONS};
 use toml::de::DeTable;
 
@@ -74,14 +76,28 @@ pub fn read(file: &DeTable<'_>) -> Result<Vec<GainChange>, TomlError> {
     control.map_or(Ok(Vec::new()), |control| read_sections(&control))
 }
 
-/// The same of a rig file, with whether the leg may keep station.
-pub(crate) fn read_rig(file: &Section<'_>) -> Result<(Vec<GainChange>, bool), TomlError> {
-    let known: Vec<_> = SECTIONS.iter().map(|(name, _)| *name).collect();
-    let Some(control) = file.optional(CONTROL, &[&known[..], &[KEEPS_STATION]].concat())? else {
-        return Ok((Vec::new(), true));
+/// What `[control]` of a rig file gives.
+#[derive(Default)]
+pub(crate) struct GivenControl {
+    pub changes: Vec<GainChange>,
+    /// Whether the leg may keep station, if that is given.
+    pub keeps_station: Option<bool>,
+    pub recorded: SignalSet,
+}
+
+/// The same of a rig file, with the keys beside the sections.
+pub(crate) fn read_rig(file: &Section<'_>) -> Result<GivenControl, TomlError> {
+    let mut known = vec![KEEPS_STATION, RECORDED];
+    known.extend(SECTIONS.iter().map(|(name, _)| *name));
+    let Some(control) = file.optional(CONTROL, &known)? else {
+        return Ok(GivenControl::default());
     };
-    let keeps_station = !control.has(KEEPS_STATION) || control.truth(KEEPS_STATION)?;
-    Ok((read_sections(&control)?, keeps_station))
+    let given = control.has(KEEPS_STATION);
+    Ok(GivenControl {
+        changes: read_sections(&control)?,
+        keeps_station: given.then(|| control.truth(KEEPS_STATION)).transpose()?,
+        recorded: recorded_signals::read(&control)?,
+    })
 }
 
 fn read_sections(control: &Section<'_>) -> Result<Vec<GainChange>, TomlError> {

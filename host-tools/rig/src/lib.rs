@@ -29,6 +29,7 @@ pub mod gains;
 pub mod number;
 pub mod plant_settings;
 pub mod ready_rigs;
+pub mod recorded_signals;
 pub mod renamed_keys;
 pub mod rig_convert;
 pub mod rig_file;

@@ -18,6 +18,7 @@ use derived::GivenGains;
 use leg_base::failure::Failure;
 use leg_base::text_input::{self, FILE_BYTES_MAX};
 use leg_firmware::settings::Gains;
+use leg_firmware::settings::SignalSet;
 use leg_model::{Elasticity, Query, RigParameters, StiffnessAt, Support, Tendon};
 use std::path::Path;
 
@@ -50,6 +51,8 @@ pub struct RigFile {
     pub calibration: Calibration,
     /// Whether the leg may keep station after a command.
     pub keeps_station: bool,
+    /// What the board's recorder keeps of the last ticks.
+    pub recorded: SignalSet,
     /// Gains and limits of the control law.
     pub gains: Gains,
     /// Which of them the file gives; the others follow from the motors, or are at their defaults.

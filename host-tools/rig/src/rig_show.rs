@@ -1,5 +1,6 @@
 //! What the model makes of a rig file.
 
+use crate::recorded_signals;
 use crate::rig_file::derived::{self, DerivedGain, derived_gains};
 use crate::rig_file::{Buckling, RigFile};
 use crate::rig_settings;
@@ -26,6 +27,7 @@ struct RigSummary {
     stiffness_at_pretension_n_per_m: [f64; 3],
     tilt_deg: f64,
     keeps_station: bool,
+    recorded: Vec<&'static str>,
     derived: Vec<DerivedGain>,
 }
 
@@ -48,6 +50,7 @@ impl RigSummary {
             stiffness_at_pretension_n_per_m: file.stiffnesses_n_per_m(),
             tilt_deg: file.tilt_deg,
             keeps_station: file.keeps_station,
+            recorded: recorded_signals::words(file.recorded).collect(),
             derived: derived_gains(file),
         }
     }
@@ -70,6 +73,7 @@ pub fn words(file: &RigFile) -> String {
          tendons at pretension  {first:.0}, {second:.0}, {third:.0} N/m\n\
          workspace              tilt to {}°\n\
          after a command        {}\n\
+         recorded at every tick {}\n\
          {}{}",
         summary.support,
         summary.joint.bending_nm_per_rad,
@@ -87,6 +91,10 @@ pub fn words(file: &RigFile) -> String {
             "keeps station"
         } else {
             "held"
+        },
+        match &summary.recorded[..] {
+            [] => "nothing".into(),
+            signals => signals.join(", "),
         },
         rig_settings::changes(file),
         derived::table(&summary.derived),

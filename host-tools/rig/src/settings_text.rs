@@ -2,6 +2,7 @@
 
 use crate::gains::{CONTROL, KEEPS_STATION};
 use crate::number::{decimal, exact, exact_mm, exact_through, plain};
+use crate::recorded_signals::{self, RECORDED};
 use crate::support_name::SupportName;
 use leg_firmware::sensors::CODE_MAX;
 use leg_firmware::settings::{AxisCalibration, SECTIONS, Settings, TendonParameters};
@@ -127,8 +128,9 @@ fn control(settings: &Settings) -> String {
     let gains = settings.gains();
     let mut values = gains.values();
     let mut text = format!(
-        "\n[{CONTROL}]\n{KEEPS_STATION} = {}\n",
-        settings.keeps_station
+        "\n[{CONTROL}]\n{KEEPS_STATION} = {}\n{RECORDED} = {}\n",
+        settings.keeps_station,
+        list(recorded_signals::words(settings.recorded).map(|word| format!("\"{word}\""))),
     );
     for (name, fields) in SECTIONS {
         text += &format!("\n[{CONTROL}.{name}]\n");
@@ -199,6 +201,7 @@ mod tests {
     use crate::ready_rigs::READY_RIGS;
     use crate::rig_file::RigFile;
     use leg_firmware::settings::Settings;
+    use leg_firmware::settings::{RECORDED_SIGNALS, SignalSet};
 
     fn settings(file: &str, text: &str) -> Settings {
         let rig = RigFile::parse(file, text).unwrap();
@@ -230,6 +233,8 @@ mod tests {
         for _ in 0..200 {
             let mut before = settings(READY_RIGS[0].name, READY_RIGS[0].text);
             before.keeps_station = rng.bool();
+            let signals = RECORDED_SIGNALS.into_iter().filter(|_| rng.bool());
+            before.recorded = SignalSet::new(&signals.collect::<Vec<_>>());
             let mut spread = |value: &mut f32| *value *= 1.0 + 0.01 * rng.f32();
             spread(&mut before.rig.leg_length_m);
             spread(&mut before.tilt_max_sine);

@@ -159,6 +159,17 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// An array of words, each with its place.
+    pub fn words(&self, key: &str) -> Result<Vec<Spanned<&'a str>>, TomlError> {
+        let wanted = "an array of strings in quotes";
+        let entries = array(key, wanted, self.get(key)?)?.iter();
+        let word = |entry: &'a Spanned<DeValue<'a>>| match entry.get_ref() {
+            DeValue::String(word) => Ok(Spanned::new(entry.span(), word.as_ref())),
+            _ => Err(wrong_type(key, wanted, entry)),
+        };
+        entries.map(word).collect()
+    }
+
     /// `true` or `false`.
     pub fn truth(&self, key: &str) -> Result<bool, TomlError> {
         let value = self.get(key)?;

@@ -46,6 +46,8 @@ pub struct Tick<'a> {
     pub telemetry: &'a Telemetry<f32>,
     /// Instructions that it took, if they are counted.
     pub instructions: Option<u32>,
+    /// Instructions that its recording took, if they are counted.
+    pub recorder_instructions: Option<u32>,
     /// The simulated leg beside what it reports.
     pub comparison: &'a Comparison,
     /// The simulated leg as the tick finds it.
@@ -153,6 +155,7 @@ fn advance(
             drive: &reply.drive,
             telemetry: &reply.telemetry,
             instructions: reply.instructions,
+            recorder_instructions: reply.recorder_instructions,
             comparison: &comparison,
             truth: &truth,
             motors: &reply.motors,

@@ -4,6 +4,7 @@
 
 use leg_firmware::frame::{Decoder, MAX_FRAME};
 use leg_firmware::host_link::HostReply;
+use leg_firmware::recorder::{Recorder};
 use leg_firmware_bench::protocol::Reply;
 use leg_firmware_bench::server::Server;
 use leg_fuzz::{NoBoard, armed, brought, feed, framed, host_requests, requests};
@@ -39,7 +40,7 @@ enum Step {
 
 /// A server, the decoder in front of it, and the one of the host that talks to the leg behind it.
 struct End {
-    server: Server<NoBoard>,
+    server: Server<NoBoard, Box<Recorder>>,
     decoder: Decoder,
     host: Decoder,
 }
@@ -122,7 +123,7 @@ static HOST_REQUESTS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(host_requests);
 fuzz_target!(|input: (bool, Vec<Step>)| {
     let (armed_first, steps) = input;
     let mut end = End {
-        server: Server::new(NoBoard),
+        server: Server::new(NoBoard, Box::default()),
         decoder: Decoder::new(),
         host: Decoder::new(),
     };

@@ -114,11 +114,12 @@ mod tests {
     use leg_firmware::frame::{Decoder, MAX_FRAME};
     use leg_firmware::host_link::Hello;
     use leg_firmware::host_link::{HostRefusal, HostReply};
+    use leg_firmware::recorder::{Recorder};
     use leg_firmware::supervisor::State;
     use leg_firmware_bench::protocol::{BENCH_SCHEMA, Reply, Request};
     use leg_firmware_bench::server::Server;
 
-    fn ask(server: &mut Server<NoBoard>, payload: &[u8]) -> Reply {
+    fn ask(server: &mut Server<NoBoard, Box<Recorder>>, payload: &[u8]) -> Reply {
         let mut decoder = Decoder::new();
         let mut out = [0; MAX_FRAME];
         for byte in framed(1, payload) {
@@ -138,7 +139,7 @@ mod tests {
     /// A request that is refused would be a poor one to start from.
     #[test]
     fn every_request_is_done() {
-        let mut server = Server::new(NoBoard);
+        let mut server = Server::new(NoBoard, Box::default());
         for (number, payload) in requests().iter().enumerate() {
             let reply = ask(&mut server, payload);
             assert!(!matches!(reply, Reply::Refused(_)), "{number}: {reply:?}");
@@ -147,7 +148,7 @@ mod tests {
 
     /// What a leg says to its host in this tick.
     fn said(
-        server: &mut Server<NoBoard>,
+        server: &mut Server<NoBoard, Box<Recorder>>,
         host: &mut Decoder,
         tick: &[u8],
     ) -> Vec<(u16, HostReply)> {
@@ -167,7 +168,7 @@ mod tests {
     /// One that the leg cannot read, or that it refuses for what is in it, would be a poor one to start from.
     #[test]
     fn every_request_of_a_host_is_read_by_the_leg() {
-        let (mut server, mut host) = (Server::new(NoBoard), Decoder::new());
+        let (mut server, mut host) = (Server::new(NoBoard, Box::default()), Decoder::new());
         let hello = Request::Hello(Hello {
             schema: BENCH_SCHEMA,
         });
@@ -196,7 +197,7 @@ mod tests {
 
     #[test]
     fn an_armed_leg_follows_commands() {
-        let mut server = Server::new(NoBoard);
+        let mut server = Server::new(NoBoard, Box::default());
         let replies: Vec<Reply> = armed().iter().map(|p| ask(&mut server, p)).collect();
         let Some(Reply::Ticked(tick)) = replies.last() else {
             panic!("{replies:?}")

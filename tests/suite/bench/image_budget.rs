@@ -96,7 +96,7 @@ fn the_image_for_qemu_keeps_its_budget() {
     // Here the tasks run in an interrupt's executor.
     let link = named(&needs, "LINK");
     assert_eq!(link.kind, RootKind::Interrupt);
-    assert!((23_000..30_700).contains(&link.stack_bytes), "{link:#?}");
+    assert!((28_400..37_800).contains(&link.stack_bytes), "{link:#?}");
 }
 
 #[test]
@@ -110,7 +110,8 @@ fn a_panic_is_found_where_one_can_be_reached_and_nowhere_else() {
     // The linker has shown that this one has none, though it holds all that the server and the model do.
     let proof = root(&panic_free::image().unwrap(), "_start").unwrap();
     assert_eq!(proof.panic, None);
-    assert!((25_000..50_000).contains(&proof.stack_bytes), "{proof:#?}");
+    // Its recorder is a local, and moved once.
+    assert!((60_000..110_000).contains(&proof.stack_bytes), "{proof:#?}");
     let board = image_of(FirmwareImage::Stm32g474);
     assert_eq!(root(&board, "ADC1_2").unwrap().panic, None);
 }

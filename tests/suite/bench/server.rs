@@ -2,6 +2,7 @@
 
 use leg_firmware::frame::{Decoder, FrameError, MAX_FRAME, encode};
 use leg_firmware::host_link::{BoardKind, Hello};
+use leg_firmware::recorder::Recorder;
 use leg_firmware::settings::Settings;
 use leg_firmware_bench::counter::Counter;
 use leg_firmware_bench::example;
@@ -42,12 +43,12 @@ impl Board for Bench {
     }
 }
 
-fn server(instructions: Option<u32>) -> Server<Bench> {
-    Server::new(Bench { instructions })
+fn server(instructions: Option<u32>) -> Server<Bench, Box<Recorder>> {
+    Server::new(Bench { instructions }, Box::default())
 }
 
 /// Sends bytes and returns the sequence and the message of the only reply.
-fn exchange(server: &mut Server<Bench>, bytes: &[u8]) -> (u16, Reply) {
+fn exchange(server: &mut Server<Bench, Box<Recorder>>, bytes: &[u8]) -> (u16, Reply) {
     let (mut requests, mut replies) = (Decoder::new(), Decoder::new());
     let mut out = [0; MAX_FRAME];
     let mut found = Vec::new();
@@ -78,7 +79,7 @@ fn framed(request: &Request) -> Vec<u8> {
     }
 }
 
-fn ask(server: &mut Server<Bench>, request: &Request) -> Reply {
+fn ask(server: &mut Server<Bench, Box<Recorder>>, request: &Request) -> Reply {
     let (sequence, reply) = exchange(server, &framed(request));
     assert_eq!(sequence, 77);
     reply
@@ -88,7 +89,7 @@ fn hello(schema: [u8; 8]) -> Request {
     Request::Hello(Hello { schema })
 }
 
-fn greeted(instructions: Option<u32>) -> Server<Bench> {
+fn greeted(instructions: Option<u32>) -> Server<Bench, Box<Recorder>> {
     let mut server = server(instructions);
     assert_eq!(ask(&mut server, &hello(BENCH_SCHEMA)), Reply::Hello(INFO));
     server

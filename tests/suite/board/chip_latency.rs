@@ -12,6 +12,7 @@ use leg_firmware::can::{Identifier, LegAddress, Segmenter};
 use leg_firmware::command::Command;
 use leg_firmware::frame::{self, Decoder, MAX_FRAME};
 use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest};
+use leg_firmware::recorder::RecorderRequest;
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{HostIdentity, Operator};
 use leg_host::transport::can::CanTransport;
@@ -90,6 +91,15 @@ fn by_serial(image: &Path) -> (u64, u32) {
         HostRequest::JogReport,
         HostRequest::GetSettings,
     ];
+    let recorder = [
+        RecorderRequest::Report,
+        RecorderRequest::Stop,
+        RecorderRequest::Read(30),
+        RecorderRequest::Restart,
+    ];
+    let questions = questions
+        .into_iter()
+        .chain(recorder.map(HostRequest::Recorder));
     for request in every_command().map(commanded).chain(questions) {
         let reply = ask(chip, &mut meter, &request);
         let refused = HostReply::Refused(HostRefusal::NotIdentified);

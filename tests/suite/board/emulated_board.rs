@@ -11,6 +11,7 @@ mod page;
 mod paths;
 mod ports;
 mod qemu;
+mod recorder;
 mod tcp;
 mod terminal;
 

@@ -5,7 +5,7 @@
 
 use crate::common::python;
 use leg_boards::image::workspace_root;
-use leg_host::signals::{REPORT_SIGNALS, SIMULATED_SIGNALS, Signal, Values};
+use leg_host::signals::{RECORDER_SIGNALS, REPORT_SIGNALS, SIMULATED_SIGNALS, Signal, Values};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::Path;
@@ -48,6 +48,7 @@ fn page(text: &str) -> String {
         let table = match topic {
             "/leg" => table(REPORT_SIGNALS),
             "/simulation" => table(SIMULATED_SIGNALS),
+            "/recorder" => table(RECORDER_SIGNALS),
             other => panic!("no topic is called {other}"),
         };
         write!(page, "{}{topic} -->\n{table}{}{rest}", MARKS[0], MARKS[1]).unwrap();
@@ -65,7 +66,7 @@ fn the_page_of_telemetry_lists_every_signal() {
     } else {
         assert!(text == made, "make it anew with LEG_OVERWRITE=1");
     }
-    assert_eq!(made.matches(MARKS[1]).count(), 2);
+    assert_eq!(made.matches(MARKS[1]).count(), 3);
 }
 
 fn leg(arguments: &[&str], directory: &Path) {

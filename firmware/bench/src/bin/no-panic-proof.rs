@@ -13,6 +13,7 @@ use leg_firmware::can::{
 };
 use leg_firmware::frame::{Decoder, MAX_FRAME};
 use leg_firmware::host_link::BoardKind;
+use leg_firmware::recorder::Recorder;
 use leg_firmware::settings::Settings;
 use leg_firmware_bench::counter::Counter;
 use leg_firmware_bench::protocol::BoardInfo;
@@ -82,7 +83,8 @@ fn watch(guard: &mut BusGuard) {
 #[allow(unsafe_code, reason = "the linker's entry has a fixed name")]
 #[unsafe(no_mangle)]
 extern "C" fn _start() -> ! {
-    let mut server = Server::new(NoBoard);
+    let mut recorder = Recorder::new();
+    let mut server = Server::new(NoBoard, &mut recorder);
     let mut decoder = Decoder::new();
     let mut out = [0; MAX_FRAME];
     let leg = LegAddress::ALL[0];

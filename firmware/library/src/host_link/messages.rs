@@ -3,6 +3,7 @@
 use crate::command::{Command, CommandRefusal};
 use crate::frame::FrameError;
 use crate::jog::JogReport;
+use crate::recorder::{RecorderReply, RecorderRequest};
 use crate::sensors::Sensors;
 use crate::settings::{Settings, SettingsError};
 use crate::telemetry::Telemetry;
@@ -67,6 +68,8 @@ pub enum HostRequest {
     SaveSettings,
     /// Asks for what the last jog saw.
     JogReport,
+    /// Asks something of the recorder.
+    Recorder(RecorderRequest),
 }
 
 /// What the leg answers, and sends by itself.
@@ -93,6 +96,8 @@ pub enum HostReply {
     Settings(Settings),
     /// What the last jog saw; none since the start.
     Jog(Option<JogReport<f32>>),
+    /// What the recorder holds.
+    Recorder(RecorderReply),
 }
 
 /// Telemetry with its number.
@@ -164,4 +169,6 @@ pub enum HostRefusal {
     Settings(SettingsError),
     /// The settings could not be kept.
     NotSaved,
+    /// The recorder is recording: what it holds can be read when it has ended.
+    Recording,
 }

@@ -3,7 +3,7 @@
 use super::SensingLeg;
 use crate::command::{Command, CommandRefusal};
 use crate::control::CYCLE_TICKS;
-use crate::host_link::{CommandedLeg, HostRefusal};
+use crate::host_link::HostRefusal;
 use crate::leg::Outcome;
 use crate::sensors::{CODE_MAX, Sensors};
 use crate::settings::Settings;

@@ -1,6 +1,5 @@
 //! What a store finds, and why it fails.
 
-use super::VERSION;
 use crate::settings::{Settings, SettingsError};
 use core::fmt::{Debug, Display, Formatter, Result};
 
@@ -24,11 +23,6 @@ pub enum Loaded {
 pub enum CorruptReason {
     /// The record's CRC belongs to other bytes.
     Crc,
-    /// The record has another layout.
-    OtherVersion {
-        /// Its version.
-        found: u8,
-    },
     /// The record holds settings of another shape: another firmware wrote it.
     OtherSchema {
         /// Its schema.
@@ -47,9 +41,6 @@ impl Display for CorruptReason {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match self {
             Self::Crc => f.write_str("the record's CRC belongs to other bytes"),
-            Self::OtherVersion { found } => {
-                write!(f, "the record has layout {found} instead of {VERSION}")
-            }
             Self::OtherSchema { .. } => f.write_str("another firmware's settings are stored"),
             Self::NotSettings => f.write_str("the record does not hold settings"),
             Self::Refused(error) => write!(f, "the settings stored are refused: {error}"),

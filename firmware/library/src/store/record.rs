@@ -1,6 +1,5 @@
-//! A record: version, schema, settings in postcard's format, CRC-32 (ISO-HDLC, little-endian) of all before it.
+//! A record: schema, settings in postcard's format, CRC-32 (ISO-HDLC, little-endian) of all before it.
 
-use super::VERSION;
 use super::error::CorruptReason;
 use super::max_size::max_size;
 use crate::settings::Settings;
@@ -8,13 +7,14 @@ use crc::{CRC_32_ISO_HDLC, Crc};
 use postcard_schema::{Schema, key::Key};
 use sequential_storage::map::{SerializationError, Value};
 
-/// Hash of the type [`Settings`] alone: other messages may change without the settings being lost.
+/// Hash of the type [`Settings`] alone: other messages may change without the settings being lost. A record of another layout
+/// needs another path, and so has another hash.
 pub const SETTINGS_SCHEMA: [u8; 8] = Key::for_path::<Settings>("settings").to_bytes();
 
 /// Most that settings take in postcard's format, bytes: three tendons with full curves.
 pub const SETTINGS_MAX: usize = max_size(Settings::SCHEMA);
 
-const HEAD: usize = size_of::<u8>() + SETTINGS_SCHEMA.len();
+const HEAD: usize = SETTINGS_SCHEMA.len();
 const CHECKSUM: usize = size_of::<u32>();
 
 /// Longest record, bytes.
@@ -38,9 +38,7 @@ impl<'a> Value<'a> for Packed<'_> {
 
 /// Writes a record and returns its length; `None` if there is no room for it.
 pub fn pack(settings: &Settings, out: &mut [u8]) -> Option<usize> {
-    let (head, rest) = out.split_first_chunk_mut::<HEAD>()?;
-    let (version, schema) = head.split_first_mut()?;
-    *version = VERSION;
+    let (schema, rest) = out.split_first_chunk_mut::<HEAD>()?;
     schema.copy_from_slice(&SETTINGS_SCHEMA);
     let checked = HEAD + postcard::to_slice(settings, rest).ok()?.len();
     let (checked_bytes, rest) = out.split_at_mut_checked(checked)?;
@@ -56,11 +54,9 @@ pub fn unpack(record: &[u8]) -> Result<Settings, CorruptReason> {
     if CRC.checksum(checked) != u32::from_le_bytes(*checksum) {
         return Err(CorruptReason::Crc);
     }
-    let (&version, rest) = checked.split_first().ok_or(CorruptReason::NotSettings)?;
-    if version != VERSION {
-        return Err(CorruptReason::OtherVersion { found: version });
-    }
-    let (&schema, data) = rest.split_first_chunk().ok_or(CorruptReason::NotSettings)?;
+    let (&schema, data) = checked
+        .split_first_chunk()
+        .ok_or(CorruptReason::NotSettings)?;
     if schema != SETTINGS_SCHEMA {
         return Err(CorruptReason::OtherSchema { found: schema });
     }

@@ -91,6 +91,7 @@ fn small(number: usize) -> Settings {
         limits: Default::default(),
         homing: Default::default(),
         keeps_station: true,
+        recorded: Default::default(),
     }
 }
 

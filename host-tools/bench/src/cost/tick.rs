@@ -1,4 +1,5 @@
-//! What a whole tick of the control law takes: sense to drive, supervisor included.
+//! What a whole tick of the control law takes: sense to drive, supervisor included. The recorder, which follows the drive, is counted
+//! apart.
 
 use super::{Cost, CostError, InstructionBudget};
 use leg_rig::ready_rigs::{READY_RIGS, ReadyRig};
@@ -18,25 +19,43 @@ const MAX: u32 = 2000;
 /// The most where the support turns the leg about itself, so that its geometry has to be made anew at every pose.
 const MAX_TURNED: u32 = 2700;
 
+/// The most that the recording of three signals may take.
+const RECORDER_MAX: u32 = 400;
+
 /// A scenario whose every tick is counted.
 pub(super) struct CountedScenario {
     name: String,
     /// The ready scenario.
     scenario: &'static str,
     rig: ReadyRig,
+    part: Part,
+}
+
+/// What of a tick is counted.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Part {
+    ControlLaw,
+    Recorder,
 }
 
 /// How many scenarios are counted.
-pub(super) const COUNTED: usize = READY_RIGS.len() + 3;
+pub(super) const COUNTED: usize = READY_RIGS.len() + 4;
 
 /// Everything that is counted: every ready rig as it moves, and the paper's as it is homed, follows set-points and keeps station,
-/// too.
+/// too, and its recorder.
 pub(super) fn counted() -> impl Iterator<Item = CountedScenario> {
     let [paper, others @ ..] = READY_RIGS;
     let counted = |what: &str, scenario, rig| CountedScenario {
         name: format!("control tick{what}"),
         scenario,
         rig,
+        part: Part::ControlLaw,
+    };
+    let recorder = CountedScenario {
+        name: "recorder".into(),
+        scenario: "cost_station",
+        rig: paper,
+        part: Part::Recorder,
     };
     let others = others.map(|rig| counted(&format!(", {}", rig.joint), "cost", rig));
     [
@@ -47,6 +66,7 @@ pub(super) fn counted() -> impl Iterator<Item = CountedScenario> {
     ]
     .into_iter()
     .chain(others)
+    .chain([recorder])
 }
 
 /// Counts every tick of a scenario.
@@ -59,6 +79,7 @@ pub(super) fn measure(link: &mut dyn Link, counted: &CountedScenario) -> Result<
         name,
         scenario,
         rig,
+        part,
     } = counted;
     let text = ready_scenarios::named(scenario).map_or("", |ready| ready.text);
     let scenario = Scenario::parse(scenario, text).map_err(|error| failed(&error.render(false)))?;
@@ -67,15 +88,20 @@ pub(super) fn measure(link: &mut dyn Link, counted: &CountedScenario) -> Result<
     let simulation = Simulation::new(&scenario, &file).map_err(|error| failed(&error))?;
     let summary = simulation
         .counting()
-        .run(link, &mut |tick| instructions.extend(tick.instructions))
+        .run(link, &mut |tick| {
+            instructions.extend(match part {
+                Part::ControlLaw => tick.instructions,
+                Part::Recorder => tick.recorder_instructions,
+            });
+        })
         .map_err(|error| failed(&error))?;
     if let Some(reason) = summary.stopped {
         return Err(CostError::Tick(reason));
     }
-    let highest = match rig.support {
-        SupportName::TorsionFree => MAX,
-        _ => MAX_TURNED,
+    let budget = match (part, rig.support) {
+        (Part::Recorder, _) => InstructionBudget::new(MIN, RECORDER_MAX),
+        (Part::ControlLaw, SupportName::TorsionFree) => InstructionBudget::new(MIN, MAX),
+        (Part::ControlLaw, _) => InstructionBudget::new(MIN, MAX_TURNED),
     };
-    let budget = InstructionBudget::new(MIN, highest);
     Ok(Cost::from_counts(name, instructions, budget))
 }

@@ -191,6 +191,7 @@ impl Running {
             motors,
             telemetry,
             instructions: None,
+            recorder_instructions: None,
             link: self.received()?,
         })
     }

@@ -8,7 +8,8 @@ use leg_firmware::host_link::{
 };
 use leg_firmware::jog::JogReport;
 use leg_firmware::leg::Outcome;
-use leg_firmware::linked_leg::SensingLeg;
+use leg_firmware::linked_leg::{RecordedLeg, SensingLeg};
+use leg_firmware::recorder::{Recorder, RecorderReply, RecorderRequest, RecorderSetup};
 use leg_firmware::sensors::Sensors;
 use leg_firmware::settings::{Settings, SettingsError};
 use leg_firmware::telemetry::Telemetry;
@@ -19,6 +20,7 @@ use std::collections::VecDeque;
 #[derive(Clone)]
 struct CountingLeg {
     leg: SensingLeg<f32>,
+    recorder: Box<Recorder>,
     taken: u64,
 }
 
@@ -45,9 +47,12 @@ impl Twin {
             reset: ResetCause::Emulated,
             crash_report: Default::default(),
         };
+        let mut recorder = Box::new(Recorder::new());
+        recorder.begin(&RecorderSetup::new(settings));
         Ok(Self {
             leg: CountingLeg {
                 leg: SensingLeg::new(settings)?,
+                recorder,
                 taken: 0,
             },
             link: HostLink::new(identity, settings.clone()),
@@ -87,42 +92,55 @@ impl Twin {
     /// One tick: what is asked of the motors, what they get, and the leg after it.
     pub fn tick(&mut self, sensors: &Sensors) -> (Drive<f32>, Drive<f32>, Telemetry<f32>) {
         self.board.read(sensors);
-        let drive = board::tick(&mut self.board, &mut self.leg.leg);
+        let drive = board::tick(&mut self.board, &mut self.leg.leg, &mut self.leg.recorder);
         self.link.report(&mut self.leg);
         while self.link.transmit().is_some() {}
         (drive, self.board.motors(), self.leg.leg.telemetry())
     }
 }
 
+impl CountingLeg {
+    fn recorded(&mut self) -> RecordedLeg<'_, f32> {
+        RecordedLeg {
+            leg: &mut self.leg,
+            recorder: &mut self.recorder,
+        }
+    }
+}
+
 impl CommandedLeg for CountingLeg {
     fn command(&mut self, number: u16, command: Command) -> bool {
         self.taken += 1;
-        self.leg.command(number, command)
+        self.recorded().command(number, command)
     }
 
     fn note_decode_error(&mut self) {
         self.taken += 1;
-        self.leg.note_decode_error();
+        self.recorded().note_decode_error();
     }
 
     fn outcome(&mut self) -> Option<Outcome> {
-        self.leg.outcome()
+        self.recorded().outcome()
     }
 
     fn telemetry(&mut self) -> Telemetry<f32> {
-        CommandedLeg::telemetry(&mut self.leg)
+        self.recorded().telemetry()
     }
 
     fn jog_report(&mut self) -> Option<JogReport<f32>> {
-        CommandedLeg::jog_report(&mut self.leg)
+        self.recorded().jog_report()
     }
 
     fn sensors(&mut self) -> Sensors {
-        self.leg.sensors()
+        self.recorded().sensors()
     }
 
     fn restart(&mut self, settings: &Settings) -> Result<(), HostRefusal> {
         self.taken += 1;
-        self.leg.restart(settings)
+        self.recorded().restart(settings)
+    }
+
+    fn recorder(&mut self, request: RecorderRequest) -> Option<RecorderReply> {
+        self.recorder.answer(request)
     }
 }

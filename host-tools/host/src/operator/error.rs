@@ -44,6 +44,10 @@ pub enum OperatorError {
     Unacknowledged(&'static str),
     /// No stop was acknowledged by what is named.
     NotStopped(String),
+    /// The settings have the recorder record nothing.
+    NothingRecorded,
+    /// A recording began anew while it was read.
+    RecordingReplaced,
     /// The reply is of another kind.
     WrongReply(&'static str),
     /// It takes longer than this.
@@ -146,6 +150,14 @@ impl OperatorError {
             Self::NotStopped(name) => Failure::failed(
                 format!("{name} did not acknowledge the stop"),
                 "press the emergency stop; without its host an armed leg holds by itself",
+            ),
+            Self::NothingRecorded => Failure::refused(
+                "the leg's settings have it record nothing",
+                "name signals in `recorded` in [control] of the rig file, then `leg settings set`",
+            ),
+            Self::RecordingReplaced => Failure::failed(
+                "the leg began to record anew while it was read",
+                "read it again; what was recorded before a fault is kept until that is cleared",
             ),
             Self::WrongReply(asked) => Failure::refused(
                 format!("the leg sends a reply of another kind when asked to {asked}"),

@@ -45,6 +45,10 @@ pub(super) fn description(refusal: &HostRefusal) -> [String; 2] {
             "settings change and are kept only while the drivers are off",
             "run `leg disarm` first",
         ],
+        HostRefusal::Recording => [
+            "it still records",
+            "read it again: another host has let it go on",
+        ],
         HostRefusal::NotSaved => [
             "the board could not keep the settings",
             "save again; they are in use until the board starts anew",

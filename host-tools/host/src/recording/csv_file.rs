@@ -1,7 +1,10 @@
 //! A recording as CSV: the signals, each single number in a column of its own.
 
 use super::RecordingError;
-use crate::signals::{REPORT_SIGNALS, Report, SIMULATED_SIGNALS, Simulated, columns, row};
+use crate::signals::{
+    RECORDER_SIGNALS, REPORT_SIGNALS, Report, SIMULATED_SIGNALS, Simulated, columns, row,
+};
+use leg_base::recorder_rows::RecorderRow;
 use std::fs::File;
 
 /// A table that is being written; its first row names the columns.
@@ -35,6 +38,13 @@ impl CsvFile {
         }
         let cells = row(REPORT_SIGNALS, report).chain(row(SIMULATED_SIGNALS, simulated));
         Ok(self.writer.write_record(cells)?)
+    }
+
+    pub fn write_recorder_row(&mut self, row_of: &RecorderRow) -> Result<(), RecordingError> {
+        if !std::mem::replace(&mut self.named, true) {
+            self.writer.write_record(columns(RECORDER_SIGNALS))?;
+        }
+        Ok(self.writer.write_record(row(RECORDER_SIGNALS, row_of))?)
     }
 
     pub fn flush(&mut self) -> Result<(), RecordingError> {

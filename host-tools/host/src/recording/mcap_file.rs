@@ -4,9 +4,11 @@
 use super::tick_record::{TickRecord, to_bytes};
 use super::{About, RecordingError};
 use crate::signals::{
-    REPORT_SIGNALS, Report, SIMULATED_SIGNALS, Signal, Simulated, json_object, json_schema,
+    RECORDER_SIGNALS, REPORT_SIGNALS, Report, SIMULATED_SIGNALS, Signal, Simulated, json_object,
+    json_schema,
 };
 use leg_base::description::hex;
+use leg_base::recorder_rows::RecorderRow;
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::settings::Settings;
 use leg_firmware_bench::protocol::BENCH_SCHEMA;
@@ -26,6 +28,7 @@ pub(super) const TICKS: &str = "/ticks";
 pub(super) const ABOUT: &str = "/about";
 pub(super) const REPORT: &str = "/leg";
 pub(super) const SIMULATED: &str = "/simulation";
+pub(super) const RECORDER: &str = "/recorder";
 
 /// The name of the metadata that says what a recording is of.
 const METADATA: &str = "leg";
@@ -43,6 +46,7 @@ pub(super) struct McapFile {
     ticks: Option<u16>,
     reports: Option<u16>,
     simulated: Option<u16>,
+    recorder: Option<u16>,
     /// What it is of, until it is written: with the first message, for a leg's time does not begin at zero.
     about: Option<Value>,
 }
@@ -60,6 +64,7 @@ impl McapFile {
             ticks: None,
             reports: None,
             simulated: None,
+            recorder: None,
             about: Some(serde_json::to_value(about).map_err(RecordingError::message)?),
         };
         file.writer.write_metadata(&metadata(about, settings))?;
@@ -104,10 +109,7 @@ impl McapFile {
         time_ns: u64,
         report: &Report,
     ) -> Result<(), RecordingError> {
-        if let Some(about) = self.about.take() {
-            let channel = self.json_channel(ABOUT, &about_schema())?;
-            self.write(channel, 0, time_ns, about.to_string().as_bytes())?;
-        }
+        self.write_about(time_ns)?;
         let channel = match self.reports {
             Some(channel) => channel,
             None => self.signal_channel(REPORT, REPORT_SIGNALS)?,
@@ -115,6 +117,31 @@ impl McapFile {
         self.reports = Some(channel);
         let message = Value::Object(json_object(REPORT_SIGNALS, report));
         self.write(channel, number, time_ns, message.to_string().as_bytes())
+    }
+
+    /// A row of a board's recorder.
+    pub fn write_recorder_row(
+        &mut self,
+        number: u32,
+        time_ns: u64,
+        row: &RecorderRow,
+    ) -> Result<(), RecordingError> {
+        self.write_about(time_ns)?;
+        let channel = match self.recorder {
+            Some(channel) => channel,
+            None => self.signal_channel(RECORDER, RECORDER_SIGNALS)?,
+        };
+        self.recorder = Some(channel);
+        let message = Value::Object(json_object(RECORDER_SIGNALS, row));
+        self.write(channel, number, time_ns, message.to_string().as_bytes())
+    }
+
+    fn write_about(&mut self, time_ns: u64) -> Result<(), RecordingError> {
+        let Some(about) = self.about.take() else {
+            return Ok(());
+        };
+        let channel = self.json_channel(ABOUT, &about_schema())?;
+        self.write(channel, 0, time_ns, about.to_string().as_bytes())
     }
 
     fn signal_channel<S>(

@@ -5,6 +5,7 @@ use super::mcap_file::{REPORT, SCHEMA_KEY, SETTINGS, TICKS, schema};
 use super::tick_record::{TickRecord, bits};
 use leg_base::failure::Failure;
 use leg_firmware::host_link::BoardKind;
+use leg_firmware::recorder::{Recorder, RecorderSetup};
 use leg_firmware_bench::protocol::TickRequest;
 use leg_firmware_bench::server::emulated;
 use leg_firmware_bench::virtual_leg::VirtualLeg;
@@ -51,6 +52,7 @@ pub fn replay(file: &Path) -> Result<Replay, Failure> {
 fn compare(file: &Path) -> Result<Replay, String> {
     let contents = Contents::read(file)?;
     let mut leg = None;
+    let mut recorder = Box::new(Recorder::new());
     let mut result = Replay {
         ticks: 0,
         finished: contents.finished,
@@ -61,11 +63,13 @@ fn compare(file: &Path) -> Result<Replay, String> {
         match (message.channel.topic.as_str(), &mut leg) {
             (SETTINGS, leg) => {
                 let identity = emulated(BoardKind::InProcess);
-                let virtual_leg = VirtualLeg::new(identity, &read(message)?)
+                let settings = &read(message)?;
+                let virtual_leg = VirtualLeg::new(identity, settings)
                     .map_err(|error| format!("holds settings that are refused: {error}"))?;
+                recorder.begin(&RecorderSetup::new(settings));
                 *leg = Some(virtual_leg);
             }
-            (TICKS, Some(leg)) => result.take(leg, read(message)?),
+            (TICKS, Some(leg)) => result.take(leg, &mut recorder, read(message)?),
             (TICKS, None) => return Ok(false),
             // A log has settings, too, but no ticks.
             (REPORT, leg) if result.ticks == 0 => {
@@ -96,12 +100,12 @@ fn read<'a, T: Deserialize<'a>>(message: &'a Message<'_>) -> Result<T, String> {
 }
 
 impl Replay {
-    fn take(&mut self, leg: &mut VirtualLeg, record: TickRecord) {
+    fn take(&mut self, leg: &mut VirtualLeg, recorder: &mut Recorder, record: TickRecord) {
         let request = TickRequest {
             sensors: record.sensors,
             link: record.link,
         };
-        let drive = leg.tick(&request, |_| true).drive;
+        let drive = leg.tick(&request, recorder, |_| true).drive;
         if bits(&drive) != (record.duty_bits, record.enabled) {
             self.other += 1;
             self.first.get_or_insert(TickDifference {

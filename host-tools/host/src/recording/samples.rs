@@ -2,9 +2,10 @@
 
 use super::About;
 use super::contents::Contents;
-use super::mcap_file::{ABOUT, REPORT, SIMULATED};
+use super::mcap_file::{ABOUT, RECORDER, REPORT, SIMULATED};
 use crate::signals;
 use leg_base::failure::Failure;
+use leg_base::recorder_rows::RecorderRow;
 use leg_base::tick_time::{seconds, tick_s};
 use leg_firmware::telemetry::Telemetry;
 use leg_sim::simulation::Sample;
@@ -28,6 +29,8 @@ pub enum Samples {
     Simulation(Vec<Sample>),
     /// What a leg reported, each with its time since the board's start, s.
     Log(Vec<(f64, Telemetry<f32>)>),
+    /// What a board's recorder kept.
+    Recorder(Vec<RecorderRow>),
 }
 
 /// Reads a recording, as far as it goes.
@@ -38,7 +41,7 @@ pub fn read_samples(file: &Path) -> Result<Recorded, Failure> {
     read(file).map_err(|error| {
         Failure::refused(
             format!("{}: {error}", file.display()),
-            "give a file that `leg run --record FILE.mcap` or `leg log --out FILE.mcap` has written",
+            "give a file that `leg run --record FILE.mcap`, `leg log --out FILE.mcap` or `leg scope --out FILE.mcap` has written",
         )
     })
 }
@@ -46,7 +49,7 @@ pub fn read_samples(file: &Path) -> Result<Recorded, Failure> {
 fn read(file: &Path) -> Result<Recorded, String> {
     let contents = Contents::read(file)?;
     let mut about = None;
-    let (mut log, mut simulation) = (Vec::new(), Vec::new());
+    let (mut log, mut simulation, mut rows) = (Vec::new(), Vec::new(), Vec::new());
     let mut last_report = Vec::new();
     contents.each(|message| {
         let topic = message.channel.topic.as_str();
@@ -57,6 +60,8 @@ fn read(file: &Path) -> Result<Recorded, String> {
             let telemetry = signals::telemetry(&message.data).map_err(unread)?;
             log.push((seconds(telemetry.tick.into()), telemetry));
             last_report = message.data.to_vec();
+        } else if topic == RECORDER {
+            rows.push(signals::recorder_row(&message.data).map_err(unread)?);
         } else if topic == SIMULATED {
             // It follows the report of the same tick.
             let (_, telemetry) = log.last().ok_or("has a simulated leg with no report")?;
@@ -68,10 +73,12 @@ fn read(file: &Path) -> Result<Recorded, String> {
         }
         Ok(true)
     })?;
-    if log.is_empty() {
+    if log.is_empty() && rows.is_empty() {
         return Err("holds no telemetry of a leg".into());
     }
-    let samples = if simulation.is_empty() {
+    let samples = if !rows.is_empty() {
+        Samples::Recorder(rows)
+    } else if simulation.is_empty() {
         Samples::Log(log)
     } else {
         Samples::Simulation(simulation)

@@ -1,6 +1,9 @@
 //! What was reported, by the signals of a recording.
 
 use leg_base::description;
+use leg_base::recorder_rows::RecorderRow;
+use leg_firmware::sensors::TICK_HZ;
+use leg_firmware::settings::RecordedSignal;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_firmware::telemetry::Telemetry;
 use leg_sim::hosted_leg::Comparison;
@@ -100,4 +103,52 @@ pub fn comparison(report: &[u8], simulated: &[u8]) -> Result<Comparison, String>
         payload_true_kg: truths.payload_true_kg,
         path_error_mm: truths.path_error_mm,
     })
+}
+
+/// The signals of which a row of the recorder is made.
+#[derive(Deserialize)]
+struct RecordedRow {
+    tick: u32,
+    since_fault_s: Option<f64>,
+    state_index: Option<u8>,
+    tensions_n: [Option<f64>; 3],
+    target_tensions_n: [Option<f64>; 3],
+    pulled_m: [Option<f64>; 3],
+    reference_m: [Option<f64>; 3],
+    motor_currents_a: [Option<f64>; 3],
+    duties: [Option<f64>; 3],
+    direction: [Option<f64>; 2],
+    residual_m: Option<f64>,
+    supply_v: Option<f64>,
+    temperature_c: Option<f64>,
+}
+
+/// A row of a board's recorder.
+///
+/// # Errors
+/// What is missing, in words.
+pub fn recorder_row(json: &[u8]) -> Result<RecorderRow, String> {
+    let row: RecordedRow = serde_json::from_slice(json).map_err(|error| error.to_string())?;
+    let fault_tick = row.since_fault_s.map(|since_s| {
+        let ticks = (since_s * f64::from(TICK_HZ)).round() as i32;
+        row.tick.wrapping_sub(ticks as u32)
+    });
+    let [x, y] = row.direction;
+    Ok(RecorderRow::new(row.tick, fault_tick, |signal| {
+        let [a, b, c] = match signal {
+            RecordedSignal::Tensions => row.tensions_n,
+            RecordedSignal::TargetTensions => row.target_tensions_n,
+            RecordedSignal::Pulled => row.pulled_m,
+            RecordedSignal::References => row.reference_m,
+            RecordedSignal::Currents => row.motor_currents_a,
+            RecordedSignal::Duties => row.duties,
+            RecordedSignal::Pose => [x, y, row.residual_m],
+            RecordedSignal::Board => [
+                row.supply_v,
+                row.temperature_c,
+                row.state_index.map(f64::from),
+            ],
+        };
+        Some([a?, b?, c?])
+    }))
 }

@@ -70,6 +70,7 @@ class AsyncLeg:
     disarm = _awaited(Leg.disarm, drives=True)
     clear = _awaited(Leg.clear, drives=False)
     telemetry = _awaited(Leg.telemetry, drives=False)
+    scope = _awaited(Leg.scope, drives=False)
     sensors = _awaited(Leg.sensors, drives=False)
     wait = _awaited(Leg.wait, drives=False)
     disturb = _awaited(Leg.disturb, drives=False)

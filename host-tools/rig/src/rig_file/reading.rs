@@ -69,7 +69,7 @@ fn read(root: &Section<'_>) -> Result<RigFile, TomlError> {
         .number("tilt_deg")?;
     let (support_name, support, critical_n) = support::read(root, tilt_deg)?;
     let actuator = Actuator::read(root)?;
-    let (changes, keeps_station) = gains::read_rig(root)?;
+    let control = gains::read_rig(root)?;
     let mut file = RigFile {
         parameters,
         tendons: tendon::read(&tendon)?,
@@ -81,9 +81,10 @@ fn read(root: &Section<'_>) -> Result<RigFile, TomlError> {
         support_name,
         support,
         critical_n,
-        keeps_station,
-        gains: gains::changed(Gains::default(), &changes),
-        given_gains: GivenGains::new(&changes),
+        keeps_station: control.keeps_station.unwrap_or(true),
+        recorded: control.recorded,
+        gains: gains::changed(Gains::default(), &control.changes),
+        given_gains: GivenGains::new(&control.changes),
         calibration: Calibration::read(root, &actuator)?,
         actuator,
         plant: PlantSettings::read(root)?,

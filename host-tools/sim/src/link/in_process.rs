@@ -2,6 +2,7 @@
 
 use super::{Link, LinkError};
 use leg_firmware::host_link::{BoardKind, Hello};
+use leg_firmware::recorder::Recorder;
 use leg_firmware::settings::Settings;
 use leg_firmware_bench::counter::Counter;
 use leg_firmware_bench::protocol::{BENCH_SCHEMA, BoardInfo, Reply, Request};
@@ -9,13 +10,13 @@ use leg_firmware_bench::server::{Board, Server};
 
 /// The firmware's library in the host's own process. Requests go to it as they are, without frames.
 #[derive(Clone, Debug)]
-pub struct InProcess(Server<ThisProcess>);
+pub struct InProcess(Server<ThisProcess, Box<Recorder>>);
 
 impl InProcess {
     /// A link that has been greeted.
     #[must_use]
     pub fn new() -> Self {
-        let mut server = Server::new(ThisProcess);
+        let mut server = Server::new(ThisProcess, Box::default());
         let schema = BENCH_SCHEMA;
         server.handle(&Request::Hello(Hello { schema }));
         Self(server)

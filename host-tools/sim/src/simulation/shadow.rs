@@ -4,6 +4,7 @@ use crate::emulated_leg::EmulationError;
 use leg_firmware::drive::Drive;
 use leg_firmware::host_link::BoardKind;
 use leg_firmware::linked_leg::LinkedLeg;
+use leg_firmware::recorder::Recorder;
 use leg_firmware::sensors::Sensors;
 use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
@@ -14,6 +15,8 @@ use serde::Serialize;
 /// The control law in f64.
 pub(super) struct Shadow {
     leg: LinkedLeg<f64>,
+    /// What a host asks of it, it answers from here: nothing is recorded in f64.
+    recorder: Box<Recorder>,
     pub divergence: Divergence,
 }
 
@@ -46,13 +49,14 @@ impl Shadow {
         let leg = LinkedLeg::new(emulated(BoardKind::InProcess), settings);
         Ok(Self {
             leg: leg.map_err(EmulationError::Settings)?,
+            recorder: Box::default(),
             divergence: Divergence::default(),
         })
     }
 
     /// The same tick. It then takes over the drive in f32, so that the differences do not add up.
     pub fn tick(&mut self, sensors: &Sensors, link: &[u8], reply: &TickReply) {
-        self.leg.receive(link);
+        self.leg.receive(link, &mut self.recorder);
         let leg = self.leg.leg();
         let drive = leg.tick(sensors);
         self.divergence.compare(reply, &drive, &leg.telemetry());

@@ -140,13 +140,6 @@ mistakes! {
         run: updated,
         report: "taken over: true, refused: false (no word), replaced: true, both ends of a cut: true, findings: []",
     };
-    settings_of_an_older_layout: Mistake {
-        file: "firmware/library/src/store.rs",
-        right: "pub const VERSION: u8 = 1;",
-        wrong: "pub const VERSION: u8 = 0;",
-        run: updated,
-        report: "taken over: false, refused: true (the record has layout 0 instead of 1), replaced: true, both ends of a cut: true, findings: []",
-    };
     settings_of_another_shape: Mistake {
         file: "firmware/library/src/store/record.rs",
         right: "(\"settings\")",

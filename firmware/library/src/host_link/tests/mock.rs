@@ -4,6 +4,7 @@ use crate::command::{Command, CommandRefusal};
 use crate::host_link::{CommandedLeg, HostRefusal};
 use crate::jog::JogReport;
 use crate::leg::{Leg, Outcome};
+use crate::recorder::{Recorder, RecorderReply, RecorderRequest};
 use crate::sensors::Sensors;
 use crate::settings::Settings;
 use crate::supervisor::State;
@@ -25,6 +26,7 @@ pub struct NotedLeg {
     pub sensors: Sensors,
     /// What it was started again with.
     pub restarts: Vec<Settings>,
+    pub recorder: Recorder,
     outcomes: VecDeque<Outcome>,
     telemetry: Telemetry<f32>,
 }
@@ -42,6 +44,7 @@ impl Default for NotedLeg {
             note_decode_error: 0,
             sensors: Sensors::default(),
             restarts: Vec::new(),
+            recorder: Recorder::new(),
             outcomes: VecDeque::new(),
             telemetry: Leg::<f32>::new(&settings).unwrap().telemetry(),
         }
@@ -99,5 +102,9 @@ impl CommandedLeg for NotedLeg {
         settings.check().map_err(HostRefusal::Settings)?;
         self.restarts.push(settings.clone());
         Ok(())
+    }
+
+    fn recorder(&mut self, request: RecorderRequest) -> Option<RecorderReply> {
+        self.recorder.answer(request)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Line, ONE, others, refused};
 use crate::command::{Command, CommandRefusal};
-use crate::host_link::{CommandedLeg, HostRefusal, HostReply, HostRequest};
+use crate::host_link::{HostRefusal, HostReply, HostRequest};
 use crate::leg::{Leg, Outcome};
 use crate::linked_leg::SensingLeg;
 use crate::sensors::{CODE_MAX, Sensors};

@@ -131,8 +131,11 @@ fn a_gap_in_the_numbers_is_what_found_no_room() {
 fn a_line_that_is_full_of_telemetry_has_room_for_one_reply_alone() {
     let mut line = full();
     let waiting = core::iter::from_fn(|| line.link.transmit()).count();
-    // Of room for more than three of the longest frames.
-    assert!(waiting > 2 * MAX_FRAME, "{waiting} bytes");
+    // Of room for three of the longest frames, one is left, and telemetry takes but a quarter of one.
+    assert!(
+        (2 * MAX_FRAME - MAX_FRAME / 4..=2 * MAX_FRAME).contains(&waiting),
+        "{waiting} bytes"
+    );
 }
 
 #[test]

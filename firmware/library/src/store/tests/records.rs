@@ -4,7 +4,7 @@ use super::mock::Mock;
 use super::{CorruptReason, Loaded, block_on, large, load, small, store};
 use crate::settings::{OutOfRange, Settings, SettingsError};
 use crate::store::record::{pack, unpack};
-use crate::store::{KEY, RECORD_MAX, SETTINGS_SCHEMA, VERSION};
+use crate::store::{KEY, RECORD_MAX, SETTINGS_SCHEMA};
 use crc::{CRC_32_ISO_HDLC, Crc};
 
 fn packed(settings: &Settings) -> Vec<u8> {
@@ -41,13 +41,12 @@ fn loaded(record: &[u8]) -> Loaded {
 #[test]
 fn the_layout_is_fixed() {
     let record = packed(&small(3));
-    assert_eq!(record[0], VERSION);
-    assert_eq!(record[1..9], SETTINGS_SCHEMA);
+    assert_eq!(record[..8], SETTINGS_SCHEMA);
     let mut data = [0; RECORD_MAX];
     let Ok(data) = postcard::to_slice(&small(3), &mut data) else {
         panic!("settings fit")
     };
-    assert_eq!(record[9..record.len() - 4], *data);
+    assert_eq!(record[8..record.len() - 4], *data);
     assert_eq!(
         record,
         changed(&small(3), |_| {}),
@@ -93,20 +92,10 @@ fn a_record_that_ends_early_is_refused() {
 #[test]
 fn another_firmwares_settings_are_told_by_their_schema() {
     let found = *b"another!";
-    let other = changed(&small(3), |record| record[1..9].copy_from_slice(&found));
+    let other = changed(&small(3), |record| record[..8].copy_from_slice(&found));
     assert_eq!(
         loaded(&other),
         Loaded::Corrupt(CorruptReason::OtherSchema { found })
-    );
-}
-
-#[test]
-fn another_layout_is_told_by_its_version() {
-    let found = VERSION + 1;
-    let other = changed(&small(3), |record| record[0] = found);
-    assert_eq!(
-        loaded(&other),
-        Loaded::Corrupt(CorruptReason::OtherVersion { found })
     );
 }
 
@@ -115,7 +104,7 @@ fn a_record_holds_settings_and_nothing_else() {
     let long = changed(&small(3), |record| record.push(0));
     assert_eq!(loaded(&long), Loaded::Corrupt(CorruptReason::NotSettings));
     // The kind of support, after the mechanism's eighteen numbers.
-    let odd = changed(&small(3), |record| record[9 + 18 * 4] = 9);
+    let odd = changed(&small(3), |record| record[8 + 18 * 4] = 9);
     assert_eq!(loaded(&odd), Loaded::Corrupt(CorruptReason::NotSettings));
 }
 

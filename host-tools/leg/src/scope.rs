@@ -1,0 +1,109 @@
+//! `leg scope`.
+
+use crate::connection::{LegArgs, Purpose};
+use crate::options::Options;
+use crate::output::{chart_line, not_saved, wall_time_s};
+use leg_base::description::faults;
+use leg_base::failure::Failure;
+use leg_base::json_object;
+use leg_base::tick_time::seconds;
+use leg_bench::recorder_charts;
+use leg_firmware::settings::Settings;
+use leg_host::operator::{Operator, Scope};
+use leg_host::recording::{self, About, Recording, RecordingError};
+use leg_rig::recorded_signals;
+use std::path::{Path, PathBuf};
+
+/// Reads the board's recorder: the last ticks before a fault, all 8000 a second.
+///
+/// The recorder keeps the signals that the leg's settings choose (`recorded` in `[control]` of the rig file), three of them for
+/// 0.2 s, more for a shorter time. A fault that stops the leg ends the recording after a quarter of the rows more; it is kept until
+/// the fault is cleared. Without such a fault the last ticks up to now are read, and the recorder goes on.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// The file: FILE.mcap for Foxglove, PlotJuggler and `leg plot`, or FILE.csv.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// The directory for charts.
+    #[arg(long, value_name = "DIR")]
+    plots: Option<PathBuf>,
+    #[command(flatten)]
+    leg: LegArgs,
+}
+
+pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
+    let mut operator = args.leg.open(Purpose::Use, options)?.operator;
+    let settings = operator.settings()?;
+    let scope = operator.scope(&settings)?;
+    let telemetry = operator.telemetry()?.telemetry;
+    let stopping = telemetry.faults.without_limits();
+    let about = About::log(&title(&operator, &scope));
+    if let Some(file) = &args.out {
+        save(file, &about, &settings, &scope, wall_time_s(&operator))?;
+    }
+    let plots = match &args.plots {
+        Some(directory) => recorder_charts::save(&about.title, &scope.rows, directory)
+            .map_err(|error| not_saved("charts", directory, "--plots", &error))?,
+        None => Vec::new(),
+    };
+    let [before_s, after_s] = scope.sides_s();
+    let signals: Vec<_> = recorded_signals::words(scope.report.signals).collect();
+    let json = json_object! {
+        signals: &signals,
+        ticks: scope.rows.len(),
+        fault: scope.report.fault_tick.is_some(),
+        before_s: before_s,
+        after_s: after_s,
+        plots: &plots
+    };
+    options.report(&json, || {
+        let [before_ms, after_ms] = [before_s, after_s].map(|time_s| 1000.0 * time_s);
+        let span = match scope.report.fault_tick {
+            Some(_) => format!(
+                "{before_ms:.1} ms before the fault and {after_ms:.1} ms from it on ({})",
+                faults(stopping)
+            ),
+            None => format!("the last {before_ms:.1} ms"),
+        };
+        let charts: String = plots.iter().map(|svg| chart_line(svg)).collect();
+        format!(
+            "{} ticks of {}: {span}\n{charts}",
+            scope.rows.len(),
+            signals.join(", ")
+        )
+    })
+}
+
+/// What its charts are called.
+fn title(operator: &Operator, scope: &Scope) -> String {
+    match scope.report.fault_tick {
+        Some(_) => format!("{}, fault at 0 s", operator.name()),
+        None => operator.name().into(),
+    }
+}
+
+/// Writes the rows, the newest of which has the time of the day, s since 1970.
+fn save(
+    file: &Path,
+    about: &About,
+    settings: &Settings,
+    scope: &Scope,
+    wall_time_s: Option<f64>,
+) -> Result<(), Failure> {
+    recording::record(file, about, settings, |recording| {
+        write(recording, scope, wall_time_s)
+    })
+}
+
+fn write(
+    recording: &mut Recording,
+    scope: &Scope,
+    wall_time_s: Option<f64>,
+) -> Result<(), RecordingError> {
+    for row in &scope.rows {
+        let age = scope.report.tick.wrapping_sub(row.tick);
+        let at_s = wall_time_s.map(|now_s| now_s - seconds(age.into()));
+        recording.take_recorder_row(row, at_s)?;
+    }
+    Ok(())
+}
