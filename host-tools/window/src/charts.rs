@@ -1,0 +1,184 @@
+//! Signals over time, chosen by name.
+
+use crate::history::{Column, History, KEPT_S};
+use crate::places::place;
+use crate::theme;
+use eframe::egui::{ComboBox, Id, RichText, ScrollArea, TextEdit, Ui, Vec2b};
+use egui_plot::{Legend, Line, Plot, PlotPoints};
+
+/// Points of a line: more than a screen has.
+const POINTS_MAX: usize = 1200;
+
+/// Times that a chart may show, s.
+const SPANS_S: [f64; 4] = [2.0, 5.0, 10.0, KEPT_S];
+
+/// What is charted, and how.
+pub struct Charts {
+    /// The names of the signals, one chart each.
+    chosen: Vec<&'static str>,
+    span_s: f64,
+    /// The time at which the charts stand still, s.
+    paused_s: Option<f64>,
+    /// A part of a name that is looked for.
+    search: String,
+}
+
+impl Default for Charts {
+    fn default() -> Self {
+        Self {
+            chosen: vec!["tip_error_mm", "tensions_n"],
+            span_s: SPANS_S[2],
+            paused_s: None,
+            search: String::new(),
+        }
+    }
+}
+
+impl Charts {
+    /// Shows the charts beside each other, or below where there is no room for that.
+    pub fn show(&mut self, ui: &mut Ui, history: &History, now_s: f64, height: f32) {
+        self.controls(ui, history, now_s);
+        let until_s = self.paused_s.unwrap_or(now_s);
+        if self.chosen.is_empty() {
+            ui.label("Choose a signal to see it over time.");
+        }
+        let columns: Vec<Column> = self
+            .chosen
+            .iter()
+            .filter_map(|name| history.named(name))
+            .collect();
+        if ui.available_width() > 560.0 && columns.len() > 1 {
+            ui.columns(columns.len(), |parts| {
+                for (part, column) in parts.iter_mut().zip(&columns) {
+                    self.chart(part, history, *column, until_s, height);
+                }
+            });
+        } else {
+            for column in columns {
+                self.chart(ui, history, column, until_s, height);
+            }
+        }
+    }
+
+    fn controls(&mut self, ui: &mut Ui, history: &History, now_s: f64) {
+        ui.horizontal_wrapped(|ui| {
+            ui.heading("Charts");
+            let menu = ComboBox::from_id_salt("signals").selected_text("Signals").width(110.0);
+            let menu = menu.show_ui(ui, |ui| self.choice(ui, history));
+            place(&menu.response, "signals");
+            let span = ComboBox::from_id_salt("span").selected_text(format!("{:.0} s", self.span_s));
+            span.width(64.0).show_ui(ui, |ui| {
+                for span_s in SPANS_S {
+                    ui.selectable_value(&mut self.span_s, span_s, format!("{span_s:.0} s"));
+                }
+            });
+            let (text, next) = match self.paused_s {
+                None => ("Pause", Some(now_s)),
+                Some(_) => ("Go on", None),
+            };
+            let pause = ui.button(text).on_hover_text("A paused chart can be dragged and zoomed; a double click shows it whole.");
+            place(&pause, "pause");
+            if pause.clicked() {
+                self.paused_s = next;
+            }
+        });
+    }
+
+    fn choice(&mut self, ui: &mut Ui, history: &History) {
+        ui.set_min_width(270.0);
+        ui.add(TextEdit::singleline(&mut self.search).hint_text("part of a name"));
+        ScrollArea::vertical().max_height(260.0).show(ui, |ui| {
+            for column in history.columns() {
+                let name = column.name();
+                if !name.contains(self.search.trim()) {
+                    continue;
+                }
+                let mut on = self.chosen.contains(&name);
+                let response = ui.checkbox(&mut on, RichText::new(name).monospace());
+                if response.on_hover_text(column.meaning()).changed() {
+                    self.chosen.retain(|other| *other != name);
+                    if on {
+                        self.chosen.push(name);
+                    }
+                }
+            }
+        });
+    }
+
+    fn chart(&self, ui: &mut Ui, history: &History, column: Column, until_s: f64, height: f32) {
+        let name = column.name();
+        ui.label(RichText::new(name).monospace().size(12.0)).on_hover_text(column.meaning());
+        let paused = self.paused_s.is_some();
+        let link = Id::unique("charts");
+        let since_s = (until_s - self.span_s).max(0.0);
+        let plot = Plot::new(name)
+            .height((height - 24.0).max(60.0))
+            .legend(Legend::default().background_alpha(0.5))
+            .link_axis(link, Vec2b::new(true, false))
+            .link_cursor(link, Vec2b::new(true, false))
+            .allow_drag(paused)
+            .allow_zoom(paused)
+            .allow_scroll(paused)
+            .allow_boxed_zoom(paused)
+            .show_axes([true, true])
+            .x_axis_formatter(|mark, _| format!("{:.1} s", mark.value))
+            .y_axis_min_width(44.0);
+        let colours: Vec<_> = (0..column.width).map(|i| theme::series(ui.ctx(), i)).collect();
+        plot.show(ui, |plot| {
+            if !paused {
+                plot.set_plot_bounds_x(since_s..=(since_s + self.span_s));
+                plot.set_auto_bounds(Vec2b::new(false, true));
+            }
+            for (number, colour) in colours.into_iter().enumerate() {
+                // A paused chart may be dragged to what was before.
+                let from_s = if paused { until_s - KEPT_S } else { since_s };
+                let points = history.line(column, number, from_s);
+                let points = thinned(points.take_while(|[time_s, _]| *time_s <= until_s).collect());
+                let label = if column.width > 1 {
+                    (number + 1).to_string()
+                } else {
+                    String::new()
+                };
+                plot.line(Line::new(label, PlotPoints::from(points)).color(colour).width(1.6));
+            }
+        });
+    }
+}
+
+/// The lowest and the highest point of each of so many parts: no peak is lost.
+fn thinned(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    if points.len() <= POINTS_MAX {
+        return points;
+    }
+    let size = points.len().div_ceil(POINTS_MAX / 2);
+    let mut kept = Vec::with_capacity(POINTS_MAX);
+    for part in points.chunks(size) {
+        let lowest = part.iter().min_by(|a, b| a[1].total_cmp(&b[1]));
+        let highest = part.iter().max_by(|a, b| a[1].total_cmp(&b[1]));
+        let (Some(a), Some(b)) = (lowest, highest) else {
+            continue;
+        };
+        let [first, second] = if a[0] <= b[0] { [*a, *b] } else { [*b, *a] };
+        kept.push(first);
+        kept.push(second);
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{POINTS_MAX, thinned};
+
+    #[test]
+    fn no_peak_is_lost() {
+        let mut points: Vec<[f64; 2]> = (0..20_000).map(|i| [f64::from(i), 0.0]).collect();
+        points[7_777][1] = 5.0;
+        points[13_131][1] = -3.0;
+        let kept = thinned(points);
+        assert!(kept.len() <= POINTS_MAX);
+        assert!(kept.contains(&[7_777.0, 5.0]) && kept.contains(&[13_131.0, -3.0]));
+        assert!(kept.is_sorted_by(|a, b| a[0] <= b[0]));
+        let few = vec![[0.0, 1.0], [1.0, 2.0]];
+        assert_eq!(thinned(few.clone()), few);
+    }
+}

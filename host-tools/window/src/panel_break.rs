@@ -1,0 +1,117 @@
+//! What can be broken of a simulated leg.
+
+use crate::places::place;
+use crate::simulation::Simulation;
+use crate::theme::palette;
+use eframe::egui::{Button, Label, RichText, Ui, vec2};
+use leg_sim::plant::Defect;
+
+/// A push of a finger: N and s.
+const PUSH_N: f64 = 20.0;
+const PUSH_S: f64 = 0.4;
+
+/// What each of the three can have: what it is called, what it is, and its first name for tests.
+const OF_THREE: [(&str, fn(usize) -> Defect, [&str; 3]); 4] = [
+    ("Cut a tendon", Defect::TendonCut, ["cut_1", "cut_2", "cut_3"]),
+    ("Tear a cell's wire", Defect::CellWanders, ["wire_1", "wire_2", "wire_3"]),
+    ("Jam a motor", Defect::MotorJammed, ["jam_1", "jam_2", "jam_3"]),
+    ("Lose an encoder", Defect::EncoderLost, ["encoder_1", "encoder_2", "encoder_3"]),
+];
+
+const OF_THE_LEG: [(&str, Defect, &str); 2] = [
+    ("Supply falls to 11 V", Defect::SupplySag, "supply_sag"),
+    ("Supply dips for 5 ms", Defect::SupplyDip, "supply_dip"),
+];
+
+/// Where a push comes from, degrees; what its button says.
+const PUSHES: [(f64, &str, &str); 4] = [
+    (0.0, "0°", "push_0"),
+    (90.0, "90°", "push_90"),
+    (180.0, "180°", "push_180"),
+    (270.0, "270°", "push_270"),
+];
+
+/// Shows what can be broken; what is broken is lit, and repaired by another press.
+pub fn show(ui: &mut Ui, simulation: &mut Simulation) {
+    ui.heading("Break it");
+    for (text, defect, names) in OF_THREE {
+        row(ui, text, |ui| {
+            for (tendon, name) in names.into_iter().enumerate() {
+                let number = (tendon + 1).to_string();
+                toggle(ui, simulation, &number, defect(tendon), name, 34.0);
+            }
+        });
+    }
+    row(ui, "Push at the tip", |ui| {
+        for (azimuth_deg, text, name) in PUSHES {
+            let button = ui.add(Button::new(text).min_size(vec2(34.0, 26.0)));
+            place(&button, name);
+            let hint = format!("{PUSH_N} N towards {text} for {PUSH_S} s");
+            if button.on_hover_text(hint).clicked() {
+                simulation.push(azimuth_deg, PUSH_N, PUSH_S);
+            }
+        }
+    });
+    ui.horizontal_wrapped(|ui| {
+        for (text, defect, name) in OF_THE_LEG {
+            toggle(ui, simulation, text, defect, name, 0.0);
+        }
+    });
+    let broken = !simulation.defects().is_empty();
+    let repair = ui.add_enabled(broken, Button::new("Repair everything"));
+    place(&repair, "repair");
+    if repair.clicked() {
+        simulation.repair();
+    }
+}
+
+fn row(ui: &mut Ui, text: &str, buttons: impl FnOnce(&mut Ui)) {
+    ui.horizontal(|ui| {
+        let label = Label::new(RichText::new(text)).halign(eframe::egui::Align::LEFT);
+        ui.add_sized(vec2(118.0, 26.0), label);
+        ui.spacing_mut().item_spacing.x = 4.0;
+        ui.spacing_mut().button_padding.x = 4.0;
+        buttons(ui);
+    });
+}
+
+fn toggle(
+    ui: &mut Ui,
+    simulation: &mut Simulation,
+    text: &str,
+    defect: Defect,
+    name: &'static str,
+    width: f32,
+) {
+    let on = simulation.defects().contains(&defect);
+    let mut button = Button::new(text).min_size(vec2(width, 26.0));
+    if on {
+        button = button.fill(palette(ui.ctx()).error.gamma_multiply(0.55));
+    }
+    let response = ui.add(button);
+    place(&response, name);
+    let meaning = describe(defect);
+    if response.on_hover_text(meaning).clicked() {
+        simulation.set_defect(defect, !on);
+    }
+}
+
+/// What a defect does, as a sentence.
+fn describe(defect: Defect) -> &'static str {
+    let name: &'static str = defect.into();
+    let found = Defect::descriptions().find(|(other, _)| *other == name);
+    found.map_or("", |(_, meaning)| meaning)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{OF_THE_LEG, OF_THREE, describe};
+
+    #[test]
+    fn every_defect_here_has_its_meaning() {
+        let of_three = OF_THREE.iter().map(|(_, defect, _)| defect(2));
+        for defect in of_three.chain(OF_THE_LEG.iter().map(|(_, defect, _)| *defect)) {
+            assert!(describe(defect).ends_with('.'), "{defect:?}");
+        }
+    }
+}
