@@ -7,7 +7,8 @@ use crate::places::{self, Places, place};
 use crate::scene::{FACTORS, Scene};
 use crate::simulation::Simulation;
 use crate::theme::{self, palette};
-use crate::{faults, numbers, panel_break, panel_drive, panel_guide, top_bar, workspace};
+use crate::workspace::Workspace;
+use crate::{faults, numbers, panel_break, panel_drive, panel_guide, top_bar};
 use eframe::egui::{
     CentralPanel, ComboBox, Context, Frame, Key, Margin, Panel, Rect, ScrollArea, Ui, UiBuilder,
     vec2,
@@ -25,8 +26,9 @@ const LARGE_SHOWN: f32 = 1700.0;
 const FAULT_WIDTH: f32 = 290.0;
 
 /// What a narrow window shows below the leg.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Tab {
+    #[default]
     Try,
     Drive,
     Break,
@@ -40,13 +42,20 @@ const TABS: [(Tab, &str, &str); 4] = [
     (Tab::Charts, "Charts", "tab_charts"),
 ];
 
+/// What the user chose to see.
+#[derive(Default)]
+struct Views {
+    scene: Scene,
+    workspace: Workspace,
+    charts: Charts,
+    tab: Tab,
+}
+
 /// The window with its leg.
 pub struct App {
     /// The leg, or why there is none.
     simulation: Result<Simulation, String>,
-    scene: Scene,
-    charts: Charts,
-    tab: Tab,
+    views: Views,
     places: Places,
     /// When the last frame was, s.
     last_s: Option<f64>,
@@ -64,9 +73,7 @@ impl App {
         theme::install(ctx);
         Self {
             simulation: Simulation::new().map_err(|error| error.to_string()),
-            scene: Scene::default(),
-            charts: Charts::default(),
-            tab: Tab::Try,
+            views: Views::default(),
             places: Places::default(),
             last_s: None,
             frames: 0,
@@ -89,7 +96,11 @@ impl App {
             return;
         }
         self.sized_for = width;
-        let zoom = if width > LARGE { width / LARGE_SHOWN } else { 1.0 };
+        let zoom = if width > LARGE {
+            width / LARGE_SHOWN
+        } else {
+            1.0
+        };
         ctx.set_zoom_factor(zoom);
     }
 
@@ -97,7 +108,8 @@ impl App {
         let now_s = ctx.input(|input| input.time);
         let elapsed_s = self.last_s.map_or(0.0, |last_s| now_s - last_s);
         self.last_s = Some(now_s);
-        let stop = ctx.input(|input| input.key_pressed(Key::Space) || input.key_pressed(Key::Escape));
+        let stop =
+            ctx.input(|input| input.key_pressed(Key::Space) || input.key_pressed(Key::Escape));
         let typing = ctx.text_edit_focused();
         if let Ok(simulation) = &mut self.simulation {
             if stop && !typing {
@@ -110,11 +122,7 @@ impl App {
 
     fn show(&mut self, ui: &mut Ui) {
         let Self {
-            simulation,
-            scene,
-            charts,
-            tab,
-            ..
+            simulation, views, ..
         } = self;
         let simulation = match simulation {
             Ok(simulation) => simulation,
@@ -127,11 +135,13 @@ impl App {
             }
         };
         let bar = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(12, 8));
-        Panel::top("bar").frame(bar).show(ui, |ui| top_bar::show(ui, simulation));
+        Panel::top("bar")
+            .frame(bar)
+            .show(ui, |ui| top_bar::show(ui, simulation));
         let wish = if ui.available_width() >= WIDE {
-            wide(ui, simulation, scene, charts)
+            wide(ui, simulation, views)
         } else {
-            narrow(ui, simulation, scene, charts, tab)
+            narrow(ui, simulation, views)
         };
         if wish == Wish::StartAgain {
             self.simulation = Simulation::new().map_err(|error| error.to_string());
@@ -157,10 +167,13 @@ impl eframe::App for App {
 }
 
 /// Everything side by side.
-fn wide(ui: &mut Ui, simulation: &mut Simulation, scene: &mut Scene, charts: &mut Charts) -> Wish {
+fn wide(ui: &mut Ui, simulation: &mut Simulation, views: &mut Views) -> Wish {
     let tall = ui.available_height();
     let side = Frame::side_top_panel(ui.style()).inner_margin(12.0);
-    let left = Panel::left("left").frame(side).resizable(false).exact_size(282.0);
+    let left = Panel::left("left")
+        .frame(side)
+        .resizable(false)
+        .exact_size(282.0);
     let wish = left.show(ui, |ui| {
         let scroll = ScrollArea::vertical().id_salt("left");
         scroll
@@ -172,59 +185,64 @@ fn wide(ui: &mut Ui, simulation: &mut Simulation, scene: &mut Scene, charts: &mu
             })
             .inner
     });
-    let right = Panel::right("right").frame(side).resizable(false).exact_size(300.0);
+    let right = Panel::right("right")
+        .frame(side)
+        .resizable(false)
+        .exact_size(300.0);
     right.show(ui, |ui| {
         ScrollArea::vertical().id_salt("right").show(ui, |ui| {
             ui.heading("Drag the target");
-            workspace::show(ui, simulation, 236.0);
+            views.workspace.show(ui, simulation, 226.0);
             numbers::show(ui, simulation);
             ui.separator();
             panel_break::show(ui, simulation);
         });
     });
     let height = (0.30 * tall).clamp(180.0, 420.0);
-    let bottom = Panel::bottom("charts").frame(side).resizable(false).exact_size(height);
+    let bottom = Panel::bottom("charts")
+        .frame(side)
+        .resizable(false)
+        .exact_size(height);
     bottom.show(ui, |ui| {
         let now_s = simulation.leg().time_s();
-        charts.show(ui, &simulation.history, now_s, height - 62.0);
+        views
+            .charts
+            .show(ui, &simulation.history, now_s, height - 62.0);
     });
-    CentralPanel::no_frame().show(ui, |ui| leg(ui, simulation, scene));
+    CentralPanel::no_frame().show(ui, |ui| leg(ui, simulation, &mut views.scene));
     wish.inner
 }
 
 /// The leg above, and the rest behind tabs.
-fn narrow(
-    ui: &mut Ui,
-    simulation: &mut Simulation,
-    scene: &mut Scene,
-    charts: &mut Charts,
-    tab: &mut Tab,
-) -> Wish {
+fn narrow(ui: &mut Ui, simulation: &mut Simulation, views: &mut Views) -> Wish {
     let height = (0.42 * ui.available_height()).max(220.0);
-    let above = Panel::top("leg").frame(Frame::NONE).resizable(false).exact_size(height);
-    above.show(ui, |ui| leg(ui, simulation, scene));
+    let above = Panel::top("leg")
+        .frame(Frame::NONE)
+        .resizable(false)
+        .exact_size(height);
+    above.show(ui, |ui| leg(ui, simulation, &mut views.scene));
     CentralPanel::default()
         .show(ui, |ui| {
             ui.horizontal(|ui| {
                 let width = (ui.available_width() - 24.0) / TABS.len() as f32;
                 for (this, text, name) in TABS {
-                    let button = eframe::egui::Button::selectable(*tab == this, text);
+                    let button = eframe::egui::Button::selectable(views.tab == this, text);
                     let response = ui.add(button.min_size(vec2(width, 36.0)));
                     place(&response, name);
                     if response.clicked() {
-                        *tab = this;
+                        views.tab = this;
                     }
                 }
             });
             ui.separator();
             let scroll = ScrollArea::vertical().id_salt("tabs");
-            scroll.show(ui, |ui| page(ui, simulation, charts, *tab)).inner
+            scroll.show(ui, |ui| page(ui, simulation, views)).inner
         })
         .inner
 }
 
-fn page(ui: &mut Ui, simulation: &mut Simulation, charts: &mut Charts, tab: Tab) -> Wish {
-    match tab {
+fn page(ui: &mut Ui, simulation: &mut Simulation, views: &mut Views) -> Wish {
+    match views.tab {
         Tab::Try => {
             let wish = panel_guide::show(ui, simulation);
             numbers::show(ui, simulation);
@@ -232,13 +250,13 @@ fn page(ui: &mut Ui, simulation: &mut Simulation, charts: &mut Charts, tab: Tab)
         }
         Tab::Drive => {
             let side = ui.available_width().min(300.0);
-            ui.vertical_centered(|ui| workspace::show(ui, simulation, side));
+            ui.vertical_centered(|ui| views.workspace.show(ui, simulation, side));
             panel_drive::show(ui, simulation);
         }
         Tab::Break => panel_break::show(ui, simulation),
         Tab::Charts => {
             let now_s = simulation.leg().time_s();
-            charts.show(ui, &simulation.history, now_s, 180.0);
+            views.charts.show(ui, &simulation.history, now_s, 180.0);
         }
     }
     Wish::None
@@ -258,7 +276,9 @@ fn leg(ui: &mut Ui, simulation: &Simulation, scene: &mut Scene) {
     let over = UiBuilder::new().max_rect(Rect::from_min_max(corner, inner.max));
     ui.scope_builder(over, |ui| {
         let text = format!("sag ×{:.0}", scene.factor);
-        let choice = ComboBox::from_id_salt("factor").selected_text(text).width(96.0);
+        let choice = ComboBox::from_id_salt("factor")
+            .selected_text(text)
+            .width(96.0);
         choice.show_ui(ui, |ui| {
             for factor in FACTORS {
                 ui.selectable_value(&mut scene.factor, factor, format!("sag ×{factor:.0}"));
@@ -270,6 +290,12 @@ fn leg(ui: &mut Ui, simulation: &Simulation, scene: &mut Scene) {
         let palette = palette(ui.ctx());
         let at = rect.center();
         let font = eframe::egui::FontId::proportional(15.0);
-        ui.painter().text(at, eframe::egui::Align2::CENTER_CENTER, words, font, palette.error);
+        ui.painter().text(
+            at,
+            eframe::egui::Align2::CENTER_CENTER,
+            words,
+            font,
+            palette.error,
+        );
     }
 }

@@ -63,10 +63,13 @@ impl Charts {
     fn controls(&mut self, ui: &mut Ui, history: &History, now_s: f64) {
         ui.horizontal_wrapped(|ui| {
             ui.heading("Charts");
-            let menu = ComboBox::from_id_salt("signals").selected_text("Signals").width(110.0);
+            let menu = ComboBox::from_id_salt("signals")
+                .selected_text("Signals")
+                .width(110.0);
             let menu = menu.show_ui(ui, |ui| self.choice(ui, history));
             place(&menu.response, "signals");
-            let span = ComboBox::from_id_salt("span").selected_text(format!("{:.0} s", self.span_s));
+            let span =
+                ComboBox::from_id_salt("span").selected_text(format!("{:.0} s", self.span_s));
             span.width(64.0).show_ui(ui, |ui| {
                 for span_s in SPANS_S {
                     ui.selectable_value(&mut self.span_s, span_s, format!("{span_s:.0} s"));
@@ -76,7 +79,9 @@ impl Charts {
                 None => ("Pause", Some(now_s)),
                 Some(_) => ("Go on", None),
             };
-            let pause = ui.button(text).on_hover_text("A paused chart can be dragged and zoomed; a double click shows it whole.");
+            let pause = ui.button(text).on_hover_text(
+                "A paused chart can be dragged and zoomed; a double click shows it whole.",
+            );
             place(&pause, "pause");
             if pause.clicked() {
                 self.paused_s = next;
@@ -107,7 +112,8 @@ impl Charts {
 
     fn chart(&self, ui: &mut Ui, history: &History, column: Column, until_s: f64, height: f32) {
         let name = column.name();
-        ui.label(RichText::new(name).monospace().size(12.0)).on_hover_text(column.meaning());
+        ui.label(RichText::new(name).monospace().size(12.0))
+            .on_hover_text(column.meaning());
         let paused = self.paused_s.is_some();
         let link = Id::unique("charts");
         let since_s = (until_s - self.span_s).max(0.0);
@@ -123,7 +129,9 @@ impl Charts {
             .show_axes([true, true])
             .x_axis_formatter(|mark, _| format!("{:.1} s", mark.value))
             .y_axis_min_width(44.0);
-        let colours: Vec<_> = (0..column.width).map(|i| theme::series(ui.ctx(), i)).collect();
+        let colours: Vec<_> = (0..column.width)
+            .map(|i| theme::series(ui.ctx(), i))
+            .collect();
         plot.show(ui, |plot| {
             if !paused {
                 plot.set_plot_bounds_x(since_s..=(since_s + self.span_s));
@@ -133,13 +141,21 @@ impl Charts {
                 // A paused chart may be dragged to what was before.
                 let from_s = if paused { until_s - KEPT_S } else { since_s };
                 let points = history.line(column, number, from_s);
-                let points = thinned(points.take_while(|[time_s, _]| *time_s <= until_s).collect());
+                let points = thinned(
+                    points
+                        .take_while(|[time_s, _]| *time_s <= until_s)
+                        .collect(),
+                );
                 let label = if column.width > 1 {
                     (number + 1).to_string()
                 } else {
                     String::new()
                 };
-                plot.line(Line::new(label, PlotPoints::from(points)).color(colour).width(1.6));
+                plot.line(
+                    Line::new(label, PlotPoints::from(points))
+                        .color(colour)
+                        .width(1.6),
+                );
             }
         });
     }

@@ -131,7 +131,9 @@ impl History {
         number: usize,
         since_s: f64,
     ) -> impl Iterator<Item = [f64; 2]> + '_ {
-        let first = self.samples.partition_point(|(time_s, _)| *time_s < since_s);
+        let first = self
+            .samples
+            .partition_point(|(time_s, _)| *time_s < since_s);
         let values = self.samples.range(first..);
         values.filter_map(move |(time_s, numbers)| {
             let value = f64::from(*numbers.get(column.start + number)?);

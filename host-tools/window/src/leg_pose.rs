@@ -43,7 +43,10 @@ impl LegPose {
             let [x, y] = rig.base_anchors_m[i];
             let base = Vector3::new(x, y, rig.upper_length_m);
             let [x, y] = rig.leg_anchors_m[i];
-            [base, self.rotation * Vector3::new(x, y, -rig.joint_length_m)]
+            [
+                base,
+                self.rotation * Vector3::new(x, y, -rig.joint_length_m),
+            ]
         })
     }
 }
@@ -88,7 +91,10 @@ mod tests {
         }
         let turned = pose.twisted(0.1).anchors(&rig);
         let moved = (turned[0][1] - pose.anchors(&rig)[0][1]).norm();
-        assert!((moved - 2.0 * 0.024 * 0.05_f64.sin()).abs() < 1e-9, "{moved}");
+        assert!(
+            (moved - 2.0 * 0.024 * 0.05_f64.sin()).abs() < 1e-9,
+            "{moved}"
+        );
     }
 
     #[test]

@@ -7,18 +7,21 @@
 //! | [`simulation`], [`pace`], [`history`] | the leg, how much of it a frame is worth, and what its signals were |
 //! | [`app`], [`top_bar`], `panel_…`, [`numbers`], [`faults`] | what is where |
 //! | [`scene`], [`camera`], [`figure`], [`leg_pose`] | the leg in 3D |
-//! | [`workspace`] | the disc on which the target is dragged |
+//! | [`workspace`], [`map`] | the disc on which the target is dragged, and what the model says of every pose |
 //! | [`charts`] | signals over time |
 //! | [`theme`] | colours and sizes |
+//! | [`bits`] | whether the firmware decides the same here as elsewhere |
 //! | [`page_state`], [`places`] | the window as data, for tests and for readers of the screen |
 
 pub mod app;
+pub mod bits;
 pub mod camera;
 pub mod charts;
 pub mod faults;
 pub mod figure;
 pub mod history;
 pub mod leg_pose;
+pub mod map;
 pub mod numbers;
 pub mod pace;
 pub mod page_state;

@@ -19,20 +19,27 @@ pub fn show(ui: &mut Ui, simulation: &Simulation) {
         ("payload, felt", telemetry.payload_kg.into(), "kg"),
     ];
     let palette = palette(ui.ctx());
-    Grid::new("numbers").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
-        for (name, value, unit) in rows {
-            ui.label(RichText::new(name).color(palette.faint));
-            ui.label(RichText::new(format!("{value:8.2} {unit}")).monospace());
-            ui.end_row();
-        }
-        ui.label(RichText::new("tensions").color(palette.faint));
-        ui.horizontal(|ui| {
-            for (tendon, tension_n) in telemetry.tensions_n.into_iter().enumerate() {
-                let colour = theme::series(ui.ctx(), tendon);
-                ui.label(RichText::new(format!("{tension_n:5.1}")).monospace().color(colour));
+    Grid::new("numbers")
+        .num_columns(2)
+        .spacing([12.0, 2.0])
+        .show(ui, |ui| {
+            for (name, value, unit) in rows {
+                ui.label(RichText::new(name).color(palette.faint));
+                ui.label(RichText::new(format!("{value:8.2} {unit}")).monospace());
+                ui.end_row();
             }
-            ui.label(RichText::new("N").monospace());
+            ui.label(RichText::new("tensions").color(palette.faint));
+            ui.horizontal(|ui| {
+                for (tendon, tension_n) in telemetry.tensions_n.into_iter().enumerate() {
+                    let colour = theme::series(ui.ctx(), tendon);
+                    ui.label(
+                        RichText::new(format!("{tension_n:5.1}"))
+                            .monospace()
+                            .color(colour),
+                    );
+                }
+                ui.label(RichText::new("N").monospace());
+            });
+            ui.end_row();
         });
-        ui.end_row();
-    });
 }

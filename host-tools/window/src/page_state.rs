@@ -53,7 +53,9 @@ impl PageState {
             (*name, edges)
         });
         let leg = simulation.map(LegState::new);
-        let spoken = leg.as_ref().map_or_else(|| "There is no leg.".into(), LegState::spoken);
+        let spoken = leg
+            .as_ref()
+            .map_or_else(|| "There is no leg.".into(), LegState::spoken);
         Self {
             leg,
             places: places.collect(),

@@ -12,10 +12,26 @@ const PUSH_S: f64 = 0.4;
 
 /// What each of the three can have: what it is called, what it is, and its first name for tests.
 const OF_THREE: [(&str, fn(usize) -> Defect, [&str; 3]); 4] = [
-    ("Cut a tendon", Defect::TendonCut, ["cut_1", "cut_2", "cut_3"]),
-    ("Tear a cell's wire", Defect::CellWanders, ["wire_1", "wire_2", "wire_3"]),
-    ("Jam a motor", Defect::MotorJammed, ["jam_1", "jam_2", "jam_3"]),
-    ("Lose an encoder", Defect::EncoderLost, ["encoder_1", "encoder_2", "encoder_3"]),
+    (
+        "Cut a tendon",
+        Defect::TendonCut,
+        ["cut_1", "cut_2", "cut_3"],
+    ),
+    (
+        "Tear a cell's wire",
+        Defect::CellWanders,
+        ["wire_1", "wire_2", "wire_3"],
+    ),
+    (
+        "Jam a motor",
+        Defect::MotorJammed,
+        ["jam_1", "jam_2", "jam_3"],
+    ),
+    (
+        "Lose an encoder",
+        Defect::EncoderLost,
+        ["encoder_1", "encoder_2", "encoder_3"],
+    ),
 ];
 
 const OF_THE_LEG: [(&str, Defect, &str); 2] = [

@@ -70,9 +70,12 @@ pub fn show(ui: &mut Ui, simulation: &mut Simulation) {
     for choice in &CHOICES {
         let useful = (choice.useful)(simulation);
         ui.horizontal(|ui| {
-            let button = ui.add_enabled(useful, Button::new(choice.text).min_size(vec2(72.0, 28.0)));
+            let button =
+                ui.add_enabled(useful, Button::new(choice.text).min_size(vec2(72.0, 28.0)));
             place(&button, choice.name);
-            let effect = RichText::new(choice.effect).small().color(palette(ui.ctx()).faint);
+            let effect = RichText::new(choice.effect)
+                .small()
+                .color(palette(ui.ctx()).faint);
             ui.add(Label::new(effect).wrap());
             if button.clicked() {
                 simulation.command(choice.command, choice.text);
@@ -114,7 +117,9 @@ fn compensation(ui: &mut Ui, simulation: &mut Simulation) {
 fn sliders(ui: &mut Ui, simulation: &mut Simulation) {
     let mut payload_kg = simulation.payload_kg();
     let range = 0.0..=PAYLOAD_MAX_KG;
-    let slider = Slider::new(&mut payload_kg, range).step_by(0.05).fixed_decimals(2);
+    let slider = Slider::new(&mut payload_kg, range)
+        .step_by(0.05)
+        .fixed_decimals(2);
     if row(ui, "Payload", "payload", slider.suffix(" kg")) {
         simulation.hang(payload_kg);
     }
@@ -124,12 +129,16 @@ fn sliders(ui: &mut Ui, simulation: &mut Simulation) {
     let rig = simulation.rig();
     let mut pretension_n = f64::from(telemetry.pretension_n);
     let range = rig.f_min_n..=rig.f_max_n;
-    let slider = Slider::new(&mut pretension_n, range).step_by(1.0).fixed_decimals(1);
+    let slider = Slider::new(&mut pretension_n, range)
+        .step_by(1.0)
+        .fixed_decimals(1);
     if row(ui, "Pretension", "pretension", slider.suffix(" N")) {
         simulation.command(Command::Pretension(pretension_n as f32), "pretension");
     }
     let mut stiffness = f64::from(telemetry.stiffness_nm_per_rad);
-    let slider = Slider::new(&mut stiffness, 20.0..=170.0).step_by(1.0).fixed_decimals(1);
+    let slider = Slider::new(&mut stiffness, 20.0..=170.0)
+        .step_by(1.0)
+        .fixed_decimals(1);
     if row(ui, "Stiffness", "stiffness", slider.suffix(" N·m/rad")) {
         let demand = Command::Stiffness {
             demand_nm_per_rad: stiffness as f32,
@@ -142,7 +151,10 @@ fn sliders(ui: &mut Ui, simulation: &mut Simulation) {
 /// Whether it was changed.
 fn row(ui: &mut Ui, text: &str, name: &'static str, slider: Slider<'_>) -> bool {
     ui.horizontal(|ui| {
-        ui.add_sized(vec2(72.0, 24.0), Label::new(text).halign(eframe::egui::Align::LEFT));
+        ui.add_sized(
+            vec2(72.0, 24.0),
+            Label::new(text).halign(eframe::egui::Align::LEFT),
+        );
         let response = ui.add(slider);
         place(&response, name);
         response.changed()

@@ -66,7 +66,9 @@ pub fn show(ui: &mut Ui, simulation: &mut Simulation) -> Wish {
             _ => simulation.set_defect(cut, true),
         }
     }
-    let again = ui.button("Start again").on_hover_text("A new leg, as the window found it.");
+    let again = ui
+        .button("Start again")
+        .on_hover_text("A new leg, as the window found it.");
     place(&again, "start_again");
     if again.clicked() {
         Wish::StartAgain
@@ -86,7 +88,10 @@ fn row(ui: &mut Ui, step: &Step) -> bool {
             (step.number.to_string(), palette.target)
         };
         let size = vec2(16.0, 28.0);
-        ui.add_sized(size, eframe::egui::Label::new(RichText::new(mark).color(colour).strong().size(16.0)));
+        ui.add_sized(
+            size,
+            eframe::egui::Label::new(RichText::new(mark).color(colour).strong().size(16.0)),
+        );
         let [text, name] = step.action;
         let width = ui.available_width();
         let button = ui.add_enabled(!step.done, Button::new(text).min_size(vec2(width, 30.0)));

@@ -14,7 +14,8 @@ fn id() -> Id {
 pub fn place(response: &Response, name: &'static str) {
     let rect = response.rect;
     response.ctx.data_mut(|data| {
-        data.get_temp_mut_or_default::<Places>(id()).insert(name, rect);
+        data.get_temp_mut_or_default::<Places>(id())
+            .insert(name, rect);
     });
 }
 

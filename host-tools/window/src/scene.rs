@@ -88,7 +88,11 @@ impl Scene {
             zoom: 1.0,
             ..self.camera
         };
-        drawn.detail(&painter, &joint.view(detail, middle, DETAIL_HEIGHT_M), detail);
+        drawn.detail(
+            &painter,
+            &joint.view(detail, middle, DETAIL_HEIGHT_M),
+            detail,
+        );
         drawn.legend(&painter, rect);
         response
     }
@@ -100,7 +104,10 @@ fn parts(rect: Rect, wide: bool) -> (Rect, Rect) {
         let at = rect.right() - DETAIL_PART * rect.width();
         let (whole, detail) = rect.split_left_right_at_x(at);
         let side = detail.width().min(0.8 * detail.height());
-        let square = Rect::from_center_size(detail.center() - vec2(0.0, 0.06 * rect.height()), Vec2::splat(side));
+        let square = Rect::from_center_size(
+            detail.center() - vec2(0.0, 0.06 * rect.height()),
+            Vec2::splat(side),
+        );
         return (whole, square.shrink(8.0));
     }
     let side = 0.42 * rect.width();
@@ -115,7 +122,9 @@ impl<'a> Drawn<'a> {
         let leg = simulation.leg();
         let truth = leg.truth();
         let along = truth.direction.vector();
-        let target = simulation.telemetry().map_or([0.0; 2], |telemetry| telemetry.target);
+        let target = simulation
+            .telemetry()
+            .map_or([0.0; 2], |telemetry| telemetry.target);
         let tip_length_m = leg.tip_length_m();
         let reference = leg.tip_m(target.map(f64::from)) / tip_length_m;
         let (along, factor) = enlarged(
@@ -144,7 +153,12 @@ impl<'a> Drawn<'a> {
         self.workspace(painter, view);
         let mut items = self.mechanism(view, 2.6);
         let plate = self.pose.along * self.rig.joint_length_m;
-        items.push(rod(view, [plate, self.tip()], SHAFT_RADIUS_M, self.palette.shaft));
+        items.push(rod(
+            view,
+            [plate, self.tip()],
+            SHAFT_RADIUS_M,
+            self.palette.shaft,
+        ));
         items.extend(self.payload(view));
         painter.extend(sorted(items));
         self.marks(painter, view);
@@ -153,11 +167,22 @@ impl<'a> Drawn<'a> {
 
     fn detail(&self, painter: &Painter, view: &View, rect: Rect) {
         let edge = Stroke::new(1.0, self.palette.line);
-        painter.rect(rect, 8.0, mixed(self.palette.back, self.palette.card, 0.6), edge, eframe::egui::StrokeKind::Inside);
+        painter.rect(
+            rect,
+            8.0,
+            mixed(self.palette.back, self.palette.card, 0.6),
+            edge,
+            eframe::egui::StrokeKind::Inside,
+        );
         let inside = painter.with_clip_rect(rect.shrink(1.0));
         let mut items = self.mechanism(view, 4.5);
         let plate = self.pose.along * self.rig.joint_length_m;
-        items.push(rod(view, [plate, 2.4 * plate], SHAFT_RADIUS_M, self.palette.shaft));
+        items.push(rod(
+            view,
+            [plate, 2.4 * plate],
+            SHAFT_RADIUS_M,
+            self.palette.shaft,
+        ));
         inside.extend(sorted(items));
         self.tension_labels(&inside, view, rect);
     }
@@ -170,7 +195,13 @@ impl<'a> Drawn<'a> {
         let plate = self.pose.along * rig.joint_length_m;
         let origin = Vector3::zeros();
         let mut items = vec![
-            disc(view, base, Vector3::z(), [PLATE_RADIUS * ring_m, PLATE_M], palette.plate),
+            disc(
+                view,
+                base,
+                Vector3::z(),
+                [PLATE_RADIUS * ring_m, PLATE_M],
+                palette.plate,
+            ),
             disc(
                 view,
                 plate,
@@ -206,7 +237,9 @@ impl<'a> Drawn<'a> {
     }
 
     fn cut(&self, tendon: usize) -> bool {
-        self.simulation.defects().contains(&Defect::TendonCut(tendon))
+        self.simulation
+            .defects()
+            .contains(&Defect::TendonCut(tendon))
     }
 
     fn tension_colour(&self, tendon: usize) -> Color32 {
@@ -254,7 +287,13 @@ impl<'a> Drawn<'a> {
         }
         let error_mm = self.simulation.leg().comparison().commanded_error_mm();
         let words = format!("{error_mm:6.2} mm off target");
-        label(painter, target + vec2(22.0, -26.0), &words, palette.error, palette);
+        label(
+            painter,
+            target + vec2(22.0, -26.0),
+            &words,
+            palette.error,
+            palette,
+        );
     }
 
     fn push(&self, painter: &Painter, view: &View) {
@@ -266,7 +305,13 @@ impl<'a> Drawn<'a> {
         let [from, to] = [self.tip() - force_m, self.tip()].map(|place| view.project(place).at);
         painter.arrow(from, to - from, Stroke::new(4.0, self.palette.warning));
         let words = format!("push {:.0} N", push.force_n);
-        label(painter, from + vec2(0.0, -18.0), &words, self.palette.warning, &self.palette);
+        label(
+            painter,
+            from + vec2(0.0, -18.0),
+            &words,
+            self.palette.warning,
+            &self.palette,
+        );
     }
 
     fn tension_labels(&self, painter: &Painter, view: &View, rect: Rect) {
@@ -276,16 +321,31 @@ impl<'a> Drawn<'a> {
             let above = ends[0] + Vector3::new(0.0, 0.0, 0.008);
             let at = view.project(above).at;
             let number = (tendon + 1).to_string();
-            painter.text(at, Align2::CENTER_CENTER, number, FontId::proportional(14.0), self.palette.text);
+            painter.text(
+                at,
+                Align2::CENTER_CENTER,
+                number,
+                FontId::proportional(14.0),
+                self.palette.text,
+            );
             let width = rect.width() / 3.0;
-            let cell = pos2(rect.left() + (tendon as f32 + 0.5) * width, rect.bottom() - 16.0);
+            let cell = pos2(
+                rect.left() + (tendon as f32 + 0.5) * width,
+                rect.bottom() - 16.0,
+            );
             let words = if self.cut(tendon) {
                 format!("{} cut", tendon + 1)
             } else {
                 format!("{}:{:5.1} N", tendon + 1, tensions_n[tendon])
             };
             painter.circle_filled(cell - vec2(0.0, 14.0), 4.0, self.tension_colour(tendon));
-            painter.text(cell, Align2::CENTER_CENTER, words, FontId::monospace(11.5), self.palette.text);
+            painter.text(
+                cell,
+                Align2::CENTER_CENTER,
+                words,
+                FontId::monospace(11.5),
+                self.palette.text,
+            );
         }
     }
 
@@ -295,7 +355,13 @@ impl<'a> Drawn<'a> {
         let font = FontId::proportional(12.5);
         let corner = rect.left_bottom() + vec2(12.0, -12.0);
         let words = format!("sag drawn ×{:.1}", self.factor);
-        painter.text(corner, Align2::LEFT_BOTTOM, words, font.clone(), palette.faint);
+        painter.text(
+            corner,
+            Align2::LEFT_BOTTOM,
+            words,
+            font.clone(),
+            palette.faint,
+        );
         let rig = self.simulation.rig();
         let bounds_n = [rig.f_min_n, rig.f_max_n];
         let bar = Rect::from_min_size(corner + vec2(0.0, -38.0), vec2(96.0, 7.0));
@@ -311,7 +377,13 @@ impl<'a> Drawn<'a> {
             painter.rect_filled(cell, 0.0, theme::tension(tension_n, bounds_n));
         }
         let words = format!("tension {:.0} to {:.0} N", bounds_n[0], bounds_n[1]);
-        painter.text(bar.left_top() + vec2(0.0, -3.0), Align2::LEFT_BOTTOM, words, font, palette.faint);
+        painter.text(
+            bar.left_top() + vec2(0.0, -3.0),
+            Align2::LEFT_BOTTOM,
+            words,
+            font,
+            palette.faint,
+        );
     }
 }
 
@@ -324,6 +396,10 @@ fn ring_m(anchors_m: &[[f64; 2]; 3]) -> f64 {
 fn label(painter: &Painter, at: Pos2, words: &str, colour: Color32, palette: &Palette) {
     let galley = painter.layout_no_wrap(words.to_owned(), FontId::monospace(13.0), colour);
     let rect = Rect::from_min_size(at, galley.size());
-    painter.rect_filled(rect.expand2(vec2(5.0, 2.0)), 4.0, palette.card.gamma_multiply(0.85));
+    painter.rect_filled(
+        rect.expand2(vec2(5.0, 2.0)),
+        4.0,
+        palette.card.gamma_multiply(0.85),
+    );
     painter.galley(at, galley, colour);
 }

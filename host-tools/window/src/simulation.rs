@@ -172,10 +172,17 @@ impl Simulation {
             }
         }
         self.look_at_answers();
-        if self.push.is_some_and(|push| push.until_s <= self.leg.time_s()) {
+        if self
+            .push
+            .is_some_and(|push| push.until_s <= self.leg.time_s())
+        {
             self.push = None;
         }
-        if self.leg.ticks().is_multiple_of(u64::from(u32::from(TICK_HZ) / SAMPLE_HZ)) {
+        if self
+            .leg
+            .ticks()
+            .is_multiple_of(u64::from(u32::from(TICK_HZ) / SAMPLE_HZ))
+        {
             self.sample();
         }
     }

@@ -3,15 +3,18 @@
 use crate::places::place;
 use crate::simulation::Simulation;
 use crate::theme::{Palette, palette};
-use eframe::egui::{
-    Align, Button, Color32, ComboBox, Layout, RichText, Stroke, Theme, Ui, vec2,
-};
+use eframe::egui::{Align, Button, Color32, ComboBox, Layout, RichText, Stroke, Theme, Ui, vec2};
 use leg_base::description;
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::State;
 
 /// How fast the leg's time goes beside the clock's.
-const RATES: [(f64, &str); 4] = [(1.0, "real time"), (0.1, "1/10"), (0.01, "1/100"), (0.0, "stand still")];
+const RATES: [(f64, &str); 4] = [
+    (1.0, "real time"),
+    (0.1, "1/10"),
+    (0.01, "1/100"),
+    (0.0, "stand still"),
+];
 
 /// Below this width there is no room for everything, points.
 const ROOMY: f32 = 700.0;
@@ -46,16 +49,27 @@ fn chip(ui: &mut Ui, state: State, palette: &Palette) {
         State::Held | State::RampingDown | State::Off => palette.error,
         State::Boot | State::Disarmed | State::Jogging => palette.faint,
     };
-    let text = RichText::new(description::state(state)).color(colour).strong();
-    let chip = Button::new(text).stroke(Stroke::new(1.5, colour)).fill(Color32::TRANSPARENT);
+    let text = RichText::new(description::state(state))
+        .color(colour)
+        .strong();
+    let chip = Button::new(text)
+        .stroke(Stroke::new(1.5, colour))
+        .fill(Color32::TRANSPARENT);
     ui.add_sized(vec2(118.0, 30.0), chip.sense(eframe::egui::Sense::hover()));
 }
 
 fn stop(ui: &mut Ui, simulation: &mut Simulation, palette: &Palette, roomy: bool) {
     let text = if roomy { "STOP  (space)" } else { "STOP" };
-    let text = RichText::new(text).color(Color32::WHITE).strong().size(17.0);
+    let text = RichText::new(text)
+        .color(Color32::WHITE)
+        .strong()
+        .size(17.0);
     let width = if roomy { 150.0 } else { 84.0 };
-    let button = ui.add(Button::new(text).fill(palette.danger).min_size(vec2(width, 38.0)));
+    let button = ui.add(
+        Button::new(text)
+            .fill(palette.danger)
+            .min_size(vec2(width, 38.0)),
+    );
     place(&button, "stop");
     let hint = "Holds the leg where it is until Clear. The space bar and Esc do the same.";
     if button.on_hover_text(hint).clicked() {
@@ -79,7 +93,9 @@ fn rate(ui: &mut Ui, simulation: &mut Simulation) {
     let rate = &mut simulation.pace.rate;
     let shown = RATES.iter().find(|(value, _)| value == rate);
     let text = shown.map_or("", |(_, text)| text);
-    let choice = ComboBox::from_id_salt("rate").selected_text(text).width(88.0);
+    let choice = ComboBox::from_id_salt("rate")
+        .selected_text(text)
+        .width(88.0);
     let choice = choice.show_ui(ui, |ui| {
         for (value, text) in RATES {
             ui.selectable_value(rate, value, text);

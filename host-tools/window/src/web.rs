@@ -1,6 +1,7 @@
 //! The window in a page.
 
 use crate::app::App;
+use crate::bits;
 use eframe::{WebOptions, WebRunner};
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -44,6 +45,14 @@ impl LegWindow {
         state
             .and_then(|state| serde_json::to_string(&state).ok())
             .unwrap_or_else(|| "null".into())
+    }
+
+    /// What the firmware decides in a ready scenario, as one number.
+    ///
+    /// # Errors
+    /// A scenario that does not run.
+    pub fn bits(&self, scenario: &str) -> Result<String, String> {
+        bits::row(scenario)
     }
 
     /// Why it shows nothing any more.

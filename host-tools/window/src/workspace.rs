@@ -1,10 +1,12 @@
 //! The workspace from above, on which the target is dragged.
 
+use crate::map::{Map, Quantity, RINGS, SPOKES, azimuth_deg};
 use crate::places::place;
 use crate::simulation::Simulation;
 use crate::theme::{Palette, mixed, palette};
 use eframe::egui::{
-    Align2, FontId, Key, Painter, Pos2, Response, Sense, Stroke, Ui, Vec2, vec2,
+    Align2, ComboBox, FontId, Key, Mesh, Painter, Pos2, Response, RichText, Sense, Shape, Stroke,
+    Ui, Vec2, vec2,
 };
 use leg_base::angles;
 use leg_firmware::command::Command;
@@ -48,8 +50,63 @@ impl Disc {
     }
 }
 
-/// Draws the workspace, and moves the leg to where the target is dragged.
-pub fn show(ui: &mut Ui, simulation: &mut Simulation, side: f32) {
+/// What the disc shows besides the leg.
+#[derive(Default)]
+pub struct Workspace {
+    /// Of what there is a map under it.
+    quantity: Option<Quantity>,
+    map: Option<Map>,
+}
+
+impl Workspace {
+    /// Draws the workspace, and moves the leg to where the target is dragged.
+    pub fn show(&mut self, ui: &mut Ui, simulation: &mut Simulation, side: f32) {
+        self.refresh(simulation);
+        disc(ui, simulation, side, self.map.as_ref());
+        self.choice(ui);
+    }
+
+    /// Makes the map that is wanted, unless it is there.
+    fn refresh(&mut self, simulation: &Simulation) {
+        let (Some(quantity), Some(telemetry)) = (self.quantity, simulation.telemetry()) else {
+            self.map = None;
+            return;
+        };
+        let payload_kg = simulation.leg().truth().payload_kg;
+        let pretension_n = f64::from(telemetry.pretension_n);
+        let holds = |map: &Map| map.holds(quantity, payload_kg, pretension_n);
+        if !self.map.as_ref().is_some_and(holds) {
+            self.map = Some(Map::new(
+                quantity,
+                simulation.rig(),
+                payload_kg,
+                pretension_n,
+            ));
+        }
+    }
+
+    fn choice(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            let name = self.quantity.map_or("none", |quantity| quantity.words()[0]);
+            let choice = ComboBox::from_id_salt("map").selected_text(format!("Map: {name}"));
+            let choice = choice.width(110.0).show_ui(ui, |ui| {
+                ui.selectable_value(&mut self.quantity, None, "none");
+                for (quantity, name, unit) in Quantity::ALL {
+                    let text = format!("{name}, {unit}");
+                    ui.selectable_value(&mut self.quantity, Some(quantity), text);
+                }
+            });
+            place(&choice.response, "map");
+            let range = self.map.as_ref().and_then(Map::range);
+            if let (Some(quantity), Some([low, high])) = (self.quantity, range) {
+                let words = format!("{low:5.1} to {high:5.1} {}", quantity.words()[1]);
+                ui.label(RichText::new(words).monospace().size(11.5));
+            }
+        });
+    }
+}
+
+fn disc(ui: &mut Ui, simulation: &mut Simulation, side: f32, map: Option<&Map>) {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::click_and_drag());
     let disc = Disc {
         centre: rect.center(),
@@ -58,8 +115,17 @@ pub fn show(ui: &mut Ui, simulation: &mut Simulation, side: f32) {
     };
     place(&response, "workspace");
     drag(ui, &response, &disc, simulation);
-    paint(&ui.painter_at(rect), &disc, simulation, &palette(ui.ctx()), response.has_focus());
-    response.on_hover_text("Drag to move the leg. With the disc in focus, the arrow keys move it by 1°.");
+    paint(
+        &ui.painter_at(rect),
+        &disc,
+        simulation,
+        &palette(ui.ctx()),
+        map,
+        response.has_focus(),
+    );
+    response.on_hover_text(
+        "Drag to move the leg. With the disc in focus, the arrow keys move it by 1°.",
+    );
 }
 
 fn drag(ui: &Ui, response: &Response, disc: &Disc, simulation: &mut Simulation) {
@@ -104,10 +170,25 @@ fn commanded(simulation: &Simulation) -> [f64; 2] {
     [tip_m.x, tip_m.y]
 }
 
-fn paint(painter: &Painter, disc: &Disc, simulation: &Simulation, palette: &Palette, focus: bool) {
+fn paint(
+    painter: &Painter,
+    disc: &Disc,
+    simulation: &Simulation,
+    palette: &Palette,
+    map: Option<&Map>,
+    focus: bool,
+) {
     let line = Stroke::new(1.0, mixed(palette.line, palette.faint, 0.3));
     let rim = if focus { palette.target } else { palette.faint };
-    painter.circle(disc.centre, disc.radius, mixed(palette.back, palette.card, 0.8), Stroke::new(1.5, rim));
+    painter.circle_filled(
+        disc.centre,
+        disc.radius,
+        mixed(palette.back, palette.card, 0.8),
+    );
+    if let Some(map) = map {
+        painter.add(Shape::mesh(mesh(disc, map, palette)));
+    }
+    painter.circle_stroke(disc.centre, disc.radius, Stroke::new(1.5, rim));
     let tilt_deg = simulation.rig().tilt_deg;
     let rings = (tilt_deg / RING_DEG).ceil() as u32;
     for ring in 1..rings {
@@ -132,6 +213,46 @@ fn paint(painter: &Painter, disc: &Disc, simulation: &Simulation, palette: &Pale
     marks(painter, disc, simulation, palette);
 }
 
+/// The map, coloured from its lowest value to its highest.
+fn mesh(disc: &Disc, map: &Map, palette: &Palette) -> Mesh {
+    let [low, high] = map.range().unwrap_or_default();
+    let colour = |value: f64| {
+        let part = if high > low {
+            (value - low) / (high - low)
+        } else {
+            0.0
+        };
+        if part.is_finite() {
+            mixed(palette.card, palette.brass, 0.8 * part as f32)
+        } else {
+            palette.back
+        }
+    };
+    let mut mesh = Mesh::default();
+    for (index, value) in map.values().iter().enumerate() {
+        let (ring, spoke) = match index.checked_sub(1) {
+            None => (0, 0),
+            Some(index) => (index / SPOKES + 1, index % SPOKES),
+        };
+        let sine = disc.sine_max * ring as f64 / RINGS as f64;
+        let at = angles::unit_vector(azimuth_deg(spoke)).map(|part| sine * part);
+        mesh.colored_vertex(disc.at(at), colour(*value));
+    }
+    let vertex = |ring: usize, spoke: usize| match ring {
+        0 => 0,
+        _ => (1 + (ring - 1) * SPOKES + spoke % SPOKES) as u32,
+    };
+    for ring in 0..RINGS {
+        for spoke in 0..SPOKES {
+            let [inner, next_inner] = [spoke, spoke + 1].map(|spoke| vertex(ring, spoke));
+            let [outer, next_outer] = [spoke, spoke + 1].map(|spoke| vertex(ring + 1, spoke));
+            mesh.add_triangle(inner, outer, next_outer);
+            mesh.add_triangle(inner, next_outer, next_inner);
+        }
+    }
+    mesh
+}
+
 fn tilt_label(painter: &Painter, disc: &Disc, tilt_deg: f64, radius: f32, palette: &Palette) {
     let diagonal = vec2(-0.707, 0.707);
     painter.text(
@@ -153,7 +274,10 @@ fn marks(painter: &Painter, disc: &Disc, simulation: &Simulation, palette: &Pale
     painter.circle_filled(is, 5.0, palette.error);
     painter.circle_stroke(target, 9.0, Stroke::new(2.5, palette.target));
     for arm in [vec2(13.0, 0.0), vec2(0.0, 13.0)] {
-        painter.line_segment([target - arm, target + arm], Stroke::new(1.2, palette.target));
+        painter.line_segment(
+            [target - arm, target + arm],
+            Stroke::new(1.2, palette.target),
+        );
     }
 }
 

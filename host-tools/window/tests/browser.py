@@ -17,7 +17,9 @@ import time
 
 from webdriver import Browser
 
-PICTURES = pathlib.Path(__file__).parent / "pictures"
+HERE = pathlib.Path(__file__).resolve().parent
+PICTURES = HERE / "pictures"
+GOLDEN_BITS = HERE.parents[2] / "tests" / "golden" / "scenario_bits.txt"
 
 # What the page promises.
 LOAD_S = 3.0
@@ -148,6 +150,16 @@ def check_speed(page):
     assert cost <= FRAME_MS, cost
 
 
+def check_bits(page):
+    """The firmware decides in the browser what it decides elsewhere, bit for bit."""
+    rows = GOLDEN_BITS.read_text().splitlines()
+    for name in ("cost", "payload", "fault_tension_jump"):
+        (expected,) = [row for row in rows if row.startswith(f"{name} ")]
+        row = page.browser.run("return window.leg_bits(arguments[0])", name)
+        assert row == expected, (row, expected)
+        print(f"  {row}: the same bits")
+
+
 def first_visit(page):
     """What somebody does who has never seen it: the three steps."""
     page.wait_leg("rests", lambda leg: leg["state"] == "active" and not leg["compensated"])
@@ -247,7 +259,7 @@ def main():
             took_s = page.open(address)
             print(f"{address.split(':')[0]}: loaded in {took_s:.2f} s")
             assert took_s <= LOAD_S, took_s
-        for part in (check_speed, first_visit, drive, breaks, looks):
+        for part in (check_speed, check_bits, first_visit, drive, breaks, looks):
             print(part.__name__)
             part(page)
         errors = [entry for entry in browser.log() if entry["level"] == "SEVERE"]

@@ -21,7 +21,9 @@ const PROGRAM_PLACE: &str = "/* program */";
 
 fn main() -> ExitCode {
     let Some(directory) = std::env::args_os().nth(1).map(PathBuf::from) else {
-        eprintln!("error: no directory is given\nhelp: cargo run --release --package leg-window-export -- DIR");
+        eprintln!(
+            "error: no directory is given\nhelp: cargo run --release --package leg-window-export -- DIR"
+        );
         return ExitCode::from(2);
     };
     match export(&directory) {
@@ -41,7 +43,10 @@ fn export(directory: &Path) -> Result<(), Box<dyn Error>> {
     let bound = target.join("page");
     // A script without modules: a page from disk may not load any.
     let mut bindgen = Bindgen::new();
-    bindgen.input_path(program).typescript(false).no_modules(true)?;
+    bindgen
+        .input_path(program)
+        .typescript(false)
+        .no_modules(true)?;
     bindgen.generate(&bound)?;
     let script = fs::read_to_string(bound.join("leg_window.js"))?;
     let program = fs::read(bound.join("leg_window_bg.wasm"))?;
@@ -68,7 +73,14 @@ fn megabytes(bytes: usize) -> f64 {
 fn build(workspace: &Path) -> Result<(), Box<dyn Error>> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
-    command.args(["build", "--locked", "--release", "--lib", "--package", "leg-window"]);
+    command.args([
+        "build",
+        "--locked",
+        "--release",
+        "--lib",
+        "--package",
+        "leg-window",
+    ]);
     command.args(["--target", TARGET]).current_dir(workspace);
     if command.status()?.success() {
         return Ok(());
@@ -90,7 +102,9 @@ fn page(script: &str, program: &[u8]) -> Result<String, Box<dyn Error>> {
     // What ends a script in a page must not stand in one.
     let script = script.replace("</script", "<\\/script");
     let program = STANDARD.encode(compressed(program)?);
-    Ok(PAGE.replace(SCRIPT_PLACE, &script).replace(PROGRAM_PLACE, &program))
+    Ok(PAGE
+        .replace(SCRIPT_PLACE, &script)
+        .replace(PROGRAM_PLACE, &program))
 }
 
 fn compressed(bytes: &[u8]) -> io::Result<Vec<u8>> {
