@@ -14,6 +14,6 @@ for program in chromium chromedriver python3; do
 done
 rustup target list --installed | grep -q '^wasm32-unknown-unknown$' || rustup target add wasm32-unknown-unknown
 
-cargo test --release --locked
+cargo test --locked
 cargo run --release --locked --package leg-window-export -- target/site
 python3 tests/browser.py target/site

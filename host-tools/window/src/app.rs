@@ -198,7 +198,7 @@ fn wide(ui: &mut Ui, simulation: &mut Simulation, views: &mut Views) -> Wish {
             panel_break::show(ui, simulation);
         });
     });
-    let height = (0.30 * tall).clamp(180.0, 420.0);
+    let height = (0.32 * tall).clamp(200.0, 440.0);
     let bottom = Panel::bottom("charts")
         .frame(side)
         .resizable(false)

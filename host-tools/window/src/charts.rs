@@ -4,7 +4,7 @@ use crate::history::{Column, History, KEPT_S};
 use crate::places::place;
 use crate::theme;
 use eframe::egui::{ComboBox, Id, RichText, ScrollArea, TextEdit, Ui, Vec2b};
-use egui_plot::{Legend, Line, Plot, PlotPoints};
+use egui_plot::{GridInput, GridMark, Legend, Line, Plot, PlotPoints};
 
 /// Points of a line: more than a screen has.
 const POINTS_MAX: usize = 1200;
@@ -126,8 +126,10 @@ impl Charts {
             .allow_zoom(paused)
             .allow_scroll(paused)
             .allow_boxed_zoom(paused)
-            .show_axes([true, true])
-            .x_axis_formatter(|mark, _| format!("{:.1} s", mark.value))
+            .x_grid_spacer(|input| grid(&input, 6.0))
+            .y_grid_spacer(|input| grid(&input, 4.0))
+            .x_axis_formatter(|mark, _| format!("{} s", short(mark.value)))
+            .y_axis_formatter(|mark, _| short(mark.value))
             .y_axis_min_width(44.0);
         let colours: Vec<_> = (0..column.width)
             .map(|i| theme::series(ui.ctx(), i))
@@ -161,6 +163,34 @@ impl Charts {
     }
 }
 
+/// Some lines of a grid at round numbers.
+fn grid(input: &GridInput, lines: f64) -> Vec<GridMark> {
+    let (low, high) = input.bounds;
+    let step_size = round_step((high - low) / lines);
+    let first = (low / step_size).ceil();
+    // A plot of no height has no lines.
+    let count = ((high - low) / step_size).min(100.0) as u32;
+    let mark = |line: u32| GridMark {
+        value: (first + f64::from(line)) * step_size,
+        step_size,
+    };
+    (0..=count).map(mark).collect()
+}
+
+/// The next larger of 1, 2 and 5 with any power of ten.
+fn round_step(step: f64) -> f64 {
+    let unit = 10_f64.powf(step.max(1e-9).log10().floor());
+    let part = step / unit;
+    let round = [1.0, 2.0, 5.0].into_iter().find(|round| part <= *round);
+    unit * round.unwrap_or(10.0)
+}
+
+/// A number without what its rounding leaves.
+fn short(value: f64) -> String {
+    let rounded = (value * 1e6).round() / 1e6;
+    format!("{rounded}")
+}
+
 /// The lowest and the highest point of each of so many parts: no peak is lost.
 fn thinned(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     if points.len() <= POINTS_MAX {
@@ -183,7 +213,25 @@ fn thinned(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 
 #[cfg(test)]
 mod tests {
-    use super::{POINTS_MAX, thinned};
+    use super::{POINTS_MAX, round_step, short, thinned};
+
+    #[test]
+    fn lines_of_a_grid_are_at_round_numbers() {
+        for (step, round) in [
+            (1.0, 1.0),
+            (1.1, 2.0),
+            (0.03, 0.05),
+            (37.0, 50.0),
+            (60.0, 100.0),
+        ] {
+            assert!((round_step(step) / round - 1.0).abs() < 1e-12, "{step}");
+        }
+        assert!(round_step(0.0) > 0.0);
+        assert_eq!(
+            [0.1 + 0.2, -0.0, 1.0 / 3.0].map(short),
+            ["0.3", "0", "0.333333"]
+        );
+    }
 
     #[test]
     fn no_peak_is_lost() {

@@ -9,7 +9,7 @@
 //! | [`scene`], [`camera`], [`figure`], [`leg_pose`] | the leg in 3D |
 //! | [`workspace`], [`map`] | the disc on which the target is dragged, and what the model says of every pose |
 //! | [`charts`] | signals over time |
-//! | [`theme`] | colours and sizes |
+//! | [`theme`], [`text`] | colours, sizes, text in its place |
 //! | [`bits`] | whether the firmware decides the same here as elsewhere |
 //! | [`page_state`], [`places`] | the window as data, for tests and for readers of the screen |
 
@@ -31,6 +31,7 @@ pub mod panel_guide;
 pub mod places;
 pub mod scene;
 pub mod simulation;
+pub mod text;
 pub mod theme;
 pub mod top_bar;
 #[cfg(target_arch = "wasm32")]

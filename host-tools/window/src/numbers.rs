@@ -21,7 +21,8 @@ pub fn show(ui: &mut Ui, simulation: &Simulation) {
     let palette = palette(ui.ctx());
     Grid::new("numbers")
         .num_columns(2)
-        .spacing([12.0, 2.0])
+        .spacing([12.0, 3.0])
+        .min_row_height(16.0)
         .show(ui, |ui| {
             for (name, value, unit) in rows {
                 ui.label(RichText::new(name).color(palette.faint));

@@ -3,7 +3,7 @@
 use leg_firmware::sensors::TICK_HZ;
 
 /// The longest time that one frame makes up for, s. A window that was hidden or slow goes on where it was.
-const FRAME_MAX_S: f64 = 0.1;
+const FRAME_MAX_S: f64 = 0.25;
 
 /// Follows the clock, tick by tick.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +36,7 @@ impl Pace {
         self.left_out_s += elapsed_s - taken_s;
         let ticks = self.rest + taken_s * self.rate * f64::from(TICK_HZ);
         self.rest = ticks.fract();
-        // At most a tenth of a second of ticks.
+        // At most those of FRAME_MAX_S.
         ticks.floor() as u32
     }
 
@@ -62,8 +62,8 @@ mod tests {
     #[test]
     fn a_frame_that_came_late_is_bounded() {
         let mut pace = Pace::default();
-        assert_eq!(pace.ticks(60.0), 800);
-        assert!((pace.left_out_s() - 59.9).abs() < 1e-9);
+        assert_eq!(pace.ticks(60.0), 2000);
+        assert!((pace.left_out_s() - 59.75).abs() < 1e-9);
     }
 
     #[test]

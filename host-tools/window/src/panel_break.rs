@@ -2,8 +2,9 @@
 
 use crate::places::place;
 use crate::simulation::Simulation;
+use crate::text::left;
 use crate::theme::palette;
-use eframe::egui::{Button, Label, RichText, Ui, vec2};
+use eframe::egui::{Button, Ui, vec2};
 use leg_sim::plant::Defect;
 
 /// A push of a finger: N and s.
@@ -83,10 +84,9 @@ pub fn show(ui: &mut Ui, simulation: &mut Simulation) {
 
 fn row(ui: &mut Ui, text: &str, buttons: impl FnOnce(&mut Ui)) {
     ui.horizontal(|ui| {
-        let label = Label::new(RichText::new(text)).halign(eframe::egui::Align::LEFT);
-        ui.add_sized(vec2(118.0, 26.0), label);
+        left(ui, 112.0, text);
         ui.spacing_mut().item_spacing.x = 4.0;
-        ui.spacing_mut().button_padding.x = 4.0;
+        ui.spacing_mut().button_padding.x = 3.0;
         buttons(ui);
     });
 }

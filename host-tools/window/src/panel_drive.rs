@@ -2,10 +2,19 @@
 
 use crate::places::place;
 use crate::simulation::Simulation;
+use crate::text::left;
 use crate::theme::palette;
-use eframe::egui::{Button, Label, RichText, Slider, Ui, vec2};
+use eframe::egui::{Button, Label, RichText, Slider, SliderClamping, Ui, vec2};
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::supervisor::{Event, State};
+use std::ops::RangeInclusive;
+
+/// What a slider leaves for its name and its value, points.
+const LABEL_WIDTH: f32 = 68.0;
+const VALUE_WIDTH: f32 = 102.0;
+
+/// The stiffness that the slider reaches: that of the paper's rig within the bounds of its tensions.
+const STIFFNESS_NM_PER_RAD: RangeInclusive<f64> = 20.0..=170.0;
 
 /// The heaviest payload of the slider, kg.
 const PAYLOAD_MAX_KG: f64 = 2.0;
@@ -116,11 +125,9 @@ fn compensation(ui: &mut Ui, simulation: &mut Simulation) {
 
 fn sliders(ui: &mut Ui, simulation: &mut Simulation) {
     let mut payload_kg = simulation.payload_kg();
-    let range = 0.0..=PAYLOAD_MAX_KG;
-    let slider = Slider::new(&mut payload_kg, range)
-        .step_by(0.05)
-        .fixed_decimals(2);
-    if row(ui, "Payload", "payload", slider.suffix(" kg")) {
+    let slider = Slider::new(&mut payload_kg, 0.0..=PAYLOAD_MAX_KG);
+    let slider = slider.step_by(0.05).fixed_decimals(2).suffix(" kg");
+    if row(ui, "Payload", "payload", slider) {
         simulation.hang(payload_kg);
     }
     let Some(telemetry) = simulation.telemetry().copied() else {
@@ -128,18 +135,13 @@ fn sliders(ui: &mut Ui, simulation: &mut Simulation) {
     };
     let rig = simulation.rig();
     let mut pretension_n = f64::from(telemetry.pretension_n);
-    let range = rig.f_min_n..=rig.f_max_n;
-    let slider = Slider::new(&mut pretension_n, range)
-        .step_by(1.0)
-        .fixed_decimals(1);
-    if row(ui, "Pretension", "pretension", slider.suffix(" N")) {
+    let slider = Slider::new(&mut pretension_n, rig.f_min_n..=rig.f_max_n).suffix(" N");
+    if row(ui, "Pretension", "pretension", slider.fixed_decimals(1)) {
         simulation.command(Command::Pretension(pretension_n as f32), "pretension");
     }
     let mut stiffness = f64::from(telemetry.stiffness_nm_per_rad);
-    let slider = Slider::new(&mut stiffness, 20.0..=170.0)
-        .step_by(1.0)
-        .fixed_decimals(1);
-    if row(ui, "Stiffness", "stiffness", slider.suffix(" N·m/rad")) {
+    let slider = Slider::new(&mut stiffness, STIFFNESS_NM_PER_RAD).suffix(" N·m/rad");
+    if row(ui, "Stiffness", "stiffness", slider.fixed_decimals(1)) {
         let demand = Command::Stiffness {
             demand_nm_per_rad: stiffness as f32,
             towards: None,
@@ -148,14 +150,12 @@ fn sliders(ui: &mut Ui, simulation: &mut Simulation) {
     }
 }
 
-/// Whether it was changed.
+/// Whether it was changed by hand: what the leg reports may be beyond the slider's ends.
 fn row(ui: &mut Ui, text: &str, name: &'static str, slider: Slider<'_>) -> bool {
     ui.horizontal(|ui| {
-        ui.add_sized(
-            vec2(72.0, 24.0),
-            Label::new(text).halign(eframe::egui::Align::LEFT),
-        );
-        let response = ui.add(slider);
+        left(ui, LABEL_WIDTH, text);
+        ui.spacing_mut().slider_width = (ui.available_width() - VALUE_WIDTH).clamp(60.0, 220.0);
+        let response = ui.add(slider.clamping(SliderClamping::Edits));
         place(&response, name);
         response.changed()
     })

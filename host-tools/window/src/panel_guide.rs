@@ -3,7 +3,7 @@
 use crate::places::place;
 use crate::simulation::Simulation;
 use crate::theme::palette;
-use eframe::egui::{Button, RichText, Ui, vec2};
+use eframe::egui::{Button, Frame, Label, Margin, RichText, Ui, vec2};
 use leg_firmware::command::{Command, Compensation};
 use leg_sim::plant::Defect;
 
@@ -90,7 +90,7 @@ fn row(ui: &mut Ui, step: &Step) -> bool {
         let size = vec2(16.0, 28.0);
         ui.add_sized(
             size,
-            eframe::egui::Label::new(RichText::new(mark).color(colour).strong().size(16.0)),
+            Label::new(RichText::new(mark).color(colour).strong().size(16.0)),
         );
         let [text, name] = step.action;
         let width = ui.available_width();
@@ -98,9 +98,13 @@ fn row(ui: &mut Ui, step: &Step) -> bool {
         place(&button, name);
         pressed = button.clicked();
     });
-    ui.horizontal_wrapped(|ui| {
-        ui.add_space(24.0);
-        ui.label(RichText::new(step.effect).small().color(palette.faint));
+    let indented = Frame::NONE.inner_margin(Margin {
+        left: 24,
+        ..Margin::ZERO
+    });
+    indented.show(ui, |ui| {
+        let effect = RichText::new(step.effect).small().color(palette.faint);
+        ui.add(Label::new(effect).wrap());
     });
     pressed
 }

@@ -18,12 +18,15 @@ const PLATE_M: f64 = 0.003;
 const PLATE_RADIUS: f64 = 1.22;
 const SHAFT_RADIUS_M: f64 = 0.0026;
 const JOINT_RADIUS_M: f64 = 0.0036;
-const DETAIL_HEIGHT_M: f64 = 0.075;
+const DETAIL_HEIGHT_M: f64 = 0.088;
 /// Radius of a ball of 1 kg.
 const PAYLOAD_RADIUS_M: f64 = 0.0135;
 
 /// How much the detail takes of a wide picture.
 const DETAIL_PART: f32 = 0.38;
+
+/// Height of the labels below the detail, points.
+const LABELS: f32 = 36.0;
 
 /// What a force of 1 N is drawn as, m.
 const ARROW_M_PER_N: f64 = 0.0025;
@@ -77,13 +80,14 @@ impl Scene {
         }
         let drawn = Drawn::new(simulation, self.factor, palette(ui.ctx()));
         let painter = ui.painter_at(rect);
+        painter.rect_filled(rect, 0.0, drawn.palette.back);
         let wide = rect.width() > 1.15 * rect.height();
         let (whole, detail) = parts(rect, wide);
         let length_m = drawn.tip_length_m;
         let centre = Vector3::new(0.0, 0.0, -0.48 * length_m);
-        let view = self.camera.view(whole, centre, 1.22 * length_m);
+        let view = self.camera.view(whole, centre, 1.17 * length_m);
         drawn.whole(&painter, &view);
-        let middle = Vector3::new(0.0, 0.0, -0.4 * drawn.rig.joint_length_m);
+        let middle = Vector3::new(0.0, 0.0, -0.5 * drawn.rig.joint_length_m);
         let joint = Camera {
             zoom: 1.0,
             ..self.camera
@@ -184,6 +188,8 @@ impl<'a> Drawn<'a> {
             self.palette.shaft,
         ));
         inside.extend(sorted(items));
+        let strip = rect.shrink(1.0).with_min_y(rect.bottom() - LABELS);
+        inside.rect_filled(strip, 0.0, self.palette.card);
         self.tension_labels(&inside, view, rect);
     }
 
@@ -286,10 +292,10 @@ impl<'a> Drawn<'a> {
             painter.circle_filled(tip, 3.5, palette.error);
         }
         let error_mm = self.simulation.leg().comparison().commanded_error_mm();
-        let words = format!("{error_mm:6.2} mm off target");
+        let words = format!("{error_mm:.2} mm off target");
         label(
             painter,
-            target + vec2(22.0, -26.0),
+            target + vec2(40.0, -8.0),
             &words,
             palette.error,
             palette,
@@ -331,7 +337,7 @@ impl<'a> Drawn<'a> {
             let width = rect.width() / 3.0;
             let cell = pos2(
                 rect.left() + (tendon as f32 + 0.5) * width,
-                rect.bottom() - 16.0,
+                rect.bottom() - 11.0,
             );
             let words = if self.cut(tendon) {
                 format!("{} cut", tendon + 1)

@@ -28,6 +28,9 @@ const SETTLE_S: f64 = 1.0;
 /// Time in which a payload is hung on, s.
 const PAYLOAD_OVER_S: f64 = 0.4;
 
+/// Commands that may wait for their answers.
+const ASKED_MAX: usize = 32;
+
 /// Every run of the window has the same noise.
 const SEED: u64 = 1;
 
@@ -56,9 +59,9 @@ pub struct Simulation {
     payload_kg: f64,
     defects: Vec<Defect>,
     push: Option<Push>,
-    /// The last command, by its number, and what it is called.
-    asked: Option<(u16, Command, &'static str)>,
-    /// What became of it, if it was refused.
+    /// Commands that are not answered yet, by their numbers, and what they are called.
+    asked: Vec<(u16, Command, &'static str)>,
+    /// Why the last one was refused, if it was.
     refusal: Option<String>,
     /// Why the simulation cannot go on.
     failure: Option<EmulationError>,
@@ -116,7 +119,7 @@ impl Simulation {
             payload_kg: 0.0,
             defects: Vec::new(),
             push: None,
-            asked: None,
+            asked: Vec::new(),
             refusal: None,
             failure: None,
         };
@@ -202,29 +205,34 @@ impl Simulation {
     }
 
     fn look_at_answers(&mut self) {
-        let Some((number, command, name)) = self.asked else {
-            return;
-        };
-        let mut answers = self.leg.answers().iter();
-        let Some(answer) = answers.find(|answer| answer.number == number) else {
-            return;
-        };
-        self.asked = None;
-        match answer.result {
-            Ok(()) => {
-                self.refusal = None;
-                if let Command::Compensation(compensation) = command {
-                    self.compensation = compensation;
+        for answer in self.leg.answers() {
+            let mut asked = self.asked.iter();
+            let Some(place) = asked.position(|(number, ..)| *number == answer.number) else {
+                continue;
+            };
+            let (_, command, name) = self.asked.remove(place);
+            match answer.result {
+                Ok(()) => {
+                    self.refusal = None;
+                    if let Command::Compensation(compensation) = command {
+                        self.compensation = compensation;
+                    }
                 }
+                Err(refusal) => self.refusal = Some(refused(name, refusal)),
             }
-            Err(refusal) => self.refusal = Some(refused(name, refusal)),
         }
     }
 
     /// Commands the leg; what becomes of it shows in later ticks. `name` is what people call it.
     pub fn command(&mut self, command: Command, name: &'static str) {
         match self.leg.send(&command) {
-            Ok(number) => self.asked = Some((number, command, name)),
+            Ok(number) => {
+                // The oldest will not be answered any more.
+                if self.asked.len() == ASKED_MAX {
+                    self.asked.remove(0);
+                }
+                self.asked.push((number, command, name));
+            }
             Err(error) => self.refusal = Some(format!("{name} cannot be sent: {error:?}")),
         }
     }

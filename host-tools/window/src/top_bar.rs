@@ -16,6 +16,9 @@ const RATES: [(f64, &str); 4] = [
     (0.0, "stand still"),
 ];
 
+/// Height of the bar, points.
+const HEIGHT: f32 = 38.0;
+
 /// Below this width there is no room for everything, points.
 const ROOMY: f32 = 700.0;
 
@@ -23,7 +26,9 @@ const ROOMY: f32 = 700.0;
 pub fn show(ui: &mut Ui, simulation: &mut Simulation) {
     let palette = palette(ui.ctx());
     let roomy = ui.available_width() > ROOMY;
-    ui.horizontal(|ui| {
+    let size = vec2(ui.available_width(), HEIGHT);
+    ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+        ui.set_min_size(size);
         if roomy {
             ui.label(RichText::new("Tendon-driven leg").size(18.0).strong());
             ui.add_space(8.0);
@@ -59,7 +64,7 @@ fn chip(ui: &mut Ui, state: State, palette: &Palette) {
 }
 
 fn stop(ui: &mut Ui, simulation: &mut Simulation, palette: &Palette, roomy: bool) {
-    let text = if roomy { "STOP  (space)" } else { "STOP" };
+    let text = if roomy { "STOP (space)" } else { "STOP" };
     let text = RichText::new(text)
         .color(Color32::WHITE)
         .strong()
@@ -68,7 +73,7 @@ fn stop(ui: &mut Ui, simulation: &mut Simulation, palette: &Palette, roomy: bool
     let button = ui.add(
         Button::new(text)
             .fill(palette.danger)
-            .min_size(vec2(width, 38.0)),
+            .min_size(vec2(width, HEIGHT)),
     );
     place(&button, "stop");
     let hint = "Holds the leg where it is until Clear. The space bar and Esc do the same.";

@@ -12,7 +12,7 @@ use leg_base::angles;
 use leg_firmware::command::Command;
 
 /// Space around the disc for its labels, points.
-const MARGIN: f32 = 20.0;
+const MARGIN: f32 = 24.0;
 
 /// Rings of the disc, degrees apart.
 const RING_DEG: f64 = 10.0;
