@@ -4,14 +4,13 @@ use crate::charts::Charts;
 use crate::page_state::PageState;
 use crate::panel_guide::Wish;
 use crate::places::{self, Places, place};
-use crate::scene::{FACTORS, Scene};
+use crate::scene::{self, Scene};
 use crate::simulation::Simulation;
 use crate::theme::{self, palette};
 use crate::workspace::Workspace;
 use crate::{faults, numbers, panel_break, panel_drive, panel_guide, top_bar};
 use eframe::egui::{
-    CentralPanel, ComboBox, Context, Frame, Key, Margin, Panel, Rect, ScrollArea, Ui, UiBuilder,
-    vec2,
+    CentralPanel, Context, Frame, Key, Margin, Panel, Rect, ScrollArea, Ui, UiBuilder, vec2,
 };
 use leg_firmware::command::Command;
 
@@ -21,9 +20,6 @@ const WIDE: f32 = 960.0;
 /// A screen of more points than this is shown larger, and how many points it then has at least.
 const LARGE: f32 = 2200.0;
 const LARGE_SHOWN: f32 = 1700.0;
-
-/// Width of a fault's card over the leg, points.
-const FAULT_WIDTH: f32 = 290.0;
 
 /// What a narrow window shows below the leg.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -192,7 +188,7 @@ fn wide(ui: &mut Ui, simulation: &mut Simulation, views: &mut Views) -> Wish {
     right.show(ui, |ui| {
         ScrollArea::vertical().id_salt("right").show(ui, |ui| {
             ui.heading("Drag the target");
-            views.workspace.show(ui, simulation, 226.0);
+            views.workspace.show(ui, simulation, 200.0);
             numbers::show(ui, simulation);
             ui.separator();
             panel_break::show(ui, simulation);
@@ -267,24 +263,15 @@ fn leg(ui: &mut Ui, simulation: &Simulation, scene: &mut Scene) {
     let rect = ui.available_rect_before_wrap();
     let response = scene.show(ui, simulation, rect.size());
     place(&response, "leg");
-    let inner = rect.shrink(10.0);
-    let width = FAULT_WIDTH.min(0.6 * inner.width());
-    let corner = Rect::from_min_size(inner.min, vec2(width, inner.height()));
-    let over = UiBuilder::new().max_rect(corner);
-    ui.scope_builder(over, |ui| faults::show(ui, simulation.faults()));
-    let corner = inner.right_bottom() - vec2(104.0, 28.0);
-    let over = UiBuilder::new().max_rect(Rect::from_min_max(corner, inner.max));
+    let over = UiBuilder::new().max_rect(scene::room(rect));
     ui.scope_builder(over, |ui| {
-        let text = format!("sag ×{:.0}", scene.factor);
-        let choice = ComboBox::from_id_salt("factor")
-            .selected_text(text)
-            .width(96.0);
-        choice.show_ui(ui, |ui| {
-            for factor in FACTORS {
-                ui.selectable_value(&mut scene.factor, factor, format!("sag ×{factor:.0}"));
-            }
-        });
+        ScrollArea::vertical()
+            .id_salt("faults")
+            .show(ui, |ui| faults::show(ui, simulation.faults()));
     });
+    let corner = rect.left_bottom() + vec2(140.0, -36.0);
+    let over = UiBuilder::new().max_rect(Rect::from_min_size(corner, vec2(96.0, 28.0)));
+    ui.scope_builder(over, |ui| scene.choice(ui));
     let failure = simulation.failure().map(ToString::to_string);
     if let Some(words) = failure {
         let palette = palette(ui.ctx());

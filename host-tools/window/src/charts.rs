@@ -126,7 +126,7 @@ impl Charts {
             .allow_zoom(paused)
             .allow_scroll(paused)
             .allow_boxed_zoom(paused)
-            .x_grid_spacer(|input| grid(&input, 6.0))
+            .x_grid_spacer(|input| grid(&input, 4.0))
             .y_grid_spacer(|input| grid(&input, 4.0))
             .x_axis_formatter(|mark, _| format!("{} s", short(mark.value)))
             .y_axis_formatter(|mark, _| short(mark.value))

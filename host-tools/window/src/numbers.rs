@@ -5,6 +5,11 @@ use crate::theme::{self, palette};
 use eframe::egui::{Grid, RichText, Ui};
 use leg_base::angles;
 
+/// What is shown as zero has no sign.
+fn unsigned_zero(value: f32) -> f32 {
+    if value.abs() < 0.05 { 0.0 } else { value }
+}
+
 /// Shows them.
 pub fn show(ui: &mut Ui, simulation: &Simulation) {
     let Some(telemetry) = simulation.telemetry() else {
@@ -34,7 +39,7 @@ pub fn show(ui: &mut Ui, simulation: &Simulation) {
                 for (tendon, tension_n) in telemetry.tensions_n.into_iter().enumerate() {
                     let colour = theme::series(ui.ctx(), tendon);
                     ui.label(
-                        RichText::new(format!("{tension_n:5.1}"))
+                        RichText::new(format!("{:5.1}", unsigned_zero(tension_n)))
                             .monospace()
                             .color(colour),
                     );

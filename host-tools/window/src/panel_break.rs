@@ -4,7 +4,7 @@ use crate::places::place;
 use crate::simulation::Simulation;
 use crate::text::left;
 use crate::theme::palette;
-use eframe::egui::{Button, Ui, vec2};
+use eframe::egui::{Align, Button, Layout, Ui, vec2};
 use leg_sim::plant::Defect;
 
 /// A push of a finger: N and s.
@@ -36,8 +36,8 @@ const OF_THREE: [(&str, fn(usize) -> Defect, [&str; 3]); 4] = [
 ];
 
 const OF_THE_LEG: [(&str, Defect, &str); 2] = [
-    ("Supply falls to 11 V", Defect::SupplySag, "supply_sag"),
-    ("Supply dips for 5 ms", Defect::SupplyDip, "supply_dip"),
+    ("Supply at 11 V", Defect::SupplySag, "supply_sag"),
+    ("Supply dips 5 ms", Defect::SupplyDip, "supply_dip"),
 ];
 
 /// Where a push comes from, degrees; what its button says.
@@ -50,7 +50,12 @@ const PUSHES: [(f64, &str, &str); 4] = [
 
 /// Shows what can be broken; what is broken is lit, and repaired by another press.
 pub fn show(ui: &mut Ui, simulation: &mut Simulation) {
-    ui.heading("Break it");
+    ui.horizontal(|ui| {
+        ui.heading("Break it");
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            repair(ui, simulation);
+        });
+    });
     for (text, defect, names) in OF_THREE {
         row(ui, text, |ui| {
             for (tendon, name) in names.into_iter().enumerate() {
@@ -74,10 +79,13 @@ pub fn show(ui: &mut Ui, simulation: &mut Simulation) {
             toggle(ui, simulation, text, defect, name, 0.0);
         }
     });
+}
+
+fn repair(ui: &mut Ui, simulation: &mut Simulation) {
     let broken = !simulation.defects().is_empty();
-    let repair = ui.add_enabled(broken, Button::new("Repair everything"));
-    place(&repair, "repair");
-    if repair.clicked() {
+    let button = ui.add_enabled(broken, Button::new("Repair everything"));
+    place(&button, "repair");
+    if button.clicked() {
         simulation.repair();
     }
 }

@@ -11,7 +11,7 @@ use std::ops::RangeInclusive;
 
 /// What a slider leaves for its name and its value, points.
 const LABEL_WIDTH: f32 = 68.0;
-const VALUE_WIDTH: f32 = 102.0;
+const VALUE_WIDTH: f32 = 112.0;
 
 /// The stiffness that the slider reaches: that of the paper's rig within the bounds of its tensions.
 const STIFFNESS_NM_PER_RAD: RangeInclusive<f64> = 20.0..=170.0;

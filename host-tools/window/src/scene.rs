@@ -6,8 +6,8 @@ use crate::leg_pose::{LegPose, enlarged};
 use crate::simulation::Simulation;
 use crate::theme::{self, Palette, mixed, palette};
 use eframe::egui::{
-    Align2, Color32, FontId, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, pos2,
-    vec2,
+    Align2, Color32, ComboBox, FontId, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui,
+    Vec2, pos2, vec2,
 };
 use leg_model::RigParameters;
 use leg_sim::plant::Defect;
@@ -28,18 +28,22 @@ const DETAIL_PART: f32 = 0.38;
 /// Height of the labels below the detail, points.
 const LABELS: f32 = 36.0;
 
+/// The bar of the tensions' colours, points, and of how many colours it is made.
+const LEGEND: Vec2 = vec2(110.0, 7.0);
+const LEGEND_STEPS: u8 = 32;
+
 /// What a force of 1 N is drawn as, m.
 const ARROW_M_PER_N: f64 = 0.0025;
 
 /// By how much a deviation may be enlarged.
-pub const FACTORS: [f64; 4] = [1.0, 3.0, 5.0, 10.0];
+const FACTORS: [f64; 4] = [1.0, 3.0, 5.0, 10.0];
 
 /// What the user chose to see.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene {
     camera: Camera,
     /// How much the deviation is enlarged.
-    pub factor: f64,
+    factor: f64,
 }
 
 impl Default for Scene {
@@ -81,8 +85,7 @@ impl Scene {
         let drawn = Drawn::new(simulation, self.factor, palette(ui.ctx()));
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 0.0, drawn.palette.back);
-        let wide = rect.width() > 1.15 * rect.height();
-        let (whole, detail) = parts(rect, wide);
+        let (whole, detail) = parts(rect);
         let length_m = drawn.tip_length_m;
         let centre = Vector3::new(0.0, 0.0, -0.48 * length_m);
         let view = self.camera.view(whole, centre, 1.17 * length_m);
@@ -97,28 +100,59 @@ impl Scene {
             &joint.view(detail, middle, DETAIL_HEIGHT_M),
             detail,
         );
+        drawn.readout(&painter, rect);
         drawn.legend(&painter, rect);
         response
     }
 }
 
+impl Scene {
+    /// Lets the user choose how much the deviation is enlarged.
+    pub fn choice(&mut self, ui: &mut Ui) {
+        let text = format!("draw ×{:.0}", self.factor);
+        let choice = ComboBox::from_id_salt("factor")
+            .selected_text(text)
+            .width(92.0);
+        choice.show_ui(ui, |ui| {
+            for factor in FACTORS {
+                ui.selectable_value(&mut self.factor, factor, format!("draw ×{factor:.0}"));
+            }
+        });
+    }
+}
+
 /// The part of the whole leg, and that of its joint.
-fn parts(rect: Rect, wide: bool) -> (Rect, Rect) {
-    if wide {
+fn parts(rect: Rect) -> (Rect, Rect) {
+    let inner = rect.shrink(8.0);
+    if wide(rect) {
         let at = rect.right() - DETAIL_PART * rect.width();
-        let (whole, detail) = rect.split_left_right_at_x(at);
-        let side = detail.width().min(0.8 * detail.height());
-        let square = Rect::from_center_size(
-            detail.center() - vec2(0.0, 0.06 * rect.height()),
-            Vec2::splat(side),
-        );
-        return (whole, square.shrink(8.0));
+        let whole = rect.with_max_x(at);
+        let side = (inner.right() - at).min(0.56 * inner.height());
+        let corner = pos2(inner.right() - side, inner.top());
+        return (whole, Rect::from_min_size(corner, Vec2::splat(side)));
     }
     let side = 0.42 * rect.width();
-    let corner = pos2(rect.right() - side - 6.0, rect.top() + 6.0);
-    let inset = Rect::from_min_size(corner, vec2(side, 0.9 * side));
-    let whole = rect.translate(vec2(-0.16 * rect.width(), 0.0));
-    (whole, inset)
+    let corner = pos2(inner.right() - side, inner.top());
+    let whole = rect.translate(vec2(-0.14 * rect.width(), 0.0));
+    (whole, Rect::from_min_size(corner, vec2(side, 0.95 * side)))
+}
+
+/// Whether the detail stands beside the whole.
+fn wide(rect: Rect) -> bool {
+    rect.width() > 1.15 * rect.height()
+}
+
+/// Where there is room for more beside the leg: below the detail.
+#[must_use]
+pub fn room(rect: Rect) -> Rect {
+    let (_, detail) = parts(rect);
+    let inner = rect.shrink(8.0);
+    let left = if wide(rect) {
+        rect.right() - DETAIL_PART * rect.width()
+    } else {
+        detail.left()
+    };
+    Rect::from_min_max(pos2(left, detail.bottom() + 8.0), inner.max)
 }
 
 impl<'a> Drawn<'a> {
@@ -291,15 +325,6 @@ impl<'a> Drawn<'a> {
             painter.line_segment([target, tip], Stroke::new(2.5, palette.error));
             painter.circle_filled(tip, 3.5, palette.error);
         }
-        let error_mm = self.simulation.leg().comparison().commanded_error_mm();
-        let words = format!("{error_mm:.2} mm off target");
-        label(
-            painter,
-            target + vec2(40.0, -8.0),
-            &words,
-            palette.error,
-            palette,
-        );
     }
 
     fn push(&self, painter: &Painter, view: &View) {
@@ -355,41 +380,36 @@ impl<'a> Drawn<'a> {
         }
     }
 
-    /// How much is enlarged, and what the colours mean.
-    fn legend(&self, painter: &Painter, rect: Rect) {
-        let palette = &self.palette;
+    /// How far the tip is from where it was sent, in a place of its own.
+    fn readout(&self, painter: &Painter, rect: Rect) {
+        let error_mm = self.simulation.leg().comparison().commanded_error_mm();
+        let corner = rect.left_top() + vec2(14.0, 10.0);
+        let big = FontId::monospace(24.0);
+        let words = format!("{error_mm:.2} mm");
+        painter.text(corner, Align2::LEFT_TOP, words, big, self.palette.error);
+        let words = format!("from the target, drawn ×{:.1}", self.factor);
+        let below = corner + vec2(0.0, 28.0);
         let font = FontId::proportional(12.5);
-        let corner = rect.left_bottom() + vec2(12.0, -12.0);
-        let words = format!("sag drawn ×{:.1}", self.factor);
-        painter.text(
-            corner,
-            Align2::LEFT_BOTTOM,
-            words,
-            font.clone(),
-            palette.faint,
-        );
+        painter.text(below, Align2::LEFT_TOP, words, font, self.palette.faint);
+    }
+
+    /// What the colours of the tendons mean.
+    fn legend(&self, painter: &Painter, rect: Rect) {
         let rig = self.simulation.rig();
         let bounds_n = [rig.f_min_n, rig.f_max_n];
-        let bar = Rect::from_min_size(corner + vec2(0.0, -38.0), vec2(96.0, 7.0));
-        let steps = 24_u8;
-        for step in 0..steps {
-            let part = f32::from(step) / f32::from(steps);
+        let bar = Rect::from_min_size(rect.left_bottom() + vec2(14.0, -18.0), LEGEND);
+        for step in 0..LEGEND_STEPS {
+            let part = f32::from(step) / f32::from(LEGEND_STEPS);
             let tension_n = bounds_n[0] + f64::from(part) * (bounds_n[1] - bounds_n[0]);
             let left = bar.left() + part * bar.width();
-            let cell = Rect::from_min_max(
-                pos2(left, bar.top()),
-                pos2(left + bar.width() / f32::from(steps) + 0.5, bar.bottom()),
-            );
+            let right = left + bar.width() / f32::from(LEGEND_STEPS) + 0.5;
+            let cell = bar.with_min_x(left).with_max_x(right);
             painter.rect_filled(cell, 0.0, theme::tension(tension_n, bounds_n));
         }
         let words = format!("tension {:.0} to {:.0} N", bounds_n[0], bounds_n[1]);
-        painter.text(
-            bar.left_top() + vec2(0.0, -3.0),
-            Align2::LEFT_BOTTOM,
-            words,
-            font,
-            palette.faint,
-        );
+        let above = bar.left_top() + vec2(0.0, -3.0);
+        let font = FontId::proportional(12.5);
+        painter.text(above, Align2::LEFT_BOTTOM, words, font, self.palette.faint);
     }
 }
 
