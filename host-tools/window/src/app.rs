@@ -269,7 +269,7 @@ fn leg(ui: &mut Ui, simulation: &Simulation, scene: &mut Scene) {
             .id_salt("faults")
             .show(ui, |ui| faults::show(ui, simulation.faults()));
     });
-    let corner = rect.left_bottom() + vec2(140.0, -36.0);
+    let corner = rect.left_top() + vec2(14.0, 56.0);
     let over = UiBuilder::new().max_rect(Rect::from_min_size(corner, vec2(96.0, 28.0)));
     ui.scope_builder(over, |ui| scene.choice(ui));
     let failure = simulation.failure().map(ToString::to_string);

@@ -120,6 +120,7 @@ impl Charts {
         let plot = Plot::new(name)
             .height((height - 24.0).max(60.0))
             .legend(Legend::default().background_alpha(0.5))
+            .grid_color(theme::palette(ui.ctx()).faint)
             .link_axis(link, Vec2b::new(true, false))
             .link_cursor(link, Vec2b::new(true, false))
             .allow_drag(paused)
@@ -174,7 +175,9 @@ fn grid(input: &GridInput, lines: f64) -> Vec<GridMark> {
         value: (first + f64::from(line)) * step_size,
         step_size,
     };
-    (0..=count).map(mark).collect()
+    let marks = (0..=count).map(mark);
+    // What is beyond the edge would have its label there.
+    marks.filter(|mark| mark.value <= high).collect()
 }
 
 /// The next larger of 1, 2 and 5 with any power of ten.

@@ -28,6 +28,12 @@ const DETAIL_PART: f32 = 0.38;
 /// Height of the labels below the detail, points.
 const LABELS: f32 = 36.0;
 
+/// Width of what stands below the detail at least, points.
+const ROOM_WIDTH: f32 = 140.0;
+
+/// Height of the readout, points.
+const READOUT_HEIGHT: f32 = 44.0;
+
 /// The bar of the tensions' colours, points, and of how many colours it is made.
 const LEGEND: Vec2 = vec2(110.0, 7.0);
 const LEGEND_STEPS: u8 = 32;
@@ -133,7 +139,9 @@ fn parts(rect: Rect) -> (Rect, Rect) {
     }
     let side = 0.42 * rect.width();
     let corner = pos2(inner.right() - side, inner.top());
-    let whole = rect.translate(vec2(-0.14 * rect.width(), 0.0));
+    // The readout is above.
+    let whole = rect.with_min_y(rect.top() + READOUT_HEIGHT);
+    let whole = whole.translate(vec2(-0.14 * rect.width(), 0.0));
     (whole, Rect::from_min_size(corner, vec2(side, 0.95 * side)))
 }
 
@@ -147,11 +155,7 @@ fn wide(rect: Rect) -> bool {
 pub fn room(rect: Rect) -> Rect {
     let (_, detail) = parts(rect);
     let inner = rect.shrink(8.0);
-    let left = if wide(rect) {
-        rect.right() - DETAIL_PART * rect.width()
-    } else {
-        detail.left()
-    };
+    let left = detail.left().min(inner.right() - ROOM_WIDTH);
     Rect::from_min_max(pos2(left, detail.bottom() + 8.0), inner.max)
 }
 
@@ -223,7 +227,12 @@ impl<'a> Drawn<'a> {
         ));
         inside.extend(sorted(items));
         let strip = rect.shrink(1.0).with_min_y(rect.bottom() - LABELS);
-        inside.rect_filled(strip, 0.0, self.palette.card);
+        let corners = CornerRadius {
+            sw: 8,
+            se: 8,
+            ..CornerRadius::ZERO
+        };
+        inside.rect_filled(strip, corners, self.palette.card);
         self.tension_labels(&inside, view, rect);
     }
 
@@ -366,6 +375,8 @@ impl<'a> Drawn<'a> {
             );
             let words = if self.cut(tendon) {
                 format!("{} cut", tendon + 1)
+            } else if width < 72.0 {
+                format!("{:3.0} N", tensions_n[tendon])
             } else {
                 format!("{}:{:5.1} N", tendon + 1, tensions_n[tendon])
             };

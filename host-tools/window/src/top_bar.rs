@@ -84,8 +84,8 @@ fn stop(ui: &mut Ui, simulation: &mut Simulation, palette: &Palette, roomy: bool
 
 fn appearance(ui: &mut Ui) {
     let (text, next) = match ui.ctx().theme() {
-        Theme::Dark => ("☀", Theme::Light),
-        Theme::Light => ("🌙", Theme::Dark),
+        Theme::Dark => ("Light", Theme::Light),
+        Theme::Light => ("Dark", Theme::Dark),
     };
     let button = ui.button(text).on_hover_text("Light or dark.");
     place(&button, "theme");
