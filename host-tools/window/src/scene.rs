@@ -6,8 +6,8 @@ use crate::leg_pose::{LegPose, enlarged};
 use crate::simulation::Simulation;
 use crate::theme::{self, Palette, mixed, palette};
 use eframe::egui::{
-    Align2, Color32, ComboBox, FontId, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui,
-    Vec2, pos2, vec2,
+    Align2, Color32, ComboBox, CornerRadius, FontId, Painter, Pos2, Rect, Response, Sense, Shape,
+    Stroke, Ui, Vec2, pos2, vec2,
 };
 use leg_model::RigParameters;
 use leg_sim::plant::Defect;

@@ -9,7 +9,6 @@ import argparse
 import base64
 import functools
 import http.server
-import math
 import pathlib
 import statistics
 import threading
@@ -34,6 +33,9 @@ REAL_TIME = 0.9
 TOLERANCE = 6.0
 
 WAIT_S = 20.0
+
+# Widest picture that is kept.
+KEPT_WIDTH = 1280
 
 
 class Page:
@@ -83,7 +85,7 @@ class Page:
         # The pointer is on nothing that lights up.
         self.browser.pointer({"type": "pointerMove", "x": 2, "y": 2, "duration": 0})
         time.sleep(0.4)
-        shown = self.browser.picture()
+        shown = self.shrunk(self.browser.picture())
         path = PICTURES / f"{name}.png"
         if self.keep:
             PICTURES.mkdir(exist_ok=True)
@@ -97,9 +99,29 @@ class Page:
             seen.write_bytes(shown)
             raise AssertionError(f"{name} looks otherwise: compare {seen} with {path}")
 
+    def shrunk(self, picture):
+        """A picture of a large screen is not kept whole."""
+        data = base64.b64encode(picture).decode()
+        return base64.b64decode(self.browser.run_later(SHRUNK, data, KEPT_WIDTH))
+
     def difference(self, *pictures):
         return self.browser.run_later(DIFFERENCE, *[base64.b64encode(p).decode() for p in pictures])
 
+
+SHRUNK = """
+const [data, width, done] = arguments;
+const picture = new Image();
+picture.src = "data:image/png;base64," + data;
+picture.decode().then(() => {
+  if (picture.width <= width) { done(data); return; }
+  const canvas = document.createElement("canvas");
+  canvas.width = width; canvas.height = Math.round(width * picture.height / picture.width);
+  const context = canvas.getContext("2d");
+  context.imageSmoothingQuality = "high";
+  context.drawImage(picture, 0, 0, canvas.width, canvas.height);
+  done(canvas.toDataURL("image/png").split(",")[1]);
+});
+"""
 
 DIFFERENCE = """
 const [a, b, done] = arguments;

@@ -85,7 +85,7 @@ fn build(workspace: &Path) -> Result<(), Box<dyn Error>> {
     if command.status()?.success() {
         return Ok(());
     }
-    Err(format!("the window does not build for {TARGET}; try `rustup target add {TARGET}`").into())
+    Err(format!("the window does not build for {TARGET}: cargo says why; `rustup target add {TARGET}` adds the target").into())
 }
 
 fn target_directory(workspace: &Path) -> PathBuf {
