@@ -4,7 +4,7 @@ use crate::history::{Column, History, KEPT_S};
 use crate::places::place;
 use crate::theme;
 use eframe::egui::{ComboBox, Id, RichText, ScrollArea, TextEdit, Ui, Vec2b};
-use egui_plot::{GridInput, GridMark, Legend, Line, Plot, PlotPoints};
+use egui_plot::{GridInput, GridMark, Line, Plot, PlotPoints};
 
 /// Points of a line: more than a screen has.
 const POINTS_MAX: usize = 1200;
@@ -112,15 +112,13 @@ impl Charts {
 
     fn chart(&self, ui: &mut Ui, history: &History, column: Column, until_s: f64, height: f32) {
         let name = column.name();
-        ui.label(RichText::new(name).monospace().size(12.0))
-            .on_hover_text(column.meaning());
+        title(ui, &column);
         let paused = self.paused_s.is_some();
         let link = Id::unique("charts");
         let since_s = (until_s - self.span_s).max(0.0);
         let plot = Plot::new(name)
             .height((height - 24.0).max(60.0))
-            .legend(Legend::default().background_alpha(0.5))
-            .grid_color(theme::palette(ui.ctx()).faint)
+            .grid_color(theme::palette(ui.ctx()).line)
             .link_axis(link, Vec2b::new(true, false))
             .link_cursor(link, Vec2b::new(true, false))
             .allow_drag(paused)
@@ -162,6 +160,21 @@ impl Charts {
             }
         });
     }
+}
+
+/// The name of a signal, and the colours of its numbers.
+fn title(ui: &mut Ui, column: &Column) {
+    ui.horizontal(|ui| {
+        let name = RichText::new(column.name()).monospace().size(12.0);
+        ui.label(name).on_hover_text(column.meaning());
+        for number in 0..column.width {
+            if column.width > 1 {
+                let words = format!("● {}", number + 1);
+                let colour = theme::series(ui.ctx(), number);
+                ui.label(RichText::new(words).size(12.0).color(colour));
+            }
+        }
+    });
 }
 
 /// Some lines of a grid at round numbers.

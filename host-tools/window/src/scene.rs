@@ -22,6 +22,9 @@ const DETAIL_HEIGHT_M: f64 = 0.088;
 /// Radius of a ball of 1 kg.
 const PAYLOAD_RADIUS_M: f64 = 0.0135;
 
+/// From this width on the detail stands beside the whole, points.
+const WIDE: f32 = 520.0;
+
 /// How much the detail takes of a wide picture.
 const DETAIL_PART: f32 = 0.38;
 
@@ -30,6 +33,9 @@ const LABELS: f32 = 36.0;
 
 /// Width of what stands below the detail at least, points.
 const ROOM_WIDTH: f32 = 140.0;
+
+/// A tip that is nearer than that is where it shall be, mm.
+const NEAR_MM: f64 = 0.5;
 
 /// Height of the readout, points.
 const READOUT_HEIGHT: f32 = 44.0;
@@ -132,7 +138,9 @@ fn parts(rect: Rect) -> (Rect, Rect) {
     let inner = rect.shrink(8.0);
     if wide(rect) {
         let at = rect.right() - DETAIL_PART * rect.width();
-        let whole = rect.with_max_x(at);
+        let whole = rect
+            .with_max_x(at)
+            .translate(vec2(0.05 * rect.width(), 0.0));
         let side = (inner.right() - at).min(0.56 * inner.height());
         let corner = pos2(inner.right() - side, inner.top());
         return (whole, Rect::from_min_size(corner, Vec2::splat(side)));
@@ -147,7 +155,7 @@ fn parts(rect: Rect) -> (Rect, Rect) {
 
 /// Whether the detail stands beside the whole.
 fn wide(rect: Rect) -> bool {
-    rect.width() > 1.15 * rect.height()
+    rect.width() > WIDE && rect.width() > 1.15 * rect.height()
 }
 
 /// Where there is room for more beside the leg: below the detail.
@@ -397,7 +405,12 @@ impl<'a> Drawn<'a> {
         let corner = rect.left_top() + vec2(14.0, 10.0);
         let big = FontId::monospace(24.0);
         let words = format!("{error_mm:.2} mm");
-        painter.text(corner, Align2::LEFT_TOP, words, big, self.palette.error);
+        let colour = if error_mm < NEAR_MM {
+            self.palette.good
+        } else {
+            self.palette.error
+        };
+        painter.text(corner, Align2::LEFT_TOP, words, big, colour);
         let words = format!("from the target, drawn ×{:.1}", self.factor);
         let below = corner + vec2(0.0, 28.0);
         let font = FontId::proportional(12.5);
