@@ -11,30 +11,39 @@ use leg_sim::plant::Defect;
 const PUSH_N: f64 = 20.0;
 const PUSH_S: f64 = 0.4;
 
-/// What each of the three can have: what it is called, what it is, and its first name for tests.
-const OF_THREE: [(&str, fn(usize) -> Defect, [&str; 3]); 4] = [
-    (
-        "Cut a tendon",
-        Defect::TendonCut,
-        ["cut_1", "cut_2", "cut_3"],
-    ),
-    (
-        "Tear a cell's wire",
-        Defect::CellWanders,
-        ["wire_1", "wire_2", "wire_3"],
-    ),
-    (
-        "Jam a motor",
-        Defect::MotorJammed,
-        ["jam_1", "jam_2", "jam_3"],
-    ),
-    (
-        "Lose an encoder",
-        Defect::EncoderLost,
-        ["encoder_1", "encoder_2", "encoder_3"],
-    ),
+/// What each of the three can have.
+struct Kind {
+    /// What its row says.
+    text: &'static str,
+    defect: fn(usize) -> Defect,
+    /// Names of its buttons for tests.
+    names: [&'static str; 3],
+}
+
+const OF_THREE: [Kind; 4] = [
+    Kind {
+        text: "Cut a tendon",
+        defect: Defect::TendonCut,
+        names: ["cut_1", "cut_2", "cut_3"],
+    },
+    Kind {
+        text: "Tear a cell's wire",
+        defect: Defect::CellWanders,
+        names: ["wire_1", "wire_2", "wire_3"],
+    },
+    Kind {
+        text: "Jam a motor",
+        defect: Defect::MotorJammed,
+        names: ["jam_1", "jam_2", "jam_3"],
+    },
+    Kind {
+        text: "Lose an encoder",
+        defect: Defect::EncoderLost,
+        names: ["encoder_1", "encoder_2", "encoder_3"],
+    },
 ];
 
+/// What the leg as a whole can have: what its button says, and its name for tests.
 const OF_THE_LEG: [(&str, Defect, &str); 2] = [
     ("Supply at 11 V", Defect::SupplySag, "supply_sag"),
     ("Supply dips 5 ms", Defect::SupplyDip, "supply_dip"),
@@ -56,11 +65,11 @@ pub fn show(ui: &mut Ui, simulation: &mut Simulation) {
             repair(ui, simulation);
         });
     });
-    for (text, defect, names) in OF_THREE {
-        row(ui, text, |ui| {
-            for (tendon, name) in names.into_iter().enumerate() {
+    for kind in &OF_THREE {
+        row(ui, kind.text, |ui| {
+            for (tendon, name) in kind.names.into_iter().enumerate() {
                 let number = (tendon + 1).to_string();
-                toggle(ui, simulation, &number, defect(tendon), name, 34.0);
+                toggle(ui, simulation, &number, (kind.defect)(tendon), name, 34.0);
             }
         });
     }
@@ -128,14 +137,43 @@ fn describe(defect: Defect) -> &'static str {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::{OF_THE_LEG, OF_THREE, describe};
+    use crate::simulation::Simulation;
+    use leg_firmware::command::Command;
+    use leg_sim::plant::Defect;
 
     #[test]
     fn every_defect_here_has_its_meaning() {
-        let of_three = OF_THREE.iter().map(|(_, defect, _)| defect(2));
+        let of_three = OF_THREE.iter().map(|kind| (kind.defect)(2));
         for defect in of_three.chain(OF_THE_LEG.iter().map(|(_, defect, _)| *defect)) {
             assert!(describe(defect).ends_with('.'), "{defect:?}");
         }
+    }
+
+    /// A leg at rest does not feel a jammed motor: it is moved to and fro.
+    fn is_found(defect: Defect) -> bool {
+        let mut simulation = Simulation::new().unwrap();
+        simulation.set_defect(defect, true);
+        for part in 0..100_u8 {
+            let x = if part % 40 < 20 { 0.0 } else { 0.3 };
+            if part % 20 == 0 {
+                simulation.command(Command::Move { x, y: 0.1 }, "move");
+            }
+            simulation.advance(0.1);
+            if simulation.faults().without_limits().any() {
+                return true;
+            }
+        }
+        false
+    }
+
+    #[test]
+    fn the_supervisor_finds_what_is_broken_here_for_good() {
+        for kind in &OF_THREE {
+            assert!(is_found((kind.defect)(1)), "{}", kind.text);
+        }
+        assert!(is_found(Defect::SupplySag));
     }
 }

@@ -29,8 +29,9 @@ FRAME_MS = 1000 / 60
 # How far the leg's time may be behind the clock's.
 REAL_TIME = 0.9
 
-# Mean difference of pictures, made small, from 0 to 255: another moment of the charts is below, another state above.
-TOLERANCE = 6.0
+# Mean difference of pictures, made small, from 0 to 255. Another moment of the same state is below 0.5; a leg that sags
+# and one that does not are 1.9 apart.
+TOLERANCE = 1.2
 
 WAIT_S = 20.0
 
