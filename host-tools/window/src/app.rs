@@ -205,7 +205,14 @@ fn wide(ui: &mut Ui, simulation: &mut Simulation, views: &mut Views) -> Wish {
             .charts
             .show(ui, &simulation.history, now_s, height - 62.0);
     });
-    CentralPanel::no_frame().show(ui, |ui| leg(ui, simulation, &mut views.scene));
+    CentralPanel::no_frame().show(ui, |ui| {
+        let rect = leg(ui, simulation, &mut views.scene);
+        let over = UiBuilder::new().max_rect(scene::room(rect));
+        ui.scope_builder(over, |ui| {
+            let scroll = ScrollArea::vertical().id_salt("faults");
+            scroll.show(ui, |ui| faults::show(ui, simulation.faults()));
+        });
+    });
     wish.inner
 }
 
@@ -238,6 +245,9 @@ fn narrow(ui: &mut Ui, simulation: &mut Simulation, views: &mut Views) -> Wish {
 }
 
 fn page(ui: &mut Ui, simulation: &mut Simulation, views: &mut Views) -> Wish {
+    if simulation.faults().any() {
+        faults::show(ui, simulation.faults());
+    }
     match views.tab {
         Tab::Try => {
             let wish = panel_guide::show(ui, simulation);
@@ -258,17 +268,11 @@ fn page(ui: &mut Ui, simulation: &mut Simulation, views: &mut Views) -> Wish {
     Wish::None
 }
 
-/// The leg, its faults over it, and how much its sag is enlarged.
-fn leg(ui: &mut Ui, simulation: &Simulation, scene: &mut Scene) {
+/// The leg, how much its sag is enlarged, and why it cannot go on. Gives where it is.
+fn leg(ui: &mut Ui, simulation: &Simulation, scene: &mut Scene) -> Rect {
     let rect = ui.available_rect_before_wrap();
     let response = scene.show(ui, simulation, rect.size());
     place(&response, "leg");
-    let over = UiBuilder::new().max_rect(scene::room(rect));
-    ui.scope_builder(over, |ui| {
-        ScrollArea::vertical()
-            .id_salt("faults")
-            .show(ui, |ui| faults::show(ui, simulation.faults()));
-    });
     let corner = rect.left_top() + vec2(14.0, 56.0);
     let over = UiBuilder::new().max_rect(Rect::from_min_size(corner, vec2(96.0, 28.0)));
     ui.scope_builder(over, |ui| scene.choice(ui));
@@ -285,4 +289,5 @@ fn leg(ui: &mut Ui, simulation: &Simulation, scene: &mut Scene) {
             palette.error,
         );
     }
+    rect
 }

@@ -1,22 +1,23 @@
 //! Every fault that the leg reports: what raised it, what it led to, and what to do.
 
 use crate::theme::{Palette, palette};
-use eframe::egui::{Frame, Label, RichText, Stroke, Ui};
-use leg_firmware::supervisor::{Clearing, Fault, FaultSet, Reaction};
+use eframe::egui::{CollapsingHeader, Frame, Label, RichText, Stroke, Ui};
+use leg_firmware::supervisor::{Clearing, Fault, FaultEntry, FaultSet, Reaction};
 
-/// Shows the faults; without one, that there is none.
+/// Shows the faults; without one, that there is none. What came first is open, the others open by a press.
 pub fn show(ui: &mut Ui, faults: FaultSet) {
     let palette = palette(ui.ctx());
     ui.heading("Faults");
     if !faults.any() {
         ui.label(RichText::new("✔ none").color(palette.good));
     }
+    let alone = faults.faults().count() == 1;
     for fault in faults.faults() {
-        card(ui, fault, &palette);
+        card(ui, fault, alone, &palette);
     }
 }
 
-fn card(ui: &mut Ui, fault: Fault, palette: &Palette) {
+fn card(ui: &mut Ui, fault: Fault, open: bool, palette: &Palette) {
     let entry = fault.entry();
     let colour = if entry.reaction == Reaction::Limit {
         palette.warning
@@ -26,21 +27,26 @@ fn card(ui: &mut Ui, fault: Fault, palette: &Palette) {
     let frame = Frame::group(ui.style())
         .fill(palette.card)
         .stroke(Stroke::new(1.5, colour))
-        .inner_margin(8.0);
+        .inner_margin(6.0);
     frame.show(ui, |ui| {
         ui.set_width(ui.available_width());
         let title = format!("{} · {}", fault.code(), entry.name);
-        ui.label(RichText::new(title).strong().color(colour));
-        for (what, words) in [
-            ("Cause", entry.cause),
-            ("Reaction", reaction(entry.reaction)),
-            ("Remedy", entry.remedy),
-            ("Ends", clearing(entry.clears)),
-        ] {
-            let text = format!("{what}: {words}");
-            ui.add(Label::new(RichText::new(text).size(12.5)).wrap());
-        }
+        let header = CollapsingHeader::new(RichText::new(title).strong().color(colour));
+        let header = header.id_salt(fault.code()).default_open(open);
+        header.show_unindented(ui, |ui| rows(ui, entry));
     });
+}
+
+fn rows(ui: &mut Ui, entry: &FaultEntry) {
+    for (what, words) in [
+        ("Cause", entry.cause),
+        ("Reaction", reaction(entry.reaction)),
+        ("Remedy", entry.remedy),
+        ("Ends", clearing(entry.clears)),
+    ] {
+        let text = format!("{what}: {words}");
+        ui.add(Label::new(RichText::new(text).size(12.5)).wrap());
+    }
 }
 
 /// What the leg does about it.

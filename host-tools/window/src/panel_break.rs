@@ -8,7 +8,7 @@ use eframe::egui::{Align, Button, Layout, Ui, vec2};
 use leg_sim::plant::Defect;
 
 /// A push of a finger: N and s.
-const PUSH_N: f64 = 20.0;
+const PUSH_N: f64 = 3.0;
 const PUSH_S: f64 = 0.4;
 
 /// What each of the three can have.

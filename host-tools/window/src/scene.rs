@@ -45,7 +45,7 @@ const LEGEND: Vec2 = vec2(110.0, 7.0);
 const LEGEND_STEPS: u8 = 32;
 
 /// What a force of 1 N is drawn as, m.
-const ARROW_M_PER_N: f64 = 0.0025;
+const ARROW_M_PER_N: f64 = 0.015;
 
 /// By how much a deviation may be enlarged.
 const FACTORS: [f64; 4] = [1.0, 3.0, 5.0, 10.0];
