@@ -203,7 +203,8 @@ fn round_step(step: f64) -> f64 {
 
 /// A number without what its rounding leaves.
 fn short(value: f64) -> String {
-    let rounded = (value * 1e6).round() / 1e6;
+    // Adding zero takes the sign of one away.
+    let rounded = (value * 1e6).round() / 1e6 + 0.0;
     format!("{rounded}")
 }
 
