@@ -6,7 +6,7 @@
 //! |---|---|
 //! | [`simulation`], [`pace`], [`history`] | the leg, how much of it a frame is worth, and what its signals were |
 //! | [`app`], [`top_bar`], `panel_…`, [`numbers`], [`faults`] | what is where |
-//! | [`scene`], [`camera`], [`figure`], [`leg_pose`] | the leg in 3D |
+//! | [`scene`], `drawn_leg`, [`camera`], [`figure`], [`leg_pose`] | the leg in 3D |
 //! | [`workspace`], [`map`] | the disc on which the target is dragged, and what the model says of every pose |
 //! | [`charts`] | signals over time |
 //! | [`theme`], [`text`] | colours, sizes, text in its place |
@@ -17,6 +17,7 @@ pub mod app;
 pub mod bits;
 pub mod camera;
 pub mod charts;
+mod drawn_leg;
 pub mod faults;
 pub mod figure;
 pub mod history;
