@@ -1,7 +1,7 @@
 //! The leg in a user's units.
 
 use leg_base::tick_time::seconds;
-use leg_base::{description, json_object};
+use leg_base::{angles, description, json_object};
 use leg_firmware::supervisor::Fault;
 use leg_firmware::telemetry::Telemetry;
 use serde::Serialize;
@@ -50,14 +50,7 @@ pub fn json(telemetry: &Telemetry<f32>) -> impl Serialize + use<> {
 
 /// Azimuth (0 to 360) and tilt of a direction, degrees, to a ten-thousandth.
 pub fn angles_deg([x, y]: [f32; 2]) -> [f64; 2] {
-    rounded_angles_deg([x, y].map(f64::from))
-}
-
-/// The same of a direction in f64.
-pub(crate) fn rounded_angles_deg([x, y]: [f64; 2]) -> [f64; 2] {
-    let tilt_deg = x.hypot(y).min(1.0).asin().to_degrees();
-    // Beyond that, machines differ.
-    [y.atan2(x).to_degrees().rem_euclid(360.0), tilt_deg].map(|deg| (deg * 1e4).round() / 1e4)
+    angles::angles_deg([x, y].map(f64::from))
 }
 
 /// A direction in words.

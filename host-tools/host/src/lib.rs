@@ -65,9 +65,9 @@ pub mod pseudo_terminal;
 #[cfg(unix)]
 pub mod pseudo_terminal;
 pub mod recording;
-mod sag_model;
 pub mod sensor_report;
-pub mod signals;
 pub mod tcp_port;
 pub mod transport;
 pub mod tune;
+
+pub use leg_sim::signals;

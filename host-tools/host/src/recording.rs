@@ -79,17 +79,15 @@ enum RecordingFile {
     Csv(Box<CsvFile>),
 }
 
-impl LegConstants {
-    /// A tick of a simulation as signals.
-    fn simulation(&self, tick: &Tick<'_>) -> (Report, Simulated) {
-        let report = Report::new(tick.telemetry, self).compared(tick.comparison);
-        let simulated = Simulated {
-            truth: *tick.truth,
-            motors: *tick.motors,
-            comparison: *tick.comparison,
-        };
-        (report, simulated)
-    }
+/// A tick of a simulation as signals.
+fn simulation(leg: &LegConstants, tick: &Tick<'_>) -> (Report, Simulated) {
+    let report = Report::new(tick.telemetry, leg).compared(tick.comparison);
+    let simulated = Simulated {
+        truth: *tick.truth,
+        motors: *tick.motors,
+        comparison: *tick.comparison,
+    };
+    (report, simulated)
 }
 
 impl Recording {
@@ -99,11 +97,11 @@ impl Recording {
             RecordingFile::Mcap(file) => {
                 file.write_tick(self.count, tick)?;
                 if self.count.is_multiple_of(SAMPLE_TICKS) {
-                    file.write_simulation(self.count, &self.leg.simulation(tick))?;
+                    file.write_simulation(self.count, &simulation(&self.leg, tick))?;
                 }
             }
             RecordingFile::Csv(file) if self.count.is_multiple_of(ROW_TICKS) => {
-                file.write_simulation(&self.leg.simulation(tick))?;
+                file.write_simulation(&simulation(&self.leg, tick))?;
             }
             RecordingFile::Csv(_) => {}
         }

@@ -25,7 +25,7 @@ pub fn settings(rig: &RigFile, gains: &Gains, unstretched_at_zero_m: Option<[f64
         f_min_n: round(rig.f_min_n),
         f_max_n: round(rig.f_max_n),
         pretension_n: round(rig.pretension_n),
-        tilt_max_sine: round(rig.tilt_deg.to_radians().sin()),
+        tilt_max_sine: round(libm::sin(rig.tilt_deg.to_radians())),
         axes: [0, 1, 2].map(axis),
         board: board(rig),
         motion: gains.motion,

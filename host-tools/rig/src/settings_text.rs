@@ -92,8 +92,8 @@ fn curve(name: &str, tendon: &TendonParameters) -> String {
 
 fn workspace(settings: &Settings) -> String {
     let sine = settings.tilt_max_sine;
-    let tilt_deg = exact_through(f64::from(sine).asin().to_degrees(), sine, |tilt_deg| {
-        tilt_deg.to_radians().sin()
+    let tilt_deg = exact_through(libm::asin(f64::from(sine)).to_degrees(), sine, |tilt_deg| {
+        libm::sin(tilt_deg.to_radians())
     });
     format!("\n[workspace]\ntilt_deg = {tilt_deg}\n")
 }

@@ -32,6 +32,7 @@
 //! | [`emulated_leg`] | firmware and plant, tick by tick: the one place where they meet |
 //! | [`hosted_leg`] | an emulated leg with its host, for programs that step one themselves |
 //! | [`path_sender`] | a path as a stream of set-points, each sent in time |
+//! | [`signals`] | every signal of a leg, declared once: reports, recordings, charts |
 //! | [`scenario`], [`ready_scenarios`] | scenario files, and those that come with the program |
 //! | [`simulation`] | a scenario with an emulated leg, and a shadow of the control law in f64 beside it |
 
@@ -44,5 +45,7 @@ pub mod path_sender;
 pub mod plant;
 mod range;
 pub mod ready_scenarios;
+mod sag_model;
 pub mod scenario;
+pub mod signals;
 pub mod simulation;

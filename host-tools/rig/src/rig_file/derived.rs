@@ -56,7 +56,7 @@ fn lever_m(file: &RigFile) -> f64 {
         };
         let [x, y, _] = pose.moment_map_m;
         for tendon in 0..x.len() {
-            longest = longest.max(x[tendon].hypot(y[tendon]));
+            longest = longest.max(libm::hypot(x[tendon], y[tendon]));
         }
     }
     longest

@@ -110,7 +110,7 @@ impl CellDefects {
     fn hum_n(&self, tick: u64) -> f64 {
         let turns = HUM_HZ * tick as f64 * tick_s() + self.hum_phase;
         let middle_n = 0.5 * (self.range_n[0] + self.range_n[1]);
-        middle_n + HUM_N * (TAU * turns).sin()
+        middle_n + HUM_N * libm::sin(TAU * turns)
     }
 }
 

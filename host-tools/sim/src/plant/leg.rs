@@ -79,7 +79,7 @@ fn limited_by_stop(along: &Vector3<f64>) -> (Direction<f64>, bool) {
     match Direction::from_xy(along.x, along.y) {
         Ok(direction) if direction.vector().z <= -cosine => (direction, false),
         _ => {
-            let scale = sine / along.x.hypot(along.y);
+            let scale = sine / libm::hypot(along.x, along.y);
             let held = Direction::from_xy(along.x * scale, along.y * scale);
             (held.unwrap_or(Direction::down()), true)
         }

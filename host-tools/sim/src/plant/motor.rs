@@ -18,7 +18,7 @@ impl MotorType {
         Self {
             actuator: *actuator,
             half_s,
-            decay: (-half_s * actuator.resistance_ohm / actuator.inductance_h).exp(),
+            decay: libm::exp(-half_s * actuator.resistance_ohm / actuator.inductance_h),
         }
     }
 }

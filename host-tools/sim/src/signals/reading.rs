@@ -1,12 +1,12 @@
 //! What was reported, by the signals of a recording.
 
+use crate::hosted_leg::Comparison;
 use leg_base::description;
 use leg_base::recorder_rows::RecorderRow;
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::settings::RecordedSignal;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_firmware::telemetry::Telemetry;
-use leg_sim::hosted_leg::Comparison;
 use serde::Deserialize;
 
 /// The signals of a report that are not made of others.

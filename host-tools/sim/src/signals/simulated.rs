@@ -1,10 +1,10 @@
 //! What is true of a simulated leg, and what it is compared with.
 
 use super::{Origin, Signal, Values, signals};
-use crate::leg_report::rounded_angles_deg;
+use crate::hosted_leg::Comparison;
+use crate::plant::Truth;
+use leg_base::angles::angles_deg;
 use leg_firmware::drive::Drive;
-use leg_sim::hosted_leg::Comparison;
-use leg_sim::plant::Truth;
 
 /// A simulated leg at a time.
 #[derive(Clone, Copy, Debug)]
@@ -20,7 +20,7 @@ pub struct Simulated {
 impl Simulated {
     fn angles_deg(&self) -> [f64; 2] {
         let along = self.truth.direction.vector();
-        rounded_angles_deg([along.x, along.y])
+        angles_deg([along.x, along.y])
     }
 }
 

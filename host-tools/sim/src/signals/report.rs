@@ -1,14 +1,14 @@
 //! What any leg reports.
 
 use super::{Origin, Signal, Values, signals};
-use crate::leg_report::angles_deg;
+use crate::hosted_leg::Comparison;
 use crate::sag_model::SagModel;
+use leg_base::angles::angles_deg;
 use leg_base::description;
 use leg_base::tick_time::seconds;
 use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
-use leg_sim::hosted_leg::Comparison;
 
 /// What of a leg's settings a report needs.
 #[derive(Clone, Debug)]
@@ -120,17 +120,17 @@ signals! {
     State Flag moving "Whether the trajectory moves."
         = |at| at.telemetry.moving;
     Estimated Number azimuth_deg "Where the leg leans, 0 to 360°."
-        = |at| angles_deg(at.telemetry.pose)[0];
+        = |at| angles_deg(at.telemetry.pose.map(f64::from))[0];
     Estimated Number tilt_deg "How far it leans, degrees."
-        = |at| angles_deg(at.telemetry.pose)[1];
+        = |at| angles_deg(at.telemetry.pose.map(f64::from))[1];
     Estimated SingleTwo direction "Where it points: x and y of the unit vector along the leg."
         = |at| at.telemetry.pose;
     Estimated Three tip_estimated_mm "Where its tip is, mm; without meaning before homing."
         = |at| at.tip_estimated_mm;
     Reference Number azimuth_reference_deg "Where the trajectory has the leg lean now, 0 to 360°."
-        = |at| angles_deg(at.telemetry.target)[0];
+        = |at| angles_deg(at.telemetry.target.map(f64::from))[0];
     Reference Number tilt_reference_deg "How far, degrees."
-        = |at| angles_deg(at.telemetry.target)[1];
+        = |at| angles_deg(at.telemetry.target.map(f64::from))[1];
     Reference SingleTwo direction_reference "The same: x and y of the unit vector along the leg."
         = |at| at.telemetry.target;
     Reference Three tip_reference_mm "Where that has the tip, mm."

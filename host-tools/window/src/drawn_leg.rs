@@ -1,0 +1,335 @@
+//! A leg with its target, its tensions and what acts on it, before a camera.
+
+use crate::camera::View;
+use crate::figure::{Item, ball, circle, cord, disc, rod, sorted};
+use crate::leg_pose::{LegPose, enlarged};
+use crate::simulation::Simulation;
+use crate::theme::{self, Palette, mixed};
+use eframe::egui::{
+    Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2,
+    pos2, vec2,
+};
+use leg_model::RigParameters;
+use leg_sim::plant::Defect;
+use nalgebra::Vector3;
+
+/// Sizes that the rig does not say, m.
+const PLATE_M: f64 = 0.003;
+const PLATE_RADIUS: f64 = 1.22;
+const SHAFT_RADIUS_M: f64 = 0.0026;
+const JOINT_RADIUS_M: f64 = 0.0036;
+/// Radius of a ball of 1 kg.
+const PAYLOAD_RADIUS_M: f64 = 0.0135;
+
+/// Height of the labels below the detail, points.
+const LABELS: f32 = 36.0;
+
+/// A tip that is nearer than that is where it shall be, mm.
+const NEAR_MM: f64 = 0.5;
+
+/// The bar of the tensions' colours, points, and of how many colours it is made.
+const LEGEND: Vec2 = vec2(110.0, 7.0);
+const LEGEND_STEPS: u8 = 32;
+
+/// What a force of 1 N is drawn as, m.
+const ARROW_M_PER_N: f64 = 0.015;
+
+/// What is drawn of the leg.
+pub struct Drawn<'a> {
+    simulation: &'a Simulation,
+    pub rig: &'a RigParameters<f64, 3>,
+    pub palette: Palette,
+    pose: LegPose,
+    /// Where the trajectory has the leg.
+    reference: Vector3<f64>,
+    commanded_m: Vector3<f64>,
+    pub tip_length_m: f64,
+    factor: f64,
+}
+
+impl<'a> Drawn<'a> {
+    pub fn new(simulation: &'a Simulation, factor: f64, palette: Palette) -> Self {
+        let leg = simulation.leg();
+        let truth = leg.truth();
+        let along = truth.direction.vector();
+        let target = simulation
+            .telemetry()
+            .map_or([0.0; 2], |telemetry| telemetry.target);
+        let tip_length_m = leg.tip_length_m();
+        let reference = leg.tip_m(target.map(f64::from)) / tip_length_m;
+        let (along, factor) = enlarged(
+            reference,
+            Vector3::new(along.x, along.y, along.z),
+            factor,
+            tip_length_m,
+        );
+        Self {
+            simulation,
+            rig: &simulation.rig().parameters,
+            palette,
+            pose: LegPose::new(along).twisted(truth.torsion_rad),
+            reference,
+            commanded_m: leg.commanded_m(),
+            tip_length_m,
+            factor,
+        }
+    }
+
+    fn tip(&self) -> Vector3<f64> {
+        self.pose.along * self.tip_length_m
+    }
+
+    pub fn whole(&self, painter: &Painter, view: &View) {
+        self.workspace(painter, view);
+        let mut items = self.mechanism(view, 2.6);
+        let plate = self.pose.along * self.rig.joint_length_m;
+        items.push(rod(
+            view,
+            [plate, self.tip()],
+            SHAFT_RADIUS_M,
+            self.palette.shaft,
+        ));
+        items.extend(self.payload(view));
+        painter.extend(sorted(items));
+        self.marks(painter, view);
+        self.push(painter, view);
+    }
+
+    pub fn detail(&self, painter: &Painter, view: &View, rect: Rect) {
+        let edge = Stroke::new(1.0, self.palette.line);
+        painter.rect(
+            rect,
+            8.0,
+            mixed(self.palette.back, self.palette.card, 0.6),
+            edge,
+            StrokeKind::Inside,
+        );
+        let inside = painter.with_clip_rect(rect.shrink(1.0));
+        let mut items = self.mechanism(view, 4.5);
+        let plate = self.pose.along * self.rig.joint_length_m;
+        items.push(rod(
+            view,
+            [plate, 2.4 * plate],
+            SHAFT_RADIUS_M,
+            self.palette.shaft,
+        ));
+        inside.extend(sorted(items));
+        let strip = rect.shrink(1.0).with_min_y(rect.bottom() - LABELS);
+        let corners = CornerRadius {
+            sw: 8,
+            se: 8,
+            ..CornerRadius::ZERO
+        };
+        inside.rect_filled(strip, corners, self.palette.card);
+        self.tension_labels(&inside, view, rect);
+    }
+
+    /// Plates, joint and tendons.
+    fn mechanism(&self, view: &View, width: f32) -> Vec<Item> {
+        let (rig, palette) = (self.rig, &self.palette);
+        let ring_m = ring_m(&rig.base_anchors_m);
+        let base = Vector3::new(0.0, 0.0, rig.upper_length_m);
+        let plate = self.pose.along * rig.joint_length_m;
+        let origin = Vector3::zeros();
+        let mut items = vec![
+            disc(
+                view,
+                base,
+                Vector3::z(),
+                [PLATE_RADIUS * ring_m, PLATE_M],
+                palette.plate,
+            ),
+            disc(
+                view,
+                plate,
+                self.pose.along,
+                [PLATE_RADIUS * self::ring_m(&rig.leg_anchors_m), PLATE_M],
+                palette.plate,
+            ),
+            rod(view, [base, origin], SHAFT_RADIUS_M, palette.plate),
+            rod(view, [origin, plate], SHAFT_RADIUS_M, palette.shaft),
+            ball(view, origin, JOINT_RADIUS_M, palette.brass),
+        ];
+        items.extend(self.tendons(view, width));
+        items
+    }
+
+    fn tendons(&self, view: &View, width: f32) -> Vec<Item> {
+        let anchors = self.pose.anchors(self.rig);
+        let mut items = Vec::new();
+        for (tendon, ends) in anchors.into_iter().enumerate() {
+            let colour = self.tension_colour(tendon);
+            if self.cut(tendon) {
+                // What is left hangs from the base plate.
+                let end = ends[0] + Vector3::new(0.0, 0.0, -0.35 * self.rig.joint_length_m);
+                items.push(cord(view, [ends[0], end], 0.5 * width, colour));
+            } else {
+                items.push(cord(view, ends, width, colour));
+            }
+            for end in ends {
+                items.push(ball(view, end, 0.0011, colour));
+            }
+        }
+        items
+    }
+
+    fn cut(&self, tendon: usize) -> bool {
+        self.simulation
+            .defects()
+            .contains(&Defect::TendonCut(tendon))
+    }
+
+    fn tension_colour(&self, tendon: usize) -> Color32 {
+        let rig = self.simulation.rig();
+        let tension_n = self.simulation.leg().truth().tensions_n[tendon];
+        theme::tension(tension_n, [rig.f_min_n, rig.f_max_n])
+    }
+
+    fn payload(&self, view: &View) -> Option<Item> {
+        let payload_kg = self.simulation.leg().truth().payload_kg;
+        let radius_m = PAYLOAD_RADIUS_M * payload_kg.cbrt();
+        (payload_kg > 1e-3).then(|| ball(view, self.tip(), radius_m, self.palette.brass))
+    }
+
+    /// The vertical, and the circle that the tip can reach.
+    fn workspace(&self, painter: &Painter, view: &View) {
+        let faint = Stroke::new(1.0, mixed(self.palette.back, self.palette.faint, 0.55));
+        let below = Vector3::new(0.0, 0.0, -self.tip_length_m);
+        let vertical = [Vector3::zeros(), below].map(|place| view.project(place).at);
+        painter.extend(Shape::dashed_line(&vertical, faint, 5.0, 5.0));
+        let (sin, cos) = self.simulation.rig().tilt_deg.to_radians().sin_cos();
+        let mut rim: Vec<Pos2> = circle(below * cos, Vector3::z(), self.tip_length_m * sin)
+            .map(|place| view.project(place).at)
+            .collect();
+        rim.extend(rim.first().copied());
+        painter.add(Shape::line(rim, faint));
+    }
+
+    /// Where the leg was sent, and how far it is from there.
+    fn marks(&self, painter: &Painter, view: &View) {
+        let palette = &self.palette;
+        let target = view.project(self.commanded_m).at;
+        let ghost = [Vector3::zeros(), self.reference * self.tip_length_m]
+            .map(|place| view.project(place).at);
+        let line = Stroke::new(1.4, palette.target);
+        painter.extend(Shape::dashed_line(&ghost, line, 6.0, 5.0));
+        painter.circle_stroke(target, 8.0, Stroke::new(2.0, palette.target));
+        for arm in [vec2(12.0, 0.0), vec2(0.0, 12.0)] {
+            painter.line_segment([target - arm, target + arm], line);
+        }
+        let tip = view.project(self.tip()).at;
+        if (tip - target).length() > 3.0 {
+            painter.line_segment([target, tip], Stroke::new(2.5, palette.error));
+            painter.circle_filled(tip, 3.5, palette.error);
+        }
+    }
+
+    fn push(&self, painter: &Painter, view: &View) {
+        let Some(push) = self.simulation.pushed() else {
+            return;
+        };
+        let [x, y] = leg_base::angles::unit_vector(push.azimuth_deg);
+        let force_m = Vector3::new(x, y, 0.0) * (push.force_n * ARROW_M_PER_N);
+        let [from, to] = [self.tip() - force_m, self.tip()].map(|place| view.project(place).at);
+        painter.arrow(from, to - from, Stroke::new(4.0, self.palette.warning));
+        let words = format!("push {:.0} N", push.force_n);
+        label(
+            painter,
+            from + vec2(0.0, -18.0),
+            &words,
+            self.palette.warning,
+            &self.palette,
+        );
+    }
+
+    fn tension_labels(&self, painter: &Painter, view: &View, rect: Rect) {
+        let tensions_n = self.simulation.leg().truth().tensions_n;
+        let anchors = self.pose.anchors(self.rig);
+        for (tendon, ends) in anchors.into_iter().enumerate() {
+            let above = ends[0] + Vector3::new(0.0, 0.0, 0.008);
+            let at = view.project(above).at;
+            let number = (tendon + 1).to_string();
+            painter.text(
+                at,
+                Align2::CENTER_CENTER,
+                number,
+                FontId::proportional(14.0),
+                self.palette.text,
+            );
+            let width = rect.width() / 3.0;
+            let cell = pos2(
+                rect.left() + (tendon as f32 + 0.5) * width,
+                rect.bottom() - 11.0,
+            );
+            let words = if self.cut(tendon) {
+                format!("{} cut", tendon + 1)
+            } else if width < 72.0 {
+                format!("{:3.0} N", tensions_n[tendon])
+            } else {
+                format!("{}:{:5.1} N", tendon + 1, tensions_n[tendon])
+            };
+            painter.circle_filled(cell - vec2(0.0, 14.0), 4.0, self.tension_colour(tendon));
+            painter.text(
+                cell,
+                Align2::CENTER_CENTER,
+                words,
+                FontId::monospace(11.5),
+                self.palette.text,
+            );
+        }
+    }
+
+    /// How far the tip is from where it was sent, in a place of its own.
+    pub fn readout(&self, painter: &Painter, rect: Rect) {
+        let error_mm = self.simulation.leg().comparison().commanded_error_mm();
+        let corner = rect.left_top() + vec2(14.0, 10.0);
+        let big = FontId::monospace(24.0);
+        let words = format!("{error_mm:.2} mm");
+        let colour = if error_mm < NEAR_MM {
+            self.palette.good
+        } else {
+            self.palette.error
+        };
+        painter.text(corner, Align2::LEFT_TOP, words, big, colour);
+        let words = format!("from the target, drawn ×{:.1}", self.factor);
+        let below = corner + vec2(0.0, 28.0);
+        let font = FontId::proportional(12.5);
+        painter.text(below, Align2::LEFT_TOP, words, font, self.palette.faint);
+    }
+
+    /// What the colours of the tendons mean.
+    pub fn legend(&self, painter: &Painter, rect: Rect) {
+        let rig = self.simulation.rig();
+        let bounds_n = [rig.f_min_n, rig.f_max_n];
+        let bar = Rect::from_min_size(rect.left_bottom() + vec2(14.0, -18.0), LEGEND);
+        for step in 0..LEGEND_STEPS {
+            let part = f32::from(step) / f32::from(LEGEND_STEPS);
+            let tension_n = bounds_n[0] + f64::from(part) * (bounds_n[1] - bounds_n[0]);
+            let left = bar.left() + part * bar.width();
+            let right = left + bar.width() / f32::from(LEGEND_STEPS) + 0.5;
+            let cell = bar.with_min_x(left).with_max_x(right);
+            painter.rect_filled(cell, 0.0, theme::tension(tension_n, bounds_n));
+        }
+        let words = format!("tension {:.0} to {:.0} N", bounds_n[0], bounds_n[1]);
+        let above = bar.left_top() + vec2(0.0, -3.0);
+        let font = FontId::proportional(12.5);
+        painter.text(above, Align2::LEFT_BOTTOM, words, font, self.palette.faint);
+    }
+}
+
+fn ring_m(anchors_m: &[[f64; 2]; 3]) -> f64 {
+    let radii = anchors_m.iter().map(|[x, y]| (x * x + y * y).sqrt());
+    radii.fold(0.0, f64::max)
+}
+
+/// Text on a patch of the background.
+fn label(painter: &Painter, at: Pos2, words: &str, colour: Color32, palette: &Palette) {
+    let galley = painter.layout_no_wrap(words.to_owned(), FontId::monospace(13.0), colour);
+    let rect = Rect::from_min_size(at, galley.size());
+    painter.rect_filled(
+        rect.expand2(vec2(5.0, 2.0)),
+        4.0,
+        palette.card.gamma_multiply(0.85),
+    );
+    painter.galley(at, galley, colour);
+}

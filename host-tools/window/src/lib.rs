@@ -1,0 +1,40 @@
+//! The window: a leg in 3D that is driven, broken and charted, natively and in a browser.
+//!
+//! Where to begin: [`simulation`] steps firmware and simulated leg in real time; [`app`] lays the window out.
+//!
+//! | module | what is in it |
+//! |---|---|
+//! | [`simulation`], [`pace`], [`history`] | the leg, how much of it a frame is worth, and what its signals were |
+//! | [`app`], [`top_bar`], `panel_…`, [`numbers`], [`faults`] | what is where |
+//! | [`scene`], `drawn_leg`, [`camera`], [`figure`], [`leg_pose`] | the leg in 3D |
+//! | [`workspace`], [`map`] | the disc on which the target is dragged, and what the model says of every pose |
+//! | [`charts`] | signals over time |
+//! | [`theme`], [`text`] | colours, sizes, text in its place |
+//! | [`bits`] | whether the firmware decides the same here as elsewhere |
+//! | [`page_state`], [`places`] | the window as data, for tests and for readers of the screen |
+
+pub mod app;
+pub mod bits;
+pub mod camera;
+pub mod charts;
+mod drawn_leg;
+pub mod faults;
+pub mod figure;
+pub mod history;
+pub mod leg_pose;
+pub mod map;
+pub mod numbers;
+pub mod pace;
+pub mod page_state;
+pub mod panel_break;
+pub mod panel_drive;
+pub mod panel_guide;
+pub mod places;
+pub mod scene;
+pub mod simulation;
+pub mod text;
+pub mod theme;
+pub mod top_bar;
+#[cfg(target_arch = "wasm32")]
+pub mod web;
+pub mod workspace;

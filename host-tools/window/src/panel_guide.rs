@@ -1,0 +1,110 @@
+//! What to try first, in three steps.
+
+use crate::places::place;
+use crate::simulation::Simulation;
+use crate::theme::palette;
+use eframe::egui::{Button, Frame, Label, Margin, RichText, Ui, vec2};
+use leg_firmware::command::{Command, Compensation};
+use leg_sim::plant::Defect;
+
+/// The payload of the first step, kg.
+const PAYLOAD_KG: f64 = 2.0;
+
+/// A step.
+struct Step {
+    number: u8,
+    /// What its button says, and its name for tests.
+    action: [&'static str; 2],
+    /// What will be seen.
+    effect: &'static str,
+    done: bool,
+}
+
+/// What came of the guide.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wish {
+    /// Nothing.
+    None,
+    /// A new leg.
+    StartAgain,
+}
+
+/// Shows the steps, and does the one that is pressed.
+pub fn show(ui: &mut Ui, simulation: &mut Simulation) -> Wish {
+    ui.heading("Try this");
+    let cut = Defect::TendonCut(0);
+    let steps = [
+        Step {
+            number: 1,
+            action: ["Hang 2 kg on the tip", "guide_payload"],
+            effect: "The tip sags by some 7 mm.",
+            done: simulation.payload_kg() >= PAYLOAD_KG,
+        },
+        Step {
+            number: 2,
+            action: ["Switch compensation on", "guide_compensation"],
+            effect: "The leg feels the load, and lifts it back to the target.",
+            done: simulation.compensated(),
+        },
+        Step {
+            number: 3,
+            action: ["Cut a tendon", "guide_cut"],
+            effect: "The supervisor holds the leg, and says why.",
+            done: simulation.defects().contains(&cut),
+        },
+    ];
+    for step in &steps {
+        if !row(ui, step) {
+            continue;
+        }
+        match step.number {
+            1 => simulation.hang(PAYLOAD_KG),
+            2 => simulation.command(
+                Command::Compensation(Compensation::Estimated),
+                "compensation on",
+            ),
+            _ => simulation.set_defect(cut, true),
+        }
+    }
+    let again = ui
+        .button("Start again")
+        .on_hover_text("A new leg, as the window found it.");
+    place(&again, "start_again");
+    if again.clicked() {
+        Wish::StartAgain
+    } else {
+        Wish::None
+    }
+}
+
+/// Whether its button was pressed.
+fn row(ui: &mut Ui, step: &Step) -> bool {
+    let palette = palette(ui.ctx());
+    let mut pressed = false;
+    ui.horizontal(|ui| {
+        let (mark, colour) = if step.done {
+            ("✔".to_owned(), palette.good)
+        } else {
+            (step.number.to_string(), palette.target)
+        };
+        let size = vec2(16.0, 28.0);
+        ui.add_sized(
+            size,
+            Label::new(RichText::new(mark).color(colour).strong().size(16.0)),
+        );
+        let [text, name] = step.action;
+        let width = ui.available_width();
+        let button = ui.add_enabled(!step.done, Button::new(text).min_size(vec2(width, 30.0)));
+        place(&button, name);
+        pressed = button.clicked();
+    });
+    let indented = Frame::NONE.inner_margin(Margin {
+        left: 24,
+        ..Margin::ZERO
+    });
+    indented.show(ui, |ui| {
+        let effect = RichText::new(step.effect).small().color(palette.faint);
+        ui.add(Label::new(effect).wrap());
+    });
+    pressed
+}

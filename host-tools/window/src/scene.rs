@@ -1,0 +1,128 @@
+//! The leg in 3D: as a whole, and its joint enlarged.
+
+use crate::camera::Camera;
+use crate::drawn_leg::Drawn;
+use crate::simulation::Simulation;
+use crate::theme::palette;
+use eframe::egui::{ComboBox, Rect, Response, Sense, Ui, Vec2, pos2, vec2};
+use nalgebra::Vector3;
+
+/// How much of the leg the detail shows, m.
+const DETAIL_HEIGHT_M: f64 = 0.088;
+
+/// From this width on the detail stands beside the whole, points.
+const WIDE: f32 = 520.0;
+
+/// How much the detail takes of a wide picture.
+const DETAIL_PART: f32 = 0.38;
+
+/// Width of what stands below the detail at least, points.
+const ROOM_WIDTH: f32 = 140.0;
+
+/// Height of the readout, points.
+const READOUT_HEIGHT: f32 = 44.0;
+
+/// By how much a deviation may be enlarged.
+const FACTORS: [f64; 4] = [1.0, 3.0, 5.0, 10.0];
+
+/// What the user chose to see.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene {
+    camera: Camera,
+    /// How much the deviation is enlarged.
+    factor: f64,
+}
+
+impl Default for Scene {
+    fn default() -> Self {
+        Self {
+            camera: Camera::default(),
+            factor: FACTORS[1],
+        }
+    }
+}
+
+impl Scene {
+    /// Draws the leg, and lets a drag turn it.
+    pub fn show(&mut self, ui: &mut Ui, simulation: &Simulation, size: Vec2) -> Response {
+        let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+        let drag = response.drag_delta();
+        self.camera.turn(drag.x, drag.y);
+        if response.hovered() {
+            let scroll = ui.input(|input| input.smooth_scroll_delta().y);
+            let zoom = self.camera.zoom * f64::from(scroll * 0.002).exp();
+            self.camera.zoom = zoom.clamp(0.5, 4.0);
+        }
+        if response.double_clicked() {
+            self.camera = Camera::default();
+        }
+        let drawn = Drawn::new(simulation, self.factor, palette(ui.ctx()));
+        let painter = ui.painter_at(rect);
+        painter.rect_filled(rect, 0.0, drawn.palette.back);
+        let (whole, detail) = parts(rect);
+        let length_m = drawn.tip_length_m;
+        let centre = Vector3::new(0.0, 0.0, -0.48 * length_m);
+        let view = self.camera.view(whole, centre, 1.17 * length_m);
+        drawn.whole(&painter, &view);
+        let middle = Vector3::new(0.0, 0.0, -0.5 * drawn.rig.joint_length_m);
+        let joint = Camera {
+            zoom: 1.0,
+            ..self.camera
+        };
+        drawn.detail(
+            &painter,
+            &joint.view(detail, middle, DETAIL_HEIGHT_M),
+            detail,
+        );
+        drawn.readout(&painter, rect);
+        drawn.legend(&painter, rect);
+        response
+    }
+
+    /// Lets the user choose how much the deviation is enlarged.
+    pub fn choice(&mut self, ui: &mut Ui) {
+        let text = format!("draw ×{:.0}", self.factor);
+        let choice = ComboBox::from_id_salt("factor")
+            .selected_text(text)
+            .width(92.0);
+        choice.show_ui(ui, |ui| {
+            for factor in FACTORS {
+                ui.selectable_value(&mut self.factor, factor, format!("draw ×{factor:.0}"));
+            }
+        });
+    }
+}
+
+/// The part of the whole leg, and that of its joint.
+fn parts(rect: Rect) -> (Rect, Rect) {
+    let inner = rect.shrink(8.0);
+    if wide(rect) {
+        let at = rect.right() - DETAIL_PART * rect.width();
+        let whole = rect
+            .with_max_x(at)
+            .translate(vec2(0.05 * rect.width(), 0.0));
+        let side = (inner.right() - at).min(0.56 * inner.height());
+        let corner = pos2(inner.right() - side, inner.top());
+        return (whole, Rect::from_min_size(corner, Vec2::splat(side)));
+    }
+    let side = 0.42 * rect.width();
+    let corner = pos2(inner.right() - side, inner.top());
+    // The readout is above.
+    let whole = rect.with_min_y(rect.top() + READOUT_HEIGHT);
+    let whole = whole.translate(vec2(-0.14 * rect.width(), 0.0));
+    (whole, Rect::from_min_size(corner, vec2(side, 0.95 * side)))
+}
+
+/// Whether the detail stands beside the whole.
+fn wide(rect: Rect) -> bool {
+    rect.width() > WIDE && rect.width() > 1.15 * rect.height()
+}
+
+/// Where there is room for more beside the leg: below the detail.
+#[must_use]
+pub fn room(rect: Rect) -> Rect {
+    let (_, detail) = parts(rect);
+    let inner = rect.shrink(8.0);
+    let left = detail.left().min(inner.right() - ROOM_WIDTH);
+    Rect::from_min_max(pos2(left, detail.bottom() + 8.0), inner.max)
+}

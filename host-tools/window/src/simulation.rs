@@ -1,0 +1,364 @@
+//! The leg in this window: firmware and simulated mechanism, stepped in real time.
+
+#[cfg(test)]
+mod tests;
+
+use crate::history::{History, SAMPLE_HZ, Snapshot};
+use crate::pace::Pace;
+use leg_base::failure::Failure;
+use leg_firmware::command::{Command, Compensation};
+use leg_firmware::drive::Drive;
+use leg_firmware::host_link::HostRefusal;
+use leg_firmware::sensors::TICK_HZ;
+use leg_firmware::supervisor::{FaultSet, State};
+use leg_firmware::telemetry::Telemetry;
+use leg_rig::control_settings;
+use leg_rig::plant_settings::PlantSettings;
+use leg_rig::rig_file::RigFile;
+use leg_sim::action::Action;
+use leg_sim::emulated_leg::{EmulatedLeg, EmulationError};
+use leg_sim::hosted_leg::HostedLeg;
+use leg_sim::plant::{Defect, Start};
+use leg_sim::signals::{LegConstants, Report, Simulated};
+
+/// Where the leg is when the window opens: as in the paper's Fig. 9, where a load shows most.
+const START_AZIMUTH_DEG: f64 = 30.0;
+const START_TILT_DEG: f64 = 30.0;
+
+/// Time in which the leg comes to rest before the window opens, s.
+const SETTLE_S: f64 = 1.0;
+
+/// Time in which a payload is hung on, s.
+const PAYLOAD_OVER_S: f64 = 0.4;
+
+/// Commands that may wait for their answers.
+const ASKED_MAX: usize = 32;
+
+/// Every run of the window has the same noise.
+const SEED: u64 = 1;
+
+/// A push that is going on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Push {
+    /// Where it pushes to, degrees.
+    pub azimuth_deg: f64,
+    /// N.
+    pub force_n: f64,
+    /// When it ends, s.
+    pub until_s: f64,
+}
+
+/// A leg with its host, what is done to it, and what it was like in the last seconds.
+pub struct Simulation {
+    leg: HostedLeg,
+    rig: RigFile,
+    constants: LegConstants,
+    motors: Drive<f32>,
+    /// How fast it goes.
+    pub pace: Pace,
+    /// What its signals were.
+    pub history: History,
+    compensation: Compensation,
+    payload_kg: f64,
+    defects: Vec<Defect>,
+    push: Option<Push>,
+    /// Commands that are not answered yet, by their numbers, and what they are called.
+    asked: Vec<(u16, Command, &'static str)>,
+    /// Why the last one was refused, if it was.
+    refusal: Option<String>,
+    /// Why the simulation cannot go on.
+    failure: Option<EmulationError>,
+}
+
+/// Why there is no leg.
+#[derive(Debug)]
+pub enum StartError {
+    /// The rig is refused.
+    Rig(Failure),
+    /// The simulation is.
+    Emulation(EmulationError),
+}
+
+impl std::fmt::Display for StartError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Rig(failure) => f.write_str(&failure.render(false)),
+            Self::Emulation(error) => error.fmt(f),
+        }
+    }
+}
+
+impl Simulation {
+    /// The paper's rig, armed and leaning, with its compensation off: it sags under what is hung on it.
+    ///
+    /// # Errors
+    /// A rig that is refused; there is none as long as the ready rigs pass their tests.
+    pub fn new() -> Result<Self, StartError> {
+        let rig = RigFile::load(None).map_err(StartError::Rig)?;
+        let start = Start::Held {
+            azimuth_deg: START_AZIMUTH_DEG,
+            tilt_deg: START_TILT_DEG,
+            pretension_n: rig.pretension_n,
+            payload_kg: 0.0,
+        };
+        let tared = PlantSettings {
+            cell_offset_n: [0.0; 3],
+            ..rig.plant
+        };
+        let leg = EmulatedLeg::in_process(&rig, &tared, start, SEED);
+        let leg = leg.map_err(StartError::Emulation)?;
+        let settings = control_settings::settings(&rig, &rig.gains, None);
+        let mut simulation = Self {
+            leg: HostedLeg::new(leg, &rig, start.direction(), SEED),
+            constants: LegConstants::new(&settings),
+            rig,
+            motors: Drive {
+                duty: [0.0; 3],
+                enabled: false,
+            },
+            pace: Pace::default(),
+            history: History::default(),
+            compensation: Compensation::Estimated,
+            payload_kg: 0.0,
+            defects: Vec::new(),
+            push: None,
+            asked: Vec::new(),
+            refusal: None,
+            failure: None,
+        };
+        simulation.begin();
+        match simulation.failure.take() {
+            Some(error) => Err(StartError::Emulation(error)),
+            None => Ok(simulation),
+        }
+    }
+
+    /// Boots the leg, arms it, and lets it come to rest.
+    fn begin(&mut self) {
+        while self.leg.state() == State::Boot && self.failure.is_none() {
+            self.tick();
+        }
+        for (command, name) in [
+            (Command::Arm, "arm"),
+            (Command::Compensation(Compensation::Off), "compensation off"),
+        ] {
+            self.command(command, name);
+            self.run(u32::from(TICK_HZ) / 100);
+        }
+        let [x, y] = self.start_direction();
+        self.command(Command::Move { x, y }, "move");
+        self.run((SETTLE_S * f64::from(TICK_HZ)) as u32);
+    }
+
+    fn start_direction(&self) -> [f32; 2] {
+        leg_base::angles::direction(START_AZIMUTH_DEG, START_TILT_DEG).map(|part| part as f32)
+    }
+
+    /// Lets as much time pass as the clock says, bounded.
+    pub fn advance(&mut self, elapsed_s: f64) {
+        let ticks = self.pace.ticks(elapsed_s);
+        self.run(ticks);
+    }
+
+    fn run(&mut self, ticks: u32) {
+        for _ in 0..ticks {
+            if self.failure.is_some() {
+                return;
+            }
+            self.tick();
+        }
+    }
+
+    fn tick(&mut self) {
+        match self.leg.tick() {
+            Ok((_, reply)) => self.motors = reply.motors,
+            Err(error) => {
+                self.failure = Some(error);
+                return;
+            }
+        }
+        self.look_at_answers();
+        if self
+            .push
+            .is_some_and(|push| push.until_s <= self.leg.time_s())
+        {
+            self.push = None;
+        }
+        if self
+            .leg
+            .ticks()
+            .is_multiple_of(u64::from(u32::from(TICK_HZ) / SAMPLE_HZ))
+        {
+            self.sample();
+        }
+    }
+
+    fn sample(&mut self) {
+        if let Some(telemetry) = self.leg.telemetry() {
+            let snapshot = Snapshot {
+                report: Report::new(telemetry, &self.constants),
+                simulated: Simulated {
+                    truth: *self.leg.truth(),
+                    motors: self.motors,
+                    comparison: self.leg.comparison(),
+                },
+            };
+            self.history.take(self.leg.time_s(), &snapshot);
+        }
+    }
+
+    fn look_at_answers(&mut self) {
+        for answer in self.leg.answers() {
+            let mut asked = self.asked.iter();
+            let Some(place) = asked.position(|(number, ..)| *number == answer.number) else {
+                continue;
+            };
+            let (_, command, name) = self.asked.remove(place);
+            match answer.result {
+                Ok(()) => {
+                    self.refusal = None;
+                    if let Command::Compensation(compensation) = command {
+                        self.compensation = compensation;
+                    }
+                }
+                Err(refusal) => self.refusal = Some(refused(name, refusal)),
+            }
+        }
+    }
+
+    /// Commands the leg; what becomes of it shows in later ticks. `name` is what people call it.
+    pub fn command(&mut self, command: Command, name: &'static str) {
+        match self.leg.send(&command) {
+            Ok(number) => {
+                // The oldest will not be answered any more.
+                if self.asked.len() == ASKED_MAX {
+                    self.asked.remove(0);
+                }
+                self.asked.push((number, command, name));
+            }
+            Err(error) => self.refusal = Some(format!("{name} cannot be sent: {error:?}")),
+        }
+    }
+
+    /// Hangs a payload on the tip, kg.
+    pub fn hang(&mut self, payload_kg: f64) {
+        self.payload_kg = payload_kg;
+        self.act(&Action::Payload {
+            kg: payload_kg,
+            over_s: PAYLOAD_OVER_S,
+        });
+    }
+
+    /// Pushes at the tip.
+    pub fn push(&mut self, azimuth_deg: f64, force_n: f64, for_s: f64) {
+        self.push = Some(Push {
+            azimuth_deg,
+            force_n,
+            until_s: self.leg.time_s() + for_s,
+        });
+        self.act(&Action::Push {
+            azimuth_deg,
+            force_n,
+            for_s,
+        });
+    }
+
+    /// Breaks something, or repairs it.
+    pub fn set_defect(&mut self, defect: Defect, on: bool) {
+        self.defects.retain(|other| *other != defect);
+        if on {
+            self.defects.push(defect);
+            self.act(&Action::Fault(defect));
+        } else {
+            self.act(&Action::Repair(defect));
+        }
+    }
+
+    fn act(&mut self, action: &Action) {
+        action.apply(self.leg.leg_mut().plant_mut());
+    }
+
+    /// Repairs everything.
+    pub fn repair(&mut self) {
+        for defect in std::mem::take(&mut self.defects) {
+            self.act(&Action::Repair(defect));
+        }
+    }
+
+    /// What is broken.
+    #[must_use]
+    pub fn defects(&self) -> &[Defect] {
+        &self.defects
+    }
+
+    /// The push that is going on.
+    #[must_use]
+    pub const fn pushed(&self) -> Option<Push> {
+        self.push
+    }
+
+    /// The rig.
+    #[must_use]
+    pub const fn rig(&self) -> &RigFile {
+        &self.rig
+    }
+
+    /// The leg with its host.
+    #[must_use]
+    pub const fn leg(&self) -> &HostedLeg {
+        &self.leg
+    }
+
+    /// What it reported last.
+    #[must_use]
+    pub fn telemetry(&self) -> Option<&Telemetry<f32>> {
+        self.leg.telemetry()
+    }
+
+    /// What it may do.
+    #[must_use]
+    pub fn state(&self) -> State {
+        self.leg.state()
+    }
+
+    /// What is wrong with it.
+    #[must_use]
+    pub fn faults(&self) -> FaultSet {
+        self.telemetry()
+            .map_or(FaultSet::NONE, |telemetry| telemetry.faults)
+    }
+
+    /// Whether it holds its load.
+    #[must_use]
+    pub fn compensated(&self) -> bool {
+        self.compensation != Compensation::Off
+    }
+
+    /// The payload that was hung on it last, kg.
+    #[must_use]
+    pub const fn payload_kg(&self) -> f64 {
+        self.payload_kg
+    }
+
+    /// What was refused last, and what to do about it.
+    #[must_use]
+    pub fn refusal(&self) -> Option<&str> {
+        self.refusal.as_deref()
+    }
+
+    /// Why it cannot go on.
+    #[must_use]
+    pub const fn failure(&self) -> Option<&EmulationError> {
+        self.failure.as_ref()
+    }
+}
+
+fn refused(name: &str, refusal: HostRefusal) -> String {
+    match refusal {
+        HostRefusal::Command(refusal) => {
+            let [what, remedy] = refusal.description();
+            format!("{name} refused: {what}; {remedy}")
+        }
+        other => format!("{name} refused: {other:?}"),
+    }
+}

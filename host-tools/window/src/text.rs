@@ -1,0 +1,13 @@
+//! Text in its place.
+
+use eframe::egui::{Align, Label, Layout, RichText, Ui, vec2};
+
+/// Text at the left of a field of some width.
+pub fn left(ui: &mut Ui, width: f32, text: &str) {
+    let size = vec2(width, ui.spacing().interact_size.y);
+    let layout = Layout::left_to_right(Align::Center);
+    ui.allocate_ui_with_layout(size, layout, |ui| {
+        ui.set_min_size(size);
+        ui.add(Label::new(RichText::new(text)).truncate());
+    });
+}

@@ -1,0 +1,234 @@
+//! Colours that people who see few colours can tell apart, light and dark, and sizes.
+
+use eframe::egui::{
+    self, Color32, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Theme, Visuals,
+};
+
+/// The colours of what is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Palette {
+    /// Behind everything.
+    pub back: Color32,
+    /// Behind groups.
+    pub card: Color32,
+    /// Lines between things.
+    pub line: Color32,
+    /// Text.
+    pub text: Color32,
+    /// Text of less weight.
+    pub faint: Color32,
+    /// Plates.
+    pub plate: Color32,
+    /// The shaft.
+    pub shaft: Color32,
+    /// Joint and payload.
+    pub brass: Color32,
+    /// Where the leg was sent.
+    pub target: Color32,
+    /// How far it is from there.
+    pub error: Color32,
+    /// All is well.
+    pub good: Color32,
+    /// Look at this.
+    pub warning: Color32,
+    /// The stop.
+    pub danger: Color32,
+}
+
+const fn rgb(hex: u32) -> Color32 {
+    let [_, red, green, blue] = hex.to_be_bytes();
+    Color32::from_rgb(red, green, blue)
+}
+
+const DARK: Palette = Palette {
+    back: rgb(0x12_17_1d),
+    card: rgb(0x1b_22_2b),
+    line: rgb(0x36_41_4e),
+    text: rgb(0xe4_e9_ee),
+    faint: rgb(0x93_a1_af),
+    plate: rgb(0x6f_83_98),
+    shaft: rgb(0xb4_be_c8),
+    brass: rgb(0xd9_ad_4e),
+    target: rgb(0x56_b4_e9),
+    error: rgb(0xff_7f_3f),
+    good: rgb(0x2f_bf_94),
+    warning: rgb(0xf0_b4_29),
+    danger: rgb(0xd1_3b_1f),
+};
+
+const LIGHT: Palette = Palette {
+    back: rgb(0xf4_f6_f8),
+    card: rgb(0xff_ff_ff),
+    line: rgb(0xcd_d5_dd),
+    text: rgb(0x1a_22_2b),
+    faint: rgb(0x5a_67_75),
+    plate: rgb(0x5b_6b_7d),
+    shaft: rgb(0x9a_a3_ad),
+    brass: rgb(0xc7_9a_3a),
+    target: rgb(0x00_72_b2),
+    error: rgb(0xd5_5e_00),
+    good: rgb(0x00_7f_5f),
+    warning: rgb(0xa8_6a_00),
+    danger: rgb(0xc2_30_17),
+};
+
+/// The colours that are in use.
+#[must_use]
+pub fn palette(ctx: &egui::Context) -> Palette {
+    match ctx.theme() {
+        Theme::Dark => DARK,
+        Theme::Light => LIGHT,
+    }
+}
+
+/// The colours of the three tendons in charts, and of x, y and z.
+#[must_use]
+pub fn series(ctx: &egui::Context, index: usize) -> Color32 {
+    let colours = match ctx.theme() {
+        Theme::Dark => [rgb(0x56_b4_e9), rgb(0xff_8c_42), rgb(0x2f_bf_94)],
+        Theme::Light => [rgb(0x00_72_b2), rgb(0xd5_5e_00), rgb(0x00_9e_73)],
+    };
+    colours[index % colours.len()]
+}
+
+/// The colour of a tension: blue at the lowest that is allowed, orange at the highest, grey below and purple above.
+#[must_use]
+pub fn tension(tension_n: f64, [floor_n, ceiling_n]: [f64; 2]) -> Color32 {
+    const LOW: Color32 = rgb(0x3b_8f_d0);
+    const MIDDLE: Color32 = rgb(0xd9_c5_8b);
+    const HIGH: Color32 = rgb(0xd5_5e_00);
+    let part = (tension_n - floor_n) / (ceiling_n - floor_n);
+    if part.is_nan() || part < 0.0 {
+        rgb(0x8a_8f_96)
+    } else if part > 1.0 {
+        rgb(0xb8_4f_a0)
+    } else if part < 0.5 {
+        mixed(LOW, MIDDLE, (2.0 * part) as f32)
+    } else {
+        mixed(MIDDLE, HIGH, (2.0 * part - 1.0) as f32)
+    }
+}
+
+/// A colour between two.
+#[must_use]
+pub fn mixed(from: Color32, to: Color32, part: f32) -> Color32 {
+    let part = part.clamp(0.0, 1.0);
+    let channel = |from: u8, to: u8| {
+        let value = f32::from(from) + part * (f32::from(to) - f32::from(from));
+        value.round() as u8
+    };
+    Color32::from_rgb(
+        channel(from.r(), to.r()),
+        channel(from.g(), to.g()),
+        channel(from.b(), to.b()),
+    )
+}
+
+/// Sets colours and sizes, once.
+pub fn install(ctx: &egui::Context) {
+    for (theme, palette) in [(Theme::Dark, DARK), (Theme::Light, LIGHT)] {
+        ctx.set_visuals_of(theme, visuals(theme, &palette));
+    }
+    ctx.all_styles_mut(|style| {
+        let sizes = [
+            (TextStyle::Heading, 17.0, FontFamily::Proportional),
+            (TextStyle::Body, 14.0, FontFamily::Proportional),
+            (TextStyle::Button, 14.0, FontFamily::Proportional),
+            (TextStyle::Monospace, 13.0, FontFamily::Monospace),
+            (TextStyle::Small, 11.5, FontFamily::Proportional),
+        ];
+        for (text, size, family) in sizes {
+            style.text_styles.insert(text, FontId::new(size, family));
+        }
+        style.spacing.item_spacing = egui::vec2(8.0, 6.0);
+        style.spacing.button_padding = egui::vec2(10.0, 5.0);
+        style.spacing.interact_size.y = 26.0;
+        style.spacing.slider_width = 130.0;
+        style.interaction.selectable_labels = false;
+    });
+}
+
+fn visuals(theme: Theme, palette: &Palette) -> Visuals {
+    let mut visuals = match theme {
+        Theme::Dark => Visuals::dark(),
+        Theme::Light => Visuals::light(),
+    };
+    visuals.panel_fill = palette.back;
+    visuals.window_fill = palette.card;
+    visuals.extreme_bg_color = palette.card;
+    visuals.override_text_color = Some(palette.text);
+    visuals.selection.bg_fill = mixed(palette.target, palette.card, 0.45);
+    visuals.selection.stroke = Stroke::new(1.0, palette.text);
+    let control = mixed(palette.line, palette.card, 0.35);
+    for (state, part) in [
+        (&mut visuals.widgets.inactive, 0.0),
+        (&mut visuals.widgets.hovered, 0.25),
+        (&mut visuals.widgets.active, 0.45),
+        (&mut visuals.widgets.open, 0.25),
+    ] {
+        state.corner_radius = CornerRadius::same(6);
+        state.bg_fill = mixed(control, palette.target, part);
+        state.weak_bg_fill = state.bg_fill;
+        state.bg_stroke = Stroke::new(1.0, mixed(palette.line, palette.target, part));
+        state.fg_stroke = Stroke::new(1.5, palette.text);
+        state.expansion = 0.0;
+    }
+    visuals.widgets.noninteractive.bg_stroke = Stroke::new(1.0, palette.line);
+    visuals.widgets.noninteractive.corner_radius = CornerRadius::same(8);
+    visuals.slider_trailing_fill = true;
+    visuals
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{DARK, LIGHT, Palette, tension};
+    use eframe::egui::Color32;
+
+    fn luminance(colour: Color32) -> f64 {
+        let linear = |channel: u8| {
+            let part = f64::from(channel) / 255.0;
+            if part <= 0.040_45 {
+                part / 12.92
+            } else {
+                ((part + 0.055) / 1.055).powf(2.4)
+            }
+        };
+        0.2126 * linear(colour.r()) + 0.7152 * linear(colour.g()) + 0.0722 * linear(colour.b())
+    }
+
+    fn contrast(a: Color32, b: Color32) -> f64 {
+        let (a, b) = (luminance(a), luminance(b));
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    /// The contrasts that WCAG 2 asks for: 4.5 for text, 3 for what is drawn.
+    #[test]
+    fn everything_can_be_read() {
+        let check = |palette: Palette| {
+            for back in [palette.back, palette.card] {
+                for text in [palette.text, palette.faint] {
+                    assert!(contrast(text, back) >= 4.5, "{text:?} on {back:?}");
+                }
+                for drawn in [palette.target, palette.error, palette.good, palette.warning] {
+                    assert!(contrast(drawn, back) >= 3.0, "{drawn:?} on {back:?}");
+                }
+            }
+            assert!(contrast(Color32::WHITE, palette.danger) >= 4.5);
+        };
+        check(DARK);
+        check(LIGHT);
+    }
+
+    #[test]
+    fn tensions_out_of_bounds_have_colours_of_their_own() {
+        let bounds = [8.0, 150.0];
+        let [slack, low, middle, high, above] =
+            [7.9, 8.0, 79.0, 150.0, 150.1].map(|n| tension(n, bounds));
+        assert_eq!(tension(f64::NAN, bounds), slack);
+        let all = [slack, low, middle, high, above];
+        for (i, a) in all.iter().enumerate() {
+            assert!(all[i + 1..].iter().all(|b| a != b));
+        }
+        assert!(low.b() > low.r() && high.r() > high.b());
+    }
+}

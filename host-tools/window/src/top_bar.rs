@@ -1,0 +1,110 @@
+//! The state of the leg, the stop, and how the window looks.
+
+use crate::places::place;
+use crate::simulation::Simulation;
+use crate::theme::{Palette, palette};
+use eframe::egui::{Align, Button, Color32, ComboBox, Layout, RichText, Stroke, Theme, Ui, vec2};
+use leg_base::description;
+use leg_firmware::command::Command;
+use leg_firmware::supervisor::State;
+
+/// How fast the leg's time goes beside the clock's.
+const RATES: [(f64, &str); 4] = [
+    (1.0, "real time"),
+    (0.1, "1/10"),
+    (0.01, "1/100"),
+    (0.0, "stand still"),
+];
+
+/// Height of the bar, points.
+const HEIGHT: f32 = 38.0;
+
+/// Below this width there is no room for everything, points.
+const ROOMY: f32 = 700.0;
+
+/// Shows the bar.
+pub fn show(ui: &mut Ui, simulation: &mut Simulation) {
+    let palette = palette(ui.ctx());
+    let roomy = ui.available_width() > ROOMY;
+    let size = vec2(ui.available_width(), HEIGHT);
+    ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+        ui.set_min_size(size);
+        if roomy {
+            ui.label(RichText::new("Tendon-driven leg").size(18.0).strong());
+            ui.add_space(8.0);
+        }
+        chip(ui, simulation.state(), &palette);
+        let time = format!("{:8.2} s", simulation.leg().time_s());
+        ui.label(RichText::new(time).monospace());
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            stop(ui, simulation, &palette, roomy);
+            appearance(ui);
+            rate(ui, simulation);
+            if roomy {
+                let what = "firmware and simulated leg run in this window";
+                ui.label(RichText::new(what).small().color(palette.faint));
+            }
+        });
+    });
+}
+
+fn chip(ui: &mut Ui, state: State, palette: &Palette) {
+    let colour = match state {
+        State::Active | State::KeepingStation | State::Homing => palette.good,
+        State::Held | State::RampingDown | State::Off => palette.error,
+        State::Boot | State::Disarmed | State::Jogging => palette.faint,
+    };
+    let text = RichText::new(description::state(state))
+        .color(colour)
+        .strong();
+    let chip = Button::new(text)
+        .stroke(Stroke::new(1.5, colour))
+        .fill(Color32::TRANSPARENT);
+    ui.add_sized(vec2(118.0, 30.0), chip.sense(eframe::egui::Sense::hover()));
+}
+
+fn stop(ui: &mut Ui, simulation: &mut Simulation, palette: &Palette, roomy: bool) {
+    let text = if roomy { "STOP (space)" } else { "STOP" };
+    let text = RichText::new(text)
+        .color(Color32::WHITE)
+        .strong()
+        .size(17.0);
+    let width = if roomy { 150.0 } else { 84.0 };
+    let button = ui.add(
+        Button::new(text)
+            .fill(palette.danger)
+            .min_size(vec2(width, HEIGHT)),
+    );
+    place(&button, "stop");
+    let hint = "Holds the leg where it is until Clear. The space bar and Esc do the same.";
+    if button.on_hover_text(hint).clicked() {
+        simulation.command(Command::Stop, "stop");
+    }
+}
+
+fn appearance(ui: &mut Ui) {
+    let (text, next) = match ui.ctx().theme() {
+        Theme::Dark => ("Light", Theme::Light),
+        Theme::Light => ("Dark", Theme::Dark),
+    };
+    let button = ui.button(text).on_hover_text("Light or dark.");
+    place(&button, "theme");
+    if button.clicked() {
+        ui.ctx().set_theme(next);
+    }
+}
+
+fn rate(ui: &mut Ui, simulation: &mut Simulation) {
+    let rate = &mut simulation.pace.rate;
+    let shown = RATES.iter().find(|(value, _)| value == rate);
+    let text = shown.map_or("", |(_, text)| text);
+    let choice = ComboBox::from_id_salt("rate")
+        .selected_text(text)
+        .width(88.0);
+    let choice = choice.show_ui(ui, |ui| {
+        for (value, text) in RATES {
+            ui.selectable_value(rate, value, text);
+        }
+    });
+    place(&choice.response, "rate");
+}

@@ -1,0 +1,314 @@
+//! The workspace from above, on which the target is dragged.
+
+use crate::map::{Map, Quantity, RINGS, SPOKES, azimuth_deg};
+use crate::places::place;
+use crate::simulation::Simulation;
+use crate::theme::{Palette, mixed, palette};
+use eframe::egui::{
+    Align2, ComboBox, FontId, Key, Mesh, Painter, Pos2, Response, RichText, Sense, Shape, Stroke,
+    Ui, Vec2, vec2,
+};
+use leg_base::angles;
+use leg_firmware::command::Command;
+
+/// Space around the disc for its labels, points.
+const MARGIN: f32 = 24.0;
+
+/// Rings of the disc, degrees apart.
+const RING_DEG: f64 = 10.0;
+
+/// A press of an arrow key, degrees.
+const KEY_DEG: f64 = 1.0;
+
+/// The largest tilt that is commanded, as a part of the rig's: a move to its very edge may round to beyond it.
+const EDGE: f64 = 0.9999;
+
+/// A disc whose radius is the sine of the tilt.
+struct Disc {
+    centre: Pos2,
+    radius: f32,
+    sine_max: f64,
+}
+
+impl Disc {
+    fn at(&self, [x, y]: [f64; 2]) -> Pos2 {
+        let scale = f64::from(self.radius) / self.sine_max;
+        self.centre + vec2((x * scale) as f32, (-y * scale) as f32)
+    }
+
+    /// The direction of a point, inside the workspace.
+    fn direction(&self, at: Pos2) -> [f64; 2] {
+        let offset = (at - self.centre) / self.radius;
+        let scale = self.sine_max;
+        self.inside([f64::from(offset.x) * scale, f64::from(-offset.y) * scale])
+    }
+
+    fn inside(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let sine = (x * x + y * y).sqrt();
+        let shrink = (EDGE * self.sine_max / sine.max(1e-12)).min(1.0);
+        [x * shrink, y * shrink]
+    }
+}
+
+/// What the disc shows besides the leg.
+#[derive(Default)]
+pub struct Workspace {
+    /// Of what there is a map under it.
+    quantity: Option<Quantity>,
+    map: Option<Map>,
+}
+
+impl Workspace {
+    /// Draws the workspace, and moves the leg to where the target is dragged.
+    pub fn show(&mut self, ui: &mut Ui, simulation: &mut Simulation, side: f32) {
+        self.refresh(simulation);
+        disc(ui, simulation, side, self.map.as_ref());
+        self.choice(ui);
+    }
+
+    /// Makes the map that is wanted, unless it is there.
+    fn refresh(&mut self, simulation: &Simulation) {
+        let (Some(quantity), Some(telemetry)) = (self.quantity, simulation.telemetry()) else {
+            self.map = None;
+            return;
+        };
+        let payload_kg = simulation.leg().truth().payload_kg;
+        let pretension_n = f64::from(telemetry.pretension_n);
+        let holds = |map: &Map| map.holds(quantity, payload_kg, pretension_n);
+        if !self.map.as_ref().is_some_and(holds) {
+            self.map = Some(Map::new(
+                quantity,
+                simulation.rig(),
+                payload_kg,
+                pretension_n,
+            ));
+        }
+    }
+
+    fn choice(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            let name = self.quantity.map_or("none", |quantity| quantity.words()[0]);
+            let choice = ComboBox::from_id_salt("map").selected_text(format!("Map: {name}"));
+            let choice = choice.width(110.0).show_ui(ui, |ui| {
+                ui.selectable_value(&mut self.quantity, None, "none");
+                for (quantity, name, unit) in Quantity::ALL {
+                    let text = format!("{name}, {unit}");
+                    ui.selectable_value(&mut self.quantity, Some(quantity), text);
+                }
+            });
+            place(&choice.response, "map");
+            let range = self.map.as_ref().and_then(Map::range);
+            if let (Some(quantity), Some([low, high])) = (self.quantity, range) {
+                let words = format!("{low:5.1} to {high:5.1} {}", quantity.words()[1]);
+                ui.label(RichText::new(words).monospace().size(11.5));
+            }
+        });
+    }
+}
+
+fn disc(ui: &mut Ui, simulation: &mut Simulation, side: f32, map: Option<&Map>) {
+    let (rect, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::click_and_drag());
+    let disc = Disc {
+        centre: rect.center(),
+        radius: 0.5 * side - MARGIN,
+        sine_max: simulation.rig().tilt_deg.to_radians().sin(),
+    };
+    place(&response, "workspace");
+    drag(ui, &response, &disc, simulation);
+    paint(
+        &ui.painter_at(rect),
+        &disc,
+        simulation,
+        &palette(ui.ctx()),
+        map,
+        response.has_focus(),
+    );
+    response.on_hover_text(
+        "Drag to move the leg. With the disc in focus, the arrow keys move it by 1°.",
+    );
+}
+
+fn drag(ui: &Ui, response: &Response, disc: &Disc, simulation: &mut Simulation) {
+    if response.clicked() || response.drag_started() {
+        response.request_focus();
+    }
+    let pressed = response.clicked() || response.dragged();
+    let pointed = response.interact_pointer_pos().filter(|_| pressed);
+    let wanted = pointed
+        .map(|at| disc.direction(at))
+        .or_else(|| stepped(ui, response, disc, simulation));
+    let Some(wanted) = wanted else { return };
+    let [x, y] = wanted.map(|part| part as f32);
+    if commanded(simulation).map(|part| part as f32) != [x, y] {
+        simulation.command(Command::Move { x, y }, "move");
+    }
+}
+
+/// Where the arrow keys lead from where the leg was sent.
+fn stepped(ui: &Ui, response: &Response, disc: &Disc, simulation: &Simulation) -> Option<[f64; 2]> {
+    if !response.has_focus() {
+        return None;
+    }
+    let filter = eframe::egui::EventFilter {
+        horizontal_arrows: true,
+        vertical_arrows: true,
+        ..Default::default()
+    };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    let pressed = |key| f64::from(u8::from(ui.input(|input| input.key_pressed(key))));
+    let right = pressed(Key::ArrowRight) - pressed(Key::ArrowLeft);
+    let up = pressed(Key::ArrowUp) - pressed(Key::ArrowDown);
+    let step = KEY_DEG.to_radians();
+    let [x, y] = commanded(simulation);
+    (right != 0.0 || up != 0.0).then(|| disc.inside([x + step * right, y + step * up]))
+}
+
+/// Where the leg was sent.
+fn commanded(simulation: &Simulation) -> [f64; 2] {
+    let leg = simulation.leg();
+    let tip_m = leg.commanded_m() / leg.tip_length_m();
+    [tip_m.x, tip_m.y]
+}
+
+fn paint(
+    painter: &Painter,
+    disc: &Disc,
+    simulation: &Simulation,
+    palette: &Palette,
+    map: Option<&Map>,
+    focus: bool,
+) {
+    let line = Stroke::new(1.0, mixed(palette.line, palette.faint, 0.3));
+    let rim = if focus { palette.target } else { palette.faint };
+    painter.circle_filled(
+        disc.centre,
+        disc.radius,
+        mixed(palette.back, palette.card, 0.8),
+    );
+    if let Some(map) = map {
+        painter.add(Shape::mesh(mesh(disc, map, palette)));
+    }
+    painter.circle_stroke(disc.centre, disc.radius, Stroke::new(1.5, rim));
+    let tilt_deg = simulation.rig().tilt_deg;
+    let rings = (tilt_deg / RING_DEG).ceil() as u32;
+    for ring in 1..rings {
+        let tilt = f64::from(ring) * RING_DEG;
+        let radius = disc.radius * (tilt.to_radians().sin() / disc.sine_max) as f32;
+        painter.circle_stroke(disc.centre, radius, line);
+        tilt_label(painter, disc, tilt, radius, palette);
+    }
+    tilt_label(painter, disc, tilt_deg, disc.radius, palette);
+    for azimuth_deg in [0.0, 90.0, 180.0, 270.0] {
+        let [x, y] = angles::unit_vector(azimuth_deg);
+        let out = vec2(x as f32, -y as f32);
+        painter.line_segment([disc.centre, disc.centre + out * disc.radius], line);
+        painter.text(
+            disc.centre + out * (disc.radius + 11.0),
+            Align2::CENTER_CENTER,
+            format!("{azimuth_deg:.0}°"),
+            FontId::proportional(11.0),
+            palette.faint,
+        );
+    }
+    marks(painter, disc, simulation, palette);
+}
+
+/// The map, coloured from its lowest value to its highest.
+fn mesh(disc: &Disc, map: &Map, palette: &Palette) -> Mesh {
+    let [low, high] = map.range().unwrap_or_default();
+    let colour = |value: f64| {
+        let part = if high > low {
+            (value - low) / (high - low)
+        } else {
+            0.0
+        };
+        if part.is_finite() {
+            mixed(palette.card, palette.brass, 0.8 * part as f32)
+        } else {
+            palette.back
+        }
+    };
+    let mut mesh = Mesh::default();
+    for (index, value) in map.values().iter().enumerate() {
+        let (ring, spoke) = match index.checked_sub(1) {
+            None => (0, 0),
+            Some(index) => (index / SPOKES + 1, index % SPOKES),
+        };
+        let sine = disc.sine_max * ring as f64 / RINGS as f64;
+        let at = angles::unit_vector(azimuth_deg(spoke)).map(|part| sine * part);
+        mesh.colored_vertex(disc.at(at), colour(*value));
+    }
+    let vertex = |ring: usize, spoke: usize| match ring {
+        0 => 0,
+        _ => (1 + (ring - 1) * SPOKES + spoke % SPOKES) as u32,
+    };
+    for ring in 0..RINGS {
+        for spoke in 0..SPOKES {
+            let [inner, next_inner] = [spoke, spoke + 1].map(|spoke| vertex(ring, spoke));
+            let [outer, next_outer] = [spoke, spoke + 1].map(|spoke| vertex(ring + 1, spoke));
+            mesh.add_triangle(inner, outer, next_outer);
+            mesh.add_triangle(inner, next_outer, next_inner);
+        }
+    }
+    mesh
+}
+
+fn tilt_label(painter: &Painter, disc: &Disc, tilt_deg: f64, radius: f32, palette: &Palette) {
+    let diagonal = vec2(-0.707, 0.707);
+    painter.text(
+        disc.centre + diagonal * radius,
+        Align2::CENTER_CENTER,
+        format!("{tilt_deg:.0}°"),
+        FontId::proportional(10.5),
+        palette.faint,
+    );
+}
+
+/// Where the tip is, and where it was sent.
+fn marks(painter: &Painter, disc: &Disc, simulation: &Simulation, palette: &Palette) {
+    let along = simulation.leg().truth().direction.vector();
+    let [x, y] = disc.inside([along.x, along.y]);
+    let is = disc.at([x, y]);
+    let target = disc.at(commanded(simulation));
+    painter.line_segment([target, is], Stroke::new(2.0, palette.error));
+    painter.circle_filled(is, 5.0, palette.error);
+    painter.circle_stroke(target, 9.0, Stroke::new(2.5, palette.target));
+    for arm in [vec2(13.0, 0.0), vec2(0.0, 13.0)] {
+        painter.line_segment(
+            [target - arm, target + arm],
+            Stroke::new(1.2, palette.target),
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Disc, EDGE};
+    use eframe::egui::pos2;
+
+    #[test]
+    fn a_point_and_its_direction_belong_together() {
+        let disc = Disc {
+            centre: pos2(100.0, 100.0),
+            radius: 80.0,
+            sine_max: 0.5,
+        };
+        assert_eq!(disc.at([0.5, 0.0]), pos2(180.0, 100.0));
+        assert_eq!(disc.at([0.0, 0.25]), pos2(100.0, 60.0));
+        let [x, y] = disc.direction(pos2(120.0, 140.0));
+        assert!((x - 0.125).abs() < 1e-6 && (y + 0.25).abs() < 1e-6);
+    }
+
+    #[test]
+    fn what_is_beyond_the_edge_is_led_back_to_it() {
+        let disc = Disc {
+            centre: pos2(0.0, 0.0),
+            radius: 10.0,
+            sine_max: 0.5,
+        };
+        let [x, y] = disc.direction(pos2(30.0, -40.0));
+        assert!(((x * x + y * y).sqrt() - EDGE * 0.5).abs() < 1e-9);
+        assert!((y / x - 4.0 / 3.0).abs() < 1e-6);
+        assert_eq!(disc.inside([0.0, 0.0]), [0.0, 0.0]);
+    }
+}

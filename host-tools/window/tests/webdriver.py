@@ -1,0 +1,141 @@
+"""A browser without a screen, driven by the WebDriver protocol: what a test of the page needs of it, and no more."""
+
+import base64
+import json
+import socket
+import subprocess
+import time
+import urllib.error
+import urllib.request
+
+START_S = 30
+
+
+class Browser:
+    """Chromium, through its driver."""
+
+    def __init__(self, width, height, scale=1, dark=True):
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        self.driver = subprocess.Popen(
+            ["chromedriver", f"--port={port}"],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        self.base = f"http://127.0.0.1:{port}"
+        arguments = [
+            "--headless=new",
+            "--no-sandbox",
+            "--disable-dev-shm-usage",
+            "--enable-unsafe-swiftshader",
+            "--hide-scrollbars",
+            f"--force-device-scale-factor={scale}",
+        ]
+        if dark:
+            arguments.append("--blink-settings=preferredColorScheme=0")
+        options = {"args": arguments}
+        always = {
+            "browserName": "chrome",
+            "goog:chromeOptions": options,
+            "goog:loggingPrefs": {"browser": "ALL"},
+        }
+        try:
+            self._wait_for_driver()
+            answer = self._call("POST", "/session", {"capabilities": {"alwaysMatch": always}})
+            self.base += f"/session/{answer['sessionId']}"
+            self.resize(width, height)
+        except BaseException:
+            self.driver.kill()
+            raise
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        try:
+            self._call("DELETE", "")
+        finally:
+            self.driver.terminate()
+            self.driver.wait()
+
+    def _wait_for_driver(self):
+        until = time.monotonic() + START_S
+        while time.monotonic() < until:
+            try:
+                if self._call("GET", "/status")["ready"]:
+                    return
+            except OSError:
+                pass
+            time.sleep(0.1)
+        raise RuntimeError("chromedriver does not start")
+
+    def _call(self, method, path, body=None):
+        data = None if body is None else json.dumps(body).encode()
+        headers = {"Content-Type": "application/json"}
+        request = urllib.request.Request(self.base + path, data, headers, method=method)
+        try:
+            with urllib.request.urlopen(request, timeout=120) as answer:
+                return json.load(answer)["value"]
+        except urllib.error.HTTPError as error:
+            raise RuntimeError(error.read().decode()) from None
+
+    def resize(self, width, height):
+        """Makes the page, not the window around it, so large."""
+        parameters = {"width": width, "height": height, "deviceScaleFactor": 0, "mobile": False}
+        body = {"cmd": "Emulation.setDeviceMetricsOverride", "params": parameters}
+        self._call("POST", "/goog/cdp/execute", body)
+
+    def prefer(self, scheme):
+        """Light or dark, as the system would say it."""
+        features = [{"name": "prefers-color-scheme", "value": scheme}]
+        body = {"cmd": "Emulation.setEmulatedMedia", "params": {"features": features}}
+        self._call("POST", "/goog/cdp/execute", body)
+
+    def open(self, address):
+        self._call("POST", "/url", {"url": address})
+
+    def run(self, script, *arguments):
+        return self._call("POST", "/execute/sync", {"script": script, "args": list(arguments)})
+
+    def run_later(self, script, *arguments):
+        """The script calls its last argument with the result."""
+        return self._call("POST", "/execute/async", {"script": script, "args": list(arguments)})
+
+    def log(self):
+        return self._call("POST", "/se/log", {"type": "browser"})
+
+    def picture(self):
+        return base64.b64decode(self._call("GET", "/screenshot"))
+
+    def pointer(self, *steps):
+        actions = {"type": "pointer", "id": "mouse", "actions": list(steps)}
+        self._call("POST", "/actions", {"actions": [actions]})
+
+    def click(self, x, y):
+        self.pointer(*move(x, y, 0), *DOWN, pause(60), *UP)
+
+    def drag(self, start, end, steps=12):
+        way = []
+        for step in range(1, steps + 1):
+            part = step / steps
+            at = [a + part * (b - a) for a, b in zip(start, end)]
+            way += move(*at, 40)
+        self.pointer(*move(*start, 0), *DOWN, pause(60), *way, pause(60), *UP)
+
+    def key(self, key):
+        strokes = [{"type": "keyDown", "value": key}, pause(60), {"type": "keyUp", "value": key}]
+        actions = {"type": "key", "id": "keyboard", "actions": strokes}
+        self._call("POST", "/actions", {"actions": [actions]})
+
+
+DOWN = [{"type": "pointerDown", "button": 0}]
+UP = [{"type": "pointerUp", "button": 0}]
+
+
+def move(x, y, duration_ms):
+    return [{"type": "pointerMove", "x": round(x), "y": round(y), "duration": duration_ms}]
+
+
+def pause(duration_ms):
+    return {"type": "pause", "duration": duration_ms}
