@@ -56,9 +56,15 @@ impl<T: Scalar> Held<T> {
         }
         self.ticks_left -= 1;
         let part = T::from(self.ticks_left as f32 * (1.0 / BRAKE_TICKS as f32));
-        for (axis, &step_m) in shared.axes.iter_mut().zip(&self.steps_m) {
-            axis.lead_by(step_m * part);
-            if self.ticks_left == 0 {
+        for (axis, step_m) in shared.axes.iter_mut().zip(&mut self.steps_m) {
+            // One that stands is led no farther: it may be turning without being counted, or not turn at all.
+            if axis.moved_m().abs() <= T::from(STILL_STEP_M) {
+                *step_m = T::zero();
+            }
+            axis.lead_by(*step_m * part);
+            if *step_m == T::zero() {
+                axis.rest_here();
+            } else if self.ticks_left == 0 {
                 axis.rest(axis.reference_m());
             }
         }

@@ -21,11 +21,14 @@ const AWAY_PART: f32 = 0.6;
 
 /// A counter that goes farther between two checks than at its speed has jumped, by this part of what the fastest motor goes in a
 /// tick: the third above one is what a motor gains in speed meanwhile.
-const STEP_PART: f32 = 1.33;
+const STEP_PART: f32 = 0.9;
 
 /// A current that lacks this many times the current of friction of what the voltage drives is not measured: twice, as friction
 /// is known no better.
 const LACK_FRICTIONS: f32 = 2.0;
+
+/// Part of the servo's highest current that, lacking besides, is more than a motor's speed or its friction explain.
+const OPEN_PART: f32 = 0.25;
 
 /// Time constant of the filters by which current and voltage are compared, s: at low tension the voltage changes its sign from tick
 /// to tick, and the current follows later. A tenth of the time after which it is a fault.
@@ -75,6 +78,7 @@ struct AxisBounds<T> {
     driven_v: T,
     a_per_v: T,
     lack_a: T,
+    open_a: T,
     current_a: T,
     excess_a: T,
     a_per_n: T,
@@ -113,6 +117,7 @@ impl<T: Scalar> AxisMonitor<T> {
                 away_m: T::from(AWAY_PART * limits.following_m),
                 a_per_v: T::from(1.0 / servo.resistance_ohm),
                 lack_a: T::from(LACK_FRICTIONS * servo.friction_a),
+                open_a: T::from(OPEN_PART * servo.current_a),
                 driven_v: T::from(limits.driven_part * servo.current_a * servo.resistance_ohm),
                 current_a: limits.current_a.into(),
                 excess_a: T::from(limits.disagreement_a + servo.friction_a),
@@ -177,8 +182,6 @@ impl<T: Scalar> AxisMonitor<T> {
         };
         let step = count.wrapping_sub(self.last_count).cast_signed();
         self.last_count = count;
-        let driven = view.driven && axis.driving_v.abs() > bounds.driven_v;
-        faults.add(Fault::EncoderStill, self.still.update(driven && step == 0));
         let pulls = axis.voltage_v > T::zero();
         let against = step != 0 && (step > 0) != (pulls == bounds.forward);
         let hard = view.driven && axis.voltage_v.abs() > bounds.driven_v;
@@ -214,10 +217,17 @@ impl<T: Scalar> AxisMonitor<T> {
         let drawn = self.drawn_a.step(current).abs();
         // A tenth of what the speed induces is known no better.
         let allowed = bounds.lack_a + induced_v.abs() * T::from(0.1) * bounds.a_per_v;
-        let disagrees = !(driving <= drawn + allowed && drawn <= explained);
-        faults.add(
-            Fault::CurrentDisagrees,
-            self.disagrees.update(view.driven && disagrees),
-        );
+        let lack = driving - (drawn + allowed);
+        let lacks = !(lack <= T::zero());
+        let disagrees = lacks || !(drawn <= explained);
+        let driven = axis.driving_v.abs() > bounds.driven_v;
+        // One that draws less than its voltage drives through one that stands is turning, or is not connected.
+        let lost = lacks && view.led;
+        let stands = step == 0 && (driven || lost);
+        let open = lost && !(lack <= bounds.open_a);
+        let still = self.still.update(view.driven && (stands || open));
+        faults.add(Fault::EncoderStill, still && driven && !lost);
+        let disagrees = self.disagrees.update(view.driven && disagrees);
+        faults.add(Fault::CurrentDisagrees, disagrees || still && lost);
     }
 }
