@@ -83,6 +83,20 @@ const DRIFTS_S: f64 = 5.0;
 /// How far a cell has to lie before it must be told, N.
 const LIE_N: f64 = 8.0;
 
+/// How far a motor has to go for its failure to show, m: 1 mm at the tip.
+const SHOWN_M: f64 = 1e-4;
+
+/// A leg without its strike.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Unstruck {
+    /// True tensions when it is struck, N.
+    pub tensions_n: [f64; 3],
+    /// The highest from then on, N.
+    pub highest_n: [f64; 3],
+    /// How far each motor goes from then on, m of its tendon.
+    pub travels_m: [f64; 3],
+}
+
 /// The bars of one strike.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bars {
@@ -97,18 +111,18 @@ pub(super) struct Bars {
 }
 
 impl Bars {
-    /// Of a defect at a true tension of each tendon, N.
+    /// Of a defect of a leg with a maximum tension, N.
     pub fn new(
         defect: Option<Defect>,
         activity: Activity,
         f_max_n: f64,
-        tensions_n: [f64; 3],
+        before: &Unstruck,
     ) -> Self {
         Self {
             tension_n: f_max_n * (1.0 + beyond(defect, activity)),
             homing_n: HOMING_N,
-            tip_mm: tip_mm(defect, activity).max(gain_at_max_mm(defect, f_max_n, tensions_n)),
-            named_s: defect.and_then(|defect| named_s(defect, activity, tensions_n)),
+            tip_mm: tip_mm(defect, activity).max(gain_at_max_mm(defect, f_max_n, before.highest_n)),
+            named_s: defect.and_then(|defect| named_s(defect, activity, before)),
         }
     }
 }
@@ -152,11 +166,11 @@ const fn cuts_off(defect: Defect) -> bool {
 }
 
 /// How far the tip may go where a cell that shows ever more comes to the maximum tension, mm.
-fn gain_at_max_mm(defect: Option<Defect>, f_max_n: f64, tensions_n: [f64; 3]) -> f64 {
+fn gain_at_max_mm(defect: Option<Defect>, f_max_n: f64, highest_n: [f64; 3]) -> f64 {
     let shows_n = match defect {
-        Some(Defect::CellGainDrift(i)) => 1.2 * tensions_n[i],
+        Some(Defect::CellGainDrift(i)) => 1.2 * highest_n[i],
         // 5 N in a second, for the time in which it is to be told.
-        Some(Defect::CellDrifting(i)) => tensions_n[i] + 5.0 * DRIFTS_S,
+        Some(Defect::CellDrifting(i)) => highest_n[i] + 5.0 * DRIFTS_S,
         _ => return 0.0,
     };
     if shows_n > f_max_n {
@@ -202,7 +216,8 @@ fn tip_mm(defect: Option<Defect>, activity: Activity) -> f64 {
 }
 
 /// When a defect has to be named.
-fn named_s(defect: Defect, activity: Activity, tensions_n: [f64; 3]) -> Option<f64> {
+fn named_s(defect: Defect, activity: Activity, before: &Unstruck) -> Option<f64> {
+    let tensions_n = before.tensions_n;
     use Activity::{Disarmed, Following, Held, Homing, Moving, RampingDown};
     // Tendons that barely pull, or less and less, show little.
     let pulls = !matches!(activity, Homing | RampingDown | Disarmed);
@@ -230,8 +245,9 @@ fn named_s(defect: Defect, activity: Activity, tensions_n: [f64; 3]) -> Option<f
         Defect::CellWanders(_) => pulls.then_some(WANDERS_S),
         Defect::CellDrifting(_) => rests.then_some(DRIFTS_S),
         Defect::CellFollows(i) if rests => lies(tensions_n[(i + 1) % 3] - tensions_n[i]),
-        Defect::EncoderLost(_) | Defect::EncoderReversed(_) | Defect::MotorJammed(_) => {
-            (activity == Moving).then_some(NAMED_S)
+        // One that has hardly to turn on shows nothing.
+        Defect::EncoderLost(i) | Defect::EncoderReversed(i) | Defect::MotorJammed(i) => {
+            (activity == Moving && before.travels_m[i] >= SHOWN_M).then_some(NAMED_S)
         }
         _ => None,
     }

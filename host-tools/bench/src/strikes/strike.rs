@@ -169,7 +169,7 @@ pub(super) fn strike(
         strike.defect,
         case.activity,
         case.file.f_max_n,
-        stand.truth.tensions_n,
+        &prepared.unstruck,
     );
     if let Some(defect) = strike.defect {
         stand.plant().set_defect(defect, true);
