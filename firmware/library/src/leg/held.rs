@@ -6,8 +6,8 @@ use crate::sensors::TICK_HZ;
 use leg_model::Scalar;
 
 /// Time in which a moving leg is braked, s: stopped at once, it would swing on with its payload, and double the tension of a
-/// tendon. About a period of that swing; at the greatest speed the tip goes on by 18 mm.
-const BRAKE_S: f32 = 0.2;
+/// tendon. About a period of that swing; at the greatest speed the tip goes on by 15 mm.
+const BRAKE_S: f32 = 0.17;
 
 /// The same where a motor does not obey, s: meanwhile the others pull against it.
 const SHORT_BRAKE_S: f32 = 0.06;

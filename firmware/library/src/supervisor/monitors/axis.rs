@@ -20,7 +20,7 @@ const OVER_CHECKS: u32 = 4;
 const AWAY_PART: f32 = 0.6;
 
 /// A counter that goes farther between two checks than at its speed has jumped, by this part of what the fastest motor goes in a
-/// tick: the third above one is what a motor gains in speed meanwhile.
+/// tick: on the paper's rig 3.4 µm. A motor at its highest current gains 0.4 µm meanwhile, and its tracked speed lags by 1 µm.
 const STEP_PART: f32 = 0.9;
 
 /// A current that lacks this many times the current of friction of what the voltage drives is not measured: twice, as friction
