@@ -78,6 +78,7 @@ struct AxisBounds<T> {
     driven_v: T,
     a_per_v: T,
     lack_a: T,
+    lack_a_per_v: T,
     open_a: T,
     current_a: T,
     excess_a: T,
@@ -117,6 +118,7 @@ impl<T: Scalar> AxisMonitor<T> {
                 away_m: T::from(AWAY_PART * limits.following_m),
                 a_per_v: T::from(1.0 / servo.resistance_ohm),
                 lack_a: T::from(LACK_FRICTIONS * servo.friction_a),
+                lack_a_per_v: T::from(0.1 / servo.resistance_ohm),
                 open_a: T::from(OPEN_PART * servo.current_a),
                 driven_v: T::from(limits.driven_part * servo.current_a * servo.resistance_ohm),
                 current_a: limits.current_a.into(),
@@ -182,6 +184,7 @@ impl<T: Scalar> AxisMonitor<T> {
         };
         let step = count.wrapping_sub(self.last_count).cast_signed();
         self.last_count = count;
+        let driven = view.driven && axis.driving_v.abs() > bounds.driven_v;
         let pulls = axis.voltage_v > T::zero();
         let against = step != 0 && (step > 0) != (pulls == bounds.forward);
         let hard = view.driven && axis.voltage_v.abs() > bounds.driven_v;
@@ -216,17 +219,15 @@ impl<T: Scalar> AxisMonitor<T> {
         let driving = self.driving_a.step(driving_v * bounds.a_per_v).abs();
         let drawn = self.drawn_a.step(current).abs();
         // A tenth of what the speed induces is known no better.
-        let allowed = bounds.lack_a + induced_v.abs() * T::from(0.1) * bounds.a_per_v;
+        let allowed = bounds.lack_a + induced_v.abs() * bounds.lack_a_per_v;
         let lack = driving - (drawn + allowed);
-        let lacks = !(lack <= T::zero());
-        let disagrees = lacks || !(drawn <= explained);
-        let driven = axis.driving_v.abs() > bounds.driven_v;
-        // One that draws less than its voltage drives through one that stands is turning, or is not connected.
-        let lost = lacks && view.led;
-        let stands = step == 0 && (driven || lost);
-        let open = lost && !(lack <= bounds.open_a);
-        let still = self.still.update(view.driven && (stands || open));
-        faults.add(Fault::EncoderStill, still && driven && !lost);
+        let disagrees = !(lack <= T::zero() && drawn <= explained);
+        // A motor that draws less than its voltage drives through one that stands is turning, or is not connected.
+        let stands = step == 0;
+        let least = if stands { T::zero() } else { bounds.open_a };
+        let lost = view.led && !(lack <= least);
+        let still = self.still.update(lost || stands && driven);
+        faults.add(Fault::EncoderStill, still && !lost);
         let disagrees = self.disagrees.update(view.driven && disagrees);
         faults.add(Fault::CurrentDisagrees, disagrees || still && lost);
     }
