@@ -22,6 +22,9 @@ const GRASPED_BEYOND: f64 = 0.8;
 /// is far enough away to tell, and turns on by its inertia.
 const RUNAWAY_BEYOND: f64 = 1.6;
 
+/// The same where it is cleared and armed again, twice: each arm lets the motor run from where it came to rest.
+const RUNAWAY_AGAIN_BEYOND: f64 = 1.8;
+
 /// The same where a tendon slips by 5 mm and catches the leg, which has fallen by the 46 mm of the tip that belong to it.
 const SLIP_BEYOND: f64 = 2.5;
 
@@ -65,8 +68,10 @@ const SLIP_MM: f64 = 80.0;
 /// The same where a tendon grows longer unseen, by 0.1 mm or 0.9 mm of the tip in a second, mm.
 const CREEP_MM: f64 = 4.0;
 
-/// The same where a driver runs away until it is cut off, and where a motor turns without being counted, mm.
+/// The same where a driver runs away until it is cut off, once and where it is armed again, and where a motor turns without being
+/// counted, mm.
 const RUNAWAY_MM: f64 = 35.0;
+const RUNAWAY_AGAIN_MM: f64 = 45.0;
 const UNCOUNTED_MM: f64 = 5.0;
 
 /// The same where a hand holds the tip that should move, with 5 N for each millimetre, mm: the leg gives way by its stiffness.
@@ -108,6 +113,9 @@ pub(super) struct Bars {
     pub tip_mm: f64,
     /// When a fault has to be named, s; none where nothing shows it.
     pub named_s: Option<f64>,
+    /// Whether the tip may sag once a tension that truly is beyond its bar has the leg ramp down: with two cells that changed their
+    /// places it swings ever more, and its tendons have to be paid out.
+    pub sags: bool,
 }
 
 impl Bars {
@@ -123,6 +131,7 @@ impl Bars {
             homing_n: HOMING_N,
             tip_mm: tip_mm(defect, activity).max(gain_at_max_mm(defect, f_max_n, before.highest_n)),
             named_s: defect.and_then(|defect| named_s(defect, activity, before)),
+            sags: defect == Some(Defect::CellsSwapped),
         }
     }
 }
@@ -130,6 +139,7 @@ impl Bars {
 /// How far the leg may go beyond its maximum tension, as a part of it.
 fn beyond(defect: Option<Defect>, activity: Activity) -> f64 {
     match defect {
+        Some(Defect::DriverFullOn(_)) if activity == Activity::Rearmed => RUNAWAY_AGAIN_BEYOND,
         Some(Defect::DriverFullOn(_)) => RUNAWAY_BEYOND,
         Some(Defect::TendonSlips(_)) => SLIP_BEYOND,
         Some(Defect::DirectionStuck(_)) => STUCK_BEYOND,
@@ -154,6 +164,8 @@ const fn cuts_off(defect: Defect) -> bool {
             | Defect::CurrentOffset(_)
             | Defect::CurrentFullScale(_)
             | Defect::CurrentDead(_)
+            // A motor that shows no current is taken for one that is not connected, against which the others pull shortly.
+            | Defect::CurrentZero(_)
             | Defect::EncoderLost(_)
             | Defect::EncoderReversed(_)
             | Defect::EncoderSlipping(_)
@@ -193,6 +205,7 @@ fn tip_mm(defect: Option<Defect>, activity: Activity) -> f64 {
         Some(Defect::TendonCut(_)) => CUT_MM,
         Some(Defect::TendonSlips(_)) => SLIP_MM,
         Some(Defect::TendonCreeps(_)) => CREEP_MM,
+        Some(Defect::DriverFullOn(_)) if activity == Activity::Rearmed => RUNAWAY_AGAIN_MM,
         Some(Defect::DriverFullOn(_) | Defect::DirectionStuck(_)) => RUNAWAY_MM,
         Some(Defect::EncoderLost(_)) => UNCOUNTED_MM,
         Some(Defect::LegGrasped) => GRASPED_MM,
@@ -276,6 +289,7 @@ mod tests {
             format!("{WAY_MM} mm; {ASIDE_MM} mm while it is paid out, {LIFTED_MM} mm while homing"),
             format!("{CUT_MM} mm where a tendon is cut, {SLIP_MM} mm where it slips"),
             format!("{CREEP_MM} mm where it creeps, {RUNAWAY_MM} mm where a driver"),
+            format!("{RUNAWAY_AGAIN_MM} mm where it is armed again with it"),
             format!("{UNCOUNTED_MM} mm where a motor turns without being counted"),
             format!("{GRASPED_MM} mm where a hand holds the tip"),
             format!(
@@ -302,6 +316,7 @@ mod tests {
                 "switches on fully by itself: up to {} more",
                 percent(RUNAWAY_BEYOND)
             ),
+            format!("{} where it is armed again with it", percent(RUNAWAY_AGAIN_BEYOND)),
             format!(
                 "catches the falling leg: up to {} more",
                 percent(SLIP_BEYOND)
