@@ -6,11 +6,17 @@ use crate::sensors::TICK_HZ;
 use leg_model::Scalar;
 
 /// Time in which a moving leg is braked, s: stopped at once, it would swing on with its payload, and double the tension of a
-/// tendon. About a period of that swing; at the greatest speed the tip goes on by 15 mm.
-const BRAKE_S: f32 = 0.17;
+/// tendon. About a period of that swing; at the greatest speed the tip goes on by 13 mm.
+const BRAKE_S: f32 = 0.15;
 
-/// The same where a motor does not obey, s: meanwhile the others pull against it.
+/// The same of a leg near its maximum tension, s: slower, it adds less to that. A leg that is not there swings the farther the slower it is.
+const GENTLE_BRAKE_S: f32 = 0.2;
+
+/// The same where a motor may not obey, s: meanwhile the others pull against it.
 const SHORT_BRAKE_S: f32 = 0.06;
+
+/// Part of the maximum tension above which a tendon that is asked for it is near it: a brake adds up to a quarter.
+const NEAR_PART: f32 = 0.8;
 
 /// How far a tendon at the maximum tension is paid out beyond its way, m: 1 mm at the tip.
 const GIVEN_M: f32 = 1e-4;
@@ -30,11 +36,15 @@ pub struct Held<T> {
 
 impl<T: Scalar> Held<T> {
     /// From how far the motors go in a tick now, m; `obeyed`: whether every motor does what it is asked.
-    pub fn braking(steps_m: [T; 3], obeyed: bool) -> Self {
+    pub fn braking(shared: &Shared<T>, steps_m: [T; 3], obeyed: bool) -> Self {
         let still = steps_m
             .iter()
             .all(|step| step.abs() <= T::from(STILL_STEP_M));
-        let brake_s = if obeyed { BRAKE_S } else { SHORT_BRAKE_S };
+        let brake_s = match (obeyed, near_max(shared)) {
+            (false, _) => SHORT_BRAKE_S,
+            (true, true) => GENTLE_BRAKE_S,
+            (true, false) => BRAKE_S,
+        };
         let ticks = brake_s * f32::from(TICK_HZ);
         Self {
             steps_m,
@@ -89,4 +99,11 @@ impl<T: Scalar> Held<T> {
             }
         }
     }
+}
+
+/// Whether a tendon should pull nearly by the maximum tension. What its load cell shows may be the fault.
+fn near_max<T: Scalar>(shared: &Shared<T>) -> bool {
+    let near_n = shared.mechanism.f_max_n * T::from(NEAR_PART);
+    let tensions_n = shared.target.as_ref().map(|target| target.tensions_n);
+    tensions_n.is_some_and(|tensions_n| tensions_n.iter().any(|&tension| tension > near_n))
 }

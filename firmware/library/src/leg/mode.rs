@@ -146,7 +146,7 @@ impl<T: Scalar> Mode<T> {
         trust: Trust,
     ) -> Self {
         if state == State::Held && trust.counters {
-            let held = Held::braking(steps_m, trust.motors);
+            let held = Held::braking(shared, steps_m, trust.motors);
             if held.brakes() {
                 if trust.cells {
                     shared.lowest_m = held.lowest_m(&measured.pulled_m);

@@ -118,7 +118,7 @@ faults! {
     8 CurrentDisagrees {
         name: "current and tension disagree",
         reaction: Hold,
-        cause: "a motor draws disagreement_a more than its tension and friction ask, or less than its voltage drives, for disagreement_time_s; for still_time_s where it lacks much, or counts nothing although it must turn",
+        cause: "a motor draws disagreement_a more than its tension and friction ask, or less than its voltage drives, for disagreement_time_s; for still_time_s where much is lacking or nothing is counted",
         remedy: "look for an encoder that does not count, a stiff screw, a wrong current sensor or an open wire of the motor",
         clears: Command,
     }

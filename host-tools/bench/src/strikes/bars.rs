@@ -316,7 +316,10 @@ mod tests {
                 "switches on fully by itself: up to {} more",
                 percent(RUNAWAY_BEYOND)
             ),
-            format!("{} where it is armed again with it", percent(RUNAWAY_AGAIN_BEYOND)),
+            format!(
+                "{} where it is armed again with it",
+                percent(RUNAWAY_AGAIN_BEYOND)
+            ),
             format!(
                 "catches the falling leg: up to {} more",
                 percent(SLIP_BEYOND)
