@@ -72,7 +72,7 @@ const CREEP_MM: f64 = 4.0;
 /// counted, mm.
 const RUNAWAY_MM: f64 = 35.0;
 const RUNAWAY_AGAIN_MM: f64 = 45.0;
-const UNCOUNTED_MM: f64 = 5.0;
+const UNCOUNTED_MM: f64 = 1.0;
 
 /// The same where a hand holds the tip that should move, with 5 N for each millimetre, mm: the leg gives way by its stiffness.
 const GRASPED_MM: f64 = 10.0;
