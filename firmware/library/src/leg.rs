@@ -279,6 +279,7 @@ impl<T: Scalar> Leg<T> {
         let trust = Trust {
             pose: self.agreement.watches() && !self.supervisor.stopped(),
             counters: !latched.overlaps(FaultSet::SUSPECT_COUNTERS),
+            motors: !latched.has(Fault::CurrentDisagrees),
             cells: !latched.overlaps(FaultSet::OF_CELLS),
         };
         let steps_m = self.mode.steps_m(&self.shared, trust);

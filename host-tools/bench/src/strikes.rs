@@ -7,6 +7,7 @@
 mod activity;
 mod bars;
 mod case;
+mod course;
 mod false_alarms;
 mod preparation;
 mod push;

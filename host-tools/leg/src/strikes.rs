@@ -45,7 +45,7 @@ pub(crate) struct Args {
 }
 
 /// Time between two moments of a strike's course, s.
-const EVERY_S: f64 = 0.02;
+const EVERY_S: f64 = 0.001;
 
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let campaign = Campaign {

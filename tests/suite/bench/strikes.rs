@@ -91,6 +91,56 @@ fn a_leg_that_leaves_its_load_out_is_armed_again_where_it_is() {
     }
 }
 
+/// Asserts that strikes of a seed, by number and fault, pass with the tip no farther than so many mm.
+fn require_within(seed: u64, strikes: &[(u64, &str, f64)]) {
+    let campaign = Campaign {
+        seed,
+        ..campaign("none")
+    };
+    for &(index, fault, tip_mm) in strikes {
+        let (struck, _) = campaign.repeat(index, 0.1);
+        assert_eq!(struck.fault, fault);
+        assert!(struck.passes() && struck.tip_mm < tip_mm, "{struck:?}");
+    }
+}
+
+/// Strikes that failed once: a motor whose encoder is lost turned on until it was driven hard, and on while its leg was braked. What its
+/// voltage drives and it does not draw tells now that it turns.
+#[test]
+fn a_motor_that_turns_uncounted_moves_the_leg_little() {
+    require_within(
+        12,
+        &[(2947, "encoder_lost", 0.5), (2537, "encoder_lost", 1.0)],
+    );
+    require_within(99, &[(2473, "encoder_lost", 3.0)]);
+}
+
+/// Strikes that failed once: bursts of 50 counts were taken for a motor that gains speed.
+#[test]
+fn a_counter_that_jumps_is_found_at_its_first_burst() {
+    require_within(99, &[(2051, "encoder_jumps", 0.1)]);
+}
+
+/// Strikes that failed once: a leg near its maximum tension was braked in 0.15 s, whatever its load cells said, and one that gave way
+/// to the maximum tension pulled in again what it had given.
+#[test]
+fn a_leg_near_its_maximum_tension_is_braked_within_the_bound() {
+    require_within(12, &[(1856, "supply_sag", 0.5), (1865, "cell_stuck", 0.5)]);
+    require_within(99, &[(2185, "supply_sag", 0.1)]);
+}
+
+/// Strikes that failed once: the other motors pulled for 0.15 s against one that could not turn.
+#[test]
+fn motors_do_not_pull_for_long_against_one_that_is_not_driven() {
+    require_within(
+        12,
+        &[
+            (1191, "half_bridge_open_outwards", 6.0),
+            (1697, "half_bridge_open_outwards", 6.0),
+        ],
+    );
+}
+
 /// A part of a use of each rig.
 #[test]
 fn a_leg_that_is_used_raises_no_alarm() {

@@ -18,6 +18,7 @@ fn settings(zero: Option<[f64; 3]>) -> Settings {
     let mut settings = control_settings::settings(&rig, &rig.gains, zero);
     // The motors of the bench draw nothing.
     settings.limits.disagreement_time_s = 10.0;
+    settings.limits.still_time_s = 10.0;
     settings
 }
 

@@ -12,6 +12,7 @@ fn a_jump_of_any_size_asks_for_no_more_than_the_supply() {
             let StillLeg {
                 mut leg,
                 mut sensors,
+                ..
             } = StillLeg::armed();
             for _ in 0..8 {
                 sensors.encoder_counts[axis] = sensors.encoder_counts[axis].wrapping_add(jump);

@@ -5,7 +5,7 @@
 use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::control::CYCLE_TICKS;
 use leg_firmware::leg::{Leg, Outcome};
-use leg_firmware::sensors::Sensors;
+use leg_firmware::sensors::{CODE_MAX, Sensors};
 use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::State;
 use leg_rig::rig_file::RigFile;
@@ -18,6 +18,8 @@ use std::path::Path;
 pub struct StillLeg {
     pub leg: Leg<f32>,
     pub sensors: Sensors,
+    /// Codes of the current that a whole duty drives through a motor that stands.
+    codes_per_duty: f32,
 }
 
 impl StillLeg {
@@ -39,7 +41,12 @@ impl StillLeg {
         let watch = &mut |tick: &Tick<'_>| read.push(*tick.sensors);
         simulation.run(&mut InProcess::new(), watch).unwrap();
         let sensors = *read.last().unwrap();
-        let mut still = Self { leg, sensors };
+        let (servo, axis) = (&settings.servo, &settings.axes[0]);
+        let mut still = Self {
+            leg,
+            sensors,
+            codes_per_duty: 24.0 / servo.resistance_ohm / axis.current_a_per_code,
+        };
         for sensors in &read {
             still.leg.tick(sensors);
         }
@@ -66,7 +73,10 @@ impl StillLeg {
                     *code ^= 1;
                 }
             }
-            self.leg.tick(&self.sensors);
+            let duty = self.leg.tick(&self.sensors).duty;
+            let middle = f32::from(CODE_MAX) * 0.5;
+            self.sensors.current_codes =
+                duty.map(|duty| (middle + duty * self.codes_per_duty) as u16);
         }
     }
 

@@ -157,6 +157,11 @@ impl<T: Scalar> Axis<T> {
         self.voltage_v = T::zero();
     }
 
+    /// Stays where it was tracked to.
+    pub fn rest_here(&mut self) {
+        self.rest(self.tracked_m);
+    }
+
     /// Leads the axis to a goal by `share` of the way in each tick from now or, if that is too fast, more slowly.
     #[inline(always)]
     pub fn lead(&mut self, goal: &AxisGoal<T>, share: T) {

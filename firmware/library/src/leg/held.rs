@@ -1,15 +1,25 @@
 //! Held: the motors brake to a stop, and rest on their screws from then on.
 
 use super::shared::Shared;
-use crate::control::TICK_S;
+use crate::control::{TICK_S, bounds};
+use crate::sensors::TICK_HZ;
 use leg_model::Scalar;
 
 /// Time in which a moving leg is braked, s: stopped at once, it would swing on with its payload, and double the tension of a
-/// tendon. About a period of that swing; at the greatest speed the tip goes on by 15 mm.
+/// tendon. About a period of that swing; at the greatest speed the tip goes on by 13 mm.
 const BRAKE_S: f32 = 0.15;
 
-/// The same in ticks.
-const BRAKE_TICKS: u32 = (BRAKE_S / TICK_S) as u32;
+/// The same of a leg near its maximum tension, s: slower, it adds less to that. A leg that is not there swings the farther the slower it is.
+const GENTLE_BRAKE_S: f32 = 0.2;
+
+/// The same where a motor may not obey, s: meanwhile the others pull against it.
+const SHORT_BRAKE_S: f32 = 0.06;
+
+/// Part of the maximum tension above which a tendon that is asked for it is near it: a brake adds up to a quarter.
+const NEAR_PART: f32 = 0.8;
+
+/// How far a tendon at the maximum tension is paid out beyond its way, m: 1 mm at the tip.
+const GIVEN_M: f32 = 1e-4;
 
 /// A motor that is led by less than this in a tick stands, m: 0.1 mm/s.
 const STILL_STEP_M: f32 = 1e-4 * TICK_S;
@@ -20,18 +30,37 @@ pub struct Held<T> {
     /// How far each motor went in a tick at first, m.
     steps_m: [T; 3],
     ticks_left: u32,
+    /// Inverse of the ticks of the whole brake.
+    per_tick: f32,
 }
 
 impl<T: Scalar> Held<T> {
-    /// From how far the motors go in a tick now, m.
-    pub fn braking(steps_m: [T; 3]) -> Self {
+    /// From how far the motors go in a tick now, m; `obeyed`: whether every motor does what it is asked.
+    pub fn braking(shared: &Shared<T>, steps_m: [T; 3], obeyed: bool) -> Self {
         let still = steps_m
             .iter()
             .all(|step| step.abs() <= T::from(STILL_STEP_M));
+        let brake_s = match (obeyed, near_max(shared)) {
+            (false, _) => SHORT_BRAKE_S,
+            (true, true) => GENTLE_BRAKE_S,
+            (true, false) => BRAKE_S,
+        };
+        let ticks = brake_s * f32::from(TICK_HZ);
         Self {
             steps_m,
-            ticks_left: if still { 0 } else { BRAKE_TICKS },
+            ticks_left: if still { 0 } else { ticks as u32 },
+            per_tick: 1.0 / ticks,
         }
+    }
+
+    /// How far each tendon may be paid out while it is braked, from where it is pulled in, m.
+    pub fn lowest_m(&self, pulled_m: &[T; 3]) -> [T; 3] {
+        let mut lowest_m = *pulled_m;
+        for (lowest, &step_m) in lowest_m.iter_mut().zip(&self.steps_m) {
+            let way_m = step_m * T::from(0.5 * self.ticks_left as f32);
+            *lowest += bounds::min(way_m, T::zero()) - T::from(GIVEN_M);
+        }
+        lowest_m
     }
 
     /// At rest.
@@ -39,6 +68,7 @@ impl<T: Scalar> Held<T> {
         Self {
             steps_m: [T::zero(); 3],
             ticks_left: 0,
+            per_tick: 0.0,
         }
     }
 
@@ -55,12 +85,25 @@ impl<T: Scalar> Held<T> {
             return;
         }
         self.ticks_left -= 1;
-        let part = T::from(self.ticks_left as f32 * (1.0 / BRAKE_TICKS as f32));
-        for (axis, &step_m) in shared.axes.iter_mut().zip(&self.steps_m) {
-            axis.lead_by(step_m * part);
-            if self.ticks_left == 0 {
+        let part = T::from(self.ticks_left as f32 * self.per_tick);
+        for (axis, step_m) in shared.axes.iter_mut().zip(&mut self.steps_m) {
+            // One that stands is led no farther: it may be turning without being counted, or not turn at all.
+            if axis.moved_m().abs() <= T::from(STILL_STEP_M) {
+                *step_m = T::zero();
+            }
+            axis.lead_by(*step_m * part);
+            if *step_m == T::zero() {
+                axis.rest_here();
+            } else if self.ticks_left == 0 {
                 axis.rest(axis.reference_m());
             }
         }
     }
+}
+
+/// Whether a tendon should pull nearly by the maximum tension. What its load cell shows may be the fault.
+fn near_max<T: Scalar>(shared: &Shared<T>) -> bool {
+    let near_n = shared.mechanism.f_max_n * T::from(NEAR_PART);
+    let tensions_n = shared.target.as_ref().map(|target| target.tensions_n);
+    tensions_n.is_some_and(|tensions_n| tensions_n.iter().any(|&tension| tension > near_n))
 }

@@ -146,9 +146,13 @@ impl<T: Scalar> Mode<T> {
         trust: Trust,
     ) -> Self {
         if state == State::Held && trust.counters {
-            let held = Held::braking(steps_m);
+            let held = Held::braking(shared, steps_m, trust.motors);
             if held.brakes() {
-                shared.ignore_tensions();
+                if trust.cells {
+                    shared.lowest_m = held.lowest_m(&measured.pulled_m);
+                } else {
+                    shared.ignore_tensions();
+                }
                 return Self::Held(held);
             }
         }
@@ -186,6 +190,8 @@ pub struct Trust {
     pub pose: bool,
     /// The counters: no fault is latched that they may cause.
     pub counters: bool,
+    /// The motors: none is known not to do what it is asked.
+    pub motors: bool,
     /// The load cells: no fault is latched that the check of one raises.
     pub cells: bool,
 }

@@ -22,6 +22,9 @@ const GRASPED_BEYOND: f64 = 0.8;
 /// is far enough away to tell, and turns on by its inertia.
 const RUNAWAY_BEYOND: f64 = 1.6;
 
+/// The same where it is cleared and armed again, twice: each arm lets the motor run from where it came to rest.
+const RUNAWAY_AGAIN_BEYOND: f64 = 1.8;
+
 /// The same where a tendon slips by 5 mm and catches the leg, which has fallen by the 46 mm of the tip that belong to it.
 const SLIP_BEYOND: f64 = 2.5;
 
@@ -65,9 +68,11 @@ const SLIP_MM: f64 = 80.0;
 /// The same where a tendon grows longer unseen, by 0.1 mm or 0.9 mm of the tip in a second, mm.
 const CREEP_MM: f64 = 4.0;
 
-/// The same where a driver runs away until it is cut off, and where a motor turns without being counted, mm.
+/// The same where a driver runs away until it is cut off, once and where it is armed again, and where a motor turns without being
+/// counted, mm.
 const RUNAWAY_MM: f64 = 35.0;
-const UNCOUNTED_MM: f64 = 5.0;
+const RUNAWAY_AGAIN_MM: f64 = 45.0;
+const UNCOUNTED_MM: f64 = 1.0;
 
 /// The same where a hand holds the tip that should move, with 5 N for each millimetre, mm: the leg gives way by its stiffness.
 const GRASPED_MM: f64 = 10.0;
@@ -83,6 +88,20 @@ const DRIFTS_S: f64 = 5.0;
 /// How far a cell has to lie before it must be told, N.
 const LIE_N: f64 = 8.0;
 
+/// How far a motor has to go for its failure to show, m: 1 mm at the tip.
+const SHOWN_M: f64 = 1e-4;
+
+/// A leg without its strike.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Unstruck {
+    /// True tensions when it is struck, N.
+    pub tensions_n: [f64; 3],
+    /// The highest from then on, N.
+    pub highest_n: [f64; 3],
+    /// How far each motor goes from then on, m of its tendon.
+    pub travels_m: [f64; 3],
+}
+
 /// The bars of one strike.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bars {
@@ -94,21 +113,25 @@ pub(super) struct Bars {
     pub tip_mm: f64,
     /// When a fault has to be named, s; none where nothing shows it.
     pub named_s: Option<f64>,
+    /// Whether the tip may sag once a tension that truly is beyond its bar has the leg ramp down: with two cells that changed their
+    /// places it swings ever more, and its tendons have to be paid out.
+    pub sags: bool,
 }
 
 impl Bars {
-    /// Of a defect at a true tension of each tendon, N.
+    /// Of a defect of a leg with a maximum tension, N.
     pub fn new(
         defect: Option<Defect>,
         activity: Activity,
         f_max_n: f64,
-        tensions_n: [f64; 3],
+        before: &Unstruck,
     ) -> Self {
         Self {
             tension_n: f_max_n * (1.0 + beyond(defect, activity)),
             homing_n: HOMING_N,
-            tip_mm: tip_mm(defect, activity).max(gain_at_max_mm(defect, f_max_n, tensions_n)),
-            named_s: defect.and_then(|defect| named_s(defect, activity, tensions_n)),
+            tip_mm: tip_mm(defect, activity).max(gain_at_max_mm(defect, f_max_n, before.highest_n)),
+            named_s: defect.and_then(|defect| named_s(defect, activity, before)),
+            sags: defect == Some(Defect::CellsSwapped),
         }
     }
 }
@@ -116,6 +139,7 @@ impl Bars {
 /// How far the leg may go beyond its maximum tension, as a part of it.
 fn beyond(defect: Option<Defect>, activity: Activity) -> f64 {
     match defect {
+        Some(Defect::DriverFullOn(_)) if activity == Activity::Rearmed => RUNAWAY_AGAIN_BEYOND,
         Some(Defect::DriverFullOn(_)) => RUNAWAY_BEYOND,
         Some(Defect::TendonSlips(_)) => SLIP_BEYOND,
         Some(Defect::DirectionStuck(_)) => STUCK_BEYOND,
@@ -140,6 +164,8 @@ const fn cuts_off(defect: Defect) -> bool {
             | Defect::CurrentOffset(_)
             | Defect::CurrentFullScale(_)
             | Defect::CurrentDead(_)
+            // A motor that shows no current is taken for one that is not connected, against which the others pull shortly.
+            | Defect::CurrentZero(_)
             | Defect::EncoderLost(_)
             | Defect::EncoderReversed(_)
             | Defect::EncoderSlipping(_)
@@ -152,11 +178,11 @@ const fn cuts_off(defect: Defect) -> bool {
 }
 
 /// How far the tip may go where a cell that shows ever more comes to the maximum tension, mm.
-fn gain_at_max_mm(defect: Option<Defect>, f_max_n: f64, tensions_n: [f64; 3]) -> f64 {
+fn gain_at_max_mm(defect: Option<Defect>, f_max_n: f64, highest_n: [f64; 3]) -> f64 {
     let shows_n = match defect {
-        Some(Defect::CellGainDrift(i)) => 1.2 * tensions_n[i],
+        Some(Defect::CellGainDrift(i)) => 1.2 * highest_n[i],
         // 5 N in a second, for the time in which it is to be told.
-        Some(Defect::CellDrifting(i)) => tensions_n[i] + 5.0 * DRIFTS_S,
+        Some(Defect::CellDrifting(i)) => highest_n[i] + 5.0 * DRIFTS_S,
         _ => return 0.0,
     };
     if shows_n > f_max_n {
@@ -179,6 +205,7 @@ fn tip_mm(defect: Option<Defect>, activity: Activity) -> f64 {
         Some(Defect::TendonCut(_)) => CUT_MM,
         Some(Defect::TendonSlips(_)) => SLIP_MM,
         Some(Defect::TendonCreeps(_)) => CREEP_MM,
+        Some(Defect::DriverFullOn(_)) if activity == Activity::Rearmed => RUNAWAY_AGAIN_MM,
         Some(Defect::DriverFullOn(_) | Defect::DirectionStuck(_)) => RUNAWAY_MM,
         Some(Defect::EncoderLost(_)) => UNCOUNTED_MM,
         Some(Defect::LegGrasped) => GRASPED_MM,
@@ -202,7 +229,8 @@ fn tip_mm(defect: Option<Defect>, activity: Activity) -> f64 {
 }
 
 /// When a defect has to be named.
-fn named_s(defect: Defect, activity: Activity, tensions_n: [f64; 3]) -> Option<f64> {
+fn named_s(defect: Defect, activity: Activity, before: &Unstruck) -> Option<f64> {
+    let tensions_n = before.tensions_n;
     use Activity::{Disarmed, Following, Held, Homing, Moving, RampingDown};
     // Tendons that barely pull, or less and less, show little.
     let pulls = !matches!(activity, Homing | RampingDown | Disarmed);
@@ -230,8 +258,9 @@ fn named_s(defect: Defect, activity: Activity, tensions_n: [f64; 3]) -> Option<f
         Defect::CellWanders(_) => pulls.then_some(WANDERS_S),
         Defect::CellDrifting(_) => rests.then_some(DRIFTS_S),
         Defect::CellFollows(i) if rests => lies(tensions_n[(i + 1) % 3] - tensions_n[i]),
-        Defect::EncoderLost(_) | Defect::EncoderReversed(_) | Defect::MotorJammed(_) => {
-            (activity == Moving).then_some(NAMED_S)
+        // One that has hardly to turn on shows nothing.
+        Defect::EncoderLost(i) | Defect::EncoderReversed(i) | Defect::MotorJammed(i) => {
+            (activity == Moving && before.travels_m[i] >= SHOWN_M).then_some(NAMED_S)
         }
         _ => None,
     }
@@ -260,6 +289,7 @@ mod tests {
             format!("{WAY_MM} mm; {ASIDE_MM} mm while it is paid out, {LIFTED_MM} mm while homing"),
             format!("{CUT_MM} mm where a tendon is cut, {SLIP_MM} mm where it slips"),
             format!("{CREEP_MM} mm where it creeps, {RUNAWAY_MM} mm where a driver"),
+            format!("{RUNAWAY_AGAIN_MM} mm where it is armed again with it"),
             format!("{UNCOUNTED_MM} mm where a motor turns without being counted"),
             format!("{GRASPED_MM} mm where a hand holds the tip"),
             format!(
@@ -285,6 +315,10 @@ mod tests {
             format!(
                 "switches on fully by itself: up to {} more",
                 percent(RUNAWAY_BEYOND)
+            ),
+            format!(
+                "{} where it is armed again with it",
+                percent(RUNAWAY_AGAIN_BEYOND)
             ),
             format!(
                 "catches the falling leg: up to {} more",

@@ -1,7 +1,9 @@
 //! Brings a leg to what it does when it is struck.
 
 use super::activity::Activity;
+use super::bars::Unstruck;
 use super::case::Case;
+use super::course::Course;
 use super::push::strongest_n;
 use super::way::Way;
 use crate::stand::{self, Stand};
@@ -34,6 +36,7 @@ pub(super) struct Prepared {
     pub stand: Stand,
     /// Where its tip may be.
     pub way: Way,
+    pub unstruck: Unstruck,
 }
 
 /// # Errors
@@ -65,7 +68,12 @@ pub(super) fn prepare(case: &Case) -> Result<Prepared, String> {
             let way = Way::at(stand.truth.tip_m);
             stand.command(&command)?;
             stand.wait(ARMING_S * case.part)?;
-            Ok(Prepared { stand, way })
+            let unstruck = Course::from(&stand).rest(0.0);
+            Ok(Prepared {
+                stand,
+                way,
+                unstruck,
+            })
         }
         _ => {
             stand.command(&command)?;
@@ -76,7 +84,12 @@ pub(super) fn prepare(case: &Case) -> Result<Prepared, String> {
 
 fn resting(stand: Stand) -> Prepared {
     let way = Way::at(stand.truth.tip_m);
-    Prepared { stand, way }
+    let unstruck = Course::from(&stand).rest(0.0);
+    Prepared {
+        stand,
+        way,
+        unstruck,
+    }
 }
 
 /// A leg in the state from which the command goes out.
@@ -140,10 +153,12 @@ fn disarm(stand: &mut Stand) -> Result<(), String> {
 fn on_the_way(case: &Case, stand: Stand) -> Result<Prepared, String> {
     let mut way = Way::at(stand.truth.tip_m);
     let mut whole = stand.clone();
+    let mut course = Course::from(&whole);
     let (began_s, mut ended_s) = (stand.time_s(), None);
     while ended_s.is_none_or(|ended_s| whole.time_s() < ended_s + AFTER_S) {
         whole.tick()?;
         way.add(whole.truth.tip_m);
+        course.add(&whole);
         if whole.faults().any() {
             let names = leg_base::description::faults(whole.faults());
             return Err(format!("{names} without a strike"));
@@ -159,7 +174,12 @@ fn on_the_way(case: &Case, stand: Stand) -> Result<Prepared, String> {
     let mut stand = stand;
     let all_s = ended_s.unwrap_or(began_s) - began_s;
     stand.wait(LATEST * case.part * all_s)?;
-    Ok(Prepared { stand, way })
+    let unstruck = course.rest(stand.time_s());
+    Ok(Prepared {
+        stand,
+        way,
+        unstruck,
+    })
 }
 
 fn at_end(case: &Case, stand: &Stand) -> bool {

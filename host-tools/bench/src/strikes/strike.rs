@@ -30,6 +30,9 @@ const DRIVEN_A: f64 = 0.3;
 const CLEARS_S: [f64; 2] = [0.6, 1.4];
 const ARMS_AFTER_S: f64 = 0.1;
 
+/// A tension by the maximum from which a leg has to ramp down.
+const OVER_PART: f64 = 1.1;
+
 /// Ticks between two measures of the distance from a way.
 const WAY_TICKS: u64 = 8;
 
@@ -169,7 +172,7 @@ pub(super) fn strike(
         strike.defect,
         case.activity,
         case.file.f_max_n,
-        stand.truth.tensions_n,
+        &prepared.unstruck,
     );
     if let Some(defect) = strike.defect {
         stand.plant().set_defect(defect, true);
@@ -181,6 +184,8 @@ pub(super) fn strike(
         before: stand.faults(),
         stopped_s: None,
         given: 0,
+        may_sag: bars.sags,
+        sags: false,
         every_s,
         moments: Vec::new(),
         struck: Struck::new(case, strike),
@@ -227,6 +232,9 @@ struct Watch<'a> {
     stopped_s: Option<f64>,
     /// Commands that the user has given since.
     given: usize,
+    /// Whether it may sag once a true tension has it ramp down, and whether it does.
+    may_sag: bool,
+    sags: bool,
     every_s: Option<f64>,
     moments: Vec<Moment>,
     struck: Struck,
@@ -252,7 +260,8 @@ impl Watch<'_> {
             self.struck.homing_n = self.struck.homing_n.max(highest);
         }
         let tick = (now_s * 8000.0).round() as u64;
-        if !self.case.activity.on_the_way() || tick.is_multiple_of(WAY_TICKS) {
+        self.sags |= self.may_sag && stand.state() == State::RampingDown && self.over_tension();
+        if !self.sags && (!self.case.activity.on_the_way() || tick.is_multiple_of(WAY_TICKS)) {
             let tip_mm = self.way.distance_mm(&stand.truth.tip_m);
             self.struck.tip_mm = self.struck.tip_mm.max(tip_mm);
         }
@@ -260,6 +269,11 @@ impl Watch<'_> {
         self.watch_motors(stand, now_s);
         self.record(stand, now_s);
         Ok(())
+    }
+
+    /// Whether a true tension has been beyond what **too much tension** asks for by itself.
+    fn over_tension(&self) -> bool {
+        self.struck.tension_n > OVER_PART * self.case.file.f_max_n
     }
 
     /// Clears and arms, as a user does who does not believe the fault.

@@ -20,12 +20,15 @@ const OVER_CHECKS: u32 = 4;
 const AWAY_PART: f32 = 0.6;
 
 /// A counter that goes farther between two checks than at its speed has jumped, by this part of what the fastest motor goes in a
-/// tick: the third above one is what a motor gains in speed meanwhile.
-const STEP_PART: f32 = 1.33;
+/// tick: on the paper's rig 3.4 µm. A motor at its highest current gains 0.4 µm meanwhile, and its tracked speed lags by 1 µm.
+const STEP_PART: f32 = 0.9;
 
 /// A current that lacks this many times the current of friction of what the voltage drives is not measured: twice, as friction
 /// is known no better.
 const LACK_FRICTIONS: f32 = 2.0;
+
+/// Part of the servo's highest current that, lacking besides, is more than a motor's speed or its friction explain.
+const OPEN_PART: f32 = 0.25;
 
 /// Time constant of the filters by which current and voltage are compared, s: at low tension the voltage changes its sign from tick
 /// to tick, and the current follows later. A tenth of the time after which it is a fault.
@@ -75,11 +78,11 @@ struct AxisBounds<T> {
     driven_v: T,
     a_per_v: T,
     lack_a: T,
+    lack_a_per_v: T,
+    open_a: T,
     current_a: T,
     excess_a: T,
     a_per_n: T,
-    /// Whether the encoder counts up when the tendon is pulled in.
-    forward: bool,
 }
 
 impl<T: Scalar> AxisMonitor<T> {
@@ -113,11 +116,13 @@ impl<T: Scalar> AxisMonitor<T> {
                 away_m: T::from(AWAY_PART * limits.following_m),
                 a_per_v: T::from(1.0 / servo.resistance_ohm),
                 lack_a: T::from(LACK_FRICTIONS * servo.friction_a),
+                // A tenth of what the speed induces is known no better.
+                lack_a_per_v: T::from(0.1 / servo.resistance_ohm),
+                open_a: T::from(OPEN_PART * servo.current_a),
                 driven_v: T::from(limits.driven_part * servo.current_a * servo.resistance_ohm),
                 current_a: limits.current_a.into(),
                 excess_a: T::from(limits.disagreement_a + servo.friction_a),
                 a_per_n: servo.pull_a_per_n.into(),
-                forward: m_per_count > 0.0,
             },
         }
     }
@@ -177,31 +182,27 @@ impl<T: Scalar> AxisMonitor<T> {
         };
         let step = count.wrapping_sub(self.last_count).cast_signed();
         self.last_count = count;
-        let driven = view.driven && axis.driving_v.abs() > bounds.driven_v;
-        faults.add(Fault::EncoderStill, self.still.update(driven && step == 0));
-        let pulls = axis.voltage_v > T::zero();
-        let against = step != 0 && (step > 0) != (pulls == bounds.forward);
-        let hard = view.driven && axis.voltage_v.abs() > bounds.driven_v;
+        if !view.driven {
+            // What a driver reports that is off means nothing.
+            return self.rest();
+        }
+        let driven = axis.driving_v.abs() > bounds.driven_v;
+        let hard = axis.voltage_v.abs() > bounds.driven_v;
+        let step_m = T::from(f32::from(step)) * bounds.m_per_count;
+        let against = step_m * axis.voltage_v < T::zero();
         faults.add(
             Fault::EncoderReversed,
             self.reversed.update(hard && against),
         );
-        let step_m = T::from(f32::from(step)) * bounds.m_per_count;
         let beyond_m = step_m.abs() - axis.speed_m_per_s.abs() * T::from(CYCLE_S);
-        let jumps = view.driven && !(beyond_m <= bounds.step_m);
-        faults.add(Fault::EncoderJump, jumps);
+        faults.add(Fault::EncoderJump, !(beyond_m <= bounds.step_m));
         let off_m = axis.following_m.abs();
         // Farther from where it is led with every tick: it does not obey its voltage.
         let away = axis.following_m * axis.speed_m_per_s < T::zero();
-        let runs = away && !(off_m <= bounds.away_m);
-        faults.add(Fault::RunsAway, view.driven && runs);
+        faults.add(Fault::RunsAway, away && !(off_m <= bounds.away_m));
         faults.add(Fault::Following, view.led && !(off_m <= bounds.following_m));
-        faults.add(
-            Fault::OverCurrent,
-            // What a driver reports that is off means nothing.
-            self.over_current
-                .update(view.driven && !(current.abs() <= bounds.current_a)),
-        );
+        let over_current = !(current.abs() <= bounds.current_a);
+        faults.add(Fault::OverCurrent, self.over_current.update(over_current));
         let explained = bounds.excess_a + bounds.a_per_n * tension.abs();
         let induced_v = axis.voltage_v - axis.driving_v;
         // A driver gives no pulse in the tick in which it turns about.
@@ -212,12 +213,31 @@ impl<T: Scalar> AxisMonitor<T> {
         let driving_v = mean_v - induced_v;
         let driving = self.driving_a.step(driving_v * bounds.a_per_v).abs();
         let drawn = self.drawn_a.step(current).abs();
-        // A tenth of what the speed induces is known no better.
-        let allowed = bounds.lack_a + induced_v.abs() * T::from(0.1) * bounds.a_per_v;
-        let disagrees = !(driving <= drawn + allowed && drawn <= explained);
-        faults.add(
-            Fault::CurrentDisagrees,
-            self.disagrees.update(view.driven && disagrees),
-        );
+        let allowed = bounds.lack_a + induced_v.abs() * bounds.lack_a_per_v;
+        let lack = driving - (drawn + allowed);
+        // A motor that draws less than its voltage drives through one that stands is turning, or is not connected.
+        let stands = step == 0;
+        let least = if stands { T::zero() } else { bounds.open_a };
+        let lost = view.led && !(lack <= least);
+        let still = self.still.update(lost || stands && driven);
+        faults.add(Fault::EncoderStill, still && !lost);
+        let disagrees = !(lack <= T::zero() && drawn <= explained);
+        let disagrees = self.disagrees.update(disagrees);
+        faults.add(Fault::CurrentDisagrees, disagrees || still && lost);
+    }
+
+    /// The driver is off.
+    fn rest(&mut self) {
+        for debounce in [
+            &mut self.still,
+            &mut self.reversed,
+            &mut self.over_current,
+            &mut self.disagrees,
+        ] {
+            debounce.update(false);
+        }
+        self.driving_a.set(T::zero());
+        self.drawn_a.set(T::zero());
+        self.last_voltage_v = T::zero();
     }
 }

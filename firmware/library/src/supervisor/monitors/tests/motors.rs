@@ -33,20 +33,54 @@ fn a_current_is_too_much_or_not_what_the_tension_asks_for() {
     }
 }
 
+/// Asserts that current and voltage disagree as soon as the filter of 5 ms and the time for a motor that stands allow.
+fn disagrees_soon(change: impl Fn(&Limits, &mut Seen)) {
+    let mut seen = Seen::sound();
+    change(&limits(), &mut seen);
+    let (faults, after) = Watched::new().faults_after(&seen).unwrap();
+    assert_eq!(faults, FaultSet::single(Fault::CurrentDisagrees));
+    let time = cycles(limits().still_time_s);
+    assert!((time..5 * time).contains(&after), "{after} cycles");
+}
+
+/// A voltage that drives so much, A, at a motor that draws nothing.
+fn drives(a: f64, counts: i16) -> impl Fn(&Limits, &mut Seen) {
+    move |_, s| {
+        let volt = a * f64::from(Settings::for_table_1().unwrap().servo.resistance_ohm);
+        (s.view.voltage_v, s.view.mean_voltage_v, s.view.driving_v) = (volt, volt, volt);
+        s.counts_a_cycle = counts;
+    }
+}
+
 /// A motor at a voltage draws at least what that drives less twice its friction.
 #[test]
 fn a_current_that_is_missing_is_a_fault() {
-    let servo = Settings::for_table_1().unwrap().servo;
-    let (ohm, friction) = (f64::from(servo.resistance_ohm), f64::from(servo.friction_a));
+    let friction_a = 2.0 * f64::from(Settings::for_table_1().unwrap().servo.friction_a);
     for sign in [1.0, -1.0] {
-        let drives = |a: f64| {
-            move |_: &Limits, s: &mut Seen| {
-                let volt = sign * a * ohm;
-                (s.view.voltage_v, s.view.mean_voltage_v, s.view.driving_v) = (volt, volt, volt);
-            }
-        };
-        is_no_fault("friction", drives(2.0 * friction - 0.001));
-        disagrees(drives(2.0 * friction + 0.05));
+        let forward = sign as i16;
+        for counts in [0, forward] {
+            is_no_fault("friction", drives(sign * (friction_a - 0.001), counts));
+        }
+        disagrees(drives(sign * (friction_a + 0.05), forward));
+    }
+}
+
+/// What it lacks shows that it turns: then it has to be counted. What it lacks by far shows that it is not connected.
+#[test]
+fn a_motor_that_turns_uncounted_or_is_not_driven_at_all_is_found_soon() {
+    let servo = Settings::for_table_1().unwrap().servo;
+    let friction_a = 2.0 * f64::from(servo.friction_a);
+    let open_a = friction_a + 0.25 * f64::from(servo.current_a);
+    for sign in [1.0, -1.0] {
+        let forward = sign as i16;
+        disagrees_soon(drives(sign * (friction_a + 0.05), 0));
+        disagrees(drives(sign * (open_a - 0.05), forward));
+        disagrees_soon(drives(sign * (open_a + 0.1), forward));
+        // While the tendons are paid out nobody holds it: it is switched off as soon as it is driven hard.
+        disagrees(|limits, s| {
+            drives(sign * (open_a + 0.05), 0)(limits, s);
+            s.led = false;
+        });
     }
 }
 
@@ -65,6 +99,7 @@ fn the_voltage_that_a_speed_induces_needs_no_current() {
                     sign * (induced_v + driving_v),
                 );
                 s.view.driving_v = sign * driving_v;
+                s.counts_a_cycle = sign as i16;
             }
         };
         for induced_v in [3.0, 10.0] {
@@ -99,6 +134,15 @@ fn a_motor_that_is_driven_turns_and_the_way_it_is_driven() {
             still,
             drives(sign * (hard_v + 0.01), 0),
         );
+        let uncounted = |led: bool| {
+            move |limits: &Limits, s: &mut Seen| {
+                drives(sign * (hard_v + 0.01), 0)(limits, s);
+                s.measured.currents_a[AXIS] = 0.0;
+                s.led = led;
+            }
+        };
+        disagrees_soon(uncounted(true));
+        is_fault(Fault::EncoderStill, still, uncounted(false));
         let reversed = cycles(limits().reversed_time_s);
         let back = drives(sign * (hard_v + 0.01), -forward);
         is_fault(Fault::EncoderReversed, reversed, back);
@@ -130,14 +174,14 @@ fn a_motor_that_is_not_where_it_is_led_is_a_fault() {
     }
 }
 
-/// A third more than the fastest motor goes in a tick, beside what goes on at its speed.
+/// Nine tenths of what the fastest motor goes in a tick, beside what goes on at its speed.
 #[test]
 fn a_counter_that_goes_too_far_has_jumped() {
     let settings = Settings::for_table_1().unwrap();
     let m_per_count = f64::from(settings.axes[AXIS].m_per_count.abs());
     let tick_m = f64::from(settings.servo.speed_m_per_s) / 8000.0;
     let counts = |speed: f64, more: f64| {
-        let step_m = speed.abs() * f64::from(CYCLE_S) + more * 1.33 * tick_m;
+        let step_m = speed.abs() * f64::from(CYCLE_S) + more * 0.9 * tick_m;
         (speed.signum() * step_m / m_per_count).trunc() as i16
     };
     for speed in [0.01, -0.01] {
