@@ -24,6 +24,9 @@ const GIVEN_M: f32 = 1e-4;
 /// A motor that is led by less than this in a tick stands, m: 0.1 mm/s.
 const STILL_STEP_M: f32 = 1e-4 * TICK_S;
 
+/// One that is led and goes by less than this in a tick does not turn, or is not counted, m: 0.01 mm/s.
+const STANDING_STEP_M: f32 = 1e-5 * TICK_S;
+
 /// The leg stays where it is. No load cell is asked.
 #[derive(Clone, Copy, Debug)]
 pub struct Held<T> {
@@ -37,9 +40,8 @@ pub struct Held<T> {
 impl<T: Scalar> Held<T> {
     /// From how far the motors go in a tick now, m; `obeyed`: whether every motor does what it is asked.
     pub fn braking(shared: &Shared<T>, steps_m: [T; 3], obeyed: bool) -> Self {
-        let still = steps_m
-            .iter()
-            .all(|step| step.abs() <= T::from(STILL_STEP_M));
+        let steps_m = steps_m.map(|step| if stands(step) { T::zero() } else { step });
+        let still = steps_m.iter().all(|&step| step == T::zero());
         let brake_s = match (obeyed, near_max(shared)) {
             (false, _) => SHORT_BRAKE_S,
             (true, true) => GENTLE_BRAKE_S,
@@ -87,11 +89,13 @@ impl<T: Scalar> Held<T> {
         self.ticks_left -= 1;
         let part = T::from(self.ticks_left as f32 * self.per_tick);
         for (axis, step_m) in shared.axes.iter_mut().zip(&mut self.steps_m) {
-            // One that stands is led no farther: it may be turning without being counted, or not turn at all.
-            if axis.moved_m().abs() <= T::from(STILL_STEP_M) {
+            let led_m = *step_m * part;
+            // One that stands where it is led on rests: it may be turning without being counted, or not turn at all.
+            let standing_m = T::from(STANDING_STEP_M);
+            if !stands(led_m) && axis.moved_m().abs() <= standing_m {
                 *step_m = T::zero();
             }
-            axis.lead_by(*step_m * part);
+            axis.lead_by(led_m);
             if *step_m == T::zero() {
                 axis.rest_here();
             } else if self.ticks_left == 0 {
@@ -99,6 +103,11 @@ impl<T: Scalar> Held<T> {
             }
         }
     }
+}
+
+/// Whether a motor that goes so far in a tick, m, stands.
+fn stands<T: Scalar>(step_m: T) -> bool {
+    step_m.abs() <= T::from(STILL_STEP_M)
 }
 
 /// Whether a tendon should pull nearly by the maximum tension. What its load cell shows may be the fault.

@@ -76,7 +76,7 @@ fn a_motor_that_turns_uncounted_or_is_not_driven_at_all_is_found_soon() {
         disagrees_soon(drives(sign * (friction_a + 0.05), 0));
         disagrees(drives(sign * (open_a - 0.05), forward));
         disagrees_soon(drives(sign * (open_a + 0.1), forward));
-        // While the tendons are paid out nobody holds it: it is switched off as soon as it is driven hard.
+        // While the tendons are paid out it is switched off as soon as it is driven hard.
         disagrees(|limits, s| {
             drives(sign * (open_a + 0.05), 0)(limits, s);
             s.led = false;
