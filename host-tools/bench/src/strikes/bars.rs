@@ -73,6 +73,7 @@ const CREEP_MM: f64 = 4.0;
 const RUNAWAY_MM: f64 = 35.0;
 const RUNAWAY_AGAIN_MM: f64 = 45.0;
 const UNCOUNTED_MM: f64 = 1.0;
+const UNCOUNTED_WAY_MM: f64 = 5.0;
 
 /// The same where a hand holds the tip that should move, with 5 N for each millimetre, mm: the leg gives way by its stiffness.
 const GRASPED_MM: f64 = 10.0;
@@ -207,6 +208,7 @@ fn tip_mm(defect: Option<Defect>, activity: Activity) -> f64 {
         Some(Defect::TendonCreeps(_)) => CREEP_MM,
         Some(Defect::DriverFullOn(_)) if activity == Activity::Rearmed => RUNAWAY_AGAIN_MM,
         Some(Defect::DriverFullOn(_) | Defect::DirectionStuck(_)) => RUNAWAY_MM,
+        Some(Defect::EncoderLost(_)) if activity.on_the_way() => UNCOUNTED_WAY_MM,
         Some(Defect::EncoderLost(_)) => UNCOUNTED_MM,
         Some(Defect::LegGrasped) => GRASPED_MM,
         Some(Defect::CellsSwapped | Defect::EncodersSwapped | Defect::EncoderReversed(_)) => {
@@ -290,7 +292,9 @@ mod tests {
             format!("{CUT_MM} mm where a tendon is cut, {SLIP_MM} mm where it slips"),
             format!("{CREEP_MM} mm where it creeps, {RUNAWAY_MM} mm where a driver"),
             format!("{RUNAWAY_AGAIN_MM} mm where it is armed again with it"),
-            format!("{UNCOUNTED_MM} mm where a motor turns without being counted"),
+            format!(
+                "{UNCOUNTED_MM} mm where a motor turns without being counted, {UNCOUNTED_WAY_MM} mm in a move"
+            ),
             format!("{GRASPED_MM} mm where a hand holds the tip"),
             format!(
                 "{NAMED_S} s where something shows it; a cell that fades {} s, wanders {WANDERS_S} s, drifts {DRIFTS_S} s",
