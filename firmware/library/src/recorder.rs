@@ -2,7 +2,7 @@
 //!
 //! A row holds the signals that the settings choose, three numbers each, and is written once a tick. A number is a value in steps
 //! of its signal, modulo 65 536: the newest row is kept in full, and whoever reads the rows unwraps them from there, because no
-//! value changes by half of that in a tick.
+//! value that is recorded changes by half of that in a tick: see [`RecordedSignal::steps`].
 //!
 //! A fault ends the recording after a quarter of the rows more; it begins anew when the fault is cleared. A host can end it, too.
 
@@ -197,7 +197,11 @@ impl Recorder {
     fn follow_faults(&mut self, leg: &Leg<f32>) {
         let faulted = leg.stopped();
         match self.state {
-            RecorderState::Recording if faulted && !self.faulted => {
+            RecorderState::Recording | RecorderState::Stopped if faulted && !self.faulted => {
+                if self.state == RecorderState::Stopped {
+                    // Whoever reads finds that it has begun anew: what was before the fault is lost, what follows is not.
+                    self.restart();
+                }
                 self.state = RecorderState::Triggered;
                 self.fault_tick = Some(leg.ticks());
                 // A quarter of the rows: a row is `width` triples.

@@ -1,6 +1,6 @@
 //! Settings that outlast a loss of power, in flash.
 //!
-//! A record is a version, the hash of the type [`Settings`], the settings in postcard's format and a CRC-32. Records
+//! A record is the hash of the type [`Settings`], the settings in postcard's format and a CRC-32. Records
 //! are appended, page by page in turn, by `sequential-storage`, which has a CRC of its own and goes back to the newest
 //! whole record; under it a seal on every page makes erasing whole or not at all. If power fails during a
 //! [`save`](Store::save), the next [`load`](Store::load) gives the old settings or the new ones.

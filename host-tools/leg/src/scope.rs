@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 ///
 /// The recorder keeps the signals that the leg's settings choose (`recorded` in `[control]` of the rig file), three of them for
 /// 0.2 s, more for a shorter time. A fault that stops the leg ends the recording after a quarter of the rows more; it is kept until
-/// the fault is cleared. Without such a fault the last ticks up to now are read, and the recorder goes on.
+/// the fault is cleared or other settings are set. Without such a fault the last ticks up to now are read, and the recorder goes on.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// The file: FILE.mcap for Foxglove, PlotJuggler and `leg plot`, or FILE.csv.
@@ -39,7 +39,8 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let stopping = telemetry.faults.without_limits();
     let about = About::log(&title(&operator, &scope));
     if let Some(file) = &args.out {
-        save(file, &about, &settings, &scope, wall_time_s(&operator))?;
+        let now = wall_time_s(&operator).map(|now_s| (telemetry.tick, now_s));
+        save(file, &about, &settings, &scope, now)?;
     }
     let plots = match &args.plots {
         Some(directory) => recorder_charts::save(&about.title, &scope.rows, directory)
@@ -82,27 +83,26 @@ fn title(operator: &Operator, scope: &Scope) -> String {
     }
 }
 
-/// Writes the rows, the newest of which has the time of the day, s since 1970.
+/// Writes the rows, each with its time of the day, by a tick and the time of that, s since 1970.
 fn save(
     file: &Path,
     about: &About,
     settings: &Settings,
     scope: &Scope,
-    wall_time_s: Option<f64>,
+    now: Option<(u32, f64)>,
 ) -> Result<(), Failure> {
     recording::record(file, about, settings, |recording| {
-        write(recording, scope, wall_time_s)
+        write(recording, scope, now)
     })
 }
 
 fn write(
     recording: &mut Recording,
     scope: &Scope,
-    wall_time_s: Option<f64>,
+    now: Option<(u32, f64)>,
 ) -> Result<(), RecordingError> {
     for row in &scope.rows {
-        let age = scope.report.tick.wrapping_sub(row.tick);
-        let at_s = wall_time_s.map(|now_s| now_s - seconds(age.into()));
+        let at_s = now.map(|(tick, now_s)| now_s - seconds(tick.wrapping_sub(row.tick).into()));
         recording.take_recorder_row(row, at_s)?;
     }
     Ok(())

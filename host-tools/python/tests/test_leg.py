@@ -114,6 +114,7 @@ def test_an_emulated_leg_is_disturbed_and_no_other():
     assert leg.telemetry()["payload_kg"] == pytest.approx(1.0, abs=0.05)
     before = leg.scope()
     assert "since_fault_s" not in before
+    leg.wait(0.3)
     leg.disturb({"emergency_stop": True})
     leg.wait(0.1)
     kept = leg.scope()

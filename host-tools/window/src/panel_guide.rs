@@ -37,7 +37,7 @@ pub fn show(ui: &mut Ui, simulation: &mut Simulation) -> Wish {
         Step {
             number: 1,
             action: ["Hang 2 kg on the tip", "guide_payload"],
-            effect: "The tip sags by some 7 mm.",
+            effect: "The tip sags to some 7 mm.",
             done: simulation.payload_kg() >= PAYLOAD_KG,
         },
         Step {

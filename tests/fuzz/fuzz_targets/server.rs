@@ -4,7 +4,7 @@
 
 use leg_firmware::frame::{Decoder, MAX_FRAME};
 use leg_firmware::host_link::HostReply;
-use leg_firmware::recorder::{Recorder};
+use leg_firmware::recorder::Recorder;
 use leg_firmware_bench::protocol::Reply;
 use leg_firmware_bench::server::Server;
 use leg_fuzz::{NoBoard, armed, brought, feed, framed, host_requests, requests};

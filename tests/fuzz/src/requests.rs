@@ -114,7 +114,7 @@ mod tests {
     use leg_firmware::frame::{Decoder, MAX_FRAME};
     use leg_firmware::host_link::Hello;
     use leg_firmware::host_link::{HostRefusal, HostReply};
-    use leg_firmware::recorder::{Recorder};
+    use leg_firmware::recorder::Recorder;
     use leg_firmware::supervisor::State;
     use leg_firmware_bench::protocol::{BENCH_SCHEMA, Reply, Request};
     use leg_firmware_bench::server::Server;

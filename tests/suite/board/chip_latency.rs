@@ -104,6 +104,11 @@ fn by_serial(image: &Path) -> (u64, u32) {
         let reply = ask(chip, &mut meter, &request);
         let refused = HostReply::Refused(HostRefusal::NotIdentified);
         assert_ne!(reply, refused, "{request:?}");
+        assert_ne!(
+            reply,
+            HostReply::Refused(HostRefusal::Recording),
+            "{request:?}"
+        );
     }
     meter.worst
 }

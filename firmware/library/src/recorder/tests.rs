@@ -231,6 +231,22 @@ fn a_host_that_has_gone_does_not_keep_it_from_recording() {
     assert_eq!(bench.ask(RecorderRequest::Report).rows, 0);
 }
 
+/// The rows before it are lost, but not those after it.
+#[test]
+fn a_fault_while_a_host_reads_is_recorded() {
+    let mut bench = Bench::new(SignalSet::default());
+    bench.run(BOOT_TICKS);
+    bench.ask(RecorderRequest::Stop);
+    bench.sensors.emergency_stop = true;
+    bench.run(400);
+    let report = bench.ask(RecorderRequest::Restart);
+    assert_eq!(report.state, RecorderState::Faulted);
+    assert_eq!(
+        (report.fault_tick, report.rows),
+        (Some(BOOT_TICKS + 1), 400)
+    );
+}
+
 #[test]
 fn nothing_is_recorded_where_nothing_is_chosen() {
     let mut bench = Bench::new(SignalSet::NONE);

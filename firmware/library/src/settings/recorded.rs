@@ -48,11 +48,13 @@ impl RecordedSignal {
                 settings.axes.map(|axis| 2.0 * axis.cell_n_per_code)
             }
             // A counter has 16 bits itself, and loses none of them here.
-            Self::Pulled | Self::References => settings.axes.map(|axis| axis.m_per_count.abs()),
+            Self::Pulled => settings.axes.map(|axis| axis.m_per_count.abs()),
+            // A reference may go back at once by as much as its motor is behind.
+            Self::References => settings.axes.map(|axis| 4.0 * axis.m_per_count.abs()),
             Self::Currents => settings.axes.map(|axis| 2.0 * axis.current_a_per_code),
             Self::Duties => [1e-4; 3],
-            // A part of 10 000 is 0.006°; of the residual, 0.1 µm is less than the least that is watched.
-            Self::Pose => [1e-4, 1e-4, 1e-7],
+            // A part of 10 000 is 0.006°; of the residual, 1 µm is less than the least that is watched.
+            Self::Pose => [1e-4, 1e-4, 1e-6],
             Self::Board => {
                 let board = &settings.board;
                 let [volts, celsius] = [board.supply_v_per_code, board.temperature_c_per_code];

@@ -3,7 +3,7 @@
 use super::{Operator, OperatorError};
 use leg_base::recorder_rows::{self, RecorderRow};
 use leg_base::tick_time::seconds;
-use leg_firmware::host_link::{HostReply, HostRequest};
+use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest};
 use leg_firmware::recorder::{RecorderReply, RecorderReport, RecorderRequest, RecorderState};
 use leg_firmware::settings::Settings;
 use std::time::Duration;
@@ -70,9 +70,16 @@ impl Operator {
                     HostReply::Recorder(RecorderReply::Triples(read)) => Some(read),
                     _ => None,
                 },
-            )?;
+            );
+            let read = match read {
+                // It has begun anew meanwhile: a fault came, or was cleared.
+                Err(OperatorError::Refused(_, HostRefusal::Recording)) => {
+                    return Err(OperatorError::RecordingReplaced);
+                }
+                read => read?,
+            };
             if read.is_empty() {
-                // It has begun anew meanwhile: the fault was cleared, or the board was reset.
+                // So it has with other settings.
                 return Err(OperatorError::RecordingReplaced);
             }
             triples.extend(read);

@@ -1,7 +1,7 @@
 //! Reproduces a recording with the present code, bit for bit.
 
 use super::contents::Contents;
-use super::mcap_file::{REPORT, SCHEMA_KEY, SETTINGS, TICKS, schema};
+use super::mcap_file::{RECORDER, REPORT, SCHEMA_KEY, SETTINGS, TICKS, schema};
 use super::tick_record::{TickRecord, bits};
 use leg_base::failure::Failure;
 use leg_firmware::host_link::BoardKind;
@@ -71,8 +71,8 @@ fn compare(file: &Path) -> Result<Replay, String> {
             }
             (TICKS, Some(leg)) => result.take(leg, &mut recorder, read(message)?),
             (TICKS, None) => return Ok(false),
-            // A log has settings, too, but no ticks.
-            (REPORT, leg) if result.ticks == 0 => {
+            // A log and what a recorder held have settings, too, but no ticks.
+            (REPORT | RECORDER, leg) if result.ticks == 0 => {
                 *leg = None;
                 return Ok(false);
             }

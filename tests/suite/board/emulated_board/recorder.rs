@@ -81,8 +81,14 @@ fn what_happened_before_a_fault_can_be_read_after_it() {
 fn a_leg_without_a_fault_goes_on_recording() {
     let board = BoardUnderTest::new(&[]);
     board.json(&move_to("10"));
+    let directory = tempfile::tempdir().unwrap();
+    let file = directory.path().join("now.csv");
+    let mut newest = 0.0;
     for _ in 0..2 {
-        let read = board.json(&["scope"]);
+        let read = board.json(&["scope", "--out", &file.display().to_string()]);
+        let last = number(table(&file).last().unwrap(), "tick");
+        assert!(last > newest, "{last}");
+        newest = last;
         assert_eq!(read["fault"], false);
         assert_eq!(read["after_s"], 0.0);
         assert!(read["ticks"].as_u64().unwrap() > 0);

@@ -23,6 +23,9 @@ const AWAY_PART: f32 = 0.6;
 /// tick: on the paper's rig 3.4 µm. A motor at its highest current gains 0.4 µm meanwhile, and its tracked speed lags by 1 µm.
 const STEP_PART: f32 = 0.9;
 
+/// The same in counts where these are coarse: a motor that starts counts one at once.
+const STEP_COUNTS: f32 = 1.5;
+
 /// A current that lacks this many times the current of friction of what the voltage drives is not measured: twice, as friction
 /// is known no better.
 const LACK_FRICTIONS: f32 = 2.0;
@@ -111,7 +114,9 @@ impl<T: Scalar> AxisMonitor<T> {
                 slack_n: limits.slack_n.into(),
                 tension_n: T::from(f_max_n + limits.over_tension_part * f_max_n),
                 jump_n: limits.jump_n.into(),
-                step_m: T::from(STEP_PART * servo.speed_m_per_s * TICK_S),
+                step_m: T::from(
+                    (STEP_PART * servo.speed_m_per_s * TICK_S).max(STEP_COUNTS * m_per_count.abs()),
+                ),
                 following_m: limits.following_m.into(),
                 away_m: T::from(AWAY_PART * limits.following_m),
                 a_per_v: T::from(1.0 / servo.resistance_ohm),
