@@ -146,7 +146,7 @@ def test_a_stop_from_another_thread_ends_what_the_leg_does():
     thread = threading.Thread(target=follow)
     thread.start()
     while thread.is_alive():
-        time.sleep(0.1)
+        time.sleep(0.5)
         leg.stop()
     assert ended == ["another thread stopped the leg; it is in hold if it was driven"]
     assert leg.telemetry()["state"] == "held"
