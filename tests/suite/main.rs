@@ -53,6 +53,7 @@ mod rig {
 }
 
 mod sim {
+    mod braking;
     mod comparison;
     mod fmea_page;
     mod load_left_out;

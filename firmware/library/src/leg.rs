@@ -162,7 +162,14 @@ impl<T: Scalar> Leg<T> {
                     step.event = Some(Event::Relaxed);
                 }
             }
-            Mode::Held(held) => held.step(shared),
+            Mode::Held(held) => {
+                // A cell may be found to lie while the leg brakes: nothing gives way to it from then on. A high tension may be true.
+                let of_cells = FaultSet::OF_CELLS.without(Fault::OverTension);
+                if held.brakes() && self.supervisor.latched().overlaps(of_cells) {
+                    shared.ignore_tensions();
+                }
+                held.step(shared);
+            }
             Mode::Jogging(jogging) => {
                 if jogging.step(shared, measured) {
                     step.event = Some(Event::Jogged);

@@ -10,6 +10,7 @@ use crate::drive::Drive;
 use crate::leg::Leg;
 use crate::sensors::TICK_HZ;
 use crate::settings::{RECORDED_SIGNALS, RecordedSignal, Settings, SignalSet};
+use crate::supervisor::FaultSet;
 use heapless::Vec;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -79,10 +80,19 @@ pub struct RecorderReport {
     pub rows: u16,
     /// Tick of the newest row.
     pub tick: u32,
-    /// Tick in which a fault was latched; none if a host has ended the recording.
-    pub fault_tick: Option<u32>,
+    /// The fault that has ended it; none if a host did.
+    pub fault: Option<RecordedFault>,
     /// The newest row in full, in steps; of what is not recorded, zeros.
     pub newest: [[i32; 3]; RECORDED_SIGNALS.len()],
+}
+
+/// Why a recording ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct RecordedFault {
+    /// Tick in which it was latched.
+    pub tick: u32,
+    /// All that stopped the leg in this tick: later ones may follow from it.
+    pub faults: FaultSet,
 }
 
 /// What a recorder needs of a leg's settings: found before the control interrupt has to wait for it.
@@ -128,7 +138,7 @@ pub struct Recorder {
     /// Rows that are left after a fault, or ticks until a recording goes on that a host has ended.
     left: u32,
     tick: u32,
-    fault_tick: Option<u32>,
+    fault: Option<RecordedFault>,
     setup: RecorderSetup,
     /// Triples that were written, at most the room, and where the next goes.
     written: usize,
@@ -146,7 +156,7 @@ impl Recorder {
             faulted: false,
             left: 0,
             tick: 0,
-            fault_tick: None,
+            fault: None,
             setup: RecorderSetup::NONE,
             written: 0,
             next: 0,
@@ -168,7 +178,7 @@ impl Recorder {
             RecorderState::Off
         };
         (self.written, self.next) = (0, 0);
-        self.fault_tick = None;
+        self.fault = None;
         self.newest = [[0; 3]; RECORDED_SIGNALS.len()];
     }
 
@@ -195,7 +205,8 @@ impl Recorder {
     /// Begins and ends with the faults that stop the leg.
     #[inline(always)]
     fn follow_faults(&mut self, leg: &Leg<f32>) {
-        let faulted = leg.stopped();
+        let faults = leg.stopping_faults();
+        let faulted = faults.any();
         match self.state {
             RecorderState::Recording | RecorderState::Stopped if faulted && !self.faulted => {
                 if self.state == RecorderState::Stopped {
@@ -203,7 +214,10 @@ impl Recorder {
                     self.restart();
                 }
                 self.state = RecorderState::Triggered;
-                self.fault_tick = Some(leg.ticks());
+                self.fault = Some(RecordedFault {
+                    tick: leg.ticks(),
+                    faults,
+                });
                 // A quarter of the rows: a row is `width` triples.
                 self.left = (self.setup.room / 4)
                     .checked_div(self.setup.width)
@@ -285,7 +299,7 @@ impl Recorder {
             signals: self.setup.signals,
             rows: self.written.checked_div(self.setup.width).unwrap_or(0) as u16,
             tick: self.tick,
-            fault_tick: self.fault_tick,
+            fault: self.fault,
             newest: self.newest,
         }
     }

@@ -33,3 +33,20 @@ pub struct Sensors {
     /// Whether the stored settings were not whole at the start, so that others are used.
     pub settings_corrupt: bool,
 }
+
+#[cfg(test)]
+impl Sensors {
+    /// Of a leg with these settings at rest without tension, at 24 V and 25 °C.
+    pub fn at_rest(settings: &crate::settings::Settings) -> Self {
+        let board = &settings.board;
+        let temperature = (25.0 - board.temperature_at_zero_c) / board.temperature_c_per_code;
+        Self {
+            cell_codes: settings.axes.map(|axis| axis.cell_zero_code as u16),
+            current_codes: [CODE_MAX / 2; 3],
+            supply_code: (24.0 / board.supply_v_per_code) as u16,
+            temperature_code: temperature as u16,
+            cell_fresh: [true; 3],
+            ..Self::default()
+        }
+    }
+}

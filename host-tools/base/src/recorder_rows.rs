@@ -1,6 +1,6 @@
 //! The rows of a board's recorder in SI units.
 
-use leg_firmware::recorder::{RecorderReport, Triple};
+use leg_firmware::recorder::{RecordedFault, RecorderReport, Triple};
 use leg_firmware::settings::Settings;
 use leg_firmware::settings::{RECORDED_SIGNALS, RecordedSignal};
 use leg_firmware::supervisor::State;
@@ -10,8 +10,8 @@ use leg_firmware::supervisor::State;
 pub struct RecorderRow {
     /// The tick.
     pub tick: u32,
-    /// The tick in which a fault was latched; none if a host ended the recording.
-    pub fault_tick: Option<u32>,
+    /// The fault that ended the recording; none if a host did.
+    pub fault: Option<RecordedFault>,
     /// By signal: what [`RecordedSignal`] says; none of what was not recorded.
     values: [Option<[f64; 3]>; RECORDED_SIGNALS.len()],
 }
@@ -28,14 +28,21 @@ impl RecorderRow {
     #[must_use]
     pub fn new(
         tick: u32,
-        fault_tick: Option<u32>,
+        fault: Option<RecordedFault>,
         get: impl Fn(RecordedSignal) -> Option<[f64; 3]>,
     ) -> Self {
         Self {
             tick,
-            fault_tick,
+            fault,
             values: RECORDED_SIGNALS.map(get),
         }
+    }
+
+    /// Ticks since the fault; none if a host ended the recording.
+    #[must_use]
+    pub fn since_fault(&self) -> Option<i32> {
+        self.fault
+            .map(|fault| self.tick.wrapping_sub(fault.tick) as i32)
     }
 
     /// The leg's state, if that was recorded.
@@ -72,7 +79,7 @@ pub fn rows(report: &RecorderReport, triples: &[Triple], settings: &Settings) ->
             }
             RecorderRow {
                 tick: report.tick.wrapping_sub(age),
-                fault_tick: report.fault_tick,
+                fault: report.fault,
                 values,
             }
         })

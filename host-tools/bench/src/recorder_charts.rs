@@ -24,7 +24,7 @@ macro_rules! curves {
     };
 }
 
-const CHARTS: [TimeChart<RecorderRow>; 9] = [
+const CHARTS: [TimeChart<RecorderRow>; 10] = [
     TimeChart {
         name: "recorded_tensions",
         title: "Measured tensions",
@@ -82,6 +82,12 @@ const CHARTS: [TimeChart<RecorderRow>; 9] = [
         y_title: "voltage (V)",
         curves: &[("supply", |row| value(row, RecordedSignal::Board, 0, 1.0))],
     },
+    TimeChart {
+        name: "recorded_temperature",
+        title: "Temperature of the drivers",
+        y_title: "temperature (°C)",
+        curves: &[("drivers", |row| value(row, RecordedSignal::Board, 1, 1.0))],
+    },
 ];
 
 fn value(row: &RecorderRow, signal: RecordedSignal, index: usize, units: f64) -> Option<f64> {
@@ -99,11 +105,9 @@ pub fn save(
     directory: &Path,
 ) -> Result<Vec<PathBuf>, PlotError> {
     let at = |row: &RecorderRow| {
-        let time_s = match row.fault_tick {
-            Some(tick) => f64::from(row.tick.wrapping_sub(tick) as i32) * tick_s(),
-            None => f64::from(row.tick) * tick_s(),
-        };
-        (time_s, row.state())
+        let ticks = row.since_fault().map_or(row.tick.into(), f64::from);
+        (ticks * tick_s(), row.state())
     };
-    time_charts::save(&CHARTS, title, rows, at, directory)
+    // A change of one tick is what a recorder is for: none is left out.
+    time_charts::save(&CHARTS, title, rows, rows.len(), at, directory)
 }

@@ -1,6 +1,6 @@
 //! The charts of a simulation: the tip, the tensions and the stiffness over time; and those of a leg's telemetry.
 
-use crate::time_charts::{self, TimeChart};
+use crate::time_charts::{self, POINTS_MAX, TimeChart};
 use leg_firmware::telemetry::Telemetry;
 use leg_model_tools::plot::PlotError;
 use leg_sim::simulation::Sample;
@@ -147,6 +147,7 @@ pub fn save(title: &str, samples: &[Sample], directory: &Path) -> Result<Vec<Pat
         &SIMULATION,
         title,
         samples,
+        POINTS_MAX,
         |sample| (sample.time_s, Some(sample.telemetry.state)),
         directory,
     )
@@ -162,5 +163,5 @@ pub fn save_log(
     directory: &Path,
 ) -> Result<Vec<PathBuf>, PlotError> {
     let at = |(time_s, report): &Report| (*time_s, Some(report.state));
-    time_charts::save(&LOG, title, reports, at, directory)
+    time_charts::save(&LOG, title, reports, POINTS_MAX, at, directory)
 }

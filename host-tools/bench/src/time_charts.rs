@@ -18,15 +18,17 @@ pub(crate) struct TimeChart<S: 'static> {
     pub curves: &'static [Curve<S>],
 }
 
-/// More points than this do not show in a chart.
-const POINTS_MAX: usize = 1600;
+/// More points than this do not show in a chart of a leg that moves.
+pub(crate) const POINTS_MAX: usize = 1600;
 
 /// Draws charts, each as SVG and PNG, and names the SVG files; one of which nothing is known is left out, unless that is all of them.
-/// `title` is that of the run, `at` gives time, s, and state of a sample, if that is known.
+/// `title` is that of the run, `at` gives time, s, and state of a sample, if that is known. Of more samples than `points_max`
+/// some are left out evenly.
 pub(crate) fn save<S>(
     charts: &[TimeChart<S>],
     title: &str,
     samples: &[S],
+    points_max: usize,
     at: fn(&S) -> (f64, Option<State>),
     directory: &Path,
 ) -> Result<Vec<PathBuf>, PlotError> {
@@ -34,7 +36,7 @@ pub(crate) fn save<S>(
         label: label.into(),
         points: samples
             .iter()
-            .step_by(samples.len().div_ceil(POINTS_MAX).max(1))
+            .step_by(samples.len().div_ceil(points_max).max(1))
             .filter_map(|sample| Some((at(sample).0, quantity(sample)?)))
             .collect(),
         marks: Vec::new(),

@@ -168,6 +168,20 @@ impl Recording {
     }
 }
 
+/// The extension of a recording's name, `mcap` or `csv`.
+///
+/// # Errors
+/// Any other is refused: a [`Failure`] with exit code 2.
+pub fn extension(file: &Path) -> Result<&str, Failure> {
+    let extension = file.extension().and_then(OsStr::to_str);
+    extension
+        .filter(|extension| ["mcap", "csv"].contains(extension))
+        .ok_or_else(|| {
+            let sentence = format!("{} is no name of a recording", file.display());
+            Failure::refused(sentence, "end it with .mcap or .csv")
+        })
+}
+
 /// Records in `file`, by the extension of its name, while `work` is done. Until the work is done the recording is beside it,
 /// as `leg.part.mcap`, and can be read: up to its last second, whatever becomes of this program. The leg has these settings.
 ///
@@ -180,15 +194,11 @@ pub fn record<T>(
     settings: &Settings,
     work: impl FnOnce(&mut Recording) -> Result<T, RecordingError>,
 ) -> Result<T, Failure> {
-    let extension = file.extension().and_then(OsStr::to_str);
-    if !matches!(extension, Some("mcap" | "csv")) {
-        let sentence = format!("{} is no name of a recording", file.display());
-        return Err(Failure::refused(sentence, "end it with .mcap or .csv"));
-    }
+    let extension = extension(file)?;
     let (part, new) =
         PartFile::create(file).map_err(|error| RecordingError::File(error).failure(file, None))?;
     let done = (|| {
-        let file = if extension == Some("csv") {
+        let file = if extension == "csv" {
             RecordingFile::Csv(Box::new(CsvFile::new(new)))
         } else {
             RecordingFile::Mcap(Box::new(McapFile::new(new, about, settings)?))

@@ -8,7 +8,6 @@ use leg_base::failure::Failure;
 use leg_base::json_object;
 use leg_base::tick_time::seconds;
 use leg_bench::recorder_charts;
-use leg_firmware::settings::Settings;
 use leg_host::operator::{Operator, Scope};
 use leg_host::recording::{self, About, Recording, RecordingError};
 use leg_rig::recorded_signals;
@@ -32,15 +31,16 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
+    if let Some(file) = &args.out {
+        recording::extension(file)?;
+    }
     let mut operator = args.leg.open(Purpose::Use, options)?.operator;
-    let settings = operator.settings()?;
-    let scope = operator.scope(&settings)?;
-    let telemetry = operator.telemetry()?.telemetry;
-    let stopping = telemetry.faults.without_limits();
+    let scope = operator.scope()?;
     let about = About::log(&title(&operator, &scope));
     if let Some(file) = &args.out {
-        let now = wall_time_s(&operator).map(|now_s| (telemetry.tick, now_s));
-        save(file, &about, &settings, &scope, now)?;
+        let tick = operator.telemetry()?.telemetry.tick;
+        let now = wall_time_s(&operator).map(|now_s| (tick, now_s));
+        save(file, &about, &scope, now)?;
     }
     let plots = match &args.plots {
         Some(directory) => recorder_charts::save(&about.title, &scope.rows, directory)
@@ -52,17 +52,17 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let json = json_object! {
         signals: &signals,
         ticks: scope.rows.len(),
-        fault: scope.report.fault_tick.is_some(),
+        faults: fault_names(&scope),
         before_s: before_s,
         after_s: after_s,
         plots: &plots
     };
     options.report(&json, || {
         let [before_ms, after_ms] = [before_s, after_s].map(|time_s| 1000.0 * time_s);
-        let span = match scope.report.fault_tick {
-            Some(_) => format!(
-                "{before_ms:.1} ms before the fault and {after_ms:.1} ms from it on ({})",
-                faults(stopping)
+        let span = match scope.report.fault {
+            Some(fault) => format!(
+                "{before_ms:.1} ms before {} and {after_ms:.1} ms from it on",
+                faults(fault.faults)
             ),
             None => format!("the last {before_ms:.1} ms"),
         };
@@ -77,21 +77,25 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
 
 /// What its charts are called.
 fn title(operator: &Operator, scope: &Scope) -> String {
-    match scope.report.fault_tick {
-        Some(_) => format!("{}, fault at 0 s", operator.name()),
+    match scope.report.fault {
+        Some(fault) => format!("{}, {} at 0 s", operator.name(), faults(fault.faults)),
         None => operator.name().into(),
     }
 }
 
+/// The names of the faults that have ended the recording; none where a host did.
+fn fault_names(scope: &Scope) -> Vec<&'static str> {
+    let faults = scope.report.fault.map(|fault| fault.faults.faults());
+    faults
+        .into_iter()
+        .flatten()
+        .map(|fault| fault.entry().name)
+        .collect()
+}
+
 /// Writes the rows, each with its time of the day, by a tick and the time of that, s since 1970.
-fn save(
-    file: &Path,
-    about: &About,
-    settings: &Settings,
-    scope: &Scope,
-    now: Option<(u32, f64)>,
-) -> Result<(), Failure> {
-    recording::record(file, about, settings, |recording| {
+fn save(file: &Path, about: &About, scope: &Scope, now: Option<(u32, f64)>) -> Result<(), Failure> {
+    recording::record(file, about, &scope.settings, |recording| {
         write(recording, scope, now)
     })
 }

@@ -264,10 +264,7 @@ impl Leg {
     }
 
     fn scope<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let scope = self.ask(py, |operator| {
-            let settings = operator.settings()?;
-            operator.scope(&settings)
-        })?;
+        let scope = self.ask(py, Operator::scope)?;
         scope::arrays(py, &scope)
     }
 

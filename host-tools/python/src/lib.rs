@@ -11,7 +11,7 @@ mod leg;
 mod map_quantities;
 mod operator_thread;
 mod outputs;
-mod recorder;
+mod signal_log;
 mod rig;
 mod scenarios;
 mod scope;

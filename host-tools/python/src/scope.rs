@@ -6,7 +6,7 @@ use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// The signals that were recorded, each as an array with a row for each tick.
+/// The signals that were recorded, each as an array with a row for each tick, and the faults that have ended the recording.
 pub fn arrays<'py>(py: Python<'py>, scope: &Scope) -> PyResult<Bound<'py, PyDict>> {
     let arrays = PyDict::new(py);
     for signal in RECORDER_SIGNALS {
@@ -26,6 +26,10 @@ pub fn arrays<'py>(py: Python<'py>, scope: &Scope) -> PyResult<Bound<'py, PyDict
         } else {
             arrays.set_item(signal.name, flat.reshape([scope.rows.len(), width])?)?;
         }
+    }
+    if let Some(fault) = scope.report.fault {
+        let names: Vec<_> = fault.faults.faults().map(|each| each.entry().name).collect();
+        arrays.set_item("fault_names", names)?;
     }
     Ok(arrays)
 }

@@ -1,6 +1,6 @@
 //! A simulated leg that is commanded and stepped: tick by tick, without the interpreter's lock.
 
-use crate::recorder::Recorder;
+use crate::signal_log::SignalLog;
 use crate::signals::Snapshot;
 use leg_base::settling::Settling;
 use leg_base::timed_path::TimedPath;
@@ -75,7 +75,7 @@ pub struct Session {
     compensated: bool,
     /// The path that is being sent.
     path: Option<PathSender>,
-    recorder: Option<Recorder>,
+    signal_log: Option<SignalLog>,
     /// Fails if the user wants an end.
     interrupted: fn() -> std::result::Result<(), PyErr>,
 }
@@ -108,7 +108,7 @@ impl Session {
             },
             compensated: true,
             path: None,
-            recorder: None,
+            signal_log: None,
             interrupted,
         };
         while session.leg.state() == State::Boot {
@@ -133,13 +133,13 @@ impl Session {
     }
 
     /// What is recorded.
-    pub fn recorder(&self) -> Option<&Recorder> {
-        self.recorder.as_ref()
+    pub fn signal_log(&self) -> Option<&SignalLog> {
+        self.signal_log.as_ref()
     }
 
     /// Records from now on; what was recorded before is forgotten.
-    pub fn record(&mut self, recorder: Option<Recorder>) {
-        self.recorder = recorder;
+    pub fn record(&mut self, signal_log: Option<SignalLog>) {
+        self.signal_log = signal_log;
     }
 
     /// The leg now. There is one: it has booted.
@@ -170,16 +170,16 @@ impl Session {
 
     /// Records the tick, if a row is due.
     fn take_row(&mut self) -> Result<()> {
-        let Some(recorder) = &mut self.recorder else {
+        let Some(signal_log) = &mut self.signal_log else {
             return Ok(());
         };
-        if !recorder.due() {
+        if !signal_log.due() {
             return Ok(());
         }
         let on_path = on_path(self.path.as_ref(), &self.leg);
         let snapshot = Snapshot::new(&self.leg, &self.constants, &self.motors, on_path);
-        if snapshot.is_some_and(|snapshot| !recorder.take(&snapshot)) {
-            self.recorder = None;
+        if snapshot.is_some_and(|snapshot| !signal_log.take(&snapshot)) {
+            self.signal_log = None;
             return Err(SessionError::RecordingFull);
         }
         Ok(())

@@ -2,7 +2,7 @@
 
 use crate::arguments::{self, time_s, within};
 use crate::errors::leg_error;
-use crate::recorder::Recorder;
+use crate::signal_log::SignalLog;
 use crate::rig::Rig;
 use crate::session::{Session, SessionError};
 use crate::signals::NumericSignal;
@@ -344,24 +344,24 @@ impl SimulatedLeg {
             return Err(PyValueError::new_err("every_ticks = 0 is not from 1"));
         }
         let found: PyResult<Vec<_>> = signals.iter().map(|name| signal(name)).collect();
-        let recorder = Recorder::new(&found?, every_ticks);
-        self.session()?.record(Some(recorder));
+        let signal_log = SignalLog::new(&found?, every_ticks);
+        self.session()?.record(Some(signal_log));
         Ok(())
     }
 
     fn recording<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let session = self.session()?;
-        let Some(recorder) = session.recorder() else {
+        let Some(signal_log) = session.signal_log() else {
             return Err(leg_error("nothing is recorded; call record() first"));
         };
         let arrays = PyDict::new(py);
-        arrays.set_item("time_s", PyArray1::from_slice(py, &recorder.times_s))?;
-        for (signal, numbers) in &recorder.columns {
+        arrays.set_item("time_s", PyArray1::from_slice(py, &signal_log.times_s))?;
+        for (signal, numbers) in &signal_log.columns {
             let flat = PyArray1::from_slice(py, numbers);
             if signal.width() == 1 {
                 arrays.set_item(signal.name(), flat)?;
             } else {
-                let shape = [recorder.times_s.len(), signal.width()];
+                let shape = [signal_log.times_s.len(), signal.width()];
                 arrays.set_item(signal.name(), flat.reshape(shape)?)?;
             }
         }

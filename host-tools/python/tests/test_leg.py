@@ -118,7 +118,9 @@ def test_an_emulated_leg_is_disturbed_and_no_other():
     leg.disturb({"emergency_stop": True})
     leg.wait(0.1)
     kept = leg.scope()
-    assert set(kept) == {"time_s", "tick", "since_fault_s", "tensions_n", "pulled_m", "duties"}
+    signals = {"time_s", "tick", "since_fault_s", "tensions_n", "pulled_m", "duties"}
+    assert set(kept) == signals | {"fault_names"}
+    assert kept["fault_names"] == ["emergency stop"]
     assert kept["tensions_n"].shape == (1600, 3)
     assert kept["since_fault_s"] == pytest.approx(np.arange(-1200, 400) / 8000)
     assert np.all(kept["duties"][1200:] == 0)

@@ -15,6 +15,8 @@ pub use recorded::RECORDER_SIGNALS;
 pub use report::{LegConstants, REPORT_SIGNALS, Report};
 pub use simulated::{SIMULATED_SIGNALS, Simulated};
 
+use leg_firmware::supervisor::FaultSet;
+
 /// What a signal is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
@@ -112,6 +114,10 @@ impl<S> Signal<S> {
             Values::Word(_) | Values::Names(_) => {}
         }
     }
+}
+
+fn fault_names(faults: FaultSet) -> Vec<&'static str> {
+    faults.faults().map(|fault| fault.entry().name).collect()
 }
 
 /// Declares the signals of something.

@@ -3,9 +3,10 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use leg_base::recorder_rows::rows;
-use leg_firmware::recorder::{RecorderReport, RecorderState};
+use leg_firmware::recorder::{RecordedFault, RecorderReport, RecorderState};
 use leg_firmware::settings::Settings;
 use leg_firmware::settings::{RecordedSignal, SignalSet};
+use leg_firmware::supervisor::{Fault, FaultSet};
 
 /// A travel over more than 16 bits comes back to the count, and so does a negative one.
 #[test]
@@ -25,7 +26,10 @@ fn numbers_are_unwrapped_from_the_newest_row() {
         signals: SignalSet::new(&[RecordedSignal::Tensions, RecordedSignal::Pulled]),
         rows: 300,
         tick: 9,
-        fault_tick: Some(5),
+        fault: Some(RecordedFault {
+            tick: 5,
+            faults: FaultSet::single(Fault::Slack),
+        }),
         newest,
     };
     let rows = rows(&report, &triples, &settings);
@@ -41,4 +45,8 @@ fn numbers_are_unwrapped_from_the_newest_row() {
         assert_eq!((row.get(RecordedSignal::Duties), row.state()), (None, None));
     }
     assert_eq!((rows[299].tick, rows[289].tick), (9, u32::MAX));
+    assert_eq!(
+        [rows[299].since_fault(), rows[289].since_fault()],
+        [Some(4), Some(-6)]
+    );
 }

@@ -5,11 +5,12 @@ use crate::common::chip::{
 };
 use leg_firmware::host_link::{HostReply, HostRequest};
 use leg_firmware::recorder::{
-    READ_MAX, RecorderReply, RecorderReport, RecorderRequest, RecorderState,
+    READ_MAX, RecordedFault, RecorderReply, RecorderReport, RecorderRequest, RecorderState,
 };
 use leg_firmware::sensors::CODE_MAX;
 use leg_firmware::settings::RecordedSignal;
 use leg_firmware::settings::Settings;
+use leg_firmware::supervisor::{Fault, FaultSet};
 use leg_firmware_bench::protocol::Request;
 use leg_sim::link::Link;
 use std::error::Error;
@@ -47,10 +48,11 @@ fn a_chip_keeps_the_ticks_before_its_fault() -> Outcome {
     identity(chip)?;
     let report = report(chip, RecorderRequest::Stop)?;
     assert_eq!(report.state, RecorderState::Faulted);
-    let fault = report.fault_tick.ok_or("no fault")?;
+    let RecordedFault { tick, faults } = report.fault.ok_or("no fault")?;
+    assert_eq!(faults, FaultSet::single(Fault::EmergencyStop));
     // The fault's tick is the first of a quarter of all rows.
-    assert_eq!(report.tick - fault, 399);
-    assert!((150..=170).contains(&fault), "{fault}");
+    assert_eq!(report.tick - tick, 399);
+    assert!((150..=170).contains(&tick), "{tick}");
     assert_eq!(
         u32::from(report.rows),
         report.tick,

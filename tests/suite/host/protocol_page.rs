@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod grammar;
+mod recorder;
 
 use crate::board::emulated_board::board::{BoardUnderTest, errors};
 use crate::common::python;
@@ -90,12 +91,16 @@ fn exchange() -> String {
         .concat()
 }
 
-/// The part of a text between two lines, which stay.
+/// A text with another part between two lines, which stay.
 fn with_part(text: &str, name: &str, part: &str) -> String {
     let [begin, end] = ["begin", "end"].map(|edge| format!("<!-- {edge} {name} -->\n"));
     let (before, rest) = text.split_once(&begin).unwrap();
     let (_, after) = rest.split_once(&end).unwrap();
-    format!("{before}{begin}```text\n{part}```\n{end}{after}")
+    format!("{before}{begin}{part}{end}{after}")
+}
+
+fn listing(text: &str) -> String {
+    format!("```text\n{text}```\n")
 }
 
 /// `LEG_OVERWRITE=1` writes it anew.
@@ -103,8 +108,9 @@ fn with_part(text: &str, name: &str, part: &str) -> String {
 fn the_page_has_the_messages_of_the_firmware() {
     let text = fs::read_to_string(page()).unwrap();
     let messages = format!("schema {}\n\n{}", hex(&HOST_SCHEMA), grammar::of_messages());
-    let expected = with_part(&text, "messages", &messages);
-    let expected = with_part(&expected, "exchange", &exchange());
+    let expected = with_part(&text, "messages", &listing(&messages));
+    let expected = with_part(&expected, "exchange", &listing(&exchange()));
+    let expected = with_part(&expected, "signals", &recorder::table());
     let (before, rest) = expected.split_once(SCHEMA_OF_CLIENT).unwrap();
     let (_, after) = rest.split_once('"').unwrap();
     let schema = hex(&HOST_SCHEMA);

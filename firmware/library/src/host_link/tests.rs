@@ -6,6 +6,7 @@ mod commands;
 mod damage;
 mod greeting;
 mod mock;
+mod recorder;
 mod settings;
 mod telemetry;
 

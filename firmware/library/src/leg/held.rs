@@ -9,13 +9,14 @@ use leg_model::Scalar;
 /// tendon. About a period of that swing; at the greatest speed the tip goes on by 13 mm.
 const BRAKE_S: f32 = 0.15;
 
-/// The same of a leg near its maximum tension, s: slower, it adds less to that. A leg that is not there swings the farther the slower it is.
+/// The same of a leg that is asked for nearly its maximum tension, s: slower, it adds less to that. Another leg swings the farther the
+/// slower it is braked.
 const GENTLE_BRAKE_S: f32 = 0.2;
 
 /// The same where a motor may not obey, s: meanwhile the others pull against it.
 const SHORT_BRAKE_S: f32 = 0.06;
 
-/// Part of the maximum tension above which a tendon that is asked for it is near it: a brake adds up to a quarter.
+/// Part of the maximum tension from which on the tension that is asked of a tendon is near it: a brake adds up to a quarter.
 const NEAR_PART: f32 = 0.8;
 
 /// How far a tendon at the maximum tension is paid out beyond its way, m: 1 mm at the tip.
@@ -27,7 +28,8 @@ const STILL_STEP_M: f32 = 1e-4 * TICK_S;
 /// One that is led and goes by less than this in a tick does not turn, or is not counted, m: 0.01 mm/s.
 const STANDING_STEP_M: f32 = 1e-5 * TICK_S;
 
-/// The leg stays where it is. No load cell is asked.
+/// The leg stays where it is. While it brakes, a tendon at the maximum tension is paid out a little, unless a load cell is in doubt; at
+/// rest no load cell is asked.
 #[derive(Clone, Copy, Debug)]
 pub struct Held<T> {
     /// How far each motor went in a tick at first, m.
@@ -115,4 +117,25 @@ fn near_max<T: Scalar>(shared: &Shared<T>) -> bool {
     let near_n = shared.mechanism.f_max_n * T::from(NEAR_PART);
     let tensions_n = shared.target.as_ref().map(|target| target.tensions_n);
     tensions_n.is_some_and(|tensions_n| tensions_n.iter().any(|&tension| tension > near_n))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Held;
+
+    /// Half of the way that it goes on at first is what is left of a brake; to that comes a tenth of a millimetre.
+    #[test]
+    fn a_tendon_is_paid_out_by_its_way_and_a_tenth_of_a_millimetre() {
+        let ticks = 1000;
+        let held = Held {
+            steps_m: [1e-6, 0.0, -1e-6],
+            ticks_left: ticks,
+            per_tick: 1.0 / ticks as f32,
+        };
+        let way_m = 0.5 * 1e-6 * f64::from(ticks);
+        let [pulled, resting, paid_out] = held.lowest_m(&[0.01, 0.02, 0.03]);
+        assert!((pulled - (0.01 - 1e-4)).abs() < 1e-9);
+        assert!((resting - (0.02 - 1e-4)).abs() < 1e-9);
+        assert!((paid_out - (0.03 - way_m - 1e-4)).abs() < 1e-9);
+    }
 }

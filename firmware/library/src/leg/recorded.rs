@@ -3,6 +3,7 @@
 use super::Leg;
 use crate::drive::Drive;
 use crate::settings::RecordedSignal;
+use crate::supervisor::FaultSet;
 use leg_model::Scalar;
 
 impl<T: Scalar> Leg<T> {
@@ -12,10 +13,10 @@ impl<T: Scalar> Leg<T> {
         self.tick
     }
 
-    /// Whether a fault is latched that does more than limit.
+    /// The latched faults that do more than limit.
     #[inline(always)]
-    pub fn stopped(&self) -> bool {
-        self.supervisor.stopped()
+    pub fn stopping_faults(&self) -> FaultSet {
+        self.supervisor.latched().without_limits()
     }
 
     /// A signal after the tick that gave this drive; zeros before the first tick.

@@ -21,18 +21,9 @@ struct Bench {
 impl Bench {
     fn new() -> Self {
         let settings = Settings::for_table_1().unwrap();
-        let board = &settings.board;
-        let temperature = (25.0 - board.temperature_at_zero_c) / board.temperature_c_per_code;
         let mut bench = Self {
             leg: SensingLeg::new(&settings).unwrap(),
-            sensors: Sensors {
-                cell_codes: settings.axes.map(|axis| axis.cell_zero_code as u16),
-                current_codes: [CODE_MAX / 2; 3],
-                supply_code: (24.0 / board.supply_v_per_code) as u16,
-                temperature_code: temperature as u16,
-                cell_fresh: [true; 3],
-                ..Sensors::default()
-            },
+            sensors: Sensors::at_rest(&settings),
         };
         bench.run(SOME_TICKS);
         assert_eq!(bench.leg.telemetry().state, State::Disarmed);

@@ -1,12 +1,13 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::{
-    HOST_TICKS, READ_MAX, Recorder, RecorderReply, RecorderReport, RecorderRequest, RecorderSetup,
-    RecorderState, TRIPLES_MAX, Triple,
+    HOST_TICKS, READ_MAX, RecordedFault, Recorder, RecorderReply, RecorderReport, RecorderRequest,
+    RecorderSetup, RecorderState, TRIPLES_MAX, Triple,
 };
 use crate::leg::Leg;
-use crate::sensors::{CODE_MAX, Sensors};
+use crate::sensors::Sensors;
 use crate::settings::{RECORDED_SIGNALS, RecordedSignal, Settings, SignalSet};
+use crate::supervisor::{Fault, FaultSet};
 
 /// A leg at rest whose first encoder a test moves, and the recorder of its ticks.
 struct Bench {
@@ -22,20 +23,10 @@ impl Bench {
     fn new(signals: SignalSet) -> Self {
         let mut settings = Settings::for_table_1().unwrap();
         settings.recorded = signals;
-        let board = &settings.board;
-        let temperature = (25.0 - board.temperature_at_zero_c) / board.temperature_c_per_code;
-        let sensors = Sensors {
-            cell_codes: settings.axes.map(|axis| axis.cell_zero_code as u16),
-            current_codes: [CODE_MAX / 2; 3],
-            supply_code: (24.0 / board.supply_v_per_code) as u16,
-            temperature_code: temperature as u16,
-            cell_fresh: [true; 3],
-            ..Sensors::default()
-        };
         let mut bench = Self {
             leg: Leg::new(&settings).unwrap(),
             recorder: Recorder::new(),
-            sensors,
+            sensors: Sensors::at_rest(&settings),
         };
         bench.recorder.begin(&RecorderSetup::new(&settings));
         bench
@@ -83,6 +74,12 @@ impl Bench {
             }
         }
     }
+}
+
+/// What it reports of an emergency stop.
+fn stopped_in(tick: u32) -> Option<RecordedFault> {
+    let faults = FaultSet::single(Fault::EmergencyStop);
+    Some(RecordedFault { tick, faults })
 }
 
 fn only(signal: RecordedSignal) -> SignalSet {
@@ -187,7 +184,7 @@ fn a_fault_ends_it_after_a_quarter_and_a_cleared_one_begins_it_anew() {
     bench.run(1);
     let report = bench.ask(RecorderRequest::Report);
     assert_eq!(report.state, RecorderState::Faulted);
-    assert_eq!((report.fault_tick, report.tick), (Some(2001), 2400));
+    assert_eq!((report.fault, report.tick), (stopped_in(2001), 2400));
     let kept = bench.read();
     assert_eq!(kept.len(), TRIPLES_MAX);
     bench.run(HOST_TICKS + 1);
@@ -202,7 +199,7 @@ fn a_fault_ends_it_after_a_quarter_and_a_cleared_one_begins_it_anew() {
     bench.run(8);
     let report = bench.ask(RecorderRequest::Report);
     assert_eq!(
-        (report.state, report.fault_tick),
+        (report.state, report.fault),
         (RecorderState::Recording, None)
     );
     assert!(report.rows <= 8);
@@ -242,8 +239,8 @@ fn a_fault_while_a_host_reads_is_recorded() {
     let report = bench.ask(RecorderRequest::Restart);
     assert_eq!(report.state, RecorderState::Faulted);
     assert_eq!(
-        (report.fault_tick, report.rows),
-        (Some(BOOT_TICKS + 1), 400)
+        (report.fault, report.rows),
+        (stopped_in(BOOT_TICKS + 1), 400)
     );
 }
 

@@ -2,6 +2,7 @@
 //! apart.
 
 use super::{Cost, CostError, InstructionBudget};
+use leg_firmware::settings::{RECORDED_SIGNALS, SignalSet};
 use leg_rig::ready_rigs::{READY_RIGS, ReadyRig};
 use leg_rig::rig_file::RigFile;
 use leg_rig::support_name::SupportName;
@@ -22,6 +23,9 @@ const MAX_TURNED: u32 = 2700;
 /// The most that the recording of three signals may take.
 const RECORDER_MAX: u32 = 400;
 
+/// The most that the recording of all signals may take.
+const RECORDER_WHOLE_MAX: u32 = 800;
+
 /// A scenario whose every tick is counted.
 pub(super) struct CountedScenario {
     name: String,
@@ -35,11 +39,12 @@ pub(super) struct CountedScenario {
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Part {
     ControlLaw,
-    Recorder,
+    /// While it keeps these signals.
+    Recorder(SignalSet),
 }
 
 /// How many scenarios are counted.
-pub(super) const COUNTED: usize = READY_RIGS.len() + 4;
+pub(super) const COUNTED: usize = READY_RIGS.len() + 5;
 
 /// Everything that is counted: every ready rig as it moves, and the paper's as it is homed, follows set-points and keeps station,
 /// too, and its recorder.
@@ -51,11 +56,11 @@ pub(super) fn counted() -> impl Iterator<Item = CountedScenario> {
         rig,
         part: Part::ControlLaw,
     };
-    let recorder = CountedScenario {
-        name: "recorder".into(),
+    let recorder = |what: &str, signals| CountedScenario {
+        name: format!("recorder{what}"),
         scenario: "cost_station",
         rig: paper,
-        part: Part::Recorder,
+        part: Part::Recorder(signals),
     };
     let others = others.map(|rig| counted(&format!(", {}", rig.joint), "cost", rig));
     [
@@ -66,7 +71,10 @@ pub(super) fn counted() -> impl Iterator<Item = CountedScenario> {
     ]
     .into_iter()
     .chain(others)
-    .chain([recorder])
+    .chain([
+        recorder("", SignalSet::default()),
+        recorder(", all signals", SignalSet::new(&RECORDED_SIGNALS)),
+    ])
 }
 
 /// Counts every tick of a scenario.
@@ -83,7 +91,10 @@ pub(super) fn measure(link: &mut dyn Link, counted: &CountedScenario) -> Result<
     } = counted;
     let text = ready_scenarios::named(scenario).map_or("", |ready| ready.text);
     let scenario = Scenario::parse(scenario, text).map_err(|error| failed(&error.render(false)))?;
-    let file = RigFile::parse(rig.name, rig.text).map_err(|error| failed(&error))?;
+    let mut file = RigFile::parse(rig.name, rig.text).map_err(|error| failed(&error))?;
+    if let Part::Recorder(signals) = part {
+        file.recorded = *signals;
+    }
     let mut instructions = Vec::new();
     let simulation = Simulation::new(&scenario, &file).map_err(|error| failed(&error))?;
     let summary = simulation
@@ -91,7 +102,7 @@ pub(super) fn measure(link: &mut dyn Link, counted: &CountedScenario) -> Result<
         .run(link, &mut |tick| {
             instructions.extend(match part {
                 Part::ControlLaw => tick.instructions,
-                Part::Recorder => tick.recorder_instructions,
+                Part::Recorder(_) => tick.recorder_instructions,
             });
         })
         .map_err(|error| failed(&error))?;
@@ -99,7 +110,10 @@ pub(super) fn measure(link: &mut dyn Link, counted: &CountedScenario) -> Result<
         return Err(CostError::Tick(reason));
     }
     let budget = match (part, rig.support) {
-        (Part::Recorder, _) => InstructionBudget::new(MIN, RECORDER_MAX),
+        (Part::Recorder(signals), _) if *signals == SignalSet::default() => {
+            InstructionBudget::new(MIN, RECORDER_MAX)
+        }
+        (Part::Recorder(_), _) => InstructionBudget::new(MIN, RECORDER_WHOLE_MAX),
         (Part::ControlLaw, SupportName::TorsionFree) => InstructionBudget::new(MIN, MAX),
         (Part::ControlLaw, _) => InstructionBudget::new(MIN, MAX_TURNED),
     };

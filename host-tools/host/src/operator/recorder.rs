@@ -4,7 +4,9 @@ use super::{Operator, OperatorError};
 use leg_base::recorder_rows::{self, RecorderRow};
 use leg_base::tick_time::seconds;
 use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest};
-use leg_firmware::recorder::{RecorderReply, RecorderReport, RecorderRequest, RecorderState};
+use leg_firmware::recorder::{
+    RecorderReply, RecorderReport, RecorderRequest, RecorderState, Triple,
+};
 use leg_firmware::settings::Settings;
 use std::time::Duration;
 
@@ -17,6 +19,8 @@ const POLL_TIME: Duration = Duration::from_millis(20);
 pub struct Scope {
     /// Its report, when it had ended.
     pub report: RecorderReport,
+    /// The leg's settings then.
+    pub settings: Settings,
     /// The oldest row first.
     pub rows: Vec<RecorderRow>,
 }
@@ -25,10 +29,7 @@ impl Scope {
     /// The time that is held before the fault, and from it on, s. All of it is before where a host has ended the recording.
     #[must_use]
     pub fn sides_s(&self) -> [f64; 2] {
-        let is_before = |row: &&RecorderRow| {
-            row.fault_tick
-                .is_none_or(|fault| (row.tick.wrapping_sub(fault) as i32) < 0)
-        };
+        let is_before = |row: &&RecorderRow| row.since_fault().is_none_or(|ticks| ticks < 0);
         let before = self.rows.iter().filter(is_before).count();
         [before, self.rows.len() - before].map(|ticks| seconds(ticks as u64))
     }
@@ -36,11 +37,11 @@ impl Scope {
 
 impl Operator {
     /// What the board's recorder holds: up to a fault that is latched and a little beyond, or else up to now. It goes on
-    /// afterwards unless it is a fault's. `settings` are those of the leg.
+    /// afterwards unless it is a fault's.
     ///
     /// # Errors
     /// [`OperatorError::NothingRecorded`] where the settings choose no signal, and those of any request.
-    pub fn scope(&mut self, settings: &Settings) -> Result<Scope, OperatorError> {
+    pub fn scope(&mut self) -> Result<Scope, OperatorError> {
         let mut report = self.recorder(RecorderRequest::Stop)?;
         while report.state == RecorderState::Triggered {
             self.pause(POLL_TIME)?;
@@ -49,16 +50,36 @@ impl Operator {
         if report.state == RecorderState::Off {
             return Err(OperatorError::NothingRecorded);
         }
-        let triples = self.triples(&report);
-        // Whatever became of the reading, the next fault is to be recorded.
+        let read = self.read_recording(&report);
+        // Whatever became of the reading, the next fault is to be recorded. What was read is not lost with this request: without it
+        // the board goes on some seconds later.
         if report.state == RecorderState::Stopped {
-            self.uncancelled(|operator| operator.recorder(RecorderRequest::Restart))?;
+            let _ = self.uncancelled(|operator| operator.recorder(RecorderRequest::Restart));
         }
-        let rows = recorder_rows::rows(&report, &triples?, settings);
-        Ok(Scope { report, rows })
+        let (settings, triples) = read?;
+        let rows = recorder_rows::rows(&report, &triples, &settings);
+        Ok(Scope {
+            report,
+            settings,
+            rows,
+        })
     }
 
-    fn triples(&mut self, report: &RecorderReport) -> Result<Vec<[u16; 3]>, OperatorError> {
+    /// The settings and all triples, if both belong to the report: other settings begin another recording.
+    fn read_recording(
+        &mut self,
+        report: &RecorderReport,
+    ) -> Result<(Settings, Vec<Triple>), OperatorError> {
+        let settings = self.settings()?;
+        let triples = self.triples(report)?;
+        if self.recorder(RecorderRequest::Report)? == *report {
+            Ok((settings, triples))
+        } else {
+            Err(OperatorError::RecordingReplaced)
+        }
+    }
+
+    fn triples(&mut self, report: &RecorderReport) -> Result<Vec<Triple>, OperatorError> {
         let count = usize::from(report.rows) * report.signals.len();
         let mut triples = Vec::with_capacity(count);
         while triples.len() < count {
@@ -85,12 +106,7 @@ impl Operator {
             triples.extend(read);
         }
         triples.truncate(count);
-        let after = self.recorder(RecorderRequest::Report)?;
-        if after == *report {
-            Ok(triples)
-        } else {
-            Err(OperatorError::RecordingReplaced)
-        }
+        Ok(triples)
     }
 
     fn recorder(&mut self, request: RecorderRequest) -> Result<RecorderReport, OperatorError> {

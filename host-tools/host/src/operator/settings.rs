@@ -5,6 +5,7 @@ use super::{Operator, OperatorError};
 use crate::flat_json::flatten;
 use leg_firmware::host_link::{HostReply, HostRequest};
 use leg_firmware::settings::Settings;
+use leg_rig::recorded_signals::{self, RECORDED};
 use serde_json::Value;
 use std::time::Duration;
 
@@ -57,13 +58,20 @@ pub struct SettingDifference {
     pub theirs: Option<Value>,
 }
 
+/// Settings as JSON: of signals their names, not the bits.
+fn json(settings: &Settings) -> Value {
+    // Settings always have a form in JSON.
+    let mut value = serde_json::to_value(settings).unwrap_or_default();
+    let names: Vec<_> = recorded_signals::words(settings.recorded).collect();
+    value[RECORDED] = names.join(", ").into();
+    value
+}
+
 /// Every setting whose bits differ. What was found while homing is left out.
 ///
 /// Equal values have equal bits: settings hold no NaN, and f32 is written without loss.
 pub fn setting_differences(ours: &Settings, theirs: &Settings) -> Vec<SettingDifference> {
-    // Settings always have a form in JSON.
-    let [ours, theirs] = [ours, theirs]
-        .map(|settings| serde_json::to_value(settings.without_zero()).unwrap_or_default());
+    let [ours, theirs] = [ours, theirs].map(|settings| json(&settings.without_zero()));
     let [ours, theirs] = [&ours, &theirs].map(|settings| flatten(settings, "."));
     let value = |settings: &[(String, &Value)], name: &str| {
         let found = settings.iter().find(|(other, _)| other == name);

@@ -12,6 +12,7 @@ macro_rules! error_of {
 mod bad_lines;
 mod goals;
 mod hosts;
+mod recorder;
 mod scripted;
 mod scripted_board;
 mod settings;

@@ -39,14 +39,12 @@ pub(super) const SCHEMA_KEY: &str = "schema";
 /// A tick in ns.
 const TICK_NS: u64 = 1_000_000_000 / TICK_HZ as u64;
 
-/// A file that is being written. A channel is made with its first message.
+/// A file that is being written.
 pub(super) struct McapFile {
     /// Dropped once it has finished alone: its own drop tries to, and panics where the disk is full.
     writer: ManuallyDrop<Writer<BufWriter<File>>>,
-    ticks: Option<u16>,
-    reports: Option<u16>,
-    simulated: Option<u16>,
-    recorder: Option<u16>,
+    /// The channels that were made, by topic.
+    channels: BTreeMap<&'static str, u16>,
     /// What it is of, until it is written: with the first message, for a leg's time does not begin at zero.
     about: Option<Value>,
 }
@@ -61,10 +59,7 @@ impl McapFile {
         let options = WriteOptions::new().compression(None).library("leg");
         let mut file = Self {
             writer: ManuallyDrop::new(options.create(BufWriter::new(file))?),
-            ticks: None,
-            reports: None,
-            simulated: None,
-            recorder: None,
+            channels: BTreeMap::new(),
             about: Some(serde_json::to_value(about).map_err(RecordingError::message)?),
         };
         file.writer.write_metadata(&metadata(about, settings))?;
@@ -76,11 +71,7 @@ impl McapFile {
 
     /// What a controller gets and gives in a tick of a simulation.
     pub fn write_tick(&mut self, number: u32, tick: &Tick<'_>) -> Result<(), RecordingError> {
-        let channel = match self.ticks {
-            Some(channel) => channel,
-            None => self.postcard_channel(TICKS)?,
-        };
-        self.ticks = Some(channel);
+        let channel = self.channel(TICKS, |file| file.postcard_channel(TICKS))?;
         let bytes = to_bytes(&TickRecord::new(tick)?)?;
         self.write(channel, number, simulated_ns(number), &bytes)
     }
@@ -93,13 +84,7 @@ impl McapFile {
     ) -> Result<(), RecordingError> {
         let time_ns = simulated_ns(number);
         self.write_report(number, time_ns, report)?;
-        let channel = match self.simulated {
-            Some(channel) => channel,
-            None => self.signal_channel(SIMULATED, SIMULATED_SIGNALS)?,
-        };
-        self.simulated = Some(channel);
-        let message = Value::Object(json_object(SIMULATED_SIGNALS, simulated));
-        self.write(channel, number, time_ns, message.to_string().as_bytes())
+        self.write_signals(SIMULATED, SIMULATED_SIGNALS, number, time_ns, simulated)
     }
 
     /// What a leg reports.
@@ -110,13 +95,7 @@ impl McapFile {
         report: &Report,
     ) -> Result<(), RecordingError> {
         self.write_about(time_ns)?;
-        let channel = match self.reports {
-            Some(channel) => channel,
-            None => self.signal_channel(REPORT, REPORT_SIGNALS)?,
-        };
-        self.reports = Some(channel);
-        let message = Value::Object(json_object(REPORT_SIGNALS, report));
-        self.write(channel, number, time_ns, message.to_string().as_bytes())
+        self.write_signals(REPORT, REPORT_SIGNALS, number, time_ns, report)
     }
 
     /// A row of a board's recorder.
@@ -127,13 +106,7 @@ impl McapFile {
         row: &RecorderRow,
     ) -> Result<(), RecordingError> {
         self.write_about(time_ns)?;
-        let channel = match self.recorder {
-            Some(channel) => channel,
-            None => self.signal_channel(RECORDER, RECORDER_SIGNALS)?,
-        };
-        self.recorder = Some(channel);
-        let message = Value::Object(json_object(RECORDER_SIGNALS, row));
-        self.write(channel, number, time_ns, message.to_string().as_bytes())
+        self.write_signals(RECORDER, RECORDER_SIGNALS, number, time_ns, row)
     }
 
     fn write_about(&mut self, time_ns: u64) -> Result<(), RecordingError> {
@@ -144,12 +117,32 @@ impl McapFile {
         self.write(channel, 0, time_ns, about.to_string().as_bytes())
     }
 
-    fn signal_channel<S>(
+    fn write_signals<S>(
         &mut self,
-        topic: &str,
+        topic: &'static str,
         signals: &[Signal<S>],
+        number: u32,
+        time_ns: u64,
+        of: &S,
+    ) -> Result<(), RecordingError> {
+        let make = |file: &mut Self| file.json_channel(topic, &json_schema(topic, signals));
+        let channel = self.channel(topic, make)?;
+        let message = Value::Object(json_object(signals, of));
+        self.write(channel, number, time_ns, message.to_string().as_bytes())
+    }
+
+    /// The channel of a topic: made with its first message.
+    fn channel(
+        &mut self,
+        topic: &'static str,
+        make: impl FnOnce(&mut Self) -> Result<u16, RecordingError>,
     ) -> Result<u16, RecordingError> {
-        self.json_channel(topic, &json_schema(topic, signals))
+        if let Some(channel) = self.channels.get(topic) {
+            return Ok(*channel);
+        }
+        let channel = make(self)?;
+        self.channels.insert(topic, channel);
+        Ok(channel)
     }
 
     fn json_channel(&mut self, topic: &str, schema: &Value) -> Result<u16, RecordingError> {

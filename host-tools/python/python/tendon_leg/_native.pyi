@@ -94,10 +94,10 @@ class Leg:
     def sensors(self) -> dict[str, Any]:
         """What the sensors read now, as codes and in SI units: `axes` has one dictionary for each tendon."""
 
-    def scope(self) -> dict[str, NDArray[float64]]:
+    def scope(self) -> dict[str, Any]:
         """What the board's recorder holds, each tick of the last 0.2 s by the default settings: up to a fault that stops the leg and
-        a quarter beyond, or else up to now. Only what the settings' `recorded` chooses is there; `since_fault_s` only after a fault,
-        until that is cleared."""
+        a quarter beyond, or else up to now. Only what the settings' `recorded` chooses is there, each signal as an array;
+        `since_fault_s` and `fault_names`, those that stopped the leg, only after a fault, until that is cleared."""
 
     def wait(self, seconds: float) -> None:
         """Lets a time pass; an emulated leg's passes in no other way but in calls."""

@@ -3,6 +3,7 @@
 use crate::hosted_leg::Comparison;
 use leg_base::description;
 use leg_base::recorder_rows::RecorderRow;
+use leg_firmware::recorder::RecordedFault;
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::settings::RecordedSignal;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
@@ -40,19 +41,10 @@ pub fn telemetry(json: &[u8]) -> Result<Telemetry<f32>, String> {
     let reported: Reported = serde_json::from_slice(json).map_err(|error| error.to_string())?;
     let mut states = State::ALL.into_iter();
     let state = states.find(|state| description::state(*state) == reported.state);
-    let mut faults = FaultSet::NONE;
-    for name in &reported.faults {
-        let mut known = Fault::ALL.into_iter();
-        let fault = known.find(|fault| fault.entry().name == name);
-        faults.add(
-            fault.ok_or_else(|| format!("no fault is called {name:?}"))?,
-            true,
-        );
-    }
     Ok(Telemetry {
         tick: reported.tick,
         state: state.ok_or_else(|| format!("no state is called {:?}", reported.state))?,
-        faults,
+        faults: fault_set(&reported.faults)?,
         homed: reported.homed,
         failed_tendon: reported.failed_tendon,
         moving: reported.moving,
@@ -69,6 +61,17 @@ pub fn telemetry(json: &[u8]) -> Result<Telemetry<f32>, String> {
         payload_kg: reported.payload_kg,
         unstretched_at_zero_m: reported.unstretched_at_zero_m,
     })
+}
+
+fn fault_set(names: &[String]) -> Result<FaultSet, String> {
+    let mut faults = FaultSet::NONE;
+    for name in names {
+        let mut known = Fault::ALL.into_iter();
+        let fault = known.find(|fault| fault.entry().name == name);
+        let fault = fault.ok_or_else(|| format!("no fault is called {name:?}"))?;
+        faults.add(fault, true);
+    }
+    Ok(faults)
 }
 
 /// The signals of which a comparison is made.
@@ -110,6 +113,7 @@ pub fn comparison(report: &[u8], simulated: &[u8]) -> Result<Comparison, String>
 struct RecordedRow {
     tick: u32,
     since_fault_s: Option<f64>,
+    fault_names: Vec<String>,
     state_index: Option<u8>,
     tensions_n: [Option<f64>; 3],
     target_tensions_n: [Option<f64>; 3],
@@ -129,12 +133,16 @@ struct RecordedRow {
 /// What is missing, in words.
 pub fn recorder_row(json: &[u8]) -> Result<RecorderRow, String> {
     let row: RecordedRow = serde_json::from_slice(json).map_err(|error| error.to_string())?;
-    let fault_tick = row.since_fault_s.map(|since_s| {
+    let faults = fault_set(&row.fault_names)?;
+    let fault = row.since_fault_s.map(|since_s| {
         let ticks = (since_s * f64::from(TICK_HZ)).round() as i32;
-        row.tick.wrapping_sub(ticks as u32)
+        RecordedFault {
+            tick: row.tick.wrapping_sub(ticks as u32),
+            faults,
+        }
     });
     let [x, y] = row.direction;
-    Ok(RecorderRow::new(row.tick, fault_tick, |signal| {
+    Ok(RecorderRow::new(row.tick, fault, |signal| {
         let [a, b, c] = match signal {
             RecordedSignal::Tensions => row.tensions_n,
             RecordedSignal::TargetTensions => row.target_tensions_n,

@@ -1,11 +1,11 @@
 //! What a board's recorder kept of a tick.
 
-use super::{Origin, Signal, Values, signals};
+use super::{Origin, Signal, Values, fault_names, signals};
 use leg_base::description;
 use leg_base::recorder_rows::RecorderRow;
-use leg_base::tick_time::tick_s;
+use leg_base::tick_time::{seconds, tick_s};
 use leg_firmware::settings::RecordedSignal;
-use leg_firmware::supervisor::State;
+use leg_firmware::supervisor::{FaultSet, State};
 
 /// What is not there is not a number.
 fn three(row: &RecorderRow, signal: RecordedSignal) -> [f64; 3] {
@@ -14,20 +14,21 @@ fn three(row: &RecorderRow, signal: RecordedSignal) -> [f64; 3] {
 
 /// Time since the fault, s; not a number where a host has ended the recording.
 fn since_fault_s(row: &RecorderRow) -> f64 {
-    row.fault_tick.map_or(f64::NAN, |tick| {
-        f64::from(row.tick.wrapping_sub(tick) as i32) * tick_s()
-    })
+    row.since_fault()
+        .map_or(f64::NAN, |ticks| f64::from(ticks) * tick_s())
 }
 
 signals! {
     /// What the recorder keeps of a tick. What the settings do not choose is not known.
     RECORDER_SIGNALS of RecorderRow;
     Context Number time_s "Time of the leg since its board started, s."
-        = |at| f64::from(at.tick) * tick_s();
+        = |at| seconds(at.tick.into());
     Context Count tick "The same in ticks."
         = |at| Some(at.tick.into());
     Context Number since_fault_s "Time since the fault that ended the recording, s; none where a host did."
         = since_fault_s;
+    Context Names fault_names "Names of the faults that stopped the leg in the tick of that fault."
+        = |at| fault_names(at.fault.map_or(FaultSet::NONE, |fault| fault.faults));
     State Word state "What the leg may do; empty if it was not recorded."
         = |at| at.state().map_or("", description::state);
     State Count state_index "The same as a number: the place among the names of the states."

@@ -1,6 +1,6 @@
 //! What any leg reports.
 
-use super::{Origin, Signal, Values, signals};
+use super::{Origin, Signal, Values, fault_names, signals};
 use crate::hosted_leg::Comparison;
 use crate::sag_model::SagModel;
 use leg_base::angles::angles_deg;
@@ -112,7 +112,7 @@ signals! {
     State Count state_index "The same as a number: the place among the names of the states."
         = |at| State::ALL.iter().position(|state| *state == at.telemetry.state).map(|index| index as u64);
     State Names faults "Names of the faults that are latched, or limit now."
-        = |at| at.telemetry.faults.faults().map(|fault| fault.entry().name).collect();
+        = |at| fault_names(at.telemetry.faults);
     State Flag homed "Whether the zero is known."
         = |at| at.telemetry.homed;
     State Count failed_tendon "The tendon at which homing failed the last time, from 1; 0 if it did not."

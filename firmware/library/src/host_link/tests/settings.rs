@@ -5,7 +5,7 @@ use crate::command::{Command, CommandRefusal};
 use crate::host_link::{HostRefusal, HostReply, HostRequest};
 use crate::leg::{Leg, Outcome};
 use crate::linked_leg::SensingLeg;
-use crate::sensors::{CODE_MAX, Sensors};
+use crate::sensors::Sensors;
 use crate::settings::{OutOfRange, Settings, SettingsError};
 use crate::supervisor::{Fault, FaultSet, State};
 
@@ -124,14 +124,7 @@ fn a_leg_that_refuses_settings_goes_on_with_the_old_ones() {
 
 /// A slack leg at rest with 24 V.
 fn quiet() -> Sensors {
-    Sensors {
-        cell_codes: [5_242; 3],
-        current_codes: [CODE_MAX / 2; 3],
-        supply_code: 43_680,
-        temperature_code: 21_294,
-        cell_fresh: [true; 3],
-        ..Sensors::default()
-    }
+    Sensors::at_rest(&built_in())
 }
 
 fn ticked(leg: &mut SensingLeg<f32>, command: Command) -> Option<Outcome> {

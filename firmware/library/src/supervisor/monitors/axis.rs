@@ -26,6 +26,13 @@ const STEP_PART: f32 = 0.9;
 /// The same in counts where these are coarse: a motor that starts counts one at once.
 const STEP_COUNTS: f32 = 1.5;
 
+/// Part of the current that a voltage drives by the resistance of the settings which it drives through a warm winding: copper has a
+/// third more when it is 85 °C warmer. Without it a motor without a gear was held at 65 °C (`tests/suite/rig/other_motors.rs`).
+const WARM_PART: f32 = 0.75;
+
+/// Part of the servo's highest current beyond which a motor that stands is driven in any case: one that is jammed gets nearly all.
+const DRIVEN_PART_MAX: f32 = 0.95;
+
 /// A current that lacks this many times the current of friction of what the voltage drives is not measured: twice, as friction
 /// is known no better.
 const LACK_FRICTIONS: f32 = 2.0;
@@ -92,6 +99,10 @@ impl<T: Scalar> AxisMonitor<T> {
     pub fn new(settings: &Settings, m_per_count: f32) -> Self {
         let (limits, servo) = (&settings.limits, &settings.servo);
         let f_max_n = settings.f_max_n;
+        // What the maximum tension asks of a warm winding holds a motor, and need not turn it.
+        let holding_a = (servo.friction_a + servo.pull_a_per_n * f_max_n) / WARM_PART;
+        let driven_a = servo.current_a * limits.driven_part;
+        let driven_a = driven_a.max(holding_a.min(servo.current_a * DRIVEN_PART_MAX));
         Self {
             slack: Debounce::new(checks(limits.slack_time_s)),
             stale: Debounce::new(checks(limits.stale_time_s)),
@@ -119,12 +130,12 @@ impl<T: Scalar> AxisMonitor<T> {
                 ),
                 following_m: limits.following_m.into(),
                 away_m: T::from(AWAY_PART * limits.following_m),
-                a_per_v: T::from(1.0 / servo.resistance_ohm),
+                a_per_v: T::from(WARM_PART / servo.resistance_ohm),
                 lack_a: T::from(LACK_FRICTIONS * servo.friction_a),
                 // A tenth of what the speed induces is known no better.
                 lack_a_per_v: T::from(0.1 / servo.resistance_ohm),
                 open_a: T::from(OPEN_PART * servo.current_a),
-                driven_v: T::from(limits.driven_part * servo.current_a * servo.resistance_ohm),
+                driven_v: T::from(driven_a * servo.resistance_ohm),
                 current_a: limits.current_a.into(),
                 excess_a: T::from(limits.disagreement_a + servo.friction_a),
                 a_per_n: servo.pull_a_per_n.into(),

@@ -4,7 +4,7 @@ use super::{emulated_line, hanging_leg, host, lean, state};
 use crate::operator::{Operator, OperatorError, setting_differences};
 use crate::transport::emulated::EmulatedLine;
 use leg_firmware::host_link::HostRefusal;
-use leg_firmware::settings::SettingsError;
+use leg_firmware::settings::{RecordedSignal, SettingsError, SignalSet};
 use leg_firmware::supervisor::State;
 use leg_rig::rig_file::RigFile;
 use leg_sim::emulated_leg::InitialState;
@@ -24,6 +24,14 @@ fn settings_are_read_back_and_refused_by_name() {
         panic!("{differences:?}")
     };
     assert_eq!(difference.name, "motion.speed_rad_per_s");
+    let mut others = found.clone();
+    others.recorded = SignalSet::new(&[RecordedSignal::Currents, RecordedSignal::Board]);
+    let [difference] = &setting_differences(&found, &others)[..] else {
+        panic!("{others:?}")
+    };
+    assert_eq!(difference.name, "recorded");
+    assert_eq!(difference.ours, Some("tensions, pulled, duties".into()));
+    assert_eq!(difference.theirs, Some("currents, board".into()));
     operator.save_settings().unwrap();
     settings.limits.slack_n = -1.0;
     error_of!(

@@ -7,7 +7,7 @@ const NUMBERS_MAX: usize = 250_000_000;
 
 /// A recording that goes on.
 #[derive(Clone)]
-pub struct Recorder {
+pub struct SignalLog {
     every_ticks: u64,
     /// Ticks until the next row.
     left: u64,
@@ -17,7 +17,7 @@ pub struct Recorder {
     pub columns: Vec<(NumericSignal, Vec<f64>)>,
 }
 
-impl Recorder {
+impl SignalLog {
     /// Of some signals, every so many ticks, from the next tick on.
     pub fn new(signals: &[NumericSignal], every_ticks: u64) -> Self {
         Self {

@@ -1,0 +1,83 @@
+//! How long a leg brakes that is held on its way, and which of its motors.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use super::station_stand::{armed, faults, paper};
+use leg_bench::stand::{Stand, move_to};
+use leg_firmware::command::Command;
+use leg_firmware::sensors::TICK_HZ;
+use leg_firmware::supervisor::{Fault, State};
+use leg_sim::plant::Defect;
+
+/// Part of the maximum tension above which a leg brakes longer.
+const NEAR_PART: f32 = 0.8;
+
+/// A leg in the middle of a move, and the highest tension that its target asks for, as a part of the maximum.
+fn on_its_way(pretension_n: f64, payload_kg: f64) -> (Stand, f32) {
+    let mut rig = paper();
+    rig.pretension_n = pretension_n;
+    let mut stand = armed(&rig, [30.0, 20.0], payload_kg, 3);
+    stand.command(&move_to([210.0, 10.0])).unwrap();
+    for _ in 0..TICK_HZ / 2 {
+        stand.tick().unwrap();
+    }
+    assert!(stand.moving());
+    let tensions_n = stand.telemetry.unwrap().target_tensions_n;
+    let highest_n = tensions_n.into_iter().fold(0.0, f32::max);
+    (stand, highest_n / rig.f_max_n as f32)
+}
+
+/// Time in which a leg that is held from the next ticks on brakes, s.
+fn brake_s(stand: &mut Stand) -> f64 {
+    let mut ticks = 0;
+    loop {
+        stand.tick().unwrap();
+        match (stand.state(), stand.moving()) {
+            (State::Held, true) => ticks += 1,
+            (State::Held, false) => return f64::from(ticks) / f64::from(TICK_HZ),
+            (state, _) => assert_eq!(state, State::Active),
+        }
+    }
+}
+
+#[test]
+fn a_leg_that_is_stopped_brakes_longer_near_its_maximum_tension() {
+    for (pretension_n, payload_kg, near, time_s) in
+        [(70.0, 0.0, false, 0.15), (120.0, 1.0, true, 0.2)]
+    {
+        let (mut stand, part) = on_its_way(pretension_n, payload_kg);
+        assert_eq!(part > NEAR_PART, near, "{part}");
+        stand.command(&Command::Stop).unwrap();
+        let found_s = brake_s(&mut stand);
+        assert!((found_s - time_s).abs() < 0.001, "{found_s} s");
+    }
+}
+
+/// The others do not pull for long against it.
+#[test]
+fn a_leg_whose_motor_is_not_counted_brakes_for_a_short_time() {
+    for motor in 0..3 {
+        let (mut stand, _) = on_its_way(70.0, 0.0);
+        stand.plant().set_defect(Defect::EncoderLost(motor), true);
+        let found_s = brake_s(&mut stand);
+        assert!(faults(&stand).has(Fault::CurrentDisagrees));
+        assert!((found_s - 0.06).abs() < 0.001, "{found_s} s");
+    }
+}
+
+/// A motor that turns uncounted is led on nowhere: its driver is at rest in a tenth of the time of the brake.
+#[test]
+fn a_motor_that_is_not_counted_rests_while_the_others_brake() {
+    let (mut stand, _) = on_its_way(70.0, 0.0);
+    stand.plant().set_defect(Defect::EncoderLost(0), true);
+    while stand.state() == State::Active {
+        stand.tick().unwrap();
+    }
+    for _ in 0..TICK_HZ / 200 {
+        stand.tick().unwrap();
+    }
+    assert!(stand.moving());
+    let duty = stand.motors.duty;
+    assert_eq!(duty[0], 0.0, "{duty:?}");
+    assert!(duty[1..].iter().any(|duty| *duty != 0.0), "{duty:?}");
+}
