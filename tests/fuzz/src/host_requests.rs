@@ -8,6 +8,7 @@ use leg_firmware::host_link::HostRequest;
 use leg_firmware::host_link::{HOST_SCHEMA, Hello};
 use leg_firmware::jog::JogDemand;
 use leg_firmware::linked_leg::LINK_BYTES_MAX;
+use leg_firmware::recorder::RecorderRequest;
 use leg_firmware::sensors::{CODE_MAX, Sensors};
 use leg_firmware::set_point::{SetPoint, StreamPart};
 use leg_firmware_bench::protocol::{Request, TickRequest};
@@ -24,6 +25,7 @@ pub(crate) fn every() -> Vec<HostRequest> {
         HostRequest::SaveSettings,
         HostRequest::SetSettings(settings()),
     ];
+    requests.extend(RECORDER.map(HostRequest::Recorder));
     requests.extend(COMMANDS.map(commanded));
     let known: Vec<_> = requests.iter().map(discriminant).collect();
     requests.extend(zeros().filter(|request| !known.contains(&discriminant(request))));
@@ -39,6 +41,14 @@ fn zeros() -> impl Iterator<Item = HostRequest> {
     };
     (0..).map_while(request)
 }
+
+const RECORDER: [RecorderRequest; 5] = [
+    RecorderRequest::Report,
+    RecorderRequest::Stop,
+    RecorderRequest::Read(0),
+    RecorderRequest::Read(1000),
+    RecorderRequest::Restart,
+];
 
 const COMMANDS: [Command; 16] = [
     Command::KeepAlive,

@@ -99,11 +99,21 @@ fn python_reads_every_channel_by_its_own_schema_and_the_layout_shows_what_is_the
         &["log", "--on", "sim", "--for", "0.5", "--out", "log.mcap"],
         directory.path(),
     );
-    let layout = workspace_root().join("host-tools/foxglove/leg.json");
-    let jobs = ["run.mcap", "log.mcap"]
-        .map(|name| json!({ "recording": directory.path().join(name), "layout": layout }));
-    let [run, log] = &python::answers("read_recording.py", &jobs)[..] else {
-        panic!("two recordings, two answers");
+    leg(
+        &["scope", "--on", "sim", "--out", "scope.mcap"],
+        directory.path(),
+    );
+    let layouts = workspace_root().join("host-tools/foxglove");
+    let jobs = [
+        ("run.mcap", "leg.json"),
+        ("log.mcap", "leg.json"),
+        ("scope.mcap", "recorder.json"),
+    ]
+    .map(|(name, layout)| {
+        json!({ "recording": directory.path().join(name), "layout": layouts.join(layout) })
+    });
+    let [run, log, scope] = &python::answers("read_recording.py", &jobs)[..] else {
+        panic!("three recordings, three answers");
     };
     let counts = |found: &Value, topics: &[&str]| {
         let channels = found["channels"].as_object().unwrap();
@@ -126,11 +136,15 @@ fn python_reads_every_channel_by_its_own_schema_and_the_layout_shows_what_is_the
         &["/about", "/leg", "/settings", "/simulation", "/ticks"],
     );
     counts(log, &["/about", "/leg", "/settings"]);
+    counts(scope, &["/about", "/recorder", "/settings"]);
     assert_eq!(run["metadata"]["scenario"], "payload");
     for key in ["version", "rig", "seed", "settings"] {
         assert!(run["metadata"][key].is_string(), "{key}: {run}");
     }
     // What a layout shows of a simulation is not all there in a log.
-    assert_eq!(run["layout_unknown"], json!([]));
-    assert!(run["layout_paths"].as_array().unwrap().len() >= 12, "{run}");
+    for (recording, paths) in [(run, 12), (scope, 10)] {
+        assert_eq!(recording["layout_unknown"], json!([]));
+        let shown = recording["layout_paths"].as_array().unwrap();
+        assert!(shown.len() >= paths, "{recording}");
+    }
 }

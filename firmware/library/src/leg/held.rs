@@ -127,7 +127,7 @@ mod tests {
     #[test]
     fn a_tendon_is_paid_out_by_its_way_and_a_tenth_of_a_millimetre() {
         let ticks = 1000;
-        let held = Held {
+        let held = Held::<f64> {
             steps_m: [1e-6, 0.0, -1e-6],
             ticks_left: ticks,
             per_tick: 1.0 / ticks as f32,

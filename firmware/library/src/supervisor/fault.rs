@@ -118,7 +118,7 @@ faults! {
     8 CurrentDisagrees {
         name: "current and tension disagree",
         reaction: Hold,
-        cause: "a motor draws disagreement_a more than its tension and friction ask, or less than its voltage drives, for disagreement_time_s; for still_time_s where much is lacking or nothing is counted",
+        cause: "a motor draws disagreement_a more than its tension and friction ask, or less than its voltage drives through a warm winding, for disagreement_time_s; for still_time_s where much is lacking or nothing is counted",
         remedy: "look for an encoder that does not count, a stiff screw, a wrong current sensor or an open wire of the motor",
         clears: Command,
     }
@@ -132,7 +132,7 @@ faults! {
     10 EncoderStill {
         name: "motor does not turn",
         reaction: GateOff,
-        cause: "a motor is driven with driven_part of its current, draws it, and counts nothing for still_time_s",
+        cause: "a motor is driven with driven_part of its current, or more than the maximum tension asks, draws it, and counts nothing for still_time_s",
         remedy: "check the encoder's wiring; look for a jam",
         clears: Command,
     }
