@@ -99,6 +99,7 @@ mod host {
     mod protocol_page;
     mod telemetry_page;
     mod tune;
+    mod ui;
 }
 
 mod bench {

@@ -62,6 +62,6 @@ fn joined(faults: FaultSet, text: fn(leg_firmware::supervisor::Fault) -> String)
 
 /// A schema's hash in hexadecimal digits.
 #[must_use]
-pub fn hex(schema: &[u8; 8]) -> String {
-    schema.iter().map(|byte| format!("{byte:02x}")).collect()
+pub fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

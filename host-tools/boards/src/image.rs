@@ -18,7 +18,7 @@ pub enum FirmwareImage {
 }
 
 /// Variables that would change how the image is compiled: it is to be the same whoever builds it.
-const FOREIGN_VARIABLES: [&str; 4] = [
+pub(crate) const FOREIGN_VARIABLES: [&str; 4] = [
     "RUSTFLAGS",
     "CARGO_ENCODED_RUSTFLAGS",
     "RUSTC_WRAPPER",

@@ -26,3 +26,4 @@ pub mod chip;
 pub mod image;
 pub mod qemu;
 pub mod setup;
+pub mod window_page;

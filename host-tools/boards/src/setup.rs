@@ -27,16 +27,24 @@ pub const QEMU_VARIABLE: &str = "LEG_QEMU";
 /// # Errors
 /// [`SetupError`] if rustup is missing or fails.
 pub fn ensure_target(report: &mut dyn FnMut(&str)) -> Result<(), SetupError> {
+    ensure_rust_target(TARGET, report)
+}
+
+/// The same of any target.
+pub(crate) fn ensure_rust_target(
+    target: &str,
+    report: &mut dyn FnMut(&str),
+) -> Result<(), SetupError> {
     let programs = Programs::from_environment();
-    if has_target(&programs)? {
+    if has_target(&programs, target)? {
         return Ok(());
     }
     let _lock = lock()?;
-    if has_target(&programs)? {
+    if has_target(&programs, target)? {
         return Ok(());
     }
-    report(&format!("adding the Rust target {TARGET} by rustup"));
-    run(programs.rust("rustup")?.args(["target", "add", TARGET])).map(drop)
+    report(&format!("adding the Rust target {target} by rustup"));
+    run(programs.rust("rustup")?.args(["target", "add", target])).map(drop)
 }
 
 /// The program `qemu-system-arm`. Installs it where it is missing, and calls `report` before it does.
@@ -56,13 +64,13 @@ pub fn ensure_python(report: &mut dyn FnMut(&str)) -> Result<PathBuf, SetupError
     ensure(&PYTHON, &Programs::from_environment(), report)
 }
 
-/// Whether the Rust target [`TARGET`] is there.
+/// Whether a Rust target is there.
 ///
 /// # Errors
 /// [`SetupError`] if the compiler is missing or fails.
-pub fn has_target(programs: &Programs) -> Result<bool, SetupError> {
+pub fn has_target(programs: &Programs, target: &str) -> Result<bool, SetupError> {
     let mut rustc = programs.rust("rustc")?;
-    rustc.args(["--print", "target-libdir", "--target", TARGET]);
+    rustc.args(["--print", "target-libdir", "--target", target]);
     Ok(Path::new(run(&mut rustc)?.trim()).is_dir())
 }
 

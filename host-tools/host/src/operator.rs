@@ -102,6 +102,12 @@ const INTRODUCTIONS: u32 = 34;
 const INTRODUCTIONS_LATE: u32 = 6;
 
 impl Operator {
+    /// The connection, for a program that passes on what others send.
+    #[must_use]
+    pub fn into_transport(self) -> Box<dyn Transport> {
+        self.connection.transport
+    }
+
     /// Introduces the host to the leg at the other end.
     ///
     /// # Errors

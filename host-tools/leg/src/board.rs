@@ -92,7 +92,7 @@ pub(crate) fn prepare_target() -> Result<(), Failure> {
     setup::ensure_target(&mut report).map_err(Failure::from_error)
 }
 
-fn report(doing: &str) {
+pub(crate) fn report(doing: &str) {
     note(&format!("leg: {doing}"));
 }
 

@@ -10,9 +10,12 @@ use leg_base::description;
 use leg_base::failure::Failure;
 use leg_firmware::can::LegAddress;
 use leg_firmware::telemetry::Telemetry;
+use leg_host::byte_port::BytePort;
 use leg_host::cancel_flag::CancelFlag;
+use leg_host::emulated_board::EmulatedBoard;
 use leg_host::leg_report::pose_words;
 use leg_host::operator::{HostIdentity, Operator, OperatorError};
+use leg_host::tcp_port::TcpPort;
 use leg_host::transport::Transport;
 #[cfg(target_os = "linux")]
 use leg_host::transport::can::{CanTransport, SocketCan};
@@ -21,7 +24,10 @@ use leg_host::transport::serial::{self, Serial};
 use leg_host::transport::tcp::{self, Tcp};
 use leg_rig::rig_file::RigFile;
 use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
+use std::net::Ipv4Addr;
 use std::path::PathBuf;
+use std::sync::mpsc::channel;
+use std::thread;
 
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Connection")]
@@ -97,6 +103,26 @@ pub(crate) fn emulated_leg(
 }
 
 impl LegArgs {
+    /// Whether a leg is named: an emulated one, a port or a bus.
+    pub(crate) const fn names_leg(&self) -> bool {
+        let ConnectionArgs { on, port, can, .. } = &self.connection;
+        on.is_some() || port.is_some() || can.is_some()
+    }
+
+    /// Opens a connection on which time passes as for a board: an emulated leg keeps to the clock, in a thread of its own.
+    pub(crate) fn open_in_real_time(&self, options: Options) -> Result<Operator, Failure> {
+        let rig = load_rig(self.rig.as_deref())?;
+        let Some(on) = self.connection.on else {
+            let opened = self.connection.open(&rig, Purpose::Use, options);
+            return opened.map(|connection| connection.operator);
+        };
+        let port = emulate_in_thread(rig, on, options)?;
+        let address = port.strip_prefix(tcp::SCHEME).unwrap_or(&port);
+        let transport = Box::new(Tcp::open(address)?);
+        let cancel = CancelFlag::on_ctrl_c();
+        Ok(Operator::open(transport, HostIdentity::random(), cancel)?)
+    }
+
     pub(crate) fn open(
         &self,
         purpose: Purpose,
@@ -168,6 +194,29 @@ impl ConnectionArgs {
         }
         Ok(Box::new(serial))
     }
+}
+
+/// Emulates a board in a thread that lasts as long as the process, and names its port.
+fn emulate_in_thread(rig: RigFile, on: Emulation, options: Options) -> Result<String, Failure> {
+    let (sender, started) = channel();
+    thread::spawn(move || {
+        let opened = emulated_leg(&rig, Purpose::Use.initial(on), on, options).and_then(|leg| {
+            let port = TcpPort::listen((Ipv4Addr::LOCALHOST, 0)).map_err(Failure::from_error)?;
+            Ok((leg, port))
+        });
+        let (leg, port) = match opened {
+            Ok(opened) => opened,
+            Err(failure) => return drop(sender.send(Err(failure))),
+        };
+        // Whoever waits for the name is told, or has gone.
+        let _ = sender.send(Ok(port.name()));
+        let (_nobody, disturbances) = channel();
+        let board = EmulatedBoard::new(leg, Box::new(port));
+        if let Err(failure) = board.run(&CancelFlag::on_ctrl_c(), None, &disturbances) {
+            note_late(&failure);
+        }
+    });
+    started.recv().map_err(Failure::from_error)?
 }
 
 /// Homes a leg that has just started, and disarms it: as a leg starts that keeps its zero.

@@ -16,6 +16,7 @@
 //! | `strikes` | faults that strike a simulated leg in every state |
 //! | `emulate`, `flash`, `faults` | an emulated board; the image into a board; the fault table |
 //! | `board` | `setup`; links to the firmware in this process and under QEMU |
+//! | `ui` | the window, in a browser |
 //! | `completions`, `man` | for the shell and for `man` |
 //!
 //! The commands share `options` (`--verbose`, `--json`), `output` (printing and files), `connection` (a leg on a port,
@@ -68,6 +69,7 @@ mod sensors;
 mod settings;
 mod strikes;
 mod tune;
+mod ui;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use leg_base::failure::Failure;
@@ -132,6 +134,7 @@ enum Command {
     Moves(moves::Args),
     Strikes(strikes::Args),
     Tune(tune::Args),
+    Ui(ui::Args),
 }
 
 /// The command line as clap describes it.
@@ -187,5 +190,6 @@ fn run(command: &Command, options: Options) -> Result<(), Failure> {
         Command::Moves(args) => moves::run(args, options),
         Command::Strikes(args) => strikes::run(args, options),
         Command::Tune(args) => tune::run(args, options),
+        Command::Ui(args) => ui::run(args, options),
     }
 }

@@ -1,6 +1,6 @@
 //! What a first run installs, and what it asks the user to install.
 
-use leg_boards::setup::{PYTHON, Package, Programs, QEMU, SetupError, ensure, has_target};
+use leg_boards::setup::{PYTHON, Package, Programs, QEMU, SetupError, TARGET, ensure, has_target};
 use std::ffi::OsString;
 use std::io;
 use std::path::Path;
@@ -152,6 +152,6 @@ fn a_named_qemu_that_is_not_there_is_not_replaced() {
 
 #[test]
 fn a_missing_rust_is_named() {
-    let outcome = has_target(&only_in("/nowhere"));
+    let outcome = has_target(&only_in("/nowhere"), TARGET);
     assert!(matches!(outcome, Err(SetupError::RustMissing("rustc"))));
 }

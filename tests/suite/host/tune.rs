@@ -218,11 +218,12 @@ fn what_is_written_is_a_part_of_a_rig_file() {
     }
 }
 
-/// A leg whose motors are so far from its settings that it does not home.
+/// A leg whose motors have another winding than its settings say, so that it does not home.
 #[test]
 fn what_the_jogs_tell_lets_a_leg_home_that_did_not() {
     let configured = RigFile::load(None).unwrap();
-    let real = drawn(&configured, 106);
+    let mut real = drawn(&configured, 106);
+    real.actuator.resistance_ohm = 1.8 * configured.actuator.resistance_ohm;
     let swing = |operator: &mut Operator, rig: &RigFile| {
         measure_swing(operator, &SwingPlan::new(rig), rig, &mut |_| ())
     };

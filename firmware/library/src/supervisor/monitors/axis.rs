@@ -26,9 +26,10 @@ const STEP_PART: f32 = 0.9;
 /// The same in counts where these are coarse: a motor that starts counts one at once.
 const STEP_COUNTS: f32 = 1.5;
 
-/// Part of the current that a voltage drives by the resistance of the settings which it drives through a warm winding: copper has a
-/// third more when it is 85 °C warmer. Without it a motor without a gear was held at 65 °C (`tests/suite/rig/other_motors.rs`).
-const WARM_PART: f32 = 0.75;
+/// What a voltage drives through a winding at the resistance of the settings, as a multiple of what it drives through a warm one:
+/// copper has 1.3 times the resistance when it is 75 °C warmer. Without it a motor without a gear was held at 65 °C
+/// (`tests/suite/rig/other_motors.rs`).
+const WARM_RATIO: f32 = 1.3;
 
 /// Part of the servo's highest current beyond which a motor that stands is driven in any case: one that is jammed gets nearly all.
 const DRIVEN_PART_MAX: f32 = 0.95;
@@ -100,7 +101,7 @@ impl<T: Scalar> AxisMonitor<T> {
         let (limits, servo) = (&settings.limits, &settings.servo);
         let f_max_n = settings.f_max_n;
         // What the maximum tension asks of a warm winding holds a motor, and need not turn it.
-        let holding_a = (servo.friction_a + servo.pull_a_per_n * f_max_n) / WARM_PART;
+        let holding_a = (servo.friction_a + servo.pull_a_per_n * f_max_n) * WARM_RATIO;
         let driven_a = servo.current_a * limits.driven_part;
         let driven_a = driven_a.max(holding_a.min(servo.current_a * DRIVEN_PART_MAX));
         Self {
@@ -130,7 +131,7 @@ impl<T: Scalar> AxisMonitor<T> {
                 ),
                 following_m: limits.following_m.into(),
                 away_m: T::from(AWAY_PART * limits.following_m),
-                a_per_v: T::from(WARM_PART / servo.resistance_ohm),
+                a_per_v: T::from(1.0 / servo.resistance_ohm),
                 lack_a: T::from(LACK_FRICTIONS * servo.friction_a),
                 // A tenth of what the speed induces is known no better.
                 lack_a_per_v: T::from(0.1 / servo.resistance_ohm),
@@ -230,7 +231,7 @@ impl<T: Scalar> AxisMonitor<T> {
         let driving = self.driving_a.step(driving_v * bounds.a_per_v).abs();
         let drawn = self.drawn_a.step(current).abs();
         let allowed = bounds.lack_a + induced_v.abs() * bounds.lack_a_per_v;
-        let lack = driving - (drawn + allowed);
+        let lack = driving - (drawn * T::from(WARM_RATIO) + allowed);
         // A motor that draws less than its voltage drives through one that stands is turning, or is not connected.
         let stands = step == 0;
         let least = if stands { T::zero() } else { bounds.open_a };

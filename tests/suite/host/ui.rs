@@ -1,0 +1,120 @@
+//! `leg ui` serves a page to this machine.
+
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use rustix::process::{Pid, Signal, kill_process};
+use serde_json::Value;
+use std::fs;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::process::{Child, Command, Output, Stdio};
+
+fn leg(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_leg-under-test"));
+    command.args(arguments);
+    command
+}
+
+/// `leg ui` with a page that was exported before.
+struct Served {
+    process: Child,
+    address: String,
+}
+
+impl Served {
+    fn new(page: &str) -> Self {
+        let mut process = leg(&["ui", "--no-open", "--json", "--page", page])
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut line = String::new();
+        let mut output = BufReader::new(process.stdout.take().unwrap());
+        output.read_line(&mut line).unwrap();
+        let told: Value = serde_json::from_str(&line).unwrap();
+        let url = told["url"].as_str().unwrap();
+        let address = url
+            .strip_prefix("http://")
+            .and_then(|rest| rest.strip_suffix('/'));
+        Self {
+            address: address.unwrap().into(),
+            process,
+        }
+    }
+
+    /// The status line and the body of an answer.
+    fn ask(&self, request: &str) -> (String, String) {
+        let mut stream = TcpStream::connect(&self.address).unwrap();
+        let rest = "HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n";
+        write!(stream, "{request} {rest}").unwrap();
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).unwrap();
+        let (head, body) = answer.split_once("\r\n\r\n").unwrap();
+        let (status, headers) = head.split_once("\r\n").unwrap();
+        assert!(headers.contains("Cache-Control: no-store"), "{headers}");
+        (status.into(), body.into())
+    }
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+fn refused(arguments: &[&str]) -> String {
+    let Output { status, stderr, .. } = leg(arguments).output().unwrap();
+    assert_eq!(status.code(), Some(2));
+    String::from_utf8(stderr).unwrap()
+}
+
+#[test]
+fn one_page_is_served_and_nothing_else() {
+    let directory = tempfile::tempdir().unwrap();
+    let file = directory.path().join("index.html");
+    fs::write(&file, "<!doctype html>the leg").unwrap();
+    let mut served = Served::new(&file.display().to_string());
+    assert!(
+        served.address.starts_with("127.0.0.1:"),
+        "{}",
+        served.address
+    );
+    // One that asks for nothing keeps no other waiting.
+    let _silent = TcpStream::connect(&served.address).unwrap();
+    for path in ["/", "/index.html", "/?from=elsewhere"] {
+        let (status, body) = served.ask(&format!("GET {path}"));
+        assert_eq!(
+            (status.as_str(), body.as_str()),
+            ("HTTP/1.1 200 OK", "<!doctype html>the leg")
+        );
+    }
+    assert_eq!(served.ask("HEAD /").1, "");
+    for path in ["/../Cargo.toml", "/etc/passwd", "//"] {
+        assert!(
+            served.ask(&format!("GET {path}")).0.contains("404"),
+            "{path}"
+        );
+    }
+    assert!(served.ask("POST /").0.contains("405"));
+    let port = served.address.rsplit(':').next().unwrap();
+    let page = file.display().to_string();
+    let told = refused(&["ui", "--no-open", "--page", &page, "--http-port", port]);
+    assert!(
+        told.contains(port) && told.contains("--http-port"),
+        "{told}"
+    );
+    // Ctrl-C ends it as what was asked for.
+    let id = Pid::from_child(&served.process);
+    kill_process(id, Signal::INT).unwrap();
+    assert!(served.process.wait().unwrap().success());
+}
+
+#[test]
+fn a_page_that_is_not_there_is_refused_by_name() {
+    let told = refused(&["ui", "--no-open", "--page", "no/such.html"]);
+    assert!(
+        told.contains("no/such.html") && told.contains("--export"),
+        "{told}"
+    );
+}
