@@ -22,6 +22,7 @@ pub mod json_line;
 pub mod numeric;
 pub mod paths;
 pub mod recorder_rows;
+pub mod refusal;
 pub mod settling;
 pub mod suggest;
 pub mod text_input;

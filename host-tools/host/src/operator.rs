@@ -9,7 +9,6 @@ mod jog;
 mod keep_alive;
 mod motion;
 mod recorder;
-mod refusal;
 mod request;
 mod settings;
 mod stop;

@@ -162,6 +162,11 @@ impl Plant {
         self.tensions_n = self.pulls_n();
     }
 
+    /// Each defect that has begun and not ended.
+    pub fn defects(&self) -> impl Iterator<Item = Defect> + '_ {
+        self.defects.all()
+    }
+
     /// What a defect does once, when it begins or ends.
     fn begin_or_end(&mut self, defect: Defect, on: bool) {
         match defect {

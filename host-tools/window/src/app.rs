@@ -1,6 +1,10 @@
 //! The window: what is where, and what a key does.
 
+#[cfg(test)]
+mod tests;
+
 use crate::charts::Charts;
+use crate::faults::FaultList;
 use crate::page_state::PageState;
 use crate::panel_guide::Wish;
 use crate::places::{self, Places, place};
@@ -8,9 +12,10 @@ use crate::scene::{self, Scene};
 use crate::simulation::Simulation;
 use crate::theme::{self, palette};
 use crate::workspace::Workspace;
-use crate::{faults, numbers, panel_break, panel_drive, panel_guide, top_bar};
+use crate::{keys, numbers, panel_break, panel_drive, panel_guide, top_bar};
 use eframe::egui::{
-    CentralPanel, Context, Frame, Key, Margin, Panel, Rect, ScrollArea, Ui, UiBuilder, vec2,
+    Align, CentralPanel, Context, Frame, Layout, Margin, Panel, RawInput, Rect, ScrollArea, Ui,
+    UiBuilder, Vec2, vec2,
 };
 use leg_firmware::command::Command;
 
@@ -20,6 +25,9 @@ const WIDE: f32 = 960.0;
 /// A screen of more points than this is shown larger, and how many points it then has at least.
 const LARGE: f32 = 2200.0;
 const LARGE_SHOWN: f32 = 1700.0;
+
+/// The room for the time beside the leg, points.
+const TIME: Vec2 = vec2(150.0, 50.0);
 
 /// What a narrow window shows below the leg.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -44,6 +52,7 @@ struct Views {
     scene: Scene,
     workspace: Workspace,
     charts: Charts,
+    faults: FaultList,
     tab: Tab,
 }
 
@@ -53,11 +62,15 @@ pub struct App {
     simulation: Result<Simulation, String>,
     views: Views,
     places: Places,
+    /// Whether a key asks for a stop.
+    stop: bool,
     /// When the last frame was, s.
     last_s: Option<f64>,
     frames: u64,
     /// Time that the processor took for the last frame, s.
     frame_s: Option<f32>,
+    /// How much larger everything is shown.
+    zoom: f32,
     /// Width of the screen that the size was chosen for, points of size 1.
     sized_for: f32,
 }
@@ -71,9 +84,11 @@ impl App {
             simulation: Simulation::new().map_err(|error| error.to_string()),
             views: Views::default(),
             places: Places::default(),
+            stop: false,
             last_s: None,
             frames: 0,
             frame_s: None,
+            zoom: 1.0,
             sized_for: 0.0,
         }
     }
@@ -82,7 +97,13 @@ impl App {
     #[must_use]
     pub fn state(&self) -> PageState {
         let simulation = self.simulation.as_ref();
-        PageState::new(simulation.ok(), &self.places, self.frames, self.frame_s)
+        PageState::new(
+            simulation.ok(),
+            &self.places,
+            self.zoom,
+            self.frames,
+            self.frame_s,
+        )
     }
 
     /// Large screens show everything larger.
@@ -97,6 +118,7 @@ impl App {
         } else {
             1.0
         };
+        self.zoom = zoom;
         ctx.set_zoom_factor(zoom);
     }
 
@@ -104,11 +126,9 @@ impl App {
         let now_s = ctx.input(|input| input.time);
         let elapsed_s = self.last_s.map_or(0.0, |last_s| now_s - last_s);
         self.last_s = Some(now_s);
-        let stop =
-            ctx.input(|input| input.key_pressed(Key::Space) || input.key_pressed(Key::Escape));
-        let typing = ctx.text_edit_focused();
+        let stop = std::mem::take(&mut self.stop);
         if let Ok(simulation) = &mut self.simulation {
-            if stop && !typing {
+            if stop {
                 simulation.command(Command::Stop, "stop");
             }
             simulation.advance(elapsed_s);
@@ -140,19 +160,34 @@ impl App {
             narrow(ui, simulation, views)
         };
         if wish == Wish::StartAgain {
+            self.views.charts.go_on();
             self.simulation = Simulation::new().map_err(|error| error.to_string());
         }
     }
-}
 
-impl eframe::App for App {
-    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+    /// Takes the input before anything sees it.
+    fn take(&mut self, input: &mut RawInput) {
+        self.stop |= keys::take_stop(&mut input.events);
+    }
+
+    /// A frame.
+    fn frame(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
         self.fit(&ctx);
         self.step(&ctx);
         self.show(ui);
         self.places = places::take(&ctx);
         self.frames += 1;
+    }
+}
+
+impl eframe::App for App {
+    fn raw_input_hook(&mut self, _: &Context, input: &mut RawInput) {
+        self.take(input);
+    }
+
+    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+        self.frame(ui);
         self.frame_s = frame.info().cpu_usage;
     }
 
@@ -210,7 +245,7 @@ fn wide(ui: &mut Ui, simulation: &mut Simulation, views: &mut Views) -> Wish {
         let over = UiBuilder::new().max_rect(scene::room(rect));
         ui.scope_builder(over, |ui| {
             let scroll = ScrollArea::vertical().id_salt("faults");
-            scroll.show(ui, |ui| faults::show(ui, simulation.faults()));
+            scroll.show(ui, |ui| views.faults.show(ui, simulation.faults()));
         });
     });
     wish.inner
@@ -218,12 +253,19 @@ fn wide(ui: &mut Ui, simulation: &mut Simulation, views: &mut Views) -> Wish {
 
 /// The leg above, and the rest behind tabs.
 fn narrow(ui: &mut Ui, simulation: &mut Simulation, views: &mut Views) -> Wish {
-    let height = (0.42 * ui.available_height()).max(220.0);
+    let height = (0.44 * ui.available_height()).max(220.0);
     let above = Panel::top("leg")
         .frame(Frame::NONE)
         .resizable(false)
         .exact_size(height);
-    above.show(ui, |ui| leg(ui, simulation, &mut views.scene));
+    above.show(ui, |ui| {
+        let rect = leg(ui, simulation, &mut views.scene);
+        let corner = Rect::from_min_max(rect.max - TIME, rect.max - vec2(14.0, 6.0));
+        let over = UiBuilder::new()
+            .max_rect(corner)
+            .layout(Layout::bottom_up(Align::Max));
+        ui.scope_builder(over, |ui| top_bar::time(ui, simulation));
+    });
     CentralPanel::default()
         .show(ui, |ui| {
             ui.horizontal(|ui| {
@@ -245,9 +287,7 @@ fn narrow(ui: &mut Ui, simulation: &mut Simulation, views: &mut Views) -> Wish {
 }
 
 fn page(ui: &mut Ui, simulation: &mut Simulation, views: &mut Views) -> Wish {
-    if simulation.faults().any() {
-        faults::show(ui, simulation.faults());
-    }
+    views.faults.show_any(ui, simulation.faults());
     match views.tab {
         Tab::Try => {
             let wish = panel_guide::show(ui, simulation);
@@ -273,7 +313,7 @@ fn leg(ui: &mut Ui, simulation: &Simulation, scene: &mut Scene) -> Rect {
     let rect = ui.available_rect_before_wrap();
     let response = scene.show(ui, simulation, rect.size());
     place(&response, "leg");
-    let corner = rect.left_top() + vec2(14.0, 56.0);
+    let corner = rect.left_top() + vec2(14.0, scene::CHOICE_TOP);
     let over = UiBuilder::new().max_rect(Rect::from_min_size(corner, vec2(96.0, 28.0)));
     ui.scope_builder(over, |ui| scene.choice(ui));
     let failure = simulation.failure().map(ToString::to_string);

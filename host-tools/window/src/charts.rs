@@ -1,13 +1,22 @@
 //! Signals over time, chosen by name.
 
 use crate::history::{Column, History, KEPT_S};
-use crate::places::place;
+use crate::places::{place, place_rect};
 use crate::theme;
-use eframe::egui::{ComboBox, Id, RichText, ScrollArea, TextEdit, Ui, Vec2b};
+use eframe::egui::{ComboBox, Id, PopupCloseBehavior, RichText, ScrollArea, TextEdit, Ui, Vec2b};
 use egui_plot::{GridInput, GridMark, Line, Plot, PlotPoints};
 
 /// Points of a line: more than a screen has.
 const POINTS_MAX: usize = 1200;
+
+/// The least height of a chart, as a part of its largest value.
+const RANGE_MIN: f64 = 0.01;
+
+/// About as many lines a grid has.
+const GRID_LINES: f64 = 4.0;
+
+/// What half a label of the time takes of a chart's width.
+const LABEL_PART: f64 = 0.06;
 
 /// Times that a chart may show, s.
 const SPANS_S: [f64; 4] = [2.0, 5.0, 10.0, KEPT_S];
@@ -17,10 +26,17 @@ pub struct Charts {
     /// The names of the signals, one chart each.
     chosen: Vec<&'static str>,
     span_s: f64,
-    /// The time at which the charts stand still, s.
-    paused_s: Option<f64>,
+    /// What the charts show while they are paused.
+    paused: Option<Paused>,
     /// A part of a name that is looked for.
     search: String,
+}
+
+/// The signals up to a time at which the charts were paused: the leg's own history goes on.
+struct Paused {
+    history: History,
+    /// s.
+    until_s: f64,
 }
 
 impl Default for Charts {
@@ -28,7 +44,7 @@ impl Default for Charts {
         Self {
             chosen: vec!["tip_error_mm", "tensions_n"],
             span_s: SPANS_S[2],
-            paused_s: None,
+            paused: None,
             search: String::new(),
         }
     }
@@ -38,25 +54,54 @@ impl Charts {
     /// Shows the charts beside each other, or below where there is no room for that.
     pub fn show(&mut self, ui: &mut Ui, history: &History, now_s: f64, height: f32) {
         self.controls(ui, history, now_s);
-        let until_s = self.paused_s.unwrap_or(now_s);
         if self.chosen.is_empty() {
             ui.label("Choose a signal to see it over time.");
         }
-        let columns: Vec<Column> = self
-            .chosen
-            .iter()
-            .filter_map(|name| history.named(name))
-            .collect();
+        let shown = self.shown(history, now_s);
+        let names = self.chosen.iter();
+        let columns: Vec<Column> = names.filter_map(|name| history.named(name)).collect();
+        let top = ui.cursor().top();
         if ui.available_width() > 560.0 && columns.len() > 1 {
             ui.columns(columns.len(), |parts| {
                 for (part, column) in parts.iter_mut().zip(&columns) {
-                    self.chart(part, history, *column, until_s, height);
+                    self.chart(part, shown, *column, height);
                 }
             });
         } else {
             for column in columns {
-                self.chart(ui, history, column, until_s, height);
+                self.chart(ui, shown, column, height);
             }
+        }
+        place_rect(ui.ctx(), ui.min_rect().with_min_y(top), "charts");
+    }
+
+    /// Pauses, or goes on.
+    fn pause(&mut self, history: &History, now_s: f64) {
+        self.paused = match self.paused {
+            Some(_) => None,
+            None => Some(Paused {
+                history: history.clone(),
+                until_s: now_s,
+            }),
+        };
+    }
+
+    /// Whether they stand still.
+    #[must_use]
+    pub const fn paused(&self) -> bool {
+        self.paused.is_some()
+    }
+
+    /// Goes on: there is another leg.
+    pub fn go_on(&mut self) {
+        self.paused = None;
+    }
+
+    /// The history that is charted, and up to which time, s.
+    fn shown<'a>(&'a self, history: &'a History, now_s: f64) -> (&'a History, f64) {
+        match &self.paused {
+            Some(paused) => (&paused.history, paused.until_s),
+            None => (history, now_s),
         }
     }
 
@@ -65,7 +110,9 @@ impl Charts {
             ui.heading("Charts");
             let menu = ComboBox::from_id_salt("signals")
                 .selected_text("Signals")
-                .width(110.0);
+                .width(110.0)
+                // Several signals may be chosen, and a name is typed.
+                .close_behavior(PopupCloseBehavior::CloseOnClickOutside);
             let menu = menu.show_ui(ui, |ui| self.choice(ui, history));
             place(&menu.response, "signals");
             let span =
@@ -75,23 +122,21 @@ impl Charts {
                     ui.selectable_value(&mut self.span_s, span_s, format!("{span_s:.0} s"));
                 }
             });
-            let (text, next) = match self.paused_s {
-                None => ("Pause", Some(now_s)),
-                Some(_) => ("Go on", None),
-            };
+            let text = if self.paused() { "Go on" } else { "Pause" };
             let pause = ui.button(text).on_hover_text(
                 "A paused chart can be dragged and zoomed; a double click shows it whole.",
             );
             place(&pause, "pause");
             if pause.clicked() {
-                self.paused_s = next;
+                self.pause(history, now_s);
             }
         });
     }
 
     fn choice(&mut self, ui: &mut Ui, history: &History) {
         ui.set_min_width(270.0);
-        ui.add(TextEdit::singleline(&mut self.search).hint_text("part of a name"));
+        let search = TextEdit::singleline(&mut self.search).hint_text("part of a name");
+        place(&ui.add(search), "search");
         ScrollArea::vertical().max_height(260.0).show(ui, |ui| {
             for column in history.columns() {
                 let name = column.name();
@@ -110,10 +155,11 @@ impl Charts {
         });
     }
 
-    fn chart(&self, ui: &mut Ui, history: &History, column: Column, until_s: f64, height: f32) {
+    fn chart(&self, ui: &mut Ui, shown: (&History, f64), column: Column, height: f32) {
+        let (history, until_s) = shown;
         let name = column.name();
         title(ui, &column);
-        let paused = self.paused_s.is_some();
+        let paused = self.paused();
         let link = Id::unique("charts");
         let since_s = (until_s - self.span_s).max(0.0);
         let plot = Plot::new(name)
@@ -125,11 +171,18 @@ impl Charts {
             .allow_zoom(paused)
             .allow_scroll(paused)
             .allow_boxed_zoom(paused)
-            .x_grid_spacer(|input| grid(&input, 4.0))
-            .y_grid_spacer(|input| grid(&input, 4.0))
+            .x_grid_spacer(|input| grid(&input, LABEL_PART))
+            .y_grid_spacer(|input| grid(&input, 0.0))
             .x_axis_formatter(|mark, _| format!("{} s", short(mark.value)))
             .y_axis_formatter(|mark, _| short(mark.value))
             .y_axis_min_width(44.0);
+        // A paused chart may be dragged to what was before.
+        let from_s = if paused { until_s - KEPT_S } else { since_s };
+        let lines = lines(history, column, [from_s, until_s]);
+        let plot = least_range(&lines)
+            .into_iter()
+            .flatten()
+            .fold(plot, Plot::include_y);
         let colours: Vec<_> = (0..column.width)
             .map(|i| theme::series(ui.ctx(), i))
             .collect();
@@ -138,15 +191,7 @@ impl Charts {
                 plot.set_plot_bounds_x(since_s..=(since_s + self.span_s));
                 plot.set_auto_bounds(Vec2b::new(false, true));
             }
-            for (number, colour) in colours.into_iter().enumerate() {
-                // A paused chart may be dragged to what was before.
-                let from_s = if paused { until_s - KEPT_S } else { since_s };
-                let points = history.line(column, number, from_s);
-                let points = thinned(
-                    points
-                        .take_while(|[time_s, _]| *time_s <= until_s)
-                        .collect(),
-                );
+            for (number, (points, colour)) in lines.into_iter().zip(colours).enumerate() {
                 let label = if column.width > 1 {
                     (number + 1).to_string()
                 } else {
@@ -177,10 +222,33 @@ fn title(ui: &mut Ui, column: &Column) {
     });
 }
 
-/// Some lines of a grid at round numbers.
-fn grid(input: &GridInput, lines: f64) -> Vec<GridMark> {
+/// Each number of a signal between two times, s.
+fn lines(history: &History, column: Column, [from_s, until_s]: [f64; 2]) -> Vec<Vec<[f64; 2]>> {
+    let line = |number| {
+        let points = history.line(column, number, from_s);
+        thinned(
+            points
+                .take_while(|[time_s, _]| *time_s <= until_s)
+                .collect(),
+        )
+    };
+    (0..column.width).map(line).collect()
+}
+
+/// What a chart shows at least, so that it does not show rounding errors alone; none without points.
+fn least_range(lines: &[Vec<[f64; 2]>]) -> Option<[f64; 2]> {
+    let values = || lines.iter().flatten().map(|[_, value]| *value);
+    let low = values().min_by(f64::total_cmp)?;
+    let high = values().max_by(f64::total_cmp)?;
+    let half = 0.5 * RANGE_MIN * low.abs().max(high.abs());
+    let middle = 0.5 * (low + high);
+    Some([middle - half, middle + half])
+}
+
+/// Some lines of a grid at round numbers; none in the last part, where a label would have no room.
+fn grid(input: &GridInput, last_part: f64) -> Vec<GridMark> {
     let (low, high) = input.bounds;
-    let step_size = round_step((high - low) / lines);
+    let step_size = round_step((high - low) / GRID_LINES);
     let first = (low / step_size).ceil();
     // A plot of no height has no lines.
     let count = ((high - low) / step_size).min(100.0) as u32;
@@ -188,9 +256,11 @@ fn grid(input: &GridInput, lines: f64) -> Vec<GridMark> {
         value: (first + f64::from(line)) * step_size,
         step_size,
     };
-    let marks = (0..=count).map(mark);
-    // What is beyond the edge would have its label there.
-    marks.filter(|mark| mark.value <= high).collect()
+    let end = high - last_part * (high - low);
+    (0..=count)
+        .map(mark)
+        .filter(|mark| mark.value <= end)
+        .collect()
 }
 
 /// The next larger of 1, 2 and 5 with any power of ten.
@@ -229,8 +299,39 @@ fn thinned(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{POINTS_MAX, round_step, short, thinned};
+    use super::{Charts, POINTS_MAX, grid, least_range, round_step, short, thinned};
+    use crate::history::{KEPT_S, SAMPLE_HZ};
+    use crate::simulation::Simulation;
+    use egui_plot::GridInput;
+
+    #[test]
+    fn a_paused_chart_keeps_what_it_shows() {
+        let mut simulation = Simulation::new().unwrap();
+        let snapshot = simulation.snapshot().unwrap();
+        let now_s = simulation.leg().time_s();
+        let mut charts = Charts::default();
+        charts.pause(&simulation.history, now_s);
+        let points = |charts: &Charts, simulation: &Simulation, now_s: f64| {
+            let (history, until_s) = charts.shown(&simulation.history, now_s);
+            let column = history.named("tensions_n").unwrap();
+            (history.line(column, 0, 0.0).collect::<Vec<_>>(), until_s)
+        };
+        let before = points(&charts, &simulation, now_s);
+        assert!(before.0.len() > 100);
+        let samples = (2.0 * KEPT_S) as u32 * SAMPLE_HZ;
+        let time_s = |sample: u32| now_s + f64::from(sample) / f64::from(SAMPLE_HZ);
+        for sample in 1..=samples {
+            simulation.history.take(time_s(sample), &snapshot);
+        }
+        let later_s = time_s(samples);
+        assert_eq!(points(&charts, &simulation, later_s), before);
+        charts.go_on();
+        let (after, until_s) = points(&charts, &simulation, later_s);
+        assert_eq!(until_s, later_s);
+        assert!(after[0][0] > now_s);
+    }
 
     #[test]
     fn lines_of_a_grid_are_at_round_numbers() {
@@ -248,6 +349,29 @@ mod tests {
             [0.1 + 0.2, -0.0, 1.0 / 3.0].map(short),
             ["0.3", "0", "0.333333"]
         );
+    }
+
+    #[test]
+    fn no_label_is_beyond_the_edge() {
+        let values = |last_part| -> Vec<f64> {
+            let input = GridInput {
+                bounds: (0.0, 10.0),
+                base_step_size: 1.0,
+            };
+            let marks = grid(&input, last_part).into_iter();
+            marks.map(|mark| mark.value).collect()
+        };
+        assert_eq!(values(0.0), [0.0, 5.0, 10.0]);
+        assert_eq!(values(0.06), [0.0, 5.0]);
+    }
+
+    #[test]
+    fn rounding_errors_do_not_fill_a_chart() {
+        let line = vec![[0.0, 2.0], [1.0, 2.000_001]];
+        let [low, high] = least_range(&[line, Vec::new()]).unwrap();
+        assert!((high - low - 0.02).abs() < 1e-6 && (low - 1.99).abs() < 1e-5);
+        assert_eq!(least_range(&[vec![[0.0, 0.0]]]), Some([0.0, 0.0]));
+        assert_eq!(least_range(&[]), None);
     }
 
     #[test]

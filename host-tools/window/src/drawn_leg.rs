@@ -3,6 +3,7 @@
 use crate::camera::View;
 use crate::figure::{Item, ball, circle, cord, disc, rod, sorted};
 use crate::leg_pose::{LegPose, enlarged};
+use crate::places::place_rect;
 use crate::simulation::Simulation;
 use crate::theme::{self, Palette, mixed};
 use eframe::egui::{
@@ -122,6 +123,7 @@ impl<'a> Drawn<'a> {
         };
         inside.rect_filled(strip, corners, self.palette.card);
         self.tension_labels(&inside, view, rect);
+        place_rect(painter.ctx(), strip, "tensions");
     }
 
     /// Plates, joint and tendons.
@@ -174,9 +176,7 @@ impl<'a> Drawn<'a> {
     }
 
     fn cut(&self, tendon: usize) -> bool {
-        self.simulation
-            .defects()
-            .contains(&Defect::TendonCut(tendon))
+        self.simulation.has(Defect::TendonCut(tendon))
     }
 
     fn tension_colour(&self, tendon: usize) -> Color32 {
@@ -266,7 +266,7 @@ impl<'a> Drawn<'a> {
             } else if width < 72.0 {
                 format!("{:3.0} N", tensions_n[tendon])
             } else {
-                format!("{}:{:5.1} N", tendon + 1, tensions_n[tendon])
+                format!("{}: {:.1} N", tendon + 1, tensions_n[tendon])
             };
             painter.circle_filled(cell - vec2(0.0, 14.0), 4.0, self.tension_colour(tendon));
             painter.text(
@@ -291,10 +291,14 @@ impl<'a> Drawn<'a> {
             self.palette.error
         };
         painter.text(corner, Align2::LEFT_TOP, words, big, colour);
-        let words = format!("from the target, drawn ×{:.1}", self.factor);
-        let below = corner + vec2(0.0, 28.0);
-        let font = FontId::proportional(12.5);
-        painter.text(below, Align2::LEFT_TOP, words, font, self.palette.faint);
+        let drawn = format!("drawn ×{:.1} from its reference", self.factor);
+        for (line, words) in ["from the target", &drawn].into_iter().enumerate() {
+            let below = corner + vec2(0.0, 28.0 + 16.0 * line as f32);
+            let font = FontId::proportional(12.5);
+            painter.text(below, Align2::LEFT_TOP, words, font, self.palette.faint);
+        }
+        let shown = Rect::from_min_size(corner, vec2(200.0, 60.0));
+        place_rect(painter.ctx(), shown, "readout");
     }
 
     /// What the colours of the tendons mean.
@@ -310,7 +314,7 @@ impl<'a> Drawn<'a> {
             let cell = bar.with_min_x(left).with_max_x(right);
             painter.rect_filled(cell, 0.0, theme::tension(tension_n, bounds_n));
         }
-        let words = format!("tension {:.0} to {:.0} N", bounds_n[0], bounds_n[1]);
+        let words = format!("true tension, {:.0} to {:.0} N", bounds_n[0], bounds_n[1]);
         let above = bar.left_top() + vec2(0.0, -3.0);
         let font = FontId::proportional(12.5);
         painter.text(above, Align2::LEFT_BOTTOM, words, font, self.palette.faint);

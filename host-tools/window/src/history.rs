@@ -58,6 +58,7 @@ impl Column {
 }
 
 /// The samples of every signal that has numbers.
+#[derive(Clone)]
 pub struct History {
     columns: Vec<Column>,
     /// The time of each, s, and its numbers.

@@ -9,7 +9,7 @@
 //! | [`scene`], `drawn_leg`, [`camera`], [`figure`], [`leg_pose`] | the leg in 3D |
 //! | [`workspace`], [`map`] | the disc on which the target is dragged, and what the model says of every pose |
 //! | [`charts`] | signals over time |
-//! | [`theme`], [`text`] | colours, sizes, text in its place |
+//! | [`theme`], [`text`], [`keys`] | colours, sizes, text in its place; the keys that stop |
 //! | [`bits`] | whether the firmware decides the same here as elsewhere |
 //! | [`page_state`], [`places`] | the window as data, for tests and for readers of the screen |
 
@@ -21,6 +21,7 @@ mod drawn_leg;
 pub mod faults;
 pub mod figure;
 pub mod history;
+pub mod keys;
 pub mod leg_pose;
 pub mod map;
 pub mod numbers;

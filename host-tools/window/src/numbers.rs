@@ -1,5 +1,6 @@
 //! The leg in numbers that stay in their places.
 
+use crate::places::place_rect;
 use crate::simulation::Simulation;
 use crate::theme::{self, palette};
 use eframe::egui::{Grid, RichText, Ui};
@@ -17,35 +18,40 @@ pub fn show(ui: &mut Ui, simulation: &Simulation) {
     };
     let comparison = simulation.leg().comparison();
     let [azimuth_deg, tilt_deg] = angles::angles_deg(telemetry.pose.map(f64::from));
-    let rows = [
-        ("off target", comparison.commanded_error_mm(), "mm"),
-        ("azimuth", azimuth_deg, "°"),
-        ("tilt", tilt_deg, "°"),
-        ("payload, felt", telemetry.payload_kg.into(), "kg"),
-    ];
     let palette = palette(ui.ctx());
-    Grid::new("numbers")
+    let faint = |words: &str| RichText::new(words).color(palette.faint);
+    let grid = Grid::new("numbers")
         .num_columns(2)
         .spacing([12.0, 3.0])
-        .min_row_height(16.0)
-        .show(ui, |ui| {
-            for (name, value, unit) in rows {
-                ui.label(RichText::new(name).color(palette.faint));
-                ui.label(RichText::new(format!("{value:8.2} {unit}")).monospace());
-                ui.end_row();
-            }
-            ui.label(RichText::new("tensions").color(palette.faint));
-            ui.horizontal(|ui| {
-                for (tendon, tension_n) in telemetry.tensions_n.into_iter().enumerate() {
-                    let colour = theme::series(ui.ctx(), tendon);
-                    ui.label(
-                        RichText::new(format!("{:5.1}", unsigned_zero(tension_n)))
-                            .monospace()
-                            .color(colour),
-                    );
-                }
-                ui.label(RichText::new("N").monospace());
-            });
-            ui.end_row();
-        });
+        .min_row_height(16.0);
+    let shown = grid.show(ui, |ui| {
+        let error_mm = comparison.commanded_error_mm();
+        row(ui, faint("off target, true"), error_mm, "mm");
+        let source = "What the leg concludes from its sensors. The leg is drawn as it truly is.";
+        ui.label(faint("from the sensors:")).on_hover_text(source);
+        ui.end_row();
+        row(ui, faint("azimuth"), azimuth_deg, "°");
+        row(ui, faint("tilt"), tilt_deg, "°");
+        row(ui, faint("payload"), telemetry.payload_kg.into(), "kg");
+        ui.label(faint("tensions"));
+        tensions(ui, telemetry.tensions_n);
+        ui.end_row();
+    });
+    place_rect(ui.ctx(), shown.response.rect, "numbers");
+}
+
+fn row(ui: &mut Ui, name: RichText, value: f64, unit: &str) {
+    ui.label(name);
+    ui.label(RichText::new(format!("{value:8.2} {unit}")).monospace());
+    ui.end_row();
+}
+
+fn tensions(ui: &mut Ui, tensions_n: [f32; 3]) {
+    ui.horizontal(|ui| {
+        for (tendon, tension_n) in tensions_n.into_iter().enumerate() {
+            let words = RichText::new(format!("{:5.1}", unsigned_zero(tension_n)));
+            ui.label(words.monospace().color(theme::series(ui.ctx(), tendon)));
+        }
+        ui.label(RichText::new("N").monospace());
+    });
 }

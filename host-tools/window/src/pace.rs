@@ -2,7 +2,7 @@
 
 use leg_firmware::sensors::TICK_HZ;
 
-/// The longest time that one frame makes up for, s. A window that was hidden or slow goes on where it was.
+/// The longest time that one frame makes up for, s. A window that was hidden, or is too slow, leaves the rest out.
 const FRAME_MAX_S: f64 = 0.25;
 
 /// Follows the clock, tick by tick.
@@ -12,7 +12,7 @@ pub struct Pace {
     pub rate: f64,
     /// What is less than a tick, and left for the next frame, ticks.
     rest: f64,
-    /// Time of the clock that was left out since the start, s.
+    /// Time of the leg that was left out since the start, s.
     left_out_s: f64,
 }
 
@@ -33,14 +33,14 @@ impl Pace {
             return 0;
         }
         let taken_s = elapsed_s.min(FRAME_MAX_S);
-        self.left_out_s += elapsed_s - taken_s;
+        self.left_out_s += (elapsed_s - taken_s) * self.rate;
         let ticks = self.rest + taken_s * self.rate * f64::from(TICK_HZ);
         self.rest = ticks.fract();
         // At most those of FRAME_MAX_S.
         ticks.floor() as u32
     }
 
-    /// Time of the clock that was left out since the start, s.
+    /// Time of the leg that was left out since the start, s: the window was hidden or too slow.
     #[must_use]
     pub const fn left_out_s(&self) -> f64 {
         self.left_out_s
@@ -74,8 +74,11 @@ mod tests {
         };
         let ticks: u32 = (0..60).map(|_| pace.ticks(1.0 / 60.0)).sum();
         assert!((799..=800).contains(&ticks), "{ticks}");
+        pace.ticks(10.25);
+        assert!((pace.left_out_s() - 1.0).abs() < 1e-9);
         pace.rate = 0.0;
-        assert_eq!(pace.ticks(0.05), 0);
+        assert_eq!(pace.ticks(60.0), 0);
+        assert!((pace.left_out_s() - 1.0).abs() < 1e-9);
         assert_eq!(pace.ticks(f64::NAN), 0);
         assert_eq!(pace.ticks(-1.0), 0);
     }

@@ -13,7 +13,11 @@ pub struct PageState {
     /// The leg; none if there is none.
     leg: Option<LegState>,
     /// Left, top, right and bottom of each control, points.
-    places: BTreeMap<&'static str, [f32; 4]>,
+    places: BTreeMap<String, [f32; 4]>,
+    /// The control that has the keyboard's focus.
+    focused: Option<String>,
+    /// Pixels of the page in a point.
+    zoom: f32,
     /// Frames since the start.
     frames: u64,
     /// Time that the processor took for the last one, ms.
@@ -25,7 +29,9 @@ pub struct PageState {
 #[derive(Debug, Serialize)]
 struct LegState {
     time_s: f64,
-    /// Time of the clock that was left out, s.
+    /// Time of the leg in a second of the clock.
+    rate: f64,
+    /// Time of the leg that was left out, s.
     left_out_s: f64,
     state: &'static str,
     faults: Vec<&'static str>,
@@ -35,7 +41,13 @@ struct LegState {
     error_mm: f64,
     azimuth_deg: f64,
     tilt_deg: f64,
+    /// The horizontal components of the target's direction.
+    target: [f64; 2],
     tensions_n: [f64; 3],
+    pretension_n: Option<f32>,
+    stiffness_nm_per_rad: Option<f32>,
+    /// Where a push that is going on is directed to, degrees.
+    push_deg: Option<f64>,
     failure: Option<String>,
 }
 
@@ -45,12 +57,13 @@ impl PageState {
     pub fn new(
         simulation: Option<&Simulation>,
         places: &Places,
+        zoom: f32,
         frames: u64,
         frame_s: Option<f32>,
     ) -> Self {
-        let places = places.iter().map(|(name, rect)| {
+        let rects = places.rects.iter().map(|(name, rect)| {
             let edges = [rect.left(), rect.top(), rect.right(), rect.bottom()];
-            (*name, edges)
+            (name.to_string(), edges)
         });
         let leg = simulation.map(LegState::new);
         let spoken = leg
@@ -58,7 +71,9 @@ impl PageState {
             .map_or_else(|| "There is no leg.".into(), LegState::spoken);
         Self {
             leg,
-            places: places.collect(),
+            places: rects.collect(),
+            focused: places.focused.as_ref().map(ToString::to_string),
+            zoom,
             frames,
             frame_ms: frame_s.map(|time_s| 1000.0 * time_s),
             spoken,
@@ -72,8 +87,10 @@ impl LegState {
         let along = leg.truth().direction.vector();
         let [azimuth_deg, tilt_deg] = angles::angles_deg([along.x, along.y]);
         let faults = simulation.faults().faults();
+        let telemetry = simulation.telemetry();
         Self {
             time_s: leg.time_s(),
+            rate: simulation.pace.rate,
             left_out_s: simulation.pace.left_out_s(),
             state: description::state(simulation.state()),
             faults: faults.map(|fault| fault.entry().name).collect(),
@@ -83,7 +100,11 @@ impl LegState {
             error_mm: leg.comparison().commanded_error_mm(),
             azimuth_deg,
             tilt_deg,
+            target: simulation.target(),
             tensions_n: leg.truth().tensions_n,
+            pretension_n: telemetry.map(|telemetry| telemetry.pretension_n),
+            stiffness_nm_per_rad: telemetry.map(|telemetry| telemetry.stiffness_nm_per_rad),
+            push_deg: simulation.pushed().map(|push| push.azimuth_deg),
             failure: simulation.failure().map(ToString::to_string),
         }
     }

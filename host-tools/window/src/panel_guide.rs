@@ -50,7 +50,7 @@ pub fn show(ui: &mut Ui, simulation: &mut Simulation) -> Wish {
             number: 3,
             action: ["Cut a tendon", "guide_cut"],
             effect: "The supervisor holds the leg, and says why.",
-            done: simulation.defects().contains(&cut),
+            done: simulation.has(cut),
         },
     ];
     for step in &steps {

@@ -2,6 +2,7 @@
 
 use crate::camera::Camera;
 use crate::drawn_leg::Drawn;
+use crate::places::place;
 use crate::simulation::Simulation;
 use crate::theme::palette;
 use eframe::egui::{ComboBox, Rect, Response, Sense, Ui, Vec2, pos2, vec2};
@@ -19,8 +20,13 @@ const DETAIL_PART: f32 = 0.38;
 /// Width of what stands below the detail at least, points.
 const ROOM_WIDTH: f32 = 140.0;
 
-/// Height of the readout, points.
-const READOUT_HEIGHT: f32 = 44.0;
+/// Where the choice of the factor stands, below the readout, points.
+pub const CHOICE_TOP: f32 = 72.0;
+
+/// Heights of the readout's first lines and of the legend, points. The leg stands above the legend, and a narrow one below
+/// the readout.
+const READOUT_HEIGHT: f32 = 60.0;
+const LEGEND_HEIGHT: f32 = 30.0;
 
 /// By how much a deviation may be enlarged.
 const FACTORS: [f64; 4] = [1.0, 3.0, 5.0, 10.0];
@@ -85,20 +91,26 @@ impl Scene {
         let choice = ComboBox::from_id_salt("factor")
             .selected_text(text)
             .width(92.0);
-        choice.show_ui(ui, |ui| {
+        let choice = choice.show_ui(ui, |ui| {
             for factor in FACTORS {
                 ui.selectable_value(&mut self.factor, factor, format!("draw ×{factor:.0}"));
             }
         });
+        place(&choice.response, "factor");
+        choice.response.on_hover_text(
+            "The leg is drawn so many times as far from its reference as it is, up to 60 mm. The reference is where its \
+             trajectory has it: the dashed line.",
+        );
     }
 }
 
 /// The part of the whole leg, and that of its joint.
 fn parts(rect: Rect) -> (Rect, Rect) {
     let inner = rect.shrink(8.0);
+    let above_legend = rect.with_max_y(rect.bottom() - LEGEND_HEIGHT);
     if wide(rect) {
         let at = rect.right() - DETAIL_PART * rect.width();
-        let whole = rect
+        let whole = above_legend
             .with_max_x(at)
             .translate(vec2(0.05 * rect.width(), 0.0));
         let side = (inner.right() - at).min(0.56 * inner.height());
@@ -107,9 +119,8 @@ fn parts(rect: Rect) -> (Rect, Rect) {
     }
     let side = 0.42 * rect.width();
     let corner = pos2(inner.right() - side, inner.top());
-    // The readout is above.
-    let whole = rect.with_min_y(rect.top() + READOUT_HEIGHT);
-    let whole = whole.translate(vec2(-0.14 * rect.width(), 0.0));
+    let whole = above_legend.with_min_y(rect.top() + READOUT_HEIGHT);
+    let whole = whole.translate(vec2(-0.08 * rect.width(), 0.0));
     (whole, Rect::from_min_size(corner, vec2(side, 0.95 * side)))
 }
 

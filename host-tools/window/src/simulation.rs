@@ -1,11 +1,13 @@
 //! The leg in this window: firmware and simulated mechanism, stepped in real time.
 
+mod orders;
 #[cfg(test)]
 mod tests;
 
 use crate::history::{History, SAMPLE_HZ, Snapshot};
 use crate::pace::Pace;
 use leg_base::failure::Failure;
+use leg_base::refusal;
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::drive::Drive;
 use leg_firmware::host_link::HostRefusal;
@@ -20,6 +22,7 @@ use leg_sim::emulated_leg::{EmulatedLeg, EmulationError};
 use leg_sim::hosted_leg::HostedLeg;
 use leg_sim::plant::{Defect, Start};
 use leg_sim::signals::{LegConstants, Report, Simulated};
+use orders::{Order, Orders};
 
 /// Where the leg is when the window opens: as in the paper's Fig. 9, where a load shows most.
 const START_AZIMUTH_DEG: f64 = 30.0;
@@ -30,9 +33,6 @@ const SETTLE_S: f64 = 1.0;
 
 /// Time in which a payload is hung on, s.
 const PAYLOAD_OVER_S: f64 = 0.4;
-
-/// Commands that may wait for their answers.
-const ASKED_MAX: usize = 32;
 
 /// Every run of the window has the same noise.
 const SEED: u64 = 1;
@@ -60,10 +60,8 @@ pub struct Simulation {
     pub history: History,
     compensation: Compensation,
     payload_kg: f64,
-    defects: Vec<Defect>,
     push: Option<Push>,
-    /// Commands that are not answered yet, by their numbers, and what they are called.
-    asked: Vec<(u16, Command, &'static str)>,
+    orders: Orders,
     /// Why the last one was refused, if it was.
     refusal: Option<String>,
     /// Why the simulation cannot go on.
@@ -120,9 +118,8 @@ impl Simulation {
             history: History::default(),
             compensation: Compensation::Estimated,
             payload_kg: 0.0,
-            defects: Vec::new(),
             push: None,
-            asked: Vec::new(),
+            orders: Orders::default(),
             refusal: None,
             failure: None,
         };
@@ -170,8 +167,14 @@ impl Simulation {
     }
 
     fn tick(&mut self) {
-        match self.leg.tick() {
-            Ok((_, reply)) => self.motors = reply.motors,
+        let ticked = self.leg.tick();
+        self.take_tick(ticked.map(|(_, reply)| reply.motors));
+    }
+
+    /// Goes on after a tick that gave the motors something, or failed.
+    fn take_tick(&mut self, ticked: Result<Drive<f32>, EmulationError>) {
+        match ticked {
+            Ok(motors) => self.motors = motors,
             Err(error) => {
                 self.failure = Some(error);
                 return;
@@ -194,49 +197,80 @@ impl Simulation {
     }
 
     fn sample(&mut self) {
-        if let Some(telemetry) = self.leg.telemetry() {
-            let snapshot = Snapshot {
-                report: Report::new(telemetry, &self.constants),
-                simulated: Simulated {
-                    truth: *self.leg.truth(),
-                    motors: self.motors,
-                    comparison: self.leg.comparison(),
-                },
-            };
+        if let Some(snapshot) = self.snapshot() {
             self.history.take(self.leg.time_s(), &snapshot);
         }
     }
 
+    /// The leg as it is now; none before its first tick.
+    #[must_use]
+    pub fn snapshot(&self) -> Option<Snapshot> {
+        let telemetry = self.leg.telemetry()?;
+        Some(Snapshot {
+            report: Report::new(telemetry, &self.constants),
+            simulated: Simulated {
+                truth: *self.leg.truth(),
+                motors: self.motors,
+                comparison: self.leg.comparison(),
+            },
+        })
+    }
+
     fn look_at_answers(&mut self) {
-        for answer in self.leg.answers() {
-            let mut asked = self.asked.iter();
-            let Some(place) = asked.position(|(number, ..)| *number == answer.number) else {
+        for answer in self.leg.answers().to_vec() {
+            let Some(order) = self.orders.answered(answer.number) else {
                 continue;
             };
-            let (_, command, name) = self.asked.remove(place);
             match answer.result {
-                Ok(()) => {
-                    self.refusal = None;
-                    if let Command::Compensation(compensation) = command {
-                        self.compensation = compensation;
-                    }
-                }
-                Err(refusal) => self.refusal = Some(refused(name, refusal)),
+                Ok(()) => self.note_done(order.command),
+                Err(HostRefusal::Busy) => self.orders.repeat(order),
+                Err(refusal) => self.note_refused(&order, &refusal),
             }
+            self.send();
         }
     }
 
-    /// Commands the leg; what becomes of it shows in later ticks. `name` is what people call it.
+    fn note_done(&mut self, command: Command) {
+        self.refusal = None;
+        match command {
+            Command::Compensation(compensation) => self.compensation = compensation,
+            // The leg's target is where it is from now on, or there is none.
+            Command::Arm | Command::Clear | Command::Disarm => self.leg.set_commanded(None),
+            _ => {}
+        }
+    }
+
+    fn note_refused(&mut self, order: &Order, refusal: &HostRefusal) {
+        self.refusal = Some(refused(order.name, refusal));
+        if matches!(order.command, Command::Move { .. } | Command::Home) {
+            self.leg.set_commanded(None);
+        }
+    }
+
+    /// Commands the leg; what becomes of it shows in later ticks. `name` is what the window calls it.
     pub fn command(&mut self, command: Command, name: &'static str) {
-        match self.leg.send(&command) {
-            Ok(number) => {
-                // The oldest will not be answered any more.
-                if self.asked.len() == ASKED_MAX {
-                    self.asked.remove(0);
+        self.orders.take(Order { command, name });
+        self.send();
+    }
+
+    /// Sends what may be sent now.
+    fn send(&mut self) {
+        while let Some(order) = self.orders.next() {
+            match self.leg.send(&order.command) {
+                Ok(number) => self.orders.note_sent(number, order),
+                Err(error) => {
+                    self.refusal = Some(format!("{} cannot be sent: {error}", order.name))
                 }
-                self.asked.push((number, command, name));
             }
-            Err(error) => self.refusal = Some(format!("{name} cannot be sent: {error:?}")),
+        }
+        // The target on the screen is that of the newest command, sent or not.
+        for order in self.orders.waiting() {
+            match order.command {
+                Command::Move { x, y } => self.leg.set_commanded(Some([x, y].map(f64::from))),
+                Command::Home => self.leg.set_commanded(Some([0.0; 2])),
+                Command::Hold => self.leg.set_commanded(None),
+                _ => {}
+            }
         }
     }
 
@@ -265,13 +299,11 @@ impl Simulation {
 
     /// Breaks something, or repairs it.
     pub fn set_defect(&mut self, defect: Defect, on: bool) {
-        self.defects.retain(|other| *other != defect);
-        if on {
-            self.defects.push(defect);
-            self.act(&Action::Fault(defect));
+        self.act(&if on {
+            Action::Fault(defect)
         } else {
-            self.act(&Action::Repair(defect));
-        }
+            Action::Repair(defect)
+        });
     }
 
     fn act(&mut self, action: &Action) {
@@ -280,15 +312,21 @@ impl Simulation {
 
     /// Repairs everything.
     pub fn repair(&mut self) {
-        for defect in std::mem::take(&mut self.defects) {
+        let defects: Vec<Defect> = self.defects().collect();
+        for defect in defects {
             self.act(&Action::Repair(defect));
         }
     }
 
     /// What is broken.
+    pub fn defects(&self) -> impl Iterator<Item = Defect> + '_ {
+        self.leg.leg().plant().defects()
+    }
+
+    /// Whether the leg has a defect.
     #[must_use]
-    pub fn defects(&self) -> &[Defect] {
-        &self.defects
+    pub fn has(&self, defect: Defect) -> bool {
+        self.defects().any(|other| other == defect)
     }
 
     /// The push that is going on.
@@ -307,6 +345,13 @@ impl Simulation {
     #[must_use]
     pub const fn leg(&self) -> &HostedLeg {
         &self.leg
+    }
+
+    /// Where it was sent, as horizontal components; where it takes its target to be, if it was not.
+    #[must_use]
+    pub fn target(&self) -> [f64; 2] {
+        let target_m = self.leg.commanded_m() / self.leg.tip_length_m();
+        [target_m.x, target_m.y]
     }
 
     /// What it reported last.
@@ -353,12 +398,16 @@ impl Simulation {
     }
 }
 
-fn refused(name: &str, refusal: HostRefusal) -> String {
+/// The remedies of a command that the leg refuses hold for any host; the others are those of the program `leg`.
+fn refused(name: &str, refusal: &HostRefusal) -> String {
     match refusal {
         HostRefusal::Command(refusal) => {
-            let [what, remedy] = refusal.description();
-            format!("{name} refused: {what}; {remedy}")
+            let [wrong, remedy] = refusal.description();
+            format!("{name} refused: {wrong}; {remedy}")
         }
-        other => format!("{name} refused: {other:?}"),
+        other => {
+            let [wrong, _] = refusal::description(other);
+            format!("{name} refused: {wrong}")
+        }
     }
 }

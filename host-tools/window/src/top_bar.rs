@@ -8,12 +8,12 @@ use leg_base::description;
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::State;
 
-/// How fast the leg's time goes beside the clock's.
-const RATES: [(f64, &str); 4] = [
-    (1.0, "real time"),
-    (0.1, "1/10"),
-    (0.01, "1/100"),
-    (0.0, "stand still"),
+/// How fast the leg's time goes beside the clock's: the value, its text, its name for tests.
+const RATES: [(f64, &str, &str); 4] = [
+    (1.0, "real time", "rate_1"),
+    (0.1, "1/10", "rate_tenth"),
+    (0.01, "1/100", "rate_hundredth"),
+    (0.0, "stand still", "rate_0"),
 ];
 
 /// Height of the bar, points.
@@ -22,10 +22,17 @@ const HEIGHT: f32 = 38.0;
 /// Below this width there is no room for everything, points.
 const ROOMY: f32 = 700.0;
 
+/// Below this one there is none for what the window is, points.
+const WIDE: f32 = 1100.0;
+
+/// Less time that was left out is not shown, s.
+const LEFT_OUT_MIN_S: f64 = 0.005;
+
 /// Shows the bar.
 pub fn show(ui: &mut Ui, simulation: &mut Simulation) {
     let palette = palette(ui.ctx());
     let roomy = ui.available_width() > ROOMY;
+    let wide = ui.available_width() > WIDE;
     let size = vec2(ui.available_width(), HEIGHT);
     ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
         ui.set_min_size(size);
@@ -34,18 +41,36 @@ pub fn show(ui: &mut Ui, simulation: &mut Simulation) {
             ui.add_space(8.0);
         }
         chip(ui, simulation.state(), &palette);
-        let time = format!("{:8.2} s", simulation.leg().time_s());
-        ui.label(RichText::new(time).monospace());
+        if roomy {
+            time(ui, simulation);
+        }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             stop(ui, simulation, &palette, roomy);
             appearance(ui);
             rate(ui, simulation);
-            if roomy {
+            if wide {
                 let what = "firmware and simulated leg run in this window";
                 ui.label(RichText::new(what).small().color(palette.faint));
             }
         });
     });
+}
+
+/// The time of the leg, and what was left out of it.
+pub fn time(ui: &mut Ui, simulation: &Simulation) {
+    let words = format!("{:8.2} s", simulation.leg().time_s());
+    let shown = ui.label(RichText::new(words).monospace());
+    place(&shown, "time");
+    let left_out_s = simulation.pace.left_out_s();
+    if left_out_s < LEFT_OUT_MIN_S {
+        return;
+    }
+    let words = RichText::new(format!("left out: {left_out_s:.2} s"));
+    let shown = ui.label(words.small().color(palette(ui.ctx()).warning));
+    place(&shown, "left_out");
+    shown.on_hover_text(
+        "Time that the leg is behind the clock: the window was hidden, or this machine is too slow.",
+    );
 }
 
 fn chip(ui: &mut Ui, state: State, palette: &Palette) {
@@ -96,14 +121,14 @@ fn appearance(ui: &mut Ui) {
 
 fn rate(ui: &mut Ui, simulation: &mut Simulation) {
     let rate = &mut simulation.pace.rate;
-    let shown = RATES.iter().find(|(value, _)| value == rate);
-    let text = shown.map_or("", |(_, text)| text);
+    let shown = RATES.iter().find(|(value, ..)| value == rate);
+    let text = shown.map_or("", |(_, text, _)| text);
     let choice = ComboBox::from_id_salt("rate")
         .selected_text(text)
         .width(88.0);
     let choice = choice.show_ui(ui, |ui| {
-        for (value, text) in RATES {
-            ui.selectable_value(rate, value, text);
+        for (value, text, name) in RATES {
+            place(&ui.selectable_value(rate, value, text), name);
         }
     });
     place(&choice.response, "rate");

@@ -5,14 +5,14 @@ use crate::places::place;
 use crate::simulation::Simulation;
 use crate::theme::{Palette, mixed, palette};
 use eframe::egui::{
-    Align2, ComboBox, FontId, Key, Mesh, Painter, Pos2, Response, RichText, Sense, Shape, Stroke,
-    Ui, Vec2, vec2,
+    Align, Align2, ComboBox, FontId, Key, Mesh, Painter, Pos2, Response, RichText, Sense, Shape,
+    Stroke, Ui, Vec2, vec2,
 };
 use leg_base::angles;
 use leg_firmware::command::Command;
 
 /// Space around the disc for its labels, points.
-const MARGIN: f32 = 24.0;
+const MARGIN: f32 = 28.0;
 
 /// Rings of the disc, degrees apart.
 const RING_DEG: f64 = 10.0;
@@ -90,17 +90,20 @@ impl Workspace {
             let name = self.quantity.map_or("none", |quantity| quantity.words()[0]);
             let choice = ComboBox::from_id_salt("map").selected_text(format!("Map: {name}"));
             let choice = choice.width(110.0).show_ui(ui, |ui| {
-                ui.selectable_value(&mut self.quantity, None, "none");
+                let none = ui.selectable_value(&mut self.quantity, None, "none");
+                place(&none, "map_none");
                 for (quantity, name, unit) in Quantity::ALL {
                     let text = format!("{name}, {unit}");
-                    ui.selectable_value(&mut self.quantity, Some(quantity), text);
+                    let item = ui.selectable_value(&mut self.quantity, Some(quantity), text);
+                    place(&item, format!("map_{name}"));
                 }
             });
             place(&choice.response, "map");
             let range = self.map.as_ref().and_then(Map::range);
             if let (Some(quantity), Some([low, high])) = (self.quantity, range) {
                 let words = format!("{low:5.1} to {high:5.1} {}", quantity.words()[1]);
-                ui.label(RichText::new(words).monospace().size(11.5));
+                let range = ui.label(RichText::new(words).monospace().size(11.5));
+                place(&range, "map_range");
             }
         });
     }
@@ -139,7 +142,7 @@ fn drag(ui: &Ui, response: &Response, disc: &Disc, simulation: &mut Simulation) 
         .or_else(|| stepped(ui, response, disc, simulation));
     let Some(wanted) = wanted else { return };
     let [x, y] = wanted.map(|part| part as f32);
-    if commanded(simulation).map(|part| part as f32) != [x, y] {
+    if simulation.target().map(|part| part as f32) != [x, y] {
         simulation.command(Command::Move { x, y }, "move");
     }
 }
@@ -159,15 +162,8 @@ fn stepped(ui: &Ui, response: &Response, disc: &Disc, simulation: &Simulation) -
     let right = pressed(Key::ArrowRight) - pressed(Key::ArrowLeft);
     let up = pressed(Key::ArrowUp) - pressed(Key::ArrowDown);
     let step = KEY_DEG.to_radians();
-    let [x, y] = commanded(simulation);
+    let [x, y] = simulation.target();
     (right != 0.0 || up != 0.0).then(|| disc.inside([x + step * right, y + step * up]))
-}
-
-/// Where the leg was sent.
-fn commanded(simulation: &Simulation) -> [f64; 2] {
-    let leg = simulation.leg();
-    let tip_m = leg.commanded_m() / leg.tip_length_m();
-    [tip_m.x, tip_m.y]
 }
 
 fn paint(
@@ -202,15 +198,28 @@ fn paint(
         let [x, y] = angles::unit_vector(azimuth_deg);
         let out = vec2(x as f32, -y as f32);
         painter.line_segment([disc.centre, disc.centre + out * disc.radius], line);
+        // Beside the disc, whatever its width.
+        let align = Align2([align(-out.x), align(-out.y)]);
         painter.text(
-            disc.centre + out * (disc.radius + 11.0),
-            Align2::CENTER_CENTER,
+            disc.centre + out * (disc.radius + 4.0),
+            align,
             format!("{azimuth_deg:.0}°"),
             FontId::proportional(11.0),
             palette.faint,
         );
     }
     marks(painter, disc, simulation, palette);
+}
+
+/// Text that is aligned so is on that side of its place.
+fn align(side: f32) -> Align {
+    if side > 0.5 {
+        Align::Max
+    } else if side < -0.5 {
+        Align::Min
+    } else {
+        Align::Center
+    }
 }
 
 /// The map, coloured from its lowest value to its highest.
@@ -253,15 +262,14 @@ fn mesh(disc: &Disc, map: &Map, palette: &Palette) -> Mesh {
     mesh
 }
 
+/// The tilt of a ring, in a gap of it.
 fn tilt_label(painter: &Painter, disc: &Disc, tilt_deg: f64, radius: f32, palette: &Palette) {
-    let diagonal = vec2(-0.707, 0.707);
-    painter.text(
-        disc.centre + diagonal * radius,
-        Align2::CENTER_CENTER,
-        format!("{tilt_deg:.0}°"),
-        FontId::proportional(10.5),
-        palette.faint,
-    );
+    let at = disc.centre + vec2(-0.707, 0.707) * radius;
+    let font = FontId::proportional(10.5);
+    let galley = painter.layout_no_wrap(format!("{tilt_deg:.0}°"), font, palette.faint);
+    let rect = Align2::CENTER_CENTER.anchor_size(at, galley.size());
+    painter.rect_filled(rect.expand2(vec2(2.0, -1.0)), 3.0, palette.back);
+    painter.galley(rect.min, galley, palette.faint);
 }
 
 /// Where the tip is, and where it was sent.
@@ -269,7 +277,7 @@ fn marks(painter: &Painter, disc: &Disc, simulation: &Simulation, palette: &Pale
     let along = simulation.leg().truth().direction.vector();
     let [x, y] = disc.inside([along.x, along.y]);
     let is = disc.at([x, y]);
-    let target = disc.at(commanded(simulation));
+    let target = disc.at(simulation.target());
     painter.line_segment([target, is], Stroke::new(2.0, palette.error));
     painter.circle_filled(is, 5.0, palette.error);
     painter.circle_stroke(target, 9.0, Stroke::new(2.5, palette.target));

@@ -1,9 +1,9 @@
 //! Why an operator did not get what it asked for.
 
-use super::refusal;
 use crate::leg_report::pose_words;
 use leg_base::description::{causes, faults, hex, remedies, state};
 use leg_base::failure::Failure;
+use leg_base::refusal;
 use leg_firmware::frame::FrameError;
 use leg_firmware::host_link::{HOST_SCHEMA, HostRefusal};
 use leg_firmware::supervisor::{FaultSet, State};

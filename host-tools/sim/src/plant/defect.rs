@@ -139,6 +139,11 @@ impl Defects {
         self.since(defect).is_some()
     }
 
+    /// Each that has begun and not ended.
+    pub fn all(&self) -> impl Iterator<Item = Defect> + '_ {
+        self.0.iter().map(|(defect, _)| *defect)
+    }
+
     /// The tick in which one began.
     pub fn since(&self, defect: Defect) -> Option<u64> {
         let mut found = self.0.iter().filter(|(other, _)| *other == defect);

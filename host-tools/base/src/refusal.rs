@@ -5,11 +5,12 @@ use leg_firmware::host_link::HostRefusal;
 use leg_firmware::settings::SettingsError;
 
 /// What to do where host and firmware do not understand each other.
-pub(super) const OTHER_SOURCES: &str =
+pub const OTHER_SOURCES: &str =
     "build and flash the firmware from the sources of this program: `leg flash`";
 
 /// What is wrong, and what to do about it.
-pub(super) fn description(refusal: &HostRefusal) -> [String; 2] {
+#[must_use]
+pub fn description(refusal: &HostRefusal) -> [String; 2] {
     let [wrong, remedy] = match refusal {
         HostRefusal::Settings(error) => {
             return [format!("the settings are refused: {error}"), remedy(error)];

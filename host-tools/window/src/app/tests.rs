@@ -1,0 +1,155 @@
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use super::App;
+use eframe::egui::{Context, Event, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, pos2};
+use leg_firmware::supervisor::State;
+
+/// A window without a screen.
+struct Window {
+    app: App,
+    ctx: Context,
+    time_s: f64,
+}
+
+impl Window {
+    fn new() -> Self {
+        let ctx = Context::default();
+        let mut window = Self {
+            app: App::new(&ctx),
+            ctx,
+            time_s: 0.0,
+        };
+        window.frames(3);
+        window
+    }
+
+    fn frame(&mut self, events: Vec<Event>) {
+        self.time_s += 0.02;
+        let mut input = RawInput {
+            events,
+            time: Some(self.time_s),
+            screen_rect: Some(Rect::from_min_max(pos2(0.0, 0.0), pos2(1280.0, 720.0))),
+            ..RawInput::default()
+        };
+        self.app.take(&mut input);
+        let ctx = self.ctx.clone();
+        let mut output = ctx.run_ui(input, |ui| self.app.frame(ui));
+        output.textures_delta.clear();
+    }
+
+    fn frames(&mut self, count: u32) {
+        for _ in 0..count {
+            self.frame(Vec::new());
+        }
+    }
+
+    fn key(&mut self, key: Key) {
+        for pressed in [true, false] {
+            self.frame(vec![Event::Key {
+                key,
+                physical_key: None,
+                pressed,
+                repeat: false,
+                modifiers: Modifiers::NONE,
+            }]);
+        }
+    }
+
+    fn press(&mut self, name: &str) {
+        let at = self.app.places.rects[name].center();
+        let button = |pressed| Event::PointerButton {
+            pos: at,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        };
+        self.frame(vec![Event::PointerMoved(at)]);
+        self.frame(vec![button(true)]);
+        self.frame(vec![button(false)]);
+        self.frame(vec![Event::PointerMoved(Pos2::ZERO)]);
+        self.frames(5);
+    }
+
+    fn focus(&mut self, name: &str) {
+        for _ in 0..100 {
+            if self.app.places.focused.as_deref() == Some(name) {
+                return;
+            }
+            self.key(Key::Tab);
+        }
+        panic!("{name} has not got the focus");
+    }
+
+    fn state(&self) -> State {
+        self.app.simulation.as_ref().unwrap().state()
+    }
+
+    fn shows(&self, name: &str) -> bool {
+        self.app.places.rects.contains_key(name)
+    }
+}
+
+#[test]
+fn a_key_stops_the_leg_and_does_not_press_the_control_in_focus() {
+    for (control, key) in [
+        ("guide_payload", Key::Space),
+        ("theme", Key::Space),
+        ("workspace", Key::Space),
+        ("disarm", Key::Escape),
+    ] {
+        let mut window = Window::new();
+        window.focus(control);
+        let (theme, focused) = (window.ctx.theme(), window.app.places.focused.clone());
+        window.key(key);
+        window.frames(5);
+        assert_eq!(window.state(), State::Held, "{control}");
+        assert_eq!(window.app.places.focused, focused);
+        assert_eq!(window.app.simulation.as_ref().unwrap().payload_kg(), 0.0);
+        assert_eq!(window.ctx.theme(), theme);
+    }
+}
+
+#[test]
+fn a_key_stops_the_leg_from_a_menu_and_a_text_field() {
+    for key in [Key::Space, Key::Escape] {
+        let mut window = Window::new();
+        window.press("rate");
+        assert!(window.shows("rate_tenth"));
+        window.key(key);
+        window.frames(5);
+        assert_eq!(window.state(), State::Held);
+        assert!(window.shows("rate_tenth"));
+
+        let mut window = Window::new();
+        window.press("signals");
+        window.press("search");
+        assert_eq!(window.app.places.focused.as_deref(), Some("search"));
+        window.frame(vec![Event::Text("mm".into())]);
+        window.key(key);
+        window.frames(5);
+        assert_eq!(window.state(), State::Held);
+        assert!(window.shows("search"));
+        assert_eq!(window.app.places.focused.as_deref(), Some("search"));
+    }
+}
+
+#[test]
+fn a_new_leg_ends_the_pause_of_the_charts() {
+    let mut window = Window::new();
+    window.press("pause");
+    window.frames(50);
+    let time_s = |window: &Window| window.app.simulation.as_ref().unwrap().leg().time_s();
+    let before_s = time_s(&window);
+    window.press("start_again");
+    assert!(time_s(&window) < before_s);
+    assert!(!window.app.views.charts.paused());
+}
+
+#[test]
+fn time_that_is_left_out_is_shown() {
+    let mut window = Window::new();
+    assert!(!window.shows("left_out"));
+    window.time_s += 3.0;
+    window.frames(2);
+    assert!(window.shows("left_out"));
+}
