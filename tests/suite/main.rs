@@ -100,6 +100,7 @@ mod host {
     mod telemetry_page;
     mod tune;
     mod ui;
+    mod ui_live;
 }
 
 mod bench {

@@ -5,10 +5,13 @@
 
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
-use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::process::{Child, Command, Output, Stdio};
+use tempfile::NamedTempFile;
+
+/// What stands for the page.
+const PAGE: &str = "<!doctype html>the leg";
 
 fn leg(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_leg-under-test"));
@@ -17,14 +20,23 @@ fn leg(arguments: &[&str]) -> Command {
 }
 
 /// `leg ui` with a page that was exported before.
-struct Served {
+pub struct Served {
     process: Child,
-    address: String,
+    /// The loopback address and the port.
+    pub address: String,
+    /// Where its page finds the leg; empty without one.
+    pub leg: String,
+    _page: NamedTempFile,
 }
 
 impl Served {
-    fn new(page: &str) -> Self {
-        let mut process = leg(&["ui", "--no-open", "--json", "--page", page])
+    /// With more arguments, which may name a leg.
+    pub fn new(more: &[&str]) -> Self {
+        let mut file = NamedTempFile::new().unwrap();
+        file.write_all(PAGE.as_bytes()).unwrap();
+        let page = file.path().display().to_string();
+        let mut process = leg(&["ui", "--no-open", "--json", "--page", &page])
+            .args(more)
             .stdout(Stdio::piped())
             .spawn()
             .unwrap();
@@ -33,13 +45,21 @@ impl Served {
         output.read_line(&mut line).unwrap();
         let told: Value = serde_json::from_str(&line).unwrap();
         let url = told["url"].as_str().unwrap();
-        let address = url
+        let (page, leg) = url.split_once("#leg=").unwrap_or((url, ""));
+        let address = page
             .strip_prefix("http://")
             .and_then(|rest| rest.strip_suffix('/'));
         Self {
             address: address.unwrap().into(),
+            leg: leg.into(),
             process,
+            _page: file,
         }
+    }
+
+    /// Where its page comes from, as a browser says it.
+    pub fn origin(&self) -> String {
+        format!("http://{}", self.address)
     }
 
     /// The status line and the body of an answer.
@@ -71,10 +91,7 @@ fn refused(arguments: &[&str]) -> String {
 
 #[test]
 fn one_page_is_served_and_nothing_else() {
-    let directory = tempfile::tempdir().unwrap();
-    let file = directory.path().join("index.html");
-    fs::write(&file, "<!doctype html>the leg").unwrap();
-    let mut served = Served::new(&file.display().to_string());
+    let mut served = Served::new(&[]);
     assert!(
         served.address.starts_with("127.0.0.1:"),
         "{}",
@@ -84,10 +101,7 @@ fn one_page_is_served_and_nothing_else() {
     let _silent = TcpStream::connect(&served.address).unwrap();
     for path in ["/", "/index.html", "/?from=elsewhere"] {
         let (status, body) = served.ask(&format!("GET {path}"));
-        assert_eq!(
-            (status.as_str(), body.as_str()),
-            ("HTTP/1.1 200 OK", "<!doctype html>the leg")
-        );
+        assert_eq!((status.as_str(), body.as_str()), ("HTTP/1.1 200 OK", PAGE));
     }
     assert_eq!(served.ask("HEAD /").1, "");
     for path in ["/../Cargo.toml", "/etc/passwd", "//"] {
@@ -98,8 +112,8 @@ fn one_page_is_served_and_nothing_else() {
     }
     assert!(served.ask("POST /").0.contains("405"));
     let port = served.address.rsplit(':').next().unwrap();
-    let page = file.display().to_string();
-    let told = refused(&["ui", "--no-open", "--page", &page, "--http-port", port]);
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
+    let told = refused(&["ui", "--no-open", "--page", page, "--http-port", port]);
     assert!(
         told.contains(port) && told.contains("--http-port"),
         "{told}"
