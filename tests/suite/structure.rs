@@ -219,3 +219,14 @@ fn parents_tests_comments_and_other_crates_close_no_circle() {
         assert_circles(&[parent, a, ("b", open)], &[]);
     }
 }
+
+/// What somebody reads first.
+#[test]
+fn the_front_page_is_short() {
+    let text = std::fs::read_to_string(workspace_root().join("README.md")).unwrap();
+    let (lines, words) = (text.lines().count(), text.split_whitespace().count());
+    assert!(
+        lines <= 250 && words <= 1800,
+        "{lines} lines, {words} words"
+    );
+}

@@ -26,8 +26,9 @@ const BUILT: &str = "target/window";
 
 /// Shows a leg in the browser, in 3D, to be driven: a simulated one in the page itself, or the one that is named.
 ///
-/// The simulated leg can be loaded, pushed and broken, too; its firmware runs in the page, which needs nothing else. Of a leg on a
-/// port, on CAN or on an emulated board all pages show what it reports, and one of them drives it once it is unlocked there.
+/// The simulated leg can be loaded, pushed and broken, too; its firmware runs in the page, which needs nothing else. With --port, --can
+/// or --on all pages show what that leg reports, and one of them drives it once it is unlocked there. An emulated leg keeps to the
+/// clock here. Without these options no leg is looked for.
 ///
 /// The page is built from this tree: the first time takes some minutes. It is served on the loopback address, which is printed;
 /// Ctrl-C ends that.
