@@ -1,7 +1,7 @@
 //! WebSockets to the pages that show a leg: all of them hear it, one of them drives it.
 //!
-//! Text is about the connection: the server sends [`Hello`], [`Role`] after each change of it, and [`Lost`]; a page sends the words
-//! of [`PageWord`]. Bytes are whole frames of the leg's own protocol. Those of a page that does not drive are not passed on.
+//! Text is about the connection: the server sends [`Hello`], [`Role`] after each change of it, and [`Lost`]; a page sends `drive`,
+//! `release` or `stop`. Bytes are whole frames of the leg's own protocol. Those of a page that does not drive are not passed on.
 
 use serde::Serialize;
 use std::collections::BTreeMap;

@@ -151,7 +151,10 @@ fn refused(refusal: HostRefusal) -> PyErr {
             "the leg is busy with what it was asked before",
             "step it, then command again",
         )),
-        other => LegError::new_err(format!("the leg did not take the command: {other:?}")),
+        other => {
+            let [wrong, remedy] = leg_base::refusal::description(&other);
+            Refused::new_err((wrong, remedy))
+        }
     }
 }
 

@@ -28,7 +28,11 @@ pub fn arrays<'py>(py: Python<'py>, scope: &Scope) -> PyResult<Bound<'py, PyDict
         }
     }
     if let Some(fault) = scope.report.fault {
-        let names: Vec<_> = fault.faults.faults().map(|each| each.entry().name).collect();
+        let names: Vec<_> = fault
+            .faults
+            .faults()
+            .map(|each| each.entry().name)
+            .collect();
         arrays.set_item("fault_names", names)?;
     }
     Ok(arrays)

@@ -2,9 +2,9 @@
 
 use crate::arguments::{self, time_s, within};
 use crate::errors::leg_error;
-use crate::signal_log::SignalLog;
 use crate::rig::Rig;
 use crate::session::{Session, SessionError};
+use crate::signal_log::SignalLog;
 use crate::signals::NumericSignal;
 use crate::start;
 use crate::telemetry::{self, numbers_as};
