@@ -58,7 +58,7 @@ pub fn draw(directory: &Path) -> Result<Vec<(PathBuf, &'static str)>, FigureErro
 }
 
 /// The charts, each with the name of its file and its caption.
-fn charts(rig: &RigFile) -> Result<[(&'static str, Chart, &'static str); 4], Error> {
+fn charts(rig: &RigFile) -> Result<[(&'static str, Chart, &'static str); 5], Error> {
     let elongation = tendon_points(rig, |tendon, tension| Ok(tendon.elongation(tension)? * 1e3))?;
     let stiffness = tendon_points(rig, |tendon, tension| Ok(tendon.stiffness(tension)? * 1e-3))?;
     let published = PUBLISHED.map(|(tension, stiffness)| (tension, stiffness * 1e-3));
@@ -77,15 +77,26 @@ fn charts(rig: &RigFile) -> Result<[(&'static str, Chart, &'static str); 4], Err
             "fig9a",
             deviation_chart(
                 ["Fig. 9 a: deviation of the tip", "deviation (mm)"],
-                deviation_lines(rig, |d| d.linear, |d| Some(d.nonlinear))?,
+                deviation_lines(rig, |d| d.linear, |d, _| Some(d.nonlinear))?,
+                "nonlinear",
             ),
             "Fig. 9 a: linear deviation (lines) and nonlinear equilibrium (crosses)",
+        ),
+        (
+            "fig9a_published",
+            deviation_chart(
+                ["Fig. 9 a: ours and the published maxima", "deviation (mm)"],
+                deviation_lines(rig, |d| d.linear, |_, maximum_mm| maximum_mm)?,
+                "published maximum",
+            ),
+            "Fig. 9 a: linear deviation (lines) and the maxima that the paper's text gives (crosses, at both ends)",
         ),
         (
             "fig9b",
             deviation_chart(
                 ["Fig. 9 b: linear less nonlinear", "difference (mm)"],
-                deviation_lines(rig, |d| d.linear - d.nonlinear, |_| None)?,
+                deviation_lines(rig, |d| d.linear - d.nonlinear, |_, _| None)?,
+                "",
             ),
             "Fig. 9 b: linear deviation less nonlinear equilibrium",
         ),
@@ -119,18 +130,20 @@ fn tendon_chart(y_title: &str, points: Vec<(f64, f64)>, marks: &[(f64, f64)]) ->
     }
 }
 
-/// A line for each payload.
+/// A line for each payload. `mark` takes the maximum that the paper gives, at the ends of the tilts.
 fn deviation_lines(
     rig: &RigFile,
     value: fn(&Deviations) -> f64,
-    mark: fn(&Deviations) -> Option<f64>,
+    mark: fn(&Deviations, Option<f64>) -> Option<f64>,
 ) -> Result<Vec<ChartLine>, Error> {
-    let line = |(payload_kg, _)| {
+    let tilt_max_deg = tilts_deg().fold(0.0, f64::max);
+    let line = |(payload_kg, maximum_mm)| {
         let (mut points, mut marks) = (Vec::new(), Vec::new());
         for tilt_deg in tilts_deg() {
             let d = deviations(rig, tilt_deg, payload_kg)?;
             points.push((tilt_deg, value(&d)));
-            marks.extend(mark(&d).map(|value| (tilt_deg, value)));
+            let published = (tilt_deg.abs() == tilt_max_deg).then_some(maximum_mm);
+            marks.extend(mark(&d, published).map(|value| (tilt_deg, value)));
         }
         Ok(ChartLine {
             label: format!("payload {payload_kg} kg"),
@@ -141,13 +154,13 @@ fn deviation_lines(
     MAXIMA.into_iter().map(line).collect()
 }
 
-fn deviation_chart([title, y_title]: [&str; 2], lines: Vec<ChartLine>) -> Chart {
+fn deviation_chart([title, y_title]: [&str; 2], lines: Vec<ChartLine>, marks_label: &str) -> Chart {
     Chart {
         title: title.into(),
         x_title: format!("tilt (°) along azimuth {AZIMUTH_DEG}°"),
         y_title: y_title.into(),
         lines,
-        marks_label: "nonlinear".into(),
+        marks_label: marks_label.into(),
         ..Chart::default()
     }
 }
