@@ -108,7 +108,7 @@ fn every_erratum_has_two_numbers_that_differ() {
 fn the_report_names_every_row_and_every_picture() {
     let directory = tempfile::tempdir().unwrap();
     let figures = draw(directory.path()).unwrap();
-    assert_eq!(figures.len(), 6);
+    assert_eq!(figures.len(), 7);
     let paper = Paper::compute().unwrap();
     let report = markdown(&paper, &figures);
     for (path, caption) in &figures {
