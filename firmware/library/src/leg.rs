@@ -332,9 +332,7 @@ impl<T: Scalar> Leg<T> {
     pub fn telemetry(&self) -> Telemetry<T> {
         let zero = [T::zero(); 3];
         let shared = &self.shared;
-        let (tensions_n, pulled_m) = self.measured.map_or((zero, zero), |measured| {
-            (measured.tensions_n, measured.pulled_m)
-        });
+        let measured = self.measured.as_ref();
         let pose = shared.estimator.direction().vector();
         let target = shared
             .target
@@ -350,10 +348,13 @@ impl<T: Scalar> Leg<T> {
             target: [target.x, target.y],
             pose: [pose.x, pose.y],
             residual_m: shared.residual_m().unwrap_or(T::zero()),
-            tensions_n,
+            tensions_n: measured.map_or(zero, |measured| measured.tensions_n),
             target_tensions_n: shared.target.map_or(zero, |target| target.tensions_n),
-            pulled_m,
+            pulled_m: measured.map_or(zero, |measured| measured.pulled_m),
             reference_m: [a.reference_m(), b.reference_m(), c.reference_m()],
+            motor_currents_a: measured.map_or(zero, |measured| measured.currents_a),
+            supply_v: measured.map_or(T::zero(), |measured| measured.supply_v),
+            temperature_c: measured.map_or(T::zero(), |measured| measured.temperature_c),
             pretension_n: shared
                 .target
                 .map_or(T::zero(), |target| target.pretension_n),

@@ -33,6 +33,12 @@ pub struct Telemetry<T> {
     pub pulled_m: [T; 3],
     /// How far each shall be, m.
     pub reference_m: [T; 3],
+    /// Measured currents of the motors, A.
+    pub motor_currents_a: [T; 3],
+    /// Voltage at the drivers, V.
+    pub supply_v: T,
+    /// Temperature of the drivers, °C.
+    pub temperature_c: T,
     /// Pretension of the target, N.
     pub pretension_n: T,
     /// Bending stiffness at the pretension that is asked for, N·m/rad.
@@ -62,6 +68,9 @@ impl<T: Copy> Telemetry<T> {
             target_tensions_n: self.target_tensions_n.map(&number),
             pulled_m: self.pulled_m.map(&number),
             reference_m: self.reference_m.map(&number),
+            motor_currents_a: self.motor_currents_a.map(&number),
+            supply_v: number(self.supply_v),
+            temperature_c: number(self.temperature_c),
             pretension_n: number(self.pretension_n),
             stiffness_nm_per_rad: number(self.stiffness_nm_per_rad),
             load_nm: self.load_nm.map(&number),

@@ -96,7 +96,13 @@ fn tilt_deg([x, y]: [f32; 2]) -> f64 {
         .to_degrees()
 }
 
-const LOG: [TimeChart<Report>; 4] = [
+/// A motor's current: what a driver reports that is off means nothing.
+fn current_a(report: &Telemetry<f32>, motor: usize) -> Option<f64> {
+    let driven = report.state.driven();
+    driven.then(|| report.motor_currents_a[motor].into())
+}
+
+const LOG: [TimeChart<Report>; 6] = [
     TimeChart {
         name: "tilt",
         title: "Tilt",
@@ -135,6 +141,22 @@ const LOG: [TimeChart<Report>; 4] = [
         curves: &[("estimated", |(_, report)| {
             report.homed.then(|| report.payload_kg.into())
         })],
+    },
+    TimeChart {
+        name: "motor_currents",
+        title: "Measured currents of the motors",
+        y_title: "current (A)",
+        curves: &[
+            ("motor 1", |(_, report)| current_a(report, 0)),
+            ("motor 2", |(_, report)| current_a(report, 1)),
+            ("motor 3", |(_, report)| current_a(report, 2)),
+        ],
+    },
+    TimeChart {
+        name: "supply",
+        title: "Voltage at the drivers",
+        y_title: "voltage (V)",
+        curves: &[("supply", |(_, report)| Some(report.supply_v.into()))],
     },
 ];
 

@@ -66,7 +66,10 @@ fn a_log_of_a_leg_is_drawn() {
         .filter(|name| name.ends_with(".svg"))
         .collect();
     // There is no stiffness of a leg that is disarmed.
-    assert_eq!(names, ["payload.svg", "tensions.svg", "tilt.svg"]);
+    assert_eq!(
+        names,
+        ["payload.svg", "supply.svg", "tensions.svg", "tilt.svg"]
+    );
     let tensions = String::from_utf8_lossy(&charts["tensions.svg"]);
     assert!(tensions.contains("measured tension (N)"), "{tensions}");
 }

@@ -26,6 +26,9 @@ fn reported(state: State, faults: FaultSet) -> Telemetry<f32> {
         target_tensions_n: [f32::MIN_POSITIVE, 8.0, 149.999_98],
         pulled_m: [0.012_345_678, -1e-3, 3e-3],
         reference_m: [0.012_345_679, -1e-3, 3e-3],
+        motor_currents_a: [0.3, -0.25, 1.5],
+        supply_v: 23.9,
+        temperature_c: -3.25,
         pretension_n: 70.1,
         stiffness_nm_per_rad: 84.300_02,
         load_nm: [-0.7, 1.0 / 3.0],
@@ -61,6 +64,7 @@ fn every_name_is_there_once_and_ends_with_its_unit_where_it_has_one() {
         "_rad_per_s",
         "_a",
         "_v",
+        "_c",
     ];
     let plain = [
         "tick",
