@@ -163,9 +163,8 @@ impl<T: Scalar> Leg<T> {
                 }
             }
             Mode::Held(held) => {
-                // A cell may be found to lie while the leg brakes: nothing gives way to it from then on. A high tension may be true.
-                let of_cells = FaultSet::OF_CELLS.without(Fault::OverTension);
-                if held.brakes() && self.supervisor.latched().overlaps(of_cells) {
+                // A cell may be found to lie while the leg brakes: nothing gives way to it from then on.
+                if held.brakes() && self.supervisor.latched().overlaps(FaultSet::OF_CELLS) {
                     shared.ignore_tensions();
                 }
                 held.step(shared);

@@ -60,7 +60,7 @@ fn joined(faults: FaultSet, text: fn(leg_firmware::supervisor::Fault) -> String)
     texts.join("; ")
 }
 
-/// A schema's hash in hexadecimal digits.
+/// Bytes in hexadecimal digits: a schema's hash, for instance.
 #[must_use]
 pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()

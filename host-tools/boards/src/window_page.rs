@@ -29,6 +29,9 @@ pub enum WindowPageError {
     /// Cargo could not be started.
     #[error("cannot start cargo: {0}; install Rust with rustup")]
     NoCargo(#[source] io::Error),
+    /// The directory has no path.
+    #[error("no directory {0}: {1}")]
+    NoDirectory(String, #[source] io::Error),
     /// Cargo has written why.
     #[error("the window was not built; cargo says why above")]
     Failed,
@@ -45,7 +48,9 @@ pub fn export(directory: &Path, report: &mut dyn FnMut(&str)) -> Result<PathBuf,
         return Err(WindowPageError::NoSources(root.display().to_string()));
     }
     setup::ensure_rust_target(TARGET, report)?;
-    let directory = std::path::absolute(directory).map_err(WindowPageError::NoCargo)?;
+    let named = || directory.display().to_string();
+    let directory = std::path::absolute(directory)
+        .map_err(|error| WindowPageError::NoDirectory(named(), error))?;
     let program = env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
     let mut command = Command::new(program);
     command

@@ -58,9 +58,6 @@ pub mod jog_report;
 pub mod leg_report;
 pub mod monitor;
 pub mod operator;
-pub mod page_bridge;
-pub mod page_link;
-pub mod page_server;
 pub mod path_reader;
 #[cfg(not(unix))]
 #[path = "no_pseudo_terminal.rs"]

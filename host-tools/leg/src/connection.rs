@@ -92,6 +92,10 @@ pub(crate) struct LegConnection {
     pub(crate) emulated: Option<EmulatedLine>,
 }
 
+fn emulated_name(on: Emulation) -> String {
+    format!("the leg {}", on.text())
+}
+
 /// A simulated leg with its firmware.
 pub(crate) fn emulated_leg(
     rig: &RigFile,
@@ -109,18 +113,24 @@ impl LegArgs {
         on.is_some() || port.is_some() || can.is_some()
     }
 
-    /// Opens a connection on which time passes as for a board: an emulated leg keeps to the clock, in a thread of its own.
-    pub(crate) fn open_in_real_time(&self, options: Options) -> Result<Operator, Failure> {
+    /// Opens a connection on which time passes as for a board: an emulated leg keeps to the clock, in a thread of its own. Gives the
+    /// leg's name, too.
+    pub(crate) fn open_in_real_time(
+        &self,
+        options: Options,
+    ) -> Result<(Operator, String), Failure> {
         let rig = load_rig(self.rig.as_deref())?;
         let Some(on) = self.connection.on else {
-            let opened = self.connection.open(&rig, Purpose::Use, options);
-            return opened.map(|connection| connection.operator);
+            let operator = self.connection.open(&rig, Purpose::Use, options)?.operator;
+            let name = operator.name().into();
+            return Ok((operator, name));
         };
         let port = emulate_in_thread(rig, on, options)?;
         let address = port.strip_prefix(tcp::SCHEME).unwrap_or(&port);
         let transport = Box::new(Tcp::open(address)?);
         let cancel = CancelFlag::on_ctrl_c();
-        Ok(Operator::open(transport, HostIdentity::random(), cancel)?)
+        let operator = Operator::open(transport, HostIdentity::random(), cancel)?;
+        Ok((operator, emulated_name(on)))
     }
 
     pub(crate) fn open(
@@ -165,7 +175,7 @@ impl ConnectionArgs {
             });
         };
         let leg = emulated_leg(rig, purpose.initial(on), on, options)?;
-        let emulated = EmulatedLine::new(leg, &format!("the leg {}", on.text()));
+        let emulated = EmulatedLine::new(leg, &emulated_name(on));
         let host = Box::new(emulated.connect());
         let mut operator = Operator::open(host, HostIdentity::FIXED, cancel)?;
         if (purpose, on) == (Purpose::Use, Emulation::Chip) {
@@ -212,8 +222,9 @@ fn emulate_in_thread(rig: RigFile, on: Emulation, options: Options) -> Result<St
         let _ = sender.send(Ok(port.name()));
         let (_nobody, disturbances) = channel();
         let board = EmulatedBoard::new(leg, Box::new(port));
-        if let Err(failure) = board.run(&CancelFlag::on_ctrl_c(), None, &disturbances) {
-            note_late(&failure);
+        // It lasts longer than whoever is connected to it.
+        if let Err(failure) = board.run(&CancelFlag::default(), None, &disturbances) {
+            note(&format!("leg: {failure}"));
         }
     });
     started.recv().map_err(Failure::from_error)?

@@ -1,5 +1,9 @@
 //! `leg ui`.
 
+mod bridge;
+mod link;
+mod server;
+
 use crate::board::report;
 use crate::connection::LegArgs;
 use crate::options::Options;
@@ -12,11 +16,10 @@ use leg_boards::window_page;
 use leg_firmware::host_link::HOST_SCHEMA;
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::HostIdentity;
-use leg_host::page_bridge;
-use leg_host::page_link::{Hello, PageLink};
-use leg_host::page_server::PageServer;
 use leg_host::transport::Transport;
 use leg_rig::settings_text;
+use link::{Hello, PageLink};
+use server::PageServer;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -62,34 +65,44 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
             format!("{}\n", page.display())
         });
     }
-    let page = match &args.page {
-        Some(file) => read(file)?,
-        None => read(&build(&workspace_root().join(BUILT))?)?,
-    };
-    let server = PageServer::listen(args.http_port, page).map_err(|error| {
+    // What may be refused comes before the page is built, which may take minutes.
+    let server = PageServer::listen(args.http_port).map_err(|error| {
         Failure::refused(
             format!("cannot listen on port {}: {error}", args.http_port),
             "give another --http-port, or none",
         )
     })?;
+    let leg = if args.leg.names_leg() {
+        Some(open_leg(&args.leg, options)?)
+    } else {
+        None
+    };
+    let page = match &args.page {
+        Some(file) => read(file)?,
+        None => read(&build(&workspace_root().join(BUILT))?)?,
+    };
     let cancel = CancelFlag::on_ctrl_c();
-    if !args.leg.names_leg() {
+    let Some((mut transport, hello)) = leg else {
         show(&server.url(), args, options)?;
-        return server.run(&cancel).map_err(ended);
-    }
-    let (mut transport, hello) = open_leg(&args.leg, options)?;
-    let pages = PageLink::listen(&server.origin(), &hello).map_err(ended)?;
+        return server.run(page, &cancel).map_err(ended);
+    };
+    let name = hello.name.clone();
+    let pages = PageLink::listen(&server.origin(), hello).map_err(ended)?;
     show(
         &format!("{}#leg={}", server.url(), pages.url()),
         args,
         options,
     )?;
     let served = cancel.clone();
-    thread::spawn(move || server.run(&served));
+    thread::spawn(move || {
+        if let Err(error) = server.run(page, &served) {
+            note(&format!("leg: {}", ended(error)));
+        }
+    });
     let host = HostIdentity::random().id;
-    page_bridge::run(transport.as_mut(), &pages, host, &cancel).map_err(|error| {
+    bridge::run(transport.as_mut(), &pages, host, &cancel).map_err(|error| {
         Failure::failed(
-            format!("the connection to {} is lost: {error}", hello.name),
+            format!("the connection to {name} is lost: {error}"),
             "an armed leg is held by itself; look at the cable, and start it again",
         )
     })
@@ -97,10 +110,10 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
 
 /// The connection to the leg, and what pages are told of it.
 fn open_leg(leg: &LegArgs, options: Options) -> Result<(Box<dyn Transport>, Hello), Failure> {
-    let mut operator = leg.open_in_real_time(options)?;
+    let (mut operator, name) = leg.open_in_real_time(options)?;
     let hello = Hello {
         schema: hex(&HOST_SCHEMA),
-        name: operator.name().into(),
+        name,
         rig: settings_text::rig_file(&operator.settings()?),
     };
     Ok((operator.into_transport(), hello))

@@ -13,7 +13,7 @@ use tempfile::NamedTempFile;
 /// What stands for the page.
 const PAGE: &str = "<!doctype html>the leg";
 
-fn leg(arguments: &[&str]) -> Command {
+pub fn leg(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_leg-under-test"));
     command.args(arguments);
     command
@@ -55,6 +55,17 @@ impl Served {
             process,
             _page: file,
         }
+    }
+
+    /// As Ctrl-C.
+    pub fn interrupt(&self) {
+        let id = Pid::from_child(&self.process);
+        kill_process(id, Signal::INT).unwrap();
+    }
+
+    /// Waits for its end; its exit code.
+    pub fn wait(&mut self) -> Option<i32> {
+        self.process.wait().unwrap().code()
     }
 
     /// Where its page comes from, as a browser says it.
@@ -119,9 +130,8 @@ fn one_page_is_served_and_nothing_else() {
         "{told}"
     );
     // Ctrl-C ends it as what was asked for.
-    let id = Pid::from_child(&served.process);
-    kill_process(id, Signal::INT).unwrap();
-    assert!(served.process.wait().unwrap().success());
+    served.interrupt();
+    assert_eq!(served.wait(), Some(0));
 }
 
 #[test]

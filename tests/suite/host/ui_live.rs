@@ -3,24 +3,29 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::ui::Served;
+use super::ui::{Served, leg};
+use crate::common::stalls::PATIENCE;
 use leg_base::description::hex;
 use leg_firmware::command::Command;
 use leg_firmware::frame::{self, Decoder, MAX_FRAME};
 use leg_firmware::host_link::{HOST_SCHEMA, HostReply, HostRequest};
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
+use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
 use serde_json::{Value, json};
-use std::io::ErrorKind;
+use std::io::{BufRead, BufReader, ErrorKind, Write};
 use std::net::TcpStream;
+use std::process::Stdio;
 use std::time::{Duration, Instant};
+use tempfile::NamedTempFile;
 use tungstenite::client::IntoClientRequest;
 use tungstenite::http::{HeaderValue, StatusCode};
 use tungstenite::{Error, HandshakeError, Message, WebSocket, client};
 
-/// Longest time that a test waits for anything.
-const PATIENCE: Duration = Duration::from_secs(60);
+/// A slow leg that is held after two seconds of silence, so that a busy machine does not have it held in mid-move.
+const PATIENT: &str =
+    "[control.limits]\ncommand_time_s = 2\n[control.motion]\nspeed_rad_per_s = 0.05\n";
 
 /// What is heard in one turn.
 #[derive(Default)]
@@ -34,10 +39,18 @@ struct Heard {
 struct Page {
     socket: WebSocket<TcpStream>,
     decoder: Decoder,
+    host: u32,
     number: u16,
     /// The last that it heard.
     role: Value,
     telemetry: Option<Telemetry<f32>>,
+}
+
+/// Serves a leg that is emulated in the process.
+fn served() -> Served {
+    let mut rig = NamedTempFile::new().unwrap();
+    write!(rig, "{}\n{PATIENT}", READY_RIGS[0].text).unwrap();
+    Served::new(&["--on", "sim", "--rig", &rig.path().display().to_string()])
 }
 
 /// Opens a WebSocket as a browser does whose page comes from `origin`.
@@ -70,6 +83,7 @@ impl Page {
         let mut page = Self {
             socket,
             decoder: Decoder::new(),
+            host: fastrand::u32(..),
             number: 0,
             role: Value::Null,
             telemetry: None,
@@ -143,7 +157,7 @@ impl Page {
     }
 
     fn command(&mut self, command: Command) {
-        let host = 7;
+        let host = self.host;
         self.number += 1;
         let mut out = [0; MAX_FRAME];
         let request = HostRequest::Command { host, command };
@@ -164,7 +178,7 @@ impl Page {
 
 #[test]
 fn nobody_else_is_let_in() {
-    let served = Served::new(&["--on", "sim"]);
+    let served = served();
     let origin = served.origin();
     let (address, token) = served.leg.rsplit_once('/').unwrap();
     assert!(
@@ -191,22 +205,31 @@ fn nobody_else_is_let_in() {
 
 #[test]
 fn one_page_drives_and_every_page_stops() {
-    let served = Served::new(&["--on", "sim"]);
+    let served = served();
     let (mut driving, hello) = Page::new(&served);
     assert_eq!(hello["schema"], hex(&HOST_SCHEMA));
-    assert!(hello["name"].as_str().unwrap().starts_with("tcp://"));
+    assert_eq!(hello["name"], "the leg in this process");
     RigFile::parse("hello", hello["rig"].as_str().unwrap()).unwrap();
     let (mut watching, _) = Page::new(&served);
-    // What a page commands that does not drive is not passed on.
-    watching.command(Command::Arm);
     driving.say("drive");
     driving.wait("role", |page, _| page.role["drives"] == true);
     watching.say("drive");
     watching.wait("role", |page, _| {
         page.role == json!({ "drives": false, "other_drives": true })
     });
+    // What a page commands that does not drive is not passed on.
     watching.command(Command::Arm);
-    driving.wait_for_state(State::Disarmed);
+    let mut reports = 0;
+    watching.wait("reports", |_, heard| {
+        assert!(
+            heard
+                .reports
+                .iter()
+                .all(|report| report.state == State::Disarmed)
+        );
+        reports += heard.reports.len();
+        reports > 60
+    });
     driving.begin_move(0.3);
     watching.wait_for_state(State::Active);
     watching.say("stop");
@@ -220,7 +243,7 @@ fn one_page_drives_and_every_page_stops() {
 /// The board's own timeout holds it.
 #[test]
 fn the_leg_is_held_when_its_page_goes() {
-    let served = Served::new(&["--on", "sim"]);
+    let served = served();
     let (mut driving, _) = Page::new(&served);
     let (mut watching, _) = Page::new(&served);
     driving.say("drive");
@@ -235,12 +258,11 @@ fn the_leg_is_held_when_its_page_goes() {
 
 #[test]
 fn a_page_that_sends_something_else_is_dropped() {
-    let served = Served::new(&["--on", "sim"]);
-    let large = vec![1; 100_000];
+    let served = served();
     for (message, drives) in [
         (Message::text("fly"), false),
-        (Message::text("x".repeat(100_000)), false),
-        (Message::binary(large), false),
+        // Longer than any message may be.
+        (Message::binary([vec![1; 100_000], vec![0]].concat()), false),
         // A part of a frame would be mixed with the next page's.
         (Message::binary(vec![1, 2, 3]), true),
     ] {
@@ -255,4 +277,38 @@ fn a_page_that_sends_something_else_is_dropped() {
     }
     let (mut page, _) = Page::new(&served);
     page.wait("telemetry", |page, _| page.telemetry.is_some());
+}
+
+#[test]
+fn ctrl_c_ends_it_and_the_pages_are_told() {
+    let mut served = served();
+    let (mut page, _) = Page::new(&served);
+    served.interrupt();
+    let lost = page.heard_text("lost");
+    assert!(
+        lost["lost"].as_str().unwrap().contains("has ended"),
+        "{lost}"
+    );
+    page.wait("ended", |_, heard| heard.ended);
+    assert_eq!(served.wait(), Some(0));
+}
+
+#[test]
+fn the_pages_are_told_when_the_leg_is_lost() {
+    let mut board = leg(&["emulate", "--tcp", "--json"])
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut line = String::new();
+    let mut output = BufReader::new(board.stdout.take().unwrap());
+    output.read_line(&mut line).unwrap();
+    let told: Value = serde_json::from_str(&line).unwrap();
+    let mut served = Served::new(&["--port", told["port"].as_str().unwrap()]);
+    let (mut page, hello) = Page::new(&served);
+    assert_eq!(hello["name"], told["port"]);
+    page.wait("telemetry", |page, _| page.telemetry.is_some());
+    board.kill().unwrap();
+    board.wait().unwrap();
+    page.heard_text("lost");
+    assert_eq!(served.wait(), Some(1));
 }

@@ -132,7 +132,7 @@ faults! {
     10 EncoderStill {
         name: "motor does not turn",
         reaction: GateOff,
-        cause: "a motor is driven with driven_part of its current, or more than the maximum tension asks, draws it, and counts nothing for still_time_s",
+        cause: "a motor is driven with driven_part of its current, and more than the maximum tension asks of it, draws it, and counts nothing for still_time_s",
         remedy: "check the encoder's wiring; look for a jam",
         clears: Command,
     }

@@ -60,7 +60,7 @@ pub fn table() -> String {
         let [first, second, third] = numbers(signal, &settings);
         assert_eq!(signal.steps(&settings), first.2, "{signal:?}");
         let list = |quantities: [&str; 3]| match quantities {
-            [a, b, _] if a == b => format!("{a}, of each"),
+            [a, b, c] if a == b && b == c => format!("{a}, of each"),
             quantities => quantities.join("; "),
         };
         writeln!(

@@ -28,11 +28,11 @@ const STEP_COUNTS: f32 = 1.5;
 
 /// What a voltage drives through a winding at the resistance of the settings, as a multiple of what it drives through a warm one:
 /// copper has 1.3 times the resistance when it is 75 °C warmer. Without it a motor without a gear was held at 65 °C
-/// (`tests/suite/rig/other_motors.rs`).
+/// (`tests/suite/rig/other_motors.rs`). So a current sensor that shows 23 % less than flows raises nothing either.
 const WARM_RATIO: f32 = 1.3;
 
-/// Part of the servo's highest current beyond which a motor that stands is driven in any case: one that is jammed gets nearly all.
-const DRIVEN_PART_MAX: f32 = 0.95;
+/// Part of the highest voltage that a motor can get which one that is jammed gets in any case.
+const JAMMED_PART: f32 = 0.95;
 
 /// A current that lacks this many times the current of friction of what the voltage drives is not measured: twice, as friction
 /// is known no better.
@@ -86,6 +86,7 @@ struct AxisBounds<T> {
     m_per_count: T,
     following_m: T,
     away_m: T,
+    hard_v: T,
     driven_v: T,
     a_per_v: T,
     lack_a: T,
@@ -100,10 +101,14 @@ impl<T: Scalar> AxisMonitor<T> {
     pub fn new(settings: &Settings, m_per_count: f32) -> Self {
         let (limits, servo) = (&settings.limits, &settings.servo);
         let f_max_n = settings.f_max_n;
-        // What the maximum tension asks of a warm winding holds a motor, and need not turn it.
+        let hard_v = limits.driven_part * servo.current_a * servo.resistance_ohm;
+        // What the maximum tension asks of a warm winding holds a motor, and need not turn it. One that is jammed gets nearly all that
+        // the servo and the supply give.
         let holding_a = (servo.friction_a + servo.pull_a_per_n * f_max_n) * WARM_RATIO;
-        let driven_a = servo.current_a * limits.driven_part;
-        let driven_a = driven_a.max(holding_a.min(servo.current_a * DRIVEN_PART_MAX));
+        let most_v = (servo.current_a * servo.resistance_ohm)
+            .min(servo.duty_max * limits.supply_min_v)
+            * JAMMED_PART;
+        let driven_v = hard_v.max((holding_a * servo.resistance_ohm).min(most_v));
         Self {
             slack: Debounce::new(checks(limits.slack_time_s)),
             stale: Debounce::new(checks(limits.stale_time_s)),
@@ -136,7 +141,8 @@ impl<T: Scalar> AxisMonitor<T> {
                 // A tenth of what the speed induces is known no better.
                 lack_a_per_v: T::from(0.1 / servo.resistance_ohm),
                 open_a: T::from(OPEN_PART * servo.current_a),
-                driven_v: T::from(driven_a * servo.resistance_ohm),
+                hard_v: T::from(hard_v),
+                driven_v: T::from(driven_v),
                 current_a: limits.current_a.into(),
                 excess_a: T::from(limits.disagreement_a + servo.friction_a),
                 a_per_n: servo.pull_a_per_n.into(),
@@ -204,7 +210,7 @@ impl<T: Scalar> AxisMonitor<T> {
             return self.rest();
         }
         let driven = axis.driving_v.abs() > bounds.driven_v;
-        let hard = axis.voltage_v.abs() > bounds.driven_v;
+        let hard = axis.voltage_v.abs() > bounds.hard_v;
         let step_m = T::from(f32::from(step)) * bounds.m_per_count;
         let against = step_m * axis.voltage_v < T::zero();
         faults.add(

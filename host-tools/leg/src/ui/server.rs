@@ -1,6 +1,6 @@
 //! Serves one page to the browsers of this machine.
 
-use crate::cancel_flag::CancelFlag;
+use leg_host::cancel_flag::CancelFlag;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::sync::Arc;
@@ -18,7 +18,6 @@ const HEADERS: [&str; 2] = ["Cache-Control: no-store", "X-Content-Type-Options: 
 pub struct PageServer {
     server: Server,
     address: SocketAddr,
-    page: Arc<[u8]>,
 }
 
 impl PageServer {
@@ -26,13 +25,12 @@ impl PageServer {
     ///
     /// # Errors
     /// What the system says of a port that is in use, or not allowed.
-    pub fn listen(port: u16, page: Vec<u8>) -> io::Result<Self> {
+    pub fn listen(port: u16) -> io::Result<Self> {
         let server = Server::http((Ipv4Addr::LOCALHOST, port)).map_err(io::Error::other)?;
         let address = server.server_addr().to_ip();
         Ok(Self {
             server,
             address: address.ok_or(io::ErrorKind::AddrNotAvailable)?,
-            page: page.into(),
         })
     }
 
@@ -48,16 +46,18 @@ impl PageServer {
         format!("{}/", self.origin())
     }
 
-    /// Serves until the flag is set.
+    /// Serves a page until the flag is set.
     ///
     /// # Errors
     /// A listener that the system has closed.
-    pub fn run(&self, cancel: &CancelFlag) -> io::Result<()> {
+    pub fn run(&self, page: Vec<u8>, cancel: &CancelFlag) -> io::Result<()> {
+        let page: Arc<[u8]> = page.into();
         while !cancel.is_set() {
             if let Some(request) = self.server.recv_timeout(POLL_TIME)? {
-                let page = Arc::clone(&self.page);
+                let page = Arc::clone(&page);
                 // A browser that reads slowly keeps no other waiting. One that has gone needs no answer.
-                thread::spawn(move || drop(answer(request, &page)));
+                // Without a thread it is asked again by its user.
+                let _ = thread::Builder::new().spawn(move || drop(answer(request, &page)));
             }
         }
         Ok(())
