@@ -3,20 +3,15 @@
 #[cfg(test)]
 mod tests;
 
-use crate::charts::Charts;
-use crate::faults::FaultList;
+use crate::layout::{Views, narrow, wide};
+use crate::live_leg::opening::{Opened, Opening};
 use crate::page_state::PageState;
 use crate::panel_guide::Wish;
-use crate::places::{self, Places, place};
-use crate::scene::{self, Scene};
+use crate::places::{self, Places, place_rect};
+use crate::shown_leg::ShownLeg;
 use crate::simulation::Simulation;
-use crate::theme::{self, palette};
-use crate::workspace::Workspace;
-use crate::{keys, numbers, panel_break, panel_drive, panel_guide, top_bar};
-use eframe::egui::{
-    Align, CentralPanel, Context, Frame, Layout, Margin, Panel, RawInput, Rect, ScrollArea, Ui,
-    UiBuilder, Vec2, vec2,
-};
+use crate::{keys, theme, top_bar};
+use eframe::egui::{CentralPanel, Context, Frame, Margin, Panel, RawInput, Ui};
 use leg_firmware::command::Command;
 
 /// From this width on everything is side by side, points.
@@ -26,40 +21,49 @@ const WIDE: f32 = 960.0;
 const LARGE: f32 = 2200.0;
 const LARGE_SHOWN: f32 = 1700.0;
 
-/// The room for the time beside the leg, points.
-const TIME: Vec2 = vec2(150.0, 50.0);
-
-/// What a narrow window shows below the leg.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Tab {
-    #[default]
-    Try,
-    Drive,
-    Break,
-    Charts,
+/// What there is to show.
+enum Stage {
+    /// A leg.
+    Leg(ShownLeg),
+    /// The way to a live one.
+    Opening(Box<Opening>),
+    /// Nothing, and why.
+    Empty(String),
 }
 
-const TABS: [(Tab, &str, &str); 4] = [
-    (Tab::Try, "Try", "tab_try"),
-    (Tab::Drive, "Drive", "tab_drive"),
-    (Tab::Break, "Break", "tab_break"),
-    (Tab::Charts, "Charts", "tab_charts"),
-];
+impl Stage {
+    /// A new simulated leg.
+    fn simulated() -> Self {
+        match Simulation::new() {
+            Ok(simulation) => Self::Leg(ShownLeg::Simulated(Box::new(simulation))),
+            Err(error) => Self::Empty(error.to_string()),
+        }
+    }
 
-/// What the user chose to see.
-#[derive(Default)]
-struct Views {
-    scene: Scene,
-    workspace: Workspace,
-    charts: Charts,
-    faults: FaultList,
-    tab: Tab,
+    fn leg(&self) -> Result<&ShownLeg, String> {
+        match self {
+            Self::Leg(leg) => Ok(leg),
+            Self::Opening(opening) => Err(opening.words()),
+            Self::Empty(words) => Err(words.clone()),
+        }
+    }
+
+    fn advance(&mut self, elapsed_s: f64, now_s: f64) {
+        match self {
+            Self::Leg(leg) => leg.advance(elapsed_s, now_s),
+            Self::Opening(opening) => match opening.advance() {
+                Opened::Waiting => {}
+                Opened::Leg(leg) => *self = Self::Leg(ShownLeg::Live(leg)),
+                Opened::Failed(words) => *self = Self::Empty(words),
+            },
+            Self::Empty(_) => {}
+        }
+    }
 }
 
 /// The window with its leg.
 pub struct App {
-    /// The leg, or why there is none.
-    simulation: Result<Simulation, String>,
+    stage: Stage,
     views: Views,
     places: Places,
     /// Whether a key asks for a stop.
@@ -76,13 +80,27 @@ pub struct App {
 }
 
 impl App {
-    /// A window with a new leg.
+    /// A window with a new simulated leg.
     #[must_use]
     pub fn new(ctx: &Context) -> Self {
+        Self::with(ctx, Stage::simulated(), Views::new(false))
+    }
+
+    /// A window that shows a live leg as soon as there is one.
+    #[must_use]
+    pub fn live(ctx: &Context, opening: Result<Opening, String>) -> Self {
+        let stage = match opening {
+            Ok(opening) => Stage::Opening(Box::new(opening)),
+            Err(words) => Stage::Empty(words),
+        };
+        Self::with(ctx, stage, Views::new(true))
+    }
+
+    fn with(ctx: &Context, stage: Stage, views: Views) -> Self {
         theme::install(ctx);
         Self {
-            simulation: Simulation::new().map_err(|error| error.to_string()),
-            views: Views::default(),
+            stage,
+            views,
             places: Places::default(),
             stop: false,
             last_s: None,
@@ -96,14 +114,20 @@ impl App {
     /// What it shows, for tests and readers of the screen.
     #[must_use]
     pub fn state(&self) -> PageState {
-        let simulation = self.simulation.as_ref();
         PageState::new(
-            simulation.ok(),
+            self.stage.leg(),
             &self.places,
             self.zoom,
             self.frames,
             self.frame_s,
         )
+    }
+
+    /// Tells a live leg that the window is there; at a time of the window, s.
+    pub fn show_life(&mut self, now_s: f64) {
+        if let Stage::Leg(ShownLeg::Live(leg)) = &mut self.stage {
+            leg.show_life(now_s);
+        }
     }
 
     /// Large screens show everything larger.
@@ -127,41 +151,32 @@ impl App {
         let elapsed_s = self.last_s.map_or(0.0, |last_s| now_s - last_s);
         self.last_s = Some(now_s);
         let stop = std::mem::take(&mut self.stop);
-        if let Ok(simulation) = &mut self.simulation {
-            if stop {
-                simulation.command(Command::Stop, "stop");
-            }
-            simulation.advance(elapsed_s);
+        if let (Stage::Leg(leg), true) = (&mut self.stage, stop) {
+            leg.command(Command::Stop, "stop");
         }
+        self.stage.advance(elapsed_s, now_s);
         ctx.request_repaint();
     }
 
     fn show(&mut self, ui: &mut Ui) {
-        let Self {
-            simulation, views, ..
-        } = self;
-        let simulation = match simulation {
-            Ok(simulation) => simulation,
-            Err(error) => {
-                CentralPanel::default().show(ui, |ui| {
-                    ui.heading("There is no leg to show");
-                    ui.label(error.as_str());
-                });
-                return;
-            }
+        let Self { stage, views, .. } = self;
+        let leg = match stage {
+            Stage::Leg(leg) => leg,
+            Stage::Opening(opening) => return empty(ui, "A live leg", &opening.words()),
+            Stage::Empty(words) => return empty(ui, "There is no leg to show", words),
         };
         let bar = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(12, 8));
         Panel::top("bar")
             .frame(bar)
-            .show(ui, |ui| top_bar::show(ui, simulation));
+            .show(ui, |ui| top_bar::show(ui, leg));
         let wish = if ui.available_width() >= WIDE {
-            wide(ui, simulation, views)
+            wide(ui, leg, views)
         } else {
-            narrow(ui, simulation, views)
+            narrow(ui, leg, views)
         };
         if wish == Wish::StartAgain {
             self.views.charts.go_on();
-            self.simulation = Simulation::new().map_err(|error| error.to_string());
+            self.stage = Stage::simulated();
         }
     }
 
@@ -197,137 +212,11 @@ impl eframe::App for App {
     }
 }
 
-/// Everything side by side.
-fn wide(ui: &mut Ui, simulation: &mut Simulation, views: &mut Views) -> Wish {
-    let tall = ui.available_height();
-    let side = Frame::side_top_panel(ui.style()).inner_margin(12.0);
-    let left = Panel::left("left")
-        .frame(side)
-        .resizable(false)
-        .exact_size(282.0);
-    let wish = left.show(ui, |ui| {
-        let scroll = ScrollArea::vertical().id_salt("left");
-        scroll
-            .show(ui, |ui| {
-                let wish = panel_guide::show(ui, simulation);
-                ui.separator();
-                panel_drive::show(ui, simulation);
-                wish
-            })
-            .inner
+/// A window without a leg, and why it has none.
+fn empty(ui: &mut Ui, heading: &str, words: &str) {
+    let shown = CentralPanel::default().show(ui, |ui| {
+        ui.heading(heading);
+        ui.label(words);
     });
-    let right = Panel::right("right")
-        .frame(side)
-        .resizable(false)
-        .exact_size(300.0);
-    right.show(ui, |ui| {
-        ScrollArea::vertical().id_salt("right").show(ui, |ui| {
-            ui.heading("Drag the target");
-            views.workspace.show(ui, simulation, 200.0);
-            numbers::show(ui, simulation);
-            ui.separator();
-            panel_break::show(ui, simulation);
-        });
-    });
-    let height = (0.32 * tall).clamp(200.0, 440.0);
-    let bottom = Panel::bottom("charts")
-        .frame(side)
-        .resizable(false)
-        .exact_size(height);
-    bottom.show(ui, |ui| {
-        let now_s = simulation.leg().time_s();
-        views
-            .charts
-            .show(ui, &simulation.history, now_s, height - 62.0);
-    });
-    CentralPanel::no_frame().show(ui, |ui| {
-        let rect = leg(ui, simulation, &mut views.scene);
-        let over = UiBuilder::new().max_rect(scene::room(rect));
-        ui.scope_builder(over, |ui| {
-            let scroll = ScrollArea::vertical().id_salt("faults");
-            scroll.show(ui, |ui| views.faults.show(ui, simulation.faults()));
-        });
-    });
-    wish.inner
-}
-
-/// The leg above, and the rest behind tabs.
-fn narrow(ui: &mut Ui, simulation: &mut Simulation, views: &mut Views) -> Wish {
-    let height = (0.44 * ui.available_height()).max(220.0);
-    let above = Panel::top("leg")
-        .frame(Frame::NONE)
-        .resizable(false)
-        .exact_size(height);
-    above.show(ui, |ui| {
-        let rect = leg(ui, simulation, &mut views.scene);
-        let corner = Rect::from_min_max(rect.max - TIME, rect.max - vec2(14.0, 6.0));
-        let over = UiBuilder::new()
-            .max_rect(corner)
-            .layout(Layout::bottom_up(Align::Max));
-        ui.scope_builder(over, |ui| top_bar::time(ui, simulation));
-    });
-    CentralPanel::default()
-        .show(ui, |ui| {
-            ui.horizontal(|ui| {
-                let width = (ui.available_width() - 24.0) / TABS.len() as f32;
-                for (this, text, name) in TABS {
-                    let button = eframe::egui::Button::selectable(views.tab == this, text);
-                    let response = ui.add(button.min_size(vec2(width, 36.0)));
-                    place(&response, name);
-                    if response.clicked() {
-                        views.tab = this;
-                    }
-                }
-            });
-            ui.separator();
-            let scroll = ScrollArea::vertical().id_salt("tabs");
-            scroll.show(ui, |ui| page(ui, simulation, views)).inner
-        })
-        .inner
-}
-
-fn page(ui: &mut Ui, simulation: &mut Simulation, views: &mut Views) -> Wish {
-    views.faults.show_any(ui, simulation.faults());
-    match views.tab {
-        Tab::Try => {
-            let wish = panel_guide::show(ui, simulation);
-            numbers::show(ui, simulation);
-            return wish;
-        }
-        Tab::Drive => {
-            let side = ui.available_width().min(300.0);
-            ui.vertical_centered(|ui| views.workspace.show(ui, simulation, side));
-            panel_drive::show(ui, simulation);
-        }
-        Tab::Break => panel_break::show(ui, simulation),
-        Tab::Charts => {
-            let now_s = simulation.leg().time_s();
-            views.charts.show(ui, &simulation.history, now_s, 180.0);
-        }
-    }
-    Wish::None
-}
-
-/// The leg, how much its sag is enlarged, and why it cannot go on. Gives where it is.
-fn leg(ui: &mut Ui, simulation: &Simulation, scene: &mut Scene) -> Rect {
-    let rect = ui.available_rect_before_wrap();
-    let response = scene.show(ui, simulation, rect.size());
-    place(&response, "leg");
-    let corner = rect.left_top() + vec2(14.0, scene::CHOICE_TOP);
-    let over = UiBuilder::new().max_rect(Rect::from_min_size(corner, vec2(96.0, 28.0)));
-    ui.scope_builder(over, |ui| scene.choice(ui));
-    let failure = simulation.failure().map(ToString::to_string);
-    if let Some(words) = failure {
-        let palette = palette(ui.ctx());
-        let at = rect.center();
-        let font = eframe::egui::FontId::proportional(15.0);
-        ui.painter().text(
-            at,
-            eframe::egui::Align2::CENTER_CENTER,
-            words,
-            font,
-            palette.error,
-        );
-    }
-    rect
+    place_rect(ui.ctx(), shown.response.rect, "empty");
 }

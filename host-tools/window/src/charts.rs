@@ -51,6 +51,15 @@ impl Default for Charts {
 }
 
 impl Charts {
+    /// What is charted of a leg of which only its reports are known.
+    #[must_use]
+    pub fn of_live_leg() -> Self {
+        Self {
+            chosen: vec!["tip_estimated_mm", "tensions_n"],
+            ..Self::default()
+        }
+    }
+
     /// Shows the charts beside each other, or below where there is no room for that.
     pub fn show(&mut self, ui: &mut Ui, history: &History, now_s: f64, height: f32) {
         self.controls(ui, history, now_s);

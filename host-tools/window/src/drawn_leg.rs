@@ -4,7 +4,7 @@ use crate::camera::View;
 use crate::figure::{Item, ball, circle, cord, disc, rod, sorted};
 use crate::leg_pose::{LegPose, enlarged};
 use crate::places::place_rect;
-use crate::simulation::Simulation;
+use crate::shown_leg::ShownLeg;
 use crate::theme::{self, Palette, mixed};
 use eframe::egui::{
     Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2,
@@ -37,7 +37,7 @@ const ARROW_M_PER_N: f64 = 0.015;
 
 /// What is drawn of the leg.
 pub struct Drawn<'a> {
-    simulation: &'a Simulation,
+    leg: &'a ShownLeg,
     pub rig: &'a RigParameters<f64, 3>,
     pub palette: Palette,
     pose: LegPose,
@@ -49,26 +49,15 @@ pub struct Drawn<'a> {
 }
 
 impl<'a> Drawn<'a> {
-    pub fn new(simulation: &'a Simulation, factor: f64, palette: Palette) -> Self {
-        let leg = simulation.leg();
-        let truth = leg.truth();
-        let along = truth.direction.vector();
-        let target = simulation
-            .telemetry()
-            .map_or([0.0; 2], |telemetry| telemetry.target);
+    pub fn new(leg: &'a ShownLeg, factor: f64, palette: Palette) -> Self {
         let tip_length_m = leg.tip_length_m();
-        let reference = leg.tip_m(target.map(f64::from)) / tip_length_m;
-        let (along, factor) = enlarged(
-            reference,
-            Vector3::new(along.x, along.y, along.z),
-            factor,
-            tip_length_m,
-        );
+        let reference = leg.reference();
+        let (along, factor) = enlarged(reference, leg.along(), factor, tip_length_m);
         Self {
-            simulation,
-            rig: &simulation.rig().parameters,
+            leg,
+            rig: &leg.rig().parameters,
             palette,
-            pose: LegPose::new(along).twisted(truth.torsion_rad),
+            pose: LegPose::new(along).twisted(leg.torsion_rad()),
             reference,
             commanded_m: leg.commanded_m(),
             tip_length_m,
@@ -176,17 +165,18 @@ impl<'a> Drawn<'a> {
     }
 
     fn cut(&self, tendon: usize) -> bool {
-        self.simulation.has(Defect::TendonCut(tendon))
+        self.leg.has(Defect::TendonCut(tendon))
     }
 
     fn tension_colour(&self, tendon: usize) -> Color32 {
-        let rig = self.simulation.rig();
-        let tension_n = self.simulation.leg().truth().tensions_n[tendon];
+        let rig = self.leg.rig();
+        let tension_n = self.leg.tensions_n()[tendon];
         theme::tension(tension_n, [rig.f_min_n, rig.f_max_n])
     }
 
     fn payload(&self, view: &View) -> Option<Item> {
-        let payload_kg = self.simulation.leg().truth().payload_kg;
+        // What a live leg estimates may be a push.
+        let payload_kg = self.leg.simulated()?.leg().truth().payload_kg;
         let radius_m = PAYLOAD_RADIUS_M * payload_kg.cbrt();
         (payload_kg > 1e-3).then(|| ball(view, self.tip(), radius_m, self.palette.brass))
     }
@@ -197,7 +187,7 @@ impl<'a> Drawn<'a> {
         let below = Vector3::new(0.0, 0.0, -self.tip_length_m);
         let vertical = [Vector3::zeros(), below].map(|place| view.project(place).at);
         painter.extend(Shape::dashed_line(&vertical, faint, 5.0, 5.0));
-        let (sin, cos) = self.simulation.rig().tilt_deg.to_radians().sin_cos();
+        let (sin, cos) = self.leg.rig().tilt_deg.to_radians().sin_cos();
         let mut rim: Vec<Pos2> = circle(below * cos, Vector3::z(), self.tip_length_m * sin)
             .map(|place| view.project(place).at)
             .collect();
@@ -225,7 +215,7 @@ impl<'a> Drawn<'a> {
     }
 
     fn push(&self, painter: &Painter, view: &View) {
-        let Some(push) = self.simulation.pushed() else {
+        let Some(push) = self.leg.pushed() else {
             return;
         };
         let [x, y] = leg_base::angles::unit_vector(push.azimuth_deg);
@@ -243,7 +233,7 @@ impl<'a> Drawn<'a> {
     }
 
     fn tension_labels(&self, painter: &Painter, view: &View, rect: Rect) {
-        let tensions_n = self.simulation.leg().truth().tensions_n;
+        let tensions_n = self.leg.tensions_n();
         let anchors = self.pose.anchors(self.rig);
         for (tendon, ends) in anchors.into_iter().enumerate() {
             let above = ends[0] + Vector3::new(0.0, 0.0, 0.008);
@@ -281,7 +271,7 @@ impl<'a> Drawn<'a> {
 
     /// How far the tip is from where it was sent, in a place of its own.
     pub fn readout(&self, painter: &Painter, rect: Rect) {
-        let error_mm = self.simulation.leg().comparison().commanded_error_mm();
+        let error_mm = self.leg.error_mm();
         let corner = rect.left_top() + vec2(14.0, 10.0);
         let big = FontId::monospace(24.0);
         let words = format!("{error_mm:.2} mm");
@@ -292,7 +282,11 @@ impl<'a> Drawn<'a> {
         };
         painter.text(corner, Align2::LEFT_TOP, words, big, colour);
         let drawn = format!("drawn ×{:.1} from its reference", self.factor);
-        for (line, words) in ["from the target", &drawn].into_iter().enumerate() {
+        let off = match self.leg.live() {
+            None => "from the target",
+            Some(_) => "from the target, by its sensors",
+        };
+        for (line, words) in [off, &drawn].into_iter().enumerate() {
             let below = corner + vec2(0.0, 28.0 + 16.0 * line as f32);
             let font = FontId::proportional(12.5);
             painter.text(below, Align2::LEFT_TOP, words, font, self.palette.faint);
@@ -303,7 +297,7 @@ impl<'a> Drawn<'a> {
 
     /// What the colours of the tendons mean.
     pub fn legend(&self, painter: &Painter, rect: Rect) {
-        let rig = self.simulation.rig();
+        let rig = self.leg.rig();
         let bounds_n = [rig.f_min_n, rig.f_max_n];
         let bar = Rect::from_min_size(rect.left_bottom() + vec2(14.0, -18.0), LEGEND);
         for step in 0..LEGEND_STEPS {
@@ -314,7 +308,11 @@ impl<'a> Drawn<'a> {
             let cell = bar.with_min_x(left).with_max_x(right);
             painter.rect_filled(cell, 0.0, theme::tension(tension_n, bounds_n));
         }
-        let words = format!("true tension, {:.0} to {:.0} N", bounds_n[0], bounds_n[1]);
+        let source = self.leg.tensions_source();
+        let words = format!(
+            "{source} tension, {:.0} to {:.0} N",
+            bounds_n[0], bounds_n[1]
+        );
         let above = bar.left_top() + vec2(0.0, -3.0);
         let font = FontId::proportional(12.5);
         painter.text(above, Align2::LEFT_BOTTOM, words, font, self.palette.faint);

@@ -15,8 +15,8 @@ const KEPT: usize = (KEPT_S as usize) * (SAMPLE_HZ as usize);
 pub struct Snapshot {
     /// What it reports.
     pub report: Report,
-    /// How it is.
-    pub simulated: Simulated,
+    /// How it is, if it is simulated.
+    pub simulated: Option<Simulated>,
 }
 
 /// A signal that has numbers.
@@ -68,10 +68,22 @@ pub struct History {
 
 impl Default for History {
     fn default() -> Self {
-        let reported = REPORT_SIGNALS
+        Self::new(REPORT_SIGNALS, SIMULATED_SIGNALS)
+    }
+}
+
+impl History {
+    /// Of a leg that says nothing but its reports.
+    #[must_use]
+    pub fn of_reports() -> Self {
+        Self::new(REPORT_SIGNALS, &[])
+    }
+
+    fn new(reported: &'static [Signal<Report>], simulated: &'static [Signal<Simulated>]) -> Self {
+        let reported = reported
             .iter()
             .map(|signal| (signal.width(), Source::Reported(signal)));
-        let simulated = SIMULATED_SIGNALS
+        let simulated = simulated
             .iter()
             .map(|signal| (signal.width(), Source::Simulated(signal)));
         let mut start = 0;
@@ -91,9 +103,7 @@ impl Default for History {
             numbers: Vec::with_capacity(start),
         }
     }
-}
 
-impl History {
     /// Keeps the leg as it is now, and forgets what is too old.
     pub fn take(&mut self, time_s: f64, snapshot: &Snapshot) {
         self.numbers.clear();
@@ -101,7 +111,9 @@ impl History {
             match column.source {
                 Source::Reported(signal) => signal.numbers(&snapshot.report, &mut self.numbers),
                 Source::Simulated(signal) => {
-                    signal.numbers(&snapshot.simulated, &mut self.numbers);
+                    if let Some(simulated) = &snapshot.simulated {
+                        signal.numbers(simulated, &mut self.numbers);
+                    }
                 }
             }
         }

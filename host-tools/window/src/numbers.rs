@@ -1,7 +1,7 @@
 //! The leg in numbers that stay in their places.
 
 use crate::places::place_rect;
-use crate::simulation::Simulation;
+use crate::shown_leg::ShownLeg;
 use crate::theme::{self, palette};
 use eframe::egui::{Grid, RichText, Ui};
 use leg_base::angles;
@@ -12,11 +12,10 @@ fn unsigned_zero(value: f32) -> f32 {
 }
 
 /// Shows them.
-pub fn show(ui: &mut Ui, simulation: &Simulation) {
-    let Some(telemetry) = simulation.telemetry() else {
+pub fn show(ui: &mut Ui, leg: &ShownLeg) {
+    let Some(telemetry) = leg.telemetry() else {
         return;
     };
-    let comparison = simulation.leg().comparison();
     let [azimuth_deg, tilt_deg] = angles::angles_deg(telemetry.pose.map(f64::from));
     let palette = palette(ui.ctx());
     let faint = |words: &str| RichText::new(words).color(palette.faint);
@@ -25,11 +24,20 @@ pub fn show(ui: &mut Ui, simulation: &Simulation) {
         .spacing([12.0, 3.0])
         .min_row_height(16.0);
     let shown = grid.show(ui, |ui| {
-        let error_mm = comparison.commanded_error_mm();
-        row(ui, faint("off target, true"), error_mm, "mm");
-        let source = "What the leg concludes from its sensors. The leg is drawn as it truly is.";
+        let simulated = leg.simulated().is_some();
+        if simulated {
+            row(ui, faint("off target, true"), leg.error_mm(), "mm");
+        }
+        let source = if simulated {
+            "What the leg concludes from its sensors. The leg is drawn as it truly is."
+        } else {
+            "What the leg concludes from its sensors. The leg is drawn like that."
+        };
         ui.label(faint("from the sensors:")).on_hover_text(source);
         ui.end_row();
+        if !simulated {
+            row(ui, faint("off target"), leg.error_mm(), "mm");
+        }
         row(ui, faint("azimuth"), azimuth_deg, "°");
         row(ui, faint("tilt"), tilt_deg, "°");
         row(ui, faint("payload"), telemetry.payload_kg.into(), "kg");

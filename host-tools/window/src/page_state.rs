@@ -1,7 +1,9 @@
 //! What the window shows, as data: for tests, and for those who hear the page.
 
+use crate::live_leg::LiveLeg;
+use crate::pace::Pace;
 use crate::places::Places;
-use crate::simulation::Simulation;
+use crate::shown_leg::ShownLeg;
 use leg_base::angles;
 use leg_base::description;
 use serde::Serialize;
@@ -12,6 +14,8 @@ use std::collections::BTreeMap;
 pub struct PageState {
     /// The leg; none if there is none.
     leg: Option<LegState>,
+    /// Why there is none.
+    empty: Option<String>,
     /// Left, top, right and bottom of each control, points.
     places: BTreeMap<String, [f32; 4]>,
     /// The control that has the keyboard's focus.
@@ -28,15 +32,21 @@ pub struct PageState {
 
 #[derive(Debug, Serialize)]
 struct LegState {
+    /// The name of a live one.
+    live: Option<String>,
+    /// Whether this page drives it, and another one.
+    drives: [bool; 2],
+    /// Why it takes no command but a stop.
+    locked: Option<&'static str>,
     time_s: f64,
-    /// Time of the leg in a second of the clock.
+    /// Time of a simulated leg in a second of the clock.
     rate: f64,
     /// Time of the leg that was left out, s.
     left_out_s: f64,
     state: &'static str,
     faults: Vec<&'static str>,
     refusal: Option<String>,
-    compensated: bool,
+    compensated: Option<bool>,
     payload_kg: f64,
     error_mm: f64,
     azimuth_deg: f64,
@@ -55,7 +65,7 @@ impl PageState {
     /// Of a window.
     #[must_use]
     pub fn new(
-        simulation: Option<&Simulation>,
+        leg: Result<&ShownLeg, String>,
         places: &Places,
         zoom: f32,
         frames: u64,
@@ -65,12 +75,17 @@ impl PageState {
             let edges = [rect.left(), rect.top(), rect.right(), rect.bottom()];
             (name.to_string(), edges)
         });
-        let leg = simulation.map(LegState::new);
-        let spoken = leg
-            .as_ref()
-            .map_or_else(|| "There is no leg.".into(), LegState::spoken);
+        let (leg, empty) = match leg {
+            Ok(leg) => (Some(LegState::new(leg)), None),
+            Err(words) => (None, Some(words)),
+        };
+        let spoken = leg.as_ref().map_or_else(
+            || format!("There is no leg. {}", empty.as_deref().unwrap_or_default()),
+            LegState::spoken,
+        );
         Self {
             leg,
+            empty,
             places: rects.collect(),
             focused: places.focused.as_ref().map(ToString::to_string),
             zoom,
@@ -82,30 +97,36 @@ impl PageState {
 }
 
 impl LegState {
-    fn new(simulation: &Simulation) -> Self {
-        let leg = simulation.leg();
-        let along = leg.truth().direction.vector();
+    fn new(leg: &ShownLeg) -> Self {
+        let along = leg.along();
+        let simulation = leg.simulated();
+        let pace = simulation.map_or_else(Pace::default, |simulation| simulation.pace);
+        let live = leg.live();
+        let role = live.map(LiveLeg::role).unwrap_or_default();
         let [azimuth_deg, tilt_deg] = angles::angles_deg([along.x, along.y]);
-        let faults = simulation.faults().faults();
-        let telemetry = simulation.telemetry();
+        let faults = leg.faults().faults();
+        let telemetry = leg.telemetry();
         Self {
+            live: live.map(|live| live.name().into()),
+            drives: [role.drives, role.other_drives],
+            locked: leg.locked(),
             time_s: leg.time_s(),
-            rate: simulation.pace.rate,
-            left_out_s: simulation.pace.left_out_s(),
-            state: description::state(simulation.state()),
+            rate: pace.rate,
+            left_out_s: pace.left_out_s(),
+            state: description::state(leg.state()),
             faults: faults.map(|fault| fault.entry().name).collect(),
-            refusal: simulation.refusal().map(Into::into),
-            compensated: simulation.compensated(),
-            payload_kg: leg.truth().payload_kg,
-            error_mm: leg.comparison().commanded_error_mm(),
+            refusal: leg.refusal().map(Into::into),
+            compensated: leg.compensated(),
+            payload_kg: leg.payload_kg(),
+            error_mm: leg.error_mm(),
             azimuth_deg,
             tilt_deg,
-            target: simulation.target(),
-            tensions_n: leg.truth().tensions_n,
+            target: leg.target(),
+            tensions_n: leg.tensions_n(),
             pretension_n: telemetry.map(|telemetry| telemetry.pretension_n),
             stiffness_nm_per_rad: telemetry.map(|telemetry| telemetry.stiffness_nm_per_rad),
-            push_deg: simulation.pushed().map(|push| push.azimuth_deg),
-            failure: simulation.failure().map(ToString::to_string),
+            push_deg: leg.pushed().map(|push| push.azimuth_deg),
+            failure: leg.failure(),
         }
     }
 

@@ -1,10 +1,11 @@
 //! Commands to the leg: buttons with what each will do, and sliders.
 
+use crate::panel_unlock;
 use crate::places::place;
-use crate::simulation::Simulation;
+use crate::shown_leg::ShownLeg;
 use crate::text::left;
 use crate::theme::palette;
-use eframe::egui::{Button, Label, RichText, Slider, SliderClamping, Ui, vec2};
+use eframe::egui::{Button, Checkbox, Label, Response, RichText, Slider, SliderClamping, Ui, vec2};
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::supervisor::{Event, State};
 use std::ops::RangeInclusive;
@@ -27,7 +28,7 @@ struct Choice {
     effect: &'static str,
     command: Command,
     /// Whether it means something now.
-    useful: fn(&Simulation) -> bool,
+    useful: fn(&ShownLeg) -> bool,
 }
 
 const CHOICES: [Choice; 5] = [
@@ -74,31 +75,36 @@ const CHOICES: [Choice; 5] = [
 ];
 
 /// Shows the commands.
-pub fn show(ui: &mut Ui, simulation: &mut Simulation) {
+pub fn show(ui: &mut Ui, leg: &mut ShownLeg) {
     ui.heading("Drive it");
+    if let Some(live) = leg.live_mut() {
+        panel_unlock::show(ui, live);
+    }
+    let locked = leg.locked();
     for choice in &CHOICES {
-        let useful = (choice.useful)(simulation);
+        let useful = locked.is_none() && (choice.useful)(leg);
         ui.horizontal(|ui| {
             let button =
                 ui.add_enabled(useful, Button::new(choice.text).min_size(vec2(72.0, 28.0)));
             place(&button, choice.name);
+            let button = why(button, locked);
             let effect = RichText::new(choice.effect)
                 .small()
                 .color(palette(ui.ctx()).faint);
             ui.add(Label::new(effect).wrap());
             if button.clicked() {
-                simulation.command(choice.command, choice.text);
+                leg.command(choice.command, choice.text);
             }
         });
     }
-    refusal(ui, simulation);
-    compensation(ui, simulation);
-    sliders(ui, simulation);
+    refusal(ui, leg);
+    compensation(ui, leg);
+    sliders(ui, leg);
 }
 
 /// What was refused takes its room whether there is something or not: nothing moves.
-fn refusal(ui: &mut Ui, simulation: &Simulation) {
-    let words = simulation.refusal().unwrap_or_default();
+fn refusal(ui: &mut Ui, leg: &ShownLeg) {
+    let words = leg.refusal().unwrap_or_default();
     let text = RichText::new(words).small().color(palette(ui.ctx()).error);
     let size = vec2(ui.available_width(), 30.0);
     ui.allocate_ui(size, |ui| {
@@ -107,57 +113,83 @@ fn refusal(ui: &mut Ui, simulation: &Simulation) {
     });
 }
 
-fn compensation(ui: &mut Ui, simulation: &mut Simulation) {
-    let on = simulation.compensated();
-    let mut chosen = on;
-    let toggle = ui.checkbox(&mut chosen, "Compensate the load");
+fn compensation(ui: &mut Ui, leg: &mut ShownLeg) {
+    let on = leg.compensated();
+    let mut chosen = on.unwrap_or_default();
+    let toggle = Checkbox::new(&mut chosen, "Compensate the load").indeterminate(on.is_none());
+    let locked = leg.locked();
+    let toggle = ui.add_enabled(locked.is_none(), toggle);
     place(&toggle, "compensation");
-    if chosen == on {
+    let clicked = toggle.clicked();
+    why(toggle, locked).on_hover_text(match on {
+        Some(_) => "The leg feels the load in its tendons, and holds its target under it.",
+        None => "A leg does not report whether it does: a press switches it on.",
+    });
+    if !clicked {
         return;
     }
-    let (compensation, name) = if chosen {
+    let (compensation, name) = if chosen || on.is_none() {
         (Compensation::Estimated, "compensation on")
     } else {
         (Compensation::Off, "compensation off")
     };
-    simulation.command(Command::Compensation(compensation), name);
+    leg.command(Command::Compensation(compensation), name);
 }
 
-fn sliders(ui: &mut Ui, simulation: &mut Simulation) {
-    let mut payload_kg = simulation.payload_kg();
-    let slider = Slider::new(&mut payload_kg, 0.0..=PAYLOAD_MAX_KG);
-    let slider = slider.step_by(0.05).fixed_decimals(2).suffix(" kg");
-    if row(ui, "Payload", "payload", slider) {
-        simulation.hang(payload_kg);
+fn sliders(ui: &mut Ui, leg: &mut ShownLeg) {
+    if let Some(simulation) = leg.simulated_mut() {
+        let mut payload_kg = simulation.payload_kg();
+        let slider = Slider::new(&mut payload_kg, 0.0..=PAYLOAD_MAX_KG);
+        let slider = slider.step_by(0.05).fixed_decimals(2).suffix(" kg");
+        if row(ui, "Payload", "payload", slider, None) {
+            simulation.hang(payload_kg);
+        }
     }
-    let Some(telemetry) = simulation.telemetry().copied() else {
+    let Some(telemetry) = leg.telemetry().copied() else {
         return;
     };
-    let rig = simulation.rig();
+    let (rig, locked) = (leg.rig(), leg.locked());
     let mut pretension_n = f64::from(telemetry.pretension_n);
     let slider = Slider::new(&mut pretension_n, rig.f_min_n..=rig.f_max_n).suffix(" N");
-    if row(ui, "Pretension", "pretension", slider.fixed_decimals(1)) {
-        simulation.command(Command::Pretension(pretension_n as f32), "pretension");
+    let slider = slider.fixed_decimals(1);
+    if row(ui, "Pretension", "pretension", slider, locked) {
+        leg.command(Command::Pretension(pretension_n as f32), "pretension");
     }
     let mut stiffness = f64::from(telemetry.stiffness_nm_per_rad);
     let slider = Slider::new(&mut stiffness, STIFFNESS_NM_PER_RAD).suffix(" N·m/rad");
-    if row(ui, "Stiffness", "stiffness", slider.fixed_decimals(1)) {
+    let slider = slider.fixed_decimals(1);
+    if row(ui, "Stiffness", "stiffness", slider, locked) {
         let demand = Command::Stiffness {
             demand_nm_per_rad: stiffness as f32,
             towards: None,
         };
-        simulation.command(demand, "stiffness");
+        leg.command(demand, "stiffness");
+    }
+}
+
+/// Says of a control that is disabled why it is.
+fn why(response: Response, locked: Option<&str>) -> Response {
+    match locked {
+        Some(words) => response.on_disabled_hover_text(words),
+        None => response,
     }
 }
 
 /// Whether it was changed by hand: what the leg reports may be beyond the slider's ends.
-fn row(ui: &mut Ui, text: &str, name: &'static str, slider: Slider<'_>) -> bool {
+fn row(
+    ui: &mut Ui,
+    text: &str,
+    name: &'static str,
+    slider: Slider<'_>,
+    locked: Option<&str>,
+) -> bool {
     ui.horizontal(|ui| {
         left(ui, LABEL_WIDTH, text);
         ui.spacing_mut().slider_width = (ui.available_width() - VALUE_WIDTH).clamp(60.0, 220.0);
-        let response = ui.add(slider.clamping(SliderClamping::Edits));
+        let slider = slider.clamping(SliderClamping::Edits);
+        let response = ui.add_enabled(locked.is_none(), slider);
         place(&response, name);
-        response.changed()
+        why(response, locked).changed()
     })
     .inner
 }

@@ -3,7 +3,7 @@
 use crate::camera::Camera;
 use crate::drawn_leg::Drawn;
 use crate::places::place;
-use crate::simulation::Simulation;
+use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
 use eframe::egui::{ComboBox, Rect, Response, Sense, Ui, Vec2, pos2, vec2};
 use nalgebra::Vector3;
@@ -50,7 +50,7 @@ impl Default for Scene {
 
 impl Scene {
     /// Draws the leg, and lets a drag turn it.
-    pub fn show(&mut self, ui: &mut Ui, simulation: &Simulation, size: Vec2) -> Response {
+    pub fn show(&mut self, ui: &mut Ui, leg: &ShownLeg, size: Vec2) -> Response {
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
         let drag = response.drag_delta();
         self.camera.turn(drag.x, drag.y);
@@ -62,7 +62,7 @@ impl Scene {
         if response.double_clicked() {
             self.camera = Camera::default();
         }
-        let drawn = Drawn::new(simulation, self.factor, palette(ui.ctx()));
+        let drawn = Drawn::new(leg, self.factor, palette(ui.ctx()));
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 0.0, drawn.palette.back);
         let (whole, detail) = parts(rect);

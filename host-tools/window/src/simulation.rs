@@ -1,13 +1,12 @@
 //! The leg in this window: firmware and simulated mechanism, stepped in real time.
 
-mod orders;
 #[cfg(test)]
 mod tests;
 
 use crate::history::{History, SAMPLE_HZ, Snapshot};
+use crate::orders::{Order, Orders, refused};
 use crate::pace::Pace;
 use leg_base::failure::Failure;
-use leg_base::refusal;
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::drive::Drive;
 use leg_firmware::host_link::HostRefusal;
@@ -22,7 +21,6 @@ use leg_sim::emulated_leg::{EmulatedLeg, EmulationError};
 use leg_sim::hosted_leg::HostedLeg;
 use leg_sim::plant::{Defect, Start};
 use leg_sim::signals::{LegConstants, Report, Simulated};
-use orders::{Order, Orders};
 
 /// Where the leg is when the window opens: as in the paper's Fig. 9, where a load shows most.
 const START_AZIMUTH_DEG: f64 = 30.0;
@@ -208,11 +206,11 @@ impl Simulation {
         let telemetry = self.leg.telemetry()?;
         Some(Snapshot {
             report: Report::new(telemetry, &self.constants),
-            simulated: Simulated {
+            simulated: Some(Simulated {
                 truth: *self.leg.truth(),
                 motors: self.motors,
                 comparison: self.leg.comparison(),
-            },
+            }),
         })
     }
 
@@ -255,7 +253,7 @@ impl Simulation {
 
     /// Sends what may be sent now.
     fn send(&mut self) {
-        while let Some(order) = self.orders.next() {
+        while let Some(order) = self.orders.next_to_send() {
             match self.leg.send(&order.command) {
                 Ok(number) => self.orders.note_sent(number, order),
                 Err(error) => {
@@ -395,19 +393,5 @@ impl Simulation {
     #[must_use]
     pub const fn failure(&self) -> Option<&EmulationError> {
         self.failure.as_ref()
-    }
-}
-
-/// The remedies of a command that the leg refuses hold for any host; the others are those of the program `leg`.
-fn refused(name: &str, refusal: &HostRefusal) -> String {
-    match refusal {
-        HostRefusal::Command(refusal) => {
-            let [wrong, remedy] = refusal.description();
-            format!("{name} refused: {wrong}; {remedy}")
-        }
-        other => {
-            let [wrong, _] = refusal::description(other);
-            format!("{name} refused: {wrong}")
-        }
     }
 }

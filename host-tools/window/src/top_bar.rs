@@ -1,9 +1,13 @@
 //! The state of the leg, the stop, and how the window looks.
 
+use crate::pace::Pace;
 use crate::places::place;
-use crate::simulation::Simulation;
+use crate::shown_leg::ShownLeg;
 use crate::theme::{Palette, palette};
-use eframe::egui::{Align, Button, Color32, ComboBox, Layout, RichText, Stroke, Theme, Ui, vec2};
+use eframe::egui::{
+    Align, Button, Color32, ComboBox, Frame, Label, Layout, Margin, RichText, Stroke, Theme, Ui,
+    vec2,
+};
 use leg_base::description;
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::State;
@@ -29,7 +33,7 @@ const WIDE: f32 = 1100.0;
 const LEFT_OUT_MIN_S: f64 = 0.005;
 
 /// Shows the bar.
-pub fn show(ui: &mut Ui, simulation: &mut Simulation) {
+pub fn show(ui: &mut Ui, leg: &mut ShownLeg) {
     let palette = palette(ui.ctx());
     let roomy = ui.available_width() > ROOMY;
     let wide = ui.available_width() > WIDE;
@@ -40,28 +44,33 @@ pub fn show(ui: &mut Ui, simulation: &mut Simulation) {
             ui.label(RichText::new("Tendon-driven leg").size(18.0).strong());
             ui.add_space(8.0);
         }
-        chip(ui, simulation.state(), &palette);
+        origin(ui, leg, roomy, &palette);
+        chip(ui, leg.state(), &palette);
         if roomy {
-            time(ui, simulation);
+            time(ui, leg);
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            stop(ui, simulation, &palette, roomy);
+            stop(ui, leg, &palette, roomy);
             appearance(ui);
-            rate(ui, simulation);
-            if wide {
-                let what = "firmware and simulated leg run in this window";
-                ui.label(RichText::new(what).small().color(palette.faint));
+            if let Some(simulated) = leg.simulated_mut() {
+                rate(ui, &mut simulated.pace);
+                if wide {
+                    let what = "firmware and simulated leg run in this window";
+                    ui.label(RichText::new(what).small().color(palette.faint));
+                }
             }
         });
     });
 }
 
 /// The time of the leg, and what was left out of it.
-pub fn time(ui: &mut Ui, simulation: &Simulation) {
-    let words = format!("{:8.2} s", simulation.leg().time_s());
+pub fn time(ui: &mut Ui, leg: &ShownLeg) {
+    let words = format!("{:8.2} s", leg.time_s());
     let shown = ui.label(RichText::new(words).monospace());
     place(&shown, "time");
-    let left_out_s = simulation.pace.left_out_s();
+    let left_out_s = leg
+        .simulated()
+        .map_or(0.0, |simulation| simulation.pace.left_out_s());
     if left_out_s < LEFT_OUT_MIN_S {
         return;
     }
@@ -71,6 +80,27 @@ pub fn time(ui: &mut Ui, simulation: &Simulation) {
     shown.on_hover_text(
         "Time that the leg is behind the clock: the window was hidden, or this machine is too slow.",
     );
+}
+
+/// Whether the leg is a machine, and which.
+fn origin(ui: &mut Ui, leg: &ShownLeg, roomy: bool, palette: &Palette) {
+    let (word, name, colour) = match leg.live() {
+        Some(live) => ("LIVE", live.name(), palette.danger),
+        None => ("SIMULATED", "", palette.faint),
+    };
+    let label = Frame::NONE
+        .fill(colour.gamma_multiply(0.3))
+        .stroke(Stroke::new(1.0, colour))
+        .corner_radius(3.0)
+        .inner_margin(Margin::symmetric(5, 1));
+    let shown = label.show(ui, |ui| {
+        ui.label(RichText::new(word).small().strong());
+    });
+    place(&shown.response, "origin");
+    if roomy && !name.is_empty() {
+        let name = Label::new(RichText::new(name).monospace()).truncate();
+        place(&ui.add(name), "name");
+    }
 }
 
 fn chip(ui: &mut Ui, state: State, palette: &Palette) {
@@ -88,7 +118,7 @@ fn chip(ui: &mut Ui, state: State, palette: &Palette) {
     ui.add_sized(vec2(118.0, 30.0), chip.sense(eframe::egui::Sense::hover()));
 }
 
-fn stop(ui: &mut Ui, simulation: &mut Simulation, palette: &Palette, roomy: bool) {
+fn stop(ui: &mut Ui, leg: &mut ShownLeg, palette: &Palette, roomy: bool) {
     let text = if roomy { "STOP (space)" } else { "STOP" };
     let text = RichText::new(text)
         .color(Color32::WHITE)
@@ -103,7 +133,7 @@ fn stop(ui: &mut Ui, simulation: &mut Simulation, palette: &Palette, roomy: bool
     place(&button, "stop");
     let hint = "Holds the leg where it is until Clear. The space bar and Esc do the same.";
     if button.on_hover_text(hint).clicked() {
-        simulation.command(Command::Stop, "stop");
+        leg.command(Command::Stop, "stop");
     }
 }
 
@@ -119,8 +149,8 @@ fn appearance(ui: &mut Ui) {
     }
 }
 
-fn rate(ui: &mut Ui, simulation: &mut Simulation) {
-    let rate = &mut simulation.pace.rate;
+fn rate(ui: &mut Ui, pace: &mut Pace) {
+    let rate = &mut pace.rate;
     let shown = RATES.iter().find(|(value, ..)| value == rate);
     let text = shown.map_or("", |(_, text, _)| text);
     let choice = ComboBox::from_id_salt("rate")

@@ -2,6 +2,11 @@
 
 use crate::app::App;
 use crate::bits;
+use crate::live_leg::PageIdentity;
+use crate::live_leg::browser_line::BrowserLine;
+use crate::live_leg::messages;
+use crate::live_leg::opening::Opening;
+use eframe::egui::Context;
 use eframe::{WebOptions, WebRunner};
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -31,7 +36,7 @@ impl LegWindow {
     pub async fn start(&self, canvas: HtmlCanvasElement) -> Result<(), JsValue> {
         let options = WebOptions::default();
         let app = Box::new(|creation: &eframe::CreationContext<'_>| {
-            let app: Box<dyn eframe::App> = Box::new(App::new(&creation.egui_ctx));
+            let app: Box<dyn eframe::App> = Box::new(app(&creation.egui_ctx));
             Ok(app)
         });
         self.runner.start(canvas, options, app).await
@@ -47,6 +52,14 @@ impl LegWindow {
             .unwrap_or_else(|| "null".into())
     }
 
+    /// Tells a live leg that the page is there; at a time since the page was opened, s. The page's timer calls it, which a browser
+    /// slows down as soon as the page is hidden.
+    pub fn show_life(&self, now_s: f64) {
+        if let Some(mut app) = self.runner.app_mut::<App>() {
+            app.show_life(now_s);
+        }
+    }
+
     /// What the firmware decides in a ready scenario, as one number.
     ///
     /// # Errors
@@ -60,4 +73,31 @@ impl LegWindow {
     pub fn failure(&self) -> Option<String> {
         self.runner.panic_summary().map(|summary| summary.message())
     }
+}
+
+/// The window of the leg that the page's address names; that of a simulated one if it names none.
+fn app(ctx: &Context) -> App {
+    let location = web_sys::window().map(|window| window.location());
+    let fragment = location.and_then(|location| location.hash().ok());
+    match fragment.as_deref().and_then(messages::address) {
+        None => App::new(ctx),
+        Some(address) => App::live(ctx, opening(address)),
+    }
+}
+
+fn opening(address: &str) -> Result<Opening, String> {
+    let line = BrowserLine::open(address)?;
+    let page = identity().ok_or("The browser has no random numbers.")?;
+    Ok(Opening::new(Box::new(line), page, address))
+}
+
+fn identity() -> Option<PageIdentity> {
+    let mut bytes = [0; 6];
+    let crypto = web_sys::window()?.crypto().ok()?;
+    crypto.get_random_values_with_u8_array(&mut bytes).ok()?;
+    let [a, b, c, d, e, f] = bytes;
+    Some(PageIdentity {
+        host: u32::from_le_bytes([a, b, c, d]),
+        first_number: u16::from_le_bytes([e, f]),
+    })
 }

@@ -2,7 +2,7 @@
 
 use crate::map::{Map, Quantity, RINGS, SPOKES, azimuth_deg};
 use crate::places::place;
-use crate::simulation::Simulation;
+use crate::shown_leg::ShownLeg;
 use crate::theme::{Palette, mixed, palette};
 use eframe::egui::{
     Align, Align2, ComboBox, FontId, Key, Mesh, Painter, Pos2, Response, RichText, Sense, Shape,
@@ -60,28 +60,23 @@ pub struct Workspace {
 
 impl Workspace {
     /// Draws the workspace, and moves the leg to where the target is dragged.
-    pub fn show(&mut self, ui: &mut Ui, simulation: &mut Simulation, side: f32) {
-        self.refresh(simulation);
-        disc(ui, simulation, side, self.map.as_ref());
+    pub fn show(&mut self, ui: &mut Ui, leg: &mut ShownLeg, side: f32) {
+        self.refresh(leg);
+        disc(ui, leg, side, self.map.as_ref());
         self.choice(ui);
     }
 
     /// Makes the map that is wanted, unless it is there.
-    fn refresh(&mut self, simulation: &Simulation) {
-        let (Some(quantity), Some(telemetry)) = (self.quantity, simulation.telemetry()) else {
+    fn refresh(&mut self, leg: &ShownLeg) {
+        let (Some(quantity), Some(telemetry)) = (self.quantity, leg.telemetry()) else {
             self.map = None;
             return;
         };
-        let payload_kg = simulation.leg().truth().payload_kg;
+        let payload_kg = leg.payload_kg();
         let pretension_n = f64::from(telemetry.pretension_n);
         let holds = |map: &Map| map.holds(quantity, payload_kg, pretension_n);
         if !self.map.as_ref().is_some_and(holds) {
-            self.map = Some(Map::new(
-                quantity,
-                simulation.rig(),
-                payload_kg,
-                pretension_n,
-            ));
+            self.map = Some(Map::new(quantity, leg.rig(), payload_kg, pretension_n));
         }
     }
 
@@ -109,29 +104,31 @@ impl Workspace {
     }
 }
 
-fn disc(ui: &mut Ui, simulation: &mut Simulation, side: f32, map: Option<&Map>) {
+fn disc(ui: &mut Ui, leg: &mut ShownLeg, side: f32, map: Option<&Map>) {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::click_and_drag());
     let disc = Disc {
         centre: rect.center(),
         radius: 0.5 * side - MARGIN,
-        sine_max: simulation.rig().tilt_deg.to_radians().sin(),
+        sine_max: leg.rig().tilt_deg.to_radians().sin(),
     };
     place(&response, "workspace");
-    drag(ui, &response, &disc, simulation);
+    drag(ui, &response, &disc, leg);
     paint(
         &ui.painter_at(rect),
         &disc,
-        simulation,
+        leg,
         &palette(ui.ctx()),
         map,
         response.has_focus(),
     );
     response.on_hover_text(
-        "Drag to move the leg. With the disc in focus, the arrow keys move it by 1°.",
+        leg.locked().unwrap_or(
+            "Drag to move the leg. With the disc in focus, the arrow keys move it by 1°.",
+        ),
     );
 }
 
-fn drag(ui: &Ui, response: &Response, disc: &Disc, simulation: &mut Simulation) {
+fn drag(ui: &Ui, response: &Response, disc: &Disc, leg: &mut ShownLeg) {
     if response.clicked() || response.drag_started() {
         response.request_focus();
     }
@@ -139,16 +136,16 @@ fn drag(ui: &Ui, response: &Response, disc: &Disc, simulation: &mut Simulation) 
     let pointed = response.interact_pointer_pos().filter(|_| pressed);
     let wanted = pointed
         .map(|at| disc.direction(at))
-        .or_else(|| stepped(ui, response, disc, simulation));
+        .or_else(|| stepped(ui, response, disc, leg));
     let Some(wanted) = wanted else { return };
     let [x, y] = wanted.map(|part| part as f32);
-    if simulation.target().map(|part| part as f32) != [x, y] {
-        simulation.command(Command::Move { x, y }, "move");
+    if leg.locked().is_none() && leg.target().map(|part| part as f32) != [x, y] {
+        leg.command(Command::Move { x, y }, "move");
     }
 }
 
 /// Where the arrow keys lead from where the leg was sent.
-fn stepped(ui: &Ui, response: &Response, disc: &Disc, simulation: &Simulation) -> Option<[f64; 2]> {
+fn stepped(ui: &Ui, response: &Response, disc: &Disc, leg: &ShownLeg) -> Option<[f64; 2]> {
     if !response.has_focus() {
         return None;
     }
@@ -162,14 +159,14 @@ fn stepped(ui: &Ui, response: &Response, disc: &Disc, simulation: &Simulation) -
     let right = pressed(Key::ArrowRight) - pressed(Key::ArrowLeft);
     let up = pressed(Key::ArrowUp) - pressed(Key::ArrowDown);
     let step = KEY_DEG.to_radians();
-    let [x, y] = simulation.target();
+    let [x, y] = leg.target();
     (right != 0.0 || up != 0.0).then(|| disc.inside([x + step * right, y + step * up]))
 }
 
 fn paint(
     painter: &Painter,
     disc: &Disc,
-    simulation: &Simulation,
+    leg: &ShownLeg,
     palette: &Palette,
     map: Option<&Map>,
     focus: bool,
@@ -185,7 +182,7 @@ fn paint(
         painter.add(Shape::mesh(mesh(disc, map, palette)));
     }
     painter.circle_stroke(disc.centre, disc.radius, Stroke::new(1.5, rim));
-    let tilt_deg = simulation.rig().tilt_deg;
+    let tilt_deg = leg.rig().tilt_deg;
     let rings = (tilt_deg / RING_DEG).ceil() as u32;
     for ring in 1..rings {
         let tilt = f64::from(ring) * RING_DEG;
@@ -208,7 +205,7 @@ fn paint(
             palette.faint,
         );
     }
-    marks(painter, disc, simulation, palette);
+    marks(painter, disc, leg, palette);
 }
 
 /// Text that is aligned so is on that side of its place.
@@ -273,11 +270,11 @@ fn tilt_label(painter: &Painter, disc: &Disc, tilt_deg: f64, radius: f32, palett
 }
 
 /// Where the tip is, and where it was sent.
-fn marks(painter: &Painter, disc: &Disc, simulation: &Simulation, palette: &Palette) {
-    let along = simulation.leg().truth().direction.vector();
+fn marks(painter: &Painter, disc: &Disc, leg: &ShownLeg, palette: &Palette) {
+    let along = leg.along();
     let [x, y] = disc.inside([along.x, along.y]);
     let is = disc.at([x, y]);
-    let target = disc.at(simulation.target());
+    let target = disc.at(leg.target());
     painter.line_segment([target, is], Stroke::new(2.0, palette.error));
     painter.circle_filled(is, 5.0, palette.error);
     painter.circle_stroke(target, 9.0, Stroke::new(2.5, palette.target));

@@ -38,7 +38,7 @@ BLOCK = 8
 TOLERANCE = 12
 
 # What shows another number, or another stretch of time, in another moment: it is not compared.
-CHANGING = ("readout", "tensions", "numbers", "charts", "stiffness", "pretension")
+CHANGING = ("readout", "tensions", "numbers", "charts", "stiffness", "pretension", "name")
 
 # What is left out of the time may be shown above it or to its right, pixels.
 LEFT_OUT = (-30, -20, 130, 0)

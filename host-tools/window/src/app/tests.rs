@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::App;
+use crate::simulation::Simulation;
 use eframe::egui::{Context, Event, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, pos2};
 use leg_firmware::supervisor::State;
 
@@ -80,8 +81,13 @@ impl Window {
         panic!("{name} has not got the focus");
     }
 
+    fn leg(&self) -> &Simulation {
+        let leg = self.app.stage.leg().unwrap();
+        leg.simulated().unwrap()
+    }
+
     fn state(&self) -> State {
-        self.app.simulation.as_ref().unwrap().state()
+        self.leg().state()
     }
 
     fn shows(&self, name: &str) -> bool {
@@ -104,7 +110,7 @@ fn a_key_stops_the_leg_and_does_not_press_the_control_in_focus() {
         window.frames(5);
         assert_eq!(window.state(), State::Held, "{control}");
         assert_eq!(window.app.places.focused, focused);
-        assert_eq!(window.app.simulation.as_ref().unwrap().payload_kg(), 0.0);
+        assert_eq!(window.leg().payload_kg(), 0.0);
         assert_eq!(window.ctx.theme(), theme);
     }
 }
@@ -138,7 +144,7 @@ fn a_new_leg_ends_the_pause_of_the_charts() {
     let mut window = Window::new();
     window.press("pause");
     window.frames(50);
-    let time_s = |window: &Window| window.app.simulation.as_ref().unwrap().leg().time_s();
+    let time_s = |window: &Window| window.leg().leg().time_s();
     let before_s = time_s(&window);
     window.press("start_again");
     assert!(time_s(&window) < before_s);

@@ -91,7 +91,7 @@ fn every_number_of_every_signal_is_kept() {
         signal.numbers(&snapshot.report, &mut expected);
     }
     for signal in SIMULATED_SIGNALS {
-        signal.numbers(&snapshot.simulated, &mut expected);
+        signal.numbers(snapshot.simulated.as_ref().unwrap(), &mut expected);
     }
     let history = &simulation.history;
     let mut expected = expected.into_iter();

@@ -1,7 +1,9 @@
 //! Commands on their way to the leg. One is unanswered at a time; a newer one replaces one of its kind that waits. So the
 //! board's queue never fills, however slowly the simulated time runs.
 
+use leg_base::refusal;
 use leg_firmware::command::Command;
+use leg_firmware::host_link::HostRefusal;
 use std::collections::VecDeque;
 use std::mem::discriminant;
 
@@ -47,8 +49,8 @@ impl Orders {
         self.waiting.push_back(order);
     }
 
-    /// The command to be sent now. A stop does not wait for an answer.
-    pub fn next(&mut self) -> Option<Order> {
+    /// The command to be sent now; none while another one is unanswered. A stop does not wait for an answer.
+    pub fn next_to_send(&mut self) -> Option<Order> {
         let stop = self.waiting.front().is_some_and(Order::stops);
         if stop || self.sent.is_empty() {
             self.waiting.pop_front()
@@ -81,8 +83,29 @@ impl Orders {
         self.waiting.iter()
     }
 
+    /// Whether one was sent that is not answered.
+    #[must_use]
+    pub fn unanswered(&self) -> bool {
+        !self.sent.is_empty()
+    }
+
     fn stopping(&self) -> bool {
         self.sent.iter().any(|(_, order)| order.stops())
+    }
+}
+
+/// The remedies of a command that the leg refuses hold for any host; the others are those of the program `leg`.
+#[must_use]
+pub fn refused(name: &str, refusal: &HostRefusal) -> String {
+    match refusal {
+        HostRefusal::Command(refusal) => {
+            let [wrong, remedy] = refusal.description();
+            format!("{name} refused: {wrong}; {remedy}")
+        }
+        other => {
+            let [wrong, _] = refusal::description(other);
+            format!("{name} refused: {wrong}")
+        }
     }
 }
 
@@ -103,7 +126,7 @@ mod tests {
     }
 
     fn send(orders: &mut Orders, number: u16) -> Option<Order> {
-        let next = orders.next()?;
+        let next = orders.next_to_send()?;
         orders.note_sent(number, next);
         Some(next)
     }
@@ -151,18 +174,18 @@ mod tests {
         let (hold, stop) = (order(Command::Hold), order(Command::Stop));
         orders.take(hold);
         orders.repeat(to(0.1));
-        assert_eq!(orders.next(), Some(to(0.1)));
+        assert_eq!(orders.next_to_send(), Some(to(0.1)));
         orders.take(to(0.2));
         orders.repeat(to(0.1));
-        assert_eq!(orders.next(), Some(hold));
-        assert_eq!(orders.next(), Some(to(0.2)));
+        assert_eq!(orders.next_to_send(), Some(hold));
+        assert_eq!(orders.next_to_send(), Some(to(0.2)));
         orders.take(stop);
         orders.repeat(to(0.1));
         assert_eq!(send(&mut orders, 1), Some(stop));
         orders.repeat(to(0.1));
-        assert_eq!(orders.next(), None);
+        assert_eq!(orders.next_to_send(), None);
         orders.answered(1);
         orders.repeat(stop);
-        assert_eq!(orders.next(), Some(stop));
+        assert_eq!(orders.next_to_send(), Some(stop));
     }
 }

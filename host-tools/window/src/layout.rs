@@ -1,0 +1,226 @@
+//! What is where in the window, wide or narrow.
+
+use crate::charts::Charts;
+use crate::faults::FaultList;
+use crate::panel_guide::Wish;
+use crate::places::{place, place_rect};
+use crate::scene::{self, Scene};
+use crate::shown_leg::ShownLeg;
+use crate::theme::palette;
+use crate::workspace::Workspace;
+use crate::{numbers, panel_break, panel_drive, panel_guide, top_bar};
+use eframe::egui::{
+    Align, Align2, CentralPanel, FontId, Frame, Layout, Panel, Rect, ScrollArea, Ui, UiBuilder,
+    Vec2, vec2,
+};
+
+/// The room for the time beside the leg, points.
+const TIME: Vec2 = vec2(150.0, 50.0);
+
+/// What a narrow window shows below the leg.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Tab {
+    Try,
+    Drive,
+    Break,
+    Charts,
+}
+
+impl Tab {
+    /// Whether it is of simulated legs alone.
+    const fn simulated(self) -> bool {
+        matches!(self, Self::Try | Self::Break)
+    }
+}
+
+const TABS: [(Tab, &str, &str); 4] = [
+    (Tab::Try, "Try", "tab_try"),
+    (Tab::Drive, "Drive", "tab_drive"),
+    (Tab::Break, "Break", "tab_break"),
+    (Tab::Charts, "Charts", "tab_charts"),
+];
+
+/// What the user chose to see.
+pub struct Views {
+    scene: Scene,
+    workspace: Workspace,
+    /// The signals over time.
+    pub charts: Charts,
+    faults: FaultList,
+    tab: Tab,
+}
+
+impl Views {
+    /// Those of a simulated leg, or of a live one.
+    #[must_use]
+    pub fn new(live: bool) -> Self {
+        Self {
+            scene: Scene::default(),
+            workspace: Workspace::default(),
+            charts: if live {
+                Charts::of_live_leg()
+            } else {
+                Charts::default()
+            },
+            faults: FaultList::default(),
+            tab: if live { Tab::Drive } else { Tab::Try },
+        }
+    }
+}
+
+/// Everything side by side.
+pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
+    let tall = ui.available_height();
+    let side = Frame::side_top_panel(ui.style()).inner_margin(12.0);
+    let left = Panel::left("left")
+        .frame(side)
+        .resizable(false)
+        .exact_size(282.0);
+    let wish = left.show(ui, |ui| {
+        let scroll = ScrollArea::vertical().id_salt("left");
+        scroll
+            .show(ui, |ui| {
+                let wish = guide(ui, leg);
+                panel_drive::show(ui, leg);
+                wish
+            })
+            .inner
+    });
+    let right = Panel::right("right")
+        .frame(side)
+        .resizable(false)
+        .exact_size(300.0);
+    right.show(ui, |ui| {
+        ScrollArea::vertical().id_salt("right").show(ui, |ui| {
+            ui.heading("Drag the target");
+            views.workspace.show(ui, leg, 200.0);
+            numbers::show(ui, leg);
+            if let Some(simulation) = leg.simulated_mut() {
+                ui.separator();
+                panel_break::show(ui, simulation);
+            }
+        });
+    });
+    let height = (0.32 * tall).clamp(200.0, 440.0);
+    let bottom = Panel::bottom("charts")
+        .frame(side)
+        .resizable(false)
+        .exact_size(height);
+    bottom.show(ui, |ui| {
+        let now_s = leg.time_s();
+        views.charts.show(ui, leg.history(), now_s, height - 62.0);
+    });
+    CentralPanel::no_frame().show(ui, |ui| {
+        let rect = stage(ui, leg, &mut views.scene);
+        let over = UiBuilder::new().max_rect(scene::room(rect));
+        ui.scope_builder(over, |ui| {
+            let scroll = ScrollArea::vertical().id_salt("faults");
+            scroll.show(ui, |ui| views.faults.show(ui, leg.faults()));
+        });
+    });
+    wish.inner
+}
+
+/// The leg above, and the rest behind tabs.
+pub fn narrow(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
+    let height = (0.44 * ui.available_height()).max(220.0);
+    let above = Panel::top("leg")
+        .frame(Frame::NONE)
+        .resizable(false)
+        .exact_size(height);
+    above.show(ui, |ui| {
+        let rect = stage(ui, leg, &mut views.scene);
+        let corner = Rect::from_min_max(rect.max - TIME, rect.max - vec2(14.0, 6.0));
+        let over = UiBuilder::new()
+            .max_rect(corner)
+            .layout(Layout::bottom_up(Align::Max));
+        ui.scope_builder(over, |ui| top_bar::time(ui, leg));
+    });
+    CentralPanel::default()
+        .show(ui, |ui| {
+            ui.horizontal(|ui| {
+                let shown = |(tab, ..): &&(Tab, _, _)| leg.live().is_none() || !tab.simulated();
+                let count = TABS.iter().filter(shown).count();
+                let width = (ui.available_width() - 24.0) / count as f32;
+                for &(this, text, name) in TABS.iter().filter(shown) {
+                    let button = eframe::egui::Button::selectable(views.tab == this, text);
+                    let response = ui.add(button.min_size(vec2(width, 36.0)));
+                    place(&response, name);
+                    if response.clicked() {
+                        views.tab = this;
+                    }
+                }
+            });
+            ui.separator();
+            let scroll = ScrollArea::vertical().id_salt("tabs");
+            scroll.show(ui, |ui| page(ui, leg, views)).inner
+        })
+        .inner
+}
+
+fn page(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
+    views.faults.show_any(ui, leg.faults());
+    match views.tab {
+        Tab::Try => {
+            let wish = guide(ui, leg);
+            numbers::show(ui, leg);
+            return wish;
+        }
+        Tab::Drive => {
+            let side = ui.available_width().min(300.0);
+            ui.vertical_centered(|ui| views.workspace.show(ui, leg, side));
+            if leg.live().is_some() {
+                numbers::show(ui, leg);
+                ui.separator();
+            }
+            panel_drive::show(ui, leg);
+        }
+        Tab::Break => {
+            if let Some(simulation) = leg.simulated_mut() {
+                panel_break::show(ui, simulation);
+            }
+        }
+        Tab::Charts => {
+            let now_s = leg.time_s();
+            views.charts.show(ui, leg.history(), now_s, 180.0);
+        }
+    }
+    Wish::None
+}
+
+/// The leg, how much its sag is enlarged, and why it cannot go on. Gives where it is.
+fn stage(ui: &mut Ui, leg: &ShownLeg, scene: &mut Scene) -> Rect {
+    let rect = ui.available_rect_before_wrap();
+    let response = scene.show(ui, leg, rect.size());
+    place(&response, "leg");
+    let corner = rect.left_top() + vec2(14.0, scene::CHOICE_TOP);
+    let over = UiBuilder::new().max_rect(Rect::from_min_size(corner, vec2(96.0, 28.0)));
+    ui.scope_builder(over, |ui| scene.choice(ui));
+    if let Some(words) = leg.failure() {
+        failure(ui, rect, words);
+    }
+    rect
+}
+
+/// Why the leg cannot go on, across what was seen of it last.
+fn failure(ui: &Ui, rect: Rect, words: String) {
+    let palette = palette(ui.ctx());
+    let font = FontId::proportional(15.0);
+    let width = 0.8 * rect.width();
+    let text = ui.painter().layout(words, font, palette.error, width);
+    let shown = Align2::CENTER_CENTER.anchor_size(rect.center(), text.size());
+    ui.painter()
+        .rect_filled(shown.expand(10.0), 6.0, palette.card);
+    ui.painter().galley(shown.min, text, palette.error);
+    place_rect(ui.ctx(), shown, "failure");
+}
+
+/// What to try first, with a line below; nothing for a live leg.
+fn guide(ui: &mut Ui, leg: &mut ShownLeg) -> Wish {
+    let Some(simulation) = leg.simulated_mut() else {
+        return Wish::None;
+    };
+    let wish = panel_guide::show(ui, simulation);
+    ui.separator();
+    wish
+}

@@ -1,0 +1,265 @@
+//! The leg that the window shows: one simulated in the page, or a live one. Panels that are for both know this alone.
+
+use crate::history::History;
+use crate::live_leg::LiveLeg;
+use crate::simulation::{Push, Simulation};
+use leg_firmware::command::Command;
+use leg_firmware::supervisor::{FaultSet, State};
+use leg_firmware::telemetry::Telemetry;
+use leg_rig::rig_file::RigFile;
+use leg_sim::plant::Defect;
+use nalgebra::Vector3;
+
+/// Either.
+pub enum ShownLeg {
+    /// Firmware and mechanism run in the page.
+    Simulated(Box<Simulation>),
+    /// The page hears what it reports.
+    Live(Box<LiveLeg>),
+}
+
+impl ShownLeg {
+    /// Lets time pass: so much since the last frame, until a time of the window, s.
+    pub fn advance(&mut self, elapsed_s: f64, now_s: f64) {
+        match self {
+            Self::Simulated(leg) => leg.advance(elapsed_s),
+            Self::Live(leg) => leg.advance(now_s),
+        }
+    }
+
+    /// Commands it; `name` is what the window calls that. A locked leg is only stopped.
+    pub fn command(&mut self, command: Command, name: &'static str) {
+        match self {
+            Self::Simulated(leg) => leg.command(command, name),
+            Self::Live(leg) => leg.command(command, name),
+        }
+    }
+
+    /// Why it takes no command but a stop; none if it takes them.
+    #[must_use]
+    pub fn locked(&self) -> Option<&'static str> {
+        match self {
+            Self::Simulated(_) => None,
+            Self::Live(leg) => leg.locked(),
+        }
+    }
+
+    /// The simulated one.
+    #[must_use]
+    pub fn simulated(&self) -> Option<&Simulation> {
+        match self {
+            Self::Simulated(leg) => Some(leg),
+            Self::Live(_) => None,
+        }
+    }
+
+    /// The simulated one, to be loaded and broken.
+    pub fn simulated_mut(&mut self) -> Option<&mut Simulation> {
+        match self {
+            Self::Simulated(leg) => Some(leg),
+            Self::Live(_) => None,
+        }
+    }
+
+    /// The live one.
+    #[must_use]
+    pub fn live(&self) -> Option<&LiveLeg> {
+        match self {
+            Self::Simulated(_) => None,
+            Self::Live(leg) => Some(leg),
+        }
+    }
+
+    /// The live one, to be unlocked.
+    pub fn live_mut(&mut self) -> Option<&mut LiveLeg> {
+        match self {
+            Self::Simulated(_) => None,
+            Self::Live(leg) => Some(leg),
+        }
+    }
+
+    /// Its settings.
+    #[must_use]
+    pub fn rig(&self) -> &RigFile {
+        match self {
+            Self::Simulated(leg) => leg.rig(),
+            Self::Live(leg) => leg.rig(),
+        }
+    }
+
+    /// What its signals were.
+    #[must_use]
+    pub fn history(&self) -> &History {
+        match self {
+            Self::Simulated(leg) => &leg.history,
+            Self::Live(leg) => leg.history(),
+        }
+    }
+
+    /// Time since its board started, s.
+    #[must_use]
+    pub fn time_s(&self) -> f64 {
+        match self {
+            Self::Simulated(leg) => leg.leg().time_s(),
+            Self::Live(leg) => leg.time_s(),
+        }
+    }
+
+    /// What it reported last.
+    #[must_use]
+    pub fn telemetry(&self) -> Option<&Telemetry<f32>> {
+        match self {
+            Self::Simulated(leg) => leg.telemetry(),
+            Self::Live(leg) => leg.telemetry(),
+        }
+    }
+
+    /// What it may do.
+    #[must_use]
+    pub fn state(&self) -> State {
+        self.telemetry()
+            .map_or(State::Boot, |telemetry| telemetry.state)
+    }
+
+    /// What is wrong with it.
+    #[must_use]
+    pub fn faults(&self) -> FaultSet {
+        self.telemetry()
+            .map_or(FaultSet::NONE, |telemetry| telemetry.faults)
+    }
+
+    /// Whether it holds its load; none if nobody has said so: a live leg does not report it.
+    #[must_use]
+    pub fn compensated(&self) -> Option<bool> {
+        match self {
+            Self::Simulated(leg) => Some(leg.compensated()),
+            Self::Live(leg) => leg.compensated(),
+        }
+    }
+
+    /// What was refused last, and what to do about it.
+    #[must_use]
+    pub fn refusal(&self) -> Option<&str> {
+        match self {
+            Self::Simulated(leg) => leg.refusal(),
+            Self::Live(leg) => leg.refusal(),
+        }
+    }
+
+    /// Why what is shown does not go on.
+    #[must_use]
+    pub fn failure(&self) -> Option<String> {
+        match self {
+            Self::Simulated(leg) => leg.failure().map(ToString::to_string),
+            Self::Live(leg) => leg.failure(),
+        }
+    }
+
+    /// From the joint's centre to the tip, m.
+    #[must_use]
+    pub fn tip_length_m(&self) -> f64 {
+        let rig = &self.rig().parameters;
+        rig.joint_length_m + rig.leg_length_m
+    }
+
+    /// Along it, as it is drawn: the true direction of a simulated leg, the estimated one of a live leg.
+    #[must_use]
+    pub fn along(&self) -> Vector3<f64> {
+        match self {
+            Self::Simulated(leg) => {
+                let along = leg.leg().truth().direction.vector();
+                Vector3::new(along.x, along.y, along.z)
+            }
+            Self::Live(_) => self.reported(|telemetry| telemetry.pose),
+        }
+    }
+
+    /// Where its trajectory has it.
+    #[must_use]
+    pub fn reference(&self) -> Vector3<f64> {
+        self.reported(|telemetry| telemetry.target)
+    }
+
+    fn reported(&self, direction: fn(&Telemetry<f32>) -> [f32; 2]) -> Vector3<f64> {
+        let [x, y] = self.telemetry().map_or([0.0; 2], direction).map(f64::from);
+        Vector3::new(x, y, -(1.0 - x * x - y * y).max(0.0).sqrt())
+    }
+
+    /// Where it was sent, as horizontal components; where it takes its target to be, if it was not.
+    #[must_use]
+    pub fn target(&self) -> [f64; 2] {
+        match self {
+            Self::Simulated(leg) => leg.target(),
+            Self::Live(leg) => leg.target(),
+        }
+    }
+
+    /// Where its tip was sent, m.
+    #[must_use]
+    pub fn commanded_m(&self) -> Vector3<f64> {
+        let [x, y] = self.target();
+        Vector3::new(x, y, -(1.0 - x * x - y * y).max(0.0).sqrt()) * self.tip_length_m()
+    }
+
+    /// Distance of the tip, as it is drawn, from where it was sent, mm.
+    #[must_use]
+    pub fn error_mm(&self) -> f64 {
+        match self {
+            Self::Simulated(leg) => leg.leg().comparison().commanded_error_mm(),
+            Self::Live(_) => {
+                let tip_m = self.along() * self.tip_length_m();
+                1000.0 * (tip_m - self.commanded_m()).norm()
+            }
+        }
+    }
+
+    /// How far it is twisted about itself, rad: no sensor of a live leg says it.
+    #[must_use]
+    pub fn torsion_rad(&self) -> f64 {
+        self.simulated()
+            .map_or(0.0, |leg| leg.leg().truth().torsion_rad)
+    }
+
+    /// The tensions as they are drawn, N: the true ones of a simulated leg, the measured ones of a live leg.
+    #[must_use]
+    pub fn tensions_n(&self) -> [f64; 3] {
+        match self {
+            Self::Simulated(leg) => leg.leg().truth().tensions_n,
+            Self::Live(leg) => leg
+                .telemetry()
+                .map_or([0.0; 3], |telemetry| telemetry.tensions_n.map(f64::from)),
+        }
+    }
+
+    /// Where the tensions are from, in a word.
+    #[must_use]
+    pub const fn tensions_source(&self) -> &'static str {
+        match self {
+            Self::Simulated(_) => "true",
+            Self::Live(_) => "measured",
+        }
+    }
+
+    /// The payload for which the model is asked, kg: the true one, or the estimated one.
+    #[must_use]
+    pub fn payload_kg(&self) -> f64 {
+        match self {
+            Self::Simulated(leg) => leg.leg().truth().payload_kg,
+            Self::Live(leg) => leg
+                .telemetry()
+                .map_or(0.0, |telemetry| f64::from(telemetry.payload_kg).max(0.0)),
+        }
+    }
+
+    /// Whether a simulated leg has a defect.
+    #[must_use]
+    pub fn has(&self, defect: Defect) -> bool {
+        self.simulated().is_some_and(|leg| leg.has(defect))
+    }
+
+    /// The push on a simulated leg that is going on.
+    #[must_use]
+    pub fn pushed(&self) -> Option<Push> {
+        self.simulated().and_then(Simulation::pushed)
+    }
+}
