@@ -17,3 +17,7 @@ rustup target list --installed | grep -q '^wasm32-unknown-unknown$' || rustup ta
 cargo test --locked
 cargo run --release --locked --package leg-window-export -- target/site
 python3 tests/browser.py target/site
+if [ -z "${LEG:-}" ]; then
+    (cd ../.. && cargo build --locked --bin leg)
+fi
+python3 tests/live.py target/site

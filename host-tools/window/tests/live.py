@@ -24,6 +24,9 @@ LEG = HERE.parents[2] / "target" / "debug" / "leg"
 # Time in which a leg whose page has gone is held, s.
 HELD_S = 5.0
 
+# So often something is tried that a busy machine may spoil.
+TRIES = 8
+
 
 class Served:
     """`leg ui` with a simulated leg."""
@@ -108,45 +111,60 @@ def drag(page):
     print(f"dragged to azimuth {leg['azimuth_deg']:.1f}°, tilt {leg['tilt_deg']:.1f}°")
 
 
-def stop(page, key):
-    page.browser.key(key)
-    page.wait_leg("is stopped by a key", lambda leg: leg["state"] == "held")
-    page.press("clear")
-    page.wait_leg("goes on", lambda leg: leg["state"] == "active")
+def go_on(page):
+    """Goes on after a stop. A busy machine may keep a page from drawing for so long that its leg is held once more."""
+    for _ in range(TRIES):
+        page.press("clear")
+        time.sleep(0.4)
+        if page.state()["leg"]["state"] == "active":
+            return
+    raise AssertionError(f"does not go on: {page.state()['leg']}")
+
+
+def is_stopped(driver, stop, what):
+    """Whether it is the stop that holds the leg, and not a fault."""
+    for _ in range(TRIES):
+        go_on(driver)
+        stop()
+        leg = driver.wait_leg(what, lambda leg: leg["state"] == "held")
+        if not leg["faults"]:
+            print(what)
+            return
+    raise AssertionError(f"not seen: {what}; {leg}")
+
+
+def stops(page):
+    for key, name in ((" ", "space"), (ESCAPE, "Escape")):
+        is_stopped(page, lambda: page.browser.key(key), f"is stopped by {name}")
 
 
 def second_page(served, page):
     """Another page sees who drives, commands nothing, and stops the leg all the same."""
-    with Browser(1280, 720) as browser:
+    # Two browsers that draw by the processor alone: small ones keep each other from drawing less.
+    page.browser.resize(1000, 560)
+    with Browser(1000, 560) as browser:
         other = Page(browser, False)
         other.open(served.url)
         leg = other.wait_leg("sees the driver", lambda leg: leg["drives"] == [False, True])
         assert "Another page" in leg["locked"], leg
-        if page.state()["leg"]["state"] == "held":
-            # A machine that starts a browser may keep a page from drawing, whose leg is then held.
-            page.press("clear")
-            other.wait_leg("goes on", lambda leg: leg["state"] == "active")
+        go_on(page)
         other.press("disarm")
         other.press("unlock")
         time.sleep(0.5)
         leg = other.state()["leg"]
-        assert leg["state"] == "active" and leg["drives"] == [False, True], leg
-        other.press("stop")
-        page.wait_leg("is stopped by the other page", lambda leg: leg["state"] == "held")
-        page.press("clear")
-        page.wait_leg("goes on", lambda leg: leg["state"] == "active")
-        print("a second page watches, and stops")
+        assert leg["state"] in ("active", "held") and leg["drives"] == [False, True], leg
+        is_stopped(page, lambda: other.press("stop"), "is stopped by a page that does not drive")
         # The first page goes while the leg follows it.
+        go_on(page)
         page.browser.open("about:blank")
         began = time.monotonic()
         leg = other.wait_leg("is held by itself", lambda leg: leg["state"] != "active")
         took_s = time.monotonic() - began
-        print(f"the page that drove is closed: the leg is {leg['state']} after {took_s:.1f} s; {leg['faults']}")
-        assert leg["state"] == "held" and took_s < HELD_S, (leg, took_s)
+        print(f"the page that drove is gone: the leg is {leg['state']}, {', '.join(leg['faults'])}")
+        assert leg["state"] == "held" and leg["faults"] == ["no command"] and took_s < HELD_S, (leg, took_s)
         other.wait_leg("is free", lambda leg: leg["drives"] == [False, False])
         unlock(other)
-        other.press("clear")
-        other.wait_leg("is driven by the other page", lambda leg: leg["state"] == "active")
+        go_on(other)
         lost(served, other)
 
 
@@ -187,8 +205,7 @@ def main():
         drag(page)
         time.sleep(1.0)
         page.picture("live")
-        for key in (" ", ESCAPE):
-            stop(page, key)
+        stops(page)
         second_page(served, page)
         errors = [entry for entry in browser.log() if entry["level"] == "SEVERE"]
         assert not errors, errors
