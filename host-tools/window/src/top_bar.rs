@@ -44,7 +44,10 @@ pub fn show(ui: &mut Ui, leg: &mut ShownLeg) {
             ui.label(RichText::new("Tendon-driven leg").size(18.0).strong());
             ui.add_space(8.0);
         }
-        origin(ui, leg, roomy, &palette);
+        // Where there is little room, the time's rate shows that a leg is simulated.
+        if roomy || leg.live().is_some() {
+            origin(ui, leg, roomy, &palette);
+        }
         chip(ui, leg.state(), &palette);
         if roomy {
             time(ui, leg);
