@@ -1,11 +1,12 @@
 //! The window: a leg in 3D that is driven, broken and charted, natively and in a browser.
 //!
-//! Where to begin: [`simulation`] steps firmware and simulated leg in real time; [`app`] lays the window out.
+//! Where to begin: [`simulation`] steps firmware and simulated leg in real time, [`live_leg`] hears one elsewhere; [`app`] shows either.
 //!
 //! | module | what is in it |
 //! |---|---|
 //! | [`simulation`], [`pace`], [`history`] | the leg, how much of it a frame is worth, and what its signals were |
-//! | [`app`], [`top_bar`], `panel_…`, [`numbers`], [`faults`] | what is where |
+//! | [`live_leg`], [`shown_leg`], [`orders`] | a leg behind `leg ui`; what both are for the panels; commands on their way |
+//! | [`app`], [`layout`], [`top_bar`], `panel_…`, [`numbers`], [`faults`] | what is where |
 //! | [`scene`], `drawn_leg`, [`camera`], [`figure`], [`leg_pose`] | the leg in 3D |
 //! | [`workspace`], [`map`] | the disc on which the target is dragged, and what the model says of every pose |
 //! | [`charts`] | signals over time |
