@@ -4,8 +4,9 @@ use crate::frame::{self, MAX_FRAME};
 use crate::host_link::HostReply;
 use heapless::Deque;
 
-/// Room for three of the longest frames.
-const ROOM: usize = 3 * MAX_FRAME;
+/// Room for three of the longest frames, and for a report beside them: while two hosts are sent the settings, room for a reply is kept
+/// free, and the reports to a log go on.
+pub(super) const ROOM: usize = 3 * MAX_FRAME + 256;
 
 /// A queue of whole frames.
 #[derive(Clone, Debug)]

@@ -3,6 +3,7 @@
 use super::{Heard, Line, ONE};
 use crate::command::Command;
 use crate::frame::MAX_FRAME;
+use crate::host_link::outbox::ROOM;
 use crate::host_link::{HostReply, HostRequest};
 use crate::sensors::Sensors;
 
@@ -131,11 +132,32 @@ fn a_gap_in_the_numbers_is_what_found_no_room() {
 fn a_line_that_is_full_of_telemetry_has_room_for_one_reply_alone() {
     let mut line = full();
     let waiting = core::iter::from_fn(|| line.link.transmit()).count();
-    // Of room for three of the longest frames, one is left, and telemetry takes but a quarter of one.
+    // The longest frame is left, and telemetry takes but a quarter of one.
+    let most = ROOM - MAX_FRAME;
     assert!(
-        (2 * MAX_FRAME - MAX_FRAME / 4..=2 * MAX_FRAME).contains(&waiting),
+        (most - MAX_FRAME / 4..=most).contains(&waiting),
         "{waiting} bytes"
     );
+}
+
+/// A log loses nothing when two other hosts ask for the settings at once.
+#[test]
+fn reports_find_room_beside_two_replies_with_settings() {
+    let mut line = streaming(1);
+    for _ in 0..2 {
+        line.send(&HostRequest::GetSettings);
+    }
+    line.tick();
+    let heard = line.heard();
+    let [
+        (_, HostReply::Settings(_)),
+        (_, HostReply::Settings(_)),
+        report,
+    ] = &heard[..]
+    else {
+        panic!("{heard:?}")
+    };
+    assert_eq!(told(&vec![report.clone()]), [(1, 1)]);
 }
 
 #[test]
