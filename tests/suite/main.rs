@@ -58,7 +58,7 @@ mod sim {
     mod fmea_page;
     mod load_left_out;
     mod random_scenarios;
-    mod ready_runs;
+    pub mod ready_runs;
     mod ring_down;
     mod scenario_bits;
     mod scenarios;
@@ -71,6 +71,7 @@ mod sim {
 }
 
 mod board {
+    mod bits_under_qemu;
     mod chip_boot;
     mod chip_bus;
     mod chip_cuts;

@@ -1,4 +1,4 @@
-//! Every ready scenario, in this process and under QEMU.
+//! Every ready scenario, in this process. Under QEMU: `board::bits_under_qemu`.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -52,24 +52,6 @@ fn every_fault_has_a_scenario_that_raises_it() {
     }
     for fault in Fault::ALL {
         assert!(raised.contains(&fault), "no scenario raises {fault:?}");
-    }
-}
-
-#[test]
-fn the_emulated_core_asks_for_the_same_duties_to_the_last_bit() {
-    let mut session = crate::common::qemu().unwrap();
-    let link: &mut dyn Link = &mut session;
-    // But for those that take minutes and do what others do, too.
-    let long = ["workspace", "tour"];
-    let names = READY_SCENARIOS.iter().map(|ready| ready.name);
-    for name in names.filter(|name| !long.contains(name)) {
-        let (here, emulated) = (ready(name), run(&scenario(name), link));
-        let mut pairs = here.bits.iter().zip(&emulated.bits);
-        let first = pairs.position(|(a, b)| a != b);
-        assert_eq!(first, None, "{name}: first tick with other bits");
-        let (here, emulated) = (&here.summary, emulated.summary);
-        assert_eq!(here.ticks, emulated.ticks, "{name}");
-        assert_eq!(here.measurements, emulated.measurements, "{name}");
     }
 }
 
