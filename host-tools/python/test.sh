@@ -15,6 +15,8 @@ blocks() { sed -n "/^\`\`\`$1\$/,/^\`\`\`\$/{/^\`\`\`/d;p}" README.md; }
 
 rm -f circle.png
 from_clone=$(blocks sh)
+# From a clone to the chart of the circle.
+(($(wc -l <<<"$from_clone") <= 10))
 (cd ../.. && bash -euxc "$from_clone")
 test -s circle.png
 blocks python | .venv/bin/python -W error -

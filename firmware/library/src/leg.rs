@@ -336,6 +336,9 @@ impl<T: Scalar> Leg<T> {
         let target = shared
             .target
             .map_or(pose, |target| target.direction.vector());
+        let target = [target.x, target.y];
+        let active = self.mode.active();
+        let [pretension_commanded_n, stiffness_commanded_nm_per_rad] = shared.pretension.demanded();
         let [a, b, c] = &shared.axes;
         Telemetry {
             tick: self.tick,
@@ -344,7 +347,8 @@ impl<T: Scalar> Leg<T> {
             homed: shared.zero_m.is_some(),
             failed_tendon: shared.failed_tendon,
             moving: self.mode.moving(),
-            target: [target.x, target.y],
+            commanded: active.and_then(|active| active.commanded).unwrap_or(target),
+            target,
             pose: [pose.x, pose.y],
             residual_m: shared.residual_m().unwrap_or(T::zero()),
             tensions_n: measured.map_or(zero, |measured| measured.tensions_n),
@@ -354,6 +358,8 @@ impl<T: Scalar> Leg<T> {
             motor_currents_a: measured.map_or(zero, |measured| measured.currents_a),
             supply_v: measured.map_or(T::zero(), |measured| measured.supply_v),
             temperature_c: measured.map_or(T::zero(), |measured| measured.temperature_c),
+            pretension_commanded_n,
+            stiffness_commanded_nm_per_rad,
             pretension_n: shared
                 .target
                 .map_or(T::zero(), |target| target.pretension_n),

@@ -19,7 +19,10 @@ pub struct Telemetry<T> {
     pub failed_tendon: u8,
     /// Whether the trajectory moves.
     pub moving: bool,
-    /// Where the leg shall point: horizontal components.
+    /// Where it was sent: the end of the last move, as horizontal components. After a hold, along a path and before the first move
+    /// it is the target.
+    pub commanded: [T; 2],
+    /// Where the trajectory has the leg point now.
     pub target: [T; 2],
     /// Where it is estimated to point.
     pub pose: [T; 2],
@@ -39,6 +42,10 @@ pub struct Telemetry<T> {
     pub supply_v: T,
     /// Temperature of the drivers, °C.
     pub temperature_c: T,
+    /// Pretension that was commanded, N; none where a stiffness was.
+    pub pretension_commanded_n: Option<T>,
+    /// Bending stiffness that was commanded, N·m/rad; none where a pretension was.
+    pub stiffness_commanded_nm_per_rad: Option<T>,
     /// Pretension of the target, N.
     pub pretension_n: T,
     /// Bending stiffness at the pretension that is asked for, N·m/rad.
@@ -61,6 +68,7 @@ impl<T: Copy> Telemetry<T> {
             homed: self.homed,
             failed_tendon: self.failed_tendon,
             moving: self.moving,
+            commanded: self.commanded.map(&number),
             target: self.target.map(&number),
             pose: self.pose.map(&number),
             residual_m: number(self.residual_m),
@@ -71,6 +79,8 @@ impl<T: Copy> Telemetry<T> {
             motor_currents_a: self.motor_currents_a.map(&number),
             supply_v: number(self.supply_v),
             temperature_c: number(self.temperature_c),
+            pretension_commanded_n: self.pretension_commanded_n.map(&number),
+            stiffness_commanded_nm_per_rad: self.stiffness_commanded_nm_per_rad.map(&number),
             pretension_n: number(self.pretension_n),
             stiffness_nm_per_rad: number(self.stiffness_nm_per_rad),
             load_nm: self.load_nm.map(&number),

@@ -94,7 +94,7 @@ fn value(row: &RecorderRow, signal: RecordedSignal, index: usize, units: f64) ->
     row.get(signal)?.get(index).map(|value| units * value)
 }
 
-/// Draws them, each as SVG and PNG, and names the SVG files: over the time since the fault, or since the board's start where a
+/// Draws them, each as SVG, PNG and PDF, and names the SVG files: over the time since the fault, or since the board's start where a
 /// host has ended the recording. Of what was not recorded there is none.
 ///
 /// # Errors

@@ -160,7 +160,7 @@ const LOG: [TimeChart<Report>; 6] = [
     },
 ];
 
-/// Draws those of a simulation, each as SVG and PNG, and names the SVG files.
+/// Draws those of a simulation, each as SVG, PNG and PDF, and names the SVG files.
 ///
 /// # Errors
 /// A chart that cannot be drawn or written.

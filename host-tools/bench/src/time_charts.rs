@@ -21,7 +21,7 @@ pub(crate) struct TimeChart<S: 'static> {
 /// More points than this do not show in a chart of a leg that moves.
 pub(crate) const POINTS_MAX: usize = 1600;
 
-/// Draws charts, each as SVG and PNG, and names the SVG files; one of which nothing is known is left out, unless that is all of them.
+/// Draws charts, each as SVG, PNG and PDF, and names the SVG files; one of which nothing is known is left out, unless that is all of them.
 /// `title` is that of the run, `at` gives time, s, and state of a sample, if that is known. Of more samples than `points_max`
 /// some are left out evenly.
 pub(crate) fn save<S>(
@@ -60,7 +60,7 @@ pub(crate) fn save<S>(
     if drawn.is_empty() {
         return Err(PlotError::Empty);
     }
-    let save = |(name, chart): &(&str, Chart)| plot::save_both(chart, &directory.join(name));
+    let save = |(name, chart): &(&str, Chart)| plot::save(chart, &directory.join(name));
     drawn.iter().map(save).collect()
 }
 

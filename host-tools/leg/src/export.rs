@@ -33,6 +33,12 @@ struct UrdfArgs {
     /// The rig file or the name of a ready rig; the paper's rig if left out.
     #[arg(long, value_name = "FILE")]
     rig: Option<PathBuf>,
+    /// The azimuth of the pose whose joint angles the comment has, degrees, -3600 to 3600.
+    #[arg(long, value_name = "DEG", default_value = "0", value_parser = azimuth_deg, allow_negative_numbers = true)]
+    azimuth_deg: f64,
+    /// Its tilt from the vertical, degrees, -60 to 60.
+    #[arg(long, value_name = "DEG", default_value = "0", value_parser = tilt_deg, allow_negative_numbers = true)]
+    tilt_deg: f64,
     /// Mass at the tip, kg.
     #[arg(long, value_name = "KG", default_value = "0", value_parser = payload_kg, allow_negative_numbers = true)]
     payload_kg: f64,
@@ -107,8 +113,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
 fn write_urdf(args: &UrdfArgs) -> Result<(), Failure> {
     let rig = load_rig(args.rig.as_deref())?;
+    let pose = [args.azimuth_deg, args.tilt_deg];
     let robot =
-        Urdf::new(&rig, args.payload_kg, args.several.body()).map_err(Failure::from_error)?;
+        Urdf::new(&rig, args.payload_kg, pose, args.several.body()).map_err(Failure::from_error)?;
     let mut text = Vec::new();
     let written = robot.write(&mut text);
     written.map_err(Failure::from_error)?;

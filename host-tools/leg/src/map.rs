@@ -142,7 +142,7 @@ fn draw(args: &Args, rig: &RigFile, map: &WorkspaceMap) -> Result<Vec<PathBuf>, 
         let field = map.field(quantity, title);
         for (layout, suffix) in [(Layout::Flat, "contour"), (Layout::Polar, "polar")] {
             let stem = directory.join(format!("{}_{suffix}", quantity.name()));
-            let picture = field::save_both(&field, layout, &stem);
+            let picture = field::save(&field, layout, &stem);
             let refused = |error: PlotError| not_saved("picture", &directory, "--out", &error);
             pictures.push(picture.map_err(refused)?);
         }

@@ -83,7 +83,7 @@ pub(crate) fn write(file: Option<&Path>, text: &str) -> Result<(), Failure> {
 
 /// The line that names a chart.
 pub(crate) fn chart_line(svg: &Path) -> String {
-    format!("Chart: {} (and .png)\n", relative_path(svg).display())
+    format!("Chart: {} (and .png, .pdf)\n", relative_path(svg).display())
 }
 
 /// A directory into which something cannot be written; `option` is the one that names it.

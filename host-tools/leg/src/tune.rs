@@ -42,7 +42,7 @@ pub(crate) struct Args {
     /// Writes what was measured as sections of a rig file; refuses a file that exists.
     #[arg(long, value_name = "FILE")]
     write: Option<PathBuf>,
-    /// Draws the measured points and the curves through them, SVG and PNG.
+    /// Draws the measured points and the curves through them, SVG, PNG and PDF.
     #[arg(long, value_name = "DIR")]
     plots: Option<PathBuf>,
     /// The rig file or the name of a ready rig with which the leg is compared, that of an emulated leg too; the paper's rig if

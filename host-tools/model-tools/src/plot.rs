@@ -1,28 +1,37 @@
-//! Line charts as SVG and PNG.
+//! Line charts as SVG, PNG and PDF.
 
 pub mod bode;
 mod canvas;
 pub mod field;
+mod picture;
 mod spans;
 
 pub use canvas::PlotError;
 pub use spans::Span;
 
-use canvas::{AXIS_TITLE_PX, Area, Drawn, GRID, LABEL_PX, MARGIN_PX, Painter, WIDTH_PX, range};
+use canvas::{
+    AXIS_TITLE, Area, Drawn, GRID, LABEL, MARGIN, Painter, THIN, TICK, WIDTH, offset_px, px, range,
+};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-const LEGEND_WIDTH_PX: u32 = 260;
-const LEGEND_ROW_PX: i32 = 36;
-const LINE_PX: u32 = 3;
-/// A line turns back where it goes on by more than 154° from how it came: beyond that, the joint of two strokes of [`LINE_PX`] reaches
-/// more than twice their width.
-const SHARP_COS: f64 = 0.9;
-/// The two arms of a mark: rectangles along the pixels, so that a bitmap keeps them sharp.
-const MARK_ARMS_PX: [[(i32, i32); 2]; 2] = [[(-10, -1), (10, 1)], [(-1, -10), (1, 10)]];
+const LEGEND_WIDTH: u32 = px(260);
+const LEGEND_ROW: i32 = offset_px(36);
+/// A line's sample in the legend, and its label beside it.
+const SAMPLE: i32 = offset_px(40);
+const SAMPLE_LABEL: i32 = offset_px(52);
+const LINE: u32 = px(3);
+/// The two arms of a mark.
+const MARK_ARMS: [[(i32, i32); 2]; 2] = {
+    let (long, short) = (offset_px(10), offset_px(3) / 2);
+    [
+        [(-long, -short), (long, short)],
+        [(-short, -long), (short, long)],
+    ]
+};
 
 /// Okabe and Ito's colours, in an order that stays distinct for the colour-blind.
 const COLOURS: [RGBColor; 6] = [
@@ -64,13 +73,13 @@ pub struct ChartLine {
     pub marks: Vec<(f64, f64)>,
 }
 
-/// Draws the chart as `stem.svg` and `stem.png` (1280 × 800 pixels), each whole or not at all, and names the first.
+/// Draws the chart as `stem.svg`, `stem.png` (1280 × 800 pixels) and `stem.pdf`, each whole or not at all, and names the first.
 ///
 /// # Errors
 /// A [`PlotError`] when there is nothing to draw or a file cannot be written.
-pub fn save_both(chart: &Chart, stem: &Path) -> Result<PathBuf, PlotError> {
+pub fn save(chart: &Chart, stem: &Path) -> Result<PathBuf, PlotError> {
     let ranges = axis_ranges(chart)?;
-    canvas::save_both(&ChartPainter { chart, ranges }, stem)
+    canvas::save(&ChartPainter { chart, ranges }, stem)
 }
 
 /// A chart whose axes are known.
@@ -85,14 +94,14 @@ impl Painter for ChartPainter<'_> {
         let Self { chart, ranges } = self;
         let mut body = canvas::titled(root, &chart.title)?;
         if !chart.subtitle.is_empty() {
-            body = body.titled(&chart.subtitle, ("sans-serif", AXIS_TITLE_PX))?;
+            body = body.titled(&chart.subtitle, ("sans-serif", AXIS_TITLE))?;
         }
-        let (plot, legend) = body.split_horizontally(WIDTH_PX - LEGEND_WIDTH_PX - MARGIN_PX);
+        let (plot, legend) = body.split_horizontally(WIDTH - LEGEND_WIDTH - MARGIN);
         let [x, y] = ranges.clone();
         let mut context = ChartBuilder::on(&plot)
-            .margin(MARGIN_PX)
-            .set_label_area_size(LabelAreaPosition::Bottom, 70)
-            .set_label_area_size(LabelAreaPosition::Left, 90)
+            .margin(MARGIN)
+            .set_label_area_size(LabelAreaPosition::Bottom, px(70))
+            .set_label_area_size(LabelAreaPosition::Left, px(90))
             .build_cartesian_2d(x, y.clone())?;
         spans::shade(&chart.spans, &y, &mut context)?;
         draw_axes(chart, &mut context)?;
@@ -111,14 +120,15 @@ fn draw_axes<B: DrawingBackend>(chart: &Chart, context: &mut ChartContext<B, Pla
     context
         .configure_mesh()
         .light_line_style(TRANSPARENT)
-        .bold_line_style(GRID)
-        .axis_style(BLACK)
+        .bold_line_style(GRID.stroke_width(THIN))
+        .axis_style(BLACK.stroke_width(THIN))
+        .set_all_tick_mark_size(TICK)
         .x_labels(13)
         .y_labels(11)
         .x_label_formatter(&label)
         .y_label_formatter(&label)
-        .label_style(("sans-serif", LABEL_PX))
-        .axis_desc_style(("sans-serif", AXIS_TITLE_PX))
+        .label_style(("sans-serif", LABEL))
+        .axis_desc_style(("sans-serif", AXIS_TITLE))
         .x_desc(&chart.x_title)
         .y_desc(&chart.y_title)
         .draw()
@@ -129,60 +139,39 @@ fn draw_line<B: DrawingBackend>(
     colour: &RGBColor,
     context: &mut ChartContext<B, Plane>,
 ) -> Drawn<B> {
-    let stroke = colour.stroke_width(LINE_PX);
-    let pixels = line.points.iter().map(|point| context.backend_coord(point));
-    let turns = sharp_turns(&pixels.collect::<Vec<_>>());
-    let mut begin = 0;
-    for end in turns.into_iter().chain([line.points.len()]) {
-        // The point of a turn belongs to both pieces.
-        let piece = line.points.iter().take(end + 1).skip(begin);
-        context.draw_series(LineSeries::new(piece.copied(), stroke))?;
-        begin = end;
-    }
-    for arm in MARK_ARMS_PX {
+    let points = line.points.iter().copied();
+    context.draw_series(LineSeries::new(points, colour.stroke_width(LINE)))?;
+    for arm in MARK_ARMS {
         let arm_at = |&mark| EmptyElement::at(mark) + Rectangle::new(arm, colour.filled());
         context.draw_series(line.marks.iter().map(arm_at))?;
     }
     Ok(())
 }
 
-/// The points, by number, at which a line all but turns back. A bitmap's joint would reach far beyond such a point, and show a value
-/// that is not there: the line is drawn in pieces.
-fn sharp_turns(pixels: &[(i32, i32)]) -> Vec<usize> {
-    let turns_back = |&[a, b, c]: &[(i32, i32); 3]| {
-        let [came, goes] =
-            [(b, a), (c, b)].map(|(to, from)| [to.0 - from.0, to.1 - from.1].map(f64::from));
-        let along = came[0] * goes[0] + came[1] * goes[1];
-        along < -SHARP_COS * came[0].hypot(came[1]) * goes[0].hypot(goes[1])
-    };
-    // Points on the same pixel tell no direction.
-    let mut distinct: Vec<_> = pixels.iter().copied().enumerate().collect();
-    distinct.dedup_by_key(|(_, pixel)| *pixel);
-    let corners = distinct.windows(3).filter(|corner| match corner {
-        [a, b, c] => turns_back(&[a.1, b.1, c.1]),
-        _ => false,
-    });
-    corners
-        .filter_map(|corner| corner.get(1).map(|(at, _)| *at))
-        .collect()
-}
-
 fn draw_legend<B: DrawingBackend>(chart: &Chart, area: &Area<B>) -> Drawn<B> {
-    let text = ("sans-serif", LABEL_PX)
+    let text = ("sans-serif", LABEL)
         .into_text_style(area)
         .pos(Pos::new(HPos::Left, VPos::Center));
-    let mut y = LEGEND_ROW_PX;
+    let mut y = LEGEND_ROW;
     for (line, colour) in chart.lines.iter().zip(COLOURS.iter().cycle()) {
-        let sample = vec![(0, y), (40, y)];
-        area.draw(&PathElement::new(sample, colour.stroke_width(LINE_PX)))?;
-        area.draw(&Text::new(line.label.as_str(), (52, y), text.clone()))?;
-        y += LEGEND_ROW_PX;
+        let sample = vec![(0, y), (SAMPLE, y)];
+        area.draw(&PathElement::new(sample, colour.stroke_width(LINE)))?;
+        area.draw(&Text::new(
+            line.label.as_str(),
+            (SAMPLE_LABEL, y),
+            text.clone(),
+        ))?;
+        y += LEGEND_ROW;
     }
     if chart.lines.iter().any(|line| !line.marks.is_empty()) {
-        for arm in MARK_ARMS_PX {
-            area.draw(&(EmptyElement::at((20, y)) + Rectangle::new(arm, BLACK.filled())))?;
+        for arm in MARK_ARMS {
+            area.draw(&(EmptyElement::at((SAMPLE / 2, y)) + Rectangle::new(arm, BLACK.filled())))?;
         }
-        area.draw(&Text::new(chart.marks_label.as_str(), (52, y), text))?;
+        area.draw(&Text::new(
+            chart.marks_label.as_str(),
+            (SAMPLE_LABEL, y),
+            text,
+        ))?;
     }
     Ok(())
 }

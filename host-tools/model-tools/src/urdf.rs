@@ -8,7 +8,7 @@ mod links;
 
 use crate::leg_shape::{Body, LegShape, ShapeError};
 use crate::xml_element::{self, Element};
-use leg_model::{Error, evaluate};
+use leg_model::{Direction, Error, evaluate};
 use leg_rig::number::decimal;
 use leg_rig::rig_file::RigFile;
 use links::{body, leg};
@@ -44,11 +44,17 @@ pub struct Urdf {
 
 impl Urdf {
     /// One leg, whose first link is the base: its origin is the joint centre, z points up. Or several on a body, whose origin is
-    /// in the plane of the joint centres; the first is towards x.
+    /// in the plane of the joint centres; the first is towards x. `pose` is azimuth and tilt, degrees: the comment has the angles of
+    /// the joints there.
     ///
     /// # Errors
     /// [`UrdfError`].
-    pub fn new(rig: &RigFile, payload_kg: f64, several: Option<Body>) -> Result<Self, UrdfError> {
+    pub fn new(
+        rig: &RigFile,
+        payload_kg: f64,
+        pose: [f64; 2],
+        several: Option<Body>,
+    ) -> Result<Self, UrdfError> {
         let shape = LegShape::new(rig, payload_kg)?;
         let limits = limits(rig, payload_kg)?;
         let of_leg = |prefix: &str| leg(rig, payload_kg, &shape, limits, prefix);
@@ -65,10 +71,10 @@ impl Urdf {
                 root.child(body(&several, &shape)).children(legs)
             }
         };
-        let comment = " The leg's inertia is that of the simulated leg; not from the rig file: the payload's (a steel ball).\n  \
-             A leg that leans by t towards azimuth a has tilt_x = atan2(sin t sin a, cos t), tilt_y = -asin(sin t cos a). "
-            .to_owned();
-        Ok(Self { root, comment })
+        Ok(Self {
+            root,
+            comment: comment(pose)?,
+        })
     }
 
     /// Writes the XML.
@@ -78,6 +84,18 @@ impl Urdf {
     pub fn write(&self, out: impl Write) -> io::Result<()> {
         xml_element::write(&self.root, &self.comment, out)
     }
+}
+
+fn comment([azimuth_deg, tilt_deg]: [f64; 2]) -> Result<String, Error> {
+    let direction = Direction::from_angles(azimuth_deg.to_radians(), tilt_deg.to_radians())?;
+    let along = direction.vector();
+    // Adding zero turns −0 into 0.
+    let (x_rad, y_rad) = (along.y.atan2(-along.z) + 0.0, -along.x.asin() + 0.0);
+    Ok(format!(
+        " The leg's inertia is that of the simulated leg; not from the rig file: the payload's (a steel ball).\n  \
+         A leg that leans by t towards azimuth a has tilt_x = atan2(sin t sin a, cos t), tilt_y = -asin(sin t cos a);\n  \
+         at azimuth {azimuth_deg:.3} deg, tilt {tilt_deg:.3} deg: tilt_x = {x_rad:.9}, tilt_y = {y_rad:.9}. "
+    ))
 }
 
 fn limits(rig: &RigFile, payload_kg: f64) -> Result<JointLimits, Error> {

@@ -28,7 +28,7 @@ impl Snapshot {
         let comparison = leg.comparison();
         let path_error_mm = on_path.then(|| comparison.commanded_error_mm());
         Some(Self {
-            report: Report::new(leg.telemetry()?, constants),
+            report: Report::new(leg.telemetry()?, constants).compared(&comparison),
             simulated: Simulated {
                 truth: *leg.truth(),
                 motors: *motors,

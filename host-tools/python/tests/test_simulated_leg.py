@@ -104,6 +104,25 @@ def test_stiffness_and_payload_come_out():
         leg.stiffness(1e4)
 
 
+def test_a_report_tells_apart_what_was_commanded_and_what_is_asked_for_now():
+    leg = SimulatedLeg("table1")
+    leg.arm()
+    leg.stiffness(95)
+    leg.move(30, 20, wait=False)
+    leg.run(0.3)
+    told = leg.telemetry()
+    assert told["tilt_commanded_deg"] == pytest.approx(20.0, abs=1e-3)
+    assert told["azimuth_commanded_deg"] == pytest.approx(30.0, abs=1e-3)
+    assert 0.1 < told["tilt_reference_deg"] < 19.0
+    assert told["stiffness_commanded_nm_per_rad"] == 95.0 and np.isnan(told["pretension_commanded_n"])
+    assert told["tip_commanded_mm"] == pytest.approx(leg.read("tip_commanded_mm"), abs=1e-3)
+    leg.hold()
+    leg.run(1.0)
+    told = leg.telemetry()
+    assert told["direction_commanded"] == pytest.approx(told["direction_reference"])
+    assert told["tilt_commanded_deg"] < 19.0
+
+
 def test_silence_brings_an_armed_leg_to_rest():
     leg = armed()
     leg.silence(True)

@@ -28,13 +28,18 @@ fn rig(name: &str) -> RigFile {
     RigFile::load(Some(Path::new(name))).unwrap()
 }
 
-/// The angles of the joints at a pose, as the robot's comment says.
-fn tilts_rad([azimuth, tilt]: [f64; 2]) -> [f64; 2] {
-    let (sin_a, cos_a) = azimuth.sin_cos();
-    [
-        (tilt.sin() * sin_a).atan2(tilt.cos()),
-        -(tilt.sin() * cos_a).asin(),
-    ]
+/// A robot, and the angles of its joints at a pose, as its comment says.
+fn robot(rig: &RigFile, payload_kg: f64, pose: [f64; 2], body: Option<Body>) -> (Urdf, [f64; 2]) {
+    let robot = Urdf::new(rig, payload_kg, pose.map(f64::to_degrees), body).unwrap();
+    let mut text = Vec::new();
+    robot.write(&mut text).unwrap();
+    let text = String::from_utf8(text).unwrap();
+    let tilts_rad = ["tilt_x", "tilt_y"].map(|joint| {
+        let (_, after) = text.rsplit_once(&format!("{joint} = ")).unwrap();
+        let digits = after.split([',', ' ']).next().unwrap();
+        digits.trim_end_matches('.').parse().unwrap()
+    });
+    (robot, tilts_rad)
 }
 
 fn tip_m(rig: &RigFile, [azimuth, tilt]: [f64; 2]) -> Vector3<f64> {
@@ -71,8 +76,9 @@ fn one_leg_of_every_rig_is_where_the_model_says() {
     let robots: Vec<_> = cases
         .iter()
         .map(|(rig, pose)| {
-            let job = json!({ "tips": ["tip"], "prefix": "", "tilt_rad": tilts_rad(*pose) });
-            (Urdf::new(rig, PAYLOAD_KG, None).unwrap(), job)
+            let (robot, tilts_rad) = robot(rig, PAYLOAD_KG, *pose, None);
+            let job = json!({ "tips": ["tip"], "prefix": "", "tilt_rad": tilts_rad });
+            (robot, job)
         })
         .collect();
     for ((rig, pose), found) in cases.iter().zip(read(&robots)) {
@@ -102,11 +108,11 @@ fn one_leg_of_every_rig_is_where_the_model_says() {
 #[test]
 fn six_legs_stand_around_a_body() {
     let rig = rig(READY_RIGS[0].name);
-    let robot = Urdf::new(&rig, 0.0, Some(SIX)).unwrap();
     let tips: Vec<String> = (1..=6).map(|leg| format!("leg_{leg}_tip")).collect();
     // Towards its own x axis, which is outwards.
     let pose = [0.0, 0.4];
-    let job = json!({ "tips": tips, "prefix": "leg_3_", "tilt_rad": tilts_rad(pose) });
+    let (robot, tilts_rad) = robot(&rig, 0.0, pose, Some(SIX));
+    let job = json!({ "tips": tips, "prefix": "leg_3_", "tilt_rad": tilts_rad });
     let found = &read(&[(robot, job)])[0];
     let parsed = &found["parser"];
     assert_eq!(parsed["root"], "body");

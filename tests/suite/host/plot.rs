@@ -45,7 +45,7 @@ fn the_charts_of_a_run_are_drawn_again_to_the_pixel() {
         let plot = ["plot", "run.mcap", "--plots", "again"];
         succeeds(&plot, directory.path());
         let [run, again] = ["run", "again"].map(|name| files(&directory.path().join(name)));
-        assert_eq!(run.len(), 10, "five charts as SVG and PNG");
+        assert_eq!(run.len(), 15, "five charts as SVG, PNG and PDF");
         let names = |all: &BTreeMap<String, Vec<u8>>| all.keys().cloned().collect::<Vec<_>>();
         assert_eq!(names(&run), names(&again));
         for (name, picture) in &run {

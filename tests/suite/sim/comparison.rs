@@ -62,6 +62,59 @@ fn a_leg_that_sags_knows_where_it_is() {
     );
 }
 
+/// What a leg itself reports tells apart where it was sent, where its trajectory has it now, and where it is: by a move, a hold and a
+/// stiffness.
+#[test]
+fn a_report_says_what_was_commanded() {
+    let summary = run(
+        "{ stiffness = { nm_per_rad = 90 } }, { move = { azimuth_deg = 0, tilt_deg = 30 } }, { wait_s = 0.4 },\n\
+         \"hold\", { wait_s = 1 }, { pretension_n = 60 }, { move = { azimuth_deg = 90, tilt_deg = 10 } },\n\
+         { arrive = { then_s = 0.5, timeout_s = 5 } },",
+    );
+    let samples = &summary.samples;
+    let told = |at_s: f64| {
+        samples
+            .iter()
+            .map(|sample| &sample.telemetry)
+            .find(|told| f64::from(told.tick) >= 8000.0 * at_s)
+    };
+    let first = told(0.4).unwrap();
+    assert_eq!(first.commanded, first.target, "nothing was commanded yet");
+    assert_eq!(first.stiffness_commanded_nm_per_rad, None);
+    let moved: Vec<_> = samples
+        .iter()
+        .map(|sample| &sample.telemetry)
+        .filter(|told| (told.commanded[0] - 0.5).abs() < 1e-6)
+        .collect();
+    assert!(
+        moved.iter().any(|told| told.target[0] < 0.1 && told.moving),
+        "on the way"
+    );
+    assert!(
+        moved
+            .iter()
+            .all(|told| told.stiffness_commanded_nm_per_rad == Some(90.0)
+                && told.pretension_commanded_n.is_none())
+    );
+    let held = told(f64::from(moved.last().unwrap().tick) / 8000.0 + 0.9).unwrap();
+    assert_eq!(held.commanded, held.target, "a hold leaves the reference");
+    assert!((0.01..0.45).contains(&held.target[0]), "{held:?}");
+    let last = &samples.last().unwrap().telemetry;
+    assert_eq!(
+        (
+            last.pretension_commanded_n,
+            last.stiffness_commanded_nm_per_rad
+        ),
+        (Some(60.0), None)
+    );
+    let sent = [0.0, f64::to_radians(10.0).sin()];
+    for (axis, sent) in sent.into_iter().enumerate() {
+        let off =
+            [last.commanded, last.target, last.pose].map(|at| (f64::from(at[axis]) - sent).abs());
+        assert!(off[0] < 1e-6 && off[1] < 1e-5 && off[2] < 1e-3, "{off:?}");
+    }
+}
+
 /// Along a path the command is the path: the chart's error is that of the measurement.
 #[test]
 fn the_error_along_a_path_is_that_of_its_measurement() {

@@ -58,6 +58,14 @@ impl<T: Scalar> PretensionSearch<T> {
         }
     }
 
+    /// The demand: as a pretension, N, or as a stiffness, N·m/rad.
+    pub fn demanded(&self) -> [Option<T>; 2] {
+        match self.demand {
+            PretensionDemand::Pretension(pretension_n) => [Some(pretension_n), None],
+            PretensionDemand::Stiffness(stiffness, _) => [None, Some(stiffness)],
+        }
+    }
+
     /// The pretension found so far, N.
     #[inline(always)]
     pub fn pretension_n(&self) -> T {

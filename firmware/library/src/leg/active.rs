@@ -11,13 +11,15 @@ use crate::control::{
 };
 use crate::set_point::{PointRefusal, SetPoint, StreamPart};
 use crate::supervisor::{Fault, FaultSet, SETTLE_CYCLES};
-use leg_model::{Direction, Error, HalfTangent, Scalar};
+use leg_model::{Direction, Error, Scalar};
 use nalgebra::Vector3;
 
 /// The leg follows commands.
 #[derive(Clone, Copy, Debug)]
 pub struct Active<T> {
     pub trajectory: Trajectory<T>,
+    /// Where the last move shall end, as horizontal components; none after a hold, or where a path is followed.
+    pub commanded: Option<[T; 2]>,
     /// Whether every tendon has been above the minimum tension since the leg was armed.
     pub tensioned: bool,
     /// Whether the leg is led straight down, to be disarmed there.
@@ -53,6 +55,7 @@ impl<T: Scalar> Active<T> {
             (taut && !compensated).then(|| Unloaded::search(loaded, &measured.steady_tensions_n));
         Self {
             trajectory: Trajectory::new(shared.limits.motion, loaded.half_tangent()),
+            commanded: None,
             tensioned: false,
             disarming: false,
             station: StationKeeping::No,
@@ -110,13 +113,16 @@ impl<T: Scalar> Active<T> {
     }
 
     /// Goes to a point.
-    pub fn go(&mut self, shared: &mut Shared<T>, to: HalfTangent<T>) {
+    pub fn go(&mut self, shared: &mut Shared<T>, to: &Direction<T>) {
         self.leave_stream(shared);
-        self.trajectory.go(to);
+        self.trajectory.go(to.half_tangent());
+        let along = to.vector();
+        self.commanded = Some([along.x, along.y]);
     }
 
     /// Comes to rest.
     pub fn hold(&mut self, shared: &mut Shared<T>) {
+        self.commanded = None;
         if !self.leave_stream(shared) {
             self.trajectory.stop();
         }
@@ -154,6 +160,7 @@ impl<T: Scalar> Active<T> {
                 };
                 stream.begin(start, point)?;
                 self.trajectory.begin_stream();
+                self.commanded = None;
                 shared.refused = false;
                 Ok(())
             }
@@ -177,7 +184,7 @@ impl<T: Scalar> Active<T> {
     pub fn disarm(&mut self, shared: &mut Shared<T>) {
         self.disarming = true;
         self.stuck = false;
-        self.go(shared, Direction::down().half_tangent());
+        self.go(shared, &Direction::down());
     }
 
     /// Whether it was led down, or cannot be.

@@ -240,7 +240,7 @@ impl<T: Scalar> Leg<T> {
         let inside = x * x + y * y <= reach * reach;
         match Direction::from_xy(x, y) {
             Ok(direction) if inside => {
-                active.go(shared, direction.half_tangent());
+                active.go(shared, &direction);
                 shared.refused = false;
                 Ok(())
             }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// More points than this do not show in a chart.
 const POINTS_MAX: usize = 1000;
 
-/// Makes the move again without the brake, draws both as SVG and PNG, and names the SVG file.
+/// Makes the move again without the brake, draws both as SVG, PNG and PDF, and names the SVG file.
 ///
 /// # Errors
 /// A chart that cannot be drawn or written.
@@ -31,7 +31,7 @@ pub fn save_comparison(moved: &Moved, directory: &Path) -> Result<PathBuf, PlotE
         ],
         ..Chart::default()
     };
-    plot::save_both(&chart, &directory.join("move"))
+    plot::save(&chart, &directory.join("move"))
 }
 
 fn step(moved: &Moved) -> usize {

@@ -3,7 +3,7 @@
 use super::PaperError;
 use super::deviation::{AZIMUTH_DEG, Deviations, MAXIMA, deviations, tilts_deg};
 use super::tendon::PUBLISHED;
-use super::workspace::PAYLOAD_KG;
+use super::workspace::{PAYLOAD_KG, SPREAD_PERCENT, spread_at};
 use leg_model::{Elasticity, Error, Query, Tendon};
 use leg_model_tools::plot::{self, Chart, ChartLine, PlotError, field};
 use leg_model_tools::workspace_map::{Grid, MapQuantity, WorkspaceMap};
@@ -27,7 +27,7 @@ impl From<Error> for FigureError {
     }
 }
 
-/// Draws every figure into a directory, as SVG and PNG, and names the SVG files with their captions.
+/// Draws every figure into a directory, as SVG, PNG and PDF, and names the SVG files with their captions.
 ///
 /// # Errors
 /// A [`FigureError`].
@@ -35,7 +35,7 @@ pub fn draw(directory: &Path) -> Result<Vec<(PathBuf, &'static str)>, FigureErro
     let rig = RigFile::load(None).map_err(PaperError::from)?;
     let mut figures = Vec::new();
     for (name, chart, caption) in charts(&rig)? {
-        figures.push((plot::save_both(&chart, &directory.join(name))?, caption));
+        figures.push((plot::save(&chart, &directory.join(name))?, caption));
     }
     let map = workspace_field(&rig)?;
     let maps = [
@@ -51,14 +51,14 @@ pub fn draw(directory: &Path) -> Result<Vec<(PathBuf, &'static str)>, FigureErro
         ),
     ];
     for (name, layout, caption) in maps {
-        let drawn = field::save_both(&map, layout, &directory.join(name))?;
+        let drawn = field::save(&map, layout, &directory.join(name))?;
         figures.push((drawn, caption));
     }
     Ok(figures)
 }
 
 /// The charts, each with the name of its file and its caption.
-fn charts(rig: &RigFile) -> Result<[(&'static str, Chart, &'static str); 5], Error> {
+fn charts(rig: &RigFile) -> Result<[(&'static str, Chart, &'static str); 6], Error> {
     let elongation = tendon_points(rig, |tendon, tension| Ok(tendon.elongation(tension)? * 1e3))?;
     let stiffness = tendon_points(rig, |tendon, tension| Ok(tendon.stiffness(tension)? * 1e-3))?;
     let published = PUBLISHED.map(|(tension, stiffness)| (tension, stiffness * 1e-3));
@@ -99,6 +99,11 @@ fn charts(rig: &RigFile) -> Result<[(&'static str, Chart, &'static str); 5], Err
                 "",
             ),
             "Fig. 9 b: linear deviation less nonlinear equilibrium",
+        ),
+        (
+            "fig10_published",
+            spread_chart(rig)?,
+            "Fig. 10: how far the deviation differs over the azimuth, beside the most that the paper's text gives",
         ),
     ])
 }
@@ -163,6 +168,30 @@ fn deviation_chart([title, y_title]: [&str; 2], lines: Vec<ChartLine>, marks_lab
         marks_label: marks_label.into(),
         ..Chart::default()
     }
+}
+
+/// Over the tilts of Fig. 10, all that its text gives in numbers.
+fn spread_chart(rig: &RigFile) -> Result<Chart, Error> {
+    let ours = (1..=30)
+        .map(f64::from)
+        .map(|tilt_deg| Ok((tilt_deg, spread_at(rig, tilt_deg)?)))
+        .collect::<Result<Vec<_>, Error>>()?;
+    let published = [0.0, 30.0].map(|tilt_deg| (tilt_deg, SPREAD_PERCENT));
+    let line = |label: &str, points| ChartLine {
+        label: label.into(),
+        points,
+        marks: Vec::new(),
+    };
+    Ok(Chart {
+        title: "Fig. 10: deviation over the azimuth, ours and published".into(),
+        x_title: "tilt (°)".into(),
+        y_title: format!("largest less smallest with {PAYLOAD_KG} kg (% of the mean)"),
+        lines: vec![
+            line("ours", ours),
+            line("published, at most", published.into()),
+        ],
+        ..Chart::default()
+    })
 }
 
 fn workspace_field(rig: &RigFile) -> Result<field::PlotField, Error> {

@@ -9,7 +9,7 @@ use leg_rig::rig_file::RigFile;
 pub(super) const PAYLOAD_KG: f64 = 1.0;
 
 /// What the paper says of the spread over the azimuth, percent.
-const SPREAD_PERCENT: f64 = 1.4;
+pub(super) const SPREAD_PERCENT: f64 = 1.4;
 
 /// The deviations at 360 azimuths, m.
 fn ring(
@@ -44,6 +44,11 @@ fn spread_percent(deviations: &[f64]) -> f64 {
     let smallest = deviations.iter().copied().fold(f64::INFINITY, f64::min);
     let mean = deviations.iter().sum::<f64>() / deviations.len() as f64;
     100.0 * (largest - smallest) / mean
+}
+
+/// The spread over the azimuth at a tilt, percent.
+pub(super) fn spread_at(rig: &RigFile, tilt_deg: f64) -> Result<f64, Error> {
+    Ok(spread_percent(&constant_ring(rig, tilt_deg)?))
 }
 
 pub(super) fn rows(rig: &RigFile) -> Result<Vec<PaperRow>, Error> {

@@ -41,7 +41,7 @@ fn draw(staging: &Path, swept: &[Swept], rows: &[Row]) -> Result<Vec<PathBuf>, B
                 others,
                 named: named(feedback, swept, rows),
             };
-            let picture = bode::save_both(&plot, &staging.join(feedback.name()))?;
+            let picture = bode::save(&plot, &staging.join(feedback.name()))?;
             names.extend(picture.file_name().map(PathBuf::from));
         }
     }

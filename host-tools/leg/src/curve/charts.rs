@@ -18,7 +18,7 @@ type Panel = (&'static str, &'static str, Points, Points);
 
 type Points = Vec<(f64, f64)>;
 
-/// Draws elongation and stiffness of the test piece, each as SVG and PNG, and names the SVG files.
+/// Draws elongation and stiffness of the test piece, each as SVG, PNG and PDF, and names the SVG files.
 pub(super) fn draw(fit: &Fit, directory: &Path) -> Result<Vec<OsString>, Box<dyn Error>> {
     let mut names = Vec::new();
     for panel in panels(fit)? {
@@ -90,5 +90,5 @@ fn save((name, y_title, points, marks): Panel, directory: &Path) -> Result<PathB
         marks_label: "measured".into(),
         ..Chart::default()
     };
-    plot::save_both(&chart, &directory.join(name))
+    plot::save(&chart, &directory.join(name))
 }

@@ -160,6 +160,6 @@ impl MapReport<'_> {
         let pictures: String = self.pictures.iter().map(picture).collect();
         let csv = csv.map(|path| format!("CSV: {}\n", relative_path(path).display()));
         let csv = csv.unwrap_or_default();
-        format!("Pictures, each as .svg and .png:\n{pictures}{csv}")
+        format!("Pictures, each as .svg, .png and .pdf:\n{pictures}{csv}")
     }
 }

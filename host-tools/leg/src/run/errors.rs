@@ -29,7 +29,7 @@ pub(super) fn run(
         ));
     }
     let chart = sensitivity::chart(&scenario.title, &all);
-    let file = plot::save_both(&chart, &directory.join("errors"))
+    let file = plot::save(&chart, &directory.join("errors"))
         .map_err(|error| not_saved("chart", directory, "--plots", &error))?;
     options.report(&all, || {
         format!(

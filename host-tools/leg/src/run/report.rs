@@ -23,7 +23,7 @@ pub(super) struct RunReport<'a> {
     pub(super) memory_mib: Option<f64>,
     /// Whether the table shows them.
     pub(super) shows_resources: bool,
-    /// The SVG files; the PNG files are beside them.
+    /// The SVG files; the PNG and PDF files are beside them.
     pub(super) plots: &'a [PathBuf],
 }
 

@@ -3,7 +3,7 @@
 use crate::output::save_all;
 use leg_base::failure::Failure;
 use leg_host::tune::{Jogged, MeasuredMotor, Swing, Swings};
-use leg_model_tools::plot::{Chart, ChartLine, save_both};
+use leg_model_tools::plot::{self, Chart, ChartLine};
 use std::path::{Path, PathBuf};
 
 /// Points of the line through a swing.
@@ -22,7 +22,7 @@ pub(super) fn save(
     }
     let draw = |staging: &Path| {
         for (name, chart) in &charts {
-            save_both(chart, &staging.join(name))?;
+            plot::save(chart, &staging.join(name))?;
         }
         Ok(())
     };

@@ -1,10 +1,10 @@
 //! Bode plots: gain and phase over frequency.
 
 use super::canvas::{
-    self, AXIS_TITLE_PX, Area, Drawn, GRID, LABEL_PX, MARGIN_PX, Painter, PlotError, WIDTH_PX,
-    range,
+    self, AXIS_TITLE, Area, Drawn, GRID, LABEL, MARGIN, Painter, PlotError, THIN, TICK, WIDTH,
+    offset_px, px, range,
 };
-use super::{COLOURS, LEGEND_ROW_PX, LEGEND_WIDTH_PX, LINE_PX};
+use super::{COLOURS, LEGEND_ROW, LEGEND_WIDTH, LINE};
 use plotters::coord::combinators::LogCoord;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
@@ -20,6 +20,10 @@ const LIMIT: RGBColor = RGBColor(90, 90, 90);
 
 /// Gains below are not drawn, dB.
 const LOWEST_DB: f64 = -60.0;
+
+/// A line's sample in the legend, and its label beside it.
+const SAMPLE: i32 = offset_px(30);
+const SAMPLE_LABEL: i32 = offset_px(40);
 
 /// The phases of a plot, degrees: a loop becomes unstable at −180°, in the middle of what matters.
 const PHASES_DEG: Range<f64> = -270.0..90.0;
@@ -68,11 +72,11 @@ pub enum BodeMargin {
     Phase(f64, f64),
 }
 
-/// Draws the plot as `stem.svg` and `stem.png` (1280 × 800 pixels), each whole or not at all, and names the first.
+/// Draws the plot as `stem.svg`, `stem.png` (1280 × 800 pixels) and `stem.pdf`, each whole or not at all, and names the first.
 ///
 /// # Errors
 /// A [`PlotError`] when there is nothing to draw or a file cannot be written.
-pub fn save_both(plot: &BodePlot, stem: &Path) -> Result<PathBuf, PlotError> {
+pub fn save(plot: &BodePlot, stem: &Path) -> Result<PathBuf, PlotError> {
     let points = || plot.all().flatten();
     let (from, to) = range(points().map(|point| point.hz)).ok_or(PlotError::Empty)?;
     let gains = points().map(|point| point.gain_db.max(LOWEST_DB));
@@ -85,7 +89,7 @@ pub fn save_both(plot: &BodePlot, stem: &Path) -> Result<PathBuf, PlotError> {
         hz: from..to,
         gains_db: low - 2.0..high + 2.0,
     };
-    canvas::save_both(&painter, stem)
+    canvas::save(&painter, stem)
 }
 
 impl BodePlot {
@@ -169,9 +173,9 @@ fn turned(phase_deg: f64) -> f64 {
 impl Painter for BodePainter<'_> {
     fn paint<B: DrawingBackend>(&self, root: &Area<B>) -> Drawn<B> {
         let body = canvas::titled(root, &self.plot.title)?;
-        let (both, legend) = body.split_horizontally(WIDTH_PX - LEGEND_WIDTH_PX - MARGIN_PX);
+        let (both, legend) = body.split_horizontally(WIDTH - LEGEND_WIDTH - MARGIN);
         let (_, height) = both.dim_in_pixel();
-        let (gain, phase) = both.split_vertically(height / 2 - 10);
+        let (gain, phase) = both.split_vertically(height / 2 - px(10));
         self.panel(&gain, Panel::Gain, "gain (dB)", "")?;
         self.panel(&phase, Panel::Phase, "phase (°)", "frequency (Hz)")?;
         self.legend(&legend)
@@ -194,44 +198,40 @@ impl BodePainter<'_> {
             ),
         };
         let mut context = ChartBuilder::on(area)
-            .margin_right(MARGIN_PX)
-            .margin_top(8)
+            .margin_right(MARGIN)
+            .margin_top(px(8))
             .set_label_area_size(
                 LabelAreaPosition::Bottom,
-                if x_title.is_empty() { 32 } else { 66 },
+                if x_title.is_empty() { px(32) } else { px(66) },
             )
-            .set_label_area_size(LabelAreaPosition::Left, 90)
+            .set_label_area_size(LabelAreaPosition::Left, px(90))
             .build_cartesian_2d(self.hz.clone().log_scale(), y)?;
         context
             .configure_mesh()
             .light_line_style(TRANSPARENT)
-            .bold_line_style(GRID)
-            .axis_style(BLACK)
+            .bold_line_style(GRID.stroke_width(THIN))
+            .axis_style(BLACK.stroke_width(THIN))
+            .set_all_tick_mark_size(TICK)
             .y_labels(labels)
             .y_label_formatter(&|value: &f64| format!("{:.0}", value * panel.unit()))
             .x_label_formatter(&|hz: &f64| format!("{hz}"))
-            .label_style(("sans-serif", LABEL_PX))
-            .axis_desc_style(("sans-serif", AXIS_TITLE_PX))
+            .label_style(("sans-serif", LABEL))
+            .axis_desc_style(("sans-serif", AXIS_TITLE))
             .x_desc(x_title)
             .y_desc(y_title)
             .draw()?;
         for points in &self.plot.others {
-            curve(points, panel, OTHERS.stroke_width(1), &mut context)?;
+            curve(points, panel, OTHERS.stroke_width(THIN), &mut context)?;
         }
         let limit = [self.hz.start, self.hz.end].map(|hz| (hz, panel.limit()));
-        context.draw_series(LineSeries::new(limit, LIMIT.stroke_width(1)))?;
+        context.draw_series(LineSeries::new(limit, LIMIT.stroke_width(THIN)))?;
         for (line, colour) in self.plot.named.iter().zip(COLOURS.iter().cycle()) {
-            curve(
-                &line.points,
-                panel,
-                colour.stroke_width(LINE_PX),
-                &mut context,
-            )?;
+            curve(&line.points, panel, colour.stroke_width(LINE), &mut context)?;
         }
         for (line, colour) in self.plot.named.iter().zip(COLOURS.iter().cycle()) {
             if let Some(mark) = panel.mark(line) {
-                context.draw_series(LineSeries::new(mark, BLACK.stroke_width(LINE_PX)))?;
-                let ends = mark.map(|end| Circle::new(end, 6, colour.filled()));
+                context.draw_series(LineSeries::new(mark, BLACK.stroke_width(LINE)))?;
+                let ends = mark.map(|end| Circle::new(end, px(6), colour.filled()));
                 context.draw_series(ends)?;
             }
         }
@@ -239,24 +239,28 @@ impl BodePainter<'_> {
     }
 
     fn legend<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B> {
-        let text = ("sans-serif", LABEL_PX)
+        let text = ("sans-serif", LABEL)
             .into_text_style(area)
             .pos(Pos::new(HPos::Left, VPos::Center));
-        let mut y = LEGEND_ROW_PX;
+        let mut y = LEGEND_ROW;
         for (line, colour) in self.plot.named.iter().zip(COLOURS.iter().cycle()) {
-            let sample = vec![(0, y), (30, y)];
-            area.draw(&PathElement::new(sample, colour.stroke_width(LINE_PX)))?;
+            let sample = vec![(0, y), (SAMPLE, y)];
+            area.draw(&PathElement::new(sample, colour.stroke_width(LINE)))?;
             for words in &line.label {
-                area.draw(&Text::new(words.as_str(), (40, y), text.clone()))?;
-                y += LEGEND_ROW_PX - 8;
+                area.draw(&Text::new(words.as_str(), (SAMPLE_LABEL, y), text.clone()))?;
+                y += LEGEND_ROW - offset_px(8);
             }
-            y += 12;
+            y += offset_px(12);
         }
         area.draw(&PathElement::new(
-            vec![(0, y), (30, y)],
-            OTHERS.stroke_width(1),
+            vec![(0, y), (SAMPLE, y)],
+            OTHERS.stroke_width(THIN),
         ))?;
-        area.draw(&Text::new(self.plot.others_label.as_str(), (40, y), text))
+        area.draw(&Text::new(
+            self.plot.others_label.as_str(),
+            (SAMPLE_LABEL, y),
+            text,
+        ))
     }
 }
 

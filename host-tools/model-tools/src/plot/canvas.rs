@@ -1,5 +1,6 @@
 //! What every picture shares: its size, its files, its font.
 
+use super::picture::Picture;
 use leg_base::atomic_file;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -7,14 +8,29 @@ use plotters::style::{FontStyle, register_font};
 use std::io;
 use std::path::{Path, PathBuf};
 
-pub(super) const WIDTH_PX: u32 = 1280;
-pub(super) const HEIGHT_PX: u32 = 800;
-pub(super) const MARGIN_PX: u32 = 18;
-const TITLE_PX: u32 = 30;
-pub(super) const AXIS_TITLE_PX: u32 = 24;
-pub(super) const LABEL_PX: u32 = 22;
-/// Red, green and blue: what a [`BitMapBackend`] paints into a buffer.
-const BYTES_PER_PIXEL: usize = 3;
+/// Size of a picture, pixels.
+const SIZE_PX: [u32; 2] = [1280, 800];
+/// Units of a drawing in a pixel of its picture. Plotters rounds to whole ones: in pixels a flat curve would be a staircase.
+const UNITS: u32 = 4;
+
+/// So many pixels in units of the drawing.
+pub(super) const fn px(pixels: u32) -> u32 {
+    pixels * UNITS
+}
+
+/// The same, of an offset.
+pub(super) const fn offset_px(pixels: i32) -> i32 {
+    pixels * UNITS as i32
+}
+
+pub(super) const WIDTH: u32 = px(SIZE_PX[0]);
+pub(super) const MARGIN: u32 = px(18);
+const TITLE: u32 = px(30);
+pub(super) const AXIS_TITLE: u32 = px(24);
+pub(super) const LABEL: u32 = px(22);
+pub(super) const TICK: u32 = px(5);
+/// The thinnest line.
+pub(super) const THIN: u32 = px(1);
 pub(super) const GRID: RGBColor = RGBColor(225, 225, 225);
 
 pub(super) type Area<B> = DrawingArea<B, Shift>;
@@ -42,9 +58,15 @@ pub enum PlotError {
     /// The drawing could not be made.
     #[error("the chart cannot be drawn ({0})")]
     Draw(String),
+    /// The drawing could not be read again.
+    #[error("the chart's drawing cannot be read ({0})")]
+    Svg(#[from] resvg::usvg::Error),
     /// The bitmap could not be made.
     #[error("the chart has no bitmap ({0})")]
     Png(#[from] png::EncodingError),
+    /// The page could not be made.
+    #[error("the chart has no page ({0})")]
+    Pdf(String),
 }
 
 /// A picture whose parts are known.
@@ -53,15 +75,13 @@ pub(super) trait Painter {
     fn paint<B: DrawingBackend>(&self, root: &Area<B>) -> Drawn<B>;
 }
 
-/// Paints `stem.svg` and `stem.png`, each whole or not at all, and names the first.
-pub(super) fn save_both(painter: &impl Painter, stem: &Path) -> Result<PathBuf, PlotError> {
-    let size = (WIDTH_PX, HEIGHT_PX);
-    let mut vectors = String::new();
-    draw(SVGBackend::with_string(&mut vectors, size), painter)?;
-    let svg = write(stem.with_extension("svg"), vectors.as_bytes())?;
-    let mut pixels = vec![0; (WIDTH_PX * HEIGHT_PX) as usize * BYTES_PER_PIXEL];
-    draw(BitMapBackend::with_buffer(&mut pixels, size), painter)?;
-    write(stem.with_extension("png"), &png(&pixels)?)?;
+/// Paints `stem.svg`, and from it `stem.png` and `stem.pdf`, each whole or not at all, and names the first.
+pub(super) fn save(painter: &impl Painter, stem: &Path) -> Result<PathBuf, PlotError> {
+    let drawing = draw(painter)?;
+    let picture = Picture::new(&drawing)?;
+    let svg = write(stem.with_extension("svg"), drawing.as_bytes())?;
+    write(stem.with_extension("png"), &picture.png()?)?;
+    write(stem.with_extension("pdf"), &picture.pdf()?)?;
     Ok(svg)
 }
 
@@ -76,23 +96,29 @@ fn write(file: PathBuf, bytes: &[u8]) -> Result<PathBuf, PlotError> {
     }
 }
 
-fn png(pixels: &[u8]) -> Result<Vec<u8>, PlotError> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, WIDTH_PX, HEIGHT_PX);
-    encoder.set_color(png::ColorType::Rgb);
-    let mut image = encoder.write_header()?;
-    image.write_image_data(pixels)?;
-    image.finish()?;
-    Ok(bytes)
-}
-
-fn draw<B: DrawingBackend>(backend: B, painter: &impl Painter) -> Result<(), PlotError> {
+/// The picture as SVG.
+fn draw(painter: &impl Painter) -> Result<String, PlotError> {
     provide_font()?;
-    let root = backend.into_drawing_area();
+    let [width, height] = SIZE_PX.map(px);
+    let mut drawing = String::new();
+    let root = SVGBackend::with_string(&mut drawing, (width, height)).into_drawing_area();
     painter
         .paint(&root)
         .and_then(|()| root.present())
-        .map_err(|error| PlotError::Draw(error.to_string()))
+        .map_err(|error| PlotError::Draw(error.to_string()))?;
+    drop(root);
+    Ok(sized(&drawing))
+}
+
+/// The same in its size. Its lines turn round: a mitre reaches beyond the points of a spike, and shows a value that is not there.
+fn sized(drawing: &str) -> String {
+    let [width, height] = SIZE_PX.map(px);
+    let [shown_width, shown_height] = SIZE_PX;
+    drawing.replacen(
+        &format!(r#"width="{width}" height="{height}""#),
+        &format!(r#"width="{shown_width}" height="{shown_height}" stroke-linejoin="round""#),
+        1,
+    )
 }
 
 /// A font of our own: a bare machine has none.
@@ -107,8 +133,9 @@ pub(super) fn titled<B: DrawingBackend>(
     title: &str,
 ) -> Result<Area<B>, DrawingAreaErrorKind<B::ErrorType>> {
     root.fill(&WHITE)?;
-    root.margin(MARGIN_PX, MARGIN_PX, MARGIN_PX, 0)
-        .titled(title, ("sans-serif", TITLE_PX))
+    let body = root.margin(MARGIN, MARGIN, MARGIN, 0);
+    let body = body.titled(title, ("sans-serif", TITLE))?;
+    Ok(body.margin(px(8), 0, 0, 0))
 }
 
 /// The smallest and the largest value.

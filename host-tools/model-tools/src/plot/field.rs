@@ -1,17 +1,23 @@
 //! Maps of a quantity over the workspace, flat or seen from above, with its scale beside them.
 
 mod bands;
+mod contours;
 mod flat;
-mod isolines;
+mod layers;
 mod polar;
-mod runs;
 pub(crate) mod scale;
 
-use super::canvas::{self, Area, Drawn, MARGIN_PX, Painter, PlotError, WIDTH_PX, range};
+use super::canvas::{self, Area, Drawn, MARGIN, Painter, PlotError, WIDTH, px, range};
 use bands::Bands;
 use plotters::prelude::*;
-use scale::SCALE_WIDTH_PX;
+use scale::SCALE_WIDTH;
 use std::path::{Path, PathBuf};
+
+/// Width of the lines of equal value.
+const LINE: u32 = px(2);
+
+/// So many places between two poses tell what values are between them.
+const FINER: usize = 6;
 
 /// A quantity over azimuth and tilt.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,18 +86,18 @@ pub enum Layout {
     Polar,
 }
 
-/// Draws the map as `stem.svg` and `stem.png` (1280 × 800 pixels), each whole or not at all, and names the first.
+/// Draws the map as `stem.svg`, `stem.png` (1280 × 800 pixels) and `stem.pdf`, each whole or not at all, and names the first.
 ///
 /// # Errors
 /// [`PlotError::Empty`] if nothing is known of any pose or the rows do not fit; a file that cannot be written.
-pub fn save_both(field: &PlotField, layout: Layout, stem: &Path) -> Result<PathBuf, PlotError> {
+pub fn save(field: &PlotField, layout: Layout, stem: &Path) -> Result<PathBuf, PlotError> {
     let bands = field.bands()?;
     let painter = FieldPainter {
         field,
         bands,
         layout,
     };
-    canvas::save_both(&painter, stem)
+    canvas::save(&painter, stem)
 }
 
 /// A field whose bands are known.
@@ -105,7 +111,7 @@ impl Painter for FieldPainter<'_> {
     fn paint<B: DrawingBackend>(&self, root: &Area<B>) -> Drawn<B> {
         let Self { field, bands, .. } = self;
         let body = canvas::titled(root, &field.title)?;
-        let (map, scale) = body.split_horizontally(WIDTH_PX - SCALE_WIDTH_PX - MARGIN_PX);
+        let (map, scale) = body.split_horizontally(WIDTH - SCALE_WIDTH - MARGIN);
         match self.layout {
             Layout::Flat => flat::paint(field, bands, &map)?,
             Layout::Polar => polar::paint(field, bands, &map)?,
@@ -123,7 +129,7 @@ impl PlotField {
             return Err(PlotError::Empty);
         }
         let poses = self.samples.iter().flatten().filter_map(PoseSample::shown);
-        match range(poses.chain(runs::values(self))) {
+        match range(poses.chain(self.values_between())) {
             Some((low, high)) if low.is_finite() && high.is_finite() => Ok(Bands::new(low, high)),
             // Where the values would be says something, too.
             None if self.samples.iter().any(Option::is_some) => Ok(Bands::none()),
@@ -131,9 +137,30 @@ impl PlotField {
         }
     }
 
+    /// Values that are shown between the poses: towards the border they go beyond those of the poses.
+    fn values_between(&self) -> impl Iterator<Item = f64> {
+        let [columns, rows] = [self.azimuths, self.tilts_deg.len() - 1].map(|count| count * FINER);
+        let middle = |index: usize| (index as f64 + 0.5) / FINER as f64;
+        let places = (0..rows).flat_map(move |row| (0..columns).map(move |column| [column, row]));
+        let samples = places.filter_map(move |place| {
+            let [column, row] = place.map(middle);
+            self.interpolate(column, row)
+        });
+        samples.filter_map(|sample| sample.shown())
+    }
+
     /// The greatest tilt, degrees.
     fn tilt_max_deg(&self) -> f64 {
         self.tilts_deg.last().copied().unwrap_or_default()
+    }
+
+    /// Width and height of the square between four poses, degrees.
+    fn square_deg(&self) -> (f64, f64) {
+        let rows = self.tilts_deg.len() - 1;
+        (
+            360.0 / self.azimuths as f64,
+            self.tilt_max_deg() / rows as f64,
+        )
     }
 
     /// What is known of a place between the poses: azimuth in columns, tilt in rows. None beside a pose without a

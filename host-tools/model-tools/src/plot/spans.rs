@@ -1,7 +1,7 @@
 //! Spans of a chart's horizontal axis: shaded and labelled, as the states of a leg over time.
 
 use super::Plane;
-use super::canvas::Drawn;
+use super::canvas::{Drawn, offset_px, px};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::ops::Range;
@@ -25,10 +25,12 @@ const SHADES: [RGBColor; 6] = [
     RGBColor(247, 236, 243),
 ];
 
-const SPAN_LABEL_PX: i32 = 18;
+const SPAN_LABEL: u32 = px(18);
+/// Not black with less of it: a page lists what is transparent in an order of its own each time.
+const SPAN_LABEL_COLOUR: RGBColor = RGBColor(95, 95, 95);
 
 /// Width of a letter at most, on the average.
-const LETTER_PX: i32 = 10;
+const LETTER: i32 = offset_px(10);
 
 /// Part of the vertical axis that the labels take.
 pub(super) const LABEL_PART: f64 = 0.06;
@@ -60,14 +62,14 @@ pub(super) fn label<B: DrawingBackend>(
     y: &Range<f64>,
     context: &mut ChartContext<B, Plane>,
 ) -> Drawn<B> {
-    let style = ("sans-serif", SPAN_LABEL_PX)
+    let style = ("sans-serif", SPAN_LABEL)
         .into_font()
-        .color(&BLACK.mix(0.6))
+        .color(&SPAN_LABEL_COLOUR)
         .pos(Pos::new(HPos::Center, VPos::Top));
     let top = y.end - 0.01 * (y.end - y.start);
     for span in spans {
         let [begin, end] = [span.x.start, span.x.end].map(|x| context.backend_coord(&(x, top)).0);
-        let width = LETTER_PX * span.label.chars().count() as i32;
+        let width = LETTER * span.label.chars().count() as i32;
         if end - begin >= width {
             let middle = (span.x.start + span.x.end) / 2.0;
             let text = Text::new(span.label.clone(), (middle, top), style.clone());

@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::canvas::WIDTH_PX;
-use super::{COLOURS, Chart, ChartLine, PlotError, Span, save_both};
+use super::{COLOURS, Chart, ChartLine, PlotError, Span, save};
+use resvg::tiny_skia::{Color, Pixmap, PremultipliedColorU8};
 
 fn chart(points: Vec<(f64, f64)>) -> Chart {
     Chart {
@@ -24,7 +24,7 @@ fn chart(points: Vec<(f64, f64)>) -> Chart {
 fn the_svg_names_everything() {
     let directory = tempfile::tempdir().unwrap();
     let chart = chart(vec![(-30.0, 8.0), (0.0, 0.0), (30.0, 8.0)]);
-    let path = save_both(&chart, &directory.path().join("chart")).unwrap();
+    let path = save(&chart, &directory.path().join("chart")).unwrap();
     let svg = std::fs::read_to_string(path).unwrap();
     for text in [
         "Title",
@@ -38,6 +38,33 @@ fn the_svg_names_everything() {
     }
 }
 
+/// One page as wide as a page's text, with its words as text: a reader finds them.
+#[test]
+fn the_pdf_is_a_page_with_text() {
+    let directory = tempfile::tempdir().unwrap();
+    let pdf = |title: &str| {
+        let chart = Chart {
+            title: title.into(),
+            ..chart(vec![(0.0, 0.0), (1.0, 1.0)])
+        };
+        let svg = save(&chart, &directory.path().join("chart")).unwrap();
+        std::fs::read(svg.with_extension("pdf")).unwrap()
+    };
+    let page = pdf("A title");
+    let text = String::from_utf8_lossy(&page);
+    assert!(text.starts_with("%PDF-") && text.trim_end().ends_with("%%EOF"));
+    for part in [
+        "/MediaBox [0 0 576 360]",
+        "DejaVuSans",
+        "/ToUnicode",
+        "/Count 1",
+    ] {
+        assert!(text.contains(part), "{part}");
+    }
+    assert_eq!(page, pdf("A title"), "alike to the byte");
+    assert_ne!(page, pdf("Another title"));
+}
+
 /// A bare machine has no font.
 #[test]
 fn the_png_shows_its_text_and_a_flat_line_has_room() {
@@ -47,7 +74,7 @@ fn the_png_shows_its_text_and_a_flat_line_has_room() {
             title: title.into(),
             ..chart(vec![(0.0, 0.0), (1.0, 0.0)])
         };
-        let svg = save_both(&flat, &directory.path().join("chart")).unwrap();
+        let svg = save(&flat, &directory.path().join("chart")).unwrap();
         std::fs::read(svg.with_extension("png")).unwrap()
     };
     let (empty, titled) = (png(""), png("A title"));
@@ -60,10 +87,7 @@ fn nothing_to_draw_is_refused() {
     let directory = tempfile::tempdir().unwrap();
     let stem = directory.path().join("never");
     for points in [vec![], vec![(1.0, 1.0)]] {
-        assert!(matches!(
-            save_both(&chart(points), &stem),
-            Err(PlotError::Empty)
-        ));
+        assert!(matches!(save(&chart(points), &stem), Err(PlotError::Empty)));
     }
     assert!(!stem.with_extension("svg").exists());
 }
@@ -83,16 +107,14 @@ fn a_spike_shows_no_value_that_is_not_there() {
         ];
         let mut chart = chart(points);
         chart.lines[0].marks = vec![(10.0, 1.0)];
-        let svg = save_both(&chart, &directory.path().join("chart")).unwrap();
-        let file = std::fs::File::open(svg.with_extension("png")).unwrap();
-        let mut reader = png::Decoder::new(std::io::BufReader::new(file))
-            .read_info()
-            .unwrap();
-        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
-        reader.next_frame(&mut pixels).unwrap();
-        let rows = pixels.chunks(3 * WIDTH_PX as usize);
+        let svg = save(&chart, &directory.path().join("chart")).unwrap();
+        let pixels = Pixmap::load_png(svg.with_extension("png")).unwrap();
         let [line, ..] = COLOURS;
-        let shown = |row: &[u8]| row.as_chunks::<3>().0.contains(&[line.0, line.1, line.2]);
+        let line = Color::from_rgba8(line.0, line.1, line.2, 255)
+            .premultiply()
+            .to_color_u8();
+        let rows = pixels.pixels().chunks(pixels.width() as usize);
+        let shown = |row: &[PremultipliedColorU8]| row.contains(&line);
         rows.enumerate()
             .filter(|(_, row)| shown(row))
             .map(|(number, _)| number)
@@ -120,8 +142,12 @@ fn spans_are_shaded_and_labelled() {
         ],
         ..chart(vec![(5.0, 1.0), (9.0, 2.0)])
     };
-    let path = save_both(&chart, &directory.path().join("chart")).unwrap();
-    let svg = std::fs::read_to_string(path).unwrap();
+    let path = save(&chart, &directory.path().join("chart")).unwrap();
+    let svg = std::fs::read_to_string(&path).unwrap();
+    let page = std::fs::read(path.with_extension("pdf")).unwrap();
+    save(&chart, &directory.path().join("chart")).unwrap();
+    let again = std::fs::read(path.with_extension("pdf")).unwrap();
+    assert!(page == again, "alike to the byte");
     let count = |text: &str| svg.matches(text).count();
     assert_eq!(
         ["homing", "short", "active", "Subtitle"].map(count),

@@ -19,6 +19,7 @@ struct Reported {
     homed: bool,
     failed_tendon: u8,
     moving: bool,
+    direction_commanded: [f32; 2],
     direction_reference: [f32; 2],
     direction: [f32; 2],
     residual_m: f32,
@@ -29,6 +30,8 @@ struct Reported {
     motor_currents_a: [f32; 3],
     supply_v: f32,
     temperature_c: f32,
+    pretension_commanded_n: Option<f32>,
+    stiffness_commanded_nm_per_rad: Option<f32>,
     pretension_n: f32,
     stiffness_nm_per_rad: f32,
     load_nm: [f32; 2],
@@ -51,6 +54,7 @@ pub fn telemetry(json: &[u8]) -> Result<Telemetry<f32>, String> {
         homed: reported.homed,
         failed_tendon: reported.failed_tendon,
         moving: reported.moving,
+        commanded: reported.direction_commanded,
         target: reported.direction_reference,
         pose: reported.direction,
         residual_m: reported.residual_m,
@@ -61,6 +65,8 @@ pub fn telemetry(json: &[u8]) -> Result<Telemetry<f32>, String> {
         motor_currents_a: reported.motor_currents_a,
         supply_v: reported.supply_v,
         temperature_c: reported.temperature_c,
+        pretension_commanded_n: reported.pretension_commanded_n,
+        stiffness_commanded_nm_per_rad: reported.stiffness_commanded_nm_per_rad,
         pretension_n: reported.pretension_n,
         stiffness_nm_per_rad: reported.stiffness_nm_per_rad,
         load_nm: reported.load_nm,
@@ -83,13 +89,13 @@ fn fault_set(names: &[String]) -> Result<FaultSet, String> {
 /// The signals of which a comparison is made.
 #[derive(Deserialize)]
 struct Tips {
+    tip_commanded_mm: [f64; 3],
     tip_reference_mm: [f64; 3],
     tip_estimated_mm: [f64; 3],
 }
 
 #[derive(Deserialize)]
 struct Truths {
-    tip_commanded_mm: [f64; 3],
     tip_true_mm: [f64; 3],
     tensions_true_n: [f64; 3],
     payload_true_kg: f64,
@@ -104,7 +110,7 @@ pub fn comparison(report: &[u8], simulated: &[u8]) -> Result<Comparison, String>
     let tips: Tips = serde_json::from_slice(report).map_err(|error| error.to_string())?;
     let truths: Truths = serde_json::from_slice(simulated).map_err(|error| error.to_string())?;
     Ok(Comparison {
-        tip_commanded_mm: truths.tip_commanded_mm,
+        tip_commanded_mm: tips.tip_commanded_mm,
         tip_reference_mm: tips.tip_reference_mm,
         tip_estimated_mm: tips.tip_estimated_mm,
         tip_true_mm: truths.tip_true_mm,

@@ -9,6 +9,7 @@ use leg_base::tick_time::seconds;
 use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
+use leg_rig::number::decimal;
 
 /// What of a leg's settings a report needs.
 #[derive(Clone, Debug)]
@@ -42,6 +43,7 @@ impl LegConstants {
 #[derive(Clone, Copy, Debug)]
 pub struct Report {
     telemetry: Telemetry<f32>,
+    tip_commanded_mm: [f64; 3],
     tip_reference_mm: [f64; 3],
     tip_estimated_mm: [f64; 3],
     tension_bounds_n: [f64; 2],
@@ -60,6 +62,7 @@ impl Report {
             .and_then(|model| model.sag_m(telemetry));
         Self {
             telemetry: *telemetry,
+            tip_commanded_mm: leg.tip_mm(telemetry.commanded),
             tip_reference_mm: leg.tip_mm(telemetry.target),
             tip_estimated_mm: leg.tip_mm(telemetry.pose),
             tension_bounds_n: leg.tension_bounds_n,
@@ -79,10 +82,11 @@ impl Report {
         }
     }
 
-    /// The same, its tips as the tick before left them: beside the true one of a simulated leg.
+    /// The same, its tips as the tick before left them, beside the true one of a simulated leg, whose host knows where it sent the tip.
     #[must_use]
     pub fn compared(self, comparison: &Comparison) -> Self {
         Self {
+            tip_commanded_mm: comparison.tip_commanded_mm,
             tip_reference_mm: comparison.tip_reference_mm,
             tip_estimated_mm: comparison.tip_estimated_mm,
             ..self
@@ -119,6 +123,14 @@ signals! {
         = |at| Some(at.telemetry.failed_tendon.into());
     State Flag moving "Whether the trajectory moves."
         = |at| at.telemetry.moving;
+    Commanded Number azimuth_commanded_deg "Where it was sent to lean, 0 to 360°: by the last move; the reference along a path, after a hold and before the first move."
+        = |at| angles_deg(at.telemetry.commanded.map(f64::from))[0];
+    Commanded Number tilt_commanded_deg "How far, degrees."
+        = |at| angles_deg(at.telemetry.commanded.map(f64::from))[1];
+    Commanded SingleTwo direction_commanded "The same: x and y of the unit vector along the leg."
+        = |at| at.telemetry.commanded;
+    Commanded Three tip_commanded_mm "Where that has the tip, mm; of a simulation as the host has it, along a path its point at that time."
+        = |at| at.tip_commanded_mm;
     Estimated Number azimuth_deg "Where the leg leans, 0 to 360°."
         = |at| angles_deg(at.telemetry.pose.map(f64::from))[0];
     Estimated Number tilt_deg "How far it leans, degrees."
@@ -141,6 +153,10 @@ signals! {
         = |at| at.telemetry.target_tensions_n;
     Context Two tension_bounds_n "Lowest and highest tension of the settings, N."
         = |at| at.tension_bounds_n;
+    Commanded Number pretension_commanded_n "Pretension that was commanded, N; none where a stiffness was."
+        = |at| at.telemetry.pretension_commanded_n.map_or(f64::NAN, decimal);
+    Commanded Number stiffness_commanded_nm_per_rad "Bending stiffness that was commanded, N·m/rad; none where a pretension was."
+        = |at| at.telemetry.stiffness_commanded_nm_per_rad.map_or(f64::NAN, decimal);
     Reference Single pretension_n "Pretension of the target, N; 0 before the first."
         = |at| at.telemetry.pretension_n;
     Reference Single stiffness_nm_per_rad "Bending stiffness at that pretension, N·m/rad."

@@ -27,8 +27,6 @@ impl Simulated {
 signals! {
     /// What is known of a simulated leg.
     SIMULATED_SIGNALS of Simulated;
-    Commanded Three tip_commanded_mm "Where the host has sent the tip: the end of a move, or the point of a path at that time; the reference after a hold, mm."
-        = |at| at.comparison.tip_commanded_mm;
     True Three tip_true_mm "Where the tip is, mm."
         = |at| at.comparison.tip_true_mm;
     True Number tip_error_mm "Distance of the true tip from where it was sent, mm."

@@ -48,6 +48,7 @@ impl Bands {
     }
 
     /// The band of a value.
+    #[cfg(test)]
     pub(super) fn band(&self, value: f64) -> usize {
         let inner = self.inner().iter();
         inner.filter(|level| value >= **level).count()

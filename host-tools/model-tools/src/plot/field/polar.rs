@@ -1,10 +1,9 @@
 //! From above: azimuth round, tilt outwards.
 
-use super::PlotField;
 use super::bands::Bands;
-use super::isolines::{LINE_PX, isolines};
-use super::runs::{Run, runs};
-use crate::plot::canvas::{Area, Drawn, LABEL_PX};
+use super::layers::{Layer, layers};
+use super::{LINE, PlotField};
+use crate::plot::canvas::{Area, Drawn, LABEL, THIN, offset_px};
 use leg_base::angles;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -15,8 +14,8 @@ const ROOM: f64 = 1.14;
 /// A piece of a circle is drawn in steps of this, degrees.
 const ARC_DEG: f64 = 2.0;
 
-/// How far a piece reaches under the next, in parts of the radius.
-const OVERLAP: f64 = 0.006;
+/// Width of rings and spokes: less than a pixel, so that the colours show through.
+const SPOKE: u32 = THIN / 2;
 
 pub(super) fn paint<B: DrawingBackend>(
     field: &PlotField,
@@ -30,28 +29,23 @@ pub(super) fn paint<B: DrawingBackend>(
     let square = area.margin(top, height - side - top, left, width - side - left);
     let reach = -ROOM * edge..ROOM * edge;
     let mut chart = ChartBuilder::on(&square).build_cartesian_2d(reach.clone(), reach)?;
-    for run in runs(field, bands) {
-        // The next row paints over what is too much: no gaps between the pieces.
-        let run = Run {
-            tilts_deg: (
-                run.tilts_deg.0,
-                (run.tilts_deg.1 + OVERLAP * edge).min(edge),
-            ),
-            ..run
-        };
-        let colour = run.shade.colour(bands);
-        chart.draw_series([Polygon::new(sector(&run), colour.filled())])?;
+    for layer in layers(field, bands) {
+        match layer {
+            Layer::Area(outline, colour) => {
+                chart.draw_series([Polygon::new(bent(&outline), colour.filled())])?;
+            }
+            Layer::Line(points) => {
+                let line = LineSeries::new(bent(&points), BLACK.stroke_width(LINE));
+                chart.draw_series(line)?;
+            }
+        }
     }
-    for line in isolines(field, bands) {
-        let points = line.into_iter().map(|(azimuth, tilt)| place(azimuth, tilt));
-        chart.draw_series(LineSeries::new(points, BLACK.stroke_width(LINE_PX)))?;
-    }
-    let text = ("sans-serif", LABEL_PX)
+    let text = ("sans-serif", LABEL)
         .into_text_style(area)
         .pos(Pos::new(HPos::Center, VPos::Center));
     for azimuth in (0..360).step_by(30).map(f64::from) {
         let spoke = [place(azimuth, 0.0), place(azimuth, edge)];
-        chart.draw_series(LineSeries::new(spoke, WHITE.mix(0.5).stroke_width(1)))?;
+        chart.draw_series(LineSeries::new(spoke, WHITE.stroke_width(SPOKE)))?;
         let label_place = place(azimuth, 1.08 * edge);
         chart.draw_series([Text::new(
             format!("{azimuth:.0}°"),
@@ -60,16 +54,14 @@ pub(super) fn paint<B: DrawingBackend>(
         )])?;
     }
     for ring in rings(edge) {
-        chart.draw_series(LineSeries::new(
-            circle(ring),
-            WHITE.mix(0.5).stroke_width(1),
-        ))?;
+        chart.draw_series(LineSeries::new(circle(ring), WHITE.stroke_width(SPOKE)))?;
     }
-    chart.draw_series(LineSeries::new(circle(edge), BLACK.stroke_width(1)))?;
+    chart.draw_series(LineSeries::new(circle(edge), BLACK.stroke_width(THIN)))?;
+    let (wide, high) = (offset_px(22), offset_px(13));
     for ring in rings(edge) {
         // On white: no one colour of text can be read on every band.
         let label = EmptyElement::at(place(75.0, ring))
-            + Rectangle::new([(-22, -13), (22, 13)], WHITE.mix(0.85).filled())
+            + Rectangle::new([(-wide, -high), (wide, high)], WHITE.filled())
             + Text::new(format!("{ring:.0}°"), (0, 0), text.clone());
         chart.draw_series([label])?;
     }
@@ -94,13 +86,21 @@ fn place(azimuth_deg: f64, tilt_deg: f64) -> (f64, f64) {
     (tilt_deg * x, tilt_deg * y)
 }
 
-/// The outline of a run: along its outer arc and back along the inner one.
-fn sector(run: &Run) -> Vec<(f64, f64)> {
-    let (first, last) = run.azimuths_deg;
-    let steps = ((last - first) / ARC_DEG).ceil().max(1.0) as usize;
-    let azimuth = |step: usize| first + (last - first) * step as f64 / steps as f64;
-    let (inside, outside) = run.tilts_deg;
-    let outer = (0..=steps).map(|step| place(azimuth(step), outside));
-    let inner = (0..=steps).rev().map(|step| place(azimuth(step), inside));
-    outer.chain(inner).collect()
+/// Points as seen from above, with places between those that are far apart: a tilt all round is a circle there.
+fn bent(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let mut seen = Vec::new();
+    for (from, to) in points.iter().zip(points.iter().skip(1)) {
+        let steps = ((to.0 - from.0).abs() / ARC_DEG).ceil().max(1.0);
+        let part = |step: u32| f64::from(step) / steps;
+        let between = |part: f64| {
+            (
+                from.0 + (to.0 - from.0) * part,
+                from.1 + (to.1 - from.1) * part,
+            )
+        };
+        let places = (0..steps as u32).map(part).map(between);
+        seen.extend(places.map(|(azimuth, tilt)| place(azimuth, tilt)));
+    }
+    seen.extend(points.last().map(|(azimuth, tilt)| place(*azimuth, *tilt)));
+    seen
 }

@@ -1,19 +1,21 @@
 //! The colours of a map with the levels between them: those of its lines.
 
 use super::bands::Bands;
-use super::runs::{BORDER, EXTERIOR, NO_RESULT};
+use super::layers::{BORDER, EXTERIOR, NO_RESULT};
 use super::{PlotField, PoseSample};
-use crate::plot::canvas::{Area, Drawn, LABEL_PX};
+use crate::plot::canvas::{Area, Drawn, LABEL, THIN, offset_px, px};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-pub(super) const SCALE_WIDTH_PX: u32 = 310;
-const LEFT_PX: i32 = 30;
-const BAR_PX: i32 = 36;
-const TOP_PX: i32 = 80;
+pub(super) const SCALE_WIDTH: u32 = px(310);
+const LEFT: i32 = offset_px(30);
+const BAR: i32 = offset_px(36);
+const TOP: i32 = offset_px(80);
 /// Below the bar, for what has no colour.
-const LEGEND_PX: i32 = 130;
-const LINE_PX: i32 = 32;
+const LEGEND: i32 = offset_px(130);
+const LINE: i32 = offset_px(32);
+/// Between a colour and its words.
+const GAP: i32 = offset_px(10);
 
 pub(super) fn paint<B: DrawingBackend>(
     field: &PlotField,
@@ -22,17 +24,17 @@ pub(super) fn paint<B: DrawingBackend>(
 ) -> Drawn<B> {
     let heading = [(&field.quantity, 1), (&field.unit, 0)];
     for (words, lines_above) in heading {
-        let y = TOP_PX - 26 - LINE_PX * lines_above;
-        area.draw(&Text::new(words.as_str(), (LEFT_PX, y), text(area)))?;
+        let y = TOP - offset_px(26) - LINE * lines_above;
+        area.draw(&Text::new(words.as_str(), (LEFT, y), text(area)))?;
     }
     let (_, height) = area.dim_in_pixel();
-    let step = (height as i32 - TOP_PX - LEGEND_PX) / bands.count().max(1) as i32;
-    let bottom = TOP_PX + step * bands.count() as i32;
+    let step = (height as i32 - TOP - LEGEND) / bands.count().max(1) as i32;
+    let bottom = TOP + step * bands.count() as i32;
     for band in 0..bands.count() {
         let y = bottom - step * band as i32;
-        let corners = [(LEFT_PX, y - step), (LEFT_PX + BAR_PX, y)];
+        let corners = [(LEFT, y - step), (LEFT + BAR, y)];
         area.draw(&Rectangle::new(corners, bands.colour(band).filled()))?;
-        area.draw(&Rectangle::new(corners, BLACK.stroke_width(1)))?;
+        area.draw(&Rectangle::new(corners, BLACK.stroke_width(THIN)))?;
     }
     for (level, label) in bands.labels().iter().enumerate() {
         label_at(area, label, bottom - step * level as i32)?;
@@ -60,8 +62,9 @@ fn paint_legend<B: DrawingBackend>(field: &PlotField, area: &Area<B>, bottom: i3
     ];
     let shown = entries.into_iter().filter(|(shown, ..)| *shown);
     for ((_, colour, words), line) in shown.zip(0..) {
-        let y = bottom + 45 + (LINE_PX + 4) * line;
-        let corners = [(LEFT_PX, y - 12), (LEFT_PX + BAR_PX, y + 12)];
+        let y = bottom + offset_px(45) + (LINE + offset_px(4)) * line;
+        let half = offset_px(12);
+        let corners = [(LEFT, y - half), (LEFT + BAR, y + half)];
         area.draw(&Rectangle::new(corners, colour.filled()))?;
         label_at(area, words, y)?;
     }
@@ -69,11 +72,11 @@ fn paint_legend<B: DrawingBackend>(field: &PlotField, area: &Area<B>, bottom: i3
 }
 
 fn label_at<B: DrawingBackend>(area: &Area<B>, words: &str, y: i32) -> Drawn<B> {
-    area.draw(&Text::new(words, (LEFT_PX + BAR_PX + 10, y), text(area)))
+    area.draw(&Text::new(words, (LEFT + BAR + GAP, y), text(area)))
 }
 
 fn text<B: DrawingBackend>(area: &Area<B>) -> TextStyle<'static> {
-    ("sans-serif", LABEL_PX)
+    ("sans-serif", LABEL)
         .into_text_style(area)
         .pos(Pos::new(HPos::Left, VPos::Center))
 }
@@ -89,6 +92,6 @@ pub(crate) fn room_px(words: &str, in_legend: bool) -> i32 {
     let width = area
         .estimate_text_size(words, &text(&area))
         .map_or(i32::MAX, |(width, _)| width as i32);
-    let colour = if in_legend { BAR_PX + 10 } else { 0 };
-    SCALE_WIDTH_PX as i32 - LEFT_PX - colour - width
+    let colour = if in_legend { BAR + GAP } else { 0 };
+    (SCALE_WIDTH as i32 - LEFT - colour - width) / offset_px(1)
 }
