@@ -108,11 +108,13 @@ fn every_erratum_has_two_numbers_that_differ() {
 fn the_report_names_every_row_and_every_picture() {
     let directory = tempfile::tempdir().unwrap();
     let figures = draw(directory.path()).unwrap();
-    assert_eq!(figures.len(), 7);
+    assert_eq!(figures.len(), 8);
     let paper = Paper::compute().unwrap();
     let report = markdown(&paper, &figures);
     for (path, caption) in &figures {
-        assert!(path.exists() && path.with_extension("png").exists());
+        for kind in ["svg", "png", "pdf"] {
+            assert!(path.with_extension(kind).exists(), "{kind}");
+        }
         let name = path.file_name().unwrap().to_str().unwrap();
         assert!(report.contains(&format!("![{caption}]({name})")));
     }
