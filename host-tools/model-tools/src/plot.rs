@@ -2,11 +2,12 @@
 
 pub mod bode;
 mod canvas;
+mod error;
 pub mod field;
 mod picture;
 mod spans;
 
-pub use canvas::PlotError;
+pub use error::PlotError;
 pub use spans::Span;
 
 use canvas::{

@@ -16,5 +16,5 @@ for kg, published_mm in {0.0: 2.0, 0.5: 3.6, 1.0: 5.3, 2.0: 8.5}.items():  # wha
         leg.run(2.5)
         axis.plot(pose_deg, leg.truth()["tip_error_mm"], "o", color=line.get_color(), fillstyle="none")
 axis.set(title="Fig. 9: model (lines), published (x), simulated leg (o)", xlabel="tilt, °", ylabel="sag of the tip, mm")
-figure.legend(loc="outside right", title="payload")
+axis.legend(title="payload", loc="upper center")
 figure.savefig("fig9.png", dpi=120)

@@ -46,7 +46,7 @@ fn a_curve_is_not_written_without_its_plots_nor_they_without_it() {
     assert!(!both("taken.toml", "plots"));
     assert!(names(&directory.path().join("plots")).is_empty());
     assert!(both("new.toml", "plots"));
-    assert_eq!(names(&directory.path().join("plots")).len(), 4);
+    assert_eq!(names(&directory.path().join("plots")).len(), 6);
 }
 
 #[test]

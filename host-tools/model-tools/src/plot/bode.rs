@@ -1,9 +1,10 @@
 //! Bode plots: gain and phase over frequency.
 
 use super::canvas::{
-    self, AXIS_TITLE, Area, Drawn, GRID, LABEL, MARGIN, Painter, PlotError, THIN, TICK, WIDTH,
-    offset_px, px, range,
+    self, AXIS_TITLE, Area, Drawn, GRID, LABEL, MARGIN, Painter, THIN, TICK, WIDTH, offset_px, px,
+    range,
 };
+use super::error::PlotError;
 use super::{COLOURS, LEGEND_ROW, LEGEND_WIDTH, LINE};
 use plotters::coord::combinators::LogCoord;
 use plotters::coord::types::RangedCoordf64;

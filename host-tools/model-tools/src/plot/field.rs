@@ -7,7 +7,8 @@ mod layers;
 mod polar;
 pub(crate) mod scale;
 
-use super::canvas::{self, Area, Drawn, MARGIN, Painter, PlotError, WIDTH, px, range};
+use super::canvas::{self, Area, Drawn, MARGIN, Painter, WIDTH, px, range};
+use super::error::PlotError;
 use bands::Bands;
 use plotters::prelude::*;
 use scale::SCALE_WIDTH;

@@ -1,6 +1,6 @@
 //! An SVG as bitmap and as page: one drawing, three files.
 
-use super::PlotError;
+use super::error::PlotError;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::fontdb::{Database, Source};
 use resvg::usvg::{Options, Tree};

@@ -162,6 +162,8 @@ fn the_schema_describes_the_message() {
         &report(&reported(State::Held, FaultSet::NONE)),
     );
     assert!(properties.keys().eq(object.keys()));
+    let declared = REPORT_SIGNALS.iter().map(|signal| signal.name);
+    assert!(object.keys().eq(declared), "in the order of the table");
     assert_eq!(
         schema["required"].as_array().unwrap().len(),
         properties.len()

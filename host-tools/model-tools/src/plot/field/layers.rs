@@ -39,20 +39,21 @@ pub(super) fn layers(field: &PlotField, bands: &Bands) -> Vec<Layer> {
     let no_value = |sample: &Option<PoseSample>| sample.is_some_and(|known| known.value.is_none());
     layers.extend(squares(field, no_value));
     // What has no room at all hides what has none at this pretension.
-    let rooms: [(_, fn(&PoseSample) -> f64); 2] = [
-        (BORDER, |sample| sample.room),
-        (EXTERIOR, |sample| sample.room.max(sample.wider_room)),
-    ];
-    for (colour, room) in rooms {
-        // Where there is none left, but not less, is still inside.
-        let outside = grid(field, |sample| -room(sample)).above(f64::MIN_POSITIVE);
-        let areas = outside
-            .iter()
-            .map(|region| Layer::Area(region.outline(), colour));
-        layers.extend(areas);
-    }
+    layers.extend(outside(field, BORDER, |sample| sample.room));
+    layers.extend(outside(field, EXTERIOR, |sample| {
+        sample.room.max(sample.wider_room)
+    }));
     layers.extend(squares(field, Option::is_none));
     layers
+}
+
+/// Where there is less than no room: where none is left is still inside.
+fn outside(field: &PlotField, colour: RGBColor, room: fn(&PoseSample) -> f64) -> Vec<Layer> {
+    let regions = grid(field, |sample| -room(sample)).above(f64::MIN_POSITIVE);
+    let areas = regions
+        .iter()
+        .map(|region| Layer::Area(region.outline(), colour));
+    areas.collect()
 }
 
 /// The pieces of a line of which anything is shown: what is hidden would show at the edge of the map.
