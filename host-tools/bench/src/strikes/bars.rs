@@ -2,6 +2,7 @@
 
 use super::activity::Activity;
 use leg_sim::plant::Defect;
+use serde::Serialize;
 
 /// How far the leg may go beyond its maximum tension, as a part of it.
 const BEYOND: f64 = 0.1;
@@ -104,8 +105,8 @@ pub(super) struct Unstruck {
 }
 
 /// The bars of one strike.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Bars {
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Bars {
     /// Highest tension, N.
     pub tension_n: f64,
     /// The same while homing, N.
@@ -120,8 +121,21 @@ pub(super) struct Bars {
 }
 
 impl Bars {
+    /// The widest of a defect, for a page: those of a leg that pulls and goes as far as it may, and of one that is near its
+    /// maximum tension or not.
+    #[must_use]
+    pub fn of(defect: Defect, activity: Activity, f_max_n: f64, near_maximum: bool) -> Self {
+        let part = if near_maximum { 1.0 } else { 0.5 };
+        let before = Unstruck {
+            tensions_n: [0.2, 0.6, 1.0].map(|share| share * part * f_max_n),
+            highest_n: [part * f_max_n; 3],
+            travels_m: [1.0; 3],
+        };
+        Self::new(Some(defect), activity, f_max_n, &before)
+    }
+
     /// Of a defect of a leg with a maximum tension, N.
-    pub fn new(
+    pub(super) fn new(
         defect: Option<Defect>,
         activity: Activity,
         f_max_n: f64,
