@@ -196,12 +196,10 @@ const fn cuts_off(defect: Defect) -> bool {
     )
 }
 
-/// Whether what fails is cut off on a way that is too slow to swing on from.
+/// Whether what fails is cut off on a way that is too slow to swing on from. A leg that is led down before its tendons are paid out
+/// is as fast as one that moves.
 const fn is_slow(defect: Defect, activity: Activity) -> bool {
-    let slow = matches!(
-        activity,
-        Activity::Homing | Activity::RampingDown | Activity::Arming
-    );
+    let slow = matches!(activity, Activity::Homing | Activity::Arming);
     slow && matches!(
         defect,
         Defect::CurrentFullScale(_)
@@ -211,13 +209,12 @@ const fn is_slow(defect: Defect, activity: Activity) -> bool {
     )
 }
 
-/// Whether what fails moves a leg that homes, is paid out, or is armed again no farther than one on its way or at rest.
+/// Whether what fails moves a leg that homes or is paid out no farther than one on its way.
 const fn is_harmless(defect: Defect) -> bool {
     matches!(
         defect,
         Defect::CellHum(_)
             | Defect::CellGainStep(_)
-            | Defect::CurrentFullScale(_)
             | Defect::CurrentFullScaleDisabled(_)
             | Defect::CurrentZero(_)
             | Defect::HalfBridgeOpen(_)
@@ -255,15 +252,12 @@ fn gain_at_max_mm(defect: Option<Defect>, f_max_n: f64, highest_n: [f64; 3]) -> 
 fn tip_mm(defect: Option<Defect>, activity: Activity) -> f64 {
     let usual_mm = match activity {
         Activity::Homing if defect.is_some_and(|defect| !is_harmless(defect)) => LIFTED_MM,
-        Activity::RampingDown | Activity::Rearmed
+        Activity::RampingDown
             if defect.is_some_and(|defect| is_harmless(defect) || is_found_at_once(defect)) =>
         {
-            if activity.on_the_way() {
-                WAY_MM
-            } else {
-                REST_MM
-            }
+            WAY_MM
         }
+        Activity::Rearmed if defect.is_some_and(is_found_at_once) => REST_MM,
         Activity::RampingDown if defect.is_some() => ASIDE_MM,
         Activity::Rearmed if defect.is_some() => REARMED_MM,
         _ if activity.on_the_way() => WAY_MM,
