@@ -11,7 +11,7 @@ pub mod stalls;
 pub use leg_base::numeric;
 pub use leg_model_tools::plain_vectors as reference;
 
-use leg_boards::image::FirmwareImage;
+use leg_boards::image::{FirmwareImage, workspace_root};
 use leg_boards::qemu::{QemuConfig, QemuSession};
 use leg_boards::setup;
 use leg_model::{Error, Scalar, Tendon};
@@ -28,6 +28,18 @@ pub fn qemu() -> Result<QemuSession, Box<dyn std::error::Error>> {
         qemu,
         FirmwareImage::Qemu.build()?,
     ))?)
+}
+
+/// Requires words of a page of the repository, whatever the breaks of its lines.
+///
+/// # Panics
+/// Where the page has not got them.
+pub fn require_said(page: &str, words: &[String]) {
+    let text = std::fs::read_to_string(workspace_root().join(page)).unwrap_or_default();
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for words in words {
+        assert!(text.contains(words), "{page} does not say: {words}");
+    }
 }
 
 /// Memory of this process that is in use, MiB.

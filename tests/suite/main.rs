@@ -33,6 +33,8 @@ mod firmware {
     mod disarm;
     mod encoder_jump;
     mod residual;
+    mod safe_states;
+    mod safety_page;
     mod set_points;
     mod still_leg;
     mod trajectories;
@@ -57,6 +59,7 @@ mod sim {
     mod comparison;
     mod fmea_page;
     mod load_left_out;
+    mod lost_numbers;
     mod random_scenarios;
     pub mod ready_runs;
     mod ring_down;
@@ -64,7 +67,7 @@ mod sim {
     mod scenarios;
     mod station;
     mod station_defects;
-    mod station_stand;
+    pub mod station_stand;
     mod stiffness_floor;
     mod swing;
     mod ways_down;

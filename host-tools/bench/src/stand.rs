@@ -123,8 +123,7 @@ impl Stand {
         self.telemetry = Some(reply.telemetry);
         self.sensors = taken.sensors;
         self.motors = reply.motors;
-        let numbers = self.truth.tensions_n.iter().chain(self.truth.tip_m.iter());
-        if numbers.copied().all(f64::is_finite) {
+        if self.truth.is_finite() {
             Ok(())
         } else {
             Err("a number of the simulated leg is lost".into())

@@ -16,10 +16,11 @@ mod table;
 mod way;
 
 pub use activity::Activity;
+pub use bars::Bars;
 pub use case::Case;
 pub use false_alarms::{Alarm, Usage};
 pub use strike::{Moment, Struck};
-pub use table::{Row, Worst, rows};
+pub use table::{Measure, Measures, Row, Worst, rows};
 
 use crate::draw::mixed;
 use case::{SLOTS, kind_of, name_of};
@@ -40,8 +41,8 @@ pub struct Campaign {
     pub rigs: Vec<(String, RigFile)>,
     /// What the leg may be doing; empty for all.
     pub activities: Vec<Activity>,
-    /// The fault, by its name in scenarios, or `none`; all if left out.
-    pub fault: Option<String>,
+    /// The faults, by their names in scenarios, or `none`; empty for all.
+    pub faults: Vec<String>,
 }
 
 impl Campaign {
@@ -133,9 +134,6 @@ impl Campaign {
     }
 
     fn asks_for(&self, kind: Option<usize>) -> bool {
-        let Some(name) = &self.fault else {
-            return true;
-        };
-        name == name_of(kind)
+        self.faults.is_empty() || self.faults.iter().any(|name| name == name_of(kind))
     }
 }

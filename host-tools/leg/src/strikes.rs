@@ -32,15 +32,18 @@ pub(crate) struct Args {
     /// What the leg is doing; anything if left out.
     #[arg(long, value_name = "STATE", value_enum)]
     state: Vec<Activity>,
-    /// The fault, by its name in the table of scenarios.md, or `none`; every one if left out.
+    /// A fault, by its name in the table of scenarios.md, or `none`; every one if left out. It may be repeated.
     #[arg(long, value_name = "FAULT", value_parser = faults(), hide_possible_values = true)]
-    fault: Option<String>,
+    fault: Vec<String>,
+    /// Prints the worst of each measure beside its bar, in place of the worst and first names; JSON has both.
+    #[arg(long)]
+    bars: bool,
     /// Repeats the strike of a number, and shows its course. Seed and rigs have to be the same.
-    #[arg(long, value_name = "NUMBER", conflicts_with_all = ["count", "state", "fault"])]
+    #[arg(long, value_name = "NUMBER", conflicts_with_all = ["count", "state", "fault", "bars"])]
     only: Option<u64>,
     /// Uses each rig for so many hours of the leg's time without a fault instead: random moves, pushes up to 10 N, payloads up
     /// to 1 kg and commands, after which no fault may come.
-    #[arg(long, value_name = "HOURS", value_parser = positive, conflicts_with_all = ["count", "state", "fault", "only"])]
+    #[arg(long, value_name = "HOURS", value_parser = positive, conflicts_with_all = ["count", "state", "fault", "bars", "only"])]
     false_alarms: Option<f64>,
 }
 
@@ -52,7 +55,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         seed: args.seed,
         rigs: load_rigs(&args.rig)?,
         activities: args.state.clone(),
-        fault: args.fault.clone(),
+        faults: args.fault.clone(),
     };
     if let Some(index) = args.only {
         let (struck, course) = campaign.repeat(index, EVERY_S);
@@ -75,7 +78,12 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         passed: failed == 0,
         rows: &rows,
     };
-    options.report(&json, || report::table(&rows, struck.len(), args.seed))?;
+    let table = if args.bars {
+        report::by_bars
+    } else {
+        report::table
+    };
+    options.report(&json, || table(&rows, struck.len(), args.seed))?;
     require(failed, struck.len())
 }
 

@@ -57,8 +57,7 @@ impl<L: Link> HostedLeg<L> {
         let (taken, reply) = self.leg.advance(link)?;
         self.host.receive(&reply.link);
         let truth = self.leg.plant().truth();
-        let numbers = truth.tensions_n.iter().chain(truth.tip_m.iter());
-        if !numbers.copied().all(f64::is_finite) {
+        if !truth.is_finite() {
             return Err(EmulationError::NotFinite(time_s));
         }
         self.truth = truth;

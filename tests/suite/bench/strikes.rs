@@ -13,7 +13,7 @@ fn campaign(fault: &str) -> Campaign {
         seed: 1,
         rigs: READY_RIGS.iter().map(|rig| load(rig.name)).collect(),
         activities: Vec::new(),
-        fault: Some(fault.into()),
+        faults: vec![fault.into()],
     }
 }
 
@@ -40,7 +40,7 @@ fn a_sample_of_the_strikes_passes() {
     // Four rounds through the faults, fifteen a case, in each of eight states, with a slot of each case for none.
     const COUNT: u64 = 4 * 8 * 16;
     let every = Campaign {
-        fault: None,
+        faults: Vec::new(),
         ..campaign("none")
     };
     let struck = every.run(COUNT, || ());

@@ -23,15 +23,15 @@ fn settings(zero: Option<[f64; 3]>) -> Settings {
 }
 
 /// The leg, and what its sensors read.
-struct Bench {
-    leg: Leg<f64>,
+pub(super) struct Bench {
+    pub leg: Leg<f64>,
     settings: Settings,
-    sensors: Sensors,
+    pub sensors: Sensors,
     tick: u16,
 }
 
 impl Bench {
-    fn new(zero: Option<[f64; 3]>) -> Self {
+    pub fn new(zero: Option<[f64; 3]>) -> Self {
         let settings = settings(zero);
         let board = settings.board;
         let code = |value: f32| value as u16;
@@ -69,7 +69,7 @@ impl Bench {
     }
 
     /// With a host that keeps alive.
-    fn run(&mut self, ticks: u16) -> [f64; 3] {
+    pub fn run(&mut self, ticks: u16) -> [f64; 3] {
         let mut duty = [0.0; 3];
         for _ in 0..ticks {
             if (self.tick + 1).is_multiple_of(800) {
@@ -106,7 +106,9 @@ impl Bench {
         }
     }
 
-    fn obey(&mut self, command: Command) -> Result<(), CommandRefusal> {
+    pub fn obey(&mut self, command: Command) -> Result<(), CommandRefusal> {
+        // Those of a host that keeps alive.
+        while self.leg.outcome().is_some() {}
         assert!(self.leg.command(7, command));
         for _ in 0..CYCLE_TICKS {
             self.run(1);

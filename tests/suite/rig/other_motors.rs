@@ -3,11 +3,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use crate::sim::station_stand::{armed, pass, ticks};
 use leg_base::failure::Failure;
+use leg_bench::stand::move_to;
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::derived::derived_gains;
 use leg_rig::rig_file::{RigFile, RigText};
 use leg_sim::link::InProcess;
+use leg_sim::plant::Defect;
 use leg_sim::scenario::Scenario;
 use leg_sim::simulation::Simulation;
 
@@ -103,6 +106,38 @@ fn a_leg_works_with_windings_that_are_warm() {
         })
         .collect();
     assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+/// A motor that jams in a move is found on motors without a gear, too, where what holds the maximum tension takes nearly all that the
+/// servo gives; no tendon is pulled beyond the bar of a leg that is cut off.
+#[test]
+fn a_motor_that_jams_is_found_whatever_its_gear() {
+    const NAMED_S: f64 = 0.5;
+    for (name, actuator) in [MOTORS[0], MOTORS[1], MOTORS[2]] {
+        let rig = RigFile::parse(name, &text(actuator)).unwrap();
+        for (payload_kg, seed) in [(0.0, 1), (1.0, 2)] {
+            let sound = armed(&rig, [30.0, 20.0], payload_kg, seed);
+            for motor in 0..3 {
+                let mut stand = sound.clone();
+                stand.command(&move_to([210.0, 15.0])).unwrap();
+                pass(&mut stand, 0.3);
+                stand.plant().set_defect(Defect::MotorJammed(motor), true);
+                let (mut named_s, mut highest_n) = (None, 0.0_f64);
+                for tick in 0..ticks(1.5) {
+                    stand.tick().unwrap();
+                    highest_n = stand.truth.tensions_n.into_iter().fold(highest_n, f64::max);
+                    if stand.faults().any() {
+                        named_s.get_or_insert(tick as f64 / ticks(1.0) as f64);
+                    }
+                }
+                let what =
+                    format!("{name}, {payload_kg} kg, motor {motor}: {named_s:?}, {highest_n} N");
+                assert!(named_s.is_some_and(|named_s| named_s < NAMED_S), "{what}");
+                assert!(highest_n < 1.4 * rig.f_max_n, "{what}");
+                assert!(!stand.state().led(), "{what}");
+            }
+        }
+    }
 }
 
 /// What the file is refused for: the key at the place, words of the sentence, and what the help would have.

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::station_stand::{armed, faults, paper};
+use crate::common::require_said;
 use leg_bench::stand::{Stand, move_to};
 use leg_firmware::command::Command;
 use leg_firmware::sensors::TICK_HZ;
@@ -11,6 +12,11 @@ use leg_sim::plant::Defect;
 
 /// Part of the maximum tension above which a leg brakes longer.
 const NEAR_PART: f32 = 0.8;
+
+/// How long a leg brakes; one that is near its maximum tension; and one whose motor may not obey, s.
+const BRAKE_S: f64 = 0.15;
+const GENTLE_BRAKE_S: f64 = 0.2;
+const SHORT_BRAKE_S: f64 = 0.06;
 
 /// A leg in the middle of a move, and the highest tension that its target asks for, as a part of the maximum.
 fn on_its_way(pretension_n: f64, payload_kg: f64) -> (Stand, f32) {
@@ -42,9 +48,17 @@ fn brake_s(stand: &mut Stand) -> f64 {
 
 #[test]
 fn a_leg_that_is_stopped_brakes_longer_near_its_maximum_tension() {
-    for (pretension_n, payload_kg, near, time_s) in
-        [(70.0, 0.0, false, 0.15), (120.0, 1.0, true, 0.2)]
-    {
+    require_said(
+        "firmware/SAFETY.md",
+        &[format!(
+            "brake within {BRAKE_S} s by their counters, {GENTLE_BRAKE_S} s where the target asks a tendon for more than {NEAR_PART} of \
+             the maximum tension, {SHORT_BRAKE_S} s where"
+        )],
+    );
+    for (pretension_n, payload_kg, near, time_s) in [
+        (70.0, 0.0, false, BRAKE_S),
+        (120.0, 1.0, true, GENTLE_BRAKE_S),
+    ] {
         let (mut stand, part) = on_its_way(pretension_n, payload_kg);
         assert_eq!(part > NEAR_PART, near, "{part}");
         stand.command(&Command::Stop).unwrap();
@@ -61,7 +75,7 @@ fn a_leg_whose_motor_is_not_counted_brakes_for_a_short_time() {
         stand.plant().set_defect(Defect::EncoderLost(motor), true);
         let found_s = brake_s(&mut stand);
         assert!(faults(&stand).has(Fault::CurrentDisagrees));
-        assert!((found_s - 0.06).abs() < 0.001, "{found_s} s");
+        assert!((found_s - SHORT_BRAKE_S).abs() < 0.001, "{found_s} s");
     }
 }
 

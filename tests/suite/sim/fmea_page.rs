@@ -2,11 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use super::ready_runs::scenario;
 use crate::common::sources::sources;
+use leg_bench::strikes::{Activity, Bars};
 use leg_boards::image::workspace_root;
-use leg_firmware::supervisor::{FAULT_TABLE, Reaction};
+use leg_firmware::supervisor::{FAULT_TABLE, Fault, Reaction, State};
 use leg_sim::plant::Defect;
 use leg_sim::ready_scenarios;
+use leg_sim::scenario::{Measurand, Step, TestStep};
 use std::fs;
 
 const PARTS: [&str; 15] = [
@@ -130,5 +133,160 @@ fn the_leg_does_what_its_faults_lead_to() {
             };
             assert!(row[3].contains(words), "{}: {row:?}", entry.name);
         }
+    }
+}
+
+/// What shows a row: of one kind, by name.
+fn shown<'a>(row: &'a [&str], kind: &'a str) -> impl Iterator<Item = &'a str> {
+    let shown = row[5].split(", ").filter_map(|one| one.split_once(' '));
+    shown
+        .filter(move |(other, _)| *other == kind)
+        .map(|(_, name)| name.trim_matches('`'))
+}
+
+/// The reactions that the scenarios of a row wait for, with the time of each, s.
+fn reactions(row: &[&str]) -> Vec<(Fault, State, f64)> {
+    let steps = shown(row, "scenario").flat_map(|name| scenario(name).steps);
+    let reactions = steps.filter_map(|step| match step {
+        Step::Test(TestStep::Reaction {
+            fault,
+            state,
+            within_ms,
+        }) => Some((fault, state, 1e-3 * within_ms)),
+        _ => None,
+    });
+    reactions.collect()
+}
+
+/// The bars of the strikes of a row.
+fn bars(row: &[&str]) -> Vec<Bars> {
+    let kinds = shown(row, "strike").map(|name| {
+        let mut names = Defect::descriptions().map(|(defect, _)| defect);
+        Defect::of_kind(names.position(|defect| defect == name).unwrap(), 0).unwrap()
+    });
+    let bars = kinds.flat_map(|defect| {
+        let all = (0..Activity::count()).map(Activity::in_turn);
+        all.flat_map(move |activity| {
+            [false, true].map(|near| Bars::of(defect, activity, F_MAX_N, near))
+        })
+    });
+    bars.collect()
+}
+
+/// Any maximum tension: the bars are parts of it, N.
+const F_MAX_N: f64 = 100.0;
+
+/// The numbers of a cell that stand before a word.
+fn before(cell: &str, unit: &str) -> Vec<f64> {
+    let words: Vec<&str> = cell.split([' ', ',', ';', ':']).collect();
+    let pairs = words.windows(2).filter(|pair| pair[1] == unit);
+    pairs.filter_map(|pair| pair[0].parse().ok()).collect()
+}
+
+fn times_s(cell: &str) -> Vec<f64> {
+    let ms = before(cell, "ms").into_iter().map(|time_ms| 1e-3 * time_ms);
+    ms.chain(before(cell, "s")).collect()
+}
+
+fn has(numbers: &[f64], number: f64) -> bool {
+    numbers.iter().any(|other| (other - number).abs() < 1e-9)
+}
+
+/// "How soon" is what the scenarios of a row assert, or where it has none, its strikes.
+#[test]
+fn a_row_says_how_soon_its_fault_is_named() {
+    let page = page();
+    let (mut by_scenario, mut by_strike, mut wrong) = (0, 0, Vec::new());
+    for row in rows(&page) {
+        let claimed_s = times_s(row[2]);
+        let scenarios_s: Vec<f64> = reactions(&row).iter().map(|reaction| reaction.2).collect();
+        let strikes_s: Vec<f64> = bars(&row).iter().filter_map(|bars| bars.named_s).collect();
+        let mut others = ["test", "calculation"].iter();
+        if scenarios_s.is_empty() && others.any(|kind| shown(&row, kind).next().is_some()) {
+            // What a test asserts stands in it.
+            continue;
+        }
+        let told = scenarios_s.iter().all(|time_s| has(&claimed_s, *time_s));
+        let asserted = |time_s: &f64| has(&scenarios_s, *time_s) || has(&strikes_s, *time_s);
+        let none = row[2].starts_with("none") && strikes_s.is_empty() || row[5] == "not shown";
+        if !told || !claimed_s.iter().all(asserted) || claimed_s.is_empty() && !none {
+            wrong.push(format!(
+                "{row:?}: scenarios {scenarios_s:?} s, strikes {strikes_s:?} s"
+            ));
+        }
+        by_scenario += usize::from(!scenarios_s.is_empty());
+        by_strike += usize::from(scenarios_s.is_empty() && !claimed_s.is_empty());
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(
+        by_scenario > 25 && by_strike > 5,
+        "{by_scenario} {by_strike}"
+    );
+}
+
+/// The scenarios of a row wait for a fault of the row, and for the state that the row says.
+#[test]
+fn a_row_says_what_its_scenarios_show_of_the_leg() {
+    for row in rows(&page()) {
+        for (fault, state, _) in reactions(&row) {
+            let name = fault.entry().name;
+            assert!(bold(row[1]).any(|words| words == name), "{name}: {row:?}");
+            let words: &[&str] = match state {
+                State::Held => &["held"],
+                State::Off => &["off"],
+                State::RampingDown => &["ramps down"],
+                State::Active => &["goes on", "stays", "goes to", "comes to rest"],
+                _ => &[],
+            };
+            let said = words.iter().any(|words| row[3].contains(words));
+            assert!(said, "{state:?}: {row:?}");
+        }
+    }
+}
+
+/// How far the tip goes and how high a tension, where a row says it, is a bar of its strikes; of a row without strikes, what its
+/// scenarios let pass.
+#[test]
+fn a_row_says_how_far_its_strikes_may_go() {
+    let page = page();
+    let (mut checked, mut wrong) = (0, Vec::new());
+    for row in rows(&page) {
+        let bars = bars(&row);
+        let mut allowed_mm: Vec<f64> = bars.iter().map(|bars| bars.tip_mm).collect();
+        if bars.is_empty() {
+            let steps = shown(&row, "scenario").flat_map(|name| scenario(name).steps);
+            allowed_mm = steps.filter_map(|step| tip_moved_mm(&step)).collect();
+        }
+        let tips_mm = row[4].split("tip ").skip(1);
+        for claimed_mm in tips_mm.flat_map(|words| before(words, "mm").into_iter().take(1)) {
+            if !has(&allowed_mm, claimed_mm) {
+                wrong.push(format!("{claimed_mm} mm of {allowed_mm:?}: {row:?}"));
+            }
+            checked += 1;
+        }
+        if bars.is_empty() {
+            continue;
+        }
+        let beyond: Vec<f64> = bars.iter().map(|bars| bars.tension_n - F_MAX_N).collect();
+        for percent in before(row[4], "%") {
+            if !has(&beyond, percent) {
+                wrong.push(format!("{percent} % of {beyond:?}: {row:?}"));
+            }
+            checked += 1;
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(checked > 15, "{checked}");
+}
+
+/// The highest motion of the tip that a step lets pass, mm.
+fn tip_moved_mm(step: &Step) -> Option<f64> {
+    match step {
+        Step::Test(TestStep::Measure {
+            quantity: Measurand::TipMovedMm,
+            between,
+            ..
+        }) => Some(between[1]),
+        _ => None,
     }
 }

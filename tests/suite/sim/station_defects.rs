@@ -3,9 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::station_stand::{Excursion, faults, keeping, paper, pass};
+use crate::common::require_said;
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_sim::plant::Defect;
+
+/// How far a cell that lies may lead the tip of a leg at rest, mm.
+const LIES_MM: f64 = 0.5;
 
 /// One sensor that lies while the leg keeps station: the tip stays where it is, and most are found.
 #[test]
@@ -44,7 +48,7 @@ fn a_sensor_that_lies_ends_it_in_hold_or_moves_nothing() {
         let mut bench = sound.clone();
         bench.plant().set_defect(defect, true);
         let found = Excursion::new(&mut bench, home_m, if always { 2.5 } else { 5.0 });
-        assert!(found.largest_mm < 0.5, "{defect:?}: {found:?}");
+        assert!(found.largest_mm < LIES_MM, "{defect:?}: {found:?}");
         let held = bench.state() == State::Held;
         assert!(
             held || !always && bench.state() == State::KeepingStation,
@@ -62,7 +66,7 @@ fn a_sensor_that_lies_ends_it_in_hold_or_moves_nothing() {
         let mut bench = sound.clone();
         bench.plant().set_defect(defect, true);
         let found = Excursion::new(&mut bench, home_m, 1.0);
-        assert!(found.largest_mm < 0.5, "{defect:?}: {found:?}");
+        assert!(found.largest_mm < LIES_MM, "{defect:?}: {found:?}");
         assert_eq!(bench.state(), State::Held, "{defect:?}");
         assert!(
             fault.is_none_or(|fault| faults(&bench).has(fault)),
@@ -75,14 +79,25 @@ fn a_sensor_that_lies_ends_it_in_hold_or_moves_nothing() {
 /// 0.02 N/s is not, and leads the tip by little in a minute.
 #[test]
 fn a_cell_that_drifts_slowly_does_not_lead_the_leg_away() {
+    const SLOW_MM: f64 = 0.2;
     let [fast, slow] = [25, 250].map(drifted);
     assert_eq!(
         (fast.1, fast.2),
         (State::Held, FaultSet::single(Fault::Residual))
     );
-    assert!(fast.0 < 0.5, "{} mm", fast.0);
+    assert!(fast.0 < LIES_MM, "{} mm", fast.0);
     assert_eq!((slow.1, slow.2), (State::KeepingStation, FaultSet::NONE));
-    assert!(slow.0 < 0.2, "{} mm", slow.0);
+    assert!(slow.0 < SLOW_MM, "{} mm", slow.0);
+    let drifts = |every: u32| 5.0 / f64::from(every);
+    require_said(
+        "firmware/SAFETY.md",
+        &[
+            format!("moves its tip by less than {LIES_MM} mm"),
+            format!("one that drifts by {} N/s", drifts(25)),
+            format!("One that drifts by {} N/s is not found", drifts(250)),
+            format!("than {SLOW_MM} mm in a minute"),
+        ],
+    );
 }
 
 /// How far the tip is led in a minute, mm, by a cell that drifts by 5 N/s for one tick of so many; what the leg does, and its faults.
@@ -109,6 +124,7 @@ fn drifted(every: u32) -> (f64, State, FaultSet) {
 fn a_cell_that_lies_after_a_payload_has_come_moves_the_tip_by_little() {
     let sound = keeping(&paper(), [60.0, 20.0], 0.0, 22);
     let home_m = sound.truth.tip_m;
+    const AFTER_LOAD_MM: f64 = 0.8;
     let mut farthest_mm = 0.0_f64;
     for defect in [
         Defect::CellOffsetStep,
@@ -131,7 +147,9 @@ fn a_cell_that_lies_after_a_payload_has_come_moves_the_tip_by_little() {
             }
         }
     }
-    assert!(farthest_mm < 0.8, "{farthest_mm} mm");
+    assert!(farthest_mm < AFTER_LOAD_MM, "{farthest_mm} mm");
+    let words = format!("leads it by less than {AFTER_LOAD_MM} mm");
+    require_said("firmware/SAFETY.md", &[words]);
 }
 
 /// A motor or a counter that fails while the leg corrects switches it off or holds it, or the correction comes to its end. The tip goes
@@ -174,12 +192,19 @@ fn a_motor_that_fails_in_a_correction_ends_it() {
 /// comes at once, and the tip swings beyond where it rests: by 9.1 mm, or 8.7 mm with a `damping_ratio` of 0.4.
 #[test]
 fn a_push_to_the_maximum_tension_is_given_way_to() {
+    const FARTHEST_MM: f64 = 9.5;
+    const PUSH_N: f64 = 9.0;
     let mut bench = keeping(&paper(), [60.0, 20.0], 2.0, 24);
     let home_m = bench.truth.tip_m;
     let plant = bench.plant();
-    plant.push(plant.across(60.0) * 9.0, 2.0, 0.0);
+    plant.push(plant.across(60.0) * PUSH_N, 2.0, 0.0);
     let found = Excursion::new(&mut bench, home_m, 8.0);
-    assert!(found.largest_mm < 9.5 && found.end_mm < 0.1, "{found:?}");
+    let words = format!("a push of {PUSH_N} N beside 2 kg moves the tip by up to {FARTHEST_MM} mm");
+    require_said("firmware/SAFETY.md", &[words]);
+    assert!(
+        found.largest_mm < FARTHEST_MM && found.end_mm < 0.1,
+        "{found:?}"
+    );
     assert!(found.mm_per_s > 10.0, "it is held back: {found:?}");
     assert_eq!(bench.state(), State::KeepingStation);
     assert_eq!(faults(&bench), FaultSet::NONE);

@@ -10,6 +10,9 @@ use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Start;
 use nalgebra::Vector3;
 
+/// How near to where it was a leg that has come back is, mm.
+pub const BACK_MM: f64 = 0.1;
+
 pub fn paper() -> RigFile {
     RigFile::load(None).unwrap()
 }
@@ -91,7 +94,7 @@ impl Excursion {
             tips_m.push(tip_m);
             found.end_mm = (tip_m - home_m).norm() * 1e3;
             found.largest_mm = found.largest_mm.max(found.end_mm);
-            if found.end_mm > 0.1 {
+            if found.end_mm > BACK_MM {
                 found.back_s = tick as f64 / f64::from(TICK_HZ);
             }
             if tick > ticks(SPAN_S + SWINGS_S) {

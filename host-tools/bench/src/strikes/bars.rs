@@ -2,6 +2,7 @@
 
 use super::activity::Activity;
 use leg_sim::plant::Defect;
+use serde::Serialize;
 
 /// How far the leg may go beyond its maximum tension, as a part of it.
 const BEYOND: f64 = 0.1;
@@ -9,6 +10,9 @@ const BEYOND: f64 = 0.1;
 /// The same where a moving leg is cut off: its motors stop at once, and it swings on with up to 2 kg, which adds the weight that it
 /// held back once more.
 const CUT_OFF_BEYOND: f64 = 0.4;
+
+/// The same where half of a bridge is open: the other half still brakes.
+const HALF_OPEN_BEYOND: f64 = 0.25;
 
 /// The same where one driver pulls inwards whatever is asked, for the 5 ms and more until its counter contradicts, and is then cut
 /// off.
@@ -81,8 +85,7 @@ const GRASPED_MM: f64 = 10.0;
 /// Time to the fault's name, s.
 const NAMED_S: f64 = 0.5;
 
-/// The same besides the time in which a cell fades, and for one that wanders or drifts, s.
-const FADE_S: f64 = 0.5;
+/// The same of a cell that wanders or drifts, s.
 const WANDERS_S: f64 = 2.0;
 const DRIFTS_S: f64 = 5.0;
 
@@ -104,8 +107,8 @@ pub(super) struct Unstruck {
 }
 
 /// The bars of one strike.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Bars {
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Bars {
     /// Highest tension, N.
     pub tension_n: f64,
     /// The same while homing, N.
@@ -120,8 +123,21 @@ pub(super) struct Bars {
 }
 
 impl Bars {
+    /// The widest of a defect, for a page: those of a leg that pulls and goes as far as it may, and of one that is near its
+    /// maximum tension or not.
+    #[must_use]
+    pub fn of(defect: Defect, activity: Activity, f_max_n: f64, near_maximum: bool) -> Self {
+        let part = if near_maximum { 1.0 } else { 0.5 };
+        let before = Unstruck {
+            tensions_n: [0.2, 0.6, 1.0].map(|share| share * part * f_max_n),
+            highest_n: [part * f_max_n; 3],
+            travels_m: [1.0; 3],
+        };
+        Self::new(Some(defect), activity, f_max_n, &before)
+    }
+
     /// Of a defect of a leg with a maximum tension, N.
-    pub fn new(
+    pub(super) fn new(
         defect: Option<Defect>,
         activity: Activity,
         f_max_n: f64,
@@ -146,6 +162,8 @@ fn beyond(defect: Option<Defect>, activity: Activity) -> f64 {
         Some(Defect::DirectionStuck(_)) => STUCK_BEYOND,
         Some(Defect::LegGrasped) => GRASPED_BEYOND,
         Some(Defect::CellsSwapped) => CUT_OFF_BEYOND,
+        Some(defect) if is_slow(defect, activity) => BEYOND,
+        Some(Defect::HalfBridgeOpen(_)) if activity.on_the_way() => HALF_OPEN_BEYOND,
         Some(defect) if activity.on_the_way() && cuts_off(defect) => CUT_OFF_BEYOND,
         _ => BEYOND,
     }
@@ -178,6 +196,43 @@ const fn cuts_off(defect: Defect) -> bool {
     )
 }
 
+/// Whether what fails is cut off on a way that is too slow to swing on from. A leg that is led down before its tendons are paid out
+/// is as fast as one that moves.
+const fn is_slow(defect: Defect, activity: Activity) -> bool {
+    let slow = matches!(activity, Activity::Homing | Activity::Arming);
+    slow && matches!(
+        defect,
+        Defect::CurrentFullScale(_)
+            | Defect::CurrentZero(_)
+            | Defect::EncoderJumps(_)
+            | Defect::HalfBridgeOpen(_)
+    )
+}
+
+/// Whether what fails moves a leg that homes or is paid out no farther than one on its way.
+const fn is_harmless(defect: Defect) -> bool {
+    matches!(
+        defect,
+        Defect::CellHum(_)
+            | Defect::CellGainStep(_)
+            | Defect::CurrentFullScaleDisabled(_)
+            | Defect::CurrentZero(_)
+            | Defect::HalfBridgeOpen(_)
+            | Defect::SupplyDip
+    )
+}
+
+/// Whether a cell shows so little that it is found at once, whatever the leg does but homing.
+const fn is_found_at_once(defect: Defect) -> bool {
+    matches!(
+        defect,
+        Defect::CellExcitationLost(_)
+            | Defect::CellFades(_)
+            | Defect::CellFollows(_)
+            | Defect::EncoderJumps(_)
+    )
+}
+
 /// How far the tip may go where a cell that shows ever more comes to the maximum tension, mm.
 fn gain_at_max_mm(defect: Option<Defect>, f_max_n: f64, highest_n: [f64; 3]) -> f64 {
     let shows_n = match defect {
@@ -196,7 +251,13 @@ fn gain_at_max_mm(defect: Option<Defect>, f_max_n: f64, highest_n: [f64; 3]) -> 
 /// How far the tip may go, mm.
 fn tip_mm(defect: Option<Defect>, activity: Activity) -> f64 {
     let usual_mm = match activity {
-        Activity::Homing if defect.is_some() => LIFTED_MM,
+        Activity::Homing if defect.is_some_and(|defect| !is_harmless(defect)) => LIFTED_MM,
+        Activity::RampingDown
+            if defect.is_some_and(|defect| is_harmless(defect) || is_found_at_once(defect)) =>
+        {
+            WAY_MM
+        }
+        Activity::Rearmed if defect.is_some_and(is_found_at_once) => REST_MM,
         Activity::RampingDown if defect.is_some() => ASIDE_MM,
         Activity::Rearmed if defect.is_some() => REARMED_MM,
         _ if activity.on_the_way() => WAY_MM,
@@ -213,6 +274,13 @@ fn tip_mm(defect: Option<Defect>, activity: Activity) -> f64 {
         Some(Defect::LegGrasped) => GRASPED_MM,
         Some(Defect::CellsSwapped | Defect::EncodersSwapped | Defect::EncoderReversed(_)) => {
             SWAPPED_MM
+        }
+        Some(Defect::CurrentZero(_)) => usual_mm,
+        Some(defect) if is_slow(defect, activity) => usual_mm,
+        Some(Defect::CellWanders(_))
+            if matches!(activity, Activity::Following | Activity::Held) =>
+        {
+            usual_mm
         }
         Some(defect) if activity.on_the_way() && cuts_off(defect) => CUT_OFF_MM,
         Some(
@@ -255,8 +323,7 @@ fn named_s(defect: Defect, activity: Activity, before: &Unstruck) -> Option<f64>
             pulls.then_some(NAMED_S)
         }
         Defect::CellReversed(_) | Defect::ExcitationLost => pulls.then_some(NAMED_S),
-        Defect::CellExcitationLost(i) => lies(tensions_n[i]),
-        Defect::CellFades(i) => lies(tensions_n[i]).map(|named_s| named_s + FADE_S),
+        Defect::CellExcitationLost(i) | Defect::CellFades(i) => lies(tensions_n[i]),
         Defect::CellWanders(_) => pulls.then_some(WANDERS_S),
         Defect::CellDrifting(_) => rests.then_some(DRIFTS_S),
         Defect::CellFollows(i) if rests => lies(tensions_n[(i + 1) % 3] - tensions_n[i]),
@@ -278,6 +345,10 @@ mod tests {
         for words in [
             format!("the maximum tension and {:.0} %", 100.0 * BEYOND),
             format!("{:.0} % where a moving leg", 100.0 * CUT_OFF_BEYOND),
+            format!(
+                "{:.0} % where half of a bridge is open",
+                100.0 * HALF_OPEN_BEYOND
+            ),
             format!("{:.0} % where a driver pulls", 100.0 * STUCK_BEYOND),
             format!("{:.0} % where a hand holds", 100.0 * GRASPED_BEYOND),
             format!("{:.0} % where a driver switches", 100.0 * RUNAWAY_BEYOND),
@@ -297,8 +368,7 @@ mod tests {
             ),
             format!("{GRASPED_MM} mm where a hand holds the tip"),
             format!(
-                "{NAMED_S} s where something shows it; a cell that fades {} s, wanders {WANDERS_S} s, drifts {DRIFTS_S} s",
-                NAMED_S + FADE_S
+                "{NAMED_S} s where something shows it; a cell that wanders {WANDERS_S} s, drifts {DRIFTS_S} s"
             ),
         ] {
             assert!(page.contains(&words), "{words}");

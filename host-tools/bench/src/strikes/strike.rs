@@ -71,6 +71,8 @@ pub struct Struck {
     pub named_s: Option<f64>,
     /// How long after the leg had stopped a motor was driven last, s; zero if none was 0.1 s after it.
     pub driven_s: f64,
+    /// What it may do at most; none where the leg was not brought to where it should be struck.
+    pub bars: Option<Bars>,
     /// What was beyond its bar, as sentences.
     pub failures: Vec<String>,
 }
@@ -108,6 +110,7 @@ impl Struck {
             named: None,
             named_s: None,
             driven_s: 0.0,
+            bars: None,
             failures: Vec::new(),
         }
     }
@@ -157,6 +160,7 @@ impl Struck {
             failures.push(format!("driven {:.2} s after the stop", self.driven_s));
         }
         self.failures.extend(failures);
+        self.bars = Some(*bars);
     }
 }
 

@@ -22,6 +22,51 @@ impl Worst {
     }
 }
 
+/// The worst of a measure by its bar.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Measure {
+    /// The measure.
+    pub value: f64,
+    /// Its bar in that strike; zero until there is one.
+    pub bar: f64,
+    /// The strike's number.
+    pub index: u64,
+}
+
+impl Measure {
+    fn take(&mut self, value: f64, bar: f64, index: u64) {
+        if self.bar == 0.0 || value * self.bar > self.value * bar {
+            *self = Self { value, bar, index };
+        }
+    }
+}
+
+/// The worst of each measure by its bar.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Measures {
+    /// Highest true tension, N.
+    pub tension_n: Measure,
+    /// The same while homing, N.
+    pub homing_n: Measure,
+    /// How far the tip was from rest or off the way, mm.
+    pub tip_mm: Measure,
+    /// Time to the first fault where there is a bar, s.
+    pub named_s: Measure,
+}
+
+impl Measures {
+    fn take(&mut self, struck: &Struck) {
+        let Some(bars) = struck.bars else { return };
+        let index = struck.index;
+        self.tension_n.take(struck.tension_n, bars.tension_n, index);
+        self.homing_n.take(struck.homing_n, bars.homing_n, index);
+        self.tip_mm.take(struck.tip_mm, bars.tip_mm, index);
+        if let (Some(named_s), Some(bar_s)) = (struck.named_s, bars.named_s) {
+            self.named_s.take(named_s, bar_s, index);
+        }
+    }
+}
+
 /// The strikes of one fault while the leg did one thing.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
@@ -45,6 +90,8 @@ pub struct Row {
     pub names: BTreeMap<&'static str, u64>,
     /// Longest time that a motor was driven after the stop, s.
     pub driven_s: Worst,
+    /// The worst of each measure by its bar.
+    pub by_bars: Measures,
     /// Strikes that failed.
     pub failed: u64,
     /// The first of them, and why.
@@ -75,6 +122,7 @@ impl Row {
             named_s: Worst::default(),
             names: BTreeMap::new(),
             driven_s: Worst::default(),
+            by_bars: Measures::default(),
             failed: 0,
             first_failed: None,
         }
@@ -86,6 +134,7 @@ impl Row {
         self.homing_n.take(struck.homing_n, struck.index);
         self.tip_mm.take(struck.tip_mm, struck.index);
         self.driven_s.take(struck.driven_s, struck.index);
+        self.by_bars.take(struck);
         if let (Some(name), Some(named_s)) = (struck.named, struck.named_s) {
             self.named += 1;
             self.named_s.take(named_s, struck.index);

@@ -1,14 +1,51 @@
 //! What `leg strikes` prints.
 
-use leg_bench::strikes::{Alarm, Moment, Row, Struck, Usage, Worst};
+use leg_bench::strikes::{Alarm, Measure, Moment, Row, Struck, Usage, Worst};
 
 const HEADING: &str = "\
 fault                        state         strikes     highest tension          tip moved      named        after  first fault                  driven after  failed\n";
 
 pub(super) fn table(rows: &[Row], strikes: usize, seed: u64) -> String {
     let lines: String = rows.iter().map(row).collect();
+    format!("{}{HEADING}{lines}", summary(rows, strikes, seed))
+}
+
+fn summary(rows: &[Row], strikes: usize, seed: u64) -> String {
     let failed: u64 = rows.iter().map(|row| row.failed).sum();
-    format!("{strikes} strikes at seed {seed}, {failed} failed\n\n{HEADING}{lines}")
+    format!("{strikes} strikes at seed {seed}, {failed} failed\n\n")
+}
+
+const BARS_HEADING: &str = "\
+fault                        state         strikes       tension / bar         homing / bar            tip / bar          named / bar\n";
+
+/// The worst of each measure beside its bar.
+pub(super) fn by_bars(rows: &[Row], strikes: usize, seed: u64) -> String {
+    let line = |row: &Row| {
+        let measures = row.by_bars;
+        format!(
+            "{:27}  {:12}  {:7}  {}  {}  {}  {}\n",
+            row.fault,
+            row.state.name(),
+            row.count,
+            beside(measures.tension_n, 1, "N"),
+            beside(measures.homing_n, 1, "N"),
+            beside(measures.tip_mm, 2, "mm"),
+            beside(measures.named_s, 3, "s"),
+        )
+    };
+    let lines: String = rows.iter().map(line).collect();
+    format!("{}{BARS_HEADING}{lines}", summary(rows, strikes, seed))
+}
+
+fn beside(measure: Measure, digits: usize, unit: &str) -> String {
+    if measure.value == 0.0 {
+        return format!("{:>19}", "-");
+    }
+    let Measure { value, bar, .. } = measure;
+    format!(
+        "{:>19}",
+        format!("{value:.digits$} / {bar:.digits$} {unit}")
+    )
 }
 
 fn row(row: &Row) -> String {

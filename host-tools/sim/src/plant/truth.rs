@@ -29,3 +29,14 @@ pub struct Truth {
     /// Voltage at the drivers, V.
     pub supply_v: f64,
 }
+
+impl Truth {
+    /// Whether place, rotation and tensions are numbers still. The joint's stop holds a leg whose place is lost, straight down: its
+    /// rotation shows that.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        let places = self.tip_m.iter().chain(&self.rate_rad_per_s);
+        let mut numbers = places.chain(&self.tensions_n).copied();
+        numbers.all(f64::is_finite)
+    }
+}

@@ -129,6 +129,38 @@ fn a_leg_that_never_comes_to_rest_is_late() {
     assert!(is_failed(&error));
 }
 
+/// A leg that is paid out is waited for as long as its motors move, however slowly, and for five seconds once they stand.
+#[test]
+fn a_disarm_waits_while_the_motors_move_and_five_seconds_more() {
+    const MOVES_S: u64 = 90;
+    let (mut telemetry, _) = at_rest();
+    telemetry.state = State::RampingDown;
+    let asked = Rc::new(Cell::new(0_u64));
+    let counted = Rc::clone(&asked);
+    let mut operator = scripted(move |request| {
+        if !matches!(request, HostRequest::Telemetry) {
+            return Some(HostReply::Done);
+        }
+        counted.set(counted.get() + 1);
+        // A poll in 20 ms: 2 µm in each.
+        if counted.get() <= 50 * MOVES_S {
+            telemetry.pulled_m[0] -= 2e-6;
+        }
+        Some(telemetry_reply(&telemetry))
+    });
+    let begun = operator.now();
+    let error = error_of!(operator.disarm(), OperatorError::TimedOut(..));
+    assert!(error.to_string().contains("within 5 s"), "{error}");
+    let waited_s = (operator.now() - begun).as_secs_f64();
+    let moved_s = waited_s - 5.0;
+    assert!(moved_s > 30.0, "it gave up after {waited_s} s");
+    let polls = asked.get() as f64;
+    assert!(
+        polls > 50.0 * MOVES_S as f64,
+        "{polls} polls in {waited_s} s"
+    );
+}
+
 #[test]
 fn a_leg_that_rests_elsewhere_reports_where() {
     let (mut telemetry, settings) = at_rest();
