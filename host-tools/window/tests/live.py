@@ -10,12 +10,11 @@ import contextlib
 import json
 import os
 import pathlib
-import socket
 import subprocess
 import time
-import urllib.parse
 
-from browser import ESCAPE, Page
+from browser import ESCAPE, Page, type_value
+from sockets import Cutter, OldServer, Stranger, answer
 from webdriver import Browser
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -23,6 +22,9 @@ LEG = HERE.parents[2] / "target" / "debug" / "leg"
 
 # Time in which a leg whose page has gone is held, s.
 HELD_S = 5.0
+
+# From the joint to the tip of a leg that was set to 191 mm below its plate.
+TIP_MM = 220.0
 
 # So often something is tried that a busy machine may spoil.
 TRIES = 8
@@ -49,23 +51,6 @@ class Served:
         self.process.wait()
 
 
-def answer(address, origin):
-    """The status of the answer to a page that asks for the leg."""
-    parts = urllib.parse.urlsplit(address)
-    head = [
-        f"GET {parts.path} HTTP/1.1",
-        f"Host: {parts.netloc}",
-        "Upgrade: websocket",
-        "Connection: Upgrade",
-        "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==",
-        "Sec-WebSocket-Version: 13",
-        f"Origin: {origin}",
-    ]
-    with socket.create_connection((parts.hostname, parts.port), 10) as line:
-        line.sendall(("\r\n".join(head) + "\r\n\r\n").encode())
-        return int(line.recv(1000).split()[1])
-
-
 def strangers(served):
     """Only this program's own page is let in, and only by the address that was printed."""
     assert answer(served.leg, served.origin) == 101
@@ -90,6 +75,151 @@ def watch(page):
 def unlock(page):
     page.press("unlock")
     page.wait_leg("is unlocked", lambda leg: leg["drives"] == [True, False] and not leg["locked"])
+
+
+def told(page, words):
+    state = page.wait(words, lambda state: words in (state["setup"]["board_told"] or ""))
+    return state["setup"]["board_told"]
+
+
+def open_settings(page):
+    page.press("setup")
+    page.wait("there are pages", lambda state: "setup_settings" in state["places"])
+    page.press("setup_settings")
+    page.wait("there is the board", lambda state: "board_set" in state["places"])
+
+
+def watched_board(page):
+    """A page that does not drive sees the settings, and sends none."""
+    open_settings(page)
+    for name in ("board_read", "board_set", "board_keep"):
+        page.press(name)
+        time.sleep(0.3)
+        state = page.state()["setup"]
+        assert state["board_busy"] is None and state["board_told"] is None, state
+    page.press("setup")
+
+
+def board(page):
+    """Reads, sets and keeps the settings of a board that is disarmed, by the page that drives."""
+    if page.state()["leg"]["state"] != "disarmed":
+        page.press("disarm")
+        page.wait_leg("is disarmed", lambda leg: leg["state"] == "disarmed")
+    open_settings(page)
+    page.press("board_read")
+    told(page, "Read from the board")
+    type_value(page, "value_geometry.leg_mm", "-1")
+    page.wait("it is refused", lambda state: state["setup"]["refused"])
+    type_value(page, "value_geometry.leg_mm", "191")
+    page.wait("it is changed", lambda state: state["setup"]["changed"] == ["geometry.leg_mm"])
+    page.press("board_set")
+    print(told(page, "found the same"))
+    page.wait_leg("is so", lambda leg: abs(leg["tip_mm"] - TIP_MM) < 0.01)
+    page.press("board_keep")
+    print(told(page, "Kept"))
+    page.picture("live_settings")
+    page.press("setup")
+    page.wait("the leg is shown", lambda state: "arm" in state["places"])
+
+
+def driven_board(page):
+    """The settings of a leg that follows commands stay as they are."""
+    open_settings(page)
+    for name in ("board_set", "board_keep"):
+        page.press(name)
+        time.sleep(0.3)
+        assert page.state()["setup"]["board_busy"] is None
+    page.press("setup")
+    page.wait("the leg is shown", lambda state: "arm" in state["places"])
+
+
+def phone(page):
+    """A phone held upright shows a live leg: who drives, the stop, and the commands behind tabs."""
+    page.browser.resize(390, 844)
+    page.wait("has tabs", lambda state: "tab_charts" in state["places"])
+    places = page.state()["places"]
+    assert "tab_try" not in places and "tab_break" not in places
+    for name in ("stop", "origin", "leg", "tab_drive", "tab_setup"):
+        left, _, right, bottom = places[name]
+        assert 0 <= left < right <= 390 and bottom <= 844, (name, places[name])
+    page.press("tab_drive")
+    page.wait("has the disc", lambda state: "workspace" in state["places"])
+    page.picture("live_phone")
+    is_stopped(page, lambda: page.press("stop"), "is stopped on a phone", phone_go_on)
+    page.browser.resize(1280, 720)
+    page.wait("is wide", lambda state: "tab_drive" not in state["places"])
+    go_on(page)
+
+
+def phone_go_on(page):
+    """The button is below what a phone shows at first: it is reached by the keyboard there."""
+    for _ in range(TRIES):
+        page.browser.resize(1280, 720)
+        page.wait("is wide", lambda state: "tab_drive" not in state["places"])
+        go_on(page)
+        page.browser.resize(390, 844)
+        page.wait("has tabs", lambda state: "tab_drive" in state["places"])
+        if page.state()["leg"]["state"] == "active":
+            return
+    raise AssertionError(f"does not go on: {page.state()['leg']}")
+
+
+def second_driver(served, page):
+    """Another program with the address may watch. It is told that somebody drives, and what it sends is not passed on."""
+    with Stranger(served.leg, served.origin) as other:
+        assert "hello" in other.heard()
+        other.say("drive")
+        while "drives" not in (role := other.heard()):
+            pass
+        role = other.heard() if role == {"drives": False, "other_drives": False} else role
+        assert role == {"drives": False, "other_drives": True}, role
+        other.say(b"\x02\x01\x00")
+        other.say(b"no frame")
+        assert other.ended(), "bytes that are no frame end a connection"
+    assert page.state()["leg"]["drives"] == [True, False]
+    print("a second driver is told that another one drives")
+
+
+def cut_socket(served, page):
+    """The line between page and program is cut: the page says so, and the leg is held by itself."""
+    page.browser.open("about:blank")
+    with Cutter(served.leg) as cutter:
+        page.open(f"{served.origin}/#leg={cutter.url}")
+        page.wait_leg("is heard", lambda leg: leg["live"] and leg["time_s"] > 0)
+        unlock(page)
+        go_on(page)
+        cutter.cut()
+        leg = page.wait_leg("is lost", lambda leg: leg["failure"])
+        assert "connection is lost" in leg["failure"] and leg["locked"], leg
+        print(f"cut: {leg['failure']}")
+    page.browser.open("about:blank")
+    page.open(served.url)
+    leg = page.wait_leg("is heard again", lambda leg: leg["live"] and leg["time_s"] > 0)
+    assert leg["state"] == "held" and "no command" in leg["faults"], leg
+    assert abs(leg["tip_mm"] - TIP_MM) < 0.01, "a page that comes later knows the settings"
+    unlock(page)
+
+
+def old_page(served, page):
+    """A page of one version and a firmware of another do not guess."""
+    page.browser.open("about:blank")
+    with OldServer() as server:
+        page.browser.open(f"{served.origin}/#leg={server.url}")
+        words = empty(page, "different versions")
+        assert "Build the page anew" in words, words
+        print(words)
+    page.browser.open("about:blank")
+    page.open(served.url)
+    unlock(page)
+
+
+def empty(page, words):
+    """Why a page shows no leg."""
+    until = time.monotonic() + 20
+    while words not in ((page.state() or {}).get("empty") or ""):
+        assert time.monotonic() < until, page.state()
+        time.sleep(0.1)
+    return page.state()["empty"]
 
 
 def activate(page):
@@ -121,10 +251,10 @@ def go_on(page):
     raise AssertionError(f"does not go on: {page.state()['leg']}")
 
 
-def is_stopped(driver, stop, what):
+def is_stopped(driver, stop, what, go_on=None):
     """Whether it is the stop that holds the leg, and not a fault."""
     for _ in range(TRIES):
-        go_on(driver)
+        (go_on or globals()["go_on"])(driver)
         stop()
         leg = driver.wait_leg(what, lambda leg: leg["state"] == "held")
         if not leg["faults"]:
@@ -179,11 +309,7 @@ def nobody(page, served):
     """An address behind which there is nobody."""
     page.browser.open("about:blank")
     page.browser.open(served)
-    until = time.monotonic() + 20
-    while not (page.state() or {}).get("empty") or "No connection" not in page.state()["empty"]:
-        assert time.monotonic() < until, page.state()
-        time.sleep(0.1)
-    print(page.state()["empty"])
+    print(empty(page, "No connection"))
 
 
 def main():
@@ -200,12 +326,19 @@ def main():
         page = Page(browser, arguments.keep)
         page.open(served.url)
         watch(page)
+        watched_board(page)
         unlock(page)
+        board(page)
         activate(page)
         drag(page)
         time.sleep(1.0)
         page.picture("live")
+        driven_board(page)
         stops(page)
+        phone(page)
+        second_driver(served, page)
+        cut_socket(served, page)
+        old_page(served, page)
         second_page(served, page)
         errors = [entry for entry in browser.log() if entry["level"] == "SEVERE"]
         assert not errors, errors
