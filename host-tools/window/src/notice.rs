@@ -41,7 +41,11 @@ pub fn show(ui: &mut Ui, notice: &mut Option<Notice>) {
             })
             .inner;
         if !text.is_empty() {
-            let scroll = ScrollArea::both().id_salt("notice").max_height(HEIGHT_MAX);
+            let scroll = ScrollArea::both()
+                .id_salt("notice")
+                .max_height(HEIGHT_MAX)
+                // The panel is as high as what is in it, and not the other way round.
+                .min_scrolled_height(HEIGHT_MAX);
             scroll.show(ui, |ui| {
                 let text = RichText::new(text).monospace();
                 ui.add(Label::new(text).extend().selectable(true));

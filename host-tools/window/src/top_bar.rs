@@ -56,7 +56,7 @@ pub fn show(ui: &mut Ui, leg: &mut ShownLeg, setup: Option<&mut bool>) {
             stop(ui, leg, &palette, roomy);
             appearance(ui);
             if let Some(open) = setup {
-                let button = ui.selectable_label(*open, "Set up");
+                let button = ui.add(Button::new("Set up").selected(*open));
                 place(&button, "setup");
                 let hint = "Rig files and settings, in the place of the leg.";
                 if button.on_hover_text(hint).clicked() {

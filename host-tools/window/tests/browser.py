@@ -2,6 +2,7 @@
 """Does in a browser what a person does who has never seen the page, from disk and from a web server.
 
     tests/browser.py DIR                compares the pictures with those in tests/pictures
+    tests/browser.py DIR --quick        in less time: what CI runs
     tests/browser.py DIR --keep         writes those anew: look at them before you commit
 """
 
@@ -578,6 +579,43 @@ def settings(page):
     page.wait("the leg is shown", lambda state: "leg" in state["places"])
 
 
+def steps(page):
+    """Rehearses the calibrations on the simulated leg: a load cell, a motor, the zero."""
+    start_again(page)
+    page.press("setup")
+    page.press("setup_steps")
+    page.wait("there are guides", lambda state: "guide_cells" in state["places"])
+    page.press("steps_disarm")
+    page.wait_leg("is disarmed", lambda leg: leg["state"] == "disarmed")
+    page.press("cell_2")
+    page.press("cells_start")
+    for _ in range(4):
+        page.wait("a weight is to be hung", lambda state: "cells_read" in state["places"])
+        if _ == 2:
+            page.picture("cells")
+        page.press("cells_read")
+        page.wait("it is read", lambda state: "cells_progress" not in state["places"], 60)
+    page.wait("there is a result", lambda state: "cells_result" in state["places"])
+    page.press("cells_take")
+    keys = ["calibration.cell_n_per_code", "calibration.cell_zero_code"]
+    page.wait("the settings have it", lambda state: set(state["setup"]["changed"]) <= set(keys) and state["setup"]["changed"])
+    print(f"  cell 2: {', '.join(page.state()['setup']['changed'])}")
+    page.press("guide_motor")
+    page.wait("there is a motor", lambda state: "jog_start" in state["places"])
+    page.press("motor_3")
+    page.press("jog_start")
+    page.wait("there is a result", lambda state: "jog_result" in state["places"], 30)
+    page.picture("motor")
+    page.press("guide_zero")
+    page.wait("there is a start", lambda state: "zero_start" in state["places"])
+    page.press("zero_start")
+    page.wait_leg("homes", lambda leg: leg["state"] == "homing")
+    page.wait_leg("hangs down", lambda leg: leg["state"] == "active" and leg["tilt_deg"] < 1, 60)
+    page.picture("zero")
+    page.press("setup")
+    page.wait("the leg is shown", lambda state: "leg" in state["places"])
+
+
 def looks(page):
     """The other sizes: a phone held upright, and a large screen; light."""
     start_again(page)
@@ -610,8 +648,12 @@ PARTS = (
     breaks,
     rig_files,
     settings,
+    steps,
     looks,
 )
+
+# What CI has time for: everything that depends on the browser once, and what is of the page alone where it is quick.
+QUICK = (check_speed, check_bits, first_visit, breaks, rig_files, settings, looks)
 
 
 def serve(directory):
@@ -629,7 +671,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("directory", type=pathlib.Path)
     parser.add_argument("--keep", action="store_true")
+    parser.add_argument("--quick", action="store_true", help="what CI has time for")
+    parser.add_argument("--part", action="append", choices=[part.__name__ for part in PARTS], help="these parts alone")
     arguments = parser.parse_args()
+    parts = QUICK if arguments.quick else PARTS
+    if arguments.part:
+        parts = [part for part in PARTS if part.__name__ in arguments.part]
     file = (arguments.directory / "index.html").resolve()
     size = file.stat().st_size
     print(f"{size / 1e6:.2f} MB")
@@ -642,7 +689,7 @@ def main():
             took_s = min(page.open(address) for _ in range(3))
             print(f"{address.split(':')[0]}: loaded in {took_s:.2f} s")
             assert took_s <= LOAD_S, took_s
-        for part in PARTS:
+        for part in parts:
             began = time.monotonic()
             print(part.__name__)
             part(page)

@@ -87,7 +87,9 @@ fn ready(ui: &mut Ui, setup: &mut Setup, rig: &ReadyRig, leg: &ShownLeg) -> bool
     let mut chosen = false;
     ui.horizontal(|ui| {
         let shown = leg.source().text == rig.text;
-        let button = Button::selectable(shown, rig.name).min_size(vec2(180.0, 28.0));
+        let button = Button::new(rig.name)
+            .selected(shown)
+            .min_size(vec2(180.0, 28.0));
         let button = ui.add(button);
         place(&button, format!("rig_{}", rig.name));
         chosen = button.clicked();
@@ -98,7 +100,10 @@ fn ready(ui: &mut Ui, setup: &mut Setup, rig: &ReadyRig, leg: &ShownLeg) -> bool
                 setup.save(&format!("{}.toml", rig.name), rig.text);
             }
         }
-        let words = format!("{}; Fig. 2: {}", rig.words, rig.figure_2);
+        let words = match rig.figure_2 {
+            "-" => rig.words.to_owned(),
+            figure => format!("{} (Fig. 2: {figure})", rig.words),
+        };
         let words = RichText::new(words).small().color(palette(ui.ctx()).faint);
         ui.add(Label::new(words).wrap());
     });

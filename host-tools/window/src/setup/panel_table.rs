@@ -60,6 +60,7 @@ impl Table {
             place(&ui.add(search.desired_width(150.0)), "settings_search");
             let sections = sections(editor);
             let shown = match &self.part {
+                _ if !self.search.trim().is_empty() => "all sections".into(),
                 Part::First => sections.first().cloned().unwrap_or_default(),
                 Part::Section(name) => name.clone(),
                 Part::Changed => "changed".into(),
