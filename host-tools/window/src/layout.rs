@@ -84,6 +84,7 @@ impl Views {
 
 /// Everything side by side.
 pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
+    views.setup.open |= views.setup.take_wanted();
     if views.setup.open {
         return simulate(views.setup.show(ui, leg));
     }
@@ -140,6 +141,9 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
 
 /// The leg above, and the rest behind tabs.
 pub fn narrow(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
+    if views.setup.take_wanted() {
+        views.tab = Tab::Setup;
+    }
     let height = (0.44 * ui.available_height()).max(220.0);
     let above = Panel::top("leg")
         .frame(Frame::NONE)
@@ -158,7 +162,8 @@ pub fn narrow(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
             ui.horizontal(|ui| {
                 let shown = |(tab, ..): &&(Tab, _, _)| leg.live().is_none() || !tab.simulated();
                 let count = TABS.iter().filter(shown).count();
-                let width = (ui.available_width() - 24.0) / count as f32;
+                let gaps = ui.spacing().item_spacing.x * count.saturating_sub(1) as f32;
+                let width = (ui.available_width() - gaps) / count as f32;
                 for &(this, text, name) in TABS.iter().filter(shown) {
                     let button = eframe::egui::Button::selectable(views.tab == this, text);
                     let response = ui.add(button.min_size(vec2(width, 36.0)));

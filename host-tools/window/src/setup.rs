@@ -45,6 +45,8 @@ const PAGES: [(Page, &str, &str); 3] = [
 pub struct Setup {
     /// Whether it is shown in the place of the leg.
     pub open: bool,
+    /// Whether something of it is to be shown now.
+    wanted: bool,
     page: Page,
     files: Files,
     notice: Option<Notice>,
@@ -90,7 +92,7 @@ impl Setup {
             Err(failure) => self.refuse(&source.name, failure.render(false)),
             Ok(editor) => {
                 self.editor = Some(editor);
-                (self.open, self.page) = (true, Page::Settings);
+                (self.wanted, self.page) = (true, Page::Settings);
                 self.notice = Some(Notice {
                     good: true,
                     title: format!(
@@ -101,6 +103,11 @@ impl Setup {
                 });
             }
         }
+    }
+
+    /// Whether something of it is to be shown now, once.
+    pub const fn take_wanted(&mut self) -> bool {
+        std::mem::replace(&mut self.wanted, false)
     }
 
     /// Notes that a simulated leg was made of a file.
@@ -131,7 +138,7 @@ impl Setup {
 
     /// Goes on with a calibration that was begun, whatever is shown.
     pub fn advance(&mut self, leg: &mut ShownLeg) {
-        self.steps.advance(leg);
+        self.steps.advance(leg, self.editor.as_ref());
     }
 
     /// Gives the user a file.

@@ -600,6 +600,14 @@ def steps(page):
     keys = ["calibration.cell_n_per_code", "calibration.cell_zero_code"]
     page.wait("the settings have it", lambda state: set(state["setup"]["changed"]) <= set(keys) and state["setup"]["changed"])
     print(f"  cell 2: {', '.join(page.state()['setup']['changed'])}")
+    page.press("guide_turns")
+    page.wait("there is a start", lambda state: "turns_start" in state["places"])
+    page.press("turns_start")
+    for motor in (1, 2, 3):
+        page.wait("a motor is to be turned", lambda state: "turns_turned" in state["places"])
+        page.press("turns_turned")
+        page.wait("it is turned", lambda state: f"turn_{motor}" in state["places"], 30)
+    page.wait("there is a result", lambda state: "turns_take" in state["places"])
     page.press("guide_motor")
     page.wait("there is a motor", lambda state: "jog_start" in state["places"])
     page.press("motor_3")
@@ -627,6 +635,8 @@ def looks(page):
     page.wait("has the disc", lambda state: "workspace" in state["places"])
     page.picture("phone_drive")
     page.press("tab_setup")
+    page.wait("has pages", lambda state: "setup_settings" in state["places"])
+    page.press("setup_settings")
     page.wait("has the table", lambda state: "section" in state["places"])
     page.picture("phone_settings")
     page.press("tab_drive")

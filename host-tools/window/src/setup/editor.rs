@@ -243,6 +243,12 @@ impl Editor {
         control_settings::settings(rig, &rig.gains, None)
     }
 
+    /// Counts of an encoder in a turn of its motor.
+    #[must_use]
+    pub const fn counts_per_turn(&self) -> f64 {
+        self.now.rig.actuator.counts_per_turn
+    }
+
     /// The row of a setting as it was loaded.
     #[must_use]
     pub fn loaded(&self, row: &Row) -> Option<&Row> {

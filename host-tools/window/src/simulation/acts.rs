@@ -74,4 +74,9 @@ impl Simulation {
         let plant = self.leg.leg_mut().plant_mut();
         plant.hang_on_cell(cell, weight_n);
     }
+
+    /// Lets a hand turn a motor once, so that it reels its tendon in. Motors are counted from 0.
+    pub fn turn_motor(&mut self, motor: usize) {
+        self.leg.leg_mut().plant_mut().turn_motor(motor, 1.0);
+    }
 }

@@ -1,6 +1,6 @@
 //! The choice of a calibration, and what all of them need.
 
-use super::{Guide, panel_cells, panel_jog, panel_zero};
+use super::{Guide, panel_cells, panel_jog, panel_turns, panel_zero};
 use crate::places::place;
 use crate::setup::Setup;
 use crate::shown_leg::ShownLeg;
@@ -9,8 +9,9 @@ use eframe::egui::{Button, Label, Response, RichText, Ui, vec2};
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::Event;
 
-const GUIDES: [(Guide, &str, &str); 3] = [
+const GUIDES: [(Guide, &str, &str); 4] = [
     (Guide::Cells, "Load cells", "guide_cells"),
+    (Guide::Turns, "Encoders", "guide_turns"),
     (Guide::Motor, "One motor", "guide_motor"),
     (Guide::Zero, "Zero", "guide_zero"),
 ];
@@ -40,6 +41,7 @@ pub fn show(ui: &mut Ui, setup: &mut Setup, leg: &mut ShownLeg) {
     ui.add_space(4.0);
     match steps.guide {
         Guide::Cells => panel_cells::show(ui, &mut steps.cells, editor, leg),
+        Guide::Turns => panel_turns::show(ui, &mut steps.turns, editor, leg),
         Guide::Motor => panel_jog::show(ui, &mut steps.jog, editor, leg),
         Guide::Zero => panel_zero::show(ui, &mut steps.homing, editor, leg),
     }

@@ -26,7 +26,7 @@ pub(super) fn show(ui: &mut Ui, homing: &mut bool, editor: &Editor, leg: &mut Sh
         "Take the payload off: with one the zero is wrong, and nothing reports it. Let the leg hang free.",
     );
     let words = format!(
-        "This will happen: every tendon is paid out by {} mm at a time, until all are slack, and then one after the other is reeled in at {} mm/s, up to {} N. It moves by {} mm at most.",
+        "This will happen: every tendon is paid out by {} mm at a time, until all are slack, and then one after the other is reeled in at {} mm/s, up to {} N. A motor that goes farther than {} mm ends it.",
         1000.0 * homing_settings.release_m,
         1000.0 * homing_settings.speed_m_per_s,
         homing_settings.f_max_n,

@@ -16,6 +16,8 @@ pub(super) struct Shown {
     pub weight_kg: Option<f64>,
     /// How far its motor pulls it in, mm.
     pub pull_mm: Option<f32>,
+    /// Its motor is turned by hand.
+    pub turned: bool,
     /// All tendons are slack.
     pub slack: bool,
     /// No payload may hang on the tip.
@@ -95,6 +97,9 @@ fn one(
             painter.line_segment(ends, stroke);
         }
     }
+    if shown.turned && meant {
+        turn(painter, motor.center(), palette);
+    }
     if let Some(pull_mm) = shown.pull_mm.filter(|_| meant) {
         let way = vec2(0.0, if pull_mm < 0.0 { 26.0 } else { -26.0 });
         let from = pos2(at + 14.0, 0.5 * (top + plate)) - 0.5 * way;
@@ -130,6 +135,17 @@ fn weight(painter: &Painter, [from, to]: [Pos2; 2], kg: f64, stroke: Stroke, pal
         FontId::proportional(11.5),
         palette.back,
     );
+}
+
+/// Three quarters of a circle with an arrow.
+fn turn(painter: &Painter, centre: Pos2, palette: &Palette) {
+    let stroke = Stroke::new(2.5, palette.warning);
+    let point = |step: u8| {
+        let angle = f32::from(step) / 12.0 * 0.75 * std::f32::consts::TAU;
+        centre + 20.0 * vec2(-angle.cos(), -angle.sin())
+    };
+    painter.add(Shape::line((0..=12).map(point).collect(), stroke));
+    painter.arrow(point(11), (point(12) - point(11)) * 1.6, stroke);
 }
 
 fn slack(painter: &Painter, [from, to]: [Pos2; 2], stroke: Stroke) {
