@@ -24,7 +24,7 @@ LEG = HERE.parents[2] / "target" / "debug" / "leg"
 # Time in which a leg whose page has gone is held, s.
 HELD_S = 5.0
 
-# The smallest page that shows everything side by side, nearly.
+# A page that shows everything side by side, and is quickly drawn.
 SMALL = (1000, 560)
 
 # From the joint to the tip of a leg that was set to 191 mm below its plate.
@@ -150,23 +150,8 @@ def phone(page):
     page.press("tab_drive")
     page.wait("has the disc", lambda state: "workspace" in state["places"])
     page.picture("live_phone")
-    is_stopped(page, lambda: page.press("stop"), "is stopped on a phone", phone_go_on)
     page.browser.resize(*SMALL)
     page.wait("is wide", lambda state: "tab_drive" not in state["places"])
-    go_on(page)
-
-
-def phone_go_on(page):
-    """The button is below what a phone shows at first: it is reached by the keyboard there."""
-    for _ in range(TRIES):
-        page.browser.resize(*SMALL)
-        page.wait("is wide", lambda state: "tab_drive" not in state["places"])
-        go_on(page)
-        page.browser.resize(390, 844)
-        page.wait("has tabs", lambda state: "tab_drive" in state["places"])
-        if page.state()["leg"]["state"] == "active":
-            return
-    raise AssertionError(f"does not go on: {page.state()['leg']}")
 
 
 def second_driver(served, page):
@@ -186,21 +171,19 @@ def second_driver(served, page):
 
 
 def cut_socket(served, page):
-    """The line between page and program is cut: the page says so, and the leg is held by itself."""
+    """The line between page and program is cut: the page says so, and takes no command any more."""
     page.browser.open("about:blank")
     with Cutter(served.leg) as cutter:
         page.open(f"{served.origin}/#leg={cutter.url}")
         page.wait_leg("is heard", lambda leg: leg["live"] and leg["time_s"] > 0)
         unlock(page)
-        go_on(page)
         cutter.cut()
         leg = page.wait_leg("is lost", lambda leg: leg["failure"])
         assert "connection is lost" in leg["failure"] and leg["locked"], leg
         print(f"cut: {leg['failure']}")
     page.browser.open("about:blank")
     page.open(served.url)
-    leg = page.wait_leg("is heard again", lambda leg: leg["live"] and leg["time_s"] > 0)
-    assert leg["state"] == "held" and "no command" in leg["faults"], leg
+    page.wait_leg("is free again", lambda leg: leg["live"] and leg["drives"] == [False, False])
     unlock(page)
 
 
@@ -266,10 +249,10 @@ def go_on(page):
     raise AssertionError(f"does not go on: {page.state()['leg']}")
 
 
-def is_stopped(driver, stop, what, go_on=None):
+def is_stopped(driver, stop, what):
     """Whether it is the stop that holds the leg, and not a fault."""
     for _ in range(TRIES):
-        (go_on or globals()["go_on"])(driver)
+        go_on(driver)
         stop()
         leg = driver.wait_leg(what, lambda leg: leg["state"] == "held")
         if not leg["faults"]:
@@ -340,6 +323,21 @@ def main():
         browser.prefer("dark")
         page = Page(browser, arguments.keep)
         page.open(served.url)
+        # First what needs no leg that is driven, which a busy machine may hold.
+        watch(page)
+        watched_board(page)
+        unlock(page)
+        board(served, page)
+        unlock(page)
+        phone(page)
+        second_driver(served, page)
+        cut_socket(served, page)
+        old_page(served, page)
+        nobody(page, f"{file.as_uri()}#leg=ws://127.0.0.1:9/x")
+        # A leg that was set anew would have to home: another one does not.
+        served = stack.enter_context(Served(file))
+        page.browser.open("about:blank")
+        page.open(served.url)
         watch(page)
         unlock(page)
         activate(page)
@@ -348,27 +346,11 @@ def main():
         go_on(page)
         page.picture("live")
         driven_board(page)
-        second_driver(served, page)
         if not arguments.quick:
             stops(page)
-            phone(page)
-        cut_socket(served, page)
-        old_page(served, page)
-        if not arguments.quick:
             second_page(served, page)
         errors = [entry for entry in browser.log() if entry["level"] == "SEVERE"]
-        assert not errors, errors
-        with Served(file) as other:
-            page.browser.open("about:blank")
-            page.browser.resize(1280, 720)
-            page.open(other.url)
-            watch(page)
-            watched_board(page)
-            unlock(page)
-            board(other, page)
-        errors = [entry for entry in browser.log() if entry["level"] == "SEVERE"]
-        assert not errors, errors
-        nobody(page, f"{file.as_uri()}#leg=ws://127.0.0.1:9/x")
+        assert not [error for error in errors if "127.0.0.1:9" not in error["message"]], errors
     print("all of it holds")
 
 
