@@ -1,7 +1,21 @@
 #!/usr/bin/env bash
 # Builds the window for a browser, exports it, and does in a browser what a user does: from nothing but Rust, where apt may
 # install the browser.
+#
+#     test.sh                everything
+#     test.sh --page DIR     only what a browser shows of the page in DIR, in less time: what CI has room for
 set -euo pipefail
+page=target/site
+quick=()
+if [ "${1:-}" = --page ]; then
+    page=$(realpath "$2")
+    quick=(--quick)
+fi
+# The program may be named from where this was called.
+if [ -n "${LEG:-}" ]; then
+    LEG=$(realpath "$LEG")
+    export LEG
+fi
 cd "$(dirname "$0")"
 
 # The build flags are those of .cargo/config.toml: a variable of the environment would replace them in silence.
@@ -12,12 +26,14 @@ for program in chromium chromedriver python3; do
     apt-get install -y -qq --no-install-recommends chromium chromium-driver python3
     break
 done
-rustup target list --installed | grep -q '^wasm32-unknown-unknown$' || rustup target add wasm32-unknown-unknown
 
-cargo test --locked
-cargo run --release --locked --package leg-window-export -- target/site
-python3 tests/browser.py target/site
+if [ ${#quick[@]} -eq 0 ]; then
+    rustup target list --installed | grep -q '^wasm32-unknown-unknown$' || rustup target add wasm32-unknown-unknown
+    cargo test --locked
+    cargo run --release --locked --package leg-window-export -- "$page"
+fi
+python3 tests/browser.py "$page" "${quick[@]}"
 if [ -z "${LEG:-}" ]; then
     (cd ../.. && cargo build --locked --bin leg)
 fi
-python3 tests/live.py target/site
+python3 tests/live.py "$page" "${quick[@]}"

@@ -18,6 +18,8 @@ pub mod atomic_file;
 pub mod description;
 pub mod disk;
 pub mod failure;
+pub mod flat_json;
+pub mod jog_report;
 pub mod json_line;
 pub mod numeric;
 pub mod paths;

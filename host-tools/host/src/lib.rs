@@ -53,8 +53,6 @@ pub mod calibration;
 pub mod cancel_flag;
 pub mod emulated_board;
 pub mod flash;
-mod flat_json;
-pub mod jog_report;
 pub mod leg_report;
 pub mod monitor;
 pub mod operator;
@@ -70,4 +68,5 @@ pub mod tcp_port;
 pub mod transport;
 pub mod tune;
 
+pub use leg_base::jog_report;
 pub use leg_sim::signals;

@@ -20,8 +20,8 @@ mod tests;
 
 pub use error::OperatorError;
 pub use goal::{Goal, Tensioning};
+pub use leg_rig::settings_difference::{SettingDifference, setting_differences};
 pub use recorder::Scope;
-pub use settings::{SettingDifference, setting_differences};
 
 use crate::cancel_flag::CancelFlag;
 use crate::transport::Transport;

@@ -87,7 +87,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         return server.run(page, &cancel).map_err(ended);
     };
     let name = hello.name.clone();
-    let pages = PageLink::listen(&server.origin(), hello).map_err(ended)?;
+    let pages = PageLink::listen(&server.origin(), hello.clone()).map_err(ended)?;
     show(
         &format!("{}#leg={}", server.url(), pages.url()),
         args,
@@ -100,7 +100,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         }
     });
     let host = HostIdentity::random().id;
-    bridge::run(transport.as_mut(), &pages, host, &cancel).map_err(|error| {
+    bridge::run(transport.as_mut(), &pages, hello, host, &cancel).map_err(|error| {
         Failure::failed(
             format!("the connection to {name} is lost: {error}"),
             "an armed leg is held by itself; look at the cable, and start it again",

@@ -23,9 +23,12 @@
 
 pub mod actuator;
 pub mod calibration;
+pub mod cell_fit;
 pub mod control_settings;
 pub mod curve_toml;
 pub mod gains;
+pub mod mechanism_keys;
+pub mod motor_turn;
 pub mod number;
 pub mod plant_settings;
 pub mod ready_rigs;
@@ -35,6 +38,7 @@ pub mod rig_convert;
 pub mod rig_file;
 pub mod rig_settings;
 pub mod rig_show;
+pub mod settings_difference;
 pub mod settings_text;
 pub mod support_name;
 pub mod toml_error;

@@ -170,6 +170,17 @@ mod tests {
         assert_eq!(Some(file), RigFile::load(None).ok());
     }
 
+    /// At the edge of the workspace such a leg leaves its tendons' curve, which is refused of a pose, and not of a file.
+    #[test]
+    fn a_pretension_above_the_highest_tension_is_refused() {
+        for above in ["151", "199"] {
+            let given = format!("pretension_n = {above}");
+            let text = READY_RIGS[0].text.replace("pretension_n = 70", &given);
+            let failure = RigFile::parse("above", &text).unwrap_err();
+            assert!(failure.render(false).contains(&given), "{failure}");
+        }
+    }
+
     /// What is commented out at the end of the default rig is what there is without it.
     #[test]
     fn the_sections_that_may_be_left_out_are_shown_at_their_defaults() {

@@ -166,7 +166,8 @@ pub fn changes(file: &RigFile) -> String {
 }
 
 /// A number, or an array of them that are not all the same; a dash where the file gives none.
-fn written(values: &[f64]) -> String {
+#[must_use]
+pub fn written(values: &[f64]) -> String {
     match values {
         [] => "-".into(),
         [first, rest @ ..] if rest.iter().all(|other| other == first) => plain(*first),

@@ -23,6 +23,8 @@ pub struct Host {
     rng: fastrand::Rng,
     decoder: Decoder,
     answers: Vec<Answer>,
+    /// What it was told in the last tick besides.
+    replies: Vec<(u16, HostReply)>,
 }
 
 /// What became of a request.
@@ -45,6 +47,7 @@ impl Host {
             rng: fastrand::Rng::with_seed(seed),
             decoder: Decoder::new(),
             answers: Vec::new(),
+            replies: Vec::new(),
         }
     }
 
@@ -53,17 +56,25 @@ impl Host {
     /// # Errors
     /// A command that fits into no frame.
     pub fn send(&mut self, command: &Command) -> Result<u16, FrameError> {
-        if self.sequence == 0 {
-            let schema = HOST_SCHEMA;
-            self.ask(&HostRequest::Identify(Hello { schema }))?;
-        }
         self.ask(&HostRequest::Command {
             host: HOST,
             command: *command,
         })
     }
 
-    fn ask(&mut self, request: &HostRequest) -> Result<u16, FrameError> {
+    /// Asks for something, and gives the number of its reply.
+    ///
+    /// # Errors
+    /// A request that fits into no frame.
+    pub fn ask(&mut self, request: &HostRequest) -> Result<u16, FrameError> {
+        if self.sequence == 0 {
+            let schema = HOST_SCHEMA;
+            self.queue_up(&HostRequest::Identify(Hello { schema }))?;
+        }
+        self.queue_up(request)
+    }
+
+    fn queue_up(&mut self, request: &HostRequest) -> Result<u16, FrameError> {
         self.sequence = next_sequence(self.sequence);
         let mut out = [0; MAX_FRAME];
         let bytes = frame::encode(self.sequence, request, &mut out)?;
@@ -74,6 +85,7 @@ impl Host {
     /// Takes what the leg sent in a tick.
     pub fn receive(&mut self, bytes: &[u8]) {
         self.answers.clear();
+        self.replies.clear();
         for byte in bytes {
             // A frame that cannot be read answers nothing.
             let Some(Ok(frame)) = self.decoder.push(*byte) else {
@@ -82,7 +94,11 @@ impl Host {
             let result = match frame.message() {
                 Some(HostReply::Done) => Ok(()),
                 Some(HostReply::Refused(refusal)) => Err(refusal),
-                _ => continue,
+                Some(reply) => {
+                    self.replies.push((frame.sequence, reply));
+                    continue;
+                }
+                None => continue,
             };
             self.answers.push(Answer {
                 number: frame.sequence,
@@ -95,6 +111,12 @@ impl Host {
     #[must_use]
     pub fn answers(&self) -> &[Answer] {
         &self.answers
+    }
+
+    /// What the leg replied in the last tick to what it was asked besides, with the requests' numbers.
+    #[must_use]
+    pub fn replies(&self) -> &[(u16, HostReply)] {
+        &self.replies
     }
 
     /// Sends bytes that mean nothing.

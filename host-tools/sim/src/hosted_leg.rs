@@ -11,6 +11,7 @@ use crate::link::{InProcess, Link};
 use crate::plant::Truth;
 use leg_firmware::command::Command;
 use leg_firmware::frame::FrameError;
+use leg_firmware::host_link::{HostReply, HostRequest};
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
 use leg_firmware_bench::protocol::{TickReply, TickRequest};
@@ -85,6 +86,20 @@ impl<L: Link> HostedLeg<L> {
     #[must_use]
     pub fn answers(&self) -> &[Answer] {
         self.host.answers()
+    }
+
+    /// Asks the leg for something, which reaches it in the next tick, and gives the number of the reply.
+    ///
+    /// # Errors
+    /// A request that fits into no frame.
+    pub fn ask(&mut self, request: &HostRequest) -> Result<u16, FrameError> {
+        self.host.ask(request)
+    }
+
+    /// What it replied in the last tick, with the requests' numbers.
+    #[must_use]
+    pub fn replies(&self) -> &[(u16, HostReply)] {
+        self.host.replies()
     }
 
     /// Where the leg is commanded to be at this time, as horizontal components: where a streamed path has it. None is where

@@ -9,10 +9,13 @@ use crate::page_state::PageState;
 use crate::panel_guide::Wish;
 use crate::places::{self, Places, place_rect};
 use crate::shown_leg::ShownLeg;
-use crate::simulation::Simulation;
+use crate::simulation::{Simulation, StartError};
+use crate::work::Work;
 use crate::{keys, theme, top_bar};
 use eframe::egui::{CentralPanel, Context, Frame, Margin, Panel, RawInput, Ui};
 use leg_firmware::command::Command;
+use leg_rig::rig_file::RigText;
+use web_time::Instant;
 
 /// From this width on everything is side by side, points.
 const WIDE: f32 = 960.0;
@@ -33,8 +36,8 @@ enum Stage {
 
 impl Stage {
     /// A new simulated leg.
-    fn simulated() -> Self {
-        match Simulation::new() {
+    fn simulated(leg: Result<Simulation, StartError>) -> Self {
+        match leg {
             Ok(simulation) => Self::Leg(ShownLeg::Simulated(Box::new(simulation))),
             Err(error) => Self::Empty(error.to_string()),
         }
@@ -73,6 +76,8 @@ pub struct App {
     frames: u64,
     /// Time that the processor took for the last frame, s.
     frame_s: Option<f32>,
+    /// What of it the window itself took.
+    work: Work,
     /// How much larger everything is shown.
     zoom: f32,
     /// Width of the screen that the size was chosen for, points of size 1.
@@ -83,7 +88,7 @@ impl App {
     /// A window with a new simulated leg.
     #[must_use]
     pub fn new(ctx: &Context) -> Self {
-        Self::with(ctx, Stage::simulated(), Views::new(false))
+        Self::with(ctx, Stage::simulated(Simulation::new()), Views::new(false))
     }
 
     /// A window that shows a live leg as soon as there is one.
@@ -106,6 +111,7 @@ impl App {
             last_s: None,
             frames: 0,
             frame_s: None,
+            work: Work::default(),
             zoom: 1.0,
             sized_for: 0.0,
         }
@@ -120,6 +126,8 @@ impl App {
             self.zoom,
             self.frames,
             self.frame_s,
+            self.work.summary(),
+            self.views.setup.state(self.stage.leg().ok()),
         )
     }
 
@@ -154,7 +162,12 @@ impl App {
         if let (Stage::Leg(leg), true) = (&mut self.stage, stop) {
             leg.command(Command::Stop, "stop");
         }
+        let began = Instant::now();
         self.stage.advance(elapsed_s, now_s);
+        self.work.note_leg(began.elapsed());
+        if let Stage::Leg(leg) = &mut self.stage {
+            self.views.setup.advance(leg);
+        }
         ctx.request_repaint();
     }
 
@@ -166,17 +179,48 @@ impl App {
             Stage::Empty(words) => return empty(ui, "There is no leg to show", words),
         };
         let bar = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(12, 8));
+        let is_wide = ui.available_width() >= WIDE;
+        let setup = is_wide.then_some(&mut views.setup.open);
         Panel::top("bar")
             .frame(bar)
-            .show(ui, |ui| top_bar::show(ui, leg));
-        let wish = if ui.available_width() >= WIDE {
+            .show(ui, |ui| top_bar::show(ui, leg, setup));
+        views.setup.show_notice(ui);
+        let wish = if is_wide {
             wide(ui, leg, views)
         } else {
             narrow(ui, leg, views)
         };
-        if wish == Wish::StartAgain {
-            self.views.charts.go_on();
-            self.stage = Stage::simulated();
+        match wish {
+            Wish::None => {}
+            Wish::StartAgain => {
+                let same = Simulation::of(leg.source().clone());
+                self.views.forget_leg();
+                self.stage = Stage::simulated(same);
+            }
+            Wish::Simulate(source) => self.simulate(&source),
+        }
+    }
+
+    /// Makes a simulated leg of a rig file; one that is refused leaves the present one as it is.
+    fn simulate(&mut self, source: &RigText) {
+        match Simulation::of(source.clone()) {
+            Ok(simulation) => {
+                let notes = source
+                    .read()
+                    .map_or_else(|_| Vec::new(), |(_, notes)| notes);
+                self.views.forget_leg();
+                self.views.setup.note_simulated(source, &notes);
+                self.stage = Stage::simulated(Ok(simulation));
+            }
+            Err(error) => self.views.setup.note_refused(source, error.to_string()),
+        }
+    }
+
+    /// Looks at the files that were given to the window.
+    fn take_files(&mut self, ctx: &Context) {
+        let leg = self.stage.leg().ok();
+        if let Some(source) = self.views.setup.take_files(ctx, leg) {
+            self.simulate(&source);
         }
     }
 
@@ -187,12 +231,15 @@ impl App {
 
     /// A frame.
     fn frame(&mut self, ui: &mut Ui) {
+        let began = Instant::now();
         let ctx = ui.ctx().clone();
         self.fit(&ctx);
         self.step(&ctx);
+        self.take_files(&ctx);
         self.show(ui);
         self.places = places::take(&ctx);
         self.frames += 1;
+        self.work.note_frame(began.elapsed());
     }
 }
 

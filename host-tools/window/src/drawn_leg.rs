@@ -69,6 +69,13 @@ impl<'a> Drawn<'a> {
         self.pose.along * self.tip_length_m
     }
 
+    /// The size of joint and plates, m.
+    pub fn joint_m(&self) -> f64 {
+        let rig = self.rig;
+        let rings_m = [&rig.base_anchors_m, &rig.leg_anchors_m].map(ring_m);
+        rings_m.into_iter().fold(rig.joint_length_m, f64::max)
+    }
+
     pub fn whole(&self, painter: &Painter, view: &View) {
         self.workspace(painter, view);
         let mut items = self.mechanism(view, 2.6);

@@ -5,6 +5,7 @@ use crate::faults::FaultList;
 use crate::panel_guide::Wish;
 use crate::places::{place, place_rect};
 use crate::scene::{self, Scene};
+use crate::setup::Setup;
 use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
 use crate::workspace::Workspace;
@@ -13,6 +14,7 @@ use eframe::egui::{
     Align, Align2, CentralPanel, FontId, Frame, Layout, Panel, Rect, ScrollArea, Ui, UiBuilder,
     Vec2, vec2,
 };
+use leg_rig::rig_file::RigText;
 
 /// The room for the time beside the leg, points.
 const TIME: Vec2 = vec2(150.0, 50.0);
@@ -24,6 +26,7 @@ enum Tab {
     Drive,
     Break,
     Charts,
+    Setup,
 }
 
 impl Tab {
@@ -33,11 +36,12 @@ impl Tab {
     }
 }
 
-const TABS: [(Tab, &str, &str); 4] = [
+const TABS: [(Tab, &str, &str); 5] = [
     (Tab::Try, "Try", "tab_try"),
     (Tab::Drive, "Drive", "tab_drive"),
     (Tab::Break, "Break", "tab_break"),
     (Tab::Charts, "Charts", "tab_charts"),
+    (Tab::Setup, "Set up", "tab_setup"),
 ];
 
 /// What the user chose to see.
@@ -47,6 +51,8 @@ pub struct Views {
     /// The signals over time.
     pub charts: Charts,
     faults: FaultList,
+    /// Rig files and settings.
+    pub setup: Setup,
     tab: Tab,
 }
 
@@ -63,13 +69,25 @@ impl Views {
                 Charts::default()
             },
             faults: FaultList::default(),
+            setup: Setup::default(),
             tab: if live { Tab::Drive } else { Tab::Try },
         }
+    }
+
+    /// Forgets what belongs to a leg that is not there any more.
+    pub fn forget_leg(&mut self) {
+        self.charts.go_on();
+        self.workspace = Workspace::default();
+        self.setup.forget_leg();
     }
 }
 
 /// Everything side by side.
 pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
+    views.setup.open |= views.setup.take_wanted();
+    if views.setup.open {
+        return simulate(views.setup.show(ui, leg));
+    }
     let tall = ui.available_height();
     let side = Frame::side_top_panel(ui.style()).inner_margin(12.0);
     let left = Panel::left("left")
@@ -123,6 +141,9 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
 
 /// The leg above, and the rest behind tabs.
 pub fn narrow(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
+    if views.setup.take_wanted() {
+        views.tab = Tab::Setup;
+    }
     let height = (0.44 * ui.available_height()).max(220.0);
     let above = Panel::top("leg")
         .frame(Frame::NONE)
@@ -141,7 +162,8 @@ pub fn narrow(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
             ui.horizontal(|ui| {
                 let shown = |(tab, ..): &&(Tab, _, _)| leg.live().is_none() || !tab.simulated();
                 let count = TABS.iter().filter(shown).count();
-                let width = (ui.available_width() - 24.0) / count as f32;
+                let gaps = ui.spacing().item_spacing.x * count.saturating_sub(1) as f32;
+                let width = (ui.available_width() - gaps) / count as f32;
                 for &(this, text, name) in TABS.iter().filter(shown) {
                     let button = eframe::egui::Button::selectable(views.tab == this, text);
                     let response = ui.add(button.min_size(vec2(width, 36.0)));
@@ -152,6 +174,10 @@ pub fn narrow(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
                 }
             });
             ui.separator();
+            if views.tab == Tab::Setup {
+                // It scrolls by itself.
+                return page(ui, leg, views);
+            }
             let scroll = ScrollArea::vertical().id_salt("tabs");
             scroll.show(ui, |ui| page(ui, leg, views)).inner
         })
@@ -184,8 +210,13 @@ fn page(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
             let now_s = leg.time_s();
             views.charts.show(ui, leg.history(), now_s, 180.0);
         }
+        Tab::Setup => return simulate(views.setup.show_inside(ui, leg)),
     }
     Wish::None
+}
+
+fn simulate(source: Option<RigText>) -> Wish {
+    source.map_or(Wish::None, Wish::Simulate)
 }
 
 /// The leg, how much its sag is enlarged, and why it cannot go on. Gives where it is.

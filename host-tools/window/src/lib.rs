@@ -10,9 +10,10 @@
 //! | [`scene`], `drawn_leg`, [`camera`], [`figure`], [`leg_pose`] | the leg in 3D |
 //! | [`workspace`], [`map`] | the disc on which the target is dragged, and what the model says of every pose |
 //! | [`charts`] | signals over time |
+//! | [`setup`], [`rig_intake`], [`files`], [`notice`] | rig files and settings: given, edited, saved, applied; what became of it |
 //! | [`theme`], [`text`], [`keys`] | colours, sizes, text in its place; the keys that stop |
 //! | [`bits`] | whether the firmware decides the same here as elsewhere |
-//! | [`page_state`], [`places`] | the window as data, for tests and for readers of the screen |
+//! | [`page_state`], [`places`], [`work`] | the window as data, for tests and for readers of the screen; how long its frames take |
 
 pub mod app;
 pub mod bits;
@@ -21,12 +22,14 @@ pub mod charts;
 mod drawn_leg;
 pub mod faults;
 pub mod figure;
+pub mod files;
 pub mod history;
 pub mod keys;
 pub mod layout;
 pub mod leg_pose;
 pub mod live_leg;
 pub mod map;
+pub mod notice;
 pub mod numbers;
 pub mod orders;
 pub mod pace;
@@ -36,7 +39,9 @@ pub mod panel_drive;
 pub mod panel_guide;
 pub mod panel_unlock;
 pub mod places;
+pub mod rig_intake;
 pub mod scene;
+pub mod setup;
 pub mod shown_leg;
 pub mod simulation;
 pub mod text;
@@ -44,4 +49,5 @@ pub mod theme;
 pub mod top_bar;
 #[cfg(target_arch = "wasm32")]
 pub mod web;
+pub mod work;
 pub mod workspace;

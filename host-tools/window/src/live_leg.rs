@@ -3,6 +3,7 @@
 //! It is only watched until it is unlocked. While it follows commands it is told all the time that the page is there: a page that
 //! is hidden, closed or stuck falls silent, and the leg then holds by itself.
 
+pub mod board;
 #[cfg(target_arch = "wasm32")]
 pub mod browser_line;
 pub mod frames;
@@ -14,13 +15,14 @@ mod tests;
 
 use crate::history::{History, Snapshot};
 use crate::orders::{Order, Orders, refused};
+use board::Board;
 use frames::{Frames, Numbers};
 use leg_base::tick_time::seconds;
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::host_link::{HostId, HostRefusal, HostReply, TelemetryReport};
 use leg_firmware::telemetry::Telemetry;
 use leg_rig::control_settings;
-use leg_rig::rig_file::RigFile;
+use leg_rig::rig_file::{RigFile, RigText};
 use leg_sim::signals::{LegConstants, Report};
 use line::{Heard, Line, Said};
 use messages::{PageWord, Role, ServerWord};
@@ -50,7 +52,9 @@ pub struct PageIdentity {
 pub struct LiveLeg {
     line: Box<dyn Line>,
     name: String,
+    source: RigText,
     rig: RigFile,
+    board: Board,
     constants: LegConstants,
     frames: Frames,
     numbers: Numbers,
@@ -75,13 +79,15 @@ pub struct LiveLeg {
 impl LiveLeg {
     /// A leg of this name and with these settings at the other end of a line, which is not heard yet.
     #[must_use]
-    pub fn new(line: Box<dyn Line>, page: PageIdentity, name: String, rig: RigFile) -> Self {
+    pub fn new(line: Box<dyn Line>, page: PageIdentity, source: RigText, rig: RigFile) -> Self {
         let settings = control_settings::settings(&rig, &rig.gains, None);
         Self {
             line,
-            name,
+            name: source.name.clone(),
+            source,
             constants: LegConstants::new(&settings),
             rig,
+            board: Board::default(),
             frames: Frames::default(),
             numbers: Numbers::new(page.first_number),
             host: page.host,
@@ -116,6 +122,7 @@ impl LiveLeg {
             self.commanded = None;
             self.refusal = Some("the last command was not answered; command again".into());
         }
+        self.look_at_board();
         self.show_life(now_s);
     }
 
@@ -144,6 +151,9 @@ impl LiveLeg {
 
     fn take_bytes(&mut self, bytes: &[u8]) {
         for (number, reply) in self.frames.take(bytes) {
+            if self.take_board_reply(number, &reply) {
+                continue;
+            }
             match (number, reply) {
                 (_, HostReply::Telemetry(report)) => self.take_report(&report),
                 (number, HostReply::Done) => self.take_answer(number, Ok(())),
@@ -290,6 +300,12 @@ impl LiveLeg {
     #[must_use]
     pub const fn rig(&self) -> &RigFile {
         &self.rig
+    }
+
+    /// The same as a rig file.
+    #[must_use]
+    pub const fn source(&self) -> &RigText {
+        &self.source
     }
 
     /// What its signals were.

@@ -3,7 +3,9 @@
 use crate::live_leg::LiveLeg;
 use crate::pace::Pace;
 use crate::places::Places;
+use crate::setup::state::SetupState;
 use crate::shown_leg::ShownLeg;
+use crate::work::WorkSummary;
 use leg_base::angles;
 use leg_base::description;
 use serde::Serialize;
@@ -26,6 +28,10 @@ pub struct PageState {
     frames: u64,
     /// Time that the processor took for the last one, ms.
     frame_ms: Option<f32>,
+    /// What the window itself took for each of the last ones, without what draws.
+    work: Option<WorkSummary>,
+    /// Rig files and settings.
+    setup: SetupState,
     /// What a reader of the screen says.
     spoken: String,
 }
@@ -34,6 +40,9 @@ pub struct PageState {
 struct LegState {
     /// The name of a live one.
     live: Option<String>,
+    /// The file that describes it, and how long it is from joint to tip, mm.
+    rig: String,
+    tip_mm: f64,
     /// Whether this page drives it, and another one.
     drives: [bool; 2],
     /// Why it takes no command but a stop.
@@ -70,6 +79,8 @@ impl PageState {
         zoom: f32,
         frames: u64,
         frame_s: Option<f32>,
+        work: Option<WorkSummary>,
+        setup: SetupState,
     ) -> Self {
         let rects = places.rects.iter().map(|(name, rect)| {
             let edges = [rect.left(), rect.top(), rect.right(), rect.bottom()];
@@ -79,10 +90,13 @@ impl PageState {
             Ok(leg) => (Some(LegState::new(leg)), None),
             Err(words) => (None, Some(words)),
         };
-        let spoken = leg.as_ref().map_or_else(
+        let mut spoken = leg.as_ref().map_or_else(
             || format!("There is no leg. {}", empty.as_deref().unwrap_or_default()),
             LegState::spoken,
         );
+        if let Some(notice) = &setup.notice {
+            spoken = format!("{spoken} {notice}");
+        }
         Self {
             leg,
             empty,
@@ -91,6 +105,8 @@ impl PageState {
             zoom,
             frames,
             frame_ms: frame_s.map(|time_s| 1000.0 * time_s),
+            work,
+            setup,
             spoken,
         }
     }
@@ -108,6 +124,8 @@ impl LegState {
         let telemetry = leg.telemetry();
         Self {
             live: live.map(|live| live.name().into()),
+            rig: leg.source().name.clone(),
+            tip_mm: 1000.0 * leg.tip_length_m(),
             drives: [role.drives, role.other_drives],
             locked: leg.locked(),
             time_s: leg.time_s(),

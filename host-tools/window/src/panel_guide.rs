@@ -5,6 +5,8 @@ use crate::simulation::Simulation;
 use crate::theme::palette;
 use eframe::egui::{Button, Frame, Label, Margin, RichText, Ui, vec2};
 use leg_firmware::command::{Command, Compensation};
+use leg_rig::ready_rigs::READY_RIGS;
+use leg_rig::rig_file::RigText;
 use leg_sim::plant::Defect;
 
 /// The payload of the first step, kg.
@@ -21,12 +23,14 @@ struct Step {
 }
 
 /// What came of the guide.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Wish {
     /// Nothing.
     None,
     /// A new leg.
     StartAgain,
+    /// A new leg with the rig of this file.
+    Simulate(RigText),
 }
 
 /// Shows the steps, and does the one that is pressed.
@@ -37,7 +41,11 @@ pub fn show(ui: &mut Ui, simulation: &mut Simulation) -> Wish {
         Step {
             number: 1,
             action: ["Hang 2 kg on the tip", "guide_payload"],
-            effect: "The tip sags to some 7 mm.",
+            effect: if simulation.source().text == READY_RIGS[0].text {
+                "The tip sags to some 7 mm."
+            } else {
+                "The tip sags."
+            },
             done: simulation.payload_kg() >= PAYLOAD_KG,
         },
         Step {

@@ -8,8 +8,8 @@ use crate::theme::palette;
 use eframe::egui::{ComboBox, Rect, Response, Sense, Ui, Vec2, pos2, vec2};
 use nalgebra::Vector3;
 
-/// How much of the leg the detail shows, m.
-const DETAIL_HEIGHT_M: f64 = 0.088;
+/// How much of the leg the detail shows, beside the size of what is in it.
+const DETAIL_HEIGHT: f64 = 3.03;
 
 /// From this width on the detail stands beside the whole, points.
 const WIDE: f32 = 520.0;
@@ -77,7 +77,7 @@ impl Scene {
         };
         drawn.detail(
             &painter,
-            &joint.view(detail, middle, DETAIL_HEIGHT_M),
+            &joint.view(detail, middle, DETAIL_HEIGHT * drawn.joint_m()),
             detail,
         );
         drawn.readout(&painter, rect);

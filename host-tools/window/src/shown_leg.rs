@@ -2,11 +2,15 @@
 
 use crate::history::History;
 use crate::live_leg::LiveLeg;
+use crate::live_leg::board::Errand;
 use crate::simulation::{Push, Simulation};
 use leg_firmware::command::Command;
+use leg_firmware::host_link::HostRequest;
+use leg_firmware::jog::JogReport;
+use leg_firmware::sensors::Sensors;
 use leg_firmware::supervisor::{FaultSet, State};
 use leg_firmware::telemetry::Telemetry;
-use leg_rig::rig_file::RigFile;
+use leg_rig::rig_file::{RigFile, RigText};
 use leg_sim::plant::Defect;
 use nalgebra::Vector3;
 
@@ -84,6 +88,15 @@ impl ShownLeg {
         match self {
             Self::Simulated(leg) => leg.rig(),
             Self::Live(leg) => leg.rig(),
+        }
+    }
+
+    /// The same as a rig file.
+    #[must_use]
+    pub fn source(&self) -> &RigText {
+        match self {
+            Self::Simulated(leg) => leg.source(),
+            Self::Live(leg) => leg.source(),
         }
     }
 
@@ -261,5 +274,37 @@ impl ShownLeg {
     #[must_use]
     pub fn pushed(&self) -> Option<Push> {
         self.simulated().and_then(Simulation::pushed)
+    }
+
+    /// Asks for the codes of its sensors, which come in a later frame.
+    pub fn ask_sensors(&mut self) {
+        match self {
+            Self::Simulated(leg) => leg.ask(&HostRequest::Sensors),
+            Self::Live(leg) => leg.ask(Errand::Sensors),
+        }
+    }
+
+    /// The codes that have come, once.
+    pub fn take_sensors(&mut self) -> Option<Sensors> {
+        match self {
+            Self::Simulated(leg) => leg.questions_mut().take_sensors(),
+            Self::Live(leg) => leg.board_mut().take_sensors(),
+        }
+    }
+
+    /// Asks what the last jog saw, which comes in a later frame.
+    pub fn ask_jog(&mut self) {
+        match self {
+            Self::Simulated(leg) => leg.ask(&HostRequest::JogReport),
+            Self::Live(leg) => leg.ask(Errand::Jog),
+        }
+    }
+
+    /// What the last jog saw, once.
+    pub fn take_jog(&mut self) -> Option<JogReport<f32>> {
+        match self {
+            Self::Simulated(leg) => leg.questions_mut().take_jog(),
+            Self::Live(leg) => leg.board_mut().take_jog(),
+        }
     }
 }

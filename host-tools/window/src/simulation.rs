@@ -1,12 +1,17 @@
 //! The leg in this window: firmware and simulated mechanism, stepped in real time.
 
+mod acts;
+mod questions;
+mod start_error;
 #[cfg(test)]
 mod tests;
+
+pub use questions::Questions;
+pub use start_error::StartError;
 
 use crate::history::{History, SAMPLE_HZ, Snapshot};
 use crate::orders::{Order, Orders, refused};
 use crate::pace::Pace;
-use leg_base::failure::Failure;
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::drive::Drive;
 use leg_firmware::host_link::HostRefusal;
@@ -15,22 +20,21 @@ use leg_firmware::supervisor::{FaultSet, State};
 use leg_firmware::telemetry::Telemetry;
 use leg_rig::control_settings;
 use leg_rig::plant_settings::PlantSettings;
-use leg_rig::rig_file::RigFile;
-use leg_sim::action::Action;
+use leg_rig::rig_file::{RigFile, RigText};
 use leg_sim::emulated_leg::{EmulatedLeg, EmulationError};
 use leg_sim::hosted_leg::HostedLeg;
-use leg_sim::plant::{Defect, Start};
+use leg_sim::plant::Start;
 use leg_sim::signals::{LegConstants, Report, Simulated};
 
 /// Where the leg is when the window opens: as in the paper's Fig. 9, where a load shows most.
 const START_AZIMUTH_DEG: f64 = 30.0;
 const START_TILT_DEG: f64 = 30.0;
 
+/// How far a leg that cannot lean so far leans at the start, as a part of its greatest tilt.
+const START_PART: f64 = 0.99;
+
 /// Time in which the leg comes to rest before the window opens, s.
 const SETTLE_S: f64 = 1.0;
-
-/// Time in which a payload is hung on, s.
-const PAYLOAD_OVER_S: f64 = 0.4;
 
 /// Every run of the window has the same noise.
 const SEED: u64 = 1;
@@ -49,6 +53,7 @@ pub struct Push {
 /// A leg with its host, what is done to it, and what it was like in the last seconds.
 pub struct Simulation {
     leg: HostedLeg,
+    source: RigText,
     rig: RigFile,
     constants: LegConstants,
     motors: Drive<f32>,
@@ -62,26 +67,10 @@ pub struct Simulation {
     orders: Orders,
     /// Why the last one was refused, if it was.
     refusal: Option<String>,
+    /// What it was asked besides.
+    questions: Questions,
     /// Why the simulation cannot go on.
     failure: Option<EmulationError>,
-}
-
-/// Why there is no leg.
-#[derive(Debug)]
-pub enum StartError {
-    /// The rig is refused.
-    Rig(Failure),
-    /// The simulation is.
-    Emulation(EmulationError),
-}
-
-impl std::fmt::Display for StartError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Rig(failure) => f.write_str(&failure.render(false)),
-            Self::Emulation(error) => error.fmt(f),
-        }
-    }
 }
 
 impl Simulation {
@@ -90,10 +79,23 @@ impl Simulation {
     /// # Errors
     /// A rig that is refused; there is none as long as the ready rigs pass their tests.
     pub fn new() -> Result<Self, StartError> {
-        let rig = RigFile::load(None).map_err(StartError::Rig)?;
+        Self::of(RigText::load(None).map_err(StartError::Rig)?)
+    }
+
+    /// The same with the rig of a file.
+    ///
+    /// # Errors
+    /// A rig that is refused, or that cannot be held where it starts.
+    pub fn of(source: RigText) -> Result<Self, StartError> {
+        let (rig, _) = source.read().map_err(StartError::Rig)?;
+        let tilt_deg = if rig.tilt_deg < START_TILT_DEG {
+            START_PART * rig.tilt_deg
+        } else {
+            START_TILT_DEG
+        };
         let start = Start::Held {
             azimuth_deg: START_AZIMUTH_DEG,
-            tilt_deg: START_TILT_DEG,
+            tilt_deg,
             pretension_n: rig.pretension_n,
             payload_kg: 0.0,
         };
@@ -107,6 +109,7 @@ impl Simulation {
         let mut simulation = Self {
             leg: HostedLeg::new(leg, &rig, start.direction(), SEED),
             constants: LegConstants::new(&settings),
+            source,
             rig,
             motors: Drive {
                 duty: [0.0; 3],
@@ -119,9 +122,10 @@ impl Simulation {
             push: None,
             orders: Orders::default(),
             refusal: None,
+            questions: Questions::default(),
             failure: None,
         };
-        simulation.begin();
+        simulation.begin(tilt_deg);
         match simulation.failure.take() {
             Some(error) => Err(StartError::Emulation(error)),
             None => Ok(simulation),
@@ -129,7 +133,7 @@ impl Simulation {
     }
 
     /// Boots the leg, arms it, and lets it come to rest.
-    fn begin(&mut self) {
+    fn begin(&mut self, tilt_deg: f64) {
         while self.leg.state() == State::Boot && self.failure.is_none() {
             self.tick();
         }
@@ -140,13 +144,10 @@ impl Simulation {
             self.command(command, name);
             self.run(u32::from(TICK_HZ) / 100);
         }
-        let [x, y] = self.start_direction();
+        let direction = leg_base::angles::direction(START_AZIMUTH_DEG, tilt_deg);
+        let [x, y] = direction.map(|part| part as f32);
         self.command(Command::Move { x, y }, "move");
         self.run((SETTLE_S * f64::from(TICK_HZ)) as u32);
-    }
-
-    fn start_direction(&self) -> [f32; 2] {
-        leg_base::angles::direction(START_AZIMUTH_DEG, START_TILT_DEG).map(|part| part as f32)
     }
 
     /// Lets as much time pass as the clock says, bounded.
@@ -179,6 +180,7 @@ impl Simulation {
             }
         }
         self.look_at_answers();
+        self.questions.take(self.leg.replies());
         if self
             .push
             .is_some_and(|push| push.until_s <= self.leg.time_s())
@@ -272,71 +274,16 @@ impl Simulation {
         }
     }
 
-    /// Hangs a payload on the tip, kg.
-    pub fn hang(&mut self, payload_kg: f64) {
-        self.payload_kg = payload_kg;
-        self.act(&Action::Payload {
-            kg: payload_kg,
-            over_s: PAYLOAD_OVER_S,
-        });
-    }
-
-    /// Pushes at the tip.
-    pub fn push(&mut self, azimuth_deg: f64, force_n: f64, for_s: f64) {
-        self.push = Some(Push {
-            azimuth_deg,
-            force_n,
-            until_s: self.leg.time_s() + for_s,
-        });
-        self.act(&Action::Push {
-            azimuth_deg,
-            force_n,
-            for_s,
-        });
-    }
-
-    /// Breaks something, or repairs it.
-    pub fn set_defect(&mut self, defect: Defect, on: bool) {
-        self.act(&if on {
-            Action::Fault(defect)
-        } else {
-            Action::Repair(defect)
-        });
-    }
-
-    fn act(&mut self, action: &Action) {
-        action.apply(self.leg.leg_mut().plant_mut());
-    }
-
-    /// Repairs everything.
-    pub fn repair(&mut self) {
-        let defects: Vec<Defect> = self.defects().collect();
-        for defect in defects {
-            self.act(&Action::Repair(defect));
-        }
-    }
-
-    /// What is broken.
-    pub fn defects(&self) -> impl Iterator<Item = Defect> + '_ {
-        self.leg.leg().plant().defects()
-    }
-
-    /// Whether the leg has a defect.
-    #[must_use]
-    pub fn has(&self, defect: Defect) -> bool {
-        self.defects().any(|other| other == defect)
-    }
-
-    /// The push that is going on.
-    #[must_use]
-    pub const fn pushed(&self) -> Option<Push> {
-        self.push
-    }
-
     /// The rig.
     #[must_use]
     pub const fn rig(&self) -> &RigFile {
         &self.rig
+    }
+
+    /// The file that describes it.
+    #[must_use]
+    pub const fn source(&self) -> &RigText {
+        &self.source
     }
 
     /// The leg with its host.

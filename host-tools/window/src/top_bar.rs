@@ -32,8 +32,8 @@ const WIDE: f32 = 1100.0;
 /// Less time that was left out is not shown, s.
 const LEFT_OUT_MIN_S: f64 = 0.005;
 
-/// Shows the bar.
-pub fn show(ui: &mut Ui, leg: &mut ShownLeg) {
+/// Shows the bar, with the switch between the leg and what it is set to where there is room for it.
+pub fn show(ui: &mut Ui, leg: &mut ShownLeg, setup: Option<&mut bool>) {
     let palette = palette(ui.ctx());
     let roomy = ui.available_width() > ROOMY;
     let wide = ui.available_width() > WIDE;
@@ -55,6 +55,14 @@ pub fn show(ui: &mut Ui, leg: &mut ShownLeg) {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             stop(ui, leg, &palette, roomy);
             appearance(ui);
+            if let Some(open) = setup {
+                let button = ui.add(Button::new("Set up").selected(*open));
+                place(&button, "setup");
+                let hint = "Rig files and settings, in the place of the leg.";
+                if button.on_hover_text(hint).clicked() {
+                    *open = !*open;
+                }
+            }
             if let Some(simulated) = leg.simulated_mut() {
                 rate(ui, &mut simulated.pace);
                 if wide {

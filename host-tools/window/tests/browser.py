@@ -2,6 +2,7 @@
 """Does in a browser what a person does who has never seen the page, from disk and from a web server.
 
     tests/browser.py DIR                compares the pictures with those in tests/pictures
+    tests/browser.py DIR --quick        in less time: what CI runs
     tests/browser.py DIR --keep         writes those anew: look at them before you commit
 """
 
@@ -20,13 +21,14 @@ from webdriver import Browser
 
 HERE = pathlib.Path(__file__).resolve().parent
 PICTURES = HERE / "pictures"
+RIGS = HERE.parents[1] / "rigs"
 GOLDEN_BITS = HERE.parents[2] / "tests" / "golden" / "scenario_bits.txt"
 
 # What the page promises.
 LOAD_S = 3.0
 WIRE_BYTES = 8e6
 # A machine that draws by its processor alone, and shares it, is not held to the 60 frames of a second of one with a
-# graphics card: the time that the page itself takes for a frame is.
+# graphics card: the time that the page itself takes for a frame, ticks and layout, is.
 FRAME_MS = 1000 / 60
 # How far the leg's time may be behind the clock's.
 REAL_TIME = 0.9
@@ -238,19 +240,18 @@ def check_speed(page):
     before, began = page.state()["leg"]["time_s"], time.monotonic()
     times = page.browser.run_later(FRAMES)
     spans = [b - a for a, b in zip(times, times[1:])]
-    costs = []
-    for _ in range(20):
-        costs.append(page.state()["frame_ms"])
-        time.sleep(0.05)
+    time.sleep(1.0)
     leg_s = page.state()["leg"]["time_s"] - before
     clock_s = time.monotonic() - began
-    rate, cost = leg_s / clock_s, statistics.median(costs)
+    rate, state = leg_s / clock_s, page.state()
+    work, drawn = state["work"], state["frame_ms"]
     print(
-        f"  frames: {statistics.median(spans):.1f} ms apart (median), {max(spans):.1f} at most;"
-        f" {cost:.1f} ms of work each; leg's time / clock {rate:.3f}"
+        f"  frames: {statistics.median(spans):.1f} ms apart (median), {max(spans):.1f} at most; the page itself takes"
+        f" {work['median_ms']:.1f} ms (median), {work['most_ms']:.1f} at most, {work['leg_median_ms']:.1f} of it for the"
+        f" leg's ticks; {drawn:.1f} ms with what it hands to the graphics; leg's time / clock {rate:.3f}"
     )
     assert REAL_TIME < rate < 1.1, rate
-    assert cost <= FRAME_MS, cost
+    assert work["median_ms"] <= FRAME_MS, work
 
 
 def check_bits(page):
@@ -437,6 +438,192 @@ def breaks(page):
     page.wait_leg("is cleared", lambda leg: "jump of a tension" not in leg["faults"])
 
 
+DROP = """
+const [name, data, done] = arguments;
+const bytes = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
+const given = new DataTransfer();
+given.items.add(new File([bytes], name));
+const canvas = document.getElementById("leg");
+for (const kind of ["dragover", "drop"]) {
+  canvas.dispatchEvent(new DragEvent(kind, { dataTransfer: given, bubbles: true, cancelable: true }));
+}
+done(true);
+"""
+
+# The dialog is the browser's own, and no driver can press it: the choice is made in its place.
+CHOOSE = """
+const [name, text] = arguments;
+HTMLInputElement.prototype.click = function () {
+  const given = new DataTransfer();
+  given.items.add(new File([text], name));
+  this.files = given.files;
+  this.dispatchEvent(new Event("change"));
+};
+"""
+
+# What is saved is read from the link that the page presses.
+SAVED = """
+window.saved = [];
+HTMLAnchorElement.prototype.click = function () {
+  const name = this.download;
+  fetch(this.href).then((answer) => answer.text()).then((text) => window.saved.push([name, text]));
+};
+"""
+
+
+def drop(page, name, data):
+    page.browser.run_later(DROP, name, base64.b64encode(data).decode())
+
+
+def noticed(page, words):
+    state = page.wait(words, lambda state: words in (state["setup"]["notice"] or ""))
+    return state["setup"]["details"]
+
+
+def close_notice(page):
+    page.press("notice_close")
+    page.wait("the notice is closed", lambda state: state["setup"]["notice"] is None)
+
+
+def rig_files(page):
+    """Gives rig files: good ones become the leg, bad ones are refused with their place, and the leg stays."""
+    start_again(page)
+    good = (RIGS / "table1.toml").read_text().replace("leg_mm = 190", "leg_mm = 250")
+    bad = good.replace("leg_mm = 250", "leg_m = 0.25")
+    line = 1 + bad.splitlines().index("leg_m = 0.25")
+    drop(page, "longer.toml", good.encode())
+    noticed(page, "longer.toml")
+    leg = page.wait_leg("is longer", lambda leg: abs(leg["tip_mm"] - 279) < 0.1 and leg["state"] == "active")
+    close_notice(page)
+    page.picture("longer")
+    for name, data, expected in (
+        ("bad.toml", bad.encode(), f"bad.toml:{line}:1"),
+        ("huge.toml", b"#" * (1024 * 1024 + 1), "larger than 1 MiB"),
+        ("picture.png", (PICTURES / "phone.png").read_bytes(), "no text"),
+    ):
+        drop(page, name, data)
+        details = noticed(page, name)
+        assert expected in details and "help: " in details, details
+        page.wait("the notice is shown", lambda state: "notice" in state["places"])
+        if name == "bad.toml":
+            assert "leg_m = 0.25" in details and "unknown key" in details, details
+            page.picture("refused")
+        close_notice(page)
+        now = page.state()["leg"]
+        assert now["rig"] == "longer.toml" and now["time_s"] > leg["time_s"], now
+        print(f"  {name}: {details.splitlines()[0]}")
+    page.press("setup")
+    page.press("setup_rig")
+    page.press("rig_spherical")
+    page.wait_leg("is on a ball joint", lambda leg: leg["rig"] == "spherical.toml" and leg["state"] == "active")
+    page.browser.run(CHOOSE, "chosen.toml", good)
+    page.press("rig_open")
+    page.wait_leg("is the chosen one", lambda leg: leg["rig"] == "chosen.toml")
+    close_notice(page)
+    page.picture("rigs")
+    page.press("rig_table1")
+    page.wait_leg("is the paper's", lambda leg: leg["rig"] == "table1.toml")
+    close_notice(page)
+    page.press("setup")
+
+
+def type_value(page, name, text):
+    page.press(name)
+    page.wait(f"{name} is in focus", lambda state: state["focused"] == name)
+    page.browser.type_over(text)
+    time.sleep(0.4)
+
+
+def settings(page):
+    """Edits settings: refused with the reason, marked, taken back, saved, and given to the leg."""
+    page.press("setup")
+    page.wait("there are pages", lambda state: "setup_settings" in state["places"])
+    page.press("setup_settings")
+    page.wait("there is a search", lambda state: "settings_search" in state["places"])
+    type_value(page, "settings_search", "jump")
+    key = "value_control.limits.jump_n"
+    page.wait("it is found", lambda state: key in state["places"])
+    type_value(page, key, "1e6")
+    state = page.wait("it is refused", lambda state: state["setup"]["refused"])
+    assert "`jump_n` is outside" in state["setup"]["refused"], state["setup"]
+    print(f"  {state['setup']['refused']}")
+    type_value(page, key, "40")
+    page.wait("it is taken", lambda state: state["setup"]["changed"] == ["control.limits.jump_n"])
+    page.picture("settings")
+    page.press("settings_undo")
+    page.wait("it is taken back", lambda state: not state["setup"]["changed"])
+    page.press("settings_redo")
+    type_value(page, "settings_search", "leg_mm")
+    page.wait("it is found", lambda state: "value_geometry.leg_mm" in state["places"])
+    type_value(page, "value_geometry.leg_mm", "210")
+    page.wait("both are changed", lambda state: len(state["setup"]["changed"]) == 2)
+    page.browser.run(SAVED)
+    page.press("settings_save")
+    until = time.monotonic() + WAIT_S
+    while not (saved := page.browser.run("return window.saved")):
+        assert time.monotonic() < until
+        time.sleep(0.1)
+    ((name, text),) = saved
+    assert name == "table1.toml" and "leg_mm = 210" in text and "jump_n = 40" in text, saved
+    # Comments stay.
+    assert text.startswith((RIGS / "table1.toml").read_text()[:200])
+    close_notice(page)
+    page.press("settings_apply")
+    page.wait_leg("is so", lambda leg: abs(leg["tip_mm"] - 239) < 0.1 and leg["state"] == "active")
+    close_notice(page)
+    page.press("settings_all")
+    page.press("settings_apply")
+    page.wait_leg("is as before", lambda leg: abs(leg["tip_mm"] - 219) < 0.1)
+    close_notice(page)
+    page.press("setup")
+    page.wait("the leg is shown", lambda state: "leg" in state["places"])
+
+
+def steps(page):
+    """Rehearses the calibrations on the simulated leg: a load cell, a motor, the zero."""
+    start_again(page)
+    page.press("setup")
+    page.press("setup_steps")
+    page.wait("there are guides", lambda state: "guide_cells" in state["places"])
+    page.press("steps_disarm")
+    page.wait_leg("is disarmed", lambda leg: leg["state"] == "disarmed")
+    page.press("cell_2")
+    page.press("cells_start")
+    for _ in range(4):
+        page.wait("a weight is to be hung", lambda state: "cells_read" in state["places"])
+        if _ == 2:
+            page.picture("cells")
+        page.press("cells_read")
+        page.wait("it is read", lambda state: "cells_progress" not in state["places"], 60)
+    page.wait("there is a result", lambda state: "cells_result" in state["places"])
+    page.press("cells_take")
+    keys = ["calibration.cell_n_per_code", "calibration.cell_zero_code"]
+    page.wait("the settings have it", lambda state: set(state["setup"]["changed"]) <= set(keys) and state["setup"]["changed"])
+    print(f"  cell 2: {', '.join(page.state()['setup']['changed'])}")
+    page.press("guide_turns")
+    page.wait("there is a start", lambda state: "turns_start" in state["places"])
+    page.press("turns_start")
+    for motor in (1, 2, 3):
+        page.wait("a motor is to be turned", lambda state: "turns_turned" in state["places"])
+        page.press("turns_turned")
+        page.wait("it is turned", lambda state: f"turn_{motor}" in state["places"], 30)
+    page.wait("there is a result", lambda state: "turns_take" in state["places"])
+    page.press("guide_motor")
+    page.wait("there is a motor", lambda state: "jog_start" in state["places"])
+    page.press("motor_3")
+    page.press("jog_start")
+    page.wait("there is a result", lambda state: "jog_result" in state["places"], 30)
+    page.picture("motor")
+    page.press("guide_zero")
+    page.wait("there is a start", lambda state: "zero_start" in state["places"])
+    page.press("zero_start")
+    page.wait_leg("homes", lambda leg: leg["state"] == "homing")
+    page.wait_leg("hangs down", lambda leg: leg["state"] == "active" and leg["tilt_deg"] < 1, 60)
+    page.picture("zero")
+    page.press("setup")
+    page.wait("the leg is shown", lambda state: "leg" in state["places"])
+
+
 def looks(page):
     """The other sizes: a phone held upright, and a large screen; light."""
     start_again(page)
@@ -447,6 +634,12 @@ def looks(page):
     page.press("tab_drive")
     page.wait("has the disc", lambda state: "workspace" in state["places"])
     page.picture("phone_drive")
+    page.press("tab_setup")
+    page.wait("has pages", lambda state: "setup_settings" in state["places"])
+    page.press("setup_settings")
+    page.wait("has the table", lambda state: "section" in state["places"])
+    page.picture("phone_settings")
+    page.press("tab_drive")
     page.browser.resize(3840, 2160)
     page.wait("is wide", lambda state: "tab_drive" not in state["places"])
     page.picture("large")
@@ -463,8 +656,14 @@ PARTS = (
     maps,
     pushes,
     breaks,
+    rig_files,
+    settings,
+    steps,
     looks,
 )
+
+# What CI has time for: everything that depends on the browser once, and what is of the page alone where it is quick.
+QUICK = (check_speed, check_bits, first_visit, breaks, rig_files, settings, looks)
 
 
 def serve(directory):
@@ -482,7 +681,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("directory", type=pathlib.Path)
     parser.add_argument("--keep", action="store_true")
+    parser.add_argument("--quick", action="store_true", help="what CI has time for")
+    parser.add_argument("--part", action="append", choices=[part.__name__ for part in PARTS], help="these parts alone")
     arguments = parser.parse_args()
+    parts = QUICK if arguments.quick else PARTS
+    if arguments.part:
+        parts = [part for part in PARTS if part.__name__ in arguments.part]
     file = (arguments.directory / "index.html").resolve()
     size = file.stat().st_size
     print(f"{size / 1e6:.2f} MB")
@@ -495,7 +699,7 @@ def main():
             took_s = min(page.open(address) for _ in range(3))
             print(f"{address.split(':')[0]}: loaded in {took_s:.2f} s")
             assert took_s <= LOAD_S, took_s
-        for part in PARTS:
+        for part in parts:
             began = time.monotonic()
             print(part.__name__)
             part(page)

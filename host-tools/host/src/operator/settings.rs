@@ -1,12 +1,10 @@
-//! The settings of a leg: read, replaced, kept and compared.
+//! The settings of a leg: read, replaced and kept.
 
 use super::request::{Repeat, done};
 use super::{Operator, OperatorError};
-use crate::flat_json::flatten;
 use leg_firmware::host_link::{HostReply, HostRequest};
 use leg_firmware::settings::Settings;
-use leg_rig::recorded_signals::{self, RECORDED};
-use serde_json::Value;
+use leg_rig::settings_difference::setting_differences;
 use std::time::Duration;
 
 /// Longest time in which a board stores its settings: erasing a page of flash takes most of it.
@@ -45,47 +43,4 @@ impl Operator {
         let reply = self.exchange(asked, &request, Repeat::IfLost, SAVE_TIME)?;
         done(reply).ok_or(OperatorError::WrongReply(asked))
     }
-}
-
-/// A setting that two sides have differently.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct SettingDifference {
-    /// Its place, from the outermost name inwards: `limits.slack_n`.
-    pub name: String,
-    /// On the one side; none if it is not there.
-    pub ours: Option<Value>,
-    /// On the other side.
-    pub theirs: Option<Value>,
-}
-
-/// Settings as JSON: of signals their names, not the bits.
-fn json(settings: &Settings) -> Value {
-    // Settings always have a form in JSON.
-    let mut value = serde_json::to_value(settings).unwrap_or_default();
-    let names: Vec<_> = recorded_signals::words(settings.recorded).collect();
-    value[RECORDED] = names.join(", ").into();
-    value
-}
-
-/// Every setting whose bits differ. What was found while homing is left out.
-///
-/// Equal values have equal bits: settings hold no NaN, and f32 is written without loss.
-pub fn setting_differences(ours: &Settings, theirs: &Settings) -> Vec<SettingDifference> {
-    let [ours, theirs] = [ours, theirs].map(|settings| json(&settings.without_zero()));
-    let [ours, theirs] = [&ours, &theirs].map(|settings| flatten(settings, "."));
-    let value = |settings: &[(String, &Value)], name: &str| {
-        let found = settings.iter().find(|(other, _)| other == name);
-        found.map(|(_, value)| (*value).clone())
-    };
-    let added = theirs
-        .iter()
-        .filter(|(name, _)| value(&ours, name).is_none());
-    let differences = ours.iter().chain(added).map(|(name, _)| SettingDifference {
-        name: name.clone(),
-        ours: value(&ours, name),
-        theirs: value(&theirs, name),
-    });
-    differences
-        .filter(|difference| difference.ours != difference.theirs)
-        .collect()
 }

@@ -1,12 +1,13 @@
 //! A leg and the pages that show it.
 
-use super::link::PageLink;
+use super::link::{Hello as PageHello, PageLink};
 use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::frame::{self, Decoder, MAX_FRAME};
 use leg_firmware::host_link::{HOST_SCHEMA, Hello, HostId, HostRefusal, HostReply, HostRequest};
 use leg_firmware::sensors::TICK_HZ;
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::transport::Transport;
+use leg_rig::settings_text;
 use std::io::{self, ErrorKind};
 use std::time::{Duration, Instant};
 
@@ -31,19 +32,22 @@ const NO_NUMBER: u16 = 0;
 /// Number of a stop. Pages take lower ones.
 const STOP_NUMBER: u16 = u16::MAX;
 
-/// Passes on what leg and pages send each other, until the flag is set. The leg reports by itself.
+/// Passes on what leg and pages send each other, until the flag is set. The leg reports by itself; `hello` is what pages are told of
+/// it first, and follows what a page sets it to.
 ///
 /// # Errors
 /// A line that has ended; the pages are told.
 pub fn run(
     transport: &mut dyn Transport,
     pages: &PageLink,
+    hello: PageHello,
     host: HostId,
     cancel: &CancelFlag,
 ) -> io::Result<()> {
     let mut bridge = Bridge {
         transport,
         pages,
+        hello,
         host,
         decoder: Decoder::new(),
         heard: None,
@@ -64,6 +68,7 @@ pub fn run(
 struct Bridge<'a> {
     transport: &'a mut dyn Transport,
     pages: &'a PageLink,
+    hello: PageHello,
     host: HostId,
     decoder: Decoder,
     /// When the leg last reported, or was asked to; none if it has to be asked.
@@ -137,6 +142,10 @@ impl Bridge<'_> {
             };
             match (frame.sequence, frame.message()) {
                 (_, Some(HostReply::Telemetry(_))) => self.heard = Some(Instant::now()),
+                (_, Some(HostReply::Settings(settings))) => {
+                    self.hello.rig = settings_text::rig_file(&settings);
+                    self.pages.introduce(self.hello.clone());
+                }
                 // A board that has started anew: it is asked at once.
                 (_, Some(HostReply::Refused(HostRefusal::NotIdentified))) => self.heard = None,
                 // Where the state does not allow it, nothing of the leg follows commands.

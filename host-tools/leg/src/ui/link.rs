@@ -166,6 +166,11 @@ impl PageLink {
             .map(|frames| frames.bytes)
     }
 
+    /// Tells pages that come from now on of the leg as it is now.
+    pub fn introduce(&self, hello: Hello) {
+        lock(&self.pages).introduction = json(&Introduction { hello });
+    }
+
     /// Sends bytes of the leg to all pages.
     pub fn send(&self, bytes: &[u8]) {
         lock(&self.pages).send(&Message::binary(bytes.to_vec()));

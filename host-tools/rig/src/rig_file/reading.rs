@@ -123,7 +123,10 @@ fn check(file: &RigFile) -> Result<(), (Quantity, Reason)> {
         }
     }
     match leg_model::evaluate(&file.parameters, &file.query(0.0, file.tilt_deg, 0.0)) {
-        Err(Error::Refused { quantity, reason }) => Err((quantity, reason)),
+        // What it refuses of a single pose must not hide what is wrong with the file.
+        Err(Error::Refused { quantity, reason }) if key_of(quantity).is_some() => {
+            Err((quantity, reason))
+        }
         _ if !(file.f_min_n..=file.f_max_n).contains(&file.pretension_n) => {
             Err((Quantity::Pretension, Reason::OutsideBounds))
         }

@@ -1,8 +1,12 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+mod setup;
+
 use super::App;
 use crate::simulation::Simulation;
-use eframe::egui::{Context, Event, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, pos2};
+use eframe::egui::{
+    Context, DroppedFileHandle, Event, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, pos2,
+};
 use leg_firmware::supervisor::State;
 
 /// A window without a screen.
@@ -25,9 +29,14 @@ impl Window {
     }
 
     fn frame(&mut self, events: Vec<Event>) {
+        self.frame_with(events, Vec::new());
+    }
+
+    fn frame_with(&mut self, events: Vec<Event>, dropped_files: Vec<DroppedFileHandle>) {
         self.time_s += 0.02;
         let mut input = RawInput {
             events,
+            dropped_files,
             time: Some(self.time_s),
             screen_rect: Some(Rect::from_min_max(pos2(0.0, 0.0), pos2(1280.0, 720.0))),
             ..RawInput::default()

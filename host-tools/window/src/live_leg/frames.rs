@@ -70,9 +70,14 @@ impl Numbers {
 /// A command of a host as a frame; none if it fits into none.
 #[must_use]
 pub fn framed(number: u16, host: HostId, command: Command) -> Option<Vec<u8>> {
-    let request = HostRequest::Command { host, command };
+    framed_request(number, &HostRequest::Command { host, command })
+}
+
+/// What a host asks as a frame; none if it fits into none.
+#[must_use]
+pub fn framed_request(number: u16, request: &HostRequest) -> Option<Vec<u8>> {
     let mut out = [0; MAX_FRAME];
-    let bytes = frame::encode(number, &request, &mut out).ok()?;
+    let bytes = frame::encode(number, request, &mut out).ok()?;
     Some(bytes.to_vec())
 }
 

@@ -5,7 +5,7 @@ use super::messages::{Hello, ServerWord};
 use super::{LiveLeg, PageIdentity};
 use leg_base::description::hex;
 use leg_firmware::host_link::HOST_SCHEMA;
-use leg_rig::rig_file::RigFile;
+use leg_rig::rig_file::RigText;
 
 /// A leg that is not there yet.
 pub struct Opening {
@@ -76,10 +76,14 @@ impl Opening {
                     .into(),
             );
         }
-        match RigFile::parse(&hello.name, &hello.rig) {
+        let source = RigText {
+            name: hello.name,
+            text: hello.rig,
+        };
+        match source.read() {
             Err(failure) => Opened::Failed(failure.render(false)),
-            Ok(rig) => self.line.take().map_or(Opened::Waiting, |line| {
-                Opened::Leg(Box::new(LiveLeg::new(line, self.page, hello.name, rig)))
+            Ok((rig, _)) => self.line.take().map_or(Opened::Waiting, |line| {
+                Opened::Leg(Box::new(LiveLeg::new(line, self.page, source, rig)))
             }),
         }
     }

@@ -1,5 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+mod board;
+
 use super::line::{Heard, Line, Said};
 use super::opening::{Opened, Opening};
 use super::{LiveLeg, PageIdentity};

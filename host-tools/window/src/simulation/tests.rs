@@ -6,6 +6,8 @@ use leg_firmware::command::{Command, CommandRefusal, Compensation};
 use leg_firmware::host_link::HostRefusal;
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::supervisor::{Fault, State};
+use leg_rig::ready_rigs::READY_RIGS;
+use leg_rig::rig_file::RigText;
 use leg_sim::emulated_leg::EmulationError;
 use leg_sim::plant::Defect;
 use leg_sim::signals::{REPORT_SIGNALS, SIMULATED_SIGNALS};
@@ -251,4 +253,45 @@ fn a_leg_whose_numbers_are_lost_stands_still_and_says_so() {
     assert!(failure.contains("no finite place"), "{failure}");
     drag(&mut simulation, 10);
     assert_eq!(simulation.leg().time_s(), failed_s);
+}
+
+#[test]
+fn every_ready_rig_becomes_a_leg_that_follows_commands() {
+    for rig in READY_RIGS {
+        let source = RigText {
+            name: rig.name.into(),
+            text: rig.text.into(),
+        };
+        let simulation = Simulation::of(source).unwrap();
+        assert_eq!(simulation.state(), State::Active, "{}", rig.name);
+        assert_eq!(simulation.refusal(), None, "{}", rig.name);
+        // It sags under its own weight: compensation is off.
+        assert!(
+            error_mm(&simulation) < 5.0,
+            "{}: {}",
+            rig.name,
+            error_mm(&simulation)
+        );
+        assert_eq!(simulation.rig().support_name, rig.support);
+    }
+}
+
+#[test]
+fn a_rig_that_is_refused_gives_no_leg_and_says_why() {
+    let source = |text: String| RigText {
+        name: "mine.toml".into(),
+        text,
+    };
+    let bad = READY_RIGS[0].text.replace("tilt_deg = 30", "tilt_deg = 80");
+    let words = Simulation::of(source(bad)).err().unwrap().to_string();
+    assert!(
+        words.contains("mine.toml:") && words.contains("help: "),
+        "{words}"
+    );
+    let small = READY_RIGS[0].text.replace("tilt_deg = 30", "tilt_deg = 10");
+    let simulation = Simulation::of(source(small)).unwrap();
+    assert_eq!(
+        (simulation.state(), simulation.refusal()),
+        (State::Active, None)
+    );
 }

@@ -1,6 +1,6 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{FRAMES_MAX, FRESH_TIME, PageLink, Pages, WAITING_MAX};
+use super::{FRAMES_MAX, FRESH_TIME, Hello, PageLink, Pages, WAITING_MAX};
 use leg_firmware::frame::MAX_FRAME;
 use std::sync::atomic::AtomicUsize;
 use std::sync::mpsc::Receiver;
@@ -120,4 +120,20 @@ fn a_page_that_does_not_read_drives_no_longer() {
     assert!(messages.recv().is_err());
     word(&link, other, "drive");
     assert_eq!(told(&heard), r#"{"drives":true,"other_drives":false}"#);
+}
+
+#[test]
+fn a_page_that_comes_later_is_told_of_the_leg_as_it_is_then() {
+    let link = link();
+    let (_, before) = add(&link);
+    let hello = |rig: &str| Hello {
+        schema: "0123".into(),
+        name: "sim".into(),
+        rig: rig.into(),
+    };
+    link.introduce(hello("[later]"));
+    let (_, after) = add(&link);
+    assert_eq!(before.try_iter().next().unwrap().to_string(), "{}");
+    let first = after.try_iter().next().unwrap().to_string();
+    assert!(first.contains("[later]"), "{first}");
 }

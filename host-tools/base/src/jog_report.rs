@@ -1,6 +1,6 @@
 //! What a jog will do and what it saw, in a user's words.
 
-use leg_base::json_object;
+use crate::json_object;
 use leg_firmware::control::JOG_RISE_S;
 use leg_firmware::jog::{JogDemand, JogEnd, JogReport};
 use leg_firmware::settings::Settings;

@@ -3,7 +3,8 @@
 use serde_json::Value;
 
 /// Every value that is no list or object, with the names on the way to it. Lists are counted from 1, as tendons are.
-pub(crate) fn flatten<'a>(value: &'a Value, separator: &str) -> Vec<(String, &'a Value)> {
+#[must_use]
+pub fn flatten<'a>(value: &'a Value, separator: &str) -> Vec<(String, &'a Value)> {
     let mut found = Vec::new();
     collect(String::new(), value, separator, &mut found);
     found

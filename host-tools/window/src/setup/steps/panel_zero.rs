@@ -1,0 +1,99 @@
+//! The zero of the tendons, as its user finds it.
+
+use super::panel::{button, faint, sentence};
+use super::picture::{self, Shown};
+use crate::places::place;
+use crate::setup::editor::Editor;
+use crate::shown_leg::ShownLeg;
+use crate::theme::palette;
+use eframe::egui::{Label, RichText, Spinner, Ui};
+use leg_firmware::command::Command;
+use leg_firmware::supervisor::{Event, State};
+
+pub(super) fn show(ui: &mut Ui, homing: &mut bool, editor: &Editor, leg: &mut ShownLeg) {
+    picture::show(
+        ui,
+        &Shown {
+            slack: true,
+            no_payload: true,
+            ..Shown::default()
+        },
+    );
+    let homing_settings = &editor.settings().homing;
+    sentence(
+        ui,
+        1,
+        "Take the payload off: with one the zero is wrong, and nothing reports it. Let the leg hang free.",
+    );
+    let words = format!(
+        "This will happen: every tendon is paid out by {} mm at a time, until all are slack, and then one after the other is reeled in at {} mm/s, up to {} N. A motor that goes farther than {} mm ends it.",
+        1000.0 * homing_settings.release_m,
+        1000.0 * homing_settings.speed_m_per_s,
+        homing_settings.f_max_n,
+        1000.0 * homing_settings.travel_m,
+    );
+    sentence(ui, 2, &words);
+    let state = leg.state();
+    let possible = state.next(Event::Home).is_some();
+    let why = leg
+        .locked()
+        .or((!possible).then_some("Disarm the leg first, or clear its faults."));
+    ui.horizontal(|ui| {
+        if button(ui, "Find the zero", "zero_start", why).clicked() {
+            *homing = true;
+            leg.command(Command::Home, "home");
+        }
+        let off = state.next(Event::LeadDown).is_some() || state.next(Event::Disarm).is_some();
+        let why = leg
+            .locked()
+            .or((!off).then_some("It is off, or cannot be led down now."));
+        if button(ui, "Disarm", "steps_disarm", why).clicked() {
+            leg.command(Command::Disarm, "disarm");
+        }
+    });
+    outcome(ui, *homing, leg);
+}
+
+fn outcome(ui: &mut Ui, homing: bool, leg: &ShownLeg) {
+    let palette = palette(ui.ctx());
+    let faults = leg.faults().without_limits();
+    let (words, colour) = match leg.state() {
+        State::Homing => {
+            ui.add(Spinner::new());
+            (
+                "It homes. Space, Esc and STOP end it.".to_owned(),
+                palette.target,
+            )
+        }
+        _ if faults.any() => {
+            let names: Vec<_> = faults.faults().map(|fault| fault.entry().name).collect();
+            (
+                format!(
+                    "It has faults: {}. See their remedies beside the leg.",
+                    names.join(", ")
+                ),
+                palette.error,
+            )
+        }
+        State::Active if homing => {
+            let tensions = leg.tensions_n().map(|n| format!("{n:.1}"));
+            let set_n = leg.rig().pretension_n;
+            let words = format!(
+                "The zero is found. The tendons pull with {} N; {set_n} N is set at the vertical.",
+                tensions.join(", ")
+            );
+            (words, palette.good)
+        }
+        _ => match leg.refusal() {
+            Some(words) if homing => (words.to_owned(), palette.error),
+            _ => {
+                return faint(
+                    ui,
+                    "The zero holds until the board starts anew. Nothing has to be saved.",
+                );
+            }
+        },
+    };
+    let words = RichText::new(words).color(colour);
+    place(&ui.add(Label::new(words).wrap()), "zero_result");
+}
