@@ -213,9 +213,12 @@ impl<T: Scalar> AxisMonitor<T> {
         let hard = axis.voltage_v.abs() > bounds.hard_v;
         let step_m = T::from(f32::from(step)) * bounds.m_per_count;
         let against = step_m * axis.voltage_v < T::zero();
+        let turned = axis.voltage_v * self.last_voltage_v < T::zero();
+        self.last_voltage_v = axis.voltage_v;
+        // A motor that the servo brakes counts against its voltage for less than reversed_time_s; its next brake is another one.
         faults.add(
             Fault::EncoderReversed,
-            self.reversed.update(hard && against),
+            self.reversed.update(hard && against && !turned),
         );
         let beyond_m = step_m.abs() - axis.speed_m_per_s.abs() * T::from(CYCLE_S);
         faults.add(Fault::EncoderJump, !(beyond_m <= bounds.step_m));
@@ -229,8 +232,6 @@ impl<T: Scalar> AxisMonitor<T> {
         let explained = bounds.excess_a + bounds.a_per_n * tension.abs();
         let induced_v = axis.voltage_v - axis.driving_v;
         // A driver gives no pulse in the tick in which it turns about.
-        let turned = axis.voltage_v * self.last_voltage_v < T::zero();
-        self.last_voltage_v = axis.voltage_v;
         let missed_v = if turned { axis.voltage_v } else { T::zero() };
         let mean_v = axis.mean_voltage_v - missed_v * T::from(1.0 / CYCLE_TICKS as f32);
         let driving_v = mean_v - induced_v;

@@ -83,6 +83,7 @@ struct Watched {
     settings: Settings,
     monitors: Monitors<f64>,
     cycle: u16,
+    count: i16,
 }
 
 impl Watched {
@@ -92,6 +93,7 @@ impl Watched {
             monitors: Monitors::new(&settings),
             settings,
             cycle: 0,
+            count: 0,
         };
         for _ in 0..11 {
             assert_eq!(watched.cycle(&Seen::sound()), FaultSet::NONE);
@@ -107,8 +109,8 @@ impl Watched {
     fn cycle(&mut self, seen: &Seen) -> FaultSet {
         self.cycle += 1;
         let mut sensors = seen.sensors;
-        let counts = i32::from(self.cycle) * i32::from(seen.counts_a_cycle);
-        sensors.encoder_counts[AXIS] = counts.rem_euclid(1 << 16) as u16;
+        self.count = self.count.wrapping_add(seen.counts_a_cycle);
+        sensors.encoder_counts[AXIS] = self.count.cast_unsigned();
         for (i, code) in sensors.cell_codes.iter_mut().enumerate() {
             let changes = seen.lives || i != AXIS;
             *code ^= u16::from(changes && self.cycle.is_multiple_of(2));

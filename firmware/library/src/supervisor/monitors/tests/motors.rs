@@ -164,6 +164,23 @@ fn a_motor_that_is_driven_turns_and_the_way_it_is_driven() {
     }
 }
 
+/// The servo brakes a motor with its highest voltage for less than reversed_time_s. One brake after another is none that lasts.
+#[test]
+fn a_motor_that_is_braked_both_ways_in_turn_does_not_turn_the_wrong_way() {
+    let mut watched = Watched::new();
+    let limits = watched.limits();
+    let hard_v = f64::from(limits.driven_part)
+        * f64::from(watched.settings.servo.current_a * watched.settings.servo.resistance_ohm);
+    for sign in [1.0, -1.0, 1.0, -1.0] {
+        let mut seen = Seen::sound();
+        seen.view.voltage_v = sign * (hard_v + 0.01);
+        seen.counts_a_cycle = -sign as i16;
+        for _ in 0..cycles(limits.reversed_time_s) - 1 {
+            assert!(!watched.cycle(&seen).has(Fault::EncoderReversed));
+        }
+    }
+}
+
 #[test]
 fn a_motor_that_is_not_where_it_is_led_is_a_fault() {
     for sign in [1.0, -1.0] {
