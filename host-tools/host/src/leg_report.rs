@@ -12,6 +12,7 @@ const UPRIGHT_DEG: f64 = 0.05;
 /// The leg for machines.
 pub fn json(telemetry: &Telemetry<f32>) -> impl Serialize + use<> {
     let [azimuth_deg, tilt_deg] = angles_deg(telemetry.pose);
+    let [azimuth_commanded_deg, tilt_commanded_deg] = angles_deg(telemetry.commanded);
     let fault = |fault: Fault| {
         let entry = fault.entry();
         json_object! {
@@ -29,12 +30,20 @@ pub fn json(telemetry: &Telemetry<f32>) -> impl Serialize + use<> {
         faults: telemetry.faults.faults().map(fault).collect::<Vec<_>>(),
         // Whether its zero is known.
         homed: telemetry.homed,
+        // Where it was sent to lean, 0 to 360°; where it is led after a hold and before the first move.
+        azimuth_commanded_deg: azimuth_commanded_deg,
+        // How far.
+        tilt_commanded_deg: tilt_commanded_deg,
         // Where it is estimated to lean, 0 to 360°.
         azimuth_deg: azimuth_deg,
         // How far.
         tilt_deg: tilt_deg,
         // Measured tensions, N.
         tensions_n: telemetry.tensions_n,
+        // Commanded pretension, N; none where a stiffness was commanded.
+        pretension_commanded_n: telemetry.pretension_commanded_n,
+        // Commanded bending stiffness, N·m/rad; none where a pretension was commanded.
+        stiffness_commanded_nm_per_rad: telemetry.stiffness_commanded_nm_per_rad,
         // Pretension of the last target, N; 0 before the first.
         pretension_n: telemetry.pretension_n,
         // Bending stiffness at that pretension, N·m/rad.

@@ -84,13 +84,28 @@ fn state_lines(telemetry: &Telemetry<f32>) -> Vec<Line<'static>> {
     let time_s = f64::from(telemetry.tick) * tick_s();
     vec![
         Line::from(vec![
-            "state   ".into(),
+            "state      ".into(),
             state.bold().fg(colour),
             format!(", {homed}{moving}, {time_s:.2} s since the board started").into(),
         ]),
-        Line::from(format!("pose    {}", known_pose_words(telemetry))),
-        Line::from(format!("target  {}", pose_words(telemetry.target))),
+        Line::from(format!("pose       {}", known_pose_words(telemetry))),
+        Line::from(format!(
+            "reference  {}, commanded {}",
+            pose_words(telemetry.target),
+            pose_words(telemetry.commanded)
+        )),
     ]
+}
+
+/// The pretension or the stiffness that was commanded.
+fn commanded_words(telemetry: &Telemetry<f32>) -> String {
+    let pretension = telemetry.pretension_commanded_n;
+    let stiffness = telemetry.stiffness_commanded_nm_per_rad;
+    match (pretension, stiffness) {
+        (Some(n), _) => format!(", commanded {n:.1} N"),
+        (None, Some(nm_per_rad)) => format!(", commanded {nm_per_rad:.2} N·m/rad"),
+        (None, None) => String::new(),
+    }
 }
 
 fn bar_lines(view: &MonitorView, telemetry: &Telemetry<f32>, width: u16) -> Vec<Line<'static>> {
@@ -113,8 +128,10 @@ fn load_lines(view: &MonitorView, telemetry: &Telemetry<f32>) -> Vec<Line<'stati
     );
     vec![
         Line::from(format!(
-            "stiffness  {:.2} N·m/rad at pretension {:.1} N",
-            telemetry.stiffness_nm_per_rad, telemetry.pretension_n
+            "stiffness  {:.2} N·m/rad at pretension {:.1} N{}",
+            telemetry.stiffness_nm_per_rad,
+            telemetry.pretension_n,
+            commanded_words(telemetry)
         )),
         Line::from(format!(
             "load       {x:.3}, {y:.3} N·m beyond the leg's own, payload {:.3} kg",
