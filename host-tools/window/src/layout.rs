@@ -5,6 +5,7 @@ use crate::faults::FaultList;
 use crate::panel_guide::Wish;
 use crate::places::{place, place_rect};
 use crate::scene::{self, Scene};
+use crate::seen_leg::SeenLeg;
 use crate::setup::Setup;
 use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
@@ -112,7 +113,7 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
         ScrollArea::vertical().id_salt("right").show(ui, |ui| {
             ui.heading("Drag the target");
             views.workspace.show(ui, leg, 200.0);
-            numbers::show(ui, leg);
+            numbers::show(ui, &leg.seen());
             if let Some(simulation) = leg.simulated_mut() {
                 ui.separator();
                 panel_break::show(ui, simulation);
@@ -129,7 +130,7 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
         views.charts.show(ui, leg.history(), now_s, height - 62.0);
     });
     CentralPanel::no_frame().show(ui, |ui| {
-        let rect = stage(ui, leg, &mut views.scene);
+        let rect = stage(ui, &leg.seen(), leg.failure(), &mut views.scene);
         let over = UiBuilder::new().max_rect(scene::room(rect));
         ui.scope_builder(over, |ui| {
             let scroll = ScrollArea::vertical().id_salt("faults");
@@ -150,7 +151,7 @@ pub fn narrow(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
         .resizable(false)
         .exact_size(height);
     above.show(ui, |ui| {
-        let rect = stage(ui, leg, &mut views.scene);
+        let rect = stage(ui, &leg.seen(), leg.failure(), &mut views.scene);
         let corner = Rect::from_min_max(rect.max - TIME, rect.max - vec2(14.0, 6.0));
         let over = UiBuilder::new()
             .max_rect(corner)
@@ -189,14 +190,14 @@ fn page(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
     match views.tab {
         Tab::Try => {
             let wish = guide(ui, leg);
-            numbers::show(ui, leg);
+            numbers::show(ui, &leg.seen());
             return wish;
         }
         Tab::Drive => {
             let side = ui.available_width().min(300.0);
             ui.vertical_centered(|ui| views.workspace.show(ui, leg, side));
             if leg.live().is_some() {
-                numbers::show(ui, leg);
+                numbers::show(ui, &leg.seen());
                 ui.separator();
             }
             panel_drive::show(ui, leg);
@@ -220,21 +221,21 @@ fn simulate(source: Option<RigText>) -> Wish {
 }
 
 /// The leg, how much its sag is enlarged, and why it cannot go on. Gives where it is.
-fn stage(ui: &mut Ui, leg: &ShownLeg, scene: &mut Scene) -> Rect {
+pub fn stage(ui: &mut Ui, leg: &SeenLeg<'_>, failure: Option<String>, scene: &mut Scene) -> Rect {
     let rect = ui.available_rect_before_wrap();
     let response = scene.show(ui, leg, rect.size());
     place(&response, "leg");
     let corner = rect.left_top() + vec2(14.0, scene::CHOICE_TOP);
     let over = UiBuilder::new().max_rect(Rect::from_min_size(corner, vec2(96.0, 28.0)));
     ui.scope_builder(over, |ui| scene.choice(ui));
-    if let Some(words) = leg.failure() {
-        failure(ui, rect, words);
+    if let Some(words) = failure {
+        across(ui, rect, words);
     }
     rect
 }
 
 /// Why the leg cannot go on, across what was seen of it last.
-fn failure(ui: &Ui, rect: Rect, words: String) {
+fn across(ui: &Ui, rect: Rect, words: String) {
     let palette = palette(ui.ctx());
     let font = FontId::proportional(15.0);
     let width = 0.8 * rect.width();

@@ -41,6 +41,7 @@ pub mod panel_unlock;
 pub mod places;
 pub mod rig_intake;
 pub mod scene;
+pub mod seen_leg;
 pub mod setup;
 pub mod shown_leg;
 pub mod simulation;

@@ -3,7 +3,7 @@
 use crate::camera::Camera;
 use crate::drawn_leg::Drawn;
 use crate::places::place;
-use crate::shown_leg::ShownLeg;
+use crate::seen_leg::SeenLeg;
 use crate::theme::palette;
 use eframe::egui::{ComboBox, Rect, Response, Sense, Ui, Vec2, pos2, vec2};
 use nalgebra::Vector3;
@@ -50,7 +50,7 @@ impl Default for Scene {
 
 impl Scene {
     /// Draws the leg, and lets a drag turn it.
-    pub fn show(&mut self, ui: &mut Ui, leg: &ShownLeg, size: Vec2) -> Response {
+    pub fn show(&mut self, ui: &mut Ui, leg: &SeenLeg<'_>, size: Vec2) -> Response {
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
         let drag = response.drag_delta();
         self.camera.turn(drag.x, drag.y);
