@@ -2,9 +2,12 @@
 
 use crate::history::{Column, History, KEPT_S};
 use crate::places::{place, place_rect};
+use crate::shown_leg::ShownLeg;
 use crate::theme;
-use eframe::egui::{ComboBox, Id, PopupCloseBehavior, RichText, ScrollArea, TextEdit, Ui, Vec2b};
-use egui_plot::{GridInput, GridMark, Line, Plot, PlotPoints};
+use eframe::egui::{
+    Button, ComboBox, Id, PopupCloseBehavior, RichText, ScrollArea, TextEdit, Ui, Vec2b, vec2,
+};
+use egui_plot::{GridInput, GridMark, Line, Plot, PlotPoints, VLine};
 
 /// Points of a line: more than a screen has.
 const POINTS_MAX: usize = 1200;
@@ -30,6 +33,44 @@ pub struct Charts {
     paused: Option<Paused>,
     /// A part of a name that is looked for.
     search: String,
+}
+
+/// Where the signals are from.
+pub struct Source<'a> {
+    /// They.
+    pub history: &'a History,
+    /// From when to when there are some, s.
+    pub since_s: f64,
+    /// s.
+    pub now_s: f64,
+    /// The time at which a recording is, s; none of a leg that goes on.
+    pub moment_s: Option<f64>,
+}
+
+impl<'a> Source<'a> {
+    /// Of a leg that goes on.
+    #[must_use]
+    pub fn of_leg(leg: &'a ShownLeg) -> Self {
+        let now_s = leg.time_s();
+        Self {
+            history: leg.history(),
+            since_s: (now_s - KEPT_S).max(0.0),
+            now_s,
+            moment_s: None,
+        }
+    }
+}
+
+/// What the charts show of it.
+#[derive(Clone, Copy)]
+struct Shown<'a> {
+    history: &'a History,
+    /// s.
+    until_s: f64,
+    since_s: f64,
+    moment_s: Option<f64>,
+    /// Whether it stands still, and may be dragged and zoomed.
+    still: bool,
 }
 
 /// The signals up to a time at which the charts were paused: the leg's own history goes on.
@@ -60,28 +101,30 @@ impl Charts {
         }
     }
 
-    /// Shows the charts beside each other, or below where there is no room for that.
-    pub fn show(&mut self, ui: &mut Ui, history: &History, now_s: f64, height: f32) {
-        self.controls(ui, history, now_s);
+    /// Shows the charts beside each other, or below where there is no room for that. The time at which one was pressed, s.
+    pub fn show(&mut self, ui: &mut Ui, source: &Source<'_>, height: f32) -> Option<f64> {
         if self.chosen.is_empty() {
             ui.label("Choose a signal to see it over time.");
         }
-        let shown = self.shown(history, now_s);
+        let shown = self.shown(source);
         let names = self.chosen.iter();
-        let columns: Vec<Column> = names.filter_map(|name| history.named(name)).collect();
+        let named = names.filter_map(|name| source.history.named(name));
+        let columns: Vec<Column> = named.collect();
         let top = ui.cursor().top();
+        let mut pressed_s = None;
         if ui.available_width() > 560.0 && columns.len() > 1 {
             ui.columns(columns.len(), |parts| {
                 for (part, column) in parts.iter_mut().zip(&columns) {
-                    self.chart(part, shown, *column, height);
+                    pressed_s = pressed_s.or(self.chart(part, shown, *column, height));
                 }
             });
         } else {
             for column in columns {
-                self.chart(ui, shown, column, height);
+                pressed_s = pressed_s.or(self.chart(ui, shown, column, height));
             }
         }
         place_rect(ui.ctx(), ui.min_rect().with_min_y(top), "charts");
+        pressed_s
     }
 
     /// Pauses, or goes on.
@@ -106,40 +149,55 @@ impl Charts {
         self.paused = None;
     }
 
-    /// The history that is charted, and up to which time, s.
-    fn shown<'a>(&'a self, history: &'a History, now_s: f64) -> (&'a History, f64) {
-        match &self.paused {
+    /// What is charted of a source.
+    fn shown<'a>(&'a self, source: &Source<'a>) -> Shown<'a> {
+        let (history, until_s) = match &self.paused {
             Some(paused) => (&paused.history, paused.until_s),
-            None => (history, now_s),
+            None => (source.history, source.now_s),
+        };
+        Shown {
+            history,
+            until_s,
+            since_s: if source.moment_s.is_some() {
+                source.since_s
+            } else {
+                (until_s - KEPT_S).max(0.0)
+            },
+            moment_s: source.moment_s,
+            still: source.moment_s.is_some() || self.paused(),
         }
     }
 
-    fn controls(&mut self, ui: &mut Ui, history: &History, now_s: f64) {
-        ui.horizontal_wrapped(|ui| {
-            ui.heading("Charts");
-            let menu = ComboBox::from_id_salt("signals")
-                .selected_text("Signals")
-                .width(110.0)
-                // Several signals may be chosen, and a name is typed.
-                .close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-            let menu = menu.show_ui(ui, |ui| self.choice(ui, history));
-            place(&menu.response, "signals");
-            let span =
-                ComboBox::from_id_salt("span").selected_text(format!("{:.0} s", self.span_s));
-            span.width(64.0).show_ui(ui, |ui| {
-                for span_s in SPANS_S {
-                    ui.selectable_value(&mut self.span_s, span_s, format!("{span_s:.0} s"));
-                }
-            });
-            let text = if self.paused() { "Go on" } else { "Pause" };
-            let pause = ui.button(text).on_hover_text(
-                "A paused chart can be dragged and zoomed; a double click shows it whole.",
-            );
-            place(&pause, "pause");
-            if pause.clicked() {
-                self.pause(history, now_s);
+    /// What is charted, and how.
+    pub fn controls(&mut self, ui: &mut Ui, source: &Source<'_>) {
+        ui.heading("Charts");
+        let menu = ComboBox::from_id_salt("signals")
+            .selected_text("Signals")
+            .width(110.0)
+            // Several signals may be chosen, and a name is typed.
+            .close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+        let menu = menu.show_ui(ui, |ui| self.choice(ui, source.history));
+        place(&menu.response, "signals");
+        if source.moment_s.is_none() {
+            self.follow(ui, source);
+        }
+    }
+
+    /// How much of a leg is charted that goes on, and whether the charts stand still.
+    fn follow(&mut self, ui: &mut Ui, source: &Source<'_>) {
+        let span = ComboBox::from_id_salt("span").selected_text(format!("{:.0} s", self.span_s));
+        span.width(64.0).show_ui(ui, |ui| {
+            for span_s in SPANS_S {
+                ui.selectable_value(&mut self.span_s, span_s, format!("{span_s:.0} s"));
             }
         });
+        let text = if self.paused() { "Go on" } else { "Pause" };
+        let pause = ui.add(Button::new(text).min_size(vec2(52.0, 0.0)));
+        place(&pause, "pause");
+        let hint = "A paused chart can be dragged and zoomed; a double click shows it whole.";
+        if pause.on_hover_text(hint).clicked() {
+            self.pause(source.history, source.now_s);
+        }
     }
 
     fn choice(&mut self, ui: &mut Ui, history: &History) {
@@ -164,30 +222,31 @@ impl Charts {
         });
     }
 
-    fn chart(&self, ui: &mut Ui, shown: (&History, f64), column: Column, height: f32) {
-        let (history, until_s) = shown;
+    /// A chart of a signal. The time at which it was pressed, s.
+    fn chart(&self, ui: &mut Ui, shown: Shown<'_>, column: Column, height: f32) -> Option<f64> {
         let name = column.name();
         title(ui, &column);
-        let paused = self.paused();
-        let link = Id::unique("charts");
-        let since_s = (until_s - self.span_s).max(0.0);
-        let plot = Plot::new(name)
+        let still = shown.still;
+        let recorded = shown.moment_s.is_some();
+        let link = Id::unique(if recorded { "recorded" } else { "charts" });
+        let since_s = (shown.until_s - self.span_s).max(0.0);
+        let plot = Plot::new((name, recorded))
             .height((height - 24.0).max(60.0))
             .grid_color(theme::palette(ui.ctx()).line)
             .link_axis(link, Vec2b::new(true, false))
             .link_cursor(link, Vec2b::new(true, false))
-            .allow_drag(paused)
-            .allow_zoom(paused)
-            .allow_scroll(paused)
-            .allow_boxed_zoom(paused)
+            .allow_drag(still)
+            .allow_zoom(still)
+            .allow_scroll(still)
+            .allow_boxed_zoom(still)
             .x_grid_spacer(|input| grid(&input, LABEL_PART))
             .y_grid_spacer(|input| grid(&input, 0.0))
             .x_axis_formatter(|mark, _| format!("{} s", short(mark.value)))
             .y_axis_formatter(|mark, _| short(mark.value))
             .y_axis_min_width(44.0);
-        // A paused chart may be dragged to what was before.
-        let from_s = if paused { until_s - KEPT_S } else { since_s };
-        let lines = lines(history, column, [from_s, until_s]);
+        // A chart that stands still may be dragged to what was before.
+        let from_s = if still { shown.since_s } else { since_s };
+        let lines = lines(shown.history, column, [from_s, shown.until_s]);
         let plot = least_range(&lines)
             .into_iter()
             .flatten()
@@ -195,8 +254,9 @@ impl Charts {
         let colours: Vec<_> = (0..column.width)
             .map(|i| theme::series(ui.ctx(), i))
             .collect();
-        plot.show(ui, |plot| {
-            if !paused {
+        let moment = theme::palette(ui.ctx()).target;
+        let shown = plot.show(ui, |plot| {
+            if !still {
                 plot.set_plot_bounds_x(since_s..=(since_s + self.span_s));
                 plot.set_auto_bounds(Vec2b::new(false, true));
             }
@@ -212,7 +272,13 @@ impl Charts {
                         .width(1.6),
                 );
             }
+            if let Some(moment_s) = shown.moment_s {
+                plot.vline(VLine::new("", moment_s).color(moment).width(1.5));
+            }
         });
+        let pressed = shown.response.clicked();
+        let at = pressed.then(|| shown.response.interact_pointer_pos())?;
+        at.map(|at| shown.transform.value_from_position(at).x)
     }
 }
 
@@ -310,7 +376,7 @@ fn thinned(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{Charts, POINTS_MAX, grid, least_range, round_step, short, thinned};
+    use super::{Charts, POINTS_MAX, Source, grid, least_range, round_step, short, thinned};
     use crate::history::{KEPT_S, SAMPLE_HZ};
     use crate::simulation::Simulation;
     use egui_plot::GridInput;
@@ -323,9 +389,16 @@ mod tests {
         let mut charts = Charts::default();
         charts.pause(&simulation.history, now_s);
         let points = |charts: &Charts, simulation: &Simulation, now_s: f64| {
-            let (history, until_s) = charts.shown(&simulation.history, now_s);
-            let column = history.named("tensions_n").unwrap();
-            (history.line(column, 0, 0.0).collect::<Vec<_>>(), until_s)
+            let source = Source {
+                history: &simulation.history,
+                since_s: 0.0,
+                now_s,
+                moment_s: None,
+            };
+            let shown = charts.shown(&source);
+            let column = shown.history.named("tensions_n").unwrap();
+            let points = shown.history.line(column, 0, 0.0).collect::<Vec<_>>();
+            (points, shown.until_s)
         };
         let before = points(&charts, &simulation, now_s);
         assert!(before.0.len() > 100);

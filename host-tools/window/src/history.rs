@@ -64,6 +64,8 @@ pub struct History {
     /// The time of each, s, and its numbers.
     samples: VecDeque<(f64, Box<[f32]>)>,
     numbers: Vec<f64>,
+    /// How many samples are kept.
+    kept: usize,
 }
 
 impl Default for History {
@@ -101,6 +103,21 @@ impl History {
             columns,
             samples: VecDeque::with_capacity(KEPT),
             numbers: Vec::with_capacity(start),
+            kept: KEPT,
+        }
+    }
+
+    /// Of a recording: each time, s, with the numbers of what was reported and, of a simulated leg, of what is true of it.
+    pub fn recorded(simulated: bool, samples: impl Iterator<Item = (f64, Box<[f32]>)>) -> Self {
+        let empty = if simulated {
+            Self::default()
+        } else {
+            Self::of_reports()
+        };
+        Self {
+            samples: samples.collect(),
+            kept: usize::MAX,
+            ..empty
         }
     }
 
@@ -117,7 +134,7 @@ impl History {
                 }
             }
         }
-        if self.samples.len() == KEPT {
+        if self.samples.len() >= self.kept {
             self.samples.pop_front();
         }
         let numbers = self.numbers.iter().map(|number| *number as f32);
@@ -154,12 +171,22 @@ impl History {
         })
     }
 
+    /// The numbers of a signal at a time, s: those of the last sample until then, or of the first.
+    #[must_use]
+    pub fn at(&self, column: Column, at_s: f64) -> &[f32] {
+        let after = self.samples.partition_point(|(time_s, _)| *time_s <= at_s);
+        self.numbers_of(column, self.samples.get(after.saturating_sub(1)))
+    }
+
+    fn numbers_of<'a>(&self, column: Column, sample: Option<&'a (f64, Box<[f32]>)>) -> &'a [f32] {
+        sample
+            .and_then(|(_, numbers)| numbers.get(column.start..column.start + column.width))
+            .unwrap_or(&[])
+    }
+
     /// The last numbers of a signal.
     #[must_use]
     pub fn last(&self, column: Column) -> &[f32] {
-        let numbers = self.samples.back().map(|(_, numbers)| numbers);
-        numbers
-            .and_then(|numbers| numbers.get(column.start..column.start + column.width))
-            .unwrap_or(&[])
+        self.numbers_of(column, self.samples.back())
     }
 }

@@ -1,9 +1,10 @@
 //! What is where in the window, wide or narrow.
 
-use crate::charts::Charts;
+use crate::charts::{Charts, Source};
 use crate::faults::FaultList;
 use crate::panel_guide::Wish;
 use crate::places::{place, place_rect};
+use crate::recordings::Recordings;
 use crate::scene::{self, Scene};
 use crate::seen_leg::SeenLeg;
 use crate::setup::Setup;
@@ -52,6 +53,8 @@ pub struct Views {
     /// The signals over time.
     pub charts: Charts,
     faults: FaultList,
+    /// What is recorded, and opened.
+    pub recordings: Recordings,
     /// Rig files and settings.
     pub setup: Setup,
     tab: Tab,
@@ -70,6 +73,7 @@ impl Views {
                 Charts::default()
             },
             faults: FaultList::default(),
+            recordings: Recordings::default(),
             setup: Setup::default(),
             tab: if live { Tab::Drive } else { Tab::Try },
         }
@@ -126,8 +130,7 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
         .resizable(false)
         .exact_size(height);
     bottom.show(ui, |ui| {
-        let now_s = leg.time_s();
-        views.charts.show(ui, leg.history(), now_s, height - 62.0);
+        charts(ui, leg, views, height - 62.0);
     });
     CentralPanel::no_frame().show(ui, |ui| {
         let rect = stage(ui, &leg.seen(), leg.failure(), &mut views.scene);
@@ -208,8 +211,7 @@ fn page(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
             }
         }
         Tab::Charts => {
-            let now_s = leg.time_s();
-            views.charts.show(ui, leg.history(), now_s, 180.0);
+            charts(ui, leg, views, 180.0);
         }
         Tab::Setup => return simulate(views.setup.show_inside(ui, leg)),
     }
@@ -245,6 +247,15 @@ fn across(ui: &Ui, rect: Rect, words: String) {
         .rect_filled(shown.expand(10.0), 6.0, palette.card);
     ui.painter().galley(shown.min, text, palette.error);
     place_rect(ui.ctx(), shown, "failure");
+}
+
+/// The signals of the leg, and what is recorded of them.
+fn charts(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views, height: f32) {
+    ui.horizontal_wrapped(|ui| {
+        views.charts.controls(ui, &Source::of_leg(leg));
+        views.recordings.show(ui, leg);
+    });
+    views.charts.show(ui, &Source::of_leg(leg), height);
 }
 
 /// What to try first, with a line below; nothing for a live leg.

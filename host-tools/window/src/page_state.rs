@@ -3,6 +3,8 @@
 use crate::live_leg::LiveLeg;
 use crate::pace::Pace;
 use crate::places::Places;
+use crate::player::PlayerState;
+use crate::recorder::Recorder;
 use crate::setup::state::SetupState;
 use crate::shown_leg::ShownLeg;
 use crate::work::WorkSummary;
@@ -32,8 +34,23 @@ pub struct PageState {
     work: Option<WorkSummary>,
     /// Rig files and settings.
     setup: SetupState,
+    /// A recording that is shown in the place of the leg.
+    player: Option<PlayerState>,
     /// What a reader of the screen says.
     spoken: String,
+}
+
+/// How the window is drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Drawing {
+    /// Pixels of the page in a point.
+    pub zoom: f32,
+    /// Frames since the start.
+    pub frames: u64,
+    /// Time that the processor took for the last one, s.
+    pub frame_s: Option<f32>,
+    /// What the window itself took for each of the last ones.
+    pub work: Option<WorkSummary>,
 }
 
 #[derive(Debug, Serialize)]
@@ -68,6 +85,8 @@ struct LegState {
     /// Where a push that is going on is directed to, degrees.
     push_deg: Option<f64>,
     failure: Option<String>,
+    /// Time that is recorded of it, s, if it is recorded.
+    recorded_s: Option<f64>,
 }
 
 impl PageState {
@@ -76,11 +95,9 @@ impl PageState {
     pub fn new(
         leg: Result<&ShownLeg, String>,
         places: &Places,
-        zoom: f32,
-        frames: u64,
-        frame_s: Option<f32>,
-        work: Option<WorkSummary>,
+        drawing: Drawing,
         setup: SetupState,
+        player: Option<PlayerState>,
     ) -> Self {
         let rects = places.rects.iter().map(|(name, rect)| {
             let edges = [rect.left(), rect.top(), rect.right(), rect.bottom()];
@@ -94,6 +111,9 @@ impl PageState {
             || format!("There is no leg. {}", empty.as_deref().unwrap_or_default()),
             LegState::spoken,
         );
+        if let Some(player) = &player {
+            spoken = format!("{spoken} {}", player.spoken());
+        }
         if let Some(notice) = &setup.notice {
             spoken = format!("{spoken} {notice}");
         }
@@ -102,11 +122,12 @@ impl PageState {
             empty,
             places: rects.collect(),
             focused: places.focused.as_ref().map(ToString::to_string),
-            zoom,
-            frames,
-            frame_ms: frame_s.map(|time_s| 1000.0 * time_s),
-            work,
+            zoom: drawing.zoom,
+            frames: drawing.frames,
+            frame_ms: drawing.frame_s.map(|time_s| 1000.0 * time_s),
+            work: drawing.work,
             setup,
+            player,
             spoken,
         }
     }
@@ -145,6 +166,7 @@ impl LegState {
             stiffness_nm_per_rad: telemetry.map(|telemetry| telemetry.stiffness_nm_per_rad),
             push_deg: leg.pushed().map(|push| push.azimuth_deg),
             failure: leg.failure(),
+            recorded_s: leg.recorder().map(Recorder::time_s),
         }
     }
 

@@ -3,6 +3,7 @@
 use crate::history::History;
 use crate::live_leg::LiveLeg;
 use crate::live_leg::board::Errand;
+use crate::recorder::Recorder;
 use crate::seen_leg::{self, SeenLeg};
 use crate::simulation::{Push, Simulation};
 use leg_firmware::command::Command;
@@ -275,6 +276,23 @@ impl ShownLeg {
             cut: [0, 1, 2].map(cut),
             push: self.pushed(),
             error_mm: self.error_mm(),
+        }
+    }
+
+    /// What is recorded of it, if it is.
+    #[must_use]
+    pub fn recorder(&self) -> Option<&Recorder> {
+        match self {
+            Self::Simulated(leg) => leg.recorder.as_ref(),
+            Self::Live(leg) => leg.recorder.as_ref(),
+        }
+    }
+
+    /// The same, to be begun and ended.
+    pub fn recorder_mut(&mut self) -> &mut Option<Recorder> {
+        match self {
+            Self::Simulated(leg) => &mut leg.recorder,
+            Self::Live(leg) => &mut leg.recorder,
         }
     }
 

@@ -114,7 +114,8 @@ fn origin(ui: &mut Ui, leg: &ShownLeg, roomy: bool, palette: &Palette) {
     }
 }
 
-fn chip(ui: &mut Ui, state: State, palette: &Palette) {
+/// What a leg may do.
+pub fn chip(ui: &mut Ui, state: State, palette: &Palette) {
     let colour = match state {
         State::Active | State::KeepingStation | State::Homing => palette.good,
         State::Held | State::RampingDown | State::Off => palette.error,
