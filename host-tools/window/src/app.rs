@@ -3,6 +3,7 @@
 #[cfg(test)]
 mod tests;
 
+use crate::charts::Source;
 use crate::files::GivenFile;
 use crate::layout::{Views, narrow, wide};
 use crate::live_leg::opening::{Opened, Opening};
@@ -127,6 +128,8 @@ impl App {
     /// What it shows, for tests and readers of the screen.
     #[must_use]
     pub fn state(&self) -> PageState {
+        let player = self.player.as_ref();
+        let charts = player.map_or(&self.views.charts, |player| player.charts());
         PageState::new(
             self.stage.leg(),
             &self.places,
@@ -137,7 +140,8 @@ impl App {
                 work: self.work.summary(),
             },
             self.views.setup.state(self.stage.leg().ok()),
-            self.player.as_ref().map(|player| player.state()),
+            charts.state(),
+            player.map(|player| player.state()),
         )
     }
 
@@ -177,6 +181,7 @@ impl App {
         self.work.note_leg(began.elapsed());
         if let Stage::Leg(leg) = &mut self.stage {
             self.views.setup.advance(leg);
+            self.views.charts.advance(&Source::of_leg(leg));
             self.views.recordings.advance(leg);
         }
         if let Some(player) = &mut self.player {

@@ -5,6 +5,7 @@ use crate::figure::{Item, ball, circle, cord, disc, rod, sorted};
 use crate::leg_pose::{LegPose, enlarged};
 use crate::places::place_rect;
 use crate::seen_leg::SeenLeg;
+use crate::stiffness_ellipse::StiffnessEllipse;
 use crate::theme::{self, Palette, mixed};
 use eframe::egui::{
     Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2,
@@ -30,6 +31,9 @@ const NEAR_MM: f64 = 0.5;
 /// The bar of the tensions' colours, points, and of how many colours it is made.
 const LEGEND: Vec2 = vec2(110.0, 7.0);
 const LEGEND_STEPS: u8 = 32;
+
+/// How far above the lower edge the words about the stiffness stand, points.
+const WORDS_ABOVE: f32 = 72.0;
 
 /// What a force of 1 N is drawn as, m.
 const ARROW_M_PER_N: f64 = 0.015;
@@ -299,6 +303,42 @@ impl<'a> Drawn<'a> {
         }
         let shown = Rect::from_min_size(corner, vec2(200.0, 60.0));
         place_rect(painter.ctx(), shown, "readout");
+    }
+
+    /// How stiff the tip is to each side, and the scale of that.
+    pub fn stiffness(&self, painter: &Painter, view: &View, rect: Rect) {
+        let colour = self.palette.good;
+        let ellipse = StiffnessEllipse::new(self.leg);
+        let words = match &ellipse {
+            Some(ellipse) => {
+                self.ellipse(painter, view, ellipse, colour);
+                ellipse.words()
+            }
+            None => ["the model has no stiffness here", ""].map(ToString::to_string),
+        };
+        let font = FontId::monospace(11.5);
+        let corner = rect.left_bottom() + vec2(14.0, -WORDS_ABOVE);
+        for (line, words) in words.into_iter().enumerate() {
+            let at = corner + vec2(0.0, 15.0 * line as f32);
+            painter.text(at, Align2::LEFT_TOP, words, font.clone(), colour);
+        }
+        let shown = Rect::from_min_size(corner, vec2(230.0, 30.0));
+        place_rect(painter.ctx(), shown, "stiffness_words");
+    }
+
+    fn ellipse(&self, painter: &Painter, view: &View, ellipse: &StiffnessEllipse, colour: Color32) {
+        let at = |place| view.project(place).at;
+        let edge: Vec<Pos2> = ellipse.edge(self.tip()).map(at).collect();
+        let line = Stroke::new(1.6, colour);
+        painter.add(Shape::convex_polygon(
+            edge,
+            colour.gamma_multiply(0.15),
+            line,
+        ));
+        for axis in ellipse.half_axes_m() {
+            let ends = [self.tip() - axis, self.tip() + axis].map(at);
+            painter.line_segment(ends, Stroke::new(1.0, colour));
+        }
     }
 
     /// What the colours of the tendons mean.

@@ -19,6 +19,23 @@ pub struct Snapshot {
     pub simulated: Option<Simulated>,
 }
 
+/// How names end, and the unit of that: the longer ends first.
+const UNITS: [(&str, &str); 13] = [
+    ("_nm_per_rad", "N·m/rad"),
+    ("_rad_per_s", "rad/s"),
+    ("_deg", "°"),
+    ("_kg", "kg"),
+    ("_mm", "mm"),
+    ("_nm", "N·m"),
+    ("_rad", "rad"),
+    ("_a", "A"),
+    ("_c", "°C"),
+    ("_m", "m"),
+    ("_n", "N"),
+    ("_s", "s"),
+    ("_v", "V"),
+];
+
 /// A signal that has numbers.
 #[derive(Clone, Copy)]
 enum Source {
@@ -44,6 +61,21 @@ impl Column {
             Source::Reported(signal) => signal.name,
             Source::Simulated(signal) => signal.name,
         }
+    }
+
+    /// Where its first number stands in a sample.
+    #[must_use]
+    pub const fn start(&self) -> usize {
+        self.start
+    }
+
+    /// The unit with which its name ends; empty if it has none.
+    #[must_use]
+    pub fn unit(&self) -> &'static str {
+        let name = self.name();
+        let mut units = UNITS.iter();
+        let found = units.find(|(end, _)| name.ends_with(end));
+        found.map_or("", |(_, unit)| unit)
     }
 
     /// What it is and means.
@@ -141,6 +173,17 @@ impl History {
         self.samples.push_back((time_s, numbers.collect()));
     }
 
+    /// The same until a time, s.
+    #[cfg(test)]
+    pub fn until(&self, until_s: f64) -> Self {
+        let samples = self.samples.iter();
+        let until = samples.take_while(|(time_s, _)| *time_s <= until_s);
+        Self {
+            samples: until.cloned().collect(),
+            ..self.clone()
+        }
+    }
+
     /// Every signal.
     #[must_use]
     pub fn columns(&self) -> &[Column] {
@@ -188,5 +231,40 @@ impl History {
     #[must_use]
     pub fn last(&self, column: Column) -> &[f32] {
         self.numbers_of(column, self.samples.back())
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::History;
+
+    #[test]
+    fn units_are_those_of_the_names() {
+        let history = History::default();
+        for (name, unit) in [
+            ("tip_error_mm", "mm"),
+            ("tensions_n", "N"),
+            ("stiffness_nm_per_rad", "N·m/rad"),
+            ("load_nm", "N·m"),
+            ("duties", ""),
+            ("motor_speeds_true_rad_per_s", "rad/s"),
+            ("supply_v", "V"),
+            ("pulled_m", "m"),
+        ] {
+            assert_eq!(history.named(name).unwrap().unit(), unit, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_time_has_the_numbers_of_the_last_sample_until_then() {
+        let columns = History::default();
+        let width: usize = columns.columns().iter().map(|column| column.width).sum();
+        let samples = [1.0_f32, 2.0].map(|at| (f64::from(at), vec![at; width].into()));
+        let history = History::recorded(true, samples.into_iter());
+        let column = history.named("tensions_true_n").unwrap();
+        for (at_s, expected) in [(0.5, 1.0), (1.0, 1.0), (1.9, 1.0), (2.0, 2.0), (9.0, 2.0)] {
+            assert_eq!(history.at(column, at_s), [expected; 3], "{at_s}");
+        }
     }
 }

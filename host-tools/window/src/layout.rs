@@ -81,7 +81,7 @@ impl Views {
 
     /// Forgets what belongs to a leg that is not there any more.
     pub fn forget_leg(&mut self) {
-        self.charts.go_on();
+        self.charts.forget_leg();
         self.workspace = Workspace::default();
         self.setup.forget_leg();
     }
@@ -124,13 +124,13 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
             }
         });
     });
-    let height = (0.32 * tall).clamp(200.0, 440.0);
+    let height = (0.36 * tall).clamp(240.0, 480.0);
     let bottom = Panel::bottom("charts")
         .frame(side)
         .resizable(false)
         .exact_size(height);
     bottom.show(ui, |ui| {
-        charts(ui, leg, views, height - 62.0);
+        charts(ui, leg, views, None);
     });
     CentralPanel::no_frame().show(ui, |ui| {
         let rect = stage(ui, &leg.seen(), leg.failure(), &mut views.scene);
@@ -211,7 +211,7 @@ fn page(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
             }
         }
         Tab::Charts => {
-            charts(ui, leg, views, 180.0);
+            charts(ui, leg, views, Some(180.0));
         }
         Tab::Setup => return simulate(views.setup.show_inside(ui, leg)),
     }
@@ -228,7 +228,7 @@ pub fn stage(ui: &mut Ui, leg: &SeenLeg<'_>, failure: Option<String>, scene: &mu
     let response = scene.show(ui, leg, rect.size());
     place(&response, "leg");
     let corner = rect.left_top() + vec2(14.0, scene::CHOICE_TOP);
-    let over = UiBuilder::new().max_rect(Rect::from_min_size(corner, vec2(96.0, 28.0)));
+    let over = UiBuilder::new().max_rect(Rect::from_min_size(corner, vec2(110.0, 60.0)));
     ui.scope_builder(over, |ui| scene.choice(ui));
     if let Some(words) = failure {
         across(ui, rect, words);
@@ -249,12 +249,13 @@ fn across(ui: &Ui, rect: Rect, words: String) {
     place_rect(ui.ctx(), shown, "failure");
 }
 
-/// The signals of the leg, and what is recorded of them.
-fn charts(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views, height: f32) {
+/// The signals of the leg, and what is recorded of them; as high as there is room, if nothing is said.
+fn charts(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views, height: Option<f32>) {
     ui.horizontal_wrapped(|ui| {
         views.charts.controls(ui, &Source::of_leg(leg));
         views.recordings.show(ui, leg);
     });
+    let height = height.unwrap_or_else(|| ui.available_height());
     views.charts.show(ui, &Source::of_leg(leg), height);
 }
 

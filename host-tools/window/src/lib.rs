@@ -7,7 +7,7 @@
 //! | [`simulation`], [`pace`], [`history`] | the leg, how much of it a frame is worth, and what its signals were |
 //! | [`live_leg`], [`shown_leg`], [`seen_leg`], [`orders`] | a leg behind `leg ui`; what both are for the panels, and for the picture; commands on their way |
 //! | [`app`], [`layout`], [`top_bar`], `panel_…`, [`numbers`], [`faults`] | what is where |
-//! | [`scene`], `drawn_leg`, [`camera`], [`figure`], [`leg_pose`] | the leg in 3D |
+//! | [`scene`], `drawn_leg`, [`camera`], [`figure`], [`leg_pose`], [`stiffness_ellipse`] | the leg in 3D |
 //! | [`workspace`], [`map`] | the disc on which the target is dragged, and what the model says of every pose |
 //! | [`charts`] | signals over time |
 //! | [`recorder`], [`recordings`], [`recorded_leg`], [`player`] | recordings: made, saved, opened, played |
@@ -50,6 +50,7 @@ pub mod seen_leg;
 pub mod setup;
 pub mod shown_leg;
 pub mod simulation;
+pub mod stiffness_ellipse;
 pub mod text;
 pub mod theme;
 pub mod top_bar;

@@ -1,5 +1,6 @@
 //! What the window shows, as data: for tests, and for those who hear the page.
 
+use crate::charts::ChartsState;
 use crate::live_leg::LiveLeg;
 use crate::pace::Pace;
 use crate::places::Places;
@@ -34,6 +35,8 @@ pub struct PageState {
     work: Option<WorkSummary>,
     /// Rig files and settings.
     setup: SetupState,
+    /// Signals over time, of the leg or of the recording.
+    charts: ChartsState,
     /// A recording that is shown in the place of the leg.
     player: Option<PlayerState>,
     /// What a reader of the screen says.
@@ -97,6 +100,7 @@ impl PageState {
         places: &Places,
         drawing: Drawing,
         setup: SetupState,
+        charts: ChartsState,
         player: Option<PlayerState>,
     ) -> Self {
         let rects = places.rects.iter().map(|(name, rect)| {
@@ -127,6 +131,7 @@ impl PageState {
             frame_ms: drawing.frame_s.map(|time_s| 1000.0 * time_s),
             work: drawing.work,
             setup,
+            charts,
             player,
             spoken,
         }

@@ -104,6 +104,12 @@ impl Player {
         }
     }
 
+    /// Its signals over time.
+    #[must_use]
+    pub const fn charts(&self) -> &Charts {
+        &self.charts
+    }
+
     /// Plays on, if it is played.
     pub fn advance(&mut self, elapsed_s: f64) {
         if !self.playing {
@@ -200,7 +206,7 @@ impl Player {
             .frame(side)
             .resizable(false)
             .exact_size(height);
-        bottom.show(ui, |ui| self.charts(ui, height - 62.0));
+        bottom.show(ui, |ui| self.show_charts(ui, None));
         let transport = Panel::bottom("transport").frame(side).resizable(false);
         transport.show(ui, |ui| self.transport(ui));
         CentralPanel::no_frame().show(ui, |ui| {
@@ -222,7 +228,7 @@ impl Player {
             ui.separator();
             let scroll = ScrollArea::vertical().id_salt("recorded");
             scroll.show(ui, |ui| {
-                self.charts(ui, 170.0);
+                self.show_charts(ui, Some(180.0));
                 ui.separator();
                 self.facts(ui);
             });
@@ -277,7 +283,7 @@ impl Player {
     }
 
     /// The signals; a press in a chart goes to that time.
-    fn charts(&mut self, ui: &mut Ui, height: f32) {
+    fn show_charts(&mut self, ui: &mut Ui, height: Option<f32>) {
         let [since_s, now_s] = self.leg.span_s();
         let source = Source {
             history: &self.leg.history,
@@ -286,6 +292,7 @@ impl Player {
             moment_s: Some(self.at_s),
         };
         ui.horizontal_wrapped(|ui| self.charts.controls(ui, &source));
+        let height = height.unwrap_or_else(|| ui.available_height());
         if let Some(at_s) = self.charts.show(ui, &source, height) {
             self.at_s = at_s.clamp(since_s, now_s);
             self.playing = false;

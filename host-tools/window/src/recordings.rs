@@ -7,7 +7,7 @@ use crate::recorder::Recorder;
 use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
 use crate::utc;
-use eframe::egui::{Button, Context, RichText, TextEdit, Ui};
+use eframe::egui::{Button, Context, RichText, TextEdit, Ui, vec2};
 use leg_rig::control_settings;
 use web_time::SystemTime;
 
@@ -96,7 +96,9 @@ impl Recordings {
         if recorded.is_some() {
             text = text.color(palette(ui.ctx()).error).strong();
         }
-        let record = ui.add(Button::new(text)).on_hover_text(hint);
+        let record = ui
+            .add(Button::new(text).min_size(vec2(96.0, 0.0)))
+            .on_hover_text(hint);
         place(&record, "record");
         if record.clicked() {
             if recorded.is_some() {
@@ -105,10 +107,14 @@ impl Recordings {
                 self.begin(leg);
             }
         }
-        if let Some((time_s, bytes)) = recorded {
-            let words = format!("{time_s:6.1} s {:5.1} MB", bytes as f64 / 1e6);
-            ui.label(RichText::new(words).monospace());
+        // What is not recorded takes its room, too.
+        let (time_s, bytes) = recorded.unwrap_or_default();
+        let words = format!("{time_s:6.1} s {:5.1} MB", bytes as f64 / 1e6);
+        let mut words = RichText::new(words).monospace().size(12.0);
+        if recorded.is_none() {
+            words = words.color(palette(ui.ctx()).faint);
         }
+        ui.label(words);
         self.opening(ui);
     }
 

@@ -37,6 +37,8 @@ pub struct Scene {
     camera: Camera,
     /// How much the deviation is enlarged.
     factor: f64,
+    /// Whether the stiffness of the tip is drawn.
+    stiffness: bool,
 }
 
 impl Default for Scene {
@@ -44,6 +46,7 @@ impl Default for Scene {
         Self {
             camera: Camera::default(),
             factor: FACTORS[1],
+            stiffness: false,
         }
     }
 }
@@ -80,12 +83,15 @@ impl Scene {
             &joint.view(detail, middle, DETAIL_HEIGHT * drawn.joint_m()),
             detail,
         );
+        if self.stiffness {
+            drawn.stiffness(&painter, &view, rect);
+        }
         drawn.readout(&painter, rect);
         drawn.legend(&painter, rect);
         response
     }
 
-    /// Lets the user choose how much the deviation is enlarged.
+    /// Lets the user choose how much the deviation is enlarged, and whether the stiffness is drawn.
     pub fn choice(&mut self, ui: &mut Ui) {
         let text = format!("draw ×{:.0}", self.factor);
         let choice = ComboBox::from_id_salt("factor")
@@ -100,6 +106,12 @@ impl Scene {
         choice.response.on_hover_text(
             "The leg is drawn so many times as far from its reference as it is, up to 60 mm. The reference is where its \
              trajectory has it: the dashed line.",
+        );
+        let stiffness = ui.checkbox(&mut self.stiffness, "Stiffness");
+        place(&stiffness, "stiffness_ellipse");
+        stiffness.on_hover_text(
+            "How stiff the tip is against pushes to each side, as an ellipse across the leg: what the model says of the \
+             present pretension and payload.",
         );
     }
 }

@@ -25,7 +25,7 @@ fn read_file(files: &Files, file: File, ctx: &Context) {
     spawn_local(async move {
         let read = JsFuture::from(file.array_buffer()).await;
         let bytes = read.map(|buffer| Uint8Array::new(&buffer).to_vec());
-        files.put(&name, bytes.map_err(|error| words(&error.into())));
+        files.put(&name, bytes.map_err(|error| words(&error)));
         ctx.request_repaint();
     });
 }

@@ -192,11 +192,14 @@ fn one_that_is_broken_is_refused_with_its_name_place_and_remedy_and_the_leg_stay
 #[test]
 fn a_recording_does_not_grow_the_controls() {
     let mut window = Window::new();
-    window.press("record");
     let places = |window: &Window| {
         ["record", "recording_open", "charts", "stop"].map(|name| window.app.places.rects[name])
     };
     let before = places(&window);
+    let [record, _, charts, _] = before;
+    assert!(record.top() > window.app.places.rects["leg"].bottom());
+    assert!(charts.bottom() <= 720.0, "{charts:?}");
+    window.press("record");
     window.frames(120);
     assert_eq!(places(&window), before);
 }

@@ -37,7 +37,7 @@ impl Window {
         std::fs::remove_file(path).unwrap();
     }
 
-    fn type_value(&mut self, name: &str, text: &str) {
+    pub(super) fn type_value(&mut self, name: &str, text: &str) {
         self.press(name);
         assert_eq!(self.app.places.focused.as_deref(), Some(name));
         self.frame(vec![
