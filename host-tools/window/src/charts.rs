@@ -10,7 +10,7 @@ mod trigger;
 use crate::history::{Column, History, KEPT_S};
 use crate::places::{place, place_rect};
 use crate::shown_leg::ShownLeg;
-use chart::Kept;
+use chart::{Kept, VALUES_HEIGHT};
 use cursors::Cursors;
 use eframe::egui::{
     Button, ComboBox, PopupCloseBehavior, RichText, ScrollArea, TextEdit, Ui, vec2,
@@ -196,9 +196,19 @@ impl Charts {
         pressed_s
     }
 
+    /// How much higher the charts are with what is said above them, points.
+    #[must_use]
+    pub const fn words_height(&self) -> f32 {
+        match (self.spectra, &self.cursors) {
+            (true, _) => 3.0 * VALUES_HEIGHT,
+            (false, Some(_)) => 3.0 * VALUES_HEIGHT + WORDS_HEIGHT,
+            (false, None) => 0.0,
+        }
+    }
+
     /// The times of the cursors, if there are some. How high that is, points.
     fn cursor_words(&self, ui: &mut Ui) -> f32 {
-        let Some(cursors) = &self.cursors else {
+        let Some(cursors) = self.cursors.as_ref().filter(|_| !self.spectra) else {
             return 0.0;
         };
         let words = RichText::new(cursors.words()).monospace().size(12.0);

@@ -124,7 +124,7 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
             }
         });
     });
-    let height = (0.36 * tall).clamp(240.0, 480.0);
+    let height = (0.36 * tall).clamp(240.0, 480.0) + views.charts.words_height();
     let bottom = Panel::bottom("charts")
         .frame(side)
         .resizable(false)

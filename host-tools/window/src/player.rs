@@ -201,7 +201,7 @@ impl Player {
             let scroll = ScrollArea::vertical().id_salt("recorded");
             scroll.show(ui, |ui| self.facts(ui));
         });
-        let height = (0.38 * tall).clamp(220.0, 520.0);
+        let height = (0.38 * tall).clamp(220.0, 520.0) + self.charts.words_height();
         let bottom = Panel::bottom("recorded charts")
             .frame(side)
             .resizable(false)
@@ -239,11 +239,7 @@ impl Player {
     fn transport(&mut self, ui: &mut Ui) {
         let [begin_s, end_s] = self.leg.span_s();
         ui.horizontal(|ui| {
-            let text = if self.playing {
-                "⏸ Pause"
-            } else {
-                "▶ Play"
-            };
+            let text = if self.playing { "Pause" } else { "Play" };
             let play = ui.add(Button::new(text).min_size(vec2(80.0, 30.0)));
             place(&play, "play");
             if play.clicked() {

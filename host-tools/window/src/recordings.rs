@@ -87,10 +87,10 @@ impl Recordings {
             .map(|recorder| (recorder.time_s(), recorder.bytes()));
         let (text, hint) = match recorded {
             None => (
-                "⏺ Record",
+                "Record",
                 "Records every signal of the leg, as MCAP: `leg plot`, Foxglove and this window open it.",
             ),
-            Some(_) => ("⏹ Stop, save", "Ends the recording, and saves it."),
+            Some(_) => ("Stop, save", "Ends the recording, and saves it."),
         };
         let mut text = RichText::new(text);
         if recorded.is_some() {

@@ -638,6 +638,56 @@ def steps(page):
     page.wait("the leg is shown", lambda state: "leg" in state["places"])
 
 
+def in_chart(page, name, part):
+    left, top, right, bottom = page.rect(name)
+    return left + part * (right - left), (top + bottom) / 2
+
+
+def charts(page):
+    """Reads charts: cursors, a trigger that catches a load, a spectrum, and the stiffness of the tip beside them."""
+    start_again(page)
+    controls = ("signals", "pause", "trigger", "cursors", "spectra", "record", "recording_open")
+    before = {control: page.rect(control) for control in controls}
+    page.press("trigger")
+    page.wait("the menu is open", lambda state: "trigger_tip_error_mm_1" in state["places"])
+    time.sleep(0.3)
+    page.press("trigger_tip_error_mm_1")
+    page.wait("there is a level", lambda state: "trigger_arm" in state["places"])
+    time.sleep(0.3)
+    page.press("trigger_level")
+    time.sleep(0.3)
+    page.browser.type_over("5")
+    time.sleep(0.3)
+    page.press("trigger_arm")
+    page.wait("it waits", lambda state: state["charts"]["armed"])
+    page.press("trigger")
+    page.wait("the menu is closed", lambda state: "trigger_arm" not in state["places"])
+    page.press("guide_payload")
+    caught = page.wait("it has caught it", lambda state: state["charts"]["caught_s"] and state["charts"]["paused"])["charts"]
+    since_s, until_s = caught["zoomed_s"]
+    assert abs((since_s + until_s) / 2 - caught["caught_s"]) < 0.05, caught
+    print(f"  the trigger has caught the load at {caught['caught_s']:.3f} s")
+    page.press("cursors")
+    a_s, b_s = page.wait("there are cursors", lambda state: state["charts"]["cursors_s"])["charts"]["cursors_s"]
+    page.browser.drag(in_chart(page, "tensions_n", 0.7), in_chart(page, "tensions_n", 0.85))
+    state = page.wait("one is dragged", lambda state: state["charts"]["cursors_s"][1] > b_s)
+    assert state["charts"]["cursors_s"][0] == a_s and "values_tensions_n" in state["places"], state["charts"]
+    page.press("stiffness_ellipse")
+    page.wait("the stiffness is drawn", lambda state: "stiffness_words" in state["places"])
+    page.picture("charts")
+    page.press("stiffness_ellipse")
+    page.press("pause")
+    page.wait("they go on", lambda state: not state["charts"]["paused"])
+    page.press("spectra")
+    peaks = page.wait("there are peaks", lambda state: "tensions_n" in state["charts"]["peaks"])["charts"]["peaks"]
+    hz, amplitude_n = peaks["tensions_n"]
+    assert 0 < hz <= 100 and amplitude_n > 0, peaks
+    print(f"  the highest peak of a tension: {hz:.2f} Hz, {amplitude_n:.4f} N")
+    page.press("spectra")
+    after = {control: page.rect(control) for control in controls}
+    assert after == before, (before, after)
+
+
 def scrub(page, part):
     """Goes to a part of a recording by its slider."""
     left, top, right, bottom = page.rect("scrub")
@@ -748,6 +798,7 @@ PARTS = (
     maps,
     pushes,
     breaks,
+    charts,
     recordings,
     rig_files,
     settings,

@@ -7,12 +7,12 @@ use super::{Charts, Shown};
 use crate::history::Column;
 use crate::places::place;
 use crate::theme;
-use eframe::egui::{Align2, Id, Response, RichText, Ui, Vec2b};
-use egui_plot::{Line, Plot, PlotPoint, PlotPoints, PlotUi, Text, VLine};
+use eframe::egui::{Align2, FontId, Id, Response, RichText, Ui, Vec2b, pos2};
+use egui_plot::{Line, Plot, PlotPoint, PlotPoints, PlotUi, VLine};
 
 /// Height of a line of words above a chart, points.
 const TITLE_HEIGHT: f32 = 30.0;
-const VALUES_HEIGHT: f32 = 15.0;
+pub(super) const VALUES_HEIGHT: f32 = 15.0;
 
 /// The least height of a chart, points.
 const HEIGHT_MIN: f32 = 60.0;
@@ -102,7 +102,7 @@ impl Charts {
         let plot = least.fold(plot, Plot::include_y);
         let colours = colours(ui, column);
         let palette = theme::palette(ui.ctx());
-        let marks = self.marks(&shown, [palette.target, palette.warning, palette.brass]);
+        let marks = self.marks(&shown, [palette.target, palette.warning, palette.text]);
         let wanted_s = self.wanted_s;
         let drawn = plot.show(ui, |plot| {
             let [since_s, _] = shown.drawn_s;
@@ -114,14 +114,8 @@ impl Charts {
                 plot.set_auto_bounds(Vec2b::new(false, true));
             }
             draw(plot, thin, &colours);
-            let top = plot.plot_bounds().max()[1];
-            for (name, at_s, colour) in marks {
-                plot.vline(VLine::new("", at_s).color(colour).width(1.5));
-                if !name.is_empty() {
-                    let name = RichText::new(name).strong().color(colour);
-                    let at = PlotPoint::new(at_s, top);
-                    plot.text(Text::new("", at, name).anchor(Align2::LEFT_TOP));
-                }
+            for (_, at_s, colour) in &marks {
+                plot.vline(VLine::new("", *at_s).color(*colour).width(1.5));
             }
             plot.auto_bounds().x
         });
@@ -129,6 +123,14 @@ impl Charts {
             let bounds = drawn.transform.bounds();
             let seen_s = [bounds.min()[0], bounds.max()[0]];
             self.zoomed_s = (!drawn.inner || wanted_s.is_some()).then_some(seen_s);
+        }
+        for (name, at_s, colour) in marks {
+            let at = drawn
+                .transform
+                .position_from_point(&PlotPoint::new(at_s, 0.0));
+            let at = pos2(at.x + 3.0, drawn.response.rect.top() + 2.0);
+            let painter = ui.painter_at(drawn.response.rect);
+            painter.text(at, Align2::LEFT_TOP, name, FontId::monospace(12.0), colour);
         }
         place(&drawn.response, column.name());
         let at_s = |response: &Response| {

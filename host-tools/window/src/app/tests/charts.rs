@@ -55,7 +55,7 @@ fn two_cursors_are_dragged_and_stay_on_the_screen() {
 }
 
 #[test]
-fn a_chart_that_stands_still_is_zoomed() {
+fn a_chart_that_stands_still_is_zoomed_and_a_double_click_shows_it_whole() {
     let mut window = Window::new();
     window.frames(200);
     window.press("pause");
@@ -70,6 +70,18 @@ fn a_chart_that_stands_still_is_zoomed() {
         (before_s / after_s - 2.0).abs() < 0.1,
         "{before_s} {after_s}"
     );
+    // Later than a third click would count.
+    window.frames(20);
+    for pressed in [true, false, true, false] {
+        window.frame(vec![Event::PointerButton {
+            pos: at,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        }]);
+    }
+    window.frames(3);
+    assert_eq!(width_s(&window), None);
 }
 
 #[test]
