@@ -6,6 +6,9 @@ use leg_firmware::settings::Settings;
 use leg_recording::{About, McapWriter, WriteError};
 use std::io::Cursor;
 
+/// The largest one: with its index it can still be opened here.
+const BYTES_MAX: u64 = RECORDING_BYTES_MAX / 16 * 15;
+
 /// A recording that is being made.
 pub struct Recorder {
     /// None once it has come to its end.
@@ -60,8 +63,8 @@ impl Recorder {
         self.count += 1;
         self.ended = match written {
             Err(error) => Some(error.to_string()),
-            Ok(()) if writer.bytes() >= RECORDING_BYTES_MAX / 16 * 15 => {
-                Some(format!("it has reached {} MiB", RECORDING_BYTES_MAX >> 20))
+            Ok(()) if writer.bytes() >= BYTES_MAX => {
+                Some(format!("it has reached {} MiB", BYTES_MAX >> 20))
             }
             Ok(()) => None,
         };

@@ -40,7 +40,7 @@ BLOCK = 8
 TOLERANCE = 12
 
 # What shows another number, or another stretch of time, in another moment: it is not compared.
-CHANGING = ("readout", "tensions", "numbers", "charts", "stiffness", "pretension", "name")
+CHANGING = ("readout", "tensions", "numbers", "charts", "stiffness", "pretension", "name", "trigger", "recording_time")
 
 # What is left out of the time may be shown above it or to its right, pixels.
 LEFT_OUT = (-30, -20, 130, 0)
@@ -709,7 +709,8 @@ def recordings(page):
     assert name.startswith("leg-20") and name.endswith(".mcap") and data.startswith(b"\x89MCAP0"), name
     close_notice(page)
     start_again(page)
-    drop(page, name, data)
+    # The name of a file that is made tells its time, which a picture would show.
+    drop(page, "made.mcap", data)
     began = page.wait("it is opened", lambda state: state["player"])["player"]
     first_s, last_s = began["span_s"]
     print(f"  {name}: {len(data) / 1e6:.1f} MB, {last_s - first_s:.1f} s")
@@ -734,7 +735,7 @@ def recordings(page):
     page.browser.prefer("light")
     page.browser.resize(360, 740)
     page.wait("it is narrow", lambda state: state["places"]["scrub"][2] <= 360)
-    for control in ("back", "play", "play_rate", "recording_time", "scrub", "signals"):
+    for control in ("back", "play", "play_rate", "recording_time", "scrub", "signals", "stop", "rate"):
         left, _, right, _ = page.rect(control)
         assert 0 <= left and right <= 360, (control, left, right)
     page.picture("phone_player")
