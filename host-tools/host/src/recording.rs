@@ -1,19 +1,14 @@
 //! Recordings of a simulation or of a leg: MCAP, which Foxglove and PlotJuggler open and `leg replay` reproduces, or CSV.
 
-mod contents;
 mod csv_file;
 mod error;
-mod mcap_file;
-mod replay;
-mod samples;
-mod tick_record;
+mod mcap_bytes;
 
 #[cfg(test)]
 mod tests;
 
 pub use error::RecordingError;
-pub use replay::{Replay, TickDifference, replay};
-pub use samples::{Recorded, Samples, read_samples};
+pub use leg_recording::{About, Recorded, Replay, Samples, TickDifference};
 
 use crate::signals::{LegConstants, Report, Simulated};
 use csv_file::CsvFile;
@@ -23,10 +18,11 @@ use leg_base::recorder_rows::RecorderRow;
 use leg_base::tick_time::{seconds, tick_s};
 use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
+use leg_recording::{McapWriter, REPLAY_HELP, SAMPLES_HELP};
 use leg_sim::simulation::{SAMPLE_TICKS, Tick};
-use mcap_file::McapFile;
-use serde::{Deserialize, Serialize};
 use std::ffi::OsStr;
+use std::fs::File;
+use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 /// Ticks of a simulation between two rows of a table: a row a millisecond.
@@ -34,35 +30,6 @@ const ROW_TICKS: u32 = 8;
 
 /// From one time at which a recording is on the disk to the next, s of the recording.
 const FLUSH_S: f64 = 1.0;
-
-/// What a recording is of.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct About {
-    /// In words: what a chart of it is called.
-    pub title: String,
-    /// Version of this program.
-    pub version: String,
-    /// The scenario's file or name; none for a log of a leg.
-    pub scenario: Option<String>,
-    /// The rig's file or name; none for a log of a leg.
-    pub rig: Option<String>,
-    /// What everything random in it follows from; none for a log of a leg.
-    pub seed: Option<u64>,
-}
-
-impl About {
-    /// Of a log of a leg.
-    #[must_use]
-    pub fn log(title: &str) -> Self {
-        Self {
-            title: title.into(),
-            version: env!("CARGO_PKG_VERSION").into(),
-            scenario: None,
-            rig: None,
-            seed: None,
-        }
-    }
-}
 
 /// A recording that is being written.
 pub struct Recording {
@@ -75,7 +42,7 @@ pub struct Recording {
 }
 
 enum RecordingFile {
-    Mcap(Box<McapFile>),
+    Mcap(Box<McapWriter<BufWriter<File>>>),
     Csv(Box<CsvFile>),
 }
 
@@ -155,14 +122,17 @@ impl Recording {
         }
         self.flushed_s = time_s;
         match &mut self.file {
-            RecordingFile::Mcap(file) => file.flush(),
+            RecordingFile::Mcap(file) => Ok(file.flush()?),
             RecordingFile::Csv(file) => file.flush(),
         }
     }
 
     fn finish(self) -> Result<(), RecordingError> {
         match self.file {
-            RecordingFile::Mcap(file) => file.finish(),
+            RecordingFile::Mcap(file) => {
+                file.finish()?;
+                Ok(())
+            }
             RecordingFile::Csv(mut file) => file.flush(),
         }
     }
@@ -201,7 +171,7 @@ pub fn record<T>(
         let file = if extension == "csv" {
             RecordingFile::Csv(Box::new(CsvFile::new(new)))
         } else {
-            RecordingFile::Mcap(Box::new(McapFile::new(new, about, settings)?))
+            RecordingFile::Mcap(Box::new(mcap(new, about, settings)?))
         };
         let mut recording = Recording {
             file,
@@ -222,6 +192,37 @@ pub fn record<T>(
         Err(error @ RecordingError::File(_)) => Err(error.failure(file, part.keep().ok())),
         Err(error) => Err(error.failure(file, None)),
     }
+}
+
+/// A new MCAP file.
+fn mcap(
+    file: File,
+    about: &About,
+    settings: &Settings,
+) -> Result<McapWriter<BufWriter<File>>, RecordingError> {
+    Ok(McapWriter::new(BufWriter::new(file), about, settings)?)
+}
+
+/// Reads a recording, as far as it goes.
+///
+/// # Errors
+/// A file that is no MCAP file of `leg` is refused (exit code 2).
+pub fn read_samples(file: &Path) -> Result<Recorded, Failure> {
+    leg_recording::read_samples(
+        &file.display().to_string(),
+        &mcap_bytes::read(file, SAMPLES_HELP)?,
+    )
+}
+
+/// Replays a recording.
+///
+/// # Errors
+/// One that is no recording of `leg run`, or of other sources, is refused (exit code 2).
+pub fn replay(file: &Path) -> Result<Replay, Failure> {
+    leg_recording::replay(
+        &file.display().to_string(),
+        &mcap_bytes::read(file, REPLAY_HELP)?,
+    )
 }
 
 /// A recording of that name which did not come to its end, or not yet.

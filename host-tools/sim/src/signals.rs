@@ -10,7 +10,7 @@ mod report;
 mod simulated;
 
 pub use encoding::{columns, json_object, json_schema, row};
-pub use reading::{comparison, recorder_row, telemetry};
+pub use reading::{comparison, numbers, recorder_row, telemetry};
 pub use recorded::RECORDER_SIGNALS;
 pub use report::{LegConstants, REPORT_SIGNALS, Report};
 pub use simulated::{SIMULATED_SIGNALS, Simulated};

@@ -3,11 +3,16 @@
 #[cfg(test)]
 mod tests;
 
+use crate::charts::Source;
+use crate::files::GivenFile;
 use crate::layout::{Views, narrow, wide};
 use crate::live_leg::opening::{Opened, Opening};
-use crate::page_state::PageState;
+use crate::notice::Notice;
+use crate::page_state::{Drawing, PageState};
 use crate::panel_guide::Wish;
 use crate::places::{self, Places, place_rect};
+use crate::player::Player;
+use crate::recorded_leg::RecordedLeg;
 use crate::shown_leg::ShownLeg;
 use crate::simulation::{Simulation, StartError};
 use crate::work::Work;
@@ -68,6 +73,8 @@ impl Stage {
 pub struct App {
     stage: Stage,
     views: Views,
+    /// A recording in the place of the leg, which goes on meanwhile.
+    player: Option<Box<Player>>,
     places: Places,
     /// Whether a key asks for a stop.
     stop: bool,
@@ -106,6 +113,7 @@ impl App {
         Self {
             stage,
             views,
+            player: None,
             places: Places::default(),
             stop: false,
             last_s: None,
@@ -120,14 +128,20 @@ impl App {
     /// What it shows, for tests and readers of the screen.
     #[must_use]
     pub fn state(&self) -> PageState {
+        let player = self.player.as_ref();
+        let charts = player.map_or(&self.views.charts, |player| player.charts());
         PageState::new(
             self.stage.leg(),
             &self.places,
-            self.zoom,
-            self.frames,
-            self.frame_s,
-            self.work.summary(),
+            Drawing {
+                zoom: self.zoom,
+                frames: self.frames,
+                frame_s: self.frame_s,
+                work: self.work.summary(),
+            },
             self.views.setup.state(self.stage.leg().ok()),
+            charts.state(),
+            player.map(|player| player.state()),
         )
     }
 
@@ -167,24 +181,42 @@ impl App {
         self.work.note_leg(began.elapsed());
         if let Stage::Leg(leg) = &mut self.stage {
             self.views.setup.advance(leg);
+            self.views.charts.advance(&Source::of_leg(leg));
+            self.views.recordings.advance(leg);
+        }
+        if let Some(player) = &mut self.player {
+            player.advance(elapsed_s);
         }
         ctx.request_repaint();
     }
 
     fn show(&mut self, ui: &mut Ui) {
-        let Self { stage, views, .. } = self;
+        let Self {
+            stage,
+            views,
+            player,
+            ..
+        } = self;
         let leg = match stage {
             Stage::Leg(leg) => leg,
+            // A recording needs no leg.
+            _ if player.is_some() => {
+                views.setup.show_notice(ui);
+                return self.play(ui);
+            }
             Stage::Opening(opening) => return empty(ui, "A live leg", &opening.words()),
             Stage::Empty(words) => return empty(ui, "There is no leg to show", words),
         };
         let bar = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(12, 8));
         let is_wide = ui.available_width() >= WIDE;
-        let setup = is_wide.then_some(&mut views.setup.open);
+        let setup = (is_wide && player.is_none()).then_some(&mut views.setup.open);
         Panel::top("bar")
             .frame(bar)
             .show(ui, |ui| top_bar::show(ui, leg, setup));
         views.setup.show_notice(ui);
+        if player.is_some() {
+            return self.play(ui);
+        }
         let wish = if is_wide {
             wide(ui, leg, views)
         } else {
@@ -194,10 +226,26 @@ impl App {
             Wish::None => {}
             Wish::StartAgain => {
                 let same = Simulation::of(leg.source().clone());
-                self.views.forget_leg();
+                self.forget_leg();
                 self.stage = Stage::simulated(same);
             }
             Wish::Simulate(source) => self.simulate(&source),
+        }
+    }
+
+    /// Forgets what belongs to a leg that is not there any more; what was recorded of it is saved.
+    fn forget_leg(&mut self) {
+        self.views.forget_leg();
+        if let Stage::Leg(leg) = &mut self.stage {
+            let why = "Another leg has taken the place of the one that was recorded.";
+            self.views.recordings.end(leg, why);
+        }
+    }
+
+    /// Shows a recording, until the user wants the leg back.
+    fn play(&mut self, ui: &mut Ui) {
+        if self.player.as_mut().is_some_and(|player| player.show(ui)) {
+            self.player = None;
         }
     }
 
@@ -208,7 +256,7 @@ impl App {
                 let notes = source
                     .read()
                     .map_or_else(|_| Vec::new(), |(_, notes)| notes);
-                self.views.forget_leg();
+                self.forget_leg();
                 self.views.setup.note_simulated(source, &notes);
                 self.stage = Stage::simulated(Ok(simulation));
             }
@@ -221,6 +269,24 @@ impl App {
         let leg = self.stage.leg().ok();
         if let Some(source) = self.views.setup.take_files(ctx, leg) {
             self.simulate(&source);
+        }
+        while let Some(given) = self.views.recordings.next(ctx) {
+            self.open(given);
+        }
+        if let Some(notice) = self.views.recordings.take_notice() {
+            self.views.setup.note(notice);
+        }
+    }
+
+    /// Opens a recording; one that is refused leaves what is shown as it is.
+    fn open(&mut self, GivenFile { name, bytes }: GivenFile) {
+        match bytes.and_then(|bytes| RecordedLeg::open(&name, &bytes)) {
+            Ok(leg) => self.player = Some(Box::new(Player::new(leg))),
+            Err(failure) => self.views.setup.note(Notice {
+                good: false,
+                title: format!("{name} is refused. What is shown stays as it was."),
+                text: failure.render(false),
+            }),
         }
     }
 

@@ -1,25 +1,29 @@
-//! Signals over time, chosen by name.
+//! Signals over time, chosen by name, and what they tell: values at cursors, the time of a trigger, a spectrum.
+
+mod chart;
+mod cursors;
+mod lines;
+mod panel_trigger;
+mod spectrum;
+mod trigger;
 
 use crate::history::{Column, History, KEPT_S};
 use crate::places::{place, place_rect};
-use crate::theme;
-use eframe::egui::{ComboBox, Id, PopupCloseBehavior, RichText, ScrollArea, TextEdit, Ui, Vec2b};
-use egui_plot::{GridInput, GridMark, Line, Plot, PlotPoints};
-
-/// Points of a line: more than a screen has.
-const POINTS_MAX: usize = 1200;
-
-/// The least height of a chart, as a part of its largest value.
-const RANGE_MIN: f64 = 0.01;
-
-/// About as many lines a grid has.
-const GRID_LINES: f64 = 4.0;
-
-/// What half a label of the time takes of a chart's width.
-const LABEL_PART: f64 = 0.06;
+use crate::shown_leg::ShownLeg;
+use chart::{Kept, VALUES_HEIGHT};
+use cursors::Cursors;
+use eframe::egui::{
+    Button, ComboBox, PopupCloseBehavior, RichText, ScrollArea, TextEdit, Ui, vec2,
+};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use trigger::Trigger;
 
 /// Times that a chart may show, s.
 const SPANS_S: [f64; 4] = [2.0, 5.0, 10.0, KEPT_S];
+
+/// Height of a line of words above the charts, points.
+const WORDS_HEIGHT: f32 = 18.0;
 
 /// What is charted, and how.
 pub struct Charts {
@@ -30,6 +34,74 @@ pub struct Charts {
     paused: Option<Paused>,
     /// A part of a name that is looked for.
     search: String,
+    cursors: Option<Cursors>,
+    trigger: Trigger,
+    /// Whether spectra are shown in the place of signals over time.
+    spectra: bool,
+    /// What charts that stand still are zoomed to, s; none if they show everything.
+    zoomed_s: Option<[f64; 2]>,
+    /// What they are to be zoomed to in the next frame, s.
+    wanted_s: Option<[f64; 2]>,
+    /// What was drawn last, by the names of the signals.
+    kept: BTreeMap<&'static str, Kept>,
+}
+
+/// The charts as data.
+#[derive(Debug, Serialize)]
+pub struct ChartsState {
+    /// The names of the signals.
+    pub chosen: Vec<&'static str>,
+    /// Whether they stand still.
+    pub paused: bool,
+    /// Where the cursors are, s.
+    pub cursors_s: Option<[f64; 2]>,
+    /// What is shown of charts that stand still and are zoomed, s.
+    pub zoomed_s: Option<[f64; 2]>,
+    /// Whether the trigger waits, and what it caught last, s.
+    pub armed: bool,
+    /// s.
+    pub caught_s: Option<f64>,
+    /// The highest peak of the first number of each signal, Hz and in its unit, if spectra are shown.
+    pub peaks: BTreeMap<&'static str, [f64; 2]>,
+}
+
+/// Where the signals are from.
+pub struct Source<'a> {
+    /// They.
+    pub history: &'a History,
+    /// From when to when there are some, s.
+    pub since_s: f64,
+    /// s.
+    pub now_s: f64,
+    /// The time at which a recording is, s; none of a leg that goes on.
+    pub moment_s: Option<f64>,
+}
+
+impl<'a> Source<'a> {
+    /// Of a leg that goes on.
+    #[must_use]
+    pub fn of_leg(leg: &'a ShownLeg) -> Self {
+        let now_s = leg.time_s();
+        Self {
+            history: leg.history(),
+            since_s: (now_s - KEPT_S).max(0.0),
+            now_s,
+            moment_s: None,
+        }
+    }
+}
+
+/// What the charts show of it.
+#[derive(Clone, Copy)]
+struct Shown<'a> {
+    history: &'a History,
+    /// From when to when there are signals, s.
+    whole_s: [f64; 2],
+    /// From when to when they are drawn, s.
+    drawn_s: [f64; 2],
+    moment_s: Option<f64>,
+    /// Whether it stands still, and may be dragged and zoomed.
+    still: bool,
 }
 
 /// The signals up to a time at which the charts were paused: the leg's own history goes on.
@@ -46,6 +118,12 @@ impl Default for Charts {
             span_s: SPANS_S[2],
             paused: None,
             search: String::new(),
+            cursors: None,
+            trigger: Trigger::default(),
+            spectra: false,
+            zoomed_s: None,
+            wanted_s: None,
+            kept: BTreeMap::new(),
         }
     }
 }
@@ -60,39 +138,92 @@ impl Charts {
         }
     }
 
-    /// Shows the charts beside each other, or below where there is no room for that.
-    pub fn show(&mut self, ui: &mut Ui, history: &History, now_s: f64, height: f32) {
-        self.controls(ui, history, now_s);
+    /// As data.
+    #[must_use]
+    pub fn state(&self) -> ChartsState {
+        let peaks = self.kept.iter().filter(|_| self.spectra);
+        let peaks = peaks.filter_map(|(name, kept)| Some((*name, kept.peak()?)));
+        ChartsState {
+            chosen: self.chosen.clone(),
+            paused: self.paused(),
+            cursors_s: self.cursors.as_ref().map(|cursors| cursors.at_s),
+            zoomed_s: self.zoomed_s,
+            armed: self.trigger.armed(),
+            caught_s: self.trigger.caught_s(),
+            peaks: peaks.collect(),
+        }
+    }
+
+    /// Looks for what the trigger waits for.
+    pub fn advance(&mut self, source: &Source<'_>) {
+        let after_s = 0.5 * self.span_s;
+        let caught = self.trigger.advance(source.history, source.now_s, after_s);
+        if let Some(at_s) = caught {
+            self.pause(source.history, source.now_s);
+            self.wanted_s = Some([at_s - after_s, at_s + after_s]);
+        }
+    }
+
+    /// Shows the charts beside each other, or below where there is no room for that. The time at which one was pressed, s.
+    pub fn show(&mut self, ui: &mut Ui, source: &Source<'_>, height: f32) -> Option<f64> {
         if self.chosen.is_empty() {
             ui.label("Choose a signal to see it over time.");
         }
-        let shown = self.shown(history, now_s);
-        let names = self.chosen.iter();
-        let columns: Vec<Column> = names.filter_map(|name| history.named(name)).collect();
+        let paused = self.paused.take();
+        let shown = self.shown(source, paused.as_ref());
+        let named = self
+            .chosen
+            .iter()
+            .filter_map(|name| source.history.named(name));
+        let columns: Vec<Column> = named.collect();
         let top = ui.cursor().top();
+        let height = height - self.cursor_words(ui);
+        let mut pressed_s = None;
         if ui.available_width() > 560.0 && columns.len() > 1 {
             ui.columns(columns.len(), |parts| {
                 for (part, column) in parts.iter_mut().zip(&columns) {
-                    self.chart(part, shown, *column, height);
+                    pressed_s = self.chart(part, shown, *column, height).or(pressed_s);
                 }
             });
         } else {
             for column in columns {
-                self.chart(ui, shown, column, height);
+                pressed_s = self.chart(ui, shown, column, height).or(pressed_s);
             }
         }
+        self.wanted_s = None;
+        self.paused = paused;
         place_rect(ui.ctx(), ui.min_rect().with_min_y(top), "charts");
+        pressed_s
     }
 
-    /// Pauses, or goes on.
-    fn pause(&mut self, history: &History, now_s: f64) {
-        self.paused = match self.paused {
-            Some(_) => None,
-            None => Some(Paused {
-                history: history.clone(),
-                until_s: now_s,
-            }),
+    /// How much higher the charts are with what is said above them, points.
+    #[must_use]
+    pub const fn words_height(&self) -> f32 {
+        match (self.spectra, &self.cursors) {
+            (true, _) => 3.0 * VALUES_HEIGHT,
+            (false, Some(_)) => 3.0 * VALUES_HEIGHT + WORDS_HEIGHT,
+            (false, None) => 0.0,
+        }
+    }
+
+    /// The times of the cursors, if there are some. How high that is, points.
+    fn cursor_words(&self, ui: &mut Ui) -> f32 {
+        let Some(cursors) = self.cursors.as_ref().filter(|_| !self.spectra) else {
+            return 0.0;
         };
+        let words = RichText::new(cursors.words()).monospace().size(12.0);
+        place(&ui.label(words), "cursor_times");
+        WORDS_HEIGHT
+    }
+
+    /// Stands still.
+    fn pause(&mut self, history: &History, now_s: f64) {
+        self.kept.clear();
+        self.zoomed_s = Some([(now_s - self.span_s).max(0.0), now_s]);
+        self.paused = Some(Paused {
+            history: history.clone(),
+            until_s: now_s,
+        });
     }
 
     /// Whether they stand still.
@@ -101,45 +232,114 @@ impl Charts {
         self.paused.is_some()
     }
 
-    /// Goes on: there is another leg.
+    /// Goes on.
     pub fn go_on(&mut self) {
         self.paused = None;
+        self.cursors = None;
+        self.kept.clear();
     }
 
-    /// The history that is charted, and up to which time, s.
-    fn shown<'a>(&'a self, history: &'a History, now_s: f64) -> (&'a History, f64) {
-        match &self.paused {
+    /// Forgets a leg that is not there any more.
+    pub fn forget_leg(&mut self) {
+        self.go_on();
+        self.trigger.disarm();
+    }
+
+    /// What is charted of a source.
+    fn shown<'a>(&self, source: &Source<'a>, paused: Option<&'a Paused>) -> Shown<'a> {
+        let recorded = source.moment_s.is_some();
+        let (history, until_s) = match paused {
             Some(paused) => (&paused.history, paused.until_s),
-            None => (history, now_s),
+            None => (source.history, source.now_s),
+        };
+        let since_s = if recorded {
+            source.since_s
+        } else {
+            (until_s - KEPT_S).max(0.0)
+        };
+        let still = recorded || paused.is_some();
+        let whole_s = [since_s, until_s];
+        let drawn_s = match (still, self.zoomed_s) {
+            (true, zoomed_s) => zoomed_s.unwrap_or(whole_s),
+            (false, _) => [(until_s - self.span_s).max(0.0), until_s],
+        };
+        Shown {
+            history,
+            whole_s,
+            drawn_s,
+            moment_s: source.moment_s,
+            still,
         }
     }
 
-    fn controls(&mut self, ui: &mut Ui, history: &History, now_s: f64) {
-        ui.horizontal_wrapped(|ui| {
-            ui.heading("Charts");
-            let menu = ComboBox::from_id_salt("signals")
-                .selected_text("Signals")
-                .width(110.0)
-                // Several signals may be chosen, and a name is typed.
-                .close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-            let menu = menu.show_ui(ui, |ui| self.choice(ui, history));
-            place(&menu.response, "signals");
-            let span =
-                ComboBox::from_id_salt("span").selected_text(format!("{:.0} s", self.span_s));
-            span.width(64.0).show_ui(ui, |ui| {
-                for span_s in SPANS_S {
-                    ui.selectable_value(&mut self.span_s, span_s, format!("{span_s:.0} s"));
-                }
-            });
-            let text = if self.paused() { "Go on" } else { "Pause" };
-            let pause = ui.button(text).on_hover_text(
-                "A paused chart can be dragged and zoomed; a double click shows it whole.",
-            );
-            place(&pause, "pause");
-            if pause.clicked() {
-                self.pause(history, now_s);
+    /// What is charted, and how.
+    pub fn controls(&mut self, ui: &mut Ui, source: &Source<'_>) {
+        ui.heading("Charts");
+        let menu = ComboBox::from_id_salt("signals")
+            .selected_text("Signals")
+            .width(90.0)
+            // Several signals may be chosen, and a name is typed.
+            .close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+        let menu = menu.show_ui(ui, |ui| self.choice(ui, source.history));
+        place(&menu.response, "signals");
+        if source.moment_s.is_none() {
+            self.follow(ui, source);
+        }
+        self.tools(ui, source);
+    }
+
+    /// How much of a leg is charted that goes on, whether the charts stand still, and when they do by themselves.
+    fn follow(&mut self, ui: &mut Ui, source: &Source<'_>) {
+        let span = ComboBox::from_id_salt("span").selected_text(format!("{:.0} s", self.span_s));
+        span.width(56.0).show_ui(ui, |ui| {
+            for span_s in SPANS_S {
+                ui.selectable_value(&mut self.span_s, span_s, format!("{span_s:.0} s"));
             }
         });
+        let text = if self.paused() { "Go on" } else { "Pause" };
+        let pause = ui.add(Button::new(text).min_size(vec2(62.0, 0.0)));
+        place(&pause, "pause");
+        let hint = "A paused chart can be dragged and zoomed; a double click shows it whole.";
+        if pause.on_hover_text(hint).clicked() {
+            if self.paused() {
+                self.go_on();
+                self.trigger.disarm();
+            } else {
+                self.pause(source.history, source.now_s);
+            }
+        }
+        if panel_trigger::show(ui, &mut self.trigger, &self.chosen, source) {
+            self.go_on();
+        }
+    }
+
+    /// Cursors and spectra.
+    fn tools(&mut self, ui: &mut Ui, source: &Source<'_>) {
+        let cursors = Button::new("Cursors").selected(self.cursors.is_some());
+        let cursors = ui.add_enabled(!self.spectra, cursors);
+        place(&cursors, "cursors");
+        let hint = "Two cursors: drag them in a chart to read times, values and their differences.";
+        if cursors.on_hover_text(hint).clicked() {
+            self.switch_cursors(source);
+        }
+        let spectra = ui.add(Button::new("Spectrum").selected(self.spectra));
+        place(&spectra, "spectra");
+        let hint = "Which sines the signals have in the time that is shown (Hann's window), and the highest of them.";
+        if spectra.on_hover_text(hint).clicked() {
+            self.spectra = !self.spectra;
+        }
+    }
+
+    /// Cursors stand in charts that stand still.
+    fn switch_cursors(&mut self, source: &Source<'_>) {
+        if self.cursors.take().is_some() {
+            return;
+        }
+        if source.moment_s.is_none() && !self.paused() {
+            self.pause(source.history, source.now_s);
+        }
+        let whole_s = [source.since_s, source.now_s];
+        self.cursors = Some(Cursors::new(self.zoomed_s.unwrap_or(whole_s)));
     }
 
     fn choice(&mut self, ui: &mut Ui, history: &History) {
@@ -154,6 +354,7 @@ impl Charts {
                 }
                 let mut on = self.chosen.contains(&name);
                 let response = ui.checkbox(&mut on, RichText::new(name).monospace());
+                place(&response, name);
                 if response.on_hover_text(column.meaning()).changed() {
                     self.chosen.retain(|other| *other != name);
                     if on {
@@ -163,157 +364,23 @@ impl Charts {
             }
         });
     }
-
-    fn chart(&self, ui: &mut Ui, shown: (&History, f64), column: Column, height: f32) {
-        let (history, until_s) = shown;
-        let name = column.name();
-        title(ui, &column);
-        let paused = self.paused();
-        let link = Id::unique("charts");
-        let since_s = (until_s - self.span_s).max(0.0);
-        let plot = Plot::new(name)
-            .height((height - 24.0).max(60.0))
-            .grid_color(theme::palette(ui.ctx()).line)
-            .link_axis(link, Vec2b::new(true, false))
-            .link_cursor(link, Vec2b::new(true, false))
-            .allow_drag(paused)
-            .allow_zoom(paused)
-            .allow_scroll(paused)
-            .allow_boxed_zoom(paused)
-            .x_grid_spacer(|input| grid(&input, LABEL_PART))
-            .y_grid_spacer(|input| grid(&input, 0.0))
-            .x_axis_formatter(|mark, _| format!("{} s", short(mark.value)))
-            .y_axis_formatter(|mark, _| short(mark.value))
-            .y_axis_min_width(44.0);
-        // A paused chart may be dragged to what was before.
-        let from_s = if paused { until_s - KEPT_S } else { since_s };
-        let lines = lines(history, column, [from_s, until_s]);
-        let plot = least_range(&lines)
-            .into_iter()
-            .flatten()
-            .fold(plot, Plot::include_y);
-        let colours: Vec<_> = (0..column.width)
-            .map(|i| theme::series(ui.ctx(), i))
-            .collect();
-        plot.show(ui, |plot| {
-            if !paused {
-                plot.set_plot_bounds_x(since_s..=(since_s + self.span_s));
-                plot.set_auto_bounds(Vec2b::new(false, true));
-            }
-            for (number, (points, colour)) in lines.into_iter().zip(colours).enumerate() {
-                let label = if column.width > 1 {
-                    (number + 1).to_string()
-                } else {
-                    String::new()
-                };
-                plot.line(
-                    Line::new(label, PlotPoints::from(points))
-                        .color(colour)
-                        .width(1.6),
-                );
-            }
-        });
-    }
-}
-
-/// The name of a signal, and the colours of its numbers.
-fn title(ui: &mut Ui, column: &Column) {
-    ui.horizontal(|ui| {
-        let name = RichText::new(column.name()).monospace().size(12.0);
-        ui.label(name).on_hover_text(column.meaning());
-        for number in 0..column.width {
-            if column.width > 1 {
-                let words = format!("● {}", number + 1);
-                let colour = theme::series(ui.ctx(), number);
-                ui.label(RichText::new(words).size(12.0).color(colour));
-            }
-        }
-    });
-}
-
-/// Each number of a signal between two times, s.
-fn lines(history: &History, column: Column, [from_s, until_s]: [f64; 2]) -> Vec<Vec<[f64; 2]>> {
-    let line = |number| {
-        let points = history.line(column, number, from_s);
-        thinned(
-            points
-                .take_while(|[time_s, _]| *time_s <= until_s)
-                .collect(),
-        )
-    };
-    (0..column.width).map(line).collect()
-}
-
-/// What a chart shows at least, so that it does not show rounding errors alone; none without points.
-fn least_range(lines: &[Vec<[f64; 2]>]) -> Option<[f64; 2]> {
-    let values = || lines.iter().flatten().map(|[_, value]| *value);
-    let low = values().min_by(f64::total_cmp)?;
-    let high = values().max_by(f64::total_cmp)?;
-    let half = 0.5 * RANGE_MIN * low.abs().max(high.abs());
-    let middle = 0.5 * (low + high);
-    Some([middle - half, middle + half])
-}
-
-/// Some lines of a grid at round numbers; none in the last part, where a label would have no room.
-fn grid(input: &GridInput, last_part: f64) -> Vec<GridMark> {
-    let (low, high) = input.bounds;
-    let step_size = round_step((high - low) / GRID_LINES);
-    let first = (low / step_size).ceil();
-    // A plot of no height has no lines.
-    let count = ((high - low) / step_size).min(100.0) as u32;
-    let mark = |line: u32| GridMark {
-        value: (first + f64::from(line)) * step_size,
-        step_size,
-    };
-    let end = high - last_part * (high - low);
-    (0..=count)
-        .map(mark)
-        .filter(|mark| mark.value <= end)
-        .collect()
-}
-
-/// The next larger of 1, 2 and 5 with any power of ten.
-fn round_step(step: f64) -> f64 {
-    let unit = 10_f64.powf(step.max(1e-9).log10().floor());
-    let part = step / unit;
-    let round = [1.0, 2.0, 5.0].into_iter().find(|round| part <= *round);
-    unit * round.unwrap_or(10.0)
-}
-
-/// A number without what its rounding leaves.
-fn short(value: f64) -> String {
-    // Adding zero takes the sign of one away.
-    let rounded = (value * 1e6).round() / 1e6 + 0.0;
-    format!("{rounded}")
-}
-
-/// The lowest and the highest point of each of so many parts: no peak is lost.
-fn thinned(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
-    if points.len() <= POINTS_MAX {
-        return points;
-    }
-    let size = points.len().div_ceil(POINTS_MAX / 2);
-    let mut kept = Vec::with_capacity(POINTS_MAX);
-    for part in points.chunks(size) {
-        let lowest = part.iter().min_by(|a, b| a[1].total_cmp(&b[1]));
-        let highest = part.iter().max_by(|a, b| a[1].total_cmp(&b[1]));
-        let (Some(a), Some(b)) = (lowest, highest) else {
-            continue;
-        };
-        let [first, second] = if a[0] <= b[0] { [*a, *b] } else { [*b, *a] };
-        kept.push(first);
-        kept.push(second);
-    }
-    kept
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{Charts, POINTS_MAX, grid, least_range, round_step, short, thinned};
+    use super::{Charts, Source};
     use crate::history::{KEPT_S, SAMPLE_HZ};
     use crate::simulation::Simulation;
-    use egui_plot::GridInput;
+
+    fn source(simulation: &Simulation, now_s: f64) -> Source<'_> {
+        Source {
+            history: &simulation.history,
+            since_s: 0.0,
+            now_s,
+            moment_s: None,
+        }
+    }
 
     #[test]
     fn a_paused_chart_keeps_what_it_shows() {
@@ -323,9 +390,10 @@ mod tests {
         let mut charts = Charts::default();
         charts.pause(&simulation.history, now_s);
         let points = |charts: &Charts, simulation: &Simulation, now_s: f64| {
-            let (history, until_s) = charts.shown(&simulation.history, now_s);
-            let column = history.named("tensions_n").unwrap();
-            (history.line(column, 0, 0.0).collect::<Vec<_>>(), until_s)
+            let shown = charts.shown(&source(simulation, now_s), charts.paused.as_ref());
+            let column = shown.history.named("tensions_n").unwrap();
+            let points = shown.history.line(column, 0, 0.0).collect::<Vec<_>>();
+            (points, shown.whole_s[1])
         };
         let before = points(&charts, &simulation, now_s);
         assert!(before.0.len() > 100);
@@ -340,59 +408,5 @@ mod tests {
         let (after, until_s) = points(&charts, &simulation, later_s);
         assert_eq!(until_s, later_s);
         assert!(after[0][0] > now_s);
-    }
-
-    #[test]
-    fn lines_of_a_grid_are_at_round_numbers() {
-        for (step, round) in [
-            (1.0, 1.0),
-            (1.1, 2.0),
-            (0.03, 0.05),
-            (37.0, 50.0),
-            (60.0, 100.0),
-        ] {
-            assert!((round_step(step) / round - 1.0).abs() < 1e-12, "{step}");
-        }
-        assert!(round_step(0.0) > 0.0);
-        assert_eq!(
-            [0.1 + 0.2, -0.0, 1.0 / 3.0].map(short),
-            ["0.3", "0", "0.333333"]
-        );
-    }
-
-    #[test]
-    fn no_label_is_beyond_the_edge() {
-        let values = |last_part| -> Vec<f64> {
-            let input = GridInput {
-                bounds: (0.0, 10.0),
-                base_step_size: 1.0,
-            };
-            let marks = grid(&input, last_part).into_iter();
-            marks.map(|mark| mark.value).collect()
-        };
-        assert_eq!(values(0.0), [0.0, 5.0, 10.0]);
-        assert_eq!(values(0.06), [0.0, 5.0]);
-    }
-
-    #[test]
-    fn rounding_errors_do_not_fill_a_chart() {
-        let line = vec![[0.0, 2.0], [1.0, 2.000_001]];
-        let [low, high] = least_range(&[line, Vec::new()]).unwrap();
-        assert!((high - low - 0.02).abs() < 1e-6 && (low - 1.99).abs() < 1e-5);
-        assert_eq!(least_range(&[vec![[0.0, 0.0]]]), Some([0.0, 0.0]));
-        assert_eq!(least_range(&[]), None);
-    }
-
-    #[test]
-    fn no_peak_is_lost() {
-        let mut points: Vec<[f64; 2]> = (0..20_000).map(|i| [f64::from(i), 0.0]).collect();
-        points[7_777][1] = 5.0;
-        points[13_131][1] = -3.0;
-        let kept = thinned(points);
-        assert!(kept.len() <= POINTS_MAX);
-        assert!(kept.contains(&[7_777.0, 5.0]) && kept.contains(&[13_131.0, -3.0]));
-        assert!(kept.is_sorted_by(|a, b| a[0] <= b[0]));
-        let few = vec![[0.0, 1.0], [1.0, 2.0]];
-        assert_eq!(thinned(few.clone()), few);
     }
 }

@@ -4,14 +4,14 @@ use crate::camera::View;
 use crate::figure::{Item, ball, circle, cord, disc, rod, sorted};
 use crate::leg_pose::{LegPose, enlarged};
 use crate::places::place_rect;
-use crate::shown_leg::ShownLeg;
+use crate::seen_leg::SeenLeg;
+use crate::stiffness_ellipse::StiffnessEllipse;
 use crate::theme::{self, Palette, mixed};
 use eframe::egui::{
     Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2,
     pos2, vec2,
 };
 use leg_model::RigParameters;
-use leg_sim::plant::Defect;
 use nalgebra::Vector3;
 
 /// Sizes that the rig does not say, m.
@@ -32,12 +32,15 @@ const NEAR_MM: f64 = 0.5;
 const LEGEND: Vec2 = vec2(110.0, 7.0);
 const LEGEND_STEPS: u8 = 32;
 
+/// How far above the lower edge the words about the stiffness stand, points.
+const WORDS_ABOVE: f32 = 72.0;
+
 /// What a force of 1 N is drawn as, m.
 const ARROW_M_PER_N: f64 = 0.015;
 
 /// What is drawn of the leg.
 pub struct Drawn<'a> {
-    leg: &'a ShownLeg,
+    leg: &'a SeenLeg<'a>,
     pub rig: &'a RigParameters<f64, 3>,
     pub palette: Palette,
     pose: LegPose,
@@ -49,15 +52,15 @@ pub struct Drawn<'a> {
 }
 
 impl<'a> Drawn<'a> {
-    pub fn new(leg: &'a ShownLeg, factor: f64, palette: Palette) -> Self {
+    pub fn new(leg: &'a SeenLeg<'a>, factor: f64, palette: Palette) -> Self {
         let tip_length_m = leg.tip_length_m();
-        let reference = leg.reference();
-        let (along, factor) = enlarged(reference, leg.along(), factor, tip_length_m);
+        let reference = leg.reference;
+        let (along, factor) = enlarged(reference, leg.along, factor, tip_length_m);
         Self {
             leg,
-            rig: &leg.rig().parameters,
+            rig: &leg.rig.parameters,
             palette,
-            pose: LegPose::new(along).twisted(leg.torsion_rad()),
+            pose: LegPose::new(along).twisted(leg.torsion_rad),
             reference,
             commanded_m: leg.commanded_m(),
             tip_length_m,
@@ -172,18 +175,17 @@ impl<'a> Drawn<'a> {
     }
 
     fn cut(&self, tendon: usize) -> bool {
-        self.leg.has(Defect::TendonCut(tendon))
+        self.leg.cut.get(tendon) == Some(&true)
     }
 
     fn tension_colour(&self, tendon: usize) -> Color32 {
-        let rig = self.leg.rig();
-        let tension_n = self.leg.tensions_n()[tendon];
+        let rig = self.leg.rig;
+        let tension_n = self.leg.tensions_n[tendon];
         theme::tension(tension_n, [rig.f_min_n, rig.f_max_n])
     }
 
     fn payload(&self, view: &View) -> Option<Item> {
-        // What a live leg estimates may be a push.
-        let payload_kg = self.leg.simulated()?.leg().truth().payload_kg;
+        let payload_kg = self.leg.hung_kg?;
         let radius_m = PAYLOAD_RADIUS_M * payload_kg.cbrt();
         (payload_kg > 1e-3).then(|| ball(view, self.tip(), radius_m, self.palette.brass))
     }
@@ -194,7 +196,7 @@ impl<'a> Drawn<'a> {
         let below = Vector3::new(0.0, 0.0, -self.tip_length_m);
         let vertical = [Vector3::zeros(), below].map(|place| view.project(place).at);
         painter.extend(Shape::dashed_line(&vertical, faint, 5.0, 5.0));
-        let (sin, cos) = self.leg.rig().tilt_deg.to_radians().sin_cos();
+        let (sin, cos) = self.leg.rig.tilt_deg.to_radians().sin_cos();
         let mut rim: Vec<Pos2> = circle(below * cos, Vector3::z(), self.tip_length_m * sin)
             .map(|place| view.project(place).at)
             .collect();
@@ -222,7 +224,7 @@ impl<'a> Drawn<'a> {
     }
 
     fn push(&self, painter: &Painter, view: &View) {
-        let Some(push) = self.leg.pushed() else {
+        let Some(push) = self.leg.push else {
             return;
         };
         let [x, y] = leg_base::angles::unit_vector(push.azimuth_deg);
@@ -240,7 +242,7 @@ impl<'a> Drawn<'a> {
     }
 
     fn tension_labels(&self, painter: &Painter, view: &View, rect: Rect) {
-        let tensions_n = self.leg.tensions_n();
+        let tensions_n = self.leg.tensions_n;
         let anchors = self.pose.anchors(self.rig);
         for (tendon, ends) in anchors.into_iter().enumerate() {
             let above = ends[0] + Vector3::new(0.0, 0.0, 0.008);
@@ -278,7 +280,7 @@ impl<'a> Drawn<'a> {
 
     /// How far the tip is from where it was sent, in a place of its own.
     pub fn readout(&self, painter: &Painter, rect: Rect) {
-        let error_mm = self.leg.error_mm();
+        let error_mm = self.leg.error_mm;
         let corner = rect.left_top() + vec2(14.0, 10.0);
         let big = FontId::monospace(24.0);
         let words = format!("{error_mm:.2} mm");
@@ -289,9 +291,10 @@ impl<'a> Drawn<'a> {
         };
         painter.text(corner, Align2::LEFT_TOP, words, big, colour);
         let drawn = format!("drawn ×{:.1} from its reference", self.factor);
-        let off = match self.leg.live() {
-            None => "from the target",
-            Some(_) => "from the target, by its sensors",
+        let off = if self.leg.is_true {
+            "from the target"
+        } else {
+            "from the target, by its sensors"
         };
         for (line, words) in [off, &drawn].into_iter().enumerate() {
             let below = corner + vec2(0.0, 28.0 + 16.0 * line as f32);
@@ -302,9 +305,45 @@ impl<'a> Drawn<'a> {
         place_rect(painter.ctx(), shown, "readout");
     }
 
+    /// How stiff the tip is to each side, and the scale of that.
+    pub fn stiffness(&self, painter: &Painter, view: &View, rect: Rect) {
+        let colour = self.palette.good;
+        let ellipse = StiffnessEllipse::new(self.leg);
+        let words = match &ellipse {
+            Some(ellipse) => {
+                self.ellipse(painter, view, ellipse, colour);
+                ellipse.words()
+            }
+            None => ["the model has no stiffness here", ""].map(ToString::to_string),
+        };
+        let font = FontId::monospace(11.5);
+        let corner = rect.left_bottom() + vec2(14.0, -WORDS_ABOVE);
+        for (line, words) in words.into_iter().enumerate() {
+            let at = corner + vec2(0.0, 15.0 * line as f32);
+            painter.text(at, Align2::LEFT_TOP, words, font.clone(), colour);
+        }
+        let shown = Rect::from_min_size(corner, vec2(230.0, 30.0));
+        place_rect(painter.ctx(), shown, "stiffness_words");
+    }
+
+    fn ellipse(&self, painter: &Painter, view: &View, ellipse: &StiffnessEllipse, colour: Color32) {
+        let at = |place| view.project(place).at;
+        let edge: Vec<Pos2> = ellipse.edge(self.tip()).map(at).collect();
+        let line = Stroke::new(1.6, colour);
+        painter.add(Shape::convex_polygon(
+            edge,
+            colour.gamma_multiply(0.15),
+            line,
+        ));
+        for axis in ellipse.half_axes_m() {
+            let ends = [self.tip() - axis, self.tip() + axis].map(at);
+            painter.line_segment(ends, Stroke::new(1.0, colour));
+        }
+    }
+
     /// What the colours of the tendons mean.
     pub fn legend(&self, painter: &Painter, rect: Rect) {
-        let rig = self.leg.rig();
+        let rig = self.leg.rig;
         let bounds_n = [rig.f_min_n, rig.f_max_n];
         let bar = Rect::from_min_size(rect.left_bottom() + vec2(14.0, -18.0), LEGEND);
         for step in 0..LEGEND_STEPS {

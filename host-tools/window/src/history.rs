@@ -19,6 +19,23 @@ pub struct Snapshot {
     pub simulated: Option<Simulated>,
 }
 
+/// How names end, and the unit of that: the longer ends first.
+const UNITS: [(&str, &str); 13] = [
+    ("_nm_per_rad", "N·m/rad"),
+    ("_rad_per_s", "rad/s"),
+    ("_deg", "°"),
+    ("_kg", "kg"),
+    ("_mm", "mm"),
+    ("_nm", "N·m"),
+    ("_rad", "rad"),
+    ("_a", "A"),
+    ("_c", "°C"),
+    ("_m", "m"),
+    ("_n", "N"),
+    ("_s", "s"),
+    ("_v", "V"),
+];
+
 /// A signal that has numbers.
 #[derive(Clone, Copy)]
 enum Source {
@@ -46,6 +63,21 @@ impl Column {
         }
     }
 
+    /// Where its first number stands in a sample.
+    #[must_use]
+    pub const fn start(&self) -> usize {
+        self.start
+    }
+
+    /// The unit with which its name ends; empty if it has none.
+    #[must_use]
+    pub fn unit(&self) -> &'static str {
+        let name = self.name();
+        let mut units = UNITS.iter();
+        let found = units.find(|(end, _)| name.ends_with(end));
+        found.map_or("", |(_, unit)| unit)
+    }
+
     /// What it is and means.
     #[must_use]
     pub fn meaning(&self) -> String {
@@ -64,6 +96,8 @@ pub struct History {
     /// The time of each, s, and its numbers.
     samples: VecDeque<(f64, Box<[f32]>)>,
     numbers: Vec<f64>,
+    /// How many samples are kept.
+    kept: usize,
 }
 
 impl Default for History {
@@ -101,6 +135,21 @@ impl History {
             columns,
             samples: VecDeque::with_capacity(KEPT),
             numbers: Vec::with_capacity(start),
+            kept: KEPT,
+        }
+    }
+
+    /// Of a recording: each time, s, with the numbers of what was reported and, of a simulated leg, of what is true of it.
+    pub fn recorded(simulated: bool, samples: impl Iterator<Item = (f64, Box<[f32]>)>) -> Self {
+        let empty = if simulated {
+            Self::default()
+        } else {
+            Self::of_reports()
+        };
+        Self {
+            samples: samples.collect(),
+            kept: usize::MAX,
+            ..empty
         }
     }
 
@@ -117,11 +166,22 @@ impl History {
                 }
             }
         }
-        if self.samples.len() == KEPT {
+        if self.samples.len() >= self.kept {
             self.samples.pop_front();
         }
         let numbers = self.numbers.iter().map(|number| *number as f32);
         self.samples.push_back((time_s, numbers.collect()));
+    }
+
+    /// The same until a time, s.
+    #[cfg(test)]
+    pub fn until(&self, until_s: f64) -> Self {
+        let samples = self.samples.iter();
+        let until = samples.take_while(|(time_s, _)| *time_s <= until_s);
+        Self {
+            samples: until.cloned().collect(),
+            ..self.clone()
+        }
     }
 
     /// Every signal.
@@ -154,12 +214,57 @@ impl History {
         })
     }
 
+    /// The numbers of a signal at a time, s: those of the last sample until then, or of the first.
+    #[must_use]
+    pub fn at(&self, column: Column, at_s: f64) -> &[f32] {
+        let after = self.samples.partition_point(|(time_s, _)| *time_s <= at_s);
+        self.numbers_of(column, self.samples.get(after.saturating_sub(1)))
+    }
+
+    fn numbers_of<'a>(&self, column: Column, sample: Option<&'a (f64, Box<[f32]>)>) -> &'a [f32] {
+        sample
+            .and_then(|(_, numbers)| numbers.get(column.start..column.start + column.width))
+            .unwrap_or(&[])
+    }
+
     /// The last numbers of a signal.
     #[must_use]
     pub fn last(&self, column: Column) -> &[f32] {
-        let numbers = self.samples.back().map(|(_, numbers)| numbers);
-        numbers
-            .and_then(|numbers| numbers.get(column.start..column.start + column.width))
-            .unwrap_or(&[])
+        self.numbers_of(column, self.samples.back())
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::History;
+
+    #[test]
+    fn units_are_those_of_the_names() {
+        let history = History::default();
+        for (name, unit) in [
+            ("tip_error_mm", "mm"),
+            ("tensions_n", "N"),
+            ("stiffness_nm_per_rad", "N·m/rad"),
+            ("load_nm", "N·m"),
+            ("duties", ""),
+            ("motor_speeds_true_rad_per_s", "rad/s"),
+            ("supply_v", "V"),
+            ("pulled_m", "m"),
+        ] {
+            assert_eq!(history.named(name).unwrap().unit(), unit, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_time_has_the_numbers_of_the_last_sample_until_then() {
+        let columns = History::default();
+        let width: usize = columns.columns().iter().map(|column| column.width).sum();
+        let samples = [1.0_f32, 2.0].map(|at| (f64::from(at), vec![at; width].into()));
+        let history = History::recorded(true, samples.into_iter());
+        let column = history.named("tensions_true_n").unwrap();
+        for (at_s, expected) in [(0.5, 1.0), (1.0, 1.0), (1.9, 1.0), (2.0, 2.0), (9.0, 2.0)] {
+            assert_eq!(history.at(column, at_s), [expected; 3], "{at_s}");
+        }
     }
 }

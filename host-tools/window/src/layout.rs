@@ -1,10 +1,12 @@
 //! What is where in the window, wide or narrow.
 
-use crate::charts::Charts;
+use crate::charts::{Charts, Source};
 use crate::faults::FaultList;
 use crate::panel_guide::Wish;
 use crate::places::{place, place_rect};
+use crate::recordings::Recordings;
 use crate::scene::{self, Scene};
+use crate::seen_leg::SeenLeg;
 use crate::setup::Setup;
 use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
@@ -51,6 +53,8 @@ pub struct Views {
     /// The signals over time.
     pub charts: Charts,
     faults: FaultList,
+    /// What is recorded, and opened.
+    pub recordings: Recordings,
     /// Rig files and settings.
     pub setup: Setup,
     tab: Tab,
@@ -69,6 +73,7 @@ impl Views {
                 Charts::default()
             },
             faults: FaultList::default(),
+            recordings: Recordings::default(),
             setup: Setup::default(),
             tab: if live { Tab::Drive } else { Tab::Try },
         }
@@ -76,7 +81,7 @@ impl Views {
 
     /// Forgets what belongs to a leg that is not there any more.
     pub fn forget_leg(&mut self) {
-        self.charts.go_on();
+        self.charts.forget_leg();
         self.workspace = Workspace::default();
         self.setup.forget_leg();
     }
@@ -112,24 +117,23 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
         ScrollArea::vertical().id_salt("right").show(ui, |ui| {
             ui.heading("Drag the target");
             views.workspace.show(ui, leg, 200.0);
-            numbers::show(ui, leg);
+            numbers::show(ui, &leg.seen());
             if let Some(simulation) = leg.simulated_mut() {
                 ui.separator();
                 panel_break::show(ui, simulation);
             }
         });
     });
-    let height = (0.32 * tall).clamp(200.0, 440.0);
+    let height = (0.36 * tall).clamp(240.0, 480.0) + views.charts.words_height();
     let bottom = Panel::bottom("charts")
         .frame(side)
         .resizable(false)
         .exact_size(height);
     bottom.show(ui, |ui| {
-        let now_s = leg.time_s();
-        views.charts.show(ui, leg.history(), now_s, height - 62.0);
+        charts(ui, leg, views, None);
     });
     CentralPanel::no_frame().show(ui, |ui| {
-        let rect = stage(ui, leg, &mut views.scene);
+        let rect = stage(ui, &leg.seen(), leg.failure(), &mut views.scene);
         let over = UiBuilder::new().max_rect(scene::room(rect));
         ui.scope_builder(over, |ui| {
             let scroll = ScrollArea::vertical().id_salt("faults");
@@ -150,7 +154,7 @@ pub fn narrow(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
         .resizable(false)
         .exact_size(height);
     above.show(ui, |ui| {
-        let rect = stage(ui, leg, &mut views.scene);
+        let rect = stage(ui, &leg.seen(), leg.failure(), &mut views.scene);
         let corner = Rect::from_min_max(rect.max - TIME, rect.max - vec2(14.0, 6.0));
         let over = UiBuilder::new()
             .max_rect(corner)
@@ -189,14 +193,14 @@ fn page(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
     match views.tab {
         Tab::Try => {
             let wish = guide(ui, leg);
-            numbers::show(ui, leg);
+            numbers::show(ui, &leg.seen());
             return wish;
         }
         Tab::Drive => {
             let side = ui.available_width().min(300.0);
             ui.vertical_centered(|ui| views.workspace.show(ui, leg, side));
             if leg.live().is_some() {
-                numbers::show(ui, leg);
+                numbers::show(ui, &leg.seen());
                 ui.separator();
             }
             panel_drive::show(ui, leg);
@@ -207,8 +211,7 @@ fn page(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
             }
         }
         Tab::Charts => {
-            let now_s = leg.time_s();
-            views.charts.show(ui, leg.history(), now_s, 180.0);
+            charts(ui, leg, views, Some(180.0));
         }
         Tab::Setup => return simulate(views.setup.show_inside(ui, leg)),
     }
@@ -220,21 +223,21 @@ fn simulate(source: Option<RigText>) -> Wish {
 }
 
 /// The leg, how much its sag is enlarged, and why it cannot go on. Gives where it is.
-fn stage(ui: &mut Ui, leg: &ShownLeg, scene: &mut Scene) -> Rect {
+pub fn stage(ui: &mut Ui, leg: &SeenLeg<'_>, failure: Option<String>, scene: &mut Scene) -> Rect {
     let rect = ui.available_rect_before_wrap();
     let response = scene.show(ui, leg, rect.size());
     place(&response, "leg");
     let corner = rect.left_top() + vec2(14.0, scene::CHOICE_TOP);
-    let over = UiBuilder::new().max_rect(Rect::from_min_size(corner, vec2(96.0, 28.0)));
+    let over = UiBuilder::new().max_rect(Rect::from_min_size(corner, vec2(110.0, 60.0)));
     ui.scope_builder(over, |ui| scene.choice(ui));
-    if let Some(words) = leg.failure() {
-        failure(ui, rect, words);
+    if let Some(words) = failure {
+        across(ui, rect, words);
     }
     rect
 }
 
 /// Why the leg cannot go on, across what was seen of it last.
-fn failure(ui: &Ui, rect: Rect, words: String) {
+fn across(ui: &Ui, rect: Rect, words: String) {
     let palette = palette(ui.ctx());
     let font = FontId::proportional(15.0);
     let width = 0.8 * rect.width();
@@ -244,6 +247,16 @@ fn failure(ui: &Ui, rect: Rect, words: String) {
         .rect_filled(shown.expand(10.0), 6.0, palette.card);
     ui.painter().galley(shown.min, text, palette.error);
     place_rect(ui.ctx(), shown, "failure");
+}
+
+/// The signals of the leg, and what is recorded of them; as high as there is room, if nothing is said.
+fn charts(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views, height: Option<f32>) {
+    ui.horizontal_wrapped(|ui| {
+        views.charts.controls(ui, &Source::of_leg(leg));
+        views.recordings.show(ui, leg);
+    });
+    let height = height.unwrap_or_else(|| ui.available_height());
+    views.charts.show(ui, &Source::of_leg(leg), height);
 }
 
 /// What to try first, with a line below; nothing for a live leg.

@@ -5,13 +5,14 @@
 //! | module | what is in it |
 //! |---|---|
 //! | [`simulation`], [`pace`], [`history`] | the leg, how much of it a frame is worth, and what its signals were |
-//! | [`live_leg`], [`shown_leg`], [`orders`] | a leg behind `leg ui`; what both are for the panels; commands on their way |
+//! | [`live_leg`], [`shown_leg`], [`seen_leg`], [`orders`] | a leg behind `leg ui`; what both are for the panels, and for the picture; commands on their way |
 //! | [`app`], [`layout`], [`top_bar`], `panel_…`, [`numbers`], [`faults`] | what is where |
-//! | [`scene`], `drawn_leg`, [`camera`], [`figure`], [`leg_pose`] | the leg in 3D |
+//! | [`scene`], `drawn_leg`, [`camera`], [`figure`], [`leg_pose`], [`stiffness_ellipse`] | the leg in 3D |
 //! | [`workspace`], [`map`] | the disc on which the target is dragged, and what the model says of every pose |
 //! | [`charts`] | signals over time |
+//! | [`recorder`], [`recordings`], [`recorded_leg`], [`player`] | recordings: made, saved, opened, played |
 //! | [`setup`], [`rig_intake`], [`files`], [`notice`] | rig files and settings: given, edited, saved, applied; what became of it |
-//! | [`theme`], [`text`], [`keys`] | colours, sizes, text in its place; the keys that stop |
+//! | [`theme`], [`text`], [`keys`], [`utc`] | colours, sizes, text in its place; the keys that stop; the date |
 //! | [`bits`] | whether the firmware decides the same here as elsewhere |
 //! | [`page_state`], [`places`], [`work`] | the window as data, for tests and for readers of the screen; how long its frames take |
 
@@ -39,14 +40,21 @@ pub mod panel_drive;
 pub mod panel_guide;
 pub mod panel_unlock;
 pub mod places;
+pub mod player;
+pub mod recorded_leg;
+pub mod recorder;
+pub mod recordings;
 pub mod rig_intake;
 pub mod scene;
+pub mod seen_leg;
 pub mod setup;
 pub mod shown_leg;
 pub mod simulation;
+pub mod stiffness_ellipse;
 pub mod text;
 pub mod theme;
 pub mod top_bar;
+pub mod utc;
 #[cfg(target_arch = "wasm32")]
 pub mod web;
 pub mod work;

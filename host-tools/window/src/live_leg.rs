@@ -15,6 +15,7 @@ mod tests;
 
 use crate::history::{History, Snapshot};
 use crate::orders::{Order, Orders, refused};
+use crate::recorder::Recorder;
 use board::Board;
 use frames::{Frames, Numbers};
 use leg_base::tick_time::seconds;
@@ -26,6 +27,7 @@ use leg_rig::rig_file::{RigFile, RigText};
 use leg_sim::signals::{LegConstants, Report};
 use line::{Heard, Line, Said};
 use messages::{PageWord, Role, ServerWord};
+use web_time::SystemTime;
 
 /// From one sign of life to the next at least, s. The leg holds by itself after 0.2 s without one.
 const ALIVE_S: f64 = 0.02;
@@ -46,6 +48,12 @@ pub struct PageIdentity {
     pub host: HostId,
     /// Where the numbers of its requests begin.
     pub first_number: u16,
+}
+
+/// The time of the day, s since 1970.
+fn wall_time_s() -> Option<f64> {
+    let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
+    since.ok().map(|since| since.as_secs_f64())
 }
 
 /// A live leg.
@@ -72,6 +80,8 @@ pub struct LiveLeg {
     commanded: Option<[f64; 2]>,
     compensation: Option<Compensation>,
     refusal: Option<String>,
+    /// What is recorded of it, if it is.
+    pub recorder: Option<Recorder>,
     /// Why nothing comes any more.
     lost: Option<String>,
 }
@@ -102,6 +112,7 @@ impl LiveLeg {
             commanded: None,
             compensation: None,
             refusal: None,
+            recorder: None,
             lost: None,
         }
     }
@@ -177,11 +188,16 @@ impl LiveLeg {
         self.telemetry = Some(telemetry);
         self.heard_s = Some(self.now_s);
         let report = Report::new(&telemetry, &self.constants);
+        let wall_time_s = wall_time_s();
         let snapshot = Snapshot {
-            report: report.received(f64::NAN, self.frames.damaged()),
+            report: report.received(wall_time_s.unwrap_or(f64::NAN), self.frames.damaged()),
             simulated: None,
         };
-        self.history.take(self.time_s(), &snapshot);
+        let time_s = self.time_s();
+        self.history.take(time_s, &snapshot);
+        if let Some(recorder) = &mut self.recorder {
+            recorder.take(time_s, telemetry.tick, wall_time_s, &snapshot);
+        }
     }
 
     fn take_answer(&mut self, number: u16, result: Result<(), HostRefusal>) {

@@ -1,7 +1,7 @@
 //! The leg in numbers that stay in their places.
 
 use crate::places::place_rect;
-use crate::shown_leg::ShownLeg;
+use crate::seen_leg::SeenLeg;
 use crate::theme::{self, palette};
 use eframe::egui::{Grid, RichText, Ui};
 use leg_base::angles;
@@ -12,8 +12,8 @@ fn unsigned_zero(value: f32) -> f32 {
 }
 
 /// Shows them.
-pub fn show(ui: &mut Ui, leg: &ShownLeg) {
-    let Some(telemetry) = leg.telemetry() else {
+pub fn show(ui: &mut Ui, leg: &SeenLeg<'_>) {
+    let Some(telemetry) = &leg.telemetry else {
         return;
     };
     let [azimuth_deg, tilt_deg] = angles::angles_deg(telemetry.pose.map(f64::from));
@@ -24,9 +24,9 @@ pub fn show(ui: &mut Ui, leg: &ShownLeg) {
         .spacing([12.0, 3.0])
         .min_row_height(16.0);
     let shown = grid.show(ui, |ui| {
-        let simulated = leg.simulated().is_some();
+        let simulated = leg.is_true;
         if simulated {
-            row(ui, faint("off target, true"), leg.error_mm(), "mm");
+            row(ui, faint("off target, true"), leg.error_mm, "mm");
         }
         let source = if simulated {
             "What the leg concludes from its sensors. The leg is drawn as it truly is."
@@ -36,7 +36,7 @@ pub fn show(ui: &mut Ui, leg: &ShownLeg) {
         ui.label(faint("from the sensors:")).on_hover_text(source);
         ui.end_row();
         if !simulated {
-            row(ui, faint("off target"), leg.error_mm(), "mm");
+            row(ui, faint("off target"), leg.error_mm, "mm");
         }
         row(ui, faint("azimuth"), azimuth_deg, "°");
         row(ui, faint("tilt"), tilt_deg, "°");

@@ -1,8 +1,11 @@
 //! What the window shows, as data: for tests, and for those who hear the page.
 
+use crate::charts::ChartsState;
 use crate::live_leg::LiveLeg;
 use crate::pace::Pace;
 use crate::places::Places;
+use crate::player::PlayerState;
+use crate::recorder::Recorder;
 use crate::setup::state::SetupState;
 use crate::shown_leg::ShownLeg;
 use crate::work::WorkSummary;
@@ -32,8 +35,25 @@ pub struct PageState {
     work: Option<WorkSummary>,
     /// Rig files and settings.
     setup: SetupState,
+    /// Signals over time, of the leg or of the recording.
+    charts: ChartsState,
+    /// A recording that is shown in the place of the leg.
+    player: Option<PlayerState>,
     /// What a reader of the screen says.
     spoken: String,
+}
+
+/// How the window is drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Drawing {
+    /// Pixels of the page in a point.
+    pub zoom: f32,
+    /// Frames since the start.
+    pub frames: u64,
+    /// Time that the processor took for the last one, s.
+    pub frame_s: Option<f32>,
+    /// What the window itself took for each of the last ones.
+    pub work: Option<WorkSummary>,
 }
 
 #[derive(Debug, Serialize)]
@@ -68,6 +88,8 @@ struct LegState {
     /// Where a push that is going on is directed to, degrees.
     push_deg: Option<f64>,
     failure: Option<String>,
+    /// Time that is recorded of it, s, if it is recorded.
+    recorded_s: Option<f64>,
 }
 
 impl PageState {
@@ -76,11 +98,10 @@ impl PageState {
     pub fn new(
         leg: Result<&ShownLeg, String>,
         places: &Places,
-        zoom: f32,
-        frames: u64,
-        frame_s: Option<f32>,
-        work: Option<WorkSummary>,
+        drawing: Drawing,
         setup: SetupState,
+        charts: ChartsState,
+        player: Option<PlayerState>,
     ) -> Self {
         let rects = places.rects.iter().map(|(name, rect)| {
             let edges = [rect.left(), rect.top(), rect.right(), rect.bottom()];
@@ -94,6 +115,9 @@ impl PageState {
             || format!("There is no leg. {}", empty.as_deref().unwrap_or_default()),
             LegState::spoken,
         );
+        if let Some(player) = &player {
+            spoken = format!("{spoken} {}", player.spoken());
+        }
         if let Some(notice) = &setup.notice {
             spoken = format!("{spoken} {notice}");
         }
@@ -102,11 +126,13 @@ impl PageState {
             empty,
             places: rects.collect(),
             focused: places.focused.as_ref().map(ToString::to_string),
-            zoom,
-            frames,
-            frame_ms: frame_s.map(|time_s| 1000.0 * time_s),
-            work,
+            zoom: drawing.zoom,
+            frames: drawing.frames,
+            frame_ms: drawing.frame_s.map(|time_s| 1000.0 * time_s),
+            work: drawing.work,
             setup,
+            charts,
+            player,
             spoken,
         }
     }
@@ -145,6 +171,7 @@ impl LegState {
             stiffness_nm_per_rad: telemetry.map(|telemetry| telemetry.stiffness_nm_per_rad),
             push_deg: leg.pushed().map(|push| push.azimuth_deg),
             failure: leg.failure(),
+            recorded_s: leg.recorder().map(Recorder::time_s),
         }
     }
 

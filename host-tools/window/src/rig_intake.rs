@@ -1,7 +1,7 @@
 //! A rig file that is given to the window: read and checked, or refused as the command line refuses it.
 
+use crate::files::FileKind;
 use leg_base::failure::Failure;
-use leg_base::text_input::FILE_BYTES_MAX;
 use leg_rig::rig_file::{RigFile, RigText};
 
 /// A rig with its text.
@@ -15,20 +15,6 @@ pub struct OpenedRig {
     pub notes: Vec<String>,
 }
 
-/// What a file of that many bytes is refused for; none if it may be read.
-#[must_use]
-pub fn too_large(name: &str, bytes: f64) -> Option<Failure> {
-    (bytes > FILE_BYTES_MAX as f64).then(|| {
-        Failure::refused(
-            format!(
-                "{name} is larger than {} MiB: no rig file is",
-                FILE_BYTES_MAX >> 20
-            ),
-            HELP,
-        )
-    })
-}
-
 const HELP: &str =
     "give a rig file, which is text in TOML: save one of the ready rigs here, and change it";
 
@@ -37,7 +23,7 @@ const HELP: &str =
 /// # Errors
 /// What is wrong with it, with the place where that is known.
 pub fn open(name: &str, bytes: Vec<u8>) -> Result<OpenedRig, Failure> {
-    if let Some(failure) = too_large(name, bytes.len() as f64) {
+    if let Some(failure) = FileKind::Rig.too_large(name, bytes.len() as f64) {
         return Err(failure);
     }
     let text = String::from_utf8(bytes).ok();
@@ -62,7 +48,7 @@ pub fn read(source: RigText) -> Result<OpenedRig, Failure> {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{open, too_large};
+    use super::open;
     use leg_rig::ready_rigs::READY_RIGS;
 
     #[test]
@@ -101,6 +87,5 @@ mod tests {
                 "{words}"
             );
         }
-        assert!(too_large("a", 1e12).is_some() && too_large("a", 1e5).is_none());
     }
 }

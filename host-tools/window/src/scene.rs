@@ -3,7 +3,7 @@
 use crate::camera::Camera;
 use crate::drawn_leg::Drawn;
 use crate::places::place;
-use crate::shown_leg::ShownLeg;
+use crate::seen_leg::SeenLeg;
 use crate::theme::palette;
 use eframe::egui::{ComboBox, Rect, Response, Sense, Ui, Vec2, pos2, vec2};
 use nalgebra::Vector3;
@@ -37,6 +37,8 @@ pub struct Scene {
     camera: Camera,
     /// How much the deviation is enlarged.
     factor: f64,
+    /// Whether the stiffness of the tip is drawn.
+    stiffness: bool,
 }
 
 impl Default for Scene {
@@ -44,13 +46,14 @@ impl Default for Scene {
         Self {
             camera: Camera::default(),
             factor: FACTORS[1],
+            stiffness: false,
         }
     }
 }
 
 impl Scene {
     /// Draws the leg, and lets a drag turn it.
-    pub fn show(&mut self, ui: &mut Ui, leg: &ShownLeg, size: Vec2) -> Response {
+    pub fn show(&mut self, ui: &mut Ui, leg: &SeenLeg<'_>, size: Vec2) -> Response {
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
         let drag = response.drag_delta();
         self.camera.turn(drag.x, drag.y);
@@ -80,12 +83,15 @@ impl Scene {
             &joint.view(detail, middle, DETAIL_HEIGHT * drawn.joint_m()),
             detail,
         );
+        if self.stiffness {
+            drawn.stiffness(&painter, &view, rect);
+        }
         drawn.readout(&painter, rect);
         drawn.legend(&painter, rect);
         response
     }
 
-    /// Lets the user choose how much the deviation is enlarged.
+    /// Lets the user choose how much the deviation is enlarged, and whether the stiffness is drawn.
     pub fn choice(&mut self, ui: &mut Ui) {
         let text = format!("draw ×{:.0}", self.factor);
         let choice = ComboBox::from_id_salt("factor")
@@ -100,6 +106,12 @@ impl Scene {
         choice.response.on_hover_text(
             "The leg is drawn so many times as far from its reference as it is, up to 60 mm. The reference is where its \
              trajectory has it: the dashed line.",
+        );
+        let stiffness = ui.checkbox(&mut self.stiffness, "Stiffness");
+        place(&stiffness, "stiffness_ellipse");
+        stiffness.on_hover_text(
+            "How stiff the tip is against pushes to each side, as an ellipse across the leg: what the model says of the \
+             present pretension and payload.",
         );
     }
 }

@@ -105,6 +105,11 @@ impl Setup {
         }
     }
 
+    /// Shows a message, whatever it is about.
+    pub fn note(&mut self, notice: Notice) {
+        self.notice = Some(notice);
+    }
+
     /// Whether something of it is to be shown now, once.
     pub const fn take_wanted(&mut self) -> bool {
         std::mem::replace(&mut self.wanted, false)
@@ -143,7 +148,7 @@ impl Setup {
 
     /// Gives the user a file.
     fn save(&mut self, name: &str, text: &str) {
-        let saved = Files::save(name, text);
+        let saved = Files::save(name, text.as_bytes());
         self.notice = Some(Notice {
             good: saved.is_ok(),
             title: saved.unwrap_or_else(|words| words),

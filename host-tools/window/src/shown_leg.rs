@@ -3,6 +3,8 @@
 use crate::history::History;
 use crate::live_leg::LiveLeg;
 use crate::live_leg::board::Errand;
+use crate::recorder::Recorder;
+use crate::seen_leg::{self, SeenLeg};
 use crate::simulation::{Push, Simulation};
 use leg_firmware::command::Command;
 use leg_firmware::host_link::HostRequest;
@@ -194,8 +196,7 @@ impl ShownLeg {
     }
 
     fn reported(&self, direction: fn(&Telemetry<f32>) -> [f32; 2]) -> Vector3<f64> {
-        let [x, y] = self.telemetry().map_or([0.0; 2], direction).map(f64::from);
-        Vector3::new(x, y, -(1.0 - x * x - y * y).max(0.0).sqrt())
+        seen_leg::along(self.telemetry().map_or([0.0; 2], direction).map(f64::from))
     }
 
     /// Where it was sent, as horizontal components; where it takes its target to be, if it was not.
@@ -210,8 +211,7 @@ impl ShownLeg {
     /// Where its tip was sent, m.
     #[must_use]
     pub fn commanded_m(&self) -> Vector3<f64> {
-        let [x, y] = self.target();
-        Vector3::new(x, y, -(1.0 - x * x - y * y).max(0.0).sqrt()) * self.tip_length_m()
+        seen_leg::along(self.target()) * self.tip_length_m()
     }
 
     /// Distance of the tip, as it is drawn, from where it was sent, mm.
@@ -226,13 +226,6 @@ impl ShownLeg {
         }
     }
 
-    /// How far it is twisted about itself, rad: no sensor of a live leg says it.
-    #[must_use]
-    pub fn torsion_rad(&self) -> f64 {
-        self.simulated()
-            .map_or(0.0, |leg| leg.leg().truth().torsion_rad)
-    }
-
     /// The tensions as they are drawn, N: the true ones of a simulated leg, the measured ones of a live leg.
     #[must_use]
     pub fn tensions_n(&self) -> [f64; 3] {
@@ -241,15 +234,6 @@ impl ShownLeg {
             Self::Live(leg) => leg
                 .telemetry()
                 .map_or([0.0; 3], |telemetry| telemetry.tensions_n.map(f64::from)),
-        }
-    }
-
-    /// Where the tensions are from, in a word.
-    #[must_use]
-    pub const fn tensions_source(&self) -> &'static str {
-        match self {
-            Self::Simulated(_) => "true",
-            Self::Live(_) => "measured",
         }
     }
 
@@ -264,16 +248,52 @@ impl ShownLeg {
         }
     }
 
-    /// Whether a simulated leg has a defect.
-    #[must_use]
-    pub fn has(&self, defect: Defect) -> bool {
-        self.simulated().is_some_and(|leg| leg.has(defect))
-    }
-
     /// The push on a simulated leg that is going on.
     #[must_use]
     pub fn pushed(&self) -> Option<Push> {
         self.simulated().and_then(Simulation::pushed)
+    }
+
+    /// The leg as it is drawn: the true one of a simulated leg, by its sensors a live one.
+    #[must_use]
+    pub fn seen(&self) -> SeenLeg<'_> {
+        let truth = self.simulated().map(|leg| leg.leg().truth());
+        let cut = |tendon| {
+            self.simulated()
+                .is_some_and(|leg| leg.has(Defect::TendonCut(tendon)))
+        };
+        SeenLeg {
+            rig: self.rig(),
+            telemetry: self.telemetry().copied(),
+            is_true: truth.is_some(),
+            along: self.along(),
+            reference: self.reference(),
+            target: self.target(),
+            torsion_rad: truth.map_or(0.0, |truth| truth.torsion_rad),
+            tensions_n: self.tensions_n(),
+            // What a live leg estimates may be a push.
+            hung_kg: truth.map(|truth| truth.payload_kg),
+            cut: [0, 1, 2].map(cut),
+            push: self.pushed(),
+            error_mm: self.error_mm(),
+        }
+    }
+
+    /// What is recorded of it, if it is.
+    #[must_use]
+    pub fn recorder(&self) -> Option<&Recorder> {
+        match self {
+            Self::Simulated(leg) => leg.recorder.as_ref(),
+            Self::Live(leg) => leg.recorder.as_ref(),
+        }
+    }
+
+    /// The same, to be begun and ended.
+    pub fn recorder_mut(&mut self) -> &mut Option<Recorder> {
+        match self {
+            Self::Simulated(leg) => &mut leg.recorder,
+            Self::Live(leg) => &mut leg.recorder,
+        }
     }
 
     /// Asks for the codes of its sensors, which come in a later frame.

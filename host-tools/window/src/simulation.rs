@@ -12,6 +12,7 @@ pub use start_error::StartError;
 use crate::history::{History, SAMPLE_HZ, Snapshot};
 use crate::orders::{Order, Orders, refused};
 use crate::pace::Pace;
+use crate::recorder::Recorder;
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::drive::Drive;
 use leg_firmware::host_link::HostRefusal;
@@ -69,6 +70,8 @@ pub struct Simulation {
     refusal: Option<String>,
     /// What it was asked besides.
     questions: Questions,
+    /// What is recorded of it, if it is.
+    pub recorder: Option<Recorder>,
     /// Why the simulation cannot go on.
     failure: Option<EmulationError>,
 }
@@ -123,6 +126,7 @@ impl Simulation {
             orders: Orders::default(),
             refusal: None,
             questions: Questions::default(),
+            recorder: None,
             failure: None,
         };
         simulation.begin(tilt_deg);
@@ -199,6 +203,10 @@ impl Simulation {
     fn sample(&mut self) {
         if let Some(snapshot) = self.snapshot() {
             self.history.take(self.leg.time_s(), &snapshot);
+            if let Some(recorder) = &mut self.recorder {
+                let tick = snapshot.report.tick();
+                recorder.take(self.leg.time_s(), tick, None, &snapshot);
+            }
         }
     }
 

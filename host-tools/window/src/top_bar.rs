@@ -29,6 +29,9 @@ const ROOMY: f32 = 700.0;
 /// Below this one there is none for what the window is, points.
 const WIDE: f32 = 1100.0;
 
+/// Below this one the state is written smaller, points.
+const SLIM: f32 = 385.0;
+
 /// Less time that was left out is not shown, s.
 const LEFT_OUT_MIN_S: f64 = 0.005;
 
@@ -114,19 +117,23 @@ fn origin(ui: &mut Ui, leg: &ShownLeg, roomy: bool, palette: &Palette) {
     }
 }
 
-fn chip(ui: &mut Ui, state: State, palette: &Palette) {
+/// What a leg may do.
+pub fn chip(ui: &mut Ui, state: State, palette: &Palette) {
     let colour = match state {
         State::Active | State::KeepingStation | State::Homing => palette.good,
         State::Held | State::RampingDown | State::Off => palette.error,
         State::Boot | State::Disarmed | State::Jogging => palette.faint,
     };
+    let slim = ui.ctx().viewport_rect().width() < SLIM;
+    let (width, size) = if slim { (84.0, 11.5) } else { (118.0, 14.0) };
     let text = RichText::new(description::state(state))
         .color(colour)
+        .size(size)
         .strong();
     let chip = Button::new(text)
         .stroke(Stroke::new(1.5, colour))
         .fill(Color32::TRANSPARENT);
-    ui.add_sized(vec2(118.0, 30.0), chip.sense(eframe::egui::Sense::hover()));
+    ui.add_sized(vec2(width, 30.0), chip.sense(eframe::egui::Sense::hover()));
 }
 
 fn stop(ui: &mut Ui, leg: &mut ShownLeg, palette: &Palette, roomy: bool) {

@@ -40,7 +40,7 @@ BLOCK = 8
 TOLERANCE = 12
 
 # What shows another number, or another stretch of time, in another moment: it is not compared.
-CHANGING = ("readout", "tensions", "numbers", "charts", "stiffness", "pretension", "name")
+CHANGING = ("readout", "tensions", "numbers", "charts", "stiffness", "pretension", "name", "trigger", "recording_time")
 
 # What is left out of the time may be shown above it or to its right, pixels.
 LEFT_OUT = (-30, -20, 130, 0)
@@ -466,9 +466,26 @@ SAVED = """
 window.saved = [];
 HTMLAnchorElement.prototype.click = function () {
   const name = this.download;
-  fetch(this.href).then((answer) => answer.text()).then((text) => window.saved.push([name, text]));
+  fetch(this.href).then((answer) => answer.arrayBuffer()).then((buffer) => {
+    const bytes = new Uint8Array(buffer);
+    let letters = "";
+    for (let at = 0; at < bytes.length; at += 4096) {
+      letters += String.fromCharCode(...bytes.subarray(at, at + 4096));
+    }
+    window.saved.push([name, btoa(letters)]);
+  });
 };
 """
+
+
+def saved(page):
+    """The name and the bytes of the one file that was saved since the links are watched."""
+    until = time.monotonic() + WAIT_S
+    while not (found := page.browser.run("return window.saved")):
+        assert time.monotonic() < until
+        time.sleep(0.1)
+    ((name, data),) = found
+    return name, base64.b64decode(data)
 
 
 def drop(page, name, data):
@@ -559,12 +576,9 @@ def settings(page):
     page.wait("both are changed", lambda state: len(state["setup"]["changed"]) == 2)
     page.browser.run(SAVED)
     page.press("settings_save")
-    until = time.monotonic() + WAIT_S
-    while not (saved := page.browser.run("return window.saved")):
-        assert time.monotonic() < until
-        time.sleep(0.1)
-    ((name, text),) = saved
-    assert name == "table1.toml" and "leg_mm = 210" in text and "jump_n = 40" in text, saved
+    name, data = saved(page)
+    text = data.decode()
+    assert name == "table1.toml" and "leg_mm = 210" in text and "jump_n = 40" in text, name
     # Comments stay.
     assert text.startswith((RIGS / "table1.toml").read_text()[:200])
     close_notice(page)
@@ -624,6 +638,135 @@ def steps(page):
     page.wait("the leg is shown", lambda state: "leg" in state["places"])
 
 
+def in_chart(page, name, part):
+    left, top, right, bottom = page.rect(name)
+    return left + part * (right - left), (top + bottom) / 2
+
+
+def charts(page):
+    """Reads charts: cursors, a trigger that catches a load, a spectrum, and the stiffness of the tip beside them."""
+    start_again(page)
+    controls = ("signals", "pause", "trigger", "cursors", "spectra", "record", "recording_open")
+    before = {control: page.rect(control) for control in controls}
+    page.press("trigger")
+    page.wait("the menu is open", lambda state: "trigger_tip_error_mm_1" in state["places"])
+    time.sleep(0.3)
+    page.press("trigger_tip_error_mm_1")
+    page.wait("there is a level", lambda state: "trigger_arm" in state["places"])
+    time.sleep(0.3)
+    page.press("trigger_level")
+    time.sleep(0.3)
+    page.browser.type_over("5")
+    time.sleep(0.3)
+    page.press("trigger_arm")
+    page.wait("it waits", lambda state: state["charts"]["armed"])
+    page.press("trigger")
+    page.wait("the menu is closed", lambda state: "trigger_arm" not in state["places"])
+    page.press("guide_payload")
+    caught = page.wait("it has caught it", lambda state: state["charts"]["caught_s"] and state["charts"]["paused"])["charts"]
+    since_s, until_s = caught["zoomed_s"]
+    assert abs((since_s + until_s) / 2 - caught["caught_s"]) < 0.05, caught
+    print(f"  the trigger has caught the load at {caught['caught_s']:.3f} s")
+    page.press("cursors")
+    a_s, b_s = page.wait("there are cursors", lambda state: state["charts"]["cursors_s"])["charts"]["cursors_s"]
+    page.browser.drag(in_chart(page, "tensions_n", 0.7), in_chart(page, "tensions_n", 0.85))
+    state = page.wait("one is dragged", lambda state: state["charts"]["cursors_s"][1] > b_s)
+    assert state["charts"]["cursors_s"][0] == a_s and "values_tensions_n" in state["places"], state["charts"]
+    page.press("stiffness_ellipse")
+    page.wait("the stiffness is drawn", lambda state: "stiffness_words" in state["places"])
+    page.picture("charts")
+    page.press("stiffness_ellipse")
+    page.press("pause")
+    page.wait("they go on", lambda state: not state["charts"]["paused"])
+    page.press("spectra")
+    peaks = page.wait("there are peaks", lambda state: "tensions_n" in state["charts"]["peaks"])["charts"]["peaks"]
+    hz, amplitude_n = peaks["tensions_n"]
+    assert 0 < hz <= 100 and amplitude_n > 0, peaks
+    print(f"  the highest peak of a tension: {hz:.2f} Hz, {amplitude_n:.4f} N")
+    page.press("spectra")
+    after = {control: page.rect(control) for control in controls}
+    assert after == before, (before, after)
+
+
+def scrub(page, part):
+    """Goes to a part of a recording by its slider."""
+    left, top, right, bottom = page.rect("scrub")
+    middle = (top + bottom) / 2
+    page.browser.drag((left + 0.5 * (right - left), middle), (left + part * (right - left), middle))
+
+
+def recordings(page):
+    """Records, saves, opens again and scrubs: the leg moves along. What is broken is refused, what is cut off is not."""
+    start_again(page)
+    page.browser.run(SAVED)
+    page.press("record")
+    page.wait_leg("is recorded", lambda leg: (leg["recorded_s"] or 0) > 0.5)
+    page.press("guide_payload")
+    page.wait_leg("sags", lambda leg: leg["error_mm"] > 6.5)
+    page.wait_for_rest()
+    page.press("record")
+    name, data = saved(page)
+    assert name.startswith("leg-20") and name.endswith(".mcap") and data.startswith(b"\x89MCAP0"), name
+    close_notice(page)
+    start_again(page)
+    # The name of a file that is made tells its time, which a picture would show.
+    drop(page, "made.mcap", data)
+    began = page.wait("it is opened", lambda state: state["player"])["player"]
+    first_s, last_s = began["span_s"]
+    print(f"  {name}: {len(data) / 1e6:.1f} MB, {last_s - first_s:.1f} s")
+    assert began["finished"] and began["at_s"] == first_s and began["error_mm"] < 3, began
+    time.sleep(0.5)
+    still = ("back", "play", "play_rate", "scrub", "recording_time", "charts", "leg")
+    before = {control: page.rect(control) for control in still}
+    scrub(page, 0.97)
+    loaded = page.wait("it is loaded", lambda state: state["player"]["error_mm"] > 6.5)["player"]
+    assert loaded["at_s"] > first_s + 0.9 * (last_s - first_s) and loaded["payload_kg"] > 1.99, loaded
+    print(f"  at {loaded['at_s']:.2f} s: {loaded['error_mm']:.2f} mm off its target")
+    page.picture("player")
+    scrub(page, 0.02)
+    page.wait("it is not loaded", lambda state: state["player"]["error_mm"] < 3)
+    page.choose("play_rate", "play_16")
+    page.press("play")
+    page.wait("it has come to its end", lambda state: state["player"]["at_s"] == last_s)
+    page.wait("it stands still", lambda state: not state["player"]["playing"])
+    # Nothing moves when numbers change.
+    after = {control: page.rect(control) for control in still}
+    assert after == before, (before, after)
+    page.browser.prefer("light")
+    page.browser.resize(360, 740)
+    page.wait("it is narrow", lambda state: state["places"]["scrub"][2] <= 360)
+    for control in ("back", "play", "play_rate", "recording_time", "scrub", "signals", "stop", "rate"):
+        left, _, right, _ = page.rect(control)
+        assert 0 <= left and right <= 360, (control, left, right)
+    page.picture("phone_player")
+    page.browser.resize(1280, 720)
+    page.browser.prefer("dark")
+    page.wait("it is wide", lambda state: state["places"]["scrub"][2] > 900)
+    page.press("back")
+    page.wait("the leg is back", lambda state: not state["player"] and "workspace" in state["places"])
+    drop(page, "cut.mcap", data[: len(data) // 2])
+    cut = page.wait("it is opened", lambda state: state["player"])["player"]
+    assert not cut["finished"] and "cut_off" in page.state()["places"], cut
+    print(f"  cut off in its middle: to {cut['span_s'][1]:.2f} s")
+    page.press("back")
+    page.wait("the leg is back", lambda state: not state["player"])
+    middle = len(data) // 2
+    digit = data.index(b".", middle) + 1
+    broken = data[:digit] + (b"2" if data[digit : digit + 1] == b"1" else b"1") + data[digit + 1 :]
+    for given, content, expected in (
+        ("broken.mcap", broken, "messages"),
+        ("empty.mcap", b"", "no whole MCAP file"),
+        ("foreign.mcap", (PICTURES / "phone.png").read_bytes(), "no whole MCAP file"),
+    ):
+        drop(page, given, content)
+        details = noticed(page, given)
+        assert expected in details and "help: " in details, details
+        print(f"  {given}: {details.splitlines()[0]}")
+        assert not page.state()["player"]
+        page.wait("the notice is shown", lambda state: "notice_close" in state["places"])
+        close_notice(page)
+
+
 def looks(page):
     """The other sizes: a phone held upright, and a large screen; light."""
     start_again(page)
@@ -656,6 +799,8 @@ PARTS = (
     maps,
     pushes,
     breaks,
+    charts,
+    recordings,
     rig_files,
     settings,
     steps,
@@ -663,7 +808,7 @@ PARTS = (
 )
 
 # What CI has time for: everything that depends on the browser once, and what is of the page alone where it is quick.
-QUICK = (check_speed, check_bits, first_visit, breaks, rig_files, settings, looks)
+QUICK = (check_speed, check_bits, first_visit, breaks, recordings, rig_files, settings, looks)
 
 
 def serve(directory):

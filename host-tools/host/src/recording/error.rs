@@ -2,8 +2,7 @@
 
 use leg_base::disk::help_for;
 use leg_base::failure::Failure;
-use mcap::McapError;
-use std::fmt::Display;
+use leg_recording::WriteError;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -19,10 +18,6 @@ pub enum RecordingError {
 }
 
 impl RecordingError {
-    pub(super) fn message(error: impl Display) -> Self {
-        Self::Message(error.to_string())
-    }
-
     /// What is wrong with the recording in this file, and what to do about it. `part` is what was recorded until then, if it
     /// is kept.
     pub(super) fn failure(self, file: &Path, part: Option<PathBuf>) -> Failure {
@@ -52,11 +47,11 @@ impl From<io::Error> for RecordingError {
     }
 }
 
-impl From<McapError> for RecordingError {
-    fn from(error: McapError) -> Self {
+impl From<WriteError> for RecordingError {
+    fn from(error: WriteError) -> Self {
         match error {
-            McapError::Io(error) => Self::File(error),
-            other => Self::message(other),
+            WriteError::Io(error) => Self::File(error),
+            WriteError::Message(reason) => Self::Message(reason),
         }
     }
 }

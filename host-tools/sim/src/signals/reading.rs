@@ -1,5 +1,6 @@
 //! What was reported, by the signals of a recording.
 
+use super::Signal;
 use crate::hosted_leg::Comparison;
 use leg_base::description;
 use leg_base::recorder_rows::RecorderRow;
@@ -9,6 +10,8 @@ use leg_firmware::settings::RecordedSignal;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_firmware::telemetry::Telemetry;
 use serde::Deserialize;
+use serde_json::{Map, Value};
+use std::iter::{repeat, repeat_n};
 
 /// The signals of a report that are not made of others.
 #[derive(Deserialize)]
@@ -84,6 +87,30 @@ fn fault_set(names: &[String]) -> Result<FaultSet, String> {
         faults.add(fault, true);
     }
     Ok(faults)
+}
+
+/// The numbers of signals in the JSON object of them, as [`Signal::numbers`] gives them: not a number where there is none.
+pub fn numbers<S>(signals: &[Signal<S>], json: &Map<String, Value>, out: &mut Vec<f64>) {
+    for signal in signals {
+        let Some(width) = signal.width() else {
+            continue;
+        };
+        let value = json.get(signal.name).unwrap_or(&Value::Null);
+        match value {
+            Value::Array(values) => {
+                let values = values.iter().map(number).chain(repeat(f64::NAN));
+                out.extend(values.take(width));
+            }
+            value => out.extend(repeat_n(number(value), width)),
+        }
+    }
+}
+
+fn number(value: &Value) -> f64 {
+    match value {
+        Value::Bool(flag) => f64::from(u8::from(*flag)),
+        value => value.as_f64().unwrap_or(f64::NAN),
+    }
 }
 
 /// The signals of which a comparison is made.

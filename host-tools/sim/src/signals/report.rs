@@ -72,6 +72,12 @@ impl Report {
         }
     }
 
+    /// The tick of which it is.
+    #[must_use]
+    pub const fn tick(&self) -> u32 {
+        self.telemetry.tick
+    }
+
     /// The same, received at a time of the day, s since 1970, over a line that has damaged so many frames.
     #[must_use]
     pub fn received(self, wall_time_s: f64, damaged_frames: u64) -> Self {

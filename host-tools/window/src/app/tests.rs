@@ -1,5 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+mod charts;
+mod recordings;
 mod setup;
 
 use super::App;
@@ -66,7 +68,10 @@ impl Window {
     }
 
     fn press(&mut self, name: &str) {
-        let at = self.app.places.rects[name].center();
+        self.press_at(self.app.places.rects[name].center());
+    }
+
+    fn press_at(&mut self, at: Pos2) {
         let button = |pressed| Event::PointerButton {
             pos: at,
             button: PointerButton::Primary,

@@ -5,6 +5,8 @@ mod board;
 use super::line::{Heard, Line, Said};
 use super::opening::{Opened, Opening};
 use super::{LiveLeg, PageIdentity};
+use crate::recorded_leg::RecordedLeg;
+use crate::recorder::Recorder;
 use crate::simulation::Simulation;
 use leg_base::description::hex;
 use leg_firmware::command::{Command, CommandRefusal};
@@ -12,6 +14,7 @@ use leg_firmware::frame::{Decoder, MAX_FRAME, encode};
 use leg_firmware::host_link::{HOST_SCHEMA, HostRefusal, HostReply, HostRequest, TelemetryReport};
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
+use leg_recording::{Samples, read_samples};
 use leg_rig::control_settings;
 use leg_rig::rig_file::RigFile;
 use leg_rig::settings_text;
@@ -300,4 +303,42 @@ fn silence_and_the_end_are_told() {
     let words = leg.failure().unwrap();
     assert!(words.contains("unplugged") && words.contains("held by itself"));
     assert!(leg.locked().is_some());
+}
+
+/// A live leg is recorded as `leg log` does it: by its own time, with the time of the day.
+#[test]
+fn a_live_leg_is_recorded_as_a_log() {
+    let (mut leg, server) = leg();
+    let rig = RigFile::load(None).unwrap();
+    let settings = control_settings::settings(&rig, &rig.gains, None);
+    leg.recorder = Some(Recorder::new("/dev/ttyACM0", &settings).unwrap());
+    let telemetry = *Simulation::new().unwrap().telemetry().unwrap();
+    for tick in [8000, 8040, 8080] {
+        server.report(Telemetry { tick, ..telemetry });
+        leg.advance(f64::from(tick) / 8000.0);
+    }
+    let recorder = leg.recorder.take().unwrap();
+    assert!((recorder.time_s() - 0.01).abs() < 1e-9);
+    let bytes = recorder.finish().unwrap();
+    let Samples::Log(reports) = read_samples("leg.mcap", &bytes).unwrap().samples else {
+        panic!("it is a log");
+    };
+    let ticks: Vec<u32> = reports
+        .iter()
+        .map(|(_, telemetry)| telemetry.tick)
+        .collect();
+    assert_eq!(ticks, [8000, 8040, 8080]);
+    let opened = RecordedLeg::open("leg.mcap", &bytes).unwrap();
+    assert_eq!(opened.span_s(), [1.0, 1.01]);
+    assert!(!opened.seen(1.0).is_true);
+    let column = opened.history.named("wall_time_s").unwrap();
+    assert!(opened.history.at(column, 1.0)[0] > 1.6e9);
+}
+
+#[test]
+fn a_recording_without_a_message_is_refused() {
+    let rig = RigFile::load(None).unwrap();
+    let settings = control_settings::settings(&rig, &rig.gains, None);
+    let words = Recorder::new("leg", &settings).unwrap().finish();
+    assert!(words.unwrap_err().contains("nothing was recorded"));
 }

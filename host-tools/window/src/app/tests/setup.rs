@@ -21,7 +21,7 @@ impl DroppedFile for Dropped {
 }
 
 /// A file of this process alone, with a name that the window shows.
-fn file(name: &str, bytes: &[u8]) -> PathBuf {
+pub(super) fn file(name: &str, bytes: &[u8]) -> PathBuf {
     let directory = std::env::temp_dir().join(format!("leg-window-{}", std::process::id()));
     std::fs::create_dir_all(&directory).unwrap();
     let path = directory.join(name);
@@ -30,14 +30,14 @@ fn file(name: &str, bytes: &[u8]) -> PathBuf {
 }
 
 impl Window {
-    fn drop_file(&mut self, path: &Path) {
+    pub(super) fn drop_file(&mut self, path: &Path) {
         let dropped = Arc::new(Dropped(path.into()));
         self.frame_with(Vec::new(), vec![dropped]);
         self.frames(3);
         std::fs::remove_file(path).unwrap();
     }
 
-    fn type_value(&mut self, name: &str, text: &str) {
+    pub(super) fn type_value(&mut self, name: &str, text: &str) {
         self.press(name);
         assert_eq!(self.app.places.focused.as_deref(), Some(name));
         self.frame(vec![

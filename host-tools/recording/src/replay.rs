@@ -1,8 +1,8 @@
 //! Reproduces a recording with the present code, bit for bit.
 
-use super::contents::Contents;
-use super::mcap_file::{RECORDER, REPORT, SCHEMA_KEY, SETTINGS, TICKS, schema};
-use super::tick_record::{TickRecord, bits};
+use crate::contents::Contents;
+use crate::tick_record::{TickRecord, bits};
+use crate::writer::{RECORDER, REPORT, SCHEMA_KEY, SETTINGS, TICKS, schema};
 use leg_base::failure::Failure;
 use leg_firmware::host_link::BoardKind;
 use leg_firmware::recorder::{Recorder, RecorderSetup};
@@ -11,7 +11,6 @@ use leg_firmware_bench::server::emulated;
 use leg_firmware_bench::virtual_leg::VirtualLeg;
 use mcap::Message;
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 
 /// How a replay compares with its recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -39,18 +38,19 @@ pub struct TickDifference {
     pub enabled: [bool; 2],
 }
 
-/// Replays a recording.
-pub fn replay(file: &Path) -> Result<Replay, Failure> {
-    compare(file).map_err(|error| {
-        Failure::refused(
-            format!("{}: {error}", file.display()),
-            "record anew with `leg run --record FILE.mcap`",
-        )
-    })
+/// What to do where there is nothing to replay.
+pub const REPLAY_HELP: &str = "record anew with `leg run --record FILE.mcap`";
+
+/// Replays a recording of that name.
+///
+/// # Errors
+/// One that is no recording of `leg run`, or of other sources, is refused.
+pub fn replay(name: &str, bytes: &[u8]) -> Result<Replay, Failure> {
+    compare(bytes).map_err(|error| Failure::refused(format!("{name}: {error}"), REPLAY_HELP))
 }
 
-fn compare(file: &Path) -> Result<Replay, String> {
-    let contents = Contents::read(file)?;
+fn compare(bytes: &[u8]) -> Result<Replay, String> {
+    let contents = Contents::new(bytes)?;
     let mut leg = None;
     let mut recorder = Box::new(Recorder::new());
     let mut result = Replay {

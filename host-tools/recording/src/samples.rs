@@ -1,17 +1,16 @@
 //! What a recording shows of a leg over time.
 
-use super::About;
-use super::contents::Contents;
-use super::mcap_file::{ABOUT, RECORDER, REPORT, SIMULATED};
-use crate::signals;
+use crate::About;
+use crate::contents::Contents;
+use crate::writer::{ABOUT, RECORDER, REPORT, SIMULATED};
 use leg_base::failure::Failure;
 use leg_base::recorder_rows::RecorderRow;
 use leg_base::tick_time::{seconds, tick_s};
 use leg_firmware::telemetry::Telemetry;
+use leg_sim::signals;
 use leg_sim::simulation::Sample;
 use mcap::Message;
 use serde::de::DeserializeOwned;
-use std::path::Path;
 
 /// What a recording holds.
 pub struct Recorded {
@@ -33,21 +32,19 @@ pub enum Samples {
     Recorder(Vec<RecorderRow>),
 }
 
-/// Reads a recording, as far as it goes.
+/// What to do where there are no samples.
+pub const SAMPLES_HELP: &str = "give a file that `leg run --record FILE.mcap`, `leg log --out FILE.mcap` or `leg scope --out FILE.mcap` has written";
+
+/// Reads a recording of that name, as far as it goes.
 ///
 /// # Errors
 /// A file that is no MCAP file of `leg` is refused (exit code 2).
-pub fn read_samples(file: &Path) -> Result<Recorded, Failure> {
-    read(file).map_err(|error| {
-        Failure::refused(
-            format!("{}: {error}", file.display()),
-            "give a file that `leg run --record FILE.mcap`, `leg log --out FILE.mcap` or `leg scope --out FILE.mcap` has written",
-        )
-    })
+pub fn read_samples(name: &str, bytes: &[u8]) -> Result<Recorded, Failure> {
+    read(name, bytes).map_err(|error| Failure::refused(format!("{name}: {error}"), SAMPLES_HELP))
 }
 
-fn read(file: &Path) -> Result<Recorded, String> {
-    let contents = Contents::read(file)?;
+fn read(name: &str, bytes: &[u8]) -> Result<Recorded, String> {
+    let contents = Contents::new(bytes)?;
     let mut about = None;
     let (mut log, mut simulation, mut rows) = (Vec::new(), Vec::new(), Vec::new());
     let mut last_report = Vec::new();
@@ -84,7 +81,7 @@ fn read(file: &Path) -> Result<Recorded, String> {
         Samples::Simulation(simulation)
     };
     // Recordings of earlier versions do not say it.
-    let named = || About::log(&file.display().to_string());
+    let named = || About::log(name);
     Ok(Recorded {
         about: about.unwrap_or_else(named),
         finished: contents.finished,
@@ -92,11 +89,11 @@ fn read(file: &Path) -> Result<Recorded, String> {
     })
 }
 
-fn parse<T: DeserializeOwned>(message: &Message<'_>) -> Result<T, String> {
+pub(crate) fn parse<T: DeserializeOwned>(message: &Message<'_>) -> Result<T, String> {
     serde_json::from_slice(&message.data).map_err(|error| unreadable(message, &error.to_string()))
 }
 
-fn unreadable(message: &Message<'_>, error: &str) -> String {
+pub(crate) fn unreadable(message: &Message<'_>, error: &str) -> String {
     let topic = &message.channel.topic;
     format!(
         "message {} of {topic} cannot be read: {error}",

@@ -1,6 +1,6 @@
 //! One tick as it is recorded: all that a controller gets, and the bits of what it gives.
 
-use super::RecordingError;
+use crate::WriteError;
 use leg_firmware::drive::Drive;
 use leg_firmware::linked_leg::LINK_BYTES_MAX;
 use leg_firmware::sensors::Sensors;
@@ -12,7 +12,7 @@ const BYTES_MAX: usize = 2048;
 
 /// A tick.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct TickRecord {
+pub(crate) struct TickRecord {
     pub sensors: Sensors,
     pub link: heapless::Vec<u8, LINK_BYTES_MAX>,
     pub duty_bits: [u32; 3],
@@ -20,9 +20,9 @@ pub(super) struct TickRecord {
 }
 
 impl TickRecord {
-    pub fn new(tick: &Tick<'_>) -> Result<Self, RecordingError> {
+    pub fn new(tick: &Tick<'_>) -> Result<Self, WriteError> {
         let link = heapless::Vec::from_slice(tick.link);
-        let link = link.map_err(|_| RecordingError::message("too many bytes from the link"))?;
+        let link = link.map_err(|_| WriteError::message("too many bytes from the link"))?;
         let (duty_bits, enabled) = bits(tick.drive);
         Ok(Self {
             sensors: *tick.sensors,
@@ -34,13 +34,13 @@ impl TickRecord {
 }
 
 /// The bits of what a controller gives.
-pub(super) fn bits(drive: &Drive<f32>) -> ([u32; 3], bool) {
+pub(crate) fn bits(drive: &Drive<f32>) -> ([u32; 3], bool) {
     (drive.duty.map(f32::to_bits), drive.enabled)
 }
 
 /// A message in postcard's format.
-pub(super) fn to_bytes<T: Serialize>(message: &T) -> Result<Vec<u8>, RecordingError> {
+pub(crate) fn to_bytes<T: Serialize>(message: &T) -> Result<Vec<u8>, WriteError> {
     let mut buffer = [0; BYTES_MAX];
-    let bytes = postcard::to_slice(message, &mut buffer).map_err(RecordingError::message)?;
+    let bytes = postcard::to_slice(message, &mut buffer).map_err(WriteError::message)?;
     Ok(bytes.to_vec())
 }

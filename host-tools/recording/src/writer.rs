@@ -1,66 +1,78 @@
 //! A recording as MCAP: the settings, of a simulation every tick as a controller sees it, and the signals. What is not needed to
 //! run a simulation again is JSON.
 
-use super::tick_record::{TickRecord, to_bytes};
-use super::{About, RecordingError};
-use crate::signals::{
-    RECORDER_SIGNALS, REPORT_SIGNALS, Report, SIMULATED_SIGNALS, Signal, Simulated, json_object,
-    json_schema,
-};
+use crate::tick_record::{TickRecord, to_bytes};
+use crate::{About, WriteError};
 use leg_base::description::hex;
 use leg_base::recorder_rows::RecorderRow;
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::settings::Settings;
 use leg_firmware_bench::protocol::BENCH_SCHEMA;
 use leg_rig::settings_text;
+use leg_sim::signals::{
+    RECORDER_SIGNALS, REPORT_SIGNALS, Report, SIMULATED_SIGNALS, Signal, Simulated, json_object,
+    json_schema,
+};
 use leg_sim::simulation::Tick;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{WriteOptions, Writer};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::BufWriter;
+use std::io::{Seek, Write};
 use std::mem::ManuallyDrop;
 
 /// Topics.
-pub(super) const SETTINGS: &str = "/settings";
-pub(super) const TICKS: &str = "/ticks";
-pub(super) const ABOUT: &str = "/about";
-pub(super) const REPORT: &str = "/leg";
-pub(super) const SIMULATED: &str = "/simulation";
-pub(super) const RECORDER: &str = "/recorder";
+pub(crate) const SETTINGS: &str = "/settings";
+pub(crate) const TICKS: &str = "/ticks";
+pub(crate) const ABOUT: &str = "/about";
+pub(crate) const REPORT: &str = "/leg";
+pub(crate) const SIMULATED: &str = "/simulation";
+pub(crate) const RECORDER: &str = "/recorder";
 
 /// The name of the metadata that says what a recording is of.
-const METADATA: &str = "leg";
+pub(crate) const METADATA: &str = "leg";
+
+/// Under which key of it the settings stand, as a rig file.
+pub(crate) const METADATA_SETTINGS: &str = "settings";
 
 /// The key of a channel's metadata under which the schema of its messages stands.
-pub(super) const SCHEMA_KEY: &str = "schema";
+pub(crate) const SCHEMA_KEY: &str = "schema";
+
+/// Bytes of a message beside what it says.
+const MESSAGE_HEAD_BYTES: usize = 31;
 
 /// A tick in ns.
 const TICK_NS: u64 = 1_000_000_000 / TICK_HZ as u64;
 
-/// A file that is being written.
-pub(super) struct McapFile {
+/// A recording that is being written.
+pub struct McapWriter<W: Write + Seek> {
     /// Dropped once it has finished alone: its own drop tries to, and panics where the disk is full.
-    writer: ManuallyDrop<Writer<BufWriter<File>>>,
+    writer: ManuallyDrop<Writer<W>>,
     /// The channels that were made, by topic.
     channels: BTreeMap<&'static str, u16>,
     /// What it is of, until it is written: with the first message, for a leg's time does not begin at zero.
     about: Option<Value>,
+    /// Bytes of the messages so far.
+    bytes: u64,
 }
 
 /// The hash of all message types, in words: a recording is replayed by the sources that made it.
-pub(super) fn schema() -> String {
+pub(crate) fn schema() -> String {
     hex(&BENCH_SCHEMA)
 }
 
-impl McapFile {
-    pub fn new(file: File, about: &About, settings: &Settings) -> Result<Self, RecordingError> {
+impl<W: Write + Seek> McapWriter<W> {
+    /// Begins it.
+    ///
+    /// # Errors
+    /// What it is written to takes nothing.
+    pub fn new(to: W, about: &About, settings: &Settings) -> Result<Self, WriteError> {
         let options = WriteOptions::new().compression(None).library("leg");
         let mut file = Self {
-            writer: ManuallyDrop::new(options.create(BufWriter::new(file))?),
+            writer: ManuallyDrop::new(options.create(to)?),
             channels: BTreeMap::new(),
-            about: Some(serde_json::to_value(about).map_err(RecordingError::message)?),
+            about: Some(serde_json::to_value(about).map_err(WriteError::message)?),
+            bytes: 0,
         };
         file.writer.write_metadata(&metadata(about, settings))?;
         let channel = file.postcard_channel(SETTINGS)?;
@@ -70,46 +82,58 @@ impl McapFile {
     }
 
     /// What a controller gets and gives in a tick of a simulation.
-    pub fn write_tick(&mut self, number: u32, tick: &Tick<'_>) -> Result<(), RecordingError> {
+    ///
+    /// # Errors
+    /// What it is written to takes no more; a message that has no form.
+    pub fn write_tick(&mut self, number: u32, tick: &Tick<'_>) -> Result<(), WriteError> {
         let channel = self.channel(TICKS, |file| file.postcard_channel(TICKS))?;
         let bytes = to_bytes(&TickRecord::new(tick)?)?;
         self.write(channel, number, simulated_ns(number), &bytes)
     }
 
     /// The leg in a tick of a simulation.
+    ///
+    /// # Errors
+    /// What it is written to takes no more; a message that has no form.
     pub fn write_simulation(
         &mut self,
         number: u32,
         (report, simulated): &(Report, Simulated),
-    ) -> Result<(), RecordingError> {
+    ) -> Result<(), WriteError> {
         let time_ns = simulated_ns(number);
         self.write_report(number, time_ns, report)?;
         self.write_signals(SIMULATED, SIMULATED_SIGNALS, number, time_ns, simulated)
     }
 
     /// What a leg reports.
+    ///
+    /// # Errors
+    /// What it is written to takes no more; a message that has no form.
     pub fn write_report(
         &mut self,
         number: u32,
         time_ns: u64,
         report: &Report,
-    ) -> Result<(), RecordingError> {
+    ) -> Result<(), WriteError> {
         self.write_about(time_ns)?;
         self.write_signals(REPORT, REPORT_SIGNALS, number, time_ns, report)
     }
 
     /// A row of a board's recorder.
+    ///
+    /// # Errors
+    /// What it is written to takes no more; a message that has no form.
     pub fn write_recorder_row(
         &mut self,
         number: u32,
         time_ns: u64,
         row: &RecorderRow,
-    ) -> Result<(), RecordingError> {
+    ) -> Result<(), WriteError> {
         self.write_about(time_ns)?;
         self.write_signals(RECORDER, RECORDER_SIGNALS, number, time_ns, row)
     }
 
-    fn write_about(&mut self, time_ns: u64) -> Result<(), RecordingError> {
+    fn write_about(&mut self, time_ns: u64) -> Result<(), WriteError> {
         let Some(about) = self.about.take() else {
             return Ok(());
         };
@@ -124,7 +148,7 @@ impl McapFile {
         number: u32,
         time_ns: u64,
         of: &S,
-    ) -> Result<(), RecordingError> {
+    ) -> Result<(), WriteError> {
         let make = |file: &mut Self| file.json_channel(topic, &json_schema(topic, signals));
         let channel = self.channel(topic, make)?;
         let message = Value::Object(json_object(signals, of));
@@ -135,8 +159,8 @@ impl McapFile {
     fn channel(
         &mut self,
         topic: &'static str,
-        make: impl FnOnce(&mut Self) -> Result<u16, RecordingError>,
-    ) -> Result<u16, RecordingError> {
+        make: impl FnOnce(&mut Self) -> Result<u16, WriteError>,
+    ) -> Result<u16, WriteError> {
         if let Some(channel) = self.channels.get(topic) {
             return Ok(*channel);
         }
@@ -145,7 +169,7 @@ impl McapFile {
         Ok(channel)
     }
 
-    fn json_channel(&mut self, topic: &str, schema: &Value) -> Result<u16, RecordingError> {
+    fn json_channel(&mut self, topic: &str, schema: &Value) -> Result<u16, WriteError> {
         let schema = schema.to_string().into_bytes();
         let id = self.writer.add_schema(topic, "jsonschema", &schema)?;
         Ok(self
@@ -153,7 +177,7 @@ impl McapFile {
             .add_channel(id, topic, "json", &BTreeMap::new())?)
     }
 
-    fn postcard_channel(&mut self, topic: &str) -> Result<u16, RecordingError> {
+    fn postcard_channel(&mut self, topic: &str) -> Result<u16, WriteError> {
         let metadata = BTreeMap::from([(SCHEMA_KEY.to_string(), schema())]);
         Ok(self.writer.add_channel(0, topic, "postcard", &metadata)?)
     }
@@ -164,25 +188,38 @@ impl McapFile {
         sequence: u32,
         time_ns: u64,
         message: &[u8],
-    ) -> Result<(), RecordingError> {
+    ) -> Result<(), WriteError> {
         let header = MessageHeader {
             channel_id,
             sequence,
             log_time: time_ns,
             publish_time: time_ns,
         };
+        self.bytes += (MESSAGE_HEAD_BYTES + message.len()) as u64;
         Ok(self.writer.write_to_known_channel(&header, message)?)
     }
 
     /// Ends the chunk, and lets the system have it.
-    pub fn flush(&mut self) -> Result<(), RecordingError> {
+    ///
+    /// # Errors
+    /// What it is written to takes no more; a message that has no form.
+    pub fn flush(&mut self) -> Result<(), WriteError> {
         Ok(self.writer.flush()?)
     }
 
-    pub fn finish(mut self) -> Result<(), RecordingError> {
+    /// About how many bytes it has.
+    #[must_use]
+    pub const fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// Ends it, and gives back what it was written to.
+    ///
+    /// # Errors
+    /// What it is written to takes no more.
+    pub fn finish(mut self) -> Result<W, WriteError> {
         self.writer.finish()?;
-        drop(ManuallyDrop::into_inner(self.writer));
-        Ok(())
+        Ok(ManuallyDrop::into_inner(self.writer).into_inner())
     }
 }
 
@@ -200,7 +237,7 @@ fn metadata(about: &About, settings: &Settings) -> Metadata {
         ("scenario", about.scenario.clone()),
         ("rig", about.rig.clone()),
         ("seed", seed),
-        ("settings", Some(settings_text::rig_file(settings))),
+        (METADATA_SETTINGS, Some(settings_text::rig_file(settings))),
     ];
     let known = entries.into_iter();
     let known = known.filter_map(|(key, value)| Some((key.to_string(), value?)));
