@@ -56,7 +56,11 @@ pub(super) fn schema() -> String {
 
 impl McapFile {
     pub fn new(file: File, about: &About, settings: &Settings) -> Result<Self, RecordingError> {
-        let options = WriteOptions::new().compression(None).library("leg");
+        // A chunk is written whole: what is on the disk can be read up to there by any reader.
+        let options = WriteOptions::new()
+            .compression(None)
+            .disable_seeking(true)
+            .library("leg");
         let mut file = Self {
             writer: ManuallyDrop::new(options.create(BufWriter::new(file))?),
             channels: BTreeMap::new(),
