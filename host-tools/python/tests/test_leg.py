@@ -258,6 +258,31 @@ def wait_for(leg, condition):
 
 
 @needs_leg
+def test_a_second_owner_is_refused_by_name_and_may_stop_the_leg(port):
+    with Leg.open(port) as first, Leg.open(port) as second:
+        ended = []
+
+        def follow():
+            with pytest.raises(LegError, match="another host stopped it") as stopped:
+                first.follow(circle(60.0))
+            ended.append(stopped)
+
+        thread = threading.Thread(target=follow)
+        thread.start()
+        wait_for(second, lambda told: told["tilt_deg"] > 15)
+        for command in [lambda: second.move(0, 3), lambda: second.stiffness(100), lambda: second.follow(circle(1.0))]:
+            with pytest.raises(Refused, match="another host drives the leg"):
+                command()
+        with pytest.raises(LegError, match="disarm"):
+            second.set_settings("table1")
+        assert second.telemetry()["state"] == "active"
+        second.stop()
+        assert second.telemetry()["state"] == "held"
+        thread.join()
+        assert len(ended) == 1
+
+
+@needs_leg
 def test_an_interpreter_that_is_killed_in_mid_move_leaves_the_leg_in_hold(port):
     with subprocess.Popen([sys.executable, "-c", KILLED, port], stdout=subprocess.PIPE, text=True) as driver:
         assert driver.stdout.readline() == "opened\n"
