@@ -1,7 +1,7 @@
 """What the `mcap` package reads of recordings, by the schemas that stand in them.
 
 Reads a JSON list of jobs from standard input and writes a JSON list of answers. A job names a recording (`recording`) and a
-layout for Foxglove (`layout`).
+layout for Foxglove (`layout`); or only a recording whose program was killed (`unfinished`).
 """
 
 import json
@@ -10,10 +10,13 @@ import sys
 from pathlib import Path
 
 from jsonschema import Draft202012Validator
-from mcap.reader import make_reader
+from mcap.exceptions import EndOfFile
+from mcap.reader import NonSeekingReader, make_reader
 
 
 def answer(job):
+    if "unfinished" in job:
+        return unfinished(job["unfinished"])
     channels, fields, validators = {}, {}, {}
     with Path(job["recording"]).open("rb") as file:
         reader = make_reader(file)
@@ -36,6 +39,18 @@ def answer(job):
         "layout_paths": paths,
         "layout_unknown": [path for path in paths if not known(path, fields)],
     }
+
+
+def unfinished(path):
+    """The times of the reports up to where the file ends."""
+    times_s = []
+    with Path(path).open("rb") as file:
+        try:
+            for _, _, message in NonSeekingReader(file).iter_messages(topics=["/leg"], log_time_order=False):
+                times_s.append(json.loads(message.data)["time_s"])
+        except EndOfFile:
+            return times_s
+    sys.exit(f"{path} has an end")
 
 
 def layout_paths(part):

@@ -23,7 +23,17 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde_json::json;
 use std::sync::{Mutex, MutexGuard, OnceLock, TryLockError};
+use std::thread;
 use std::time::Duration;
+
+/// How long it takes until a thread that uses the leg is told again that another one stops it.
+const TOLD_AGAIN: Duration = Duration::from_millis(1);
+
+/// How a call has the leg for its thread alone.
+type Lock = for<'leg> fn(
+    &'leg Leg,
+    &mut Option<PyErr>,
+) -> PyResult<MutexGuard<'leg, Option<OperatorThread>>>;
 
 /// See `_native.pyi`.
 #[pyclass(frozen, module = "tendon_leg")]
@@ -56,12 +66,39 @@ impl Leg {
 
     /// The leg for this thread alone.
     fn thread(&self) -> PyResult<MutexGuard<'_, Option<OperatorThread>>> {
-        self.thread.try_lock().map_err(|error| match error {
-            TryLockError::WouldBlock => leg_error(
+        self.free_thread()?.ok_or_else(|| {
+            leg_error(
                 "another thread uses this leg; stop() is the only call that does not wait for it",
-            ),
-            TryLockError::Poisoned(_) => leg_error("this leg is lost; open it again"),
+            )
         })
+    }
+
+    /// The same; none while another thread has it.
+    fn free_thread(&self) -> PyResult<Option<MutexGuard<'_, Option<OperatorThread>>>> {
+        match self.thread.try_lock() {
+            Ok(thread) => Ok(Some(thread)),
+            Err(TryLockError::WouldBlock) => Ok(None),
+            Err(TryLockError::Poisoned(_)) => Err(leg_error("this leg is lost; open it again")),
+        }
+    }
+
+    /// Ends what another thread does with the leg, which is in hold then, and has the leg for this thread alone.
+    ///
+    /// The other thread may only be about to begin, and takes back then what was told to it before: it is told until it has ended.
+    fn taken_over(
+        &self,
+        signal: &mut Option<PyErr>,
+    ) -> PyResult<MutexGuard<'_, Option<OperatorThread>>> {
+        loop {
+            if let Some(thread) = self.free_thread()? {
+                return Ok(thread);
+            }
+            self.cancel.set();
+            if interrupted(signal) {
+                return self.thread();
+            }
+            thread::sleep(TOLD_AGAIN);
+        }
     }
 
     /// Lets the operator work while other threads of Python run. Ctrl-C ends it, and a driven leg is held then.
@@ -85,23 +122,33 @@ impl Leg {
         ) -> Result<T, LegFailure>
         + Send,
     ) -> PyResult<T> {
+        self.with_locked(py, |leg, _| leg.thread(), work)
+    }
+
+    /// The same with the leg locked in one way or another, to which a signal of Python may come, too.
+    fn with_locked<T: Send>(
+        &self,
+        py: Python<'_>,
+        lock: Lock,
+        work: impl FnOnce(
+            &OperatorThread,
+            &CancelFlag,
+            &mut dyn FnMut() -> bool,
+        ) -> Result<T, LegFailure>
+        + Send,
+    ) -> PyResult<T> {
         let mut signal = None;
         let result = py.detach(|| {
-            let thread = self.thread()?;
+            let thread = lock(self, &mut signal)?;
             let Some(thread) = thread.as_ref() else {
                 return Err(leg_error("this leg is closed; open it again"));
             };
             self.cancel.clear();
-            Ok(work(thread, &self.cancel, &mut || interrupted(&mut signal)))
-        })?;
-        match (result, signal) {
-            (Err(LegFailure::Operator(error, _)), Some(signal))
-                if matches!(*error, OperatorError::Cancelled) =>
-            {
-                Err(signal)
-            }
-            (result, _) => result.map_err(leg_failure),
-        }
+            let result = work(thread, &self.cancel, &mut || interrupted(&mut signal));
+            result.map_err(leg_failure)
+        });
+        // It is raised even where the work came to its end meanwhile.
+        signal.map_or(result, Err)
     }
 
     fn reach<'py>(&self, py: Python<'py>, goal: Goal) -> PyResult<Bound<'py, PyDict>> {
@@ -237,17 +284,10 @@ impl Leg {
     }
 
     fn stop(&self, py: Python<'_>) -> PyResult<()> {
-        match self.thread.try_lock() {
-            // What another thread does ends with the leg in hold.
-            Err(TryLockError::WouldBlock) => {
-                self.cancel.set();
-                Ok(())
-            }
-            free => {
-                drop(free);
-                self.ask(py, Operator::stop).map(|_| ())
-            }
-        }
+        let stopped = self.with_locked(py, Self::taken_over, |thread, cancel, interrupted| {
+            thread.ask(cancel, interrupted, Operator::stop)
+        });
+        stopped.map(|_| ())
     }
 
     fn disarm(&self, py: Python<'_>) -> PyResult<()> {

@@ -1,6 +1,7 @@
 """Many scenarios at once: the same rows wherever they run, going on after a kill, and what repeats a failure."""
 
 import json
+import shlex
 import subprocess
 import sys
 import time
@@ -64,10 +65,10 @@ def test_a_failure_keeps_what_repeats_it(tmp_path):
     strict = {"scenario": lean(40, bound_mm=1e-9), "rig": heavier(), "seed": 11}
     broken = {"scenario": "title = 3\n"}
     ready = {"scenario": "fault_cell_dead", "rig": "universal"}
-    failed, refused, passed = campaign([strict, broken, ready], tmp_path)
+    failed, refused, passed = campaign([strict, broken, ready], tmp_path / "of a name with spaces")
     assert not failed["passed"] and not refused["passed"] and passed["passed"]
     assert "line 1, column 9" in refused["error"] and "repeat" not in passed
-    words = failed["repeat"].split()
+    words = shlex.split(failed["repeat"])
     assert words[:4] == ["leg", "run", "--on", "sim"]
     again = run_scenario(Path(words[5]), rig=Path(words[7]))
     assert (again["bits"], again["passed"]) == (failed["bits"], False)

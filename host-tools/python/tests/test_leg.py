@@ -137,21 +137,39 @@ def test_a_closed_leg_is_refused_by_name():
 
 
 def test_a_stop_from_another_thread_ends_what_the_leg_does():
-    leg, ended = Leg.emulated(), []
+    leg, begun, ended = Leg.emulated(), threading.Event(), []
 
     def follow():
+        points = circle(1000.0)
+        begun.set()
         try:
-            leg.follow(circle(1000.0))
+            leg.follow(points)
         except LegError as error:
             ended.append(str(error))
 
     thread = threading.Thread(target=follow)
     thread.start()
-    while thread.is_alive():
-        time.sleep(0.5)
-        leg.stop()
-    assert ended == ["another thread stopped the leg; it is in hold if it was driven"]
+    begun.wait()
+    time.sleep(0.5)
+    leg.stop()
+    # It returns once the leg is in hold, and belongs to nobody.
     assert leg.telemetry()["state"] == "held"
+    thread.join()
+    assert ended == ["another thread stopped the leg; it is in hold if it was driven"]
+
+
+def test_a_stop_holds_the_leg_when_another_thread_only_waits():
+    leg = Leg.emulated()
+    for delay_s in np.linspace(0.0, 0.005, 10):
+        leg.clear()
+        leg.move(0, 5)
+        thread = threading.Thread(target=lambda: pytest.raises(LegError, leg.wait, 86_400.0))
+        thread.start()
+        time.sleep(delay_s)
+        # Until the thread has begun, a stop is over before.
+        while thread.is_alive():
+            leg.stop()
+        assert leg.telemetry()["state"] == "held"
 
 
 def test_ctrl_c_leaves_the_leg_in_hold():
@@ -237,6 +255,31 @@ def wait_for(leg, condition):
         assert time.monotonic() < deadline_s, telemetry
         time.sleep(0.05)
     return telemetry
+
+
+@needs_leg
+def test_a_second_owner_is_refused_by_name_and_may_stop_the_leg(port):
+    with Leg.open(port) as first, Leg.open(port) as second:
+        ended = []
+
+        def follow():
+            with pytest.raises(LegError, match="another host stopped it") as stopped:
+                first.follow(circle(60.0))
+            ended.append(stopped)
+
+        thread = threading.Thread(target=follow)
+        thread.start()
+        wait_for(second, lambda told: told["tilt_deg"] > 15)
+        for command in [lambda: second.move(0, 3), lambda: second.stiffness(100), lambda: second.follow(circle(1.0))]:
+            with pytest.raises(Refused, match="another host drives the leg"):
+                command()
+        with pytest.raises(LegError, match="disarm"):
+            second.set_settings("table1")
+        assert second.telemetry()["state"] == "active"
+        second.stop()
+        assert second.telemetry()["state"] == "held"
+        thread.join()
+        assert len(ended) == 1
 
 
 @needs_leg

@@ -67,7 +67,11 @@ impl<W: Write + Seek> McapWriter<W> {
     /// # Errors
     /// What it is written to takes nothing.
     pub fn new(to: W, about: &About, settings: &Settings) -> Result<Self, WriteError> {
-        let options = WriteOptions::new().compression(None).library("leg");
+        // A chunk is written whole: what is on the disk can be read up to there by any reader.
+        let options = WriteOptions::new()
+            .compression(None)
+            .disable_seeking(true)
+            .library("leg");
         let mut file = Self {
             writer: ManuallyDrop::new(options.create(to)?),
             channels: BTreeMap::new(),

@@ -80,7 +80,7 @@ class Leg:
         """Holds the leg where it is."""
 
     def stop(self) -> None:
-        """Stops the leg. From another thread it ends the call that drives the leg, which raises LegError."""
+        """Stops the leg, which is in hold then. From another thread it ends the call that uses the leg, which raises LegError."""
 
     def disarm(self) -> None:
         """Leads the leg straight down, pays its tendons out and switches the drivers off."""

@@ -5,6 +5,7 @@ import hashlib
 import json
 import os
 import re
+import shlex
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Executor, ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
@@ -180,13 +181,15 @@ def _keep(directory: Path, run: Run) -> str:
         # Keys of the file itself come before its first table.
         table = re.search(r"^\[", scenario, re.MULTILINE)
         end = table.start() if table else len(scenario)
-        keys = re.sub(r"^seed *=.*\n", "", scenario[:end], flags=re.MULTILINE)
+        keys = re.sub(r"^seed *=.*\n?", "", scenario[:end], flags=re.MULTILINE)
         scenario = f"seed = {run.seed}\n{keys}{scenario[end:]}"
     path = directory / "scenario.toml"
     path.write_text(scenario, encoding="utf-8")
-    command = f"leg run --on sim --scenario {path}"
+    command = ["leg", "run", "--on", "sim", "--scenario", str(path)]
     if run.rig_text is not None:
         rig = directory / "rig.toml"
         rig.write_text(run.rig_text, encoding="utf-8")
-        return f"{command} --rig {rig}"
-    return command if run.rig_name is None else f"{command} --rig {run.rig_name}"
+        command += ["--rig", str(rig)]
+    elif run.rig_name is not None:
+        command += ["--rig", run.rig_name]
+    return shlex.join(command)
