@@ -148,7 +148,7 @@ impl Running {
     pub fn tick(&mut self, request: &TickRequest, image: &Image) -> Result<TickReply, LinkError> {
         // The encoders of a chip count from its start.
         let first = *self.first.get_or_insert(request.sensors);
-        let sensors = wiring::since(&first, &request.sensors);
+        let sensors = wiring::count_from(&first, &request.sensors);
         self.corrupt_settings(sensors.settings_corrupt)?;
         wiring::apply(&mut self.chip.peripherals(), &sensors);
         self.check_breaks(&sensors, image)?;

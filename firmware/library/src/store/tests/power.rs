@@ -110,8 +110,8 @@ fn power_may_fail_again_and_again() {
         keep(&mut flash, &kept);
         for number in 1..300 {
             // Some of the cuts come after the save, within the load.
-            let cut = random.below(200);
-            let tear = TEARS[random.below(TEARS.len())];
+            let cut = random.number_below(200);
+            let tear = TEARS[random.number_below(TEARS.len())];
             flash.cut_after(cut, tear, random.next());
             let new = mixed(number);
             let saved = save(&mut flash, &new);
