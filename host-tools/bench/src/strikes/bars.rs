@@ -43,7 +43,7 @@ const WAY_MM: f64 = 3.0;
 /// goes by what it lies until it lies otherwise.
 const REARMED_MM: f64 = 2.0;
 
-/// The same where a gain is 20 % off, which cannot be told from a load, mm.
+/// The same where a gain is 20 % off, which cannot be distinguished from a load, mm.
 const GAIN_MM: f64 = 1.1;
 
 /// The same where such a cell comes to show the maximum tension: its tendon is paid out, as under a load that is too heavy, until

@@ -304,7 +304,7 @@ impl Running {
             temperature_code,
             current_codes: wiring::current_codes(&self.chip.peripherals()),
             cell_fresh: [!self.defects.untriggered; 3],
-            // That a tick took too long is told in the next one.
+            // That a tick took too long is reported in the next one.
             late: self.defects.held,
             settings_corrupt: self.defects.settings_corrupt,
             ..self.sensors
