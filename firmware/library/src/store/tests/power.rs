@@ -38,7 +38,9 @@ fn either<'a>(flash: &mut Mock, old: &'a Settings, new: &'a Settings) -> &'a Set
     let found = match load(flash) {
         Ok(Loaded::Settings(settings)) if settings == *old => old,
         Ok(Loaded::Settings(settings)) if settings == *new => new,
-        Ok(Loaded::Settings(settings)) => panic!("level {} is neither", settings.pretension_n),
+        Ok(Loaded::Settings(settings)) => {
+            panic!("pretension {} N is neither", settings.pretension_n)
+        }
         other => panic!("neither old nor new: {other:?}"),
     };
     assert_holds(flash, found);
