@@ -138,7 +138,7 @@ pub enum BoardStep {
 /// What a board does after a [`BoardStep`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct BoardReply {
-    /// What a tick is told that the sensors read.
+    /// What the sensors read in a tick.
     pub sensors: Sensors,
     /// What the motors get.
     pub motors: Drive<f32>,

@@ -80,7 +80,7 @@ pub fn ending() -> bool {
 /// Ends everything, safely.
 pub fn end(text: &ShortText) -> ! {
     cortex_m::interrupt::disable();
-    power::off();
+    power::cut_outputs();
     tick_watchdog::refresh_if_started();
     if FAILING.swap(true, Ordering::Relaxed) {
         SCB::sys_reset();

@@ -45,7 +45,7 @@ pub async fn keep_house(
     }
 }
 
-/// Errors of the encoders' signals are told, and nothing else: what they add up to is found by the supervisor, which compares
+/// Errors of the encoders' signals are reported, and nothing else: what they add up to is found by the supervisor, which compares
 /// encoders with load cells.
 fn report_errors() {
     for (motor, error) in (1_u8..).zip(Encoders::take_errors()) {

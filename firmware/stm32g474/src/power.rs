@@ -137,7 +137,7 @@ impl PowerPins for Power {
             pac::TIM1.bdtr().modify(|w| w.set_moe(true));
             pac::GPIOC.bsrr().write(|w| w.set_bs(ENABLE_PIN, true));
         } else {
-            off();
+            cut_outputs();
             tick_watchdog::set_rest_in_halt(true);
         }
     }
@@ -150,7 +150,7 @@ impl PowerPins for Power {
 
 /// Switches the outputs off, from wherever it is called and whatever has been set up yet.
 #[inline(always)]
-pub fn off() {
+pub fn cut_outputs() {
     pac::GPIOC.bsrr().write(|w| w.set_br(ENABLE_PIN, true));
     pac::TIM1.bdtr().modify(|w| w.set_moe(false));
 }

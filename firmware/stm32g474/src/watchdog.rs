@@ -75,6 +75,6 @@ fn wait_for_settings() {
 /// Switches off at once what the reset will switch off, and keeps the name of the task for the next start.
 fn give_up(absent: WatchedTask) {
     control::cut();
-    power::off();
+    power::cut_outputs();
     fatal::keep(&ShortText::new(absent.name()).text(" did not check in"));
 }

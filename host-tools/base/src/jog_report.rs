@@ -138,14 +138,14 @@ impl Finding {
 /// What does not fit in a report: none where the motor did what it should.
 #[must_use]
 pub fn findings(report: &JogReport<f32>, settings: &Settings) -> Vec<Finding> {
-    let found = of_end(report, settings);
+    let found = end_finding(report, settings);
     // A motor that turned another way, or another motor, says nothing of the cells.
     let asked = !matches!(report.end, JogEnd::WrongWay | JogEnd::OtherEncoder(_));
-    let tensions = asked.then(|| of_tensions(report)).flatten();
+    let tensions = asked.then(|| tension_finding(report)).flatten();
     found.into_iter().chain(tensions).collect()
 }
 
-fn of_end(report: &JogReport<f32>, settings: &Settings) -> Option<Finding> {
+fn end_finding(report: &JogReport<f32>, settings: &Settings) -> Option<Finding> {
     let motor = report.demand.motor;
     Some(match report.end {
         // What a monitor ended before the jog itself did.
@@ -212,7 +212,7 @@ fn no_counts(report: &JogReport<f32>, settings: &Settings) -> Finding {
 }
 
 /// Whether the tension of the tendon went the way that its motor turned.
-fn of_tensions(report: &JogReport<f32>) -> Option<Finding> {
+fn tension_finding(report: &JogReport<f32>) -> Option<Finding> {
     let own = usize::from(report.demand.motor).checked_sub(1)?;
     let sign = report.demand.travel_m.signum();
     let [before, after] = &report.tensions_n;

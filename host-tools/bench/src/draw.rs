@@ -67,7 +67,7 @@ pub(crate) fn pose(file: &RigFile, rng: &mut Rng) -> [f64; 2] {
 }
 
 /// The distance of two poses as directions' horizontal components.
-pub(crate) fn between(a: &[f64; 2], b: &[f64; 2]) -> f64 {
+pub(crate) fn distance(a: &[f64; 2], b: &[f64; 2]) -> f64 {
     let [[ax, ay], [bx, by]] = [a, b].map(|&[azimuth, tilt]| angles::direction(azimuth, tilt));
     (ax - bx).hypot(ay - by)
 }

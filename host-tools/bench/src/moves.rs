@@ -1,4 +1,4 @@
-//! Moves of the simulated leg with payloads that nobody tells it, judged by where the true tip is.
+//! Moves of the simulated leg with payloads that it does not know, judged by where the true tip is.
 
 mod bars;
 mod chart;

@@ -100,7 +100,7 @@ impl Campaign {
         let (kind, tendon) = (kind_of(index / SLOTS, index % SLOTS), rng.usize(0..3));
         strike::Strike {
             index,
-            defect: kind.and_then(|kind| Defect::of_kind(kind, tendon)),
+            defect: kind.and_then(|kind| Defect::numbered(kind, tendon)),
             name: name_of(kind),
             tendon,
         }

@@ -74,7 +74,7 @@ pub fn measure_motor(
     })
 }
 
-/// What the user is told before anything moves.
+/// What is printed before anything moves.
 #[must_use]
 pub fn plan_text(jogs: &JogPlan, swing: Option<&SwingPlan>) -> String {
     let [low_v, high_v] = jogs.voltages_v;

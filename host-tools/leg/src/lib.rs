@@ -11,7 +11,7 @@
 //! | `leg_commands` | `home`, `move`, `stiffness`, `hold`, `stop`, `disarm`, `clear` |
 //! | `jog`, `tune` | one motor of a disarmed leg, turned; measured, with the swing of the leg |
 //! | `sensors`, `monitor`, `log`, `settings`, `calibrate` | what a leg reports, records and is set to |
-//! | `moves` | how the true tip of a simulated leg goes, with payloads that it is not told |
+//! | `moves` | how the true tip of a simulated leg goes, with payloads that it does not know |
 //! | `bode` | margins of the feedback loops around a simulated leg |
 //! | `strikes` | faults that strike a simulated leg in every state |
 //! | `emulate`, `flash`, `faults` | an emulated board; the image into a board; the fault table |

@@ -9,7 +9,7 @@ use leg_base::json_object;
 use leg_bench::moves::{self, Campaign, Moved};
 use std::path::{Path, PathBuf};
 
-/// Moves a simulated leg between random poses with payloads that nobody tells it, and measures how its true tip goes.
+/// Moves a simulated leg between random poses with payloads that it does not know, and measures how its true tip goes.
 ///
 /// Each move is drawn from the seed: two poses of the workspace, a payload up to 2 kg and a feasible pretension. Off is how far
 /// the tip is from the trajectory on the way, swing how far from where it comes to rest after the end; it has settled when it

@@ -119,21 +119,23 @@ fn simulate(
     }
     match &args.record {
         None => watched(&mut |_| bar.inc(1)),
-        Some(file) => recording::record(file, &about(args, scenario), &settings, |recording| {
-            let mut written = Ok(());
-            let summary = watched(&mut |tick| {
-                bar.inc(1);
-                if written.is_ok() {
-                    written = recording.take_tick(tick);
-                }
-            })?;
-            written?;
-            Ok(summary)
-        }),
+        Some(file) => {
+            recording::record(file, &description(args, scenario), &settings, |recording| {
+                let mut written = Ok(());
+                let summary = watched(&mut |tick| {
+                    bar.inc(1);
+                    if written.is_ok() {
+                        written = recording.take_tick(tick);
+                    }
+                })?;
+                written?;
+                Ok(summary)
+            })
+        }
     }
 }
 
-fn about(args: &Args, scenario: &Scenario) -> About {
+fn description(args: &Args, scenario: &Scenario) -> About {
     let rig = args.rig.as_ref().map(|rig| rig.display().to_string());
     About {
         scenario: Some(args.scenario.display().to_string()),

@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
 /// The leg must be disarmed and hang free, without a payload. One motor is jogged both ways, without a tension and against one:
 /// resistance, torque constant, friction, pull. Then the leg is homed and swings a little at three pretensions: play of the gears,
 /// stretch of the tendons, first mode, inertia. It says before what it will do, and asks on a real leg. Any fault, counts the wrong
-/// way and Ctrl-C end it with the motors off or held, and nothing is written; what jogs told by then is printed.
+/// way and Ctrl-C end it with the motors off or held, and nothing is written; what the jogs measured until then is printed.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// The motor.

@@ -79,7 +79,7 @@ impl Action {
                 azimuth_deg,
                 force_n,
                 for_s,
-            } => plant.push(plant.across(azimuth_deg) * force_n, for_s, PUSH_RISE_S),
+            } => plant.push(plant.transverse(azimuth_deg) * force_n, for_s, PUSH_RISE_S),
             Self::Fault(defect) => plant.set_defect(defect, true),
             Self::Repair(defect) => plant.set_defect(defect, false),
             Self::EmergencyStop(pressed) => plant.press_emergency_stop(pressed),

@@ -46,7 +46,7 @@ impl<D: Device> Bench<D> {
     }
 
     /// Does something with the device.
-    pub fn with<T>(&mut self, act: impl FnOnce(&mut D, &mut Context<'_>) -> T) -> T {
+    pub fn act<T>(&mut self, act: impl FnOnce(&mut D, &mut Context<'_>) -> T) -> T {
         let mut context = Context {
             cycle: self.cycle,
             clocks: &self.clocks,
@@ -63,13 +63,13 @@ impl<D: Device> Bench<D> {
     /// Reads a register.
     pub fn read(&mut self, register: &str) -> u32 {
         let offset = self.block.register(register).unwrap().offset;
-        self.with(|device, context| device.read(offset, context))
+        self.act(|device, context| device.read(offset, context))
     }
 
     /// Writes a register.
     pub fn write(&mut self, register: &str, value: u32) {
         let offset = self.block.register(register).unwrap().offset;
-        self.with(|device, context| device.write(offset, value, context));
+        self.act(|device, context| device.write(offset, value, context));
     }
 
     /// Reads a field.
@@ -101,12 +101,12 @@ impl<D: Device> Bench<D> {
         while let Some(event) = self.device.next_event().filter(|event| *event <= cycle) {
             assert!(event >= self.cycle, "an event of the past");
             self.cycle = event;
-            self.with(|device, context| device.advance(context));
+            self.act(|device, context| device.advance(context));
             let next = self.device.next_event();
             assert!(next.is_none_or(|next| next > event), "an event stays due");
         }
         self.cycle = cycle;
-        self.with(|device, context| device.advance(context));
+        self.act(|device, context| device.advance(context));
     }
 
     /// Lets so many cycles pass.

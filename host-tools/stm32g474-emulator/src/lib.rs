@@ -4,6 +4,27 @@
 //! access, reset value, clock) is not typed by hand: see [`facts`]. An access or a state that the real chip forbids is a
 //! [`Finding`](findings::Finding), and a run with findings fails.
 //!
+//! Begin with [`image::Image::parse`], which reads the file that is flashed; [`chip::Chip::run`] lets it run on a
+//! [`Board`](board::Board) until something happens, and [`chip::Chip::peripherals`] has what was found.
+//!
+//! ```no_run
+//! use stm32g474_emulator::board::Board;
+//! use stm32g474_emulator::chip::Chip;
+//! use stm32g474_emulator::image::Image;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let elf = std::fs::read("target/thumbv7em-none-eabihf/firmware/leg-stm32g474")?;
+//! let image = Image::parse(&elf)?;
+//! let mut chip = Chip::new(&image, &Board::default())?;
+//! let stop = chip.run(100_000);
+//! println!("{stop:?} at cycle {}", chip.cycle());
+//! for finding in chip.peripherals().findings.list() {
+//!     println!("{finding:?}");
+//! }
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! | module | what is in it |
 //! |---|---|
 //! | [`facts`] | what the chip's makers say of its registers, pins and interrupts |

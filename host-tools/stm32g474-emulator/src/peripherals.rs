@@ -61,7 +61,7 @@ impl Peripherals {
     }
 
     /// The peripherals at a moment, and what they see of the chip then.
-    pub fn at(&mut self, cycle: u64) -> (&mut Devices, Context<'_>) {
+    pub fn moment(&mut self, cycle: u64) -> (&mut Devices, Context<'_>) {
         self.set_cycle(cycle);
         self.now()
     }

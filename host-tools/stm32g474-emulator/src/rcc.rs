@@ -85,7 +85,7 @@ impl Rcc {
         }
     }
 
-    /// The supply was gone: only what follows is told.
+    /// The supply was gone: only what follows is reported.
     pub fn forget_causes(&mut self) {
         self.registers.set(self.fields.remove_flags.offset, 0);
     }
@@ -183,7 +183,7 @@ impl Rcc {
 
 impl Device for Rcc {
     fn reset(&mut self) {
-        // Why the chip started is told until software clears it.
+        // Why the chip started is shown until software clears it.
         let causes = self.registers.get(self.fields.remove_flags.offset);
         let kept = causes & !(self.fields.lsi_on.mask | self.fields.lsi_ready.mask);
         self.registers.reset();

@@ -34,7 +34,7 @@ fn settings() -> Settings {
 }
 
 /// How far position, rate and acceleration of a point are from the circle's.
-fn off(point: &TimedPoint) -> [f64; 3] {
+fn deviation(point: &TimedPoint) -> [f64; 3] {
     let (found, expected) = (point.motion, circle(point.time_s));
     [
         (found.position, expected.position),
@@ -53,7 +53,7 @@ fn points_have_the_rates_of_the_motion_through_the_rows() {
     let path = TimedPath::new(&rows(&times_s));
     assert_eq!(path.points().len(), times_s.len());
     for (point, time_s) in path.points().iter().zip(times_s) {
-        let [position, rate, acceleration] = off(point);
+        let [position, rate, acceleration] = deviation(point);
         assert!((point.time_s - time_s).abs() < 1e-9);
         assert!(
             position < 1e-12 && rate < 1e-6 && acceleration < 3e-4,
@@ -78,7 +78,7 @@ fn few_rows_are_a_path_too() {
     let path = TimedPath::new(&rows(&[0.0, 0.1, 0.2, 0.3]));
     for time_s in [0.05, 0.15, 0.29] {
         let motion = path.at(time_s).unwrap();
-        let [position, ..] = off(&TimedPoint { time_s, motion });
+        let [position, ..] = deviation(&TimedPoint { time_s, motion });
         assert!(position < 1e-5, "{position}");
     }
     assert_eq!((path.at(-0.01), path.at(0.31)), (None, None));
@@ -112,7 +112,7 @@ fn rows_far_from_each_other_have_points_between() {
     let points = way(&from, &to);
     assert_eq!((points.len(), points.last()), (25, Some(&to)));
     for point in points {
-        let [position, rate, acceleration] = off(&point);
+        let [position, rate, acceleration] = deviation(&point);
         assert!(
             position < 1e-6 && rate < 1e-4 && acceleration < 2e-3,
             "{point:?}"

@@ -51,7 +51,7 @@ fn settings() -> Settings {
 }
 
 #[track_caller]
-fn near(found: f64, expected: f64, part: f64) {
+fn assert_near(found: f64, expected: f64, part: f64) {
     assert!(
         (found - expected).abs() <= part * expected.abs(),
         "{found} is not {expected} within {part}"
@@ -63,7 +63,7 @@ fn the_current_sensor_covers_the_limits_in_both_directions() {
     let (page, settings) = (Page::read(), settings());
     let [shunt, gain, r8, r9, c2] = page.values(["RS", "GS", "R8", "R9", "C2"]);
     let range_a = FULL_V / 2.0 / (gain * shunt);
-    near(range_a, Actuator::DEFAULT.current_range_a, 0.02);
+    assert_near(range_a, Actuator::DEFAULT.current_range_a, 0.02);
     let limit_a = f64::from(settings.limits.current_a);
     let reached_a = (FULL_V / 2.0 - SENSOR_REACH_V) / (gain * shunt);
     assert!(limit_a < reached_a, "{reached_a} A");
@@ -88,7 +88,7 @@ fn the_encoder_is_fast_enough_and_an_open_collector_is_not() {
     let (page, settings) = (Page::read(), settings());
     let [lines, most_hz, cable] = page.values(["N1", "FE", "CW"]);
     let actuator = Actuator::DEFAULT;
-    near(4.0 * lines, actuator.counts_per_turn, 1e-9);
+    assert_near(4.0 * lines, actuator.counts_per_turn, 1e-9);
     let speed_m_per_s = f64::from(settings.servo.speed_m_per_s);
     let turns_per_s = speed_m_per_s / actuator.lead_m * actuator.gear_ratio;
     let track_hz = turns_per_s * lines;
@@ -147,8 +147,8 @@ fn the_motor_supply_is_measured_fused_and_takes_what_the_motors_give_back() {
     let limits = &settings.limits;
     let [supply, r18, r19, c4] = page.values(["VM", "R18", "R19", "C4"]);
     let range_v = FULL_V * (1.0 + r18 / r19);
-    near(range_v, Actuator::DEFAULT.supply_range_v, 0.02);
-    near(supply, Actuator::DEFAULT.supply_v, 1e-9);
+    assert_near(range_v, Actuator::DEFAULT.supply_range_v, 0.02);
+    assert_near(supply, Actuator::DEFAULT.supply_v, 1e-9);
     let bounds_v = [limits.supply_min_v, limits.supply_max_v].map(f64::from);
     assert!(bounds_v[0] < supply && supply < bounds_v[1] && bounds_v[1] < range_v);
     let mean_s = r18 * r19 / (r18 + r19) * c4;
@@ -190,7 +190,7 @@ fn the_temperature_sensor_shows_its_limit_by_either_settings() {
     assert!(limit_v < 0.8 * FULL_V);
     let [cold_c, hot_c] = Actuator::DEFAULT.temperature_range_c;
     // Whoever forgets to set the kit's range is told the limit to 2 K.
-    near(cold_c + (hot_c - cold_c) * limit_v / FULL_V, limit_c, 0.02);
+    assert_near(cold_c + (hot_c - cold_c) * limit_v / FULL_V, limit_c, 0.02);
     // The sensor drives 100 µA.
     assert!(FULL_V / r20 < 100e-6 && r20 * c6 > 100.0 * PULSE_S && r20 * c6 < 0.1);
     let [volts, fault] = page.broken("temperature sensor");
@@ -209,20 +209,20 @@ fn the_section_of_the_page_is_that_of_the_kit() {
     for (given, computed) in actuator
         .cell_range_n
         .into_iter()
-        .zip(Cell::of(&page).range_n())
+        .zip(Cell::new(&page).range_n())
     {
-        near(given, computed, 0.003);
+        assert_near(given, computed, 0.003);
     }
     let [shunt, gain, r18, r19] = page.values(["RS", "GS", "R18", "R19"]);
-    near(
+    assert_near(
         actuator.current_range_a,
         FULL_V / 2.0 / (gain * shunt),
         0.001,
     );
-    near(actuator.supply_range_v, FULL_V * (1.0 + r18 / r19), 0.001);
+    assert_near(actuator.supply_range_v, FULL_V * (1.0 + r18 / r19), 0.001);
     let [zero_v, v_per_k] = page.values(["V0", "ST"]);
     for (given, volts) in actuator.temperature_range_c.into_iter().zip([0.0, FULL_V]) {
-        near(given, (volts - zero_v) / v_per_k, 0.003);
+        assert_near(given, (volts - zero_v) / v_per_k, 0.003);
     }
 }
 

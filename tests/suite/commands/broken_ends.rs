@@ -12,7 +12,7 @@ use std::time::Instant;
 const LEG: &str = env!("CARGO_BIN_EXE_leg-under-test");
 
 /// `leg` by a shell, after the shell's own `before`, in a directory.
-fn after(before: &str, directory: &Path, arguments: &[&str]) -> Output {
+fn leg(before: &str, directory: &Path, arguments: &[&str]) -> Output {
     let mut shell = Command::new("sh");
     shell.args(["-c", &format!("{before}\nexec \"$@\""), "sh", LEG]);
     shell.args(arguments).current_dir(directory);
@@ -75,7 +75,7 @@ fn the_error_of_a_full_disk_names_the_file_and_leaves_nothing_hidden() {
         ),
     ] {
         let directory = tempfile::tempdir().unwrap();
-        let output = after(&limit(blocks), directory.path(), &arguments);
+        let output = leg(&limit(blocks), directory.path(), &arguments);
         let told = errors(&output);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
         let names = told.contains(named) && told.contains("File too large");
@@ -91,7 +91,7 @@ fn the_error_of_a_full_disk_names_the_file_and_leaves_nothing_hidden() {
 #[test]
 fn standard_streams_that_take_nothing_end_a_command_without_a_panic() {
     let directory = tempfile::tempdir().unwrap();
-    let output = after("exec >/dev/full", directory.path(), &["faults"]);
+    let output = leg("exec >/dev/full", directory.path(), &["faults"]);
     let told = errors(&output);
     assert_eq!(output.status.code(), Some(2), "{told}");
     assert!(
@@ -103,7 +103,7 @@ fn standard_streams_that_take_nothing_end_a_command_without_a_panic() {
         &["rig", "show", "none"],
         &["--json", "rig", "show", "none"],
     ] {
-        let output = after("exec >/dev/full 2>/dev/full", directory.path(), arguments);
+        let output = leg("exec >/dev/full 2>/dev/full", directory.path(), arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
     }
 }
@@ -140,7 +140,7 @@ fn an_input_without_an_end_is_refused_at_once() {
         (&["curve", "/dev/zero"], 2, "it is larger than 32 MiB"),
         (&["replay", "/dev/zero"], 2, "is no whole MCAP file"),
     ] {
-        let output = after(memory, directory.path(), arguments);
+        let output = leg(memory, directory.path(), arguments);
         let told = errors(&output);
         assert_eq!(output.status.code(), Some(code), "{arguments:?}: {told}");
         assert!(
@@ -154,7 +154,7 @@ fn an_input_without_an_end_is_refused_at_once() {
         "x".repeat(100_000)
     );
     fs::write(directory.path().join("poses.jsonl"), lines).unwrap();
-    let output = after(memory, directory.path(), &["eval", "poses.jsonl"]);
+    let output = leg(memory, directory.path(), &["eval", "poses.jsonl"]);
     let answers = String::from_utf8(output.stdout).unwrap();
     let answers: Vec<Value> = answers
         .lines()
@@ -194,19 +194,19 @@ fn a_recording_of_a_command_that_is_killed_is_replayed_as_far_as_it_goes() {
     });
     recording.kill().unwrap();
     recording.wait().unwrap();
-    let output = after("", directory.path(), &["replay", "leg.part.mcap"]);
+    let output = leg("", directory.path(), &["replay", "leg.part.mcap"]);
     let told = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{}", errors(&output));
     assert!(
         told.starts_with("The recording did not come to its end"),
         "{told}"
     );
-    let output = after("", directory.path(), &["replay", "leg.part.mcap", "--json"]);
+    let output = leg("", directory.path(), &["replay", "leg.part.mcap", "--json"]);
     let replayed: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(replayed["finished"], false);
     assert!(replayed["ticks"].as_u64().unwrap() > 8000, "{replayed}");
     // The next one leaves it and says so.
-    let output = after(
+    let output = leg(
         "",
         directory.path(),
         &["log", "--on", "sim", "--for", "0.1", "--out", "leg.mcap"],

@@ -76,7 +76,7 @@ pub fn on_bus(frame: &CanFrame) -> Frame {
 /// Does something with a chip's node.
 pub fn with_node<R>(chip: &Chip, work: impl FnOnce(&mut Fdcan, &mut Context<'_>) -> R) -> R {
     let mut peripherals = chip.peripherals();
-    let (devices, mut context) = peripherals.at(chip.cycle());
+    let (devices, mut context) = peripherals.moment(chip.cycle());
     work(&mut devices.fdcan, &mut context)
 }
 

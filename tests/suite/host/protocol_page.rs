@@ -4,6 +4,7 @@
 
 mod grammar;
 mod recorder;
+mod two_hashes;
 
 use crate::board::emulated_board::board::{BoardUnderTest, errors};
 use crate::common::python;
@@ -107,7 +108,8 @@ fn listing(text: &str) -> String {
 #[test]
 fn the_page_has_the_messages_of_the_firmware() {
     let text = fs::read_to_string(page()).unwrap();
-    let messages = format!("schema {}\n\n{}", hex(&HOST_SCHEMA), grammar::of_messages());
+    let (_, shapes) = grammar::message_types();
+    let messages = format!("schema {}\n\n{shapes}", hex(&HOST_SCHEMA));
     let expected = with_part(&text, "messages", &listing(&messages));
     let expected = with_part(&expected, "exchange", &listing(&exchange()));
     let expected = with_part(&expected, "signals", &recorder::table());

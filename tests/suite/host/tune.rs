@@ -75,7 +75,7 @@ fn jog(
 }
 
 /// How far a row is off what it is compared with, as a part of it; not much farther than its uncertainty.
-fn off(row: &Row) -> f64 {
+fn deviation(row: &Row) -> f64 {
     let (measured, real) = (row.measured, row.configured.unwrap());
     println!("{row:?}");
     assert!(
@@ -111,7 +111,7 @@ fn the_constants_of_a_motor_are_found_within_five_percent() {
             "pull, paying out",
         ] {
             let row = rows.iter().find(|row| row.name == name).unwrap();
-            assert!(off(row) < 0.05, "seed {seed}");
+            assert!(deviation(row) < 0.05, "seed {seed}");
         }
         let after = line.with_plant(|plant| plant.truth().unstretched_m);
         for (before, after) in before.iter().zip(after) {

@@ -16,7 +16,7 @@ fn stiffnesses() -> impl Iterator<Item = Matrix3<f64>> {
 }
 
 /// Two orthonormal axes that a push at the tip turns the leg about: across it.
-fn across(direction: &Direction<f64>) -> Matrix3x2<f64> {
+fn transverse_axes(direction: &Direction<f64>) -> Matrix3x2<f64> {
     let p = direction.vector();
     let first = p.cross(&Vector3::x()).normalize();
     Matrix3x2::from_columns(&[first, p.cross(&first)])
@@ -57,7 +57,7 @@ fn a_leg_that_may_twist_resists_a_push_by_its_whole_compliance() {
             assert_bending(
                 &bending,
                 &compliance,
-                &across(&direction),
+                &transverse_axes(&direction),
                 &direction.vector(),
             );
         }

@@ -162,12 +162,12 @@ fn reactions(row: &[&str]) -> Vec<(Fault, State, f64)> {
 fn bars(row: &[&str]) -> Vec<Bars> {
     let kinds = shown(row, "strike").map(|name| {
         let mut names = Defect::descriptions().map(|(defect, _)| defect);
-        Defect::of_kind(names.position(|defect| defect == name).unwrap(), 0).unwrap()
+        Defect::numbered(names.position(|defect| defect == name).unwrap(), 0).unwrap()
     });
     let bars = kinds.flat_map(|defect| {
         let all = (0..Activity::count()).map(Activity::in_turn);
         all.flat_map(move |activity| {
-            [false, true].map(|near| Bars::of(defect, activity, F_MAX_N, near))
+            [false, true].map(|near| Bars::widest(defect, activity, F_MAX_N, near))
         })
     });
     bars.collect()
@@ -177,15 +177,17 @@ fn bars(row: &[&str]) -> Vec<Bars> {
 const F_MAX_N: f64 = 100.0;
 
 /// The numbers of a cell that stand before a word.
-fn before(cell: &str, unit: &str) -> Vec<f64> {
+fn numbers(cell: &str, unit: &str) -> Vec<f64> {
     let words: Vec<&str> = cell.split([' ', ',', ';', ':']).collect();
     let pairs = words.windows(2).filter(|pair| pair[1] == unit);
     pairs.filter_map(|pair| pair[0].parse().ok()).collect()
 }
 
 fn times_s(cell: &str) -> Vec<f64> {
-    let ms = before(cell, "ms").into_iter().map(|time_ms| 1e-3 * time_ms);
-    ms.chain(before(cell, "s")).collect()
+    let ms = numbers(cell, "ms")
+        .into_iter()
+        .map(|time_ms| 1e-3 * time_ms);
+    ms.chain(numbers(cell, "s")).collect()
 }
 
 fn has(numbers: &[f64], number: f64) -> bool {
@@ -258,7 +260,7 @@ fn a_row_says_how_far_its_strikes_may_go() {
             allowed_mm = steps.filter_map(|step| tip_moved_mm(&step)).collect();
         }
         let tips_mm = row[4].split("tip ").skip(1);
-        for claimed_mm in tips_mm.flat_map(|words| before(words, "mm").into_iter().take(1)) {
+        for claimed_mm in tips_mm.flat_map(|words| numbers(words, "mm").into_iter().take(1)) {
             if !has(&allowed_mm, claimed_mm) {
                 wrong.push(format!("{claimed_mm} mm of {allowed_mm:?}: {row:?}"));
             }
@@ -268,7 +270,7 @@ fn a_row_says_how_far_its_strikes_may_go() {
             continue;
         }
         let beyond: Vec<f64> = bars.iter().map(|bars| bars.tension_n - F_MAX_N).collect();
-        for percent in before(row[4], "%") {
+        for percent in numbers(row[4], "%") {
             if !has(&beyond, percent) {
                 wrong.push(format!("{percent} % of {beyond:?}: {row:?}"));
             }

@@ -22,7 +22,7 @@ fn a_push_that_is_no_number_ends_the_run() {
         }
     }
     let mut stand = sound;
-    let across = stand.plant().across(90.0);
+    let across = stand.plant().transverse(90.0);
     stand.plant().push(across * 5.0, 1.0, 0.0);
     for _ in 0..80 {
         stand.tick().unwrap();

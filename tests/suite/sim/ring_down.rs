@@ -133,7 +133,7 @@ fn ring_downs(rig: &RigFile, count: u32) -> Found {
         let (sound, payload_kg) = drawn(rig, &mut rng);
         let mut pushed = sound.clone();
         let plant = pushed.plant();
-        plant.push(plant.across(360.0 * rng.f64()) * 5.0, 0.1, 0.0);
+        plant.push(plant.transverse(360.0 * rng.f64()) * 5.0, 0.1, 0.0);
         let mut loaded = sound;
         loaded.plant().set_payload(payload_kg + 0.5, 0.05);
         for (i, (mut stand, for_s)) in [(pushed, 0.1), (loaded, 0.05)].into_iter().enumerate() {

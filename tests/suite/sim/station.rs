@@ -160,7 +160,7 @@ fn a_push_for_a_minute_is_compensated() {
     let mut bench = keeping(&paper(), [30.0, 10.0], 0.5, 61);
     let home_m = bench.truth.tip_m;
     let plant = bench.plant();
-    plant.push(plant.across(100.0) * 6.0, 60.0, 0.3);
+    plant.push(plant.transverse(100.0) * 6.0, 60.0, 0.3);
     for largest_mm in [4.0, 7.0] {
         let found = Excursion::new(&mut bench, home_m, 60.0);
         assert!(

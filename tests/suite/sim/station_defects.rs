@@ -197,7 +197,7 @@ fn a_push_to_the_maximum_tension_is_given_way_to() {
     let mut bench = keeping(&paper(), [60.0, 20.0], 2.0, 24);
     let home_m = bench.truth.tip_m;
     let plant = bench.plant();
-    plant.push(plant.across(60.0) * PUSH_N, 2.0, 0.0);
+    plant.push(plant.transverse(60.0) * PUSH_N, 2.0, 0.0);
     let found = Excursion::new(&mut bench, home_m, 8.0);
     let words = format!("a push of {PUSH_N} N beside 2 kg moves the tip by up to {FARTHEST_MM} mm");
     require_said("firmware/SAFETY.md", &[words]);

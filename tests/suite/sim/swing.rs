@@ -131,7 +131,7 @@ const SHAKE_S: f64 = 0.125;
 
 /// Shakes a leg for as long, or until it is no longer active; `between` comes before each push.
 fn shake(stand: &mut Stand, pushes: u32, mut between: impl FnMut(&mut Stand, u32)) {
-    let across = stand.plant().across(90.0);
+    let across = stand.plant().transverse(90.0);
     for push in 0..pushes {
         between(stand, push);
         let force_n = if push % 2 == 0 { 4.0 } else { -4.0 };

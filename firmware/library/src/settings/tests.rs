@@ -16,7 +16,7 @@ fn refused(settings: &Settings) -> Option<(u8, u8, &'static str)> {
     }
 }
 
-fn beyond(field: &Field) -> [f32; 5] {
+fn values_out_of_range(field: &Field) -> [f32; 5] {
     let [low, high] = field.range;
     let low = low - 0.1 * low.abs().max(1e-3);
     [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, low, 1.1 * high]
@@ -26,7 +26,7 @@ fn beyond(field: &Field) -> [f32; 5] {
 fn a_calibration_outside_its_range_is_refused_by_name() {
     for (number, field) in AxisCalibration::FIELDS.iter().enumerate() {
         for axis in 0..3 {
-            for value in beyond(field) {
+            for value in values_out_of_range(field) {
                 let mut settings = Settings::for_table_1().unwrap();
                 *settings.axes[axis].values_mut()[number] = value;
                 // A count may have either sign.
@@ -40,7 +40,7 @@ fn a_calibration_outside_its_range_is_refused_by_name() {
         }
     }
     for (number, field) in BoardCalibration::FIELDS.iter().enumerate() {
-        for value in beyond(field) {
+        for value in values_out_of_range(field) {
             let mut settings = Settings::for_table_1().unwrap();
             *settings.board.values_mut()[number] = value;
             assert_eq!(refused(&settings), Some((7, 0, field.name)), "{value}");

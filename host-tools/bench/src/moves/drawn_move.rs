@@ -1,6 +1,6 @@
 //! A move that is drawn from the seed and its number.
 
-use crate::draw::{PAYLOAD_KG, between, drawn, feasible, homed, numbered, pose};
+use crate::draw::{PAYLOAD_KG, distance, drawn, feasible, homed, numbered, pose};
 use fastrand::Rng;
 use leg_base::angles;
 use leg_rig::plant_settings::PlantSettings;
@@ -58,7 +58,7 @@ impl Drawn {
                 (low, high) = (low.max(lowest), high.min(highest));
             }
             let pretension_n = low + (high - low) * rng.f64();
-            if low < high && between(&begin_deg, &end_deg) > SHORTEST {
+            if low < high && distance(&begin_deg, &end_deg) > SHORTEST {
                 return Some(Self {
                     number,
                     seed,

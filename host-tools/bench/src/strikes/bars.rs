@@ -43,7 +43,7 @@ const WAY_MM: f64 = 3.0;
 /// goes by what it lies until it lies otherwise.
 const REARMED_MM: f64 = 2.0;
 
-/// The same where a gain is 20 % off, which cannot be told from a load, mm.
+/// The same where a gain is 20 % off, which cannot be distinguished from a load, mm.
 const GAIN_MM: f64 = 1.1;
 
 /// The same where such a cell comes to show the maximum tension: its tendon is paid out, as under a load that is too heavy, until
@@ -126,7 +126,7 @@ impl Bars {
     /// The widest of a defect, for a page: those of a leg that pulls and goes as far as it may, and of one that is near its
     /// maximum tension or not.
     #[must_use]
-    pub fn of(defect: Defect, activity: Activity, f_max_n: f64, near_maximum: bool) -> Self {
+    pub fn widest(defect: Defect, activity: Activity, f_max_n: f64, near_maximum: bool) -> Self {
         let part = if near_maximum { 1.0 } else { 0.5 };
         let before = Unstruck {
             tensions_n: [0.2, 0.6, 1.0].map(|share| share * part * f_max_n),
@@ -144,7 +144,7 @@ impl Bars {
         before: &Unstruck,
     ) -> Self {
         Self {
-            tension_n: f_max_n * (1.0 + beyond(defect, activity)),
+            tension_n: f_max_n * (1.0 + excess_part(defect, activity)),
             homing_n: HOMING_N,
             tip_mm: tip_mm(defect, activity).max(gain_at_max_mm(defect, f_max_n, before.highest_n)),
             named_s: defect.and_then(|defect| named_s(defect, activity, before)),
@@ -154,7 +154,7 @@ impl Bars {
 }
 
 /// How far the leg may go beyond its maximum tension, as a part of it.
-fn beyond(defect: Option<Defect>, activity: Activity) -> f64 {
+fn excess_part(defect: Option<Defect>, activity: Activity) -> f64 {
     match defect {
         Some(Defect::DriverFullOn(_)) if activity == Activity::Rearmed => RUNAWAY_AGAIN_BEYOND,
         Some(Defect::DriverFullOn(_)) => RUNAWAY_BEYOND,

@@ -1,7 +1,7 @@
 //! A leg that is to be struck: drawn from the seed and its number.
 
 use super::activity::Activity;
-use crate::draw::{PAYLOAD_KG, between, drawn, feasible, mixed, plant, pose};
+use crate::draw::{PAYLOAD_KG, distance, drawn, feasible, mixed, plant, pose};
 use fastrand::Rng;
 use leg_firmware::command::Compensation;
 use leg_rig::plant_settings::PlantSettings;
@@ -128,7 +128,7 @@ impl Case {
                 .map(|range| range[1])
                 .fold(f64::INFINITY, f64::min);
             let moves = self.activity != Activity::Moving
-                || between(&[azimuth_deg, tilt_deg], &target_deg) > SHORTEST_WAY;
+                || distance(&[azimuth_deg, tilt_deg], &target_deg) > SHORTEST_WAY;
             if low < high && moves {
                 self.azimuth_deg = azimuth_deg;
                 self.tilt_deg = tilt_deg;

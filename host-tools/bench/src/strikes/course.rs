@@ -23,7 +23,7 @@ struct Instant {
 }
 
 impl Instant {
-    fn of(stand: &Stand) -> Self {
+    fn now(stand: &Stand) -> Self {
         let telemetry = stand.telemetry.as_ref();
         Self {
             time_s: stand.time_s(),
@@ -35,9 +35,9 @@ impl Instant {
 
 impl Course {
     /// Begins where a leg is now.
-    pub fn from(stand: &Stand) -> Self {
+    pub fn begin(stand: &Stand) -> Self {
         Self {
-            first: Instant::of(stand),
+            first: Instant::now(stand),
             rest: Vec::new(),
         }
     }
@@ -45,7 +45,7 @@ impl Course {
     pub fn add(&mut self, stand: &Stand) {
         let last = self.rest.last().unwrap_or(&self.first);
         if stand.time_s() >= last.time_s + EVERY_S {
-            self.rest.push(Instant::of(stand));
+            self.rest.push(Instant::now(stand));
         }
     }
 

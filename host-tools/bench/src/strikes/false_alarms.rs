@@ -186,14 +186,14 @@ impl<'a> User<'a> {
             8..=11 => self.push(),
             12..=14 => self.load(),
             15 | 16 => {
-                let n = self.between(PRETENSION_N);
+                let n = self.uniform(PRETENSION_N);
                 self.command(
                     &Command::Pretension(n as f32),
                     &format!("pretension {n:.1} N"),
                 )?;
             }
             17 => {
-                let demand = self.between(STIFFNESS_NM_PER_RAD);
+                let demand = self.uniform(STIFFNESS_NM_PER_RAD);
                 let towards_deg = self.rng.bool().then(|| 360.0 * self.rng.f64());
                 let command = Command::Stiffness {
                     demand_nm_per_rad: demand as f32,
@@ -216,7 +216,7 @@ impl<'a> User<'a> {
         Ok(wait_s)
     }
 
-    fn between(&mut self, [low, high]: [f64; 2]) -> f64 {
+    fn uniform(&mut self, [low, high]: [f64; 2]) -> f64 {
         low + (high - low) * self.rng.f64()
     }
 
@@ -256,8 +256,8 @@ impl<'a> User<'a> {
     /// A push that leaves every tension in its bounds, also when it ends and the leg swings back.
     fn push(&mut self) {
         let (azimuth_deg, asked_n) = (360.0 * self.rng.f64(), PUSH_N * self.rng.f64());
-        let (for_s, rise_s) = (self.between([0.05, 1.0]), self.between([0.02, 0.2]));
-        let across = self.stand.plant().across(azimuth_deg);
+        let (for_s, rise_s) = (self.uniform([0.05, 1.0]), self.uniform([0.02, 0.2]));
+        let across = self.stand.plant().transverse(azimuth_deg);
         let force_n = asked_n.min(strongest_n(self.file, &self.stand.truth, &across));
         self.note(format!(
             "push {force_n:.1} N at {azimuth_deg:.0}° for {for_s:.2} s, rising in {rise_s:.2} s"
@@ -266,7 +266,7 @@ impl<'a> User<'a> {
     }
 
     fn load(&mut self) {
-        let (kg, over_s) = (PAYLOAD_KG * self.rng.f64(), self.between([0.05, 0.5]));
+        let (kg, over_s) = (PAYLOAD_KG * self.rng.f64(), self.uniform([0.05, 0.5]));
         if self.holds(self.pose_deg, kg) {
             self.payload_kg = kg;
             self.note(format!("payload {kg:.2} kg in {over_s:.2} s"));
@@ -278,7 +278,7 @@ impl<'a> User<'a> {
     fn stop_and_go(&mut self) -> Result<(), String> {
         self.command(&Command::Stop, "stop, clear, arm")?;
         for command in [Command::Clear, Command::Arm] {
-            let wait_s = self.between([0.05, 0.5]);
+            let wait_s = self.uniform([0.05, 0.5]);
             if self.wait(wait_s)?.is_some() {
                 return Ok(());
             }

@@ -65,10 +65,10 @@ pub(super) fn prepare(case: &Case) -> Result<Prepared, String> {
             Ok(resting(stand))
         }
         Activity::Arming => {
-            let way = Way::at(stand.truth.tip_m);
+            let way = Way::begin(stand.truth.tip_m);
             stand.command(&command)?;
             stand.wait(ARMING_S * case.part)?;
-            let unstruck = Course::from(&stand).rest(0.0);
+            let unstruck = Course::begin(&stand).rest(0.0);
             Ok(Prepared {
                 stand,
                 way,
@@ -83,8 +83,8 @@ pub(super) fn prepare(case: &Case) -> Result<Prepared, String> {
 }
 
 fn resting(stand: Stand) -> Prepared {
-    let way = Way::at(stand.truth.tip_m);
-    let unstruck = Course::from(&stand).rest(0.0);
+    let way = Way::begin(stand.truth.tip_m);
+    let unstruck = Course::begin(&stand).rest(0.0);
     Prepared {
         stand,
         way,
@@ -134,7 +134,7 @@ fn lead(case: &Case, stand: &mut Stand) -> Result<(), String> {
         stand.wait(LOADING_S)?;
     }
     if let Some([azimuth_deg, force_n]) = case.push {
-        let across = stand.plant().across(azimuth_deg);
+        let across = stand.plant().transverse(azimuth_deg);
         // No harder than the pose can bear: what a push does beyond that is no matter of a fault.
         let force_n = force_n.min(strongest_n(&case.file, &stand.truth, &across));
         stand.plant().push(across * force_n, LOADING_S, 0.1);
@@ -151,9 +151,9 @@ fn disarm(stand: &mut Stand) -> Result<(), String> {
 
 /// A leg that is struck on its way, which it has gone to its end before.
 fn on_the_way(case: &Case, stand: Stand) -> Result<Prepared, String> {
-    let mut way = Way::at(stand.truth.tip_m);
+    let mut way = Way::begin(stand.truth.tip_m);
     let mut whole = stand.clone();
-    let mut course = Course::from(&whole);
+    let mut course = Course::begin(&whole);
     let (began_s, mut ended_s) = (stand.time_s(), None);
     while ended_s.is_none_or(|ended_s| whole.time_s() < ended_s + AFTER_S) {
         whole.tick()?;

@@ -195,7 +195,7 @@ pub(super) fn strike(
         struck: Struck::new(case, strike),
     };
     let watched_s = watched_s(case, strike.defect);
-    while !watch.over(&stand, watched_s) {
+    while !watch.ends(&stand, watched_s) {
         if let Err(error) = watch.advance(&mut stand) {
             watch.struck.failures.push(error);
             break;
@@ -245,7 +245,7 @@ struct Watch<'a> {
 }
 
 impl Watch<'_> {
-    fn over(&self, stand: &Stand, watched_s: f64) -> bool {
+    fn ends(&self, stand: &Stand, watched_s: f64) -> bool {
         let now_s = stand.time_s() - self.began_s;
         let rearms = self.case.activity == Activity::Rearmed && self.given < 2 * CLEARS_S.len();
         let settled = self

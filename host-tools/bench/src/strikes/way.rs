@@ -12,7 +12,7 @@ pub(super) struct Way {
 }
 
 impl Way {
-    pub fn at(tip_m: Vector3<f64>) -> Self {
+    pub fn begin(tip_m: Vector3<f64>) -> Self {
         Self {
             points: vec![tip_m],
         }

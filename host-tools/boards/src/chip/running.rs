@@ -148,7 +148,7 @@ impl Running {
     pub fn tick(&mut self, request: &TickRequest, image: &Image) -> Result<TickReply, LinkError> {
         // The encoders of a chip count from its start.
         let first = *self.first.get_or_insert(request.sensors);
-        let sensors = wiring::since(&first, &request.sensors);
+        let sensors = wiring::count_from(&first, &request.sensors);
         self.corrupt_settings(sensors.settings_corrupt)?;
         wiring::apply(&mut self.chip.peripherals(), &sensors);
         self.check_breaks(&sensors, image)?;
@@ -304,7 +304,7 @@ impl Running {
             temperature_code,
             current_codes: wiring::current_codes(&self.chip.peripherals()),
             cell_fresh: [!self.defects.untriggered; 3],
-            // That a tick took too long is told in the next one.
+            // That a tick took too long is reported in the next one.
             late: self.defects.held,
             settings_corrupt: self.defects.settings_corrupt,
             ..self.sensors

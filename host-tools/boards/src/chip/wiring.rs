@@ -158,7 +158,7 @@ pub fn name(pin: Pin) -> String {
 const BAUD: u32 = 921_600;
 
 /// What the sensors read, with the encoders counted from a first reading: a chip's counters start at zero.
-pub fn since(first: &Sensors, sensors: &Sensors) -> Sensors {
+pub fn count_from(first: &Sensors, sensors: &Sensors) -> Sensors {
     let mut counts = sensors.encoder_counts;
     for (count, start) in counts.iter_mut().zip(first.encoder_counts) {
         *count = count.wrapping_sub(start);

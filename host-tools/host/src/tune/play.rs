@@ -57,7 +57,7 @@ pub(super) fn is_wide([low_n, high_n]: [f64; 2]) -> bool {
     0.5 * (high_n - low_n) >= HALF_MIN_N
 }
 
-/// The pretensions, N, between which the leg is stopped when it goes from one to another: there the stretch is told.
+/// The pretensions, N, between which the leg is stopped when it goes from one to another: there the stretch is measured.
 pub(super) fn stopped_n([low_n, high_n]: [f64; 2]) -> [f64; 2] {
     let [first, .., last] = STOPS;
     let at = |part: f64| 0.5 * (low_n + high_n + part * (high_n - low_n));

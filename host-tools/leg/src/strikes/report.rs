@@ -27,17 +27,17 @@ pub(super) fn by_bars(rows: &[Row], strikes: usize, seed: u64) -> String {
             row.fault,
             row.state.name(),
             row.count,
-            beside(measures.tension_n, 1, "N"),
-            beside(measures.homing_n, 1, "N"),
-            beside(measures.tip_mm, 2, "mm"),
-            beside(measures.named_s, 3, "s"),
+            value_and_bar(measures.tension_n, 1, "N"),
+            value_and_bar(measures.homing_n, 1, "N"),
+            value_and_bar(measures.tip_mm, 2, "mm"),
+            value_and_bar(measures.named_s, 3, "s"),
         )
     };
     let lines: String = rows.iter().map(line).collect();
     format!("{}{BARS_HEADING}{lines}", summary(rows, strikes, seed))
 }
 
-fn beside(measure: Measure, digits: usize, unit: &str) -> String {
+fn value_and_bar(measure: Measure, digits: usize, unit: &str) -> String {
     if measure.value == 0.0 {
         return format!("{:>19}", "-");
     }
@@ -129,7 +129,10 @@ pub(super) fn usages(usages: &[Usage]) -> String {
     let mut names: Vec<&str> = usages.iter().map(|usage| usage.rig.as_str()).collect();
     names.sort_unstable();
     names.dedup();
-    let rigs: String = names.into_iter().map(|name| of_rig(name, usages)).collect();
+    let rigs: String = names
+        .into_iter()
+        .map(|name| rig_summary(name, usages))
+        .collect();
     let alarms = usages.iter().flat_map(|usage| {
         let stopped = usage
             .stopped
@@ -141,7 +144,7 @@ pub(super) fn usages(usages: &[Usage]) -> String {
     format!("rig                        hours    uses  false alarms  true alarms\n{rigs}\n{alarms}")
 }
 
-fn of_rig(name: &str, usages: &[Usage]) -> String {
+fn rig_summary(name: &str, usages: &[Usage]) -> String {
     let all = || usages.iter().filter(|usage| usage.rig == name);
     let alarms = || all().flat_map(|usage| &usage.alarms);
     let hours = all().map(|usage| usage.time_s).sum::<f64>() / 3600.0;

@@ -166,7 +166,7 @@ mod tests {
     use leg_model::Elasticity;
 
     /// The paper's rig with other lines in the place of its curve's section.
-    fn with(tendon: impl Fn(&str) -> String) -> RigFile {
+    fn rig_with(tendon: impl Fn(&str) -> String) -> RigFile {
         let text = READY_RIGS[0].text;
         let start = text.find("[tendon.curve]").unwrap();
         let end = text.find("[workspace]").unwrap();
@@ -176,7 +176,7 @@ mod tests {
 
     #[test]
     fn each_tendon_may_have_its_own_curve() {
-        let file = with(|curve| {
+        let file = rig_with(|curve| {
             let named = |name: &str| curve.replace("[tendon.curve]", name);
             let longer = named("[tendon.curve_2]").replace("200]", "250]");
             [named("[tendon.curve_1]"), longer, named("[tendon.curve_3]")].concat()
@@ -191,7 +191,10 @@ mod tests {
     fn a_test_piece_is_scaled_to_the_tendon() {
         let sizes = "[tendon.test_piece]\nlength_mm = 120\ndiameter_mm = 0.6\ntendon_length_mm = 100\n\
                      tendon_diameter_mm = 0.8\n";
-        let (plain, scaled) = (with(str::to_owned), with(|curve| [curve, sizes].concat()));
+        let (plain, scaled) = (
+            rig_with(str::to_owned),
+            rig_with(|curve| [curve, sizes].concat()),
+        );
         for tension in [5.0, 70.0, 150.0] {
             let [a, b] = [plain, scaled].map(|file| file.tendons[0].stiffness(tension).unwrap());
             assert!((b / a - 32.0 / 15.0).abs() < 1e-12, "{tension} N: {a} {b}");

@@ -55,13 +55,13 @@ impl Plant {
 
     /// What the drive and the defects make of motors and supply.
     fn wire(&mut self, drive: &Drive<f32>) {
-        let jammed = self.defects.of_three(Defect::MotorJammed);
-        let failed = self.defects.of_three(Defect::DriverFault);
-        let inwards = self.defects.of_three(Defect::HalfBridgeOpen);
-        let outwards = self.defects.of_three(Defect::HalfBridgeOpenOutwards);
-        let full = self.defects.of_three(Defect::DriverFullOn);
-        let stuck = self.defects.of_three(Defect::DirectionStuck);
-        let apart = self.apart();
+        let jammed = self.defects.each(Defect::MotorJammed);
+        let failed = self.defects.each(Defect::DriverFault);
+        let inwards = self.defects.each(Defect::HalfBridgeOpen);
+        let outwards = self.defects.each(Defect::HalfBridgeOpenOutwards);
+        let full = self.defects.each(Defect::DriverFullOn);
+        let stuck = self.defects.each(Defect::DirectionStuck);
+        let apart = self.loose_plugs();
         for (i, motor) in self.motors.iter_mut().enumerate() {
             let asked = f64::from(drive.duty[i]).clamp(-1.0, 1.0);
             let duty = match (full[i], stuck[i]) {
@@ -86,8 +86,8 @@ impl Plant {
     }
 
     /// Which motors' plugs make no contact.
-    fn apart(&mut self) -> [bool; 3] {
-        let loose = self.defects.of_three(Defect::MotorIntermittent);
+    fn loose_plugs(&mut self) -> [bool; 3] {
+        let loose = self.defects.each(Defect::MotorIntermittent);
         if self.ticks.is_multiple_of(CONTACT_TICKS) && loose.contains(&true) {
             self.contacts = std::array::from_fn(|_| self.rng.bool());
         }
@@ -96,7 +96,7 @@ impl Plant {
 
     /// What gives way a little in every tick.
     fn creep(&mut self) {
-        let creeping = self.defects.of_three(Defect::TendonCreeps);
+        let creeping = self.defects.each(Defect::TendonCreeps);
         for (unstretched_m, creeps) in self.unstretched_at_zero_m.iter_mut().zip(creeping) {
             *unstretched_m += if creeps {
                 CREEP_M_PER_S * tick_s()
@@ -108,7 +108,7 @@ impl Plant {
 
     /// Whether the supply's dip is not over.
     fn dips(&self) -> bool {
-        let began = self.defects.since(Defect::SupplyDip);
+        let began = self.defects.first_tick(Defect::SupplyDip);
         began.is_some_and(|began| ((self.ticks - began) as f64) * tick_s() < DIP_S)
     }
 

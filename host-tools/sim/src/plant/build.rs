@@ -7,7 +7,7 @@ use super::energy::Work;
 use super::hand::Hand;
 use super::inertia::Inertia;
 use super::motor::{Motor, MotorType};
-use super::noise::of_defects;
+use super::noise::defect_rng;
 use super::payload::Payload;
 use super::push::Push;
 use super::sensing::Cells;
@@ -55,7 +55,7 @@ impl Plant {
             encoders: std::array::from_fn(|i| Encoder::new(i, rig.calibration.counts_sign[i])),
             cells: Cells::new(actuator, settings, seed),
             defects: Defects::default(),
-            rng: of_defects(seed.wrapping_add(1)),
+            rng: defect_rng(seed.wrapping_add(1)),
             contacts: [true; 3],
             emergency_stop: false,
             payload: Payload::new(started.payload_kg),

@@ -1,7 +1,7 @@
 //! What the defects of load cells and their wires make of the signals.
 
 use super::defect::{Defect, Defects};
-use super::noise::{gaussian, of_defects};
+use super::noise::{defect_rng, gaussian};
 use fastrand::Rng;
 use leg_base::tick_time::tick_s;
 use std::f64::consts::TAU;
@@ -49,7 +49,7 @@ pub(super) struct CellDefects {
 
 impl CellDefects {
     pub fn new(range_n: [f64; 2], offsets_n: [f64; 3], seed: u64) -> Self {
-        let mut rng = of_defects(seed);
+        let mut rng = defect_rng(seed);
         Self {
             hum_phase: rng.f64(),
             rng,
@@ -129,7 +129,7 @@ fn source(cell: usize, defects: &Defects) -> usize {
 fn gain(cell: usize, defects: &Defects, tick: u64) -> f64 {
     let since_s = |defect| {
         defects
-            .since(defect)
+            .first_tick(defect)
             .map(|began| (tick - began) as f64 * tick_s())
     };
     let lost = defects.has(Defect::CellExcitationLost(cell)) || defects.has(Defect::ExcitationLost);

@@ -103,7 +103,7 @@ impl Defect {
     /// One of a kind, in the order of [`Self::descriptions`]; of a tendon, where each of the three can have it. None
     /// beyond the last.
     #[must_use]
-    pub fn of_kind(kind: usize, tendon: usize) -> Option<Self> {
+    pub fn numbered(kind: usize, tendon: usize) -> Option<Self> {
         match KINDS.get(kind) {
             Some(of_three) => Some(of_three(tendon)),
             None => OF_THE_LEG.get(kind - KINDS.len()).copied(),
@@ -136,7 +136,7 @@ impl Defects {
     }
 
     pub fn has(&self, defect: Defect) -> bool {
-        self.since(defect).is_some()
+        self.first_tick(defect).is_some()
     }
 
     /// Each that has begun and not ended.
@@ -145,13 +145,13 @@ impl Defects {
     }
 
     /// The tick in which one began.
-    pub fn since(&self, defect: Defect) -> Option<u64> {
+    pub fn first_tick(&self, defect: Defect) -> Option<u64> {
         let mut found = self.0.iter().filter(|(other, _)| *other == defect);
         found.next().map(|(_, tick)| *tick)
     }
 
     /// Which of the three have a kind of defect.
-    pub fn of_three(&self, kind: fn(usize) -> Defect) -> [bool; 3] {
+    pub fn each(&self, kind: fn(usize) -> Defect) -> [bool; 3] {
         std::array::from_fn(|i| self.has(kind(i)))
     }
 }

@@ -8,6 +8,6 @@ pub(super) fn gaussian(rng: &mut Rng) -> f64 {
 }
 
 /// Random numbers of the defects: others than those of the sensors' noise, which a defect must not change.
-pub(super) fn of_defects(seed: u64) -> Rng {
+pub(super) fn defect_rng(seed: u64) -> Rng {
     Rng::with_seed(seed ^ 0x6465_6665_6374)
 }

@@ -43,7 +43,7 @@ impl Plant {
 
     /// The unit vector across the leg that is nearest to the horizontal one at an azimuth.
     #[must_use]
-    pub fn across(&self, azimuth_deg: f64) -> Vector3<f64> {
+    pub fn transverse(&self, azimuth_deg: f64) -> Vector3<f64> {
         let [x, y] = angles::unit_vector(azimuth_deg);
         let (horizontal, leg) = (Vector3::new(x, y, 0.0), self.tip_m().normalize());
         (horizontal - leg * leg.dot(&horizontal)).normalize()

@@ -13,10 +13,10 @@ pub(super) struct Supply {
 impl Supply {
     /// The voltage at the drivers, V.
     pub fn voltage_v(&self, motors: &[Motor; 3]) -> f64 {
-        self.under(motors, motors.map(|motor| motor.current_a))
+        self.loaded_voltage_v(motors, motors.map(|motor| motor.current_a))
     }
 
-    fn under(&self, motors: &[Motor; 3], currents_a: [f64; 3]) -> f64 {
+    fn loaded_voltage_v(&self, motors: &[Motor; 3], currents_a: [f64; 3]) -> f64 {
         let pairs = motors.iter().zip(currents_a);
         let drawn: f64 = pairs.map(|(motor, current)| motor.duty * current).sum();
         (self.open_v - self.resistance_ohm * drawn).max(0.0)
@@ -26,7 +26,7 @@ impl Supply {
     pub fn drive(&self, motors: &mut [Motor; 3], kind: &MotorType) {
         let before = self.voltage_v(motors);
         let tried = motors.map(|motor| motor.next_current_a(kind, before));
-        let mean = 0.5 * (before + self.under(motors, tried));
+        let mean = 0.5 * (before + self.loaded_voltage_v(motors, tried));
         for motor in motors {
             motor.current_a = motor.next_current_a(kind, mean);
         }

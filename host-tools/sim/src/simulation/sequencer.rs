@@ -207,7 +207,7 @@ impl<'a> Sequencer<'a> {
 
     /// Pushes across the leg and compares the moment with the angle.
     fn push_test(&mut self, push: &PushTest, stand: &mut TestStand<'_>) -> bool {
-        let across = stand.leg.leg().plant().across(push.azimuth_deg);
+        let across = stand.leg.leg().plant().transverse(push.azimuth_deg);
         let Some(before_m) = self.before_m else {
             self.before_m = Some(stand.average_tip_m());
             let force_n = across * push.force_n;

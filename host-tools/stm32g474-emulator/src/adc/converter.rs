@@ -232,16 +232,16 @@ impl Converter {
             self.enable(around, context);
         }
         for group in Group::BOTH {
-            if set(group.of(places.stop)) {
+            if set(group.select(places.stop)) {
                 self.stop(group);
-            } else if set(group.of(places.start)) && !self.is(group.of(places.start)) {
+            } else if set(group.select(places.start)) && !self.is(group.select(places.start)) {
                 self.start(group, around, context);
             }
         }
     }
 
     fn stop(&mut self, group: Group) {
-        self.file.set_value(group.of(self.places.start), 0);
+        self.file.set_value(group.select(self.places.start), 0);
         self.end_run(group);
     }
 
@@ -255,8 +255,8 @@ impl Converter {
             self.report(context, &format!("_CR: {name} is set before ADRDY"));
         }
         self.check_unmodelled(context);
-        self.file.set_value(group.of(self.places.start), 1);
-        if self.file.value(group.of(self.places.edge)) == 0 {
+        self.file.set_value(group.select(self.places.start), 1);
+        if self.file.value(group.select(self.places.edge)) == 0 {
             self.begin(group, context.cycle, around, context);
         } else if group == Group::Regular {
             self.report(

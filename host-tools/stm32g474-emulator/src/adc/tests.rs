@@ -131,7 +131,7 @@ fn board() -> Bench<Board> {
 
 fn trigger(bench: &mut Bench<Board>) {
     let cycle = bench.cycle;
-    bench.with(|board, context| board.converters.trigger(cycle, &board.inputs, context));
+    bench.act(|board, context| board.converters.trigger(cycle, &board.inputs, context));
 }
 
 #[test]
@@ -223,7 +223,7 @@ fn what_is_not_read_is_overrun() {
 #[test]
 fn a_reset_forgets_the_calibration() {
     let mut bench = board();
-    bench.with(|board, _| board.converters.reset("ADC12_COMMON"));
+    bench.act(|board, _| board.converters.reset("ADC12_COMMON"));
     assert_eq!(bench.get("CR", "ADEN"), 0);
     select(&mut bench, "ADC12_COMMON");
     bench.set("CCR", &[("PRESC", 2)]);

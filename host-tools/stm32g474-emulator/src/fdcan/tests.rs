@@ -42,13 +42,13 @@ fn open() -> Bench<Fdcan> {
     bench.put("CCCR", &[("INIT", 1), ("CCE", 1), ("FDOE", 1), ("BRSE", 1)]);
     bench.put("CCCR", &[("FDOE", 1), ("BRSE", 1)]);
     bench.cycle = 11 * BIT;
-    bench.with(Fdcan::advance);
+    bench.act(Fdcan::advance);
     bench
 }
 
 impl Bench<Fdcan> {
     fn memory(&mut self, offset: u32, value: u32) {
-        self.with(|node, context| node.write_memory(offset, value, context));
+        self.act(|node, context| node.write_memory(offset, value, context));
     }
 
     fn filter(&mut self, number: u32, kind: u32, action: u32, first: u16, second: u16) {
@@ -73,14 +73,14 @@ impl Bench<Fdcan> {
     }
 
     fn end(&mut self, outcome: Outcome) {
-        self.with(|node, context| node.take_transmission(context))
+        self.act(|node, context| node.take_transmission(context))
             .unwrap();
-        self.with(|node, context| node.transmission_ends(outcome, context));
+        self.act(|node, context| node.transmission_ends(outcome, context));
     }
 
     fn hear(&mut self, identifier: u16) -> Reception {
         let frame = frame(identifier);
-        self.with(|node, context| node.bus_receive(&frame, context))
+        self.act(|node, context| node.bus_receive(&frame, context))
     }
 
     fn silent(&mut self) {
@@ -117,11 +117,11 @@ fn a_frame_leaves_with_its_rates_and_ends_with_an_interrupt() {
     let payload = core::array::from_fn(|index| index as u8 + 1);
     bench.send(OWN, &payload);
     assert_eq!(bench.device.wants(), Some(OWN));
-    let sent = bench.with(|node, context| node.take_transmission(context));
+    let sent = bench.act(|node, context| node.take_transmission(context));
     assert_eq!(sent, Some(frame(OWN)));
     assert_eq!(bench.device.wants(), None);
     assert_eq!(bench.get("PSR", "ACT"), 3);
-    bench.with(|node, context| node.transmission_ends(Outcome::Acknowledged, context));
+    bench.act(|node, context| node.transmission_ends(Outcome::Acknowledged, context));
     assert_eq!(bench.read("TXBTO"), 1);
     assert_eq!(bench.read("TXBRP"), 0);
     assert_eq!(bench.device.interrupt_lines(), [true, false]);
@@ -140,10 +140,10 @@ fn three_frames_wait_in_order_and_are_taken_back() {
     }
     assert_eq!(bench.get("TXFQS", "TFQF"), 1);
     assert_eq!(bench.device.wants(), Some(3));
-    bench.with(|node, context| node.take_transmission(context));
+    bench.act(|node, context| node.take_transmission(context));
     bench.write("TXBCR", 7);
     assert_eq!(bench.read("TXBRP"), 1);
-    bench.with(|node, context| node.transmission_ends(Outcome::Unacknowledged, context));
+    bench.act(|node, context| node.transmission_ends(Outcome::Unacknowledged, context));
     assert_eq!(bench.get("TXFQS", "TFFL"), 3);
     assert_eq!(bench.read("TXBCF"), 7);
     assert_eq!(bench.device.wants(), None);

@@ -21,7 +21,7 @@ fn bench(dual_bank: bool, seed: u64) -> Bench<Flash> {
 
 impl Bench<Flash> {
     fn word(&mut self, address: u32, value: u32) {
-        self.with(|flash, context| flash.write_array(address, 4, value, context));
+        self.act(|flash, context| flash.write_array(address, 4, value, context));
     }
 
     fn double_word(&mut self, address: u32, low: u32, high: u32) {
@@ -64,7 +64,7 @@ impl Bench<Flash> {
     }
 
     fn word_at(&mut self, address: u32) -> u32 {
-        self.with(|flash, context| flash.read_array(address, 4, context))
+        self.act(|flash, context| flash.read_array(address, 4, context))
     }
 }
 
@@ -96,7 +96,7 @@ fn a_double_word_takes_its_time_and_ends_with_an_interrupt() {
     assert_eq!(bench.device.stall_until(START), None);
     assert_eq!(bench.device.stall_until(PAGE), Some(end));
     bench.cycle = end;
-    bench.with(Flash::advance);
+    bench.act(Flash::advance);
     assert!(!bench.status("BSY") && bench.device.interrupt());
     assert_eq!(bench.word_at(PAGE + 4), 0x0506_0708);
     bench.write("SR", u32::MAX);
@@ -139,7 +139,7 @@ fn mistakes_are_found() {
         ),
         ("FLASH: 0x0807c000 is written by less than a word", |b| {
             b.open_for_program();
-            b.with(|flash, context| flash.write_array(PAGE, 1, 0, context));
+            b.act(|flash, context| flash.write_array(PAGE, 1, 0, context));
         }),
         (
             "FLASH: 0x08080000 is written outside of a double word",

@@ -29,7 +29,7 @@ fn open(brr: u32) -> Bench<Lpuart> {
 
 fn send(bench: &mut Bench<Lpuart>, bytes: &[u8], baud: u32) {
     for byte in bytes {
-        bench.with(|line, context| line.host_send(*byte, baud, context));
+        bench.act(|line, context| line.host_send(*byte, baud, context));
     }
 }
 
@@ -51,7 +51,7 @@ fn bytes_leave_one_after_the_other_at_the_rate_of_brr() {
     bench.cycle = start + CHARACTER;
     assert!(bench.flag("TXE") && !bench.flag("TC"));
     bench.cycle = start + 9 * CHARACTER;
-    bench.with(Lpuart::advance);
+    bench.act(Lpuart::advance);
     assert!(bench.flag("TC") && bench.flag("TXFE"));
     let sent = std::iter::from_fn(|| bench.device.host_receive()).collect::<Vec<_>>();
     let expected = (1..=9u8).map(|byte| Sent {
@@ -69,7 +69,7 @@ fn bytes_arrive_raise_the_interrupt_and_then_the_line_is_idle() {
     let start = bench.cycle;
     assert_eq!(bench.device.next_event(), Some(start + CHARACTER));
     bench.cycle = start + 2 * CHARACTER;
-    bench.with(Lpuart::advance);
+    bench.act(Lpuart::advance);
     assert!(bench.device.interrupt());
     assert_eq!(
         (bench.read("RDR"), bench.read("RDR")),

@@ -8,7 +8,7 @@ fn bench() -> Bench<Tim1> {
 /// As the image sets it up, running, its outputs off and its pins at rest.
 fn board() -> Bench<Tim1> {
     let mut bench = bench();
-    bench.with(|timer, context| timer.set_break_input(0, true, context));
+    bench.act(|timer, context| timer.set_break_input(0, true, context));
     bench.set("CR1", &[("CMS", 1), ("ARPE", 1)]);
     bench.write("ARR", 2125);
     bench.write("RCR", 9);
@@ -36,13 +36,13 @@ fn board() -> Bench<Tim1> {
     bench.run(200);
     bench.write("EGR", 1);
     bench.write("SR", 0);
-    bench.with(|timer, _| timer.take_trigger());
+    bench.act(|timer, _| timer.take_trigger());
     bench.set("CR1", &[("CEN", 1)]);
     bench
 }
 
 fn set_pin(bench: &mut Bench<Tim1>, input: usize, level: bool) {
-    bench.with(|timer, context| timer.set_break_input(input, level, context));
+    bench.act(|timer, context| timer.set_break_input(input, level, context));
 }
 
 #[test]
@@ -129,11 +129,11 @@ fn what_is_armed_before_its_pin_is_routed_breaks() {
 fn the_chip_can_break() {
     let mut bench = board();
     bench.set("BDTR", &[("MOE", 1)]);
-    bench.with(|timer, context| timer.set_system_break(true, context));
+    bench.act(|timer, context| timer.set_system_break(true, context));
     bench.write("SR", 0);
     bench.set("BDTR", &[("MOE", 1)]);
     assert_eq!((bench.get("SR", "SBIF"), bench.get("BDTR", "MOE")), (1, 0));
-    bench.with(|timer, context| timer.set_system_break(false, context));
+    bench.act(|timer, context| timer.set_system_break(false, context));
     bench.write("SR", 0);
     bench.set("BDTR", &[("MOE", 1)]);
     assert_eq!((bench.get("SR", "SBIF"), bench.get("BDTR", "MOE")), (0, 1));

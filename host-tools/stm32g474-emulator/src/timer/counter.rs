@@ -176,7 +176,7 @@ mod tests {
     }
 
     /// What it shows in a tick, by turning as often as it has to.
-    fn at(mut counter: Counter, tick: u64) -> u32 {
+    fn shown_count(mut counter: Counter, tick: u64) -> u32 {
         while counter.end().is_some_and(|end| end <= tick) {
             counter.turn();
         }
@@ -190,7 +190,8 @@ mod tests {
         for (centre, expected) in [(false, up), (true, both)] {
             for prescaler in [0, 4] {
                 let counter = counter(centre, prescaler, 3);
-                let shown = (0..9).map(|step| at(counter, step * (u64::from(prescaler) + 1)));
+                let shown =
+                    (0..9).map(|step| shown_count(counter, step * (u64::from(prescaler) + 1)));
                 assert_eq!(shown.collect::<Vec<_>>(), expected);
             }
         }

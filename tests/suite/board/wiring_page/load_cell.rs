@@ -1,7 +1,7 @@
 //! A load cell with its amplifier: its range, and what a broken wire of it reads.
 
 use super::page::Page;
-use super::{FULL_V, OUTPUT_A, SAMPLED_F, near, settings};
+use super::{FULL_V, OUTPUT_A, SAMPLED_F, assert_near, settings};
 use leg_firmware::sensors::CODE_MAX;
 use leg_rig::actuator::Actuator;
 
@@ -35,7 +35,7 @@ pub struct Cell {
 
 impl Cell {
     /// With the values of the page.
-    pub fn of(page: &Page) -> Self {
+    pub fn new(page: &Page) -> Self {
         let [supply, signal, rated, r1] = page.values(["VE", "S1", "F1", "R1"]);
         let [positive, negative, r4, r5] = page.values(["VP", "VN", "R4", "R5"]);
         let gain = 1.0 + 49.4e3 / r1;
@@ -71,11 +71,11 @@ impl Cell {
 #[test]
 fn the_load_cell_covers_the_tensions_and_reaches_both_ends_of_the_range() {
     let (page, settings) = (Page::read(), settings());
-    let cell = Cell::of(&page);
+    let cell = Cell::new(&page);
     let [low, high] = cell.range_n();
     let [default_low, default_high] = Actuator::DEFAULT.cell_range_n;
-    near(high - low, default_high - default_low, 0.02);
-    near(
+    assert_near(high - low, default_high - default_low, 0.02);
+    assert_near(
         cell.zero_v / FULL_V,
         -default_low / (default_high - default_low),
         0.03,
@@ -110,7 +110,7 @@ fn the_load_cell_covers_the_tensions_and_reaches_both_ends_of_the_range() {
 #[test]
 fn a_broken_wire_of_a_load_cell_is_an_end_of_its_range() {
     let (page, settings) = (Page::read(), settings());
-    let cell = Cell::of(&page);
+    let cell = Cell::new(&page);
     let [r2, r6, r7, c1] = page.values(["R2", "R6", "R7", "C1"]);
     let saturated = |wire: &str| {
         let [volts, fault] = page.broken(wire);

@@ -5,8 +5,8 @@ use postcard_schema::Schema;
 use postcard_schema::schema::{DataModelType, DataModelVariant, NamedType, NamedValue};
 use std::fmt::Write;
 
-/// Every type that a request or a reply is made of, in the order in which they are met.
-pub fn of_messages() -> String {
+/// Every type that a request or a reply is made of, in the order in which they are met, and their shapes in words.
+pub fn message_types() -> (Vec<&'static NamedType>, String) {
     let mut types: Vec<&'static NamedType> = vec![HostRequest::SCHEMA, HostReply::SCHEMA];
     let mut text = String::new();
     let mut next = 0;
@@ -14,7 +14,7 @@ pub fn of_messages() -> String {
         write_type(&mut text, one, &mut types);
         next += 1;
     }
-    text
+    (types, text)
 }
 
 fn write_type(text: &mut String, one: &NamedType, types: &mut Vec<&'static NamedType>) {

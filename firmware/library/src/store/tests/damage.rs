@@ -156,10 +156,10 @@ fn foreign_contents_are_corrupt_and_can_be_written_over() {
 fn imposture(random: &mut Random) -> Mock {
     let mut bytes = noise(3, random);
     for page in bytes.chunks_mut(PAGE_SIZE) {
-        let erased = random.below(PAGE_SIZE);
+        let erased = random.number_below(PAGE_SIZE);
         page[erased..].fill(0xFF);
         for state in [WORD_SIZE, PAGE_SIZE - WORD_SIZE] {
-            let byte = [0, 0xFF][random.below(2)];
+            let byte = [0, 0xFF][random.number_below(2)];
             page[state..state + WORD_SIZE].fill(byte);
         }
         page[..WORD_SIZE].copy_from_slice(&SEAL);

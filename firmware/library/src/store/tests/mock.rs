@@ -78,7 +78,7 @@ impl Random {
         mixed ^ (mixed >> 31)
     }
 
-    pub fn below(&mut self, end: usize) -> usize {
+    pub fn number_below(&mut self, end: usize) -> usize {
         (self.next() % end as u64) as usize
     }
 
@@ -169,7 +169,7 @@ impl Mock {
 
     /// Brings the bytes from `start` on towards others, as far as the tear lets it.
     fn change(&mut self, start: usize, towards: &[u8], tear: Option<Tear>) {
-        let reached = self.random.below(towards.len() + 1);
+        let reached = self.random.number_below(towards.len() + 1);
         for (i, &byte) in towards.iter().enumerate() {
             let mask = match tear {
                 None | Some(Tear::After) => 0xFF,

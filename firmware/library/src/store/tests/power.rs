@@ -38,7 +38,9 @@ fn either<'a>(flash: &mut Mock, old: &'a Settings, new: &'a Settings) -> &'a Set
     let found = match load(flash) {
         Ok(Loaded::Settings(settings)) if settings == *old => old,
         Ok(Loaded::Settings(settings)) if settings == *new => new,
-        Ok(Loaded::Settings(settings)) => panic!("level {} is neither", settings.pretension_n),
+        Ok(Loaded::Settings(settings)) => {
+            panic!("pretension {} N is neither", settings.pretension_n)
+        }
         other => panic!("neither old nor new: {other:?}"),
     };
     assert_holds(flash, found);
@@ -110,8 +112,8 @@ fn power_may_fail_again_and_again() {
         keep(&mut flash, &kept);
         for number in 1..300 {
             // Some of the cuts come after the save, within the load.
-            let cut = random.below(200);
-            let tear = TEARS[random.below(TEARS.len())];
+            let cut = random.number_below(200);
+            let tear = TEARS[random.number_below(TEARS.len())];
             flash.cut_after(cut, tear, random.next());
             let new = mixed(number);
             let saved = save(&mut flash, &new);

@@ -36,7 +36,7 @@ impl Grid {
     }
 
     /// The regions in which it is at least as large as the level.
-    pub fn above(&self, level: f64) -> Vec<Region> {
+    pub fn regions(&self, level: f64) -> Vec<Region> {
         let [column_deg, row_deg] = [
             360.0 / self.columns as f64,
             self.edge_deg / (self.rows - 1) as f64,

@@ -29,7 +29,7 @@ pub(super) fn layers(field: &PlotField, bands: &Bands) -> Vec<Layer> {
     let mut layers = vec![Layer::Area(whole, bands.colour(0))];
     let values = grid(field, |sample| sample.value.unwrap_or_default());
     for (level, band) in bands.inner().iter().zip(1..) {
-        for region in values.above(*level) {
+        for region in values.regions(*level) {
             layers.push(Layer::Area(region.outline(), bands.colour(band)));
             let lines = region.borders();
             let shown = lines.iter().flat_map(|line| shown_pieces(field, line));
@@ -39,8 +39,8 @@ pub(super) fn layers(field: &PlotField, bands: &Bands) -> Vec<Layer> {
     let no_value = |sample: &Option<PoseSample>| sample.is_some_and(|known| known.value.is_none());
     layers.extend(squares(field, no_value));
     // What has no room at all hides what has none at this pretension.
-    layers.extend(outside(field, BORDER, |sample| sample.room));
-    layers.extend(outside(field, EXTERIOR, |sample| {
+    layers.extend(exterior(field, BORDER, |sample| sample.room));
+    layers.extend(exterior(field, EXTERIOR, |sample| {
         sample.room.max(sample.wider_room)
     }));
     layers.extend(squares(field, Option::is_none));
@@ -48,8 +48,8 @@ pub(super) fn layers(field: &PlotField, bands: &Bands) -> Vec<Layer> {
 }
 
 /// Where there is less than no room: where none is left is still inside.
-fn outside(field: &PlotField, colour: RGBColor, room: fn(&PoseSample) -> f64) -> Vec<Layer> {
-    let regions = grid(field, |sample| -room(sample)).above(f64::MIN_POSITIVE);
+fn exterior(field: &PlotField, colour: RGBColor, room: fn(&PoseSample) -> f64) -> Vec<Layer> {
+    let regions = grid(field, |sample| -room(sample)).regions(f64::MIN_POSITIVE);
     let areas = regions
         .iter()
         .map(|region| Layer::Area(region.outline(), colour));

@@ -140,7 +140,7 @@ fn a_hand_holds_the_tip() {
         let mut plant = held();
         let before = plant.truth().tip_m;
         plant.set_defect(Defect::LegGrasped, grasped);
-        plant.push(plant.across(0.0) * 5.0, 10.0, 0.2);
+        plant.push(plant.transverse(0.0) * 5.0, 10.0, 0.2);
         run(&mut plant, 8000, &OFF);
         1000.0 * (plant.truth().tip_m - before).norm()
     };

@@ -28,7 +28,7 @@ impl Group {
     pub const BOTH: [Self; 2] = [Self::Regular, Self::Injected];
 
     /// The one of two that belongs to it.
-    pub fn of<T>(self, [regular, injected]: [T; 2]) -> T {
+    pub fn select<T>(self, [regular, injected]: [T; 2]) -> T {
         match self {
             Self::Regular => regular,
             Self::Injected => injected,
@@ -37,7 +37,7 @@ impl Group {
 
     /// The bit that starts it.
     pub fn start_name(self) -> &'static str {
-        self.of(["ADSTART", "JADSTART"])
+        self.select(["ADSTART", "JADSTART"])
     }
 }
 
@@ -82,13 +82,13 @@ impl Converter {
         context: &mut Context<'_>,
     ) {
         let group = Group::Injected;
-        let waits = self.is(group.of(self.places.start))
+        let waits = self.is(group.select(self.places.start))
             && self.file.value(self.places.injected_trigger) == number
-            && RISING.contains(&self.file.value(group.of(self.places.edge)));
+            && RISING.contains(&self.file.value(group.select(self.places.edge)));
         if !waits {
             return;
         }
-        if group.of(self.runs).is_some() {
+        if group.select(self.runs).is_some() {
             return self.report(
                 context,
                 ": the injected sequence is triggered while it still runs",
@@ -109,9 +109,12 @@ impl Converter {
         around: &Surroundings<'_>,
         context: &mut Context<'_>,
     ) {
-        while let Some(run) = group.of(self.runs).filter(|run| run.due <= context.cycle) {
+        while let Some(run) = group
+            .select(self.runs)
+            .filter(|run| run.due <= context.cycle)
+        {
             self.give_code(group, run.rank, around, context);
-            if run.rank < self.file.value(group.of(self.places.length)) {
+            if run.rank < self.file.value(group.select(self.places.length)) {
                 let rank = run.rank + 1;
                 self.begin_code(group, Run { rank, ..run }, around, context);
             } else {
@@ -123,7 +126,7 @@ impl Converter {
     /// Half periods from the begin of a sequence to its end.
     #[must_use]
     pub fn sequence_halves(&self, group: Group) -> u64 {
-        let last = self.file.value(group.of(self.places.length));
+        let last = self.file.value(group.select(self.places.length));
         let codes = (0..=last).map(|rank| self.code_halves(group, self.input(group, rank)));
         codes.sum()
     }
@@ -151,13 +154,13 @@ impl Converter {
         context: &mut Context<'_>,
     ) {
         self.file
-            .set_value(group.of(self.places.end_of_sequence), 1);
+            .set_value(group.select(self.places.end_of_sequence), 1);
         self.end_run(group);
-        let by_software = self.file.value(group.of(self.places.edge)) == 0;
+        let by_software = self.file.value(group.select(self.places.edge)) == 0;
         if group == Group::Regular && self.is(self.places.continuous) {
             self.begin(group, cycle, around, context);
         } else if by_software {
-            self.file.set_value(group.of(self.places.start), 0);
+            self.file.set_value(group.select(self.places.start), 0);
         }
     }
 
@@ -170,7 +173,7 @@ impl Converter {
         context: &mut Context<'_>,
     ) {
         let code = self.code(group, self.input(group, rank), around, context);
-        let end = group.of(self.places.end_of_conversion);
+        let end = group.select(self.places.end_of_conversion);
         let place = usize::try_from(rank).unwrap_or_default();
         match group {
             Group::Injected => {
@@ -207,7 +210,7 @@ impl Converter {
         };
         let narrower = 2 * self.file.value(self.places.resolution);
         let total = sum_of(sum, self.conversions(group), narrower);
-        let shift = if self.is(group.of(self.places.oversampling)) {
+        let shift = if self.is(group.select(self.places.oversampling)) {
             self.file.value(self.places.shift)
         } else {
             0
@@ -246,7 +249,7 @@ impl Converter {
 
     /// Conversions in a code.
     fn conversions(&self, group: Group) -> u32 {
-        if self.is(group.of(self.places.oversampling)) {
+        if self.is(group.select(self.places.oversampling)) {
             2 << self.file.value(self.places.ratio)
         } else {
             1
@@ -270,7 +273,7 @@ impl Converter {
     /// The input of a rank.
     fn input(&self, group: Group, rank: u32) -> u8 {
         let [regular, injected] = &self.places.sequence;
-        let sequence = group.of([regular, injected]);
+        let sequence = group.select([regular, injected]);
         let place = usize::try_from(rank).unwrap_or_default();
         let value = sequence.get(place).map(|place| self.file.value(*place));
         u8::try_from(value.unwrap_or_default()).unwrap_or_default()
@@ -278,6 +281,6 @@ impl Converter {
 
     fn set_run(&mut self, group: Group, run: Option<Run>) {
         let [regular, injected] = &mut self.runs;
-        *group.of([regular, injected]) = run;
+        *group.select([regular, injected]) = run;
     }
 }

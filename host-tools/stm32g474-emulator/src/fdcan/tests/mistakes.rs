@@ -6,7 +6,7 @@ use super::*;
 fn mistakes_are_found() {
     type Mistake = fn(&mut Bench<Fdcan>);
     let take: Mistake = |b| {
-        b.with(|node, context| node.take_transmission(context));
+        b.act(|node, context| node.take_transmission(context));
     };
     let cases: &[(&str, Mistake)] = &[
         ("FDCAN2_NBTP is written without INIT and CCE", |b| {
@@ -73,7 +73,7 @@ fn mistakes_are_found() {
                     nominal_hz: 500_000,
                     ..frame(OWN)
                 };
-                b.with(|node, context| node.bus_receive(&frame, context));
+                b.act(|node, context| node.bus_receive(&frame, context));
             },
         ),
         (
@@ -163,16 +163,16 @@ fn reopen(bench: &mut Bench<Fdcan>, register: &str, field: &str, value: u32) {
     let [init, change] = ["INIT", "CCE"].map(|name| file.field("CCCR", name).mask);
     let before = file.get(settings);
     let mut put = |offset, value| {
-        bench.with(|node, context| node.write(offset, value, context));
+        bench.act(|node, context| node.write(offset, value, context));
     };
     put(settings, before | init);
     put(settings, before | init | change);
-    let old = bench.with(|node, context| node.read(place.offset, context));
-    bench.with(|node, context| {
+    let old = bench.act(|node, context| node.read(place.offset, context));
+    bench.act(|node, context| {
         node.write(place.offset, place.insert(old, value), context);
     });
     let now = bench.device.registers.get(settings) & !init & !change;
-    bench.with(|node, context| node.write(settings, now, context));
+    bench.act(|node, context| node.write(settings, now, context));
     bench.cycle += 2 * 11 * BIT;
-    bench.with(Fdcan::advance);
+    bench.act(Fdcan::advance);
 }
