@@ -49,29 +49,54 @@ pub struct Point {
     pub gain_db: f64,
     /// Degrees, −180 to 180; of the transfer that is −1 where the closed loop is at its limit.
     pub phase_deg: f64,
+    /// The part of the amplitude that it was measured with: less than 1 where more ended the run.
+    pub part: f64,
 }
+
+/// The parts of the amplitude that are tried one after the other, until one does not end the run.
+const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
 
 /// Square of the least gain: nothing may come back.
 const LEAST: f64 = 1e-12;
 
 impl Point {
-    /// From a transfer.
+    /// From a transfer that was measured with a part of the amplitude.
     #[must_use]
-    pub fn new(hz: f64, transfer: Complex<f64>) -> Self {
+    pub fn new(hz: f64, transfer: Complex<f64>, part: f64) -> Self {
         Self {
             hz,
             gain_db: 10.0 * transfer.norm_sqr().max(LEAST).log10(),
             phase_deg: transfer.im.atan2(transfer.re).to_degrees(),
+            part,
         }
     }
 }
 
 impl Excitation {
-    /// The transfer near a frequency; the loop is left as it is.
+    /// The transfer near a frequency; the loop is left as it is. Where the whole amplitude ends the run, a half and then a quarter
+    /// of it is tried.
     ///
     /// # Errors
-    /// What ended the run.
+    /// What ended the run with the least amplitude, and at which frequency.
     pub fn measure<L: ClosedLoop>(&self, at_rest: &L, hz: f64) -> Result<Point, String> {
+        let mut ended = String::new();
+        for part in PARTS {
+            match self.measure_with(part, at_rest, hz) {
+                Ok(point) => return Ok(point),
+                Err(error) => ended = error,
+            }
+        }
+        Err(format!(
+            "not measured at {hz:.2} Hz, even with a quarter of the amplitude: {ended}"
+        ))
+    }
+
+    fn measure_with<L: ClosedLoop>(
+        &self,
+        part: f64,
+        at_rest: &L,
+        hz: f64,
+    ) -> Result<Point, String> {
         let mut closed = at_rest.clone();
         let ticks = |seconds: f64, periods: f64| (seconds.max(periods / hz) * self.tick_hz).ceil();
         let settle = ticks(self.settle_s, self.settle_periods) as u64;
@@ -83,8 +108,8 @@ impl Excitation {
         for tick in 0..settle + window as u64 {
             let phase = turn * tick as f64;
             // Comes up over half of the transient, so that it excites little else.
-            let part = (2.0 * tick as f64 / settle.max(1) as f64).min(1.0);
-            let sides = closed.tick(self.amplitude * part * phase.sin())?;
+            let rise = (2.0 * tick as f64 / settle.max(1) as f64).min(1.0);
+            let sides = closed.tick(self.amplitude * part * rise * phase.sin())?;
             if tick >= settle {
                 let turned = Complex::new(phase.cos(), -phase.sin());
                 returned += turned * sides.returned;
@@ -94,6 +119,7 @@ impl Excitation {
         Ok(Point::new(
             periods * self.tick_hz / window,
             -returned / injected,
+            part,
         ))
     }
 }

@@ -60,10 +60,20 @@ pub struct Row {
     pub margin: Margin,
     /// The worst; none where the loop has none in any state.
     pub worst: Option<Worst>,
-    /// How many measurements there are, and how many of them failed to come to their end.
+    /// How many measurements there are.
     pub measured: usize,
-    /// How many were below the bar or did not come to their end.
-    pub failed: usize,
+    /// How many of them were below the bar.
+    pub low: usize,
+    /// How many did not come to their end.
+    pub ended: usize,
+}
+
+impl Row {
+    /// Whether every measurement came to its end and is above the bar.
+    #[must_use]
+    pub const fn passes(&self) -> bool {
+        self.low == 0 && self.ended == 0
+    }
 }
 
 /// A margin and where it was found.
@@ -108,14 +118,15 @@ fn row<'a>(margin: Margin, first: &Swept, all: impl Iterator<Item = (usize, &'a 
         margin,
         worst: None,
         measured: 0,
-        failed: 0,
+        low: 0,
+        ended: 0,
     };
     for (index, swept) in all {
         row.measured += 1;
         row.amplitude = row.amplitude.max(swept.amplitude);
         let found = margin.of(swept);
-        let low = found.is_some_and(|[value, _]| value < margin.bar());
-        row.failed += usize::from(low || swept.failure.is_some());
+        row.low += usize::from(found.is_some_and(|[value, _]| value < margin.bar()));
+        row.ended += usize::from(swept.failure.is_some());
         if let Some([value, hz]) = found
             && row.worst.as_ref().is_none_or(|worst| value < worst.value)
         {

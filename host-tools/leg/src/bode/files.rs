@@ -122,7 +122,7 @@ fn write_points(file: &Path, swept: &[Swept]) -> Result<(), Box<dyn Error>> {
             let what = [
                 one.feedback.name().into(),
                 one.place.into(),
-                one.amplitude.to_string(),
+                (one.amplitude * point.part).to_string(),
                 state.number.to_string(),
                 state.rig.clone(),
             ];

@@ -20,15 +20,8 @@ pub(super) fn table(rows: &[Row], swept: &[Swept], files: &[PathBuf]) -> String 
 fn line(row: &Row) -> String {
     let added = format!("{:.1} {}", row.amplitude, unit(row.feedback));
     let name = row.feedback.name();
-    let (bar, unit) = (row.margin.bar(), row.margin.unit());
-    let verdict = if row.failed == 0 {
-        "pass".to_string()
-    } else {
-        format!(
-            "FAIL: {} of {} below {bar} {unit}",
-            row.failed, row.measured
-        )
-    };
+    let unit = row.margin.unit();
+    let verdict = verdict(row);
     let Some(worst) = &row.worst else {
         let none = match row.margin {
             Margin::Gain => "phase never ±180°",
@@ -48,6 +41,18 @@ fn line(row: &Row) -> String {
         "{name:8}  {added:6}  {value:6.1} {unit:3}  {hz:7.2}  {place:12}  {azimuth:7.1}  {tilt:4.1}  {:4.2}  {:6.1}  {verdict}\n",
         state.payload_kg, state.pretension_n,
     )
+}
+
+/// Whether a row passes, or how many of its measurements do not and why.
+fn verdict(row: &Row) -> String {
+    if row.passes() {
+        return "pass".into();
+    }
+    let (bar, unit, all) = (row.margin.bar(), row.margin.unit(), row.measured);
+    let low = (row.low > 0).then(|| format!("{} of {all} below {bar} {unit}", row.low));
+    let ended = (row.ended > 0).then(|| format!("{} of {all} not measured", row.ended));
+    let why: Vec<_> = low.into_iter().chain(ended).collect();
+    format!("FAIL: {}", why.join(", "))
 }
 
 /// What ended a measurement.
@@ -70,19 +75,27 @@ pub(super) const fn unit(feedback: Feedback) -> &'static str {
 
 /// Which loops failed, as a sentence.
 pub(super) fn failed(rows: &[Row]) -> String {
-    let failed = rows.iter().filter(|row| row.failed > 0);
-    let words: Vec<_> = failed
-        .map(|row| {
-            let name = row.feedback.name();
-            let (bar, unit) = (row.margin.bar(), row.margin.unit());
-            match &row.worst {
-                Some(worst) if worst.value < bar => {
-                    let value = worst.value;
-                    format!("{name} has {value:.1} {unit}, less than {bar} {unit}")
-                }
-                _ => format!("{name} could not be measured"),
-            }
-        })
-        .collect();
-    words.join("; ")
+    let low = rows.iter().filter(|row| row.low > 0).filter_map(|row| {
+        let (bar, unit, value) = (
+            row.margin.bar(),
+            row.margin.unit(),
+            row.worst.as_ref()?.value,
+        );
+        let name = row.feedback.name();
+        Some(format!(
+            "{name} has {value:.1} {unit}, less than {bar} {unit}"
+        ))
+    });
+    // Both margins lack the same measurements.
+    let ended = rows
+        .iter()
+        .filter(|row| row.ended > 0 && row.margin == Margin::Gain);
+    let ended = ended.map(|row| {
+        let (name, added, unit) = (row.feedback.name(), row.amplitude, unit(row.feedback));
+        format!(
+            "{name} is not measured with {added:.1} {unit} in {} of {} places",
+            row.ended, row.measured
+        )
+    });
+    low.chain(ended).collect::<Vec<_>>().join("; ")
 }
