@@ -78,7 +78,7 @@ const SIMULATION: [TimeChart<Sample>; 5] = [
         name: "stiffness",
         title: "Bending stiffness",
         y_title: "bending stiffness (N·m/rad)",
-        curves: &[("estimated", |sample| {
+        curves: &[("reference", |sample| {
             above_zero(sample.telemetry.stiffness_nm_per_rad)
         })],
     },
@@ -130,7 +130,7 @@ const LOG: [TimeChart<Report>; 6] = [
         name: "stiffness",
         title: "Bending stiffness",
         y_title: "bending stiffness (N·m/rad)",
-        curves: &[("estimated", |(_, report)| {
+        curves: &[("reference", |(_, report)| {
             above_zero(report.stiffness_nm_per_rad)
         })],
     },

@@ -14,7 +14,7 @@ use leg_host::calibration::{KnownWeight, fit, mean_code, require_drivers_off, to
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{Goal, Operator, OperatorError, setting_differences};
 use leg_host::sensor_report;
-use leg_host::signals::LegConstants;
+use leg_host::signals::{LegConstants, Report};
 use leg_rig::{control_settings, settings_text};
 use leg_sim::action::Action;
 use leg_sim::emulated_leg::InitialState;
@@ -24,7 +24,7 @@ use pyo3::types::PyDict;
 use serde_json::json;
 use std::sync::{Mutex, MutexGuard, OnceLock, TryLockError};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 /// How long it takes until a thread that uses the leg is told again that another one stops it.
 const TOLD_AGAIN: Duration = Duration::from_millis(1);
@@ -152,19 +152,31 @@ impl Leg {
     }
 
     fn reach<'py>(&self, py: Python<'py>, goal: Goal) -> PyResult<Bound<'py, PyDict>> {
-        let reached = self.ask(py, move |operator| operator.reach(&goal))?;
-        self.report(py, &reached)
+        self.report(py, move |operator| operator.reach(&goal))
     }
 
+    /// What the leg reports at the end of some work, with what is known of it here.
     fn report<'py>(
         &self,
         py: Python<'py>,
-        telemetry: &Telemetry<f32>,
+        work: impl FnOnce(&mut Operator) -> Result<Telemetry<f32>, OperatorError> + Send + 'static,
     ) -> PyResult<Bound<'py, PyDict>> {
+        let (telemetry, wall_time_s, damaged_frames) = self.ask(py, |operator| {
+            let telemetry = work(operator)?;
+            Ok((telemetry, wall_time_s(operator), operator.damaged_frames()))
+        })?;
         let constants = self.constants.get();
         let constants = constants.ok_or_else(|| leg_error("this leg was not opened"))?;
-        telemetry::dictionary(py, telemetry, constants)
+        let report = Report::new(&telemetry, constants).received(wall_time_s, damaged_frames);
+        telemetry::dictionary(py, &report, telemetry.faults)
     }
+}
+
+/// The time of the day, s since 1970; not a number beside a leg whose time is emulated.
+fn wall_time_s(operator: &Operator) -> f64 {
+    let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
+    let known = since.ok().filter(|_| !operator.clock_is_emulated());
+    known.map_or(f64::NAN, |since| since.as_secs_f64())
 }
 
 /// The settings of a board that a rig gives.
@@ -227,8 +239,7 @@ impl Leg {
     }
 
     fn home<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let homed = self.ask(py, Operator::home)?;
-        self.report(py, &homed)
+        self.report(py, Operator::home)
     }
 
     #[pyo3(name = "move", signature = (azimuth_deg, tilt_deg, *, pretension_n = None, stiffness_nm_per_rad = None, towards_deg = None))]
@@ -275,8 +286,7 @@ impl Leg {
     ) -> PyResult<Bound<'py, PyDict>> {
         let path = arguments::path("points", points)?;
         let lead = Duration::from_secs_f64(within("lead_s", lead_s, 0.0, 10.0)?);
-        let followed = self.ask(py, move |operator| operator.follow_whole(&path, lead))?;
-        self.report(py, &followed)
+        self.report(py, move |operator| operator.follow_whole(&path, lead))
     }
 
     fn hold<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -299,8 +309,7 @@ impl Leg {
     }
 
     fn telemetry<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let report = self.ask(py, Operator::telemetry)?;
-        self.report(py, &report.telemetry)
+        self.report(py, |operator| Ok(operator.telemetry()?.telemetry))
     }
 
     fn scope<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {

@@ -12,6 +12,7 @@ use leg_base::description;
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::supervisor::State;
+use leg_host::signals::Report;
 use leg_sim::action::Action;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -324,7 +325,10 @@ impl SimulatedLeg {
         let session = self.session()?;
         session.leg().telemetry().map_or_else(
             || Ok(PyDict::new(py)),
-            |reported| telemetry::dictionary(py, reported, session.constants()),
+            |reported| {
+                let report = Report::new(reported, session.constants());
+                telemetry::dictionary(py, &report, reported.faults)
+            },
         )
     }
 

@@ -2,8 +2,7 @@
 
 use leg_base::description;
 use leg_firmware::supervisor::FaultSet;
-use leg_firmware::telemetry::Telemetry;
-use leg_host::signals::{LegConstants, REPORT_SIGNALS, Report, Values};
+use leg_host::signals::{REPORT_SIGNALS, Report, Values};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -11,17 +10,16 @@ use pyo3::types::{PyDict, PyList};
 /// The signals of a report by name. Of the faults it has not only the names.
 pub fn dictionary<'py>(
     py: Python<'py>,
-    telemetry: &Telemetry<f32>,
-    constants: &LegConstants,
+    report: &Report,
+    reported: FaultSet,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let report = Report::new(telemetry, constants);
     let values = PyDict::new(py);
     for signal in REPORT_SIGNALS {
         let value = match signal.values {
-            Values::Word(read) => read(&report).into_pyobject(py)?.into_any(),
-            Values::Flag(read) => read(&report).into_pyobject(py)?.to_owned().into_any(),
-            Values::Count(read) => read(&report).into_pyobject(py)?.into_any(),
-            Values::Names(_) => faults(py, telemetry.faults)?.into_any(),
+            Values::Word(read) => read(report).into_pyobject(py)?.into_any(),
+            Values::Flag(read) => read(report).into_pyobject(py)?.to_owned().into_any(),
+            Values::Count(read) => read(report).into_pyobject(py)?.into_any(),
+            Values::Names(_) => faults(py, reported)?.into_any(),
             Values::Number(_)
             | Values::Two(_)
             | Values::Three(_)
@@ -29,7 +27,7 @@ pub fn dictionary<'py>(
             | Values::SingleTwo(_)
             | Values::SingleThree(_) => {
                 let mut numbers = Vec::new();
-                signal.numbers(&report, &mut numbers);
+                signal.numbers(report, &mut numbers);
                 numbers_as(py, numbers)?
             }
         };

@@ -32,7 +32,10 @@ def test_a_leg_is_homed_moved_stiffened_held_and_disarmed():
         reached = leg.move(30, 20, stiffness_nm_per_rad=110)
         assert reached["tilt_deg"] == pytest.approx(20.0, abs=0.05)
         assert reached["azimuth_deg"] == pytest.approx(30.0, abs=0.1)
-        assert leg.telemetry()["state"] == "keeping station"
+        told = leg.telemetry()
+        assert told["state"] == "keeping station" and told["damaged_frames"] == 0
+        # Its clock is emulated.
+        assert np.isnan(told["wall_time_s"])
         assert leg.stiffness(100)["stiffness_nm_per_rad"] == pytest.approx(100, rel=0.01)
         assert leg.follow(circle(3.0))["tilt_deg"] == pytest.approx(20.0, abs=0.1)
         leg.hold()
@@ -233,7 +236,9 @@ def port():
 @pytest.mark.parametrize("arguments", [["--tcp"], ["--on", "qemu"], ["--on", "chip", "--slack"]])
 def test_a_leg_is_reached_wherever_its_firmware_runs(arguments):
     with emulator(*arguments) as name, Leg.open(name) as leg:
-        assert leg.telemetry()["state"] == "disarmed"
+        before_s = time.time()
+        told = leg.telemetry()
+        assert told["state"] == "disarmed" and before_s <= told["wall_time_s"] <= time.time()
         assert leg.settings_differences("table1") == []
         assert 23 < leg.sensors()["supply_v"] < 25
 

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use mcap::Writer;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::path::Path;
 use std::process::{Command, Output};
@@ -51,6 +51,9 @@ fn the_charts_of_a_run_are_drawn_again_to_the_pixel() {
         for (name, picture) in &run {
             assert!(again[name] == *picture, "{scenario}: {name} differs");
         }
+        // Named by the kind that the signal has in `docs/telemetry.md`.
+        let stiffness = String::from_utf8_lossy(&run["stiffness.svg"]);
+        assert!(stiffness.contains("\nreference\n") && !stiffness.contains("\nestimated\n"));
     }
 }
 
@@ -72,6 +75,24 @@ fn a_log_of_a_leg_is_drawn() {
     );
     let tensions = String::from_utf8_lossy(&charts["tensions.svg"]);
     assert!(tensions.contains("measured tension (N)"), "{tensions}");
+}
+
+#[test]
+fn every_figure_of_the_paper_has_its_own_title() {
+    let directory = tempfile::tempdir().unwrap();
+    succeeds(&["paper", "--out", "paper"], directory.path());
+    let figures = files(&directory.path().join("paper"));
+    let figures = figures.iter().filter(|(name, _)| name.ends_with(".svg"));
+    let titles: Vec<String> = figures
+        .map(|(_, picture)| {
+            let text = String::from_utf8_lossy(picture);
+            let title = text.lines().find(|line| line.starts_with("Fig. "));
+            title.unwrap().to_string()
+        })
+        .collect();
+    let different: BTreeSet<_> = titles.iter().collect();
+    assert!(titles.len() >= 8, "{titles:?}");
+    assert_eq!(different.len(), titles.len(), "{titles:?}");
 }
 
 #[test]

@@ -37,20 +37,23 @@ pub fn draw(directory: &Path) -> Result<Vec<(PathBuf, &'static str)>, FigureErro
     for (name, chart, caption) in charts(&rig)? {
         figures.push((plot::save(&chart, &directory.join(name))?, caption));
     }
-    let map = workspace_field(&rig)?;
+    let mut map = workspace_field(&rig)?;
     let maps = [
         (
             "fig10a",
             field::Layout::Polar,
+            "Fig. 10 a: deviation of the tip with 1 kg",
             "Fig. 10 a: deviation over the workspace with 1 kg, from above",
         ),
         (
             "fig10b",
             field::Layout::Flat,
+            "Fig. 10 b: deviation of the tip with 1 kg",
             "Fig. 10 b: the same over azimuth and tilt",
         ),
     ];
-    for (name, layout, caption) in maps {
+    for (name, layout, title, caption) in maps {
+        map.title = title.into();
         let drawn = field::save(&map, layout, &directory.join(name))?;
         figures.push((drawn, caption));
     }
@@ -202,8 +205,5 @@ fn workspace_field(rig: &RigFile) -> Result<field::PlotField, Error> {
     let Query { tendons, .. } = super::deviation::constant(rig, 0.0, 0.0, PAYLOAD_KG)?;
     let rig = RigFile { tendons, ..*rig };
     let map = WorkspaceMap::compute(&rig, PAYLOAD_KG, grid, false, || ());
-    Ok(map.field(
-        MapQuantity::Deviation,
-        "Fig. 10: deviation of the tip with 1 kg".into(),
-    ))
+    Ok(map.field(MapQuantity::Deviation, String::new()))
 }
