@@ -25,6 +25,16 @@ const SPANS_S: [f64; 4] = [2.0, 5.0, 10.0, KEPT_S];
 /// Height of a line of words above the charts, points.
 const WORDS_HEIGHT: f32 = 18.0;
 
+/// Height of a chart where there is no bound, and the least one, points.
+const HEIGHT: f32 = 180.0;
+const HEIGHT_MIN: f32 = 110.0;
+
+/// How high a chart is in a room of some height, if that is bounded, of which so much is used, points.
+#[must_use]
+pub fn height(room: Option<f32>, used: f32) -> f32 {
+    room.map_or(HEIGHT, |room| (room - used).max(HEIGHT_MIN))
+}
+
 /// What is charted, and how.
 pub struct Charts {
     /// The names of the signals, one chart each.

@@ -1,6 +1,6 @@
 //! What is where in the window, wide or narrow.
 
-use crate::charts::{Charts, Source};
+use crate::charts::{self, Charts, Source};
 use crate::faults::FaultList;
 use crate::panel_guide::Wish;
 use crate::places::{place, place_rect};
@@ -130,7 +130,9 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
         .resizable(false)
         .exact_size(height);
     bottom.show(ui, |ui| {
-        charts(ui, leg, views, None);
+        let room = ui.available_height();
+        let scroll = ScrollArea::vertical().id_salt("charts");
+        scroll.show(ui, |ui| charts(ui, leg, views, Some(room)));
     });
     CentralPanel::no_frame().show(ui, |ui| {
         let rect = stage(ui, &leg.seen(), leg.failure(), &mut views.scene);
@@ -211,7 +213,7 @@ fn page(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
             }
         }
         Tab::Charts => {
-            charts(ui, leg, views, Some(180.0));
+            charts(ui, leg, views, None);
         }
         Tab::Setup => return simulate(views.setup.show_inside(ui, leg)),
     }
@@ -249,13 +251,15 @@ fn across(ui: &Ui, rect: Rect, words: String) {
     place_rect(ui.ctx(), shown, "failure");
 }
 
-/// The signals of the leg, and what is recorded of them; as high as there is room, if nothing is said.
-fn charts(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views, height: Option<f32>) {
+/// The signals of the leg, and what is recorded of them; in a room of some height, if that is bounded.
+fn charts(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views, room: Option<f32>) {
+    let top = ui.cursor().top();
     ui.horizontal_wrapped(|ui| {
         views.charts.controls(ui, &Source::of_leg(leg));
         views.recordings.show(ui, leg);
     });
-    let height = height.unwrap_or_else(|| ui.available_height());
+    let used = ui.cursor().top() - top;
+    let height = charts::height(room, used);
     views.charts.show(ui, &Source::of_leg(leg), height);
 }
 

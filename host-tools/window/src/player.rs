@@ -1,6 +1,6 @@
 //! A recording that is played: the leg as it was at a time, which is chosen by a slider, and its signals around it.
 
-use crate::charts::{Charts, Source};
+use crate::charts::{self, Charts, Source};
 use crate::faults::FaultList;
 use crate::layout::stage;
 use crate::numbers;
@@ -206,7 +206,11 @@ impl Player {
             .frame(side)
             .resizable(false)
             .exact_size(height);
-        bottom.show(ui, |ui| self.show_charts(ui, None));
+        bottom.show(ui, |ui| {
+            let room = ui.available_height();
+            let scroll = ScrollArea::vertical().id_salt("recorded charts");
+            scroll.show(ui, |ui| self.show_charts(ui, Some(room)));
+        });
         let transport = Panel::bottom("transport").frame(side).resizable(false);
         transport.show(ui, |ui| self.transport(ui));
         CentralPanel::no_frame().show(ui, |ui| {
@@ -228,7 +232,7 @@ impl Player {
             ui.separator();
             let scroll = ScrollArea::vertical().id_salt("recorded");
             scroll.show(ui, |ui| {
-                self.show_charts(ui, Some(180.0));
+                self.show_charts(ui, None);
                 ui.separator();
                 self.facts(ui);
             });
@@ -279,7 +283,8 @@ impl Player {
     }
 
     /// The signals; a press in a chart goes to that time.
-    fn show_charts(&mut self, ui: &mut Ui, height: Option<f32>) {
+    fn show_charts(&mut self, ui: &mut Ui, room: Option<f32>) {
+        let top = ui.cursor().top();
         let [since_s, now_s] = self.leg.span_s();
         let source = Source {
             history: &self.leg.history,
@@ -288,7 +293,7 @@ impl Player {
             moment_s: Some(self.at_s),
         };
         ui.horizontal_wrapped(|ui| self.charts.controls(ui, &source));
-        let height = height.unwrap_or_else(|| ui.available_height());
+        let height = charts::height(room, ui.cursor().top() - top);
         if let Some(at_s) = self.charts.show(ui, &source, height) {
             self.at_s = at_s.clamp(since_s, now_s);
             self.playing = false;
