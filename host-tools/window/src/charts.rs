@@ -23,7 +23,7 @@ use trigger::Trigger;
 const SPANS_S: [f64; 4] = [2.0, 5.0, 10.0, KEPT_S];
 
 /// Height of a line of words above the charts, points.
-const WORDS_HEIGHT: f32 = 18.0;
+const WORDS_HEIGHT: f32 = 26.0;
 
 /// Height of a chart where there is no bound, and the least one, points.
 const HEIGHT: f32 = 180.0;

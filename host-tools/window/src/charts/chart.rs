@@ -191,7 +191,7 @@ impl Charts {
                 }
             }
         });
-        VALUES_HEIGHT * column.width as f32
+        VALUES_HEIGHT * column.width as f32 + ui.spacing().item_spacing.y
     }
 }
 
@@ -214,7 +214,7 @@ fn spectrum(ui: &mut Ui, kept: &Kept, column: Column, height: f32) {
             }
         }
     });
-    let used = TITLE_HEIGHT + VALUES_HEIGHT * column.width as f32;
+    let used = TITLE_HEIGHT + VALUES_HEIGHT * column.width as f32 + ui.spacing().item_spacing.y;
     let plot = Plot::new((column.name(), "spectrum"))
         .height((height - used).max(HEIGHT_MIN))
         .grid_color(theme::palette(ui.ctx()).line)
