@@ -38,7 +38,7 @@ const TEST_PROGRAMS_MAX: usize = 10;
 /// Workspaces of their own, and the uppermost crate of the layers that each may use.
 const APART: [(&str, &str); 3] = [
     ("host-tools/python", "leg-host"),
-    ("host-tools/window", "leg-sim"),
+    ("host-tools/window", "leg-recording"),
     ("tests/fuzz", "leg-firmware-bench"),
 ];
 
