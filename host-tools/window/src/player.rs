@@ -260,7 +260,10 @@ impl Player {
             );
         });
         ui.spacing_mut().slider_width = ui.available_width();
-        let slider = Slider::new(&mut self.at_s, begin_s..=end_s).show_value(false);
+        // A round time near the pointer would put the handle beside it, by the length of the recording.
+        let slider = Slider::new(&mut self.at_s, begin_s..=end_s)
+            .show_value(false)
+            .smart_aim(false);
         let slider = ui.add_enabled(end_s > begin_s, slider);
         place(&slider, "scrub");
         if slider.dragged() {
