@@ -10,7 +10,7 @@
 //! | [`scene`], `drawn_leg`, [`camera`], [`figure`], [`leg_pose`], [`stiffness_ellipse`] | the leg in 3D |
 //! | [`workspace`], [`map`] | the disc on which the target is dragged, and what the model says of every pose |
 //! | [`charts`] | signals over time |
-//! | [`recorder`], [`recordings`], [`recorded_leg`], [`player`] | recordings: made, saved, opened, played |
+//! | [`recorder`], [`recordings`], [`recording_reader`], [`recorded_leg`], [`player`] | recordings: made, saved, read, played |
 //! | [`setup`], [`rig_intake`], [`files`], [`notice`] | rig files and settings: given, edited, saved, applied; what became of it |
 //! | [`theme`], [`text`], [`keys`], [`utc`] | colours, sizes, text in its place; the keys that stop; the date |
 //! | [`bits`] | whether the firmware decides the same here as elsewhere |
@@ -43,6 +43,7 @@ pub mod places;
 pub mod player;
 pub mod recorded_leg;
 pub mod recorder;
+pub mod recording_reader;
 pub mod recordings;
 pub mod rig_intake;
 pub mod scene;

@@ -251,6 +251,12 @@ impl LiveLeg {
         self.send();
     }
 
+    /// Whether every command was answered.
+    #[must_use]
+    pub fn answered(&self) -> bool {
+        self.orders.answered_all()
+    }
+
     fn send(&mut self) {
         while let Some(order) = self.orders.next_to_send() {
             let number = self.request(order.command);

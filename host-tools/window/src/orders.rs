@@ -83,6 +83,12 @@ impl Orders {
         self.waiting.iter()
     }
 
+    /// Whether nothing waits, or is unanswered.
+    #[must_use]
+    pub fn answered_all(&self) -> bool {
+        self.sent.is_empty() && self.waiting.is_empty()
+    }
+
     /// Whether one was sent that is not answered.
     #[must_use]
     pub fn unanswered(&self) -> bool {

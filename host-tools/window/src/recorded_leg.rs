@@ -6,7 +6,7 @@ use crate::seen_leg::{SeenLeg, along};
 use leg_base::failure::Failure;
 use leg_firmware::supervisor::{FaultSet, State};
 use leg_firmware::telemetry::Telemetry;
-use leg_recording::{About, read_signals};
+use leg_recording::{About, RecordedSignals, read_signals};
 use leg_rig::rig_file::{RigFile, RigText};
 use nalgebra::Vector3;
 
@@ -36,7 +36,14 @@ impl RecordedLeg {
         if let Some(failure) = FileKind::Recording.too_large(name, bytes.len() as f64) {
             return Err(failure);
         }
-        let signals = read_signals(name, bytes)?;
+        Self::new(name, read_signals(name, bytes)?)
+    }
+
+    /// That of the signals of a recording.
+    ///
+    /// # Errors
+    /// Signals of a leg that is not known.
+    pub fn new(name: &str, signals: RecordedSignals) -> Result<Self, Failure> {
         let reports = signals.rows.iter().map(|row| (row.time_s, row.telemetry));
         let reports = reports.collect();
         let rows = signals.rows.into_iter();

@@ -110,6 +110,11 @@ impl Setup {
         self.notice = Some(notice);
     }
 
+    /// Shows no message any more.
+    pub fn close_notice(&mut self) {
+        self.notice = None;
+    }
+
     /// Whether something of it is to be shown now, once.
     pub const fn take_wanted(&mut self) -> bool {
         std::mem::replace(&mut self.wanted, false)
@@ -144,6 +149,11 @@ impl Setup {
     /// Goes on with a calibration that was begun, whatever is shown.
     pub fn advance(&mut self, leg: &mut ShownLeg) {
         self.steps.advance(leg, self.editor.as_ref());
+    }
+
+    /// Looks at a leg that has reported something, many times in a frame.
+    pub fn look(&mut self, leg: &mut ShownLeg) {
+        self.steps.look(leg);
     }
 
     /// Gives the user a file.

@@ -16,6 +16,9 @@ use leg_rig::rig_file::{RigFile, RigText};
 use leg_sim::plant::Defect;
 use nalgebra::Vector3;
 
+/// Ticks from one look at a simulated leg to the next: what a host on a serial line sees of one, 500 times a second.
+const WATCH_TICKS: u32 = 16;
+
 /// Either.
 pub enum ShownLeg {
     /// Firmware and mechanism run in the page.
@@ -30,6 +33,37 @@ impl ShownLeg {
         match self {
             Self::Simulated(leg) => leg.advance(elapsed_s),
             Self::Live(leg) => leg.advance(now_s),
+        }
+    }
+
+    /// The same, and calls `watch` whenever the leg has gone on for some ticks, or was heard.
+    pub fn advance_watched(
+        &mut self,
+        elapsed_s: f64,
+        now_s: f64,
+        watch: &mut dyn FnMut(&mut Self),
+    ) {
+        let Self::Simulated(leg) = self else {
+            self.advance(elapsed_s, now_s);
+            return watch(self);
+        };
+        let mut left = leg.pace.ticks(elapsed_s);
+        while left > 0 {
+            let ticks = left.min(WATCH_TICKS);
+            left -= ticks;
+            if let Self::Simulated(leg) = self {
+                leg.run(ticks);
+            }
+            watch(self);
+        }
+    }
+
+    /// Whether it has answered every command.
+    #[must_use]
+    pub fn answered(&self) -> bool {
+        match self {
+            Self::Simulated(leg) => leg.answered(),
+            Self::Live(leg) => leg.answered(),
         }
     }
 

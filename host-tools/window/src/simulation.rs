@@ -160,7 +160,8 @@ impl Simulation {
         self.run(ticks);
     }
 
-    fn run(&mut self, ticks: u32) {
+    /// Lets so many ticks pass.
+    pub fn run(&mut self, ticks: u32) {
         for _ in 0..ticks {
             if self.failure.is_some() {
                 return;
@@ -259,6 +260,12 @@ impl Simulation {
     pub fn command(&mut self, command: Command, name: &'static str) {
         self.orders.take(Order { command, name });
         self.send();
+    }
+
+    /// Whether every command was answered.
+    #[must_use]
+    pub fn answered(&self) -> bool {
+        self.orders.answered_all()
     }
 
     /// Sends what may be sent now.

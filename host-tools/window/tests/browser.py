@@ -40,12 +40,15 @@ BLOCK = 8
 TOLERANCE = 12
 
 # What shows another number, or another stretch of time, in another moment: it is not compared.
-CHANGING = ("readout", "tensions", "numbers", "charts", "stiffness", "pretension", "name", "trigger", "recording_time")
+CHANGING = ("readout", "tensions", "numbers", "charts", "stiffness", "pretension", "name", "trigger", "recording_time", "tune_result")
 
 # What is left out of the time may be shown above it or to its right, pixels.
 LEFT_OUT = (-30, -20, 130, 0)
 
 WAIT_S = 20.0
+
+# A motor and three pretensions are measured in real time, by a page that may be slow.
+TUNED_S = 400.0
 
 # A leg whose tip moves by less than that within the time of a swing rests, mm and s.
 REST_MM = 0.2
@@ -662,6 +665,33 @@ def steps(page):
     page.wait("the leg is shown", lambda state: "leg" in state["places"])
 
 
+def tuning(page):
+    """Measures a motor and the swing of the simulated leg: what will happen is said first, what was measured stands beside what is set."""
+    start_again(page)
+    page.press("setup")
+    page.press("setup_steps")
+    page.press("guide_tune")
+    page.press("steps_disarm")
+    page.wait_leg("is disarmed", lambda leg: leg["state"] == "disarmed")
+    page.press("tune_motor_2")
+    page.picture("tune")
+    page.press("tune_start")
+    page.wait("it is measured", lambda state: "tune_seen" in state["places"])
+    page.browser.key(" ")
+    page.wait("it is ended by a stop", lambda state: "tune_failed" in state["places"])
+    page.press("tune_again")
+    page.press("tune_start")
+    page.wait("there is a result", lambda state: "tune_result" in state["places"], TUNED_S)
+    assert "tune_failed" not in page.state()["places"]
+    page.picture("tuned")
+    page.press("tune_take")
+    changed = page.wait("the settings have it", lambda state: state["setup"]["changed"])["setup"]["changed"]
+    assert "actuator.resistance_ohm" in changed, changed
+    print(f"  measured: {', '.join(changed)}")
+    page.press("setup")
+    page.wait("the leg is shown", lambda state: "leg" in state["places"])
+
+
 def in_chart(page, name, part):
     left, top, right, bottom = page.rect(name)
     return left + part * (right - left), (top + bottom) / 2
@@ -849,6 +879,7 @@ PARTS = (
     rig_files,
     settings,
     steps,
+    tuning,
     looks,
 )
 

@@ -1,7 +1,7 @@
 //! A load cell by known weights, as its user does it.
 
 use super::cells::{Cells, Step, weights};
-use super::panel::{button, drivers_off, faint, sentence};
+use super::controls::{button, drivers_off, faint, sentence};
 use super::picture::{self, Shown};
 use crate::places::place;
 use crate::setup::editor::Editor;

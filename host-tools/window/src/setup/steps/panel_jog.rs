@@ -1,7 +1,7 @@
 //! One motor, turned slowly, as its user does it.
 
+use super::controls::{button, drivers_off, faint, sentence};
 use super::jog::{Jog, Step, TRAVEL_MAX_MM};
-use super::panel::{button, drivers_off, faint, sentence};
 use super::picture::{self, Shown};
 use crate::places::place;
 use crate::setup::editor::Editor;

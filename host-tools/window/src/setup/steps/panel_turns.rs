@@ -1,6 +1,6 @@
 //! The encoders, as their user checks them.
 
-use super::panel::{button, drivers_off, faint, sentence};
+use super::controls::{button, drivers_off, faint, sentence};
 use super::picture::{self, Shown};
 use super::turns::{Step, Turns};
 use crate::places::place;

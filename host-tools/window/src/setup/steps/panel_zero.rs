@@ -1,6 +1,6 @@
 //! The zero of the tendons, as its user finds it.
 
-use super::panel::{button, faint, sentence};
+use super::controls::{button, faint, sentence};
 use super::picture::{self, Shown};
 use crate::places::place;
 use crate::setup::editor::Editor;
