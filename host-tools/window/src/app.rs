@@ -3,7 +3,7 @@
 #[cfg(test)]
 mod tests;
 
-use crate::charts::Source;
+use crate::charts::SignalSource;
 use crate::files::GivenFile;
 use crate::layout::{Views, narrow, wide};
 use crate::live_leg::opening::{Opened, Opening};
@@ -99,7 +99,7 @@ impl App {
     /// A window with a new simulated leg.
     #[must_use]
     pub fn new(ctx: &Context) -> Self {
-        Self::with(ctx, Stage::simulated(Simulation::new()), Views::new(false))
+        Self::show_stage(ctx, Stage::simulated(Simulation::new()), Views::new(false))
     }
 
     /// A window that shows a live leg as soon as there is one.
@@ -109,10 +109,10 @@ impl App {
             Ok(opening) => Stage::Opening(Box::new(opening)),
             Err(words) => Stage::Empty(words),
         };
-        Self::with(ctx, stage, Views::new(true))
+        Self::show_stage(ctx, stage, Views::new(true))
     }
 
-    fn with(ctx: &Context, stage: Stage, views: Views) -> Self {
+    fn show_stage(ctx: &Context, stage: Stage, views: Views) -> Self {
         theme::install(ctx);
         Self {
             stage,
@@ -188,7 +188,7 @@ impl App {
         self.work.note_leg(began.elapsed());
         if let Stage::Leg(leg) = &mut self.stage {
             self.views.setup.advance(leg);
-            self.views.charts.advance(&Source::of_leg(leg));
+            self.views.charts.advance(&SignalSource::new(leg));
             self.views.recordings.advance(leg);
         }
         if let Some(player) = &mut self.player {
@@ -232,7 +232,7 @@ impl App {
         match wish {
             Wish::None => {}
             Wish::StartAgain => {
-                let same = Simulation::of(leg.source().clone());
+                let same = Simulation::with_rig_file(leg.source().clone());
                 self.forget_leg();
                 self.stage = Stage::simulated(same);
             }
@@ -258,7 +258,7 @@ impl App {
 
     /// Makes a simulated leg of a rig file; one that is refused leaves the present one as it is.
     fn simulate(&mut self, source: &RigText) {
-        match Simulation::of(source.clone()) {
+        match Simulation::with_rig_file(source.clone()) {
             Ok(simulation) => {
                 let notes = source
                     .read()

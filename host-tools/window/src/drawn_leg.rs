@@ -55,12 +55,12 @@ impl<'a> Drawn<'a> {
     pub fn new(leg: &'a SeenLeg<'a>, factor: f64, palette: Palette) -> Self {
         let tip_length_m = leg.tip_length_m();
         let reference = leg.reference;
-        let (along, factor) = enlarged(reference, leg.along, factor, tip_length_m);
+        let (leg_axis, factor) = enlarged(reference, leg.leg_axis, factor, tip_length_m);
         Self {
             leg,
             rig: &leg.rig.parameters,
             palette,
-            pose: LegPose::new(along).twisted(leg.torsion_rad),
+            pose: LegPose::new(leg_axis).twisted(leg.torsion_rad),
             reference,
             commanded_m: leg.commanded_m(),
             tip_length_m,
@@ -69,7 +69,7 @@ impl<'a> Drawn<'a> {
     }
 
     fn tip(&self) -> Vector3<f64> {
-        self.pose.along * self.tip_length_m
+        self.pose.leg_axis * self.tip_length_m
     }
 
     /// The size of joint and plates, m.
@@ -82,7 +82,7 @@ impl<'a> Drawn<'a> {
     pub fn whole(&self, painter: &Painter, view: &View) {
         self.workspace(painter, view);
         let mut items = self.mechanism(view, 2.6);
-        let plate = self.pose.along * self.rig.joint_length_m;
+        let plate = self.pose.leg_axis * self.rig.joint_length_m;
         items.push(rod(
             view,
             [plate, self.tip()],
@@ -106,7 +106,7 @@ impl<'a> Drawn<'a> {
         );
         let inside = painter.with_clip_rect(rect.shrink(1.0));
         let mut items = self.mechanism(view, 4.5);
-        let plate = self.pose.along * self.rig.joint_length_m;
+        let plate = self.pose.leg_axis * self.rig.joint_length_m;
         items.push(rod(
             view,
             [plate, 2.4 * plate],
@@ -130,7 +130,7 @@ impl<'a> Drawn<'a> {
         let (rig, palette) = (self.rig, &self.palette);
         let ring_m = ring_m(&rig.base_anchors_m);
         let base = Vector3::new(0.0, 0.0, rig.upper_length_m);
-        let plate = self.pose.along * rig.joint_length_m;
+        let plate = self.pose.leg_axis * rig.joint_length_m;
         let origin = Vector3::zeros();
         let mut items = vec![
             disc(
@@ -143,7 +143,7 @@ impl<'a> Drawn<'a> {
             disc(
                 view,
                 plate,
-                self.pose.along,
+                self.pose.leg_axis,
                 [PLATE_RADIUS * self::ring_m(&rig.leg_anchors_m), PLATE_M],
                 palette.plate,
             ),

@@ -1,6 +1,6 @@
 //! What is where in the window, wide or narrow.
 
-use crate::charts::{self, Charts, Source};
+use crate::charts::{Charts, SignalSource};
 use crate::faults::FaultList;
 use crate::panel_guide::Wish;
 use crate::places::{place, place_rect};
@@ -11,7 +11,7 @@ use crate::setup::Setup;
 use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
 use crate::workspace::Workspace;
-use crate::{numbers, panel_break, panel_drive, panel_guide, top_bar};
+use crate::{numbers, panel_break, panel_drive, panel_guide, panel_unlock, top_bar};
 use eframe::egui::{
     Align, Align2, CentralPanel, FontId, Frame, Layout, Panel, Rect, ScrollArea, Ui, UiBuilder,
     Vec2, vec2,
@@ -68,7 +68,7 @@ impl Views {
             scene: Scene::default(),
             workspace: Workspace::default(),
             charts: if live {
-                Charts::of_live_leg()
+                Charts::live()
             } else {
                 Charts::default()
             },
@@ -104,6 +104,7 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
         scroll
             .show(ui, |ui| {
                 let wish = guide(ui, leg);
+                unlock(ui, leg);
                 panel_drive::show(ui, leg);
                 wish
             })
@@ -199,6 +200,7 @@ fn page(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
             return wish;
         }
         Tab::Drive => {
+            unlock(ui, leg);
             let side = ui.available_width().min(300.0);
             ui.vertical_centered(|ui| views.workspace.show(ui, leg, side));
             if leg.live().is_some() {
@@ -233,13 +235,13 @@ pub fn stage(ui: &mut Ui, leg: &SeenLeg<'_>, failure: Option<String>, scene: &mu
     let over = UiBuilder::new().max_rect(Rect::from_min_size(corner, vec2(110.0, 60.0)));
     ui.scope_builder(over, |ui| scene.choice(ui));
     if let Some(words) = failure {
-        across(ui, rect, words);
+        show_failure(ui, rect, words);
     }
     rect
 }
 
 /// Why the leg cannot go on, across what was seen of it last.
-fn across(ui: &Ui, rect: Rect, words: String) {
+fn show_failure(ui: &Ui, rect: Rect, words: String) {
     let palette = palette(ui.ctx());
     let font = FontId::proportional(15.0);
     let width = 0.8 * rect.width();
@@ -253,14 +255,25 @@ fn across(ui: &Ui, rect: Rect, words: String) {
 
 /// The signals of the leg, and what is recorded of them; in a room of some height, if that is bounded.
 fn charts(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views, room: Option<f32>) {
-    let top = ui.cursor().top();
-    ui.horizontal_wrapped(|ui| {
-        views.charts.controls(ui, &Source::of_leg(leg));
-        views.recordings.show(ui, leg);
-    });
-    let used = ui.cursor().top() - top;
-    let height = charts::height(room, used);
-    views.charts.show(ui, &Source::of_leg(leg), height);
+    let Views {
+        charts, recordings, ..
+    } = views;
+    charts.show_panel(
+        ui,
+        room,
+        leg,
+        |leg| SignalSource::new(leg),
+        |ui, leg| {
+            recordings.show(ui, leg);
+        },
+    );
+}
+
+/// The switch without which a live leg takes no command: before everything that commands it.
+fn unlock(ui: &mut Ui, leg: &mut ShownLeg) {
+    if let Some(live) = leg.live_mut() {
+        panel_unlock::show(ui, live);
+    }
 }
 
 /// What to try first, with a line below; nothing for a live leg.

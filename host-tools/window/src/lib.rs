@@ -2,6 +2,26 @@
 //!
 //! Where to begin: [`simulation`] steps firmware and simulated leg in real time, [`live_leg`] hears one elsewhere; [`app`] shows either.
 //!
+//! What the page's first steps show, without a page:
+//!
+//! ```
+//! use leg_firmware::command::{Command, Compensation};
+//! use leg_window::simulation::Simulation;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let mut leg = Simulation::new()?;
+//! let rest = |leg: &mut Simulation| (0..200).for_each(|_| leg.advance(0.02));
+//! leg.hang(2.0);
+//! rest(&mut leg);
+//! let sag_mm = leg.leg().comparison().commanded_error_mm();
+//! leg.command(Command::Compensation(Compensation::Estimated), "compensation on");
+//! rest(&mut leg);
+//! let left_mm = leg.leg().comparison().commanded_error_mm();
+//! assert!(sag_mm > 6.5 && left_mm < 0.3, "{sag_mm} mm, {left_mm} mm");
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! | module | what is in it |
 //! |---|---|
 //! | [`simulation`], [`pace`], [`history`] | the leg, how much of it a frame is worth, and what its signals were |

@@ -108,7 +108,7 @@ impl LiveLeg {
             heard_s: None,
             now_s: 0.0,
             telemetry: None,
-            history: History::of_reports(),
+            history: History::live(),
             commanded: None,
             compensation: None,
             refusal: None,
@@ -186,7 +186,7 @@ impl LiveLeg {
             .is_some_and(|last| telemetry.tick < last.tick)
         {
             // Its board has started anew: time begins again.
-            self.history = History::of_reports();
+            self.history = History::live();
             self.commanded = None;
             self.compensation = None;
         }

@@ -38,7 +38,7 @@ impl Quantity {
         found.map_or([""; 2], |(_, name, unit)| [name, unit])
     }
 
-    fn of(self, pose: &Evaluation<f64>, rig: &RigFile) -> f64 {
+    fn value(self, pose: &Evaluation<f64>, rig: &RigFile) -> f64 {
         match self {
             Self::Sag => 1000.0 * pose.deviation_m,
             Self::Stiffness => pose.bending_stiffness_nm_per_rad[0],
@@ -70,7 +70,7 @@ impl Map {
         let value = |azimuth_deg: f64, tilt_deg: f64| {
             let mut query = rig.query(azimuth_deg, tilt_deg, payload_kg);
             query.pretension_n = pretension_n;
-            evaluate(&rig.parameters, &query).map_or(f64::NAN, |pose| quantity.of(&pose, rig))
+            evaluate(&rig.parameters, &query).map_or(f64::NAN, |pose| quantity.value(&pose, rig))
         };
         let sine_max = rig.tilt_deg.to_radians().sin();
         let mut values = vec![value(0.0, 0.0)];

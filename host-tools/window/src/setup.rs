@@ -17,7 +17,7 @@ use crate::shown_leg::ShownLeg;
 use editor::Editor;
 use eframe::egui::{Button, CentralPanel, Context, Panel, ScrollArea, Ui, vec2};
 use leg_rig::rig_file::RigText;
-use panel_actions::Wish;
+use panel_actions::SettingsWish;
 use panel_table::Table;
 use state::SetupState;
 use steps::Steps;
@@ -233,13 +233,13 @@ impl Setup {
     fn settings(&mut self, ui: &mut Ui, leg: &mut ShownLeg) -> Option<RigText> {
         let wish = self.table_and_actions(ui, leg)?;
         match wish {
-            Wish::Simulate(source) => return Some(source),
-            Wish::Save(source) => self.save(&source.name, &source.text),
+            SettingsWish::Simulate(source) => return Some(source),
+            SettingsWish::Save(source) => self.save(&source.name, &source.text),
         }
         None
     }
 
-    fn table_and_actions(&mut self, ui: &mut Ui, leg: &mut ShownLeg) -> Option<Wish> {
+    fn table_and_actions(&mut self, ui: &mut Ui, leg: &mut ShownLeg) -> Option<SettingsWish> {
         let Self { editor, table, .. } = self;
         let editor = editor.as_mut()?;
         if ui.available_width() >= WIDE {
@@ -251,6 +251,7 @@ impl Setup {
                     .inner
             });
             CentralPanel::no_frame().show(ui, |ui| {
+                ui.set_max_width(ui.available_width() - 8.0);
                 table.choice(ui, editor);
                 let scroll = ScrollArea::vertical().id_salt("table").auto_shrink(false);
                 scroll.show(ui, |ui| table.show(ui, editor));

@@ -213,11 +213,11 @@ impl ShownLeg {
 
     /// Along it, as it is drawn: the true direction of a simulated leg, the estimated one of a live leg.
     #[must_use]
-    pub fn along(&self) -> Vector3<f64> {
+    pub fn leg_axis(&self) -> Vector3<f64> {
         match self {
             Self::Simulated(leg) => {
-                let along = leg.leg().truth().direction.vector();
-                Vector3::new(along.x, along.y, along.z)
+                let leg_axis = leg.leg().truth().direction.vector();
+                Vector3::new(leg_axis.x, leg_axis.y, leg_axis.z)
             }
             Self::Live(_) => self.reported(|telemetry| telemetry.pose),
         }
@@ -230,7 +230,7 @@ impl ShownLeg {
     }
 
     fn reported(&self, direction: fn(&Telemetry<f32>) -> [f32; 2]) -> Vector3<f64> {
-        seen_leg::along(self.telemetry().map_or([0.0; 2], direction).map(f64::from))
+        seen_leg::leg_axis(self.telemetry().map_or([0.0; 2], direction).map(f64::from))
     }
 
     /// Where it was sent, as horizontal components; where it takes its target to be, if it was not.
@@ -245,7 +245,7 @@ impl ShownLeg {
     /// Where its tip was sent, m.
     #[must_use]
     pub fn commanded_m(&self) -> Vector3<f64> {
-        seen_leg::along(self.target()) * self.tip_length_m()
+        seen_leg::leg_axis(self.target()) * self.tip_length_m()
     }
 
     /// Distance of the tip, as it is drawn, from where it was sent, mm.
@@ -254,7 +254,7 @@ impl ShownLeg {
         match self {
             Self::Simulated(leg) => leg.leg().comparison().commanded_error_mm(),
             Self::Live(_) => {
-                let tip_m = self.along() * self.tip_length_m();
+                let tip_m = self.leg_axis() * self.tip_length_m();
                 1000.0 * (tip_m - self.commanded_m()).norm()
             }
         }
@@ -300,7 +300,7 @@ impl ShownLeg {
             rig: self.rig(),
             telemetry: self.telemetry().copied(),
             is_true: truth.is_some(),
-            along: self.along(),
+            leg_axis: self.leg_axis(),
             reference: self.reference(),
             target: self.target(),
             torsion_rad: truth.map_or(0.0, |truth| truth.torsion_rad),

@@ -82,14 +82,14 @@ impl Simulation {
     /// # Errors
     /// A rig that is refused; there is none as long as the ready rigs pass their tests.
     pub fn new() -> Result<Self, StartError> {
-        Self::of(RigText::load(None).map_err(StartError::Rig)?)
+        Self::with_rig_file(RigText::load(None).map_err(StartError::Rig)?)
     }
 
     /// The same with the rig of a file.
     ///
     /// # Errors
     /// A rig that is refused, or that cannot be held where it starts.
-    pub fn of(source: RigText) -> Result<Self, StartError> {
+    pub fn with_rig_file(source: RigText) -> Result<Self, StartError> {
         let (rig, _) = source.read().map_err(StartError::Rig)?;
         let tilt_deg = if rig.tilt_deg < START_TILT_DEG {
             START_PART * rig.tilt_deg

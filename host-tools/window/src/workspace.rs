@@ -31,7 +31,7 @@ struct Disc {
 }
 
 impl Disc {
-    fn at(&self, [x, y]: [f64; 2]) -> Pos2 {
+    fn place(&self, [x, y]: [f64; 2]) -> Pos2 {
         let scale = f64::from(self.radius) / self.sine_max;
         self.centre + vec2((x * scale) as f32, (-y * scale) as f32)
     }
@@ -242,7 +242,7 @@ fn mesh(disc: &Disc, map: &Map, palette: &Palette) -> Mesh {
         };
         let sine = disc.sine_max * ring as f64 / RINGS as f64;
         let at = angles::unit_vector(azimuth_deg(spoke)).map(|part| sine * part);
-        mesh.colored_vertex(disc.at(at), colour(*value));
+        mesh.colored_vertex(disc.place(at), colour(*value));
     }
     let vertex = |ring: usize, spoke: usize| match ring {
         0 => 0,
@@ -271,10 +271,10 @@ fn tilt_label(painter: &Painter, disc: &Disc, tilt_deg: f64, radius: f32, palett
 
 /// Where the tip is, and where it was sent.
 fn marks(painter: &Painter, disc: &Disc, leg: &ShownLeg, palette: &Palette) {
-    let along = leg.along();
-    let [x, y] = disc.inside([along.x, along.y]);
-    let is = disc.at([x, y]);
-    let target = disc.at(leg.target());
+    let leg_axis = leg.leg_axis();
+    let [x, y] = disc.inside([leg_axis.x, leg_axis.y]);
+    let is = disc.place([x, y]);
+    let target = disc.place(leg.target());
     painter.line_segment([target, is], Stroke::new(2.0, palette.error));
     painter.circle_filled(is, 5.0, palette.error);
     painter.circle_stroke(target, 9.0, Stroke::new(2.5, palette.target));
@@ -298,8 +298,8 @@ mod tests {
             radius: 80.0,
             sine_max: 0.5,
         };
-        assert_eq!(disc.at([0.5, 0.0]), pos2(180.0, 100.0));
-        assert_eq!(disc.at([0.0, 0.25]), pos2(100.0, 60.0));
+        assert_eq!(disc.place([0.5, 0.0]), pos2(180.0, 100.0));
+        assert_eq!(disc.place([0.0, 0.25]), pos2(100.0, 60.0));
         let [x, y] = disc.direction(pos2(120.0, 140.0));
         assert!((x - 0.125).abs() < 1e-6 && (y + 0.25).abs() < 1e-6);
     }

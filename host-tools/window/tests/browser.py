@@ -40,7 +40,7 @@ BLOCK = 8
 TOLERANCE = 12
 
 # What shows another number, or another stretch of time, in another moment: it is not compared.
-CHANGING = ("readout", "tensions", "numbers", "charts", "stiffness", "pretension", "name", "trigger", "recording_time", "tune_result")
+CHANGING = ("readout", "tensions", "numbers", "charts", "stiffness", "pretension", "name", "trigger", "recording_time", "tune_result", "zero_result", "jog_result")
 
 # What is left out of the time may be shown above it or to its right, pixels.
 LEFT_OUT = (-30, -20, 130, 0)
@@ -659,7 +659,8 @@ def steps(page):
     page.wait("there is a start", lambda state: "zero_start" in state["places"])
     page.press("zero_start")
     page.wait_leg("homes", lambda leg: leg["state"] == "homing")
-    page.wait_leg("hangs down", lambda leg: leg["state"] == "active" and leg["tilt_deg"] < 1, 60)
+    taut = lambda leg: leg["state"] == "active" and leg["tilt_deg"] < 1 and min(leg["tensions_n"]) > 69
+    page.wait_leg("hangs down", taut, 60)
     page.picture("zero")
     page.press("setup")
     page.wait("the leg is shown", lambda state: "leg" in state["places"])

@@ -345,7 +345,7 @@ fn a_live_leg_is_recorded_as_a_log() {
     assert_eq!(opened.span_s(), [1.0, 1.01]);
     assert!(!opened.seen(1.0).is_true);
     let column = opened.history.named("wall_time_s").unwrap();
-    assert!(opened.history.at(column, 1.0)[0] > 1.6e9);
+    assert!(opened.history.numbers_at(column, 1.0)[0] > 1.6e9);
 }
 
 #[test]

@@ -24,7 +24,7 @@ const INTERRUPTED_S: f64 = 5.0;
 
 /// What a page asks a leg.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Wish {
+pub(super) enum LegRequest {
     /// To do something, which is called so.
     Command(Command, &'static str),
     /// What the last jog saw.
@@ -45,7 +45,7 @@ pub(super) struct Mailbox {
     /// Why nothing comes from it any more.
     pub failure: Option<String>,
     /// What it is asked.
-    pub wishes: Vec<Wish>,
+    pub wishes: Vec<LegRequest>,
 }
 
 /// Why it did not do what it was asked.
@@ -126,12 +126,12 @@ impl PageLeg {
         .await
     }
 
-    fn wish(&self, wish: Wish) {
+    fn wish(&self, wish: LegRequest) {
         self.0.borrow_mut().wishes.push(wish);
     }
 
     async fn command(&self, command: Command, name: &'static str) -> Result<()> {
-        self.wish(Wish::Command(command, name));
+        self.wish(LegRequest::Command(command, name));
         loop {
             self.report().await?;
             let mailbox = self.0.borrow();
@@ -243,7 +243,7 @@ impl TunedLeg for PageLeg {
         // What an earlier jog saw is not asked for.
         self.0.borrow_mut().jog = None;
         loop {
-            self.wish(Wish::JogReport);
+            self.wish(LegRequest::JogReport);
             self.report().await?;
             if let Some(report) = self.0.borrow_mut().jog.take() {
                 return Ok((report, telemetry));
@@ -301,7 +301,7 @@ impl TunedLeg for PageLeg {
             Ok(passed(report) || report.state != State::Active)
         };
         self.wait(asked, INTERRUPTED_S, keep).await?;
-        self.wish(Wish::Command(Command::Stop, "stop"));
+        self.wish(LegRequest::Command(Command::Stop, "stop"));
         let longest_s = time.as_secs_f64();
         let mut first = None;
         let keep = |report: &Telemetry<f32>| {

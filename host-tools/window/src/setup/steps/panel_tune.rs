@@ -1,8 +1,8 @@
 //! A motor and the swing of the leg, as their user measures them.
 
 use super::controls::{button, drivers_off, faint, sentence};
-use super::picture::{self, Shown};
-use super::tune::{Outcome, Step, Tune};
+use super::picture::{self, StepPicture};
+use super::tune::{Outcome, Tune, TuneStep};
 use crate::places::place;
 use crate::setup::editor::Editor;
 use crate::shown_leg::ShownLeg;
@@ -14,18 +14,18 @@ pub(super) fn show(ui: &mut Ui, tune: &mut Tune, editor: &mut Editor, leg: &mut 
     let simulated = leg.live().is_none();
     picture::show(
         ui,
-        &Shown {
+        &StepPicture {
             tendon: Some(usize::from(tune.motor) - 1),
             both_ways: true,
             swings: tune.swings && simulated,
             no_payload: true,
-            ..Shown::default()
+            ..StepPicture::default()
         },
     );
     match tune.step() {
-        Step::Choose => choose(ui, tune, leg),
-        Step::Measuring => measuring(ui, tune, leg),
-        Step::Done(outcome) => {
+        TuneStep::Choose => choose(ui, tune, leg),
+        TuneStep::Measuring => measuring(ui, tune, leg),
+        TuneStep::Done(outcome) => {
             let outcome = outcome.clone();
             done(ui, tune, &outcome, editor, leg);
         }

@@ -9,7 +9,7 @@ const HEIGHT: f32 = 170.0;
 
 /// What is shown.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Shown {
+pub(super) struct StepPicture {
     /// The tendon that is meant, from 0.
     pub tendon: Option<usize>,
     /// What hangs on its cell in its place, kg.
@@ -28,7 +28,7 @@ pub(super) struct Shown {
     pub no_payload: bool,
 }
 
-pub(super) fn show(ui: &mut Ui, shown: &Shown) {
+pub(super) fn show(ui: &mut Ui, shown: &StepPicture) {
     let size = vec2(WIDTH.min(ui.available_width()), HEIGHT);
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
     let palette = palette(ui.ctx());
@@ -52,7 +52,7 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown) {
     }
     for tendon in 0..3 {
         // Seen from the side, they stand beside each other; the middle one is behind the joint.
-        let at = x(0.25 + 0.18 * tendon as f32 + if tendon == 2 { 0.14 } else { 0.0 });
+        let at = x([0.25, 0.37, 0.75][tendon]);
         one(&painter, rect, at, [top, plate], tendon, shown, &palette);
     }
 }
@@ -68,7 +68,7 @@ fn one(
     at: f32,
     [top, plate]: [f32; 2],
     tendon: usize,
-    shown: &Shown,
+    shown: &StepPicture,
     palette: &Palette,
 ) {
     let meant = shown.tendon.is_none_or(|meant| meant == tendon);

@@ -1,6 +1,6 @@
 //! What a motor, its gear and the tendons are, measured by the leg itself: what `leg tune` does, by the same code.
 
-use super::page_leg::{Mailbox, PageLeg, Wish};
+use super::page_leg::{LegRequest, Mailbox, PageLeg};
 use crate::shown_leg::ShownLeg;
 use leg_firmware::command::Command;
 use leg_firmware::settings::Settings;
@@ -28,7 +28,7 @@ pub struct Outcome {
 
 /// How far it has come.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub enum Step {
+pub enum TuneStep {
     /// The motor is chosen.
     #[default]
     Choose,
@@ -54,7 +54,7 @@ pub struct Tune {
     pub motor: u8,
     /// Whether the leg is homed then, and swings.
     pub swings: bool,
-    step: Step,
+    step: TuneStep,
     work: Option<Work>,
     mailbox: Rc<RefCell<Mailbox>>,
     /// What is seen of it.
@@ -69,7 +69,7 @@ impl Default for Tune {
         Self {
             motor: 1,
             swings: true,
-            step: Step::default(),
+            step: TuneStep::default(),
             work: None,
             mailbox: Rc::default(),
             seen: Rc::default(),
@@ -82,7 +82,7 @@ impl Default for Tune {
 impl Tune {
     /// How far it has come.
     #[must_use]
-    pub const fn step(&self) -> &Step {
+    pub const fn step(&self) -> &TuneStep {
         &self.step
     }
 
@@ -126,13 +126,13 @@ impl Tune {
         let page_leg = PageLeg(self.mailbox.clone());
         let work = measure(page_leg, jogs, swing, *leg.rig(), self.seen.clone());
         self.work = Some(Work(Box::pin(work)));
-        self.step = Step::Measuring;
+        self.step = TuneStep::Measuring;
     }
 
     /// Ends it, and stops the leg if it is driven.
     pub fn cancel(&mut self, leg: &mut ShownLeg) {
         self.work = None;
-        self.step = Step::Choose;
+        self.step = TuneStep::Choose;
         stop(leg);
     }
 
@@ -156,15 +156,15 @@ impl Tune {
         let polled = work.as_mut().poll(&mut Context::from_waker(Waker::noop()));
         for wish in std::mem::take(&mut self.mailbox.borrow_mut().wishes) {
             match wish {
-                Wish::Command(command, name) => leg.command(command, name),
-                Wish::JogReport => leg.ask_jog(),
+                LegRequest::Command(command, name) => leg.command(command, name),
+                LegRequest::JogReport => leg.ask_jog(),
             }
         }
         if let Poll::Ready(outcome) = polled {
             if outcome.failure.is_some() {
                 stop(leg);
             }
-            self.step = Step::Done(outcome);
+            self.step = TuneStep::Done(outcome);
             self.work = None;
         }
     }
@@ -249,7 +249,7 @@ fn swing_words(swing: &Swing) -> String {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{Outcome, Step, Tune};
+    use super::{Outcome, Tune, TuneStep};
     use crate::shown_leg::ShownLeg;
     use crate::simulation::Simulation;
     use leg_firmware::command::Command;
@@ -284,7 +284,7 @@ mod tests {
         let until_s = leg.time_s() + for_s;
         while leg.time_s() < until_s {
             leg.advance_watched(0.02, 0.0, &mut |leg| tune.look(leg));
-            if let Step::Done(outcome) = tune.step() {
+            if let TuneStep::Done(outcome) = tune.step() {
                 return Some(outcome.clone());
             }
         }
