@@ -2,6 +2,7 @@
 
 use crate::charts::{Charts, SignalSource};
 use crate::faults::FaultList;
+use crate::map::Map;
 use crate::panel_guide::Wish;
 use crate::places::{place, place_rect};
 use crate::recordings::Recordings;
@@ -89,6 +90,7 @@ impl Views {
 
 /// Everything side by side.
 pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
+    views.workspace.refresh(leg);
     views.setup.open |= views.setup.take_wanted();
     if views.setup.open {
         return simulate(views.setup.show(ui, leg));
@@ -136,11 +138,21 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
         scroll.show(ui, |ui| charts(ui, leg, views, Some(room)));
     });
     CentralPanel::no_frame().show(ui, |ui| {
-        let rect = stage(ui, &leg.seen(), leg.failure(), &mut views.scene);
+        let rect = stage(
+            ui,
+            &leg.seen(),
+            leg.failure(),
+            &mut views.scene,
+            views.workspace.map(),
+        );
         let over = UiBuilder::new().max_rect(scene::room(rect));
         ui.scope_builder(over, |ui| {
             let scroll = ScrollArea::vertical().id_salt("faults");
-            scroll.show(ui, |ui| views.faults.show(ui, leg.faults()));
+            // A narrow window has the leg below them.
+            let frame = Frame::NONE.fill(palette(ui.ctx()).back.gamma_multiply(0.85));
+            scroll.show(ui, |ui| {
+                frame.show(ui, |ui| views.faults.show(ui, leg.faults()))
+            });
         });
     });
     wish.inner
@@ -148,6 +160,7 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
 
 /// The leg above, and the rest behind tabs.
 pub fn narrow(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
+    views.workspace.refresh(leg);
     if views.setup.take_wanted() {
         views.tab = Tab::Setup;
     }
@@ -157,7 +170,13 @@ pub fn narrow(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
         .resizable(false)
         .exact_size(height);
     above.show(ui, |ui| {
-        let rect = stage(ui, &leg.seen(), leg.failure(), &mut views.scene);
+        let rect = stage(
+            ui,
+            &leg.seen(),
+            leg.failure(),
+            &mut views.scene,
+            views.workspace.map(),
+        );
         let corner = Rect::from_min_max(rect.max - TIME, rect.max - vec2(14.0, 6.0));
         let over = UiBuilder::new()
             .max_rect(corner)
@@ -227,9 +246,15 @@ fn simulate(source: Option<RigText>) -> Wish {
 }
 
 /// The leg, how much its sag is enlarged, and why it cannot go on. Gives where it is.
-pub fn stage(ui: &mut Ui, leg: &SeenLeg<'_>, failure: Option<String>, scene: &mut Scene) -> Rect {
+pub fn stage(
+    ui: &mut Ui,
+    leg: &SeenLeg<'_>,
+    failure: Option<String>,
+    scene: &mut Scene,
+    map: Option<&Map>,
+) -> Rect {
     let rect = ui.available_rect_before_wrap();
-    let response = scene.show(ui, leg, rect.size());
+    let response = scene.show(ui, leg, map, rect.size());
     place(&response, "leg");
     let corner = rect.left_top() + vec2(14.0, scene::CHOICE_TOP);
     let over = UiBuilder::new().max_rect(Rect::from_min_size(corner, vec2(110.0, 60.0)));

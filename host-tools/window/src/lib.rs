@@ -28,7 +28,7 @@
 //! | [`live_leg`], [`shown_leg`], [`seen_leg`], [`orders`] | a leg behind `leg ui`; what both are for the panels, and for the picture; commands on their way |
 //! | [`app`], [`layout`], [`top_bar`], `panel_…`, [`numbers`], [`faults`] | what is where |
 //! | [`scene`], `drawn_leg`, [`camera`], [`figure`], [`leg_pose`], [`stiffness_ellipse`] | the leg in 3D |
-//! | [`workspace`], [`map`] | the disc on which the target is dragged, and what the model says of every pose |
+//! | [`workspace`], [`map`], [`map_mesh`] | the disc on which the target is dragged, and what the model says of every pose |
 //! | [`charts`] | signals over time |
 //! | [`recorder`], [`recordings`], [`recording_reader`], [`recorded_leg`], [`player`] | recordings: made, saved, read, played |
 //! | [`setup`], [`rig_intake`], [`files`], [`notice`] | rig files and settings: given, edited, saved, applied; what became of it |
@@ -50,6 +50,7 @@ pub mod layout;
 pub mod leg_pose;
 pub mod live_leg;
 pub mod map;
+pub mod map_mesh;
 pub mod notice;
 pub mod numbers;
 pub mod orders;

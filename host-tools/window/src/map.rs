@@ -59,6 +59,8 @@ pub struct Map {
     quantity: Quantity,
     payload_kg: f64,
     pretension_n: f64,
+    /// The sine of the largest tilt.
+    sine_max: f64,
     /// The centre, then each ring from the inside out; not a number where the model has no answer.
     values: Vec<f64>,
 }
@@ -83,6 +85,7 @@ impl Map {
             quantity,
             payload_kg,
             pretension_n,
+            sine_max,
             values,
         }
     }
@@ -93,6 +96,12 @@ impl Map {
         self.quantity == quantity
             && (self.payload_kg - payload_kg).abs() <= SAME_KG
             && (self.pretension_n - pretension_n).abs() <= SAME_N
+    }
+
+    /// The sine of the largest tilt.
+    #[must_use]
+    pub const fn sine_max(&self) -> f64 {
+        self.sine_max
     }
 
     /// The values: the centre, then each ring from the inside out.

@@ -214,7 +214,7 @@ impl Player {
         let transport = Panel::bottom("transport").frame(side).resizable(false);
         transport.show(ui, |ui| self.transport(ui));
         CentralPanel::no_frame().show(ui, |ui| {
-            stage(ui, &self.leg.seen(self.at_s), None, &mut self.scene);
+            stage(ui, &self.leg.seen(self.at_s), None, &mut self.scene, None);
         });
     }
 
@@ -225,7 +225,7 @@ impl Player {
             .resizable(false)
             .exact_size(height);
         above.show(ui, |ui| {
-            stage(ui, &self.leg.seen(self.at_s), None, &mut self.scene);
+            stage(ui, &self.leg.seen(self.at_s), None, &mut self.scene, None);
         });
         CentralPanel::default().show(ui, |ui| {
             self.transport(ui);

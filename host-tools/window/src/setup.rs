@@ -169,7 +169,12 @@ impl Setup {
     /// What it shows, as data.
     #[must_use]
     pub fn state(&self, leg: Option<&ShownLeg>) -> SetupState {
-        SetupState::new(self.notice.as_ref(), self.editor.as_ref(), leg)
+        SetupState::new(
+            self.notice.as_ref(),
+            self.editor.as_ref(),
+            leg,
+            self.steps.measure_failed(),
+        )
     }
 
     /// Shows what became of what was done last.

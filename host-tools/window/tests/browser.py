@@ -178,12 +178,12 @@ class Page:
         self.wait(f"{menu} is closed", lambda state: item not in state["places"])
 
     def slide(self, name, part):
-        """Drags the handle of a slider to a part of its way. Its value stands right of it."""
+        """Drags a slider to a part of its way, from beside that: the leg does what it is led through. Its value stands right of it."""
         left, top, right, bottom = self.rect(name)
         middle = (top + bottom) / 2
         way = (left + 8, left + SLIDER_PART * (right - left))
         at = way[0] + part * (way[1] - way[0])
-        self.browser.drag((way[0], middle), (at, middle))
+        self.browser.drag((at - 6, middle), (at, middle))
 
     def focus(self, name):
         """Gives a control the keyboard's focus."""

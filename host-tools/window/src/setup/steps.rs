@@ -46,6 +46,12 @@ pub struct Steps {
 }
 
 impl Steps {
+    /// Why a motor was not measured to the end.
+    #[must_use]
+    pub fn measure_failed(&self) -> Option<&str> {
+        self.tune.failure()
+    }
+
     /// Looks at a leg that has reported something.
     pub fn look(&mut self, leg: &mut ShownLeg) {
         self.tune.look(leg);

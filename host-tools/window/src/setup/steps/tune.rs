@@ -86,6 +86,15 @@ impl Tune {
         &self.step
     }
 
+    /// Why it was not measured to the end.
+    #[must_use]
+    pub fn failure(&self) -> Option<&str> {
+        match &self.step {
+            TuneStep::Done(outcome) => outcome.failure.as_deref(),
+            _ => None,
+        }
+    }
+
     /// What is seen of it.
     #[must_use]
     pub fn seen(&self) -> String {
