@@ -32,8 +32,8 @@ if [ ${#quick[@]} -eq 0 ]; then
     cargo test --locked
     cargo run --release --locked --package leg-window-export -- "$page"
 fi
-python3 tests/browser.py "$page" "${quick[@]}"
 if [ -z "${LEG:-}" ]; then
     (cd ../.. && cargo build --locked --bin leg)
 fi
+python3 tests/browser.py "$page" "${quick[@]}"
 python3 tests/live.py "$page" "${quick[@]}"

@@ -46,11 +46,6 @@ const APART: [(&str, &str); 3] = [
 /// stay here.
 const CIRCLES: &[(&str, &str, &str)] = &[
     ("tendon-leg", "", "arguments rig"),
-    (
-        "leg-window",
-        "setup::steps",
-        "panel panel_cells panel_jog panel_turns panel_zero",
-    ),
     ("leg-fuzz", "", "host_requests requests"),
 ];
 

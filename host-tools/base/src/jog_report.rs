@@ -58,7 +58,13 @@ const fn way(travel_m: f32) -> &'static str {
 #[must_use]
 pub fn text(report: &JogReport<f32>, findings: &[Finding]) -> String {
     let row = |numbers: &[f32; 3], digits: usize| {
-        let numbers = numbers.map(|number| format!("{number:.digits$}"));
+        let numbers = numbers.map(|number| {
+            let text = format!("{number:.digits$}");
+            let is_zero = text.chars().all(|letter| "-0.".contains(letter));
+            text.strip_prefix('-')
+                .filter(|_| is_zero)
+                .map_or_else(|| text.clone(), Into::into)
+        });
         numbers.join("  ")
     };
     let [before, after] = &report.tensions_n;

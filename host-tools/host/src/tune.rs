@@ -1,48 +1,25 @@
-//! What a leg's motors, gears and tendons are, measured by the leg itself: `leg tune`.
-//!
-//! [`measure_motor`] jogs one motor of a disarmed leg, without a tension and against one; [`measure_swing`] homes the leg and lets
-//! it swing a little at several pretensions. [`comparison`] sets what was found beside what a rig file says, and [`section`] writes
-//! it as a part of one.
+//! What a leg's motors, gears and tendons are, measured by an operator that waits: `leg tune`. [`leg_rig::tune`] has how.
 
-mod comparison;
-mod error;
-mod estimate;
-mod jogs;
-mod motor;
-mod play;
-mod ring;
-mod swing;
-
-pub use comparison::{Row, comparison, section, table};
-pub use error::TuneError;
-pub use estimate::Estimate;
-pub use jogs::{JogPlan, Jogged};
-pub use motor::MotorConstants;
-pub use play::Travels;
-pub use ring::Ring;
-pub use swing::{Swing, SwingPlan, Swings, measure_swing};
-
-use crate::operator::{Operator, OperatorError};
+use crate::operator::{Goal, Operator, OperatorError, Tensioning};
+use leg_base::failure::Failure;
+use leg_firmware::command::Command;
+use leg_firmware::jog::{JogDemand, JogReport};
 use leg_firmware::settings::Settings;
+use leg_firmware::supervisor::State;
+use leg_firmware::telemetry::Telemetry;
+use leg_rig::rig_file::RigFile;
+use leg_rig::tune::{self, LegError, TunedLeg};
+use std::pin::pin;
+use std::task::{Context, Poll, Waker};
+use std::time::Duration;
 
-/// One motor, as it was measured.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MeasuredMotor {
-    /// Its number, from 1.
-    pub motor: u8,
-    /// What it is.
-    pub constants: MotorConstants,
-    /// The jogs from which that follows.
-    pub jogs: Vec<Jogged>,
-}
+pub use leg_rig::tune::{
+    Estimate, JogPlan, Jogged, MeasuredMotor, MotorConstants, Ring, Row, Swing, SwingPlan, Swings,
+    Travels, comparison, plan_text, section, table,
+};
 
-impl MeasuredMotor {
-    /// What its load cell shows without a tension, N.
-    #[must_use]
-    pub fn slack_n(&self) -> f64 {
-        motor::slack_n(&self.jogs)
-    }
-}
+/// Why a leg was not measured to the end. It rests then.
+pub type TuneError = tune::TuneError<OperatorError>;
 
 /// The voltage of the motors' supply, V.
 ///
@@ -52,56 +29,114 @@ pub fn supply_v(operator: &mut Operator, settings: &Settings) -> Result<f32, Ope
     Ok(f32::from(operator.sensors()?.supply_code) * settings.board.supply_v_per_code)
 }
 
-/// Jogs a motor of a disarmed leg by the plan, calls `seen` after each jog that counts, and leaves the tendon where it was.
+/// Jogs a motor of a disarmed leg: [`leg_rig::tune::measure_motor`].
 ///
 /// # Errors
-/// A [`TuneError`]: whatever ends a jog but its travel and the tension. The motor is off then. Where the motor obeyed, the tendon
-/// is paid out to where it was all the same; else the error tells how far it is from there.
+/// As that.
 pub fn measure_motor(
     operator: &mut Operator,
     plan: &JogPlan,
     settings: &Settings,
     seen: &mut dyn FnMut(&Jogged),
 ) -> Result<MeasuredMotor, TuneError> {
-    let jogs = jogs::jog_all(operator, plan, settings, seen)?;
-    let own = usize::from(plan.motor).saturating_sub(1);
-    let axis = settings.axes.get(own);
-    let current_step_a = axis.map_or(0.0, |axis| f64::from(axis.current_a_per_code));
-    Ok(MeasuredMotor {
-        motor: plan.motor,
-        constants: MotorConstants::fit(&jogs, current_step_a)?,
-        jogs,
-    })
+    wait(tune::measure_motor(
+        &mut OperatedLeg(operator),
+        plan,
+        settings,
+        seen,
+    ))
 }
 
-/// What is printed before anything moves.
-#[must_use]
-pub fn plan_text(jogs: &JogPlan, swing: Option<&SwingPlan>) -> String {
-    let [low_v, high_v] = jogs.voltages_v;
-    let [out_mm, in_mm] = jogs.reach_m().map(|reach_m| 1000.0 * reach_m);
-    let mut text = format!(
-        "motor {} turns slowly both ways, from {low_v:.2} V to {high_v:.2} V: it pays out by up to {out_mm:.0} mm, until its tendon is slack,\n\
-         reels in by up to {in_mm:.0} mm, until that pulls, ends a jog where a load cell shows more than {} N, and goes back\n",
-        jogs.motor, jogs.tension_max_n,
-    );
-    if let Some(swing) = swing {
-        text += &swing_text(swing);
+/// Homes the leg, and lets it swing by the plan: [`leg_rig::tune::measure_swing`].
+///
+/// # Errors
+/// As that.
+pub fn measure_swing(
+    operator: &mut Operator,
+    plan: &SwingPlan,
+    rig: &RigFile,
+    seen: &mut dyn FnMut(&Swing),
+) -> Result<Swings, TuneError> {
+    wait(tune::measure_swing(
+        &mut OperatedLeg(operator),
+        plan,
+        rig,
+        seen,
+    ))
+}
+
+/// The result of what waits by itself.
+fn wait<T>(work: impl Future<Output = T>) -> T {
+    let mut work = pin!(work);
+    let mut context = Context::from_waker(Waker::noop());
+    loop {
+        if let Poll::Ready(result) = work.as_mut().poll(&mut context) {
+            return result;
+        }
     }
-    text + "any fault, Ctrl-C and `leg stop` end it: the motors are off or held then, and nothing is written\n"
 }
 
-fn swing_text(swing: &SwingPlan) -> String {
-    let levels: Vec<_> = swing.levels_n.iter().map(|n| format!("{n:.0}")).collect();
-    let play = swing.travels_n.map_or_else(
-        || "its range of pretensions is too small to find play and stretch".into(),
-        |[low_n, high_n]| {
-            format!("its pretension goes up and down between {low_n:.0} and {high_n:.0} N")
-        },
-    );
-    format!(
-        "the leg is homed if it is not; {play};\n\
-         at pretensions of {} N it begins to lean by {:.0}°, is stopped half way and swings on its screws; it is held then\n",
-        levels.join(", "),
-        swing.tilt_deg,
-    )
+/// A leg whose operator waits until it has done what it was asked.
+struct OperatedLeg<'a>(&'a mut Operator);
+
+impl TunedLeg for OperatedLeg<'_> {
+    type Error = OperatorError;
+
+    async fn telemetry(&mut self) -> Result<Telemetry<f32>, OperatorError> {
+        Ok(self.0.telemetry()?.telemetry)
+    }
+
+    async fn telemetry_after(&mut self, error: Option<&OperatorError>) -> Option<Telemetry<f32>> {
+        if let Some(OperatorError::ConnectionLost(..) | OperatorError::NoAnswer(_)) = error {
+            return None;
+        }
+        let report = self.0.uncancelled(Operator::telemetry).ok()?;
+        Some(report.telemetry)
+    }
+
+    async fn jog(
+        &mut self,
+        demand: &JogDemand,
+    ) -> Result<(JogReport<f32>, Telemetry<f32>), OperatorError> {
+        self.0.jog(demand)
+    }
+
+    async fn home(&mut self) -> Result<(), OperatorError> {
+        self.0.home().map(drop)
+    }
+
+    async fn hang_straight(&mut self, pretension_n: f32) -> Result<(), OperatorError> {
+        let goal = Goal {
+            tensioning: Some(Tensioning::Pretension(pretension_n)),
+            direction: Some([0.0; 2]),
+        };
+        self.0.reach(&goal).map(drop)
+    }
+
+    async fn interrupt(
+        &mut self,
+        command: Command,
+        passed: &mut dyn FnMut(&Telemetry<f32>) -> bool,
+        time: Duration,
+    ) -> Result<Vec<Telemetry<f32>>, OperatorError> {
+        self.0.interrupt(command, passed, time)
+    }
+
+    async fn stop(&mut self) -> Result<(), OperatorError> {
+        self.0.stop().map(drop)
+    }
+}
+
+impl LegError for OperatorError {
+    fn faulted(asked: &'static str, telemetry: &Telemetry<f32>) -> Self {
+        Self::Failed(asked, Box::new(*telemetry))
+    }
+
+    fn stopped(asked: &'static str, state: State) -> Self {
+        Self::StoppedByOtherHost(asked, state)
+    }
+
+    fn failure(&self) -> Failure {
+        self.failure()
+    }
 }

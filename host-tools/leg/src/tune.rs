@@ -53,6 +53,9 @@ pub(crate) struct Args {
     connection: ConnectionArgs,
 }
 
+/// What ends it before its time.
+const ENDINGS: &str = "any fault, Ctrl-C and `leg stop` end it: the motors are off or held then, and nothing is written\n";
+
 /// All that was measured.
 struct Measured {
     motor: MeasuredMotor,
@@ -82,7 +85,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let jogs = JogPlan::new(args.motor, &settings, supply_v);
     let swing = (!args.jogs_only).then(|| SwingPlan::new(&rig));
     if !options.json {
-        print(&plan_text(&jogs, swing.as_ref()))?;
+        print(&format!("{}{ENDINGS}", plan_text(&jogs, swing.as_ref())))?;
     }
     if !args.yes {
         let look = "see that the leg is disarmed and hangs free, keep fingers off it and your hand at the emergency stop";

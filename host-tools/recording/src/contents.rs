@@ -39,17 +39,30 @@ impl<'a> Contents<'a> {
         &self,
         mut take: impl FnMut(&Message<'_>) -> Result<bool, String>,
     ) -> Result<(), String> {
-        let messages = MessageStream::new_with_options(self.bytes, self.options());
-        for (count, message) in messages.map_err(not_whole)?.enumerate() {
-            let message = match message {
-                Err(McapError::UnexpectedEof | McapError::UnexpectedEoc) if !self.finished => break,
-                message => message.map_err(|error| not_whole_after(count, error))?,
-            };
-            if !take(&message)? {
+        for message in self.messages()? {
+            if !take(&message?)? {
                 break;
             }
         }
         Ok(())
+    }
+
+    /// The messages, one after the other. In a file that did not come to its end they go to the last whole one.
+    pub fn messages(
+        &self,
+    ) -> Result<impl Iterator<Item = Result<Message<'a>, String>> + use<'a>, String> {
+        let finished = self.finished;
+        let messages = MessageStream::new_with_options(self.bytes, self.options());
+        let messages = messages.map_err(not_whole)?.enumerate();
+        let cut_off = move |(_, message): &(usize, Result<Message<'a>, McapError>)| {
+            let ends = matches!(
+                message,
+                Err(McapError::UnexpectedEof | McapError::UnexpectedEoc)
+            );
+            ends && !finished
+        };
+        let whole = messages.take_while(move |message| !cut_off(message));
+        Ok(whole.map(|(count, message)| message.map_err(|error| not_whole_after(count, error))))
     }
 
     /// The metadata of a name that stands before the first message.

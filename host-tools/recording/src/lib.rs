@@ -16,7 +16,7 @@ mod writer;
 pub use about::About;
 pub use contents::begins;
 pub use error::WriteError;
-pub use player_rows::{RecordedRow, RecordedSignals, read_signals};
+pub use player_rows::{RecordedRow, RecordedSignals, SignalReader, read_signals};
 pub use replay::{REPLAY_HELP, Replay, TickDifference, replay};
 pub use samples::{Recorded, SAMPLES_HELP, Samples, read_samples};
 pub use writer::McapWriter;

@@ -8,7 +8,13 @@ use leg_base::failure::Failure;
 use leg_base::tick_time::seconds;
 use leg_firmware::telemetry::Telemetry;
 use leg_sim::signals::{self, REPORT_SIGNALS, SIMULATED_SIGNALS, Signal};
+use mcap::Message;
 use serde_json::{Map, Value};
+use std::cell::Cell;
+use std::future::poll_fn;
+use std::pin::Pin;
+use std::rc::Rc;
+use std::task::{Context, Poll, Waker};
 
 /// A leg over time, with every signal that has numbers.
 pub struct RecordedSignals {
@@ -39,12 +45,93 @@ pub struct RecordedRow {
 /// # Errors
 /// What is no recording of a leg's telemetry is refused, with the place where that is known.
 pub fn read_signals(name: &str, bytes: &[u8]) -> Result<RecordedSignals, Failure> {
-    read(name, bytes).map_err(|error| {
-        Failure::refused(
-            format!("{name}: {error}"),
-            "give a file that this window, `leg run --record FILE.mcap` or `leg log --out FILE.mcap` has written",
-        )
-    })
+    let mut reader = SignalReader::new(name.into(), bytes.to_vec());
+    loop {
+        if let Some(read) = reader.read_on(usize::MAX) {
+            return read;
+        }
+    }
+}
+
+/// Reads every signal of a recording in parts, for a program that has to do something else in between.
+pub struct SignalReader {
+    work: Pin<Box<dyn Future<Output = Result<RecordedSignals, Failure>>>>,
+    progress: Rc<Progress>,
+}
+
+/// What passes between the reader and its work.
+#[derive(Default)]
+struct Progress {
+    /// Messages that may be read until the next pause.
+    allowed: Cell<usize>,
+    /// Messages that were read.
+    read: Cell<usize>,
+    /// Time of the leg that was read, s.
+    read_s: Cell<f64>,
+}
+
+impl Progress {
+    /// Notes a message, and waits where no more may be read.
+    async fn note(&self, read_s: f64) {
+        self.read.update(|read| read + 1);
+        self.read_s.set(read_s);
+        poll_fn(|_| match self.allowed.get().checked_sub(1) {
+            Some(left) => {
+                self.allowed.set(left);
+                Poll::Ready(())
+            }
+            None => Poll::Pending,
+        })
+        .await;
+    }
+}
+
+impl SignalReader {
+    /// Of a recording of that name, of which nothing is read yet.
+    #[must_use]
+    pub fn new(name: String, bytes: Vec<u8>) -> Self {
+        let progress = Rc::<Progress>::default();
+        let noted = progress.clone();
+        Self {
+            work: Box::pin(async move {
+                read(&name, &bytes, &noted).await.map_err(|error| {
+                    Failure::refused(
+                        format!("{name}: {error}"),
+                        "give a file that this window, `leg run --record FILE.mcap` or `leg log --out FILE.mcap` has written",
+                    )
+                })
+            }),
+            progress,
+        }
+    }
+
+    /// Reads so many messages at the most. All signals once everything is read; not to be called after that.
+    ///
+    /// # Errors
+    /// As [`read_signals`].
+    pub fn read_on(&mut self, messages: usize) -> Option<Result<RecordedSignals, Failure>> {
+        self.progress.allowed.set(messages);
+        match self
+            .work
+            .as_mut()
+            .poll(&mut Context::from_waker(Waker::noop()))
+        {
+            Poll::Ready(read) => Some(read),
+            Poll::Pending => None,
+        }
+    }
+
+    /// How many messages were read.
+    #[must_use]
+    pub fn messages(&self) -> usize {
+        self.progress.read.get()
+    }
+
+    /// How much of the leg's time was read, s.
+    #[must_use]
+    pub fn time_s(&self) -> f64 {
+        self.progress.read_s.get()
+    }
 }
 
 /// What is read so far.
@@ -57,7 +144,7 @@ struct Reading {
     numbers: Vec<f64>,
 }
 
-fn read(name: &str, bytes: &[u8]) -> Result<RecordedSignals, String> {
+async fn read(name: &str, bytes: &[u8], progress: &Progress) -> Result<RecordedSignals, String> {
     let contents = Contents::new(bytes)?;
     let mut reading = Reading {
         about: None,
@@ -66,19 +153,10 @@ fn read(name: &str, bytes: &[u8]) -> Result<RecordedSignals, String> {
         since_s: 0.0,
         numbers: Vec::new(),
     };
-    contents.each(|message| {
-        let unread = |error: String| unreadable(message, &error);
-        match message.channel.topic.as_str() {
-            ABOUT => reading.about = Some(parse(message)?),
-            REPORT => reading.report(&message.data).map_err(unread)?,
-            SIMULATED => reading.truth(&message.data).map_err(unread)?,
-            RECORDER => {
-                return Err("holds what a board's recorder kept: `leg plot` shows it".into());
-            }
-            _ => {}
-        }
-        Ok(true)
-    })?;
+    for message in contents.messages()? {
+        reading.take(&message?)?;
+        progress.note(reading.read_s()).await;
+    }
     if reading.rows.is_empty() {
         return Err("holds no telemetry of a leg".into());
     }
@@ -101,6 +179,26 @@ impl Reading {
         self.numbers.clear();
         signals::numbers(signals, &object(json)?, &mut self.numbers);
         Ok(self.numbers.iter().map(|number| *number as f32).collect())
+    }
+
+    fn take(&mut self, message: &Message<'_>) -> Result<(), String> {
+        let unread = |error: String| unreadable(message, &error);
+        match message.channel.topic.as_str() {
+            ABOUT => self.about = Some(parse(message)?),
+            REPORT => self.report(&message.data).map_err(unread)?,
+            SIMULATED => self.truth(&message.data).map_err(unread)?,
+            RECORDER => {
+                return Err("holds what a board's recorder kept: `leg plot` shows it".into());
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Time from the first report to the last one, s.
+    fn read_s(&self) -> f64 {
+        let ends = self.rows.first().zip(self.rows.last());
+        ends.map_or(0.0, |(first, last)| last.time_s - first.time_s)
     }
 
     fn report(&mut self, json: &[u8]) -> Result<(), String> {

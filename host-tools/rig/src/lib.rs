@@ -43,3 +43,4 @@ pub mod settings_text;
 pub mod support_name;
 pub mod toml_error;
 mod toml_section;
+pub mod tune;

@@ -3,7 +3,7 @@
 #[cfg(test)]
 mod tests;
 
-use crate::charts::Source;
+use crate::charts::SignalSource;
 use crate::files::GivenFile;
 use crate::layout::{Views, narrow, wide};
 use crate::live_leg::opening::{Opened, Opening};
@@ -12,12 +12,13 @@ use crate::page_state::{Drawing, PageState};
 use crate::panel_guide::Wish;
 use crate::places::{self, Places, place_rect};
 use crate::player::Player;
-use crate::recorded_leg::RecordedLeg;
+use crate::recording_reader::RecordingReader;
 use crate::shown_leg::ShownLeg;
 use crate::simulation::{Simulation, StartError};
 use crate::work::Work;
 use crate::{keys, theme, top_bar};
 use eframe::egui::{CentralPanel, Context, Frame, Margin, Panel, RawInput, Ui};
+use leg_base::failure::Failure;
 use leg_firmware::command::Command;
 use leg_rig::rig_file::RigText;
 use web_time::Instant;
@@ -56,9 +57,10 @@ impl Stage {
         }
     }
 
-    fn advance(&mut self, elapsed_s: f64, now_s: f64) {
+    /// Lets time pass; `watch` sees the leg whenever it has gone on.
+    fn advance(&mut self, elapsed_s: f64, now_s: f64, watch: &mut dyn FnMut(&mut ShownLeg)) {
         match self {
-            Self::Leg(leg) => leg.advance(elapsed_s, now_s),
+            Self::Leg(leg) => leg.advance_watched(elapsed_s, now_s, watch),
             Self::Opening(opening) => match opening.advance() {
                 Opened::Waiting => {}
                 Opened::Leg(leg) => *self = Self::Leg(ShownLeg::Live(leg)),
@@ -75,6 +77,8 @@ pub struct App {
     views: Views,
     /// A recording in the place of the leg, which goes on meanwhile.
     player: Option<Box<Player>>,
+    /// A recording that is read.
+    reader: Option<Box<RecordingReader>>,
     places: Places,
     /// Whether a key asks for a stop.
     stop: bool,
@@ -95,7 +99,7 @@ impl App {
     /// A window with a new simulated leg.
     #[must_use]
     pub fn new(ctx: &Context) -> Self {
-        Self::with(ctx, Stage::simulated(Simulation::new()), Views::new(false))
+        Self::show_stage(ctx, Stage::simulated(Simulation::new()), Views::new(false))
     }
 
     /// A window that shows a live leg as soon as there is one.
@@ -105,15 +109,16 @@ impl App {
             Ok(opening) => Stage::Opening(Box::new(opening)),
             Err(words) => Stage::Empty(words),
         };
-        Self::with(ctx, stage, Views::new(true))
+        Self::show_stage(ctx, stage, Views::new(true))
     }
 
-    fn with(ctx: &Context, stage: Stage, views: Views) -> Self {
+    fn show_stage(ctx: &Context, stage: Stage, views: Views) -> Self {
         theme::install(ctx);
         Self {
             stage,
             views,
             player: None,
+            reader: None,
             places: Places::default(),
             stop: false,
             last_s: None,
@@ -177,11 +182,13 @@ impl App {
             leg.command(Command::Stop, "stop");
         }
         let began = Instant::now();
-        self.stage.advance(elapsed_s, now_s);
+        let setup = &mut self.views.setup;
+        let watch = &mut |leg: &mut ShownLeg| setup.look(leg);
+        self.stage.advance(elapsed_s, now_s, watch);
         self.work.note_leg(began.elapsed());
         if let Stage::Leg(leg) = &mut self.stage {
             self.views.setup.advance(leg);
-            self.views.charts.advance(&Source::of_leg(leg));
+            self.views.charts.advance(&SignalSource::new(leg));
             self.views.recordings.advance(leg);
         }
         if let Some(player) = &mut self.player {
@@ -225,7 +232,7 @@ impl App {
         match wish {
             Wish::None => {}
             Wish::StartAgain => {
-                let same = Simulation::of(leg.source().clone());
+                let same = Simulation::with_rig_file(leg.source().clone());
                 self.forget_leg();
                 self.stage = Stage::simulated(same);
             }
@@ -251,7 +258,7 @@ impl App {
 
     /// Makes a simulated leg of a rig file; one that is refused leaves the present one as it is.
     fn simulate(&mut self, source: &RigText) {
-        match Simulation::of(source.clone()) {
+        match Simulation::with_rig_file(source.clone()) {
             Ok(simulation) => {
                 let notes = source
                     .read()
@@ -278,15 +285,44 @@ impl App {
         }
     }
 
-    /// Opens a recording; one that is refused leaves what is shown as it is.
+    /// Begins to read a recording.
     fn open(&mut self, GivenFile { name, bytes }: GivenFile) {
-        match bytes.and_then(|bytes| RecordedLeg::open(&name, &bytes)) {
-            Ok(leg) => self.player = Some(Box::new(Player::new(leg))),
-            Err(failure) => self.views.setup.note(Notice {
-                good: false,
-                title: format!("{name} is refused. What is shown stays as it was."),
-                text: failure.render(false),
-            }),
+        match bytes.and_then(|bytes| RecordingReader::new(name.clone(), bytes)) {
+            Ok(reader) => self.reader = Some(Box::new(reader)),
+            Err(failure) => self.note_refused(&name, &failure),
+        }
+    }
+
+    /// One that is refused leaves what is shown as it is.
+    fn note_refused(&mut self, name: &str, failure: &Failure) {
+        self.views.setup.note(Notice {
+            good: false,
+            title: format!("{name} is refused. What is shown stays as it was."),
+            text: failure.render(false),
+        });
+    }
+
+    /// Reads a part of a recording, and shows it once everything is read.
+    fn read_on(&mut self) {
+        let Some(mut reader) = self.reader.take() else {
+            return;
+        };
+        let told = reader.words().is_some();
+        match reader.read_on() {
+            None => {
+                if let Some(title) = reader.words() {
+                    let (good, text) = (true, String::new());
+                    self.views.setup.note(Notice { good, title, text });
+                }
+                self.reader = Some(reader);
+            }
+            Some(Err(failure)) => self.note_refused(reader.name(), &failure),
+            Some(Ok(leg)) => {
+                if told {
+                    self.views.setup.close_notice();
+                }
+                self.player = Some(Box::new(Player::new(leg)));
+            }
         }
     }
 
@@ -302,6 +338,7 @@ impl App {
         self.fit(&ctx);
         self.step(&ctx);
         self.take_files(&ctx);
+        self.read_on();
         self.show(ui);
         self.places = places::take(&ctx);
         self.frames += 1;

@@ -3,19 +3,20 @@
 mod chart;
 mod cursors;
 mod lines;
+mod panel_controls;
 mod panel_trigger;
+mod signal_source;
 mod spectrum;
 mod trigger;
 
 use crate::history::{Column, History, KEPT_S};
 use crate::places::{place, place_rect};
-use crate::shown_leg::ShownLeg;
 use chart::{Kept, VALUES_HEIGHT};
 use cursors::Cursors;
-use eframe::egui::{
-    Button, ComboBox, PopupCloseBehavior, RichText, ScrollArea, TextEdit, Ui, vec2,
-};
+use eframe::egui::{RichText, Ui};
 use serde::Serialize;
+use signal_source::ShownSignals;
+pub use signal_source::SignalSource;
 use std::collections::BTreeMap;
 use trigger::Trigger;
 
@@ -28,12 +29,6 @@ const WORDS_HEIGHT: f32 = 26.0;
 /// Height of a chart where there is no bound, and the least one, points.
 const HEIGHT: f32 = 180.0;
 const HEIGHT_MIN: f32 = 110.0;
-
-/// How high a chart is in a room of some height, if that is bounded, of which so much is used, points.
-#[must_use]
-pub fn height(room: Option<f32>, used: f32) -> f32 {
-    room.map_or(HEIGHT, |room| (room - used).max(HEIGHT_MIN))
-}
 
 /// What is charted, and how.
 pub struct Charts {
@@ -75,45 +70,6 @@ pub struct ChartsState {
     pub peaks: BTreeMap<&'static str, [f64; 2]>,
 }
 
-/// Where the signals are from.
-pub struct Source<'a> {
-    /// They.
-    pub history: &'a History,
-    /// From when to when there are some, s.
-    pub since_s: f64,
-    /// s.
-    pub now_s: f64,
-    /// The time at which a recording is, s; none of a leg that goes on.
-    pub moment_s: Option<f64>,
-}
-
-impl<'a> Source<'a> {
-    /// Of a leg that goes on.
-    #[must_use]
-    pub fn of_leg(leg: &'a ShownLeg) -> Self {
-        let now_s = leg.time_s();
-        Self {
-            history: leg.history(),
-            since_s: (now_s - KEPT_S).max(0.0),
-            now_s,
-            moment_s: None,
-        }
-    }
-}
-
-/// What the charts show of it.
-#[derive(Clone, Copy)]
-struct Shown<'a> {
-    history: &'a History,
-    /// From when to when there are signals, s.
-    whole_s: [f64; 2],
-    /// From when to when they are drawn, s.
-    drawn_s: [f64; 2],
-    moment_s: Option<f64>,
-    /// Whether it stands still, and may be dragged and zoomed.
-    still: bool,
-}
-
 /// The signals up to a time at which the charts were paused: the leg's own history goes on.
 struct Paused {
     history: History,
@@ -141,7 +97,7 @@ impl Default for Charts {
 impl Charts {
     /// What is charted of a leg of which only its reports are known.
     #[must_use]
-    pub fn of_live_leg() -> Self {
+    pub fn live() -> Self {
         Self {
             chosen: vec!["tip_estimated_mm", "tensions_n"],
             ..Self::default()
@@ -165,7 +121,7 @@ impl Charts {
     }
 
     /// Looks for what the trigger waits for.
-    pub fn advance(&mut self, source: &Source<'_>) {
+    pub fn advance(&mut self, source: &SignalSource<'_>) {
         let after_s = 0.5 * self.span_s;
         let caught = self.trigger.advance(source.history, source.now_s, after_s);
         if let Some(at_s) = caught {
@@ -174,8 +130,28 @@ impl Charts {
         }
     }
 
+    /// Shows the controls with what is `beside` them, and below them the charts of a leg, in a room of some height if that is
+    /// bounded, points. The time at which a chart was pressed, s.
+    pub fn show_panel<L>(
+        &mut self,
+        ui: &mut Ui,
+        room: Option<f32>,
+        leg: &mut L,
+        source: impl for<'a> Fn(&'a L) -> SignalSource<'a>,
+        beside: impl FnOnce(&mut Ui, &mut L),
+    ) -> Option<f64> {
+        let top = ui.cursor().top();
+        ui.horizontal_wrapped(|ui| {
+            self.controls(ui, &source(leg));
+            beside(ui, leg);
+        });
+        let used = ui.cursor().top() - top;
+        let height = room.map_or(HEIGHT, |room| (room - used).max(HEIGHT_MIN));
+        self.show(ui, &source(leg), height)
+    }
+
     /// Shows the charts beside each other, or below where there is no room for that. The time at which one was pressed, s.
-    pub fn show(&mut self, ui: &mut Ui, source: &Source<'_>, height: f32) -> Option<f64> {
+    fn show(&mut self, ui: &mut Ui, source: &SignalSource<'_>, height: f32) -> Option<f64> {
         if self.chosen.is_empty() {
             ui.label("Choose a signal to see it over time.");
         }
@@ -256,7 +232,7 @@ impl Charts {
     }
 
     /// What is charted of a source.
-    fn shown<'a>(&self, source: &Source<'a>, paused: Option<&'a Paused>) -> Shown<'a> {
+    fn shown<'a>(&self, source: &SignalSource<'a>, paused: Option<&'a Paused>) -> ShownSignals<'a> {
         let recorded = source.moment_s.is_some();
         let (history, until_s) = match paused {
             Some(paused) => (&paused.history, paused.until_s),
@@ -273,7 +249,7 @@ impl Charts {
             (true, zoomed_s) => zoomed_s.unwrap_or(whole_s),
             (false, _) => [(until_s - self.span_s).max(0.0), until_s],
         };
-        Shown {
+        ShownSignals {
             history,
             whole_s,
             drawn_s,
@@ -281,110 +257,17 @@ impl Charts {
             still,
         }
     }
-
-    /// What is charted, and how.
-    pub fn controls(&mut self, ui: &mut Ui, source: &Source<'_>) {
-        ui.heading("Charts");
-        let menu = ComboBox::from_id_salt("signals")
-            .selected_text("Signals")
-            .width(90.0)
-            // Several signals may be chosen, and a name is typed.
-            .close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-        let menu = menu.show_ui(ui, |ui| self.choice(ui, source.history));
-        place(&menu.response, "signals");
-        if source.moment_s.is_none() {
-            self.follow(ui, source);
-        }
-        self.tools(ui, source);
-    }
-
-    /// How much of a leg is charted that goes on, whether the charts stand still, and when they do by themselves.
-    fn follow(&mut self, ui: &mut Ui, source: &Source<'_>) {
-        let span = ComboBox::from_id_salt("span").selected_text(format!("{:.0} s", self.span_s));
-        span.width(56.0).show_ui(ui, |ui| {
-            for span_s in SPANS_S {
-                ui.selectable_value(&mut self.span_s, span_s, format!("{span_s:.0} s"));
-            }
-        });
-        let text = if self.paused() { "Go on" } else { "Pause" };
-        let pause = ui.add(Button::new(text).min_size(vec2(62.0, 0.0)));
-        place(&pause, "pause");
-        let hint = "A paused chart can be dragged and zoomed; a double click shows it whole.";
-        if pause.on_hover_text(hint).clicked() {
-            if self.paused() {
-                self.go_on();
-                self.trigger.disarm();
-            } else {
-                self.pause(source.history, source.now_s);
-            }
-        }
-        if panel_trigger::show(ui, &mut self.trigger, &self.chosen, source) {
-            self.go_on();
-        }
-    }
-
-    /// Cursors and spectra.
-    fn tools(&mut self, ui: &mut Ui, source: &Source<'_>) {
-        let cursors = Button::new("Cursors").selected(self.cursors.is_some());
-        let cursors = ui.add_enabled(!self.spectra, cursors);
-        place(&cursors, "cursors");
-        let hint = "Two cursors: drag them in a chart to read times, values and their differences.";
-        if cursors.on_hover_text(hint).clicked() {
-            self.switch_cursors(source);
-        }
-        let spectra = ui.add(Button::new("Spectrum").selected(self.spectra));
-        place(&spectra, "spectra");
-        let hint = "Which sines the signals have in the time that is shown (Hann's window), and the highest of them.";
-        if spectra.on_hover_text(hint).clicked() {
-            self.spectra = !self.spectra;
-        }
-    }
-
-    /// Cursors stand in charts that stand still.
-    fn switch_cursors(&mut self, source: &Source<'_>) {
-        if self.cursors.take().is_some() {
-            return;
-        }
-        if source.moment_s.is_none() && !self.paused() {
-            self.pause(source.history, source.now_s);
-        }
-        let whole_s = [source.since_s, source.now_s];
-        self.cursors = Some(Cursors::new(self.zoomed_s.unwrap_or(whole_s)));
-    }
-
-    fn choice(&mut self, ui: &mut Ui, history: &History) {
-        ui.set_min_width(270.0);
-        let search = TextEdit::singleline(&mut self.search).hint_text("part of a name");
-        place(&ui.add(search), "search");
-        ScrollArea::vertical().max_height(260.0).show(ui, |ui| {
-            for column in history.columns() {
-                let name = column.name();
-                if !name.contains(self.search.trim()) {
-                    continue;
-                }
-                let mut on = self.chosen.contains(&name);
-                let response = ui.checkbox(&mut on, RichText::new(name).monospace());
-                place(&response, name);
-                if response.on_hover_text(column.meaning()).changed() {
-                    self.chosen.retain(|other| *other != name);
-                    if on {
-                        self.chosen.push(name);
-                    }
-                }
-            }
-        });
-    }
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{Charts, Source};
+    use super::{Charts, SignalSource};
     use crate::history::{KEPT_S, SAMPLE_HZ};
     use crate::simulation::Simulation;
 
-    fn source(simulation: &Simulation, now_s: f64) -> Source<'_> {
-        Source {
+    fn source(simulation: &Simulation, now_s: f64) -> SignalSource<'_> {
+        SignalSource {
             history: &simulation.history,
             since_s: 0.0,
             now_s,

@@ -3,8 +3,10 @@
 use crate::camera::View;
 use crate::figure::{Item, ball, circle, cord, disc, rod, sorted};
 use crate::leg_pose::{LegPose, enlarged};
+use crate::map::Map;
+use crate::map_mesh::mesh;
 use crate::places::place_rect;
-use crate::seen_leg::SeenLeg;
+use crate::seen_leg::{SeenLeg, leg_axis};
 use crate::stiffness_ellipse::StiffnessEllipse;
 use crate::theme::{self, Palette, mixed};
 use eframe::egui::{
@@ -35,6 +37,9 @@ const LEGEND_STEPS: u8 = 32;
 /// How far above the lower edge the words about the stiffness stand, points.
 const WORDS_ABOVE: f32 = 72.0;
 
+/// How opaque a map is: what is behind it is seen.
+const MAP_OPACITY: f32 = 0.6;
+
 /// What a force of 1 N is drawn as, m.
 const ARROW_M_PER_N: f64 = 0.015;
 
@@ -49,27 +54,30 @@ pub struct Drawn<'a> {
     commanded_m: Vector3<f64>,
     pub tip_length_m: f64,
     factor: f64,
+    /// What lies on the workspace.
+    map: Option<&'a Map>,
 }
 
 impl<'a> Drawn<'a> {
-    pub fn new(leg: &'a SeenLeg<'a>, factor: f64, palette: Palette) -> Self {
+    pub fn new(leg: &'a SeenLeg<'a>, factor: f64, palette: Palette, map: Option<&'a Map>) -> Self {
         let tip_length_m = leg.tip_length_m();
         let reference = leg.reference;
-        let (along, factor) = enlarged(reference, leg.along, factor, tip_length_m);
+        let (enlarged_axis, factor) = enlarged(reference, leg.leg_axis, factor, tip_length_m);
         Self {
             leg,
             rig: &leg.rig.parameters,
             palette,
-            pose: LegPose::new(along).twisted(leg.torsion_rad),
+            pose: LegPose::new(enlarged_axis).twisted(leg.torsion_rad),
             reference,
             commanded_m: leg.commanded_m(),
             tip_length_m,
             factor,
+            map,
         }
     }
 
     fn tip(&self) -> Vector3<f64> {
-        self.pose.along * self.tip_length_m
+        self.pose.leg_axis * self.tip_length_m
     }
 
     /// The size of joint and plates, m.
@@ -82,7 +90,7 @@ impl<'a> Drawn<'a> {
     pub fn whole(&self, painter: &Painter, view: &View) {
         self.workspace(painter, view);
         let mut items = self.mechanism(view, 2.6);
-        let plate = self.pose.along * self.rig.joint_length_m;
+        let plate = self.pose.leg_axis * self.rig.joint_length_m;
         items.push(rod(
             view,
             [plate, self.tip()],
@@ -106,7 +114,7 @@ impl<'a> Drawn<'a> {
         );
         let inside = painter.with_clip_rect(rect.shrink(1.0));
         let mut items = self.mechanism(view, 4.5);
-        let plate = self.pose.along * self.rig.joint_length_m;
+        let plate = self.pose.leg_axis * self.rig.joint_length_m;
         items.push(rod(
             view,
             [plate, 2.4 * plate],
@@ -130,7 +138,7 @@ impl<'a> Drawn<'a> {
         let (rig, palette) = (self.rig, &self.palette);
         let ring_m = ring_m(&rig.base_anchors_m);
         let base = Vector3::new(0.0, 0.0, rig.upper_length_m);
-        let plate = self.pose.along * rig.joint_length_m;
+        let plate = self.pose.leg_axis * rig.joint_length_m;
         let origin = Vector3::zeros();
         let mut items = vec![
             disc(
@@ -143,7 +151,7 @@ impl<'a> Drawn<'a> {
             disc(
                 view,
                 plate,
-                self.pose.along,
+                self.pose.leg_axis,
                 [PLATE_RADIUS * self::ring_m(&rig.leg_anchors_m), PLATE_M],
                 palette.plate,
             ),
@@ -196,6 +204,10 @@ impl<'a> Drawn<'a> {
         let below = Vector3::new(0.0, 0.0, -self.tip_length_m);
         let vertical = [Vector3::zeros(), below].map(|place| view.project(place).at);
         painter.extend(Shape::dashed_line(&vertical, faint, 5.0, 5.0));
+        if let Some(map) = self.map {
+            let place = |at: [f64; 2]| view.project(self.tip_length_m * leg_axis(at)).at;
+            painter.add(Shape::mesh(mesh(map, &self.palette, MAP_OPACITY, place)));
+        }
         let (sin, cos) = self.leg.rig.tilt_deg.to_radians().sin_cos();
         let mut rim: Vec<Pos2> = circle(below * cos, Vector3::z(), self.tip_length_m * sin)
             .map(|place| view.project(place).at)

@@ -84,8 +84,8 @@ pub fn disc(
 #[must_use]
 pub fn rod(view: &View, ends: [Vector3<f64>; 2], radius_m: f64, colour: Color32) -> Item {
     let [from, to] = ends.map(|end| view.project(end));
-    let along = (to.at - from.at).normalized();
-    let across = Vec2::new(-along.y, along.x);
+    let leg_axis = (to.at - from.at).normalized();
+    let across = Vec2::new(-leg_axis.y, leg_axis.x);
     let half = [from, to].map(|end| (radius_m * end.points_per_m) as f32);
     let mut mesh = Mesh::default();
     for stripe in 0..=STRIPES {

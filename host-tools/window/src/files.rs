@@ -94,7 +94,7 @@ pub struct Files {
 impl Files {
     /// Of one kind.
     #[must_use]
-    pub fn of(kind: FileKind) -> Self {
+    pub fn new(kind: FileKind) -> Self {
         Self {
             kind,
             heap: Heap::default(),

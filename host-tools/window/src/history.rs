@@ -38,7 +38,7 @@ const UNITS: [(&str, &str); 13] = [
 
 /// A signal that has numbers.
 #[derive(Clone, Copy)]
-enum Source {
+enum Origin {
     Reported(&'static Signal<Report>),
     Simulated(&'static Signal<Simulated>),
 }
@@ -46,7 +46,7 @@ enum Source {
 /// A signal, and where its numbers stand in a sample.
 #[derive(Clone, Copy)]
 pub struct Column {
-    source: Source,
+    source: Origin,
     /// The first of its numbers.
     start: usize,
     /// How many.
@@ -58,8 +58,8 @@ impl Column {
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self.source {
-            Source::Reported(signal) => signal.name,
-            Source::Simulated(signal) => signal.name,
+            Origin::Reported(signal) => signal.name,
+            Origin::Simulated(signal) => signal.name,
         }
     }
 
@@ -78,12 +78,25 @@ impl Column {
         found.map_or("", |(_, unit)| unit)
     }
 
+    /// What its number of that place is called.
+    #[must_use]
+    pub fn part_name(&self, number: usize) -> String {
+        let name = self.name();
+        let is_vector = ["tip_", "direction_"]
+            .iter()
+            .any(|begin| name.starts_with(begin));
+        match ["x", "y", "z"].get(number) {
+            Some(axis) if is_vector => (*axis).into(),
+            _ => (number + 1).to_string(),
+        }
+    }
+
     /// What it is and means.
     #[must_use]
     pub fn meaning(&self) -> String {
         let (origin, meaning) = match self.source {
-            Source::Reported(signal) => (signal.origin, signal.meaning),
-            Source::Simulated(signal) => (signal.origin, signal.meaning),
+            Origin::Reported(signal) => (signal.origin, signal.meaning),
+            Origin::Simulated(signal) => (signal.origin, signal.meaning),
         };
         format!("{}: {meaning}", origin.words())
     }
@@ -109,17 +122,17 @@ impl Default for History {
 impl History {
     /// Of a leg that says nothing but its reports.
     #[must_use]
-    pub fn of_reports() -> Self {
+    pub fn live() -> Self {
         Self::new(REPORT_SIGNALS, &[])
     }
 
     fn new(reported: &'static [Signal<Report>], simulated: &'static [Signal<Simulated>]) -> Self {
         let reported = reported
             .iter()
-            .map(|signal| (signal.width(), Source::Reported(signal)));
+            .map(|signal| (signal.width(), Origin::Reported(signal)));
         let simulated = simulated
             .iter()
-            .map(|signal| (signal.width(), Source::Simulated(signal)));
+            .map(|signal| (signal.width(), Origin::Simulated(signal)));
         let mut start = 0;
         let mut columns = Vec::new();
         for (width, source) in reported.chain(simulated) {
@@ -144,7 +157,7 @@ impl History {
         let empty = if simulated {
             Self::default()
         } else {
-            Self::of_reports()
+            Self::live()
         };
         Self {
             samples: samples.collect(),
@@ -158,8 +171,8 @@ impl History {
         self.numbers.clear();
         for column in &self.columns {
             match column.source {
-                Source::Reported(signal) => signal.numbers(&snapshot.report, &mut self.numbers),
-                Source::Simulated(signal) => {
+                Origin::Reported(signal) => signal.numbers(&snapshot.report, &mut self.numbers),
+                Origin::Simulated(signal) => {
                     if let Some(simulated) = &snapshot.simulated {
                         signal.numbers(simulated, &mut self.numbers);
                     }
@@ -175,7 +188,7 @@ impl History {
 
     /// The same until a time, s.
     #[cfg(test)]
-    pub fn until(&self, until_s: f64) -> Self {
+    pub fn part_until(&self, until_s: f64) -> Self {
         let samples = self.samples.iter();
         let until = samples.take_while(|(time_s, _)| *time_s <= until_s);
         Self {
@@ -216,7 +229,7 @@ impl History {
 
     /// The numbers of a signal at a time, s: those of the last sample until then, or of the first.
     #[must_use]
-    pub fn at(&self, column: Column, at_s: f64) -> &[f32] {
+    pub fn numbers_at(&self, column: Column, at_s: f64) -> &[f32] {
         let after = self.samples.partition_point(|(time_s, _)| *time_s <= at_s);
         self.numbers_of(column, self.samples.get(after.saturating_sub(1)))
     }
@@ -257,6 +270,18 @@ mod tests {
     }
 
     #[test]
+    fn numbers_of_axes_and_of_tendons_have_their_names() {
+        let history = History::default();
+        for (name, names) in [
+            ("tip_estimated_mm", ["x", "y", "z"]),
+            ("tensions_n", ["1", "2", "3"]),
+        ] {
+            let column = history.named(name).unwrap();
+            assert_eq!([0, 1, 2].map(|number| column.part_name(number)), names);
+        }
+    }
+
+    #[test]
     fn a_time_has_the_numbers_of_the_last_sample_until_then() {
         let columns = History::default();
         let width: usize = columns.columns().iter().map(|column| column.width).sum();
@@ -264,7 +289,7 @@ mod tests {
         let history = History::recorded(true, samples.into_iter());
         let column = history.named("tensions_true_n").unwrap();
         for (at_s, expected) in [(0.5, 1.0), (1.0, 1.0), (1.9, 1.0), (2.0, 2.0), (9.0, 2.0)] {
-            assert_eq!(history.at(column, at_s), [expected; 3], "{at_s}");
+            assert_eq!(history.numbers_at(column, at_s), [expected; 3], "{at_s}");
         }
     }
 }

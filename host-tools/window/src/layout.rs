@@ -1,7 +1,8 @@
 //! What is where in the window, wide or narrow.
 
-use crate::charts::{self, Charts, Source};
+use crate::charts::{Charts, SignalSource};
 use crate::faults::FaultList;
+use crate::map::Map;
 use crate::panel_guide::Wish;
 use crate::places::{place, place_rect};
 use crate::recordings::Recordings;
@@ -11,7 +12,7 @@ use crate::setup::Setup;
 use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
 use crate::workspace::Workspace;
-use crate::{numbers, panel_break, panel_drive, panel_guide, top_bar};
+use crate::{numbers, panel_break, panel_drive, panel_guide, panel_unlock, top_bar};
 use eframe::egui::{
     Align, Align2, CentralPanel, FontId, Frame, Layout, Panel, Rect, ScrollArea, Ui, UiBuilder,
     Vec2, vec2,
@@ -68,7 +69,7 @@ impl Views {
             scene: Scene::default(),
             workspace: Workspace::default(),
             charts: if live {
-                Charts::of_live_leg()
+                Charts::live()
             } else {
                 Charts::default()
             },
@@ -89,6 +90,7 @@ impl Views {
 
 /// Everything side by side.
 pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
+    views.workspace.refresh(leg);
     views.setup.open |= views.setup.take_wanted();
     if views.setup.open {
         return simulate(views.setup.show(ui, leg));
@@ -104,6 +106,7 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
         scroll
             .show(ui, |ui| {
                 let wish = guide(ui, leg);
+                unlock(ui, leg);
                 panel_drive::show(ui, leg);
                 wish
             })
@@ -135,11 +138,21 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
         scroll.show(ui, |ui| charts(ui, leg, views, Some(room)));
     });
     CentralPanel::no_frame().show(ui, |ui| {
-        let rect = stage(ui, &leg.seen(), leg.failure(), &mut views.scene);
+        let rect = stage(
+            ui,
+            &leg.seen(),
+            leg.failure(),
+            &mut views.scene,
+            views.workspace.map(),
+        );
         let over = UiBuilder::new().max_rect(scene::room(rect));
         ui.scope_builder(over, |ui| {
             let scroll = ScrollArea::vertical().id_salt("faults");
-            scroll.show(ui, |ui| views.faults.show(ui, leg.faults()));
+            // A narrow window has the leg below them.
+            let frame = Frame::NONE.fill(palette(ui.ctx()).back.gamma_multiply(0.85));
+            scroll.show(ui, |ui| {
+                frame.show(ui, |ui| views.faults.show(ui, leg.faults()))
+            });
         });
     });
     wish.inner
@@ -147,6 +160,7 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
 
 /// The leg above, and the rest behind tabs.
 pub fn narrow(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
+    views.workspace.refresh(leg);
     if views.setup.take_wanted() {
         views.tab = Tab::Setup;
     }
@@ -156,7 +170,13 @@ pub fn narrow(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
         .resizable(false)
         .exact_size(height);
     above.show(ui, |ui| {
-        let rect = stage(ui, &leg.seen(), leg.failure(), &mut views.scene);
+        let rect = stage(
+            ui,
+            &leg.seen(),
+            leg.failure(),
+            &mut views.scene,
+            views.workspace.map(),
+        );
         let corner = Rect::from_min_max(rect.max - TIME, rect.max - vec2(14.0, 6.0));
         let over = UiBuilder::new()
             .max_rect(corner)
@@ -199,6 +219,7 @@ fn page(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
             return wish;
         }
         Tab::Drive => {
+            unlock(ui, leg);
             let side = ui.available_width().min(300.0);
             ui.vertical_centered(|ui| views.workspace.show(ui, leg, side));
             if leg.live().is_some() {
@@ -225,21 +246,27 @@ fn simulate(source: Option<RigText>) -> Wish {
 }
 
 /// The leg, how much its sag is enlarged, and why it cannot go on. Gives where it is.
-pub fn stage(ui: &mut Ui, leg: &SeenLeg<'_>, failure: Option<String>, scene: &mut Scene) -> Rect {
+pub fn stage(
+    ui: &mut Ui,
+    leg: &SeenLeg<'_>,
+    failure: Option<String>,
+    scene: &mut Scene,
+    map: Option<&Map>,
+) -> Rect {
     let rect = ui.available_rect_before_wrap();
-    let response = scene.show(ui, leg, rect.size());
+    let response = scene.show(ui, leg, map, rect.size());
     place(&response, "leg");
     let corner = rect.left_top() + vec2(14.0, scene::CHOICE_TOP);
     let over = UiBuilder::new().max_rect(Rect::from_min_size(corner, vec2(110.0, 60.0)));
     ui.scope_builder(over, |ui| scene.choice(ui));
     if let Some(words) = failure {
-        across(ui, rect, words);
+        show_failure(ui, rect, words);
     }
     rect
 }
 
 /// Why the leg cannot go on, across what was seen of it last.
-fn across(ui: &Ui, rect: Rect, words: String) {
+fn show_failure(ui: &Ui, rect: Rect, words: String) {
     let palette = palette(ui.ctx());
     let font = FontId::proportional(15.0);
     let width = 0.8 * rect.width();
@@ -253,14 +280,25 @@ fn across(ui: &Ui, rect: Rect, words: String) {
 
 /// The signals of the leg, and what is recorded of them; in a room of some height, if that is bounded.
 fn charts(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views, room: Option<f32>) {
-    let top = ui.cursor().top();
-    ui.horizontal_wrapped(|ui| {
-        views.charts.controls(ui, &Source::of_leg(leg));
-        views.recordings.show(ui, leg);
-    });
-    let used = ui.cursor().top() - top;
-    let height = charts::height(room, used);
-    views.charts.show(ui, &Source::of_leg(leg), height);
+    let Views {
+        charts, recordings, ..
+    } = views;
+    charts.show_panel(
+        ui,
+        room,
+        leg,
+        |leg| SignalSource::new(leg),
+        |ui, leg| {
+            recordings.show(ui, leg);
+        },
+    );
+}
+
+/// The switch without which a live leg takes no command: before everything that commands it.
+fn unlock(ui: &mut Ui, leg: &mut ShownLeg) {
+    if let Some(live) = leg.live_mut() {
+        panel_unlock::show(ui, live);
+    }
 }
 
 /// What to try first, with a line below; nothing for a live leg.

@@ -10,18 +10,18 @@ const DRAWN_MAX_M: f64 = 0.06;
 #[derive(Clone, Copy, Debug)]
 pub struct LegPose {
     /// Along the leg, from the joint to the tip.
-    pub along: Vector3<f64>,
+    pub leg_axis: Vector3<f64>,
     rotation: Rotation3<f64>,
 }
 
 impl LegPose {
     /// Of a leg that points along a unit vector, without torsion.
     #[must_use]
-    pub fn new(along: Vector3<f64>) -> Self {
+    pub fn new(leg_axis: Vector3<f64>) -> Self {
         let down = -Vector3::z();
-        let rotation = Rotation3::rotation_between(&down, &along);
+        let rotation = Rotation3::rotation_between(&down, &leg_axis);
         Self {
-            along,
+            leg_axis,
             rotation: rotation.unwrap_or_else(Rotation3::identity),
         }
     }
@@ -29,7 +29,7 @@ impl LegPose {
     /// The same twisted about itself, rad.
     #[must_use]
     pub fn twisted(self, torsion_rad: f64) -> Self {
-        let axis = UnitVector3::new_normalize(-self.along);
+        let axis = UnitVector3::new_normalize(-self.leg_axis);
         Self {
             rotation: Rotation3::from_axis_angle(&axis, torsion_rad) * self.rotation,
             ..self
@@ -55,11 +55,11 @@ impl LegPose {
 #[must_use]
 pub fn enlarged(
     reference: Vector3<f64>,
-    along: Vector3<f64>,
+    leg_axis: Vector3<f64>,
     factor: f64,
     tip_length_m: f64,
 ) -> (Vector3<f64>, f64) {
-    let deviation = along - reference;
+    let deviation = leg_axis - reference;
     let room = DRAWN_MAX_M / (deviation.norm() * tip_length_m).max(1e-9);
     let factor = factor.min(room).max(1.0);
     ((reference + deviation * factor).normalize(), factor)
@@ -82,11 +82,11 @@ mod tests {
     #[test]
     fn the_plate_leans_and_twists_with_the_leg() {
         let rig = RigParameters::<f64, 3>::TABLE_1;
-        let along = Vector3::new(0.5, 0.0, -0.75_f64.sqrt());
-        let pose = LegPose::new(along);
-        let centre = along * rig.joint_length_m;
+        let leg_axis = Vector3::new(0.5, 0.0, -0.75_f64.sqrt());
+        let pose = LegPose::new(leg_axis);
+        let centre = leg_axis * rig.joint_length_m;
         for [_, leg] in pose.anchors(&rig) {
-            assert!((leg - centre).dot(&along).abs() < 1e-12);
+            assert!((leg - centre).dot(&leg_axis).abs() < 1e-12);
             assert!(((leg - centre).norm() - 0.024).abs() < 1e-9);
         }
         let turned = pose.twisted(0.1).anchors(&rig);

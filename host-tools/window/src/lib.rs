@@ -2,15 +2,35 @@
 //!
 //! Where to begin: [`simulation`] steps firmware and simulated leg in real time, [`live_leg`] hears one elsewhere; [`app`] shows either.
 //!
+//! What the page's first steps show, without a page:
+//!
+//! ```
+//! use leg_firmware::command::{Command, Compensation};
+//! use leg_window::simulation::Simulation;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let mut leg = Simulation::new()?;
+//! let rest = |leg: &mut Simulation| (0..200).for_each(|_| leg.advance(0.02));
+//! leg.hang(2.0);
+//! rest(&mut leg);
+//! let sag_mm = leg.leg().comparison().commanded_error_mm();
+//! leg.command(Command::Compensation(Compensation::Estimated), "compensation on");
+//! rest(&mut leg);
+//! let left_mm = leg.leg().comparison().commanded_error_mm();
+//! assert!(sag_mm > 6.5 && left_mm < 0.3, "{sag_mm} mm, {left_mm} mm");
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! | module | what is in it |
 //! |---|---|
 //! | [`simulation`], [`pace`], [`history`] | the leg, how much of it a frame is worth, and what its signals were |
 //! | [`live_leg`], [`shown_leg`], [`seen_leg`], [`orders`] | a leg behind `leg ui`; what both are for the panels, and for the picture; commands on their way |
 //! | [`app`], [`layout`], [`top_bar`], `panel_…`, [`numbers`], [`faults`] | what is where |
 //! | [`scene`], `drawn_leg`, [`camera`], [`figure`], [`leg_pose`], [`stiffness_ellipse`] | the leg in 3D |
-//! | [`workspace`], [`map`] | the disc on which the target is dragged, and what the model says of every pose |
+//! | [`workspace`], [`map`], [`map_mesh`] | the disc on which the target is dragged, and what the model says of every pose |
 //! | [`charts`] | signals over time |
-//! | [`recorder`], [`recordings`], [`recorded_leg`], [`player`] | recordings: made, saved, opened, played |
+//! | [`recorder`], [`recordings`], [`recording_reader`], [`recorded_leg`], [`player`] | recordings: made, saved, read, played |
 //! | [`setup`], [`rig_intake`], [`files`], [`notice`] | rig files and settings: given, edited, saved, applied; what became of it |
 //! | [`theme`], [`text`], [`keys`], [`utc`] | colours, sizes, text in its place; the keys that stop; the date |
 //! | [`bits`] | whether the firmware decides the same here as elsewhere |
@@ -30,6 +50,7 @@ pub mod layout;
 pub mod leg_pose;
 pub mod live_leg;
 pub mod map;
+pub mod map_mesh;
 pub mod notice;
 pub mod numbers;
 pub mod orders;
@@ -43,6 +64,7 @@ pub mod places;
 pub mod player;
 pub mod recorded_leg;
 pub mod recorder;
+pub mod recording_reader;
 pub mod recordings;
 pub mod rig_intake;
 pub mod scene;

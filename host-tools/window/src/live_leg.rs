@@ -108,7 +108,7 @@ impl LiveLeg {
             heard_s: None,
             now_s: 0.0,
             telemetry: None,
-            history: History::of_reports(),
+            history: History::live(),
             commanded: None,
             compensation: None,
             refusal: None,
@@ -121,13 +121,7 @@ impl LiveLeg {
     pub fn advance(&mut self, now_s: f64) {
         self.now_s = now_s;
         self.heard_s.get_or_insert(now_s);
-        while let Some(heard) = self.line.heard() {
-            match heard {
-                Heard::Text(text) => self.take_word(&text),
-                Heard::Bytes(bytes) => self.take_bytes(&bytes),
-                Heard::Ended(why) => self.end(why),
-            }
-        }
+        self.listen();
         if self.orders.unanswered() && now_s - self.sent_s > ANSWER_S {
             self.orders = Orders::default();
             self.commanded = None;
@@ -135,6 +129,17 @@ impl LiveLeg {
         }
         self.look_at_board();
         self.show_life(now_s);
+    }
+
+    /// Takes what has come.
+    fn listen(&mut self) {
+        while let Some(heard) = self.line.heard() {
+            match heard {
+                Heard::Text(text) => self.take_word(&text),
+                Heard::Bytes(bytes) => self.take_bytes(&bytes),
+                Heard::Ended(why) => self.end(why),
+            }
+        }
     }
 
     fn take_word(&mut self, text: &str) {
@@ -181,7 +186,7 @@ impl LiveLeg {
             .is_some_and(|last| telemetry.tick < last.tick)
         {
             // Its board has started anew: time begins again.
-            self.history = History::of_reports();
+            self.history = History::live();
             self.commanded = None;
             self.compensation = None;
         }
@@ -246,6 +251,12 @@ impl LiveLeg {
         self.send();
     }
 
+    /// Whether every command was answered.
+    #[must_use]
+    pub fn answered(&self) -> bool {
+        self.orders.answered_all()
+    }
+
     fn send(&mut self) {
         while let Some(order) = self.orders.next_to_send() {
             let number = self.request(order.command);
@@ -263,8 +274,9 @@ impl LiveLeg {
     }
 
     /// Tells the leg that the page is there, unless the page stands still. Called between frames, too: a slow one must not hold the
-    /// leg.
+    /// leg, not even one that has begun to follow since the last frame.
     pub fn show_life(&mut self, now_s: f64) {
+        self.listen();
         let follows = self.telemetry.is_some_and(|last| last.state.follows());
         let still = now_s - self.now_s > FRAME_MAX_S;
         if self.role.drives && follows && !still && now_s - self.alive_s >= ALIVE_S {

@@ -38,7 +38,7 @@ impl Quantity {
         found.map_or([""; 2], |(_, name, unit)| [name, unit])
     }
 
-    fn of(self, pose: &Evaluation<f64>, rig: &RigFile) -> f64 {
+    fn value(self, pose: &Evaluation<f64>, rig: &RigFile) -> f64 {
         match self {
             Self::Sag => 1000.0 * pose.deviation_m,
             Self::Stiffness => pose.bending_stiffness_nm_per_rad[0],
@@ -59,6 +59,8 @@ pub struct Map {
     quantity: Quantity,
     payload_kg: f64,
     pretension_n: f64,
+    /// The sine of the largest tilt.
+    sine_max: f64,
     /// The centre, then each ring from the inside out; not a number where the model has no answer.
     values: Vec<f64>,
 }
@@ -70,7 +72,7 @@ impl Map {
         let value = |azimuth_deg: f64, tilt_deg: f64| {
             let mut query = rig.query(azimuth_deg, tilt_deg, payload_kg);
             query.pretension_n = pretension_n;
-            evaluate(&rig.parameters, &query).map_or(f64::NAN, |pose| quantity.of(&pose, rig))
+            evaluate(&rig.parameters, &query).map_or(f64::NAN, |pose| quantity.value(&pose, rig))
         };
         let sine_max = rig.tilt_deg.to_radians().sin();
         let mut values = vec![value(0.0, 0.0)];
@@ -83,6 +85,7 @@ impl Map {
             quantity,
             payload_kg,
             pretension_n,
+            sine_max,
             values,
         }
     }
@@ -93,6 +96,12 @@ impl Map {
         self.quantity == quantity
             && (self.payload_kg - payload_kg).abs() <= SAME_KG
             && (self.pretension_n - pretension_n).abs() <= SAME_N
+    }
+
+    /// The sine of the largest tilt.
+    #[must_use]
+    pub const fn sine_max(&self) -> f64 {
+        self.sine_max
     }
 
     /// The values: the centre, then each ring from the inside out.

@@ -83,6 +83,12 @@ impl Orders {
         self.waiting.iter()
     }
 
+    /// Whether nothing waits, or is unanswered.
+    #[must_use]
+    pub fn answered_all(&self) -> bool {
+        self.sent.is_empty() && self.waiting.is_empty()
+    }
+
     /// Whether one was sent that is not answered.
     #[must_use]
     pub fn unanswered(&self) -> bool {
@@ -121,7 +127,7 @@ mod tests {
         }
     }
 
-    fn to(x: f32) -> Order {
+    fn move_to(x: f32) -> Order {
         order(Command::Move { x, y: 0.0 })
     }
 
@@ -134,17 +140,17 @@ mod tests {
     #[test]
     fn the_newest_of_a_kind_waits_for_the_answer() {
         let mut orders = Orders::default();
-        orders.take(to(0.1));
-        assert_eq!(send(&mut orders, 1), Some(to(0.1)));
+        orders.take(move_to(0.1));
+        assert_eq!(send(&mut orders, 1), Some(move_to(0.1)));
         for x in [0.2, 0.3] {
-            orders.take(to(x));
+            orders.take(move_to(x));
             assert_eq!(send(&mut orders, 2), None);
         }
         orders.take(order(Command::Hold));
         assert_eq!(orders.waiting().count(), 2);
         assert_eq!(orders.answered(9), None);
-        assert_eq!(orders.answered(1), Some(to(0.1)));
-        assert_eq!(send(&mut orders, 2), Some(to(0.3)));
+        assert_eq!(orders.answered(1), Some(move_to(0.1)));
+        assert_eq!(send(&mut orders, 2), Some(move_to(0.3)));
         orders.answered(2);
         assert_eq!(send(&mut orders, 3), Some(order(Command::Hold)));
     }
@@ -152,9 +158,9 @@ mod tests {
     #[test]
     fn a_stop_does_not_wait_and_cancels_what_does() {
         let mut orders = Orders::default();
-        orders.take(to(0.1));
+        orders.take(move_to(0.1));
         send(&mut orders, 1);
-        orders.take(to(0.2));
+        orders.take(move_to(0.2));
         let stop = order(Command::Stop);
         orders.take(stop);
         assert_eq!(send(&mut orders, 2), Some(stop));
@@ -173,16 +179,16 @@ mod tests {
         let mut orders = Orders::default();
         let (hold, stop) = (order(Command::Hold), order(Command::Stop));
         orders.take(hold);
-        orders.repeat(to(0.1));
-        assert_eq!(orders.next_to_send(), Some(to(0.1)));
-        orders.take(to(0.2));
-        orders.repeat(to(0.1));
+        orders.repeat(move_to(0.1));
+        assert_eq!(orders.next_to_send(), Some(move_to(0.1)));
+        orders.take(move_to(0.2));
+        orders.repeat(move_to(0.1));
         assert_eq!(orders.next_to_send(), Some(hold));
-        assert_eq!(orders.next_to_send(), Some(to(0.2)));
+        assert_eq!(orders.next_to_send(), Some(move_to(0.2)));
         orders.take(stop);
-        orders.repeat(to(0.1));
+        orders.repeat(move_to(0.1));
         assert_eq!(send(&mut orders, 1), Some(stop));
-        orders.repeat(to(0.1));
+        orders.repeat(move_to(0.1));
         assert_eq!(orders.next_to_send(), None);
         orders.answered(1);
         orders.repeat(stop);

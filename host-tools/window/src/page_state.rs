@@ -140,12 +140,12 @@ impl PageState {
 
 impl LegState {
     fn new(leg: &ShownLeg) -> Self {
-        let along = leg.along();
+        let leg_axis = leg.leg_axis();
         let simulation = leg.simulated();
         let pace = simulation.map_or_else(Pace::default, |simulation| simulation.pace);
         let live = leg.live();
         let role = live.map(LiveLeg::role).unwrap_or_default();
-        let [azimuth_deg, tilt_deg] = angles::angles_deg([along.x, along.y]);
+        let [azimuth_deg, tilt_deg] = angles::angles_deg([leg_axis.x, leg_axis.y]);
         let faults = leg.faults().faults();
         let telemetry = leg.telemetry();
         Self {

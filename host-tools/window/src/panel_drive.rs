@@ -1,6 +1,5 @@
 //! Commands to the leg: buttons with what each will do, and sliders.
 
-use crate::panel_unlock;
 use crate::places::place;
 use crate::shown_leg::ShownLeg;
 use crate::text::left;
@@ -77,9 +76,6 @@ const CHOICES: [Choice; 5] = [
 /// Shows the commands.
 pub fn show(ui: &mut Ui, leg: &mut ShownLeg) {
     ui.heading("Drive it");
-    if let Some(live) = leg.live_mut() {
-        panel_unlock::show(ui, live);
-    }
     let locked = leg.locked();
     for choice in &CHOICES {
         let useful = locked.is_none() && (choice.useful)(leg);

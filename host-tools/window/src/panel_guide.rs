@@ -13,7 +13,7 @@ use leg_sim::plant::Defect;
 const PAYLOAD_KG: f64 = 2.0;
 
 /// A step.
-struct Step {
+struct GuideStep {
     number: u8,
     /// What its button says, and its name for tests.
     action: [&'static str; 2],
@@ -38,7 +38,7 @@ pub fn show(ui: &mut Ui, simulation: &mut Simulation) -> Wish {
     ui.heading("Try this");
     let cut = Defect::TendonCut(0);
     let steps = [
-        Step {
+        GuideStep {
             number: 1,
             action: ["Hang 2 kg on the tip", "guide_payload"],
             effect: if simulation.source().text == READY_RIGS[0].text {
@@ -48,13 +48,13 @@ pub fn show(ui: &mut Ui, simulation: &mut Simulation) -> Wish {
             },
             done: simulation.payload_kg() >= PAYLOAD_KG,
         },
-        Step {
+        GuideStep {
             number: 2,
             action: ["Switch compensation on", "guide_compensation"],
             effect: "The leg feels the load, and lifts it back to the target.",
             done: simulation.compensated(),
         },
-        Step {
+        GuideStep {
             number: 3,
             action: ["Cut a tendon", "guide_cut"],
             effect: "The supervisor holds the leg, and says why.",
@@ -86,7 +86,7 @@ pub fn show(ui: &mut Ui, simulation: &mut Simulation) -> Wish {
 }
 
 /// Whether its button was pressed.
-fn row(ui: &mut Ui, step: &Step) -> bool {
+fn row(ui: &mut Ui, step: &GuideStep) -> bool {
     let palette = palette(ui.ctx());
     let mut pressed = false;
     ui.horizontal(|ui| {

@@ -1,6 +1,6 @@
 //! A recording that is played: the leg as it was at a time, which is chosen by a slider, and its signals around it.
 
-use crate::charts::{self, Charts, Source};
+use crate::charts::Charts;
 use crate::faults::FaultList;
 use crate::layout::stage;
 use crate::numbers;
@@ -93,7 +93,7 @@ impl Player {
             charts: if leg.seen(at_s).is_true {
                 Charts::default()
             } else {
-                Charts::of_live_leg()
+                Charts::live()
             },
             leg,
             at_s,
@@ -126,7 +126,7 @@ impl Player {
     pub fn state(&self) -> PlayerState {
         let seen = self.leg.seen(self.at_s);
         let faults = self.leg.faults(self.at_s).faults();
-        let [_, tilt_deg] = leg_base::angles::angles_deg([seen.along.x, seen.along.y]);
+        let [_, tilt_deg] = leg_base::angles::angles_deg([seen.leg_axis.x, seen.leg_axis.y]);
         let estimated_kg = seen
             .telemetry
             .map_or(0.0, |telemetry| telemetry.payload_kg.into());
@@ -214,7 +214,7 @@ impl Player {
         let transport = Panel::bottom("transport").frame(side).resizable(false);
         transport.show(ui, |ui| self.transport(ui));
         CentralPanel::no_frame().show(ui, |ui| {
-            stage(ui, &self.leg.seen(self.at_s), None, &mut self.scene);
+            stage(ui, &self.leg.seen(self.at_s), None, &mut self.scene, None);
         });
     }
 
@@ -225,7 +225,7 @@ impl Player {
             .resizable(false)
             .exact_size(height);
         above.show(ui, |ui| {
-            stage(ui, &self.leg.seen(self.at_s), None, &mut self.scene);
+            stage(ui, &self.leg.seen(self.at_s), None, &mut self.scene, None);
         });
         CentralPanel::default().show(ui, |ui| {
             self.transport(ui);
@@ -260,7 +260,10 @@ impl Player {
             );
         });
         ui.spacing_mut().slider_width = ui.available_width();
-        let slider = Slider::new(&mut self.at_s, begin_s..=end_s).show_value(false);
+        // A round time near the pointer would put the handle beside it, by the length of the recording.
+        let slider = Slider::new(&mut self.at_s, begin_s..=end_s)
+            .show_value(false)
+            .smart_aim(false);
         let slider = ui.add_enabled(end_s > begin_s, slider);
         place(&slider, "scrub");
         if slider.dragged() {
@@ -284,18 +287,14 @@ impl Player {
 
     /// The signals; a press in a chart goes to that time.
     fn show_charts(&mut self, ui: &mut Ui, room: Option<f32>) {
-        let top = ui.cursor().top();
-        let [since_s, now_s] = self.leg.span_s();
-        let source = Source {
-            history: &self.leg.history,
-            since_s,
-            now_s,
-            moment_s: Some(self.at_s),
-        };
-        ui.horizontal_wrapped(|ui| self.charts.controls(ui, &source));
-        let height = charts::height(room, ui.cursor().top() - top);
-        if let Some(at_s) = self.charts.show(ui, &source, height) {
-            self.at_s = at_s.clamp(since_s, now_s);
+        let Self {
+            leg, charts, at_s, ..
+        } = self;
+        let moment_s = *at_s;
+        let pressed_s = charts.show_panel(ui, room, leg, |leg| leg.signals(moment_s), |_, _| ());
+        if let Some(pressed_s) = pressed_s {
+            let [since_s, end_s] = leg.span_s();
+            *at_s = pressed_s.clamp(since_s, end_s);
             self.playing = false;
         }
     }

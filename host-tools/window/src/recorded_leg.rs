@@ -1,12 +1,13 @@
 //! A leg that was recorded: what it was at any time of its recording.
 
+use crate::charts::SignalSource;
 use crate::files::FileKind;
 use crate::history::History;
-use crate::seen_leg::{SeenLeg, along};
+use crate::seen_leg::{SeenLeg, leg_axis};
 use leg_base::failure::Failure;
 use leg_firmware::supervisor::{FaultSet, State};
 use leg_firmware::telemetry::Telemetry;
-use leg_recording::{About, read_signals};
+use leg_recording::{About, RecordedSignals, read_signals};
 use leg_rig::rig_file::{RigFile, RigText};
 use nalgebra::Vector3;
 
@@ -36,7 +37,14 @@ impl RecordedLeg {
         if let Some(failure) = FileKind::Recording.too_large(name, bytes.len() as f64) {
             return Err(failure);
         }
-        let signals = read_signals(name, bytes)?;
+        Self::new(name, read_signals(name, bytes)?)
+    }
+
+    /// That of the signals of a recording.
+    ///
+    /// # Errors
+    /// Signals of a leg that is not known.
+    pub fn new(name: &str, signals: RecordedSignals) -> Result<Self, Failure> {
         let reports = signals.rows.iter().map(|row| (row.time_s, row.telemetry));
         let reports = reports.collect();
         let rows = signals.rows.into_iter();
@@ -57,6 +65,18 @@ impl RecordedLeg {
     pub fn span_s(&self) -> [f64; 2] {
         let ends = [self.reports.first(), self.reports.last()];
         ends.map(|end| end.map_or(0.0, |(time_s, _)| *time_s))
+    }
+
+    /// Its signals, for charts, at a time, s.
+    #[must_use]
+    pub fn signals(&self, moment_s: f64) -> SignalSource<'_> {
+        let [since_s, now_s] = self.span_s();
+        SignalSource {
+            history: &self.history,
+            since_s,
+            now_s,
+            moment_s: Some(moment_s),
+        }
     }
 
     /// What it had reported last at a time, s.
@@ -84,7 +104,7 @@ impl RecordedLeg {
     /// The numbers of a signal then; not a number where there is none.
     fn signal<const N: usize>(&self, name: &str, at_s: f64) -> [f64; N] {
         let column = self.history.named(name);
-        let numbers = column.map_or(&[][..], |column| self.history.at(column, at_s));
+        let numbers = column.map_or(&[][..], |column| self.history.numbers_at(column, at_s));
         std::array::from_fn(|i| numbers.get(i).map_or(f64::NAN, |number| f64::from(*number)))
     }
 
@@ -107,8 +127,8 @@ impl RecordedLeg {
             rig: &self.rig,
             telemetry,
             is_true: self.is_true,
-            along: self.along(at_s, reported(|telemetry| telemetry.pose)),
-            reference: along(reported(|telemetry| telemetry.target)),
+            leg_axis: self.leg_axis(at_s, reported(|telemetry| telemetry.pose)),
+            reference: leg_axis(reported(|telemetry| telemetry.target)),
             target,
             torsion_rad: 0.0,
             tensions_n,
@@ -125,15 +145,15 @@ impl RecordedLeg {
             seen.hung_kg = Some(payload_kg);
             [seen.error_mm] = self.signal("tip_error_mm", at_s);
         } else {
-            let off_m = seen.along * seen.tip_length_m() - seen.commanded_m();
+            let off_m = seen.leg_axis * seen.tip_length_m() - seen.commanded_m();
             seen.error_mm = 1000.0 * off_m.norm();
         }
         seen
     }
 
-    fn along(&self, at_s: f64, pose: [f64; 2]) -> Vector3<f64> {
+    fn leg_axis(&self, at_s: f64, pose: [f64; 2]) -> Vector3<f64> {
         if !self.is_true {
-            return along(pose);
+            return leg_axis(pose);
         }
         Vector3::from(self.signal("tip_true_mm", at_s)).normalize()
     }

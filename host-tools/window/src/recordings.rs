@@ -23,7 +23,7 @@ pub struct Recordings {
 impl Default for Recordings {
     fn default() -> Self {
         Self {
-            files: Files::of(FileKind::Recording),
+            files: Files::new(FileKind::Recording),
             path: String::new(),
             notice: None,
         }

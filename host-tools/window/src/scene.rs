@@ -2,6 +2,7 @@
 
 use crate::camera::Camera;
 use crate::drawn_leg::Drawn;
+use crate::map::Map;
 use crate::places::place;
 use crate::seen_leg::SeenLeg;
 use crate::theme::palette;
@@ -52,8 +53,14 @@ impl Default for Scene {
 }
 
 impl Scene {
-    /// Draws the leg, and lets a drag turn it.
-    pub fn show(&mut self, ui: &mut Ui, leg: &SeenLeg<'_>, size: Vec2) -> Response {
+    /// Draws the leg, a map on its workspace if one is chosen, and lets a drag turn it.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        leg: &SeenLeg<'_>,
+        map: Option<&Map>,
+        size: Vec2,
+    ) -> Response {
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
         let drag = response.drag_delta();
         self.camera.turn(drag.x, drag.y);
@@ -65,7 +72,7 @@ impl Scene {
         if response.double_clicked() {
             self.camera = Camera::default();
         }
-        let drawn = Drawn::new(leg, self.factor, palette(ui.ctx()));
+        let drawn = Drawn::new(leg, self.factor, palette(ui.ctx()), map);
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 0.0, drawn.palette.back);
         let (whole, detail) = parts(rect);

@@ -14,7 +14,7 @@ pub struct SeenLeg<'a> {
     /// Whether it is drawn as it truly is; else as its sensors have it.
     pub is_true: bool,
     /// Along it, from the joint to the tip.
-    pub along: Vector3<f64>,
+    pub leg_axis: Vector3<f64>,
     /// Where its trajectory has it.
     pub reference: Vector3<f64>,
     /// Where it was sent, as horizontal components.
@@ -35,7 +35,7 @@ pub struct SeenLeg<'a> {
 
 /// The unit vector along a leg with these horizontal components.
 #[must_use]
-pub fn along([x, y]: [f64; 2]) -> Vector3<f64> {
+pub fn leg_axis([x, y]: [f64; 2]) -> Vector3<f64> {
     Vector3::new(x, y, -(1.0 - x * x - y * y).max(0.0).sqrt())
 }
 
@@ -49,7 +49,7 @@ impl SeenLeg<'_> {
     /// Where its tip was sent, m.
     #[must_use]
     pub fn commanded_m(&self) -> Vector3<f64> {
-        along(self.target) * self.tip_length_m()
+        leg_axis(self.target) * self.tip_length_m()
     }
 
     /// Where the tensions are from, in a word.

@@ -17,7 +17,7 @@ use crate::shown_leg::ShownLeg;
 use editor::Editor;
 use eframe::egui::{Button, CentralPanel, Context, Panel, ScrollArea, Ui, vec2};
 use leg_rig::rig_file::RigText;
-use panel_actions::Wish;
+use panel_actions::SettingsWish;
 use panel_table::Table;
 use state::SetupState;
 use steps::Steps;
@@ -110,6 +110,11 @@ impl Setup {
         self.notice = Some(notice);
     }
 
+    /// Shows no message any more.
+    pub fn close_notice(&mut self) {
+        self.notice = None;
+    }
+
     /// Whether something of it is to be shown now, once.
     pub const fn take_wanted(&mut self) -> bool {
         std::mem::replace(&mut self.wanted, false)
@@ -146,6 +151,11 @@ impl Setup {
         self.steps.advance(leg, self.editor.as_ref());
     }
 
+    /// Looks at a leg that has reported something, many times in a frame.
+    pub fn look(&mut self, leg: &mut ShownLeg) {
+        self.steps.look(leg);
+    }
+
     /// Gives the user a file.
     fn save(&mut self, name: &str, text: &str) {
         let saved = Files::save(name, text.as_bytes());
@@ -159,7 +169,12 @@ impl Setup {
     /// What it shows, as data.
     #[must_use]
     pub fn state(&self, leg: Option<&ShownLeg>) -> SetupState {
-        SetupState::new(self.notice.as_ref(), self.editor.as_ref(), leg)
+        SetupState::new(
+            self.notice.as_ref(),
+            self.editor.as_ref(),
+            leg,
+            self.steps.measure_failed(),
+        )
     }
 
     /// Shows what became of what was done last.
@@ -223,13 +238,13 @@ impl Setup {
     fn settings(&mut self, ui: &mut Ui, leg: &mut ShownLeg) -> Option<RigText> {
         let wish = self.table_and_actions(ui, leg)?;
         match wish {
-            Wish::Simulate(source) => return Some(source),
-            Wish::Save(source) => self.save(&source.name, &source.text),
+            SettingsWish::Simulate(source) => return Some(source),
+            SettingsWish::Save(source) => self.save(&source.name, &source.text),
         }
         None
     }
 
-    fn table_and_actions(&mut self, ui: &mut Ui, leg: &mut ShownLeg) -> Option<Wish> {
+    fn table_and_actions(&mut self, ui: &mut Ui, leg: &mut ShownLeg) -> Option<SettingsWish> {
         let Self { editor, table, .. } = self;
         let editor = editor.as_mut()?;
         if ui.available_width() >= WIDE {
@@ -241,6 +256,7 @@ impl Setup {
                     .inner
             });
             CentralPanel::no_frame().show(ui, |ui| {
+                ui.set_max_width(ui.available_width() - 8.0);
                 table.choice(ui, editor);
                 let scroll = ScrollArea::vertical().id_salt("table").auto_shrink(false);
                 scroll.show(ui, |ui| table.show(ui, editor));

@@ -16,6 +16,9 @@ use leg_rig::rig_file::{RigFile, RigText};
 use leg_sim::plant::Defect;
 use nalgebra::Vector3;
 
+/// Ticks from one look at a simulated leg to the next: what a host on a serial line sees of one, 500 times a second.
+const WATCH_TICKS: u32 = 16;
+
 /// Either.
 pub enum ShownLeg {
     /// Firmware and mechanism run in the page.
@@ -30,6 +33,37 @@ impl ShownLeg {
         match self {
             Self::Simulated(leg) => leg.advance(elapsed_s),
             Self::Live(leg) => leg.advance(now_s),
+        }
+    }
+
+    /// The same, and calls `watch` whenever the leg has gone on for some ticks, or was heard.
+    pub fn advance_watched(
+        &mut self,
+        elapsed_s: f64,
+        now_s: f64,
+        watch: &mut dyn FnMut(&mut Self),
+    ) {
+        let Self::Simulated(leg) = self else {
+            self.advance(elapsed_s, now_s);
+            return watch(self);
+        };
+        let mut left = leg.pace.ticks(elapsed_s);
+        while left > 0 {
+            let ticks = left.min(WATCH_TICKS);
+            left -= ticks;
+            if let Self::Simulated(leg) = self {
+                leg.run(ticks);
+            }
+            watch(self);
+        }
+    }
+
+    /// Whether it has answered every command.
+    #[must_use]
+    pub fn answered(&self) -> bool {
+        match self {
+            Self::Simulated(leg) => leg.answered(),
+            Self::Live(leg) => leg.answered(),
         }
     }
 
@@ -179,11 +213,11 @@ impl ShownLeg {
 
     /// Along it, as it is drawn: the true direction of a simulated leg, the estimated one of a live leg.
     #[must_use]
-    pub fn along(&self) -> Vector3<f64> {
+    pub fn leg_axis(&self) -> Vector3<f64> {
         match self {
             Self::Simulated(leg) => {
-                let along = leg.leg().truth().direction.vector();
-                Vector3::new(along.x, along.y, along.z)
+                let leg_axis = leg.leg().truth().direction.vector();
+                Vector3::new(leg_axis.x, leg_axis.y, leg_axis.z)
             }
             Self::Live(_) => self.reported(|telemetry| telemetry.pose),
         }
@@ -196,7 +230,7 @@ impl ShownLeg {
     }
 
     fn reported(&self, direction: fn(&Telemetry<f32>) -> [f32; 2]) -> Vector3<f64> {
-        seen_leg::along(self.telemetry().map_or([0.0; 2], direction).map(f64::from))
+        seen_leg::leg_axis(self.telemetry().map_or([0.0; 2], direction).map(f64::from))
     }
 
     /// Where it was sent, as horizontal components; where it takes its target to be, if it was not.
@@ -211,7 +245,7 @@ impl ShownLeg {
     /// Where its tip was sent, m.
     #[must_use]
     pub fn commanded_m(&self) -> Vector3<f64> {
-        seen_leg::along(self.target()) * self.tip_length_m()
+        seen_leg::leg_axis(self.target()) * self.tip_length_m()
     }
 
     /// Distance of the tip, as it is drawn, from where it was sent, mm.
@@ -220,7 +254,7 @@ impl ShownLeg {
         match self {
             Self::Simulated(leg) => leg.leg().comparison().commanded_error_mm(),
             Self::Live(_) => {
-                let tip_m = self.along() * self.tip_length_m();
+                let tip_m = self.leg_axis() * self.tip_length_m();
                 1000.0 * (tip_m - self.commanded_m()).norm()
             }
         }
@@ -266,7 +300,7 @@ impl ShownLeg {
             rig: self.rig(),
             telemetry: self.telemetry().copied(),
             is_true: truth.is_some(),
-            along: self.along(),
+            leg_axis: self.leg_axis(),
             reference: self.reference(),
             target: self.target(),
             torsion_rad: truth.map_or(0.0, |truth| truth.torsion_rad),

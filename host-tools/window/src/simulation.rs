@@ -82,14 +82,14 @@ impl Simulation {
     /// # Errors
     /// A rig that is refused; there is none as long as the ready rigs pass their tests.
     pub fn new() -> Result<Self, StartError> {
-        Self::of(RigText::load(None).map_err(StartError::Rig)?)
+        Self::with_rig_file(RigText::load(None).map_err(StartError::Rig)?)
     }
 
     /// The same with the rig of a file.
     ///
     /// # Errors
     /// A rig that is refused, or that cannot be held where it starts.
-    pub fn of(source: RigText) -> Result<Self, StartError> {
+    pub fn with_rig_file(source: RigText) -> Result<Self, StartError> {
         let (rig, _) = source.read().map_err(StartError::Rig)?;
         let tilt_deg = if rig.tilt_deg < START_TILT_DEG {
             START_PART * rig.tilt_deg
@@ -160,7 +160,8 @@ impl Simulation {
         self.run(ticks);
     }
 
-    fn run(&mut self, ticks: u32) {
+    /// Lets so many ticks pass.
+    pub fn run(&mut self, ticks: u32) {
         for _ in 0..ticks {
             if self.failure.is_some() {
                 return;
@@ -259,6 +260,12 @@ impl Simulation {
     pub fn command(&mut self, command: Command, name: &'static str) {
         self.orders.take(Order { command, name });
         self.send();
+    }
+
+    /// Whether every command was answered.
+    #[must_use]
+    pub fn answered(&self) -> bool {
+        self.orders.answered_all()
     }
 
     /// Sends what may be sent now.

@@ -32,7 +32,7 @@ impl StiffnessEllipse {
     #[must_use]
     pub fn new(leg: &SeenLeg<'_>) -> Option<Self> {
         let telemetry = leg.telemetry.as_ref()?;
-        let [azimuth_deg, tilt_deg] = angles::angles_deg([leg.along.x, leg.along.y]);
+        let [azimuth_deg, tilt_deg] = angles::angles_deg([leg.leg_axis.x, leg.leg_axis.y]);
         let estimated_kg = f64::from(telemetry.payload_kg).max(0.0);
         let payload_kg = leg.hung_kg.unwrap_or(estimated_kg);
         let mut query = leg.rig.query(azimuth_deg, tilt_deg, payload_kg);
@@ -45,7 +45,7 @@ impl StiffnessEllipse {
         let length_m = leg.tip_length_m();
         Some(Self {
             axes: axes(
-                leg.along,
+                leg.leg_axis,
                 Matrix3::from_fn(|i, j| pose.stiffness_nm_per_rad[i][j]),
             ),
             n_per_m: bending.map(|part| part / (length_m * length_m)),
@@ -89,14 +89,14 @@ impl StiffnessEllipse {
 }
 
 /// Where the tip goes that is tilted about the axes of the least and of the most stiffness.
-fn axes(along: Vector3<f64>, stiffness: Matrix3<f64>) -> [Vector3<f64>; 2] {
-    let away = if along.x.abs() < 0.9 {
+fn axes(leg_axis: Vector3<f64>, stiffness: Matrix3<f64>) -> [Vector3<f64>; 2] {
+    let away = if leg_axis.x.abs() < 0.9 {
         Vector3::x()
     } else {
         Vector3::y()
     };
-    let u = along.cross(&away).normalize();
-    let v = along.cross(&u);
+    let u = leg_axis.cross(&away).normalize();
+    let v = leg_axis.cross(&u);
     let part = |a: Vector3<f64>, b: Vector3<f64>| a.dot(&(stiffness * b));
     let across = 0.5 * (part(u, v) + part(v, u));
     let plane = Matrix2::new(part(u, u), across, across, part(v, v));
@@ -104,7 +104,7 @@ fn axes(along: Vector3<f64>, stiffness: Matrix3<f64>) -> [Vector3<f64>; 2] {
     let least = usize::from(eigen.eigenvalues[1] < eigen.eigenvalues[0]);
     [least, 1 - least].map(|i| {
         let axis = u * eigen.eigenvectors[(0, i)] + v * eigen.eigenvectors[(1, i)];
-        axis.cross(&along)
+        axis.cross(&leg_axis)
     })
 }
 
@@ -125,9 +125,9 @@ mod tests {
     fn its_axes_lie_across_the_leg() {
         let leg = ShownLeg::Simulated(Box::new(Simulation::new().unwrap()));
         let ellipse = ellipse(&leg);
-        let along = leg.along();
+        let leg_axis = leg.leg_axis();
         let [a, b] = ellipse.axes;
-        for (one, other) in [(a, along), (b, along), (a, b)] {
+        for (one, other) in [(a, leg_axis), (b, leg_axis), (a, b)] {
             assert!(one.dot(&other).abs() < 1e-9);
         }
         assert!(ellipse.n_per_m[0] > 100.0 && ellipse.n_per_m[0] <= ellipse.n_per_m[1]);
@@ -159,13 +159,13 @@ mod tests {
             let after = simulation.leg().truth().direction.vector();
             let leg = ShownLeg::Simulated(Box::new(simulation));
             let moved = Vector3::new(after.x - before.x, after.y - before.y, after.z - before.z);
-            (leg.tip_length_m() * moved, ellipse(&leg), leg.along())
+            (leg.tip_length_m() * moved, ellipse(&leg), leg.leg_axis())
         };
         for azimuth_deg in [30.0, 120.0] {
-            let (moved_m, ellipse, along) = yields(azimuth_deg);
+            let (moved_m, ellipse, leg_axis) = yields(azimuth_deg);
             let [x, y] = angles::unit_vector(azimuth_deg);
             let push = Vector3::new(x, y, 0.0);
-            let across = push - along * along.dot(&push);
+            let across = push - leg_axis * leg_axis.dot(&push);
             let expected_m: Vector3<f64> = ellipse
                 .axes
                 .iter()

@@ -4,6 +4,10 @@ use eframe::egui::{
     self, Color32, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Theme, Visuals,
 };
 
+/// Time from one click to the next in which they are a double click, s: what browsers and systems take. A slow page sees both later
+/// than they were.
+const DOUBLE_CLICK_S: f64 = 0.5;
+
 /// The colours of what is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Palette {
@@ -126,6 +130,7 @@ pub fn mixed(from: Color32, to: Color32, part: f32) -> Color32 {
 
 /// Sets colours and sizes, once.
 pub fn install(ctx: &egui::Context) {
+    ctx.options_mut(|options| options.input_options.max_double_click_delay = DOUBLE_CLICK_S);
     for (theme, palette) in [(Theme::Dark, DARK), (Theme::Light, LIGHT)] {
         ctx.set_visuals_of(theme, visuals(theme, &palette));
     }

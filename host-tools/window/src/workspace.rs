@@ -1,12 +1,13 @@
 //! The workspace from above, on which the target is dragged.
 
-use crate::map::{Map, Quantity, RINGS, SPOKES, azimuth_deg};
+use crate::map::{Map, Quantity};
+use crate::map_mesh::mesh;
 use crate::places::place;
 use crate::shown_leg::ShownLeg;
 use crate::theme::{Palette, mixed, palette};
 use eframe::egui::{
-    Align, Align2, ComboBox, FontId, Key, Mesh, Painter, Pos2, Response, RichText, Sense, Shape,
-    Stroke, Ui, Vec2, vec2,
+    Align, Align2, ComboBox, FontId, Key, Painter, Pos2, Response, RichText, Sense, Shape, Stroke,
+    Ui, Vec2, vec2,
 };
 use leg_base::angles;
 use leg_firmware::command::Command;
@@ -31,7 +32,7 @@ struct Disc {
 }
 
 impl Disc {
-    fn at(&self, [x, y]: [f64; 2]) -> Pos2 {
+    fn place(&self, [x, y]: [f64; 2]) -> Pos2 {
         let scale = f64::from(self.radius) / self.sine_max;
         self.centre + vec2((x * scale) as f32, (-y * scale) as f32)
     }
@@ -61,13 +62,18 @@ pub struct Workspace {
 impl Workspace {
     /// Draws the workspace, and moves the leg to where the target is dragged.
     pub fn show(&mut self, ui: &mut Ui, leg: &mut ShownLeg, side: f32) {
-        self.refresh(leg);
         disc(ui, leg, side, self.map.as_ref());
         self.choice(ui);
     }
 
+    /// The map that is chosen.
+    #[must_use]
+    pub const fn map(&self) -> Option<&Map> {
+        self.map.as_ref()
+    }
+
     /// Makes the map that is wanted, unless it is there.
-    fn refresh(&mut self, leg: &ShownLeg) {
+    pub fn refresh(&mut self, leg: &ShownLeg) {
         let (Some(quantity), Some(telemetry)) = (self.quantity, leg.telemetry()) else {
             self.map = None;
             return;
@@ -179,7 +185,7 @@ fn paint(
         mixed(palette.back, palette.card, 0.8),
     );
     if let Some(map) = map {
-        painter.add(Shape::mesh(mesh(disc, map, palette)));
+        painter.add(Shape::mesh(mesh(map, palette, 1.0, |at| disc.place(at))));
     }
     painter.circle_stroke(disc.centre, disc.radius, Stroke::new(1.5, rim));
     let tilt_deg = leg.rig().tilt_deg;
@@ -219,46 +225,6 @@ fn align(side: f32) -> Align {
     }
 }
 
-/// The map, coloured from its lowest value to its highest.
-fn mesh(disc: &Disc, map: &Map, palette: &Palette) -> Mesh {
-    let [low, high] = map.range().unwrap_or_default();
-    let colour = |value: f64| {
-        let part = if high > low {
-            (value - low) / (high - low)
-        } else {
-            0.0
-        };
-        if part.is_finite() {
-            mixed(palette.card, palette.brass, 0.8 * part as f32)
-        } else {
-            palette.back
-        }
-    };
-    let mut mesh = Mesh::default();
-    for (index, value) in map.values().iter().enumerate() {
-        let (ring, spoke) = match index.checked_sub(1) {
-            None => (0, 0),
-            Some(index) => (index / SPOKES + 1, index % SPOKES),
-        };
-        let sine = disc.sine_max * ring as f64 / RINGS as f64;
-        let at = angles::unit_vector(azimuth_deg(spoke)).map(|part| sine * part);
-        mesh.colored_vertex(disc.at(at), colour(*value));
-    }
-    let vertex = |ring: usize, spoke: usize| match ring {
-        0 => 0,
-        _ => (1 + (ring - 1) * SPOKES + spoke % SPOKES) as u32,
-    };
-    for ring in 0..RINGS {
-        for spoke in 0..SPOKES {
-            let [inner, next_inner] = [spoke, spoke + 1].map(|spoke| vertex(ring, spoke));
-            let [outer, next_outer] = [spoke, spoke + 1].map(|spoke| vertex(ring + 1, spoke));
-            mesh.add_triangle(inner, outer, next_outer);
-            mesh.add_triangle(inner, next_outer, next_inner);
-        }
-    }
-    mesh
-}
-
 /// The tilt of a ring, in a gap of it.
 fn tilt_label(painter: &Painter, disc: &Disc, tilt_deg: f64, radius: f32, palette: &Palette) {
     let at = disc.centre + vec2(-0.707, 0.707) * radius;
@@ -271,10 +237,10 @@ fn tilt_label(painter: &Painter, disc: &Disc, tilt_deg: f64, radius: f32, palett
 
 /// Where the tip is, and where it was sent.
 fn marks(painter: &Painter, disc: &Disc, leg: &ShownLeg, palette: &Palette) {
-    let along = leg.along();
-    let [x, y] = disc.inside([along.x, along.y]);
-    let is = disc.at([x, y]);
-    let target = disc.at(leg.target());
+    let leg_axis = leg.leg_axis();
+    let [x, y] = disc.inside([leg_axis.x, leg_axis.y]);
+    let is = disc.place([x, y]);
+    let target = disc.place(leg.target());
     painter.line_segment([target, is], Stroke::new(2.0, palette.error));
     painter.circle_filled(is, 5.0, palette.error);
     painter.circle_stroke(target, 9.0, Stroke::new(2.5, palette.target));
@@ -298,8 +264,8 @@ mod tests {
             radius: 80.0,
             sine_max: 0.5,
         };
-        assert_eq!(disc.at([0.5, 0.0]), pos2(180.0, 100.0));
-        assert_eq!(disc.at([0.0, 0.25]), pos2(100.0, 60.0));
+        assert_eq!(disc.place([0.5, 0.0]), pos2(180.0, 100.0));
+        assert_eq!(disc.place([0.0, 0.25]), pos2(100.0, 60.0));
         let [x, y] = disc.direction(pos2(120.0, 140.0));
         assert!((x - 0.125).abs() < 1e-6 && (y + 0.25).abs() < 1e-6);
     }

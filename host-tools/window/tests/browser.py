@@ -40,12 +40,15 @@ BLOCK = 8
 TOLERANCE = 12
 
 # What shows another number, or another stretch of time, in another moment: it is not compared.
-CHANGING = ("readout", "tensions", "numbers", "charts", "stiffness", "pretension", "name", "trigger", "recording_time")
+CHANGING = ("readout", "tensions", "numbers", "charts", "stiffness", "pretension", "name", "trigger", "recording_time", "tune_result", "zero_result", "jog_result")
 
 # What is left out of the time may be shown above it or to its right, pixels.
 LEFT_OUT = (-30, -20, 130, 0)
 
 WAIT_S = 20.0
+
+# A motor and three pretensions are measured in real time, by a page that may be slow.
+TUNED_S = 400.0
 
 # A leg whose tip moves by less than that within the time of a swing rests, mm and s.
 REST_MM = 0.2
@@ -64,11 +67,13 @@ KEPT_WIDTH = 1280
 class Page:
     """The page, as its user sees it."""
 
-    def __init__(self, browser, keep):
+    def __init__(self, browser, keep, quick=False):
         self.browser = browser
         self.keep = keep
+        self.quick = quick
 
     def open(self, address):
+        self.address = address
         began = time.monotonic()
         self.browser.open(address)
         self.wait("the leg is shown", lambda state: state["frames"] > 1 and state["places"])
@@ -87,6 +92,20 @@ class Page:
             if time.monotonic() > until:
                 raise AssertionError(f"not seen within {limit_s} s: {what}; {state}")
             time.sleep(0.05)
+
+    def wait_for(self, name):
+        """Waits until a control is shown, and stands still: what is above it may come or go."""
+        seen = []
+
+        def stands(state):
+            seen.append((state["places"].get(name), state["frames"]))
+            (first, since), (last, now) = seen[0], seen[-1]
+            if last is None or last != first:
+                seen.clear()
+                return False
+            return now >= since + 2
+
+        self.wait(f"{name} is shown", stands)
 
     def wait_leg(self, what, done, limit_s=WAIT_S):
         return self.wait(what, lambda state: done(state["leg"]), limit_s)["leg"]
@@ -113,6 +132,7 @@ class Page:
         return (left + right) / 2, (top + bottom) / 2
 
     def press(self, name):
+        self.wait_for(name)
         self.browser.click(*self.centre(name))
 
     def picture(self, name):
@@ -129,7 +149,8 @@ class Page:
             print(f"  {path.name} is kept")
             return
         changing = [places[name] for name in CHANGING if name in places]
-        changing.append([edge + room for edge, room in zip(places["time"], LEFT_OUT)])
+        if "time" in places:
+            changing.append([edge + room for edge, room in zip(places["time"], LEFT_OUT)])
         difference, x, y = self.difference(shown, path.read_bytes(), changing)
         print(f"  {path.name}: difference {difference:.1f} at {x}, {y}; at most {TOLERANCE}")
         if not difference <= TOLERANCE:
@@ -157,12 +178,12 @@ class Page:
         self.wait(f"{menu} is closed", lambda state: item not in state["places"])
 
     def slide(self, name, part):
-        """Drags the handle of a slider to a part of its way. Its value stands right of it."""
+        """Drags a slider to a part of its way, from beside that: the leg does what it is led through. Its value stands right of it."""
         left, top, right, bottom = self.rect(name)
         middle = (top + bottom) / 2
         way = (left + 8, left + SLIDER_PART * (right - left))
         at = way[0] + part * (way[1] - way[0])
-        self.browser.drag((way[0], middle), (at, middle))
+        self.browser.drag((at - 6, middle), (at, middle))
 
     def focus(self, name):
         """Gives a control the keyboard's focus."""
@@ -230,7 +251,7 @@ Promise.all([pixels(a), pixels(b)]).then(([p, q]) => {
 FRAMES = """
 const done = arguments[0];
 const times = [];
-const look = (now) => { times.push(now); times.length > 120 ? done(times) : requestAnimationFrame(look); };
+const look = (now) => { times.push(now); times.length > 40 ? done(times) : requestAnimationFrame(look); };
 requestAnimationFrame(look);
 """
 
@@ -245,13 +266,17 @@ def check_speed(page):
     clock_s = time.monotonic() - began
     rate, state = leg_s / clock_s, page.state()
     work, drawn = state["work"], state["frame_ms"]
+    # A frame that is drawn slowly has more ticks to make up for than one of 60 in a second.
+    ticks_ms = work["leg_median_ms"] * min(1.0, FRAME_MS / statistics.median(spans))
+    frame_ms = work["median_ms"] - work["leg_median_ms"] + ticks_ms
     print(
         f"  frames: {statistics.median(spans):.1f} ms apart (median), {max(spans):.1f} at most; the page itself takes"
         f" {work['median_ms']:.1f} ms (median), {work['most_ms']:.1f} at most, {work['leg_median_ms']:.1f} of it for the"
-        f" leg's ticks; {drawn:.1f} ms with what it hands to the graphics; leg's time / clock {rate:.3f}"
+        f" leg's ticks; {drawn:.1f} ms with what it hands to the graphics; {frame_ms:.1f} ms of 60 frames a second;"
+        f" leg's time / clock {rate:.3f}"
     )
     assert REAL_TIME < rate < 1.1, rate
-    assert work["median_ms"] <= FRAME_MS, work
+    assert frame_ms <= FRAME_MS, (frame_ms, work)
 
 
 def check_bits(page):
@@ -269,7 +294,7 @@ def first_visit(page):
     page.wait_leg("rests", lambda leg: leg["state"] == "active" and not leg["compensated"])
     # Nothing is left out of the time of a new leg, however busy the machine was meanwhile.
     start_again(page)
-    time.sleep(3.0)
+    time.sleep(1.0)
     page.picture("start")
     page.press("guide_payload")
     leg = page.wait_leg("sags", lambda leg: leg["payload_kg"] > 1.99 and leg["error_mm"] > 6.5)
@@ -429,9 +454,11 @@ def breaks(page):
     print(f"  faults: {', '.join(leg['faults'])}")
     assert "jump of a tension" in leg["faults"], leg["faults"]
     spoken = "return document.getElementById('spoken').textContent"
-    page.wait_for_rest()
-    assert "jump of a tension" in page.browser.run(spoken)
-    page.picture("cut")
+    page.wait_leg("is told", lambda _: "jump of a tension" in page.browser.run(spoken))
+    # A leg with a cut tendon swings for ten seconds.
+    if not page.quick:
+        page.wait_for_rest()
+        page.picture("cut")
     page.press("repair")
     time.sleep(1.0)
     page.press("clear")
@@ -632,8 +659,36 @@ def steps(page):
     page.wait("there is a start", lambda state: "zero_start" in state["places"])
     page.press("zero_start")
     page.wait_leg("homes", lambda leg: leg["state"] == "homing")
-    page.wait_leg("hangs down", lambda leg: leg["state"] == "active" and leg["tilt_deg"] < 1, 60)
+    taut = lambda leg: leg["state"] == "active" and leg["tilt_deg"] < 1 and min(leg["tensions_n"]) > 69
+    page.wait_leg("hangs down", taut, 60)
     page.picture("zero")
+    page.press("setup")
+    page.wait("the leg is shown", lambda state: "leg" in state["places"])
+
+
+def tuning(page):
+    """Measures a motor and the swing of the simulated leg: what will happen is said first, what was measured stands beside what is set."""
+    start_again(page)
+    page.press("setup")
+    page.press("setup_steps")
+    page.press("guide_tune")
+    page.press("steps_disarm")
+    page.wait_leg("is disarmed", lambda leg: leg["state"] == "disarmed")
+    page.press("tune_motor_2")
+    page.picture("tune")
+    page.press("tune_start")
+    page.wait("it is measured", lambda state: "tune_seen" in state["places"])
+    page.browser.key(" ")
+    page.wait("it is ended by a stop", lambda state: "tune_failed" in state["places"])
+    page.press("tune_again")
+    page.press("tune_start")
+    page.wait("there is a result", lambda state: "tune_result" in state["places"], TUNED_S)
+    assert "tune_failed" not in page.state()["places"]
+    page.picture("tuned")
+    page.press("tune_take")
+    changed = page.wait("the settings have it", lambda state: state["setup"]["changed"])["setup"]["changed"]
+    assert "actuator.resistance_ohm" in changed, changed
+    print(f"  measured: {', '.join(changed)}")
     page.press("setup")
     page.wait("the leg is shown", lambda state: "leg" in state["places"])
 
@@ -641,6 +696,19 @@ def steps(page):
 def in_chart(page, name, part):
     left, top, right, bottom = page.rect(name)
     return left + part * (right - left), (top + bottom) / 2
+
+
+def show_whole(page, name):
+    """Shows a zoomed chart whole by a double click. A busy machine may see its clicks too far apart."""
+    for _ in range(3):
+        page.browser.double_click(*in_chart(page, name, 0.5))
+        until = time.monotonic() + 2
+        while time.monotonic() < until:
+            if page.state()["charts"]["zoomed_s"] is None:
+                print(f"  a double click shows {name} whole")
+                return
+            time.sleep(0.05)
+    raise AssertionError(f"a double click does not show the chart whole: {page.state()['charts']}")
 
 
 def charts(page):
@@ -676,6 +744,7 @@ def charts(page):
     page.wait("the stiffness is drawn", lambda state: "stiffness_words" in state["places"])
     page.picture("charts")
     page.press("stiffness_ellipse")
+    show_whole(page, "tensions_n")
     page.press("pause")
     page.wait("they go on", lambda state: not state["charts"]["paused"])
     page.press("spectra")
@@ -723,6 +792,9 @@ def recordings(page):
     assert loaded["at_s"] > first_s + 0.9 * (last_s - first_s) and loaded["payload_kg"] > 1.99, loaded
     print(f"  at {loaded['at_s']:.2f} s: {loaded['error_mm']:.2f} mm off its target")
     page.picture("player")
+    page.browser.drag(in_chart(page, "tensions_n", 0.5), in_chart(page, "tensions_n", 0.7))
+    page.wait("the chart is drawn aside", lambda state: state["charts"]["zoomed_s"])
+    show_whole(page, "tip_error_mm")
     scrub(page, 0.02)
     page.wait("it is not loaded", lambda state: state["player"]["error_mm"] < 3)
     page.choose("play_rate", "play_16")
@@ -768,8 +840,8 @@ def recordings(page):
 
 
 def looks(page):
-    """The other sizes: a phone held upright, and a large screen; light."""
-    start_again(page)
+    """The other sizes: a phone held upright, and a large screen; light. The page is new: nothing was changed in it."""
+    page.open(page.address)
     page.browser.prefer("light")
     page.browser.resize(390, 844)
     page.wait("has tabs", lambda state: "tab_drive" in state["places"])
@@ -781,8 +853,12 @@ def looks(page):
     page.wait("has pages", lambda state: "setup_settings" in state["places"])
     page.press("setup_settings")
     page.wait("has the table", lambda state: "section" in state["places"])
+    type_value(page, "settings_search", "leg_mm")
+    page.wait("it is found", lambda state: "value_geometry.leg_mm" in state["places"])
     page.picture("phone_settings")
     page.press("tab_drive")
+    if page.quick:
+        return
     page.browser.resize(3840, 2160)
     page.wait("is wide", lambda state: "tab_drive" not in state["places"])
     page.picture("large")
@@ -804,11 +880,12 @@ PARTS = (
     rig_files,
     settings,
     steps,
+    tuning,
     looks,
 )
 
 # What CI has time for: everything that depends on the browser once, and what is of the page alone where it is quick.
-QUICK = (check_speed, check_bits, first_visit, breaks, recordings, rig_files, settings, looks)
+QUICK = (check_speed, check_bits, first_visit, breaks, recordings, rig_files, looks)
 
 
 def serve(directory):
@@ -837,11 +914,14 @@ def main():
     print(f"{size / 1e6:.2f} MB")
     assert size <= WIRE_BYTES, size
     with Browser(1280, 720) as browser:
-        page = Page(browser, arguments.keep)
+        page = Page(browser, arguments.keep, arguments.quick)
         browser.prefer("dark")
         for address in (file.as_uri(), serve(arguments.directory)):
             # The best of three: other programs may keep the processor.
-            took_s = min(page.open(address) for _ in range(3))
+            took_s = math.inf
+            for _ in range(3):
+                if took_s > LOAD_S:
+                    took_s = min(took_s, page.open(address))
             print(f"{address.split(':')[0]}: loaded in {took_s:.2f} s")
             assert took_s <= LOAD_S, took_s
         for part in parts:

@@ -233,7 +233,7 @@ fn what_the_jogs_tell_lets_a_leg_home_that_did_not() {
     println!("{ended}");
     assert!(matches!(
         ended,
-        TuneError::Operator(OperatorError::Failed("home", _))
+        TuneError::Leg(OperatorError::Failed("home", _))
     ));
     let rows = comparison(&found.constants, None, &configured);
     let text = [READY_RIGS[0].text, &section(1, &rows)].concat();

@@ -1,9 +1,10 @@
 //! One chart: a signal over time, or its spectrum.
 
+use super::Charts;
 use super::cursors::{NAMES, values_words};
 use super::lines::{LABEL_PART, grid, least_range, lines, short, thinned};
+use super::signal_source::ShownSignals;
 use super::spectrum::Spectrum;
-use super::{Charts, Shown};
 use crate::history::Column;
 use crate::places::place;
 use crate::theme;
@@ -38,7 +39,7 @@ impl Charts {
     pub(super) fn chart(
         &mut self,
         ui: &mut Ui,
-        shown: Shown<'_>,
+        shown: ShownSignals<'_>,
         column: Column,
         height: f32,
     ) -> Option<f64> {
@@ -54,7 +55,7 @@ impl Charts {
     }
 
     /// What is drawn of a signal: what was drawn before, if that is still so.
-    fn take_kept(&mut self, shown: &Shown<'_>, column: Column) -> Kept {
+    fn take_kept(&mut self, shown: &ShownSignals<'_>, column: Column) -> Kept {
         let same = |kept: &Kept| shown.still && kept.drawn_s == shown.drawn_s;
         let before = self.kept.remove(column.name()).filter(same);
         let mut kept = before.unwrap_or_else(|| Kept {
@@ -72,7 +73,7 @@ impl Charts {
     fn over_time(
         &mut self,
         ui: &mut Ui,
-        shown: Shown<'_>,
+        shown: ShownSignals<'_>,
         column: Column,
         kept: &Kept,
         height: f32,
@@ -159,7 +160,7 @@ impl Charts {
     /// The lines across a chart: the moment of a recording, what the trigger caught, the cursors.
     fn marks<T: Copy>(
         &self,
-        shown: &Shown<'_>,
+        shown: &ShownSignals<'_>,
         [moment, trigger, cursor]: [T; 3],
     ) -> Vec<(&'static str, f64, T)> {
         let mut marks = Vec::new();
@@ -176,14 +177,15 @@ impl Charts {
     }
 
     /// The values at the cursors, if there are some. How high that is, points.
-    fn values(&self, ui: &mut Ui, shown: &Shown<'_>, column: Column) -> f32 {
+    fn values(&self, ui: &mut Ui, shown: &ShownSignals<'_>, column: Column) -> f32 {
         let Some(cursors) = &self.cursors else {
             return 0.0;
         };
         ui.scope(|ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             for (number, colour) in colours(ui, column).into_iter().enumerate() {
-                let words = values_words(cursors.values(shown.history, column, number));
+                let words =
+                    values_words(cursors.values(shown.history, column, number), column.unit());
                 let text = RichText::new(words).monospace().size(11.0).color(colour);
                 let label = ui.label(text);
                 if number == 0 {
@@ -257,7 +259,7 @@ fn title(ui: &mut Ui, column: &Column) {
         ui.label(name).on_hover_text(column.meaning());
         for number in 0..column.width {
             if column.width > 1 {
-                let words = format!("● {}", number + 1);
+                let words = format!("● {}", column.part_name(number));
                 let colour = theme::series(ui.ctx(), number);
                 ui.label(RichText::new(words).size(12.0).color(colour));
             }

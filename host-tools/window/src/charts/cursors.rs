@@ -53,7 +53,7 @@ impl Cursors {
     /// What a number of a signal is at each, and by how much it differs.
     pub fn values(&self, history: &History, column: Column, number: usize) -> [f64; 3] {
         let value = |at_s| {
-            let numbers = history.at(column, at_s);
+            let numbers = history.numbers_at(column, at_s);
             numbers
                 .get(number)
                 .map_or(f64::NAN, |value| f64::from(*value))
@@ -63,8 +63,8 @@ impl Cursors {
     }
 }
 
-/// Numbers of a signal at the cursors, in words of one length.
-pub(super) fn values_words([a, b, difference]: [f64; 3]) -> String {
+/// Numbers of a signal at the cursors with their unit, in words of one length.
+pub(super) fn values_words([a, b, difference]: [f64; 3], unit: &str) -> String {
     let word = |value: f64| {
         let digits = if value.abs() < 10.0 { 4 } else { 2 };
         if value.is_finite() {
@@ -73,7 +73,12 @@ pub(super) fn values_words([a, b, difference]: [f64; 3]) -> String {
             format!("{:>9}", "none")
         }
     };
-    format!("A {} B {} B−A {}", word(a), word(b), word(difference))
+    format!(
+        "A {} B {} B−A {} {unit}",
+        word(a),
+        word(b),
+        word(difference)
+    )
 }
 
 #[cfg(test)]
@@ -101,7 +106,7 @@ mod tests {
 
     #[test]
     fn values_are_those_of_the_last_sample_until_then() {
-        let columns = History::of_reports();
+        let columns = History::live();
         let width = columns
             .columns()
             .iter()
@@ -120,7 +125,7 @@ mod tests {
 
     #[test]
     fn words_keep_their_length() {
-        let length = |values| values_words(values).chars().count();
+        let length = |values| values_words(values, "N").chars().count();
         let first = length([0.0; 3]);
         for values in [[9.99, -120.5, 1e4], [f64::NAN; 3], [-0.1234, 22.0, -99.0]] {
             assert_eq!(length(values), first);

@@ -1,6 +1,6 @@
 //! How the trigger is set.
 
-use super::Source;
+use super::SignalSource;
 use super::trigger::{Edge, Mode, Trigger};
 use crate::places::place;
 use eframe::egui::{ComboBox, DragValue, PopupCloseBehavior, RichText, Ui};
@@ -14,7 +14,7 @@ pub(super) fn show(
     ui: &mut Ui,
     trigger: &mut Trigger,
     chosen: &[&'static str],
-    source: &Source<'_>,
+    source: &SignalSource<'_>,
 ) -> bool {
     let menu = ComboBox::from_id_salt("trigger")
         .selected_text(
@@ -41,7 +41,7 @@ pub(super) fn show(
 }
 
 /// Which number of which signal.
-fn signals(ui: &mut Ui, trigger: &mut Trigger, chosen: &[&'static str], source: &Source<'_>) {
+fn signals(ui: &mut Ui, trigger: &mut Trigger, chosen: &[&'static str], source: &SignalSource<'_>) {
     let columns = chosen.iter().filter_map(|name| source.history.named(name));
     for column in columns {
         for number in 0..column.width {
@@ -91,7 +91,7 @@ fn conditions(ui: &mut Ui, trigger: &mut Trigger) {
 }
 
 /// Whether it was armed.
-fn arming(ui: &mut Ui, trigger: &mut Trigger, source: &Source<'_>) -> bool {
+fn arming(ui: &mut Ui, trigger: &mut Trigger, source: &SignalSource<'_>) -> bool {
     if trigger.signal.is_none() {
         ui.label("Choose a signal.");
         return false;

@@ -161,7 +161,7 @@ mod tests {
 
     /// A supply that falls from 24 V to 20 V at 2 s and comes back at 3 s, over and over.
     fn history(until_s: f64) -> History {
-        let columns = History::of_reports();
+        let columns = History::live();
         let place = columns.named("supply_v").map_or(0, |column| column.start());
         let samples = (0..)
             .map(|i| f64::from(i) * 0.005)
@@ -194,7 +194,12 @@ mod tests {
             .take_while(|now_s| *now_s <= until_s);
         // The history of a frame is a part of the whole: what is later is not asked for.
         frames
-            .filter_map(|now_s| Some([trigger.advance(&whole.until(now_s), now_s, 1.0)?, now_s]))
+            .filter_map(|now_s| {
+                Some([
+                    trigger.advance(&whole.part_until(now_s), now_s, 1.0)?,
+                    now_s,
+                ])
+            })
             .collect()
     }
 

@@ -269,6 +269,19 @@ fn a_window_that_stands_still_gives_no_sign_of_life() {
     }
 }
 
+/// From a clear on the leg waits for signs of life, and a page that draws slowly sees in its next frame alone that it follows.
+#[test]
+fn a_leg_that_begins_to_follow_between_frames_is_told_at_once() {
+    let (mut leg, server) = driven();
+    server.report(telemetry(State::Held, 1));
+    leg.advance(1.0);
+    leg.show_life(1.025);
+    assert_eq!(server.commands().len(), 0);
+    server.report(telemetry(State::Active, 2));
+    leg.show_life(1.05);
+    assert_eq!(server.commands().len(), 1);
+}
+
 #[test]
 fn reports_are_charted_and_begin_anew_with_the_board() {
     let (mut leg, server) = leg();
@@ -332,7 +345,7 @@ fn a_live_leg_is_recorded_as_a_log() {
     assert_eq!(opened.span_s(), [1.0, 1.01]);
     assert!(!opened.seen(1.0).is_true);
     let column = opened.history.named("wall_time_s").unwrap();
-    assert!(opened.history.at(column, 1.0)[0] > 1.6e9);
+    assert!(opened.history.numbers_at(column, 1.0)[0] > 1.6e9);
 }
 
 #[test]

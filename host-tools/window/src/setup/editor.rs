@@ -119,16 +119,16 @@ impl Editor {
     }
 
     /// Gives a setting the value that it was loaded with.
-    pub fn to_file(&mut self, section: &str, key: &str) -> bool {
+    pub fn reset_to_file(&mut self, section: &str, key: &str) -> bool {
         let loaded = document::value(&self.loaded.document, section, key);
         match loaded {
             Some(value) => self.set(section, key, &value),
-            None => self.to_default(section, key),
+            None => self.reset_to_default(section, key),
         }
     }
 
     /// Takes a setting out of the file: it is then what it is by default, or what follows from others.
-    pub fn to_default(&mut self, section: &str, key: &str) -> bool {
+    pub fn reset_to_default(&mut self, section: &str, key: &str) -> bool {
         let mut document = self.now.document.clone();
         document::remove(&mut document, section, key);
         self.take(section, key, document)

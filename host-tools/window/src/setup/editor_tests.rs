@@ -111,7 +111,7 @@ fn a_setting_goes_back_to_the_file_or_to_its_default() {
     .unwrap();
     let key = ("control.limits", "jump_n");
     assert!(editor.set(key.0, key.1, "40"));
-    assert!(editor.to_default(key.0, key.1));
+    assert!(editor.reset_to_default(key.0, key.1));
     assert_eq!(value(&editor, key.0, key.1), "25");
     let [change] = &editor.changes()[..] else {
         panic!()
@@ -120,7 +120,7 @@ fn a_setting_goes_back_to_the_file_or_to_its_default() {
         (change.was.as_deref(), change.now.as_deref()),
         (Some("30"), Some("25"))
     );
-    assert!(editor.to_file(key.0, key.1));
+    assert!(editor.reset_to_file(key.0, key.1));
     assert!(editor.changes().is_empty());
     assert!(editor.set("control.motion", "speed_rad_per_s", "0.7"));
     editor.all_to_file();
@@ -128,7 +128,7 @@ fn a_setting_goes_back_to_the_file_or_to_its_default() {
     editor.undo();
     assert_eq!(value(&editor, "control.motion", "speed_rad_per_s"), "0.7");
     // What the file has to give cannot be taken out.
-    assert!(!editor.to_default("geometry", "leg_mm"));
+    assert!(!editor.reset_to_default("geometry", "leg_mm"));
     assert!(
         editor
             .refused()

@@ -16,7 +16,7 @@ use leg_rig::settings_difference::setting_differences;
 const LISTED_MAX: usize = 30;
 
 /// What is wanted of the window.
-pub(super) enum Wish {
+pub(super) enum SettingsWish {
     /// A simulated leg of that file.
     Simulate(RigText),
     /// That file.
@@ -24,7 +24,7 @@ pub(super) enum Wish {
 }
 
 /// Shows it.
-pub(super) fn show(ui: &mut Ui, editor: &mut Editor, leg: &mut ShownLeg) -> Option<Wish> {
+pub(super) fn show(ui: &mut Ui, editor: &mut Editor, leg: &mut ShownLeg) -> Option<SettingsWish> {
     let palette = palette(ui.ctx());
     steps(ui, editor);
     let save = save(ui, editor);
@@ -78,7 +78,7 @@ fn button(ui: &mut Ui, enabled: bool, text: &str, name: &'static str) -> Respons
     button
 }
 
-fn save(ui: &mut Ui, editor: &Editor) -> Option<Wish> {
+fn save(ui: &mut Ui, editor: &Editor) -> Option<SettingsWish> {
     let mut wish = None;
     ui.horizontal_wrapped(|ui| {
         let save = button(ui, true, "Save as a rig file", "settings_save");
@@ -88,7 +88,7 @@ fn save(ui: &mut Ui, editor: &Editor) -> Option<Wish> {
             "Every command takes it as --rig FILE. It is written where this window was started."
         };
         if save.on_hover_text(hint).clicked() {
-            wish = Some(Wish::Save(RigText {
+            wish = Some(SettingsWish::Save(RigText {
                 name: file_name(editor.name()),
                 text: editor.text(),
             }));
@@ -105,7 +105,7 @@ fn file_name(name: &str) -> String {
     format!("{stem}.toml")
 }
 
-fn simulated(ui: &mut Ui, editor: &Editor, same: bool, palette: &Palette) -> Option<Wish> {
+fn simulated(ui: &mut Ui, editor: &Editor, same: bool, palette: &Palette) -> Option<SettingsWish> {
     let apply = button(ui, !same, "Apply to the simulated leg", "settings_apply");
     let words = if same {
         "The leg runs with these settings. Change one, then apply it here."
@@ -113,7 +113,9 @@ fn simulated(ui: &mut Ui, editor: &Editor, same: bool, palette: &Palette) -> Opt
         "The leg starts anew with these settings: payload, defects and charts go."
     };
     faint(ui, words, palette);
-    apply.clicked().then(|| Wish::Simulate(editor.source()))
+    apply
+        .clicked()
+        .then(|| SettingsWish::Simulate(editor.source()))
 }
 
 fn board(ui: &mut Ui, editor: &Editor, live: &mut LiveLeg, palette: &Palette) {

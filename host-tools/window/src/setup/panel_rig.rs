@@ -102,7 +102,7 @@ fn ready(ui: &mut Ui, setup: &mut Setup, rig: &ReadyRig, leg: &ShownLeg) -> bool
         }
         let words = match rig.figure_2 {
             "-" => rig.words.to_owned(),
-            figure => format!("{} (Fig. 2: {figure})", rig.words),
+            figure => format!("{} (the paper's Fig. 2: {figure})", rig.words),
         };
         let words = RichText::new(words).small().color(palette(ui.ctx()).faint);
         ui.add(Label::new(words).wrap());

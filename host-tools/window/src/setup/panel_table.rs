@@ -205,7 +205,7 @@ impl Table {
             if file.clicked() {
                 self.typing = None;
                 editor.forget_refusal();
-                editor.to_file(&row.section, &row.key);
+                editor.reset_to_file(&row.section, &row.key);
             }
         }
         if row.given && row.default.is_some() {
@@ -215,7 +215,7 @@ impl Table {
             if default.on_hover_text(hint).clicked() {
                 self.typing = None;
                 editor.forget_refusal();
-                editor.to_default(&row.section, &row.key);
+                editor.reset_to_default(&row.section, &row.key);
             }
         }
     }

@@ -59,7 +59,7 @@ impl Row {
         words.all(|word| text.contains(&word.to_lowercase()))
     }
 
-    fn of_schema(setting: Setting, document: &DocumentMut) -> Self {
+    fn from_schema(setting: Setting, document: &DocumentMut) -> Self {
         let given = document::value(document, &setting.section, setting.key);
         Self {
             key: setting.key.into(),
@@ -74,7 +74,7 @@ impl Row {
         }
     }
 
-    fn of_file([section, key]: [String; 2], document: &DocumentMut) -> Self {
+    fn from_file([section, key]: [String; 2], document: &DocumentMut) -> Self {
         let known = mechanism_keys::find(&section, &key);
         Self {
             value: document::value(document, &section, &key).unwrap_or_default(),
@@ -89,7 +89,7 @@ impl Row {
         }
     }
 
-    fn of_control(
+    fn from_control(
         key: &str,
         value: String,
         default: &str,
@@ -130,18 +130,18 @@ pub fn rows(rig: &RigFile, document: &DocumentMut) -> Vec<Row> {
     let schema: Vec<Row> = schema
         .into_iter()
         .flatten()
-        .map(|setting| Row::of_schema(setting, document))
+        .map(|setting| Row::from_schema(setting, document))
         .collect();
     let recorded: Vec<_> = recorded_signals::words(rig.recorded).collect();
     let control = [
-        Row::of_control(
+        Row::from_control(
             KEEPS_STATION,
             rig.keeps_station.to_string(),
             "true",
             "Whether the leg keeps station after a move, or is held.",
             document,
         ),
-        Row::of_control(
+        Row::from_control(
             RECORDED,
             format!("{recorded:?}"),
             "[]",
@@ -158,7 +158,7 @@ pub fn rows(rig: &RigFile, document: &DocumentMut) -> Vec<Row> {
     };
     let file = document::keys(document);
     let mechanism = file.into_iter().filter(|key| !known(key));
-    let mut rows: Vec<Row> = mechanism.map(|key| Row::of_file(key, document)).collect();
+    let mut rows: Vec<Row> = mechanism.map(|key| Row::from_file(key, document)).collect();
     rows.extend(control.clone());
     rows.extend(schema.clone());
     rows

@@ -20,6 +20,8 @@ pub struct SetupState {
     board_busy: Option<&'static str>,
     /// What the board made of what it was asked.
     board_told: Option<String>,
+    /// Why a motor was not measured to the end.
+    measure_failed: Option<String>,
 }
 
 impl SetupState {
@@ -27,6 +29,7 @@ impl SetupState {
         notice: Option<&Notice>,
         editor: Option<&Editor>,
         leg: Option<&ShownLeg>,
+        measure_failed: Option<&str>,
     ) -> Self {
         let board = leg.and_then(ShownLeg::live).map(|live| live.board());
         let changed = editor.map_or_else(Vec::new, Editor::changes);
@@ -39,6 +42,7 @@ impl SetupState {
                 .and_then(Editor::refused)
                 .map(|refused| refused.words.clone()),
             board_busy: board.and_then(|board| board.busy()),
+            measure_failed: measure_failed.map(Into::into),
             board_told: told.map(|told| told.unwrap_or_else(|words| words).into()),
         }
     }

@@ -20,3 +20,5 @@ impl std::fmt::Display for StartError {
         }
     }
 }
+
+impl std::error::Error for StartError {}

@@ -262,7 +262,7 @@ fn every_ready_rig_becomes_a_leg_that_follows_commands() {
             name: rig.name.into(),
             text: rig.text.into(),
         };
-        let simulation = Simulation::of(source).unwrap();
+        let simulation = Simulation::with_rig_file(source).unwrap();
         assert_eq!(simulation.state(), State::Active, "{}", rig.name);
         assert_eq!(simulation.refusal(), None, "{}", rig.name);
         // It sags under its own weight: compensation is off.
@@ -283,13 +283,16 @@ fn a_rig_that_is_refused_gives_no_leg_and_says_why() {
         text,
     };
     let bad = READY_RIGS[0].text.replace("tilt_deg = 30", "tilt_deg = 80");
-    let words = Simulation::of(source(bad)).err().unwrap().to_string();
+    let words = Simulation::with_rig_file(source(bad))
+        .err()
+        .unwrap()
+        .to_string();
     assert!(
         words.contains("mine.toml:") && words.contains("help: "),
         "{words}"
     );
     let small = READY_RIGS[0].text.replace("tilt_deg = 30", "tilt_deg = 10");
-    let simulation = Simulation::of(source(small)).unwrap();
+    let simulation = Simulation::with_rig_file(source(small)).unwrap();
     assert_eq!(
         (simulation.state(), simulation.refusal()),
         (State::Active, None)

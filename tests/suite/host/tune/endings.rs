@@ -65,7 +65,7 @@ fn a_fault_in_the_middle_ends_it_by_its_name() {
         });
         assert_eq!(count, after);
         let (cause, by_m) = cause(ended.unwrap_err());
-        let TuneError::Operator(OperatorError::Failed(_, telemetry)) = cause else {
+        let TuneError::Leg(OperatorError::Failed(_, telemetry)) = cause else {
             panic!("{cause:?}");
         };
         assert!(by_m.abs() > 1e-3, "{by_m}");
@@ -133,7 +133,7 @@ fn a_user_who_interrupts_it_leaves_the_motors_at_rest_and_knows_where() {
         let help = format!("{:?}", error.failure());
         let (cause, by_m) = cause(error);
         assert!(
-            matches!(cause, TuneError::Operator(OperatorError::Cancelled)),
+            matches!(cause, TuneError::Leg(OperatorError::Cancelled)),
             "{cause:?}"
         );
         let truth = line.with_plant(|plant| plant.truth());
@@ -155,7 +155,7 @@ fn a_user_who_interrupts_the_swing_leaves_the_leg_held() {
     let (line, mut operator, cancel) = leg(&rig, &rig, 1);
     let ended = measure_swing(&mut operator, &plan, &rig, &mut |_| cancel.set());
     assert!(
-        matches!(ended, Err(TuneError::Operator(OperatorError::Cancelled))),
+        matches!(ended, Err(TuneError::Leg(OperatorError::Cancelled))),
         "{ended:?}"
     );
     let speeds = line.with_plant(|plant| plant.truth().speeds_rad_per_s);

@@ -4,6 +4,7 @@ use super::Window;
 use super::setup::file;
 use crate::app::Stage;
 use crate::player::PlayerState;
+use crate::recording_reader::MESSAGES_A_FRAME;
 use eframe::egui::{Key, pos2};
 use leg_firmware::supervisor::{Fault, State};
 use leg_recording::{Samples, read_samples};
@@ -66,6 +67,31 @@ fn what_is_recorded_is_opened_and_scrubbed_and_the_leg_moves_along() {
     window.press("back");
     assert!(window.shows("guide_payload") && !window.shows("scrub"));
     assert_eq!(window.leg().payload_kg(), now_kg);
+}
+
+/// The work of a frame is counted, not timed: no recording is so long that the window stands still.
+#[test]
+fn a_long_recording_is_read_in_parts_while_the_leg_goes_on() {
+    let mut window = Window::new();
+    window.press("record");
+    window.frames(700);
+    let bytes = window.recorded();
+    let before_s = window.leg().leg().time_s();
+    window.begin_to_read(&file("long.mcap", &bytes));
+    let (mut read, mut frames, mut told) = (0, 0, false);
+    while let Some(reader) = &window.app.reader {
+        let messages = reader.messages();
+        assert!(messages - read <= MESSAGES_A_FRAME + 1, "{messages} {read}");
+        (read, frames) = (messages, frames + 1);
+        told |= window.shows("notice");
+        window.frames(1);
+    }
+    assert!(frames > 20 && told, "{frames} {read}");
+    assert!(window.leg().leg().time_s() > before_s + 0.3);
+    let [begin_s, end_s] = window.player().span_s;
+    assert!(end_s - begin_s > 13.0, "{begin_s} {end_s}");
+    window.frames(1);
+    assert!(!window.shows("notice"));
 }
 
 #[test]

@@ -30,10 +30,19 @@ pub(super) fn file(name: &str, bytes: &[u8]) -> PathBuf {
 }
 
 impl Window {
+    /// Drops a file, and waits until it is read.
     pub(super) fn drop_file(&mut self, path: &Path) {
+        self.begin_to_read(path);
+        while self.app.reader.is_some() {
+            self.frames(1);
+        }
+        self.frames(3);
+    }
+
+    /// Drops a file.
+    pub(super) fn begin_to_read(&mut self, path: &Path) {
         let dropped = Arc::new(Dropped(path.into()));
         self.frame_with(Vec::new(), vec![dropped]);
-        self.frames(3);
         std::fs::remove_file(path).unwrap();
     }
 

@@ -14,7 +14,7 @@ const WEIGHTS_MAX: usize = 16;
 
 /// How far it has come.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Step {
+pub enum CellStep {
     /// Cell and weights are chosen.
     Choose,
     /// The next weight is to be hung.
@@ -35,7 +35,7 @@ pub struct Cells {
     weights_kg: Vec<f64>,
     gravity_m_per_s2: f64,
     weighings: Vec<KnownWeight>,
-    step: Step,
+    step: CellStep,
 }
 
 impl Default for Cells {
@@ -46,7 +46,7 @@ impl Default for Cells {
             weights_kg: Vec::new(),
             gravity_m_per_s2: 0.0,
             weighings: Vec::new(),
-            step: Step::Choose,
+            step: CellStep::Choose,
         }
     }
 }
@@ -80,7 +80,7 @@ pub fn weights(typed: &str) -> Result<Vec<f64>, String> {
 impl Cells {
     /// How far it has come.
     #[must_use]
-    pub const fn step(&self) -> &Step {
+    pub const fn step(&self) -> &CellStep {
         &self.step
     }
 
@@ -92,13 +92,13 @@ impl Cells {
         self.weights_kg = weights(&self.typed)?;
         self.gravity_m_per_s2 = gravity_m_per_s2;
         self.weighings.clear();
-        self.step = Step::Hang;
+        self.step = CellStep::Hang;
         Ok(())
     }
 
     /// Ends it without a result.
     pub fn cancel(&mut self, leg: &mut ShownLeg) {
-        self.step = Step::Choose;
+        self.step = CellStep::Choose;
         self.put_back(leg);
     }
 
@@ -118,7 +118,7 @@ impl Cells {
     #[must_use]
     pub fn progress(&self) -> f32 {
         match self.step {
-            Step::Read(_, count) => count as f32 / READINGS as f32,
+            CellStep::Read(_, count) => count as f32 / READINGS as f32,
             _ => 0.0,
         }
     }
@@ -138,34 +138,34 @@ impl Cells {
         }
         // What was asked before is of another weight.
         leg.take_sensors();
-        self.step = Step::Read(0.0, 0);
+        self.step = CellStep::Read(0.0, 0);
     }
 
     /// Takes the codes that have come, and asks for more.
     pub(super) fn advance(&mut self, leg: &mut ShownLeg) {
-        let Step::Read(sum, count) = self.step else {
+        let CellStep::Read(sum, count) = self.step else {
             return;
         };
         if leg.failure().is_some() || leg.locked().is_some() {
-            self.step = Step::Hang;
+            self.step = CellStep::Hang;
             return;
         }
         if let Some(sensors) = leg.take_sensors() {
             let code = sensors.cell_codes.get(self.cell).copied();
-            self.step = Step::Read(sum + code.map_or(0.0, f64::from), count + 1);
+            self.step = CellStep::Read(sum + code.map_or(0.0, f64::from), count + 1);
             if count + 1 == READINGS {
                 self.take_mean();
             }
         }
-        if matches!(self.step, Step::Read(..)) {
+        if matches!(self.step, CellStep::Read(..)) {
             leg.ask_sensors();
-        } else if matches!(self.step, Step::Done(_)) {
+        } else if matches!(self.step, CellStep::Done(_)) {
             self.put_back(leg);
         }
     }
 
     fn take_mean(&mut self) {
-        let (Step::Read(sum, count), Some(kg)) = (&self.step, self.weight_kg()) else {
+        let (CellStep::Read(sum, count), Some(kg)) = (&self.step, self.weight_kg()) else {
             return;
         };
         self.weighings.push(KnownWeight {
@@ -173,9 +173,9 @@ impl Cells {
             code: sum / f64::from(*count),
         });
         self.step = if self.weight_kg().is_some() {
-            Step::Hang
+            CellStep::Hang
         } else {
-            Step::Done(self.result())
+            CellStep::Done(self.result())
         };
     }
 
@@ -217,7 +217,7 @@ impl Cells {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{Cells, Step, weights};
+    use super::{CellStep, Cells, weights};
     use crate::setup::editor::Editor;
     use crate::shown_leg::ShownLeg;
     use crate::simulation::Simulation;
@@ -252,7 +252,7 @@ mod tests {
                 cells.advance(&mut leg);
             }
         }
-        let Step::Done(Ok(found)) = cells.step() else {
+        let CellStep::Done(Ok(found)) = cells.step() else {
             panic!("{:?}", cells.step());
         };
         let mut editor = Editor::new(leg.source()).unwrap();

@@ -15,7 +15,7 @@ const FRAMES_TO_BEGIN: u32 = 120;
 
 /// How far it has come.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Step {
+pub enum JogStep {
     /// The motor is chosen.
     Choose,
     /// It was commanded so many frames ago.
@@ -37,7 +37,7 @@ pub struct Jog {
     pub motor: u8,
     /// How far its tendon is pulled in, mm; below zero it is paid out.
     pub travel_mm: f32,
-    step: Step,
+    step: JogStep,
     /// What had been refused before it.
     before: Option<String>,
 }
@@ -47,7 +47,7 @@ impl Default for Jog {
         Self {
             motor: 1,
             travel_mm: -1.0,
-            step: Step::Choose,
+            step: JogStep::Choose,
             before: None,
         }
     }
@@ -56,14 +56,17 @@ impl Default for Jog {
 impl Jog {
     /// How far it has come.
     #[must_use]
-    pub const fn step(&self) -> &Step {
+    pub const fn step(&self) -> &JogStep {
         &self.step
     }
 
     /// Whether it goes on.
     #[must_use]
     pub const fn busy(&self) -> bool {
-        matches!(self.step, Step::Commanded(_) | Step::Turning | Step::Asked)
+        matches!(
+            self.step,
+            JogStep::Commanded(_) | JogStep::Turning | JogStep::Asked
+        )
     }
 
     /// What the board is asked to do: at a voltage that turns slowly.
@@ -81,26 +84,26 @@ impl Jog {
         leg.take_jog();
         self.before = leg.refusal().map(Into::into);
         leg.command(Command::Jog(self.demand(settings)), "jog");
-        self.step = Step::Commanded(0);
+        self.step = JogStep::Commanded(0);
     }
 
     /// Follows the leg.
     pub(super) fn advance(&mut self, leg: &mut ShownLeg) {
         let jogging = leg.state() == State::Jogging;
         match self.step {
-            Step::Commanded(_) if jogging => self.step = Step::Turning,
-            Step::Commanded(frames)
+            JogStep::Commanded(_) if jogging => self.step = JogStep::Turning,
+            JogStep::Commanded(frames)
                 if leg.refusal() != self.before.as_deref() || frames > FRAMES_TO_BEGIN =>
             {
-                self.step = Step::Refused;
+                self.step = JogStep::Refused;
             }
-            Step::Commanded(frames) => self.step = Step::Commanded(frames + 1),
-            Step::Turning if leg.failure().is_some() => self.step = Step::Refused,
-            Step::Turning if !jogging => {
+            JogStep::Commanded(frames) => self.step = JogStep::Commanded(frames + 1),
+            JogStep::Turning if leg.failure().is_some() => self.step = JogStep::Refused,
+            JogStep::Turning if !jogging => {
                 leg.ask_jog();
-                self.step = Step::Asked;
+                self.step = JogStep::Asked;
             }
-            Step::Asked => self.take(leg),
+            JogStep::Asked => self.take(leg),
             _ => {}
         }
     }
@@ -108,7 +111,7 @@ impl Jog {
     fn take(&mut self, leg: &mut ShownLeg) {
         let Some(report) = leg.take_jog() else {
             if leg.failure().is_some() {
-                self.step = Step::Refused;
+                self.step = JogStep::Refused;
             } else {
                 leg.ask_jog();
             }
@@ -117,14 +120,14 @@ impl Jog {
         let rig = leg.rig();
         let settings = leg_rig::control_settings::settings(rig, &rig.gains, None);
         let findings = jog_report::findings(&report, &settings);
-        self.step = Step::Done(Box::new((report, findings)));
+        self.step = JogStep::Done(Box::new((report, findings)));
     }
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{Jog, Step};
+    use super::{Jog, JogStep};
     use crate::setup::editor::Editor;
     use crate::shown_leg::ShownLeg;
     use crate::simulation::Simulation;
@@ -152,14 +155,14 @@ mod tests {
             ..Jog::default()
         };
         jog.start(&mut leg, &settings);
-        wait(&mut leg, &mut jog, |_, jog| *jog.step() == Step::Refused);
+        wait(&mut leg, &mut jog, |_, jog| *jog.step() == JogStep::Refused);
         leg.command(Command::Disarm, "disarm");
         wait(&mut leg, &mut jog, |leg, _| leg.state() == State::Disarmed);
         jog.start(&mut leg, &settings);
         wait(&mut leg, &mut jog, |_, jog| {
-            matches!(jog.step(), Step::Done(_))
+            matches!(jog.step(), JogStep::Done(_))
         });
-        let Step::Done(done) = jog.step() else {
+        let JogStep::Done(done) = jog.step() else {
             panic!()
         };
         let (report, findings) = &**done;

@@ -1,19 +1,18 @@
-//! The choice of a calibration, and what all of them need.
+//! The choice of a calibration.
 
-use super::{Guide, panel_cells, panel_jog, panel_turns, panel_zero};
+use super::controls::faint;
+use super::{Guide, panel_cells, panel_jog, panel_tune, panel_turns, panel_zero};
 use crate::places::place;
 use crate::setup::Setup;
 use crate::shown_leg::ShownLeg;
-use crate::theme::palette;
-use eframe::egui::{Button, Label, Response, RichText, Ui, vec2};
-use leg_firmware::command::Command;
-use leg_firmware::supervisor::Event;
+use eframe::egui::{Button, Ui, vec2};
 
-const GUIDES: [(Guide, &str, &str); 4] = [
+const GUIDES: [(Guide, &str, &str); 5] = [
     (Guide::Cells, "Load cells", "guide_cells"),
     (Guide::Turns, "Encoders", "guide_turns"),
     (Guide::Motor, "One motor", "guide_motor"),
     (Guide::Zero, "Zero", "guide_zero"),
+    (Guide::Tune, "Tune", "guide_tune"),
 ];
 
 /// Shows it.
@@ -44,51 +43,6 @@ pub fn show(ui: &mut Ui, setup: &mut Setup, leg: &mut ShownLeg) {
         Guide::Turns => panel_turns::show(ui, &mut steps.turns, editor, leg),
         Guide::Motor => panel_jog::show(ui, &mut steps.jog, editor, leg),
         Guide::Zero => panel_zero::show(ui, &mut steps.homing, editor, leg),
+        Guide::Tune => panel_tune::show(ui, &mut steps.tune, editor, leg),
     }
-}
-
-/// Text of less weight.
-pub(super) fn faint(ui: &mut Ui, words: &str) {
-    let words = RichText::new(words).color(palette(ui.ctx()).faint);
-    ui.add(Label::new(words).wrap());
-}
-
-/// A numbered sentence: what is done next.
-pub(super) fn sentence(ui: &mut Ui, number: u8, words: &str) {
-    ui.horizontal_top(|ui| {
-        let colour = palette(ui.ctx()).target;
-        ui.label(RichText::new(format!("{number}.")).color(colour).strong());
-        ui.add(Label::new(words).wrap());
-    });
-}
-
-/// A button of the steps; `why` disables it, and is said.
-pub(super) fn button(ui: &mut Ui, text: &str, name: &'static str, why: Option<&str>) -> Response {
-    let button = Button::new(text).min_size(vec2(150.0, 30.0));
-    let button = ui.add_enabled(why.is_none(), button);
-    place(&button, name);
-    match why {
-        Some(words) => button.on_disabled_hover_text(words),
-        None => button,
-    }
-}
-
-/// Whether the drivers are off; if not, the button that switches them off. Nobody reaches into a leg that is driven.
-pub(super) fn drivers_off(ui: &mut Ui, leg: &mut ShownLeg) -> bool {
-    let state = leg.state();
-    if !state.driven() {
-        return true;
-    }
-    let palette = palette(ui.ctx());
-    let words =
-        "The drivers are on. Disarm the leg first: it slackens its tendons, and is off then.";
-    ui.add(Label::new(RichText::new(words).color(palette.warning)).wrap());
-    let useful = state.next(Event::Disarm).is_some() || state.next(Event::LeadDown).is_some();
-    let why = leg
-        .locked()
-        .or((!useful).then_some("Wait until it has ended what it does."));
-    if button(ui, "Disarm", "steps_disarm", why).clicked() {
-        leg.command(Command::Disarm, "disarm");
-    }
-    false
 }

@@ -1,8 +1,8 @@
 //! A load cell by known weights, as its user does it.
 
-use super::cells::{Cells, Step, weights};
-use super::panel::{button, drivers_off, faint, sentence};
-use super::picture::{self, Shown};
+use super::cells::{CellStep, Cells, weights};
+use super::controls::{button, drivers_off, faint, sentence};
+use super::picture::{self, StepPicture};
 use crate::places::place;
 use crate::setup::editor::Editor;
 use crate::shown_leg::ShownLeg;
@@ -12,24 +12,24 @@ use leg_rig::cell_fit::CellFit;
 
 pub(super) fn show(ui: &mut Ui, cells: &mut Cells, editor: &mut Editor, leg: &mut ShownLeg) {
     let settings = editor.settings();
-    let weight = matches!(cells.step(), Step::Hang | Step::Read(..));
+    let weight = matches!(cells.step(), CellStep::Hang | CellStep::Read(..));
     picture::show(
         ui,
-        &Shown {
+        &StepPicture {
             tendon: Some(cells.cell),
             weight_kg: cells.weight_kg().filter(|_| weight),
-            ..Shown::default()
+            ..StepPicture::default()
         },
     );
     match cells.step().clone() {
-        Step::Choose => choose(ui, cells, f64::from(settings.rig.gravity_m_per_s2), leg),
-        Step::Hang => hang(ui, cells, leg),
-        Step::Read(..) => {
+        CellStep::Choose => choose(ui, cells, f64::from(settings.rig.gravity_m_per_s2), leg),
+        CellStep::Hang => hang(ui, cells, leg),
+        CellStep::Read(..) => {
             let bar = ProgressBar::new(cells.progress()).show_percentage();
             place(&ui.add(bar.desired_width(260.0)), "cells_progress");
             faint(ui, "The cell is read. Do not touch the weight.");
         }
-        Step::Done(result) => done(ui, cells, &result, editor, leg),
+        CellStep::Done(result) => done(ui, cells, &result, editor, leg),
     }
 }
 

@@ -1,8 +1,8 @@
 //! One motor, turned slowly, as its user does it.
 
-use super::jog::{Jog, Step, TRAVEL_MAX_MM};
-use super::panel::{button, drivers_off, faint, sentence};
-use super::picture::{self, Shown};
+use super::controls::{button, drivers_off, faint, sentence};
+use super::jog::{Jog, JogStep, TRAVEL_MAX_MM};
+use super::picture::{self, StepPicture};
 use crate::places::place;
 use crate::setup::editor::Editor;
 use crate::shown_leg::ShownLeg;
@@ -13,10 +13,10 @@ use leg_base::jog_report;
 pub(super) fn show(ui: &mut Ui, jog: &mut Jog, editor: &Editor, leg: &mut ShownLeg) {
     picture::show(
         ui,
-        &Shown {
+        &StepPicture {
             tendon: Some(usize::from(jog.motor) - 1),
             pull_mm: Some(jog.travel_mm),
-            ..Shown::default()
+            ..StepPicture::default()
         },
     );
     let settings = editor.settings();
@@ -60,21 +60,21 @@ pub(super) fn show(ui: &mut Ui, jog: &mut Jog, editor: &Editor, leg: &mut ShownL
 fn outcome(ui: &mut Ui, jog: &Jog, leg: &ShownLeg) {
     let palette = palette(ui.ctx());
     match jog.step() {
-        Step::Choose => faint(ui, "What the board saw will stand here."),
-        Step::Commanded(_) | Step::Turning | Step::Asked => {
+        JogStep::Choose => faint(ui, "What the board saw will stand here."),
+        JogStep::Commanded(_) | JogStep::Turning | JogStep::Asked => {
             ui.horizontal(|ui| {
                 ui.add(Spinner::new());
                 ui.label("The motor turns. Space, Esc and STOP end it.");
             });
         }
-        Step::Refused => {
+        JogStep::Refused => {
             let words = leg
                 .refusal()
                 .unwrap_or("It did not begin, or nothing was heard of it.");
             let words = RichText::new(words).color(palette.error);
             place(&ui.add(Label::new(words).wrap()), "jog_refused");
         }
-        Step::Done(done) => {
+        JogStep::Done(done) => {
             let (report, findings) = &**done;
             let text = jog_report::text(report, findings);
             let text = RichText::new(text).monospace().size(11.5);

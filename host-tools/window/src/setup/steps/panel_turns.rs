@@ -1,8 +1,8 @@
 //! The encoders, as their user checks them.
 
-use super::panel::{button, drivers_off, faint, sentence};
-use super::picture::{self, Shown};
-use super::turns::{Step, Turns};
+use super::controls::{button, drivers_off, faint, sentence};
+use super::picture::{self, StepPicture};
+use super::turns::{TurnStep, Turns};
 use crate::places::place;
 use crate::setup::editor::Editor;
 use crate::shown_leg::ShownLeg;
@@ -12,23 +12,23 @@ use leg_rig::motor_turn;
 
 pub(super) fn show(ui: &mut Ui, turns: &mut Turns, editor: &mut Editor, leg: &mut ShownLeg) {
     let shown = match turns.step() {
-        Step::Begin | Step::Done => Shown::default(),
-        _ => Shown {
+        TurnStep::Begin | TurnStep::Done => StepPicture::default(),
+        _ => StepPicture {
             tendon: Some(turns.motor()),
             turned: true,
-            ..Shown::default()
+            ..StepPicture::default()
         },
     };
     picture::show(ui, &shown);
     match turns.step() {
-        Step::Begin => begin(ui, turns, editor, leg),
-        Step::Before | Step::After(_) | Step::Rehearse(..) => {
+        TurnStep::Begin => begin(ui, turns, editor, leg),
+        TurnStep::Before | TurnStep::After(_) | TurnStep::Rehearse(..) => {
             ui.horizontal(|ui| {
                 ui.add(Spinner::new());
                 ui.label("The counter is read.");
             });
         }
-        Step::Turn(_) => {
+        TurnStep::Turn(_) => {
             let words = motor_turn::step(turns.motor());
             sentence(ui, turns.motor() as u8 + 1, &format!("By hand: {words}."));
             ui.horizontal(|ui| {
@@ -40,10 +40,10 @@ pub(super) fn show(ui: &mut Ui, turns: &mut Turns, editor: &mut Editor, leg: &mu
                 }
             });
         }
-        Step::Done => {}
+        TurnStep::Done => {}
     }
     table(ui, turns);
-    if turns.step() == Step::Done {
+    if turns.step() == TurnStep::Done {
         done(ui, turns, editor);
     }
 }

@@ -1,7 +1,7 @@
 //! The zero of the tendons, as its user finds it.
 
-use super::panel::{button, faint, sentence};
-use super::picture::{self, Shown};
+use super::controls::{button, faint, sentence};
+use super::picture::{self, StepPicture};
 use crate::places::place;
 use crate::setup::editor::Editor;
 use crate::shown_leg::ShownLeg;
@@ -10,13 +10,16 @@ use eframe::egui::{Label, RichText, Spinner, Ui};
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::{Event, State};
 
+/// Distance of a tension from its target below which it is reached, N.
+const TAUT_N: f32 = 2.0;
+
 pub(super) fn show(ui: &mut Ui, homing: &mut bool, editor: &Editor, leg: &mut ShownLeg) {
     picture::show(
         ui,
-        &Shown {
+        &StepPicture {
             slack: true,
             no_payload: true,
-            ..Shown::default()
+            ..StepPicture::default()
         },
     );
     let homing_settings = &editor.settings().homing;
@@ -54,6 +57,18 @@ pub(super) fn show(ui: &mut Ui, homing: &mut bool, editor: &Editor, leg: &mut Sh
     outcome(ui, *homing, leg);
 }
 
+/// Whether every tension is what it is to be, but for a little.
+fn is_taut(leg: &ShownLeg) -> bool {
+    leg.telemetry().is_some_and(|report| {
+        let [first, second, third] = report.tensions_n;
+        let [a, b, c] = report.target_tensions_n;
+        [first - a, second - b, third - c]
+            .iter()
+            .all(|off_n| off_n.abs() < TAUT_N)
+            && !report.moving
+    })
+}
+
 fn outcome(ui: &mut Ui, homing: bool, leg: &ShownLeg) {
     let palette = palette(ui.ctx());
     let faults = leg.faults().without_limits();
@@ -75,6 +90,10 @@ fn outcome(ui: &mut Ui, homing: bool, leg: &ShownLeg) {
                 palette.error,
             )
         }
+        State::Active if homing && !is_taut(leg) => (
+            "The zero is found. The tendons are tensioned.".to_owned(),
+            palette.target,
+        ),
         State::Active if homing => {
             let tensions = leg.tensions_n().map(|n| format!("{n:.1}"));
             let set_n = leg.rig().pretension_n;

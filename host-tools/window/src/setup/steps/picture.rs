@@ -9,7 +9,7 @@ const HEIGHT: f32 = 170.0;
 
 /// What is shown.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Shown {
+pub(super) struct StepPicture {
     /// The tendon that is meant, from 0.
     pub tendon: Option<usize>,
     /// What hangs on its cell in its place, kg.
@@ -18,13 +18,17 @@ pub(super) struct Shown {
     pub pull_mm: Option<f32>,
     /// Its motor is turned by hand.
     pub turned: bool,
+    /// Its motor pulls it in and pays it out.
+    pub both_ways: bool,
+    /// The leg swings.
+    pub swings: bool,
     /// All tendons are slack.
     pub slack: bool,
     /// No payload may hang on the tip.
     pub no_payload: bool,
 }
 
-pub(super) fn show(ui: &mut Ui, shown: &Shown) {
+pub(super) fn show(ui: &mut Ui, shown: &StepPicture) {
     let size = vec2(WIDTH.min(ui.available_width()), HEIGHT);
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
     let palette = palette(ui.ctx());
@@ -39,12 +43,16 @@ pub(super) fn show(ui: &mut Ui, shown: &Shown) {
     painter.circle_filled(pos2(x(0.5), plate - 22.0), 5.0, palette.brass);
     let tip = pos2(x(0.5), rect.bottom() - 14.0);
     painter.line_segment([pos2(x(0.5), plate), tip], line);
+    if shown.swings {
+        swings(&painter, pos2(x(0.5), plate - 22.0), tip, &palette);
+    }
     if shown.no_payload {
-        no_payload(&painter, tip + vec2(26.0, -8.0), &palette);
+        let aside = if shown.swings { 60.0 } else { 26.0 };
+        no_payload(&painter, tip + vec2(aside, -8.0), &palette);
     }
     for tendon in 0..3 {
         // Seen from the side, they stand beside each other; the middle one is behind the joint.
-        let at = x(0.25 + 0.18 * tendon as f32 + if tendon == 2 { 0.14 } else { 0.0 });
+        let at = x([0.25, 0.37, 0.75][tendon]);
         one(&painter, rect, at, [top, plate], tendon, shown, &palette);
     }
 }
@@ -60,7 +68,7 @@ fn one(
     at: f32,
     [top, plate]: [f32; 2],
     tendon: usize,
-    shown: &Shown,
+    shown: &StepPicture,
     palette: &Palette,
 ) {
     let meant = shown.tendon.is_none_or(|meant| meant == tendon);
@@ -100,6 +108,9 @@ fn one(
     if shown.turned && meant {
         turn(painter, motor.center(), palette);
     }
+    if shown.both_ways && meant {
+        both_ways(painter, pos2(at + 14.0, 0.5 * (top + plate)), palette);
+    }
     if let Some(pull_mm) = shown.pull_mm.filter(|_| meant) {
         let way = vec2(0.0, if pull_mm < 0.0 { 26.0 } else { -26.0 });
         let from = pos2(at + 14.0, 0.5 * (top + plate)) - 0.5 * way;
@@ -117,6 +128,34 @@ fn one(
             words,
             font,
             palette.text,
+        );
+    }
+}
+
+/// Arrows up and down beside a tendon.
+fn both_ways(painter: &Painter, middle: Pos2, palette: &Palette) {
+    let stroke = Stroke::new(2.5, palette.warning);
+    for way in [vec2(0.0, 17.0), vec2(0.0, -17.0)] {
+        painter.arrow(middle, way, stroke);
+    }
+}
+
+/// The way of the tip to both sides.
+fn swings(painter: &Painter, joint: Pos2, tip: Pos2, palette: &Palette) {
+    let stroke = Stroke::new(2.5, palette.warning);
+    let length = tip.y - joint.y;
+    let point = |part: f32| {
+        let angle = 0.35 * part;
+        joint + length * vec2(angle.sin(), angle.cos())
+    };
+    for side in [1.0, -1.0] {
+        let steps = 0..=8_u8;
+        let arc = steps.map(|step| point(side * f32::from(step) / 8.0));
+        painter.add(Shape::line(arc.collect(), stroke));
+        painter.arrow(
+            point(0.9 * side),
+            2.5 * (point(side) - point(0.9 * side)),
+            stroke,
         );
     }
 }

@@ -9,7 +9,7 @@ const REHEARSED_S: f64 = 1.5;
 
 /// How far it has come.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Step {
+pub enum TurnStep {
     /// Nothing was read.
     #[default]
     Begin,
@@ -28,14 +28,14 @@ pub enum Step {
 /// The turns of all motors.
 #[derive(Clone, Debug, Default)]
 pub struct Turns {
-    step: Step,
+    step: TurnStep,
     turns: Vec<MotorTurn>,
 }
 
 impl Turns {
     /// How far it has come.
     #[must_use]
-    pub const fn step(&self) -> Step {
+    pub const fn step(&self) -> TurnStep {
         self.step
     }
 
@@ -55,23 +55,23 @@ impl Turns {
     pub fn start(&mut self, leg: &mut ShownLeg) {
         leg.take_sensors();
         *self = Self {
-            step: Step::Before,
+            step: TurnStep::Before,
             turns: Vec::new(),
         };
     }
 
     /// The motor was turned; a simulated leg's is turned by that.
     pub fn turned(&mut self, leg: &mut ShownLeg) {
-        let Step::Turn(before) = self.step else {
+        let TurnStep::Turn(before) = self.step else {
             return;
         };
         leg.take_sensors();
         let motor = self.motor();
         self.step = match leg.simulated_mut() {
-            None => Step::After(before),
+            None => TurnStep::After(before),
             Some(simulation) => {
                 simulation.turn_motor(motor);
-                Step::Rehearse(before, simulation.leg().time_s() + REHEARSED_S)
+                TurnStep::Rehearse(before, simulation.leg().time_s() + REHEARSED_S)
             }
         };
     }
@@ -83,12 +83,12 @@ impl Turns {
 
     /// Takes the counters that have come; by what is set.
     pub(super) fn advance(&mut self, leg: &mut ShownLeg, editor: &Editor) {
-        if let Step::Rehearse(before, until_s) = self.step
+        if let TurnStep::Rehearse(before, until_s) = self.step
             && leg.time_s() >= until_s
         {
-            self.step = Step::After(before);
+            self.step = TurnStep::After(before);
         }
-        if !matches!(self.step, Step::Before | Step::After(_)) {
+        if !matches!(self.step, TurnStep::Before | TurnStep::After(_)) {
             return;
         }
         if leg.failure().is_some() || leg.locked().is_some() {
@@ -102,15 +102,19 @@ impl Turns {
         let motor = self.motor();
         let count = sensors.encoder_counts[motor];
         self.step = match self.step {
-            Step::After(before) => {
+            TurnStep::After(before) => {
                 let axes = editor.settings().axes;
                 let counts_per_turn = editor.counts_per_turn();
                 let turn = MotorTurn::new(motor, [before, count], counts_per_turn, &axes[motor]);
                 self.turns.push(turn);
                 let done = self.turns.len() == axes.len();
-                if done { Step::Done } else { Step::Before }
+                if done {
+                    TurnStep::Done
+                } else {
+                    TurnStep::Before
+                }
             }
-            _ => Step::Turn(count),
+            _ => TurnStep::Turn(count),
         };
     }
 }
@@ -118,7 +122,7 @@ impl Turns {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{Step, Turns};
+    use super::{TurnStep, Turns};
     use crate::setup::editor::Editor;
     use crate::shown_leg::ShownLeg;
     use crate::simulation::Simulation;
@@ -145,7 +149,7 @@ mod tests {
             turns.advance(&mut leg, &editor);
             turns.turned(&mut leg);
         }
-        assert_eq!(turns.step(), Step::Done);
+        assert_eq!(turns.step(), TurnStep::Done);
         assert!(
             turns.turns().iter().all(|turn| turn.passed),
             "{:?}",

@@ -5,7 +5,7 @@
 
 use super::error::TuneError;
 use super::estimate::{Equation, Estimate, least_squares};
-use crate::operator::{Goal, Operator, Tensioning};
+use super::tuned_leg::TunedLeg;
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
@@ -65,11 +65,11 @@ pub(super) fn stopped_n([low_n, high_n]: [f64; 2]) -> [f64; 2] {
 }
 
 /// Raises and lowers the pretension between two. `tensions_n` are the mean tensions by the rig file at what [`stopped_n`] gives.
-pub(super) fn measure_travels(
-    operator: &mut Operator,
+pub(super) async fn measure_travels<L: TunedLeg>(
+    leg: &mut L,
     [low, high]: [f64; 2],
     tensions_n: [f64; 2],
-) -> Result<Travels, TuneError> {
+) -> Result<Travels, TuneError<L::Error>> {
     let (middle_n, half_n) = (0.5 * (low + high), 0.5 * (high - low));
     let mut rests = Vec::new();
     let mut overshoot_n = OVERSHOOT * half_n;
@@ -80,7 +80,7 @@ pub(super) fn measure_travels(
                 to_n,
                 stop_n: middle_n + part * half_n - overshoot_n.copysign(to_n - from_n),
             };
-            let rest = rest_at(operator, &way)?;
+            let rest = rest_at(leg, &way).await?;
             overshoot_n = (rest.tension_n - way.stop_n).abs().min(half_n);
             rests.push(rest);
         }
@@ -111,16 +111,13 @@ fn equations(rests: &[Rest], [low_n, high_n]: [f64; 2]) -> Vec<Equation<4>> {
 }
 
 /// Where the leg rests when it is stopped on the way.
-fn rest_at(operator: &mut Operator, way: &Way) -> Result<Rest, TuneError> {
-    operator.reach(&Goal {
-        tensioning: Some(Tensioning::Pretension(way.from_n as f32)),
-        direction: Some([0.0; 2]),
-    })?;
+async fn rest_at<L: TunedLeg>(leg: &mut L, way: &Way) -> Result<Rest, TuneError<L::Error>> {
+    leg.hang_straight(way.from_n as f32).await?;
     let sign = (way.to_n - way.from_n).signum();
-    let passed = |one: &Telemetry<f32>| sign * (mean(one.tensions_n) - way.stop_n) >= 0.0;
+    let mut passed = |one: &Telemetry<f32>| sign * (mean(one.tensions_n) - way.stop_n) >= 0.0;
     let time = Duration::from_secs_f64(SETTLING_S + LOOKED_S);
     let command = Command::Pretension(way.to_n as f32);
-    let seen = operator.interrupt(command, passed, time)?;
+    let seen = leg.interrupt(command, &mut passed, time).await?;
     let looked = (LOOKED_S / (SETTLING_S + LOOKED_S)
         * seen.iter().filter(|one| one.state == State::Held).count() as f64)
         as usize;

@@ -1,15 +1,28 @@
 //! Why a leg was not measured to the end.
 
-use crate::jog_report::Finding;
-use crate::operator::OperatorError;
 use leg_base::failure::Failure;
+use leg_base::jog_report::Finding;
 use leg_firmware::jog::JOG_TRAVEL_MAX_M;
+use leg_firmware::supervisor::State;
+use leg_firmware::telemetry::Telemetry;
+
+/// Why a leg did not do what it was asked, as its host knows it.
+pub trait LegError {
+    /// A fault has ended it; `asked` is what was asked.
+    fn faulted(asked: &'static str, telemetry: &Telemetry<f32>) -> Self;
+
+    /// Another host or its user has ended it, and the leg is in that state.
+    fn stopped(asked: &'static str, state: State) -> Self;
+
+    /// The same for the user.
+    fn failure(&self) -> Failure;
+}
 
 /// Why a leg was not measured to the end. It rests then.
 #[derive(Debug)]
-pub enum TuneError {
+pub enum TuneError<E> {
     /// The leg did not do what it was asked.
-    Operator(OperatorError),
+    Leg(E),
     /// A jog showed what does not fit, as counts the wrong way.
     Finding(Finding),
     /// What was seen does not determine a number.
@@ -30,19 +43,21 @@ pub enum TuneError {
     },
 }
 
-impl TuneError {
+impl<E> TuneError<E> {
     pub(super) fn undetermined(what: impl Into<String>, help: &'static str) -> Self {
         Self::Undetermined {
             what: what.into(),
             help,
         }
     }
+}
 
+impl<E: LegError> TuneError<E> {
     /// The same for the user.
     #[must_use]
     pub fn failure(&self) -> Failure {
         match self {
-            Self::Operator(error) => error.failure(),
+            Self::Leg(error) => error.failure(),
             Self::Finding(finding) => Failure::failed(finding.what.clone(), finding.remedy.clone()),
             Self::Undetermined { what, help } => Failure::failed(what.clone(), *help),
             Self::Displaced { error, motor, by_m } => {
@@ -67,22 +82,22 @@ fn displaced(motor: u8, by_m: f32) -> String {
     )
 }
 
-impl From<OperatorError> for TuneError {
-    fn from(error: OperatorError) -> Self {
-        Self::Operator(error)
+impl<E> From<E> for TuneError<E> {
+    fn from(error: E) -> Self {
+        Self::Leg(error)
     }
 }
 
-impl From<TuneError> for Failure {
-    fn from(error: TuneError) -> Self {
+impl<E: LegError> From<TuneError<E>> for Failure {
+    fn from(error: TuneError<E>) -> Self {
         error.failure()
     }
 }
 
-impl std::fmt::Display for TuneError {
+impl<E: LegError> std::fmt::Display for TuneError<E> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         self.failure().fmt(f)
     }
 }
 
-impl std::error::Error for TuneError {}
+impl<E: LegError + std::fmt::Debug> std::error::Error for TuneError<E> {}

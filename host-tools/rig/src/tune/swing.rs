@@ -4,14 +4,14 @@ use super::error::TuneError;
 use super::estimate::Estimate;
 use super::play::{Travels, is_wide, measure_travels, stopped_n};
 use super::ring::Ring;
-use crate::operator::{Goal, Operator, Tensioning};
+use super::tuned_leg::TunedLeg;
+use crate::rig_file::RigFile;
 use leg_base::angles;
 use leg_base::tick_time::tick_s;
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
 use leg_model::{Evaluation, evaluate};
-use leg_rig::rig_file::RigFile;
 use std::f64::consts::TAU;
 use std::time::Duration;
 
@@ -106,14 +106,14 @@ pub struct Swings {
 ///
 /// # Errors
 /// A [`TuneError`]: a fault on the way, a leg that does not swing.
-pub fn measure_swing(
-    operator: &mut Operator,
+pub async fn measure_swing<L: TunedLeg>(
+    leg: &mut L,
     plan: &SwingPlan,
     rig: &RigFile,
     seen: &mut dyn FnMut(&Swing),
-) -> Result<Swings, TuneError> {
-    if !operator.telemetry()?.telemetry.homed {
-        operator.home()?;
+) -> Result<Swings, TuneError<L::Error>> {
+    if !leg.telemetry().await?.homed {
+        leg.home().await?;
     }
     let (travels, configured_stretch_m) = match plan.travels_n {
         Some(range_n) => {
@@ -121,19 +121,19 @@ pub fn measure_swing(
             let [low, high] = [hanging(rig, low_n)?, hanging(rig, high_n)?];
             let tensions_n = [low, high].map(|leg| sum(&leg.tensions_n) / 3.0);
             let stretch_m = (sum(&low.unstretched_m) - sum(&high.unstretched_m)) / 3.0;
-            let travels = measure_travels(operator, range_n, tensions_n)?;
+            let travels = measure_travels(leg, range_n, tensions_n).await?;
             (Some(travels), Some(stretch_m))
         }
         None => (None, None),
     };
     let mut all = Vec::new();
     for &level_n in &plan.levels_n {
-        let swing = swing_at(operator, plan, rig, level_n)?;
+        let swing = swing_at(leg, plan, rig, level_n).await?;
         seen(&swing);
         all.push(swing);
     }
-    operator.reach(&straight_down(rig.pretension_n))?;
-    operator.stop()?;
+    leg.hang_straight(rig.pretension_n as f32).await?;
+    leg.stop().await?;
     let stretched = travels
         .zip(configured_stretch_m)
         .map_or(Estimate::new(1.0, 0.0), |(travels, configured_m)| {
@@ -148,39 +148,22 @@ pub fn measure_swing(
 }
 
 /// The leg straight down, by the rig file.
-fn hanging(rig: &RigFile, pretension_n: f64) -> Result<Evaluation<f64>, TuneError> {
+fn hanging<E>(rig: &RigFile, pretension_n: f64) -> Result<Evaluation<f64>, TuneError<E>> {
     let mut query = rig.query(0.0, 0.0, 0.0);
     query.pretension_n = pretension_n;
     evaluate(&rig.parameters, &query).map_err(|_| no_swing(pretension_n))
 }
 
-fn straight_down(pretension_n: f64) -> Goal {
-    Goal {
-        tensioning: Some(Tensioning::Pretension(pretension_n as f32)),
-        direction: Some([0.0; 2]),
-    }
-}
-
 /// The swings at a pretension, towards both sides: a leg whose tendons are not the same on both does not swing there at the same
 /// frequency, and the mean is that of the leg straight down.
-fn swing_at(
-    operator: &mut Operator,
+async fn swing_at<L: TunedLeg>(
+    leg: &mut L,
     plan: &SwingPlan,
     rig: &RigFile,
     level_n: f64,
-) -> Result<Swing, TuneError> {
-    let mut one_side = |azimuth_deg: f64| {
-        operator.reach(&straight_down(level_n))?;
-        let [x, y] = angles::direction(azimuth_deg, plan.tilt_deg).map(|one| one as f32);
-        // It is the fastest there.
-        let half_way = |telemetry: &Telemetry<f32>| {
-            let [now_x, now_y] = telemetry.target;
-            now_x.hypot(now_y) >= 0.5 * x.hypot(y)
-        };
-        let recorded = operator.interrupt(Command::Move { x, y }, half_way, RECORDED)?;
-        one_swing(&recorded, rig, level_n, azimuth_deg)
-    };
-    let (one, other) = (one_side(0.0)?, one_side(180.0)?);
+) -> Result<Swing, TuneError<L::Error>> {
+    let one = swing_towards(leg, plan, rig, level_n, 0.0).await?;
+    let other = swing_towards(leg, plan, rig, level_n, 180.0).await?;
     let frequency_hz = one.frequency_hz.mean(other.frequency_hz);
     if frequency_hz.part() > OFF_PART {
         return Err(no_swing(level_n));
@@ -195,7 +178,26 @@ fn swing_at(
     })
 }
 
-fn no_swing(level_n: f64) -> TuneError {
+async fn swing_towards<L: TunedLeg>(
+    leg: &mut L,
+    plan: &SwingPlan,
+    rig: &RigFile,
+    level_n: f64,
+    azimuth_deg: f64,
+) -> Result<Swing, TuneError<L::Error>> {
+    leg.hang_straight(level_n as f32).await?;
+    let [x, y] = angles::direction(azimuth_deg, plan.tilt_deg).map(|one| one as f32);
+    // It is the fastest there.
+    let mut half_way = |telemetry: &Telemetry<f32>| {
+        let [now_x, now_y] = telemetry.target;
+        now_x.hypot(now_y) >= 0.5 * x.hypot(y)
+    };
+    let command = Command::Move { x, y };
+    let recorded = leg.interrupt(command, &mut half_way, RECORDED).await?;
+    one_swing(&recorded, rig, level_n, azimuth_deg)
+}
+
+fn no_swing<E>(level_n: f64) -> TuneError<E> {
     TuneError::undetermined(
         format!(
             "the leg does not swing at a pretension of {level_n:.0} N so that its frequency can be told"
@@ -204,12 +206,12 @@ fn no_swing(level_n: f64) -> TuneError {
     )
 }
 
-fn one_swing(
+fn one_swing<E>(
     recorded: &[Telemetry<f32>],
     rig: &RigFile,
     level_n: f64,
     azimuth_deg: f64,
-) -> Result<Swing, TuneError> {
+) -> Result<Swing, TuneError<E>> {
     let held: Vec<_> = recorded
         .iter()
         .filter(|one| one.state == State::Held)

@@ -3,10 +3,10 @@
 use super::estimate::Estimate;
 use super::motor::MotorConstants;
 use super::swing::Swings;
-use leg_rig::actuator::Actuator;
-use leg_rig::number::{plain, significant};
-use leg_rig::plant_settings::TRANSVERSE_INERTIA;
-use leg_rig::rig_file::RigFile;
+use crate::actuator::{ACTUATOR, Actuator};
+use crate::number::{plain, significant};
+use crate::plant_settings::{SIMULATION, TRANSVERSE_INERTIA};
+use crate::rig_file::RigFile;
 use serde::Serialize;
 
 /// A quantity, as measured and as configured.
@@ -45,7 +45,7 @@ fn motor_rows(motor: &MotorConstants, actuator: &Actuator) -> Vec<Row> {
         key: None,
     };
     let keyed = |key, unit, measured, configured| Row {
-        key: Some((leg_rig::actuator::ACTUATOR, key)),
+        key: Some((ACTUATOR, key)),
         ..row(key, unit, measured, configured)
     };
     let m_per_rad = actuator.m_per_rad();
@@ -120,7 +120,7 @@ fn swing_rows(swings: &Swings, rig: &RigFile) -> Vec<Row> {
         unit: TRANSVERSE_INERTIA.unit,
         measured: swings.inertia_kg_m2,
         configured: Some(rig.plant.transverse_inertia_kg_m2(&rig.parameters)),
-        key: Some((leg_rig::plant_settings::SIMULATION, TRANSVERSE_INERTIA.name)),
+        key: Some((SIMULATION, TRANSVERSE_INERTIA.name)),
     };
     let travels = swings.travels.map(|travels| {
         let [low_n, high_n] = travels.tensions_n;
@@ -131,7 +131,7 @@ fn swing_rows(swings: &Swings, rig: &RigFile) -> Vec<Row> {
                 .play_m
                 .scaled(std::f64::consts::TAU / rig.actuator.lead_m),
             configured: Some(rig.actuator.backlash_rad),
-            key: Some((leg_rig::actuator::ACTUATOR, "backlash_rad")),
+            key: Some((ACTUATOR, "backlash_rad")),
         };
         let stretch = Row {
             name: format!("stretch, {low_n:.0} to {high_n:.0} N"),
@@ -177,6 +177,21 @@ pub fn table(rows: &[Row]) -> String {
         );
     }
     table
+}
+
+/// What was measured with certainty and a rig file takes: its section, its key, its value.
+#[must_use]
+pub fn certain_values(rows: &[Row]) -> Vec<(&'static str, &'static str, String)> {
+    let certain = rows
+        .iter()
+        .filter(|row| row.measured.is_certain() && row.measured.value > 0.0);
+    let kept = certain.filter_map(|row| {
+        let (section, key) = row.key?;
+        let Estimate { value, uncertainty } = row.measured;
+        let within = range(key).is_none_or(|[low, high]| (low..=high).contains(&value));
+        within.then(|| (section, key, written(value, uncertainty)))
+    });
+    kept.collect()
 }
 
 /// What was measured with certainty, as sections of a rig file; what such a file does not take, or is uncertain, as a comment.

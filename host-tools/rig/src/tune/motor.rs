@@ -32,7 +32,7 @@ pub struct MotorConstants {
 
 impl MotorConstants {
     /// From jogs without and against a tension. A current sensor shows steps of `current_step_a`.
-    pub(super) fn fit(jogs: &[Jogged], current_step_a: f64) -> Result<Self, TuneError> {
+    pub(super) fn fit<E>(jogs: &[Jogged], current_step_a: f64) -> Result<Self, TuneError<E>> {
         // Half a step, not the deviation of even errors within it: at steady currents they are the same in many jogs.
         let current_off_a = 0.5 * current_step_a;
         let slack_n = slack_n(jogs);
@@ -71,7 +71,7 @@ impl MotorConstants {
     }
 }
 
-fn undetermined() -> TuneError {
+fn undetermined<E>() -> TuneError<E> {
     TuneError::undetermined(
         "the currents and speeds of the jogs are not those of a motor with its screw",
         "look at the currents in `leg sensors`, and at `counts_per_turn`, `current_range_a` and `supply_range_v` in `[actuator]`",
@@ -139,7 +139,7 @@ mod tests {
 
     #[test]
     fn every_constant_is_found_beside_the_others() {
-        let found = MotorConstants::fit(&jogs(), 1e-6).unwrap();
+        let found = MotorConstants::fit::<()>(&jogs(), 1e-6).unwrap();
         for (found, expected) in [
             (found.resistance_ohm, 2.0),
             (found.back_emf_v_s_per_m, 600.0),
@@ -157,6 +157,6 @@ mod tests {
     #[test]
     fn jogs_without_a_tension_do_not_tell_resistance_from_loss() {
         let free: Vec<_> = jogs().into_iter().filter(|jog| !jog.loaded).collect();
-        MotorConstants::fit(&free, 1e-6).unwrap_err();
+        MotorConstants::fit::<()>(&free, 1e-6).unwrap_err();
     }
 }

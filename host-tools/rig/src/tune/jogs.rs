@@ -1,8 +1,8 @@
 //! The jogs of one motor: without a tension and against one, both ways, at several voltages.
 
-use super::error::TuneError;
-use crate::jog_report::{Finding, findings};
-use crate::operator::{Operator, OperatorError};
+use super::error::{LegError, TuneError};
+use super::tuned_leg::TunedLeg;
+use leg_base::jog_report::{Finding, findings};
 use leg_firmware::board::timing::PWM_TOP;
 use leg_firmware::jog::{JOG_TRAVEL_MAX_M, JogDemand, JogEnd, JogReport};
 use leg_firmware::settings::Settings;
@@ -144,18 +144,18 @@ impl JogPlan {
 }
 
 /// Jogs the motor of a disarmed leg, and leaves its tendon where it was; where that cannot be, the error tells it.
-pub(super) fn jog_all(
-    operator: &mut Operator,
+pub(super) async fn jog_all<L: TunedLeg>(
+    leg: &mut L,
     plan: &JogPlan,
     settings: &Settings,
     seen: &mut dyn FnMut(&Jogged),
-) -> Result<Vec<Jogged>, TuneError> {
+) -> Result<Vec<Jogged>, TuneError<L::Error>> {
     let own = |telemetry: &Telemetry<f32>| own_of(plan.motor, &telemetry.pulled_m);
-    let start = operator.telemetry()?.telemetry;
+    let start = leg.telemetry().await?;
     require_loose(plan, &start.tensions_n)?;
     let start_m = own(&start);
     let mut jogs = Jogs {
-        operator,
+        leg,
         plan,
         settings,
         pulled_m: 0.0,
@@ -163,19 +163,16 @@ pub(super) fn jog_all(
         all: Vec::new(),
         seen,
     };
-    let Err(error) = jogs.in_order() else {
+    let Err(error) = jogs.in_order().await else {
         return Ok(jogs.all);
     };
-    jogs.ease();
-    // A jog that was cut off has told nothing, so the leg is asked; not one that no longer answers.
-    let answers = !matches!(
-        error,
-        TuneError::Operator(OperatorError::ConnectionLost(..) | OperatorError::NoAnswer(_))
-    );
-    let now = answers.then(|| operator.uncancelled(Operator::telemetry));
-    let by_m = now
-        .and_then(Result::ok)
-        .map_or(0.0, |report| own(&report.telemetry) - start_m);
+    jogs.ease().await;
+    // A jog that was cut off has told nothing, so the leg is asked.
+    let now = match &error {
+        TuneError::Leg(error) => leg.telemetry_after(Some(error)).await,
+        _ => leg.telemetry_after(None).await,
+    };
+    let by_m = now.map_or(0.0, |telemetry| own(&telemetry) - start_m);
     if by_m.abs() <= TRAVEL_MIN_M {
         return Err(error);
     }
@@ -187,7 +184,7 @@ pub(super) fn jog_all(
 }
 
 /// Refuses a leg whose other tendons pull: where one is paid out, they pull the leg to their side, and the more.
-fn require_loose(plan: &JogPlan, tensions_n: &[f32; 3]) -> Result<(), TuneError> {
+fn require_loose<E>(plan: &JogPlan, tensions_n: &[f32; 3]) -> Result<(), TuneError<E>> {
     let taut_n = LOADED_PART * plan.tension_max_n;
     let mut others = (1_u8..).zip(tensions_n);
     match others.find(|&(number, &tension_n)| number != plan.motor && tension_n > taut_n) {
@@ -206,8 +203,8 @@ fn own_of(motor: u8, of_three: &[f32; 3]) -> f32 {
 }
 
 /// The jogs that are under way.
-struct Jogs<'a> {
-    operator: &'a mut Operator,
+struct Jogs<'a, L> {
+    leg: &'a mut L,
     plan: &'a JogPlan,
     settings: &'a Settings,
     /// How far the tendon is pulled in since the beginning, m.
@@ -218,47 +215,47 @@ struct Jogs<'a> {
     seen: &'a mut dyn FnMut(&Jogged),
 }
 
-impl Jogs<'_> {
-    fn in_order(&mut self) -> Result<(), TuneError> {
-        self.slacken()?;
-        self.free()?;
-        self.loaded()?;
-        self.put_back()
+impl<L: TunedLeg> Jogs<'_, L> {
+    async fn in_order(&mut self) -> Result<(), TuneError<L::Error>> {
+        self.slacken().await?;
+        self.free().await?;
+        self.loaded().await?;
+        self.put_back().await
     }
 
     /// Lets no tendon pull on after an error. A motor that did not do what it was asked, a fault, Ctrl-C and a stop leave it where
     /// it is, and nothing is pulled in by a load cell in doubt.
-    fn ease(&mut self) {
+    async fn ease(&mut self) {
         if self.turned && self.pulled_m > 0.0 {
             // What comes of it shows where the tendon is then.
-            let _ = self.put_back();
+            let _ = self.put_back().await;
         }
     }
 
     /// Pays the tendon out until its tension stays, and then by the longest jog, so that none of the free ones makes it pull.
-    fn slacken(&mut self) -> Result<(), TuneError> {
+    async fn slacken(&mut self) -> Result<(), TuneError<L::Error>> {
         for _ in 0..PAY_OUT_STEPS {
-            let report = self.jog(-STEP_M, self.plan.slow_v())?;
+            let report = self.jog(-STEP_M, self.plan.slow_v()).await?;
             if self.change_n(&report).abs() < SLACK_CHANGE_N {
-                self.jog(-self.plan.travel_m, self.plan.slow_v())?;
+                self.jog(-self.plan.travel_m, self.plan.slow_v()).await?;
                 return Ok(());
             }
         }
         Err(self.not_slack())
     }
 
-    fn not_slack(&self) -> TuneError {
+    fn not_slack(&self) -> TuneError<L::Error> {
         TuneError::undetermined(
             format!("tendon {} does not become slack", self.plan.motor),
             "disarm the leg, and see that nothing pulls at it; pay the tendon out with `leg jog` and a negative travel",
         )
     }
 
-    fn free(&mut self) -> Result<(), TuneError> {
+    async fn free(&mut self) -> Result<(), TuneError<L::Error>> {
         for voltage_v in self.plan.free_v().collect::<Vec<_>>() {
             let travel_m = self.plan.travel_m(voltage_v);
             for travel_m in [travel_m, -travel_m] {
-                let report = self.jog(travel_m, voltage_v)?;
+                let report = self.jog(travel_m, voltage_v).await?;
                 if report.end != JogEnd::Arrived {
                     return Err(self.not_slack());
                 }
@@ -268,12 +265,12 @@ impl Jogs<'_> {
         Ok(())
     }
 
-    fn loaded(&mut self) -> Result<(), TuneError> {
-        self.reel_in()?;
+    async fn loaded(&mut self) -> Result<(), TuneError<L::Error>> {
+        self.reel_in().await?;
         for _ in 0..LOADED_TIMES {
             for voltage_v in [self.plan.loaded_v, self.plan.voltages_v[0]] {
                 for travel_m in [LOADED_TRAVEL_M, -LOADED_TRAVEL_M] {
-                    let report = self.jog(travel_m, voltage_v)?;
+                    let report = self.jog(travel_m, voltage_v).await?;
                     self.keep(&report, true);
                 }
             }
@@ -282,11 +279,11 @@ impl Jogs<'_> {
     }
 
     /// Reels in until the tendon pulls.
-    fn reel_in(&mut self) -> Result<(), TuneError> {
+    async fn reel_in(&mut self) -> Result<(), TuneError<L::Error>> {
         let free = self.all.iter().map(|jogged| jogged.tension_n);
         let slack_n = free.sum::<f64>() / self.all.len().max(1) as f64;
         while self.pulled_m + STEP_M <= REEL_MAX_M {
-            let report = self.jog(STEP_M, self.plan.slow_v())?;
+            let report = self.jog(STEP_M, self.plan.slow_v()).await?;
             let pull_n = f64::from(self.own(&report.tensions_n[1])) - slack_n;
             if pull_n >= f64::from(LOADED_PART * self.plan.tension_max_n) {
                 return Ok(());
@@ -303,10 +300,10 @@ impl Jogs<'_> {
     }
 
     /// Turns back to where it began.
-    fn put_back(&mut self) -> Result<(), TuneError> {
+    async fn put_back(&mut self) -> Result<(), TuneError<L::Error>> {
         while self.pulled_m.abs() > TRAVEL_MIN_M {
             let travel_m = (-self.pulled_m).clamp(-JOG_TRAVEL_MAX_M, JOG_TRAVEL_MAX_M);
-            let report = self.jog(travel_m, self.plan.slow_v())?;
+            let report = self.jog(travel_m, self.plan.slow_v()).await?;
             if report.end != JogEnd::Arrived {
                 break;
             }
@@ -314,20 +311,24 @@ impl Jogs<'_> {
         Ok(())
     }
 
-    fn jog(&mut self, travel_m: f32, voltage_v: f32) -> Result<JogReport<f32>, TuneError> {
+    async fn jog(
+        &mut self,
+        travel_m: f32,
+        voltage_v: f32,
+    ) -> Result<JogReport<f32>, TuneError<L::Error>> {
         let demand = JogDemand {
             motor: self.plan.motor,
             travel_m,
             voltage_v,
         };
         self.turned = false;
-        let (report, telemetry) = self.operator.jog(&demand)?;
+        let (report, telemetry) = self.leg.jog(&demand).await?;
         let asked = "jog a motor";
         if telemetry.faults.without_limits().any() {
-            return Err(OperatorError::Failed(asked, Box::new(telemetry)).into());
+            return Err(L::Error::faulted(asked, &telemetry).into());
         }
         if report.end == JogEnd::CutOff {
-            return Err(OperatorError::StoppedByOtherHost(asked, telemetry.state).into());
+            return Err(L::Error::stopped(asked, telemetry.state).into());
         }
         self.pulled_m += self.own(&report.pulled_m);
         self.turned = matches!(report.end, JogEnd::Arrived | JogEnd::Tension(_));
