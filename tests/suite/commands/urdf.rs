@@ -36,7 +36,7 @@ fn robot(rig: &RigFile, payload_kg: f64, pose: [f64; 2], body: Option<Body>) -> 
     let text = String::from_utf8(text).unwrap();
     let tilts_rad = ["tilt_x", "tilt_y"].map(|joint| {
         let (_, after) = text.rsplit_once(&format!("{joint} = ")).unwrap();
-        let digits = after.split([',', ' ']).next().unwrap();
+        let digits = after.split([',', ' ', '\n']).next().unwrap();
         digits.trim_end_matches('.').parse().unwrap()
     });
     (robot, tilts_rad)
