@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::Path;
 use std::process::Command;
+use std::time::UNIX_EPOCH;
 use std::{env, fs};
 
 /// Before and after a table of the page.
@@ -84,6 +85,7 @@ fn leg(arguments: &[&str], directory: &Path) {
 #[test]
 fn python_reads_every_channel_by_its_own_schema_and_the_layout_shows_what_is_there() {
     let directory = tempfile::tempdir().unwrap();
+    let begin_s = UNIX_EPOCH.elapsed().unwrap().as_secs_f64();
     let plots = ["--plots", "plots"];
     let run = [
         "run",
@@ -123,6 +125,9 @@ fn python_reads_every_channel_by_its_own_schema_and_the_layout_shows_what_is_the
         let exact = ["/settings", "/ticks"];
         for (topic, channel) in channels {
             assert!(channel["count"].as_u64().unwrap() > 0, "{topic}");
+            // By the clock of this machine, simulated legs, too; it may be set meanwhile.
+            let since_s = channel["begin_s"].as_f64().unwrap() - begin_s;
+            assert!((-1.0..600.0).contains(&since_s), "{topic}: {since_s} s");
             let encoding = if exact.contains(&topic.as_str()) {
                 "postcard"
             } else {
