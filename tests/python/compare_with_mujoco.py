@@ -130,21 +130,38 @@ def free_response(model, force_n):
 
 
 def controlled(model, controls_m):
-    """The tip at rest after motors have reeled in, where they are after each time constant of the first, and the counts."""
+    """The tip at rest after motors have reeled in, where they are after each time constant of the first, and the counts at rest."""
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key("held").id)
     data.ctrl[:] = controls_m
     model.dof_damping[:] *= SETTLE_DAMPING
+    per_m = model.numeric("counts_per_m").data
     time_s = model.actuator_dynprm[0, 0]
     reeled_m = []
-    while data.time < FREE_SPAN_S:
+    apart = 0.0
+    while data.time < FREE_SPAN_S or np.abs(data.qvel).max() > SETTLED_RAD_PER_S:
+        counts = per_m * data.act
         mujoco.mj_step(model, data)
+        # What the sensors say is of the begin of the step.
+        apart = max(apart, np.abs(counts_by_sensors(model, data) - counts).max())
         if data.time >= (len(reeled_m) + 1) * time_s - 0.5 * model.opt.timestep and len(reeled_m) < 3:
             reeled_m.append(data.act.tolist())
-    while np.abs(data.qvel).max() > SETTLED_RAD_PER_S:
-        mujoco.mj_step(model, data)
-    counts = (model.numeric("counts_per_m").data * data.act).tolist()
-    return {"tip_m": data.site("tip").xpos.tolist(), "servo_time_s": time_s, "reeled_m": reeled_m, "counts": counts}
+    return {
+        "tip_m": data.site("tip").xpos.tolist(),
+        "tensions_n": [data.sensor(f"tension_{i}").data[0] for i in (1, 2, 3)],
+        "servo_time_s": time_s,
+        "reeled_m": reeled_m,
+        "counts": counts_by_sensors(model, data).tolist(),
+        "counts_apart": apart,
+    }
+
+
+def counts_by_sensors(model, data):
+    """The encoders' counts, by the formula of the file's comment."""
+    sensor = {name: np.array([data.sensor(f"{name}_{i}").data[0] for i in (1, 2, 3)]) for name in ("length", "rate", "tension")}
+    number = lambda name: model.numeric(name).data
+    pull_n = sensor["tension"] - number("damping_n_s_per_m") * sensor["rate"]
+    return number("counts_per_m") * (number("unstretched_m") - sensor["length"] + pull_n / number("stiffness_n_per_m"))
 
 
 def standing(model, span_s):

@@ -10,8 +10,7 @@ import sys
 from pathlib import Path
 
 from jsonschema import Draft202012Validator
-from mcap.exceptions import EndOfFile
-from mcap.reader import NonSeekingReader, make_reader
+from mcap.reader import make_reader
 
 
 def answer(job):
@@ -22,7 +21,8 @@ def answer(job):
         reader = make_reader(file)
         metadata = {entry.name: entry.metadata for entry in reader.iter_metadata()}
         for schema, channel, message in reader.iter_messages():
-            found = channels.setdefault(channel.topic, {"count": 0, "encoding": channel.message_encoding})
+            first_s = message.log_time / 1e9
+            found = channels.setdefault(channel.topic, {"count": 0, "encoding": channel.message_encoding, "begin_s": first_s})
             found["count"] += 1
             if channel.message_encoding != "json":
                 continue
@@ -42,15 +42,10 @@ def answer(job):
 
 
 def unfinished(path):
-    """The times of the reports up to where the file ends."""
-    times_s = []
+    """The times of the reports, as the package reads any file."""
     with Path(path).open("rb") as file:
-        try:
-            for _, _, message in NonSeekingReader(file).iter_messages(topics=["/leg"], log_time_order=False):
-                times_s.append(json.loads(message.data)["time_s"])
-        except EndOfFile:
-            return times_s
-    sys.exit(f"{path} has an end")
+        messages = make_reader(file).iter_messages(topics=["/leg"], log_time_order=False)
+        return [json.loads(message.data)["time_s"] for _, _, message in messages]
 
 
 def layout_paths(part):

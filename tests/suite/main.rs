@@ -121,8 +121,15 @@ mod commands {
     mod broken_ends;
     mod golden;
     mod json_entries;
-    mod mjcf;
     mod supports;
-    mod urdf;
     mod written_whole;
+}
+
+/// Other programs read what this one writes: they need Python, and run by
+/// `cargo test --test suite -- --ignored other_programs`.
+mod other_programs {
+    mod mjcf;
+    mod protocol_client;
+    mod recordings;
+    mod urdf;
 }

@@ -1,6 +1,7 @@
 //! Charts of what a board's recorder kept.
 
 use crate::time_charts::{self, TimeChart};
+use leg_base::description;
 use leg_base::recorder_rows::RecorderRow;
 use leg_base::tick_time::tick_s;
 use leg_firmware::settings::RecordedSignal;
@@ -106,7 +107,7 @@ pub fn save(
 ) -> Result<Vec<PathBuf>, PlotError> {
     let at = |row: &RecorderRow| {
         let ticks = row.since_fault().map_or(row.tick.into(), f64::from);
-        (ticks * tick_s(), row.state())
+        (ticks * tick_s(), row.state().map(description::state))
     };
     // A change of one tick is what a recorder is for: none is left out.
     time_charts::save(&CHARTS, title, rows, rows.len(), at, directory)

@@ -1,14 +1,16 @@
 //! The charts of a simulation: the tip, the tensions and the stiffness over time; and those of a leg's telemetry.
 
-use crate::time_charts::{self, POINTS_MAX, TimeChart};
+use crate::time_charts::{self, POINTS_MAX, TimeChart, phase};
+use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
 use leg_model_tools::plot::PlotError;
 use leg_sim::simulation::Sample;
 use std::path::{Path, PathBuf};
 
-/// What has a meaning once the leg knows its zero.
+/// What has a meaning once the leg knows its zero, and has looked where it is.
 fn once_homed(sample: &Sample, value: f64) -> Option<f64> {
-    sample.telemetry.homed.then_some(value)
+    let known = sample.telemetry.homed && sample.telemetry.state != State::Boot;
+    known.then_some(value)
 }
 
 /// A stiffness: there is none before the first target.
@@ -170,7 +172,7 @@ pub fn save(title: &str, samples: &[Sample], directory: &Path) -> Result<Vec<Pat
         title,
         samples,
         POINTS_MAX,
-        |sample| (sample.time_s, Some(sample.telemetry.state)),
+        |sample| (sample.time_s, Some(phase(&sample.telemetry))),
         directory,
     )
 }
@@ -184,6 +186,6 @@ pub fn save_log(
     reports: &[Report],
     directory: &Path,
 ) -> Result<Vec<PathBuf>, PlotError> {
-    let at = |(time_s, report): &Report| (*time_s, Some(report.state));
+    let at = |(time_s, report): &Report| (*time_s, Some(phase(report)));
     time_charts::save(&LOG, title, reports, POINTS_MAX, at, directory)
 }

@@ -1,7 +1,8 @@
-//! Charts of quantities over time, from one list of samples, over the states of the leg.
+//! Charts of quantities over time, from one list of samples, over the phases of the leg.
 
 use leg_base::description;
 use leg_firmware::supervisor::State;
+use leg_firmware::telemetry::Telemetry;
 use leg_model_tools::plot::{self, Chart, ChartLine, PlotError, Span};
 use std::path::{Path, PathBuf};
 
@@ -22,14 +23,14 @@ pub(crate) struct TimeChart<S: 'static> {
 pub(crate) const POINTS_MAX: usize = 1600;
 
 /// Draws charts, each as SVG, PNG and PDF, and names the SVG files; one of which nothing is known is left out, unless that is all of them.
-/// `title` is that of the run, `at` gives time, s, and state of a sample, if that is known. Of more samples than `points_max`
-/// some are left out evenly.
+/// `title` is that of the run, `at` gives time, s, and phase of a sample, if that is known: a state in words, or [`phase`]. Of more
+/// samples than `points_max` some are left out evenly.
 pub(crate) fn save<S>(
     charts: &[TimeChart<S>],
     title: &str,
     samples: &[S],
     points_max: usize,
-    at: fn(&S) -> (f64, Option<State>),
+    at: fn(&S) -> (f64, Option<&'static str>),
     directory: &Path,
 ) -> Result<Vec<PathBuf>, PlotError> {
     let line = |&(label, quantity): &Curve<S>| ChartLine {
@@ -41,7 +42,7 @@ pub(crate) fn save<S>(
             .collect(),
         marks: Vec::new(),
     };
-    let spans = states(samples.iter().map(at));
+    let spans = phases(samples.iter().map(at));
     let fill = |chart: &TimeChart<S>| {
         let lines = chart.curves.iter().map(line);
         let filled = Chart {
@@ -64,12 +65,20 @@ pub(crate) fn save<S>(
     drawn.iter().map(save).collect()
 }
 
-/// The spans of time in which a leg is in one state.
-fn states(samples: impl Iterator<Item = (f64, Option<State>)>) -> Vec<Span> {
+/// The state of a leg in words; where it follows commands, whether it moves or is at rest.
+pub(crate) const fn phase(report: &Telemetry<f32>) -> &'static str {
+    match (report.state, report.moving) {
+        (State::Active, true) => "moving",
+        (State::Active, false) => "at rest",
+        (state, _) => description::state(state),
+    }
+}
+
+/// The spans of time in which a leg is in one phase.
+fn phases(samples: impl Iterator<Item = (f64, Option<&'static str>)>) -> Vec<Span> {
     let mut spans: Vec<Span> = Vec::new();
-    for (time_s, state) in samples {
-        let Some(state) = state else { continue };
-        let label = description::state(state);
+    for (time_s, phase) in samples {
+        let Some(label) = phase else { continue };
         if let Some(last) = spans.last_mut() {
             last.x.end = time_s;
         }

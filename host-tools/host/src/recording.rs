@@ -3,6 +3,7 @@
 mod csv_file;
 mod error;
 mod mcap_bytes;
+mod mcap_file;
 
 #[cfg(test)]
 mod tests;
@@ -18,11 +19,10 @@ use leg_base::recorder_rows::RecorderRow;
 use leg_base::tick_time::{seconds, tick_s};
 use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
-use leg_recording::{McapWriter, REPLAY_HELP, SAMPLES_HELP};
+use leg_recording::{REPLAY_HELP, SAMPLES_HELP};
 use leg_sim::simulation::{SAMPLE_TICKS, Tick};
+use mcap_file::McapFile;
 use std::ffi::OsStr;
-use std::fs::File;
-use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 /// Ticks of a simulation between two rows of a table: a row a millisecond.
@@ -42,7 +42,7 @@ pub struct Recording {
 }
 
 enum RecordingFile {
-    Mcap(Box<McapWriter<BufWriter<File>>>),
+    Mcap(Box<McapFile>),
     Csv(Box<CsvFile>),
 }
 
@@ -62,9 +62,10 @@ impl Recording {
     pub fn take_tick(&mut self, tick: &Tick<'_>) -> Result<(), RecordingError> {
         match &mut self.file {
             RecordingFile::Mcap(file) => {
-                file.write_tick(self.count, tick)?;
+                file.writer.write_tick(self.count, tick)?;
                 if self.count.is_multiple_of(SAMPLE_TICKS) {
-                    file.write_simulation(self.count, &simulation(&self.leg, tick))?;
+                    let writer = &mut file.writer;
+                    writer.write_simulation(self.count, &simulation(&self.leg, tick))?;
                 }
             }
             RecordingFile::Csv(file) if self.count.is_multiple_of(ROW_TICKS) => {
@@ -88,8 +89,8 @@ impl Recording {
         let report = report.received(wall_time_s.unwrap_or(f64::NAN), damaged_frames);
         match &mut self.file {
             RecordingFile::Mcap(file) => {
-                let time_ns = (wall_time_s.unwrap_or(time_s) * 1e9).round() as u64;
-                file.write_report(self.count, time_ns, &report)?;
+                let time_ns = file.time_ns(wall_time_s, time_s);
+                file.writer.write_report(self.count, time_ns, &report)?;
             }
             RecordingFile::Csv(file) => file.write_report(&report)?,
         }
@@ -105,8 +106,8 @@ impl Recording {
         let time_s = seconds(row.tick.into());
         match &mut self.file {
             RecordingFile::Mcap(file) => {
-                let time_ns = (wall_time_s.unwrap_or(time_s) * 1e9).round() as u64;
-                file.write_recorder_row(self.count, time_ns, row)?;
+                let time_ns = file.time_ns(wall_time_s, time_s);
+                file.writer.write_recorder_row(self.count, time_ns, row)?;
             }
             RecordingFile::Csv(file) => file.write_recorder_row(row)?,
         }
@@ -116,23 +117,21 @@ impl Recording {
     /// Counts it, and lets the system have what is older than a second: a program that is killed loses no more.
     fn taken(&mut self, time_s: f64) -> Result<(), RecordingError> {
         self.count += 1;
+        let full = matches!(&self.file, RecordingFile::Mcap(file) if file.full());
         // The leg's time may begin again.
-        if (0.0..FLUSH_S).contains(&(time_s - self.flushed_s)) {
+        if !full && (0.0..FLUSH_S).contains(&(time_s - self.flushed_s)) {
             return Ok(());
         }
         self.flushed_s = time_s;
         match &mut self.file {
-            RecordingFile::Mcap(file) => Ok(file.flush()?),
+            RecordingFile::Mcap(file) => file.flush(),
             RecordingFile::Csv(file) => file.flush(),
         }
     }
 
     fn finish(self) -> Result<(), RecordingError> {
         match self.file {
-            RecordingFile::Mcap(file) => {
-                file.finish()?;
-                Ok(())
-            }
+            RecordingFile::Mcap(file) => file.finish(),
             RecordingFile::Csv(mut file) => file.flush(),
         }
     }
@@ -171,7 +170,7 @@ pub fn record<T>(
         let file = if extension == "csv" {
             RecordingFile::Csv(Box::new(CsvFile::new(new)))
         } else {
-            RecordingFile::Mcap(Box::new(mcap(new, about, settings)?))
+            RecordingFile::Mcap(Box::new(McapFile::new(new, about, settings)?))
         };
         let mut recording = Recording {
             file,
@@ -192,15 +191,6 @@ pub fn record<T>(
         Err(error @ RecordingError::File(_)) => Err(error.failure(file, part.keep().ok())),
         Err(error) => Err(error.failure(file, None)),
     }
-}
-
-/// A new MCAP file.
-fn mcap(
-    file: File,
-    about: &About,
-    settings: &Settings,
-) -> Result<McapWriter<BufWriter<File>>, RecordingError> {
-    Ok(McapWriter::new(BufWriter::new(file), about, settings)?)
 }
 
 /// Reads a recording, as far as it goes.

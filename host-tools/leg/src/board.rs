@@ -44,14 +44,13 @@ impl Emulation {
     }
 }
 
-/// `leg setup`: what QEMU needs, and the interpreter of the comparison with MuJoCo.
+/// `leg setup`: what QEMU needs.
 pub(crate) fn setup(options: Options) -> Result<(), Failure> {
     let [emulator, firmware] = &prepare()?;
-    let python = &setup::ensure_python(&mut report).map_err(Failure::from_error)?;
-    let json = json_object! { emulator: emulator, firmware: firmware, python: python };
+    let json = json_object! { emulator: emulator, firmware: firmware };
     options.report(&json, || {
-        let [emulator, firmware, python] = [emulator, firmware, python].map(|path| path.display());
-        format!("emulator: {emulator}\nfirmware: {firmware}\npython:   {python}\nAll is set up.\n")
+        let [emulator, firmware] = [emulator, firmware].map(|path| path.display());
+        format!("emulator: {emulator}\nfirmware: {firmware}\nAll is set up.\n")
     })
 }
 

@@ -5,10 +5,11 @@ use crate::output::{load_rig, write};
 use clap::value_parser;
 use leg_base::failure::Failure;
 use leg_model::{Quantity, Query};
-use leg_model_tools::leg_shape::Body;
+use leg_model_tools::leg_shape::{Body, ShapeError};
 use leg_model_tools::line_error::LineError;
 use leg_model_tools::mjcf::{HeldLeg, Mjcf, MjcfError};
 use leg_model_tools::urdf::Urdf;
+use leg_rig::rig_file::RigFile;
 use std::path::PathBuf;
 
 /// Writes the rig for another program.
@@ -82,25 +83,22 @@ struct MjcfArgs {
 #[derive(Debug, clap::Args)]
 struct Several {
     /// Legs around a body, 2 to 12; one leg without a body if left out.
-    #[arg(long, value_name = "N", requires_all = ["radius_m", "body_kg"], value_parser = value_parser!(u32).range(2..=12))]
+    #[arg(long, value_name = "N", requires = "radius_m", value_parser = value_parser!(u32).range(2..=12))]
     legs: Option<u32>,
     /// From the body's centre to the legs' joint centres, m, 0.01 to 10.
     #[arg(long, value_name = "M", requires = "legs", value_parser = radius_m)]
     radius_m: Option<f64>,
-    /// Mass of the body without its legs, kg, 0.001 to 1000.
+    /// Mass of the body without its legs, kg, 0.001 to 1000; that of its legs together, without payloads, if left out.
     #[arg(long, value_name = "KG", requires = "legs", value_parser = body_kg)]
     body_kg: Option<f64>,
 }
 
 impl Several {
-    fn body(&self) -> Option<Body> {
-        let given = self.legs.zip(self.radius_m).zip(self.body_kg)?;
-        let ((legs, radius_m), mass_kg) = given;
-        Some(Body {
-            legs,
-            radius_m,
-            mass_kg,
-        })
+    fn body(&self, rig: &RigFile) -> Result<Option<Body>, ShapeError> {
+        let around = self.legs.zip(self.radius_m);
+        around
+            .map(|(legs, radius_m)| Body::new(rig, legs, radius_m, self.body_kg))
+            .transpose()
     }
 }
 
@@ -114,8 +112,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 fn write_urdf(args: &UrdfArgs) -> Result<(), Failure> {
     let rig = load_rig(args.rig.as_deref())?;
     let pose = [args.azimuth_deg, args.tilt_deg];
-    let robot =
-        Urdf::new(&rig, args.payload_kg, pose, args.several.body()).map_err(Failure::from_error)?;
+    let several = args.several.body(&rig).map_err(Failure::from_error)?;
+    let robot = Urdf::new(&rig, args.payload_kg, pose, several).map_err(Failure::from_error)?;
     let mut text = Vec::new();
     let written = robot.write(&mut text);
     written.map_err(Failure::from_error)?;
@@ -129,8 +127,9 @@ fn write_mjcf(args: &MjcfArgs) -> Result<(), Failure> {
         pretension_n: args.pretension_n.unwrap_or(rig.pretension_n),
         ..query
     };
+    let several = args.several.body(&rig).map_err(Failure::from_error)?;
     let model = HeldLeg::new(&rig, &query)
-        .and_then(|leg| Mjcf::new(&leg, args.several.body()))
+        .and_then(|leg| Mjcf::new(&leg, several))
         .map_err(|error| refused(&error))?;
     let mut text = Vec::new();
     let written = model.write(&mut text);

@@ -127,7 +127,7 @@ enum Command {
     Scope(scope::Args),
     Sensors(sensors::Args),
     Settings(settings::Args),
-    /// Installs what the other commands and the tests need: the Rust target, QEMU, the firmware built for it, and Python.
+    /// Installs what the other commands and the tests need: the Rust target, QEMU, and the firmware built for it.
     ///
     /// The other commands do the same on their first use, as far as they need it.
     Setup,

@@ -5,13 +5,13 @@ mod counter;
 use crate::connection::{LegArgs, Purpose};
 use crate::numbers::{positive, seconds};
 use crate::options::Options;
-use crate::output::{note_unfinished, wall_time_s};
+use crate::output::{about_now, note_unfinished, wall_time_s};
 use crate::progress;
 use counter::{Counter, Restarted};
 use leg_base::failure::Failure;
 use leg_firmware::sensors::TICK_HZ;
 use leg_host::operator::{Operator, OperatorError};
-use leg_host::recording::{self, About, Recording, RecordingError};
+use leg_host::recording::{self, Recording, RecordingError};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -60,7 +60,7 @@ fn rate(text: &str) -> Result<u16, String> {
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let mut operator = args.leg.open(Purpose::Use, options)?.operator;
     note_unfinished(&args.out);
-    let about = About::log(operator.name());
+    let about = about_now(operator.name());
     let settings = operator.settings()?;
     let (recorded, ended) = recording::record(&args.out, &about, &settings, |file| {
         let mut counter = Counter::new(args.every_ticks);

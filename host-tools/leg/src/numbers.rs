@@ -51,6 +51,11 @@ pub(crate) fn body_kg(text: &str) -> Result<f64, String> {
     in_range(text, 0.001..=1e3, " kg")
 }
 
+/// A time of the day, s since 1970: in a recording it is an integer of ns, of 64 bits.
+pub(crate) fn unix_s(text: &str) -> Result<f64, String> {
+    in_range(text, 0.0..=1.8e10, " s")
+}
+
 /// Telemetry of `leg monitor` per second, Hz.
 pub(crate) fn monitor_rate_hz(text: &str) -> Result<f64, String> {
     in_range(text, 0.1..=100.0, " Hz")

@@ -7,7 +7,7 @@ use leg_base::json_line::to_line;
 use leg_base::json_object;
 use leg_base::paths::relative_path;
 use leg_host::operator::Operator;
-use leg_host::recording;
+use leg_host::recording::{self, About};
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::{RigFile, RigText};
 use std::error::Error;
@@ -172,9 +172,21 @@ fn failure_line(failure: &Failure) -> String {
 
 /// The time of the day, s since 1970; none beside a leg whose time is emulated.
 pub(crate) fn wall_time_s(operator: &Operator) -> Option<f64> {
+    (!operator.clock_is_emulated()).then(now_s)
+}
+
+/// The time of the day, s since 1970.
+fn now_s() -> f64 {
     let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
-    let known = since.ok().filter(|_| !operator.clock_is_emulated());
-    known.map(|since| since.as_secs_f64())
+    since.map_or(0.0, |since| since.as_secs_f64())
+}
+
+/// What a recording that begins now is of; its begin is in whole milliseconds, so that it is short in words.
+pub(crate) fn about_now(title: &str) -> About {
+    About {
+        begin_wall_time_s: (now_s() * 1e3).floor() / 1e3,
+        ..About::log(title)
+    }
 }
 
 #[cfg(test)]

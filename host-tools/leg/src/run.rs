@@ -5,8 +5,9 @@ mod report;
 mod resources;
 
 use crate::board::Emulation;
+use crate::numbers::unix_s;
 use crate::options::Options;
-use crate::output::{load_rig, not_saved, note, note_unfinished};
+use crate::output::{about_now, load_rig, not_saved, note, note_unfinished};
 use crate::progress;
 use leg_base::failure::Failure;
 use leg_bench::run_charts;
@@ -38,6 +39,10 @@ pub(crate) struct Args {
     /// Records every tick: FILE.mcap for Foxglove, PlotJuggler and `leg replay`, or FILE.csv.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
+    /// The time of the day at which the recording begins, s since 1970; now if left out. With the same one the same run gives the
+    /// same messages.
+    #[arg(long, value_name = "S", requires = "record", value_parser = unix_s)]
+    begin_wall_time_s: Option<f64>,
     /// The directory for the charts; target/leg-run in the workspace if left out.
     #[arg(long, value_name = "DIR")]
     plots: Option<PathBuf>,
@@ -137,11 +142,13 @@ fn simulate(
 
 fn description(args: &Args, scenario: &Scenario) -> About {
     let rig = args.rig.as_ref().map(|rig| rig.display().to_string());
+    let now = about_now(&scenario.title);
     About {
+        begin_wall_time_s: args.begin_wall_time_s.unwrap_or(now.begin_wall_time_s),
         scenario: Some(args.scenario.display().to_string()),
         rig: Some(rig.unwrap_or_else(|| scenario.rig.clone())),
         seed: Some(scenario.seed),
-        ..About::log(&scenario.title)
+        ..now
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::connection::{LegArgs, Purpose};
 use crate::options::Options;
-use crate::output::{chart_line, not_saved, wall_time_s};
+use crate::output::{about_now, chart_line, not_saved, wall_time_s};
 use leg_base::description::faults;
 use leg_base::failure::Failure;
 use leg_base::json_object;
@@ -36,7 +36,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     }
     let mut operator = args.leg.open(Purpose::Use, options)?.operator;
     let scope = operator.scope()?;
-    let about = About::log(&title(&operator, &scope));
+    let about = about_now(&title(&operator, &scope));
     if let Some(file) = &args.out {
         let tick = operator.telemetry()?.telemetry.tick;
         let now = wall_time_s(&operator).map(|now_s| (tick, now_s));

@@ -2,13 +2,15 @@
 
 use crate::connection::{ConnectionArgs, Purpose};
 use crate::options::Options;
-use crate::output::{load_rig, print, write};
+use crate::output::{load_rig, note, print, write};
 use clap::Subcommand;
 use leg_base::failure::Failure;
 use leg_base::json_line::to_line;
 use leg_base::json_object;
+use leg_base::tick_time::seconds;
 use leg_firmware::host_link::ResetCause;
-use leg_firmware::settings::Settings;
+use leg_firmware::recorder::TRIPLES_MAX;
+use leg_firmware::settings::{Settings, SignalSet};
 use leg_host::operator::{Operator, SettingDifference, setting_differences};
 use leg_rig::control_settings;
 use leg_rig::rig_file::RigFile;
@@ -104,6 +106,19 @@ fn get(operator: &mut Operator, out: Option<&Path>, options: Options) -> Result<
     write(out, &text)
 }
 
+/// What to know of a recorder with so many signals that it keeps them for less time than the default ones.
+fn short_recording(recorded: SignalSet) -> Option<String> {
+    let kept_ms = |signals: usize| {
+        let rows = TRIPLES_MAX.checked_div(signals)?;
+        Some(1000.0 * seconds(rows as u64))
+    };
+    let (signals, usual) = (recorded.len(), SignalSet::default().len());
+    let (short_ms, usual_ms) = kept_ms(signals).zip(kept_ms(usual))?;
+    (signals > usual).then(|| {
+        format!("leg: the board's recorder keeps {signals} signals for {short_ms:.0} ms, {usual} for {usual_ms:.0} ms")
+    })
+}
+
 fn kept_text(kept: bool) -> &'static str {
     if kept {
         "kept over a reset\n"
@@ -122,6 +137,9 @@ fn set(
     if !options.json {
         // Printed before the settings are kept, which may fail.
         print("set, read back and found the same\n")?;
+    }
+    if let Some(short) = short_recording(settings.recorded) {
+        note(&short);
     }
     let kept = if save { Some(keep(operator)?) } else { None };
     let next = next_step(operator)?;
@@ -184,5 +202,20 @@ fn value_text(value: &Option<Value>) -> String {
             .as_f64()
             .map_or_else(|| number.to_string(), |value| number::exact(value as f32)),
         Some(value) => value.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::short_recording;
+    use leg_firmware::settings::{RECORDED_SIGNALS, SignalSet};
+
+    #[test]
+    fn more_signals_than_usual_are_kept_for_less_time_which_is_said() {
+        assert_eq!(short_recording(SignalSet::default()), None);
+        assert_eq!(short_recording(SignalSet::NONE), None);
+        let said = short_recording(SignalSet::new(&RECORDED_SIGNALS));
+        let expected = "leg: the board's recorder keeps 8 signals for 75 ms, 3 for 200 ms";
+        assert_eq!(said.as_deref(), Some(expected));
     }
 }

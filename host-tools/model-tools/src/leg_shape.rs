@@ -3,6 +3,7 @@
 use leg_rig::plant_settings::TRANSVERSE_INERTIA;
 use leg_rig::rig_file::RigFile;
 use std::f64::consts::PI;
+use std::fmt::{self, Display, Formatter};
 
 /// Density of the payload, kg/m³: steel.
 const PAYLOAD_DENSITY_KG_PER_M3: f64 = 7850.0;
@@ -18,6 +19,44 @@ pub struct Body {
     pub mass_kg: f64,
 }
 
+impl Body {
+    /// One of so many legs of a rig, with a mass of its own or with that of its legs together.
+    ///
+    /// # Errors
+    /// [`ShapeError::MasslessBody`]: it has none, and the rig's leg has none either.
+    pub fn new(
+        rig: &RigFile,
+        legs: u32,
+        radius_m: f64,
+        mass_kg: Option<f64>,
+    ) -> Result<Self, ShapeError> {
+        let of_legs = f64::from(legs) * rig.parameters.leg_mass_kg;
+        let mass_kg = mass_kg.unwrap_or(of_legs);
+        let body = Self {
+            legs,
+            radius_m,
+            mass_kg,
+        };
+        (mass_kg > 0.0)
+            .then_some(body)
+            .ok_or(ShapeError::MasslessBody)
+    }
+}
+
+impl Display for Body {
+    fn fmt(&self, to: &mut Formatter<'_>) -> fmt::Result {
+        let Self {
+            legs,
+            radius_m,
+            mass_kg,
+        } = self;
+        write!(
+            to,
+            "{legs} legs, their joint centres {radius_m} m from the centre of a body of {mass_kg} kg."
+        )
+    }
+}
+
 /// Why a leg is no body for other programs.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ShapeError {
@@ -26,6 +65,11 @@ pub enum ShapeError {
         "neither the leg nor the payload has a mass, and other programs move no body without: give a payload"
     )]
     Massless,
+    /// The mass of a body would be that of its legs, which have none.
+    #[error(
+        "the rig's leg has no mass, from which that of the body would follow: give the body's mass"
+    )]
+    MasslessBody,
     /// No body has these inertias: those about three axes keep the triangle's inequality.
     #[error(
         "no body of the leg's mass and centroid has {across_kg_m2:.2e} kg·m² across its axis at the centroid and {along_kg_m2:.2e} \

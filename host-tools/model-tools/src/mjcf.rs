@@ -16,6 +16,7 @@ pub use held::{HeldLeg, HeldTendon};
 use crate::leg_shape::{Body, ShapeError};
 use crate::line_error::LineError;
 use crate::xml_element::{self, Element};
+use actuators::COUNTS;
 use joints::Joints;
 use std::io::{self, Write};
 
@@ -115,9 +116,9 @@ impl Mjcf {
                 "sensor",
                 of_each(&|prefix| actuators::sensors(prefix)),
             ))
-            .child(actuators::counts(leg))
+            .child(actuators::encoders(leg))
             .child(keyframe(leg, &joints, several.as_ref()));
-        let comment = comment(leg);
+        let comment = comment(leg, several.as_ref());
         Ok(Self { root, comment })
     }
 
@@ -130,7 +131,8 @@ impl Mjcf {
     }
 }
 
-fn comment(leg: &HeldLeg) -> String {
+fn comment(leg: &HeldLeg, several: Option<&Body>) -> String {
+    let around = several.map_or_else(String::new, |body| format!("\n  {body} It floats."));
     let HeldLeg {
         azimuth_deg,
         tilt_deg,
@@ -140,9 +142,11 @@ fn comment(leg: &HeldLeg) -> String {
     } = leg;
     format!(
         " Key `held`: azimuth {azimuth_deg:.3} deg, tilt {tilt_deg:.3} deg, payload {payload_kg} kg, pretension {pretension_n} N.\n  \
-         Controls: how far each motor shall have reeled in from there, m; `counts_per_m` times an activation is an encoder's count.\n  \
+         Controls: how far each motor shall have reeled in from there, m; an activation is how far it has.\n  \
+         An encoder's count from there: `counts_per_m` times the activation, or of a taut tendon by sensors\n  \
+         {COUNTS}.\n  \
          Inertia and damping are those of the simulated leg; not from the rig file: the payload's inertia (a steel ball).\n  \
-         Joint and shaft do not stretch. "
+         Joint and shaft do not stretch.{around} "
     )
 }
 

@@ -24,6 +24,8 @@ const LEGEND_ROW: i32 = offset_px(36);
 /// A line's sample in the legend, and its label beside it.
 const SAMPLE: i32 = offset_px(40);
 const SAMPLE_LABEL: i32 = offset_px(52);
+/// Height of a shade's sample.
+const SHADE_HEIGHT: i32 = offset_px(24);
 const LINE: u32 = px(3);
 /// The two arms of a mark.
 const MARK_ARMS: [[(i32, i32); 2]; 2] = {
@@ -110,7 +112,7 @@ impl Painter for ChartPainter<'_> {
             draw_line(line, colour, &mut context)?;
         }
         spans::label(&chart.spans, &y, &mut context)?;
-        draw_legend(chart, &legend)
+        draw_legend(chart, &ranges[0], &legend)
     }
 }
 
@@ -149,7 +151,7 @@ fn draw_line<B: DrawingBackend>(
     Ok(())
 }
 
-fn draw_legend<B: DrawingBackend>(chart: &Chart, area: &Area<B>) -> Drawn<B> {
+fn draw_legend<B: DrawingBackend>(chart: &Chart, x: &Range<f64>, area: &Area<B>) -> Drawn<B> {
     let text = ("sans-serif", LABEL)
         .into_text_style(area)
         .pos(Pos::new(HPos::Left, VPos::Center));
@@ -171,8 +173,15 @@ fn draw_legend<B: DrawingBackend>(chart: &Chart, area: &Area<B>) -> Drawn<B> {
         area.draw(&Text::new(
             chart.marks_label.as_str(),
             (SAMPLE_LABEL, y),
-            text,
+            text.clone(),
         ))?;
+        y += LEGEND_ROW;
+    }
+    for (label, shade) in spans::seen(&chart.spans, x) {
+        let sample = [(0, y - SHADE_HEIGHT / 2), (SAMPLE, y + SHADE_HEIGHT / 2)];
+        area.draw(&Rectangle::new(sample, shade.filled()))?;
+        area.draw(&Text::new(label, (SAMPLE_LABEL, y), text.clone()))?;
+        y += LEGEND_ROW;
     }
     Ok(())
 }

@@ -73,7 +73,7 @@ impl Urdf {
         };
         Ok(Self {
             root,
-            comment: comment(pose)?,
+            comment: comment(pose, several.as_ref())?,
         })
     }
 
@@ -86,7 +86,10 @@ impl Urdf {
     }
 }
 
-fn comment([azimuth_deg, tilt_deg]: [f64; 2]) -> Result<String, Error> {
+fn comment([azimuth_deg, tilt_deg]: [f64; 2], several: Option<&Body>) -> Result<String, Error> {
+    let around = several.map_or_else(String::new, |body| {
+        format!("\n  {body}\n  No joint holds its link `body`: it floats where the simulator does not fix it.")
+    });
     let direction = Direction::from_angles(azimuth_deg.to_radians(), tilt_deg.to_radians())?;
     let along = direction.vector();
     // Adding zero turns −0 into 0.
@@ -94,7 +97,7 @@ fn comment([azimuth_deg, tilt_deg]: [f64; 2]) -> Result<String, Error> {
     Ok(format!(
         " The leg's inertia is that of the simulated leg; not from the rig file: the payload's (a steel ball).\n  \
          A leg that leans by t towards azimuth a has tilt_x = atan2(sin t sin a, cos t), tilt_y = -asin(sin t cos a);\n  \
-         at azimuth {azimuth_deg:.3} deg, tilt {tilt_deg:.3} deg: tilt_x = {x_rad:.9}, tilt_y = {y_rad:.9}. "
+         at azimuth {azimuth_deg:.3} deg, tilt {tilt_deg:.3} deg: tilt_x = {x_rad:.9}, tilt_y = {y_rad:.9}.{around} "
     ))
 }
 

@@ -24,11 +24,11 @@ const POINTS_MAX: usize = 1_000_000;
 
 /// A finite number.
 pub fn finite(name: &str, value: f64) -> PyResult<f64> {
-    within(name, value, f64::MIN, f64::MAX)
+    bounded(name, value, f64::MIN, f64::MAX)
 }
 
 /// A finite number in a range.
-pub fn within(name: &str, value: f64, low: f64, high: f64) -> PyResult<f64> {
+pub fn bounded(name: &str, value: f64, low: f64, high: f64) -> PyResult<f64> {
     if !value.is_finite() {
         let sentence = format!("{name} = {value} is not a finite number");
         return Err(PyValueError::new_err(sentence));
@@ -42,7 +42,7 @@ pub fn within(name: &str, value: f64, low: f64, high: f64) -> PyResult<f64> {
 
 /// A time to simulate, s.
 pub fn time_s(name: &str, value: f64) -> PyResult<f64> {
-    within(name, value, 0.0, LONGEST_S)
+    bounded(name, value, 0.0, LONGEST_S)
 }
 
 /// The tendon of a defect, from 1.
@@ -102,11 +102,11 @@ pub fn tensioning(
             ));
         }
         (Some(n), None) => Some(Tensioning::Pretension(
-            within("pretension_n", n, 0.0, 1e9)? as f32
+            bounded("pretension_n", n, 0.0, 1e9)? as f32,
         )),
         (None, Some(demand)) => {
-            let demand = within("stiffness_nm_per_rad", demand, 0.0, 1e9)?;
-            let azimuth = towards_deg.map(|deg| within("towards_deg", deg, -3600.0, 3600.0));
+            let demand = bounded("stiffness_nm_per_rad", demand, 0.0, 1e9)?;
+            let azimuth = towards_deg.map(|deg| bounded("towards_deg", deg, -3600.0, 3600.0));
             let towards = azimuth.transpose()?.map(angles::unit_vector);
             Some(Tensioning::Stiffness {
                 demand_nm_per_rad: demand as f32,
@@ -170,6 +170,14 @@ pub fn rig(argument: Option<&Bound<'_, PyAny>>) -> PyResult<Option<RigFile>> {
         return Ok(Some(rig.get().file));
     }
     Ok(Some(Rig::load(Some(&path_of("rig", argument)?))?.file))
+}
+
+/// The same; the paper's rig where none is given.
+pub fn rig_or_default(argument: Option<&Bound<'_, PyAny>>) -> PyResult<RigFile> {
+    match rig(argument)? {
+        Some(rig) => Ok(rig),
+        None => Ok(Rig::load(None)?.file),
+    }
 }
 
 /// Numbers in the order of an array, and its shape.

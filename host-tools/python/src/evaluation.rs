@@ -18,7 +18,7 @@ pub enum Argument {
 }
 
 impl Argument {
-    fn at(&self, pose: usize) -> f64 {
+    fn value(&self, pose: usize) -> f64 {
         match self {
             Self::One(value) => *value,
             Self::Each(values) => values.get(pose).copied().unwrap_or(f64::NAN),
@@ -108,7 +108,7 @@ impl Poses {
         let mut failed = Vec::new();
         for pose in first..self.count.min(first + CHUNK) {
             for varying in &self.varying {
-                (varying.put)(&mut query, varying.argument.at(pose));
+                (varying.put)(&mut query, varying.argument.value(pose));
             }
             let rows = arrays.iter_mut().zip(&self.outputs).map(|(array, output)| {
                 let begin = (pose - first) * width(output);

@@ -1,39 +1,32 @@
 //! The class `Leg`: a leg on a serial port, or emulated in this process, commanded as by the command line.
 
-use crate::arguments::{self, tensioning, within};
-use crate::errors::{leg_error, leg_failure};
-use crate::operator_thread::{LegFailure, OperatorThread, Place};
+mod access;
+mod calibration;
+mod settings;
+
+use crate::arguments::{self, bounded, tensioning};
+use crate::errors::leg_error;
+use crate::operator_thread::{OperatorThread, Place};
 use crate::rig::Rig;
 use crate::scope;
 use crate::telemetry;
+use calibration::Keep;
 use leg_base::angles;
 use leg_firmware::can::LegAddress;
-use leg_firmware::settings::Settings;
 use leg_firmware::telemetry::Telemetry;
-use leg_host::calibration::{KnownWeight, fit, mean_code, require_drivers_off, too_few_weights};
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{Goal, Operator, OperatorError, setting_differences};
 use leg_host::sensor_report;
 use leg_host::signals::{LegConstants, Report};
-use leg_rig::{control_settings, settings_text};
+use leg_rig::settings_text;
 use leg_sim::action::Action;
 use leg_sim::emulated_leg::InitialState;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde_json::json;
-use std::sync::{Mutex, MutexGuard, OnceLock, TryLockError};
-use std::thread;
+use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, SystemTime};
-
-/// How long it takes until a thread that uses the leg is told again that another one stops it.
-const TOLD_AGAIN: Duration = Duration::from_millis(1);
-
-/// How a call has the leg for its thread alone.
-type Lock = for<'leg> fn(
-    &'leg Leg,
-    &mut Option<PyErr>,
-) -> PyResult<MutexGuard<'leg, Option<OperatorThread>>>;
 
 /// See `_native.pyi`.
 #[pyclass(frozen, module = "tendon_leg")]
@@ -46,111 +39,6 @@ pub struct Leg {
 }
 
 impl Leg {
-    fn opened(py: Python<'_>, place: Place) -> PyResult<Self> {
-        let cancel = CancelFlag::default();
-        let mut signal = None;
-        let thread =
-            py.detach(|| OperatorThread::open(place, &cancel, || interrupted(&mut signal)));
-        if let Some(signal) = signal {
-            return Err(signal);
-        }
-        let leg = Self {
-            thread: Mutex::new(Some(thread.map_err(leg_failure)?)),
-            cancel,
-            constants: OnceLock::new(),
-        };
-        let settings = leg.ask(py, Operator::settings)?;
-        leg.constants.get_or_init(|| LegConstants::new(&settings));
-        Ok(leg)
-    }
-
-    /// The leg for this thread alone.
-    fn thread(&self) -> PyResult<MutexGuard<'_, Option<OperatorThread>>> {
-        self.free_thread()?.ok_or_else(|| {
-            leg_error(
-                "another thread uses this leg; stop() is the only call that does not wait for it",
-            )
-        })
-    }
-
-    /// The same; none while another thread has it.
-    fn free_thread(&self) -> PyResult<Option<MutexGuard<'_, Option<OperatorThread>>>> {
-        match self.thread.try_lock() {
-            Ok(thread) => Ok(Some(thread)),
-            Err(TryLockError::WouldBlock) => Ok(None),
-            Err(TryLockError::Poisoned(_)) => Err(leg_error("this leg is lost; open it again")),
-        }
-    }
-
-    /// Ends what another thread does with the leg, which is in hold then, and has the leg for this thread alone.
-    ///
-    /// The other thread may only be about to begin, and takes back then what was told to it before: it is told until it has ended.
-    fn taken_over(
-        &self,
-        signal: &mut Option<PyErr>,
-    ) -> PyResult<MutexGuard<'_, Option<OperatorThread>>> {
-        loop {
-            if let Some(thread) = self.free_thread()? {
-                return Ok(thread);
-            }
-            self.cancel.set();
-            if interrupted(signal) {
-                return self.thread();
-            }
-            thread::sleep(TOLD_AGAIN);
-        }
-    }
-
-    /// Lets the operator work while other threads of Python run. Ctrl-C ends it, and a driven leg is held then.
-    fn ask<T: Send + 'static>(
-        &self,
-        py: Python<'_>,
-        work: impl FnOnce(&mut Operator) -> Result<T, OperatorError> + Send + 'static,
-    ) -> PyResult<T> {
-        self.with_thread(py, |thread, cancel, interrupted| {
-            thread.ask(cancel, interrupted, work)
-        })
-    }
-
-    fn with_thread<T: Send>(
-        &self,
-        py: Python<'_>,
-        work: impl FnOnce(
-            &OperatorThread,
-            &CancelFlag,
-            &mut dyn FnMut() -> bool,
-        ) -> Result<T, LegFailure>
-        + Send,
-    ) -> PyResult<T> {
-        self.with_locked(py, |leg, _| leg.thread(), work)
-    }
-
-    /// The same with the leg locked in one way or another, to which a signal of Python may come, too.
-    fn with_locked<T: Send>(
-        &self,
-        py: Python<'_>,
-        lock: Lock,
-        work: impl FnOnce(
-            &OperatorThread,
-            &CancelFlag,
-            &mut dyn FnMut() -> bool,
-        ) -> Result<T, LegFailure>
-        + Send,
-    ) -> PyResult<T> {
-        let mut signal = None;
-        let result = py.detach(|| {
-            let thread = lock(self, &mut signal)?;
-            let Some(thread) = thread.as_ref() else {
-                return Err(leg_error("this leg is closed; open it again"));
-            };
-            self.cancel.clear();
-            let result = work(thread, &self.cancel, &mut || interrupted(&mut signal));
-            result.map_err(leg_failure)
-        });
-        // It is raised even where the work came to its end meanwhile.
-        signal.map_or(result, Err)
-    }
-
     fn reach<'py>(&self, py: Python<'py>, goal: Goal) -> PyResult<Bound<'py, PyDict>> {
         self.report(py, move |operator| operator.reach(&goal))
     }
@@ -179,33 +67,6 @@ fn wall_time_s(operator: &Operator) -> f64 {
     known.map_or(f64::NAN, |since| since.as_secs_f64())
 }
 
-/// The settings of a board that a rig gives.
-fn settings_of(rig: &Bound<'_, PyAny>) -> PyResult<Settings> {
-    let rig = match arguments::rig(Some(rig))? {
-        Some(rig) => rig,
-        None => Rig::load(None)?.file,
-    };
-    Ok(control_settings::settings(&rig, &rig.gains, None))
-}
-
-/// Replaces the settings of a leg, and keeps them over a reset if that is asked for.
-fn set(operator: &mut Operator, settings: &Settings, save: bool) -> Result<(), OperatorError> {
-    operator.set_settings(settings)?;
-    if save {
-        operator.save_settings()?;
-    }
-    Ok(())
-}
-
-/// Whether Python has a signal, as Ctrl-C; it is kept for later.
-fn interrupted(signal: &mut Option<PyErr>) -> bool {
-    if signal.is_none() {
-        *signal = Python::attach(|py| py.check_signals().err());
-        return signal.is_some();
-    }
-    false
-}
-
 #[pymethods]
 impl Leg {
     #[staticmethod]
@@ -226,10 +87,7 @@ impl Leg {
     #[staticmethod]
     #[pyo3(signature = (rig = None, *, slack = false))]
     fn emulated(py: Python<'_>, rig: Option<&Bound<'_, PyAny>>, slack: bool) -> PyResult<Self> {
-        let rig = match arguments::rig(rig)? {
-            Some(rig) => rig,
-            None => Rig::load(None)?.file,
-        };
+        let rig = arguments::rig_or_default(rig)?;
         let initial = if slack {
             InitialState::Slack
         } else {
@@ -252,8 +110,8 @@ impl Leg {
         stiffness_nm_per_rad: Option<f64>,
         towards_deg: Option<f64>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let azimuth_deg = within("azimuth_deg", azimuth_deg, -3600.0, 3600.0)?;
-        let tilt_deg = within("tilt_deg", tilt_deg, -90.0, 90.0)?;
+        let azimuth_deg = bounded("azimuth_deg", azimuth_deg, -3600.0, 3600.0)?;
+        let tilt_deg = bounded("tilt_deg", tilt_deg, -90.0, 90.0)?;
         let direction = angles::direction(azimuth_deg, tilt_deg);
         let goal = Goal {
             tensioning: tensioning(pretension_n, stiffness_nm_per_rad, towards_deg)?,
@@ -269,7 +127,7 @@ impl Leg {
         nm_per_rad: f64,
         towards_deg: Option<f64>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let nm_per_rad = within("nm_per_rad", nm_per_rad, 0.0, 1e9)?;
+        let nm_per_rad = bounded("nm_per_rad", nm_per_rad, 0.0, 1e9)?;
         let goal = Goal {
             tensioning: tensioning(None, Some(nm_per_rad), towards_deg)?,
             direction: None,
@@ -285,7 +143,7 @@ impl Leg {
         lead_s: f64,
     ) -> PyResult<Bound<'py, PyDict>> {
         let path = arguments::path("points", points)?;
-        let lead = Duration::from_secs_f64(within("lead_s", lead_s, 0.0, 10.0)?);
+        let lead = Duration::from_secs_f64(bounded("lead_s", lead_s, 0.0, 10.0)?);
         self.report(py, move |operator| operator.follow_whole(&path, lead))
     }
 
@@ -294,10 +152,7 @@ impl Leg {
     }
 
     fn stop(&self, py: Python<'_>) -> PyResult<()> {
-        let stopped = self.with_locked(py, Self::taken_over, |thread, cancel, interrupted| {
-            thread.ask(cancel, interrupted, Operator::stop)
-        });
-        stopped.map(|_| ())
+        self.ask_at_once(py, Operator::stop).map(|_| ())
     }
 
     fn disarm(&self, py: Python<'_>) -> PyResult<()> {
@@ -335,9 +190,7 @@ impl Leg {
             let list = "`leg emulate --help` lists the disturbances";
             PyValueError::new_err(format!("action = {text}: {error}; {list}"))
         })?;
-        self.with_thread(py, |thread, cancel, interrupted| {
-            thread.disturb(cancel, interrupted, action)
-        })
+        self.call(py, |call| call.disturb(action))
     }
 
     fn settings(&self, py: Python<'_>) -> PyResult<Rig> {
@@ -350,7 +203,7 @@ impl Leg {
         py: Python<'py>,
         rig: &Bound<'_, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let given = settings_of(rig)?;
+        let given = settings::of_rig(rig)?;
         let found = setting_differences(&given, &self.ask(py, Operator::settings)?);
         let rows = found.iter().map(|difference| {
             json!({ "name": difference.name, "rig": difference.ours, "leg": difference.theirs })
@@ -360,8 +213,8 @@ impl Leg {
 
     #[pyo3(signature = (rig, *, save = false))]
     fn set_settings(&self, py: Python<'_>, rig: &Bound<'_, PyAny>, save: bool) -> PyResult<()> {
-        let settings = settings_of(rig)?;
-        self.ask(py, move |operator| set(operator, &settings, save))
+        let settings = settings::of_rig(rig)?;
+        self.ask(py, move |operator| settings::set(operator, &settings, save))
     }
 
     #[pyo3(signature = (cell, weights_kg, hang, *, set = false, save = false))]
@@ -374,50 +227,37 @@ impl Leg {
         set: bool,
         save: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let mut cells = [1_u8, 2, 3].into_iter().enumerate();
-        let found = cells.find(|(_, number)| i64::from(*number) == cell);
-        let (axis, number) = found
-            .ok_or_else(|| PyValueError::new_err(format!("cell = {cell} is none of 1 to 3")))?;
-        if save && !set {
-            return Err(PyValueError::new_err("save is given without set"));
-        }
-        let refused = |failure| leg_failure(LegFailure::Refused(failure));
-        for kg in &weights_kg {
-            within("weights_kg", *kg, 0.0, 1e3)?;
-        }
-        if weights_kg.iter().all(|kg| Some(kg) == weights_kg.first()) {
-            return Err(refused(too_few_weights()));
-        }
-        let off = self.ask(py, |operator| {
-            Ok(require_drivers_off(
-                operator,
-                "let weights be hung on its cells",
-            ))
-        })?;
-        off.map_err(refused)?;
-        let mut settings = self.ask(py, Operator::settings)?;
-        let gravity = f64::from(settings.rig.gravity_m_per_s2);
-        let mut weighings = Vec::new();
-        for kg in weights_kg {
-            hang.call1((kg,))?;
-            let newtons = kg * gravity;
-            let code = self.ask(py, move |operator| mean_code(operator, axis))?;
-            weighings.push(KnownWeight { newtons, code });
-        }
-        let fit = fit(&weighings).map_err(refused)?;
-        fit.require_straight(number, &weighings).map_err(refused)?;
-        if set {
-            settings.axes[axis].cell_n_per_code = fit.n_per_code as f32;
-            settings.axes[axis].cell_zero_code = fit.zero_code as f32;
-            let settings = settings.without_zero();
-            self.ask(py, move |operator| self::set(operator, &settings, save))?;
-        }
+        let keep = Keep { set, save };
+        let fit = calibration::cell(self, py, cell, weights_kg, hang, keep)?;
         arguments::from_json(py, &fit)
+    }
+
+    #[pyo3(signature = (turn, rig = None))]
+    fn calibrate_motors<'py>(
+        &self,
+        py: Python<'py>,
+        turn: &Bound<'_, PyAny>,
+        rig: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let rig = arguments::rig_or_default(rig)?;
+        arguments::from_json(py, &calibration::motors(self, py, turn, &rig)?)
+    }
+
+    #[pyo3(signature = (motor, travel_mm, *, volts = None))]
+    fn jog<'py>(
+        &self,
+        py: Python<'py>,
+        motor: i64,
+        travel_mm: f64,
+        volts: Option<f64>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let seen = calibration::jog(self, py, motor, travel_mm, volts)?;
+        arguments::from_json(py, &seen)
     }
 
     fn close(&self, py: Python<'_>) -> PyResult<()> {
         py.detach(|| {
-            if let Some(thread) = self.thread()?.take() {
+            if let Some(thread) = self.owned()?.take() {
                 thread.close();
             }
             Ok(())

@@ -306,7 +306,7 @@ impl Rig {
         tilts: u32,
         nonlinear: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let payload_kg = arguments::within("payload_kg", payload_kg, 0.0, 1e6)?;
+        let payload_kg = arguments::bounded("payload_kg", payload_kg, 0.0, 1e6)?;
         for (name, count, least) in [("azimuths", azimuths, 3), ("tilts", tilts, 2)] {
             if !(least..=GRID_MAX).contains(&count) {
                 let sentence = format!("{name} = {count} is not from {least} to {GRID_MAX}");

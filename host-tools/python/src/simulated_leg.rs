@@ -1,6 +1,6 @@
 //! The class `SimulatedLeg`: its methods check their arguments and hand them to a [`Session`], without the interpreter's lock.
 
-use crate::arguments::{self, time_s, within};
+use crate::arguments::{self, bounded, time_s};
 use crate::errors::leg_error;
 use crate::rig::Rig;
 use crate::session::{Session, SessionError};
@@ -220,7 +220,7 @@ impl SimulatedLeg {
 
     #[pyo3(signature = (newtons, *, wait = true))]
     fn pretension(&self, py: Python<'_>, newtons: f64, wait: bool) -> PyResult<()> {
-        let newtons = within("newtons", newtons, -1e9, 1e9)?;
+        let newtons = bounded("newtons", newtons, -1e9, 1e9)?;
         self.settled(py, Command::Pretension(newtons as f32), wait)
     }
 

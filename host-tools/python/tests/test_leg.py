@@ -109,6 +109,41 @@ def test_a_load_cell_is_calibrated_by_weights():
     assert leg.sensors()["axes"][1]["tension_n"] == pytest.approx(30.0, abs=0.1)
 
 
+def turn_by_hand(leg):
+    def turn(motor):
+        leg.disturb({"turn": {"motor": motor, "turns": 1}})
+        leg.wait(1.5)
+
+    return turn
+
+
+def test_encoders_are_checked_by_turning_the_motors():
+    leg = Leg.emulated(slack=True)
+    found = leg.calibrate_motors(turn_by_hand(leg))
+    assert [(row["motor"], row["passed"], row["verdict"]) for row in found] == [(1, True, "pass"), (2, True, "pass"), (3, True, "pass")]
+    leg.disturb({"fault": {"encoder_reversed": 2}})
+    leg.disturb({"fault": {"encoder_lost": 3}})
+    found = leg.calibrate_motors(turn_by_hand(leg), "table1")
+    assert [row["passed"] for row in found] == [True, False, False]
+    assert found[1]["counts_sign"] == -1 and found[1]["counts"] == -found[0]["counts"]
+    assert "set its counts_sign to -1" in found[1]["verdict"]
+    assert found[2]["counts"] == 0 and "wiring" in found[2]["verdict"]
+    with pytest.raises(ZeroDivisionError):
+        leg.calibrate_motors(lambda motor: 1 / 0)
+
+
+def test_one_motor_is_turned_slowly():
+    leg = Leg.emulated(slack=True)
+    seen = leg.jog(2, 1.0)
+    assert seen["findings"] == []
+    assert seen["pulled_m"] == pytest.approx([0.0, 1e-3, 0.0], abs=2e-4)
+    leg.disturb({"fault": "encoders_swapped"})
+    (finding,) = leg.jog(2, 1.0)["findings"]
+    assert finding["what"] == "encoder 1 counted when motor 2 was driven"
+    assert "interchange" in finding["remedy"]
+    assert leg.telemetry()["state"] == "disarmed"
+
+
 def test_an_emulated_leg_is_disturbed_and_no_other():
     leg = Leg.emulated()
     leg.move(30, 20)
@@ -207,6 +242,11 @@ def test_ctrl_c_leaves_the_leg_in_hold():
         (lambda leg: leg.calibrate_cell(4, [0, 1], print), ValueError, "cell = 4"),
         (lambda leg: leg.calibrate_cell(1, [0, 1], print, save=True), ValueError, "save is given without set"),
         (lambda leg: leg.calibrate_cell(1, [1, 1], pytest.fail), LegError, "two different weights"),
+        (lambda leg: leg.calibrate_motors(print, 3), TypeError, "rig is no name"),
+        (lambda leg: leg.jog(4, 1.0), ValueError, "motor = 4 is none of 1 to 3"),
+        (lambda leg: leg.jog(1, np.nan), ValueError, "travel_mm = NaN"),
+        (lambda leg: leg.jog(1, 11.0), Refused, "no more than 10 mm"),
+        (lambda leg: leg.jog(1, 1.0, volts=np.inf), ValueError, "volts = inf"),
         (lambda leg: leg.wait(-1), ValueError, "seconds = -1"),
         (lambda leg: Leg.emulated(3), TypeError, "rig is no name"),
     ],

@@ -1,7 +1,7 @@
 //! The messages of an MCAP file, as far as it goes.
 
-use mcap::read::{LinearReader, Options};
-use mcap::records::Record;
+use mcap::read::{self, LinearReader, Options};
+use mcap::records::{Record, op};
 use mcap::{MAGIC, McapError, Message, MessageStream};
 use std::collections::BTreeMap;
 
@@ -9,6 +9,29 @@ use std::collections::BTreeMap;
 #[must_use]
 pub const fn begins() -> &'static [u8] {
     MAGIC
+}
+
+/// The end of a recording that may go on: other programs read what is before it as a whole file. What is recorded next is written
+/// over it, and is longer.
+#[must_use]
+pub fn interim_end() -> Vec<u8> {
+    const DATA_END: [u8; 4] = [0; 4];
+    // Without a summary.
+    const FOOTER: [u8; 20] = [0; 20];
+    let record = |kind: u8, content: &[u8]| {
+        [
+            &[kind],
+            (content.len() as u64).to_le_bytes().as_slice(),
+            content,
+        ]
+        .concat()
+    };
+    [
+        record(op::DATA_END, &DATA_END),
+        record(op::FOOTER, &FOOTER),
+        MAGIC.to_vec(),
+    ]
+    .concat()
 }
 
 /// A file in memory.
@@ -24,8 +47,8 @@ impl<'a> Contents<'a> {
         if !bytes.starts_with(MAGIC) {
             return Err(not_whole(McapError::BadMagic));
         }
-        // What a program that was killed leaves is whole up to a place.
-        let finished = bytes.len() > MAGIC.len() && bytes.ends_with(MAGIC);
+        // What a program that was killed leaves is whole up to a place, and has no summary.
+        let finished = read::footer(bytes).is_ok_and(|footer| footer.summary_start > 0);
         Ok(Self { bytes, finished })
     }
 

@@ -14,9 +14,9 @@ mod tick_record;
 mod writer;
 
 pub use about::About;
-pub use contents::begins;
+pub use contents::{begins, interim_end};
 pub use error::WriteError;
 pub use player_rows::{RecordedRow, RecordedSignals, SignalReader, read_signals};
 pub use replay::{REPLAY_HELP, Replay, TickDifference, replay};
 pub use samples::{Recorded, SAMPLES_HELP, Samples, read_samples};
-pub use writer::McapWriter;
+pub use writer::{CHUNK_BYTES, McapWriter, wall_ns};

@@ -20,6 +20,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io::{Seek, Write};
 use std::mem::ManuallyDrop;
+use std::time::Duration;
 
 /// Topics.
 pub(crate) const SETTINGS: &str = "/settings";
@@ -41,6 +42,9 @@ pub(crate) const SCHEMA_KEY: &str = "schema";
 /// Bytes of a message beside what it says.
 const MESSAGE_HEAD_BYTES: usize = 31;
 
+/// Bytes of a chunk at most: then it is written, and other programs look for it as a whole.
+pub const CHUNK_BYTES: u64 = 1 << 20;
+
 /// A tick in ns.
 const TICK_NS: u64 = 1_000_000_000 / TICK_HZ as u64;
 
@@ -52,6 +56,8 @@ pub struct McapWriter<W: Write + Seek> {
     channels: BTreeMap<&'static str, u16>,
     /// What it is of, until it is written: with the first message, for a leg's time does not begin at zero.
     about: Option<Value>,
+    /// The time of the day that the time zero of a simulated leg is given, ns since 1970.
+    begin_ns: u64,
     /// Bytes of the messages so far.
     bytes: u64,
 }
@@ -71,16 +77,18 @@ impl<W: Write + Seek> McapWriter<W> {
         let options = WriteOptions::new()
             .compression(None)
             .disable_seeking(true)
+            .chunk_size(Some(CHUNK_BYTES))
             .library("leg");
         let mut file = Self {
             writer: ManuallyDrop::new(options.create(to)?),
             channels: BTreeMap::new(),
             about: Some(serde_json::to_value(about).map_err(WriteError::message)?),
+            begin_ns: wall_ns(about.begin_wall_time_s),
             bytes: 0,
         };
         file.writer.write_metadata(&metadata(about, settings))?;
         let channel = file.postcard_channel(SETTINGS)?;
-        file.write(channel, 0, 0, &to_bytes(settings)?)?;
+        file.write(channel, 0, file.begin_ns, &to_bytes(settings)?)?;
         file.flush()?;
         Ok(file)
     }
@@ -92,7 +100,7 @@ impl<W: Write + Seek> McapWriter<W> {
     pub fn write_tick(&mut self, number: u32, tick: &Tick<'_>) -> Result<(), WriteError> {
         let channel = self.channel(TICKS, |file| file.postcard_channel(TICKS))?;
         let bytes = to_bytes(&TickRecord::new(tick)?)?;
-        self.write(channel, number, simulated_ns(number), &bytes)
+        self.write(channel, number, self.simulated_ns(number), &bytes)
     }
 
     /// The leg in a tick of a simulation.
@@ -104,7 +112,7 @@ impl<W: Write + Seek> McapWriter<W> {
         number: u32,
         (report, simulated): &(Report, Simulated),
     ) -> Result<(), WriteError> {
-        let time_ns = simulated_ns(number);
+        let time_ns = self.simulated_ns(number);
         self.write_report(number, time_ns, report)?;
         self.write_signals(SIMULATED, SIMULATED_SIGNALS, number, time_ns, simulated)
     }
@@ -203,6 +211,17 @@ impl<W: Write + Seek> McapWriter<W> {
         Ok(self.writer.write_to_known_channel(&header, message)?)
     }
 
+    /// The time of a tick of a simulation.
+    fn simulated_ns(&self, tick: u32) -> u64 {
+        self.begin_ns + u64::from(tick) * TICK_NS
+    }
+
+    /// The time of the day that a time of a simulated leg is given, s, in ns since 1970.
+    #[must_use]
+    pub fn leg_time_ns(&self, time_s: f64) -> u64 {
+        self.begin_ns + wall_ns(time_s)
+    }
+
     /// Ends the chunk, and lets the system have it.
     ///
     /// # Errors
@@ -227,9 +246,11 @@ impl<W: Write + Seek> McapWriter<W> {
     }
 }
 
-/// The time of a tick of a simulation, which begins at zero: the same simulation gives the same file.
-fn simulated_ns(tick: u32) -> u64 {
-    u64::from(tick) * TICK_NS
+/// A time of the day, s since 1970, in ns; zero for one that is none.
+#[must_use]
+pub fn wall_ns(wall_time_s: f64) -> u64 {
+    // A product of so many ns would be rounded to 256.
+    Duration::try_from_secs_f64(wall_time_s).map_or(0, |since| since.as_nanos() as u64)
 }
 
 /// What a recording is of, for programs that read no topics.
@@ -241,6 +262,10 @@ fn metadata(about: &About, settings: &Settings) -> Metadata {
         ("scenario", about.scenario.clone()),
         ("rig", about.rig.clone()),
         ("seed", seed),
+        (
+            "begin_wall_time_s",
+            Some(about.begin_wall_time_s.to_string()),
+        ),
         (METADATA_SETTINGS, Some(settings_text::rig_file(settings))),
     ];
     let known = entries.into_iter();
@@ -262,6 +287,7 @@ fn about_schema() -> Value {
             "scenario": text,
             "rig": text,
             "seed": { "type": ["integer", "null"] },
+            "begin_wall_time_s": { "type": "number" },
         },
     })
 }

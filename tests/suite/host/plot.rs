@@ -34,10 +34,10 @@ fn files(directory: &Path) -> BTreeMap<String, Vec<u8>> {
         .collect()
 }
 
-/// A step of payload, and a path that is followed, whose charts have a curve more.
+/// A step of payload; a path that is followed, whose charts have a curve more; homing; a fault, after which the leg is held.
 #[test]
 fn the_charts_of_a_run_are_drawn_again_to_the_pixel() {
-    for scenario in ["payload", "circle", "homing"] {
+    for scenario in ["payload", "circle", "homing", "fault_tension_jump"] {
         let directory = tempfile::tempdir().unwrap();
         let run = ["run", "--on", "sim", "--scenario", scenario];
         let record = ["--record", "run.mcap", "--plots", "run"];
@@ -51,6 +51,18 @@ fn the_charts_of_a_run_are_drawn_again_to_the_pixel() {
         for (name, picture) in &run {
             assert!(again[name] == *picture, "{scenario}: {name} differs");
         }
+        let tip = String::from_utf8_lossy(&run["tip.svg"]);
+        let phases: &[&str] = match scenario {
+            "homing" => &["homing", "at rest"],
+            "circle" => &["moving", "at rest"],
+            "payload" => &["moving", "at rest"],
+            _ => &["at rest", "held"],
+        };
+        for phase in phases {
+            let shown = tip.lines().filter(|line| line == phase).count();
+            assert!(shown >= 1, "{scenario}: {phase}");
+        }
+        assert!(!tip.contains("\nactive\n"), "{scenario}");
         // Named by the kind that the signal has in `docs/telemetry.md`.
         let stiffness = String::from_utf8_lossy(&run["stiffness.svg"]);
         assert!(stiffness.contains("\nreference\n") && !stiffness.contains("\nestimated\n"));

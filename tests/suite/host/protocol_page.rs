@@ -1,4 +1,4 @@
-//! `firmware/PROTOCOL.md`: its messages are those of the firmware, its exchange is decoded, its client commands a leg.
+//! `firmware/PROTOCOL.md`: its messages are those of the firmware, its exchange is decoded. `other_programs` runs its client.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -6,8 +6,6 @@ mod grammar;
 mod recorder;
 mod two_hashes;
 
-use crate::board::emulated_board::board::{BoardUnderTest, errors};
-use crate::common::python;
 use leg_boards::image::workspace_root;
 use leg_firmware::command::Command;
 use leg_firmware::frame::{self, Decoder, MAX_FRAME};
@@ -19,13 +17,10 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fmt::Write;
 use std::path::PathBuf;
-use std::{env, fs, process};
+use std::{env, fs};
 
 /// What stands before the client's schema.
 const SCHEMA_OF_CLIENT: &str = "SCHEMA = bytes.fromhex(\"";
-
-/// Lines of the client, at most.
-const CLIENT_LINES_MAX: usize = 60;
 
 fn page() -> PathBuf {
     workspace_root().join("firmware/PROTOCOL.md")
@@ -125,31 +120,4 @@ fn the_page_has_the_messages_of_the_firmware() {
         text == expected || env::var_os("LEG_OVERWRITE").is_some(),
         "PROTOCOL.md is not that of the firmware, first (page, firmware): {differing:?}; LEG_OVERWRITE=1 writes it anew"
     );
-}
-
-/// The client of the page, as it stands there.
-#[test]
-fn the_client_of_the_page_leans_a_leg() {
-    let text = fs::read_to_string(page()).unwrap();
-    let (_, rest) = text.split_once("```python\n").unwrap();
-    let (client, _) = rest.split_once("```\n").unwrap();
-    let lines = client.lines().count();
-    assert!(lines <= CLIENT_LINES_MAX, "{lines} lines");
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("client.py");
-    fs::write(&path, client).unwrap();
-
-    let board = BoardUnderTest::new(&[]);
-    let output = process::Command::new(python::python().unwrap())
-        .arg(&path)
-        .arg(&board.port)
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", errors(&output));
-    let told = String::from_utf8(output.stdout).unwrap();
-    assert!(told.starts_with("x 0.200, y"), "{told}");
-    let state = board.state();
-    assert_eq!(state["state"], "held");
-    let tilt = state["tilt_deg"].as_f64().unwrap();
-    assert!((tilt - 0.2_f64.asin().to_degrees()).abs() < 0.05, "{tilt}");
 }

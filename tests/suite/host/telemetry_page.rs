@@ -1,15 +1,10 @@
-//! `docs/telemetry.md` lists every signal; recordings are read by `mcap` of Python, by their own schemas; the Foxglove layout shows
-//! signals that there are.
+//! `docs/telemetry.md` lists every signal.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use crate::common::python;
 use leg_boards::image::workspace_root;
 use leg_host::signals::{RECORDER_SIGNALS, REPORT_SIGNALS, SIMULATED_SIGNALS, Signal, Values};
-use serde_json::{Value, json};
 use std::fmt::Write;
-use std::path::Path;
-use std::process::Command;
 use std::{env, fs};
 
 /// Before and after a table of the page.
@@ -67,84 +62,4 @@ fn the_page_of_telemetry_lists_every_signal() {
         assert!(text == made, "make it anew with LEG_OVERWRITE=1");
     }
     assert_eq!(made.matches(MARKS[1]).count(), 3);
-}
-
-fn leg(arguments: &[&str], directory: &Path) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_leg-under-test"));
-    let output = command
-        .args(arguments)
-        .current_dir(directory)
-        .output()
-        .unwrap();
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments:?}: {told}");
-}
-
-/// Of a simulation and of a leg: every message is what its channel's schema says, and every part of the layout is a signal.
-#[test]
-fn python_reads_every_channel_by_its_own_schema_and_the_layout_shows_what_is_there() {
-    let directory = tempfile::tempdir().unwrap();
-    let plots = ["--plots", "plots"];
-    let run = [
-        "run",
-        "--on",
-        "sim",
-        "--scenario",
-        "payload",
-        "--record",
-        "run.mcap",
-    ];
-    leg(&[run.as_slice(), &plots].concat(), directory.path());
-    leg(
-        &["log", "--on", "sim", "--for", "0.5", "--out", "log.mcap"],
-        directory.path(),
-    );
-    leg(
-        &["scope", "--on", "sim", "--out", "scope.mcap"],
-        directory.path(),
-    );
-    let layouts = workspace_root().join("host-tools/foxglove");
-    let jobs = [
-        ("run.mcap", "leg.json"),
-        ("log.mcap", "leg.json"),
-        ("scope.mcap", "recorder.json"),
-    ]
-    .map(|(name, layout)| {
-        json!({ "recording": directory.path().join(name), "layout": layouts.join(layout) })
-    });
-    let [run, log, scope] = &python::answers("read_recording.py", &jobs)[..] else {
-        panic!("three recordings, three answers");
-    };
-    let counts = |found: &Value, topics: &[&str]| {
-        let channels = found["channels"].as_object().unwrap();
-        let mut names: Vec<_> = channels.keys().map(String::as_str).collect();
-        names.sort_unstable();
-        assert_eq!(names, topics, "{found}");
-        let exact = ["/settings", "/ticks"];
-        for (topic, channel) in channels {
-            assert!(channel["count"].as_u64().unwrap() > 0, "{topic}");
-            let encoding = if exact.contains(&topic.as_str()) {
-                "postcard"
-            } else {
-                "json"
-            };
-            assert_eq!(channel["encoding"], encoding, "{topic}");
-        }
-    };
-    counts(
-        run,
-        &["/about", "/leg", "/settings", "/simulation", "/ticks"],
-    );
-    counts(log, &["/about", "/leg", "/settings"]);
-    counts(scope, &["/about", "/recorder", "/settings"]);
-    assert_eq!(run["metadata"]["scenario"], "payload");
-    for key in ["version", "rig", "seed", "settings"] {
-        assert!(run["metadata"][key].is_string(), "{key}: {run}");
-    }
-    // What a layout shows of a simulation is not all there in a log.
-    for (recording, paths) in [(run, 12), (scope, 10)] {
-        assert_eq!(recording["layout_unknown"], json!([]));
-        let shown = recording["layout_paths"].as_array().unwrap();
-        assert!(shown.len() >= paths, "{recording}");
-    }
 }

@@ -193,6 +193,13 @@ fn a_recording_is_beside_its_name_until_it_is_whole_and_is_never_overwritten() {
         let replayed = replay(&place("leg.part2.mcap"))?;
         let missing = ticks - replayed.ticks;
         assert!(!replayed.finished && missing <= 8000, "{missing}");
+        // Other programs find a whole file.
+        let bytes = std::fs::read(place("leg.part2.mcap")).unwrap();
+        let messages = mcap::MessageStream::new(&bytes).unwrap();
+        let read = messages
+            .map(Result::unwrap)
+            .filter(|message| message.channel.topic == "/ticks");
+        assert_eq!(read.count(), replayed.ticks as usize);
         assert_eq!(std::fs::read(&file).unwrap(), b"old");
         Ok(())
     })
@@ -210,7 +217,7 @@ fn a_full_disk_is_an_error_and_no_panic() {
         full.unwrap()
     };
     let settings = simulation().settings().clone();
-    let error: RecordingError = super::mcap(full(), &About::log("test"), &settings)
+    let error: RecordingError = super::McapFile::new(full(), &About::log("test"), &settings)
         .err()
         .unwrap();
     let failure = error.failure(Path::new("leg.mcap"), Some("leg.part.mcap".into()));
@@ -314,6 +321,43 @@ fn what_a_recording_is_of_is_in_its_metadata() {
         ("leg", "test")
     );
     assert!(metadata.metadata["settings"].contains("f_max_n = 150"));
+}
+
+/// The time of the day at which a recording begins is what it says; with the same one the same simulation gives the same messages.
+/// The summary lists the channels in any order.
+#[test]
+fn the_messages_of_a_simulation_have_the_time_of_the_day_at_which_it_begins() {
+    let directory = TempDir::new().unwrap();
+    let settings = simulation().settings().clone();
+    let messages = |name: &str, begin_wall_time_s: f64| {
+        let file = directory.path().join(name);
+        let about = About {
+            begin_wall_time_s,
+            ..About::log("test")
+        };
+        record(&file, &about, &settings, |recording| {
+            let watch = &mut |tick: &Tick<'_>| recording.take_tick(tick).unwrap();
+            let summary = simulation().run(&mut InProcess::new(), watch);
+            Ok(summary.unwrap())
+        })
+        .unwrap();
+        assert_eq!(read_samples(&file).unwrap().about, about);
+        let bytes = std::fs::read(file).unwrap();
+        let messages = mcap::MessageStream::new(&bytes).unwrap();
+        let parts = messages.map(Result::unwrap).map(|message| {
+            let topic = message.channel.topic.clone();
+            let data = message.data.into_owned();
+            (topic, message.sequence, message.log_time, data)
+        });
+        parts.collect::<Vec<_>>()
+    };
+    let begin_s = 1_764_000_000.125;
+    let one = messages("one.mcap", begin_s);
+    assert!(one == messages("other.mcap", begin_s));
+    for (topic, tick, time_ns, _) in &one {
+        let expected_ns = 1_764_000_000_125_000_000 + u64::from(*tick) * 125_000;
+        assert_eq!(*time_ns, expected_ns, "{topic}");
+    }
 }
 
 #[test]

@@ -48,12 +48,19 @@ pub(super) fn motors(leg: &HeldLeg, prefix: &str) -> Vec<Element> {
     leg.tendons.iter().enumerate().map(motor).collect()
 }
 
-/// Tensions, N; where the tip is, m, and the leg's axis, in the world.
+/// Tensions, N; lengths, m, and their rates, m/s; where the tip is, m, and the leg's axis, in the world.
 pub(super) fn sensors(prefix: &str) -> Vec<Element> {
     let tension = |i: usize| {
         Element::new("actuatorfrc")
             .text("name", &format!("{prefix}tension_{}", i + 1))
             .text("actuator", &motor_name(prefix, i))
+    };
+    let of_tendon = |kind: &'static str, name: &'static str| {
+        (0..3).map(move |i| {
+            Element::new(kind)
+                .text("name", &format!("{prefix}{name}_{}", i + 1))
+                .text("tendon", &tendon_name(prefix, i))
+        })
     };
     let tip = Element::new("framepos")
         .text("name", &name(prefix, "tip"))
@@ -63,17 +70,35 @@ pub(super) fn sensors(prefix: &str) -> Vec<Element> {
         .text("name", &name(prefix, "axis"))
         .text("objtype", "xbody")
         .text("objname", &name(prefix, "leg"));
-    (0..3).map(tension).chain([tip, axis]).collect()
+    (0..3)
+        .map(tension)
+        .chain(of_tendon("tendonpos", "length"))
+        .chain(of_tendon("tendonvel", "rate"))
+        .chain([tip, axis])
+        .collect()
 }
 
-/// Counts of each encoder for a metre that is reeled in: counts are its product with the actuator's activation.
-pub(super) fn counts(leg: &HeldLeg) -> Element {
-    let per_m = leg.tendons.map(|tendon| 1.0 / tendon.m_per_count);
-    let numeric = Element::new("numeric")
-        .text("name", "counts_per_m")
-        .numbers("data", &per_m);
-    Element::new("custom").child(numeric)
+/// What an encoder's count is made of, for each of a leg's tendons: MuJoCo has no sensor of how far a motor has reeled in.
+/// [`COUNTS`] says how.
+pub(super) fn encoders(leg: &HeldLeg) -> Element {
+    let numeric = |name: &str, of: &dyn Fn(&HeldTendon) -> f64| {
+        Element::new("numeric")
+            .text("name", name)
+            .numbers("data", &leg.tendons.each_ref().map(of))
+    };
+    Element::new("custom")
+        .child(numeric("counts_per_m", &|tendon| 1.0 / tendon.m_per_count))
+        .child(numeric("unstretched_m", &|tendon| tendon.unstretched_m))
+        .child(numeric("stiffness_n_per_m", &|tendon| {
+            tendon.stiffness_n_per_m
+        }))
+        .child(numeric("damping_n_s_per_m", &|_| {
+            leg.tendon_damping_n_s_per_m
+        }))
 }
+
+/// An encoder's count, by the names of sensors and numbers.
+pub(super) const COUNTS: &str = "counts_per_m * (unstretched_m - length + (tension - damping_n_s_per_m * rate) / stiffness_n_per_m)";
 
 fn tendon_name(prefix: &str, i: usize) -> String {
     format!("{prefix}tendon_{}", i + 1)

@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::{HeldLeg, Mjcf, MjcfError};
-use crate::leg_shape::ShapeError;
+use crate::leg_shape::{Body, ShapeError};
 use leg_model::{JointStiffness, Query, Support, SupportKind};
 use leg_rig::rig_file::RigFile;
 
@@ -49,6 +49,17 @@ fn a_leg_without_any_mass_is_refused() {
         Err(MjcfError::Shape(ShapeError::Massless))
     ));
     assert!(model(0.5).is_ok());
+    // Nothing says then what several of them carry.
+    let body = |mass_kg| Body::new(&rig, 6, 0.2, mass_kg);
+    assert_eq!(body(None), Err(ShapeError::MasslessBody));
+    assert_eq!(body(Some(3.0)).unwrap().mass_kg, 3.0);
+}
+
+#[test]
+fn a_body_has_the_mass_of_its_legs_unless_it_is_given() {
+    let body = |mass_kg| Body::new(&rig(), 6, 0.2, mass_kg).unwrap().mass_kg;
+    assert_eq!(body(None), 6.0 * rig().parameters.leg_mass_kg);
+    assert_eq!(body(Some(3.0)), 3.0);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use std::ops::Range;
 /// A span of the horizontal axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Span {
-    /// Written at its top, where there is room. Spans with the same label have the same shade.
+    /// Written at its top, where there is room, and beside its shade in the legend. Spans with the same label have the same shade.
     pub label: String,
     /// Its begin and end.
     pub x: Range<f64>,
@@ -32,8 +32,34 @@ const SPAN_LABEL_COLOUR: RGBColor = RGBColor(95, 95, 95);
 /// Width of a letter at most, on the average.
 const LETTER: i32 = offset_px(10);
 
+/// Part of the horizontal axis from which on a shade is seen: some two pixels.
+const SEEN_PART: f64 = 0.002;
+
 /// Part of the vertical axis that the labels take.
 pub(super) const LABEL_PART: f64 = 0.06;
+
+/// Each label once, with its shade, in the order of the spans.
+fn shades(spans: &[Span]) -> Vec<(&str, RGBColor)> {
+    let mut shades: Vec<(&str, RGBColor)> = Vec::new();
+    let mut colours = SHADES.iter().cycle();
+    for span in spans {
+        if shades.iter().all(|(label, _)| *label != span.label) {
+            shades.push((&span.label, *colours.next().unwrap_or(&WHITE)));
+        }
+    }
+    shades
+}
+
+/// The same for the legend: without those that are too short to be seen.
+pub(super) fn seen<'a>(spans: &'a [Span], x: &Range<f64>) -> Vec<(&'a str, RGBColor)> {
+    let mut seen = shades(spans);
+    seen.retain(|(label, _)| {
+        let of_label = spans.iter().filter(|span| span.label == *label);
+        let length: f64 = of_label.map(|span| span.x.end - span.x.start).sum();
+        length >= SEEN_PART * (x.end - x.start)
+    });
+    seen
+}
 
 /// Shades the spans, up to the top of the vertical axis. Draw it first.
 pub(super) fn shade<B: DrawingBackend>(
@@ -41,17 +67,12 @@ pub(super) fn shade<B: DrawingBackend>(
     y: &Range<f64>,
     context: &mut ChartContext<B, Plane>,
 ) -> Drawn<B> {
-    let mut labels: Vec<&str> = Vec::new();
+    let shades = shades(spans);
     for span in spans {
-        let known = labels.iter().position(|label| *label == span.label);
-        let place = known.unwrap_or_else(|| {
-            labels.push(&span.label);
-            labels.len() - 1
-        });
-        let shade = SHADES.iter().cycle().nth(place).copied();
+        let shade = shades.iter().find(|(label, _)| *label == span.label);
+        let shade = shade.map_or(WHITE, |(_, shade)| *shade);
         let corners = [(span.x.start, y.start), (span.x.end, y.end)];
-        let area = Rectangle::new(corners, shade.unwrap_or(WHITE).filled());
-        context.draw_series([area])?;
+        context.draw_series([Rectangle::new(corners, shade.filled())])?;
     }
     Ok(())
 }

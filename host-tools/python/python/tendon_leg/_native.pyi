@@ -135,6 +135,27 @@ class Leg:
         Raises LegError, and sets nothing, where no straight line explains the weights.
         """
 
+    def calibrate_motors(
+        self, turn: Callable[[int], object], rig: str | PathLike[str] | Rig | None = None
+    ) -> list[dict[str, Any]]:
+        """Checks direction and counts of each encoder, drivers off: a dictionary for each motor.
+
+        turn: is called with each motor, 1 to 3, and returns when it has been turned once, so that it reels its tendon in.
+        rig: says how many counts a turn has; the paper's if left out.
+
+        Each has `motor`, `counts`, `expected_counts`, whether it `passed`, and in words the `verdict`; `counts_sign` is what the rig
+        file has to say, 0 where nothing was counted.
+        """
+
+    def jog(self, motor: int, travel_mm: float, *, volts: float | None = None) -> dict[str, Any]:
+        """Turns one motor, 1 to 3, slowly, to see whether its wires are right. The leg must be disarmed, not homed.
+
+        travel_mm: how far its tendon is pulled in, at most 10 mm; below zero it is paid out.
+        volts: the voltage at the motor; one that turns it at 2 mm/s if left out.
+
+        `findings` lists what does not fit, as swapped wires: each with `what` and `remedy`. The rest is what was seen. The motor is off in the end.
+        """
+
     def close(self) -> None:
         """Closes the connection. The end of a `with` does, too."""
 

@@ -78,6 +78,8 @@ class AsyncLeg:
     settings_differences = _awaited(Leg.settings_differences, drives=False)
     set_settings = _awaited(Leg.set_settings, drives=False)
     calibrate_cell = _awaited(Leg.calibrate_cell, drives=False)
+    calibrate_motors = _awaited(Leg.calibrate_motors, drives=False)
+    jog = _awaited(Leg.jog, drives=True)
     _close = _awaited(Leg.close, drives=False)
 
     async def stop(self) -> None:

@@ -8,9 +8,13 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, Command, Output, Stdio};
+use std::time::Duration;
 use std::time::Instant;
 
 const LEG: &str = env!("CARGO_BIN_EXE_leg-under-test");
+
+/// For longer a log must not be stalled: what the leg sends meanwhile is late, or lost.
+pub const LOG_STALL: Duration = Duration::from_millis(80);
 
 /// A board that waits longer for its host: the machine may have much else to do, and stall single processes for seconds.
 pub const PATIENT: &str = "\n[control.limits]\ncommand_time_s = 30\n";

@@ -1,20 +1,16 @@
 //! Read-only commands: logs, monitors, datagrams.
 
-use super::board::{BoardUnderTest, PATIENT, SLOW, errors, move_to, signal};
+use super::board::{BoardUnderTest, LOG_STALL, PATIENT, SLOW, errors, move_to, signal};
 use crate::common::stalls::{PATIENCE, StallWatch, unless_stalled, wait_for};
-use crate::common::{numbers, python};
 use leg_host::recording;
 use leg_host::transport::Transport;
 use leg_host::transport::serial::Serial;
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 use std::process::{Child, Output};
 use std::time::Duration;
-
-/// For longer the log must not be stalled: what the leg sends meanwhile is late, or lost.
-const LOG_STALL: Duration = Duration::from_millis(80);
 
 #[test]
 fn monitor_and_log_run_beside_a_move() {
@@ -162,30 +158,6 @@ fn a_log_that_is_ended_lets_the_line_go() {
         let known = [ErrorKind::TimedOut, ErrorKind::Interrupted];
         assert!(known.contains(&error), "{error}");
         (error == ErrorKind::TimedOut).then_some(())
-    });
-}
-
-/// By Python's `mcap`, up to the last second.
-#[test]
-fn a_log_that_is_killed_is_read_by_another_program() {
-    unless_stalled(LOG_STALL, || {
-        let directory = tempfile::tempdir().unwrap();
-        let file = directory.path().join("leg.mcap");
-        let board = BoardUnderTest::new(&[]);
-        let mut log = board.begin_log(&file, &["--rate", "100"]);
-        let watches = [&board.process, &log].map(StallWatch::begin);
-        board.wait(2.5);
-        let time_s = board.state()["time_s"].as_f64().unwrap();
-        log.kill().unwrap();
-        log.wait().unwrap();
-        let stall = watches.map(StallWatch::longest).into_iter().max();
-        let job = json!({ "unfinished": recording::unfinished(&file).unwrap() });
-        let read = numbers(&python::answers("read_recording.py", &[job])[0]);
-        let newest_s = read.last().copied().unwrap_or(0.0);
-        // A second, and what the log may be late.
-        let whole = read.is_sorted() && time_s - newest_s < 1.2;
-        let wrong = || format!("{} reports up to {newest_s} s of {time_s} s", read.len());
-        (whole.then_some(()).ok_or_else(wrong), stall.unwrap())
     });
 }
 

@@ -36,7 +36,7 @@ fn robot(rig: &RigFile, payload_kg: f64, pose: [f64; 2], body: Option<Body>) -> 
     let text = String::from_utf8(text).unwrap();
     let tilts_rad = ["tilt_x", "tilt_y"].map(|joint| {
         let (_, after) = text.rsplit_once(&format!("{joint} = ")).unwrap();
-        let digits = after.split([',', ' ']).next().unwrap();
+        let digits = after.split([',', ' ', '\n']).next().unwrap();
         digits.trim_end_matches('.').parse().unwrap()
     });
     (robot, tilts_rad)
@@ -67,6 +67,7 @@ fn read(robots: &[(Urdf, Value)]) -> Vec<Value> {
 }
 
 #[test]
+#[ignore = "needs Python 3.11"]
 fn one_leg_of_every_rig_is_where_the_model_says() {
     let poses = [[0.0, 0.0], [0.7, 0.3], [2.5, 0.5], [-1.2, 0.45], [4.0, 0.2]];
     let cases: Vec<_> = READY_RIGS
@@ -106,6 +107,7 @@ fn one_leg_of_every_rig_is_where_the_model_says() {
 }
 
 #[test]
+#[ignore = "needs Python 3.11"]
 fn six_legs_stand_around_a_body() {
     let rig = rig(READY_RIGS[0].name);
     let tips: Vec<String> = (1..=6).map(|leg| format!("leg_{leg}_tip")).collect();
