@@ -15,7 +15,7 @@ use crate::places::place;
 use crate::rig_intake;
 use crate::shown_leg::ShownLeg;
 use editor::Editor;
-use eframe::egui::{Button, CentralPanel, Context, Panel, ScrollArea, Ui, vec2};
+use eframe::egui::{Button, CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, vec2};
 use leg_rig::rig_file::RigText;
 use panel_actions::SettingsWish;
 use panel_table::Table;
@@ -255,8 +255,12 @@ impl Setup {
                     .show(ui, |ui| panel_actions::show(ui, editor, leg))
                     .inner
             });
-            CentralPanel::no_frame().show(ui, |ui| {
-                ui.set_max_width(ui.available_width() - 8.0);
+            let beside = Margin {
+                right: 8,
+                ..Margin::ZERO
+            };
+            let frame = Frame::NONE.inner_margin(beside);
+            CentralPanel::default().frame(frame).show(ui, |ui| {
                 table.choice(ui, editor);
                 let scroll = ScrollArea::vertical().id_salt("table").auto_shrink(false);
                 scroll.show(ui, |ui| table.show(ui, editor));

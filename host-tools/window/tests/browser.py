@@ -47,6 +47,9 @@ LEFT_OUT = (-30, -20, 130, 0)
 
 WAIT_S = 20.0
 
+# A hundred frames of a slow page.
+READ_S = 100.0
+
 # A motor and three pretensions are measured in real time, by a page that may be slow.
 TUNED_S = 400.0
 
@@ -635,8 +638,10 @@ def steps(page):
         if _ == 2:
             page.picture("cells")
         page.press("cells_read")
-        page.wait("it is read", lambda state: "cells_progress" not in state["places"], 60)
-    page.wait("there is a result", lambda state: "cells_result" in state["places"])
+        page.wait("it is read now", lambda state: "cells_read" not in state["places"])
+        # A reading a frame, a hundred of them.
+        page.wait("it is read", lambda state: "cells_progress" not in state["places"], READ_S)
+    page.wait_for("cells_result")
     page.press("cells_take")
     keys = ["calibration.cell_n_per_code", "calibration.cell_zero_code"]
     page.wait("the settings have it", lambda state: set(state["setup"]["changed"]) <= set(keys) and state["setup"]["changed"])
@@ -647,6 +652,7 @@ def steps(page):
     for motor in (1, 2, 3):
         page.wait("a motor is to be turned", lambda state: "turns_turned" in state["places"])
         page.press("turns_turned")
+        page.wait("it is turned now", lambda state: "turns_turned" not in state["places"])
         page.wait("it is turned", lambda state: f"turn_{motor}" in state["places"], 30)
     page.wait("there is a result", lambda state: "turns_take" in state["places"])
     page.press("guide_motor")
@@ -753,8 +759,8 @@ def charts(page):
     assert 0 < hz <= 100 and amplitude_n > 0, peaks
     print(f"  the highest peak of a tension: {hz:.2f} Hz, {amplitude_n:.4f} N")
     page.press("spectra")
-    after = {control: page.rect(control) for control in controls}
-    assert after == before, (before, after)
+    same = lambda state: all(state["places"][control] == before[control] for control in controls)
+    page.wait(f"nothing has moved from {before}", same)
 
 
 def scrub(page, part):
@@ -802,8 +808,8 @@ def recordings(page):
     page.wait("it has come to its end", lambda state: state["player"]["at_s"] == last_s)
     page.wait("it stands still", lambda state: not state["player"]["playing"])
     # Nothing moves when numbers change.
-    after = {control: page.rect(control) for control in still}
-    assert after == before, (before, after)
+    same = lambda state: all(state["places"][control] == before[control] for control in still)
+    page.wait(f"nothing has moved from {before}", same)
     page.browser.prefer("light")
     page.browser.resize(360, 740)
     page.wait("it is narrow", lambda state: state["places"]["scrub"][2] <= 360)
