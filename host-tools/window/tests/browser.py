@@ -770,6 +770,20 @@ def scrub(page, part):
     page.browser.drag((left + 0.5 * (right - left), middle), (left + part * (right - left), middle))
 
 
+def narrow_player(page):
+    """A recording on a phone held upright."""
+    page.browser.prefer("light")
+    page.browser.resize(360, 740)
+    page.wait("it is narrow", lambda state: state["places"]["scrub"][2] <= 360)
+    for control in ("back", "play", "play_rate", "recording_time", "scrub", "signals", "stop", "rate"):
+        left, _, right, _ = page.rect(control)
+        assert 0 <= left and right <= 360, (control, left, right)
+    page.picture("phone_player")
+    page.browser.resize(1280, 720)
+    page.browser.prefer("dark")
+    page.wait("it is wide", lambda state: state["places"]["scrub"][2] > 900)
+
+
 def recordings(page):
     """Records, saves, opens again and scrubs: the leg moves along. What is broken is refused, what is cut off is not."""
     start_again(page)
@@ -810,16 +824,8 @@ def recordings(page):
     # Nothing moves when numbers change.
     same = lambda state: all(state["places"][control] == before[control] for control in still)
     page.wait(f"nothing has moved from {before}", same)
-    page.browser.prefer("light")
-    page.browser.resize(360, 740)
-    page.wait("it is narrow", lambda state: state["places"]["scrub"][2] <= 360)
-    for control in ("back", "play", "play_rate", "recording_time", "scrub", "signals", "stop", "rate"):
-        left, _, right, _ = page.rect(control)
-        assert 0 <= left and right <= 360, (control, left, right)
-    page.picture("phone_player")
-    page.browser.resize(1280, 720)
-    page.browser.prefer("dark")
-    page.wait("it is wide", lambda state: state["places"]["scrub"][2] > 900)
+    if not page.quick:
+        narrow_player(page)
     page.press("back")
     page.wait("the leg is back", lambda state: not state["player"] and "workspace" in state["places"])
     drop(page, "cut.mcap", data[: len(data) // 2])
