@@ -11,7 +11,7 @@ pub use messages::{
 use crate::command::Command;
 use crate::frame::{Decoder, Frame, FrameError, MAX_FRAME};
 use crate::jog::JogReport;
-use crate::leg::Outcome;
+use crate::leg::CommandOutcome;
 use crate::recorder::{RecorderReply, RecorderRequest};
 use crate::sensors::Sensors;
 use crate::settings::Settings;
@@ -28,7 +28,7 @@ pub trait CommandedLeg {
     /// Takes note of a frame that could not be read.
     fn note_decode_error(&mut self);
     /// What became of a command.
-    fn outcome(&mut self) -> Option<Outcome>;
+    fn outcome(&mut self) -> Option<CommandOutcome>;
     /// The leg after the last tick.
     fn telemetry(&mut self) -> Telemetry<f32>;
     /// What the last jog saw.
@@ -106,7 +106,7 @@ impl HostLink {
     /// Reports to the host what became of its commands, and streams telemetry if it asked for that. Called after each tick,
     /// or more seldom.
     pub fn report(&mut self, leg: &mut impl CommandedLeg) {
-        while let Some(Outcome { number, result }) = leg.outcome() {
+        while let Some(CommandOutcome { number, result }) = leg.outcome() {
             let reply = match result {
                 Ok(()) => HostReply::Done,
                 Err(refusal) => HostReply::Refused(HostRefusal::Command(refusal)),

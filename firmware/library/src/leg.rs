@@ -17,7 +17,7 @@ mod shared;
 mod slack;
 mod station;
 
-pub use command_queue::Outcome;
+pub use command_queue::CommandOutcome;
 
 use crate::control::{LoadEstimation, Measured, Measurement};
 use crate::drive::Drive;

@@ -13,9 +13,9 @@ mod play;
 mod ring;
 mod swing;
 
-pub use comparison::{Row, comparison, section, table};
+pub use comparison::{ComparisonRow, comparison, section, table};
 pub use error::TuneError;
-pub use estimate::Estimate;
+pub use estimate::UncertainValue;
 pub use jogs::{JogPlan, Jogged};
 pub use motor::MotorConstants;
 pub use play::Travels;

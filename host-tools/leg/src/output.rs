@@ -180,11 +180,11 @@ pub(crate) fn wall_time_s(operator: &Operator) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::failure_line;
-    use leg_base::failure::{Failure, Place};
+    use leg_base::failure::{Failure, TextPlace};
 
     #[test]
     fn an_error_for_machines_has_its_place_and_exit_code() {
-        let place = Place {
+        let place = TextPlace {
             file: "a.toml".into(),
             text: "x = 1\nµ = two\n".into(),
             span: 11..14,

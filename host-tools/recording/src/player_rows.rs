@@ -66,7 +66,7 @@ fn read(name: &str, bytes: &[u8]) -> Result<RecordedSignals, String> {
         since_s: 0.0,
         numbers: Vec::new(),
     };
-    contents.each(|message| {
+    contents.for_each_message(|message| {
         let unread = |error: String| unreadable(message, &error);
         match message.channel.topic.as_str() {
             ABOUT => reading.about = Some(parse(message)?),

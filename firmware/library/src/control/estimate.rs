@@ -144,7 +144,7 @@ impl<T: Scalar> Estimator<T> {
         let estimation = &settings.estimation;
         let smoothed = Smoothed::new(estimation.load_time_s);
         Self {
-            direction: Direction::down(),
+            direction: Direction::straight_down(),
             payload: PayloadEstimate::new(settings),
             push_nm: [smoothed; 2],
             torsion: T::zero(),
@@ -162,7 +162,7 @@ impl<T: Scalar> Estimator<T> {
 
     /// Starts anew, straight down, without a load.
     pub fn straight_down(&mut self) {
-        self.direction = Direction::down();
+        self.direction = Direction::straight_down();
         self.payload.forget();
         for push in &mut self.push_nm {
             push.set(T::zero());

@@ -113,7 +113,7 @@ impl<T: Scalar> Stream<T> {
             tick: point.tick,
             motion,
         };
-        self.limits.keeps(&Segment::between(before, &knot).path)?;
+        self.limits.keeps(&Segment::connect(before, &knot).path)?;
         self.limits.keeps_to_rest(&motion)?;
         Ok(knot)
     }
@@ -122,7 +122,7 @@ impl<T: Scalar> Stream<T> {
     pub fn next_segment(&mut self) -> Option<Segment<T>> {
         let to = self.waiting.pop_front()?;
         let from = core::mem::replace(&mut self.reached, to);
-        Some(Segment::between(&from, &to))
+        Some(Segment::connect(&from, &to))
     }
 
     /// The segment that ends a stream in rest, and whether it ends before its last point came.

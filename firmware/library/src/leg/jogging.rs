@@ -175,7 +175,7 @@ impl<T: Scalar> Jogging<T> {
         }
     }
 
-    fn at_full(&self) -> bool {
+    fn is_at_full_voltage(&self) -> bool {
         self.ticks >= ticks(JOG_RISE_S)
     }
 
@@ -185,7 +185,9 @@ impl<T: Scalar> Jogging<T> {
             .pulled_m
             .get(self.motor)
             .map_or(T::zero(), |&moved| moved * self.sign);
-        let silent = self.silent.update(self.at_full() && pulled == self.last_m);
+        let silent = self
+            .silent
+            .update(self.is_at_full_voltage() && pulled == self.last_m);
         self.last_m = pulled;
         let hauls = self.hauling.update(!(current.abs() <= self.current_max_a));
         let stray = T::from(STRAY_M);

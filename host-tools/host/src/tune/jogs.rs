@@ -163,7 +163,7 @@ pub(super) fn jog_all(
         all: Vec::new(),
         seen,
     };
-    let Err(error) = jogs.in_order() else {
+    let Err(error) = jogs.run() else {
         return Ok(jogs.all);
     };
     jogs.ease();
@@ -219,7 +219,7 @@ struct Jogs<'a> {
 }
 
 impl Jogs<'_> {
-    fn in_order(&mut self) -> Result<(), TuneError> {
+    fn run(&mut self) -> Result<(), TuneError> {
         self.slacken()?;
         self.free()?;
         self.loaded()?;

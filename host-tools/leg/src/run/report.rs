@@ -4,7 +4,7 @@ use crate::output::chart_line;
 use leg_base::json_object;
 use leg_base::tick_time::tick_s;
 use leg_firmware::supervisor::Fault;
-use leg_sim::simulation::{Divergence, Measurement, Summary};
+use leg_sim::simulation::{Divergence, ScenarioMeasurement, Summary};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -115,7 +115,7 @@ fn divergence_text(divergence: &Divergence) -> String {
     )
 }
 
-fn row(measurement: &Measurement) -> String {
+fn row(measurement: &ScenarioMeasurement) -> String {
     let [lowest, highest] = measurement.between;
     format!(
         "{:6.2} s {:9.4}  {:<8} {lowest:11.4} {highest:9.4}   {}   {}\n",

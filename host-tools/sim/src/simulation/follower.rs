@@ -40,10 +40,10 @@ impl Follower {
         for command in self.sender.due(&telemetry) {
             stand.send(&command)?;
         }
-        if let Some(at) = self.sender.at(time_s) {
+        if let Some(at) = self.sender.motion(time_s) {
             stand.compare_with(&at);
         }
-        let over = self.sender.over(time_s);
+        let over = self.sender.is_over(time_s);
         if over {
             stand.forget_commanded();
         }
