@@ -31,7 +31,7 @@ pub trait CommandedLeg {
     fn outcome(&mut self) -> Option<CommandOutcome>;
     /// The leg after the last tick.
     fn telemetry(&mut self) -> Telemetry<f32>;
-    /// What the last jog saw.
+    /// What the last jog measured.
     fn jog_report(&mut self) -> Option<JogReport<f32>>;
     /// What the sensors read last.
     fn sensors(&mut self) -> Sensors;
@@ -73,7 +73,7 @@ struct Stream {
 }
 
 impl HostLink {
-    /// A line on which nothing was said yet, to a leg with these settings.
+    /// A line on which nothing was sent yet, to a leg with these settings.
     #[must_use]
     pub fn new(identity: Identity, settings: Settings) -> Self {
         Self {
@@ -240,7 +240,7 @@ impl Service {
 
     fn identify(&mut self, hello: &Hello) -> Result<HostReply, HostRefusal> {
         if hello.schema != HOST_SCHEMA {
-            // Whoever is known on the line stays so: a stranger must not take the leg from its host.
+            // The host that has identified itself stays identified: a host of another version must not end that.
             return Err(HostRefusal::SchemaMismatch {
                 schema: HOST_SCHEMA,
             });

@@ -23,7 +23,7 @@ pub struct SensingLeg<T> {
 }
 
 impl<T: Scalar> SensingLeg<T> {
-    /// A leg that has not seen its sensors yet.
+    /// A leg before the first reading of its sensors.
     ///
     /// # Errors
     /// Settings that are refused.
@@ -187,7 +187,7 @@ impl<T: Scalar> LinkedLeg<T>
 where
     for<'a> RecordedLeg<'a, T>: CommandedLeg,
 {
-    /// A leg that has not seen its sensors yet, on a line on which nothing was said yet.
+    /// A leg before the first reading of its sensors, on a line on which nothing was sent yet.
     ///
     /// # Errors
     /// Settings that are refused.

@@ -1,4 +1,4 @@
-//! THE precision table: how far the firmware's f32 may be from f64.
+//! The precision table: how far the firmware's f32 may be from f64.
 //!
 //! It holds on the paper's rig over its workspace: any azimuth, tilts to 30°, payloads to 2 kg, pretensions that keep every
 //! tension between 8 N and 150 N, tendons of 2e4 to 2e5 N/m, all supports. Both sides get the same arguments: those

@@ -97,7 +97,7 @@ impl Stand {
         sent.map_err(|error| error.to_string())
     }
 
-    /// Nothing is heard of the host any more but commands.
+    /// The host sends nothing any more but commands.
     pub fn silence(&mut self) {
         self.host.silent = true;
     }

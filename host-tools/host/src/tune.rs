@@ -55,8 +55,8 @@ pub fn supply_v(operator: &mut Operator, settings: &Settings) -> Result<f32, Ope
 /// Jogs a motor of a disarmed leg by the plan, calls `seen` after each jog that counts, and leaves the tendon where it was.
 ///
 /// # Errors
-/// A [`TuneError`]: whatever ends a jog but its travel and the tension. The motor is off then. Where the motor obeyed, the tendon
-/// is paid out to where it was all the same; else the error tells how far it is from there.
+/// A [`TuneError`]: whatever ends a jog but its travel and the tension. The motor is off then. Where the motor obeyed,
+/// the tendon is paid out to where it was all the same; else the error says how far it is from there.
 pub fn measure_motor(
     operator: &mut Operator,
     plan: &JogPlan,

@@ -53,7 +53,7 @@ pub(crate) fn print_notes(notes: &[String]) {
     }
 }
 
-/// Tells of a recording of that name that did not come to its end.
+/// Prints a note on a recording of that name that did not come to its end.
 pub(crate) fn note_unfinished(file: &Path) {
     if let Some(part) = recording::unfinished(file) {
         note(&format!(

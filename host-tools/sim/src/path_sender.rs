@@ -32,7 +32,7 @@ pub struct PathSender {
 }
 
 impl PathSender {
-    /// A path for a leg with these settings. Without `ends` its last point is not told to be that.
+    /// A path for a leg with these settings. Without `ends` its last point is not marked as the last.
     ///
     /// # Errors
     /// The time of the point that is refused, s, and why.

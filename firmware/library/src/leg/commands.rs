@@ -52,7 +52,7 @@ impl<T: Scalar> Leg<T> {
     fn execute(&mut self, command: Command, measured: &Measured<T>) -> Result<(), CommandRefusal> {
         match command {
             Command::KeepAlive => Ok(()),
-            // Who changes what a leg does that moves by itself, takes it over first.
+            // A leg that keeps station is armed before it takes one of these.
             Command::Pretension(_) | Command::Stiffness { .. } | Command::Compensation(_)
                 if self.mode.state() == State::KeepingStation =>
             {
@@ -85,7 +85,7 @@ impl<T: Scalar> Leg<T> {
                 self.shared.refused = false;
                 self.link.clear_bad_frames();
                 let homed = self.shared.zero_m.is_some();
-                // Whatever was named first: a leg whose sensors disagree does not follow them again.
+                // Whichever fault was latched: a leg whose sensors disagree does not follow them again.
                 let mut causes = FaultSet::NONE;
                 causes.add(Fault::Residual, !self.agreement.agree());
                 let state = self.mode.state();

@@ -28,8 +28,8 @@ const STILL_STEP_M: f32 = 1e-4 * TICK_S;
 /// One that is led and goes by less than this in a tick does not turn, or is not counted, m: 0.01 mm/s.
 const STANDING_STEP_M: f32 = 1e-5 * TICK_S;
 
-/// The leg stays where it is. While it brakes, a tendon at the maximum tension is paid out a little, unless a load cell is in doubt; at
-/// rest no load cell is asked.
+/// The leg stays where it is. While it brakes, a tendon at the maximum tension is paid out a little, unless a load cell is in
+/// doubt; at rest no load cell is used.
 #[derive(Clone, Copy, Debug)]
 pub struct Held<T> {
     /// How far each motor went in a tick at first, m.

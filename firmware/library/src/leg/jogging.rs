@@ -56,7 +56,7 @@ pub struct Jogging<T> {
 }
 
 impl<T: Scalar> Jogging<T> {
-    /// From where the motors are; the demand has been checked. What it sees is kept in `shared`.
+    /// From where the motors are; the demand has been checked. What it measures is kept in `shared`.
     pub fn begin(shared: &mut Shared<T>, demand: &JogDemand, measured: &Measured<T>) -> Self {
         let jog_bounds = &shared.limits.jog;
         let pays_out = demand.travel_m < 0.0;

@@ -11,7 +11,8 @@ const ARRIVED_M: f32 = 2e-5;
 /// Time after which a motor that did not arrive is waited for no longer, s, beside twice the time that the way takes.
 const GRACE_S: f32 = 0.5;
 
-/// The tendons are paid out. No load cell is asked: one that lies would leave its tendon taut, and the others would swing the leg.
+/// The tendons are paid out. No load cell is used: one that is wrong would leave its tendon taut, and the others would swing
+/// the leg.
 #[derive(Clone, Copy, Debug)]
 pub struct RampingDown<T> {
     rest_m: [T; 3],

@@ -43,7 +43,7 @@ pub struct Shared<T> {
     pub pretension: PretensionSearch<T>,
     pub mechanism: Mechanism<T>,
     pub stream: Stream<T>,
-    /// What the last jog saw.
+    /// What the last jog measured.
     pub jog_report: Option<JogReport<T>>,
     pub station: StationLimits<T>,
     pub friction: Friction<T>,

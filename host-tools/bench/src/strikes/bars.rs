@@ -42,8 +42,8 @@ const HOMING_N: f64 = 40.0;
 const REST_MM: f64 = 0.5;
 const WAY_MM: f64 = 3.0;
 
-/// The same of a leg that is cleared and armed again with its fault, twice, mm: each arm learns anew what the cell shows, and
-/// goes by what it lies until it lies otherwise.
+/// The same of a leg that is cleared and armed again with its fault, twice, mm: each arm takes what the cell shows as right,
+/// and follows its error until that changes.
 const REARMED_MM: f64 = 2.0;
 
 /// The same where a gain is 20 % off, which cannot be distinguished from a load, mm.
@@ -92,7 +92,7 @@ const NAMED_S: f64 = 0.5;
 const WANDERS_S: f64 = 2.0;
 const DRIFTS_S: f64 = 5.0;
 
-/// How far a cell has to lie before it must be told, N.
+/// Error of a cell from which on it has to be named, N.
 const LIE_N: f64 = 8.0;
 
 /// How far a motor has to go for its failure to show, m: 1 mm at the tip.
@@ -240,7 +240,7 @@ const fn is_found_at_once(defect: Defect) -> bool {
 fn gain_at_max_mm(defect: Option<Defect>, f_max_n: f64, highest_n: [f64; 3]) -> f64 {
     let shows_n = match defect {
         Some(Defect::CellGainDrift(i)) => 1.2 * highest_n[i],
-        // 5 N in a second, for the time in which it is to be told.
+        // 5 N in a second, for the time in which it is to be named.
         Some(Defect::CellDrifting(i)) => highest_n[i] + 5.0 * DRIFTS_S,
         _ => return 0.0,
     };

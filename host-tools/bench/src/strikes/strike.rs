@@ -280,7 +280,7 @@ impl Watch<'_> {
         self.struck.tension_n > OVER_PART * self.case.file.f_max_n
     }
 
-    /// Clears and arms, as a user does who does not believe the fault.
+    /// Clears the fault and arms without a repair, as a user may.
     fn rearm(&mut self, stand: &mut Stand) -> Result<(), String> {
         let (round, clears) = (self.given / 2, self.given.is_multiple_of(2));
         if self.case.activity != Activity::Rearmed || round >= CLEARS_S.len() {

@@ -17,7 +17,7 @@ pub(super) struct RunReport<'a> {
     pub(super) firmware: &'a str,
     pub(super) summary: &'a Summary,
     pub(super) ticks_per_s: f64,
-    /// In a second of the processor's time; none where the system does not tell.
+    /// In a second of the processor's time; none where the system does not say it.
     pub(super) ticks_per_processor_s: Option<f64>,
     /// The most memory that was in use.
     pub(super) memory_mib: Option<f64>,

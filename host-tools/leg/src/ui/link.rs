@@ -4,15 +4,15 @@
 //! `drive`, `release` or `stop`. Bytes are whole frames of the leg's own protocol. Those of a page that does not drive are not passed
 //! on, nor those that have waited for long.
 
+mod acceptor;
 mod connection;
-mod door;
 mod pages;
 
 #[cfg(test)]
 mod tests;
 
+use acceptor::Acceptor;
 use connection::{PATIENCE, TURN_TIME};
-use door::Door;
 use leg_base::description::hex;
 use pages::{Frames, Pages, json, lock};
 use serde::Serialize;
@@ -25,10 +25,10 @@ use std::thread;
 use std::time::{Duration, Instant};
 use tungstenite::Message;
 
-/// Time after which frames are too old to be sent: a leg must not do what was commanded before it was last heard of.
+/// Time after which frames are too old to be sent: a leg must not do what was commanded before it last reported.
 const FRESH_TIME: Duration = Duration::from_millis(100);
 
-/// What a page is told first.
+/// The first message to a page.
 #[derive(Clone, Debug, Serialize)]
 pub struct Introduction {
     pub hello: PageHello,
@@ -76,13 +76,13 @@ impl PageLink {
         let stops = Arc::clone(&pages.stops);
         let pages = Arc::new(Mutex::new(pages));
         let open = Arc::new(AtomicUsize::new(0));
-        let door = Door {
+        let acceptor = Acceptor {
             path: format!("/{token}"),
             origin: origin.into(),
             pages: Arc::clone(&pages),
             open: Arc::clone(&open),
         };
-        thread::Builder::new().spawn(move || door.admit_all(&listener))?;
+        thread::Builder::new().spawn(move || acceptor.accept_all(&listener))?;
         Ok(Self {
             address,
             token,
@@ -121,7 +121,7 @@ impl PageLink {
             .map(|frames| frames.bytes)
     }
 
-    /// Tells pages that come from now on of the leg as it is now.
+    /// Introduces the leg as it is now to pages that come from now on.
     pub fn introduce(&self, hello: PageHello) {
         lock(&self.pages).introduction = json(&Introduction { hello });
     }

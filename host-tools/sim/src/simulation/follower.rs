@@ -28,7 +28,7 @@ impl Follower {
         Ok(Self { sender, ends })
     }
 
-    /// Sends what is due; whether the path is over and, if its last point was told, the leg rests.
+    /// Sends what is due; whether the path is over and, if its last point was marked as that, the leg rests.
     pub fn advance(&mut self, stand: &mut TestStand<'_>) -> Result<bool, SimulationError> {
         let Some(telemetry) = stand.leg.telemetry().copied() else {
             return Ok(false);

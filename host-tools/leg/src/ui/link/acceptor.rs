@@ -1,4 +1,4 @@
-//! Who is let in: pages of this program, up to so many, each with a thread.
+//! Accepts connections: of pages of this program, up to so many, each with a thread.
 
 use super::connection::{PATIENCE, TURN_TIME, serve};
 use super::pages::Pages;
@@ -21,18 +21,18 @@ const PAGES_MAX: usize = 16;
 /// Pause after a connection that the system could not give.
 const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
 
-/// Who is let in.
+/// Accepts connections of pages.
 #[derive(Clone)]
-pub struct Door {
+pub struct Acceptor {
     pub path: String,
     pub origin: String,
     pub pages: Arc<Mutex<Pages>>,
     pub open: Arc<AtomicUsize>,
 }
 
-impl Door {
+impl Acceptor {
     /// Gives each connection a thread, up to so many. A page that goes, or is refused, is no failure of the link.
-    pub fn admit_all(&self, listener: &TcpListener) {
+    pub fn accept_all(&self, listener: &TcpListener) {
         for stream in listener.incoming() {
             let Ok(stream) = stream else {
                 thread::sleep(ACCEPT_PAUSE);
@@ -42,12 +42,12 @@ impl Door {
                 continue;
             }
             self.open.fetch_add(1, Ordering::AcqRel);
-            let door = self.clone();
+            let acceptor = self.clone();
             let spawned = thread::Builder::new().spawn(move || {
-                if let Some(socket) = door.admit(stream) {
-                    serve(socket, &door.pages);
+                if let Some(socket) = acceptor.accept(stream) {
+                    serve(socket, &acceptor.pages);
                 }
-                door.open.fetch_sub(1, Ordering::AcqRel);
+                acceptor.open.fetch_sub(1, Ordering::AcqRel);
             });
             if spawned.is_err() {
                 self.open.fetch_sub(1, Ordering::AcqRel);
@@ -55,7 +55,7 @@ impl Door {
         }
     }
 
-    fn admit(&self, stream: TcpStream) -> Option<WebSocket<TcpStream>> {
+    fn accept(&self, stream: TcpStream) -> Option<WebSocket<TcpStream>> {
         stream.set_read_timeout(Some(PATIENCE)).ok()?;
         stream.set_write_timeout(Some(PATIENCE)).ok()?;
         stream.set_nodelay(true).ok()?;
