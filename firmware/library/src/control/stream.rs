@@ -14,7 +14,8 @@ pub const POINTS_MAX: usize = 32;
 /// Ticks between two points, at least: 5 ms. Nearer to each other, too much of their acceleration would be rounding.
 const SPACING_MIN_TICKS: u32 = 10 * CYCLE_TICKS as u32;
 
-/// Ticks from now to a point, at most: 10 s.
+/// Ticks from now to a point, at most: 10 s, thirty times what [`POINTS_MAX`] points at 100 Hz span. A point farther ahead has a wrong
+/// count of ticks, and would keep its place in the queue until then.
 const AHEAD_MAX_TICKS: u32 = 80_000;
 
 /// The set-points that wait, and where the path to them has come to.
