@@ -7,8 +7,9 @@ use leg_model::Scalar;
 /// Gravity by which moments are judged, whatever that of the rig is: where a payload weighs nothing it shows by its inertia alone.
 const EARTH_M_PER_S2: f32 = 9.81;
 
-/// Sine of the tilt from which a leg at rest shows its payload: 8.6°. At 0.03 a leg that leans by 5° without one comes to estimate 0.4 kg;
-/// at 0.4 a payload that changes at a tilt of 20° moves the tip by 4.7 mm. `tests/suite/sim/station.rs` holds both.
+/// Sine of the tilt from which a leg at rest shows its payload: 8.6°. At 0.03 a leg that leans by 5° still estimates 0.4 kg of a payload
+/// that was taken off; at 0.4 one that leans by 20° sags farther than its bar when a payload changes. `tests/suite/sim/station.rs` holds
+/// both.
 const SHOWN_SINE: f32 = 0.15;
 
 /// Variance of a payload of which nothing is known, kg²: a deviation of half of the 2 kg that the paper's leg carries. At 0.05 it is found
