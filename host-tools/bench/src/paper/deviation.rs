@@ -110,9 +110,8 @@ fn deviation_from_equilibrium(rig: &RigFile) -> Result<[PaperRow; 2], Error> {
     }
     let average = linear.iter().sum::<f64>() / linear.len() as f64;
     let worst = with_load.iter().copied().fold(0.0, f64::max);
-    let row = |what, ours, why| {
-        PaperRow::new(Topic::Deviation, what, (1.5, ours), ("%", 3), why).as_limit()
-    };
+    let row =
+        |what, ours, why| PaperRow::new(Topic::Deviation, what, (1.5, ours), ("%", 3), why).limit();
     Ok([
         row(
             "theory beyond static simulation, on average",
