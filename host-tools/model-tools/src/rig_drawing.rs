@@ -40,7 +40,7 @@ pub fn svg(rig: &RigFile) -> io::Result<String> {
         .children(close_view::draw(&leaning))
         .children(notes(rig, &leaning));
     let mut text = Vec::new();
-    xml_element::write(&root, " DrawResult by `leg rig draw`. ", &mut text)?;
+    xml_element::write(&root, " Drawn by `leg rig draw`. ", &mut text)?;
     String::from_utf8(text).map_err(io::Error::other)
 }
 
