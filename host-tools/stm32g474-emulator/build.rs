@@ -38,7 +38,7 @@ fn crate_directory() -> Result<PathBuf> {
 /// `BLOCKS`: each with a table of registers that it may share with others of its kind.
 fn table(chip: &Path) -> Result<String> {
     let source = fs::read_to_string(chip.join("mod.rs"))?;
-    let mut blocks = String::from("pub static BLOCKS: &[Block] = &[\n");
+    let mut blocks = String::from("pub static BLOCKS: &[DescribedBlock] = &[\n");
     let mut kinds = BTreeSet::new();
     for line in source.lines() {
         // pub type TIM4 = crate::Periph<tim3::RegisterBlock, 0x4000_0800>;
@@ -48,14 +48,14 @@ fn table(chip: &Path) -> Result<String> {
         let table = kind.to_uppercase();
         writeln!(
             blocks,
-            "Block {{ name: {name:?}, base: {base}, registers: {table} }},"
+            "DescribedBlock {{ name: {name:?}, base: {base}, registers: {table} }},"
         )?;
         kinds.insert(kind.to_owned());
     }
     blocks.push_str("];\n");
     for kind in kinds {
         let table = kind.to_uppercase();
-        writeln!(blocks, "static {table}: &[Register] = &[")?;
+        writeln!(blocks, "static {table}: &[DescribedRegister] = &[")?;
         registers(&mut blocks, chip, &kind)?;
         blocks.push_str("];\n");
     }
@@ -131,7 +131,7 @@ fn register(out: &mut String, name: &str, offset: u32, source: &str) -> Result<(
     let write = specification.contains("impl crate::Writable for");
     writeln!(
         out,
-        "Register {{ name: {name:?}, offset: {offset:#x}, reset: {reset}, read: {read}, write: {write}, fields: &["
+        "DescribedRegister {{ name: {name:?}, offset: {offset:#x}, reset: {reset}, read: {read}, write: {write}, fields: &["
     )?;
     for (name, mask) in fields(source)? {
         writeln!(out, "({name:?}, {mask:#x}),")?;

@@ -6,7 +6,7 @@ use nalgebra::{SVector, Vector3};
 impl<T: Scalar, const N: usize> Geometry<T, N> {
     /// How much of a unit tension in each tendon pulls the leg up along its own axis: −n·p with n = (B − e)/l.
     #[must_use]
-    pub fn along_leg(
+    pub fn axial_pulls(
         &self,
         direction: &Direction<T>,
         kinematics: &Kinematics<T, N>,
@@ -19,15 +19,15 @@ impl<T: Scalar, const N: usize> Geometry<T, N> {
         })
     }
 
-    /// What a small rotation of the leg changes [`Self::along_leg`] by; `lengthening` is what it does to the tendons, m.
-    pub(crate) fn along_leg_change(
+    /// What a small rotation of the leg changes [`Self::axial_pulls`] by; `lengthening` is what it does to the tendons, m.
+    pub(crate) fn axial_pulls_change(
         &self,
         direction: &Direction<T>,
         kinematics: &Kinematics<T, N>,
         rotation: &Vector3<T>,
         lengthening: &SVector<T, N>,
     ) -> SVector<T, N> {
-        let along = self.along_leg(direction, kinematics);
+        let along = self.axial_pulls(direction, kinematics);
         let turned = rotation.cross(&direction.vector());
         SVector::from_fn(|i, _| {
             let [x, y] = self.tendons[i].base;

@@ -37,7 +37,7 @@ pub struct ForwardKinematics<T> {
 ///
 /// let rig = Rig::new(&RigParameters::<f64, 3>::TABLE_1)?;
 /// let measured_m = Vector3::new(0.0349, 0.0351, 0.0350);
-/// let found = forward_kinematics(rig.geometry(), &measured_m, &Direction::down())?;
+/// let found = forward_kinematics(rig.geometry(), &measured_m, &Direction::straight_down())?;
 /// // The leg leans towards the shortest tendon; no direction fits all three lengths exactly.
 /// assert!(found.direction.vector().x > 0.0);
 /// assert!(found.residual_m < 1e-4);
@@ -138,7 +138,7 @@ impl<T: Scalar, const N: usize> Equations<T> for Twisting<'_, T, N> {
         for (pair, &length) in geometry.tendons.iter().zip(self.lengths) {
             let target = MeasuredTendon::new(pair, length);
             let error = target.polynomial.evaluate(q);
-            let by_torsion = by_torsion(pair, geometry.upper, q);
+            let by_torsion = derivative_by_torsion(pair, geometry.upper, q);
             let gradient = [
                 error.gradient[0] + by_torsion * torsion[0],
                 error.gradient[1] + by_torsion * torsion[1],
@@ -151,7 +151,7 @@ impl<T: Scalar, const N: usize> Equations<T> for Twisting<'_, T, N> {
 
 /// ∂F/∂τ at the twisted anchors of `pair`.
 #[inline(always)]
-fn by_torsion<T: Scalar>(pair: &AnchorPair<T>, upper: T, q: &HalfTangent<T>) -> T {
+fn derivative_by_torsion<T: Scalar>(pair: &AnchorPair<T>, upper: T, q: &HalfTangent<T>) -> T {
     let ([base_x, base_y], [leg_x, leg_y]) = (pair.base, pair.leg);
     let across_base = base_x * leg_y - base_y * leg_x;
     let across_tilt = q.x * leg_y - q.y * leg_x;

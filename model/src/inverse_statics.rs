@@ -98,7 +98,9 @@ pub fn inverse_statics<T: Scalar, E: Elasticity<T>, const N: usize>(
     pretension: T,
 ) -> Result<Hold<T, N>, HoldError> {
     let torsion = elastic_torsion(rig, support, direction, load_moment, bounds, pretension)?;
-    let twist = support.twist(direction).then(&Twist::from_torsion(torsion));
+    let twist = support
+        .twist(direction)
+        .composed(&Twist::from_torsion(torsion));
     let geometry = rig.geometry.twisted(&twist);
     let plane = support.plane(direction);
     let moment = load_moment + support.joint_moment(direction, torsion);
@@ -118,7 +120,7 @@ pub fn inverse_statics<T: Scalar, E: Elasticity<T>, const N: usize>(
 ///
 /// let rig = Rig::new(&RigParameters::<f64, 3>::TABLE_1)?;
 /// // Straight down equal tensions carry no moment, whatever hangs on the leg.
-/// let (down, tensions) = (Direction::down(), Vector3::repeat(70.0));
+/// let (down, tensions) = (Direction::straight_down(), Vector3::repeat(70.0));
 /// let support = SupportKind::TorsionFree.into();
 /// let load = estimate_load(rig.geometry(), &support, &down, 0.0, &tensions)?;
 /// assert!(load.norm() < 1e-12);

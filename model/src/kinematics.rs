@@ -49,7 +49,7 @@ impl<T: Scalar, const N: usize> Kinematics<T, N> {
 /// use leg_model::{Direction, Rig, RigParameters, inverse_kinematics};
 ///
 /// let rig = Rig::new(&RigParameters::<f64, 3>::TABLE_1)?;
-/// let hanging = inverse_kinematics(rig.geometry(), &Direction::down())?;
+/// let hanging = inverse_kinematics(rig.geometry(), &Direction::straight_down())?;
 /// assert!(hanging.lengths.iter().all(|length| (length - 0.035).abs() < 1e-12));
 /// # Ok::<(), leg_model::Error>(())
 /// ```

@@ -18,7 +18,7 @@ pub(crate) struct LengthPolynomial<T> {
 }
 
 /// F and its gradient at a q.
-pub(crate) struct LengthError<T> {
+pub(crate) struct PolynomialValue<T> {
     /// 2F.
     pub twice: T,
     pub gradient: [T; 2],
@@ -58,11 +58,11 @@ impl<T: Scalar> LengthPolynomial<T> {
 
     /// F follows from its own gradient (Euler's theorem), which spares the products of second degree.
     #[inline(always)]
-    pub fn evaluate(&self, q: &HalfTangent<T>) -> LengthError<T> {
+    pub fn evaluate(&self, q: &HalfTangent<T>) -> PolynomialValue<T> {
         let gradient_x = self.x + self.xx * q.x + self.xy * q.y;
         let gradient_y = self.y + self.xy * q.x + self.yy * q.y;
         let twice = q.x * (self.x + gradient_x) + q.y * (self.y + gradient_y);
-        LengthError {
+        PolynomialValue {
             twice: self.constant + twice,
             gradient: [gradient_x, gradient_y],
         }

@@ -51,7 +51,7 @@ impl<T: Scalar> Load<T> {
 
     /// The weights' pull along the leg, away from the joint, N.
     #[must_use]
-    pub fn along_leg_n(&self, direction: &Direction<T>) -> T {
+    pub fn axial_force_n(&self, direction: &Direction<T>) -> T {
         self.weight * -direction.z
     }
 

@@ -19,7 +19,7 @@ pub struct Direction<T> {
 impl<T: Scalar> Direction<T> {
     /// Straight down.
     #[must_use]
-    pub fn down() -> Self {
+    pub fn straight_down() -> Self {
         Self {
             x: T::zero(),
             y: T::zero(),
@@ -207,7 +207,7 @@ impl<T: Scalar> Twist<T> {
 
     /// Both twists, one after the other; the order does not matter.
     #[must_use]
-    pub fn then(&self, other: &Self) -> Self {
+    pub fn composed(&self, other: &Self) -> Self {
         let [cos, sin] = self.apply([other.cos, other.sin]);
         Self { sin, cos }
     }

@@ -71,7 +71,7 @@ struct ThirdAxis<'a, T, const N: usize> {
 impl<T: Scalar, const N: usize> ThirdAxis<'_, T, N> {
     /// Moment on the leg along the normal of the plane of its tilts, N·m (times the length of that vector).
     fn moment(&self, torsion: T) -> Result<T, Error> {
-        let twist = self.twist.then(&Twist::from_torsion(torsion));
+        let twist = self.twist.composed(&Twist::from_torsion(torsion));
         let geometry = self.rig.geometry.twisted(&twist);
         let moment_map = inverse_kinematics(&geometry, self.direction)?.moment_map;
         let outer = self.load_moment + self.joint.moment(torsion);

@@ -93,6 +93,13 @@ mod board {
     mod wiring_page;
 }
 
+mod recording {
+    mod player;
+    mod recorded;
+    mod replayed;
+    mod samples;
+}
+
 mod host {
     mod can_bus;
     mod flash;

@@ -1,9 +1,11 @@
-//! How the project is cut: crates point only down, siblings inside a crate form no circle, few programs are linked.
+//! How the project is cut: crates point only down, siblings inside a crate form no circle, a type has a name of its own, few
+//! programs are linked.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod circles;
 mod modules;
+mod type_names;
 
 use cargo_metadata::{Metadata, MetadataCommand, Package};
 use circles::circles;

@@ -1,7 +1,7 @@
 //! Counting the instructions of a kernel.
 
 /// Something that can count the instructions that a kernel takes.
-pub trait Counter {
+pub trait InstructionCounter {
     /// Instructions of one call of `kernel`, without the call and the return: a kernel with an empty body takes none.
     ///
     /// `None` where there is nothing to count with.

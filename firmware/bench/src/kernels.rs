@@ -1,11 +1,11 @@
 //! The model's kernels by name, so that one request can run or count any of them.
 
-mod bench;
+mod arguments;
 mod bodies;
 
-use crate::counter::Counter;
-use bench::Bench;
-use bodies::Body;
+use crate::counter::InstructionCounter;
+use arguments::KernelArguments;
+use bodies::KernelBody;
 use heapless::Vec;
 use leg_model::{Error, RigParameters, Scalar};
 use postcard_schema::Schema;
@@ -116,7 +116,7 @@ pub type KernelOutput<T = f32> = Vec<T, 32>;
 /// # Errors
 /// What the kernel refuses, or the preparation of its arguments.
 pub fn run<T: Scalar>(kernel: Kernel, input: &KernelInput) -> Result<KernelOutput<T>, Error> {
-    visit::<T, _>(kernel, Runner(Bench::new(input)?))
+    visit::<T, _>(kernel, Runner(KernelArguments::new(input)?))
 }
 
 /// Counts the instructions of a kernel, without the preparation of its arguments.
@@ -126,40 +126,42 @@ pub fn run<T: Scalar>(kernel: Kernel, input: &KernelInput) -> Result<KernelOutpu
 pub fn count(
     kernel: Kernel,
     input: &KernelInput,
-    counter: &mut impl Counter,
+    counter: &mut impl InstructionCounter,
 ) -> Result<Option<u32>, Error> {
-    visit::<f32, _>(kernel, Counting(Bench::new(input)?, counter))
+    visit::<f32, _>(kernel, Counting(KernelArguments::new(input)?, counter))
 }
 
 /// Something to do with a kernel whose type is known.
 trait Visitor<T> {
     type Output;
-    fn visit<B: Body<T>>(self) -> Result<Self::Output, Error>;
+    fn visit<B: KernelBody<T>>(self) -> Result<Self::Output, Error>;
 }
 
 fn visit<T: Scalar, V: Visitor<T>>(kernel: Kernel, visitor: V) -> Result<V::Output, Error> {
     match kernel {
-        Kernel::SquareRoot => visitor.visit::<bodies::SquareRoot>(),
-        Kernel::SinCos => visitor.visit::<bodies::SinCos>(),
-        Kernel::InverseKinematics => visitor.visit::<bodies::InverseKinematics>(),
-        Kernel::ForwardKinematics => visitor.visit::<bodies::ForwardKinematics>(),
-        Kernel::ForwardKinematicsUniversal => visitor.visit::<bodies::ForwardKinematicsUniversal>(),
-        Kernel::Distribution => visitor.visit::<bodies::Distribution>(),
-        Kernel::FullPass => visitor.visit::<bodies::FullPass>(),
-        Kernel::FullPassInPlane => visitor.visit::<bodies::FullPassInPlane>(),
-        Kernel::TendonCurve => visitor.visit::<bodies::TendonCurve>(),
-        Kernel::InverseStatics => visitor.visit::<bodies::InverseStatics>(),
-        Kernel::StiffnessCommand => visitor.visit::<bodies::StiffnessCommand>(),
-        Kernel::ModelTick => visitor.visit::<bodies::ModelTick>(),
+        Kernel::SquareRoot => visitor.visit::<bodies::SquareRootKernel>(),
+        Kernel::SinCos => visitor.visit::<bodies::SinCosKernel>(),
+        Kernel::InverseKinematics => visitor.visit::<bodies::InverseKinematicsKernel>(),
+        Kernel::ForwardKinematics => visitor.visit::<bodies::ForwardKinematicsKernel>(),
+        Kernel::ForwardKinematicsUniversal => {
+            visitor.visit::<bodies::ForwardKinematicsUniversalKernel>()
+        }
+        Kernel::Distribution => visitor.visit::<bodies::DistributionKernel>(),
+        Kernel::FullPass => visitor.visit::<bodies::FullPassKernel>(),
+        Kernel::FullPassInPlane => visitor.visit::<bodies::FullPassInPlaneKernel>(),
+        Kernel::TendonCurve => visitor.visit::<bodies::TendonCurveKernel>(),
+        Kernel::InverseStatics => visitor.visit::<bodies::InverseStaticsKernel>(),
+        Kernel::StiffnessCommand => visitor.visit::<bodies::StiffnessCommandKernel>(),
+        Kernel::ModelTick => visitor.visit::<bodies::ModelTickKernel>(),
     }
 }
 
-struct Runner<T>(Bench<T>);
+struct Runner<T>(KernelArguments<T>);
 
 impl<T: Scalar> Visitor<T> for Runner<T> {
     type Output = KernelOutput<T>;
 
-    fn visit<B: Body<T>>(self) -> Result<KernelOutput<T>, Error> {
+    fn visit<B: KernelBody<T>>(self) -> Result<KernelOutput<T>, Error> {
         let mut result = Err(Error::NotConverged);
         execute::<T, B>(&self.0, &mut result);
         let mut numbers = KernelOutput::new();
@@ -173,12 +175,12 @@ impl<T: Scalar> Visitor<T> for Runner<T> {
     }
 }
 
-struct Counting<'a, C>(Bench<f32>, &'a mut C);
+struct Counting<'a, C>(KernelArguments<f32>, &'a mut C);
 
-impl<C: Counter> Visitor<f32> for Counting<'_, C> {
+impl<C: InstructionCounter> Visitor<f32> for Counting<'_, C> {
     type Output = Option<u32>;
 
-    fn visit<B: Body<f32>>(self) -> Result<Option<u32>, Error> {
+    fn visit<B: KernelBody<f32>>(self) -> Result<Option<u32>, Error> {
         let mut result = Err(Error::NotConverged);
         match self.1.count(execute::<f32, B>, &self.0, &mut result) {
             Some(count) => result
@@ -191,6 +193,6 @@ impl<C: Counter> Visitor<f32> for Counting<'_, C> {
 
 /// The kernel as it is counted: one function, not inlined, arguments and result in memory.
 #[inline(never)]
-fn execute<T, B: Body<T>>(bench: &Bench<T>, result: &mut Result<B::Output, Error>) {
+fn execute<T, B: KernelBody<T>>(bench: &KernelArguments<T>, result: &mut Result<B::Output, Error>) {
     *result = B::run(bench);
 }

@@ -7,7 +7,9 @@ use leg_model::{
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// The numbers of a [`Query`], not yet validated.
+/// The numbers of a [`Query`], not yet validated. It is no [`Query`]: that holds tendons and a support which only validation makes,
+/// in a form that may change without the link, and the numbers from which they are made are the firmware's
+/// [`TendonParameters`], which the model does not know.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
 #[allow(missing_docs, reason = "each field is documented at Query")]
 pub struct QueryMessage {

@@ -1,6 +1,6 @@
 //! Answers requests: the same on every board and inside the host's own process.
 
-use crate::counter::Counter;
+use crate::counter::InstructionCounter;
 use crate::kernels;
 use crate::protocol::{
     BENCH_SCHEMA, BoardInfo, BoardStep, EvaluateRequest, KernelRequest, Refusal, Reply, Request,
@@ -15,7 +15,7 @@ use leg_firmware::settings::Settings;
 use leg_firmware::version::VERSION;
 
 /// What the server needs from the board that it runs on.
-pub trait Board: Counter {
+pub trait BenchBoard: InstructionCounter {
     /// What the board is and found at boot.
     fn info(&self) -> BoardInfo;
 
@@ -32,7 +32,7 @@ pub struct Server<B, R> {
     leg: Option<VirtualLeg>,
 }
 
-impl<B: Board, R: BorrowMut<Recorder>> Server<B, R> {
+impl<B: BenchBoard, R: BorrowMut<Recorder>> Server<B, R> {
     /// A server whose host has not said [`Request::Hello`] yet.
     pub const fn new(board: B, recorder: R) -> Self {
         Self {

@@ -1,6 +1,6 @@
 //! A leg with its line on a virtual board: all of the firmware that an emulator runs.
 
-use crate::counter::Counter;
+use crate::counter::InstructionCounter;
 use crate::protocol::{BoardReply, BoardStep, TickReply, TickRequest};
 use crate::virtual_board::VirtualBoard;
 use leg_firmware::board::{self, LowerHalf};
@@ -45,7 +45,7 @@ impl VirtualLeg {
     }
 
     /// The same, and how many instructions the control law and the recorder took; `None` where there is nothing to count with.
-    pub fn count_tick<B: Counter>(
+    pub fn count_tick<B: InstructionCounter>(
         &mut self,
         request: &TickRequest,
         recorder: &mut Recorder,

@@ -1,4 +1,4 @@
-//! What is pure of a board: all that its lower half decides, without a register.
+//! The part of a board layer that touches no register: all that its lower half decides.
 //!
 //! A board layer reads and writes registers and leaves the rest to this module, so that the rest is tested on the host.
 

@@ -148,7 +148,7 @@ impl Decoder {
 
     /// Takes the stream's next byte; a zero ends a frame, which is then given.
     ///
-    /// Zeros between frames are skipped, so a sender may send one to end whatever the receiver believes to be in.
+    /// Zeros between frames are skipped, so a sender may send one to end a frame of which the receiver has only a part.
     pub fn push(&mut self, byte: u8) -> Option<Result<Frame<'_>, FrameError>> {
         match self.state.feed(byte) {
             Ok(DecodeResult::NoData | DecodeResult::DataStart) => None,

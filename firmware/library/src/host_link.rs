@@ -11,7 +11,7 @@ pub use messages::{
 use crate::command::Command;
 use crate::frame::{Decoder, Frame, FrameError, MAX_FRAME};
 use crate::jog::JogReport;
-use crate::leg::Outcome;
+use crate::leg::CommandOutcome;
 use crate::recorder::{RecorderReply, RecorderRequest};
 use crate::sensors::Sensors;
 use crate::settings::Settings;
@@ -28,10 +28,10 @@ pub trait CommandedLeg {
     /// Takes note of a frame that could not be read.
     fn note_decode_error(&mut self);
     /// What became of a command.
-    fn outcome(&mut self) -> Option<Outcome>;
+    fn outcome(&mut self) -> Option<CommandOutcome>;
     /// The leg after the last tick.
     fn telemetry(&mut self) -> Telemetry<f32>;
-    /// What the last jog saw.
+    /// What the last jog measured.
     fn jog_report(&mut self) -> Option<JogReport<f32>>;
     /// What the sensors read last.
     fn sensors(&mut self) -> Sensors;
@@ -73,7 +73,7 @@ struct Stream {
 }
 
 impl HostLink {
-    /// A line on which nothing was said yet, to a leg with these settings.
+    /// A line on which nothing was sent yet, to a leg with these settings.
     #[must_use]
     pub fn new(identity: Identity, settings: Settings) -> Self {
         Self {
@@ -106,7 +106,7 @@ impl HostLink {
     /// Reports to the host what became of its commands, and streams telemetry if it asked for that. Called after each tick,
     /// or more seldom.
     pub fn report(&mut self, leg: &mut impl CommandedLeg) {
-        while let Some(Outcome { number, result }) = leg.outcome() {
+        while let Some(CommandOutcome { number, result }) = leg.outcome() {
             let reply = match result {
                 Ok(()) => HostReply::Done,
                 Err(refusal) => HostReply::Refused(HostRefusal::Command(refusal)),
@@ -240,7 +240,7 @@ impl Service {
 
     fn identify(&mut self, hello: &Hello) -> Result<HostReply, HostRefusal> {
         if hello.schema != HOST_SCHEMA {
-            // Whoever is known on the line stays so: a stranger must not take the leg from its host.
+            // The host that has identified itself stays identified: a host of another version must not end that.
             return Err(HostRefusal::SchemaMismatch {
                 schema: HOST_SCHEMA,
             });

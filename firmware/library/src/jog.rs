@@ -70,7 +70,7 @@ pub enum JogEnd {
     CutOff,
 }
 
-/// What a jog saw.
+/// What a jog measured.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct JogReport<T> {
     /// What was asked for.

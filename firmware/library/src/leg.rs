@@ -17,7 +17,7 @@ mod shared;
 mod slack;
 mod station;
 
-pub use command_queue::Outcome;
+pub use command_queue::CommandOutcome;
 
 use crate::control::{LoadEstimation, Measured, Measurement};
 use crate::drive::Drive;
@@ -57,7 +57,7 @@ pub struct Leg<T> {
 }
 
 impl<T: Scalar> Leg<T> {
-    /// A leg that has not seen its sensors yet.
+    /// A leg before the first reading of its sensors.
     ///
     /// # Errors
     /// Settings that are refused.
@@ -163,7 +163,7 @@ impl<T: Scalar> Leg<T> {
                 }
             }
             Mode::Held(held) => {
-                // A cell may be found to lie while the leg brakes: nothing gives way to it from then on.
+                // A load cell may be found wrong while the leg brakes: from then on no tendon is paid out by it.
                 if held.brakes() && self.supervisor.latched().overlaps(FaultSet::OF_CELLS) {
                     shared.ignore_tensions();
                 }
@@ -176,7 +176,7 @@ impl<T: Scalar> Leg<T> {
             }
             Mode::Boot { .. } | Mode::Disarmed | Mode::Off => {}
         }
-        // The estimate goes on while nothing is made of it, so that the leg starts from where it is.
+        // The estimate goes on although nothing uses it, so that the leg starts from where it is.
         if self.phase == Phase::Estimate
             && shared.zero_m.is_some()
             && shared
@@ -320,7 +320,7 @@ impl<T: Scalar> Leg<T> {
         self.mode.state()
     }
 
-    /// What the last jog saw; none since the start.
+    /// What the last jog measured; none since the start.
     #[must_use]
     pub fn jog_report(&self) -> Option<JogReport<T>> {
         self.shared.jog_report

@@ -63,7 +63,7 @@
 //! | trim | correction of the pretension by the measured tensions, N |
 //! | residual | what forward kinematics leaves of the three lengths, m |
 //! | excess | load beyond the leg's own weight, as a horizontal moment, N·m |
-//! | suspect cells | load cells that a latched fault questions: a held leg does not move by them |
+//! | suspect cells | load cells that may be the cause of a latched fault: a held leg does not move by them |
 //! | latched | said of a fault until it is cleared |
 //! | limit, hold, ramp down, gate off | reactions to a fault, from the mildest to the most severe |
 #![cfg_attr(not(test), no_std)]

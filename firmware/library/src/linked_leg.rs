@@ -4,7 +4,7 @@ use crate::command::Command;
 use crate::drive::Drive;
 use crate::host_link::{CommandedLeg, HostLink, HostRefusal, Identity};
 use crate::jog::JogReport;
-use crate::leg::{Checked, Leg, Outcome};
+use crate::leg::{Checked, CommandOutcome, Leg};
 use crate::recorder::{Recorder, RecorderReply, RecorderRequest, RecorderSetup};
 use crate::sensors::Sensors;
 use crate::settings::{Settings, SettingsError};
@@ -23,7 +23,7 @@ pub struct SensingLeg<T> {
 }
 
 impl<T: Scalar> SensingLeg<T> {
-    /// A leg that has not seen its sensors yet.
+    /// A leg before the first reading of its sensors.
     ///
     /// # Errors
     /// Settings that are refused.
@@ -82,7 +82,7 @@ impl<T: Scalar> SensingLeg<T> {
     }
 
     /// See [`Leg::outcome`].
-    pub fn outcome(&mut self) -> Option<Outcome> {
+    pub fn outcome(&mut self) -> Option<CommandOutcome> {
         self.leg.outcome()
     }
 
@@ -144,7 +144,7 @@ macro_rules! commanded {
                 self.leg.note_decode_error();
             }
 
-            fn outcome(&mut self) -> Option<Outcome> {
+            fn outcome(&mut self) -> Option<CommandOutcome> {
                 self.leg.outcome()
             }
 
@@ -187,7 +187,7 @@ impl<T: Scalar> LinkedLeg<T>
 where
     for<'a> RecordedLeg<'a, T>: CommandedLeg,
 {
-    /// A leg that has not seen its sensors yet, on a line on which nothing was said yet.
+    /// A leg before the first reading of its sensors, on a line on which nothing was sent yet.
     ///
     /// # Errors
     /// Settings that are refused.

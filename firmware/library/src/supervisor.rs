@@ -75,7 +75,10 @@ impl Supervisor {
     #[must_use]
     #[inline(always)]
     pub fn stopped_but_for(&self, fault: Fault) -> bool {
-        self.latched.without_limits().without(fault).any()
+        self.latched
+            .without_limits()
+            .difference(FaultSet::single(fault))
+            .any()
     }
 
     /// Whether a fault is latched that does more than limit.

@@ -4,7 +4,7 @@ use crate::counter;
 use embassy_time::{Duration, Instant, Timer};
 use leg_firmware::host_link::BoardKind;
 use leg_firmware::settings::Settings;
-use leg_firmware_bench::counter::Counter;
+use leg_firmware_bench::counter::InstructionCounter;
 use leg_firmware_bench::exit::Exit;
 use leg_firmware_bench::protocol::{BoardInfo, BootCheck};
 use leg_firmware_bench::server;
@@ -43,14 +43,14 @@ impl QemuBoard {
     }
 }
 
-impl Counter for QemuBoard {
+impl InstructionCounter for QemuBoard {
     fn count<A, B>(&mut self, kernel: fn(&A, &mut B), input: &A, output: &mut B) -> Option<u32> {
         let exact = self.check.nops_counted == counter::NOPS;
         exact.then(|| counter::count(kernel, input, output))
     }
 }
 
-impl server::Board for QemuBoard {
+impl server::BenchBoard for QemuBoard {
     fn info(&self) -> BoardInfo {
         BoardInfo {
             board: BoardKind::Qemu,

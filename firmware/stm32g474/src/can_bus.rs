@@ -98,8 +98,8 @@ pub fn open(
 }
 
 fn config(before: FdCanConfig) -> FdCanConfig {
-    let [nominal_1, nominal_2, nominal_jump] = NOMINAL.map(at_least_one);
-    let [data_1, data_2, data_jump] = DATA.map(at_least_one);
+    let [nominal_1, nominal_2, nominal_jump] = NOMINAL.map(non_zero);
+    let [data_1, data_2, data_jump] = DATA.map(non_zero);
     FdCanConfig {
         nbtr: NominalBitTiming {
             prescaler: NonZeroU16::MIN,
@@ -122,7 +122,7 @@ fn config(before: FdCanConfig) -> FdCanConfig {
     }
 }
 
-fn at_least_one(number: u8) -> NonZeroU8 {
+fn non_zero(number: u8) -> NonZeroU8 {
     NonZeroU8::new(number).unwrap_or(NonZeroU8::MIN)
 }
 

@@ -17,7 +17,7 @@ use leg_firmware::board::{self, LowerHalf, TickTimer, WatchedTask};
 use leg_firmware::command::Command;
 use leg_firmware::host_link::{CommandedLeg, HostRefusal};
 use leg_firmware::jog::JogReport;
-use leg_firmware::leg::{Checked, Outcome};
+use leg_firmware::leg::{Checked, CommandOutcome};
 use leg_firmware::linked_leg::SensingLeg;
 use leg_firmware::recorder::{Recorder, RecorderReply, RecorderRequest, RecorderSetup};
 use leg_firmware::sensors::Sensors;
@@ -120,7 +120,7 @@ impl CommandedLeg for SharedLeg {
         with_control(|control| control.leg.note_decode_error());
     }
 
-    fn outcome(&mut self) -> Option<Outcome> {
+    fn outcome(&mut self) -> Option<CommandOutcome> {
         with_control(|control| control.leg.outcome())?
     }
 

@@ -27,7 +27,7 @@ impl CheckedFlash {
     }
 
     /// Whether the pages are those of two banks.
-    fn in_two_banks() -> Result<(), Error> {
+    fn require_two_banks() -> Result<(), Error> {
         if pac::FLASH.optr().read().dbank() {
             Ok(())
         } else {
@@ -73,7 +73,7 @@ impl NorFlash for CheckedFlash {
     const ERASE_SIZE: usize = <Flash<'static, Async> as NorFlash>::ERASE_SIZE;
 
     async fn erase(&mut self, from: u32, to: u32) -> Result<(), Error> {
-        Self::in_two_banks()?;
+        Self::require_two_banks()?;
         self.0.erase(from, to).await?;
         let words = to.saturating_sub(from) as usize / WORD_SIZE;
         let erased: &[u8] = &[ERASED; WORD_SIZE];
@@ -81,7 +81,7 @@ impl NorFlash for CheckedFlash {
     }
 
     async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Error> {
-        Self::in_two_banks()?;
+        Self::require_two_banks()?;
         self.0.write(offset, bytes).await?;
         self.compare(offset, bytes.chunks(WORD_SIZE))
     }

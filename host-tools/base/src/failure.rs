@@ -22,12 +22,12 @@ pub struct Message {
     /// What to do.
     pub help: Option<String>,
     /// Where it is.
-    pub place: Option<Place>,
+    pub place: Option<TextPlace>,
 }
 
 /// A piece of a text file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct TextPlace {
     /// The file's name, as the user gave it.
     pub file: String,
     /// The whole text of the file.
@@ -51,7 +51,11 @@ impl Failure {
 
     /// A text file is at fault, at a place in it.
     #[must_use]
-    pub fn refused_at(sentence: impl Into<String>, help: impl Into<String>, place: Place) -> Self {
+    pub fn refused_at(
+        sentence: impl Into<String>,
+        help: impl Into<String>,
+        place: TextPlace,
+    ) -> Self {
         let message = Message::new(sentence, Some(help.into()));
         Self::Refused(Message {
             place: Some(place),

@@ -1,4 +1,4 @@
-//! What a jog will do and what it saw, in a user's words.
+//! What a jog will do and what it measured, in a user's words.
 
 use crate::json_object;
 use leg_firmware::control::JOG_RISE_S;
@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 /// Speed of the tendon that the voltage is chosen for, m/s.
 const SPEED_M_PER_S: f32 = 2e-3;
 
-/// Change of a tension that says something, N.
+/// Least change of a tension that counts as one, N.
 const TELLING_N: f32 = 1.0;
 
 /// The voltage at which a motor turns slowly: twice its friction, and what a slow turn induces; below what counts as driven.
@@ -54,7 +54,7 @@ const fn way(travel_m: f32) -> &'static str {
     }
 }
 
-/// What it saw, and what does not fit.
+/// What it measured, and what does not fit.
 #[must_use]
 pub fn text(report: &JogReport<f32>, findings: &[Finding]) -> String {
     let row = |numbers: &[f32; 3], digits: usize| {
@@ -145,7 +145,7 @@ impl Finding {
 #[must_use]
 pub fn findings(report: &JogReport<f32>, settings: &Settings) -> Vec<Finding> {
     let found = end_finding(report, settings);
-    // A motor that turned another way, or another motor, says nothing of the cells.
+    // A motor that turned another way, or another motor, shows nothing of the cells.
     let asked = !matches!(report.end, JogEnd::WrongWay | JogEnd::OtherEncoder(_));
     let tensions = asked.then(|| tension_finding(report)).flatten();
     found.into_iter().chain(tensions).collect()

@@ -15,7 +15,7 @@ pub fn derivative<const M: usize>(f: impl Fn(f64) -> SVector<f64, M>) -> SVector
 
 /// Derivative of `f` by its rotation vector, at zero.
 #[must_use]
-pub fn by_rotation<const M: usize>(
+pub fn derivative_by_rotation<const M: usize>(
     f: impl Fn(Vector3<f64>) -> SVector<f64, M>,
 ) -> SMatrix<f64, M, 3> {
     let column = |axis: usize| {

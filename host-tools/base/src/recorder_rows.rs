@@ -40,7 +40,7 @@ impl RecorderRow {
 
     /// Ticks since the fault; none if a host ended the recording.
     #[must_use]
-    pub fn since_fault(&self) -> Option<i32> {
+    pub fn ticks_since_fault(&self) -> Option<i32> {
         self.fault
             .map(|fault| self.tick.wrapping_sub(fault.tick) as i32)
     }

@@ -14,14 +14,14 @@ const RUN_UP_LONGER: f64 = 1.1;
 
 /// Where the leg shall point at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub struct PathRow {
     /// s; the first row's may be any.
     pub time_s: f64,
     /// Horizontal components.
     pub direction: [f64; 2],
 }
 
-impl Row {
+impl PathRow {
     /// A row of angles in degrees.
     #[must_use]
     pub fn from_angles(time_s: f64, azimuth_deg: f64, tilt_deg: f64) -> Self {
@@ -72,7 +72,7 @@ const SPACING_MAX_S: f64 = 0.02;
 pub fn way(from: &TimedPoint, to: &TimedPoint) -> Vec<TimedPoint> {
     let span_s = to.time_s - from.time_s;
     let pieces = (span_s / SPACING_MAX_S).ceil().max(1.0) as u32;
-    let path = Quintic::between(&from.motion, &to.motion, span_s);
+    let path = Quintic::connect(&from.motion, &to.motion, span_s);
     let between = |i: u32| {
         let part = f64::from(i) / f64::from(pieces);
         TimedPoint {
@@ -94,14 +94,14 @@ const ROWS: usize = 5;
 pub struct PathBuilder {
     first_s: f64,
     /// The last rows.
-    rows: Vec<Row>,
+    rows: Vec<PathRow>,
     /// Whether there were more.
     begun: bool,
 }
 
 impl PathBuilder {
     /// Takes a row; the points that are known now.
-    pub fn push(&mut self, row: Row) -> Vec<TimedPoint> {
+    pub fn push(&mut self, row: PathRow) -> Vec<TimedPoint> {
         if self.rows.is_empty() {
             self.first_s = row.time_s;
         }
@@ -127,14 +127,14 @@ impl PathBuilder {
     /// The motion of the polynomial through the last rows, at some of them.
     fn points(&self, at: RangeInclusive<usize>) -> Vec<TimedPoint> {
         let rows = self.rows.get(at).unwrap_or_default();
-        let motion = |row: &Row| TimedPoint {
+        let motion = |row: &PathRow| TimedPoint {
             time_s: row.time_s - self.first_s,
             motion: self.motion(row),
         };
         rows.iter().map(motion).collect()
     }
 
-    fn motion(&self, at: &Row) -> MotionState<f64> {
+    fn motion(&self, at: &PathRow) -> MotionState<f64> {
         if self.rows.len() < 3 {
             return MotionState::at_rest(at.direction);
         }
@@ -174,7 +174,7 @@ pub struct TimedPath {
 impl TimedPath {
     /// The path through rows in the order of their times.
     #[must_use]
-    pub fn new(rows: &[Row]) -> Self {
+    pub fn new(rows: &[PathRow]) -> Self {
         let mut builder = PathBuilder::default();
         let mut points: Vec<_> = rows.iter().flat_map(|row| builder.push(*row)).collect();
         points.extend(builder.finish());
@@ -210,14 +210,14 @@ impl TimedPath {
 
     /// The motion at a time in s; none before the first point and after the last.
     #[must_use]
-    pub fn at(&self, time_s: f64) -> Option<MotionState<f64>> {
+    pub fn motion(&self, time_s: f64) -> Option<MotionState<f64>> {
         let next = self.points.partition_point(|point| point.time_s < time_s);
         let (from, to) = (
             self.points.get(next.checked_sub(1)?)?,
             self.points.get(next)?,
         );
         let span_s = to.time_s - from.time_s;
-        let path = Quintic::between(&from.motion, &to.motion, span_s);
+        let path = Quintic::connect(&from.motion, &to.motion, span_s);
         Some(path.motion((time_s - from.time_s) / span_s))
     }
 }

@@ -11,9 +11,9 @@ mod sweep;
 
 pub use drawn_state::DrawnState;
 pub use feedback::Feedback;
-pub use frequency_response::{ClosedLoop, Excitation, Point, Sides};
+pub use frequency_response::{ClosedLoop, Excitation, ResponsePoint, Sides};
 pub use margins::Margins;
-pub use row::{Margin, Row, Worst, rows};
+pub use row::{Margin, MarginRow, WorstMargin, rows};
 pub use sweep::Sweep;
 
 use crate::stand::Stand;
@@ -37,7 +37,7 @@ const FIND_S: f64 = 1.5;
 
 /// Which states are measured.
 #[derive(Clone, Debug)]
-pub struct Campaign {
+pub struct BodeCampaign {
     /// Everything random follows from it.
     pub seed: u64,
     /// The rigs by name.
@@ -62,7 +62,7 @@ pub struct Swept {
     /// Its margins.
     pub margins: Margins,
     /// Its transfer.
-    pub points: Vec<Point>,
+    pub points: Vec<ResponsePoint>,
     /// What ended the measurement.
     pub failure: Option<String>,
 }
@@ -73,14 +73,14 @@ impl Swept {
     pub fn passes(&self) -> bool {
         let enough = |margin: Margin| {
             margin
-                .of(self)
+                .value_and_hz(self)
                 .is_none_or(|[value, _]| value >= margin.bar())
         };
         self.failure.is_none() && Margin::ALL.into_iter().all(enough)
     }
 }
 
-impl Campaign {
+impl BodeCampaign {
     /// Measures the states of some numbers, on all cores, and calls `done` after each. They come in the order of their numbers.
     pub fn run(&self, numbers: Range<u64>, done: impl Fn() + Sync) -> Vec<Swept> {
         let swept = |number| {
@@ -161,10 +161,10 @@ fn prepared(state: &DrawnState) -> Result<Stand, String> {
         payload_kg: state.payload_kg,
     };
     let mut stand = Stand::new(&file, &state.plant, start, state.seed)?;
-    stand.until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
+    stand.tick_until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
     stand.wait(0.1)?;
     stand.command(&Command::Arm)?;
-    stand.until(2.0, "active", |stand| stand.state() == State::Active)?;
+    stand.tick_until(2.0, "active", |stand| stand.state() == State::Active)?;
     stand.command(&Command::Pretension(state.pretension_n as f32))?;
     stand.wait(FIND_S)?;
     stand.rest()?;

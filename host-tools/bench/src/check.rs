@@ -80,11 +80,11 @@ pub fn run(
             numbers(&reply)
         };
         let found = ask(&evaluate_request(state)?, bits::EVALUATION)?;
-        let expected = evaluate_f64(state).map_err(at_state(state))?;
+        let expected = evaluate_f64(state).map_err(error_at_state(state))?;
         accuracy.add(&evaluation_parts(state.support), &found, &expected, state);
         for kernel in Kernel::ALL {
             let found = ask(&kernel_request(kernel, state), kernel.name())?;
-            let expected = run_f64(kernel, state).map_err(at_state(state))?;
+            let expected = run_f64(kernel, state).map_err(error_at_state(state))?;
             accuracy.add(kernel_parts(kernel), &found, &expected, state);
         }
         done();
@@ -97,7 +97,7 @@ pub fn run(
 }
 
 fn evaluate_request(state: &CheckedState) -> Result<Request, CheckError> {
-    let query = state.message().map_err(at_state(state))?;
+    let query = state.message().map_err(error_at_state(state))?;
     Ok(Request::Evaluate(EvaluateRequest {
         rig: state.input.rig,
         query,
@@ -119,7 +119,7 @@ fn run_f64(kernel: Kernel, state: &CheckedState) -> Result<Vec<f64>, leg_model::
     kernels::run::<f64>(kernel, &state.input).map(|numbers| numbers.to_vec())
 }
 
-fn at_state(state: &CheckedState) -> impl Fn(leg_model::Error) -> CheckError {
+fn error_at_state(state: &CheckedState) -> impl Fn(leg_model::Error) -> CheckError {
     let pose = state.pose();
     move |error| CheckError::Reference(pose, error)
 }

@@ -23,7 +23,7 @@ mod vector_table;
 
 pub use budget::{BudgetCheck, ByteBounds, ImageBudget, checks};
 pub use error::{Address, ImageBudgetError};
-pub use memory::Usage;
+pub use memory::MemoryUsage;
 pub use task::Task;
 pub use vector_table::RootKind;
 
@@ -42,11 +42,11 @@ pub const EXCEPTION_ENTRY: u32 = 27 * 4;
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct ImageNeeds {
     /// Flash, against what memory.x gives.
-    pub flash: Usage,
+    pub flash: MemoryUsage,
     /// RAM for static variables, against what memory.x gives.
-    pub ram: Usage,
+    pub ram: MemoryUsage,
     /// Stack with all roots on top of each other, against the RAM that static variables leave.
-    pub stack: Usage,
+    pub stack: MemoryUsage,
     /// Where execution can begin.
     pub roots: Vec<Root>,
     /// The tasks, whose stack is part of that of the root whose executor polls them.
@@ -101,7 +101,7 @@ pub fn needs(elf: &[u8]) -> Result<ImageNeeds, ImageBudgetError> {
     Ok(ImageNeeds {
         flash: memories.flash(&elf)?,
         ram: memories.ram(&elf)?,
-        stack: Usage {
+        stack: MemoryUsage {
             used: nested_stack(&roots),
             size: memory::stack_size(&elf)?,
         },

@@ -6,10 +6,10 @@ mod drawn_move;
 mod reference;
 
 pub use chart::save_comparison;
-pub use drawn_move::Drawn;
+pub use drawn_move::DrawnMove;
 
 use crate::stand::{self, Stand};
-use bars::Bars;
+use bars::MoveBars;
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::State;
 use leg_rig::rig_file::RigFile;
@@ -39,7 +39,7 @@ const REST_S: f64 = 1.0;
 
 /// Which moves are made.
 #[derive(Clone, Debug)]
-pub struct Campaign {
+pub struct MoveCampaign {
     /// Everything random follows from it.
     pub seed: u64,
     /// The rigs by name.
@@ -52,7 +52,7 @@ pub struct Campaign {
 #[derive(Clone, Debug, Serialize)]
 pub struct Moved {
     /// What was drawn.
-    pub drawn: Drawn,
+    pub drawn: DrawnMove,
     /// From the command to the end of the trajectory, s.
     pub took_s: f64,
     /// Farthest that the true tip was off the trajectory on the way, mm.
@@ -78,12 +78,12 @@ impl Moved {
     }
 }
 
-impl Campaign {
+impl MoveCampaign {
     /// Makes the moves of these numbers, on all cores, and calls `done` after each. They come in the order of their numbers,
     /// without those of a rig that holds no two poses.
     pub fn run(&self, numbers: Range<u64>, done: impl Fn() + Sync) -> Vec<Moved> {
         let moved = |number| {
-            let drawn = Drawn::new(self.seed, &self.rigs, self.payload_kg, number);
+            let drawn = DrawnMove::new(self.seed, &self.rigs, self.payload_kg, number);
             let moved = drawn.map(|drawn| make(&drawn));
             done();
             moved
@@ -93,7 +93,7 @@ impl Campaign {
 }
 
 /// Makes a move.
-fn make(drawn: &Drawn) -> Moved {
+fn make(drawn: &DrawnMove) -> Moved {
     let mut moved = Moved {
         drawn: drawn.clone(),
         took_s: 0.0,
@@ -106,20 +106,20 @@ fn make(drawn: &Drawn) -> Moved {
     };
     let went = prepared(drawn).and_then(|mut stand| go(drawn, &mut stand, &mut moved));
     moved.failures = match went {
-        Ok(()) => Bars::new(drawn.begin_deg[1]).failures(&moved),
+        Ok(()) => MoveBars::new(drawn.begin_deg[1]).failures(&moved),
         Err(reason) => vec![reason],
     };
     moved
 }
 
 /// A leg at rest where the move begins.
-fn prepared(drawn: &Drawn) -> Result<Stand, String> {
+fn prepared(drawn: &DrawnMove) -> Result<Stand, String> {
     let start = Start::hanging(drawn.pretension_n);
     let mut stand = Stand::new(&drawn.file, &drawn.plant, start, drawn.seed)?;
-    stand.until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
+    stand.tick_until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
     stand.wait(0.1)?;
     stand.command(&Command::Arm)?;
-    stand.until(2.0, "active", |stand| stand.state() == State::Active)?;
+    stand.tick_until(2.0, "active", |stand| stand.state() == State::Active)?;
     stand.wait(0.3)?;
     stand.command(&Command::Pretension(drawn.pretension_n as f32))?;
     stand.wait(REST_S)?;
@@ -127,7 +127,7 @@ fn prepared(drawn: &Drawn) -> Result<Stand, String> {
     for pose_deg in [drawn.end_deg, drawn.begin_deg] {
         stand.command(&stand::move_to(pose_deg))?;
         stand.wait(0.05)?;
-        stand.until(MOVE_S, "the start of the move", |stand| !stand.moving())?;
+        stand.tick_until(MOVE_S, "the start of the move", |stand| !stand.moving())?;
         stand.wait(REST_S)?;
     }
     stand.plant().set_payload(drawn.payload_kg, LOADING_S);
@@ -136,7 +136,7 @@ fn prepared(drawn: &Drawn) -> Result<Stand, String> {
     Ok(stand)
 }
 
-fn go(drawn: &Drawn, stand: &mut Stand, moved: &mut Moved) -> Result<(), String> {
+fn go(drawn: &DrawnMove, stand: &mut Stand, moved: &mut Moved) -> Result<(), String> {
     let began_s = stand.time_s();
     stand.command(&stand::move_to(drawn.end_deg))?;
     let mut reference = Reference::new(drawn.tip_length_m());
@@ -144,7 +144,7 @@ fn go(drawn: &Drawn, stand: &mut Stand, moved: &mut Moved) -> Result<(), String>
         stand.tick()?;
         stand.require_no_fault()?;
         moved.took_s = stand.time_s() - began_s;
-        if let Some(off_m) = reference.off_m(stand) {
+        if let Some(off_m) = reference.tip_error_m(stand) {
             moved.off_mm = moved.off_mm.max(off_m * 1000.0);
             moved.way.push((moved.took_s, off_m * 1000.0));
         }
@@ -171,7 +171,7 @@ fn go(drawn: &Drawn, stand: &mut Stand, moved: &mut Moved) -> Result<(), String>
 }
 
 /// How the tip comes to rest.
-fn rest(drawn: &Drawn, tips_m: &[Vector3<f64>], moved: &mut Moved) {
+fn rest(drawn: &DrawnMove, tips_m: &[Vector3<f64>], moved: &mut Moved) {
     let resting = (RESTING_S / WATCHED_S * tips_m.len() as f64) as usize;
     let last = &tips_m[tips_m.len() - resting..];
     let rest_m = last.iter().sum::<Vector3<f64>>() / resting as f64;

@@ -1,4 +1,4 @@
-//! THE precision table: how far the firmware's f32 may be from f64.
+//! The precision table: how far the firmware's f32 may be from f64.
 //!
 //! It holds on the paper's rig over its workspace: any azimuth, tilts to 30°, payloads to 2 kg, pretensions that keep every
 //! tension between 8 N and 150 N, tendons of 2e4 to 2e5 N/m, all supports. Both sides get the same arguments: those
@@ -16,7 +16,7 @@ use serde::Serialize;
 /// How a difference is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Measure {
+pub enum DifferenceMeasure {
     /// The largest difference of an entry, in the quantity's unit.
     Absolute,
     /// The largest difference of an entry, divided by the largest entry of its array.
@@ -31,7 +31,7 @@ pub struct PrecisionRow {
     /// Its name for people.
     pub name: &'static str,
     /// How it is compared.
-    pub measure: Measure,
+    pub measure: DifferenceMeasure,
     /// The unit of the bound; "relative" or "absolute" where there is none.
     pub unit: &'static str,
     /// The largest difference that is allowed.
@@ -48,8 +48,8 @@ impl PrecisionRow {
             return f64::INFINITY;
         }
         let scale = match self.measure {
-            Measure::Absolute => 1.0,
-            Measure::Relative => largest(expected.iter().map(|entry| entry.abs())),
+            DifferenceMeasure::Absolute => 1.0,
+            DifferenceMeasure::Relative => largest(expected.iter().map(|entry| entry.abs())),
         };
         let largest = largest(found.iter().zip(expected).map(|(a, b)| (a - b).abs()));
         if largest == 0.0 { 0.0 } else { largest / scale }
@@ -69,12 +69,12 @@ fn largest(magnitudes: impl Iterator<Item = f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{CheckedQuantity, Measure, PrecisionRow};
+    use super::{CheckedQuantity, DifferenceMeasure, PrecisionRow};
 
     const ROW: PrecisionRow = PrecisionRow {
         quantity: CheckedQuantity::Lengths,
         name: "",
-        measure: Measure::Relative,
+        measure: DifferenceMeasure::Relative,
         unit: "",
         bound: 1.0,
         exception: None,
@@ -84,7 +84,7 @@ mod tests {
     fn entries_are_judged_beside_the_largest() {
         assert_eq!(ROW.difference(&[0.5, -4.0], &[0.0, -4.0]), 0.125);
         let absolute = PrecisionRow {
-            measure: Measure::Absolute,
+            measure: DifferenceMeasure::Absolute,
             ..ROW
         };
         assert_eq!(absolute.difference(&[0.5, -4.0], &[0.0, -4.0]), 0.5);

@@ -106,7 +106,7 @@ pub fn save(
     directory: &Path,
 ) -> Result<Vec<PathBuf>, PlotError> {
     let at = |row: &RecorderRow| {
-        let ticks = row.since_fault().map_or(row.tick.into(), f64::from);
+        let ticks = row.ticks_since_fault().map_or(row.tick.into(), f64::from);
         (ticks * tick_s(), row.state().map(description::state))
     };
     // A change of one tick is what a recorder is for: none is left out.

@@ -8,13 +8,13 @@ use leg_sim::simulation::Sample;
 use std::path::{Path, PathBuf};
 
 /// What has a meaning once the leg knows its zero, and has looked where it is.
-fn once_homed(sample: &Sample, value: f64) -> Option<f64> {
+fn value_if_homed(sample: &Sample, value: f64) -> Option<f64> {
     let known = sample.telemetry.homed && sample.telemetry.state != State::Boot;
     known.then_some(value)
 }
 
 /// A stiffness: there is none before the first target.
-fn above_zero(stiffness: f32) -> Option<f64> {
+fn stiffness_above_zero(stiffness: f32) -> Option<f64> {
     (stiffness > 0.0).then(|| stiffness.into())
 }
 
@@ -23,13 +23,13 @@ macro_rules! tip_curves {
     ($axis:literal) => {
         [
             ("commanded", |sample| {
-                once_homed(sample, sample.comparison.tip_commanded_mm[$axis])
+                value_if_homed(sample, sample.comparison.tip_commanded_mm[$axis])
             }),
             ("reference", |sample| {
-                once_homed(sample, sample.comparison.tip_reference_mm[$axis])
+                value_if_homed(sample, sample.comparison.tip_reference_mm[$axis])
             }),
             ("estimated", |sample| {
-                once_homed(sample, sample.comparison.tip_estimated_mm[$axis])
+                value_if_homed(sample, sample.comparison.tip_estimated_mm[$axis])
             }),
             ("true", |sample| Some(sample.comparison.tip_true_mm[$axis])),
         ]
@@ -43,7 +43,7 @@ const SIMULATION: [TimeChart<Sample>; 5] = [
         y_title: "distance of the true tip (mm)",
         curves: &[
             ("from the reference", |sample| {
-                once_homed(sample, sample.comparison.reference_error_mm())
+                value_if_homed(sample, sample.comparison.reference_error_mm())
             }),
             ("from the path", |sample| sample.comparison.path_error_mm),
         ],
@@ -81,7 +81,7 @@ const SIMULATION: [TimeChart<Sample>; 5] = [
         title: "Bending stiffness",
         y_title: "bending stiffness (N·m/rad)",
         curves: &[("reference", |sample| {
-            above_zero(sample.telemetry.stiffness_nm_per_rad)
+            stiffness_above_zero(sample.telemetry.stiffness_nm_per_rad)
         })],
     },
 ];
@@ -133,7 +133,7 @@ const LOG: [TimeChart<Report>; 6] = [
         title: "Bending stiffness",
         y_title: "bending stiffness (N·m/rad)",
         curves: &[("reference", |(_, report)| {
-            above_zero(report.stiffness_nm_per_rad)
+            stiffness_above_zero(report.stiffness_nm_per_rad)
         })],
     },
     TimeChart {

@@ -97,7 +97,7 @@ impl Stand {
         sent.map_err(|error| error.to_string())
     }
 
-    /// Nothing is heard of the host any more but commands.
+    /// The host sends nothing any more but commands.
     pub fn silence(&mut self) {
         self.host.silent = true;
     }
@@ -146,14 +146,14 @@ impl Stand {
     /// A fault; as [`Self::tick`].
     pub fn wait(&mut self, time_s: f64) -> Result<(), String> {
         let end_s = self.time_s() + time_s;
-        self.until(f64::INFINITY, "", |stand| stand.time_s() >= end_s)
+        self.tick_until(f64::INFINITY, "", |stand| stand.time_s() >= end_s)
     }
 
     /// Ticks until something is so, without a fault.
     ///
     /// # Errors
     /// A fault, or that it does not come in time; as [`Self::tick`].
-    pub fn until(
+    pub fn tick_until(
         &mut self,
         timeout_s: f64,
         what: &str,

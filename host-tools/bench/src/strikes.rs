@@ -16,11 +16,11 @@ mod table;
 mod way;
 
 pub use activity::Activity;
-pub use bars::Bars;
+pub use bars::StrikeBars;
 pub use case::Case;
-pub use false_alarms::{Alarm, Usage};
+pub use false_alarms::{Alarm, UseResult};
 pub use strike::{Moment, Struck};
-pub use table::{Measure, Measures, Row, Worst, rows};
+pub use table::{Measures, StrikeRow, WorstByBar, WorstStrike, rows};
 
 use crate::draw::mixed;
 use case::{SLOTS, kind_of, name_of};
@@ -34,7 +34,7 @@ const PART_S: f64 = 600.0;
 
 /// Which strikes are made.
 #[derive(Clone, Debug)]
-pub struct Campaign {
+pub struct StrikeCampaign {
     /// Everything random follows from it.
     pub seed: u64,
     /// The rigs by name.
@@ -45,7 +45,7 @@ pub struct Campaign {
     pub faults: Vec<String>,
 }
 
-impl Campaign {
+impl StrikeCampaign {
     /// Makes so many strikes, on all cores, and calls `done` after each. They come in the order of their numbers.
     pub fn run(&self, count: u64, done: impl Fn() + Sync) -> Vec<Struck> {
         let cases = self.cases(count);
@@ -57,7 +57,7 @@ impl Campaign {
 
     /// Uses each rig for a time, s, without a fault, on all cores, and calls `done` with seconds that are over. Each
     /// part takes ten minutes of the leg's time, and is as it is whatever the whole time.
-    pub fn use_legs(&self, time_s: f64, done: impl Fn(u64) + Sync) -> Vec<Usage> {
+    pub fn use_legs(&self, time_s: f64, done: impl Fn(u64) + Sync) -> Vec<UseResult> {
         let parts = (time_s / PART_S).ceil() as u64;
         let rigs = self.rigs.len() as u64;
         let usage = |number| {
@@ -114,7 +114,7 @@ impl Campaign {
             if left == 0 {
                 break;
             }
-            if !self.has(Activity::in_turn(number)) {
+            if !self.has(Activity::nth(number)) {
                 continue;
             }
             let mut slots: Vec<u64> = (0..SLOTS)

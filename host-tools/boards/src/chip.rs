@@ -73,7 +73,7 @@ impl ChipSession {
 
     /// The same on another board.
     #[must_use]
-    pub fn on_board(self, board: Board) -> Self {
+    pub fn with_board(self, board: Board) -> Self {
         Self { board, ..self }
     }
 

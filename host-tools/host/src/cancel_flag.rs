@@ -9,7 +9,7 @@ pub struct CancelFlag(Arc<AtomicBool>);
 
 impl CancelFlag {
     /// The one that is set by Ctrl-C and by the end of the terminal.
-    pub fn on_ctrl_c() -> Self {
+    pub fn set_by_ctrl_c() -> Self {
         static ONLY: OnceLock<CancelFlag> = OnceLock::new();
         let make = || {
             let flag = Self::default();

@@ -3,7 +3,7 @@
 use csv::{ReaderBuilder, StringRecord};
 use leg_base::failure::Failure;
 use leg_base::text_input::{Line, next_line, too_long};
-use leg_base::timed_path::{PathBuilder, Row, TimedPoint};
+use leg_base::timed_path::{PathBuilder, PathRow, TimedPoint};
 use serde::Deserialize;
 use std::collections::VecDeque;
 use std::io::BufRead;
@@ -57,7 +57,7 @@ impl<R: BufRead> PathReader<R> {
     ///
     /// # Errors
     /// What is wrong with its line.
-    pub fn next_row(&mut self) -> Result<Option<Row>, Failure> {
+    pub fn next_row(&mut self) -> Result<Option<PathRow>, Failure> {
         while let Some(record) = self.next_record()? {
             let Some(header) = &self.header else {
                 self.check_header(&record)?;
@@ -112,7 +112,7 @@ impl<R: BufRead> PathReader<R> {
         Ok(())
     }
 
-    fn row(&mut self, text: RowText) -> Result<Row, Failure> {
+    fn row(&mut self, text: RowText) -> Result<PathRow, Failure> {
         let RowText {
             time_s,
             azimuth_deg,
@@ -138,7 +138,7 @@ impl<R: BufRead> PathReader<R> {
             return Err(self.refused(&sentence));
         }
         self.last_s = time_s;
-        Ok(Row::from_angles(time_s, azimuth_deg, tilt_deg))
+        Ok(PathRow::from_angles(time_s, azimuth_deg, tilt_deg))
     }
 
     fn refused(&self, what: &str) -> Failure {
@@ -171,7 +171,7 @@ pub enum PathStep {
 /// A path whose points come one after the other.
 pub struct PathSource {
     points: VecDeque<TimedPoint>,
-    live: Option<(PathBuilder, Receiver<Result<Row, Failure>>)>,
+    live: Option<(PathBuilder, Receiver<Result<PathRow, Failure>>)>,
 }
 
 impl PathSource {

@@ -57,8 +57,8 @@ pub fn text(sensors: &Sensors, settings: &Settings) -> String {
             without_minus_zero(measured.tensions_n[axis], 2),
             sensors.current_codes[axis],
             without_minus_zero(measured.currents_a[axis], 3),
-            either(sensors.driver_fault[axis], "fault", "ready"),
-            either(sensors.cell_fresh[axis], "", ", no fresh code of the cell"),
+            choose(sensors.driver_fault[axis], "fault", "ready"),
+            choose(sensors.cell_fresh[axis], "", ", no fresh code of the cell"),
         );
     }
     rows + &format!(
@@ -71,13 +71,13 @@ pub fn text(sensors: &Sensors, settings: &Settings) -> String {
         measured.supply_v,
         sensors.temperature_code,
         measured.temperature_c,
-        either(sensors.emergency_stop, "pressed", "released"),
-        either(sensors.late, "late", "in time"),
-        either(sensors.settings_corrupt, "not whole", "whole"),
+        choose(sensors.emergency_stop, "pressed", "released"),
+        choose(sensors.late, "late", "in time"),
+        choose(sensors.settings_corrupt, "not whole", "whole"),
     )
 }
 
-const fn either(is: bool, yes: &'static str, no: &'static str) -> &'static str {
+const fn choose(is: bool, yes: &'static str, no: &'static str) -> &'static str {
     if is { yes } else { no }
 }
 

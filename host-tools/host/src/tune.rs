@@ -14,8 +14,8 @@ use std::task::{Context, Poll, Waker};
 use std::time::Duration;
 
 pub use leg_rig::tune::{
-    Estimate, JogPlan, Jogged, MeasuredMotor, MotorConstants, Ring, Row, Swing, SwingPlan, Swings,
-    Travels, comparison, plan_text, section, table,
+    ComparisonRow, JogPlan, Jogged, MeasuredMotor, MotorConstants, Ring, Swing, SwingPlan, Swings,
+    Travels, UncertainValue, comparison, plan_text, section, table,
 };
 
 /// Why a leg was not measured to the end. It rests then.

@@ -8,7 +8,7 @@ use crate::output::load_rigs;
 use crate::progress;
 use leg_base::failure::Failure;
 use leg_base::json_object;
-use leg_bench::bode::{Campaign, Feedback, rows};
+use leg_bench::bode::{BodeCampaign, Feedback, rows};
 use std::path::PathBuf;
 
 /// Measures the feedback loops of the firmware around the simulated leg, and draws their Bode plots.
@@ -35,7 +35,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
-    let campaign = Campaign {
+    let campaign = BodeCampaign {
         seed: args.seed,
         rigs: load_rigs(&args.rig)?,
         loops: Feedback::ALL.to_vec(),

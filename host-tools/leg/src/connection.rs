@@ -128,7 +128,7 @@ impl LegArgs {
         let port = emulate_in_thread(rig, on, options)?;
         let address = port.strip_prefix(tcp::SCHEME).unwrap_or(&port);
         let transport = Box::new(Tcp::open(address)?);
-        let cancel = CancelFlag::on_ctrl_c();
+        let cancel = CancelFlag::set_by_ctrl_c();
         let operator = Operator::open(transport, HostIdentity::random(), cancel)?;
         Ok((operator, emulated_name(on)))
     }
@@ -156,7 +156,7 @@ impl ConnectionArgs {
         purpose: Purpose,
         options: Options,
     ) -> Result<LegConnection, Failure> {
-        let cancel = CancelFlag::on_ctrl_c();
+        let cancel = CancelFlag::set_by_ctrl_c();
         let Some(on) = self.on else {
             let transport = match &self.can {
                 None => self.serial(&cancel)?,

@@ -82,7 +82,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         }
     };
     let port = open_port(args.tcp.as_deref())?;
-    let cancel = CancelFlag::on_ctrl_c();
+    let cancel = CancelFlag::set_by_ctrl_c();
     let disturbances = disturbances(args.disturbances);
     let name = port.name();
     options.report(&json_object! { port: &name }, || format!("{name}\n"))?;

@@ -49,7 +49,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     if args.no_log {
         return Ok(());
     }
-    let cancel = CancelFlag::on_ctrl_c();
+    let cancel = CancelFlag::set_by_ctrl_c();
     note("leg: the firmware's log follows; Ctrl-C ends it");
     probe.attach(&image, &cancel)
 }

@@ -7,7 +7,7 @@ use crate::numbers::{positive, seconds};
 use crate::options::Options;
 use crate::output::{about_now, note_unfinished, wall_time_s};
 use crate::progress;
-use counter::{Counter, Restarted};
+use counter::{Restarted, SampleCounter};
 use leg_base::failure::Failure;
 use leg_firmware::sensors::TICK_HZ;
 use leg_host::operator::{Operator, OperatorError};
@@ -63,7 +63,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let about = about_now(operator.name());
     let settings = operator.settings()?;
     let (recorded, ended) = recording::record(&args.out, &about, &settings, |file| {
-        let mut counter = Counter::new(args.every_ticks);
+        let mut counter = SampleCounter::new(args.every_ticks);
         let bar = progress::counter("times");
         let ended = record(&mut operator, args, file, &mut counter, || bar.inc(1));
         bar.finish_and_clear();
@@ -111,7 +111,7 @@ fn record(
     operator: &mut Operator,
     args: &Args,
     file: &mut Recording,
-    counter: &mut Counter,
+    counter: &mut SampleCounter,
     mut written: impl FnMut(),
 ) -> Result<(), Ended> {
     operator.start_stream(args.every_ticks)?;

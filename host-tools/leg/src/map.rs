@@ -101,7 +101,7 @@ fn grid(args: &Args) -> Result<Grid, Failure> {
 }
 
 fn nothing_feasible(rig: &RigFile, payload_kg: f64, map: &WorkspaceMap) -> Failure {
-    if let Some((reason, count)) = map.without_result().first() {
+    if let Some((reason, count)) = map.reasons_for_no_result().first() {
         let all = map.cells.len();
         return Failure::failed(
             format!(

@@ -67,7 +67,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     if screen {
         // Nothing else is written on the screen.
         operator.set_late_watcher(|_| ());
-        monitor.on_screen(&mut operator)
+        monitor.run_on_screen(&mut operator)
     } else {
         monitor.watch(&mut operator, |_, _| Ok(true))
     }
@@ -142,7 +142,7 @@ impl Monitor {
         Ok(())
     }
 
-    fn on_screen(&mut self, operator: &mut Operator) -> Result<(), Failure> {
+    fn run_on_screen(&mut self, operator: &mut Operator) -> Result<(), Failure> {
         let mut keys = Keys::open().map_err(|error| no_screen(&error))?;
         let mut terminal = ratatui::try_init().map_err(|error| no_screen(&error))?;
         // An emulated leg does not wait for the clock: without this its time would pass at once.

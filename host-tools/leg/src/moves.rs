@@ -6,7 +6,7 @@ use crate::output::{chart_line, load_rigs, not_saved};
 use crate::progress;
 use leg_base::failure::Failure;
 use leg_base::json_object;
-use leg_bench::moves::{self, Campaign, Moved};
+use leg_bench::moves::{self, MoveCampaign, Moved};
 use std::path::{Path, PathBuf};
 
 /// Moves a simulated leg between random poses with payloads that it does not know, and measures how its true tip goes.
@@ -38,7 +38,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
-    let campaign = Campaign {
+    let campaign = MoveCampaign {
         seed: args.seed,
         rigs: load_rigs(&args.rig)?,
         payload_kg: args.payload,

@@ -17,7 +17,7 @@ pub(crate) fn finite(text: &str) -> Result<f64, String> {
 }
 
 /// A number in a range; `unit` begins with a space.
-fn in_range(text: &str, range: RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
+fn number_in_range(text: &str, range: RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
     let value = finite(text)?;
     if range.contains(&value) {
         return Ok(value);
@@ -28,37 +28,37 @@ fn in_range(text: &str, range: RangeInclusive<f64>, unit: &str) -> Result<f64, S
 
 /// An azimuth, degrees: ten turns in either direction.
 pub(crate) fn azimuth_deg(text: &str) -> Result<f64, String> {
-    in_range(text, -3600.0..=3600.0, " degrees")
+    number_in_range(text, -3600.0..=3600.0, " degrees")
 }
 
 /// A tilt, degrees: what the model serves.
 pub(crate) fn tilt_deg(text: &str) -> Result<f64, String> {
-    in_range(text, -60.0..=60.0, " degrees")
+    number_in_range(text, -60.0..=60.0, " degrees")
 }
 
 /// A payload, kg: what the model serves.
 pub(crate) fn payload_kg(text: &str) -> Result<f64, String> {
-    in_range(text, 0.0..=1e6, " kg")
+    number_in_range(text, 0.0..=1e6, " kg")
 }
 
 /// How far a leg is from the centre of a body of several, m.
 pub(crate) fn radius_m(text: &str) -> Result<f64, String> {
-    in_range(text, 0.01..=10.0, " m")
+    number_in_range(text, 0.01..=10.0, " m")
 }
 
 /// The mass of such a body, kg.
 pub(crate) fn body_kg(text: &str) -> Result<f64, String> {
-    in_range(text, 0.001..=1e3, " kg")
+    number_in_range(text, 0.001..=1e3, " kg")
 }
 
 /// A time of the day, s since 1970: in a recording it is an integer of ns, of 64 bits.
 pub(crate) fn unix_s(text: &str) -> Result<f64, String> {
-    in_range(text, 0.0..=1.8e10, " s")
+    number_in_range(text, 0.0..=1.8e10, " s")
 }
 
 /// Telemetry of `leg monitor` per second, Hz.
 pub(crate) fn monitor_rate_hz(text: &str) -> Result<f64, String> {
-    in_range(text, 0.1..=100.0, " Hz")
+    number_in_range(text, 0.1..=100.0, " Hz")
 }
 
 /// A number above zero.
@@ -80,7 +80,7 @@ pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
 /// A time above zero, s.
 pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
     positive(text)?;
-    let seconds = in_range(text, 0.0..=SECONDS_MAX, " s")?;
+    let seconds = number_in_range(text, 0.0..=SECONDS_MAX, " s")?;
     Duration::try_from_secs_f64(seconds).map_err(|error| error.to_string())
 }
 

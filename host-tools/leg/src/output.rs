@@ -53,7 +53,7 @@ pub(crate) fn print_notes(notes: &[String]) {
     }
 }
 
-/// Tells of a recording of that name that did not come to its end.
+/// Prints a note on a recording of that name that did not come to its end.
 pub(crate) fn note_unfinished(file: &Path) {
     if let Some(part) = recording::unfinished(file) {
         note(&format!(
@@ -192,11 +192,11 @@ pub(crate) fn about_now(title: &str) -> About {
 #[cfg(test)]
 mod tests {
     use super::failure_line;
-    use leg_base::failure::{Failure, Place};
+    use leg_base::failure::{Failure, TextPlace};
 
     #[test]
     fn an_error_for_machines_has_its_place_and_exit_code() {
-        let place = Place {
+        let place = TextPlace {
             file: "a.toml".into(),
             text: "x = 1\nµ = two\n".into(),
             span: 11..14,

@@ -9,7 +9,7 @@ use crate::progress;
 use clap::builder::PossibleValuesParser;
 use leg_base::failure::Failure;
 use leg_base::json_object;
-use leg_bench::strikes::{self, Activity, Campaign};
+use leg_bench::strikes::{self, Activity, StrikeCampaign};
 use leg_sim::plant::Defect;
 use std::path::PathBuf;
 
@@ -51,7 +51,7 @@ pub(crate) struct Args {
 const EVERY_S: f64 = 0.001;
 
 pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
-    let campaign = Campaign {
+    let campaign = StrikeCampaign {
         seed: args.seed,
         rigs: load_rigs(&args.rig)?,
         activities: args.state.clone(),
@@ -79,7 +79,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         rows: &rows,
     };
     let table = if args.bars {
-        report::by_bars
+        report::bar_report
     } else {
         report::table
     };
@@ -87,7 +87,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     require(failed, struck.len())
 }
 
-fn false_alarms(campaign: &Campaign, hours: f64, options: Options) -> Result<(), Failure> {
+fn false_alarms(campaign: &StrikeCampaign, hours: f64, options: Options) -> Result<(), Failure> {
     let time_s = 3600.0 * hours;
     let bar = progress::bar(time_s as u64 * campaign.rigs.len() as u64, "s");
     let usages = campaign.use_legs(time_s, |seconds| bar.inc(seconds));

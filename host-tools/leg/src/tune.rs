@@ -15,8 +15,8 @@ use leg_base::paths::relative_path;
 use leg_firmware::settings::Settings;
 use leg_host::operator::{Operator, OperatorError, setting_differences};
 use leg_host::tune::{
-    JogPlan, Jogged, MeasuredMotor, Row, Swing, SwingPlan, Swings, comparison, measure_motor,
-    measure_swing, plan_text, section, supply_v, table,
+    ComparisonRow, JogPlan, Jogged, MeasuredMotor, Swing, SwingPlan, Swings, comparison,
+    measure_motor, measure_swing, plan_text, section, supply_v, table,
 };
 use leg_rig::control_settings;
 use leg_rig::rig_file::RigFile;
@@ -63,7 +63,7 @@ struct Measured {
 }
 
 impl Measured {
-    fn rows(&self, rig: &RigFile) -> Vec<Row> {
+    fn rows(&self, rig: &RigFile) -> Vec<ComparisonRow> {
         comparison(&self.motor.constants, self.swings.as_ref(), rig)
     }
 }

@@ -18,7 +18,7 @@ use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::HostIdentity;
 use leg_host::transport::Transport;
 use leg_rig::settings_text;
-use link::{Hello, PageLink};
+use link::{PageHello, PageLink};
 use server::PageServer;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -81,7 +81,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         Some(file) => read(file)?,
         None => read(&build(&workspace_root().join(BUILT))?)?,
     };
-    let cancel = CancelFlag::on_ctrl_c();
+    let cancel = CancelFlag::set_by_ctrl_c();
     let Some((mut transport, hello)) = leg else {
         show(&server.url(), args, options)?;
         return server.run(page, &cancel).map_err(ended);
@@ -109,9 +109,9 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
 }
 
 /// The connection to the leg, and what pages are told of it.
-fn open_leg(leg: &LegArgs, options: Options) -> Result<(Box<dyn Transport>, Hello), Failure> {
+fn open_leg(leg: &LegArgs, options: Options) -> Result<(Box<dyn Transport>, PageHello), Failure> {
     let (mut operator, name) = leg.open_in_real_time(options)?;
-    let hello = Hello {
+    let hello = PageHello {
         schema: hex(&HOST_SCHEMA),
         name,
         rig: settings_text::rig_file(&operator.settings()?),

@@ -38,7 +38,7 @@ fn main() {
                 black_box(found).expect("the pose can be served");
             }
         });
-        let map = shortest(|| WorkspaceMap::on_one_core(black_box(&rig), 1.0, GRID));
+        let map = shortest(|| WorkspaceMap::compute_on_one_core(black_box(&rig), 1.0, GRID));
         println!(
             "{}: one pose {:.0?}, 360 × 31 poses on one core {map:.2?}",
             ready.name,

@@ -111,7 +111,7 @@ mod tests {
     }
 
     fn map(pretension_n: f64) -> WorkspaceMap {
-        WorkspaceMap::on_one_core(&ball_joint(pretension_n), 1.0, GRID)
+        WorkspaceMap::compute_on_one_core(&ball_joint(pretension_n), 1.0, GRID)
     }
 
     /// The lines of the file.

@@ -57,7 +57,7 @@ fn pretensioned(
     )?;
     let twist = support
         .twist(&direction)
-        .then(&Twist::from_torsion(torsion));
+        .composed(&Twist::from_torsion(torsion));
     let kinematics = inverse_kinematics(&rig.geometry().twisted(&twist), &direction)?;
     let (map, plane) = (&kinematics.moment_map, support.plane(&direction));
     let joint_moment = support.joint_moment(&direction, torsion);

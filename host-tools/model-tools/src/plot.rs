@@ -11,7 +11,8 @@ pub use error::PlotError;
 pub use spans::Span;
 
 use canvas::{
-    AXIS_TITLE, Area, Drawn, GRID, LABEL, MARGIN, Painter, THIN, TICK, WIDTH, offset_px, px, range,
+    AXIS_TITLE, Area, DrawResult, GRID, LABEL, MARGIN, Painter, THIN, TICK, WIDTH, offset_px, px,
+    range,
 };
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
@@ -93,7 +94,7 @@ struct ChartPainter<'a> {
 }
 
 impl Painter for ChartPainter<'_> {
-    fn paint<B: DrawingBackend>(&self, root: &Area<B>) -> Drawn<B> {
+    fn paint<B: DrawingBackend>(&self, root: &Area<B>) -> DrawResult<B> {
         let Self { chart, ranges } = self;
         let mut body = canvas::titled(root, &chart.title)?;
         if !chart.subtitle.is_empty() {
@@ -118,7 +119,10 @@ impl Painter for ChartPainter<'_> {
 
 type Plane = Cartesian2d<RangedCoordf64, RangedCoordf64>;
 
-fn draw_axes<B: DrawingBackend>(chart: &Chart, context: &mut ChartContext<B, Plane>) -> Drawn<B> {
+fn draw_axes<B: DrawingBackend>(
+    chart: &Chart,
+    context: &mut ChartContext<B, Plane>,
+) -> DrawResult<B> {
     let label = |value: &f64| format!("{}", (value * 1e6).round() / 1e6 + 0.0);
     context
         .configure_mesh()
@@ -141,7 +145,7 @@ fn draw_line<B: DrawingBackend>(
     line: &ChartLine,
     colour: &RGBColor,
     context: &mut ChartContext<B, Plane>,
-) -> Drawn<B> {
+) -> DrawResult<B> {
     let points = line.points.iter().copied();
     context.draw_series(LineSeries::new(points, colour.stroke_width(LINE)))?;
     for arm in MARK_ARMS {
@@ -151,7 +155,7 @@ fn draw_line<B: DrawingBackend>(
     Ok(())
 }
 
-fn draw_legend<B: DrawingBackend>(chart: &Chart, x: &Range<f64>, area: &Area<B>) -> Drawn<B> {
+fn draw_legend<B: DrawingBackend>(chart: &Chart, x: &Range<f64>, area: &Area<B>) -> DrawResult<B> {
     let text = ("sans-serif", LABEL)
         .into_text_style(area)
         .pos(Pos::new(HPos::Left, VPos::Center));

@@ -9,7 +9,7 @@ pub use cell::{Cell, PretensionedPose};
 pub use quantity::MapQuantity;
 pub use statistics::{Counts, Extreme};
 
-use cell::Prepared;
+use cell::PreparedMap;
 use leg_model::Error;
 use leg_rig::rig_file::RigFile;
 use rayon::prelude::*;
@@ -48,7 +48,7 @@ impl WorkspaceMap {
         with_nonlinear: bool,
         done: impl Fn() + Sync,
     ) -> Self {
-        let prepared = Prepared::new(rig, payload_kg, with_nonlinear);
+        let prepared = PreparedMap::new(rig, payload_kg, with_nonlinear);
         let rows = (0..grid.tilts).into_par_iter().map(|row| {
             let cells = row_of(&prepared, rig.tilt_deg, grid, row);
             done();
@@ -64,8 +64,8 @@ impl WorkspaceMap {
 
     /// [`compute`](Self::compute) on one core: what a benchmark measures.
     #[must_use]
-    pub fn on_one_core(rig: &RigFile, payload_kg: f64, grid: Grid) -> Self {
-        let prepared = Prepared::new(rig, payload_kg, false);
+    pub fn compute_on_one_core(rig: &RigFile, payload_kg: f64, grid: Grid) -> Self {
+        let prepared = PreparedMap::new(rig, payload_kg, false);
         let rows = (0..grid.tilts).flat_map(|row| row_of(&prepared, rig.tilt_deg, grid, row));
         Self {
             grid,
@@ -97,7 +97,7 @@ impl WorkspaceMap {
 }
 
 fn row_of(
-    prepared: &Result<Prepared, Error>,
+    prepared: &Result<PreparedMap, Error>,
     edge_deg: f64,
     grid: Grid,
     row: u32,

@@ -2,7 +2,7 @@
 
 use crate::rig::Rig;
 use leg_base::angles;
-use leg_base::timed_path::{Row, TimedPath};
+use leg_base::timed_path::{PathRow, TimedPath};
 use leg_host::operator::Tensioning;
 use leg_rig::rig_file::RigFile;
 use leg_sim::action::Action;
@@ -274,7 +274,7 @@ pub fn path(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<TimedPath> {
             ));
         }
         last_s = time_s;
-        rows.push(Row {
+        rows.push(PathRow {
             time_s,
             direction: angles::direction(azimuth_deg, tilt_deg),
         });

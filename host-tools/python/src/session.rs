@@ -204,10 +204,10 @@ impl Session {
         let Some(time_s) = path.time_s(&telemetry) else {
             return;
         };
-        let over = path.over(time_s);
-        if over || path.at(time_s).is_some() {
+        let over = path.is_over(time_s);
+        if over || path.motion(time_s).is_some() {
             // After its end the leg comes to rest where it may.
-            let at = path.at(time_s).map(|at| at.position);
+            let at = path.motion(time_s).map(|at| at.position);
             self.leg.set_commanded(at);
         }
         if over && !telemetry.moving {
@@ -368,6 +368,6 @@ impl Session {
 
 /// Whether a leg is on a path, not on the way to it or to rest after it.
 fn on_path(path: Option<&PathSender>, leg: &HostedLeg) -> bool {
-    let at = |(path, telemetry): (&PathSender, _)| path.at(path.time_s(telemetry)?);
+    let at = |(path, telemetry): (&PathSender, _)| path.motion(path.time_s(telemetry)?);
     path.zip(leg.telemetry()).and_then(at).is_some()
 }

@@ -1,5 +1,6 @@
 //! The keys of a rig file that the model checks, and not a table of ranges: the mechanism, its tendons and its support. For
-//! those who list every key of a file.
+//! those who list every key of a file, and for its reading. Tendons and support are read by their positions in lists of their own
+//! or by the kind of the support: tests beside those compare them with this table.
 
 /// A key of the mechanism.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,6 +58,12 @@ pub const MECHANISM_KEYS: &[MechanismKey] = keys! {
     "support" "strain_max_percent" ["%"] "The strain up to which stress is linear: bending to the greatest tilt may take no more.";
     "support" "section_mm2" ["mm²"] "Cross-section of the shaft.";
 };
+
+/// The names of the keys of a section.
+pub(crate) fn names(section: &str) -> Vec<&'static str> {
+    let keys = MECHANISM_KEYS.iter().filter(|key| key.section == section);
+    keys.map(|key| key.key).collect()
+}
 
 /// The key of a section; none of one that a table of fields has, or that there is not.
 #[must_use]

@@ -1,6 +1,6 @@
 //! What is wrong with a TOML text, where, and what to do about it.
 
-use leg_base::failure::{Failure, Place};
+use leg_base::failure::{Failure, TextPlace};
 use leg_model::Reason;
 use std::ops::Range;
 
@@ -35,7 +35,7 @@ impl TomlError {
     /// The same with the text and its name.
     #[must_use]
     pub fn failure(self, file: &str, text: &str) -> Failure {
-        let place = Place {
+        let place = TextPlace {
             file: file.into(),
             text: text.into(),
             span: self.span,

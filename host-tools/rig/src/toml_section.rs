@@ -122,7 +122,7 @@ impl<'a> Section<'a> {
         }
         let mut numbers = [0.0; N];
         for ((number, field), entry) in numbers.iter_mut().zip(fields).zip(entries) {
-            *number = in_range(field, entry)?;
+            *number = number_in_range(field, entry)?;
         }
         Ok(Some(numbers))
     }
@@ -230,7 +230,7 @@ fn number(key: &str, value: &Spanned<DeValue<'_>>) -> Result<f64, TomlError> {
     }
 }
 
-fn in_range(field: &Field<f64>, value: &Spanned<DeValue<'_>>) -> Result<f64, TomlError> {
+fn number_in_range(field: &Field<f64>, value: &Spanned<DeValue<'_>>) -> Result<f64, TomlError> {
     let found = number(field.name, value)?;
     if field.contains(found) {
         return Ok(found);

@@ -14,9 +14,9 @@ mod ring;
 mod swing;
 mod tuned_leg;
 
-pub use comparison::{Row, certain_values, comparison, section, table};
+pub use comparison::{ComparisonRow, certain_values, comparison, section, table};
 pub use error::{LegError, TuneError};
-pub use estimate::Estimate;
+pub use estimate::UncertainValue;
 pub use jogs::{JogPlan, Jogged};
 pub use motor::MotorConstants;
 pub use play::Travels;
@@ -49,7 +49,7 @@ impl MeasuredMotor {
 ///
 /// # Errors
 /// A [`TuneError`]: whatever ends a jog but its travel and the tension. The motor is off then. Where the motor obeyed, the tendon
-/// is paid out to where it was all the same; else the error tells how far it is from there.
+/// is paid out to where it was all the same; else the error says how far it is from there.
 pub async fn measure_motor<L: TunedLeg>(
     leg: &mut L,
     plan: &JogPlan,

@@ -1,4 +1,4 @@
-//! The user's host beside an emulated leg: commands, signs of life and garbage, as bytes.
+//! The user's host beside an emulated leg: commands, keep-alives and random bytes.
 
 use crate::emulated_leg::HostBytes;
 use crate::link::next_sequence;
@@ -7,7 +7,7 @@ use leg_firmware::frame::{self, Decoder, FrameError, MAX_FRAME};
 use leg_firmware::host_link::{HOST_SCHEMA, Hello, HostId, HostRefusal, HostReply, HostRequest};
 use std::collections::VecDeque;
 
-/// Ticks between two signs of life of the host.
+/// Ticks between two keep-alives of the host.
 const ALIVE_TICKS: u64 = 400;
 
 /// The only host.
@@ -16,14 +16,14 @@ const HOST: HostId = 1;
 /// The host and its bytes on the way to the leg.
 #[derive(Clone, Debug)]
 pub struct Host {
-    /// Whether it sends no signs of life.
+    /// Whether it sends no keep-alives.
     pub silent: bool,
     queue: VecDeque<u8>,
     sequence: u16,
     rng: fastrand::Rng,
     decoder: Decoder,
     answers: Vec<Answer>,
-    /// What it was told in the last tick besides.
+    /// The other replies of the last tick.
     replies: Vec<(u16, HostReply)>,
 }
 
@@ -37,7 +37,7 @@ pub struct Answer {
 }
 
 impl Host {
-    /// A host whose garbage follows from a seed.
+    /// A host whose random bytes follow from a seed.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self {

@@ -32,7 +32,7 @@ pub struct HostedLeg<L = InProcess> {
 }
 
 impl<L: Link> HostedLeg<L> {
-    /// A leg that has not had its first tick, and a host whose garbage follows from a seed. `commanded` is where the leg
+    /// A leg that has not had its first tick, and a host whose random bytes follow from a seed. `commanded` is where the leg
     /// starts, as horizontal components.
     #[must_use]
     pub fn new(leg: EmulatedLeg<L>, rig: &RigFile, commanded: [f64; 2], seed: u64) -> Self {

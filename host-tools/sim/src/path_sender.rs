@@ -32,7 +32,7 @@ pub struct PathSender {
 }
 
 impl PathSender {
-    /// A path for a leg with these settings. Without `ends` its last point is not told to be that.
+    /// A path for a leg with these settings. Without `ends` its last point is not marked as the last.
     ///
     /// # Errors
     /// The time of the point that is refused, s, and why.
@@ -97,13 +97,13 @@ impl PathSender {
 
     /// Where the path has the leg at a time; none before and after it.
     #[must_use]
-    pub fn at(&self, time_s: f64) -> Option<MotionState<f64>> {
-        self.path.at(time_s)
+    pub fn motion(&self, time_s: f64) -> Option<MotionState<f64>> {
+        self.path.motion(time_s)
     }
 
     /// Whether the path is over at a time.
     #[must_use]
-    pub fn over(&self, time_s: f64) -> bool {
+    pub fn is_over(&self, time_s: f64) -> bool {
         self.points.last().is_none_or(|last| time_s > last.time_s)
     }
 

@@ -115,8 +115,8 @@ impl Plant {
                 [0.0, actuator.supply_range_v],
             ),
             temperature_code: code(self.temperature_c, actuator.temperature_range_c),
-            cell_fresh: defects.each(Defect::CellStale).map(|stale| !stale),
-            driver_fault: defects.each(Defect::DriverFault),
+            cell_fresh: defects.affected(Defect::CellStale).map(|stale| !stale),
+            driver_fault: defects.affected(Defect::DriverFault),
             emergency_stop: self.emergency_stop,
             late: defects.has(Defect::LateTicks),
             settings_corrupt: defects.has(Defect::SettingsCorrupt),
@@ -157,7 +157,7 @@ impl Plant {
         if changed {
             self.begin_or_end(defect, on);
         }
-        self.dynamics.cut = self.defects.each(Defect::TendonCut);
+        self.dynamics.cut = self.defects.affected(Defect::TendonCut);
         self.work.cut_j += before_j - self.energy_j();
         self.tensions_n = self.pulls_n();
     }

@@ -24,7 +24,7 @@ pub enum Origin {
     Context,
     /// What the leg does and may do.
     State,
-    /// What it was told.
+    /// What was commanded.
     Commanded,
     /// What its trajectory and its target ask for now.
     Reference,

@@ -12,7 +12,7 @@ mod tick_hash;
 
 pub use crate::hosted_leg::Comparison;
 pub use shadow::{Divergence, OTHER_TICKS_MAX};
-pub use summary::{Measurement, Sample, SimulationError, Summary};
+pub use summary::{Sample, ScenarioMeasurement, SimulationError, Summary};
 pub use test_stand::SAMPLE_TICKS;
 pub use tick_hash::TickHash;
 

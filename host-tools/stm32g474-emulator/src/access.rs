@@ -60,7 +60,7 @@ impl AccessChecks {
 
     /// The register at an address, if its block answers.
     pub fn answering(&self, address: u32, rcc: &Rcc, findings: &mut Findings) -> Option<Answering> {
-        let Some(block) = Facts::of_chip().block_at(address) else {
+        let Some(block) = Facts::chip().block_at(address) else {
             findings.add(format!(
                 "{address:#010x} is accessed, where no peripheral is"
             ));

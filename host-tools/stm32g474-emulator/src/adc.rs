@@ -22,21 +22,21 @@ use crate::device::Context;
 use crate::facts::Facts;
 use converter::Converter;
 use converter::Group;
-use group::{ConverterGroup, Kernel};
+use group::{ConverterGroup, KernelClock};
 
 /// Group by group: its common registers, its converters, its interrupt, and its kernel clock.
-const GROUPS: [(&str, &[&str], &str, Kernel); 2] = [
+const GROUPS: [(&str, &[&str], &str, KernelClock); 2] = [
     ("ADC12_COMMON", &["ADC1", "ADC2"], "ADC1_2", |c| c.adc12),
     ("ADC345_COMMON", &["ADC3"], "ADC3", |c| c.adc345),
 ];
 
 /// All converters.
 #[derive(Clone, Debug)]
-pub struct Converters {
+pub struct AdcConverters {
     groups: Vec<ConverterGroup>,
 }
 
-impl Converters {
+impl AdcConverters {
     /// As after a reset.
     ///
     /// # Panics

@@ -21,7 +21,7 @@ pub const BOARD_CLOCKS: Clocks = Clocks {
 };
 
 /// A bus with a device.
-pub struct Bench<D: Device> {
+pub struct DeviceBench<D: Device> {
     /// The device.
     pub device: D,
     /// The moment.
@@ -32,10 +32,10 @@ pub struct Bench<D: Device> {
     block: &'static Block,
 }
 
-impl<D: Device> Bench<D> {
+impl<D: Device> DeviceBench<D> {
     /// A device for a block of the chip, at cycle 1000.
     pub fn new(block: &str, device: impl FnOnce(&'static Block) -> D) -> Self {
-        let block = Facts::of_chip().block(block).unwrap();
+        let block = Facts::chip().block(block).unwrap();
         Self {
             device: device(block),
             cycle: 1_000,
@@ -57,7 +57,7 @@ impl<D: Device> Bench<D> {
 
     /// Turns to another block of the device.
     pub fn select(&mut self, block: &str) {
-        self.block = Facts::of_chip().block(block).unwrap();
+        self.block = Facts::chip().block(block).unwrap();
     }
 
     /// Reads a register.

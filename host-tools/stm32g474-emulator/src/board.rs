@@ -1,7 +1,7 @@
 //! The board that the chip is on.
 
 use crate::clocks::LSI_HZ;
-use crate::fdcan::Bus;
+use crate::fdcan::CanBus;
 
 /// What is around the chip, and what of it differs from one chip to the next.
 #[derive(Clone, Copy, Debug)]
@@ -15,7 +15,7 @@ pub struct Board {
     /// The option byte BOR_LEV, 0 to 4: below which supply the chip is reset. It is 0 as the chip leaves the factory.
     pub brown_out_level: u8,
     /// The bit rates of the CAN bus.
-    pub can: Bus,
+    pub can: CanBus,
     /// For what is left to chance: RAM after a power-up, flash after a cut.
     pub seed: u64,
     /// Whether what the image writes is recorded, from the power-up on: a list that grows with every tick.
@@ -30,7 +30,7 @@ impl Default for Board {
             lsi_hz: LSI_HZ,
             dual_bank: true,
             brown_out_level: 0,
-            can: Bus {
+            can: CanBus {
                 nominal_hz: 1_000_000,
                 data_hz: 5_000_000,
             },

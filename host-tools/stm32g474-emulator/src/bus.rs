@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// What processor and bus share: the time, and whether a peripheral was accessed.
 #[derive(Debug, Default)]
-pub struct Shared {
+pub struct BusShared {
     /// Cycles since the power-up.
     pub cycle: AtomicU64,
     /// Whether a peripheral was accessed since the last question.
@@ -34,7 +34,7 @@ pub struct Bus {
     /// The peripherals.
     pub peripherals: Arc<Mutex<Peripherals>>,
     /// What is shared with the processor.
-    pub shared: Arc<Shared>,
+    pub shared: Arc<BusShared>,
 }
 
 /// The peripherals, whatever happened to who had them before.

@@ -5,15 +5,15 @@ mod supply;
 mod unserved;
 
 use crate::board::Board;
-use crate::bus::{Shared, lock};
+use crate::bus::{BusShared, lock};
 use crate::devices::SystemBreak;
 use crate::facts::Facts;
 use crate::findings::Findings;
 use crate::image::Image;
 use crate::memory_map::FLASH;
 use crate::peripherals::Peripherals;
-use crate::processor::{FIRST_INTERRUPT, MapError, Place, Processor};
-use crate::rcc::ResetCause;
+use crate::processor::{FIRST_INTERRUPT, MapError, Processor, ProgramPlace};
+use crate::rcc::ResetFlag;
 use coupling::{Coupled, couple};
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -33,7 +33,7 @@ pub enum Stop {
     /// The processor has locked up: a fault within a fault. Only a reset ends that; until then time passes.
     LockedUp,
     /// The chip was reset, and starts again.
-    Reset(ResetCause),
+    Reset(ResetFlag),
 }
 
 /// A chip on a board.
@@ -44,7 +44,7 @@ pub struct Chip {
     converted: u16,
     processor: Processor,
     peripherals: Arc<Mutex<Peripherals>>,
-    shared: Arc<Shared>,
+    shared: Arc<BusShared>,
     cycle: u64,
     next_event: u64,
     /// Whether the counter of cycles goes on while the processor sleeps.
@@ -57,7 +57,7 @@ pub struct Chip {
     /// The pages of the CCM that SYSCFG_SWPR protects, bit by number, and what the CCM held when it began to.
     protected: (u32, Vec<u8>),
     /// The cycle of the last reset, and where the program and its stack were then.
-    before_reset: Option<(u64, Place, u32)>,
+    before_reset: Option<(u64, ProgramPlace, u32)>,
 }
 
 /// The longest from one look at the processor to the next, for a lock-up or a request for a reset, cycles: 0.1 ms.
@@ -98,7 +98,7 @@ impl Chip {
             before_reset: None,
             watched: Vec::new(),
             watching: false,
-            converted: Facts::of_chip().interrupt("ADC1_2").unwrap_or_default(),
+            converted: Facts::chip().interrupt("ADC1_2").unwrap_or_default(),
         })
     }
 
@@ -137,7 +137,7 @@ impl Chip {
 
     /// Where the program is, and its stack pointer; just after a reset, where they were before it.
     #[must_use]
-    pub fn place(&self) -> (Place, u32) {
+    pub fn place(&self) -> (ProgramPlace, u32) {
         let reset = self.before_reset.filter(|(at, ..)| *at == self.cycle);
         let now = || (self.processor.place(), self.processor.stack_pointer());
         reset.map_or_else(now, |(_, place, stack)| (place, stack))
@@ -280,7 +280,7 @@ impl Chip {
             return Some(self.lock_up());
         }
         if self.processor.asks_for_reset() {
-            return Some(self.reset(ResetCause::Software));
+            return Some(self.reset(ResetFlag::Software));
         }
         let mut peripherals = lock(&self.peripherals);
         peripherals.set_cycle(self.cycle);
@@ -288,11 +288,11 @@ impl Chip {
         let watchdogs = [
             (
                 peripherals.devices.wwdg.expires_at(),
-                ResetCause::WindowWatchdog,
+                ResetFlag::WindowWatchdog,
             ),
             (
                 peripherals.devices.iwdg.expires_at(),
-                ResetCause::IndependentWatchdog,
+                ResetFlag::IndependentWatchdog,
             ),
         ];
         let expired = |(at, _): &&(Option<u64>, _)| at.is_some_and(|at| at <= self.cycle);
@@ -351,7 +351,7 @@ impl Chip {
     }
 
     /// Resets the chip, whose supply stays, and its memories with it.
-    pub fn reset(&mut self, cause: ResetCause) -> Stop {
+    pub fn reset(&mut self, cause: ResetFlag) -> Stop {
         self.peripherals().reset(cause);
         let stack = self.processor.stack_pointer();
         self.before_reset = Some((self.cycle, self.processor.place(), stack));

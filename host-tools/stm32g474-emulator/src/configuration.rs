@@ -1,7 +1,7 @@
 //! What an image has made of the chip, in words: for the golden list of a boot.
 
 use crate::clocks::LSI_HZ;
-use crate::facts::{Facts, Field, Pin};
+use crate::facts::{Facts, Pin, RegisterField};
 use crate::fdcan::timing::BitTiming;
 use crate::gpio::{Gpio, PinMode};
 use crate::peripherals::Peripherals;
@@ -30,8 +30,13 @@ pub fn lines(chip: &Peripherals) -> Vec<String> {
 }
 
 /// A field and the register's word that was written last.
-fn written(chip: &Peripherals, block: &str, register: &str, name: &str) -> Option<(Field, u32)> {
-    let block = Facts::of_chip().block(block)?;
+fn written(
+    chip: &Peripherals,
+    block: &str,
+    register: &str,
+    name: &str,
+) -> Option<(RegisterField, u32)> {
+    let block = Facts::chip().block(block)?;
     let register = block.register(register)?;
     let word = chip.checks.last_written((block, register));
     Some((register.field(name)?.clone(), word))
@@ -73,7 +78,7 @@ fn set<'a>(chip: &Peripherals, place: [&str; 2], names: &[&'a str]) -> Vec<&'a s
 
 /// Names of all fields of a register that are set.
 fn all_set(chip: &Peripherals, [block, register]: [&str; 2]) -> String {
-    let register = Facts::of_chip()
+    let register = Facts::chip()
         .block(block)
         .and_then(|block| Some((block, block.register(register)?)));
     let Some((block, register)) = register else {
@@ -134,7 +139,7 @@ fn pin(chip: &Peripherals, port: &Gpio, number: u8) -> Option<String> {
 }
 
 fn signals(pin: Pin, function: u8) -> String {
-    let signals = Facts::of_chip().alternate_function(pin, function).iter();
+    let signals = Facts::chip().alternate_function(pin, function).iter();
     let names: Vec<String> = signals
         .map(|(block, name)| format!("{block}_{name}"))
         .collect();
@@ -248,7 +253,7 @@ fn input(chip: &Peripherals, converter: &str, input: u32) -> String {
     let sampling = format!("SMP{}", input % INPUTS_OF_FIRST);
     let sampling = word(chip, [converter, register, &sampling]);
     let number = u8::try_from(input).unwrap_or(u8::MAX);
-    let pin = Facts::of_chip().converter_pin(converter, number);
+    let pin = Facts::chip().converter_pin(converter, number);
     let pin = pin.map_or_else(|| "internal".to_owned(), |pin| pin.to_string());
     format!("input {input} ({pin}) for {sampling}")
 }

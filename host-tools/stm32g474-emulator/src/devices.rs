@@ -7,7 +7,7 @@ mod system_breaks;
 
 pub use system_breaks::SystemBreak;
 
-use crate::adc::Converters;
+use crate::adc::AdcConverters;
 use crate::board::Board;
 use crate::device::{Context, Device, FieldPlace};
 use crate::encoder_timer::EncoderTimer;
@@ -68,7 +68,7 @@ pub struct Devices {
     /// TIM2 to TIM4.
     pub encoders: [EncoderTimer; 3],
     /// ADC1 to ADC3.
-    pub converters: Converters,
+    pub converters: AdcConverters,
     /// What the board gives the converters, by pin: sums of 16 conversions.
     pub analogue: BTreeMap<Pin, u16>,
     /// The chip's own voltage at a converter, which the supply of the chip is the reference of: a sum of 16 conversions.
@@ -92,7 +92,7 @@ pub struct Devices {
 
 /// A block that the chip has.
 fn block(name: &str) -> &'static Block {
-    match Facts::of_chip().block(name) {
+    match Facts::chip().block(name) {
         Some(block) => block,
         None => panic!("the chip has no {name}"),
     }
@@ -102,7 +102,7 @@ impl Devices {
     /// After a power-up.
     #[must_use]
     pub fn new(board: &Board) -> Self {
-        let facts = Facts::of_chip();
+        let facts = Facts::chip();
         let dbgmcu = Plain::new(block("DBGMCU"));
         let syscfg = Plain::new(block("SYSCFG")).with_lasting(&LASTING);
         let ports = facts.blocks.iter().filter(|b| b.name.starts_with("GPIO"));
@@ -118,7 +118,7 @@ impl Devices {
             tim1: Tim1::new(block("TIM1")),
             tim15: Tim15::new(block("TIM15")),
             encoders: ENCODER_TIMERS.map(|name| EncoderTimer::new(block(name))),
-            converters: Converters::new(facts),
+            converters: AdcConverters::new(facts),
             analogue: BTreeMap::new(),
             reference: REFERENCE_SUM,
             sampled: RefCell::default(),
@@ -149,7 +149,7 @@ impl Devices {
         if block == MESSAGE_RAM {
             return Some(self.fdcan.read_memory(offset));
         }
-        Some(self.by_name(block)?.read(offset, context))
+        Some(self.device(block)?.read(offset, context))
     }
 
     /// The processor writes a register; none where the block is not modelled.
@@ -173,7 +173,7 @@ impl Devices {
             self.fdcan.write_memory(offset, value, context);
             return Some(());
         }
-        self.by_name(block)?.write(offset, value, context);
+        self.device(block)?.write(offset, value, context);
         Some(())
     }
 
@@ -190,7 +190,7 @@ impl Devices {
     }
 
     /// The peripheral of a block; none where it is not modelled.
-    fn by_name(&mut self, name: &str) -> Option<&mut dyn Device> {
+    fn device(&mut self, name: &str) -> Option<&mut dyn Device> {
         let named = |block: &Block| block.name == name;
         Some(match name {
             "RCC" => &mut self.rcc,
@@ -243,7 +243,7 @@ impl Devices {
     pub fn reset_block(&mut self, block: &str) {
         if block.starts_with("ADC") {
             self.converters.reset(block);
-        } else if let Some(device) = self.by_name(block) {
+        } else if let Some(device) = self.device(block) {
             device.reset();
         }
         self.break_levels = [false; 2];

@@ -188,11 +188,11 @@ impl Device for EncoderTimer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bench::Bench;
+    use crate::bench::DeviceBench;
 
     /// As embassy-stm32 and the image set it up.
-    fn bench(name: &str) -> Bench<EncoderTimer> {
-        let mut bench = Bench::new(name, EncoderTimer::new);
+    fn bench(name: &str) -> DeviceBench<EncoderTimer> {
+        let mut bench = DeviceBench::new(name, EncoderTimer::new);
         bench.set("CCMR1", &[("CCS0", 1), ("CCS1", 1)]);
         bench.set("CCER", &[("CCE0", 1), ("CCE1", 1)]);
         bench.set("SMCR", &[("SMS", 3)]);

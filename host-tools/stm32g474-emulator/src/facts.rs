@@ -89,7 +89,7 @@ pub struct Register {
     /// What the processor may do with it.
     pub access: Access,
     /// Its fields; an array of fields is given one by one.
-    pub fields: Vec<Field>,
+    pub fields: Vec<RegisterField>,
     /// The bits that belong to a field; the others are reserved. All, where the register has no fields.
     pub known: u32,
     /// What it is after a reset.
@@ -111,7 +111,7 @@ pub enum Access {
 
 /// A field of a register.
 #[derive(Clone, Debug)]
-pub struct Field {
+pub struct RegisterField {
     /// Upper case, by `stm32-metapac` (and so by the board's code): `CEN`, `SMP6`, `CCIE0`.
     pub name: String,
     /// By ST, as in the reference manual: `CC1IE`.
@@ -136,7 +136,7 @@ pub struct Pin {
 impl Facts {
     /// What is known of the STM32G474RE.
     #[must_use]
-    pub fn of_chip() -> &'static Self {
+    pub fn chip() -> &'static Self {
         &FACTS
     }
 
@@ -232,12 +232,12 @@ impl Block {
 impl Register {
     /// The field of a name.
     #[must_use]
-    pub fn field(&self, name: &str) -> Option<&Field> {
+    pub fn field(&self, name: &str) -> Option<&RegisterField> {
         self.fields.iter().find(|field| field.name == name)
     }
 }
 
-impl Field {
+impl RegisterField {
     /// The field's value in a word of its register.
     #[must_use]
     pub const fn value(&self, word: u32) -> u32 {
@@ -306,7 +306,7 @@ mod tests {
 
     #[test]
     fn what_the_manual_says_is_known() {
-        let facts = Facts::of_chip();
+        let facts = Facts::chip();
         let pin = |port, number| Pin { port, number };
         for (pin, function, signal) in [
             (pin('A', 8), 6, ("TIM1", "CH1")),

@@ -1,7 +1,7 @@
 //! FDCAN2: a node on the bus of the hosts and the other legs.
 //!
 //! The bus itself is outside: it asks each node by [`Fdcan::wants`] what it would send, lets the lowest identifier send
-//! by [`Fdcan::take_transmission`], and after [`Frame::duration_ns`] hands the frame to the others by
+//! by [`Fdcan::take_transmission`], and after [`DataFrame::duration_ns`] hands the frame to the others by
 //! [`Fdcan::bus_receive`] and their answer to the sender by [`Fdcan::transmission_ends`].
 //!
 //! | module | what is in it |
@@ -31,11 +31,11 @@ use crate::facts::Facts;
 use errors::Errors;
 use fifo::Fifo;
 use interrupts::Interrupts;
-use places::{Flags, Offsets, Parts, Settings};
+use places::{FdcanFlags, FdcanOffsets, FdcanSettings, Parts};
 use transmit::Requests;
 
-pub use bus::{Bus, Outcome, Reception};
-pub use frame::Frame;
+pub use bus::{CanBus, Reception, TransmitOutcome};
+pub use frame::DataFrame;
 
 /// The last error was read: RM0440, FDCAN_PSR, LEC.
 const NO_CHANGE: u32 = 7;
@@ -47,13 +47,13 @@ const UNWRITTEN: u32 = 0xa5c3_5a3c;
 #[derive(Clone, Debug)]
 pub struct Fdcan {
     registers: RegisterFile,
-    offsets: Offsets,
-    settings: Settings,
-    flags: Flags,
+    offsets: FdcanOffsets,
+    settings: FdcanSettings,
+    flags: FdcanFlags,
     interrupts: Interrupts,
     parts: Parts,
     memory: Vec<u32>,
-    bus: Bus,
+    bus: CanBus,
     requests: Requests,
     /// The buffers of the transmit FIFO from the oldest request on.
     ring: Fifo,
@@ -77,16 +77,16 @@ impl Fdcan {
     /// # Panics
     /// If the facts do not know its registers and its message RAM.
     #[must_use]
-    pub fn new(bus: Bus) -> Self {
-        let facts = Facts::of_chip();
+    pub fn new(bus: CanBus) -> Self {
+        let facts = Facts::chip();
         let (Some(block), Some(memory)) = (facts.block("FDCAN2"), facts.block("FDCANRAM2")) else {
             panic!("the facts have no block FDCAN2 or FDCANRAM2");
         };
         let registers = RegisterFile::new(block);
         let mut fdcan = Self {
-            offsets: Offsets::new(&registers),
-            settings: Settings::new(&registers),
-            flags: Flags::new(&registers),
+            offsets: FdcanOffsets::new(&registers),
+            settings: FdcanSettings::new(&registers),
+            flags: FdcanFlags::new(&registers),
             interrupts: Interrupts::new(&registers),
             parts: Parts::new(&RegisterFile::new(memory)),
             registers,

@@ -11,7 +11,7 @@ const UNKNOWN: u32 = 0;
 
 /// Something that the real chip forbids, or that only works by chance.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Finding {
+pub struct ChipFinding {
     /// When, cycles since the power-up.
     pub cycle: u64,
     /// Where the program was: the address of the instruction.
@@ -20,7 +20,7 @@ pub struct Finding {
     pub text: String,
 }
 
-impl fmt::Display for Finding {
+impl fmt::Display for ChipFinding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
@@ -33,7 +33,7 @@ impl fmt::Display for Finding {
 /// The findings of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Findings {
-    list: Vec<Finding>,
+    list: Vec<ChipFinding>,
     known: BTreeSet<String>,
     /// The cycle that a finding belongs to.
     now: u64,
@@ -50,7 +50,7 @@ impl Findings {
         let text = text.into();
         if self.list.len() < FINDINGS_MAX && self.known.insert(text.clone()) {
             let (cycle, pc) = (self.now, UNKNOWN);
-            self.list.push(Finding { cycle, pc, text });
+            self.list.push(ChipFinding { cycle, pc, text });
         }
     }
 
@@ -63,7 +63,7 @@ impl Findings {
 
     /// All of them, in the order in which they came.
     #[must_use]
-    pub fn list(&self) -> &[Finding] {
+    pub fn list(&self) -> &[ChipFinding] {
         &self.list
     }
 }

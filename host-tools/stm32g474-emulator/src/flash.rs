@@ -21,16 +21,16 @@ use crate::memory_map::BANK_SIZE;
 use array::{Array, DOUBLE_WORD, SIZE, START, double_word_of};
 use fastrand::Rng;
 use operation::Operation;
-use places::{Flags, Offsets, Settings};
+use places::{FlashFlags, FlashOffsets, FlashSettings};
 use std::ops::Range;
 
 /// The flash with its registers.
 #[derive(Clone, Debug)]
 pub struct Flash {
     registers: RegisterFile,
-    offsets: Offsets,
-    settings: Settings,
-    flags: Flags,
+    offsets: FlashOffsets,
+    settings: FlashSettings,
+    flags: FlashFlags,
     array: Array,
     dual_bank: bool,
     keys: Keys,
@@ -71,14 +71,14 @@ impl Flash {
     /// If the facts do not know the controller's registers.
     #[must_use]
     pub fn new(dual_bank: bool, brown_out_level: u8, seed: u64) -> Self {
-        let Some(block) = Facts::of_chip().block("FLASH") else {
+        let Some(block) = Facts::chip().block("FLASH") else {
             panic!("the facts have no block FLASH");
         };
         let registers = RegisterFile::new(block);
         let mut flash = Self {
-            offsets: Offsets::new(&registers),
-            settings: Settings::new(&registers),
-            flags: Flags::new(&registers),
+            offsets: FlashOffsets::new(&registers),
+            settings: FlashSettings::new(&registers),
+            flags: FlashFlags::new(&registers),
             registers,
             array: Array::default(),
             dual_bank,

@@ -223,10 +223,10 @@ impl Device for Gpio {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bench::Bench;
+    use crate::bench::DeviceBench;
 
-    fn bench() -> Bench<Gpio> {
-        let mut bench = Bench::new("GPIOC", |block| Gpio::new(block, Facts::of_chip()));
+    fn bench() -> DeviceBench<Gpio> {
+        let mut bench = DeviceBench::new("GPIOC", |block| Gpio::new(block, Facts::chip()));
         bench.write("MODER", 0b01);
         bench
     }

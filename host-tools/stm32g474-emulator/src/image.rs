@@ -8,7 +8,7 @@ use thiserror::Error;
 
 /// Why a file is no image for this chip.
 #[derive(Debug, Error, PartialEq, Eq)]
-pub enum ImageError {
+pub enum ChipImageError {
     /// It is no ELF file.
     #[error("the image is no ELF file ({0}); build it with `cargo image-stm32g474`")]
     NotElf(String),
@@ -58,11 +58,11 @@ impl Image {
     /// Reads an ELF file.
     ///
     /// # Errors
-    /// [`ImageError`] for a file that is no image of this chip.
-    pub fn parse(elf: &[u8]) -> Result<Self, ImageError> {
-        let file = object::File::parse(elf).map_err(|e| ImageError::NotElf(e.to_string()))?;
+    /// [`ChipImageError`] for a file that is no image of this chip.
+    pub fn parse(elf: &[u8]) -> Result<Self, ChipImageError> {
+        let file = object::File::parse(elf).map_err(|e| ChipImageError::NotElf(e.to_string()))?;
         if file.architecture() != Architecture::Arm {
-            return Err(ImageError::OtherProcessor(format!(
+            return Err(ChipImageError::OtherProcessor(format!(
                 "{:?}",
                 file.architecture()
             )));
@@ -76,7 +76,7 @@ impl Image {
         image.check_vectors()?;
         image.read_symbols(&file);
         if image.functions.is_empty() {
-            return Err(ImageError::NoSymbols);
+            return Err(ChipImageError::NoSymbols);
         }
         Ok(image)
     }
@@ -111,7 +111,7 @@ impl Image {
         }
     }
 
-    fn check_vectors(&self) -> Result<(), ImageError> {
+    fn check_vectors(&self) -> Result<(), ChipImageError> {
         let word = |at: usize| match self.flash.get(at..at + 4) {
             Some(&[a, b, c, d]) => u32::from_le_bytes([a, b, c, d]),
             _ => 0,
@@ -121,7 +121,7 @@ impl Image {
         if stack_fits && FLASH.contains(&start) && start & 1 == 1 {
             Ok(())
         } else {
-            Err(ImageError::NoVectorTable { stack, start })
+            Err(ChipImageError::NoVectorTable { stack, start })
         }
     }
 
@@ -161,9 +161,9 @@ impl Image {
 }
 
 /// What is loaded where: an image's initial data lie elsewhere in the flash than they are used.
-fn loads(elf: &[u8]) -> Result<Vec<(u32, Vec<u8>)>, ImageError> {
+fn loads(elf: &[u8]) -> Result<Vec<(u32, Vec<u8>)>, ChipImageError> {
     use object::read::elf::{ElfFile32, ProgramHeader};
-    let refused = |error: object::Error| ImageError::NotElf(error.to_string());
+    let refused = |error: object::Error| ChipImageError::NotElf(error.to_string());
     let file: ElfFile32<'_> = ElfFile32::parse(elf).map_err(refused)?;
     let endian = file.endian();
     let mut loads = Vec::new();
@@ -177,10 +177,10 @@ fn loads(elf: &[u8]) -> Result<Vec<(u32, Vec<u8>)>, ImageError> {
     Ok(loads)
 }
 
-fn flash_bytes(loads: &[(u32, Vec<u8>)]) -> Result<Vec<u8>, ImageError> {
+fn flash_bytes(loads: &[(u32, Vec<u8>)]) -> Result<Vec<u8>, ChipImageError> {
     let mut flash = vec![0xff; FLASH.len()];
     for (address, bytes) in loads {
-        let outside = ImageError::Outside {
+        let outside = ChipImageError::Outside {
             address: *address,
             size: bytes.len(),
         };

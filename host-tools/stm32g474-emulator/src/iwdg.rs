@@ -60,7 +60,7 @@ impl Iwdg {
     /// If the facts do not know its registers.
     #[must_use]
     pub fn new(lsi_hz: u32) -> Self {
-        let Some(block) = Facts::of_chip().block("IWDG") else {
+        let Some(block) = Facts::chip().block("IWDG") else {
             panic!("the facts have no block IWDG");
         };
         let registers = RegisterFile::new(block);

@@ -2,7 +2,7 @@
 //!
 //! The processor is [`rsemu`]'s; the peripherals that the image uses are here. What a register is (its address, fields,
 //! access, reset value, clock) is not typed by hand: see [`facts`]. An access or a state that the real chip forbids is a
-//! [`Finding`](findings::Finding), and a run with findings fails.
+//! [`ChipFinding`](findings::ChipFinding), and a run with findings fails.
 //!
 //! Begin with [`image::Image::parse`], which reads the file that is flashed; [`chip::Chip::run`] lets it run on a
 //! [`Board`](board::Board) until something happens, and [`chip::Chip::peripherals`] has what was found.

@@ -16,7 +16,7 @@ use crate::clocks::Clocks;
 use crate::device::{Context, Device, RegisterFile};
 use crate::facts::Facts;
 use line::CHARACTER_BITS;
-use places::{Flags, Offsets, Settings};
+use places::{LpuartFlags, LpuartOffsets, LpuartSettings};
 use std::collections::VecDeque;
 
 /// Characters in a FIFO: RM0440, LPUART implementation; without FIFO it is one.
@@ -50,9 +50,9 @@ struct Arrival {
 #[derive(Clone, Debug)]
 pub struct Lpuart {
     registers: RegisterFile,
-    offsets: Offsets,
-    settings: Settings,
-    flags: Flags,
+    offsets: LpuartOffsets,
+    settings: LpuartSettings,
+    flags: LpuartFlags,
     /// The flags that stay until they are cleared.
     status: u32,
     received: VecDeque<u8>,
@@ -84,14 +84,14 @@ impl Lpuart {
     /// If the facts do not know its registers.
     #[must_use]
     pub fn new() -> Self {
-        let Some(block) = Facts::of_chip().block("LPUART1") else {
+        let Some(block) = Facts::chip().block("LPUART1") else {
             panic!("the facts have no block LPUART1");
         };
         let registers = RegisterFile::new(block);
         let mut lpuart = Self {
-            offsets: Offsets::new(&registers),
-            settings: Settings::new(&registers),
-            flags: Flags::new(&registers),
+            offsets: LpuartOffsets::new(&registers),
+            settings: LpuartSettings::new(&registers),
+            flags: LpuartFlags::new(&registers),
             registers,
             status: 0,
             received: VecDeque::new(),

@@ -7,7 +7,7 @@ use crate::device::{Context, Device};
 use crate::devices::{Devices, SystemBreak};
 use crate::facts::{Block, Facts, Switch};
 use crate::findings::Findings;
-use crate::rcc::ResetCause;
+use crate::rcc::ResetFlag;
 
 /// Up to this frequency, Hz, the processor's clock may be raised in one step: half of the chip's highest, to which RM0440's
 /// own sequence, and ST's driver (stm32g4xx_hal_rcc.c), go at once.
@@ -149,7 +149,7 @@ impl Peripherals {
     }
 
     /// A reset of the chip, whose supply stays.
-    pub fn reset(&mut self, cause: ResetCause) {
+    pub fn reset(&mut self, cause: ResetFlag) {
         self.devices.reset();
         self.devices.rcc.note_cause(cause);
         self.checks.reset();
@@ -238,7 +238,7 @@ impl Peripherals {
 
 /// What holds each block in reset.
 fn resets() -> Vec<(Switch, &'static Block)> {
-    let blocks = Facts::of_chip().blocks.iter();
+    let blocks = Facts::chip().blocks.iter();
     blocks
         .filter_map(|block| Some((block.reset?, block)))
         .collect()

@@ -55,12 +55,12 @@ impl Device for Plain {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bench::Bench;
+    use crate::bench::DeviceBench;
 
     #[test]
     fn only_a_reset_clears_what_lasts() {
         let new = |block| Plain::new(block).with_lasting(&["CFGR2"]);
-        let mut bench = Bench::new("SYSCFG", new);
+        let mut bench = DeviceBench::new("SYSCFG", new);
         bench.write("CFGR2", 0b101);
         bench.write("CFGR2", 0);
         bench.write("MEMRMP", 1);

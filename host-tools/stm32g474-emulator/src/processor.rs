@@ -26,7 +26,7 @@ const PAGES: DispatchPolicy = DispatchPolicy::Dense {
 
 /// Where the program is at a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct ProgramPlace {
     /// The instruction to come.
     pub pc: u32,
     /// The number of the exception in progress; 0 for none.
@@ -284,8 +284,8 @@ impl Processor {
 
     /// Where the program is.
     #[must_use]
-    pub fn place(&self) -> Place {
-        Place {
+    pub fn place(&self) -> ProgramPlace {
+        ProgramPlace {
             pc: self.core.pc(),
             exception: self.core.current_exception().0,
         }
@@ -299,7 +299,7 @@ impl Processor {
 
     /// Whether a task has switched interrupts off.
     #[must_use]
-    pub fn in_critical_section(&self) -> bool {
+    pub fn is_in_critical_section(&self) -> bool {
         self.core.current_exception().0 == 0 && self.core.regs().primask
     }
 

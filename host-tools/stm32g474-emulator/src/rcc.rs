@@ -7,7 +7,7 @@ mod rates;
 
 use crate::device::{Context, Device, FieldPlace, RegisterFile};
 use crate::facts::{Block, Switch};
-use fields::Fields;
+use fields::RccFields;
 use oscillator::Oscillator;
 use rates::{SOURCE_HSE, SOURCE_HSI, SOURCE_PLL};
 
@@ -20,7 +20,7 @@ const LSI_START_US: u64 = 130;
 
 /// Why a chip started. The flags add up until software clears them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ResetCause {
+pub enum ResetFlag {
     /// Supply below its lowest level; also every power-up.
     BrownOut,
     /// The reset pin.
@@ -37,7 +37,7 @@ pub enum ResetCause {
 #[derive(Clone, Debug)]
 pub struct Rcc {
     registers: RegisterFile,
-    fields: Fields,
+    fields: RccFields,
     /// The crystal on the board, Hz; 0 while it stands still.
     crystal_hz: u32,
     hsi: Oscillator,
@@ -55,7 +55,7 @@ impl Rcc {
     pub fn new(block: &'static Block, crystal_hz: u32) -> Self {
         let registers = RegisterFile::new(block);
         let mut rcc = Self {
-            fields: Fields::new(&registers),
+            fields: RccFields::new(&registers),
             registers,
             crystal_hz,
             hsi: Oscillator::default(),
@@ -70,14 +70,14 @@ impl Rcc {
     }
 
     /// Adds a flag to those that tell why the chip started.
-    pub fn note_cause(&mut self, cause: ResetCause) {
+    pub fn note_cause(&mut self, cause: ResetFlag) {
         let flags: &[&str] = match cause {
-            ResetCause::BrownOut => &["BORRSTF", "PINRSTF"],
-            ResetCause::Pin => &["PINRSTF"],
+            ResetFlag::BrownOut => &["BORRSTF", "PINRSTF"],
+            ResetFlag::Pin => &["PINRSTF"],
             // The chip pulls its own reset pin.
-            ResetCause::Software => &["SFTRSTF", "PINRSTF"],
-            ResetCause::IndependentWatchdog => &["IWDGRSTF", "PINRSTF"],
-            ResetCause::WindowWatchdog => &["WWDGRSTF", "PINRSTF"],
+            ResetFlag::Software => &["SFTRSTF", "PINRSTF"],
+            ResetFlag::IndependentWatchdog => &["IWDGRSTF", "PINRSTF"],
+            ResetFlag::WindowWatchdog => &["WWDGRSTF", "PINRSTF"],
         };
         for flag in flags {
             let place = self.registers.field("CSR", flag);

@@ -69,7 +69,7 @@ impl Tim1 {
         let file = &timer.file;
         Self {
             lock: Lock::new(file),
-            breaks: BreakInput::both(file),
+            breaks: BreakInput::pair(file),
             outputs: OutputPlaces::new(file),
             places: Places::new(file),
             timer,

@@ -67,11 +67,11 @@ impl Device for Tim15 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bench::Bench;
+    use crate::bench::DeviceBench;
 
     /// As the time driver sets it up, at 1 MHz.
-    fn bench() -> Bench<Tim15> {
-        let mut bench = Bench::new("TIM15", Tim15::new);
+    fn bench() -> DeviceBench<Tim15> {
+        let mut bench = DeviceBench::new("TIM15", Tim15::new);
         bench.write("PSC", 169);
         bench.write("ARR", 0xffff);
         bench.set("CR1", &[("URS", 1)]);
@@ -84,7 +84,7 @@ mod tests {
         bench
     }
 
-    fn level(bench: &Bench<Tim15>) -> bool {
+    fn level(bench: &DeviceBench<Tim15>) -> bool {
         bench.device.interrupts()[0].1
     }
 

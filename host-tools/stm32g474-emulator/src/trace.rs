@@ -1,7 +1,7 @@
 //! What an image writes to registers, in words.
 
 use crate::access::Write;
-use crate::facts::{Access, Field};
+use crate::facts::{Access, RegisterField};
 
 /// One line for each write: what it changes, by the makers' names; writes that change nothing are left out.
 #[must_use]
@@ -38,6 +38,6 @@ fn line(write: &Write) -> Option<String> {
     (!words.is_empty()).then(|| format!("{register}: {}", words.join(", ")))
 }
 
-fn word(field: &Field, value: u32) -> String {
+fn word(field: &RegisterField, value: u32) -> String {
     format!("{} = {}", field.name, field.name_of(value))
 }

@@ -62,7 +62,7 @@ impl<T: Scalar> BalancedLeg<T> {
         )?;
         let twist = support
             .twist(&direction)
-            .then(&Twist::from_torsion(elastic));
+            .composed(&Twist::from_torsion(elastic));
         let geometry = rig.geometry.twisted(&twist);
         let kinematics = inverse_kinematics(&geometry, &direction)?;
         let plane = support.plane(&direction);
@@ -133,13 +133,13 @@ impl<T: Scalar> BalancedLeg<T> {
         let (geometry, direction, kinematics) = (&self.geometry, &self.direction, &self.kinematics);
         let lengthening = -kinematics.moment_map.tr_mul(rotation);
         let tension_change = stiffness.tendons.component_mul(&lengthening);
-        let turning = geometry.along_leg_change(direction, kinematics, rotation, &lengthening);
+        let turning = geometry.axial_pulls_change(direction, kinematics, rotation, &lengthening);
         let pull = geometry
-            .along_leg(direction, kinematics)
+            .axial_pulls(direction, kinematics)
             .dot(&tension_change)
             + turning.dot(&stiffness.tensions);
         let compliance = self.support.joint.axial_compliance_m_per_n;
-        compliance * (self.load.along_leg_n(direction) - pull)
+        compliance * (self.load.axial_force_n(direction) - pull)
     }
 
     /// The smallest and the largest stiffness against a tilt.

@@ -34,7 +34,7 @@ pub fn evaluate_for_map<T: Scalar>(
     match BalancedLeg::new(*rig, query) {
         Ok(leg) => Ok(known_pretension(&leg, query)),
         Err(error @ Error::Refused { .. }) => Err(error),
-        Err(error) => without_pretension(rig, query, error),
+        Err(error) => pretension_limits_alone(rig, query, error),
     }
 }
 
@@ -68,7 +68,7 @@ fn stiffness<T: Scalar>(
 }
 
 /// Where the pretension does not hold the leg's twist: only the range of those that may.
-fn without_pretension<T: Scalar>(
+fn pretension_limits_alone<T: Scalar>(
     rig: &Rig<T, 3>,
     query: &Query<T>,
     error: Error,

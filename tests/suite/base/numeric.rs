@@ -1,6 +1,6 @@
 //! Derivatives by differences, of functions whose derivatives are known.
 
-use leg_base::numeric::{by_rotation, derivative};
+use leg_base::numeric::{derivative, derivative_by_rotation};
 use nalgebra::{Matrix3, Vector1};
 
 #[test]
@@ -12,5 +12,5 @@ fn the_derivative_of_a_quartic_is_exact() {
 #[test]
 fn columns_belong_to_the_axes() {
     let matrix = Matrix3::new(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0);
-    assert!((by_rotation(|psi| matrix * psi) - matrix).amax() < 1e-12);
+    assert!((derivative_by_rotation(|psi| matrix * psi) - matrix).amax() < 1e-12);
 }

@@ -46,7 +46,7 @@ fn numbers_are_unwrapped_from_the_newest_row() {
     }
     assert_eq!((rows[299].tick, rows[289].tick), (9, u32::MAX));
     assert_eq!(
-        [rows[299].since_fault(), rows[289].since_fault()],
+        [rows[299].ticks_since_fault(), rows[289].ticks_since_fault()],
         [Some(4), Some(-6)]
     );
 }

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_base::timed_path::{Row, TimedPath, TimedPoint, check, run_up, way};
+use leg_base::timed_path::{PathRow, TimedPath, TimedPoint, check, run_up, way};
 use leg_firmware::control::MotionState;
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::set_point::{MotionLimit, PointRefusal, StreamPart};
@@ -21,8 +21,8 @@ fn circle(time_s: f64) -> MotionState<f64> {
     }
 }
 
-fn rows(times_s: &[f64]) -> Vec<Row> {
-    let row = |&time_s: &f64| Row {
+fn rows(times_s: &[f64]) -> Vec<PathRow> {
+    let row = |&time_s: &f64| PathRow {
         time_s: 100.0 + time_s,
         direction: circle(time_s).position,
     };
@@ -77,11 +77,11 @@ fn few_rows_are_a_path_too() {
     }
     let path = TimedPath::new(&rows(&[0.0, 0.1, 0.2, 0.3]));
     for time_s in [0.05, 0.15, 0.29] {
-        let motion = path.at(time_s).unwrap();
+        let motion = path.motion(time_s).unwrap();
         let [position, ..] = deviation(&TimedPoint { time_s, motion });
         assert!(position < 1e-5, "{position}");
     }
-    assert_eq!((path.at(-0.01), path.at(0.31)), (None, None));
+    assert_eq!((path.motion(-0.01), path.motion(0.31)), (None, None));
 }
 
 /// A time between two ticks is sent as the nearest tick, with where the leg is then.

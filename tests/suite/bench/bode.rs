@@ -3,7 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use leg_bench::bode::{
-    Campaign, ClosedLoop, Excitation, Feedback, Margin, Margins, Row, Sides, Sweep, Swept, rows,
+    BodeCampaign, ClosedLoop, Excitation, Feedback, Margin, MarginRow, Margins, Sides, Sweep,
+    Swept, rows,
 };
 use leg_firmware::settings::Servo;
 use leg_rig::rig_file::RigFile;
@@ -124,7 +125,7 @@ fn measured(set: impl Fn(&mut Servo), [seed, number]: [u64; 2], loops: &[Feedbac
     println!("seed {seed}, {number}");
     let mut file = RigFile::load(None).unwrap();
     set(&mut file.gains.servo);
-    let campaign = Campaign {
+    let campaign = BodeCampaign {
         seed,
         rigs: vec![("table1".into(), file)],
         loops: loops.to_vec(),
@@ -136,7 +137,7 @@ fn measured(set: impl Fn(&mut Servo), [seed, number]: [u64; 2], loops: &[Feedbac
 }
 
 /// The worst margin of a loop at any amplitude; none where it has none.
-fn worst(rows: &[Row], feedback: Feedback, margin: Margin) -> Option<f64> {
+fn worst(rows: &[MarginRow], feedback: Feedback, margin: Margin) -> Option<f64> {
     let rows = rows
         .iter()
         .filter(|row| row.feedback == feedback && row.margin == margin);

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_bench::moves::{Campaign, Moved};
+use leg_bench::moves::{MoveCampaign, Moved};
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
 
@@ -18,7 +18,7 @@ fn require_passed(moved: &[Moved]) {
 /// The tip stays on its trajectory and does not swing after it, whatever payload is hung on the leg.
 #[test]
 fn the_tip_stays_on_its_trajectory() {
-    let campaign = Campaign {
+    let campaign = MoveCampaign {
         seed: 7,
         rigs: vec![rig("table1")],
         payload_kg: None,
@@ -28,7 +28,7 @@ fn the_tip_stays_on_its_trajectory() {
 
 #[test]
 fn the_tip_of_every_rig_stays_on_its_trajectory() {
-    let campaign = Campaign {
+    let campaign = MoveCampaign {
         seed: 9,
         rigs: READY_RIGS.iter().map(|ready| rig(ready.name)).collect(),
         payload_kg: None,
@@ -69,7 +69,7 @@ fn the_tip_comes_to_rest_on_a_leg_unlike_its_settings() {
         ("5° of play", "[actuator]\nbacklash_rad = 0.087\n"),
     ] {
         let text = [READY_RIGS[0].text, text].concat();
-        let campaign = Campaign {
+        let campaign = MoveCampaign {
             seed: 7,
             rigs: vec![(unlike.into(), RigFile::parse(unlike, &text).unwrap())],
             payload_kg: None,
@@ -96,7 +96,7 @@ fn the_tip_comes_to_rest_on_a_leg_unlike_its_settings() {
 #[test]
 fn a_leg_whose_swing_is_not_braked_fails() {
     let text = [READY_RIGS[0].text, "[control.motion]\ndamping_ratio = 0\n"].concat();
-    let campaign = Campaign {
+    let campaign = MoveCampaign {
         seed: 7,
         rigs: vec![(
             "undamped".into(),

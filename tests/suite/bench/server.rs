@@ -4,7 +4,7 @@ use leg_firmware::frame::{Decoder, FrameError, MAX_FRAME, encode};
 use leg_firmware::host_link::{BoardKind, Hello};
 use leg_firmware::recorder::Recorder;
 use leg_firmware::settings::Settings;
-use leg_firmware_bench::counter::Counter;
+use leg_firmware_bench::counter::InstructionCounter;
 use leg_firmware_bench::example;
 use leg_firmware_bench::exit::Exit;
 use leg_firmware_bench::kernels::{self, Kernel, KernelInput};
@@ -12,7 +12,7 @@ use leg_firmware_bench::protocol::{
     BENCH_SCHEMA, BoardInfo, EvaluateRequest, KernelRequest, Refusal, Reply, Request,
 };
 use leg_firmware_bench::query::QueryMessage;
-use leg_firmware_bench::server::{Board, Server};
+use leg_firmware_bench::server::{BenchBoard, Server};
 use leg_model::{Error, Quantity, Reason, RigParameters};
 
 /// Counts every kernel as as many instructions as it is told, or nothing.
@@ -25,7 +25,7 @@ const INFO: BoardInfo = BoardInfo {
     boot: None,
 };
 
-impl Counter for Bench {
+impl InstructionCounter for Bench {
     fn count<A, B>(&mut self, kernel: fn(&A, &mut B), input: &A, output: &mut B) -> Option<u32> {
         let instructions = self.instructions?;
         kernel(input, output);
@@ -33,7 +33,7 @@ impl Counter for Bench {
     }
 }
 
-impl Board for Bench {
+impl BenchBoard for Bench {
     fn info(&self) -> BoardInfo {
         INFO
     }

@@ -2,14 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_bench::strikes::{Activity, Campaign, Struck, rows};
+use leg_bench::strikes::{Activity, StrikeCampaign, Struck, rows};
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Defect;
 
-fn campaign(fault: &str) -> Campaign {
+fn campaign(fault: &str) -> StrikeCampaign {
     let load = |name: &str| (name.into(), RigFile::load(Some(name.as_ref())).unwrap());
-    Campaign {
+    StrikeCampaign {
         seed: 1,
         rigs: READY_RIGS.iter().map(|rig| load(rig.name)).collect(),
         activities: Vec::new(),
@@ -39,7 +39,7 @@ fn require_passed(struck: &[Struck]) {
 fn a_sample_of_the_strikes_passes() {
     // Four rounds through the faults, fifteen a case, in each of eight states, with a slot of each case for none.
     const COUNT: u64 = 4 * 8 * 16;
-    let every = Campaign {
+    let every = StrikeCampaign {
         faults: Vec::new(),
         ..campaign("none")
     };
@@ -56,7 +56,7 @@ fn a_sample_of_the_strikes_passes() {
 
 #[test]
 fn a_strike_is_repeated_by_its_number() {
-    let campaign = Campaign {
+    let campaign = StrikeCampaign {
         activities: vec![Activity::Moving],
         ..campaign("cell_wanders")
     };
@@ -76,7 +76,7 @@ fn a_strike_is_repeated_by_its_number() {
 /// that the leg sagged by its load once more, up to 13 mm.
 #[test]
 fn a_leg_that_leaves_its_load_out_is_armed_again_where_it_is() {
-    let campaign = Campaign {
+    let campaign = StrikeCampaign {
         seed: 4711,
         ..campaign("none")
     };
@@ -93,7 +93,7 @@ fn a_leg_that_leaves_its_load_out_is_armed_again_where_it_is() {
 
 /// Asserts that strikes of a seed, by number and fault, pass with the tip no farther than so many mm.
 fn require_within(seed: u64, strikes: &[(u64, &str, f64)]) {
-    let campaign = Campaign {
+    let campaign = StrikeCampaign {
         seed,
         ..campaign("none")
     };

@@ -11,7 +11,7 @@ use leg_firmware::board::timing::TICK_CYCLES;
 use leg_firmware::can::LegAddress;
 use leg_firmware::command::Command;
 use leg_firmware::frame::{self, MAX_FRAME};
-use leg_firmware::host_link::{HOST_SCHEMA, Hello, HostRequest, ResetCause as Told};
+use leg_firmware::host_link::{HOST_SCHEMA, Hello, HostRequest, ResetCause};
 use leg_firmware::sensors::CODE_MAX;
 use leg_firmware_bench::protocol::Request;
 use leg_sim::link::{Link, LinkError};
@@ -21,8 +21,8 @@ use std::{env, fs};
 use stm32g474_emulator::board::Board;
 use stm32g474_emulator::chip::Stop;
 use stm32g474_emulator::configuration;
-use stm32g474_emulator::image::{Image, ImageError};
-use stm32g474_emulator::rcc::ResetCause;
+use stm32g474_emulator::image::{ChipImageError, Image};
+use stm32g474_emulator::rcc::ResetFlag;
 use stm32g474_emulator::trace;
 
 /// After these the serial line is set up.
@@ -135,7 +135,7 @@ fn a_copied_chip_goes_on_as_its_original() -> Outcome {
     assert_eq!(first, second);
     // What happens to one does not happen to the other.
     let chip = copy.chip().ok_or("no chip")?;
-    chip.reset(ResetCause::Pin);
+    chip.reset(ResetFlag::Pin);
     assert!(original.ask(&Request::Tick(at_rest())).is_ok());
     Ok(())
 }
@@ -144,11 +144,11 @@ fn a_copied_chip_goes_on_as_its_original() -> Outcome {
 fn the_chip_tells_why_it_started() -> Outcome {
     let mut session = started(10)?;
     let chip = session.chip().ok_or("no chip")?;
-    assert_eq!(identity(chip)?.reset, Told::Power);
-    chip.reset(ResetCause::Pin);
-    assert_eq!(identity_after(chip)?.reset, Told::Pin);
+    assert_eq!(identity(chip)?.reset, ResetCause::Power);
+    chip.reset(ResetFlag::Pin);
+    assert_eq!(identity_after(chip)?.reset, ResetCause::Pin);
     chip.cycle_power(1);
-    assert_eq!(identity_after(chip)?.reset, Told::Power);
+    assert_eq!(identity_after(chip)?.reset, ResetCause::Power);
     assert_eq!(findings(chip), [""; 0]);
     Ok(())
 }
@@ -161,7 +161,7 @@ fn settings_are_kept_over_a_reset() -> Outcome {
     let other = other_settings()?;
     carry_out(chip, &HostRequest::SetSettings(other.clone()))?;
     carry_out(chip, &HostRequest::SaveSettings)?;
-    chip.reset(ResetCause::Pin);
+    chip.reset(ResetFlag::Pin);
     identity_after(chip)?;
     assert_eq!(settings(chip)?, other);
     assert_eq!(findings(chip), [""; 0]);
@@ -196,14 +196,14 @@ fn a_crystal_that_stops_ends_the_pulses_and_is_told() -> Outcome {
     let chip = session.chip().ok_or("no chip")?;
     chip.stop_crystal();
     assert!(!chip.peripherals().devices.tim1.outputs().on);
-    assert_eq!(reset_within(chip, 100 * MS), Some(ResetCause::Software));
+    assert_eq!(reset_within(chip, 100 * MS), Some(ResetFlag::Software));
     // Without it the chip does not start again.
     let hz = Board::default().crystal_hz;
     chip.peripherals().devices.rcc.start_crystal(hz);
     let identity = identity_after(chip)?;
     assert_eq!(
         (identity.reset, identity.crash_report.as_str()),
-        (Told::Software, "the crystal has stopped")
+        (ResetCause::Software, "the crystal has stopped")
     );
     Ok(())
 }
@@ -220,12 +220,12 @@ fn what_is_no_image_of_the_chip_is_refused() -> Outcome {
     let qemu = fs::read(image(FirmwareImage::Qemu)?)?;
     let other = Image::parse(&qemu).err();
     assert!(
-        matches!(other, Some(ImageError::Outside { address: 0, .. })),
+        matches!(other, Some(ChipImageError::Outside { address: 0, .. })),
         "{other:?}"
     );
     let host = Image::parse(&fs::read(env::current_exe()?)?).err();
     assert!(
-        matches!(host, Some(ImageError::OtherProcessor(_))),
+        matches!(host, Some(ChipImageError::OtherProcessor(_))),
         "{host:?}"
     );
     let mut elf = fs::read(image(FirmwareImage::Stm32g474)?)?;
@@ -238,7 +238,7 @@ fn what_is_no_image_of_the_chip_is_refused() -> Outcome {
     stripped[SECTION_COUNTS].fill(0);
     let stripped = Image::parse(&stripped).err();
     assert!(
-        matches!(stripped, Some(ImageError::NoSymbols)),
+        matches!(stripped, Some(ChipImageError::NoSymbols)),
         "{stripped:?}"
     );
     // A stack at the end of the RAM of a larger chip.
@@ -247,7 +247,7 @@ fn what_is_no_image_of_the_chip_is_refused() -> Outcome {
     assert!(
         matches!(
             larger,
-            Some(ImageError::NoVectorTable {
+            Some(ChipImageError::NoVectorTable {
                 stack: 0x2004_0000,
                 ..
             })
@@ -255,7 +255,7 @@ fn what_is_no_image_of_the_chip_is_refused() -> Outcome {
         "{larger:?}"
     );
     let text = Image::parse(b"no ELF").err();
-    assert!(matches!(text, Some(ImageError::NotElf(_))), "{text:?}");
+    assert!(matches!(text, Some(ChipImageError::NotElf(_))), "{text:?}");
     let missing = ChipSession::open("no-such-image".as_ref()).err();
     assert!(matches!(missing, Some(LinkError::System { .. })));
     Ok(())

@@ -10,7 +10,7 @@ use leg_firmware::store::{RECORD_MAX, WORD_SIZE};
 use std::error::Error;
 use stm32g474_emulator::chip::Chip;
 use stm32g474_emulator::facts::Facts;
-use stm32g474_emulator::rcc::ResetCause;
+use stm32g474_emulator::rcc::ResetFlag;
 
 /// A part of the time that a double word takes, 82 µs on the emulated chip, less a step: the supply fails within it.
 const WITHIN_WORD_US: u64 = 75;
@@ -53,7 +53,7 @@ fn operations(chip: &Chip) -> u64 {
 
 /// Whether a page is being erased.
 fn erases(chip: &Chip) -> bool {
-    let flash = Facts::of_chip().block("FLASH");
+    let flash = Facts::chip().block("FLASH");
     let control = flash.and_then(|block| Some((block, block.register("CR")?)));
     control.is_some_and(|(block, control)| {
         let value = chip.peripherals().read(block.base + control.offset, 4);
@@ -101,7 +101,7 @@ fn settings_survive_a_power_cut_in_every_word_of_a_save() -> Outcome {
     assert!(words as usize * WORD_SIZE > RECORD_MAX / 2, "{words} words");
     // The last save ended, and what it wrote is kept.
     done(chip)?;
-    chip.reset(ResetCause::Pin);
+    chip.reset(ResetFlag::Pin);
     identity_after(chip)?;
     assert_eq!(settings(chip)?, both[1 - kept]);
     Ok(())

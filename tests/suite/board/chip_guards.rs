@@ -7,7 +7,7 @@ use crate::common::chip::{
 };
 use leg_boards::image::FirmwareImage;
 use leg_firmware::command::{Command, CommandRefusal};
-use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest, ResetCause as Told};
+use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest, ResetCause};
 use leg_firmware::supervisor::{Fault, State};
 use std::error::Error;
 use std::fs;
@@ -15,7 +15,7 @@ use stm32g474_emulator::board::Board;
 use stm32g474_emulator::chip::Chip;
 use stm32g474_emulator::devices::SystemBreak;
 use stm32g474_emulator::image::Image;
-use stm32g474_emulator::rcc::ResetCause;
+use stm32g474_emulator::rcc::ResetFlag;
 
 /// The size of the stack's guard, which begins at a multiple of it.
 const GUARD: u32 = 1_024;
@@ -162,14 +162,14 @@ fn a_held_leg_is_not_driven_after_a_clear_and_a_reset() -> Outcome {
     carry_out(chip, &ask(Command::Stop))?;
     assert_eq!(telemetry(chip)?.state, State::Held);
     carry_out(chip, &ask(Command::Clear))?;
-    chip.reset(ResetCause::Pin);
+    chip.reset(ResetFlag::Pin);
     // The host goes on as if nothing had happened.
     for command in [Command::Clear, Command::Arm, Command::KeepAlive] {
         stays_off(chip, 60 * MS);
         assert_eq!(refusal(chip, &ask(command))?, HostRefusal::NotIdentified);
     }
     assert!(!outputs_on(chip));
-    assert_eq!(identity_after(chip)?.reset, Told::Pin);
+    assert_eq!(identity_after(chip)?.reset, ResetCause::Pin);
     // One that knows of the reset has to home it first.
     let not_homed = HostRefusal::Command(CommandRefusal::NotHomed);
     assert_eq!(refusal(chip, &ask(Command::Arm))?, not_homed);

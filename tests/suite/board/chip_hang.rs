@@ -5,12 +5,12 @@ use crate::common::chip::{
     reset_within, started,
 };
 use leg_boards::image::FirmwareImage;
-use leg_firmware::host_link::{HostRequest, ResetCause as Told};
+use leg_firmware::host_link::{HostRequest, ResetCause};
 use std::fs;
 use stm32g474_emulator::board::Board;
 use stm32g474_emulator::chip::{Chip, Stop};
 use stm32g474_emulator::image::Image;
-use stm32g474_emulator::rcc::ResetCause;
+use stm32g474_emulator::rcc::ResetFlag;
 
 /// From the last duty that was written to the end of the pulses, at most: 1.6 ms, as SAFETY.md promises.
 const CUT_MAX: u64 = MS * 8 / 5;
@@ -36,10 +36,7 @@ fn a_tick_that_hangs_ends_the_pulses_within_two_milliseconds_and_is_told() -> Ou
     let chip = session.chip().ok_or("no chip")?;
     let begun = chip.cycle();
     hang(chip, &parsed, "ADC1_2")?;
-    assert_eq!(
-        reset_within(chip, CUT_MAX),
-        Some(ResetCause::WindowWatchdog)
-    );
+    assert_eq!(reset_within(chip, CUT_MAX), Some(ResetFlag::WindowWatchdog));
     eprintln!(
         "a tick that hangs: pulses end after {} µs",
         (chip.cycle() - begun) * 1_000 / MS
@@ -49,13 +46,13 @@ fn a_tick_that_hangs_ends_the_pulses_within_two_milliseconds_and_is_told() -> Ou
     let identity = identity_after(chip)?;
     assert_eq!(
         (identity.reset, identity.crash_report.as_str()),
-        (Told::HungTick, "")
+        (ResetCause::HungTick, "")
     );
     assert!(!chip.peripherals().devices.tim1.outputs().on);
     assert_eq!(findings(chip), [""; 0]);
     // The independent watchdog is told apart.
-    chip.reset(ResetCause::IndependentWatchdog);
-    assert_eq!(identity_after(chip)?.reset, Told::Watchdog);
+    chip.reset(ResetFlag::IndependentWatchdog);
+    assert_eq!(identity_after(chip)?.reset, ResetCause::Watchdog);
     Ok(())
 }
 
@@ -75,7 +72,7 @@ fn ticks_go_on_while_settings_are_saved() -> Outcome {
     let steps = chip.peripherals().devices.wwdg.take_longest_steps();
     eprintln!("the longest between two ticks' ends: {steps} of 64 steps of the window watchdog");
     assert!(steps <= 8, "{steps}");
-    assert_eq!(identity(chip)?.reset, Told::Power);
+    assert_eq!(identity(chip)?.reset, ResetCause::Power);
     assert_eq!(findings(chip), [""; 0]);
     Ok(())
 }
@@ -84,9 +81,9 @@ fn ticks_go_on_while_settings_are_saved() -> Outcome {
 fn a_debugger_that_halts_a_driven_leg_resets_the_chip() -> Outcome {
     let mut session = driving(&image(FirmwareImage::Stm32g474)?, Board::default())?;
     let chip = session.chip().ok_or("no chip")?;
-    let reset = Stop::Reset(ResetCause::WindowWatchdog);
+    let reset = Stop::Reset(ResetFlag::WindowWatchdog);
     assert_eq!(chip.halt_by_debugger(CUT_MAX), Some(reset));
-    assert_eq!(identity_after(chip)?.reset, Told::HungTick);
+    assert_eq!(identity_after(chip)?.reset, ResetCause::HungTick);
     // Nothing is driven: it may be halted for as long as somebody likes, and goes on.
     assert_eq!(chip.halt_by_debugger(500 * MS), None);
     assert_eq!(reset_within(chip, 20 * MS), None);

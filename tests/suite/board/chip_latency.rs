@@ -75,7 +75,7 @@ fn ask(chip: &mut Chip, meter: &mut LatencyMeter, request: &HostRequest) -> Host
 }
 
 /// The latest on the serial line, cycles.
-fn by_serial(image: &Path) -> (u64, u32) {
+fn serial_latency(image: &Path) -> (u64, u32) {
     let mut session = started_with(image, Board::default(), 10).unwrap();
     let chip = session.chip().unwrap();
     identity(chip).unwrap();
@@ -116,14 +116,19 @@ fn by_serial(image: &Path) -> (u64, u32) {
 /// The longest on the serial line, on CAN, and where commands wait, cycles, and the function in which it ends.
 pub fn latest(image: &Path) -> [(u64, String); 3] {
     let parsed = Image::parse(&std::fs::read(image).unwrap()).unwrap();
-    [by_serial(image), by_can(image), by_flood(image)].map(|(cycles, place)| {
+    [
+        serial_latency(image),
+        can_latency(image),
+        flood_latency(image),
+    ]
+    .map(|(cycles, place)| {
         let function = parsed.function_at(place).unwrap_or("no function");
         (cycles, function.to_owned())
     })
 }
 
 /// The latest on CAN.
-fn by_can(image: &Path) -> (u64, u32) {
+fn can_latency(image: &Path) -> (u64, u32) {
     let leg = LegAddress::ALL[0];
     let bus = ChipBus::new(image, &[leg]).unwrap();
     let line = Box::new(CanTransport::new(ChipBusPort::attach(&bus), leg));
@@ -140,7 +145,7 @@ fn by_can(image: &Path) -> (u64, u32) {
 }
 
 /// The latest where so many commands wait that one of them finds no room, and a stop or new settings end them all.
-fn by_flood(image: &Path) -> (u64, u32) {
+fn flood_latency(image: &Path) -> (u64, u32) {
     let leg = LegAddress::ALL[0];
     let bus = ChipBus::new(image, &[leg]).unwrap();
     let line = Box::new(CanTransport::new(ChipBusPort::attach(&bus), leg));

@@ -5,19 +5,19 @@ use crate::common::chip::{
     send, settings, started, telemetry,
 };
 use leg_boards::image::FirmwareImage;
-use leg_firmware::host_link::{HostRequest, ResetCause as Told};
+use leg_firmware::host_link::{HostRequest, ResetCause};
 use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::Fault;
 use stm32g474_emulator::board::Board;
 
 /// The brown-out level, the lowest supply of a dip in mV, whether it resets the chip, and what that tells afterwards: one that
 /// goes on tells what it told before.
-const DIPS: [(u8, u32, bool, Told); 5] = [
-    (0, 2_000, false, Told::Power),
-    (0, 1_500, true, Told::BrownOut),
-    (0, 500, true, Told::Power),
-    (4, 2_700, true, Told::BrownOut),
-    (4, 2_900, false, Told::Power),
+const DIPS: [(u8, u32, bool, ResetCause); 5] = [
+    (0, 2_000, false, ResetCause::Power),
+    (0, 1_500, true, ResetCause::BrownOut),
+    (0, 500, true, ResetCause::Power),
+    (4, 2_700, true, ResetCause::BrownOut),
+    (4, 2_900, false, ResetCause::Power),
 ];
 
 /// Below it the pulses end, whatever the option bytes say.
@@ -77,7 +77,7 @@ fn a_dip_during_a_save_leaves_the_old_settings_or_the_new_ones() -> Outcome {
             chip.run(end);
         }
         assert!(chip.dip_supply(1_500, dip_us));
-        assert_eq!(identity_after(chip)?.reset, Told::BrownOut);
+        assert_eq!(identity_after(chip)?.reset, ResetCause::BrownOut);
         let settings = settings(chip)?;
         assert!(settings == built_in || settings == other, "{dip_us} µs");
         assert_eq!(findings(chip), [""; 0], "{dip_us} µs");

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use stm32g474_emulator::board::Board;
 use stm32g474_emulator::chip::{Chip, Stop};
 use stm32g474_emulator::facts::{Facts, Pin};
-use stm32g474_emulator::rcc::ResetCause;
+use stm32g474_emulator::rcc::ResetFlag;
 
 /// An image, built with what that needs.
 pub fn image(image: FirmwareImage) -> Result<PathBuf, Box<dyn Error>> {
@@ -65,7 +65,7 @@ pub fn started_with(
     board: Board,
     ticks: usize,
 ) -> Result<ChipSession, Box<dyn Error>> {
-    ticked(ChipSession::open(image)?.on_board(board), ticks)
+    ticked(ChipSession::open(image)?.with_board(board), ticks)
 }
 
 /// A session that starts, after its first ticks.
@@ -101,7 +101,7 @@ pub fn driving(image: &Path, board: Board) -> Result<ChipSession, Box<dyn Error>
 }
 
 /// Runs until a reset; none if none comes in time.
-pub fn reset_within(chip: &mut Chip, cycles: u64) -> Option<ResetCause> {
+pub fn reset_within(chip: &mut Chip, cycles: u64) -> Option<ResetFlag> {
     let end = chip.cycle() + cycles;
     while chip.cycle() < end {
         if let Stop::Reset(cause) = chip.run(end) {
@@ -219,7 +219,7 @@ pub struct LatencyMeter {
 impl LatencyMeter {
     /// Of the control interrupt.
     pub fn new() -> Result<Self, Box<dyn Error>> {
-        let interrupt = Facts::of_chip().interrupt("ADC1_2");
+        let interrupt = Facts::chip().interrupt("ADC1_2");
         Ok(Self {
             interrupt: interrupt.ok_or("no interrupt of the converters")?,
             since: None,

@@ -20,7 +20,7 @@ use std::time::Duration;
 use stm32g474_emulator::chip::Chip;
 use stm32g474_emulator::device::Context;
 use stm32g474_emulator::facts::Pin;
-use stm32g474_emulator::fdcan::{Fdcan, Frame, Outcome, Reception};
+use stm32g474_emulator::fdcan::{DataFrame, Fdcan, Reception, TransmitOutcome};
 use stm32g474_emulator::gpio::Outside;
 
 /// The time after which a chip takes part in the bus, µs, and ticks that are checked before.
@@ -62,8 +62,8 @@ pub fn started_on_can(
 }
 
 /// A frame as the board's documents have it on the bus.
-pub fn on_bus(frame: &CanFrame) -> Frame {
-    Frame {
+pub fn bus_frame(frame: &CanFrame) -> DataFrame {
+    DataFrame {
         identifier: frame.identifier().bits(),
         fd: true,
         bit_rate_switch: true,
@@ -82,7 +82,7 @@ pub fn with_node<R>(chip: &Chip, work: impl FnOnce(&mut Fdcan, &mut Context<'_>)
 
 /// A frame under way.
 struct Sending {
-    frame: Frame,
+    frame: DataFrame,
     /// The chip that sends it; none for the hosts.
     from: Option<usize>,
     end: u64,
@@ -170,7 +170,7 @@ impl ChipBus {
         let chip = self.chips().enumerate().filter_map(wants).min();
         let (from, frame) = match (host, chip) {
             (Some((urgency, index)), chip) if chip.is_none_or(|(other, _)| urgency < other) => {
-                (None, on_bus(&self.from_hosts.remove(index)))
+                (None, bus_frame(&self.from_hosts.remove(index)))
             }
             (_, Some((_, index))) => {
                 let chip = self.chips().nth(index)?;
@@ -196,9 +196,9 @@ impl ChipBus {
             .collect();
         let heard = sending.from.is_some() || said.contains(&Reception::Acknowledged);
         let outcome = match heard {
-            _ if said.contains(&Reception::Error) => Outcome::Disturbed,
-            true => Outcome::Acknowledged,
-            false => Outcome::Unacknowledged,
+            _ if said.contains(&Reception::Error) => TransmitOutcome::Disturbed,
+            true => TransmitOutcome::Acknowledged,
+            false => TransmitOutcome::Unacknowledged,
         };
         let identifier = Identifier::from_bits(frame.identifier);
         let known =
@@ -215,7 +215,7 @@ impl ChipBus {
                 }
             }
             // A host tries again.
-            (None, Some(known)) if outcome != Outcome::Acknowledged => {
+            (None, Some(known)) if outcome != TransmitOutcome::Acknowledged => {
                 self.from_hosts.insert(0, known);
             }
             (None, _) => {}

@@ -4,7 +4,7 @@
 
 use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::control::CYCLE_TICKS;
-use leg_firmware::leg::{Leg, Outcome};
+use leg_firmware::leg::{CommandOutcome, Leg};
 use leg_firmware::sensors::{CODE_MAX, Sensors, TICK_HZ};
 use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::{Fault, State};
@@ -112,7 +112,7 @@ impl Bench {
         assert!(self.leg.command(7, command));
         for _ in 0..CYCLE_TICKS {
             self.run(1);
-            if let Some(Outcome { number: 7, result }) = self.leg.outcome() {
+            if let Some(CommandOutcome { number: 7, result }) = self.leg.outcome() {
                 return result;
             }
         }
@@ -330,14 +330,17 @@ fn what_a_stop_overtakes_is_refused_at_once_and_in_order() {
     }
     assert!(!bench.leg.command(16, Command::KeepAlive));
     let outcomes: Vec<_> = std::iter::from_fn(|| bench.leg.outcome()).collect();
-    let refused = |number| Outcome {
+    let refused = |number| CommandOutcome {
         number,
         result: Err(CommandRefusal::Superseded),
     };
     assert_eq!(outcomes, (0..8).map(refused).collect::<Vec<_>>());
     bench.run(u16::from(CYCLE_TICKS));
     let result = Ok(());
-    assert_eq!(bench.leg.outcome(), Some(Outcome { number: 8, result }));
+    assert_eq!(
+        bench.leg.outcome(),
+        Some(CommandOutcome { number: 8, result })
+    );
 }
 
 /// A stop goes before everything that waits, and what waited is told so.
@@ -357,7 +360,7 @@ fn a_stop_overtakes_what_waits() {
     assert_eq!(outcomes.len(), 8);
     assert_eq!(
         outcomes.last(),
-        Some(&Outcome {
+        Some(&CommandOutcome {
             number: 100,
             result: Ok(())
         })

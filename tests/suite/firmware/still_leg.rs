@@ -4,7 +4,7 @@
 
 use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::control::CYCLE_TICKS;
-use leg_firmware::leg::{Leg, Outcome};
+use leg_firmware::leg::{CommandOutcome, Leg};
 use leg_firmware::sensors::{CODE_MAX, Sensors};
 use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::State;
@@ -85,7 +85,7 @@ impl StillLeg {
         assert!(self.leg.command(2, command));
         for _ in 0..4 * CYCLE_TICKS {
             self.run_silent(1);
-            if let Some(Outcome { number: 2, result }) = self.leg.outcome() {
+            if let Some(CommandOutcome { number: 2, result }) = self.leg.outcome() {
                 return result;
             }
         }

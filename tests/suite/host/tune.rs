@@ -11,7 +11,7 @@ use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{HostIdentity, Operator, OperatorError};
 use leg_host::transport::emulated::EmulatedLine;
 use leg_host::tune::{
-    JogPlan, Jogged, MeasuredMotor, Row, SwingPlan, TuneError, comparison, measure_motor,
+    ComparisonRow, JogPlan, Jogged, MeasuredMotor, SwingPlan, TuneError, comparison, measure_motor,
     measure_swing, section, supply_v,
 };
 use leg_rig::ready_rigs::READY_RIGS;
@@ -75,7 +75,7 @@ fn jog(
 }
 
 /// How far a row is off what it is compared with, as a part of it; not much farther than its uncertainty.
-fn deviation(row: &Row) -> f64 {
+fn deviation(row: &ComparisonRow) -> f64 {
     let (measured, real) = (row.measured, row.configured.unwrap());
     println!("{row:?}");
     assert!(

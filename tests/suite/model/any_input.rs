@@ -44,7 +44,7 @@ fn perturbed(sensible: f32) -> impl Strategy<Value = f32> {
 }
 
 /// Moments up to those that a distribution takes, and those that are no numbers.
-fn near_moment(sensible: f32) -> impl Strategy<Value = f32> {
+fn moment_near(sensible: f32) -> impl Strategy<Value = f32> {
     perturbed(sensible).prop_filter("beyond 10¹² N·m", |m| !m.is_finite() || m.abs() <= 1e12)
 }
 
@@ -226,7 +226,7 @@ proptest! {
     /// The weights of the greatest mechanism that the model serves have a moment of 4e11 N·m.
     #[test]
     fn a_distribution_is_finite_or_an_error(
-        rig in rigs(), (x, y) in (perturbed(0.1), perturbed(-0.2)), moment in [1.0, 2.0, 0.1].map(near_moment),
+        rig in rigs(), (x, y) in (perturbed(0.1), perturbed(-0.2)), moment in [1.0, 2.0, 0.1].map(moment_near),
         (floor, ceiling) in (perturbed(8.0), perturbed(150.0)),
     ) {
         let (Ok(rig), Ok(direction)) = (Rig::new(&rig), Direction::from_xy(x, y)) else { return Ok(()) };

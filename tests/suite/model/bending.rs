@@ -106,7 +106,7 @@ fn what_is_not_positive_definite_is_unstable() {
         let [[xx, xy], [_, yy]] = rows;
         let k = Matrix3::new(xx, xy, 0.0, xy, yy, 0.0, 0.0, 0.0, 1.0);
         let symmetric = Symmetric3::symmetric_part(&k);
-        let down = Direction::down();
+        let down = Direction::straight_down();
         let plane = FreePlane::torsion_free(&down);
         let horizontal = Vector3::new(1.0, 1.0, 0.0);
         assert_eq!(solve3(&k, &horizontal), Err(Error::Unstable));
@@ -125,7 +125,7 @@ fn what_is_not_positive_definite_is_unstable() {
     let loose = Symmetric3::symmetric_part(&Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 0.0)));
     assert_eq!(loose.solve_horizontal([1.0, 0.0]), Err(Error::Unstable));
     assert_eq!(
-        Bending::twisting(&loose, &Direction::down()),
+        Bending::twisting(&loose, &Direction::straight_down()),
         Err(Error::Unstable)
     );
 }

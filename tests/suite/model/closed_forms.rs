@@ -96,7 +96,9 @@ fn the_stiffness_of_a_hanging_leg_is_that_of_its_ring_and_of_two_pendulums() {
 #[test]
 fn the_load_s_own_stiffness_at_the_vertical_is_that_of_a_pendulum() {
     let rig = Rig::new(&TABLE_1).unwrap();
-    let stiffness = Load::new(&rig, 1.0).unwrap().stiffness(&Direction::down());
+    let stiffness = Load::new(&rig, 1.0)
+        .unwrap()
+        .stiffness(&Direction::straight_down());
     let pendulum = 9.81 * (1.5 * 0.091 + 1.0 * 0.219);
     let expected = Matrix3::new(pendulum, 0.0, 0.0, 0.0, pendulum, 0.0, 0.0, 0.0, 0.0);
     assert!((stiffness - expected).amax() < 1e-14);
@@ -202,7 +204,7 @@ fn no_support_twists_the_leg_in_a_plane_of_symmetry_of_its_own() {
 
 #[test]
 fn the_free_planes_of_all_supports_are_horizontal_at_the_vertical() {
-    let down = Direction::down();
+    let down = Direction::straight_down();
     for plane in [FreePlane::torsion_free(&down), FreePlane::universal(&down)] {
         assert_eq!(plane.rotation([1.0, 2.0]).z, 0.0_f64);
     }

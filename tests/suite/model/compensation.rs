@@ -106,7 +106,7 @@ fn worst(
     worst
 }
 
-fn in_f64(file: &RigFile) -> impl Fn(f64, f64, f64, f64) -> Result<Vector3<f64>, HoldError> {
+fn hold_in_f64(file: &RigFile) -> impl Fn(f64, f64, f64, f64) -> Result<Vector3<f64>, HoldError> {
     let rig = Rig::new(&file.parameters).unwrap();
     let (support, tendons, bounds) = (file.support, file.tendons, bounds(file));
     move |azimuth, tilt, payload_kg, pretension| {
@@ -123,7 +123,7 @@ fn round(value: f64) -> f32 {
     value as f32
 }
 
-fn in_f32(file: &RigFile) -> impl Fn(f64, f64, f64, f64) -> Result<Vector3<f64>, HoldError> {
+fn hold_in_f32(file: &RigFile) -> impl Fn(f64, f64, f64, f64) -> Result<Vector3<f64>, HoldError> {
     let rig = Rig::new(&file.parameters.map(round)).unwrap();
     let support = Support::new(file.support.kind(), file.support.joint().map(round)).unwrap();
     let tendon = |tendon| {
@@ -149,7 +149,7 @@ fn in_f32(file: &RigFile) -> impl Fn(f64, f64, f64, f64) -> Result<Vector3<f64>,
 fn a_known_load_rests_on_target_on_every_support() {
     for ready in READY_RIGS {
         let file = RigFile::parse(ready.name, ready.text).unwrap();
-        let f64_worst = worst(&file, in_f64(&file));
+        let f64_worst = worst(&file, hold_in_f64(&file));
         let Worst {
             tip_m,
             stretch_m,
@@ -170,7 +170,7 @@ fn a_known_load_rests_on_target_on_every_support() {
             "{}: {stretch_m:e} m along the leg",
             ready.name
         );
-        let tip_m = worst(&file, in_f32(&file)).tip_m;
+        let tip_m = worst(&file, hold_in_f32(&file)).tip_m;
         println!("{}: {tip_m:.1e} m in f32", ready.name);
         assert!(tip_m <= 1e-6, "{}: {tip_m:e} m in f32", ready.name);
         assert!(tip_m > 1e-9, "{}: {tip_m:e} m: was this f32?", ready.name);
@@ -179,7 +179,7 @@ fn a_known_load_rests_on_target_on_every_support() {
 
 /// The leg with an unknown payload: it rests somewhere, its tensions are measured with errors, and the lengths are set
 /// for the load that they tell; seven times.
-fn after_estimates_m(
+fn error_after_estimates_m(
     file: &RigFile,
     azimuth: f64,
     tilt: f64,
@@ -207,7 +207,7 @@ fn after_estimates_m(
             .component_mul(&factors);
         let twist = support
             .twist(&posture.direction)
-            .then(&Twist::from_torsion(posture.torsion));
+            .composed(&Twist::from_torsion(posture.torsion));
         let geometry = rig.geometry().twisted(&twist);
         moment = estimate_load(
             &geometry,
@@ -230,13 +230,14 @@ fn an_unknown_load_is_estimated_from_the_tensions() {
     let (mut exact, mut one_percent) = (0.0_f64, 0.0_f64);
     for payload_kg in PAYLOADS_KG {
         for (azimuth, tilt) in poses(file.tilt_deg).step_by(5) {
-            exact = exact.max(after_estimates_m(
+            exact = exact.max(error_after_estimates_m(
                 &file, azimuth, tilt, payload_kg, [0.0; 3],
             ));
             for pattern in &patterns {
                 let errors = pattern.map(|sign| 0.01 * sign);
-                one_percent =
-                    one_percent.max(after_estimates_m(&file, azimuth, tilt, payload_kg, errors));
+                one_percent = one_percent.max(error_after_estimates_m(
+                    &file, azimuth, tilt, payload_kg, errors,
+                ));
             }
         }
     }

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::common::constant_tendons;
-use crate::common::numeric::{by_rotation, derivative};
+use crate::common::numeric::{derivative, derivative_by_rotation};
 use crate::common::reference::{Tendons, load_moment, poses, rotation, turn};
 use leg_model::{
     Direction, FreePlane, JointStiffness, Load, Query, Rig, RigParameters, StiffnessAt, Support,
@@ -41,7 +41,7 @@ fn rig() -> Rig<f64, 3> {
 fn a_rotation_changes_the_lengths_by_minus_the_transposed_moment_map() {
     for (azimuth, tilt, torsion) in twisted_poses() {
         let pose = rotation(azimuth, tilt, torsion);
-        let numeric = by_rotation(|psi| turned(&pose, &psi).lengths);
+        let numeric = derivative_by_rotation(|psi| turned(&pose, &psi).lengths);
         let geometry = rig().geometry().twisted(&Twist::from_torsion(torsion));
         let direction = Direction::from_angles(azimuth, tilt).unwrap();
         let moment_map = inverse_kinematics(&geometry, &direction)
@@ -60,7 +60,7 @@ fn a_rotation_changes_the_lengths_by_minus_the_transposed_moment_map() {
 fn exact_k2_is_the_derivative_of_the_tendon_moment_at_constant_tensions() {
     for (azimuth, tilt, torsion) in twisted_poses() {
         let pose = rotation(azimuth, tilt, torsion);
-        let numeric = -by_rotation(|psi| turned(&pose, &psi).moment_map() * TENSIONS);
+        let numeric = -derivative_by_rotation(|psi| turned(&pose, &psi).moment_map() * TENSIONS);
         let geometry = rig().geometry().twisted(&Twist::from_torsion(torsion));
         let direction = Direction::from_angles(azimuth, tilt).unwrap();
         let error = (structural_stiffness(&geometry, &direction, &TENSIONS) - numeric).amax();
@@ -76,7 +76,7 @@ fn k1_and_exact_k2_are_the_derivative_of_the_moment_of_elastic_tendons() {
     for (azimuth, tilt) in poses(60, 10) {
         let pose = rotation(azimuth, tilt, 0.0);
         let lengths = turned(&pose, &Vector3::zeros()).lengths;
-        let numeric = -by_rotation(|psi| {
+        let numeric = -derivative_by_rotation(|psi| {
             let tendons = turned(&pose, &psi);
             let stretch = tendons.lengths - lengths;
             tendons.moment_map() * (TENSIONS + STIFFNESSES.component_mul(&stretch))
@@ -101,7 +101,8 @@ fn the_load_s_own_stiffness_is_the_derivative_of_its_moment() {
     let load = Load::new(&rig(), PAYLOAD_KG).unwrap();
     for (azimuth, tilt) in poses(60, 10) {
         let pose = rotation(azimuth, tilt, 0.0);
-        let numeric = -by_rotation(|psi| load_moment(&TABLE_1, &(turn(&psi) * pose), PAYLOAD_KG));
+        let numeric =
+            -derivative_by_rotation(|psi| load_moment(&TABLE_1, &(turn(&psi) * pose), PAYLOAD_KG));
         let direction = Direction::from_angles(azimuth, tilt).unwrap();
         let error = (load.stiffness(&direction) - numeric).amax();
         // Of 6 N·m/rad.
@@ -121,7 +122,7 @@ fn the_full_pass_keeps_the_symmetric_part_of_the_derivative_of_all_moments() {
     for (azimuth, tilt) in poses(60, 10) {
         let pose = rotation(azimuth, tilt, 0.0);
         let lengths = turned(&pose, &Vector3::zeros()).lengths;
-        let numeric = -by_rotation(|psi| {
+        let numeric = -derivative_by_rotation(|psi| {
             let tendons = turned(&pose, &psi);
             let stretch = tendons.lengths - lengths;
             let tensions = TENSIONS + STIFFNESSES.component_mul(&stretch);
@@ -153,7 +154,7 @@ fn rate(pose: &Matrix3<f64>, motion: impl Fn(f64) -> Matrix3<f64>) -> Vector3<f6
 }
 
 /// How far a rotation leaves a plane, for a rotation of 1 rad.
-fn off_plane(plane: &FreePlane<f64>, rate: &Vector3<f64>) -> f64 {
+fn distance_to_plane(plane: &FreePlane<f64>, rate: &Vector3<f64>) -> f64 {
     (rate - plane.rotation([rate.x, rate.y])).norm() / rate.norm()
 }
 
@@ -164,7 +165,9 @@ fn a_leg_without_torsion_turns_in_the_plane_normal_to_the_bisector() {
         let plane = FreePlane::torsion_free(&Direction::from_angles(azimuth, tilt).unwrap());
         let nod = rate(&pose, |t| rotation(azimuth, tilt + t, 0.0));
         let sway = rate(&pose, |t| rotation(azimuth + t, tilt, 0.0));
-        assert!(off_plane(&plane, &nod) < 1e-10 && off_plane(&plane, &sway) < 1e-10);
+        assert!(
+            distance_to_plane(&plane, &nod) < 1e-10 && distance_to_plane(&plane, &sway) < 1e-10
+        );
         // The two motions are not the same, so that they span the plane.
         assert!(nod.normalize().cross(&sway.normalize()).norm() > 0.99);
         let bisector = Vector3::z() + pose * Vector3::z();
@@ -191,7 +194,9 @@ fn a_universal_joint_turns_about_its_two_axes() {
         let pose = universal(alpha, beta);
         let first = rate(&pose, |t| universal(alpha + t, beta));
         let second = rate(&pose, |t| universal(alpha, beta + t));
-        assert!(off_plane(&plane, &first) < 1e-10 && off_plane(&plane, &second) < 1e-10);
+        assert!(
+            distance_to_plane(&plane, &first) < 1e-10 && distance_to_plane(&plane, &second) < 1e-10
+        );
         assert!((first - Vector3::x()).norm() < 1e-10);
     }
 }
@@ -237,7 +242,7 @@ fn the_solve_in_a_plane_balances_the_moment_along_two_orthonormal_axes() {
 }
 
 /// What unit tensions pull the leg up along its own axis by: −n·p.
-fn along_leg(tendons: &Tendons<3>, pose: &Matrix3<f64>) -> Vector3<f64> {
+fn axial_pulls(tendons: &Tendons<3>, pose: &Matrix3<f64>) -> Vector3<f64> {
     let up = pose.column(2).into_owned();
     Vector3::from_fn(|i, _| tendons.pulls[i].dot(&up))
 }
@@ -249,8 +254,8 @@ fn the_pull_along_the_leg_is_that_of_the_tendons_directions() {
         let geometry = rig().geometry().twisted(&Twist::from_torsion(torsion));
         let direction = Direction::from_angles(azimuth, tilt).unwrap();
         let kinematics = inverse_kinematics(&geometry, &direction).unwrap();
-        let found = geometry.along_leg(&direction, &kinematics);
-        let expected = along_leg(&Tendons::new(&TABLE_1, &pose), &pose);
+        let found = geometry.axial_pulls(&direction, &kinematics);
+        let expected = axial_pulls(&Tendons::new(&TABLE_1, &pose), &pose);
         assert!((found - expected).amax() < 1e-12, "{found} {expected}");
     }
 }
@@ -289,7 +294,7 @@ fn the_stretch_of_joint_and_shaft_is_that_of_the_change_of_the_force_along_the_l
             let tendons = Tendons::new(&TABLE_1, &turned);
             let stretched = tendons.lengths - Vector3::from(found.lengths_m);
             let tensions = Vector3::from(found.tensions_n) + stretched * STIFFNESS_N_PER_M;
-            along_leg(&tendons, &turned).dot(&tensions)
+            axial_pulls(&tendons, &turned).dot(&tensions)
         };
         let change_n = (pull(1e-3) - pull(-1e-3)) / 2e-3;
         let weight_n = (TABLE_1.leg_mass_kg + PAYLOAD_KG) * TABLE_1.gravity_m_per_s2;

@@ -39,7 +39,9 @@ fn energy(kind: SupportKind, r: &Matrix3<f64>) -> f64 {
 
 /// The rotation of a leg at a direction with an elastic torsion.
 fn rotation(support: &Support<f64>, direction: &Direction<f64>, torsion: f64) -> Matrix3<f64> {
-    let twist = support.twist(direction).then(&Twist::from_torsion(torsion));
+    let twist = support
+        .twist(direction)
+        .composed(&Twist::from_torsion(torsion));
     let about_leg = Rotation3::from_axis_angle(&Vector3::z_axis(), twist.torsion());
     direction.rotation() * about_leg.matrix()
 }
@@ -130,7 +132,7 @@ fn the_stiffness_is_the_derivative_of_the_moment() {
 fn at_the_vertical_the_stiffness_is_the_joints_diagonal() {
     for kind in ELASTIC {
         let support = support(kind);
-        let down = Direction::down();
+        let down = Direction::straight_down();
         let leg_fixed = printed::joint_stiffness_leg_fixed(support.joint(), &down);
         assert_eq!(
             leg_fixed.diagonal(),

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::common::constant_tendons;
-use crate::common::numeric::by_rotation;
+use crate::common::numeric::derivative_by_rotation;
 use crate::common::reference::{Tendons, poses, potential, rodrigues, rotation, turn};
 use leg_model::{
     Direction, FreePlane, Load, Query, Rig, RigParameters, StiffnessAt, SupportKind, TensionBounds,
@@ -93,7 +93,7 @@ fn equations_5_6_and_23_balance_with_a_f_plus_m_only() {
                 let pull = Tendons::new(&TABLE_1, &turned).lengths.dot(&tensions);
                 Vector1::new(pull + potential(&TABLE_1, &turned, payload_kg))
             };
-            let [x, y] = plane.project(&by_rotation(energy).transpose());
+            let [x, y] = plane.project(&derivative_by_rotation(energy).transpose());
             x.hypot(y)
         };
         let f = tensions(&direction, payload_kg);
@@ -161,7 +161,7 @@ fn equation_21_has_the_lever_of_another_leg() {
         let energy =
             |psi: Vector3<f64>| Vector1::new(potential(&parameters, &(turn(&psi) * pose), 2.0));
         let moment = load.moment(&Direction::from_angles(azimuth, tilt).unwrap());
-        assert!((moment + by_rotation(energy).transpose()).amax() < 1e-10);
+        assert!((moment + derivative_by_rotation(energy).transpose()).amax() < 1e-10);
         let printed = equation_21_as_printed(azimuth, tilt, 0.219, -2.0 * 9.81);
         // cos θ stands where sin θ belongs: they meet at 45° only.
         let error = 0.219 * 2.0 * 9.81 * (tilt.cos() - tilt.sin()).abs();

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use crate::common::numeric::by_rotation;
+use crate::common::numeric::derivative_by_rotation;
 use crate::common::reference::{Tendons, poses, rotation, skew, turn};
 use leg_model::{
     Direction, Distribution, FreePlane, Geometry, Load, Rig, RigParameters, TensionBounds,
@@ -40,7 +40,7 @@ fn tensions(direction: &Direction<f64>, payload_kg: f64) -> Vector3<f64> {
 
 /// ∂n/∂ψ of a tendon, from differences.
 fn change_of_pull(pose: &Matrix3<f64>, tendon: usize) -> Matrix3<f64> {
-    by_rotation(|psi| Tendons::new(&TABLE_1, &(turn(&psi) * pose)).pulls[tendon])
+    derivative_by_rotation(|psi| Tendons::new(&TABLE_1, &(turn(&psi) * pose)).pulls[tendon])
 }
 
 #[test]
@@ -81,7 +81,7 @@ fn equation_15_is_right_with_the_other_sign_and_the_change_of_n() {
 /// The largest tension allowed makes the most of it: 3f·L_joint printed, −3f·L_joint·L_upper/l exactly.
 #[test]
 fn equation_15_is_off_by_15_newton_metres_per_radian_at_150_newtons() {
-    let down = Direction::down();
+    let down = Direction::straight_down();
     let f = Vector3::repeat(150.0);
     let [exact, printed] = stiffnesses(rig().geometry(), &down, &f).map(|k2| k2.m11);
     assert!((printed - 13.05).abs() < 0.005, "{printed} N·m/rad");

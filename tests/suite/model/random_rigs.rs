@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::common::constant_tendons;
-use crate::common::numeric::{STEP_RAD, by_rotation};
+use crate::common::numeric::{STEP_RAD, derivative_by_rotation};
 use crate::common::reference::{Tendons, load_moment, skew, turn};
 use leg_model::{
     Direction, FreePlane, Load, Query, Rig, RigParameters, StiffnessAt, SupportKind, Symmetric3,
@@ -117,7 +117,7 @@ fn assert_structural_stiffness<const N: usize>((parameters, direction, states, _
     assert!((found - k2(&tendons, states.tensions())).amax() < 1e-12 * states.tensions().norm());
     let moment =
         |psi| Tendons::new(parameters, &(turn(&psi) * pose)).moment_map() * states.tensions();
-    let error = (found + by_rotation(moment)).amax();
+    let error = (found + derivative_by_rotation(moment)).amax();
     let bound = differences_bound(&tendons, states.tensions());
     assert!(error < bound, "{error:e} beyond {bound:e} N·m/rad");
     // Its antisymmetric part is half the moment of the tendons.

@@ -150,7 +150,7 @@ fn lengths_that_are_not_positive_are_refused() {
         for tendon in 0..3 {
             let mut lengths = Vector3::repeat(0.035);
             lengths[tendon] = bad;
-            let (geometry, start) = (*rig().geometry(), Direction::down());
+            let (geometry, start) = (*rig().geometry(), Direction::straight_down());
             assert_eq!(
                 forward_kinematics(&geometry, &lengths, &start),
                 refused,
@@ -168,7 +168,7 @@ fn lengths_that_are_not_positive_are_refused() {
 #[test]
 fn an_infinite_length_is_no_pose() {
     let lengths = Vector3::new(0.035, f64::INFINITY, 0.035);
-    assert!(forward_kinematics(rig().geometry(), &lengths, &Direction::down()).is_err());
+    assert!(forward_kinematics(rig().geometry(), &lengths, &Direction::straight_down()).is_err());
 }
 
 /// All tendons ten times too long, or hardly there: no direction below the horizon fits, and the residual tells.
@@ -176,7 +176,7 @@ fn an_infinite_length_is_no_pose() {
 fn lengths_far_from_any_pose_are_not_taken_for_one() {
     for length in [0.35, 0.001] {
         let lengths = Vector3::new(length, 1.1 * length, 0.9 * length);
-        match forward_kinematics(rig().geometry(), &lengths, &Direction::down()) {
+        match forward_kinematics(rig().geometry(), &lengths, &Direction::straight_down()) {
             Ok(found) => assert!(found.residual_m > 0.01, "{} m", found.residual_m),
             Err(error) => assert!(
                 matches!(error, Error::NotConverged | Error::Singular),

@@ -278,7 +278,7 @@ fn tendons_that_cannot_turn_the_leg_are_called_singular() {
         [0.0, 1.0, -1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     ]
     .map(|rows| SMatrix::<f64, 3, 3>::from_row_slice(&rows));
-    let plane = FreePlane::torsion_free(&Direction::down());
+    let plane = FreePlane::torsion_free(&Direction::straight_down());
     for moment_map in [moment_map, alone_last, alone_first] {
         let found = distribute(&moment_map, &plane, &Vector3::zeros(), &bounds());
         assert_eq!(found, Err(Error::Singular));

@@ -19,7 +19,7 @@ const GENTLE_BRAKE_S: f64 = 0.2;
 const SHORT_BRAKE_S: f64 = 0.06;
 
 /// A leg in the middle of a move, and the highest tension that its target asks for, as a part of the maximum.
-fn on_its_way(pretension_n: f64, payload_kg: f64) -> (Stand, f32) {
+fn moving_leg(pretension_n: f64, payload_kg: f64) -> (Stand, f32) {
     let mut rig = paper();
     rig.pretension_n = pretension_n;
     let mut stand = armed(&rig, [30.0, 20.0], payload_kg, 3);
@@ -59,7 +59,7 @@ fn a_leg_that_is_stopped_brakes_longer_near_its_maximum_tension() {
         (70.0, 0.0, false, BRAKE_S),
         (120.0, 1.0, true, GENTLE_BRAKE_S),
     ] {
-        let (mut stand, part) = on_its_way(pretension_n, payload_kg);
+        let (mut stand, part) = moving_leg(pretension_n, payload_kg);
         assert_eq!(part > NEAR_PART, near, "{part}");
         stand.command(&Command::Stop).unwrap();
         let found_s = brake_s(&mut stand);
@@ -71,7 +71,7 @@ fn a_leg_that_is_stopped_brakes_longer_near_its_maximum_tension() {
 #[test]
 fn a_leg_whose_motor_is_not_counted_brakes_for_a_short_time() {
     for motor in 0..3 {
-        let (mut stand, _) = on_its_way(70.0, 0.0);
+        let (mut stand, _) = moving_leg(70.0, 0.0);
         stand.plant().set_defect(Defect::EncoderLost(motor), true);
         let found_s = brake_s(&mut stand);
         assert!(faults(&stand).has(Fault::CurrentDisagrees));
@@ -82,7 +82,7 @@ fn a_leg_whose_motor_is_not_counted_brakes_for_a_short_time() {
 /// A motor that turns uncounted is led on nowhere: its driver is at rest in a tenth of the time of the brake.
 #[test]
 fn a_motor_that_is_not_counted_rests_while_the_others_brake() {
-    let (mut stand, _) = on_its_way(70.0, 0.0);
+    let (mut stand, _) = moving_leg(70.0, 0.0);
     stand.plant().set_defect(Defect::EncoderLost(0), true);
     while stand.state() == State::Active {
         stand.tick().unwrap();

@@ -4,7 +4,7 @@
 
 use super::ready_runs::scenario;
 use crate::common::sources::sources;
-use leg_bench::strikes::{Activity, Bars};
+use leg_bench::strikes::{Activity, StrikeBars};
 use leg_boards::image::workspace_root;
 use leg_firmware::supervisor::{FAULT_TABLE, Fault, Reaction, State};
 use leg_sim::plant::Defect;
@@ -159,15 +159,15 @@ fn reactions(row: &[&str]) -> Vec<(Fault, State, f64)> {
 }
 
 /// The bars of the strikes of a row.
-fn bars(row: &[&str]) -> Vec<Bars> {
+fn bars(row: &[&str]) -> Vec<StrikeBars> {
     let kinds = shown(row, "strike").map(|name| {
         let mut names = Defect::descriptions().map(|(defect, _)| defect);
         Defect::numbered(names.position(|defect| defect == name).unwrap(), 0).unwrap()
     });
     let bars = kinds.flat_map(|defect| {
-        let all = (0..Activity::count()).map(Activity::in_turn);
+        let all = (0..Activity::count()).map(Activity::nth);
         all.flat_map(move |activity| {
-            [false, true].map(|near| Bars::widest(defect, activity, F_MAX_N, near))
+            [false, true].map(|near| StrikeBars::widest(defect, activity, F_MAX_N, near))
         })
     });
     bars.collect()

@@ -173,7 +173,7 @@ fn is(token: &TokenTree, punctuation: char) -> bool {
 }
 
 /// What follows an attribute; after `#[cfg(test)]` also its item is left out.
-fn after_attribute(tokens: &[TokenTree]) -> &[TokenTree] {
+pub fn after_attribute(tokens: &[TokenTree]) -> &[TokenTree] {
     let [TokenTree::Group(attribute), after @ ..] = tokens else {
         return tokens;
     };

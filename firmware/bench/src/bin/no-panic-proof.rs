@@ -15,21 +15,21 @@ use leg_firmware::frame::{Decoder, MAX_FRAME};
 use leg_firmware::host_link::BoardKind;
 use leg_firmware::recorder::Recorder;
 use leg_firmware::settings::Settings;
-use leg_firmware_bench::counter::Counter;
+use leg_firmware_bench::counter::InstructionCounter;
 use leg_firmware_bench::protocol::BoardInfo;
 use leg_firmware_bench::server::{self, Server};
 use panic_never as _;
 
 struct NoBoard;
 
-impl Counter for NoBoard {
+impl InstructionCounter for NoBoard {
     fn count<A, B>(&mut self, kernel: fn(&A, &mut B), input: &A, output: &mut B) -> Option<u32> {
         kernel(input, output);
         Some(0)
     }
 }
 
-impl server::Board for NoBoard {
+impl server::BenchBoard for NoBoard {
     fn info(&self) -> BoardInfo {
         BoardInfo {
             board: BoardKind::Qemu,

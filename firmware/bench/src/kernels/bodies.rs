@@ -6,19 +6,23 @@ mod kinematics;
 mod model_tick;
 mod statics;
 
-pub use arithmetic::{SinCos, SquareRoot};
-pub use full_pass::{FullPass, FullPassInPlane};
-pub use kinematics::{ForwardKinematics, ForwardKinematicsUniversal, InverseKinematics};
-pub use model_tick::ModelTick;
-pub use statics::{Distribution, InverseStatics, StiffnessCommand, TendonCurve};
+pub use arithmetic::{SinCosKernel, SquareRootKernel};
+pub use full_pass::{FullPassInPlaneKernel, FullPassKernel};
+pub use kinematics::{
+    ForwardKinematicsKernel, ForwardKinematicsUniversalKernel, InverseKinematicsKernel,
+};
+pub use model_tick::ModelTickKernel;
+pub use statics::{
+    DistributionKernel, InverseStaticsKernel, StiffnessCommandKernel, TendonCurveKernel,
+};
 
-use super::bench::Bench;
+use super::arguments::KernelArguments;
 use leg_model::Error;
 
 /// A kernel as a type.
-pub trait Body<T> {
+pub trait KernelBody<T> {
     type Output;
-    fn run(bench: &Bench<T>) -> Result<Self::Output, Error>;
+    fn run(bench: &KernelArguments<T>) -> Result<Self::Output, Error>;
     fn flatten(output: &Self::Output, push: &mut impl FnMut(T));
 
     /// An error that stands inside the output.

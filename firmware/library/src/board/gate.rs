@@ -11,7 +11,7 @@ pub enum GateAction {
     Close,
 }
 
-/// Keeps outputs off that something else than the leg has switched off, until the leg itself lets go of them.
+/// Keeps outputs off that something else than the leg has switched off, until the leg itself disables them.
 ///
 /// A break by hardware lasts as long as its cause; the leg's fault lasts until it is cleared. Between the two nothing
 /// may come on again: outputs are switched on only where the drive becomes enabled, and it does so only after a clear.

@@ -50,7 +50,7 @@ impl<P: PowerPins> PowerStage<P> {
         }
     }
 
-    /// Off at once, and until the drive lets go.
+    /// Off at once, and until a drive is not enabled.
     pub fn cut(&mut self) {
         self.gate.cut();
         self.rest();

@@ -55,7 +55,7 @@ impl CheckIns {
         }
     }
 
-    /// A task is alive.
+    /// A task checks in.
     #[inline(always)]
     pub fn check_in(&self, task: WatchedTask) {
         self.present[task as usize].store(true, Ordering::Relaxed);

@@ -234,10 +234,10 @@ impl<T: Scalar> Axis<T> {
         let room_n = input.f_max_n - input.tension_n;
         let fastest = clamp_symmetric(room_n * gains.m_per_s_per_n, gains.speed_max);
         if wanted > fastest {
-            // What the tension does not allow is caught up with, not insisted on.
+            // The reference stays near the motor: what the tension does not allow does not add up.
             let ahead = T::from(LIMITED_AHEAD_M);
             self.reference_m = min(self.reference_m, input.pulled_m + ahead);
-            // Nor is it helped against friction where it does not go.
+            // A motor that is held back so gets no voltage against friction.
             self.integral_v -= self.fed_v;
             self.fed_v = T::zero();
         }

@@ -41,7 +41,7 @@ mod tests {
             rate,
             acceleration,
         };
-        let path = Quintic::between(
+        let path = Quintic::connect(
             &motion([0.3, -0.2], [0.9, 0.4], [-2.0, 3.0]),
             &motion([-0.1, 0.45], [-0.5, 0.8], [1.0, 4.0]),
             1.3,

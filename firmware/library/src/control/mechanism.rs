@@ -71,7 +71,7 @@ impl<T: Scalar> Mechanism<T> {
             let twist = self
                 .support
                 .twist(direction)
-                .then(&Twist::from_torsion(torsion));
+                .composed(&Twist::from_torsion(torsion));
             twisted.insert(self.rig.geometry().twisted(&twist))
         } else if self.support.universal() {
             twisted.insert(self.rig.geometry().twisted(&self.support.twist(direction)))

@@ -23,7 +23,7 @@ pub struct Play<T> {
     /// Where the motors were, as how far the tendons would be pulled in, m.
     pulled_m: [T; 3],
     /// How far each motor is behind its screw, m: the play or less.
-    behind_m: [T; 3],
+    lag_m: [T; 3],
     /// The lengths that were asked for, m, where they changed their direction last: no farther from the present ones than `turn_m`. None
     /// where no motor is led.
     turned_m: Option<[T; 3]>,
@@ -42,7 +42,7 @@ impl<T: Scalar> Play<T> {
         Self {
             play_m: play_m.into(),
             pulled_m: [T::zero(); 3],
-            behind_m: [T::zero(); 3],
+            lag_m: [T::zero(); 3],
             turned_m: None,
             turn_m: turn_m.into(),
             gain: T::from(play_m / turn_m),
@@ -66,7 +66,7 @@ impl<T: Scalar> Play<T> {
     pub fn cross_m(&mut self, lengths_m: &[T; 3]) -> [T; 3] {
         let turned_m = self.turned_m.get_or_insert_with(|| {
             let mut turned_m = *lengths_m;
-            for (turned, &behind) in turned_m.iter_mut().zip(&self.behind_m) {
+            for (turned, &behind) in turned_m.iter_mut().zip(&self.lag_m) {
                 // Without play both are zero.
                 if behind > T::zero() {
                     *turned -= behind / self.gain;
@@ -74,28 +74,28 @@ impl<T: Scalar> Play<T> {
             }
             turned_m
         });
-        let mut behind_m = *lengths_m;
-        for (i, (behind, turned)) in behind_m.iter_mut().zip(turned_m).enumerate() {
+        let mut lag_m = *lengths_m;
+        for (i, (behind, turned)) in lag_m.iter_mut().zip(turned_m).enumerate() {
             let length_m = *behind;
             *turned = min(max(*turned, length_m - self.turn_m), length_m);
             *behind = (length_m - *turned) * self.gain;
-            *turned += (*behind - self.behind_m[i]) * self.correction;
+            *turned += (*behind - self.lag_m[i]) * self.correction;
         }
-        behind_m
+        lag_m
     }
 
     /// How far each motor is behind its screw, m.
     #[inline(always)]
-    pub fn behind_m(&self) -> &[T; 3] {
-        &self.behind_m
+    pub fn lag_m(&self) -> &[T; 3] {
+        &self.lag_m
     }
 
     /// Follows the motors to where they would pull the tendons in, m.
     #[inline(always)]
     pub fn follow(&mut self, pulled_m: &[T; 3]) {
         for (i, &pulled) in pulled_m.iter().enumerate() {
-            let behind = self.behind_m[i] + (self.pulled_m[i] - pulled);
-            self.behind_m[i] = min(max(behind, T::zero()), self.play_m);
+            let behind = self.lag_m[i] + (self.pulled_m[i] - pulled);
+            self.lag_m[i] = min(max(behind, T::zero()), self.play_m);
         }
         self.pulled_m = *pulled_m;
     }
@@ -120,15 +120,15 @@ mod tests {
             (-5.0, 0.0),
         ] {
             play.follow(&[pulled, 0.0, 0.0]);
-            assert_eq!(play.behind_m(), &[behind, 0.0, 0.0], "{pulled}");
+            assert_eq!(play.lag_m(), &[behind, 0.0, 0.0], "{pulled}");
         }
     }
 
     /// What motors do that are where they are led.
     fn led_m(play: &mut Play<f64>, length_m: f64) -> f64 {
-        let behind_m = play.cross_m(&[length_m; 3])[2];
-        play.follow(&[-length_m - behind_m; 3]);
-        behind_m
+        let lag_m = play.cross_m(&[length_m; 3])[2];
+        play.follow(&[-length_m - lag_m; 3]);
+        lag_m
     }
 
     /// Reeling in, the motors touch their screws; turned about, they have crossed the play when the lengths have changed by
@@ -148,11 +148,11 @@ mod tests {
             (6.9, 0.9),
             (6.0, 0.0),
         ] {
-            let behind_m = led_m(&mut play, turns * turn_m);
+            let lag_m = led_m(&mut play, turns * turn_m);
             // Each step corrects a fiftieth, by 3 % of the play in all.
             assert!(
-                (behind_m - part * 2e-6).abs() < 0.03 * 2e-6,
-                "{turns}: {behind_m:?}"
+                (lag_m - part * 2e-6).abs() < 0.03 * 2e-6,
+                "{turns}: {lag_m:?}"
             );
         }
     }
@@ -168,7 +168,7 @@ mod tests {
                 led_m(&mut play, 0.0);
                 let length_m = part * turn_m;
                 let off_m = |play: &Play<f64>| {
-                    let screw_m = play.pulled_m[2] + play.behind_m()[2];
+                    let screw_m = play.pulled_m[2] + play.lag_m()[2];
                     (screw_m + length_m).abs()
                 };
                 led_m(&mut play, length_m);
@@ -200,7 +200,7 @@ mod tests {
         // A large play is crossed over a longer way: six times as far as what is asked for goes the motor.
         let mut large = Play::<f64>::new(1.4e-5);
         assert_eq!(large.cross_m(&[0.1; 3]), [0.0; 3]);
-        let behind_m = large.cross_m(&[0.1 + 1e-6; 3]);
-        assert!((behind_m[0] - 6e-6).abs() < 1e-9, "{behind_m:?}");
+        let lag_m = large.cross_m(&[0.1 + 1e-6; 3]);
+        assert!((lag_m[0] - 6e-6).abs() < 1e-9, "{lag_m:?}");
     }
 }

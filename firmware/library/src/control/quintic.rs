@@ -92,7 +92,7 @@ impl<T: Scalar> Quintic<T> {
     }
 
     /// From one motion to another within a time in s.
-    pub fn between(start: &MotionState<T>, end: &MotionState<T>, duration_s: T) -> Self {
+    pub fn connect(start: &MotionState<T>, end: &MotionState<T>, duration_s: T) -> Self {
         let mut path = Self::new(start, end.position, duration_s);
         for (i, coefficients) in path.coefficients.iter_mut().enumerate() {
             let rate = end.rate[i] * duration_s;

@@ -24,11 +24,11 @@ pub struct Segment<T> {
 
 impl<T: Scalar> Segment<T> {
     /// From one knot to another that is at most 2³¹ ticks later.
-    pub fn between(from: &Knot<T>, to: &Knot<T>) -> Self {
+    pub fn connect(from: &Knot<T>, to: &Knot<T>) -> Self {
         let ticks = to.tick.wrapping_sub(from.tick) as i32;
         let time_s = T::from(ticks as f32 * TICK_S);
         Self {
-            path: Quintic::between(&from.motion, &to.motion, time_s),
+            path: Quintic::connect(&from.motion, &to.motion, time_s),
             ticks,
         }
     }

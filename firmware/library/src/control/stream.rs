@@ -14,7 +14,8 @@ pub const POINTS_MAX: usize = 32;
 /// Ticks between two points, at least: 5 ms. Nearer to each other, too much of their acceleration would be rounding.
 const SPACING_MIN_TICKS: u32 = 10 * CYCLE_TICKS as u32;
 
-/// Ticks from now to a point, at most: 10 s.
+/// Ticks from now to a point, at most: 10 s, thirty times what [`POINTS_MAX`] points at 100 Hz span. A point farther ahead has a wrong
+/// count of ticks, and would keep its place in the queue until then.
 const AHEAD_MAX_TICKS: u32 = 80_000;
 
 /// The set-points that wait, and where the path to them has come to.
@@ -113,7 +114,7 @@ impl<T: Scalar> Stream<T> {
             tick: point.tick,
             motion,
         };
-        self.limits.keeps(&Segment::between(before, &knot).path)?;
+        self.limits.keeps(&Segment::connect(before, &knot).path)?;
         self.limits.keeps_to_rest(&motion)?;
         Ok(knot)
     }
@@ -122,7 +123,7 @@ impl<T: Scalar> Stream<T> {
     pub fn next_segment(&mut self) -> Option<Segment<T>> {
         let to = self.waiting.pop_front()?;
         let from = core::mem::replace(&mut self.reached, to);
-        Some(Segment::between(&from, &to))
+        Some(Segment::connect(&from, &to))
     }
 
     /// The segment that ends a stream in rest, and whether it ends before its last point came.

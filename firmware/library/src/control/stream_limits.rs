@@ -90,7 +90,7 @@ impl<T: Scalar> StreamLimits<T> {
     #[inline(never)]
     pub fn keeps(&self, path: &Quintic<T>) -> Result<(), PointRefusal> {
         let [xs, ys] = path.control_points();
-        within(&xs, &ys, self.reach_square).ok_or(PointRefusal::OutOfReach)?;
+        check_in_circle(&xs, &ys, self.reach_square).ok_or(PointRefusal::OutOfReach)?;
         let ([rates_x, bends_x, jerks_x], [rates_y, bends_y, jerks_y]) =
             (differences(&xs), differences(&ys));
         let peaks = &self.peaks;
@@ -101,9 +101,9 @@ impl<T: Scalar> StreamLimits<T> {
         let jerk = peaks.jerk * duration_s * duration_s * duration_s * T::from(1.0 / 60.0)
             + T::TWO * rounding;
         let limit = |limit| PointRefusal::Limit(limit);
-        within(&rates_x, &rates_y, rate * rate).ok_or(limit(MotionLimit::Speed))?;
-        within(&bends_x, &bends_y, bend * bend).ok_or(limit(MotionLimit::Acceleration))?;
-        within(&jerks_x, &jerks_y, jerk * jerk).ok_or(limit(MotionLimit::Jerk))
+        check_in_circle(&rates_x, &rates_y, rate * rate).ok_or(limit(MotionLimit::Speed))?;
+        check_in_circle(&bends_x, &bends_y, bend * bend).ok_or(limit(MotionLimit::Acceleration))?;
+        check_in_circle(&jerks_x, &jerks_y, jerk * jerk).ok_or(limit(MotionLimit::Jerk))
     }
 
     /// Whether the leg can come to rest from a motion within the limits.
@@ -166,7 +166,11 @@ fn differences<T: Scalar>(points: &[T; 6]) -> [[T; 5]; 3] {
 
 /// Whether every point is within a circle about zero.
 #[inline(always)]
-fn within<T: Scalar, const N: usize>(xs: &[T; N], ys: &[T; N], radius_square: T) -> Option<()> {
+fn check_in_circle<T: Scalar, const N: usize>(
+    xs: &[T; N],
+    ys: &[T; N],
+    radius_square: T,
+) -> Option<()> {
     let mut points = xs.iter().zip(ys);
     points
         .all(|(&x, &y)| square([x, y]) <= radius_square)

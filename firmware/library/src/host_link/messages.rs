@@ -1,4 +1,4 @@
-//! What a user's host and a leg say to each other, on every transport.
+//! The messages between a user's host and a leg, on every transport.
 
 use crate::command::{Command, CommandRefusal};
 use crate::frame::FrameError;
@@ -66,7 +66,7 @@ pub enum HostRequest {
     SetSettings(Settings),
     /// Keeps the settings in use over a reset.
     SaveSettings,
-    /// Asks for what the last jog saw.
+    /// Asks for what the last jog measured.
     JogReport,
     /// Asks something of the recorder.
     Recorder(RecorderRequest),
@@ -82,7 +82,7 @@ pub enum HostRequest {
     reason = "a message is kept in place: there is no allocation on the board"
 )]
 pub enum HostReply {
-    /// The leg speaks the same language.
+    /// The leg has the same messages.
     Identified(Identity),
     /// Nothing was done.
     Refused(HostRefusal),
@@ -94,7 +94,7 @@ pub enum HostReply {
     Sensors(Sensors),
     /// The settings in use.
     Settings(Settings),
-    /// What the last jog saw; none since the start.
+    /// What the last jog measured; none since the start.
     Jog(Option<JogReport<f32>>),
     /// What the recorder holds.
     Recorder(RecorderReply),

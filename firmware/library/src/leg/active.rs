@@ -61,7 +61,7 @@ impl<T: Scalar> Active<T> {
             station: StationKeeping::No,
             faults: FaultSet::NONE,
             stuck: false,
-            offsets: LengthOffsets::new(shared.play.behind_m()),
+            offsets: LengthOffsets::new(shared.play.lag_m()),
             slack: Slack {
                 left_m: (taut && compensated).then(T::zero),
                 cycles: 0,
@@ -184,7 +184,7 @@ impl<T: Scalar> Active<T> {
     pub fn disarm(&mut self, shared: &mut Shared<T>) {
         self.disarming = true;
         self.stuck = false;
-        self.go(shared, &Direction::down());
+        self.go(shared, &Direction::straight_down());
     }
 
     /// Whether it was led down, or cannot be.

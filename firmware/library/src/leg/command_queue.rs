@@ -8,7 +8,7 @@ const COMMANDS_MAX: usize = 8;
 
 /// What became of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Outcome {
+pub struct CommandOutcome {
     /// The number that the command was given.
     pub number: u16,
     /// Whether it was executed.
@@ -24,7 +24,7 @@ pub struct CommandQueue {
     waiting: Deque<(u16, Command), COMMANDS_MAX>,
     /// How many of those that wait are superseded: the oldest.
     superseded: usize,
-    outcomes: Deque<Outcome, COMMANDS_MAX>,
+    outcomes: Deque<CommandOutcome, COMMANDS_MAX>,
 }
 
 impl CommandQueue {
@@ -53,11 +53,11 @@ impl CommandQueue {
     }
 
     /// Refuses the oldest command, if it is superseded.
-    fn refuse(&mut self) -> Option<Outcome> {
+    fn refuse(&mut self) -> Option<CommandOutcome> {
         self.superseded = self.superseded.checked_sub(1)?;
         let (number, _) = self.waiting.pop_front()?;
         let result = Err(CommandRefusal::Superseded);
-        Some(Outcome { number, result })
+        Some(CommandOutcome { number, result })
     }
 
     /// Refuses what is superseded and was not yet.
@@ -71,10 +71,10 @@ impl CommandQueue {
 
     /// Notes what became of a command.
     pub fn report(&mut self, number: u16, result: Result<(), CommandRefusal>) {
-        self.note(Outcome { number, result });
+        self.note(CommandOutcome { number, result });
     }
 
-    fn note(&mut self, outcome: Outcome) {
+    fn note(&mut self, outcome: CommandOutcome) {
         if self.outcomes.is_full() {
             // Nobody reads them: the oldest is lost.
             self.outcomes.pop_front();
@@ -83,7 +83,7 @@ impl CommandQueue {
     }
 
     /// The oldest outcome that has not been read.
-    pub fn outcome(&mut self) -> Option<Outcome> {
+    pub fn outcome(&mut self) -> Option<CommandOutcome> {
         self.outcomes.pop_front().or_else(|| self.refuse())
     }
 

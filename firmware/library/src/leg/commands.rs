@@ -4,7 +4,7 @@ use super::active::Active;
 use super::jogging::Jogging;
 use super::mode::Mode;
 use super::shared::Shared;
-use super::{Leg, Outcome};
+use super::{CommandOutcome, Leg};
 use crate::command::{Command, CommandRefusal};
 use crate::control::{Measured, PretensionDemand};
 use crate::jog::JogDemand;
@@ -19,7 +19,7 @@ fn is_azimuth([cos, sin]: [f32; 2]) -> bool {
 }
 
 impl<T: Scalar> Leg<T> {
-    /// Takes a command, which a later tick executes; the number comes back with its [`Outcome`]. A stop goes before whatever
+    /// Takes a command, which a later tick executes; the number comes back with its [`CommandOutcome`]. A stop goes before whatever
     /// waits. False if there is no room; apart from the tick, as a board's link runs below it.
     pub fn command(&mut self, number: u16, command: Command) -> bool {
         if matches!(command, Command::Stop | Command::Disarm) {
@@ -38,7 +38,7 @@ impl<T: Scalar> Leg<T> {
     }
 
     /// What became of the oldest command that has not been reported.
-    pub fn outcome(&mut self) -> Option<Outcome> {
+    pub fn outcome(&mut self) -> Option<CommandOutcome> {
         self.queue.outcome()
     }
 
@@ -52,7 +52,7 @@ impl<T: Scalar> Leg<T> {
     fn execute(&mut self, command: Command, measured: &Measured<T>) -> Result<(), CommandRefusal> {
         match command {
             Command::KeepAlive => Ok(()),
-            // Who changes what a leg does that moves by itself, takes it over first.
+            // A leg that keeps station is armed before it takes one of these.
             Command::Pretension(_) | Command::Stiffness { .. } | Command::Compensation(_)
                 if self.mode.state() == State::KeepingStation =>
             {
@@ -85,7 +85,7 @@ impl<T: Scalar> Leg<T> {
                 self.shared.refused = false;
                 self.link.clear_bad_frames();
                 let homed = self.shared.zero_m.is_some();
-                // Whatever was named first: a leg whose sensors disagree does not follow them again.
+                // Whichever fault was latched: a leg whose sensors disagree does not follow them again.
                 let mut causes = FaultSet::NONE;
                 causes.add(Fault::Residual, !self.agreement.agree());
                 let state = self.mode.state();

@@ -28,8 +28,8 @@ const STILL_STEP_M: f32 = 1e-4 * TICK_S;
 /// One that is led and goes by less than this in a tick does not turn, or is not counted, m: 0.01 mm/s.
 const STANDING_STEP_M: f32 = 1e-5 * TICK_S;
 
-/// The leg stays where it is. While it brakes, a tendon at the maximum tension is paid out a little, unless a load cell is in doubt; at
-/// rest no load cell is asked.
+/// The leg stays where it is. While it brakes, a tendon at the maximum tension is paid out a little, unless a load cell is in
+/// doubt; at rest no load cell is used.
 #[derive(Clone, Copy, Debug)]
 pub struct Held<T> {
     /// How far each motor went in a tick at first, m.
@@ -44,7 +44,7 @@ impl<T: Scalar> Held<T> {
     pub fn braking(shared: &Shared<T>, steps_m: [T; 3], obeyed: bool) -> Self {
         let steps_m = steps_m.map(|step| if stands(step) { T::zero() } else { step });
         let still = steps_m.iter().all(|&step| step == T::zero());
-        let brake_s = match (obeyed, near_max(shared)) {
+        let brake_s = match (obeyed, is_near_max(shared)) {
             (false, _) => SHORT_BRAKE_S,
             (true, true) => GENTLE_BRAKE_S,
             (true, false) => BRAKE_S,
@@ -113,7 +113,7 @@ fn stands<T: Scalar>(step_m: T) -> bool {
 }
 
 /// Whether a tendon should pull nearly by the maximum tension. What its load cell shows may be the fault.
-fn near_max<T: Scalar>(shared: &Shared<T>) -> bool {
+fn is_near_max<T: Scalar>(shared: &Shared<T>) -> bool {
     let near_n = shared.mechanism.f_max_n * T::from(NEAR_PART);
     let tensions_n = shared.target.as_ref().map(|target| target.tensions_n);
     tensions_n.is_some_and(|tensions_n| tensions_n.iter().any(|&tension| tension > near_n))

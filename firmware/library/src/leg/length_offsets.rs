@@ -6,7 +6,8 @@ use super::station::StationKeeping;
 use crate::control::bounds;
 use leg_model::Scalar;
 
-/// Cycles from one step to the next.
+/// Cycles from one step to the next, over which the step is spread so that the speed of a tendon is steady. Two, because a cycle has
+/// time for these offsets or for the search for the pretension: they take turns.
 const CYCLES: u8 = 2;
 
 /// By how much the tendons are longer than the target asks, and their motors behind.

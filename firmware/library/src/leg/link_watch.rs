@@ -1,4 +1,4 @@
-//! Whether the host is heard.
+//! Whether the host still sends.
 
 use crate::control::ticks;
 use crate::settings::Limits;

@@ -5,13 +5,16 @@ use super::shared::Shared;
 use crate::control::{AxisGoal, Measured, bounds, ticks};
 use leg_model::Scalar;
 
-/// A tendon this near to its goal, beside the servo's dead band, has arrived, m.
+/// A tendon this near to its goal, beside the servo's dead band, has arrived, m: a fifth of the slack of a relaxed tendon, so that one
+/// that stops there is slack.
 const ARRIVED_M: f32 = 2e-5;
 
-/// Time after which a motor that did not arrive is waited for no longer, s, beside twice the time that the way takes.
+/// Time after which a motor that did not arrive is waited for no longer, s, beside twice the time that the way takes: for
+/// a short way, on which a motor has to start and to stop.
 const GRACE_S: f32 = 0.5;
 
-/// The tendons are paid out. No load cell is asked: one that lies would leave its tendon taut, and the others would swing the leg.
+/// The tendons are paid out. No load cell is used: one that is wrong would leave its tendon taut, and the others would swing
+/// the leg.
 #[derive(Clone, Copy, Debug)]
 pub struct RampingDown<T> {
     rest_m: [T; 3],

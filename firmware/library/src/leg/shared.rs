@@ -43,7 +43,7 @@ pub struct Shared<T> {
     pub pretension: PretensionSearch<T>,
     pub mechanism: Mechanism<T>,
     pub stream: Stream<T>,
-    /// What the last jog saw.
+    /// What the last jog measured.
     pub jog_report: Option<JogReport<T>>,
     pub station: StationLimits<T>,
     pub friction: Friction<T>,
@@ -80,7 +80,7 @@ impl<T: Scalar> LegLimits<T> {
     #[inline(never)]
     fn new(settings: &Settings, mechanism: &Mechanism<T>) -> Result<Self, Error> {
         let limits = &settings.limits;
-        let down = Direction::down();
+        let down = Direction::straight_down();
         let mut twisted = None;
         let geometry = mechanism.geometry(&down, T::zero(), &mut twisted);
         let hanging_m = inverse_kinematics(geometry, &down)?.lengths;
@@ -203,9 +203,9 @@ impl<T: Scalar> Shared<T> {
     #[inline(always)]
     pub fn unstretched_m(&self, measured: &Measured<T>) -> Option<[T; 3]> {
         let mut unstretched_m = self.zero_m?;
-        let behind_m = self.play.behind_m();
+        let lag_m = self.play.lag_m();
         for (i, unstretched) in unstretched_m.iter_mut().enumerate() {
-            *unstretched -= measured.pulled_m[i] + behind_m[i];
+            *unstretched -= measured.pulled_m[i] + lag_m[i];
         }
         Some(unstretched_m)
     }

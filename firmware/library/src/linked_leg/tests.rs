@@ -4,7 +4,7 @@ use super::SensingLeg;
 use crate::command::{Command, CommandRefusal};
 use crate::control::CYCLE_TICKS;
 use crate::host_link::HostRefusal;
-use crate::leg::Outcome;
+use crate::leg::CommandOutcome;
 use crate::sensors::{CODE_MAX, Sensors};
 use crate::settings::Settings;
 use crate::supervisor::{Fault, FaultSet, State};
@@ -77,7 +77,7 @@ fn what_waits_while_settings_change_is_refused_and_the_ticks_go_on() {
     assert!(bench.leg.command(3, Command::Home));
     bench.restart().unwrap();
     bench.run(SOME_TICKS);
-    let refused = Outcome {
+    let refused = CommandOutcome {
         number: 3,
         result: Err(CommandRefusal::Superseded),
     };

@@ -109,7 +109,7 @@ impl SignalSet {
 }
 
 impl Default for SignalSet {
-    /// What tells most about a fault: tensions, travel and duties, for 0.2 s.
+    /// What shows most of a fault: tensions, travel and duties, for 0.2 s.
     fn default() -> Self {
         Self::new(&[
             RecordedSignal::Tensions,

@@ -11,9 +11,9 @@ use crate::settings::{AxisCalibration, BoardCalibration, Settings, TendonParamet
 use core::ops::Range;
 use embassy_futures::block_on;
 use leg_model::{CURVE_POINTS_MAX, CurvePoint, JointStiffness, RigParameters, SupportKind};
-use mock::{Failure, Mock};
+use mock::{FlashFailure, Mock};
 
-type Outcome<T> = Result<T, StoreError<Failure>>;
+type Outcome<T> = Result<T, StoreError<FlashFailure>>;
 
 fn store(flash: &mut Mock) -> Store<&mut Mock> {
     let range = flash.range();

@@ -95,15 +95,8 @@ impl FaultSet {
     /// Those that the other has not.
     #[must_use]
     #[inline(always)]
-    pub const fn minus(self, other: Self) -> Self {
+    pub const fn difference(self, other: Self) -> Self {
         Self(self.0 & !other.0)
-    }
-
-    /// Every one but this.
-    #[must_use]
-    #[inline(always)]
-    pub const fn without(self, fault: Fault) -> Self {
-        Self(self.0 & !Self::single(fault).0)
     }
 
     /// Those that only limit.

@@ -66,7 +66,7 @@ impl<T: Scalar> Monitors<T> {
         if let (Some(monitor), Some(faults)) =
             (self.axes.get_mut(axis), self.axis_faults.get_mut(axis))
         {
-            *faults = faults.minus(FaultSet::OF_CELLS);
+            *faults = faults.difference(FaultSet::OF_CELLS);
             monitor.watch_cell(axis, view, faults);
         }
     }

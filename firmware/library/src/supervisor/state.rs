@@ -122,7 +122,7 @@ impl State {
         )
     }
 
-    /// Whether the leg does what a host asks, and wants to hear from it.
+    /// Whether the leg follows its host, whose silence is a fault then.
     #[must_use]
     #[inline(always)]
     pub const fn follows(self) -> bool {

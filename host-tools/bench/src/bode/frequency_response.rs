@@ -42,7 +42,7 @@ pub struct Excitation {
 
 /// A measured point of a loop's transfer.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Point {
+pub struct ResponsePoint {
     /// Hz.
     pub hz: f64,
     /// dB.
@@ -59,7 +59,7 @@ const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
 /// Square of the least gain: nothing may come back.
 const LEAST: f64 = 1e-12;
 
-impl Point {
+impl ResponsePoint {
     /// From a transfer that was measured with a part of the amplitude.
     #[must_use]
     pub fn new(hz: f64, transfer: Complex<f64>, part: f64) -> Self {
@@ -78,7 +78,7 @@ impl Excitation {
     ///
     /// # Errors
     /// What ended the run with the least amplitude, and at which frequency.
-    pub fn measure<L: ClosedLoop>(&self, at_rest: &L, hz: f64) -> Result<Point, String> {
+    pub fn measure<L: ClosedLoop>(&self, at_rest: &L, hz: f64) -> Result<ResponsePoint, String> {
         let mut ended = String::new();
         for part in PARTS {
             match self.measure_with(part, at_rest, hz) {
@@ -96,7 +96,7 @@ impl Excitation {
         part: f64,
         at_rest: &L,
         hz: f64,
-    ) -> Result<Point, String> {
+    ) -> Result<ResponsePoint, String> {
         let mut closed = at_rest.clone();
         let ticks = |seconds: f64, periods: f64| (seconds.max(periods / hz) * self.tick_hz).ceil();
         let settle = ticks(self.settle_s, self.settle_periods) as u64;
@@ -116,7 +116,7 @@ impl Excitation {
                 injected += turned * sides.injected;
             }
         }
-        Ok(Point::new(
+        Ok(ResponsePoint::new(
             periods * self.tick_hz / window,
             -returned / injected,
             part,

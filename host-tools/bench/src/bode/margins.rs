@@ -1,6 +1,6 @@
 //! The margins of a loop by points of its transfer.
 
-use super::frequency_response::Point;
+use super::frequency_response::ResponsePoint;
 use serde::Serialize;
 
 /// Below this gain, dB, nothing counts: it is less than what the sensors resolve.
@@ -28,7 +28,7 @@ struct Crossing {
 impl Margins {
     /// Of points in the order of their frequencies.
     #[must_use]
-    pub fn new(points: &[Point]) -> Self {
+    pub fn new(points: &[ResponsePoint]) -> Self {
         let mut margins = Self::default();
         for pair in points.windows(2) {
             let [before, after] = pair else { continue };
@@ -51,26 +51,26 @@ impl Margins {
 }
 
 /// Whether something that matters is between two points.
-pub(super) fn crosses(before: &Point, after: &Point) -> bool {
+pub(super) fn crosses(before: &ResponsePoint, after: &ResponsePoint) -> bool {
     gain_crossing(before, after).is_some()
         || phase_crossing(before, after).is_some_and(|crossing| crossing.other > FLOOR_DB)
 }
 
 /// Where the gain is 1, and the phase there, degrees.
-fn gain_crossing(before: &Point, after: &Point) -> Option<Crossing> {
+fn gain_crossing(before: &ResponsePoint, after: &ResponsePoint) -> Option<Crossing> {
     if (before.gain_db < 0.0) == (after.gain_db < 0.0) {
         return None;
     }
     let part = before.gain_db / (before.gain_db - after.gain_db);
     let turned = wrapped(after.phase_deg - before.phase_deg);
     Some(Crossing {
-        hz: between(before, after, part),
+        hz: interpolated_hz(before, after, part),
         other: before.phase_deg + part * turned,
     })
 }
 
 /// Where the phase is ±180°, and the gain there, dB.
-fn phase_crossing(before: &Point, after: &Point) -> Option<Crossing> {
+fn phase_crossing(before: &ResponsePoint, after: &ResponsePoint) -> Option<Crossing> {
     // Seen from −180°, so that the crossing is one of zero; by less than half a turn, or it would be one of 0°.
     let from = wrapped(before.phase_deg + 180.0);
     let turned = wrapped(after.phase_deg - before.phase_deg);
@@ -80,12 +80,12 @@ fn phase_crossing(before: &Point, after: &Point) -> Option<Crossing> {
     }
     let part = from / (from - to);
     Some(Crossing {
-        hz: between(before, after, part),
+        hz: interpolated_hz(before, after, part),
         other: before.gain_db + part * (after.gain_db - before.gain_db),
     })
 }
 
-fn between(before: &Point, after: &Point, part: f64) -> f64 {
+fn interpolated_hz(before: &ResponsePoint, after: &ResponsePoint, part: f64) -> f64 {
     before.hz * (after.hz / before.hz).powf(part)
 }
 

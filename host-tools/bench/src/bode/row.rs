@@ -37,7 +37,7 @@ impl Margin {
 
     /// Its value and its frequency, Hz, in a measurement.
     #[must_use]
-    pub fn of(self, swept: &Swept) -> Option<[f64; 2]> {
+    pub fn value_and_hz(self, swept: &Swept) -> Option<[f64; 2]> {
         let margins = &swept.margins;
         let (value, hz) = match self {
             Self::Gain => (margins.gain_db, margins.gain_hz),
@@ -49,7 +49,7 @@ impl Margin {
 
 /// The worst margin of a loop at an amplitude.
 #[derive(Clone, Debug, Serialize)]
-pub struct Row {
+pub struct MarginRow {
     /// The loop.
     pub feedback: Feedback,
     /// Of what is added, V or N.
@@ -59,7 +59,7 @@ pub struct Row {
     /// Of the gain or of the phase.
     pub margin: Margin,
     /// The worst; none where the loop has none in any state.
-    pub worst: Option<Worst>,
+    pub worst: Option<WorstMargin>,
     /// How many measurements there are.
     pub measured: usize,
     /// How many of them were below the bar.
@@ -68,7 +68,7 @@ pub struct Row {
     pub ended: usize,
 }
 
-impl Row {
+impl MarginRow {
     /// Whether every measurement came to its end and is above the bar.
     #[must_use]
     pub const fn passes(&self) -> bool {
@@ -78,7 +78,7 @@ impl Row {
 
 /// A margin and where it was found.
 #[derive(Clone, Debug, Serialize)]
-pub struct Worst {
+pub struct WorstMargin {
     /// dB or degrees.
     pub value: f64,
     /// Hz.
@@ -94,7 +94,7 @@ pub struct Worst {
 
 /// A row for each loop, amplitude and margin.
 #[must_use]
-pub fn rows(swept: &[Swept]) -> Vec<Row> {
+pub fn rows(swept: &[Swept]) -> Vec<MarginRow> {
     let mut rows = Vec::new();
     for feedback in Feedback::ALL {
         for smaller in [false, true] {
@@ -110,8 +110,12 @@ pub fn rows(swept: &[Swept]) -> Vec<Row> {
     rows
 }
 
-fn row<'a>(margin: Margin, first: &Swept, all: impl Iterator<Item = (usize, &'a Swept)>) -> Row {
-    let mut row = Row {
+fn row<'a>(
+    margin: Margin,
+    first: &Swept,
+    all: impl Iterator<Item = (usize, &'a Swept)>,
+) -> MarginRow {
+    let mut row = MarginRow {
         feedback: first.feedback,
         amplitude: first.amplitude,
         smaller: first.smaller,
@@ -124,13 +128,13 @@ fn row<'a>(margin: Margin, first: &Swept, all: impl Iterator<Item = (usize, &'a 
     for (index, swept) in all {
         row.measured += 1;
         row.amplitude = row.amplitude.max(swept.amplitude);
-        let found = margin.of(swept);
+        let found = margin.value_and_hz(swept);
         row.low += usize::from(found.is_some_and(|[value, _]| value < margin.bar()));
         row.ended += usize::from(swept.failure.is_some());
         if let Some([value, hz]) = found
             && row.worst.as_ref().is_none_or(|worst| value < worst.value)
         {
-            row.worst = Some(Worst {
+            row.worst = Some(WorstMargin {
                 value,
                 hz,
                 place: swept.place,

@@ -1,6 +1,6 @@
 //! A loop at frequencies that are evenly spaced on a logarithmic scale, and closer at margins and resonances.
 
-use super::frequency_response::{ClosedLoop, Excitation, Point};
+use super::frequency_response::{ClosedLoop, Excitation, ResponsePoint};
 use super::margins::crosses;
 
 /// How close two points come that have a margin between them, as a ratio of their frequencies: a mode that is damped by 0.05
@@ -29,7 +29,7 @@ impl Sweep {
     ///
     /// # Errors
     /// What ended a run.
-    pub fn run<L: ClosedLoop>(&self, at_rest: &L) -> Result<Vec<Point>, String> {
+    pub fn run<L: ClosedLoop>(&self, at_rest: &L) -> Result<Vec<ResponsePoint>, String> {
         let measure = |hz| self.excitation.measure(at_rest, hz);
         let ratio = self.to_hz / self.from_hz;
         let hz = |i| self.from_hz * ratio.powf(f64::from(i) / f64::from(self.points - 1));
@@ -50,7 +50,7 @@ impl Sweep {
 }
 
 /// The middle of each space that is too wide for what is in it, Hz.
-fn wide(points: &[Point]) -> Vec<f64> {
+fn wide(points: &[ResponsePoint]) -> Vec<f64> {
     let peak = |i: usize| {
         let gain_db = |i: usize| {
             points

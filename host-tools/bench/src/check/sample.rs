@@ -104,7 +104,7 @@ pub fn random(count: usize, seed: u64) -> Vec<CheckedState> {
 fn feasible(rng: &mut Rng, support: ElasticSupport, stretch: Stretch) -> CheckedState {
     loop {
         let drawn = draw(rng, support, stretch);
-        if let Some(state) = at_feasible_pretension(rng, drawn) {
+        if let Some(state) = draw_feasible_pretension(rng, drawn) {
             return state;
         }
     }
@@ -133,7 +133,7 @@ fn draw(rng: &mut Rng, support: ElasticSupport, stretch: Stretch) -> CheckedStat
 }
 
 /// The state at a random pretension that keeps the bounds on the tensions, if there is one.
-fn at_feasible_pretension(rng: &mut Rng, mut state: CheckedState) -> Option<CheckedState> {
+fn draw_feasible_pretension(rng: &mut Rng, mut state: CheckedState) -> Option<CheckedState> {
     let without_torsion = Query {
         support: SupportKind::TorsionFree.into(),
         ..state.query().ok()?

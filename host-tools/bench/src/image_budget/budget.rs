@@ -1,6 +1,6 @@
 //! What each image may take.
 
-use super::{ImageBudgetError, ImageNeeds, Root, Usage};
+use super::{ImageBudgetError, ImageNeeds, MemoryUsage, Root};
 use leg_boards::image::FirmwareImage;
 use serde::Serialize;
 
@@ -34,7 +34,7 @@ pub struct BudgetCheck {
     /// What it is.
     pub what: String,
     /// What was found, and what of: bytes, or panics within reach of a handler.
-    pub usage: Usage,
+    pub usage: MemoryUsage,
     /// What may be used.
     pub bounds: ByteBounds,
     /// Whether that is kept, and no more used than there is.
@@ -46,7 +46,7 @@ impl ByteBounds {
         Self { lowest, highest }
     }
 
-    fn check(self, what: impl Into<String>, usage: Usage) -> BudgetCheck {
+    fn check(self, what: impl Into<String>, usage: MemoryUsage) -> BudgetCheck {
         let bounded = (self.lowest..=self.highest).contains(&usage.used);
         BudgetCheck {
             what: what.into(),
@@ -139,7 +139,7 @@ fn task_checks(
         .iter()
         .zip(bounds)
         .map(|(task, bounds)| {
-            let usage = Usage {
+            let usage = MemoryUsage {
                 used: task.stack_bytes,
                 size: needs.stack.size,
             };
@@ -149,7 +149,7 @@ fn task_checks(
 }
 
 fn absence(what: &str, root: &Root, there: bool) -> BudgetCheck {
-    let usage = Usage {
+    let usage = MemoryUsage {
         used: u32::from(there),
         size: 1,
     };

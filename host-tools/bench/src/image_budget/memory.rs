@@ -10,7 +10,7 @@ use std::ops::Range;
 
 /// What is used of a memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Usage {
+pub struct MemoryUsage {
     /// Bytes that are used, gaps between them included.
     pub used: u32,
     /// Bytes that there are.
@@ -35,7 +35,7 @@ impl Memories {
     }
 
     /// Flash: code, constants, and what static variables begin with.
-    pub(super) fn flash(&self, elf: &ElfFile<'_>) -> Result<Usage, ImageBudgetError> {
+    pub(super) fn flash(&self, elf: &ElfFile<'_>) -> Result<MemoryUsage, ImageBudgetError> {
         let stored = segments(elf).map(|segment| {
             let start = segment.p_paddr(Endianness::Little);
             start..start.saturating_add(segment.p_filesz(Endianness::Little))
@@ -44,7 +44,7 @@ impl Memories {
     }
 
     /// RAM: static variables, without the stack.
-    pub(super) fn ram(&self, elf: &ElfFile<'_>) -> Result<Usage, ImageBudgetError> {
+    pub(super) fn ram(&self, elf: &ElfFile<'_>) -> Result<MemoryUsage, ImageBudgetError> {
         let live = segments(elf).map(|segment| {
             let start = segment.p_vaddr(Endianness::Little);
             start..start.saturating_add(segment.p_memsz(Endianness::Little))
@@ -83,7 +83,7 @@ fn holds(memory: &Range<u32>, part: &Range<u32>) -> bool {
 fn usage(
     memory: &Range<u32>,
     parts: impl Iterator<Item = Range<u32>>,
-) -> Result<Usage, ImageBudgetError> {
+) -> Result<MemoryUsage, ImageBudgetError> {
     let mut end = memory.start;
     for part in parts {
         if !holds(memory, &part) {
@@ -91,7 +91,7 @@ fn usage(
         }
         end = end.max(part.end);
     }
-    Ok(Usage {
+    Ok(MemoryUsage {
         used: end - memory.start,
         size: memory.end - memory.start,
     })

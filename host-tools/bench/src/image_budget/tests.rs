@@ -7,7 +7,7 @@ use super::function::Function;
 use super::program::Program;
 use super::vector_table;
 use super::{
-    BudgetCheck, ByteBounds, ImageBudget, ImageNeeds, Root, RootKind, Task, Usage, checks,
+    BudgetCheck, ByteBounds, ImageBudget, ImageNeeds, MemoryUsage, Root, RootKind, Task, checks,
 };
 use std::collections::BTreeSet;
 
@@ -291,8 +291,8 @@ fn an_interrupt_without_a_handler_is_no_root() {
     assert_eq!(named("DefaultHandler").unwrap().kind, RootKind::Exception);
 }
 
-fn usage(used: u32) -> Usage {
-    Usage { used, size: 100 }
+fn usage(used: u32) -> MemoryUsage {
+    MemoryUsage { used, size: 100 }
 }
 
 const TASKS: &[(&str, ByteBounds)] = &[("module::task", ByteBounds::new(10, 100))];

@@ -4,7 +4,7 @@ use super::Moved;
 
 /// The most that a move may do.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Bars {
+pub(super) struct MoveBars {
     off_mm: f64,
     swing_mm: f64,
     settled_s: f64,
@@ -15,7 +15,7 @@ pub(super) struct Bars {
 const HIDDEN_DEG: f64 = 2.0;
 
 /// A move from where the payload shows.
-const SHOWN: Bars = Bars {
+const SHOWN: MoveBars = MoveBars {
     off_mm: 0.25,
     swing_mm: 0.15,
     settled_s: 0.8,
@@ -23,14 +23,14 @@ const SHOWN: Bars = Bars {
 };
 
 /// A move from straight down with a payload that nothing has shown yet: it is found on the way, later at low pretension.
-const HIDDEN: Bars = Bars {
+const HIDDEN: MoveBars = MoveBars {
     off_mm: 1.5,
     swing_mm: 0.7,
     settled_s: 2.0,
     rest_mm: 0.02,
 };
 
-impl Bars {
+impl MoveBars {
     pub fn new(begin_tilt_deg: f64) -> Self {
         if begin_tilt_deg < HIDDEN_DEG {
             HIDDEN

@@ -16,7 +16,7 @@ const TRIES: u32 = 10_000;
 
 /// A move.
 #[derive(Clone, Debug, Serialize)]
-pub struct Drawn {
+pub struct DrawnMove {
     /// Counted from 0.
     pub number: u64,
     /// The rig's name.
@@ -37,7 +37,7 @@ pub struct Drawn {
     pub(super) plant: PlantSettings,
 }
 
-impl Drawn {
+impl DrawnMove {
     /// The move of a number, with a payload that is drawn where none is given; none for a rig that holds no pair of poses.
     pub(super) fn new(
         seed: u64,

@@ -20,7 +20,7 @@ impl Reference {
     }
 
     /// How far the true tip is off, m, in the ticks in which the next target comes: the tip is that after the tick before.
-    pub fn off_m(&mut self, stand: &Stand) -> Option<f64> {
+    pub fn tip_error_m(&mut self, stand: &Stand) -> Option<f64> {
         let target = stand.telemetry.as_ref()?.target;
         let before_m = self.tip_m.replace(stand.truth.tip_m);
         if self.last == Some(target) {

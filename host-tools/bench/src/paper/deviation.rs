@@ -61,7 +61,7 @@ pub(super) fn deviations(
 pub(super) fn rows(rig: &RigFile) -> Result<Vec<PaperRow>, Error> {
     let mut rows = maxima(rig, StiffnessAt::Pretension)?;
     rows.extend(maxima(rig, StiffnessAt::Tension)?);
-    rows.extend(against_equilibrium(rig)?);
+    rows.extend(deviation_from_equilibrium(rig)?);
     rows.extend(experiment::rows(rig)?);
     Ok(rows)
 }
@@ -98,7 +98,7 @@ fn maxima(rig: &RigFile, stiffness_at: StiffnessAt) -> Result<Vec<PaperRow>, Err
 }
 
 /// How far the linear deviations are from the nonlinear equilibrium, percent: average and largest.
-fn against_equilibrium(rig: &RigFile) -> Result<[PaperRow; 2], Error> {
+fn deviation_from_equilibrium(rig: &RigFile) -> Result<[PaperRow; 2], Error> {
     let (mut linear, mut with_load) = (Vec::new(), Vec::new());
     for (payload_kg, _) in MAXIMA {
         // At the vertical nothing deviates, and there is nothing to be relative to.
@@ -110,9 +110,8 @@ fn against_equilibrium(rig: &RigFile) -> Result<[PaperRow; 2], Error> {
     }
     let average = linear.iter().sum::<f64>() / linear.len() as f64;
     let worst = with_load.iter().copied().fold(0.0, f64::max);
-    let row = |what, ours, why| {
-        PaperRow::new(Topic::Deviation, what, (1.5, ours), ("%", 3), why).at_most()
-    };
+    let row =
+        |what, ours, why| PaperRow::new(Topic::Deviation, what, (1.5, ours), ("%", 3), why).limit();
     Ok([
         row(
             "theory beyond static simulation, on average",

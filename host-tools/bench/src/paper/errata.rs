@@ -4,7 +4,7 @@ mod rig;
 mod statics;
 mod stiffness;
 
-use leg_base::numeric::by_rotation;
+use leg_base::numeric::derivative_by_rotation;
 use leg_model::{Direction, Error, evaluate};
 use leg_model_tools::plain_vectors::{Tendons, load_moment, rotation, turn};
 use leg_rig::rig_file::RigFile;
@@ -222,6 +222,8 @@ impl<'a> LoadedPose<'a> {
     /// ∂n/∂ψ of a tendon, by differences.
     fn change_of_pull(&self, tendon: usize) -> Matrix3<f64> {
         let parameters = &self.rig.parameters;
-        by_rotation(|psi| Tendons::new(parameters, &(turn(&psi) * self.rotation)).pulls[tendon])
+        derivative_by_rotation(|psi| {
+            Tendons::new(parameters, &(turn(&psi) * self.rotation)).pulls[tendon]
+        })
     }
 }

@@ -119,7 +119,7 @@ impl PaperRow {
     }
 
     /// The same as a limit that is not exceeded.
-    pub(super) fn at_most(self) -> Self {
+    pub(super) fn limit(self) -> Self {
         Self {
             meaning: PublishedAs::AtMost,
             ..self

@@ -55,7 +55,7 @@ pub(super) fn rows(rig: &RigFile) -> Result<Vec<PaperRow>, Error> {
     let spread = |what: String, ring: Vec<f64>, expected, why| {
         let numbers = (SPREAD_PERCENT, spread_percent(&ring));
         let row = PaperRow::new(Topic::Workspace, what, numbers, ("%", 2), why);
-        row.at_most().expected(expected)
+        row.limit().expected(expected)
     };
     let at_edge = "at the edge the tendons' levers and lengths differ with the azimuth; what the paper says holds to about \
                    20° on this rig";
@@ -77,7 +77,7 @@ pub(super) fn rows(rig: &RigFile) -> Result<Vec<PaperRow>, Error> {
     let what = "steps of 1° outwards at which the deviation does not grow, of 10 800";
     let why = "smallest in the centre, growing with the tilt";
     let numbers = (0.0, f64::from(steps_without_growth(rig)?));
-    rows.push(PaperRow::new(Topic::Workspace, what, numbers, ("", 0), why).at_most());
+    rows.push(PaperRow::new(Topic::Workspace, what, numbers, ("", 0), why).limit());
     Ok(rows)
 }
 

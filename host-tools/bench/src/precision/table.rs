@@ -1,6 +1,6 @@
 //! The rows of the table.
 
-use super::{Measure, PrecisionRow};
+use super::{DifferenceMeasure, PrecisionRow};
 use serde::Serialize;
 
 /// Writes the quantities and their table from one list, so that each quantity has one row, at its own place.
@@ -15,7 +15,7 @@ macro_rules! precision_table {
         pub const TABLE: [PrecisionRow; [$(CheckedQuantity::$quantity),*].len()] = [$(PrecisionRow {
             quantity: CheckedQuantity::$quantity,
             name: $name,
-            measure: Measure::$measure,
+            measure: DifferenceMeasure::$measure,
             unit: $unit,
             bound: $bound,
             exception: precision_table!(@exception $($reason)?),

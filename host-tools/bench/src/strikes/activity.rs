@@ -29,7 +29,7 @@ pub enum Activity {
 impl Activity {
     /// That of the case of a number: all in turn.
     #[must_use]
-    pub fn in_turn(number: u64) -> Self {
+    pub fn nth(number: u64) -> Self {
         let all = Self::value_variants();
         all[(number % all.len() as u64) as usize]
     }
@@ -49,7 +49,7 @@ impl Activity {
 
     /// Whether the leg is on a way, and not at rest.
     #[must_use]
-    pub const fn on_the_way(self) -> bool {
+    pub const fn is_on_the_way(self) -> bool {
         matches!(
             self,
             Self::Moving | Self::Homing | Self::RampingDown | Self::Arming

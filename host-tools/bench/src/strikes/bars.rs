@@ -1,5 +1,8 @@
 //! What a strike may do at most.
 
+#[cfg(test)]
+mod tests;
+
 use super::activity::Activity;
 use leg_sim::plant::Defect;
 use serde::Serialize;
@@ -39,8 +42,8 @@ const HOMING_N: f64 = 40.0;
 const REST_MM: f64 = 0.5;
 const WAY_MM: f64 = 3.0;
 
-/// The same of a leg that is cleared and armed again with its fault, twice, mm: each arm learns anew what the cell shows, and
-/// goes by what it lies until it lies otherwise.
+/// The same of a leg that is cleared and armed again with its fault, twice, mm: each arm takes what the cell shows as right,
+/// and follows its error until that changes.
 const REARMED_MM: f64 = 2.0;
 
 /// The same where a gain is 20 % off, which cannot be distinguished from a load, mm.
@@ -89,7 +92,7 @@ const NAMED_S: f64 = 0.5;
 const WANDERS_S: f64 = 2.0;
 const DRIFTS_S: f64 = 5.0;
 
-/// How far a cell has to lie before it must be told, N.
+/// Error of a cell from which on it has to be named, N.
 const LIE_N: f64 = 8.0;
 
 /// How far a motor has to go for its failure to show, m: 1 mm at the tip.
@@ -108,7 +111,7 @@ pub(super) struct Unstruck {
 
 /// The bars of one strike.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Bars {
+pub struct StrikeBars {
     /// Highest tension, N.
     pub tension_n: f64,
     /// The same while homing, N.
@@ -122,7 +125,7 @@ pub struct Bars {
     pub sags: bool,
 }
 
-impl Bars {
+impl StrikeBars {
     /// The widest of a defect, for a page: those of a leg that pulls and goes as far as it may, and of one that is near its
     /// maximum tension or not.
     #[must_use]
@@ -163,8 +166,8 @@ fn excess_part(defect: Option<Defect>, activity: Activity) -> f64 {
         Some(Defect::LegGrasped) => GRASPED_BEYOND,
         Some(Defect::CellsSwapped) => CUT_OFF_BEYOND,
         Some(defect) if is_slow(defect, activity) => BEYOND,
-        Some(Defect::HalfBridgeOpen(_)) if activity.on_the_way() => HALF_OPEN_BEYOND,
-        Some(defect) if activity.on_the_way() && cuts_off(defect) => CUT_OFF_BEYOND,
+        Some(Defect::HalfBridgeOpen(_)) if activity.is_on_the_way() => HALF_OPEN_BEYOND,
+        Some(defect) if activity.is_on_the_way() && cuts_off(defect) => CUT_OFF_BEYOND,
         _ => BEYOND,
     }
 }
@@ -237,7 +240,7 @@ const fn is_found_at_once(defect: Defect) -> bool {
 fn gain_at_max_mm(defect: Option<Defect>, f_max_n: f64, highest_n: [f64; 3]) -> f64 {
     let shows_n = match defect {
         Some(Defect::CellGainDrift(i)) => 1.2 * highest_n[i],
-        // 5 N in a second, for the time in which it is to be told.
+        // 5 N in a second, for the time in which it is to be named.
         Some(Defect::CellDrifting(i)) => highest_n[i] + 5.0 * DRIFTS_S,
         _ => return 0.0,
     };
@@ -260,7 +263,7 @@ fn tip_mm(defect: Option<Defect>, activity: Activity) -> f64 {
         Activity::Rearmed if defect.is_some_and(is_found_at_once) => REST_MM,
         Activity::RampingDown if defect.is_some() => ASIDE_MM,
         Activity::Rearmed if defect.is_some() => REARMED_MM,
-        _ if activity.on_the_way() => WAY_MM,
+        _ if activity.is_on_the_way() => WAY_MM,
         _ => REST_MM,
     };
     let least_mm = match defect {
@@ -269,7 +272,7 @@ fn tip_mm(defect: Option<Defect>, activity: Activity) -> f64 {
         Some(Defect::TendonCreeps(_)) => CREEP_MM,
         Some(Defect::DriverFullOn(_)) if activity == Activity::Rearmed => RUNAWAY_AGAIN_MM,
         Some(Defect::DriverFullOn(_) | Defect::DirectionStuck(_)) => RUNAWAY_MM,
-        Some(Defect::EncoderLost(_)) if activity.on_the_way() => UNCOUNTED_WAY_MM,
+        Some(Defect::EncoderLost(_)) if activity.is_on_the_way() => UNCOUNTED_WAY_MM,
         Some(Defect::EncoderLost(_)) => UNCOUNTED_MM,
         Some(Defect::LegGrasped) => GRASPED_MM,
         Some(Defect::CellsSwapped | Defect::EncodersSwapped | Defect::EncoderReversed(_)) => {
@@ -282,7 +285,7 @@ fn tip_mm(defect: Option<Defect>, activity: Activity) -> f64 {
         {
             usual_mm
         }
-        Some(defect) if activity.on_the_way() && cuts_off(defect) => CUT_OFF_MM,
+        Some(defect) if activity.is_on_the_way() && cuts_off(defect) => CUT_OFF_MM,
         Some(
             Defect::CellGainStep(_)
             | Defect::CellGainStepDown(_)
@@ -332,80 +335,5 @@ fn named_s(defect: Defect, activity: Activity, before: &Unstruck) -> Option<f64>
             (activity == Moving && before.travels_m[i] >= SHOWN_M).then_some(NAMED_S)
         }
         _ => None,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_page_says_the_bars() {
-        let page = include_str!("../../../docs/scenarios.md");
-        for words in [
-            format!("the maximum tension and {:.0} %", 100.0 * BEYOND),
-            format!("{:.0} % where a moving leg", 100.0 * CUT_OFF_BEYOND),
-            format!(
-                "{:.0} % where half of a bridge is open",
-                100.0 * HALF_OPEN_BEYOND
-            ),
-            format!("{:.0} % where a driver pulls", 100.0 * STUCK_BEYOND),
-            format!("{:.0} % where a hand holds", 100.0 * GRASPED_BEYOND),
-            format!("{:.0} % where a driver switches", 100.0 * RUNAWAY_BEYOND),
-            format!("{:.0} % where a tendon slips", 100.0 * SLIP_BEYOND),
-            format!("{HOMING_N} N while homing"),
-            format!("{REST_MM} mm; {REARMED_MM} mm where it is armed again"),
-            format!("{GAIN_MM} mm where a gain is 20 % off, or a cell wanders or drifts"),
-            format!("{GAIN_AT_MAX_MM} mm where such a cell comes to show the maximum tension"),
-            format!("{CUT_OFF_MM} mm where a moving leg is cut off"),
-            format!("{SWAPPED_MM} mm where two sensors"),
-            format!("{WAY_MM} mm; {ASIDE_MM} mm while it is paid out, {LIFTED_MM} mm while homing"),
-            format!("{CUT_MM} mm where a tendon is cut, {SLIP_MM} mm where it slips"),
-            format!("{CREEP_MM} mm where it creeps, {RUNAWAY_MM} mm where a driver"),
-            format!("{RUNAWAY_AGAIN_MM} mm where it is armed again with it"),
-            format!(
-                "{UNCOUNTED_MM} mm where a motor turns without being counted, {UNCOUNTED_WAY_MM} mm in a move"
-            ),
-            format!("{GRASPED_MM} mm where a hand holds the tip"),
-            format!(
-                "{NAMED_S} s where something shows it; a cell that wanders {WANDERS_S} s, drifts {DRIFTS_S} s"
-            ),
-        ] {
-            assert!(page.contains(&words), "{words}");
-        }
-    }
-
-    #[test]
-    fn the_page_on_safety_says_how_far_beyond_the_maximum_tension() {
-        let page = include_str!("../../../../firmware/SAFETY.md");
-        let page: Vec<_> = page.split_whitespace().collect();
-        let page = page.join(" ");
-        let percent = |part: f64| format!("{:.0} %", 100.0 * part);
-        for words in [
-            format!(
-                "cut off from full speed: up to {} more",
-                percent(CUT_OFF_BEYOND)
-            ),
-            format!(
-                "switches on fully by itself: up to {} more",
-                percent(RUNAWAY_BEYOND)
-            ),
-            format!(
-                "{} where it is armed again with it",
-                percent(RUNAWAY_AGAIN_BEYOND)
-            ),
-            format!(
-                "catches the falling leg: up to {} more",
-                percent(SLIP_BEYOND)
-            ),
-            format!(
-                "up to {} and {} more",
-                percent(STUCK_BEYOND),
-                percent(GRASPED_BEYOND)
-            ),
-            format!("up to {HOMING_N} N where a load cell fails"),
-        ] {
-            assert!(page.contains(&words), "{words}");
-        }
     }
 }

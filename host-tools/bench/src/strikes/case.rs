@@ -69,7 +69,7 @@ impl Case {
     pub(super) fn new(seed: u64, rigs: &[(String, RigFile)], number: u64) -> Self {
         let seed = mixed(seed, number);
         let mut rng = Rng::with_seed(seed);
-        let activity = Activity::in_turn(number);
+        let activity = Activity::nth(number);
         let round = number / Activity::count();
         let (rig, file) = &rigs[(round % rigs.len() as u64) as usize];
         let offset_n = if activity == Activity::Homing {

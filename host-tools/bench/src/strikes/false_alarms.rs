@@ -44,7 +44,7 @@ pub struct Alarm {
 
 /// What came of a time of use.
 #[derive(Clone, Debug, Serialize)]
-pub struct Usage {
+pub struct UseResult {
     /// The rig's name.
     pub rig: String,
     /// The part of the campaign.
@@ -67,8 +67,8 @@ pub(super) fn use_leg(
     part: u64,
     time_s: f64,
     done: &(impl Fn(u64) + Sync),
-) -> Usage {
-    let mut usage = Usage {
+) -> UseResult {
+    let mut usage = UseResult {
         rig: rig.into(),
         part,
         time_s: 0.0,
@@ -107,9 +107,9 @@ impl<'a> User<'a> {
         let plant = plant(file, TARED_N, rng);
         let start = Start::hanging(file.pretension_n);
         let mut stand = Stand::new(file, &plant, start, rng.u64(..))?;
-        stand.until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
+        stand.tick_until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
         stand.command(&Command::Arm)?;
-        stand.until(2.0, "active", |stand| stand.state() == State::Active)?;
+        stand.tick_until(2.0, "active", |stand| stand.state() == State::Active)?;
         Ok(Self {
             file,
             rng,
@@ -123,7 +123,7 @@ impl<'a> User<'a> {
     }
 
     /// Does one thing after another until the time is over or a fault comes.
-    fn go_on(mut self, usage: &mut Usage, end_s: f64) -> Result<(), String> {
+    fn go_on(mut self, usage: &mut UseResult, end_s: f64) -> Result<(), String> {
         let began_s = usage.time_s;
         while usage.time_s < end_s {
             let wait_s = self.do_something()?;

@@ -32,7 +32,7 @@ const AFTER_S: f64 = 1.0;
 const SLACK_MM: f64 = 2.0;
 
 /// A leg that is about to be struck.
-pub(super) struct Prepared {
+pub(super) struct PreparedLeg {
     pub stand: Stand,
     /// Where its tip may be.
     pub way: Way,
@@ -41,7 +41,7 @@ pub(super) struct Prepared {
 
 /// # Errors
 /// Why the leg does not get there: a fault that nothing caused, or a time that is over.
-pub(super) fn prepare(case: &Case) -> Result<Prepared, String> {
+pub(super) fn prepare(case: &Case) -> Result<PreparedLeg, String> {
     let mut stand = started(case)?;
     let command = match case.activity {
         Activity::Following | Activity::Rearmed | Activity::Disarmed => None,
@@ -60,7 +60,7 @@ pub(super) fn prepare(case: &Case) -> Result<Prepared, String> {
     match case.activity {
         Activity::Held => {
             stand.command(&command)?;
-            stand.until(1.0, "held", |stand| stand.state() == State::Held)?;
+            stand.tick_until(1.0, "held", |stand| stand.state() == State::Held)?;
             stand.rest()?;
             Ok(resting(stand))
         }
@@ -69,7 +69,7 @@ pub(super) fn prepare(case: &Case) -> Result<Prepared, String> {
             stand.command(&command)?;
             stand.wait(ARMING_S * case.part)?;
             let unstruck = Course::begin(&stand).rest(0.0);
-            Ok(Prepared {
+            Ok(PreparedLeg {
                 stand,
                 way,
                 unstruck,
@@ -77,15 +77,15 @@ pub(super) fn prepare(case: &Case) -> Result<Prepared, String> {
         }
         _ => {
             stand.command(&command)?;
-            on_the_way(case, stand)
+            prepare_on_the_way(case, stand)
         }
     }
 }
 
-fn resting(stand: Stand) -> Prepared {
+fn resting(stand: Stand) -> PreparedLeg {
     let way = Way::begin(stand.truth.tip_m);
     let unstruck = Course::begin(&stand).rest(0.0);
-    Prepared {
+    PreparedLeg {
         stand,
         way,
         unstruck,
@@ -105,7 +105,7 @@ fn started(case: &Case) -> Result<Stand, String> {
         _ => Start::hanging(case.pretension_n),
     };
     let mut stand = Stand::new(&case.file, &case.plant, start, case.seed)?;
-    stand.until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
+    stand.tick_until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
     stand.wait(0.1)?;
     if !matches!(case.activity, Activity::Homing | Activity::Arming) {
         lead(case, &mut stand)?;
@@ -116,14 +116,14 @@ fn started(case: &Case) -> Result<Stand, String> {
 /// Arms the leg, loads it and moves it to its pose.
 fn lead(case: &Case, stand: &mut Stand) -> Result<(), String> {
     stand.command(&Command::Arm)?;
-    stand.until(2.0, "active", |stand| stand.state() == State::Active)?;
+    stand.tick_until(2.0, "active", |stand| stand.state() == State::Active)?;
     stand.wait(0.3)?;
     stand.command(&Command::Pretension(case.pretension_n as f32))?;
     stand.plant().set_payload(case.payload_kg, LOADING_S);
     stand.wait(LOADING_S + REST_S)?;
     stand.command(&stand::move_to([case.azimuth_deg, case.tilt_deg]))?;
     stand.wait(0.05)?;
-    stand.until(MOVE_S, "the end of the move", |stand| !stand.moving())?;
+    stand.tick_until(MOVE_S, "the end of the move", |stand| !stand.moving())?;
     stand.wait(REST_S)?;
     stand.command(&Command::Compensation(case.compensation))?;
     stand.wait(REST_S)?;
@@ -145,12 +145,12 @@ fn lead(case: &Case, stand: &mut Stand) -> Result<(), String> {
 
 fn disarm(stand: &mut Stand) -> Result<(), String> {
     stand.command(&Command::Disarm)?;
-    stand.until(MOVE_S, "disarmed", |stand| stand.state() == State::Disarmed)?;
+    stand.tick_until(MOVE_S, "disarmed", |stand| stand.state() == State::Disarmed)?;
     stand.rest()
 }
 
 /// A leg that is struck on its way, which it has gone to its end before.
-fn on_the_way(case: &Case, stand: Stand) -> Result<Prepared, String> {
+fn prepare_on_the_way(case: &Case, stand: Stand) -> Result<PreparedLeg, String> {
     let mut way = Way::begin(stand.truth.tip_m);
     let mut whole = stand.clone();
     let mut course = Course::begin(&whole);
@@ -164,7 +164,7 @@ fn on_the_way(case: &Case, stand: Stand) -> Result<Prepared, String> {
             return Err(format!("{names} without a strike"));
         }
         let now_s = whole.time_s();
-        if ended_s.is_none() && now_s > began_s + 0.05 && at_end(case, &whole) {
+        if ended_s.is_none() && now_s > began_s + 0.05 && is_at_end(case, &whole) {
             ended_s = Some(now_s);
         }
         if now_s > began_s + HOMING_S {
@@ -175,14 +175,14 @@ fn on_the_way(case: &Case, stand: Stand) -> Result<Prepared, String> {
     let all_s = ended_s.unwrap_or(began_s) - began_s;
     stand.wait(LATEST * case.part * all_s)?;
     let unstruck = course.rest(stand.time_s());
-    Ok(Prepared {
+    Ok(PreparedLeg {
         stand,
         way,
         unstruck,
     })
 }
 
-fn at_end(case: &Case, stand: &Stand) -> bool {
+fn is_at_end(case: &Case, stand: &Stand) -> bool {
     match case.activity {
         Activity::Homing => stand.state() == State::Active && !stand.moving(),
         Activity::RampingDown => stand.state() == State::Disarmed,

@@ -1,9 +1,9 @@
 //! One strike and its measures.
 
 use super::activity::Activity;
-use super::bars::Bars;
+use super::bars::StrikeBars;
 use super::case::Case;
-use super::preparation::Prepared;
+use super::preparation::PreparedLeg;
 use super::way::Way;
 use crate::stand::Stand;
 use leg_base::description;
@@ -72,7 +72,7 @@ pub struct Struck {
     /// How long after the leg had stopped a motor was driven last, s; zero if none was 0.1 s after it.
     pub driven_s: f64,
     /// What it may do at most; none where the leg was not brought to where it should be struck.
-    pub bars: Option<Bars>,
+    pub bars: Option<StrikeBars>,
     /// What was beyond its bar, as sentences.
     pub failures: Vec<String>,
 }
@@ -135,7 +135,7 @@ impl Struck {
         self.failures.is_empty()
     }
 
-    fn judge(&mut self, bars: &Bars, fault: bool) {
+    fn judge(&mut self, bars: &StrikeBars, fault: bool) {
         let mut failures = Vec::new();
         if self.tension_n > bars.tension_n {
             failures.push(format!("{:.1} N", self.tension_n));
@@ -167,12 +167,12 @@ impl Struck {
 /// Strikes a clone of a leg. With a time between them, moments come, too.
 pub(super) fn strike(
     case: &Case,
-    prepared: &Prepared,
+    prepared: &PreparedLeg,
     strike: &Strike,
     every_s: Option<f64>,
 ) -> (Struck, Vec<Moment>) {
     let mut stand = prepared.stand.clone();
-    let bars = Bars::new(
+    let bars = StrikeBars::new(
         strike.defect,
         case.activity,
         case.file.f_max_n,
@@ -264,8 +264,8 @@ impl Watch<'_> {
             self.struck.homing_n = self.struck.homing_n.max(highest);
         }
         let tick = (now_s * 8000.0).round() as u64;
-        self.sags |= self.may_sag && stand.state() == State::RampingDown && self.over_tension();
-        if !self.sags && (!self.case.activity.on_the_way() || tick.is_multiple_of(WAY_TICKS)) {
+        self.sags |= self.may_sag && stand.state() == State::RampingDown && self.exceeds_tension();
+        if !self.sags && (!self.case.activity.is_on_the_way() || tick.is_multiple_of(WAY_TICKS)) {
             let tip_mm = self.way.distance_mm(&stand.truth.tip_m);
             self.struck.tip_mm = self.struck.tip_mm.max(tip_mm);
         }
@@ -276,11 +276,11 @@ impl Watch<'_> {
     }
 
     /// Whether a true tension has been beyond what **too much tension** asks for by itself.
-    fn over_tension(&self) -> bool {
+    fn exceeds_tension(&self) -> bool {
         self.struck.tension_n > OVER_PART * self.case.file.f_max_n
     }
 
-    /// Clears and arms, as a user does who does not believe the fault.
+    /// Clears the fault and arms without a repair, as a user may.
     fn rearm(&mut self, stand: &mut Stand) -> Result<(), String> {
         let (round, clears) = (self.given / 2, self.given.is_multiple_of(2));
         if self.case.activity != Activity::Rearmed || round >= CLEARS_S.len() {

@@ -7,14 +7,14 @@ use std::collections::BTreeMap;
 
 /// The worst of a measure, and the strike that had it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Worst {
+pub struct WorstStrike {
     /// The measure.
     pub value: f64,
     /// The strike's number.
     pub index: u64,
 }
 
-impl Worst {
+impl WorstStrike {
     fn take(&mut self, value: f64, index: u64) {
         if value > self.value {
             *self = Self { value, index };
@@ -24,7 +24,7 @@ impl Worst {
 
 /// The worst of a measure by its bar.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Measure {
+pub struct WorstByBar {
     /// The measure.
     pub value: f64,
     /// Its bar in that strike; zero until there is one.
@@ -33,7 +33,7 @@ pub struct Measure {
     pub index: u64,
 }
 
-impl Measure {
+impl WorstByBar {
     fn take(&mut self, value: f64, bar: f64, index: u64) {
         if self.bar == 0.0 || value * self.bar > self.value * bar {
             *self = Self { value, bar, index };
@@ -45,13 +45,13 @@ impl Measure {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Measures {
     /// Highest true tension, N.
-    pub tension_n: Measure,
+    pub tension_n: WorstByBar,
     /// The same while homing, N.
-    pub homing_n: Measure,
+    pub homing_n: WorstByBar,
     /// How far the tip was from rest or off the way, mm.
-    pub tip_mm: Measure,
+    pub tip_mm: WorstByBar,
     /// Time to the first fault where there is a bar, s.
-    pub named_s: Measure,
+    pub named_s: WorstByBar,
 }
 
 impl Measures {
@@ -69,7 +69,7 @@ impl Measures {
 
 /// The strikes of one fault while the leg did one thing.
 #[derive(Clone, Debug, Serialize)]
-pub struct Row {
+pub struct StrikeRow {
     /// The fault, by its name in scenarios.
     pub fault: &'static str,
     /// What the leg was doing.
@@ -77,19 +77,19 @@ pub struct Row {
     /// Strikes.
     pub count: u64,
     /// Highest true tension, N.
-    pub tension_n: Worst,
+    pub tension_n: WorstStrike,
     /// Highest true tension while homing, N.
-    pub homing_n: Worst,
+    pub homing_n: WorstStrike,
     /// How far the tip was from rest or off the way, mm.
-    pub tip_mm: Worst,
+    pub tip_mm: WorstStrike,
     /// Strikes after which the leg named a fault, and the longest time to it, s.
     pub named: u64,
     /// s.
-    pub named_s: Worst,
+    pub named_s: WorstStrike,
     /// The first names, and how often.
     pub names: BTreeMap<&'static str, u64>,
     /// Longest time that a motor was driven after the stop, s.
-    pub driven_s: Worst,
+    pub driven_s: WorstStrike,
     /// The worst of each measure by its bar.
     pub by_bars: Measures,
     /// Strikes that failed.
@@ -100,28 +100,28 @@ pub struct Row {
 
 /// The rows, by fault and what the leg was doing.
 #[must_use]
-pub fn rows(struck: &[Struck]) -> Vec<Row> {
-    let mut rows: BTreeMap<(&str, Activity), Row> = BTreeMap::new();
+pub fn rows(struck: &[Struck]) -> Vec<StrikeRow> {
+    let mut rows: BTreeMap<(&str, Activity), StrikeRow> = BTreeMap::new();
     for one in struck {
         let row = rows.entry((one.fault, one.state));
-        row.or_insert_with(|| Row::new(one)).take(one);
+        row.or_insert_with(|| StrikeRow::new(one)).take(one);
     }
     rows.into_values().collect()
 }
 
-impl Row {
+impl StrikeRow {
     fn new(struck: &Struck) -> Self {
         Self {
             fault: struck.fault,
             state: struck.state,
             count: 0,
-            tension_n: Worst::default(),
-            homing_n: Worst::default(),
-            tip_mm: Worst::default(),
+            tension_n: WorstStrike::default(),
+            homing_n: WorstStrike::default(),
+            tip_mm: WorstStrike::default(),
             named: 0,
-            named_s: Worst::default(),
+            named_s: WorstStrike::default(),
             names: BTreeMap::new(),
-            driven_s: Worst::default(),
+            driven_s: WorstStrike::default(),
             by_bars: Measures::default(),
             failed: 0,
             first_failed: None,

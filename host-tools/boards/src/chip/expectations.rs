@@ -144,9 +144,9 @@ fn tick_watchdog(chip: &Peripherals) -> Option<String> {
 
 /// The control interrupt has to preempt all others.
 fn not_preempted(processor: &Processor) -> Option<String> {
-    let control = Facts::of_chip().interrupt(CONTROL)?;
+    let control = Facts::chip().interrupt(CONTROL)?;
     let withstands = |name: &&&str| {
-        let other = Facts::of_chip().interrupt(name);
+        let other = Facts::chip().interrupt(name);
         other.is_some_and(|other| processor.withstands(other, control))
     };
     let other = OTHERS.iter().find(withstands)?;

@@ -366,7 +366,7 @@ impl Running {
 /// Lets the twin take a command where the chip's leg does: in the first critical section of the function that brings it.
 /// The control interrupt may come before that, and then belongs before the command.
 fn take_command(chip: &Chip, twin: &mut Twin, commanding: &mut bool) {
-    if *commanding && chip.processor().in_critical_section() {
+    if *commanding && chip.processor().is_in_critical_section() {
         *commanding = false;
         twin.take_command();
     }

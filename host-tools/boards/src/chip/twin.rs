@@ -7,7 +7,7 @@ use leg_firmware::host_link::{
     BoardKind, CommandedLeg, HostLink, HostRefusal, Identity, ResetCause,
 };
 use leg_firmware::jog::JogReport;
-use leg_firmware::leg::Outcome;
+use leg_firmware::leg::CommandOutcome;
 use leg_firmware::linked_leg::{RecordedLeg, SensingLeg};
 use leg_firmware::recorder::{Recorder, RecorderReply, RecorderRequest, RecorderSetup};
 use leg_firmware::sensors::Sensors;
@@ -119,7 +119,7 @@ impl CommandedLeg for CountingLeg {
         self.recorded().note_decode_error();
     }
 
-    fn outcome(&mut self) -> Option<Outcome> {
+    fn outcome(&mut self) -> Option<CommandOutcome> {
         self.recorded().outcome()
     }
 

@@ -111,7 +111,7 @@ pub fn wrong_input(chip: &Peripherals) -> Option<String> {
     for (converter, pins, _) in CONVERTED {
         for (rank, &pin) in pins.iter().enumerate() {
             let input = chip.devices.converters.injected_input(converter, rank);
-            let found = input.and_then(|input| Facts::of_chip().converter_pin(converter, input));
+            let found = input.and_then(|input| Facts::chip().converter_pin(converter, input));
             if found != Some(pin) {
                 let found = found.map_or_else(|| "no pin".into(), name);
                 return Some(format!(

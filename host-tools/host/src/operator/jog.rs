@@ -12,7 +12,8 @@ use std::time::Duration;
 const JOG_TIME: Duration = Duration::from_secs(120);
 
 impl Operator {
-    /// Turns a motor and waits until it is off again; what the board saw, and the leg after it, also where a fault ended it.
+    /// Turns a motor and waits until it is off again; what the board measured, and the leg after it, also where a fault ended
+    /// it.
     ///
     /// # Errors
     /// As [`Self::drive`] and [`Self::command`]; [`OperatorError::WrongReply`] where the board knows of no jog.

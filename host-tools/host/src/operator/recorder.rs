@@ -29,7 +29,7 @@ impl Scope {
     /// The time that is held before the fault, and from it on, s. All of it is before where a host has ended the recording.
     #[must_use]
     pub fn sides_s(&self) -> [f64; 2] {
-        let is_before = |row: &&RecorderRow| row.since_fault().is_none_or(|ticks| ticks < 0);
+        let is_before = |row: &&RecorderRow| row.ticks_since_fault().is_none_or(|ticks| ticks < 0);
         let before = self.rows.iter().filter(is_before).count();
         [before, self.rows.len() - before].map(|ticks| seconds(ticks as u64))
     }

@@ -3,7 +3,7 @@
 use super::report::unit;
 use crate::output::save_all;
 use leg_base::failure::Failure;
-use leg_bench::bode::{Feedback, Margin, Point, Row, Swept};
+use leg_bench::bode::{Feedback, Margin, MarginRow, ResponsePoint, Swept};
 use leg_boards::image;
 use leg_model_tools::plot::bode::{self, BodeLine, BodeMargin, BodePlot, BodePoint};
 use std::error::Error;
@@ -15,7 +15,7 @@ const CSV: &str = "bode.csv";
 pub(super) fn save(
     directory: Option<&Path>,
     swept: &[Swept],
-    rows: &[Row],
+    rows: &[MarginRow],
 ) -> Result<Vec<PathBuf>, Failure> {
     let default = || image::workspace_root().join("target/leg-bode");
     let directory = directory.map_or_else(default, Path::to_path_buf);
@@ -29,7 +29,11 @@ pub(super) fn save(
     Ok(names.into_iter().map(|name| directory.join(name)).collect())
 }
 
-fn draw(staging: &Path, swept: &[Swept], rows: &[Row]) -> Result<Vec<PathBuf>, Box<dyn Error>> {
+fn draw(
+    staging: &Path,
+    swept: &[Swept],
+    rows: &[MarginRow],
+) -> Result<Vec<PathBuf>, Box<dyn Error>> {
     let mut names = Vec::new();
     for feedback in Feedback::ALL {
         let measured = || swept.iter().filter(|one| one.feedback == feedback);
@@ -59,8 +63,8 @@ const fn title(feedback: Feedback) -> &'static str {
     }
 }
 
-fn points(points: &[Point]) -> Vec<BodePoint> {
-    let point = |point: &Point| BodePoint {
+fn points(points: &[ResponsePoint]) -> Vec<BodePoint> {
+    let point = |point: &ResponsePoint| BodePoint {
         hz: point.hz,
         gain_db: point.gain_db,
         phase_deg: point.phase_deg,
@@ -69,9 +73,9 @@ fn points(points: &[Point]) -> Vec<BodePoint> {
 }
 
 /// The worst of each amplitude and margin.
-fn named(feedback: Feedback, swept: &[Swept], rows: &[Row]) -> Vec<BodeLine> {
+fn named(feedback: Feedback, swept: &[Swept], rows: &[MarginRow]) -> Vec<BodeLine> {
     let rows = rows.iter().filter(|row| row.feedback == feedback);
-    let line = |row: &Row| {
+    let line = |row: &MarginRow| {
         let worst = row.worst.as_ref()?;
         let (value, hz, bar, unit_of) =
             (worst.value, worst.hz, row.margin.bar(), row.margin.unit());

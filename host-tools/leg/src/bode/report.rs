@@ -1,14 +1,14 @@
 //! What `leg bode` prints.
 
 use leg_base::paths::relative_path;
-use leg_bench::bode::{Feedback, Margin, Row, Swept, Worst};
+use leg_bench::bode::{Feedback, Margin, MarginRow, Swept, WorstMargin};
 use std::path::PathBuf;
 
 const HEADING: &str =
     "loop      added   margin       at Hz  place         azimuth  tilt    kg       N\n";
 
 /// A table for people.
-pub(super) fn table(rows: &[Row], swept: &[Swept], files: &[PathBuf]) -> String {
+pub(super) fn table(rows: &[MarginRow], swept: &[Swept], files: &[PathBuf]) -> String {
     let lines: String = rows.iter().map(line).collect();
     let ended: String = swept.iter().filter_map(failure).collect();
     let files = files
@@ -17,7 +17,7 @@ pub(super) fn table(rows: &[Row], swept: &[Swept], files: &[PathBuf]) -> String 
     format!("{HEADING}{lines}{ended}\n{}", files.collect::<String>())
 }
 
-fn line(row: &Row) -> String {
+fn line(row: &MarginRow) -> String {
     let added = format!("{:.1} {}", row.amplitude, unit(row.feedback));
     let name = row.feedback.name();
     let unit = row.margin.unit();
@@ -29,7 +29,7 @@ fn line(row: &Row) -> String {
         };
         return format!("{name:8}  {added:6}  {none:60}  {verdict}\n");
     };
-    let Worst {
+    let WorstMargin {
         value,
         hz,
         place,
@@ -44,7 +44,7 @@ fn line(row: &Row) -> String {
 }
 
 /// Whether a row passes, or how many of its measurements do not and why.
-fn verdict(row: &Row) -> String {
+fn verdict(row: &MarginRow) -> String {
     if row.passes() {
         return "pass".into();
     }
@@ -74,7 +74,7 @@ pub(super) const fn unit(feedback: Feedback) -> &'static str {
 }
 
 /// Which loops failed, as a sentence.
-pub(super) fn failed(rows: &[Row]) -> String {
+pub(super) fn failed(rows: &[MarginRow]) -> String {
     let low = rows.iter().filter(|row| row.low > 0).filter_map(|row| {
         let (bar, unit, value) = (
             row.margin.bar(),

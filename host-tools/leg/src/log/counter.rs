@@ -12,7 +12,7 @@ const LATE_ASKED: u32 = 3;
 
 /// What was recorded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub(super) struct Recorded {
+pub(super) struct RecordedCounts {
     /// Telemetry in the file.
     pub count: u64,
     /// Telemetry that the leg sent and that did not arrive.
@@ -51,7 +51,7 @@ pub(super) struct Taken {
 
 /// Counts what comes, and chooses what is recorded: another host may have asked for a higher rate.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Counter {
+pub(super) struct SampleCounter {
     every_ticks: u32,
     /// Number and tick of the last that came.
     last: Option<(u32, u32)>,
@@ -68,7 +68,7 @@ pub(super) struct Counter {
     lost: u64,
 }
 
-impl Counter {
+impl SampleCounter {
     pub(super) fn new(every_ticks: u16) -> Self {
         Self {
             every_ticks: every_ticks.into(),
@@ -121,12 +121,12 @@ impl Counter {
         self.ticks
     }
 
-    pub(super) fn recorded(&self, damaged_frames: u64) -> Recorded {
+    pub(super) fn recorded(&self, damaged_frames: u64) -> RecordedCounts {
         let every_s = match self.count {
             0 | 1 => seconds(u64::from(self.every_ticks)),
             count => seconds(self.recorded_ticks) / (count - 1) as f64,
         };
-        Recorded {
+        RecordedCounts {
             count: self.count,
             lost: self.lost,
             damaged_frames,
@@ -137,7 +137,7 @@ impl Counter {
     }
 }
 
-impl Recorded {
+impl RecordedCounts {
     pub(super) fn text(&self) -> String {
         let damaged = match self.damaged_frames {
             0 => String::new(),
@@ -157,7 +157,7 @@ impl Recorded {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{Counter, Restarted};
+    use super::{Restarted, SampleCounter};
 
     /// Requested ticks, number and tick of each telemetry, the end, and how much is recorded and lost until then.
     type Case = (u16, &'static [(u32, u32)], Result<(), Restarted>, [u64; 2]);
@@ -201,7 +201,7 @@ mod tests {
     #[test]
     fn telemetry_is_recorded_as_often_as_it_was_asked_for() {
         for (every_ticks, replies, expected, [count, lost]) in CASES {
-            let mut counter = Counter::new(every_ticks);
+            let mut counter = SampleCounter::new(every_ticks);
             let mut taken = replies
                 .iter()
                 .map(|&(number, tick)| counter.take(number, tick));
@@ -223,7 +223,7 @@ mod tests {
     /// At once, and then not every time: the leg may not be able to do more. A loss is none.
     #[test]
     fn a_lower_rate_has_the_leg_asked_again() {
-        let mut counter = Counter::new(40);
+        let mut counter = SampleCounter::new(40);
         let replies = [
             (5, 100, false),
             (6, 180, true),

@@ -144,9 +144,12 @@ impl MapReport<'_> {
     fn missing(&self) -> String {
         let at_pretension = format!("No result at pretension {} N", self.rig.pretension_n);
         let missing = [
-            ("No result", self.map.without_result()),
-            (at_pretension.as_str(), self.map.without_pretension()),
-            ("No nonlinear deviation", self.map.without_nonlinear()),
+            ("No result", self.map.reasons_for_no_result()),
+            (at_pretension.as_str(), self.map.reasons_for_no_pretension()),
+            (
+                "No nonlinear deviation",
+                self.map.reasons_for_no_nonlinear(),
+            ),
         ];
         let lines = |(what, reasons): (&str, Vec<(Error, usize)>)| -> String {
             let line = |(reason, count)| format!("{what} at {count} of the poses: {reason}\n");

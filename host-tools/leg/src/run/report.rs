@@ -4,7 +4,7 @@ use crate::output::chart_line;
 use leg_base::json_object;
 use leg_base::tick_time::tick_s;
 use leg_firmware::supervisor::Fault;
-use leg_sim::simulation::{Divergence, Measurement, Summary};
+use leg_sim::simulation::{Divergence, ScenarioMeasurement, Summary};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -17,7 +17,7 @@ pub(super) struct RunReport<'a> {
     pub(super) firmware: &'a str,
     pub(super) summary: &'a Summary,
     pub(super) ticks_per_s: f64,
-    /// In a second of the processor's time; none where the system does not tell.
+    /// In a second of the processor's time; none where the system does not say it.
     pub(super) ticks_per_processor_s: Option<f64>,
     /// The most memory that was in use.
     pub(super) memory_mib: Option<f64>,
@@ -115,7 +115,7 @@ fn divergence_text(divergence: &Divergence) -> String {
     )
 }
 
-fn row(measurement: &Measurement) -> String {
+fn row(measurement: &ScenarioMeasurement) -> String {
     let [lowest, highest] = measurement.between;
     format!(
         "{:6.2} s {:9.4}  {:<8} {lowest:11.4} {highest:9.4}   {}   {}\n",

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-/// Linux tells times of processes in hundredths of a second, whatever its own clock.
+/// Linux gives times of processes in hundredths of a second, whatever its own clock.
 const TICKS_PER_S: f64 = 100.0;
 
 /// Of the numbers in /proc/self/stat behind the name of the process: user and system time, its own and of its children

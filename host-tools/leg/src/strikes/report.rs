@@ -1,16 +1,16 @@
 //! What `leg strikes` prints.
 
-use leg_bench::strikes::{Alarm, Measure, Moment, Row, Struck, Usage, Worst};
+use leg_bench::strikes::{Alarm, Moment, StrikeRow, Struck, UseResult, WorstByBar, WorstStrike};
 
 const HEADING: &str = "\
 fault                        state         strikes     highest tension          tip moved      named        after  first fault                  driven after  failed\n";
 
-pub(super) fn table(rows: &[Row], strikes: usize, seed: u64) -> String {
+pub(super) fn table(rows: &[StrikeRow], strikes: usize, seed: u64) -> String {
     let lines: String = rows.iter().map(row).collect();
     format!("{}{HEADING}{lines}", summary(rows, strikes, seed))
 }
 
-fn summary(rows: &[Row], strikes: usize, seed: u64) -> String {
+fn summary(rows: &[StrikeRow], strikes: usize, seed: u64) -> String {
     let failed: u64 = rows.iter().map(|row| row.failed).sum();
     format!("{strikes} strikes at seed {seed}, {failed} failed\n\n")
 }
@@ -19,8 +19,8 @@ const BARS_HEADING: &str = "\
 fault                        state         strikes       tension / bar         homing / bar            tip / bar          named / bar\n";
 
 /// The worst of each measure beside its bar.
-pub(super) fn by_bars(rows: &[Row], strikes: usize, seed: u64) -> String {
-    let line = |row: &Row| {
+pub(super) fn bar_report(rows: &[StrikeRow], strikes: usize, seed: u64) -> String {
+    let line = |row: &StrikeRow| {
         let measures = row.by_bars;
         format!(
             "{:27}  {:12}  {:7}  {}  {}  {}  {}\n",
@@ -37,18 +37,18 @@ pub(super) fn by_bars(rows: &[Row], strikes: usize, seed: u64) -> String {
     format!("{}{BARS_HEADING}{lines}", summary(rows, strikes, seed))
 }
 
-fn value_and_bar(measure: Measure, digits: usize, unit: &str) -> String {
+fn value_and_bar(measure: WorstByBar, digits: usize, unit: &str) -> String {
     if measure.value == 0.0 {
         return format!("{:>19}", "-");
     }
-    let Measure { value, bar, .. } = measure;
+    let WorstByBar { value, bar, .. } = measure;
     format!(
         "{:>19}",
         format!("{value:.digits$} / {bar:.digits$} {unit}")
     )
 }
 
-fn row(row: &Row) -> String {
+fn row(row: &StrikeRow) -> String {
     let mut names: Vec<_> = row.names.iter().collect();
     names.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
     let name = match names.as_slice() {
@@ -79,7 +79,7 @@ fn row(row: &Row) -> String {
 }
 
 /// A measure and the strike that had it.
-fn worst(worst: Worst, digits: usize, unit: &str) -> String {
+fn worst(worst: WorstStrike, digits: usize, unit: &str) -> String {
     if worst.value == 0.0 {
         return format!("{:>18}", "-");
     }
@@ -125,7 +125,7 @@ fn moment(moment: &Moment) -> String {
 }
 
 /// A line for each rig, and one for each alarm.
-pub(super) fn usages(usages: &[Usage]) -> String {
+pub(super) fn usages(usages: &[UseResult]) -> String {
     let mut names: Vec<&str> = usages.iter().map(|usage| usage.rig.as_str()).collect();
     names.sort_unstable();
     names.dedup();
@@ -144,7 +144,7 @@ pub(super) fn usages(usages: &[Usage]) -> String {
     format!("rig                        hours    uses  false alarms  true alarms\n{rigs}\n{alarms}")
 }
 
-fn rig_summary(name: &str, usages: &[Usage]) -> String {
+fn rig_summary(name: &str, usages: &[UseResult]) -> String {
     let all = || usages.iter().filter(|usage| usage.rig == name);
     let alarms = || all().flat_map(|usage| &usage.alarms);
     let hours = all().map(|usage| usage.time_s).sum::<f64>() / 3600.0;
@@ -154,7 +154,7 @@ fn rig_summary(name: &str, usages: &[Usage]) -> String {
     format!("{name:25} {hours:6.2}  {uses:6}  {false_ones:12}  {beyond:11}\n")
 }
 
-fn alarm(usage: &Usage, alarm: &Alarm) -> String {
+fn alarm(usage: &UseResult, alarm: &Alarm) -> String {
     let kind = if alarm.beyond { "true" } else { "FALSE" };
     let [low, high] = alarm.tensions_n;
     format!(

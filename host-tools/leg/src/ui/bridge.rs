@@ -1,6 +1,6 @@
 //! A leg and the pages that show it.
 
-use super::link::{Hello as PageHello, PageLink};
+use super::link::{PageHello, PageLink};
 use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::frame::{self, Decoder, MAX_FRAME};
 use leg_firmware::host_link::{HOST_SCHEMA, Hello, HostId, HostRefusal, HostReply, HostRequest};

@@ -134,8 +134,8 @@ impl Balance {
         let kinematics = self.kinematics(posture)?;
         let (tensions, _) = self.pull(&kinematics)?;
         let direction = &posture.direction;
-        let along = self.geometry(posture).along_leg(direction, &kinematics);
-        let force = self.load.along_leg_n(direction) - along.dot(&tensions);
+        let along = self.geometry(posture).axial_pulls(direction, &kinematics);
+        let force = self.load.axial_force_n(direction) - along.dot(&tensions);
         Ok(self.support.joint().axial_compliance_m_per_n * force)
     }
 
@@ -230,7 +230,7 @@ impl Balance {
 
     fn geometry(&self, posture: &Posture) -> Geometry<f64, 3> {
         let twist = self.support.twist(&posture.direction);
-        let twist = twist.then(&Twist::from_torsion(posture.torsion));
+        let twist = twist.composed(&Twist::from_torsion(posture.torsion));
         self.rig.geometry().twisted(&twist)
     }
 

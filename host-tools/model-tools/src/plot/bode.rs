@@ -1,8 +1,8 @@
 //! Bode plots: gain and phase over frequency.
 
 use super::canvas::{
-    self, AXIS_TITLE, Area, Drawn, GRID, LABEL, MARGIN, Painter, THIN, TICK, WIDTH, offset_px, px,
-    range,
+    self, AXIS_TITLE, Area, DrawResult, GRID, LABEL, MARGIN, Painter, THIN, TICK, WIDTH, offset_px,
+    px, range,
 };
 use super::error::PlotError;
 use super::{COLOURS, LEGEND_ROW, LEGEND_WIDTH, LINE};
@@ -172,7 +172,7 @@ fn turned(phase_deg: f64) -> f64 {
 }
 
 impl Painter for BodePainter<'_> {
-    fn paint<B: DrawingBackend>(&self, root: &Area<B>) -> Drawn<B> {
+    fn paint<B: DrawingBackend>(&self, root: &Area<B>) -> DrawResult<B> {
         let body = canvas::titled(root, &self.plot.title)?;
         let (both, legend) = body.split_horizontally(WIDTH - LEGEND_WIDTH - MARGIN);
         let (_, height) = both.dim_in_pixel();
@@ -190,7 +190,7 @@ impl BodePainter<'_> {
         panel: Panel,
         y_title: &str,
         x_title: &str,
-    ) -> Drawn<B> {
+    ) -> DrawResult<B> {
         let (y, labels) = match panel {
             Panel::Gain => (self.gains_db.clone(), 9),
             Panel::Phase => (
@@ -239,7 +239,7 @@ impl BodePainter<'_> {
         Ok(())
     }
 
-    fn legend<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B> {
+    fn legend<B: DrawingBackend>(&self, area: &Area<B>) -> DrawResult<B> {
         let text = ("sans-serif", LABEL)
             .into_text_style(area)
             .pos(Pos::new(HPos::Left, VPos::Center));
@@ -271,7 +271,7 @@ fn curve<B: DrawingBackend>(
     panel: Panel,
     style: ShapeStyle,
     context: &mut ChartContext<B, Plane>,
-) -> Drawn<B> {
+) -> DrawResult<B> {
     let half = match panel {
         Panel::Gain => f64::INFINITY,
         Panel::Phase => panel.drawn(180.0),

@@ -34,12 +34,12 @@ pub(super) const THIN: u32 = px(1);
 pub(super) const GRID: RGBColor = RGBColor(225, 225, 225);
 
 pub(super) type Area<B> = DrawingArea<B, Shift>;
-pub(super) type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
+pub(super) type DrawResult<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
 /// A picture whose parts are known.
 pub(super) trait Painter {
     /// Paints it from its background up.
-    fn paint<B: DrawingBackend>(&self, root: &Area<B>) -> Drawn<B>;
+    fn paint<B: DrawingBackend>(&self, root: &Area<B>) -> DrawResult<B>;
 }
 
 /// Paints `stem.svg`, and from it `stem.png` and `stem.pdf`, each whole or not at all, and names the first.

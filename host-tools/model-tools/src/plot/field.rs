@@ -7,7 +7,7 @@ mod layers;
 mod polar;
 pub(crate) mod scale;
 
-use super::canvas::{self, Area, Drawn, MARGIN, Painter, WIDTH, px, range};
+use super::canvas::{self, Area, DrawResult, MARGIN, Painter, WIDTH, px, range};
 use super::error::PlotError;
 use bands::Bands;
 use plotters::prelude::*;
@@ -109,7 +109,7 @@ struct FieldPainter<'a> {
 }
 
 impl Painter for FieldPainter<'_> {
-    fn paint<B: DrawingBackend>(&self, root: &Area<B>) -> Drawn<B> {
+    fn paint<B: DrawingBackend>(&self, root: &Area<B>) -> DrawResult<B> {
         let Self { field, bands, .. } = self;
         let body = canvas::titled(root, &field.title)?;
         let (map, scale) = body.split_horizontally(WIDTH - SCALE_WIDTH - MARGIN);

@@ -1,7 +1,7 @@
 //! Spans of a chart's horizontal axis: shaded and labelled, as the states of a leg over time.
 
 use super::Plane;
-use super::canvas::{Drawn, offset_px, px};
+use super::canvas::{DrawResult, offset_px, px};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::ops::Range;
@@ -66,7 +66,7 @@ pub(super) fn shade<B: DrawingBackend>(
     spans: &[Span],
     y: &Range<f64>,
     context: &mut ChartContext<B, Plane>,
-) -> Drawn<B> {
+) -> DrawResult<B> {
     let shades = shades(spans);
     for span in spans {
         let shade = shades.iter().find(|(label, _)| *label == span.label);
@@ -82,7 +82,7 @@ pub(super) fn label<B: DrawingBackend>(
     spans: &[Span],
     y: &Range<f64>,
     context: &mut ChartContext<B, Plane>,
-) -> Drawn<B> {
+) -> DrawResult<B> {
     let style = ("sans-serif", SPAN_LABEL)
         .into_font()
         .color(&SPAN_LABEL_COLOUR)

@@ -45,7 +45,7 @@ impl Fit {
         let spline = knots::best(&branches.loading)?;
         let points = spline.points();
         let curve = TendonCurve::new(&points).map_err(TensileError::NoCurve)?;
-        let take_up_m = spline.at_zero_force();
+        let take_up_m = spline.elongation_at_zero_force_m();
         let rows = shifted(branches.loading, take_up_m);
         let unloading = shifted(branches.unloading, take_up_m);
         let errors = errors(&curve, &rows)?;

@@ -57,7 +57,7 @@ struct Column {
 /// A [`TensileError`] with line and column.
 pub fn read(path: &Path) -> Result<Vec<TestRow>, TensileError> {
     let text = text_input::read_file(path, BYTES_MAX)?;
-    let (data, lines) = without_comments(&text);
+    let (data, lines) = data_lines(&text);
     let mut reader = ReaderBuilder::new()
         .trim(Trim::All)
         .from_reader(data.as_bytes());
@@ -77,7 +77,7 @@ pub fn read(path: &Path) -> Result<Vec<TestRow>, TensileError> {
 }
 
 /// The lines of the file that hold data, and where each of them is: the CSV reader's own count is off after a comment.
-fn without_comments(text: &str) -> (String, LineNumbers) {
+fn data_lines(text: &str) -> (String, LineNumbers) {
     let text = text.trim_start_matches('\u{feff}');
     let data = (1..)
         .zip(text.lines())

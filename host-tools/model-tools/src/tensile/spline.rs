@@ -88,13 +88,13 @@ impl Spline {
     }
 
     /// The elongation at which the straight line through the first knot reaches zero force, m.
-    pub(super) fn at_zero_force(&self) -> f64 {
+    pub(super) fn elongation_at_zero_force_m(&self) -> f64 {
         self.elongations[0] - self.knots[0] * self.slopes[0]
     }
 
     /// The points of the curve that goes on in that line to zero force, and counts its elongation from there.
     pub(super) fn points(&self) -> Vec<CurvePoint<f64>> {
-        let zero = self.at_zero_force();
+        let zero = self.elongation_at_zero_force_m();
         let point = |tension_n: f64, elongation_m: f64, slope: f64| CurvePoint {
             tension_n,
             elongation_m,

@@ -45,7 +45,7 @@ pub struct PretensionedPose {
 }
 
 /// A rig and its load, validated once for all poses.
-pub(super) struct Prepared {
+pub(super) struct PreparedMap {
     parameters: RigParameters<f64, 3>,
     rig: Rig<f64, 3>,
     /// At no pose yet.
@@ -53,7 +53,7 @@ pub(super) struct Prepared {
     with_nonlinear: bool,
 }
 
-impl Prepared {
+impl PreparedMap {
     pub fn new(rig: &RigFile, payload_kg: f64, with_nonlinear: bool) -> Result<Self, Error> {
         Ok(Self {
             parameters: rig.parameters,

@@ -47,22 +47,22 @@ impl WorkspaceMap {
 
     /// The reasons for which poses have no result at any pretension, each with how many those are, the most frequent first.
     #[must_use]
-    pub fn without_result(&self) -> Vec<(Error, usize)> {
-        by_reason(self.cells.iter().filter_map(|cell| cell.err()))
+    pub fn reasons_for_no_result(&self) -> Vec<(Error, usize)> {
+        count_reasons(self.cells.iter().filter_map(|cell| cell.err()))
     }
 
     /// The same of poses that have none at the rig's pretension alone.
     #[must_use]
-    pub fn without_pretension(&self) -> Vec<(Error, usize)> {
+    pub fn reasons_for_no_pretension(&self) -> Vec<(Error, usize)> {
         let cells = self.cells.iter().flatten();
-        by_reason(cells.filter_map(|cell| cell.at_pretension.err()))
+        count_reasons(cells.filter_map(|cell| cell.at_pretension.err()))
     }
 
     /// The same of poses that have no nonlinear deviation although it was asked for.
     #[must_use]
-    pub fn without_nonlinear(&self) -> Vec<(Error, usize)> {
+    pub fn reasons_for_no_nonlinear(&self) -> Vec<(Error, usize)> {
         let cells = self.cells.iter().flatten();
-        by_reason(cells.filter_map(|cell| cell.deviation_nonlinear_mm?.err()))
+        count_reasons(cells.filter_map(|cell| cell.deviation_nonlinear_mm?.err()))
     }
 
     /// Where a quantity is smallest and largest; none if it counts at no pose.
@@ -102,7 +102,7 @@ pub struct Extreme {
     pub tilt_deg: f64,
 }
 
-fn by_reason(errors: impl Iterator<Item = Error>) -> Vec<(Error, usize)> {
+fn count_reasons(errors: impl Iterator<Item = Error>) -> Vec<(Error, usize)> {
     let mut reasons: Vec<(Error, usize)> = Vec::new();
     for error in errors {
         match reasons.iter_mut().find(|(reason, _)| *reason == error) {

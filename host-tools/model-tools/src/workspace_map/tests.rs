@@ -29,7 +29,7 @@ fn table_1() -> RigFile {
 fn all_cores_and_one_core_give_the_same_map() {
     let rig = table_1();
     let map = WorkspaceMap::compute(&rig, 1.0, GRID, false, || ());
-    assert_eq!(map, WorkspaceMap::on_one_core(&rig, 1.0, GRID));
+    assert_eq!(map, WorkspaceMap::compute_on_one_core(&rig, 1.0, GRID));
     assert_eq!(map.cells.len(), POSES);
     let (azimuth, tilt, _) = map.poses().last().unwrap();
     assert_eq!((azimuth, tilt), (355.0, 30.0));
@@ -37,7 +37,7 @@ fn all_cores_and_one_core_give_the_same_map() {
 
 #[test]
 fn the_map_of_a_symmetric_rig_repeats_every_120_degrees() {
-    let map = WorkspaceMap::on_one_core(&table_1(), 2.0, GRID);
+    let map = WorkspaceMap::compute_on_one_core(&table_1(), 2.0, GRID);
     for cells in map.cells[1..].chunks(72) {
         for (column, cell) in cells.iter().enumerate() {
             let (cell, other) = (cell.unwrap(), cells[(column + 24) % 72].unwrap());
@@ -65,7 +65,7 @@ fn the_pretensions_that_serve_every_pose_are_known() {
         (2.0, 68.8, 70.7),
     ];
     for (payload_kg, lowest, highest) in expected {
-        let map = WorkspaceMap::on_one_core(&table_1(), payload_kg, GRID);
+        let map = WorkspaceMap::compute_on_one_core(&table_1(), payload_kg, GRID);
         let cells: Vec<_> = map.cells.iter().map(|cell| cell.unwrap()).collect();
         let least = cells.iter().map(|cell| cell.pretension_min_n);
         let least = least.fold(f64::MIN, f64::max);
@@ -81,11 +81,13 @@ fn the_pretensions_that_serve_every_pose_are_known() {
 fn every_support_has_a_map_and_too_heavy_a_payload_an_empty_one() {
     for ready in READY_RIGS {
         let rig = RigFile::parse(ready.name, ready.text).unwrap();
-        let count = WorkspaceMap::on_one_core(&rig, 0.5, GRID).counts().feasible;
+        let count = WorkspaceMap::compute_on_one_core(&rig, 0.5, GRID)
+            .counts()
+            .feasible;
         assert!(count > 400, "{}: {count}", ready.name);
     }
     // Straight down the joint alone carries it.
-    let heavy = WorkspaceMap::on_one_core(&table_1(), 100.0, GRID);
+    let heavy = WorkspaceMap::compute_on_one_core(&table_1(), 100.0, GRID);
     assert_eq!(heavy.counts().feasible, 1);
 }
 
@@ -95,7 +97,7 @@ fn ready(name: &str) -> RigFile {
 
 #[test]
 fn extremes_are_at_the_first_pose_that_has_them() {
-    let map = WorkspaceMap::on_one_core(&table_1(), 1.0, GRID);
+    let map = WorkspaceMap::compute_on_one_core(&table_1(), 1.0, GRID);
     let [worst, best] = map.extremes(MapQuantity::Margin).unwrap();
     assert_eq!((best.azimuth_deg, best.tilt_deg), (0.0, 0.0));
     assert!((best.value - 62.0).abs() < 1e-9);

@@ -6,6 +6,7 @@ use super::{RigFile, buckling, consistency, derived, support, tendon};
 use crate::actuator::{ACTUATOR, Actuator};
 use crate::calibration::{CALIBRATION, Calibration};
 use crate::gains::{self, CONTROL};
+use crate::mechanism_keys;
 use crate::plant_settings::{PlantSettings, SIMULATION};
 use crate::renamed_keys;
 use crate::toml_error::TomlError;
@@ -26,16 +27,6 @@ const SECTIONS: [&str; 9] = [
     CALIBRATION,
     SIMULATION,
 ];
-
-const GEOMETRY: [&str; 5] = [
-    "upper_mm",
-    "joint_mm",
-    "leg_mm",
-    "base_anchors_mm",
-    "leg_anchors_mm",
-];
-
-const MASS: [&str; 3] = ["leg_kg", "centroid_mm", "gravity_m_per_s2"];
 
 /// Reads the file and lets the model check it; with notes on what it should say otherwise.
 pub(super) fn parse(text: &str) -> Result<(RigFile, Vec<String>), TomlError> {
@@ -65,7 +56,7 @@ fn read(root: &Section<'_>) -> Result<RigFile, TomlError> {
     let parameters = read_parameters(root)?;
     let tendon = root.section("tendon", &tendon::KEYS)?;
     let tilt_deg = root
-        .section("workspace", &["tilt_deg"])?
+        .section("workspace", &mechanism_keys::names("workspace"))?
         .number("tilt_deg")?;
     let (support_name, support, critical_n) = support::read(root, tilt_deg)?;
     let actuator = Actuator::read(root)?;
@@ -94,8 +85,8 @@ fn read(root: &Section<'_>) -> Result<RigFile, TomlError> {
 }
 
 fn read_parameters(root: &Section<'_>) -> Result<RigParameters<f64, 3>, TomlError> {
-    let geometry = root.section("geometry", &GEOMETRY)?;
-    let mass = root.section("mass", &MASS)?;
+    let geometry = root.section("geometry", &mechanism_keys::names("geometry"))?;
+    let mass = root.section("mass", &mechanism_keys::names("mass"))?;
     Ok(RigParameters {
         base_anchors_m: geometry.points_m("base_anchors_mm")?,
         leg_anchors_m: geometry.points_m("leg_anchors_mm")?,

@@ -107,3 +107,22 @@ fn refusal(section: &Section<'_>, error: Error) -> TomlError {
     let (key, span) = given.unwrap_or(("kind", section.span()));
     TomlError::refused(span, key, reason)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{MEASURED, SHAFT, SupportName, keys};
+    use crate::mechanism_keys;
+    use std::collections::BTreeSet;
+    use strum::VariantArray;
+
+    #[test]
+    fn the_keys_that_are_read_are_those_of_the_table() {
+        let mut read: BTreeSet<&str> = MEASURED.into_iter().chain(SHAFT).collect();
+        for name in SupportName::VARIANTS {
+            read.extend(keys(*name, false));
+        }
+        // A table of its own.
+        assert!(read.remove("shaft"));
+        assert_eq!(read, mechanism_keys::names("support").into_iter().collect());
+    }
+}

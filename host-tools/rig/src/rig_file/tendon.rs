@@ -34,7 +34,7 @@ pub(super) fn read(section: &Section<'_>) -> Result<[Tendon<f64>; 3], TomlError>
         .find(|key| section.has(key));
     match curve_key {
         Some(key) if section.has("stiffness_n_per_m") => {
-            Err(both(section.span(), "stiffness_n_per_m", key))
+            Err(conflict(section.span(), "stiffness_n_per_m", key))
         }
         Some("curve_1") => Ok([
             curve(section, "curve_1")?,
@@ -52,7 +52,7 @@ pub(super) fn read_stiffness_at(section: &Section<'_>) -> Result<StiffnessAt, To
     if section.has("stiffness_n_per_m") {
         return match section.place(&[key]) {
             None => Ok(StiffnessAt::Pretension),
-            Some(span) => Err(both(span, "stiffness_n_per_m", key)),
+            Some(span) => Err(conflict(span, "stiffness_n_per_m", key)),
         };
     }
     let word = section.word(key)?;
@@ -67,7 +67,7 @@ pub(super) fn read_stiffness_at(section: &Section<'_>) -> Result<StiffnessAt, To
     }
 }
 
-fn both(span: Range<usize>, first: &str, second: &str) -> TomlError {
+fn conflict(span: Range<usize>, first: &str, second: &str) -> TomlError {
     let sentence = format!("`{first}` and `{second}` cannot both be given");
     TomlError::new(
         span,
@@ -161,9 +161,20 @@ fn reason(error: Error) -> Reason {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
+    use super::{COLUMNS, KEYS, SIZES};
+    use crate::mechanism_keys;
     use crate::ready_rigs::READY_RIGS;
     use crate::rig_file::RigFile;
     use leg_model::Elasticity;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn the_keys_that_are_read_are_those_of_the_table() {
+        let tables = ["curve", "curve_1", "curve_2", "curve_3", "test_piece"];
+        let numbers = KEYS.into_iter().filter(|key| !tables.contains(key));
+        let read: BTreeSet<&str> = numbers.chain(COLUMNS).chain(SIZES).collect();
+        assert_eq!(read, mechanism_keys::names("tendon").into_iter().collect());
+    }
 
     /// The paper's rig with other lines in the place of its curve's section.
     fn rig_with(tendon: impl Fn(&str) -> String) -> RigFile {

@@ -1,6 +1,6 @@
 //! What was measured beside what a rig file says, and as a section for one.
 
-use super::estimate::Estimate;
+use super::estimate::UncertainValue;
 use super::motor::MotorConstants;
 use super::swing::Swings;
 use crate::actuator::{ACTUATOR, Actuator};
@@ -11,13 +11,13 @@ use serde::Serialize;
 
 /// A quantity, as measured and as configured.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct ComparisonRow {
     /// What it is.
     pub name: String,
     /// Its unit.
     pub unit: &'static str,
     /// As measured.
-    pub measured: Estimate,
+    pub measured: UncertainValue,
     /// As the rig file says or implies; none where that says nothing.
     pub configured: Option<f64>,
     /// The section and the key that hold it; none where it follows from others.
@@ -26,7 +26,11 @@ pub struct Row {
 
 /// All that was measured, beside what the rig says.
 #[must_use]
-pub fn comparison(motor: &MotorConstants, swings: Option<&Swings>, rig: &RigFile) -> Vec<Row> {
+pub fn comparison(
+    motor: &MotorConstants,
+    swings: Option<&Swings>,
+    rig: &RigFile,
+) -> Vec<ComparisonRow> {
     let mut rows = motor_rows(motor, &rig.actuator);
     rows.extend(
         swings
@@ -36,15 +40,15 @@ pub fn comparison(motor: &MotorConstants, swings: Option<&Swings>, rig: &RigFile
     rows
 }
 
-fn motor_rows(motor: &MotorConstants, actuator: &Actuator) -> Vec<Row> {
-    let row = |name: &str, unit, measured, configured| Row {
+fn motor_rows(motor: &MotorConstants, actuator: &Actuator) -> Vec<ComparisonRow> {
+    let row = |name: &str, unit, measured, configured| ComparisonRow {
         name: name.into(),
         unit,
         measured,
         configured: Some(configured),
         key: None,
     };
-    let keyed = |key, unit, measured, configured| Row {
+    let keyed = |key, unit, measured, configured| ComparisonRow {
         key: Some((ACTUATOR, key)),
         ..row(key, unit, measured, configured)
     };
@@ -107,15 +111,15 @@ fn motor_rows(motor: &MotorConstants, actuator: &Actuator) -> Vec<Row> {
     ]
 }
 
-fn swing_rows(swings: &Swings, rig: &RigFile) -> Vec<Row> {
-    let first_mode = swings.all.iter().map(|swing| Row {
+fn swing_rows(swings: &Swings, rig: &RigFile) -> Vec<ComparisonRow> {
+    let first_mode = swings.all.iter().map(|swing| ComparisonRow {
         name: format!("first mode at {:.0} N", swing.pretension_n),
         unit: "Hz",
         measured: swing.frequency_hz,
         configured: Some(swing.configured_hz),
         key: None,
     });
-    let inertia = Row {
+    let inertia = ComparisonRow {
         name: TRANSVERSE_INERTIA.name.into(),
         unit: TRANSVERSE_INERTIA.unit,
         measured: swings.inertia_kg_m2,
@@ -124,7 +128,7 @@ fn swing_rows(swings: &Swings, rig: &RigFile) -> Vec<Row> {
     };
     let travels = swings.travels.map(|travels| {
         let [low_n, high_n] = travels.tensions_n;
-        let play = Row {
+        let play = ComparisonRow {
             name: "backlash_rad".into(),
             unit: "rad",
             measured: travels
@@ -133,7 +137,7 @@ fn swing_rows(swings: &Swings, rig: &RigFile) -> Vec<Row> {
             configured: Some(rig.actuator.backlash_rad),
             key: Some((ACTUATOR, "backlash_rad")),
         };
-        let stretch = Row {
+        let stretch = ComparisonRow {
             name: format!("stretch, {low_n:.0} to {high_n:.0} N"),
             unit: "mm",
             measured: travels.stretch_m.scaled(1000.0),
@@ -152,13 +156,13 @@ fn swing_rows(swings: &Swings, rig: &RigFile) -> Vec<Row> {
 
 /// A table for people.
 #[must_use]
-pub fn table(rows: &[Row]) -> String {
+pub fn table(rows: &[ComparisonRow]) -> String {
     let mut table = format!(
         "{:<30} {:>10} {:>10} {:>10} {:>11}  unit\n",
         "", "measured", "±", "configured", "difference"
     );
     for row in rows {
-        let Estimate { value, uncertainty } = row.measured;
+        let UncertainValue { value, uncertainty } = row.measured;
         let configured = row
             .configured
             .map_or_else(String::new, |number| plain(significant(number, 4)));
@@ -181,13 +185,13 @@ pub fn table(rows: &[Row]) -> String {
 
 /// What was measured with certainty and a rig file takes: its section, its key, its value.
 #[must_use]
-pub fn certain_values(rows: &[Row]) -> Vec<(&'static str, &'static str, String)> {
+pub fn certain_values(rows: &[ComparisonRow]) -> Vec<(&'static str, &'static str, String)> {
     let certain = rows
         .iter()
         .filter(|row| row.measured.is_certain() && row.measured.value > 0.0);
     let kept = certain.filter_map(|row| {
         let (section, key) = row.key?;
-        let Estimate { value, uncertainty } = row.measured;
+        let UncertainValue { value, uncertainty } = row.measured;
         let within = range(key).is_none_or(|[low, high]| (low..=high).contains(&value));
         within.then(|| (section, key, written(value, uncertainty)))
     });
@@ -196,7 +200,7 @@ pub fn certain_values(rows: &[Row]) -> Vec<(&'static str, &'static str, String)>
 
 /// What was measured with certainty, as sections of a rig file; what such a file does not take, or is uncertain, as a comment.
 #[must_use]
-pub fn section(motor: u8, rows: &[Row]) -> String {
+pub fn section(motor: u8, rows: &[ComparisonRow]) -> String {
     let mut text =
         format!("# Measured by leg tune at motor {motor}; ± holds in 95 of 100 cases.\n");
     let mut last = "";
@@ -204,7 +208,7 @@ pub fn section(motor: u8, rows: &[Row]) -> String {
         let Some((section, key)) = row.key else {
             continue;
         };
-        let Estimate { value, uncertainty } = row.measured;
+        let UncertainValue { value, uncertainty } = row.measured;
         let number = written(value, uncertainty);
         let off = plain(significant(uncertainty, 2));
         if !row.measured.is_certain() || value <= 0.0 {

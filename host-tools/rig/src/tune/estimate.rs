@@ -5,14 +5,14 @@ use serde::Serialize;
 
 /// A number and how far it may be off.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Estimate {
+pub struct UncertainValue {
     /// The number.
     pub value: f64,
     /// What 95 of 100 are off by at the most: twice the standard deviation, more where few equations tell that.
     pub uncertainty: f64,
 }
 
-impl Estimate {
+impl UncertainValue {
     /// From a standard deviation.
     #[must_use]
     pub const fn new(value: f64, deviation: f64) -> Self {
@@ -87,7 +87,7 @@ impl Estimate {
 
     /// The mean of what was measured again and again: as uncertain as the numbers themselves, or as they differ.
     #[must_use]
-    pub fn of_repeated(numbers: &[Self]) -> Self {
+    pub fn mean_of_repeated(numbers: &[Self]) -> Self {
         let count = numbers.len().max(1) as f64;
         let value = numbers.iter().map(|one| one.value).sum::<f64>() / count;
         let own: f64 = numbers.iter().map(|one| one.uncertainty.powi(2)).sum();
@@ -127,7 +127,7 @@ fn student_part(free: usize) -> f64 {
 pub(super) fn least_squares<const N: usize>(
     equations: &[Equation<N>],
     deviation: f64,
-) -> Option<[Estimate; N]> {
+) -> Option<[UncertainValue; N]> {
     let mut normal = SMatrix::<f64, N, N>::zeros();
     let mut right = SVector::<f64, N>::zeros();
     for (factors, sum) in equations {
@@ -150,17 +150,17 @@ pub(super) fn least_squares<const N: usize>(
     let left = student_part(free) * (squares.sum::<f64>() / free as f64).sqrt();
     let left = left.max(deviation);
     let estimates = std::array::from_fn(|i| {
-        Estimate::new(unknowns[i], left * inverse[(i, i)].sqrt() / scale[i])
+        UncertainValue::new(unknowns[i], left * inverse[(i, i)].sqrt() / scale[i])
     });
     let finite =
-        |estimate: &Estimate| estimate.value.is_finite() && estimate.uncertainty.is_finite();
+        |estimate: &UncertainValue| estimate.value.is_finite() && estimate.uncertainty.is_finite();
     estimates.iter().all(finite).then_some(estimates)
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{Estimate, least_squares, student_part};
+    use super::{UncertainValue, least_squares, student_part};
 
     #[test]
     fn a_line_through_points_is_found_with_its_uncertainty() {
@@ -201,7 +201,7 @@ mod tests {
 
     #[test]
     fn a_square_is_twice_as_uncertain_as_a_part_of_it() {
-        let square = Estimate::new(3.0, 0.1).squared();
+        let square = UncertainValue::new(3.0, 0.1).squared();
         assert!((square.part() - 0.4 / 3.0).abs() < 1e-12);
     }
 

@@ -11,7 +11,7 @@ use leg_firmware::telemetry::Telemetry;
 /// How far a tendon is reeled in at the most until it pulls, beyond where the measurement began, m.
 const REEL_MAX_M: f32 = 0.012;
 
-/// Travel between two looks at the tension, m.
+/// Travel between two readings of the tension, m.
 const STEP_M: f32 = 1e-3;
 
 /// How often a step is paid out at the most until the tendon is slack.
@@ -51,7 +51,7 @@ const LOADED_TRAVEL_M: f32 = 2e-3;
 /// How often the jogs against a tension are repeated.
 const LOADED_TIMES: u32 = 2;
 
-/// Time after which a jog has said something, s.
+/// Time after which a jog has a result, s.
 const STEADY_MIN_S: f32 = 0.1;
 
 /// What a jog at a steady speed showed, pull as positive.
@@ -143,7 +143,7 @@ impl JogPlan {
     }
 }
 
-/// Jogs the motor of a disarmed leg, and leaves its tendon where it was; where that cannot be, the error tells it.
+/// Jogs the motor of a disarmed leg, and leaves its tendon where it was; where that cannot be, the error says so.
 pub(super) async fn jog_all<L: TunedLeg>(
     leg: &mut L,
     plan: &JogPlan,
@@ -163,11 +163,11 @@ pub(super) async fn jog_all<L: TunedLeg>(
         all: Vec::new(),
         seen,
     };
-    let Err(error) = jogs.in_order().await else {
+    let Err(error) = jogs.run().await else {
         return Ok(jogs.all);
     };
     jogs.ease().await;
-    // A jog that was cut off has told nothing, so the leg is asked.
+    // A jog that was cut off has no result, so the travel is read from the leg.
     let now = match &error {
         TuneError::Leg(error) => leg.telemetry_after(Some(error)).await,
         _ => leg.telemetry_after(None).await,
@@ -216,7 +216,7 @@ struct Jogs<'a, L> {
 }
 
 impl<L: TunedLeg> Jogs<'_, L> {
-    async fn in_order(&mut self) -> Result<(), TuneError<L::Error>> {
+    async fn run(&mut self) -> Result<(), TuneError<L::Error>> {
         self.slacken().await?;
         self.free().await?;
         self.loaded().await?;

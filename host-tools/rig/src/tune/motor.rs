@@ -5,7 +5,7 @@
 //! for the means of a jog in which the tension changes.
 
 use super::error::TuneError;
-use super::estimate::{Equation, Estimate, least_squares};
+use super::estimate::{Equation, UncertainValue, least_squares};
 use super::jogs::Jogged;
 
 /// Part of the current by the tension that it may be off beside: while a motor pulls, the tension grows and the motor becomes slower,
@@ -17,17 +17,17 @@ const PULL_OFF_PART: f64 = 0.01;
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct MotorConstants {
     /// Terminal resistance, Ω.
-    pub resistance_ohm: Estimate,
+    pub resistance_ohm: UncertainValue,
     /// Voltage by the speed of the tendon, V·s/m.
-    pub back_emf_v_s_per_m: Estimate,
+    pub back_emf_v_s_per_m: UncertainValue,
     /// Voltage that the driver loses, V.
-    pub driver_loss_v: Estimate,
+    pub driver_loss_v: UncertainValue,
     /// Current of the dry friction when the tendon is pulled in and paid out, A.
-    pub friction_a: [Estimate; 2],
+    pub friction_a: [UncertainValue; 2],
     /// Current of the viscous friction by the speed, A·s/m.
-    pub viscous_a_s_per_m: Estimate,
+    pub viscous_a_s_per_m: UncertainValue,
     /// Current by the tension when the tendon is pulled in and paid out, A/N.
-    pub pull_a_per_n: [Estimate; 2],
+    pub pull_a_per_n: [UncertainValue; 2],
 }
 
 impl MotorConstants {

@@ -4,7 +4,7 @@
 //! the way: a motor that is stopped does not turn back. The same travels tell how much the tendons stretch.
 
 use super::error::TuneError;
-use super::estimate::{Equation, Estimate, least_squares};
+use super::estimate::{Equation, UncertainValue, least_squares};
 use super::tuned_leg::TunedLeg;
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::State;
@@ -45,11 +45,11 @@ struct Way {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Travels {
     /// Play of the gears as travel of the tendon, m.
-    pub play_m: Estimate,
+    pub play_m: UncertainValue,
     /// Two mean tensions, N.
     pub tensions_n: [f64; 2],
     /// How much farther the motors have pulled in at the greater one, m: the tendons are stretched by it.
-    pub stretch_m: Estimate,
+    pub stretch_m: UncertainValue,
 }
 
 /// Whether two pretensions, N, are far enough from each other.

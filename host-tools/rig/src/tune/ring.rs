@@ -1,6 +1,6 @@
 //! The frequency of a decaying oscillation.
 
-use super::estimate::{Equation, Estimate, least_squares};
+use super::estimate::{Equation, UncertainValue, least_squares};
 use std::f64::consts::TAU;
 
 /// What is searched: frequencies, Hz, and rates of decay as a part of the angular frequency.
@@ -16,9 +16,9 @@ const CORRECTIONS: u32 = 20;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ring {
     /// The frequency without damping, Hz.
-    pub frequency_hz: Estimate,
+    pub frequency_hz: UncertainValue,
     /// Rate of decay as a part of the angular frequency.
-    pub damping: Estimate,
+    pub damping: UncertainValue,
     /// Amplitude at the start.
     pub amplitude: f64,
     /// What is left over, root mean square.
@@ -48,8 +48,8 @@ impl Ring {
         let noise = (points.iter().map(left).sum::<f64>() / points.len() as f64).sqrt();
         let found = angular > TAU * LOWEST_HZ && angular < TAU * HIGHEST_HZ && decay > 0.0;
         found.then_some(Self {
-            frequency_hz: Estimate::new(natural / TAU, angular_off / TAU),
-            damping: Estimate::new(decay / natural, decay_off / natural),
+            frequency_hz: UncertainValue::new(natural / TAU, angular_off / TAU),
+            damping: UncertainValue::new(decay / natural, decay_off / natural),
             amplitude: cosine.hypot(sine),
             noise,
             numbers,

@@ -1,7 +1,7 @@
 //! How the leg swings on its screws: the first mode at several pretensions.
 
 use super::error::TuneError;
-use super::estimate::Estimate;
+use super::estimate::UncertainValue;
 use super::play::{Travels, is_wide, measure_travels, stopped_n};
 use super::ring::Ring;
 use super::tuned_leg::TunedLeg;
@@ -75,7 +75,7 @@ pub struct Swing {
     /// The pretension, N.
     pub pretension_n: f64,
     /// The frequency without damping, Hz: the mean of both sides.
-    pub frequency_hz: Estimate,
+    pub frequency_hz: UncertainValue,
     /// The moment of the tendons against the tilt towards azimuth 0° over the time, (s, N·m).
     pub moments_nm: Vec<(f64, f64)>,
     /// The oscillation in it.
@@ -95,7 +95,7 @@ pub struct Swings {
     pub all: Vec<Swing>,
     /// The inertia with which the stiffnesses of the rig file give the frequencies, kg·m²; with those tendons whose stretch was
     /// measured where it was.
-    pub inertia_kg_m2: Estimate,
+    pub inertia_kg_m2: UncertainValue,
     /// Play and stretch; none where the pretensions are too close to each other.
     pub travels: Option<Travels>,
     /// The stretch by the rig file, m.
@@ -136,7 +136,7 @@ pub async fn measure_swing<L: TunedLeg>(
     leg.stop().await?;
     let stretched = travels
         .zip(configured_stretch_m)
-        .map_or(Estimate::new(1.0, 0.0), |(travels, configured_m)| {
+        .map_or(UncertainValue::new(1.0, 0.0), |(travels, configured_m)| {
             travels.stretch_m.scaled(configured_m.recip())
         });
     Ok(Swings {
@@ -285,7 +285,7 @@ fn tendons_nm_per_rad(pose: &Evaluation<f64>) -> f64 {
 }
 
 /// K/ω² on the mean, with tendons that stretch by so much of what the rig file says.
-fn inertia(all: &[Swing], stretched: Estimate) -> Estimate {
+fn inertia(all: &[Swing], stretched: UncertainValue) -> UncertainValue {
     let each: Vec<_> = all
         .iter()
         .map(|swing| {
@@ -296,5 +296,5 @@ fn inertia(all: &[Swing], stretched: Estimate) -> Estimate {
             )
         })
         .collect();
-    Estimate::of_repeated(&each).widened(stretched.part())
+    UncertainValue::mean_of_repeated(&each).widened(stretched.part())
 }

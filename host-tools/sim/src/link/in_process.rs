@@ -4,9 +4,9 @@ use super::{Link, LinkError};
 use leg_firmware::host_link::{BoardKind, Hello};
 use leg_firmware::recorder::Recorder;
 use leg_firmware::settings::Settings;
-use leg_firmware_bench::counter::Counter;
+use leg_firmware_bench::counter::InstructionCounter;
 use leg_firmware_bench::protocol::{BENCH_SCHEMA, BoardInfo, Reply, Request};
-use leg_firmware_bench::server::{Board, Server};
+use leg_firmware_bench::server::{BenchBoard, Server};
 
 /// The firmware's library in the host's own process. Requests go to it as they are, without frames.
 #[derive(Clone, Debug)]
@@ -40,13 +40,13 @@ impl Link for InProcess {
 #[derive(Clone, Debug)]
 struct ThisProcess;
 
-impl Counter for ThisProcess {
+impl InstructionCounter for ThisProcess {
     fn count<A, B>(&mut self, _kernel: fn(&A, &mut B), _input: &A, _output: &mut B) -> Option<u32> {
         None
     }
 }
 
-impl Board for ThisProcess {
+impl BenchBoard for ThisProcess {
     fn info(&self) -> BoardInfo {
         BoardInfo {
             board: BoardKind::InProcess,

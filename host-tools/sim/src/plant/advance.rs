@@ -55,12 +55,12 @@ impl Plant {
 
     /// What the drive and the defects make of motors and supply.
     fn wire(&mut self, drive: &Drive<f32>) {
-        let jammed = self.defects.each(Defect::MotorJammed);
-        let failed = self.defects.each(Defect::DriverFault);
-        let inwards = self.defects.each(Defect::HalfBridgeOpen);
-        let outwards = self.defects.each(Defect::HalfBridgeOpenOutwards);
-        let full = self.defects.each(Defect::DriverFullOn);
-        let stuck = self.defects.each(Defect::DirectionStuck);
+        let jammed = self.defects.affected(Defect::MotorJammed);
+        let failed = self.defects.affected(Defect::DriverFault);
+        let inwards = self.defects.affected(Defect::HalfBridgeOpen);
+        let outwards = self.defects.affected(Defect::HalfBridgeOpenOutwards);
+        let full = self.defects.affected(Defect::DriverFullOn);
+        let stuck = self.defects.affected(Defect::DirectionStuck);
         let apart = self.loose_plugs();
         for (i, motor) in self.motors.iter_mut().enumerate() {
             let asked = f64::from(drive.duty[i]).clamp(-1.0, 1.0);
@@ -87,7 +87,7 @@ impl Plant {
 
     /// Which motors' plugs make no contact.
     fn loose_plugs(&mut self) -> [bool; 3] {
-        let loose = self.defects.each(Defect::MotorIntermittent);
+        let loose = self.defects.affected(Defect::MotorIntermittent);
         if self.ticks.is_multiple_of(CONTACT_TICKS) && loose.contains(&true) {
             self.contacts = std::array::from_fn(|_| self.rng.bool());
         }
@@ -96,7 +96,7 @@ impl Plant {
 
     /// What gives way a little in every tick.
     fn creep(&mut self) {
-        let creeping = self.defects.each(Defect::TendonCreeps);
+        let creeping = self.defects.affected(Defect::TendonCreeps);
         for (unstretched_m, creeps) in self.unstretched_at_zero_m.iter_mut().zip(creeping) {
             *unstretched_m += if creeps {
                 CREEP_M_PER_S * tick_s()

@@ -151,7 +151,7 @@ impl Defects {
     }
 
     /// Which of the three have a kind of defect.
-    pub fn each(&self, kind: fn(usize) -> Defect) -> [bool; 3] {
+    pub fn affected(&self, kind: fn(usize) -> Defect) -> [bool; 3] {
         std::array::from_fn(|i| self.has(kind(i)))
     }
 }

@@ -37,7 +37,7 @@ impl LegState {
         if !support.twists() {
             return straight.twisted(&twist);
         }
-        straight.twisted(&twist.then(&Twist::from_torsion(self.torsion_rad)))
+        straight.twisted(&twist.composed(&Twist::from_torsion(self.torsion_rad)))
     }
 
     /// Turns on for `span_s` by the midpoint rule. Returns the kinetic energy that an impact at the stop takes, J.
@@ -81,7 +81,7 @@ fn limited_by_stop(along: &Vector3<f64>) -> (Direction<f64>, bool) {
         _ => {
             let scale = sine / libm::hypot(along.x, along.y);
             let held = Direction::from_xy(along.x * scale, along.y * scale);
-            (held.unwrap_or(Direction::down()), true)
+            (held.unwrap_or(Direction::straight_down()), true)
         }
     }
 }

@@ -50,7 +50,7 @@ impl Cells {
     /// Lets `span_s`, a tick, pass.
     pub fn advance(&mut self, span_s: f64, defects: &Defects) {
         self.defects.advance(defects);
-        let drifting = defects.each(Defect::CellDrifting);
+        let drifting = defects.affected(Defect::CellDrifting);
         for (offset, drifting) in self.offsets_n.iter_mut().zip(drifting) {
             let defect = if drifting { DRIFT_N_PER_S } else { 0.0 };
             *offset += (self.drift_n_per_s + defect) * span_s;

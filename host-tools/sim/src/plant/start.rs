@@ -129,7 +129,7 @@ impl Start {
 
 /// No support twists the leg that hangs straight down.
 fn slack(rig: &Rig<f64, 3>, slack_m: f64) -> Result<Started, Error> {
-    let down = Direction::down();
+    let down = Direction::straight_down();
     let lengths = inverse_kinematics(rig.geometry(), &down)?.lengths;
     Ok(Started {
         leg: LegState::at_rest(down, 0.0),

@@ -2,10 +2,10 @@
 
 use leg_model::{Elasticity, Error, Quantity, Reason, Tendon};
 
-/// Tension up to which a tendon of constant stiffness is asked, N.
+/// Tension up to which a tendon of constant stiffness is evaluated, N.
 const CONSTANT_END_N: f64 = 1e6;
 
-/// A tendon that answers every elongation: a simulated one must not fail where its tensile test ended.
+/// A tendon with a tension for every elongation: a simulated one must not fail where its tensile test ended.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RealTendon {
     tendon: Tendon<f64>,

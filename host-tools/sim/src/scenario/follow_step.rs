@@ -1,7 +1,7 @@
 //! Paths in time that a scenario has the leg follow.
 
 use crate::range;
-use leg_base::timed_path::{Row, TimedPath};
+use leg_base::timed_path::{PathRow, TimedPath};
 use serde::{Deserialize, Deserializer, de::Error};
 
 /// The most rows of a path.
@@ -52,7 +52,7 @@ impl CircleStep {
         let rows: Vec<_> = (0..=count.max(2))
             .map(|i| {
                 let time_s = f64::from(i) / self.points_per_s;
-                Row::from_angles(time_s, 360.0 * time_s / self.period_s, self.tilt_deg)
+                PathRow::from_angles(time_s, 360.0 * time_s / self.period_s, self.tilt_deg)
             })
             .collect();
         TimedPath::new(&rows)
@@ -88,7 +88,7 @@ fn path<'de, D: Deserializer<'de>>(deserializer: D) -> Result<TimedPath, D::Erro
     }
     let rows: Vec<_> = rows
         .into_iter()
-        .map(|[time_s, azimuth_deg, tilt_deg]| Row::from_angles(time_s, azimuth_deg, tilt_deg))
+        .map(|[time_s, azimuth_deg, tilt_deg]| PathRow::from_angles(time_s, azimuth_deg, tilt_deg))
         .collect();
     Ok(TimedPath::new(&rows))
 }

@@ -13,7 +13,7 @@ use strum::VariantNames;
 pub enum TestStep {
     /// Sends so many random bytes to the leg.
     Garbage(#[serde(deserialize_with = "range::garbage")] u32),
-    /// Stops the host's signs of life, or lets them go on.
+    /// Stops the host's keep-alives, or lets them go on.
     Silence(bool),
     /// Waits, s.
     WaitS(#[serde(deserialize_with = "range::wait_s")] f64),

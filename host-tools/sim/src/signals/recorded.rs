@@ -14,7 +14,7 @@ fn three(row: &RecorderRow, signal: RecordedSignal) -> [f64; 3] {
 
 /// Time since the fault, s; not a number where a host has ended the recording.
 fn since_fault_s(row: &RecorderRow) -> f64 {
-    row.since_fault()
+    row.ticks_since_fault()
         .map_or(f64::NAN, |ticks| f64::from(ticks) * tick_s())
 }
 

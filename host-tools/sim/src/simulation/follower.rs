@@ -28,7 +28,7 @@ impl Follower {
         Ok(Self { sender, ends })
     }
 
-    /// Sends what is due; whether the path is over and, if its last point was told, the leg rests.
+    /// Sends what is due; whether the path is over and, if its last point was marked as that, the leg rests.
     pub fn advance(&mut self, stand: &mut TestStand<'_>) -> Result<bool, SimulationError> {
         let Some(telemetry) = stand.leg.telemetry().copied() else {
             return Ok(false);
@@ -40,10 +40,10 @@ impl Follower {
         for command in self.sender.due(&telemetry) {
             stand.send(&command)?;
         }
-        if let Some(at) = self.sender.at(time_s) {
+        if let Some(at) = self.sender.motion(time_s) {
             stand.compare_with(&at);
         }
-        let over = self.sender.over(time_s);
+        let over = self.sender.is_over(time_s);
         if over {
             stand.forget_commanded();
         }

@@ -102,7 +102,7 @@ impl<'a> Sequencer<'a> {
             TestStep::WaitS(time_s) => stand.leg.time_s() - self.began_s >= *time_s,
             TestStep::Await { state, timeout_s } => {
                 let there = stand.leg.state() == *state;
-                self.in_time(there, description::state(*state), *timeout_s, stand)?
+                self.check_timeout(there, description::state(*state), *timeout_s, stand)?
             }
             TestStep::Follow(step) => self.follow(|| step.rows.clone(), step.ends, stand)?,
             TestStep::Circle(step) => self.follow(|| step.path(), true, stand)?,
@@ -148,10 +148,10 @@ impl<'a> Sequencer<'a> {
         } else {
             self.follower = Some(follower);
         }
-        self.in_time(done, "the end of the path", FOLLOW_TIMEOUT_S, stand)
+        self.check_timeout(done, "the end of the path", FOLLOW_TIMEOUT_S, stand)
     }
 
-    fn in_time(
+    fn check_timeout(
         &self,
         there: bool,
         what: &str,
@@ -183,7 +183,7 @@ impl<'a> Sequencer<'a> {
             self.arrived_s.get_or_insert(now_s);
         }
         let done = self.arrived_s.is_some_and(|at_s| now_s - at_s >= then_s);
-        self.in_time(done, "the end of the move", timeout_s + then_s, stand)
+        self.check_timeout(done, "the end of the move", timeout_s + then_s, stand)
     }
 
     /// Measures the time to a fault, once it is seen, and to the state that it leads to.
@@ -202,7 +202,7 @@ impl<'a> Sequencer<'a> {
             stand.record(&name, (value_ms, "ms"), [0.0, within_ms], None);
         }
         let timeout_s = REACTION_TIMEOUT_S + within_ms / 1000.0;
-        self.in_time(there, name, timeout_s, stand)
+        self.check_timeout(there, name, timeout_s, stand)
     }
 
     /// Pushes across the leg and compares the moment with the angle.

@@ -44,7 +44,7 @@ pub enum SimulationError {
 
 /// One measured value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Measurement {
+pub struct ScenarioMeasurement {
     /// What it is.
     pub name: String,
     /// Its value.
@@ -61,7 +61,7 @@ pub struct Measurement {
     pub compensated: bool,
 }
 
-impl Measurement {
+impl ScenarioMeasurement {
     /// Whether the value is where it must be.
     #[must_use]
     pub fn passes(&self) -> bool {
@@ -84,7 +84,7 @@ pub struct Sample {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Summary {
     /// What was measured.
-    pub measurements: Vec<Measurement>,
+    pub measurements: Vec<ScenarioMeasurement>,
     /// Why it ended before its last step, if it did.
     pub stopped: Option<String>,
     /// Ticks.
@@ -120,7 +120,7 @@ impl Summary {
     #[must_use]
     pub fn passes(&self) -> bool {
         self.stopped.is_none()
-            && self.measurements.iter().all(Measurement::passes)
+            && self.measurements.iter().all(ScenarioMeasurement::passes)
             && self.unexpected.is_empty()
             && self.divergence.stays()
     }

@@ -2,7 +2,7 @@
 
 use super::extremes::{Extremes, NO_RANGE, range_with_tensions};
 use super::follow_error::FollowError;
-use super::{Comparison, Measurement, Sample, SimulationError, Summary};
+use super::{Comparison, Sample, ScenarioMeasurement, SimulationError, Summary};
 use crate::emulated_leg::EmulatedLeg;
 use crate::hosted_leg::HostedLeg;
 use crate::link::Link;
@@ -110,7 +110,7 @@ impl<'a> TestStand<'a> {
         quantity: Option<Measurand>,
     ) {
         let at_s = self.leg.time_s();
-        self.summary.measurements.push(Measurement {
+        self.summary.measurements.push(ScenarioMeasurement {
             name: name.into(),
             value,
             unit,

@@ -6,11 +6,11 @@ pub use sequence::Group;
 
 use super::clock::{ConverterClock, LIMIT_HZ};
 use super::inputs::AnalogueInputs;
-use super::places::Places;
+use super::places::AdcPlaces;
 use super::rules::{Busy, Rules};
 use crate::device::{Context, FieldPlace, RegisterFile};
 use crate::facts::Block;
-use sequence::Run;
+use sequence::RunningSequence;
 
 /// What a converter sees of its group and of the board.
 #[derive(Clone, Copy)]
@@ -30,7 +30,7 @@ pub struct Surroundings<'a> {
 pub struct Converter {
     /// What the registers keep.
     pub(super) file: RegisterFile,
-    pub(super) places: Places,
+    pub(super) places: AdcPlaces,
     rules: Rules,
     /// The cycle in which the regulator was switched on.
     pub(super) regulator: Option<u64>,
@@ -43,7 +43,7 @@ pub struct Converter {
     /// The cycle in which the converter is ready.
     pub(super) ready: Option<u64>,
     /// Regular and injected.
-    pub(super) runs: [Option<Run>; 2],
+    pub(super) runs: [Option<RunningSequence>; 2],
 }
 
 impl Converter {
@@ -55,7 +55,7 @@ impl Converter {
     pub fn new(block: &'static Block) -> Self {
         let file = RegisterFile::new(block);
         Self {
-            places: Places::new(&file),
+            places: AdcPlaces::new(&file),
             rules: Rules::new(&file),
             file,
             regulator: None,

@@ -14,7 +14,7 @@ const TRIGGER: &str = "TIM1_TRGO2";
 const INJECTED_TRIGGER: &str = "ADC_JEXT_TRG";
 
 /// What gives a group's kernel clock.
-pub type Kernel = fn(&Clocks) -> u32;
+pub type KernelClock = fn(&Clocks) -> u32;
 
 /// Converters with common registers.
 #[derive(Clone, Debug)]
@@ -33,7 +33,7 @@ pub struct ConverterGroup {
     unreached: Vec<&'static str>,
     /// The name of their interrupt.
     pub interrupt: &'static str,
-    kernel: Kernel,
+    kernel: KernelClock,
 }
 
 impl ConverterGroup {
@@ -42,7 +42,7 @@ impl ConverterGroup {
         facts: &'static Facts,
         common: &str,
         names: &[&'static str],
-        (interrupt, kernel): (&'static str, Kernel),
+        (interrupt, kernel): (&'static str, KernelClock),
     ) -> Option<Self> {
         let common = RegisterFile::new(facts.block(common)?);
         let blocks = names.iter().filter_map(|name| facts.block(name));

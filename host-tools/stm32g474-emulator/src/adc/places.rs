@@ -12,7 +12,7 @@ const INPUTS_OF_DIFFERENTIAL: u8 = 18;
 places! {
     /// Registers and fields of a converter.
     #[derive(Clone, Debug)]
-    pub struct Places {
+    pub struct AdcPlaces {
         /// The interrupts' enables in IER have the places of these.
         flags: ISR,
         interrupts: IER,
@@ -53,7 +53,7 @@ places! {
     }
 }
 
-impl Places {
+impl AdcPlaces {
     /// The sampling time of an input (`SMPx`).
     #[must_use]
     pub fn sampling(&self, input: u8) -> Option<FieldPlace> {

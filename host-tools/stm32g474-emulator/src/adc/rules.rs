@@ -224,7 +224,7 @@ mod tests {
 
     #[test]
     fn every_field_and_register_is_kept_where_the_manual_says() {
-        let file = RegisterFile::new(Facts::of_chip().block("ADC1").unwrap());
+        let file = RegisterFile::new(Facts::chip().block("ADC1").unwrap());
         for (busy, forbidden, cause) in STATES {
             let expected = |when: &While, text: String| -> Vec<String> {
                 let text = format!("ADC1_{text} while {cause}");
@@ -255,7 +255,7 @@ mod tests {
     fn every_unmodelled_function_is_found() {
         for (register, fields) in UNMODELLED {
             for field in fields {
-                let mut file = RegisterFile::new(Facts::of_chip().block("ADC1").unwrap());
+                let mut file = RegisterFile::new(Facts::chip().block("ADC1").unwrap());
                 file.set_value(file.field(register, field), 1);
                 let mut findings = Findings::default();
                 let mut context = Context {

@@ -3,7 +3,7 @@
 mod mistakes;
 
 use super::*;
-use crate::bench::{BOARD_CLOCKS, Bench};
+use crate::bench::{BOARD_CLOCKS, DeviceBench};
 use crate::device::Device;
 use crate::facts::Block;
 
@@ -24,7 +24,7 @@ impl AnalogueInputs for Inputs {
 
 /// The converters behind one block's registers.
 struct Board {
-    converters: Converters,
+    converters: AdcConverters,
     block: &'static str,
     inputs: Inputs,
 }
@@ -55,7 +55,7 @@ impl Device for Board {
     }
 }
 
-fn bench() -> Bench<Board> {
+fn bench() -> DeviceBench<Board> {
     let inputs = vec![
         ("ADC1", 6, 1_003),
         ("ADC1", 7, 65_520),
@@ -65,8 +65,8 @@ fn bench() -> Bench<Board> {
         ("ADC2", 4, 4_095),
         ("ADC3", 1, 47_001),
     ];
-    let mut bench = Bench::new("ADC1", |_: &'static Block| Board {
-        converters: Converters::new(Facts::of_chip()),
+    let mut bench = DeviceBench::new("ADC1", |_: &'static Block| Board {
+        converters: AdcConverters::new(Facts::chip()),
         block: "ADC1",
         inputs: Inputs(inputs),
     });
@@ -75,13 +75,13 @@ fn bench() -> Bench<Board> {
     bench
 }
 
-fn select(bench: &mut Bench<Board>, block: &'static str) {
+fn select(bench: &mut DeviceBench<Board>, block: &'static str) {
     bench.device.block = block;
     bench.select(block);
 }
 
 /// As embassy-stm32 brings a converter up.
-fn bring_up(bench: &mut Bench<Board>, common: &'static str, name: &'static str) {
+fn bring_up(bench: &mut DeviceBench<Board>, common: &'static str, name: &'static str) {
     select(bench, common);
     bench.set("CCR", &[("PRESC", 2)]);
     select(bench, name);
@@ -103,7 +103,7 @@ fn bring_up(bench: &mut Bench<Board>, common: &'static str, name: &'static str) 
 }
 
 /// As the image sets up its injected sequences, up to their start.
-fn wait_for_timer(bench: &mut Bench<Board>, name: &'static str, inputs: [u32; 3]) {
+fn wait_for_timer(bench: &mut DeviceBench<Board>, name: &'static str, inputs: [u32; 3]) {
     bring_up(bench, "ADC12_COMMON", name);
     bench.set("CFGR2", &[("JOVSE", 1)]);
     for input in inputs {
@@ -121,7 +121,7 @@ fn wait_for_timer(bench: &mut Bench<Board>, name: &'static str, inputs: [u32; 3]
     bench.set("IER", &[("JEOSIE", u32::from(name == "ADC1"))]);
 }
 
-fn board() -> Bench<Board> {
+fn board() -> DeviceBench<Board> {
     let mut bench = bench();
     wait_for_timer(&mut bench, "ADC2", [17, 3, 4]);
     bench.set("CR", &[("JADSTART", 1)]);
@@ -129,7 +129,7 @@ fn board() -> Bench<Board> {
     bench
 }
 
-fn trigger(bench: &mut Bench<Board>) {
+fn trigger(bench: &mut DeviceBench<Board>) {
     let cycle = bench.cycle;
     bench.act(|board, context| board.converters.trigger(cycle, &board.inputs, context));
 }

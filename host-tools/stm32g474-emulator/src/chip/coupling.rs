@@ -1,6 +1,6 @@
 //! The processor and what answers it.
 
-use crate::bus::{Answers, Bus, Shared};
+use crate::bus::{Answers, Bus, BusShared};
 use crate::image::Image;
 use crate::memory_map::{DEBUG, PERIPHERALS, SECOND_BANK};
 use crate::peripherals::Peripherals;
@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex};
 pub(super) struct Coupled {
     pub processor: Processor,
     pub peripherals: Arc<Mutex<Peripherals>>,
-    pub shared: Arc<Shared>,
+    pub shared: Arc<BusShared>,
 }
 
 /// Couples an image's processor to peripherals.
@@ -20,7 +20,7 @@ pub(super) struct Coupled {
 /// [`MapError`]: a fault of this program.
 pub(super) fn couple(image: &Image, peripherals: Peripherals) -> Result<Coupled, MapError> {
     let peripherals = Arc::new(Mutex::new(peripherals));
-    let shared = Arc::new(Shared::default());
+    let shared = Arc::new(BusShared::default());
     let bus = |start, answers| {
         Arc::new(Bus {
             start,

@@ -2,7 +2,7 @@
 
 use super::Chip;
 use crate::devices::SystemBreak;
-use crate::rcc::ResetCause;
+use crate::rcc::ResetFlag;
 
 /// The supply below which the datasheet promises nothing, mV.
 const SUPPLY_MIN_MV: u32 = 1_710;
@@ -39,7 +39,7 @@ impl Chip {
         if lowest_mv < RAM_KEPT_MV {
             self.processor.scramble_ram(seed);
         }
-        self.reset(ResetCause::BrownOut);
+        self.reset(ResetFlag::BrownOut);
         true
     }
 

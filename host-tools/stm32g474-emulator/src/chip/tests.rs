@@ -54,7 +54,7 @@ fn chip(instruction: u16) -> Chip {
 
 /// Reads a register, sets a field, writes it: what was there before.
 fn set(chip: &Chip, block: &str, register: &str, field: &str, value: u32) -> u32 {
-    let block = Facts::of_chip().block(block).unwrap();
+    let block = Facts::chip().block(block).unwrap();
     let register = block.register(register).unwrap();
     let (offset, mask) = (register.offset, register.field(field).unwrap().mask);
     let place = FieldPlace { offset, mask };
@@ -191,7 +191,7 @@ fn an_interrupt_that_is_asked_for_and_not_enabled_is_found() {
 fn a_write_to_a_protected_page_of_the_ccm_is_found() {
     let mut chip = chip(STAY);
     set(&chip, "RCC", "APB2ENR", "SYSCFGEN", 1);
-    let syscfg = Facts::of_chip().block("SYSCFG").unwrap();
+    let syscfg = Facts::chip().block("SYSCFG").unwrap();
     let protection = syscfg.base + syscfg.register("SWPR").unwrap().offset;
     chip.peripherals().write(protection, 4, 0b10);
     run(&mut chip, 100);
@@ -209,7 +209,7 @@ fn a_write_to_a_protected_page_of_the_ccm_is_found() {
 fn a_reset_ends_the_protection_of_the_ccm() {
     let mut chip = chip(STAY);
     set(&chip, "RCC", "APB2ENR", "SYSCFGEN", 1);
-    let syscfg = Facts::of_chip().block("SYSCFG").unwrap();
+    let syscfg = Facts::chip().block("SYSCFG").unwrap();
     let protection = syscfg.base + syscfg.register("SWPR").unwrap().offset;
     chip.peripherals().write(protection, 4, u32::MAX);
     run(&mut chip, 100);
@@ -223,7 +223,7 @@ fn a_reset_ends_the_protection_of_the_ccm() {
 fn a_reset_tells_where_the_program_was() {
     let mut chip = chip(STAY);
     run(&mut chip, 100);
-    chip.reset(ResetCause::Pin);
+    chip.reset(ResetFlag::Pin);
     assert_eq!(chip.place().0.pc, START);
     run(&mut chip, 100);
     assert_eq!(chip.place().0, chip.processor().place());

@@ -82,7 +82,7 @@ impl Unserved {
 }
 
 fn name(number: u16) -> &'static str {
-    Facts::of_chip()
+    Facts::chip()
         .interrupt_name(number)
         .unwrap_or("without a name")
 }

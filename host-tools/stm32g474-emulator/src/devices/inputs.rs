@@ -29,7 +29,7 @@ impl AnalogueInputs for Inputs<'_> {
         if (converter, input) == REFERENCE_INPUT {
             return Some(self.reference);
         }
-        let pin = Facts::of_chip().converter_pin(converter, input)?;
+        let pin = Facts::chip().converter_pin(converter, input)?;
         let port = self.ports.iter().find(|p| p.pin(0).port == pin.port)?;
         if port.mode(pin.number) != PinMode::Analogue {
             return None;

@@ -31,7 +31,7 @@ impl Devices {
     /// The pin that the image has given to a peripheral's signal.
     #[must_use]
     pub fn pin_of(&self, peripheral: &str, signal: &str) -> Option<Pin> {
-        let facts = Facts::of_chip();
+        let facts = Facts::chip();
         self.ports.iter().find_map(|port| {
             (0..16).map(|number| port.pin(number)).find(|pin| {
                 matches!(port.mode(pin.number), PinMode::Alternate(function)
@@ -71,7 +71,7 @@ impl Devices {
     pub fn is_routed(&self, pin: Pin, peripheral: &str, signal: &str) -> bool {
         let mode = self.port(pin).map(|port| port.mode(pin.number));
         matches!(mode, Some(PinMode::Alternate(function))
-            if Facts::of_chip().alternate_function(pin, function).contains(&(peripheral, signal)))
+            if Facts::chip().alternate_function(pin, function).contains(&(peripheral, signal)))
     }
 
     /// Whether a pin that the chip drives is let go of where it should be high.

@@ -3,7 +3,7 @@
 use stm32_metapac::metadata::ir::{self, Array, BitOffset, BlockItem, BlockItemInner, IR};
 use stm32_metapac::metadata::{METADATA, Peripheral, PeripheralRccRegister};
 
-use super::{Access, Block, Field, Register, Switch, description};
+use super::{Access, Block, Register, RegisterField, Switch, description};
 
 /// All blocks, by rising address.
 pub fn blocks() -> Vec<Block> {
@@ -69,7 +69,7 @@ fn switch(place: &PeripheralRccRegister) -> Option<Switch> {
 fn collect_views(
     ir: &'static IR,
     name: &str,
-    names: &[description::Register],
+    names: &[description::DescribedRegister],
     prefix: &str,
     base: u32,
     views: &mut Vec<Register>,
@@ -143,7 +143,7 @@ fn view(
 }
 
 /// The bits of the fields; all where there are none.
-pub fn known(fields: &[Field], bits: u32) -> u32 {
+pub fn known(fields: &[RegisterField], bits: u32) -> u32 {
     let union = fields.iter().fold(0, |bits, field| bits | field.mask);
     if union == 0 { mask(0, bits) } else { union }
 }
@@ -203,14 +203,14 @@ fn set_fields(ir: &'static IR, name: &str) -> Vec<&'static ir::Field> {
     fields
 }
 
-fn fields(ir: &'static IR, set: &str, names: &[&(&str, u32)]) -> Vec<Field> {
+fn fields(ir: &'static IR, set: &str, names: &[&(&str, u32)]) -> Vec<RegisterField> {
     let mut fields = Vec::new();
     for field in set_fields(ir, set) {
         let stem = field.name.to_uppercase();
         let mut array = Vec::new();
         for (number, shift) in places(field.array.as_ref(), 0) {
             let name = number.map_or(stem.clone(), |number| format!("{stem}{number}"));
-            array.push(Field {
+            array.push(RegisterField {
                 name_by_st: name.clone(),
                 name,
                 mask: field_mask(field) << shift,
@@ -231,10 +231,10 @@ fn fields(ir: &'static IR, set: &str, names: &[&(&str, u32)]) -> Vec<Field> {
 
 /// Gives an array's fields the names that ST's description gives to their places, if those are the array's with numbers
 /// that rise.
-fn name_by_st(stem: &str, array: &mut [Field], names: &[&(&str, u32)]) {
+fn name_by_st(stem: &str, array: &mut [RegisterField], names: &[&(&str, u32)]) {
     // Where a field is in two parts, the description has them as two fields: the lower one has the name.
     let lowest = |mask: u32| mask & mask.wrapping_neg();
-    let named = |field: &Field| {
+    let named = |field: &RegisterField| {
         let mut names = names
             .iter()
             .filter(|(_, mask)| lowest(*mask) == lowest(field.mask));

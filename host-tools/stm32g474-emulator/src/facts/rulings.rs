@@ -2,10 +2,10 @@
 //!
 //! "ST's C header" is `stm32g474xx.h` of cmsis-device-g4, a third description, by hand.
 
-use super::Field;
+use super::RegisterField;
 
 /// Names by ST and masks of fields.
-pub type Fields = &'static [(&'static str, u32)];
+pub type RulingFields = &'static [(&'static str, u32)];
 
 /// One of the sources.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +22,7 @@ pub enum Holds {
     /// What one source has.
     Of(Source),
     /// Neither.
-    Fields(Fields),
+    Fields(RulingFields),
 }
 
 /// What holds for some fields of a register.
@@ -30,8 +30,8 @@ pub struct Ruling {
     pub blocks: &'static [&'static str],
     /// As ST calls it.
     pub register: &'static str,
-    pub metapac: Fields,
-    pub described: Fields,
+    pub metapac: RulingFields,
+    pub described: RulingFields,
     pub holds: Holds,
     #[cfg_attr(not(test), expect(dead_code, reason = "for readers"))]
     pub reason: &'static str,
@@ -49,7 +49,7 @@ pub struct Complete {
 }
 
 impl Ruling {
-    pub fn is_about(&self, fields: Fields, field: &Field) -> bool {
+    pub fn is_about(&self, fields: RulingFields, field: &RegisterField) -> bool {
         fields.contains(&(field.name_by_st.as_str(), field.mask))
     }
 }
@@ -73,7 +73,7 @@ macro_rules! rulings {
 const fn ruling(
     blocks: &'static [&'static str],
     register: &'static str,
-    [metapac, described]: [Fields; 2],
+    [metapac, described]: [RulingFields; 2],
     holds: Holds,
     reason: &'static str,
 ) -> Ruling {

@@ -5,7 +5,7 @@
 use super::description;
 use super::metadata::{known, view_name};
 use super::rulings::{Holds, RESETS, RULINGS, Ruling, Source, complete_source};
-use super::{Access, Block, Field, Register};
+use super::{Access, Block, Register, RegisterField};
 
 /// A difference that neither a rule nor a ruling settles; what both sources say is kept then.
 #[derive(Debug, PartialEq, Eq)]
@@ -96,11 +96,11 @@ fn add_reset_values(register: &mut Register) {
 }
 
 /// The register of its described views.
-fn merged(views: &[description::Register]) -> Option<Register> {
+fn merged(views: &[description::DescribedRegister]) -> Option<Register> {
     let first = views.first()?;
     let read = views.iter().any(|view| view.read);
     let write = views.iter().any(|view| view.write);
-    let mut fields: Vec<Field> = Vec::new();
+    let mut fields: Vec<RegisterField> = Vec::new();
     for &(name, mask) in views.iter().flat_map(|view| view.fields) {
         if !fields
             .iter()
@@ -125,8 +125,8 @@ fn merged(views: &[description::Register]) -> Option<Register> {
     })
 }
 
-fn field(name: &str, mask: u32) -> Field {
-    Field {
+fn field(name: &str, mask: u32) -> RegisterField {
+    RegisterField {
         name: name.to_owned(),
         name_by_st: name.to_owned(),
         mask,
@@ -138,13 +138,14 @@ fn field(name: &str, mask: u32) -> Field {
 fn settle_fields(
     block: &'static str,
     register: &str,
-    mut ours: Vec<Field>,
-    mut theirs: Vec<Field>,
-) -> (Vec<Field>, Option<Unsettled>) {
+    mut ours: Vec<RegisterField>,
+    mut theirs: Vec<RegisterField>,
+) -> (Vec<RegisterField>, Option<Unsettled>) {
     let all_ours = ours.clone();
     let all_theirs = theirs.clone();
-    let same =
-        |one: &Field, other: &Field| one.name_by_st == other.name_by_st && one.mask == other.mask;
+    let same = |one: &RegisterField, other: &RegisterField| {
+        one.name_by_st == other.name_by_st && one.mask == other.mask
+    };
     let mut settled = take(&mut ours, |field| {
         all_theirs.iter().any(|other| same(field, other))
     });
@@ -193,26 +194,32 @@ fn settle_fields(
     (settled, unsettled)
 }
 
-fn places(fields: &[Field]) -> Vec<(String, u32)> {
+fn places(fields: &[RegisterField]) -> Vec<(String, u32)> {
     fields
         .iter()
         .map(|field| (field.name_by_st.clone(), field.mask))
         .collect()
 }
 
-fn union(fields: &[Field]) -> u32 {
+fn union(fields: &[RegisterField]) -> u32 {
     fields.iter().fold(0, |union, field| union | field.mask)
 }
 
-fn take(fields: &mut Vec<Field>, which: impl FnMut(&Field) -> bool) -> Vec<Field> {
+fn take(
+    fields: &mut Vec<RegisterField>,
+    which: impl FnMut(&RegisterField) -> bool,
+) -> Vec<RegisterField> {
     let mut which = which;
     fields.extract_if(.., |field| which(field)).collect()
 }
 
 /// The fields that the other source has in parts; the parts are dropped.
-fn take_wholes(fields: &mut Vec<Field>, parts: &mut Vec<Field>) -> Vec<Field> {
+fn take_wholes(
+    fields: &mut Vec<RegisterField>,
+    parts: &mut Vec<RegisterField>,
+) -> Vec<RegisterField> {
     take(fields, |whole| {
-        let within = |part: &Field| part.mask & !whole.mask == 0;
+        let within = |part: &RegisterField| part.mask & !whole.mask == 0;
         let found: Vec<_> = parts.iter().filter(|part| within(part)).cloned().collect();
         let mut names = found.iter().map(|part| &part.name_by_st);
         let is_whole = found.len() > 1
@@ -224,7 +231,7 @@ fn take_wholes(fields: &mut Vec<Field>, parts: &mut Vec<Field>) -> Vec<Field> {
 }
 
 /// Whether the other source knows nothing of a field: neither its bits nor its name at another place.
-fn is_lacking(field: &Field, others: &[Field]) -> bool {
+fn is_lacking(field: &RegisterField, others: &[RegisterField]) -> bool {
     let named = others
         .iter()
         .any(|other| other.name_by_st == field.name_by_st);
@@ -233,10 +240,10 @@ fn is_lacking(field: &Field, others: &[Field]) -> bool {
 
 /// What ST calls a field of the same bits, if neither name is at another place in the other source.
 fn other_name(
-    field: &Field,
-    theirs: &[Field],
-    all_ours: &[Field],
-    all_theirs: &[Field],
+    field: &RegisterField,
+    theirs: &[RegisterField],
+    all_ours: &[RegisterField],
+    all_theirs: &[RegisterField],
 ) -> Option<String> {
     let other = theirs.iter().find(|other| other.mask == field.mask)?;
     let moved = all_ours.iter().any(|ours| ours.name_by_st == other.name)

@@ -2,7 +2,7 @@
 
 /// The rates of the bus, bit/s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Bus {
+pub struct CanBus {
     /// Of arbitration.
     pub nominal_hz: u32,
     /// Of the data of frames that switch their rate.
@@ -11,7 +11,7 @@ pub struct Bus {
 
 /// How a transmission ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum TransmitOutcome {
     /// Some node acknowledged it, and none objected.
     Acknowledged,
     /// Nobody heard it.

@@ -11,7 +11,7 @@ const TAIL_BITS: u64 = 1 + 1 + 7 + 3;
 
 /// A data frame with a standard identifier.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Frame {
+pub struct DataFrame {
     /// 11 bits.
     pub identifier: u16,
     /// CAN FD; else classic.
@@ -74,7 +74,7 @@ impl Row {
     }
 }
 
-impl Frame {
+impl DataFrame {
     /// The length code: the smallest that holds the payload.
     #[must_use]
     pub fn length_code(&self) -> u32 {

@@ -3,7 +3,7 @@
 //! What the bits of an element mean is taken from embassy-stm32's `can/fd/message_ram`; ST's own driver
 //! (stm32g4xx_hal_fdcan.c) has the same masks.
 
-use super::frame::{Frame, length};
+use super::frame::{DataFrame, length};
 
 /// Words in an element of a receive FIFO and of a transmit buffer: two of head, 16 of data.
 pub const ELEMENT: usize = 18;
@@ -38,7 +38,7 @@ pub struct Buffer {
 
 /// What a standard filter does with an identifier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Action {
+pub struct FilterAction {
     /// 0 or 1; none where the frame is rejected.
     pub fifo: Option<usize>,
     /// A message of high priority.
@@ -64,7 +64,7 @@ pub fn buffer(words: &[u32]) -> Buffer {
 }
 
 /// The element of a receive FIFO for a frame; `filter` is the number of the filter that let it in.
-pub fn received(frame: &Frame, stamp: u16, filter: Option<usize>) -> Vec<u32> {
+pub fn received(frame: &DataFrame, stamp: u16, filter: Option<usize>) -> Vec<u32> {
     let flag = |is_set, bit| if is_set { bit } else { 0 };
     let by = filter.map_or(NO_FILTER, |number| (number as u32) << FILTER_SHIFT);
     let second = u32::from(stamp)
@@ -81,7 +81,7 @@ pub fn received(frame: &Frame, stamp: u16, filter: Option<usize>) -> Vec<u32> {
 }
 
 /// What a standard filter's word does with an identifier; none where it does not match.
-pub fn filter(word: u32, identifier: u16) -> Option<Action> {
+pub fn filter(word: u32, identifier: u16) -> Option<FilterAction> {
     let identifier = u32::from(identifier);
     let first = word >> 16 & 0x7ff;
     let second = word & 0x7ff;
@@ -97,7 +97,7 @@ pub fn filter(word: u32, identifier: u16) -> Option<Action> {
         2 | 6 => Some(1),
         _ => None,
     };
-    let action = Action {
+    let action = FilterAction {
         fifo,
         priority: (4..=6).contains(&kind),
     };

@@ -5,7 +5,7 @@ use crate::device::{FieldPlace, RegisterFile, places};
 places! {
     /// Offsets of the registers that do something.
     #[derive(Clone, Debug)]
-    pub struct Offsets {
+    pub struct FdcanOffsets {
         test: TEST,
         cccr: CCCR,
         tscv: TSCV,
@@ -38,7 +38,7 @@ places! {
 places! {
     /// Fields of the settings.
     #[derive(Clone, Debug)]
-    pub struct Settings {
+    pub struct FdcanSettings {
         init: CCCR.INIT,
         change: CCCR.CCE,
         stop_request: CCCR.CSR,
@@ -91,7 +91,7 @@ fn timing(file: &RegisterFile, register: &str, fields: [&str; 3]) -> Timing {
 places! {
     /// Fields of what it shows.
     #[derive(Clone, Debug)]
-    pub struct Flags {
+    pub struct FdcanFlags {
         fill: RXF0S.FFL,
         get: RXF0S.FGI,
         put: RXF0S.FPI,

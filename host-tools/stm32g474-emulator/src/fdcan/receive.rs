@@ -1,8 +1,8 @@
 //! From the bus to the FIFOs.
 
 use super::errors::Kind;
-use super::frame::Frame;
-use super::memory::{self, Action, ELEMENT};
+use super::frame::DataFrame;
+use super::memory::{self, ELEMENT, FilterAction};
 use super::timing::same_rate;
 use super::{Fdcan, Reception};
 use crate::device::Context;
@@ -12,7 +12,7 @@ const FILTERS_MAX: u32 = 28;
 
 impl Fdcan {
     /// A frame of another node ends on the bus: what this node says to it.
-    pub fn bus_receive(&mut self, frame: &Frame, context: &mut Context<'_>) -> Reception {
+    pub fn bus_receive(&mut self, frame: &DataFrame, context: &mut Context<'_>) -> Reception {
         self.settle(context);
         if !self.takes_part() {
             return Reception::Absent;
@@ -51,7 +51,7 @@ impl Fdcan {
     }
 
     /// Says why a frame cannot be understood.
-    fn report_refused(&self, frame: &Frame, unknown: bool, context: &mut Context<'_>) {
+    fn report_refused(&self, frame: &DataFrame, unknown: bool, context: &mut Context<'_>) {
         let own = self.rates(context.clocks);
         if unknown {
             context
@@ -77,7 +77,7 @@ impl Fdcan {
     }
 
     /// Puts a frame where the filters say.
-    fn accept(&mut self, frame: &Frame, context: &mut Context<'_>) {
+    fn accept(&mut self, frame: &DataFrame, context: &mut Context<'_>) {
         let count = self.registers.value(self.settings.standard_filters);
         if count > FILTERS_MAX {
             context.findings.add(format!(
@@ -101,13 +101,13 @@ impl Fdcan {
     }
 
     /// What happens to a frame that no filter matches: RM0440, FDCAN_RXGFC, ANFS.
-    fn otherwise(&self) -> Action {
+    fn otherwise(&self) -> FilterAction {
         let fifo = match self.registers.value(self.settings.other_standard) {
             0 => Some(0),
             1 => Some(1),
             _ => None,
         };
-        Action {
+        FilterAction {
             fifo,
             priority: false,
         }
@@ -117,7 +117,7 @@ impl Fdcan {
     fn put(
         &mut self,
         fifo: usize,
-        frame: &Frame,
+        frame: &DataFrame,
         filter: Option<usize>,
         context: &Context<'_>,
     ) -> Option<u32> {
@@ -139,7 +139,7 @@ impl Fdcan {
     }
 
     /// HPMS.
-    fn show_priority(&mut self, filter: Option<usize>, action: Action, stored: Option<u32>) {
+    fn show_priority(&mut self, filter: Option<usize>, action: FilterAction, stored: Option<u32>) {
         let f = &self.flags;
         let storage = match (action.fifo, stored) {
             (None, _) => 0,

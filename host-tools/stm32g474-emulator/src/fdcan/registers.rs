@@ -139,7 +139,7 @@ impl Fdcan {
 
     /// Whether protected registers may be written.
     fn is_open(&self) -> bool {
-        let places::Settings { init, change, .. } = self.settings;
+        let places::FdcanSettings { init, change, .. } = self.settings;
         self.registers.is_set(init) && self.registers.is_set(change)
     }
 

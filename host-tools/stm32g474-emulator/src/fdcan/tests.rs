@@ -4,11 +4,11 @@
 
 mod mistakes;
 
-use super::{Bus, Fdcan, Frame, Outcome, Reception};
-use crate::bench::Bench;
+use super::{CanBus, DataFrame, Fdcan, Reception, TransmitOutcome};
+use crate::bench::DeviceBench;
 use crate::device::Device;
 
-const BUS: Bus = Bus {
+const BUS: CanBus = CanBus {
     nominal_hz: 1_000_000,
     data_hz: 5_000_000,
 };
@@ -17,8 +17,8 @@ const BIT: u64 = 170;
 const OWN: u16 = 0x123;
 
 /// On the bus, with one filter for [`OWN`] into FIFO 0.
-fn open() -> Bench<Fdcan> {
-    let mut bench = Bench::new("FDCAN2", |_| Fdcan::new(BUS));
+fn open() -> DeviceBench<Fdcan> {
+    let mut bench = DeviceBench::new("FDCAN2", |_| Fdcan::new(BUS));
     bench.cycle = 0;
     bench.put("CCCR", &[("INIT", 1)]);
     bench.put("CCCR", &[("INIT", 1), ("CCE", 1)]);
@@ -46,7 +46,7 @@ fn open() -> Bench<Fdcan> {
     bench
 }
 
-impl Bench<Fdcan> {
+impl DeviceBench<Fdcan> {
     fn memory(&mut self, offset: u32, value: u32) {
         self.act(|node, context| node.write_memory(offset, value, context));
     }
@@ -72,7 +72,7 @@ impl Bench<Fdcan> {
         self.write("TXBAR", 1 << buffer);
     }
 
-    fn end(&mut self, outcome: Outcome) {
+    fn end(&mut self, outcome: TransmitOutcome) {
         self.act(|node, context| node.take_transmission(context))
             .unwrap();
         self.act(|node, context| node.transmission_ends(outcome, context));
@@ -88,8 +88,8 @@ impl Bench<Fdcan> {
     }
 }
 
-fn frame(identifier: u16) -> Frame {
-    Frame {
+fn frame(identifier: u16) -> DataFrame {
+    DataFrame {
         identifier,
         fd: true,
         bit_rate_switch: true,
@@ -121,7 +121,7 @@ fn a_frame_leaves_with_its_rates_and_ends_with_an_interrupt() {
     assert_eq!(sent, Some(frame(OWN)));
     assert_eq!(bench.device.wants(), None);
     assert_eq!(bench.get("PSR", "ACT"), 3);
-    bench.act(|node, context| node.transmission_ends(Outcome::Acknowledged, context));
+    bench.act(|node, context| node.transmission_ends(TransmitOutcome::Acknowledged, context));
     assert_eq!(bench.read("TXBTO"), 1);
     assert_eq!(bench.read("TXBRP"), 0);
     assert_eq!(bench.device.interrupt_lines(), [true, false]);
@@ -143,7 +143,7 @@ fn three_frames_wait_in_order_and_are_taken_back() {
     bench.act(|node, context| node.take_transmission(context));
     bench.write("TXBCR", 7);
     assert_eq!(bench.read("TXBRP"), 1);
-    bench.act(|node, context| node.transmission_ends(Outcome::Unacknowledged, context));
+    bench.act(|node, context| node.transmission_ends(TransmitOutcome::Unacknowledged, context));
     assert_eq!(bench.get("TXFQS", "TFFL"), 3);
     assert_eq!(bench.read("TXBCF"), 7);
     assert_eq!(bench.device.wants(), None);
@@ -197,14 +197,14 @@ fn a_node_alone_becomes_passive_and_one_with_bad_wires_goes_off_and_comes_back()
     let mut bench = open();
     bench.send(OWN, &[0; 12]);
     for _ in 0..40 {
-        bench.end(Outcome::Unacknowledged);
+        bench.end(TransmitOutcome::Unacknowledged);
     }
     assert_eq!(bench.get("ECR", "TEC"), 128);
     assert_eq!(bench.get("PSR", "LEC"), 3);
     assert_eq!(bench.get("PSR", "LEC"), 7);
     assert_eq!((bench.get("PSR", "EP"), bench.get("PSR", "BO")), (1, 0));
     for _ in 0..16 {
-        bench.end(Outcome::Disturbed);
+        bench.end(TransmitOutcome::Disturbed);
     }
     assert_eq!(bench.get("PSR", "BO"), 1);
     assert_eq!(bench.get("CCCR", "INIT"), 1);
@@ -222,7 +222,7 @@ fn a_node_alone_becomes_passive_and_one_with_bad_wires_goes_off_and_comes_back()
 
 #[test]
 fn a_frame_takes_the_bits_of_the_standard() {
-    let alternating = |fd, length| Frame {
+    let alternating = |fd, length| DataFrame {
         identifier: 0x555,
         fd,
         bit_rate_switch: fd,

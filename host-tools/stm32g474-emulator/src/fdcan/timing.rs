@@ -1,8 +1,8 @@
 //! The timing of its bits, and whether it is that of the bus.
 
-use super::frame::Frame;
+use super::frame::DataFrame;
 use super::places::Timing;
-use super::{Bus, Fdcan};
+use super::{CanBus, Fdcan};
 use crate::clocks::Clocks;
 use crate::device::Context;
 
@@ -29,10 +29,10 @@ pub fn same_rate(one: u32, other: u32) -> bool {
     u64::from(one.abs_diff(other)) * 1_000_000 <= u64::from(other) * TOLERANCE_PPM
 }
 
-impl Bus {
+impl CanBus {
     /// Whether a frame has its rates.
     #[must_use]
-    pub fn carries(&self, frame: &Frame) -> bool {
+    pub fn carries(&self, frame: &DataFrame) -> bool {
         same_rate(frame.nominal_hz, self.nominal_hz)
             && (!frame.bit_rate_switch || same_rate(frame.data_hz, self.data_hz))
     }
@@ -83,7 +83,7 @@ impl Fdcan {
     }
 
     /// Reports what makes a frame of its own fail.
-    pub(super) fn check_own(&self, frame: &Frame, context: &mut Context<'_>) {
+    pub(super) fn check_own(&self, frame: &DataFrame, context: &mut Context<'_>) {
         if !self.bus.carries(frame) {
             self.report_rates([frame.nominal_hz, frame.data_hz], context);
         }

@@ -2,9 +2,9 @@
 
 use super::errors::Kind;
 use super::fifo::DEPTH;
-use super::frame::Frame;
+use super::frame::DataFrame;
 use super::memory::{self, Buffer, ELEMENT, EVENT};
-use super::{Fdcan, Outcome};
+use super::{Fdcan, TransmitOutcome};
 use crate::device::Context;
 
 /// What the requests and their ends look like to the processor, a bit for each buffer.
@@ -137,9 +137,9 @@ impl Fdcan {
         self.next_buffer().map(|(_, buffer)| buffer.identifier)
     }
 
-    /// Begins to send, where it won the arbitration: the frame, which the bus carries for [`Frame::duration_ns`] and
+    /// Begins to send, where it won the arbitration: the frame, which the bus carries for [`DataFrame::duration_ns`] and
     /// ends by [`Self::transmission_ends`].
-    pub fn take_transmission(&mut self, context: &mut Context<'_>) -> Option<Frame> {
+    pub fn take_transmission(&mut self, context: &mut Context<'_>) -> Option<DataFrame> {
         let (index, buffer) = self.next_buffer()?;
         if buffer.unknown {
             context.findings.add(format!(
@@ -154,7 +154,7 @@ impl Fdcan {
         let [nominal_hz, data_hz] = self.rates(context.clocks);
         let mut payload = buffer.payload;
         payload.truncate(if fd { payload.len() } else { 8 });
-        let frame = Frame {
+        let frame = DataFrame {
             identifier: buffer.identifier,
             fd,
             bit_rate_switch: switch,
@@ -185,15 +185,15 @@ impl Fdcan {
     }
 
     /// The frame that it sent has ended.
-    pub fn transmission_ends(&mut self, outcome: Outcome, context: &mut Context<'_>) {
+    pub fn transmission_ends(&mut self, outcome: TransmitOutcome, context: &mut Context<'_>) {
         let Some(index) = self.sending.take() else {
             return;
         };
         let bit = 1 << index;
         match outcome {
-            Outcome::Acknowledged => self.sent(index, context),
-            Outcome::Unacknowledged => self.failed(bit, Kind::Acknowledge),
-            Outcome::Disturbed => self.failed(bit, Kind::Bit1),
+            TransmitOutcome::Acknowledged => self.sent(index, context),
+            TransmitOutcome::Unacknowledged => self.failed(bit, Kind::Acknowledge),
+            TransmitOutcome::Disturbed => self.failed(bit, Kind::Bit1),
         }
         if self.requests.cancelling & bit != 0 {
             self.give_up(bit);

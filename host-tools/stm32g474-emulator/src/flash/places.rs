@@ -9,7 +9,7 @@ const ERRORS: [&str; 7] = [
 places! {
     /// Offsets of the registers.
     #[derive(Clone, Debug)]
-    pub struct Offsets {
+    pub struct FlashOffsets {
         acr: ACR,
         pdkeyr: PDKEYR,
         keyr: KEYR,
@@ -23,7 +23,7 @@ places! {
 places! {
     /// Fields of ACR and CR.
     #[derive(Clone, Debug)]
-    pub struct Settings {
+    pub struct FlashSettings {
         latency: ACR.LATENCY,
         data_cache: ACR.DCEN,
         data_cache_reset: ACR.DCRST,
@@ -49,7 +49,7 @@ places! {
 places! {
     /// Flags of SR and ECCR, and the option byte DBANK.
     #[derive(Clone, Debug)]
-    pub struct Flags {
+    pub struct FlashFlags {
         end: SR.EOP,
         operation_error: SR.OPERR,
         not_erased: SR.PROGERR,

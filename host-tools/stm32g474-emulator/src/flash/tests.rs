@@ -4,22 +4,22 @@
 
 use super::Flash;
 use super::array::START;
-use crate::bench::Bench;
+use crate::bench::DeviceBench;
 use crate::device::Device;
 use crate::memory_map::BANK_SIZE;
 
 const PAGE: u32 = START + 0x7_c000;
 const MS: u64 = 170_000;
 
-fn bench(dual_bank: bool, seed: u64) -> Bench<Flash> {
-    let mut bench = Bench::new("FLASH", |_| Flash::new(dual_bank, 0, seed));
+fn bench(dual_bank: bool, seed: u64) -> DeviceBench<Flash> {
+    let mut bench = DeviceBench::new("FLASH", |_| Flash::new(dual_bank, 0, seed));
     bench.cycle = 0;
     // A reset leaves the caches on.
     bench.write("ACR", 0);
     bench
 }
 
-impl Bench<Flash> {
+impl DeviceBench<Flash> {
     fn word(&mut self, address: u32, value: u32) {
         self.act(|flash, context| flash.write_array(address, 4, value, context));
     }
@@ -120,7 +120,7 @@ fn an_erase_takes_22_ms_and_only_its_page() {
 
 #[test]
 fn mistakes_are_found() {
-    type Mistake = fn(&mut Bench<Flash>);
+    type Mistake = fn(&mut DeviceBench<Flash>);
     let cases: &[(&str, Mistake)] = &[
         (
             "FLASH: 0x0807c000 is written while FLASH_CR is locked",

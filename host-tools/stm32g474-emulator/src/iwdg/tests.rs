@@ -1,18 +1,18 @@
 //! The watchdog as the board starts and refreshes it, and mistakes.
 
 use super::*;
-use crate::bench::{BOARD_CLOCKS, Bench};
+use crate::bench::{BOARD_CLOCKS, DeviceBench};
 use crate::clocks::LSI_HZ;
 
 const MS: u64 = 170_000;
 
-fn bench() -> Bench<Iwdg> {
-    let mut bench = Bench::new("IWDG", |_| Iwdg::new(LSI_HZ));
+fn bench() -> DeviceBench<Iwdg> {
+    let mut bench = DeviceBench::new("IWDG", |_| Iwdg::new(LSI_HZ));
     bench.cycle = 0;
     bench
 }
 
-fn write(bench: &mut Bench<Iwdg>, writes: &[(&str, u32)]) {
+fn write(bench: &mut DeviceBench<Iwdg>, writes: &[(&str, u32)]) {
     for (register, value) in writes {
         bench.write(register, *value);
     }

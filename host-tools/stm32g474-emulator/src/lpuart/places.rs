@@ -5,7 +5,7 @@ use crate::device::{RegisterFile, places};
 places! {
     /// Offsets of the registers.
     #[derive(Clone, Debug)]
-    pub struct Offsets {
+    pub struct LpuartOffsets {
         cr1: CR1,
         cr2: CR2,
         cr3: CR3,
@@ -22,7 +22,7 @@ places! {
 places! {
     /// Fields of the control registers.
     #[derive(Clone, Debug)]
-    pub struct Settings {
+    pub struct LpuartSettings {
         enable: CR1.UE,
         receive: CR1.RE,
         transmit: CR1.TE,
@@ -49,7 +49,7 @@ places! {
 
 /// Fields of ISR.
 #[derive(Clone, Debug)]
-pub struct Flags {
+pub struct LpuartFlags {
     pub framing: u32,
     pub noise: u32,
     pub overrun: u32,
@@ -70,7 +70,7 @@ pub struct Flags {
     pub interrupts: Vec<(u32, usize, u32)>,
 }
 
-impl Flags {
+impl LpuartFlags {
     pub fn new(file: &RegisterFile) -> Self {
         let isr = |name| file.field("ISR", name).mask;
         let clear = |name| (isr(name), file.field("ICR", name).mask);

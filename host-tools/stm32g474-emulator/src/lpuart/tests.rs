@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use super::{Lpuart, Sent};
-use crate::bench::Bench;
+use crate::bench::DeviceBench;
 use crate::device::Device;
 
 const BAUD: u32 = 921_600;
@@ -12,12 +12,12 @@ const BRR: u32 = 47_222;
 /// Ten bits at that rate, in cycles, rounded up.
 const CHARACTER: u64 = 1845;
 /// As after a reset.
-fn closed() -> Bench<Lpuart> {
-    Bench::new("LPUART1", |_| Lpuart::new())
+fn closed() -> DeviceBench<Lpuart> {
+    DeviceBench::new("LPUART1", |_| Lpuart::new())
 }
 
 /// As the driver of the board opens it.
-fn open(brr: u32) -> Bench<Lpuart> {
+fn open(brr: u32) -> DeviceBench<Lpuart> {
     let mut bench = closed();
     bench.write("BRR", brr);
     bench.write("CR2", 0);
@@ -27,13 +27,13 @@ fn open(brr: u32) -> Bench<Lpuart> {
     bench
 }
 
-fn send(bench: &mut Bench<Lpuart>, bytes: &[u8], baud: u32) {
+fn send(bench: &mut DeviceBench<Lpuart>, bytes: &[u8], baud: u32) {
     for byte in bytes {
         bench.act(|line, context| line.host_send(*byte, baud, context));
     }
 }
 
-impl Bench<Lpuart> {
+impl DeviceBench<Lpuart> {
     fn flag(&mut self, name: &str) -> bool {
         self.get("ISR", name) != 0
     }
@@ -137,7 +137,7 @@ fn another_rate_damages_bytes_in_both_directions_and_is_named() {
 
 #[test]
 fn mistakes_are_found() {
-    type Mistake = fn(&mut Bench<Lpuart>);
+    type Mistake = fn(&mut DeviceBench<Lpuart>);
     let cases: &[(&str, Mistake)] = &[
         ("LPUART1_BRR: 0x2ff is outside of 0x300 to 0xfffff", |b| {
             *b = closed();

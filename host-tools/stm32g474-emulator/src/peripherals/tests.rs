@@ -11,7 +11,7 @@ use clock_tree::{CLOCK_TREE, SPEEDS};
 struct Bus(Peripherals);
 
 fn block(name: &str) -> &'static Block {
-    Facts::of_chip().block(name).unwrap()
+    Facts::chip().block(name).unwrap()
 }
 
 fn register(block: &'static Block, name: &str) -> &'static Register {

@@ -5,7 +5,7 @@ use crate::device::places;
 places! {
     /// Fields by their makers' names.
     #[derive(Clone, Copy, Debug)]
-    pub struct Fields {
+    pub struct RccFields {
         hsi_on: CR.HSION,
         hsi_ready: CR.HSIRDY,
         hse_on: CR.HSEON,

@@ -28,7 +28,7 @@ pub struct BreakInput {
 impl BreakInput {
     /// The inputs `BKIN` and `BKIN2`, low.
     #[must_use]
-    pub fn both(file: &RegisterFile) -> [Self; 2] {
+    pub fn pair(file: &RegisterFile) -> [Self; 2] {
         [("AF1", "BK", 0), ("AF2", "BK2", 1)].map(|(routing, name, index)| Self {
             through: file.field(routing, &format!("{name}INE")),
             inverted: file.field(routing, &format!("{name}INP")),

@@ -1,12 +1,12 @@
 use super::*;
-use crate::bench::Bench;
+use crate::bench::DeviceBench;
 
-fn bench() -> Bench<Tim1> {
-    Bench::new("TIM1", Tim1::new)
+fn bench() -> DeviceBench<Tim1> {
+    DeviceBench::new("TIM1", Tim1::new)
 }
 
 /// As the image sets it up, running, its outputs off and its pins at rest.
-fn board() -> Bench<Tim1> {
+fn board() -> DeviceBench<Tim1> {
     let mut bench = bench();
     bench.act(|timer, context| timer.set_break_input(0, true, context));
     bench.set("CR1", &[("CMS", 1), ("ARPE", 1)]);
@@ -41,7 +41,7 @@ fn board() -> Bench<Tim1> {
     bench
 }
 
-fn set_pin(bench: &mut Bench<Tim1>, input: usize, level: bool) {
+fn set_pin(bench: &mut DeviceBench<Tim1>, input: usize, level: bool) {
     bench.act(|timer, context| timer.set_break_input(input, level, context));
 }
 

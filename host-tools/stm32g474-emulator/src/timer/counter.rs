@@ -3,7 +3,7 @@
 /// Counts up, down, or up and down in turn. What it does between two turns is a half; where it counts in one direction
 /// only, each round is one.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Counter {
+pub struct TimerCounter {
     /// `CEN`.
     running: bool,
     /// It counts up and down in turn.
@@ -20,7 +20,7 @@ pub struct Counter {
     held: i64,
 }
 
-impl Counter {
+impl TimerCounter {
     /// Ticks of a half; 0 if the top keeps it from counting.
     #[must_use]
     pub fn half(&self) -> u64 {
@@ -164,11 +164,11 @@ fn signed(ticks: u64) -> i64 {
 mod tests {
     use super::*;
 
-    fn counter(centre: bool, prescaler: u32, top: u32) -> Counter {
-        let mut counter = Counter {
+    fn counter(centre: bool, prescaler: u32, top: u32) -> TimerCounter {
+        let mut counter = TimerCounter {
             centre,
             prescaler,
-            ..Counter::default()
+            ..TimerCounter::default()
         };
         counter.set_top(top, 0);
         counter.run(true, 0);
@@ -176,7 +176,7 @@ mod tests {
     }
 
     /// What it shows in a tick, by turning as often as it has to.
-    fn shown_count(mut counter: Counter, tick: u64) -> u32 {
+    fn shown_count(mut counter: TimerCounter, tick: u64) -> u32 {
         while counter.end().is_some_and(|end| end <= tick) {
             counter.turn();
         }

@@ -21,7 +21,7 @@ pub struct Channel {
 places! {
     /// Registers and fields.
     #[derive(Clone, Copy, Debug)]
-    pub struct Places {
+    pub struct TimerPlaces {
         control: CR1,
         status: SR,
         events: EGR,
@@ -65,7 +65,7 @@ fn optional(file: &RegisterFile, register: &str, field: &str) -> FieldPlace {
 /// is. (Those of TIM15 number the first channel's fields and name the second's.)
 fn common(file: &RegisterFile, register: &str, field: &str) -> FieldPlace {
     let own = optional(file, register, field);
-    let model = Facts::of_chip().block("TIM1").filter(|_| own.mask == 0);
+    let model = Facts::chip().block("TIM1").filter(|_| own.mask == 0);
     model.map_or(own, |block| RegisterFile::new(block).field(register, field))
 }
 

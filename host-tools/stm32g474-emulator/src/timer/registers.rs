@@ -1,7 +1,7 @@
 //! The registers around a counter that every timer has: control, prescaler, top, compare values, flags, events.
 
-use super::counter::Counter;
-use super::places::{Channel, Places};
+use super::counter::TimerCounter;
+use super::places::{Channel, TimerPlaces};
 use super::timebase::Timebase;
 use crate::clocks::Clocks;
 use crate::device::{Context, RegisterFile};
@@ -13,10 +13,10 @@ pub struct Timer {
     /// What the registers keep.
     pub file: RegisterFile,
     /// The counter.
-    pub counter: Counter,
+    pub counter: TimerCounter,
     /// Its clock.
     pub time: Timebase,
-    places: Places,
+    places: TimerPlaces,
     channels: Vec<Channel>,
     /// Halves before the one that ends with an update.
     repetitions: u32,
@@ -37,12 +37,12 @@ impl Timer {
     pub fn new(block: &'static Block, channels: u32, clock: fn(&Clocks) -> u32) -> Self {
         let file = RegisterFile::new(block);
         let mut timer = Self {
-            places: Places::new(&file),
+            places: TimerPlaces::new(&file),
             channels: (0..channels)
                 .map(|index| Channel::new(&file, index))
                 .collect(),
             file,
-            counter: Counter::default(),
+            counter: TimerCounter::default(),
             time: Timebase::default(),
             repetitions: 0,
             known: 0,
@@ -56,7 +56,7 @@ impl Timer {
     /// As after a reset; the clock counts on.
     pub fn reset(&mut self) {
         self.file.reset();
-        self.counter = Counter::default();
+        self.counter = TimerCounter::default();
         self.repetitions = 0;
         self.update = None;
         self.take_preloads();

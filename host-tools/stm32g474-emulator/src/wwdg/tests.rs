@@ -1,7 +1,7 @@
 //! The watchdog as the board starts and refreshes it, and mistakes.
 
 use super::Wwdg;
-use crate::bench::Bench;
+use crate::bench::DeviceBench;
 use crate::device::Device;
 
 /// Cycles of 170 MHz in a step of the counter, without a prescaler.
@@ -10,8 +10,8 @@ const STEP: u64 = 4_096;
 /// Active, with the highest count.
 const REFRESH: u32 = 0xff;
 
-fn bench() -> Bench<Wwdg> {
-    Bench::new("WWDG", Wwdg::new)
+fn bench() -> DeviceBench<Wwdg> {
+    DeviceBench::new("WWDG", Wwdg::new)
 }
 
 #[test]

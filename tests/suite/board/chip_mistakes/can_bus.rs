@@ -1,6 +1,6 @@
 //! A chip that is leg 1 on a CAN bus, and a host there that asks it what it is.
 
-use crate::common::chip_bus::{on_bus, started_on_can, with_node};
+use crate::common::chip_bus::{bus_frame, started_on_can, with_node};
 use leg_firmware::can::{CanFrame, Identifier, LegAddress, Segmenter};
 use leg_firmware::frame::{self, MAX_FRAME};
 use leg_firmware::host_link::{HOST_SCHEMA, Hello, HostRequest};
@@ -8,7 +8,7 @@ use std::error::Error;
 use std::path::Path;
 use stm32g474_emulator::chip::Chip;
 use stm32g474_emulator::facts::Facts;
-use stm32g474_emulator::fdcan::{Outcome, Reception};
+use stm32g474_emulator::fdcan::{Reception, TransmitOutcome};
 
 /// Ticks after which the chip takes part in the bus: 5 ms.
 const BOOT_TICKS: usize = 40;
@@ -37,7 +37,7 @@ pub fn asked(image: &Path) -> Result<(), Box<dyn Error>> {
         chip.run(chip.cycle() + STEP);
         let answer = with_node(chip, |node, context| {
             let frame = node.take_transmission(context)?;
-            node.transmission_ends(Outcome::Acknowledged, context);
+            node.transmission_ends(TransmitOutcome::Acknowledged, context);
             Some(frame)
         });
         found(chip)?;
@@ -60,7 +60,7 @@ fn question(leg: LegAddress) -> CanFrame {
 
 /// A frame comes over the bus, as the board's documents have it: 1 Mbit/s, and 5 Mbit/s for data.
 fn hear(chip: &mut Chip, frame: &CanFrame) -> Result<(), Box<dyn Error>> {
-    let frame = on_bus(frame);
+    let frame = bus_frame(frame);
     let said = with_node(chip, |node, context| node.bus_receive(&frame, context));
     found(chip)?;
     match said {
@@ -71,7 +71,7 @@ fn hear(chip: &mut Chip, frame: &CanFrame) -> Result<(), Box<dyn Error>> {
 
 /// Whether the first receive FIFO holds a frame.
 fn waiting(chip: &Chip) -> bool {
-    let block = Facts::of_chip().block("FDCAN2").unwrap();
+    let block = Facts::chip().block("FDCAN2").unwrap();
     let status = block.register("RXF0S").unwrap();
     let value = chip.peripherals().read(block.base + status.offset, 4);
     status.field("FFL").unwrap().value(value) > 0

@@ -134,7 +134,7 @@ fn play(scenario: &str, image: &Path) -> Result<(), Box<dyn Error>> {
 fn save(image: &Path, board: Board) -> Result<(), Box<dyn Error>> {
     let rig = RigFile::load(None).unwrap();
     // A new board: an image that looks for its settings elsewhere finds none there, as it would on the right one.
-    let session = ChipSession::open(image)?.on_board(board).with_flash(&[]);
+    let session = ChipSession::open(image)?.with_board(board).with_flash(&[]);
     let session = Box::new(session);
     let leg = EmulatedLeg::new(&rig, InitialState::Slack, session)?;
     let line = Box::new(EmulatedLine::new(leg, "the leg on the chip").connect());

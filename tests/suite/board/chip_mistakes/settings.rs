@@ -12,9 +12,9 @@ const PLACE: &str = "= FLASH_SIZE - 0x4000..FLASH_SIZE;";
 mistakes! {
     flash_not_unlocked: Mistake {
         file: FLASH,
-        right: "        Self::in_two_banks()?;\n        self.0.write(",
+        right: "        Self::require_two_banks()?;\n        self.0.write(",
         // A wrong key locks the flash until the next reset.
-        wrong: "        Self::in_two_banks()?;
+        wrong: "        Self::require_two_banks()?;
         pac::FLASH.keyr().write_value(0);
         self.0.write(",
         run: saving,

@@ -46,7 +46,7 @@ fn update(older: &Path) -> Result<String, Box<dyn Error>> {
     for cut_us in CUTS_US {
         let mut session = started(&newer, &kept)?;
         let chip = session.chip().ok_or("no chip")?;
-        let end = after_cut(chip, &newest, cut_us)
+        let end = settings_after_cut(chip, &newest, cut_us)
             .map_err(|error| format!("newer image, cut after {cut_us} us: {error}"))?;
         ends[usize::from(end == (newest.clone(), false))] += 1;
         if end != first && end != (newest.clone(), false) {
@@ -96,7 +96,7 @@ fn kept_by(image: &Path, cut_us: Option<u64>) -> Result<Vec<u8>, Box<dyn Error>>
             reply_to_save(chip)?;
         }
         Some(cut_us) => {
-            after_cut(chip, &other, cut_us)?;
+            settings_after_cut(chip, &other, cut_us)?;
         }
     }
     let peripherals = chip.peripherals();
@@ -115,7 +115,11 @@ fn reply_to_save(chip: &mut Chip) -> Result<(), Box<dyn Error>> {
 }
 
 /// Settings are saved, and the power fails after a time: what the chip then uses.
-fn after_cut(chip: &mut Chip, settings: &Settings, cut_us: u64) -> Result<Used, Box<dyn Error>> {
+fn settings_after_cut(
+    chip: &mut Chip,
+    settings: &Settings,
+    cut_us: u64,
+) -> Result<Used, Box<dyn Error>> {
     set_and_save(chip, settings)?;
     let end = chip.cycle() + cut_us * MS / 1_000;
     while chip.cycle() < end {

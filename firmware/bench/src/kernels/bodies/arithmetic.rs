@@ -1,15 +1,15 @@
 //! Square root, sine and cosine.
 
-use super::{Bench, Body};
+use super::{KernelArguments, KernelBody};
 use leg_model::{Error, Scalar};
 
-pub struct SquareRoot;
+pub struct SquareRootKernel;
 
-impl<T: Scalar> Body<T> for SquareRoot {
+impl<T: Scalar> KernelBody<T> for SquareRootKernel {
     type Output = T;
 
     #[inline(always)]
-    fn run(bench: &Bench<T>) -> Result<T, Error> {
+    fn run(bench: &KernelArguments<T>) -> Result<T, Error> {
         Ok(bench.angle.abs().sqrt())
     }
 
@@ -18,13 +18,13 @@ impl<T: Scalar> Body<T> for SquareRoot {
     }
 }
 
-pub struct SinCos;
+pub struct SinCosKernel;
 
-impl<T: Scalar> Body<T> for SinCos {
+impl<T: Scalar> KernelBody<T> for SinCosKernel {
     type Output = (T, T);
 
     #[inline(always)]
-    fn run(bench: &Bench<T>) -> Result<(T, T), Error> {
+    fn run(bench: &KernelArguments<T>) -> Result<(T, T), Error> {
         Ok(bench.angle.sin_cos())
     }
 

@@ -1,15 +1,15 @@
 //! The full pass, on a ball joint and in a plane.
 
-use super::{Bench, Body};
+use super::{KernelArguments, KernelBody};
 use leg_model::{Deflection, Error, Scalar, Symmetric3};
 
-pub struct FullPass;
+pub struct FullPassKernel;
 
-impl<T: Scalar> Body<T> for FullPass {
+impl<T: Scalar> KernelBody<T> for FullPassKernel {
     type Output = leg_model::FullPass<T, 3>;
 
     #[inline(always)]
-    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+    fn run(bench: &KernelArguments<T>) -> Result<Self::Output, Error> {
         Ok(leg_model::full_pass(
             &bench.rig,
             &bench.direction,
@@ -27,13 +27,13 @@ impl<T: Scalar> Body<T> for FullPass {
     }
 }
 
-pub struct FullPassInPlane;
+pub struct FullPassInPlaneKernel;
 
-impl<T: Scalar> Body<T> for FullPassInPlane {
+impl<T: Scalar> KernelBody<T> for FullPassInPlaneKernel {
     type Output = leg_model::FullPass<T, 3>;
 
     #[inline(always)]
-    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+    fn run(bench: &KernelArguments<T>) -> Result<Self::Output, Error> {
         Ok(leg_model::full_pass_in_plane(
             &bench.rig,
             &bench.direction,

@@ -1,15 +1,15 @@
 //! Inverse and forward kinematics.
 
-use super::{Bench, Body};
+use super::{KernelArguments, KernelBody};
 use leg_model::{Error, Scalar};
 
-pub struct InverseKinematics;
+pub struct InverseKinematicsKernel;
 
-impl<T: Scalar> Body<T> for InverseKinematics {
+impl<T: Scalar> KernelBody<T> for InverseKinematicsKernel {
     type Output = leg_model::Kinematics<T, 3>;
 
     #[inline(always)]
-    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+    fn run(bench: &KernelArguments<T>) -> Result<Self::Output, Error> {
         leg_model::inverse_kinematics(bench.rig.geometry(), &bench.direction)
     }
 
@@ -19,13 +19,13 @@ impl<T: Scalar> Body<T> for InverseKinematics {
     }
 }
 
-pub struct ForwardKinematics;
+pub struct ForwardKinematicsKernel;
 
-impl<T: Scalar> Body<T> for ForwardKinematics {
+impl<T: Scalar> KernelBody<T> for ForwardKinematicsKernel {
     type Output = leg_model::ForwardKinematics<T>;
 
     #[inline(always)]
-    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+    fn run(bench: &KernelArguments<T>) -> Result<Self::Output, Error> {
         leg_model::forward_kinematics(bench.rig.geometry(), &bench.lengths, &bench.start)
     }
 
@@ -34,13 +34,13 @@ impl<T: Scalar> Body<T> for ForwardKinematics {
     }
 }
 
-pub struct ForwardKinematicsUniversal;
+pub struct ForwardKinematicsUniversalKernel;
 
-impl<T: Scalar> Body<T> for ForwardKinematicsUniversal {
+impl<T: Scalar> KernelBody<T> for ForwardKinematicsUniversalKernel {
     type Output = leg_model::ForwardKinematics<T>;
 
     #[inline(always)]
-    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+    fn run(bench: &KernelArguments<T>) -> Result<Self::Output, Error> {
         leg_model::forward_kinematics_universal(
             bench.rig.geometry(),
             &bench.lengths_universal,

@@ -2,12 +2,12 @@
 
 use super::full_pass::{push_deflection, push_symmetric};
 use super::kinematics::push_found;
-use super::{Bench, Body};
+use super::{KernelArguments, KernelBody};
 use leg_model::{Deflection, Elasticity, Error, Scalar, Symmetric3};
 use nalgebra::{SVector, Vector3};
 
 /// The model's part of a tick, as one kernel.
-pub struct ModelTick;
+pub struct ModelTickKernel;
 
 /// What the model's part of a tick computes.
 pub struct TickOutput<T> {
@@ -19,11 +19,11 @@ pub struct TickOutput<T> {
     unstretched: SVector<T, 3>,
 }
 
-impl<T: Scalar> Body<T> for ModelTick {
+impl<T: Scalar> KernelBody<T> for ModelTickKernel {
     type Output = TickOutput<T>;
 
     #[inline(always)]
-    fn run(bench: &Bench<T>) -> Result<TickOutput<T>, Error> {
+    fn run(bench: &KernelArguments<T>) -> Result<TickOutput<T>, Error> {
         let found =
             leg_model::forward_kinematics(bench.rig.geometry(), &bench.lengths, &bench.start)?;
         let pass = leg_model::full_pass(&bench.rig, &found.direction, &bench.load, &bench.states);

@@ -1,16 +1,16 @@
 //! Tensions, tendons with curves, inverse statics and stiffness on command.
 
-use super::{Bench, Body};
+use super::{KernelArguments, KernelBody};
 use leg_model::{BendingAxis, Elasticity, Error, HoldError, Scalar, StiffnessAnswer};
 use nalgebra::SVector;
 
-pub struct Distribution;
+pub struct DistributionKernel;
 
-impl<T: Scalar> Body<T> for Distribution {
+impl<T: Scalar> KernelBody<T> for DistributionKernel {
     type Output = (leg_model::Distribution<T, 3>, SVector<T, 3>);
 
     #[inline(always)]
-    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+    fn run(bench: &KernelArguments<T>) -> Result<Self::Output, Error> {
         let map = &bench.kinematics.moment_map;
         let distribution = leg_model::distribute(map, &bench.plane, &bench.moment, &bench.bounds)?;
         Ok((distribution, distribution.tensions(bench.pretension)))
@@ -30,13 +30,13 @@ impl<T: Scalar> Body<T> for Distribution {
 }
 
 /// Elongation and stiffness of the first tendon at the pretension.
-pub struct TendonCurve;
+pub struct TendonCurveKernel;
 
-impl<T: Scalar> Body<T> for TendonCurve {
+impl<T: Scalar> KernelBody<T> for TendonCurveKernel {
     type Output = [T; 2];
 
     #[inline(always)]
-    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+    fn run(bench: &KernelArguments<T>) -> Result<Self::Output, Error> {
         let [curve, ..] = &bench.curves;
         Ok([
             curve.elongation(bench.pretension)?,
@@ -49,13 +49,13 @@ impl<T: Scalar> Body<T> for TendonCurve {
     }
 }
 
-pub struct InverseStatics;
+pub struct InverseStaticsKernel;
 
-impl<T: Scalar> Body<T> for InverseStatics {
+impl<T: Scalar> KernelBody<T> for InverseStaticsKernel {
     type Output = leg_model::Hold<T, 3>;
 
     #[inline(always)]
-    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+    fn run(bench: &KernelArguments<T>) -> Result<Self::Output, Error> {
         leg_model::inverse_statics_in_plane(
             bench.rig.geometry(),
             &bench.plane,
@@ -77,13 +77,13 @@ impl<T: Scalar> Body<T> for InverseStatics {
     }
 }
 
-pub struct StiffnessCommand;
+pub struct StiffnessCommandKernel;
 
-impl<T: Scalar> Body<T> for StiffnessCommand {
+impl<T: Scalar> KernelBody<T> for StiffnessCommandKernel {
     type Output = StiffnessAnswer<T>;
 
     #[inline(always)]
-    fn run(bench: &Bench<T>) -> Result<Self::Output, Error> {
+    fn run(bench: &KernelArguments<T>) -> Result<Self::Output, Error> {
         let command = leg_model::StiffnessCommand::new(
             bench.rig.geometry(),
             &bench.support,

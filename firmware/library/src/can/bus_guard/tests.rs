@@ -7,7 +7,7 @@ const RECOVERY_US: u32 = 1408;
 const STEP_US: u32 = 100;
 
 /// Keeps the bus off until the guard asks for a restart; returns how long that took, µs.
-fn until_restart(guard: &mut BusGuard) -> u32 {
+fn restart_delay_us(guard: &mut BusGuard) -> u32 {
     for step in 1..100_000 {
         if guard.watch(BusOff, STEP_US) == BusAction::Restart {
             return step * STEP_US;
@@ -23,7 +23,7 @@ fn keep(guard: &mut BusGuard, state: super::BusState, time_us: u32) {
 }
 
 /// As the next step after `time_us`.
-fn at_step(time_us: u32) -> u32 {
+fn rounded_to_step_us(time_us: u32) -> u32 {
     time_us.div_ceil(STEP_US) * STEP_US
 }
 
@@ -41,8 +41,8 @@ fn each_restart_waits_longer_than_the_one_before_up_to_a_second() {
     let mut guard = BusGuard::new(BIT_RATE);
     guard.watch(BusOff, STEP_US);
     for delay_ms in [10, 20, 40, 80, 160, 320, 640, 1000, 1000] {
-        let expected = at_step(RECOVERY_US + delay_ms * 1000);
-        assert_eq!(until_restart(&mut guard), expected, "{delay_ms} ms");
+        let expected = rounded_to_step_us(RECOVERY_US + delay_ms * 1000);
+        assert_eq!(restart_delay_us(&mut guard), expected, "{delay_ms} ms");
     }
     assert_eq!(guard.bus_offs(), 1);
 }
@@ -70,8 +70,8 @@ fn the_delay_grows_over_restarts_that_succeed_for_a_moment() {
         assert_eq!(guard.watch(BusOff, STEP_US), BusAction::GiveUp);
         assert_eq!(guard.bus_offs(), count);
         assert_eq!(
-            until_restart(&mut guard),
-            at_step(RECOVERY_US + delay_ms * 1000)
+            restart_delay_us(&mut guard),
+            rounded_to_step_us(RECOVERY_US + delay_ms * 1000)
         );
         keep(&mut guard, ErrorActive, 500_000);
     }
@@ -82,39 +82,48 @@ fn a_second_without_errors_makes_the_delay_short_again() {
     for (calm_us, delay_ms) in [(900_000, 20), (1_100_000, 10)] {
         let mut guard = BusGuard::new(BIT_RATE);
         guard.watch(BusOff, STEP_US);
-        until_restart(&mut guard);
+        restart_delay_us(&mut guard);
         keep(&mut guard, ErrorActive, calm_us);
         guard.watch(BusOff, STEP_US);
-        let expected = at_step(RECOVERY_US + delay_ms * 1000);
-        assert_eq!(until_restart(&mut guard), expected, "{calm_us} µs");
+        let expected = rounded_to_step_us(RECOVERY_US + delay_ms * 1000);
+        assert_eq!(restart_delay_us(&mut guard), expected, "{calm_us} µs");
     }
     // Also in one look.
     let mut guard = BusGuard::new(BIT_RATE);
     guard.watch(BusOff, STEP_US);
-    until_restart(&mut guard);
+    restart_delay_us(&mut guard);
     guard.watch(ErrorActive, STEP_US);
     guard.watch(ErrorActive, 1_100_000);
     guard.watch(BusOff, STEP_US);
-    assert_eq!(until_restart(&mut guard), at_step(RECOVERY_US + 10_000));
+    assert_eq!(
+        restart_delay_us(&mut guard),
+        rounded_to_step_us(RECOVERY_US + 10_000)
+    );
 }
 
 #[test]
 fn an_error_passive_time_is_not_calm() {
     let mut guard = BusGuard::new(BIT_RATE);
     guard.watch(BusOff, STEP_US);
-    until_restart(&mut guard);
+    restart_delay_us(&mut guard);
     keep(&mut guard, ErrorActive, 900_000);
     keep(&mut guard, ErrorPassive, 2_000_000);
     keep(&mut guard, ErrorActive, 900_000);
     guard.watch(BusOff, STEP_US);
-    assert_eq!(until_restart(&mut guard), at_step(RECOVERY_US + 20_000));
+    assert_eq!(
+        restart_delay_us(&mut guard),
+        rounded_to_step_us(RECOVERY_US + 20_000)
+    );
 }
 
 #[test]
 fn a_slower_bus_needs_a_longer_wait() {
     let mut guard = BusGuard::new(125_000);
     guard.watch(BusOff, STEP_US);
-    assert_eq!(until_restart(&mut guard), at_step(8 * RECOVERY_US + 10_000));
+    assert_eq!(
+        restart_delay_us(&mut guard),
+        rounded_to_step_us(8 * RECOVERY_US + 10_000)
+    );
 }
 
 #[test]

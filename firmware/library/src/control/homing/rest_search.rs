@@ -21,7 +21,7 @@ impl<T: Scalar> RestSearch<T> {
     /// Starts straight down, with the averages of tension, N, and travel, m.
     pub fn new(tension_n: T, pulled_m: T) -> Self {
         Self {
-            direction: Direction::down(),
+            direction: Direction::straight_down(),
             tension_n,
             pulled_m,
             steps: 0,

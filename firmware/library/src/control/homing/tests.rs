@@ -40,7 +40,7 @@ impl Leg {
     }
 
     /// Ticks until homing asks for something else than to be led; `tensions_n` by how far the tendons are pulled in, m.
-    fn until(&mut self, tensions_n: impl Fn([f64; 3]) -> [f64; 3]) -> HomingStep<f64> {
+    fn lead(&mut self, tensions_n: impl Fn([f64; 3]) -> [f64; 3]) -> HomingStep<f64> {
         for _ in 0..400_000 {
             self.ticks += 1;
             self.measured.tensions_n = tensions_n(self.measured.pulled_m);
@@ -62,7 +62,7 @@ impl Leg {
     /// With its load cells tared, and the first tendon about to be reeled in.
     fn tared() -> Self {
         let mut leg = Self::homing();
-        assert_eq!(leg.until(|_| [0.0; 3]), HomingStep::Tare([0.0; 3]));
+        assert_eq!(leg.lead(|_| [0.0; 3]), HomingStep::Tare([0.0; 3]));
         leg
     }
 }
@@ -76,7 +76,7 @@ fn slack(_: [f64; 3]) -> [f64; 3] {
 fn slack_tendons_are_paid_out_by_one_step() {
     let mut leg = Leg::homing();
     assert!(leg.homing.releases());
-    assert_eq!(leg.until(slack), HomingStep::Tare([0.0; 3]));
+    assert_eq!(leg.lead(slack), HomingStep::Tare([0.0; 3]));
     let release_m = f64::from(leg.settings.homing.release_m);
     assert_eq!(leg.goals_m, [-release_m; 3]);
     assert!(!leg.homing.releases());
@@ -88,7 +88,7 @@ fn a_tendon_that_becomes_slack_is_paid_out_step_by_step_until_then() {
     let release_m = f64::from(leg.settings.homing.release_m);
     // Taut over the first one and a half steps.
     let taut = |pulled: [f64; 3]| [0.0, (1e3 * (pulled[1] + 1.5 * release_m)).max(0.0), 0.0];
-    assert_eq!(leg.until(taut), HomingStep::Tare([0.0; 3]));
+    assert_eq!(leg.lead(taut), HomingStep::Tare([0.0; 3]));
     // The step in which it became slack changed its tension still; the next one did not.
     for goal_m in leg.goals_m {
         assert!((goal_m + 3.0 * release_m).abs() < 1e-9, "{goal_m}");
@@ -106,7 +106,7 @@ fn a_tendon_that_stays_taut_over_its_travel_is_named() {
             tensions_n[i] = 100.0 + 1e3 * pulled[i];
             tensions_n
         };
-        assert_eq!(leg.until(stays_taut), HomingStep::Failed(tendon));
+        assert_eq!(leg.lead(stays_taut), HomingStep::Failed(tendon));
         let (travel_m, release_m) = (homing.travel_m, homing.release_m);
         for pulled_m in leg.measured.pulled_m {
             let beyond_m = -pulled_m - f64::from(travel_m);
@@ -126,9 +126,9 @@ fn an_offset_beyond_what_is_taken_as_a_zero_is_no_zero() {
                 tensions_n[usize::from(tendon) - 1] = sign * offset_n;
                 tensions_n
             };
-            let allowed = Leg::homing().until(|_| with(max_n));
+            let allowed = Leg::homing().lead(|_| with(max_n));
             assert_eq!(allowed, HomingStep::Tare(with(max_n)));
-            let beyond = Leg::homing().until(|_| with(max_n + 0.1));
+            let beyond = Leg::homing().lead(|_| with(max_n + 0.1));
             assert_eq!(beyond, HomingStep::Failed(tendon));
         }
     }
@@ -137,7 +137,7 @@ fn an_offset_beyond_what_is_taken_as_a_zero_is_no_zero() {
 #[test]
 fn a_tendon_that_is_not_taut_within_its_travel_is_named() {
     let mut leg = Leg::tared();
-    assert_eq!(leg.until(slack), HomingStep::Failed(1));
+    assert_eq!(leg.lead(slack), HomingStep::Failed(1));
     let travel_m = leg.goals_m[0] - leg.measured.pulled_m[0];
     assert!(travel_m < 1e-3, "{travel_m} m are left");
 }
@@ -151,7 +151,7 @@ fn a_motor_that_draws_more_than_any_tension_asks_for_is_named_at_once() {
             let i = usize::from(tendon) - 1;
             leg.measured.currents_a[i] = sign * (CURRENT_MAX_A + 0.01);
             let begun = leg.ticks;
-            assert_eq!(leg.until(slack), HomingStep::Failed(tendon));
+            assert_eq!(leg.lead(slack), HomingStep::Failed(tendon));
             let time_s = f64::from(leg.ticks - begun) * f64::from(TICK_S);
             assert!((0.029..0.032).contains(&time_s), "{time_s} s");
         }
@@ -168,7 +168,7 @@ fn a_slack_tendon_that_shows_a_tension_is_named() {
             let mut tensions_n = [0.0; 3];
             tensions_n[usize::from(tendon) - 1] = shown_n;
             let begun = leg.ticks;
-            assert_eq!(leg.until(|_| tensions_n), HomingStep::Failed(tendon));
+            assert_eq!(leg.lead(|_| tensions_n), HomingStep::Failed(tendon));
             assert!(leg.ticks - begun < 100 * u32::from(CYCLE_TICKS));
         }
     }

@@ -3,7 +3,7 @@
 use crate::command::{Command, CommandRefusal};
 use crate::host_link::{CommandedLeg, HostRefusal};
 use crate::jog::JogReport;
-use crate::leg::{Leg, Outcome};
+use crate::leg::{CommandOutcome, Leg};
 use crate::recorder::{Recorder, RecorderReply, RecorderRequest};
 use crate::sensors::Sensors;
 use crate::settings::Settings;
@@ -27,7 +27,7 @@ pub struct NotedLeg {
     /// What it was started again with.
     pub restarts: Vec<Settings>,
     pub recorder: Recorder,
-    outcomes: VecDeque<Outcome>,
+    outcomes: VecDeque<CommandOutcome>,
     telemetry: Telemetry<f32>,
 }
 
@@ -57,7 +57,7 @@ impl NotedLeg {
         if let Some((number, command)) = self.waiting.pop_front() {
             self.obeyed.push(command);
             let result = self.result;
-            self.outcomes.push_back(Outcome { number, result });
+            self.outcomes.push_back(CommandOutcome { number, result });
         }
     }
 }
@@ -75,7 +75,7 @@ impl CommandedLeg for NotedLeg {
         self.note_decode_error += 1;
     }
 
-    fn outcome(&mut self) -> Option<Outcome> {
+    fn outcome(&mut self) -> Option<CommandOutcome> {
         self.outcomes.pop_front()
     }
 

@@ -3,7 +3,7 @@
 use super::{Line, ONE, others, refused};
 use crate::command::{Command, CommandRefusal};
 use crate::host_link::{HostRefusal, HostReply, HostRequest};
-use crate::leg::{Leg, Outcome};
+use crate::leg::{CommandOutcome, Leg};
 use crate::linked_leg::SensingLeg;
 use crate::sensors::Sensors;
 use crate::settings::{OutOfRange, Settings, SettingsError};
@@ -21,7 +21,7 @@ fn built_in() -> Settings {
     Settings::for_table_1().unwrap()
 }
 
-fn in_use(line: &mut Line) -> Settings {
+fn settings_in_use(line: &mut Line) -> Settings {
     match line.ask(&HostRequest::GetSettings) {
         HostReply::Settings(settings) => settings,
         other => panic!("{other:?}"),
@@ -39,11 +39,11 @@ fn saving() -> (Line, u16) {
 #[test]
 fn the_settings_that_are_told_are_those_in_use() {
     let mut line = Line::identified();
-    assert_eq!(in_use(&mut line), built_in());
+    assert_eq!(settings_in_use(&mut line), built_in());
     let set = HostRequest::SetSettings(others());
     assert_eq!(line.ask(&set), HostReply::Done);
     assert_eq!(line.leg.restarts, [others()]);
-    assert_eq!(in_use(&mut line), others());
+    assert_eq!(settings_in_use(&mut line), others());
 }
 
 /// The leg starts without its zero, so a zero among new settings is not in use.
@@ -58,7 +58,7 @@ fn a_zero_among_new_settings_is_not_told_as_in_use() {
         line.ask(&HostRequest::SetSettings(settings)),
         HostReply::Done
     );
-    assert_eq!(in_use(&mut line), others());
+    assert_eq!(settings_in_use(&mut line), others());
 }
 
 #[test]
@@ -76,7 +76,7 @@ fn a_driven_leg_keeps_its_settings() {
                 "{state:?}"
             );
         }
-        assert_eq!(in_use(&mut line), built_in());
+        assert_eq!(settings_in_use(&mut line), built_in());
         assert_eq!(line.leg.restarts, []);
         assert_eq!(line.link.to_save(), None);
     }
@@ -96,7 +96,7 @@ fn refused_settings_are_named_and_none_of_them_is_in_use() {
         line.ask(&HostRequest::SetSettings(settings)),
         refused(HostRefusal::Settings(error))
     );
-    assert_eq!(in_use(&mut line), built_in());
+    assert_eq!(settings_in_use(&mut line), built_in());
     line.send(&HostRequest::SaveSettings);
     assert_eq!(line.link.to_save(), Some(&built_in()));
 }
@@ -127,7 +127,7 @@ fn quiet() -> Sensors {
     Sensors::at_rest(&built_in())
 }
 
-fn ticked(leg: &mut SensingLeg<f32>, command: Command) -> Option<Outcome> {
+fn ticked(leg: &mut SensingLeg<f32>, command: Command) -> Option<CommandOutcome> {
     assert!(leg.command(1, command));
     (0..20).for_each(|_| {
         leg.tick(&quiet());
@@ -138,7 +138,7 @@ fn ticked(leg: &mut SensingLeg<f32>, command: Command) -> Option<Outcome> {
 /// A cut leg does not come back by new settings, only by a clear.
 #[test]
 fn new_settings_clear_no_fault() {
-    let outcome = |result| Some(Outcome { number: 1, result });
+    let outcome = |result| Some(CommandOutcome { number: 1, result });
     let mut leg = SensingLeg::<f32>::new(&built_in()).unwrap();
     ticked(&mut leg, Command::KeepAlive);
     leg.tick(&Sensors {

@@ -1,6 +1,6 @@
 //! Bits that flip, and flash that never held a store.
 
-use super::mock::{Failure, Mock, Random};
+use super::mock::{FlashFailure, Mock, Random};
 use super::{
     CorruptReason, Loaded, StoreError, assert_holds, block_on, clear, keep, large, load, save,
     small, store,
@@ -124,7 +124,7 @@ fn clearing_ends_what_a_word_that_refuses_writes_has_begun() {
     keep(&mut flash, &large(0));
     let free = record(1).start / 8;
     flash.refuse(free);
-    let refused = Failure::NotErased(free as u32);
+    let refused = FlashFailure::NotErased(free as u32);
     assert_eq!(save(&mut flash, &large(1)), Err(StoreError::Flash(refused)));
     assert_holds(&mut flash, &large(0));
     assert_eq!(clear(&mut flash), Ok(()));

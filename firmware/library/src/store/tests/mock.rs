@@ -36,14 +36,14 @@ pub const TEARS: [Tear; 8] = [
 ];
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Failure {
+pub enum FlashFailure {
     PowerCut,
     NotErased(u32),
     Misaligned,
     Outside,
 }
 
-impl NorFlashError for Failure {
+impl NorFlashError for FlashFailure {
     fn kind(&self) -> NorFlashErrorKind {
         NorFlashErrorKind::Other
     }
@@ -141,7 +141,7 @@ impl Mock {
     }
 
     /// Counts a step; how it is torn, if it is.
-    fn step(&mut self) -> Result<Option<Tear>, Failure> {
+    fn step(&mut self) -> Result<Option<Tear>, FlashFailure> {
         self.powered()?;
         let tear = self.cut.filter(|(step, _)| *step == self.steps);
         self.steps += 1;
@@ -149,21 +149,21 @@ impl Mock {
         Ok(tear.map(|(_, tear)| tear))
     }
 
-    fn powered(&self) -> Result<(), Failure> {
+    fn powered(&self) -> Result<(), FlashFailure> {
         match self.is_off {
-            true => Err(Failure::PowerCut),
+            true => Err(FlashFailure::PowerCut),
             false => Ok(()),
         }
     }
 
-    fn check(&self, offset: u32, length: usize, unit: usize) -> Result<usize, Failure> {
+    fn check(&self, offset: u32, length: usize, unit: usize) -> Result<usize, FlashFailure> {
         let offset = offset as usize;
         if !offset.is_multiple_of(unit) || !length.is_multiple_of(unit) {
-            return Err(Failure::Misaligned);
+            return Err(FlashFailure::Misaligned);
         }
         match offset + length <= self.bytes.len() {
             true => Ok(offset),
-            false => Err(Failure::Outside),
+            false => Err(FlashFailure::Outside),
         }
     }
 
@@ -184,18 +184,18 @@ impl Mock {
         }
     }
 
-    fn write_word(&mut self, start: usize, word: &[u8]) -> Result<(), Failure> {
+    fn write_word(&mut self, start: usize, word: &[u8]) -> Result<(), FlashFailure> {
         let tear = self.step()?;
         let is_zero = word.iter().all(|&byte| byte == 0);
         if self.written[start / WORD_SIZE] && !is_zero {
-            return Err(Failure::NotErased(start as u32));
+            return Err(FlashFailure::NotErased(start as u32));
         }
         self.change(start, word, tear);
         self.written[start / WORD_SIZE] = true;
-        tear.map_or(Ok(()), |_| Err(Failure::PowerCut))
+        tear.map_or(Ok(()), |_| Err(FlashFailure::PowerCut))
     }
 
-    fn erase_page(&mut self, start: usize) -> Result<(), Failure> {
+    fn erase_page(&mut self, start: usize) -> Result<(), FlashFailure> {
         let tear = self.step()?;
         self.erases[start / PAGE_SIZE] += 1;
         self.is_page_torn = tear.is_some();
@@ -205,18 +205,18 @@ impl Mock {
             self.change(start, &[ERASED; PAGE_SIZE], tear);
         }
         self.written[start / WORD_SIZE..][..PAGE_SIZE / WORD_SIZE].fill(false);
-        tear.map_or(Ok(()), |_| Err(Failure::PowerCut))
+        tear.map_or(Ok(()), |_| Err(FlashFailure::PowerCut))
     }
 }
 
 impl ErrorType for Mock {
-    type Error = Failure;
+    type Error = FlashFailure;
 }
 
 impl ReadNorFlash for Mock {
     const READ_SIZE: usize = 1;
 
-    async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Failure> {
+    async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), FlashFailure> {
         self.powered()?;
         let start = self.check(offset, bytes.len(), Self::READ_SIZE)?;
         bytes.copy_from_slice(&self.bytes[start..][..bytes.len()]);
@@ -232,7 +232,7 @@ impl NorFlash for Mock {
     const WRITE_SIZE: usize = WORD_SIZE;
     const ERASE_SIZE: usize = PAGE_SIZE;
 
-    async fn erase(&mut self, from: u32, to: u32) -> Result<(), Failure> {
+    async fn erase(&mut self, from: u32, to: u32) -> Result<(), FlashFailure> {
         let length = (to - from) as usize;
         let start = self.check(from, length, Self::ERASE_SIZE)?;
         (start..start + length)
@@ -240,7 +240,7 @@ impl NorFlash for Mock {
             .try_for_each(|page| self.erase_page(page))
     }
 
-    async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Failure> {
+    async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), FlashFailure> {
         let start = self.check(offset, bytes.len(), Self::WRITE_SIZE)?;
         (start..)
             .step_by(WORD_SIZE)

@@ -1,12 +1,12 @@
 //! Power that fails at every step of a save, and what is found afterwards.
 
-use super::mock::{Failure, Mock, Random, TEARS, Tear};
+use super::mock::{FlashFailure, Mock, Random, TEARS, Tear};
 use super::{
     CorruptReason, Loaded, StoreError, assert_holds, clear, keep, large, load, mixed, save, small,
 };
 use crate::settings::Settings;
 
-const CUT: Result<(), StoreError<Failure>> = Err(StoreError::Flash(Failure::PowerCut));
+const CUT: Result<(), StoreError<FlashFailure>> = Err(StoreError::Flash(FlashFailure::PowerCut));
 
 /// How many words are written and pages erased.
 fn steps(flash: &Mock, work: impl Fn(&mut Mock)) -> usize {
@@ -34,7 +34,7 @@ fn cut_saves(flash: &Mock, settings: &Settings, cut: usize, tear: Tear) -> Vec<M
 
 /// Which of the settings are loaded, twice alike.
 #[track_caller]
-fn either<'a>(flash: &mut Mock, old: &'a Settings, new: &'a Settings) -> &'a Settings {
+fn load_old_or_new<'a>(flash: &mut Mock, old: &'a Settings, new: &'a Settings) -> &'a Settings {
     let found = match load(flash) {
         Ok(Loaded::Settings(settings)) if settings == *old => old,
         Ok(Loaded::Settings(settings)) if settings == *new => new,
@@ -56,7 +56,7 @@ fn cut_every_save(pages: usize, settings: fn(usize) -> Settings, tear: Tear) -> 
         let (old, new) = (settings(number - 1), settings(number));
         for cut in 0..steps(&flash, |flash| keep(flash, &new)) {
             for mut torn in cut_saves(&flash, &new, cut, tear) {
-                let is_new = *either(&mut torn, &old, &new) == new;
+                let is_new = *load_old_or_new(&mut torn, &old, &new) == new;
                 found[usize::from(is_new)] += 1;
                 keep(&mut torn, &settings(number + 1));
                 keep(&mut torn, &settings(number + 2));
@@ -120,7 +120,7 @@ fn power_may_fail_again_and_again() {
             assert!(saved == Ok(()) || saved == CUT, "{saved:?}");
             let _ = load(&mut flash);
             flash.restart();
-            let found = either(&mut flash, &kept, &new).clone();
+            let found = load_old_or_new(&mut flash, &kept, &new).clone();
             assert!(saved == CUT || found == new, "a save that was done is lost");
             kept = found;
         }

@@ -1,9 +1,9 @@
 //! Whether lengths and tensions agree over time.
 //!
-//! Three counters and three load cells watch a leg of two freedoms that carries a load of two components: one number is
-//! left over, the mean by which measured lengths exceed those of the estimated pose. A motion, a load and a push leave it as it
-//! is. A leg that can twist has a third freedom, but no load turns it about its own axis, and so the tensions show how far it
-//! twists. A load cell that lies changes the mean by a third of its error over the stiffness of the tendon, and a lost count by a
+//! Three counters and three load cells watch a leg of two freedoms that carries a load of two components: one number is left
+//! over, the mean by which measured lengths exceed those of the estimated pose. A motion, a load and a push leave it as it is.
+//! A leg that can twist has a third freedom, but no load turns it about its own axis, and so the tensions show how far it
+//! twists. A wrong load cell changes the mean by a third of its error over the stiffness of the tendon, and a lost count by a
 //! third of its length.
 
 use crate::control::{CYCLE_S, LengthError, LowPass, bounds::clamp_symmetric};
@@ -22,7 +22,7 @@ const SWING_PART: f32 = 0.5;
 /// Time constant with which the elongations are forgotten from which changes count, s: longer than any swing of the leg.
 const FORGET_TIME_S: f32 = 1.0;
 
-/// Part of the change of the elongations that tendons may stretch otherwise than by their curves. A single lying cell changes
+/// Part of the change of the elongations that tendons may stretch otherwise than by their curves. A single wrong cell changes
 /// the mean by about a third of its elongation, which is the mean change of elongations: eight times this.
 const CURVE_PART: f32 = 0.12;
 

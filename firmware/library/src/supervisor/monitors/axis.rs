@@ -31,7 +31,9 @@ const STEP_COUNTS: f32 = 1.5;
 /// (`tests/suite/rig/other_motors.rs`). So a current sensor that shows 23 % less than flows raises nothing either.
 const WARM_RATIO: f32 = 1.3;
 
-/// Part of the highest voltage that a motor can get which one that is jammed gets in any case.
+/// Part of the highest voltage that a motor can get which one that is jammed gets in any case. Less than one, or no voltage would show a
+/// jam where the maximum tension takes nearly all of it. At a half, a motor without a gear whose windings are warm is taken for
+/// jammed (`tests/suite/rig/other_motors.rs`).
 const JAMMED_PART: f32 = 0.95;
 
 /// A current that lacks this many times the current of friction of what the voltage drives is not measured: twice, as friction

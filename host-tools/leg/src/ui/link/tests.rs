@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{FRAMES_MAX, FRESH_TIME, Hello, PageLink, Pages, WAITING_MAX};
+use super::pages::{FRAMES_MAX, Pages, WAITING_MAX};
+use super::{FRESH_TIME, PageHello, PageLink};
 use leg_firmware::frame::MAX_FRAME;
 use std::sync::atomic::AtomicUsize;
 use std::sync::mpsc::Receiver;
@@ -126,7 +127,7 @@ fn a_page_that_does_not_read_drives_no_longer() {
 fn a_page_that_comes_later_is_told_of_the_leg_as_it_is_then() {
     let link = link();
     let (_, before) = add(&link);
-    let hello = |rig: &str| Hello {
+    let hello = |rig: &str| PageHello {
         schema: "0123".into(),
         name: "sim".into(),
         rig: rig.into(),

@@ -7,7 +7,7 @@ use std::iter;
 pub(super) type Outline = Vec<(f64, f64)>;
 
 /// A number of each pose.
-pub(super) struct Grid {
+pub(super) struct ContourGrid {
     columns: usize,
     rows: usize,
     edge_deg: f64,
@@ -19,7 +19,7 @@ pub(super) struct Grid {
 const BEFORE: usize = 1;
 const AFTER: usize = 2;
 
-impl Grid {
+impl ContourGrid {
     /// Numbers row by row from tilt 0 to the greatest one, in columns of which the full turn is not repeated.
     pub fn new(columns: usize, edge_deg: f64, values: &[f64]) -> Self {
         let wrapped = |row: &[f64]| {
@@ -54,7 +54,12 @@ impl Grid {
                 let rings = iter::once(polygon.exterior()).chain(polygon.interiors());
                 Region {
                     rings: rings
-                        .map(|ring| ring.0.iter().map(|at| self.on_map((at.x, at.y))).collect())
+                        .map(|ring| {
+                            ring.0
+                                .iter()
+                                .map(|at| self.nearest_on_map((at.x, at.y)))
+                                .collect()
+                        })
                         .collect(),
                     edge_deg: self.edge_deg,
                 }
@@ -63,7 +68,7 @@ impl Grid {
     }
 
     /// The nearest place of the map. A ring has a point wherever it leaves the map: between these it runs along the map's edge.
-    fn on_map(&self, (azimuth_deg, tilt_deg): (f64, f64)) -> (f64, f64) {
+    fn nearest_on_map(&self, (azimuth_deg, tilt_deg): (f64, f64)) -> (f64, f64) {
         (
             azimuth_deg.clamp(0.0, 360.0),
             tilt_deg.clamp(0.0, self.edge_deg),

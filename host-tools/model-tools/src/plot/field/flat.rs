@@ -3,14 +3,14 @@
 use super::bands::Bands;
 use super::layers::{Layer, layers};
 use super::{LINE, PlotField};
-use crate::plot::canvas::{AXIS_TITLE, Area, Drawn, LABEL, MARGIN, THIN, TICK, px};
+use crate::plot::canvas::{AXIS_TITLE, Area, DrawResult, LABEL, MARGIN, THIN, TICK, px};
 use plotters::prelude::*;
 
 pub(super) fn paint<B: DrawingBackend>(
     field: &PlotField,
     bands: &Bands,
     area: &Area<B>,
-) -> Drawn<B> {
+) -> DrawResult<B> {
     let mut chart = ChartBuilder::on(area)
         .margin(MARGIN)
         .set_label_area_size(LabelAreaPosition::Bottom, px(70))

@@ -1,7 +1,7 @@
 //! A map as areas and lines upon each other. Each hides what is below it, so that no gap shows between two of them.
 
 use super::bands::Bands;
-use super::contours::{Grid, Outline};
+use super::contours::{ContourGrid, Outline};
 use super::{PlotField, PoseSample};
 use plotters::style::RGBColor;
 use std::ops::Range;
@@ -71,12 +71,12 @@ fn shown_pieces<'a>(
 }
 
 /// A number of each pose; zero where nothing is known.
-fn grid(field: &PlotField, number: impl Fn(&PoseSample) -> f64) -> Grid {
+fn grid(field: &PlotField, number: impl Fn(&PoseSample) -> f64) -> ContourGrid {
     let numbers = field
         .samples
         .iter()
         .map(|sample| sample.as_ref().map_or(0.0, &number));
-    Grid::new(
+    ContourGrid::new(
         field.azimuths,
         field.tilt_max_deg(),
         &numbers.collect::<Vec<_>>(),

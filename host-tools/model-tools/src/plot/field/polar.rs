@@ -3,7 +3,7 @@
 use super::bands::Bands;
 use super::layers::{Layer, layers};
 use super::{LINE, PlotField};
-use crate::plot::canvas::{Area, Drawn, LABEL, THIN, offset_px};
+use crate::plot::canvas::{Area, DrawResult, LABEL, THIN, offset_px};
 use leg_base::angles;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -21,7 +21,7 @@ pub(super) fn paint<B: DrawingBackend>(
     field: &PlotField,
     bands: &Bands,
     area: &Area<B>,
-) -> Drawn<B> {
+) -> DrawResult<B> {
     let edge = field.tilt_max_deg();
     let (width, height) = area.dim_in_pixel();
     let side = width.min(height);

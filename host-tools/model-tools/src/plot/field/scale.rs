@@ -3,7 +3,7 @@
 use super::bands::Bands;
 use super::layers::{BORDER, EXTERIOR, NO_RESULT};
 use super::{PlotField, PoseSample};
-use crate::plot::canvas::{Area, Drawn, LABEL, THIN, offset_px, px};
+use crate::plot::canvas::{Area, DrawResult, LABEL, THIN, offset_px, px};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -21,7 +21,7 @@ pub(super) fn paint<B: DrawingBackend>(
     field: &PlotField,
     bands: &Bands,
     area: &Area<B>,
-) -> Drawn<B> {
+) -> DrawResult<B> {
     let heading = [(&field.quantity, 1), (&field.unit, 0)];
     for (words, lines_above) in heading {
         let y = TOP - offset_px(26) - LINE * lines_above;
@@ -43,7 +43,11 @@ pub(super) fn paint<B: DrawingBackend>(
 }
 
 /// What has no colour, if there is any of it.
-fn paint_legend<B: DrawingBackend>(field: &PlotField, area: &Area<B>, bottom: i32) -> Drawn<B> {
+fn paint_legend<B: DrawingBackend>(
+    field: &PlotField,
+    area: &Area<B>,
+    bottom: i32,
+) -> DrawResult<B> {
     let any = |is: fn(&PoseSample) -> bool| field.samples.iter().flatten().any(is);
     let no_value = |sample: &PoseSample| sample.room >= 0.0 && sample.value.is_none();
     let no_result = any(no_value) || field.samples.iter().any(Option::is_none);
@@ -71,7 +75,7 @@ fn paint_legend<B: DrawingBackend>(field: &PlotField, area: &Area<B>, bottom: i3
     Ok(())
 }
 
-fn label_at<B: DrawingBackend>(area: &Area<B>, words: &str, y: i32) -> Drawn<B> {
+fn label_at<B: DrawingBackend>(area: &Area<B>, words: &str, y: i32) -> DrawResult<B> {
     area.draw(&Text::new(words, (LEFT + BAR + GAP, y), text(area)))
 }
 

@@ -25,7 +25,7 @@ fn every_support_maps_what_the_whole_evaluation_says() {
 }
 
 fn agrees_with_evaluation(name: &str, rig: &RigFile, payload_kg: f64) {
-    let map = WorkspaceMap::on_one_core(rig, payload_kg, GRID);
+    let map = WorkspaceMap::compute_on_one_core(rig, payload_kg, GRID);
     for (azimuth, tilt, cell) in map.poses() {
         let place = format!(
             "{name}, {payload_kg} kg, {} N, {azimuth}°, {tilt}°",
@@ -73,7 +73,7 @@ fn linear_and_nonlinear_deviation_are_of_one_size() {
             tilts: 4,
         };
         let map = WorkspaceMap::compute(&rig, 0.5, grid, true, || ());
-        assert_eq!(map.without_nonlinear(), [], "{}", ready.name);
+        assert_eq!(map.reasons_for_no_nonlinear(), [], "{}", ready.name);
         let (azimuth, tilt, cell) = map.poses().last().unwrap();
         let query = rig.query(azimuth, tilt, 0.5);
         let expected = deviation_m(&rig.parameters, &query).unwrap().unwrap() * 1000.0;

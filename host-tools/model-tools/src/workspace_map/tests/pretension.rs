@@ -12,9 +12,9 @@ fn a_pretension_that_does_not_hold_a_pose_leaves_its_range() {
         ..ready("spherical")
     };
     // Straight down nothing pulls, so nothing holds the twist.
-    let map = WorkspaceMap::on_one_core(&rig, 1.0, GRID);
-    assert_eq!(map.without_result(), []);
-    assert_eq!(map.without_pretension(), [(Error::Unstable, 1)]);
+    let map = WorkspaceMap::compute_on_one_core(&rig, 1.0, GRID);
+    assert_eq!(map.reasons_for_no_result(), []);
+    assert_eq!(map.reasons_for_no_pretension(), [(Error::Unstable, 1)]);
     let vertical = map.cells[0].unwrap();
     assert!(vertical.feasible && !vertical.pretension_keeps_bounds);
     assert_eq!(vertical.margin_n, None);
@@ -29,7 +29,7 @@ fn feasibility_does_not_depend_on_the_pretension() {
                 pretension_n,
                 ..ready(name)
             };
-            WorkspaceMap::on_one_core(&rig, 2.0, GRID)
+            WorkspaceMap::compute_on_one_core(&rig, 2.0, GRID)
         };
         let feasible = map(70.0).counts().feasible;
         for pretension_n in [0.0, 20.0, 140.0, 180.0, 199.0] {
@@ -42,7 +42,7 @@ fn feasibility_does_not_depend_on_the_pretension() {
                 "{name}, {pretension_n} N"
             );
         }
-        let beyond = map(199.0).without_pretension();
+        let beyond = map(199.0).reasons_for_no_pretension();
         assert!(
             matches!(
                 beyond[..],
@@ -62,7 +62,7 @@ fn feasibility_does_not_depend_on_the_pretension() {
 #[test]
 fn extremes_at_the_pretension_are_of_poses_where_it_keeps_the_bounds() {
     let rig = ready("leaf_spring_universal");
-    let map = WorkspaceMap::on_one_core(&rig, 2.0, GRID);
+    let map = WorkspaceMap::compute_on_one_core(&rig, 2.0, GRID);
     let counts = map.counts();
     assert!(counts.only_another_pretension > 0 && counts.feasible < POSES);
     let [_, most] = map.extremes(MapQuantity::Deviation).unwrap();

@@ -21,7 +21,7 @@ fn a_plain_map_evaluates_every_pose_once() {
     for ready in READY_RIGS {
         let rig = RigFile::parse(ready.name, ready.text).unwrap();
         EVALUATIONS.set(0);
-        let map = WorkspaceMap::on_one_core(&rig, 1.0, GRID);
+        let map = WorkspaceMap::compute_on_one_core(&rig, 1.0, GRID);
         assert_eq!(EVALUATIONS.get(), POSES, "{}", ready.name);
         let mut cells = map.cells.iter().flatten();
         assert!(cells.all(|cell| cell.deviation_nonlinear_mm.is_none()));

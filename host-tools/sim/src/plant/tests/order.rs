@@ -19,7 +19,7 @@ fn end(rig: &RigFile, substeps: u32, drive: &Drive<f32>) -> Truth {
 }
 
 /// How far apart two ends are, in the tip's place and in the lengths of the tendons, m.
-fn apart_m(a: &Truth, b: &Truth) -> [f64; 2] {
+fn differences_m(a: &Truth, b: &Truth) -> [f64; 2] {
     let lengths = (0..3).map(|i| (a.unstretched_m[i] - b.unstretched_m[i]).abs());
     [(a.tip_m - b.tip_m).norm(), lengths.fold(0.0, f64::max)]
 }
@@ -27,7 +27,10 @@ fn apart_m(a: &Truth, b: &Truth) -> [f64; 2] {
 /// Ratio of the errors with a step and with a shorter one, of the tip and of the lengths, all in `range`.
 fn check_errors(name: &str, ends: [Truth; 3], range: [f64; 2]) {
     let [coarse, middle, fine] = ends;
-    let (first, second) = (apart_m(&coarse, &middle), apart_m(&middle, &fine));
+    let (first, second) = (
+        differences_m(&coarse, &middle),
+        differences_m(&middle, &fine),
+    );
     println!("{name}: tip and lengths off by {first:?}, then {second:?} m");
     for (first, second) in first.into_iter().zip(second) {
         assert!(first < 1e-7, "{name}: {first:e} m");

@@ -43,7 +43,7 @@ impl Group {
 
 /// A sequence that runs.
 #[derive(Clone, Copy, Debug)]
-pub struct Run {
+pub struct RunningSequence {
     /// The cycle in which it began.
     begin: u64,
     /// Half periods from there to the end of the present code.
@@ -64,7 +64,7 @@ impl Converter {
         context: &mut Context<'_>,
     ) {
         self.check_clock(around, context);
-        let run = Run {
+        let run = RunningSequence {
             begin: cycle,
             halves: 0,
             due: cycle,
@@ -116,7 +116,7 @@ impl Converter {
             self.give_code(group, run.rank, around, context);
             if run.rank < self.file.value(group.select(self.places.length)) {
                 let rank = run.rank + 1;
-                self.begin_code(group, Run { rank, ..run }, around, context);
+                self.begin_code(group, RunningSequence { rank, ..run }, around, context);
             } else {
                 self.end_sequence(group, run.due, around, context);
             }
@@ -134,7 +134,7 @@ impl Converter {
     fn begin_code(
         &mut self,
         group: Group,
-        run: Run,
+        run: RunningSequence,
         around: &Surroundings<'_>,
         context: &mut Context<'_>,
     ) {
@@ -143,7 +143,7 @@ impl Converter {
         let halves = run.halves + self.code_halves(group, input);
         let cycles = around.clock.cycles(halves);
         let due = cycles.map_or(u64::MAX, |cycles| run.begin + cycles);
-        self.set_run(group, Some(Run { halves, due, ..run }));
+        self.set_run(group, Some(RunningSequence { halves, due, ..run }));
     }
 
     fn end_sequence(
@@ -279,7 +279,7 @@ impl Converter {
         u8::try_from(value.unwrap_or_default()).unwrap_or_default()
     }
 
-    fn set_run(&mut self, group: Group, run: Option<Run>) {
+    fn set_run(&mut self, group: Group, run: Option<RunningSequence>) {
         let [regular, injected] = &mut self.runs;
         *group.select([regular, injected]) = run;
     }

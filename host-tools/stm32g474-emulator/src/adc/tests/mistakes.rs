@@ -3,13 +3,13 @@
 use super::*;
 
 /// Sets a field of the common registers.
-fn common(bench: &mut Bench<Board>, field: &str, value: u32) {
+fn common(bench: &mut DeviceBench<Board>, field: &str, value: u32) {
     select(bench, "ADC12_COMMON");
     bench.set("CCR", &[(field, value)]);
     select(bench, "ADC1");
 }
 
-type Mistake = fn(&mut Bench<Board>);
+type Mistake = fn(&mut DeviceBench<Board>);
 
 /// Mistakes made after the board's set-up of ADC1, before its start; then it is started and triggered.
 const MISTAKES: &[(Mistake, &str)] = &[
@@ -167,7 +167,7 @@ const EARLY_MISTAKES: &[(Mistake, &str)] = &[
     ),
 ];
 
-fn assert_found(bench: &mut Bench<Board>, expected: &str) {
+fn assert_found(bench: &mut DeviceBench<Board>, expected: &str) {
     let findings = bench.findings();
     let found = findings.iter().any(|text| text == expected);
     assert!(found, "{expected}: {findings:?}");

@@ -121,7 +121,7 @@ fn every_complete_register_lacks_something() {
 fn every_reset_value_is_ruled_on_once_and_differs() {
     for (blocks, register, value, reason) in RESETS {
         for name in *blocks {
-            let block = Facts::of_chip().block(name).unwrap();
+            let block = Facts::chip().block(name).unwrap();
             let offset = block.register(register).unwrap().offset;
             let mut described = description::registers(block.base).iter();
             let said = described.find(|view| view.offset == offset).unwrap().reset;

@@ -4,7 +4,7 @@ use super::*;
 
 #[test]
 fn mistakes_are_found() {
-    type Mistake = fn(&mut Bench<Fdcan>);
+    type Mistake = fn(&mut DeviceBench<Fdcan>);
     let take: Mistake = |b| {
         b.act(|node, context| node.take_transmission(context));
     };
@@ -69,7 +69,7 @@ fn mistakes_are_found() {
         (
             "FDCAN2: a frame 0x123 of 500000 and 5000000 bit/s is on the bus",
             |b| {
-                let frame = Frame {
+                let frame = DataFrame {
                     nominal_hz: 500_000,
                     ..frame(OWN)
                 };
@@ -151,12 +151,12 @@ fn mistakes_are_found() {
     }
 }
 
-fn slower(bench: &mut Bench<Fdcan>, register: &str, field: &str) {
+fn slower(bench: &mut DeviceBench<Fdcan>, register: &str, field: &str) {
     reopen(bench, register, field, 1);
 }
 
 /// Changes a setting as it has to be done.
-fn reopen(bench: &mut Bench<Fdcan>, register: &str, field: &str, value: u32) {
+fn reopen(bench: &mut DeviceBench<Fdcan>, register: &str, field: &str, value: u32) {
     let file = &bench.device.registers;
     let settings = file.offset("CCCR");
     let place = file.field(register, field);

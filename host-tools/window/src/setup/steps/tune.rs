@@ -7,7 +7,8 @@ use leg_firmware::settings::Settings;
 use leg_rig::control_settings;
 use leg_rig::rig_file::RigFile;
 use leg_rig::tune::{
-    JogPlan, Jogged, MeasuredMotor, Row, Swing, SwingPlan, comparison, measure_motor, measure_swing,
+    ComparisonRow, JogPlan, Jogged, MeasuredMotor, Swing, SwingPlan, comparison, measure_motor,
+    measure_swing,
 };
 use std::cell::RefCell;
 use std::fmt;
@@ -21,7 +22,7 @@ pub struct Outcome {
     /// The motor, from 1.
     pub motor: u8,
     /// What was measured; nothing where the motor itself could not be.
-    pub rows: Vec<Row>,
+    pub rows: Vec<ComparisonRow>,
     /// Why it was not measured to the end.
     pub failure: Option<String>,
 }

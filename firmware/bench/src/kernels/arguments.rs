@@ -11,7 +11,7 @@ use nalgebra::{SVector, Vector3};
 /// Prepared arguments. The curves come last: a load reaches no further than 1 020 bytes, and an address that had to be
 /// added up would be counted with the kernel.
 #[repr(C)]
-pub struct Bench<T> {
+pub struct KernelArguments<T> {
     pub rig: Rig<T, 3>,
     pub direction: Direction<T>,
     pub load: Load<T>,
@@ -32,7 +32,7 @@ pub struct Bench<T> {
     pub curves: [TendonCurve<T>; 3],
 }
 
-impl<T: Scalar> Bench<T> {
+impl<T: Scalar> KernelArguments<T> {
     pub fn new(input: &KernelInput) -> Result<Self, Error> {
         let rig = Rig::new(&input.rig.map(T::from))?;
         let direction = Direction::from_angles(input.azimuth_rad.into(), input.tilt_rad.into())?;

@@ -1,0 +1,73 @@
+//! The pages say the bars.
+
+use super::*;
+
+#[test]
+fn the_page_says_the_bars() {
+    let page = include_str!("../../../../docs/scenarios.md");
+    for words in [
+        format!("the maximum tension and {:.0} %", 100.0 * BEYOND),
+        format!("{:.0} % where a moving leg", 100.0 * CUT_OFF_BEYOND),
+        format!(
+            "{:.0} % where half of a bridge is open",
+            100.0 * HALF_OPEN_BEYOND
+        ),
+        format!("{:.0} % where a driver pulls", 100.0 * STUCK_BEYOND),
+        format!("{:.0} % where a hand holds", 100.0 * GRASPED_BEYOND),
+        format!("{:.0} % where a driver switches", 100.0 * RUNAWAY_BEYOND),
+        format!("{:.0} % where a tendon slips", 100.0 * SLIP_BEYOND),
+        format!("{HOMING_N} N while homing"),
+        format!("{REST_MM} mm; {REARMED_MM} mm where it is armed again"),
+        format!("{GAIN_MM} mm where a gain is 20 % off, or a cell wanders or drifts"),
+        format!("{GAIN_AT_MAX_MM} mm where such a cell comes to show the maximum tension"),
+        format!("{CUT_OFF_MM} mm where a moving leg is cut off"),
+        format!("{SWAPPED_MM} mm where two sensors"),
+        format!("{WAY_MM} mm; {ASIDE_MM} mm while it is paid out, {LIFTED_MM} mm while homing"),
+        format!("{CUT_MM} mm where a tendon is cut, {SLIP_MM} mm where it slips"),
+        format!("{CREEP_MM} mm where it creeps, {RUNAWAY_MM} mm where a driver"),
+        format!("{RUNAWAY_AGAIN_MM} mm where it is armed again with it"),
+        format!(
+            "{UNCOUNTED_MM} mm where a motor turns without being counted, {UNCOUNTED_WAY_MM} mm in a move"
+        ),
+        format!("{GRASPED_MM} mm where a hand holds the tip"),
+        format!(
+            "{NAMED_S} s where something shows it; a cell that wanders {WANDERS_S} s, drifts {DRIFTS_S} s"
+        ),
+    ] {
+        assert!(page.contains(&words), "{words}");
+    }
+}
+
+#[test]
+fn the_page_on_safety_says_how_far_beyond_the_maximum_tension() {
+    let page = include_str!("../../../../../firmware/SAFETY.md");
+    let page: Vec<_> = page.split_whitespace().collect();
+    let page = page.join(" ");
+    let percent = |part: f64| format!("{:.0} %", 100.0 * part);
+    for words in [
+        format!(
+            "cut off from full speed: up to {} more",
+            percent(CUT_OFF_BEYOND)
+        ),
+        format!(
+            "switches on fully by itself: up to {} more",
+            percent(RUNAWAY_BEYOND)
+        ),
+        format!(
+            "{} where it is armed again with it",
+            percent(RUNAWAY_AGAIN_BEYOND)
+        ),
+        format!(
+            "catches the falling leg: up to {} more",
+            percent(SLIP_BEYOND)
+        ),
+        format!(
+            "up to {} and {} more",
+            percent(STUCK_BEYOND),
+            percent(GRASPED_BEYOND)
+        ),
+        format!("up to {HOMING_N} N where a load cell fails"),
+    ] {
+        assert!(page.contains(&words), "{words}");
+    }
+}
