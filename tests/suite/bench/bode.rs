@@ -145,7 +145,8 @@ fn worst(rows: &[Row], feedback: Feedback, margin: Margin) -> Option<f64> {
 }
 
 /// All loops of the paper's rig meet the bars: at 30° with 1.8 kg, at 30° with 1.4 kg, where the tension loop has the least phase of the twelve
-/// states of `leg bode`, and straight down with 1.3 kg at a low pretension. The trim alone has no gain margin: its phase does not come to ±180°.
+/// states of `leg bode`, and straight down with 1.3 kg at a low pretension. The trim alone has no gain margin: its phase does not come to ±180°. The damping
+/// alone may have no phase margin: its gain may stay below 1.
 #[test]
 fn the_loops_keep_their_margins() {
     for state in [[3, 0], [1, 5], [1, 4]] {
@@ -156,7 +157,10 @@ fn the_loops_keep_their_margins() {
                 println!("{feedback:?} {margin:?} {found:?}");
                 let kept = match found {
                     Some(found) => found >= margin.bar(),
-                    None => feedback == Feedback::Trim && margin == Margin::Gain,
+                    None => matches!(
+                        (feedback, margin),
+                        (Feedback::Trim, Margin::Gain) | (Feedback::Damping, Margin::Phase)
+                    ),
                 };
                 assert!(kept, "{feedback:?} {margin:?} {found:?}");
             }

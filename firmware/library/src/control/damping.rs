@@ -14,9 +14,12 @@ const STEP_S: f32 = 2.0 * CYCLE_S;
 /// Time constant of each of the two filters of the speeds by that of the mode, 1/ω: the lag of both is 43° there.
 const FILTER_PART: f32 = 0.39;
 
-/// Time constant after which a speed lasts, by that of the mode: without what lasts the brake leads by 34° at the mode, and the loop
-/// keeps its phase where it ends, a third above it.
-const LASTING_PART: f32 = 1.5;
+/// Time constant after which a speed lasts, by that of the mode: without what lasts the brake leads by 27° there, and the loops keep their
+/// phase where they end, a third above the mode.
+const LASTING_PART: f32 = 2.0;
+
+/// The most that lasts, m/s: faster than this, something pulls at the leg, and the brake resists all of it.
+const LASTING_M_PER_S: f32 = 2.5e-4;
 
 /// The damping of the tendons themselves makes them pull harder while they are reeled in, and look longer: the loop would be
 /// unstable by itself at a gain of one. It is kept to this part, so that the tendons may be damped three times as much as is assumed.
@@ -124,7 +127,8 @@ impl<T: Scalar> Speed<T> {
         self.length_m += step_m;
         self.m_per_s += (step_m * T::from(1.0 / STEP_S) - self.m_per_s) * shares.new;
         let swing_m_per_s = self.m_per_s - self.lasting_m_per_s;
-        self.lasting_m_per_s += swing_m_per_s * shares.lasting;
+        let lasting_m_per_s = self.lasting_m_per_s + swing_m_per_s * shares.lasting;
+        self.lasting_m_per_s = clamp_symmetric(lasting_m_per_s, T::from(LASTING_M_PER_S));
         swing_m_per_s
     }
 }
@@ -321,13 +325,13 @@ mod tests {
     fn what_lasts_is_no_swing() {
         let mut damping = SwingDamping::<f64>::new(&Settings::for_table_1().unwrap());
         let moved = |i: u32| {
-            let length_m = 0.02 * 1e-3 * f64::from(i);
+            let length_m = 2e-4 * 1e-3 * f64::from(i);
             let lengths_m = SWING.map(|part| part * length_m);
             damping.step(&lengths_m, &SVector::repeat(1.0), INERTIA, TIME_CONSTANT_S)
         };
         let offsets: Vec<_> = (0..1000).map(moved).collect();
         let [early, late] = [&offsets[..200], &offsets[600..]].map(largest);
-        assert!(early > 1e-5, "{early}");
+        assert!(early > 1e-7, "{early}");
         assert_eq!(late, 0.0);
     }
 
