@@ -34,9 +34,9 @@ const WHOLE_RAD_PER_S: f32 = 50.0;
 /// The longest time constant of a mode, 1/ω, that the filters are made for, s: 1 Hz.
 const LONGEST_S: f32 = 0.16;
 
-/// Amplitude of a tendon's swing that is not braked, m: above the noise of the load cells, or the motors would never rest. It is 4 µm
+/// Amplitude of a tendon's swing that is not braked, m: above the noise of the load cells, or the motors would never rest. It is 5 µm
 /// at the tip of the paper's leg.
-const LEAST_M: f32 = 4e-7;
+const LEAST_M: f32 = 5e-7;
 
 /// The most that a tendon is longer or shorter for it, m: a swing of the paper's leg by 5 mm at the tip asks for no more.
 const MOST_M: f32 = 3e-4;
