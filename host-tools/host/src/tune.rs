@@ -19,7 +19,7 @@ pub use leg_rig::tune::{
 };
 
 /// Why a leg was not measured to the end. It rests then.
-pub type TuneError = tune::TuneError<OperatorError>;
+pub type OperatorTuneError = tune::TuneError<OperatorError>;
 
 /// The voltage of the motors' supply, V.
 ///
@@ -38,7 +38,7 @@ pub fn measure_motor(
     plan: &JogPlan,
     settings: &Settings,
     seen: &mut dyn FnMut(&Jogged),
-) -> Result<MeasuredMotor, TuneError> {
+) -> Result<MeasuredMotor, OperatorTuneError> {
     wait(tune::measure_motor(
         &mut OperatedLeg(operator),
         plan,
@@ -56,7 +56,7 @@ pub fn measure_swing(
     plan: &SwingPlan,
     rig: &RigFile,
     seen: &mut dyn FnMut(&Swing),
-) -> Result<Swings, TuneError> {
+) -> Result<Swings, OperatorTuneError> {
     wait(tune::measure_swing(
         &mut OperatedLeg(operator),
         plan,

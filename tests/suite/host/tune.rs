@@ -11,8 +11,8 @@ use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{HostIdentity, Operator, OperatorError};
 use leg_host::transport::emulated::EmulatedLine;
 use leg_host::tune::{
-    ComparisonRow, JogPlan, Jogged, MeasuredMotor, SwingPlan, TuneError, comparison, measure_motor,
-    measure_swing, section, supply_v,
+    ComparisonRow, JogPlan, Jogged, MeasuredMotor, OperatorTuneError, SwingPlan, comparison,
+    measure_motor, measure_swing, section, supply_v,
 };
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
@@ -67,7 +67,7 @@ fn jog(
     operator: &mut Operator,
     motor: u8,
     seen: &mut dyn FnMut(&Jogged),
-) -> Result<MeasuredMotor, TuneError> {
+) -> Result<MeasuredMotor, OperatorTuneError> {
     let settings = operator.settings().unwrap();
     let supply_v = supply_v(operator, &settings).unwrap();
     let plan = JogPlan::new(motor, &settings, supply_v);
@@ -233,7 +233,7 @@ fn what_the_jogs_tell_lets_a_leg_home_that_did_not() {
     println!("{ended}");
     assert!(matches!(
         ended,
-        TuneError::Leg(OperatorError::Failed("home", _))
+        OperatorTuneError::Leg(OperatorError::Failed("home", _))
     ));
     let rows = comparison(&found.constants, None, &configured);
     let text = [READY_RIGS[0].text, &section(1, &rows)].concat();

@@ -5,7 +5,7 @@ use leg_firmware::supervisor::{Fault, State};
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{HostIdentity, Operator, OperatorError};
 use leg_host::transport::emulated::EmulatedLine;
-use leg_host::tune::{SwingPlan, TuneError, measure_swing};
+use leg_host::tune::{OperatorTuneError, SwingPlan, measure_swing};
 use leg_rig::rig_file::RigFile;
 use leg_sim::emulated_leg::{EmulatedLeg, InitialState};
 use leg_sim::link::InProcess;
@@ -65,7 +65,7 @@ fn a_fault_in_the_middle_ends_it_by_its_name() {
         });
         assert_eq!(count, after);
         let (cause, by_m) = cause(ended.unwrap_err());
-        let TuneError::Leg(OperatorError::Failed(_, telemetry)) = cause else {
+        let OperatorTuneError::Leg(OperatorError::Failed(_, telemetry)) = cause else {
             panic!("{cause:?}");
         };
         assert!(by_m.abs() > 1e-3, "{by_m}");
@@ -87,9 +87,9 @@ fn a_fault_in_the_middle_ends_it_by_its_name() {
 }
 
 /// Why it ended, and how far the tendon is from where it was, m.
-fn cause(error: TuneError) -> (TuneError, f32) {
+fn cause(error: OperatorTuneError) -> (OperatorTuneError, f32) {
     match error {
-        TuneError::Displaced { error, by_m, .. } => (*error, by_m),
+        OperatorTuneError::Displaced { error, by_m, .. } => (*error, by_m),
         error => (error, 0.0),
     }
 }
@@ -133,7 +133,7 @@ fn a_user_who_interrupts_it_leaves_the_motors_at_rest_and_knows_where() {
         let help = format!("{:?}", error.failure());
         let (cause, by_m) = cause(error);
         assert!(
-            matches!(cause, TuneError::Leg(OperatorError::Cancelled)),
+            matches!(cause, OperatorTuneError::Leg(OperatorError::Cancelled)),
             "{cause:?}"
         );
         let truth = line.with_plant(|plant| plant.truth());
@@ -155,7 +155,7 @@ fn a_user_who_interrupts_the_swing_leaves_the_leg_held() {
     let (line, mut operator, cancel) = leg(&rig, &rig, 1);
     let ended = measure_swing(&mut operator, &plan, &rig, &mut |_| cancel.set());
     assert!(
-        matches!(ended, Err(TuneError::Leg(OperatorError::Cancelled))),
+        matches!(ended, Err(OperatorTuneError::Leg(OperatorError::Cancelled))),
         "{ended:?}"
     );
     let speeds = line.with_plant(|plant| plant.truth().speeds_rad_per_s);
