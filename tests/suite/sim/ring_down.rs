@@ -48,9 +48,12 @@ fn half_swings(tips_m: &[Vector3<f64>]) -> Vec<(f64, f64)> {
 }
 
 /// Damping ratio by the mean logarithmic decrement of half swings, and the time after which they are less than a tenth of the first, s;
-/// none without two of them.
+/// none without two of them, or where the first is not twice as much as is counted: one of 31 µm before one of 10 µm would have a ratio of 0.01.
 fn ring_down(halves: &[(f64, f64)]) -> Option<[f64; 2]> {
-    let first_m = halves.first()?.1;
+    let first_m = halves
+        .first()
+        .map(|half| half.1)
+        .filter(|&first_m| first_m > 2.0 * LEAST_M)?;
     let counted = halves.iter().take_while(|half| half.1 > LEAST_M).count();
     let last = counted.min(halves.len() - 1);
     if last == 0 {
@@ -157,7 +160,7 @@ fn ring_downs(rig: &RigFile, count: u32) -> Found {
 #[test]
 fn a_leg_that_is_pushed_or_loaded_rings_down() {
     let found = ring_downs(&paper(), 24);
-    for (ratios, [least, median]) in found.ratios.iter().zip([[0.09, 0.13], [0.06, 0.13]]) {
+    for (ratios, [least, median]) in found.ratios.iter().zip([[0.1, 0.16], [0.06, 0.16]]) {
         assert!(ratios.len() >= 22, "{} swing", ratios.len());
         assert!(ratios[0] > least && ratios[ratios.len() / 2] > median);
     }

@@ -11,9 +11,15 @@ use nalgebra::SVector;
 /// Time between two steps, s: every other cycle.
 const STEP_S: f32 = 2.0 * CYCLE_S;
 
-/// Time constant of each of the two filters of the speeds by that of the mode, 1/ω: the lag of both is 39° there. Slower ones
-/// leave too little phase where the loop ends, a third above the mode.
-const FILTER_PART: f32 = 0.35;
+/// Time constant of each of the two filters of the speeds by that of the mode, 1/ω: the lag of both is 43° there.
+const FILTER_PART: f32 = 0.39;
+
+/// Time constant after which a speed lasts, by that of the mode: without what lasts the brake leads by 27° there, and the loops keep their
+/// phase where they end, a third above the mode.
+const LASTING_PART: f32 = 2.0;
+
+/// The most that lasts, m/s: faster than this, something pulls at the leg, and the brake resists all of it.
+const LASTING_M_PER_S: f32 = 2.5e-4;
 
 /// The damping of the tendons themselves makes them pull harder while they are reeled in, and look longer: the loop would be
 /// unstable by itself at a gain of one. It is kept to this part, so that the tendons may be damped three times as much as is assumed.
@@ -28,9 +34,9 @@ const WHOLE_RAD_PER_S: f32 = 50.0;
 /// The longest time constant of a mode, 1/ω, that the filters are made for, s: 1 Hz.
 const LONGEST_S: f32 = 0.16;
 
-/// Amplitude of a tendon's swing that is not braked, m: above the noise of the load cells, or the motors would never rest. It is 6 µm
+/// Amplitude of a tendon's swing that is not braked, m: above the noise of the load cells, or the motors would never rest. It is 5 µm
 /// at the tip of the paper's leg.
-const LEAST_M: f32 = 6e-7;
+const LEAST_M: f32 = 5e-7;
 
 /// The most that a tendon is longer or shorter for it, m: a swing of the paper's leg by 5 mm at the tip asks for no more.
 const MOST_M: f32 = 3e-4;
@@ -41,6 +47,12 @@ const SWINGING_M: f32 = 3e-5;
 /// The mean over a swing of the sum of the squares of the tendons' lengths by the square of that amplitude: one tendon has the whole of
 /// it, the other two have half, and the mean of a sine's square is a half.
 const MEAN_SQUARES: f32 = 0.75;
+
+/// What the filters leave of a swing at the mode, as a square.
+const PASSED_SQUARE: f32 = {
+    let (filter, lasting) = (FILTER_PART * FILTER_PART, LASTING_PART * LASTING_PART);
+    lasting / ((1.0 + lasting) * (1.0 + filter) * (1.0 + filter))
+};
 
 /// Time constant of that mean, s: a swing at 2 Hz changes it by a fifth.
 const MEAN_S: f32 = 0.25;
@@ -74,6 +86,29 @@ pub struct SwingDamping<T> {
 struct Speed<T> {
     length_m: T,
     m_per_s: T,
+    /// What lasts of it: a move of the leg, no swing.
+    lasting_m_per_s: T,
+}
+
+/// What passes the filters of a speed of what is new.
+#[derive(Clone, Copy, Debug)]
+struct Shares<T> {
+    /// Each of the two.
+    new: T,
+    /// That of what lasts.
+    lasting: T,
+}
+
+impl<T: Scalar> Shares<T> {
+    #[inline(always)]
+    fn new(time_constant_s: T) -> Self {
+        let share =
+            |part: f32| T::from(STEP_S) / (T::from(STEP_S) + T::from(part) * time_constant_s);
+        Self {
+            new: share(FILTER_PART),
+            lasting: share(LASTING_PART),
+        }
+    }
 }
 
 impl<T: Scalar> Speed<T> {
@@ -81,16 +116,20 @@ impl<T: Scalar> Speed<T> {
         Self {
             length_m,
             m_per_s: T::zero(),
+            lasting_m_per_s: T::zero(),
         }
     }
 
-    /// `share` of what is new passes each filter.
+    /// The speed without what lasts of it.
     #[inline(always)]
-    fn step(&mut self, length_m: T, share: T) -> T {
-        let step_m = (length_m - self.length_m) * share;
+    fn step(&mut self, length_m: T, shares: &Shares<T>) -> T {
+        let step_m = (length_m - self.length_m) * shares.new;
         self.length_m += step_m;
-        self.m_per_s += (step_m * T::from(1.0 / STEP_S) - self.m_per_s) * share;
-        self.m_per_s
+        self.m_per_s += (step_m * T::from(1.0 / STEP_S) - self.m_per_s) * shares.new;
+        let swing_m_per_s = self.m_per_s - self.lasting_m_per_s;
+        let lasting_m_per_s = self.lasting_m_per_s + swing_m_per_s * shares.lasting;
+        self.lasting_m_per_s = clamp_symmetric(lasting_m_per_s, T::from(LASTING_M_PER_S));
+        swing_m_per_s
     }
 }
 
@@ -148,7 +187,7 @@ impl<T: Scalar> SwingDamping<T> {
         if decayed || self.mean_square > self.highest_square {
             self.highest_square = self.mean_square;
         }
-        let least = T::from(MEAN_SQUARES * SWINGING_M * SWINGING_M);
+        let least = T::from(PASSED_SQUARE * MEAN_SQUARES * SWINGING_M * SWINGING_M);
         self.swinging_steps = if decayed || self.mean_square < least {
             0
         } else {
@@ -156,19 +195,24 @@ impl<T: Scalar> SwingDamping<T> {
         };
     }
 
+    /// Time constant 1/ω of the first mode by the inertia of the leg, kg·m², and its stiffness against a tilt, N·m/rad; s.
+    #[inline(always)]
+    pub fn time_constant_s(inertia: T, stiffness: T) -> T {
+        min((inertia / stiffness).sqrt(), T::from(LONGEST_S))
+    }
+
     /// By how much each tendon shall be longer, m, for lengths that deviate from those of the trajectory by `deviations_m`. The tensions per
-    /// pretension tell a swing from a sensor that lies: a swing changes no length along them. `inertia` of the leg, kg·m², and
-    /// `stiffness` against a tilt, N·m/rad, make the first mode.
+    /// pretension tell a swing from a sensor that lies: a swing changes no length along them. The first mode has a time constant, and that of a
+    /// leg of an `inertia`, kg·m².
     #[inline(always)]
     pub fn step(
         &mut self,
         deviations_m: &[T; 3],
         per_pretension: &SVector<T, 3>,
         inertia: T,
-        stiffness: T,
+        time_constant_s: T,
     ) -> [T; 3] {
-        let time_constant_s = min((inertia / stiffness).sqrt(), T::from(LONGEST_S));
-        let share = T::from(STEP_S) / (T::from(STEP_S) + T::from(FILTER_PART) * time_constant_s);
+        let shares = Shares::new(time_constant_s);
         let tendons = self
             .tendons
             .get_or_insert_with(|| deviations_m.map(Speed::new));
@@ -176,7 +220,7 @@ impl<T: Scalar> SwingDamping<T> {
         for (speed, (tendon, &length_m)) in
             speeds.iter_mut().zip(tendons.iter_mut().zip(deviations_m))
         {
-            *speed = tendon.step(length_m, share);
+            *speed = tendon.step(length_m, &shares);
         }
         let swing = swing(speeds, per_pretension);
         self.watch(&swing, time_constant_s);
@@ -248,7 +292,7 @@ mod tests {
                 &deviations_m,
                 &SVector::repeat(1.0),
                 INERTIA,
-                INERTIA / (TIME_CONSTANT_S * TIME_CONSTANT_S),
+                TIME_CONSTANT_S,
             )
         };
         (0..500).map(step).collect()
@@ -276,6 +320,21 @@ mod tests {
         assert!(largest(&offsets) < twice_ratio * amplitude_m);
     }
 
+    /// A leg that moves at a constant speed does not swing: after some time constants it is left alone.
+    #[test]
+    fn what_lasts_is_no_swing() {
+        let mut damping = SwingDamping::<f64>::new(&Settings::for_table_1().unwrap());
+        let moved = |i: u32| {
+            let length_m = 2e-4 * 1e-3 * f64::from(i);
+            let lengths_m = SWING.map(|part| part * length_m);
+            damping.step(&lengths_m, &SVector::repeat(1.0), INERTIA, TIME_CONSTANT_S)
+        };
+        let offsets: Vec<_> = (0..1000).map(moved).collect();
+        let [early, late] = [&offsets[..200], &offsets[600..]].map(largest);
+        assert!(early > 1e-7, "{early}");
+        assert_eq!(late, 0.0);
+    }
+
     /// One length that changes alone is a sensor that lies; so are three that change as pretension does.
     #[test]
     fn what_no_swing_explains_moves_nothing() {
@@ -300,7 +359,7 @@ mod tests {
                 &SWING.map(|part| part * length_m),
                 &SVector::repeat(1.0),
                 INERTIA,
-                INERTIA / (TIME_CONSTANT_S * TIME_CONSTANT_S),
+                TIME_CONSTANT_S,
             );
             if moving {
                 damping.forget_swing();

@@ -2,7 +2,7 @@
 
 use super::{
     CYCLE_S, Mechanism,
-    bounds::{clamp_symmetric, max},
+    bounds::{clamp_symmetric, max, min},
     filter::LowPass,
     payload_estimate::PayloadEstimate,
 };
@@ -24,6 +24,10 @@ const LEAST_M_PER_RAD: f32 = 1.6e-3;
 /// the tip leaves its trajectory by it; at 0.02 a leg unlike its settings comes to rest too far off. `tests/suite/bench/moves.rs` holds
 /// both.
 const MOVING_SHARE: f32 = 0.1;
+
+/// Time constant of a first mode, 1/ω, up to which a push is taken up as fast as the settings say, s: 5 Hz. A slower mode lags more where
+/// the loop of the load ends, and a push on it is taken up more slowly by as much.
+const FAST_MODE_S: f32 = 0.03;
 
 /// The pose that the tendons show.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -131,6 +135,8 @@ pub struct Estimator<T> {
     payload: PayloadEstimate<T>,
     /// The horizontal moment (x, y) that is neither that of the payload nor that of the leg's own weight, N·m.
     push_nm: [Smoothed<T>; 2],
+    /// Part of what is new in it that is taken up at rest, by the first mode.
+    push_share: T,
     /// Elastic torsion of a leg that can twist, rad.
     torsion: T,
     /// What holds it, twice: torsion stiffness of the joint, N·m/rad, and that of the tendons by their tensions, m/rad.
@@ -149,6 +155,7 @@ impl<T: Scalar> Estimator<T> {
             direction: Direction::straight_down(),
             payload: PayloadEstimate::new(settings),
             push_nm: [smoothed; 2],
+            push_share: T::one(),
             torsion: T::zero(),
             torsion_nm_per_rad: T::from(2.0 * settings.joint.torsion_nm_per_rad),
             torsion_m_per_rad: T::from(2.0 * torsion_m_per_rad(settings)),
@@ -169,6 +176,12 @@ impl<T: Scalar> Estimator<T> {
         for push in &mut self.push_nm {
             push.set(T::zero());
         }
+    }
+
+    /// Takes up a push as a leg allows whose first mode has a time constant 1/ω, s.
+    #[inline(always)]
+    pub fn follow_mode(&mut self, time_constant_s: T) {
+        self.push_share = min(T::from(FAST_MODE_S) / time_constant_s, T::one());
     }
 
     /// The load beyond the leg's own weight.
@@ -303,7 +316,7 @@ impl<T: Scalar> Estimator<T> {
         let (share, shifted_kg) = if moving {
             (T::from(MOVING_SHARE), T::zero())
         } else {
-            (T::one(), found_kg)
+            (self.push_share, found_kg)
         };
         for (i, push) in self.push_nm.iter_mut().enumerate() {
             let rest = excess[i] - payload_kg * per_kg[i];

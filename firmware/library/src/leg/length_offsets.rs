@@ -3,7 +3,7 @@
 
 use super::shared::Shared;
 use super::station::StationKeeping;
-use crate::control::bounds;
+use crate::control::{SwingDamping, bounds};
 use leg_model::Scalar;
 
 /// Cycles from one step to the next, over which the step is spread so that the speed of a tendon is steady. Two, because a cycle has
@@ -101,8 +101,10 @@ fn brake_m<T: Scalar>(shared: &mut Shared<T>) -> [T; 3] {
     }
     let inertia = shared.mechanism.inertia(shared.estimator.payload_kg());
     let stiffness = bounds::max(shared.pretension.mean_stiffness_nm_per_rad(), T::one());
+    let time_constant_s = SwingDamping::time_constant_s(inertia, stiffness);
+    shared.estimator.follow_mode(time_constant_s);
     let per_pretension = &target.distribution.per_pretension;
     shared
         .damping
-        .step(&deviations_m, per_pretension, inertia, stiffness)
+        .step(&deviations_m, per_pretension, inertia, time_constant_s)
 }

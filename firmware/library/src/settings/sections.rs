@@ -20,7 +20,7 @@ fields! {
         /// Time in which the compensation of the load comes and goes.
         load_time_s ["s"]: 1e-3..=60.0 = 0.6;
         /// Damping ratio that is asked of the tendons for the leg's first mode, of which lag leaves half or more; 0 for none.
-        damping_ratio ["1"]: 0.0..=0.5 = 0.22;
+        damping_ratio ["1"]: 0.0..=0.5 = 0.25;
     }
 }
 

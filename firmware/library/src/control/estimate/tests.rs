@@ -88,3 +88,39 @@ fn a_push_that_twists_a_leg_moves_neither_the_pose_nor_the_length_error() {
         assert!(estimate.length_error.unwrap().mean_m.abs() < 1e-8);
     }
 }
+
+/// A push on a leg with a fast mode is taken up as the settings say; the first of the two filters is slower by as much as a mode is.
+#[test]
+fn a_push_is_taken_up_as_the_mode_allows() {
+    let settings = Settings::for_table_1().unwrap();
+    let mechanism = Mechanism::<f64>::new(&settings).unwrap();
+    let kinematics = inverse_kinematics(mechanism.rig.geometry(), &Direction::down()).unwrap();
+    let elongation = mechanism.tendons[0].elongation(70.0).unwrap();
+    let pulled = mechanism.tendons[0].elongation(80.0).unwrap();
+    let [free, other] = [elongation, pulled].map(|stretch| kinematics.lengths[0] - stretch);
+    // Cycles until half of a push shows in the load.
+    let cycles = |time_constant_s: f64| {
+        let mut estimator = Estimator::new(&settings);
+        estimator.follow_mode(time_constant_s);
+        let mut push_nm = move || {
+            let lengths_m = [other, free, free];
+            let tensions_n = [80.0, 70.0, 70.0];
+            let load = LoadEstimation::Filtered;
+            let still = Vector3::zeros();
+            let found = estimator.update(&mechanism, &lengths_m, &tensions_n, 0.0, load, &still);
+            found.unwrap();
+            let [x, y] = estimator.excess_nm(&mechanism);
+            x.hypot(y)
+        };
+        let pushes_nm: Vec<_> = (0..20_000).map(|_| push_nm()).collect();
+        let half_nm = 0.5 * pushes_nm[19_999];
+        assert!(half_nm > 0.1, "{half_nm}");
+        pushes_nm.iter().position(|&nm| nm > half_nm).unwrap()
+    };
+    let [fast, edge, slow] = [0.01, 0.03, 0.12].map(cycles);
+    assert_eq!(fast, edge);
+    assert!(
+        (2.0..4.0).contains(&(slow as f64 / edge as f64)),
+        "{edge} {slow}"
+    );
+}
