@@ -294,8 +294,8 @@ impl<T: Scalar> Leg<T> {
             // The first target comes in the next tick: pose and load have been estimated until now.
             self.phase = Phase::Command;
         }
-        if latched.has(Fault::EncoderJump) {
-            // What was counted is lost.
+        if latched.overlaps(FaultSet::LOSES_ZERO) {
+            // What was counted is lost. Homing pulls each motor little, and by its own counter, before any pulls with another.
             self.shared.zero_m = None;
         }
     }

@@ -141,6 +141,12 @@ fn motors_do_not_pull_for_long_against_one_that_is_not_driven() {
     );
 }
 
+/// A strike that failed once: each arm pulled by the reversed counter anew, to 169.9 N.
+#[test]
+fn a_motor_that_turned_the_wrong_way_is_not_armed_again() {
+    require_within(77, &[(9074, "encoder_reversed", 1.0)]);
+}
+
 /// A part of a use of each rig.
 #[test]
 fn a_leg_that_is_used_raises_no_alarm() {
