@@ -22,7 +22,7 @@ pub enum Activity {
     Disarmed,
     /// Just armed where its screws held it.
     Arming,
-    /// At rest and following; the user clears the fault and arms again, twice, or homes where the zero is lost.
+    /// At rest and following; the user clears the fault and arms again, twice.
     Rearmed,
 }
 

@@ -236,7 +236,7 @@ struct Watch<'a> {
     stopped_s: Option<f64>,
     /// Commands that the user has given since.
     given: usize,
-    /// Whether it may sag once a true tension has it ramp down, and whether it does, or homes from where it leans.
+    /// Whether it may sag once a true tension has it ramp down, and whether it does.
     may_sag: bool,
     sags: bool,
     every_s: Option<f64>,
@@ -261,12 +261,7 @@ impl Watch<'_> {
         let highest = stand.truth.tensions_n.into_iter().fold(0.0, f64::max);
         self.struck.tension_n = self.struck.tension_n.max(highest);
         if stand.state() == State::Homing {
-            // One that homes from where it leans is paid out from there: its tip comes down, and its tendons pull already.
-            if self.case.activity == Activity::Rearmed {
-                self.sags = true;
-            } else {
-                self.struck.homing_n = self.struck.homing_n.max(highest);
-            }
+            self.struck.homing_n = self.struck.homing_n.max(highest);
         }
         let tick = (now_s * 8000.0).round() as u64;
         self.sags |= self.may_sag && stand.state() == State::RampingDown && self.exceeds_tension();
@@ -285,7 +280,7 @@ impl Watch<'_> {
         self.struck.tension_n > OVER_PART * self.case.file.f_max_n
     }
 
-    /// Clears the fault and arms without a repair, as a user may; homes a leg that has lost its zero.
+    /// Clears the fault and arms without a repair, as a user may.
     fn rearm(&mut self, stand: &mut Stand) -> Result<(), String> {
         let (round, clears) = (self.given / 2, self.given.is_multiple_of(2));
         if self.case.activity != Activity::Rearmed || round >= CLEARS_S.len() {
@@ -293,11 +288,10 @@ impl Watch<'_> {
         }
         let due_s = CLEARS_S[round] + if clears { 0.0 } else { ARMS_AFTER_S };
         if stand.time_s() - self.began_s >= due_s {
-            let homed = stand.telemetry.is_some_and(|telemetry| telemetry.homed);
-            stand.command(match (clears, homed) {
-                (true, _) => &Command::Clear,
-                (false, true) => &Command::Arm,
-                (false, false) => &Command::Home,
+            stand.command(if clears {
+                &Command::Clear
+            } else {
+                &Command::Arm
             })?;
             self.given += 1;
         }
