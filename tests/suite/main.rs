@@ -31,6 +31,7 @@ mod firmware {
     mod control_law;
     mod default_settings;
     mod disarm;
+    mod doubts;
     mod encoder_jump;
     mod residual;
     mod safe_states;
@@ -58,6 +59,7 @@ mod sim {
     mod braking;
     mod comparison;
     mod fmea_page;
+    mod homing_with_faults;
     mod load_left_out;
     mod lost_numbers;
     mod random_scenarios;

@@ -282,6 +282,12 @@ impl<T: Scalar> Leg<T> {
         {
             report.end = JogEnd::CutOff;
         }
+        let mut lost = latched.overlaps(FaultSet::LOSES_ZERO);
+        if matches!(state, State::RampingDown | State::Off) {
+            // From now on nothing can be compared.
+            lost |= self.doubts(measured).any();
+            self.monitors.forget_jumps();
+        }
         let trust = Trust {
             pose: self.agreement.watches() && !self.supervisor.stopped(),
             counters: !latched.overlaps(FaultSet::SUSPECT_COUNTERS),
@@ -294,10 +300,19 @@ impl<T: Scalar> Leg<T> {
             // The first target comes in the next tick: pose and load have been estimated until now.
             self.phase = Phase::Command;
         }
-        if latched.has(Fault::EncoderJump) {
-            // What was counted is lost.
+        if lost {
+            // Homing turns one motor after the other, with little tension, before the leg follows them together.
             self.shared.zero_m = None;
         }
+    }
+
+    /// What counters and load cells contradict each other by, or themselves. A held leg is not cleared by it, but paid out and homed.
+    fn doubts(&self, measured: &Measured<T>) -> FaultSet {
+        let mut doubts = FaultSet::NONE;
+        doubts.add(Fault::Residual, !self.agreement.agree());
+        let jumped = self.monitors.stay_jumped(&measured.tensions_n);
+        doubts.add(Fault::TensionJump, jumped);
+        doubts
     }
 
     /// Forgets where its tendons are: it has to home.

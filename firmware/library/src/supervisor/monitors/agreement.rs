@@ -43,6 +43,11 @@ impl ErrorGrowth {
 /// shows up to a newton more than its elongation.
 pub const SETTLE_CYCLES: u16 = 200;
 
+/// A swing that may falsify the error by more than so many allowed changes while the last tendon comes taut is a hard one, as after a push
+/// that took a tendon's tension: what the error is then is in doubt by as much, and the doubt fades in this time, s.
+const HARD_SWINGS: f32 = 4.0;
+const DOUBT_TIME_S: f32 = 1.0;
+
 /// Watches for a change that neither motion nor load explains.
 #[derive(Clone, Copy, Debug)]
 pub struct Agreement<T> {
@@ -62,6 +67,8 @@ struct Reference<T> {
     /// Elongation of each tendon, slowly forgotten and quickly.
     elongations: [[LowPass<T>; 2]; 3],
     settle_cycles: u16,
+    /// By how much the mean may be off that a hard swing began with, m.
+    doubt_m: T,
 }
 
 impl<T: Scalar> Agreement<T> {
@@ -130,9 +137,15 @@ impl<T: Scalar> Agreement<T> {
             learned_m += (slow_m - before_m).abs();
         }
         let swings_m = swings_m * T::from(SWING_PART / 3.0);
-        let allowed_m = self.change_max_m + stretched_m * self.part;
+        let hard_m = self.change_max_m * T::from(HARD_SWINGS);
+        if reference.settle_cycles > 0 && swings_m > hard_m && swings_m > reference.doubt_m {
+            reference.doubt_m = swings_m;
+        }
+        let fading_m = reference.doubt_m * T::from(CYCLE_S / DOUBT_TIME_S);
+        reference.doubt_m -= fading_m;
+        let allowed_m = self.change_max_m + stretched_m * self.part + reference.doubt_m;
         // What a changed elongation was allowed to change stays.
-        let learned_m = T::from(growth.0 * CYCLE_S) + learned_m * self.part;
+        let learned_m = T::from(growth.0 * CYCLE_S) + learned_m * self.part + fading_m;
         reference.mean_m += clamp_symmetric(change_m, learned_m);
         self.beyond_now_m = change_m.abs() - allowed_m;
         self.beyond.step(self.beyond_now_m - swings_m);
@@ -150,6 +163,7 @@ impl<T: Scalar> Reference<T> {
             mean_m: error.mean_m,
             elongations,
             settle_cycles: SETTLE_CYCLES,
+            doubt_m: T::zero(),
         }
     }
 }
@@ -160,6 +174,7 @@ mod tests {
     use super::{Agreement, CURVE_PART, ErrorGrowth, LengthError, SETTLE_CYCLES};
     use crate::control::CYCLE_S;
     use crate::settings::Settings;
+    use core::f64::consts::TAU;
     use leg_model::SupportKind;
 
     /// Elongation of every tendon at first, m: that of the paper's leg at 70 N.
@@ -315,6 +330,39 @@ mod tests {
         };
         assert!(agrees_after(ErrorGrowth::RESTING));
         assert!(!agrees_after(ErrorGrowth::KEEPING_STATION));
+    }
+
+    /// A leg that swings as the last of its tendons comes taut, as after a push that took its tension: a damped tendon pulls otherwise than
+    /// by its curve, so that the error is falsified when it is first looked at. It rings down within half a second.
+    #[test]
+    fn a_hard_swing_as_the_tendons_come_taut_is_no_lie() {
+        let settled_s = f64::from(SETTLE_CYCLES) * f64::from(CYCLE_S);
+        let agrees = |swing_m: f64, falsified_m: f64| {
+            let mut leg = Leg::taut();
+            leg.agreement.end();
+            let begun = leg.error;
+            let mut agrees = true;
+            for cycle in 0..10_000 {
+                let time_s = f64::from(cycle) * f64::from(CYCLE_S) - settled_s;
+                let part = (-time_s.max(0.0) / 0.1).exp() * (TAU * 7.0 * time_s).cos();
+                let stretched_m = [swing_m, -0.5 * swing_m, -0.5 * swing_m];
+                leg.error = begun;
+                for (elongation, more) in leg.error.elongations_m.iter_mut().zip(stretched_m) {
+                    *elongation += more * part;
+                }
+                leg.error.mean_m += falsified_m * part;
+                leg.watch(false);
+                agrees &= leg.agreement.agree();
+            }
+            leg.error = begun;
+            // Five seconds later nothing of it is left.
+            let found_s = leg.disagrees_after(|_, error| lie(error, 1, -1e-4));
+            assert!(!agrees || found_s.is_some_and(|s| s < 0.05), "{found_s:?}");
+            agrees
+        };
+        assert!(agrees(6e-4, 1e-4));
+        // What no hard swing explains is a lie.
+        assert!(!agrees(1e-4, 1e-4));
     }
 
     #[test]

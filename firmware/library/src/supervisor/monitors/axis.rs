@@ -76,6 +76,8 @@ pub struct AxisMonitor<T> {
     history: [T; JUMP_CHECKS],
     place: usize,
     filled: bool,
+    /// The tension before the first jump since faults were cleared last, N.
+    jumped_from_n: Option<T>,
     bounds: AxisBounds<T>,
 }
 
@@ -128,6 +130,7 @@ impl<T: Scalar> AxisMonitor<T> {
             history: [T::zero(); JUMP_CHECKS],
             place: 0,
             filled: false,
+            jumped_from_n: None,
             bounds: AxisBounds {
                 m_per_count: m_per_count.into(),
                 slack_n: limits.slack_n.into(),
@@ -186,6 +189,24 @@ impl<T: Scalar> AxisMonitor<T> {
         let jump = self.filled && alive && !((tension - before).abs() <= bounds.jump_n);
         self.filled |= self.place == JUMP_CHECKS;
         faults.add(Fault::TensionJump, jump);
+        // A cell that comes back from the dead while the leg is held does not jump away.
+        let known = view.led || view.cells_trusted;
+        if jump && known && self.jumped_from_n.is_none() {
+            self.jumped_from_n = Some(before);
+        }
+    }
+
+    /// Whether a tension, N, has jumped and not come back since: a cut or slipped tendon, or a load cell that lies. After a knock it comes
+    /// back.
+    pub fn stays_jumped(&self, tension_n: T) -> bool {
+        let near_n = self.bounds.jump_n * T::HALF;
+        let is_away = |from_n: T| !((tension_n - from_n).abs() <= near_n);
+        self.jumped_from_n.is_some_and(is_away)
+    }
+
+    /// What has jumped before is no matter any more.
+    pub fn forget_jump(&mut self) {
+        self.jumped_from_n = None;
     }
 
     /// The motor and its encoder.
