@@ -6,7 +6,10 @@
 //! twists. A wrong load cell changes the mean by a third of its error over the stiffness of the tendon, and a lost count by a
 //! third of its length.
 
-use crate::control::{CYCLE_S, LengthError, LowPass, bounds::clamp_symmetric};
+use crate::control::{
+    CYCLE_S, LengthError, LowPass,
+    bounds::{clamp_symmetric, max},
+};
 use crate::settings::Settings;
 use leg_model::Scalar;
 
@@ -25,6 +28,16 @@ const FORGET_TIME_S: f32 = 1.0;
 /// Part of the change of the elongations that tendons may stretch otherwise than by their curves. A single wrong cell changes
 /// the mean by about a third of its elongation, which is the mean change of elongations: eight times this.
 const CURVE_PART: f32 = 0.12;
+
+/// Part of a change that both filters take over in a cycle.
+const FORGET_GAIN: f32 = CYCLE_S / (FORGET_TIME_S + CYCLE_S);
+const SWING_GAIN: f32 = CYCLE_S / (SWING_TIME_S + CYCLE_S);
+
+/// What is allowed for the sum of the three changes before that, of the elongations from which changes count and of swings; and what is
+/// learned of the first.
+const STRETCH_ALLOWED: f32 = CURVE_PART / 3.0 * (1.0 - FORGET_GAIN);
+const STRETCH_LEARNED: f32 = CURVE_PART / 3.0 * FORGET_GAIN;
+const SWING_ALLOWED: f32 = SWING_PART / 3.0 * (1.0 - SWING_GAIN);
 
 /// How fast the error may grow that is taken for one of the geometry or of a curve, m/s.
 #[derive(Clone, Copy, Debug)]
@@ -57,15 +70,13 @@ pub struct Agreement<T> {
     /// The same now, with nothing allowed for a swing.
     beyond_now_m: T,
     change_max_m: T,
-    /// Part of the change of the elongations that is allowed, over the number of tendons.
-    part: T,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Reference<T> {
     mean_m: T,
     /// Elongation of each tendon, slowly forgotten and quickly.
-    elongations: [[LowPass<T>; 2]; 3],
+    elongations_m: [[T; 2]; 3],
     settle_cycles: u16,
     /// By how much the mean may be off that a hard swing began with, m.
     doubt_m: T,
@@ -79,7 +90,6 @@ impl<T: Scalar> Agreement<T> {
             beyond: LowPass::new(FILTER_TIME_S, CYCLE_S),
             beyond_now_m: T::zero(),
             change_max_m: settings.limits.residual_change_m.into(),
-            part: T::from(CURVE_PART / 3.0),
         }
     }
 
@@ -122,30 +132,33 @@ impl<T: Scalar> Agreement<T> {
             self.reference = Some(Reference::new(error));
             return;
         };
+        let (mut stretched_m, mut swings_m) = (T::SUM_START, T::SUM_START);
+        for ([slow_m, fast_m], &now_m) in
+            reference.elongations_m.iter_mut().zip(&error.elongations_m)
+        {
+            let (from_slow_m, from_fast_m) = (now_m - *slow_m, now_m - *fast_m);
+            *slow_m += from_slow_m * T::from(FORGET_GAIN);
+            *fast_m += from_fast_m * T::from(SWING_GAIN);
+            stretched_m += from_slow_m.abs();
+            swings_m += from_fast_m.abs();
+        }
+        let swings_m = swings_m * T::from(SWING_ALLOWED);
         if reference.settle_cycles > 0 {
             reference.settle_cycles -= 1;
             reference.mean_m = error.mean_m;
+            let hard_m = self.change_max_m * T::from(HARD_SWINGS);
+            if swings_m > max(hard_m, reference.doubt_m) {
+                reference.doubt_m = swings_m;
+            }
         }
         let change_m = error.mean_m - reference.mean_m;
-        let start = T::SUM_START;
-        let (mut stretched_m, mut swings_m, mut learned_m) = (start, start, start);
-        for ([slow, fast], &now_m) in reference.elongations.iter_mut().zip(&error.elongations_m) {
-            let before_m = slow.value();
-            let slow_m = slow.step(now_m);
-            stretched_m += (now_m - slow_m).abs();
-            swings_m += (now_m - fast.step(now_m)).abs();
-            learned_m += (slow_m - before_m).abs();
-        }
-        let swings_m = swings_m * T::from(SWING_PART / 3.0);
-        let hard_m = self.change_max_m * T::from(HARD_SWINGS);
-        if reference.settle_cycles > 0 && swings_m > hard_m && swings_m > reference.doubt_m {
-            reference.doubt_m = swings_m;
-        }
         let fading_m = reference.doubt_m * T::from(CYCLE_S / DOUBT_TIME_S);
         reference.doubt_m -= fading_m;
-        let allowed_m = self.change_max_m + stretched_m * self.part + reference.doubt_m;
+        let stretch_m = stretched_m * T::from(STRETCH_ALLOWED);
+        let allowed_m = self.change_max_m + stretch_m + reference.doubt_m;
         // What a changed elongation was allowed to change stays.
-        let learned_m = T::from(growth.0 * CYCLE_S) + learned_m * self.part + fading_m;
+        let stretch_m = stretched_m * T::from(STRETCH_LEARNED);
+        let learned_m = T::from(growth.0 * CYCLE_S) + stretch_m + fading_m;
         reference.mean_m += clamp_symmetric(change_m, learned_m);
         self.beyond_now_m = change_m.abs() - allowed_m;
         self.beyond.step(self.beyond_now_m - swings_m);
@@ -154,14 +167,9 @@ impl<T: Scalar> Agreement<T> {
 
 impl<T: Scalar> Reference<T> {
     fn new(error: &LengthError<T>) -> Self {
-        let filter = |time_s: f32| LowPass::new(time_s, CYCLE_S);
-        let mut elongations = [[filter(FORGET_TIME_S), filter(SWING_TIME_S)]; 3];
-        for (filters, &now_m) in elongations.iter_mut().zip(&error.elongations_m) {
-            filters.iter_mut().for_each(|filter| filter.set(now_m));
-        }
         Self {
             mean_m: error.mean_m,
-            elongations,
+            elongations_m: error.elongations_m.map(|now_m| [now_m; 2]),
             settle_cycles: SETTLE_CYCLES,
             doubt_m: T::zero(),
         }

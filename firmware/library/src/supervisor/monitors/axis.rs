@@ -190,10 +190,15 @@ impl<T: Scalar> AxisMonitor<T> {
         self.filled |= self.place == JUMP_CHECKS;
         faults.add(Fault::TensionJump, jump);
         // A cell that comes back from the dead while the leg is held does not jump away.
-        let known = view.led || view.cells_trusted;
-        if jump && known && self.jumped_from_n.is_none() {
-            self.jumped_from_n = Some(before);
+        if jump && (view.led || view.cells_trusted) {
+            self.remember_jump(before);
         }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn remember_jump(&mut self, from_n: T) {
+        self.jumped_from_n.get_or_insert(from_n);
     }
 
     /// Whether a tension, N, has jumped and not come back since: a cut or slipped tendon, or a load cell that lies. After a knock it comes
