@@ -53,10 +53,10 @@ fn the_charts_of_a_run_are_drawn_again_to_the_pixel() {
         }
         let tip = String::from_utf8_lossy(&run["tip.svg"]);
         let phases: &[&str] = match scenario {
-            "homing" => &["homing", "at rest"],
-            "circle" => &["moving", "at rest"],
-            "payload" => &["moving", "at rest"],
-            _ => &["at rest", "held"],
+            "homing" => &["homing", "active"],
+            "circle" => &["moving", "active"],
+            "payload" => &["moving", "active"],
+            _ => &["active", "held"],
         };
         for phase in phases {
             let shown = tip.lines().filter(|line| line == phase).count();
