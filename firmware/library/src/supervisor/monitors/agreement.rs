@@ -48,6 +48,9 @@ pub const SETTLE_CYCLES: u16 = 200;
 const HARD_SWINGS: f32 = 4.0;
 const DOUBT_TIME_S: f32 = 1.0;
 
+/// Cycles after which nothing of it is left, 5 s.
+const FADE_CYCLES: u16 = 10_000;
+
 /// Watches for a change that neither motion nor load explains.
 #[derive(Clone, Copy, Debug)]
 pub struct Agreement<T> {
@@ -57,8 +60,6 @@ pub struct Agreement<T> {
     /// The same now, with nothing allowed for a swing.
     beyond_now_m: T,
     change_max_m: T,
-    /// Part of the change of the elongations that is allowed, over the number of tendons.
-    part: T,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -66,7 +67,8 @@ struct Reference<T> {
     mean_m: T,
     /// Elongation of each tendon, slowly forgotten and quickly.
     elongations: [[LowPass<T>; 2]; 3],
-    settle_cycles: u16,
+    /// Cycles until nothing is in doubt; in the first [`SETTLE_CYCLES`] of them the error is not watched yet.
+    young_cycles: u16,
     /// By how much the mean may be off that a hard swing began with, m.
     doubt_m: T,
 }
@@ -79,7 +81,6 @@ impl<T: Scalar> Agreement<T> {
             beyond: LowPass::new(FILTER_TIME_S, CYCLE_S),
             beyond_now_m: T::zero(),
             change_max_m: settings.limits.residual_change_m.into(),
-            part: T::from(CURVE_PART / 3.0),
         }
     }
 
@@ -100,7 +101,7 @@ impl<T: Scalar> Agreement<T> {
     pub fn watches(&self) -> bool {
         self.reference
             .as_ref()
-            .is_some_and(|reference| reference.settle_cycles == 0)
+            .is_some_and(|reference| reference.young_cycles <= FADE_CYCLES)
     }
 
     /// Whether the sensors agree: not where the change is no number.
@@ -122,11 +123,6 @@ impl<T: Scalar> Agreement<T> {
             self.reference = Some(Reference::new(error));
             return;
         };
-        if reference.settle_cycles > 0 {
-            reference.settle_cycles -= 1;
-            reference.mean_m = error.mean_m;
-        }
-        let change_m = error.mean_m - reference.mean_m;
         let start = T::SUM_START;
         let (mut stretched_m, mut swings_m, mut learned_m) = (start, start, start);
         for ([slow, fast], &now_m) in reference.elongations.iter_mut().zip(&error.elongations_m) {
@@ -137,15 +133,16 @@ impl<T: Scalar> Agreement<T> {
             learned_m += (slow_m - before_m).abs();
         }
         let swings_m = swings_m * T::from(SWING_PART / 3.0);
-        let hard_m = self.change_max_m * T::from(HARD_SWINGS);
-        if reference.settle_cycles > 0 && swings_m > hard_m && swings_m > reference.doubt_m {
-            reference.doubt_m = swings_m;
-        }
-        let fading_m = reference.doubt_m * T::from(CYCLE_S / DOUBT_TIME_S);
-        reference.doubt_m -= fading_m;
-        let allowed_m = self.change_max_m + stretched_m * self.part + reference.doubt_m;
+        let curve_part = T::from(CURVE_PART / 3.0);
+        let mut allowed_m = self.change_max_m + stretched_m * curve_part;
         // What a changed elongation was allowed to change stays.
-        let learned_m = T::from(growth.0 * CYCLE_S) + learned_m * self.part + fading_m;
+        let mut learned_m = T::from(growth.0 * CYCLE_S) + learned_m * curve_part;
+        if reference.young_cycles > 0 {
+            let hard_m = self.change_max_m * T::from(HARD_SWINGS);
+            learned_m += reference.age(error.mean_m, swings_m, hard_m);
+            allowed_m += reference.doubt_m;
+        }
+        let change_m = error.mean_m - reference.mean_m;
         reference.mean_m += clamp_symmetric(change_m, learned_m);
         self.beyond_now_m = change_m.abs() - allowed_m;
         self.beyond.step(self.beyond_now_m - swings_m);
@@ -162,9 +159,27 @@ impl<T: Scalar> Reference<T> {
         Self {
             mean_m: error.mean_m,
             elongations,
-            settle_cycles: SETTLE_CYCLES,
+            young_cycles: SETTLE_CYCLES + FADE_CYCLES,
             doubt_m: T::zero(),
         }
+    }
+
+    /// One cycle in which the error is not watched yet, or a doubt about it fades: by how much, m.
+    #[cold]
+    fn age(&mut self, mean_m: T, swings_m: T, hard_m: T) -> T {
+        self.young_cycles -= 1;
+        if self.young_cycles >= FADE_CYCLES {
+            self.mean_m = mean_m;
+            if swings_m > hard_m && swings_m > self.doubt_m {
+                self.doubt_m = swings_m;
+            }
+        }
+        if self.young_cycles == 0 || self.young_cycles <= FADE_CYCLES && self.doubt_m == T::zero() {
+            (self.young_cycles, self.doubt_m) = (0, T::zero());
+        }
+        let fading_m = self.doubt_m * T::from(CYCLE_S / DOUBT_TIME_S);
+        self.doubt_m -= fading_m;
+        fading_m
     }
 }
 
