@@ -43,9 +43,10 @@ impl ErrorGrowth {
 /// shows up to a newton more than its elongation.
 pub const SETTLE_CYCLES: u16 = 200;
 
-/// A swing that may falsify the error by more than so many allowed changes while the last tendon comes taut is a hard one, as after a push
-/// that took a tendon's tension: what the error is then is in doubt by as much, and the doubt fades in this time, s.
-const HARD_SWINGS: f32 = 4.0;
+/// A swing that may falsify the error by more than this while the last tendon comes taut, m, is a hard one, as after a push that took a
+/// tendon's tension: four times the change that is a fault. What the error is then is in doubt by as much, and the doubt fades in this
+/// time, s.
+const HARD_SWING_M: f32 = 4e-5;
 const DOUBT_TIME_S: f32 = 1.0;
 
 /// Cycles after which nothing of it is left, 5 s.
@@ -138,9 +139,16 @@ impl<T: Scalar> Agreement<T> {
         // What a changed elongation was allowed to change stays.
         let mut learned_m = T::from(growth.0 * CYCLE_S) + learned_m * curve_part;
         if reference.young_cycles > 0 {
-            let hard_m = self.change_max_m * T::from(HARD_SWINGS);
-            learned_m += reference.age(error.mean_m, swings_m, hard_m);
-            allowed_m += reference.doubt_m;
+            reference.young_cycles -= 1;
+            if reference.young_cycles < FADE_CYCLES {
+                learned_m += reference.fade();
+                allowed_m += reference.doubt_m;
+            } else {
+                reference.mean_m = error.mean_m;
+                if swings_m > T::from(HARD_SWING_M) {
+                    reference.doubt(swings_m);
+                }
+            }
         }
         let change_m = error.mean_m - reference.mean_m;
         reference.mean_m += clamp_symmetric(change_m, learned_m);
@@ -164,17 +172,18 @@ impl<T: Scalar> Reference<T> {
         }
     }
 
-    /// One cycle in which the error is not watched yet, or a doubt about it fades: by how much, m.
+    /// The mean may be off by a hard swing, m.
     #[cold]
-    fn age(&mut self, mean_m: T, swings_m: T, hard_m: T) -> T {
-        self.young_cycles -= 1;
-        if self.young_cycles >= FADE_CYCLES {
-            self.mean_m = mean_m;
-            if swings_m > hard_m && swings_m > self.doubt_m {
-                self.doubt_m = swings_m;
-            }
+    fn doubt(&mut self, swings_m: T) {
+        if swings_m > self.doubt_m {
+            self.doubt_m = swings_m;
         }
-        if self.young_cycles == 0 || self.young_cycles <= FADE_CYCLES && self.doubt_m == T::zero() {
+    }
+
+    /// One cycle in which a doubt fades, if there is one: by how much, m.
+    #[cold]
+    fn fade(&mut self) -> T {
+        if self.young_cycles == 0 || self.doubt_m == T::zero() {
             (self.young_cycles, self.doubt_m) = (0, T::zero());
         }
         let fading_m = self.doubt_m * T::from(CYCLE_S / DOUBT_TIME_S);
