@@ -307,6 +307,8 @@ impl<T: Scalar> Leg<T> {
     }
 
     /// What counters and load cells contradict each other by, or themselves. A held leg is not cleared by it, but paid out and homed.
+    // Apart, for none but commands and changes of the state ask for it.
+    #[inline(never)]
     fn doubts(&self, measured: &Measured<T>) -> FaultSet {
         let mut doubts = FaultSet::NONE;
         doubts.add(Fault::Residual, !self.agreement.agree());

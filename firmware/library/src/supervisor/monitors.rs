@@ -96,6 +96,7 @@ impl<T: Scalar> Monitors<T> {
     }
 
     /// Whatever has jumped before is no matter any more.
+    #[inline(never)]
     pub fn forget_jumps(&mut self) {
         self.axes.iter_mut().for_each(AxisMonitor::forget_jump);
     }

@@ -6,10 +6,7 @@
 //! twists. A wrong load cell changes the mean by a third of its error over the stiffness of the tendon, and a lost count by a
 //! third of its length.
 
-use crate::control::{
-    CYCLE_S, LengthError, LowPass,
-    bounds::{clamp_symmetric, max},
-};
+use crate::control::{CYCLE_S, LengthError, LowPass, bounds::clamp_symmetric};
 use crate::settings::Settings;
 use leg_model::Scalar;
 
@@ -56,10 +53,14 @@ impl ErrorGrowth {
 /// shows up to a newton more than its elongation.
 pub const SETTLE_CYCLES: u16 = 200;
 
-/// A swing that may falsify the error by more than so many allowed changes while the last tendon comes taut is a hard one, as after a push
-/// that took a tendon's tension: what the error is then is in doubt by as much, and the doubt fades in this time, s.
-const HARD_SWINGS: f32 = 4.0;
+/// A swing that may falsify the error by more than this while the last tendon comes taut, m, is a hard one, as after a push that took a
+/// tendon's tension: four times the change that is a fault. What the error is then is in doubt by as much, and the doubt fades in this
+/// time, s.
+const HARD_SWING_M: f32 = 4e-5;
 const DOUBT_TIME_S: f32 = 1.0;
+
+/// Cycles after which nothing of it is left, 5 s.
+const FADE_CYCLES: u16 = 10_000;
 
 /// Watches for a change that neither motion nor load explains.
 #[derive(Clone, Copy, Debug)]
@@ -77,7 +78,8 @@ struct Reference<T> {
     mean_m: T,
     /// Elongation of each tendon, slowly forgotten and quickly.
     elongations_m: [[T; 2]; 3],
-    settle_cycles: u16,
+    /// Cycles until nothing is in doubt; in the first [`SETTLE_CYCLES`] of them the error is not watched yet.
+    young_cycles: u16,
     /// By how much the mean may be off that a hard swing began with, m.
     doubt_m: T,
 }
@@ -110,7 +112,7 @@ impl<T: Scalar> Agreement<T> {
     pub fn watches(&self) -> bool {
         self.reference
             .as_ref()
-            .is_some_and(|reference| reference.settle_cycles == 0)
+            .is_some_and(|reference| reference.young_cycles <= FADE_CYCLES)
     }
 
     /// Whether the sensors agree: not where the change is no number.
@@ -143,22 +145,22 @@ impl<T: Scalar> Agreement<T> {
             swings_m += from_fast_m.abs();
         }
         let swings_m = swings_m * T::from(SWING_ALLOWED);
-        if reference.settle_cycles > 0 {
-            reference.settle_cycles -= 1;
-            reference.mean_m = error.mean_m;
-            let hard_m = self.change_max_m * T::from(HARD_SWINGS);
-            if swings_m > max(hard_m, reference.doubt_m) {
-                reference.doubt_m = swings_m;
+        let mut allowed_m = self.change_max_m + stretched_m * T::from(STRETCH_ALLOWED);
+        // What a changed elongation was allowed to change stays.
+        let mut learned_m = T::from(growth.0 * CYCLE_S) + stretched_m * T::from(STRETCH_LEARNED);
+        if reference.young_cycles > 0 {
+            reference.young_cycles -= 1;
+            if reference.young_cycles < FADE_CYCLES {
+                learned_m += reference.fade();
+                allowed_m += reference.doubt_m;
+            } else {
+                reference.mean_m = error.mean_m;
+                if swings_m > T::from(HARD_SWING_M) {
+                    reference.doubt(swings_m);
+                }
             }
         }
         let change_m = error.mean_m - reference.mean_m;
-        let fading_m = reference.doubt_m * T::from(CYCLE_S / DOUBT_TIME_S);
-        reference.doubt_m -= fading_m;
-        let stretch_m = stretched_m * T::from(STRETCH_ALLOWED);
-        let allowed_m = self.change_max_m + stretch_m + reference.doubt_m;
-        // What a changed elongation was allowed to change stays.
-        let stretch_m = stretched_m * T::from(STRETCH_LEARNED);
-        let learned_m = T::from(growth.0 * CYCLE_S) + stretch_m + fading_m;
         reference.mean_m += clamp_symmetric(change_m, learned_m);
         self.beyond_now_m = change_m.abs() - allowed_m;
         self.beyond.step(self.beyond_now_m - swings_m);
@@ -170,9 +172,28 @@ impl<T: Scalar> Reference<T> {
         Self {
             mean_m: error.mean_m,
             elongations_m: error.elongations_m.map(|now_m| [now_m; 2]),
-            settle_cycles: SETTLE_CYCLES,
+            young_cycles: SETTLE_CYCLES + FADE_CYCLES,
             doubt_m: T::zero(),
         }
+    }
+
+    /// The mean may be off by a hard swing, m.
+    #[cold]
+    fn doubt(&mut self, swings_m: T) {
+        if swings_m > self.doubt_m {
+            self.doubt_m = swings_m;
+        }
+    }
+
+    /// One cycle in which a doubt fades, if there is one: by how much, m.
+    #[cold]
+    fn fade(&mut self) -> T {
+        if self.young_cycles == 0 || self.doubt_m == T::zero() {
+            (self.young_cycles, self.doubt_m) = (0, T::zero());
+        }
+        let fading_m = self.doubt_m * T::from(CYCLE_S / DOUBT_TIME_S);
+        self.doubt_m -= fading_m;
+        fading_m
     }
 }
 
