@@ -57,6 +57,7 @@ mod rig {
 mod sim {
     mod braking;
     mod comparison;
+    mod current_zeros;
     mod fmea_page;
     mod load_left_out;
     mod lost_numbers;

@@ -94,7 +94,8 @@ fn a_push_that_twists_a_leg_moves_neither_the_pose_nor_the_length_error() {
 fn a_push_is_taken_up_as_the_mode_allows() {
     let settings = Settings::for_table_1().unwrap();
     let mechanism = Mechanism::<f64>::new(&settings).unwrap();
-    let kinematics = inverse_kinematics(mechanism.rig.geometry(), &Direction::down()).unwrap();
+    let kinematics =
+        inverse_kinematics(mechanism.rig.geometry(), &Direction::straight_down()).unwrap();
     let elongation = mechanism.tendons[0].elongation(70.0).unwrap();
     let pulled = mechanism.tendons[0].elongation(80.0).unwrap();
     let [free, other] = [elongation, pulled].map(|stretch| kinematics.lengths[0] - stretch);
