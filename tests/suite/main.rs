@@ -58,6 +58,7 @@ mod rig {
 mod sim {
     mod braking;
     mod comparison;
+    mod current_zeros;
     mod fmea_page;
     mod homing_with_faults;
     mod load_left_out;

@@ -22,7 +22,7 @@ pub use command_queue::CommandOutcome;
 use crate::control::{LoadEstimation, Measured, Measurement};
 use crate::drive::Drive;
 use crate::jog::{JogEnd, JogReport};
-use crate::sensors::Sensors;
+use crate::sensors::{CurrentZero, Sensors};
 use crate::settings::{Settings, SettingsError};
 use crate::supervisor::{
     Agreement, ErrorGrowth, Event, Fault, FaultSet, MonitorInput, Monitors, State, Supervisor,
@@ -96,6 +96,11 @@ impl<T: Scalar> Leg<T> {
         }
         if self.phase == Phase::Plan {
             self.shared.play.follow(&measured.pulled_m);
+        }
+        if self.measurement.seeks_current_zeros() {
+            // A leg that a fault has switched off meanwhile seeks them all the same.
+            let driven = self.mode.state().driven();
+            self.measurement.seek_current_zeros(sensors, driven);
         }
         if self.mode.boots_up() {
             self.mode = Mode::Disarmed;
@@ -335,6 +340,12 @@ impl<T: Scalar> Leg<T> {
     #[must_use]
     pub fn state(&self) -> State {
         self.mode.state()
+    }
+
+    /// The zero of each motor's current.
+    #[must_use]
+    pub fn current_zeros(&self) -> [CurrentZero; 3] {
+        self.measurement.current_zeros()
     }
 
     /// What the last jog measured; none since the start.

@@ -3,7 +3,7 @@
 use super::request::done;
 use super::{Operator, OperatorError, TelemetryStream};
 use leg_firmware::host_link::{HostReply, HostRequest, TelemetryReport};
-use leg_firmware::sensors::Sensors;
+use leg_firmware::sensors::SensorReading;
 use leg_firmware::telemetry::Telemetry;
 use std::time::Duration;
 
@@ -38,8 +38,8 @@ impl Operator {
         Ok(report)
     }
 
-    /// The raw codes of the sensors in the last tick.
-    pub fn sensors(&mut self) -> Result<Sensors, OperatorError> {
+    /// The raw codes of the sensors in the last tick, and the zeros of the currents.
+    pub fn sensors(&mut self) -> Result<SensorReading, OperatorError> {
         let request = HostRequest::Sensors;
         self.ask("report its sensors", &request, |reply| match reply {
             HostReply::Sensors(sensors) => Some(sensors),
