@@ -220,6 +220,7 @@ fn spectrum(ui: &mut Ui, kept: &Kept, column: Column, height: f32) {
     let plot = Plot::new((column.name(), "spectrum"))
         .height((height - used).max(HEIGHT_MIN))
         .grid_color(theme::palette(ui.ctx()).line)
+        .include_x(0.0)
         .include_y(0.0)
         .x_grid_spacer(|input| grid(&input, LABEL_PART))
         .y_grid_spacer(|input| grid(&input, 0.0))
