@@ -340,8 +340,13 @@ impl App {
         self.stop |= keys::take_stop(&mut input.events);
     }
 
+    /// What the leg's ticks took in the last frame, ms.
+    pub(crate) const fn ticks_ms(&self) -> f64 {
+        self.work.leg_ms()
+    }
+
     /// A frame.
-    fn frame(&mut self, ui: &mut Ui) {
+    pub(crate) fn frame(&mut self, ui: &mut Ui) {
         let began = Instant::now();
         let ctx = ui.ctx().clone();
         self.fit(&ctx);

@@ -28,6 +28,10 @@ const PAYLOAD_RADIUS_M: f64 = 0.0135;
 /// Height of the labels below the detail, points.
 const LABELS: f32 = 36.0;
 
+/// From these widths of its cell on there is room for the number of a tendon, and for a decimal, points.
+const CELL_NUMBERED: f32 = 58.0;
+const CELL_ROOMY: f32 = 72.0;
+
 /// A tip that is nearer than that is where it shall be, mm.
 const NEAR_MM: f64 = 0.5;
 
@@ -277,8 +281,10 @@ impl<'a> Drawn<'a> {
             );
             let words = if self.cut(tendon) {
                 format!("{} cut", tendon + 1)
-            } else if width < 72.0 {
+            } else if width < CELL_NUMBERED {
                 format!("{:3.0} N", tensions_n[tendon])
+            } else if width < CELL_ROOMY {
+                format!("{}:{:3.0} N", tendon + 1, tensions_n[tendon])
             } else {
                 format!("{}: {:.1} N", tendon + 1, tensions_n[tendon])
             };

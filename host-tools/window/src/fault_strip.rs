@@ -4,7 +4,7 @@ use crate::faults::{self, FaultList};
 use crate::places::place;
 use crate::theme::palette;
 use crate::top_bar::NOT_KNOWN;
-use eframe::egui::{Area, Button, Frame, Id, Rect, RichText, ScrollArea, Stroke, Ui, vec2};
+use eframe::egui::{Area, Button, Frame, Id, Rect, RichText, ScrollArea, Sense, Stroke, Ui, vec2};
 use leg_firmware::supervisor::FaultSet;
 use leg_rig::rig_file::RigFile;
 
@@ -44,7 +44,12 @@ impl FaultStrip {
         let button = Button::new(text)
             .truncate()
             .stroke(Stroke::new(1.0, colour));
-        let strip = ui.add_enabled(first.is_some(), button.min_size(size));
+        let sense = if first.is_some() {
+            Sense::click()
+        } else {
+            Sense::hover()
+        };
+        let strip = ui.add(button.min_size(size).sense(sense));
         place(&strip, "fault_strip");
         if strip.clicked() {
             self.open = !self.open;

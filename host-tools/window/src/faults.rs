@@ -69,13 +69,17 @@ fn card(ui: &mut Ui, fault: Fault, open: Option<bool>, rig: &RigFile, palette: &
         .fill(palette.card)
         .stroke(Stroke::new(1.5, colour))
         .inner_margin(6.0);
-    frame.show(ui, |ui| {
+    let shown = frame.show(ui, |ui| {
         ui.set_width(ui.available_width());
-        let title = RichText::new(title(fault)).strong().color(colour);
+        let title = RichText::new(title(fault))
+            .strong()
+            .size(13.0)
+            .color(colour);
         let header = CollapsingHeader::new(title);
         let header = header.id_salt(fault.code()).open(open);
         header.show_unindented(ui, |ui| rows(ui, fault.entry(), rig));
     });
+    place(&shown.response, format!("fault_{}", fault.code()));
 }
 
 /// What to do stands first: where there is little room the rest is below the edge.

@@ -23,8 +23,8 @@ use leg_rig::rig_file::RigText;
 /// The room for the time beside the leg, points.
 const TIME: Vec2 = vec2(150.0, 50.0);
 
-/// The widest disc, points.
-const DISC_MAX: f32 = 300.0;
+/// The least and the widest disc, points.
+const DISC: [f32; 2] = [180.0, 300.0];
 
 /// A window that is lower than this, and wider than high, has the leg at its left: a phone held across, points.
 const LOW: f32 = 500.0;
@@ -205,10 +205,11 @@ pub fn narrow(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
             ui.separator();
             if views.tab == Tab::Setup {
                 // It scrolls by itself.
-                return page(ui, leg, views);
+                return page(ui, leg, views, 0.0);
             }
+            let high = ui.available_height();
             let scroll = ScrollArea::vertical().id_salt("tabs");
-            scroll.show(ui, |ui| page(ui, leg, views)).inner
+            scroll.show(ui, |ui| page(ui, leg, views, high)).inner
         })
         .inner
 }
@@ -235,7 +236,8 @@ fn tabs(ui: &mut Ui, leg: &ShownLeg, tab: &mut Tab) {
     });
 }
 
-fn page(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
+/// What a tab has, in a room of some height, points.
+fn page(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views, high: f32) -> Wish {
     match views.tab {
         Tab::Try => {
             let wish = guide(ui, leg);
@@ -244,7 +246,8 @@ fn page(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
         }
         Tab::Drive => {
             unlock(ui, leg);
-            let side = Workspace::side_max(ui).min(DISC_MAX);
+            let [least, most] = DISC;
+            let side = Workspace::side_max(ui).min(high.clamp(least, most));
             views.workspace.show(ui, leg, side);
             if leg.live().is_some() {
                 numbers::show(ui, &leg.seen());

@@ -34,7 +34,7 @@
 //! | [`setup`], [`rig_intake`], [`files`], [`notice`] | rig files and settings: given, edited, saved, applied; what became of it |
 //! | [`theme`], [`text`], [`keys`], [`utc`], [`wall_clock`] | colours, sizes, text in its place; the keys that stop; the date, the time of the day |
 //! | [`bits`] | whether the firmware decides the same here as elsewhere |
-//! | [`page_state`], [`places`], [`work`] | the window as data, for tests and for readers of the screen; how long its frames take |
+//! | [`page_state`], [`places`], [`work`], [`frame_cost`] | the window as data, for tests and for readers of the screen; how long its frames take |
 
 pub mod app;
 pub mod bits;
@@ -46,6 +46,7 @@ pub mod fault_words;
 pub mod faults;
 pub mod figure;
 pub mod files;
+pub mod frame_cost;
 pub mod history;
 pub mod keys;
 pub mod layout;

@@ -8,7 +8,7 @@ use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
 use crate::utc;
 use crate::wall_clock::{self, WallClock};
-use eframe::egui::{Button, Context, RichText, TextEdit, Ui, vec2};
+use eframe::egui::{Button, Context, Label, RichText, TextEdit, Ui, vec2};
 use leg_rig::control_settings;
 
 /// Files on their way into the window and out of it.
@@ -129,7 +129,7 @@ impl Recordings {
         if recorded.is_none() {
             words = words.color(palette(ui.ctx()).faint);
         }
-        ui.label(words);
+        ui.add(Label::new(words).extend());
         self.opening(ui);
     }
 

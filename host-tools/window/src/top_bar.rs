@@ -4,10 +4,9 @@ use crate::pace::Pace;
 use crate::places::place;
 use crate::shown_leg::ShownLeg;
 use crate::theme::{Palette, palette};
-use eframe::egui::text::{LayoutJob, TextFormat};
 use eframe::egui::{
-    Align, Button, Color32, ComboBox, FontId, Frame, Label, Layout, Margin, RichText, Stroke,
-    Theme, Ui, vec2,
+    Align, Align2, Button, Color32, ComboBox, FontId, Frame, Label, Layout, Margin, Pos2, RichText,
+    Sense, Stroke, StrokeKind, Theme, Ui, pos2, vec2,
 };
 use leg_base::description;
 use leg_firmware::command::Command;
@@ -146,22 +145,26 @@ pub fn chip(ui: &mut Ui, state: Option<State>, above: Option<&str>, palette: &Pa
     } else {
         (118.0, 14.0)
     };
-    let mut text = LayoutJob::default();
-    text.halign = Align::Center;
-    let format = |size, colour| TextFormat::simple(FontId::proportional(size), colour);
-    if let Some(above) = above {
-        text.append(&format!("{above}\n"), 0.0, format(9.5, palette.faint));
-    }
-    let words = state.map_or(NOT_KNOWN, description::state);
-    text.append(words, 0.0, format(size, colour));
-    let chip = Button::new(text)
-        .stroke(Stroke::new(1.5, colour))
-        .fill(Color32::TRANSPARENT);
     let height = if above.is_some() { HEIGHT } else { 30.0 };
-    let chip = ui.add_sized(
-        vec2(width, height),
-        chip.sense(eframe::egui::Sense::hover()),
-    );
+    let (rect, chip) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
+    let (line, painter) = (Stroke::new(1.5, colour), ui.painter());
+    painter.rect_stroke(rect, 6.0, line, StrokeKind::Inside);
+    let words = state.map_or(NOT_KNOWN, description::state);
+    let write = |at: Pos2, words: &str, size: f32, colour: Color32| {
+        let font = FontId::proportional(size);
+        painter.text(at, Align2::CENTER_CENTER, words, font, colour);
+    };
+    match above {
+        None => write(rect.center(), words, size, colour),
+        Some(above) => {
+            let [upper, lower] = [0.27, 0.66].map(|part| {
+                let y = rect.top() + part * rect.height();
+                pos2(rect.center().x, y)
+            });
+            write(upper, above, 9.5, palette.faint);
+            write(lower, words, size, colour);
+        }
+    }
     place(&chip, "state");
 }
 

@@ -12,7 +12,7 @@ use eframe::egui::{Align2, FontId, Id, Response, RichText, Ui, Vec2b, pos2};
 use egui_plot::{Line, Plot, PlotPoint, PlotPoints, PlotUi, VLine};
 
 /// Height of a line of words above a chart, points.
-const TITLE_HEIGHT: f32 = 30.0;
+const TITLE_HEIGHT: f32 = 32.0;
 pub(super) const VALUES_HEIGHT: f32 = 15.0;
 
 /// The least height of a chart, points.

@@ -39,6 +39,13 @@ fn rows_within(room: Rect, fault: Fault) -> Vec<String> {
         output.textures_delta.clear();
         placed = places::take(&ctx);
     }
+    let card = placed
+        .rects
+        .remove(format!("fault_{}", fault.code()).as_str());
+    assert!(
+        card.unwrap().right() <= room.right() + 0.5,
+        "{fault:?} {card:?} {room:?}"
+    );
     let rows = placed.rects.into_iter();
     let within = rows.filter(|(_, rect)| rect.bottom() <= room.bottom());
     within.map(|(name, _)| name.to_string()).collect()

@@ -47,19 +47,17 @@ pub(super) fn show(ui: &mut Ui, homing: &mut bool, editor: &Editor, leg: &mut Sh
         .or(homes.then_some("It homes."))
         .or((!possible).then_some("Disarm the leg first, or clear its faults."))
         .or((!free).then_some("Take the payload off first."));
-    ui.horizontal(|ui| {
-        if button(ui, "Find the zero", "zero_start", why).clicked() {
-            *homing = true;
-            leg.command(Command::Home, "home");
-        }
-        let off = state.next(Event::LeadDown).is_some() || state.next(Event::Disarm).is_some();
-        let why = leg
-            .locked()
-            .or((!off).then_some("It is off, or cannot be led down now."));
-        if button(ui, "Disarm", "steps_disarm", why).clicked() {
-            leg.command(Command::Disarm, "disarm");
-        }
-    });
+    if button(ui, "Find the zero", "zero_start", why).clicked() {
+        *homing = true;
+        leg.command(Command::Home, "home");
+    }
+    let off = state.next(Event::LeadDown).is_some() || state.next(Event::Disarm).is_some();
+    let why = leg
+        .locked()
+        .or((!off).then_some("It is off, or cannot be led down now."));
+    if button(ui, "Disarm", "steps_disarm", why).clicked() {
+        leg.command(Command::Disarm, "disarm");
+    }
     outcome(ui, *homing, leg);
 }
 
