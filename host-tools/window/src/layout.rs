@@ -171,7 +171,6 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
 }
 
 /// Where the leg is in a window that is not wide: above the rest, or at its left where the window is low.
-#[must_use]
 pub fn leg_panel(ui: &Ui, id: &'static str) -> Panel {
     let room = ui.available_size();
     let panel = if room.y < LOW && room.x > room.y {
