@@ -1,5 +1,7 @@
 //! Zeros of the currents.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
 use super::*;
 use crate::sensors::{CURRENT_ZERO_PART, NOMINAL_ZERO_CODE};
 
