@@ -287,8 +287,10 @@ def emulator(*arguments):
     """The port of a leg that is emulated in real time."""
     command = [ROOT / os.environ["LEG"], "emulate", "--json", *arguments]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stdin=subprocess.PIPE, text=True) as process:
-        yield json.loads(process.stdout.readline())["port"]
-        process.terminate()
+        try:
+            yield json.loads(process.stdout.readline())["port"]
+        finally:
+            process.terminate()
 
 
 @pytest.fixture
