@@ -95,7 +95,9 @@ CALLS = [(name, call, each.name) for name, call in walk() for each in parameters
 
 
 @pytest.mark.parametrize(("name", "call", "wrong"), CALLS, ids=[f"{name}({wrong})" for name, _, wrong in CALLS])
-def test_an_argument_that_is_wrong_is_named(name, call, wrong):
+def test_an_argument_that_is_wrong_is_named(name, call, wrong, monkeypatch, tmp_path):
+    # Some of what is given is a directory.
+    monkeypatch.chdir(tmp_path)
     given = {each.name: RIGHT[each.name] for each in parameters(name) if each.default is each.empty}
     if name in ("SimulatedLeg.fault", "SimulatedLeg.repair"):
         given["tendon"] = 1

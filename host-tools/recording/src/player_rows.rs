@@ -53,10 +53,13 @@ pub fn read_signals(name: &str, bytes: &[u8]) -> Result<RecordedSignals, Failure
     }
 }
 
+/// What is left to read of a recording.
+type Work = Pin<Box<dyn Future<Output = Result<RecordedSignals, Failure>>>>;
+
 /// Reads every signal of a recording in parts, for a program that has to do something else in between.
 pub struct SignalReader {
     /// None once its result was given.
-    work: Option<Pin<Box<dyn Future<Output = Result<RecordedSignals, Failure>>>>>,
+    work: Option<Work>,
     progress: Rc<Progress>,
 }
 
