@@ -31,6 +31,7 @@ mod firmware {
     mod control_law;
     mod default_settings;
     mod disarm;
+    mod doubts;
     mod encoder_jump;
     mod residual;
     mod safe_states;
@@ -57,7 +58,9 @@ mod rig {
 mod sim {
     mod braking;
     mod comparison;
+    mod current_zeros;
     mod fmea_page;
+    mod homing_with_faults;
     mod load_left_out;
     mod lost_numbers;
     mod random_scenarios;

@@ -144,3 +144,83 @@ impl CommandRefusal {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::CommandRefusal;
+    use crate::jog::JogRefusal;
+    use crate::set_point::PointRefusal;
+    use crate::supervisor::State;
+
+    /// A word by which a user knows a state.
+    fn word(state: State) -> &'static str {
+        match state {
+            State::Boot => "starting",
+            State::Disarmed => "disarmed",
+            State::Homing => "homing",
+            State::Active => "armed",
+            State::KeepingStation => "station",
+            State::Held => "held",
+            State::RampingDown => "ramping down",
+            State::Off => "off",
+            State::Jogging => "jogged",
+        }
+    }
+
+    #[test]
+    fn a_refusal_by_a_state_names_it_and_the_way_out_of_it() {
+        for state in State::ALL {
+            let [wrong, remedy] = CommandRefusal::State(state).description();
+            assert!(wrong.contains(word(state)), "{state:?}: {wrong}");
+            let out = match state {
+                State::Boot => "ask again",
+                State::Disarmed | State::KeepingStation => "arm it",
+                State::Active => "disarm it",
+                State::Held | State::Off => "clear it",
+                State::Homing | State::RampingDown | State::Jogging => "wait",
+            };
+            assert!(remedy.contains(out), "{state:?}: {remedy}");
+        }
+    }
+
+    #[test]
+    fn a_refusal_of_a_jog_by_a_state_names_it_and_the_way_to_disarmed() {
+        for state in State::ALL {
+            // A leg that is disarmed refuses a jog for a fault alone, which has switched its drivers off.
+            let shown = if state == State::Disarmed {
+                State::Off
+            } else {
+                state
+            };
+            let [wrong, remedy] = CommandRefusal::NotDisarmed(state).description();
+            assert!(wrong.contains(word(shown)), "{state:?}: {wrong}");
+            let out = match shown {
+                State::Boot => "ask again",
+                State::Active | State::KeepingStation | State::Held => "disarm it",
+                State::Off => "clear it",
+                _ => "wait",
+            };
+            assert!(remedy.contains(out), "{state:?}: {remedy}");
+        }
+    }
+
+    #[test]
+    fn the_other_refusals_say_what_is_wrong_and_what_to_do() {
+        for (refusal, wrong, remedy) in [
+            (CommandRefusal::NotHomed, "its zero", "home it"),
+            (CommandRefusal::Faulted, "a fault is latched", "clear it"),
+            (CommandRefusal::OutOfReach, "lean that far", "greatest tilt"),
+            (CommandRefusal::Number, "not finite", "another number"),
+            (CommandRefusal::Superseded, "a stop", "command again"),
+        ] {
+            let [says, advises] = refusal.description();
+            assert!(says.contains(wrong), "{refusal:?}: {says}");
+            assert!(advises.contains(remedy), "{refusal:?}: {advises}");
+        }
+        let point = PointRefusal::NoStream;
+        let described = CommandRefusal::Point(point).description();
+        assert_eq!(described, point.description());
+        let jog = JogRefusal::Motor;
+        assert_eq!(CommandRefusal::Jog(jog).description(), jog.description());
+    }
+}

@@ -32,7 +32,7 @@ pub use filter::LowPass;
 pub use friction::{FRICTION_ALLOWANCE, Friction, PULL_ALLOWANCE};
 pub use homing::{HomingSequence, HomingStep};
 pub use jog_bounds::{JOG_RISE_S, JogBounds};
-pub use measure::{Measured, Measurement};
+pub use measure::{Measured, Measurement, ZERO_READINGS};
 pub use mechanism::Mechanism;
 pub use plan::MotionLimits;
 pub use play::Play;

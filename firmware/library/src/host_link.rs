@@ -13,7 +13,7 @@ use crate::frame::{Decoder, Frame, FrameError, MAX_FRAME};
 use crate::jog::JogReport;
 use crate::leg::CommandOutcome;
 use crate::recorder::{RecorderReply, RecorderRequest};
-use crate::sensors::Sensors;
+use crate::sensors::SensorReading;
 use crate::settings::Settings;
 use crate::telemetry::Telemetry;
 use outbox::Outbox;
@@ -34,7 +34,7 @@ pub trait CommandedLeg {
     /// What the last jog measured.
     fn jog_report(&mut self) -> Option<JogReport<f32>>;
     /// What the sensors read last.
-    fn sensors(&mut self) -> Sensors;
+    fn sensors(&mut self) -> SensorReading;
     /// Starts again with other settings and without its zero. Faults stay latched.
     ///
     /// # Errors

@@ -22,7 +22,7 @@ pub use command_queue::CommandOutcome;
 use crate::control::{LoadEstimation, Measured, Measurement};
 use crate::drive::Drive;
 use crate::jog::{JogEnd, JogReport};
-use crate::sensors::Sensors;
+use crate::sensors::{CurrentZero, Sensors};
 use crate::settings::{Settings, SettingsError};
 use crate::supervisor::{
     Agreement, ErrorGrowth, Event, Fault, FaultSet, MonitorInput, Monitors, State, Supervisor,
@@ -96,6 +96,11 @@ impl<T: Scalar> Leg<T> {
         }
         if self.phase == Phase::Plan {
             self.shared.play.follow(&measured.pulled_m);
+        }
+        if self.measurement.seeks_current_zeros() {
+            // A leg that a fault has switched off meanwhile seeks them all the same.
+            let driven = self.mode.state().driven();
+            self.measurement.seek_current_zeros(sensors, driven);
         }
         if self.mode.boots_up() {
             self.mode = Mode::Disarmed;
@@ -282,6 +287,12 @@ impl<T: Scalar> Leg<T> {
         {
             report.end = JogEnd::CutOff;
         }
+        let mut lost = latched.overlaps(FaultSet::LOSES_ZERO);
+        if matches!(state, State::RampingDown | State::Off) {
+            // From now on nothing can be compared.
+            lost |= self.doubts(measured).any();
+            self.monitors.forget_jumps();
+        }
         let trust = Trust {
             pose: self.agreement.watches() && !self.supervisor.stopped(),
             counters: !latched.overlaps(FaultSet::SUSPECT_COUNTERS),
@@ -294,10 +305,21 @@ impl<T: Scalar> Leg<T> {
             // The first target comes in the next tick: pose and load have been estimated until now.
             self.phase = Phase::Command;
         }
-        if latched.has(Fault::EncoderJump) {
-            // What was counted is lost.
+        if lost {
+            // Homing turns one motor after the other, with little tension, before the leg follows them together.
             self.shared.zero_m = None;
         }
+    }
+
+    /// What counters and load cells contradict each other by, or themselves. A held leg is not cleared by it, but paid out and homed.
+    // Apart, for none but commands and changes of the state ask for it.
+    #[inline(never)]
+    fn doubts(&self, measured: &Measured<T>) -> FaultSet {
+        let mut doubts = FaultSet::NONE;
+        doubts.add(Fault::Residual, !self.agreement.agree());
+        let jumped = self.monitors.stay_jumped(&measured.tensions_n);
+        doubts.add(Fault::TensionJump, jumped);
+        doubts
     }
 
     /// Forgets where its tendons are: it has to home.
@@ -318,6 +340,12 @@ impl<T: Scalar> Leg<T> {
     #[must_use]
     pub fn state(&self) -> State {
         self.mode.state()
+    }
+
+    /// The zero of each motor's current.
+    #[must_use]
+    pub fn current_zeros(&self) -> [CurrentZero; 3] {
+        self.measurement.current_zeros()
     }
 
     /// What the last jog measured; none since the start.

@@ -6,7 +6,7 @@ use crate::host_link::{CommandedLeg, HostLink, HostRefusal, Identity};
 use crate::jog::JogReport;
 use crate::leg::{Checked, CommandOutcome, Leg};
 use crate::recorder::{Recorder, RecorderReply, RecorderRequest, RecorderSetup};
-use crate::sensors::Sensors;
+use crate::sensors::{SensorReading, Sensors};
 use crate::settings::{Settings, SettingsError};
 use crate::telemetry::Telemetry;
 use heapless::Vec;
@@ -94,8 +94,11 @@ impl<T: Scalar> SensingLeg<T> {
 
     /// What the sensors read last.
     #[must_use]
-    pub fn sensors(&self) -> Sensors {
-        self.sensors
+    pub fn sensors(&self) -> SensorReading {
+        SensorReading {
+            codes: self.sensors,
+            current_zeros: self.leg.current_zeros(),
+        }
     }
 
     /// Starts again with other settings: see [`CommandedLeg::restart`].
@@ -156,7 +159,7 @@ macro_rules! commanded {
                 self.leg.jog_report().map(|report| report.map($narrowed))
             }
 
-            fn sensors(&mut self) -> Sensors {
+            fn sensors(&mut self) -> SensorReading {
                 self.leg.sensors()
             }
 

@@ -20,7 +20,7 @@ use leg_firmware::jog::JogReport;
 use leg_firmware::leg::{Checked, CommandOutcome};
 use leg_firmware::linked_leg::SensingLeg;
 use leg_firmware::recorder::{Recorder, RecorderReply, RecorderRequest, RecorderSetup};
-use leg_firmware::sensors::Sensors;
+use leg_firmware::sensors::SensorReading;
 use leg_firmware::settings::{Settings, SettingsError};
 use leg_firmware::telemetry::Telemetry;
 
@@ -135,7 +135,7 @@ impl CommandedLeg for SharedLeg {
         with_control(|control| control.leg.jog_report())?
     }
 
-    fn sensors(&mut self) -> Sensors {
+    fn sensors(&mut self) -> SensorReading {
         with_control(|control| control.leg.sensors()).unwrap_or_default()
     }
 

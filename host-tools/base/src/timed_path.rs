@@ -3,7 +3,7 @@
 use crate::angles;
 use leg_firmware::control::{Knot, MotionState, Quintic, Stream, StreamLimits};
 use leg_firmware::sensors::TICK_HZ;
-use leg_firmware::set_point::{PointRefusal, SetPoint, StreamPart};
+use leg_firmware::set_point::{MotionLimit, PointRefusal, SetPoint, StreamPart};
 use leg_firmware::settings::Settings;
 use std::ops::RangeInclusive;
 
@@ -60,6 +60,26 @@ impl TimedPoint {
             rate: [0, 1].map(|i| later(v[i], a[i])),
             acceleration: Some(a.map(|a| a as f32)),
         }
+    }
+}
+
+impl TimedPoint {
+    /// Speed and acceleration of the direction along the sphere, rad/s and rad/s².
+    fn angular(&self) -> [f64; 2] {
+        let MotionState {
+            position: p,
+            rate: v,
+            acceleration: a,
+        } = self.motion;
+        let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+        // z² + p² = 1, twice differentiated.
+        let z = (1.0 - dot(p, p)).sqrt();
+        let z_rate = -dot(p, v) / z;
+        let speed_square = dot(v, v) + z_rate * z_rate;
+        let z_acceleration = -(speed_square + dot(p, a)) / z;
+        let towards_centre = speed_square * speed_square;
+        let along_square = dot(a, a) + z_acceleration * z_acceleration - towards_centre;
+        [speed_square.sqrt(), along_square.max(0.0).sqrt()]
     }
 }
 
@@ -191,6 +211,15 @@ impl TimedPath {
             let motion = limits.motion(&point.set_point(0, StreamPart::Next));
             motion.map_err(|refusal| (point.time_s, refusal))?;
         }
+        let points = self.with_run_up(settings);
+        points.map_err(|refused| match refused {
+            // It bulges out of the reach, or comes to rest out of it, because it is too fast: all its points are in reach.
+            (_, PointRefusal::OutOfReach) => self.first_beyond(settings).unwrap_or(refused),
+            _ => refused,
+        })
+    }
+
+    fn with_run_up(&self, settings: &Settings) -> Result<Vec<TimedPoint>, (f64, PointRefusal)> {
         let Some(first) = self.points.first() else {
             return Err((0.0, PointRefusal::NoStream));
         };
@@ -200,6 +229,22 @@ impl TimedPath {
         }
         check(&points, settings)?;
         Ok(points)
+    }
+
+    /// The first point that asks for more than the speed or the acceleration of the settings: its time, s, and for which.
+    fn first_beyond(&self, settings: &Settings) -> Option<(f64, PointRefusal)> {
+        let limits = &settings.motion;
+        self.points.iter().find_map(|point| {
+            let [speed, acceleration] = point.angular();
+            let limit = if speed > limits.speed_rad_per_s.into() {
+                MotionLimit::Speed
+            } else if acceleration > limits.acceleration_rad_per_s2.into() {
+                MotionLimit::Acceleration
+            } else {
+                return None;
+            };
+            Some((point.time_s, PointRefusal::Limit(limit)))
+        })
     }
 
     /// Its points.

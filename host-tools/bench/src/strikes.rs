@@ -68,6 +68,13 @@ impl StrikeCampaign {
         (0..parts * rigs).into_par_iter().map(usage).collect()
     }
 
+    /// The use of a part again, until a time, s.
+    #[must_use]
+    pub fn repeat_use(&self, part: u64, time_s: f64) -> UseResult {
+        let (rig, file) = &self.rigs[(part % self.rigs.len() as u64) as usize];
+        false_alarms::use_leg(self.seed, rig, file, part, time_s, &|_| ())
+    }
+
     /// The strike of a number again, with its course every so many seconds.
     #[must_use]
     pub fn repeat(&self, index: u64, every_s: f64) -> (Struck, Vec<Moment>) {

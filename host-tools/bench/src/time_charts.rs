@@ -65,11 +65,10 @@ pub(crate) fn save<S>(
     drawn.iter().map(save).collect()
 }
 
-/// The state of a leg in words; where it follows commands, whether it moves or is at rest.
+/// The state of a leg in words; where its trajectory moves, that.
 pub(crate) const fn phase(report: &Telemetry<f32>) -> &'static str {
     match (report.state, report.moving) {
         (State::Active, true) => "moving",
-        (State::Active, false) => "at rest",
         (state, _) => description::state(state),
     }
 }

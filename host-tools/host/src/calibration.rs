@@ -32,7 +32,7 @@ pub fn require_drivers_off(operator: &mut Operator, asked: &str) -> Result<(), F
 pub fn mean_code(operator: &mut Operator, cell: usize) -> Result<f64, OperatorError> {
     let mut sum = 0.0;
     for _ in 0..READINGS {
-        let codes = operator.sensors()?.cell_codes;
+        let codes = operator.sensors()?.codes.cell_codes;
         sum += codes.get(cell).copied().map_or(0.0, f64::from);
         operator.pause(READING_TIME)?;
     }

@@ -1,15 +1,15 @@
 //! What the sensors of a leg read, raw and in a user's units.
 
 use leg_base::json_object;
-use leg_firmware::control::Measurement;
-use leg_firmware::sensors::Sensors;
+use leg_firmware::control::{Measured, Measurement};
+use leg_firmware::sensors::{CurrentZero, NOMINAL_ZERO_CODE, SensorReading};
 use leg_firmware::settings::Settings;
 use serde::Serialize;
 
 /// What all sensors read in one tick, for machines, by the calibration of the leg's settings. Codes are from 0 to
 /// [`leg_firmware::sensors::CODE_MAX`].
-pub fn json(sensors: &Sensors, settings: &Settings) -> impl Serialize + use<> {
-    let measured = Measurement::<f64>::new(settings).convert(sensors);
+pub fn json(reading: &SensorReading, settings: &Settings) -> impl Serialize + use<> {
+    let (sensors, measured) = (&reading.codes, measured(reading, settings));
     let axis = |i: usize| {
         json_object! {
             // Counter of the motor's encoder; it wraps.
@@ -19,8 +19,11 @@ pub fn json(sensors: &Sensors, settings: &Settings) -> impl Serialize + use<> {
             tension_n: measured.tensions_n[i],
             // Whether the load cell was converted since the last tick.
             cell_fresh: sensors.cell_fresh[i],
-            // Half of the highest code is no current.
             current_code: sensors.current_codes[i],
+            // Code of no current: as found at the start, or half of the highest.
+            current_zero_code: reading.current_zeros[i].code(),
+            // Whether it was found: `found`, `refused` or `not_found`.
+            current_zero: zero_word(reading.current_zeros[i]),
             // A; above zero it pulls in.
             current_a: measured.currents_a[i],
             // Whether the motor's driver raises its fault line.
@@ -45,21 +48,26 @@ pub fn json(sensors: &Sensors, settings: &Settings) -> impl Serialize + use<> {
 }
 
 /// The same for people, as tables.
-pub fn text(sensors: &Sensors, settings: &Settings) -> String {
-    let measured = Measurement::<f64>::new(settings).convert(sensors);
-    let mut rows = String::from("axis  encoder   cell   tension N  current   current A  driver\n");
+pub fn text(reading: &SensorReading, settings: &Settings) -> String {
+    let (sensors, measured) = (&reading.codes, measured(reading, settings));
+    let mut rows =
+        String::from("axis  encoder   cell   tension N  current   zero   current A  driver\n");
     for axis in 0..3 {
         rows += &format!(
-            "{:4}  {:7}  {:5}  {:10.2}  {:7}  {:10.3}  {}{}\n",
+            "{:4}  {:7}  {:5}  {:10.2}  {:7}  {:5.0}  {:10.3}  {}{}\n",
             axis + 1,
             sensors.encoder_counts[axis],
             sensors.cell_codes[axis],
             without_minus_zero(measured.tensions_n[axis], 2),
             sensors.current_codes[axis],
+            reading.current_zeros[axis].code(),
             without_minus_zero(measured.currents_a[axis], 3),
             choose(sensors.driver_fault[axis], "fault", "ready"),
             choose(sensors.cell_fresh[axis], "", ", no fresh code of the cell"),
         );
+    }
+    for (axis, &zero) in (1..).zip(&reading.current_zeros) {
+        rows += &zero_finding(axis, zero);
     }
     rows + &format!(
         "\nsupply          {:5}  {:7.2} V\n\
@@ -75,6 +83,35 @@ pub fn text(sensors: &Sensors, settings: &Settings) -> String {
         choose(sensors.late, "late", "in time"),
         choose(sensors.settings_corrupt, "not whole", "whole"),
     )
+}
+
+/// In SI, by the calibration of the settings and the zeros that the leg uses.
+fn measured(reading: &SensorReading, settings: &Settings) -> Measured<f64> {
+    let mut measurement = Measurement::<f64>::new(settings);
+    measurement.set_current_zeros(&reading.current_zeros);
+    measurement.convert(&reading.codes)
+}
+
+const fn zero_word(zero: CurrentZero) -> &'static str {
+    match zero {
+        CurrentZero::NotFound => "not_found",
+        CurrentZero::Found(_) => "found",
+        CurrentZero::Refused(_) => "refused",
+    }
+}
+
+/// What is wrong with the zero of a motor's current, as a line; nothing where it was found.
+fn zero_finding(axis: usize, zero: CurrentZero) -> String {
+    let used = format!("{NOMINAL_ZERO_CODE:.0} is taken for no current");
+    match zero {
+        CurrentZero::Found(_) => String::new(),
+        CurrentZero::NotFound => {
+            format!("current {axis}: no zero was found at the start: {used}\n")
+        }
+        CurrentZero::Refused(code) => format!(
+            "current {axis}: zero refused: the output read {code:.0} while the drivers were off at the start: {used}\n"
+        ),
+    }
 }
 
 const fn choose(is: bool, yes: &'static str, no: &'static str) -> &'static str {

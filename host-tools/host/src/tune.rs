@@ -26,7 +26,7 @@ pub type OperatorTuneError = tune::TuneError<OperatorError>;
 /// # Errors
 /// As [`Operator::sensors`].
 pub fn supply_v(operator: &mut Operator, settings: &Settings) -> Result<f32, OperatorError> {
-    Ok(f32::from(operator.sensors()?.supply_code) * settings.board.supply_v_per_code)
+    Ok(f32::from(operator.sensors()?.codes.supply_code) * settings.board.supply_v_per_code)
 }
 
 /// Jogs a motor of a disarmed leg: [`leg_rig::tune::measure_motor`].

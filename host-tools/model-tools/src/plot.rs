@@ -14,6 +14,7 @@ use canvas::{
     AXIS_TITLE, Area, DrawResult, GRID, LABEL, MARGIN, Painter, THIN, TICK, WIDTH, offset_px, px,
     range,
 };
+use plotters::coord::ranged1d::BoldPoints;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -28,6 +29,8 @@ const SAMPLE_LABEL: i32 = offset_px(52);
 /// Height of a shade's sample.
 const SHADE_HEIGHT: i32 = offset_px(24);
 const LINE: u32 = px(3);
+/// Least room left of the vertical axis.
+const LEFT_ROOM: u32 = px(90);
 /// The two arms of a mark.
 const MARK_ARMS: [[(i32, i32); 2]; 2] = {
     let (long, short) = (offset_px(10), offset_px(3) / 2);
@@ -105,7 +108,7 @@ impl Painter for ChartPainter<'_> {
         let mut context = ChartBuilder::on(&plot)
             .margin(MARGIN)
             .set_label_area_size(LabelAreaPosition::Bottom, px(70))
-            .set_label_area_size(LabelAreaPosition::Left, px(90))
+            .set_label_area_size(LabelAreaPosition::Left, left_room(&plot, &y)?)
             .build_cartesian_2d(x, y.clone())?;
         spans::shade(&chart.spans, &y, &mut context)?;
         draw_axes(chart, &mut context)?;
@@ -119,11 +122,33 @@ impl Painter for ChartPainter<'_> {
 
 type Plane = Cartesian2d<RangedCoordf64, RangedCoordf64>;
 
+/// Most labels of the vertical axis.
+const Y_LABELS: usize = 11;
+
+/// A number beside an axis.
+fn label(value: &f64) -> String {
+    format!("{}", (value * 1e6).round() / 1e6 + 0.0)
+}
+
+/// Room left of the vertical axis: for its title, and the widest label beside that.
+fn left_room<B: DrawingBackend>(
+    area: &Area<B>,
+    y: &Range<f64>,
+) -> Result<u32, DrawingAreaErrorKind<B::ErrorType>> {
+    let text = ("sans-serif", LABEL).into_text_style(area);
+    let axis = RangedCoordf64::from(y.clone());
+    let mut widest = 0;
+    for value in axis.key_points(BoldPoints(Y_LABELS)) {
+        let (width, _) = area.estimate_text_size(&label(&value), &text)?;
+        widest = widest.max(width);
+    }
+    Ok(LEFT_ROOM.max(AXIS_TITLE + px(5) + widest + 2 * TICK))
+}
+
 fn draw_axes<B: DrawingBackend>(
     chart: &Chart,
     context: &mut ChartContext<B, Plane>,
 ) -> DrawResult<B> {
-    let label = |value: &f64| format!("{}", (value * 1e6).round() / 1e6 + 0.0);
     context
         .configure_mesh()
         .light_line_style(TRANSPARENT)
@@ -131,7 +156,7 @@ fn draw_axes<B: DrawingBackend>(
         .axis_style(BLACK.stroke_width(THIN))
         .set_all_tick_mark_size(TICK)
         .x_labels(13)
-        .y_labels(11)
+        .y_labels(Y_LABELS)
         .x_label_formatter(&label)
         .y_label_formatter(&label)
         .label_style(("sans-serif", LABEL))

@@ -1,5 +1,6 @@
 //! Arguments from Python, each refused by its name.
 
+use crate::interpreter::Call;
 use crate::rig::Rig;
 use leg_base::angles;
 use leg_base::timed_path::{PathRow, TimedPath};
@@ -8,16 +9,21 @@ use leg_rig::rig_file::RigFile;
 use leg_sim::action::Action;
 use leg_sim::scenario::CommandStep;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyKeyboardInterrupt, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
+use std::fmt::Display;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 /// Longest time that is simulated by one call, s: a day.
 const LONGEST_S: f64 = 86_400.0;
+
+/// Most numbers of an array: they have to fit into memory.
+const NUMBERS_MAX: usize = 100_000_000;
 
 /// Most points of a path: three hours at 100 Hz.
 const POINTS_MAX: usize = 1_000_000;
@@ -45,9 +51,30 @@ pub fn time_s(name: &str, value: f64) -> PyResult<f64> {
     bounded(name, value, 0.0, LONGEST_S)
 }
 
-/// The tendon of a defect, from 1.
-fn defect(name: &str, tendon: Option<u8>) -> PyResult<Value> {
-    let value = tendon.map_or_else(|| json!(name), |tendon| json!({ name: tendon }));
+/// A whole number in a range.
+pub fn whole<T>(name: &str, value: i128, range: RangeInclusive<T>) -> PyResult<T>
+where
+    T: Copy + Display + PartialOrd + TryFrom<i128>,
+{
+    let fitting = T::try_from(value).ok();
+    fitting
+        .filter(|value| range.contains(value))
+        .ok_or_else(|| {
+            let (least, most) = (range.start(), range.end());
+            PyValueError::new_err(format!("{name} = {value} is not from {least} to {most}"))
+        })
+}
+
+/// The place of a tendon, a motor or a load cell, from 1, in an array.
+pub fn place(name: &str, number: i128) -> PyResult<usize> {
+    let mut places = (1..=3).zip(0..);
+    let found = places.find(|(known, _)| *known == number);
+    let none = || PyValueError::new_err(format!("{name} = {number} is none of 1, 2 and 3"));
+    found.map(|(_, place)| place).ok_or_else(none)
+}
+
+/// What can fail, with the tendon where it is one's, from 1.
+fn defect(name: &str, tendon: Option<i128>) -> PyResult<Value> {
     let known = leg_sim::plant::Defect::descriptions().any(|(known, _)| known == name);
     if !known {
         let sentence = format!("fault = {name:?} is no defect; DEFECTS lists them");
@@ -62,15 +89,13 @@ fn defect(name: &str, tendon: Option<u8>) -> PyResult<Value> {
         (false, None) => Err(PyValueError::new_err(format!(
             "tendon is not given: {name} is a defect of tendon 1, 2 or 3"
         ))),
-        (false, Some(number)) if !(1..=3).contains(&number) => Err(PyValueError::new_err(format!(
-            "tendon = {number} is none of 1, 2 and 3"
-        ))),
-        _ => Ok(value),
+        (false, Some(number)) => Ok(json!({ name: place("tendon", number)? + 1 })),
+        (true, None) => Ok(json!(name)),
     }
 }
 
 /// A defect that begins or ends.
-pub fn defect_action(action: &str, name: &str, tendon: Option<u8>) -> PyResult<Action> {
+pub fn defect_action(action: &str, name: &str, tendon: Option<i128>) -> PyResult<Action> {
     read(&json!({ action: defect(name, tendon)? }))
 }
 
@@ -125,6 +150,7 @@ pub fn tensioning(
 
 /// A dictionary as JSON.
 pub fn to_json(name: &str, values: &Bound<'_, PyDict>) -> PyResult<String> {
+    let _call = Call::begin(values.py())?;
     let json = values.py().import("json")?;
     let strict = PyDict::new(values.py());
     strict.set_item("allow_nan", false)?;
@@ -135,6 +161,7 @@ pub fn to_json(name: &str, values: &Bound<'_, PyDict>) -> PyResult<String> {
 
 /// What a JSON text says, as Python has it.
 pub fn loads<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
+    let _call = Call::begin(py)?;
     py.import("json")?.call_method1("loads", (text,))
 }
 
@@ -153,6 +180,17 @@ fn with_numbers(name: &str, numbers: &[(&str, f64)]) -> PyResult<Value> {
         entries.insert((*key).into(), json!(finite(key, *value)?));
     }
     Ok(json!({ name: entries }))
+}
+
+/// What can be called.
+pub fn callable(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<()> {
+    if argument.is_callable() {
+        return Ok(());
+    }
+    let kind = argument.get_type();
+    Err(PyTypeError::new_err(format!(
+        "{name} cannot be called: it is {kind}"
+    )))
 }
 
 /// A name or a path of a file.
@@ -233,11 +271,24 @@ pub fn broadcast(py: Python<'_>, numbers: Numbers, shape: &[usize]) -> PyResult<
 
 /// An array of finite numbers, with its shape; whatever numpy makes an array of.
 pub fn numbers(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Numbers> {
+    let _call = Call::begin(argument.py())?;
     let numpy = argument.py().import("numpy")?;
+    let no_numbers = |error: PyErr| {
+        if error.is_instance_of::<PyKeyboardInterrupt>(argument.py()) {
+            return error;
+        }
+        PyTypeError::new_err(format!("{name} is no array of numbers: {error}"))
+    };
+    let given = numpy.call_method1("asanyarray", (argument,));
+    let given = given.map_err(no_numbers)?;
+    require_real(name, &given)?;
+    let size: usize = given.getattr("size")?.extract()?;
+    if size > NUMBERS_MAX {
+        let sentence = format!("{name} holds {size} numbers, more than {NUMBERS_MAX}");
+        return Err(PyValueError::new_err(sentence));
+    }
     // Not `ascontiguousarray`: that makes an array of a single number.
-    let converted = numpy.call_method1("asarray", (argument, "float64", "C"));
-    let no_numbers =
-        |error: PyErr| PyTypeError::new_err(format!("{name} is no array of numbers: {error}"));
+    let converted = numpy.call_method1("asarray", (given, "float64", "C"));
     let array = converted.map_err(no_numbers)?;
     let array = array.cast_into::<PyArrayDyn<f64>>();
     let array = array.map_err(|error| no_numbers(error.into()))?;
@@ -248,6 +299,33 @@ pub fn numbers(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Numbers> {
     }
     let shape = array.shape().to_vec();
     Ok(Numbers { values, shape })
+}
+
+/// Finite numbers, one after the other.
+pub fn list(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    let Numbers { values, shape } = numbers(name, argument)?;
+    if shape.len() != 1 {
+        let sentence = format!("{name} has the shape {shape:?}, not (n,)");
+        return Err(PyValueError::new_err(sentence));
+    }
+    Ok(values)
+}
+
+/// Refuses an array of what numpy would make real numbers of in silence: complex numbers, words, times, and numbers that are masked.
+fn require_real(name: &str, array: &Bound<'_, PyAny>) -> PyResult<()> {
+    let dtype = array.getattr("dtype")?;
+    let kind: String = dtype.getattr("kind")?.extract()?;
+    // Truth values, integers, floating-point numbers; objects, of which each says what number it is.
+    if !["b", "i", "u", "f", "O"].contains(&kind.as_str()) {
+        let sentence = format!("{name} is no array of numbers, but of {dtype}");
+        return Err(PyTypeError::new_err(sentence));
+    }
+    let masks = array.py().import("numpy.ma")?;
+    if masks.call_method1("is_masked", (array,))?.extract()? {
+        let sentence = format!("{name} holds numbers that are masked; fill them in first");
+        return Err(PyValueError::new_err(sentence));
+    }
+    Ok(())
 }
 
 /// A path: rows of time in s, azimuth and tilt in degrees.

@@ -5,7 +5,7 @@ use crate::session::SessionError;
 use leg_base::description;
 use leg_base::failure::Failure;
 use leg_firmware::host_link::HostRefusal;
-use leg_firmware::supervisor::{FaultSet, State};
+use leg_firmware::supervisor::{Clearing, FaultSet, State};
 use leg_host::operator::OperatorError;
 use leg_model::Error;
 use leg_sim::simulation::SimulationError;
@@ -164,11 +164,15 @@ fn faulted(faults: FaultSet, state: Option<State>) -> PyErr {
         return LegError::new_err("a fault is latched");
     };
     let entry = fault.entry();
+    let remedy = match entry.clears {
+        Clearing::CauseGone => entry.remedy.into(),
+        Clearing::Command => format!("{}; then clear()", entry.remedy),
+    };
     LegFault::new_err((
         fault.code(),
         entry.name,
         entry.cause,
-        entry.remedy,
+        remedy,
         state.map_or("out of reach", description::state),
     ))
 }

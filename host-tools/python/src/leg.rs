@@ -6,6 +6,8 @@ mod settings;
 
 use crate::arguments::{self, bounded, tensioning};
 use crate::errors::leg_error;
+use crate::interpreter::Call;
+use crate::named;
 use crate::operator_thread::{OperatorThread, Place};
 use crate::rig::Rig;
 use crate::scope;
@@ -28,7 +30,11 @@ use serde_json::json;
 use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, SystemTime};
 
-/// See `_native.pyi`.
+/// A leg on a serial port, commanded as by `leg home`, `leg move` and so on; or the same emulated in this process.
+///
+/// Each call returns at its end, with telemetry. After `move`, `stiffness` and `follow` the leg keeps station; after `home`,
+/// `hold` and `stop`, after Ctrl-C and after an error it is in hold. A leg that hears no more of this program holds by itself.
+/// Raises LegFault, Refused, LegTimeout, or LegError where the connection fails.
 #[pyclass(frozen, module = "tendon_leg")]
 pub struct Leg {
     /// None once it is closed.
@@ -49,6 +55,7 @@ impl Leg {
         py: Python<'py>,
         work: impl FnOnce(&mut Operator) -> Result<Telemetry<f32>, OperatorError> + Send + 'static,
     ) -> PyResult<Bound<'py, PyDict>> {
+        let _call = Call::begin(py)?;
         let (telemetry, wall_time_s, damaged_frames) = self.ask(py, |operator| {
             let telemetry = work(operator)?;
             Ok((telemetry, wall_time_s(operator), operator.damaged_frames()))
@@ -60,6 +67,12 @@ impl Leg {
     }
 }
 
+/// The address of a leg on a bus.
+fn address(name: &str, leg: i128) -> PyResult<LegAddress> {
+    let address = u8::try_from(leg).ok().and_then(LegAddress::new);
+    address.ok_or_else(|| PyValueError::new_err(format!("{name} = {leg} is none of 1 to 6")))
+}
+
 /// The time of the day, s since 1970; not a number beside a leg whose time is emulated.
 fn wall_time_s(operator: &Operator) -> f64 {
     let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
@@ -69,46 +82,66 @@ fn wall_time_s(operator: &Operator) -> f64 {
 
 #[pymethods]
 impl Leg {
+    /// The leg on a serial port, such as `/dev/ttyACM0`; on the port of the board's ST-LINK if left out.
+    ///
+    /// What `leg emulate` prints is a port, too: with `--on chip` the board's own image on an emulated chip, with `--tcp`
+    /// `tcp://HOST:PORT`.
     #[staticmethod]
     #[pyo3(signature = (port = None))]
-    fn open(py: Python<'_>, port: Option<String>) -> PyResult<Self> {
+    fn open(
+        py: Python<'_>,
+        #[pyo3(from_py_with = named::port)] port: Option<String>,
+    ) -> PyResult<Self> {
         Self::opened(py, Place::Port(port))
     }
 
+    /// The leg with an address, 1 to 6, on a CAN FD bus: its interface, such as `can0`. Linux only.
     #[staticmethod]
     #[pyo3(signature = (interface, leg = 1))]
-    fn can(py: Python<'_>, interface: String, leg: i64) -> PyResult<Self> {
-        let address = u8::try_from(leg).ok().and_then(LegAddress::new);
-        let address = address
-            .ok_or_else(|| PyValueError::new_err(format!("leg = {leg} is none of 1 to 6")))?;
-        Self::opened(py, Place::Can(interface, address))
+    fn can(
+        py: Python<'_>,
+        #[pyo3(from_py_with = named::interface)] interface: String,
+        #[pyo3(from_py_with = named::leg)] leg: i128,
+    ) -> PyResult<Self> {
+        Self::opened(py, Place::Can(interface, address("leg", leg)?))
     }
 
+    /// A leg in this process, whose time goes on only in calls: homed, or slack and not homed. For programs to be tried on.
+    ///
+    /// can: its address, 1 to 6, on an emulated CAN FD bus, on which the same frames go as with `Leg.can`; no bus if left out.
     #[staticmethod]
-    #[pyo3(signature = (rig = None, *, slack = false))]
-    fn emulated(py: Python<'_>, rig: Option<&Bound<'_, PyAny>>, slack: bool) -> PyResult<Self> {
+    #[pyo3(signature = (rig = None, *, slack = false, can = None))]
+    fn emulated(
+        py: Python<'_>,
+        rig: Option<&Bound<'_, PyAny>>,
+        #[pyo3(from_py_with = named::slack)] slack: bool,
+        #[pyo3(from_py_with = named::can)] can: Option<i128>,
+    ) -> PyResult<Self> {
         let rig = arguments::rig_or_default(rig)?;
         let initial = if slack {
             InitialState::Slack
         } else {
             InitialState::Homed
         };
-        Self::opened(py, Place::Emulated(Box::new(rig), initial))
+        let can = can.map(|leg| address("can", leg)).transpose()?;
+        Self::opened(py, Place::Emulated(Box::new(rig), initial, can))
     }
 
+    /// Finds the zero. The leg must hang free, without a payload.
     fn home<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.report(py, Operator::home)
     }
 
+    /// Leans the leg, degrees, with a pretension or a bending stiffness if one is given. A leg with a zero is armed first.
     #[pyo3(name = "move", signature = (azimuth_deg, tilt_deg, *, pretension_n = None, stiffness_nm_per_rad = None, towards_deg = None))]
     fn move_to<'py>(
         &self,
         py: Python<'py>,
-        azimuth_deg: f64,
-        tilt_deg: f64,
-        pretension_n: Option<f64>,
-        stiffness_nm_per_rad: Option<f64>,
-        towards_deg: Option<f64>,
+        #[pyo3(from_py_with = named::azimuth_deg)] azimuth_deg: f64,
+        #[pyo3(from_py_with = named::tilt_deg)] tilt_deg: f64,
+        #[pyo3(from_py_with = named::pretension_n)] pretension_n: Option<f64>,
+        #[pyo3(from_py_with = named::stiffness_nm_per_rad)] stiffness_nm_per_rad: Option<f64>,
+        #[pyo3(from_py_with = named::towards_deg)] towards_deg: Option<f64>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let azimuth_deg = bounded("azimuth_deg", azimuth_deg, -3600.0, 3600.0)?;
         let tilt_deg = bounded("tilt_deg", tilt_deg, -90.0, 90.0)?;
@@ -120,12 +153,13 @@ impl Leg {
         self.reach(py, goal)
     }
 
+    /// Changes the bending stiffness where the leg is: of the softest tilt, or against a push towards an azimuth.
     #[pyo3(signature = (nm_per_rad, towards_deg = None))]
     fn stiffness<'py>(
         &self,
         py: Python<'py>,
-        nm_per_rad: f64,
-        towards_deg: Option<f64>,
+        #[pyo3(from_py_with = named::nm_per_rad)] nm_per_rad: f64,
+        #[pyo3(from_py_with = named::towards_deg)] towards_deg: Option<f64>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let nm_per_rad = bounded("nm_per_rad", nm_per_rad, 0.0, 1e9)?;
         let goal = Goal {
@@ -135,43 +169,55 @@ impl Leg {
         self.reach(py, goal)
     }
 
+    /// Streams a path: rows of time in s, azimuth and tilt in degrees. It is checked as a whole before the leg moves.
+    ///
+    /// lead_s: how long a point may be on its way to the leg, s.
     #[pyo3(signature = (points, *, lead_s = 0.2))]
     fn follow<'py>(
         &self,
         py: Python<'py>,
         points: &Bound<'_, PyAny>,
-        lead_s: f64,
+        #[pyo3(from_py_with = named::lead_s)] lead_s: f64,
     ) -> PyResult<Bound<'py, PyDict>> {
         let path = arguments::path("points", points)?;
         let lead = Duration::from_secs_f64(bounded("lead_s", lead_s, 0.0, 10.0)?);
         self.report(py, move |operator| operator.follow_whole(&path, lead))
     }
 
+    /// Holds the leg where it is.
     fn hold<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.reach(py, Goal::default())
     }
 
+    /// Stops the leg, which is in hold then. From another thread it ends the call that uses the leg, which raises LegError.
     fn stop(&self, py: Python<'_>) -> PyResult<()> {
         self.ask_at_once(py, Operator::stop).map(|_| ())
     }
 
+    /// Leads the leg straight down, pays its tendons out and switches the drivers off.
     fn disarm(&self, py: Python<'_>) -> PyResult<()> {
         self.ask(py, Operator::disarm)
     }
 
+    /// Clears the faults whose cause is gone; the leg is in hold then, or disarmed.
     fn clear(&self, py: Python<'_>) -> PyResult<()> {
         self.ask(py, Operator::clear)
     }
 
+    /// What the leg reports, by the names of `SimulatedLeg.telemetry`.
     fn telemetry<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.report(py, |operator| Ok(operator.telemetry()?.telemetry))
     }
 
+    /// What the board's recorder holds, each tick of the last 0.2 s by the default settings: up to a fault that stops the leg and
+    /// a quarter beyond, or else up to now. Only what the settings' `recorded` chooses is there, each signal as an array;
+    /// `since_fault_s` and `fault_names`, those that stopped the leg, only after a fault, until that is cleared.
     fn scope<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let scope = self.ask(py, Operator::scope)?;
         scope::arrays(py, &scope)
     }
 
+    /// What the sensors read now, as codes and in SI units: `axes` has one dictionary for each tendon.
     fn sensors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let both = self.ask(py, |operator| {
             Ok((operator.sensors()?, operator.settings()?))
@@ -179,13 +225,23 @@ impl Leg {
         arguments::from_json(py, &sensor_report::json(&both.0, &both.1))
     }
 
-    fn wait(&self, py: Python<'_>, seconds: f64) -> PyResult<()> {
+    /// Lets a time pass; an emulated leg's passes in no other way but in calls.
+    fn wait(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = named::seconds)] seconds: f64,
+    ) -> PyResult<()> {
         let time = Duration::from_secs_f64(arguments::time_s("seconds", seconds)?);
         self.ask(py, move |operator| operator.pause(time))
     }
 
-    fn disturb(&self, py: Python<'_>, action: &Bound<'_, PyDict>) -> PyResult<()> {
-        let text = arguments::to_json("action", action)?;
+    /// Does something to an emulated leg: `{"payload": {"kg": 2}}` and all else that `leg emulate --help` lists.
+    fn disturb(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = named::action)] action: Bound<'_, PyDict>,
+    ) -> PyResult<()> {
+        let text = arguments::to_json("action", &action)?;
         let action = Action::parse(&text).map_err(|error| {
             let list = "`leg emulate --help` lists the disturbances";
             PyValueError::new_err(format!("action = {text}: {error}; {list}"))
@@ -193,11 +249,16 @@ impl Leg {
         self.call(py, |call| call.disturb(action))
     }
 
+    /// The settings in use, as a rig that gives the same bits again.
     fn settings(&self, py: Python<'_>) -> PyResult<Rig> {
         let settings = self.ask(py, Operator::settings)?;
-        Rig::read_text("the leg's settings", settings_text::rig_file(&settings))
+        Rig::read_text(
+            "the leg's settings".into(),
+            settings_text::rig_file(&settings),
+        )
     }
 
+    /// Every setting that a rig has differently: `name`, its value of the `rig` and of the `leg`.
     fn settings_differences<'py>(
         &self,
         py: Python<'py>,
@@ -211,27 +272,49 @@ impl Leg {
         arguments::from_json(py, &rows.collect::<Vec<_>>())
     }
 
+    /// Replaces the settings by a rig's, and reads them back. The leg must be disarmed, and homed afterwards.
+    ///
+    /// save: whether the board keeps them over a reset.
     #[pyo3(signature = (rig, *, save = false))]
-    fn set_settings(&self, py: Python<'_>, rig: &Bound<'_, PyAny>, save: bool) -> PyResult<()> {
+    fn set_settings(
+        &self,
+        py: Python<'_>,
+        rig: &Bound<'_, PyAny>,
+        #[pyo3(from_py_with = named::save)] save: bool,
+    ) -> PyResult<()> {
         let settings = settings::of_rig(rig)?;
         self.ask(py, move |operator| settings::set(operator, &settings, save))
     }
 
+    /// Finds `n_per_code`, `zero_code` and `residual_n` of a load cell, 1 to 3, by known weights, drivers off.
+    ///
+    /// weights_kg: at least two different ones; 0 is the empty hook.
+    /// hang: is called with each weight, and returns when it hangs on the cell in the place of the tendon.
+    /// set: whether the leg is set to the result; it must be homed afterwards. save: whether it keeps it over a reset.
+    ///
+    /// Raises LegError, and sets nothing, where no straight line explains the weights.
     #[pyo3(signature = (cell, weights_kg, hang, *, set = false, save = false))]
     fn calibrate_cell<'py>(
         &self,
         py: Python<'py>,
-        cell: i64,
-        weights_kg: Vec<f64>,
+        #[pyo3(from_py_with = named::cell)] cell: i128,
+        weights_kg: &Bound<'_, PyAny>,
         hang: &Bound<'_, PyAny>,
-        set: bool,
-        save: bool,
+        #[pyo3(from_py_with = named::set)] set: bool,
+        #[pyo3(from_py_with = named::save)] save: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
         let keep = Keep { set, save };
         let fit = calibration::cell(self, py, cell, weights_kg, hang, keep)?;
         arguments::from_json(py, &fit)
     }
 
+    /// Checks direction and counts of each encoder, drivers off: a dictionary for each motor.
+    ///
+    /// turn: is called with each motor, 1 to 3, and returns when it has been turned once, so that it reels its tendon in.
+    /// rig: says how many counts a turn has; the paper's if left out.
+    ///
+    /// Each has `motor`, `counts`, `expected_counts`, whether it `passed`, and in words the `verdict`; `counts_sign` is what the rig
+    /// file has to say, 0 where nothing was counted.
     #[pyo3(signature = (turn, rig = None))]
     fn calibrate_motors<'py>(
         &self,
@@ -243,20 +326,27 @@ impl Leg {
         arguments::from_json(py, &calibration::motors(self, py, turn, &rig)?)
     }
 
+    /// Turns one motor, 1 to 3, slowly, to see whether its wires are right. The leg must be disarmed, not homed.
+    ///
+    /// travel_mm: how far its tendon is pulled in, at most 10 mm; below zero it is paid out.
+    /// volts: the voltage at the motor; one that turns it at 2 mm/s if left out.
+    ///
+    /// `findings` lists what does not fit, as swapped wires: each with `what` and `remedy`. The rest is what was seen. The motor is off in the end.
     #[pyo3(signature = (motor, travel_mm, *, volts = None))]
     fn jog<'py>(
         &self,
         py: Python<'py>,
-        motor: i64,
-        travel_mm: f64,
-        volts: Option<f64>,
+        #[pyo3(from_py_with = named::motor)] motor: i128,
+        #[pyo3(from_py_with = named::travel_mm)] travel_mm: f64,
+        #[pyo3(from_py_with = named::volts)] volts: Option<f64>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let seen = calibration::jog(self, py, motor, travel_mm, volts)?;
         arguments::from_json(py, &seen)
     }
 
+    /// Closes the connection. The end of a `with` does, too.
     fn close(&self, py: Python<'_>) -> PyResult<()> {
-        py.detach(|| {
+        Call::begin(py)?.detached(|| {
             if let Some(thread) = self.owned()?.take() {
                 thread.close();
             }
@@ -264,10 +354,12 @@ impl Leg {
         })
     }
 
+    /// The leg itself.
     fn __enter__(slf: Py<Self>) -> Py<Self> {
         slf
     }
 
+    /// Closes the connection.
     #[pyo3(signature = (*_exception))]
     fn __exit__(&self, py: Python<'_>, _exception: &Bound<'_, PyAny>) -> PyResult<()> {
         self.close(py)

@@ -5,10 +5,13 @@
 //! docstrings in `_native.pyi`, exceptions in `errors.py`.
 
 mod arguments;
+mod cores;
 mod errors;
 mod evaluation;
+mod interpreter;
 mod leg;
 mod map_quantities;
+mod named;
 mod operator_thread;
 mod outputs;
 mod rig;
@@ -36,6 +39,7 @@ use signals::NumericSignal;
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();
+    interpreter::watch(py)?;
     module.add_class::<leg::Leg>()?;
     module.add_class::<rig::Rig>()?;
     module.add_class::<simulated_leg::SimulatedLeg>()?;

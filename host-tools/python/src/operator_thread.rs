@@ -7,7 +7,8 @@ use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{HostIdentity, Operator, OperatorError};
 use leg_host::transport::Transport;
 #[cfg(target_os = "linux")]
-use leg_host::transport::can::{CanTransport, SocketCan};
+use leg_host::transport::can::SocketCan;
+use leg_host::transport::can::{CanTransport, EmulatedCan};
 use leg_host::transport::emulated::EmulatedLine;
 use leg_host::transport::serial::{self, Serial};
 use leg_host::transport::tcp::{self, Tcp};
@@ -18,6 +19,7 @@ use leg_sim::link::InProcess;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
+use std::{mem, process};
 
 /// How often it is looked whether Python has a signal: nobody feels 50 ms as a delay.
 const LOOK_TIME: Duration = Duration::from_millis(50);
@@ -28,8 +30,8 @@ pub enum Place {
     Port(Option<String>),
     /// On a CAN FD bus: the interface.
     Can(String, LegAddress),
-    /// In this process.
-    Emulated(Box<RigFile>, InitialState),
+    /// In this process; on an emulated bus if it has an address there.
+    Emulated(Box<RigFile>, InitialState, Option<LegAddress>),
 }
 
 /// Why a leg did not do what it was asked.
@@ -68,6 +70,8 @@ type Job = Box<dyn FnOnce(&mut Connection) + Send>;
 pub struct OperatorThread {
     jobs: Sender<Job>,
     thread: JoinHandle<()>,
+    /// Where it runs: a copy of that process, as `multiprocessing` makes it, has no other thread than its main one.
+    process: u32,
 }
 
 impl OperatorThread {
@@ -92,7 +96,11 @@ impl OperatorThread {
             }
         });
         wait(&result, cancel, interrupted)??;
-        Ok(Self { jobs, thread })
+        Ok(Self {
+            jobs,
+            thread,
+            process: process::id(),
+        })
     }
 
     /// Lets the operator work.
@@ -139,8 +147,18 @@ impl OperatorThread {
         wait(&result, cancel, interrupted)?
     }
 
+    /// Whether it runs in this process.
+    pub fn is_here(&self) -> bool {
+        self.process == process::id()
+    }
+
     /// Ends the thread, and with it the connection.
     pub fn close(self) {
+        if !self.is_here() {
+            // It is the other process that ends it.
+            mem::forget(self);
+            return;
+        }
         drop(self.jobs);
         // A thread that panicked has ended, too.
         let _ = self.thread.join();
@@ -151,10 +169,15 @@ fn connect(place: Place, cancel: CancelFlag) -> Result<Connection, LegFailure> {
     let (transport, host, emulated): (Box<dyn Transport>, _, _) = match place {
         Place::Port(port) => (serial_or_tcp(port, &cancel)?, HostIdentity::random(), None),
         Place::Can(interface, leg) => (can(&interface, leg)?, HostIdentity::random(), None),
-        Place::Emulated(rig, initial) => {
+        Place::Emulated(rig, initial, address) => {
             let leg = EmulatedLeg::new(&rig, initial, Box::new(InProcess::new()));
             let line = EmulatedLine::new(leg.map_err(Failure::from_error)?, "the emulated leg");
-            (Box::new(line.connect()), HostIdentity::FIXED, Some(line))
+            let end = line.connect();
+            let transport: Box<dyn Transport> = match address {
+                Some(leg) => Box::new(CanTransport::new(EmulatedCan::new(end, leg), leg)),
+                None => Box::new(end),
+            };
+            (transport, HostIdentity::FIXED, Some(line))
         }
     };
     let operator = Operator::open(transport, host, cancel)?;

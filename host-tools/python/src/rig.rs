@@ -1,31 +1,33 @@
 //! The class `Rig`: a rig file, read and checked, and what the model says of it.
 
+mod evaluate;
+
 use crate::arguments::{self, Numbers};
-use crate::errors::{model_error, rig_error};
-use crate::evaluation::{
-    self, Argument, NoResult, Poses, Put, Varying, put_demand, put_demand_towards,
-};
+use crate::cores;
+use crate::errors::rig_error;
+use crate::interpreter::Call;
 use crate::map_quantities::MAP_QUANTITIES;
-use crate::outputs::{self, FEASIBLE, NONLINEAR, OUTPUTS, Output};
+use crate::named;
 use leg_base::failure::Failure;
-use leg_model::{Elasticity, Query};
-use leg_model_tools::jsonl::PoseLine;
+use leg_model::Elasticity;
 use leg_model_tools::workspace_map::{Grid, WorkspaceMap};
 use leg_rig::rig_convert::{self, RigFormat};
 use leg_rig::rig_file::{RigFile, RigText};
 use numpy::{PyArray1, PyArrayMethods};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
-use serde_json::{Value, json};
-
-/// Most poses of one call: their outputs have to fit into memory.
-const POSES_MAX: usize = 100_000_000;
+use pyo3::types::{PyDict, PyTuple};
+use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// Most poses of a map along each side.
 const GRID_MAX: u32 = 10_000;
 
-/// See `_native.pyi`.
+/// A rig file, read and checked: a leg with its tendons, support, motors, sensors, gains and limits.
+///
+/// To edit one, change what `to_dict` gives and read it again: `Rig.from_dict`.
+///
+/// rig: a rig file or the name of a ready rig (`READY_RIGS`); the paper's rig if left out.
+///
+/// Raises RigError with file, line, column and remedy where the file is refused.
 #[pyclass(frozen, module = "tendon_leg")]
 pub struct Rig {
     text: RigText,
@@ -47,84 +49,9 @@ impl Rig {
     }
 
     /// The rig that a text describes, by a name.
-    pub fn read_text(name: &str, text: String) -> PyResult<Self> {
-        let name = name.to_owned();
+    pub fn read_text(name: String, text: String) -> PyResult<Self> {
         Self::read(RigText { name, text }).map_err(|failure| rig_error(&failure))
     }
-
-    /// The mechanism and the query with what a call changes of them for all poses, by the names of `leg eval`.
-    fn changed(&self, changes: &[(&str, Option<Value>)]) -> PyResult<PoseLine> {
-        let mut line = json!({"azimuth_deg": 0, "tilt_deg": 0, "payload_kg": 0});
-        for (key, value) in changes {
-            if let Some(value) = value {
-                line[*key] = value.clone();
-            }
-        }
-        let parsed = PoseLine::parse(line.to_string().as_bytes(), &self.file);
-        parsed.map_err(|error| PyValueError::new_err(error.to_string()))
-    }
-}
-
-/// A number for all poses.
-fn one(name: &str, value: Option<f64>) -> PyResult<Option<Value>> {
-    let checked = value.map(|value| arguments::finite(name, value));
-    Ok(checked.transpose()?.map(|value| json!(value)))
-}
-
-/// The outputs of some names; all but the slow one where none are named.
-fn outputs_of(names: Option<Vec<String>>) -> PyResult<Vec<&'static Output>> {
-    let Some(names) = names else {
-        let quick = OUTPUTS.iter().filter(|output| output.name != NONLINEAR);
-        return Ok(quick.collect());
-    };
-    let found = names.iter().map(|name| {
-        outputs::named(name).ok_or_else(|| {
-            let sentence = format!("outputs holds {name:?}, which is none; OUTPUTS lists them");
-            PyValueError::new_err(sentence)
-        })
-    });
-    found.collect()
-}
-
-/// An array of a shape for the poses and one for each of them; a plain number for one pose.
-fn shaped<'py>(
-    py: Python<'py>,
-    output: &Output,
-    numbers: Vec<f64>,
-    poses: &[usize],
-) -> PyResult<Bound<'py, PyAny>> {
-    let shape = [poses, output.shape].concat();
-    if output.name == FEASIBLE {
-        let truths = numbers.into_iter().map(|number| number == 1.0);
-        if shape.is_empty() {
-            let [truth] = truths.collect::<Vec<_>>()[..] else {
-                return Err(PyValueError::new_err("one pose has one answer"));
-            };
-            return Ok(truth.into_pyobject(py)?.to_owned().into_any());
-        }
-        return Ok(PyArray1::from_iter(py, truths).reshape(shape)?.into_any());
-    }
-    match numbers[..] {
-        [number] if shape.is_empty() => Ok(number.into_pyobject(py)?.into_any()),
-        _ => Ok(PyArray1::from_vec(py, numbers).reshape(shape)?.into_any()),
-    }
-}
-
-/// Why poses have no result: by their numbers, or the first of them raised.
-fn refusals<'py>(
-    py: Python<'py>,
-    failed: &[NoResult],
-    raises: bool,
-) -> PyResult<Bound<'py, PyDict>> {
-    let errors = PyDict::new(py);
-    for (pose, error) in failed {
-        if raises {
-            let words = evaluation::words(*error);
-            return Err(model_error(*error, format!("pose {pose}: {words}")));
-        }
-        errors.set_item(pose, evaluation::words(*error))?;
-    }
-    Ok(errors)
 }
 
 #[pymethods]
@@ -139,17 +66,24 @@ impl Rig {
         )
     }
 
+    /// The rig of a TOML text; `name` stands in messages.
     #[staticmethod]
-    #[pyo3(signature = (text, name = "rig"))]
-    fn parse(text: &str, name: &str) -> PyResult<Self> {
-        Self::read_text(name, text.to_owned())
+    #[pyo3(signature = (text, name = "rig".into()), text_signature = "(text, name=\"rig\")")]
+    fn parse(
+        #[pyo3(from_py_with = named::text)] text: String,
+        #[pyo3(from_py_with = named::name)] name: String,
+    ) -> PyResult<Self> {
+        Self::read_text(name, text)
     }
 
+    /// The rig of a dictionary with the keys of a rig file. The lines of a RigError are those of the TOML made of it.
     #[staticmethod]
-    #[pyo3(signature = (values, name = "rig"))]
-    fn from_dict(values: &Bound<'_, PyDict>, name: &str) -> PyResult<Self> {
-        let text = arguments::to_json("values", values)?;
-        let name = name.to_owned();
+    #[pyo3(signature = (values, name = "rig".into()), text_signature = "(values, name=\"rig\")")]
+    fn from_dict(
+        #[pyo3(from_py_with = named::values)] values: Bound<'_, PyDict>,
+        #[pyo3(from_py_with = named::name)] name: String,
+    ) -> PyResult<Self> {
+        let text = arguments::to_json("values", &values)?;
         let source = RigText {
             name: name.clone(),
             text,
@@ -159,163 +93,76 @@ impl Rig {
         read.map_err(|failure| rig_error(&failure))
     }
 
+    /// The keys of its file. What the file leaves out is left out.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let converted = rig_convert::convert(&self.text, RigFormat::Json);
         let (text, _) = converted.map_err(|failure| rig_error(&failure))?;
         arguments::loads(py, &text)
     }
 
+    /// Its name in messages.
     #[getter]
     fn name(&self) -> &str {
         &self.text.name
     }
 
+    /// Its TOML text.
     #[getter]
     fn text(&self) -> &str {
         &self.text.text
     }
 
+    /// What the file should say otherwise, though it is understood.
     #[getter]
     fn notes(&self) -> Vec<String> {
         self.notes.clone()
     }
 
+    /// Its central support.
     #[getter]
     fn support(&self) -> &'static str {
         self.file.support_name.word()
     }
 
+    /// Its pretension, N per tendon at the vertical pose.
     #[getter]
     fn pretension_n(&self) -> f64 {
         self.file.pretension_n
     }
 
+    /// How far the leg leans at most, degrees.
     #[getter]
     fn tilt_max_deg(&self) -> f64 {
         self.file.tilt_deg
     }
 
+    /// Lowest and highest tension allowed, N.
     #[getter]
     fn tension_bounds_n(&self) -> (f64, f64) {
         (self.file.f_min_n, self.file.f_max_n)
     }
 
-    #[pyo3(signature = (azimuth_deg, tilt_deg, payload_kg = None, *, level_n = None, f_min_n = None, f_max_n = None, demand_nm_per_rad = None, demand_towards_deg = None, stiffness_n_per_m = None, stiffness_at = None, leg_mass_kg = None, l_upper_m = None, support = None, outputs = None, raises = true))]
-    #[allow(clippy::too_many_arguments, reason = "they have names in Python")]
-    fn evaluate<'py>(
-        &self,
-        py: Python<'py>,
-        azimuth_deg: &Bound<'py, PyAny>,
-        tilt_deg: &Bound<'py, PyAny>,
-        payload_kg: Option<&Bound<'py, PyAny>>,
-        level_n: Option<&Bound<'py, PyAny>>,
-        f_min_n: Option<&Bound<'py, PyAny>>,
-        f_max_n: Option<&Bound<'py, PyAny>>,
-        demand_nm_per_rad: Option<&Bound<'py, PyAny>>,
-        demand_towards_deg: Option<&Bound<'py, PyAny>>,
-        stiffness_n_per_m: Option<f64>,
-        stiffness_at: Option<String>,
-        leg_mass_kg: Option<f64>,
-        l_upper_m: Option<f64>,
-        support: Option<String>,
-        outputs: Option<Vec<String>>,
-        raises: bool,
-    ) -> PyResult<Bound<'py, PyDict>> {
-        let PoseLine { rig, query } = self.changed(&[
-            (
-                "stiffness_n_per_m",
-                one("stiffness_n_per_m", stiffness_n_per_m)?,
-            ),
-            ("stiffness_at", stiffness_at.map(Value::from)),
-            ("leg_mass_kg", one("leg_mass_kg", leg_mass_kg)?),
-            ("l_upper_m", one("l_upper_m", l_upper_m)?),
-            ("support", support.map(Value::from)),
-        ])?;
-        if demand_nm_per_rad.is_none() && demand_towards_deg.is_some() {
-            return Err(PyValueError::new_err(
-                "demand_towards_deg is given without demand_nm_per_rad",
-            ));
-        }
-        // The demanded stiffness stands before its azimuth.
-        let arguments = [
-            ("azimuth_deg", Some(azimuth_deg), put_azimuth as Put),
-            ("tilt_deg", Some(tilt_deg), put_tilt),
-            ("payload_kg", payload_kg, |query, kg| query.payload_kg = kg),
-            ("level_n", level_n, |query, n| query.pretension_n = n),
-            ("f_min_n", f_min_n, |query, n| query.f_min_n = n),
-            ("f_max_n", f_max_n, |query, n| query.f_max_n = n),
-            ("demand_nm_per_rad", demand_nm_per_rad, put_demand),
-            ("demand_towards_deg", demand_towards_deg, put_demand_towards),
-        ];
-        let mut given = Vec::with_capacity(arguments.len());
-        for (name, argument, put) in arguments {
-            if let Some(argument) = argument {
-                given.push((name, arguments::numbers(name, argument)?, put));
-            }
-        }
-        let shapes: Vec<_> = given
-            .iter()
-            .map(|(name, numbers, _)| (*name, numbers))
-            .collect();
-        let shape = arguments::common_shape(&shapes)?;
-        let count: usize = shape.iter().product();
-        if count > POSES_MAX {
-            let sentence =
-                format!("azimuth_deg and tilt_deg make {count} poses, more than {POSES_MAX}");
-            return Err(PyValueError::new_err(sentence));
-        }
-        let mut varying = Vec::with_capacity(given.len());
-        for (_, numbers, put) in given {
-            let argument = match numbers.values[..] {
-                [value] => Argument::One(value),
-                _ => Argument::Each(arguments::broadcast(py, numbers, &shape)?),
-            };
-            varying.push(Varying { argument, put });
-        }
-        let poses = Poses {
-            parameters: rig,
-            query,
-            varying,
-            outputs: outputs_of(outputs)?,
-            count,
-        };
-        let (arrays, failed) = py.detach(|| {
-            let room = |output: &&Output| vec![0.0; count * evaluation::width(output)];
-            let mut arrays: Vec<_> = poses.outputs.iter().map(room).collect();
-            let failed = poses.evaluate(&mut arrays);
-            (arrays, failed)
-        });
-        let failed = failed.map_err(|error| model_error(error, evaluation::words(error)))?;
-        let errors = refusals(py, &failed, raises)?;
-        let results = PyDict::new(py);
-        for (output, numbers) in poses.outputs.iter().zip(arrays) {
-            results.set_item(output.name, shaped(py, output, numbers, &shape)?)?;
-        }
-        if !raises {
-            results.set_item("errors", errors)?;
-        }
-        Ok(results)
-    }
-
+    /// The quantities of `leg map` over the workspace: `azimuth_deg`, `tilt_deg`, and arrays with a row for each tilt.
+    ///
+    /// What is not known at a pose is not a number; `feasible` and `pretension_keeps_bounds` are 0 or 1. `nonlinear` adds
+    /// `deviation_nonlinear_mm`, which takes far longer than all the rest.
     #[pyo3(signature = (payload_kg = 0.0, *, azimuths = 360, tilts = 31, nonlinear = false))]
     fn workspace_map<'py>(
         &self,
         py: Python<'py>,
-        payload_kg: f64,
-        azimuths: u32,
-        tilts: u32,
-        nonlinear: bool,
+        #[pyo3(from_py_with = named::payload_kg)] payload_kg: f64,
+        #[pyo3(from_py_with = named::azimuths)] azimuths: i128,
+        #[pyo3(from_py_with = named::tilts)] tilts: i128,
+        #[pyo3(from_py_with = named::nonlinear)] nonlinear: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
         let payload_kg = arguments::bounded("payload_kg", payload_kg, 0.0, 1e6)?;
-        for (name, count, least) in [("azimuths", azimuths, 3), ("tilts", tilts, 2)] {
-            if !(least..=GRID_MAX).contains(&count) {
-                let sentence = format!("{name} = {count} is not from {least} to {GRID_MAX}");
-                return Err(PyValueError::new_err(sentence));
-            }
-        }
+        let azimuths = arguments::whole("azimuths", azimuths, 3..=GRID_MAX)?;
+        let tilts = arguments::whole("tilts", tilts, 2..=GRID_MAX)?;
         let grid = Grid { azimuths, tilts };
-        let map =
-            py.detach(|| WorkspaceMap::compute(&self.file, payload_kg, grid, nonlinear, || ()));
+        let call = Call::begin(py)?;
+        let cores = cores::threads(py)?;
+        let compute = || WorkspaceMap::compute(&self.file, payload_kg, grid, nonlinear, || ());
+        let map = call.detached(|| cores.install(compute));
         let arrays = PyDict::new(py);
         let shape = [tilts as usize, azimuths as usize];
         let first_azimuths = map.poses().skip(1).take(shape[1]);
@@ -344,20 +191,15 @@ impl Rig {
         Ok(arrays)
     }
 
+    /// `elongation_m` and `stiffness_n_per_m` of a tendon under tensions, N; not a number beyond what its curve knows.
     #[pyo3(signature = (tensions_n, *, tendon = 1))]
     fn tendon_curve<'py>(
         &self,
         py: Python<'py>,
         tensions_n: &Bound<'py, PyAny>,
-        tendon: usize,
+        #[pyo3(from_py_with = named::tendon)] tendon: i128,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let curve = tendon
-            .checked_sub(1)
-            .and_then(|index| self.file.tendons.get(index));
-        let Some(curve) = curve else {
-            let sentence = format!("tendon = {tendon} is none of 1, 2 and 3");
-            return Err(PyValueError::new_err(sentence));
-        };
+        let curve = &self.file.tendons[arguments::place("tendon", tendon)?];
         let Numbers { values, shape } = arguments::numbers("tensions_n", tensions_n)?;
         let of = |read: &dyn Fn(f64) -> Option<f64>| {
             let numbers = values.iter().map(|n| read(*n).unwrap_or(f64::NAN));
@@ -369,6 +211,29 @@ impl Rig {
         Ok(arrays)
     }
 
+    /// Whether both describe the same leg, in whatever words.
+    fn __eq__(&self, other: &Self) -> bool {
+        self.file == other.file
+    }
+
+    fn __hash__(&self) -> u64 {
+        // Equal numbers have equal words, but for the sign of zero.
+        let words = format!("{:?}", self.file).replace("-0.0", "0.0");
+        let mut hasher = DefaultHasher::new();
+        words.hash(&mut hasher);
+        hasher.finish()
+    }
+
+    /// Its text and its name, read again where it comes to.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let py = slf.py();
+        let Self { text, .. } = slf.get();
+        let words = ("parse", text.text.as_str(), text.name.as_str());
+        let read = py.import("operator")?.call_method1("methodcaller", words)?;
+        let class = (slf.get_type(),).into_pyobject(py)?;
+        (read, class).into_pyobject(py)
+    }
+
     fn __repr__(&self) -> String {
         format!(
             "Rig({:?}, support {})",
@@ -376,12 +241,4 @@ impl Rig {
             self.file.support_name.word()
         )
     }
-}
-
-fn put_azimuth(query: &mut Query<f64>, deg: f64) {
-    query.azimuth_rad = deg.to_radians();
-}
-
-fn put_tilt(query: &mut Query<f64>, deg: f64) {
-    query.tilt_rad = deg.to_radians();
 }

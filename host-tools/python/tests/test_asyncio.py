@@ -68,3 +68,15 @@ def test_a_cancelled_call_and_a_stop_leave_the_leg_in_hold():
             return cancelled, (await leg.telemetry())["state"]
 
     assert asyncio.run(main()) == ("held", "held")
+
+
+def test_a_closed_leg_is_refused_by_name():
+    async def main():
+        async with await AsyncLeg.emulated() as leg:
+            pass
+        for call in (leg.telemetry, leg.home, leg.hold, leg.stop):
+            with pytest.raises(LegError, match="this leg is closed"):
+                await call()
+        await leg.close()
+
+    asyncio.run(main())

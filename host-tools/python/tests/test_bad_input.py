@@ -27,7 +27,7 @@ NAN, INFINITY = math.nan, math.inf
         (lambda leg: leg.follow([[0, 0, 0], [1, 0, 91]]), ValueError, "tilt 91° at index 1"),
         (lambda leg: leg.step(-1), ValueError, "ticks = -1 is not from 0"),
         (lambda leg: leg.step(10**12), ValueError, "ticks = 1000000000000 is not"),
-        (lambda leg: leg.step(10**30), OverflowError, ""),
+        (lambda leg: leg.step(10**30), ValueError, "ticks = 1000000000000000000000000000000 is not"),
         (lambda leg: leg.run(NAN), ValueError, "seconds = NaN"),
         (lambda leg: leg.run(-1), ValueError, "seconds = -1 is not from 0"),
         (lambda leg: leg.wait(1e9), ValueError, "timeout_s = 1000000000 is not"),
@@ -51,7 +51,7 @@ NAN, INFINITY = math.nan, math.inf
         (lambda leg: SimulatedLeg(payload_kg=NAN), ValueError, "payload_kg = NaN"),
         (lambda leg: SimulatedLeg(payload_kg=50, tilt_deg=30), LegError, "the leg cannot start"),
         (lambda leg: SimulatedLeg(slack=True, tilt_deg=3), ValueError, "slack is given"),
-        (lambda leg: SimulatedLeg(seed=-1), OverflowError, ""),
+        (lambda leg: SimulatedLeg(seed=-1), ValueError, "seed = -1 is not from 0 to 18446744073709551615"),
         (lambda leg: SimulatedLeg("nope"), RigError, "cannot read the rig file nope"),
         (lambda leg: run_scenario("nope"), ScenarioError, "cannot read the scenario nope"),
         (lambda leg: run_scenario("hold", rig="nope"), RigError, "cannot read the rig file nope"),
@@ -63,8 +63,7 @@ def test_an_argument_is_refused_by_its_name(call, error, words):
     before = leg.ticks
     with pytest.raises(error) as refusal:
         call(leg)
-    notes = getattr(refusal.value, "__notes__", [])
-    assert words in "\n".join([str(refusal.value), *notes])
+    assert words in str(refusal.value)
     assert leg.ticks == before
 
 
@@ -96,7 +95,7 @@ def test_whatever_is_given_the_interpreter_goes_on():
         try:
             getattr(leg, name)(*given)
             done += 1
-        except (LegError, ValueError, TypeError, OverflowError):
+        except (LegError, ValueError, TypeError):
             pass
         if dice.random() < 0.02:
             leg = SimulatedLeg("table1", slack=dice.random() < 0.5)

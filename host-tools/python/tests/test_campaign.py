@@ -58,6 +58,12 @@ def test_rows_are_those_of_single_runs_in_the_order_of_the_cases(tmp_path):
         assert row["passed"] and row["error"] is None
         assert (row["bits"], row["design"], row["seed"]) == (single["bits"], case["design"], case["seed"])
         assert row["error"] is None and row["title"] == "A leg leans"
+        rigs = {"paper": "table1", "universal": "universal", "heavier": "heavier"}
+        assert (row["scenario"], row["rig"]) == ("A leg leans", rigs[case["design"]])
+    named = [{"scenario": "hold"}, {"scenario": "hold", "rig": Rig("table1")}, {"scenario": "no\nTOML"}]
+    others = campaign(named, tmp_path)
+    assert [row["scenario"] for row in others] == ["hold", "hold", ""]
+    assert [row["rig"] for row in others] == ["table1", Rig("table1").name, "table1"]
     assert len({row["bits"] for row in rows}) == 12
 
 
@@ -140,19 +146,19 @@ def test_a_dask_cluster_gives_the_same_rows(tmp_path):
 @pytest.mark.parametrize(
     ("case", "words"),
     [
-        ({}, "case 1: it has no `scenario`"),
-        ({"scenario": 3}, "case 1: scenario: 3"),
+        ({}, "cases[1]: it has no `scenario`"),
+        ({"scenario": 3}, "cases[1]: scenario: 3"),
         ({"scenario": "no such file"}, "no such file"),
-        ({"scenario": "tour", "passed": True}, "case 1: its key 'passed'"),
-        ({"scenario": "tour", "seed": -1}, "case 1: its seed -1"),
-        ({"scenario": "tour", "seed": 1.5}, "case 1: its seed 1.5"),
+        ({"scenario": "tour", "passed": True}, "cases[1]: its key 'passed'"),
+        ({"scenario": "tour", "seed": -1}, "cases[1]: its seed -1"),
+        ({"scenario": "tour", "seed": 1.5}, "cases[1]: its seed 1.5"),
         ({"scenario": "tour", "rig": "no such rig"}, "no such rig"),
-        ({"scenario": "tour", "rig": 7}, "case 1: rig"),
+        ({"scenario": "tour", "rig": 7}, "cases[1]: rig"),
     ],
 )
 def test_a_case_that_is_none_is_refused_before_anything_runs(tmp_path, case, words):
     began = time.monotonic()
-    with pytest.raises(ValueError, match="case 1") as refusal:
+    with pytest.raises(ValueError, match=r"cases\[1\]") as refusal:
         campaign([{"scenario": "tour"}, case], tmp_path)
     assert words in str(refusal.value) and time.monotonic() - began < 1.0
     assert not (tmp_path / "results.jsonl").exists()

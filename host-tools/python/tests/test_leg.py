@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tendon_leg import Leg, LegError, LegFault, Refused, Rig, RigError
+from tendon_leg import Leg, LegError, LegFault, Refused, Rig, RigError, SimulatedLeg
 
 ROOT = Path(__file__).parents[3]
 needs_leg = pytest.mark.skipif("LEG" not in os.environ, reason="the variable LEG names no built `leg`; CI's does")
@@ -41,6 +41,31 @@ def test_a_leg_is_homed_moved_stiffened_held_and_disarmed():
         leg.hold()
         leg.disarm()
         assert leg.telemetry()["state"] == "disarmed"
+
+
+@pytest.mark.parametrize("address", [1, 6])
+def test_a_leg_on_a_bus_is_homed_moved_and_set(address):
+    with Leg.emulated(slack=True, can=address) as leg:
+        # Settings take many frames of the bus.
+        leg.set_settings(leg.settings())
+        assert leg.home()["homed"]
+        assert leg.move(30, 20, stiffness_nm_per_rad=110)["tilt_deg"] == pytest.approx(20.0, abs=0.05)
+        assert leg.follow(circle(3.0))["tilt_deg"] == pytest.approx(20.0, abs=0.1)
+        leg.stop()
+        told = leg.telemetry()
+        assert told["state"] == "held" and told["damaged_frames"] == 0 and np.isnan(told["wall_time_s"])
+        assert leg.scope()["tensions_n"].shape[1] == 3
+        leg.disarm()
+
+
+def test_a_path_that_is_too_fast_is_refused_for_its_speed():
+    time_s = np.arange(0.0, 5.0, 0.01)
+    turns = np.column_stack([time_s, 100 * 72.0 * time_s, np.full_like(time_s, 20.0)])
+    for leg in (Leg.emulated(), SimulatedLeg()):
+        if isinstance(leg, SimulatedLeg):
+            leg.arm()
+        with pytest.raises(Refused, match="speed_rad_per_s; take more time"):
+            leg.follow(turns)
 
 
 def test_refusals_and_faults_have_their_words():
@@ -237,13 +262,13 @@ def test_ctrl_c_leaves_the_leg_in_hold():
         (lambda leg: leg.disturb({}), ValueError, "action = {}"),
         (lambda leg: Leg.can("can0", -1), ValueError, "leg = -1 is none of 1 to 6"),
         (lambda leg: leg.calibrate_cell(-1, [0, 1], print), ValueError, "cell = -1"),
-        (lambda leg: leg.calibrate_cell(1, [0, np.nan], pytest.fail), ValueError, "weights_kg = NaN"),
+        (lambda leg: leg.calibrate_cell(1, [0, np.nan], pytest.fail), ValueError, "weights_kg holds NaN at index 1"),
         (lambda leg: leg.calibrate_cell(1, [], pytest.fail), LegError, "two different weights"),
         (lambda leg: leg.calibrate_cell(4, [0, 1], print), ValueError, "cell = 4"),
         (lambda leg: leg.calibrate_cell(1, [0, 1], print, save=True), ValueError, "save is given without set"),
         (lambda leg: leg.calibrate_cell(1, [1, 1], pytest.fail), LegError, "two different weights"),
         (lambda leg: leg.calibrate_motors(print, 3), TypeError, "rig is no name"),
-        (lambda leg: leg.jog(4, 1.0), ValueError, "motor = 4 is none of 1 to 3"),
+        (lambda leg: leg.jog(4, 1.0), ValueError, "motor = 4 is none of 1, 2 and 3"),
         (lambda leg: leg.jog(1, np.nan), ValueError, "travel_mm = NaN"),
         (lambda leg: leg.jog(1, 11.0), Refused, "no more than 10 mm"),
         (lambda leg: leg.jog(1, 1.0, volts=np.inf), ValueError, "volts = inf"),
@@ -262,8 +287,10 @@ def emulator(*arguments):
     """The port of a leg that is emulated in real time."""
     command = [ROOT / os.environ["LEG"], "emulate", "--json", *arguments]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stdin=subprocess.PIPE, text=True) as process:
-        yield json.loads(process.stdout.readline())["port"]
-        process.terminate()
+        try:
+            yield json.loads(process.stdout.readline())["port"]
+        finally:
+            process.terminate()
 
 
 @pytest.fixture
@@ -337,5 +364,7 @@ def test_an_interpreter_that_is_killed_in_mid_move_leaves_the_leg_in_hold(port):
     with Leg.open(port) as watcher:
         told = wait_for(watcher, lambda told: told["state"] != "active")
         assert told["state"] == "held" and [fault["name"] for fault in told["faults"]] == ["no command"]
+        with pytest.raises(LegFault, match=r"fault 20, no command: .*; then clear\(\); the leg is held"):
+            watcher.move(0, 0)
         watcher.clear()
         assert watcher.move(0, 0)["tilt_deg"] < 0.1

@@ -44,6 +44,38 @@ def test_the_stub_has_every_name_and_no_other():
     assert set(tendon_leg.__all__) == real | own
 
 
+def stubbed():
+    """Each class, method, property and function of the stub with its words."""
+    for node in STUB.body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef):
+            yield node.name, node
+        if isinstance(node, ast.ClassDef):
+            # What a constructor takes stands with its class; what `==` and `hash` are, everybody knows.
+            silent = ("__new__", "__hash__", "__eq__", "__reduce__")
+            yield from ((f"{node.name}.{name}", each) for name, each in functions(node.body).items() if name not in silent)
+
+
+@pytest.mark.parametrize(("name", "node"), list(stubbed()), ids=[name for name, _ in stubbed()])
+def test_help_says_what_the_stub_says(name, node):
+    real = _native
+    for part in name.split("."):
+        real = getattr(real, part)
+    assert ast.get_docstring(node)
+    assert ast.get_docstring(node) == inspect.getdoc(real)
+
+
+def test_everything_public_has_its_words():
+    for name in tendon_leg.__all__:
+        each = getattr(tendon_leg, name)
+        if not callable(each):
+            continue
+        assert inspect.getdoc(each), name
+        own = vars(each) if isinstance(each, type) and not issubclass(each, Exception) else {}
+        for member in own:
+            if not member.startswith("_"):
+                assert inspect.getdoc(getattr(each, member)), f"{name}.{member}"
+
+
 def test_every_signature_is_that_of_the_stub():
     for node in STUB.body:
         if isinstance(node, ast.FunctionDef):
@@ -61,6 +93,5 @@ def assert_class(node, class_):
     else:
         pytest.raises(TypeError, class_)
     for name, method in methods.items():
-        assert ast.get_docstring(method), name
         if not name.startswith("__") and not method.decorator_list:
             assert arguments(method) == real_arguments(getattr(class_, name)), name

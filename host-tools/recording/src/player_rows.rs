@@ -53,9 +53,13 @@ pub fn read_signals(name: &str, bytes: &[u8]) -> Result<RecordedSignals, Failure
     }
 }
 
+/// What is left to read of a recording.
+type Work = Pin<Box<dyn Future<Output = Result<RecordedSignals, Failure>>>>;
+
 /// Reads every signal of a recording in parts, for a program that has to do something else in between.
 pub struct SignalReader {
-    work: Pin<Box<dyn Future<Output = Result<RecordedSignals, Failure>>>>,
+    /// None once its result was given.
+    work: Option<Work>,
     progress: Rc<Progress>,
 }
 
@@ -71,10 +75,8 @@ struct Progress {
 }
 
 impl Progress {
-    /// Notes a message, and waits where no more may be read.
-    async fn note(&self, read_s: f64) {
-        self.read.update(|read| read + 1);
-        self.read_s.set(read_s);
+    /// Waits until one more message may be read.
+    async fn wait(&self) {
         poll_fn(|_| match self.allowed.get().checked_sub(1) {
             Some(left) => {
                 self.allowed.set(left);
@@ -83,6 +85,12 @@ impl Progress {
             None => Poll::Pending,
         })
         .await;
+    }
+
+    /// Notes a message that was read.
+    fn note(&self, read_s: f64) {
+        self.read.update(|read| read + 1);
+        self.read_s.set(read_s);
     }
 }
 
@@ -93,30 +101,31 @@ impl SignalReader {
         let progress = Rc::<Progress>::default();
         let noted = progress.clone();
         Self {
-            work: Box::pin(async move {
+            work: Some(Box::pin(async move {
                 read(&name, &bytes, &noted).await.map_err(|error| {
                     Failure::refused(
                         format!("{name}: {error}"),
                         "give a file that this window, `leg run --record FILE.mcap` or `leg log --out FILE.mcap` has written",
                     )
                 })
-            }),
+            })),
             progress,
         }
     }
 
-    /// Reads so many messages at the most. All signals once everything is read; not to be called after that.
+    /// Reads so many messages at the most. All signals once everything is read; none before that, and after they were
+    /// given.
     ///
     /// # Errors
     /// As [`read_signals`].
     pub fn read_on(&mut self, messages: usize) -> Option<Result<RecordedSignals, Failure>> {
         self.progress.allowed.set(messages);
-        match self
-            .work
-            .as_mut()
-            .poll(&mut Context::from_waker(Waker::noop()))
-        {
-            Poll::Ready(read) => Some(read),
+        let context = &mut Context::from_waker(Waker::noop());
+        match self.work.as_mut()?.as_mut().poll(context) {
+            Poll::Ready(read) => {
+                self.work = None;
+                Some(read)
+            }
             Poll::Pending => None,
         }
     }
@@ -154,8 +163,9 @@ async fn read(name: &str, bytes: &[u8], progress: &Progress) -> Result<RecordedS
         numbers: Vec::new(),
     };
     for message in contents.messages()? {
+        progress.wait().await;
         reading.take(&message?)?;
-        progress.note(reading.read_s()).await;
+        progress.note(reading.read_s());
     }
     if reading.rows.is_empty() {
         return Err("holds no telemetry of a leg".into());

@@ -1,6 +1,7 @@
 //! Reproduces a recording with the present code, bit for bit.
 
 use crate::contents::Contents;
+use crate::samples::unreadable;
 use crate::tick_record::{TickRecord, bits};
 use crate::writer::{RECORDER, REPORT, SCHEMA_KEY, SETTINGS, TICKS, schema};
 use leg_base::failure::Failure;
@@ -88,6 +89,11 @@ fn compare(bytes: &[u8]) -> Result<Replay, String> {
 fn read<'a, T: Deserialize<'a>>(message: &'a Message<'_>) -> Result<T, String> {
     let wanted = schema();
     match message.channel.metadata.get(SCHEMA_KEY) {
+        // The settings are JSON; recordings of earlier versions have them in postcard's format, as the ticks.
+        Some(found) if *found == wanted && message.channel.message_encoding == "json" => {
+            serde_json::from_slice(&message.data)
+                .map_err(|error| unreadable(message, &error.to_string()))
+        }
         Some(found) if *found == wanted => postcard::from_bytes(&message.data)
             .map_err(|_| format!("message {} cannot be read", message.sequence)),
         found => {

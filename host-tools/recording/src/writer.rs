@@ -87,10 +87,19 @@ impl<W: Write + Seek> McapWriter<W> {
             bytes: 0,
         };
         file.writer.write_metadata(&metadata(about, settings))?;
-        let channel = file.postcard_channel(SETTINGS)?;
-        file.write(channel, 0, file.begin_ns, &to_bytes(settings)?)?;
+        file.write_settings(settings)?;
         file.flush()?;
         Ok(file)
+    }
+
+    /// The settings, exactly: a number in f32 is written with as many digits as it has.
+    fn write_settings(&mut self, settings: &Settings) -> Result<(), WriteError> {
+        // A value in between would write a number in f32 with the digits of one in f64.
+        let text = serde_json::to_string(settings).map_err(WriteError::message)?;
+        let value = serde_json::from_str(&text).map_err(WriteError::message)?;
+        let metadata = BTreeMap::from([(SCHEMA_KEY.to_string(), schema())]);
+        let channel = self.described_channel(SETTINGS, &described(SETTINGS, &value), &metadata)?;
+        self.write(channel, 0, self.begin_ns, text.as_bytes())
     }
 
     /// What a controller gets and gives in a tick of a simulation.
@@ -182,11 +191,18 @@ impl<W: Write + Seek> McapWriter<W> {
     }
 
     fn json_channel(&mut self, topic: &str, schema: &Value) -> Result<u16, WriteError> {
+        self.described_channel(topic, schema, &BTreeMap::new())
+    }
+
+    fn described_channel(
+        &mut self,
+        topic: &str,
+        schema: &Value,
+        metadata: &BTreeMap<String, String>,
+    ) -> Result<u16, WriteError> {
         let schema = schema.to_string().into_bytes();
         let id = self.writer.add_schema(topic, "jsonschema", &schema)?;
-        Ok(self
-            .writer
-            .add_channel(id, topic, "json", &BTreeMap::new())?)
+        Ok(self.writer.add_channel(id, topic, "json", metadata)?)
     }
 
     fn postcard_channel(&mut self, topic: &str) -> Result<u16, WriteError> {
@@ -273,6 +289,34 @@ fn metadata(about: &About, settings: &Settings) -> Metadata {
     Metadata {
         name: METADATA.into(),
         metadata: known.collect(),
+    }
+}
+
+/// The JSON schema that a message like this one has. What is null in it may be anything.
+fn described(title: &str, message: &Value) -> Value {
+    let mut schema = kind(message);
+    schema["title"] = title.into();
+    schema
+}
+
+fn kind(value: &Value) -> Value {
+    match value {
+        Value::Null => json!({}),
+        Value::Bool(_) => json!({ "type": "boolean" }),
+        Value::Number(_) => json!({ "type": "number" }),
+        Value::String(_) => json!({ "type": "string" }),
+        // A list's parts are alike.
+        Value::Array(parts) => match parts.first() {
+            Some(part) => json!({ "type": "array", "items": kind(part) }),
+            None => json!({ "type": "array" }),
+        },
+        Value::Object(entries) => {
+            let properties = entries
+                .iter()
+                .map(|(key, value)| (key.clone(), kind(value)));
+            let properties: serde_json::Map<String, Value> = properties.collect();
+            json!({ "type": "object", "properties": properties })
+        }
     }
 }
 

@@ -1,9 +1,10 @@
-//! Rig files and settings: what a leg is, read from TOML, checked, shown and written back.
+//! Rig files and settings: what a leg is, read from TOML, checked, shown, written back, and measured on the leg itself.
 //!
 //! Begin with [`RigFile`](rig_file::RigFile): [`load`](rig_file::RigFile::load) takes a file or the name of a
 //! [ready rig](ready_rigs::READY_RIGS), and refuses what is wrong at its line and column.
 //! [`settings`](control_settings::settings) makes of it what a board is set to, and
-//! [`settings_text`] writes that as a rig file again.
+//! [`settings_text`] writes that as a rig file again. [`tune`] measures motors
+//! and first mode by a [`TunedLeg`](tune::TunedLeg).
 //!
 //! ```
 //! use leg_rig::control_settings::settings;

@@ -33,6 +33,8 @@ fields! {
         cell_offset_n: [f64; 3] = [1.5, -0.8, 0.6];
         /// How fast the offset of every load cell grows, N/s.
         cell_drift_n_per_s: f64 = 0.0;
+        /// What each motor's current sensor shows without a current, A.
+        current_offset_a: [f64; 3] = [0.02, -0.03, 0.01];
         /// Steps of the integration in a tick.
         substeps: u32 = 4;
         /// How much farther than by the rig file's curve the real tendons stretch, as a part of the elongation.
@@ -49,6 +51,15 @@ pub const TRANSVERSE_INERTIA: Field<f64> = Field::new(
     0.016562,
 );
 
+/// [`PlantSettings::current_offset_a`].
+pub const CURRENT_OFFSET: Field<f64> = Field::new(
+    "current_offset_a",
+    "A",
+    "What each motor's current sensor shows without a current.",
+    [-1e3, 1e3],
+    0.0,
+);
+
 /// The section `[simulation]`.
 pub const SIMULATION: &str = "simulation";
 
@@ -57,11 +68,14 @@ impl PlantSettings {
     pub(crate) fn read(root: &Section<'_>) -> Result<Self, TomlError> {
         let mut plant = Self::DEFAULT;
         let mut keys: Vec<_> = Self::FIELDS.iter().map(|field| field.name).collect();
-        keys.push(TRANSVERSE_INERTIA.name);
+        keys.extend([TRANSVERSE_INERTIA.name, CURRENT_OFFSET.name]);
         if let Some(section) = root.optional(SIMULATION, &keys)? {
             section.read(Self::FIELDS, plant.values_mut())?;
             let inertia = section.values([&TRANSVERSE_INERTIA])?;
             plant.leg_transverse_inertia_kg_m2 = inertia.map(|[inertia]| inertia);
+            if let Some(offsets) = section.values([&CURRENT_OFFSET; 3])? {
+                plant.current_offset_a = offsets;
+            }
         }
         Ok(plant)
     }

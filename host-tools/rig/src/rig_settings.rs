@@ -4,7 +4,7 @@ use crate::actuator::{ACTUATOR, Actuator, CELL_RANGE, TEMPERATURE_RANGE, THERMAL
 use crate::calibration::{CALIBRATION, Calibration};
 use crate::gains::{CONTROL, widened};
 use crate::number::{decimal, plain};
-use crate::plant_settings::{PlantSettings, SIMULATION, TRANSVERSE_INERTIA};
+use crate::plant_settings::{CURRENT_OFFSET, PlantSettings, SIMULATION, TRANSVERSE_INERTIA};
 use crate::rig_file::RigFile;
 use crate::rig_file::derived::{self, Basis, GivenGains};
 use leg_firmware::settings::{Field, Gains, SECTIONS};
@@ -117,6 +117,12 @@ pub fn simulation(file: &RigFile) -> Vec<Setting> {
         &[TRANSVERSE_INERTIA],
         value,
         default,
+    ));
+    all.extend(Setting::new(
+        SIMULATION,
+        &[CURRENT_OFFSET],
+        plant.current_offset_a,
+        PlantSettings::DEFAULT.current_offset_a,
     ));
     all
 }

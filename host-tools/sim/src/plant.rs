@@ -68,6 +68,8 @@ pub struct Plant {
     ambient_c: f64,
     encoders: [Encoder; 3],
     cells: Cells,
+    /// What each current sensor shows without a current, A.
+    current_offset_a: [f64; 3],
     defects: Defects,
     /// Of the defects that are random, but for those of the cells.
     rng: Rng,
@@ -132,11 +134,11 @@ impl Plant {
         } else if defects.has(Defect::CurrentDead(i)) {
             -self.actuator.current_range_a
         } else if defects.has(Defect::CurrentZero(i)) {
-            0.0
+            self.current_offset_a[i]
         } else if defects.has(Defect::CurrentOffset(i)) {
-            motor.current_a + CURRENT_OFFSET_A
+            motor.current_a + self.current_offset_a[i] + CURRENT_OFFSET_A
         } else {
-            motor.current_a
+            motor.current_a + self.current_offset_a[i]
         }
     }
 

@@ -57,6 +57,15 @@ impl Stage {
         }
     }
 
+    #[cfg(test)]
+    fn leg_mut(&mut self) -> &mut Simulation {
+        let Self::Leg(leg) = self else {
+            panic!("there is no leg");
+        };
+        let leg = leg.simulated_mut();
+        leg.unwrap_or_else(|| panic!("it is not simulated"))
+    }
+
     /// Lets time pass; `watch` sees the leg whenever it has gone on.
     fn advance(&mut self, elapsed_s: f64, now_s: f64, watch: &mut dyn FnMut(&mut ShownLeg)) {
         match self {
@@ -219,7 +228,7 @@ impl App {
         let setup = (is_wide && player.is_none()).then_some(&mut views.setup.open);
         Panel::top("bar")
             .frame(bar)
-            .show(ui, |ui| top_bar::show(ui, leg, setup));
+            .show(ui, |ui| top_bar::show(ui, leg, is_wide, setup));
         views.setup.show_notice(ui);
         if player.is_some() {
             return self.play(ui);
@@ -331,8 +340,13 @@ impl App {
         self.stop |= keys::take_stop(&mut input.events);
     }
 
+    /// What the leg's ticks took in the last frame, ms.
+    pub(crate) const fn ticks_ms(&self) -> f64 {
+        self.work.leg_ms()
+    }
+
     /// A frame.
-    fn frame(&mut self, ui: &mut Ui) {
+    pub(crate) fn frame(&mut self, ui: &mut Ui) {
         let began = Instant::now();
         let ctx = ui.ctx().clone();
         self.fit(&ctx);

@@ -1,8 +1,11 @@
 //! Every fault that the leg reports: what raised it, what it led to, and what to do.
 
+use crate::fault_words;
+use crate::places::place;
 use crate::theme::{Palette, palette};
-use eframe::egui::{CollapsingHeader, Frame, Label, RichText, Stroke, Ui};
+use eframe::egui::{CollapsingHeader, Color32, Frame, Label, RichText, Stroke, Ui};
 use leg_firmware::supervisor::{Clearing, Fault, FaultEntry, FaultSet, Reaction};
+use leg_rig::rig_file::RigFile;
 
 /// The list of faults.
 #[derive(Default)]
@@ -12,10 +15,15 @@ pub struct FaultList {
 }
 
 impl FaultList {
-    /// Shows the faults; without one, that there is none. The first explanation is open, the others open by a press.
-    pub fn show(&mut self, ui: &mut Ui, faults: FaultSet) {
+    /// Shows the faults of a leg with this rig; without one, that there is none. The first explanation is open, the others open by
+    /// a press. None where it is not known whether there are some.
+    pub fn show(&mut self, ui: &mut Ui, faults: Option<FaultSet>, rig: &RigFile) {
         let palette = palette(ui.ctx());
         ui.heading("Faults");
+        let Some(faults) = faults else {
+            ui.label(RichText::new("not known").color(palette.error));
+            return;
+        };
         if !faults.any() {
             ui.label(RichText::new("✔ none").color(palette.good));
         }
@@ -26,51 +34,70 @@ impl FaultList {
         };
         for fault in faults.faults() {
             let new = !self.shown.has(fault);
-            card(ui, fault, new.then_some(first == Some(fault)), &palette);
+            card(
+                ui,
+                fault,
+                new.then_some(first == Some(fault)),
+                rig,
+                &palette,
+            );
         }
         self.shown = faults;
     }
-
-    /// Shows the faults if there are any.
-    pub fn show_any(&mut self, ui: &mut Ui, faults: FaultSet) {
-        if faults.any() {
-            self.show(ui, faults);
-        } else {
-            self.shown = faults;
-        }
-    }
 }
 
-/// A fault; `open` opens or closes its explanation.
-fn card(ui: &mut Ui, fault: Fault, open: Option<bool>, palette: &Palette) {
-    let entry = fault.entry();
-    let colour = if entry.reaction == Reaction::Limit {
+/// How grave a fault is, as a colour.
+#[must_use]
+pub fn colour(fault: Fault, palette: &Palette) -> Color32 {
+    if fault.reaction() == Reaction::Limit {
         palette.warning
     } else {
         palette.error
-    };
+    }
+}
+
+/// Its code and its name.
+#[must_use]
+pub fn title(fault: Fault) -> String {
+    format!("{} · {}", fault.code(), fault.entry().name)
+}
+
+/// A fault; `open` opens or closes its explanation.
+fn card(ui: &mut Ui, fault: Fault, open: Option<bool>, rig: &RigFile, palette: &Palette) {
+    let colour = colour(fault, palette);
     let frame = Frame::group(ui.style())
         .fill(palette.card)
         .stroke(Stroke::new(1.5, colour))
         .inner_margin(6.0);
-    frame.show(ui, |ui| {
+    let shown = frame.show(ui, |ui| {
         ui.set_width(ui.available_width());
-        let title = format!("{} · {}", fault.code(), entry.name);
-        let header = CollapsingHeader::new(RichText::new(title).strong().color(colour));
+        let title = RichText::new(title(fault))
+            .strong()
+            .size(13.0)
+            .color(colour);
+        let header = CollapsingHeader::new(title);
         let header = header.id_salt(fault.code()).open(open);
-        header.show_unindented(ui, |ui| rows(ui, entry));
+        header.show_unindented(ui, |ui| rows(ui, fault.entry(), rig));
     });
+    place(&shown.response, format!("fault_{}", fault.code()));
 }
 
-fn rows(ui: &mut Ui, entry: &FaultEntry) {
-    for (what, words) in [
-        ("Cause", entry.cause),
-        ("Reaction", reaction(entry.reaction)),
-        ("Remedy", entry.remedy),
-        ("Ends", clearing(entry.clears)),
-    ] {
+/// What to do stands first: where there is little room the rest is below the edge.
+fn rows(ui: &mut Ui, entry: &FaultEntry, rig: &RigFile) {
+    ui.spacing_mut().item_spacing.y = 3.0;
+    let rows = [
+        ("Remedy", fault_words::with_values(entry.remedy, rig)),
+        ("Cause", fault_words::with_values(entry.cause, rig)),
+        ("Reaction", reaction(entry.reaction).into()),
+        ("Ends", clearing(entry.clears).into()),
+    ];
+    for (what, words) in rows {
         let text = format!("{what}: {words}");
-        ui.add(Label::new(RichText::new(text).size(12.5)).wrap());
+        let row = ui.add(Label::new(RichText::new(text).size(12.5)).wrap());
+        place(
+            &row,
+            format!("fault_{}_{}", entry.fault.code(), what.to_lowercase()),
+        );
     }
 }
 
@@ -92,11 +119,13 @@ const fn clearing(clearing: Clearing) -> &'static str {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::FaultList;
     use eframe::egui::{Context, RawInput, Rect, Shape, pos2};
     use eframe::epaint::ClippedShape;
     use leg_firmware::supervisor::{Fault, FaultSet};
+    use leg_rig::rig_file::RigFile;
 
     fn words(shape: &Shape) -> String {
         match shape {
@@ -108,6 +137,7 @@ mod tests {
 
     /// What is shown when the faults have stayed for a second.
     fn shown(list: &mut FaultList, ctx: &Context, faults: FaultSet, from_s: f64) -> String {
+        let rig = RigFile::load(None).unwrap();
         let mut shapes: Vec<ClippedShape> = Vec::new();
         for frame in 0..10 {
             let input = RawInput {
@@ -115,7 +145,7 @@ mod tests {
                 screen_rect: Some(Rect::from_min_max(pos2(0.0, 0.0), pos2(400.0, 900.0))),
                 ..RawInput::default()
             };
-            let mut output = ctx.run_ui(input, |ui| list.show(ui, faults));
+            let mut output = ctx.run_ui(input, |ui| list.show(ui, Some(faults), &rig));
             output.textures_delta.clear();
             shapes = output.shapes;
         }
@@ -124,7 +154,7 @@ mod tests {
 
     fn is_open(shown: &str, fault: Fault) -> bool {
         assert!(shown.contains(fault.entry().name), "{shown}");
-        shown.contains(fault.entry().cause)
+        shown.contains("Cause: ") && shown.contains(fault.entry().remedy)
     }
 
     #[test]

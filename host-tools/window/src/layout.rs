@@ -1,6 +1,7 @@
 //! What is where in the window, wide or narrow.
 
 use crate::charts::{Charts, SignalSource};
+use crate::fault_strip::FaultStrip;
 use crate::faults::FaultList;
 use crate::map::Map;
 use crate::panel_guide::Wish;
@@ -21,6 +22,19 @@ use leg_rig::rig_file::RigText;
 
 /// The room for the time beside the leg, points.
 const TIME: Vec2 = vec2(150.0, 50.0);
+
+/// The least and the widest disc, points.
+const DISC: [f32; 2] = [180.0, 300.0];
+
+/// A window that is lower than this, and wider than high, has the leg at its left: a phone held across, points.
+const LOW: f32 = 500.0;
+
+/// How much of such a window, and of one held upright, the leg takes.
+const LEFT_PART: f32 = 0.46;
+const TOP_PART: f32 = 0.44;
+
+/// Below this width of a tab there is little room for its name, points.
+const TAB_ROOMY: f32 = 66.0;
 
 /// What a narrow window shows below the leg.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,6 +68,7 @@ pub struct Views {
     /// The signals over time.
     pub charts: Charts,
     faults: FaultList,
+    fault_strip: FaultStrip,
     /// What is recorded, and opened.
     pub recordings: Recordings,
     /// Rig files and settings.
@@ -74,6 +89,7 @@ impl Views {
                 Charts::default()
             },
             faults: FaultList::default(),
+            fault_strip: FaultStrip::default(),
             recordings: Recordings::default(),
             setup: Setup::default(),
             tab: if live { Tab::Drive } else { Tab::Try },
@@ -118,7 +134,7 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
         .exact_size(300.0);
     right.show(ui, |ui| {
         ScrollArea::vertical().id_salt("right").show(ui, |ui| {
-            ui.heading("Drag the target");
+            Workspace::heading(ui, leg);
             views.workspace.show(ui, leg, 200.0);
             numbers::show(ui, &leg.seen());
             if let Some(simulation) = leg.simulated_mut() {
@@ -138,80 +154,89 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
         scroll.show(ui, |ui| charts(ui, leg, views, Some(room)));
     });
     CentralPanel::no_frame().show(ui, |ui| {
-        let rect = stage(
-            ui,
-            &leg.seen(),
-            leg.failure(),
-            &mut views.scene,
-            views.workspace.map(),
-        );
+        let rect = leg_stage(ui, leg, views);
         let over = UiBuilder::new().max_rect(scene::room(rect));
         ui.scope_builder(over, |ui| {
             let scroll = ScrollArea::vertical().id_salt("faults");
             // A narrow window has the leg below them.
             let frame = Frame::NONE.fill(palette(ui.ctx()).back.gamma_multiply(0.85));
             scroll.show(ui, |ui| {
-                frame.show(ui, |ui| views.faults.show(ui, leg.faults()))
+                frame.show(ui, |ui| {
+                    views.faults.show(ui, leg.known_faults(), leg.rig());
+                })
             });
         });
     });
     wish.inner
 }
 
-/// The leg above, and the rest behind tabs.
+/// Where the leg is in a window that is not wide: above the rest, or at its left where the window is low.
+pub fn leg_panel(ui: &Ui, id: &'static str) -> Panel {
+    let room = ui.available_size();
+    let panel = if room.y < LOW && room.x > room.y {
+        Panel::left(id).exact_size(LEFT_PART * room.x)
+    } else {
+        Panel::top(id).exact_size((TOP_PART * room.y).max(220.0))
+    };
+    panel.frame(Frame::NONE).resizable(false)
+}
+
+/// The leg above or at the left, and the rest behind tabs.
 pub fn narrow(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
     views.workspace.refresh(leg);
     if views.setup.take_wanted() {
         views.tab = Tab::Setup;
     }
-    let height = (0.44 * ui.available_height()).max(220.0);
-    let above = Panel::top("leg")
-        .frame(Frame::NONE)
-        .resizable(false)
-        .exact_size(height);
-    above.show(ui, |ui| {
-        let rect = stage(
-            ui,
-            &leg.seen(),
-            leg.failure(),
-            &mut views.scene,
-            views.workspace.map(),
-        );
+    let panel = leg_panel(ui, "leg").show(ui, |ui| {
+        let rect = leg_stage(ui, leg, views);
         let corner = Rect::from_min_max(rect.max - TIME, rect.max - vec2(14.0, 6.0));
         let over = UiBuilder::new()
             .max_rect(corner)
             .layout(Layout::bottom_up(Align::Max));
         ui.scope_builder(over, |ui| top_bar::time(ui, leg));
+        rect
     });
     CentralPanel::default()
         .show(ui, |ui| {
-            ui.horizontal(|ui| {
-                let shown = |(tab, ..): &&(Tab, _, _)| leg.live().is_none() || !tab.simulated();
-                let count = TABS.iter().filter(shown).count();
-                let gaps = ui.spacing().item_spacing.x * count.saturating_sub(1) as f32;
-                let width = (ui.available_width() - gaps) / count as f32;
-                for &(this, text, name) in TABS.iter().filter(shown) {
-                    let button = eframe::egui::Button::selectable(views.tab == this, text);
-                    let response = ui.add(button.min_size(vec2(width, 36.0)));
-                    place(&response, name);
-                    if response.clicked() {
-                        views.tab = this;
-                    }
-                }
-            });
+            let strip = &mut views.fault_strip;
+            strip.show(ui, leg.known_faults(), leg.rig(), panel.inner);
+            tabs(ui, leg, &mut views.tab);
             ui.separator();
             if views.tab == Tab::Setup {
                 // It scrolls by itself.
-                return page(ui, leg, views);
+                return page(ui, leg, views, 0.0);
             }
+            let high = ui.available_height();
             let scroll = ScrollArea::vertical().id_salt("tabs");
-            scroll.show(ui, |ui| page(ui, leg, views)).inner
+            scroll.show(ui, |ui| page(ui, leg, views, high)).inner
         })
         .inner
 }
 
-fn page(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
-    views.faults.show_any(ui, leg.faults());
+fn tabs(ui: &mut Ui, leg: &ShownLeg, tab: &mut Tab) {
+    ui.horizontal(|ui| {
+        let shown = |(tab, ..): &&(Tab, _, _)| leg.live().is_none() || !tab.simulated();
+        let count = TABS.iter().filter(shown).count();
+        let spacing = ui.spacing_mut();
+        spacing.item_spacing.x = 4.0;
+        let gaps = spacing.item_spacing.x * count.saturating_sub(1) as f32;
+        let width = (ui.available_width() - gaps) / count as f32;
+        if width < TAB_ROOMY {
+            ui.spacing_mut().button_padding.x = 2.0;
+        }
+        for &(this, text, name) in TABS.iter().filter(shown) {
+            let button = eframe::egui::Button::selectable(*tab == this, text);
+            let response = ui.add(button.min_size(vec2(width, 36.0)));
+            place(&response, name);
+            if response.clicked() {
+                *tab = this;
+            }
+        }
+    });
+}
+
+/// What a tab has, in a room of some height, points.
+fn page(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views, high: f32) -> Wish {
     match views.tab {
         Tab::Try => {
             let wish = guide(ui, leg);
@@ -220,8 +245,9 @@ fn page(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
         }
         Tab::Drive => {
             unlock(ui, leg);
-            let side = ui.available_width().min(300.0);
-            ui.vertical_centered(|ui| views.workspace.show(ui, leg, side));
+            let [least, most] = DISC;
+            let side = Workspace::side_max(ui).min(high.clamp(least, most));
+            views.workspace.show(ui, leg, side);
             if leg.live().is_some() {
                 numbers::show(ui, &leg.seen());
                 ui.separator();
@@ -243,6 +269,12 @@ fn page(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
 
 fn simulate(source: Option<RigText>) -> Wish {
     source.map_or(Wish::None, Wish::Simulate)
+}
+
+/// The leg that is there, with what was chosen to be seen of it. Gives where it is.
+fn leg_stage(ui: &mut Ui, leg: &ShownLeg, views: &mut Views) -> Rect {
+    let map = views.workspace.map();
+    stage(ui, &leg.seen(), leg.failure(), &mut views.scene, map)
 }
 
 /// The leg, how much its sag is enlarged, and why it cannot go on. Gives where it is.

@@ -26,30 +26,34 @@
 //! |---|---|
 //! | [`simulation`], [`pace`], [`history`] | the leg, how much of it a frame is worth, and what its signals were |
 //! | [`live_leg`], [`shown_leg`], [`seen_leg`], [`orders`] | a leg behind `leg ui`; what both are for the panels, and for the picture; commands on their way |
-//! | [`app`], [`layout`], [`top_bar`], `panel_…`, [`numbers`], [`faults`] | what is where |
+//! | [`app`], [`layout`], [`top_bar`], `panel_…`, [`numbers`], [`faults`], [`fault_strip`], [`fault_words`] | what is where |
 //! | [`scene`], `drawn_leg`, [`camera`], [`figure`], [`leg_pose`], [`stiffness_ellipse`] | the leg in 3D |
-//! | [`workspace`], [`map`], [`map_mesh`] | the disc on which the target is dragged, and what the model says of every pose |
+//! | [`workspace`], [`map`], [`map_key`], [`map_mesh`] | the disc on which the target is dragged, and what the model says of every pose |
 //! | [`charts`] | signals over time |
 //! | [`recorder`], [`recordings`], [`recording_reader`], [`recorded_leg`], [`player`] | recordings: made, saved, read, played |
 //! | [`setup`], [`rig_intake`], [`files`], [`notice`] | rig files and settings: given, edited, saved, applied; what became of it |
-//! | [`theme`], [`text`], [`keys`], [`utc`] | colours, sizes, text in its place; the keys that stop; the date |
+//! | [`theme`], [`text`], [`keys`], [`utc`], [`wall_clock`] | colours, sizes, text in its place; the keys that stop; the date, the time of the day |
 //! | [`bits`] | whether the firmware decides the same here as elsewhere |
-//! | [`page_state`], [`places`], [`work`] | the window as data, for tests and for readers of the screen; how long its frames take |
+//! | [`page_state`], [`places`], [`work`], [`frame_cost`] | the window as data, for tests and for readers of the screen; how long its frames take |
 
 pub mod app;
 pub mod bits;
 pub mod camera;
 pub mod charts;
 mod drawn_leg;
+pub mod fault_strip;
+pub mod fault_words;
 pub mod faults;
 pub mod figure;
 pub mod files;
+pub mod frame_cost;
 pub mod history;
 pub mod keys;
 pub mod layout;
 pub mod leg_pose;
 pub mod live_leg;
 pub mod map;
+pub mod map_key;
 pub mod map_mesh;
 pub mod notice;
 pub mod numbers;
@@ -77,6 +81,7 @@ pub mod text;
 pub mod theme;
 pub mod top_bar;
 pub mod utc;
+pub mod wall_clock;
 #[cfg(target_arch = "wasm32")]
 pub mod web;
 pub mod work;

@@ -11,11 +11,12 @@ pub mod line;
 pub mod messages;
 pub mod opening;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use crate::history::{History, Snapshot};
 use crate::orders::{Order, Orders, refused};
 use crate::recorder::Recorder;
+use crate::wall_clock;
 use board::Board;
 use frames::{Frames, Numbers};
 use leg_base::tick_time::seconds;
@@ -27,7 +28,6 @@ use leg_rig::rig_file::{RigFile, RigText};
 use leg_sim::signals::{LegConstants, Report};
 use line::{Heard, Line, Said};
 use messages::{PageWord, Role, ServerWord};
-use web_time::SystemTime;
 
 /// From one sign of life to the next at least, s. The leg holds by itself after 0.2 s without one.
 const ALIVE_S: f64 = 0.02;
@@ -48,12 +48,6 @@ pub struct PageIdentity {
     pub host: HostId,
     /// Where the numbers of its requests begin.
     pub first_number: u16,
-}
-
-/// The time of the day, s since 1970.
-fn wall_time_s() -> Option<f64> {
-    let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
-    since.ok().map(|since| since.as_secs_f64())
 }
 
 /// A live leg.
@@ -193,7 +187,7 @@ impl LiveLeg {
         self.telemetry = Some(telemetry);
         self.heard_s = Some(self.now_s);
         let report = Report::new(&telemetry, &self.constants);
-        let wall_time_s = wall_time_s();
+        let wall_time_s = wall_clock::system();
         let snapshot = Snapshot {
             report: report.received(wall_time_s.unwrap_or(f64::NAN), self.frames.damaged()),
             simulated: None,

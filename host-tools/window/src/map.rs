@@ -98,6 +98,18 @@ impl Map {
             && (self.pretension_n - pretension_n).abs() <= SAME_N
     }
 
+    /// What it shows.
+    #[must_use]
+    pub const fn quantity(&self) -> Quantity {
+        self.quantity
+    }
+
+    /// Whether the model has no answer somewhere.
+    #[must_use]
+    pub fn has_gaps(&self) -> bool {
+        self.values.iter().any(|value| !value.is_finite())
+    }
+
     /// The sine of the largest tilt.
     #[must_use]
     pub const fn sine_max(&self) -> f64 {

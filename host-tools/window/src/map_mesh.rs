@@ -2,24 +2,26 @@
 
 use crate::map::{Map, RINGS, SPOKES, azimuth_deg};
 use crate::theme::{Palette, mixed};
-use eframe::egui::{Mesh, Pos2};
+use eframe::egui::{Color32, Mesh, Pos2};
 use leg_base::angles;
+
+/// The colour of a value at a part of the way from the lowest to the highest; not a number where the model has no answer.
+#[must_use]
+pub fn colour(palette: &Palette, part: f64) -> Color32 {
+    if part.is_finite() {
+        mixed(palette.card, palette.brass, 0.8 * part as f32)
+    } else {
+        palette.back
+    }
+}
 
 /// The map, coloured from its lowest value to its highest; `place` is where the screen has the horizontal components of a direction.
 pub fn mesh(map: &Map, palette: &Palette, opacity: f32, place: impl Fn([f64; 2]) -> Pos2) -> Mesh {
     let [low, high] = map.range().unwrap_or_default();
-    let colour = |value: f64| {
-        let part = if high > low {
-            (value - low) / (high - low)
-        } else {
-            0.0
-        };
-        let colour = if part.is_finite() {
-            mixed(palette.card, palette.brass, 0.8 * part as f32)
-        } else {
-            palette.back
-        };
-        colour.gamma_multiply(opacity)
+    let shown = |value: f64| {
+        // One value everywhere is the lowest.
+        let range = if high > low { high - low } else { 1.0 };
+        colour(palette, (value - low) / range).gamma_multiply(opacity)
     };
     let mut mesh = Mesh::default();
     for (index, value) in map.values().iter().enumerate() {
@@ -29,7 +31,7 @@ pub fn mesh(map: &Map, palette: &Palette, opacity: f32, place: impl Fn([f64; 2])
         };
         let sine = map.sine_max() * ring as f64 / RINGS as f64;
         let at = angles::unit_vector(azimuth_deg(spoke)).map(|part| sine * part);
-        mesh.colored_vertex(place(at), colour(*value));
+        mesh.colored_vertex(place(at), shown(*value));
     }
     let vertex = |ring: usize, spoke: usize| match ring {
         0 => 0,

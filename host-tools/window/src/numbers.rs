@@ -28,12 +28,17 @@ pub fn show(ui: &mut Ui, leg: &SeenLeg<'_>) {
         if simulated {
             row(ui, faint("off target, true"), leg.error_mm, "mm");
         }
+        let from = if leg.is_heard {
+            "from the sensors:"
+        } else {
+            "last heard:"
+        };
         let source = if simulated {
             "What the leg concludes from its sensors. The leg is drawn as it truly is."
         } else {
             "What the leg concludes from its sensors. The leg is drawn like that."
         };
-        ui.label(faint("from the sensors:")).on_hover_text(source);
+        ui.label(faint(from)).on_hover_text(source);
         ui.end_row();
         if !simulated {
             row(ui, faint("off target"), leg.error_mm, "mm");

@@ -8,6 +8,7 @@ use crate::player::PlayerState;
 use crate::recorder::Recorder;
 use crate::setup::state::SetupState;
 use crate::shown_leg::ShownLeg;
+use crate::top_bar::NOT_KNOWN;
 use crate::work::WorkSummary;
 use leg_base::angles;
 use leg_base::description;
@@ -74,6 +75,8 @@ struct LegState {
     left_out_s: f64,
     state: &'static str,
     faults: Vec<&'static str>,
+    /// Whether these are all that it has now.
+    faults_known: bool,
     refusal: Option<String>,
     compensated: Option<bool>,
     payload_kg: f64,
@@ -146,7 +149,7 @@ impl LegState {
         let live = leg.live();
         let role = live.map(LiveLeg::role).unwrap_or_default();
         let [azimuth_deg, tilt_deg] = angles::angles_deg([leg_axis.x, leg_axis.y]);
-        let faults = leg.faults().faults();
+        let faults = leg.known_faults().unwrap_or_default().faults();
         let telemetry = leg.telemetry();
         Self {
             live: live.map(|live| live.name().into()),
@@ -157,8 +160,9 @@ impl LegState {
             time_s: leg.time_s(),
             rate: pace.rate,
             left_out_s: pace.left_out_s(),
-            state: description::state(leg.state()),
+            state: leg.known_state().map_or(NOT_KNOWN, description::state),
             faults: faults.map(|fault| fault.entry().name).collect(),
+            faults_known: leg.is_heard(),
             refusal: leg.refusal().map(Into::into),
             compensated: leg.compensated(),
             payload_kg: leg.payload_kg(),
@@ -176,6 +180,9 @@ impl LegState {
     }
 
     fn spoken(&self) -> String {
+        if let Some(failure) = &self.failure {
+            return format!("The state of the leg is {}. {failure}", self.state);
+        }
         let faults = if self.faults.is_empty() {
             "none".into()
         } else {

@@ -30,6 +30,9 @@ struct Choice {
     useful: fn(&ShownLeg) -> bool,
 }
 
+/// What homing does to a leg with a payload.
+const ZERO_SPOILED: &str = "finds a wrong zero: take the payload off first";
+
 const CHOICES: [Choice; 5] = [
     Choice {
         name: "home",
@@ -84,9 +87,14 @@ pub fn show(ui: &mut Ui, leg: &mut ShownLeg) {
                 ui.add_enabled(useful, Button::new(choice.text).min_size(vec2(72.0, 28.0)));
             place(&button, choice.name);
             let button = why(button, locked);
-            let effect = RichText::new(choice.effect)
-                .small()
-                .color(palette(ui.ctx()).faint);
+            let palette = palette(ui.ctx());
+            let spoils = useful && choice.command == Command::Home && is_loaded(leg);
+            let (effect, colour) = if spoils {
+                (ZERO_SPOILED, palette.warning)
+            } else {
+                (choice.effect, palette.faint)
+            };
+            let effect = RichText::new(effect).small().color(colour);
             ui.add(Label::new(effect).wrap());
             if button.clicked() {
                 leg.command(choice.command, choice.text);
@@ -96,6 +104,11 @@ pub fn show(ui: &mut Ui, leg: &mut ShownLeg) {
     refusal(ui, leg);
     compensation(ui, leg);
     sliders(ui, leg);
+}
+
+/// Whether a simulated leg has a payload: a live one may have a push.
+fn is_loaded(leg: &ShownLeg) -> bool {
+    leg.simulated().is_some_and(|leg| leg.payload_kg() > 0.0)
 }
 
 /// What was refused takes its room whether there is something or not: nothing moves.

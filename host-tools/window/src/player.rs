@@ -2,7 +2,7 @@
 
 use crate::charts::Charts;
 use crate::faults::FaultList;
-use crate::layout::stage;
+use crate::layout::{self, stage};
 use crate::numbers;
 use crate::places::{place, place_rect};
 use crate::recorded_leg::RecordedLeg;
@@ -219,12 +219,7 @@ impl Player {
     }
 
     fn narrow(&mut self, ui: &mut Ui) {
-        let height = (0.42 * ui.available_height()).max(200.0);
-        let above = Panel::top("recorded leg")
-            .frame(Frame::NONE)
-            .resizable(false)
-            .exact_size(height);
-        above.show(ui, |ui| {
+        layout::leg_panel(ui, "recorded leg").show(ui, |ui| {
             stage(ui, &self.leg.seen(self.at_s), None, &mut self.scene, None);
         });
         CentralPanel::default().show(ui, |ui| {
@@ -302,10 +297,11 @@ impl Player {
     /// The leg at that time in numbers, its faults, and what the recording is of.
     fn facts(&mut self, ui: &mut Ui) {
         let palette = palette(ui.ctx());
-        chip(ui, self.leg.state(self.at_s), &palette);
+        chip(ui, Some(self.leg.state(self.at_s)), None, &palette);
         numbers::show(ui, &self.leg.seen(self.at_s));
         ui.separator();
-        self.faults.show(ui, self.leg.faults(self.at_s));
+        let faults = self.leg.faults(self.at_s);
+        self.faults.show(ui, Some(faults), self.leg.rig());
         ui.separator();
         let about = &self.leg.about;
         let seed = about.seed.map(|seed| seed.to_string());

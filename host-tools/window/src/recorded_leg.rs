@@ -108,6 +108,12 @@ impl RecordedLeg {
         std::array::from_fn(|i| numbers.get(i).map_or(f64::NAN, |number| f64::from(*number)))
     }
 
+    /// The settings with which it was recorded.
+    #[must_use]
+    pub const fn rig(&self) -> &RigFile {
+        &self.rig
+    }
+
     /// The leg as it is drawn: as it truly was, or as its sensors had it.
     #[must_use]
     pub fn seen(&self, at_s: f64) -> SeenLeg<'_> {
@@ -127,6 +133,7 @@ impl RecordedLeg {
             rig: &self.rig,
             telemetry,
             is_true: self.is_true,
+            is_heard: true,
             leg_axis: self.leg_axis(at_s, reported(|telemetry| telemetry.pose)),
             reference: leg_axis(reported(|telemetry| telemetry.target)),
             target,

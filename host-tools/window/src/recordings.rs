@@ -7,9 +7,9 @@ use crate::recorder::Recorder;
 use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
 use crate::utc;
-use eframe::egui::{Button, Context, RichText, TextEdit, Ui, vec2};
+use crate::wall_clock::{self, WallClock};
+use eframe::egui::{Button, Context, Label, RichText, TextEdit, Ui, vec2};
 use leg_rig::control_settings;
-use web_time::SystemTime;
 
 /// Files on their way into the window and out of it.
 pub struct Recordings {
@@ -18,6 +18,8 @@ pub struct Recordings {
     path: String,
     /// What became of the last one, once.
     notice: Option<Notice>,
+    /// Says when one begins and ends.
+    pub wall_clock: WallClock,
 }
 
 impl Default for Recordings {
@@ -26,6 +28,7 @@ impl Default for Recordings {
             files: Files::new(FileKind::Recording),
             path: String::new(),
             notice: None,
+            wall_clock: wall_clock::system,
         }
     }
 }
@@ -57,7 +60,7 @@ impl Recordings {
         };
         let saved = recorder
             .finish()
-            .and_then(|bytes| Files::save(&name(), &bytes));
+            .and_then(|bytes| Files::save(&self.name(), &bytes));
         self.notice = Some(Notice {
             good: saved.is_ok(),
             title: saved.unwrap_or_else(|words| format!("There is no recording: {words}.")),
@@ -67,7 +70,13 @@ impl Recordings {
 
     fn begin(&mut self, leg: &mut ShownLeg) {
         let settings = control_settings::settings(leg.rig(), &leg.rig().gains, None);
-        let recorder = Recorder::new(&leg.source().name, &settings);
+        let now_s = (self.wall_clock)().unwrap_or_default();
+        // The messages of a simulated leg have its own time, from the zero of that on.
+        let begin_s = match leg {
+            ShownLeg::Simulated(leg) => (now_s - leg.leg().time_s()).max(0.0),
+            ShownLeg::Live(_) => now_s,
+        };
+        let recorder = Recorder::new(&leg.source().name, &settings, begin_s);
         match recorder {
             Ok(recorder) => *leg.recorder_mut() = Some(recorder),
             Err(error) => {
@@ -78,6 +87,12 @@ impl Recordings {
                 });
             }
         }
+    }
+
+    /// The name of a new one: that of the time at which it ends.
+    fn name(&self) -> String {
+        let now_s = (self.wall_clock)().unwrap_or_default();
+        format!("leg-{}.mcap", utc::stamp(now_s as u64))
     }
 
     /// Lets the user record the leg, and open a recording.
@@ -114,7 +129,7 @@ impl Recordings {
         if recorded.is_none() {
             words = words.color(palette(ui.ctx()).faint);
         }
-        ui.label(words);
+        ui.add(Label::new(words).extend());
         self.opening(ui);
     }
 
@@ -137,11 +152,4 @@ impl Recordings {
             self.files.read_path(&self.path);
         }
     }
-}
-
-/// The name of a new one: that of the time at which it ends.
-fn name() -> String {
-    let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
-    let since_s = since.map_or(0, |since| since.as_secs());
-    format!("leg-{}.mcap", utc::stamp(since_s))
 }

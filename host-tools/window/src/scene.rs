@@ -18,8 +18,13 @@ const WIDE: f32 = 520.0;
 /// How much the detail takes of a wide picture.
 const DETAIL_PART: f32 = 0.38;
 
-/// Width of what stands below the detail at least, points.
-const ROOM_WIDTH: f32 = 140.0;
+/// How high the detail is in a wide picture, as a part of that, and at least, points.
+const DETAIL_SIDE: f32 = 0.47;
+const DETAIL_MIN: f32 = 150.0;
+
+/// Width of what stands below the detail, points, and how much of the picture that takes at most.
+const ROOM_WIDTH: f32 = 232.0;
+const ROOM_PART: f32 = 0.4;
 
 /// Where the choice of the factor stands, below the readout, points.
 pub const CHOICE_TOP: f32 = 72.0;
@@ -132,7 +137,8 @@ fn parts(rect: Rect) -> (Rect, Rect) {
         let whole = above_legend
             .with_max_x(at)
             .translate(vec2(0.05 * rect.width(), 0.0));
-        let side = (inner.right() - at).min(0.56 * inner.height());
+        let high = (DETAIL_SIDE * inner.height()).max(DETAIL_MIN);
+        let side = (inner.right() - at).min(high).min(inner.height());
         let corner = pos2(inner.right() - side, inner.top());
         return (whole, Rect::from_min_size(corner, Vec2::splat(side)));
     }
@@ -153,6 +159,7 @@ fn wide(rect: Rect) -> bool {
 pub fn room(rect: Rect) -> Rect {
     let (_, detail) = parts(rect);
     let inner = rect.shrink(8.0);
-    let left = detail.left().min(inner.right() - ROOM_WIDTH);
+    let width = ROOM_WIDTH.min(ROOM_PART * rect.width());
+    let left = detail.left().min(inner.right() - width);
     Rect::from_min_max(pos2(left, detail.bottom() + 8.0), inner.max)
 }

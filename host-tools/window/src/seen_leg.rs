@@ -13,6 +13,8 @@ pub struct SeenLeg<'a> {
     pub telemetry: Option<Telemetry<f32>>,
     /// Whether it is drawn as it truly is; else as its sensors have it.
     pub is_true: bool,
+    /// Whether what it reported last still holds.
+    pub is_heard: bool,
     /// Along it, from the joint to the tip.
     pub leg_axis: Vector3<f64>,
     /// Where its trajectory has it.

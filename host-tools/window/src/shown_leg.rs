@@ -177,6 +177,25 @@ impl ShownLeg {
             .map_or(FaultSet::NONE, |telemetry| telemetry.faults)
     }
 
+    /// Whether what it reported last still holds: nothing is known of a live leg that is not heard.
+    #[must_use]
+    pub fn is_heard(&self) -> bool {
+        self.live()
+            .is_none_or(|leg| leg.telemetry().is_some() && leg.failure().is_none())
+    }
+
+    /// What it may do, if that is known.
+    #[must_use]
+    pub fn known_state(&self) -> Option<State> {
+        self.is_heard().then(|| self.state())
+    }
+
+    /// What is wrong with it, if that is known.
+    #[must_use]
+    pub fn known_faults(&self) -> Option<FaultSet> {
+        self.is_heard().then(|| self.faults())
+    }
+
     /// Whether it holds its load; none if nobody has said so: a live leg does not report it.
     #[must_use]
     pub fn compensated(&self) -> Option<bool> {
@@ -300,6 +319,7 @@ impl ShownLeg {
             rig: self.rig(),
             telemetry: self.telemetry().copied(),
             is_true: truth.is_some(),
+            is_heard: self.is_heard(),
             leg_axis: self.leg_axis(),
             reference: self.reference(),
             target: self.target(),

@@ -2,11 +2,21 @@
 
 use eframe::egui::{
     self, Color32, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Theme, Visuals,
+    style::ScrollStyle,
 };
 
 /// Time from one click to the next in which they are a double click, s: what browsers and systems take. A slow page sees both later
 /// than they were.
 const DOUBLE_CLICK_S: f64 = 0.5;
+
+/// A bar is seen wherever something is beyond the edge, before the pointer is there, too: it takes no room.
+fn scroll() -> ScrollStyle {
+    ScrollStyle {
+        floating_width: 4.0,
+        dormant_handle_opacity: 0.55,
+        ..ScrollStyle::floating()
+    }
+}
 
 /// The colours of what is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -150,6 +160,7 @@ pub fn install(ctx: &egui::Context) {
         style.spacing.interact_size.y = 26.0;
         style.spacing.slider_width = 130.0;
         style.interaction.selectable_labels = false;
+        style.spacing.scroll = scroll();
     });
 }
 

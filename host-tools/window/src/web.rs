@@ -2,6 +2,7 @@
 
 use crate::app::App;
 use crate::bits;
+use crate::frame_cost;
 use crate::live_leg::PageIdentity;
 use crate::live_leg::browser_line::BrowserLine;
 use crate::live_leg::messages;
@@ -66,6 +67,13 @@ impl LegWindow {
     /// A scenario that does not run.
     pub fn bits(&self, scenario: &str) -> Result<String, String> {
         bits::row(scenario)
+    }
+
+    /// What so many frames take without what draws them, as JSON.
+    #[must_use]
+    pub fn frame_cost(&self, frames: u32) -> String {
+        let cost = frame_cost::measure(frames);
+        serde_json::to_string(&cost).unwrap_or_else(|_| "null".into())
     }
 
     /// Why it shows nothing any more.

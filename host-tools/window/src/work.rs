@@ -32,7 +32,8 @@ fn ms(time: Duration) -> f64 {
     1000.0 * time.as_secs_f64()
 }
 
-fn median(numbers: impl Iterator<Item = f64>) -> f64 {
+/// Half of the numbers are below it.
+pub(crate) fn median(numbers: impl Iterator<Item = f64>) -> f64 {
     let mut numbers: Vec<f64> = numbers.collect();
     numbers.sort_by(f64::total_cmp);
     numbers.get(numbers.len() / 2).copied().unwrap_or_default()
@@ -42,6 +43,12 @@ impl Work {
     /// Notes what the leg's ticks took in this frame.
     pub fn note_leg(&mut self, time: Duration) {
         self.leg_ms = ms(time);
+    }
+
+    /// What the leg's ticks took in the present frame, ms.
+    #[must_use]
+    pub const fn leg_ms(&self) -> f64 {
+        self.leg_ms
     }
 
     /// Notes what the frame took, its ticks included.

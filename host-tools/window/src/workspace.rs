@@ -1,6 +1,7 @@
 //! The workspace from above, on which the target is dragged.
 
 use crate::map::{Map, Quantity};
+use crate::map_key;
 use crate::map_mesh::mesh;
 use crate::places::place;
 use crate::shown_leg::ShownLeg;
@@ -60,9 +61,32 @@ pub struct Workspace {
 }
 
 impl Workspace {
+    /// What the disc is for, above it: words that come with the pointer would cover what is beside it.
+    pub fn heading(ui: &mut Ui, leg: &ShownLeg) {
+        ui.horizontal(|ui| {
+            ui.heading("Drag the target");
+            let words = if leg.locked().is_some() {
+                "locked"
+            } else {
+                "arrow keys: 1° each"
+            };
+            let words = RichText::new(words).small();
+            ui.label(words.color(palette(ui.ctx()).faint));
+        });
+    }
+
+    /// The widest disc that leaves room for what its colours mean, points.
+    #[must_use]
+    pub fn side_max(ui: &Ui) -> f32 {
+        ui.available_width() - map_key::WIDTH - ui.spacing().item_spacing.x
+    }
+
     /// Draws the workspace, and moves the leg to where the target is dragged.
     pub fn show(&mut self, ui: &mut Ui, leg: &mut ShownLeg, side: f32) {
-        disc(ui, leg, side, self.map.as_ref());
+        ui.horizontal(|ui| {
+            disc(ui, leg, side, self.map.as_ref());
+            map_key::show(ui, self.map.as_ref(), side);
+        });
         self.choice(ui);
     }
 
@@ -87,26 +111,18 @@ impl Workspace {
     }
 
     fn choice(&mut self, ui: &mut Ui) {
-        ui.horizontal(|ui| {
-            let name = self.quantity.map_or("none", |quantity| quantity.words()[0]);
-            let choice = ComboBox::from_id_salt("map").selected_text(format!("Map: {name}"));
-            let choice = choice.width(110.0).show_ui(ui, |ui| {
-                let none = ui.selectable_value(&mut self.quantity, None, "none");
-                place(&none, "map_none");
-                for (quantity, name, unit) in Quantity::ALL {
-                    let text = format!("{name}, {unit}");
-                    let item = ui.selectable_value(&mut self.quantity, Some(quantity), text);
-                    place(&item, format!("map_{name}"));
-                }
-            });
-            place(&choice.response, "map");
-            let range = self.map.as_ref().and_then(Map::range);
-            if let (Some(quantity), Some([low, high])) = (self.quantity, range) {
-                let words = format!("{low:5.1} to {high:5.1} {}", quantity.words()[1]);
-                let range = ui.label(RichText::new(words).monospace().size(11.5));
-                place(&range, "map_range");
+        let name = self.quantity.map_or("none", |quantity| quantity.words()[0]);
+        let choice = ComboBox::from_id_salt("map").selected_text(format!("Map: {name}"));
+        let choice = choice.width(140.0).show_ui(ui, |ui| {
+            let none = ui.selectable_value(&mut self.quantity, None, "none");
+            place(&none, "map_none");
+            for (quantity, name, unit) in Quantity::ALL {
+                let text = format!("{name}, {unit}");
+                let item = ui.selectable_value(&mut self.quantity, Some(quantity), text);
+                place(&item, format!("map_{name}"));
             }
         });
+        place(&choice.response, "map");
     }
 }
 
@@ -126,11 +142,6 @@ fn disc(ui: &mut Ui, leg: &mut ShownLeg, side: f32, map: Option<&Map>) {
         &palette(ui.ctx()),
         map,
         response.has_focus(),
-    );
-    response.on_hover_text(
-        leg.locked().unwrap_or(
-            "Drag to move the leg. With the disc in focus, the arrow keys move it by 1°.",
-        ),
     );
 }
 

@@ -144,6 +144,21 @@ fn a_start_in_motion_has_a_run_up() {
     assert_eq!(run_up(&fast, &settings()), Err(refusal));
 }
 
+/// A path whose points are all in reach is refused for what is wrong with it, however far it overshoots between them.
+#[test]
+fn a_path_that_is_much_too_fast_is_told_so() {
+    for faster in [3.0, 10.0, 30.0, 100.0] {
+        let row = |i: u32| PathRow {
+            time_s: f64::from(i) * 0.01,
+            direction: circle(f64::from(i) * 0.01 * faster).position,
+        };
+        let rows: Vec<_> = (0..500).map(row).collect();
+        let (time_s, refusal) = TimedPath::new(&rows).streamed(&settings()).unwrap_err();
+        let limit = PointRefusal::Limit(MotionLimit::Speed);
+        assert_eq!(refusal, limit, "{faster} times, at {time_s} s");
+    }
+}
+
 #[test]
 fn the_point_that_is_refused_is_told() {
     let mut rows = rows(&[0.0, 0.1, 0.2, 0.3, 0.4, 0.5]);

@@ -145,15 +145,18 @@ fn worst(rows: &[MarginRow], feedback: Feedback, margin: Margin) -> Option<f64> 
         .min_by(f64::total_cmp)
 }
 
-/// Whether a loop has no margin to measure: the phase of the trim does not come to ±180°, and a gain may stay below 1.
+/// Whether a loop that was measured has no such margin: the phase of the trim does not come to ±180°, and the gain of damping and tension may
+/// stay below 1.
 fn has_none(swept: &[Swept], feedback: Feedback, margin: Margin) -> bool {
-    let mut points = swept
-        .iter()
-        .filter(|one| one.feedback == feedback)
-        .flat_map(|one| &one.points);
-    match margin {
-        Margin::Gain => feedback == Feedback::Trim,
-        Margin::Phase => points.all(|point| point.gain_db < 0.0),
+    let of_loop = swept.iter().filter(|one| one.feedback == feedback);
+    let points: Vec<_> = of_loop.flat_map(|one| &one.points).collect();
+    assert!(!points.is_empty(), "{feedback:?} is not measured");
+    match (feedback, margin) {
+        (Feedback::Trim, Margin::Gain) => true,
+        (Feedback::Damping | Feedback::Tension, Margin::Phase) => {
+            points.iter().all(|point| point.gain_db < 0.0)
+        }
+        _ => false,
     }
 }
 

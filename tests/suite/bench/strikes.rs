@@ -141,6 +141,37 @@ fn motors_do_not_pull_for_long_against_one_that_is_not_driven() {
     );
 }
 
+/// Strikes that failed once: two load cells that had changed their places were taken for a load by each arm, to 270 N and 22 mm.
+#[test]
+fn a_leg_is_not_armed_again_by_what_its_cells_show_after_a_jump() {
+    require_within(
+        77,
+        &[(40561, "cells_swapped", 0.1), (36346, "cells_swapped", 0.1)],
+    );
+}
+
+/// A strike that failed once: each arm pulled by the reversed counter anew, to 169.9 N.
+#[test]
+fn a_motor_that_turned_the_wrong_way_is_not_armed_again() {
+    require_within(77, &[(9074, "encoder_reversed", 2.0)]);
+}
+
+/// A use that once ended in an alarm: a leg that was stopped and armed in a push, which took a tendon's tension, swung by 160 N as that came
+/// taut, and what its sensors showed then was taken for how they agree.
+#[test]
+fn a_leg_that_swings_hard_as_its_tendons_come_taut_raises_no_alarm() {
+    let seed = 660_014;
+    let usage = StrikeCampaign {
+        seed,
+        ..campaign("none")
+    }
+    .repeat_use(10, 12.0);
+    assert_eq!(usage.rig, "compliant_pivot");
+    assert_eq!(usage.stopped, None);
+    assert!(usage.alarms.is_empty(), "{:?}", usage.alarms);
+    assert!(usage.time_s >= 12.0);
+}
+
 /// A part of a use of each rig.
 #[test]
 fn a_leg_that_is_used_raises_no_alarm() {

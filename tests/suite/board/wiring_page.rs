@@ -5,7 +5,7 @@
 mod load_cell;
 mod page;
 
-use leg_firmware::sensors::TICK_HZ;
+use leg_firmware::sensors::{CURRENT_ZERO_PART, TICK_HZ};
 use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::FAULT_TABLE;
 use leg_rig::actuator::Actuator;
@@ -58,6 +58,9 @@ fn assert_near(found: f64, expected: f64, part: f64) {
     );
 }
 
+/// How far a current sensor is from the 25 °C of its data sheet, K.
+const HEATED_K: f64 = 60.0;
+
 #[test]
 fn the_current_sensor_covers_the_limits_in_both_directions() {
     let (page, settings) = (Page::read(), settings());
@@ -81,6 +84,26 @@ fn the_current_sensor_covers_the_limits_in_both_directions() {
     assert!(time_s < 3e-3, "{time_s} s");
     assert!(r9 * c2 < 0.2 / f64::from(TICK_HZ));
     assert!(c2 > 1e3 * SAMPLED_F && FULL_V / r8 < OUTPUT_A);
+}
+
+/// All errors of the zero at once, in a sensor that has a supply of its own: the start takes it. What the kit's own may have is a
+/// tenth of that.
+#[test]
+fn the_zero_of_a_current_is_within_what_is_taken() {
+    let page = Page::read();
+    let [shunt, gain, divider, other, steps] = page.values(["RS", "GS", "OR", "OV", "OC"]);
+    let [offset_v, drift_v_per_k] = page.values(["OS", "OD"]);
+    let input_v = offset_v + drift_v_per_k * HEATED_K;
+    let kit_v = gain * input_v + divider * FULL_V / 2.0 + steps * FULL_V / 4095.0;
+    let part = |volts: f64| volts / (FULL_V / 2.0);
+    assert!(part(kit_v) < 0.1 * f64::from(CURRENT_ZERO_PART));
+    let most_v = kit_v + other * FULL_V / 2.0;
+    assert!(part(most_v) < f64::from(CURRENT_ZERO_PART), "{most_v} V");
+    // A broken wire is none, nor a driver's output that is at an end of its range.
+    assert!(f64::from(CURRENT_ZERO_PART) < 0.5);
+    let taken_a = f64::from(CURRENT_ZERO_PART) * FULL_V / 2.0 / (gain * shunt);
+    let sentence = format!("up to {taken_a:.2} A");
+    assert!(page.0.contains(&sentence), "{sentence}");
 }
 
 #[test]

@@ -94,7 +94,7 @@ impl Drop for Served {
     }
 }
 
-fn refused(arguments: &[&str]) -> String {
+pub fn refused(arguments: &[&str]) -> String {
     let Output { status, stderr, .. } = leg(arguments).output().unwrap();
     assert_eq!(status.code(), Some(2));
     String::from_utf8(stderr).unwrap()

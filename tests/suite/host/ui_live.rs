@@ -3,7 +3,8 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::ui::{Served, leg};
+use super::ui::{Served, leg, refused};
+use crate::board::emulated_board::board::BoardUnderTest;
 use crate::common::stalls::PATIENCE;
 use leg_base::description::hex;
 use leg_firmware::command::Command;
@@ -165,6 +166,16 @@ impl Page {
         self.socket.send(Message::binary(bytes.to_vec())).unwrap();
     }
 
+    /// Drives, and finds the zero.
+    fn home(&mut self) {
+        self.wait_for_state(State::Disarmed);
+        self.say("drive");
+        self.wait("role", |page, _| page.role["drives"] == true);
+        self.command(Command::Home);
+        self.wait_for_state(State::Homing);
+        self.wait_for_state(State::Active);
+    }
+
     /// Lets the leg lean a little, and comes back while it is on its way.
     fn begin_move(&mut self, x: f32) {
         self.command(Command::Arm);
@@ -277,6 +288,45 @@ fn a_page_that_sends_something_else_is_dropped() {
     }
     let (mut page, _) = Page::new(&served);
     page.wait("telemetry", |page, _| page.telemetry.is_some());
+}
+
+/// A leg in this place is heard by a page, which unlocks it and homes it.
+fn homes(place: &str) {
+    let mut rig = NamedTempFile::new().unwrap();
+    write!(rig, "{}\n{PATIENT}", READY_RIGS[0].text).unwrap();
+    let served = Served::new(&["--on", place, "--rig", &rig.path().display().to_string()]);
+    Page::new(&served).0.home();
+}
+
+#[test]
+fn a_page_homes_a_leg_in_the_process() {
+    homes("sim");
+}
+
+#[test]
+fn a_page_homes_a_leg_under_qemu() {
+    homes("qemu");
+}
+
+#[test]
+fn a_page_homes_a_leg_on_an_emulated_chip() {
+    homes("chip");
+}
+
+#[test]
+fn a_page_homes_a_leg_on_a_serial_port() {
+    let board = BoardUnderTest::new(&["--slack"]);
+    let served = Served::new(&["--port", &board.port]);
+    let (mut page, hello) = Page::new(&served);
+    assert_eq!(hello["name"], board.port);
+    page.home();
+}
+
+/// A bus needs a machine that has one: what is shown of a leg on it is what is shown of one on a serial line.
+#[test]
+fn a_bus_that_is_not_there_is_refused_by_name() {
+    let told = refused(&["ui", "--no-open", "--can", "no-such0"]);
+    assert!(told.contains("no CAN interface `no-such0`"), "{told}");
 }
 
 #[test]

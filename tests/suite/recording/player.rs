@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::recorded::{logged, recorded, signals, simulation};
-use leg_recording::read_signals;
+use leg_recording::{SignalReader, read_signals};
 use leg_sim::link::InProcess;
 use leg_sim::signals::{LegConstants, REPORT_SIGNALS, SIMULATED_SIGNALS};
 use leg_sim::simulation::{SAMPLE_TICKS, Tick};
@@ -55,6 +55,25 @@ fn every_signal_is_read_by_its_name_as_far_as_it_goes() {
         most = cut.rows.len();
     }
     assert!(most > written.len() / 2, "{most} of {}", written.len());
+}
+
+/// In parts as in one: so many messages at a time, and the result once.
+#[test]
+fn a_recording_is_read_in_parts() {
+    let bytes = logged(0..100);
+    let whole = read_signals("leg.mcap", &bytes).unwrap();
+    let mut reader = SignalReader::new("leg.mcap".into(), bytes);
+    let mut parts = 0;
+    let read = loop {
+        assert_eq!(reader.messages(), 10 * parts);
+        match reader.read_on(10) {
+            Some(read) => break read.unwrap(),
+            None => parts += 1,
+        }
+    };
+    assert_eq!(parts, 10);
+    assert_eq!(read.rows.len(), whole.rows.len());
+    assert!(reader.read_on(10).is_none());
 }
 
 /// The last message that is whole is read, though the chunk in which it stands is not.

@@ -3,8 +3,10 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::recorded::recorded;
+use leg_firmware::settings::Settings;
 use leg_recording::replay;
 use mcap::records::MessageHeader;
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io::Cursor;
 
@@ -21,6 +23,56 @@ fn a_recording_is_reproduced_bit_for_bit_and_a_single_other_bit_is_reported() {
     });
     let differing = replay("leg.mcap", &bytes).unwrap();
     assert_eq!((differing.other, differing.first.unwrap().tick), (1, 777));
+}
+
+/// The settings are JSON, which gives the same bits again; earlier versions wrote them in postcard's format.
+#[test]
+fn settings_are_json_and_those_of_earlier_recordings_are_read() {
+    let (bytes, ticks) = recorded(|_, _| ());
+    let messages: Vec<_> = mcap::MessageStream::new(&bytes).unwrap().collect();
+    let first = messages[0].as_ref().unwrap();
+    assert_eq!(
+        (&*first.channel.topic, &*first.channel.message_encoding),
+        ("/settings", "json")
+    );
+    let settings: Settings = serde_json::from_slice(&first.data).unwrap();
+    let schema: Value =
+        serde_json::from_slice(&first.channel.schema.as_ref().unwrap().data).unwrap();
+    assert_eq!(
+        schema["properties"]["motion"]["properties"]["speed_rad_per_s"]["type"],
+        "number"
+    );
+
+    let mut writer = mcap::Writer::new(Cursor::new(Vec::new())).unwrap();
+    for message in messages {
+        let message = message.unwrap();
+        let channel = &message.channel;
+        let earlier = channel.topic == "/settings";
+        let [encoding, content] = if earlier {
+            let exact = postcard::to_slice(&settings, &mut [0; 2048])
+                .unwrap()
+                .to_vec();
+            [b"postcard".to_vec(), exact]
+        } else {
+            [
+                channel.message_encoding.clone().into_bytes(),
+                message.data.to_vec(),
+            ]
+        };
+        let encoding = String::from_utf8(encoding).unwrap();
+        let id = writer.add_channel(0, &channel.topic, &encoding, &channel.metadata);
+        let header = MessageHeader {
+            channel_id: id.unwrap(),
+            sequence: message.sequence,
+            log_time: message.log_time,
+            publish_time: message.publish_time,
+        };
+        writer.write_to_known_channel(&header, &content).unwrap();
+    }
+    writer.finish().unwrap();
+    let replayed = replay("leg.mcap", &writer.into_inner().into_inner()).unwrap();
+    assert_eq!((u64::from(replayed.ticks), replayed.other), (ticks, 0));
+    assert!(replayed.finished);
 }
 
 /// A recording that is cut anywhere, as by a program that is killed, is replayed as far as it goes.

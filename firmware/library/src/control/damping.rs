@@ -11,14 +11,16 @@ use nalgebra::SVector;
 /// Time between two steps, s: every other cycle.
 const STEP_S: f32 = 2.0 * CYCLE_S;
 
-/// Time constant of each of the two filters of the speeds by that of the mode, 1/ω: the lag of both is 43° there.
+/// Time constant of each of the two filters of the speeds by that of the mode, 1/ω: the lag of both is 43° there, of which what
+/// lasts takes back 27°.
 const FILTER_PART: f32 = 0.39;
 
 /// Time constant after which a speed lasts, by that of the mode: without what lasts the brake leads by 27° there, and the loops keep their
-/// phase where they end, a third above the mode.
+/// phase where they end, a third above the mode (`the_loops_keep_their_margins`).
 const LASTING_PART: f32 = 2.0;
 
-/// The most that lasts, m/s: faster than this, something pulls at the leg, and the brake resists all of it.
+/// The most of a speed that is taken for one that lasts, m/s: of a faster one, as when something pulls at the leg, the brake resists what is
+/// beyond this.
 const LASTING_M_PER_S: f32 = 2.5e-4;
 
 /// The damping of the tendons themselves makes them pull harder while they are reeled in, and look longer: the loop would be
@@ -34,8 +36,8 @@ const WHOLE_RAD_PER_S: f32 = 50.0;
 /// The longest time constant of a mode, 1/ω, that the filters are made for, s: 1 Hz.
 const LONGEST_S: f32 = 0.16;
 
-/// Amplitude of a tendon's swing that is not braked, m: above the noise of the load cells, or the motors would never rest. It is 5 µm
-/// at the tip of the paper's leg.
+/// Amplitude of a tendon's swing, as the filters leave it, that is not braked, m: above the noise of the load cells, or the motors would never
+/// rest. That is a swing of 0.64 µm at the mode, 6 µm at the tip of the paper's leg.
 const LEAST_M: f32 = 5e-7;
 
 /// The most that a tendon is longer or shorter for it, m: a swing of the paper's leg by 5 mm at the tip asks for no more.
@@ -202,8 +204,8 @@ impl<T: Scalar> SwingDamping<T> {
     }
 
     /// By how much each tendon shall be longer, m, for lengths that deviate from those of the trajectory by `deviations_m`. The tensions per
-    /// pretension tell a swing from a sensor that lies: a swing changes no length along them. The first mode has a time constant, and that of a
-    /// leg of an `inertia`, kg·m².
+    /// pretension tell a swing from a sensor that lies: a swing changes no length along them. `time_constant_s` is 1/ω of the first mode, s;
+    /// `inertia` that of the leg with its payload, kg·m².
     #[inline(always)]
     pub fn step(
         &mut self,
@@ -273,7 +275,7 @@ fn swing<T: Scalar>(speeds: [T; 3], per_pretension: &SVector<T, 3>) -> [T; 3] {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{LEAST_M, SWINGING_M, SwingDamping};
+    use super::{LEAST_M, STEP_S, SWINGING_M, SwingDamping};
     use crate::settings::Settings;
     use nalgebra::SVector;
 
@@ -320,19 +322,23 @@ mod tests {
         assert!(largest(&offsets) < twice_ratio * amplitude_m);
     }
 
-    /// A leg that moves at a constant speed does not swing: after some time constants it is left alone.
+    /// A leg that moves at a constant speed does not swing: after some time constants it is left alone, up to the most that lasts.
     #[test]
     fn what_lasts_is_no_swing() {
-        let mut damping = SwingDamping::<f64>::new(&Settings::for_table_1().unwrap());
-        let moved = |i: u32| {
-            let length_m = 2e-4 * 1e-3 * f64::from(i);
-            let lengths_m = SWING.map(|part| part * length_m);
-            damping.step(&lengths_m, &SVector::repeat(1.0), INERTIA, TIME_CONSTANT_S)
+        let moved = |m_per_s: f64| {
+            let mut damping = SwingDamping::<f64>::new(&Settings::for_table_1().unwrap());
+            move |i: u32| {
+                let length_m = m_per_s * f64::from(STEP_S) * f64::from(i);
+                let lengths_m = SWING.map(|part| part * length_m);
+                damping.step(&lengths_m, &SVector::repeat(1.0), INERTIA, TIME_CONSTANT_S)
+            }
         };
-        let offsets: Vec<_> = (0..1000).map(moved).collect();
+        let offsets: Vec<_> = (0..1000).map(moved(2e-4)).collect();
         let [early, late] = [&offsets[..200], &offsets[600..]].map(largest);
         assert!(early > 1e-7, "{early}");
         assert_eq!(late, 0.0);
+        let fast: Vec<_> = (0..1000).map(moved(2e-3)).collect();
+        assert!(largest(&fast[600..]) > 1e-7);
     }
 
     /// One length that changes alone is a sensor that lies; so are three that change as pretension does.

@@ -176,6 +176,7 @@ impl<T: Scalar> Estimator<T> {
         for push in &mut self.push_nm {
             push.set(T::zero());
         }
+        self.push_share = T::one();
     }
 
     /// Takes up a push as a leg allows whose first mode has a time constant 1/ω, s.

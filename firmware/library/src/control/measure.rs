@@ -1,9 +1,12 @@
 //! From counts and codes to SI.
 
-use super::{CYCLE_TICKS, TICK_S, bounds::clamp_symmetric, filter::LowPass};
-use crate::sensors::{CODE_MAX, Sensors};
+use super::{CYCLE_TICKS, TICK_S, bounds, filter::LowPass};
+use crate::sensors::{CODE_MAX, CurrentZero, Sensors};
 use crate::settings::Settings;
 use leg_model::Scalar;
+
+/// Readings of a current whose mean is its zero: 2 ms, as long as nothing is driven after a start.
+pub const ZERO_READINGS: u16 = 16;
 
 /// What the sensors say, in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,6 +35,7 @@ struct Channel<T> {
     n_per_code: T,
     zero_code: T,
     a_per_code: T,
+    current_zero_code: T,
     /// Codes of the current since its last mean.
     current_codes: u32,
     current_a: T,
@@ -46,6 +50,10 @@ pub struct Measurement<T> {
     temperature_c_per_code: T,
     temperature_at_zero_c: T,
     started: bool,
+    current_zeros: [CurrentZero; 3],
+    /// Codes of each current while its zero is searched for, and how many readings that were.
+    zero_codes: [u32; 3],
+    zero_readings: u16,
 }
 
 impl<T: Scalar> Measurement<T> {
@@ -60,6 +68,7 @@ impl<T: Scalar> Measurement<T> {
                 n_per_code: axis.cell_n_per_code.into(),
                 zero_code: axis.cell_zero_code.into(),
                 a_per_code: axis.current_a_per_code.into(),
+                current_zero_code: CurrentZero::NotFound.code().into(),
                 current_codes: 0,
                 current_a: T::zero(),
                 steady: LowPass::new(settings.estimation.tension_time_s, TICK_S),
@@ -71,6 +80,9 @@ impl<T: Scalar> Measurement<T> {
             temperature_c_per_code: settings.board.temperature_c_per_code.into(),
             temperature_at_zero_c: settings.board.temperature_at_zero_c.into(),
             started: false,
+            current_zeros: [CurrentZero::NotFound; 3],
+            zero_codes: [0; 3],
+            zero_readings: 0,
         }
     }
 
@@ -107,6 +119,47 @@ impl<T: Scalar> Measurement<T> {
             let codes = core::mem::take(&mut channel.current_codes);
             let mean_code = T::from(codes as f32 * (1.0 / CYCLE_TICKS as f32));
             channel.current_a = channel.current(mean_code);
+        }
+    }
+
+    /// Whether the zeros of the currents are searched for.
+    #[inline(always)]
+    pub fn seeks_current_zeros(&self) -> bool {
+        self.zero_readings < ZERO_READINGS
+    }
+
+    /// Takes a reading: after [`ZERO_READINGS`] of them the mean of each current is its zero, where it may be one. A leg that is driven
+    /// before that has none.
+    #[cold]
+    #[inline(never)]
+    pub fn seek_current_zeros(&mut self, sensors: &Sensors, driven: bool) {
+        if driven {
+            self.zero_readings = ZERO_READINGS;
+            return;
+        }
+        self.zero_readings += 1;
+        for (sum, &code) in self.zero_codes.iter_mut().zip(&sensors.current_codes) {
+            *sum += u32::from(code);
+        }
+        if self.zero_readings == ZERO_READINGS {
+            // Exact: a sum has 20 bits, and the divisor is a power of two.
+            let mean = |sum: u32| sum as f32 * (1.0 / f32::from(ZERO_READINGS));
+            let zeros = self.zero_codes.map(|sum| CurrentZero::of_mean(mean(sum)));
+            self.set_current_zeros(&zeros);
+        }
+    }
+
+    /// The zero of each current, and what was made of what it read.
+    #[must_use]
+    pub fn current_zeros(&self) -> [CurrentZero; 3] {
+        self.current_zeros
+    }
+
+    /// Counts currents from these zeros, from the next mean on.
+    pub fn set_current_zeros(&mut self, zeros: &[CurrentZero; 3]) {
+        self.current_zeros = *zeros;
+        for (channel, zero) in self.channels.iter_mut().zip(zeros) {
+            channel.current_zero_code = zero.code().into();
         }
     }
 
@@ -148,8 +201,8 @@ impl<T: Scalar> Channel<T> {
 
     #[inline(always)]
     fn current(&self, code: T) -> T {
-        let half = T::from(f32::from(CODE_MAX) * 0.5);
-        clamp_symmetric(code - half, half) * self.a_per_code
+        let highest = T::from(f32::from(CODE_MAX));
+        (bounds::min(code, highest) - self.current_zero_code) * self.a_per_code
     }
 }
 
@@ -157,3 +210,6 @@ impl<T: Scalar> Channel<T> {
 fn code<T: Scalar>(code: u16) -> T {
     T::from(f32::from(code))
 }
+
+#[cfg(test)]
+mod tests;

@@ -14,7 +14,7 @@ const TURN_MIN_M: f32 = 7e-7;
 const CROSSING_GAIN: f32 = 6.0;
 
 /// Part of the error of a motor within the play that a step of 1 ms corrects: in 50 ms, slowly beside the swing and the servo, whose
-/// margins it leaves. Without it the tip rests up to 4 µm off for each tendon that has not turned by a whole [`Play::turn_m`].
+/// margins it leaves. Without it the tip rests up to 5 µm off for each tendon that has not turned by a whole [`Play::turn_m`].
 const CORRECTED_PART: f32 = 0.02;
 
 /// The gears, followed by the counts of their motors. A gear touches its screw on one side while the tendon is reeled in, on the

@@ -4,7 +4,7 @@ use crate::command::{Command, CommandRefusal};
 use crate::frame::FrameError;
 use crate::jog::JogReport;
 use crate::recorder::{RecorderReply, RecorderRequest};
-use crate::sensors::Sensors;
+use crate::sensors::SensorReading;
 use crate::settings::{Settings, SettingsError};
 use crate::telemetry::Telemetry;
 use heapless::String;
@@ -58,7 +58,7 @@ pub enum HostRequest {
     Telemetry,
     /// Asks for telemetry again and again, every so many ticks; 0 ends it.
     Stream(u16),
-    /// Asks for the raw codes of the sensors.
+    /// Asks for the raw codes of the sensors, and for the zeros of the currents.
     Sensors,
     /// Asks for the settings in use.
     GetSettings,
@@ -90,8 +90,8 @@ pub enum HostReply {
     Done,
     /// The telemetry.
     Telemetry(TelemetryReport),
-    /// The raw codes of the sensors.
-    Sensors(Sensors),
+    /// The raw codes of the sensors, and the zeros of the currents.
+    Sensors(SensorReading),
     /// The settings in use.
     Settings(Settings),
     /// What the last jog measured; none since the start.

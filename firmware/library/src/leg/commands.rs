@@ -9,7 +9,7 @@ use crate::command::{Command, CommandRefusal};
 use crate::control::{Measured, PretensionDemand};
 use crate::jog::JogDemand;
 use crate::set_point::SetPoint;
-use crate::supervisor::{Event, Fault, FaultSet, State};
+use crate::supervisor::{Event, State};
 use leg_model::{BendingAxis, Direction, Scalar};
 
 /// Whether these are a cosine and a sine, but for their rounding. Of a direction of no length or of a huge one there is no
@@ -85,14 +85,16 @@ impl<T: Scalar> Leg<T> {
                 self.shared.refused = false;
                 self.link.clear_bad_frames();
                 let homed = self.shared.zero_m.is_some();
-                // Whichever fault was latched: a leg whose sensors disagree does not follow them again.
-                let mut causes = FaultSet::NONE;
-                causes.add(Fault::Residual, !self.agreement.agree());
+                // Whichever fault was latched: a held leg whose sensors disagree does not follow them again.
+                let causes = self.doubts(measured);
                 let state = self.mode.state();
-                if let Some(state) = self.supervisor.clear(state, homed, causes) {
+                let next = self.supervisor.clear(state, homed, causes);
+                self.unfaulted()?;
+                self.monitors.forget_jumps();
+                if let Some(state) = next {
                     self.enter(state, measured);
                 }
-                self.unfaulted()
+                Ok(())
             }
         }
     }

@@ -6,12 +6,12 @@ use super::jogging::Jogging;
 use super::ramping_down::RampingDown;
 use super::shared::Shared;
 use super::station::{Station, StationKeeping};
-use crate::control::{Axis, HomingSequence, Measured};
+use crate::control::{Axis, HomingSequence, Measured, ZERO_READINGS};
 use crate::supervisor::{Event, FaultSet, State};
 use leg_model::Scalar;
 
-/// Ticks of [`State::Boot`]: 2 ms, in which the filters of the sensors settle.
-const BOOT_TICKS: u32 = 16;
+/// Ticks of [`State::Boot`]: in which the filters of the sensors settle, and the zeros of the currents are found.
+const BOOT_TICKS: u32 = ZERO_READINGS as u32;
 
 /// The mode: the leg's [`State`] with the data that lives only as long as the state does.
 #[derive(Clone, Debug)]

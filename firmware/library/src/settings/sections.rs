@@ -65,7 +65,7 @@ fields! {
     pub struct Estimation: f32 {
         /// Time constant of the tensions.
         tension_time_s ["s"]: 1.25e-4..=1.0 = 4e-4;
-        /// Time constant of each of the two filters of the load: faster ones meet the leg's own swing.
+        /// Time constant of each of the two filters of the load; with a first mode below 5 Hz the first one is slower by as much.
         load_time_s ["s"]: 1e-3..=10.0 = 0.15;
         /// Time in which the pretension is trimmed by the tensions.
         trim_time_s ["s"]: 1e-3..=100.0 = 0.5;

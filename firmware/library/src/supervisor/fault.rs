@@ -84,7 +84,7 @@ faults! {
         name: "jump of a tension",
         reaction: Hold,
         cause: "a tension changes by jump_n within a millisecond",
-        remedy: "look for a cut or slipped tendon",
+        remedy: "look for a cut or slipped tendon; where the tension does not come back, disarm the leg, clear the fault and home",
         clears: Command,
     }
     4 Residual {
@@ -140,7 +140,7 @@ faults! {
         name: "motor turns the wrong way",
         reaction: GateOff,
         cause: "a motor counts against its voltage for reversed_time_s",
-        remedy: "swap the motor's wires or the sign of m_per_count",
+        remedy: "swap the motor's wires or the sign of m_per_count, then home the leg",
         clears: Command,
     }
     12 PoseLost {

@@ -37,6 +37,10 @@ impl FaultSet {
         .union(Self::single(Fault::Following))
         .union(Self::single(Fault::LateTick));
 
+    /// Those that say that a counter has not counted its tendon: the zero goes with them.
+    pub const LOSES_ZERO: Self =
+        Self::single(Fault::EncoderJump).union(Self::single(Fault::EncoderReversed));
+
     /// Those that the check of a load cell raises.
     pub const OF_CELLS: Self = Self::single(Fault::Slack)
         .union(Self::single(Fault::OverTension))

@@ -89,6 +89,18 @@ impl<T: Scalar> Monitors<T> {
         first.union(second).union(third)
     }
 
+    /// Whether a tension has jumped and not come back since.
+    pub fn stay_jumped(&self, tensions_n: &[T; 3]) -> bool {
+        let mut axes = self.axes.iter().zip(tensions_n);
+        axes.any(|(axis, &tension_n)| axis.stays_jumped(tension_n))
+    }
+
+    /// Whatever has jumped before is no matter any more.
+    #[inline(never)]
+    pub fn forget_jumps(&mut self) {
+        self.axes.iter_mut().for_each(AxisMonitor::forget_jump);
+    }
+
     /// The faults of a tick, but those of the axes.
     #[inline(always)]
     pub fn watch(&mut self, view: &MonitorInput<'_, T>) -> FaultSet {

@@ -87,7 +87,7 @@ impl ImageBudget {
                 hot: &["ADC1_2"],
             },
             FirmwareImage::Qemu => Self {
-                flash: ByteBounds::new(172_000, 229_000),
+                flash: ByteBounds::new(206_000, 275_000),
                 ram: ByteBounds::new(38_500, 51_300),
                 stack: ByteBounds::new(29_400, 39_300),
                 tasks: QEMU_TASKS,

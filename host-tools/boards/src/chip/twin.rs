@@ -10,7 +10,7 @@ use leg_firmware::jog::JogReport;
 use leg_firmware::leg::CommandOutcome;
 use leg_firmware::linked_leg::{RecordedLeg, SensingLeg};
 use leg_firmware::recorder::{Recorder, RecorderReply, RecorderRequest, RecorderSetup};
-use leg_firmware::sensors::Sensors;
+use leg_firmware::sensors::{SensorReading, Sensors};
 use leg_firmware::settings::{Settings, SettingsError};
 use leg_firmware::telemetry::Telemetry;
 use leg_firmware_bench::virtual_board::VirtualBoard;
@@ -131,7 +131,7 @@ impl CommandedLeg for CountingLeg {
         self.recorded().jog_report()
     }
 
-    fn sensors(&mut self) -> Sensors {
+    fn sensors(&mut self) -> SensorReading {
         self.recorded().sensors()
     }
 

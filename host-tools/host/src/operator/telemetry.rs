@@ -2,8 +2,8 @@
 
 use super::request::done;
 use super::{Operator, OperatorError, TelemetryStream};
-use leg_firmware::host_link::{HostReply, HostRequest, TelemetryReport};
-use leg_firmware::sensors::Sensors;
+use leg_firmware::host_link::{HOST_SCHEMA, Hello, HostReply, HostRequest, TelemetryReport};
+use leg_firmware::sensors::SensorReading;
 use leg_firmware::telemetry::Telemetry;
 use std::time::Duration;
 
@@ -38,8 +38,8 @@ impl Operator {
         Ok(report)
     }
 
-    /// The raw codes of the sensors in the last tick.
-    pub fn sensors(&mut self) -> Result<Sensors, OperatorError> {
+    /// The raw codes of the sensors in the last tick, and the zeros of the currents.
+    pub fn sensors(&mut self) -> Result<SensorReading, OperatorError> {
         let request = HostRequest::Sensors;
         self.ask("report its sensors", &request, |reply| match reply {
             HostReply::Sensors(sensors) => Some(sensors),
@@ -54,9 +54,18 @@ impl Operator {
         Ok(())
     }
 
-    /// Ends the stream, Ctrl-C or not: one that goes on takes room from the other hosts.
+    /// Ends the stream, Ctrl-C or not: one that goes on takes room from the other hosts. By an introduction, which the other hosts
+    /// see: those that stream ask for it again at once, before any of theirs is due.
     pub fn end_stream(&mut self) -> Result<(), OperatorError> {
-        self.uncancelled(|operator| operator.start_stream(0))
+        self.stream.every_ticks = 0;
+        let schema = HOST_SCHEMA;
+        self.uncancelled(|operator| {
+            let hello = HostRequest::Identify(Hello { schema });
+            operator.ask("end its telemetry", &hello, |reply| match reply {
+                HostReply::Identified(_) => Some(()),
+                _ => None,
+            })
+        })
     }
 
     /// The next telemetry of the stream; none if none comes in time. The stream is asked for again where another host's

@@ -1,4 +1,4 @@
-//! A recording as MCAP on a disk, which any program reads up to its last second, whatever becomes of this one.
+//! A recording as MCAP on a disk. A reader that needs no summary reads it up to its last flush if this program is killed.
 
 use super::{About, RecordingError};
 use leg_firmware::settings::Settings;

@@ -1,5 +1,6 @@
 //! One leg of a CAN FD bus, through a port that sends and receives CAN frames.
 
+mod emulated;
 #[cfg(target_os = "linux")]
 mod interface;
 #[cfg(target_os = "linux")]
@@ -9,6 +10,8 @@ mod socket;
 
 #[cfg(target_os = "linux")]
 pub use socket::SocketCan;
+
+pub use emulated::EmulatedCan;
 
 use super::{Transport, host_time};
 use leg_firmware::can::{
@@ -33,6 +36,11 @@ pub trait CanPort {
     /// Time since some moment, by the clock of the timeouts: the host's, or that of an emulated bus.
     fn now(&self) -> Duration {
         host_time()
+    }
+
+    /// Whether that clock is an emulated leg's own.
+    fn clock_is_emulated(&self) -> bool {
+        false
     }
 }
 
@@ -121,6 +129,10 @@ impl<P: CanPort> Transport for CanTransport<P> {
 
     fn now(&self) -> Duration {
         self.port.now()
+    }
+
+    fn clock_is_emulated(&self) -> bool {
+        self.port.clock_is_emulated()
     }
 }
 

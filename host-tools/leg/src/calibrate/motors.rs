@@ -30,10 +30,10 @@ pub(super) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let settings = connection.operator.settings()?;
     let mut turns = Vec::new();
     for (motor, axis) in settings.axes.iter().enumerate() {
-        let before = connection.operator.sensors()?.encoder_counts[motor];
+        let before = connection.operator.sensors()?.codes.encoder_counts[motor];
         let step = motor_turn::step(motor);
         manual_step(&mut connection, &step, |plant| plant.turn_motor(motor, 1.0))?;
-        let after = connection.operator.sensors()?.encoder_counts[motor];
+        let after = connection.operator.sensors()?.codes.encoder_counts[motor];
         turns.push(MotorTurn::new(
             motor,
             [before, after],

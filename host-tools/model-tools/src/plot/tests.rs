@@ -124,6 +124,33 @@ fn a_spike_shows_no_value_that_is_not_there() {
     assert!(spike <= flat, "{spike:?} {flat:?}");
 }
 
+/// Between the title of the vertical axis and its widest label there are white columns, however many digits that has.
+#[test]
+fn the_title_of_an_axis_touches_no_label() {
+    let directory = tempfile::tempdir().unwrap();
+    for highest in [1.0, 0.5, 0.05, 0.0005, 0.00005, 20_000.0, 3e6] {
+        let mut chart = chart(vec![(0.0, 0.0), (1.0, highest)]);
+        chart.marks_label = String::new();
+        chart.lines[0].marks = vec![];
+        let svg = save(&chart, &directory.path().join("chart")).unwrap();
+        let pixels = Pixmap::load_png(svg.with_extension("png")).unwrap();
+        let width = pixels.width() as usize;
+        let inked = |x: &usize| {
+            let mut column = pixels.pixels().iter().skip(*x).step_by(width);
+            column.any(|pixel| pixel.red() < 200)
+        };
+        let begins = (0..width).find(inked).unwrap();
+        let title_ends = (begins..width).find(|x| !inked(x)).unwrap();
+        let labels_begin = (title_ends..width).find(inked).unwrap();
+        let gap = labels_begin - title_ends;
+        assert!(
+            title_ends - begins < 30,
+            "{highest}: {begins} to {title_ends}"
+        );
+        assert!(gap >= 4, "{highest}: {gap} pixels");
+    }
+}
+
 /// Spans with one label have one shade, a span without room for its label has none, and the axis takes them in.
 #[test]
 fn spans_are_shaded_and_labelled() {

@@ -50,8 +50,13 @@ class Leg:
         """The leg with an address, 1 to 6, on a CAN FD bus: its interface, such as `can0`. Linux only."""
 
     @staticmethod
-    def emulated(rig: str | PathLike[str] | Rig | None = None, *, slack: bool = False) -> Leg:
-        """A leg in this process, whose time goes on only in calls: homed, or slack and not homed. For programs to be tried on."""
+    def emulated(
+        rig: str | PathLike[str] | Rig | None = None, *, slack: bool = False, can: int | None = None
+    ) -> Leg:
+        """A leg in this process, whose time goes on only in calls: homed, or slack and not homed. For programs to be tried on.
+
+        can: its address, 1 to 6, on an emulated CAN FD bus, on which the same frames go as with `Leg.can`; no bus if left out.
+        """
 
     def home(self) -> dict[str, Any]:
         """Finds the zero. The leg must hang free, without a payload."""
@@ -170,13 +175,14 @@ class Rig:
     """A rig file, read and checked: a leg with its tendons, support, motors, sensors, gains and limits.
 
     To edit one, change what `to_dict` gives and read it again: `Rig.from_dict`.
+
+    rig: a rig file or the name of a ready rig (`READY_RIGS`); the paper's rig if left out.
+
+    Raises RigError with file, line, column and remedy where the file is refused.
     """
 
     def __new__(cls, rig: str | PathLike[str] | None = None) -> Rig:
-        """A rig file or a ready rig (`READY_RIGS`); the paper's rig if left out.
-
-        Raises RigError with file, line, column and remedy where the file is refused.
-        """
+        ...
 
     @staticmethod
     def parse(text: str, name: str = "rig") -> Rig:
@@ -276,6 +282,13 @@ class Rig:
     ) -> dict[str, NDArray[float64]]:
         """`elongation_m` and `stiffness_n_per_m` of a tendon under tensions, N; not a number beyond what its curve knows."""
 
+    def __eq__(self, other: object) -> bool:
+        """Whether both describe the same leg, in whatever words."""
+
+    def __hash__(self) -> int: ...
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Its text and its name, read again where it comes to."""
+
 @final
 class SimulatedLeg:
     """A leg without a board: the firmware's own code and the simulated mechanism, as `leg run --on sim` has them.
@@ -283,6 +296,17 @@ class SimulatedLeg:
     Time passes only in calls: in `step` and `run`, and in commands, which wait for their end unless `wait=False`. The
     same calls on a leg with the same seed give the same bits. Other Python threads run meanwhile, so that many legs can be
     stepped in as many threads; one leg belongs to one thread at a time.
+
+    It begins at rest, disarmed, its zero known and its load cells tared.
+
+    rig: a `Rig`, a rig file or the name of a ready rig (`READY_RIGS`); the paper's rig if left out.
+    seed: of the sensors' noise.
+    slack: hangs straight down with 3 mm of slack in each tendon and does not know its zero: `home` it first.
+    azimuth_deg, tilt_deg: where it leans, within 60° of tilt.
+    payload_kg: mass at its tip.
+    pretension_n: that its tendons have, N per tendon at the vertical pose; the rig's if left out.
+
+    Raises RigError for a rig file that is refused, at its place.
     """
 
     def __new__(
@@ -296,17 +320,7 @@ class SimulatedLeg:
         payload_kg: float = 0.0,
         pretension_n: float | None = None,
     ) -> SimulatedLeg:
-        """A leg at rest, disarmed, its zero known and its load cells tared.
-
-        rig: a `Rig`, a rig file or the name of a ready rig (`READY_RIGS`); the paper's rig if left out.
-        seed: of the sensors' noise.
-        slack: hangs straight down with 3 mm of slack in each tendon and does not know its zero: `home` it first.
-        azimuth_deg, tilt_deg: where it leans, within 60° of tilt.
-        payload_kg: mass at its tip.
-        pretension_n: that its tendons have, N per tendon at the vertical pose; the rig's if left out.
-
-        Raises RigError for a rig file that is refused, at its place.
-        """
+        ...
 
     @property
     def time_s(self) -> float:

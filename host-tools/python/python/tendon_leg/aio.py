@@ -29,7 +29,11 @@ def _awaited(
 
     @functools.wraps(method)
     async def awaited(self: "AsyncLeg", /, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Result:
-        called = self._thread.submit(method, self._leg, *args, **kwargs)
+        try:
+            called = self._thread.submit(method, self._leg, *args, **kwargs)
+        except RuntimeError:
+            # The thread has ended with the leg, whose own refusal says so.
+            return method(self._leg, *args, **kwargs)
         ended = asyncio.wrap_future(called)
         try:
             return await asyncio.shield(ended)

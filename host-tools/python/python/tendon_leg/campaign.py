@@ -6,6 +6,7 @@ import json
 import os
 import re
 import shlex
+import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Executor, ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
@@ -63,10 +64,18 @@ def campaign(
         runs them on a cluster, whose workers need this package.
     progress: called with each row as it ends.
 
-    A row has the case's own keys, `title`, `passed`, `stopped`, `faults`, `unexpected_faults`, `ticks`, `bits`, a column for
+    A row has `scenario` and `rig` by name (of a text its title), the case's own keys, `title`, `passed`, `stopped`, `faults`, `unexpected_faults`, `ticks`, `bits`, a column for
     each measurement by its name, `error` (why there is no result, or None) and, where it did not pass, `repeat`.
     Raises ValueError for a case that is none, by its number, before anything runs.
     """
+    if isinstance(cases, (str, Mapping)) or not isinstance(cases, Iterable):
+        raise TypeError(f"cases is no list of dictionaries, but {cases!r}")
+    if not isinstance(directory, (str, PathLike)):
+        raise TypeError(f"directory is no path, but {directory!r}")
+    if executor is not None and not callable(getattr(executor, "submit", None)):
+        raise TypeError(f"executor submits nothing: it is {executor!r}")
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress cannot be called: it is {progress!r}")
     listed = list(cases)
     runs = [_run_of(number, case) for number, case in enumerate(listed)]
     directory = Path(directory)
@@ -76,7 +85,7 @@ def campaign(
     rows: dict[int, dict[str, Any]] = {}
 
     def take(number: int, result: dict[str, Any]) -> None:
-        rows[number] = {**_labels(listed[number]), **result}
+        rows[number] = {**_labels(listed[number], runs[number]), **result}
         if progress is not None:
             progress(rows[number])
 
@@ -127,7 +136,7 @@ def _carry_out(run: Run) -> dict[str, Any]:
 
 def _run_of(number: int, case: Mapping[str, Any]) -> Run:
     def refuse(what: str) -> ValueError:
-        return ValueError(f"case {number}: {what}")
+        return ValueError(f"cases[{number}]: {what}")
 
     if not isinstance(case, Mapping) or "scenario" not in case:
         raise refuse("it has no `scenario`")
@@ -157,8 +166,21 @@ def _scenario_text(scenario: object) -> str:
     raise TypeError(f"scenario: {scenario!r} is no text, no name and no path")
 
 
-def _labels(case: Mapping[str, Any]) -> dict[str, Any]:
-    return {key: value for key, value in case.items() if key not in RUN_KEYS or key == "seed"}
+def _labels(case: Mapping[str, Any], run: Run) -> dict[str, Any]:
+    """The case's own keys, with names for what it runs: those that it was given, or else what stands in the scenario."""
+    own = {key: value for key, value in case.items() if key not in RUN_KEYS or key == "seed"}
+    scenario, file = case["scenario"], _toml(run.scenario)
+    if isinstance(scenario, str) and "\n" in scenario:
+        scenario = file.get("title", "")
+    return {"scenario": str(scenario), "rig": run.rig_name or file.get("rig", "table1"), **own}
+
+
+def _toml(text: str) -> dict[str, Any]:
+    """What a file says; nothing where it is refused, as its run's row says then."""
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError:
+        return {}
 
 
 def _read(results: Path) -> dict[str, dict[str, Any]]:

@@ -2,6 +2,7 @@
 
 use super::Leg;
 use crate::errors::{leg_error, leg_failure};
+use crate::interpreter;
 use crate::operator_thread::{LegFailure, OperatorThread, Place};
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{Operator, OperatorError};
@@ -49,8 +50,8 @@ impl Leg {
     pub(super) fn opened(py: Python<'_>, place: Place) -> PyResult<Self> {
         let cancel = CancelFlag::default();
         let mut signal = None;
-        let thread =
-            py.detach(|| OperatorThread::open(place, &cancel, || interrupted(&mut signal)));
+        let thread = interpreter::Call::begin(py)?
+            .detached(|| OperatorThread::open(place, &cancel, || interrupted(&mut signal)));
         if let Some(signal) = signal {
             return Err(signal);
         }
@@ -133,11 +134,16 @@ impl Leg {
         work: impl FnOnce(Call<'_>) -> Result<T, LegFailure> + Send,
     ) -> PyResult<T> {
         let mut signal = None;
-        let result = py.detach(|| {
+        let result = interpreter::Call::begin(py)?.detached(|| {
             let thread = lock(self, &mut signal)?;
             let Some(thread) = thread.as_ref() else {
                 return Err(leg_error("this leg is closed; open it again"));
             };
+            if !thread.is_here() {
+                return Err(leg_error(
+                    "this leg was opened in another process; open it in this one",
+                ));
+            }
             self.cancel.clear();
             let call = Call {
                 thread,
@@ -151,10 +157,10 @@ impl Leg {
     }
 }
 
-/// Whether Python has a signal, as Ctrl-C; it is kept for later.
+/// Whether Python has a signal, as Ctrl-C, or ends; it is kept for later.
 fn interrupted(signal: &mut Option<PyErr>) -> bool {
     if signal.is_none() {
-        *signal = Python::attach(|py| py.check_signals().err());
+        *signal = interpreter::interrupted();
         return signal.is_some();
     }
     false

@@ -1,7 +1,7 @@
 //! Calibration of a leg by hand: load cells by weights, encoders by turns; one motor turned slowly.
 
 use super::{Leg, settings};
-use crate::arguments::bounded;
+use crate::arguments::{self, bounded, callable, place};
 use crate::errors::leg_failure;
 use crate::operator_thread::LegFailure;
 use leg_base::failure::Failure;
@@ -54,14 +54,6 @@ fn refused(failure: Failure) -> PyErr {
     leg_failure(LegFailure::Refused(failure))
 }
 
-/// The place of a tendon, a motor or a load cell, from 1, in an array.
-fn index(name: &str, number: i64) -> PyResult<usize> {
-    let mut places = (1..=3).zip(0..);
-    let found = places.find(|(known, _)| *known == number);
-    let none = || PyValueError::new_err(format!("{name} = {number} is none of 1 to 3"));
-    found.map(|(_, place)| place).ok_or_else(none)
-}
-
 fn require_off(leg: &Leg, py: Python<'_>, asked: &'static str) -> PyResult<()> {
     let off = leg.ask(py, move |operator| Ok(require_drivers_off(operator, asked)))?;
     off.map_err(refused)
@@ -71,15 +63,17 @@ fn require_off(leg: &Leg, py: Python<'_>, asked: &'static str) -> PyResult<()> {
 pub(super) fn cell(
     leg: &Leg,
     py: Python<'_>,
-    cell: i64,
-    weights_kg: Vec<f64>,
+    cell: i128,
+    weights_kg: &Bound<'_, PyAny>,
     hang: &Bound<'_, PyAny>,
     keep: Keep,
 ) -> PyResult<CellFit> {
-    let axis = index("cell", cell)?;
+    let axis = place("cell", cell)?;
+    callable("hang", hang)?;
     if keep.save && !keep.set {
         return Err(PyValueError::new_err("save is given without set"));
     }
+    let weights_kg = arguments::list("weights_kg", weights_kg)?;
     for kg in &weights_kg {
         bounded("weights_kg", *kg, 0.0, 1e3)?;
     }
@@ -117,15 +111,16 @@ pub(super) fn motors(
     turn: &Bound<'_, PyAny>,
     rig: &RigFile,
 ) -> PyResult<impl Serialize + use<>> {
+    callable("turn", turn)?;
     let counts_per_turn = rig.actuator.counts_per_turn;
     motor_turn::require_countable(counts_per_turn).map_err(refused)?;
     require_off(leg, py, "let itself be turned by hand")?;
     let axes = leg.ask(py, Operator::settings)?.axes;
     let mut turns: Vec<Turn> = Vec::new();
     for (motor, axis) in axes.iter().enumerate() {
-        let before = leg.ask(py, Operator::sensors)?.encoder_counts[motor];
+        let before = leg.ask(py, Operator::sensors)?.codes.encoder_counts[motor];
         turn.call1((motor + 1,))?;
-        let after = leg.ask(py, Operator::sensors)?.encoder_counts[motor];
+        let after = leg.ask(py, Operator::sensors)?.codes.encoder_counts[motor];
         turns.push(MotorTurn::new(motor, [before, after], counts_per_turn, axis).into());
     }
     Ok(turns)
@@ -135,11 +130,11 @@ pub(super) fn motors(
 pub(super) fn jog(
     leg: &Leg,
     py: Python<'_>,
-    motor: i64,
+    motor: i128,
     travel_mm: f64,
     volts: Option<f64>,
 ) -> PyResult<impl Serialize + use<>> {
-    let motor = index("motor", motor)? as u8 + 1;
+    let motor = place("motor", motor)? as u8 + 1;
     let travel_mm = bounded("travel_mm", travel_mm, -1e3, 1e3)?;
     let volts = volts.map(|volts| bounded("volts", volts, 0.0, 1e3));
     let volts = volts.transpose()?;

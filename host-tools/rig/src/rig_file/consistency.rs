@@ -8,6 +8,7 @@ use crate::gains::{CONTROL, widened};
 use crate::number::{decimal, plain};
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;
+use leg_firmware::sensors::CURRENT_ZERO_PART;
 use leg_firmware::settings::{AxisCalibration, Field, Servo};
 use std::ops::Range;
 
@@ -94,8 +95,7 @@ fn check_limits(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
     let current_range = ("actuator.current_range_a", actuator.current_range_a);
     let reason = "else the servo drives more than the limit";
     check_below(driven, current, reason, root)?;
-    let reason = "else no sensor sees too much current";
-    check_below(current, current_range, reason, root)?;
+    check_current_range(current, current_range, root)?;
 
     let hot = (
         "control.limits.temperature_c",
@@ -114,6 +114,28 @@ fn check_limits(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
     let slack = ("control.limits.slack_n", decimal(limits.slack_n));
     let reason = "else a tendon at the minimum tension is taken as slack";
     check_below(slack, ("tendon.f_min_n", file.f_min_n), reason, root)
+}
+
+/// Refuses a limit that a current sensor does not reach whose zero is off by the most that the start takes.
+fn check_current_range(
+    limit: (&str, f64),
+    range: (&str, f64),
+    root: &Section<'_>,
+) -> Result<(), TomlError> {
+    let reason = "else no sensor sees too much current";
+    check_below(limit, range, reason, root)?;
+    let part = 1.0 - decimal(CURRENT_ZERO_PART);
+    if limit.1 < part * range.1 {
+        return Ok(());
+    }
+    let place = |path: &str| root.place(&path.split('.').collect::<Vec<_>>());
+    let [limited, ranged] =
+        [limit, range].map(|(path, value)| format!("`{path}` ({})", plain(value)));
+    Err(TomlError::new(
+        place(limit.0).or(place(range.0)).unwrap_or(0..0),
+        format!("{limited} has to be below {} of {ranged}", plain(part)),
+        "else no sensor whose zero is off sees too much current",
+    ))
 }
 
 /// Refuses two values, each with the path of its key, of which the first is not below the second; at the place of one

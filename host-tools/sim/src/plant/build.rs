@@ -54,6 +54,7 @@ impl Plant {
             ambient_c: settings.ambient_c,
             encoders: std::array::from_fn(|i| Encoder::new(i, rig.calibration.counts_sign[i])),
             cells: Cells::new(actuator, settings, seed),
+            current_offset_a: settings.current_offset_a,
             defects: Defects::default(),
             rng: defect_rng(seed.wrapping_add(1)),
             contacts: [true; 3],

@@ -1,13 +1,17 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod charts;
+mod live;
+mod loaded;
+mod looks;
 mod recordings;
 mod setup;
 
 use super::App;
 use crate::simulation::Simulation;
 use eframe::egui::{
-    Context, DroppedFileHandle, Event, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, pos2,
+    Context, DroppedFileHandle, Event, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, Shape,
+    Vec2, vec2,
 };
 use leg_firmware::supervisor::State;
 
@@ -16,15 +20,36 @@ struct Window {
     app: App,
     ctx: Context,
     time_s: f64,
+    size: Vec2,
+    /// Every text of the last frame, a line each.
+    texts: Vec<String>,
+}
+
+fn texts(shape: &Shape) -> Vec<String> {
+    match shape {
+        Shape::Text(text) => vec![text.galley.text().to_owned()],
+        Shape::Vec(shapes) => shapes.iter().flat_map(texts).collect(),
+        _ => Vec::new(),
+    }
 }
 
 impl Window {
     fn new() -> Self {
+        Self::sized(1280.0, 720.0)
+    }
+
+    fn sized(width: f32, height: f32) -> Self {
         let ctx = Context::default();
+        Self::with(App::new(&ctx), ctx, vec2(width, height))
+    }
+
+    fn with(app: App, ctx: Context, size: Vec2) -> Self {
         let mut window = Self {
-            app: App::new(&ctx),
+            app,
             ctx,
             time_s: 0.0,
+            size,
+            texts: Vec::new(),
         };
         window.frames(3);
         window
@@ -40,13 +65,15 @@ impl Window {
             events,
             dropped_files,
             time: Some(self.time_s),
-            screen_rect: Some(Rect::from_min_max(pos2(0.0, 0.0), pos2(1280.0, 720.0))),
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, self.size)),
             ..RawInput::default()
         };
         self.app.take(&mut input);
         let ctx = self.ctx.clone();
         let mut output = ctx.run_ui(input, |ui| self.app.frame(ui));
         output.textures_delta.clear();
+        let shapes = output.shapes.iter();
+        self.texts = shapes.flat_map(|clipped| texts(&clipped.shape)).collect();
     }
 
     fn frames(&mut self, count: u32) {
@@ -102,6 +129,14 @@ impl Window {
 
     fn state(&self) -> State {
         self.leg().state()
+    }
+
+    fn says(&self, words: &str) -> bool {
+        self.texts.iter().any(|text| text.contains(words))
+    }
+
+    fn rect(&self, name: &str) -> Rect {
+        self.app.places.rects[name]
     }
 
     fn shows(&self, name: &str) -> bool {

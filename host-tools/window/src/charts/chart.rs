@@ -12,7 +12,7 @@ use eframe::egui::{Align2, FontId, Id, Response, RichText, Ui, Vec2b, pos2};
 use egui_plot::{Line, Plot, PlotPoint, PlotPoints, PlotUi, VLine};
 
 /// Height of a line of words above a chart, points.
-const TITLE_HEIGHT: f32 = 30.0;
+const TITLE_HEIGHT: f32 = 32.0;
 pub(super) const VALUES_HEIGHT: f32 = 15.0;
 
 /// The least height of a chart, points.
@@ -220,6 +220,7 @@ fn spectrum(ui: &mut Ui, kept: &Kept, column: Column, height: f32) {
     let plot = Plot::new((column.name(), "spectrum"))
         .height((height - used).max(HEIGHT_MIN))
         .grid_color(theme::palette(ui.ctx()).line)
+        .include_x(0.0)
         .include_y(0.0)
         .x_grid_spacer(|input| grid(&input, LABEL_PART))
         .y_grid_spacer(|input| grid(&input, 0.0))

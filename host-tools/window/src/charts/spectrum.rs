@@ -15,7 +15,7 @@ const FIRST_LINE: usize = 2;
 /// It.
 #[derive(Clone, Debug)]
 pub(super) struct Spectrum {
-    /// Frequency, Hz, and amplitude of each line.
+    /// Frequency, Hz, and amplitude of each line that is told from the mean.
     pub lines: Vec<[f64; 2]>,
     /// The sine of the highest one.
     pub peak: Option<[f64; 2]>,
@@ -39,15 +39,15 @@ impl Spectrum {
         let mut output = transform.make_output_vec();
         transform.process(&mut input, &mut output).ok()?;
         let line_hz = 1.0 / (step_s * count as f64);
-        let lines: Vec<[f64; 2]> = output
+        let mut lines: Vec<[f64; 2]> = output
             .iter()
             .enumerate()
             .map(|(line, value)| [line as f64 * line_hz, 2.0 * value.norm() / whole])
             .collect();
-        Some(Self {
-            peak: peak(&lines, line_hz),
-            lines,
-        })
+        let peak = peak(&lines, line_hz);
+        // They would be the highest of the chart, and say nothing.
+        lines.drain(..FIRST_LINE.min(lines.len()));
+        Some(Self { lines, peak })
     }
 
     /// The highest peak in words of one length.
@@ -164,6 +164,21 @@ mod tests {
             .iter()
             .filter(|[hz, _]| (30.0..45.0).contains(hz));
         assert!(between.map(|[_, amplitude]| *amplitude).fold(0.0, f64::max) < 0.01);
+    }
+
+    /// A mean that drifts is no sine, and must not be the highest of the chart.
+    #[test]
+    fn no_line_is_higher_than_the_peak() {
+        let drifting = signal(&[[12.34, 0.01]], 10.0).into_iter();
+        let drifting: Vec<_> = drifting
+            .map(|[at_s, value]| [at_s, value + 0.003 * (at_s - 7.0).powi(2)])
+            .collect();
+        let spectrum = Spectrum::new(&drifting).unwrap();
+        let [_, peak] = spectrum.peak.unwrap();
+        let highest = spectrum.lines.iter().map(|[_, amplitude]| *amplitude);
+        assert!(highest.fold(0.0, f64::max) <= peak, "{peak}");
+        let [first_hz, _] = spectrum.lines[0];
+        assert!((first_hz - 0.2).abs() < 1e-9, "{first_hz}");
     }
 
     #[test]

@@ -221,7 +221,9 @@ impl LiveLeg {
                     "Kept over a reset; an emulated board keeps nothing when it ends.".into(),
                 ));
             }
-            (Errand::Sensors, HostReply::Sensors(sensors)) => self.board.sensors = Some(*sensors),
+            (Errand::Sensors, HostReply::Sensors(sensors)) => {
+                self.board.sensors = Some(sensors.codes)
+            }
             (Errand::Jog, HostReply::Jog(report)) => self.board.jog = *report,
             (errand, HostReply::Refused(refusal)) => {
                 self.tell(Err(refused(errand.name(), refusal)));

@@ -30,7 +30,7 @@ const PAGE: PageIdentity = PageIdentity {
 
 /// The server's end of a line.
 #[derive(Clone, Default)]
-struct Server {
+pub struct Server {
     heard: Rc<RefCell<VecDeque<Heard>>>,
     said: Rc<RefCell<Vec<Said>>>,
 }
@@ -46,7 +46,7 @@ impl Line for Server {
 }
 
 impl Server {
-    fn text(&self, text: &str) {
+    pub fn text(&self, text: &str) {
         let heard = Heard::Text(text.into());
         self.heard.borrow_mut().push_back(heard);
     }
@@ -61,7 +61,7 @@ impl Server {
         self.heard.borrow_mut().push_back(Heard::Bytes(bytes));
     }
 
-    fn report(&self, telemetry: Telemetry<f32>) {
+    pub fn report(&self, telemetry: Telemetry<f32>) {
         let report = TelemetryReport {
             number: 1,
             telemetry,
@@ -110,7 +110,7 @@ fn open(server: &Server) -> Opened {
     Opening::new(Box::new(server.clone()), PAGE, "ws://127.0.0.1:1/secret").advance()
 }
 
-fn leg() -> (LiveLeg, Server) {
+pub fn leg() -> (LiveLeg, Server) {
     let server = Server::default();
     server.text(&hello(&hex(&HOST_SCHEMA), &rig_text()));
     let Opened::Leg(mut leg) = open(&server) else {
@@ -324,7 +324,7 @@ fn a_live_leg_is_recorded_as_a_log() {
     let (mut leg, server) = leg();
     let rig = RigFile::load(None).unwrap();
     let settings = control_settings::settings(&rig, &rig.gains, None);
-    leg.recorder = Some(Recorder::new("/dev/ttyACM0", &settings).unwrap());
+    leg.recorder = Some(Recorder::new("/dev/ttyACM0", &settings, 1.7e9).unwrap());
     let telemetry = *Simulation::new().unwrap().telemetry().unwrap();
     for tick in [8000, 8040, 8080] {
         server.report(Telemetry { tick, ..telemetry });
@@ -333,7 +333,9 @@ fn a_live_leg_is_recorded_as_a_log() {
     let recorder = leg.recorder.take().unwrap();
     assert!((recorder.time_s() - 0.01).abs() < 1e-9);
     let bytes = recorder.finish().unwrap();
-    let Samples::Log(reports) = read_samples("leg.mcap", &bytes).unwrap().samples else {
+    let recorded = read_samples("leg.mcap", &bytes).unwrap();
+    assert_eq!(recorded.about.begin_wall_time_s, 1.7e9);
+    let Samples::Log(reports) = recorded.samples else {
         panic!("it is a log");
     };
     let ticks: Vec<u32> = reports
@@ -352,6 +354,6 @@ fn a_live_leg_is_recorded_as_a_log() {
 fn a_recording_without_a_message_is_refused() {
     let rig = RigFile::load(None).unwrap();
     let settings = control_settings::settings(&rig, &rig.gains, None);
-    let words = Recorder::new("leg", &settings).unwrap().finish();
+    let words = Recorder::new("leg", &settings, 0.0).unwrap().finish();
     assert!(words.unwrap_err().contains("nothing was recorded"));
 }

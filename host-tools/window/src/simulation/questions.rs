@@ -19,7 +19,7 @@ impl Questions {
     pub(super) fn take(&mut self, replies: &[(u16, HostReply)]) {
         for (_, reply) in replies {
             match reply {
-                HostReply::Sensors(sensors) => self.sensors = Some(*sensors),
+                HostReply::Sensors(sensors) => self.sensors = Some(sensors.codes),
                 HostReply::Jog(report) => self.jog = *report,
                 _ => continue,
             }

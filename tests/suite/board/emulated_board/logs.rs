@@ -112,6 +112,31 @@ fn two_logs_record_at_their_own_rates() {
     });
 }
 
+/// Nothing is lost and nothing comes late where another log begins and ends beside it.
+#[test]
+fn a_log_goes_on_where_another_one_ends() {
+    unless_stalled(LOG_STALL, || {
+        let directory = tempfile::tempdir().unwrap();
+        let board = BoardUnderTest::new(&[]);
+        let log = board.begin_log(&directory.path().join("first.csv"), &["--json"]);
+        let watches = [&board.process, &log].map(StallWatch::begin);
+        for name in ["second.csv", "third.csv"] {
+            let second = board.begin_log(&directory.path().join(name), &[]);
+            std::thread::sleep(Duration::from_millis(500));
+            assert!(interrupted(second).status.success());
+            std::thread::sleep(Duration::from_millis(500));
+        }
+        let ended = unless_ended(log);
+        let stall = watches.map(StallWatch::longest).into_iter().max();
+        let outcome = ended.and_then(|output| {
+            let logged: Value = serde_json::from_slice(&output.stdout).unwrap();
+            let whole = logged["lost"] == 0 && logged["longest_s"].as_f64().unwrap() < 0.1;
+            whole.then_some(()).ok_or_else(|| logged.to_string())
+        });
+        (outcome, stall.unwrap())
+    });
+}
+
 /// A stream that comes more often than the system's shortest wait does not keep a monitor from asking.
 #[test]
 fn a_monitor_keeps_its_rate_beside_a_fast_log() {

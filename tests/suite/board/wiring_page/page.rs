@@ -25,11 +25,12 @@ impl Page {
         let text = row.split('|').nth(2).unwrap().trim().replace('−', "-");
         let (number, unit) = text.split_once(' ').unwrap();
         let scale = match unit {
-            "Ω" | "V" | "A" | "N" | "V/V" | "lines" => 1.0,
+            "Ω" | "V" | "A" | "N" | "V/V" | "lines" | "steps" => 1.0,
             "kΩ" | "kHz" => 1e3,
             "MΩ" => 1e6,
             "mΩ" | "mV/V" | "mV/K" => 1e-3,
-            "µF" => 1e-6,
+            "%" => 1e-2,
+            "µF" | "µV" | "µV/K" => 1e-6,
             "nF" => 1e-9,
             "pF" => 1e-12,
             _ => panic!("{name}: {unit}"),

@@ -5,7 +5,7 @@ use crate::host_link::{CommandedLeg, HostRefusal};
 use crate::jog::JogReport;
 use crate::leg::{CommandOutcome, Leg};
 use crate::recorder::{Recorder, RecorderReply, RecorderRequest};
-use crate::sensors::Sensors;
+use crate::sensors::SensorReading;
 use crate::settings::Settings;
 use crate::supervisor::State;
 use crate::telemetry::Telemetry;
@@ -23,7 +23,7 @@ pub struct NotedLeg {
     /// What the next ticks answer.
     pub result: Result<(), CommandRefusal>,
     pub note_decode_error: usize,
-    pub sensors: Sensors,
+    pub sensors: SensorReading,
     /// What it was started again with.
     pub restarts: Vec<Settings>,
     pub recorder: Recorder,
@@ -42,7 +42,7 @@ impl Default for NotedLeg {
             obeyed: Vec::new(),
             result: Ok(()),
             note_decode_error: 0,
-            sensors: Sensors::default(),
+            sensors: SensorReading::default(),
             restarts: Vec::new(),
             recorder: Recorder::new(),
             outcomes: VecDeque::new(),
@@ -91,7 +91,7 @@ impl CommandedLeg for NotedLeg {
         None
     }
 
-    fn sensors(&mut self) -> Sensors {
+    fn sensors(&mut self) -> SensorReading {
         self.sensors
     }
 

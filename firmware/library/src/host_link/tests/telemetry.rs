@@ -5,7 +5,7 @@ use crate::command::Command;
 use crate::frame::MAX_FRAME;
 use crate::host_link::outbox::ROOM;
 use crate::host_link::{HostReply, HostRequest};
-use crate::sensors::Sensors;
+use crate::sensors::{CurrentZero, SensorReading, Sensors};
 
 /// Number and tick of each telemetry, all of which come unasked.
 fn told(heard: &Heard) -> Vec<(u32, u32)> {
@@ -35,10 +35,17 @@ fn full() -> Line {
 #[test]
 fn what_the_sensors_read_is_told() {
     let mut line = Line::identified();
-    line.leg.sensors = Sensors {
-        encoder_counts: [1, 2, 3],
-        emergency_stop: true,
-        ..Sensors::default()
+    line.leg.sensors = SensorReading {
+        codes: Sensors {
+            encoder_counts: [1, 2, 3],
+            emergency_stop: true,
+            ..Sensors::default()
+        },
+        current_zeros: [
+            CurrentZero::NotFound,
+            CurrentZero::Found(32_800.0),
+            CurrentZero::Refused(65_520.0),
+        ],
     };
     let sensors = line.leg.sensors;
     assert_eq!(line.ask(&HostRequest::Sensors), HostReply::Sensors(sensors));

@@ -26,6 +26,16 @@ const FORGET_TIME_S: f32 = 1.0;
 /// the mean by about a third of its elongation, which is the mean change of elongations: eight times this.
 const CURVE_PART: f32 = 0.12;
 
+/// Part of a change that both filters take over in a cycle.
+const FORGET_GAIN: f32 = CYCLE_S / (FORGET_TIME_S + CYCLE_S);
+const SWING_GAIN: f32 = CYCLE_S / (SWING_TIME_S + CYCLE_S);
+
+/// What is allowed for the sum of the three changes before that, of the elongations from which changes count and of swings; and what is
+/// learned of the first.
+const STRETCH_ALLOWED: f32 = CURVE_PART / 3.0 * (1.0 - FORGET_GAIN);
+const STRETCH_LEARNED: f32 = CURVE_PART / 3.0 * FORGET_GAIN;
+const SWING_ALLOWED: f32 = SWING_PART / 3.0 * (1.0 - SWING_GAIN);
+
 /// How fast the error may grow that is taken for one of the geometry or of a curve, m/s.
 #[derive(Clone, Copy, Debug)]
 pub struct ErrorGrowth(f32);
@@ -43,6 +53,15 @@ impl ErrorGrowth {
 /// shows up to a newton more than its elongation.
 pub const SETTLE_CYCLES: u16 = 200;
 
+/// A swing that may falsify the error by more than this while the last tendon comes taut, m, is a hard one, as after a push that took a
+/// tendon's tension: four times the change that is a fault. What the error is then is in doubt by as much, and the doubt fades in this
+/// time, s.
+const HARD_SWING_M: f32 = 4e-5;
+const DOUBT_TIME_S: f32 = 1.0;
+
+/// Cycles after which nothing of it is left, 5 s.
+const FADE_CYCLES: u16 = 10_000;
+
 /// Watches for a change that neither motion nor load explains.
 #[derive(Clone, Copy, Debug)]
 pub struct Agreement<T> {
@@ -52,16 +71,17 @@ pub struct Agreement<T> {
     /// The same now, with nothing allowed for a swing.
     beyond_now_m: T,
     change_max_m: T,
-    /// Part of the change of the elongations that is allowed, over the number of tendons.
-    part: T,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Reference<T> {
     mean_m: T,
     /// Elongation of each tendon, slowly forgotten and quickly.
-    elongations: [[LowPass<T>; 2]; 3],
-    settle_cycles: u16,
+    elongations_m: [[T; 2]; 3],
+    /// Cycles until nothing is in doubt; in the first [`SETTLE_CYCLES`] of them the error is not watched yet.
+    young_cycles: u16,
+    /// By how much the mean may be off that a hard swing began with, m.
+    doubt_m: T,
 }
 
 impl<T: Scalar> Agreement<T> {
@@ -72,7 +92,6 @@ impl<T: Scalar> Agreement<T> {
             beyond: LowPass::new(FILTER_TIME_S, CYCLE_S),
             beyond_now_m: T::zero(),
             change_max_m: settings.limits.residual_change_m.into(),
-            part: T::from(CURVE_PART / 3.0),
         }
     }
 
@@ -93,7 +112,7 @@ impl<T: Scalar> Agreement<T> {
     pub fn watches(&self) -> bool {
         self.reference
             .as_ref()
-            .is_some_and(|reference| reference.settle_cycles == 0)
+            .is_some_and(|reference| reference.young_cycles <= FADE_CYCLES)
     }
 
     /// Whether the sensors agree: not where the change is no number.
@@ -115,24 +134,33 @@ impl<T: Scalar> Agreement<T> {
             self.reference = Some(Reference::new(error));
             return;
         };
-        if reference.settle_cycles > 0 {
-            reference.settle_cycles -= 1;
-            reference.mean_m = error.mean_m;
+        let (mut stretched_m, mut swings_m) = (T::SUM_START, T::SUM_START);
+        for ([slow_m, fast_m], &now_m) in
+            reference.elongations_m.iter_mut().zip(&error.elongations_m)
+        {
+            let (from_slow_m, from_fast_m) = (now_m - *slow_m, now_m - *fast_m);
+            *slow_m += from_slow_m * T::from(FORGET_GAIN);
+            *fast_m += from_fast_m * T::from(SWING_GAIN);
+            stretched_m += from_slow_m.abs();
+            swings_m += from_fast_m.abs();
+        }
+        let swings_m = swings_m * T::from(SWING_ALLOWED);
+        let mut allowed_m = self.change_max_m + stretched_m * T::from(STRETCH_ALLOWED);
+        // What a changed elongation was allowed to change stays.
+        let mut learned_m = T::from(growth.0 * CYCLE_S) + stretched_m * T::from(STRETCH_LEARNED);
+        if reference.young_cycles > 0 {
+            reference.young_cycles -= 1;
+            if reference.young_cycles < FADE_CYCLES {
+                learned_m += reference.fade();
+                allowed_m += reference.doubt_m;
+            } else {
+                reference.mean_m = error.mean_m;
+                if swings_m > T::from(HARD_SWING_M) {
+                    reference.doubt(swings_m);
+                }
+            }
         }
         let change_m = error.mean_m - reference.mean_m;
-        let start = T::SUM_START;
-        let (mut stretched_m, mut swings_m, mut learned_m) = (start, start, start);
-        for ([slow, fast], &now_m) in reference.elongations.iter_mut().zip(&error.elongations_m) {
-            let before_m = slow.value();
-            let slow_m = slow.step(now_m);
-            stretched_m += (now_m - slow_m).abs();
-            swings_m += (now_m - fast.step(now_m)).abs();
-            learned_m += (slow_m - before_m).abs();
-        }
-        let swings_m = swings_m * T::from(SWING_PART / 3.0);
-        let allowed_m = self.change_max_m + stretched_m * self.part;
-        // What a changed elongation was allowed to change stays.
-        let learned_m = T::from(growth.0 * CYCLE_S) + learned_m * self.part;
         reference.mean_m += clamp_symmetric(change_m, learned_m);
         self.beyond_now_m = change_m.abs() - allowed_m;
         self.beyond.step(self.beyond_now_m - swings_m);
@@ -141,16 +169,31 @@ impl<T: Scalar> Agreement<T> {
 
 impl<T: Scalar> Reference<T> {
     fn new(error: &LengthError<T>) -> Self {
-        let filter = |time_s: f32| LowPass::new(time_s, CYCLE_S);
-        let mut elongations = [[filter(FORGET_TIME_S), filter(SWING_TIME_S)]; 3];
-        for (filters, &now_m) in elongations.iter_mut().zip(&error.elongations_m) {
-            filters.iter_mut().for_each(|filter| filter.set(now_m));
-        }
         Self {
             mean_m: error.mean_m,
-            elongations,
-            settle_cycles: SETTLE_CYCLES,
+            elongations_m: error.elongations_m.map(|now_m| [now_m; 2]),
+            young_cycles: SETTLE_CYCLES + FADE_CYCLES,
+            doubt_m: T::zero(),
         }
+    }
+
+    /// The mean may be off by a hard swing, m.
+    #[cold]
+    fn doubt(&mut self, swings_m: T) {
+        if swings_m > self.doubt_m {
+            self.doubt_m = swings_m;
+        }
+    }
+
+    /// One cycle in which a doubt fades, if there is one: by how much, m.
+    #[cold]
+    fn fade(&mut self) -> T {
+        if self.young_cycles == 0 || self.doubt_m == T::zero() {
+            (self.young_cycles, self.doubt_m) = (0, T::zero());
+        }
+        let fading_m = self.doubt_m * T::from(CYCLE_S / DOUBT_TIME_S);
+        self.doubt_m -= fading_m;
+        fading_m
     }
 }
 
@@ -160,6 +203,7 @@ mod tests {
     use super::{Agreement, CURVE_PART, ErrorGrowth, LengthError, SETTLE_CYCLES};
     use crate::control::CYCLE_S;
     use crate::settings::Settings;
+    use core::f64::consts::TAU;
     use leg_model::SupportKind;
 
     /// Elongation of every tendon at first, m: that of the paper's leg at 70 N.
@@ -315,6 +359,39 @@ mod tests {
         };
         assert!(agrees_after(ErrorGrowth::RESTING));
         assert!(!agrees_after(ErrorGrowth::KEEPING_STATION));
+    }
+
+    /// A leg that swings as the last of its tendons comes taut, as after a push that took its tension: a damped tendon pulls otherwise than
+    /// by its curve, so that the error is falsified when it is first looked at. It rings down within half a second.
+    #[test]
+    fn a_hard_swing_as_the_tendons_come_taut_is_no_lie() {
+        let settled_s = f64::from(SETTLE_CYCLES) * f64::from(CYCLE_S);
+        let agrees = |swing_m: f64, falsified_m: f64| {
+            let mut leg = Leg::taut();
+            leg.agreement.end();
+            let begun = leg.error;
+            let mut agrees = true;
+            for cycle in 0..10_000 {
+                let time_s = f64::from(cycle) * f64::from(CYCLE_S) - settled_s;
+                let part = (-time_s.max(0.0) / 0.1).exp() * (TAU * 7.0 * time_s).cos();
+                let stretched_m = [swing_m, -0.5 * swing_m, -0.5 * swing_m];
+                leg.error = begun;
+                for (elongation, more) in leg.error.elongations_m.iter_mut().zip(stretched_m) {
+                    *elongation += more * part;
+                }
+                leg.error.mean_m += falsified_m * part;
+                leg.watch(false);
+                agrees &= leg.agreement.agree();
+            }
+            leg.error = begun;
+            // Five seconds later nothing of it is left.
+            let found_s = leg.disagrees_after(|_, error| lie(error, 1, -1e-4));
+            assert!(!agrees || found_s.is_some_and(|s| s < 0.05), "{found_s:?}");
+            agrees
+        };
+        assert!(agrees(6e-4, 1e-4));
+        // What no hard swing explains is a lie.
+        assert!(!agrees(1e-4, 1e-4));
     }
 
     #[test]

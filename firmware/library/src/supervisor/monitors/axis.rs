@@ -76,6 +76,8 @@ pub struct AxisMonitor<T> {
     history: [T; JUMP_CHECKS],
     place: usize,
     filled: bool,
+    /// Whether the tension has jumped since faults were cleared last: the history then begins with what it was before, and stays so.
+    jumped: bool,
     bounds: AxisBounds<T>,
 }
 
@@ -128,6 +130,7 @@ impl<T: Scalar> AxisMonitor<T> {
             history: [T::zero(); JUMP_CHECKS],
             place: 0,
             filled: false,
+            jumped: false,
             bounds: AxisBounds {
                 m_per_count: m_per_count.into(),
                 slack_n: limits.slack_n.into(),
@@ -180,12 +183,34 @@ impl<T: Scalar> AxisMonitor<T> {
         // A cell that the others contradict pays out no tendon.
         faults.add(Fault::OverTension, over && view.cells_trusted);
         faults.add(Fault::Residual, over && !view.cells_trusted && view.led);
+        if self.jumped {
+            return;
+        }
         let place = self.place & (JUMP_CHECKS - 1);
         let before = core::mem::replace(&mut self.history[place], tension);
         self.place = place + 1;
         let jump = self.filled && alive && !((tension - before).abs() <= bounds.jump_n);
         self.filled |= self.place == JUMP_CHECKS;
         faults.add(Fault::TensionJump, jump);
+        // A cell that comes back from the dead while the leg is held does not jump away.
+        if jump && (view.led || view.cells_trusted) {
+            self.jumped = true;
+            self.history[0] = before;
+        }
+    }
+
+    /// Whether a tension, N, has jumped and not come back since: a cut or slipped tendon, or a load cell that lies. After a knock it comes
+    /// back.
+    pub fn stays_jumped(&self, tension_n: T) -> bool {
+        let near_n = self.bounds.jump_n * T::HALF;
+        self.jumped && !((tension_n - self.history[0]).abs() <= near_n)
+    }
+
+    /// What has jumped before is no matter any more.
+    pub fn forget_jump(&mut self) {
+        if self.jumped {
+            (self.jumped, self.filled, self.place) = (false, false, 0);
+        }
     }
 
     /// The motor and its encoder.

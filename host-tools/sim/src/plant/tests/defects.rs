@@ -8,8 +8,13 @@ use crate::plant::{Defect, Plant};
 use leg_firmware::drive::Drive;
 use leg_firmware::sensors::{CODE_MAX, Sensors};
 
+/// Its current sensors show what flows.
 fn held() -> Plant {
-    plant(&ready("table1"), &PlantSettings::default(), HELD)
+    let settings = PlantSettings {
+        current_offset_a: [0.0; 3],
+        ..PlantSettings::default()
+    };
+    plant(&ready("table1"), &settings, HELD)
 }
 
 /// A leg after ticks of its motors, with a defect or without.
@@ -61,6 +66,35 @@ fn currents() {
         run(&mut plant, 1, &OFF);
         let found = shown_a(&mut plant);
         assert!((found - off_a).abs() < 1e-3, "{defect:?}: {found} A");
+    }
+}
+
+/// What a sensor that is off shows without a current it shows beside one, until it is dead.
+#[test]
+fn a_current_sensor_is_off_whatever_it_shows() {
+    let offset_a = 0.3;
+    let settings = PlantSettings {
+        current_offset_a: [0.0, offset_a, 0.0],
+        ..PlantSettings::default()
+    };
+    for (defect, off_a) in [
+        (None, offset_a),
+        (Some(Defect::CurrentZero(1)), offset_a),
+        (Some(Defect::CurrentOffset(1)), offset_a + 10.0),
+        (Some(Defect::CurrentDead(1)), -12.0),
+    ] {
+        let mut plant = plant(&ready("table1"), &settings, HELD);
+        if let Some(defect) = defect {
+            plant.set_defect(defect, true);
+        }
+        run(&mut plant, 1, &OFF);
+        let codes = plant.sense().current_codes.map(f64::from);
+        let shown_a = codes.map(|code| 24.0 * code / f64::from(CODE_MAX) - 12.0);
+        assert!((shown_a[1] - off_a).abs() < 1e-3, "{defect:?}: {shown_a:?}");
+        assert!(
+            shown_a[0].abs() < 1e-3 && shown_a[2].abs() < 1e-3,
+            "{shown_a:?}"
+        );
     }
 }
 

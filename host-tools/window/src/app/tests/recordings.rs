@@ -11,7 +11,7 @@ use leg_recording::{Samples, read_samples};
 use leg_sim::plant::Defect;
 
 impl Window {
-    fn recorded(&mut self) -> Vec<u8> {
+    pub(super) fn recorded(&mut self) -> Vec<u8> {
         let Stage::Leg(leg) = &mut self.app.stage else {
             panic!("there is no leg");
         };
@@ -161,6 +161,27 @@ fn a_recording_is_one_of_leg_run_for_those_who_read_it() {
     let last = samples.last().unwrap();
     assert!((f64::from(last.telemetry.tick - 1) / 8000.0 - last.time_s).abs() < 1e-9);
     assert!(last.comparison.commanded_error_mm() > 5.0);
+}
+
+/// Its messages have the leg's own time, whose zero is given a time of the day.
+#[test]
+fn a_recording_begins_at_the_time_of_the_day() {
+    let mut window = Window::new();
+    window.app.views.recordings.wall_clock = || Some(1_700_000_000.5);
+    let began_s = window.leg().leg().time_s();
+    let bytes = window.record_a_payload();
+    let recorded = read_samples("leg.mcap", &bytes).unwrap();
+    let zero_s = recorded.about.begin_wall_time_s;
+    let Samples::Simulation(samples) = recorded.samples else {
+        panic!("it is of a simulated leg");
+    };
+    let first_s = zero_s + samples[0].time_s;
+    // The record button is seen some frames after the leg's time was looked at.
+    assert!(
+        (0.0..0.2).contains(&(first_s - 1_700_000_000.5)),
+        "{first_s}"
+    );
+    assert!(samples[0].time_s >= began_s);
 }
 
 #[test]

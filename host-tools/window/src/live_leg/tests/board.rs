@@ -6,7 +6,7 @@ use crate::live_leg::board::Errand;
 use crate::live_leg::line::Said;
 use leg_firmware::frame::Decoder;
 use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest};
-use leg_firmware::sensors::Sensors;
+use leg_firmware::sensors::{SensorReading, Sensors};
 use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::State;
 use leg_rig::control_settings;
@@ -148,7 +148,11 @@ fn the_codes_of_the_sensors_come_once() {
         cell_codes: [1, 2, 3],
         ..Sensors::default()
     };
-    server.reply(number, &HostReply::Sensors(sensors));
+    let reading = SensorReading {
+        codes: sensors,
+        ..SensorReading::default()
+    };
+    server.reply(number, &HostReply::Sensors(reading));
     leg.advance(1.2);
     assert_eq!(leg.board_mut().take_sensors(), Some(sensors));
     assert_eq!(leg.board_mut().take_sensors(), None);

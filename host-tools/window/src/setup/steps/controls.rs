@@ -22,15 +22,37 @@ pub(super) fn sentence(ui: &mut Ui, number: u8, words: &str) {
     });
 }
 
-/// A button of the steps; `why` disables it, and is said.
+/// A button of the steps; `why` disables it, and is said beside it.
 pub(super) fn button(ui: &mut Ui, text: &str, name: &'static str, why: Option<&str>) -> Response {
-    let button = Button::new(text).min_size(vec2(150.0, 30.0));
-    let button = ui.add_enabled(why.is_none(), button);
-    place(&button, name);
-    match why {
-        Some(words) => button.on_disabled_hover_text(words),
-        None => button,
+    ui.horizontal(|ui| {
+        let button = Button::new(text).min_size(vec2(150.0, 30.0));
+        let button = ui.add_enabled(why.is_none(), button);
+        place(&button, name);
+        if let Some(words) = why {
+            let words = RichText::new(words).color(palette(ui.ctx()).faint);
+            ui.add(Label::new(words).wrap());
+        }
+        button
+    })
+    .inner
+}
+
+/// Whether no payload hangs on the tip, as far as that is known; if one does, why that is wrong, and the button that takes it off.
+pub(super) fn payload_off(ui: &mut Ui, leg: &mut ShownLeg, why: &str) -> bool {
+    let Some(simulation) = leg.simulated_mut() else {
+        return true;
+    };
+    let hung_kg = simulation.leg().truth().payload_kg;
+    if hung_kg <= 0.0 {
+        return true;
     }
+    let words = format!("{hung_kg:.2} kg hang on the tip: {why}");
+    let words = RichText::new(words).color(palette(ui.ctx()).warning);
+    ui.add(Label::new(words).wrap());
+    if button(ui, "Take the payload off", "steps_payload_off", None).clicked() {
+        simulation.hang(0.0);
+    }
+    false
 }
 
 /// Whether the drivers are off; if not, the button that switches them off. Nobody reaches into a leg that is driven.

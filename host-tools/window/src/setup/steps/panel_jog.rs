@@ -1,6 +1,6 @@
 //! One motor, turned slowly, as its user does it.
 
-use super::controls::{button, drivers_off, faint, sentence};
+use super::controls::{button, drivers_off, faint, payload_off, sentence};
 use super::jog::{Jog, JogStep, TRAVEL_MAX_MM};
 use super::picture::{self, StepPicture};
 use crate::places::place;
@@ -45,10 +45,12 @@ pub(super) fn show(ui: &mut Ui, jog: &mut Jog, editor: &Editor, leg: &mut ShownL
         place(&plan, "jog_plan");
     });
     let off = jog.busy() || drivers_off(ui, leg);
+    let free = jog.busy() || payload_off(ui, leg, "a single tendon would have to bear it.");
     let still = jog.travel_mm == 0.0;
     let why = leg
         .locked()
         .or((!off).then_some("Disarm the leg first."))
+        .or((!free).then_some("Take the payload off first."))
         .or(still.then_some("Choose how far it turns."))
         .or(jog.busy().then_some("It turns."));
     if button(ui, "Turn it", "jog_start", why).clicked() {

@@ -1,6 +1,6 @@
 //! A motor and the swing of the leg, as their user measures them.
 
-use super::controls::{button, drivers_off, faint, sentence};
+use super::controls::{button, drivers_off, faint, payload_off, sentence};
 use super::picture::{self, StepPicture};
 use super::tune::{Outcome, Tune, TuneStep};
 use crate::places::place;
@@ -66,11 +66,11 @@ fn choose(ui: &mut Ui, tune: &mut Tune, leg: &mut ShownLeg) {
     let shown = ui.add(Label::new(RichText::new(words).monospace().size(11.5)).wrap());
     place(&shown, "tune_plan");
     let off = drivers_off(ui, leg);
-    let loaded = leg.simulated().is_some_and(|leg| leg.payload_kg() > 0.0);
+    let free = payload_off(ui, leg, "the first mode would be that of the leg with it.");
     let why = leg
         .locked()
         .or((!off).then_some("Disarm the leg first."))
-        .or(loaded.then_some("Take the payload off first."))
+        .or((!free).then_some("Take the payload off first."))
         .or(plan.is_none().then_some("Wait until the supply is known."));
     if button(ui, "Measure it", "tune_start", why).clicked() {
         tune.start(leg);

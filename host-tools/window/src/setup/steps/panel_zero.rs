@@ -1,6 +1,6 @@
 //! The zero of the tendons, as its user finds it.
 
-use super::controls::{button, faint, sentence};
+use super::controls::{button, faint, payload_off, sentence};
 use super::picture::{self, StepPicture};
 use crate::places::place;
 use crate::setup::editor::Editor;
@@ -38,22 +38,26 @@ pub(super) fn show(ui: &mut Ui, homing: &mut bool, editor: &Editor, leg: &mut Sh
     sentence(ui, 2, &words);
     let state = leg.state();
     let possible = state.next(Event::Home).is_some();
+    let homes = state == State::Homing;
+    let free = payload_off(ui, leg, "the zero that is found with it is wrong.");
+    // One that is hung on meanwhile is as bad.
+    *homing &= free || !homes;
     let why = leg
         .locked()
-        .or((!possible).then_some("Disarm the leg first, or clear its faults."));
-    ui.horizontal(|ui| {
-        if button(ui, "Find the zero", "zero_start", why).clicked() {
-            *homing = true;
-            leg.command(Command::Home, "home");
-        }
-        let off = state.next(Event::LeadDown).is_some() || state.next(Event::Disarm).is_some();
-        let why = leg
-            .locked()
-            .or((!off).then_some("It is off, or cannot be led down now."));
-        if button(ui, "Disarm", "steps_disarm", why).clicked() {
-            leg.command(Command::Disarm, "disarm");
-        }
-    });
+        .or(homes.then_some("It homes."))
+        .or((!possible).then_some("Disarm the leg first, or clear its faults."))
+        .or((!free).then_some("Take the payload off first."));
+    if button(ui, "Find the zero", "zero_start", why).clicked() {
+        *homing = true;
+        leg.command(Command::Home, "home");
+    }
+    let off = state.next(Event::LeadDown).is_some() || state.next(Event::Disarm).is_some();
+    let why = leg
+        .locked()
+        .or((!off).then_some("It is off, or cannot be led down now."));
+    if button(ui, "Disarm", "steps_disarm", why).clicked() {
+        leg.command(Command::Disarm, "disarm");
+    }
     outcome(ui, *homing, leg);
 }
 

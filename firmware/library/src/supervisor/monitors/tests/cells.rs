@@ -105,3 +105,38 @@ fn a_tension_that_jumps_up_or_down_is_a_fault() {
     assert_eq!(watched.cycle(&seen), jump);
     assert_eq!(watched.cycle(&seen), FaultSet::NONE);
 }
+
+/// A jump lasts until the tension is back within half of what counts as one. One of a leg that is held already counts where its cells
+/// are trusted.
+#[test]
+fn a_jump_lasts_until_the_tension_comes_back() {
+    for (led, trusted, counts) in [
+        (true, false, true),
+        (false, true, true),
+        (false, false, false),
+    ] {
+        let mut watched = Watched::new();
+        let jump_n = f64::from(limits().jump_n);
+        let mut seen = Seen::sound();
+        (seen.led, seen.trusted) = (led, trusted);
+        let stays = |watched: &Watched, off_n: f64| {
+            let mut tensions_n = Seen::sound().measured.tensions_n;
+            tensions_n[AXIS] += off_n;
+            watched.monitors.stay_jumped(&tensions_n)
+        };
+        assert!(!stays(&watched, 100.0));
+        seen.measured.tensions_n[AXIS] += 1.01 * jump_n;
+        assert!(watched.cycle(&seen).has(Fault::TensionJump));
+        // Back, which is another jump.
+        (seen.led, seen.trusted) = (true, true);
+        seen.measured.tensions_n = Seen::sound().measured.tensions_n;
+        watched.cycle(&seen);
+        for (part, away) in [(0.49, false), (0.51, true)] {
+            assert_eq!(stays(&watched, part * jump_n), away && counts);
+            assert_eq!(stays(&watched, -part * jump_n), away && counts);
+        }
+        assert_eq!(stays(&watched, f64::NAN), counts);
+        watched.monitors.forget_jumps();
+        assert!(!stays(&watched, 0.51 * jump_n));
+    }
+}

@@ -1,0 +1,180 @@
+//! What is seen at the sizes of screens: nothing is covered, nothing moves.
+
+use super::Window;
+use crate::fault_words;
+use crate::faults::FaultList;
+use crate::places;
+use crate::scene;
+use eframe::egui::{Context, RawInput, Rect, ScrollArea, UiBuilder};
+use leg_firmware::supervisor::{Fault, FaultSet};
+use leg_rig::rig_file::RigFile;
+use leg_sim::plant::Defect;
+
+/// Phones held upright and across.
+const PHONES: [[f32; 2]; 4] = [
+    [390.0, 844.0],
+    [360.0, 740.0],
+    [320.0, 568.0],
+    [844.0, 390.0],
+];
+
+/// The rows of a fault's card that are within a room.
+fn rows_within(ctx: &Context, rig: &RigFile, room: Rect, fault: Fault) -> Vec<String> {
+    let mut list = FaultList::default();
+    let mut placed = places::Places::default();
+    for frame in 0..6 {
+        let input = RawInput {
+            // Longer than a card takes to open.
+            time: Some(10.0 * f64::from(fault.code()) + f64::from(frame)),
+            screen_rect: Some(room),
+            ..RawInput::default()
+        };
+        let mut output = ctx.run_ui(input, |ui| {
+            ui.scope_builder(UiBuilder::new().max_rect(room), |ui| {
+                let faults = Some(FaultSet::single(fault));
+                ScrollArea::vertical().show(ui, |ui| list.show(ui, faults, rig));
+            });
+        });
+        output.textures_delta.clear();
+        placed = places::take(ctx);
+    }
+    let card = placed
+        .rects
+        .remove(format!("fault_{}", fault.code()).as_str());
+    assert!(
+        card.unwrap().right() <= room.right() + 0.5,
+        "{fault:?} {card:?} {room:?}"
+    );
+    let rows = placed.rects.into_iter();
+    let within = rows.filter(|(_, rect)| rect.bottom() <= room.bottom());
+    within.map(|(name, _)| name.to_string()).collect()
+}
+
+#[test]
+fn what_to_do_about_any_fault_is_seen_beside_the_leg() {
+    let room = scene::room(Window::new().rect("leg"));
+    let (ctx, rig) = (Context::default(), RigFile::load(None).unwrap());
+    crate::theme::install(&ctx);
+    let mut whole = 0;
+    for fault in Fault::ALL {
+        let rows = rows_within(&ctx, &rig, room, fault);
+        let remedy = format!("fault_{}_remedy", fault.code());
+        assert!(rows.contains(&remedy), "{fault:?}: {rows:?}");
+        whole += usize::from(rows.len() == 4);
+    }
+    println!("{whole} of {} cards are seen whole", Fault::ALL.len());
+    assert!(whole * 2 > Fault::ALL.len(), "{whole}");
+}
+
+#[test]
+fn the_card_of_a_cut_tendon_is_seen_whole_with_the_value_of_its_limit() {
+    let mut window = Window::new();
+    let charts = window.rect("charts");
+    window.press("cut_3");
+    window.frames(60);
+    let last = window.rect("fault_3_ends");
+    assert!(last.bottom() < charts.top(), "{last:?} {charts:?}");
+    let cause = fault_words::with_values(Fault::TensionJump.entry().cause, window.leg().rig());
+    assert!(cause.contains("25 N") && window.says(&cause), "{cause}");
+}
+
+#[test]
+fn a_fault_moves_nothing() {
+    let tabs = ["tab_break", "tab_drive", "tab_try", "tab_break"];
+    for ([width, height], tab) in PHONES.into_iter().zip(tabs) {
+        let mut window = Window::sized(width, height);
+        window.press(tab);
+        let before = window.app.places.rects.clone();
+        let stay = |window: &Window| {
+            let now = &window.app.places.rects;
+            for (name, rect) in &before {
+                assert_eq!(Some(rect), now.get(name), "{name} at {width} × {height}");
+            }
+        };
+        let leg = window.app.stage.leg_mut();
+        leg.set_defect(Defect::TendonCut(0), true);
+        window.frames(60);
+        assert!(window.says("jump of a tension"), "{:?}", window.texts);
+        stay(&window);
+        window.press("fault_strip");
+        let remedy = window.rect("fault_3_remedy");
+        assert!(window.rect("leg").contains_rect(remedy), "{remedy:?}");
+        stay(&window);
+        window.press("fault_strip");
+        assert!(!window.shows("fault_3_remedy"));
+    }
+}
+
+#[test]
+fn nothing_overlaps_on_a_phone() {
+    for [width, height] in PHONES {
+        let mut window = Window::sized(width, height);
+        // Late enough that something is left out.
+        window.time_s += 3.0;
+        window.frames(3);
+        assert!(window.says("SIMULATED"), "{width} × {height}");
+        for row in [
+            &["state", "rate", "theme", "stop"][..],
+            &[
+                "tab_try",
+                "tab_drive",
+                "tab_break",
+                "tab_charts",
+                "tab_setup",
+            ],
+            &["time", "left_out", "factor", "readout", "tensions"],
+        ] {
+            for (number, name) in row.iter().enumerate() {
+                let rect = window.rect(name);
+                assert!(
+                    rect.left() >= 0.0 && rect.right() <= width,
+                    "{name} {rect:?} at {width} × {height}"
+                );
+                for other in &row[number + 1..] {
+                    let shared = rect.intersect(window.rect(other));
+                    assert!(
+                        shared.width() <= 0.0 || shared.height() <= 0.0,
+                        "{name} and {other} at {width} × {height}: {shared:?}"
+                    );
+                }
+            }
+        }
+        let [leg, tabs] = ["leg", "tab_try"].map(|name| window.rect(name));
+        assert!(!leg.intersects(tabs), "{leg:?} {tabs:?}");
+        for tab in ["tab_try", "tab_drive", "tab_break", "tab_charts"] {
+            window.press(tab);
+            for (name, rect) in &window.app.places.rects {
+                assert!(
+                    rect.left() >= 0.0 && rect.right() <= width,
+                    "{name} in {tab} {rect:?} at {width} × {height}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_map_has_a_key_with_its_unit_and_its_ends() {
+    let mut window = Window::new();
+    let disc = window.rect("workspace");
+    window.press("map");
+    window.press("map_stiffness");
+    window.frames(20);
+    assert!(window.rect("map_key").left() > disc.right());
+    assert_eq!(window.rect("workspace"), disc);
+    assert!(window.says("N·m/rad"));
+    // Beside the leg, too, with both ends.
+    assert!(window.texts.iter().any(|text| {
+        text.starts_with("stiffness, ") && text.contains(" to ") && text.ends_with(" N·m/rad")
+    }));
+}
+
+#[test]
+fn no_words_come_with_the_pointer_over_the_faults() {
+    let mut window = Window::new();
+    let before = window.texts.len();
+    let at = window.rect("workspace").center();
+    window.frame(vec![eframe::egui::Event::PointerMoved(at)]);
+    window.frames(60);
+    assert_eq!(window.texts.len(), before, "{:?}", window.texts);
+}

@@ -1,0 +1,109 @@
+//! A leg that was stopped because its sensors contradict each other, and that is homed although nothing was repaired.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use super::station_stand::{armed, pass};
+use leg_bench::stand::{Stand, move_to};
+use leg_firmware::command::Command;
+use leg_firmware::supervisor::{Fault, FaultSet, State};
+use leg_rig::ready_rigs::READY_RIGS;
+use leg_rig::rig_file::RigFile;
+use leg_sim::plant::Defect;
+
+/// The highest tension while homing, N: a bar of the strikes.
+const HOMING_N: f64 = 40.0;
+
+/// How far the leg leans when it is struck, degrees, as far as its rig lets it.
+const TILT_DEG: f64 = 25.0;
+
+fn tilt_deg(rig: &RigFile) -> f64 {
+    TILT_DEG.min(0.9 * rig.tilt_deg)
+}
+
+fn rigs() -> impl Iterator<Item = RigFile> {
+    READY_RIGS
+        .iter()
+        .map(|rig| RigFile::load(Some(rig.name.as_ref())).unwrap())
+}
+
+fn obey(stand: &mut Stand, command: Command) {
+    stand.command(&command).unwrap();
+    pass(stand, 0.05);
+}
+
+/// Clears the fault, arms in vain, and homes. The faults by which that ends, and the highest true tension on the way, N.
+fn home(stand: &mut Stand) -> (FaultSet, f64) {
+    obey(stand, Command::Clear);
+    assert!(!stand.faults().any(), "{:?}", stand.faults());
+    obey(stand, Command::Arm);
+    assert_eq!(stand.state(), State::Disarmed);
+    stand.command(&Command::Home).unwrap();
+    let (mut highest_n, mut homes) = (0.0_f64, false);
+    for _ in 0..60 * 8000 {
+        stand.tick().unwrap();
+        homes |= stand.state() == State::Homing;
+        highest_n = stand.truth.tensions_n.into_iter().fold(highest_n, f64::max);
+        if homes && stand.state() != State::Homing {
+            break;
+        }
+    }
+    assert!(homes);
+    (stand.faults(), highest_n)
+}
+
+/// From where the leg leans its tendons are paid out: none pulls more than before by more than its swing.
+#[test]
+fn a_motor_that_turned_the_wrong_way_is_found_again_by_homing() {
+    for rig in rigs() {
+        for tendon in 0..3 {
+            let mut stand = armed(&rig, [40.0, tilt_deg(&rig)], 0.0, 1);
+            stand
+                .plant()
+                .set_defect(Defect::EncoderReversed(tendon), true);
+            obey(&mut stand, move_to([220.0, tilt_deg(&rig)]));
+            pass(&mut stand, 1.5);
+            assert!(
+                stand.faults().has(Fault::EncoderReversed),
+                "{tendon}: {:?}",
+                stand.faults()
+            );
+            assert_eq!(stand.state(), State::Off);
+            let before_n = stand.truth.tensions_n.into_iter().fold(0.0, f64::max);
+            let (faults, highest_n) = home(&mut stand);
+            assert!(faults.has(Fault::EncoderReversed), "{faults:?}");
+            assert!(highest_n < 1.1 * before_n, "{before_n} N, {highest_n} N");
+        }
+    }
+}
+
+#[test]
+fn load_cells_that_have_changed_their_places_are_found_by_homing() {
+    let mut found = 0;
+    for rig in rigs() {
+        // The tensions of the first two differ most.
+        let mut stand = armed(&rig, [110.0, tilt_deg(&rig)], 1.0, 1);
+        stand.plant().set_defect(Defect::CellsSwapped, true);
+        pass(&mut stand, 0.5);
+        if !stand.faults().has(Fault::TensionJump) {
+            // They differ too little where it leans little.
+            continue;
+        }
+        found += 1;
+        assert_eq!(stand.state(), State::Held);
+        obey(&mut stand, Command::Clear);
+        assert!(stand.state() == State::Held && stand.faults().any());
+        stand.command(&Command::Disarm).unwrap();
+        pass(&mut stand, 5.0);
+        assert_eq!(stand.state(), State::Disarmed);
+        stand.plant().set_payload(0.0, 0.1);
+        pass(&mut stand, 5.0);
+        let before_n = stand.truth.tensions_n.into_iter().fold(0.0, f64::max);
+        let (faults, highest_n) = home(&mut stand);
+        assert!(faults.has(Fault::HomingFailed), "{faults:?}");
+        assert!(
+            highest_n < HOMING_N.max(1.1 * before_n),
+            "{before_n} N, {highest_n} N"
+        );
+    }
+    assert!(found >= 6, "{found} rigs");
+}
