@@ -32,7 +32,7 @@ impl<T: Scalar> Leg<T> {
         taken
     }
 
-    /// Counts a frame that could not be decoded: see [`Fault::BadFrame`].
+    /// Counts a frame that could not be decoded: see [`Fault::BadFrame`](crate::supervisor::Fault::BadFrame).
     pub fn note_decode_error(&mut self) {
         self.link.note_decode_error();
     }
