@@ -13,6 +13,8 @@ fi
 # The blocks of a language in README.md.
 blocks() { sed -n "/^\`\`\`$1\$/,/^\`\`\`\$/{/^\`\`\`/d;p}" README.md; }
 
+# An environment that was copied from elsewhere would install there.
+rm -rf .venv
 rm -f circle.png
 from_clone=$(blocks sh)
 # From a clone to the chart of the circle.
