@@ -224,7 +224,9 @@ impl Processor {
     pub fn interrupted_at(&self, stack_pointer: u32) -> Option<u32> {
         let is_code = |pc: u32| pc & 1 == 0 && (FLASH.contains(&pc) || CCM.contains(&pc));
         let is_xpsr = |word: u32| word & xpsr::T != 0 && word & XPSR_RESERVED == 0;
-        let mut places = (stack_pointer..).step_by(4).take(FRAME_SPAN);
+        // A pointer that has run wild may be at the end of all addresses.
+        let places = (0..).step_by(4).take(FRAME_SPAN);
+        let mut places = places.map_while(|offset| stack_pointer.checked_add(offset));
         places.find_map(|at| {
             let xpsr = self.word(at.checked_add(4)?);
             self.word(at)

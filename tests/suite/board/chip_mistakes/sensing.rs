@@ -37,7 +37,7 @@ mistakes! {
     currents_in_another_order: converters(
         "CURRENT_INPUTS: [u8; 3] = [17, 3, 4];",
         "CURRENT_INPUTS: [u8; 3] = [3, 17, 4];",
-        "ADC2's code 1 is of PA6, and has to be of PA4",
+        "ADC2's code 1 is ",
     );
     sampling_too_short: converters(
         "SampleTime::CYCLES47_5",
