@@ -57,7 +57,7 @@ pub const SETTLE_CYCLES: u16 = 200;
 /// tendon's tension: four times the change that is a fault. What the error is then is in doubt by as much, and the doubt fades in this
 /// time, s.
 const HARD_SWING_M: f32 = 4e-5;
-const DOUBT_TIME_S: f32 = 1.0;
+const DOUBT_TIME_S: f32 = 0.5;
 
 /// Cycles after which nothing of it is left, 5 s.
 const FADE_CYCLES: u16 = 10_000;
