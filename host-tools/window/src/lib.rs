@@ -72,6 +72,7 @@ pub mod recording_reader;
 pub mod recordings;
 pub mod rig_intake;
 pub mod scene;
+pub mod scrolled;
 pub mod seen_leg;
 pub mod setup;
 pub mod shown_leg;

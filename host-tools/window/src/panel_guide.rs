@@ -57,7 +57,7 @@ pub fn show(ui: &mut Ui, simulation: &mut Simulation) -> Wish {
         GuideStep {
             number: 3,
             action: ["Cut a tendon", "guide_cut"],
-            effect: "The supervisor holds the leg, and says why.",
+            effect: "The tip falls. The supervisor stops the motors, and says why.",
             done: simulation.has(cut),
         },
     ];

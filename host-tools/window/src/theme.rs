@@ -9,10 +9,13 @@ use eframe::egui::{
 /// than they were.
 const DOUBLE_CLICK_S: f64 = 0.5;
 
+/// Width of a scroll bar without the pointer, points.
+pub const BAR_WIDTH: f32 = 4.0;
+
 /// A bar is seen wherever something is beyond the edge, before the pointer is there, too: it takes no room.
 fn scroll() -> ScrollStyle {
     ScrollStyle {
-        floating_width: 4.0,
+        floating_width: BAR_WIDTH,
         dormant_handle_opacity: 0.55,
         ..ScrollStyle::floating()
     }
