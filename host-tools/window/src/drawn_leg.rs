@@ -10,7 +10,7 @@ use crate::places::place_rect;
 use crate::seen_leg::{SeenLeg, leg_axis};
 use crate::stiffness_ellipse::StiffnessEllipse;
 use crate::theme::{self, Palette, mixed};
-use eframe::egui::{
+use egui::{
     Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2,
     pos2, vec2,
 };
@@ -452,7 +452,7 @@ fn beside(end: Pos2, away: Vec2, half: Vec2) -> Rect {
 #[cfg(test)]
 mod tests {
     use super::beside;
-    use eframe::egui::{Vec2, pos2, vec2};
+    use egui::{Vec2, pos2, vec2};
 
     #[test]
     fn words_beside_an_arrow_do_not_cover_it() {

@@ -5,7 +5,7 @@ use crate::places::place;
 use crate::scrolled;
 use crate::theme::palette;
 use crate::top_bar::NOT_KNOWN;
-use eframe::egui::{Area, Button, Frame, Id, Rect, RichText, Sense, Stroke, Ui, vec2};
+use egui::{Area, Button, Frame, Id, Rect, RichText, Sense, Stroke, Ui, vec2};
 use leg_firmware::supervisor::FaultSet;
 use leg_rig::rig_file::RigFile;
 

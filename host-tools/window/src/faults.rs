@@ -3,7 +3,7 @@
 use crate::fault_words;
 use crate::places::place;
 use crate::theme::{Palette, palette};
-use eframe::egui::{CollapsingHeader, Color32, Frame, Label, RichText, Stroke, Ui};
+use egui::{CollapsingHeader, Color32, Frame, Label, RichText, Stroke, Ui};
 use leg_firmware::supervisor::{Clearing, Fault, FaultEntry, FaultSet, Reaction};
 use leg_rig::rig_file::RigFile;
 
@@ -131,8 +131,8 @@ const fn clearing(clearing: Clearing) -> &'static str {
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::FaultList;
-    use eframe::egui::{Context, RawInput, Rect, Shape, pos2};
-    use eframe::epaint::ClippedShape;
+    use egui::epaint::ClippedShape;
+    use egui::{Context, RawInput, Rect, Shape, pos2};
     use leg_firmware::supervisor::{Fault, FaultSet};
     use leg_rig::rig_file::RigFile;
 

@@ -14,7 +14,7 @@ use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
 use crate::workspace::Workspace;
 use crate::{numbers, panel_break, panel_drive, panel_guide, panel_unlock, scrolled, top_bar};
-use eframe::egui::{
+use egui::{
     Align, Align2, CentralPanel, FontId, Frame, Layout, Panel, Rect, Ui, UiBuilder, Vec2, vec2,
 };
 use leg_rig::rig_file::RigText;
@@ -232,7 +232,7 @@ fn tabs(ui: &mut Ui, leg: &ShownLeg, tab: &mut Tab) {
             ui.spacing_mut().button_padding.x = 2.0;
         }
         for &(this, text, name) in TABS.iter().filter(shown) {
-            let button = eframe::egui::Button::selectable(*tab == this, text);
+            let button = egui::Button::selectable(*tab == this, text);
             let response = ui.add(button.min_size(vec2(width, 36.0)));
             place(&response, name);
             if response.clicked() {

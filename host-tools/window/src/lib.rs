@@ -66,6 +66,7 @@ pub mod panel_guide;
 pub mod panel_unlock;
 pub mod places;
 pub mod player;
+pub mod pointer;
 pub mod recorded_leg;
 pub mod recorder;
 pub mod recording_reader;

@@ -3,7 +3,7 @@
 use crate::places::{place, place_rect};
 use crate::seen_leg::SeenLeg;
 use crate::theme::{self, palette};
-use eframe::egui::{Color32, Grid, RichText, Ui};
+use egui::{Color32, Grid, RichText, Ui};
 use leg_base::angles;
 
 /// What is shown as zero has no sign.

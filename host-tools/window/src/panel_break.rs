@@ -4,7 +4,7 @@ use crate::places::place;
 use crate::simulation::Simulation;
 use crate::text::left;
 use crate::theme::palette;
-use eframe::egui::{Align, Button, Layout, RichText, Ui, vec2};
+use egui::{Align, Button, Layout, RichText, Ui, vec2};
 use leg_sim::plant::Defect;
 
 /// A push of a finger: N and s.

@@ -3,7 +3,7 @@
 use crate::places::place;
 use crate::simulation::Simulation;
 use crate::theme::palette;
-use eframe::egui::{Button, Frame, Label, Margin, RichText, Ui, vec2};
+use egui::{Button, Frame, Label, Margin, RichText, Ui, vec2};
 use leg_firmware::command::{Command, Compensation};
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigText;

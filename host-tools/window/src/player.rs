@@ -10,9 +10,7 @@ use crate::scene::Scene;
 use crate::scrolled;
 use crate::theme::{Palette, palette};
 use crate::top_bar::chip;
-use eframe::egui::{
-    Button, CentralPanel, ComboBox, Frame, Label, Panel, RichText, Slider, Ui, vec2,
-};
+use egui::{Button, CentralPanel, ComboBox, Frame, Label, Panel, RichText, Slider, Ui, vec2};
 use leg_base::description;
 use serde::Serialize;
 

@@ -6,7 +6,7 @@ use crate::map::Map;
 use crate::places::place;
 use crate::seen_leg::SeenLeg;
 use crate::theme::palette;
-use eframe::egui::{ComboBox, Rect, Response, Sense, Ui, Vec2, pos2, vec2};
+use egui::{ComboBox, Rect, Response, Sense, Ui, Vec2, pos2, vec2};
 use nalgebra::Vector3;
 
 /// How much of the leg the detail shows, beside the size of what is in it.

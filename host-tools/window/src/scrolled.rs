@@ -1,6 +1,6 @@
 //! What may be higher than its room, with a scroll bar beside it.
 
-use eframe::egui::{ScrollArea, Ui};
+use egui::{ScrollArea, Ui};
 
 /// What a bar takes at the right, whether it is shown or not, points: nothing moves, and nothing is below it.
 pub const BAR: f32 = 8.0;

@@ -16,7 +16,7 @@ use crate::rig_intake;
 use crate::scrolled;
 use crate::shown_leg::ShownLeg;
 use editor::Editor;
-use eframe::egui::{Button, CentralPanel, Context, Panel, Ui, vec2};
+use egui::{Button, CentralPanel, Context, Panel, Ui, vec2};
 use leg_rig::rig_file::RigText;
 use panel_actions::SettingsWish;
 use panel_table::Table;

@@ -266,13 +266,10 @@ requestAnimationFrame(look);
 
 
 def check_speed(page):
-    """Frame times, and whether the leg keeps up with the clock: the best of three, for other programs may keep the processor."""
-    for _ in range(3):
-        rate, frame_ms = measured_speed(page)
-        part = frame_part(page)
-        if REAL_TIME < rate < 1.1 and frame_ms <= FRAME_MS and part <= 1:
-            return
-    raise AssertionError((rate, frame_ms, part))
+    """Frame times, and whether the leg keeps up with the clock: the medians of three looks, for other programs may keep the processor."""
+    looks = [(*measured_speed(page), frame_part(page)) for _ in range(3)]
+    rate, frame_ms, part = map(statistics.median, zip(*looks))
+    assert REAL_TIME < rate < 1.1 and frame_ms <= FRAME_MS and part <= 1, looks
 
 
 def frame_part(page):
@@ -483,14 +480,20 @@ def breaks(page):
     assert "jump of a tension" in leg["faults"], leg["faults"]
     spoken = "return document.getElementById('spoken').textContent"
     page.wait_leg("is told", lambda _: "jump of a tension" in page.browser.run(spoken))
+    page.wait("its estimates are in doubt", lambda state: "doubt" in state["places"])
     # A leg with a cut tendon swings for ten seconds.
-    if not page.quick:
-        page.wait_for_rest()
-        page.picture("cut")
+    page.wait_for_rest()
+    page.picture("cut")
     page.press("repair")
-    time.sleep(1.0)
+    # As the remedy says it.
+    page.press("disarm")
+    page.wait_leg("is disarmed", lambda leg: leg["state"] == "disarmed")
     page.press("clear")
-    page.wait_leg("is cleared", lambda leg: "jump of a tension" not in leg["faults"])
+    page.wait_leg("is cleared", lambda leg: not leg["faults"])
+    page.press("home")
+    leg = page.wait_leg("is homed", lambda leg: leg["state"] == "active" and leg["tilt_deg"] < 1, 40)
+    assert not leg["faults"] and "doubt" not in page.state()["places"], leg["faults"]
+    print("  repaired, disarmed, cleared and homed")
 
 
 DROP = """
@@ -941,13 +944,10 @@ def serve(directory):
 def open_page(page, file, directory):
     """Opens the page from disk and from a web server, and holds it to the time that it promises."""
     for address in (file.as_uri(), serve(directory)):
-        # The best of three: other programs may keep the processor.
-        took_s = math.inf
-        for _ in range(3):
-            if took_s > LOAD_S:
-                took_s = min(took_s, page.open(address))
-        print(f"{address.split(':')[0]}: loaded in {took_s:.2f} s")
-        assert took_s <= LOAD_S, took_s
+        took_s = [page.open(address) for _ in range(3)]
+        told = ", ".join(f"{time_s:.2f}" for time_s in took_s)
+        print(f"{address.split(':')[0]}: loaded in {told} s; the median is held to {LOAD_S:.0f} s")
+        assert statistics.median(took_s) <= LOAD_S, took_s
 
 
 def share(directory):

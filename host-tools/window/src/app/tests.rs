@@ -9,7 +9,7 @@ mod setup;
 
 use super::App;
 use crate::simulation::Simulation;
-use eframe::egui::{
+use egui::{
     Context, DroppedFileHandle, Event, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, Shape,
     Vec2, vec2,
 };

@@ -6,7 +6,7 @@ use crate::faults::FaultList;
 use crate::places;
 use crate::scene;
 use crate::scrolled;
-use eframe::egui::{Context, RawInput, Rect, UiBuilder};
+use egui::{Context, RawInput, Rect, UiBuilder};
 use leg_firmware::supervisor::{Fault, FaultSet};
 use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Defect;
@@ -255,7 +255,7 @@ fn no_words_come_with_the_pointer_over_the_faults() {
     let mut window = Window::new();
     let before = window.texts.len();
     let at = window.rect("workspace").center();
-    window.frame(vec![eframe::egui::Event::PointerMoved(at)]);
+    window.frame(vec![egui::Event::PointerMoved(at)]);
     window.frames(60);
     assert_eq!(window.texts.len(), before, "{:?}", window.texts);
 }
