@@ -131,7 +131,7 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
     right.show(ui, |ui| {
         scrolled::shrunk(ui, "right", |ui| {
             Workspace::heading(ui, leg);
-            views.workspace.show(ui, leg, 200.0);
+            views.workspace.show(ui, leg, DISC[0]);
             numbers::show(ui, &leg.seen());
             if let Some(simulation) = leg.simulated_mut() {
                 ui.separator();
