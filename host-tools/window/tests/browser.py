@@ -2,7 +2,7 @@
 """Does in a browser what a person does who has never seen the page, from disk and from a web server.
 
     tests/browser.py DIR                compares the pictures with those in tests/pictures
-    tests/browser.py DIR --quick        in less time: what CI runs, everything but the measurement of a swing
+    tests/browser.py DIR --beside       in browsers beside each other, in less time: what CI runs
     tests/browser.py DIR --keep         writes those anew: look at them before you commit
 """
 
@@ -924,10 +924,11 @@ PARTS = (
 # for the leg's time.
 MEASURED = (check_speed, check_bits)
 SHARED = (
-    (first_visit, recordings, settings, steps),
-    (drive, breaks, rig_files, stops, looks),
-    (rates, sliders, maps, pushes, charts),
+    (first_visit, recordings, steps, pushes, sliders),
+    (drive, breaks, rig_files, settings, stops, looks),
+    (rates, maps, charts, tuning),
 )
+assert {*MEASURED, *sum(SHARED, ())} == {*PARTS}
 
 
 def serve(directory):
@@ -954,7 +955,7 @@ def share(directory):
     """Does the shared parts in browsers beside each other, and tells of each when all of them have ended."""
     begun = []
     for parts in SHARED:
-        command = [sys.executable, __file__, directory, "--quick"]
+        command = [sys.executable, __file__, directory]
         for part in parts:
             command += ["--part", part.__name__]
         told = tempfile.TemporaryFile("w+")
@@ -970,10 +971,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("directory", type=pathlib.Path)
     parser.add_argument("--keep", action="store_true")
-    parser.add_argument("--quick", action="store_true", help="what CI has time for")
+    parser.add_argument("--beside", action="store_true", help="in browsers beside each other")
     parser.add_argument("--part", action="append", choices=[part.__name__ for part in PARTS], help="these parts alone")
     arguments = parser.parse_args()
-    parts = MEASURED if arguments.quick else PARTS
+    parts = MEASURED if arguments.beside else PARTS
     if arguments.part:
         parts = [part for part in PARTS if part.__name__ in arguments.part]
     file = (arguments.directory / "index.html").resolve()
@@ -994,7 +995,7 @@ def main():
             print(f"  {time.monotonic() - began:.1f} s")
         errors = [entry for entry in browser.log() if entry["level"] == "SEVERE"]
         assert not errors, errors
-    if arguments.quick and not arguments.part:
+    if arguments.beside and not arguments.part:
         share(arguments.directory)
     print("all of it holds")
 
