@@ -3,13 +3,13 @@
 # install the browser.
 #
 #     test.sh                everything
-#     test.sh --page DIR     only what a browser shows of the page in DIR, in less time: what CI has room for
+#     test.sh --page DIR     only what a browser shows of the page in DIR, in browsers beside each other: what CI runs
 set -euo pipefail
 page=target/site
-quick=()
+beside=()
 if [ "${1:-}" = --page ]; then
     page=$(realpath "$2")
-    quick=(--quick)
+    beside=(--beside)
 fi
 # The program may be named from where this was called.
 if [ -n "${LEG:-}" ]; then
@@ -27,13 +27,13 @@ for program in chromium chromedriver python3; do
     break
 done
 
-if [ ${#quick[@]} -eq 0 ]; then
+if [ ${#beside[@]} -eq 0 ]; then
     rustup target list --installed | grep -q '^wasm32-unknown-unknown$' || rustup target add wasm32-unknown-unknown
-    cargo test --locked
+    cargo test --locked --no-default-features --lib
     cargo run --release --locked --package leg-window-export -- "$page"
 fi
 if [ -z "${LEG:-}" ]; then
     (cd ../.. && cargo build --locked --bin leg)
 fi
-python3 tests/browser.py "$page" "${quick[@]}"
-python3 tests/live.py "$page" "${quick[@]}"
+python3 tests/browser.py "$page" "${beside[@]}"
+python3 tests/live.py "$page"

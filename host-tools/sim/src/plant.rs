@@ -160,6 +160,9 @@ impl Plant {
             self.begin_or_end(defect, on);
         }
         self.dynamics.cut = self.defects.affected(Defect::TendonCut);
+        if let (Defect::TendonCut(tendon), true, false) = (defect, changed, on) {
+            self.replace_tendon(tendon);
+        }
         self.work.cut_j += before_j - self.energy_j();
         self.tensions_n = self.pulls_n();
     }

@@ -17,7 +17,7 @@ use crate::shown_leg::ShownLeg;
 use crate::simulation::{Simulation, StartError};
 use crate::work::Work;
 use crate::{keys, theme, top_bar};
-use eframe::egui::{CentralPanel, Context, Frame, Margin, Panel, RawInput, Ui};
+use egui::{CentralPanel, Context, Frame, Margin, Panel, RawInput, Ui};
 use leg_base::failure::Failure;
 use leg_firmware::command::Command;
 use leg_rig::rig_file::RigText;
@@ -360,6 +360,7 @@ impl App {
     }
 }
 
+#[cfg(any(feature = "desktop", target_arch = "wasm32"))]
 impl eframe::App for App {
     fn raw_input_hook(&mut self, _: &Context, input: &mut RawInput) {
         self.take(input);

@@ -1,6 +1,6 @@
 //! From places of the leg in frame {A} to places on the screen.
 
-use eframe::egui::{Pos2, Rect, pos2};
+use egui::{Pos2, Rect, pos2};
 use nalgebra::Vector3;
 
 /// How far one may look from above and from below, degrees.
@@ -109,7 +109,7 @@ impl View {
 #[cfg(test)]
 mod tests {
     use super::Camera;
-    use eframe::egui::{Rect, pos2};
+    use egui::{Rect, pos2};
     use nalgebra::Vector3;
 
     fn level() -> Camera {

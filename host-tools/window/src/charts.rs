@@ -13,7 +13,7 @@ use crate::history::{Column, History, KEPT_S};
 use crate::places::{place, place_rect};
 use chart::{Kept, VALUES_HEIGHT};
 use cursors::Cursors;
-use eframe::egui::{RichText, Ui};
+use egui::{RichText, Ui};
 use serde::Serialize;
 use signal_source::ShownSignals;
 pub use signal_source::SignalSource;

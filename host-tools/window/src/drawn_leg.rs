@@ -10,7 +10,7 @@ use crate::places::place_rect;
 use crate::seen_leg::{SeenLeg, leg_axis};
 use crate::stiffness_ellipse::StiffnessEllipse;
 use crate::theme::{self, Palette, mixed};
-use eframe::egui::{
+use egui::{
     Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2,
     pos2, vec2,
 };
@@ -226,6 +226,7 @@ impl<'a> Drawn<'a> {
             .map(|place| view.project(place).at)
             .collect();
         rim.extend(rim.first().copied());
+        place_rect(painter.ctx(), Rect::from_points(&rim), "rim");
         painter.add(Shape::line(rim, faint));
     }
 
@@ -322,6 +323,7 @@ impl<'a> Drawn<'a> {
         let off = match (self.leg.is_heard, self.leg.is_true) {
             (false, _) => "from the target, as last heard",
             (true, true) => "from the target",
+            (true, false) if self.leg.doubt().is_some() => "by sensors that are in doubt",
             (true, false) => "from the target, by its sensors",
         };
         for (line, words) in [off, &drawn].into_iter().enumerate() {
@@ -336,21 +338,28 @@ impl<'a> Drawn<'a> {
     /// How stiff the tip is to each side, and the scale of that.
     pub fn stiffness(&self, painter: &Painter, view: &View, rect: Rect) {
         let colour = self.palette.good;
-        let ellipse = StiffnessEllipse::new(self.leg);
-        let words = match &ellipse {
-            Some(ellipse) => {
+        let doubt = self.leg.doubt();
+        let ellipse = StiffnessEllipse::new(self.leg).filter(|_| doubt.is_none());
+        let words = match (&ellipse, doubt) {
+            (Some(ellipse), _) => {
                 self.ellipse(painter, view, ellipse, colour);
                 ellipse.words()
             }
-            None => ["the model has no stiffness here", ""].map(ToString::to_string),
+            (None, Some(_)) => {
+                ["stiffness: not known, sensors or", "tendons are in doubt"].map(Into::into)
+            }
+            (None, None) => ["the model has no stiffness here", ""].map(Into::into),
         };
         let font = FontId::monospace(11.5);
         let corner = rect.left_bottom() + vec2(14.0, -WORDS_ABOVE);
+        let shown = Rect::from_min_size(corner, vec2(230.0, 30.0));
+        // What is drawn of the leg and its workspace does not cross the words.
+        let patch = shown.expand2(vec2(4.0, 1.0));
+        painter.rect_filled(patch, 4.0, self.palette.back);
         for (line, words) in words.into_iter().enumerate() {
             let at = corner + vec2(0.0, 15.0 * line as f32);
             painter.text(at, Align2::LEFT_TOP, words, font.clone(), colour);
         }
-        let shown = Rect::from_min_size(corner, vec2(230.0, 30.0));
         place_rect(painter.ctx(), shown, "stiffness_words");
     }
 
@@ -358,6 +367,7 @@ impl<'a> Drawn<'a> {
         let at = |place| view.project(place).at;
         let edge: Vec<Pos2> = ellipse.edge(self.tip()).map(at).collect();
         let line = Stroke::new(1.6, colour);
+        place_rect(painter.ctx(), Rect::from_points(&edge), "ellipse");
         painter.add(Shape::convex_polygon(
             edge,
             colour.gamma_multiply(0.15),
@@ -442,7 +452,7 @@ fn beside(end: Pos2, away: Vec2, half: Vec2) -> Rect {
 #[cfg(test)]
 mod tests {
     use super::beside;
-    use eframe::egui::{Vec2, pos2, vec2};
+    use egui::{Vec2, pos2, vec2};
 
     #[test]
     fn words_beside_an_arrow_do_not_cover_it() {

@@ -2,9 +2,10 @@
 
 use crate::faults::{self, FaultList};
 use crate::places::place;
+use crate::scrolled;
 use crate::theme::palette;
 use crate::top_bar::NOT_KNOWN;
-use eframe::egui::{Area, Button, Frame, Id, Rect, RichText, ScrollArea, Sense, Stroke, Ui, vec2};
+use egui::{Area, Button, Frame, Id, Rect, RichText, Sense, Stroke, Ui, vec2};
 use leg_firmware::supervisor::FaultSet;
 use leg_rig::rig_file::RigFile;
 
@@ -67,8 +68,7 @@ impl FaultStrip {
                 let size = over.size() - vec2(16.0, 16.0);
                 ui.set_min_size(size);
                 ui.set_max_size(size);
-                let scroll = ScrollArea::vertical().id_salt("fault strip");
-                scroll.show(ui, |ui| self.list.show(ui, faults, rig));
+                scrolled::shrunk(ui, "fault strip", |ui| self.list.show(ui, faults, rig));
             });
         });
     }

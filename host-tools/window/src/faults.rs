@@ -3,7 +3,7 @@
 use crate::fault_words;
 use crate::places::place;
 use crate::theme::{Palette, palette};
-use eframe::egui::{CollapsingHeader, Color32, Frame, Label, RichText, Stroke, Ui};
+use egui::{CollapsingHeader, Color32, Frame, Label, RichText, Stroke, Ui};
 use leg_firmware::supervisor::{Clearing, Fault, FaultEntry, FaultSet, Reaction};
 use leg_rig::rig_file::RigFile;
 
@@ -19,14 +19,20 @@ impl FaultList {
     /// a press. None where it is not known whether there are some.
     pub fn show(&mut self, ui: &mut Ui, faults: Option<FaultSet>, rig: &RigFile) {
         let palette = palette(ui.ctx());
-        ui.heading("Faults");
+        let heading = ui.horizontal(|ui| {
+            ui.heading("Faults");
+            match faults {
+                None => ui.label(RichText::new("not known").color(palette.error)),
+                Some(faults) if !faults.any() => {
+                    ui.label(RichText::new("✔ none").color(palette.good))
+                }
+                Some(_) => ui.response(),
+            }
+        });
+        place(&heading.response, "faults");
         let Some(faults) = faults else {
-            ui.label(RichText::new("not known").color(palette.error));
             return;
         };
-        if !faults.any() {
-            ui.label(RichText::new("✔ none").color(palette.good));
-        }
         let first = if self.shown.any() {
             None
         } else {
@@ -88,12 +94,12 @@ fn rows(ui: &mut Ui, entry: &FaultEntry, rig: &RigFile) {
     let rows = [
         ("Remedy", fault_words::with_values(entry.remedy, rig)),
         ("Cause", fault_words::with_values(entry.cause, rig)),
-        ("Reaction", reaction(entry.reaction).into()),
+        ("Reaction", reaction(entry).into()),
         ("Ends", clearing(entry.clears).into()),
     ];
     for (what, words) in rows {
         let text = format!("{what}: {words}");
-        let row = ui.add(Label::new(RichText::new(text).size(12.5)).wrap());
+        let row = ui.add(Label::new(RichText::new(text).small()).wrap());
         place(
             &row,
             format!("fault_{}_{}", entry.fault.code(), what.to_lowercase()),
@@ -101,13 +107,16 @@ fn rows(ui: &mut Ui, entry: &FaultEntry, rig: &RigFile) {
     }
 }
 
-/// What the leg does about it.
-const fn reaction(reaction: Reaction) -> &'static str {
-    match reaction {
-        Reaction::Limit => "the leg goes on with what is possible",
-        Reaction::Hold => "the leg stays where it is, its motors at rest on their screws",
-        Reaction::RampDown => "the tendons are paid out, then the drivers are switched off",
-        Reaction::GateOff => "the drivers are switched off at once; the screws hold",
+/// What the leg does about it. A tendon that is cut holds nothing, whatever its motor does.
+const fn reaction(entry: &FaultEntry) -> &'static str {
+    match (entry.reaction, entry.fault) {
+        (Reaction::Limit, _) => "the leg goes on with what is possible",
+        (Reaction::Hold, Fault::Slack | Fault::TensionJump) => {
+            "the motors stop on their screws; if a tendon is cut, the tip falls"
+        }
+        (Reaction::Hold, _) => "the motors stop, and their screws hold the leg",
+        (Reaction::RampDown, _) => "the tendons are paid out, then the drivers are switched off",
+        (Reaction::GateOff, _) => "the drivers are switched off at once; the screws hold",
     }
 }
 
@@ -122,8 +131,8 @@ const fn clearing(clearing: Clearing) -> &'static str {
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::FaultList;
-    use eframe::egui::{Context, RawInput, Rect, Shape, pos2};
-    use eframe::epaint::ClippedShape;
+    use egui::epaint::ClippedShape;
+    use egui::{Context, RawInput, Rect, Shape, pos2};
     use leg_firmware::supervisor::{Fault, FaultSet};
     use leg_rig::rig_file::RigFile;
 

@@ -2,8 +2,8 @@
 
 use crate::camera::View;
 use crate::theme::mixed;
-use eframe::egui::epaint::{Mesh, PathStroke};
-use eframe::egui::{Color32, Pos2, Shape, Stroke, Vec2};
+use egui::epaint::{Mesh, PathStroke};
+use egui::{Color32, Pos2, Shape, Stroke, Vec2};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
@@ -190,7 +190,7 @@ fn convex_hull(mut points: Vec<Pos2>) -> Vec<Pos2> {
 #[cfg(test)]
 mod tests {
     use super::{circle, convex_hull};
-    use eframe::egui::pos2;
+    use egui::pos2;
     use nalgebra::Vector3;
 
     #[test]

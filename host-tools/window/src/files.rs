@@ -7,8 +7,8 @@ mod platform;
 #[path = "files/desktop.rs"]
 mod platform;
 
-use eframe::egui::Context;
-use eframe::egui::DroppedFileHandle;
+use egui::Context;
+use egui::DroppedFileHandle;
 use leg_base::failure::Failure;
 use leg_base::text_input;
 use std::cell::RefCell;

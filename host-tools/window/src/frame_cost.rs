@@ -2,7 +2,7 @@
 //! card is given. A window without a screen is measured, so that neither a graphics card nor its lack is.
 
 use crate::app::App;
-use eframe::egui::{Context, Pos2, RawInput, Rect, vec2};
+use egui::{Context, Pos2, RawInput, Rect, vec2};
 use serde::Serialize;
 use web_time::Instant;
 

@@ -1,7 +1,7 @@
 //! The keys that stop the leg: space and Escape. They are taken from the input before a control or a menu sees them, so
 //! they stop it whatever has the focus.
 
-use eframe::egui::{Event, Key};
+use egui::{Event, Key};
 
 /// Takes them out of the input. Whether one was pressed.
 pub fn take_stop(events: &mut Vec<Event>) -> bool {
@@ -22,7 +22,7 @@ pub fn take_stop(events: &mut Vec<Event>) -> bool {
 #[cfg(test)]
 mod tests {
     use super::take_stop;
-    use eframe::egui::{Event, Key, Modifiers};
+    use egui::{Event, Key, Modifiers};
 
     fn key(key: Key, pressed: bool, modifiers: Modifiers) -> Event {
         Event::Key {

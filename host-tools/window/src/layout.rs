@@ -13,10 +13,9 @@ use crate::setup::Setup;
 use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
 use crate::workspace::Workspace;
-use crate::{numbers, panel_break, panel_drive, panel_guide, panel_unlock, top_bar};
-use eframe::egui::{
-    Align, Align2, CentralPanel, FontId, Frame, Layout, Panel, Rect, ScrollArea, Ui, UiBuilder,
-    Vec2, vec2,
+use crate::{numbers, panel_break, panel_drive, panel_guide, panel_unlock, scrolled, top_bar};
+use egui::{
+    Align, Align2, CentralPanel, FontId, Frame, Layout, Panel, Rect, Ui, UiBuilder, Vec2, vec2,
 };
 use leg_rig::rig_file::RigText;
 
@@ -118,24 +117,21 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
         .resizable(false)
         .exact_size(282.0);
     let wish = left.show(ui, |ui| {
-        let scroll = ScrollArea::vertical().id_salt("left");
-        scroll
-            .show(ui, |ui| {
-                let wish = guide(ui, leg);
-                unlock(ui, leg);
-                panel_drive::show(ui, leg);
-                wish
-            })
-            .inner
+        scrolled::shrunk(ui, "left", |ui| {
+            let wish = guide(ui, leg);
+            unlock(ui, leg);
+            panel_drive::show(ui, leg);
+            wish
+        })
     });
     let right = Panel::right("right")
         .frame(side)
         .resizable(false)
         .exact_size(300.0);
     right.show(ui, |ui| {
-        ScrollArea::vertical().id_salt("right").show(ui, |ui| {
+        scrolled::shrunk(ui, "right", |ui| {
             Workspace::heading(ui, leg);
-            views.workspace.show(ui, leg, 200.0);
+            views.workspace.show(ui, leg, DISC[0]);
             numbers::show(ui, &leg.seen());
             if let Some(simulation) = leg.simulated_mut() {
                 ui.separator();
@@ -150,24 +146,36 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
         .exact_size(height);
     bottom.show(ui, |ui| {
         let room = ui.available_height();
-        let scroll = ScrollArea::vertical().id_salt("charts");
-        scroll.show(ui, |ui| charts(ui, leg, views, Some(room)));
+        scrolled::shrunk(ui, "charts", |ui| charts(ui, leg, views, Some(room)));
     });
     CentralPanel::no_frame().show(ui, |ui| {
-        let rect = leg_stage(ui, leg, views);
-        let over = UiBuilder::new().max_rect(scene::room(rect));
-        ui.scope_builder(over, |ui| {
-            let scroll = ScrollArea::vertical().id_salt("faults");
-            // A narrow window has the leg below them.
-            let frame = Frame::NONE.fill(palette(ui.ctx()).back.gamma_multiply(0.85));
-            scroll.show(ui, |ui| {
-                frame.show(ui, |ui| {
+        let rect = ui.available_rect_before_wrap();
+        if scene::has_room(rect) {
+            leg_stage(ui, leg, views);
+            let over = UiBuilder::new().max_rect(scene::room(rect));
+            ui.scope_builder(over, |ui| {
+                scrolled::shrunk(ui, "faults", |ui| {
                     views.faults.show(ui, leg.known_faults(), leg.rig());
-                })
+                });
             });
-        });
+        } else {
+            fault_strip_below(ui, leg, views);
+            leg_stage(ui, leg, views);
+        }
     });
     wish.inner
+}
+
+/// The faults below a leg that has no room beside it; their explanations cover the leg.
+fn fault_strip_below(ui: &mut Ui, leg: &ShownLeg, views: &mut Views) {
+    let leg_rect = ui.available_rect_before_wrap();
+    let strip = Panel::bottom("fault_strip").resizable(false);
+    let strip = strip.frame(Frame::NONE.inner_margin(4.0));
+    strip.show(ui, |ui| {
+        let over = leg_rect.with_max_y(ui.max_rect().top());
+        let strip = &mut views.fault_strip;
+        strip.show(ui, leg.known_faults(), leg.rig(), over);
+    });
 }
 
 /// Where the leg is in a window that is not wide: above the rest, or at its left where the window is low.
@@ -207,8 +215,7 @@ pub fn narrow(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
                 return page(ui, leg, views, 0.0);
             }
             let high = ui.available_height();
-            let scroll = ScrollArea::vertical().id_salt("tabs");
-            scroll.show(ui, |ui| page(ui, leg, views, high)).inner
+            scrolled::shrunk(ui, "tabs", |ui| page(ui, leg, views, high))
         })
         .inner
 }
@@ -225,7 +232,7 @@ fn tabs(ui: &mut Ui, leg: &ShownLeg, tab: &mut Tab) {
             ui.spacing_mut().button_padding.x = 2.0;
         }
         for &(this, text, name) in TABS.iter().filter(shown) {
-            let button = eframe::egui::Button::selectable(*tab == this, text);
+            let button = egui::Button::selectable(*tab == this, text);
             let response = ui.add(button.min_size(vec2(width, 36.0)));
             place(&response, name);
             if response.clicked() {

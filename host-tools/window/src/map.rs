@@ -143,6 +143,7 @@ pub fn azimuth_deg(spoke: usize) -> f64 {
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::{Map, Quantity, RINGS, SPOKES};
+    use leg_model::{Evaluation, evaluate};
     use leg_rig::rig_file::RigFile;
 
     #[test]
@@ -155,6 +156,78 @@ mod tests {
         let at_30_deg = map.values()[1 + (RINGS - 1) * SPOKES + SPOKES / 12];
         assert!((8.3..8.6).contains(&at_30_deg), "{at_30_deg}");
         assert!(low < 1e-6 && high < 9.0, "{low} {high}");
+    }
+
+    const PAYLOAD_KG: f64 = 0.5;
+
+    /// What the model says at a place of the map.
+    fn pose(rig: &RigFile, ring: usize, spoke: usize, pretension_n: f64) -> Evaluation<f64> {
+        let sine = rig.tilt_deg.to_radians().sin() * ring as f64 / RINGS as f64;
+        let azimuth_deg = 7.5 * spoke as f64;
+        let mut query = rig.query(azimuth_deg, sine.asin().to_degrees(), PAYLOAD_KG);
+        query.pretension_n = pretension_n;
+        evaluate(&rig.parameters, &query).unwrap()
+    }
+
+    fn value(map: &Map, ring: usize, spoke: usize) -> f64 {
+        map.values()[1 + (ring - 1) * SPOKES + spoke]
+    }
+
+    /// Places all over a map.
+    fn places() -> impl Iterator<Item = (usize, usize)> {
+        (1..=RINGS)
+            .step_by(4)
+            .flat_map(|ring| (0..SPOKES).step_by(7).map(move |spoke| (ring, spoke)))
+    }
+
+    #[test]
+    fn deviation_and_stiffness_are_the_models_at_every_place() {
+        let rig = RigFile::load(None).unwrap();
+        let [sag, stiffness] = [Quantity::Sag, Quantity::Stiffness]
+            .map(|quantity| Map::new(quantity, &rig, PAYLOAD_KG, 70.0));
+        for (ring, spoke) in places() {
+            let pose = pose(&rig, ring, spoke, 70.0);
+            let at = format!("ring {ring}, spoke {spoke}");
+            let sag_mm = value(&sag, ring, spoke);
+            assert!(
+                (sag_mm - 1e3 * pose.deviation_m).abs() < 1e-9,
+                "{at}: {sag_mm} mm"
+            );
+            let [least, most] = pose.bending_stiffness_nm_per_rad;
+            let shown = value(&stiffness, ring, spoke);
+            assert!(
+                (shown - least).abs() < 1e-9 && least < most,
+                "{at}: {shown} N·m/rad"
+            );
+        }
+        let [low, high] = stiffness.range().unwrap();
+        assert!(20.0 < low && low < high && high < 200.0, "{low} {high}");
+    }
+
+    /// The model names the pretensions at which a tension comes to a bound: there is no margin then.
+    #[test]
+    fn the_margin_is_that_to_the_nearer_bound_and_none_where_the_model_has_one_reached() {
+        let rig = RigFile::load(None).unwrap();
+        for (ring, spoke) in places() {
+            let [lowest_n, highest_n] = pose(&rig, ring, spoke, 70.0).pretension_range_n;
+            for pretension_n in [lowest_n, highest_n] {
+                let map = Map::new(Quantity::Margin, &rig, PAYLOAD_KG, pretension_n);
+                let shown_n = value(&map, ring, spoke);
+                assert!(
+                    shown_n.abs() < 1e-6,
+                    "ring {ring}, spoke {spoke}: {shown_n} N"
+                );
+            }
+            let map = Map::new(
+                Quantity::Margin,
+                &rig,
+                PAYLOAD_KG,
+                0.5 * (lowest_n + highest_n),
+            );
+            assert!(value(&map, ring, spoke) > 1.0);
+            let beyond = Map::new(Quantity::Margin, &rig, PAYLOAD_KG, highest_n + 1.0);
+            assert!(value(&beyond, ring, spoke) < 0.0);
+        }
     }
 
     #[test]

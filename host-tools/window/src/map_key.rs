@@ -4,7 +4,7 @@ use crate::map::Map;
 use crate::map_mesh::colour;
 use crate::places::place;
 use crate::theme::{Palette, palette};
-use eframe::egui::{
+use egui::{
     Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2,
 };
 

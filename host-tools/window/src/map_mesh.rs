@@ -2,7 +2,7 @@
 
 use crate::map::{Map, RINGS, SPOKES, azimuth_deg};
 use crate::theme::{Palette, mixed};
-use eframe::egui::{Color32, Mesh, Pos2};
+use egui::{Color32, Mesh, Pos2};
 use leg_base::angles;
 
 /// The colour of a value at a part of the way from the lowest to the highest; not a number where the model has no answer.

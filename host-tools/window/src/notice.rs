@@ -2,7 +2,7 @@
 
 use crate::places::{place, place_rect};
 use crate::theme::palette;
-use eframe::egui::{Frame, Label, Panel, RichText, ScrollArea, Stroke, Ui};
+use egui::{Frame, Label, Panel, RichText, ScrollArea, Stroke, Ui};
 
 /// Its height at most, points.
 const HEIGHT_MAX: f32 = 190.0;

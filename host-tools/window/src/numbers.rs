@@ -1,9 +1,9 @@
 //! The leg in numbers that stay in their places.
 
-use crate::places::place_rect;
+use crate::places::{place, place_rect};
 use crate::seen_leg::SeenLeg;
 use crate::theme::{self, palette};
-use eframe::egui::{Grid, RichText, Ui};
+use egui::{Color32, Grid, RichText, Ui};
 use leg_base::angles;
 
 /// What is shown as zero has no sign.
@@ -19,6 +19,12 @@ pub fn show(ui: &mut Ui, leg: &SeenLeg<'_>) {
     let [azimuth_deg, tilt_deg] = angles::angles_deg(telemetry.pose.map(f64::from));
     let palette = palette(ui.ctx());
     let faint = |words: &str| RichText::new(words).color(palette.faint);
+    let doubt = leg.doubt();
+    let estimated = if doubt.is_some() {
+        palette.faint
+    } else {
+        palette.text
+    };
     let grid = Grid::new("numbers")
         .num_columns(2)
         .spacing([12.0, 3.0])
@@ -26,7 +32,13 @@ pub fn show(ui: &mut Ui, leg: &SeenLeg<'_>) {
     let shown = grid.show(ui, |ui| {
         let simulated = leg.is_true;
         if simulated {
-            row(ui, faint("off target, true"), leg.error_mm, "mm");
+            row(
+                ui,
+                faint("off target, true"),
+                leg.error_mm,
+                "mm",
+                palette.text,
+            );
         }
         let from = if leg.is_heard {
             "from the sensors:"
@@ -39,13 +51,18 @@ pub fn show(ui: &mut Ui, leg: &SeenLeg<'_>) {
             "What the leg concludes from its sensors. The leg is drawn like that."
         };
         ui.label(faint(from)).on_hover_text(source);
+        if let Some(words) = doubt {
+            let words = RichText::new(format!("✖ {words}")).color(palette.error);
+            place(&ui.label(words), "doubt");
+        }
         ui.end_row();
         if !simulated {
-            row(ui, faint("off target"), leg.error_mm, "mm");
+            row(ui, faint("off target"), leg.error_mm, "mm", estimated);
         }
-        row(ui, faint("azimuth"), azimuth_deg, "°");
-        row(ui, faint("tilt"), tilt_deg, "°");
-        row(ui, faint("payload"), telemetry.payload_kg.into(), "kg");
+        row(ui, faint("azimuth"), azimuth_deg, "°", estimated);
+        row(ui, faint("tilt"), tilt_deg, "°", estimated);
+        let payload_kg = telemetry.payload_kg.into();
+        row(ui, faint("payload"), payload_kg, "kg", estimated);
         ui.label(faint("tensions"));
         tensions(ui, telemetry.tensions_n);
         ui.end_row();
@@ -53,9 +70,10 @@ pub fn show(ui: &mut Ui, leg: &SeenLeg<'_>) {
     place_rect(ui.ctx(), shown.response.rect, "numbers");
 }
 
-fn row(ui: &mut Ui, name: RichText, value: f64, unit: &str) {
+fn row(ui: &mut Ui, name: RichText, value: f64, unit: &str, colour: Color32) {
     ui.label(name);
-    ui.label(RichText::new(format!("{value:8.2} {unit}")).monospace());
+    let words = RichText::new(format!("{value:8.2} {unit}")).monospace();
+    ui.label(words.color(colour));
     ui.end_row();
 }
 

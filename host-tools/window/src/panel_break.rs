@@ -4,7 +4,7 @@ use crate::places::place;
 use crate::simulation::Simulation;
 use crate::text::left;
 use crate::theme::palette;
-use eframe::egui::{Align, Button, Layout, Ui, vec2};
+use egui::{Align, Button, Layout, RichText, Ui, vec2};
 use leg_sim::plant::Defect;
 
 /// A push of a finger: N and s.
@@ -27,7 +27,7 @@ const OF_THREE: [Kind; 4] = [
         names: ["cut_1", "cut_2", "cut_3"],
     },
     Kind {
-        text: "Let a cell wander",
+        text: "Tear a cell's wire",
         defect: Defect::CellWanders,
         names: ["wander_1", "wander_2", "wander_3"],
     },
@@ -42,6 +42,9 @@ const OF_THREE: [Kind; 4] = [
         names: ["encoder_1", "encoder_2", "encoder_3"],
     },
 ];
+
+/// What is seen only while the leg moves.
+const SEEN_IN_A_MOVE: &str = "Jam and encoder: found in a move. Drag the target.";
 
 /// How a defect ends.
 const REMEDY: &str = "Another press repairs it; the fault that it raised stays until Clear.";
@@ -76,6 +79,8 @@ pub fn show(ui: &mut Ui, simulation: &mut Simulation) {
             }
         });
     }
+    let words = RichText::new(SEEN_IN_A_MOVE).small();
+    ui.label(words.color(palette(ui.ctx()).faint));
     row(ui, "Push at the tip", |ui| {
         for (azimuth_deg, text, name) in PUSHES {
             let button = ui.add(Button::new(text).min_size(vec2(34.0, 26.0)));
@@ -145,6 +150,7 @@ mod tests {
     use super::{OF_THE_LEG, OF_THREE, describe};
     use crate::simulation::Simulation;
     use leg_firmware::command::Command;
+    use leg_firmware::supervisor::State;
     use leg_sim::plant::Defect;
 
     #[test]
@@ -185,6 +191,65 @@ mod tests {
         }
         for (_, defect, _) in OF_THE_LEG {
             assert!(is_found(Some(defect)), "{defect:?}");
+        }
+    }
+
+    /// Lets a leg go to and fro for so long, tenths of a second.
+    fn go_about(simulation: &mut Simulation, tenths: u8) {
+        for part in 0..tenths {
+            let x = if part % 40 < 20 { 0.0 } else { 0.3 };
+            if part % 20 == 0 {
+                simulation.command(Command::Move { x, y: 0.1 }, "move");
+            }
+            simulation.advance(0.1);
+        }
+    }
+
+    fn wait_for(simulation: &mut Simulation, state: State) {
+        for _ in 0..600 {
+            simulation.advance(0.1);
+            if simulation.state() == state {
+                return;
+            }
+        }
+        panic!(
+            "not {state:?}: {:?}, {:?}",
+            simulation.state(),
+            simulation.faults()
+        );
+    }
+
+    /// What is broken, and then repaired by one button, is a leg that can be homed and driven again.
+    #[test]
+    fn a_leg_that_is_repaired_is_homed_and_follows_commands() {
+        for (number, kind) in OF_THREE.iter().enumerate() {
+            let defect = (kind.defect)(number % 3);
+            let mut simulation = Simulation::new().unwrap();
+            simulation.set_defect(defect, true);
+            go_about(&mut simulation, 60);
+            simulation.repair();
+            simulation.advance(1.0);
+            simulation.command(Command::Disarm, "disarm");
+            simulation.advance(0.5);
+            simulation.command(Command::Clear, "clear");
+            wait_for(&mut simulation, State::Disarmed);
+            simulation.command(Command::Clear, "clear");
+            simulation.advance(0.1);
+            assert!(
+                !simulation.faults().any(),
+                "{defect:?}: {:?}",
+                simulation.faults()
+            );
+            simulation.command(Command::Home, "home");
+            wait_for(&mut simulation, State::Active);
+            go_about(&mut simulation, 70);
+            assert!(
+                !simulation.faults().any(),
+                "{defect:?}: {:?}",
+                simulation.faults()
+            );
+            let off_mm = simulation.leg().comparison().commanded_error_mm();
+            assert!(off_mm < 3.0, "{defect:?}: {off_mm} mm");
         }
     }
 

@@ -4,7 +4,7 @@ use crate::places::place;
 use crate::shown_leg::ShownLeg;
 use crate::text::left;
 use crate::theme::palette;
-use eframe::egui::{Button, Checkbox, Label, Response, RichText, Slider, SliderClamping, Ui, vec2};
+use egui::{Button, Checkbox, Label, Response, RichText, Slider, SliderClamping, Ui, vec2};
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::supervisor::{Event, State};
 use std::ops::RangeInclusive;

@@ -3,7 +3,7 @@
 use crate::places::place;
 use crate::simulation::Simulation;
 use crate::theme::palette;
-use eframe::egui::{Button, Frame, Label, Margin, RichText, Ui, vec2};
+use egui::{Button, Frame, Label, Margin, RichText, Ui, vec2};
 use leg_firmware::command::{Command, Compensation};
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigText;
@@ -57,7 +57,7 @@ pub fn show(ui: &mut Ui, simulation: &mut Simulation) -> Wish {
         GuideStep {
             number: 3,
             action: ["Cut a tendon", "guide_cut"],
-            effect: "The supervisor holds the leg, and says why.",
+            effect: "The tip falls. The supervisor stops the motors, and says why.",
             done: simulation.has(cut),
         },
     ];

@@ -3,7 +3,7 @@
 use crate::live_leg::LiveLeg;
 use crate::places::place;
 use crate::theme::palette;
-use eframe::egui::{Frame, Label, RichText, Stroke, Ui};
+use egui::{Frame, Label, RichText, Stroke, Ui};
 
 /// Shows it, and who drives.
 pub fn show(ui: &mut Ui, leg: &mut LiveLeg) {

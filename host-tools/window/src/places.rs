@@ -1,6 +1,6 @@
 //! Where the controls are on the screen: a test that presses them asks for it.
 
-use eframe::egui::{Context, Id, Rect, Response};
+use egui::{Context, Id, Rect, Response};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 

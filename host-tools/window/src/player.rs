@@ -7,11 +7,10 @@ use crate::numbers;
 use crate::places::{place, place_rect};
 use crate::recorded_leg::RecordedLeg;
 use crate::scene::Scene;
+use crate::scrolled;
 use crate::theme::{Palette, palette};
 use crate::top_bar::chip;
-use eframe::egui::{
-    Button, CentralPanel, ComboBox, Frame, Label, Panel, RichText, ScrollArea, Slider, Ui, vec2,
-};
+use egui::{Button, CentralPanel, ComboBox, Frame, Label, Panel, RichText, Slider, Ui, vec2};
 use leg_base::description;
 use serde::Serialize;
 
@@ -198,8 +197,7 @@ impl Player {
             .resizable(false)
             .exact_size(300.0);
         right.show(ui, |ui| {
-            let scroll = ScrollArea::vertical().id_salt("recorded");
-            scroll.show(ui, |ui| self.facts(ui));
+            scrolled::shrunk(ui, "recorded", |ui| self.facts(ui));
         });
         let height = (0.38 * tall).clamp(220.0, 520.0) + self.charts.words_height();
         let bottom = Panel::bottom("recorded charts")
@@ -208,8 +206,7 @@ impl Player {
             .exact_size(height);
         bottom.show(ui, |ui| {
             let room = ui.available_height();
-            let scroll = ScrollArea::vertical().id_salt("recorded charts");
-            scroll.show(ui, |ui| self.show_charts(ui, Some(room)));
+            scrolled::shrunk(ui, "recorded charts", |ui| self.show_charts(ui, Some(room)));
         });
         let transport = Panel::bottom("transport").frame(side).resizable(false);
         transport.show(ui, |ui| self.transport(ui));
@@ -225,8 +222,7 @@ impl Player {
         CentralPanel::default().show(ui, |ui| {
             self.transport(ui);
             ui.separator();
-            let scroll = ScrollArea::vertical().id_salt("recorded");
-            scroll.show(ui, |ui| {
+            scrolled::shrunk(ui, "recorded", |ui| {
                 self.show_charts(ui, None);
                 ui.separator();
                 self.facts(ui);

@@ -8,7 +8,7 @@ use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
 use crate::utc;
 use crate::wall_clock::{self, WallClock};
-use eframe::egui::{Button, Context, Label, RichText, TextEdit, Ui, vec2};
+use egui::{Button, Context, Label, RichText, TextEdit, Ui, vec2};
 use leg_rig::control_settings;
 
 /// Files on their way into the window and out of it.

@@ -6,7 +6,7 @@ use crate::map::Map;
 use crate::places::place;
 use crate::seen_leg::SeenLeg;
 use crate::theme::palette;
-use eframe::egui::{ComboBox, Rect, Response, Sense, Ui, Vec2, pos2, vec2};
+use egui::{ComboBox, Rect, Response, Sense, Ui, Vec2, pos2, vec2};
 use nalgebra::Vector3;
 
 /// How much of the leg the detail shows, beside the size of what is in it.
@@ -18,13 +18,17 @@ const WIDE: f32 = 520.0;
 /// How much the detail takes of a wide picture.
 const DETAIL_PART: f32 = 0.38;
 
-/// How high the detail is in a wide picture, as a part of that, and at least, points.
-const DETAIL_SIDE: f32 = 0.47;
+/// How high the detail is in a wide picture, as a part of that, how wide beside that, and how high at least, points.
+const DETAIL_SIDE: f32 = 0.38;
+const DETAIL_WIDTH: f32 = 1.25;
 const DETAIL_MIN: f32 = 150.0;
 
 /// Width of what stands below the detail, points, and how much of the picture that takes at most.
-const ROOM_WIDTH: f32 = 232.0;
+const ROOM_WIDTH: f32 = 278.0;
 const ROOM_PART: f32 = 0.4;
+
+/// The least height of that, points.
+const ROOM_HEIGHT: f32 = 150.0;
 
 /// Where the choice of the factor stands, below the readout, points.
 pub const CHOICE_TOP: f32 = 72.0;
@@ -136,11 +140,12 @@ fn parts(rect: Rect) -> (Rect, Rect) {
         let at = rect.right() - DETAIL_PART * rect.width();
         let whole = above_legend
             .with_max_x(at)
-            .translate(vec2(0.05 * rect.width(), 0.0));
+            .translate(vec2(0.03 * rect.width(), 0.0));
         let high = (DETAIL_SIDE * inner.height()).max(DETAIL_MIN);
-        let side = (inner.right() - at).min(high).min(inner.height());
-        let corner = pos2(inner.right() - side, inner.top());
-        return (whole, Rect::from_min_size(corner, Vec2::splat(side)));
+        let high = high.min(inner.height());
+        let width = (DETAIL_WIDTH * high).min(inner.right() - at);
+        let corner = pos2(inner.right() - width, inner.top());
+        return (whole, Rect::from_min_size(corner, vec2(width, high)));
     }
     let side = 0.42 * rect.width();
     let corner = pos2(inner.right() - side, inner.top());
@@ -152,6 +157,12 @@ fn parts(rect: Rect) -> (Rect, Rect) {
 /// Whether the detail stands beside the whole.
 fn wide(rect: Rect) -> bool {
     rect.width() > WIDE && rect.width() > 1.15 * rect.height()
+}
+
+/// Whether there is room for more beside the leg, so that it covers nothing.
+#[must_use]
+pub fn has_room(rect: Rect) -> bool {
+    wide(rect) && room(rect).height() >= ROOM_HEIGHT
 }
 
 /// Where there is room for more beside the leg: below the detail.

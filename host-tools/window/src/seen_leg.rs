@@ -1,9 +1,17 @@
 //! A leg at a time, as it is drawn and shown in numbers: it may be there, or recorded.
 
 use crate::simulation::Push;
+use leg_firmware::supervisor::{Fault, FaultSet};
 use leg_firmware::telemetry::Telemetry;
 use leg_rig::rig_file::RigFile;
 use nalgebra::Vector3;
+
+/// The faults in which what the leg concludes from its sensors may be wrong: a tendon, a load cell or an encoder may have failed.
+const DOUBTS: FaultSet = FaultSet::OF_CELLS
+    .union(FaultSet::SUSPECT_COUNTERS)
+    .difference(FaultSet::single(Fault::LateTick))
+    .union(FaultSet::single(Fault::CurrentDisagrees))
+    .union(FaultSet::single(Fault::PoseLost));
 
 /// It.
 pub struct SeenLeg<'a> {
@@ -52,6 +60,19 @@ impl SeenLeg<'_> {
     #[must_use]
     pub fn commanded_m(&self) -> Vector3<f64> {
         leg_axis(self.target) * self.tip_length_m()
+    }
+
+    /// Why what it concludes from its sensors is not to be trusted; none if nothing speaks against it.
+    #[must_use]
+    pub fn doubt(&self) -> Option<&'static str> {
+        let telemetry = self.telemetry.as_ref()?;
+        if self.cut.contains(&true) || telemetry.faults.overlaps(DOUBTS) {
+            Some("not to be trusted")
+        } else if !telemetry.homed {
+            Some("not homed")
+        } else {
+            None
+        }
     }
 
     /// Where the tensions are from, in a word.

@@ -13,9 +13,10 @@ use crate::files::{Files, GivenFile};
 use crate::notice::{self, Notice};
 use crate::places::place;
 use crate::rig_intake;
+use crate::scrolled;
 use crate::shown_leg::ShownLeg;
 use editor::Editor;
-use eframe::egui::{Button, CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, vec2};
+use egui::{Button, CentralPanel, Context, Panel, Ui, vec2};
 use leg_rig::rig_file::RigText;
 use panel_actions::SettingsWish;
 use panel_table::Table;
@@ -204,14 +205,10 @@ impl Setup {
         });
         ui.separator();
         match self.page {
-            Page::Rig => {
-                let scroll = ScrollArea::vertical().id_salt("rig").auto_shrink(false);
-                scroll.show(ui, |ui| panel_rig::show(ui, self, leg)).inner
-            }
+            Page::Rig => scrolled::whole(ui, "rig", |ui| panel_rig::show(ui, self, leg)),
             Page::Settings => self.settings(ui, leg),
             Page::Steps => {
-                let scroll = ScrollArea::vertical().id_salt("steps").auto_shrink(false);
-                scroll.show(ui, |ui| steps::show(ui, self, leg));
+                scrolled::whole(ui, "steps", |ui| steps::show(ui, self, leg));
                 None
             }
         }
@@ -250,31 +247,19 @@ impl Setup {
         if ui.available_width() >= WIDE {
             let side = Panel::right("changes").resizable(false).exact_size(330.0);
             let wish = side.show(ui, |ui| {
-                let scroll = ScrollArea::vertical().id_salt("changes").auto_shrink(false);
-                scroll
-                    .show(ui, |ui| panel_actions::show(ui, editor, leg))
-                    .inner
+                scrolled::whole(ui, "changes", |ui| panel_actions::show(ui, editor, leg))
             });
-            let beside = Margin {
-                right: 8,
-                ..Margin::ZERO
-            };
-            let frame = Frame::NONE.inner_margin(beside);
-            CentralPanel::default().frame(frame).show(ui, |ui| {
+            CentralPanel::no_frame().show(ui, |ui| {
                 table.choice(ui, editor);
-                let scroll = ScrollArea::vertical().id_salt("table").auto_shrink(false);
-                scroll.show(ui, |ui| table.show(ui, editor));
+                scrolled::whole(ui, "table", |ui| table.show(ui, editor));
             });
             return wish.inner;
         }
-        let scroll = ScrollArea::vertical().id_salt("table").auto_shrink(false);
-        scroll
-            .show(ui, |ui| {
-                table.choice(ui, editor);
-                table.show(ui, editor);
-                ui.separator();
-                panel_actions::show(ui, editor, leg)
-            })
-            .inner
+        scrolled::whole(ui, "table", |ui| {
+            table.choice(ui, editor);
+            table.show(ui, editor);
+            ui.separator();
+            panel_actions::show(ui, editor, leg)
+        })
     }
 }

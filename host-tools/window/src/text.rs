@@ -1,6 +1,6 @@
 //! Text in its place.
 
-use eframe::egui::{Align, Label, Layout, RichText, Ui, vec2};
+use egui::{Align, Label, Layout, RichText, Ui, vec2};
 
 /// Text at the left of a field of some width.
 pub fn left(ui: &mut Ui, width: f32, text: &str) {

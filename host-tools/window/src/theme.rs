@@ -1,6 +1,6 @@
 //! Colours that people who see few colours can tell apart, light and dark, and sizes.
 
-use eframe::egui::{
+use egui::{
     self, Color32, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Theme, Visuals,
     style::ScrollStyle,
 };
@@ -9,10 +9,13 @@ use eframe::egui::{
 /// than they were.
 const DOUBLE_CLICK_S: f64 = 0.5;
 
+/// Width of a scroll bar without the pointer, points.
+pub const BAR_WIDTH: f32 = 4.0;
+
 /// A bar is seen wherever something is beyond the edge, before the pointer is there, too: it takes no room.
 fn scroll() -> ScrollStyle {
     ScrollStyle {
-        floating_width: 4.0,
+        floating_width: BAR_WIDTH,
         dormant_handle_opacity: 0.55,
         ..ScrollStyle::floating()
     }
@@ -47,6 +50,8 @@ pub struct Palette {
     pub warning: Color32,
     /// The stop.
     pub danger: Color32,
+    /// The three tendons in charts, and x, y and z.
+    pub series: [Color32; 3],
 }
 
 const fn rgb(hex: u32) -> Color32 {
@@ -63,11 +68,12 @@ const DARK: Palette = Palette {
     plate: rgb(0x6f_83_98),
     shaft: rgb(0xb4_be_c8),
     brass: rgb(0xd9_ad_4e),
-    target: rgb(0x56_b4_e9),
-    error: rgb(0xff_7f_3f),
-    good: rgb(0x2f_bf_94),
-    warning: rgb(0xf0_b4_29),
+    target: rgb(0x54_b2_eb),
+    error: rgb(0xff_6a_3d),
+    good: rgb(0x2b_bf_95),
+    warning: rgb(0xee_b5_2d),
     danger: rgb(0xd1_3b_1f),
+    series: [rgb(0xdc_84_b5), rgb(0xf0_e4_42), rgb(0x9f_d8_ff)],
 };
 
 const LIGHT: Palette = Palette {
@@ -79,11 +85,12 @@ const LIGHT: Palette = Palette {
     plate: rgb(0x5b_6b_7d),
     shaft: rgb(0x9a_a3_ad),
     brass: rgb(0xc7_9a_3a),
-    target: rgb(0x00_72_b2),
-    error: rgb(0xd5_5e_00),
-    good: rgb(0x00_7f_5f),
-    warning: rgb(0xa8_6a_00),
+    target: rgb(0x0f_73_ac),
+    error: rgb(0x9f_31_02),
+    good: rgb(0x0d_7f_60),
+    warning: rgb(0xa8_7c_0a),
     danger: rgb(0xc2_30_17),
+    series: [rgb(0xc6_13_8a), rgb(0x57_3c_c9), rgb(0x70_92_70)],
 };
 
 /// The colours that are in use.
@@ -98,24 +105,21 @@ pub fn palette(ctx: &egui::Context) -> Palette {
 /// The colours of the three tendons in charts, and of x, y and z.
 #[must_use]
 pub fn series(ctx: &egui::Context, index: usize) -> Color32 {
-    let colours = match ctx.theme() {
-        Theme::Dark => [rgb(0x56_b4_e9), rgb(0xff_8c_42), rgb(0x2f_bf_94)],
-        Theme::Light => [rgb(0x00_72_b2), rgb(0xd5_5e_00), rgb(0x00_9e_73)],
-    };
+    let colours = palette(ctx).series;
     colours[index % colours.len()]
 }
 
 /// The colour of a tension: blue at the lowest that is allowed, orange at the highest, grey below and purple above.
 #[must_use]
 pub fn tension(tension_n: f64, [floor_n, ceiling_n]: [f64; 2]) -> Color32 {
-    const LOW: Color32 = rgb(0x3b_8f_d0);
-    const MIDDLE: Color32 = rgb(0xd9_c5_8b);
+    const LOW: Color32 = rgb(0x4a_9c_dc);
+    const MIDDLE: Color32 = rgb(0xe6_d9_a8);
     const HIGH: Color32 = rgb(0xd5_5e_00);
     let part = (tension_n - floor_n) / (ceiling_n - floor_n);
     if part.is_nan() || part < 0.0 {
-        rgb(0x8a_8f_96)
+        rgb(0x78_7d_84)
     } else if part > 1.0 {
-        rgb(0xb8_4f_a0)
+        rgb(0x98_36_a6)
     } else if part < 0.5 {
         mixed(LOW, MIDDLE, (2.0 * part) as f32)
     } else {
@@ -196,55 +200,5 @@ fn visuals(theme: Theme, palette: &Palette) -> Visuals {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::{DARK, LIGHT, Palette, tension};
-    use eframe::egui::Color32;
-
-    fn luminance(colour: Color32) -> f64 {
-        let linear = |channel: u8| {
-            let part = f64::from(channel) / 255.0;
-            if part <= 0.040_45 {
-                part / 12.92
-            } else {
-                ((part + 0.055) / 1.055).powf(2.4)
-            }
-        };
-        0.2126 * linear(colour.r()) + 0.7152 * linear(colour.g()) + 0.0722 * linear(colour.b())
-    }
-
-    fn contrast(a: Color32, b: Color32) -> f64 {
-        let (a, b) = (luminance(a), luminance(b));
-        (a.max(b) + 0.05) / (a.min(b) + 0.05)
-    }
-
-    /// The contrasts that WCAG 2 asks for: 4.5 for text, 3 for what is drawn.
-    #[test]
-    fn everything_can_be_read() {
-        let check = |palette: Palette| {
-            for back in [palette.back, palette.card] {
-                for text in [palette.text, palette.faint] {
-                    assert!(contrast(text, back) >= 4.5, "{text:?} on {back:?}");
-                }
-                for drawn in [palette.target, palette.error, palette.good, palette.warning] {
-                    assert!(contrast(drawn, back) >= 3.0, "{drawn:?} on {back:?}");
-                }
-            }
-            assert!(contrast(Color32::WHITE, palette.danger) >= 4.5);
-        };
-        check(DARK);
-        check(LIGHT);
-    }
-
-    #[test]
-    fn tensions_out_of_bounds_have_colours_of_their_own() {
-        let bounds = [8.0, 150.0];
-        let [slack, low, middle, high, above] =
-            [7.9, 8.0, 79.0, 150.0, 150.1].map(|n| tension(n, bounds));
-        assert_eq!(tension(f64::NAN, bounds), slack);
-        let all = [slack, low, middle, high, above];
-        for (i, a) in all.iter().enumerate() {
-            assert!(all[i + 1..].iter().all(|b| a != b));
-        }
-        assert!(low.b() > low.r() && high.r() > high.b());
-    }
-}
+#[path = "theme_tests.rs"]
+mod tests;

@@ -4,7 +4,7 @@ use crate::pace::Pace;
 use crate::places::place;
 use crate::shown_leg::ShownLeg;
 use crate::theme::{Palette, palette};
-use eframe::egui::{
+use egui::{
     Align, Align2, Button, Color32, ComboBox, FontId, Frame, Label, Layout, Margin, Pos2, RichText,
     Sense, Stroke, StrokeKind, Theme, Ui, pos2, vec2,
 };

@@ -7,8 +7,8 @@ use crate::live_leg::PageIdentity;
 use crate::live_leg::browser_line::BrowserLine;
 use crate::live_leg::messages;
 use crate::live_leg::opening::Opening;
-use eframe::egui::Context;
 use eframe::{WebOptions, WebRunner};
+use egui::Context;
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 use web_sys::HtmlCanvasElement;
@@ -35,6 +35,7 @@ impl LegWindow {
     /// # Errors
     /// A browser without WebGL.
     pub async fn start(&self, canvas: HtmlCanvasElement) -> Result<(), JsValue> {
+        choose_painting(&canvas)?;
         let options = WebOptions::default();
         let app = Box::new(|creation: &eframe::CreationContext<'_>| {
             let app: Box<dyn eframe::App> = Box::new(app(&creation.egui_ctx));
@@ -81,6 +82,17 @@ impl LegWindow {
     pub fn failure(&self) -> Option<String> {
         self.runner.panic_summary().map(|summary| summary.message())
     }
+}
+
+/// Edges are drawn soft by the toolkit: what the browser would do for that as well costs a processor that paints most of its time. The
+/// toolkit takes the painting that a canvas has got.
+fn choose_painting(canvas: &HtmlCanvasElement) -> Result<(), JsValue> {
+    let attributes = js_sys::Object::new();
+    for unused in ["antialias", "depth", "stencil", "alpha"] {
+        js_sys::Reflect::set(&attributes, &unused.into(), &false.into())?;
+    }
+    canvas.get_context_with_context_options("webgl2", &attributes)?;
+    Ok(())
 }
 
 /// The window of the leg that the page's address names; that of a simulated one if it names none.

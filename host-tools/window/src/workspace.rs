@@ -4,9 +4,10 @@ use crate::map::{Map, Quantity};
 use crate::map_key;
 use crate::map_mesh::mesh;
 use crate::places::place;
+use crate::pointer;
 use crate::shown_leg::ShownLeg;
 use crate::theme::{Palette, mixed, palette};
-use eframe::egui::{
+use egui::{
     Align, Align2, ComboBox, FontId, Key, Painter, Pos2, Response, RichText, Sense, Shape, Stroke,
     Ui, Vec2, vec2,
 };
@@ -149,8 +150,8 @@ fn drag(ui: &Ui, response: &Response, disc: &Disc, leg: &mut ShownLeg) {
     if response.clicked() || response.drag_started() {
         response.request_focus();
     }
-    let pressed = response.clicked() || response.dragged();
-    let pointed = response.interact_pointer_pos().filter(|_| pressed);
+    let pressed = response.clicked() || response.dragged() || response.drag_stopped();
+    let pointed = pointer::place(response).filter(|_| pressed);
     let wanted = pointed
         .map(|at| disc.direction(at))
         .or_else(|| stepped(ui, response, disc, leg));
@@ -166,7 +167,7 @@ fn stepped(ui: &Ui, response: &Response, disc: &Disc, leg: &ShownLeg) -> Option<
     if !response.has_focus() {
         return None;
     }
-    let filter = eframe::egui::EventFilter {
+    let filter = egui::EventFilter {
         horizontal_arrows: true,
         vertical_arrows: true,
         ..Default::default()
@@ -266,7 +267,7 @@ fn marks(painter: &Painter, disc: &Disc, leg: &ShownLeg, palette: &Palette) {
 #[cfg(test)]
 mod tests {
     use super::{Disc, EDGE};
-    use eframe::egui::pos2;
+    use egui::pos2;
 
     #[test]
     fn a_point_and_its_direction_belong_together() {

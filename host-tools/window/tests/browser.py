@@ -2,7 +2,7 @@
 """Does in a browser what a person does who has never seen the page, from disk and from a web server.
 
     tests/browser.py DIR                compares the pictures with those in tests/pictures
-    tests/browser.py DIR --quick        in less time: what CI runs
+    tests/browser.py DIR --beside       in browsers beside each other, in less time: what CI runs
     tests/browser.py DIR --keep         writes those anew: look at them before you commit
 """
 
@@ -76,10 +76,9 @@ KEPT_WIDTH = 1280
 class Page:
     """The page, as its user sees it."""
 
-    def __init__(self, browser, keep, quick=False):
+    def __init__(self, browser, keep):
         self.browser = browser
         self.keep = keep
-        self.quick = quick
 
     def open(self, address):
         self.address = address
@@ -266,13 +265,10 @@ requestAnimationFrame(look);
 
 
 def check_speed(page):
-    """Frame times, and whether the leg keeps up with the clock: the best of three, for other programs may keep the processor."""
-    for _ in range(3):
-        rate, frame_ms = measured_speed(page)
-        part = frame_part(page)
-        if REAL_TIME < rate < 1.1 and frame_ms <= FRAME_MS and part <= 1:
-            return
-    raise AssertionError((rate, frame_ms, part))
+    """Frame times, and whether the leg keeps up with the clock: the medians of three looks, for other programs may keep the processor."""
+    looks = [(*measured_speed(page), frame_part(page)) for _ in range(3)]
+    rate, frame_ms, part = map(statistics.median, zip(*looks))
+    assert REAL_TIME < rate < 1.1 and frame_ms <= FRAME_MS and part <= 1, looks
 
 
 def frame_part(page):
@@ -483,14 +479,20 @@ def breaks(page):
     assert "jump of a tension" in leg["faults"], leg["faults"]
     spoken = "return document.getElementById('spoken').textContent"
     page.wait_leg("is told", lambda _: "jump of a tension" in page.browser.run(spoken))
+    page.wait("its estimates are in doubt", lambda state: "doubt" in state["places"])
     # A leg with a cut tendon swings for ten seconds.
-    if not page.quick:
-        page.wait_for_rest()
-        page.picture("cut")
+    page.wait_for_rest()
+    page.picture("cut")
     page.press("repair")
-    time.sleep(1.0)
+    # As the remedy says it.
+    page.press("disarm")
+    page.wait_leg("is disarmed", lambda leg: leg["state"] == "disarmed")
     page.press("clear")
-    page.wait_leg("is cleared", lambda leg: "jump of a tension" not in leg["faults"])
+    page.wait_leg("is cleared", lambda leg: not leg["faults"])
+    page.press("home")
+    leg = page.wait_leg("is homed", lambda leg: leg["state"] == "active" and leg["tilt_deg"] < 1, 40)
+    assert not leg["faults"] and "doubt" not in page.state()["places"], leg["faults"]
+    print("  repaired, disarmed, cleared and homed")
 
 
 DROP = """
@@ -849,8 +851,7 @@ def recordings(page):
     # Nothing moves when numbers change.
     same = lambda state: all(state["places"][control] == before[control] for control in still)
     page.wait(f"nothing has moved from {before}", same)
-    if not page.quick:
-        narrow_player(page)
+    narrow_player(page)
     page.press("back")
     page.wait("the leg is back", lambda state: not state["player"] and "workspace" in state["places"])
     drop(page, "cut.mcap", data[: len(data) // 2])
@@ -894,8 +895,6 @@ def looks(page):
     page.wait("it is found", lambda state: "value_geometry.leg_mm" in state["places"])
     page.picture("phone_settings")
     page.press("tab_drive")
-    if page.quick:
-        return
     page.browser.resize(3840, 2160)
     page.wait("is wide", lambda state: "tab_drive" not in state["places"])
     page.picture("large")
@@ -921,10 +920,15 @@ PARTS = (
     looks,
 )
 
-# What CI has time for. What is measured is alone; the rest, everything that depends on the browser once and what is of the page
-# alone where it is quick, is shared by two browsers, which take about as long as each other.
+# What is measured is alone; the rest is shared by browsers beside each other, which take about as long as each other: most of it waits
+# for the leg's time.
 MEASURED = (check_speed, check_bits)
-SHARED = ((first_visit, recordings, settings), (drive, breaks, rig_files, stops, looks))
+SHARED = (
+    (first_visit, recordings, steps, pushes, sliders),
+    (drive, breaks, rig_files, settings, stops, looks),
+    (rates, maps, charts, tuning),
+)
+assert {*MEASURED, *sum(SHARED, ())} == {*PARTS}
 
 
 def serve(directory):
@@ -941,20 +945,17 @@ def serve(directory):
 def open_page(page, file, directory):
     """Opens the page from disk and from a web server, and holds it to the time that it promises."""
     for address in (file.as_uri(), serve(directory)):
-        # The best of three: other programs may keep the processor.
-        took_s = math.inf
-        for _ in range(3):
-            if took_s > LOAD_S:
-                took_s = min(took_s, page.open(address))
-        print(f"{address.split(':')[0]}: loaded in {took_s:.2f} s")
-        assert took_s <= LOAD_S, took_s
+        took_s = [page.open(address) for _ in range(3)]
+        told = ", ".join(f"{time_s:.2f}" for time_s in took_s)
+        print(f"{address.split(':')[0]}: loaded in {told} s; the median is held to {LOAD_S:.0f} s")
+        assert statistics.median(took_s) <= LOAD_S, took_s
 
 
 def share(directory):
     """Does the shared parts in browsers beside each other, and tells of each when all of them have ended."""
     begun = []
     for parts in SHARED:
-        command = [sys.executable, __file__, directory, "--quick"]
+        command = [sys.executable, __file__, directory]
         for part in parts:
             command += ["--part", part.__name__]
         told = tempfile.TemporaryFile("w+")
@@ -970,10 +971,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("directory", type=pathlib.Path)
     parser.add_argument("--keep", action="store_true")
-    parser.add_argument("--quick", action="store_true", help="what CI has time for")
+    parser.add_argument("--beside", action="store_true", help="in browsers beside each other")
     parser.add_argument("--part", action="append", choices=[part.__name__ for part in PARTS], help="these parts alone")
     arguments = parser.parse_args()
-    parts = MEASURED if arguments.quick else PARTS
+    parts = MEASURED if arguments.beside else PARTS
     if arguments.part:
         parts = [part for part in PARTS if part.__name__ in arguments.part]
     file = (arguments.directory / "index.html").resolve()
@@ -981,7 +982,7 @@ def main():
     print(f"{size / 1e6:.2f} MB")
     assert size <= WIRE_BYTES, size
     with Browser(1280, 720) as browser:
-        page = Page(browser, arguments.keep, arguments.quick)
+        page = Page(browser, arguments.keep)
         browser.prefer("dark")
         if arguments.part:
             page.open(serve(arguments.directory))
@@ -994,7 +995,7 @@ def main():
             print(f"  {time.monotonic() - began:.1f} s")
         errors = [entry for entry in browser.log() if entry["level"] == "SEVERE"]
         assert not errors, errors
-    if arguments.quick and not arguments.part:
+    if arguments.beside and not arguments.part:
         share(arguments.directory)
     print("all of it holds")
 

@@ -2,7 +2,6 @@
 """Does with a live leg what a user does: watches it, unlocks it, drives it, stops it. The leg is simulated behind `leg ui`.
 
     tests/live.py DIR           DIR has the page; $LEG is the program `leg`, ../../target/debug/leg if it is not set
-    tests/live.py DIR --quick   in less time: what CI runs
     tests/live.py DIR --keep    writes the pictures anew: look at each before you commit
 """
 
@@ -347,7 +346,6 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("directory", type=pathlib.Path)
     parser.add_argument("--keep", action="store_true")
-    parser.add_argument("--quick", action="store_true", help="what CI has time for")
     arguments = parser.parse_args()
     file = (arguments.directory / "index.html").resolve()
     with contextlib.ExitStack() as stack:
@@ -364,8 +362,7 @@ def main():
         unlock(page)
         board(served, page)
         unlock(page)
-        if not arguments.quick:
-            phone(page)
+        phone(page)
         second_driver(served, page)
         cut_socket(served, page)
         old_page(served, page)
@@ -382,10 +379,9 @@ def main():
         go_on(page)
         page.picture("live")
         driven_board(page)
-        if not arguments.quick:
-            stops(page)
-            measure(page)
-            second_page(served, page)
+        stops(page)
+        measure(page)
+        second_page(served, page)
         errors = [entry for entry in browser.log() if entry["level"] == "SEVERE"]
         assert not [error for error in errors if "127.0.0.1:9" not in error["message"]], errors
     print("all of it holds")

@@ -3,15 +3,25 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use crate::common::stalls::PATIENCE;
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
+use std::fs::{self, Permissions};
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
+use std::os::unix::fs::PermissionsExt;
 use std::process::{Child, Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 use tempfile::NamedTempFile;
 
 /// What stands for the page.
 const PAGE: &str = "<!doctype html>the leg";
+
+/// Where programs are looked for.
+fn path() -> String {
+    std::env::var("PATH").unwrap()
+}
 
 pub fn leg(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_leg-under-test"));
@@ -32,11 +42,17 @@ pub struct Served {
 impl Served {
     /// With more arguments, which may name a leg.
     pub fn new(more: &[&str]) -> Self {
+        Self::open(&[&["--no-open", "--json"], more].concat(), &path())
+    }
+
+    /// With programs that are looked for in these directories.
+    fn open(arguments: &[&str], path: &str) -> Self {
         let mut file = NamedTempFile::new().unwrap();
         file.write_all(PAGE.as_bytes()).unwrap();
         let page = file.path().display().to_string();
-        let mut process = leg(&["ui", "--no-open", "--json", "--page", &page])
-            .args(more)
+        let mut process = leg(&["ui", "--page", &page])
+            .args(arguments)
+            .env("PATH", path)
             .stdout(Stdio::piped())
             .spawn()
             .unwrap();
@@ -141,4 +157,36 @@ fn a_page_that_is_not_there_is_refused_by_name() {
         told.contains("no/such.html") && told.contains("--export"),
         "{told}"
     );
+}
+
+/// A browser that writes down what it is to open stands for the system's.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_browser_opens_the_address_that_is_printed() {
+    let directory = tempfile::tempdir().unwrap();
+    let browser = directory.path().join("xdg-open");
+    let opened = directory.path().join("opened");
+    let script = format!(
+        "#!/bin/sh\nprintf '%s\\n' \"$@\" >> '{}'\n",
+        opened.display()
+    );
+    fs::write(&browser, script).unwrap();
+    fs::set_permissions(&browser, Permissions::from_mode(0o755)).unwrap();
+    let path = format!("{}:{}", directory.path().display(), path());
+    for more in [&[][..], &["--on", "sim"]] {
+        fs::write(&opened, "").unwrap();
+        let served = Served::open(&[&["--json"], more].concat(), &path);
+        let begun = Instant::now();
+        while fs::read_to_string(&opened).unwrap().is_empty() {
+            assert!(begun.elapsed() < PATIENCE, "nothing was opened");
+            sleep(Duration::from_millis(20));
+        }
+        let leg = if served.leg.is_empty() {
+            String::new()
+        } else {
+            format!("#leg={}", served.leg)
+        };
+        let address = format!("{}/{leg}\n", served.origin());
+        assert_eq!(fs::read_to_string(&opened).unwrap(), address);
+    }
 }

@@ -322,6 +322,19 @@ fn a_page_homes_a_leg_on_a_serial_port() {
     page.home();
 }
 
+#[test]
+fn every_start_has_a_token_of_its_own() {
+    let [one, other] = [served(), served()];
+    let token = |served: &Served| served.leg.rsplit('/').next().unwrap().to_owned();
+    assert_ne!(token(&one), token(&other));
+    // A page that knows the token of another start is refused.
+    let guessed = one.leg.replace(&token(&one), &token(&other));
+    assert_eq!(
+        open(&guessed, Some(&one.origin())).err(),
+        Some(StatusCode::FORBIDDEN)
+    );
+}
+
 /// A bus needs a machine that has one: what is shown of a leg on it is what is shown of one on a serial line.
 #[test]
 fn a_bus_that_is_not_there_is_refused_by_name() {

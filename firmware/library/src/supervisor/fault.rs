@@ -90,8 +90,8 @@ faults! {
     4 Residual {
         name: "sensors disagree on the pose",
         reaction: Hold,
-        cause: "forward kinematics leaves over more than residual_m for residual_time_s, that changes by residual_change_m without a motion or a load that explains it, or a tension is above the maximum tension by over_tension_part before or while that is in doubt",
-        remedy: "home the leg; check the encoders, the load cells and the tendon curves",
+        cause: "forward kinematics leaves over more than residual_m for residual_time_s, or a change by residual_change_m that neither motion nor load explains; or a tension is over_tension_part above the maximum before or while that is in doubt",
+        remedy: "disarm the leg, clear the fault and home; check encoders, load cells and tendon curves",
         clears: Command,
     }
     5 CellStale {
@@ -140,14 +140,14 @@ faults! {
         name: "motor turns the wrong way",
         reaction: GateOff,
         cause: "a motor counts against its voltage for reversed_time_s",
-        remedy: "swap the motor's wires or the sign of m_per_count, then home the leg",
+        remedy: "swap the motor's wires or the sign of m_per_count, then clear the fault and home",
         clears: Command,
     }
     12 PoseLost {
         name: "pose is lost",
         reaction: Hold,
         cause: "forward kinematics or a tendon's curve gives no result",
-        remedy: "home the leg; check the tensions",
+        remedy: "disarm the leg, clear the fault and home; check the tensions",
         clears: Command,
     }
     13 Infeasible {
@@ -245,7 +245,7 @@ faults! {
         name: "encoder jumps",
         reaction: GateOff,
         cause: "a counter goes farther than its motor can turn",
-        remedy: "check the encoder's wiring and its shield, then home the leg",
+        remedy: "check the encoder's wiring and its shield, then clear the fault and home",
         clears: Command,
     }
     27 RunsAway {
@@ -294,7 +294,8 @@ impl Fault {
 
 #[cfg(test)]
 mod tests {
-    use super::{Clearing, FAULT_TABLE, Fault, Reaction};
+    use super::{Clearing, FAULT_TABLE, Fault, FaultEntry, Reaction};
+    use crate::supervisor::{Event, State};
 
     #[test]
     fn every_fault_has_its_row() {
@@ -311,5 +312,34 @@ mod tests {
             let limits = row.reaction == Reaction::Limit;
             assert_eq!(row.clears == Clearing::CauseGone, limits, "{}", row.name);
         }
+    }
+
+    /// Where a leg comes to that does what a remedy says, in that order; none where it does not take a step.
+    fn follow(row: &FaultEntry) -> Option<State> {
+        let mut state = State::Active.next(Event::Reaction(row.reaction))?;
+        for word in row.remedy.split(|letter: char| !letter.is_alphabetic()) {
+            state = match word {
+                "disarm" => state.next(Event::Disarm)?.next(Event::Relaxed)?,
+                // A fault of a leg that is disarmed is cleared without another state.
+                "clear" => state.next(Event::Clear).unwrap_or(state),
+                "home" => state.next(Event::Home)?,
+                _ => state,
+            };
+        }
+        Some(state)
+    }
+
+    #[test]
+    fn a_remedy_that_homes_names_every_step_to_it() {
+        let homing = FAULT_TABLE
+            .into_iter()
+            .filter(|row| row.remedy.contains("home"));
+        let mut count = 0;
+        for row in homing {
+            assert_eq!(follow(row), Some(State::Homing), "{}", row.name);
+            assert!(row.remedy.contains("clear the fault and home"));
+            count += 1;
+        }
+        assert_eq!(count, 5);
     }
 }

@@ -31,7 +31,7 @@ macro_rules! defects {
 
 defects! {
     of_three {
-        TendonCut "A tendon does not pull.";
+        TendonCut "A tendon does not pull. When the defect ends, a new one is on, without tension where the leg is: it has to home.";
         TendonSlips "A tendon slips by 5 mm at its clamp, once; it stays so when the defect ends.";
         TendonCreeps "A tendon grows longer by 0.1 mm in a second, and stays so when the defect ends.";
         CellStuck "A load cell repeats its last code and marks it as fresh.";

@@ -49,6 +49,18 @@ impl Plant {
         }
     }
 
+    /// Puts a new tendon on in the place of a cut one: it has no tension where the leg is.
+    pub(super) fn replace_tendon(&mut self, tendon: usize) {
+        let kinematics = self.dynamics.kinematics(&self.leg);
+        let elongations_m = self
+            .dynamics
+            .elongations_m(&kinematics, self.unstretched_m());
+        let replaced = self.unstretched_at_zero_m.get_mut(tendon);
+        if let (Some(unstretched_m), Some(elongation_m)) = (replaced, elongations_m.get(tendon)) {
+            *unstretched_m += elongation_m;
+        }
+    }
+
     /// What a hand that holds the tip pulls at it, N.
     pub(super) fn grasp_n(&self) -> Vector3<f64> {
         let tip_m = self.tip_m();

@@ -9,7 +9,7 @@ mod setup;
 
 use super::App;
 use crate::simulation::Simulation;
-use eframe::egui::{
+use egui::{
     Context, DroppedFileHandle, Event, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, Shape,
     Vec2, vec2,
 };
@@ -23,6 +23,20 @@ struct Window {
     size: Vec2,
     /// Every text of the last frame, a line each.
     texts: Vec<String>,
+    /// Its scroll bars.
+    bars: Vec<Rect>,
+}
+
+/// The scroll bars in what is drawn: nothing else is as slim.
+fn bars(shape: &Shape) -> Vec<Rect> {
+    let width = crate::theme::BAR_WIDTH;
+    match shape {
+        Shape::Rect(bar) if (bar.rect.width() - width).abs() < 0.1 && bar.rect.height() > 20.0 => {
+            vec![bar.rect]
+        }
+        Shape::Vec(shapes) => shapes.iter().flat_map(bars).collect(),
+        _ => Vec::new(),
+    }
 }
 
 fn texts(shape: &Shape) -> Vec<String> {
@@ -50,6 +64,7 @@ impl Window {
             time_s: 0.0,
             size,
             texts: Vec::new(),
+            bars: Vec::new(),
         };
         window.frames(3);
         window
@@ -72,8 +87,9 @@ impl Window {
         let ctx = self.ctx.clone();
         let mut output = ctx.run_ui(input, |ui| self.app.frame(ui));
         output.textures_delta.clear();
-        let shapes = output.shapes.iter();
-        self.texts = shapes.flat_map(|clipped| texts(&clipped.shape)).collect();
+        let shapes = || output.shapes.iter().map(|clipped| &clipped.shape);
+        self.texts = shapes().flat_map(texts).collect();
+        self.bars = shapes().flat_map(bars).collect();
     }
 
     fn frames(&mut self, count: u32) {

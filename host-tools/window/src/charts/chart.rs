@@ -2,13 +2,14 @@
 
 use super::Charts;
 use super::cursors::{NAMES, values_words};
-use super::lines::{LABEL_PART, grid, least_range, lines, short, thinned};
+use super::lines::{LABEL_PART, grid, label_width, labelled, least_range, lines, short, thinned};
 use super::signal_source::ShownSignals;
 use super::spectrum::Spectrum;
 use crate::history::Column;
 use crate::places::place;
+use crate::pointer;
 use crate::theme;
-use eframe::egui::{Align2, FontId, Id, Response, RichText, Ui, Vec2b, pos2};
+use egui::{Align2, FontId, Id, Response, RichText, Ui, Vec2b, pos2};
 use egui_plot::{Line, Plot, PlotPoint, PlotPoints, PlotUi, VLine};
 
 /// Height of a line of words above a chart, points.
@@ -97,8 +98,8 @@ impl Charts {
             .x_grid_spacer(|input| grid(&input, LABEL_PART))
             .y_grid_spacer(|input| grid(&input, 0.0))
             .x_axis_formatter(|mark, _| format!("{} s", short(mark.value)))
-            .y_axis_formatter(|mark, _| short(mark.value))
-            .y_axis_min_width(44.0);
+            .y_axis_formatter(|mark, _| labelled(mark.value, column.unit()))
+            .y_axis_min_width(label_width(column.unit()));
         let least = least_range(&thin).into_iter().flatten();
         let plot = least.fold(plot, Plot::include_y);
         let colours = colours(ui, column);
@@ -134,11 +135,9 @@ impl Charts {
             painter.text(at, Align2::LEFT_TOP, name, FontId::monospace(12.0), colour);
         }
         place(&drawn.response, column.name());
-        let at_s = |response: &Response| {
-            let at = response.interact_pointer_pos()?;
-            Some(drawn.transform.value_from_position(at).x)
-        };
-        self.touch(&drawn.response, at_s(&drawn.response), shown.whole_s)
+        let at = pointer::place(&drawn.response);
+        let at_s = at.map(|at| drawn.transform.value_from_position(at).x);
+        self.touch(&drawn.response, at_s, shown.whole_s)
     }
 
     /// A press or a drag in a chart at a time, s. The time that a press asks for, s.
@@ -225,8 +224,8 @@ fn spectrum(ui: &mut Ui, kept: &Kept, column: Column, height: f32) {
         .x_grid_spacer(|input| grid(&input, LABEL_PART))
         .y_grid_spacer(|input| grid(&input, 0.0))
         .x_axis_formatter(|mark, _| format!("{} Hz", short(mark.value)))
-        .y_axis_formatter(|mark, _| short(mark.value))
-        .y_axis_min_width(44.0);
+        .y_axis_formatter(|mark, _| labelled(mark.value, column.unit()))
+        .y_axis_min_width(label_width(column.unit()));
     let lines = (0..column.width)
         .map(|number| of(number).map_or_else(Vec::new, |spectrum| thinned(&spectrum.lines)));
     let lines = lines.collect();
@@ -234,13 +233,13 @@ fn spectrum(ui: &mut Ui, kept: &Kept, column: Column, height: f32) {
     place(&shown.response, format!("spectrum_{}", column.name()));
 }
 
-fn colours(ui: &Ui, column: Column) -> Vec<eframe::egui::Color32> {
+fn colours(ui: &Ui, column: Column) -> Vec<egui::Color32> {
     (0..column.width)
         .map(|number| theme::series(ui.ctx(), number))
         .collect()
 }
 
-fn draw(plot: &mut PlotUi<'_>, lines: Vec<Vec<[f64; 2]>>, colours: &[eframe::egui::Color32]) {
+fn draw(plot: &mut PlotUi<'_>, lines: Vec<Vec<[f64; 2]>>, colours: &[egui::Color32]) {
     let several = lines.len() > 1;
     for (number, (points, colour)) in lines.into_iter().zip(colours).enumerate() {
         let label = if several {

@@ -73,6 +73,23 @@ pub(super) fn short(value: f64) -> String {
     format!("{rounded}")
 }
 
+/// The same with a unit, if there is one.
+pub(super) fn labelled(value: f64, unit: &str) -> String {
+    let short = short(value);
+    if unit.is_empty() {
+        short
+    } else {
+        format!("{short} {unit}")
+    }
+}
+
+/// What such labels take at least, points: nothing moves when numbers become longer.
+pub(super) fn label_width(unit: &str) -> f32 {
+    const NUMBER: f32 = 44.0;
+    const LETTER: f32 = 8.0;
+    NUMBER + LETTER * unit.chars().count() as f32
+}
+
 /// The lowest and the highest point of each of so many parts: no peak is lost.
 pub(super) fn thinned(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     if points.len() <= POINTS_MAX {
@@ -96,7 +113,7 @@ pub(super) fn thinned(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{POINTS_MAX, grid, least_range, round_step, short, thinned};
+    use super::{POINTS_MAX, grid, labelled, least_range, round_step, short, thinned};
     use egui_plot::GridInput;
 
     #[test]
@@ -115,6 +132,7 @@ mod tests {
             [0.1 + 0.2, -0.0, 1.0 / 3.0].map(short),
             ["0.3", "0", "0.333333"]
         );
+        assert_eq!([labelled(20.0, "mm"), labelled(1.0, "")], ["20 mm", "1"]);
     }
 
     #[test]

@@ -5,9 +5,7 @@ use super::signal_source::SignalSource;
 use super::{Charts, SPANS_S, panel_trigger};
 use crate::history::History;
 use crate::places::place;
-use eframe::egui::{
-    Button, ComboBox, PopupCloseBehavior, RichText, ScrollArea, TextEdit, Ui, vec2,
-};
+use egui::{Button, ComboBox, PopupCloseBehavior, RichText, ScrollArea, TextEdit, Ui, vec2};
 
 impl Charts {
     /// What is charted, and how.

@@ -3,7 +3,7 @@
 use super::SignalSource;
 use super::trigger::{Edge, Mode, Trigger};
 use crate::places::place;
-use eframe::egui::{ComboBox, DragValue, PopupCloseBehavior, RichText, Ui};
+use egui::{ComboBox, DragValue, PopupCloseBehavior, RichText, Ui};
 
 /// What a drag of the level is worth, as a part of its size, and at least.
 const LEVEL_PART: f64 = 0.01;
@@ -30,7 +30,7 @@ pub(super) fn show(
         ui.set_min_width(240.0);
         signals(ui, trigger, chosen, source);
         ui.separator();
-        conditions(ui, trigger);
+        conditions(ui, trigger, source);
         ui.separator();
         arming(ui, trigger, source)
     });
@@ -66,7 +66,9 @@ fn signals(ui: &mut Ui, trigger: &mut Trigger, chosen: &[&'static str], source: 
 }
 
 /// When it has passed.
-fn conditions(ui: &mut Ui, trigger: &mut Trigger) {
+fn conditions(ui: &mut Ui, trigger: &mut Trigger, source: &SignalSource<'_>) {
+    let column = trigger.signal.and_then(|name| source.history.named(name));
+    let unit = column.map_or_else(String::new, |column| format!(" {}", column.unit()));
     ui.horizontal(|ui| {
         for (edge, text, name) in [
             (Edge::Rising, "rises above", "trigger_rising"),
@@ -77,6 +79,7 @@ fn conditions(ui: &mut Ui, trigger: &mut Trigger) {
         let speed = LEVEL_PART * trigger.level.abs() + LEVEL_STEP;
         let level = DragValue::new(&mut trigger.level)
             .speed(speed)
+            .suffix(unit)
             .max_decimals(4);
         place(&ui.add(level), "trigger_level");
     });

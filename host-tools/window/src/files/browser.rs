@@ -1,7 +1,7 @@
 //! In a browser: files are read later, and given back as a download.
 
 use super::Files;
-use eframe::egui::{Context, DroppedFileHandle};
+use egui::{Context, DroppedFileHandle};
 use js_sys::{Array, Uint8Array};
 use std::path::Path;
 use wasm_bindgen::JsCast;

@@ -1,7 +1,7 @@
 //! On a desktop: files are read and written at their paths.
 
 use super::Files;
-use eframe::egui::{Context, DroppedFileHandle};
+use egui::{Context, DroppedFileHandle};
 use leg_base::atomic_file;
 use std::fs;
 use std::path::Path;

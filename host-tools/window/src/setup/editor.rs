@@ -1,7 +1,7 @@
 //! The settings while they are edited: every change is checked as a rig file is, and can be taken back.
 
 use super::document;
-use super::rows::{Row, rows};
+use super::rows::{Row, rows, with_unit};
 use leg_base::failure::Failure;
 use leg_firmware::settings::Settings;
 use leg_rig::control_settings;
@@ -50,9 +50,9 @@ pub struct Refused {
 pub struct Change {
     /// Section and key.
     pub name: String,
-    /// As it was loaded; none if it was not there.
+    /// As it was loaded, with its unit; none if it was not there.
     pub was: Option<String>,
-    /// As it is; none if it is not there any more.
+    /// As it is, with its unit; none if it is not there any more.
     pub now: Option<String>,
     /// Whether it only follows from another one.
     pub follows: bool,
@@ -270,8 +270,10 @@ impl Editor {
         let changed = self.now.rows.iter().filter(|row| self.is_changed(row));
         let changed = changed.map(|row| Change {
             name: name(row),
-            was: self.loaded(row).map(|loaded| loaded.value.clone()),
-            now: Some(row.value.clone()),
+            was: self
+                .loaded(row)
+                .map(|loaded| with_unit(&loaded.value, &row.unit)),
+            now: Some(with_unit(&row.value, &row.unit)),
             follows: !row.given && self.loaded(row).is_some_and(|loaded| !loaded.given),
         });
         let gone = self.loaded.rows.iter();
@@ -284,7 +286,7 @@ impl Editor {
         });
         let gone = gone.map(|row| Change {
             name: name(row),
-            was: Some(row.value.clone()),
+            was: Some(with_unit(&row.value, &row.unit)),
             now: None,
             follows: false,
         });

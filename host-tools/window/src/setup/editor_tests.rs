@@ -118,7 +118,7 @@ fn a_setting_goes_back_to_the_file_or_to_its_default() {
     };
     assert_eq!(
         (change.was.as_deref(), change.now.as_deref()),
-        (Some("30"), Some("25"))
+        (Some("30 N"), Some("25 N"))
     );
     assert!(editor.reset_to_file(key.0, key.1));
     assert!(editor.changes().is_empty());

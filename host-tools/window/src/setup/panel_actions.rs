@@ -7,7 +7,7 @@ use crate::live_leg::board::Errand;
 use crate::places::place;
 use crate::shown_leg::ShownLeg;
 use crate::theme::{Palette, palette};
-use eframe::egui::{Button, Key, Label, Modifiers, Response, RichText, Ui};
+use egui::{Button, Key, Label, Modifiers, Response, RichText, Ui};
 use leg_rig::control_settings;
 use leg_rig::rig_file::RigText;
 use leg_rig::settings_difference::setting_differences;

@@ -5,7 +5,7 @@ use crate::files::DIALOG;
 use crate::places::place;
 use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
-use eframe::egui::{Button, CollapsingHeader, Label, RichText, TextEdit, Ui, vec2};
+use egui::{Button, CollapsingHeader, Label, RichText, TextEdit, Ui, vec2};
 use leg_rig::ready_rigs::{READY_RIGS, ReadyRig};
 use leg_rig::rig_file::RigText;
 use leg_rig::rig_show;

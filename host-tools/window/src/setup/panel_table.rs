@@ -1,10 +1,10 @@
 //! The table of settings: a part of it at a time, by section or by search, each value in a field of its own.
 
 use super::editor::Editor;
-use super::rows::Row;
+use super::rows::{Row, with_unit};
 use crate::places::place;
 use crate::theme::{Palette, palette};
-use eframe::egui::{ComboBox, Frame, Label, RichText, TextEdit, Ui};
+use egui::{ComboBox, Frame, Label, RichText, TextEdit, Ui};
 use leg_rig::number::plain;
 
 /// Settings that are shown at a time: more are found by more letters.
@@ -125,7 +125,7 @@ impl Table {
     fn row(&mut self, ui: &mut Ui, editor: &mut Editor, row: &Row, palette: &Palette) {
         let changed = editor.is_changed(row);
         let edge = if changed { palette.brass } else { palette.line };
-        let frame = Frame::group(ui.style()).stroke(eframe::egui::Stroke::new(1.0, edge));
+        let frame = Frame::group(ui.style()).stroke(egui::Stroke::new(1.0, edge));
         frame.inner_margin(6.0).show(ui, |ui| {
             ui.set_width(ui.available_width());
             ui.horizontal_wrapped(|ui| {
@@ -243,7 +243,7 @@ fn title(editor: &Editor, section: &str) -> String {
 
 fn was(editor: &Editor, row: &Row) -> String {
     match editor.loaded(row) {
-        Some(loaded) => format!("was {}", loaded.value),
+        Some(loaded) => format!("was {}", with_unit(&loaded.value, &row.unit)),
         None => "was not there".into(),
     }
 }
@@ -253,11 +253,11 @@ fn bounds(row: &Row) -> String {
         || "checked by the model".into(),
         |range| {
             let [low, high] = range.map(plain);
-            format!("{low} to {high}")
+            with_unit(&format!("{low} to {high}"), &row.unit)
         },
     );
     match &row.default {
-        Some(default) => format!("{range}, by default {default}"),
+        Some(default) => format!("{range}, by default {}", with_unit(default, &row.unit)),
         None => range,
     }
 }

@@ -111,6 +111,16 @@ impl Row {
     }
 }
 
+/// A value with its unit, if that has one.
+#[must_use]
+pub fn with_unit(value: &str, unit: &str) -> String {
+    if unit.is_empty() {
+        value.into()
+    } else {
+        format!("{value} {unit}")
+    }
+}
+
 fn unit(unit: &str) -> String {
     if unit == "1" {
         String::new()

@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::pages::{FRAMES_MAX, Pages, WAITING_MAX};
-use super::{FRESH_TIME, PageHello, PageLink};
+use super::{FRESH_TIME, PageHello, PageLink, token};
 use leg_firmware::frame::MAX_FRAME;
 use std::sync::atomic::AtomicUsize;
 use std::sync::mpsc::Receiver;
@@ -137,4 +137,19 @@ fn a_page_that_comes_later_is_told_of_the_leg_as_it_is_then() {
     assert_eq!(before.try_iter().next().unwrap().to_string(), "{}");
     let first = after.try_iter().next().unwrap().to_string();
     assert!(first.contains("[later]"), "{first}");
+}
+
+/// 128 bits, each of which is once set and once not among 64: chance breaks that once in 10¹⁶ runs.
+#[test]
+fn every_bit_of_a_token_is_random() {
+    let tokens: Vec<u128> = (0..64)
+        .map(|_| {
+            let digits = token().unwrap();
+            assert_eq!(digits.len(), 32, "{digits}");
+            u128::from_str_radix(&digits, 16).unwrap()
+        })
+        .collect();
+    let ever_set = tokens.iter().fold(0, |bits, token| bits | token);
+    let always_set = tokens.iter().fold(u128::MAX, |bits, token| bits & token);
+    assert_eq!((ever_set, always_set), (u128::MAX, 0));
 }

@@ -44,6 +44,31 @@ fn a_cut_tendon_does_not_pull() {
 }
 
 #[test]
+fn a_new_tendon_has_no_tension_where_the_leg_is() {
+    let mut plant = defective(Defect::TendonCut(1), 4000).0;
+    let before = plant.truth();
+    plant.set_defect(Defect::TendonCut(1), false);
+    let after = plant.truth();
+    assert!(after.tensions_n[1].abs() < 1e-6, "{:?}", after.tensions_n);
+    assert_eq!(after.tip_m, before.tip_m);
+    for other in [0, 2] {
+        assert_eq!(after.tensions_n[other], before.tensions_n[other]);
+    }
+    // A tendon that is not cut stays as it is.
+    plant.set_defect(Defect::TendonCut(0), false);
+    assert_eq!(plant.truth().tensions_n, after.tensions_n);
+    plant
+        .truth()
+        .unstretched_m
+        .iter()
+        .zip(before.unstretched_m)
+        .enumerate()
+        .for_each(|(i, (now, before))| {
+            assert_eq!(*now != before, i == 1);
+        });
+}
+
+#[test]
 fn currents() {
     let shown_a = |plant: &mut Plant| {
         let part = f64::from(plant.sense().current_codes[1]) / f64::from(CODE_MAX);

@@ -2,7 +2,7 @@
 
 use super::Window;
 use crate::charts::ChartsState;
-use eframe::egui::{Event, Modifiers, PointerButton, Pos2, pos2};
+use egui::{Event, Modifiers, PointerButton, Pos2, pos2};
 use std::collections::BTreeMap;
 
 impl Window {
@@ -52,6 +52,43 @@ fn two_cursors_are_dragged_and_stay_on_the_screen() {
     assert!(window.app.places.rects["charts"].bottom() <= 720.0);
     window.press("pause");
     assert!(window.charts().cursors_s.is_none() && !window.charts().paused);
+}
+
+/// A slow page sees that a cursor is let go and where the pointer went then in one frame.
+#[test]
+fn a_cursor_stays_where_it_was_let_go() {
+    let mut window = Window::new();
+    window.frames(100);
+    window.press("cursors");
+    let [from, to] = [0.7, 0.8].map(|part| window.in_chart("tensions_n", part));
+    let button = |pos, pressed| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    window.frame(vec![Event::PointerMoved(from)]);
+    window.frame(vec![button(from, true)]);
+    window.frame(vec![Event::PointerMoved(to)]);
+    let [a_s, b_s] = window.charts().cursors_s.unwrap();
+    window.frame(vec![button(to, false), Event::PointerMoved(pos2(2.0, 2.0))]);
+    window.frames(3);
+    assert_eq!(window.charts().cursors_s, Some([a_s, b_s]));
+    assert!(b_s > a_s && a_s > 0.0);
+}
+
+#[test]
+fn axes_have_the_units_of_their_signals() {
+    let mut window = Window::new();
+    window.press("guide_payload");
+    window.frames(60);
+    for end in [" mm", " N", " s"] {
+        let labels = window.texts.iter().filter(|text| {
+            let number = text.strip_suffix(end);
+            number.is_some_and(|number| number.parse::<f64>().is_ok())
+        });
+        assert!(labels.count() >= 2, "{end}: {:?}", window.texts);
+    }
 }
 
 #[test]

@@ -6,7 +6,7 @@ use crate::layout::Views;
 use crate::live_leg::tests::{Server, leg};
 use crate::shown_leg::ShownLeg;
 use crate::simulation::Simulation;
-use eframe::egui::{Context, vec2};
+use egui::{Context, vec2};
 use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_firmware::telemetry::Telemetry;
 use leg_recording::read_samples;

@@ -5,7 +5,7 @@ use super::setup::file;
 use crate::app::Stage;
 use crate::player::PlayerState;
 use crate::recording_reader::MESSAGES_A_FRAME;
-use eframe::egui::{Key, pos2};
+use egui::{Key, pos2};
 use leg_firmware::supervisor::{Fault, State};
 use leg_recording::{Samples, read_samples};
 use leg_sim::plant::Defect;

@@ -1,7 +1,7 @@
 //! Rig files and settings, as their user has them.
 
 use super::Window;
-use eframe::egui::{DroppedFile, Event, Key};
+use egui::{DroppedFile, Event, Key};
 use leg_firmware::supervisor::State;
 use leg_rig::ready_rigs::READY_RIGS;
 use std::path::{Path, PathBuf};
@@ -55,7 +55,7 @@ impl Window {
                 physical_key: None,
                 pressed: true,
                 repeat: false,
-                modifiers: eframe::egui::Modifiers::COMMAND,
+                modifiers: egui::Modifiers::COMMAND,
             },
             Event::Text(text.into()),
         ]);

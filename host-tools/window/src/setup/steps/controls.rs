@@ -3,7 +3,7 @@
 use crate::places::place;
 use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
-use eframe::egui::{Button, Label, Response, RichText, Ui, vec2};
+use egui::{Button, Label, Response, RichText, Ui, vec2};
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::Event;
 

@@ -5,7 +5,7 @@ use super::{Guide, panel_cells, panel_jog, panel_tune, panel_turns, panel_zero};
 use crate::places::place;
 use crate::setup::Setup;
 use crate::shown_leg::ShownLeg;
-use eframe::egui::{Button, Ui, vec2};
+use egui::{Button, Ui, vec2};
 
 const GUIDES: [(Guide, &str, &str); 5] = [
     (Guide::Cells, "Load cells", "guide_cells"),

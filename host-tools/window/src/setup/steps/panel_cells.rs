@@ -7,7 +7,7 @@ use crate::places::place;
 use crate::setup::editor::Editor;
 use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
-use eframe::egui::{Grid, Label, ProgressBar, RichText, TextEdit, Ui};
+use egui::{Grid, Label, ProgressBar, RichText, TextEdit, Ui};
 use leg_rig::cell_fit::CellFit;
 
 pub(super) fn show(ui: &mut Ui, cells: &mut Cells, editor: &mut Editor, leg: &mut ShownLeg) {

@@ -7,7 +7,7 @@ use crate::places::place;
 use crate::setup::editor::Editor;
 use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
-use eframe::egui::{Label, RichText, Slider, Spinner, Ui};
+use egui::{Label, RichText, Slider, Spinner, Ui};
 use leg_base::jog_report;
 
 pub(super) fn show(ui: &mut Ui, jog: &mut Jog, editor: &Editor, leg: &mut ShownLeg) {

@@ -7,7 +7,7 @@ use crate::places::place;
 use crate::setup::editor::Editor;
 use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
-use eframe::egui::{Label, RichText, ScrollArea, Spinner, Ui};
+use egui::{Label, RichText, ScrollArea, Spinner, Ui};
 use leg_rig::tune::{certain_values, plan_text, table};
 
 pub(super) fn show(ui: &mut Ui, tune: &mut Tune, editor: &mut Editor, leg: &mut ShownLeg) {

@@ -7,7 +7,7 @@ use crate::places::place;
 use crate::setup::editor::Editor;
 use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
-use eframe::egui::{Label, RichText, Spinner, Ui};
+use egui::{Label, RichText, Spinner, Ui};
 use leg_rig::motor_turn;
 
 pub(super) fn show(ui: &mut Ui, turns: &mut Turns, editor: &mut Editor, leg: &mut ShownLeg) {

@@ -6,7 +6,7 @@ use crate::places::place;
 use crate::setup::editor::Editor;
 use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
-use eframe::egui::{Label, RichText, Spinner, Ui};
+use egui::{Label, RichText, Spinner, Ui};
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::{Event, State};
 

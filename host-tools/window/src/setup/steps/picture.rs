@@ -1,7 +1,7 @@
 //! A picture of what is done by hand, or moves: the plates from the side, their tendons, motors and load cells.
 
 use crate::theme::{Palette, palette, series};
-use eframe::egui::{Align2, FontId, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use egui::{Align2, FontId, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 /// Its size, points.
 const WIDTH: f32 = 330.0;
@@ -82,7 +82,7 @@ fn one(
         motor,
         3.0,
         Stroke::new(1.5, colour),
-        eframe::egui::StrokeKind::Inside,
+        egui::StrokeKind::Inside,
     );
     let font = FontId::proportional(12.0);
     let number = (tendon + 1).to_string();
