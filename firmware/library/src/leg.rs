@@ -218,7 +218,7 @@ impl<T: Scalar> Leg<T> {
         };
         let mut faults = self.monitors.watch(&input);
         // Once another fault has been named, what follows from it needs no name of its own.
-        let first = !self.supervisor.stopped_but_for(Fault::Residual);
+        let first = !self.supervisor.stopped_by_another(Fault::Residual);
         faults.add(Fault::Residual, first && !self.agreement.agree());
         if self.phase.monitors_cells() {
             for turn in 0..self.shared.axes.len() {

@@ -7,6 +7,7 @@ use clap::Subcommand;
 use leg_base::failure::Failure;
 use leg_base::json_line::to_line;
 use leg_base::json_object;
+use leg_base::number;
 use leg_base::tick_time::seconds;
 use leg_firmware::host_link::ResetCause;
 use leg_firmware::recorder::TRIPLES_MAX;
@@ -14,7 +15,7 @@ use leg_firmware::settings::{Settings, SignalSet};
 use leg_host::operator::{Operator, SettingDifference, setting_differences};
 use leg_rig::control_settings;
 use leg_rig::rig_file::RigFile;
-use leg_rig::{number, settings_text};
+use leg_rig::settings_text;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -159,7 +160,7 @@ fn keep(operator: &mut Operator) -> Result<bool, Failure> {
 
 /// What has to be done before a leg with new settings is armed.
 pub(crate) fn next_step(operator: &mut Operator) -> Result<&'static str, Failure> {
-    let faults = operator.telemetry()?.telemetry.faults.without_limits();
+    let faults = operator.telemetry()?.telemetry.faults.stopping();
     Ok(if faults.any() {
         "end its faults and home the leg before it is armed: `leg clear`, then `leg home`"
     } else {

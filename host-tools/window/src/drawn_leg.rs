@@ -420,14 +420,14 @@ fn ring_m(anchors_m: &[[f64; 2]; 3]) -> f64 {
 fn label(painter: &Painter, from: Pos2, away: Vec2, words: &str, palette: &Palette) {
     let galley = painter.layout_no_wrap(words.to_owned(), FontId::monospace(13.0), palette.warning);
     let half = 0.5 * galley.size() + vec2(5.0, 2.0);
-    let patch = beside(from, away, half);
+    let patch = label_patch(from, away, half);
     painter.rect_filled(patch, 4.0, palette.card.gamma_multiply(0.85));
     let at = patch.center() - 0.5 * galley.size();
     painter.galley(at, galley, palette.warning);
 }
 
 /// A rectangle of this half size that a line ends before: the line comes from the other side than `away`.
-fn beside(end: Pos2, away: Vec2, half: Vec2) -> Rect {
+fn label_patch(end: Pos2, away: Vec2, half: Vec2) -> Rect {
     // A line along the view is a point.
     let away = if away.length() < 1.0 {
         vec2(0.0, -1.0)
@@ -441,7 +441,7 @@ fn beside(end: Pos2, away: Vec2, half: Vec2) -> Rect {
 
 #[cfg(test)]
 mod tests {
-    use super::beside;
+    use super::label_patch;
     use eframe::egui::{Vec2, pos2, vec2};
 
     #[test]
@@ -449,13 +449,13 @@ mod tests {
         let (from, half) = (pos2(100.0, 50.0), vec2(40.0, 10.0));
         for degrees in 0..72 {
             let away = 30.0 * Vec2::angled((5.0 * degrees as f32).to_radians());
-            let words = beside(from, away, half);
+            let words = label_patch(from, away, half);
             for part in 0..=20 {
                 let on_arrow = from - away * (part as f32 / 20.0);
                 assert!(!words.contains(on_arrow), "{away:?} {words:?}");
             }
             assert!(words.distance_to_pos(from) < 12.0, "{away:?} {words:?}");
         }
-        assert!(!beside(from, Vec2::ZERO, half).contains(from));
+        assert!(!label_patch(from, Vec2::ZERO, half).contains(from));
     }
 }

@@ -54,7 +54,7 @@ fn a_sensor_that_lies_ends_it_in_hold_or_moves_nothing() {
             held || !always && bench.state() == State::KeepingStation,
             "{defect:?}"
         );
-        assert_eq!(held, faults(&bench).without_limits().any(), "{defect:?}");
+        assert_eq!(held, faults(&bench).stopping().any(), "{defect:?}");
     }
     for (defect, fault) in [
         (Defect::ExcitationLost, None),

@@ -100,7 +100,7 @@ struct SixLegs {
 fn six(seed: u64) -> SixLegs {
     let mut bus = SimulatedBus::new(Damage::default(), seed);
     let end = |assembler| Rc::new(RefCell::new(Receiver::new(assembler)));
-    let at_host = LegAddress::ALL.map(|leg| end(Assembler::for_host(leg)));
+    let at_host = LegAddress::ALL.map(|leg| end(Assembler::host_receiver(leg)));
     let ends = at_host.clone();
     let host = bus.attach(Box::new(move |frame| {
         ends.iter().for_each(|end| end.borrow_mut().take(frame));
@@ -108,7 +108,7 @@ fn six(seed: u64) -> SixLegs {
     }));
     let (mut to_legs, mut to_host) = (Vec::new(), Vec::new());
     for (leg, at_host) in LegAddress::ALL.into_iter().zip(at_host) {
-        let at_leg = end(Assembler::for_leg(leg));
+        let at_leg = end(Assembler::leg_receiver(leg));
         let inside = Rc::clone(&at_leg);
         let node = bus.attach(Box::new(move |frame| {
             inside.borrow_mut().take(frame);

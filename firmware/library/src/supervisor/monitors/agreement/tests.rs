@@ -25,7 +25,7 @@ impl Leg {
         let mut leg = Self {
             agreement: Agreement::new(&Settings {
                 support,
-                ..Settings::for_table_1().unwrap()
+                ..Settings::table_1().unwrap()
             }),
             // What homing and the geometry leave over.
             error: LengthError {
