@@ -204,7 +204,7 @@ impl<T: Scalar> SwingDamping<T> {
     }
 
     /// By how much each tendon shall be longer, m, for lengths that deviate from those of the trajectory by `deviations_m`. The tensions per
-    /// pretension tell a swing from a sensor that lies: a swing changes no length along them. `time_constant_s` is 1/ω of the first mode, s;
+    /// pretension tell a swing from a sensor that reads wrong: a swing changes no length along them. `time_constant_s` is 1/ω of the first mode, s;
     /// `inertia` that of the leg with its payload, kg·m².
     #[inline(always)]
     pub fn step(
@@ -341,7 +341,7 @@ mod tests {
         assert!(largest(&fast[600..]) > 1e-7);
     }
 
-    /// One length that changes alone is a sensor that lies; so are three that change as pretension does.
+    /// One length that changes alone is a sensor that reads wrong; so are three that change as pretension does.
     #[test]
     fn what_no_swing_explains_moves_nothing() {
         for parts in [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [1.0; 3]] {
