@@ -5,12 +5,21 @@ use crate::control::CYCLE_S;
 
 /// Asserts that current and voltage disagree; the filter of 5 ms comes there later than the time says.
 fn disagrees(change: impl Fn(&Limits, &mut Seen)) {
+    assert_disagrees(change, limits().disagreement_time_s, 2);
+}
+
+/// Asserts that current and voltage disagree as soon as the filter of 5 ms and the time for a motor that stands allow.
+fn disagrees_soon(change: impl Fn(&Limits, &mut Seen)) {
+    assert_disagrees(change, limits().still_time_s, 5);
+}
+
+fn assert_disagrees(change: impl Fn(&Limits, &mut Seen), time_s: f32, times_max: u16) {
     let mut seen = Seen::sound();
     change(&limits(), &mut seen);
     let (faults, after) = Watched::new().faults_after(&seen).unwrap();
     assert_eq!(faults, FaultSet::single(Fault::CurrentDisagrees));
-    let time = cycles(limits().disagreement_time_s);
-    assert!((time..2 * time).contains(&after), "{after} cycles");
+    let time = cycles(time_s);
+    assert!((time..times_max * time).contains(&after), "{after} cycles");
 }
 
 /// Whichever way the motor turns.
@@ -31,16 +40,6 @@ fn a_current_is_too_much_or_not_what_the_tension_asks_for() {
             s.driven = false;
         });
     }
-}
-
-/// Asserts that current and voltage disagree as soon as the filter of 5 ms and the time for a motor that stands allow.
-fn disagrees_soon(change: impl Fn(&Limits, &mut Seen)) {
-    let mut seen = Seen::sound();
-    change(&limits(), &mut seen);
-    let (faults, after) = Watched::new().faults_after(&seen).unwrap();
-    assert_eq!(faults, FaultSet::single(Fault::CurrentDisagrees));
-    let time = cycles(limits().still_time_s);
-    assert!((time..5 * time).contains(&after), "{after} cycles");
 }
 
 /// A voltage that drives so much, A, at a motor that draws nothing.
