@@ -31,8 +31,23 @@ enum Format {
 /// --legs the legs are spread around a body, which a simulator may let float.
 #[derive(Debug, clap::Args)]
 struct UrdfArgs {
+    /// The rig file or the name of a ready rig; the paper's rig if left out.
+    #[arg(long, value_name = "FILE")]
+    rig: Option<PathBuf>,
+    /// The azimuth of the pose whose joint angles the comment has, degrees, -3600 to 3600.
+    #[arg(long, value_name = "DEG", default_value = "0", value_parser = azimuth_deg, allow_negative_numbers = true)]
+    azimuth_deg: f64,
+    /// Its tilt from the vertical, degrees, -60 to 60.
+    #[arg(long, value_name = "DEG", default_value = "0", value_parser = tilt_deg, allow_negative_numbers = true)]
+    tilt_deg: f64,
+    /// Mass at the tip, kg.
+    #[arg(long, value_name = "KG", default_value = "0", value_parser = payload_kg, allow_negative_numbers = true)]
+    payload_kg: f64,
     #[command(flatten)]
-    exported: Exported,
+    several: Several,
+    /// The file to write; standard output if left out.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
 }
 
 /// Writes the rig as a MuJoCo model whose tendons hold the loaded leg at a pose.
@@ -42,28 +57,21 @@ struct UrdfArgs {
 /// and shaft do not stretch. With --legs the legs stand around a body that floats.
 #[derive(Debug, clap::Args)]
 struct MjcfArgs {
-    #[command(flatten)]
-    exported: Exported,
-    /// Pretension, N; that of the rig if left out.
-    #[arg(long, alias = "level-n", value_name = "N", value_parser = finite, allow_negative_numbers = true)]
-    pretension_n: Option<f64>,
-}
-
-/// What is exported, and where to.
-#[derive(Debug, clap::Args)]
-struct Exported {
     /// The rig file or the name of a ready rig; the paper's rig if left out.
     #[arg(long, value_name = "FILE")]
     rig: Option<PathBuf>,
-    /// The azimuth of the pose, degrees, -3600 to 3600.
+    /// The azimuth towards which the leg leans, degrees, -3600 to 3600.
     #[arg(long, value_name = "DEG", default_value = "0", value_parser = azimuth_deg, allow_negative_numbers = true)]
     azimuth_deg: f64,
-    /// Its tilt from the vertical, degrees, -60 to 60.
+    /// The tilt from the vertical, degrees, -60 to 60.
     #[arg(long, value_name = "DEG", default_value = "0", value_parser = tilt_deg, allow_negative_numbers = true)]
     tilt_deg: f64,
     /// Mass at the tip, kg.
     #[arg(long, value_name = "KG", default_value = "0", value_parser = payload_kg, allow_negative_numbers = true)]
     payload_kg: f64,
+    /// Pretension, N; that of the rig if left out.
+    #[arg(long, alias = "level-n", value_name = "N", value_parser = finite, allow_negative_numbers = true)]
+    pretension_n: Option<f64>,
     #[command(flatten)]
     several: Several,
     /// The file to write; standard output if left out.
@@ -96,12 +104,12 @@ impl Several {
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     match &args.format {
-        Format::Mjcf(args) => write_mjcf(&args.exported, args.pretension_n),
-        Format::Urdf(args) => write_urdf(&args.exported),
+        Format::Mjcf(args) => write_mjcf(args),
+        Format::Urdf(args) => write_urdf(args),
     }
 }
 
-fn write_urdf(args: &Exported) -> Result<(), Failure> {
+fn write_urdf(args: &UrdfArgs) -> Result<(), Failure> {
     let rig = load_rig(args.rig.as_deref())?;
     let pose = [args.azimuth_deg, args.tilt_deg];
     let several = args.several.body(&rig).map_err(Failure::from_error)?;
@@ -112,11 +120,11 @@ fn write_urdf(args: &Exported) -> Result<(), Failure> {
     write(args.out.as_deref(), &String::from_utf8_lossy(&text))
 }
 
-fn write_mjcf(args: &Exported, pretension_n: Option<f64>) -> Result<(), Failure> {
+fn write_mjcf(args: &MjcfArgs) -> Result<(), Failure> {
     let rig = load_rig(args.rig.as_deref())?;
     let query = rig.query(args.azimuth_deg, args.tilt_deg, args.payload_kg);
     let query = Query {
-        pretension_n: pretension_n.unwrap_or(rig.pretension_n),
+        pretension_n: args.pretension_n.unwrap_or(rig.pretension_n),
         ..query
     };
     let several = args.several.body(&rig).map_err(Failure::from_error)?;
