@@ -1,7 +1,7 @@
 //! What a jog will do and what it measured, in a user's words.
 
 use crate::json_object;
-use crate::number::rounded;
+use crate::rounding::rounded;
 use leg_firmware::control::JOG_RISE_S;
 use leg_firmware::jog::{JogDemand, JogEnd, JogReport};
 use leg_firmware::settings::Settings;

@@ -1,7 +1,7 @@
 //! What the sensors of a leg read, raw and in a user's units.
 
 use leg_base::json_object;
-use leg_base::number::rounded;
+use leg_base::rounding::rounded;
 use leg_firmware::control::{Measured, Measurement};
 use leg_firmware::sensors::{CurrentZero, NOMINAL_ZERO_CODE, SensorReading};
 use leg_firmware::settings::Settings;

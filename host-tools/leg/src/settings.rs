@@ -7,7 +7,6 @@ use clap::Subcommand;
 use leg_base::failure::Failure;
 use leg_base::json_line::to_line;
 use leg_base::json_object;
-use leg_base::number;
 use leg_base::tick_time::seconds;
 use leg_firmware::host_link::ResetCause;
 use leg_firmware::recorder::TRIPLES_MAX;
@@ -15,7 +14,7 @@ use leg_firmware::settings::{Settings, SignalSet};
 use leg_host::operator::{Operator, SettingDifference, setting_differences};
 use leg_rig::control_settings;
 use leg_rig::rig_file::RigFile;
-use leg_rig::settings_text;
+use leg_rig::{number, settings_text};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 

@@ -14,7 +14,7 @@ use canvas::{
     AXIS_TITLE, Area, DrawResult, GRID, LABEL, MARGIN, Painter, THIN, TICK, WIDTH, offset_px, px,
     range,
 };
-use leg_base::number::rounded;
+use leg_base::rounding::rounded;
 use plotters::coord::ranged1d::BoldPoints;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;

@@ -8,8 +8,8 @@ mod links;
 
 use crate::leg_shape::{Body, LegShape, ShapeError};
 use crate::xml_element::{self, Element};
-use leg_base::number::decimal;
 use leg_model::{Direction, Error, evaluate};
+use leg_rig::number::decimal;
 use leg_rig::rig_file::RigFile;
 use links::{body, leg};
 use std::f64::consts::TAU;

@@ -1,9 +1,9 @@
 //! Gains and limits of the control law: the sections `[control.…]` of rig files and scenarios.
 
+use crate::number::decimal;
 use crate::recorded_signals::{self, RECORDED};
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;
-use leg_base::number::decimal;
 use leg_firmware::settings::SignalSet;
 use leg_firmware::settings::{Field, Gains, SECTIONS};
 use toml::de::DeTable;

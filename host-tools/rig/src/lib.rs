@@ -30,6 +30,7 @@ pub mod curve_toml;
 pub mod gains;
 pub mod mechanism_keys;
 pub mod motor_turn;
+pub mod number;
 pub mod plant_settings;
 pub mod ready_rigs;
 pub mod recorded_signals;

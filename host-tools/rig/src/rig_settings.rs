@@ -3,10 +3,10 @@
 use crate::actuator::{ACTUATOR, Actuator, CELL_RANGE, TEMPERATURE_RANGE, THERMAL};
 use crate::calibration::{CALIBRATION, Calibration};
 use crate::gains::{CONTROL, widened};
+use crate::number::{decimal, plain};
 use crate::plant_settings::{CURRENT_OFFSET, PlantSettings, SIMULATION, TRANSVERSE_INERTIA};
 use crate::rig_file::RigFile;
 use crate::rig_file::derived::{self, Basis, GivenGains};
-use leg_base::number::{decimal, plain};
 use leg_firmware::settings::{Field, Gains, SECTIONS};
 use serde::Serialize;
 

@@ -1,9 +1,9 @@
 //! The settings of a board as a rig file that gives the same bits again.
 
 use crate::gains::{CONTROL, KEEPS_STATION};
+use crate::number::{decimal, exact, exact_mm, exact_through, plain};
 use crate::recorded_signals::{self, RECORDED};
 use crate::support_name::SupportName;
-use leg_base::number::{decimal, exact, exact_mm, exact_through, plain};
 use leg_firmware::sensors::CODE_MAX;
 use leg_firmware::settings::{AxisCalibration, SECTIONS, Settings, TendonParameters};
 use leg_model::SupportKind;

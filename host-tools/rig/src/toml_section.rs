@@ -1,7 +1,7 @@
 //! Reading a TOML file section by section, each refusal with its place in the text.
 
+use crate::number::plain;
 use crate::toml_error::TomlError;
-use leg_base::number::plain;
 use leg_base::suggest;
 use leg_firmware::settings::Field;
 use leg_model::Reason;

@@ -8,12 +8,12 @@ use crate::output::note;
 use crate::settings::next_step;
 use leg_base::failure::Failure;
 use leg_base::json_object;
-use leg_base::number::decimal;
 use leg_firmware::settings::Settings;
 use leg_host::calibration::{
     CellFit, KnownWeight, fit, mean_code, require_drivers_off, too_few_weights,
 };
 use leg_host::operator::Operator;
+use leg_rig::number::decimal;
 
 /// Finds zero and gain of a load cell by known weights, drivers off. Each hangs on the cell in the place of its tendon.
 #[derive(Debug, clap::Args)]

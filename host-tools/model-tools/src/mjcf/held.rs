@@ -3,11 +3,11 @@
 use super::MjcfError;
 use crate::leg_shape::LegShape;
 use crate::line_error::LineError;
-use leg_base::number::decimal;
 use leg_model::{
     Direction, Elasticity, Error, Evaluation, Query, Rig, RigParameters, Support, evaluate,
     inverse_kinematics,
 };
+use leg_rig::number::decimal;
 use leg_rig::rig_file::RigFile;
 use nalgebra::{Rotation3, Vector3};
 use std::f64::consts::TAU;

@@ -1,7 +1,7 @@
 //! Lines, shapes and texts of a drawing.
 
 use crate::xml_element::Element;
-use leg_base::number::rounded;
+use leg_base::rounding::rounded;
 
 pub(super) const INK: &str = "#222222";
 pub(super) const DIMENSION: &str = "#666666";

@@ -10,8 +10,8 @@ pub(crate) use servo_loop::ServoLoop;
 
 use crate::actuator::Actuator;
 use crate::gains::{GainChange, index_of, widened};
+use crate::number::{decimal, plain, significant};
 use crate::rig_file::RigFile;
-use leg_base::number::{decimal, plain, significant};
 use leg_firmware::settings::{Gains, SECTIONS};
 use leg_model::Elasticity;
 use rules::{RULES, Rule};

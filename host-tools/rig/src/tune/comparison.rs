@@ -4,9 +4,9 @@ use super::estimate::UncertainValue;
 use super::motor::MotorConstants;
 use super::swing::Swings;
 use crate::actuator::{ACTUATOR, Actuator};
+use crate::number::{plain, significant};
 use crate::plant_settings::{SIMULATION, TRANSVERSE_INERTIA};
 use crate::rig_file::RigFile;
-use leg_base::number::{plain, significant};
 use serde::Serialize;
 
 /// A quantity, as measured and as configured.

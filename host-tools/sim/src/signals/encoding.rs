@@ -1,7 +1,7 @@
 //! Signals as JSON and as rows of a table.
 
 use super::{Signal, Values};
-use leg_base::number::decimal;
+use leg_rig::number::decimal;
 use serde_json::{Map, Value, json};
 
 /// All signals as a JSON object. What is not known is null.

@@ -5,11 +5,11 @@ use crate::hosted_leg::Comparison;
 use crate::sag_model::SagModel;
 use leg_base::angles::angles_deg;
 use leg_base::description;
-use leg_base::number::decimal;
 use leg_base::tick_time::seconds;
 use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
+use leg_rig::number::decimal;
 
 /// What of a leg's settings a report needs.
 #[derive(Clone, Debug)]

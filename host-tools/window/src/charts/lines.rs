@@ -2,7 +2,7 @@
 
 use crate::history::{Column, History};
 use egui_plot::{GridInput, GridMark};
-use leg_base::number::rounded;
+use leg_base::rounding::rounded;
 
 /// Points of a line: more than a screen has.
 const POINTS_MAX: usize = 1200;

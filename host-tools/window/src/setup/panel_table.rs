@@ -5,7 +5,7 @@ use super::rows::Row;
 use crate::places::place;
 use crate::theme::{Palette, palette};
 use eframe::egui::{ComboBox, Frame, Label, RichText, TextEdit, Ui};
-use leg_base::number::plain;
+use leg_rig::number::plain;
 
 /// Settings that are shown at a time: more are found by more letters.
 const SHOWN_MAX: usize = 40;

@@ -2,11 +2,11 @@
 
 use super::{RigFile, Warning};
 use crate::actuator::ACTUATOR;
+use crate::number::{decimal, plain};
 use crate::rig_file::derived::rules::{BORNE_S, MARGIN_DEG, pulling_a, reachable_m_per_s};
 use crate::rig_file::derived::{Basis, ServoLoop, two_digits, two_digits_above, two_digits_below};
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;
-use leg_base::number::{decimal, plain};
 use std::ops::Range;
 
 /// Phase margin below which a servo rings whatever the motor, degrees.

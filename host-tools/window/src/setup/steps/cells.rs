@@ -1,9 +1,9 @@
 //! A load cell by known weights: each is hung on it, read, and in the end a line is drawn through them.
 
 use crate::shown_leg::ShownLeg;
-use leg_base::number::exact;
 use leg_firmware::settings::Settings;
 use leg_rig::cell_fit::{CellFit, KnownWeight, fit};
+use leg_rig::number::exact;
 
 /// Readings that are averaged for a weight.
 const READINGS: u32 = 100;

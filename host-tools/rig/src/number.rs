@@ -26,13 +26,6 @@ pub fn significant(value: f64, digits: usize) -> f64 {
     format!("{value:.decimals$e}").parse().unwrap_or(value)
 }
 
-/// The nearest number of so many decimals, without the sign of a zero.
-#[must_use]
-pub fn rounded(value: f64, decimals: i32) -> f64 {
-    let scale = 10_f64.powi(decimals);
-    (value * scale).round() / scale + 0.0
-}
-
 /// With an exponent where that is easier to read.
 fn written(value: f64, large: f64) -> String {
     if value == 0.0 || (1e-3..large).contains(&value.abs()) {
@@ -49,14 +42,12 @@ pub fn exact(value: f32) -> String {
 }
 
 /// Metres in millimetres.
-#[must_use]
-pub fn exact_mm(metres: f32) -> String {
+pub(crate) fn exact_mm(metres: f32) -> String {
     exact_through(f64::from(metres) * 1000.0, metres, |mm| mm / 1000.0)
 }
 
 /// The shortest text of `value` from which `back` leads to the bits of `wanted`.
-#[must_use]
-pub fn exact_through(value: f64, wanted: f32, back: impl Fn(f64) -> f64) -> String {
+pub(crate) fn exact_through(value: f64, wanted: f32, back: impl Fn(f64) -> f64) -> String {
     let leads_back = |text: &String| {
         let read = text.parse().map(&back);
         read.is_ok_and(|read| (read as f32).to_bits() == wanted.to_bits())
