@@ -1,9 +1,10 @@
-//! How the project is cut: crates point only down, siblings inside a crate form no circle, a type has a name of its own, few
-//! programs are linked.
+//! How the project is cut: crates point only down, siblings inside a crate form no circle, a type has a name of its own and no
+//! function that of a preposition, few programs are linked.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod circles;
+mod function_names;
 mod modules;
 mod type_names;
 

@@ -193,6 +193,9 @@ impl<C: InstructionCounter> Visitor<f32> for Counting<'_, C> {
 
 /// The kernel as it is counted: one function, not inlined, arguments and result in memory.
 #[inline(never)]
-fn execute<T, B: KernelBody<T>>(bench: &KernelArguments<T>, result: &mut Result<B::Output, Error>) {
-    *result = B::run(bench);
+fn execute<T, B: KernelBody<T>>(
+    arguments: &KernelArguments<T>,
+    result: &mut Result<B::Output, Error>,
+) {
+    *result = B::run(arguments);
 }

@@ -141,7 +141,7 @@ impl HostLink {
 
     /// The settings that the host asks to keep; [`Self::saved`] has to follow.
     #[must_use]
-    pub fn to_save(&self) -> Option<&Settings> {
+    pub fn unsaved_settings(&self) -> Option<&Settings> {
         self.service.saving.and(Some(&self.service.settings))
     }
 
@@ -222,7 +222,7 @@ impl Service {
                 }
                 leg.restart(settings)?;
                 // The leg has started without it.
-                self.settings = settings.without_zero();
+                self.settings = settings.unhomed();
                 HostReply::Done
             }
             HostRequest::SaveSettings => {

@@ -11,7 +11,7 @@
 //! use leg_firmware::settings::Settings;
 //! use leg_firmware::supervisor::State;
 //!
-//! let settings = Settings::for_table_1().expect("they are part of the crate");
+//! let settings = Settings::table_1().expect("they are part of the crate");
 //! let mut leg = Leg::<f32>::new(&settings).expect("they describe a leg");
 //! // Half of the range is no current; the supply reads 24 V, the drivers 25 °C.
 //! let sensors = Sensors {

@@ -220,7 +220,7 @@ where
     ) -> Vec<u8, LINK_BYTES_MAX> {
         let leg = &mut self.leg;
         self.link.report(&mut RecordedLeg { leg, recorder });
-        if let Some(settings) = self.link.to_save() {
+        if let Some(settings) = self.link.unsaved_settings() {
             let kept = save(settings);
             self.link.saved(kept);
         }

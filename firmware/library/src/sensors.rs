@@ -56,7 +56,7 @@ pub enum CurrentZero {
 impl CurrentZero {
     /// Of a mean code.
     #[must_use]
-    pub fn of_mean(code: f32) -> Self {
+    pub fn from_mean(code: f32) -> Self {
         if (code - NOMINAL_ZERO_CODE).abs() <= CURRENT_ZERO_PART * NOMINAL_ZERO_CODE {
             Self::Found(code)
         } else {
@@ -86,7 +86,7 @@ pub struct SensorReading {
 #[cfg(test)]
 impl Sensors {
     /// Of a leg with these settings at rest without tension, at 24 V and 25 °C.
-    pub fn at_rest(settings: &crate::settings::Settings) -> Self {
+    pub fn resting(settings: &crate::settings::Settings) -> Self {
         let board = &settings.board;
         let temperature = (25.0 - board.temperature_at_zero_c) / board.temperature_c_per_code;
         Self {

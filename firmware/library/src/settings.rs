@@ -97,7 +97,7 @@ impl core::error::Error for SettingsError {}
 impl Settings {
     /// The same for a leg that has to be homed: a zero holds only from the start at which it was found.
     #[must_use]
-    pub fn without_zero(&self) -> Self {
+    pub fn unhomed(&self) -> Self {
         let mut settings = self.clone();
         settings.forget_zero();
         settings

@@ -29,7 +29,7 @@ impl Supervisor {
 
     /// Takes over the faults that another supervisor has latched; those that only limit end with their cause.
     pub fn inherit_faults(&mut self, latched: FaultSet) {
-        self.latched = self.latched.union(latched.without_limits());
+        self.latched = self.latched.union(latched.stopping());
     }
 
     /// Latches the faults of a tick; the state after the most severe reaction of all that are latched.
@@ -37,7 +37,7 @@ impl Supervisor {
     pub fn react(&mut self, state: State, present: FaultSet) -> State {
         self.present = present;
         // Those that only limit end with their cause.
-        let latched = self.latched.union(present).without_limits();
+        let latched = self.latched.union(present).stopping();
         self.latched = latched.union(present.limits());
         match self.latched.most_severe() {
             Some(reaction) => state.next(Event::Reaction(reaction)).unwrap_or(state),
@@ -74,9 +74,9 @@ impl Supervisor {
     /// Whether another fault than this one is latched that does more than limit.
     #[must_use]
     #[inline(always)]
-    pub fn stopped_but_for(&self, fault: Fault) -> bool {
+    pub fn stopped_by_another(&self, fault: Fault) -> bool {
         self.latched
-            .without_limits()
+            .stopping()
             .difference(FaultSet::single(fault))
             .any()
     }
@@ -85,7 +85,7 @@ impl Supervisor {
     #[must_use]
     #[inline(always)]
     pub fn stopped(&self) -> bool {
-        self.latched.without_limits().any()
+        self.latched.stopping().any()
     }
 }
 

@@ -90,7 +90,7 @@ pub fn open(
         bus: Bus {
             tx,
             rx,
-            assembler: Assembler::for_leg(leg),
+            assembler: Assembler::leg_receiver(leg),
             guard: BusGuard::new(NOMINAL_BIT_RATE),
             watched: Instant::now(),
         },

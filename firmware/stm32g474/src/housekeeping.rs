@@ -58,7 +58,7 @@ fn report_errors() {
 /// A step of the LED, and now and then a line in the log.
 fn show(step: u32, led: &mut Output<'static>) {
     let (state, faulted) = match control::telemetry() {
-        Some(telemetry) => (telemetry.state, telemetry.faults.without_limits().any()),
+        Some(telemetry) => (telemetry.state, telemetry.faults.stopping().any()),
         None => (State::Boot, false),
     };
     led.set_level(led_on(state, faulted, step).into());

@@ -47,7 +47,7 @@ impl Session {
         if let Some((kept, place)) = SAVED.try_take() {
             self.place = Some(place);
             self.link.saved(kept);
-        } else if let Some(settings) = self.link.to_save()
+        } else if let Some(settings) = self.link.unsaved_settings()
             && let Some(place) = self.place.take()
         {
             place.clone_from(settings);

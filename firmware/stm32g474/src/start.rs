@@ -118,7 +118,7 @@ fn identity((reset, kept): (ResetCause, Option<CrashReport>)) -> Identity {
 }
 
 fn built_in() -> Settings {
-    match Settings::for_table_1() {
+    match Settings::table_1() {
         Some(settings) => settings,
         None => fatal::end(&ShortText::new("the built-in settings have another shape")),
     }

@@ -1,6 +1,7 @@
 //! What a jog will do and what it measured, in a user's words.
 
 use crate::json_object;
+use crate::rounding::rounded;
 use leg_firmware::control::JOG_RISE_S;
 use leg_firmware::jog::{JogDemand, JogEnd, JogReport};
 use leg_firmware::settings::Settings;
@@ -11,7 +12,7 @@ use std::fmt::Write as _;
 const SPEED_M_PER_S: f32 = 2e-3;
 
 /// Least change of a tension that counts as one, N.
-const TELLING_N: f32 = 1.0;
+const CHANGE_MIN_N: f32 = 1.0;
 
 /// The voltage at which a motor turns slowly: twice its friction, and what a slow turn induces; below what counts as driven.
 #[must_use]
@@ -57,15 +58,10 @@ const fn way(travel_m: f32) -> &'static str {
 /// What it measured, and what does not fit.
 #[must_use]
 pub fn text(report: &JogReport<f32>, findings: &[Finding]) -> String {
-    let row = |numbers: &[f32; 3], digits: usize| {
-        let numbers = numbers.map(|number| {
-            let text = format!("{number:.digits$}");
-            let is_zero = text.chars().all(|letter| "-0.".contains(letter));
-            text.strip_prefix('-')
-                .filter(|_| is_zero)
-                .map_or_else(|| text.clone(), Into::into)
-        });
-        numbers.join("  ")
+    let row = |numbers: &[f32; 3], decimals: u8| {
+        let digits = usize::from(decimals);
+        let written = |number: f32| format!("{:.digits$}", rounded(number.into(), decimals.into()));
+        numbers.map(written).join("  ")
     };
     let [before, after] = &report.tensions_n;
     let mut text = format!(
@@ -229,7 +225,7 @@ fn tension_finding(report: &JogReport<f32>) -> Option<Finding> {
         .filter(|&(number, _)| number != own + 1)
         .max_by(|a, b| a.1.total_cmp(&b.1))?;
     let motor = report.demand.motor;
-    if rise < -TELLING_N {
+    if rise < -CHANGE_MIN_N {
         return Some(Finding::new(
             if sign > 0.0 {
                 format!("load cell {motor} shows less where its tendon pulls more")
@@ -239,7 +235,7 @@ fn tension_finding(report: &JogReport<f32>) -> Option<Finding> {
             "swap the signal wires of the load cell",
         ));
     }
-    (most > TELLING_N && rise < 0.5 * most).then(|| {
+    (most > CHANGE_MIN_N && rise < 0.5 * most).then(|| {
         Finding::new(
             format!("load cell {other} shows what tendon {motor} pulls"),
             format!("interchange load cells {motor} and {other}"),

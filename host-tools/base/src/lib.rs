@@ -25,6 +25,7 @@ pub mod numeric;
 pub mod paths;
 pub mod recorder_rows;
 pub mod refusal;
+pub mod rounding;
 pub mod settling;
 pub mod suggest;
 pub mod text_input;

@@ -5,7 +5,7 @@ const ALIKE: f64 = 0.8;
 
 /// A sentence that offers the nearest of the known keys, or all of them when none is near.
 #[must_use]
-pub fn for_key(given: &str, known: &[&str]) -> String {
+pub fn key_remedy(given: &str, known: &[&str]) -> String {
     let likeness = |key: &&str| strsim::jaro_winkler(given, key);
     let nearest = known
         .iter()

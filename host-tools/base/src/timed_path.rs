@@ -156,7 +156,7 @@ impl PathBuilder {
 
     fn motion(&self, at: &PathRow) -> MotionState<f64> {
         if self.rows.len() < 3 {
-            return MotionState::at_rest(at.direction);
+            return MotionState::resting(at.direction);
         }
         let [[_, x_rate, x_bend], [_, y_rate, y_bend]] = [0, 1].map(|i| {
             // Newton's form: its coefficients are divided differences.
@@ -272,7 +272,7 @@ impl TimedPath {
 /// # Errors
 /// Why there is none.
 pub fn run_up(first: &TimedPoint, settings: &Settings) -> Result<Vec<TimedPoint>, PointRefusal> {
-    if first.motion == MotionState::at_rest(first.motion.position) {
+    if first.motion == MotionState::resting(first.motion.position) {
         let before = TimedPoint {
             time_s: first.time_s - SPACING_MAX_S,
             ..*first

@@ -45,7 +45,7 @@ impl Stand {
         start: Start,
         seed: u64,
     ) -> Result<Self, String> {
-        let leg = EmulatedLeg::in_process(rig, plant, start, seed);
+        let leg = EmulatedLeg::start_in_process(rig, plant, start, seed);
         let leg = leg.map_err(|error| error.to_string())?;
         Ok(Self {
             truth: leg.plant().truth(),
@@ -80,7 +80,7 @@ impl Stand {
     /// Faults beyond limits.
     pub fn faults(&self) -> FaultSet {
         let faults = self.telemetry.map(|telemetry| telemetry.faults);
-        faults.map_or(FaultSet::NONE, FaultSet::without_limits)
+        faults.map_or(FaultSet::NONE, FaultSet::stopping)
     }
 
     /// Whether it is on its way.

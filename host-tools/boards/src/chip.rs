@@ -148,7 +148,7 @@ impl ChipSession {
     fn flash(&self, asked: &Settings) -> Result<(Settings, Page, bool), LinkError> {
         let refused = |sentence: &str| LinkError::Chip(sentence.into());
         let Some(bytes) = &self.kept else {
-            let settings = asked.without_zero();
+            let settings = asked.unhomed();
             let page = settings_page::page(&settings)
                 .ok_or_else(|| refused("the settings do not fit into their page"))?;
             return Ok((settings, page, false));
@@ -157,9 +157,9 @@ impl ChipSession {
         let bytes = bytes.clone();
         let page = Page { address, bytes };
         if let Some(settings) = settings_page::kept(&page.bytes) {
-            return Ok((settings.without_zero(), page, false));
+            return Ok((settings.unhomed(), page, false));
         }
-        let built_in = Settings::for_table_1();
+        let built_in = Settings::table_1();
         let built_in = built_in.ok_or_else(|| refused("the built-in settings are refused"))?;
         Ok((built_in, page, true))
     }

@@ -15,7 +15,7 @@ const EXCHANGE_TIME: Duration = Duration::from_millis(1);
 
 /// How far the leg may stay behind the clock before it skips that time: without a message of its host meanwhile, it would
 /// hold.
-const BEHIND_MAX: Duration = Duration::from_millis(10);
+const LAG_MAX: Duration = Duration::from_millis(10);
 
 /// What waits for a host that does not read at once, bytes: about what a serial adapter and its driver buffer. More is lost.
 const ADAPTER_BYTES: usize = 16 * 1024;
@@ -66,8 +66,8 @@ impl EmulatedBoard {
         let mut bytes = [0; 4096];
         let count = self.port.read(&mut bytes).map_err(port_failed)?;
         self.incoming.extend(bytes.get(..count).unwrap_or_default());
-        let behind = clock.saturating_sub(self.leg.time() + self.skipped);
-        self.skipped += behind.saturating_sub(BEHIND_MAX);
+        let lag = clock.saturating_sub(self.leg.time() + self.skipped);
+        self.skipped += lag.saturating_sub(LAG_MAX);
         while self.leg.time() + self.skipped < clock {
             let bytes = self.leg.tick(&mut self.incoming);
             let bytes = bytes.map_err(Failure::from_error)?;

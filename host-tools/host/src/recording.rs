@@ -11,7 +11,7 @@ mod tests;
 pub use error::RecordingError;
 pub use leg_recording::{About, Recorded, Replay, Samples, TickDifference};
 
-use crate::signals::{LegConstants, Report, Simulated};
+use crate::signals::{LegConstants, Report};
 use csv_file::CsvFile;
 use leg_base::atomic_file::PartFile;
 use leg_base::failure::Failure;
@@ -46,17 +46,6 @@ enum RecordingFile {
     Csv(Box<CsvFile>),
 }
 
-/// A tick of a simulation as signals.
-fn simulation(leg: &LegConstants, tick: &Tick<'_>) -> (Report, Simulated) {
-    let report = Report::new(tick.telemetry, leg).compared(tick.comparison);
-    let simulated = Simulated {
-        truth: *tick.truth,
-        motors: *tick.motors,
-        comparison: *tick.comparison,
-    };
-    (report, simulated)
-}
-
 impl Recording {
     /// Takes a tick of a simulation.
     pub fn take_tick(&mut self, tick: &Tick<'_>) -> Result<(), RecordingError> {
@@ -65,11 +54,11 @@ impl Recording {
                 file.writer.write_tick(self.count, tick)?;
                 if self.count.is_multiple_of(SAMPLE_TICKS) {
                     let writer = &mut file.writer;
-                    writer.write_simulation(self.count, &simulation(&self.leg, tick))?;
+                    writer.write_simulation(self.count, &tick.signals(&self.leg))?;
                 }
             }
             RecordingFile::Csv(file) if self.count.is_multiple_of(ROW_TICKS) => {
-                file.write_simulation(&simulation(&self.leg, tick))?;
+                file.write_simulation(&tick.signals(&self.leg))?;
             }
             RecordingFile::Csv(_) => {}
         }

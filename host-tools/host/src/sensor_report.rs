@@ -1,6 +1,7 @@
 //! What the sensors of a leg read, raw and in a user's units.
 
 use leg_base::json_object;
+use leg_base::rounding::rounded;
 use leg_firmware::control::{Measured, Measurement};
 use leg_firmware::sensors::{CurrentZero, NOMINAL_ZERO_CODE, SensorReading};
 use leg_firmware::settings::Settings;
@@ -58,10 +59,10 @@ pub fn text(reading: &SensorReading, settings: &Settings) -> String {
             axis + 1,
             sensors.encoder_counts[axis],
             sensors.cell_codes[axis],
-            without_minus_zero(measured.tensions_n[axis], 2),
+            rounded(measured.tensions_n[axis], 2),
             sensors.current_codes[axis],
             reading.current_zeros[axis].code(),
-            without_minus_zero(measured.currents_a[axis], 3),
+            rounded(measured.currents_a[axis], 3),
             choose(sensors.driver_fault[axis], "fault", "ready"),
             choose(sensors.cell_fresh[axis], "", ", no fresh code of the cell"),
         );
@@ -116,10 +117,4 @@ fn zero_finding(axis: usize, zero: CurrentZero) -> String {
 
 const fn choose(is: bool, yes: &'static str, no: &'static str) -> &'static str {
     if is { yes } else { no }
-}
-
-/// Rounded, without the sign of a zero.
-fn without_minus_zero(value: f64, decimals: i32) -> f64 {
-    let scale = 10_f64.powi(decimals);
-    (value * scale).round() / scale + 0.0
 }

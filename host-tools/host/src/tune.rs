@@ -1,6 +1,7 @@
 //! What a leg's motors, gears and tendons are, measured by an operator that waits: `leg tune`. [`leg_rig::tune`] has how.
 
 use crate::operator::{Goal, Operator, OperatorError, Tensioning};
+use embassy_futures::block_on;
 use leg_base::failure::Failure;
 use leg_firmware::command::Command;
 use leg_firmware::jog::{JogDemand, JogReport};
@@ -8,15 +9,10 @@ use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
 use leg_rig::rig_file::RigFile;
-use leg_rig::tune::{self, LegError, TunedLeg};
-use std::pin::pin;
-use std::task::{Context, Poll, Waker};
-use std::time::Duration;
-
-pub use leg_rig::tune::{
-    ComparisonRow, JogPlan, Jogged, MeasuredMotor, MotorConstants, Ring, Swing, SwingPlan, Swings,
-    Travels, UncertainValue, comparison, plan_text, section, table,
+use leg_rig::tune::{
+    self, JogPlan, Jogged, LegError, MeasuredMotor, Swing, SwingPlan, Swings, TunedLeg,
 };
+use std::time::Duration;
 
 /// Why a leg was not measured to the end. It rests then.
 pub type OperatorTuneError = tune::TuneError<OperatorError>;
@@ -39,7 +35,7 @@ pub fn measure_motor(
     settings: &Settings,
     seen: &mut dyn FnMut(&Jogged),
 ) -> Result<MeasuredMotor, OperatorTuneError> {
-    wait(tune::measure_motor(
+    block_on(tune::measure_motor(
         &mut OperatedLeg(operator),
         plan,
         settings,
@@ -57,23 +53,12 @@ pub fn measure_swing(
     rig: &RigFile,
     seen: &mut dyn FnMut(&Swing),
 ) -> Result<Swings, OperatorTuneError> {
-    wait(tune::measure_swing(
+    block_on(tune::measure_swing(
         &mut OperatedLeg(operator),
         plan,
         rig,
         seen,
     ))
-}
-
-/// The result of what waits by itself.
-fn wait<T>(work: impl Future<Output = T>) -> T {
-    let mut work = pin!(work);
-    let mut context = Context::from_waker(Waker::noop());
-    loop {
-        if let Poll::Ready(result) = work.as_mut().poll(&mut context) {
-            return result;
-        }
-    }
 }
 
 /// A leg whose operator waits until it has done what it was asked.

@@ -46,7 +46,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         jog_report::text(&report, &findings)
     })?;
     let asked = "jog a motor";
-    if telemetry.faults.without_limits().any() {
+    if telemetry.faults.stopping().any() {
         return Err(OperatorError::Failed(asked, Box::new(telemetry)).failure());
     }
     if report.end == JogEnd::CutOff {

@@ -184,7 +184,7 @@ fn now_s() -> f64 {
 /// What a recording that begins now is of; its begin is in whole milliseconds, so that it is short in words.
 pub(crate) fn about_now(title: &str) -> About {
     About {
-        begin_wall_time_s: (now_s() * 1e3).floor() / 1e3,
+        begin_wall_time_s: Some((now_s() * 1e3).floor() / 1e3),
         ..About::log(title)
     }
 }

@@ -96,7 +96,7 @@ fn scenario(args: &Args) -> Result<Scenario, Failure> {
     if args.on != Emulation::Chip {
         return Ok(scenario);
     }
-    scenario.for_board().map_err(|why| {
+    scenario.board_variant().map_err(|why| {
         let name = args.scenario.display();
         Failure::refused(
             format!("a board cannot run {name}: {why}"),
@@ -144,7 +144,7 @@ fn description(args: &Args, scenario: &Scenario) -> About {
     let rig = args.rig.as_ref().map(|rig| rig.display().to_string());
     let now = about_now(&scenario.title);
     About {
-        begin_wall_time_s: args.begin_wall_time_s.unwrap_or(now.begin_wall_time_s),
+        begin_wall_time_s: args.begin_wall_time_s.or(now.begin_wall_time_s),
         scenario: Some(args.scenario.display().to_string()),
         rig: Some(rig.unwrap_or_else(|| scenario.rig.clone())),
         seed: Some(scenario.seed),

@@ -159,7 +159,7 @@ fn keep(operator: &mut Operator) -> Result<bool, Failure> {
 
 /// What has to be done before a leg with new settings is armed.
 pub(crate) fn next_step(operator: &mut Operator) -> Result<&'static str, Failure> {
-    let faults = operator.telemetry()?.telemetry.faults.without_limits();
+    let faults = operator.telemetry()?.telemetry.faults.stopping();
     Ok(if faults.any() {
         "end its faults and home the leg before it is armed: `leg clear`, then `leg home`"
     } else {

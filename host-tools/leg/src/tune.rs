@@ -14,12 +14,13 @@ use leg_base::json_object;
 use leg_base::paths::relative_path;
 use leg_firmware::settings::Settings;
 use leg_host::operator::{Operator, OperatorError, setting_differences};
-use leg_host::tune::{
-    ComparisonRow, JogPlan, Jogged, MeasuredMotor, Swing, SwingPlan, Swings, comparison,
-    measure_motor, measure_swing, plan_text, section, supply_v, table,
-};
+use leg_host::tune::{measure_motor, measure_swing, supply_v};
 use leg_rig::control_settings;
 use leg_rig::rig_file::RigFile;
+use leg_rig::tune::{
+    ComparisonRow, JogPlan, Jogged, MeasuredMotor, Swing, SwingPlan, Swings, comparison, plan_text,
+    section, table,
+};
 use std::path::{Path, PathBuf};
 
 /// Measures one motor and the swing of the leg, and prints what was measured beside what the rig file says.
@@ -217,7 +218,7 @@ fn show(
 /// Refuses a leg that cannot be jogged, before anybody is asked to stand by.
 fn require_disarmed(operator: &mut Operator) -> Result<(), Failure> {
     let telemetry = operator.telemetry()?.telemetry;
-    let faults = telemetry.faults.without_limits();
+    let faults = telemetry.faults.stopping();
     if faults.any() {
         return Err(OperatorError::Faulted("jog a motor", faults).failure());
     }

@@ -97,7 +97,7 @@ impl Draft {
         let Some(key) = KEYS.into_iter().find(|known| *known == key) else {
             return Err(LineError::UnknownKey {
                 key: key.into(),
-                remedy: suggest::for_key(key, &KEYS),
+                remedy: suggest::key_remedy(key, &KEYS),
             });
         };
         let query = &mut self.query;

@@ -14,6 +14,7 @@ use canvas::{
     AXIS_TITLE, Area, DrawResult, GRID, LABEL, MARGIN, Painter, THIN, TICK, WIDTH, offset_px, px,
     range,
 };
+use leg_base::rounding::rounded;
 use plotters::coord::ranged1d::BoldPoints;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
@@ -127,7 +128,7 @@ const Y_LABELS: usize = 11;
 
 /// A number beside an axis.
 fn label(value: &f64) -> String {
-    format!("{}", (value * 1e6).round() / 1e6 + 0.0)
+    rounded(*value, 6).to_string()
 }
 
 /// Room left of the vertical axis: for its title, and the widest label beside that.

@@ -85,7 +85,7 @@ pub fn leg_failure(failure: LegFailure) -> PyErr {
     let (reason, remedy, ..) = words_and_place(&failure);
     match *error {
         OperatorError::Failed(_, telemetry) => {
-            faulted(telemetry.faults.without_limits(), Some(telemetry.state))
+            faulted(telemetry.faults.stopping(), Some(telemetry.state))
         }
         OperatorError::Limited(_, telemetry) => {
             faulted(telemetry.faults.limits(), Some(telemetry.state))

@@ -264,7 +264,7 @@ impl Leg {
         py: Python<'py>,
         rig: &Bound<'_, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let given = settings::of_rig(rig)?;
+        let given = settings::from_rig(rig)?;
         let found = setting_differences(&given, &self.ask(py, Operator::settings)?);
         let rows = found.iter().map(|difference| {
             json!({ "name": difference.name, "rig": difference.ours, "leg": difference.theirs })
@@ -282,7 +282,7 @@ impl Leg {
         rig: &Bound<'_, PyAny>,
         #[pyo3(from_py_with = named::save)] save: bool,
     ) -> PyResult<()> {
-        let settings = settings::of_rig(rig)?;
+        let settings = settings::from_rig(rig)?;
         self.ask(py, move |operator| settings::set(operator, &settings, save))
     }
 

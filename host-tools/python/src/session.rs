@@ -96,7 +96,7 @@ impl Session {
                 ..rig.plant
             }
         };
-        let leg = EmulatedLeg::in_process(rig, &plant, start, seed)?;
+        let leg = EmulatedLeg::start_in_process(rig, &plant, start, seed)?;
         let settings = control_settings::settings(rig, &rig.gains, None);
         let mut session = Self {
             leg: HostedLeg::new(leg, rig, start.direction(), seed),
@@ -144,7 +144,7 @@ impl Session {
 
     /// The leg now. There is one: it has booted.
     pub fn snapshot(&self) -> Option<Snapshot> {
-        Snapshot::new(&self.leg, &self.constants, &self.motors, self.on_path())
+        Snapshot::new(&self.leg, &self.constants, &self.motors, self.is_on_path())
     }
 
     /// Some ticks.
@@ -176,7 +176,7 @@ impl Session {
         if !signal_log.due() {
             return Ok(());
         }
-        let on_path = on_path(self.path.as_ref(), &self.leg);
+        let on_path = is_on_path(self.path.as_ref(), &self.leg);
         let snapshot = Snapshot::new(&self.leg, &self.constants, &self.motors, on_path);
         if snapshot.is_some_and(|snapshot| !signal_log.take(&snapshot)) {
             self.signal_log = None;
@@ -288,8 +288,8 @@ impl Session {
         self.path.is_some()
     }
 
-    fn on_path(&self) -> bool {
-        on_path(self.path.as_ref(), &self.leg)
+    fn is_on_path(&self) -> bool {
+        is_on_path(self.path.as_ref(), &self.leg)
     }
 
     /// Lets the leg tick until it has been for 0.3 s where it shall be, at the end of its path.
@@ -356,7 +356,7 @@ impl Session {
 
     /// Faults that do more than limit.
     fn faults(&self) -> FaultSet {
-        self.reported().without_limits()
+        self.reported().stopping()
     }
 
     /// Every fault that is reported.
@@ -367,7 +367,7 @@ impl Session {
 }
 
 /// Whether a leg is on a path, not on the way to it or to rest after it.
-fn on_path(path: Option<&PathSender>, leg: &HostedLeg) -> bool {
+fn is_on_path(path: Option<&PathSender>, leg: &HostedLeg) -> bool {
     let at = |(path, telemetry): (&PathSender, _)| path.motion(path.time_s(telemetry)?);
     path.zip(leg.telemetry()).and_then(at).is_some()
 }

@@ -15,9 +15,8 @@ pub struct About {
     pub rig: Option<String>,
     /// What everything random in it follows from; none for a log of a leg.
     pub seed: Option<u64>,
-    /// The time of the day that the time zero of a simulated leg is given, s since 1970; zero if it is not known.
-    #[serde(default)]
-    pub begin_wall_time_s: f64,
+    /// The time of the day that the time zero of a simulated leg is given, s since 1970; none where it is not known.
+    pub begin_wall_time_s: Option<f64>,
 }
 
 impl About {
@@ -30,7 +29,7 @@ impl About {
             scenario: None,
             rig: None,
             seed: None,
-            begin_wall_time_s: 0.0,
+            begin_wall_time_s: None,
         }
     }
 }

@@ -58,7 +58,7 @@ impl<'a> Contents<'a> {
     }
 
     /// Takes each message in turn, until `take` wants no more.
-    pub fn for_each_message(
+    pub fn visit_messages(
         &self,
         mut take: impl FnMut(&Message<'_>) -> Result<bool, String>,
     ) -> Result<(), String> {

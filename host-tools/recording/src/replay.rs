@@ -60,7 +60,7 @@ fn compare(bytes: &[u8]) -> Result<Replay, String> {
         other: 0,
         first: None,
     };
-    contents.for_each_message(|message| {
+    contents.visit_messages(|message| {
         match (message.channel.topic.as_str(), &mut leg) {
             (SETTINGS, leg) => {
                 let identity = emulated(BoardKind::InProcess);

@@ -48,7 +48,7 @@ fn read(name: &str, bytes: &[u8]) -> Result<Recorded, String> {
     let mut about = None;
     let (mut log, mut simulation, mut rows) = (Vec::new(), Vec::new(), Vec::new());
     let mut last_report = Vec::new();
-    contents.for_each_message(|message| {
+    contents.visit_messages(|message| {
         let topic = message.channel.topic.as_str();
         let unread = |error: String| unreadable(message, &error);
         if topic == ABOUT {

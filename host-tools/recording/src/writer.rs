@@ -83,7 +83,7 @@ impl<W: Write + Seek> McapWriter<W> {
             writer: ManuallyDrop::new(options.create(to)?),
             channels: BTreeMap::new(),
             about: Some(serde_json::to_value(about).map_err(WriteError::message)?),
-            begin_ns: wall_ns(about.begin_wall_time_s),
+            begin_ns: about.begin_wall_time_s.map_or(0, wall_ns),
             bytes: 0,
         };
         file.writer.write_metadata(&metadata(about, settings))?;
@@ -272,16 +272,14 @@ pub fn wall_ns(wall_time_s: f64) -> u64 {
 /// What a recording is of, for programs that read no topics.
 fn metadata(about: &About, settings: &Settings) -> Metadata {
     let seed = about.seed.map(|seed| seed.to_string());
+    let begin_wall_time_s = about.begin_wall_time_s.map(|time_s| time_s.to_string());
     let entries = [
         ("title", Some(about.title.clone())),
         ("version", Some(about.version.clone())),
         ("scenario", about.scenario.clone()),
         ("rig", about.rig.clone()),
         ("seed", seed),
-        (
-            "begin_wall_time_s",
-            Some(about.begin_wall_time_s.to_string()),
-        ),
+        ("begin_wall_time_s", begin_wall_time_s),
         (METADATA_SETTINGS, Some(settings_text::rig_file(settings))),
     ];
     let known = entries.into_iter();
@@ -331,7 +329,7 @@ fn about_schema() -> Value {
             "scenario": text,
             "rig": text,
             "seed": { "type": ["integer", "null"] },
-            "begin_wall_time_s": { "type": "number" },
+            "begin_wall_time_s": { "type": ["number", "null"] },
         },
     })
 }

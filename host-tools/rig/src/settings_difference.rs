@@ -30,7 +30,7 @@ fn json(settings: &Settings) -> Value {
 /// Equal values have equal bits: settings hold no NaN, and f32 is written without loss.
 #[must_use]
 pub fn setting_differences(ours: &Settings, theirs: &Settings) -> Vec<SettingDifference> {
-    let [ours, theirs] = [ours, theirs].map(|settings| json(&settings.without_zero()));
+    let [ours, theirs] = [ours, theirs].map(|settings| json(&settings.unhomed()));
     let [ours, theirs] = [&ours, &theirs].map(|settings| flatten(settings, "."));
     let value = |settings: &[(String, &Value)], name: &str| {
         let found = settings.iter().find(|(other, _)| other == name);

@@ -32,7 +32,7 @@ impl<'a> Section<'a> {
             Some(key) => Err(TomlError::new(
                 key.span(),
                 format!("unknown key `{}`", key.get_ref()),
-                suggest::for_key(key.get_ref(), known),
+                suggest::key_remedy(key.get_ref(), known),
             )),
         }
     }

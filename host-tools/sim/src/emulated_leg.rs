@@ -132,7 +132,7 @@ impl EmulatedLeg<InProcess> {
     ///
     /// # Errors
     /// A rig whose start or whose settings are refused.
-    pub fn in_process(
+    pub fn start_in_process(
         rig: &RigFile,
         plant: &PlantSettings,
         start: Start,

@@ -20,6 +20,7 @@ use crate::emulated_leg::{EmulatedLeg, assembled};
 use crate::link::Link;
 use crate::plant::{Plant, Truth};
 use crate::scenario::Scenario;
+use crate::signals::{LegConstants, Report, Simulated};
 use leg_firmware::drive::Drive;
 use leg_firmware::sensors::Sensors;
 use leg_firmware::settings::Settings;
@@ -54,6 +55,20 @@ pub struct Tick<'a> {
     pub truth: &'a Truth,
     /// What its motors get.
     pub motors: &'a Drive<f32>,
+}
+
+impl Tick<'_> {
+    /// The same as signals.
+    #[must_use]
+    pub fn signals(&self, leg: &LegConstants) -> (Report, Simulated) {
+        let report = Report::new(self.telemetry, leg).compared(self.comparison);
+        let simulated = Simulated {
+            truth: *self.truth,
+            motors: *self.motors,
+            comparison: *self.comparison,
+        };
+        (report, simulated)
+    }
 }
 
 /// A scenario on a rig, ready to run.

@@ -60,10 +60,10 @@ fn plain(chip: &Peripherals, place: [&str; 3]) -> String {
 
 /// A field of one bit: "on" or "off".
 fn switch(chip: &Peripherals, place: [&str; 3]) -> &'static str {
-    on_off(value(chip, place) != 0)
+    switch_word(value(chip, place) != 0)
 }
 
-fn on_off(on: bool) -> &'static str {
+fn switch_word(on: bool) -> &'static str {
     if on { "on" } else { "off" }
 }
 
@@ -318,12 +318,12 @@ fn guards(chip: &Peripherals) -> Vec<String> {
     vec![
         format!(
             "IWDG: {}, resets the chip after {}",
-            on_off(devices.iwdg.expires_at().is_some()),
+            switch_word(devices.iwdg.expires_at().is_some()),
             milliseconds(chip, independent)
         ),
         format!(
             "WWDG: {}, resets the chip after {}, refreshed from a count of {} on",
-            on_off(devices.wwdg.expires_at().is_some()),
+            switch_word(devices.wwdg.expires_at().is_some()),
             milliseconds(chip, window),
             value(chip, ["WWDG", "CFR", "W"])
         ),

@@ -1,21 +1,22 @@
 //! A leg with its target, its tensions and what acts on it, before a camera.
 
+mod words;
+
 use crate::camera::View;
 use crate::figure::{Item, ball, circle, cord, disc, rod, sorted};
 use crate::leg_pose::{LegPose, enlarged};
 use crate::map::Map;
-use crate::map_key;
-use crate::map_mesh::{self, mesh};
+use crate::map_mesh::mesh;
 use crate::places::place_rect;
 use crate::seen_leg::{SeenLeg, leg_axis};
 use crate::stiffness_ellipse::StiffnessEllipse;
 use crate::theme::{self, Palette, mixed};
 use egui::{
-    Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2,
-    pos2, vec2,
+    Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, vec2,
 };
 use leg_model::RigParameters;
 use nalgebra::Vector3;
+use words::label_arrow;
 
 /// Sizes that the rig does not say, m.
 const PLATE_M: f64 = 0.003;
@@ -28,30 +29,11 @@ const PAYLOAD_RADIUS_M: f64 = 0.0135;
 /// Height of the labels below the detail, points.
 const LABELS: f32 = 36.0;
 
-/// From these widths of its cell on there is room for the number of a tendon, and for a decimal, points.
-const CELL_NUMBERED: f32 = 58.0;
-const CELL_ROOMY: f32 = 72.0;
-
-/// A tip that is nearer than that is where it shall be, mm.
-const NEAR_MM: f64 = 0.5;
-
-/// A bar of colours below the leg, points, and where the next one stands: beside it, or above where there is no room.
-const LEGEND: Vec2 = vec2(110.0, 7.0);
-const LEGEND_BESIDE: Vec2 = vec2(178.0, 0.0);
-const LEGEND_ABOVE: Vec2 = vec2(0.0, -32.0);
-const LEGEND_ROOM: f32 = 420.0;
-
-/// Below this width of the picture some words are left out, points.
-const NARROW: f32 = 350.0;
-
 /// How far above the lower edge the words about the stiffness stand, points.
 const WORDS_ABOVE: f32 = 72.0;
 
 /// How opaque a map is: what is behind it is seen.
 const MAP_OPACITY: f32 = 0.6;
-
-/// From an arrow to its words, points.
-const LABEL_GAP: f32 = 4.0;
 
 /// What a force of 1 N is drawn as, m.
 const ARROW_M_PER_N: f64 = 0.015;
@@ -258,81 +240,7 @@ impl<'a> Drawn<'a> {
         let [from, to] = [self.tip() - force_m, self.tip()].map(|place| view.project(place).at);
         painter.arrow(from, to - from, Stroke::new(4.0, self.palette.warning));
         let words = format!("push {:.0} N", push.force_n);
-        label(painter, from, from - to, &words, &self.palette);
-    }
-
-    fn tension_labels(&self, painter: &Painter, view: &View, rect: Rect) {
-        let tensions_n = self.leg.tensions_n;
-        let anchors = self.pose.anchors(self.rig);
-        for (tendon, ends) in anchors.into_iter().enumerate() {
-            let above = ends[0] + Vector3::new(0.0, 0.0, 0.008);
-            let at = view.project(above).at;
-            let number = (tendon + 1).to_string();
-            painter.text(
-                at,
-                Align2::CENTER_CENTER,
-                number,
-                FontId::proportional(14.0),
-                self.palette.text,
-            );
-            let width = rect.width() / 3.0;
-            let cell = pos2(
-                rect.left() + (tendon as f32 + 0.5) * width,
-                rect.bottom() - 11.0,
-            );
-            let words = if self.cut(tendon) {
-                format!("{} cut", tendon + 1)
-            } else if width < CELL_NUMBERED {
-                format!("{:3.0} N", tensions_n[tendon])
-            } else if width < CELL_ROOMY {
-                format!("{}:{:3.0} N", tendon + 1, tensions_n[tendon])
-            } else {
-                format!("{}: {:.1} N", tendon + 1, tensions_n[tendon])
-            };
-            painter.circle_filled(cell - vec2(0.0, 14.0), 4.0, self.tension_colour(tendon));
-            painter.text(
-                cell,
-                Align2::CENTER_CENTER,
-                words,
-                FontId::monospace(11.5),
-                self.palette.text,
-            );
-        }
-    }
-
-    /// How far the tip is from where it was sent, in a place of its own.
-    pub fn readout(&self, painter: &Painter, rect: Rect) {
-        let error_mm = self.leg.error_mm;
-        let corner = rect.left_top() + vec2(14.0, 10.0);
-        let big = FontId::monospace(24.0);
-        let words = format!("{error_mm:.2} mm");
-        let colour = if !self.leg.is_heard {
-            self.palette.faint
-        } else if error_mm < NEAR_MM {
-            self.palette.good
-        } else {
-            self.palette.error
-        };
-        painter.text(corner, Align2::LEFT_TOP, words, big, colour);
-        let from = if rect.width() < NARROW {
-            ""
-        } else {
-            " from its reference"
-        };
-        let drawn = format!("drawn ×{:.1}{from}", self.factor);
-        let off = match (self.leg.is_heard, self.leg.is_true) {
-            (false, _) => "from the target, as last heard",
-            (true, true) => "from the target",
-            (true, false) if self.leg.doubt().is_some() => "by sensors that are in doubt",
-            (true, false) => "from the target, by its sensors",
-        };
-        for (line, words) in [off, &drawn].into_iter().enumerate() {
-            let below = corner + vec2(0.0, 28.0 + 16.0 * line as f32);
-            let font = FontId::proportional(12.5);
-            painter.text(below, Align2::LEFT_TOP, words, font, self.palette.faint);
-        }
-        let shown = Rect::from_min_size(corner, vec2(200.0, 60.0));
-        place_rect(painter.ctx(), shown, "readout");
+        label_arrow(painter, from, from - to, &words, &self.palette);
     }
 
     /// How stiff the tip is to each side, and the scale of that.
@@ -378,94 +286,9 @@ impl<'a> Drawn<'a> {
             painter.line_segment(ends, Stroke::new(1.0, colour));
         }
     }
-
-    /// What the colours of the tendons mean, and those of a map.
-    pub fn legend(&self, painter: &Painter, rect: Rect) {
-        let rig = self.leg.rig;
-        let bounds_n = [rig.f_min_n, rig.f_max_n];
-        let source = self.leg.tensions_source();
-        let words = format!(
-            "{source} tension, {:.0} to {:.0} N",
-            bounds_n[0], bounds_n[1]
-        );
-        let at = rect.left_bottom() + vec2(14.0, -18.0);
-        self.one_legend(painter, at, &words, |part| {
-            let tension_n = bounds_n[0] + f64::from(part) * (bounds_n[1] - bounds_n[0]);
-            theme::tension(tension_n, bounds_n)
-        });
-        let Some(words) = self.map.and_then(map_key::words) else {
-            return;
-        };
-        let next = if rect.width() > LEGEND_ROOM {
-            LEGEND_BESIDE
-        } else {
-            LEGEND_ABOVE
-        };
-        self.one_legend(painter, at + next, &words, |part| {
-            map_mesh::colour(&self.palette, part.into())
-        });
-    }
-
-    fn one_legend(
-        &self,
-        painter: &Painter,
-        at: Pos2,
-        words: &str,
-        colour: impl Fn(f32) -> Color32,
-    ) {
-        let bar = Rect::from_min_size(at, LEGEND);
-        map_key::bar(painter, bar, false, colour);
-        let above = bar.left_top() + vec2(0.0, -3.0);
-        let font = FontId::proportional(12.5);
-        painter.text(above, Align2::LEFT_BOTTOM, words, font, self.palette.faint);
-    }
 }
 
 fn ring_m(anchors_m: &[[f64; 2]; 3]) -> f64 {
     let radii = anchors_m.iter().map(|[x, y]| (x * x + y * y).sqrt());
     radii.fold(0.0, f64::max)
-}
-
-/// Text beside the beginning of an arrow, on the side that it does not go to.
-fn label(painter: &Painter, from: Pos2, away: Vec2, words: &str, palette: &Palette) {
-    let galley = painter.layout_no_wrap(words.to_owned(), FontId::monospace(13.0), palette.warning);
-    let half = 0.5 * galley.size() + vec2(5.0, 2.0);
-    let patch = beside(from, away, half);
-    painter.rect_filled(patch, 4.0, palette.card.gamma_multiply(0.85));
-    let at = patch.center() - 0.5 * galley.size();
-    painter.galley(at, galley, palette.warning);
-}
-
-/// A rectangle of this half size that a line ends before: the line comes from the other side than `away`.
-fn beside(end: Pos2, away: Vec2, half: Vec2) -> Rect {
-    // A line along the view is a point.
-    let away = if away.length() < 1.0 {
-        vec2(0.0, -1.0)
-    } else {
-        away.normalized()
-    };
-    let reach = half / away.abs().max(Vec2::splat(1e-6));
-    let centre = end + away * (reach.min_elem() + LABEL_GAP);
-    Rect::from_center_size(centre, 2.0 * half)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::beside;
-    use egui::{Vec2, pos2, vec2};
-
-    #[test]
-    fn words_beside_an_arrow_do_not_cover_it() {
-        let (from, half) = (pos2(100.0, 50.0), vec2(40.0, 10.0));
-        for degrees in 0..72 {
-            let away = 30.0 * Vec2::angled((5.0 * degrees as f32).to_radians());
-            let words = beside(from, away, half);
-            for part in 0..=20 {
-                let on_arrow = from - away * (part as f32 / 20.0);
-                assert!(!words.contains(on_arrow), "{away:?} {words:?}");
-            }
-            assert!(words.distance_to_pos(from) < 12.0, "{away:?} {words:?}");
-        }
-        assert!(!beside(from, Vec2::ZERO, half).contains(from));
-    }
 }

@@ -173,7 +173,7 @@ mod tests {
                 simulation.command(Command::Move { x, y: 0.1 }, "move");
             }
             simulation.advance(0.1);
-            if simulation.faults().without_limits().any() {
+            if simulation.faults().stopping().any() {
                 return true;
             }
         }
@@ -259,13 +259,13 @@ mod tests {
             let mut simulation = Simulation::new().unwrap();
             simulation.set_defect(defect, true);
             simulation.advance(0.2);
-            assert!(simulation.faults().without_limits().any(), "{defect:?}");
+            assert!(simulation.faults().stopping().any(), "{defect:?}");
             simulation.set_defect(defect, false);
             simulation.advance(0.2);
-            assert!(simulation.faults().without_limits().any(), "{defect:?}");
+            assert!(simulation.faults().stopping().any(), "{defect:?}");
             simulation.command(Command::Clear, "clear");
             simulation.advance(0.2);
-            assert!(!simulation.faults().without_limits().any(), "{defect:?}");
+            assert!(!simulation.faults().stopping().any(), "{defect:?}");
         }
     }
 }

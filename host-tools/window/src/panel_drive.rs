@@ -71,7 +71,7 @@ const CHOICES: [Choice; 5] = [
         effect: "ends faults whose cause is gone",
         command: Command::Clear,
         useful: |leg| {
-            leg.faults().without_limits().any() || matches!(leg.state(), State::Held | State::Off)
+            leg.faults().stopping().any() || matches!(leg.state(), State::Held | State::Off)
         },
     },
 ];

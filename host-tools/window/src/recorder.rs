@@ -24,15 +24,19 @@ pub struct Recorder {
 
 impl Recorder {
     /// Of a leg of that name with these settings. `begin_wall_time_s` is the time of the day that it has at its beginning, s since
-    /// 1970: for a simulated leg, at the zero of its own time. Zero if it is not known.
+    /// 1970: for a simulated leg, at the zero of its own time; none if it is not known.
     ///
     /// # Errors
     /// What has no form in a recording.
-    pub fn new(leg: &str, settings: &Settings, begin_wall_time_s: f64) -> Result<Self, WriteError> {
+    pub fn new(
+        leg: &str,
+        settings: &Settings,
+        begin_wall_time_s: Option<f64>,
+    ) -> Result<Self, WriteError> {
         let about = About {
             rig: Some(leg.into()),
             // Whole milliseconds are short in words.
-            begin_wall_time_s: (begin_wall_time_s * 1e3).floor() / 1e3,
+            begin_wall_time_s: begin_wall_time_s.map(|time_s| (time_s * 1e3).floor() / 1e3),
             ..About::log(&format!("{leg} in the window"))
         };
         let writer = McapWriter::new(Cursor::new(Vec::new()), &about, settings)?;

@@ -70,10 +70,10 @@ impl Recordings {
 
     fn begin(&mut self, leg: &mut ShownLeg) {
         let settings = control_settings::settings(leg.rig(), &leg.rig().gains, None);
-        let now_s = (self.wall_clock)().unwrap_or_default();
+        let now_s = (self.wall_clock)();
         // The messages of a simulated leg have its own time, from the zero of that on.
         let begin_s = match leg {
-            ShownLeg::Simulated(leg) => (now_s - leg.leg().time_s()).max(0.0),
+            ShownLeg::Simulated(leg) => now_s.map(|now_s| (now_s - leg.leg().time_s()).max(0.0)),
             ShownLeg::Live(_) => now_s,
         };
         let recorder = Recorder::new(&leg.source().name, &settings, begin_s);

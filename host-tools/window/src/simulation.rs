@@ -106,7 +106,7 @@ impl Simulation {
             cell_offset_n: [0.0; 3],
             ..rig.plant
         };
-        let leg = EmulatedLeg::in_process(&rig, &tared, start, SEED);
+        let leg = EmulatedLeg::start_in_process(&rig, &tared, start, SEED);
         let leg = leg.map_err(StartError::Emulation)?;
         let settings = control_settings::settings(&rig, &rig.gains, None);
         let mut simulation = Self {

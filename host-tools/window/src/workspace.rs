@@ -43,10 +43,10 @@ impl Disc {
     fn direction(&self, at: Pos2) -> [f64; 2] {
         let offset = (at - self.centre) / self.radius;
         let scale = self.sine_max;
-        self.inside([f64::from(offset.x) * scale, f64::from(-offset.y) * scale])
+        self.limit([f64::from(offset.x) * scale, f64::from(-offset.y) * scale])
     }
 
-    fn inside(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    fn limit(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let sine = (x * x + y * y).sqrt();
         let shrink = (EDGE * self.sine_max / sine.max(1e-12)).min(1.0);
         [x * shrink, y * shrink]
@@ -178,7 +178,7 @@ fn stepped(ui: &Ui, response: &Response, disc: &Disc, leg: &ShownLeg) -> Option<
     let up = pressed(Key::ArrowUp) - pressed(Key::ArrowDown);
     let step = KEY_DEG.to_radians();
     let [x, y] = leg.target();
-    (right != 0.0 || up != 0.0).then(|| disc.inside([x + step * right, y + step * up]))
+    (right != 0.0 || up != 0.0).then(|| disc.limit([x + step * right, y + step * up]))
 }
 
 fn paint(
@@ -250,7 +250,7 @@ fn tilt_label(painter: &Painter, disc: &Disc, tilt_deg: f64, radius: f32, palett
 /// Where the tip is, and where it was sent.
 fn marks(painter: &Painter, disc: &Disc, leg: &ShownLeg, palette: &Palette) {
     let leg_axis = leg.leg_axis();
-    let [x, y] = disc.inside([leg_axis.x, leg_axis.y]);
+    let [x, y] = disc.limit([leg_axis.x, leg_axis.y]);
     let is = disc.place([x, y]);
     let target = disc.place(leg.target());
     painter.line_segment([target, is], Stroke::new(2.0, palette.error));
@@ -292,6 +292,6 @@ mod tests {
         let [x, y] = disc.direction(pos2(30.0, -40.0));
         assert!(((x * x + y * y).sqrt() - EDGE * 0.5).abs() < 1e-9);
         assert!((y / x - 4.0 / 3.0).abs() < 1e-6);
-        assert_eq!(disc.inside([0.0, 0.0]), [0.0, 0.0]);
+        assert_eq!(disc.limit([0.0, 0.0]), [0.0, 0.0]);
     }
 }

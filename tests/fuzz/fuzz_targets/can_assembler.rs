@@ -75,7 +75,7 @@ fn damaged_stream(end: &mut End, input: &Input) {
 }
 
 fuzz_target!(|input: Input| {
-    let mut end = End::for_leg(LEG);
+    let mut end = End::leg_receiver(LEG);
     damaged_stream(&mut end, &input);
     for (bits, payload) in &input.any {
         let identifier = Identifier::from_bits(*bits).unwrap_or(Identifier::ToLeg(LEG));

@@ -99,7 +99,7 @@ fn run(kernel: Kernel) -> KernelRequest {
 
 /// The paper's leg, its zero known, so that it can be armed.
 pub(crate) fn settings() -> Settings {
-    let mut settings = Settings::for_table_1().expect("they are built in");
+    let mut settings = Settings::table_1().expect("they are built in");
     for axis in &mut settings.axes {
         axis.unstretched_at_zero_m = Some(0.0343);
     }

@@ -11,7 +11,7 @@ use leg_firmware::supervisor::{Fault, FaultSet};
 /// A travel over more than 16 bits comes back to the count, and so does a negative one.
 #[test]
 fn numbers_are_unwrapped_from_the_newest_row() {
-    let settings = Settings::for_table_1().unwrap();
+    let settings = Settings::table_1().unwrap();
     let counts: Vec<i32> = (0..300)
         .map(|row| 70_000 - 30_000 * (row % 2) - 500 * row)
         .collect();

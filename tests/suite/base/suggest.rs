@@ -1,11 +1,11 @@
 //! What is offered for a mistyped key.
 
-use leg_base::suggest::for_key;
+use leg_base::suggest::key_remedy;
 
 #[test]
 fn a_wrong_unit_is_answered_with_the_right_one() {
     assert_eq!(
-        for_key("upper_cm", &["upper_mm", "joint_mm", "leg_mm"]),
+        key_remedy("upper_cm", &["upper_mm", "joint_mm", "leg_mm"]),
         "the key here is `upper_mm`; mind its unit"
     );
 }
@@ -13,16 +13,16 @@ fn a_wrong_unit_is_answered_with_the_right_one() {
 #[test]
 fn a_slip_of_the_pen_is_answered_with_the_right_key() {
     assert_eq!(
-        for_key("uper_mm", &["upper_mm"]),
+        key_remedy("uper_mm", &["upper_mm"]),
         "the key here is `upper_mm`"
     );
-    assert_eq!(for_key("masses", &["mass"]), "the key here is `mass`");
+    assert_eq!(key_remedy("masses", &["mass"]), "the key here is `mass`");
 }
 
 #[test]
 fn a_strange_key_is_answered_with_all_of_them() {
     assert_eq!(
-        for_key("colour", &["leg_kg", "pretension_n"]),
+        key_remedy("colour", &["leg_kg", "pretension_n"]),
         "the keys here are `leg_kg`, `pretension_n`"
     );
 }

@@ -30,7 +30,7 @@ fn rows(times_s: &[f64]) -> Vec<PathRow> {
 }
 
 fn settings() -> Settings {
-    Settings::for_table_1().unwrap()
+    Settings::table_1().unwrap()
 }
 
 /// How far position, rate and acceleration of a point are from the circle's.
@@ -66,7 +66,7 @@ fn points_have_the_rates_of_the_motion_through_the_rows() {
 fn few_rows_are_a_path_too() {
     let two = TimedPath::new(&rows(&[0.0, 1.0]));
     for point in two.points() {
-        assert_eq!(point.motion, MotionState::at_rest(point.motion.position));
+        assert_eq!(point.motion, MotionState::resting(point.motion.position));
     }
     for count in 1..8 {
         let times_s: Vec<_> = (0..count).map(f64::from).collect();
@@ -131,7 +131,7 @@ fn a_start_in_motion_has_a_run_up() {
     assert_eq!(points.last(), Some(&first));
     let rest = points.first().unwrap();
     assert!(rest.time_s <= -0.5);
-    assert_eq!(rest.motion, MotionState::at_rest(rest.motion.position));
+    assert_eq!(rest.motion, MotionState::resting(rest.motion.position));
     assert_eq!(check(&points, &settings()), Ok(()));
     let fast = TimedPoint {
         motion: MotionState {

@@ -1,8 +1,8 @@
 //! The board's image from its reset to its first ticks, on the emulated chip.
 
 use crate::common::chip::{
-    BAUD, MS, Outcome, at_rest, carry_out, driving, findings, identity, identity_after, image,
-    other_settings, reset_within, send, settings, started, started_with, ticked,
+    BAUD, MS, Outcome, carry_out, driving, findings, identity, identity_after, image,
+    other_settings, reset_within, resting_tick, send, settings, started, started_with, ticked,
 };
 use crate::common::chip_bus::started_on_can;
 use leg_boards::chip::ChipSession;
@@ -106,7 +106,7 @@ fn a_copied_chip_goes_on_as_its_original() -> Outcome {
     ]
     .into_iter();
     let mut ask = |session: &mut ChipSession, tick: usize| {
-        let mut request = at_rest();
+        let mut request = resting_tick();
         // Constant codes are a fault.
         request.sensors.cell_codes = [CODE_MAX / 4 + tick as u16 % 8; 3];
         if tick % ASKED_TICKS == ASKED_TICKS - 1
@@ -136,7 +136,7 @@ fn a_copied_chip_goes_on_as_its_original() -> Outcome {
     // What happens to one does not happen to the other.
     let chip = copy.chip().ok_or("no chip")?;
     chip.reset(ResetFlag::Pin);
-    assert!(original.ask(&Request::Tick(at_rest())).is_ok());
+    assert!(original.ask(&Request::Tick(resting_tick())).is_ok());
     Ok(())
 }
 
@@ -270,7 +270,7 @@ fn an_unexpected_stop_within_a_tick_is_told() -> Outcome {
     while chip.run(u64::MAX) != Stop::Update {}
     let update = chip.cycle() + u64::from(TICK_CYCLES);
     while chip.run(update - 40) != Stop::Time {}
-    let mut pressed = at_rest();
+    let mut pressed = resting_tick();
     pressed.sensors.emergency_stop = true;
     let Err(error) = session.ask(&Request::Tick(pressed)) else {
         return Err("the tick passes".into());

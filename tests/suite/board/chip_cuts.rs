@@ -63,7 +63,7 @@ fn erases(chip: &Chip) -> bool {
 }
 
 fn two_settings() -> Result<[Settings; 2], Box<dyn Error>> {
-    let built_in = Settings::for_table_1().ok_or("no built-in settings")?;
+    let built_in = Settings::table_1().ok_or("no built-in settings")?;
     Ok([built_in, other_settings()?])
 }
 

@@ -1,7 +1,7 @@
 //! The chip's recorder: what its control interrupt has written is read by a host over the serial line.
 
 use crate::common::chip::{
-    MS, Outcome, at_rest, findings, identity, reply, send, started, vary_cells,
+    MS, Outcome, findings, identity, reply, resting_tick, send, started, vary_cells,
 };
 use leg_firmware::host_link::{HostReply, HostRequest};
 use leg_firmware::recorder::{
@@ -35,7 +35,7 @@ fn report(chip: &mut Chip, request: RecorderRequest) -> Result<RecorderReport, B
 fn a_chip_keeps_the_ticks_before_its_fault() -> Outcome {
     let mut session = started(100)?;
     for tick in 0..500 {
-        let mut request = at_rest();
+        let mut request = resting_tick();
         // Constant codes are a fault.
         for code in &mut request.sensors.cell_codes {
             *code += 2 * (tick / 8 % 2);
@@ -63,7 +63,7 @@ fn a_chip_keeps_the_ticks_before_its_fault() -> Outcome {
         return Err("no triples".into());
     };
     assert_eq!(read.len(), READ_MAX);
-    let settings = Settings::for_table_1().ok_or("no built-in settings")?;
+    let settings = Settings::table_1().ok_or("no built-in settings")?;
     let code = f32::from(CODE_MAX / 4) - settings.axes[0].cell_zero_code;
     let [tensions, pulled, duties] = [2, 1, 0].map(|back| read[READ_MAX - 1 - back]);
     for step in tensions {

@@ -186,7 +186,7 @@ fn every_ready_scenario_passes_on_the_chip_as_in_process() {
     )];
     for ready in READY_SCENARIOS {
         let scenario = Scenario::parse(ready.name, ready.text).unwrap();
-        match scenario.for_board() {
+        match scenario.board_variant() {
             Ok(scenario) => left.push((ready.name, scenario)),
             Err(why) => eprintln!("{}: not run: {why}", ready.name),
         }

@@ -64,7 +64,7 @@ fn a_supply_between_the_brown_out_level_and_the_range_is_a_finding() -> Outcome 
 
 #[test]
 fn a_dip_during_a_save_leaves_the_old_settings_or_the_new_ones() -> Outcome {
-    let built_in = Settings::for_table_1().ok_or("no built-in settings")?;
+    let built_in = Settings::table_1().ok_or("no built-in settings")?;
     let other = other_settings()?;
     for dip_us in [0, 700, 3_000, 9_000] {
         let mut session = started(10)?;

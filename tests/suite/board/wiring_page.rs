@@ -47,7 +47,7 @@ const LEAK_A: f64 = 10e-6;
 const SENSOR_REACH_V: f64 = 0.2;
 
 fn settings() -> Settings {
-    Settings::for_table_1().unwrap()
+    Settings::table_1().unwrap()
 }
 
 #[track_caller]

@@ -26,7 +26,7 @@ pub fn image(image: FirmwareImage) -> Result<PathBuf, Box<dyn Error>> {
 }
 
 /// A tick of a leg at rest, whose host says nothing.
-pub fn at_rest() -> TickRequest {
+pub fn resting_tick() -> TickRequest {
     TickRequest {
         sensors: Sensors {
             cell_codes: [CODE_MAX / 4; 3],
@@ -70,10 +70,10 @@ pub fn started_with(
 
 /// A session that starts, after its first ticks.
 pub fn ticked(mut session: ChipSession, ticks: usize) -> Result<ChipSession, Box<dyn Error>> {
-    let settings = Settings::for_table_1().ok_or("no built-in settings")?;
+    let settings = Settings::table_1().ok_or("no built-in settings")?;
     assert_eq!(session.ask(&Request::Start(settings))?, Reply::Started);
     for _ in 0..ticks {
-        session.ask(&Request::Tick(at_rest()))?;
+        session.ask(&Request::Tick(resting_tick()))?;
     }
     Ok(session)
 }
@@ -202,7 +202,7 @@ pub fn findings(chip: &Chip) -> Vec<String> {
 
 /// Settings that differ from the built-in ones.
 pub fn other_settings() -> Result<Settings, Box<dyn Error>> {
-    let mut settings = Settings::for_table_1().ok_or("no built-in settings")?;
+    let mut settings = Settings::table_1().ok_or("no built-in settings")?;
     settings.limits.command_time_s *= 2.0;
     Ok(settings)
 }

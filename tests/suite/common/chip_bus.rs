@@ -3,7 +3,7 @@
 //! All chips run by one clock, that of the bus. The lowest identifier that anybody would send goes on; its frame takes its
 //! time, and then every other node says what it thinks of it.
 
-use super::chip::{LatencyMeter, at_rest, vary_cells};
+use super::chip::{LatencyMeter, resting_tick, vary_cells};
 use leg_boards::chip::ChipSession;
 use leg_firmware::can::{CanFrame, DATA_BIT_RATE, Identifier, LegAddress, NOMINAL_BIT_RATE};
 use leg_firmware::settings::Settings;
@@ -43,7 +43,7 @@ pub fn started_on_can(
     ticks: usize,
 ) -> Result<ChipSession, Box<dyn Error>> {
     let mut session = ChipSession::open(image)?;
-    let mut settings = Settings::for_table_1().ok_or("no built-in settings")?;
+    let mut settings = Settings::table_1().ok_or("no built-in settings")?;
     // Nothing turns the encoders here.
     settings.limits.still_time_s = 10.0;
     session.ask(&Request::Start(settings))?;
@@ -56,7 +56,7 @@ pub fn started_on_can(
         }
     }
     for _ in 0..ticks {
-        session.ask(&Request::Tick(at_rest()))?;
+        session.ask(&Request::Tick(resting_tick()))?;
     }
     Ok(session)
 }

@@ -29,7 +29,7 @@ fn goal(pulled_m: f64) -> AxisGoal<f64> {
 /// on by what an integral has gathered.
 #[test]
 fn an_integral_gathers_nothing_while_the_voltage_is_limited() {
-    let settings = Settings::for_table_1().unwrap();
+    let settings = Settings::table_1().unwrap();
     let limit_v = f64::from(settings.servo.current_a * settings.servo.resistance_ohm);
     let mut axis = Axis::<f64>::new(&settings);
     axis.rest(0.0);
@@ -54,7 +54,7 @@ fn an_integral_gathers_nothing_while_the_voltage_is_limited() {
 /// Above the maximum tension a tendon is let out, wherever it is led; but not beyond where it may go.
 #[test]
 fn a_tension_above_the_ceiling_turns_the_motor_round() {
-    let settings = Settings::for_table_1().unwrap();
+    let settings = Settings::table_1().unwrap();
     let duty = |tension_n: f64, lowest_m: f64| {
         let mut axis = Axis::<f64>::new(&settings);
         axis.rest(0.0);

@@ -147,7 +147,7 @@ struct OnQemu {
 impl OnQemu {
     fn new() -> Result<Self, Box<dyn Error>> {
         let mut link = Box::new(crate::common::qemu()?);
-        let settings = Settings::for_table_1().ok_or("no built-in settings")?;
+        let settings = Settings::table_1().ok_or("no built-in settings")?;
         link.ask(&Request::Start(settings))?;
         let off = Drive {
             duty: [0.0; 3],

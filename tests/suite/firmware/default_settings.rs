@@ -39,9 +39,9 @@ fn the_blob_is_up_to_date() -> Result<(), Box<dyn Error>> {
 
 #[test]
 fn a_leg_starts_with_the_built_in_settings() -> Result<(), Box<dyn Error>> {
-    let built_in = Settings::for_table_1().ok_or("the blob has another shape")?;
+    let built_in = Settings::table_1().ok_or("the blob has another shape")?;
     assert_eq!(built_in, expected()?);
-    assert_eq!(built_in, built_in.without_zero());
+    assert_eq!(built_in, built_in.unhomed());
     Leg::<f32>::new(&built_in)?;
     Ok(())
 }

@@ -29,7 +29,7 @@ fn a_zero_that_is_not_the_legs_shows_as_a_residual() {
 /// tenth of a second after would be believed, and a swing in it would be taken for how the leg is at rest.
 #[test]
 fn a_held_leg_that_follows_again_remembers_what_its_sensors_showed() {
-    let disagrees = |lies: bool| {
+    let disagrees = |reads_wrong: bool| {
         let mut still = StillLeg::armed();
         still.run(1000);
         assert_eq!(still.obey(Command::Stop), Ok(()));
@@ -41,14 +41,14 @@ fn a_held_leg_that_follows_again_remembers_what_its_sensors_showed() {
         assert_eq!(still.leg.state(), State::Active);
         let before_n = still.leg.telemetry().tensions_n[0];
         for _ in 0..50 {
-            if lies {
+            if reads_wrong {
                 still.sensors.cell_codes[0] -= 30;
             }
             still.run_silent(CYCLE_TICKS.into());
         }
         still.run_silent(600);
         let change_n = still.leg.telemetry().tensions_n[0] - before_n;
-        assert_eq!(change_n < -5.0, lies, "{change_n} N");
+        assert_eq!(change_n < -5.0, reads_wrong, "{change_n} N");
         still.leg.telemetry().faults.has(Fault::Residual)
     };
     assert!(disagrees(true));

@@ -13,7 +13,7 @@ use leg_firmware::settings::Settings;
 use leg_model::HalfTangent;
 
 fn settings() -> Settings {
-    Settings::for_table_1().unwrap()
+    Settings::table_1().unwrap()
 }
 
 /// The trajectory of a leg, its stream, and the tick.
@@ -62,7 +62,7 @@ impl Bench {
     fn hold(&mut self) {
         if self.trajectory.streamed() {
             let motion = self.trajectory.motion();
-            let to_rest = self.stream.limits.to_rest(&motion);
+            let to_rest = self.stream.limits.rest_segment(&motion);
             self.trajectory.leave_stream(&to_rest);
         }
     }

@@ -15,7 +15,7 @@ const CYCLE_S: f64 = CYCLE_TICKS as f64 / TICK_HZ as f64;
 /// half-tangent coordinates, and so the limits themselves in angles.
 #[test]
 fn trajectories_keep_their_limits() {
-    let settings = Settings::for_table_1().unwrap();
+    let settings = Settings::table_1().unwrap();
     let motion = settings.motion;
     let limits = [
         motion.speed_rad_per_s,
@@ -82,7 +82,7 @@ impl Course {
 /// A way that is made longer while the leg is on it has its greatest jerk at its very end.
 #[test]
 fn a_trajectory_keeps_its_jerk_to_the_end() {
-    let settings = Settings::for_table_1().unwrap();
+    let settings = Settings::table_1().unwrap();
     let limit = 0.5 * f64::from(settings.motion.jerk_rad_per_s3);
     for first in [2e-3, 5e-3, 2e-2] {
         for second in [1.3, 2.0, 4.0] {

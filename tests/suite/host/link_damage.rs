@@ -116,7 +116,7 @@ fn check(request: &Request, damaged: &[u8], what: fmt::Arguments<'_>) {
 }
 
 /// Every request with its frame and each place in it.
-fn for_each_place(of: impl Fn(&Request, &[u8], usize)) {
+fn visit_places(of: impl Fn(&Request, &[u8], usize)) {
     for request in requests() {
         let frame = framed(DAMAGED, &request);
         (0..frame.len()).for_each(|place| of(&request, &frame, place));
@@ -138,7 +138,7 @@ fn the_longest_request_takes_a_full_block() {
 
 #[test]
 fn a_byte_that_is_cut_makes_no_other_request() {
-    for_each_place(|request, frame, place| {
+    visit_places(|request, frame, place| {
         let mut damaged = frame.to_vec();
         damaged.remove(place);
         check(request, &damaged, format_args!("without byte {place}"));
@@ -153,7 +153,7 @@ fn a_byte_that_is_cut_makes_no_other_request() {
 
 #[test]
 fn a_bit_that_is_flipped_makes_no_other_request() {
-    for_each_place(|request, frame, place| {
+    visit_places(|request, frame, place| {
         for bit in 0..8 {
             let mut damaged = frame.to_vec();
             damaged[place] ^= 1 << bit;
@@ -164,7 +164,7 @@ fn a_bit_that_is_flipped_makes_no_other_request() {
 
 #[test]
 fn a_byte_that_comes_twice_or_too_late_makes_no_other_request() {
-    for_each_place(|request, frame, place| {
+    visit_places(|request, frame, place| {
         let mut doubled = frame.to_vec();
         doubled.insert(place, frame[place]);
         check(request, &doubled, format_args!("byte {place} twice"));
@@ -176,7 +176,7 @@ fn a_byte_that_comes_twice_or_too_late_makes_no_other_request() {
 
 #[test]
 fn a_byte_that_is_inserted_or_changed_makes_no_other_request() {
-    for_each_place(|request, frame, place| {
+    visit_places(|request, frame, place| {
         for byte in 0..=u8::MAX {
             let mut damaged = frame.to_vec();
             damaged.insert(place, byte);
@@ -194,7 +194,7 @@ fn a_byte_that_is_inserted_or_changed_makes_no_other_request() {
 
 #[test]
 fn a_run_of_bytes_that_is_lost_makes_no_other_request() {
-    for_each_place(|request, frame, from| {
+    visit_places(|request, frame, from| {
         for to in from + 1..=frame.len() {
             let damaged = [&frame[..from], &frame[to..]].concat();
             check(request, &damaged, format_args!("without {from} to {to}"));

@@ -10,12 +10,12 @@ use leg_firmware::supervisor::State;
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{HostIdentity, Operator, OperatorError};
 use leg_host::transport::emulated::EmulatedLine;
-use leg_host::tune::{
-    ComparisonRow, JogPlan, Jogged, MeasuredMotor, OperatorTuneError, SwingPlan, comparison,
-    measure_motor, measure_swing, section, supply_v,
-};
+use leg_host::tune::{OperatorTuneError, measure_motor, measure_swing, supply_v};
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
+use leg_rig::tune::{
+    ComparisonRow, JogPlan, Jogged, MeasuredMotor, SwingPlan, comparison, section,
+};
 use leg_sim::emulated_leg::EmulatedLeg;
 use leg_sim::link::InProcess;
 use leg_sim::plant::{Plant, Start};

@@ -33,6 +33,12 @@ fn twisted_poses() -> impl Iterator<Item = (f64, f64, f64)> {
         .flat_map(|(azimuth, tilt)| [-0.2, 0.0, 0.2].map(|torsion| (azimuth, tilt, torsion)))
 }
 
+/// Asserts that an error, in SI, is below a bound, in a pose of an azimuth, a tilt and a torsion, rad.
+#[track_caller]
+fn assert_small(error: f64, bound: f64, pose: [f64; 3]) {
+    assert!(error < bound, "{error:e} in {pose:?}");
+}
+
 fn rig() -> Rig<f64, 3> {
     Rig::new(&TABLE_1).unwrap()
 }
@@ -49,10 +55,7 @@ fn a_rotation_changes_the_lengths_by_minus_the_transposed_moment_map() {
             .moment_map;
         // Entries reach 0.025 m; the differences are good for 1e-11 of the lengths.
         let error = (numeric + moment_map.transpose()).amax();
-        assert!(
-            error < 1e-11,
-            "azimuth {azimuth}, tilt {tilt}, torsion {torsion}: {error:e}"
-        );
+        assert_small(error, 1e-11, [azimuth, tilt, torsion]);
     }
 }
 
@@ -64,10 +67,7 @@ fn exact_k2_is_the_derivative_of_the_tendon_moment_at_constant_tensions() {
         let geometry = rig().geometry().twisted(&Twist::from_torsion(torsion));
         let direction = Direction::from_angles(azimuth, tilt).unwrap();
         let error = (structural_stiffness(&geometry, &direction, &TENSIONS) - numeric).amax();
-        assert!(
-            error < 1e-7,
-            "azimuth {azimuth}, tilt {tilt}, torsion {torsion}: {error:e} N·m/rad"
-        );
+        assert_small(error, 1e-7, [azimuth, tilt, torsion]);
     }
 }
 
@@ -89,10 +89,7 @@ fn k1_and_exact_k2_are_the_derivative_of_the_moment_of_elastic_tendons() {
         let stiffness = tendon_stiffness(&moment_map, &STIFFNESSES)
             + structural_stiffness(rig.geometry(), &direction, &TENSIONS);
         let error = (stiffness - numeric).amax();
-        assert!(
-            error < 1e-7,
-            "azimuth {azimuth}, tilt {tilt}: {error:e} N·m/rad"
-        );
+        assert_small(error, 1e-7, [azimuth, tilt, 0.0]);
     }
 }
 
@@ -106,10 +103,7 @@ fn the_load_s_own_stiffness_is_the_derivative_of_its_moment() {
         let direction = Direction::from_angles(azimuth, tilt).unwrap();
         let error = (load.stiffness(&direction) - numeric).amax();
         // Of 6 N·m/rad.
-        assert!(
-            error < 1e-10,
-            "azimuth {azimuth}, tilt {tilt}: {error:e} N·m/rad"
-        );
+        assert_small(error, 1e-10, [azimuth, tilt, 0.0]);
     }
 }
 
@@ -134,10 +128,7 @@ fn the_full_pass_keeps_the_symmetric_part_of_the_derivative_of_all_moments() {
             .stiffness
             .matrix();
         let error = (stiffness - (numeric + numeric.transpose()) / 2.0).amax();
-        assert!(
-            error < 1e-7,
-            "azimuth {azimuth}, tilt {tilt}: {error:e} N·m/rad"
-        );
+        assert_small(error, 1e-7, [azimuth, tilt, 0.0]);
     }
 }
 

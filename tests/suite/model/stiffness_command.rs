@@ -4,8 +4,8 @@
 
 use leg_base::angles;
 use leg_model::{
-    Bound, Direction, Error, Limit, Load, Query, Rig, StiffnessAnswer, StiffnessDemand,
-    TensionBounds, evaluate, inverse_statics,
+    Bound, Direction, Error, Load, Query, Rig, StiffnessAnswer, StiffnessDemand, TensionBounds,
+    evaluate, inverse_statics,
 };
 use leg_model_tools::nonlinear::{Balance, Posture};
 use leg_rig::ready_rigs::READY_RIGS;
@@ -37,32 +37,16 @@ fn answer(
 fn the_range_at_the_vertical_is_known() {
     let mut file = table_1();
     file.parameters.gravity_m_per_s2 = 0.0;
-    let lowest = answer(&file, (0.0, 0.0, 0.0), 1.0, None).unwrap();
-    assert!(
-        (lowest.stiffness_nm_per_rad - 12.8).abs() < 0.06,
-        "{lowest:?}"
-    );
-    assert!((lowest.pretension_n - 8.0).abs() < 1e-9);
-    assert!(matches!(
-        lowest.limit,
-        Some(Limit {
-            bound: Bound::Min,
-            ..
-        })
-    ));
-    let highest = answer(&file, (0.0, 0.0, 0.0), 500.0, None).unwrap();
-    assert!(
-        (highest.stiffness_nm_per_rad - 178.0).abs() < 0.6,
-        "{highest:?}"
-    );
-    assert!((highest.pretension_n - 150.0).abs() < 1e-9);
-    assert!(matches!(
-        highest.limit,
-        Some(Limit {
-            bound: Bound::Max,
-            ..
-        })
-    ));
+    for (demanded, [given, within], pretension_n, end) in [
+        (1.0, [12.8, 0.06], 8.0, Bound::Min),
+        (500.0, [178.0, 0.6], 150.0, Bound::Max),
+    ] {
+        let found = answer(&file, (0.0, 0.0, 0.0), demanded, None).unwrap();
+        let off = found.stiffness_nm_per_rad - given;
+        assert!(off.abs() < within, "{found:?}");
+        assert!((found.pretension_n - pretension_n).abs() < 1e-9);
+        assert!(found.limit.is_some_and(|limit| limit.bound == end));
+    }
 }
 
 /// With a floor below the tension at which the tendons are softest, stiffness first falls with the pretension, then rises.

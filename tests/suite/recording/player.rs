@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::recorded::{logged, recorded, signals, simulation};
+use super::recorded::{logged, recorded, simulation};
 use leg_recording::{SignalReader, read_signals};
 use leg_sim::link::InProcess;
 use leg_sim::signals::{LegConstants, REPORT_SIGNALS, SIMULATED_SIGNALS};
@@ -21,7 +21,7 @@ fn every_signal_is_read_by_its_name_as_far_as_it_goes() {
     let constants = LegConstants::new(simulation().settings());
     let mut written = Vec::new();
     let watch = &mut |tick: &Tick<'_>| {
-        let (report, simulated) = signals(&constants, tick);
+        let (report, simulated) = tick.signals(&constants);
         let mut numbers = Vec::new();
         for signal in REPORT_SIGNALS {
             signal.numbers(&report, &mut numbers);

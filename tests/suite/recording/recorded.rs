@@ -11,7 +11,7 @@ use leg_rig::rig_file::RigFile;
 use leg_sim::link::InProcess;
 use leg_sim::ready_scenarios;
 use leg_sim::scenario::Scenario;
-use leg_sim::signals::{LegConstants, Report, Simulated};
+use leg_sim::signals::{LegConstants, Report};
 use leg_sim::simulation::{SAMPLE_TICKS, Simulation, Tick};
 use std::io::Cursor;
 
@@ -20,17 +20,6 @@ pub fn simulation() -> Simulation {
     let text = ready_scenarios::named("fault_driver_fault").unwrap().text;
     let scenario = Scenario::parse("test", text).unwrap();
     Simulation::new(&scenario, &RigFile::load(None).unwrap()).unwrap()
-}
-
-/// A tick of a simulation as signals.
-pub fn signals(leg: &LegConstants, tick: &Tick<'_>) -> (Report, Simulated) {
-    let report = Report::new(tick.telemetry, leg).compared(tick.comparison);
-    let simulated = Simulated {
-        truth: *tick.truth,
-        motors: *tick.motors,
-        comparison: *tick.comparison,
-    };
-    (report, simulated)
 }
 
 /// Records that scenario; `spoil` may change what a tick gave. Gives the file, and the number of its ticks.
@@ -46,7 +35,7 @@ pub fn recorded(spoil: impl Fn(&mut Drive<f32>, u32)) -> (Vec<u8>, u64) {
         let drive = &drive;
         file.write_tick(number, &Tick { drive, ..*tick }).unwrap();
         if number.is_multiple_of(SAMPLE_TICKS) {
-            file.write_simulation(number, &signals(&leg, tick)).unwrap();
+            file.write_simulation(number, &tick.signals(&leg)).unwrap();
         }
         if number.is_multiple_of(TICK_HZ.into()) {
             file.flush().unwrap();

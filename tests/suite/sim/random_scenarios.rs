@@ -50,7 +50,7 @@ impl Watch {
         if !telemetry.state.driven() && tick.drive.enabled {
             self.complain(tick, "the drivers are on");
         }
-        self.faulty |= telemetry.faults.without_limits() != FaultSet::NONE;
+        self.faulty |= telemetry.faults.stopping() != FaultSet::NONE;
     }
 
     fn complain(&mut self, tick: &Tick<'_>, what: &str) {

@@ -8,12 +8,12 @@ use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_sim::plant::Defect;
 
-/// How far a cell that lies may lead the tip of a leg at rest, mm.
+/// How far a cell that reads wrong may lead the tip of a leg at rest, mm.
 const LIES_MM: f64 = 0.5;
 
-/// One sensor that lies while the leg keeps station: the tip stays where it is, and most are found.
+/// One sensor that reads wrong while the leg keeps station: the tip stays where it is, and most are found.
 #[test]
-fn a_sensor_that_lies_ends_it_in_hold_or_moves_nothing() {
+fn a_sensor_that_reads_wrong_ends_it_in_hold_or_moves_nothing() {
     let found_always: [fn(usize) -> Defect; 15] = [
         Defect::CellStuck,
         Defect::CellSaturated,
@@ -54,7 +54,7 @@ fn a_sensor_that_lies_ends_it_in_hold_or_moves_nothing() {
             held || !always && bench.state() == State::KeepingStation,
             "{defect:?}"
         );
-        assert_eq!(held, faults(&bench).without_limits().any(), "{defect:?}");
+        assert_eq!(held, faults(&bench).stopping().any(), "{defect:?}");
     }
     for (defect, fault) in [
         (Defect::ExcitationLost, None),
@@ -118,10 +118,10 @@ fn drifted(every: u32) -> (f64, State, FaultSet) {
     (largest_mm, bench.state(), faults(&bench))
 }
 
-/// A cell that begins to lie just after two kilograms were hung on the leg: the change of the load hides a part of the lie, and not each
+/// A cell that begins to read wrong just after two kilograms were hung on the leg: the change of the load hides a part of the error, and not each
 /// is found. The tip stays within what SAFETY.md says.
 #[test]
-fn a_cell_that_lies_after_a_payload_has_come_moves_the_tip_by_little() {
+fn a_cell_that_reads_wrong_after_a_payload_has_come_moves_the_tip_by_little() {
     let sound = keeping(&paper(), [60.0, 20.0], 0.0, 22);
     let home_m = sound.truth.tip_m;
     const AFTER_LOAD_MM: f64 = 0.8;

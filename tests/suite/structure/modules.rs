@@ -58,7 +58,7 @@ impl Modules {
         let mut rest = tokens;
         while let [first, after @ ..] = rest {
             rest = match first {
-                TokenTree::Punct(hash) if hash.as_char() == '#' => after_attribute(after),
+                TokenTree::Punct(hash) if hash.as_char() == '#' => skip_attribute(after),
                 TokenTree::Group(group) => {
                     self.read_tokens(&group.stream().into_iter().collect::<Vec<_>>(), module);
                     after
@@ -173,7 +173,7 @@ fn is(token: &TokenTree, punctuation: char) -> bool {
 }
 
 /// What follows an attribute; after `#[cfg(test)]` also its item is left out.
-pub fn after_attribute(tokens: &[TokenTree]) -> &[TokenTree] {
+pub fn skip_attribute(tokens: &[TokenTree]) -> &[TokenTree] {
     let [TokenTree::Group(attribute), after @ ..] = tokens else {
         return tokens;
     };

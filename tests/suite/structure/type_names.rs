@@ -1,6 +1,6 @@
 //! Names of public types: each stands for one type in the whole workspace.
 
-use super::modules::after_attribute;
+use super::modules::skip_attribute;
 use super::workspace;
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use std::collections::BTreeMap;
@@ -50,7 +50,7 @@ fn add_public_types(tokens: TokenStream, names: &mut Vec<String>) {
     let mut rest: &[TokenTree] = &tokens;
     while let [first, after @ ..] = rest {
         rest = match first {
-            TokenTree::Punct(hash) if hash.as_char() == '#' => after_attribute(after),
+            TokenTree::Punct(hash) if hash.as_char() == '#' => skip_attribute(after),
             TokenTree::Group(group) => {
                 add_public_types(group.stream(), names);
                 after

@@ -88,7 +88,7 @@ extern "C" fn _start() -> ! {
     let mut decoder = Decoder::new();
     let mut out = [0; MAX_FRAME];
     let leg = LegAddress::ALL[0];
-    let mut assembler = Assembler::<MAX_FRAME>::for_leg(leg);
+    let mut assembler = Assembler::<MAX_FRAME>::leg_receiver(leg);
     let mut segmenter = Segmenter::new(Identifier::ToHost(leg));
     let mut guard = BusGuard::new(1_000_000);
     loop {

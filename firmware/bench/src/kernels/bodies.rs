@@ -22,7 +22,7 @@ use leg_model::Error;
 /// A kernel as a type.
 pub trait KernelBody<T> {
     type Output;
-    fn run(bench: &KernelArguments<T>) -> Result<Self::Output, Error>;
+    fn run(arguments: &KernelArguments<T>) -> Result<Self::Output, Error>;
     fn flatten(output: &Self::Output, push: &mut impl FnMut(T));
 
     /// An error that stands inside the output.

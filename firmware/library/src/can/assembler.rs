@@ -55,13 +55,13 @@ pub struct Assembler<const N: usize = MAX_FRAME> {
 impl<const N: usize> Assembler<N> {
     /// What a leg receives from the host: under its own address, and urgent to all.
     #[must_use]
-    pub const fn for_leg(leg: LegAddress) -> Self {
+    pub const fn leg_receiver(leg: LegAddress) -> Self {
         Self::receiving(Identifier::ToLeg(leg))
     }
 
     /// What the host receives from a leg.
     #[must_use]
-    pub const fn for_host(leg: LegAddress) -> Self {
+    pub const fn host_receiver(leg: LegAddress) -> Self {
         Self::receiving(Identifier::ToHost(leg))
     }
 

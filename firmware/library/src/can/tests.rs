@@ -41,5 +41,5 @@ fn push_all<'a, const N: usize>(
 }
 
 fn join(frames: &[CanFrame]) -> Came {
-    push_all(&mut Assembler::<MAX_FRAME>::for_leg(LEG), frames)
+    push_all(&mut Assembler::<MAX_FRAME>::leg_receiver(LEG), frames)
 }

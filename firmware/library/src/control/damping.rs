@@ -204,7 +204,7 @@ impl<T: Scalar> SwingDamping<T> {
     }
 
     /// By how much each tendon shall be longer, m, for lengths that deviate from those of the trajectory by `deviations_m`. The tensions per
-    /// pretension tell a swing from a sensor that lies: a swing changes no length along them. `time_constant_s` is 1/ω of the first mode, s;
+    /// pretension tell a swing from a sensor that reads wrong: a swing changes no length along them. `time_constant_s` is 1/ω of the first mode, s;
     /// `inertia` that of the leg with its payload, kg·m².
     #[inline(always)]
     pub fn step(
@@ -286,7 +286,7 @@ mod tests {
 
     /// Offsets over two swings of tendons that are longer by `amplitude_m` times `parts`.
     fn offsets(parts: [f64; 3], amplitude_m: f64) -> Vec<[f64; 3]> {
-        let mut damping = SwingDamping::<f64>::new(&Settings::for_table_1().unwrap());
+        let mut damping = SwingDamping::<f64>::new(&Settings::table_1().unwrap());
         let step = |i: u32| {
             let phase = f64::from(i) * 1e-3 / TIME_CONSTANT_S;
             let deviations_m = parts.map(|part| part * amplitude_m * phase.sin());
@@ -308,7 +308,7 @@ mod tests {
     #[test]
     fn a_swing_is_braked() {
         let amplitude_m = 1e-4;
-        let twice_ratio = 2.0 * f64::from(Settings::for_table_1().unwrap().motion.damping_ratio);
+        let twice_ratio = 2.0 * f64::from(Settings::table_1().unwrap().motion.damping_ratio);
         let offsets = offsets(SWING, amplitude_m);
         let steps = (core::f64::consts::TAU * TIME_CONSTANT_S / 1e-3).round() as usize;
         // Work of the offset of the first tendon by its length, m², against that of a damper: twice the ratio × time constant × speed.
@@ -326,7 +326,7 @@ mod tests {
     #[test]
     fn what_lasts_is_no_swing() {
         let moved = |m_per_s: f64| {
-            let mut damping = SwingDamping::<f64>::new(&Settings::for_table_1().unwrap());
+            let mut damping = SwingDamping::<f64>::new(&Settings::table_1().unwrap());
             move |i: u32| {
                 let length_m = m_per_s * f64::from(STEP_S) * f64::from(i);
                 let lengths_m = SWING.map(|part| part * length_m);
@@ -341,7 +341,7 @@ mod tests {
         assert!(largest(&fast[600..]) > 1e-7);
     }
 
-    /// One length that changes alone is a sensor that lies; so are three that change as pretension does.
+    /// One length that changes alone is a sensor that reads wrong; so are three that change as pretension does.
     #[test]
     fn what_no_swing_explains_moves_nothing() {
         for parts in [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [1.0; 3]] {
@@ -357,7 +357,7 @@ mod tests {
 
     /// How long a swing whose amplitude, m, changes by so much in a second, 1/s, takes until it is found, s.
     fn found_after_s(amplitude_m: f64, growth_per_s: f64, moving: bool) -> Option<f64> {
-        let mut damping = SwingDamping::<f64>::new(&Settings::for_table_1().unwrap());
+        let mut damping = SwingDamping::<f64>::new(&Settings::table_1().unwrap());
         (0..5000).map(|i| f64::from(i) * 1e-3).find(|&time_s| {
             let amplitude_m = amplitude_m * (growth_per_s * time_s).exp();
             let length_m = amplitude_m * (time_s / TIME_CONSTANT_S).sin();

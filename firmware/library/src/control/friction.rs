@@ -76,7 +76,7 @@ mod tests {
     /// which a screw and gear of 27 % together leave 46 % to pay out.
     #[test]
     fn the_friction_of_the_default_motor_is_fed() {
-        let friction = Friction::<f64>::new(&Settings::for_table_1().unwrap());
+        let friction = Friction::<f64>::new(&Settings::table_1().unwrap());
         let voltage = |mm_per_s: f64, tension_n: f64| {
             friction.voltage_v(mm_per_s * 1e-3 * f64::from(TICK_S), tension_n)
         };

@@ -7,12 +7,19 @@ use leg_model::Scalar;
 /// Time in which the voltage of a jog comes up, s: at once, the motor would draw more than any tension of a jog asks for.
 pub const JOG_RISE_S: f32 = 0.1;
 
-/// Slowest jog that is waited for, m/s: so the longest jog takes 101 s, less than the 120 s for which `leg jog` waits. At ten times as
-/// much, the time ends jogs of a motor whose resistance is 1.8 times what is configured (`tests/suite/host/tune.rs`).
+/// Slowest jog that is waited for, m/s. At ten times as much, the time ends jogs of a motor whose resistance is 1.8 times what is configured (`tests/suite/host/tune.rs`).
 const SLOWEST_M_PER_S: f32 = 2e-4;
 
 /// The time for all that is beside the way, s: twenty times what the speed takes to become steady.
 const GRACE_S: f32 = 1.0;
+
+/// The longest time of any jog, s.
+pub const JOG_TIME_MAX_S: f32 = longest_s(JOG_TRAVEL_MAX_M / SLOWEST_M_PER_S);
+
+/// The longest time of a jog whose way takes `way_s` at the most that it may draw: twice that.
+const fn longest_s(way_s: f32) -> f32 {
+    JOG_RISE_S + GRACE_S + 2.0 * way_s
+}
 
 /// The bounds of every jog, from the settings.
 #[derive(Clone, Copy, Debug)]
@@ -55,12 +62,11 @@ impl<T: Scalar> JogBounds<T> {
         }
     }
 
-    /// The longest time of a jog, s: twice what it takes at the most that it may draw.
+    /// The longest time of a jog, s.
     pub fn time_max_s(&self, demand: &JogDemand) -> f32 {
         let left_v = demand.voltage_v - self.dropped_v;
         let slowest = SLOWEST_M_PER_S * self.back_emf_v_s_per_m;
         let induced_v = if left_v > slowest { left_v } else { slowest };
-        let way_s = demand.travel_m.abs() * self.back_emf_v_s_per_m / induced_v;
-        JOG_RISE_S + GRACE_S + 2.0 * way_s
+        longest_s(demand.travel_m.abs() * self.back_emf_v_s_per_m / induced_v)
     }
 }

@@ -144,7 +144,7 @@ impl<T: Scalar> Measurement<T> {
         if self.zero_readings == ZERO_READINGS {
             // Exact: a sum has 20 bits, and the divisor is a power of two.
             let mean = |sum: u32| sum as f32 * (1.0 / f32::from(ZERO_READINGS));
-            let zeros = self.zero_codes.map(|sum| CurrentZero::of_mean(mean(sum)));
+            let zeros = self.zero_codes.map(|sum| CurrentZero::from_mean(mean(sum)));
             self.set_current_zeros(&zeros);
         }
     }

@@ -122,7 +122,7 @@ mod tests {
     const LEANING: [f64; 2] = [0.0, 0.735];
 
     fn estimate() -> PayloadEstimate<f64> {
-        PayloadEstimate::new(&Settings::for_table_1().unwrap())
+        PayloadEstimate::new(&Settings::table_1().unwrap())
     }
 
     /// Cycles until an estimate is within 5 % of a payload on a leg that leans.
@@ -174,7 +174,7 @@ mod tests {
     /// Without gravity a payload shows by what its acceleration takes, and at rest by nothing.
     #[test]
     fn without_gravity_every_number_stays_finite() {
-        let mut settings = Settings::for_table_1().unwrap();
+        let mut settings = Settings::table_1().unwrap();
         settings.rig.gravity_m_per_s2 = 0.0;
         let mut estimate = PayloadEstimate::<f64>::new(&settings);
         for per_kg in [[0.0; 2], [0.1, 0.0], [0.0; 2]] {

@@ -68,20 +68,20 @@ impl<T: Scalar> Play<T> {
     pub fn cross_m(&mut self, lengths_m: &[T; 3]) -> [T; 3] {
         let turned_m = self.turned_m.get_or_insert_with(|| {
             let mut turned_m = *lengths_m;
-            for (turned, &behind) in turned_m.iter_mut().zip(&self.lag_m) {
+            for (turned, &lag) in turned_m.iter_mut().zip(&self.lag_m) {
                 // Without play both are zero.
-                if behind > T::zero() {
-                    *turned -= behind / self.gain;
+                if lag > T::zero() {
+                    *turned -= lag / self.gain;
                 }
             }
             turned_m
         });
         let mut lag_m = *lengths_m;
-        for (i, (behind, turned)) in lag_m.iter_mut().zip(turned_m).enumerate() {
-            let length_m = *behind;
+        for (i, (lag, turned)) in lag_m.iter_mut().zip(turned_m).enumerate() {
+            let length_m = *lag;
             *turned = min(max(*turned, length_m - self.turn_m), length_m);
-            *behind = (length_m - *turned) * self.gain;
-            *turned += (*behind - self.lag_m[i]) * self.correction;
+            *lag = (length_m - *turned) * self.gain;
+            *turned += (*lag - self.lag_m[i]) * self.correction;
         }
         lag_m
     }
@@ -96,8 +96,8 @@ impl<T: Scalar> Play<T> {
     #[inline(always)]
     pub fn follow(&mut self, pulled_m: &[T; 3]) {
         for (i, &pulled) in pulled_m.iter().enumerate() {
-            let behind = self.lag_m[i] + (self.pulled_m[i] - pulled);
-            self.lag_m[i] = min(max(behind, T::zero()), self.play_m);
+            let lag = self.lag_m[i] + (self.pulled_m[i] - pulled);
+            self.lag_m[i] = min(max(lag, T::zero()), self.play_m);
         }
         self.pulled_m = *pulled_m;
     }
@@ -110,7 +110,7 @@ mod tests {
     #[test]
     fn a_screw_stays_while_its_motor_crosses_the_play() {
         let mut play = Play::<f64>::new(2.0);
-        for (pulled, behind) in [
+        for (pulled, lag) in [
             (0.0, 0.0),
             (5.0, 0.0),
             (4.0, 1.0),
@@ -122,7 +122,7 @@ mod tests {
             (-5.0, 0.0),
         ] {
             play.follow(&[pulled, 0.0, 0.0]);
-            assert_eq!(play.lag_m(), &[behind, 0.0, 0.0], "{pulled}");
+            assert_eq!(play.lag_m(), &[lag, 0.0, 0.0], "{pulled}");
         }
     }
 

@@ -15,7 +15,7 @@ pub struct MotionState<T> {
 
 impl<T: Scalar> MotionState<T> {
     /// At rest.
-    pub fn at_rest(position: [T; 2]) -> Self {
+    pub fn resting(position: [T; 2]) -> Self {
         Self {
             position,
             rate: [T::zero(); 2],
@@ -32,7 +32,7 @@ impl<T: Scalar> MotionState<T> {
                 T::from(0.4) * self.rate[i] + T::from(0.05) * time_s * self.acceleration[i];
             self.position[i] + time_s * braked
         };
-        Self::at_rest([coordinate(0), coordinate(1)])
+        Self::resting([coordinate(0), coordinate(1)])
     }
 
     /// The acceleration that a cubic path from this motion has at `end`, where position and rate are given: the third

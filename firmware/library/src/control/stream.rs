@@ -38,7 +38,7 @@ impl<T: Scalar> Stream<T> {
     pub fn new(limits: StreamLimits<T>) -> Self {
         let origin = Knot {
             tick: 0,
-            motion: MotionState::at_rest([T::zero(); 2]),
+            motion: MotionState::resting([T::zero(); 2]),
         };
         Self {
             limits,
@@ -129,7 +129,7 @@ impl<T: Scalar> Stream<T> {
     /// The segment that ends a stream in rest, and whether it ends before its last point came.
     pub fn end(&mut self) -> (Segment<T>, bool) {
         let missing = core::mem::take(&mut self.open);
-        (self.limits.to_rest(&self.reached.motion), missing)
+        (self.limits.rest_segment(&self.reached.motion), missing)
     }
 }
 

@@ -127,7 +127,7 @@ impl<T: Scalar> StreamLimits<T> {
     }
 
     /// The path from a motion to rest within the limits: see [`MotionState::rest_after`].
-    pub fn to_rest(&self, motion: &MotionState<T>) -> Segment<T> {
+    pub fn rest_segment(&self, motion: &MotionState<T>) -> Segment<T> {
         let ticks = cycles(self.time_to_rest_s(motion)) * i32::from(CYCLE_TICKS);
         let time_s = T::from(ticks as f32 * TICK_S);
         let rest = motion.rest_after(time_s);

@@ -76,7 +76,7 @@ impl<T: Scalar> Trajectory<T> {
         let start = start.xy();
         Self {
             limits,
-            path: Quintic::new(&MotionState::at_rest(start), start, T::one()),
+            path: Quintic::new(&MotionState::resting(start), start, T::one()),
             elapsed: 0,
             duration: 0,
             streamed: false,
@@ -90,7 +90,7 @@ impl<T: Scalar> Trajectory<T> {
 
     /// Starts anew, at rest.
     pub fn start(&mut self, q: Point<T>) {
-        self.path = Quintic::new(&MotionState::at_rest(q.xy()), q.xy(), T::one());
+        self.path = Quintic::new(&MotionState::resting(q.xy()), q.xy(), T::one());
         (self.elapsed, self.duration) = (0, 0);
         (self.streamed, self.begins, self.planned) = (false, false, None);
         (self.next, self.angular_acceleration) = (q.xy(), Vector3::zeros());

@@ -110,7 +110,7 @@ mod tests {
         ] {
             let mut settings = Settings {
                 support,
-                ..Settings::for_table_1().unwrap()
+                ..Settings::table_1().unwrap()
             };
             if support == SupportKind::ElasticUniversal {
                 settings.joint.torsion_nm_per_rad = 40.0;

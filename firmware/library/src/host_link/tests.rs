@@ -34,7 +34,7 @@ struct Line {
 impl Line {
     fn new() -> Self {
         Self {
-            link: HostLink::new(identity(), Settings::for_table_1().unwrap()),
+            link: HostLink::new(identity(), Settings::table_1().unwrap()),
             leg: NotedLeg::default(),
             decoder: Decoder::new(),
             asked: 100,
@@ -123,7 +123,7 @@ fn identify() -> HostRequest {
 
 /// Settings that differ from those that a line begins with.
 fn others() -> Settings {
-    let mut settings = Settings::for_table_1().unwrap();
+    let mut settings = Settings::table_1().unwrap();
     settings.pretension_n += 1.0;
     settings
 }

@@ -135,7 +135,7 @@ impl<T: Scalar> Active<T> {
         if streamed {
             let motion = self.trajectory.motion();
             self.trajectory
-                .leave_stream(&shared.stream.limits.to_rest(&motion));
+                .leave_stream(&shared.stream.limits.rest_segment(&motion));
         }
         streamed
     }
@@ -350,7 +350,7 @@ mod tests {
     /// paid out with less. Nothing is followed before.
     #[test]
     fn tendons_that_pull_already_are_not_taken_up_from_slack() {
-        let settings = Settings::for_table_1().unwrap();
+        let settings = Settings::table_1().unwrap();
         let f_min_n = f64::from(settings.f_min_n);
         for (parts, taut) in [
             ([1.0; 3], true),

@@ -63,8 +63,8 @@ impl<T: Scalar> LengthOffsets<T> {
             for (length, goal) in lengths_m.iter_mut().zip(goals_m) {
                 *length += goal;
             }
-            for (goal, behind) in goals_m.iter_mut().zip(shared.play.cross_m(&lengths_m)) {
-                *goal += behind;
+            for (goal, lag) in goals_m.iter_mut().zip(shared.play.cross_m(&lengths_m)) {
+                *goal += lag;
             }
         }
         for (i, step) in self.step_m.iter_mut().enumerate() {

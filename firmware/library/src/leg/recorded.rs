@@ -16,7 +16,7 @@ impl<T: Scalar> Leg<T> {
     /// The latched faults that do more than limit.
     #[inline(always)]
     pub fn stopping_faults(&self) -> FaultSet {
-        self.supervisor.latched().without_limits()
+        self.supervisor.latched().stopping()
     }
 
     /// A signal after the tick that gave this drive; zeros before the first tick.

@@ -226,7 +226,7 @@ mod tests {
     }
 
     fn limits() -> StationLimits<f64> {
-        StationLimits::new(&Settings::for_table_1().unwrap())
+        StationLimits::new(&Settings::table_1().unwrap())
     }
 
     /// A step; what is left of the way after it.

@@ -20,10 +20,10 @@ struct Bench {
 
 impl Bench {
     fn new() -> Self {
-        let settings = Settings::for_table_1().unwrap();
+        let settings = Settings::table_1().unwrap();
         let mut bench = Self {
             leg: SensingLeg::new(&settings).unwrap(),
-            sensors: Sensors::at_rest(&settings),
+            sensors: Sensors::resting(&settings),
         };
         bench.run(SOME_TICKS);
         assert_eq!(bench.leg.telemetry().state, State::Disarmed);
@@ -48,7 +48,7 @@ impl Bench {
     }
 
     fn restart(&mut self) -> Result<(), HostRefusal> {
-        self.leg.restart(&Settings::for_table_1().unwrap())
+        self.leg.restart(&Settings::table_1().unwrap())
     }
 }
 

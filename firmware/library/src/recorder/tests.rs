@@ -21,12 +21,12 @@ const BOOT_TICKS: u32 = 40;
 
 impl Bench {
     fn new(signals: SignalSet) -> Self {
-        let mut settings = Settings::for_table_1().unwrap();
+        let mut settings = Settings::table_1().unwrap();
         settings.recorded = signals;
         let mut bench = Self {
             leg: Leg::new(&settings).unwrap(),
             recorder: Recorder::new(),
-            sensors: Sensors::at_rest(&settings),
+            sensors: Sensors::resting(&settings),
         };
         bench.recorder.begin(&RecorderSetup::new(&settings));
         bench
@@ -140,7 +140,7 @@ fn every_signal_has_its_place_in_a_row() {
     let read = bench.read();
     assert_eq!(read.len(), RECORDED_SIGNALS.len() * BOOT_TICKS as usize);
     let newest = &read[read.len() - RECORDED_SIGNALS.len()..];
-    let settings = Settings::for_table_1().unwrap();
+    let settings = Settings::table_1().unwrap();
     for ((signal, triple), full) in RECORDED_SIGNALS.into_iter().zip(newest).zip(report.newest) {
         assert_eq!(full.map(|steps| steps as u16), *triple);
         let [first, second, third] = signal.steps(&settings);

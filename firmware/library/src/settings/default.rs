@@ -11,7 +11,7 @@ impl Settings {
     ///
     /// `None` only if the program was built from a blob of another shape, which a test excludes.
     #[must_use]
-    pub fn for_table_1() -> Option<Self> {
+    pub fn table_1() -> Option<Self> {
         match postcard::take_from_bytes(TABLE_1) {
             Ok((settings, [])) => Some(settings),
             Ok(_) | Err(_) => None,

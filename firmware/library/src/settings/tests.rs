@@ -27,7 +27,7 @@ fn a_calibration_outside_its_range_is_refused_by_name() {
     for (number, field) in AxisCalibration::FIELDS.iter().enumerate() {
         for axis in 0..3 {
             for value in values_out_of_range(field) {
-                let mut settings = Settings::for_table_1().unwrap();
+                let mut settings = Settings::table_1().unwrap();
                 *settings.axes[axis].values_mut()[number] = value;
                 // A count may have either sign.
                 let low_magnitude = field.signed && value.abs() > field.range[0];
@@ -41,7 +41,7 @@ fn a_calibration_outside_its_range_is_refused_by_name() {
     }
     for (number, field) in BoardCalibration::FIELDS.iter().enumerate() {
         for value in values_out_of_range(field) {
-            let mut settings = Settings::for_table_1().unwrap();
+            let mut settings = Settings::table_1().unwrap();
             *settings.board.values_mut()[number] = value;
             assert_eq!(refused(&settings), Some((7, 0, field.name)), "{value}");
         }
@@ -51,7 +51,7 @@ fn a_calibration_outside_its_range_is_refused_by_name() {
 #[test]
 fn a_zero_beyond_every_length_is_refused() {
     for value in [f32::NAN, f32::INFINITY, -1e3, 1e3] {
-        let mut settings = Settings::for_table_1().unwrap();
+        let mut settings = Settings::table_1().unwrap();
         settings.axes[1].unstretched_at_zero_m = Some(value);
         let expected = Some((6, 2, "unstretched_at_zero_m"));
         assert_eq!(refused(&settings), expected, "{value}");
@@ -61,7 +61,7 @@ fn a_zero_beyond_every_length_is_refused() {
 #[test]
 fn a_code_that_stands_for_nothing_is_refused() {
     for value in [0.0, -0.0, 1e-38] {
-        let mut settings = Settings::for_table_1().unwrap();
+        let mut settings = Settings::table_1().unwrap();
         settings.axes[1].cell_n_per_code = value;
         let error = settings.check().unwrap_err().to_string();
         let expected = "calibration.cell_n_per_code of axis 2 is outside 0.000001 to 10";
@@ -82,7 +82,7 @@ fn a_number_that_no_section_has_is_named_in_general() {
 /// What is accepted gives numbers, with sensors at either end.
 #[test]
 fn the_greatest_calibration_gives_finite_numbers() {
-    let mut settings = Settings::for_table_1().unwrap();
+    let mut settings = Settings::table_1().unwrap();
     for axis in &mut settings.axes {
         for (field, value) in AxisCalibration::FIELDS.iter().zip(axis.values_mut()) {
             *value = field.range[1];

@@ -113,7 +113,7 @@ impl FaultSet {
     /// Those that do more than limit.
     #[must_use]
     #[inline(always)]
-    pub const fn without_limits(self) -> Self {
+    pub const fn stopping(self) -> Self {
         Self(self.0 & !LIMITS)
     }
 

@@ -61,9 +61,9 @@ static WIDE: [Encoding; 31] = [
     (0xff60_0000, 0xe840_0000, |_, _| Other),  // `ldrex`, `strex`
     (0xfe50_f000, 0xe850_d000, |_, _| UnknownStack), // `ldrd sp, rt2`
     (0xfe50_0f00, 0xe850_0d00, |_, _| UnknownStack), // `ldrd rt, sp`
-    (0xfeef_0000, 0xe86d_0000, down_by_words), // `strd rt, rt2, [sp, #-n]!`
+    (0xfeef_0000, 0xe86d_0000, lower_by_words), // `strd rt, rt2, [sp, #-n]!`
     // `vpush`, `vpop`, `vstm`, `vldm`, `vstr`, `vldr`; the transfers of two registers write no base.
-    (0xeeaf_0000, 0xec2d_0000, down_by_words), // `vpush`
+    (0xeeaf_0000, 0xec2d_0000, lower_by_words), // `vpush`
     // Arithmetic on registers: an amount in a register.
     (0xfe00_0f00, 0xea00_0d00, |_, _| UnknownStack), // as `sub.w sp, rn, rm`
     // Arithmetic with a constant: `sub.w`, `subw`, `add.w`, `addw` of the stack pointer, then what else writes it.
@@ -204,7 +204,7 @@ const fn ones(word: u32, count: u32) -> u32 {
 }
 
 /// A multiple access that moves the stack pointer down by a number of words.
-const fn down_by_words(word: u32, _: u32) -> Effect {
+const fn lower_by_words(word: u32, _: u32) -> Effect {
     Down(bits(word, 0, 8) * 4)
 }
 

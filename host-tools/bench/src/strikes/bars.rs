@@ -93,7 +93,7 @@ const WANDERS_S: f64 = 2.0;
 const DRIFTS_S: f64 = 5.0;
 
 /// Error of a cell from which on it has to be named, N.
-const LIE_N: f64 = 8.0;
+const WRONG_BY_N: f64 = 8.0;
 
 /// How far a motor has to go for its failure to show, m: 1 mm at the tip.
 const SHOWN_M: f64 = 1e-4;
@@ -309,7 +309,7 @@ fn named_s(defect: Defect, activity: Activity, before: &Unstruck) -> Option<f64>
     let pulls = !matches!(activity, Homing | RampingDown | Disarmed);
     // On its way a leg changes its tensions by itself.
     let rests = matches!(activity, Following | Held);
-    let lies = |by_n: f64| (pulls && by_n.abs() >= LIE_N).then_some(NAMED_S);
+    let wrong = |by_n: f64| (pulls && by_n.abs() >= WRONG_BY_N).then_some(NAMED_S);
     let driven = activity != Disarmed;
     match defect {
         Defect::DriverFault(_) | Defect::LateTicks | Defect::SettingsCorrupt => Some(NAMED_S),
@@ -326,10 +326,10 @@ fn named_s(defect: Defect, activity: Activity, before: &Unstruck) -> Option<f64>
             pulls.then_some(NAMED_S)
         }
         Defect::CellReversed(_) | Defect::ExcitationLost => pulls.then_some(NAMED_S),
-        Defect::CellExcitationLost(i) | Defect::CellFades(i) => lies(tensions_n[i]),
+        Defect::CellExcitationLost(i) | Defect::CellFades(i) => wrong(tensions_n[i]),
         Defect::CellWanders(_) => pulls.then_some(WANDERS_S),
         Defect::CellDrifting(_) => rests.then_some(DRIFTS_S),
-        Defect::CellFollows(i) if rests => lies(tensions_n[(i + 1) % 3] - tensions_n[i]),
+        Defect::CellFollows(i) if rests => wrong(tensions_n[(i + 1) % 3] - tensions_n[i]),
         // One that has hardly to turn on shows nothing.
         Defect::EncoderLost(i) | Defect::EncoderReversed(i) | Defect::MotorJammed(i) => {
             (activity == Moving && before.travels_m[i] >= SHOWN_M).then_some(NAMED_S)

@@ -213,7 +213,7 @@ impl Running {
         self.settings.corrupt();
         self.chip
             .load_flash(self.settings.address, &self.settings.bytes);
-        let built_in = Settings::for_table_1().map(|settings| Twin::new(&settings));
+        let built_in = Settings::table_1().map(|settings| Twin::new(&settings));
         let Some(Ok(twin)) = built_in else {
             return refused("the built-in settings are refused");
         };

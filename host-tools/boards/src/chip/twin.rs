@@ -72,7 +72,7 @@ impl Twin {
             self.received.push_back(byte);
             self.link.receive(&[byte], &mut self.leg);
             // The chip has kept them before it takes another command.
-            if self.link.to_save().is_some() {
+            if self.link.unsaved_settings().is_some() {
                 self.link.saved(true);
             }
         }

@@ -37,7 +37,7 @@ impl Operator {
         if let Err(OperatorError::Refused(asked, refusal)) = &result {
             self.drives = before;
             if *refusal == HostRefusal::Command(CommandRefusal::Faulted) {
-                let faults = self.telemetry()?.telemetry.faults.without_limits();
+                let faults = self.telemetry()?.telemetry.faults.stopping();
                 return Err(match command {
                     Command::Clear => OperatorError::NotCleared(faults),
                     _ => OperatorError::Faulted(asked, faults),
@@ -73,7 +73,7 @@ impl Operator {
 }
 
 fn evidence(command: &Command, telemetry: &Telemetry<f32>) -> Evidence {
-    let no_fault = !telemetry.faults.without_limits().any();
+    let no_fault = !telemetry.faults.stopping().any();
     match (command, telemetry.state) {
         (Command::Arm, State::Active)
         | (Command::Home, State::Homing | State::Active)

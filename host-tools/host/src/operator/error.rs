@@ -107,7 +107,7 @@ impl OperatorError {
                     0 => String::new(),
                     tendon => format!(" with tendon {tendon}"),
                 };
-                let (present, state) = (telemetry.faults.without_limits(), state(telemetry.state));
+                let (present, state) = (telemetry.faults.stopping(), state(telemetry.state));
                 Failure::failed(
                     format!(
                         "the leg did not {asked}{place}, it is {state} ({})",

@@ -2,14 +2,15 @@
 
 use super::{Operator, OperatorError};
 use leg_firmware::command::Command;
+use leg_firmware::control::JOG_TIME_MAX_S;
 use leg_firmware::host_link::{HostReply, HostRequest};
 use leg_firmware::jog::{JogDemand, JogReport};
 use leg_firmware::supervisor::State;
 use leg_firmware::telemetry::Telemetry;
 use std::time::Duration;
 
-/// Longer than the board lets any jog take: 10 mm at 0.2 mm/s, twice.
-const JOG_TIME: Duration = Duration::from_secs(120);
+/// A fifth longer than the board lets any jog take.
+const JOG_TIME: Duration = Duration::from_millis((1200.0 * JOG_TIME_MAX_S) as u64);
 
 impl Operator {
     /// Turns a motor and waits until it is off again; what the board measured, and the leg after it, also where a fault ended

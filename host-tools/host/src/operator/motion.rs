@@ -119,7 +119,7 @@ impl Operator {
         let telemetry = self.wait_until("come to rest", MOVE_TIME, |telemetry| {
             !matches!(telemetry.state, State::Boot | State::RampingDown)
         })?;
-        let faults = telemetry.faults.without_limits();
+        let faults = telemetry.faults.stopping();
         if faults.any() {
             return Err(OperatorError::Faulted(asked, faults));
         }
@@ -176,7 +176,7 @@ impl Operator {
 
 /// Why a leg that was driven no longer follows commands.
 pub(super) fn not_following(asked: &'static str, telemetry: &Telemetry<f32>) -> OperatorError {
-    if telemetry.faults.without_limits().any() {
+    if telemetry.faults.stopping().any() {
         OperatorError::Failed(asked, Box::new(*telemetry))
     } else {
         OperatorError::StoppedByOtherHost(asked, telemetry.state)

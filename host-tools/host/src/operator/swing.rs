@@ -55,7 +55,7 @@ impl Operator {
             })
         })?;
         match recorded.last() {
-            Some(last) if last.state == State::Held && !last.faults.without_limits().any() => {
+            Some(last) if last.state == State::Held && !last.faults.stopping().any() => {
                 Ok(recorded)
             }
             Some(last) => Err(not_following(asked, last)),

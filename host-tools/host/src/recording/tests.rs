@@ -236,7 +236,7 @@ fn the_messages_of_a_simulation_have_the_time_of_the_day_at_which_it_begins() {
     let messages = |name: &str, begin_wall_time_s: f64| {
         let file = directory.path().join(name);
         let about = About {
-            begin_wall_time_s,
+            begin_wall_time_s: Some(begin_wall_time_s),
             ..About::log("test")
         };
         record(&file, &about, &settings, |recording| {

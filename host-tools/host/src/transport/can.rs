@@ -77,7 +77,7 @@ impl<P: CanPort> CanTransport<P> {
             port,
             ordinary: None,
             urgent: Segmenter::new(Identifier::Urgent(leg)),
-            assembler: Assembler::for_host(leg),
+            assembler: Assembler::host_receiver(leg),
             received: VecDeque::new(),
             damaged: 0,
         }

@@ -112,7 +112,7 @@ fn whole_mn(newtons: f64) -> f64 {
 }
 
 fn set(operator: &mut Operator, settings: &Settings, save: bool) -> Result<(), Failure> {
-    operator.set_settings(&settings.without_zero())?;
+    operator.set_settings(&settings.unhomed())?;
     if save {
         operator.save_settings()?;
     }

@@ -2,8 +2,8 @@
 
 use crate::output::save_all;
 use leg_base::failure::Failure;
-use leg_host::tune::{Jogged, MeasuredMotor, Swing, Swings};
 use leg_model_tools::plot::{self, Chart, ChartLine};
+use leg_rig::tune::{Jogged, MeasuredMotor, Swing, Swings};
 use std::path::{Path, PathBuf};
 
 /// Points of the line through a swing.

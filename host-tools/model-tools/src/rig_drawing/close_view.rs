@@ -23,7 +23,7 @@ pub(super) fn draw(leg: &DrawnLeg) -> Vec<Element> {
     view.extend([leg.leg_plate(&camera), leg.base_plate(&camera)].map(see_through));
     view.extend(leg.joint(&camera));
     view.extend(leg.tendons(&camera, 3.0));
-    view.extend(to_screws(leg, &camera));
+    view.extend(screw_arrows(leg, &camera));
     view.extend(names(leg, &camera));
     view
 }
@@ -41,7 +41,7 @@ fn camera(leg: &DrawnLeg) -> Camera {
 }
 
 /// Above the base plate the tendons go on to their screws, which pull them.
-fn to_screws(leg: &DrawnLeg, camera: &Camera) -> Vec<Element> {
+fn screw_arrows(leg: &DrawnLeg, camera: &Camera) -> Vec<Element> {
     let tendons = leg.tendon_ends(camera).into_iter();
     tendons
         .flat_map(|([[x, y], _], colour)| pen::arrow([x, y], [x, y - TO_SCREW_PX], colour, 2.0))

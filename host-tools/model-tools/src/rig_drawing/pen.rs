@@ -1,6 +1,7 @@
 //! Lines, shapes and texts of a drawing.
 
 use crate::xml_element::Element;
+use leg_base::rounding::rounded;
 
 pub(super) const INK: &str = "#222222";
 pub(super) const DIMENSION: &str = "#666666";
@@ -17,8 +18,7 @@ pub(super) type Point2 = [f64; 2];
 
 /// A number with one decimal at most.
 pub(super) fn short(value: f64) -> String {
-    // Adding zero turns −0 into 0.
-    ((value * 10.0).round() / 10.0 + 0.0).to_string()
+    rounded(value, 1).to_string()
 }
 
 fn pairs(points: &[Point2]) -> String {

@@ -42,7 +42,7 @@ fn ticks_s(rig: &RigFile, ticks: u32) -> Result<f64, Box<dyn Error>> {
         pretension_n: rig.pretension_n,
         payload_kg: 0.0,
     };
-    let leg = EmulatedLeg::in_process(rig, &rig.plant, start, 0)?;
+    let leg = EmulatedLeg::start_in_process(rig, &rig.plant, start, 0)?;
     let mut leg = HostedLeg::new(leg, rig, start.direction(), 0);
     while leg.state() == State::Boot {
         leg.tick()?;

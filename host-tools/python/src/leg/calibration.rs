@@ -96,7 +96,7 @@ pub(super) fn cell(
     if keep.set {
         found.axes[axis].cell_n_per_code = fit.n_per_code as f32;
         found.axes[axis].cell_zero_code = fit.zero_code as f32;
-        let found = found.without_zero();
+        let found = found.unhomed();
         leg.ask(py, move |operator| {
             settings::set(operator, &found, keep.save)
         })?;
@@ -148,7 +148,7 @@ pub(super) fn jog(
         };
         let (report, telemetry) = operator.jog(&demand)?;
         let asked = "jog a motor";
-        if telemetry.faults.without_limits().any() {
+        if telemetry.faults.stopping().any() {
             return Err(OperatorError::Failed(asked, Box::new(telemetry)));
         }
         if report.end == JogEnd::CutOff {

@@ -7,7 +7,7 @@ use leg_rig::control_settings;
 use pyo3::prelude::*;
 
 /// Those that a rig gives.
-pub(super) fn of_rig(rig: &Bound<'_, PyAny>) -> PyResult<Settings> {
+pub(super) fn from_rig(rig: &Bound<'_, PyAny>) -> PyResult<Settings> {
     let rig = arguments::rig_or_default(Some(rig))?;
     Ok(control_settings::settings(&rig, &rig.gains, None))
 }

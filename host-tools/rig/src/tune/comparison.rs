@@ -183,19 +183,39 @@ pub fn table(rows: &[ComparisonRow]) -> String {
     table
 }
 
+/// What a rig file takes of a measured quantity.
+enum Entry {
+    Number(String),
+    TooUncertain,
+    /// It is not within these.
+    OutOfRange([f64; 2]),
+}
+
+impl Entry {
+    /// The section, the key and what that takes; none where no key holds the quantity.
+    fn new(row: &ComparisonRow) -> Option<(&'static str, &'static str, Self)> {
+        let (section, key) = row.key?;
+        let UncertainValue { value, uncertainty } = row.measured;
+        let entry = if !row.measured.is_certain() || value <= 0.0 {
+            Self::TooUncertain
+        } else {
+            match range(key) {
+                Some([low, high]) if value < low || value > high => Self::OutOfRange([low, high]),
+                _ => Self::Number(written(value, uncertainty)),
+            }
+        };
+        Some((section, key, entry))
+    }
+}
+
 /// What was measured with certainty and a rig file takes: its section, its key, its value.
 #[must_use]
 pub fn certain_values(rows: &[ComparisonRow]) -> Vec<(&'static str, &'static str, String)> {
-    let certain = rows
-        .iter()
-        .filter(|row| row.measured.is_certain() && row.measured.value > 0.0);
-    let kept = certain.filter_map(|row| {
-        let (section, key) = row.key?;
-        let UncertainValue { value, uncertainty } = row.measured;
-        let within = range(key).is_none_or(|[low, high]| (low..=high).contains(&value));
-        within.then(|| (section, key, written(value, uncertainty)))
+    let values = rows.iter().filter_map(|row| match Entry::new(row)? {
+        (section, key, Entry::Number(number)) => Some((section, key, number)),
+        _ => None,
     });
-    kept.collect()
+    values.collect()
 }
 
 /// What was measured with certainty, as sections of a rig file; what such a file does not take, or is uncertain, as a comment.
@@ -205,29 +225,29 @@ pub fn section(motor: u8, rows: &[ComparisonRow]) -> String {
         format!("# Measured by leg tune at motor {motor}; ± holds in 95 of 100 cases.\n");
     let mut last = "";
     for row in rows {
-        let Some((section, key)) = row.key else {
+        let Some((section, key, entry)) = Entry::new(row) else {
             continue;
         };
         let UncertainValue { value, uncertainty } = row.measured;
-        let number = written(value, uncertainty);
         let off = plain(significant(uncertainty, 2));
-        if !row.measured.is_certain() || value <= 0.0 {
-            text += &format!("# {key} is too uncertain: {number} ± {off}\n");
-            continue;
+        let measured = format!("{} ± {off}", written(value, uncertainty));
+        match entry {
+            Entry::TooUncertain => text += &format!("# {key} is too uncertain: {measured}\n"),
+            Entry::OutOfRange(range) => {
+                let [low, high] = range.map(plain);
+                text += &format!("# {key} is not within {low} to {high}: {measured}\n");
+            }
+            Entry::Number(number) => {
+                if section != last {
+                    text += &format!("\n[{section}]\n");
+                    last = section;
+                }
+                let configured = row.configured.map_or_else(String::new, |number| {
+                    format!(", was {}", plain(significant(number, 4)))
+                });
+                text += &format!("{key} = {number}  # ± {off}{configured}\n");
+            }
         }
-        if let Some([low, high]) = range(key).filter(|&[low, high]| value < low || value > high) {
-            let [low, high] = [low, high].map(plain);
-            text += &format!("# {key} is not within {low} to {high}: {number} ± {off}\n");
-            continue;
-        }
-        if section != last {
-            text += &format!("\n[{section}]\n");
-            last = section;
-        }
-        let configured = row.configured.map_or_else(String::new, |number| {
-            format!(", was {}", plain(significant(number, 4)))
-        });
-        text += &format!("{key} = {number}  # ± {off}{configured}\n");
     }
     text
 }

@@ -324,7 +324,7 @@ impl<L: TunedLeg> Jogs<'_, L> {
         self.turned = false;
         let (report, telemetry) = self.leg.jog(&demand).await?;
         let asked = "jog a motor";
-        if telemetry.faults.without_limits().any() {
+        if telemetry.faults.stopping().any() {
             return Err(L::Error::faulted(asked, &telemetry).into());
         }
         if report.end == JogEnd::CutOff {

@@ -19,7 +19,7 @@ pub(super) struct LegState {
 }
 
 impl LegState {
-    pub fn at_rest(direction: Direction<f64>, torsion_rad: f64) -> Self {
+    pub fn resting(direction: Direction<f64>, torsion_rad: f64) -> Self {
         Self {
             direction,
             torsion_rad,

@@ -120,7 +120,7 @@ impl Start {
             unstretched_m[i] += file.tendons[i].elongation(n)? - tendon.elongation_m(n)?;
         }
         Ok(Started {
-            leg: LegState::at_rest(direction, torsion),
+            leg: LegState::resting(direction, torsion),
             unstretched_m,
             payload_kg,
         })
@@ -132,7 +132,7 @@ fn slack(rig: &Rig<f64, 3>, slack_m: f64) -> Result<Started, Error> {
     let down = Direction::straight_down();
     let lengths = inverse_kinematics(rig.geometry(), &down)?.lengths;
     Ok(Started {
-        leg: LegState::at_rest(down, 0.0),
+        leg: LegState::resting(down, 0.0),
         unstretched_m: lengths.add_scalar(slack_m).into(),
         payload_kg: 0.0,
     })

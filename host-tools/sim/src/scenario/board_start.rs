@@ -69,7 +69,7 @@ impl Scenario {
     ///
     /// # Errors
     /// Why a board cannot run it.
-    pub fn for_board(&self) -> Result<Self, &'static str> {
+    pub fn board_variant(&self) -> Result<Self, &'static str> {
         let mut scenario = self.clone();
         if needs_zero(&scenario) {
             if scenario
@@ -203,7 +203,7 @@ mod tests {
     fn every_scenario_of_a_board_starts_without_a_zero_or_does_not_use_it() {
         for ready in READY_SCENARIOS {
             let scenario = Scenario::parse(ready.name, ready.text).expect("it is ready");
-            let on_board = scenario.for_board();
+            let on_board = scenario.board_variant();
             let not_run = ["fault_following", "arm_lean"].contains(&ready.name);
             assert_eq!(on_board.is_err(), not_run, "{}", ready.name);
             let Ok(scenario) = on_board else { continue };

@@ -13,7 +13,7 @@ fn three(row: &RecorderRow, signal: RecordedSignal) -> [f64; 3] {
 }
 
 /// Time since the fault, s; not a number where a host has ended the recording.
-fn since_fault_s(row: &RecorderRow) -> f64 {
+fn fault_age_s(row: &RecorderRow) -> f64 {
     row.ticks_since_fault()
         .map_or(f64::NAN, |ticks| f64::from(ticks) * tick_s())
 }
@@ -26,7 +26,7 @@ signals! {
     Context Count tick "The same in ticks."
         = |at| Some(at.tick.into());
     Context Number since_fault_s "Time since the fault that ended the recording, s; none where a host did."
-        = since_fault_s;
+        = fault_age_s;
     Context Names fault_names "Names of the faults that stopped the leg in the tick of that fault."
         = |at| fault_names(at.fault.map_or(FaultSet::NONE, |fault| fault.faults));
     State Word state "What the leg may do; empty if it was not recorded."

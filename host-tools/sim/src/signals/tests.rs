@@ -41,10 +41,7 @@ fn reported(state: State, faults: FaultSet) -> Telemetry<f32> {
 }
 
 fn report(telemetry: &Telemetry<f32>) -> Report {
-    Report::new(
-        telemetry,
-        &LegConstants::new(&Settings::for_table_1().unwrap()),
-    )
+    Report::new(telemetry, &LegConstants::new(&Settings::table_1().unwrap()))
 }
 
 #[test]

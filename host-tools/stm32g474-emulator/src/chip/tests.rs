@@ -77,7 +77,7 @@ fn handled(chip: &mut Chip) -> u32 {
 }
 
 /// The crystal of a chip that watches it, and whose TIM1 listens to breaks, stops.
-fn without_crystal() -> Chip {
+fn crystal_stopped() -> Chip {
     let mut chip = chip(STAY);
     set(&chip, "RCC", "APB2ENR", "TIM1EN", 1);
     set(&chip, "RCC", "CR", "HSEON", 1);
@@ -99,7 +99,7 @@ fn listen_to_breaks(chip: &Chip) {
 
 #[test]
 fn a_failed_clock_interrupts_until_its_flag_is_cleared() {
-    let mut chip = without_crystal();
+    let mut chip = crystal_stopped();
     for _ in 0..2 {
         assert!(handled(&mut chip) > 10);
     }
@@ -110,7 +110,7 @@ fn a_failed_clock_interrupts_until_its_flag_is_cleared() {
 
 #[test]
 fn a_failed_clock_breaks_until_its_flag_is_cleared() {
-    let mut chip = without_crystal();
+    let mut chip = crystal_stopped();
     // The flag cannot be cleared, nor the outputs switched on, while the clock's flag is set.
     for failed in [1, 1, 0] {
         if failed == 0 {

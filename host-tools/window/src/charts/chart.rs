@@ -49,7 +49,7 @@ impl Charts {
             spectrum(ui, &kept, column, height);
             None
         } else {
-            self.over_time(ui, shown, column, &kept, height)
+            self.draw_times(ui, shown, column, &kept, height)
         };
         self.kept.insert(column.name(), kept);
         pressed_s
@@ -71,7 +71,7 @@ impl Charts {
         kept
     }
 
-    fn over_time(
+    fn draw_times(
         &mut self,
         ui: &mut Ui,
         shown: ShownSignals<'_>,

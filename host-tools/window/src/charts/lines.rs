@@ -2,6 +2,7 @@
 
 use crate::history::{Column, History};
 use egui_plot::{GridInput, GridMark};
+use leg_base::rounding::rounded;
 
 /// Points of a line: more than a screen has.
 const POINTS_MAX: usize = 1200;
@@ -68,9 +69,7 @@ fn round_step(step: f64) -> f64 {
 
 /// A number without what its rounding leaves.
 pub(super) fn short(value: f64) -> String {
-    // Adding zero takes the sign of one away.
-    let rounded = (value * 1e6).round() / 1e6 + 0.0;
-    format!("{rounded}")
+    rounded(value, 6).to_string()
 }
 
 /// The same with a unit, if there is one.

@@ -324,7 +324,7 @@ fn a_live_leg_is_recorded_as_a_log() {
     let (mut leg, server) = leg();
     let rig = RigFile::load(None).unwrap();
     let settings = control_settings::settings(&rig, &rig.gains, None);
-    leg.recorder = Some(Recorder::new("/dev/ttyACM0", &settings, 1.7e9).unwrap());
+    leg.recorder = Some(Recorder::new("/dev/ttyACM0", &settings, Some(1.7e9)).unwrap());
     let telemetry = *Simulation::new().unwrap().telemetry().unwrap();
     for tick in [8000, 8040, 8080] {
         server.report(Telemetry { tick, ..telemetry });
@@ -334,7 +334,7 @@ fn a_live_leg_is_recorded_as_a_log() {
     assert!((recorder.time_s() - 0.01).abs() < 1e-9);
     let bytes = recorder.finish().unwrap();
     let recorded = read_samples("leg.mcap", &bytes).unwrap();
-    assert_eq!(recorded.about.begin_wall_time_s, 1.7e9);
+    assert_eq!(recorded.about.begin_wall_time_s, Some(1.7e9));
     let Samples::Log(reports) = recorded.samples else {
         panic!("it is a log");
     };
@@ -354,6 +354,6 @@ fn a_live_leg_is_recorded_as_a_log() {
 fn a_recording_without_a_message_is_refused() {
     let rig = RigFile::load(None).unwrap();
     let settings = control_settings::settings(&rig, &rig.gains, None);
-    let words = Recorder::new("leg", &settings, 0.0).unwrap().finish();
+    let words = Recorder::new("leg", &settings, None).unwrap().finish();
     assert!(words.unwrap_err().contains("nothing was recorded"));
 }

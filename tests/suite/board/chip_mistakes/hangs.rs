@@ -41,11 +41,11 @@ fn unfed(image: &Path) -> String {
 }
 
 fn told(image: &Path, within_ms: u64) -> String {
-    after_reset(image, within_ms).unwrap_or_else(|error| error.to_string())
+    reset_report(image, within_ms).unwrap_or_else(|error| error.to_string())
 }
 
 /// Which reset comes in time, and what the chip says of it afterwards.
-fn after_reset(image: &Path, within_ms: u64) -> Result<String, Box<dyn Error>> {
+fn reset_report(image: &Path, within_ms: u64) -> Result<String, Box<dyn Error>> {
     let mut session = started_with(image, Board::default(), 10)?;
     let chip = session.chip().ok_or("no chip")?;
     let left = (within_ms * MS).saturating_sub(chip.cycle());

@@ -72,7 +72,7 @@ fn update(older: &Path) -> Result<String, Box<dyn Error>> {
 }
 
 fn built_in() -> Result<Settings, Box<dyn Error>> {
-    Ok(Settings::for_table_1().ok_or("no built-in settings")?)
+    Ok(Settings::table_1().ok_or("no built-in settings")?)
 }
 
 fn newest() -> Result<Settings, Box<dyn Error>> {

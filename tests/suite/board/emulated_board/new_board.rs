@@ -40,10 +40,10 @@ fn probe_rs(directory: &Path) {
 /// What an image logs on a new board.
 fn log(image: &Path) -> Vec<String> {
     let mut session = ChipSession::open(image).unwrap().with_flash(&[]);
-    let settings = Settings::for_table_1().unwrap();
+    let settings = Settings::table_1().unwrap();
     session.ask(&Request::Start(settings)).unwrap();
     for _ in 0..LOG_TICKS {
-        let at_rest = crate::common::chip::at_rest();
+        let at_rest = crate::common::chip::resting_tick();
         session.ask(&Request::Tick(at_rest)).unwrap();
     }
     session.log_lines()

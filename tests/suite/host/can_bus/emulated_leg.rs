@@ -33,7 +33,7 @@ impl LegOnBus {
     fn new(damage: Damage) -> Rc<RefCell<Self>> {
         let mut bus = SimulatedBus::new(damage, 1);
         let to_leg = Rc::new(RefCell::new(VecDeque::new()));
-        let (inbox, mut assembler) = (Rc::clone(&to_leg), Assembler::<1024>::for_leg(LEG));
+        let (inbox, mut assembler) = (Rc::clone(&to_leg), Assembler::<1024>::leg_receiver(LEG));
         let node = bus.attach(Box::new(move |frame| {
             let link_frame = assembler.push(frame).link_frame.unwrap_or_default();
             inbox.borrow_mut().extend(link_frame);

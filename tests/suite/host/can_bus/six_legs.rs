@@ -100,7 +100,7 @@ struct SixLegs {
 fn six(seed: u64) -> SixLegs {
     let mut bus = SimulatedBus::new(Damage::default(), seed);
     let end = |assembler| Rc::new(RefCell::new(Receiver::new(assembler)));
-    let at_host = LegAddress::ALL.map(|leg| end(Assembler::for_host(leg)));
+    let at_host = LegAddress::ALL.map(|leg| end(Assembler::host_receiver(leg)));
     let ends = at_host.clone();
     let host = bus.attach(Box::new(move |frame| {
         ends.iter().for_each(|end| end.borrow_mut().take(frame));
@@ -108,7 +108,7 @@ fn six(seed: u64) -> SixLegs {
     }));
     let (mut to_legs, mut to_host) = (Vec::new(), Vec::new());
     for (leg, at_host) in LegAddress::ALL.into_iter().zip(at_host) {
-        let at_leg = end(Assembler::for_leg(leg));
+        let at_leg = end(Assembler::leg_receiver(leg));
         let inside = Rc::clone(&at_leg);
         let node = bus.attach(Box::new(move |frame| {
             inside.borrow_mut().take(frame);
@@ -147,6 +147,14 @@ impl SixLegs {
         self.to_legs.iter().chain(&self.to_host)
     }
 
+    /// Asserts that every stream has brought the first messages, so many, once each.
+    fn assert_arrived(&self, count: u32) {
+        for stream in self.streams() {
+            let expected: Vec<u32> = (0..count).collect();
+            assert_eq!(stream.numbers(), expected, "{}", stream.leg);
+        }
+    }
+
     fn urgent(&mut self, identifier: Identifier) {
         for frame in segments(&mut Segmenter::new(identifier), &Command::Stop) {
             self.bus.send(self.host, frame);
@@ -171,14 +179,7 @@ fn under_load_every_frame_reaches_its_node_and_no_other() {
         }
     }
     six.run();
-    for stream in six.streams() {
-        assert_eq!(
-            stream.numbers(),
-            (0..100).collect::<Vec<_>>(),
-            "{}",
-            stream.leg
-        );
-    }
+    six.assert_arrived(100);
 }
 
 #[test]
@@ -201,14 +202,7 @@ fn a_stop_overtakes_all_that_waits() {
         let latest = six.bus.elapsed() - before + duration(&longest);
         assert!(latest.as_micros() < 200, "{latest:?}");
         six.run();
-        for stream in six.streams() {
-            assert_eq!(
-                stream.numbers(),
-                (0..20).collect::<Vec<_>>(),
-                "{}",
-                stream.leg
-            );
-        }
+        six.assert_arrived(20);
     }
 }
 
@@ -276,12 +270,5 @@ fn doubled_frames_alone_cost_nothing() {
         six.send_all();
     }
     six.run();
-    for stream in six.streams() {
-        assert_eq!(
-            stream.numbers(),
-            (0..50).collect::<Vec<_>>(),
-            "{}",
-            stream.leg
-        );
-    }
+    six.assert_arrived(50);
 }

@@ -16,7 +16,7 @@ const TIMEOUT: Duration = Duration::from_millis(50);
 
 /// A leg that sends every link frame back as it came.
 fn echo(bus: &Rc<RefCell<SimulatedBus>>, leg: LegAddress) {
-    let mut assembler = Assembler::<MAX_FRAME>::for_leg(leg);
+    let mut assembler = Assembler::<MAX_FRAME>::leg_receiver(leg);
     let mut segmenter = Segmenter::new(Identifier::ToHost(leg));
     bus.borrow_mut().attach(Box::new(move |frame| {
         let Some(link_frame) = assembler.push(frame).link_frame else {

@@ -51,7 +51,7 @@ fn numbers(
 
 /// As Markdown, by bits.
 pub fn table() -> String {
-    let settings = Settings::for_table_1().unwrap();
+    let settings = Settings::table_1().unwrap();
     let mut text = String::from("| bit | signal | numbers | steps |\n|---|---|---|---|\n");
     for (bit, signal) in RECORDED_SIGNALS.into_iter().enumerate() {
         let mut room = [0; 4];

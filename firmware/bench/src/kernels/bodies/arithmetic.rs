@@ -9,8 +9,8 @@ impl<T: Scalar> KernelBody<T> for SquareRootKernel {
     type Output = T;
 
     #[inline(always)]
-    fn run(bench: &KernelArguments<T>) -> Result<T, Error> {
-        Ok(bench.angle.abs().sqrt())
+    fn run(arguments: &KernelArguments<T>) -> Result<T, Error> {
+        Ok(arguments.angle.abs().sqrt())
     }
 
     fn flatten(&root: &T, push: &mut impl FnMut(T)) {
@@ -24,8 +24,8 @@ impl<T: Scalar> KernelBody<T> for SinCosKernel {
     type Output = (T, T);
 
     #[inline(always)]
-    fn run(bench: &KernelArguments<T>) -> Result<(T, T), Error> {
-        Ok(bench.angle.sin_cos())
+    fn run(arguments: &KernelArguments<T>) -> Result<(T, T), Error> {
+        Ok(arguments.angle.sin_cos())
     }
 
     fn flatten(&(sin, cos): &(T, T), push: &mut impl FnMut(T)) {

@@ -9,12 +9,12 @@ impl<T: Scalar> KernelBody<T> for FullPassKernel {
     type Output = leg_model::FullPass<T, 3>;
 
     #[inline(always)]
-    fn run(bench: &KernelArguments<T>) -> Result<Self::Output, Error> {
+    fn run(arguments: &KernelArguments<T>) -> Result<Self::Output, Error> {
         Ok(leg_model::full_pass(
-            &bench.rig,
-            &bench.direction,
-            &bench.load,
-            &bench.states,
+            &arguments.rig,
+            &arguments.direction,
+            &arguments.load,
+            &arguments.states,
         ))
     }
 
@@ -33,13 +33,13 @@ impl<T: Scalar> KernelBody<T> for FullPassInPlaneKernel {
     type Output = leg_model::FullPass<T, 3>;
 
     #[inline(always)]
-    fn run(bench: &KernelArguments<T>) -> Result<Self::Output, Error> {
+    fn run(arguments: &KernelArguments<T>) -> Result<Self::Output, Error> {
         Ok(leg_model::full_pass_in_plane(
-            &bench.rig,
-            &bench.direction,
-            &bench.plane,
-            &bench.load,
-            &bench.states,
+            &arguments.rig,
+            &arguments.direction,
+            &arguments.plane,
+            &arguments.load,
+            &arguments.states,
         ))
     }
 

@@ -9,8 +9,8 @@ impl<T: Scalar> KernelBody<T> for InverseKinematicsKernel {
     type Output = leg_model::Kinematics<T, 3>;
 
     #[inline(always)]
-    fn run(bench: &KernelArguments<T>) -> Result<Self::Output, Error> {
-        leg_model::inverse_kinematics(bench.rig.geometry(), &bench.direction)
+    fn run(arguments: &KernelArguments<T>) -> Result<Self::Output, Error> {
+        leg_model::inverse_kinematics(arguments.rig.geometry(), &arguments.direction)
     }
 
     fn flatten(kinematics: &Self::Output, push: &mut impl FnMut(T)) {
@@ -25,8 +25,12 @@ impl<T: Scalar> KernelBody<T> for ForwardKinematicsKernel {
     type Output = leg_model::ForwardKinematics<T>;
 
     #[inline(always)]
-    fn run(bench: &KernelArguments<T>) -> Result<Self::Output, Error> {
-        leg_model::forward_kinematics(bench.rig.geometry(), &bench.lengths, &bench.start)
+    fn run(arguments: &KernelArguments<T>) -> Result<Self::Output, Error> {
+        leg_model::forward_kinematics(
+            arguments.rig.geometry(),
+            &arguments.lengths,
+            &arguments.start,
+        )
     }
 
     fn flatten(found: &Self::Output, push: &mut impl FnMut(T)) {
@@ -40,11 +44,11 @@ impl<T: Scalar> KernelBody<T> for ForwardKinematicsUniversalKernel {
     type Output = leg_model::ForwardKinematics<T>;
 
     #[inline(always)]
-    fn run(bench: &KernelArguments<T>) -> Result<Self::Output, Error> {
+    fn run(arguments: &KernelArguments<T>) -> Result<Self::Output, Error> {
         leg_model::forward_kinematics_universal(
-            bench.rig.geometry(),
-            &bench.lengths_universal,
-            &bench.start,
+            arguments.rig.geometry(),
+            &arguments.lengths_universal,
+            &arguments.start,
         )
     }
 

@@ -23,19 +23,28 @@ impl<T: Scalar> KernelBody<T> for ModelTickKernel {
     type Output = TickOutput<T>;
 
     #[inline(always)]
-    fn run(bench: &KernelArguments<T>) -> Result<TickOutput<T>, Error> {
-        let found =
-            leg_model::forward_kinematics(bench.rig.geometry(), &bench.lengths, &bench.start)?;
-        let pass = leg_model::full_pass(&bench.rig, &found.direction, &bench.load, &bench.states);
+    fn run(arguments: &KernelArguments<T>) -> Result<TickOutput<T>, Error> {
+        let found = leg_model::forward_kinematics(
+            arguments.rig.geometry(),
+            &arguments.lengths,
+            &arguments.start,
+        )?;
+        let pass = leg_model::full_pass(
+            &arguments.rig,
+            &found.direction,
+            &arguments.load,
+            &arguments.states,
+        );
         let deflection = pass.deflection?;
         let kinematics = &pass.kinematics;
-        let moment = leg_model::estimate_moment(&kinematics.moment_map, bench.states.tensions());
+        let moment =
+            leg_model::estimate_moment(&kinematics.moment_map, arguments.states.tensions());
         let plane = leg_model::FreePlane::torsion_free(&found.direction);
         let distribution =
-            leg_model::distribute(&kinematics.moment_map, &plane, &moment, &bench.bounds)?;
-        let tensions = distribution.tensions(bench.pretension);
+            leg_model::distribute(&kinematics.moment_map, &plane, &moment, &arguments.bounds)?;
+        let tensions = distribution.tensions(arguments.pretension);
         let mut unstretched = kinematics.lengths;
-        for (i, tendon) in bench.tendons.iter().enumerate() {
+        for (i, tendon) in arguments.tendons.iter().enumerate() {
             unstretched[i] -= tendon.elongation(tensions[i])?;
         }
         Ok(TickOutput {

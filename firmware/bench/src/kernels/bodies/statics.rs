@@ -10,10 +10,11 @@ impl<T: Scalar> KernelBody<T> for DistributionKernel {
     type Output = (leg_model::Distribution<T, 3>, SVector<T, 3>);
 
     #[inline(always)]
-    fn run(bench: &KernelArguments<T>) -> Result<Self::Output, Error> {
-        let map = &bench.kinematics.moment_map;
-        let distribution = leg_model::distribute(map, &bench.plane, &bench.moment, &bench.bounds)?;
-        Ok((distribution, distribution.tensions(bench.pretension)))
+    fn run(arguments: &KernelArguments<T>) -> Result<Self::Output, Error> {
+        let map = &arguments.kinematics.moment_map;
+        let distribution =
+            leg_model::distribute(map, &arguments.plane, &arguments.moment, &arguments.bounds)?;
+        Ok((distribution, distribution.tensions(arguments.pretension)))
     }
 
     fn flatten((distribution, tensions): &Self::Output, push: &mut impl FnMut(T)) {
@@ -36,11 +37,11 @@ impl<T: Scalar> KernelBody<T> for TendonCurveKernel {
     type Output = [T; 2];
 
     #[inline(always)]
-    fn run(bench: &KernelArguments<T>) -> Result<Self::Output, Error> {
-        let [curve, ..] = &bench.curves;
+    fn run(arguments: &KernelArguments<T>) -> Result<Self::Output, Error> {
+        let [curve, ..] = &arguments.curves;
         Ok([
-            curve.elongation(bench.pretension)?,
-            curve.stiffness(bench.pretension)?,
+            curve.elongation(arguments.pretension)?,
+            curve.stiffness(arguments.pretension)?,
         ])
     }
 
@@ -55,15 +56,15 @@ impl<T: Scalar> KernelBody<T> for InverseStaticsKernel {
     type Output = leg_model::Hold<T, 3>;
 
     #[inline(always)]
-    fn run(bench: &KernelArguments<T>) -> Result<Self::Output, Error> {
+    fn run(arguments: &KernelArguments<T>) -> Result<Self::Output, Error> {
         leg_model::inverse_statics_in_plane(
-            bench.rig.geometry(),
-            &bench.plane,
-            &bench.direction,
-            &bench.moment,
-            &bench.bounds,
-            &bench.curves,
-            bench.pretension,
+            arguments.rig.geometry(),
+            &arguments.plane,
+            &arguments.direction,
+            &arguments.moment,
+            &arguments.bounds,
+            &arguments.curves,
+            arguments.pretension,
         )
         .map_err(|error| match error {
             HoldError::Model(error) => error,
@@ -83,18 +84,18 @@ impl<T: Scalar> KernelBody<T> for StiffnessCommandKernel {
     type Output = StiffnessAnswer<T>;
 
     #[inline(always)]
-    fn run(bench: &KernelArguments<T>) -> Result<Self::Output, Error> {
+    fn run(arguments: &KernelArguments<T>) -> Result<Self::Output, Error> {
         let command = leg_model::StiffnessCommand::new(
-            bench.rig.geometry(),
-            &bench.support,
-            &bench.direction,
+            arguments.rig.geometry(),
+            &arguments.support,
+            &arguments.direction,
             T::zero(),
-            &bench.load,
-            &bench.curves,
-            &bench.kinematics,
-            &bench.distribution,
+            &arguments.load,
+            &arguments.curves,
+            &arguments.kinematics,
+            &arguments.distribution,
         );
-        command.pretension_for(bench.demand, &BendingAxis::Softest, &bench.bounds)
+        command.pretension_for(arguments.demand, &BendingAxis::Softest, &arguments.bounds)
     }
 
     fn flatten(answer: &Self::Output, push: &mut impl FnMut(T)) {

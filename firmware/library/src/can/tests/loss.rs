@@ -102,7 +102,7 @@ fn exchanged_can_frames_are_never_joined() {
 
 #[test]
 fn the_first_frame_of_a_sender_that_starts_anew_is_no_double() {
-    let mut assembler = Assembler::<MAX_FRAME>::for_leg(LEG);
+    let mut assembler = Assembler::<MAX_FRAME>::leg_receiver(LEG);
     for mark in 1..4 {
         let sent = link_frame(30, mark);
         let frames = cut(&mut Segmenter::new(Identifier::ToLeg(LEG)), &sent);
@@ -158,7 +158,7 @@ fn a_link_frame_that_is_too_long_for_the_receiver_costs_itself_only() {
     let (fits, too_long) = (link_frame(100, 1), link_frame(101, 2));
     let mut frames = cut(&mut segmenter, &too_long);
     frames.extend(cut(&mut segmenter, &fits));
-    let came = push_all(&mut Assembler::<100>::for_leg(LEG), &frames);
+    let came = push_all(&mut Assembler::<100>::leg_receiver(LEG), &frames);
     assert_eq!(came, (vec![fits], vec![CanError::TooLong]));
 }
 
@@ -216,7 +216,7 @@ proptest! {
         before in vec((any::<u16>(), vec(any::<u8>(), 0..=PAYLOAD_MAX), any::<bool>()), 0..60),
         own in any::<bool>(),
     ) {
-        let mut assembler = Assembler::<200>::for_leg(LEG);
+        let mut assembler = Assembler::<200>::leg_receiver(LEG);
         for (bits, payload, sensible) in before {
             let bits = if own { Identifier::ToLeg(LEG).bits() } else { bits };
             let Some(frame) = any_frame((bits, payload, sensible)) else { continue };

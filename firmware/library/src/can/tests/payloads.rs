@@ -56,7 +56,7 @@ fn the_payloads_layout_is_fixed() {
 #[test]
 fn every_length_comes_back_in_payloads_that_can_fd_has() {
     let mut segmenter = Segmenter::new(Identifier::ToLeg(LEG));
-    let mut assembler = Assembler::<MAX_FRAME>::for_leg(LEG);
+    let mut assembler = Assembler::<MAX_FRAME>::leg_receiver(LEG);
     for length in 1..=MAX_FRAME {
         let sent = link_frame(length, 7);
         let frames = cut(&mut segmenter, &sent);
@@ -86,7 +86,7 @@ fn what_is_for_others_is_not_looked_at() {
         assert_eq!(join(&frames), (vec![], vec![]), "{identifier:?}");
         assert!(!Identifier::received_by(LEG).contains(&identifier));
     }
-    let mut host = Assembler::<MAX_FRAME>::for_host(LEG);
+    let mut host = Assembler::<MAX_FRAME>::host_receiver(LEG);
     for identifier in Identifier::received_by(LEG) {
         let frames = cut(&mut Segmenter::new(identifier), &sent);
         assert_eq!(join(&frames).0.len(), 1, "{identifier:?}");

@@ -12,7 +12,7 @@ fn a_pose_is_found_in_one_cycle() {
     for support in [SupportKind::TorsionFree, SupportKind::Universal] {
         let settings = Settings {
             support,
-            ..Settings::for_table_1().unwrap()
+            ..Settings::table_1().unwrap()
         };
         let mechanism = Mechanism::<f64>::new(&settings).unwrap();
         for azimuth_deg in (0..360).step_by(25) {
@@ -44,7 +44,7 @@ fn a_pose_is_found_in_one_cycle() {
 /// A push across the way to which a leg on a ball joint leans twists it: tensions without a moment about the leg.
 #[test]
 fn a_push_that_twists_a_leg_moves_neither_the_pose_nor_the_length_error() {
-    let mut settings = Settings::for_table_1().unwrap();
+    let mut settings = Settings::table_1().unwrap();
     settings.support = SupportKind::Spherical;
     let mechanism = Mechanism::<f64>::new(&settings).unwrap();
     for (x, y, torsion) in [(0.3, 0.1, 0.02), (-0.1, 0.45, -0.03)] {
@@ -92,7 +92,7 @@ fn a_push_that_twists_a_leg_moves_neither_the_pose_nor_the_length_error() {
 /// A push on a leg with a fast mode is taken up as the settings say; the first of the two filters is slower by as much as a mode is.
 #[test]
 fn a_push_is_taken_up_as_the_mode_allows() {
-    let settings = Settings::for_table_1().unwrap();
+    let settings = Settings::table_1().unwrap();
     let mechanism = Mechanism::<f64>::new(&settings).unwrap();
     let kinematics =
         inverse_kinematics(mechanism.rig.geometry(), &Direction::straight_down()).unwrap();

@@ -20,7 +20,7 @@ struct Leg {
 
 impl Leg {
     fn homing() -> Self {
-        let settings = Settings::for_table_1().unwrap();
+        let settings = Settings::table_1().unwrap();
         let zero = [0.0; 3];
         Self {
             mechanism: Mechanism::new(&settings).unwrap(),

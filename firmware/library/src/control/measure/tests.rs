@@ -7,9 +7,9 @@ use crate::sensors::{CURRENT_ZERO_PART, NOMINAL_ZERO_CODE};
 
 /// After as many readings of these codes as it takes, the drivers being on from one of them on.
 fn sought<T: Scalar>(codes: [u16; 3], driven_from: u16) -> Measurement<T> {
-    let settings = Settings::for_table_1().unwrap();
+    let settings = Settings::table_1().unwrap();
     let mut measurement = Measurement::new(&settings);
-    let mut sensors = Sensors::at_rest(&settings);
+    let mut sensors = Sensors::resting(&settings);
     for reading in 0..2 * ZERO_READINGS {
         // Two codes of noise, which a mean leaves out.
         sensors.current_codes = codes.map(|code| code - 1 + 2 * (reading % 2));
@@ -22,7 +22,7 @@ fn sought<T: Scalar>(codes: [u16; 3], driven_from: u16) -> Measurement<T> {
 
 /// The current that is shown at a code, A.
 fn shown_a<T: Scalar>(measurement: &mut Measurement<T>, code: u16) -> T {
-    let mut sensors = Sensors::at_rest(&Settings::for_table_1().unwrap());
+    let mut sensors = Sensors::resting(&Settings::table_1().unwrap());
     sensors.current_codes[0] = code;
     // Begins a cycle.
     measurement.end_current(0);
@@ -85,7 +85,7 @@ fn a_leg_that_is_driven_too_soon_has_no_zero() {
 /// Codes beyond the highest, which no converter gives, show no more than that.
 #[test]
 fn no_code_shows_more_than_the_range() {
-    let mut measurement = Measurement::<f32>::new(&Settings::for_table_1().unwrap());
+    let mut measurement = Measurement::<f32>::new(&Settings::table_1().unwrap());
     let most_a = shown_a(&mut measurement, CODE_MAX);
     assert_eq!(shown_a(&mut measurement, u16::MAX), most_a);
     assert_eq!(shown_a(&mut measurement, 0), -most_a);

@@ -7,7 +7,7 @@ use crate::settings::Settings;
 /// Whatever it has been asked for, the trim keeps its limit, and comes back from it at once.
 #[test]
 fn the_trim_ends_at_its_limit() {
-    let settings = Settings::for_table_1().unwrap();
+    let settings = Settings::table_1().unwrap();
     let max_n = f64::from(settings.estimation.trim_max_n);
     let per_cycle = f64::from(CYCLE_S / settings.estimation.trim_time_s);
     for sign in [1.0, -1.0] {

@@ -17,7 +17,7 @@ fn requests() -> [HostRequest; 7] {
         HostRequest::Stream(1),
         HostRequest::Sensors,
         HostRequest::GetSettings,
-        HostRequest::SetSettings(Settings::for_table_1().unwrap()),
+        HostRequest::SetSettings(Settings::table_1().unwrap()),
         HostRequest::SaveSettings,
     ]
 }
@@ -31,7 +31,7 @@ fn assert_knows_nobody(line: &mut Line) {
     assert_eq!(line.heard(), []);
     assert_eq!(line.leg.obeyed, []);
     assert_eq!(line.leg.restarts, []);
-    assert_eq!(line.link.to_save(), None);
+    assert_eq!(line.link.unsaved_settings(), None);
 }
 
 #[test]

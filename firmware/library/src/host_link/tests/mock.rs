@@ -33,7 +33,7 @@ pub struct NotedLeg {
 
 impl Default for NotedLeg {
     fn default() -> Self {
-        let settings = Settings::for_table_1().unwrap();
+        let settings = Settings::table_1().unwrap();
         Self {
             state: State::Disarmed,
             tick: 0,

@@ -23,7 +23,7 @@ fn a_recording_is_read_once_it_has_ended() {
         state(&ask(&mut line, RecorderRequest::Report)),
         RecorderState::Off
     );
-    let settings = Settings::for_table_1().unwrap();
+    let settings = Settings::table_1().unwrap();
     line.leg.recorder.begin(&RecorderSetup::new(&settings));
     let read = ask(&mut line, RecorderRequest::Read(0));
     assert_eq!(read, refused(HostRefusal::Recording));

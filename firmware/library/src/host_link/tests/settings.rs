@@ -18,7 +18,7 @@ const DRIVEN: [State; 5] = [
 ];
 
 fn built_in() -> Settings {
-    Settings::for_table_1().unwrap()
+    Settings::table_1().unwrap()
 }
 
 fn settings_in_use(line: &mut Line) -> Settings {
@@ -78,7 +78,7 @@ fn a_driven_leg_keeps_its_settings() {
         }
         assert_eq!(settings_in_use(&mut line), built_in());
         assert_eq!(line.leg.restarts, []);
-        assert_eq!(line.link.to_save(), None);
+        assert_eq!(line.link.unsaved_settings(), None);
     }
 }
 
@@ -98,7 +98,7 @@ fn refused_settings_are_named_and_none_of_them_is_in_use() {
     );
     assert_eq!(settings_in_use(&mut line), built_in());
     line.send(&HostRequest::SaveSettings);
-    assert_eq!(line.link.to_save(), Some(&built_in()));
+    assert_eq!(line.link.unsaved_settings(), Some(&built_in()));
 }
 
 /// Settings whose mechanism is refused, which is looked at last, leave the leg as it was: its zero known, on its way.
@@ -124,7 +124,7 @@ fn a_leg_that_refuses_settings_goes_on_with_the_old_ones() {
 
 /// A slack leg at rest with 24 V.
 fn quiet() -> Sensors {
-    Sensors::at_rest(&built_in())
+    Sensors::resting(&built_in())
 }
 
 fn ticked(leg: &mut SensingLeg<f32>, command: Command) -> Option<CommandOutcome> {
@@ -161,12 +161,12 @@ fn new_settings_clear_no_fault() {
 #[test]
 fn settings_are_kept_before_the_host_is_told_so() {
     let (mut line, number) = saving();
-    assert_eq!(line.link.to_save(), Some(&built_in()));
+    assert_eq!(line.link.unsaved_settings(), Some(&built_in()));
     line.tick();
     assert_eq!(line.heard(), []);
     line.link.saved(true);
     assert_eq!(line.heard(), [(number, HostReply::Done)]);
-    assert_eq!(line.link.to_save(), None);
+    assert_eq!(line.link.unsaved_settings(), None);
 }
 
 #[test]
@@ -174,7 +174,7 @@ fn settings_that_could_not_be_kept_are_told_as_that() {
     let (mut line, number) = saving();
     line.link.saved(false);
     assert_eq!(line.heard(), [(number, refused(HostRefusal::NotSaved))]);
-    assert_eq!(line.link.to_save(), None);
+    assert_eq!(line.link.unsaved_settings(), None);
 }
 
 #[test]
@@ -196,7 +196,7 @@ fn settings_do_not_change_while_they_are_being_kept() {
         line.ask(&HostRequest::SetSettings(others())),
         refused(HostRefusal::Busy)
     );
-    assert_eq!(line.link.to_save(), Some(&built_in()));
+    assert_eq!(line.link.unsaved_settings(), Some(&built_in()));
     assert_eq!(line.leg.restarts, []);
     line.link.saved(true);
     assert_eq!(line.heard(), [(number, HostReply::Done)]);

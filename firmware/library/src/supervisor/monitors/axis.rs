@@ -199,7 +199,7 @@ impl<T: Scalar> AxisMonitor<T> {
         }
     }
 
-    /// Whether a tension, N, has jumped and not come back since: a cut or slipped tendon, or a load cell that lies. After a knock it comes
+    /// Whether a tension, N, has jumped and not come back since: a cut or slipped tendon, or a load cell that reads wrong. After a knock it comes
     /// back.
     pub fn stays_jumped(&self, tension_n: T) -> bool {
         let near_n = self.bounds.jump_n * T::HALF;

@@ -88,7 +88,7 @@ struct Watched {
 
 impl Watched {
     fn new() -> Self {
-        let settings = Settings::for_table_1().unwrap();
+        let settings = Settings::table_1().unwrap();
         let mut watched = Self {
             monitors: Monitors::new(&settings),
             settings,
@@ -164,5 +164,5 @@ fn is_fault(fault: Fault, cycles: u16, change: impl Fn(&Limits, &mut Seen)) {
 }
 
 fn limits() -> Limits {
-    Settings::for_table_1().unwrap().limits
+    Settings::table_1().unwrap().limits
 }

@@ -1,6 +1,6 @@
 //! Boards that do not know their host, do not do as they report, and send what was not asked.
 
-use super::scripted_board::{at_rest, scripted, scripted_from_start, telemetry_reply};
+use super::scripted_board::{resting_leg, scripted, scripted_from_start, telemetry_reply};
 use super::{is_failed, lean};
 use crate::operator::{Operator, OperatorError};
 use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest};
@@ -41,7 +41,7 @@ fn a_reply_of_another_kind_is_named() {
 
 #[test]
 fn settings_that_read_back_otherwise_are_named() {
-    let (_, kept) = at_rest();
+    let (_, kept) = resting_leg();
     let mut sent = kept.clone();
     sent.limits.slack_n = 3.0;
     let mut operator = scripted(move |request| {
@@ -76,7 +76,7 @@ fn a_stop_is_repeated_at_its_pace_however_soon_it_is_refused() {
     let counted = Rc::clone(&asked);
     let mut operator = scripted(move |request| {
         if matches!(request, HostRequest::Telemetry) {
-            return Some(telemetry_reply(&at_rest().0));
+            return Some(telemetry_reply(&resting_leg().0));
         }
         counted.set(counted.get() + 1);
         (counted.get() < 39).then_some(HostReply::Refused(HostRefusal::Busy))
@@ -102,7 +102,7 @@ fn watch_late(operator: &mut Operator) -> Rc<RefCell<Vec<String>>> {
 #[test]
 fn a_board_that_answers_late_is_waited_for_and_said_to_be_late() {
     let late_s = 8;
-    let answer = at_rest().0;
+    let answer = resting_leg().0;
     let asked = Rc::new(Cell::new(0));
     let counted = Rc::clone(&asked);
     let mut operator = scripted(move |_| {
@@ -117,7 +117,7 @@ fn a_board_that_answers_late_is_waited_for_and_said_to_be_late() {
 
 #[test]
 fn a_leg_that_never_comes_to_rest_is_late() {
-    let (mut telemetry, _) = at_rest();
+    let (mut telemetry, _) = resting_leg();
     telemetry.state = State::RampingDown;
     let mut operator = scripted(move |_| Some(telemetry_reply(&telemetry)));
     let error = error_of!(operator.reach(&lean(10.0)), OperatorError::TimedOut(..));
@@ -133,7 +133,7 @@ fn a_leg_that_never_comes_to_rest_is_late() {
 #[test]
 fn a_disarm_waits_while_the_motors_move_and_five_seconds_more() {
     const MOVES_S: u64 = 90;
-    let (mut telemetry, _) = at_rest();
+    let (mut telemetry, _) = resting_leg();
     telemetry.state = State::RampingDown;
     let asked = Rc::new(Cell::new(0_u64));
     let counted = Rc::clone(&asked);
@@ -163,7 +163,7 @@ fn a_disarm_waits_while_the_motors_move_and_five_seconds_more() {
 
 #[test]
 fn a_leg_that_rests_elsewhere_reports_where() {
-    let (mut telemetry, settings) = at_rest();
+    let (mut telemetry, settings) = resting_leg();
     telemetry.state = State::Active;
     telemetry.target = telemetry.pose;
     telemetry.target_tensions_n = telemetry.tensions_n;

@@ -87,7 +87,7 @@ pub fn scripted(mut answer: impl FnMut(&HostRequest) -> Option<HostReply> + 'sta
 }
 
 /// The telemetry of a homed leg at rest, and its settings.
-pub fn at_rest() -> (Telemetry<f32>, Settings) {
+pub fn resting_leg() -> (Telemetry<f32>, Settings) {
     let leg = hanging_leg();
     let mut operator = host(&leg, 1);
     let telemetry = operator.telemetry().unwrap().telemetry;

@@ -13,7 +13,7 @@ use leg_sim::emulated_leg::InitialState;
 fn settings_are_read_back_and_refused_by_name() {
     let leg = hanging_leg();
     let mut operator = host(&leg, 1);
-    let mut settings = operator.settings().unwrap().without_zero();
+    let mut settings = operator.settings().unwrap().unhomed();
     settings.limits.slack_n = 3.0;
     operator.set_settings(&settings).unwrap();
     let found = operator.settings().unwrap();

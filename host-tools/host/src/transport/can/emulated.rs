@@ -27,7 +27,7 @@ impl EmulatedCan {
     pub fn new(line: EmulatedTransport, leg: LegAddress) -> Self {
         Self {
             line,
-            to_leg: Assembler::for_leg(leg),
+            to_leg: Assembler::leg_receiver(leg),
             from_leg: Segmenter::new(Identifier::ToHost(leg)),
             begun: Vec::new(),
             frames: VecDeque::new(),

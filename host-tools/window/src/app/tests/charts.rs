@@ -11,7 +11,7 @@ impl Window {
     }
 
     /// A place in a chart.
-    fn in_chart(&self, name: &str, part: f32) -> Pos2 {
+    fn chart_position(&self, name: &str, part: f32) -> Pos2 {
         let rect = self.app.places.rects[name];
         pos2(rect.left() + part * rect.width(), rect.center().y)
     }
@@ -44,7 +44,7 @@ fn two_cursors_are_dragged_and_stay_on_the_screen() {
     assert!(before.paused && window.shows("cursor_times") && window.shows("values_tensions_n"));
     let [a_s, b_s] = before.cursors_s.unwrap();
     assert!(a_s < b_s);
-    let [from, to] = [0.25, 0.15].map(|part| window.in_chart("tensions_n", part));
+    let [from, to] = [0.25, 0.15].map(|part| window.chart_position("tensions_n", part));
     window.drag(from, to);
     let after = window.charts().cursors_s.unwrap();
     assert_eq!(after[0], a_s);
@@ -60,7 +60,7 @@ fn a_cursor_stays_where_it_was_let_go() {
     let mut window = Window::new();
     window.frames(100);
     window.press("cursors");
-    let [from, to] = [0.7, 0.8].map(|part| window.in_chart("tensions_n", part));
+    let [from, to] = [0.7, 0.8].map(|part| window.chart_position("tensions_n", part));
     let button = |pos, pressed| Event::PointerButton {
         pos,
         button: PointerButton::Primary,
@@ -98,7 +98,7 @@ fn a_chart_that_stands_still_is_zoomed_and_a_double_click_shows_it_whole() {
     window.press("pause");
     let width_s = |window: &Window| window.charts().zoomed_s.map(|[a, b]| b - a);
     let before_s = width_s(&window).unwrap();
-    let at = window.in_chart("tensions_n", 0.5);
+    let at = window.chart_position("tensions_n", 0.5);
     window.frame(vec![Event::PointerMoved(at)]);
     window.frame(vec![Event::Zoom(2.0)]);
     window.frames(3);

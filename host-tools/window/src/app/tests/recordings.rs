@@ -171,7 +171,7 @@ fn a_recording_begins_at_the_time_of_the_day() {
     let began_s = window.leg().leg().time_s();
     let bytes = window.record_a_payload();
     let recorded = read_samples("leg.mcap", &bytes).unwrap();
-    let zero_s = recorded.about.begin_wall_time_s;
+    let zero_s = recorded.about.begin_wall_time_s.unwrap();
     let Samples::Simulation(samples) = recorded.samples else {
         panic!("it is of a simulated leg");
     };

@@ -188,7 +188,7 @@ impl PageLeg {
         let still =
             |report: &Telemetry<f32>| Ok(!matches!(report.state, State::Boot | State::RampingDown));
         let report = self.wait(asked, RELAXING_S, still).await?;
-        let faults = report.faults.without_limits();
+        let faults = report.faults.stopping();
         if faults.any() {
             return Err(PageError::Faulted(asked, faults));
         }
@@ -215,7 +215,7 @@ fn ticks(time_s: f64) -> u32 {
 }
 
 fn not_following(asked: &'static str, report: &Telemetry<f32>) -> PageError {
-    let faults = report.faults.without_limits();
+    let faults = report.faults.stopping();
     if faults.any() {
         PageError::Faulted(asked, faults)
     } else {
@@ -310,7 +310,7 @@ impl TunedLeg for PageLeg {
             Ok(report.tick.wrapping_sub(first) >= ticks(longest_s))
         };
         let last = self.wait(asked, 2.0 * longest_s, keep).await?;
-        if last.state == State::Held && !last.faults.without_limits().any() {
+        if last.state == State::Held && !last.faults.stopping().any() {
             Ok(recorded)
         } else {
             Err(not_following(asked, &last))

@@ -75,7 +75,7 @@ fn is_taut(leg: &ShownLeg) -> bool {
 
 fn outcome(ui: &mut Ui, homing: bool, leg: &ShownLeg) {
     let palette = palette(ui.ctx());
-    let faults = leg.faults().without_limits();
+    let faults = leg.faults().stopping();
     let (words, colour) = match leg.state() {
         State::Homing => {
             ui.add(Spinner::new());

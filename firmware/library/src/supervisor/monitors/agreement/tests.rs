@@ -25,7 +25,7 @@ impl Leg {
         let mut leg = Self {
             agreement: Agreement::new(&Settings {
                 support,
-                ..Settings::for_table_1().unwrap()
+                ..Settings::table_1().unwrap()
             }),
             // What homing and the geometry leave over.
             error: LengthError {
@@ -70,16 +70,16 @@ impl Leg {
 }
 
 /// One cell shows `off_m` more than its tendon is stretched.
-fn lie(error: &mut LengthError<f64>, cell: usize, off_m: f64) {
+fn misread(error: &mut LengthError<f64>, cell: usize, off_m: f64) {
     error.elongations_m[cell] += off_m;
     error.mean_m += off_m / 3.0;
 }
 
 #[test]
-fn a_cell_that_lies_is_found_before_the_load_is_believed() {
+fn a_cell_that_reads_wrong_is_found_before_the_load_is_believed() {
     for cell in 0..3 {
         for off_m in [6e-5, -6e-5, 5e-4, -1e-3] {
-            let found_s = Leg::taut().disagrees_after(|_, error| lie(error, cell, off_m));
+            let found_s = Leg::taut().disagrees_after(|_, error| misread(error, cell, off_m));
             assert!(found_s.is_some_and(|s| s < 0.05), "{off_m}: {found_s:?}");
         }
     }
@@ -87,7 +87,7 @@ fn a_cell_that_lies_is_found_before_the_load_is_believed() {
 
 #[test]
 fn a_cell_that_fades_in_seconds_is_found_while_little_is_missing() {
-    let found_s = Leg::taut().disagrees_after(|s, error| lie(error, 1, -1e-4 * s));
+    let found_s = Leg::taut().disagrees_after(|s, error| misread(error, 1, -1e-4 * s));
     assert!(found_s.is_some_and(|s| s < 0.6), "{found_s:?}");
 }
 
@@ -186,12 +186,12 @@ fn a_hard_swing_as_the_tendons_come_taut_is_no_lie() {
         }
         leg.error = begun;
         // Five seconds later nothing of it is left.
-        let found_s = leg.disagrees_after(|_, error| lie(error, 1, -1e-4));
+        let found_s = leg.disagrees_after(|_, error| misread(error, 1, -1e-4));
         assert!(!agrees || found_s.is_some_and(|s| s < 0.05), "{found_s:?}");
         agrees
     };
     assert!(agrees(6e-4, 1e-4));
-    // What no hard swing explains is a lie.
+    // What no hard swing explains is a wrong reading.
     assert!(!agrees(1e-4, 1e-4));
 }
 
@@ -211,7 +211,7 @@ fn a_pause_forgets_nothing_and_nothing_is_trusted_in_it() {
     leg.watch(false);
     assert!(leg.agreement.trusts());
     leg.agreement.pause();
-    let found_s = leg.disagrees_after(|_, error| lie(error, 1, -1e-4));
+    let found_s = leg.disagrees_after(|_, error| misread(error, 1, -1e-4));
     assert!(found_s.is_some_and(|s| s < 0.05), "{found_s:?}");
 }
 

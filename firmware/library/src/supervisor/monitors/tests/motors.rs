@@ -5,18 +5,27 @@ use crate::control::CYCLE_S;
 
 /// Asserts that current and voltage disagree; the filter of 5 ms comes there later than the time says.
 fn disagrees(change: impl Fn(&Limits, &mut Seen)) {
+    assert_disagrees(change, limits().disagreement_time_s, 2);
+}
+
+/// Asserts that current and voltage disagree as soon as the filter of 5 ms and the time for a motor that stands allow.
+fn disagrees_soon(change: impl Fn(&Limits, &mut Seen)) {
+    assert_disagrees(change, limits().still_time_s, 5);
+}
+
+fn assert_disagrees(change: impl Fn(&Limits, &mut Seen), time_s: f32, times_max: u16) {
     let mut seen = Seen::sound();
     change(&limits(), &mut seen);
     let (faults, after) = Watched::new().faults_after(&seen).unwrap();
     assert_eq!(faults, FaultSet::single(Fault::CurrentDisagrees));
-    let time = cycles(limits().disagreement_time_s);
-    assert!((time..2 * time).contains(&after), "{after} cycles");
+    let time = cycles(time_s);
+    assert!((time..times_max * time).contains(&after), "{after} cycles");
 }
 
 /// Whichever way the motor turns.
 #[test]
 fn a_current_is_too_much_or_not_what_the_tension_asks_for() {
-    let settings = Settings::for_table_1().unwrap();
+    let settings = Settings::table_1().unwrap();
     let servo = settings.servo;
     for sign in [1.0, -1.0] {
         let flows = |a: f64| move |_: &Limits, s: &mut Seen| s.measured.currents_a[AXIS] = sign * a;
@@ -33,20 +42,10 @@ fn a_current_is_too_much_or_not_what_the_tension_asks_for() {
     }
 }
 
-/// Asserts that current and voltage disagree as soon as the filter of 5 ms and the time for a motor that stands allow.
-fn disagrees_soon(change: impl Fn(&Limits, &mut Seen)) {
-    let mut seen = Seen::sound();
-    change(&limits(), &mut seen);
-    let (faults, after) = Watched::new().faults_after(&seen).unwrap();
-    assert_eq!(faults, FaultSet::single(Fault::CurrentDisagrees));
-    let time = cycles(limits().still_time_s);
-    assert!((time..5 * time).contains(&after), "{after} cycles");
-}
-
 /// A voltage that drives so much, A, at a motor that draws nothing.
 fn drives(a: f64, counts: i16) -> impl Fn(&Limits, &mut Seen) {
     move |_, s| {
-        let volt = a * f64::from(Settings::for_table_1().unwrap().servo.resistance_ohm);
+        let volt = a * f64::from(Settings::table_1().unwrap().servo.resistance_ohm);
         (s.view.voltage_v, s.view.mean_voltage_v, s.view.driving_v) = (volt, volt, volt);
         s.counts_a_cycle = counts;
     }
@@ -55,7 +54,7 @@ fn drives(a: f64, counts: i16) -> impl Fn(&Limits, &mut Seen) {
 /// A motor at a voltage draws at least what that drives less twice its friction.
 #[test]
 fn a_current_that_is_missing_is_a_fault() {
-    let friction_a = 2.0 * f64::from(Settings::for_table_1().unwrap().servo.friction_a);
+    let friction_a = 2.0 * f64::from(Settings::table_1().unwrap().servo.friction_a);
     for sign in [1.0, -1.0] {
         let forward = sign as i16;
         for counts in [0, forward] {
@@ -68,7 +67,7 @@ fn a_current_that_is_missing_is_a_fault() {
 /// What it draws may be 1.3 times less than what its voltage drives by the settings, for it may be warm.
 #[test]
 fn a_warm_winding_draws_less() {
-    let servo = Settings::for_table_1().unwrap().servo;
+    let servo = Settings::table_1().unwrap().servo;
     let friction_a = 2.0 * f64::from(servo.friction_a);
     let draws = |drawn_a: f64, lacking_a: f64| {
         move |limits: &Limits, seen: &mut Seen| {
@@ -83,7 +82,7 @@ fn a_warm_winding_draws_less() {
 /// What it lacks shows that it turns: then it has to be counted. What it lacks by far shows that it is not connected.
 #[test]
 fn a_motor_that_turns_uncounted_or_is_not_driven_at_all_is_found_soon() {
-    let servo = Settings::for_table_1().unwrap().servo;
+    let servo = Settings::table_1().unwrap().servo;
     let friction_a = 2.0 * f64::from(servo.friction_a);
     let open_a = friction_a + 0.25 * f64::from(servo.current_a);
     for sign in [1.0, -1.0] {
@@ -102,7 +101,7 @@ fn a_motor_that_turns_uncounted_or_is_not_driven_at_all_is_found_soon() {
 /// What the speed induces drives no current, and is known to a tenth.
 #[test]
 fn the_voltage_that_a_speed_induces_needs_no_current() {
-    let servo = Settings::for_table_1().unwrap().servo;
+    let servo = Settings::table_1().unwrap().servo;
     let (ohm, friction) = (f64::from(servo.resistance_ohm), f64::from(servo.friction_a));
     let allowed_a = |induced_v: f64| 2.0 * friction + 0.1 * induced_v / ohm;
     for sign in [1.0, -1.0] {
@@ -128,7 +127,7 @@ fn the_voltage_that_a_speed_induces_needs_no_current() {
 
 #[test]
 fn a_motor_that_is_driven_turns_and_the_way_it_is_driven() {
-    let servo = Settings::for_table_1().unwrap().servo;
+    let servo = Settings::table_1().unwrap().servo;
     let hard_v = f64::from(limits().driven_part * servo.current_a * servo.resistance_ohm);
     let current_a = f64::from(limits().driven_part * servo.current_a);
     let drives = |volt: f64, counts: i16| {
@@ -209,7 +208,7 @@ fn a_motor_that_is_not_where_it_is_led_is_a_fault() {
 /// Nine tenths of what the fastest motor goes in a tick, beside what goes on at its speed.
 #[test]
 fn a_counter_that_goes_too_far_has_jumped() {
-    let settings = Settings::for_table_1().unwrap();
+    let settings = Settings::table_1().unwrap();
     let m_per_count = f64::from(settings.axes[AXIS].m_per_count.abs());
     let tick_m = f64::from(settings.servo.speed_m_per_s) / 8000.0;
     let counts = |speed: f64, more: f64| {
