@@ -120,6 +120,7 @@ impl Case {
                 feasible(&self.file, [azimuth_deg, tilt_deg], payload_kg),
                 feasible(&self.file, [azimuth_deg, tilt_deg], heavier_kg),
                 feasible(&self.file, target_deg, payload_kg),
+                feasible(&self.file, target_deg, heavier_kg),
                 feasible(&self.file, [0.0, 0.0], 0.0),
             ];
             let low = ranges.iter().map(|range| range[0]).fold(0.0, f64::max);
