@@ -52,8 +52,8 @@ def at_pose(model, position):
     rotations = np.zeros((3, model.nv))
     mujoco.mj_jacBody(model, data, None, rotations, model.body("leg").id)
     return {
-        "lengths_m": data.ten_length.tolist(),
-        "length_rates_m_per_rad": rates.tolist(),
+        "lengths_m": data.ten_length[:3].tolist(),
+        "length_rates_m_per_rad": rates[:3].tolist(),
         "rotation_rates": rotations.tolist(),
         "tip_m": data.site("tip").xpos.tolist(),
     }

@@ -33,6 +33,7 @@ def parsed(robot):
         },
         "joints": [joint.name for joint in joints],
         "axes": [list(joint.axis) for joint in joints],
+        "zeros_rad": [sum(joint.origin.rpy) for joint in joints],
         "limits": [
             [joint.limit.lower, joint.limit.upper, joint.limit.effort, joint.limit.velocity]
             for joint in joints

@@ -27,17 +27,17 @@ enum Format {
 
 /// Writes the rig as a URDF robot: two revolute joints a leg, bodies of primitives, inertias and limits.
 ///
-/// URDF has no tendons: the joints are those of a universal joint, and a comment says which angles are which pose. With
-/// --legs the legs are spread around a body, which a simulator may let float.
+/// URDF has no tendons: the joints are those of a universal joint, at zero where the leg has the pose that is given; a comment
+/// says which angles are which pose. With --legs the legs are spread around a body, which a simulator may let float.
 #[derive(Debug, clap::Args)]
 struct UrdfArgs {
     /// The rig file or the name of a ready rig; the paper's rig if left out.
     #[arg(long, value_name = "FILE")]
     rig: Option<PathBuf>,
-    /// The azimuth of the pose whose joint angles the comment has, degrees, -3600 to 3600.
+    /// The azimuth towards which each leg leans where its joints are at zero, degrees, -3600 to 3600.
     #[arg(long, value_name = "DEG", default_value = "0", value_parser = azimuth_deg, allow_negative_numbers = true)]
     azimuth_deg: f64,
-    /// Its tilt from the vertical, degrees, -60 to 60.
+    /// Its tilt from the vertical, degrees, within that of the rig file.
     #[arg(long, value_name = "DEG", default_value = "0", value_parser = tilt_deg, allow_negative_numbers = true)]
     tilt_deg: f64,
     /// Mass at the tip, kg.
@@ -86,7 +86,7 @@ struct Several {
     #[arg(long, value_name = "N", requires = "radius_m", value_parser = value_parser!(u32).range(2..=12))]
     legs: Option<u32>,
     /// From the body's centre to the legs' joint centres, m, 0.01 to 10.
-    #[arg(long, value_name = "M", requires = "legs", value_parser = radius_m)]
+    #[arg(long, alias = "radius", value_name = "M", requires = "legs", value_parser = radius_m)]
     radius_m: Option<f64>,
     /// Mass of the body without its legs, kg, 0.001 to 1000; that of its legs together, without payloads, if left out.
     #[arg(long, value_name = "KG", requires = "legs", value_parser = body_kg)]

@@ -8,6 +8,9 @@ use std::fmt::{self, Display, Formatter};
 /// Density of the payload, kg/m³: steel.
 const PAYLOAD_DENSITY_KG_PER_M3: f64 = 7850.0;
 
+/// Inertia of a payload that is a point, as a part of the leg's along its axis: other programs want some.
+const POINT_INERTIA_RATIO: f64 = 1e-4;
+
 /// Several legs on a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
@@ -89,8 +92,7 @@ pub enum ShapeError {
 /// The key of the inertia along the leg.
 const AXIAL_INERTIA: &str = "leg_axial_inertia_kg_m2";
 
-/// Sizes of what the eye sees, which no rig file gives, and inertias: the leg's are those of the simulated leg, the payload's
-/// that of a steel ball.
+/// Sizes of what the eye sees, which no rig file gives, and inertias: those of the simulated leg, whose payload is a point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LegShape {
     /// From the joint centre to the tip, m.
@@ -103,7 +105,7 @@ pub(crate) struct LegShape {
     pub inertia: [f64; 2],
     /// Radius of the payload, m.
     pub payload: f64,
-    /// Inertia of the payload about its centre, kg·m².
+    /// Inertia of the payload about its centre, kg·m²: next to none, as a point; that of the ball where the leg has none itself.
     pub payload_inertia: f64,
 }
 
@@ -126,13 +128,19 @@ impl LegShape {
         );
         let volume = payload_kg / PAYLOAD_DENSITY_KG_PER_M3;
         let payload = (3.0 * volume / (4.0 * PI)).cbrt();
+        let inertia = inertia(rig)?;
+        let payload_inertia = if mass > 0.0 {
+            POINT_INERTIA_RATIO * inertia[1]
+        } else {
+            0.4 * payload_kg * payload * payload
+        };
         Ok(Self {
             tip,
             ring,
             rod,
-            inertia: inertia(rig)?,
+            inertia,
             payload,
-            payload_inertia: 0.4 * payload_kg * payload * payload,
+            payload_inertia,
         })
     }
 }

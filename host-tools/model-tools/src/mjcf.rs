@@ -2,7 +2,7 @@
 //!
 //! MuJoCo's world frame is frame {A}: the joint centre is its origin, z points up. The tendons are springs that only
 //! pull, straight where the leg is held; inertia and damping are those of the simulated leg. What neither says is chosen
-//! here and in [`leg_shape`](crate::leg_shape): the payload is a steel ball. Joint and shaft do not stretch: for that see
+//! here and in [`leg_shape`](crate::leg_shape). Joint and shaft do not stretch: for that see
 //! `axial_stretch_m` of `leg eval`. Several legs stand around a body that floats; then the world's origin is on the floor.
 
 mod actuators;
@@ -106,7 +106,10 @@ impl Mjcf {
             .child(scenery::sky())
             .child(scenery::defaults(leg.shape.ring))
             .child(world(leg, &joints, several.as_ref()))
-            .children(some("tendon", of_each(&|prefix| actuators::paths(prefix))))
+            .children(some(
+                "tendon",
+                of_each(&|prefix| tendons(leg, &joints, prefix)),
+            ))
             .children(some("equality", equalities))
             .children(some(
                 "actuator",
@@ -131,6 +134,13 @@ impl Mjcf {
     }
 }
 
+/// Those of a leg, and what damps its joints together.
+fn tendons(leg: &HeldLeg, joints: &Joints, prefix: &str) -> Vec<Element> {
+    let damper = joints.damper.as_ref();
+    let damper = damper.map(|damper| actuators::damper(leg, prefix, damper));
+    actuators::paths(prefix).into_iter().chain(damper).collect()
+}
+
 fn comment(leg: &HeldLeg, several: Option<&Body>) -> String {
     let around = several.map_or_else(String::new, |body| format!("\n  {body} It floats."));
     let HeldLeg {
@@ -145,7 +155,7 @@ fn comment(leg: &HeldLeg, several: Option<&Body>) -> String {
          Controls: how far each motor shall have reeled in from there, m; an activation is how far it has.\n  \
          An encoder's count from there: `counts_per_m` times the activation, or of a taut tendon by sensors\n  \
          {COUNTS}.\n  \
-         Inertia and damping are those of the simulated leg; not from the rig file: the payload's inertia (a steel ball).\n  \
+         Inertia and damping are those of the simulated leg: a payload is a point (a steel ball on a leg without mass).\n  \
          Joint and shaft do not stretch.{around} "
     )
 }

@@ -3,6 +3,8 @@
 //! URDF has no tendons and no closed chains: the leg of a rig is a universal joint, R = Rx(α)·Ry(β), that the tendons turn.
 //! Its tip goes where that of any support goes; only on `universal` does it twist as the support does. Each joint ends at the
 //! rig's greatest tilt, so that the corners of the joints' range are beyond it.
+//!
+//! URDF has no initial positions: the origins of the joints are turned, so that the leg has its pose where they are at zero.
 
 mod links;
 
@@ -24,6 +26,14 @@ pub enum UrdfError {
     /// No body is like the leg.
     #[error(transparent)]
     Shape(#[from] ShapeError),
+    /// The joints do not go there.
+    #[error(
+        "the rig leans by at most {tilt_max_deg}°, and the joints end there: give a tilt from -{tilt_max_deg} to {tilt_max_deg}"
+    )]
+    Tilt {
+        /// The rig's greatest tilt, degrees.
+        tilt_max_deg: f64,
+    },
 }
 
 /// What the joints of a leg can do.
@@ -33,6 +43,8 @@ struct JointLimits {
     /// About x and y, N·m: what the tendons give straight down, one side at its highest tension and the other at its lowest.
     moment_nm: [f64; 2],
     speed_rad_per_s: f64,
+    /// Where the joints are at zero, as angles from straight down.
+    zeros_rad: [f64; 2],
 }
 
 /// A robot that is ready to be written.
@@ -44,8 +56,8 @@ pub struct Urdf {
 
 impl Urdf {
     /// One leg, whose first link is the base: its origin is the joint centre, z points up. Or several on a body, whose origin is
-    /// in the plane of the joint centres; the first is towards x. `pose` is azimuth and tilt, degrees: the comment has the angles of
-    /// the joints there.
+    /// in the plane of the joint centres; the first is towards x. `pose` is azimuth and tilt, degrees, of each leg where its joints
+    /// are at zero.
     ///
     /// # Errors
     /// [`UrdfError`].
@@ -56,7 +68,11 @@ impl Urdf {
         several: Option<Body>,
     ) -> Result<Self, UrdfError> {
         let shape = LegShape::new(rig, payload_kg)?;
-        let limits = limits(rig, payload_kg)?;
+        let tilt_max_deg = rig.tilt_deg;
+        if pose[1].abs() > tilt_max_deg {
+            return Err(UrdfError::Tilt { tilt_max_deg });
+        }
+        let limits = limits(rig, payload_kg, joint_angles(pose)?)?;
         let of_leg = |prefix: &str| leg(rig, payload_kg, &shape, limits, prefix);
         let root = Element::new("robot").text("name", "leg");
         let root = match several {
@@ -73,7 +89,7 @@ impl Urdf {
         };
         Ok(Self {
             root,
-            comment: comment(pose, several.as_ref())?,
+            comment: comment(pose, limits.zeros_rad, several.as_ref()),
         })
     }
 
@@ -86,22 +102,32 @@ impl Urdf {
     }
 }
 
-fn comment([azimuth_deg, tilt_deg]: [f64; 2], several: Option<&Body>) -> Result<String, Error> {
-    let around = several.map_or_else(String::new, |body| {
-        format!("\n  {body}\n  No joint holds its link `body`: it floats where the simulator does not fix it.")
-    });
+/// Of a leg whose joints are at zero where it is straight down, rad.
+fn joint_angles([azimuth_deg, tilt_deg]: [f64; 2]) -> Result<[f64; 2], Error> {
     let direction = Direction::from_angles(azimuth_deg.to_radians(), tilt_deg.to_radians())?;
     let along = direction.vector();
     // Adding zero turns −0 into 0.
-    let (x_rad, y_rad) = (along.y.atan2(-along.z) + 0.0, -along.x.asin() + 0.0);
-    Ok(format!(
-        " The leg's inertia is that of the simulated leg; not from the rig file: the payload's (a steel ball).\n  \
-         A leg that leans by t towards azimuth a has tilt_x = atan2(sin t sin a, cos t), tilt_y = -asin(sin t cos a);\n  \
-         at azimuth {azimuth_deg:.3} deg, tilt {tilt_deg:.3} deg: tilt_x = {x_rad:.9}, tilt_y = {y_rad:.9}.{around} "
-    ))
+    Ok([along.y.atan2(-along.z) + 0.0, -along.x.asin() + 0.0])
 }
 
-fn limits(rig: &RigFile, payload_kg: f64) -> Result<JointLimits, Error> {
+fn comment(
+    [azimuth_deg, tilt_deg]: [f64; 2],
+    [x_rad, y_rad]: [f64; 2],
+    several: Option<&Body>,
+) -> String {
+    // From zero, so that of zero there is no −0.
+    let (x_rad, y_rad) = (0.0 - x_rad, 0.0 - y_rad);
+    let around = several.map_or_else(String::new, |body| {
+        format!("\n  {body}\n  No joint holds its link `body`: it floats where the simulator does not fix it.")
+    });
+    format!(
+        " Inertia is that of the simulated leg: a payload is a point (a steel ball on a leg without mass).\n  \
+         Joints at zero: azimuth {azimuth_deg:.3} deg, tilt {tilt_deg:.3} deg. A leg that leans by t towards azimuth a has\n  \
+         tilt_x = atan2(sin t sin a, cos t) {x_rad:+.9}, tilt_y = -asin(sin t cos a) {y_rad:+.9}.{around} "
+    )
+}
+
+fn limits(rig: &RigFile, payload_kg: f64, zeros_rad: [f64; 2]) -> Result<JointLimits, Error> {
     let evaluation = evaluate(&rig.parameters, &rig.query(0.0, 0.0, payload_kg))?;
     let [x, y, _] = evaluation.moment_map_m;
     let moment = |row: [f64; 3]| {
@@ -116,5 +142,6 @@ fn limits(rig: &RigFile, payload_kg: f64) -> Result<JointLimits, Error> {
         tilt_rad: rig.tilt_deg.to_radians(),
         moment_nm: [moment(x), moment(y)],
         speed_rad_per_s: decimal(rig.gains.motion.speed_rad_per_s),
+        zeros_rad,
     })
 }

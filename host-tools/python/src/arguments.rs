@@ -11,7 +11,7 @@ use leg_sim::scenario::CommandStep;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyList};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
@@ -27,6 +27,9 @@ const NUMBERS_MAX: usize = 100_000_000;
 
 /// Most points of a path: three hours at 100 Hz.
 const POINTS_MAX: usize = 1_000_000;
+
+/// Levels of keys by which a value is named: a dictionary may hold itself.
+const NAMED_LEVELS: usize = 8;
 
 /// A finite number.
 pub fn finite(name: &str, value: f64) -> PyResult<f64> {
@@ -148,15 +151,46 @@ pub fn tensioning(
     }
 }
 
-/// A dictionary as JSON.
-pub fn to_json(name: &str, values: &Bound<'_, PyDict>) -> PyResult<String> {
+/// A dictionary as JSON. What cannot be is named by its keys.
+pub fn to_json<'py>(name: &str, values: &Bound<'py, PyDict>) -> PyResult<String> {
     let _call = Call::begin(values.py())?;
     let json = values.py().import("json")?;
     let strict = PyDict::new(values.py());
     strict.set_item("allow_nan", false)?;
-    let dumped = json.call_method("dumps", (values,), Some(&strict));
-    let no_json = |error| PyValueError::new_err(format!("{name} cannot be JSON: {error}"));
-    dumped.map_err(no_json)?.extract()
+    let dumped = |value: &Bound<'py, PyAny>| json.call_method("dumps", (value,), Some(&strict));
+    let mut value = values.clone().into_any();
+    let mut error = match dumped(&value) {
+        Ok(text) => return text.extract(),
+        Err(error) => error,
+    };
+    let mut place = name.to_owned();
+    for _ in 0..NAMED_LEVELS {
+        let mut parts = parts(&value)?.into_iter();
+        let failing = parts.find_map(|(key, part)| Some((key, dumped(&part).err()?, part)));
+        let Some((key, of_part, part)) = failing else {
+            break;
+        };
+        place = format!("{place}[{key}]");
+        (value, error) = (part, of_part);
+    }
+    if let Ok(number) = value.extract() {
+        finite(&place, number)?;
+    }
+    let sentence = format!("{place} cannot be JSON: {error}");
+    Err(PyValueError::new_err(sentence))
+}
+
+/// The values of a dictionary or a list, each with its key in Python's words; none of anything else.
+fn parts<'py>(value: &Bound<'py, PyAny>) -> PyResult<Vec<(String, Bound<'py, PyAny>)>> {
+    if let Ok(values) = value.cast::<PyDict>() {
+        let named = |(key, part): (Bound<'py, PyAny>, _)| Ok((key.repr()?.to_string(), part));
+        return values.iter().map(named).collect();
+    }
+    let Ok(values) = value.cast::<PyList>() else {
+        return Ok(Vec::new());
+    };
+    let numbered = |(index, part): (usize, _)| (index.to_string(), part);
+    Ok(values.iter().enumerate().map(numbered).collect())
 }
 
 /// What a JSON text says, as Python has it.
@@ -299,6 +333,18 @@ pub fn numbers(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Numbers> {
     }
     let shape = array.shape().to_vec();
     Ok(Numbers { values, shape })
+}
+
+/// The same, none of them below zero.
+pub fn not_negative(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Numbers> {
+    let numbers = numbers(name, argument)?;
+    match numbers.values.iter().position(|value| *value < 0.0) {
+        None => Ok(numbers),
+        Some(index) => Err(PyValueError::new_err(format!(
+            "{name} holds {} at index {index}, which is below 0",
+            numbers.values[index]
+        ))),
+    }
 }
 
 /// Finite numbers, one after the other.

@@ -200,7 +200,7 @@ impl Rig {
         #[pyo3(from_py_with = named::tendon)] tendon: i128,
     ) -> PyResult<Bound<'py, PyDict>> {
         let curve = &self.file.tendons[arguments::place("tendon", tendon)?];
-        let Numbers { values, shape } = arguments::numbers("tensions_n", tensions_n)?;
+        let Numbers { values, shape } = arguments::not_negative("tensions_n", tensions_n)?;
         let of = |read: &dyn Fn(f64) -> Option<f64>| {
             let numbers = values.iter().map(|n| read(*n).unwrap_or(f64::NAN));
             PyArray1::from_iter(py, numbers).reshape(shape.clone())

@@ -1,9 +1,11 @@
 """A leg on a port, awaited."""
 
 import asyncio
+from contextlib import ExitStack
 
 import pytest
 from tendon_leg import AsyncLeg, LegError
+from test_leg import emulator, needs_leg
 
 
 def test_other_tasks_go_on_while_the_leg_moves():
@@ -68,6 +70,39 @@ def test_a_cancelled_call_and_a_stop_leave_the_leg_in_hold():
             return cancelled, (await leg.telemetry())["state"]
 
     assert asyncio.run(main()) == ("held", "held")
+
+
+async def homed_moved_and_stopped(leg):
+    assert (await leg.home())["homed"]
+    assert (await leg.move(azimuth_deg=30, tilt_deg=5))["tilt_deg"] == pytest.approx(5.0, abs=0.1)
+    moving = asyncio.create_task(leg.follow([[t, 30.0, 5.0 + t / 10.0] for t in range(61)]))
+    await asyncio.sleep(0.05)
+    await leg.stop()
+    with pytest.raises(LegError):
+        await moving
+    assert (await leg.telemetry())["state"] == "held"
+
+
+def test_a_leg_on_a_bus_is_awaited():
+    async def main():
+        async with await AsyncLeg.emulated(slack=True, can=3) as leg:
+            await homed_moved_and_stopped(leg)
+
+    asyncio.run(main())
+
+
+@needs_leg
+def test_legs_on_ports_are_awaited_together_wherever_their_firmware_runs():
+    async def drive(port):
+        async with await AsyncLeg.open(port) as leg:
+            await homed_moved_and_stopped(leg)
+
+    async def main(ports):
+        await asyncio.gather(*map(drive, ports))
+
+    with ExitStack() as emulators:
+        arguments = [], ["--tcp"], ["--on", "qemu"]
+        asyncio.run(main([emulators.enter_context(emulator("--slack", *each)) for each in arguments]))
 
 
 def test_a_closed_leg_is_refused_by_name():

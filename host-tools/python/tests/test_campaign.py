@@ -111,36 +111,67 @@ class Counting:
         return future
 
 
-PROGRAM = """
+#: Cases that take a second each, so that a campaign is killed in the midst of them.
+TOURS = [{"scenario": "tour", "seed": seed} for seed in range(5)]
+
+PROGRAM = f"""
 import sys
 from tendon_leg import campaign
-cases = [{"scenario": "tour", "seed": seed} for seed in range(8)]
+cases = {TOURS}
 campaign(cases, sys.argv[1], progress=lambda row: print(row["seed"], flush=True))
 """
 
+ON_CLUSTER = f"""
+import sys
+from distributed import Client
+from tendon_leg import campaign
+cases = {TOURS}
+with Client(sys.argv[1]) as client, client.get_executor() as executor:
+    campaign(cases, sys.argv[2], executor=executor, progress=lambda row: print(row["seed"], flush=True))
+"""
 
-def test_a_killed_campaign_goes_on_where_it_was(tmp_path):
-    with subprocess.Popen([sys.executable, "-c", PROGRAM, tmp_path], stdout=subprocess.PIPE, text=True) as child:
+
+def killed_after_a_row(program, *arguments, directory):
+    """How many results a campaign has kept whose program was killed once it had told of one."""
+    command = [sys.executable, "-c", program, *arguments, directory]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as child:
         assert child.stdout is not None
         child.stdout.readline()
         child.kill()
-    done = len([line for line in (tmp_path / "results.jsonl").read_text().splitlines() if line.endswith("}}")])
-    assert 1 <= done < 8
-    fresh = []
-    rows = campaign([{"scenario": "tour", "seed": seed} for seed in range(8)], tmp_path, executor=Counting(fresh))
-    assert len(fresh) == 8 - done and all(row["passed"] for row in rows)
+    done = len([line for line in (directory / "results.jsonl").read_text().splitlines() if line.endswith("}}")])
+    assert 1 <= done < len(TOURS)
+    return done
 
 
-def test_a_dask_cluster_gives_the_same_rows(tmp_path):
+def test_a_killed_campaign_goes_on_where_it_was(tmp_path):
+    done, fresh = killed_after_a_row(PROGRAM, directory=tmp_path), []
+    rows = campaign(TOURS, tmp_path, executor=Counting(fresh))
+    assert len(fresh) == len(TOURS) - done and all(row["passed"] for row in rows)
+
+
+@pytest.fixture(scope="module")
+def cluster():
     distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+        yield cluster
+
+
+def test_a_dask_cluster_gives_the_same_rows(cluster, tmp_path):
     listed = cases()[:4]
-    with (
-        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
-        distributed.Client(cluster) as client,
-        client.get_executor() as executor,
-    ):
+    with cluster.get_client() as client, client.get_executor() as executor:
         on_cluster = campaign(listed, tmp_path / "cluster", executor=executor)
     assert on_cluster == campaign(listed, tmp_path / "here")
+
+
+def test_a_killed_campaign_on_a_dask_cluster_goes_on_where_it_was(cluster, tmp_path):
+    done = killed_after_a_row(ON_CLUSTER, cluster.scheduler_address, directory=tmp_path)
+    with cluster.get_client() as client, client.get_executor() as executor:
+        ran = []
+        submit = executor.submit
+        executor.submit = lambda call, run: ran.append(run) or submit(call, run)
+        rows = campaign(TOURS, tmp_path, executor=executor)
+    assert len(ran) == len(TOURS) - done
+    assert [(row["seed"], row["passed"]) for row in rows] == [(case["seed"], True) for case in TOURS]
 
 
 @pytest.mark.parametrize(
@@ -162,6 +193,17 @@ def test_a_case_that_is_none_is_refused_before_anything_runs(tmp_path, case, wor
         campaign([{"scenario": "tour"}, case], tmp_path)
     assert words in str(refusal.value) and time.monotonic() - began < 1.0
     assert not (tmp_path / "results.jsonl").exists()
+
+
+def test_a_directory_that_is_none_is_refused_by_name(tmp_path):
+    file = tmp_path / "file"
+    file.write_text("x")
+    for directory in (file, file / "below"):
+        with pytest.raises(ValueError, match=r"directory = '.*' cannot be made: "):
+            campaign([{"scenario": "tour"}], directory)
+    (tmp_path / "results.jsonl").write_text("[]\n")
+    with pytest.raises(ValueError, match=r"directory: line 1 of .*results.jsonl is no result of a campaign"):
+        campaign([{"scenario": "tour"}], tmp_path)
 
 
 def test_results_of_another_build_are_not_taken(tmp_path, monkeypatch):

@@ -1,4 +1,4 @@
-"""The examples that README.md does not run."""
+"""The examples, and what their pictures show."""
 
 import runpy
 import sys
@@ -7,6 +7,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 sys.path.insert(0, str(EXAMPLES))
@@ -32,6 +33,40 @@ def looked_at(figure, picture):
         assert all(np.isfinite(line).any() for line in lines), axis
     height, width, _ = picture.shape
     assert len(np.unique(picture.reshape(height * width, -1), axis=0)) > 100
+
+
+def pixels_of(line, picture):
+    """Which points of a drawn line have its colour in the picture, within two pixels."""
+    figure = line.figure
+    height, width, _ = picture.shape
+    places = line.axes.transData.transform(line.get_xydata()) * width / figure.bbox.width
+    columns, rows = np.round(places).astype(int).T
+    far = np.abs(picture[..., :3] - to_rgb(line.get_color())).max(axis=2)
+    boxes = [far[height - 1 - row - 2 : height - 1 - row + 3, column - 2 : column + 3] for column, row in zip(columns, rows, strict=True)]
+    return np.array([box.min() < 0.1 for box in boxes])
+
+
+def test_the_tip_of_a_leg_with_an_unknown_payload_stays_on_its_circle(tmp_path, monkeypatch):
+    values = run("circle", tmp_path, monkeypatch)
+    seen, (path, error) = values["seen"], (values["path"], values["error"])
+    assert seen["time_s"][[0, -1]] == pytest.approx(seen["time_s"][0] + np.array([0.0, 10.0]), abs=0.01)
+    # The bound of the ready scenario `circle`, which is the same path with the same payload. A leg that sags has 3 mm.
+    assert 0.005 < seen["path_error_mm"].max() < 0.05
+    # The circle is drawn that was asked for: of 219 mm · sin 20°.
+    radii_mm = np.hypot(*seen["tip_commanded_mm"][:, :2].T)
+    tip_mm = np.linalg.norm(seen["tip_commanded_mm"][0])
+    assert radii_mm == pytest.approx(np.full_like(radii_mm, tip_mm * np.sin(np.radians(20.0))), abs=0.01)
+    # What the picture shows is the error, in µm and 500 times as large, and both curves are seen where their numbers are.
+    (drawn_error,), (commanded, drawn_path) = error.lines, path.lines
+    assert drawn_error.get_ydata() == pytest.approx(1000 * seen["path_error_mm"])
+    off_mm = np.linalg.norm(drawn_path.get_xydata() - commanded.get_xydata(), axis=1) / 500
+    assert 0.002 < off_mm.max() < 0.05
+    picture = plt.imread(tmp_path / "circle.png")
+    assert pixels_of(drawn_error, picture).all()
+    # The commanded circle lies above it where both meet, and is dashed.
+    assert pixels_of(drawn_path, picture).mean() > 0.9
+    assert 0.4 < pixels_of(commanded, picture).mean()
+    assert f"{1000 * seen['path_error_mm'].max():.0f} µm" in error.get_title()
 
 
 def test_a_payload_is_estimated(tmp_path, monkeypatch):

@@ -257,7 +257,7 @@ def test_ctrl_c_leaves_the_leg_in_hold():
         (lambda leg: Leg.open("tcp://127.0.0.1:1"), LegError, "tcp://127.0.0.1:1"),
         (lambda leg: Leg.can("nope"), LegError, "nope"),
         (lambda leg: Leg.can("can0", 7), ValueError, "leg = 7 is none of 1 to 6"),
-        (lambda leg: leg.disturb({"payload": {"kg": np.nan}}), ValueError, "action cannot be JSON"),
+        (lambda leg: leg.disturb({"payload": {"kg": np.nan}}), ValueError, "action['payload']['kg'] = NaN is not"),
         (lambda leg: leg.disturb({"kick": 1}), ValueError, 'action = {"kick": 1}: unknown variant'),
         (lambda leg: leg.disturb({}), ValueError, "action = {}"),
         (lambda leg: Leg.can("can0", -1), ValueError, "leg = -1 is none of 1 to 6"),
@@ -310,7 +310,27 @@ def test_a_leg_is_reached_wherever_its_firmware_runs(arguments):
         assert 23 < leg.sensors()["supply_v"] < 25
 
 
-KILLED = """
+@needs_leg
+def test_the_boards_image_homes_until_it_is_stopped():
+    # All of the way takes the emulated chip most of a minute.
+    with emulator("--on", "chip", "--slack") as name, Leg.open(name) as leg, Leg.open(name) as watcher:
+        ended = []
+
+        def home():
+            with pytest.raises(LegError) as stopped:
+                leg.home()
+            ended.append(stopped)
+
+        thread = threading.Thread(target=home)
+        thread.start()
+        wait_for(watcher, lambda told: told["state"] == "homing")
+        leg.stop()
+        assert watcher.telemetry()["state"] == "held"
+        thread.join()
+        assert len(ended) == 1
+
+
+DRIVEN = """
 import sys, numpy as np
 from tendon_leg import Leg
 time_s = np.arange(0, 60, 0.01)
@@ -355,8 +375,22 @@ def test_a_second_owner_is_refused_by_name_and_may_stop_the_leg(port):
 
 
 @needs_leg
+def test_ctrl_c_in_mid_move_leaves_a_leg_on_a_port_in_hold_at_once(port):
+    with subprocess.Popen([sys.executable, "-c", DRIVEN, port], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as driver:
+        assert driver.stdout.readline() == "opened\n"
+        with Leg.open(port) as watcher:
+            assert wait_for(watcher, lambda told: told["tilt_deg"] > 15)["state"] == "active"
+            driver.send_signal(signal.SIGINT)
+            assert "KeyboardInterrupt" in driver.communicate(timeout=60)[1]
+            # Not by its own timeout, which is a fault.
+            told = watcher.telemetry()
+            assert told["state"] == "held" and told["faults"] == [], told
+    assert driver.returncode == -signal.SIGINT
+
+
+@needs_leg
 def test_an_interpreter_that_is_killed_in_mid_move_leaves_the_leg_in_hold(port):
-    with subprocess.Popen([sys.executable, "-c", KILLED, port], stdout=subprocess.PIPE, text=True) as driver:
+    with subprocess.Popen([sys.executable, "-c", DRIVEN, port], stdout=subprocess.PIPE, text=True) as driver:
         assert driver.stdout.readline() == "opened\n"
         with Leg.open(port) as watcher:
             assert wait_for(watcher, lambda told: told["tilt_deg"] > 15)["state"] == "active"

@@ -181,6 +181,12 @@ def test_a_rig_is_refused_at_its_place(section, key, value, words):
     assert refusal.value.line > 1 and refusal.value.column >= 1 and refusal.value.remedy
 
 
+def of_itself():
+    values = {}
+    values["mass"] = values
+    return values
+
+
 @pytest.mark.parametrize(
     ("call", "error", "words"),
     [
@@ -204,7 +210,12 @@ def test_a_rig_is_refused_at_its_place(section, key, value, words):
         (lambda rig: rig.tendon_curve([1.0], tendon=0), ValueError, "tendon = 0 is none of"),
         (lambda rig: rig.tendon_curve("x"), TypeError, "tensions_n is no array"),
         (lambda rig: Rig(3), TypeError, "rig is no name"),
-        (lambda rig: Rig.from_dict({"mass": np.nan}), ValueError, "values cannot be JSON"),
+        (lambda rig: rig.tendon_curve([1.0, -1.0]), ValueError, "tensions_n holds -1 at index 1, which is below 0"),
+        (lambda rig: Rig.from_dict({"mass": np.nan}), ValueError, "values['mass'] = NaN is not a finite number"),
+        (lambda rig: Rig.from_dict({"mass": {"leg_kg": -np.inf}}), ValueError, "values['mass']['leg_kg'] = -inf is not"),
+        (lambda rig: Rig.from_dict({"a": [{"b": 1}, {"b": np.nan}]}), ValueError, "values['a'][1]['b'] = NaN is not"),
+        (lambda rig: Rig.from_dict({"mass": {"leg_kg": print}}), ValueError, "values['mass']['leg_kg'] cannot be JSON: TypeError"),
+        (lambda rig: Rig.from_dict(of_itself()), ValueError, "Circular reference"),
         (lambda rig: Rig.from_dict({"mass": None}), RigError, "a rig file has no null"),
         (lambda rig: Rig.parse("[mass"), RigError, "not TOML"),
     ],

@@ -3,10 +3,13 @@
 import os
 import signal
 import threading
+import time
 
 import numpy as np
 import pytest
 from tendon_leg import SIGNALS, STATES, TICKS_PER_SECOND, LegError, LegFault, LegTimeout, Refused, SimulatedLeg
+
+CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
 
 
 def armed(**start):
@@ -273,6 +276,42 @@ def test_many_legs_in_threads_do_what_one_does():
     for thread in threads:
         thread.join()
     assert len({tuple(bits(leg).items()) for leg in legs}) == 1
+
+
+def in_two_threads(seconds):
+    """Two legs that run at once: processor time of both together beside the time that passed, and whether one began and ended while the
+    other was in its call."""
+    legs, together, spans = [armed(), armed()], threading.Barrier(2), {}
+
+    def work(number):
+        together.wait()
+        begin_s, worked_s = time.perf_counter(), time.thread_time()
+        legs[number].run(seconds[number])
+        spans[number] = begin_s, time.perf_counter(), time.thread_time() - worked_s
+
+    threads = [threading.Thread(target=work, args=(number,)) for number in (0, 1)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    (begin_s, end_s, work_s), (inner_begin_s, inner_end_s, inner_work_s) = spans[0], spans[1]
+    passed_s = max(end_s, inner_end_s) - min(begin_s, inner_begin_s)
+    return (work_s + inner_work_s) / passed_s, inner_end_s < end_s
+
+
+def test_legs_in_two_threads_run_at_once():
+    # On one core as well: were the interpreter locked, no call would end within another one.
+    assert any(in_two_threads((20.0, 0.5))[1] for _ in range(5))
+
+
+@pytest.mark.skipif(CORES < 2, reason="one core")
+def test_two_threads_have_the_work_of_two_cores():
+    # Other work on the machine takes cores from one try or another; a locked interpreter would never have more than one.
+    tries = (in_two_threads((4.0, 4.0))[0] for _ in range(30))
+    seen = []
+    while not seen or (max(seen) < 1.4 and len(seen) < 30):
+        seen.append(next(tries))
+    assert max(seen) >= 1.4, seen
 
 
 def test_a_command_to_a_leg_that_brakes_waits_until_it_stands():

@@ -4,6 +4,9 @@
 
 use crate::common::sources::sources;
 use leg_firmware::board::{CheckIns, TaskWatchdog, WatchedTask};
+use leg_firmware::recorder::TRIPLES_MAX;
+use leg_firmware::sensors::TICK_HZ;
+use leg_firmware::settings::{RECORDED_SIGNALS, SignalSet};
 use leg_firmware::supervisor::FAULT_TABLE;
 use std::collections::BTreeSet;
 use std::fs;
@@ -229,5 +232,26 @@ fn the_page_says_when_a_task_is_missed_and_how_long_a_hasty_chip_waits() {
         format!("After the third in a row the next start waits {rest_s} s"),
     ] {
         assert!(page.contains(&words), "{words}");
+    }
+}
+
+/// How long the recorder keeps so many signals, as the page about it says.
+#[test]
+fn the_page_tells_the_times_of_the_recorder() {
+    let page = page("../host-tools/docs/commanding-a-leg.md").replace('\n', " ");
+    let triples_s = TRIPLES_MAX as f64 / f64::from(TICK_HZ);
+    let default = SignalSet::default().len();
+    assert_eq!(default, 3, "the page names it");
+    for sentence in [
+        format!(
+            "n signals for {triples_s} s / n, so up to three of them, as by default, for {:.1} s",
+            triples_s / default as f64
+        ),
+        format!(
+            "all eight for {} ms",
+            1000.0 * triples_s / RECORDED_SIGNALS.len() as f64
+        ),
+    ] {
+        assert!(page.contains(&sentence), "{sentence}");
     }
 }

@@ -5,7 +5,7 @@ use super::{
     RecorderSetup, RecorderState, TRIPLES_MAX, Triple,
 };
 use crate::leg::Leg;
-use crate::sensors::Sensors;
+use crate::sensors::{Sensors, TICK_HZ};
 use crate::settings::{RECORDED_SIGNALS, RecordedSignal, Settings, SignalSet};
 use crate::supervisor::{Fault, FaultSet};
 
@@ -105,6 +105,17 @@ fn a_set_has_what_was_put_into_it() {
     );
     let default = SignalSet::default();
     assert_eq!(TRIPLES_MAX / default.len(), 1600, "0.2 s at 8 kHz");
+}
+
+#[test]
+fn three_signals_are_kept_for_a_fifth_of_a_second_and_more_for_less() {
+    for width in 1..=RECORDED_SIGNALS.len() {
+        let mut bench = Bench::new(SignalSet::new(&RECORDED_SIGNALS[..width]));
+        bench.run(TRIPLES_MAX as u32 / width as u32 + 10);
+        let rows = usize::from(bench.ask(RecorderRequest::Stop).rows);
+        assert_eq!(rows, TRIPLES_MAX / width);
+        assert_eq!(rows >= TICK_HZ as usize / 5, width <= 3);
+    }
 }
 
 #[test]

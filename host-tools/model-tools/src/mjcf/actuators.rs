@@ -6,6 +6,7 @@
 
 use super::bodies::{base_site, leg_site, name};
 use super::held::{HeldLeg, HeldTendon};
+use super::joints::Damper;
 use crate::xml_element::Element;
 
 /// Highest tension, N: none, which MuJoCo has to be told as a number. The simulated tendon does not break either.
@@ -20,6 +21,22 @@ pub(super) fn paths(prefix: &str) -> Vec<Element> {
             .child(Element::new("site").text("site", &leg_site(prefix, i)))
     };
     (0..3).map(path).collect()
+}
+
+/// What damps two joints together: a tendon of MuJoCo that is none of the leg's.
+pub(super) fn damper(leg: &HeldLeg, prefix: &str, damper: &Damper) -> Element {
+    let joint = |(joint, sign): (&str, f64)| {
+        Element::new("joint")
+            .text("joint", &name(prefix, joint))
+            .numbers("coef", &[sign])
+    };
+    Element::new("fixed")
+        .text("name", &name(prefix, "joint_damper"))
+        .numbers(
+            "damping",
+            &[damper.damping * leg.joint_damping_nm_s_per_rad],
+        )
+        .children(damper.joints.into_iter().zip(damper.signs).map(joint))
 }
 
 /// One actuator a tendon: with gear −1, its force is positive where it pulls.

@@ -190,12 +190,11 @@ fn rod(sizes: &LegShape, prefix: &str) -> Element {
 
 fn payload(leg: &HeldLeg, prefix: &str) -> Element {
     let sizes = &leg.shape;
-    let ball = shape(&name(prefix, "payload"), "sphere", &BRASS)
-        .numbers("size", &[sizes.payload])
-        .numbers("mass", &[leg.payload_kg]);
+    let ball = shape(&name(prefix, "payload"), "sphere", &BRASS).numbers("size", &[sizes.payload]);
     Element::new("body")
         .text("name", &name(prefix, "payload"))
         .numbers("pos", &[0.0, 0.0, -sizes.tip])
+        .child(inertial(0.0, leg.payload_kg, [sizes.payload_inertia; 3]))
         .child(ball)
 }
 

@@ -40,6 +40,20 @@ pub(super) struct Joints {
     pub leg: Vec<Joint>,
     /// Names of two joints that are held equal.
     pub equal: Option<[&'static str; 2]>,
+    /// What damps two joints together.
+    pub damper: Option<Damper>,
+}
+
+/// The simulated leg's damping is that of its whole rotation. At a pose the axes of two hinges are not at right angles to each other:
+/// a part of the damping is that of the sum, or of the difference, of their rates.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Damper {
+    /// Names of the joints.
+    pub joints: [&'static str; 2],
+    /// What each counts.
+    pub signs: [f64; 2],
+    /// Its share of the damping.
+    pub damping: f64,
 }
 
 impl Joints {
@@ -59,6 +73,7 @@ impl Joints {
             pivot: None,
             leg,
             equal: None,
+            damper: None,
         }
     }
 
@@ -97,7 +112,9 @@ fn torsion_free(
 /// A ball; an elastic pivot is a ball and a hinge about the leg in series.
 ///
 /// MuJoCo's ball has the energy ½k|ω|², ω the rotation vector: to a tilt it is as stiff as the pivot, to a small torsion
-/// (θ/2)·cot(θ/2) times that. The hinge gives way by what the pivot twists more, exactly so at this pose.
+/// (θ/2)·cot(θ/2) times that. The hinge gives way by what the pivot twists more, exactly so at this pose. Damped by c, the ball in series with
+/// the hinge is damped by c in torsion, too, if the hinge is damped by c times the sum of the stiffnesses of ball and pivot over their
+/// difference.
 fn spherical(joint: &JointStiffness<f64>, rotation: &Rotation3<f64>) -> Result<Joints, MjcfError> {
     let (bending, torsion) = (joint.bending_nm_per_rad, joint.torsion_nm_per_rad);
     if bending == 0.0 && torsion == 0.0 {
@@ -115,13 +132,31 @@ fn spherical(joint: &JointStiffness<f64>, rotation: &Rotation3<f64>) -> Result<J
         pivot: Some(ball("pivot", bending, &untwisted)),
         ..Joints::leg(vec![Joint {
             spring: torsion / hinge_share,
+            damping: (2.0 - hinge_share) / hinge_share,
             ..hinge("torsion", Z, twist)
         }])
     })
 }
 
-/// R = Rx(α)·Ry(β)·Rz(γ), the first axis on the base.
+/// R = Rx(α)·Ry(β)·Rz(γ), the first axis on the base: the cosine between the first and the last is sin β.
 fn elastic_universal(joint: &JointStiffness<f64>, rotation: &Rotation3<f64>) -> Joints {
+    let cosine = rotation.matrix()[(0, 2)];
+    let mut joints = Joints::leg(three_hinges(joint, rotation));
+    if cosine != 0.0 {
+        let damping = cosine.abs();
+        for joint in joints.leg.iter_mut().step_by(2) {
+            joint.damping -= damping;
+        }
+        joints.damper = Some(Damper {
+            joints: ["tilt_x", "torsion"],
+            signs: [1.0, cosine.signum()],
+            damping,
+        });
+    }
+    joints
+}
+
+fn three_hinges(joint: &JointStiffness<f64>, rotation: &Rotation3<f64>) -> Vec<Joint> {
     let r = rotation.matrix();
     let angles = [
         (-r[(1, 2)]).atan2(r[(2, 2)]),
@@ -136,14 +171,14 @@ fn elastic_universal(joint: &JointStiffness<f64>, rotation: &Rotation3<f64>) -> 
         spring,
         ..hinge(name, axis, angle)
     };
-    Joints::leg(joints.map(elastic).collect())
+    joints.map(elastic).collect()
 }
 
 /// The same without torsion.
 fn universal(joint: &JointStiffness<f64>, rotation: &Rotation3<f64>) -> Joints {
-    let mut joints = elastic_universal(joint, rotation);
-    joints.leg.truncate(2);
-    joints
+    let mut joints = three_hinges(joint, rotation);
+    joints.truncate(2);
+    Joints::leg(joints)
 }
 
 fn hinge(name: &'static str, shape: Shape, angle: f64) -> Joint {

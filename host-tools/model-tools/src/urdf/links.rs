@@ -46,7 +46,8 @@ pub(super) fn leg(
         cross,
         revolute(prefix, ["tilt_y", "cross", "leg"], 1, limits),
         leg,
-        joint(prefix, "fixed", ["tip", "leg", "tip"]).child(origin([0.0, 0.0, -shape.tip], 0.0)),
+        joint(prefix, "fixed", ["tip", "leg", "tip"])
+            .child(origin([0.0, 0.0, -shape.tip], [0.0; 3])),
     ];
     let tip = link(prefix, "tip");
     elements.push(if payload_kg > 0.0 {
@@ -78,7 +79,7 @@ pub(super) fn mount(prefix: &str, radius: f64, angle: f64) -> Element {
         .text("type", "fixed")
         .child(Element::new("parent").text("link", "body"))
         .child(Element::new("child").text("link", &format!("{prefix}base")))
-        .child(origin(place, angle))
+        .child(origin(place, [0.0, 0.0, angle]))
 }
 
 fn link(prefix: &str, name: &str) -> Element {
@@ -92,12 +93,15 @@ fn revolute(
     limits: JointLimits,
 ) -> Element {
     let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let zero = limits.zeros_rad[axis];
+    let turned = axes[axis].map(|part: f64| part * zero);
     let limit = Element::new("limit")
-        .numbers("lower", &[-limits.tilt_rad])
-        .numbers("upper", &[limits.tilt_rad])
+        .numbers("lower", &[-limits.tilt_rad - zero])
+        .numbers("upper", &[limits.tilt_rad - zero])
         .numbers("effort", &limits.moment_nm[axis..=axis])
         .numbers("velocity", &[limits.speed_rad_per_s]);
     joint(prefix, "revolute", [name, parent, child])
+        .child(origin([0.0; 3], turned))
         .child(Element::new("axis").numbers("xyz", &axes[axis]))
         .child(limit)
 }
@@ -111,10 +115,10 @@ fn joint(prefix: &str, kind: &str, [name, parent, child]: [&str; 3]) -> Element 
         .child(linked("child", child))
 }
 
-fn origin(place: [f64; 3], yaw: f64) -> Element {
+fn origin(place: [f64; 3], roll_pitch_yaw: [f64; 3]) -> Element {
     Element::new("origin")
         .numbers("xyz", &place)
-        .numbers("rpy", &[0.0, 0.0, yaw])
+        .numbers("rpy", &roll_pitch_yaw)
 }
 
 fn inertial(height: f64, mass: f64, [xx, yy, zz]: [f64; 3]) -> Element {
@@ -126,14 +130,14 @@ fn inertial(height: f64, mass: f64, [xx, yy, zz]: [f64; 3]) -> Element {
         .numbers("ixz", &[0.0])
         .numbers("iyz", &[0.0]);
     Element::new("inertial")
-        .child(origin([0.0, 0.0, height], 0.0))
+        .child(origin([0.0, 0.0, height], [0.0; 3]))
         .child(Element::new("mass").numbers("value", &[mass]))
         .child(inertia)
 }
 
 fn visual(height: f64, shape: Element) -> Element {
     Element::new("visual")
-        .child(origin([0.0, 0.0, height], 0.0))
+        .child(origin([0.0, 0.0, height], [0.0; 3]))
         .child(Element::new("geometry").child(shape))
 }
 

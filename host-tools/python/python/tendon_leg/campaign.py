@@ -66,7 +66,7 @@ def campaign(
 
     A row has `scenario` and `rig` by name (of a text its title), the case's own keys, `title`, `passed`, `stopped`, `faults`, `unexpected_faults`, `ticks`, `bits`, a column for
     each measurement by its name, `error` (why there is no result, or None) and, where it did not pass, `repeat`.
-    Raises ValueError for a case that is none, by its number, before anything runs.
+    Raises ValueError before anything runs: for a case that is none, by its number, and for a directory that cannot be one.
     """
     if isinstance(cases, (str, Mapping)) or not isinstance(cases, Iterable):
         raise TypeError(f"cases is no list of dictionaries, but {cases!r}")
@@ -79,7 +79,10 @@ def campaign(
     listed = list(cases)
     runs = [_run_of(number, case) for number, case in enumerate(listed)]
     directory = Path(directory)
-    directory.mkdir(parents=True, exist_ok=True)
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ValueError(f"directory = {str(directory)!r} cannot be made: {error.strerror}") from error
     results = directory / "results.jsonl"
     known = _read(results)
     rows: dict[int, dict[str, Any]] = {}
@@ -191,8 +194,14 @@ def _read(results: Path) -> dict[str, dict[str, Any]]:
     if lines and not lines[-1].endswith(b"\n"):
         lines.pop()
         results.write_bytes(b"".join(lines))
-    entries = [json.loads(line) for line in lines]
-    return {entry["key"]: entry["result"] for entry in entries}
+    known = {}
+    for number, line in enumerate(lines, 1):
+        try:
+            entry = json.loads(line)
+            known[entry["key"]] = entry["result"]
+        except (ValueError, TypeError, KeyError) as error:
+            raise ValueError(f"directory: line {number} of {results} is no result of a campaign; take it out") from error
+    return known
 
 
 def _keep(directory: Path, run: Run) -> str:
