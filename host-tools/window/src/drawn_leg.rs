@@ -11,9 +11,7 @@ use crate::places::place_rect;
 use crate::seen_leg::{SeenLeg, leg_axis};
 use crate::stiffness_ellipse::StiffnessEllipse;
 use crate::theme::{self, Palette, mixed};
-use egui::{
-    Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, vec2,
-};
+use egui::{Color32, CornerRadius, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, vec2};
 use leg_model::RigParameters;
 use nalgebra::Vector3;
 use words::label_arrow;
@@ -28,9 +26,6 @@ const PAYLOAD_RADIUS_M: f64 = 0.0135;
 
 /// Height of the labels below the detail, points.
 const LABELS: f32 = 36.0;
-
-/// How far above the lower edge the words about the stiffness stand, points.
-const WORDS_ABOVE: f32 = 72.0;
 
 /// How opaque a map is: what is behind it is seen.
 const MAP_OPACITY: f32 = 0.6;
@@ -241,34 +236,6 @@ impl<'a> Drawn<'a> {
         painter.arrow(from, to - from, Stroke::new(4.0, self.palette.warning));
         let words = format!("push {:.0} N", push.force_n);
         label_arrow(painter, from, from - to, &words, &self.palette);
-    }
-
-    /// How stiff the tip is to each side, and the scale of that.
-    pub fn stiffness(&self, painter: &Painter, view: &View, rect: Rect) {
-        let colour = self.palette.good;
-        let doubt = self.leg.doubt();
-        let ellipse = StiffnessEllipse::new(self.leg).filter(|_| doubt.is_none());
-        let words = match (&ellipse, doubt) {
-            (Some(ellipse), _) => {
-                self.ellipse(painter, view, ellipse, colour);
-                ellipse.words()
-            }
-            (None, Some(_)) => {
-                ["stiffness: not known, sensors or", "tendons are in doubt"].map(Into::into)
-            }
-            (None, None) => ["the model has no stiffness here", ""].map(Into::into),
-        };
-        let font = FontId::monospace(11.5);
-        let corner = rect.left_bottom() + vec2(14.0, -WORDS_ABOVE);
-        let shown = Rect::from_min_size(corner, vec2(230.0, 30.0));
-        // What is drawn of the leg and its workspace does not cross the words.
-        let patch = shown.expand2(vec2(4.0, 1.0));
-        painter.rect_filled(patch, 4.0, self.palette.back);
-        for (line, words) in words.into_iter().enumerate() {
-            let at = corner + vec2(0.0, 15.0 * line as f32);
-            painter.text(at, Align2::LEFT_TOP, words, font.clone(), colour);
-        }
-        place_rect(painter.ctx(), shown, "stiffness_words");
     }
 
     fn ellipse(&self, painter: &Painter, view: &View, ellipse: &StiffnessEllipse, colour: Color32) {

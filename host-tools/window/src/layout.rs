@@ -170,7 +170,8 @@ pub fn wide(ui: &mut Ui, leg: &mut ShownLeg, views: &mut Views) -> Wish {
 fn fault_strip_below(ui: &mut Ui, leg: &ShownLeg, views: &mut Views) {
     let leg_rect = ui.available_rect_before_wrap();
     let strip = Panel::bottom("fault_strip").resizable(false);
-    let strip = strip.frame(Frame::NONE.inner_margin(4.0));
+    let back = palette(ui.ctx()).back;
+    let strip = strip.frame(Frame::NONE.fill(back).inner_margin(4.0));
     strip.show(ui, |ui| {
         let over = leg_rect.with_max_y(ui.max_rect().top());
         let strip = &mut views.fault_strip;

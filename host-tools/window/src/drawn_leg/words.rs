@@ -5,6 +5,7 @@ use crate::camera::View;
 use crate::map_key;
 use crate::map_mesh;
 use crate::places::place_rect;
+use crate::stiffness_ellipse::StiffnessEllipse;
 use crate::theme::{self, Palette};
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Vec2, pos2, vec2};
 use nalgebra::Vector3;
@@ -22,8 +23,11 @@ const LEGEND_BESIDE: Vec2 = vec2(178.0, 0.0);
 const LEGEND_ABOVE: Vec2 = vec2(0.0, -32.0);
 const LEGEND_ROOM: f32 = 420.0;
 
-/// Below this width of the picture some words are left out, points.
-const NARROW: f32 = 350.0;
+/// Below this width of the picture there is no room for some words beside the leg, points.
+const NARROW: f32 = 640.0;
+
+/// How far above the lower edge the words about the stiffness stand, points.
+const WORDS_ABOVE: f32 = 72.0;
 
 /// From an arrow to its words, points.
 const LABEL_GAP: f32 = 4.0;
@@ -103,6 +107,37 @@ impl Drawn<'_> {
         place_rect(painter.ctx(), shown, "readout");
     }
 
+    /// How stiff the tip is to each side, and the scale of that.
+    pub fn stiffness(&self, painter: &Painter, view: &View, rect: Rect) {
+        let colour = self.palette.good;
+        let doubt = self.leg.doubt();
+        let ellipse = StiffnessEllipse::new(self.leg).filter(|_| doubt.is_none());
+        let words = match (&ellipse, doubt) {
+            (Some(ellipse), _) => {
+                self.ellipse(painter, view, ellipse, colour);
+                ellipse.words()
+            }
+            (None, Some(_)) => {
+                ["stiffness: not known, sensors or", "tendons are in doubt"].map(Into::into)
+            }
+            (None, None) => ["the model has no stiffness here", ""].map(Into::into),
+        };
+        let font = FontId::monospace(11.5);
+        let mut corner = rect.left_bottom() + vec2(14.0, -WORDS_ABOVE);
+        if self.map.is_some() && rect.width() <= LEGEND_ROOM {
+            corner += LEGEND_ABOVE;
+        }
+        let shown = Rect::from_min_size(corner, vec2(230.0, 30.0));
+        // What is drawn of the leg and its workspace does not cross the words.
+        let patch = shown.expand2(vec2(4.0, 1.0));
+        painter.rect_filled(patch, 4.0, self.palette.back.gamma_multiply(0.85));
+        for (line, words) in words.into_iter().enumerate() {
+            let at = corner + vec2(0.0, 15.0 * line as f32);
+            painter.text(at, Align2::LEFT_TOP, words, font.clone(), colour);
+        }
+        place_rect(painter.ctx(), shown, "stiffness_words");
+    }
+
     /// What the colours of the tendons mean, and those of a map.
     pub fn legend(&self, painter: &Painter, rect: Rect) {
         let rig = self.leg.rig;
@@ -125,6 +160,8 @@ impl Drawn<'_> {
         } else {
             LEGEND_ABOVE
         };
+        let legend = Rect::from_min_size(at + next - vec2(0.0, 18.0), LEGEND + vec2(60.0, 18.0));
+        place_rect(painter.ctx(), legend, "map_legend");
         self.one_legend(painter, at + next, &words, |part| {
             map_mesh::colour(&self.palette, part.into())
         });

@@ -248,6 +248,25 @@ fn a_map_has_a_key_with_its_unit_and_its_ends() {
 }
 
 #[test]
+fn the_words_about_the_stiffness_and_the_key_of_a_map_have_rooms_of_their_own() {
+    for [width, height] in [[1280.0, 720.0], [390.0, 844.0], [960.0, 720.0]] {
+        let mut window = Window::sized(width, height);
+        window.press("stiffness_ellipse");
+        if window.shows("tab_drive") {
+            window.press("tab_drive");
+        }
+        window.press("map");
+        window.press("map_sag");
+        window.frames(3);
+        let [words, legend] = ["stiffness_words", "map_legend"].map(|name| window.rect(name));
+        assert!(
+            !words.intersects(legend),
+            "{width} × {height}: {words:?} {legend:?}"
+        );
+    }
+}
+
+#[test]
 fn no_words_come_with_the_pointer_over_the_faults() {
     let mut window = Window::new();
     let before = window.texts.len();
