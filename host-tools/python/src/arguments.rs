@@ -9,7 +9,7 @@ use leg_rig::rig_file::RigFile;
 use leg_sim::action::Action;
 use leg_sim::scenario::CommandStep;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyKeyboardInterrupt, PyTypeError, PyValueError};
+use pyo3::exceptions::{PyAttributeError, PyKeyboardInterrupt, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use serde::Serialize;
@@ -157,6 +157,12 @@ pub fn to_json<'py>(name: &str, values: &Bound<'py, PyDict>) -> PyResult<String>
     let json = values.py().import("json")?;
     let strict = PyDict::new(values.py());
     strict.set_item("allow_nan", false)?;
+    // Numbers and arrays of numpy, as lists and numbers of Python.
+    let operator = values.py().import("operator")?;
+    strict.set_item(
+        "default",
+        operator.call_method1("methodcaller", ("tolist",))?,
+    )?;
     let dumped = |value: &Bound<'py, PyAny>| json.call_method("dumps", (value,), Some(&strict));
     let mut value = values.clone().into_any();
     let mut error = match dumped(&value) {
@@ -176,7 +182,11 @@ pub fn to_json<'py>(name: &str, values: &Bound<'py, PyDict>) -> PyResult<String>
     if let Ok(number) = value.extract() {
         finite(&place, number)?;
     }
-    let sentence = format!("{place} cannot be JSON: {error}");
+    let sentence = if error.is_instance_of::<PyAttributeError>(values.py()) {
+        format!("{place} cannot be JSON: it is {}", value.get_type())
+    } else {
+        format!("{place} cannot be JSON: {error}")
+    };
     Err(PyValueError::new_err(sentence))
 }
 

@@ -198,7 +198,7 @@ def test_a_case_that_is_none_is_refused_before_anything_runs(tmp_path, case, wor
 def test_a_directory_that_is_none_is_refused_by_name(tmp_path):
     file = tmp_path / "file"
     file.write_text("x")
-    for directory in (file, file / "below"):
+    for directory in (file, file / "below", "a\0b"):
         with pytest.raises(ValueError, match=r"directory = '.*' cannot be made: "):
             campaign([{"scenario": "tour"}], directory)
     (tmp_path / "results.jsonl").write_text("[]\n")

@@ -157,6 +157,10 @@ def test_a_rig_is_edited_as_a_dictionary():
     load_nm = [rig.evaluate(0, 20)["load_moment_nm"][1] for rig in (Rig("table1"), heavy)]
     assert load_nm[1] / load_nm[0] == pytest.approx(2.0 / 1.5)
     assert Rig.parse(heavy.text).to_dict() == heavy.to_dict() == values
+    # Numbers of numpy are numbers.
+    values["mass"]["leg_kg"] = np.float32(2.0)
+    values["tendon"]["f_max_n"] = np.int64(values["tendon"]["f_max_n"])
+    assert Rig.from_dict(values) == heavy
     leg = SimulatedLeg(heavy)
     leg.arm()
     assert leg.state == "active"
@@ -214,7 +218,8 @@ def of_itself():
         (lambda rig: Rig.from_dict({"mass": np.nan}), ValueError, "values['mass'] = NaN is not a finite number"),
         (lambda rig: Rig.from_dict({"mass": {"leg_kg": -np.inf}}), ValueError, "values['mass']['leg_kg'] = -inf is not"),
         (lambda rig: Rig.from_dict({"a": [{"b": 1}, {"b": np.nan}]}), ValueError, "values['a'][1]['b'] = NaN is not"),
-        (lambda rig: Rig.from_dict({"mass": {"leg_kg": print}}), ValueError, "values['mass']['leg_kg'] cannot be JSON: TypeError"),
+        (lambda rig: Rig.from_dict({"mass": {"leg_kg": print}}), ValueError, "values['mass']['leg_kg'] cannot be JSON: it is <class"),
+        (lambda rig: Rig.from_dict({"mass": {"leg_kg": np.float32("nan")}}), ValueError, "values['mass']['leg_kg'] = NaN is not"),
         (lambda rig: Rig.from_dict(of_itself()), ValueError, "Circular reference"),
         (lambda rig: Rig.from_dict({"mass": None}), RigError, "a rig file has no null"),
         (lambda rig: Rig.parse("[mass"), RigError, "not TOML"),

@@ -88,7 +88,7 @@ fn one_leg_of_every_rig_is_where_the_model_says() {
         .iter()
         .flat_map(|ready| {
             let rig = rig(ready.name);
-            poses.map(|[azimuth, part]| (rig.clone(), [azimuth, part * rig.tilt_deg.to_radians()]))
+            poses.map(|[azimuth, part]| (rig, [azimuth, part * rig.tilt_deg.to_radians()]))
         })
         .collect();
     let robots: Vec<_> = cases

@@ -81,8 +81,8 @@ def campaign(
     directory = Path(directory)
     try:
         directory.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise ValueError(f"directory = {str(directory)!r} cannot be made: {error.strerror}") from error
+    except (OSError, ValueError) as error:
+        raise ValueError(f"directory = {str(directory)!r} cannot be made: {getattr(error, 'strerror', error)}") from error
     results = directory / "results.jsonl"
     known = _read(results)
     rows: dict[int, dict[str, Any]] = {}
