@@ -124,7 +124,7 @@ fn the_margins_of_a_known_loop_are_found() {
 fn measured(set: impl Fn(&mut Servo), [seed, number]: [u64; 2], loops: &[Feedback]) -> Vec<Swept> {
     println!("seed {seed}, {number}");
     let mut file = RigFile::load(None).unwrap();
-    set(&mut file.gains.servo);
+    file.gains.servos.iter_mut().for_each(set);
     let campaign = BodeCampaign {
         seed,
         rigs: vec![("table1".into(), file)],
