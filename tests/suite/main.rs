@@ -51,6 +51,7 @@ mod base {
 
 mod rig {
     mod other_motors;
+    mod own_motors;
     mod refused_rigs;
     mod rig_settings;
 }

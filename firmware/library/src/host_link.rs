@@ -96,9 +96,12 @@ impl HostLink {
             let Some(found) = self.decoder.push(byte) else {
                 continue;
             };
-            if let Some((number, reply)) = self.service.answer(found, leg) {
-                // Without room the reply is lost, and the host asks again.
-                self.outbox.put(number, &reply, 0);
+            let (number, result) = self.service.answer(found, leg);
+            // By reference: a reply that holds settings takes a kilobyte of stack. Without room it is lost, and the host asks again.
+            match &result {
+                Ok(Some(reply)) => self.outbox.put(number, reply, 0),
+                Ok(None) => {}
+                Err(refusal) => self.outbox.refuse(number, *refusal),
             }
         }
     }
@@ -159,16 +162,22 @@ impl HostLink {
 }
 
 impl Service {
-    /// The reply to what the decoder found, if it does not come later.
+    /// The number of what the decoder found, and the reply to it, if that does not come later.
     fn answer(
         &mut self,
         found: Result<Frame<'_>, FrameError>,
         leg: &mut impl CommandedLeg,
-    ) -> Option<(u16, HostReply)> {
+    ) -> (u16, Result<Option<HostReply>, HostRefusal>) {
         let (number, result) = match found {
             Ok(frame) => {
-                let request = frame.message().ok_or(HostRefusal::BadRequest);
-                let result = request.and_then(|request| self.serve(frame.sequence, &request, leg));
+                let result = match &frame.message() {
+                    Some(HostRequest::SetSettings(settings)) => {
+                        let set = self.set_settings(settings, leg);
+                        set.map(|()| Some(HostReply::Done))
+                    }
+                    Some(request) => self.serve(frame.sequence, request, leg),
+                    None => Err(HostRefusal::BadRequest),
+                };
                 (frame.sequence, result)
             }
             Err(error) => (0, Err(HostRefusal::BadFrame(error))),
@@ -176,13 +185,12 @@ impl Service {
         if let Err(HostRefusal::BadFrame(_) | HostRefusal::BadRequest) = result {
             leg.note_decode_error();
         }
-        match result {
-            Ok(reply) => reply.map(|reply| (number, reply)),
-            Err(refusal) => Some((number, HostReply::Refused(refusal))),
-        }
+        (number, result)
     }
 
     /// Serves a request; no reply if that comes later.
+    // Apart, so that the reply is made at its place.
+    #[inline(never)]
     fn serve(
         &mut self,
         number: u16,
@@ -196,7 +204,10 @@ impl Service {
             return Err(HostRefusal::NotIdentified);
         }
         Ok(Some(match *request {
-            HostRequest::Identify(_) => return Err(HostRefusal::BadRequest),
+            // Served by functions of their own.
+            HostRequest::Identify(_) | HostRequest::SetSettings(_) => {
+                return Err(HostRefusal::BadRequest);
+            }
             HostRequest::Command { host, command } => {
                 return self.command(number, host, command, leg);
             }
@@ -214,17 +225,7 @@ impl Service {
                 let reply = leg.recorder(request).ok_or(HostRefusal::Recording)?;
                 HostReply::Recorder(reply)
             }
-            HostRequest::GetSettings => HostReply::Settings(self.settings.clone()),
-            HostRequest::SetSettings(ref settings) => {
-                if self.saving.is_some() {
-                    // What would be acknowledged as kept is not what is in use then.
-                    return Err(HostRefusal::Busy);
-                }
-                leg.restart(settings)?;
-                // The leg has started without it.
-                self.settings = settings.unhomed();
-                HostReply::Done
-            }
+            HostRequest::GetSettings => self.settings_reply(),
             HostRequest::SaveSettings => {
                 if leg.telemetry().state.driven() {
                     return Err(HostRefusal::Driven);
@@ -236,6 +237,39 @@ impl Service {
                 return Ok(None);
             }
         }))
+    }
+
+    /// Starts the leg again with other settings.
+    // Apart: below it a leg is built, which takes stack.
+    #[inline(never)]
+    fn set_settings(
+        &mut self,
+        settings: &Settings,
+        leg: &mut impl CommandedLeg,
+    ) -> Result<(), HostRefusal> {
+        if !self.identified {
+            return Err(HostRefusal::NotIdentified);
+        }
+        if self.saving.is_some() {
+            // What would be acknowledged as kept is not what is in use then.
+            return Err(HostRefusal::Busy);
+        }
+        leg.restart(settings)?;
+        self.adopt(settings);
+        Ok(())
+    }
+
+    // Apart, so that the copy takes stack only as long as it runs.
+    #[inline(never)]
+    fn settings_reply(&self) -> HostReply {
+        HostReply::Settings(self.settings.clone())
+    }
+
+    /// Has these settings from now on: the leg has started without their zero.
+    // Apart, so that the copy takes stack only as long as it runs.
+    #[inline(never)]
+    fn adopt(&mut self, settings: &Settings) {
+        self.settings = settings.unhomed();
     }
 
     fn identify(&mut self, hello: &Hello) -> Result<HostReply, HostRefusal> {

@@ -9,7 +9,7 @@ mod sections;
 mod tendon;
 
 pub use field::Field;
-pub use gains::{Gains, SECTIONS};
+pub use gains::{Gains, SECTIONS, SERVO};
 pub use out_of_range::OutOfRange;
 pub use recorded::{RECORDED_SIGNALS, RecordedSignal, SignalSet};
 pub use sections::{AxisCalibration, BoardCalibration, Estimation, Homing, Limits, Motion, Servo};
@@ -48,8 +48,8 @@ pub struct Settings {
     pub board: BoardCalibration,
     /// How the leg moves.
     pub motion: Motion,
-    /// How a motor follows.
-    pub servo: Servo,
+    /// How each motor follows.
+    pub servos: [Servo; 3],
     /// How pose and load are estimated.
     pub estimation: Estimation,
     /// What is taken as a fault.
@@ -110,12 +110,24 @@ impl Settings {
         }
     }
 
+    /// A value of the motor that has the most of it.
+    #[must_use]
+    pub fn greatest(&self, value: fn(&Servo) -> f32) -> f32 {
+        self.servos.iter().map(value).fold(f32::MIN, f32::max)
+    }
+
+    /// A value of the motor that has the least of it.
+    #[must_use]
+    pub fn least(&self, value: fn(&Servo) -> f32) -> f32 {
+        self.servos.iter().map(value).fold(f32::MAX, f32::min)
+    }
+
     /// Gains and limits.
     #[must_use]
     pub fn gains(&self) -> Gains {
         Gains {
             motion: self.motion,
-            servo: self.servo,
+            servos: self.servos,
             estimation: self.estimation,
             limits: self.limits,
             homing: self.homing,
@@ -128,7 +140,9 @@ impl Settings {
     /// The first value that is refused.
     pub fn check(&self) -> Result<(), SettingsError> {
         OutOfRange::check(0, 0, Motion::FIELDS, &self.motion.values())?;
-        OutOfRange::check(1, 0, Servo::FIELDS, &self.servo.values())?;
+        for (number, servo) in (1..).zip(&self.servos) {
+            OutOfRange::check(1, number, Servo::FIELDS, &servo.values())?;
+        }
         OutOfRange::check(2, 0, Estimation::FIELDS, &self.estimation.values())?;
         OutOfRange::check(3, 0, Limits::FIELDS, &self.limits.values())?;
         OutOfRange::check(4, 0, Homing::FIELDS, &self.homing.values())?;

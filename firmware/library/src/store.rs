@@ -35,6 +35,7 @@ use crate::settings::Settings;
 use core::ops::Range;
 use embedded_storage_async::nor_flash::NorFlash;
 use record::Packed;
+use region::PAGES_MIN;
 use sealed::Sealed;
 use sequential_storage::Error;
 use sequential_storage::cache::{Cache, Uncached};
@@ -60,8 +61,11 @@ impl<F: NorFlash> Store<F> {
     /// bytes from the start of the flash, as [`REGION`]. Nothing is read yet.
     ///
     /// # Errors
-    /// [`StoreError::Region`] unless the range is at least two whole pages inside the flash.
+    /// [`StoreError::Region`] unless the range is at least three whole pages inside the flash.
     pub fn new(flash: F, range: Range<u32>) -> Result<Self, StoreError<F::Error>> {
+        if range.len() < PAGES_MIN * F::ERASE_SIZE {
+            return Err(StoreError::Region);
+        }
         let sealed = Sealed::new(flash, range).ok_or(StoreError::Region)?;
         let config = MapConfig::try_new(sealed.range()).map_err(|_| StoreError::Region)?;
         Ok(Self {

@@ -23,6 +23,9 @@ bind_interrupts!(struct Interrupts {
     LPUART1 => BufferedInterruptHandler<LPUART1>;
 });
 
+/// Room for what goes out while the next bytes are passed on: four times that. What comes in has room for a frame.
+const TO_HOST_BYTES: usize = 4 * CHUNK;
+
 /// Opens the serial line at 921 600 baud, 8 bits, no parity, one stop bit.
 ///
 /// # Errors
@@ -32,7 +35,7 @@ pub fn open(
     receive: Peri<'static, PA3>,
     transmit: Peri<'static, PA2>,
 ) -> Result<BufferedUart<'static>, ConfigError> {
-    static TO_HOST: StaticCell<[u8; MAX_FRAME]> = StaticCell::new();
+    static TO_HOST: StaticCell<[u8; TO_HOST_BYTES]> = StaticCell::new();
     static FROM_HOST: StaticCell<[u8; MAX_FRAME]> = StaticCell::new();
     let mut config = Config::default();
     config.baudrate = BAUD;
@@ -40,7 +43,7 @@ pub fn open(
         lpuart,
         receive,
         transmit,
-        TO_HOST.init([0; MAX_FRAME]),
+        TO_HOST.init([0; TO_HOST_BYTES]),
         FROM_HOST.init([0; MAX_FRAME]),
         Interrupts,
         config,

@@ -20,7 +20,7 @@ use leg_firmware::host_link::{HostLink, Identity, ResetCause};
 use leg_firmware::leg::Checked;
 use leg_firmware::linked_leg::SensingLeg;
 use leg_firmware::recorder::{Recorder, RecorderSetup};
-use leg_firmware::settings::Settings;
+use leg_firmware::settings::{Settings, SettingsError};
 use leg_firmware::version::VERSION;
 use static_cell::{ConstStaticCell, StaticCell};
 
@@ -129,11 +129,22 @@ fn built_in() -> Settings {
 #[inline(never)]
 fn refuse_unfit(settings: &mut Settings) {
     settings.forget_zero();
-    if let Err(error) = Checked::<f32>::new(settings) {
+    if let Err(error) = check(settings) {
         settings_task::warn(&error);
         settings_task::refuse();
-        *settings = built_in();
+        replace(settings);
     }
+}
+
+/// Whether the settings describe a leg.
+#[inline(never)]
+fn check(settings: &Settings) -> Result<(), SettingsError> {
+    Checked::<f32>::new(settings).map(|_| ())
+}
+
+#[inline(never)]
+fn replace(settings: &mut Settings) {
+    *settings = built_in();
 }
 
 /// A leg at its place.

@@ -4,7 +4,7 @@ use crate::json_object;
 use crate::rounding::rounded;
 use leg_firmware::control::JOG_RISE_S;
 use leg_firmware::jog::{JogDemand, JogEnd, JogReport};
-use leg_firmware::settings::Settings;
+use leg_firmware::settings::{Servo, Settings};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -14,15 +14,21 @@ const SPEED_M_PER_S: f32 = 2e-3;
 /// Least change of a tension that counts as one, N.
 const CHANGE_MIN_N: f32 = 1.0;
 
-/// The voltage at which a motor turns slowly: twice its friction, and what a slow turn induces; below what counts as driven.
+/// The voltage at which a motor, from 1, turns slowly: twice its friction, and what a slow turn induces; below what counts as driven.
 #[must_use]
-pub fn slow_voltage_v(settings: &Settings) -> f32 {
-    let servo = &settings.servo;
+pub fn slow_voltage_v(motor: u8, settings: &Settings) -> f32 {
+    let servo = servo_of(motor, settings);
     let friction_v = 2.0 * servo.resistance_ohm * servo.friction_a;
     let highest_v = settings.limits.driven_part * servo.current_a * servo.resistance_ohm;
     let voltage_v = friction_v + servo.back_emf_v_s_per_m * SPEED_M_PER_S;
     // A tenth of a volt is as fine as anybody would give it.
     ((voltage_v * 10.0).round() / 10.0).min(0.9 * highest_v)
+}
+
+/// The servo of a motor, from 1: a jog of another one is refused.
+fn servo_of(motor: u8, settings: &Settings) -> &Servo {
+    let own = usize::from(motor).saturating_sub(1);
+    settings.servos.get(own).unwrap_or(&Servo::DEFAULT)
 }
 
 /// What will happen, before it does.
@@ -33,7 +39,7 @@ pub fn plan(demand: &JogDemand, settings: &Settings) -> String {
         travel_m,
         voltage_v,
     } = *demand;
-    let servo = &settings.servo;
+    let servo = servo_of(motor, settings);
     let left_v = voltage_v - servo.resistance_ohm * servo.friction_a;
     let speed_mm_per_s = (1000.0 * left_v / servo.back_emf_v_s_per_m).max(0.0);
     let current_a = 1.5 * servo.friction_a + servo.pull_a_per_n * settings.homing.f_max_n;
@@ -193,9 +199,10 @@ fn counted_m(report: &JogReport<f32>) -> f32 {
 fn no_counts(report: &JogReport<f32>, settings: &Settings) -> Finding {
     let motor = report.demand.motor;
     let risen = (report.time_s / JOG_RISE_S).min(1.0);
-    let stalled_a = risen * report.demand.voltage_v / settings.servo.resistance_ohm;
+    let servo = servo_of(motor, settings);
+    let stalled_a = risen * report.demand.voltage_v / servo.resistance_ohm;
     let drawn_a = report.current_a.abs();
-    if drawn_a < 0.1 * stalled_a.min(settings.servo.friction_a) {
+    if drawn_a < 0.1 * stalled_a.min(servo.friction_a) {
         Finding::new(
             format!("motor {motor} draws no current"),
             "look for an open wire of the motor, and whether its driver is enabled",

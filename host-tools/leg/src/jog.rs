@@ -35,7 +35,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let demand = JogDemand {
         motor: args.motor,
         travel_m: (args.travel / 1000.0) as f32,
-        voltage_v: given.unwrap_or_else(|| jog_report::slow_voltage_v(&settings)),
+        voltage_v: given.unwrap_or_else(|| jog_report::slow_voltage_v(args.motor, &settings)),
     };
     if !options.json {
         print(&jog_report::plan(&demand, &settings))?;

@@ -65,7 +65,12 @@ struct Measured {
 
 impl Measured {
     fn rows(&self, rig: &RigFile) -> Vec<ComparisonRow> {
-        comparison(&self.motor.constants, self.swings.as_ref(), rig)
+        comparison(
+            self.motor.motor,
+            &self.motor.constants,
+            self.swings.as_ref(),
+            rig,
+        )
     }
 }
 

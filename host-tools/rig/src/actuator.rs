@@ -1,5 +1,6 @@
 //! Data sheets of the motors, gears, screws and sensors: for the control law and for the simulated leg.
 
+use crate::motor_sections::{own_sections, with_motors};
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;
 use leg_firmware::fields;
@@ -7,7 +8,7 @@ use leg_firmware::sensors::CODE_MAX;
 use leg_firmware::settings::Field;
 
 fields! {
-    /// One actuator; the three are of one type.
+    /// One actuator; the three are of one type, or each of its own.
     ///
     /// The defaults are typical of an ironless DC motor of 20 W at 24 V such as maxon's RE 25, with a planetary gear and
     /// a trapezoidal screw that holds by its friction. Replace them by the data sheets of your own.
@@ -104,27 +105,48 @@ pub(crate) const THERMAL: [Field<f64>; 2] = [
 /// The section `[actuator]`: motors, gears, screws and sensors by their data sheets.
 pub const ACTUATOR: &str = "actuator";
 
+/// Keys of what the board has once for all motors: no motor has them for itself.
+const OF_THE_BOARD: [&str; 3] = ["supply_range_v", "supply_v", TEMPERATURE_RANGE[0].name];
+
 impl Actuator {
-    /// Reads the section; whatever is left out is as by default.
-    pub(crate) fn read(root: &Section<'_>) -> Result<Self, TomlError> {
-        let mut actuator = Self::DEFAULT;
+    /// Reads the section for each motor: what a motor has for itself wins, whatever is left out is as by default.
+    pub(crate) fn read_all(root: &Section<'_>) -> Result<[Self; 3], TomlError> {
         let mut keys: Vec<_> = Self::FIELDS.iter().map(|field| field.name).collect();
         keys.extend([CELL_RANGE[0].name, TEMPERATURE_RANGE[0].name]);
         keys.extend(THERMAL.map(|field| field.name));
-        let Some(section) = root.optional(ACTUATOR, &keys)? else {
-            return Ok(actuator);
+        let Some(section) = root.optional(ACTUATOR, &with_motors(&keys))? else {
+            return Ok([Self::DEFAULT; 3]);
         };
-        section.read(Self::FIELDS, actuator.values_mut())?;
+        let mut actuators = [Self::DEFAULT.with(&section)?; 3];
+        keys.retain(|key| !OF_THE_BOARD.contains(key));
+        let own = own_sections(&section, &keys)?;
+        for (actuator, own) in actuators.iter_mut().zip(own) {
+            if let Some(own) = own {
+                *actuator = actuator.with(&own)?;
+            }
+        }
+        Ok(actuators)
+    }
+
+    /// The same with what a section gives.
+    fn with(mut self, section: &Section<'_>) -> Result<Self, TomlError> {
+        section.read(Self::FIELDS, self.values_mut())?;
         let [continuous, time] = THERMAL.each_ref();
-        actuator.continuous_a = section.values([continuous])?.map(|[current]| current);
-        actuator.thermal_time_s = section.values([time])?.map(|[time]| time);
+        for (field, value) in [
+            (continuous, &mut self.continuous_a),
+            (time, &mut self.thermal_time_s),
+        ] {
+            if let Some([given]) = section.values([field])? {
+                *value = Some(given);
+            }
+        }
         if let Some(range) = section.values(CELL_RANGE.each_ref())? {
-            actuator.cell_range_n = range;
+            self.cell_range_n = range;
         }
         if let Some(range) = section.values(TEMPERATURE_RANGE.each_ref())? {
-            actuator.temperature_range_c = range;
+            self.temperature_range_c = range;
         }
-        Ok(actuator)
+        Ok(self)
     }
 
     /// How far one encoder count pulls the tendon in, m.

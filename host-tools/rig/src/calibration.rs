@@ -9,9 +9,9 @@ use leg_firmware::settings::{AxisCalibration, Field};
 /// The section `[calibration]`.
 pub const CALIBRATION: &str = "calibration";
 
-/// The calibrations of the three axes: measured, or as the actuator's data say.
+/// The calibrations of the three axes: measured, or as the actuators' data say.
 ///
-/// The simulated leg keeps its actuator's data: a calibration that is not theirs shows as an error there. The signs of
+/// The simulated leg keeps its actuators' data: a calibration that is not theirs shows as an error there. The signs of
 /// the counts are otherwise: how encoders are wired is a fact, and the simulated leg's are wired the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Calibration {
@@ -37,15 +37,16 @@ const COUNTS_SIGN: Field<f64> = Field::new(
 );
 
 impl Calibration {
-    /// As the actuator's data say.
+    /// As the actuators' data say.
     #[must_use]
-    pub fn nominal(actuator: &Actuator) -> Self {
+    pub fn nominal(actuators: &[Actuator; 3]) -> Self {
+        let each = |value: fn(&Actuator) -> f64| actuators.each_ref().map(value);
         Self {
-            m_per_count: [actuator.m_per_count(); 3],
+            m_per_count: each(Actuator::m_per_count),
             counts_sign: [1.0; 3],
-            cell_n_per_code: [actuator.cell_n_per_code(); 3],
-            cell_zero_code: [actuator.cell_zero_code(); 3],
-            current_a_per_code: [actuator.current_a_per_code(); 3],
+            cell_n_per_code: each(Actuator::cell_n_per_code),
+            cell_zero_code: each(Actuator::cell_zero_code),
+            current_a_per_code: each(Actuator::current_a_per_code),
         }
     }
 
@@ -68,9 +69,9 @@ impl Calibration {
         [counts, sign, scale, zero, current]
     }
 
-    /// Reads the section; whatever is left out is as the actuator's data say.
-    pub(crate) fn read(root: &Section<'_>, actuator: &Actuator) -> Result<Self, TomlError> {
-        let mut calibration = Self::nominal(actuator);
+    /// Reads the section; whatever is left out is as the actuators' data say.
+    pub(crate) fn read(root: &Section<'_>, actuators: &[Actuator; 3]) -> Result<Self, TomlError> {
+        let mut calibration = Self::nominal(actuators);
         let keys = calibration.keys();
         let names = keys.each_ref().map(|(field, _)| field.name);
         let Some(section) = root.optional(CALIBRATION, &names)? else {

@@ -29,7 +29,7 @@ pub fn settings(rig: &RigFile, gains: &Gains, unstretched_at_zero_m: Option<[f64
         axes: [0, 1, 2].map(axis),
         board: board(rig),
         motion: gains.motion,
-        servo: gains.servo,
+        servos: gains.servos,
         estimation: gains.estimation,
         limits: gains.limits,
         homing: gains.homing,
@@ -51,9 +51,11 @@ fn axis(calibration: &Calibration, i: usize) -> AxisCalibration {
 
 fn board(rig: &RigFile) -> BoardCalibration {
     let codes = f64::from(CODE_MAX);
-    let [cold_c, hot_c] = rig.actuator.temperature_range_c;
+    // The board has its supply and its temperature once, so every actuator says the same of them.
+    let [actuator, ..] = &rig.actuators;
+    let [cold_c, hot_c] = actuator.temperature_range_c;
     BoardCalibration {
-        supply_v_per_code: (rig.actuator.supply_range_v / codes) as f32,
+        supply_v_per_code: (actuator.supply_range_v / codes) as f32,
         temperature_c_per_code: ((hot_c - cold_c) / codes) as f32,
         temperature_at_zero_c: cold_c as f32,
     }

@@ -1,11 +1,11 @@
 //! Gains and limits of the control law: the sections `[control.…]` of rig files and scenarios.
 
+use crate::motor_sections::{MOTORS, own_sections, with_motors};
 use crate::number::decimal;
 use crate::recorded_signals::{self, RECORDED};
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;
-use leg_firmware::settings::SignalSet;
-use leg_firmware::settings::{Field, Gains, SECTIONS};
+use leg_firmware::settings::{Field, Gains, SECTIONS, SERVO, SignalSet};
 use toml::de::DeTable;
 
 /// The common beginning of the sections.
@@ -17,13 +17,13 @@ pub const KEEPS_STATION: &str = "keeps_station";
 /// One gain that is given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainChange {
-    /// Which one, counted through the sections.
+    /// Which one, in the order of [`Gains::values`].
     index: usize,
     value: f32,
 }
 
 impl GainChange {
-    /// Which one, counted through the sections.
+    /// Which one, in the order of [`Gains::values`].
     pub(crate) fn index(&self) -> usize {
         self.index
     }
@@ -31,17 +31,39 @@ impl GainChange {
     /// The key.
     #[must_use]
     pub fn name(&self) -> &'static str {
-        let fields = SECTIONS.iter().flat_map(|(_, fields)| *fields);
-        fields.map(|field| field.name).nth(self.index).unwrap_or("")
+        let mut all = groups().flat_map(|group| group.fields);
+        all.nth(self.index).map_or("", |field| field.name)
     }
 }
 
-/// The place of a gain, counted through the sections.
-pub(crate) fn index_of(section: &str, key: &str) -> Option<usize> {
-    let keys = SECTIONS
-        .iter()
-        .flat_map(|(name, fields)| fields.iter().map(move |field| (*name, field.name)));
-    keys.into_iter().position(|path| path == (section, key))
+/// The gains of a section: of the whole leg, or of one motor.
+pub(crate) struct GainGroup {
+    pub section: &'static str,
+    /// The motor, from 0; none where all have it together.
+    pub motor: Option<usize>,
+    pub fields: &'static [Field],
+}
+
+/// All of them, in the order of [`Gains::values`].
+pub(crate) fn groups() -> impl Iterator<Item = GainGroup> {
+    SECTIONS.into_iter().flat_map(|(section, fields)| {
+        let motors = if section == SERVO { MOTORS.len() } else { 1 };
+        (0..motors).map(move |motor| GainGroup {
+            section,
+            motor: (section == SERVO).then_some(motor),
+            fields,
+        })
+    })
+}
+
+/// The place of a gain in the order of [`Gains::values`]; the motor, from 0, matters where each has its own.
+pub(crate) fn index_of(section: &str, motor: usize, key: &str) -> Option<usize> {
+    let all = groups().flat_map(|group| {
+        let fields = group.fields.iter();
+        fields.map(move |field| (group.section, group.motor.unwrap_or(motor), field.name))
+    });
+    all.into_iter()
+        .position(|place| place == (section, motor, key))
 }
 
 /// The gains with other values where any are given.
@@ -103,29 +125,51 @@ pub(crate) fn read_rig(file: &Section<'_>) -> Result<GivenControl, TomlError> {
 fn read_sections(control: &Section<'_>) -> Result<Vec<GainChange>, TomlError> {
     let mut changes = Vec::new();
     let mut first = 0;
-    for (name, fields) in SECTIONS {
-        let keys: Vec<_> = fields.iter().map(|field| field.name).collect();
-        if let Some(section) = control.optional(name, &keys)? {
-            for (index, field) in (first..).zip(fields) {
-                if let Some([value]) = section.values([&widened(field)])? {
+    for group in groups() {
+        let keys: Vec<_> = group.fields.iter().map(|field| field.name).collect();
+        if let Some((section, own)) = sections(control, &group, &keys)? {
+            for (index, field) in (first..).zip(group.fields) {
+                let field = widened(field);
+                let own = own.as_ref().map(|own| own.values([&field])).transpose()?;
+                let given = own
+                    .flatten()
+                    .map_or_else(|| section.values([&field]), |own| Ok(Some(own)))?;
+                if let Some([value]) = given {
                     let value = value as f32;
                     changes.push(GainChange { index, value });
                 }
             }
         }
-        first += fields.len();
+        first += group.fields.len();
     }
     Ok(changes)
 }
 
+/// The section of a group, and the one that its motor has for itself.
+fn sections<'a>(
+    control: &Section<'a>,
+    group: &GainGroup,
+    keys: &[&str],
+) -> Result<Option<(Section<'a>, Option<Section<'a>>)>, TomlError> {
+    let Some(motor) = group.motor else {
+        let section = control.optional(group.section, keys)?;
+        return Ok(section.map(|section| (section, None)));
+    };
+    let Some(section) = control.optional(group.section, &with_motors(keys))? else {
+        return Ok(None);
+    };
+    let own = own_sections(&section, keys)?.into_iter().nth(motor);
+    Ok(Some((section, own.flatten())))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{GainChange, changed};
-    use leg_firmware::settings::{Gains, SECTIONS};
+    use super::{GainChange, changed, groups};
+    use leg_firmware::settings::Gains;
 
     #[test]
     fn every_gain_changes_alone() {
-        let count = SECTIONS.iter().map(|(_, fields)| fields.len()).sum();
+        let count = groups().map(|group| group.fields.len()).sum();
         let default: Vec<f32> = Gains::default().values().collect();
         assert_eq!(default.len(), count);
         for index in 0..count {

@@ -29,6 +29,7 @@ pub mod control_settings;
 pub mod curve_toml;
 pub mod gains;
 pub mod mechanism_keys;
+pub mod motor_sections;
 pub mod motor_turn;
 pub mod number;
 pub mod plant_settings;

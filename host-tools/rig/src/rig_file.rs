@@ -45,8 +45,8 @@ pub struct RigFile {
     pub support: Support<f64>,
     /// The load along the leg under which its flexures buckle, N; none where the file does not give their geometry.
     pub critical_n: Option<f64>,
-    /// Motors, gears, screws and sensors by their data sheets.
-    pub actuator: Actuator,
+    /// Motor, gear, screw and sensors of each tendon by their data sheets.
+    pub actuators: [Actuator; 3],
     /// What was measured of the sensors.
     pub calibration: Calibration,
     /// Whether the leg may keep station after a command.

@@ -2,12 +2,13 @@
 
 use crate::actuator::{ACTUATOR, Actuator, CELL_RANGE, TEMPERATURE_RANGE, THERMAL};
 use crate::calibration::{CALIBRATION, Calibration};
-use crate::gains::{CONTROL, widened};
+use crate::gains::{CONTROL, groups, widened};
+use crate::motor_sections::motor_section;
 use crate::number::{decimal, plain};
 use crate::plant_settings::{CURRENT_OFFSET, PlantSettings, SIMULATION, TRANSVERSE_INERTIA};
 use crate::rig_file::RigFile;
 use crate::rig_file::derived::{self, Basis, GivenGains};
-use leg_firmware::settings::{Field, Gains, SECTIONS};
+use leg_firmware::settings::{Field, Gains};
 use serde::Serialize;
 
 /// One number of a rig, or one for each end of a range or each axis.
@@ -65,25 +66,72 @@ fn numbers(
     fields.iter().zip(values).filter_map(setting).collect()
 }
 
+/// The same settings of each motor: what all have in common once, then what they have differently, motor by motor.
+fn merged(motors: [&Vec<Setting>; 3]) -> Vec<Setting> {
+    let [first, second, third] = motors;
+    let common: Vec<bool> = first
+        .iter()
+        .zip(second)
+        .zip(third)
+        .map(|((first, second), third)| first == second && second == third)
+        .collect();
+    let kept = |settings: &[Setting], wanted: bool| -> Vec<Setting> {
+        let chosen = settings.iter().zip(&common);
+        chosen
+            .filter(|(_, common)| **common == wanted)
+            .map(|(setting, _)| setting.clone())
+            .collect()
+    };
+    let mut all = kept(first, true);
+    for (motor, settings) in motors.into_iter().enumerate() {
+        all.extend(kept(settings, false).into_iter().map(|setting| Setting {
+            section: motor_section(&setting.section, motor),
+            ..setting
+        }));
+    }
+    all
+}
+
 /// Gains and limits of the control law.
 #[must_use]
 pub fn control(file: &RigFile) -> Vec<Setting> {
-    let defaults = derived::gains(&Basis::new(file), &Gains::default(), GivenGains::default());
+    let basis = Basis::new_all(file);
+    let defaults = derived::gains(&basis, &Gains::default(), GivenGains::default());
     let mut values = file.gains.values().map(decimal);
     let mut defaults = defaults.values().map(decimal);
-    let settings = SECTIONS.map(|(name, fields)| {
-        let fields: Vec<_> = fields.iter().map(widened).collect();
+    let (mut all, mut motors) = (Vec::new(), Vec::<Vec<Setting>>::new());
+    for group in groups() {
+        let fields: Vec<_> = group.fields.iter().map(widened).collect();
         let values = values.by_ref().take(fields.len());
         let defaults = defaults.by_ref().take(fields.len());
-        numbers(&format!("{CONTROL}.{name}"), &fields, values, defaults)
-    });
-    settings.concat()
+        let section = format!("{CONTROL}.{}", group.section);
+        let settings = numbers(&section, &fields, values, defaults);
+        if group.motor.is_none() {
+            all.extend(settings);
+            continue;
+        }
+        motors.push(settings);
+        if let [first, second, third] = &motors[..] {
+            all.extend(merged([first, second, third]));
+        }
+    }
+    all
 }
 
 /// Actuators, sensors and their calibration.
 #[must_use]
 pub fn actuator(file: &RigFile) -> Vec<Setting> {
-    let (actuator, default) = (&file.actuator, Actuator::DEFAULT);
+    let motors = file.actuators.each_ref().map(of_actuator);
+    let mut all = merged(motors.each_ref());
+    let (mut measured, mut nominal) = (file.calibration, Calibration::nominal(&file.actuators));
+    for ((field, value), (_, default)) in measured.keys().into_iter().zip(nominal.keys()) {
+        all.extend(Setting::new(CALIBRATION, &[field], *value, *default));
+    }
+    all
+}
+
+fn of_actuator(actuator: &Actuator) -> Vec<Setting> {
+    let default = Actuator::DEFAULT;
     let (values, defaults) = (actuator.values(), default.values());
     let mut all = numbers(ACTUATOR, Actuator::FIELDS, values, defaults);
     for (field, value) in THERMAL
@@ -96,10 +144,6 @@ pub fn actuator(file: &RigFile) -> Vec<Setting> {
     let temperatures = [actuator.temperature_range_c, default.temperature_range_c];
     for (fields, [value, default]) in [(CELL_RANGE, cells), (TEMPERATURE_RANGE, temperatures)] {
         all.extend(Setting::new(ACTUATOR, &fields, value, default));
-    }
-    let (mut measured, mut nominal) = (file.calibration, Calibration::nominal(actuator));
-    for ((field, value), (_, default)) in measured.keys().into_iter().zip(nominal.keys()) {
-        all.extend(Setting::new(CALIBRATION, &[field], *value, *default));
     }
     all
 }

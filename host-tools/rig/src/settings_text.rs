@@ -1,11 +1,12 @@
 //! The settings of a board as a rig file that gives the same bits again.
 
-use crate::gains::{CONTROL, KEEPS_STATION};
+use crate::gains::{CONTROL, KEEPS_STATION, groups};
+use crate::motor_sections::motor_section;
 use crate::number::{decimal, exact, exact_mm, exact_through, plain};
 use crate::recorded_signals::{self, RECORDED};
 use crate::support_name::SupportName;
 use leg_firmware::sensors::CODE_MAX;
-use leg_firmware::settings::{AxisCalibration, SECTIONS, Settings, TendonParameters};
+use leg_firmware::settings::{AxisCalibration, SERVO, Servo, Settings, TendonParameters};
 use leg_model::SupportKind;
 
 const HEADING: &str = "# What a board is set to, as a rig file. The geometry of an elastic joint is not on the board: its stiffness stands \
@@ -132,10 +133,35 @@ fn control(settings: &Settings) -> String {
         settings.keeps_station,
         list(recorded_signals::words(settings.recorded).map(|word| format!("\"{word}\""))),
     );
-    for (name, fields) in SECTIONS {
-        text += &format!("\n[{CONTROL}.{name}]\n");
-        for (field, value) in fields.iter().zip(values.by_ref()) {
-            text += &format!("{} = {}\n", field.name, exact(value));
+    for group in groups() {
+        let values: Vec<f32> = values.by_ref().take(group.fields.len()).collect();
+        match group.motor {
+            Some(0) => text += &servos(settings),
+            Some(_) => {}
+            None => {
+                let keys = group.fields.iter().map(|field| field.name);
+                text += &section(group.section, keys.zip(values));
+            }
+        }
+    }
+    text
+}
+
+fn section<'a>(name: &str, keys: impl Iterator<Item = (&'a str, f32)>) -> String {
+    let keys = keys.map(|(key, value)| format!("{key} = {}\n", exact(value)));
+    format!("\n[{CONTROL}.{name}]\n{}", keys.collect::<String>())
+}
+
+/// What the motors have in common once, and what each has otherwise for itself.
+fn servos(settings: &Settings) -> String {
+    let [first, ..] = settings.servos.each_ref().map(Servo::values);
+    let keys = || Servo::FIELDS.iter().map(|field| field.name);
+    let mut text = section(SERVO, keys().zip(first));
+    for (motor, servo) in settings.servos.iter().enumerate() {
+        let all = keys().zip(servo.values()).zip(first);
+        let mut own = all.filter(|((_, value), first)| value != first).peekable();
+        if own.peek().is_some() {
+            text += &section(&motor_section(SERVO, motor), own.map(|(own, _)| own));
         }
     }
     text

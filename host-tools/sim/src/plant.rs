@@ -55,12 +55,12 @@ use supply::Supply;
 /// A simulated leg with its actuators and sensors.
 #[derive(Clone, Debug)]
 pub struct Plant {
-    actuator: Actuator,
+    actuators: [Actuator; 3],
     dynamics: Dynamics,
     /// The leg without a payload.
     bare: Inertia,
     leg: LegState,
-    motor_type: MotorType,
+    motor_types: [MotorType; 3],
     motors: [Motor; 3],
     supply: Supply,
     /// Temperature of all drivers, °C.
@@ -104,10 +104,14 @@ impl Plant {
         let pulls_n = self.hand.pulls_n(self.tensions_n);
         let duties = self.motors.map(|motor| motor.duty);
         let cell_codes = self.cells.read(pulls_n, duties, &self.defects, self.ticks);
-        let (actuator, defects) = (&self.actuator, &self.defects);
+        let defects = &self.defects;
+        // The supply and the temperature are the board's, so every actuator says the same of them.
+        let [actuator, ..] = &self.actuators;
         // Half of the highest code is no current.
-        let range_a = actuator.current_range_a;
-        let current_code = |i: usize| code(self.current_shown_a(i), [-range_a, range_a]);
+        let current_code = |i: usize| {
+            let range_a = self.actuators[i].current_range_a;
+            code(self.current_shown_a(i), [-range_a, range_a])
+        };
         Sensors {
             encoder_counts: self.encoder_counts(),
             cell_codes,
@@ -130,9 +134,9 @@ impl Plant {
         let (defects, motor) = (&self.defects, &self.motors[i]);
         let disabled = motor.open && defects.has(Defect::CurrentFullScaleDisabled(i));
         if defects.has(Defect::CurrentFullScale(i)) || disabled {
-            self.actuator.current_range_a
+            self.actuators[i].current_range_a
         } else if defects.has(Defect::CurrentDead(i)) {
-            -self.actuator.current_range_a
+            -self.actuators[i].current_range_a
         } else if defects.has(Defect::CurrentZero(i)) {
             self.current_offset_a[i]
         } else if defects.has(Defect::CurrentOffset(i)) {
@@ -177,13 +181,13 @@ impl Plant {
         match defect {
             Defect::TendonSlips(i) if on => self.unstretched_at_zero_m[i] += SLIP_M,
             Defect::EncoderSlipsQuarter(i) if on => {
-                let quarter = (0.25 * self.actuator.counts_per_turn) as u16;
+                let quarter = (0.25 * self.actuators[i].counts_per_turn) as u16;
                 let counter = &mut self.encoders[i].counter;
                 *counter = counter.wrapping_add(quarter);
             }
             Defect::ScrewDry(i) => self.motors[i].dry_nm = if on { DRY_NM } else { 0.0 },
             Defect::GearPlay(i) => {
-                let actuator = &self.actuator;
+                let actuator = &self.actuators[i];
                 let play_rad = if on { WORN_RAD } else { actuator.backlash_rad };
                 self.motors[i].screw.set_play(actuator, play_rad);
             }

@@ -131,7 +131,7 @@ fn measured(
 ) -> Vec<Swept> {
     println!("seed {seed}, {numbers:?}");
     let mut file = RigFile::load(None).unwrap();
-    set(&mut file.gains.servo);
+    file.gains.servos.iter_mut().for_each(set);
     let campaign = BodeCampaign {
         seed,
         rigs: vec![("table1".into(), file)],

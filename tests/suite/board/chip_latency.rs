@@ -21,7 +21,7 @@ use stm32g474_emulator::board::Board;
 use stm32g474_emulator::chip::Chip;
 use stm32g474_emulator::image::Image;
 
-/// How often the host saves on the serial line: with two records in a page, some saves erase.
+/// How often the host saves on the serial line: with one record in a page, a save erases.
 const SAVES: usize = 3;
 
 /// The longest that a request on the serial line takes, ms.

@@ -112,7 +112,7 @@ fn the_encoder_is_fast_enough_and_an_open_collector_is_not() {
     let [lines, most_hz, cable] = page.values(["N1", "FE", "CW"]);
     let actuator = Actuator::DEFAULT;
     assert_near(4.0 * lines, actuator.counts_per_turn, 1e-9);
-    let speed_m_per_s = f64::from(settings.servo.speed_m_per_s);
+    let speed_m_per_s = f64::from(settings.servos[0].speed_m_per_s);
     let turns_per_s = speed_m_per_s / actuator.lead_m * actuator.gear_ratio;
     let track_hz = turns_per_s * lines;
     assert!(track_hz < 0.8 * most_hz, "{track_hz} Hz");
@@ -184,13 +184,14 @@ fn the_motor_supply_is_measured_fused_and_takes_what_the_motors_give_back() {
     assert!(supply / r18 < 1e-3, "through the clamp");
     // Fuses: above what is driven, below what the wires and the contactor bear.
     let [main, each, contactor, wire] = page.values(["F2", "F3", "AK", "AW"]);
-    let driven_a = f64::from(settings.servo.current_a);
+    let driven_a = f64::from(settings.servos[0].current_a);
     assert!(driven_a * 1.5 < each && 3.0 * driven_a < main);
     assert!(each < main && main < wire && main < contactor);
     // A motor that stops from its fastest gives all that turns in it to its capacitor.
     let [capacitor, highest_v, bleeder] = page.values(["C5", "VD", "R21"]);
     let actuator = Actuator::DEFAULT;
-    let turning = f64::from(settings.servo.speed_m_per_s) / actuator.lead_m * actuator.gear_ratio;
+    let turning =
+        f64::from(settings.servos[0].speed_m_per_s) / actuator.lead_m * actuator.gear_ratio;
     let energy_j = 0.5 * actuator.inertia_kg_m2 * (TAU * turning).powi(2);
     let risen_v = (supply.powi(2) + 2.0 * energy_j / capacitor).sqrt();
     assert!(
@@ -228,7 +229,7 @@ fn the_section_of_the_page_is_that_of_the_kit() {
     let (_, section) = page.0.split_once("```toml\n").unwrap();
     let (section, _) = section.split_once("```").unwrap();
     let text = [READY_RIGS[0].text, "\n", section].concat();
-    let actuator = RigFile::parse("kit", &text).unwrap().actuator;
+    let actuator = RigFile::parse("kit", &text).unwrap().actuators[0];
     for (given, computed) in actuator
         .cell_range_n
         .into_iter()

@@ -30,8 +30,8 @@ fn goal(pulled_m: f64) -> AxisGoal<f64> {
 #[test]
 fn an_integral_gathers_nothing_while_the_voltage_is_limited() {
     let settings = Settings::table_1().unwrap();
-    let limit_v = f64::from(settings.servo.current_a * settings.servo.resistance_ohm);
-    let mut axis = Axis::<f64>::new(&settings);
+    let limit_v = f64::from(settings.servos[0].current_a * settings.servos[0].resistance_ohm);
+    let mut axis = Axis::<f64>::new(&settings.servos[0]);
     axis.rest(0.0);
     let mut duty = 0.0;
     for _ in 0..TICK_HZ / 2 {
@@ -56,7 +56,7 @@ fn an_integral_gathers_nothing_while_the_voltage_is_limited() {
 fn a_tension_above_the_ceiling_turns_the_motor_round() {
     let settings = Settings::table_1().unwrap();
     let duty = |tension_n: f64, lowest_m: f64| {
-        let mut axis = Axis::<f64>::new(&settings);
+        let mut axis = Axis::<f64>::new(&settings.servos[0]);
         axis.rest(0.0);
         axis.track(0.0);
         axis.lead(&goal(1e-3), 1.0);

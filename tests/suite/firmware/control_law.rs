@@ -161,7 +161,7 @@ fn homing_gives_up_above_its_current() {
             assert_eq!(bench.obey(Command::Home), Ok(()));
             // Let out, and tared.
             bench.run(7000);
-            let (servo, homing) = (bench.settings.servo, bench.settings.homing);
+            let (servo, homing) = (bench.settings.servos[0], bench.settings.homing);
             let most_a = 1.5 * servo.friction_a + servo.pull_a_per_n * homing.f_max_n;
             let codes = sign * part * most_a / bench.settings.axes[0].current_a_per_code;
             bench.sensors.current_codes[0] = (f32::from(CODE_MAX / 2) + codes) as u16;

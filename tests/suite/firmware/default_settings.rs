@@ -24,7 +24,7 @@ fn expected() -> Result<Settings, Box<dyn Error>> {
 
 #[test]
 fn the_blob_is_up_to_date() -> Result<(), Box<dyn Error>> {
-    let mut bytes = [0; 1024];
+    let mut bytes = [0; 2048];
     let bytes = postcard::to_slice(&expected()?, &mut bytes)?;
     if std::env::var_os("LEG_WRITE_DEFAULTS").is_some() {
         std::fs::write(Path::new(BLOB), &bytes)?;

@@ -41,7 +41,7 @@ impl StillLeg {
         let watch = &mut |tick: &Tick<'_>| read.push(*tick.sensors);
         simulation.run(&mut InProcess::new(), watch).unwrap();
         let sensors = *read.last().unwrap();
-        let (servo, axis) = (&settings.servo, &settings.axes[0]);
+        let (servo, axis) = (&settings.servos[0], &settings.axes[0]);
         let mut still = Self {
             leg,
             sensors,

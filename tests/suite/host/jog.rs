@@ -30,7 +30,7 @@ fn demand(operator: &mut Operator, motor: u8, travel_mm: f32) -> JogDemand {
     JogDemand {
         motor,
         travel_m: travel_mm / 1000.0,
-        voltage_v: slow_voltage_v(&operator.settings().unwrap()),
+        voltage_v: slow_voltage_v(motor, &operator.settings().unwrap()),
     }
 }
 

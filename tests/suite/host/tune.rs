@@ -32,13 +32,14 @@ fn drawn(configured: &RigFile, seed: u64) -> RigFile {
     let mut rng = Rng::with_seed(seed);
     let mut part = |low: f64, high: f64| low + (high - low) * rng.f64();
     let mut real = *configured;
-    let actuator = &mut real.actuator;
+    let [actuator, ..] = &mut real.actuators;
     actuator.friction_nm *= part(0.5, 1.5);
     actuator.resistance_ohm *= part(0.8, 1.2);
     actuator.torque_constant_nm_per_a *= part(0.8, 1.2);
     actuator.viscous_nm_s_per_rad *= part(0.5, 1.5);
     actuator.screw_efficiency *= part(0.9, 1.1);
     actuator.backlash_rad *= part(0.5, 2.0);
+    real.actuators = [*actuator; 3];
     real.plant.curve_error = part(-0.03, 0.03);
     let inertia = configured
         .plant
@@ -99,7 +100,7 @@ fn the_constants_of_a_motor_are_found_within_five_percent() {
             hardest_n = tensions_n.into_iter().fold(hardest_n, f64::max);
         });
         // Compared with what the leg is, not with what it is configured to.
-        let rows = comparison(&found.unwrap().constants, None, &real);
+        let rows = comparison(motor, &found.unwrap().constants, None, &real);
         for name in [
             "resistance_ohm",
             "torque_constant_nm_per_a",
@@ -168,7 +169,7 @@ fn the_first_mode_is_found_within_three_percent_and_the_play_within_ten() {
         assert!(changed > 0.03, "seed {seed}: {changed}");
         let travels = swings.travels.unwrap();
         let play_m = travels.play_m;
-        let real_m = real.actuator.play_m();
+        let real_m = real.actuators[0].play_m();
         println!("play {play_m:?}, true {real_m}");
         assert!((play_m.value / real_m - 1.0).abs() < 0.1, "seed {seed}");
         let stretched = travels.stretch_m.value / swings.configured_stretch_m.unwrap();
@@ -198,20 +199,20 @@ fn what_is_written_is_a_part_of_a_rig_file() {
     let found = jog(&mut operator, 2, &mut |_| ()).unwrap();
     let plan = SwingPlan::new(&configured);
     let swings = measure_swing(&mut operator, &plan, &configured, &mut |_| ()).unwrap();
-    let rows = comparison(&found.constants, Some(&swings), &configured);
+    let rows = comparison(found.motor, &found.constants, Some(&swings), &configured);
     let text = [READY_RIGS[0].text, &section(2, &rows)].concat();
     let file = RigFile::parse("measured", &text).unwrap();
-    let written = &file.actuator;
+    let written = &file.actuators[1];
     let inertia = |rig: &RigFile| rig.plant.leg_transverse_inertia_kg_m2.unwrap();
     for (written, real) in [
-        (written.resistance_ohm, real.actuator.resistance_ohm),
+        (written.resistance_ohm, real.actuators[1].resistance_ohm),
         (
             written.torque_constant_nm_per_a,
-            real.actuator.torque_constant_nm_per_a,
+            real.actuators[1].torque_constant_nm_per_a,
         ),
-        (written.friction_nm, real.actuator.friction_nm),
-        (written.screw_efficiency, real.actuator.screw_efficiency),
-        (written.backlash_rad, real.actuator.backlash_rad),
+        (written.friction_nm, real.actuators[1].friction_nm),
+        (written.screw_efficiency, real.actuators[1].screw_efficiency),
+        (written.backlash_rad, real.actuators[1].backlash_rad),
         (inertia(&file), inertia(&real)),
     ] {
         assert!((written / real - 1.0).abs() < 0.05, "{written} {real}");
@@ -223,20 +224,26 @@ fn what_is_written_is_a_part_of_a_rig_file() {
 fn what_the_jogs_tell_lets_a_leg_home_that_did_not() {
     let configured = RigFile::load(None).unwrap();
     let mut real = drawn(&configured, 106);
-    real.actuator.resistance_ohm = 1.8 * configured.actuator.resistance_ohm;
+    for actuator in &mut real.actuators {
+        actuator.resistance_ohm = 1.8 * configured.actuators[0].resistance_ohm;
+    }
     let swing = |operator: &mut Operator, rig: &RigFile| {
         measure_swing(operator, &SwingPlan::new(rig), rig, &mut |_| ())
     };
     let (_, mut operator, _) = leg(&configured, &real, 1);
-    let found = jog(&mut operator, 1, &mut |_| ()).unwrap();
+    let found = [1, 2, 3].map(|motor| jog(&mut operator, motor, &mut |_| ()).unwrap());
     let ended = swing(&mut operator, &configured).unwrap_err();
     println!("{ended}");
     assert!(matches!(
         ended,
         OperatorTuneError::Leg(OperatorError::Failed("home", _))
     ));
-    let rows = comparison(&found.constants, None, &configured);
-    let text = [READY_RIGS[0].text, &section(1, &rows)].concat();
+    // Each motor has its own section.
+    let sections = found.map(|found| {
+        let rows = comparison(found.motor, &found.constants, None, &configured);
+        section(found.motor, &rows)
+    });
+    let text = [READY_RIGS[0].text, &sections.concat()].concat();
     let measured = RigFile::parse("measured", &text).unwrap();
     let (_, mut operator, _) = leg(&measured, &real, 1);
     swing(&mut operator, &measured).unwrap();
@@ -248,7 +255,7 @@ fn what_a_rig_file_does_not_take_is_a_comment() {
     let configured = RigFile::load(None).unwrap();
     let (_, mut operator, _) = leg(&configured, &configured, 1);
     let found = jog(&mut operator, 1, &mut |_| ()).unwrap();
-    let mut rows = comparison(&found.constants, None, &configured);
+    let mut rows = comparison(found.motor, &found.constants, None, &configured);
     for row in &mut rows {
         match row.name.as_str() {
             "screw_efficiency" => row.measured.value = 0.55,
@@ -267,9 +274,9 @@ fn what_a_rig_file_does_not_take_is_a_comment() {
         assert!(text.contains(line), "{line}");
     }
     let text = [READY_RIGS[0].text, &text].concat();
-    let written = RigFile::parse("measured", &text).unwrap().actuator;
+    let written = RigFile::parse("measured", &text).unwrap().actuators[0];
     assert_eq!(
         written.screw_efficiency,
-        configured.actuator.screw_efficiency
+        configured.actuators[0].screw_efficiency
     );
 }

@@ -59,7 +59,7 @@ const MOTORS: [(&str, &str); 10] = [
 ];
 
 /// Runs the work on a leg with this rig; what goes wrong is an error.
-fn work(name: &str, rig: &RigFile) -> Result<(), String> {
+pub(crate) fn work(name: &str, rig: &RigFile) -> Result<(), String> {
     let simulation = Simulation::new(&Scenario::parse("work", WORK).unwrap(), rig).unwrap();
     let summary = simulation
         .run(&mut InProcess::new(), &mut |_| ())
@@ -99,7 +99,7 @@ fn a_leg_works_with_windings_that_are_warm() {
         .iter()
         .filter_map(|(name, actuator)| {
             let cold = RigFile::parse(name, &text(actuator)).unwrap();
-            let warm_ohm = cold.actuator.resistance_ohm;
+            let warm_ohm = cold.actuators[0].resistance_ohm;
             let servo = format!("[control.servo]\nresistance_ohm = {}\n", warm_ohm / 1.25);
             let rig = RigFile::parse(name, &text(&format!("{actuator}{servo}"))).unwrap();
             work(name, &rig).err()

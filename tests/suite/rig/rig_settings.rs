@@ -49,23 +49,25 @@ fn a_scenarios_gain_wins_over_the_rigs_and_the_rigs_over_the_default() {
     );
     let scenario = scenario("[control.servo]\nduty_max = 0.5\n[control.limits]\njump_n = 40\n");
     let found = settings(&rig, &scenario);
-    assert_eq!(found.servo.position_gain_per_s, 90.0, "the rig's");
-    assert_eq!(found.servo.duty_max, 0.5, "the scenario's");
+    assert_eq!(found.servos[1].position_gain_per_s, 90.0, "the rig's");
+    assert_eq!(found.servos[1].duty_max, 0.5, "the scenario's");
     assert_eq!(found.limits.jump_n, 40.0, "the scenario's");
     assert_eq!(found.homing.touch_n, 3.0, "the rig's");
     let by_default = settings(&RigFile::load(None).unwrap(), &self::scenario(""));
     let mut others = found;
     assert_eq!(
-        others.servo.speed_gain_v_s_per_m, 1300.0,
+        others.servos[1].speed_gain_v_s_per_m, 1300.0,
         "by the rig's gain"
     );
-    others.servo.speed_gain_v_s_per_m = by_default.servo.speed_gain_v_s_per_m;
-    others.servo.integral_time_s = by_default.servo.integral_time_s;
+    for (servo, default) in others.servos.iter_mut().zip(by_default.servos) {
+        servo.speed_gain_v_s_per_m = default.speed_gain_v_s_per_m;
+        servo.integral_time_s = default.integral_time_s;
+        servo.speed_m_per_s = default.speed_m_per_s;
+        servo.position_gain_per_s = default.position_gain_per_s;
+        servo.duty_max = default.duty_max;
+    }
     others.homing.speed_m_per_s = by_default.homing.speed_m_per_s;
     others.limits.ramp_m_per_s = by_default.limits.ramp_m_per_s;
-    others.servo.speed_m_per_s = by_default.servo.speed_m_per_s;
-    others.servo.position_gain_per_s = by_default.servo.position_gain_per_s;
-    others.servo.duty_max = by_default.servo.duty_max;
     others.limits.jump_n = by_default.limits.jump_n;
     others.homing.touch_n = by_default.homing.touch_n;
     assert_eq!(others, by_default, "nothing else");
@@ -111,10 +113,10 @@ fn no_number_of_actuator_or_simulation_may_leave_its_range() {
 #[test]
 fn the_motor_tells_the_servo_unless_the_file_does() {
     let found = settings(&rig("[actuator]\nresistance_ohm = 4\n"), &scenario(""));
-    assert_eq!(found.servo.resistance_ohm, 4.0);
+    assert_eq!(found.servos[1].resistance_ohm, 4.0);
     let more = "[actuator]\nresistance_ohm = 4\n[control.servo]\nresistance_ohm = 4.5\n";
     let found = settings(&rig(more), &scenario(""));
-    assert_eq!(found.servo.resistance_ohm, 4.5);
+    assert_eq!(found.servos[1].resistance_ohm, 4.5);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::{
     CYCLE_TICKS, Friction, TICK_S,
     bounds::{clamp_symmetric, max, min},
 };
-use crate::settings::Settings;
+use crate::settings::Servo;
 use leg_model::Scalar;
 
 /// Part of the integral that is left after a tick at rest: it decays with a time constant of 100 ticks, 12.5 ms. A screw
@@ -95,8 +95,7 @@ pub struct AxisInput<T> {
 
 impl<T: Scalar> Axis<T> {
     /// At rest.
-    pub fn new(settings: &Settings) -> Self {
-        let servo = &settings.servo;
+    pub fn new(servo: &Servo) -> Self {
         let tracking = servo.tracking;
         let gains = ServoGains {
             position: servo.position_gain_per_s.into(),

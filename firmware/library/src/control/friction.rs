@@ -1,7 +1,7 @@
 //! The voltage that a motor needs against the friction of motor, gear and screw, fed forward by where it is led.
 
 use super::{TICK_S, bounds::min};
-use crate::settings::Settings;
+use crate::settings::Servo;
 use leg_model::Scalar;
 
 /// By how many times as much the settings allow for as the data sheet of a motor gives, so that no monitor errs: that is not fed, for
@@ -19,7 +19,7 @@ const LEAST_M_PER_S: f32 = 1e-5;
 /// the tip by 0.1 mm is still braked.
 const WHOLE_M_PER_S: f32 = 1e-4;
 
-/// The friction of the motors, as voltages.
+/// The friction of a motor, as voltages.
 #[derive(Clone, Copy, Debug)]
 pub struct Friction<T> {
     /// Without a tension, V.
@@ -33,8 +33,7 @@ impl<T: Scalar> Friction<T> {
     /// What the settings tell. Of a screw with the efficiency η a pull takes 1/η of the frictionless torque to reel in, and 1/η − 2
     /// to pay out. η is what is left of the back-EMF constant's torque when a pull takes its current; the loss of the gear is
     /// counted as the screw's.
-    pub fn new(settings: &Settings) -> Self {
-        let servo = &settings.servo;
+    pub fn new(servo: &Servo) -> Self {
         let pull_a_per_n = servo.pull_a_per_n / PULL_ALLOWANCE as f32;
         // No more than the servo may drive: a setting far beyond any motor's would leave the integral without digits.
         let dry_a = (servo.friction_a / FRICTION_ALLOWANCE as f32).min(servo.current_a);
@@ -76,7 +75,8 @@ mod tests {
     /// which a screw and gear of 27 % together leave 46 % to pay out.
     #[test]
     fn the_friction_of_the_default_motor_is_fed() {
-        let friction = Friction::<f64>::new(&Settings::table_1().unwrap());
+        let [servo, ..] = Settings::table_1().unwrap().servos;
+        let friction = Friction::<f64>::new(&servo);
         let voltage = |mm_per_s: f64, tension_n: f64| {
             friction.voltage_v(mm_per_s * 1e-3 * f64::from(TICK_S), tension_n)
         };

@@ -105,8 +105,8 @@ pub struct HomingSequence<T> {
     touch_n: T,
     /// A tendon that shows no more than this is slack, N.
     slack_n: T,
-    /// What no motor draws for long, A.
-    current_max_a: T,
+    /// What each motor does not draw for long, A.
+    current_max_a: [T; 3],
     travel_m: T,
     /// How near to its goal a tendon has arrived, m.
     arrived_m: T,
@@ -146,11 +146,11 @@ const ARRIVED_M: f32 = 1e-4;
 
 impl<T: Scalar> HomingSequence<T> {
     /// Starts from where the tendons are, m.
-    /// No motor may draw more than `current_max_a`, A, but for moments, and none comes nearer to its goal than `dead_band_m`, m.
+    /// None of the motors may draw more than its `current_max_a`, A, but for moments, and none comes nearer to its goal than `dead_band_m`, m.
     pub fn new(
         homing: &settings::Homing,
         pulled_m: &[T; 3],
-        current_max_a: T,
+        current_max_a: [T; 3],
         dead_band_m: T,
     ) -> Self {
         let release_m = T::from(homing.release_m);
@@ -215,10 +215,11 @@ impl<T: Scalar> HomingSequence<T> {
         };
         let mut found = None;
         let tendons = self.steady.iter_mut().zip(&mut self.hauling);
+        let tendons = (1..).zip(tendons).zip(&self.current_max_a);
         let shown = measured.tensions_n.iter().zip(&measured.currents_a);
-        for ((number, (steady, hauling)), (&tension, current)) in (1..).zip(tendons).zip(shown) {
+        for (((number, (steady, hauling)), &most_a), (&tension, current)) in tendons.zip(shown) {
             let shows = !(steady.step(tension).abs() <= self.slack_n);
-            let hauls = hauling.update(!(current.abs() <= self.current_max_a));
+            let hauls = hauling.update(!(current.abs() <= most_a));
             if hauls || (shows && number != taut) {
                 found = Some(number);
             }

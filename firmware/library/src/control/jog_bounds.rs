@@ -1,7 +1,7 @@
 //! How far, how hard and how long a motor may be jogged.
 
 use crate::jog::{JOG_TRAVEL_MAX_M, JogDemand, JogRefusal};
-use crate::settings::Settings;
+use crate::settings::{Servo, Settings};
 use leg_model::Scalar;
 
 /// Time in which the voltage of a jog comes up, s: at once, the motor would draw more than any tension of a jog asks for.
@@ -21,14 +21,14 @@ const fn longest_s(way_s: f32) -> f32 {
     JOG_RISE_S + GRACE_S + 2.0 * way_s
 }
 
-/// The bounds of every jog, from the settings.
+/// The bounds of every jog of a motor, from the settings.
 #[derive(Clone, Copy, Debug)]
 pub struct JogBounds<T> {
     /// Voltage from which the monitors take a motor for driven, V.
     voltage_max_v: f32,
     /// Highest tension: that of homing, N.
     pub tension_max_n: T,
-    /// Highest current: that of homing, A.
+    /// Highest current: what the motor draws at that tension, A. It is that of homing, too.
     pub current_max_a: T,
     /// Voltage that this current takes, V, and what the speed induces, V·s/m.
     dropped_v: f32,
@@ -36,9 +36,10 @@ pub struct JogBounds<T> {
 }
 
 impl<T: Scalar> JogBounds<T> {
-    /// Those of the settings; `current_max_a` is that of homing.
-    pub fn new(settings: &Settings, current_max_a: f32) -> Self {
-        let servo = &settings.servo;
+    /// Those of the settings for a motor with this servo.
+    pub fn new(settings: &Settings, servo: &Servo) -> Self {
+        // With half more friction than the settings know.
+        let current_max_a = 1.5 * servo.friction_a + servo.pull_a_per_n * settings.homing.f_max_n;
         Self {
             voltage_max_v: settings.limits.driven_part * servo.current_a * servo.resistance_ohm,
             tension_max_n: settings.homing.f_max_n.into(),
@@ -48,12 +49,18 @@ impl<T: Scalar> JogBounds<T> {
         }
     }
 
-    /// Whether a jog may begin.
-    pub fn check(&self, demand: &JogDemand) -> Result<(), JogRefusal> {
+    /// Those of the motor that a demand is for, if its jog may begin.
+    pub fn select(motors: &[Self; 3], demand: &JogDemand) -> Result<Self, JogRefusal> {
+        let numbered = (1..).zip(motors);
+        let mut own = numbered.filter(|(motor, _)| *motor == demand.motor);
+        let (_, bounds) = own.next().ok_or(JogRefusal::Motor)?;
+        bounds.check(demand)?;
+        Ok(*bounds)
+    }
+
+    fn check(&self, demand: &JogDemand) -> Result<(), JogRefusal> {
         let travel_m = demand.travel_m.abs();
-        if !(1..=3).contains(&demand.motor) {
-            Err(JogRefusal::Motor)
-        } else if !(travel_m > 0.0 && travel_m <= JOG_TRAVEL_MAX_M) {
+        if !(travel_m > 0.0 && travel_m <= JOG_TRAVEL_MAX_M) {
             Err(JogRefusal::Travel)
         } else if !(demand.voltage_v > 0.0 && demand.voltage_v <= self.voltage_max_v) {
             Err(JogRefusal::Voltage)

@@ -39,11 +39,12 @@ impl<T: Scalar> Mechanism<T> {
         let parameters = settings.rig.map(T::from);
         let rig = Rig::new(&parameters)?;
         let (f_min_n, f_max_n) = (T::from(settings.f_min_n), T::from(settings.f_max_n));
+        let band_n = settings.greatest(|servo| servo.f_max_band_n);
         Ok(Self {
             support: Support::new(settings.support, settings.joint.map(T::from))?,
             tendons: TendonParameters::validated_all(&settings.tendons)?,
             // In the last newtons below the maximum tension a motor is slowed down: no target leads there.
-            bounds: TensionBounds::new(f_min_n, f_max_n - settings.servo.f_max_band_n.into())?,
+            bounds: TensionBounds::new(f_min_n, f_max_n - band_n.into())?,
             f_min_n,
             f_max_n,
             leg: Load::new(&rig, T::zero())?,

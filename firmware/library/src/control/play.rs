@@ -21,7 +21,7 @@ const CORRECTED_PART: f32 = 0.02;
 /// other while it is paid out, and the screw stays between them.
 #[derive(Clone, Copy, Debug)]
 pub struct Play<T> {
-    play_m: T,
+    gears: [Gear<T>; 3],
     /// Where the motors were, as how far the tendons would be pulled in, m.
     pulled_m: [T; 3],
     /// How far each motor is behind its screw, m: the play or less.
@@ -29,6 +29,12 @@ pub struct Play<T> {
     /// The lengths that were asked for, m, where they changed their direction last: no farther from the present ones than `turn_m`. None
     /// where no motor is led.
     turned_m: Option<[T; 3]>,
+}
+
+/// What does not change of a gear.
+#[derive(Clone, Copy, Debug)]
+struct Gear<T> {
+    play_m: T,
     /// The change of a length in which a motor crosses the play, m.
     turn_m: T,
     /// The play by that.
@@ -37,15 +43,11 @@ pub struct Play<T> {
     correction: T,
 }
 
-impl<T: Scalar> Play<T> {
-    /// Gears with a play, m, that touch as after reeling in: so homing leaves them.
-    pub fn new(play_m: f32) -> Self {
+impl<T: Scalar> Gear<T> {
+    fn new(play_m: f32) -> Self {
         let turn_m = (play_m / CROSSING_GAIN).max(TURN_MIN_M);
         Self {
             play_m: play_m.into(),
-            pulled_m: [T::zero(); 3],
-            lag_m: [T::zero(); 3],
-            turned_m: None,
             turn_m: turn_m.into(),
             gain: T::from(play_m / turn_m),
             correction: if play_m > 0.0 {
@@ -53,6 +55,18 @@ impl<T: Scalar> Play<T> {
             } else {
                 T::zero()
             },
+        }
+    }
+}
+
+impl<T: Scalar> Play<T> {
+    /// Gears with each its play, m, that touch as after reeling in: so homing leaves them.
+    pub fn new(plays_m: [f32; 3]) -> Self {
+        Self {
+            gears: plays_m.map(Gear::new),
+            pulled_m: [T::zero(); 3],
+            lag_m: [T::zero(); 3],
+            turned_m: None,
         }
     }
 
@@ -68,20 +82,22 @@ impl<T: Scalar> Play<T> {
     pub fn cross_m(&mut self, lengths_m: &[T; 3]) -> [T; 3] {
         let turned_m = self.turned_m.get_or_insert_with(|| {
             let mut turned_m = *lengths_m;
-            for (turned, &lag) in turned_m.iter_mut().zip(&self.lag_m) {
+            let gears = self.lag_m.iter().zip(&self.gears);
+            for (turned, (&lag, gear)) in turned_m.iter_mut().zip(gears) {
                 // Without play both are zero.
                 if lag > T::zero() {
-                    *turned -= lag / self.gain;
+                    *turned -= lag / gear.gain;
                 }
             }
             turned_m
         });
         let mut lag_m = *lengths_m;
-        for (i, (lag, turned)) in lag_m.iter_mut().zip(turned_m).enumerate() {
+        let gears = self.gears.iter().zip(&self.lag_m);
+        for ((lag, turned), (gear, &was)) in lag_m.iter_mut().zip(turned_m).zip(gears) {
             let length_m = *lag;
-            *turned = min(max(*turned, length_m - self.turn_m), length_m);
-            *lag = (length_m - *turned) * self.gain;
-            *turned += (*lag - self.lag_m[i]) * self.correction;
+            *turned = min(max(*turned, length_m - gear.turn_m), length_m);
+            *lag = (length_m - *turned) * gear.gain;
+            *turned += (*lag - was) * gear.correction;
         }
         lag_m
     }
@@ -97,7 +113,7 @@ impl<T: Scalar> Play<T> {
     pub fn follow(&mut self, pulled_m: &[T; 3]) {
         for (i, &pulled) in pulled_m.iter().enumerate() {
             let lag = self.lag_m[i] + (self.pulled_m[i] - pulled);
-            self.lag_m[i] = min(max(lag, T::zero()), self.play_m);
+            self.lag_m[i] = min(max(lag, T::zero()), self.gears[i].play_m);
         }
         self.pulled_m = *pulled_m;
     }
@@ -109,7 +125,7 @@ mod tests {
 
     #[test]
     fn a_screw_stays_while_its_motor_crosses_the_play() {
-        let mut play = Play::<f64>::new(2.0);
+        let mut play = Play::<f64>::new([2.0; 3]);
         for (pulled, lag) in [
             (0.0, 0.0),
             (5.0, 0.0),
@@ -138,7 +154,7 @@ mod tests {
     #[test]
     fn a_motor_is_led_across_the_play_with_the_direction_that_is_asked_for() {
         let turn_m = f64::from(TURN_MIN_M);
-        let mut play = Play::<f64>::new(2e-6);
+        let mut play = Play::<f64>::new([2e-6; 3]);
         for (turns, part) in [
             (0.0, 0.0),
             (-3.0, 0.0),
@@ -166,7 +182,7 @@ mod tests {
         for play_m in [5e-7_f32, 2e-6, 1.4e-5] {
             let turn_m = turn_m.max(f64::from(play_m) / f64::from(CROSSING_GAIN));
             for part in [0.2, 0.5, 0.9] {
-                let mut play = Play::<f64>::new(play_m);
+                let mut play = Play::<f64>::new([play_m; 3]);
                 led_m(&mut play, 0.0);
                 let length_m = part * turn_m;
                 let off_m = |play: &Play<f64>| {
@@ -192,15 +208,15 @@ mod tests {
 
     #[test]
     fn a_motor_is_led_from_where_it_is_and_over_a_large_play_more_slowly() {
-        let mut play = Play::<f64>::new(2e-6);
+        let mut play = Play::<f64>::new([2e-6; 3]);
         play.follow(&[-1e-6; 3]);
         assert!(
             (play.cross_m(&[0.1; 3])[0] - 1e-6).abs() < 1e-12,
             "from where it is"
         );
-        assert_eq!(Play::<f64>::new(0.0).cross_m(&[0.1; 3]), [0.0; 3]);
+        assert_eq!(Play::<f64>::new([0.0; 3]).cross_m(&[0.1; 3]), [0.0; 3]);
         // A large play is crossed over a longer way: six times as far as what is asked for goes the motor.
-        let mut large = Play::<f64>::new(1.4e-5);
+        let mut large = Play::<f64>::new([1.4e-5; 3]);
         assert_eq!(large.cross_m(&[0.1; 3]), [0.0; 3]);
         let lag_m = large.cross_m(&[0.1 + 1e-6; 3]);
         assert!((lag_m[0] - 6e-6).abs() < 1e-9, "{lag_m:?}");

@@ -1,7 +1,7 @@
 //! Bytes on their way to the host.
 
 use crate::frame::{self, MAX_FRAME};
-use crate::host_link::HostReply;
+use crate::host_link::{HostRefusal, HostReply};
 use heapless::Deque;
 
 /// Room for three of the longest frames, and for a report beside them: while two hosts are sent the settings, room for a reply is kept
@@ -31,6 +31,13 @@ impl Outbox {
             // There is room: it was just counted.
             let _ = self.0.push_back(byte);
         }
+    }
+
+    /// Puts in a refusal.
+    // Apart, so that the reply takes stack only as long as it runs.
+    #[inline(never)]
+    pub fn refuse(&mut self, sequence: u16, refusal: HostRefusal) {
+        self.put(sequence, &HostReply::Refused(refusal), 0);
     }
 
     /// Takes the next byte.

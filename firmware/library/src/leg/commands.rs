@@ -6,7 +6,7 @@ use super::mode::Mode;
 use super::shared::Shared;
 use super::{CommandOutcome, Leg};
 use crate::command::{Command, CommandRefusal};
-use crate::control::{Measured, PretensionDemand};
+use crate::control::{JogBounds, Measured, PretensionDemand};
 use crate::jog::JogDemand;
 use crate::set_point::SetPoint;
 use crate::supervisor::{Event, State};
@@ -112,14 +112,14 @@ impl<T: Scalar> Leg<T> {
 
     /// Turns one motor of a disarmed leg.
     fn jog(&mut self, demand: &JogDemand, measured: &Measured<T>) -> Result<(), CommandRefusal> {
-        let checked = self.shared.limits.jog.check(demand);
-        checked.map_err(CommandRefusal::Jog)?;
+        let bounds = JogBounds::select(&self.shared.limits.jogs, demand);
+        let bounds = bounds.map_err(CommandRefusal::Jog)?;
         self.start(Event::Jog, measured)
             .map_err(|refusal| match refusal {
                 CommandRefusal::State(state) => CommandRefusal::NotDisarmed(state),
                 other => other,
             })?;
-        self.mode = Mode::Jogging(Jogging::begin(&mut self.shared, demand, measured));
+        self.mode = Mode::Jogging(Jogging::begin(&mut self.shared, demand, &bounds, measured));
         Ok(())
     }
 

@@ -1,7 +1,7 @@
 //! Jogging: one motor turns at a voltage, the others rest. Whatever ends it, the motor is braked and then switched off.
 
 use super::shared::Shared;
-use crate::control::{Debounce, JOG_RISE_S, Measured, TICK_S, bounds, ticks};
+use crate::control::{Debounce, JOG_RISE_S, JogBounds, Measured, TICK_S, bounds, ticks};
 use crate::jog::{JogDemand, JogEnd, JogReport};
 use leg_model::Scalar;
 
@@ -59,9 +59,13 @@ pub struct Jogging<T> {
 }
 
 impl<T: Scalar> Jogging<T> {
-    /// From where the motors are; the demand has been checked. What it measures is kept in `shared`.
-    pub fn begin(shared: &mut Shared<T>, demand: &JogDemand, measured: &Measured<T>) -> Self {
-        let jog_bounds = &shared.limits.jog;
+    /// From where the motors are, within the bounds of the demand's motor. What it measures is kept in `shared`.
+    pub fn begin(
+        shared: &mut Shared<T>,
+        demand: &JogDemand,
+        jog_bounds: &JogBounds<T>,
+        measured: &Measured<T>,
+    ) -> Self {
         let pays_out = demand.travel_m < 0.0;
         // A tendon that pulls already may be paid out, but no cell may show more for it.
         let taut_n = measured

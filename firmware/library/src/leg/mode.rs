@@ -166,7 +166,7 @@ impl<T: Scalar> Mode<T> {
                 Self::Homing(HomingSequence::new(
                     &limits.homing,
                     &measured.pulled_m,
-                    limits.homing_current_max_a,
+                    limits.jogs.each_ref().map(|jog| jog.current_max_a),
                     limits.dead_band_m,
                 ))
             }

@@ -46,7 +46,7 @@ pub struct Shared<T> {
     /// What the last jog measured.
     pub jog_report: Option<JogReport<T>>,
     pub station: StationLimits<T>,
-    pub friction: Friction<T>,
+    pub friction: [Friction<T>; 3],
 }
 
 /// Slack of each tendon of a relaxed leg whose zero is known, m: more than the servo leaves, and little enough that the tip of a
@@ -59,20 +59,20 @@ pub struct LegLimits<T> {
     pub motion: MotionLimits<T>,
     pub homing: Homing,
     pub homing_f_max_n: T,
-    /// What a motor draws at that, with half more friction than the settings know, A.
-    pub homing_current_max_a: T,
     pub ramp_m_per_s: T,
     pub relax_travel_m: T,
-    /// What a motor leaves of its way, m.
+    /// The most that a motor leaves of its way, m.
     pub dead_band_m: T,
     /// Ticks that this takes at that speed.
     pub relax_ticks: u32,
     /// Lengths of the tendons of a leg that hangs straight down, with their slack, m.
     pub slack_lengths_m: [T; 3],
     pub taut_cycles: u32,
+    /// The fastest that every motor follows, m/s.
     pub servo_m_per_s: T,
     pub tilt_max_sine: T,
-    pub jog: JogBounds<T>,
+    /// Of each motor.
+    pub jogs: [JogBounds<T>; 3],
 }
 
 impl<T: Scalar> LegLimits<T> {
@@ -84,21 +84,21 @@ impl<T: Scalar> LegLimits<T> {
         let mut twisted = None;
         let geometry = mechanism.geometry(&down, T::zero(), &mut twisted);
         let hanging_m = inverse_kinematics(geometry, &down)?.lengths;
-        let homing_current_max_a =
-            1.5 * settings.servo.friction_a + settings.servo.pull_a_per_n * settings.homing.f_max_n;
         Ok(Self {
-            jog: JogBounds::new(settings, homing_current_max_a),
+            jogs: settings
+                .servos
+                .each_ref()
+                .map(|servo| JogBounds::new(settings, servo)),
             slack_lengths_m: (hanging_m.add_scalar(T::from(SLACK_M))).into(),
             motion: MotionLimits::new(&settings.motion),
             homing: settings.homing,
             homing_f_max_n: settings.homing.f_max_n.into(),
-            homing_current_max_a: homing_current_max_a.into(),
             ramp_m_per_s: limits.ramp_m_per_s.into(),
             relax_travel_m: limits.relax_travel_m.into(),
-            dead_band_m: settings.servo.dead_band_m.into(),
+            dead_band_m: settings.greatest(|servo| servo.dead_band_m).into(),
             relax_ticks: ticks(limits.relax_travel_m / limits.ramp_m_per_s),
             taut_cycles: ticks(limits.taut_time_s) / u32::from(CYCLE_TICKS),
-            servo_m_per_s: settings.servo.speed_m_per_s.into(),
+            servo_m_per_s: settings.least(|servo| servo.speed_m_per_s).into(),
             tilt_max_sine: settings.tilt_max_sine.into(),
         })
     }
@@ -131,6 +131,8 @@ impl<T: Scalar> Shared<T> {
     #[inline(always)]
     pub fn new(settings: &Settings, checked: Checked<T>) -> Self {
         let zero = |i: usize| settings.axes[i].unstretched_at_zero_m;
+        let axis = |i: usize| Axis::new(&settings.servos[i]);
+        let friction = |i: usize| Friction::new(&settings.servos[i]);
         let zero_m = match [zero(0), zero(1), zero(2)] {
             [Some(a), Some(b), Some(c)] => Some([a.into(), b.into(), c.into()]),
             _ => None,
@@ -140,9 +142,9 @@ impl<T: Scalar> Shared<T> {
             pretension: PretensionSearch::new(settings.pretension_n.into()),
             targets: TargetGenerator::new(settings),
             damping: SwingDamping::new(settings),
-            play: Play::new(settings.servo.play_m),
+            play: Play::new(settings.servos.each_ref().map(|servo| servo.play_m)),
             stream: Stream::new(StreamLimits::new(settings)),
-            axes: [Axis::new(settings); 3],
+            axes: [axis(0), axis(1), axis(2)],
             compensation: Compensation::Estimated,
             zero_m,
             target: None,
@@ -155,7 +157,7 @@ impl<T: Scalar> Shared<T> {
             mechanism: checked.mechanism,
             jog_report: None,
             station: StationLimits::new(settings),
-            friction: Friction::new(settings),
+            friction: [friction(0), friction(1), friction(2)],
         }
     }
 
@@ -243,8 +245,9 @@ impl<T: Scalar> Shared<T> {
     #[inline(always)]
     pub fn feed_friction(&mut self) {
         let Some(target) = &self.target else { return };
-        for (axis, &tension_n) in self.axes.iter_mut().zip(&target.tensions_n) {
-            axis.feed_friction(&self.friction, tension_n);
+        let asked = self.friction.iter().zip(&target.tensions_n);
+        for (axis, (friction, &tension_n)) in self.axes.iter_mut().zip(asked) {
+            axis.feed_friction(friction, tension_n);
         }
     }
 

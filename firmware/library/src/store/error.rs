@@ -54,7 +54,7 @@ impl core::error::Error for CorruptReason {}
 /// Why a store fails.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StoreError<E> {
-    /// The range is not at least two whole pages inside the flash.
+    /// The range is not at least three whole pages inside the flash.
     Region,
     /// The settings are refused; nothing was written.
     Settings(SettingsError),
@@ -77,7 +77,7 @@ impl<E: Debug> Display for StoreError<E> {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match self {
             Self::Region => {
-                f.write_str("the region is not at least two whole pages inside the flash")
+                f.write_str("the region is not at least three whole pages inside the flash")
             }
             Self::Settings(error) => Display::fmt(error, f),
             Self::Flash(error) => write!(f, "the flash failed: {error:?}"),

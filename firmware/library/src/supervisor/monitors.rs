@@ -48,10 +48,10 @@ impl<T: Scalar> Monitors<T> {
     /// With the limits of the settings.
     pub fn new(settings: &Settings) -> Self {
         let limits = &settings.limits;
+        let axis = |i: usize| (&settings.servos[i], settings.axes[i].m_per_count);
+        let axes = [axis(0), axis(1), axis(2)];
         Self {
-            axes: settings
-                .axes
-                .map(|axis| AxisMonitor::new(settings, axis.m_per_count)),
+            axes: axes.map(|(servo, m_per_count)| AxisMonitor::new(settings, servo, m_per_count)),
             axis_faults: [FaultSet::NONE; 3],
             residual: Debounce::new(ticks(limits.residual_time_s)),
             residual_m: limits.residual_m.into(),

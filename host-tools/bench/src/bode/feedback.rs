@@ -67,11 +67,11 @@ impl Feedback {
     ) -> Result<(BrokenLoop, Vec<(f64, Sweep)>), String> {
         let mut stand = stand.clone();
         if self == Self::Servo {
-            let servo = &file.gains.servo;
+            let servo = &file.gains.servos[place];
             let highest_v = f64::from(servo.current_a * servo.resistance_ohm);
             let at = BreakPoint::Motor {
                 motor: place,
-                supply_v: file.actuator.supply_v,
+                supply_v: file.actuators[place].supply_v,
             };
             let sweeps = VOLTAGE_PARTS.map(|part| (part * highest_v, self.sweep(part * highest_v)));
             return Ok((BrokenLoop { stand, at }, sweeps.into()));

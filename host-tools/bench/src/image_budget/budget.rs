@@ -58,13 +58,13 @@ impl ByteBounds {
 }
 
 const STM32G474_TASKS: &[(&str, ByteBounds)] = &[
-    ("can_bus::serve", ByteBounds::new(17_500, 23_400)),
+    ("can_bus::serve", ByteBounds::new(14_900, 19_900)),
     ("housekeeping::keep_house", ByteBounds::new(1_900, 2_500)),
     (
         "leg_stm32g474::embassy_main",
         ByteBounds::new(14_200, 19_000),
     ),
-    ("serial::serve", ByteBounds::new(17_000, 22_700)),
+    ("serial::serve", ByteBounds::new(14_300, 19_100)),
     (
         "settings_task::keep_settings",
         ByteBounds::new(12_700, 16_900),

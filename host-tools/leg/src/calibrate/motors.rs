@@ -23,8 +23,10 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let rig = load_rig(args.rig.as_deref())?;
-    let counts_per_turn = rig.actuator.counts_per_turn;
-    motor_turn::require_countable(counts_per_turn)?;
+    let counts_per_turn = rig.actuators.map(|actuator| actuator.counts_per_turn);
+    counts_per_turn
+        .into_iter()
+        .try_for_each(motor_turn::require_countable)?;
     let mut connection = args.connection.open(&rig, Purpose::Calibrate, options)?;
     require_drivers_off(&mut connection.operator, "let itself be turned by hand")?;
     let settings = connection.operator.settings()?;
@@ -37,7 +39,7 @@ pub(super) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         turns.push(MotorTurn::new(
             motor,
             [before, after],
-            counts_per_turn,
+            counts_per_turn[motor],
             axis,
         ));
     }

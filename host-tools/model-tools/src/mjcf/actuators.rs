@@ -50,7 +50,7 @@ pub(super) fn motors(leg: &HeldLeg, prefix: &str) -> Vec<Element> {
             .numbers("ctrlrange", &tendon.travel_m)
             .numbers("forcerange", &[0.0, TENSION_MAX_N])
             .text("dyntype", "filterexact")
-            .numbers("dynprm", &[leg.servo_time_s])
+            .numbers("dynprm", &[tendon.servo_time_s])
             .numbers("gainprm", &[stiffness])
             .text("biastype", "affine")
             .numbers(

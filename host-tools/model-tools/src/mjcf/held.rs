@@ -26,6 +26,8 @@ pub struct HeldTendon {
     pub travel_m: [f64; 2],
     /// Length for a count of the encoder, m.
     pub m_per_count: f64,
+    /// Time constant of the motor's servo, s.
+    pub servo_time_s: f64,
 }
 
 /// A loaded leg at rest at a pose.
@@ -53,8 +55,6 @@ pub struct HeldLeg {
     pub joint_damping_nm_s_per_rad: f64,
     /// Damping of a taut tendon, N·s/m.
     pub tendon_damping_n_s_per_m: f64,
-    /// Time constant of a motor's servo, s.
-    pub servo_time_s: f64,
 }
 
 impl HeldLeg {
@@ -83,7 +83,6 @@ impl HeldLeg {
             shape: LegShape::new(rig, query.payload_kg)?,
             joint_damping_nm_s_per_rad: rig.plant.joint_damping_nm_s_per_rad,
             tendon_damping_n_s_per_m: rig.plant.tendon_damping_n_s_per_m,
-            servo_time_s: 1.0 / decimal(rig.gains.servo.position_gain_per_s),
         })
     }
 
@@ -138,6 +137,7 @@ fn tendons(
         // The pose may be beyond the workspace.
         tendon.travel_m = [(length - longest).min(0.0), (length - shortest).max(0.0)];
         tendon.m_per_count = rig.calibration.m_per_count[i].abs();
+        tendon.servo_time_s = 1.0 / decimal(rig.gains.servos[i].position_gain_per_s);
     }
     Ok(tendons)
 }

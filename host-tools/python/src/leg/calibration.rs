@@ -112,8 +112,9 @@ pub(super) fn motors(
     rig: &RigFile,
 ) -> PyResult<impl Serialize + use<>> {
     callable("turn", turn)?;
-    let counts_per_turn = rig.actuator.counts_per_turn;
-    motor_turn::require_countable(counts_per_turn).map_err(refused)?;
+    let counts_per_turn = rig.actuators.map(|actuator| actuator.counts_per_turn);
+    let mut counts = counts_per_turn.into_iter();
+    counts.try_for_each(motor_turn::require_countable).map_err(refused)?;
     require_off(leg, py, "let itself be turned by hand")?;
     let axes = leg.ask(py, Operator::settings)?.axes;
     let mut turns: Vec<Turn> = Vec::new();
@@ -121,7 +122,7 @@ pub(super) fn motors(
         let before = leg.ask(py, Operator::sensors)?.codes.encoder_counts[motor];
         turn.call1((motor + 1,))?;
         let after = leg.ask(py, Operator::sensors)?.codes.encoder_counts[motor];
-        turns.push(MotorTurn::new(motor, [before, after], counts_per_turn, axis).into());
+        turns.push(MotorTurn::new(motor, [before, after], counts_per_turn[motor], axis).into());
     }
     Ok(turns)
 }
@@ -144,7 +145,7 @@ pub(super) fn jog(
         let demand = JogDemand {
             motor,
             travel_m: (travel_mm / 1000.0) as f32,
-            voltage_v: given.unwrap_or_else(|| jog_report::slow_voltage_v(&settings)),
+            voltage_v: given.unwrap_or_else(|| jog_report::slow_voltage_v(motor, &settings)),
         };
         let (report, telemetry) = operator.jog(&demand)?;
         let asked = "jog a motor";

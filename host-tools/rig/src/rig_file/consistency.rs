@@ -5,6 +5,7 @@ mod motors;
 use super::RigFile;
 use crate::actuator::{ACTUATOR, Actuator};
 use crate::gains::{CONTROL, widened};
+use crate::motor_sections::{MOTORS, motor_section};
 use crate::number::{decimal, plain};
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;
@@ -22,17 +23,24 @@ pub(super) struct Warning {
 /// a mechanism.
 pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<Vec<Warning>, TomlError> {
     if root.has(ACTUATOR) {
-        check_actuator(&file.actuator, root)?;
+        for (motor, actuator) in file.actuators.iter().enumerate() {
+            check_actuator(actuator, motor, root)?;
+        }
     }
     if root.has(ACTUATOR) || root.has(CONTROL) {
         check_limits(file, root)?;
-        return motors::check(file, root);
+        let warnings = motors::check(file, root)?;
+        // After what a motor alone cannot do.
+        for motor in 0..file.actuators.len() {
+            check_driven(file, motor, root)?;
+        }
+        return Ok(warnings);
     }
     Ok(Vec::new())
 }
 
 /// What several values of `[actuator]` make up together.
-fn check_actuator(actuator: &Actuator, root: &Section<'_>) -> Result<(), TomlError> {
+fn check_actuator(actuator: &Actuator, motor: usize, root: &Section<'_>) -> Result<(), TomlError> {
     let range = |fields: &[Field], name: &str| {
         let field = fields.iter().find(|field| field.name == name);
         field.map_or([f64::NAN; 2], |field| widened(field).range)
@@ -43,7 +51,7 @@ fn check_actuator(actuator: &Actuator, root: &Section<'_>) -> Result<(), TomlErr
         }
         let [value, low, high] = [value, low, high].map(plain);
         Err(TomlError::new(
-            root.place(&[ACTUATOR]).unwrap_or(0..0),
+            place_of(&[ACTUATOR], motor, root).unwrap_or(0..0),
             format!("{what} comes out as {value}, outside {low} to {high}"),
             format!("correct one of {keys}"),
         ))
@@ -76,7 +84,8 @@ fn check_actuator(actuator: &Actuator, root: &Section<'_>) -> Result<(), TomlErr
 
 /// Limits that have to be below others.
 fn check_limits(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
-    let (actuator, limits) = (&file.actuator, &file.gains.limits);
+    let limits = &file.gains.limits;
+    let [actuator, ..] = &file.actuators;
     let supply = ("actuator.supply_v", actuator.supply_v);
     let supply_range = ("actuator.supply_range_v", actuator.supply_range_v);
     let supply_min = ("control.limits.supply_min_v", decimal(limits.supply_min_v));
@@ -87,15 +96,9 @@ fn check_limits(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
     let reason = "else no sensor sees too high a supply";
     check_below(supply_max, supply_range, reason, root)?;
 
-    let driven = (
-        "control.servo.current_a",
-        decimal(file.gains.servo.current_a),
-    );
-    let current = ("control.limits.current_a", decimal(limits.current_a));
-    let current_range = ("actuator.current_range_a", actuator.current_range_a);
-    let reason = "else the servo drives more than the limit";
-    check_below(driven, current, reason, root)?;
-    check_current_range(current, current_range, root)?;
+    for motor in 0..file.actuators.len() {
+        check_motor_limits(file, motor, root)?;
+    }
 
     let hot = (
         "control.limits.temperature_c",
@@ -108,12 +111,72 @@ fn check_limits(file: &RigFile, root: &Section<'_>) -> Result<(), TomlError> {
     let reason = "else no sensor sees that the drivers are too hot";
     check_below(hot, hot_range, reason, root)?;
 
-    let cell_range = ("actuator.cell_range_n", actuator.cell_range_n[1]);
-    let reason = "else no load cell sees too much tension";
-    check_below(("tendon.f_max_n", file.f_max_n), cell_range, reason, root)?;
     let slack = ("control.limits.slack_n", decimal(limits.slack_n));
     let reason = "else a tendon at the minimum tension is taken as slack";
     check_below(slack, ("tendon.f_min_n", file.f_min_n), reason, root)
+}
+
+/// The same of what a motor, from 0, may have for itself.
+fn check_motor_limits(file: &RigFile, motor: usize, root: &Section<'_>) -> Result<(), TomlError> {
+    let (actuator, limits) = (&file.actuators[motor], &file.gains.limits);
+    let own = |path: &str| own_path(path, motor, root);
+    let [range, cells] = ["actuator.current_range_a", "actuator.cell_range_n"].map(own);
+    let current = ("control.limits.current_a", decimal(limits.current_a));
+    let current_range = (range.as_str(), actuator.current_range_a);
+    check_current_range(current, current_range, root)?;
+
+    let cell_range = (cells.as_str(), actuator.cell_range_n[1]);
+    let reason = "else no load cell sees too much tension";
+    check_below(("tendon.f_max_n", file.f_max_n), cell_range, reason, root)
+}
+
+/// Refuses a servo that drives more than the limit, at the smallest range of a current sensor where neither is given: that bounds
+/// the limit.
+fn check_driven(file: &RigFile, motor: usize, root: &Section<'_>) -> Result<(), TomlError> {
+    let servo = own_path("control.servo.current_a", motor, root);
+    let driven = (servo.as_str(), decimal(file.gains.servos[motor].current_a));
+    let current = (
+        "control.limits.current_a",
+        decimal(file.gains.limits.current_a),
+    );
+    let reason = "else the servo drives more than the limit";
+    let checked = check_below(driven, current, reason, root);
+    checked.map_err(|error| {
+        let ranges_a = file
+            .actuators
+            .iter()
+            .map(|actuator| actuator.current_range_a);
+        let least = ranges_a.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+        let place = least
+            .filter(|_| error.span.is_empty())
+            .and_then(|(motor, _)| place_of(&[ACTUATOR, "current_range_a"], motor, root));
+        match place {
+            Some(span) => TomlError { span, ..error },
+            None => error,
+        }
+    })
+}
+
+/// The path of a key as the file gives it for a motor, from 0: in the motor's own section or in that of all.
+fn own_path(path: &str, motor: usize, root: &Section<'_>) -> String {
+    let Some((section, key)) = path.rsplit_once('.') else {
+        return path.into();
+    };
+    let own = format!("{}.{key}", motor_section(section, motor));
+    match root.place(&own.split('.').collect::<Vec<_>>()) {
+        Some(_) => own,
+        None => path.into(),
+    }
+}
+
+/// The place of a key or a section in a motor's own section or, if it is not there, in that of all.
+fn place_of(path: &[&str], motor: usize, root: &Section<'_>) -> Option<Range<usize>> {
+    let number = MOTORS.get(motor).copied().unwrap_or_default();
+    let own = match path.split_last() {
+        Some((key, section)) if !section.is_empty() => [section, &[number, *key]].concat(),
+        _ => [path, &[number]].concat(),
+    };
+    root.place(&own).or_else(|| root.place(path))
 }
 
 /// Refuses a limit that a current sensor does not reach whose zero is off by the most that the start takes.

@@ -9,22 +9,25 @@ mod servo_loop;
 pub(crate) use servo_loop::ServoLoop;
 
 use crate::actuator::Actuator;
-use crate::gains::{GainChange, index_of, widened};
+use crate::gains::{CONTROL, GainChange, index_of, widened};
+use crate::motor_sections::motor_section;
 use crate::number::{decimal, plain, significant};
 use crate::rig_file::RigFile;
-use leg_firmware::settings::{Gains, SECTIONS};
+use leg_firmware::settings::{Gains, Homing, Limits, SECTIONS, Servo};
 use leg_model::Elasticity;
-use rules::{RULES, Rule};
+use rules::{OfAll, RULES, Rule};
 use serde::Serialize;
 
-/// From what the rules derive.
+/// From what the rules derive: of one motor.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Basis {
     pub actuator: Actuator,
     /// Highest tension allowed, N.
     pub f_max_n: f64,
-    /// The coarsest count of the three axes, m.
+    /// A count of the axis, m.
     pub m_per_count: f64,
+    /// The smallest range of the three current sensors, A.
+    pub least_current_range_a: f64,
     /// The fastest that a tendon moves while the leg turns, m by rad.
     pub lever_m: f64,
     /// The least stiffness of a tendon at the pretension, N/m.
@@ -32,14 +35,40 @@ pub(crate) struct Basis {
 }
 
 impl Basis {
-    pub fn new(file: &RigFile) -> Self {
-        let counts = file.calibration.m_per_count;
-        Self {
-            actuator: file.actuator,
+    /// Of each motor.
+    pub fn new_all(file: &RigFile) -> [Self; 3] {
+        let (lever_m, stiffness_n_per_m) = (lever_m(file), stiffness_n_per_m(file));
+        let ranges_a = file
+            .actuators
+            .iter()
+            .map(|actuator| actuator.current_range_a);
+        let least_current_range_a = ranges_a.fold(f64::INFINITY, f64::min);
+        std::array::from_fn(|motor| Self {
+            actuator: file.actuators[motor],
             f_max_n: file.f_max_n,
-            m_per_count: counts.into_iter().fold(0.0, f64::max),
-            lever_m: lever_m(file),
-            stiffness_n_per_m: stiffness_n_per_m(file),
+            m_per_count: file.calibration.m_per_count[motor],
+            least_current_range_a,
+            lever_m,
+            stiffness_n_per_m,
+        })
+    }
+}
+
+/// The gains that a rule of one motor uses.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MotorGains {
+    pub servo: Servo,
+    pub limits: Limits,
+    pub homing: Homing,
+}
+
+impl MotorGains {
+    /// Of a motor, from 0.
+    pub fn new(gains: &Gains, motor: usize) -> Self {
+        Self {
+            servo: gains.servos[motor],
+            limits: gains.limits,
+            homing: gains.homing,
         }
     }
 }
@@ -80,34 +109,27 @@ impl GivenGains {
         Self(bits.fold(0, |all, bit| all | bit))
     }
 
-    /// Whether the file gives this one.
-    pub(crate) fn has(self, section: &str, key: &str) -> bool {
-        index_of(section, key).is_some_and(|index| self.0 & (1 << index) != 0)
+    /// Whether the file gives this one, of a motor, from 0, where each has its own.
+    pub(crate) fn has(self, section: &str, motor: usize, key: &str) -> bool {
+        index_of(section, motor, key).is_some_and(|index| self.0 & (1 << index) != 0)
     }
 }
 
 /// The gains of a file: the given ones, those that follow from its motors, and the defaults.
-pub(crate) fn gains(basis: &Basis, given: &Gains, which: GivenGains) -> Gains {
+pub(crate) fn gains(bases: &[Basis; 3], given: &Gains, which: GivenGains) -> Gains {
     let mut gains = *given;
     for rule in RULES {
-        if !which.has(rule.section, rule.key) {
-            let value = rule.value(basis, &gains);
-            set(&mut gains, rule, value as f32);
+        let values = rule.values(bases, &gains);
+        for (motor, value) in values.into_iter().enumerate() {
+            let index = index_of(rule.section, motor, rule.key).unwrap_or(usize::MAX);
+            if !which.has(rule.section, motor, rule.key)
+                && let Some(place) = gains.values_mut().nth(index)
+            {
+                *place = value as f32;
+            }
         }
     }
     gains
-}
-
-fn set(gains: &mut Gains, rule: &Rule, value: f32) {
-    let index = index_of(rule.section, rule.key).unwrap_or(usize::MAX);
-    if let Some(place) = gains.values_mut().nth(index) {
-        *place = value;
-    }
-}
-
-fn get(gains: &Gains, rule: &Rule) -> f64 {
-    let index = index_of(rule.section, rule.key).unwrap_or(usize::MAX);
-    gains.values().nth(index).map_or(f64::NAN, decimal)
 }
 
 /// A gain that can be derived.
@@ -126,23 +148,50 @@ pub struct DerivedGain {
     /// Whether the file gives the value in use.
     pub given: bool,
     /// The formula, by the keys that it uses.
-    pub formula: &'static str,
+    pub formula: String,
 }
 
-/// What follows from the motors of a file, in the order in which it is derived.
+/// What follows from the motors of a file, in the order in which it is derived: for each motor where they differ.
 #[must_use]
 pub fn derived_gains(file: &RigFile) -> Vec<DerivedGain> {
-    let basis = Basis::new(file);
-    let derived = |rule: &Rule| DerivedGain {
-        section: format!("control.{}", rule.section),
+    let bases = Basis::new_all(file);
+    let mut all = Vec::new();
+    for rule in RULES {
+        let values = rule.values(&bases, &file.gains);
+        let gain = |motor: usize| derived_gain(file, rule, motor, values[motor]);
+        let [first, second, third] = [0, 1, 2].map(gain);
+        if first == second && second == third {
+            all.push(first);
+            continue;
+        }
+        let own = [first, second, third].into_iter().enumerate();
+        all.extend(own.map(|(motor, gain)| DerivedGain {
+            section: motor_section(&gain.section, motor),
+            ..gain
+        }));
+    }
+    all
+}
+
+fn derived_gain(file: &RigFile, rule: &Rule, motor: usize, derived: f64) -> DerivedGain {
+    let index = index_of(rule.section, motor, rule.key).unwrap_or(usize::MAX);
+    let differ = file
+        .actuators
+        .iter()
+        .any(|other| *other != file.actuators[0]);
+    let formula = match rule.of_all.words() {
+        Some(words) if differ => format!("{}; {words}", rule.formula),
+        _ => rule.formula.into(),
+    };
+    DerivedGain {
+        section: format!("{CONTROL}.{}", rule.section),
         key: rule.key,
         unit: rule.unit(),
-        value: get(&file.gains, rule),
-        derived: decimal(rule.value(&basis, &file.gains) as f32),
-        given: file.given_gains.has(rule.section, rule.key),
-        formula: rule.formula,
-    };
-    RULES.iter().map(derived).collect()
+        value: file.gains.values().nth(index).map_or(f64::NAN, decimal),
+        derived: decimal(derived as f32),
+        given: file.given_gains.has(rule.section, motor, rule.key),
+        formula,
+    }
 }
 
 /// The same as a table for people.
@@ -174,13 +223,25 @@ impl Rule {
     }
 
     fn field(&self) -> leg_firmware::settings::Field<f64> {
-        let fields = SECTIONS.iter().flat_map(|(_, fields)| *fields);
-        let index = index_of(self.section, self.key).unwrap_or(0);
-        fields.map(widened).nth(index).unwrap_or(rules::NO_FIELD)
+        let sections = SECTIONS.iter().filter(|(name, _)| *name == self.section);
+        let fields = sections.flat_map(|(_, fields)| *fields);
+        let mut fields = fields.filter(|field| field.name == self.key);
+        fields.next().map_or(rules::NO_FIELD, widened)
     }
 
-    /// What the formula gives, with two digits and within the range of the key.
-    pub fn value(&self, basis: &Basis, gains: &Gains) -> f64 {
+    /// What the formula gives for each motor: the same where the motors have it together.
+    pub fn values(&self, bases: &[Basis; 3], gains: &Gains) -> [f64; 3] {
+        let value = |motor: usize| self.value(&bases[motor], &MotorGains::new(gains, motor));
+        let values = [0, 1, 2].map(value);
+        match self.of_all {
+            OfAll::Each => values,
+            OfAll::Least => [values.into_iter().fold(f64::INFINITY, f64::min); 3],
+            OfAll::Greatest => [values.into_iter().fold(f64::NEG_INFINITY, f64::max); 3],
+        }
+    }
+
+    /// What the formula gives for a motor, with two digits and within the range of the key.
+    fn value(&self, basis: &Basis, gains: &MotorGains) -> f64 {
         let [low, high] = self.field().range;
         let value = (self.formula_value)(basis, gains);
         let value = if self.exact { value } else { two_digits(value) };
@@ -226,11 +287,11 @@ mod tests {
     #[test]
     fn the_default_actuator_derives_the_default_gains() {
         let rig = RigFile::load(None).unwrap();
-        let basis = Basis::new(&rig);
+        let bases = Basis::new_all(&rig);
         let defaults: Vec<f32> = Gains::default().values().collect();
-        for rule in RULES {
-            let default = defaults[index_of(rule.section, rule.key).unwrap()];
-            let derived = rule.value(&basis, &Gains::default()) as f32;
+        for (motor, rule) in (0..3).flat_map(|motor| RULES.iter().map(move |rule| (motor, rule))) {
+            let default = defaults[index_of(rule.section, motor, rule.key).unwrap()];
+            let derived = rule.values(&bases, &Gains::default())[motor] as f32;
             if rule.exact {
                 assert!((derived / default - 1.0).abs() < 1e-3, "{}", rule.key);
             } else {

@@ -59,7 +59,7 @@ fn read(root: &Section<'_>) -> Result<RigFile, TomlError> {
         .section("workspace", &mechanism_keys::names("workspace"))?
         .number("tilt_deg")?;
     let (support_name, support, critical_n) = support::read(root, tilt_deg)?;
-    let actuator = Actuator::read(root)?;
+    let actuators = Actuator::read_all(root)?;
     let control = gains::read_rig(root)?;
     let mut file = RigFile {
         parameters,
@@ -76,11 +76,11 @@ fn read(root: &Section<'_>) -> Result<RigFile, TomlError> {
         recorded: control.recorded,
         gains: gains::changed(Gains::default(), &control.changes),
         given_gains: GivenGains::new(&control.changes),
-        calibration: Calibration::read(root, &actuator)?,
-        actuator,
+        calibration: Calibration::read(root, &actuators)?,
+        actuators,
         plant: PlantSettings::read(root)?,
     };
-    file.gains = derived::gains(&Basis::new(&file), &file.gains, file.given_gains);
+    file.gains = derived::gains(&Basis::new_all(&file), &file.gains, file.given_gains);
     Ok(file)
 }
 

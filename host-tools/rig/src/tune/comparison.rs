@@ -4,6 +4,7 @@ use super::estimate::UncertainValue;
 use super::motor::MotorConstants;
 use super::swing::Swings;
 use crate::actuator::{ACTUATOR, Actuator};
+use crate::motor_sections::motor_section;
 use crate::number::{plain, significant};
 use crate::plant_settings::{SIMULATION, TRANSVERSE_INERTIA};
 use crate::rig_file::RigFile;
@@ -21,26 +22,30 @@ pub struct ComparisonRow {
     /// As the rig file says or implies; none where that says nothing.
     pub configured: Option<f64>,
     /// The section and the key that hold it; none where it follows from others.
-    pub key: Option<(&'static str, &'static str)>,
+    pub key: Option<(String, &'static str)>,
 }
 
-/// All that was measured, beside what the rig says.
+/// All that was measured at a motor, from 1, beside what the rig says.
 #[must_use]
 pub fn comparison(
-    motor: &MotorConstants,
+    motor: u8,
+    constants: &MotorConstants,
     swings: Option<&Swings>,
     rig: &RigFile,
 ) -> Vec<ComparisonRow> {
-    let mut rows = motor_rows(motor, &rig.actuator);
+    let own = usize::from(motor).saturating_sub(1);
+    let actuator = rig.actuators.get(own).unwrap_or(&Actuator::DEFAULT);
+    let section = motor_section(ACTUATOR, own);
+    let mut rows = motor_rows(constants, actuator, &section);
     rows.extend(
         swings
             .into_iter()
-            .flat_map(|swings| swing_rows(swings, rig)),
+            .flat_map(|swings| swing_rows(swings, rig, &section)),
     );
     rows
 }
 
-fn motor_rows(motor: &MotorConstants, actuator: &Actuator) -> Vec<ComparisonRow> {
+fn motor_rows(motor: &MotorConstants, actuator: &Actuator, section: &str) -> Vec<ComparisonRow> {
     let row = |name: &str, unit, measured, configured| ComparisonRow {
         name: name.into(),
         unit,
@@ -49,7 +54,7 @@ fn motor_rows(motor: &MotorConstants, actuator: &Actuator) -> Vec<ComparisonRow>
         key: None,
     };
     let keyed = |key, unit, measured, configured| ComparisonRow {
-        key: Some((ACTUATOR, key)),
+        key: Some((section.into(), key)),
         ..row(key, unit, measured, configured)
     };
     let m_per_rad = actuator.m_per_rad();
@@ -111,7 +116,7 @@ fn motor_rows(motor: &MotorConstants, actuator: &Actuator) -> Vec<ComparisonRow>
     ]
 }
 
-fn swing_rows(swings: &Swings, rig: &RigFile) -> Vec<ComparisonRow> {
+fn swing_rows(swings: &Swings, rig: &RigFile, section: &str) -> Vec<ComparisonRow> {
     let first_mode = swings.all.iter().map(|swing| ComparisonRow {
         name: format!("first mode at {:.0} N", swing.pretension_n),
         unit: "Hz",
@@ -124,18 +129,20 @@ fn swing_rows(swings: &Swings, rig: &RigFile) -> Vec<ComparisonRow> {
         unit: TRANSVERSE_INERTIA.unit,
         measured: swings.inertia_kg_m2,
         configured: Some(rig.plant.transverse_inertia_kg_m2(&rig.parameters)),
-        key: Some((SIMULATION, TRANSVERSE_INERTIA.name)),
+        key: Some((SIMULATION.into(), TRANSVERSE_INERTIA.name)),
     };
+    // The travels are means of the three axes.
+    let mean = |value: fn(&Actuator) -> f64| rig.actuators.iter().map(value).sum::<f64>() / 3.0;
+    let lead_m = mean(|actuator| actuator.lead_m);
+    let backlash_rad = mean(Actuator::play_m) * std::f64::consts::TAU / lead_m;
     let travels = swings.travels.map(|travels| {
         let [low_n, high_n] = travels.tensions_n;
         let play = ComparisonRow {
             name: "backlash_rad".into(),
             unit: "rad",
-            measured: travels
-                .play_m
-                .scaled(std::f64::consts::TAU / rig.actuator.lead_m),
-            configured: Some(rig.actuator.backlash_rad),
-            key: Some((ACTUATOR, "backlash_rad")),
+            measured: travels.play_m.scaled(std::f64::consts::TAU / lead_m),
+            configured: Some(backlash_rad),
+            key: Some((section.into(), "backlash_rad")),
         };
         let stretch = ComparisonRow {
             name: format!("stretch, {low_n:.0} to {high_n:.0} N"),
@@ -193,8 +200,8 @@ enum Entry {
 
 impl Entry {
     /// The section, the key and what that takes; none where no key holds the quantity.
-    fn new(row: &ComparisonRow) -> Option<(&'static str, &'static str, Self)> {
-        let (section, key) = row.key?;
+    fn new(row: &ComparisonRow) -> Option<(&str, &'static str, Self)> {
+        let (section, key) = row.key.as_ref()?;
         let UncertainValue { value, uncertainty } = row.measured;
         let entry = if !row.measured.is_certain() || value <= 0.0 {
             Self::TooUncertain
@@ -210,9 +217,9 @@ impl Entry {
 
 /// What was measured with certainty and a rig file takes: its section, its key, its value.
 #[must_use]
-pub fn certain_values(rows: &[ComparisonRow]) -> Vec<(&'static str, &'static str, String)> {
+pub fn certain_values(rows: &[ComparisonRow]) -> Vec<(String, &'static str, String)> {
     let values = rows.iter().filter_map(|row| match Entry::new(row)? {
-        (section, key, Entry::Number(number)) => Some((section, key, number)),
+        (section, key, Entry::Number(number)) => Some((section.into(), key, number)),
         _ => None,
     });
     values.collect()

@@ -5,7 +5,7 @@ use super::tuned_leg::TunedLeg;
 use leg_base::jog_report::{Finding, findings};
 use leg_firmware::board::timing::PWM_TOP;
 use leg_firmware::jog::{JOG_TRAVEL_MAX_M, JogDemand, JogEnd, JogReport};
-use leg_firmware::settings::Settings;
+use leg_firmware::settings::{Servo, Settings};
 use leg_firmware::telemetry::Telemetry;
 
 /// How far a tendon is reeled in at the most until it pulls, beyond where the measurement began, m.
@@ -92,7 +92,8 @@ impl JogPlan {
     /// every voltage is one of those: else the motor would not get what it is taken to get.
     #[must_use]
     pub fn new(motor: u8, settings: &Settings, supply_v: f32) -> Self {
-        let servo = &settings.servo;
+        let own = usize::from(motor).saturating_sub(1);
+        let servo = settings.servos.get(own).unwrap_or(&Servo::DEFAULT);
         let friction_v = servo.resistance_ohm * servo.friction_a;
         let at = |speed: f32| friction_v + servo.back_emf_v_s_per_m * speed;
         let bound_v = settings.limits.driven_part * servo.current_a * servo.resistance_ohm;

@@ -37,9 +37,9 @@ impl Plant {
         for _ in 0..self.substeps {
             self.substep();
         }
-        for (encoder, motor) in self.encoders.iter_mut().zip(&self.motors) {
-            let counts_per_turn = self.actuator.counts_per_turn;
-            encoder.follow(motor.angle_rad, counts_per_turn, &self.defects);
+        let turned = self.motors.iter().zip(&self.actuators);
+        for (encoder, (motor, actuator)) in self.encoders.iter_mut().zip(turned) {
+            encoder.follow(motor.angle_rad, actuator.counts_per_turn, &self.defects);
             encoder.jump(&self.defects, &mut self.rng);
         }
         self.cells.advance(tick_s(), &self.defects);
@@ -81,7 +81,8 @@ impl Plant {
         } else if self.defects.has(Defect::SupplySurge) {
             SURGED_V
         } else {
-            self.actuator.supply_v
+            let [actuator, ..] = &self.actuators;
+            actuator.supply_v
         };
     }
 
@@ -129,9 +130,10 @@ impl Plant {
     }
 
     fn substep(&mut self) {
-        let half_s = self.motor_type.half_s;
+        let [first, ..] = &self.motor_types;
+        let half_s = first.half_s;
         self.drift(half_s);
-        self.supply.drive(&mut self.motors, &self.motor_type);
+        self.supply.drive(&mut self.motors, &self.motor_types);
         let configuration = self.dynamics.configuration(&self.leg, self.unstretched_m());
         self.kick_motors(&configuration);
         let sliders = self.motors.map(|motor| motor.slider_m_per_s());
@@ -139,7 +141,7 @@ impl Plant {
         self.dynamics
             .kick(&mut self.leg, &configuration, sliders, 2.0 * half_s, work);
         self.kick_motors(&configuration);
-        self.supply.drive(&mut self.motors, &self.motor_type);
+        self.supply.drive(&mut self.motors, &self.motor_types);
         self.drift(half_s);
     }
 
@@ -147,7 +149,7 @@ impl Plant {
         let (support, inertia) = (&self.dynamics.support, &self.dynamics.inertia);
         self.work.stop_j += self.leg.drift(support, inertia, half_s);
         for motor in &mut self.motors {
-            motor.drift(&self.motor_type);
+            motor.turn(motor.speed * half_s);
         }
     }
 
@@ -156,8 +158,9 @@ impl Plant {
         let pulls = self
             .dynamics
             .pulls_n(configuration, &self.leg.rate, sliders);
-        for (motor, pull) in self.motors.iter_mut().zip(pulls) {
-            motor.kick(&self.motor_type, pull);
+        let kinds = self.motor_types.iter().zip(pulls);
+        for (motor, (kind, pull)) in self.motors.iter_mut().zip(kinds) {
+            motor.kick(kind, pull);
         }
     }
 

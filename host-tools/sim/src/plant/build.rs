@@ -37,15 +37,19 @@ impl Plant {
         let started = start.started(rig, &dynamics.rig, &dynamics.tendons)?;
         dynamics.load = Load::new(&dynamics.rig, started.payload_kg)?;
         dynamics.inertia = bare.loaded(started.payload_kg, dynamics.rig.tip_m());
-        let actuator = &rig.actuator;
+        let [actuator, ..] = &rig.actuators;
         let substeps = settings.substeps.max(1);
+        let half_s = 0.5 * tick_s() / f64::from(substeps);
         let mut plant = Self {
-            actuator: *actuator,
+            actuators: rig.actuators,
             dynamics,
             bare,
             leg: started.leg,
-            motor_type: MotorType::new(actuator, 0.5 * tick_s() / f64::from(substeps)),
-            motors: [Motor::new(actuator); 3],
+            motor_types: rig
+                .actuators
+                .each_ref()
+                .map(|actuator| MotorType::new(actuator, half_s)),
+            motors: rig.actuators.each_ref().map(Motor::new),
             supply: Supply {
                 open_v: actuator.supply_v,
                 resistance_ohm: settings.supply_resistance_ohm,
@@ -53,7 +57,7 @@ impl Plant {
             temperature_c: settings.ambient_c,
             ambient_c: settings.ambient_c,
             encoders: std::array::from_fn(|i| Encoder::new(i, rig.calibration.counts_sign[i])),
-            cells: Cells::new(actuator, settings, seed),
+            cells: Cells::new(&rig.actuators, settings, seed),
             current_offset_a: settings.current_offset_a,
             defects: Defects::default(),
             rng: defect_rng(seed.wrapping_add(1)),

@@ -38,7 +38,7 @@ const PWM_N: f64 = 20.0;
 #[derive(Clone, Debug)]
 pub(super) struct CellDefects {
     rng: Rng,
-    range_n: [f64; 2],
+    ranges_n: [[f64; 2]; 3],
     /// What each cell showed last, N, or to where it has wandered.
     shown_n: [f64; 3],
     /// Turns that the hum is ahead.
@@ -48,12 +48,12 @@ pub(super) struct CellDefects {
 }
 
 impl CellDefects {
-    pub fn new(range_n: [f64; 2], offsets_n: [f64; 3], seed: u64) -> Self {
+    pub fn new(ranges_n: [[f64; 2]; 3], offsets_n: [f64; 3], seed: u64) -> Self {
         let mut rng = defect_rng(seed);
         Self {
             hum_phase: rng.f64(),
             rng,
-            range_n,
+            ranges_n,
             shown_n: offsets_n,
             history_n: offsets_n.map(|offset| [offset; LATE_TICKS]),
         }
@@ -64,7 +64,7 @@ impl CellDefects {
         for i in 0..3 {
             if defects.has(Defect::CellWanders(i)) {
                 let step_n = WANDERING_N * tick_s().sqrt() * gaussian(&mut self.rng);
-                let [low, high] = self.range_n;
+                let [low, high] = self.ranges_n[i];
                 self.shown_n[i] = (self.shown_n[i] + step_n).clamp(low, high);
             }
         }
@@ -91,7 +91,7 @@ impl CellDefects {
             let now_n = own_n(source(i, defects));
             let late_n = std::mem::replace(&mut self.history_n[i][slot], now_n);
             self.shown_n[i] = if defects.has(Defect::CellHum(i)) {
-                self.hum_n(tick)
+                self.hum_n(i, tick)
             } else if defects.has(Defect::CellWanders(i)) {
                 self.shown_n[i]
             } else if defects.has(Defect::CellLate(i)) {
@@ -107,9 +107,10 @@ impl CellDefects {
         self.shown_n
     }
 
-    fn hum_n(&self, tick: u64) -> f64 {
+    fn hum_n(&self, cell: usize, tick: u64) -> f64 {
         let turns = HUM_HZ * tick as f64 * tick_s() + self.hum_phase;
-        let middle_n = 0.5 * (self.range_n[0] + self.range_n[1]);
+        let [low_n, high_n] = self.ranges_n[cell];
+        let middle_n = 0.5 * (low_n + high_n);
         middle_n + HUM_N * libm::sin(TAU * turns)
     }
 }

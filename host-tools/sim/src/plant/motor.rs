@@ -3,7 +3,7 @@
 use super::screw::Screw;
 use leg_rig::actuator::Actuator;
 
-/// What all motors have in common.
+/// What does not change of a motor.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MotorType {
     actuator: Actuator,
@@ -83,11 +83,6 @@ impl Motor {
         } else {
             left.copysign(free)
         };
-    }
-
-    /// Turns on for half a step.
-    pub fn drift(&mut self, kind: &MotorType) {
-        self.turn(self.speed * kind.half_s);
     }
 
     /// Turns by an angle, rad.

@@ -22,7 +22,7 @@ pub(super) fn code(value: f64, [low, high]: [f64; 2]) -> u16 {
 #[derive(Clone, Debug)]
 pub(super) struct Cells {
     rng: Rng,
-    range_n: [f64; 2],
+    ranges_n: [[f64; 2]; 3],
     gains: [f64; 3],
     offsets_n: [f64; 3],
     noise_n: f64,
@@ -32,18 +32,18 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    pub fn new(actuator: &Actuator, settings: &PlantSettings, seed: u64) -> Self {
+    pub fn new(actuators: &[Actuator; 3], settings: &PlantSettings, seed: u64) -> Self {
+        let ranges_n = actuators.each_ref().map(|actuator| actuator.cell_range_n);
+        let offsets_n = settings.cell_offset_n;
         Self {
             rng: Rng::with_seed(seed),
-            range_n: actuator.cell_range_n,
+            ranges_n,
             gains: settings.cell_gain_error.map(|error| 1.0 + error),
-            offsets_n: settings.cell_offset_n,
+            offsets_n,
             noise_n: settings.cell_noise_n,
             drift_n_per_s: settings.cell_drift_n_per_s,
-            defects: CellDefects::new(actuator.cell_range_n, settings.cell_offset_n, seed),
-            codes: settings
-                .cell_offset_n
-                .map(|offset| code(offset, actuator.cell_range_n)),
+            defects: CellDefects::new(ranges_n, offsets_n, seed),
+            codes: std::array::from_fn(|i| code(offsets_n[i], ranges_n[i])),
         }
     }
 
@@ -77,7 +77,7 @@ impl Cells {
             } else if defects.has(Defect::CellDead(i)) {
                 self.codes[i] = 0;
             } else if !defects.has(Defect::CellStuck(i)) && !defects.has(Defect::CellStale(i)) {
-                self.codes[i] = code(shown + noise, self.range_n);
+                self.codes[i] = code(shown + noise, self.ranges_n[i]);
             }
         }
         self.codes

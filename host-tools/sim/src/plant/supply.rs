@@ -23,11 +23,11 @@ impl Supply {
     }
 
     /// Takes the currents on by half a step, at the mean of the voltages before and after it.
-    pub fn drive(&self, motors: &mut [Motor; 3], kind: &MotorType) {
+    pub fn drive(&self, motors: &mut [Motor; 3], kinds: &[MotorType; 3]) {
         let before = self.voltage_v(motors);
-        let tried = motors.map(|motor| motor.next_current_a(kind, before));
+        let tried = std::array::from_fn(|i| motors[i].next_current_a(&kinds[i], before));
         let mean = 0.5 * (before + self.loaded_voltage_v(motors, tried));
-        for motor in motors {
+        for (motor, kind) in motors.iter_mut().zip(kinds) {
             motor.current_a = motor.next_current_a(kind, mean);
         }
     }

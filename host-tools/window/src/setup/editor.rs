@@ -243,10 +243,10 @@ impl Editor {
         control_settings::settings(rig, &rig.gains, None)
     }
 
-    /// Counts of an encoder in a turn of its motor.
+    /// Counts of each encoder in a turn of its motor.
     #[must_use]
-    pub const fn counts_per_turn(&self) -> f64 {
-        self.now.rig.actuator.counts_per_turn
+    pub fn counts_per_turn(&self) -> [f64; 3] {
+        self.now.rig.actuators.map(|actuator| actuator.counts_per_turn)
     }
 
     /// The row of a setting as it was loaded.

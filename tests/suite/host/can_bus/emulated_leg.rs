@@ -4,6 +4,7 @@ use super::bus::{Damage, NodeId, SimulatedBus};
 use super::port::BusPort;
 use leg_firmware::can::{Assembler, CanFrame, Identifier, LegAddress, Segmenter};
 use leg_firmware::command::Command;
+use leg_firmware::frame::MAX_FRAME;
 use leg_firmware::supervisor::State;
 use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{Goal, HostIdentity, Operator};
@@ -33,7 +34,10 @@ impl LegOnBus {
     fn new(damage: Damage) -> Rc<RefCell<Self>> {
         let mut bus = SimulatedBus::new(damage, 1);
         let to_leg = Rc::new(RefCell::new(VecDeque::new()));
-        let (inbox, mut assembler) = (Rc::clone(&to_leg), Assembler::<1024>::leg_receiver(LEG));
+        let (inbox, mut assembler) = (
+            Rc::clone(&to_leg),
+            Assembler::<MAX_FRAME>::leg_receiver(LEG),
+        );
         let node = bus.attach(Box::new(move |frame| {
             let link_frame = assembler.push(frame).link_frame.unwrap_or_default();
             inbox.borrow_mut().extend(link_frame);

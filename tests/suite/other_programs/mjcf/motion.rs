@@ -154,7 +154,7 @@ fn a_control_reels_its_tendon_in() {
     assert!((expected_m - case.target_m()).norm() > 1e-3);
     case.assert_close(found, "tip_m", expected_m.as_slice(), STATICS_M);
     let servo_time_s = found["servo_time_s"].as_f64().unwrap();
-    assert!((servo_time_s * f64::from(rig.gains.servo.position_gain_per_s) - 1.0).abs() < 1e-6);
+    assert!((servo_time_s * f64::from(rig.gains.servos[0].position_gain_per_s) - 1.0).abs() < 1e-6);
     let reeled = found["reeled_m"].as_array().unwrap();
     assert_eq!(reeled.len(), 3);
     for (times, reeled_m) in (1..).zip(reeled) {

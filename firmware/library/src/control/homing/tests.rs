@@ -24,7 +24,7 @@ impl Leg {
         let zero = [0.0; 3];
         Self {
             mechanism: Mechanism::new(&settings).unwrap(),
-            homing: HomingSequence::new(&settings.homing, &zero, CURRENT_MAX_A, 0.0),
+            homing: HomingSequence::new(&settings.homing, &zero, [CURRENT_MAX_A; 3], 0.0),
             measured: Measured {
                 pulled_m: zero,
                 tensions_n: zero,

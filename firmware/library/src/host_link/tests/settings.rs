@@ -86,11 +86,11 @@ fn a_driven_leg_keeps_its_settings() {
 fn refused_settings_are_named_and_none_of_them_is_in_use() {
     let mut line = Line::identified();
     let mut settings = others();
-    settings.servo.duty_max = f32::NAN;
+    settings.servos[1].duty_max = f32::NAN;
     let error = SettingsError::OutOfRange(OutOfRange {
         section: 1,
         field: 8,
-        axis: 0,
+        axis: 2,
     });
     assert_eq!(
         line.ask(&HostRequest::SetSettings(settings)),

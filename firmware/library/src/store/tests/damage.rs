@@ -9,17 +9,16 @@ use crate::store::sealed::SEAL;
 use crate::store::{KEY, PAGE_SIZE, RECORD_MAX, WORD_SIZE};
 use core::ops::Range;
 
-/// Where a large record and its header lie, in bits; the page begins with its seal and its state, and a record is filled up
-/// to whole words.
+/// Where a large record and its header lie, in bits: each in a page, which begins with its seal and its state.
 fn record(number: usize) -> Range<usize> {
     let length = WORD_SIZE + RECORD_MAX;
-    let start = 2 * WORD_SIZE + number * length.next_multiple_of(WORD_SIZE);
+    let start = number * PAGE_SIZE + 2 * WORD_SIZE;
     8 * start..8 * (start + length)
 }
 
 #[test]
 fn every_flipped_bit_of_the_only_record_is_found() {
-    let mut flash = Mock::new(2);
+    let mut flash = Mock::new(3);
     keep(&mut flash, &large(0));
     for bit in record(0) {
         flash.flip(bit);
@@ -35,7 +34,7 @@ fn every_flipped_bit_of_the_only_record_is_found() {
 
 #[test]
 fn a_flipped_bit_of_the_newest_record_leaves_the_older_one() {
-    let mut flash = Mock::new(2);
+    let mut flash = Mock::new(3);
     keep(&mut flash, &large(0));
     keep(&mut flash, &large(1));
     for bit in record(1) {
@@ -105,7 +104,7 @@ fn after_a_flipped_bit_settings_can_be_saved() {
 
 #[test]
 fn a_damaged_header_may_claim_any_length() {
-    let mut flash = Mock::new(2);
+    let mut flash = Mock::new(3);
     keep(&mut flash, &small(0));
     let long: &[u8] = &[7; 1500];
     let mut store = store(&mut flash);
@@ -120,16 +119,18 @@ fn a_damaged_header_may_claim_any_length() {
 
 #[test]
 fn clearing_ends_what_a_word_that_refuses_writes_has_begun() {
-    let mut flash = Mock::new(2);
-    keep(&mut flash, &large(0));
-    let free = record(1).start / 8;
+    let mut flash = Mock::new(3);
+    keep(&mut flash, &small(0));
+    let erased = |at: &usize| flash.bytes[*at..][..2 * WORD_SIZE] == [0xff; 2 * WORD_SIZE];
+    let words = (0..PAGE_SIZE).step_by(WORD_SIZE);
+    let free = words.into_iter().find(erased).unwrap_or_default();
     flash.refuse(free);
     let refused = FlashFailure::NotErased(free as u32);
-    assert_eq!(save(&mut flash, &large(1)), Err(StoreError::Flash(refused)));
-    assert_holds(&mut flash, &large(0));
+    assert_eq!(save(&mut flash, &small(1)), Err(StoreError::Flash(refused)));
+    assert_holds(&mut flash, &small(0));
     assert_eq!(clear(&mut flash), Ok(()));
     assert_eq!(load(&mut flash), Ok(Loaded::Empty));
-    keep(&mut flash, &large(1));
+    keep(&mut flash, &small(1));
 }
 
 fn noise(pages: usize, random: &mut Random) -> Vec<u8> {

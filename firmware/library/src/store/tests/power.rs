@@ -81,8 +81,8 @@ fn a_cut_save_leaves_old_or_new() {
 #[test]
 fn a_cut_save_of_small_settings_leaves_old_or_new() {
     for tear in TEARS {
-        cut_every_save(2, small, tear);
-        cut_every_save(2, mixed, tear);
+        cut_every_save(3, small, tear);
+        cut_every_save(3, mixed, tear);
     }
 }
 
@@ -107,7 +107,7 @@ fn a_first_save_that_is_cut_leaves_no_settings_or_new_ones() {
 fn power_may_fail_again_and_again() {
     for seed in 0..20 {
         let mut random = Random(seed);
-        let mut flash = Mock::new(2 + seed as usize % 3);
+        let mut flash = Mock::new(3 + seed as usize % 3);
         let mut kept = mixed(0);
         keep(&mut flash, &kept);
         for number in 1..300 {
@@ -131,7 +131,7 @@ fn power_may_fail_again_and_again() {
 #[test]
 fn a_clearing_that_is_cut_leaves_old_settings_or_none() {
     for tear in TEARS {
-        let mut flash = Mock::new(2);
+        let mut flash = Mock::new(3);
         for number in 0..8 {
             let old = large(number);
             keep(&mut flash, &old);

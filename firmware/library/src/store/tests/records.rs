@@ -28,7 +28,7 @@ fn changed(settings: &Settings, change: impl Fn(&mut Vec<u8>)) -> Vec<u8> {
 
 /// What is loaded where such a record is stored.
 fn loaded(record: &[u8]) -> Loaded {
-    let mut flash = Mock::new(2);
+    let mut flash = Mock::new(3);
     let mut store = store(&mut flash);
     let stored = store.map.store_item(&mut store.buffer, &KEY, &record);
     assert_eq!(block_on(stored), Ok(()));

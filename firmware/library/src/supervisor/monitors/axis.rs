@@ -3,7 +3,7 @@
 use super::MonitorInput;
 use crate::control::{AxisView, CYCLE_S, CYCLE_TICKS, Debounce, LowPass, TICK_S, ticks};
 use crate::sensors::CODE_MAX;
-use crate::settings::Settings;
+use crate::settings::{Servo, Settings};
 use crate::supervisor::{Fault, FaultSet};
 use leg_model::Scalar;
 
@@ -102,8 +102,8 @@ struct AxisBounds<T> {
 }
 
 impl<T: Scalar> AxisMonitor<T> {
-    pub fn new(settings: &Settings, m_per_count: f32) -> Self {
-        let (limits, servo) = (&settings.limits, &settings.servo);
+    pub fn new(settings: &Settings, servo: &Servo, m_per_count: f32) -> Self {
+        let limits = &settings.limits;
         let f_max_n = settings.f_max_n;
         let hard_v = limits.driven_part * servo.current_a * servo.resistance_ohm;
         // What the maximum tension asks of a warm winding holds a motor, and need not turn it. One that is jammed gets nearly all that

@@ -1,12 +1,15 @@
 //! Whether the motors can do what the settings ask of them.
 
-use super::{RigFile, Warning};
+use super::{RigFile, Warning, place_of};
 use crate::actuator::ACTUATOR;
 use crate::number::{decimal, plain};
 use crate::rig_file::derived::rules::{BORNE_S, MARGIN_DEG, pulling_a, reachable_m_per_s};
-use crate::rig_file::derived::{Basis, ServoLoop, two_digits, two_digits_above, two_digits_below};
+use crate::rig_file::derived::{
+    Basis, MotorGains, ServoLoop, two_digits, two_digits_above, two_digits_below,
+};
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;
+use leg_firmware::settings::SERVO;
 use std::ops::Range;
 
 /// Phase margin below which a servo rings whatever the motor, degrees.
@@ -25,49 +28,81 @@ const MOTOR_KEYS: [&str; 6] = [
     "lead_m",
 ];
 
-/// What all checks use.
-struct Motors<'a> {
+/// What all checks of a motor use.
+struct Motor<'a> {
     file: &'a RigFile,
     root: &'a Section<'a>,
+    /// From 0.
+    motor: usize,
+    /// What a message begins with.
+    named: String,
     basis: Basis,
+    gains: MotorGains,
     warnings: Vec<Warning>,
 }
 
+/// Checks each motor, or one of them if all are the same.
 pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<Vec<Warning>, TomlError> {
-    let mut motors = Motors {
-        file,
-        root,
-        basis: Basis::new(file),
-        warnings: Vec::new(),
+    let mut warnings = Vec::new();
+    let bases = Basis::new_all(file);
+    let same = |motor: usize| {
+        file.actuators[motor] == file.actuators[0]
+            && file.gains.servos[motor] == file.gains.servos[0]
+            && file.calibration.m_per_count[motor] == file.calibration.m_per_count[0]
     };
-    motors.check_current()?;
-    motors.check_heat()?;
-    motors.check_speed()?;
-    motors.check_counts()?;
-    motors.check_bandwidth()?;
-    Ok(motors.warnings)
+    let all_same = same(1) && same(2);
+    for (motor, basis) in bases.into_iter().enumerate() {
+        if motor > 0 && all_same {
+            break;
+        }
+        let mut checked = Motor {
+            file,
+            root,
+            motor,
+            named: if all_same {
+                String::new()
+            } else {
+                format!("motor {}: ", motor + 1)
+            },
+            basis,
+            gains: MotorGains::new(&file.gains, motor),
+            warnings: Vec::new(),
+        };
+        checked.check_current()?;
+        checked.check_heat()?;
+        checked.check_speed()?;
+        checked.check_counts()?;
+        checked.check_bandwidth()?;
+        warnings.extend(checked.warnings);
+    }
+    Ok(warnings)
 }
 
-impl Motors<'_> {
+impl Motor<'_> {
     /// The place of the first of the keys that the file gives.
     fn place(&self, keys: &[&str]) -> Range<usize> {
-        let path = |key: &&str| self.root.place(&key.split('.').collect::<Vec<_>>());
+        let path =
+            |key: &&str| place_of(&key.split('.').collect::<Vec<_>>(), self.motor, self.root);
         let given = keys.iter().find_map(path);
-        given.or(self.root.place(&[ACTUATOR])).unwrap_or(0..0)
+        given
+            .or_else(|| place_of(&[ACTUATOR], self.motor, self.root))
+            .unwrap_or(0..0)
     }
 
     fn refuse<T>(&self, keys: &[&str], sentence: String, help: String) -> Result<T, TomlError> {
+        let sentence = [self.named.as_str(), &sentence].concat();
         Err(TomlError::new(self.place(keys), sentence, help))
     }
 
     fn warn(&mut self, keys: &[&str], text: String) {
         let span = self.place(keys);
+        let text = [self.named.as_str(), &text].concat();
         self.warnings.push(Warning { span, text });
     }
 
     /// The current that the servo may drive has to pull the highest tension, and the supply has to drive it.
     fn check_current(&self) -> Result<(), TomlError> {
-        let gains = &self.file.gains;
+        let gains = &self.gains;
         let pulling_a = pulling_a(self.file.f_max_n, gains);
         let needed = plain(two_digits_above(pulling_a));
         let f_max = plain(self.file.f_max_n);
@@ -78,7 +113,7 @@ impl Motors<'_> {
         );
         if limit_a < pulling_a {
             let range = "actuator.current_range_a";
-            let given = self.file.given_gains.has("servo", "current_a");
+            let given = self.file.given_gains.has(SERVO, self.motor, "current_a");
             let range_a = two_digits_above(pulling_a / 0.45);
             let help = if given {
                 format!("give `control.servo.current_a` at least {needed}, or lower `f_max_n`")
@@ -130,7 +165,7 @@ impl Motors<'_> {
 
     /// Where the file says what the winding bears.
     fn check_heat(&mut self) -> Result<(), TomlError> {
-        let (actuator, gains) = (self.basis.actuator, self.file.gains);
+        let (actuator, gains) = (self.basis.actuator, self.gains);
         let limit_a = decimal(gains.servo.current_a);
         let monitored_s = decimal(gains.limits.disagreement_time_s);
         let keys = ["control.servo.current_a", "actuator.continuous_a"];
@@ -171,7 +206,7 @@ impl Motors<'_> {
 
     /// The speed that the servo may ask for.
     fn check_speed(&mut self) -> Result<(), TomlError> {
-        let gains = &self.file.gains;
+        let gains = &self.gains;
         let servo = &gains.servo;
         let speed = decimal(servo.speed_m_per_s);
         let reachable = reachable_m_per_s(&self.basis, gains);
@@ -197,7 +232,7 @@ impl Motors<'_> {
             );
             self.warn(&keys, text);
         }
-        let turn = decimal(gains.motion.speed_rad_per_s);
+        let turn = decimal(self.file.gains.motion.speed_rad_per_s);
         if turn * self.basis.lever_m > 1.001 * speed {
             let fit = 0.9 * speed / self.basis.lever_m;
             let text = format!(
@@ -216,7 +251,7 @@ impl Motors<'_> {
     fn check_counts(&mut self) -> Result<(), TomlError> {
         let (count_m, band_m) = (
             self.basis.m_per_count,
-            decimal(self.file.gains.servo.dead_band_m),
+            decimal(self.gains.servo.dead_band_m),
         );
         let keys = [
             "control.servo.dead_band_m",
@@ -266,11 +301,11 @@ impl Motors<'_> {
         // What a board was set to says nothing of inertia and inductance.
         let known = MOTOR_KEYS
             .iter()
-            .any(|key| self.root.place(&[ACTUATOR, key]).is_some());
-        if !known && given.has("servo", "back_emf_v_s_per_m") {
+            .any(|key| place_of(&[ACTUATOR, key], self.motor, self.root).is_some());
+        if !known && given.has(SERVO, self.motor, "back_emf_v_s_per_m") {
             return Ok(());
         }
-        let servo = &self.file.gains.servo;
+        let servo = &self.gains.servo;
         let servo_loop = ServoLoop::new(&self.basis.actuator, servo);
         let margin = servo_loop.phase_margin_deg(servo);
         if margin >= MARGIN_DEG - 1.0 {

@@ -1,8 +1,8 @@
 //! The rules by which gains and limits follow from the motors.
 
-use super::{Basis, ServoLoop, two_digits_below};
+use super::{Basis, MotorGains, ServoLoop, two_digits_below};
 use leg_firmware::control::{FRICTION_ALLOWANCE, PULL_ALLOWANCE};
-use leg_firmware::settings::{Field, Gains};
+use leg_firmware::settings::Field;
 use std::f64::consts::TAU;
 
 /// How one gain is derived.
@@ -10,11 +10,35 @@ pub(crate) struct Rule {
     /// The section below `control`.
     pub section: &'static str,
     pub key: &'static str,
+    /// What of the three motors it is.
+    pub of_all: OfAll,
     /// The formula as a user reads it, by the keys that it uses.
     pub formula: &'static str,
     /// Whether the number stands as it comes out; else with two digits.
     pub exact: bool,
-    pub formula_value: fn(&Basis, &Gains) -> f64,
+    pub formula_value: fn(&Basis, &MotorGains) -> f64,
+}
+
+/// What of the three motors a rule is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum OfAll {
+    /// Each motor has its own.
+    Each,
+    /// What the motor allows that allows the least.
+    Least,
+    /// What the motor asks that asks the most.
+    Greatest,
+}
+
+impl OfAll {
+    /// As a user reads it, where the motors differ.
+    pub const fn words(self) -> Option<&'static str> {
+        match self {
+            Self::Each => None,
+            Self::Least => Some("the least of the three motors"),
+            Self::Greatest => Some("the greatest of the three motors"),
+        }
+    }
 }
 
 /// For a rule whose key is none, which a test excludes.
@@ -27,10 +51,11 @@ pub(crate) const BORNE_S: f64 = 1.0;
 pub(crate) const MARGIN_DEG: f64 = 45.0;
 
 macro_rules! rules {
-    ($($section:ident.$key:ident = $formula:literal $($exact:ident)?, $value:expr;)*) => {
+    ($($of_all:ident $section:ident.$key:ident = $formula:literal $($exact:ident)?, $value:expr;)*) => {
         pub(crate) const RULES: &[Rule] = &[$(Rule {
             section: stringify!($section),
             key: stringify!($key),
+            of_all: OfAll::$of_all,
             formula: $formula,
             exact: rules!(@exact $($exact)?),
             formula_value: $value,
@@ -41,51 +66,51 @@ macro_rules! rules {
 }
 
 rules! {
-    servo.resistance_ohm = "resistance_ohm" exact,
+    Each servo.resistance_ohm = "resistance_ohm" exact,
         |basis, _| basis.actuator.resistance_ohm;
-    servo.back_emf_v_s_per_m = "2π gear_ratio torque_constant_nm_per_a / lead_m" exact,
+    Each servo.back_emf_v_s_per_m = "2π gear_ratio torque_constant_nm_per_a / lead_m" exact,
         |basis, _| basis.actuator.back_emf_v_s_per_m();
-    servo.friction_a = "2.6 friction_nm / torque_constant_nm_per_a, at least 0.005 current_range_a",
+    Each servo.friction_a = "2.6 friction_nm / torque_constant_nm_per_a, at least 0.005 current_range_a",
         |basis, _| friction_a(basis);
-    servo.pull_a_per_n = "1.05 lead_m / (2π gear_ratio gear_efficiency screw_efficiency torque_constant_nm_per_a)",
+    Each servo.pull_a_per_n = "1.05 lead_m / (2π gear_ratio gear_efficiency screw_efficiency torque_constant_nm_per_a)",
         |basis, _| PULL_ALLOWANCE * basis.actuator.pull_a_per_n();
-    servo.current_a = "2 (friction_a + pull_a_per_n f_max_n) / driven_part, at most 0.45 current_range_a and what continuous_a and thermal_time_s bear for 1 s",
+    Each servo.current_a = "2 (friction_a + pull_a_per_n f_max_n) / driven_part, at most 0.45 current_range_a and what continuous_a and thermal_time_s bear for 1 s",
         current_a;
-    servo.speed_m_per_s = "0.95 (duty_max supply_v - resistance_ohm (friction_a + pull_a_per_n f_max_n)) / back_emf_v_s_per_m, at most 0.03",
+    Each servo.speed_m_per_s = "0.95 (duty_max supply_v - resistance_ohm (friction_a + pull_a_per_n f_max_n)) / back_emf_v_s_per_m, at most 0.03",
         |basis, gains| (0.95 * reachable_m_per_s(basis, gains)).min(0.03);
-    servo.position_gain_per_s = "the highest at which speed and position loop keep a phase margin of 45°, at most 120",
+    Each servo.position_gain_per_s = "the highest at which speed and position loop keep a phase margin of 45°, at most 120",
         |basis, gains| two_digits_below(ServoLoop::new(&basis.actuator, &gains.servo).highest_gain_per_s(MARGIN_DEG)).min(120.0);
-    servo.speed_gain_v_s_per_m = "4.5 position_gain_per_s × 2π gear_ratio resistance_ohm inertia_kg_m2 / (torque_constant_nm_per_a lead_m)",
+    Each servo.speed_gain_v_s_per_m = "4.5 position_gain_per_s × 2π gear_ratio resistance_ohm inertia_kg_m2 / (torque_constant_nm_per_a lead_m)",
         |basis, gains| ServoLoop::speed_gain_v_s_per_m(&basis.actuator, f64::from(gains.servo.position_gain_per_s));
-    servo.integral_time_s = "2.4 / position_gain_per_s",
+    Each servo.integral_time_s = "2.4 / position_gain_per_s",
         |_, gains| ServoLoop::integral_time_s(f64::from(gains.servo.position_gain_per_s));
-    servo.play_m = "backlash_rad lead_m / 2π" exact,
+    Each servo.play_m = "backlash_rad lead_m / 2π" exact,
         |basis, _| basis.actuator.play_m();
-    servo.dead_band_m = "1.8 counts, at least 2e-7: lead_m / (gear_ratio counts_per_turn) is a count",
+    Each servo.dead_band_m = "1.8 counts, at least 2e-7: lead_m / (gear_ratio counts_per_turn) is a count",
         |basis, _| (1.8 * basis.m_per_count).max(2e-7);
-    motion.speed_rad_per_s = "0.9 servo.speed_m_per_s / the longest lever of a tendon, at most 0.8",
+    Least motion.speed_rad_per_s = "0.9 servo.speed_m_per_s / the longest lever of a tendon, at most 0.8",
         |basis, gains| (0.9 * f64::from(gains.servo.speed_m_per_s) / basis.lever_m.max(1e-9)).min(0.8);
-    motion.acceleration_rad_per_s2 = "what a quarter of servo.current_a gives the rotor / the longest lever of a tendon, at most 4",
+    Least motion.acceleration_rad_per_s2 = "what a quarter of servo.current_a gives the rotor / the longest lever of a tendon, at most 4",
         |basis, gains| (rotor_m_per_s2(basis, 0.25 * f64::from(gains.servo.current_a)) / basis.lever_m.max(1e-9)).min(4.0);
-    homing.speed_m_per_s = "servo.speed_m_per_s / 3, at most 0.01 and what servo.current_a gives the rotor in 5 ms",
+    Least homing.speed_m_per_s = "servo.speed_m_per_s / 3, at most 0.01 and what servo.current_a gives the rotor in 5 ms",
         |basis, gains| (f64::from(gains.servo.speed_m_per_s) / 3.0).min(0.01).min(started_m_per_s(basis, gains));
-    motion.pretension_rate_n_per_s = "homing.speed_m_per_s / 2 × the least stiffness of a tendon at its pretension, at most 120",
+    Least motion.pretension_rate_n_per_s = "homing.speed_m_per_s / 2 × the least stiffness of a tendon at its pretension, at most 120",
         |basis, gains| (0.5 * f64::from(gains.homing.speed_m_per_s) * basis.stiffness_n_per_m).min(120.0);
-    limits.ramp_m_per_s = "homing.speed_m_per_s / 2",
+    Least limits.ramp_m_per_s = "homing.speed_m_per_s / 2",
         |_, gains| 0.5 * f64::from(gains.homing.speed_m_per_s);
-    limits.taut_time_s = "1.5 homing.release_m / ramp_m_per_s, at least 5 and at most 60",
+    Greatest limits.taut_time_s = "1.5 homing.release_m / ramp_m_per_s, at least 5 and at most 60",
         |_, gains| taut_time_s(gains);
-    limits.current_a = "2 servo.current_a, at most 0.9 current_range_a",
-        |basis, gains| (2.0 * f64::from(gains.servo.current_a)).min(two_digits_below(0.9 * basis.actuator.current_range_a));
-    limits.disagreement_a = "servo.current_a / 2",
+    Greatest limits.current_a = "2 servo.current_a, at most 0.9 current_range_a",
+        |basis, gains| (2.0 * f64::from(gains.servo.current_a)).min(two_digits_below(0.9 * basis.least_current_range_a));
+    Greatest limits.disagreement_a = "servo.current_a / 2",
         |_, gains| 0.5 * f64::from(gains.servo.current_a);
-    limits.still_time_s = "4 times what driven_part current_a needs to turn the rotor by a count, at least 0.005",
+    Greatest limits.still_time_s = "4 times what driven_part current_a needs to turn the rotor by a count, at least 0.005",
         |basis, gains| (4.0 * first_count_s(basis, gains)).max(0.005);
-    limits.reversed_time_s = "0.9 resistance_ohm inertia_kg_m2 / torque_constant_nm_per_a², at least 0.005",
+    Greatest limits.reversed_time_s = "0.9 resistance_ohm inertia_kg_m2 / torque_constant_nm_per_a², at least 0.005",
         |basis, _| (0.9 * basis.actuator.mechanical_time_s()).max(0.005);
-    limits.supply_min_v = "0.75 supply_v",
+    Greatest limits.supply_min_v = "0.75 supply_v",
         |basis, _| 0.75 * basis.actuator.supply_v;
-    limits.supply_max_v = "1.25 supply_v",
+    Greatest limits.supply_max_v = "1.25 supply_v",
         |basis, _| 1.25 * basis.actuator.supply_v;
 }
 
@@ -97,13 +122,13 @@ fn friction_a(basis: &Basis) -> f64 {
 }
 
 /// The current of a pull at the highest tension, A.
-pub(crate) fn pulling_a(f_max_n: f64, gains: &Gains) -> f64 {
+pub(crate) fn pulling_a(f_max_n: f64, gains: &MotorGains) -> f64 {
     let servo = &gains.servo;
     f64::from(servo.friction_a) + f64::from(servo.pull_a_per_n) * f_max_n
 }
 
 /// Twice the current of the hardest pull still counts as not driven: a motor that pulls is not taken for one that is jammed.
-fn current_a(basis: &Basis, gains: &Gains) -> f64 {
+fn current_a(basis: &Basis, gains: &MotorGains) -> f64 {
     let asked = 2.0 * pulling_a(basis.f_max_n, gains) / f64::from(gains.limits.driven_part);
     // Rounded down first: what comes out is rounded to the nearest, and must not be beyond.
     let seen = two_digits_below(0.45 * basis.actuator.current_range_a);
@@ -115,7 +140,7 @@ fn current_a(basis: &Basis, gains: &Gains) -> f64 {
 }
 
 /// How fast a motor pulls its tendon at the highest tension and the nominal supply, m/s.
-pub(crate) fn reachable_m_per_s(basis: &Basis, gains: &Gains) -> f64 {
+pub(crate) fn reachable_m_per_s(basis: &Basis, gains: &MotorGains) -> f64 {
     let servo = &gains.servo;
     let dropped_v = f64::from(servo.resistance_ohm) * pulling_a(basis.f_max_n, gains);
     let left_v = f64::from(servo.duty_max) * basis.actuator.supply_v - dropped_v;
@@ -124,7 +149,7 @@ pub(crate) fn reachable_m_per_s(basis: &Basis, gains: &Gains) -> f64 {
 
 /// The speed to which the servo's current brings a motor in 5 ms, m/s: one that starts for longer is taken for one that hauls at
 /// a taut tendon.
-fn started_m_per_s(basis: &Basis, gains: &Gains) -> f64 {
+fn started_m_per_s(basis: &Basis, gains: &MotorGains) -> f64 {
     let free_a = f64::from(gains.servo.current_a) - f64::from(gains.servo.friction_a);
     5e-3 * rotor_m_per_s2(basis, free_a)
 }
@@ -137,13 +162,13 @@ fn rotor_m_per_s2(basis: &Basis, current_a: f64) -> f64 {
 }
 
 /// Homing pays each tendon out by a step until it is slack: so far at most it is taken up again, before the tensions rise.
-fn taut_time_s(gains: &Gains) -> f64 {
+fn taut_time_s(gains: &MotorGains) -> f64 {
     let taken_up_s = f64::from(gains.homing.release_m) / f64::from(gains.limits.ramp_m_per_s);
     (1.5 * taken_up_s).clamp(5.0, 60.0)
 }
 
 /// Time in which the least current that counts as driven turns a rotor at rest by a count, s.
-fn first_count_s(basis: &Basis, gains: &Gains) -> f64 {
+fn first_count_s(basis: &Basis, gains: &MotorGains) -> f64 {
     let actuator = &basis.actuator;
     let current_a = f64::from(gains.limits.driven_part) * f64::from(gains.servo.current_a);
     let free_nm = actuator.torque_constant_nm_per_a * current_a - actuator.friction_nm;

@@ -64,7 +64,7 @@ fn a_steady_motor_carries_its_pull() {
     };
     for (duty, part) in [(0.5_f32, 1.0 / 0.3), (-0.5, 1.0 / 0.3 - 2.0)] {
         let rig = RigFile {
-            actuator,
+            actuators: [actuator; 3],
             ..ready("table1")
         };
         let mut plant = plant(&rig, &settings, HIGHEST);

@@ -72,7 +72,7 @@ fn a_new_tendon_has_no_tension_where_the_leg_is() {
 fn currents() {
     let shown_a = |plant: &mut Plant| {
         let part = f64::from(plant.sense().current_codes[1]) / f64::from(CODE_MAX);
-        (2.0 * part - 1.0) * ready("table1").actuator.current_range_a
+        (2.0 * part - 1.0) * ready("table1").actuators[0].current_range_a
     };
     for (defect, driven_a, off_a) in [
         (None, None, 0.0),
@@ -294,7 +294,7 @@ fn motors() {
     assert_eq!(failed.truth().currents_a[2], 0.0);
     let part = |sensors: Sensors| f64::from(sensors.current_codes[1]) / f64::from(CODE_MAX);
     let (_, offset) = defective(Defect::CurrentOffset(1), 0);
-    let range_a = 2.0 * ready("table1").actuator.current_range_a;
+    let range_a = 2.0 * ready("table1").actuators[0].current_range_a;
     let off_a = (part(offset) - part(sound(0))) * range_a;
     assert!((off_a - 10.0).abs() < 2e-3, "{off_a} A");
 }

@@ -17,7 +17,7 @@ fn a_slack_leg_hangs_at_rest_until_its_tendons_are_wound_up() {
     while plant.truth().tensions_n[0] < 20.0 {
         plant.step(&driven([0.1; 3]));
         // While it reels in, the encoder gives the length to a count.
-        let (truth, m_per_count) = (plant.truth(), plant.actuator.m_per_count());
+        let (truth, m_per_count) = (plant.truth(), plant.actuators[0].m_per_count());
         let counts = plant.sense().encoder_counts;
         for i in 0..3 {
             let counted = at_zero[i] - f64::from(counts[i]) * m_per_count;

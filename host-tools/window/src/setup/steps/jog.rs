@@ -75,7 +75,7 @@ impl Jog {
         JogDemand {
             motor: self.motor,
             travel_m: self.travel_mm / 1000.0,
-            voltage_v: jog_report::slow_voltage_v(settings),
+            voltage_v: jog_report::slow_voltage_v(self.motor, settings),
         }
     }
 

@@ -107,7 +107,7 @@ fn done(ui: &mut Ui, tune: &mut Tune, outcome: &Outcome, editor: &mut Editor, le
         );
         if button(ui, "Put it into the settings", "tune_take", None).clicked() {
             for (section, key, value) in certain_values(&outcome.rows) {
-                editor.set(section, key, &value);
+                editor.set(&section, key, &value);
             }
             tune.cancel(leg);
             return;

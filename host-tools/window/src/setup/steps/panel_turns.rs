@@ -9,6 +9,7 @@ use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
 use egui::{Label, RichText, Spinner, Ui};
 use leg_rig::motor_turn;
+use leg_rig::rig_settings::written;
 
 pub(super) fn show(ui: &mut Ui, turns: &mut Turns, editor: &mut Editor, leg: &mut ShownLeg) {
     let shown = match turns.step() {
@@ -56,11 +57,14 @@ fn begin(ui: &mut Ui, turns: &mut Turns, editor: &Editor, leg: &mut ShownLeg) {
     );
     let counts = editor.counts_per_turn();
     let words = format!(
-        "A turn has {counts} counts: counts_per_turn in [actuator] of {}.",
+        "A turn has {} counts: counts_per_turn in [actuator] of {}.",
+        written(&counts),
         editor.name()
     );
     faint(ui, &words);
-    let refused = motor_turn::require_countable(counts)
+    let refused = counts
+        .into_iter()
+        .try_for_each(motor_turn::require_countable)
         .err()
         .map(|failure| failure.to_string());
     let off = drivers_off(ui, leg);

@@ -217,7 +217,7 @@ async fn measure(
         }
     };
     let Some(plan) = swing else {
-        let rows = comparison(&constants, None, &rig);
+        let rows = comparison(motor, &constants, None, &rig);
         return Outcome {
             motor,
             rows,
@@ -231,7 +231,7 @@ async fn measure(
         Err(error) => (None, Some(error.failure().render(false))),
     };
     // The motor may be why, as one with more friction than is configured: what it is must not be lost.
-    let rows = comparison(&constants, swings.as_ref(), &rig);
+    let rows = comparison(motor, &constants, swings.as_ref(), &rig);
     Outcome {
         motor,
         rows,

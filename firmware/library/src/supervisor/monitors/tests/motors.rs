@@ -26,7 +26,7 @@ fn assert_disagrees(change: impl Fn(&Limits, &mut Seen), time_s: f32, times_max:
 #[test]
 fn a_current_is_too_much_or_not_what_the_tension_asks_for() {
     let settings = Settings::table_1().unwrap();
-    let servo = settings.servo;
+    let servo = settings.servos[0];
     for sign in [1.0, -1.0] {
         let flows = |a: f64| move |_: &Limits, s: &mut Seen| s.measured.currents_a[AXIS] = sign * a;
         let explained =
@@ -45,7 +45,7 @@ fn a_current_is_too_much_or_not_what_the_tension_asks_for() {
 /// A voltage that drives so much, A, at a motor that draws nothing.
 fn drives(a: f64, counts: i16) -> impl Fn(&Limits, &mut Seen) {
     move |_, s| {
-        let volt = a * f64::from(Settings::table_1().unwrap().servo.resistance_ohm);
+        let volt = a * f64::from(Settings::table_1().unwrap().servos[0].resistance_ohm);
         (s.view.voltage_v, s.view.mean_voltage_v, s.view.driving_v) = (volt, volt, volt);
         s.counts_a_cycle = counts;
     }
@@ -54,7 +54,7 @@ fn drives(a: f64, counts: i16) -> impl Fn(&Limits, &mut Seen) {
 /// A motor at a voltage draws at least what that drives less twice its friction.
 #[test]
 fn a_current_that_is_missing_is_a_fault() {
-    let friction_a = 2.0 * f64::from(Settings::table_1().unwrap().servo.friction_a);
+    let friction_a = 2.0 * f64::from(Settings::table_1().unwrap().servos[0].friction_a);
     for sign in [1.0, -1.0] {
         let forward = sign as i16;
         for counts in [0, forward] {
@@ -67,7 +67,7 @@ fn a_current_that_is_missing_is_a_fault() {
 /// What it draws may be 1.3 times less than what its voltage drives by the settings, for it may be warm.
 #[test]
 fn a_warm_winding_draws_less() {
-    let servo = Settings::table_1().unwrap().servo;
+    let servo = Settings::table_1().unwrap().servos[0];
     let friction_a = 2.0 * f64::from(servo.friction_a);
     let draws = |drawn_a: f64, lacking_a: f64| {
         move |limits: &Limits, seen: &mut Seen| {
@@ -82,7 +82,7 @@ fn a_warm_winding_draws_less() {
 /// What it lacks shows that it turns: then it has to be counted. What it lacks by far shows that it is not connected.
 #[test]
 fn a_motor_that_turns_uncounted_or_is_not_driven_at_all_is_found_soon() {
-    let servo = Settings::table_1().unwrap().servo;
+    let servo = Settings::table_1().unwrap().servos[0];
     let friction_a = 2.0 * f64::from(servo.friction_a);
     let open_a = friction_a + 0.25 * f64::from(servo.current_a);
     for sign in [1.0, -1.0] {
@@ -101,7 +101,7 @@ fn a_motor_that_turns_uncounted_or_is_not_driven_at_all_is_found_soon() {
 /// What the speed induces drives no current, and is known to a tenth.
 #[test]
 fn the_voltage_that_a_speed_induces_needs_no_current() {
-    let servo = Settings::table_1().unwrap().servo;
+    let servo = Settings::table_1().unwrap().servos[0];
     let (ohm, friction) = (f64::from(servo.resistance_ohm), f64::from(servo.friction_a));
     let allowed_a = |induced_v: f64| 2.0 * friction + 0.1 * induced_v / ohm;
     for sign in [1.0, -1.0] {
@@ -127,7 +127,7 @@ fn the_voltage_that_a_speed_induces_needs_no_current() {
 
 #[test]
 fn a_motor_that_is_driven_turns_and_the_way_it_is_driven() {
-    let servo = Settings::table_1().unwrap().servo;
+    let servo = Settings::table_1().unwrap().servos[0];
     let hard_v = f64::from(limits().driven_part * servo.current_a * servo.resistance_ohm);
     let current_a = f64::from(limits().driven_part * servo.current_a);
     let drives = |volt: f64, counts: i16| {
@@ -169,7 +169,9 @@ fn a_motor_that_is_braked_both_ways_in_turn_does_not_turn_the_wrong_way() {
     let mut watched = Watched::new();
     let limits = watched.limits();
     let hard_v = f64::from(limits.driven_part)
-        * f64::from(watched.settings.servo.current_a * watched.settings.servo.resistance_ohm);
+        * f64::from(
+            watched.settings.servos[0].current_a * watched.settings.servos[0].resistance_ohm,
+        );
     for sign in [1.0, -1.0, 1.0, -1.0] {
         let mut seen = Seen::sound();
         seen.view.voltage_v = sign * (hard_v + 0.01);
@@ -210,7 +212,7 @@ fn a_motor_that_is_not_where_it_is_led_is_a_fault() {
 fn a_counter_that_goes_too_far_has_jumped() {
     let settings = Settings::table_1().unwrap();
     let m_per_count = f64::from(settings.axes[AXIS].m_per_count.abs());
-    let tick_m = f64::from(settings.servo.speed_m_per_s) / 8000.0;
+    let tick_m = f64::from(settings.servos[0].speed_m_per_s) / 8000.0;
     let counts = |speed: f64, more: f64| {
         let step_m = speed.abs() * f64::from(CYCLE_S) + more * 0.9 * tick_m;
         (speed.signum() * step_m / m_per_count).trunc() as i16
@@ -248,7 +250,7 @@ impl Watched {
 fn turning_about_disagrees(voltages_v: [f64; 2], part: f64) -> bool {
     let mut watched = Watched::new();
     let mut seen = Seen::sound();
-    let resistance_ohm = f64::from(watched.settings.servo.resistance_ohm);
+    let resistance_ohm = f64::from(watched.settings.servos[0].resistance_ohm);
     let mut found = FaultSet::NONE;
     for [before_v, voltage_v] in [voltages_v, [voltages_v[1], voltages_v[0]]].repeat(500) {
         let missed = if before_v * voltage_v < 0.0 { 1.0 } else { 0.0 };
