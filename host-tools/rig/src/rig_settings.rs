@@ -121,7 +121,7 @@ pub fn control(file: &RigFile) -> Vec<Setting> {
 /// Actuators, sensors and their calibration.
 #[must_use]
 pub fn actuator(file: &RigFile) -> Vec<Setting> {
-    let motors = file.actuators.each_ref().map(of_actuator);
+    let motors = file.actuators.each_ref().map(actuator_settings);
     let mut all = merged(motors.each_ref());
     let (mut measured, mut nominal) = (file.calibration, Calibration::nominal(&file.actuators));
     for ((field, value), (_, default)) in measured.keys().into_iter().zip(nominal.keys()) {
@@ -130,7 +130,7 @@ pub fn actuator(file: &RigFile) -> Vec<Setting> {
     all
 }
 
-fn of_actuator(actuator: &Actuator) -> Vec<Setting> {
+fn actuator_settings(actuator: &Actuator) -> Vec<Setting> {
     let default = Actuator::DEFAULT;
     let (values, defaults) = (actuator.values(), default.values());
     let mut all = numbers(ACTUATOR, Actuator::FIELDS, values, defaults);
