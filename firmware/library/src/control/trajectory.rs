@@ -168,6 +168,11 @@ impl<T: Scalar> Trajectory<T> {
         self.elapsed < self.duration || self.streamed || self.planned.is_some()
     }
 
+    /// Ticks until the end of a path; none of a stream, whose end is not known.
+    pub fn ticks_to_end(&self) -> Option<u32> {
+        (!self.streamed).then(|| (self.duration - self.elapsed).max(0).unsigned_abs())
+    }
+
     /// The point of the next cycle.
     #[inline(always)]
     pub fn step(&mut self) -> Point<T> {
