@@ -168,9 +168,10 @@ impl<T: Scalar> Trajectory<T> {
         self.elapsed < self.duration || self.streamed || self.planned.is_some()
     }
 
-    /// Ticks until the end of a path; none of a stream, whose end is not known.
+    /// Ticks until the end of the path that is followed; none at rest, and none of a stream, whose end is not known.
     pub fn ticks_to_end(&self) -> Option<u32> {
-        (!self.streamed).then(|| (self.duration - self.elapsed).max(0).unsigned_abs())
+        let left = self.duration - self.elapsed;
+        (left > 0 && !self.streamed).then(|| left.unsigned_abs())
     }
 
     /// The point of the next cycle.
