@@ -299,8 +299,8 @@ impl<T: Scalar> Leg<T> {
             motors: !latched.has(Fault::CurrentDisagrees),
             cells: !latched.overlaps(FaultSet::OF_CELLS),
         };
-        let steps_m = self.mode.steps_m(&self.shared, trust);
-        self.mode = Mode::begin(state, &mut self.shared, measured, steps_m, trust);
+        let momentum = self.mode.momentum(&self.shared, trust);
+        self.mode = Mode::begin(state, &mut self.shared, measured, momentum, trust);
         if state == State::Active {
             // The first target comes in the next tick: pose and load have been estimated until now.
             self.phase = Phase::Command;

@@ -78,8 +78,8 @@ impl StrikeCampaign {
     /// The strike of a number again, with its course every so many seconds.
     #[must_use]
     pub fn repeat(&self, index: u64, every_s: f64) -> (Struck, Vec<Moment>) {
-        let case = Case::new(self.seed, &self.rigs, index / SLOTS);
-        match preparation::prepare(&case) {
+        let mut case = Case::new(self.seed, &self.rigs, index / SLOTS);
+        match preparation::prepare(&mut case) {
             Ok(prepared) => strike::strike(&case, &prepared, &self.fault_of(index), Some(every_s)),
             Err(reason) => (Struck::not_prepared(&case, index, reason), Vec::new()),
         }
@@ -87,9 +87,9 @@ impl StrikeCampaign {
 
     /// Strikes a case in some of its slots; once and without a fault where it cannot be brought there.
     fn strike(&self, number: u64, slots: &[u64], done: &(impl Fn() + Sync)) -> Vec<Struck> {
-        let case = Case::new(self.seed, &self.rigs, number);
+        let mut case = Case::new(self.seed, &self.rigs, number);
         let first = number * SLOTS;
-        let prepared = match preparation::prepare(&case) {
+        let prepared = match preparation::prepare(&mut case) {
             Ok(prepared) => prepared,
             Err(reason) => return vec![Struck::not_prepared(&case, first + slots[0], reason)],
         };

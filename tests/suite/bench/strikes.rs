@@ -184,3 +184,30 @@ fn a_leg_that_is_used_raises_no_alarm() {
         assert!(alarms.is_empty(), "{alarms:?}");
     }
 }
+
+/// Strikes that failed once: a leg was braked in 0.2 s however little of its way was left, and went beyond its end.
+#[test]
+fn a_leg_near_the_end_of_its_way_does_not_go_beyond_it() {
+    require_within(
+        901,
+        &[
+            (2339, "cell_stuck", 1.5),
+            (2345, "cell_fades", 1.0),
+            (2348, "cell_follows", 1.5),
+        ],
+    );
+}
+
+/// Strikes that failed once: without an estimate of its load, a leg that leans sinks the farther the more its tendon at the maximum tension
+/// is paid out, by a load cell that reads too much for up to 9 s.
+#[test]
+fn a_leg_without_a_load_estimate_does_not_sink_at_its_maximum_tension() {
+    require_within(
+        77,
+        &[
+            (625, "cell_drifting", 1.6),
+            (635, "cell_offset_step", 1.9),
+            (638, "cell_crosstalk", 2.0),
+        ],
+    );
+}

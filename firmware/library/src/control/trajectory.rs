@@ -168,6 +168,12 @@ impl<T: Scalar> Trajectory<T> {
         self.elapsed < self.duration || self.streamed || self.planned.is_some()
     }
 
+    /// Ticks until the end of the path that is followed; none at rest, and none of a stream, whose end is not known.
+    pub fn ticks_to_end(&self) -> Option<u32> {
+        let left = self.duration - self.elapsed;
+        (left > 0 && !self.streamed).then(|| left.unsigned_abs())
+    }
+
     /// The point of the next cycle.
     #[inline(always)]
     pub fn step(&mut self) -> Point<T> {

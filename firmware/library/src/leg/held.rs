@@ -1,8 +1,7 @@
 //! Held: the motors brake to a stop, and rest on their screws from then on.
 
 use super::shared::Shared;
-use crate::control::{TICK_S, bounds};
-use crate::sensors::TICK_HZ;
+use crate::control::{TICK_S, bounds, ticks};
 use leg_model::Scalar;
 
 /// Time in which a moving leg is braked, s: stopped at once, it would swing on with its payload, and double the tension of a
@@ -13,7 +12,7 @@ const BRAKE_S: f32 = 0.15;
 /// slower it is braked.
 const GENTLE_BRAKE_S: f32 = 0.2;
 
-/// The same where a motor may not obey, s: meanwhile the others pull against it.
+/// The same where a motor may not obey, s: meanwhile the others pull against it. No leg is braked in less.
 const SHORT_BRAKE_S: f32 = 0.06;
 
 /// Part of the maximum tension from which on the tension that is asked of a tendon is near it: a brake adds up to a quarter.
@@ -28,6 +27,15 @@ const STILL_STEP_M: f32 = 1e-4 * TICK_S;
 /// One that is led and goes by less than this in a tick does not turn, or is not counted, m: 0.01 mm/s.
 const STANDING_STEP_M: f32 = 1e-5 * TICK_S;
 
+/// What motors do that are braked.
+#[derive(Clone, Copy, Debug)]
+pub struct Momentum<T> {
+    /// How far each goes in a tick, m.
+    pub steps_m: [T; 3],
+    /// Ticks in which the path would have ended, if there is one: braked more slowly, the leg would go beyond its end.
+    pub ticks_to_end: Option<u32>,
+}
+
 /// The leg stays where it is. While it brakes, a tendon at the maximum tension is paid out a little, unless a load cell is in
 /// doubt; at rest no load cell is used.
 #[derive(Clone, Copy, Debug)]
@@ -40,20 +48,24 @@ pub struct Held<T> {
 }
 
 impl<T: Scalar> Held<T> {
-    /// From how far the motors go in a tick now, m; `obeyed`: whether every motor does what it is asked.
-    pub fn braking(shared: &Shared<T>, steps_m: [T; 3], obeyed: bool) -> Self {
-        let steps_m = steps_m.map(|step| if stands(step) { T::zero() } else { step });
+    /// From what the motors do now; `obeyed`: whether every motor does what it is asked.
+    pub fn braking(shared: &Shared<T>, momentum: Momentum<T>, obeyed: bool) -> Self {
+        let steps_m = momentum
+            .steps_m
+            .map(|step| if stands(step) { T::zero() } else { step });
         let still = steps_m.iter().all(|&step| step == T::zero());
         let brake_s = match (obeyed, is_near_max(shared)) {
             (false, _) => SHORT_BRAKE_S,
             (true, true) => GENTLE_BRAKE_S,
             (true, false) => BRAKE_S,
         };
-        let ticks = brake_s * f32::from(TICK_HZ);
+        let [ticks, shortest] = [brake_s, SHORT_BRAKE_S].map(ticks);
+        let to_end = momentum.ticks_to_end.unwrap_or(ticks).max(shortest);
+        let ticks = ticks.min(to_end);
         Self {
             steps_m,
-            ticks_left: if still { 0 } else { ticks as u32 },
-            per_tick: 1.0 / ticks,
+            ticks_left: if still { 0 } else { ticks },
+            per_tick: 1.0 / ticks as f32,
         }
     }
 
@@ -120,8 +132,34 @@ fn is_near_max<T: Scalar>(shared: &Shared<T>) -> bool {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::Held;
+    use super::{BRAKE_S, Held, Momentum, SHORT_BRAKE_S};
+    use crate::control::ticks;
+    use crate::leg::shared::{Checked, Shared};
+    use crate::settings::Settings;
+
+    /// A leg is braked in no more time than its way has left, but never at once.
+    #[test]
+    fn a_brake_ends_where_the_way_would_have() {
+        let settings = Settings::table_1().unwrap();
+        let shared = Shared::<f64>::new(&settings, Checked::new(&settings).unwrap());
+        let [longest, shortest] = [BRAKE_S, SHORT_BRAKE_S].map(ticks);
+        for (ticks_to_end, expected) in [
+            (None, longest),
+            (Some(longest + 1), longest),
+            (Some(longest - 1), longest - 1),
+            (Some(shortest - 1), shortest),
+            (Some(0), shortest),
+        ] {
+            let momentum = Momentum {
+                steps_m: [1e-6, 0.0, -1e-6],
+                ticks_to_end,
+            };
+            let held = Held::braking(&shared, momentum, true);
+            assert_eq!(held.ticks_left, expected, "{ticks_to_end:?}");
+        }
+    }
 
     /// Half of the way that it goes on at first is what is left of a brake; to that comes a tenth of a millimetre.
     #[test]

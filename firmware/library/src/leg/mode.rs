@@ -1,7 +1,7 @@
 //! What the leg is doing, and what only that needs.
 
 use super::active::Active;
-use super::held::Held;
+use super::held::{Held, Momentum};
 use super::jogging::Jogging;
 use super::ramping_down::RampingDown;
 use super::shared::Shared;
@@ -127,26 +127,34 @@ impl<T: Scalar> Mode<T> {
         true
     }
 
-    /// How far each motor goes in a tick, m, that a leg which is held goes on with while it brakes. Those of a leg at rest follow its load
-    /// and its swing by the load cells: once one of these is in doubt, that is not gone on with.
+    /// What the motors do that a leg which is held goes on with while it brakes. Those of a leg at rest follow its load and its swing by
+    /// the load cells: once one of these is in doubt, that is not gone on with.
     #[inline(always)]
-    pub fn steps_m(&self, shared: &Shared<T>, trust: Trust) -> [T; 3] {
-        match self {
+    pub fn momentum(&self, shared: &Shared<T>, trust: Trust) -> Momentum<T> {
+        let steps_m = match self {
             Self::Active(active) if !trust.cells && !active.trajectory.moving() => [T::zero(); 3],
             _ => shared.axes.each_ref().map(Axis::moved_m),
+        };
+        let ticks_to_end = match self {
+            Self::Active(active) => active.trajectory.ticks_to_end(),
+            _ => None,
+        };
+        Momentum {
+            steps_m,
+            ticks_to_end,
         }
     }
 
-    /// The mode of a state that begins now, in which the motors went by `steps_m` in the last tick.
+    /// The mode of a state that begins now, after what the motors did in the last tick.
     pub fn begin(
         state: State,
         shared: &mut Shared<T>,
         measured: &Measured<T>,
-        steps_m: [T; 3],
+        momentum: Momentum<T>,
         trust: Trust,
     ) -> Self {
         if state == State::Held && trust.counters {
-            let held = Held::braking(shared, steps_m, trust.motors);
+            let held = Held::braking(shared, momentum, trust.motors);
             if held.brakes() {
                 if trust.cells {
                     shared.lowest_m = held.lowest_m(&measured.pulled_m);

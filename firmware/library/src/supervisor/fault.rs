@@ -125,8 +125,8 @@ faults! {
     9 Following {
         name: "motor stays behind",
         reaction: Hold,
-        cause: "a motor is following_m away from where it is led",
-        remedy: "look for a slipping encoder or a stiff screw; move more slowly",
+        cause: "a motor is following_m away from where it is led; or, in a leg at rest whose load is not estimated, a tendon at the maximum tension is paid out by 0.05 mm",
+        remedy: "look for a slipping encoder or a stiff screw; move more slowly; at the maximum tension, have the load estimated or lower the pretension",
         clears: Command,
     }
     10 EncoderStill {

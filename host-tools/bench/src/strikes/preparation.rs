@@ -7,8 +7,8 @@ use super::course::Course;
 use super::push::strongest_n;
 use super::way::Way;
 use crate::stand::{self, Stand};
-use leg_firmware::command::Command;
-use leg_firmware::supervisor::State;
+use leg_firmware::command::{Command, Compensation};
+use leg_firmware::supervisor::{Fault, State};
 use leg_sim::plant::Start;
 
 /// Time of a change of payload and of a push, s, and in which the leg comes to rest after a move or one of them.
@@ -39,9 +39,11 @@ pub(super) struct PreparedLeg {
     pub unstruck: Unstruck,
 }
 
+/// A load that a leg cannot hold without an estimate is compensated: the case then says so.
+///
 /// # Errors
 /// Why the leg does not get there: a fault that nothing caused, or a time that is over.
-pub(super) fn prepare(case: &Case) -> Result<PreparedLeg, String> {
+pub(super) fn prepare(case: &mut Case) -> Result<PreparedLeg, String> {
     let mut stand = started(case)?;
     let command = match case.activity {
         Activity::Following | Activity::Rearmed | Activity::Disarmed => None,
@@ -93,7 +95,7 @@ fn resting(stand: Stand) -> PreparedLeg {
 }
 
 /// A leg in the state from which the command goes out.
-fn started(case: &Case) -> Result<Stand, String> {
+fn started(case: &mut Case) -> Result<Stand, String> {
     let start = match case.activity {
         Activity::Homing => Start::Slack { slack_mm: SLACK_MM },
         Activity::Arming => Start::Held {
@@ -107,10 +109,16 @@ fn started(case: &Case) -> Result<Stand, String> {
     let mut stand = Stand::new(&case.file, &case.plant, start, case.seed)?;
     stand.tick_until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
     stand.wait(0.1)?;
-    if !matches!(case.activity, Activity::Homing | Activity::Arming) {
-        lead(case, &mut stand)?;
+    if matches!(case.activity, Activity::Homing | Activity::Arming) {
+        return Ok(stand);
     }
-    Ok(stand)
+    let led = lead(case, &mut stand);
+    let estimated = case.compensation == Compensation::Estimated;
+    if led.is_err() && !estimated && stand.faults().has(Fault::Following) {
+        case.compensation = Compensation::Estimated;
+        return started(case);
+    }
+    led.map(|()| stand)
 }
 
 /// Arms the leg, loads it and moves it to its pose.
