@@ -45,6 +45,7 @@ mod base {
     mod atomic_file;
     mod numeric;
     mod recorder_rows;
+    mod refusal;
     mod suggest;
     mod timed_path;
 }

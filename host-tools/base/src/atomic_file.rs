@@ -20,18 +20,33 @@ pub fn replace<T, E: From<io::Error>>(
     path: &Path,
     write: impl FnOnce(&Path) -> Result<T, E>,
 ) -> Result<T, E> {
-    let no_file = || io::Error::from(io::ErrorKind::IsADirectory);
-    if path.is_dir() {
-        return Err(no_file().into());
-    }
+    require_file(path)?;
+    // A link stays one.
+    let linked = path
+        .is_symlink()
+        .then(|| path.canonicalize().ok())
+        .flatten();
+    let path = linked.as_deref().unwrap_or(path);
     let (Some(directory), Some(name)) = (path.parent(), path.file_name()) else {
-        return Err(no_file().into());
+        return Err(io::Error::from(io::ErrorKind::IsADirectory).into());
     };
     std::fs::create_dir_all(directory)?;
     let new = new_file(directory, name)?;
     let written = write(new.path())?;
     new.persist(path).map_err(|error| error.error)?;
     Ok(written)
+}
+
+/// Refuses what is there and is no file: a directory, or a device, which a file would replace.
+fn require_file(path: &Path) -> io::Result<()> {
+    match path.metadata() {
+        Ok(there) if there.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
+        Ok(there) if !there.is_file() => {
+            let kind = io::ErrorKind::InvalidInput;
+            Err(io::Error::new(kind, "it is a device or a pipe, not a file"))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// In the same directory: a move from one disk to another is a copy.

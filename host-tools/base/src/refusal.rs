@@ -2,7 +2,9 @@
 
 use leg_firmware::command::CommandRefusal;
 use leg_firmware::host_link::HostRefusal;
+use leg_firmware::set_point::PointRefusal;
 use leg_firmware::settings::SettingsError;
+use serde_json::Value;
 
 /// What to do where host and firmware do not understand each other.
 pub const OTHER_SOURCES: &str =
@@ -56,6 +58,47 @@ pub fn description(refusal: &HostRefusal) -> [String; 2] {
         ],
     };
     [wrong.into(), remedy.into()]
+}
+
+/// The same of a point of a path, by its time on it, s; below zero it is one of the way to its start.
+#[must_use]
+pub fn point_description(time_s: f64, refusal: PointRefusal) -> [String; 2] {
+    let [wrong, remedy] = refusal.description();
+    let place = if time_s < 0.0 {
+        "on the way to the start of the path".into()
+    } else {
+        format!("the path {time_s:.3} s after its start")
+    };
+    [format!("{place}: {wrong}"), remedy.into()]
+}
+
+/// Longest refusal in bytes of the protocol.
+const BYTES_MAX: usize = 64;
+
+/// Which refusal it is: numbers and names of its variants in the protocol, outermost first, up to that which says why.
+#[must_use]
+pub fn variants(refusal: &HostRefusal) -> Vec<(u8, String)> {
+    let mut bytes = [0; BYTES_MAX];
+    let numbers = postcard::to_slice(refusal, &mut bytes).map_or(&[][..], |bytes| bytes);
+    let mut names = Vec::new();
+    let mut value = serde_json::to_value(refusal).unwrap_or_default();
+    loop {
+        let (name, inner) = match value {
+            Value::String(name) => (name, Value::Null),
+            Value::Object(entries) => match entries.into_iter().next() {
+                Some(entry) => entry,
+                None => break,
+            },
+            _ => break,
+        };
+        // Variants begin with a capital; fields and the states of a leg do not.
+        if !name.starts_with(char::is_uppercase) {
+            break;
+        }
+        names.push(name);
+        value = inner;
+    }
+    numbers.iter().copied().zip(names).collect()
 }
 
 fn remedy(error: &SettingsError) -> String {

@@ -65,12 +65,34 @@ pub(crate) fn save<S>(
     drawn.iter().map(save).collect()
 }
 
+const MOVING: &str = "moving";
+
+/// Every phase: each has its own shade, the same in all charts.
+const PHASES: [&str; 10] = [
+    description::state(State::Boot),
+    description::state(State::Disarmed),
+    description::state(State::Homing),
+    description::state(State::Active),
+    MOVING,
+    description::state(State::Held),
+    description::state(State::KeepingStation),
+    description::state(State::RampingDown),
+    description::state(State::Off),
+    description::state(State::Jogging),
+];
+
 /// The state of a leg in words; where its trajectory moves, that.
 pub(crate) const fn phase(report: &Telemetry<f32>) -> &'static str {
     match (report.state, report.moving) {
-        (State::Active, true) => "moving",
+        (State::Active, true) => MOVING,
         (state, _) => description::state(state),
     }
+}
+
+/// The number of a phase's shade.
+fn shade(label: &str) -> usize {
+    let found = PHASES.iter().position(|phase| *phase == label);
+    found.unwrap_or(PHASES.len())
 }
 
 /// The spans of time in which a leg is in one phase.
@@ -84,6 +106,7 @@ fn phases(samples: impl Iterator<Item = (f64, Option<&'static str>)>) -> Vec<Spa
         if spans.last().is_none_or(|last| last.label != label) {
             spans.push(Span {
                 label: label.into(),
+                shade: shade(label),
                 x: time_s..time_s,
             });
         }

@@ -4,13 +4,17 @@ use crate::operator_thread::LegFailure;
 use crate::session::SessionError;
 use leg_base::description;
 use leg_base::failure::Failure;
+use leg_base::refusal;
+use leg_firmware::command::CommandRefusal;
 use leg_firmware::host_link::HostRefusal;
+use leg_firmware::set_point::PointRefusal;
 use leg_firmware::supervisor::{Clearing, FaultSet, State};
 use leg_host::operator::OperatorError;
 use leg_model::Error;
 use leg_sim::simulation::SimulationError;
-use pyo3::PyErr;
 use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
 mod python {
     use pyo3::import_exception;
@@ -56,12 +60,37 @@ fn words_and_place(failure: &Failure) -> WordsAndPlace {
     let (Failure::Failed(message) | Failure::Refused(message)) = failure;
     let position = message.position();
     (
-        message.sentence.clone(),
-        message.help.clone().unwrap_or_default(),
+        in_python(&message.sentence),
+        in_python(message.help.as_deref().unwrap_or_default()),
         message.place.as_ref().map(|place| place.file.clone()),
         position.map(|[line, _]| line),
         position.map(|[_, column]| column),
     )
+}
+
+/// What is said to who types commands, and what to who calls them.
+const CALLS: [(&str, &str); 13] = [
+    ("run `leg disarm`", "call disarm()"),
+    ("`leg disarm`", "disarm()"),
+    ("`leg home`", "home()"),
+    ("`leg hold`", "hold()"),
+    ("`leg stop`", "stop()"),
+    ("`leg clear`", "clear()"),
+    ("`leg monitor`", "telemetry()"),
+    ("`leg sensors`", "sensors()"),
+    ("`leg settings set`", "set_settings()"),
+    ("`leg calibrate`", "calibrate_cell()"),
+    ("`leg rig list`", "READY_RIGS"),
+    (" with --port", ""),
+    ("--on sim", "Leg.emulated()"),
+];
+
+fn in_python(words: &str) -> String {
+    let mut words = words.to_owned();
+    for (typed, called) in CALLS {
+        words = words.replace(typed, called);
+    }
+    words
 }
 
 /// A simulation that cannot start, or not go on.
@@ -93,9 +122,8 @@ pub fn leg_failure(failure: LegFailure) -> PyErr {
         OperatorError::Faulted(_, faults) | OperatorError::NotCleared(faults) => {
             faulted(faults, state)
         }
-        OperatorError::Refused(..) | OperatorError::Path(_) | OperatorError::OtherPose(_) => {
-            Refused::new_err((reason, remedy))
-        }
+        OperatorError::Refused(_, refusal) => refused(&refusal, [reason, remedy]),
+        OperatorError::Point(_, refusal) => refused(&point(refusal), [reason, remedy]),
         OperatorError::TimedOut(..) => LegTimeout::new_err(sentence(&failure)),
         OperatorError::Cancelled => {
             leg_error("another thread stopped the leg; it is in hold if it was driven")
@@ -118,12 +146,10 @@ impl From<SessionError> for PyErr {
         match error {
             SessionError::Emulation(error) => LegError::new_err(error.to_string()),
             SessionError::Frame(error) => LegError::new_err(error.to_string()),
-            SessionError::Refused(refusal) => refused(refusal),
+            SessionError::Refused(refusal) => refused(&refusal, words_of_simulated(&refusal)),
             SessionError::NoAnswer => LegError::new_err("the leg did not answer a command"),
             SessionError::Point(time_s, refusal) => {
-                let [wrong, remedy] = refusal.description();
-                let place = format!("the path {time_s:.3} s after its start: {wrong}");
-                Refused::new_err((place, remedy))
+                refused(&point(refusal), refusal::point_description(time_s, refusal))
             }
             SessionError::Faulted(faults, state) => faulted(faults, Some(state)),
             SessionError::NotFollowing(state) => {
@@ -141,21 +167,31 @@ impl From<SessionError> for PyErr {
     }
 }
 
-fn refused(refusal: HostRefusal) -> PyErr {
-    match refusal {
-        HostRefusal::Command(refusal) => {
-            let [wrong, remedy] = refusal.description();
-            Refused::new_err((wrong, remedy))
-        }
-        HostRefusal::Busy => Refused::new_err((
+/// A refusal: its numbers and names in the protocol, what is wrong, and what to do about it.
+fn refused(refusal: &HostRefusal, [reason, remedy]: [String; 2]) -> PyErr {
+    let (reason, remedy) = (in_python(&reason), in_python(&remedy));
+    let (numbers, names): (Vec<_>, Vec<_>) = refusal::variants(refusal).into_iter().unzip();
+    Python::attach(|py| match PyTuple::new(py, numbers) {
+        Ok(code) => Refused::new_err((code.unbind(), names.join("."), reason, remedy)),
+        Err(error) => error,
+    })
+}
+
+const fn point(refusal: PointRefusal) -> HostRefusal {
+    HostRefusal::Command(CommandRefusal::Point(refusal))
+}
+
+/// What a simulated leg is told apart from one on a port: it takes no commands while no time passes.
+fn words_of_simulated(refusal: &HostRefusal) -> [String; 2] {
+    let words = match refusal {
+        HostRefusal::Command(refusal) => refusal.description(),
+        HostRefusal::Busy => [
             "the leg is busy with what it was asked before",
             "step it, then command again",
-        )),
-        other => {
-            let [wrong, remedy] = leg_base::refusal::description(&other);
-            Refused::new_err((wrong, remedy))
-        }
-    }
+        ],
+        other => return refusal::description(other),
+    };
+    words.map(String::from)
 }
 
 /// The first of some faults, and what the leg does, if that is known.

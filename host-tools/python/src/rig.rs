@@ -11,12 +11,14 @@ use crate::named;
 use leg_base::failure::Failure;
 use leg_model::Elasticity;
 use leg_model_tools::workspace_map::{Grid, WorkspaceMap};
+use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_convert::{self, RigFormat};
 use leg_rig::rig_file::{RigFile, RigText};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::hash::{DefaultHasher, Hash, Hasher};
+use std::path::Path;
 
 /// Most poses of a map along each side.
 const GRID_MAX: u32 = 10_000;
@@ -43,8 +45,14 @@ impl Rig {
     }
 
     /// The rig of a name or a file; the paper's rig when neither is given.
-    pub fn load(path: Option<&std::path::Path>) -> PyResult<Self> {
-        let loaded = RigText::load(path).and_then(Self::read);
+    pub fn load(path: Option<&Path>) -> PyResult<Self> {
+        let path = path.unwrap_or(Path::new(READY_RIGS[0].name));
+        let loaded = RigText::load(Some(path)).and_then(|text| {
+            Self::read(RigText {
+                name: path.display().to_string(),
+                ..text
+            })
+        });
         loaded.map_err(|failure| rig_error(&failure))
     }
 
@@ -100,7 +108,7 @@ impl Rig {
         arguments::loads(py, &text)
     }
 
-    /// Its name in messages.
+    /// Its name in messages; of a ready rig that by which `READY_RIGS` has it.
     #[getter]
     fn name(&self) -> &str {
         &self.text.name

@@ -5,7 +5,7 @@ from contextlib import ExitStack
 
 import pytest
 from tendon_leg import AsyncLeg, LegError
-from test_leg import emulator, needs_leg
+from test_port import emulator, needs_leg
 
 
 def test_other_tasks_go_on_while_the_leg_moves():

@@ -10,8 +10,8 @@ import time
 
 import numpy as np
 import pytest
-from tendon_leg import Leg, LegError, Rig, SimulatedLeg
-from test_leg import emulator, needs_leg, wait_for
+from tendon_leg import Leg, LegError, LegFault, LegTimeout, NoResult, Refused, Rig, RigError, SimulatedLeg
+from test_port import emulator, needs_leg, wait_for
 
 ENDS = """
 import sys, threading, time
@@ -147,6 +147,21 @@ def test_a_rig_is_compared_and_pickled():
     assert Rig.from_dict(values, name="another") == rig
     values["mass"]["leg_kg"] += 1e-9
     assert Rig.from_dict(values) != rig
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        Refused((6, 3), "Command.OutOfReach", "too far", "less"),
+        LegFault(23, "emergency stop", "it is pressed", "release it", "off"),
+        RigError("wrong", "give another", "mine.toml", 3, 7),
+        LegTimeout("too late"),
+        NoResult("it would buckle"),
+    ],
+)
+def test_an_error_comes_whole_out_of_another_process(error):
+    again = pickle.loads(pickle.dumps(error))
+    assert (type(again), str(again), vars(again)) == (type(error), str(error), vars(error))
 
 
 def test_a_leg_may_be_closed_in_a_callback():

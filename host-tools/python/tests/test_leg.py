@@ -1,21 +1,13 @@
-"""A leg that is commanded: emulated in this process, and on a port by `leg emulate`."""
+"""A leg that is commanded: emulated in this process."""
 
-import json
 import os
 import signal
-import subprocess
-import sys
 import threading
 import time
-from contextlib import contextmanager
-from pathlib import Path
 
 import numpy as np
 import pytest
 from tendon_leg import Leg, LegError, LegFault, Refused, Rig, RigError, SimulatedLeg
-
-ROOT = Path(__file__).parents[3]
-needs_leg = pytest.mark.skipif("LEG" not in os.environ, reason="the variable LEG names no built `leg`; CI's does")
 
 
 def circle(seconds):
@@ -73,13 +65,31 @@ def test_refusals_and_faults_have_their_words():
     with pytest.raises(Refused) as refusal:
         leg.move(0, 80)
     assert "cannot lean that far" in refusal.value.reason and refusal.value.remedy
-    with pytest.raises(Refused, match="the path"):
+    # As `firmware/PROTOCOL.md` lists them.
+    assert (refusal.value.code, refusal.value.name) == ((6, 3), "Command.OutOfReach")
+    with pytest.raises(Refused, match="the path") as refusal:
         leg.follow(circle(3.0) * [0.05, 1, 1])
+    assert (refusal.value.code, refusal.value.name) == ((6, 6, 9, 0), "Command.Point.Limit.Speed")
     with pytest.raises(LegFault) as fault:
         leg.stiffness(1e4)
     assert (fault.value.code, fault.value.name) == (14, "stiffness out of reach")
     leg.stop()
     assert leg.telemetry()["state"] == "held"
+
+
+def test_remedies_are_calls_and_not_commands_of_a_shell():
+    leg = Leg.emulated(slack=True)
+    with pytest.raises(Refused) as refusal:
+        leg.move(30, 20)
+    assert refusal.value.remedy == "home it: home()"
+    leg = Leg.emulated()
+    leg.move(30, 10)
+    with pytest.raises(LegError, match=r"call disarm\(\) first"):
+        leg.set_settings("table1")
+    for call in (Leg.open, lambda: Rig("nope"), lambda: leg.calibrate_cell(1, [0, 5], lambda kg: None)):
+        with pytest.raises(LegError) as error:
+            call()
+        assert "--" not in str(error.value) and "`leg" not in str(error.value), error.value
 
 
 def test_settings_are_read_compared_and_replaced():
@@ -280,125 +290,3 @@ def test_an_argument_is_refused_by_its_name(call, error, words):
     with pytest.raises(error) as refusal:
         call(Leg.emulated())
     assert words in str(refusal.value)
-
-
-@contextmanager
-def emulator(*arguments):
-    """The port of a leg that is emulated in real time."""
-    command = [ROOT / os.environ["LEG"], "emulate", "--json", *arguments]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stdin=subprocess.PIPE, text=True) as process:
-        try:
-            yield json.loads(process.stdout.readline())["port"]
-        finally:
-            process.terminate()
-
-
-@pytest.fixture
-def port():
-    with emulator() as name:
-        yield name
-
-
-@needs_leg
-@pytest.mark.parametrize("arguments", [["--tcp"], ["--on", "qemu"], ["--on", "chip", "--slack"]])
-def test_a_leg_is_reached_wherever_its_firmware_runs(arguments):
-    with emulator(*arguments) as name, Leg.open(name) as leg:
-        before_s = time.time()
-        told = leg.telemetry()
-        assert told["state"] == "disarmed" and before_s <= told["wall_time_s"] <= time.time()
-        assert leg.settings_differences("table1") == []
-        assert 23 < leg.sensors()["supply_v"] < 25
-
-
-@needs_leg
-def test_the_boards_image_homes_until_it_is_stopped():
-    # All of the way takes the emulated chip most of a minute.
-    with emulator("--on", "chip", "--slack") as name, Leg.open(name) as leg, Leg.open(name) as watcher:
-        ended = []
-
-        def home():
-            with pytest.raises(LegError) as stopped:
-                leg.home()
-            ended.append(stopped)
-
-        thread = threading.Thread(target=home)
-        thread.start()
-        wait_for(watcher, lambda told: told["state"] == "homing")
-        leg.stop()
-        assert watcher.telemetry()["state"] == "held"
-        thread.join()
-        assert len(ended) == 1
-
-
-DRIVEN = """
-import sys, numpy as np
-from tendon_leg import Leg
-time_s = np.arange(0, 60, 0.01)
-leg = Leg.open(sys.argv[1])
-print("opened", flush=True)
-leg.follow(np.column_stack([time_s, 72 * time_s, np.full_like(time_s, 20.0)]))
-"""
-
-
-def wait_for(leg, condition):
-    """Telemetry once a condition holds; in time for any machine."""
-    deadline_s = time.monotonic() + 60.0
-    while not condition(telemetry := leg.telemetry()):
-        assert time.monotonic() < deadline_s, telemetry
-        time.sleep(0.05)
-    return telemetry
-
-
-@needs_leg
-def test_a_second_owner_is_refused_by_name_and_may_stop_the_leg(port):
-    with Leg.open(port) as first, Leg.open(port) as second:
-        ended = []
-
-        def follow():
-            with pytest.raises(LegError, match="another host stopped it") as stopped:
-                first.follow(circle(60.0))
-            ended.append(stopped)
-
-        thread = threading.Thread(target=follow)
-        thread.start()
-        wait_for(second, lambda told: told["tilt_deg"] > 15)
-        for command in [lambda: second.move(0, 3), lambda: second.stiffness(100), lambda: second.follow(circle(1.0))]:
-            with pytest.raises(Refused, match="another host drives the leg"):
-                command()
-        with pytest.raises(LegError, match="disarm"):
-            second.set_settings("table1")
-        assert second.telemetry()["state"] == "active"
-        second.stop()
-        assert second.telemetry()["state"] == "held"
-        thread.join()
-        assert len(ended) == 1
-
-
-@needs_leg
-def test_ctrl_c_in_mid_move_leaves_a_leg_on_a_port_in_hold_at_once(port):
-    with subprocess.Popen([sys.executable, "-c", DRIVEN, port], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as driver:
-        assert driver.stdout.readline() == "opened\n"
-        with Leg.open(port) as watcher:
-            assert wait_for(watcher, lambda told: told["tilt_deg"] > 15)["state"] == "active"
-            driver.send_signal(signal.SIGINT)
-            assert "KeyboardInterrupt" in driver.communicate(timeout=60)[1]
-            # Not by its own timeout, which is a fault.
-            told = watcher.telemetry()
-            assert told["state"] == "held" and told["faults"] == [], told
-    assert driver.returncode == -signal.SIGINT
-
-
-@needs_leg
-def test_an_interpreter_that_is_killed_in_mid_move_leaves_the_leg_in_hold(port):
-    with subprocess.Popen([sys.executable, "-c", DRIVEN, port], stdout=subprocess.PIPE, text=True) as driver:
-        assert driver.stdout.readline() == "opened\n"
-        with Leg.open(port) as watcher:
-            assert wait_for(watcher, lambda told: told["tilt_deg"] > 15)["state"] == "active"
-        driver.kill()
-    with Leg.open(port) as watcher:
-        told = wait_for(watcher, lambda told: told["state"] != "active")
-        assert told["state"] == "held" and [fault["name"] for fault in told["faults"]] == ["no command"]
-        with pytest.raises(LegFault, match=r"fault 20, no command: .*; then clear\(\); the leg is held"):
-            watcher.move(0, 0)
-        watcher.clear()
-        assert watcher.move(0, 0)["tilt_deg"] < 0.1

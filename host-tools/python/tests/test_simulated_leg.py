@@ -51,7 +51,9 @@ def test_a_refusal_has_the_firmwares_words():
     leg = SimulatedLeg("table1")
     with pytest.raises(Refused) as refusal:
         leg.move(30.0, 20.0)
-    assert (refusal.value.reason, refusal.value.remedy) == ("the leg is disarmed", "arm it")
+    told = refusal.value
+    assert (told.reason, told.remedy) == ("the leg is disarmed", "arm it")
+    assert (told.code, told.name) == ((6, 2), "Command.State")
     with pytest.raises(Refused, match="the leg does not know its zero; home it"):
         SimulatedLeg("table1", slack=True).arm()
     with pytest.raises(Refused, match="the leg cannot lean that far"):
@@ -162,8 +164,9 @@ def test_a_path_beyond_a_limit_is_refused_before_the_leg_moves():
     leg = armed()
     points = circle()
     points[:, 0] *= 0.05  # four turns a second
-    with pytest.raises(Refused, match=r"the path \d\.\d+ s after its start: .* more than speed_rad_per_s; take more time"):
+    with pytest.raises(Refused, match=r"the path \d\.\d+ s after its start: .* more than speed_rad_per_s; take more time") as refusal:
         leg.follow(points)
+    assert refusal.value.name == "Command.Point.Limit.Speed"
     assert leg.read("tilt_true_deg") < 0.01 and not leg.following
 
 

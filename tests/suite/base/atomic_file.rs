@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_base::atomic_file::{StagingDirectory, replace};
+use leg_base::atomic_file::{PartFile, StagingDirectory, replace};
 use std::io;
 
 #[test]
@@ -25,6 +25,24 @@ fn a_directory_is_refused_before_anything_is_written() {
     let refused = replace(directory.path(), |_| -> io::Result<()> { unreachable!() });
     let kind = refused.unwrap_err().kind();
     assert_eq!(kind, io::ErrorKind::IsADirectory);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_device_is_no_place_for_a_file_and_a_link_stays_one() {
+    let directory = tempfile::tempdir().unwrap();
+    let device = std::path::Path::new("/dev/null");
+    let refused = replace(device, |_| -> io::Result<()> { unreachable!() });
+    let part = PartFile::create(device).map(drop);
+    for refused in [refused, part] {
+        assert_eq!(refused.unwrap_err().kind(), io::ErrorKind::InvalidInput);
+    }
+    let [file, link] = ["file", "link"].map(|name| directory.path().join(name));
+    std::fs::write(&file, "old").unwrap();
+    std::os::unix::fs::symlink(&file, &link).unwrap();
+    replace(&link, |new| std::fs::write(new, "new")).unwrap();
+    assert!(link.is_symlink());
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), "new");
 }
 
 #[test]

@@ -52,15 +52,17 @@ fn the_charts_of_a_run_are_drawn_again_to_the_pixel() {
             assert!(again[name] == *picture, "{scenario}: {name} differs");
         }
         let tip = String::from_utf8_lossy(&run["tip.svg"]);
-        let phases: &[&str] = match scenario {
-            "homing" => &["homing", "active"],
-            "circle" => &["moving", "active"],
-            "payload" => &["moving", "active"],
-            _ => &["active", "held"],
+        // Each in its own shade, the same in all charts.
+        let [homing, active] = [("homing", "#E6F5EF"), ("active", "#E6F0FA")];
+        let [moving, held] = [("moving", "#FAE9E2"), ("held", "#F7ECF3")];
+        let phases = match scenario {
+            "homing" => [homing, active],
+            "circle" | "payload" => [moving, active],
+            _ => [active, held],
         };
-        for phase in phases {
-            let shown = tip.lines().filter(|line| line == phase).count();
-            assert!(shown >= 1, "{scenario}: {phase}");
+        for (phase, shade) in phases {
+            assert!(tip.lines().any(|line| line == phase), "{scenario}: {phase}");
+            assert!(tip.contains(shade), "{scenario}: {phase}");
         }
         // Named by the kind that the signal has in `docs/telemetry.md`.
         let stiffness = String::from_utf8_lossy(&run["stiffness.svg"]);

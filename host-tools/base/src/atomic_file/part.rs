@@ -20,11 +20,9 @@ impl PartFile {
     /// Makes the directory of `to` and the file. One that is there is left alone: this one is `leg.part2.mcap` then.
     ///
     /// # Errors
-    /// The system's; a directory is where the file has to go.
+    /// The system's; a directory or a device is where the file has to go.
     pub fn create(to: &Path) -> io::Result<(Self, File)> {
-        if to.is_dir() {
-            return Err(ErrorKind::IsADirectory.into());
-        }
+        super::require_file(to)?;
         if let Some(directory) = to.parent() {
             std::fs::create_dir_all(directory)?;
         }

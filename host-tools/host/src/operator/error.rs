@@ -6,6 +6,7 @@ use leg_base::failure::Failure;
 use leg_base::refusal;
 use leg_firmware::frame::FrameError;
 use leg_firmware::host_link::{HOST_SCHEMA, HostRefusal};
+use leg_firmware::set_point::PointRefusal;
 use leg_firmware::supervisor::{FaultSet, State};
 use leg_firmware::telemetry::Telemetry;
 use std::time::Duration;
@@ -40,6 +41,8 @@ pub enum OperatorError {
     OtherPose([f32; 2]),
     /// The path that the leg shall follow is refused.
     Path(Failure),
+    /// The leg, or this host in its place, refuses a point of the path: its time, s.
+    Point(f64, PointRefusal),
     /// It is not known whether the leg does what it was asked to do.
     Unacknowledged(&'static str),
     /// No stop was acknowledged by what is named.
@@ -143,6 +146,10 @@ impl OperatorError {
                 "go there by way of other poses",
             ),
             Self::Path(failure) => failure.clone(),
+            Self::Point(time_s, refusal) => {
+                let [reason, remedy] = refusal::point_description(*time_s, *refusal);
+                Failure::refused(reason, remedy)
+            }
             Self::Unacknowledged(asked) => Failure::refused(
                 format!("the leg did not acknowledge that it will {asked}"),
                 "look at the cable, and with `leg monitor` at what the leg does",

@@ -44,7 +44,7 @@ impl Operator {
     ) -> Result<Telemetry<f32>, OperatorError> {
         let settings = self.settings()?;
         let checked = path.streamed(&settings);
-        checked.map_err(|(time_s, refusal)| refused_point(time_s, refusal))?;
+        checked.map_err(|(time_s, refusal)| OperatorError::Point(time_s, refusal))?;
         self.follow(&mut PathSource::whole(path.points().to_vec()), lead)
     }
 
@@ -65,7 +65,7 @@ impl Operator {
             return Err(OperatorError::Path(failure));
         };
         let start = run_up(&first, &settings);
-        let start = start.map_err(|refusal| refused_point(first.time_s, refusal))?;
+        let start = start.map_err(|refusal| OperatorError::Point(first.time_s, refusal))?;
         let rest = *start.first().unwrap_or(&first);
         self.drive_to_station(|operator| {
             operator.activate(ASKED)?;
@@ -86,7 +86,10 @@ impl Operator {
                 sent = operator.send_rest(path, first, &mut sending);
             }
             // Whatever is wrong with the path: the leg comes to rest first.
-            if !matches!(sent, Ok(()) | Err(OperatorError::Path(_))) {
+            if !matches!(
+                sent,
+                Ok(()) | Err(OperatorError::Path(_) | OperatorError::Point(..))
+            ) {
                 return sent.and_then(|()| operator.settle(ASKED));
             }
             if let Some(last) = sending.held_back {
@@ -179,7 +182,7 @@ impl Operator {
                             self.require_stream()?;
                             return Err(error);
                         }
-                        _ => return Err(refused_point(point.time_s, refusal)),
+                        _ => return Err(OperatorError::Point(point.time_s, refusal)),
                     }
                 }
                 OperatorError::Refused(..) | OperatorError::Faulted(..) => {
@@ -191,14 +194,4 @@ impl Operator {
             }
         }
     }
-}
-
-fn refused_point(time_s: f64, refusal: PointRefusal) -> OperatorError {
-    let [wrong, remedy] = refusal.description();
-    let place = if time_s < 0.0 {
-        "on the way to the start of the path".into()
-    } else {
-        format!("the path {time_s:.3} s after its start")
-    };
-    OperatorError::Path(Failure::refused(format!("{place}: {wrong}"), remedy))
 }

@@ -9,20 +9,26 @@ use std::ops::Range;
 /// A span of the horizontal axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Span {
-    /// Written at its top, where there is room, and beside its shade in the legend. Spans with the same label have the same shade.
+    /// Written at its top, where there is room, and beside its shade in the legend.
     pub label: String,
+    /// The number of its shade. Spans with the same label have the same one.
+    pub shade: usize,
     /// Its begin and end.
     pub x: Range<f64>,
 }
 
 /// Light enough for lines and labels on them.
-const SHADES: [RGBColor; 6] = [
+const SHADES: [RGBColor; 10] = [
     RGBColor(242, 242, 242),
     RGBColor(253, 243, 224),
     RGBColor(230, 245, 239),
     RGBColor(230, 240, 250),
     RGBColor(250, 233, 226),
     RGBColor(247, 236, 243),
+    RGBColor(226, 243, 245),
+    RGBColor(240, 242, 222),
+    RGBColor(232, 232, 236),
+    RGBColor(238, 235, 250),
 ];
 
 const SPAN_LABEL: u32 = px(18);
@@ -41,10 +47,9 @@ pub(super) const LABEL_PART: f64 = 0.06;
 /// Each label once, with its shade, in the order of the spans.
 fn shades(spans: &[Span]) -> Vec<(&str, RGBColor)> {
     let mut shades: Vec<(&str, RGBColor)> = Vec::new();
-    let mut colours = SHADES.iter().cycle();
     for span in spans {
         if shades.iter().all(|(label, _)| *label != span.label) {
-            shades.push((&span.label, *colours.next().unwrap_or(&WHITE)));
+            shades.push((&span.label, SHADES[span.shade % SHADES.len()]));
         }
     }
     shades

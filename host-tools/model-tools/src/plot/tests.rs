@@ -155,17 +155,18 @@ fn the_title_of_an_axis_touches_no_label() {
 #[test]
 fn spans_are_shaded_and_labelled() {
     let directory = tempfile::tempdir().unwrap();
-    let span = |label: &str, x| Span {
+    let span = |label: &str, shade, x| Span {
         label: label.into(),
+        shade,
         x,
     };
     let chart = Chart {
         subtitle: "Subtitle".into(),
         spans: vec![
-            span("homing", 0.0..4.0),
-            span("short", 4.0..4.01),
-            span("homing", 4.01..8.0),
-            span("active", 8.0..20.0),
+            span("homing", 2, 0.0..4.0),
+            span("short", 1, 4.0..4.01),
+            span("homing", 2, 4.01..8.0),
+            span("active", 4, 8.0..20.0),
         ],
         ..chart(vec![(5.0, 1.0), (9.0, 2.0)])
     };
@@ -181,7 +182,7 @@ fn spans_are_shaded_and_labelled() {
         [3, 0, 2, 1],
         "each that is seen once in the legend, too"
     );
-    let shades = [(242, 242, 242), (253, 243, 224), (230, 245, 239)];
+    let shades = [(230, 245, 239), (253, 243, 224), (250, 233, 226)];
     let fills = shades.map(|(r, g, b)| count(&format!("#{r:02X}{g:02X}{b:02X}")));
     assert_eq!(fills, [3, 1, 2]);
     assert!(

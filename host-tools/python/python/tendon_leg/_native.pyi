@@ -197,7 +197,7 @@ class Rig:
 
     @property
     def name(self) -> str:
-        """Its name in messages."""
+        """Its name in messages; of a ready rig that by which `READY_RIGS` has it."""
 
     @property
     def text(self) -> str:

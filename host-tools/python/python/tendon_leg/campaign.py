@@ -3,6 +3,7 @@
 import functools
 import hashlib
 import json
+import operator
 import os
 import re
 import shlex
@@ -147,8 +148,11 @@ def _run_of(number: int, case: Mapping[str, Any]) -> Run:
         if key in case:
             raise refuse(f"its key {key!r} is that of a result; give it another name")
     scenario, rig, seed = (case.get(key) for key in RUN_KEYS)
-    if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**64):
-        raise refuse(f"its seed {seed!r} is no integer from 0 to 2⁶⁴ − 1")
+    if seed is not None:
+        # Integers of numpy are integers.
+        if isinstance(seed, bool) or not hasattr(seed, "__index__") or not 0 <= operator.index(seed) < 2**64:
+            raise refuse(f"its seed {seed!r} is no integer from 0 to 2⁶⁴ − 1")
+        seed = operator.index(seed)
     try:
         text = _scenario_text(scenario)
         if rig is None or (isinstance(rig, str) and rig in READY_RIGS):

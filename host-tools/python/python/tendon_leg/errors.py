@@ -4,17 +4,33 @@
 class LegError(Exception):
     """Everything that this package raises by itself, but for wrong arguments (`ValueError`, `TypeError`)."""
 
+    def __reduce__(self) -> tuple[object, ...]:
+        return _again, (type(self), self.args, self.__dict__)
+
+
+def _again(kind: type[LegError], words: tuple[str, ...], fields: dict[str, object]) -> LegError:
+    """An error that comes from another process, as it was."""
+    error = kind.__new__(kind, *words)
+    error.__dict__.update(fields)
+    return error
+
 
 class Refused(LegError):
     """The leg refuses a command, and does nothing. The words are the firmware's own."""
 
+    #: Its numbers in `firmware/PROTOCOL.md`, outermost first: (6, 3) where the leg cannot lean that far.
+    code: tuple[int, ...]
+    #: Their names there, with points between them: "Command.OutOfReach".
+    name: str
     #: What is wrong.
     reason: str
     #: What to do about it.
     remedy: str
 
-    def __init__(self, reason: str, remedy: str) -> None:
+    def __init__(self, code: tuple[int, ...], name: str, reason: str, remedy: str) -> None:
         super().__init__(f"{reason}; {remedy}")
+        self.code = code
+        self.name = name
         self.reason = reason
         self.remedy = remedy
 
