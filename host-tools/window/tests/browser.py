@@ -959,9 +959,9 @@ PARTS = (
 # for the leg's time.
 MEASURED = (check_speed, check_painting, check_bits)
 SHARED = (
-    (first_visit, recordings, steps, pushes, sliders),
+    (first_visit, recordings, steps),
     (drive, breaks, rig_files, settings, stops, looks),
-    (rates, maps, charts, tuning),
+    (rates, sliders, maps, pushes, charts, tuning),
 )
 assert {*MEASURED, *sum(SHARED, ())} == {*PARTS}
 
