@@ -60,15 +60,15 @@ fn words_and_place(failure: &Failure) -> WordsAndPlace {
     let (Failure::Failed(message) | Failure::Refused(message)) = failure;
     let position = message.position();
     (
-        in_python(&message.sentence),
-        in_python(message.help.as_deref().unwrap_or_default()),
+        python_words(&message.sentence),
+        python_words(message.help.as_deref().unwrap_or_default()),
         message.place.as_ref().map(|place| place.file.clone()),
         position.map(|[line, _]| line),
         position.map(|[_, column]| column),
     )
 }
 
-/// What is said to who types commands, and what to who calls them.
+/// Words of the command line, and those of this package in their place.
 const CALLS: [(&str, &str); 13] = [
     ("run `leg disarm`", "call disarm()"),
     ("`leg disarm`", "disarm()"),
@@ -85,7 +85,7 @@ const CALLS: [(&str, &str); 13] = [
     ("--on sim", "Leg.emulated()"),
 ];
 
-fn in_python(words: &str) -> String {
+fn python_words(words: &str) -> String {
     let mut words = words.to_owned();
     for (typed, called) in CALLS {
         words = words.replace(typed, called);
@@ -146,7 +146,7 @@ impl From<SessionError> for PyErr {
         match error {
             SessionError::Emulation(error) => LegError::new_err(error.to_string()),
             SessionError::Frame(error) => LegError::new_err(error.to_string()),
-            SessionError::Refused(refusal) => refused(&refusal, words_of_simulated(&refusal)),
+            SessionError::Refused(refusal) => refused(&refusal, simulated_legs_words(&refusal)),
             SessionError::NoAnswer => LegError::new_err("the leg did not answer a command"),
             SessionError::Point(time_s, refusal) => {
                 refused(&point(refusal), refusal::point_description(time_s, refusal))
@@ -169,7 +169,7 @@ impl From<SessionError> for PyErr {
 
 /// A refusal: its numbers and names in the protocol, what is wrong, and what to do about it.
 fn refused(refusal: &HostRefusal, [reason, remedy]: [String; 2]) -> PyErr {
-    let (reason, remedy) = (in_python(&reason), in_python(&remedy));
+    let (reason, remedy) = (python_words(&reason), python_words(&remedy));
     let (numbers, names): (Vec<_>, Vec<_>) = refusal::variants(refusal).into_iter().unzip();
     Python::attach(|py| match PyTuple::new(py, numbers) {
         Ok(code) => Refused::new_err((code.unbind(), names.join("."), reason, remedy)),
@@ -181,8 +181,8 @@ const fn point(refusal: PointRefusal) -> HostRefusal {
     HostRefusal::Command(CommandRefusal::Point(refusal))
 }
 
-/// What a simulated leg is told apart from one on a port: it takes no commands while no time passes.
-fn words_of_simulated(refusal: &HostRefusal) -> [String; 2] {
+/// Of a simulated leg: without a line, and with time that passes only in calls.
+fn simulated_legs_words(refusal: &HostRefusal) -> [String; 2] {
     let words = match refusal {
         HostRefusal::Command(refusal) => refusal.description(),
         HostRefusal::Busy => [
