@@ -3,8 +3,8 @@
 use crate::places::place;
 use crate::shown_leg::ShownLeg;
 use crate::theme::palette;
-use crate::value_slider::ValueSlider;
-use egui::{Button, Checkbox, Label, Response, RichText, Ui, vec2};
+use crate::value_slider::{ValueSlider, why};
+use egui::{Button, Checkbox, Label, RichText, Ui, vec2};
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::supervisor::{Event, State};
 use std::ops::RangeInclusive;
@@ -186,13 +186,5 @@ fn sliders(ui: &mut Ui, leg: &mut ShownLeg) {
             towards: None,
         };
         leg.command(demand, "stiffness");
-    }
-}
-
-/// Says of a control that is disabled why it is.
-pub fn why(response: Response, locked: Option<&str>) -> Response {
-    match locked {
-        Some(words) => response.on_disabled_hover_text(words),
-        None => response,
     }
 }

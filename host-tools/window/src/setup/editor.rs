@@ -246,7 +246,10 @@ impl Editor {
     /// Counts of each encoder in a turn of its motor.
     #[must_use]
     pub fn counts_per_turn(&self) -> [f64; 3] {
-        self.now.rig.actuators.map(|actuator| actuator.counts_per_turn)
+        self.now
+            .rig
+            .actuators
+            .map(|actuator| actuator.counts_per_turn)
     }
 
     /// The row of a setting as it was loaded.

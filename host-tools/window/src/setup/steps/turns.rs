@@ -105,7 +105,8 @@ impl Turns {
             TurnStep::After(before) => {
                 let axes = editor.settings().axes;
                 let counts_per_turn = editor.counts_per_turn();
-                let turn = MotorTurn::new(motor, [before, count], counts_per_turn[motor], &axes[motor]);
+                let turn =
+                    MotorTurn::new(motor, [before, count], counts_per_turn[motor], &axes[motor]);
                 self.turns.push(turn);
                 let done = self.turns.len() == axes.len();
                 if done {
