@@ -114,7 +114,9 @@ pub(super) fn motors(
     callable("turn", turn)?;
     let counts_per_turn = rig.actuators.map(|actuator| actuator.counts_per_turn);
     let mut counts = counts_per_turn.into_iter();
-    counts.try_for_each(motor_turn::require_countable).map_err(refused)?;
+    counts
+        .try_for_each(motor_turn::require_countable)
+        .map_err(refused)?;
     require_off(leg, py, "let itself be turned by hand")?;
     let axes = leg.ask(py, Operator::settings)?.axes;
     let mut turns: Vec<Turn> = Vec::new();
