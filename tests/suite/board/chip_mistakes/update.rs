@@ -14,8 +14,9 @@ use std::error::Error;
 use std::path::Path;
 use stm32g474_emulator::chip::Chip;
 
-/// Moments of a power cut after the request to save, µs.
-const CUTS_US: [u64; 6] = [0, 300, 900, 2_500, 6_000, 12_000];
+/// Moments of a power cut after the request to save, µs. A record fills a page: its words take 12 ms, and the page 22 ms before that, to be
+/// erased, where it was in use.
+const CUTS_US: [u64; 6] = [0, 900, 6_000, 12_000, 25_000, 50_000];
 
 /// What the chip uses, and whether it says that they are not those that were kept.
 type Used = (Settings, bool);
