@@ -103,12 +103,25 @@ impl<'a> Contents<'a> {
 }
 
 fn not_whole(error: McapError) -> String {
-    format!("is no whole MCAP file: {error}")
+    format!("is no whole MCAP file: {}", words(error))
 }
 
 fn not_whole_after(messages: usize, error: McapError) -> String {
     match messages {
         0 => not_whole(error),
-        _ => format!("is no whole MCAP file: {error}, after {messages} messages"),
+        _ => format!(
+            "is no whole MCAP file: {}, after {messages} messages",
+            words(error)
+        ),
+    }
+}
+
+/// What is wrong with a file.
+fn words(error: McapError) -> String {
+    match error {
+        McapError::BadChunkCrc { saved, calculated } => {
+            format!("a part is damaged (its checksum is {calculated:08X}, not {saved:08X})")
+        }
+        error => error.to_string(),
     }
 }
