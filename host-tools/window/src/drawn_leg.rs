@@ -233,7 +233,10 @@ impl<'a> Drawn<'a> {
         let [x, y] = leg_base::angles::unit_vector(push.azimuth_deg);
         let force_m = Vector3::new(x, y, 0.0) * (push.force_n * ARROW_M_PER_N);
         let [from, to] = [self.tip() - force_m, self.tip()].map(|place| view.project(place).at);
-        painter.arrow(from, to - from, Stroke::new(4.0, self.palette.warning));
+        // The edge sets it off from the payload, which has nearly its colour.
+        for (width, colour) in [(8.0, self.palette.back), (4.0, self.palette.warning)] {
+            painter.arrow(from, to - from, Stroke::new(width, colour));
+        }
         let words = format!("push {:.0} N", push.force_n);
         label_arrow(painter, from, from - to, &words, &self.palette);
     }

@@ -44,6 +44,7 @@ impl FaultStrip {
         let size = vec2(ui.available_width(), HEIGHT);
         let button = Button::new(text)
             .truncate()
+            .fill(palette.card)
             .stroke(Stroke::new(1.0, colour));
         let sense = if first.is_some() {
             Sense::click()

@@ -83,6 +83,7 @@ pub mod text;
 pub mod theme;
 pub mod top_bar;
 pub mod utc;
+pub mod value_slider;
 pub mod wall_clock;
 #[cfg(target_arch = "wasm32")]
 pub mod web;

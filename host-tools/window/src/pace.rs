@@ -36,7 +36,7 @@ impl Pace {
         self.left_out_s += (elapsed_s - taken_s) * self.rate;
         let ticks = self.rest + taken_s * self.rate * f64::from(TICK_HZ);
         self.rest = ticks.fract();
-        // At most those of FRAME_MAX_S.
+        // At most those of FRAME_MAX_S, times the rate.
         ticks.floor() as u32
     }
 
@@ -64,6 +64,19 @@ mod tests {
         let mut pace = Pace::default();
         assert_eq!(pace.ticks(60.0), 2000);
         assert!((pace.left_out_s() - 59.75).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_fast_leg_ticks_so_much_more_often() {
+        let mut pace = Pace {
+            rate: 8.0,
+            ..Pace::default()
+        };
+        let ticks: u32 = (0..60).map(|_| pace.ticks(1.0 / 60.0)).sum();
+        assert!((63_999..=64_000).contains(&ticks), "{ticks}");
+        // A frame that came late makes up for as much of the clock's time as one of a leg in real time.
+        assert_eq!(pace.ticks(1.0), 16_000);
+        assert!((pace.left_out_s() - 6.0).abs() < 1e-9);
     }
 
     #[test]

@@ -2,22 +2,41 @@
 
 use crate::places::place;
 use crate::shown_leg::ShownLeg;
-use crate::text::left;
+use crate::text::why;
 use crate::theme::palette;
-use egui::{Button, Checkbox, Label, Response, RichText, Slider, SliderClamping, Ui, vec2};
+use crate::value_slider::ValueSlider;
+use egui::{Button, Checkbox, Label, RichText, Ui, vec2};
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::supervisor::{Event, State};
 use std::ops::RangeInclusive;
 
-/// What a slider leaves for its name and its value, points.
-const LABEL_WIDTH: f32 = 68.0;
-const VALUE_WIDTH: f32 = 112.0;
-
 /// The stiffness that the slider reaches: that of the paper's rig within the bounds of its tensions.
 const STIFFNESS_NM_PER_RAD: RangeInclusive<f64> = 20.0..=170.0;
 
-/// The heaviest payload of the slider, kg.
+/// The heaviest payload of its slider, kg.
 const PAYLOAD_MAX_KG: f64 = 2.0;
+
+const PAYLOAD: ValueSlider = ValueSlider {
+    name: "payload",
+    text: "Payload",
+    unit: " kg",
+    decimals: 2,
+    step: 0.05,
+};
+const PRETENSION: ValueSlider = ValueSlider {
+    name: "pretension",
+    text: "Pretension",
+    unit: " N",
+    decimals: 1,
+    step: 0.0,
+};
+const STIFFNESS: ValueSlider = ValueSlider {
+    name: "stiffness",
+    text: "Stiffness",
+    unit: " N·m/rad",
+    decimals: 1,
+    step: 0.0,
+};
 
 /// A command that a button sends.
 struct Choice {
@@ -147,10 +166,8 @@ fn compensation(ui: &mut Ui, leg: &mut ShownLeg) {
 
 fn sliders(ui: &mut Ui, leg: &mut ShownLeg) {
     if let Some(simulation) = leg.simulated_mut() {
-        let mut payload_kg = simulation.payload_kg();
-        let slider = Slider::new(&mut payload_kg, 0.0..=PAYLOAD_MAX_KG);
-        let slider = slider.step_by(0.05).fixed_decimals(2).suffix(" kg");
-        if row(ui, "Payload", "payload", slider, None) {
+        let payload_kg = simulation.payload_kg();
+        if let Some(payload_kg) = PAYLOAD.show(ui, payload_kg, 0.0..=PAYLOAD_MAX_KG, None) {
             simulation.hang(payload_kg);
         }
     }
@@ -158,47 +175,17 @@ fn sliders(ui: &mut Ui, leg: &mut ShownLeg) {
         return;
     };
     let (rig, locked) = (leg.rig(), leg.locked());
-    let mut pretension_n = f64::from(telemetry.pretension_n);
-    let slider = Slider::new(&mut pretension_n, rig.f_min_n..=rig.f_max_n).suffix(" N");
-    let slider = slider.fixed_decimals(1);
-    if row(ui, "Pretension", "pretension", slider, locked) {
+    let bounds_n = rig.f_min_n..=rig.f_max_n;
+    let pretension_n = PRETENSION.show(ui, telemetry.pretension_n.into(), bounds_n, locked);
+    if let Some(pretension_n) = pretension_n {
         leg.command(Command::Pretension(pretension_n as f32), "pretension");
     }
-    let mut stiffness = f64::from(telemetry.stiffness_nm_per_rad);
-    let slider = Slider::new(&mut stiffness, STIFFNESS_NM_PER_RAD).suffix(" N·m/rad");
-    let slider = slider.fixed_decimals(1);
-    if row(ui, "Stiffness", "stiffness", slider, locked) {
+    let reported = telemetry.stiffness_nm_per_rad.into();
+    if let Some(stiffness) = STIFFNESS.show(ui, reported, STIFFNESS_NM_PER_RAD, locked) {
         let demand = Command::Stiffness {
             demand_nm_per_rad: stiffness as f32,
             towards: None,
         };
         leg.command(demand, "stiffness");
     }
-}
-
-/// Says of a control that is disabled why it is.
-fn why(response: Response, locked: Option<&str>) -> Response {
-    match locked {
-        Some(words) => response.on_disabled_hover_text(words),
-        None => response,
-    }
-}
-
-/// Whether it was changed by hand: what the leg reports may be beyond the slider's ends.
-fn row(
-    ui: &mut Ui,
-    text: &str,
-    name: &'static str,
-    slider: Slider<'_>,
-    locked: Option<&str>,
-) -> bool {
-    ui.horizontal(|ui| {
-        left(ui, LABEL_WIDTH, text);
-        ui.spacing_mut().slider_width = (ui.available_width() - VALUE_WIDTH).clamp(60.0, 220.0);
-        let slider = slider.clamping(SliderClamping::Edits);
-        let response = ui.add_enabled(locked.is_none(), slider);
-        place(&response, name);
-        why(response, locked).changed()
-    })
-    .inner
 }

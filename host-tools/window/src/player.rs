@@ -170,7 +170,7 @@ impl Player {
                     RichText::new("RECORDING")
                         .small()
                         .strong()
-                        .color(palette.brass),
+                        .color(palette.warning),
                 );
                 ui.label(RichText::new(&self.leg.name).monospace());
                 ui.label(RichText::new(&self.leg.about.title).color(palette.faint));

@@ -85,12 +85,12 @@ const LIGHT: Palette = Palette {
     plate: rgb(0x5b_6b_7d),
     shaft: rgb(0x9a_a3_ad),
     brass: rgb(0xc7_9a_3a),
-    target: rgb(0x0f_73_ac),
-    error: rgb(0x9f_31_02),
-    good: rgb(0x0d_7f_60),
-    warning: rgb(0xa8_7c_0a),
+    target: rgb(0x14_6b_df),
+    error: rgb(0x94_35_08),
+    good: rgb(0x07_7f_61),
+    warning: rgb(0x99_66_00),
     danger: rgb(0xc2_30_17),
-    series: [rgb(0xc6_13_8a), rgb(0x57_3c_c9), rgb(0x70_92_70)],
+    series: [rgb(0xbf_0a_6e), rgb(0x51_2b_b3), rgb(0x4f_64_8d)],
 };
 
 /// The colours that are in use.

@@ -13,7 +13,8 @@ use leg_firmware::command::Command;
 use leg_firmware::supervisor::State;
 
 /// How fast the leg's time goes beside the clock's: the value, its text, the same where there is little room, its name for tests.
-const RATES: [(f64, &str, &str, &str); 4] = [
+const RATES: [(f64, &str, &str, &str); 5] = [
+    (8.0, "×8", "×8", "rate_8"),
     (1.0, "real time", "×1", "rate_1"),
     (0.1, "1/10", "1/10", "rate_tenth"),
     (0.01, "1/100", "1/100", "rate_hundredth"),

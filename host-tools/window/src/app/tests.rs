@@ -6,6 +6,7 @@ mod loaded;
 mod looks;
 mod recordings;
 mod setup;
+mod typed;
 
 use super::App;
 use crate::simulation::Simulation;

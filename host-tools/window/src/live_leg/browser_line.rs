@@ -88,7 +88,10 @@ impl Line for BrowserLine {
     }
 
     fn say(&mut self, said: Said) {
-        // A line that has ended has said so.
+        // A line that has ended has said so; a browser complains of what is said after that.
+        if self.socket.ready_state() != WebSocket::OPEN {
+            return;
+        }
         let _ = match said {
             Said::Text(text) => self.socket.send_with_str(text),
             Said::Bytes(bytes) => self.socket.send_with_u8_array(&bytes),

@@ -124,7 +124,11 @@ impl Table {
 
     fn row(&mut self, ui: &mut Ui, editor: &mut Editor, row: &Row, palette: &Palette) {
         let changed = editor.is_changed(row);
-        let edge = if changed { palette.brass } else { palette.line };
+        let edge = if changed {
+            palette.warning
+        } else {
+            palette.line
+        };
         let frame = Frame::group(ui.style()).stroke(egui::Stroke::new(1.0, edge));
         frame.inner_margin(6.0).show(ui, |ui| {
             ui.set_width(ui.available_width());
@@ -136,7 +140,7 @@ impl Table {
                 ui.label(RichText::new(where_).small().color(palette.faint));
                 if changed {
                     let words = was(editor, row);
-                    ui.label(RichText::new(words).small().color(palette.brass));
+                    ui.label(RichText::new(words).small().color(palette.warning));
                 }
             });
             ui.horizontal_wrapped(|ui| {

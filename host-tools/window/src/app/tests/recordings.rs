@@ -216,7 +216,7 @@ fn one_that_is_broken_is_refused_with_its_name_place_and_remedy_and_the_leg_stay
         + 1;
     broken[digit] = if good[digit] == b'1' { b'2' } else { b'1' };
     for (bytes, place) in [
-        (broken, " messages"),
+        (broken, "a part is damaged (its checksum is "),
         (Vec::new(), "is no whole MCAP file"),
         (b"PK\x03\x04".to_vec(), "is no whole MCAP file"),
         (good[..60].to_vec(), "holds no telemetry"),
