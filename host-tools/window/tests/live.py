@@ -25,8 +25,9 @@ LEG = HERE.parents[2] / "target" / "debug" / "leg"
 # its leg often enough for those is a test of its own, by counts.
 PATIENT = "\n[control.limits]\ncommand_time_s = 2\n"
 
-# Time in which a leg whose page has gone is held, s.
+# Time in which a leg whose page has gone is held, s; and for which a page is hidden, so that its leg is held meanwhile.
 HELD_S = 5.0
+HIDDEN_S = 4.0
 
 # A page that shows everything side by side, and is quickly drawn.
 SMALL = (1000, 560)
@@ -332,7 +333,26 @@ def lost(served, page):
     served.end()
     leg = page.wait_leg("is lost", lambda leg: leg["failure"])
     assert "held by itself" in leg["failure"] and leg["locked"], leg
+    page.press("stop")
+    time.sleep(0.3)
+    assert not (errors := severe(page.browser)), errors
     print(f"`leg ui` has ended: {leg['failure']}")
+
+
+def hidden(page):
+    """A page behind another one falls silent, and its leg is held."""
+    go_on(page)
+    with page.browser.covered():
+        time.sleep(HIDDEN_S)
+    leg = page.wait_leg("is held", lambda leg: leg["state"] == "held")
+    assert leg["faults"] == ["no command"] and leg["drives"] == [True, False], leg
+    print("a hidden page falls silent: the leg is held")
+    go_on(page)
+
+
+def severe(browser):
+    """What the browser complains of."""
+    return [entry for entry in browser.log() if entry["level"] == "SEVERE"]
 
 
 def nobody(page, served):
@@ -380,9 +400,10 @@ def main():
         page.picture("live")
         driven_board(page)
         stops(page)
+        hidden(page)
         measure(page)
         second_page(served, page)
-        errors = [entry for entry in browser.log() if entry["level"] == "SEVERE"]
+        errors = severe(browser)
         assert not [error for error in errors if "127.0.0.1:9" not in error["message"]], errors
     print("all of it holds")
 

@@ -9,6 +9,7 @@ import select
 import socket
 import struct
 import threading
+import time
 import urllib.parse
 
 WAIT_S = 10
@@ -99,13 +100,17 @@ class Stranger:
             assert kind != CLOSE, data
 
     def ended(self):
-        """Whether the other end ends it."""
-        try:
-            while self.message()[0] != CLOSE:
-                pass
-        except OSError:
-            pass
-        return True
+        """Whether the other end ends it in time."""
+        until = time.monotonic() + WAIT_S
+        while time.monotonic() < until:
+            try:
+                if self.message()[0] == CLOSE:
+                    return True
+            except TimeoutError:
+                return False
+            except OSError:
+                return True
+        return False
 
 
 class Server:

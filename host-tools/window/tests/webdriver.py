@@ -1,6 +1,7 @@
 """A browser without a screen, driven by the WebDriver protocol: what a test of the page needs of it, and no more."""
 
 import base64
+import contextlib
 import json
 import socket
 import subprocess
@@ -95,6 +96,16 @@ class Browser:
         body = {"cmd": "Emulation.setEmulatedMedia", "params": {"features": features}}
         self._call("POST", "/goog/cdp/execute", body)
 
+    @contextlib.contextmanager
+    def covered(self):
+        """The page is behind another one within."""
+        page = self._call("GET", "/window")
+        other = self._call("POST", "/window/new", {"type": "tab"})["handle"]
+        self._call("POST", "/window", {"handle": other})
+        yield
+        self._call("DELETE", "/window")
+        self._call("POST", "/window", {"handle": page})
+
     def open(self, address):
         self._call("POST", "/url", {"url": address})
 
@@ -134,7 +145,6 @@ class Browser:
         strokes = [{"type": "keyDown", "value": key}, pause(60), {"type": "keyUp", "value": key}]
         actions = {"type": "key", "id": "keyboard", "actions": strokes}
         self._call("POST", "/actions", {"actions": [actions]})
-
 
     def type_over(self, text):
         """Types a text in the place of what is in a field, and ends that by Enter."""
