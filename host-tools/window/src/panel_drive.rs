@@ -2,8 +2,9 @@
 
 use crate::places::place;
 use crate::shown_leg::ShownLeg;
+use crate::text::why;
 use crate::theme::palette;
-use crate::value_slider::{ValueSlider, why};
+use crate::value_slider::ValueSlider;
 use egui::{Button, Checkbox, Label, RichText, Ui, vec2};
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::supervisor::{Event, State};

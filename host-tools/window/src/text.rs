@@ -1,6 +1,6 @@
 //! Text in its place.
 
-use egui::{Align, Label, Layout, RichText, Ui, vec2};
+use egui::{Align, Label, Layout, Response, RichText, Ui, vec2};
 
 /// Text at the left of a field of some width.
 pub fn left(ui: &mut Ui, width: f32, text: &str) {
@@ -10,4 +10,13 @@ pub fn left(ui: &mut Ui, width: f32, text: &str) {
         ui.set_min_size(size);
         ui.add(Label::new(RichText::new(text)).truncate());
     });
+}
+
+/// Says of a control that is disabled why it is.
+#[must_use]
+pub fn why(response: Response, locked: Option<&str>) -> Response {
+    match locked {
+        Some(words) => response.on_disabled_hover_text(words),
+        None => response,
+    }
 }

@@ -1,8 +1,8 @@
 //! A value that is dragged, or typed, while the leg reports it anew in every frame.
 
 use crate::places::place;
-use crate::text::left;
-use egui::{Response, Slider, SliderClamping, Ui};
+use crate::text::{left, why};
+use egui::{Slider, SliderClamping, Ui};
 use std::ops::RangeInclusive;
 
 /// What a slider leaves for its name and its value, points.
@@ -66,12 +66,4 @@ impl ValueSlider {
 fn number(text: &str) -> Option<f64> {
     let number: f64 = text.trim().replace('−', "-").parse().ok()?;
     number.is_finite().then_some(number)
-}
-
-/// Says of a control that is disabled why it is.
-pub fn why(response: Response, locked: Option<&str>) -> Response {
-    match locked {
-        Some(words) => response.on_disabled_hover_text(words),
-        None => response,
-    }
 }

@@ -347,6 +347,7 @@ def hidden(page):
     leg = page.wait_leg("is held", lambda leg: leg["state"] == "held")
     assert leg["faults"] == ["no command"] and leg["drives"] == [True, False], leg
     print("a hidden page falls silent: the leg is held")
+    go_on(page)
 
 
 def severe(browser):
