@@ -3,8 +3,6 @@
 import base64
 import contextlib
 import json
-import os
-import pathlib
 import socket
 import subprocess
 import time
@@ -117,21 +115,6 @@ class Browser:
     def run_later(self, script, *arguments):
         """The script calls its last argument with the result."""
         return self._call("POST", "/execute/async", {"script": script, "args": list(arguments)})
-
-    def processor_s(self):
-        """Time that the browser's processes, its driver among them, have taken of all processors; Linux."""
-        parents, taken = {}, {}
-        for file in pathlib.Path("/proc").glob("[0-9]*/stat"):
-            with contextlib.suppress(OSError):
-                # What stands before is a name, which may be anything.
-                fields = file.read_text().rpartition(")")[2].split()
-                process = int(file.parent.name)
-                parents[process] = int(fields[1])
-                taken[process] = int(fields[11]) + int(fields[12])
-        own = {self.driver.pid}
-        while more := {process for process, parent in parents.items() if parent in own} - own:
-            own |= more
-        return sum(taken.get(process, 0) for process in own) / os.sysconf("SC_CLK_TCK")
 
     def log(self):
         return self._call("POST", "/se/log", {"type": "browser"})
