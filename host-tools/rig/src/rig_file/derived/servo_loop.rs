@@ -115,7 +115,8 @@ impl ServoLoop {
 
     /// From the speed to the tracked speed.
     fn tracked(&self, rate: f64) -> Complex {
-        Complex::new(1.0, rate / self.tracking_per_s).powi(-2)
+        let lag = Complex::new(1.0, rate / self.tracking_per_s);
+        (lag * lag).recip()
     }
 }
 
