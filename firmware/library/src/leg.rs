@@ -3,6 +3,7 @@
 mod active;
 mod command_queue;
 mod commands;
+mod give_way;
 mod held;
 mod homing;
 mod jogging;

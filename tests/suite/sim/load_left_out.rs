@@ -5,7 +5,7 @@
 use super::station_stand::{armed, pass};
 use leg_bench::stand::Stand;
 use leg_firmware::command::{Command, Compensation};
-use leg_firmware::supervisor::State;
+use leg_firmware::supervisor::{Fault, State};
 use leg_rig::rig_file::RigFile;
 
 fn rig(name: &str) -> RigFile {
@@ -69,4 +69,40 @@ fn it_goes_where_it_is_led_at_once() {
     let [x, y] = stand.telemetry.unwrap().target;
     let tilt_deg = x.hypot(y).asin().to_degrees();
     assert!((tilt_deg - 5.0).abs() < 0.01, "{tilt_deg}°");
+}
+
+/// A load that takes a tendon to the maximum tension: without an estimate the leg would sink the farther the more it pays out, and is held
+/// by its name. With one it goes on: its tendons are led to other tensions. 0.1 mm of a tendon is twice what it gives way by.
+#[test]
+fn it_gives_way_to_the_maximum_tension_no_farther_than_it_says() {
+    for compensation in [
+        Compensation::Off,
+        Compensation::Frozen,
+        Compensation::Estimated,
+    ] {
+        let mut rig = rig("table1");
+        rig.pretension_n = 110.0;
+        let mut stand = armed(&rig, [90.0, 25.0], 0.0, 3);
+        stand.command(&Command::Compensation(compensation)).unwrap();
+        stand.wait(1.0).unwrap();
+        stand.plant().set_payload(2.0, 2.0);
+        let pulled_m = stand.telemetry.unwrap().pulled_m;
+        pass(&mut stand, 3.0);
+        let now_m = stand.telemetry.unwrap().pulled_m;
+        let paid_out_m = now_m.into_iter().zip(pulled_m);
+        let farthest_m = paid_out_m.fold(0.0_f32, |most, (now, before)| most.max(before - now));
+        let highest_n = stand.truth.tensions_n.into_iter().fold(0.0, f64::max);
+        println!(
+            "{compensation:?}: {:?}, {farthest_m} m, {highest_n} N",
+            stand.state()
+        );
+        if compensation == Compensation::Estimated {
+            assert_eq!(stand.state(), State::Active);
+            assert!(!stand.faults().any());
+        } else {
+            assert_eq!(stand.state(), State::Held);
+            assert!(stand.faults().has(Fault::Following));
+            assert!(farthest_m < 1e-4, "{farthest_m} m");
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! Following commands: estimate, pretension, target and plan in turn, one a tick.
 
+use super::give_way::gives_way;
 use super::length_offsets::LengthOffsets;
 use super::phase::Phase;
 use super::shared::Shared;
@@ -13,12 +14,6 @@ use crate::set_point::{PointRefusal, SetPoint, StreamPart};
 use crate::supervisor::{Fault, FaultSet, SETTLE_CYCLES};
 use leg_model::{Direction, Error, Scalar};
 use nalgebra::Vector3;
-
-/// How far a tendon of a leg at rest may be paid out for its tension, m: half of what its reference stays ahead of it, 0.2 to 0.4 mm at the tip.
-const GIVEN_WAY_M: f32 = 5e-5;
-
-/// Part of the maximum tension above which a motor that stays behind is held back by it.
-const NEAR_MAX_PART: f32 = 0.95;
 
 /// The leg follows commands.
 #[derive(Clone, Copy, Debug)]
@@ -101,8 +96,9 @@ impl<T: Scalar> Active<T> {
                     self.faults.add(Fault::OffStation, off_station);
                     self.faults
                         .add(Fault::Swings, shared.damping.keeps_swinging());
-                    self.faults
-                        .add(Fault::Following, self.gives_way(shared, measured));
+                    let rests = self.tensioned && !self.trajectory.moving();
+                    let given_way = rests && gives_way(shared, measured);
+                    self.faults.add(Fault::Following, given_way);
                     Ok(())
                 } else {
                     search_pretension(shared)
@@ -186,25 +182,6 @@ impl<T: Scalar> Active<T> {
     /// Whether it is on its way, or corrects where it keeps station.
     pub fn moving(&self) -> bool {
         self.trajectory.moving() || self.station.corrects()
-    }
-
-    /// Whether a tendon of a leg at rest is paid out because its tension is at the maximum, although no estimate of the load asks for
-    /// it: a leg that leans goes on sinking so, and a load cell that reads too much has it sink too.
-    #[inline(always)]
-    fn gives_way(&self, shared: &Shared<T>, measured: &Measured<T>) -> bool {
-        let estimated = shared.compensation == Compensation::Estimated;
-        if estimated || self.trajectory.moving() || !self.tensioned {
-            return false;
-        }
-        let near_max_n = shared.mechanism.f_max_n * T::from(NEAR_MAX_PART);
-        let measured = measured.pulled_m.iter().zip(&measured.tensions_n);
-        shared
-            .axes
-            .iter()
-            .zip(measured)
-            .any(|(axis, (&pulled_m, &tension_n))| {
-                tension_n > near_max_n && axis.reference_m() - pulled_m > T::from(GIVEN_WAY_M)
-            })
     }
 
     /// Leads the leg straight down, to be disarmed there.
