@@ -146,9 +146,8 @@ impl<'a> User<'a> {
             time_s,
             beyond: match fault {
                 Fault::Slack => tensions_n[0] < 0.5 * self.file.f_min_n,
-                Fault::OverTension => tensions_n[1] > self.file.f_max_n,
-                // A leg at rest that does not compensate its load gives way to the maximum tension.
-                Fault::Following => tensions_n[1] > 0.95 * self.file.f_max_n,
+                // A leg at rest whose load is not estimated gives way to the maximum tension: then its motor stays behind.
+                Fault::OverTension | Fault::Following => tensions_n[1] > self.file.f_max_n,
                 _ => false,
             },
             tensions_n,
