@@ -20,7 +20,7 @@ mod station;
 
 pub use command_queue::CommandOutcome;
 
-use crate::control::{LoadEstimation, Measured, Measurement};
+use crate::control::{Axis, LoadEstimation, Measured, Measurement};
 use crate::drive::Drive;
 use crate::jog::JogEnd;
 use crate::sensors::Sensors;
@@ -89,6 +89,10 @@ impl<T: Scalar> Leg<T> {
         self.tick = self.tick.wrapping_add(1);
         if let Some(axis) = self.phase.monitored_motor() {
             self.measurement.end_current(axis);
+        }
+        if self.measurement.has_magnitudes() {
+            let applied = self.shared.axes.each_ref().map(Axis::applied);
+            self.measurement.add_magnitudes(sensors, &applied);
         }
         let measured = self.measurement.convert(sensors);
         for (axis, &pulled) in self.shared.axes.iter_mut().zip(&measured.pulled_m) {
@@ -229,7 +233,7 @@ impl<T: Scalar> Leg<T> {
             && let (Some(axis), Some(&pulled)) =
                 (self.shared.axes.get_mut(turn), measured.pulled_m.get(turn))
         {
-            let shown = axis.view(pulled);
+            let shown = axis.view(pulled, self.measurement.told_current(turn));
             self.monitors.watch_motor(turn, &input, &shown);
         }
         faults = faults.union(self.monitors.axis_faults());

@@ -2,7 +2,7 @@
 
 use super::mode::ModeStep;
 use super::shared::Shared;
-use crate::control::{HomingSequence, HomingStep, Measured, Measurement};
+use crate::control::{Axis, HomingSequence, HomingStep, JogBounds, Measured, Measurement};
 use crate::supervisor::{Event, Fault, FaultSet};
 use leg_model::Scalar;
 
@@ -14,7 +14,11 @@ pub fn step<T: Scalar>(
     measurement: &mut Measurement<T>,
     measured: &Measured<T>,
 ) -> ModeStep {
-    let asked = homing.step(&shared.mechanism, measured);
+    let asked = if shared.limits.jogs.iter().any(JogBounds::may_be_silent) {
+        homing.step(&shared.mechanism, &with_ceilings(shared, measured))
+    } else {
+        homing.step(&shared.mechanism, measured)
+    };
     let mut failed = false;
     if !homing.releases() {
         let f_max_n = shared.limits.homing_f_max_n;
@@ -44,4 +48,19 @@ pub fn step<T: Scalar>(
     let mut faults = FaultSet::NONE;
     faults.add(Fault::HomingFailed, failed);
     ModeStep { faults, event }
+}
+
+/// What is measured, with the currents that are compared with their ceilings.
+fn with_ceilings<T: Scalar>(shared: &Shared<T>, measured: &Measured<T>) -> Measured<T> {
+    let mut measured = *measured;
+    let supply_v = measured.supply_v;
+    let axes = shared
+        .limits
+        .jogs
+        .iter()
+        .zip(shared.axes.iter().map(Axis::applied));
+    for (current, (bounds, applied)) in measured.currents_a.iter_mut().zip(axes) {
+        *current = bounds.ceiling_a(*current, &applied, supply_v);
+    }
+    measured
 }

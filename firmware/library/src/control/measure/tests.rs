@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::*;
-use crate::sensors::{CURRENT_ZERO_PART, NOMINAL_ZERO_CODE};
+use crate::sensors::{CURRENT_ZERO_PART, MIDDLE_CODE};
 
 /// After as many readings of these codes as it takes, the drivers being on from one of them on.
 fn sought<T: Scalar>(codes: [u16; 3], driven_from: u16) -> Measurement<T> {
@@ -49,7 +49,7 @@ fn the_mean_code_of_a_driver_that_is_off_is_no_current() {
 
 #[test]
 fn what_is_too_far_from_the_nominal_zero_is_none() {
-    let most = (CURRENT_ZERO_PART * NOMINAL_ZERO_CODE) as u16;
+    let most = (CURRENT_ZERO_PART * MIDDLE_CODE) as u16;
     let half = CODE_MAX / 2;
     for (code, taken) in [
         (half + most, true),

@@ -262,10 +262,15 @@ impl<T: Scalar> AxisMonitor<T> {
         let missed_v = if turned { axis.voltage_v } else { T::zero() };
         let mean_v = axis.mean_voltage_v - missed_v * T::from(1.0 / CYCLE_TICKS as f32);
         let driving_v = mean_v - induced_v;
-        let driving = self.driving_a.step(driving_v * bounds.a_per_v).abs();
-        let drawn = self.drawn_a.step(current).abs();
-        let allowed = bounds.lack_a + induced_v.abs() * bounds.lack_a_per_v;
-        let lack = driving - (drawn * T::from(WARM_RATIO) + allowed);
+        // From an output that is silent nothing may be concluded but what it reads all the same.
+        let (lack, drawn) = if axis.told_current {
+            let driving = self.driving_a.step(driving_v * bounds.a_per_v).abs();
+            let drawn = self.drawn_a.step(current).abs();
+            let allowed = bounds.lack_a + induced_v.abs() * bounds.lack_a_per_v;
+            (driving - (drawn * T::from(WARM_RATIO) + allowed), drawn)
+        } else {
+            (T::zero(), current.abs())
+        };
         // A motor that draws less than its voltage drives through one that stands is turning, or is not connected.
         let stands = step == 0;
         let least = if stands { T::zero() } else { bounds.open_a };

@@ -55,6 +55,7 @@ impl Seen {
                 driving_v: 0.0,
                 voltage_v: 0.0,
                 mean_voltage_v: 0.0,
+                told_current: true,
             },
             counts_a_cycle: 0,
             lives: true,
