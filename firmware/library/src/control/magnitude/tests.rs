@@ -43,15 +43,15 @@ fn what_drives_a_current_gives_its_sign() {
 fn an_output_that_is_silent_tells_nothing() {
     let short = [2.0, 2.0, 0.0999];
     assert_found(mean(WHEN_DRIVEN, &[(short, 0.0); 4]), (0.0, false));
-    let long = [2.4, 2.4, 0.1];
-    assert_found(mean(WHEN_DRIVEN, &[(long, 0.1); 4]), (1.0, true));
-    let one_short = [(long, 0.1), (short, 0.0), (long, 0.1), (long, 0.1)];
+    let long = [2.5, 2.5, 0.104];
+    assert_found(mean(WHEN_DRIVEN, &[(long, 0.104); 4]), (1.0, true));
+    let one_short = [(long, 0.104), (short, 0.0), (long, 0.104), (long, 0.104)];
     assert_found(mean(WHEN_DRIVEN, &one_short), (1.0, false));
     let opposed = [6.0, -2.0, 0.25];
     assert_found(mean(WHEN_DRIVEN, &[(opposed, 0.0); 4]), (0.0, false));
     assert_found(mean(MAGNITUDE, &[(opposed, 0.6); 4]), (-0.6, false));
-    let back = [-2.4, -2.4, 0.1];
-    let (_, told) = mean(WHEN_DRIVEN, &[(long, 0.1), (back, 0.0), (back, 0.1)]);
+    let back = [-2.5, -2.5, 0.104];
+    let (_, told) = mean(WHEN_DRIVEN, &[(long, 0.104), (back, 0.0), (back, 0.104)]);
     assert!(!told);
 }
 
