@@ -33,7 +33,7 @@ pub use filter::LowPass;
 pub use friction::{FRICTION_ALLOWANCE, Friction, PULL_ALLOWANCE};
 pub use homing::{HomingSequence, HomingStep};
 pub use jog_bounds::{JOG_RISE_S, JOG_TIME_MAX_S, JogBounds};
-pub use magnitude::{Applied, SHOWN_PART};
+pub use magnitude::{Applied, Magnitude, SHOWN_PART};
 pub use measure::{Measured, Measurement, ZERO_READINGS};
 pub use mechanism::Mechanism;
 pub use plan::MotionLimits;

@@ -36,8 +36,6 @@ pub struct AxisView<T> {
     pub voltage_v: T,
     /// The mean of [`Self::voltage_v`] over a cycle, V: at low tension the voltage changes its sign from tick to tick.
     pub mean_voltage_v: T,
-    /// Whether the measured current is that of the motor: an output that is silent tells nothing.
-    pub told_current: bool,
 }
 
 /// The controller of one axis.
@@ -145,15 +143,14 @@ impl<T: Scalar> Axis<T> {
         }
     }
 
-    /// What the monitors check once a cycle; `pulled_m` is how far the tendon is pulled in, and its current is told or not.
+    /// What the monitors check once a cycle; `pulled_m` is how far the tendon is pulled in.
     #[inline(always)]
-    pub fn view(&mut self, pulled_m: T, told_current: bool) -> AxisView<T> {
+    pub fn view(&mut self, pulled_m: T) -> AxisView<T> {
         AxisView {
             speed_m_per_s: self.speed_m_per_s,
             following_m: self.reference_m - pulled_m,
             driving_v: self.applied().driving_v,
             voltage_v: self.voltage_v,
-            told_current,
             mean_voltage_v: core::mem::replace(&mut self.voltage_sum_v, T::SUM_START)
                 * T::from(1.0 / CYCLE_TICKS as f32),
         }

@@ -41,7 +41,7 @@ pub struct JogBounds<T> {
 
 impl<T: Scalar> JogBounds<T> {
     /// Those of each motor.
-    pub fn of_motors(settings: &Settings) -> [Self; 3] {
+    pub fn each(settings: &Settings) -> [Self; 3] {
         let ([a, b, c], [first, second, third]) =
             (&settings.servos, settings.current_outputs.each());
         [(a, first), (b, second), (c, third)]

@@ -3,7 +3,7 @@
 use super::magnitude::{Applied, Magnitude};
 use super::{CYCLE_TICKS, TICK_S, bounds, filter::LowPass};
 use crate::sensors::{CODE_MAX, CurrentZero, Sensors};
-use crate::settings::{CurrentOutput, Settings};
+use crate::settings::{CurrentOutput, CurrentOutputs, Settings};
 use leg_model::Scalar;
 
 /// Readings of a current whose mean is its zero: 2 ms, as long as nothing is driven after a start.
@@ -55,18 +55,14 @@ pub struct Measurement<T> {
     /// Codes of each current while its zero is searched for, and how many readings that were.
     zero_codes: [u32; 3],
     zero_readings: u16,
-    /// The zero of each current by its data sheet.
-    nominal_zero_codes: [f32; 3],
-    /// Whether an output shows no more than a magnitude.
-    has_magnitudes: bool,
-    magnitudes: [Magnitude<T>; 3],
+    outputs: CurrentOutputs,
 }
 
 impl<T: Scalar> Measurement<T> {
     /// With the calibration of the settings.
     pub fn new(settings: &Settings) -> Self {
-        let outputs = settings.current_outputs.each();
-        let nominal_zero_codes = outputs.map(CurrentOutput::zero_code);
+        let outputs = settings.current_outputs;
+        let zero_codes = outputs.each().map(CurrentOutput::zero_code);
         let channel = |i: usize| {
             let axis = &settings.axes[i];
             Channel {
@@ -76,7 +72,7 @@ impl<T: Scalar> Measurement<T> {
                 n_per_code: axis.cell_n_per_code.into(),
                 zero_code: axis.cell_zero_code.into(),
                 a_per_code: axis.current_a_per_code.into(),
-                current_zero_code: nominal_zero_codes[i].into(),
+                current_zero_code: zero_codes[i].into(),
                 current_codes: 0,
                 current_a: T::zero(),
                 steady: LowPass::new(settings.estimation.tension_time_s, TICK_S),
@@ -91,9 +87,7 @@ impl<T: Scalar> Measurement<T> {
             current_zeros: [CurrentZero::NotFound; 3],
             zero_codes: [0; 3],
             zero_readings: 0,
-            nominal_zero_codes,
-            has_magnitudes: outputs != [CurrentOutput::Bidirectional; 3],
-            magnitudes: outputs.map(Magnitude::new),
+            outputs,
         }
     }
 
@@ -131,31 +125,35 @@ impl<T: Scalar> Measurement<T> {
             let mean_code = T::from(codes as f32 * (1.0 / CYCLE_TICKS as f32));
             channel.current_a = channel.current(mean_code);
         }
-        if self.has_magnitudes {
-            self.end_magnitude(axis);
+    }
+
+    /// Whether an output shows no more than a magnitude: then [`Self::end_magnitude`] and [`Self::add_magnitudes`] are needed.
+    #[inline(always)]
+    pub fn has_magnitudes(&self) -> bool {
+        self.outputs.has_magnitudes()
+    }
+
+    /// Ends the mean of an axis, from 0 to 2, at an output that shows a magnitude. After [`Self::end_current`].
+    pub fn end_magnitude(&mut self, axis: usize, magnitudes: &mut [Magnitude<T>; 3]) {
+        if let (Some(channel), Some(magnitude)) =
+            (self.channels.get_mut(axis), magnitudes.get_mut(axis))
+        {
+            let most_a = channel.current(T::from(f32::from(CODE_MAX)));
+            channel.current_a = magnitude.end(channel.current_a, most_a);
         }
     }
 
-    /// Whether the last mean of the current of an axis, from 0 to 2, is that of its motor.
-    #[inline(always)]
-    pub fn told_current(&self, axis: usize) -> bool {
-        !self.has_magnitudes || self.magnitudes.get(axis).is_some_and(Magnitude::told)
-    }
-
-    /// Whether [`Self::add_magnitudes`] is needed.
-    #[inline(always)]
-    pub fn has_magnitudes(&self) -> bool {
-        self.has_magnitudes
-    }
-
     /// Adds what the outputs show while the motors have what was applied in the last tick. Before [`Self::convert`].
-    #[cold]
-    #[inline(never)]
-    pub fn add_magnitudes(&mut self, sensors: &Sensors, applied: &[Applied<T>; 3]) {
+    pub fn add_magnitudes(
+        &self,
+        sensors: &Sensors,
+        applied: &[Applied<T>; 3],
+        magnitudes: &mut [Magnitude<T>; 3],
+    ) {
         let supply_v = code::<T>(sensors.supply_code) * self.supply_v_per_code;
         let shown = self.channels.iter().zip(&sensors.current_codes);
         for ((magnitude, applied), (channel, &shown)) in
-            self.magnitudes.iter_mut().zip(applied).zip(shown)
+            magnitudes.iter_mut().zip(applied).zip(shown)
         {
             let duty = if supply_v > T::one() {
                 applied.voltage_v.abs() / supply_v
@@ -163,17 +161,6 @@ impl<T: Scalar> Measurement<T> {
                 T::zero()
             };
             magnitude.add(channel.current(code(shown)), applied, duty);
-        }
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn end_magnitude(&mut self, axis: usize) {
-        if let (Some(channel), Some(magnitude)) =
-            (self.channels.get_mut(axis), self.magnitudes.get_mut(axis))
-        {
-            let most_a = channel.current(T::from(f32::from(CODE_MAX)));
-            channel.current_a = magnitude.end(channel.current_a, most_a);
         }
     }
 
@@ -200,9 +187,9 @@ impl<T: Scalar> Measurement<T> {
             // Exact: a sum has 20 bits, and the divisor is a power of two.
             let mean = |sum: u32| sum as f32 * (1.0 / f32::from(ZERO_READINGS));
             let mut zeros = self.current_zeros;
-            let nominal = self.nominal_zero_codes.iter().zip(&self.zero_codes);
-            for (zero, (&nominal_code, &sum)) in zeros.iter_mut().zip(nominal) {
-                *zero = CurrentZero::from_mean(mean(sum), nominal_code);
+            let outputs = self.outputs.each().into_iter().zip(&self.zero_codes);
+            for (zero, (output, &sum)) in zeros.iter_mut().zip(outputs) {
+                *zero = CurrentZero::from_mean(mean(sum), output.zero_code());
             }
             self.set_current_zeros(&zeros);
         }
@@ -217,9 +204,9 @@ impl<T: Scalar> Measurement<T> {
     /// Counts currents from these zeros, from the next mean on.
     pub fn set_current_zeros(&mut self, zeros: &[CurrentZero; 3]) {
         self.current_zeros = *zeros;
-        let nominal = zeros.iter().zip(&self.nominal_zero_codes);
-        for (channel, (zero, &nominal_code)) in self.channels.iter_mut().zip(nominal) {
-            channel.current_zero_code = zero.code(nominal_code).into();
+        let zeros = zeros.iter().zip(self.outputs.each());
+        for (channel, (zero, output)) in self.channels.iter_mut().zip(zeros) {
+            channel.current_zero_code = zero.code(output.zero_code()).into();
         }
     }
 

@@ -15,7 +15,7 @@ pub fn step<T: Scalar>(
     measured: &Measured<T>,
 ) -> ModeStep {
     let asked = if shared.limits.jogs.iter().any(JogBounds::may_be_silent) {
-        homing.step(&shared.mechanism, &with_ceilings(shared, measured))
+        homing.step(&shared.mechanism, &replace_currents(shared, measured))
     } else {
         homing.step(&shared.mechanism, measured)
     };
@@ -50,8 +50,8 @@ pub fn step<T: Scalar>(
     ModeStep { faults, event }
 }
 
-/// What is measured, with the currents that are compared with their ceilings.
-fn with_ceilings<T: Scalar>(shared: &Shared<T>, measured: &Measured<T>) -> Measured<T> {
+/// What is measured, and in the place of the currents those that are compared with their ceilings.
+fn replace_currents<T: Scalar>(shared: &Shared<T>, measured: &Measured<T>) -> Measured<T> {
     let mut measured = *measured;
     let supply_v = measured.supply_v;
     let axes = shared

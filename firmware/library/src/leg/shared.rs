@@ -85,7 +85,7 @@ impl<T: Scalar> LegLimits<T> {
         let geometry = mechanism.geometry(&down, T::zero(), &mut twisted);
         let hanging_m = inverse_kinematics(geometry, &down)?.lengths;
         Ok(Self {
-            jogs: JogBounds::of_motors(settings),
+            jogs: JogBounds::each(settings),
             slack_lengths_m: (hanging_m.add_scalar(T::from(SLACK_M))).into(),
             motion: MotionLimits::new(&settings.motion),
             homing: settings.homing,

@@ -62,6 +62,13 @@ impl CurrentOutputs {
         Self(first.bits() | second.bits() << 2 | third.bits() << 4)
     }
 
+    /// Whether one shows no more than a magnitude.
+    #[must_use]
+    #[inline(always)]
+    pub const fn has_magnitudes(self) -> bool {
+        self.0 != 0
+    }
+
     /// The output of each motor.
     #[must_use]
     pub const fn each(self) -> [CurrentOutput; 3] {

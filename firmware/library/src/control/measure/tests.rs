@@ -4,7 +4,7 @@
 
 use super::*;
 use crate::sensors::{CURRENT_ZERO_PART, MIDDLE_CODE};
-use crate::settings::{CurrentOutput, CurrentOutputs};
+use crate::settings::CurrentOutputs;
 
 /// After as many readings of these codes as it takes, the drivers being on from one of them on.
 fn sought<T: Scalar>(codes: [u16; 3], driven_from: u16) -> Measurement<T> {

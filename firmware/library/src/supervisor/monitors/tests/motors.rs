@@ -278,9 +278,9 @@ fn a_motor_that_turns_about_all_the_time_draws_what_its_pulses_drive() {
 fn an_output_that_is_silent_lacks_nothing() {
     let silent = |drawn_a: f64| {
         move |limits: &Limits, seen: &mut Seen| {
-            drives(3.0, 1)(limits, seen);
+            drives(0.3, 1)(limits, seen);
             seen.measured.currents_a[AXIS] = drawn_a;
-            seen.view.told_current = false;
+            seen.silent = true;
         }
     };
     is_no_fault("silent", silent(0.0));
@@ -291,6 +291,6 @@ fn an_output_that_is_silent_lacks_nothing() {
     );
     disagrees(|limits, seen| {
         silent(0.0)(limits, seen);
-        seen.view.told_current = true;
+        seen.silent = false;
     });
 }
