@@ -3,7 +3,7 @@
 use super::bounds::max;
 use super::{Applied, SHOWN_PART};
 use crate::jog::{JOG_TRAVEL_MAX_M, JogDemand, JogRefusal};
-use crate::settings::{CurrentOutput, Servo, Settings};
+use crate::settings::{Servo, Settings};
 use leg_model::Scalar;
 
 /// Time in which the voltage of a jog comes up, s: at once, the motor would draw more than any tension of a jog asks for.
@@ -28,59 +28,34 @@ const fn longest_s(way_s: f32) -> f32 {
 pub struct JogBounds<T> {
     /// Voltage from which the monitors take a motor for driven, V.
     voltage_max_v: f32,
-    /// Highest tension: that of homing, N.
-    pub tension_max_n: T,
-    /// Highest current: what the motor draws at that tension, A. It is that of homing, too.
+    /// Highest current: what the motor draws at the highest tension of homing, A. It is that of homing, too.
     pub current_max_a: T,
     /// Voltage that this current takes, V, and what the speed induces, V·s/m.
     dropped_v: f32,
     back_emf_v_s_per_m: f32,
-    /// What a volt drives through the winding, A, where the output does not show short pulses; else none.
-    silent_a_per_v: T,
 }
 
 impl<T: Scalar> JogBounds<T> {
-    /// Those of each motor.
-    pub fn each(settings: &Settings) -> [Self; 3] {
-        let ([a, b, c], [first, second, third]) =
-            (&settings.servos, settings.current_outputs.each());
-        [(a, first), (b, second), (c, third)]
-            .map(|(servo, output)| Self::new(settings, servo, output))
-    }
-
-    /// Those of the settings for a motor with this servo and this current output.
-    fn new(settings: &Settings, servo: &Servo, output: CurrentOutput) -> Self {
+    /// Those of the settings for a motor with this servo.
+    pub fn new(settings: &Settings, servo: &Servo) -> Self {
         // With half more friction than the settings know.
         let current_max_a = 1.5 * servo.friction_a + servo.pull_a_per_n * settings.homing.f_max_n;
         Self {
             voltage_max_v: settings.limits.driven_part * servo.current_a * servo.resistance_ohm,
-            tension_max_n: settings.homing.f_max_n.into(),
             current_max_a: current_max_a.into(),
             dropped_v: servo.resistance_ohm * current_max_a,
             back_emf_v_s_per_m: servo.back_emf_v_s_per_m,
-            silent_a_per_v: T::from(match output {
-                CurrentOutput::MagnitudeWhenDriven => 1.0 / servo.resistance_ohm,
-                CurrentOutput::Bidirectional | CurrentOutput::Magnitude => 0.0,
-            }),
         }
     }
 
-    /// Whether the output does not show short pulses.
-    #[inline(always)]
-    pub fn may_be_silent(&self) -> bool {
-        self.silent_a_per_v > T::zero()
-    }
-
-    /// The current that is compared with the highest one, A: below the shortest pulse that the output shows, what the voltage drives by
-    /// resistance and counts where that is more than it reads.
+    /// The current that is compared with the highest one, A, at an output that does not show short pulses: below the shortest that it shows,
+    /// what the voltage drives by resistance and counts where that is more than it reads.
     pub fn ceiling_a(&self, measured_a: T, applied: &Applied<T>, supply_v: T) -> T {
         if applied.voltage_v.abs() >= T::from(SHOWN_PART) * supply_v {
             return measured_a;
         }
-        max(
-            measured_a.abs(),
-            applied.driving_v.abs() * self.silent_a_per_v,
-        )
+        let a_per_v = self.current_max_a / T::from(self.dropped_v);
+        max(measured_a.abs(), applied.driving_v.abs() * a_per_v)
     }
 
     /// Those of the motor that a demand is for, if its jog may begin.

@@ -135,11 +135,14 @@ impl<T: Scalar> Measurement<T> {
 
     /// Ends the mean of an axis, from 0 to 2, at an output that shows a magnitude. After [`Self::end_current`].
     pub fn end_magnitude(&mut self, axis: usize, magnitudes: &mut [Magnitude<T>; 3]) {
-        if let (Some(channel), Some(magnitude)) =
-            (self.channels.get_mut(axis), magnitudes.get_mut(axis))
-        {
+        let outputs = self.outputs.each();
+        if let (Some(channel), Some(magnitude), Some(&output)) = (
+            self.channels.get_mut(axis),
+            magnitudes.get_mut(axis),
+            outputs.get(axis),
+        ) {
             let most_a = channel.current(T::from(f32::from(CODE_MAX)));
-            channel.current_a = magnitude.end(channel.current_a, most_a);
+            channel.current_a = magnitude.end(output, channel.current_a, most_a);
         }
     }
 
@@ -152,15 +155,16 @@ impl<T: Scalar> Measurement<T> {
     ) {
         let supply_v = code::<T>(sensors.supply_code) * self.supply_v_per_code;
         let shown = self.channels.iter().zip(&sensors.current_codes);
-        for ((magnitude, applied), (channel, &shown)) in
-            magnitudes.iter_mut().zip(applied).zip(shown)
+        let magnitudes = magnitudes.iter_mut().zip(self.outputs.each());
+        for (((magnitude, output), applied), (channel, &shown)) in
+            magnitudes.zip(applied).zip(shown)
         {
             let duty = if supply_v > T::one() {
                 applied.voltage_v.abs() / supply_v
             } else {
                 T::zero()
             };
-            magnitude.add(channel.current(code(shown)), applied, duty);
+            magnitude.add(output, channel.current(code(shown)), applied, duty);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::mode::ModeStep;
 use super::shared::Shared;
-use crate::control::{Axis, HomingSequence, HomingStep, JogBounds, Measured, Measurement};
+use crate::control::{HomingSequence, HomingStep, Measured, Measurement};
 use crate::supervisor::{Event, Fault, FaultSet};
 use leg_model::Scalar;
 
@@ -14,7 +14,7 @@ pub fn step<T: Scalar>(
     measurement: &mut Measurement<T>,
     measured: &Measured<T>,
 ) -> ModeStep {
-    let asked = if shared.limits.jogs.iter().any(JogBounds::may_be_silent) {
+    let asked = if shared.current_outputs.has_magnitudes() {
         homing.step(&shared.mechanism, &replace_currents(shared, measured))
     } else {
         homing.step(&shared.mechanism, measured)
@@ -54,13 +54,12 @@ pub fn step<T: Scalar>(
 fn replace_currents<T: Scalar>(shared: &Shared<T>, measured: &Measured<T>) -> Measured<T> {
     let mut measured = *measured;
     let supply_v = measured.supply_v;
-    let axes = shared
-        .limits
-        .jogs
-        .iter()
-        .zip(shared.axes.iter().map(Axis::applied));
-    for (current, (bounds, applied)) in measured.currents_a.iter_mut().zip(axes) {
-        *current = bounds.ceiling_a(*current, &applied, supply_v);
+    let axes = shared.limits.jogs.iter().zip(&shared.axes);
+    let currents = measured.currents_a.iter_mut().zip(axes).enumerate();
+    for (motor, (current, (bounds, axis))) in currents {
+        if shared.current_outputs.hides_short_pulses(motor) {
+            *current = bounds.ceiling_a(*current, &axis.applied(), supply_v);
+        }
     }
     measured
 }

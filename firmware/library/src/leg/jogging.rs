@@ -73,10 +73,11 @@ impl<T: Scalar> Jogging<T> {
             .iter()
             .fold(T::zero(), |a, &b| bounds::max(a, b));
         let eased_n = taut_n + T::from(shared.limits.homing.touch_n);
+        let homing_n = shared.limits.homing_f_max_n;
         let tension_max_n = if pays_out {
-            bounds::max(jog_bounds.tension_max_n, eased_n)
+            bounds::max(homing_n, eased_n)
         } else {
-            jog_bounds.tension_max_n
+            homing_n
         };
         let motor = usize::from(demand.motor.saturating_sub(1));
         shared.jog_report = Some(JogReport {
@@ -142,7 +143,11 @@ impl<T: Scalar> Jogging<T> {
                 self.drive();
                 let tension = measured.tensions_n.get(self.motor);
                 self.average(report, pulled, current, tension.copied());
-                let hauled_a = self.bounds.ceiling_a(current, &applied, measured.supply_v);
+                let hauled_a = if shared.current_outputs.hides_short_pulses(self.motor) {
+                    self.bounds.ceiling_a(current, &applied, measured.supply_v)
+                } else {
+                    current
+                };
                 report.end = self.end(report, pulled, hauled_a);
                 if report.end != JogEnd::Running {
                     self.brake_ticks = Some(ticks(BRAKE_S));

@@ -9,7 +9,7 @@ use crate::control::{
 };
 use crate::drive::Drive;
 use crate::jog::JogReport;
-use crate::settings::{Homing, Settings, SettingsError};
+use crate::settings::{CurrentOutputs, Homing, Settings, SettingsError};
 use crate::supervisor::State;
 use leg_model::{Direction, Error, Scalar, inverse_kinematics};
 use nalgebra::Vector3;
@@ -39,6 +39,8 @@ pub struct Shared<T> {
     pub refused: bool,
     /// Tendon at which homing failed the last time, from 1; 0 for none.
     pub failed_tendon: u8,
+    /// What the current outputs show.
+    pub current_outputs: CurrentOutputs,
     pub limits: LegLimits<T>,
     pub pretension: PretensionSearch<T>,
     pub mechanism: Mechanism<T>,
@@ -85,7 +87,10 @@ impl<T: Scalar> LegLimits<T> {
         let geometry = mechanism.geometry(&down, T::zero(), &mut twisted);
         let hanging_m = inverse_kinematics(geometry, &down)?.lengths;
         Ok(Self {
-            jogs: JogBounds::each(settings),
+            jogs: settings
+                .servos
+                .each_ref()
+                .map(|servo| JogBounds::new(settings, servo)),
             slack_lengths_m: (hanging_m.add_scalar(T::from(SLACK_M))).into(),
             motion: MotionLimits::new(&settings.motion),
             homing: settings.homing,
@@ -150,6 +155,7 @@ impl<T: Scalar> Shared<T> {
             lowest_m: [T::zero(); 3],
             refused: false,
             failed_tendon: 0,
+            current_outputs: settings.current_outputs,
             limits: checked.limits,
             mechanism: checked.mechanism,
             jog_report: None,

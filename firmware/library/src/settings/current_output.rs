@@ -69,6 +69,12 @@ impl CurrentOutputs {
         self.0 != 0
     }
 
+    /// Whether that of a motor, from 0, does not show short pulses.
+    #[must_use]
+    pub fn hides_short_pulses(self, motor: usize) -> bool {
+        self.each().get(motor) == Some(&CurrentOutput::MagnitudeWhenDriven)
+    }
+
     /// The output of each motor.
     #[must_use]
     pub const fn each(self) -> [CurrentOutput; 3] {
