@@ -60,6 +60,7 @@ mod rig {
 mod sim {
     mod braking;
     mod comparison;
+    mod current_outputs;
     mod current_zeros;
     mod fmea_page;
     mod homing_with_faults;

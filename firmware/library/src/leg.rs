@@ -21,7 +21,7 @@ mod station;
 
 pub use command_queue::CommandOutcome;
 
-use crate::control::{LoadEstimation, Measured, Measurement};
+use crate::control::{Axis, LoadEstimation, Magnitude, Measured, Measurement};
 use crate::drive::Drive;
 use crate::jog::JogEnd;
 use crate::sensors::Sensors;
@@ -55,6 +55,7 @@ pub struct Leg<T> {
     mode: Mode<T>,
     shared: Shared<T>,
     queue: CommandQueue,
+    magnitudes: [Magnitude<T>; 3],
 }
 
 impl<T: Scalar> Leg<T> {
@@ -81,6 +82,7 @@ impl<T: Scalar> Leg<T> {
             monitors: Monitors::new(settings),
             agreement: Agreement::new(settings),
             supervisor: Supervisor::default(),
+            magnitudes: settings.current_outputs.each().map(Magnitude::new),
         }
     }
 
@@ -90,6 +92,9 @@ impl<T: Scalar> Leg<T> {
         self.tick = self.tick.wrapping_add(1);
         if let Some(axis) = self.phase.monitored_motor() {
             self.measurement.end_current(axis);
+        }
+        if self.measurement.has_magnitudes() {
+            self.take_magnitudes(sensors);
         }
         let measured = self.measurement.convert(sensors);
         for (axis, &pulled) in self.shared.axes.iter_mut().zip(&measured.pulled_m) {
@@ -135,6 +140,19 @@ impl<T: Scalar> Leg<T> {
         }
         self.measured = Some(measured);
         drive
+    }
+
+    /// Takes what the outputs show that show no more than magnitudes.
+    #[cold]
+    #[inline(never)]
+    fn take_magnitudes(&mut self, sensors: &Sensors) {
+        let magnitudes = &mut self.magnitudes;
+        if let Some(axis) = self.phase.monitored_motor() {
+            self.measurement.end_magnitude(axis, magnitudes);
+        }
+        let applied = self.shared.axes.each_ref().map(Axis::applied);
+        self.measurement
+            .add_magnitudes(sensors, &applied, magnitudes);
     }
 
     /// One step of what the mode does.
@@ -231,7 +249,12 @@ impl<T: Scalar> Leg<T> {
                 (self.shared.axes.get_mut(turn), measured.pulled_m.get(turn))
         {
             let shown = axis.view(pulled);
-            self.monitors.watch_motor(turn, &input, &shown);
+            let magnitude = self.magnitudes.get(turn);
+            if self.measurement.has_magnitudes() && !magnitude.is_some_and(Magnitude::told) {
+                self.monitors.watch_silent_motor(turn, &input, &shown);
+            } else {
+                self.monitors.watch_motor(turn, &input, &shown);
+            }
         }
         faults = faults.union(self.monitors.axis_faults());
         faults.add(Fault::Infeasible, self.shared.refused);

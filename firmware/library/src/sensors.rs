@@ -16,7 +16,8 @@ pub struct Sensors {
     pub encoder_counts: [u16; 3],
     /// Load cells, 0 to [`CODE_MAX`]; a code up is more tension.
     pub cell_codes: [u16; 3],
-    /// Motor currents, 0 to [`CODE_MAX`]; half of it is no current but for [`CurrentZero`], more of it pulls in.
+    /// Motor currents, 0 to [`CODE_MAX`]; more is more current, that pulls in where the output shows both directions. What code is none
+    /// says [`CurrentZero`].
     pub current_codes: [u16; 3],
     /// Supply voltage, 0 to [`CODE_MAX`].
     pub supply_code: u16,
@@ -34,10 +35,10 @@ pub struct Sensors {
     pub settings_corrupt: bool,
 }
 
-/// Code of no current by the data sheet: half of the highest.
-pub const NOMINAL_ZERO_CODE: f32 = CODE_MAX as f32 * 0.5;
+/// Code of no current of an output that shows both directions: half of the highest.
+pub const MIDDLE_CODE: f32 = CODE_MAX as f32 * 0.5;
 
-/// Part of the current's range, from none to the highest, by which a zero may be away from the nominal one. The kit of `BOARD.md` needs
+/// Part of half of the converter's range by which a zero may be away from the nominal one. The kit of `BOARD.md` needs
 /// 0.033 at the most: test `the_zero_of_a_current_is_within_what_is_taken`.
 pub const CURRENT_ZERO_PART: f32 = 0.04;
 
@@ -54,22 +55,22 @@ pub enum CurrentZero {
 }
 
 impl CurrentZero {
-    /// Of a mean code.
+    /// Of a mean code, at an output with this nominal zero.
     #[must_use]
-    pub fn from_mean(code: f32) -> Self {
-        if (code - NOMINAL_ZERO_CODE).abs() <= CURRENT_ZERO_PART * NOMINAL_ZERO_CODE {
+    pub fn from_mean(code: f32, nominal_code: f32) -> Self {
+        if (code - nominal_code).abs() <= CURRENT_ZERO_PART * MIDDLE_CODE {
             Self::Found(code)
         } else {
             Self::Refused(code)
         }
     }
 
-    /// The code of no current that is in use.
+    /// The code of no current that is in use at an output with this nominal zero.
     #[must_use]
-    pub const fn code(self) -> f32 {
+    pub const fn code(self, nominal_code: f32) -> f32 {
         match self {
             Self::Found(code) => code,
-            Self::NotFound | Self::Refused(_) => NOMINAL_ZERO_CODE,
+            Self::NotFound | Self::Refused(_) => nominal_code,
         }
     }
 }
@@ -91,7 +92,10 @@ impl Sensors {
         let temperature = (25.0 - board.temperature_at_zero_c) / board.temperature_c_per_code;
         Self {
             cell_codes: settings.axes.map(|axis| axis.cell_zero_code as u16),
-            current_codes: [CODE_MAX / 2; 3],
+            current_codes: settings
+                .current_outputs
+                .each()
+                .map(|output| output.zero_code() as u16),
             supply_code: (24.0 / board.supply_v_per_code) as u16,
             temperature_code: temperature as u16,
             cell_fresh: [true; 3],

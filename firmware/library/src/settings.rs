@@ -1,5 +1,6 @@
 //! What the control law is set to: the mechanism, the calibration of its sensors, gains and limits.
 
+mod current_output;
 mod default;
 mod field;
 mod gains;
@@ -8,6 +9,7 @@ mod recorded;
 mod sections;
 mod tendon;
 
+pub use current_output::{CURRENT_OUTPUTS, CurrentOutput, CurrentOutputs};
 pub use field::Field;
 pub use gains::{Gains, SECTIONS, SERVO};
 pub use out_of_range::OutOfRange;
@@ -44,6 +46,8 @@ pub struct Settings {
     pub tilt_max_sine: f32,
     /// The three axes.
     pub axes: [AxisCalibration; 3],
+    /// What the current output of each motor's driver shows.
+    pub current_outputs: CurrentOutputs,
     /// What they share.
     pub board: BoardCalibration,
     /// How the leg moves.

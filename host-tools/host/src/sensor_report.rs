@@ -3,14 +3,16 @@
 use leg_base::json_object;
 use leg_base::rounding::rounded;
 use leg_firmware::control::{Measured, Measurement};
-use leg_firmware::sensors::{CurrentZero, NOMINAL_ZERO_CODE, SensorReading};
+use leg_firmware::sensors::{CurrentZero, SensorReading};
 use leg_firmware::settings::Settings;
+use leg_rig::current_output;
 use serde::Serialize;
 
 /// What all sensors read in one tick, for machines, by the calibration of the leg's settings. Codes are from 0 to
 /// [`leg_firmware::sensors::CODE_MAX`].
 pub fn json(reading: &SensorReading, settings: &Settings) -> impl Serialize + use<> {
     let (sensors, measured) = (&reading.codes, measured(reading, settings));
+    let zero_code = |i: usize| zero_code(reading, settings, i);
     let axis = |i: usize| {
         json_object! {
             // Counter of the motor's encoder; it wraps.
@@ -21,12 +23,14 @@ pub fn json(reading: &SensorReading, settings: &Settings) -> impl Serialize + us
             // Whether the load cell was converted since the last tick.
             cell_fresh: sensors.cell_fresh[i],
             current_code: sensors.current_codes[i],
-            // Code of no current: as found at the start, or half of the highest.
-            current_zero_code: reading.current_zeros[i].code(),
+            // Code of no current: as found at the start, or that of the data sheet.
+            current_zero_code: zero_code(i),
             // Whether it was found: `found`, `refused` or `not_found`.
             current_zero: zero_word(reading.current_zeros[i]),
-            // A; above zero it pulls in.
+            // A; above zero it pulls in, where the output shows both directions: else how much it reads.
             current_a: measured.currents_a[i],
+            // What the output shows: `bidirectional`, `magnitude` or `magnitude_when_driven`.
+            current_output: current_output::word(settings.current_outputs.each()[i]),
             // Whether the motor's driver raises its fault line.
             driver_fault: sensors.driver_fault[i],
         }
@@ -61,14 +65,14 @@ pub fn text(reading: &SensorReading, settings: &Settings) -> String {
             sensors.cell_codes[axis],
             rounded(measured.tensions_n[axis], 2),
             sensors.current_codes[axis],
-            reading.current_zeros[axis].code(),
+            zero_code(reading, settings, axis),
             rounded(measured.currents_a[axis], 3),
             choose(sensors.driver_fault[axis], "fault", "ready"),
             choose(sensors.cell_fresh[axis], "", ", no fresh code of the cell"),
         );
     }
-    for (axis, &zero) in (1..).zip(&reading.current_zeros) {
-        rows += &zero_finding(axis, zero);
+    for (axis, &zero) in reading.current_zeros.iter().enumerate() {
+        rows += &zero_finding(axis + 1, zero, zero_code(reading, settings, axis));
     }
     rows + &format!(
         "\nsupply          {:5}  {:7.2} V\n\
@@ -93,6 +97,11 @@ fn measured(reading: &SensorReading, settings: &Settings) -> Measured<f64> {
     measurement.convert(&reading.codes)
 }
 
+/// The code of no current that is in use for an axis, from 0.
+fn zero_code(reading: &SensorReading, settings: &Settings, axis: usize) -> f32 {
+    reading.current_zeros[axis].code(settings.current_outputs.each()[axis].zero_code())
+}
+
 const fn zero_word(zero: CurrentZero) -> &'static str {
     match zero {
         CurrentZero::NotFound => "not_found",
@@ -102,8 +111,8 @@ const fn zero_word(zero: CurrentZero) -> &'static str {
 }
 
 /// What is wrong with the zero of a motor's current, as a line; nothing where it was found.
-fn zero_finding(axis: usize, zero: CurrentZero) -> String {
-    let used = format!("{NOMINAL_ZERO_CODE:.0} is taken for no current");
+fn zero_finding(axis: usize, zero: CurrentZero, used_code: f32) -> String {
+    let used = format!("{used_code:.0} is taken for no current");
     match zero {
         CurrentZero::Found(_) => String::new(),
         CurrentZero::NotFound => {

@@ -1,11 +1,12 @@
 //! Data sheets of the motors, gears, screws and sensors: for the control law and for the simulated leg.
 
+use crate::current_output::{self, CURRENT_OUTPUT};
 use crate::motor_sections::{own_sections, with_motors};
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;
 use leg_firmware::fields;
 use leg_firmware::sensors::CODE_MAX;
-use leg_firmware::settings::Field;
+use leg_firmware::settings::{CurrentOutput, Field};
 
 fields! {
     /// One actuator; the three are of one type, or each of its own.
@@ -38,7 +39,7 @@ fields! {
         gear_efficiency ["1"]: 0.05..=1.0 = 0.9;
         /// Encoder counts in a turn of the motor, after quadrature.
         counts_per_turn ["1"]: 4.0..=1e6 = 2048.0;
-        /// Motor current at the highest code; code 0 is minus that.
+        /// Motor current at the highest code; where the output shows both directions code 0 is minus that.
         current_range_a ["A"]: 0.01..=1e3 = 12.0;
         /// Supply at the highest code.
         supply_range_v ["V"]: 1.0..=1e3 = 36.0;
@@ -46,6 +47,8 @@ fields! {
         supply_v ["V"]: 1.0..=1e3 = 24.0;
     }
     and {
+        /// What the current output shows.
+        current_output: CurrentOutput = CurrentOutput::Bidirectional;
         /// Highest continuous current of the motor, A; none where the file does not say.
         continuous_a: Option<f64> = None;
         /// Thermal time constant of the winding, s; none where the file does not say.
@@ -114,6 +117,7 @@ impl Actuator {
         let mut keys: Vec<_> = Self::FIELDS.iter().map(|field| field.name).collect();
         keys.extend([CELL_RANGE[0].name, TEMPERATURE_RANGE[0].name]);
         keys.extend(THERMAL.map(|field| field.name));
+        keys.push(CURRENT_OUTPUT);
         let Some(section) = root.optional(ACTUATOR, &with_motors(&keys))? else {
             return Ok([Self::DEFAULT; 3]);
         };
@@ -139,6 +143,9 @@ impl Actuator {
             if let Some([given]) = section.values([field])? {
                 *value = Some(given);
             }
+        }
+        if let Some(output) = current_output::read(section)? {
+            self.current_output = output;
         }
         if let Some(range) = section.values(CELL_RANGE.each_ref())? {
             self.cell_range_n = range;
@@ -223,6 +230,17 @@ impl Actuator {
     /// Current by code, A.
     #[must_use]
     pub fn current_a_per_code(&self) -> f64 {
-        2.0 * self.current_range_a / f64::from(CODE_MAX)
+        let [lowest_a, highest_a] = self.current_ends_a();
+        (highest_a - lowest_a) / f64::from(CODE_MAX)
+    }
+
+    /// The currents at code 0 and at the highest, A.
+    #[must_use]
+    pub fn current_ends_a(&self) -> [f64; 2] {
+        let lowest_a = match self.current_output {
+            CurrentOutput::Bidirectional => -self.current_range_a,
+            CurrentOutput::Magnitude | CurrentOutput::MagnitudeWhenDriven => 0.0,
+        };
+        [lowest_a, self.current_range_a]
     }
 }

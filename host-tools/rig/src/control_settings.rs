@@ -4,7 +4,7 @@ use crate::calibration::Calibration;
 use crate::rig_file::RigFile;
 use leg_firmware::sensors::CODE_MAX;
 use leg_firmware::settings::{
-    AxisCalibration, BoardCalibration, Gains, Settings, TendonParameters,
+    AxisCalibration, BoardCalibration, CurrentOutputs, Gains, Settings, TendonParameters,
 };
 
 /// All settings: those of the rig file but for the gains, which a scenario may have changed. The zero of the tendons is
@@ -27,6 +27,11 @@ pub fn settings(rig: &RigFile, gains: &Gains, unstretched_at_zero_m: Option<[f64
         pretension_n: round(rig.pretension_n),
         tilt_max_sine: round(libm::sin(rig.tilt_deg.to_radians())),
         axes: [0, 1, 2].map(axis),
+        current_outputs: CurrentOutputs::new(
+            rig.actuators
+                .each_ref()
+                .map(|actuator| actuator.current_output),
+        ),
         board: board(rig),
         motion: gains.motion,
         servos: gains.servos,

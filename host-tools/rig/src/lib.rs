@@ -26,6 +26,7 @@ pub mod actuator;
 pub mod calibration;
 pub mod cell_fit;
 pub mod control_settings;
+pub mod current_output;
 pub mod curve_toml;
 pub mod gains;
 pub mod mechanism_keys;

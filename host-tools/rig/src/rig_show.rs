@@ -1,5 +1,6 @@
 //! What the model makes of a rig file.
 
+use crate::current_output;
 use crate::recorded_signals;
 use crate::rig_file::derived::{self, DerivedGain, derived_gains};
 use crate::rig_file::{Buckling, RigFile};
@@ -28,6 +29,7 @@ struct RigSummary {
     tilt_deg: f64,
     keeps_station: bool,
     recorded: Vec<&'static str>,
+    current_outputs: [&'static str; 3],
     derived: Vec<DerivedGain>,
 }
 
@@ -51,6 +53,10 @@ impl RigSummary {
             tilt_deg: file.tilt_deg,
             keeps_station: file.keeps_station,
             recorded: recorded_signals::words(file.recorded).collect(),
+            current_outputs: file
+                .actuators
+                .each_ref()
+                .map(|actuator| current_output::word(actuator.current_output)),
             derived: derived_gains(file),
         }
     }
@@ -74,7 +80,7 @@ pub fn words(file: &RigFile) -> String {
          workspace              tilt to {}°\n\
          after a command        {}\n\
          recorded at every tick {}\n\
-         {}{}",
+         {}{}{}",
         summary.support,
         summary.joint.bending_nm_per_rad,
         summary.joint.torsion_nm_per_rad,
@@ -96,9 +102,19 @@ pub fn words(file: &RigFile) -> String {
             [] => "nothing".into(),
             signals => signals.join(", "),
         },
+        current_words(summary.current_outputs),
         rig_settings::changes(file),
         derived::table(&summary.derived),
     )
+}
+
+/// What the current outputs show, where that is not both directions at all motors.
+fn current_words(outputs: [&str; 3]) -> String {
+    match outputs {
+        ["bidirectional", "bidirectional", "bidirectional"] => String::new(),
+        [a, b, c] if a == b && b == c => format!("current outputs        {a}\n"),
+        outputs => format!("current outputs        {}\n", outputs.join(", ")),
+    }
 }
 
 fn buckling_words(buckling: Buckling) -> String {

@@ -1,5 +1,6 @@
 //! What two sides have differently of their settings.
 
+use crate::current_output;
 use crate::recorded_signals::{self, RECORDED};
 use leg_base::flat_json::flatten;
 use leg_firmware::settings::Settings;
@@ -22,6 +23,8 @@ fn json(settings: &Settings) -> Value {
     let mut value = serde_json::to_value(settings).unwrap_or_default();
     let names: Vec<_> = recorded_signals::words(settings.recorded).collect();
     value[RECORDED] = names.join(", ").into();
+    let outputs = settings.current_outputs.each().map(current_output::word);
+    value["current_outputs"] = outputs.to_vec().into();
     value
 }
 

@@ -1,12 +1,16 @@
 //! The settings of a board as a rig file that gives the same bits again.
 
+use crate::actuator::ACTUATOR;
+use crate::current_output::{self, CURRENT_OUTPUT};
 use crate::gains::{CONTROL, KEEPS_STATION, groups};
 use crate::motor_sections::motor_section;
 use crate::number::{decimal, exact, exact_mm, exact_through, plain};
 use crate::recorded_signals::{self, RECORDED};
 use crate::support_name::SupportName;
 use leg_firmware::sensors::CODE_MAX;
-use leg_firmware::settings::{AxisCalibration, SERVO, Servo, Settings, TendonParameters};
+use leg_firmware::settings::{
+    AxisCalibration, CurrentOutput, CurrentOutputs, SERVO, Servo, Settings, TendonParameters,
+};
 use leg_model::SupportKind;
 
 const HEADING: &str = "# What a board is set to, as a rig file. The geometry of an elastic joint is not on the board: its stiffness stands \
@@ -185,7 +189,9 @@ fn actuator(settings: &Settings) -> String {
     let limits = &settings.limits;
     let nominal_v = plain(0.5 * (decimal(limits.supply_min_v) + decimal(limits.supply_max_v)));
     let [first, ..] = &settings.axes;
-    let current_a = plain(0.5 * codes * f64::from(first.current_a_per_code));
+    let [output, ..] = settings.current_outputs.each();
+    let codes_beyond = codes - f64::from(output.zero_code());
+    let current_a = plain(codes_beyond * f64::from(first.current_a_per_code));
     let cell_n = [0.0, codes].map(|code| {
         let zero_code = f64::from(first.cell_zero_code);
         plain((code - zero_code) * f64::from(first.cell_n_per_code))
@@ -195,7 +201,22 @@ fn actuator(settings: &Settings) -> String {
          [actuator]\nsupply_v = {nominal_v}\nsupply_range_v = {supply_v}\ncurrent_range_a = {current_a}\n\
          cell_range_n = {}\ntemperature_range_c = [{cold_c}, {hot_c}]\n",
         list(cell_n)
-    )
+    ) + &current_outputs(settings.current_outputs)
+}
+
+/// What the outputs show that show no more than magnitudes, each for itself.
+fn current_outputs(outputs: CurrentOutputs) -> String {
+    let others = outputs
+        .each()
+        .into_iter()
+        .enumerate()
+        .filter(|(_, output)| *output != CurrentOutput::Bidirectional);
+    others
+        .map(|(motor, output)| {
+            let (section, word) = (motor_section(ACTUATOR, motor), current_output::word(output));
+            format!("\n[{section}]\n{CURRENT_OUTPUT} = \"{word}\"\n")
+        })
+        .collect()
 }
 
 fn calibration(axes: &[AxisCalibration; 3]) -> String {

@@ -107,11 +107,8 @@ impl Plant {
         let defects = &self.defects;
         // The supply and the temperature are the board's, so every actuator says the same of them.
         let [actuator, ..] = &self.actuators;
-        // Half of the highest code is no current.
-        let current_code = |i: usize| {
-            let range_a = self.actuators[i].current_range_a;
-            code(self.current_shown_a(i), [-range_a, range_a])
-        };
+        let current_code =
+            |i: usize| code(self.current_shown_a(i), self.actuators[i].current_ends_a());
         Sensors {
             encoder_counts: self.encoder_counts(),
             cell_codes,
@@ -132,17 +129,19 @@ impl Plant {
     /// What the sensor of a motor's current shows, A.
     fn current_shown_a(&self, i: usize) -> f64 {
         let (defects, motor) = (&self.defects, &self.motors[i]);
+        let [lowest_a, _] = self.actuators[i].current_ends_a();
+        let current_a = sensing::output_a(self.actuators[i].current_output, motor);
         let disabled = motor.open && defects.has(Defect::CurrentFullScaleDisabled(i));
         if defects.has(Defect::CurrentFullScale(i)) || disabled {
             self.actuators[i].current_range_a
         } else if defects.has(Defect::CurrentDead(i)) {
-            -self.actuators[i].current_range_a
+            lowest_a
         } else if defects.has(Defect::CurrentZero(i)) {
             self.current_offset_a[i]
         } else if defects.has(Defect::CurrentOffset(i)) {
-            motor.current_a + self.current_offset_a[i] + CURRENT_OFFSET_A
+            current_a + self.current_offset_a[i] + CURRENT_OFFSET_A
         } else {
-            motor.current_a + self.current_offset_a[i]
+            current_a + self.current_offset_a[i]
         }
     }
 

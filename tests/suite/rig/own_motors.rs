@@ -6,7 +6,7 @@
 use crate::rig::other_motors::work;
 use leg_base::failure::Failure;
 use leg_bench::moves::MoveCampaign;
-use leg_firmware::settings::Settings;
+use leg_firmware::settings::{CurrentOutput, Settings};
 use leg_rig::control_settings;
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
@@ -186,5 +186,37 @@ fn what_a_motor_cannot_have_is_refused_at_its_own_key() {
         let (Failure::Refused(message) | Failure::Failed(message)) = error;
         let at = &file[message.place.unwrap().span.start..];
         assert!(at.starts_with(place), "{more}{at}");
+    }
+}
+
+/// What the outputs show of the currents reaches the board motor by motor, and what is written back is the same.
+#[test]
+fn each_motor_may_have_its_own_current_output() {
+    let file = rig("[actuator]\ncurrent_output = \"magnitude\"\n\
+                    [actuator.2]\ncurrent_output = \"magnitude_when_driven\"\n\
+                    [actuator.3]\ncurrent_output = \"bidirectional\"\n");
+    let found = settings(&file);
+    let outputs = [
+        CurrentOutput::Magnitude,
+        CurrentOutput::MagnitudeWhenDriven,
+        CurrentOutput::Bidirectional,
+    ];
+    assert_eq!(found.current_outputs.each(), outputs);
+    // The whole range of the converter is that of the magnitude.
+    let [first, second, third] = found.axes.map(|axis| axis.current_a_per_code);
+    assert_eq!([first, first + second], [second, third]);
+    let words = "current outputs        magnitude, magnitude_when_driven, bidirectional";
+    assert!(rig_show::words(&file).contains(words));
+    assert!(!rig_show::words(&rig("")).contains("current outputs"));
+    let again = RigFile::parse("again", &settings_text::rig_file(&found)).unwrap();
+    assert_eq!(settings(&again), found);
+    let more = "[actuator.2]\ncurrent_output = \"unipolar\"\n";
+    let refused = RigFile::parse("refused", &[READY_RIGS[0].text, more].concat()).unwrap_err();
+    let shown = refused.render(false);
+    for words in [
+        "`current_output` cannot be `unipolar`",
+        "\"magnitude_when_driven\"",
+    ] {
+        assert!(shown.contains(words), "{shown}");
     }
 }

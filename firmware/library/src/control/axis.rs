@@ -1,7 +1,7 @@
 //! One motor: position and speed with feed-forward, inside what voltage, current and tension allow.
 
 use super::{
-    CYCLE_TICKS, Friction, TICK_S,
+    Applied, CYCLE_TICKS, Friction, TICK_S,
     bounds::{clamp_symmetric, max, min},
 };
 use crate::settings::Servo;
@@ -134,13 +134,22 @@ impl<T: Scalar> Axis<T> {
         self.reference_m
     }
 
+    /// What the last tick has put at the motor.
+    #[inline(always)]
+    pub fn applied(&self) -> Applied<T> {
+        Applied {
+            voltage_v: self.voltage_v,
+            driving_v: self.voltage_v - self.gains.back_emf * self.speed_m_per_s,
+        }
+    }
+
     /// What the monitors check once a cycle; `pulled_m` is how far the tendon is pulled in.
     #[inline(always)]
     pub fn view(&mut self, pulled_m: T) -> AxisView<T> {
         AxisView {
             speed_m_per_s: self.speed_m_per_s,
             following_m: self.reference_m - pulled_m,
-            driving_v: self.voltage_v - self.gains.back_emf * self.speed_m_per_s,
+            driving_v: self.applied().driving_v,
             voltage_v: self.voltage_v,
             mean_voltage_v: core::mem::replace(&mut self.voltage_sum_v, T::SUM_START)
                 * T::from(1.0 / CYCLE_TICKS as f32),

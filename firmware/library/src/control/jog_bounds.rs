@@ -1,5 +1,7 @@
 //! How far, how hard and how long a motor may be jogged.
 
+use super::bounds::max;
+use super::{Applied, SHOWN_PART};
 use crate::jog::{JOG_TRAVEL_MAX_M, JogDemand, JogRefusal};
 use crate::settings::{Servo, Settings};
 use leg_model::Scalar;
@@ -26,9 +28,7 @@ const fn longest_s(way_s: f32) -> f32 {
 pub struct JogBounds<T> {
     /// Voltage from which the monitors take a motor for driven, V.
     voltage_max_v: f32,
-    /// Highest tension: that of homing, N.
-    pub tension_max_n: T,
-    /// Highest current: what the motor draws at that tension, A. It is that of homing, too.
+    /// Highest current: what the motor draws at the highest tension of homing, A. It is that of homing, too.
     pub current_max_a: T,
     /// Voltage that this current takes, V, and what the speed induces, V·s/m.
     dropped_v: f32,
@@ -42,11 +42,20 @@ impl<T: Scalar> JogBounds<T> {
         let current_max_a = 1.5 * servo.friction_a + servo.pull_a_per_n * settings.homing.f_max_n;
         Self {
             voltage_max_v: settings.limits.driven_part * servo.current_a * servo.resistance_ohm,
-            tension_max_n: settings.homing.f_max_n.into(),
             current_max_a: current_max_a.into(),
             dropped_v: servo.resistance_ohm * current_max_a,
             back_emf_v_s_per_m: servo.back_emf_v_s_per_m,
         }
+    }
+
+    /// The current that is compared with the highest one, A, at an output that does not show short pulses: below the shortest that it shows,
+    /// what the voltage drives by resistance and counts where that is more than it reads.
+    pub fn ceiling_a(&self, measured_a: T, applied: &Applied<T>, supply_v: T) -> T {
+        if applied.voltage_v.abs() >= T::from(SHOWN_PART) * supply_v {
+            return measured_a;
+        }
+        let a_per_v = self.current_max_a / T::from(self.dropped_v);
+        max(measured_a.abs(), applied.driving_v.abs() * a_per_v)
     }
 
     /// Those of the motor that a demand is for, if its jog may begin.

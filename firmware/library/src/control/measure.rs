@@ -1,8 +1,9 @@
 //! From counts and codes to SI.
 
+use super::magnitude::{Applied, Magnitude};
 use super::{CYCLE_TICKS, TICK_S, bounds, filter::LowPass};
 use crate::sensors::{CODE_MAX, CurrentZero, Sensors};
-use crate::settings::Settings;
+use crate::settings::{CurrentOutput, CurrentOutputs, Settings};
 use leg_model::Scalar;
 
 /// Readings of a current whose mean is its zero: 2 ms, as long as nothing is driven after a start.
@@ -17,7 +18,7 @@ pub struct Measured<T> {
     pub tensions_n: [T; 3],
     /// The same without noise.
     pub steady_tensions_n: [T; 3],
-    /// Mean current of each motor over the last whole cycle, A.
+    /// Mean current of each motor over the last whole cycle, A; what an output reads that was silent in all of it.
     pub currents_a: [T; 3],
     /// Supply, V.
     pub supply_v: T,
@@ -54,11 +55,14 @@ pub struct Measurement<T> {
     /// Codes of each current while its zero is searched for, and how many readings that were.
     zero_codes: [u32; 3],
     zero_readings: u16,
+    outputs: CurrentOutputs,
 }
 
 impl<T: Scalar> Measurement<T> {
     /// With the calibration of the settings.
     pub fn new(settings: &Settings) -> Self {
+        let outputs = settings.current_outputs;
+        let zero_codes = outputs.each().map(CurrentOutput::zero_code);
         let channel = |i: usize| {
             let axis = &settings.axes[i];
             Channel {
@@ -68,7 +72,7 @@ impl<T: Scalar> Measurement<T> {
                 n_per_code: axis.cell_n_per_code.into(),
                 zero_code: axis.cell_zero_code.into(),
                 a_per_code: axis.current_a_per_code.into(),
-                current_zero_code: CurrentZero::NotFound.code().into(),
+                current_zero_code: zero_codes[i].into(),
                 current_codes: 0,
                 current_a: T::zero(),
                 steady: LowPass::new(settings.estimation.tension_time_s, TICK_S),
@@ -83,6 +87,7 @@ impl<T: Scalar> Measurement<T> {
             current_zeros: [CurrentZero::NotFound; 3],
             zero_codes: [0; 3],
             zero_readings: 0,
+            outputs,
         }
     }
 
@@ -122,6 +127,47 @@ impl<T: Scalar> Measurement<T> {
         }
     }
 
+    /// Whether an output shows no more than a magnitude: then [`Self::end_magnitude`] and [`Self::add_magnitudes`] are needed.
+    #[inline(always)]
+    pub fn has_magnitudes(&self) -> bool {
+        self.outputs.has_magnitudes()
+    }
+
+    /// Ends the mean of an axis, from 0 to 2, at an output that shows a magnitude. After [`Self::end_current`].
+    pub fn end_magnitude(&mut self, axis: usize, magnitudes: &mut [Magnitude<T>; 3]) {
+        let outputs = self.outputs.each();
+        if let (Some(channel), Some(magnitude), Some(&output)) = (
+            self.channels.get_mut(axis),
+            magnitudes.get_mut(axis),
+            outputs.get(axis),
+        ) {
+            let most_a = channel.current(T::from(f32::from(CODE_MAX)));
+            channel.current_a = magnitude.end(output, channel.current_a, most_a);
+        }
+    }
+
+    /// Adds what the outputs show while the motors have what was applied in the last tick. Before [`Self::convert`].
+    pub fn add_magnitudes(
+        &self,
+        sensors: &Sensors,
+        applied: &[Applied<T>; 3],
+        magnitudes: &mut [Magnitude<T>; 3],
+    ) {
+        let supply_v = code::<T>(sensors.supply_code) * self.supply_v_per_code;
+        let shown = self.channels.iter().zip(&sensors.current_codes);
+        let magnitudes = magnitudes.iter_mut().zip(self.outputs.each());
+        for (((magnitude, output), applied), (channel, &shown)) in
+            magnitudes.zip(applied).zip(shown)
+        {
+            let duty = if supply_v > T::one() {
+                applied.voltage_v.abs() / supply_v
+            } else {
+                T::zero()
+            };
+            magnitude.add(output, channel.current(code(shown)), applied, duty);
+        }
+    }
+
     /// Whether the zeros of the currents are searched for.
     #[inline(always)]
     pub fn seeks_current_zeros(&self) -> bool {
@@ -144,7 +190,11 @@ impl<T: Scalar> Measurement<T> {
         if self.zero_readings == ZERO_READINGS {
             // Exact: a sum has 20 bits, and the divisor is a power of two.
             let mean = |sum: u32| sum as f32 * (1.0 / f32::from(ZERO_READINGS));
-            let zeros = self.zero_codes.map(|sum| CurrentZero::from_mean(mean(sum)));
+            let mut zeros = self.current_zeros;
+            let outputs = self.outputs.each().into_iter().zip(&self.zero_codes);
+            for (zero, (output, &sum)) in zeros.iter_mut().zip(outputs) {
+                *zero = CurrentZero::from_mean(mean(sum), output.zero_code());
+            }
             self.set_current_zeros(&zeros);
         }
     }
@@ -158,8 +208,9 @@ impl<T: Scalar> Measurement<T> {
     /// Counts currents from these zeros, from the next mean on.
     pub fn set_current_zeros(&mut self, zeros: &[CurrentZero; 3]) {
         self.current_zeros = *zeros;
-        for (channel, zero) in self.channels.iter_mut().zip(zeros) {
-            channel.current_zero_code = zero.code().into();
+        let zeros = zeros.iter().zip(self.outputs.each());
+        for (channel, (zero, output)) in self.channels.iter_mut().zip(zeros) {
+            channel.current_zero_code = zero.code(output.zero_code()).into();
         }
     }
 

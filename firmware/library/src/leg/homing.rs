@@ -14,7 +14,11 @@ pub fn step<T: Scalar>(
     measurement: &mut Measurement<T>,
     measured: &Measured<T>,
 ) -> ModeStep {
-    let asked = homing.step(&shared.mechanism, measured);
+    let asked = if shared.current_outputs.has_magnitudes() {
+        homing.step(&shared.mechanism, &replace_currents(shared, measured))
+    } else {
+        homing.step(&shared.mechanism, measured)
+    };
     let mut failed = false;
     if !homing.releases() {
         let f_max_n = shared.limits.homing_f_max_n;
@@ -44,4 +48,18 @@ pub fn step<T: Scalar>(
     let mut faults = FaultSet::NONE;
     faults.add(Fault::HomingFailed, failed);
     ModeStep { faults, event }
+}
+
+/// What is measured, and in the place of the currents those that are compared with their ceilings.
+fn replace_currents<T: Scalar>(shared: &Shared<T>, measured: &Measured<T>) -> Measured<T> {
+    let mut measured = *measured;
+    let supply_v = measured.supply_v;
+    let axes = shared.limits.jogs.iter().zip(&shared.axes);
+    let currents = measured.currents_a.iter_mut().zip(axes).enumerate();
+    for (motor, (current, (bounds, axis))) in currents {
+        if shared.current_outputs.hides_short_pulses(motor) {
+            *current = bounds.ceiling_a(*current, &axis.applied(), supply_v);
+        }
+    }
+    measured
 }

@@ -1,7 +1,7 @@
 //! Jogging: one motor turns at a voltage, the others rest. Whatever ends it, the motor is braked and then switched off.
 
 use super::shared::Shared;
-use crate::control::{Debounce, JOG_RISE_S, JogBounds, Measured, TICK_S, bounds, ticks};
+use crate::control::{Axis, Debounce, JOG_RISE_S, JogBounds, Measured, TICK_S, bounds, ticks};
 use crate::jog::{JogDemand, JogEnd, JogReport};
 use leg_model::Scalar;
 
@@ -44,7 +44,7 @@ pub struct Jogging<T> {
     start_m: [T; 3],
     /// Tension above which it ends, N.
     tension_max_n: T,
-    current_max_a: T,
+    bounds: JogBounds<T>,
     last_m: T,
     silent: Debounce,
     hauling: Debounce,
@@ -73,10 +73,11 @@ impl<T: Scalar> Jogging<T> {
             .iter()
             .fold(T::zero(), |a, &b| bounds::max(a, b));
         let eased_n = taut_n + T::from(shared.limits.homing.touch_n);
+        let homing_n = shared.limits.homing_f_max_n;
         let tension_max_n = if pays_out {
-            bounds::max(jog_bounds.tension_max_n, eased_n)
+            bounds::max(homing_n, eased_n)
         } else {
-            jog_bounds.tension_max_n
+            homing_n
         };
         let motor = usize::from(demand.motor.saturating_sub(1));
         shared.jog_report = Some(JogReport {
@@ -98,7 +99,7 @@ impl<T: Scalar> Jogging<T> {
             applied_v: T::zero(),
             start_m: measured.pulled_m,
             tension_max_n,
-            current_max_a: jog_bounds.current_max_a,
+            bounds: *jog_bounds,
             last_m: measured.pulled_m.get(motor).copied().unwrap_or(T::zero()),
             silent: Debounce::new(ticks(SILENT_S)),
             hauling: Debounce::new(ticks(HAUL_S)),
@@ -119,9 +120,10 @@ impl<T: Scalar> Jogging<T> {
     /// One tick; true when the motor has been braked.
     #[inline(never)]
     pub fn step(&mut self, shared: &mut Shared<T>, measured: &Measured<T>) -> bool {
-        let (Some(&pulled), Some(&current)) = (
+        let (Some(&pulled), Some(&current), Some(applied)) = (
             measured.pulled_m.get(self.motor),
             measured.currents_a.get(self.motor),
+            shared.axes.get(self.motor).map(Axis::applied),
         ) else {
             return true;
         };
@@ -141,7 +143,12 @@ impl<T: Scalar> Jogging<T> {
                 self.drive();
                 let tension = measured.tensions_n.get(self.motor);
                 self.average(report, pulled, current, tension.copied());
-                report.end = self.end(report, pulled, current);
+                let hauled_a = if shared.current_outputs.hides_short_pulses(self.motor) {
+                    self.bounds.ceiling_a(current, &applied, measured.supply_v)
+                } else {
+                    current
+                };
+                report.end = self.end(report, pulled, hauled_a);
                 if report.end != JogEnd::Running {
                     self.brake_ticks = Some(ticks(BRAKE_S));
                 }
@@ -196,7 +203,9 @@ impl<T: Scalar> Jogging<T> {
             .silent
             .update(self.is_at_full_voltage() && pulled == self.last_m);
         self.last_m = pulled;
-        let hauls = self.hauling.update(!(current.abs() <= self.current_max_a));
+        let hauls = self
+            .hauling
+            .update(!(current.abs() <= self.bounds.current_max_a));
         let stray = T::from(STRAY_M);
         let mut others = (1..).zip(&report.pulled_m);
         let other = others

@@ -9,7 +9,7 @@ use crate::control::{
 };
 use crate::drive::Drive;
 use crate::jog::JogReport;
-use crate::settings::{Homing, Settings, SettingsError};
+use crate::settings::{CurrentOutputs, Homing, Settings, SettingsError};
 use crate::supervisor::State;
 use leg_model::{Direction, Error, Scalar, inverse_kinematics};
 use nalgebra::Vector3;
@@ -39,6 +39,8 @@ pub struct Shared<T> {
     pub refused: bool,
     /// Tendon at which homing failed the last time, from 1; 0 for none.
     pub failed_tendon: u8,
+    /// What the current outputs show.
+    pub current_outputs: CurrentOutputs,
     pub limits: LegLimits<T>,
     pub pretension: PretensionSearch<T>,
     pub mechanism: Mechanism<T>,
@@ -153,6 +155,7 @@ impl<T: Scalar> Shared<T> {
             lowest_m: [T::zero(); 3],
             refused: false,
             failed_tendon: 0,
+            current_outputs: settings.current_outputs,
             limits: checked.limits,
             mechanism: checked.mechanism,
             jog_report: None,

@@ -164,7 +164,7 @@ fields! {
         cell_n_per_code ["N"]: 1e-6..=10.0 = 3.8156e-3;
         /// Code of the load cell without tension.
         cell_zero_code ["1"]: 0.0..=65520.0 = 5241.6;
-        /// Current by code of the motor's current; half of the highest code is no current.
+        /// Current by code of the motor's current.
         current_a_per_code ["A"]: 1e-7..=1.0 = 3.663e-4;
     }
     and {

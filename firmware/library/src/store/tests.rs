@@ -7,7 +7,9 @@ mod records;
 mod sizes;
 
 use super::{CorruptReason, Loaded, Store, StoreError};
-use crate::settings::{AxisCalibration, BoardCalibration, Settings, TendonParameters};
+use crate::settings::{
+    AxisCalibration, BoardCalibration, CurrentOutputs, Settings, TendonParameters,
+};
 use core::ops::Range;
 use embassy_futures::block_on;
 use leg_model::{CURVE_POINTS_MAX, CurvePoint, JointStiffness, RigParameters, SupportKind};
@@ -80,6 +82,7 @@ fn small(number: usize) -> Settings {
         pretension_n: 10.0 + 0.1 * number as f32,
         tilt_max_sine: 0.4,
         axes: [axis; 3],
+        current_outputs: CurrentOutputs::default(),
         board: BoardCalibration {
             supply_v_per_code: 0.01,
             temperature_c_per_code: 0.05,

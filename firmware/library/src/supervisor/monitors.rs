@@ -78,7 +78,24 @@ impl<T: Scalar> Monitors<T> {
             (self.axes.get_mut(axis), self.axis_faults.get_mut(axis))
         {
             *faults = faults.intersection(FaultSet::OF_CELLS);
-            monitor.watch_motor(axis, view, shown, faults);
+            monitor.watch_motor::<false>(axis, view, shown, faults);
+        }
+    }
+
+    /// The same while its current output is silent.
+    #[cold]
+    #[inline(never)]
+    pub fn watch_silent_motor(
+        &mut self,
+        axis: usize,
+        view: &MonitorInput<'_, T>,
+        shown: &AxisView<T>,
+    ) {
+        if let (Some(monitor), Some(faults)) =
+            (self.axes.get_mut(axis), self.axis_faults.get_mut(axis))
+        {
+            *faults = faults.intersection(FaultSet::OF_CELLS);
+            monitor.watch_motor::<true>(axis, view, shown, faults);
         }
     }
 

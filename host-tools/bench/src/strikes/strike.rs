@@ -8,7 +8,9 @@ use super::way::Way;
 use crate::stand::Stand;
 use leg_base::description;
 use leg_firmware::command::Command;
+use leg_firmware::settings::CurrentOutput;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
+use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Defect;
 use serde::Serialize;
 
@@ -173,7 +175,7 @@ pub(super) fn strike(
 ) -> (Struck, Vec<Moment>) {
     let mut stand = prepared.stand.clone();
     let bars = StrikeBars::new(
-        strike.defect,
+        strike.defect.map(|defect| shown_as(defect, &case.file)),
         case.activity,
         case.file.f_max_n,
         &prepared.unstruck,
@@ -203,6 +205,18 @@ pub(super) fn strike(
     }
     watch.struck.judge(&bars, strike.defect.is_some());
     (watch.struck, watch.moments)
+}
+
+/// The defect that a current output shows in the same way: where code 0 is no current, or nearly none, an output that is dead reads none.
+fn shown_as(defect: Defect, file: &RigFile) -> Defect {
+    match defect {
+        Defect::CurrentDead(i)
+            if file.actuators[i].current_output != CurrentOutput::Bidirectional =>
+        {
+            Defect::CurrentZero(i)
+        }
+        other => other,
+    }
 }
 
 fn watched_s(case: &Case, defect: Option<Defect>) -> f64 {

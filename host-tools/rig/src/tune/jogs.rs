@@ -4,8 +4,9 @@ use super::error::{LegError, TuneError};
 use super::tuned_leg::TunedLeg;
 use leg_base::jog_report::{Finding, findings};
 use leg_firmware::board::timing::PWM_TOP;
+use leg_firmware::control::SHOWN_PART;
 use leg_firmware::jog::{JOG_TRAVEL_MAX_M, JogDemand, JogEnd, JogReport};
-use leg_firmware::settings::{Servo, Settings};
+use leg_firmware::settings::{CurrentOutput, Servo, Settings};
 use leg_firmware::telemetry::Telemetry;
 
 /// How far a tendon is reeled in at the most until it pulls, beyond where the measurement began, m.
@@ -31,6 +32,9 @@ const LOADED_M_PER_S: f32 = 2.5e-3;
 
 /// Part of the highest voltage of a jog that is used: the rest is for a resistance that is greater than configured.
 const VOLTAGE_PART: f32 = 0.9;
+
+/// Part of the shortest pulse that a current output shows by which the lowest voltage is above it, where it does not show shorter ones.
+const SHOWN_MARGIN: f32 = 0.05;
 
 /// Voltages without a tension.
 const FREE_VOLTAGES: u16 = 5;
@@ -98,10 +102,19 @@ impl JogPlan {
         let at = |speed: f32| friction_v + servo.back_emf_v_s_per_m * speed;
         let bound_v = settings.limits.driven_part * servo.current_a * servo.resistance_ohm;
         let highest_v = (VOLTAGE_PART * bound_v).min(at(TRAVEL_MAX_M / (STEADY_S + RISE_S)));
+        let shown_v = match settings.current_outputs.each().get(own) {
+            Some(CurrentOutput::MagnitudeWhenDriven) => {
+                (1.0 + SHOWN_MARGIN) * SHOWN_PART * supply_v
+            }
+            _ => 0.0,
+        };
         let mut plan = Self {
             motor,
-            voltages_v: [at(SLOWEST_M_PER_S).min(0.5 * highest_v), highest_v],
-            loaded_v: at(LOADED_M_PER_S).min(highest_v),
+            voltages_v: [
+                at(SLOWEST_M_PER_S).min(0.5 * highest_v).max(shown_v),
+                highest_v,
+            ],
+            loaded_v: at(LOADED_M_PER_S).max(shown_v).min(highest_v),
             step_v: supply_v / f32::from(PWM_TOP),
             travel_m: 0.0,
             tension_max_n: settings.homing.f_max_n,

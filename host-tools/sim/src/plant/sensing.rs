@@ -2,9 +2,11 @@
 
 use super::cell_defects::CellDefects;
 use super::defect::{Defect, Defects};
+use super::motor::Motor;
 use super::noise::gaussian;
 use fastrand::Rng;
 use leg_firmware::sensors::CODE_MAX;
+use leg_firmware::settings::CurrentOutput;
 use leg_rig::actuator::Actuator;
 use leg_rig::plant_settings::PlantSettings;
 
@@ -16,6 +18,23 @@ pub(super) fn code(value: f64, [low, high]: [f64; 2]) -> u16 {
     let part = (value - low) / (high - low);
     // A conversion from f64 to an integer saturates, so only the upper end is left to do.
     ((part * f64::from(CODE_MAX)).round() as u16).min(CODE_MAX)
+}
+
+/// Part of the period below which a pulse ends before an output that is silent while the bridge brakes shows the current: 2 µs.
+const UNSHOWN_PART: f64 = 0.08;
+
+/// What the current output of a driver shows of its motor's current on the mean of a period, A.
+pub(super) fn output_a(output: CurrentOutput, motor: &Motor) -> f64 {
+    let (current_a, duty) = (motor.current_a, motor.duty);
+    // The low side conducts backwards in the pulse then.
+    let opposed = duty * current_a < 0.0;
+    match output {
+        CurrentOutput::Bidirectional => current_a,
+        CurrentOutput::Magnitude if opposed => (1.0 - duty.abs()) * current_a.abs(),
+        CurrentOutput::Magnitude => current_a.abs(),
+        CurrentOutput::MagnitudeWhenDriven if opposed || duty.abs() < UNSHOWN_PART => 0.0,
+        CurrentOutput::MagnitudeWhenDriven => duty.abs() * current_a.abs(),
+    }
 }
 
 /// The load cells.

@@ -179,7 +179,7 @@ signals! {
         = |at| at.telemetry.reference_m;
     Estimated SingleThree unstretched_at_zero_m "Length of each without tension where its encoder counts zero, m; 0 before homing."
         = |at| at.telemetry.unstretched_at_zero_m;
-    Measured SingleThree motor_currents_a "Current of each motor, A, a mean over 0.5 ms; without meaning while the drivers are off."
+    Measured SingleThree motor_currents_a "Current of each motor, A, a mean over 0.5 ms; without meaning while the drivers are off. A driver's own output that is silent reads none."
         = |at| at.telemetry.motor_currents_a;
     Measured Single supply_v "Voltage at the drivers, V."
         = |at| at.telemetry.supply_v;

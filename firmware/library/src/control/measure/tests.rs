@@ -3,7 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::*;
-use crate::sensors::{CURRENT_ZERO_PART, NOMINAL_ZERO_CODE};
+use crate::sensors::{CURRENT_ZERO_PART, MIDDLE_CODE};
+use crate::settings::CurrentOutputs;
 
 /// After as many readings of these codes as it takes, the drivers being on from one of them on.
 fn sought<T: Scalar>(codes: [u16; 3], driven_from: u16) -> Measurement<T> {
@@ -49,7 +50,7 @@ fn the_mean_code_of_a_driver_that_is_off_is_no_current() {
 
 #[test]
 fn what_is_too_far_from_the_nominal_zero_is_none() {
-    let most = (CURRENT_ZERO_PART * NOMINAL_ZERO_CODE) as u16;
+    let most = (CURRENT_ZERO_PART * MIDDLE_CODE) as u16;
     let half = CODE_MAX / 2;
     for (code, taken) in [
         (half + most, true),
@@ -89,4 +90,30 @@ fn no_code_shows_more_than_the_range() {
     let most_a = shown_a(&mut measurement, CODE_MAX);
     assert_eq!(shown_a(&mut measurement, u16::MAX), most_a);
     assert_eq!(shown_a(&mut measurement, 0), -most_a);
+}
+
+/// An output that shows magnitudes has its zero at the low end, as far from there as any output.
+#[test]
+fn the_zero_of_a_magnitude_is_near_the_lowest_code() {
+    let mut settings = Settings::table_1().unwrap();
+    settings.current_outputs = CurrentOutputs::new([
+        CurrentOutput::Magnitude,
+        CurrentOutput::MagnitudeWhenDriven,
+        CurrentOutput::Bidirectional,
+    ]);
+    let mut measurement = Measurement::<f64>::new(&settings);
+    let mut sensors = Sensors::resting(&settings);
+    let most = (CURRENT_ZERO_PART * MIDDLE_CODE) as u16;
+    sensors.current_codes = [most, most + 1, CODE_MAX / 2 + most];
+    while measurement.seeks_current_zeros() {
+        measurement.seek_current_zeros(&sensors, false);
+    }
+    let [found, refused, middle] = measurement.current_zeros();
+    assert_eq!(found, CurrentZero::Found(most.into()));
+    assert_eq!(refused, CurrentZero::Refused((most + 1).into()));
+    assert_eq!(middle, CurrentZero::Found((CODE_MAX / 2 + most).into()));
+    let a_per_code = f64::from(settings.axes[0].current_a_per_code);
+    let shown_a = measurement.convert(&sensors).currents_a;
+    assert_eq!(shown_a[0], 0.0);
+    assert!((shown_a[1] / a_per_code - f64::from(most + 1)).abs() < 1e-6);
 }

@@ -213,9 +213,9 @@ impl<T: Scalar> AxisMonitor<T> {
         }
     }
 
-    /// The motor and its encoder.
+    /// The motor and its encoder. From a current output that is silent nothing is concluded but what it reads all the same.
     #[inline(always)]
-    pub fn watch_motor(
+    pub fn watch_motor<const SILENT: bool>(
         &mut self,
         i: usize,
         view: &MonitorInput<'_, T>,
@@ -262,10 +262,14 @@ impl<T: Scalar> AxisMonitor<T> {
         let missed_v = if turned { axis.voltage_v } else { T::zero() };
         let mean_v = axis.mean_voltage_v - missed_v * T::from(1.0 / CYCLE_TICKS as f32);
         let driving_v = mean_v - induced_v;
-        let driving = self.driving_a.step(driving_v * bounds.a_per_v).abs();
-        let drawn = self.drawn_a.step(current).abs();
-        let allowed = bounds.lack_a + induced_v.abs() * bounds.lack_a_per_v;
-        let lack = driving - (drawn * T::from(WARM_RATIO) + allowed);
+        let (lack, drawn) = if SILENT {
+            (T::zero(), current.abs())
+        } else {
+            let driving = self.driving_a.step(driving_v * bounds.a_per_v).abs();
+            let drawn = self.drawn_a.step(current).abs();
+            let allowed = bounds.lack_a + induced_v.abs() * bounds.lack_a_per_v;
+            (driving - (drawn * T::from(WARM_RATIO) + allowed), drawn)
+        };
         // A motor that draws less than its voltage drives through one that stands is turning, or is not connected.
         let stands = step == 0;
         let least = if stands { T::zero() } else { bounds.open_a };

@@ -25,6 +25,8 @@ struct Seen {
     counts_a_cycle: i16,
     /// Whether the cell's code changes from cycle to cycle.
     lives: bool,
+    /// Whether the current output of the axis is silent.
+    silent: bool,
     driven: bool,
     led: bool,
     tensioned: bool,
@@ -58,6 +60,7 @@ impl Seen {
             },
             counts_a_cycle: 0,
             lives: true,
+            silent: false,
             driven: true,
             led: true,
             tensioned: true,
@@ -123,7 +126,11 @@ impl Watched {
             } else {
                 Seen::sound().view
             };
-            self.monitors.watch_motor(axis, &input, &view);
+            if axis == AXIS && seen.silent {
+                self.monitors.watch_silent_motor(axis, &input, &view);
+            } else {
+                self.monitors.watch_motor(axis, &input, &view);
+            }
         }
         let mut faults = FaultSet::NONE;
         for _ in 0..CYCLE_TICKS {

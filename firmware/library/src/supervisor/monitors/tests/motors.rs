@@ -272,3 +272,25 @@ fn a_motor_that_turns_about_all_the_time_draws_what_its_pulses_drive() {
     assert!(turning_about_disagrees([2.0, 2.0], 0.0), "an open wire");
     assert!(turning_about_disagrees([0.5, -6.6], 0.0), "an open wire");
 }
+
+/// From an output that is silent nothing is concluded but what it reads all the same.
+#[test]
+fn an_output_that_is_silent_lacks_nothing() {
+    let silent = |drawn_a: f64| {
+        move |limits: &Limits, seen: &mut Seen| {
+            drives(0.3, 1)(limits, seen);
+            seen.measured.currents_a[AXIS] = drawn_a;
+            seen.silent = true;
+        }
+    };
+    is_no_fault("silent", silent(0.0));
+    is_fault(
+        Fault::OverCurrent,
+        4,
+        silent(f64::from(limits().current_a) + 0.01),
+    );
+    disagrees(|limits, seen| {
+        silent(0.0)(limits, seen);
+        seen.silent = false;
+    });
+}
