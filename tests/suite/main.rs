@@ -93,6 +93,7 @@ mod board {
     mod chip_scenarios;
     mod chip_speed;
     mod chip_supply;
+    mod chip_transcript;
     pub mod emulated_board;
     mod qemu_session;
     mod setup;
