@@ -7,10 +7,12 @@ mod recorder;
 mod two_hashes;
 
 use leg_boards::image::workspace_root;
+use leg_firmware::can::{Assembler, Identifier, LegAddress, Segmenter};
 use leg_firmware::command::Command;
 use leg_firmware::frame::{self, Decoder, MAX_FRAME};
 use leg_firmware::host_link::{
-    BoardKind, HOST_SCHEMA, Hello, HostRefusal, HostReply, HostRequest, Identity, ResetCause,
+    BoardKind, HOST_SCHEMA, Hello, HostId, HostRefusal, HostReply, HostRequest, Identity,
+    ResetCause,
 };
 use leg_firmware::version::VERSION;
 use serde::Serialize;
@@ -33,8 +35,8 @@ fn hex(bytes: &[u8]) -> String {
     })
 }
 
-/// A frame as hexadecimal digits; they are decoded again before they are shown.
-fn frame_hex<T>(number: u16, message: &T) -> String
+/// A frame; it is decoded again before it is shown.
+fn framed<T>(number: u16, message: &T) -> Vec<u8>
 where
     T: Serialize + DeserializeOwned + PartialEq + std::fmt::Debug,
 {
@@ -46,7 +48,47 @@ where
     let decoded = decoder.push(*last).unwrap().unwrap();
     assert_eq!(decoded.sequence, number);
     assert_eq!(decoded.message::<T>().as_ref(), Some(message));
-    hex(bytes)
+    bytes.to_vec()
+}
+
+/// A frame as hexadecimal digits.
+fn frame_hex<T>(number: u16, message: &T) -> String
+where
+    T: Serialize + DeserializeOwned + PartialEq + std::fmt::Debug,
+{
+    hex(&framed(number, message))
+}
+
+/// The requests of a host that begins, as the CAN frames to leg 3; they are put together again before they are shown.
+fn segments() -> String {
+    let leg = LegAddress::new(3).unwrap();
+    let identifier = Identifier::ToLeg(leg);
+    let mut segmenter = Segmenter::new(identifier);
+    let mut assembler = Assembler::<MAX_FRAME>::leg_receiver(leg);
+    let hello = HostRequest::Identify(Hello {
+        schema: HOST_SCHEMA,
+    });
+    let mut text = String::new();
+    for frame in [framed(1, &hello), framed(2, &lean(7))] {
+        let mut assembled: Vec<u8> = Vec::new();
+        for segment in segmenter.segments(&frame).unwrap() {
+            let (bits, payload) = (identifier.bits(), hex(segment.payload()));
+            writeln!(text, "{bits:#05x}  {payload}").unwrap();
+            let found = assembler.push(&segment);
+            assert_eq!(found.fault, None);
+            assembled.extend(found.link_frame.unwrap_or_default());
+        }
+        assert_eq!(assembled, frame);
+    }
+    text
+}
+
+/// A host lets the leg lean by 0.1 towards x.
+fn lean(host: HostId) -> HostRequest {
+    HostRequest::Command {
+        host,
+        command: Command::Move { x: 0.1, y: 0.0 },
+    }
 }
 
 /// A host introduces itself, lets the leg lean by 0.1 towards x, and a second host is refused.
@@ -58,10 +100,6 @@ fn exchange() -> String {
         crash_report: Default::default(),
     };
     let schema = HOST_SCHEMA;
-    let lean = |host| HostRequest::Command {
-        host,
-        command: Command::Move { x: 0.1, y: 0.0 },
-    };
     let lines = [
         (
             "host: Identify",
@@ -106,6 +144,7 @@ fn the_page_has_the_messages_of_the_firmware() {
     let (_, shapes) = grammar::message_types();
     let messages = format!("schema {}\n\n{shapes}", hex(&HOST_SCHEMA));
     let expected = with_part(&text, "messages", &listing(&messages));
+    let expected = with_part(&expected, "segments", &listing(&segments()));
     let expected = with_part(&expected, "exchange", &listing(&exchange()));
     let expected = with_part(&expected, "signals", &recorder::table());
     let (before, rest) = expected.split_once(SCHEMA_OF_CLIENT).unwrap();

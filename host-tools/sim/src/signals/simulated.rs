@@ -45,8 +45,8 @@ signals! {
         = |at| at.truth.rate_rad_per_s.into();
     True Three tensions_true_n "Tension of each tendon, N."
         = |at| at.truth.tensions_n;
-    True Three unstretched_true_mm "Length of each tendon without tension, mm."
-        = |at| at.truth.unstretched_m.map(|m| m * 1000.0);
+    True Three unstretched_true_m "Length of each tendon without tension, m."
+        = |at| at.truth.unstretched_m;
     True Number payload_true_kg "Mass at the tip, kg."
         = |at| at.truth.payload_kg;
     True Three motor_currents_true_a "Current of each motor, A."
