@@ -255,6 +255,10 @@ fn what_is_doubtful_is_a_warning_with_its_line() {
         ),
         ("counts_per_turn = 16\n", "at the tip"),
         (
+            "current_output = \"magnitude_when_driven\"\n[control.homing]\nspeed_m_per_s = 0.002\n",
+            "too short for its current output",
+        ),
+        (
             "[control.servo]\nspeed_gain_v_s_per_m = 3500\n",
             "phase margin",
         ),

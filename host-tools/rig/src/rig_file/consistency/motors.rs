@@ -9,7 +9,8 @@ use crate::rig_file::derived::{
 };
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;
-use leg_firmware::settings::SERVO;
+use leg_firmware::control::SHOWN_PART;
+use leg_firmware::settings::{CurrentOutput, SERVO};
 use std::ops::Range;
 
 /// Phase margin below which a servo rings whatever the motor, degrees.
@@ -71,6 +72,7 @@ pub(super) fn check(file: &RigFile, root: &Section<'_>) -> Result<Vec<Warning>, 
         checked.check_current()?;
         checked.check_heat()?;
         checked.check_speed()?;
+        checked.check_shown();
         checked.check_counts()?;
         checked.check_bandwidth()?;
         warnings.extend(checked.warnings);
@@ -245,6 +247,27 @@ impl Motor<'_> {
             self.warn(&["control.motion.speed_rad_per_s"], text);
         }
         Ok(())
+    }
+
+    /// An output that is silent in short pulses shows a motor that homes.
+    fn check_shown(&mut self) {
+        let actuator = &self.basis.actuator;
+        if actuator.current_output != CurrentOutput::MagnitudeWhenDriven {
+            return;
+        }
+        let shown_v = f64::from(SHOWN_PART) * actuator.supply_v;
+        let back_emf_v_s_per_m = decimal(self.gains.servo.back_emf_v_s_per_m);
+        let speed = decimal(self.gains.homing.speed_m_per_s);
+        if speed * back_emf_v_s_per_m < shown_v {
+            let text = format!(
+                "`control.homing.speed_m_per_s` ({}) turns a motor without a load by pulses that are too short for its current \
+                 output, and its ceiling is kept by counts and `resistance_ohm` alone: {} would do",
+                plain(speed),
+                plain(two_digits_above(shown_v / back_emf_v_s_per_m.max(1e-9)))
+            );
+            let keys = ["control.homing.speed_m_per_s", "actuator.current_output"];
+            self.warn(&keys, text);
+        }
     }
 
     /// A motor comes to rest within the dead band only if its counts are fine enough.
