@@ -188,7 +188,7 @@ impl<T: Scalar> Leg<T> {
             }
             Mode::Held(held) => {
                 // A load cell may be found wrong while the leg brakes: from then on no tendon is paid out by it.
-                if held.brakes() && self.supervisor.latched().overlaps(FaultSet::OF_CELLS) {
+                if held.brakes() && self.supervisor.latched().overlaps(FaultSet::SUSPECT_CELLS) {
                     shared.ignore_tensions();
                 }
                 held.step(shared);
@@ -321,7 +321,7 @@ impl<T: Scalar> Leg<T> {
             pose: self.agreement.watches() && !self.supervisor.stopped(),
             counters: !latched.overlaps(FaultSet::SUSPECT_COUNTERS),
             motors: !latched.has(Fault::CurrentDisagrees),
-            cells: !latched.overlaps(FaultSet::OF_CELLS),
+            cells: !latched.overlaps(FaultSet::SUSPECT_CELLS),
         };
         let momentum = self.mode.momentum(&self.shared, trust);
         self.mode = Mode::begin(state, &mut self.shared, measured, momentum, trust);

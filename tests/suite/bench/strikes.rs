@@ -211,3 +211,9 @@ fn a_leg_without_a_load_estimate_does_not_sink_at_its_maximum_tension() {
         ],
     );
 }
+
+/// A strike that failed once: a leg at rest that swung by a load cell which hums was braked as one on its way, and its motors went on for as long.
+#[test]
+fn a_leg_that_swings_at_rest_is_stopped_at_once() {
+    require_within(501, &[(10_728, "cell_hum", 1.0)]);
+}

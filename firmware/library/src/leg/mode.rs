@@ -200,7 +200,7 @@ pub struct Trust {
     pub counters: bool,
     /// The motors: none is known not to do what it is asked.
     pub motors: bool,
-    /// The load cells: no fault is latched that the check of one raises.
+    /// The load cells: no fault is latched that one may cause.
     pub cells: bool,
 }
 

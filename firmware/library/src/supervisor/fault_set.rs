@@ -50,6 +50,10 @@ impl FaultSet {
         .union(Self::single(Fault::CellStuck))
         .union(Self::single(Fault::CellSaturated));
 
+    /// Those that a load cell may cause: nothing is driven by one once it is latched. A leg that does not ring down may swing by what its cells
+    /// show.
+    pub const SUSPECT_CELLS: Self = Self::OF_CELLS.union(Self::single(Fault::Swings));
+
     /// One fault.
     #[must_use]
     pub const fn single(fault: Fault) -> Self {
