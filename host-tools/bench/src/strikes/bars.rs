@@ -53,9 +53,6 @@ const GAIN_MM: f64 = 1.1;
 /// another is slack, mm.
 const GAIN_AT_MAX_MM: f64 = 4.5;
 
-/// The least tension of which an offset of 10 N is no more than a gain that is 20 % off, N.
-const OFFSET_AS_GAIN_N: f64 = 50.0;
-
 /// The same where two sensors change their places or an encoder counts the other way, mm: a controller with its sign reversed runs
 /// for the time until a counter contradicts.
 const SWAPPED_MM: f64 = 20.0;
@@ -152,9 +149,7 @@ impl StrikeBars {
         Self {
             tension_n: f_max_n * (1.0 + excess_part(defect, activity)),
             homing_n: HOMING_N,
-            tip_mm: tip_mm(defect, activity)
-                .max(gain_at_max_mm(defect, f_max_n, before.highest_n))
-                .max(offset_mm(defect, before.tensions_n)),
+            tip_mm: tip_mm(defect, activity).max(gain_at_max_mm(defect, f_max_n, before.highest_n)),
             named_s: defect.and_then(|defect| named_s(defect, activity, before)),
             sags: defect == Some(Defect::CellsSwapped),
         }
@@ -241,11 +236,10 @@ const fn is_found_at_once(defect: Defect) -> bool {
     )
 }
 
-/// How far the tip may go where a cell that shows ever more, or a part of the next, comes to the maximum tension, mm.
+/// How far the tip may go where a cell that shows ever more comes to the maximum tension, mm.
 fn gain_at_max_mm(defect: Option<Defect>, f_max_n: f64, highest_n: [f64; 3]) -> f64 {
     let shows_n = match defect {
         Some(Defect::CellGainDrift(i)) => 1.2 * highest_n[i],
-        Some(Defect::CellCrosstalk(i)) => highest_n[i] + 0.15 * highest_n[(i + 1) % 3],
         // 5 N in a second, for the time in which it is to be named.
         Some(Defect::CellDrifting(i)) => highest_n[i] + 5.0 * DRIFTS_S,
         _ => return 0.0,
@@ -254,18 +248,6 @@ fn gain_at_max_mm(defect: Option<Defect>, f_max_n: f64, highest_n: [f64; 3]) -> 
         GAIN_AT_MAX_MM
     } else {
         0.0
-    }
-}
-
-/// How far the tip may go by an offset that is no more than a gain that is off, mm.
-fn offset_mm(defect: Option<Defect>, tensions_n: [f64; 3]) -> f64 {
-    match defect {
-        Some(Defect::CellOffsetStep(i) | Defect::CellOffsetStepDown(i))
-            if tensions_n[i] >= OFFSET_AS_GAIN_N =>
-        {
-            GAIN_MM
-        }
-        _ => 0.0,
     }
 }
 
