@@ -1,10 +1,14 @@
-//! A jog: one motor turns slowly at a low voltage while the leg is disarmed, to see whether its wires are right.
+//! A jog: one motor turns slowly while the leg is disarmed, to see whether its wires are right and what it and its servo are.
 
+use crate::sensors::TICK_HZ;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 /// Farthest that a jog turns, m of tendon.
 pub const JOG_TRAVEL_MAX_M: f32 = 0.01;
+
+/// Shortest and longest period of the sine of a jog, ticks: 500 Hz and 1 Hz.
+pub const SINE_PERIOD_TICKS: [u16; 2] = [TICK_HZ / 500, TICK_HZ];
 
 /// What a jog shall do.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
@@ -13,8 +17,26 @@ pub struct JogDemand {
     pub motor: u8,
     /// How far it shall pull its tendon in, m; below zero it pays out.
     pub travel_m: f32,
-    /// The voltage at the motor, without its sign, V.
-    pub voltage_v: f32,
+    /// What turns it.
+    pub drive: JogDrive,
+}
+
+/// What turns the motor of a jog.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub enum JogDrive {
+    /// A voltage, without its sign, V.
+    Voltage(f32),
+    /// Its servo, by a step of the reference.
+    ServoStep,
+    /// Its servo, at a constant speed. A sine is added to the voltage that the servo asks for.
+    ServoSine {
+        /// Speed of the tendon, without its sign, m/s.
+        speed_m_per_s: f32,
+        /// Amplitude of the sine, V.
+        amplitude_v: f32,
+        /// Its period, ticks.
+        period_ticks: u16,
+    },
 }
 
 /// Why a jog is refused.
@@ -26,6 +48,10 @@ pub enum JogRefusal {
     Travel,
     /// The voltage is none, or so high that the motor counts as driven.
     Voltage,
+    /// The speed is none.
+    Speed,
+    /// The period is too short or too long.
+    Period,
 }
 
 impl JogRefusal {
@@ -35,12 +61,17 @@ impl JogRefusal {
         match self {
             Self::Motor => ["there is no motor of that number", "give 1, 2 or 3"],
             Self::Travel => [
-                "a jog turns by no more than 10 mm of tendon, and by more than nothing",
+                "a jog turns by no more than 10 mm of tendon, a step by no more than half of following_m, and by more than nothing",
                 "give another travel",
             ],
             Self::Voltage => [
                 "the voltage is not above zero, or above driven_part of what drives current_a through resistance_ohm",
-                "give another voltage",
+                "give another voltage; of a sine, less amplitude or less speed",
+            ],
+            Self::Speed => ["the speed is not above zero", "give another speed"],
+            Self::Period => [
+                "the period of the sine is not within 16 to 8000 ticks",
+                "give another period",
             ],
         }
     }
@@ -70,6 +101,52 @@ pub enum JogEnd {
     CutOff,
 }
 
+/// How a servo answered a jog.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+#[serde(rename_all = "snake_case")]
+pub enum ServoResponse<T> {
+    /// To a step.
+    Step {
+        /// How far the motor went beyond its end, m.
+        overshoot_m: T,
+        /// The time from which it stayed within 5 % of the step, s.
+        settled_s: T,
+    },
+    /// To a sine.
+    Sine {
+        /// Whole periods that were measured.
+        periods: u16,
+        /// The voltage that the servo asked for: the parts of it that go with the cosine and the sine, V.
+        returned_v: [T; 2],
+        /// The same of the voltage at the motor: what the servo asked for, with what was added, V.
+        injected_v: [T; 2],
+    },
+}
+
+impl<T: Copy> ServoResponse<T> {
+    /// The same in another precision.
+    fn map<U>(&self, number: impl Fn(T) -> U) -> ServoResponse<U> {
+        match *self {
+            Self::Step {
+                overshoot_m,
+                settled_s,
+            } => ServoResponse::Step {
+                overshoot_m: number(overshoot_m),
+                settled_s: number(settled_s),
+            },
+            Self::Sine {
+                periods,
+                returned_v,
+                injected_v,
+            } => ServoResponse::Sine {
+                periods,
+                returned_v: returned_v.map(&number),
+                injected_v: injected_v.map(&number),
+            },
+        }
+    }
+}
+
 /// What a jog measured.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct JogReport<T> {
@@ -92,6 +169,8 @@ pub struct JogReport<T> {
     pub speed_m_per_s: T,
     /// The tension of its tendon, N.
     pub tension_n: T,
+    /// How its servo answered, where that turned it to the end.
+    pub servo: Option<ServoResponse<T>>,
 }
 
 impl<T: Copy> JogReport<T> {
@@ -107,6 +186,7 @@ impl<T: Copy> JogReport<T> {
             current_a: number(self.current_a),
             speed_m_per_s: number(self.speed_m_per_s),
             tension_n: number(self.tension_n),
+            servo: self.servo.map(|servo| servo.map(&number)),
         }
     }
 }

@@ -14,6 +14,7 @@ mod phase;
 mod ramping_down;
 mod recorded;
 mod report;
+mod servo_run;
 mod shadow;
 mod shared;
 mod slack;

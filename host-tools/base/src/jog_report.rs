@@ -3,13 +3,17 @@
 use crate::json_object;
 use crate::rounding::rounded;
 use leg_firmware::control::JOG_RISE_S;
-use leg_firmware::jog::{JogDemand, JogEnd, JogReport};
+use leg_firmware::jog::{JogDemand, JogDrive, JogEnd, JogReport};
 use leg_firmware::settings::{Servo, Settings};
 use serde::Serialize;
 use std::fmt::Write as _;
 
 /// Speed of the tendon that the voltage is chosen for, m/s.
 const SPEED_M_PER_S: f32 = 2e-3;
+
+/// What to do about a servo that rings or is near to it.
+pub const SERVO_REMEDY: &str = "lower position_gain_per_s and speed_gain_v_s_per_m in `[control.servo]`, or write the measured constants \
+     into the rig file and let the gains follow from them";
 
 /// Least change of a tension that counts as one, N.
 const CHANGE_MIN_N: f32 = 1.0;
@@ -37,14 +41,23 @@ pub fn plan(demand: &JogDemand, settings: &Settings) -> String {
     let JogDemand {
         motor,
         travel_m,
-        voltage_v,
+        drive,
     } = *demand;
     let servo = servo_of(motor, settings);
-    let left_v = voltage_v - servo.resistance_ohm * servo.friction_a;
-    let speed_mm_per_s = (1000.0 * left_v / servo.back_emf_v_s_per_m).max(0.0);
+    let driven = match drive {
+        JogDrive::Voltage(voltage_v) => {
+            let left_v = voltage_v - servo.resistance_ohm * servo.friction_a;
+            let speed_mm_per_s = (1000.0 * left_v / servo.back_emf_v_s_per_m).max(0.0);
+            format!("at {voltage_v:.2} V, at about {speed_mm_per_s:.1} mm/s")
+        }
+        JogDrive::ServoStep => "by a step of its servo".into(),
+        JogDrive::ServoSine { speed_m_per_s, .. } => {
+            format!("by its servo, at {:.1} mm/s", 1000.0 * speed_m_per_s)
+        }
+    };
     let current_a = 1.5 * servo.friction_a + servo.pull_a_per_n * settings.homing.f_max_n;
     format!(
-        "motor {motor} {} its tendon by {} mm at {voltage_v:.2} V, at about {speed_mm_per_s:.1} mm/s\n\
+        "motor {motor} {} its tendon by {} mm {driven}\n\
          it ends earlier at {} N in a load cell, at {current_a:.2} A for 30 ms, without counts for 0.1 s, at counts the wrong way\n\
          or of another encoder, and when it takes too long; then the motor is off\n",
         way(travel_m),
@@ -96,7 +109,8 @@ pub fn json(report: &JogReport<f32>, findings: &[Finding]) -> impl Serialize + u
     json_object! {
         motor: report.demand.motor,
         travel_m: report.demand.travel_m,
-        voltage_v: report.demand.voltage_v,
+        // None where its servo drove it.
+        voltage_v: voltage_v(report),
         // How it ended, in words.
         end: end(report.end),
         pulled_m: report.pulled_m,
@@ -108,6 +122,13 @@ pub fn json(report: &JogReport<f32>, findings: &[Finding]) -> impl Serialize + u
         tension_n: report.tension_n,
         time_s: report.time_s,
         findings: findings.to_vec(),
+    }
+}
+
+const fn voltage_v(report: &JogReport<f32>) -> Option<f32> {
+    match report.demand.drive {
+        JogDrive::Voltage(voltage_v) => Some(voltage_v),
+        JogDrive::ServoStep | JogDrive::ServoSine { .. } => None,
     }
 }
 
@@ -177,6 +198,12 @@ fn end_finding(report: &JogReport<f32>, settings: &Settings) -> Option<Finding> 
             format!("load cell {cell} shows more than a jog may pull"),
             "pay the tendon out first: a negative travel; see that nothing pulls at the leg",
         ),
+        JogEnd::Current if voltage_v(report).is_none() => Finding::new(
+            format!(
+                "the servo of motor {motor} draws more than friction and the tension of homing ask for: it rings, or its screw is stiff"
+            ),
+            SERVO_REMEDY,
+        ),
         JogEnd::Current => Finding::new(
             format!("motor {motor} draws more than friction and the tension of homing ask for"),
             "look for a stiff screw or a taut tendon whose load cell shows nothing; see friction_nm in `[actuator]`",
@@ -198,9 +225,12 @@ fn counted_m(report: &JogReport<f32>) -> f32 {
 /// Three causes, by the current.
 fn no_counts(report: &JogReport<f32>, settings: &Settings) -> Finding {
     let motor = report.demand.motor;
-    let risen = (report.time_s / JOG_RISE_S).min(1.0);
     let servo = servo_of(motor, settings);
-    let stalled_a = risen * report.demand.voltage_v / servo.resistance_ohm;
+    // A servo gives a motor that stands all that it may.
+    let stalled_a = voltage_v(report).map_or(servo.current_a, |voltage_v| {
+        let risen = (report.time_s / JOG_RISE_S).min(1.0);
+        risen * voltage_v / servo.resistance_ohm
+    });
     let drawn_a = report.current_a.abs();
     if drawn_a < 0.1 * stalled_a.min(servo.friction_a) {
         Finding::new(

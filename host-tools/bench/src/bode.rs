@@ -4,15 +4,14 @@ mod break_point;
 mod drawn_state;
 mod feedback;
 mod frequency_response;
-mod margins;
 mod patterns;
 mod row;
 mod sweep;
 
 pub use drawn_state::DrawnState;
 pub use feedback::Feedback;
-pub use frequency_response::{ClosedLoop, Excitation, ResponsePoint, Sides};
-pub use margins::Margins;
+pub use frequency_response::{ClosedLoop, Excitation, Sides};
+pub use leg_rig::loop_response::{Margins, ResponsePoint};
 pub use row::{Margin, MarginRow, WorstMargin, rows};
 pub use sweep::Sweep;
 

@@ -5,7 +5,7 @@ use crate::numbers::{finite, positive};
 use crate::options::Options;
 use crate::output::print;
 use leg_base::failure::Failure;
-use leg_firmware::jog::{JogDemand, JogEnd};
+use leg_firmware::jog::{JogDemand, JogDrive, JogEnd};
 use leg_host::jog_report::{self, Finding};
 use leg_host::operator::OperatorError;
 
@@ -35,7 +35,9 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     let demand = JogDemand {
         motor: args.motor,
         travel_m: (args.travel / 1000.0) as f32,
-        voltage_v: given.unwrap_or_else(|| jog_report::slow_voltage_v(args.motor, &settings)),
+        drive: JogDrive::Voltage(
+            given.unwrap_or_else(|| jog_report::slow_voltage_v(args.motor, &settings)),
+        ),
     };
     if !options.json {
         print(&jog_report::plan(&demand, &settings))?;

@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 /// Measures one motor and the swing of the leg, and prints what was measured beside what the rig file says.
 ///
 /// The leg must be disarmed and hang free, without a payload. One motor is jogged both ways, without a tension and against one:
-/// resistance, torque constant, friction, pull. Then the leg is homed and swings a little at three pretensions: play of the gears,
+/// resistance, torque constant, friction, pull. Its servo makes steps, and is swept from 8 to 500 Hz: its margins. Then the leg is homed and swings a little at three pretensions: play of the gears,
 /// stretch of the tendons, first mode, inertia. It says before what it will do, and asks on a real leg. Any fault, counts the wrong
 /// way and Ctrl-C end it with the motors off or held, and nothing is written; what the jogs measured until then is printed.
 #[derive(Debug, clap::Args)]
@@ -65,12 +65,7 @@ struct Measured {
 
 impl Measured {
     fn rows(&self, rig: &RigFile) -> Vec<ComparisonRow> {
-        comparison(
-            self.motor.motor,
-            &self.motor.constants,
-            self.swings.as_ref(),
-            rig,
-        )
+        comparison(&self.motor, self.swings.as_ref(), rig)
     }
 }
 
@@ -180,7 +175,7 @@ fn save(args: &Args, rig: &RigFile, measured: &Measured, saved: &mut Saved) -> R
         saved.section = Some(file.clone());
     }
     if let Some(directory) = &args.plots {
-        saved.charts = charts::save(directory, motor, swings.as_ref())?;
+        saved.charts = charts::save(directory, motor, swings.as_ref(), rig)?;
     }
     Ok(())
 }
@@ -197,6 +192,8 @@ fn show(
         motor: motor.motor,
         rows: &rows,
         jogs: &motor.jogs,
+        servo: &motor.servo,
+        servo_finding: &motor.servo_finding,
         charts: &saved.charts,
         written: &saved.section,
     };
@@ -216,7 +213,10 @@ fn show(
             "Motor {} counts the way that it is driven, alone, and its load cell shows what its tendon pulls.\n",
             motor.motor
         );
-        format!("{}{directions}{charts}{written}", table(&rows))
+        let servo = motor.servo_finding.as_ref().map_or_else(String::new, |finding| {
+            format!("Finding: {}: {}\n", finding.what, finding.remedy)
+        });
+        format!("{}{directions}{servo}{charts}{written}", table(&rows))
     })
 }
 

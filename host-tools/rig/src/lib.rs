@@ -29,6 +29,7 @@ pub mod control_settings;
 pub mod current_output;
 pub mod curve_toml;
 pub mod gains;
+pub mod loop_response;
 pub mod mechanism_keys;
 pub mod motor_sections;
 pub mod motor_turn;

@@ -7,23 +7,28 @@
 mod comparison;
 mod error;
 mod estimate;
+mod jog_plan;
 mod jogs;
 mod motor;
 mod play;
 mod ring;
+mod servo;
 mod swing;
 mod tuned_leg;
 
 pub use comparison::{ComparisonRow, certain_values, comparison, section, table};
 pub use error::{LegError, TuneError};
 pub use estimate::UncertainValue;
-pub use jogs::{JogPlan, Jogged};
+pub use jog_plan::JogPlan;
+pub use jogs::Jogged;
 pub use motor::MotorConstants;
 pub use play::Travels;
 pub use ring::Ring;
+pub use servo::{MeasuredServo, configured_servo};
 pub use swing::{Swing, SwingPlan, Swings, measure_swing};
 pub use tuned_leg::TunedLeg;
 
+use leg_base::jog_report::Finding;
 use leg_firmware::settings::Settings;
 
 /// One motor, as it was measured.
@@ -33,6 +38,10 @@ pub struct MeasuredMotor {
     pub motor: u8,
     /// What it is.
     pub constants: MotorConstants,
+    /// How its servo follows; none where that ended before it was measured.
+    pub servo: Option<MeasuredServo>,
+    /// What is wrong with the servo.
+    pub servo_finding: Option<Finding>,
     /// The jogs from which that follows.
     pub jogs: Vec<Jogged>,
 }
@@ -56,13 +65,19 @@ pub async fn measure_motor<L: TunedLeg>(
     settings: &Settings,
     seen: &mut dyn FnMut(&Jogged),
 ) -> Result<MeasuredMotor, TuneError<L::Error>> {
-    let jogs = jogs::jog_all(leg, plan, settings, seen).await?;
+    let (jogs, servo) = jogs::jog_all(leg, plan, settings, seen).await?;
+    let (servo, servo_finding) = match servo {
+        Ok(servo) => (Some(servo.clone()), servo.finding(plan.motor)),
+        Err(finding) => (None, Some(finding)),
+    };
     let own = usize::from(plan.motor).saturating_sub(1);
     let axis = settings.axes.get(own);
     let current_step_a = axis.map_or(0.0, |axis| f64::from(axis.current_a_per_code));
     Ok(MeasuredMotor {
         motor: plan.motor,
         constants: MotorConstants::fit(&jogs, current_step_a)?,
+        servo,
+        servo_finding,
         jogs,
     })
 }
@@ -74,8 +89,13 @@ pub fn plan_text(jogs: &JogPlan, swing: Option<&SwingPlan>) -> String {
     let [out_mm, in_mm] = jogs.reach_m().map(|reach_m| 1000.0 * reach_m);
     let mut text = format!(
         "motor {} turns slowly both ways, from {low_v:.2} V to {high_v:.2} V: it pays out by up to {out_mm:.0} mm, until its tendon is slack,\n\
-         reels in by up to {in_mm:.0} mm, until that pulls, ends a jog where a load cell shows more than {} N, and goes back\n",
-        jogs.motor, jogs.tension_max_n,
+         reels in by up to {in_mm:.0} mm, until that pulls, ends a jog where a load cell shows more than {} N, and goes back;\n\
+         slack, its servo makes steps of {:.2} mm and turns it at {:.1} mm/s with a sine of {:.2} V added, from 8 to 500 Hz\n",
+        jogs.motor,
+        jogs.tension_max_n,
+        1000.0 * jogs.servo.step_m,
+        1000.0 * jogs.servo.speed_m_per_s,
+        jogs.servo.sine_v,
     );
     if let Some(swing) = swing {
         text += &swing_text(swing);

@@ -6,7 +6,7 @@ use leg_firmware::command::{Command, Compensation};
 use leg_firmware::frame::MAX_PAYLOAD;
 use leg_firmware::host_link::HostRequest;
 use leg_firmware::host_link::{HOST_SCHEMA, Hello};
-use leg_firmware::jog::JogDemand;
+use leg_firmware::jog::{JogDemand, JogDrive};
 use leg_firmware::linked_leg::LINK_BYTES_MAX;
 use leg_firmware::recorder::RecorderRequest;
 use leg_firmware::sensors::{CODE_MAX, Sensors};
@@ -72,7 +72,16 @@ const COMMANDS: [Command; 16] = [
     Command::Jog(JogDemand {
         motor: 1,
         travel_m: 1e-3,
-        voltage_v: 2.0,
+        drive: JogDrive::Voltage(2.0),
+    }),
+    Command::Jog(JogDemand {
+        motor: 1,
+        travel_m: 1e-3,
+        drive: JogDrive::ServoSine {
+            speed_m_per_s: 2e-3,
+            amplitude_v: 0.3,
+            period_ticks: 100,
+        },
     }),
     Command::Hold,
     Command::Pretension(60.0),

@@ -4,7 +4,7 @@
 
 use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::host_link::HostRefusal;
-use leg_firmware::jog::{JogDemand, JogEnd, JogRefusal, JogReport};
+use leg_firmware::jog::{JogDemand, JogDrive, JogEnd, JogRefusal, JogReport, SINE_PERIOD_TICKS};
 use leg_firmware::supervisor::{Fault, State};
 use leg_firmware::telemetry::Telemetry;
 use leg_host::cancel_flag::CancelFlag;
@@ -30,7 +30,7 @@ fn demand(operator: &mut Operator, motor: u8, travel_mm: f32) -> JogDemand {
     JogDemand {
         motor,
         travel_m: travel_mm / 1000.0,
-        voltage_v: slow_voltage_v(motor, &operator.settings().unwrap()),
+        drive: JogDrive::Voltage(slow_voltage_v(motor, &operator.settings().unwrap())),
     }
 }
 
@@ -249,7 +249,7 @@ fn a_motor_that_turns_the_other_way_says_nothing_of_the_load_cells() {
             demand: JogDemand {
                 motor: 1,
                 travel_m: 1e-3,
-                voltage_v: 1.8,
+                drive: JogDrive::Voltage(1.8),
             },
             end,
             time_s: 0.3,
@@ -259,6 +259,7 @@ fn a_motor_that_turns_the_other_way_says_nothing_of_the_load_cells() {
             current_a: 0.1,
             speed_m_per_s: 2e-3,
             tension_n: 10.0,
+            servo: None,
         };
         let found = findings(&report, &settings);
         assert_eq!(found.len(), count, "{end:?}: {found:?}");
@@ -275,7 +276,7 @@ fn without_its_load_cell_the_current_ends_a_jog() {
     }
     operator.set_settings(&settings).unwrap();
     let demand = JogDemand {
-        voltage_v: 4.6,
+        drive: JogDrive::Voltage(4.6),
         ..demand(&mut operator, 1, 10.0)
     };
     let (report, telemetry) = operator.jog(&demand).unwrap();
@@ -313,20 +314,41 @@ fn a_jog_is_refused_by_name_in_every_other_state_and_beyond_its_bounds() {
         other => panic!("{other:?}"),
     };
     let good = demand(&mut operator, 2, 1.0);
-    for (motor, travel_m, voltage_v, refusal) in [
-        (0, 1e-3, 1.0, JogRefusal::Motor),
-        (4, 1e-3, 1.0, JogRefusal::Motor),
-        (1, 0.0, 1.0, JogRefusal::Travel),
-        (1, f32::NAN, 1.0, JogRefusal::Travel),
-        (1, -0.0101, 1.0, JogRefusal::Travel),
-        (1, 1e-3, 0.0, JogRefusal::Voltage),
-        (1, 1e-3, 4.7, JogRefusal::Voltage),
-        (1, 1e-3, f32::NAN, JogRefusal::Voltage),
+    let by = JogDrive::Voltage;
+    let sine = |speed_m_per_s, amplitude_v, period_ticks| JogDrive::ServoSine {
+        speed_m_per_s,
+        amplitude_v,
+        period_ticks,
+    };
+    let [shortest, longest] = SINE_PERIOD_TICKS;
+    for (motor, travel_m, drive, refusal) in [
+        (0, 1e-3, by(1.0), JogRefusal::Motor),
+        (4, 1e-3, by(1.0), JogRefusal::Motor),
+        (1, 0.0, by(1.0), JogRefusal::Travel),
+        (1, f32::NAN, by(1.0), JogRefusal::Travel),
+        (1, -0.0101, by(1.0), JogRefusal::Travel),
+        (1, 1e-3, by(0.0), JogRefusal::Voltage),
+        (1, 1e-3, by(4.7), JogRefusal::Voltage),
+        (1, 1e-3, by(f32::NAN), JogRefusal::Voltage),
+        (1, 3.1e-4, JogDrive::ServoStep, JogRefusal::Travel),
+        (1, -3.1e-4, JogDrive::ServoStep, JogRefusal::Travel),
+        (1, f32::NAN, JogDrive::ServoStep, JogRefusal::Travel),
+        (1, 0.0101, sine(2e-3, 0.3, 100), JogRefusal::Travel),
+        (1, 1e-3, sine(0.0, 0.3, 100), JogRefusal::Speed),
+        (1, 1e-3, sine(-2e-3, 0.3, 100), JogRefusal::Speed),
+        (1, 1e-3, sine(f32::NAN, 0.3, 100), JogRefusal::Speed),
+        (1, 1e-3, sine(f32::INFINITY, 0.3, 100), JogRefusal::Voltage),
+        (1, 1e-3, sine(2e-3, 0.0, 100), JogRefusal::Voltage),
+        (1, 1e-3, sine(2e-3, f32::NAN, 100), JogRefusal::Voltage),
+        (1, 1e-3, sine(2e-3, 4.0, 100), JogRefusal::Voltage),
+        (1, 1e-3, sine(0.02, 0.3, 100), JogRefusal::Voltage),
+        (1, 1e-3, sine(2e-3, 0.3, shortest - 1), JogRefusal::Period),
+        (1, 1e-3, sine(2e-3, 0.3, longest + 1), JogRefusal::Period),
     ] {
         let demand = JogDemand {
             motor,
             travel_m,
-            voltage_v,
+            drive,
         };
         assert_eq!(refused(&mut operator, demand), refusal, "{demand:?}");
     }

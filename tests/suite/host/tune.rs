@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod endings;
+mod servo;
 
 use fastrand::Rng;
 use leg_firmware::drive::Drive;
@@ -100,7 +101,7 @@ fn the_constants_of_a_motor_are_found_within_five_percent() {
             hardest_n = tensions_n.into_iter().fold(hardest_n, f64::max);
         });
         // Compared with what the leg is, not with what it is configured to.
-        let rows = comparison(motor, &found.unwrap().constants, None, &real);
+        let rows = comparison(&found.unwrap(), None, &real);
         for name in [
             "resistance_ohm",
             "torque_constant_nm_per_a",
@@ -199,7 +200,7 @@ fn what_is_written_is_a_part_of_a_rig_file() {
     let found = jog(&mut operator, 2, &mut |_| ()).unwrap();
     let plan = SwingPlan::new(&configured);
     let swings = measure_swing(&mut operator, &plan, &configured, &mut |_| ()).unwrap();
-    let rows = comparison(found.motor, &found.constants, Some(&swings), &configured);
+    let rows = comparison(&found, Some(&swings), &configured);
     let text = [READY_RIGS[0].text, &section(2, &rows)].concat();
     let file = RigFile::parse("measured", &text).unwrap();
     let written = &file.actuators[1];
@@ -240,7 +241,7 @@ fn what_the_jogs_tell_lets_a_leg_home_that_did_not() {
     ));
     // Each motor has its own section.
     let sections = found.map(|found| {
-        let rows = comparison(found.motor, &found.constants, None, &configured);
+        let rows = comparison(&found, None, &configured);
         section(found.motor, &rows)
     });
     let text = [READY_RIGS[0].text, &sections.concat()].concat();
@@ -255,7 +256,7 @@ fn what_a_rig_file_does_not_take_is_a_comment() {
     let configured = RigFile::load(None).unwrap();
     let (_, mut operator, _) = leg(&configured, &configured, 1);
     let found = jog(&mut operator, 1, &mut |_| ()).unwrap();
-    let mut rows = comparison(found.motor, &found.constants, None, &configured);
+    let mut rows = comparison(&found, None, &configured);
     for row in &mut rows {
         match row.name.as_str() {
             "screw_efficiency" => row.measured.value = 0.55,

@@ -219,6 +219,12 @@ impl<T: Scalar> Axis<T> {
         self.voltage_sum_v += voltage_v;
     }
 
+    /// Adds to the voltage of this tick, V, without the servo's knowledge.
+    pub fn add_voltage(&mut self, added_v: T) {
+        self.voltage_v += added_v;
+        self.voltage_sum_v += added_v;
+    }
+
     /// Goes on from the voltage that another controller of the same motor has applied: the integral becomes what it had to be.
     pub fn adopt_voltage(&mut self, applied_v: T) {
         self.integral_v += applied_v - self.voltage_v;

@@ -2,7 +2,7 @@
 
 use super::bounds::max;
 use super::{Applied, SHOWN_PART};
-use crate::jog::{JOG_TRAVEL_MAX_M, JogDemand, JogRefusal};
+use crate::jog::{JOG_TRAVEL_MAX_M, JogDemand, JogDrive, JogRefusal, SINE_PERIOD_TICKS};
 use crate::settings::{Servo, Settings};
 use leg_model::Scalar;
 
@@ -33,6 +33,8 @@ pub struct JogBounds<T> {
     /// Voltage that this current takes, V, and what the speed induces, V·s/m.
     dropped_v: f32,
     back_emf_v_s_per_m: f32,
+    /// The farthest step of a reference, m: half of what would be a fault.
+    step_max_m: f32,
 }
 
 impl<T: Scalar> JogBounds<T> {
@@ -45,6 +47,7 @@ impl<T: Scalar> JogBounds<T> {
             current_max_a: current_max_a.into(),
             dropped_v: servo.resistance_ohm * current_max_a,
             back_emf_v_s_per_m: servo.back_emf_v_s_per_m,
+            step_max_m: 0.5 * settings.limits.following_m,
         }
     }
 
@@ -69,20 +72,54 @@ impl<T: Scalar> JogBounds<T> {
 
     fn check(&self, demand: &JogDemand) -> Result<(), JogRefusal> {
         let travel_m = demand.travel_m.abs();
-        if !(travel_m > 0.0 && travel_m <= JOG_TRAVEL_MAX_M) {
-            Err(JogRefusal::Travel)
-        } else if !(demand.voltage_v > 0.0 && demand.voltage_v <= self.voltage_max_v) {
-            Err(JogRefusal::Voltage)
-        } else {
+        let travel_max_m = match demand.drive {
+            JogDrive::ServoStep => self.step_max_m,
+            _ => JOG_TRAVEL_MAX_M,
+        };
+        if !(travel_m > 0.0 && travel_m <= travel_max_m) {
+            return Err(JogRefusal::Travel);
+        }
+        let voltage_v = match demand.drive {
+            JogDrive::Voltage(voltage_v) => voltage_v,
+            JogDrive::ServoStep => return Ok(()),
+            JogDrive::ServoSine {
+                speed_m_per_s,
+                amplitude_v,
+                period_ticks,
+            } => {
+                let [shortest, longest] = SINE_PERIOD_TICKS;
+                if !(speed_m_per_s > 0.0) {
+                    return Err(JogRefusal::Speed);
+                }
+                if !(shortest..=longest).contains(&period_ticks) {
+                    return Err(JogRefusal::Period);
+                }
+                if !(amplitude_v > 0.0) {
+                    return Err(JogRefusal::Voltage);
+                }
+                amplitude_v + speed_m_per_s * self.back_emf_v_s_per_m
+            }
+        };
+        if voltage_v > 0.0 && voltage_v <= self.voltage_max_v {
             Ok(())
+        } else {
+            Err(JogRefusal::Voltage)
         }
     }
 
     /// The longest time of a jog, s.
     pub fn time_max_s(&self, demand: &JogDemand) -> f32 {
-        let left_v = demand.voltage_v - self.dropped_v;
-        let slowest = SLOWEST_M_PER_S * self.back_emf_v_s_per_m;
-        let induced_v = if left_v > slowest { left_v } else { slowest };
-        longest_s(demand.travel_m.abs() * self.back_emf_v_s_per_m / induced_v)
+        let speed_m_per_s = match demand.drive {
+            JogDrive::Voltage(voltage_v) => (voltage_v - self.dropped_v) / self.back_emf_v_s_per_m,
+            JogDrive::ServoStep => 0.0,
+            JogDrive::ServoSine { speed_m_per_s, .. } => speed_m_per_s,
+        };
+        let slowest = SLOWEST_M_PER_S;
+        let speed_m_per_s = if speed_m_per_s > slowest {
+            speed_m_per_s
+        } else {
+            slowest
+        };
+        longest_s(demand.travel_m.abs() / speed_m_per_s)
     }
 }

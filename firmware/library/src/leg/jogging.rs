@@ -1,8 +1,9 @@
-//! Jogging: one motor turns at a voltage, the others rest. Whatever ends it, the motor is braked and then switched off.
+//! Jogging: one motor turns at a voltage or by its servo, the others rest. Whatever ends it, the motor is braked and then switched off.
 
+use super::servo_run::ServoRun;
 use super::shared::Shared;
 use crate::control::{Axis, Debounce, JOG_RISE_S, JogBounds, Measured, TICK_S, bounds, ticks};
-use crate::jog::{JogDemand, JogEnd, JogReport};
+use crate::jog::{JogDemand, JogDrive, JogEnd, JogReport};
 use leg_model::Scalar;
 
 /// Time after the rise of the voltage until the speed is steady, s: ten times what the default motor takes. Before it the current
@@ -15,6 +16,10 @@ const SILENT_S: f32 = 0.1;
 
 /// Time for which a motor draws more than any tension of a jog asks for before it ends, s: as in homing.
 const HAUL_S: f32 = 0.03;
+
+/// The same in a step of the reference, s: a rotor of twice the inertia, with a resistance and a torque constant that are a fifth off, is
+/// brought up to speed and braked meanwhile.
+const STEP_HAUL_S: f32 = 0.1;
 
 /// Time for which the motor is braked without a voltage, s: ten times what the default motor takes.
 const BRAKE_S: f32 = 0.05;
@@ -31,6 +36,14 @@ const DISOBEYED_M: f32 = 2e-4;
 /// a motor that stops at a taut tendon is said not to turn: test `without_its_load_cell_the_current_ends_a_jog`.
 const TURNED_M: f32 = 5e-6;
 
+/// What turns the motor.
+#[derive(Clone, Copy, Debug)]
+enum Drive<T> {
+    /// A voltage, without its sign, V.
+    Voltage(T),
+    Servo(ServoRun<T>),
+}
+
 /// One motor turns.
 #[derive(Clone, Copy, Debug)]
 pub struct Jogging<T> {
@@ -39,7 +52,7 @@ pub struct Jogging<T> {
     /// 1 to pull in, −1 to pay out.
     sign: T,
     travel_m: T,
-    voltage_v: T,
+    drive: Drive<T>,
     applied_v: T,
     start_m: [T; 3],
     /// Tension above which it ends, N.
@@ -90,19 +103,40 @@ impl<T: Scalar> Jogging<T> {
             current_a: T::zero(),
             speed_m_per_s: T::zero(),
             tension_n: T::zero(),
+            servo: None,
         });
+        let start_m = measured.pulled_m.get(motor).copied().unwrap_or(T::zero());
+        let travel_m = demand.travel_m;
+        let drive = match demand.drive {
+            JogDrive::Voltage(voltage_v) => Drive::Voltage(voltage_v.into()),
+            JogDrive::ServoStep => Drive::Servo(ServoRun::step_by(travel_m, start_m)),
+            JogDrive::ServoSine {
+                speed_m_per_s,
+                amplitude_v,
+                period_ticks,
+            } => Drive::Servo(ServoRun::turn_by(
+                travel_m,
+                speed_m_per_s,
+                amplitude_v,
+                period_ticks,
+                start_m,
+            )),
+        };
         Self {
             motor,
             sign: T::from(if pays_out { -1.0 } else { 1.0 }),
-            travel_m: T::from(demand.travel_m.abs()),
-            voltage_v: demand.voltage_v.into(),
+            travel_m: T::from(travel_m.abs()),
+            drive,
             applied_v: T::zero(),
             start_m: measured.pulled_m,
             tension_max_n,
             bounds: *jog_bounds,
-            last_m: measured.pulled_m.get(motor).copied().unwrap_or(T::zero()),
+            last_m: start_m,
             silent: Debounce::new(ticks(SILENT_S)),
-            hauling: Debounce::new(ticks(HAUL_S)),
+            hauling: Debounce::new(ticks(match demand.drive {
+                JogDrive::ServoStep => STEP_HAUL_S,
+                _ => HAUL_S,
+            })),
             ticks: 0,
             steady_ticks: 0,
             steady_from_m: T::zero(),
@@ -120,13 +154,14 @@ impl<T: Scalar> Jogging<T> {
     /// One tick; true when the motor has been braked.
     #[inline(never)]
     pub fn step(&mut self, shared: &mut Shared<T>, measured: &Measured<T>) -> bool {
-        let (Some(&pulled), Some(&current), Some(applied)) = (
+        let (Some(&pulled), Some(&current), Some(axis)) = (
             measured.pulled_m.get(self.motor),
             measured.currents_a.get(self.motor),
-            shared.axes.get(self.motor).map(Axis::applied),
+            shared.axes.get_mut(self.motor),
         ) else {
             return true;
         };
+        let applied = axis.applied();
         if let Some(report) = &mut shared.jog_report {
             for ((moved, now), start) in report
                 .pulled_m
@@ -140,7 +175,7 @@ impl<T: Scalar> Jogging<T> {
             if self.brake_ticks.is_none() {
                 self.ticks += 1;
                 report.time_s = T::from(self.ticks as f32 * TICK_S);
-                self.drive();
+                self.turn(axis, pulled, measured.supply_v);
                 let tension = measured.tensions_n.get(self.motor);
                 self.average(report, pulled, current, tension.copied());
                 let hauled_a = if shared.current_outputs.hides_short_pulses(self.motor) {
@@ -151,6 +186,9 @@ impl<T: Scalar> Jogging<T> {
                 report.end = self.end(report, pulled, hauled_a);
                 if report.end != JogEnd::Running {
                     self.brake_ticks = Some(ticks(BRAKE_S));
+                    if let Drive::Servo(run) = &self.drive {
+                        report.servo = run.ended().then(|| run.response());
+                    }
                 }
             }
         }
@@ -160,16 +198,21 @@ impl<T: Scalar> Jogging<T> {
             let obeys = (pulled - self.last_m).abs() <= T::from(DISOBEYED_M);
             *left = if obeys { left.saturating_sub(1) } else { 0 };
         }
-        if let Some(axis) = shared.axes.get_mut(self.motor) {
+        if self.brake_ticks.is_some() || matches!(self.drive, Drive::Voltage(_)) {
             axis.apply_voltage(self.applied_v, pulled);
         }
         self.brake_ticks == Some(0)
     }
 
     /// The next voltage.
-    fn drive(&mut self) {
-        let risen = self.voltage_v * T::from(self.ticks as f32 * (TICK_S / JOG_RISE_S));
-        self.applied_v = bounds::min(risen, self.voltage_v) * self.sign;
+    fn turn(&mut self, axis: &mut Axis<T>, pulled: T, supply_v: T) {
+        match &mut self.drive {
+            Drive::Voltage(voltage_v) => {
+                let risen = *voltage_v * T::from(self.ticks as f32 * (TICK_S / JOG_RISE_S));
+                self.applied_v = bounds::min(risen, *voltage_v) * self.sign;
+            }
+            Drive::Servo(run) => self.applied_v = run.step(axis, pulled, supply_v),
+        }
     }
 
     /// Adds a tick to the means of the report.
@@ -189,8 +232,20 @@ impl<T: Scalar> Jogging<T> {
         }
     }
 
-    fn is_at_full_voltage(&self) -> bool {
-        self.ticks >= ticks(JOG_RISE_S)
+    /// Whether a motor that obeys counts now.
+    fn counts(&self) -> bool {
+        match &self.drive {
+            Drive::Voltage(_) => self.ticks >= ticks(JOG_RISE_S),
+            Drive::Servo(run) => run.counts(),
+        }
+    }
+
+    /// Whether it has gone as far as it was asked, by `moved` of its own way, m.
+    fn arrived(&self, moved: T) -> bool {
+        match &self.drive {
+            Drive::Voltage(_) => moved >= self.travel_m,
+            Drive::Servo(run) => run.ended(),
+        }
     }
 
     /// What ends it now, if anything does.
@@ -199,9 +254,7 @@ impl<T: Scalar> Jogging<T> {
             .pulled_m
             .get(self.motor)
             .map_or(T::zero(), |&moved| moved * self.sign);
-        let silent = self
-            .silent
-            .update(self.is_at_full_voltage() && pulled == self.last_m);
+        let silent = self.silent.update(self.counts() && pulled == self.last_m);
         self.last_m = pulled;
         let hauls = self
             .hauling
@@ -218,7 +271,7 @@ impl<T: Scalar> Jogging<T> {
             JogEnd::WrongWay
         } else if let Some((number, _)) = taut {
             JogEnd::Tension(number)
-        } else if moved >= self.travel_m {
+        } else if self.arrived(moved) {
             JogEnd::Arrived
         } else if silent || (hauls && moved <= T::from(TURNED_M)) {
             JogEnd::NoCounts

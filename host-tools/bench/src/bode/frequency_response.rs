@@ -1,8 +1,8 @@
 //! The transfer of a loop at one frequency, measured while it is closed: a sine is added at a break point, and both sides of
 //! it are correlated with the sine over whole periods.
 
+use leg_rig::loop_response::ResponsePoint;
 use nalgebra::Complex;
-use serde::Serialize;
 use std::f64::consts::TAU;
 
 /// The two sides of a break point in one tick.
@@ -40,37 +40,8 @@ pub struct Excitation {
     pub window_periods: f64,
 }
 
-/// A measured point of a loop's transfer.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct ResponsePoint {
-    /// Hz.
-    pub hz: f64,
-    /// dB.
-    pub gain_db: f64,
-    /// Degrees, −180 to 180; of the transfer that is −1 where the closed loop is at its limit.
-    pub phase_deg: f64,
-    /// The part of the amplitude that it was measured with: less than 1 where more ended the run.
-    pub part: f64,
-}
-
 /// The parts of the amplitude that are tried one after the other, until one does not end the run.
 const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
-
-/// Square of the least gain: nothing may come back.
-const LEAST: f64 = 1e-12;
-
-impl ResponsePoint {
-    /// From a transfer that was measured with a part of the amplitude.
-    #[must_use]
-    pub fn new(hz: f64, transfer: Complex<f64>, part: f64) -> Self {
-        Self {
-            hz,
-            gain_db: 10.0 * transfer.norm_sqr().max(LEAST).log10(),
-            phase_deg: transfer.im.atan2(transfer.re).to_degrees(),
-            part,
-        }
-    }
-}
 
 impl Excitation {
     /// The transfer near a frequency; the loop is left as it is. Where the whole amplitude ends the run, a half and then a quarter

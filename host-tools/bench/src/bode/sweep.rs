@@ -1,7 +1,7 @@
 //! A loop at frequencies that are evenly spaced on a logarithmic scale, and closer at margins and resonances.
 
-use super::frequency_response::{ClosedLoop, Excitation, ResponsePoint};
-use super::margins::crosses;
+use super::frequency_response::{ClosedLoop, Excitation};
+use leg_rig::loop_response::{ResponsePoint, crosses};
 
 /// How close two points come that have a margin between them, as a ratio of their frequencies: a mode that is damped by 0.05
 /// turns the phase by 180° over a tenth of its frequency.

@@ -2,18 +2,25 @@
 
 use crate::output::save_all;
 use leg_base::failure::Failure;
+use leg_model_tools::plot::bode::{self, BodeLine, BodeMargin, BodePlot, BodePoint};
 use leg_model_tools::plot::{self, Chart, ChartLine};
-use leg_rig::tune::{Jogged, MeasuredMotor, Swing, Swings};
+use leg_rig::loop_response::{Margins, ResponsePoint};
+use leg_rig::rig_file::RigFile;
+use leg_rig::tune::{Jogged, MeasuredMotor, MeasuredServo, Swing, Swings, configured_servo};
 use std::path::{Path, PathBuf};
 
 /// Points of the line through a swing.
 const LINE_POINTS: usize = 400;
+
+/// Name of the plot of the servo.
+const SERVO: &str = "servo";
 
 /// Saves the charts in a directory; names the SVG files.
 pub(super) fn save(
     directory: &Path,
     motor: &MeasuredMotor,
     swings: Option<&Swings>,
+    rig: &RigFile,
 ) -> Result<Vec<PathBuf>, Failure> {
     let mut charts = vec![("speed", speeds(motor)), ("pull", pulls(motor))];
     if let Some(swings) = swings {
@@ -24,11 +31,18 @@ pub(super) fn save(
         for (name, chart) in &charts {
             plot::save(chart, &staging.join(name))?;
         }
+        if let Some(measured) = &motor.servo {
+            let plot = servo(motor.motor, measured, rig);
+            bode::save(&plot, &staging.join(SERVO))?;
+        }
         Ok(())
     };
     save_all("chart", directory, "--plots", draw, || Ok(()))?;
-    let svg = |(name, _): &(&str, _)| directory.join(format!("{name}.svg"));
-    Ok(charts.iter().map(svg).collect())
+    let drawn = motor.servo.is_some().then_some(SERVO);
+    let names = charts.iter().map(|&(name, _)| name).chain(drawn);
+    Ok(names
+        .map(|name| directory.join(format!("{name}.svg")))
+        .collect())
 }
 
 fn chart(title: String, x_title: &str, y_title: &str, lines: Vec<ChartLine>) -> Chart {
@@ -114,6 +128,43 @@ fn pulls(motor: &MeasuredMotor) -> Chart {
         "Current without viscous friction, A",
         vec![line(("pulling in", 1.0, 0)), line(("paying out", -1.0, 1))],
     )
+}
+
+/// The transfer of the servo's loop, with its margins, beside that of the rig file.
+fn servo(motor: u8, servo: &MeasuredServo, rig: &RigFile) -> BodePlot {
+    let points = |points: &[ResponsePoint]| {
+        let point = |point: &ResponsePoint| BodePoint {
+            hz: point.hz,
+            gain_db: point.gain_db,
+            phase_deg: point.phase_deg,
+        };
+        points.iter().map(point).collect::<Vec<_>>()
+    };
+    let measured = &servo.points;
+    let margins = Margins::new(measured);
+    let line = |name: &str, unit: &str, margin: BodeMargin| {
+        let (BodeMargin::Gain(hz, value) | BodeMargin::Phase(hz, value)) = margin;
+        BodeLine {
+            label: vec![
+                format!("measured, {name} margin"),
+                format!("{value:.1} {unit} at {hz:.1} Hz"),
+            ],
+            points: points(measured),
+            margin: Some(margin),
+        }
+    };
+    let gain = margins.gain_hz.zip(margins.gain_db);
+    let phase = margins.phase_hz.zip(margins.phase_deg);
+    let named = [
+        gain.map(|(hz, db)| line("gain", "dB", BodeMargin::Gain(hz, db))),
+        phase.map(|(hz, deg)| line("phase", "°", BodeMargin::Phase(hz, deg))),
+    ];
+    BodePlot {
+        title: format!("Servo of motor {motor}, broken at its voltage"),
+        others_label: "by the rig file".into(),
+        others: vec![points(&configured_servo(motor, rig))],
+        named: named.into_iter().flatten().collect(),
+    }
 }
 
 fn swing(swings: &Swings) -> Chart {

@@ -5,7 +5,7 @@ use crate::arguments::{self, bounded, callable, place};
 use crate::errors::leg_failure;
 use crate::operator_thread::LegFailure;
 use leg_base::failure::Failure;
-use leg_firmware::jog::{JogDemand, JogEnd};
+use leg_firmware::jog::{JogDemand, JogDrive, JogEnd};
 use leg_host::calibration::{
     CellFit, KnownWeight, fit, mean_code, require_drivers_off, too_few_weights,
 };
@@ -147,7 +147,9 @@ pub(super) fn jog(
         let demand = JogDemand {
             motor,
             travel_m: (travel_mm / 1000.0) as f32,
-            voltage_v: given.unwrap_or_else(|| jog_report::slow_voltage_v(motor, &settings)),
+            drive: JogDrive::Voltage(
+                given.unwrap_or_else(|| jog_report::slow_voltage_v(motor, &settings)),
+            ),
         };
         let (report, telemetry) = operator.jog(&demand)?;
         let asked = "jog a motor";

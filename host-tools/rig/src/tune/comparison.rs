@@ -1,9 +1,12 @@
 //! What was measured beside what a rig file says, and as a section for one.
 
+use super::MeasuredMotor;
 use super::estimate::UncertainValue;
 use super::motor::MotorConstants;
+use super::servo::{MeasuredServo, configured_servo};
 use super::swing::Swings;
 use crate::actuator::{ACTUATOR, Actuator};
+use crate::loop_response::Margins;
 use crate::motor_sections::motor_section;
 use crate::number::{plain, significant};
 use crate::plant_settings::{SIMULATION, TRANSVERSE_INERTIA};
@@ -25,18 +28,23 @@ pub struct ComparisonRow {
     pub key: Option<(String, &'static str)>,
 }
 
-/// All that was measured at a motor, from 1, beside what the rig says.
+/// All that was measured at a motor beside what the rig says.
 #[must_use]
 pub fn comparison(
-    motor: u8,
-    constants: &MotorConstants,
+    motor: &MeasuredMotor,
     swings: Option<&Swings>,
     rig: &RigFile,
 ) -> Vec<ComparisonRow> {
-    let own = usize::from(motor).saturating_sub(1);
+    let own = usize::from(motor.motor).saturating_sub(1);
     let actuator = rig.actuators.get(own).unwrap_or(&Actuator::DEFAULT);
     let section = motor_section(ACTUATOR, own);
-    let mut rows = motor_rows(constants, actuator, &section);
+    let mut rows = motor_rows(&motor.constants, actuator, &section);
+    let servo = motor.servo.as_ref();
+    rows.extend(
+        servo
+            .into_iter()
+            .flat_map(|servo| servo_rows(servo, motor.motor, rig)),
+    );
     rows.extend(
         swings
             .into_iter()
@@ -114,6 +122,48 @@ fn motor_rows(motor: &MotorConstants, actuator: &Actuator, section: &str) -> Vec
         row("pull, paying out", "A/N", pull_out, pays_out),
         row("voltage lost in the driver", "V", motor.driver_loss_v, 0.0),
     ]
+}
+
+fn servo_rows(servo: &MeasuredServo, motor: u8, rig: &RigFile) -> Vec<ComparisonRow> {
+    let margins = Margins::new(&configured_servo(motor, rig));
+    let row = |name: String, unit, measured, configured| ComparisonRow {
+        name,
+        unit,
+        measured,
+        configured,
+        key: None,
+    };
+    let of_loop = |name: &str, unit, measured: Option<UncertainValue>, configured| {
+        Some(row(format!("servo, {name}"), unit, measured?, configured))
+    };
+    let step_mm = 1000.0 * servo.step_m;
+    let step = [
+        row(
+            format!("servo, overshoot of {step_mm:.2} mm"),
+            "%",
+            servo.overshoot.scaled(100.0),
+            None,
+        ),
+        row(
+            "servo, within 5 % after".into(),
+            "ms",
+            servo.settled_s.scaled(1000.0),
+            None,
+        ),
+    ];
+    let of_loop = [
+        of_loop("crossover", "Hz", servo.crossover_hz, margins.phase_hz),
+        of_loop(
+            "phase margin",
+            "°",
+            servo.phase_margin_deg,
+            margins.phase_deg,
+        ),
+        of_loop("gain margin", "dB", servo.gain_margin_db, margins.gain_db),
+    ];
+    step.into_iter()
+        .chain(of_loop.into_iter().flatten())
+        .collect()
 }
 
 fn swing_rows(swings: &Swings, rig: &RigFile, section: &str) -> Vec<ComparisonRow> {

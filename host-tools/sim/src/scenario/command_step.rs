@@ -3,7 +3,7 @@
 use crate::range;
 use leg_base::angles;
 use leg_firmware::command::{Command, Compensation};
-use leg_firmware::jog::JogDemand;
+use leg_firmware::jog::{JogDemand, JogDrive};
 use serde::Deserialize;
 use strum::VariantNames;
 
@@ -96,7 +96,7 @@ impl CommandStep {
             } => Command::Jog(JogDemand {
                 motor,
                 travel_m: (travel_mm / 1000.0) as f32,
-                voltage_v: volts as f32,
+                drive: JogDrive::Voltage(volts as f32),
             }),
         }
     }

@@ -10,6 +10,10 @@ type Complex = nalgebra::Complex<f64>;
 /// From a reading of the sensors to the middle of what it makes the drivers do, ticks.
 const DELAY_TICKS: f64 = 1.5;
 
+/// The same without the time to compute it, as in the simulation: a voltage is held for a tick. The gains that are derived have the rest as a
+/// reserve.
+const HOLD_TICKS: f64 = 0.5;
+
 /// The speed loop by the position loop: so much faster is its crossover.
 const SPEED_BY_POSITION: f64 = 4.5;
 
@@ -87,21 +91,34 @@ impl ServoLoop {
         low
     }
 
+    /// The transfer of the whole servo at a frequency, Hz, broken at the voltage of the motor: that of a loop whose limit of stability
+    /// is −1.
+    pub fn at_voltage(&self, servo: &Servo, hz: f64) -> Complex {
+        let rate = std::f64::consts::TAU * hz;
+        let position_per_s = f64::from(servo.position_gain_per_s);
+        let integral_s = f64::from(servo.integral_time_s);
+        let integral = Complex::ONE + Complex::new(0.0, rate * integral_s).recip();
+        let travel = self.motor(rate, HOLD_TICKS) / Complex::new(0.0, rate);
+        let speed_error = Complex::from(position_per_s) + self.tracked_speed(rate);
+        let by_speed = integral * speed_error * f64::from(servo.speed_gain_v_s_per_m);
+        travel * (by_speed + self.back_emf * position_per_s)
+    }
+
     fn margin_deg(&self, gains: &LoopGains) -> f64 {
         let speed_loop = |rate| self.speed_forward(gains, rate) * self.tracked(rate);
         let position_loop = |rate: f64| {
             let forward = self.speed_forward(gains, rate);
             // The speed that is asked for drives the back EMF by itself.
-            let fed = forward + self.motor(rate) * self.back_emf;
+            let fed = forward + self.motor(rate, DELAY_TICKS) * self.back_emf;
             let closed = fed / (Complex::ONE + forward * self.tracked(rate));
             closed * gains.position_per_s / Complex::new(0.0, rate)
         };
         phase_margin_deg(speed_loop).min(phase_margin_deg(position_loop))
     }
 
-    /// From the voltage to the speed, with the delay.
-    fn motor(&self, rate: f64) -> Complex {
-        let delay_s = DELAY_TICKS / f64::from(TICK_HZ);
+    /// From the voltage to the speed, with a delay.
+    fn motor(&self, rate: f64, delay_ticks: f64) -> Complex {
+        let delay_s = delay_ticks / f64::from(TICK_HZ);
         let lag = |time_s: f64| Complex::new(1.0, rate * time_s);
         let late = Complex::new(0.0, -rate * delay_s).exp();
         late / (lag(self.mechanical_s) * lag(self.electrical_s) * self.back_emf)
@@ -110,10 +127,20 @@ impl ServoLoop {
     /// From an error of the speed to the speed.
     fn speed_forward(&self, gains: &LoopGains, rate: f64) -> Complex {
         let integral = Complex::ONE + Complex::new(0.0, rate * gains.integral_s).recip();
-        self.motor(rate) * integral * gains.speed
+        self.motor(rate, DELAY_TICKS) * integral * gains.speed
     }
 
-    /// From the speed to the tracked speed.
+    /// From the position to the tracked speed, as the filter computes it tick by tick.
+    fn tracked_speed(&self, rate: f64) -> Complex {
+        let ticks_per_s = f64::from(TICK_HZ);
+        let tick = Complex::new(0.0, rate / ticks_per_s).exp();
+        let position = 2.0 * self.tracking_per_s / ticks_per_s;
+        let speed = 0.25 * position * position;
+        let poles = tick * (tick + (position + speed - 2.0)) + (1.0 - position);
+        tick * (tick - 1.0) * speed * ticks_per_s / poles
+    }
+
+    /// From the speed to the tracked speed, by a filter that works all the time.
     fn tracked(&self, rate: f64) -> Complex {
         let lag = Complex::new(1.0, rate / self.tracking_per_s);
         (lag * lag).recip()

@@ -3,7 +3,7 @@
 use crate::shown_leg::ShownLeg;
 use leg_base::jog_report::{self, Finding};
 use leg_firmware::command::Command;
-use leg_firmware::jog::{JOG_TRAVEL_MAX_M, JogDemand, JogReport};
+use leg_firmware::jog::{JOG_TRAVEL_MAX_M, JogDemand, JogDrive, JogReport};
 use leg_firmware::settings::Settings;
 use leg_firmware::supervisor::State;
 
@@ -75,7 +75,7 @@ impl Jog {
         JogDemand {
             motor: self.motor,
             travel_m: self.travel_mm / 1000.0,
-            voltage_v: jog_report::slow_voltage_v(self.motor, settings),
+            drive: JogDrive::Voltage(jog_report::slow_voltage_v(self.motor, settings)),
         }
     }
 

@@ -7,7 +7,7 @@ use leg_firmware::settings::Settings;
 use leg_rig::control_settings;
 use leg_rig::rig_file::RigFile;
 use leg_rig::tune::{
-    ComparisonRow, JogPlan, Jogged, MeasuredMotor, Swing, SwingPlan, comparison, measure_motor,
+    ComparisonRow, JogPlan, Jogged, Swing, SwingPlan, comparison, measure_motor,
     measure_swing,
 };
 use std::cell::RefCell;
@@ -205,8 +205,8 @@ async fn measure(
     ));
     let jogged = &mut |jogged: &Jogged| note(jogged_words(motor, jogged));
     let measured = measure_motor(&mut leg, &jogs, &settings(&rig), jogged).await;
-    let constants = match measured {
-        Ok(MeasuredMotor { constants, .. }) => constants,
+    let measured = match measured {
+        Ok(measured) => measured,
         Err(error) => {
             let (rows, failure) = (Vec::new(), Some(error.failure().render(false)));
             return Outcome {
@@ -217,7 +217,7 @@ async fn measure(
         }
     };
     let Some(plan) = swing else {
-        let rows = comparison(motor, &constants, None, &rig);
+        let rows = comparison(&measured, None, &rig);
         return Outcome {
             motor,
             rows,
@@ -231,7 +231,7 @@ async fn measure(
         Err(error) => (None, Some(error.failure().render(false))),
     };
     // The motor may be why, as one with more friction than is configured: what it is must not be lost.
-    let rows = comparison(motor, &constants, swings.as_ref(), &rig);
+    let rows = comparison(&measured, swings.as_ref(), &rig);
     Outcome {
         motor,
         rows,

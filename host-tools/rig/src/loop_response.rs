@@ -1,7 +1,36 @@
-//! The margins of a loop by points of its transfer.
+//! The transfer of a loop by its points, and its margins by them.
 
-use super::frequency_response::ResponsePoint;
+use nalgebra::Complex;
 use serde::Serialize;
+
+/// A measured point of a loop's transfer.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ResponsePoint {
+    /// Hz.
+    pub hz: f64,
+    /// dB.
+    pub gain_db: f64,
+    /// Degrees, −180 to 180; of the transfer that is −1 where the closed loop is at its limit.
+    pub phase_deg: f64,
+    /// The part of the amplitude that it was measured with: less than 1 where more ended the run.
+    pub part: f64,
+}
+
+/// Square of the least gain: nothing may come back.
+const LEAST: f64 = 1e-12;
+
+impl ResponsePoint {
+    /// From a transfer that was measured with a part of the amplitude.
+    #[must_use]
+    pub fn new(hz: f64, transfer: Complex<f64>, part: f64) -> Self {
+        Self {
+            hz,
+            gain_db: 10.0 * transfer.norm_sqr().max(LEAST).log10(),
+            phase_deg: transfer.im.atan2(transfer.re).to_degrees(),
+            part,
+        }
+    }
+}
 
 /// Below this gain, dB, nothing counts: it is less than what the sensors resolve.
 const FLOOR_DB: f64 = -40.0;
@@ -51,7 +80,8 @@ impl Margins {
 }
 
 /// Whether something that matters is between two points.
-pub(super) fn crosses(before: &ResponsePoint, after: &ResponsePoint) -> bool {
+#[must_use]
+pub fn crosses(before: &ResponsePoint, after: &ResponsePoint) -> bool {
     gain_crossing(before, after).is_some()
         || phase_crossing(before, after).is_some_and(|crossing| crossing.other > FLOOR_DB)
 }

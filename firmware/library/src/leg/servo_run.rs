@@ -1,0 +1,271 @@
+//! A jog by the servo: how the motor answers a step of its reference, or a sine that is added to its voltage.
+
+use crate::control::{Axis, AxisInput, TICK_S, bounds, ticks};
+use crate::jog::ServoResponse;
+use leg_model::Scalar;
+
+/// Time in which the answer to a step is watched, s: the servo of the paper's rig has settled after a sixth of it.
+const STEP_S: f32 = 0.3;
+
+/// A step is settled within this part of it.
+const SETTLED_PART: f32 = 0.05;
+
+/// Time in which a sine comes up, and until it is measured, s: ten times what a motor and its servo take to settle.
+const RISE_S: f32 = 0.1;
+const SETTLE_S: f32 = 0.2;
+
+/// What leads the motor.
+#[derive(Clone, Copy, Debug)]
+enum Reference<T> {
+    Step { overshoot_m: T, settled_ticks: u32 },
+    Speed { step_m: T, sine: Sine<T> },
+}
+
+/// A motor that its servo leads.
+#[derive(Clone, Copy, Debug)]
+pub struct ServoRun<T> {
+    reference: Reference<T>,
+    /// Where the motor began, and how far it is led, m; below zero it pays out.
+    start_m: T,
+    travel_m: T,
+    ticks: u32,
+    /// Ticks in which it is led.
+    ticks_max: u32,
+}
+
+impl<T: Scalar> ServoRun<T> {
+    /// A step of the reference by a travel, from where the motor is, m.
+    pub fn step_by(travel_m: f32, start_m: T) -> Self {
+        Self {
+            reference: Reference::Step {
+                overshoot_m: T::zero(),
+                settled_ticks: 0,
+            },
+            start_m,
+            travel_m: travel_m.into(),
+            ticks: 0,
+            ticks_max: ticks(STEP_S),
+        }
+    }
+
+    /// A travel from there at a speed, m/s, with a sine of an amplitude, V, and a period.
+    pub fn turn_by(
+        travel_m: f32,
+        speed_m_per_s: f32,
+        amplitude_v: f32,
+        period_ticks: u16,
+        start_m: T,
+    ) -> Self {
+        let step_m = (speed_m_per_s * TICK_S).copysign(travel_m);
+        Self {
+            reference: Reference::Speed {
+                step_m: step_m.into(),
+                sine: Sine::new(amplitude_v, period_ticks),
+            },
+            start_m,
+            travel_m: travel_m.into(),
+            ticks: 0,
+            ticks_max: ticks(travel_m.abs() / speed_m_per_s),
+        }
+    }
+
+    /// Whether a motor that obeys counts now: until a step has settled, and once a speed is reached.
+    pub fn counts(&self) -> bool {
+        match &self.reference {
+            Reference::Step { settled_ticks, .. } => *settled_ticks == self.ticks,
+            Reference::Speed { .. } => self.ticks >= ticks(RISE_S),
+        }
+    }
+
+    /// Whether it was led to the end.
+    pub const fn ended(&self) -> bool {
+        self.ticks >= self.ticks_max
+    }
+
+    /// One tick: the voltage at the motor, V.
+    pub fn step(&mut self, axis: &mut Axis<T>, pulled_m: T, supply_v: T) -> T {
+        self.ticks += 1;
+        let step_m = match &self.reference {
+            Reference::Step { .. } if self.ticks == 1 => self.travel_m,
+            Reference::Step { .. } => T::zero(),
+            Reference::Speed { step_m, .. } => *step_m,
+        };
+        axis.lead_by(step_m);
+        axis.drive(&AxisInput {
+            pulled_m,
+            // The bounds of the jog end it, not those of the servo.
+            tension_n: T::zero(),
+            f_max_n: T::MAX,
+            supply_v,
+            duty_per_v: T::zero(),
+            lowest_m: -T::MAX,
+        });
+        let asked_v = axis.applied().voltage_v;
+        match &mut self.reference {
+            Reference::Step {
+                overshoot_m,
+                settled_ticks,
+            } => {
+                let left_m = self.start_m + self.travel_m - pulled_m;
+                if left_m.abs() > T::from(SETTLED_PART) * self.travel_m.abs() {
+                    *settled_ticks = self.ticks;
+                }
+                let beyond_m = if self.travel_m < T::zero() {
+                    left_m
+                } else {
+                    -left_m
+                };
+                *overshoot_m = bounds::max(*overshoot_m, beyond_m);
+                asked_v
+            }
+            Reference::Speed { sine, .. } => {
+                let added_v = sine.step(self.ticks, asked_v);
+                axis.add_voltage(added_v);
+                asked_v + added_v
+            }
+        }
+    }
+
+    /// How the servo has answered until now.
+    pub fn response(&self) -> ServoResponse<T> {
+        match &self.reference {
+            Reference::Step {
+                overshoot_m,
+                settled_ticks,
+            } => ServoResponse::Step {
+                overshoot_m: *overshoot_m,
+                settled_s: T::from(*settled_ticks as f32 * TICK_S),
+            },
+            Reference::Speed { sine, .. } => sine.response(),
+        }
+    }
+}
+
+/// A sine, and what goes with it of the voltages on both sides of where it is added.
+#[derive(Clone, Copy, Debug)]
+struct Sine<T> {
+    amplitude_v: T,
+    period_ticks: u16,
+    /// Cosine and sine of the angle of a tick.
+    turn: [T; 2],
+    /// Of the angle now, and ticks of the period that are over.
+    now: [T; 2],
+    at: u16,
+    /// Whether this period is measured.
+    measured: bool,
+    /// Sums of the voltage that is asked for and of that at the motor, by cosine and sine: of this period, and of those before it, V.
+    sums_v: [[T; 2]; 2],
+    totals_v: [[T; 2]; 2],
+    periods: u16,
+}
+
+impl<T: Scalar> Sine<T> {
+    fn new(amplitude_v: f32, period_ticks: u16) -> Self {
+        // The tangent of half of the angle of a tick by its series: at the shortest period it is off by 1e-8.
+        let half = core::f32::consts::PI / f32::from(period_ticks);
+        let square = half * half;
+        let series = 1.0 + square * (1.0 / 3.0 + square * (2.0 / 15.0 + square * (17.0 / 315.0)));
+        let tangent = T::from(half) * T::from(series);
+        let scale = T::one() / (T::one() + tangent * tangent);
+        Self {
+            amplitude_v: amplitude_v.into(),
+            period_ticks,
+            turn: [
+                (T::one() - tangent * tangent) * scale,
+                T::TWO * tangent * scale,
+            ],
+            now: [T::one(), T::zero()],
+            at: 0,
+            measured: false,
+            sums_v: [[T::zero(); 2]; 2],
+            totals_v: [[T::zero(); 2]; 2],
+            periods: 0,
+        }
+    }
+
+    /// One tick, of so many: what is added to a voltage that is asked for, V.
+    fn step(&mut self, ticks_run: u32, asked_v: T) -> T {
+        if self.at == 0 {
+            self.now = [T::one(), T::zero()];
+            self.sums_v = [[T::zero(); 2]; 2];
+            self.measured = ticks_run >= ticks(SETTLE_S);
+        }
+        let risen = bounds::min(T::from(ticks_run as f32 * (TICK_S / RISE_S)), T::one());
+        let added_v = self.amplitude_v * risen * self.now[1];
+        for (sums, voltage) in self.sums_v.iter_mut().zip([asked_v, asked_v + added_v]) {
+            for (sum, part) in sums.iter_mut().zip(self.now) {
+                *sum += part * voltage;
+            }
+        }
+        let ([cosine, sine], [turn_cosine, turn_sine]) = (self.now, self.turn);
+        self.now = [
+            cosine * turn_cosine - sine * turn_sine,
+            sine * turn_cosine + cosine * turn_sine,
+        ];
+        self.at += 1;
+        if self.at >= self.period_ticks {
+            self.at = 0;
+            self.end_period();
+        }
+        added_v
+    }
+
+    fn end_period(&mut self) {
+        if !self.measured {
+            return;
+        }
+        self.periods = self.periods.saturating_add(1);
+        for (totals, sums) in self.totals_v.iter_mut().zip(self.sums_v) {
+            for (total, sum) in totals.iter_mut().zip(sums) {
+                *total += sum;
+            }
+        }
+    }
+
+    fn response(&self) -> ServoResponse<T> {
+        let ticks = f32::from(self.period_ticks) * f32::from(self.periods.max(1));
+        let [returned_v, injected_v] = self
+            .totals_v
+            .map(|totals| totals.map(|total| total * T::from(2.0 / ticks)));
+        ServoResponse::Sine {
+            periods: self.periods,
+            returned_v,
+            injected_v,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{SETTLE_S, ServoResponse, Sine};
+    use crate::control::ticks;
+
+    /// A voltage that is known comes back by its parts, whatever constant and drift it has.
+    #[test]
+    fn the_parts_of_a_voltage_are_found_at_every_period() {
+        for period_ticks in [16, 101, 8000] {
+            let mut sine = Sine::<f32>::new(0.5, period_ticks);
+            let from = ticks(SETTLE_S).next_multiple_of(period_ticks.into());
+            for tick in 0..from + 4 * u32::from(period_ticks) {
+                let turns = f64::from(tick % u32::from(period_ticks)) / f64::from(period_ticks);
+                let angle = core::f64::consts::TAU * turns;
+                let asked_v = 3.0 + 0.2 * angle.cos() - 0.3 * angle.sin();
+                sine.step(tick, asked_v as f32);
+            }
+            let ServoResponse::Sine {
+                periods,
+                returned_v,
+                injected_v,
+            } = sine.response()
+            else {
+                panic!("no sine");
+            };
+            assert_eq!(periods, 4);
+            for (found, expected) in [(returned_v, [0.2, -0.3]), (injected_v, [0.2, 0.2])] {
+                for (found, expected) in found.into_iter().zip(expected) {
+                    assert!((found - expected).abs() < 2e-4, "{period_ticks}: {found}");
+                }
+            }
+        }
+    }
+}
