@@ -48,8 +48,12 @@ pub enum JogRefusal {
     Travel,
     /// The voltage is none, or so high that the motor counts as driven.
     Voltage,
+    /// A step is none, or so far that it would be a fault.
+    Step,
     /// The speed is none.
     Speed,
+    /// The amplitude is none, or so high at that speed that the motor counts as driven.
+    Amplitude,
     /// The period is too short or too long.
     Period,
 }
@@ -61,14 +65,22 @@ impl JogRefusal {
         match self {
             Self::Motor => ["there is no motor of that number", "give 1, 2 or 3"],
             Self::Travel => [
-                "a jog turns by no more than 10 mm of tendon, a step by no more than half of following_m, and by more than nothing",
+                "a jog turns by no more than 10 mm of tendon, and by more than nothing",
                 "give another travel",
             ],
             Self::Voltage => [
                 "the voltage is not above zero, or above driven_part of what drives current_a through resistance_ohm",
-                "give another voltage; of a sine, less amplitude or less speed",
+                "give another voltage",
+            ],
+            Self::Step => [
+                "a step is more than nothing, and no more than half of following_m",
+                "give another travel",
             ],
             Self::Speed => ["the speed is not above zero", "give another speed"],
+            Self::Amplitude => [
+                "the amplitude is not above zero, or with what the speed induces above driven_part of what drives current_a through resistance_ohm",
+                "give another amplitude, or less speed",
+            ],
             Self::Period => [
                 "the period of the sine is not within 16 to 8000 ticks",
                 "give another period",

@@ -72,38 +72,34 @@ impl<T: Scalar> JogBounds<T> {
 
     fn check(&self, demand: &JogDemand) -> Result<(), JogRefusal> {
         let travel_m = demand.travel_m.abs();
-        let travel_max_m = match demand.drive {
-            JogDrive::ServoStep => self.step_max_m,
-            _ => JOG_TRAVEL_MAX_M,
-        };
-        if !(travel_m > 0.0 && travel_m <= travel_max_m) {
-            return Err(JogRefusal::Travel);
-        }
-        let voltage_v = match demand.drive {
-            JogDrive::Voltage(voltage_v) => voltage_v,
-            JogDrive::ServoStep => return Ok(()),
+        let goes = |highest_m: f32| travel_m > 0.0 && travel_m <= highest_m;
+        match demand.drive {
+            JogDrive::ServoStep if !goes(self.step_max_m) => Err(JogRefusal::Step),
+            JogDrive::ServoStep => Ok(()),
+            _ if !goes(JOG_TRAVEL_MAX_M) => Err(JogRefusal::Travel),
+            JogDrive::Voltage(voltage_v)
+                if !(voltage_v > 0.0 && voltage_v <= self.voltage_max_v) =>
+            {
+                Err(JogRefusal::Voltage)
+            }
+            JogDrive::Voltage(_) => Ok(()),
             JogDrive::ServoSine {
                 speed_m_per_s,
                 amplitude_v,
                 period_ticks,
             } => {
                 let [shortest, longest] = SINE_PERIOD_TICKS;
+                let highest_v = amplitude_v + speed_m_per_s * self.back_emf_v_s_per_m;
                 if !(speed_m_per_s > 0.0) {
-                    return Err(JogRefusal::Speed);
+                    Err(JogRefusal::Speed)
+                } else if !(amplitude_v > 0.0 && highest_v <= self.voltage_max_v) {
+                    Err(JogRefusal::Amplitude)
+                } else if !(shortest..=longest).contains(&period_ticks) {
+                    Err(JogRefusal::Period)
+                } else {
+                    Ok(())
                 }
-                if !(shortest..=longest).contains(&period_ticks) {
-                    return Err(JogRefusal::Period);
-                }
-                if !(amplitude_v > 0.0) {
-                    return Err(JogRefusal::Voltage);
-                }
-                amplitude_v + speed_m_per_s * self.back_emf_v_s_per_m
             }
-        };
-        if voltage_v > 0.0 && voltage_v <= self.voltage_max_v {
-            Ok(())
-        } else {
-            Err(JogRefusal::Voltage)
         }
     }
 

@@ -111,6 +111,9 @@ impl<T: Scalar> Leg<T> {
     }
 
     /// Turns one motor of a disarmed leg.
+    // Apart, so that the commands of a leg that moves need not keep room for it.
+    #[cold]
+    #[inline(never)]
     fn jog(&mut self, demand: &JogDemand, measured: &Measured<T>) -> Result<(), CommandRefusal> {
         let bounds = JogBounds::select(&self.shared.limits.jogs, demand);
         let bounds = bounds.map_err(CommandRefusal::Jog)?;

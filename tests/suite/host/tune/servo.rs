@@ -146,6 +146,44 @@ fn a_servo_jog_of_a_leg_with_a_mistake_ends_within_bounds() {
     }
 }
 
+/// Load cells that show next to nothing: what the servo draws ends its jogs, before the tension is too high.
+#[test]
+fn without_its_load_cell_the_current_ends_a_servo_jog() {
+    let configured = RigFile::load(None).unwrap();
+    let sine = JogDrive::ServoSine {
+        speed_m_per_s: 2.5e-3,
+        amplitude_v: 0.4,
+        period_ticks: 100,
+    };
+    for (drive, travel_m) in [(JogDrive::ServoStep, 3e-4), (sine, 1e-2)] {
+        let (line, mut operator, _) = leg(&configured, &configured, 1);
+        let mut settings = operator.settings().unwrap();
+        for axis in &mut settings.axes {
+            axis.cell_n_per_code *= 0.01;
+        }
+        operator.set_settings(&settings).unwrap();
+        let demand = JogDemand {
+            motor: 1,
+            travel_m,
+            drive,
+        };
+        let mut end = JogEnd::Arrived;
+        for _ in 0..100 {
+            end = operator.jog(&demand).unwrap().0.end;
+            if end != JogEnd::Arrived {
+                break;
+            }
+        }
+        let tension_n = line.with_plant(|plant| plant.truth().tensions_n[0]);
+        println!("{drive:?}: {end:?} at {tension_n} N");
+        assert!(matches!(
+            end,
+            JogEnd::Current | JogEnd::NoCounts | JogEnd::CutOff
+        ));
+        assert!(tension_n < 80.0);
+    }
+}
+
 /// A step and a sine of a sound motor end where they were asked to, and the leg is disarmed.
 #[test]
 fn a_servo_jog_goes_as_far_as_it_was_asked() {
