@@ -202,3 +202,18 @@ impl<T: Copy> JogReport<T> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{JogRefusal, SINE_PERIOD_TICKS};
+
+    #[test]
+    fn a_refused_period_names_the_shortest_and_the_longest() {
+        let [shortest, longest] = SINE_PERIOD_TICKS;
+        let [wrong, _] = JogRefusal::Period.description();
+        assert!(
+            wrong.contains(&format!("{shortest} to {longest} ticks")),
+            "{wrong}"
+        );
+    }
+}

@@ -95,6 +95,10 @@ fn done(ui: &mut Ui, tune: &mut Tune, outcome: &Outcome, editor: &mut Editor, le
         let words = RichText::new(words).monospace().color(palette.error);
         place(&ui.add(Label::new(words).wrap()), "tune_failed");
     }
+    if let Some(words) = &outcome.servo_finding {
+        let words = RichText::new(words).color(palette.warning);
+        place(&ui.add(Label::new(words).wrap()), "tune_finding");
+    }
     if !outcome.rows.is_empty() {
         let scroll = ScrollArea::horizontal().id_salt("tune");
         scroll.show(ui, |ui| {

@@ -23,6 +23,8 @@ pub struct Outcome {
     pub motor: u8,
     /// What was measured; nothing where the motor itself could not be.
     pub rows: Vec<ComparisonRow>,
+    /// What is wrong with its servo.
+    pub servo_finding: Option<String>,
     /// Why it was not measured to the end.
     pub failure: Option<String>,
 }
@@ -208,19 +210,23 @@ async fn measure(
     let measured = match measured {
         Ok(measured) => measured,
         Err(error) => {
-            let (rows, failure) = (Vec::new(), Some(error.failure().render(false)));
             return Outcome {
                 motor,
-                rows,
-                failure,
+                rows: Vec::new(),
+                servo_finding: None,
+                failure: Some(error.failure().render(false)),
             };
         }
     };
+    let servo_finding = measured
+        .servo_finding
+        .as_ref()
+        .map(|finding| format!("{}: {}", finding.what, finding.remedy));
     let Some(plan) = swing else {
-        let rows = comparison(&measured, None, &rig);
         return Outcome {
             motor,
-            rows,
+            rows: comparison(&measured, None, &rig),
+            servo_finding,
             failure: None,
         };
     };
@@ -231,10 +237,10 @@ async fn measure(
         Err(error) => (None, Some(error.failure().render(false))),
     };
     // The motor may be why, as one with more friction than is configured: what it is must not be lost.
-    let rows = comparison(&measured, swings.as_ref(), &rig);
     Outcome {
         motor,
-        rows,
+        rows: comparison(&measured, swings.as_ref(), &rig),
+        servo_finding,
         failure,
     }
 }
@@ -310,9 +316,10 @@ mod tests {
             leg.time_s(),
             leg_rig::tune::table(&outcome.rows)
         );
-        assert_eq!(outcome.failure, None);
+        assert_eq!((outcome.failure, outcome.servo_finding), (None, None));
         for (name, within) in [
             ("resistance_ohm", 0.05),
+            ("servo, phase margin", 0.05),
             ("backlash_rad", 0.3),
             ("leg_transverse_inertia_kg_m2", 0.1),
         ] {
