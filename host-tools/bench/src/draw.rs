@@ -11,7 +11,7 @@ const TILT_DEG: f64 = 30.0;
 pub(crate) const PAYLOAD_KG: f64 = 2.0;
 
 /// How far load cells may be off after their calibration, as a part, and tendons from their curve.
-const CELL_GAIN: f64 = 0.002;
+pub(crate) const CELL_GAIN: f64 = 0.002;
 const CURVE: f64 = 0.01;
 
 /// A simulated leg whose cells are off by no more than an offset, N, and by what a calibration leaves.

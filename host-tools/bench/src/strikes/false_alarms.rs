@@ -2,7 +2,7 @@
 
 use super::case::TARED_N;
 use super::push::strongest_n;
-use crate::draw::{feasible, mixed, plant};
+use crate::draw::{CELL_GAIN, feasible, mixed, plant};
 use crate::stand::Stand;
 use fastrand::Rng;
 use leg_base::angles;
@@ -34,7 +34,8 @@ pub struct Alarm {
     pub fault: &'static str,
     /// Time in the run, s.
     pub time_s: f64,
-    /// Whether it says that a tension has left its bounds, and the true one had: the alarm then is true.
+    /// Whether it says that a tension has left its bounds, and the true one had, or a load cell may have shown that by what its
+    /// calibration leaves: the alarm then is true.
     pub beyond: bool,
     /// Lowest and highest true tension in the quarter of a second before, N.
     pub tensions_n: [f64; 2],
@@ -140,14 +141,16 @@ impl<'a> User<'a> {
 
     fn alarm(&self, fault: Fault, time_s: f64) -> Alarm {
         let [now, before] = self.extremes_n;
-        let tensions_n = [now[0].min(before[0]), now[1].max(before[1])];
+        let tensions_n @ [lowest_n, highest_n] = [now[0].min(before[0]), now[1].max(before[1])];
+        // A leg knows no more than its cells show.
+        let shown_n = highest_n * (1.0 + CELL_GAIN) + TARED_N;
         Alarm {
             fault: fault.entry().name,
             time_s,
             beyond: match fault {
-                Fault::Slack => tensions_n[0] < 0.5 * self.file.f_min_n,
+                Fault::Slack => lowest_n < 0.5 * self.file.f_min_n,
                 // A leg at rest whose load is not estimated gives way to the maximum tension: then its motor stays behind.
-                Fault::OverTension | Fault::Following => tensions_n[1] > self.file.f_max_n,
+                Fault::OverTension | Fault::Following => shown_n > self.file.f_max_n,
                 _ => false,
             },
             tensions_n,
