@@ -31,6 +31,7 @@ ranges! {
     demand_nm_per_rad "nm_per_rad" -ANY, ANY;
     travel_mm "travel_mm" -ANY, ANY;
     volts "volts" -ANY, ANY;
+    mm_per_s "mm_per_s" -ANY, ANY;
     start_pretension_n "pretension_n" 0.0, 1e3;
     slack_mm "slack_mm" 0.0, 50.0;
     // The tendons of no rig here hold more.

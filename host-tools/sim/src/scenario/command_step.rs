@@ -59,6 +59,39 @@ pub enum CommandStep {
         #[serde(deserialize_with = "range::volts")]
         volts: f64,
     },
+    /// The same by a step of its servo.
+    ServoStep {
+        /// From 1.
+        motor: u8,
+        /// How far its tendon is pulled in; negative pays out.
+        #[serde(deserialize_with = "range::travel_mm")]
+        travel_mm: f64,
+    },
+    /// The same by its servo at a constant speed, with a sine added to its voltage.
+    ServoSine {
+        /// From 1.
+        motor: u8,
+        /// How far its tendon is pulled in; negative pays out.
+        #[serde(deserialize_with = "range::travel_mm")]
+        travel_mm: f64,
+        /// Of the tendon, without a sign.
+        #[serde(deserialize_with = "range::mm_per_s")]
+        mm_per_s: f64,
+        /// Amplitude of the sine.
+        #[serde(deserialize_with = "range::volts")]
+        volts: f64,
+        /// Its period, ticks of the board.
+        period_ticks: u16,
+    },
+}
+
+/// A jog of a motor.
+fn jog(motor: u8, travel_mm: f64, drive: JogDrive) -> Command {
+    Command::Jog(JogDemand {
+        motor,
+        travel_m: (travel_mm / 1000.0) as f32,
+        drive,
+    })
 }
 
 impl CommandStep {
@@ -93,11 +126,22 @@ impl CommandStep {
                 motor,
                 travel_mm,
                 volts,
-            } => Command::Jog(JogDemand {
+            } => jog(motor, travel_mm, JogDrive::Voltage(volts as f32)),
+            Self::ServoStep { motor, travel_mm } => jog(motor, travel_mm, JogDrive::ServoStep),
+            Self::ServoSine {
                 motor,
-                travel_m: (travel_mm / 1000.0) as f32,
-                drive: JogDrive::Voltage(volts as f32),
-            }),
+                travel_mm,
+                mm_per_s,
+                volts,
+                period_ticks,
+            } => {
+                let drive = JogDrive::ServoSine {
+                    speed_m_per_s: (mm_per_s / 1000.0) as f32,
+                    amplitude_v: volts as f32,
+                    period_ticks,
+                };
+                jog(motor, travel_mm, drive)
+            }
         }
     }
 }
