@@ -51,6 +51,34 @@ fn a_leg_that_leaves_its_load_out_stays_where_it_is_when_it_goes_on() {
     }
 }
 
+/// Its load keeps a tendon below the minimum tension: while the leg waited for that, it was held by "slack tendon" 5 s after it went on.
+#[test]
+fn a_tendon_that_its_load_keeps_below_the_minimum_is_not_slack() {
+    let rig = rig("table1");
+    let mut stand = armed(&rig, [50.0, 22.0], 0.7, 3);
+    let compensation = Command::Compensation(Compensation::Off);
+    stand.command(&compensation).unwrap();
+    let lowest_n = |stand: &Stand| stand.truth.tensions_n.into_iter().fold(f64::MAX, f64::min);
+    let mut pretension_n = rig.pretension_n;
+    while lowest_n(&stand) > 0.8 * rig.f_min_n {
+        pretension_n -= 2.0;
+        let pretension = Command::Pretension(pretension_n as f32);
+        stand.command(&pretension).unwrap();
+        stand.wait(0.6).unwrap();
+    }
+    stand.command(&Command::Stop).unwrap();
+    stand.wait(0.3).unwrap();
+    stand.command(&Command::Clear).unwrap();
+    stand.wait(6.0).unwrap();
+    let lowest_n = lowest_n(&stand);
+    assert!(
+        (0.5 * rig.f_min_n..rig.f_min_n).contains(&lowest_n),
+        "{lowest_n}"
+    );
+    assert_eq!(stand.state(), State::Active);
+    stand.require_no_fault().unwrap();
+}
+
 /// A command that comes at once is not lost: it goes on from where the leg is.
 #[test]
 fn it_goes_where_it_is_led_at_once() {

@@ -224,9 +224,15 @@ impl<T: Scalar> Active<T> {
         if !self.tensioned {
             self.slack.cycles = self.slack.cycles.saturating_add(1);
             let f_min_n = shared.mechanism.f_min_n;
+            // A load that is left out may keep a tendon below what the target asks for.
+            let least_n = if shared.compensation == Compensation::Off {
+                f_min_n * T::HALF
+            } else {
+                f_min_n
+            };
             let tensions_n = &measured.steady_tensions_n;
             self.tensioned =
-                self.slack.taken_up() && tensions_n.iter().all(|&tension| tension > f_min_n);
+                self.slack.taken_up() && tensions_n.iter().all(|&tension| tension > least_n);
         }
         let angular_acceleration = shared
             .target
