@@ -12,6 +12,9 @@ pub const JOG_RISE_S: f32 = 0.1;
 /// Slowest jog that is waited for, m/s. At ten times as much, the time ends jogs of a motor whose resistance is 1.8 times what is configured (`tests/suite/host/tune.rs`).
 const SLOWEST_M_PER_S: f32 = 2e-4;
 
+/// What a servo may drive by the highest current: the rest accelerates the rotor.
+const SERVO_PART: f32 = 2.0;
+
 /// The time for all that is beside the way, s: twenty times what the speed takes to become steady.
 const GRACE_S: f32 = 1.0;
 
@@ -49,6 +52,12 @@ impl<T: Scalar> JogBounds<T> {
             back_emf_v_s_per_m: servo.back_emf_v_s_per_m,
             step_max_m: 0.5 * settings.limits.following_m,
         }
+    }
+
+    /// What a servo may put at the motor beyond what its speed induces, V: so a tendon is pulled by less than 80 N, however often a jog is
+    /// repeated and whatever its load cell shows.
+    pub fn driving_max_v(&self) -> f32 {
+        SERVO_PART * self.dropped_v
     }
 
     /// The current that is compared with the highest one, A, at an output that does not show short pulses: below the shortest that it shows,

@@ -107,9 +107,12 @@ impl<T: Scalar> Jogging<T> {
         });
         let start_m = measured.pulled_m.get(motor).copied().unwrap_or(T::zero());
         let travel_m = demand.travel_m;
+        let driving_max_v = jog_bounds.driving_max_v();
         let drive = match demand.drive {
             JogDrive::Voltage(voltage_v) => Drive::Voltage(voltage_v.into()),
-            JogDrive::ServoStep => Drive::Servo(ServoRun::step_by(travel_m, start_m)),
+            JogDrive::ServoStep => {
+                Drive::Servo(ServoRun::step_by(travel_m, start_m, driving_max_v))
+            }
             JogDrive::ServoSine {
                 speed_m_per_s,
                 amplitude_v,
@@ -120,6 +123,7 @@ impl<T: Scalar> Jogging<T> {
                 amplitude_v,
                 period_ticks,
                 start_m,
+                driving_max_v,
             )),
         };
         Self {

@@ -28,6 +28,8 @@ pub struct ServoRun<T> {
     /// Where the motor began, and how far it is led, m; below zero it pays out.
     start_m: T,
     travel_m: T,
+    /// What it gets at the most beyond what its speed induces, V.
+    driving_max_v: T,
     ticks: u32,
     /// Ticks in which it is led.
     ticks_max: u32,
@@ -35,7 +37,7 @@ pub struct ServoRun<T> {
 
 impl<T: Scalar> ServoRun<T> {
     /// A step of the reference by a travel, from where the motor is, m.
-    pub fn step_by(travel_m: f32, start_m: T) -> Self {
+    pub fn step_by(travel_m: f32, start_m: T, driving_max_v: f32) -> Self {
         Self {
             reference: Reference::Step {
                 overshoot_m: T::zero(),
@@ -43,6 +45,7 @@ impl<T: Scalar> ServoRun<T> {
             },
             start_m,
             travel_m: travel_m.into(),
+            driving_max_v: driving_max_v.into(),
             ticks: 0,
             ticks_max: ticks(STEP_S),
         }
@@ -55,6 +58,7 @@ impl<T: Scalar> ServoRun<T> {
         amplitude_v: f32,
         period_ticks: u16,
         start_m: T,
+        driving_max_v: f32,
     ) -> Self {
         let step_m = (speed_m_per_s * TICK_S).copysign(travel_m);
         Self {
@@ -64,6 +68,7 @@ impl<T: Scalar> ServoRun<T> {
             },
             start_m,
             travel_m: travel_m.into(),
+            driving_max_v: driving_max_v.into(),
             ticks: 0,
             ticks_max: ticks(travel_m.abs() / speed_m_per_s),
         }
@@ -91,12 +96,15 @@ impl<T: Scalar> ServoRun<T> {
             Reference::Speed { step_m, .. } => *step_m,
         };
         axis.lead_by(step_m);
+        let applied = axis.applied();
+        let induced_v = applied.voltage_v - applied.driving_v;
+        let most_v = bounds::min(supply_v, induced_v.abs() + self.driving_max_v);
         axis.drive(&AxisInput {
             pulled_m,
             // The bounds of the jog end it, not those of the servo.
             tension_n: T::zero(),
             f_max_n: T::MAX,
-            supply_v,
+            supply_v: most_v,
             duty_per_v: T::zero(),
             lowest_m: -T::MAX,
         });
@@ -119,9 +127,9 @@ impl<T: Scalar> ServoRun<T> {
                 asked_v
             }
             Reference::Speed { sine, .. } => {
-                let added_v = sine.step(self.ticks, asked_v);
-                axis.add_voltage(added_v);
-                asked_v + added_v
+                let injected_v = sine.step(self.ticks, asked_v, most_v);
+                axis.add_voltage(injected_v - asked_v);
+                injected_v
             }
         }
     }
@@ -183,8 +191,8 @@ impl<T: Scalar> Sine<T> {
         }
     }
 
-    /// One tick, of so many: what is added to a voltage that is asked for, V.
-    fn step(&mut self, ticks_run: u32, asked_v: T) -> T {
+    /// One tick, of so many: the voltage at the motor where one is asked for, no more than `most_v`, V.
+    fn step(&mut self, ticks_run: u32, asked_v: T, most_v: T) -> T {
         if self.at == 0 {
             self.now = [T::one(), T::zero()];
             self.sums_v = [[T::zero(); 2]; 2];
@@ -192,7 +200,8 @@ impl<T: Scalar> Sine<T> {
         }
         let risen = bounds::min(T::from(ticks_run as f32 * (TICK_S / RISE_S)), T::one());
         let added_v = self.amplitude_v * risen * self.now[1];
-        for (sums, voltage) in self.sums_v.iter_mut().zip([asked_v, asked_v + added_v]) {
+        let injected_v = bounds::clamp_symmetric(asked_v + added_v, most_v);
+        for (sums, voltage) in self.sums_v.iter_mut().zip([asked_v, injected_v]) {
             for (sum, part) in sums.iter_mut().zip(self.now) {
                 *sum += part * voltage;
             }
@@ -207,7 +216,7 @@ impl<T: Scalar> Sine<T> {
             self.at = 0;
             self.end_period();
         }
-        added_v
+        injected_v
     }
 
     fn end_period(&mut self) {
@@ -250,7 +259,7 @@ mod tests {
                 let turns = f64::from(tick % u32::from(period_ticks)) / f64::from(period_ticks);
                 let angle = core::f64::consts::TAU * turns;
                 let asked_v = 3.0 + 0.2 * angle.cos() - 0.3 * angle.sin();
-                sine.step(tick, asked_v as f32);
+                sine.step(tick, asked_v as f32, 24.0);
             }
             let ServoResponse::Sine {
                 periods,

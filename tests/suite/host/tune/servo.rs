@@ -116,8 +116,8 @@ fn a_servo_jog_of_a_leg_with_a_mistake_ends_within_bounds() {
             (D::EncoderReversed(0), 0.5),
             (D::HalfBridgeOpen(0), 1.0),
         ] {
-            // Its other half turns it that way, and a sine does not turn it about.
-            if defect == D::HalfBridgeOpen(0) && drive == sine && travel_m < 0.0 {
+            // Its other half turns it that way.
+            if defect == D::HalfBridgeOpen(0) && travel_m < 0.0 {
                 continue;
             }
             let (line, mut operator, _) = leg(&configured, &configured, 1);
@@ -146,7 +146,7 @@ fn a_servo_jog_of_a_leg_with_a_mistake_ends_within_bounds() {
     }
 }
 
-/// Load cells that show next to nothing: what the servo draws ends its jogs, before the tension is too high.
+/// Load cells that show next to nothing: what the servo may drive keeps the tension low, however often it is jogged.
 #[test]
 fn without_its_load_cell_the_current_ends_a_servo_jog() {
     let configured = RigFile::load(None).unwrap();
@@ -167,20 +167,16 @@ fn without_its_load_cell_the_current_ends_a_servo_jog() {
             travel_m,
             drive,
         };
-        let mut end = JogEnd::Arrived;
+        let mut ended = 0;
+        // Each goes on from the tension that the last one has left.
         for _ in 0..100 {
-            end = operator.jog(&demand).unwrap().0.end;
-            if end != JogEnd::Arrived {
-                break;
-            }
+            let (report, _) = operator.jog(&demand).unwrap();
+            ended += u32::from(report.end != JogEnd::Arrived);
+            let tension_n = line.with_plant(|plant| plant.truth().tensions_n[0]);
+            println!("{drive:?}: {:?} at {tension_n} N", report.end);
+            assert!(tension_n < 80.0);
         }
-        let tension_n = line.with_plant(|plant| plant.truth().tensions_n[0]);
-        println!("{drive:?}: {end:?} at {tension_n} N");
-        assert!(matches!(
-            end,
-            JogEnd::Current | JogEnd::NoCounts | JogEnd::CutOff
-        ));
-        assert!(tension_n < 80.0);
+        assert!(ended > 10, "{ended}");
     }
 }
 
