@@ -10,6 +10,9 @@ pub const JOG_TRAVEL_MAX_M: f32 = 0.01;
 /// Shortest and longest period of the sine of a jog, ticks: 500 Hz and 1 Hz.
 pub const SINE_PERIOD_TICKS: [u16; 2] = [TICK_HZ / 500, TICK_HZ];
 
+/// Time until a sine is measured, s: ten times what a motor and its servo take to settle.
+pub const SINE_SETTLE_S: f32 = 0.2;
+
 /// What a jog shall do.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct JogDemand {
@@ -48,7 +51,7 @@ pub enum JogRefusal {
     Travel,
     /// The voltage is none, or so high that the motor counts as driven.
     Voltage,
-    /// A step is none, or so far that it would be a fault.
+    /// A step is so short that the dead band hides it, or so far that it would be a fault.
     Step,
     /// The speed is none.
     Speed,
@@ -73,7 +76,7 @@ impl JogRefusal {
                 "give another voltage",
             ],
             Self::Step => [
-                "a step is more than nothing, and no more than half of following_m",
+                "a step is no less than 20 times dead_band_m, and no more than half of following_m",
                 "give another travel",
             ],
             Self::Speed => ["the speed is not above zero", "give another speed"],

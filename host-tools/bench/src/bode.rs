@@ -11,7 +11,7 @@ mod sweep;
 pub use drawn_state::DrawnState;
 pub use feedback::Feedback;
 pub use frequency_response::{ClosedLoop, Excitation, Sides};
-pub use leg_rig::loop_response::{Margins, ResponsePoint};
+pub use leg_rig::loop_response::{GAIN_DB, Margins, PHASE_DEG, ResponsePoint};
 pub use row::{Margin, MarginRow, WorstMargin, rows};
 pub use sweep::Sweep;
 
@@ -24,12 +24,6 @@ use leg_sim::plant::Start;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::ops::Range;
-
-/// The least margin of the gain that a loop may have, dB.
-pub const GAIN_DB: f64 = 6.0;
-
-/// The least margin of the phase, degrees.
-pub const PHASE_DEG: f64 = 45.0;
 
 /// Time in which the leg finds what it carries, s.
 const FIND_S: f64 = 1.5;

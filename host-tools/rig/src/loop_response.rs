@@ -32,6 +32,12 @@ impl ResponsePoint {
     }
 }
 
+/// The least margin of the gain that a loop may have, dB.
+pub const GAIN_DB: f64 = 6.0;
+
+/// The least margin of the phase, degrees.
+pub const PHASE_DEG: f64 = 45.0;
+
 /// Below this gain, dB, nothing counts: it is less than what the sensors resolve.
 const FLOOR_DB: f64 = -40.0;
 

@@ -86,16 +86,19 @@ pub async fn measure_motor<L: TunedLeg>(
 #[must_use]
 pub fn plan_text(jogs: &JogPlan, swing: Option<&SwingPlan>) -> String {
     let [low_v, high_v] = jogs.voltages_v;
+    let [low_hz, high_hz] = jogs.servo.range_hz();
     let [out_mm, in_mm] = jogs.reach_m().map(|reach_m| 1000.0 * reach_m);
     let mut text = format!(
         "motor {} turns slowly both ways, from {low_v:.2} V to {high_v:.2} V: it pays out by up to {out_mm:.0} mm, until its tendon is slack,\n\
          reels in by up to {in_mm:.0} mm, until that pulls, ends a jog where a load cell shows more than {} N, and goes back;\n\
-         slack, its servo makes steps of {:.2} mm and turns it at {:.1} mm/s with a sine of {:.2} V added, from 8 to 500 Hz\n",
+         slack, its servo makes steps of {:.2} mm and turns it at {:.1} mm/s with a sine of {:.2} V added, from {} to {} Hz\n",
         jogs.motor,
         jogs.tension_max_n,
         1000.0 * jogs.servo.step_m,
         1000.0 * jogs.servo.speed_m_per_s,
         jogs.servo.sine_v,
+        low_hz,
+        high_hz,
     );
     if let Some(swing) = swing {
         text += &swing_text(swing);

@@ -26,6 +26,13 @@ const fn longest_s(way_s: f32) -> f32 {
     JOG_RISE_S + GRACE_S + 2.0 * way_s
 }
 
+/// The shortest and the farthest step of the reference of a motor with this servo, m: 5 % of the shortest is its dead band, and the
+/// farthest is half of what would be a fault.
+#[must_use]
+pub fn step_range_m(settings: &Settings, servo: &Servo) -> [f32; 2] {
+    [20.0 * servo.dead_band_m, 0.5 * settings.limits.following_m]
+}
+
 /// The bounds of every jog of a motor, from the settings.
 #[derive(Clone, Copy, Debug)]
 pub struct JogBounds<T> {
@@ -36,8 +43,8 @@ pub struct JogBounds<T> {
     /// Voltage that this current takes, V, and what the speed induces, V·s/m.
     dropped_v: f32,
     back_emf_v_s_per_m: f32,
-    /// The farthest step of a reference, m: half of what would be a fault.
-    step_max_m: f32,
+    /// The shortest and the farthest step of a reference, m.
+    step_range_m: [f32; 2],
 }
 
 impl<T: Scalar> JogBounds<T> {
@@ -50,7 +57,7 @@ impl<T: Scalar> JogBounds<T> {
             current_max_a: current_max_a.into(),
             dropped_v: servo.resistance_ohm * current_max_a,
             back_emf_v_s_per_m: servo.back_emf_v_s_per_m,
-            step_max_m: 0.5 * settings.limits.following_m,
+            step_range_m: step_range_m(settings, servo),
         }
     }
 
@@ -81,11 +88,13 @@ impl<T: Scalar> JogBounds<T> {
 
     fn check(&self, demand: &JogDemand) -> Result<(), JogRefusal> {
         let travel_m = demand.travel_m.abs();
-        let goes = |highest_m: f32| travel_m > 0.0 && travel_m <= highest_m;
+        let [shortest_m, farthest_m] = self.step_range_m;
         match demand.drive {
-            JogDrive::ServoStep if !goes(self.step_max_m) => Err(JogRefusal::Step),
+            JogDrive::ServoStep if !(travel_m >= shortest_m && travel_m <= farthest_m) => {
+                Err(JogRefusal::Step)
+            }
             JogDrive::ServoStep => Ok(()),
-            _ if !goes(JOG_TRAVEL_MAX_M) => Err(JogRefusal::Travel),
+            _ if !(travel_m > 0.0 && travel_m <= JOG_TRAVEL_MAX_M) => Err(JogRefusal::Travel),
             JogDrive::Voltage(voltage_v)
                 if !(voltage_v > 0.0 && voltage_v <= self.voltage_max_v) =>
             {

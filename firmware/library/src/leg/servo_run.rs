@@ -1,7 +1,7 @@
 //! A jog by the servo: how the motor answers a step of its reference, or a sine that is added to its voltage.
 
 use crate::control::{Axis, AxisInput, TICK_S, bounds, ticks};
-use crate::jog::ServoResponse;
+use crate::jog::{SINE_SETTLE_S, ServoResponse};
 use leg_model::Scalar;
 
 /// Time in which the answer to a step is watched, s: the servo of the paper's rig has settled after a sixth of it.
@@ -10,9 +10,8 @@ const STEP_S: f32 = 0.3;
 /// A step is settled within this part of it.
 const SETTLED_PART: f32 = 0.05;
 
-/// Time in which a sine comes up, and until it is measured, s: ten times what a motor and its servo take to settle.
+/// Time in which a sine comes up, s.
 const RISE_S: f32 = 0.1;
-const SETTLE_S: f32 = 0.2;
 
 /// What leads the motor.
 #[derive(Clone, Copy, Debug)]
@@ -196,7 +195,7 @@ impl<T: Scalar> Sine<T> {
         if self.at == 0 {
             self.now = [T::one(), T::zero()];
             self.sums_v = [[T::zero(); 2]; 2];
-            self.measured = ticks_run >= ticks(SETTLE_S);
+            self.measured = ticks_run >= ticks(SINE_SETTLE_S);
         }
         let risen = bounds::min(T::from(ticks_run as f32 * (TICK_S / RISE_S)), T::one());
         let added_v = self.amplitude_v * risen * self.now[1];
@@ -246,7 +245,7 @@ impl<T: Scalar> Sine<T> {
 
 #[cfg(test)]
 mod tests {
-    use super::{SETTLE_S, ServoResponse, Sine};
+    use super::{SINE_SETTLE_S, ServoResponse, Sine};
     use crate::control::ticks;
 
     /// A voltage that is known comes back by its parts, whatever constant and drift it has.
@@ -254,7 +253,7 @@ mod tests {
     fn the_parts_of_a_voltage_are_found_at_every_period() {
         for period_ticks in [16, 101, 8000] {
             let mut sine = Sine::<f32>::new(0.5, period_ticks);
-            let from = ticks(SETTLE_S).next_multiple_of(period_ticks.into());
+            let from = ticks(SINE_SETTLE_S).next_multiple_of(period_ticks.into());
             for tick in 0..from + 4 * u32::from(period_ticks) {
                 let turns = f64::from(tick % u32::from(period_ticks)) / f64::from(period_ticks);
                 let angle = core::f64::consts::TAU * turns;

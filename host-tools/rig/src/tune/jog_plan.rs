@@ -2,7 +2,7 @@
 
 use super::servo::ServoPlan;
 use leg_firmware::board::timing::PWM_TOP;
-use leg_firmware::control::SHOWN_PART;
+use leg_firmware::control::{SHOWN_PART, step_range_m};
 use leg_firmware::jog::JogDrive;
 use leg_firmware::settings::{CurrentOutput, Servo, Settings};
 
@@ -102,7 +102,7 @@ impl JogPlan {
             servo,
             highest_v,
             plan.travel_m,
-            0.5 * settings.limits.following_m,
+            step_range_m(settings, servo),
         );
         plan
     }
@@ -132,7 +132,7 @@ impl JogPlan {
     /// How far the tendon is paid out and reeled in at the most beside where it began, m.
     #[must_use]
     pub fn reach_m(&self) -> [f32; 2] {
-        let out_m = PAY_OUT_STEPS as f32 * STEP_M + self.travel_m;
+        let out_m = PAY_OUT_STEPS as f32 * STEP_M + self.travel_m + self.servo.travel_m();
         [out_m, REEL_MAX_M + LOADED_TRAVEL_M]
     }
 }

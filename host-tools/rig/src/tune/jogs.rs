@@ -126,7 +126,7 @@ impl<L: TunedLeg> Jogs<'_, L> {
         self.free().await?;
         match self.servo().await {
             // One that rings is no reason to know nothing of its motor, and the motor is off.
-            Err(TuneError::Finding(finding)) => self.servo_finding = Some(finding),
+            Err(TuneError::Finding(_)) if self.servo_finding.is_some() => {}
             result => result?,
         }
         self.loaded().await?;
@@ -301,7 +301,14 @@ impl<L: TunedLeg> Jogs<'_, L> {
         // To come to pull is what some of them are for.
         let pulls = report.end == JogEnd::Tension(self.plan.motor) && travel_m > 0.0;
         match findings(&report, self.settings).into_iter().next() {
-            Some(finding) if !pulls => Err(TuneError::Finding(self.placed(finding, &demand))),
+            Some(finding) if !pulls => {
+                let finding = self.placed(finding, &demand);
+                let by_servo = !matches!(drive, JogDrive::Voltage(_));
+                if by_servo && report.end == JogEnd::Current {
+                    self.servo_finding = Some(finding.clone());
+                }
+                Err(TuneError::Finding(finding))
+            }
             _ => Ok(report),
         }
     }

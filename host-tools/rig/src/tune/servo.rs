@@ -5,11 +5,11 @@
 
 use super::estimate::UncertainValue;
 use crate::actuator::Actuator;
-use crate::loop_response::{Margins, ResponsePoint};
+use crate::loop_response::{GAIN_DB, Margins, PHASE_DEG, ResponsePoint};
 use crate::rig_file::RigFile;
 use crate::rig_file::derived::ServoLoop;
 use leg_base::jog_report::{Finding, SERVO_REMEDY};
-use leg_firmware::jog::{JogDrive, ServoResponse};
+use leg_firmware::jog::{JogDrive, SINE_SETTLE_S, ServoResponse};
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::settings::Servo;
 use nalgebra::Complex;
@@ -21,9 +21,6 @@ const PERIODS_TICKS: [u16; 13] = [1000, 707, 500, 354, 250, 177, 125, 88, 62, 44
 const PERIODS_MIN: u16 = 4;
 const MEASURED_S: f32 = 0.25;
 
-/// Time until the board measures, s, with the rest of a period: as in the firmware's `servo_run`.
-const SETTLE_S: f32 = 0.2;
-
 /// Speed of the tendon, m/s.
 const SPEED_M_PER_S: f32 = 2.5e-3;
 
@@ -33,14 +30,11 @@ const SINE_PART: f32 = 0.3;
 /// Step of the reference, m.
 const STEP_M: f32 = 2e-4;
 
-/// What a margin may be off beside, degrees and dB, and the crossover, as a part of it: the points of a sweep are half an octave apart, and
-/// what is between them is a straight line.
+/// What a margin may be off beside, degrees and dB, and the crossover, as a part of it: what was left on simulated legs between sweeps and
+/// the transfer of their motors (`the_loop_of_a_servo_is_found`).
 const OFF_DEG: f64 = 1.0;
 const OFF_DB: f64 = 0.5;
 const OFF_PART: f64 = 0.015;
-
-/// What the margins have to be, degrees and dB: those for which the gains are derived.
-const MARGINS: (f64, f64) = (45.0, 6.0);
 
 /// The jogs by the servo of a motor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -51,19 +45,36 @@ pub(super) struct ServoPlan {
 }
 
 impl ServoPlan {
-    /// For a motor whose jogs have no more than a voltage, V, and go no farther than a travel, m; a step of more than
-    /// `step_max_m` is refused by its board.
-    pub fn new(servo: &Servo, voltage_max_v: f32, travel_max_m: f32, step_max_m: f32) -> Self {
+    /// For a motor whose jogs have no more than a voltage, V, and go no farther than a travel, m; its board takes steps from
+    /// `shortest_m` to `farthest_m`.
+    pub fn new(
+        servo: &Servo,
+        voltage_max_v: f32,
+        travel_max_m: f32,
+        [shortest_m, farthest_m]: [f32; 2],
+    ) -> Self {
         let by_voltage = voltage_max_v / (servo.back_emf_v_s_per_m * (1.0 + SINE_PART));
         let [longest, ..] = PERIODS_TICKS;
         let speed_m_per_s = SPEED_M_PER_S
             .min(by_voltage)
             .min(travel_max_m / time_s(longest));
         Self {
-            step_m: STEP_M.min(step_max_m),
+            step_m: STEP_M.max(shortest_m).min(farthest_m),
             speed_m_per_s,
             sine_v: SINE_PART * servo.back_emf_v_s_per_m * speed_m_per_s,
         }
+    }
+
+    /// How far the longest jog of a sweep goes, m.
+    pub fn travel_m(self) -> f32 {
+        let [longest, ..] = PERIODS_TICKS;
+        self.speed_m_per_s * time_s(longest)
+    }
+
+    /// The lowest and the highest frequency of a sweep, Hz.
+    pub fn range_hz(self) -> [u16; 2] {
+        let [longest, .., shortest] = PERIODS_TICKS;
+        [longest, shortest].map(|period_ticks| TICK_HZ / period_ticks)
     }
 
     /// The travel, without its sign, and the drive of each jog of a sweep.
@@ -83,7 +94,7 @@ impl ServoPlan {
 fn time_s(period_ticks: u16) -> f32 {
     let period_s = f32::from(period_ticks) / f32::from(TICK_HZ);
     // A measured period begins with a whole one.
-    SETTLE_S + MEASURED_S.max(f32::from(PERIODS_MIN) * period_s) + period_s
+    SINE_SETTLE_S + MEASURED_S.max(f32::from(PERIODS_MIN) * period_s) + period_s
 }
 
 /// What the jogs of the servo have shown until now.
@@ -146,9 +157,10 @@ impl MeasuredServo {
             .iter()
             .map(|sweep| Margins::new(sweep))
             .collect();
+        let settled_s = mean_of(jogs.steps.iter().map(|step| step[1]));
         let mean = |of: fn(&Margins) -> Option<f64>, off: f64| {
-            let each: Option<Vec<_>> = margins.iter().map(of).collect();
-            let mean = mean_of(each.filter(|each| !each.is_empty())?.into_iter());
+            let each: Vec<_> = margins.iter().filter_map(of).collect();
+            let mean = (!each.is_empty()).then(|| mean_of(each.into_iter()))?;
             let uncertainty = mean.uncertainty.hypot(off);
             Some(UncertainValue {
                 uncertainty,
@@ -158,7 +170,11 @@ impl MeasuredServo {
         Self {
             step_m: step_m.into(),
             overshoot: mean_of(jogs.steps.iter().map(|step| step[0])),
-            settled_s: mean_of(jogs.steps.iter().map(|step| step[1])),
+            // The board looks once in a tick.
+            settled_s: UncertainValue {
+                uncertainty: settled_s.uncertainty.hypot(1.0 / f64::from(TICK_HZ)),
+                ..settled_s
+            },
             crossover_hz: mean(|margins| margins.phase_hz, 0.0).map(|hz| hz.widened(OFF_PART)),
             phase_margin_deg: mean(|margins| margins.phase_deg, OFF_DEG),
             gain_margin_db: mean(|margins| margins.gain_db, OFF_DB),
@@ -168,12 +184,11 @@ impl MeasuredServo {
 
     /// What to do about a servo that is near to ringing; its motor counts from 1.
     pub(super) fn finding(&self, motor: u8) -> Option<Finding> {
-        let (phase_deg, gain_db) = MARGINS;
         let less = |margin: Option<UncertainValue>, bar: f64| {
             margin.is_some_and(|margin| margin.value + margin.uncertainty < bar)
         };
-        (less(self.phase_margin_deg, phase_deg) || less(self.gain_margin_db, gain_db)).then(|| Finding {
-            what: format!("the servo of motor {motor} is near to ringing: less than {phase_deg}° or {gain_db} dB are left"),
+        (less(self.phase_margin_deg, PHASE_DEG) || less(self.gain_margin_db, GAIN_DB)).then(|| Finding {
+            what: format!("the servo of motor {motor} is near to ringing: less than {PHASE_DEG}° or {GAIN_DB} dB are left"),
             remedy: SERVO_REMEDY.into(),
         })
     }

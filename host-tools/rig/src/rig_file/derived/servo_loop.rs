@@ -98,7 +98,9 @@ impl ServoLoop {
         let position_per_s = f64::from(servo.position_gain_per_s);
         let integral_s = f64::from(servo.integral_time_s);
         let integral = Complex::ONE + Complex::new(0.0, rate * integral_s).recip();
-        let travel = self.motor(rate, HOLD_TICKS) / Complex::new(0.0, rate);
+        let s = Complex::new(0.0, rate);
+        let motor = s * self.mechanical_s * (s * self.electrical_s + 1.0) + 1.0;
+        let travel = late(rate, HOLD_TICKS) / (motor * s * self.back_emf);
         let speed_error = Complex::from(position_per_s) + self.tracked_speed(rate);
         let by_speed = integral * speed_error * f64::from(servo.speed_gain_v_s_per_m);
         travel * (by_speed + self.back_emf * position_per_s)
@@ -109,25 +111,23 @@ impl ServoLoop {
         let position_loop = |rate: f64| {
             let forward = self.speed_forward(gains, rate);
             // The speed that is asked for drives the back EMF by itself.
-            let fed = forward + self.motor(rate, DELAY_TICKS) * self.back_emf;
+            let fed = forward + self.motor(rate) * self.back_emf;
             let closed = fed / (Complex::ONE + forward * self.tracked(rate));
             closed * gains.position_per_s / Complex::new(0.0, rate)
         };
         phase_margin_deg(speed_loop).min(phase_margin_deg(position_loop))
     }
 
-    /// From the voltage to the speed, with a delay.
-    fn motor(&self, rate: f64, delay_ticks: f64) -> Complex {
-        let delay_s = delay_ticks / f64::from(TICK_HZ);
+    /// From the voltage to the speed, with the delay; the winding as a lag of its own.
+    fn motor(&self, rate: f64) -> Complex {
         let lag = |time_s: f64| Complex::new(1.0, rate * time_s);
-        let late = Complex::new(0.0, -rate * delay_s).exp();
-        late / (lag(self.mechanical_s) * lag(self.electrical_s) * self.back_emf)
+        late(rate, DELAY_TICKS) / (lag(self.mechanical_s) * lag(self.electrical_s) * self.back_emf)
     }
 
     /// From an error of the speed to the speed.
     fn speed_forward(&self, gains: &LoopGains, rate: f64) -> Complex {
         let integral = Complex::ONE + Complex::new(0.0, rate * gains.integral_s).recip();
-        self.motor(rate, DELAY_TICKS) * integral * gains.speed
+        self.motor(rate) * integral * gains.speed
     }
 
     /// From the position to the tracked speed, as the filter computes it tick by tick.
@@ -145,6 +145,11 @@ impl ServoLoop {
         let lag = Complex::new(1.0, rate / self.tracking_per_s);
         (lag * lag).recip()
     }
+}
+
+/// A delay of so many ticks.
+fn late(rate: f64, ticks: f64) -> Complex {
+    Complex::new(0.0, -rate * ticks / f64::from(TICK_HZ)).exp()
 }
 
 /// The least phase margin of an open loop over all its crossovers, degrees; −180 at worst.
