@@ -88,7 +88,7 @@ impl<T: Scalar> SensingLeg<T> {
 
     /// See [`Leg::jog_report`].
     #[must_use]
-    pub fn jog_report(&self) -> Option<JogReport<T>> {
+    pub fn jog_report(&self) -> Option<&JogReport<T>> {
         self.leg.jog_report()
     }
 

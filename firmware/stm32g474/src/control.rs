@@ -132,7 +132,10 @@ impl CommandedLeg for SharedLeg {
     }
 
     fn jog_report(&mut self) -> Option<JogReport<f32>> {
-        with_control(|control| control.leg.jog_report())?
+        // Copied once: every copy keeps the control interrupt waiting.
+        let mut report = None;
+        with_control(|control| report = control.leg.jog_report().copied());
+        report
     }
 
     fn sensors(&mut self) -> SensorReading {

@@ -22,8 +22,8 @@ impl<T: Scalar> Leg<T> {
 
     /// What the last jog measured; none since the start.
     #[must_use]
-    pub fn jog_report(&self) -> Option<JogReport<T>> {
-        self.shared.jog_report
+    pub fn jog_report(&self) -> Option<&JogReport<T>> {
+        self.shared.jog_report.as_ref()
     }
 
     /// What the leg reports of itself.
