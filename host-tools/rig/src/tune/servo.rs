@@ -208,7 +208,7 @@ pub fn configured_servo(motor: u8, rig: &RigFile) -> Vec<ResponsePoint> {
     let servo_loop = ServoLoop::new(actuator, servo);
     let point = |period_ticks: u16| {
         let hz = f64::from(TICK_HZ) / f64::from(period_ticks);
-        ResponsePoint::new(hz, servo_loop.at_voltage(servo, hz), 1.0)
+        ResponsePoint::new(hz, servo_loop.voltage_transfer(servo, hz), 1.0)
     };
     PERIODS_TICKS.into_iter().map(point).collect()
 }

@@ -93,7 +93,7 @@ impl ServoLoop {
 
     /// The transfer of the whole servo at a frequency, Hz, broken at the voltage of the motor: that of a loop whose limit of stability
     /// is −1.
-    pub fn at_voltage(&self, servo: &Servo, hz: f64) -> Complex {
+    pub fn voltage_transfer(&self, servo: &Servo, hz: f64) -> Complex {
         let rate = std::f64::consts::TAU * hz;
         let position_per_s = f64::from(servo.position_gain_per_s);
         let integral_s = f64::from(servo.integral_time_s);
