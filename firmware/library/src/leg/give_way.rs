@@ -26,3 +26,53 @@ pub fn gives_way<T: Scalar>(shared: &Shared<T>, measured: &Measured<T>) -> bool 
         tension_n > near_max_n && axis.reference_m() - pulled_m > T::from(GIVEN_WAY_M)
     })
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::gives_way;
+    use crate::command::Compensation;
+    use crate::control::Measured;
+    use crate::leg::shared::{Checked, Shared};
+    use crate::settings::Settings;
+
+    /// A leg gives way where one motor is behind its reference and its tendon is near the maximum tension, and its load is not
+    /// estimated. Either alone is none, nor are the two at different tendons.
+    #[test]
+    fn a_leg_gives_way_where_a_taut_tendon_is_paid_out() {
+        let settings = Settings::table_1().unwrap();
+        let f_max_n = f64::from(settings.f_max_n);
+        let (near_n, less_n) = (0.96 * f_max_n, 0.94 * f_max_n);
+        let mut shared = Shared::<f64>::new(&settings, Checked::new(&settings).unwrap());
+        for (behind_m, tensions_n, gives) in [
+            ([0.0, 6e-5, 0.0], [0.0, near_n, 0.0], true),
+            ([0.0, 0.0, 6e-5], [0.0, 0.0, near_n], true),
+            ([0.0, 4e-5, 0.0], [0.0, near_n, 0.0], false),
+            ([0.0, 6e-5, 0.0], [0.0, less_n, 0.0], false),
+            ([0.0, -6e-5, 0.0], [0.0, near_n, 0.0], false),
+            ([6e-5, 0.0, 0.0], [0.0, near_n, 0.0], false),
+            ([0.0; 3], [0.0; 3], false),
+        ] {
+            for axis in &mut shared.axes {
+                axis.rest(0.01);
+            }
+            let measured = Measured {
+                pulled_m: behind_m.map(|behind| 0.01 - behind),
+                tensions_n,
+                steady_tensions_n: tensions_n,
+                currents_a: [0.0; 3],
+                supply_v: 24.0,
+                temperature_c: 30.0,
+            };
+            for (compensation, expected) in [
+                (Compensation::Off, gives),
+                (Compensation::Frozen, gives),
+                (Compensation::Estimated, false),
+            ] {
+                shared.compensation = compensation;
+                let found = gives_way(&shared, &measured);
+                assert_eq!(found, expected, "{behind_m:?} {tensions_n:?}");
+            }
+        }
+    }
+}

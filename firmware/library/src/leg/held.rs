@@ -132,48 +132,4 @@ fn is_near_max<T: Scalar>(shared: &Shared<T>) -> bool {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "a test may panic")]
-mod tests {
-    use super::{BRAKE_S, Held, Momentum, SHORT_BRAKE_S};
-    use crate::control::ticks;
-    use crate::leg::shared::{Checked, Shared};
-    use crate::settings::Settings;
-
-    /// A leg is braked in no more time than its way has left, but never at once.
-    #[test]
-    fn a_brake_ends_where_the_way_would_have() {
-        let settings = Settings::table_1().unwrap();
-        let shared = Shared::<f64>::new(&settings, Checked::new(&settings).unwrap());
-        let [longest, shortest] = [BRAKE_S, SHORT_BRAKE_S].map(ticks);
-        for (ticks_to_end, expected) in [
-            (None, longest),
-            (Some(longest + 1), longest),
-            (Some(longest - 1), longest - 1),
-            (Some(shortest - 1), shortest),
-            (Some(0), shortest),
-        ] {
-            let momentum = Momentum {
-                steps_m: [1e-6, 0.0, -1e-6],
-                ticks_to_end,
-            };
-            let held = Held::braking(&shared, momentum, true);
-            assert_eq!(held.ticks_left, expected, "{ticks_to_end:?}");
-        }
-    }
-
-    /// Half of the way that it goes on at first is what is left of a brake; to that comes a tenth of a millimetre.
-    #[test]
-    fn a_tendon_is_paid_out_by_its_way_and_a_tenth_of_a_millimetre() {
-        let ticks = 1000;
-        let held = Held::<f64> {
-            steps_m: [1e-6, 0.0, -1e-6],
-            ticks_left: ticks,
-            per_tick: 1.0 / ticks as f32,
-        };
-        let way_m = 0.5 * 1e-6 * f64::from(ticks);
-        let [pulled, resting, paid_out] = held.lowest_m(&[0.01, 0.02, 0.03]);
-        assert!((pulled - (0.01 - 1e-4)).abs() < 1e-9);
-        assert!((resting - (0.02 - 1e-4)).abs() < 1e-9);
-        assert!((paid_out - (0.03 - way_m - 1e-4)).abs() < 1e-9);
-    }
-}
+mod tests;

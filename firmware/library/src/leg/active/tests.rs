@@ -1,0 +1,131 @@
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use super::{Active, StationKeeping};
+use crate::command::Compensation;
+use crate::control::Measured;
+use crate::leg::shared::{Checked, Shared};
+use crate::set_point::{PointRefusal, SetPoint, StreamPart};
+use crate::settings::Settings;
+use crate::supervisor::SETTLE_CYCLES;
+use leg_model::Direction;
+
+/// What is measured of a leg at rest with these tensions.
+fn measured(tensions_n: [f64; 3]) -> Measured<f64> {
+    Measured {
+        pulled_m: [0.0; 3],
+        tensions_n,
+        steady_tensions_n: tensions_n,
+        currents_a: [0.0; 3],
+        supply_v: 24.0,
+        temperature_c: 30.0,
+    }
+}
+
+/// A leg that was armed just now with tendons at this tension, N, and the minimum tension, N.
+fn armed(part: f64) -> (Active<f64>, Shared<f64>, f64) {
+    let settings = Settings::table_1().unwrap();
+    let f_min_n = f64::from(settings.f_min_n);
+    let mut shared = Shared::new(&settings, Checked::new(&settings).unwrap());
+    shared.zero_m = Some([0.2; 3]);
+    let active = Active::begin(&mut shared, &measured([part * f_min_n; 3]));
+    (active, shared, f_min_n)
+}
+
+/// Every tendon has to pull by half of what any target asks for: a leg that was led down is left with more, one that was
+/// paid out with less. Nothing is followed before.
+#[test]
+fn tendons_that_pull_already_are_not_taken_up_from_slack() {
+    let settings = Settings::table_1().unwrap();
+    let f_min_n = f64::from(settings.f_min_n);
+    for (parts, taut) in [
+        ([1.0; 3], true),
+        ([0.51; 3], true),
+        ([0.49; 3], false),
+        ([0.0; 3], false),
+        ([9.0, 0.49, 9.0], false),
+        ([9.0, 9.0, 0.51], true),
+    ] {
+        let tensions_n = parts.map(|part| part * f_min_n);
+        let measured = measured(tensions_n);
+        let mut shared = Shared::new(&settings, Checked::new(&settings).unwrap());
+        let mut active = Active::begin(&mut shared, &measured);
+        assert_eq!(active.slack.taken_up(), taut, "{tensions_n:?}");
+        assert!(!active.tensioned);
+        let point = SetPoint {
+            part: StreamPart::First,
+            tick: 4000,
+            direction: [0.0; 2],
+            rate: [0.0; 2],
+            acceleration: None,
+        };
+        let followed = active.follow(&mut shared, 0, &point);
+        let expected = if taut {
+            Ok(())
+        } else {
+            Err(PointRefusal::NotTaut)
+        };
+        assert_eq!(followed, expected);
+    }
+}
+
+/// A leg that can be left where it is rests at its target, taut and with its load compensated; the settings allow it, and nothing was
+/// refused. Each of these is needed.
+#[test]
+fn station_is_kept_only_where_the_leg_can_be_left() {
+    let ready = || {
+        let (mut active, mut shared, _) = armed(1.0);
+        active.tensioned = true;
+        shared.station.allowed = true;
+        (active, shared)
+    };
+    let (active, shared) = ready();
+    assert!(active.may_keep_station(&shared));
+    type Spoil = fn(&mut Active<f64>, &mut Shared<f64>);
+    let spoils: [Spoil; 7] = [
+        |active, _| active.tensioned = false,
+        |active, shared| active.go(shared, &Direction::from_xy(0.1, 0.0).unwrap()),
+        |active, _| active.station = StationKeeping::Releasing([1e-4; 3]),
+        |_, shared| shared.station.allowed = false,
+        |_, shared| shared.refused = true,
+        |_, shared| shared.compensation = Compensation::Off,
+        |_, shared| shared.compensation = Compensation::Frozen,
+    ];
+    for (i, spoil) in spoils.iter().enumerate() {
+        let (mut active, mut shared) = ready();
+        spoil(&mut active, &mut shared);
+        assert!(!active.may_keep_station(&shared), "{i}");
+    }
+}
+
+/// A leg counts as tensioned from when every tendon is above the minimum tension, and stays so whatever comes then.
+#[test]
+fn a_leg_is_tensioned_once_every_tendon_is_above_the_minimum() {
+    let (mut active, mut shared, f_min_n) = armed(1.0);
+    for (parts, tensioned) in [
+        ([1.1, 1.1, 0.9], false),
+        ([0.9, 1.1, 1.1], false),
+        ([0.9; 3], false),
+        ([1.1; 3], true),
+        ([0.9; 3], true),
+    ] {
+        // The pose is no matter.
+        let _ = active.estimate(&mut shared, &measured(parts.map(|part| part * f_min_n)));
+        assert_eq!(active.tensioned, tensioned, "{parts:?}");
+    }
+}
+
+/// A leg that was armed taut begins so only as long as its sensors settle; one that was armed slack does not.
+#[test]
+fn a_leg_begins_taut_while_its_sensors_settle() {
+    for (part, taut) in [(0.9, true), (0.0, false)] {
+        let (mut active, mut shared, f_min_n) = armed(part);
+        let shown = measured([part * f_min_n; 3]);
+        for _ in 0..SETTLE_CYCLES {
+            assert_eq!(active.begins_taut(), taut);
+            let _ = active.estimate(&mut shared, &shown);
+        }
+        assert_eq!(active.begins_taut(), taut);
+        let _ = active.estimate(&mut shared, &shown);
+        assert!(!active.begins_taut());
+    }
+}
