@@ -115,3 +115,16 @@ fn brake_m<T: Scalar>(shared: &mut Shared<T>, time_constant_s: T) -> [T; 3] {
         .damping
         .step(&deviations_m, per_pretension, inertia, time_constant_s)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::LengthOffsets;
+
+    /// The search for the pretension has every other turn.
+    #[test]
+    fn every_other_turn_is_theirs() {
+        let mut offsets = LengthOffsets::new(&[0.0; 3]);
+        let turns = [(); 6].map(|()| offsets.take_turn());
+        assert_eq!(turns, [true, false, true, false, true, false]);
+    }
+}

@@ -212,3 +212,76 @@ pub struct ModeStep {
     /// What ends the mode, if anything does.
     pub event: Option<Event>,
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::{Mode, Trust};
+    use crate::control::Measured;
+    use crate::leg::active::Active;
+    use crate::leg::shared::{Checked, Shared};
+    use crate::settings::Settings;
+    use crate::supervisor::State;
+    use leg_model::Direction;
+
+    const MEASURED: Measured<f64> = Measured {
+        pulled_m: [0.01; 3],
+        tensions_n: [30.0; 3],
+        steady_tensions_n: [30.0; 3],
+        currents_a: [0.0; 3],
+        supply_v: 24.0,
+        temperature_c: 30.0,
+    };
+
+    fn armed() -> (Active<f64>, Shared<f64>) {
+        let settings = Settings::table_1().unwrap();
+        let mut shared = Shared::new(&settings, Checked::new(&settings).unwrap());
+        let active = Active::begin(&mut shared, &MEASURED);
+        (active, shared)
+    }
+
+    /// A leg on its way is braked from its speed, whatever its cells show. One at rest is braked from what its cells had its motors
+    /// do, unless they are in doubt.
+    #[test]
+    fn a_leg_at_rest_goes_on_with_nothing_that_doubted_cells_ask_for() {
+        for (moving, cells, goes_on) in [
+            (false, true, true),
+            (false, false, false),
+            (true, true, true),
+            (true, false, true),
+        ] {
+            let (mut active, mut shared) = armed();
+            if moving {
+                active.go(&mut shared, &Direction::from_xy(0.1, 0.0).unwrap());
+            }
+            assert_eq!(active.moving(), moving);
+            let step_m = 1e-6;
+            for tick in 0..1000 {
+                shared.axes[1].track(f64::from(tick) * step_m);
+            }
+            shared.axes[1].lead_by(step_m);
+            let trust = Trust {
+                pose: true,
+                counters: true,
+                motors: true,
+                cells,
+            };
+            let [_, found_m, _] = Mode::Active(active).momentum(&shared, trust).steps_m;
+            let expected_m = if goes_on { step_m } else { 0.0 };
+            assert!((found_m - expected_m).abs() < 1e-9, "{moving} {cells}");
+        }
+    }
+
+    /// A leg that keeps station follows no command until it is armed again.
+    #[test]
+    fn a_leg_that_keeps_station_says_so() {
+        let (active, shared) = armed();
+        let mut mode = Mode::Active(active);
+        assert_eq!(mode.state(), State::Active);
+        for state in [State::KeepingStation, State::Active] {
+            assert!(mode.change_station(state, &shared));
+            assert_eq!(mode.state(), state);
+        }
+        assert!(!mode.change_station(State::Held, &shared));
+    }
+}

@@ -94,3 +94,94 @@ fn slack_m<T: Scalar>(shared: &Shared<T>) -> Option<[T; 3]> {
     let lengths = &shared.limits.slack_lengths_m;
     Some([a - lengths[0], b - lengths[1], c - lengths[2]])
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::{RampingDown, goals};
+    use crate::control::{CYCLE_TICKS, Measured};
+    use crate::leg::phase::Phase;
+    use crate::leg::shared::{Checked, Shared};
+    use crate::settings::Settings;
+
+    fn shared() -> Shared<f64> {
+        let settings = Settings::table_1().unwrap();
+        Shared::new(&settings, Checked::new(&settings).unwrap())
+    }
+
+    fn measured(pulled_m: [f64; 3]) -> Measured<f64> {
+        Measured {
+            pulled_m,
+            tensions_n: [1.0; 3],
+            steady_tensions_n: [1.0; 3],
+            currents_a: [0.0; 3],
+            supply_v: 24.0,
+            temperature_c: 30.0,
+        }
+    }
+
+    /// A tendon of a hanging leg is paid out to where it is just slack, by no more than the travel, and never pulled in. All arrive
+    /// at once.
+    #[test]
+    fn a_hanging_leg_is_made_slack_and_no_more() {
+        let mut shared = shared();
+        let zero_m = [0.21, 0.22, 0.23];
+        shared.zero_m = Some(zero_m);
+        let travel_m = shared.limits.relax_travel_m;
+        let lengths_m = shared.limits.slack_lengths_m;
+        for (parts, travels) in [
+            ([0.5, 0.25, -0.5], [0.5, 0.25, 0.0]),
+            ([3.0, 0.5, 0.1], [1.0, 0.5, 0.1]),
+        ] {
+            let mut rest_m = zero_m;
+            for (i, rest) in rest_m.iter_mut().enumerate() {
+                *rest += parts[i] * travel_m - lengths_m[i];
+            }
+            let goals = goals(&shared, rest_m, true);
+            for (i, goal) in goals.iter().enumerate() {
+                let paid_out_m = rest_m[i] - goal.pulled_m;
+                let expected_m = travels[i] * travel_m;
+                assert!((paid_out_m - expected_m).abs() < 1e-9, "{parts:?} {i}");
+                let time_s = expected_m / shared.limits.ramp_m_per_s;
+                let takes_s = travels[0] * travel_m / shared.limits.ramp_m_per_s;
+                assert!((goal.speed_m_per_s * takes_s - expected_m).abs() < 1e-9);
+                assert!(time_s <= takes_s);
+            }
+        }
+    }
+
+    /// Without a pose or a zero to rely on, every tendon is paid out by the whole travel.
+    #[test]
+    fn without_trust_every_tendon_is_paid_out_by_the_travel() {
+        let mut shared = shared();
+        for (zero_m, trusted) in [(Some([0.2; 3]), false), (None, true)] {
+            shared.zero_m = zero_m;
+            let rest_m = [0.01, 0.02, 0.03];
+            for (goal, rest_m) in goals(&shared, rest_m, trusted).iter().zip(rest_m) {
+                assert_eq!(goal.pulled_m, rest_m - shared.limits.relax_travel_m);
+                assert_eq!(goal.speed_m_per_s, shared.limits.ramp_m_per_s);
+            }
+        }
+    }
+
+    /// The ramp ends once every motor is at its goal; where one does not come, after twice the time that it should take and
+    /// half a second.
+    #[test]
+    fn a_ramp_ends_when_all_have_arrived_or_the_time_is_over() {
+        let mut shared = shared();
+        let travel_m = shared.limits.relax_travel_m;
+        let rest_m = [0.01; 3];
+        let late = 4000 + 2 * shared.limits.relax_ticks;
+        let begin =
+            |shared: &Shared<f64>| RampingDown::new(shared.limits.relax_ticks, rest_m, false);
+        let there_m = rest_m.map(|rest| rest - travel_m);
+        let mut arrived = begin(&shared);
+        assert!(arrived.relax(Phase::Command, &mut shared, &measured(there_m)));
+        let mut stuck = begin(&shared);
+        let stuck_m = [there_m[0], rest_m[1], there_m[2]];
+        let end =
+            (1..=2 * late).find(|_| stuck.relax(Phase::Command, &mut shared, &measured(stuck_m)));
+        assert_eq!(end, Some(late));
+        assert!(late > u32::from(CYCLE_TICKS));
+    }
+}

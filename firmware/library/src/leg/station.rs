@@ -213,7 +213,7 @@ impl<T: Scalar> Station<T> {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{FARTHEST_RAD, Station, StationLimits};
+    use super::{FARTHEST_RAD, Station, StationKeeping, StationLimits};
     use crate::settings::Settings;
 
     /// Ring radius and distance of the tip of the paper's leg, m.
@@ -286,6 +286,8 @@ mod tests {
             (tilting(0.99 * farthest_m), false),
             (tilting(1.01 * farthest_m), true),
             ([2e-3; 3], false),
+            (tilting(0.99 * farthest_m).map(|m| m + 2e-3), false),
+            (tilting(1.01 * farthest_m).map(|m| m + 2e-3), true),
             ([f64::NAN; 3], true),
         ] {
             let mut station = left();
@@ -293,6 +295,19 @@ mod tests {
                 step(&mut station, lengths_m);
             }
             assert_eq!(station.too_far(), too_far, "{lengths_m:?}");
+        }
+    }
+
+    /// What is left of the way comes to whatever else makes the tendons longer.
+    #[test]
+    fn the_rest_of_a_correction_is_added() {
+        let rest_m = tilting(3.8e-3);
+        let (mut keeping, mut longer_m) = (StationKeeping::Releasing(rest_m), [1e-3; 3]);
+        keeping.step(&limits(), &[0.2; 3], &mut longer_m);
+        for (longer, rest) in longer_m.iter().zip(rest_m) {
+            // A two-thousandth of it is gone in a step.
+            let left = (longer - 1e-3) / rest;
+            assert!((0.999..1.0).contains(&left), "{left}");
         }
     }
 }

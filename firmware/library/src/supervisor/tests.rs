@@ -157,6 +157,19 @@ fn a_held_leg_is_let_down_or_switched_off_by_a_more_severe_fault() {
     }
 }
 
+/// Without its zero it has to home first, which turns one motor after the other: the tendons are paid out for that.
+#[test]
+fn a_held_leg_that_is_cleared_is_let_down_unless_it_knows_its_zero() {
+    for (homed, expected) in [(true, State::Active), (false, State::RampingDown)] {
+        let mut leg = Supervised::active();
+        leg.watch(FaultSet::single(Fault::CommandTimeout));
+        assert_eq!(leg.state, State::Held);
+        leg.watch(FaultSet::NONE);
+        let next = leg.supervisor.clear(leg.state, homed, FaultSet::NONE);
+        assert_eq!(next, Some(expected));
+    }
+}
+
 #[test]
 fn a_clear_does_nothing_while_the_cause_is_there() {
     let mut leg = Supervised::active();
