@@ -288,3 +288,6 @@ impl<T: Scalar> Jogging<T> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

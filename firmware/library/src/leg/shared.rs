@@ -283,3 +283,46 @@ impl<T: Scalar> Shared<T> {
         drive
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::{Checked, Shared};
+    use crate::control::Measured;
+    use crate::settings::Settings;
+    use crate::supervisor::State;
+
+    const MEASURED: Measured<f64> = Measured {
+        pulled_m: [0.01, 0.02, 0.03],
+        tensions_n: [1.0; 3],
+        steady_tensions_n: [1.0; 3],
+        currents_a: [0.0; 3],
+        supply_v: 24.0,
+        temperature_c: 30.0,
+    };
+
+    /// A cell that reads too much pays its tendon out no farther than homing goes; a leg that follows commands is bounded by its
+    /// maximum tension alone. Every other state does without its cells.
+    #[test]
+    fn a_state_decides_how_far_a_tension_may_pay_a_tendon_out() {
+        let settings = Settings::table_1().unwrap();
+        let homing = &settings.homing;
+        let travel_m = f64::from(homing.travel_m) + 2.0 * f64::from(homing.release_m);
+        let f_max_n = f64::from(settings.f_max_n);
+        let mut shared = Shared::<f64>::new(&settings, Checked::new(&settings).unwrap());
+        for state in State::ALL {
+            shared.come_to_rest(state, &MEASURED);
+            let (expected_n, bound_m) = match state {
+                State::Homing => (f_max_n, Some(travel_m)),
+                State::Active => (f_max_n, None),
+                _ => (f64::MAX, None),
+            };
+            assert_eq!(shared.f_max_n, expected_n, "{state:?}");
+            for (i, pulled_m) in MEASURED.pulled_m.into_iter().enumerate() {
+                let lowest_m = bound_m.map_or(-f64::MAX, |bound_m| pulled_m - bound_m);
+                assert!((shared.lowest_m[i] - lowest_m).abs() < 1e-9, "{state:?}");
+                assert_eq!(shared.axes[i].reference_m(), pulled_m);
+            }
+        }
+    }
+}
