@@ -264,3 +264,6 @@ impl<T: Scalar> Leg<T> {
         Err(refusal)
     }
 }
+
+#[cfg(test)]
+mod tests;

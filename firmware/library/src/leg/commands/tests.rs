@@ -1,0 +1,120 @@
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use crate::command::{Command, CommandRefusal, Compensation};
+use crate::control::Measured;
+use crate::leg::Leg;
+use crate::leg::active::Active;
+use crate::leg::mode::Mode;
+use crate::set_point::{SetPoint, StreamPart};
+use crate::settings::Settings;
+use crate::supervisor::State;
+use leg_model::Direction;
+
+const MEASURED: Measured<f64> = Measured {
+    pulled_m: [0.01; 3],
+    tensions_n: [30.0; 3],
+    steady_tensions_n: [30.0; 3],
+    currents_a: [0.0; 3],
+    supply_v: 24.0,
+    temperature_c: 30.0,
+};
+
+/// A leg that follows commands at rest.
+fn armed() -> Leg<f64> {
+    let mut leg = Leg::new(&Settings::table_1().unwrap()).unwrap();
+    let active = Active::begin(&mut leg.shared, &MEASURED);
+    leg.mode = Mode::Active(active);
+    leg
+}
+
+/// What leads a leg.
+fn leading() -> [Command; 6] {
+    [
+        Command::Move { x: 0.1, y: 0.0 },
+        Command::Hold,
+        Command::Follow(SetPoint {
+            part: StreamPart::First,
+            tick: 4000,
+            direction: [0.0; 2],
+            rate: [0.0; 2],
+            acceleration: None,
+        }),
+        Command::Pretension(10.0),
+        Command::Stiffness {
+            demand_nm_per_rad: 1.0,
+            towards: None,
+        },
+        Command::Compensation(Compensation::Off),
+    ]
+}
+
+/// It has to be armed again first.
+#[test]
+fn a_leg_that_keeps_station_is_not_led() {
+    let mut leg = armed();
+    assert!(leg.mode.change_station(State::KeepingStation, &leg.shared));
+    for command in leading() {
+        let refused = leg.execute(command, &MEASURED);
+        let expected = Err(CommandRefusal::State(State::KeepingStation));
+        assert_eq!(refused, expected, "{command:?}");
+    }
+    let active = leg.mode.active().unwrap();
+    assert!(!active.trajectory.moving() && active.commanded.is_none());
+}
+
+#[test]
+fn a_leg_that_is_led_down_to_be_disarmed_is_not_led_elsewhere() {
+    let mut leg = armed();
+    if let Mode::Active(active) = &mut leg.mode {
+        active.disarm(&mut leg.shared);
+    }
+    let [go, hold, follow, ..] = leading();
+    for command in [go, hold, follow] {
+        let refused = leg.execute(command, &MEASURED);
+        let expected = Err(CommandRefusal::State(State::RampingDown));
+        assert_eq!(refused, expected, "{command:?}");
+    }
+    let active = leg.mode.active().unwrap();
+    assert_eq!(active.commanded, Some([0.0; 2]));
+}
+
+/// A move to a point of the workspace sets out for it; another one is refused, and the leg stays where it is.
+#[test]
+fn a_leg_sets_out_for_the_workspace_alone() {
+    let reach = Settings::table_1().unwrap().tilt_max_sine;
+    let inside = 0.99 * reach;
+    let outside = 0.71 * reach;
+    for (x, y, expected) in [
+        (inside, 0.0, Ok(())),
+        (0.0, -inside, Ok(())),
+        (outside, outside, Err(CommandRefusal::OutOfReach)),
+        (-1.01 * reach, 0.0, Err(CommandRefusal::OutOfReach)),
+        (f32::NAN, 0.0, Err(CommandRefusal::Number)),
+        (0.0, f32::INFINITY, Err(CommandRefusal::Number)),
+    ] {
+        let mut leg = armed();
+        assert_eq!(leg.execute(Command::Move { x, y }, &MEASURED), expected);
+        let active = leg.mode.active().unwrap();
+        let [to_x, to_y] = active.commanded.unwrap_or([0.0; 2]);
+        if expected.is_ok() {
+            let off = (to_x - f64::from(x)).abs() + (to_y - f64::from(y)).abs();
+            assert!(off < 1e-6, "{x} {y}");
+        } else {
+            assert!(active.commanded.is_none(), "{x} {y}");
+        }
+        assert_eq!(active.trajectory.moving(), expected.is_ok(), "{x} {y}");
+        assert_eq!(leg.shared.refused, expected.is_err(), "{x} {y}");
+    }
+    // Down is inside.
+    let mut leg = armed();
+    leg.shared.refused = true;
+    let down = Direction::<f32>::straight_down().vector();
+    let went = leg.execute(
+        Command::Move {
+            x: down.x,
+            y: down.y,
+        },
+        &MEASURED,
+    );
+    assert_eq!((went, leg.shared.refused), (Ok(()), false));
+}
