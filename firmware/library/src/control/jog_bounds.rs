@@ -137,3 +137,180 @@ impl<T: Scalar> JogBounds<T> {
         longest_s(demand.travel_m.abs() / speed_m_per_s)
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::{JOG_TIME_MAX_S, JogBounds};
+    use crate::control::Applied;
+    use crate::jog::{JOG_TRAVEL_MAX_M, JogDemand, JogDrive, JogRefusal, SINE_PERIOD_TICKS};
+    use crate::settings::Settings;
+
+    fn motors() -> [JogBounds<f64>; 3] {
+        let settings = Settings::table_1().unwrap();
+        settings
+            .servos
+            .each_ref()
+            .map(|servo| JogBounds::new(&settings, servo))
+    }
+
+    /// What becomes of a demand on the second motor.
+    fn asked(travel_m: f32, drive: JogDrive) -> Result<(), JogRefusal> {
+        let demand = JogDemand {
+            motor: 2,
+            travel_m,
+            drive,
+        };
+        JogBounds::select(&motors(), &demand).map(|_| ())
+    }
+
+    fn just_more(value: f32) -> f32 {
+        value * 1.0001
+    }
+
+    #[test]
+    fn a_motor_is_one_of_three() {
+        for motor in 0..=5 {
+            let demand = JogDemand {
+                motor,
+                travel_m: 1e-3,
+                drive: JogDrive::Voltage(0.1),
+            };
+            let selected = JogBounds::select(&motors(), &demand).map(|_| ());
+            let expected = if (1..=3).contains(&motor) {
+                Ok(())
+            } else {
+                Err(JogRefusal::Motor)
+            };
+            assert_eq!(selected, expected, "{motor}");
+        }
+    }
+
+    /// A travel of no more than 10 mm either way, and a voltage of which the monitors do not take the motor for driven.
+    #[test]
+    fn travel_and_voltage_have_bounds() {
+        let highest_v = motors()[1].voltage_max_v;
+        for (voltage_v, expected) in [
+            (highest_v, Ok(())),
+            (0.01 * highest_v, Ok(())),
+            (just_more(highest_v), Err(JogRefusal::Voltage)),
+            (0.0, Err(JogRefusal::Voltage)),
+            (-0.1, Err(JogRefusal::Voltage)),
+            (f32::NAN, Err(JogRefusal::Voltage)),
+        ] {
+            let found = asked(1e-3, JogDrive::Voltage(voltage_v));
+            assert_eq!(found, expected, "{voltage_v} V");
+        }
+        for (travel_m, expected) in [
+            (JOG_TRAVEL_MAX_M, Ok(())),
+            (-JOG_TRAVEL_MAX_M, Ok(())),
+            (just_more(JOG_TRAVEL_MAX_M), Err(JogRefusal::Travel)),
+            (-just_more(JOG_TRAVEL_MAX_M), Err(JogRefusal::Travel)),
+            (0.0, Err(JogRefusal::Travel)),
+            (f32::NAN, Err(JogRefusal::Travel)),
+        ] {
+            let found = asked(travel_m, JogDrive::Voltage(highest_v));
+            assert_eq!(found, expected, "{travel_m} m");
+        }
+    }
+
+    /// A step of the reference is no more than half of what would be a fault.
+    #[test]
+    fn a_step_has_a_bound_of_its_own() {
+        let highest_m = 0.5 * Settings::table_1().unwrap().limits.following_m;
+        for (travel_m, expected) in [
+            (highest_m, Ok(())),
+            (-highest_m, Ok(())),
+            (just_more(highest_m), Err(JogRefusal::Step)),
+            (0.0, Err(JogRefusal::Step)),
+        ] {
+            assert_eq!(asked(travel_m, JogDrive::ServoStep), expected);
+        }
+    }
+
+    /// The sine and what the speed induces are together no more than any voltage.
+    #[test]
+    fn a_sine_has_bounds() {
+        let bounds = motors()[1];
+        let [shortest, longest] = SINE_PERIOD_TICKS;
+        let speed_m_per_s = 1e-3;
+        let highest_v = bounds.voltage_max_v - speed_m_per_s * bounds.back_emf_v_s_per_m;
+        let fine = (speed_m_per_s, 0.5 * highest_v, shortest);
+        for ((speed_m_per_s, amplitude_v, period_ticks), expected) in [
+            (fine, Ok(())),
+            ((fine.0, 0.999 * highest_v, longest), Ok(())),
+            ((0.0, fine.1, fine.2), Err(JogRefusal::Speed)),
+            ((-fine.0, fine.1, fine.2), Err(JogRefusal::Speed)),
+            ((fine.0, 0.0, fine.2), Err(JogRefusal::Amplitude)),
+            (
+                (fine.0, 1.001 * highest_v, fine.2),
+                Err(JogRefusal::Amplitude),
+            ),
+            ((fine.0, fine.1, shortest - 1), Err(JogRefusal::Period)),
+            ((fine.0, fine.1, longest + 1), Err(JogRefusal::Period)),
+        ] {
+            let drive = JogDrive::ServoSine {
+                speed_m_per_s,
+                amplitude_v,
+                period_ticks,
+            };
+            assert_eq!(asked(1e-3, drive), expected, "{drive:?}");
+        }
+    }
+
+    /// Twice the time of the way at its speed, with 1.1 s for all else. No way is slower than 0.2 mm/s: 10 mm take 101.1 s at the most.
+    #[test]
+    fn a_jog_has_time_for_twice_its_way() {
+        let bounds = motors()[1];
+        let time_s = |travel_m, drive| {
+            bounds.time_max_s(&JogDemand {
+                motor: 2,
+                travel_m,
+                drive,
+            })
+        };
+        let sine = |speed_m_per_s| JogDrive::ServoSine {
+            speed_m_per_s,
+            amplitude_v: 0.1,
+            period_ticks: 100,
+        };
+        let turning_v = bounds.dropped_v + 2e-3 * bounds.back_emf_v_s_per_m;
+        for (travel_m, drive, expected_s) in [
+            (4e-3, sine(1e-3), 1.1 + 8.0),
+            (-4e-3, sine(1e-3), 1.1 + 8.0),
+            (4e-3, sine(1e-5), 1.1 + 40.0),
+            (4e-3, JogDrive::Voltage(turning_v), 1.1 + 4.0),
+            (4e-3, JogDrive::Voltage(0.1 * bounds.dropped_v), 1.1 + 40.0),
+            (1e-4, JogDrive::ServoStep, 1.1 + 1.0),
+            (JOG_TRAVEL_MAX_M, sine(1e-5), JOG_TIME_MAX_S),
+        ] {
+            let found_s = time_s(travel_m, drive);
+            assert!(
+                (found_s - expected_s).abs() < 1e-2,
+                "{drive:?}: {found_s} s"
+            );
+        }
+        assert!((JOG_TIME_MAX_S - 101.1).abs() < 1e-3);
+    }
+
+    /// A short pulse does not show: what the voltage drives counts there, if it is more. A long one shows what it is.
+    #[test]
+    fn a_current_that_does_not_show_is_what_the_voltage_drives() {
+        let bounds = motors()[1];
+        let (most_a, dropped_v) = (bounds.current_max_a, f64::from(bounds.dropped_v));
+        for (voltage_v, driving_v, measured_a, expected_a) in [
+            (1.0, dropped_v, 0.0, most_a),
+            (-1.0, -dropped_v, 0.0, most_a),
+            (1.0, 0.5 * dropped_v, -0.8 * most_a, 0.8 * most_a),
+            (2.5, dropped_v, 0.1, 0.1),
+            (-2.5, -dropped_v, -0.1, -0.1),
+        ] {
+            let applied = Applied {
+                voltage_v,
+                driving_v,
+            };
+            let found_a = bounds.ceiling_a(measured_a, &applied, 24.0);
+            assert!((found_a - expected_a).abs() < 1e-6, "{voltage_v} V");
+        }
+    }
+}

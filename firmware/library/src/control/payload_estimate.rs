@@ -136,6 +136,21 @@ mod tests {
             .unwrap()
     }
 
+    /// A payload is set to what it shows, up to what can be held. Near the vertical it shows nothing, and stays.
+    #[test]
+    fn a_payload_is_set_where_it_shows() {
+        let mut estimate = estimate();
+        let mut set = |kg: f64, per_kg: [f64; 2]| {
+            estimate.set(per_kg.map(|moment| moment * kg), per_kg);
+            estimate.kg
+        };
+        assert!((set(1.5, LEANING) - 1.5).abs() < 1e-9);
+        assert!((set(-0.3, LEANING) + 0.3).abs() < 1e-9);
+        assert!((set(1.5, [1e-4, 1e-4]) + 0.3).abs() < 1e-9);
+        let most_kg = set(1e3, LEANING);
+        assert!(most_kg > 1.5 && most_kg < 1e3);
+    }
+
     /// A payload of which nothing is known is found within 0.1 s of a motion; one that is known changes slowly then, and within a
     /// second at rest.
     #[test]
