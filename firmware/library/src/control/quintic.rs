@@ -180,3 +180,6 @@ impl<T: Scalar> Quintic<T> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

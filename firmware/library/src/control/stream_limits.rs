@@ -192,3 +192,6 @@ fn dot<T: Scalar>([ax, ay]: [T; 2], [bx, by]: [T; 2]) -> T {
 fn square<T: Scalar>(pair: [T; 2]) -> T {
     dot(pair, pair)
 }
+
+#[cfg(test)]
+mod tests;
