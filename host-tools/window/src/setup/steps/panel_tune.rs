@@ -11,17 +11,20 @@ use egui::{Label, RichText, ScrollArea, Spinner, Ui};
 use leg_rig::tune::{certain_values, plan_text, table};
 
 pub(super) fn show(ui: &mut Ui, tune: &mut Tune, editor: &mut Editor, leg: &mut ShownLeg) {
-    let simulated = leg.live().is_none();
-    picture::show(
-        ui,
-        &StepPicture {
-            tendon: Some(usize::from(tune.motor) - 1),
-            both_ways: true,
-            swings: tune.swings && simulated,
-            no_payload: true,
-            ..StepPicture::default()
-        },
-    );
+    // What was measured needs the room.
+    if !matches!(tune.step(), TuneStep::Done(_)) {
+        let simulated = leg.live().is_none();
+        picture::show(
+            ui,
+            &StepPicture {
+                tendon: Some(usize::from(tune.motor) - 1),
+                both_ways: true,
+                swings: tune.swings && simulated,
+                no_payload: true,
+                ..StepPicture::default()
+            },
+        );
+    }
     match tune.step() {
         TuneStep::Choose => choose(ui, tune, leg),
         TuneStep::Measuring => measuring(ui, tune, leg),

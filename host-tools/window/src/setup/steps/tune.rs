@@ -7,8 +7,7 @@ use leg_firmware::settings::Settings;
 use leg_rig::control_settings;
 use leg_rig::rig_file::RigFile;
 use leg_rig::tune::{
-    ComparisonRow, JogPlan, Jogged, Swing, SwingPlan, comparison, measure_motor,
-    measure_swing,
+    ComparisonRow, JogPlan, Jogged, Swing, SwingPlan, comparison, measure_motor, measure_swing,
 };
 use std::cell::RefCell;
 use std::fmt;
