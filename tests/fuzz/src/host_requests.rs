@@ -50,7 +50,7 @@ const RECORDER: [RecorderRequest; 5] = [
     RecorderRequest::Restart,
 ];
 
-const COMMANDS: [Command; 16] = [
+const COMMANDS: [Command; 17] = [
     Command::KeepAlive,
     Command::Arm,
     Command::Home,
