@@ -214,14 +214,19 @@ mod tests {
         }
     }
 
-    /// A step of the reference is no more than half of what would be a fault.
+    /// A step of the reference is no more than half of what would be a fault, and not hidden by the dead band.
     #[test]
-    fn a_step_has_a_bound_of_its_own() {
-        let highest_m = 0.5 * Settings::table_1().unwrap().limits.following_m;
+    fn a_step_has_bounds_of_its_own() {
+        let settings = Settings::table_1().unwrap();
+        let highest_m = 0.5 * settings.limits.following_m;
+        let lowest_m = 20.0 * settings.servos[1].dead_band_m;
         for (travel_m, expected) in [
             (highest_m, Ok(())),
             (-highest_m, Ok(())),
             (just_more(highest_m), Err(JogRefusal::Step)),
+            (-just_more(highest_m), Err(JogRefusal::Step)),
+            (lowest_m, Ok(())),
+            (0.999 * lowest_m, Err(JogRefusal::Step)),
             (0.0, Err(JogRefusal::Step)),
         ] {
             assert_eq!(asked(travel_m, JogDrive::ServoStep), expected);

@@ -26,6 +26,21 @@ pub struct Measured<T> {
     pub temperature_c: T,
 }
 
+#[cfg(test)]
+impl Measured<f64> {
+    /// What is measured of a leg at rest whose motors are off: how far each tendon is pulled in, m, and its tension, N.
+    pub const fn resting(pulled_m: [f64; 3], tensions_n: [f64; 3]) -> Self {
+        Self {
+            pulled_m,
+            tensions_n,
+            steady_tensions_n: tensions_n,
+            currents_a: [0.0; 3],
+            supply_v: 24.0,
+            temperature_c: 30.0,
+        }
+    }
+}
+
 /// The conversion of one axis.
 #[derive(Clone, Copy, Debug)]
 struct Channel<T> {

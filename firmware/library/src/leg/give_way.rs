@@ -56,14 +56,7 @@ mod tests {
             for axis in &mut shared.axes {
                 axis.rest(0.01);
             }
-            let measured = Measured {
-                pulled_m: behind_m.map(|behind| 0.01 - behind),
-                tensions_n,
-                steady_tensions_n: tensions_n,
-                currents_a: [0.0; 3],
-                supply_v: 24.0,
-                temperature_c: 30.0,
-            };
+            let measured = Measured::resting(behind_m.map(|behind| 0.01 - behind), tensions_n);
             for (compensation, expected) in [
                 (Compensation::Off, gives),
                 (Compensation::Frozen, gives),

@@ -224,14 +224,7 @@ mod tests {
     use crate::supervisor::State;
     use leg_model::Direction;
 
-    const MEASURED: Measured<f64> = Measured {
-        pulled_m: [0.01; 3],
-        tensions_n: [30.0; 3],
-        steady_tensions_n: [30.0; 3],
-        currents_a: [0.0; 3],
-        supply_v: 24.0,
-        temperature_c: 30.0,
-    };
+    const MEASURED: Measured<f64> = Measured::resting([0.01; 3], [30.0; 3]);
 
     fn armed() -> (Active<f64>, Shared<f64>) {
         let settings = Settings::table_1().unwrap();

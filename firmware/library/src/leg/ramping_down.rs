@@ -110,14 +110,7 @@ mod tests {
     }
 
     fn measured(pulled_m: [f64; 3]) -> Measured<f64> {
-        Measured {
-            pulled_m,
-            tensions_n: [1.0; 3],
-            steady_tensions_n: [1.0; 3],
-            currents_a: [0.0; 3],
-            supply_v: 24.0,
-            temperature_c: 30.0,
-        }
+        Measured::resting(pulled_m, [1.0; 3])
     }
 
     /// A tendon of a hanging leg is paid out to where it is just slack, by no more than the travel, and never pulled in. All arrive

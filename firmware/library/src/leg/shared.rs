@@ -292,14 +292,7 @@ mod tests {
     use crate::settings::Settings;
     use crate::supervisor::State;
 
-    const MEASURED: Measured<f64> = Measured {
-        pulled_m: [0.01, 0.02, 0.03],
-        tensions_n: [1.0; 3],
-        steady_tensions_n: [1.0; 3],
-        currents_a: [0.0; 3],
-        supply_v: 24.0,
-        temperature_c: 30.0,
-    };
+    const MEASURED: Measured<f64> = Measured::resting([0.01, 0.02, 0.03], [1.0; 3]);
 
     /// A cell that reads too much pays its tendon out no farther than homing goes; a leg that follows commands is bounded by its
     /// maximum tension alone. Every other state does without its cells.

@@ -11,14 +11,7 @@ use leg_model::Direction;
 
 /// What is measured of a leg at rest with these tensions.
 fn measured(tensions_n: [f64; 3]) -> Measured<f64> {
-    Measured {
-        pulled_m: [0.0; 3],
-        tensions_n,
-        steady_tensions_n: tensions_n,
-        currents_a: [0.0; 3],
-        supply_v: 24.0,
-        temperature_c: 30.0,
-    }
+    Measured::resting([0.0; 3], tensions_n)
 }
 
 /// A leg that was armed just now with tendons at this tension, N, and the minimum tension, N.

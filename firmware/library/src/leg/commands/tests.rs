@@ -10,14 +10,7 @@ use crate::settings::Settings;
 use crate::supervisor::State;
 use leg_model::Direction;
 
-const MEASURED: Measured<f64> = Measured {
-    pulled_m: [0.01; 3],
-    tensions_n: [30.0; 3],
-    steady_tensions_n: [30.0; 3],
-    currents_a: [0.0; 3],
-    supply_v: 24.0,
-    temperature_c: 30.0,
-};
+const MEASURED: Measured<f64> = Measured::resting([0.01; 3], [30.0; 3]);
 
 /// A leg that follows commands at rest.
 fn armed() -> Leg<f64> {

@@ -21,14 +21,7 @@ impl Jog {
     fn new(travel_m: f32) -> Self {
         let settings = Settings::table_1().unwrap();
         let mut shared = Shared::new(&settings, Checked::new(&settings).unwrap());
-        let measured = Measured {
-            pulled_m: [0.01, 0.02, 0.03],
-            tensions_n: [1.0; 3],
-            steady_tensions_n: [1.0; 3],
-            currents_a: [0.0; 3],
-            supply_v: 24.0,
-            temperature_c: 30.0,
-        };
+        let measured = Measured::resting([0.01, 0.02, 0.03], [1.0; 3]);
         let demand = JogDemand {
             motor: 2,
             travel_m,
