@@ -21,6 +21,7 @@ mod quintic;
 mod segment;
 mod stream;
 mod stream_limits;
+mod swing_speed;
 mod target;
 mod trajectory;
 mod unloaded;

@@ -64,6 +64,12 @@ impl<T: Scalar> PayloadEstimate<T> {
         }
     }
 
+    /// The standard deviation, kg.
+    #[inline(always)]
+    pub fn deviation_kg(&self) -> T {
+        self.variance_kg2.sqrt()
+    }
+
     /// Nothing is known any more.
     pub fn forget(&mut self) {
         self.kg = T::zero();

@@ -3,11 +3,10 @@
 use super::bounds::{max, min};
 use leg_model::Scalar;
 
-/// The least change of a length that is asked for in which a motor is led across the whole play, m: on the paper's rig 6 µm at the tip.
-/// On a leg without the play of its settings the brake has its gain and that of the crossing, 4.4 in all; with 4e-7 it has seven, and such a
-/// leg swings on by itself. More would leave a swing of a payload of 2 kg less damped, and the leg beside its target where the direction
-/// changes.
-const TURN_MIN_M: f32 = 7e-7;
+/// The least change of a length that is asked for in which a motor is led across the whole play, m: on the paper's rig 9 µm at the tip.
+/// On a leg without the play of its settings the brake has its gain and that of the crossing, 3.4 in all; with 7e-7 it has 4.4, and such a
+/// leg swings on by itself. More would leave the leg beside its target where the direction changes.
+const TURN_MIN_M: f32 = 1e-6;
 
 /// The same by the play: so many times as far as what is asked for goes a motor while it crosses the play. More would have a motor
 /// with a large play turn to and fro by what rounding changes.

@@ -51,9 +51,12 @@ impl<T: Scalar> LengthOffsets<T> {
         station: &mut StationKeeping<T>,
     ) {
         let mut goals_m = if tensioned {
-            let time_constant_s = first_mode_s(shared);
+            let inertia = shared
+                .mechanism
+                .inertia(shared.estimator.likely_payload_kg());
+            let time_constant_s = first_mode_s(shared, inertia);
             shared.estimator.follow_mode(time_constant_s);
-            brake_m(shared, time_constant_s)
+            brake_m(shared, inertia, time_constant_s)
         } else {
             [T::zero(); 3]
         };
@@ -91,17 +94,16 @@ impl<T: Scalar> LengthOffsets<T> {
     }
 }
 
-/// Time constant 1/ω of the first mode of the leg with its payload, s.
+/// Time constant 1/ω of the first mode of a leg with an inertia, kg·m²; s.
 #[inline(always)]
-fn first_mode_s<T: Scalar>(shared: &Shared<T>) -> T {
-    let inertia = shared.mechanism.inertia(shared.estimator.payload_kg());
+fn first_mode_s<T: Scalar>(shared: &Shared<T>, inertia: T) -> T {
     let stiffness = bounds::max(shared.pretension.mean_stiffness_nm_per_rad(), T::one());
     SwingDamping::time_constant_s(inertia, stiffness)
 }
 
 /// By how much each tendon shall be longer to brake a swing, m; not at all before there are a target and an estimate.
 #[inline(always)]
-fn brake_m<T: Scalar>(shared: &mut Shared<T>, time_constant_s: T) -> [T; 3] {
+fn brake_m<T: Scalar>(shared: &mut Shared<T>, inertia: T, time_constant_s: T) -> [T; 3] {
     let (Some(target), Some(estimate)) = (&shared.target, &shared.estimate) else {
         return [T::zero(); 3];
     };
@@ -109,7 +111,6 @@ fn brake_m<T: Scalar>(shared: &mut Shared<T>, time_constant_s: T) -> [T; 3] {
     for (i, deviation) in deviations_m.iter_mut().enumerate() {
         *deviation -= target.kinematics.lengths[i];
     }
-    let inertia = shared.mechanism.inertia(shared.estimator.payload_kg());
     let per_pretension = &target.distribution.per_pretension;
     shared
         .damping
