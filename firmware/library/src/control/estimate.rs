@@ -29,10 +29,6 @@ const MOVING_SHARE: f32 = 0.1;
 /// the loop of the load ends, and a push on it is taken up more slowly by as much.
 const FAST_MODE_S: f32 = 0.03;
 
-/// How many standard deviations of the payload a leg is taken to carry beyond what is known of it. At nothing a leg that hangs straight
-/// down with 1 kg that it does not know rings down with a damping ratio of 0.06, at one a bare one swings longer.
-const LIKELY_PART: f32 = 0.6;
-
 /// The pose that the tendons show.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate<T> {
@@ -209,10 +205,11 @@ impl<T: Scalar> Estimator<T> {
         max(self.payload.kg, T::zero())
     }
 
-    /// The payload that the brake of the swing is made for, kg: near the vertical, where nothing shows it, it may be more than is known.
+    /// The payload that the brake of the swing is made for, kg: by a standard deviation more than what is known of it. Near the vertical
+    /// nothing shows a payload, and one of 1 kg makes the mode of a bare leg half as fast. `tests/suite/sim/ring_down.rs` holds it.
     #[inline(always)]
     pub fn likely_payload_kg(&self) -> T {
-        self.payload_kg() + self.payload.deviation_kg() * T::from(LIKELY_PART)
+        self.payload_kg() + self.payload.deviation_kg()
     }
 
     /// Estimates the pose and, as `load_estimation` says, the load. `target_torsion`, rad, is the elastic one of a leg whose
