@@ -32,7 +32,7 @@ pub use debounce::Debounce;
 pub use estimate::{Estimate, Estimator, LengthError, LoadEstimate, LoadEstimation};
 pub use filter::LowPass;
 pub use friction::{FRICTION_ALLOWANCE, Friction, PULL_ALLOWANCE};
-pub use homing::{HomingSequence, HomingStep};
+pub use homing::{HaulLimit, HomingSequence, HomingStep};
 pub use jog_bounds::{JOG_RISE_S, JOG_TIME_MAX_S, JogBounds, step_range_m};
 pub use magnitude::{Applied, Magnitude, SHOWN_PART};
 pub use measure::{Measured, Measurement, ZERO_READINGS};

@@ -166,7 +166,8 @@ impl<T: Scalar> Leg<T> {
         };
         match &mut self.mode {
             Mode::Active(active) => {
-                if self.phase == Phase::Target {
+                // Once a cycle, where there is time.
+                if self.phase == Phase::Estimate {
                     shared.limit_tensions(measured, self.agreement.trusts());
                 }
                 // In the place of the search, so that the next mode has time to begin.

@@ -146,6 +146,6 @@ fn without_its_load_cell_the_current_ends_homing() {
             highest_n = stand.truth.tensions_n.into_iter().fold(highest_n, f64::max);
         }
         println!("{output}: {highest_n:.1} N");
-        assert!(highest_n < 40.0, "{output}: {highest_n:.1} N");
+        assert!(highest_n < 25.0, "{output}: {highest_n:.1} N");
     }
 }

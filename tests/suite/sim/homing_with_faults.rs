@@ -11,7 +11,7 @@ use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Defect;
 
 /// The highest tension while homing, N: a bar of the strikes.
-const HOMING_N: f64 = 40.0;
+const HOMING_N: f64 = 25.0;
 
 /// How far the leg leans when it is struck, degrees, as far as its rig lets it.
 const TILT_DEG: f64 = 25.0;

@@ -3,12 +3,16 @@
 //! Slack tendons show the zero of the load cells. One taut tendon and the leg's own weight settle where the leg rests, and so
 //! how long that tendon is.
 
+mod haul_limit;
 mod rest_search;
+mod tendon_number;
 
 use super::{AxisGoal, Debounce, Measured, Mechanism, filter::LowPass, ticks};
 use crate::settings;
+pub use haul_limit::HaulLimit;
 use leg_model::Scalar;
 use rest_search::RestSearch;
+use tendon_number::TendonNumber;
 
 /// What homing does now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,41 +31,6 @@ enum HomingPhase {
     Search(TendonNumber),
     /// It is paid out again.
     PayOut(TendonNumber),
-}
-
-/// The tendon that is reeled in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum TendonNumber {
-    First,
-    Second,
-    Third,
-}
-
-impl TendonNumber {
-    const fn index(self) -> usize {
-        match self {
-            Self::First => 0,
-            Self::Second => 1,
-            Self::Third => 2,
-        }
-    }
-
-    /// Counted from 1.
-    const fn number(self) -> u8 {
-        match self {
-            Self::First => 1,
-            Self::Second => 2,
-            Self::Third => 3,
-        }
-    }
-
-    const fn next(self) -> Option<Self> {
-        match self {
-            Self::First => Some(Self::Second),
-            Self::Second => Some(Self::Third),
-            Self::Third => None,
-        }
-    }
 }
 
 /// What a tick of homing asks for.
@@ -93,7 +62,8 @@ pub struct HomingSequence<T> {
     position_sum: T,
     count: u32,
     steady: [LowPass<T>; 3],
-    /// How long each motor has drawn more than [`Self::current_max_a`].
+    /// What each motor does not draw for long, and how long it has.
+    limits: [HaulLimit<T>; 3],
     hauling: [Debounce; 3],
     found: [T; 3],
     rest: RestSearch<T>,
@@ -105,8 +75,6 @@ pub struct HomingSequence<T> {
     touch_n: T,
     /// A tendon that shows no more than this is slack, N.
     slack_n: T,
-    /// What each motor does not draw for long, A.
-    current_max_a: [T; 3],
     travel_m: T,
     /// How near to its goal a tendon has arrived, m.
     arrived_m: T,
@@ -117,6 +85,8 @@ struct HomingTimes {
     tare: u32,
     settle: u32,
     average: u32,
+    /// In which a tendon that is reeled in is slack yet.
+    slack: u32,
 }
 
 /// Lowest tension with which a leg at rest rests on a tendon, as a part of the tension of the touch: the leg swings at the
@@ -141,16 +111,20 @@ const OTHER_PART: f32 = 0.5;
 /// start, short enough that the tension rises by 3 N at most.
 const HAUL_TIME_S: f32 = 0.03;
 
+/// Part of a step of the release over which a tendon that is reeled in is slack yet. The last step changed no tension: all of it is slack,
+/// but for what a tendon that pulled by less than [`SLACK_PART`] may have lost.
+const SLACK_PART_OF_RELEASE: f32 = 0.5;
+
 /// A tendon this near to its goal, beside the servo's dead band, has arrived, m: far below a step of the release.
 const ARRIVED_M: f32 = 1e-4;
 
 impl<T: Scalar> HomingSequence<T> {
     /// Starts from where the tendons are, m.
-    /// None of the motors may draw more than its `current_max_a`, A, but for moments, and none comes nearer to its goal than `dead_band_m`, m.
+    /// None of the motors may draw more than its limit but for moments, and none comes nearer to its goal than `dead_band_m`, m.
     pub fn new(
         homing: &settings::Homing,
         pulled_m: &[T; 3],
-        current_max_a: [T; 3],
+        limits: [HaulLimit<T>; 3],
         dead_band_m: T,
     ) -> Self {
         let release_m = T::from(homing.release_m);
@@ -164,6 +138,7 @@ impl<T: Scalar> HomingSequence<T> {
             position_sum: T::zero(),
             count: 0,
             steady: [LowPass::new(TOUCH_TIME_S, super::TICK_S); 3],
+            limits,
             hauling: [Debounce::new(ticks(HAUL_TIME_S)); 3],
             found: [T::zero(); 3],
             rest: RestSearch::new(T::zero(), T::zero()),
@@ -172,13 +147,13 @@ impl<T: Scalar> HomingSequence<T> {
                 tare: ticks(homing.tare_time_s),
                 settle: ticks(homing.settle_time_s),
                 average: ticks(homing.average_time_s),
+                slack: ticks(SLACK_PART_OF_RELEASE * homing.release_m / homing.speed_m_per_s),
             },
             speed: homing.speed_m_per_s.into(),
             release_m,
             tare_max_n: homing.tare_max_n.into(),
             touch_n: homing.touch_n.into(),
             slack_n: T::from(OTHER_PART * homing.touch_n),
-            current_max_a,
             travel_m: homing.travel_m.into(),
             arrived_m: dead_band_m + T::from(ARRIVED_M),
         }
@@ -194,7 +169,7 @@ impl<T: Scalar> HomingSequence<T> {
         match self.phase {
             HomingPhase::Release => self.release(pulled_m, tensions_n),
             HomingPhase::Tare => self.tare(tensions_n),
-            HomingPhase::ReelIn(tendon) => self.reel_in(tendon, pulled_m),
+            HomingPhase::ReelIn(tendon) => self.reel_in(tendon, measured),
             HomingPhase::Settle(tendon) => self.settle(tendon),
             HomingPhase::Average(tendon) => self.average(tendon, pulled_m, tensions_n),
             HomingPhase::Search(tendon) => self.search(mechanism, tendon),
@@ -215,11 +190,11 @@ impl<T: Scalar> HomingSequence<T> {
         };
         let mut found = None;
         let tendons = self.steady.iter_mut().zip(&mut self.hauling);
-        let tendons = (1..).zip(tendons).zip(&self.current_max_a);
+        let tendons = (1..).zip(tendons).zip(&self.limits);
         let shown = measured.tensions_n.iter().zip(&measured.currents_a);
-        for (((number, (steady, hauling)), &most_a), (&tension, current)) in tendons.zip(shown) {
+        for (((number, (steady, hauling)), limit), (&tension, &current)) in tendons.zip(shown) {
             let shows = !(steady.step(tension).abs() <= self.slack_n);
-            let hauls = hauling.update(!(current.abs() <= most_a));
+            let hauls = hauling.update(limit.exceeded(current));
             if hauls || (shows && number != taut) {
                 found = Some(number);
             }
@@ -303,14 +278,20 @@ impl<T: Scalar> HomingSequence<T> {
                 return HomingStep::Failed(tendon);
             }
         }
-        self.phase = HomingPhase::ReelIn(TendonNumber::First);
+        self.begin_reeling_in(TendonNumber::First);
         let [start, ..] = self.goals_m;
         self.start_m = start;
         HomingStep::Tare(offsets)
     }
 
-    fn reel_in(&mut self, tendon: TendonNumber, pulled_m: &[T; 3]) -> HomingStep<T> {
-        let i = tendon.index();
+    fn begin_reeling_in(&mut self, tendon: TendonNumber) {
+        self.phase = HomingPhase::ReelIn(tendon);
+        (self.count, self.sums) = (0, [T::zero(); 3]);
+    }
+
+    fn reel_in(&mut self, tendon: TendonNumber, measured: &Measured<T>) -> HomingStep<T> {
+        let (i, pulled_m) = (tendon.index(), &measured.pulled_m);
+        self.learn_friction(i, measured.currents_a[i]);
         if self.steady[i].value() >= self.touch_n {
             self.goals_m[i] = pulled_m[i];
             (self.phase, self.left) = (HomingPhase::Settle(tendon), self.times.settle);
@@ -321,6 +302,21 @@ impl<T: Scalar> HomingSequence<T> {
             return HomingStep::Failed(tendon.number());
         }
         self.lead()
+    }
+
+    /// Takes the current, A, of a tick in which a tendon is reeled in that is slack yet. In the first half of these ticks the motor starts.
+    fn learn_friction(&mut self, i: usize, current_a: T) {
+        let (slack, starts) = (self.times.slack, self.times.slack / 2);
+        if self.count >= slack {
+            return;
+        }
+        self.count += 1;
+        if self.count > starts {
+            self.sums[i] += current_a;
+            if self.count == slack {
+                self.limits[i].lower(self.sums[i] / T::from((slack - starts) as f32));
+            }
+        }
     }
 
     fn settle(&mut self, tendon: TendonNumber) -> HomingStep<T> {
@@ -351,6 +347,7 @@ impl<T: Scalar> HomingSequence<T> {
         if !(tension >= self.touch_n * T::from(REST_PART)) {
             // The leg has only swung against it, and hangs free: it is reeled in farther.
             self.steady[i].set(T::zero());
+            self.count = self.times.slack;
             self.phase = HomingPhase::ReelIn(tendon);
             return self.lead();
         }
@@ -385,7 +382,7 @@ impl<T: Scalar> HomingSequence<T> {
             return HomingStep::Found(self.found);
         };
         self.start_m = self.goals_m[next.index()];
-        self.phase = HomingPhase::ReelIn(next);
+        self.begin_reeling_in(next);
         self.lead()
     }
 }

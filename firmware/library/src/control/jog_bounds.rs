@@ -40,6 +40,8 @@ pub struct JogBounds<T> {
     voltage_max_v: f32,
     /// Highest current: what the motor draws at the highest tension of homing, A. It is that of homing, too.
     pub current_max_a: T,
+    /// What of that the tension asks for, A: the rest is friction.
+    pub pull_max_a: T,
     /// Voltage that this current takes, V, and what the speed induces, V·s/m.
     dropped_v: f32,
     back_emf_v_s_per_m: f32,
@@ -51,10 +53,12 @@ impl<T: Scalar> JogBounds<T> {
     /// Those of the settings for a motor with this servo.
     pub fn new(settings: &Settings, servo: &Servo) -> Self {
         // With half more friction than the settings know.
-        let current_max_a = 1.5 * servo.friction_a + servo.pull_a_per_n * settings.homing.f_max_n;
+        let pull_max_a = servo.pull_a_per_n * settings.homing.f_max_n;
+        let current_max_a = 1.5 * servo.friction_a + pull_max_a;
         Self {
             voltage_max_v: settings.limits.driven_part * servo.current_a * servo.resistance_ohm,
             current_max_a: current_max_a.into(),
+            pull_max_a: pull_max_a.into(),
             dropped_v: servo.resistance_ohm * current_max_a,
             back_emf_v_s_per_m: servo.back_emf_v_s_per_m,
             step_range_m: step_range_m(settings, servo),

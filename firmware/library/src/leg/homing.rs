@@ -21,7 +21,7 @@ pub fn step<T: Scalar>(
     };
     let mut failed = false;
     if !homing.releases() {
-        let f_max_n = shared.limits.homing_f_max_n;
+        let f_max_n = T::from(shared.limits.homing.f_max_n);
         shared.f_max_n = f_max_n;
         let twice_n = f_max_n + f_max_n;
         failed = measured.tensions_n.iter().any(|&tension| tension > twice_n);

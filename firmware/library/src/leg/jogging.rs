@@ -86,7 +86,7 @@ impl<T: Scalar> Jogging<T> {
             .iter()
             .fold(T::zero(), |a, &b| bounds::max(a, b));
         let eased_n = taut_n + T::from(shared.limits.homing.touch_n);
-        let homing_n = shared.limits.homing_f_max_n;
+        let homing_n = T::from(shared.limits.homing.f_max_n);
         let tension_max_n = if pays_out {
             bounds::max(homing_n, eased_n)
         } else {

@@ -6,7 +6,7 @@ use super::jogging::Jogging;
 use super::ramping_down::RampingDown;
 use super::shared::Shared;
 use super::station::{Station, StationKeeping};
-use crate::control::{Axis, HomingSequence, Measured, ZERO_READINGS};
+use crate::control::{Axis, HaulLimit, HomingSequence, Measured, ZERO_READINGS};
 use crate::supervisor::{Event, FaultSet, State};
 use leg_model::Scalar;
 
@@ -174,7 +174,7 @@ impl<T: Scalar> Mode<T> {
                 Self::Homing(HomingSequence::new(
                     &limits.homing,
                     &measured.pulled_m,
-                    limits.jogs.each_ref().map(|jog| jog.current_max_a),
+                    limits.jogs.each_ref().map(HaulLimit::new),
                     limits.dead_band_m,
                 ))
             }

@@ -36,7 +36,7 @@ const RUNAWAY_AGAIN_BEYOND: f64 = 1.8;
 const SLIP_BEYOND: f64 = 2.5;
 
 /// The highest tension while homing, N.
-const HOMING_N: f64 = 40.0;
+const HOMING_N: f64 = 25.0;
 
 /// How far the tip may move from where it rests, and off its way, mm.
 const REST_MM: f64 = 0.5;
@@ -61,8 +61,8 @@ const SWAPPED_MM: f64 = 20.0;
 const CUT_OFF_MM: f64 = 6.0;
 
 /// How far a tendon that homing pulls, and whose cell or motor fails, may lift a leg that hangs free, mm: by what its motor can pull
-/// below the current at which homing ends, which holds the leg's own weight far aside.
-const LIFTED_MM: f64 = 130.0;
+/// below the current at which homing ends, about 20 N, which holds the leg's own weight far aside.
+const LIFTED_MM: f64 = 90.0;
 
 /// How far a leg that is paid out may hang aside by a motor that stays behind, mm.
 const ASIDE_MM: f64 = 10.0;

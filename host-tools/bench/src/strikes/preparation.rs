@@ -158,7 +158,7 @@ fn disarm(stand: &mut Stand) -> Result<(), String> {
 }
 
 /// A leg that is struck on its way, which it has gone to its end before.
-fn prepare_on_the_way(case: &Case, stand: Stand) -> Result<PreparedLeg, String> {
+fn prepare_on_the_way(case: &mut Case, stand: Stand) -> Result<PreparedLeg, String> {
     let mut way = Way::begin(stand.truth.tip_m);
     let mut whole = stand.clone();
     let mut course = Course::begin(&whole);
@@ -167,6 +167,10 @@ fn prepare_on_the_way(case: &Case, stand: Stand) -> Result<PreparedLeg, String> 
         whole.tick()?;
         way.add(whole.truth.tip_m);
         course.add(&whole);
+        if case.compensation != Compensation::Estimated && whole.faults().has(Fault::Following) {
+            case.compensation = Compensation::Estimated;
+            return prepare(case);
+        }
         if whole.faults().any() {
             let names = leg_base::description::faults(whole.faults());
             return Err(format!("{names} without a strike"));

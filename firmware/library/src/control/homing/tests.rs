@@ -1,11 +1,8 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{HomingSequence, HomingStep};
-use crate::control::{CYCLE_TICKS, Measured, Mechanism, TICK_S};
+use super::{HaulLimit, HomingSequence, HomingStep};
+use crate::control::{CYCLE_TICKS, JogBounds, Measured, Mechanism, TICK_S};
 use crate::settings::Settings;
-
-/// What no motor draws for long, A.
-const CURRENT_MAX_A: f64 = 0.3;
 
 /// A leg whose motors go exactly where they are led, and whose tensions and currents a test makes up.
 struct Leg {
@@ -24,7 +21,12 @@ impl Leg {
         let zero = [0.0; 3];
         Self {
             mechanism: Mechanism::new(&settings).unwrap(),
-            homing: HomingSequence::new(&settings.homing, &zero, [CURRENT_MAX_A; 3], 0.0),
+            homing: HomingSequence::new(
+                &settings.homing,
+                &zero,
+                [HaulLimit::new(&bounds(&settings)); 3],
+                0.0,
+            ),
             measured: Measured {
                 pulled_m: zero,
                 tensions_n: zero,
@@ -42,21 +44,27 @@ impl Leg {
     /// Ticks until homing asks for something else than to be led; `tensions_n` by how far the tendons are pulled in, m.
     fn lead(&mut self, tensions_n: impl Fn([f64; 3]) -> [f64; 3]) -> HomingStep<f64> {
         for _ in 0..400_000 {
-            self.ticks += 1;
             self.measured.tensions_n = tensions_n(self.measured.pulled_m);
-            match self.homing.step(&self.mechanism, &self.measured) {
-                HomingStep::Lead(goals) => {
-                    for (pulled, goal) in self.measured.pulled_m.iter_mut().zip(&goals) {
-                        let step_m = goal.speed_m_per_s * f64::from(TICK_S);
-                        *pulled += (goal.pulled_m - *pulled).clamp(-step_m, step_m);
-                    }
-                    self.goals_m = goals.map(|goal| goal.pulled_m);
-                }
-                HomingStep::Searching => {}
+            match self.advance() {
+                HomingStep::Lead(_) | HomingStep::Searching => {}
                 asked => return asked,
             }
         }
         panic!("homing asks for nothing");
+    }
+
+    /// A tick: its motors go where homing leads them.
+    fn advance(&mut self) -> HomingStep<f64> {
+        self.ticks += 1;
+        let asked = self.homing.step(&self.mechanism, &self.measured);
+        if let HomingStep::Lead(goals) = &asked {
+            for (pulled, goal) in self.measured.pulled_m.iter_mut().zip(goals) {
+                let step_m = goal.speed_m_per_s * f64::from(TICK_S);
+                *pulled += (goal.pulled_m - *pulled).clamp(-step_m, step_m);
+            }
+            self.goals_m = goals.map(|goal| goal.pulled_m);
+        }
+        asked
     }
 
     /// With its load cells tared, and the first tendon about to be reeled in.
@@ -65,6 +73,11 @@ impl Leg {
         assert_eq!(leg.lead(|_| [0.0; 3]), HomingStep::Tare([0.0; 3]));
         leg
     }
+}
+
+/// What its first motor may draw.
+fn bounds(settings: &Settings) -> JogBounds<f64> {
+    JogBounds::new(settings, &settings.servos[0])
 }
 
 fn slack(_: [f64; 3]) -> [f64; 3] {
@@ -149,12 +162,34 @@ fn a_motor_that_draws_more_than_any_tension_asks_for_is_named_at_once() {
         for sign in [1.0, -1.0] {
             let mut leg = Leg::tared();
             let i = usize::from(tendon) - 1;
-            leg.measured.currents_a[i] = sign * (CURRENT_MAX_A + 0.01);
+            leg.measured.currents_a[i] = sign * (bounds(&leg.settings).current_max_a + 0.01);
             let begun = leg.ticks;
             assert_eq!(leg.lead(slack), HomingStep::Failed(tendon));
             let time_s = f64::from(leg.ticks - begun) * f64::from(TICK_S);
             assert!((0.029..0.032).contains(&time_s), "{time_s} s");
         }
+    }
+}
+
+/// A dead load cell shows no touch. What the motor draws beyond what it drew while its tendon was slack does.
+#[test]
+fn a_motor_that_draws_more_than_with_a_slack_tendon_is_named() {
+    for (part, fails) in [(0.95, false), (1.05, true)] {
+        let mut leg = Leg::tared();
+        let pull_a = bounds(&leg.settings).pull_max_a;
+        let friction_a = 0.7 * f64::from(leg.settings.servos[0].friction_a);
+        leg.measured.currents_a[0] = friction_a;
+        let begun_m = leg.measured.pulled_m[0];
+        let travel_m = f64::from(leg.settings.homing.travel_m);
+        let release_m = f64::from(leg.settings.homing.release_m);
+        // Slack for most of a step of the release.
+        while leg.measured.pulled_m[0] < begun_m + 0.9 * release_m {
+            leg.advance();
+        }
+        leg.measured.currents_a[0] = friction_a + part * pull_a;
+        assert_eq!(leg.lead(slack), HomingStep::Failed(1));
+        let way_m = leg.measured.pulled_m[0] - begun_m;
+        assert_eq!(way_m < 0.5 * travel_m, fails, "{way_m} m");
     }
 }
 

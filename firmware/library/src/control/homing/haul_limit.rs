@@ -1,0 +1,56 @@
+//! What a motor draws that reels in a tendon: more than its friction and the highest tension of homing ask for is too much.
+
+use crate::control::{JogBounds, bounds};
+use leg_model::Scalar;
+
+/// The most that a motor draws but for moments. By the settings its friction may be half more than they say: on the paper's rig that is
+/// the current of 18 N. What it draws while its tendon is slack is its friction itself.
+#[derive(Clone, Copy, Debug)]
+pub struct HaulLimit<T> {
+    most_a: T,
+    /// What of that the tension asks for, A.
+    pull_a: T,
+}
+
+impl<T: Scalar> HaulLimit<T> {
+    /// By the settings.
+    pub fn new(bounds: &JogBounds<T>) -> Self {
+        Self {
+            most_a: bounds.current_max_a,
+            pull_a: bounds.pull_max_a,
+        }
+    }
+
+    /// Whether a current, A, is too much.
+    #[inline(always)]
+    pub fn exceeded(&self, current_a: T) -> bool {
+        !(current_a.abs() <= self.most_a)
+    }
+
+    /// By what the motor draws while its tendon is slack, A, but no higher than by the settings.
+    pub fn lower(&mut self, slack_a: T) {
+        self.most_a = bounds::min(self.most_a, slack_a.abs() + self.pull_a);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::HaulLimit;
+
+    /// Friction that is more than by the settings allows no more than these.
+    #[test]
+    fn a_limit_is_that_of_the_friction_or_of_the_settings() {
+        for (friction_a, expected_a) in [(0.05, 0.15), (-0.05, 0.15), (0.0, 0.1), (0.25, 0.3)] {
+            let mut limit = HaulLimit {
+                most_a: 0.3,
+                pull_a: 0.1,
+            };
+            limit.lower(friction_a);
+            for sign in [1.0, -1.0] {
+                assert!(!limit.exceeded(sign * (expected_a - 1e-6)));
+                assert!(limit.exceeded(sign * (expected_a + 1e-6)));
+            }
+            assert!(limit.exceeded(f64::NAN));
+        }
+    }
+}
