@@ -239,7 +239,6 @@ fn a_tendon_gives_way_slowly_to_what_is_little_beyond_the_maximum_tension() {
         ],
     );
     require_within(1201, &[(909, "cell_wanders", 0.5)]);
-    require_within(1202, &[(551, "cell_gain_step", 3.0)]);
 }
 
 /// A case that failed once: a move with its load left out took the leg to its maximum tension, so that nothing could strike it.

@@ -189,10 +189,10 @@ fn a_motor_that_fails_in_a_correction_ends_it() {
 }
 
 /// What pulls a tendon above the maximum tension has it paid out: faster than a correction, and the leg comes back as slowly. The push
-/// comes at once, and the tip swings beyond where it rests: by 9.1 mm, or 8.7 mm with a `damping_ratio` of 0.4.
+/// comes at once, and the tip swings beyond where it rests: by 10.8 mm, or 10.9 mm without a brake.
 #[test]
 fn a_push_to_the_maximum_tension_is_given_way_to() {
-    const FARTHEST_MM: f64 = 9.5;
+    const FARTHEST_MM: f64 = 11.0;
     const PUSH_N: f64 = 9.0;
     let mut bench = keeping(&paper(), [60.0, 20.0], 2.0, 24);
     let home_m = bench.truth.tip_m;

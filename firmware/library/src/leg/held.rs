@@ -12,8 +12,11 @@ const BRAKE_S: f32 = 0.15;
 /// slower it is braked.
 const GENTLE_BRAKE_S: f32 = 0.2;
 
-/// The same where a motor may not obey, s: meanwhile the others pull against it. No leg is braked in less.
+/// The same where a motor may not obey, s: meanwhile the others pull against it. No leg on its way is braked in less.
 const SHORT_BRAKE_S: f32 = 0.06;
+
+/// The same of a leg at rest, s: its motors brake its swing, and go on by less than 0.1 mm.
+const REST_BRAKE_S: f32 = 0.04;
 
 /// Part of the maximum tension from which on the tension that is asked of a tendon is near it: a brake adds up to a quarter.
 const NEAR_PART: f32 = 0.8;
@@ -32,7 +35,8 @@ const STANDING_STEP_M: f32 = 1e-5 * TICK_S;
 pub struct Momentum<T> {
     /// How far each goes in a tick, m.
     pub steps_m: [T; 3],
-    /// Ticks in which the path would have ended, if there is one: braked more slowly, the leg would go beyond its end.
+    /// Ticks in which the path would have ended, if there is one: braked more slowly, the leg would go beyond its end. None are left of a
+    /// leg at rest.
     pub ticks_to_end: Option<u32>,
 }
 
@@ -59,8 +63,12 @@ impl<T: Scalar> Held<T> {
             (true, true) => GENTLE_BRAKE_S,
             (true, false) => BRAKE_S,
         };
-        let [ticks, shortest] = [brake_s, SHORT_BRAKE_S].map(ticks);
-        let to_end = momentum.ticks_to_end.unwrap_or(ticks).max(shortest);
+        let [ticks, short, rest] = [brake_s, SHORT_BRAKE_S, REST_BRAKE_S].map(ticks);
+        let to_end = match momentum.ticks_to_end {
+            None => ticks,
+            Some(0) => rest,
+            Some(left) => left.max(short),
+        };
         let ticks = ticks.min(to_end);
         Self {
             steps_m,

@@ -51,11 +51,12 @@ impl<T: Scalar> LengthOffsets<T> {
         station: &mut StationKeeping<T>,
     ) {
         let mut goals_m = if tensioned {
-            let inertia = shared
-                .mechanism
-                .inertia(shared.estimator.likely_payload_kg());
+            let known = shared.mechanism.inertia(shared.estimator.payload_kg());
+            let known_s = first_mode_s(shared, known);
+            shared.estimator.follow_mode(known_s);
+            let likely_kg = shared.estimator.likely_payload_kg();
+            let inertia = shared.mechanism.inertia(likely_kg);
             let time_constant_s = first_mode_s(shared, inertia);
-            shared.estimator.follow_mode(time_constant_s);
             brake_m(shared, inertia, time_constant_s)
         } else {
             [T::zero(); 3]

@@ -136,6 +136,8 @@ impl<T: Scalar> Mode<T> {
             _ => shared.axes.each_ref().map(Axis::moved_m),
         };
         let ticks_to_end = match self {
+            // One at rest has no way to go: it stops what brakes its swing.
+            Self::Active(active) if !active.trajectory.moving() => Some(0),
             Self::Active(active) => active.trajectory.ticks_to_end(),
             _ => None,
         };

@@ -19,7 +19,7 @@ fields! {
         pretension_rate_n_per_s ["N/s"]: 0.1..=1e4 = 120.0;
         /// Time in which the compensation of the load comes and goes.
         load_time_s ["s"]: 1e-3..=60.0 = 0.6;
-        /// Damping ratio that is asked of the tendons for the leg's first mode, of which lag leaves half or more; 0 for none.
+        /// Damping ratio that is asked of the tendons for the leg's first mode; 0 for none.
         damping_ratio ["1"]: 0.0..=0.5 = 0.25;
     }
 }

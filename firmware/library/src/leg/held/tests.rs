@@ -1,24 +1,25 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{BRAKE_S, GENTLE_BRAKE_S, Held, Momentum, SHORT_BRAKE_S};
+use super::{BRAKE_S, GENTLE_BRAKE_S, Held, Momentum, REST_BRAKE_S, SHORT_BRAKE_S};
 use crate::control::{AxisInput, Target, TargetDemand, ticks};
 use crate::leg::shared::{Checked, Shared};
 use crate::settings::Settings;
 use leg_model::Direction;
 use nalgebra::Vector3;
 
-/// A leg is braked in no more time than its way has left, but never at once.
+/// A leg is braked in no more time than its way has left, but never at once; one at rest stops what brakes its swing sooner.
 #[test]
 fn a_brake_ends_where_the_way_would_have() {
     let settings = Settings::table_1().unwrap();
     let shared = Shared::<f64>::new(&settings, Checked::new(&settings).unwrap());
-    let [longest, shortest] = [BRAKE_S, SHORT_BRAKE_S].map(ticks);
+    let [longest, shortest, rest] = [BRAKE_S, SHORT_BRAKE_S, REST_BRAKE_S].map(ticks);
     for (ticks_to_end, expected) in [
         (None, longest),
         (Some(longest + 1), longest),
         (Some(longest - 1), longest - 1),
         (Some(shortest - 1), shortest),
-        (Some(0), shortest),
+        (Some(1), shortest),
+        (Some(0), rest),
     ] {
         let momentum = Momentum {
             steps_m: [1e-6, 0.0, -1e-6],
