@@ -76,6 +76,24 @@ fn a_demand_between_the_ends_of_a_range_that_dips_is_met() {
     assert!((pushed_m / 20.0 - 1.0).abs() < 0.05, "{pushed_m}");
 }
 
+/// The search keeps two pretensions between which the demand is: steps of the secant method alone lead out of the range, or never
+/// end.
+#[test]
+fn every_demand_above_the_softest_of_a_range_that_dips_is_met() {
+    let mut file = table_1();
+    file.f_min_n = 1.0;
+    for tilt_deg in [12.0, 28.0] {
+        let pose = (17.0, tilt_deg, 0.5);
+        let softest = answer(&file, pose, 1.0, None).unwrap();
+        for part in 1..100 {
+            let demand = softest.stiffness_nm_per_rad * (1.0 + 0.02 * f64::from(part));
+            let found = answer(&file, pose, demand, None).unwrap();
+            let off = found.stiffness_nm_per_rad / demand - 1.0;
+            assert!(off.abs() <= 1e-4, "{pose:?}, {demand}: {found:?}");
+        }
+    }
+}
+
 #[test]
 fn at_the_edge_with_2_kg_only_pretensions_from_61_7_to_83_8_are_allowed() {
     let file = table_1();
