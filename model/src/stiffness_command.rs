@@ -10,20 +10,29 @@ use crate::{
 /// Stiffnesses that differ by no more than this part of the demand are equal.
 const TOLERANCE: f32 = 1e-4;
 
-/// Steps after which a search without convergence ends. Stiffness is nearly linear in the pretension: three do as a rule.
-const STEPS_MAX: u8 = 12;
+/// Steps of the false position. Stiffness is nearly linear in the pretension: three do as a rule.
+const FALSE_POSITION_STEPS: u8 = 8;
 
-/// Where the range is probed for a stiffness that comes nearer to the demand inwards: this part of it from the nearer
-/// end.
+/// Steps after which a search without convergence ends. Those after the false position halve the range: 20 of them make a
+/// millionth of it, where the stiffness differs by less than the tolerance.
+const STEPS_MAX: u8 = FALSE_POSITION_STEPS + 20;
+
+/// Where both ends of the range lie on one side of the demand: pretensions between them are tried if the stiffness nears the
+/// demand over this part of the range, from the nearer end.
 const INWARD: f32 = 1.0 / 64.0;
 
-/// It does if it is nearer there by more than this part of the demand. Where the stiffness hardly depends on the
-/// pretension, no pretension is much better than another.
-const CLOSER_BY: f32 = 1e-2;
+/// They are, too, if some tendon softens over this part of it, from the lower end: small, so that a softest point close to the
+/// end is seen, and far above the rounding of f32.
+const A_LITTLE: f32 = 1.0 / 4096.0;
 
-/// Steps in which the range is tried then, and how often, ever nearer to the best.
-const SCAN_STEPS: u8 = 16;
-const SCAN_ROUNDS: u8 = 3;
+/// Steps in which the range is tried, and how often, ever nearer to the best. They shrink to a sixteenth each time: those of
+/// the last round are 5e-7 of the range, and miss the softest point by less than the tolerance.
+const SCAN_STEPS: u8 = 32;
+const SCAN_ROUNDS: u8 = 5;
+
+/// A pretension inside the range that does not meet the demand is the answer if it is nearer by more than this part of the
+/// demand, and only where the stiffness is steep: on a flat top none is much better than another, and rounding would choose.
+const CLEAR_GAIN: f32 = 1e-2;
 
 /// A leg at a pose under a load, whose pretension is still open.
 #[derive(Clone, Copy, Debug)]
@@ -118,8 +127,9 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
     /// The pretension that gives a demanded bending stiffness (N·m/rad) within the bounds on the tensions.
     ///
     /// A tendon with a curve is softest at some tension, so stiffness need not rise all the way. Where both ends of the
-    /// range lie on one side of the demand and the stiffness nears it inwards, pretensions between them are tried, too;
-    /// if none of them crosses the demand, the nearest of them is the answer, with no bound to name.
+    /// range lie on one side of the demand, and the stiffness nears it inwards or a tendon softens there, pretensions
+    /// between them are tried, too; if none of them meets the demand but one is clearly nearer than the ends, it is the
+    /// answer, with no bound to name.
     ///
     /// # Errors
     /// A demand that is not finite or not positive; [`Error::Infeasible`] if no pretension keeps the bounds; those of
@@ -141,16 +151,17 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
         );
         let below = Trial::new(low, self.stiffness_at(low, axis)?, demand);
         let above = Trial::new(high, self.stiffness_at(high, axis)?, demand);
-        if (below.error > T::zero()) == (above.error > T::zero()) {
-            return self.nearest_end(below, above, demand, axis, bounds);
+        if below.encloses(&above) {
+            let met = self.search(below, above, demand, axis)?;
+            return Ok(met.answer(demand, None));
         }
-        self.search(below, above, demand, axis)
+        self.nearest(below, above, demand, axis, bounds)
     }
 
-    /// Both ends of the range lie on one side of the demand: the nearer one is the answer unless the stiffness nears the
-    /// demand from there inwards.
+    /// Both ends of the range lie on one side of the demand: the nearer one is the answer unless a pretension between them
+    /// meets the demand or is clearly nearer.
     #[inline(always)]
-    fn nearest_end(
+    fn nearest(
         &self,
         below: Trial<T>,
         above: Trial<T>,
@@ -164,19 +175,45 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
         } else {
             (above, below, highest)
         };
-        let inward = end.pretension + (other.pretension - end.pretension) * T::from(INWARD);
-        let inside = Trial::new(inward, self.stiffness_at(inward, axis)?, demand);
-        if inside.error.abs() + T::from(CLOSER_BY) * demand < end.error.abs() {
-            return self.scan(end, other, demand, axis);
+        let pretension = end.pretension + (other.pretension - end.pretension) * T::from(INWARD);
+        let inward = Trial::new(pretension, self.stiffness_at(pretension, axis)?, demand);
+        let gain = end.gain(&inward);
+        let softens = end.error > T::zero() && self.softens()?;
+        if !(softens || gain > T::zero() || end.encloses(&inward)) {
+            return Ok(end.answer(demand, Some(limit)));
         }
-        Ok(StiffnessAnswer {
-            pretension_n: end.pretension,
-            stiffness_nm_per_rad: demand + end.error,
-            limit: Some(limit),
-        })
+        let inside = self.scan(end, other, demand, axis)?;
+        let clear_gain = T::from(CLEAR_GAIN) * demand;
+        let steep = softens || gain > clear_gain;
+        if inside.meets(demand) || steep && end.gain(&inside) > clear_gain {
+            Ok(inside.answer(demand, None))
+        } else {
+            Ok(end.answer(demand, Some(limit)))
+        }
     }
 
-    /// Tries pretensions from one end of the range to the other, then more of them around the nearest.
+    /// Whether some tendon is softer at a little more than the lowest pretension. The leg may then be softest anywhere
+    /// between the ends, or at several pretensions: each tendon has its own tension.
+    #[inline(always)]
+    fn softens(&self) -> Result<bool, Error> {
+        let (lowest, highest) = (
+            self.distribution.pretension_min,
+            self.distribution.pretension_max,
+        );
+        let before = self.distribution.tensions(lowest);
+        let after = self
+            .distribution
+            .tensions(lowest + (highest - lowest) * T::from(A_LITTLE));
+        for (i, tendon) in self.tendons.iter().enumerate() {
+            if tendon.stiffness(after[i])? < tendon.stiffness(before[i])? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Tries pretensions from one end of the range to the other, then more of them around the nearest: one that meets the
+    /// demand, or the nearest.
     #[cold]
     #[inline(never)]
     fn scan(
@@ -185,7 +222,7 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
         end: Trial<T>,
         demand: T,
         axis: &BendingAxis<T>,
-    ) -> Result<StiffnessAnswer<T>, Error> {
+    ) -> Result<Trial<T>, Error> {
         let steps = T::from(f32::from(SCAN_STEPS));
         let (lowest, highest) = (
             self.distribution.pretension_min,
@@ -198,7 +235,7 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
             for _ in 0..SCAN_STEPS {
                 let pretension = clamp(last.pretension + step, lowest, highest);
                 let next = Trial::new(pretension, self.stiffness_at(pretension, axis)?, demand);
-                if (next.error > T::zero()) != (last.error > T::zero()) {
+                if next.encloses(&last) {
                     return self.search(last, next, demand, axis);
                 }
                 if next.error.abs() < nearest.error.abs() {
@@ -211,15 +248,12 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
             start = Trial::new(pretension, self.stiffness_at(pretension, axis)?, demand);
             step = (step + step) / steps;
         }
-        Ok(StiffnessAnswer {
-            pretension_n: nearest.pretension,
-            stiffness_nm_per_rad: demand + nearest.error,
-            limit: None,
-        })
+        Ok(nearest)
     }
 
     /// Between two pretensions whose stiffnesses enclose the demand: the false position, the end that stays weighed less
-    /// each time (after Anderson and Björck, 1973).
+    /// each time (after Anderson and Björck, 1973). It creeps where the slope jumps, as at the softest points of the tendons:
+    /// then halving, which is sure to end.
     #[inline(always)]
     fn search(
         &self,
@@ -227,24 +261,23 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
         mut last: Trial<T>,
         demand: T,
         axis: &BendingAxis<T>,
-    ) -> Result<StiffnessAnswer<T>, Error> {
-        for _ in 0..STEPS_MAX {
-            let slope = last.error - kept.error;
-            let pretension =
-                last.pretension - last.error * (last.pretension - kept.pretension) / slope;
+    ) -> Result<Trial<T>, Error> {
+        for step in 0..STEPS_MAX {
+            let part = if step < FALSE_POSITION_STEPS {
+                last.error / (last.error - kept.error)
+            } else {
+                T::HALF
+            };
+            let pretension = last.pretension - part * (last.pretension - kept.pretension);
             let next = Trial::new(pretension, self.stiffness_at(pretension, axis)?, demand);
-            if next.error.abs() <= T::from(TOLERANCE) * demand {
-                return Ok(StiffnessAnswer {
-                    pretension_n: pretension,
-                    stiffness_nm_per_rad: demand + next.error,
-                    limit: None,
-                });
+            if next.meets(demand) {
+                return Ok(next);
             }
-            if (next.error > T::zero()) == (last.error > T::zero()) {
+            if next.encloses(&last) {
+                kept = last;
+            } else {
                 let left = T::one() - next.error / last.error;
                 kept.error *= if left > T::zero() { left } else { T::HALF };
-            } else {
-                kept = last;
             }
             last = next;
         }
@@ -276,6 +309,33 @@ impl<T: Scalar> Trial<T> {
         Self {
             pretension,
             error: stiffness - demand,
+        }
+    }
+
+    /// Whether the demand is between its stiffness and another's.
+    #[inline(always)]
+    fn encloses(&self, other: &Self) -> bool {
+        (self.error > T::zero()) != (other.error > T::zero())
+    }
+
+    /// How much nearer to the demand another one is.
+    #[inline(always)]
+    fn gain(&self, other: &Self) -> T {
+        self.error.abs() - other.error.abs()
+    }
+
+    /// Whether its stiffness is the demanded one.
+    #[inline(always)]
+    fn meets(&self, demand: T) -> bool {
+        self.error.abs() <= T::from(TOLERANCE) * demand
+    }
+
+    #[inline(always)]
+    fn answer(&self, demand: T, limit: Option<Limit>) -> StiffnessAnswer<T> {
+        StiffnessAnswer {
+            pretension_n: self.pretension,
+            stiffness_nm_per_rad: demand + self.error,
+            limit,
         }
     }
 }

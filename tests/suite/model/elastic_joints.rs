@@ -2,7 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_model::{Direction, JointStiffness, Query, Support, SupportKind, Twist, evaluate, printed};
+use leg_model::{
+    Direction, JointStiffness, Load, Query, Rig, Support, SupportKind, TensionBounds, Twist,
+    elastic_torsion, estimate_load, evaluate, inverse_statics, printed,
+};
 use leg_rig::rig_file::RigFile;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
@@ -157,6 +160,40 @@ fn deviation(support: Support<f64>) -> (f64, f64, [f64; 2]) {
         found.torsion_rad,
         found.tensions_n[..2].try_into().unwrap(),
     )
+}
+
+/// What the bent joint takes is no part of the load.
+#[test]
+fn the_load_of_the_tensions_that_hold_a_leg_is_the_one_that_they_hold() {
+    let file = RigFile::load(None).unwrap();
+    let rig = Rig::new(&file.parameters).unwrap();
+    let support = support(SupportKind::ElasticUniversal);
+    let bounds = TensionBounds::new(0.0, 300.0).unwrap();
+    for (azimuth, tilt) in [(0.0, 10.0), (40.0, 25.0), (200.0, 30.0)] {
+        let direction = pointing(azimuth, tilt);
+        let load = Load::new(&rig, 1.0).unwrap().moment(&direction);
+        let held = inverse_statics(
+            &rig,
+            &support,
+            &direction,
+            &load,
+            &bounds,
+            &file.tendons,
+            100.0,
+        )
+        .unwrap();
+        let torsion = elastic_torsion(&rig, &support, &direction, &load, &bounds, 100.0).unwrap();
+        let twist = support
+            .twist(&direction)
+            .composed(&Twist::from_torsion(torsion));
+        let geometry = rig.geometry().twisted(&twist);
+        let found =
+            estimate_load(&geometry, &support, &direction, torsion, &held.tensions).unwrap();
+        let plane = support.plane(&direction);
+        for (found, held) in plane.project(&found).into_iter().zip(plane.project(&load)) {
+            assert!((found - held).abs() < 1e-12, "{found} {held} N·m");
+        }
+    }
 }
 
 /// Asserts that two deviations agree within the first bound, their torsions and tensions within the second.

@@ -82,6 +82,30 @@ fn a_notch_bears_at_least_what_is_reported() {
     }
 }
 
+/// The bound of the page of `critical_n`, 2/∫|z|/EI dz, by a sum over the neck, in series with the shear of its thinnest place.
+#[test]
+fn a_notch_bears_what_the_mean_of_its_compliance_says() {
+    const CELLS: i32 = 4000;
+    for thickness_m in [0.25e-3, 1e-3, 4e-3] {
+        let (radius_m, width_m) = (0.005, 0.012);
+        let notch = Notch {
+            radius_m,
+            thickness_m,
+            width_m,
+        };
+        let h = radius_m / f64::from(CELLS);
+        let half = (0..CELLS).map(|i| {
+            let z = (f64::from(i) + 0.5) * h;
+            let thickness = thickness_m + 2.0 * (radius_m - (radius_m.powi(2) - z * z).sqrt());
+            z * 12.0 / (STEEL.youngs_modulus_pa * width_m * thickness.powi(3)) * h
+        });
+        let bent = 1.0 / half.sum::<f64>();
+        let sheared = STEEL.shear_modulus_pa * width_m * thickness_m / 1.2;
+        let off = notch.critical_n(&STEEL) * (1.0 / bent + 1.0 / sheared) - 1.0;
+        assert!(off.abs() < 1e-3, "{thickness_m}: {off}");
+    }
+}
+
 #[test]
 fn a_material_that_shears_no_more_easily_than_it_stretches_is_refused() {
     for shear_modulus_pa in [206e9, 300e9] {

@@ -261,6 +261,22 @@ fn flexures_outside_their_formulas_are_refused() {
         Quantity::FlexureWidth,
         Reason::NotSlender,
     );
+    // It is bent to the radius L/θ, and as far as half of its thickness from the middle.
+    let length_m = |strain: f64| 0.5 * 0.2e-3 * TILT / strain;
+    let bent = |strain| {
+        let leaf = Leaf {
+            length_m: length_m(strain),
+            width_m: 5e-3,
+            ..square
+        };
+        leaf.universal(SPACING_M, &brittle, TILT)
+    };
+    assert!(bent(0.99 * brittle.strain_max).is_ok());
+    refused(
+        bent(1.01 * brittle.strain_max),
+        Quantity::StrainLimit,
+        Reason::Exceeded,
+    );
     let no_spacing = Rod {
         length_m: 0.02,
         diameter_m: 0.002,

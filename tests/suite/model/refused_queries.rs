@@ -4,8 +4,9 @@
 
 use crate::common::constant_tendons;
 use leg_model::{
-    Direction, Error, Load, Quantity, Query, Reason, Rig, RigParameters, StiffnessAt, SupportKind,
-    Tendon, TendonStates, TensionBounds, evaluate, evaluate_for_map, full_pass,
+    Direction, Error, Load, MapEvaluation, Quantity, Query, Reason, Rig, RigParameters,
+    StiffnessAt, SupportKind, Tendon, TendonStates, TensionBounds, evaluate, evaluate_for_map,
+    full_pass,
 };
 use nalgebra::Vector3;
 
@@ -202,6 +203,28 @@ fn a_tendon_whose_ends_meet_is_named_as_collapsed() {
     let states = TendonStates::new(Vector3::repeat(70.0), Vector3::repeat(1e5)).unwrap();
     let deflection = full_pass(&rig, &direction, &load, &states).deflection;
     assert_eq!(deflection.map(|_| ()), Err(Error::TendonCollapsed));
+}
+
+/// To the last bit, so that a map and the pose that it shows say the same.
+#[test]
+fn a_map_shows_what_the_evaluation_of_a_pose_says() {
+    let rig = Rig::new(&TABLE_1).unwrap();
+    for kind in [
+        SupportKind::TorsionFree,
+        SupportKind::Universal,
+        SupportKind::Spherical,
+    ] {
+        let query = query(kind);
+        let evaluated = evaluate(&TABLE_1, &query).unwrap();
+        let mapped = evaluate_for_map(&rig, &query).unwrap();
+        let shown = MapEvaluation {
+            pretension_range_n: evaluated.pretension_range_n,
+            tensions_n: Ok(evaluated.tensions_n),
+            deviation_m: Ok(evaluated.deviation_m),
+            bending_stiffness_nm_per_rad: Ok(evaluated.bending_stiffness_nm_per_rad),
+        };
+        assert_eq!(mapped, shown, "{kind:?}");
+    }
 }
 
 /// The range of pretensions is that of the middle of the bounds where nothing holds the leg's twist at the asked one.

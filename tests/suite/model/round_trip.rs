@@ -140,6 +140,16 @@ fn least_residual(lengths: &Vector3<f64>, near: &Direction<f64>) -> f64 {
     (lengths_at(&p) - lengths).norm()
 }
 
+/// The step that shows that nothing is left to go is counted.
+#[test]
+fn a_search_from_the_direction_itself_takes_one_step() {
+    let rig = rig();
+    let direction = Direction::from_angles(0.7, 0.4).unwrap();
+    let kinematics = inverse_kinematics(rig.geometry(), &direction).unwrap();
+    let found = forward_kinematics(rig.geometry(), &kinematics.lengths, &direction).unwrap();
+    assert_eq!(found.steps, 1);
+}
+
 #[test]
 fn lengths_that_are_not_positive_are_refused() {
     let refused = Err(Error::Refused {

@@ -76,6 +76,112 @@ fn a_demand_between_the_ends_of_a_range_that_dips_is_met() {
     assert!((pushed_m / 20.0 - 1.0).abs() < 0.05, "{pushed_m}");
 }
 
+/// The search keeps two pretensions between which the demand is: steps of the secant method alone lead out of the range, or never
+/// end.
+#[test]
+fn every_demand_above_the_softest_of_a_range_that_dips_is_met() {
+    let mut file = table_1();
+    file.f_min_n = 1.0;
+    for tilt_deg in [12.0, 28.0] {
+        let pose = (17.0, tilt_deg, 0.5);
+        let softest = answer(&file, pose, 1.0, None).unwrap();
+        for part in 1..100 {
+            let demand = softest.stiffness_nm_per_rad * (1.0 + 0.02 * f64::from(part));
+            let found = answer(&file, pose, demand, None).unwrap();
+            let off = found.stiffness_nm_per_rad / demand - 1.0;
+            assert!(off.abs() <= 1e-4, "{pose:?}, {demand}: {found:?}");
+        }
+    }
+}
+
+/// The softest stiffness in a pose, N·m/rad, with each tendon at its own tension, and the range of pretensions, N.
+fn softest(
+    file: &RigFile,
+    (azimuth_deg, tilt_deg, payload_kg): (f64, f64, f64),
+    pretension_n: f64,
+) -> (f64, [f64; 2]) {
+    let query = Query {
+        pretension_n,
+        stiffness_at: leg_model::StiffnessAt::Tension,
+        ..file.query(azimuth_deg, tilt_deg, payload_kg)
+    };
+    let found = evaluate(&file.parameters, &query).unwrap();
+    let [softest, _] = found.bending_stiffness_nm_per_rad;
+    (softest, found.pretension_range_n)
+}
+
+/// Both ends of the range are stiffer, and a few newtons above the lower one the leg is softer: the demand is between.
+#[test]
+fn a_demand_slightly_below_the_stiffness_at_the_lowest_pretension_is_met() {
+    let mut file = table_1();
+    file.f_min_n = 1.0;
+    let found = answer(&file, (17.0, 0.0, 0.5), 25.0, None).unwrap();
+    let off = found.stiffness_nm_per_rad / 25.0 - 1.0;
+    assert!(off.abs() <= 1e-4, "{found:?}");
+    assert_eq!(found.limit, None);
+}
+
+/// The stiffness has corners, where the tendons are softest: there the false position alone creeps.
+#[test]
+fn a_search_over_the_corners_of_the_stiffness_ends() {
+    const DEMAND: f64 = 22.155_744_724_242_32;
+    let mut file = table_1();
+    file.f_min_n = 1.0;
+    let found = answer(&file, (17.0, 20.0, 0.5), DEMAND, None).unwrap();
+    let off = found.stiffness_nm_per_rad / DEMAND - 1.0;
+    assert!(off.abs() <= 1e-4, "{found:?}");
+    assert_eq!(found.limit, None);
+}
+
+/// Whatever is demanded is answered, and what lies between the softest and the stiffest of the range is met.
+#[test]
+fn what_some_pretension_gives_is_met_at_every_floor() {
+    const SAMPLES: u32 = 200;
+    let mut file = table_1();
+    for floor_n in [0.5, 1.0, 2.0, 4.0, 6.0, 8.0] {
+        file.f_min_n = floor_n;
+        for azimuth_deg in [0.0, 17.0, 45.0, 250.0] {
+            for (tilt_deg, payload_kg) in [
+                (0.0, 0.5),
+                (5.0, 0.5),
+                (12.0, 1.0),
+                (20.0, 0.5),
+                (28.0, 0.0),
+            ] {
+                let pose = (azimuth_deg, tilt_deg, payload_kg);
+                let (_, [low, high]) = softest(&file, pose, file.pretension_n);
+                let samples = (0..=SAMPLES).map(|i| {
+                    let part = f64::from(i) / f64::from(SAMPLES);
+                    softest(&file, pose, low + part * (high - low)).0
+                });
+                let (least, most) = samples.fold((f64::MAX, 0.0_f64), |(least, most), given| {
+                    (least.min(given), most.max(given))
+                });
+                for percent in -20..=120 {
+                    // More of the demands are near the softest, where the stiffness falls and rises again.
+                    let part = f64::from(percent) / 100.0;
+                    let demand = least + part * part.abs() * (most - least);
+                    if demand <= 0.0 {
+                        continue;
+                    }
+                    let found = answer(&file, pose, demand, None).unwrap();
+                    // Beyond them, an end is the answer unless a pretension is nearer by a hundredth.
+                    let nearest = (demand.clamp(least, most) - demand).abs();
+                    let allowed = if nearest == 0.0 { 1e-4 } else { 1e-2 };
+                    let off = (found.stiffness_nm_per_rad - demand).abs();
+                    assert!(
+                        off <= nearest + allowed * demand,
+                        "{floor_n}, {pose:?}, {demand}: {found:?}"
+                    );
+                    let (given, _) = softest(&file, pose, found.pretension_n);
+                    let told = found.stiffness_nm_per_rad;
+                    assert!((told / given - 1.0).abs() < 1e-9, "{given}: {found:?}");
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn at_the_edge_with_2_kg_only_pretensions_from_61_7_to_83_8_are_allowed() {
     let file = table_1();

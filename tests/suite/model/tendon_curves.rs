@@ -56,6 +56,24 @@ fn below_zero_a_curve_goes_on_in_a_straight_line() {
     }
 }
 
+/// Two tendons one after the other are one of twice the length, two beside each other one of twice the section.
+#[test]
+fn a_tendon_of_another_length_or_section_is_several_of_the_first() {
+    let curve = |length_ratio, section_ratio| {
+        let scale = |point: CurvePoint<f64>| point.scaled(length_ratio, section_ratio);
+        Tendon::curve(&CurvePoint::<f64>::PAPER.map(scale)).unwrap()
+    };
+    let (one, long, thick) = (curve(1.0, 1.0), curve(2.0, 1.0), curve(1.0, 2.0));
+    for tension_n in [0.0, 3.0, 30.0, 70.0] {
+        let elongation = one.elongation(tension_n).unwrap();
+        let stiffness = one.stiffness(tension_n).unwrap();
+        for (other, ratio) in [(&long, 2.0), (&thick, 0.5)] {
+            assert_eq!(other.elongation(tension_n), Ok(ratio * elongation));
+            assert_eq!(other.stiffness(tension_n), Ok(stiffness / ratio));
+        }
+    }
+}
+
 /// Also where the curve is as steep at both ends, and as flat between them, as one may be: Newton's steps alone would not come
 /// to an end there.
 #[test]

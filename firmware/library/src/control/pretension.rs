@@ -157,3 +157,24 @@ impl<T: Scalar> PretensionSearch<T> {
         self.unreachable = wanted < lowest || wanted > highest;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::PretensionSearch;
+
+    /// What is asked for beyond a bound is called unreachable, below as above, and what is within them is not.
+    #[test]
+    fn a_demand_beyond_either_bound_is_unreachable() {
+        let bounds_n @ [lowest_n, highest_n] = [60.0, 80.0];
+        for (demand, unreachable) in [(59.0, true), (70.0, false), (81.0, true)] {
+            let mut search = PretensionSearch::<f64>::new(70.0);
+            for _ in 0..20 {
+                // As stiff as it is taut.
+                let pretension_n = search.pretension_n.clamp(lowest_n, highest_n);
+                search.search(pretension_n, pretension_n, demand, bounds_n);
+                (search.last_pretension_n, search.last_stiffness) = (pretension_n, pretension_n);
+            }
+            assert_eq!(search.unreachable(), unreachable, "{demand}");
+        }
+    }
+}

@@ -149,3 +149,25 @@ fn spacing(before: u32, now: u32, tick: u32) -> Result<u32, PointRefusal> {
     }
     Ok(ticks)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{AHEAD_MAX_TICKS, PointRefusal, SPACING_MIN_TICKS, spacing};
+
+    /// Also where the count of ticks wraps meanwhile.
+    #[test]
+    fn a_point_of_the_past_is_late_and_one_of_a_far_future_early() {
+        let late = Err(PointRefusal::Late);
+        for now in [0, 1_000_000, u32::MAX - SPACING_MIN_TICKS, u32::MAX] {
+            let in_ticks = |ticks: u32| spacing(now, now, now.wrapping_add(ticks));
+            for past in [0, 1, AHEAD_MAX_TICKS, i32::MAX.unsigned_abs()] {
+                assert_eq!(spacing(now, now, now.wrapping_sub(past)), late, "{past}");
+            }
+            assert_eq!(in_ticks(SPACING_MIN_TICKS - 1), Err(PointRefusal::Order));
+            for ticks in [SPACING_MIN_TICKS, AHEAD_MAX_TICKS] {
+                assert_eq!(in_ticks(ticks), Ok(ticks));
+            }
+            assert_eq!(in_ticks(AHEAD_MAX_TICKS + 1), Err(PointRefusal::Early));
+        }
+    }
+}

@@ -295,3 +295,31 @@ impl<T: Scalar> Trajectory<T> {
         None
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::{AHEAD, LONGEST_S, Trajectory};
+    use crate::control::{MotionLimits, Stream, StreamLimits};
+    use crate::settings::Settings;
+    use leg_model::HalfTangent;
+
+    /// It is given up as a whole: none is begun that would be cut off.
+    #[test]
+    fn a_way_that_takes_too_long_is_not_begun() {
+        let mut settings = Settings::table_1().unwrap();
+        settings.motion.speed_rad_per_s = 1e-4;
+        let limits = MotionLimits::<f64>::new(&settings.motion);
+        for (part, begins) in [(0.9, true), (1.1, false)] {
+            let mut trajectory = Trajectory::new(limits, HalfTangent::new(0.0, 0.0));
+            let mut stream = Stream::new(StreamLimits::new(&settings));
+            let per_s = 1.0 / limits.shortest_s(&trajectory.path.motion(1.0), [1.0, 0.0]);
+            trajectory.go(HalfTangent::new(part * f64::from(LONGEST_S) * per_s, 0.0));
+            for _ in 0..=AHEAD {
+                trajectory.advance_plan(&mut stream);
+                trajectory.step();
+            }
+            assert_eq!(trajectory.moving(), begins, "{part}");
+        }
+    }
+}

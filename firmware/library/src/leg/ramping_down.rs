@@ -99,10 +99,13 @@ fn slack_m<T: Scalar>(shared: &Shared<T>) -> Option<[T; 3]> {
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::{RampingDown, goals};
+    use crate::control::LoadEstimation;
     use crate::control::{CYCLE_TICKS, Measured};
     use crate::leg::phase::Phase;
     use crate::leg::shared::{Checked, Shared};
     use crate::settings::Settings;
+    use leg_model::nalgebra::Vector3;
+    use leg_model::{Direction, inverse_kinematics};
 
     fn shared() -> Shared<f64> {
         let settings = Settings::table_1().unwrap();
@@ -139,6 +142,40 @@ mod tests {
                 let takes_s = travels[0] * travel_m / shared.limits.ramp_m_per_s;
                 assert!((goal.speed_m_per_s * takes_s - expected_m).abs() < 1e-9);
                 assert!(time_s <= takes_s);
+            }
+        }
+    }
+
+    /// Has the leg's estimator find it at a lean, degrees.
+    fn lean(shared: &mut Shared<f64>, azimuth_deg: f64, tilt_deg: f64) {
+        let [azimuth, tilt] = [azimuth_deg, tilt_deg].map(f64::to_radians);
+        let direction = Direction::from_angles(azimuth, tilt).unwrap();
+        let (mechanism, mut twisted) = (&shared.mechanism, None);
+        let geometry = mechanism.geometry(&direction, 0.0, &mut twisted);
+        let lengths = inverse_kinematics(geometry, &direction).unwrap().lengths;
+        let (slack, still) = (LoadEstimation::Slack, Vector3::zeros());
+        let (estimator, lengths) = (&mut shared.estimator, lengths.into());
+        let found = estimator.update(mechanism, &lengths, &[0.0; 3], 0.0, slack, &still);
+        found.unwrap();
+    }
+
+    /// Its tendons would not be slack where those of a hanging leg are.
+    #[test]
+    fn a_leg_that_leans_any_way_is_paid_out_by_the_travel() {
+        let mut shared = shared();
+        let zero_m = [0.2; 3];
+        shared.zero_m = Some(zero_m);
+        let mut rest_m = zero_m;
+        for (rest, length) in rest_m.iter_mut().zip(shared.limits.slack_lengths_m) {
+            *rest += 0.5 * shared.limits.relax_travel_m - length;
+        }
+        for azimuth_deg in [0.0, 45.0, 90.0, 200.0] {
+            for (tilt_deg, part) in [(0.9, 0.5), (1.1, 1.0), (30.0, 1.0)] {
+                lean(&mut shared, azimuth_deg, tilt_deg);
+                for (goal, rest) in goals(&shared, rest_m, true).iter().zip(rest_m) {
+                    let off_m = rest - goal.pulled_m - part * shared.limits.relax_travel_m;
+                    assert!(off_m.abs() < 1e-9, "{azimuth_deg}°, {tilt_deg}°: {off_m} m");
+                }
             }
         }
     }

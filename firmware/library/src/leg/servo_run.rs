@@ -244,9 +244,35 @@ impl<T: Scalar> Sine<T> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{SINE_SETTLE_S, ServoResponse, Sine};
+    use super::{SINE_SETTLE_S, ServoResponse, ServoRun, Sine};
     use crate::control::ticks;
+    use crate::leg::shared::{Checked, Shared};
+    use crate::settings::Settings;
+
+    /// Both ways: what a motor lacks of its travel is no overshoot.
+    #[test]
+    fn the_overshoot_of_a_step_is_what_goes_beyond_its_travel() {
+        let settings = Settings::table_1().unwrap();
+        let mut shared = Shared::<f64>::new(&settings, Checked::new(&settings).unwrap());
+        let start_m = 0.01;
+        for travel_m in [1e-4, -1e-4_f32] {
+            let mut run = ServoRun::step_by(travel_m, start_m, 1.0);
+            for (part, most) in [(0.0, 0.0), (0.5, 0.0), (1.25, 0.25), (0.9, 0.25)] {
+                let pulled_m = start_m + part * f64::from(travel_m);
+                run.step(&mut shared.axes[0], pulled_m, 24.0);
+                let ServoResponse::Step { overshoot_m, .. } = run.response() else {
+                    panic!("no step");
+                };
+                let expected_m = most * f64::from(travel_m.abs());
+                assert!(
+                    (overshoot_m - expected_m).abs() < 1e-12,
+                    "{travel_m} {part}"
+                );
+            }
+        }
+    }
 
     /// A voltage that is known comes back by its parts, whatever constant and drift it has.
     #[test]

@@ -13,3 +13,27 @@ impl Leg<f64> {
         }
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::{Drive, Leg};
+    use crate::control::Measured;
+    use crate::settings::Settings;
+
+    /// Of each motor by itself, at the supply that was measured.
+    #[test]
+    fn a_shadow_goes_on_from_the_voltages_that_the_motors_had() {
+        let mut leg = Leg::<f64>::new(&Settings::table_1().unwrap()).unwrap();
+        let measured = Measured::resting([0.0; 3], [1.0; 3]);
+        leg.measured = Some(measured);
+        let duty = [0.25, -0.5, 0.0];
+        leg.adopt_drive(&Drive {
+            duty,
+            enabled: true,
+        });
+        for (axis, duty) in leg.shared.axes.iter().zip(duty) {
+            assert_eq!(axis.applied().voltage_v, duty * measured.supply_v);
+        }
+    }
+}

@@ -138,6 +138,40 @@ fn no_start_leads_anywhere_while_a_fault_is_latched() {
     }
 }
 
+/// A leg that moves is held, a motor that turns alone is switched off; what does not move goes on as it was.
+#[test]
+fn a_stop_ends_every_motion() {
+    for (state, stopped) in [
+        (State::Homing, Some(State::Held)),
+        (State::Active, Some(State::Held)),
+        (State::KeepingStation, Some(State::Held)),
+        (State::Jogging, Some(State::Disarmed)),
+        (State::Disarmed, None),
+        (State::RampingDown, None),
+        (State::Off, None),
+    ] {
+        assert_eq!(state.next(Event::Stop), stopped, "{state:?}");
+    }
+}
+
+/// Its tendons would pull against the motor.
+#[test]
+fn a_motor_turns_alone_on_a_disarmed_leg_only() {
+    for state in [
+        State::Boot,
+        State::Disarmed,
+        State::Homing,
+        State::Active,
+        State::KeepingStation,
+        State::Held,
+        State::RampingDown,
+        State::Off,
+    ] {
+        let jogging = (state == State::Disarmed).then_some(State::Jogging);
+        assert_eq!(state.next(Event::Jog), jogging, "{state:?}");
+    }
+}
+
 /// What holds the leg does not keep it from a more severe reaction.
 #[test]
 fn a_held_leg_is_let_down_or_switched_off_by_a_more_severe_fault() {

@@ -1,6 +1,6 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{Estimator, LoadEstimation};
+use super::{Estimator, LoadEstimation, torsion_m_per_rad};
 use crate::control::Mechanism;
 use crate::settings::Settings;
 use leg_model::nalgebra::Vector3;
@@ -87,6 +87,22 @@ fn a_push_that_twists_a_leg_moves_neither_the_pose_nor_the_length_error() {
         );
         assert!(estimate.length_error.unwrap().mean_m.abs() < 1e-8);
     }
+}
+
+/// The search for the torsion goes by it: a slope of another size takes too long a step, or too short a one.
+#[test]
+fn the_moment_about_a_hanging_leg_is_that_of_its_tendons() {
+    let mut settings = Settings::table_1().unwrap();
+    settings.support = SupportKind::Spherical;
+    let mechanism = Mechanism::<f64>::new(&settings).unwrap();
+    let down = Direction::straight_down();
+    let torsion = 1e-3;
+    let mut twisted = None;
+    let geometry = mechanism.geometry(&down, torsion, &mut twisted);
+    let moment_map = inverse_kinematics(geometry, &down).unwrap().moment_map;
+    let mean_m = (moment_map.transpose() * down.vector()).sum() / 3.0;
+    let off = f64::from(torsion_m_per_rad(&settings)) * torsion / mean_m.abs() - 1.0;
+    assert!(off.abs() < 1e-4, "{off}");
 }
 
 /// A push on a leg with a fast mode is taken up as the settings say; the first of the two filters is slower by as much as a mode is.

@@ -156,6 +156,20 @@ fn a_tendon_that_is_not_taut_within_its_travel_is_named() {
 }
 
 /// Whichever way it is driven, and whichever tendon is reeled in.
+/// Those before it are found meanwhile.
+#[test]
+fn whichever_tendon_does_not_become_taut_is_named() {
+    for tendon in 1..=3_u8 {
+        let mut leg = Leg::tared();
+        let taut_from_1_mm = |pulled_m: [f64; 3]| {
+            let mut tensions_n = pulled_m.map(|pulled| 1e4 * (pulled - 1e-3).max(0.0));
+            tensions_n[usize::from(tendon) - 1] = 0.0;
+            tensions_n
+        };
+        assert_eq!(leg.lead(taut_from_1_mm), HomingStep::Failed(tendon));
+    }
+}
+
 #[test]
 fn a_motor_that_draws_more_than_any_tension_asks_for_is_named_at_once() {
     for tendon in 1..=3_u8 {

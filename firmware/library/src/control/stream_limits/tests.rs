@@ -51,6 +51,32 @@ fn a_path_that_is_too_fast_is_refused_by_the_limit_that_it_leaves() {
     }
 }
 
+/// From a steady motion it comes to rest ever more slowly; one that speeds up goes on to do so at first.
+#[test]
+fn a_motion_that_comes_to_rest_too_fast_is_refused() {
+    let limits = StreamLimits::<f64>::new(&Settings::table_1().unwrap());
+    let Peaks {
+        rate, acceleration, ..
+    } = limits.peaks;
+    let too_fast = Err(PointRefusal::Limit(MotionLimit::Speed));
+    for (part, acceleration, expected) in [
+        (0.99, 0.0, Ok(())),
+        (1.01, 0.0, too_fast),
+        (0.99, acceleration, too_fast),
+    ] {
+        let motion = MotionState {
+            rate: [part * rate, 0.0],
+            acceleration: [acceleration, 0.0],
+            ..MotionState::resting([0.0; 2])
+        };
+        assert_eq!(
+            limits.keeps_to_rest(&motion),
+            expected,
+            "{part} {acceleration}"
+        );
+    }
+}
+
 #[test]
 fn a_path_out_of_reach_is_refused() {
     let limits = limits(NONE, NONE, NONE);

@@ -19,9 +19,14 @@ struct Jog {
 
 impl Jog {
     fn new(travel_m: f32) -> Self {
+        Self::with_tensions(travel_m, |_| 1.0)
+    }
+
+    /// Begins at tensions that may depend on the settings, N.
+    fn with_tensions(travel_m: f32, tension_n: impl Fn(&Shared<f64>) -> f64) -> Self {
         let settings = Settings::table_1().unwrap();
         let mut shared = Shared::new(&settings, Checked::new(&settings).unwrap());
-        let measured = Measured::resting([0.01, 0.02, 0.03], [1.0; 3]);
+        let measured = Measured::resting([0.01, 0.02, 0.03], [tension_n(&shared); 3]);
         let demand = JogDemand {
             motor: 2,
             travel_m,
@@ -121,6 +126,24 @@ fn a_jog_ends_by_a_current_that_lasts() {
         }
         jog.jogging.step(&mut jog.shared, &jog.measured);
         assert_eq!(jog.report().end, end);
+    }
+}
+
+/// Tendons that pull already may be paid out, and not pulled in; a cell that shows more by what touches a tendon ends it.
+#[test]
+fn a_jog_of_taut_tendons_ends_by_a_cell_that_shows_more() {
+    let taut_n = |shared: &Shared<f64>| 2.0 * shared.limits.homing_f_max_n;
+    for (travel_m, touches, end) in [
+        (-5e-3, 0.0, JogEnd::Running),
+        (-5e-3, 0.9, JogEnd::Running),
+        (-5e-3, 1.1, JogEnd::Tension(3)),
+        (5e-3, 0.0, JogEnd::Tension(1)),
+    ] {
+        let mut jog = Jog::with_tensions(travel_m, taut_n);
+        let more_n = touches * f64::from(jog.shared.limits.homing.touch_n);
+        jog.measured.steady_tensions_n[2] += more_n;
+        jog.turn();
+        assert_eq!(jog.report().end, end, "{travel_m} {touches}");
     }
 }
 
