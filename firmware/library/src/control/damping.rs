@@ -46,11 +46,14 @@ const RINGS_DOWN: f32 = 0.7;
 const SWINGING_STEPS: u16 = (1.2 / STEP_S) as u16;
 
 /// A swing that is this many times as large as its mean, as squares, grows: one that stays is twice as large where it is fastest.
-const GROWS: f32 = 2.2;
+const GROWS: f32 = 3.0;
 
-/// A step in which the swing grows counts for so many: two load cells on each other's tendon have the brake drive the swing, which grows
-/// tenfold in 0.7 s. After a push the mean follows within a quarter of a second.
-const GROWING_STEPS: u16 = 4;
+/// Steps after which the mean has followed a swing that has begun so far that no more than growth makes it exceed that.
+const FOLLOWED_STEPS: u16 = (MEAN_S / STEP_S) as u16;
+
+/// A step in which the swing grows counts for so many from then on: two load cells on each other's tendon have the brake drive the swing,
+/// which grows tenfold in 0.7 s.
+const GROWING_STEPS: u16 = 6;
 
 /// Brakes the swing, and finds one that does not end.
 #[derive(Clone, Copy, Debug)]
@@ -125,7 +128,8 @@ impl<T: Scalar> SwingDamping<T> {
             0
         } else {
             let grows = square > self.mean_square * T::from(GROWS);
-            let steps = if grows { GROWING_STEPS } else { 1 };
+            let followed = self.swinging_steps > FOLLOWED_STEPS;
+            let steps = if grows && followed { GROWING_STEPS } else { 1 };
             self.swinging_steps.saturating_add(steps)
         };
     }

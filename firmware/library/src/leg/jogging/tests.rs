@@ -132,7 +132,7 @@ fn a_jog_ends_by_a_current_that_lasts() {
 /// Tendons that pull already may be paid out, and not pulled in; a cell that shows more by what touches a tendon ends it.
 #[test]
 fn a_jog_of_taut_tendons_ends_by_a_cell_that_shows_more() {
-    let taut_n = |shared: &Shared<f64>| 2.0 * shared.limits.homing_f_max_n;
+    let taut_n = |shared: &Shared<f64>| 2.0 * f64::from(shared.limits.homing.f_max_n);
     for (travel_m, touches, end) in [
         (-5e-3, 0.0, JogEnd::Running),
         (-5e-3, 0.9, JogEnd::Running),
