@@ -3,21 +3,26 @@
 use crate::control::{JogBounds, bounds};
 use leg_model::Scalar;
 
+/// Part of the friction by the settings by which that of a motor may be more than it was: behind a slow gear the highest tension of homing
+/// takes a few hundredths of an ampere, less than what friction changes by.
+const FRICTION_SPREAD: f32 = 0.5;
+
 /// The most that a motor draws but for moments. By the settings its friction may be half more than they say: on the paper's rig that is
 /// the current of 18 N. What it draws while its tendon is slack is its friction itself.
 #[derive(Clone, Copy, Debug)]
 pub struct HaulLimit<T> {
     most_a: T,
-    /// What of that the tension asks for, A.
+    /// What of that the tension asks for, or friction changes by, A.
     pull_a: T,
 }
 
 impl<T: Scalar> HaulLimit<T> {
     /// By the settings.
-    pub fn new(bounds: &JogBounds<T>) -> Self {
+    pub fn new(jog: &JogBounds<T>) -> Self {
+        let friction_a = jog.current_max_a - jog.pull_max_a;
         Self {
-            most_a: bounds.current_max_a,
-            pull_a: bounds.pull_max_a,
+            most_a: jog.current_max_a,
+            pull_a: bounds::max(jog.pull_max_a, friction_a * T::from(FRICTION_SPREAD)),
         }
     }
 
