@@ -111,10 +111,35 @@ impl<'a, T: Scalar, E: Elasticity<T>, const N: usize> StiffnessCommand<'a, T, E,
     /// A tension beyond a tendon's curve; [`Error::Unstable`].
     #[inline(always)]
     pub fn bending_at(&self, pretension: T) -> Result<Bending<T>, Error> {
-        let mut total = self.base.plus_scaled(&self.per_pretension, pretension);
+        self.bending_with(pretension, &self.tendon_stiffnesses(pretension)?)
+    }
+
+    /// The stiffness of each tendon at its own tension, N/m, at a pretension in N.
+    ///
+    /// # Errors
+    /// A tension beyond a tendon's curve.
+    #[inline(always)]
+    pub fn tendon_stiffnesses(&self, pretension: T) -> Result<[T; N], Error> {
         let tensions = self.distribution.tensions(pretension);
+        let mut stiffnesses = [T::zero(); N];
         for (i, tendon) in self.tendons.iter().enumerate() {
-            let stiffness = tendon.stiffness(tensions[i])?;
+            stiffnesses[i] = tendon.stiffness(tensions[i])?;
+        }
+        Ok(stiffnesses)
+    }
+
+    /// The stiffness against tilts at a pretension in N, with tendons of these stiffnesses, N/m.
+    ///
+    /// # Errors
+    /// [`Error::Unstable`].
+    #[inline(always)]
+    pub fn bending_with(
+        &self,
+        pretension: T,
+        stiffnesses_n_per_m: &[T; N],
+    ) -> Result<Bending<T>, Error> {
+        let mut total = self.base.plus_scaled(&self.per_pretension, pretension);
+        for (i, &stiffness) in stiffnesses_n_per_m.iter().enumerate() {
             total.add_square(&self.kinematics.moment_map, i, stiffness);
         }
         if self.twists {

@@ -23,6 +23,7 @@ mod stream;
 mod stream_limits;
 mod swing_speed;
 mod target;
+mod tendon_damping;
 mod trajectory;
 mod unloaded;
 
@@ -33,6 +34,7 @@ pub use estimate::{Estimate, Estimator, LengthError, LoadEstimate, LoadEstimatio
 pub use filter::LowPass;
 pub use friction::{FRICTION_ALLOWANCE, Friction, PULL_ALLOWANCE};
 pub use homing::{HaulLimit, HomingSequence, HomingStep};
+pub use inertia::Turn;
 pub use jog_bounds::{JOG_RISE_S, JOG_TIME_MAX_S, JogBounds, step_range_m};
 pub use magnitude::{Applied, Magnitude, SHOWN_PART};
 pub use measure::{Measured, Measurement, ZERO_READINGS};

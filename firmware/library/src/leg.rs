@@ -22,7 +22,7 @@ mod station;
 
 pub use command_queue::CommandOutcome;
 
-use crate::control::{Axis, LoadEstimation, Magnitude, Measured, Measurement};
+use crate::control::{Axis, LoadEstimation, Magnitude, Measured, Measurement, Turn};
 use crate::drive::Drive;
 use crate::jog::JogEnd;
 use crate::sensors::Sensors;
@@ -34,7 +34,6 @@ use command_queue::CommandQueue;
 use leg_model::{Error, Scalar};
 use link_watch::LinkWatch;
 use mode::{Mode, ModeStep, Trust};
-use nalgebra::Vector3;
 use phase::Phase;
 pub use shared::Checked;
 use shared::Shared;
@@ -203,14 +202,13 @@ impl<T: Scalar> Leg<T> {
             Mode::Boot { .. } | Mode::Disarmed | Mode::Off => {}
         }
         // The estimate goes on although nothing uses it, so that the leg starts from where it is.
-        if self.phase == Phase::Estimate
-            && shared.zero_m.is_some()
-            && shared
-                .estimate(measured, LoadEstimation::Immediate, &Vector3::zeros())
-                .is_err()
-        {
-            // The last pose stands, but nothing is compared with it.
-            shared.estimate = None;
+        if self.phase == Phase::Estimate && shared.zero_m.is_some() {
+            shared.targets.rest();
+            let found = shared.estimate(measured, LoadEstimation::Immediate, &Turn::none());
+            if found.is_err() {
+                // The last pose stands, but nothing is compared with it.
+                shared.estimate = None;
+            }
         }
         step
     }

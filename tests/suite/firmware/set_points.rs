@@ -31,6 +31,7 @@ impl Bench {
         Self {
             trajectory: Trajectory::new(
                 MotionLimits::new(&settings.motion),
+                0.0,
                 HalfTangent::new(0.0, 0.0),
             ),
             stream: Stream::new(StreamLimits::new(&settings)),

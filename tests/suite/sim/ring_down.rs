@@ -9,6 +9,7 @@ use leg_firmware::command::Command;
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::supervisor::State;
 use leg_model::{StiffnessAt, evaluate};
+use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Start;
 use nalgebra::Vector3;
@@ -135,7 +136,8 @@ fn drawn(rig: &RigFile, rng: &mut Rng) -> (Stand, Leg) {
     /// Room for the push and for the payload that is hung on, N and kg.
     const ROOM: (f64, f64) = (8.0, 0.5);
     loop {
-        let pose_deg @ [azimuth_deg, tilt_deg] = [360.0 * rng.f64(), 30.0 * rng.f64()];
+        let tilt_max_deg = rig.tilt_deg.min(30.0);
+        let pose_deg @ [azimuth_deg, tilt_deg] = [360.0 * rng.f64(), tilt_max_deg * rng.f64()];
         let payload_kg = 1.5 * rng.f64();
         let query = rig.query(azimuth_deg, tilt_deg, payload_kg + ROOM.1);
         let [low, high] = evaluate(&rig.parameters, &query)
@@ -283,4 +285,22 @@ fn a_leg_that_is_not_braked_rings_on() {
         assert!(ratios[ratios.len() / 2] < 0.07);
     }
     assert!(found.last_m > REST_M);
+}
+
+/// The same of the legs with other supports.
+#[test]
+fn a_leg_with_any_support_rings_down() {
+    const SEEDS: [u64; 1] = [29];
+    const COUNT: u32 = 5;
+    let mut counted = 0;
+    for ready in &READY_RIGS[1..] {
+        let rig = RigFile::load(Some(ready.name.as_ref())).unwrap();
+        let found = ring_downs(&rig, &SEEDS, COUNT);
+        let ratios = found.ratios.iter().flatten();
+        assert!(ratios.clone().all(|&ratio| ratio >= 0.2), "{}", ready.name);
+        assert!(found.fast_s.iter().all(|&tenth_s| tenth_s <= 0.4));
+        assert!(found.last_m < REST_M, "{}: {} m", ready.name, found.last_m);
+        counted += ratios.count() + found.fast_s.len();
+    }
+    assert!(counted >= 4 * (READY_RIGS.len() - 1), "{counted}");
 }

@@ -12,7 +12,7 @@ use nalgebra::SVector;
 /// unstable by itself at a gain of one. It is kept to this part, so that the tendons may be damped three times as much as is assumed.
 const TENDON_LOOP: f32 = 0.3;
 
-/// The damping of a tendon that is assumed, N·s/m: that of the simulated leg.
+/// The least damping of a tendon that is assumed for that, N·s/m: that of the simulated leg.
 const TENDON_N_S_PER_M: f32 = 200.0;
 
 /// Angular frequency up to which the mode gets the whole damping ratio, rad/s: 8 Hz. Above it, it rings down fast by less.
@@ -80,7 +80,8 @@ impl<T: Scalar> SwingDamping<T> {
         // that of one at the mean lever.
         let anchors = &settings.rig.leg_anchors_m;
         let squares: f32 = anchors.iter().map(|[x, y]| x * x + y * y).sum();
-        let tendons_nm_s = 0.5 * squares * TENDON_N_S_PER_M;
+        let tendon_n_s_per_m = motion.tendon_damping_n_s_per_m.max(TENDON_N_S_PER_M);
+        let tendons_nm_s = 0.5 * squares * tendon_n_s_per_m;
         Self {
             tendons: None,
             twice_ratio: T::from(2.0 * motion.damping_ratio),

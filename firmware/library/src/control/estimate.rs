@@ -4,6 +4,7 @@ use super::{
     CYCLE_S, Mechanism,
     bounds::{clamp_symmetric, max, min},
     filter::LowPass,
+    inertia::Turn,
     payload_estimate::PayloadEstimate,
 };
 use crate::settings::Settings;
@@ -205,6 +206,12 @@ impl<T: Scalar> Estimator<T> {
         max(self.payload.kg, T::zero())
     }
 
+    /// The payload whose inertia is moved, kg: by what may be hidden more than what is known.
+    #[inline(always)]
+    pub fn moved_kg(&self) -> T {
+        self.payload.moved_kg()
+    }
+
     /// The payload that the brake of the swing is made for, kg: by a standard deviation more than what is known of it. Near the vertical
     /// nothing shows a payload, and one of 1 kg makes the mode of a bare leg half as fast. `tests/suite/sim/ring_down.rs` holds it.
     #[inline(always)]
@@ -213,8 +220,8 @@ impl<T: Scalar> Estimator<T> {
     }
 
     /// Estimates the pose and, as `load_estimation` says, the load. `target_torsion`, rad, is the elastic one of a leg whose
-    /// tendons are slack; taut ones show it by themselves. What the motion of the leg takes, by its `angular_acceleration` in 1/s², is
-    /// no load.
+    /// tendons are slack; taut ones show it by themselves. The tendons are
+    /// longer than their tensions stretch them by `damped_m`, and what the leg's `turn` takes is no load.
     ///
     /// # Errors
     /// A tension beyond a tendon's curve; what forward kinematics refuses.
@@ -226,14 +233,15 @@ impl<T: Scalar> Estimator<T> {
         tensions_n: &[T; 3],
         target_torsion: T,
         load_estimation: LoadEstimation,
-        angular_acceleration: &Vector3<T>,
+        damped_m: &[T; 3],
+        turn: &Turn<T>,
     ) -> Result<Estimate<T>, Error> {
         let (mut lengths, mut pull) = (SVector::<T, 3>::zeros(), SVector::<T, 3>::zeros());
         let mut elongations_m = [T::zero(); 3];
         for (i, tendon) in mechanism.tendons.iter().enumerate() {
             // A slack tendon is as long as it is; noise does not make it push.
             pull[i] = max(tensions_n[i], T::zero());
-            elongations_m[i] = tendon.elongation(pull[i])?;
+            elongations_m[i] = tendon.elongation(pull[i])? + damped_m[i];
             lengths[i] = unstretched_m[i] + elongations_m[i];
         }
         let slack = load_estimation == LoadEstimation::Slack;
@@ -266,7 +274,7 @@ impl<T: Scalar> Estimator<T> {
                     self.update_torsion(&load, &pull);
                 }
                 if load_estimation != LoadEstimation::Frozen {
-                    self.update_load(mechanism, &load, angular_acceleration, load_estimation);
+                    self.update_load(mechanism, &load, turn, load_estimation);
                 }
             }
         }
@@ -288,23 +296,24 @@ impl<T: Scalar> Estimator<T> {
         self.torsion += clamp_symmetric(step, T::from(TORSION_CYCLE_RAD));
     }
 
-    /// By the load, N·m, of a leg that turns with an angular acceleration, 1/s².
+    /// By the load, N·m, of a leg that turns.
     #[inline(always)]
     fn update_load(
         &mut self,
         mechanism: &Mechanism<T>,
         load: &Vector3<T>,
-        angular_acceleration: &Vector3<T>,
+        turn: &Turn<T>,
         load_estimation: LoadEstimation,
     ) {
         let (direction, support) = (&self.direction, &mechanism.support);
         let plane = support.plane(direction);
         let [x, y] = plane.project(load);
-        let [x_turn, y_turn] = plane.project(angular_acceleration);
+        let [x_turn, y_turn] = plane.project(&turn.acceleration);
+        let [x_damping, y_damping] = plane.project(&turn.damping);
         let (own, down) = (mechanism.leg.moment(direction), direction.vector());
         let excess = [
-            x - own.x + x_turn * mechanism.leg_inertia,
-            y - own.y + y_turn * mechanism.leg_inertia,
+            x - own.x + x_turn * mechanism.leg_inertia + x_damping,
+            y - own.y + y_turn * mechanism.leg_inertia + y_damping,
         ];
         // A weight at the tip turns the leg about (−p_y, p_x), the more the further it leans, and resists its acceleration.
         let per_kg = [

@@ -30,6 +30,8 @@ pub struct PretensionSearch<T> {
     last_pretension_n: T,
     last_stiffness: T,
     mean_stiffness: T,
+    /// Those of the tendons, N/m.
+    tendon_stiffnesses: [T; 3],
     /// Stiffness per pretension.
     slope: T,
     unreachable: bool,
@@ -44,6 +46,7 @@ impl<T: Scalar> PretensionSearch<T> {
             last_pretension_n: T::zero(),
             last_stiffness: T::zero(),
             mean_stiffness: T::zero(),
+            tendon_stiffnesses: [T::MAX; 3],
             slope: T::one(),
             unreachable: false,
         }
@@ -84,6 +87,12 @@ impl<T: Scalar> PretensionSearch<T> {
         self.mean_stiffness
     }
 
+    /// Stiffness of each tendon at that pretension, N/m.
+    #[inline(always)]
+    pub fn tendon_stiffnesses_n_per_m(&self) -> &[T; 3] {
+        &self.tendon_stiffnesses
+    }
+
     /// Whether the bounds on the tensions stop the search short of the demand.
     #[inline(always)]
     pub fn unreachable(&self) -> bool {
@@ -121,7 +130,8 @@ impl<T: Scalar> PretensionSearch<T> {
             target.distribution.pretension_max,
         );
         let pretension = min(max(self.pretension_n, lowest), highest);
-        let bending = command.bending_at(pretension)?;
+        self.tendon_stiffnesses = command.tendon_stiffnesses(pretension)?;
+        let bending = command.bending_with(pretension, &self.tendon_stiffnesses)?;
         let stiffness = bending.stiffness_about(&axis)?;
         self.mean_stiffness = bending.mean();
         if let Some(demand) = demand {

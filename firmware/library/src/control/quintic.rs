@@ -136,29 +136,33 @@ impl<T: Scalar> Quintic<T> {
         })
     }
 
-    /// Position, rate and acceleration at a part of the time.
+    /// Position, rate and acceleration at a part of the time, by dividing the polynomial three times by its distance from there: the
+    /// remainders are position, slope and half of the bend.
     #[inline(always)]
     pub fn motion(&self, part: T) -> MotionState<T> {
         let per_second = T::one() / self.duration_s;
-        let number = |value: f32| T::from(value);
+        let bend_per_s2 = T::TWO * per_second * per_second;
+        let coordinate = |[c0, c1, c2, c3, c4, c5]: [T; 6]| {
+            let first4 = c4 + part * c5;
+            let first3 = c3 + part * first4;
+            let first2 = c2 + part * first3;
+            let first1 = c1 + part * first2;
+            let position = c0 + part * first1;
+            let second4 = first4 + part * c5;
+            let second3 = first3 + part * second4;
+            let second2 = first2 + part * second3;
+            let slope = first1 + part * second2;
+            let third4 = second4 + part * c5;
+            let third3 = second3 + part * third4;
+            let half_bend = second2 + part * third3;
+            (position, slope * per_second, half_bend * bend_per_s2)
+        };
+        let [(x, x_rate, x_acceleration), (y, y_rate, y_acceleration)] =
+            self.coefficients.map(coordinate);
         MotionState {
-            position: self.position(part),
-            rate: self.coefficients.map(|[_, c1, c2, c3, c4, c5]| {
-                let slope = c1
-                    + part
-                        * (T::TWO * c2
-                            + part
-                                * (number(3.0) * c3
-                                    + part * (number(4.0) * c4 + part * number(5.0) * c5)));
-                slope * per_second
-            }),
-            acceleration: self.coefficients.map(|[_, _, c2, c3, c4, c5]| {
-                let bend = T::TWO * c2
-                    + part
-                        * (number(6.0) * c3
-                            + part * (number(12.0) * c4 + part * number(20.0) * c5));
-                bend * per_second * per_second
-            }),
+            position: [x, y],
+            rate: [x_rate, y_rate],
+            acceleration: [x_acceleration, y_acceleration],
         }
     }
 

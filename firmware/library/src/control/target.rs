@@ -3,6 +3,8 @@
 use super::{
     CYCLE_S, LoadEstimate, Mechanism,
     bounds::{clamp_symmetric, max, min},
+    inertia::Turn,
+    tendon_damping::TendonDamping,
 };
 use crate::settings::Settings;
 use leg_model::{
@@ -22,8 +24,6 @@ pub struct Target<T> {
     pub direction: Direction<T>,
     /// Its elastic torsion there, rad.
     pub torsion: T,
-    /// The angular acceleration there, 1/s².
-    pub angular_acceleration: Vector3<T>,
     /// Lengths and moments of the tendons there.
     pub kinematics: Kinematics<T, 3>,
     /// The tensions that balance the load there.
@@ -51,17 +51,18 @@ pub struct TargetGenerator<T> {
     share: T,
     share_step: T,
     torsion: Torsion<T>,
+    damping: TendonDamping<T>,
 }
 
 /// What a target is made for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TargetDemand<T> {
+pub struct TargetDemand<'a, T> {
     /// The pose.
     pub q: HalfTangent<T>,
     /// The load beyond the leg's own weight.
     pub load: LoadEstimate<T>,
-    /// The angular acceleration there, 1/s².
-    pub angular_acceleration: Vector3<T>,
+    /// How the leg turns there.
+    pub turn: &'a Turn<T>,
     /// The payload whose inertia is moved, kg.
     pub payload_kg: T,
     /// Whether the weights shall be held, or left out.
@@ -84,6 +85,7 @@ impl<T: Scalar> TargetGenerator<T> {
             share: T::zero(),
             share_step: T::from(CYCLE_S / settings.motion.load_time_s),
             torsion: Torsion::new(),
+            damping: TendonDamping::new(settings),
         }
     }
 
@@ -91,6 +93,7 @@ impl<T: Scalar> TargetGenerator<T> {
     pub fn start(&mut self, compensated: bool) {
         self.pretension_n = None;
         self.trim_n = T::zero();
+        self.damping.rest();
         self.share = if compensated { T::one() } else { T::zero() };
     }
 
@@ -105,6 +108,23 @@ impl<T: Scalar> TargetGenerator<T> {
         self.torsion.angle
     }
 
+    /// By how much each tendon is longer than its tension stretches it, m: it has not followed that yet.
+    #[inline(always)]
+    pub fn damped_m(&self) -> &[T; 3] {
+        self.damping.damped_m()
+    }
+
+    /// A leg at rest: nothing is damped.
+    pub fn rest(&mut self) {
+        self.damping.rest();
+    }
+
+    /// Takes the stiffnesses of the tendons from now on, N/m.
+    #[inline(always)]
+    pub fn set_stiffnesses(&mut self, stiffnesses_n_per_m: &[T; 3]) {
+        self.damping.set_stiffnesses(stiffnesses_n_per_m);
+    }
+
     /// The next target; `measured_n` are the tensions now.
     ///
     /// # Errors
@@ -114,7 +134,7 @@ impl<T: Scalar> TargetGenerator<T> {
     pub fn next(
         &mut self,
         mechanism: &Mechanism<T>,
-        demand: &TargetDemand<T>,
+        demand: &TargetDemand<'_, T>,
         measured_n: &[T; 3],
     ) -> Result<Target<T>, Error> {
         let direction = demand.q.direction();
@@ -129,7 +149,8 @@ impl<T: Scalar> TargetGenerator<T> {
         let load = mechanism.leg.moment(&direction) + Vector3::new(x, y, T::zero());
         moment += load * self.step_share(demand.compensated);
         let held = moment;
-        moment -= demand.angular_acceleration * mechanism.inertia(demand.payload_kg);
+        moment -= demand.turn.acceleration * mechanism.inertia(demand.payload_kg);
+        moment -= demand.turn.damping;
         let distribution = distribute(&kinematics.moment_map, &plane, &moment, &mechanism.bounds)?;
         // At the edge of what the bounds allow, a motion may take more for a moment; the pose itself has to be held within them.
         let feasible = distribution.feasible();
@@ -152,16 +173,20 @@ impl<T: Scalar> TargetGenerator<T> {
             T::zero()
         };
         let stretched = distribution.tensions(pretension_n + trimmed);
-        let mut unstretched_m = [T::zero(); 3];
+        let mut unstretched_m = <[T; 3]>::from(kinematics.lengths);
         let mut tensions_n = [T::zero(); 3];
+        let mut elongations_m = [T::zero(); 3];
         for (i, tendon) in mechanism.tendons.iter().enumerate() {
             tensions_n[i] = tensions[i];
-            unstretched_m[i] = kinematics.lengths[i] - tendon.elongation(stretched[i])?;
+            elongations_m[i] = tendon.elongation(stretched[i])?;
+        }
+        let damped = self.damping.step(&elongations_m);
+        for (unstretched, &elongation) in unstretched_m.iter_mut().zip(damped) {
+            *unstretched -= elongation;
         }
         Ok(Target {
             direction,
             torsion,
-            angular_acceleration: demand.angular_acceleration,
             kinematics,
             distribution,
             pretension_n,

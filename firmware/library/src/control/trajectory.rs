@@ -1,13 +1,13 @@
 //! Where the leg shall be at any time: jerk-limited paths through half-tangent coordinates, which are smooth at the
 //! vertical.
 
+use super::inertia::Turn;
 use super::plan::{LONGEST_S, MotionLimits, PLACES, SHORTEST_S, cycles, longer};
 use super::quintic::{MotionState, Quintic};
 use super::segment::Segment;
 use super::stream::Stream;
 use super::{CYCLE_S, CYCLE_TICKS};
 use leg_model::{HalfTangent, Scalar};
-use nalgebra::Vector3;
 
 /// A point of the trajectory.
 pub type Point<T> = HalfTangent<T>;
@@ -16,6 +16,8 @@ pub type Point<T> = HalfTangent<T>;
 #[derive(Clone, Copy, Debug)]
 pub struct Trajectory<T> {
     limits: MotionLimits<T>,
+    /// Damping of the joint, N·m·s/rad.
+    joint_damping: T,
     path: Quintic<T>,
     /// Ticks since its start, and from there to its end. A segment of a stream may start within the next cycle: then the first are
     /// negative.
@@ -28,9 +30,9 @@ pub struct Trajectory<T> {
     /// Whether the last stream ended without its last point, and nothing was commanded since.
     point_missing: bool,
     planned: Option<Plan<T>>,
-    /// The next point, and the angular acceleration there, 1/s².
+    /// The next point, and how the leg turns there.
     next: [T; 2],
-    angular_acceleration: Vector3<T>,
+    turn: Turn<T>,
 }
 
 /// Ticks of a cycle.
@@ -71,11 +73,12 @@ enum End<T> {
 }
 
 impl<T: Scalar> Trajectory<T> {
-    /// At rest at a point.
-    pub fn new(limits: MotionLimits<T>, start: Point<T>) -> Self {
+    /// At rest at a point, on a joint with a damping, N·m·s/rad.
+    pub fn new(limits: MotionLimits<T>, joint_damping: T, start: Point<T>) -> Self {
         let start = start.xy();
         Self {
             limits,
+            joint_damping,
             path: Quintic::new(&MotionState::resting(start), start, T::one()),
             elapsed: 0,
             duration: 0,
@@ -84,7 +87,7 @@ impl<T: Scalar> Trajectory<T> {
             point_missing: false,
             planned: None,
             next: start,
-            angular_acceleration: Vector3::zeros(),
+            turn: Turn::none(),
         }
     }
 
@@ -93,7 +96,7 @@ impl<T: Scalar> Trajectory<T> {
         self.path = Quintic::new(&MotionState::resting(q.xy()), q.xy(), T::one());
         (self.elapsed, self.duration) = (0, 0);
         (self.streamed, self.begins, self.planned) = (false, false, None);
-        (self.next, self.angular_acceleration) = (q.xy(), Vector3::zeros());
+        (self.next, self.turn) = (q.xy(), Turn::none());
     }
 
     /// Rests at another point; where it shall lead stays.
@@ -197,13 +200,13 @@ impl<T: Scalar> Trajectory<T> {
         }
         let motion = self.next_motion();
         self.next = motion.position;
-        self.angular_acceleration = motion.angular_acceleration();
+        self.turn = motion.turn(self.joint_damping);
     }
 
-    /// The angular acceleration p × p̈ at the next point, 1/s².
+    /// How the leg turns at the next point.
     #[inline(always)]
-    pub fn angular_acceleration(&self) -> Vector3<T> {
-        self.angular_acceleration
+    pub fn turn(&self) -> &Turn<T> {
+        &self.turn
     }
 
     /// Enters the next segment if the next point is in it: without one, that to rest.
@@ -311,7 +314,7 @@ mod tests {
         settings.motion.speed_rad_per_s = 1e-4;
         let limits = MotionLimits::<f64>::new(&settings.motion);
         for (part, begins) in [(0.9, true), (1.1, false)] {
-            let mut trajectory = Trajectory::new(limits, HalfTangent::new(0.0, 0.0));
+            let mut trajectory = Trajectory::new(limits, 0.0, HalfTangent::new(0.0, 0.0));
             let mut stream = Stream::new(StreamLimits::new(&settings));
             let per_s = 1.0 / limits.shortest_s(&trajectory.path.motion(1.0), [1.0, 0.0]);
             trajectory.go(HalfTangent::new(part * f64::from(LONGEST_S) * per_s, 0.0));

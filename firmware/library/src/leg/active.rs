@@ -13,7 +13,6 @@ use crate::control::{
 use crate::set_point::{PointRefusal, SetPoint, StreamPart};
 use crate::supervisor::{Fault, FaultSet, SETTLE_CYCLES};
 use leg_model::{Direction, Error, Scalar};
-use nalgebra::Vector3;
 
 /// The leg follows commands.
 #[derive(Clone, Copy, Debug)]
@@ -55,7 +54,11 @@ impl<T: Scalar> Active<T> {
         let unloaded =
             (taut && !compensated).then(|| Unloaded::search(loaded, &measured.steady_tensions_n));
         Self {
-            trajectory: Trajectory::new(shared.limits.motion, loaded.half_tangent()),
+            trajectory: Trajectory::new(
+                shared.limits.motion,
+                shared.limits.joint_damping,
+                loaded.half_tangent(),
+            ),
             commanded: None,
             tensioned: false,
             disarming: false,
@@ -234,10 +237,7 @@ impl<T: Scalar> Active<T> {
             self.tensioned =
                 self.slack.taken_up() && tensions_n.iter().all(|&tension| tension > least_n);
         }
-        let angular_acceleration = shared
-            .target
-            .map_or(Vector3::zeros(), |target| target.angular_acceleration);
-        shared.estimate(measured, load_estimation, &angular_acceleration)
+        shared.estimate(measured, load_estimation, self.trajectory.turn())
     }
 
     /// Computes the next target, and leads the axes there.
@@ -253,8 +253,8 @@ impl<T: Scalar> Active<T> {
         let taut = self.slack.taken_up();
         let demand = TargetDemand {
             q: self.trajectory.step(),
-            angular_acceleration: self.trajectory.angular_acceleration(),
-            payload_kg: shared.estimator.payload_kg(),
+            turn: self.trajectory.turn(),
+            payload_kg: shared.estimator.moved_kg(),
             load: shared.estimator.load(),
             compensated: shared.compensation != Compensation::Off,
             trimmed: shared.compensation == Compensation::Estimated && self.tensioned,
@@ -337,14 +337,14 @@ impl<T: Scalar> Active<T> {
 /// One step of the search for the pretension, at the last target.
 #[inline(never)]
 fn search_pretension<T: Scalar>(shared: &mut Shared<T>) -> Result<(), Error> {
-    match &shared.target {
-        Some(target) => {
-            shared
-                .pretension
-                .step(&shared.mechanism, target, shared.estimator.payload_kg())
-        }
-        None => Ok(()),
+    if let Some(target) = &shared.target {
+        let payload_kg = shared.estimator.payload_kg();
+        let search = &mut shared.pretension;
+        search.step(&shared.mechanism, target, payload_kg)?;
+        let stiffnesses = search.tendon_stiffnesses_n_per_m();
+        shared.targets.set_stiffnesses(stiffnesses);
     }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -99,12 +99,10 @@ fn slack_m<T: Scalar>(shared: &Shared<T>) -> Option<[T; 3]> {
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::{RampingDown, goals};
-    use crate::control::LoadEstimation;
-    use crate::control::{CYCLE_TICKS, Measured};
+    use crate::control::{CYCLE_TICKS, LoadEstimation, Measured, Turn};
     use crate::leg::phase::Phase;
     use crate::leg::shared::{Checked, Shared};
     use crate::settings::Settings;
-    use leg_model::nalgebra::Vector3;
     use leg_model::{Direction, inverse_kinematics};
 
     fn shared() -> Shared<f64> {
@@ -153,9 +151,11 @@ mod tests {
         let (mechanism, mut twisted) = (&shared.mechanism, None);
         let geometry = mechanism.geometry(&direction, 0.0, &mut twisted);
         let lengths = inverse_kinematics(geometry, &direction).unwrap().lengths;
-        let (slack, still) = (LoadEstimation::Slack, Vector3::zeros());
+        let (slack, still) = (LoadEstimation::Slack, Turn::none());
         let (estimator, lengths) = (&mut shared.estimator, lengths.into());
-        let found = estimator.update(mechanism, &lengths, &[0.0; 3], 0.0, slack, &still);
+        let found = estimator.update(
+            mechanism, &lengths, &[0.0; 3], 0.0, slack, &[0.0; 3], &still,
+        );
         found.unwrap();
     }
 

@@ -5,14 +5,13 @@ use crate::command::Compensation;
 use crate::control::{
     Axis, AxisInput, CYCLE_TICKS, Estimate, Estimator, Friction, JogBounds, LoadEstimation,
     Measured, Mechanism, MotionLimits, Play, PretensionSearch, Stream, StreamLimits, SwingDamping,
-    Target, TargetGenerator, bounds, ticks,
+    Target, TargetGenerator, Turn, bounds, ticks,
 };
 use crate::drive::Drive;
 use crate::jog::JogReport;
 use crate::settings::{CurrentOutputs, Homing, Settings, SettingsError};
 use crate::supervisor::State;
 use leg_model::{Direction, Error, Scalar, inverse_kinematics};
-use nalgebra::Vector3;
 
 /// The control law's state that outlasts a mode.
 ///
@@ -65,6 +64,8 @@ const GIVE_PART: f32 = 1.0 / (2.5 * 2.5);
 #[derive(Clone, Copy, Debug)]
 pub struct LegLimits<T> {
     pub motion: MotionLimits<T>,
+    /// Damping of the joint, N·m·s/rad.
+    pub joint_damping: T,
     pub homing: Homing,
     pub ramp_m_per_s: T,
     pub relax_travel_m: T,
@@ -100,6 +101,7 @@ impl<T: Scalar> LegLimits<T> {
                 .map(|servo| JogBounds::new(settings, servo)),
             slack_lengths_m: (hanging_m.add_scalar(T::from(SLACK_M))).into(),
             motion: MotionLimits::new(&settings.motion),
+            joint_damping: settings.motion.joint_damping_nm_s_per_rad.into(),
             homing: settings.homing,
             ramp_m_per_s: limits.ramp_m_per_s.into(),
             relax_travel_m: limits.relax_travel_m.into(),
@@ -223,13 +225,13 @@ impl<T: Scalar> Shared<T> {
         Some(unstretched_m)
     }
 
-    /// Estimates pose and load of a leg that shall turn with an angular acceleration, 1/s².
+    /// Estimates pose and load of a leg that shall turn so.
     #[inline(never)]
     pub fn estimate(
         &mut self,
         measured: &Measured<T>,
         load_estimation: LoadEstimation,
-        angular_acceleration: &Vector3<T>,
+        turn: &Turn<T>,
     ) -> Result<(), Error> {
         let Some(unstretched_m) = self.unstretched_m(measured) else {
             return Err(Error::NotConverged);
@@ -240,7 +242,8 @@ impl<T: Scalar> Shared<T> {
             &measured.steady_tensions_n,
             self.targets.torsion(),
             load_estimation,
-            angular_acceleration,
+            self.targets.damped_m(),
+            turn,
         )?;
         self.estimate = Some(estimate);
         Ok(())

@@ -9,7 +9,7 @@ const STEP_S: f32 = 2.0 * CYCLE_S;
 
 /// Fastest correction at the tip of a leg that hangs straight down, m/s; at a tilt of 30° it is up to 2 mm/s, for the levers of the
 /// tendons are shorter there.
-const TIP_M_PER_S: f32 = 1.9e-3;
+const TIP_M_PER_S: f32 = 1.87e-3;
 
 /// What would move the tip by less is not corrected, m: meanwhile the motors rest on their screws.
 const TIP_DEAD_BAND_M: f32 = 3e-5;

@@ -21,6 +21,10 @@ fields! {
         load_time_s ["s"]: 1e-3..=60.0 = 0.6;
         /// Damping ratio that is asked of the tendons for the leg's first mode; 0 for none.
         damping_ratio ["1"]: 0.0..=0.5 = 0.25;
+        /// Damping of the leg's joint, which a motion has to overcome.
+        joint_damping_nm_s_per_rad ["N·m·s/rad"]: 0.0..=10.0 = 0.03;
+        /// Damping of each tendon beside its stiffness: it carries a part of a tension that grows.
+        tendon_damping_n_s_per_m ["N·s/m"]: 0.0..=1e4 = 200.0;
     }
 }
 

@@ -17,8 +17,8 @@ const HIDDEN_DEG: f64 = 2.0;
 /// A move from where the payload shows.
 const SHOWN: MoveBars = MoveBars {
     off_mm: 0.25,
-    swing_mm: 0.15,
-    settled_s: 0.8,
+    swing_mm: 0.1,
+    settled_s: 0.4,
     rest_mm: 0.02,
 };
 

@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::{Estimator, LoadEstimation, torsion_m_per_rad};
-use crate::control::Mechanism;
+use crate::control::{Mechanism, Turn};
 use crate::settings::Settings;
 use leg_model::nalgebra::Vector3;
 use leg_model::{Direction, Elasticity, SupportKind, inverse_kinematics};
@@ -32,7 +32,8 @@ fn a_pose_is_found_in_one_cycle() {
                     &[70.0; 3],
                     0.0,
                     slack,
-                    &Vector3::zeros(),
+                    &[0.0; 3],
+                    &Turn::none(),
                 )
                 .unwrap();
             let off = found.direction.vector() - direction.vector();
@@ -69,7 +70,8 @@ fn a_push_that_twists_a_leg_moves_neither_the_pose_nor_the_length_error() {
                 &tensions,
                 0.0,
                 load,
-                &Vector3::zeros(),
+                &[0.0; 3],
+                &Turn::none(),
             );
             estimate = Some(found.unwrap());
         }
@@ -123,8 +125,16 @@ fn a_push_is_taken_up_as_the_mode_allows() {
             let lengths_m = [other, free, free];
             let tensions_n = [80.0, 70.0, 70.0];
             let load = LoadEstimation::Filtered;
-            let still = Vector3::zeros();
-            let found = estimator.update(&mechanism, &lengths_m, &tensions_n, 0.0, load, &still);
+            let (undamped, still) = ([0.0; 3], Turn::none());
+            let found = estimator.update(
+                &mechanism,
+                &lengths_m,
+                &tensions_n,
+                0.0,
+                load,
+                &undamped,
+                &still,
+            );
             found.unwrap();
             let [x, y] = estimator.excess_nm(&mechanism);
             x.hypot(y)

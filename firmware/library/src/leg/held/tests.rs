@@ -1,11 +1,10 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::{BRAKE_S, GENTLE_BRAKE_S, Held, Momentum, REST_BRAKE_S, SHORT_BRAKE_S};
-use crate::control::{AxisInput, Target, TargetDemand, ticks};
+use crate::control::{AxisInput, Target, TargetDemand, Turn, ticks};
 use crate::leg::shared::{Checked, Shared};
 use crate::settings::Settings;
 use leg_model::Direction;
-use nalgebra::Vector3;
 
 /// A leg is braked in no more time than its way has left, but never at once; one at rest stops what brakes its swing sooner.
 #[test]
@@ -56,7 +55,7 @@ fn a_leg_near_its_maximum_tension_is_braked_more_gently() {
     for (part, expected) in [(0.79, usual), (0.81, gentle)] {
         let demand = TargetDemand {
             q: Direction::straight_down().half_tangent(),
-            angular_acceleration: Vector3::zeros(),
+            turn: &Turn::none(),
             payload_kg: 0.0,
             load: shared.estimator.load(),
             compensated: true,
