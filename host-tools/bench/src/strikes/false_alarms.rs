@@ -24,6 +24,10 @@ const STIFFNESS_NM_PER_RAD: [f64; 2] = [10.0, 120.0];
 /// How far before an alarm the true tensions are looked at, s.
 const BEFORE_S: f64 = 0.25;
 
+/// How long after an arm lengths and tensions are not yet watched, s: until every tendon pulls, and 0.1 s more. Until then a tension that is too
+/// much is a pose on which the sensors disagree.
+const ARMED_S: f64 = 0.2;
+
 /// The uses that are remembered for a report.
 const REMEMBERED: usize = 8;
 
@@ -97,6 +101,8 @@ struct User<'a> {
     /// The extreme true tensions of now, and of the time before.
     extremes_n: [[f64; 2]; 2],
     extremes_s: f64,
+    /// When the leg was armed last, s.
+    armed_s: f64,
     uses: Vec<String>,
 }
 
@@ -111,6 +117,7 @@ impl<'a> User<'a> {
         stand.tick_until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
         stand.command(&Command::Arm)?;
         stand.tick_until(2.0, "active", |stand| stand.state() == State::Active)?;
+        let armed_s = stand.time_s();
         Ok(Self {
             file,
             rng,
@@ -119,6 +126,7 @@ impl<'a> User<'a> {
             payload_kg: 0.0,
             extremes_n: [NO_RANGE; 2],
             extremes_s: 0.0,
+            armed_s,
             uses: Vec::new(),
         })
     }
@@ -144,6 +152,8 @@ impl<'a> User<'a> {
         let tensions_n @ [lowest_n, highest_n] = [now[0].min(before[0]), now[1].max(before[1])];
         // A leg knows no more than its cells show.
         let shown_n = highest_n * (1.0 + CELL_GAIN) + TARED_N;
+        let over_n =
+            self.file.f_max_n * (1.0 + f64::from(self.file.gains.limits.over_tension_part));
         Alarm {
             fault: fault.entry().name,
             time_s,
@@ -151,6 +161,8 @@ impl<'a> User<'a> {
                 Fault::Slack => lowest_n < 0.5 * self.file.f_min_n,
                 // A leg at rest whose load is not estimated gives way to the maximum tension: then its motor stays behind.
                 Fault::OverTension | Fault::Following => shown_n > self.file.f_max_n,
+                // Just after an arm it says by this name that a tension is too much.
+                Fault::Residual => shown_n > over_n && self.stand.time_s() - self.armed_s < ARMED_S,
                 _ => false,
             },
             tensions_n,
@@ -287,6 +299,7 @@ impl<'a> User<'a> {
                 return Ok(());
             }
             self.stand.command(&command)?;
+            self.armed_s = self.stand.time_s();
         }
         Ok(())
     }
