@@ -236,6 +236,7 @@ impl<T: Scalar> Leg<T> {
             },
             cells_trusted: matches!(state, State::Homing | State::Jogging)
                 || self.agreement.trusts() && !self.supervisor.stopped(),
+            contradicted: self.agreement.steps(),
         };
         let mut faults = self.monitors.watch(&input);
         // Once another fault has been named, what follows from it needs no name of its own.

@@ -30,6 +30,8 @@ pub struct MonitorInput<'a, T> {
     /// Whether a tension is called too much by its cell alone: lengths and tensions are watched and agree; and while homing, where
     /// nothing compares them and the tendons are paid out anyway.
     pub cells_trusted: bool,
+    /// Whether lengths and tensions have contradicted each other within the last millisecond.
+    pub contradicted: bool,
 }
 
 /// Watches sensors and axes.

@@ -23,12 +23,17 @@ const SWING_PART: f32 = 0.5;
 const FORGET_TIME_S: f32 = 1.0;
 
 /// Part of the change of the elongations that tendons may stretch otherwise than by their curves. A single wrong cell changes
-/// the mean by about a third of its elongation, which is the mean change of elongations: eight times this.
-const CURVE_PART: f32 = 0.12;
+/// the mean by a quarter of its elongation or more: eight times what this allows. At 0.12 a cell that wanders or drifts was found too late
+/// (`tests/suite/bench/strikes.rs`).
+const CURVE_PART: f32 = 0.09;
 
 /// Part of a change that both filters take over in a cycle.
 const FORGET_GAIN: f32 = CYCLE_S / (FORGET_TIME_S + CYCLE_S);
 const SWING_GAIN: f32 = CYCLE_S / (SWING_TIME_S + CYCLE_S);
+
+/// The mean changes by more than this within two cycles where a load cell or a count steps, m: by 10 µm where a cell shows 8 N more at the
+/// maximum tension, and by more below it.
+const STEP_M: f32 = 4e-6;
 
 /// What is allowed for the sum of the three changes before that, of the elongations from which changes count and of swings; and what is
 /// learned of the first.
@@ -71,6 +76,10 @@ pub struct Agreement<T> {
     /// The same now, with nothing allowed for a swing.
     beyond_now_m: T,
     change_max_m: T,
+    /// The means of the last two cycles, m.
+    last_m: [T; 2],
+    /// Whether the mean has changed by more than [`STEP_M`] since the first of them.
+    steps: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -92,12 +101,15 @@ impl<T: Scalar> Agreement<T> {
             beyond: LowPass::new(FILTER_TIME_S, CYCLE_S),
             beyond_now_m: T::zero(),
             change_max_m: settings.limits.residual_change_m.into(),
+            last_m: [T::zero(); 2],
+            steps: false,
         }
     }
 
     /// Forgets everything: the tendons need not pull any more.
     pub fn end(&mut self) {
         self.reference = None;
+        self.steps = false;
         self.beyond.set(T::zero());
     }
 
@@ -113,6 +125,13 @@ impl<T: Scalar> Agreement<T> {
         self.reference
             .as_ref()
             .is_some_and(|reference| reference.young_cycles <= FADE_CYCLES)
+    }
+
+    /// Whether lengths and tensions have contradicted each other within the last millisecond: then a tension that changes at once is no
+    /// knock.
+    #[inline(always)]
+    pub fn steps(&self) -> bool {
+        self.steps
     }
 
     /// Whether the sensors agree: not where the change is no number.
@@ -132,8 +151,12 @@ impl<T: Scalar> Agreement<T> {
     pub fn watch(&mut self, error: &LengthError<T>, growth: ErrorGrowth) {
         let Some(reference) = &mut self.reference else {
             self.reference = Some(Reference::new(error));
+            self.last_m = [error.mean_m; 2];
             return;
         };
+        let [before_m, last_m] = self.last_m;
+        self.last_m = [last_m, error.mean_m];
+        self.steps = (error.mean_m - before_m).abs() > T::from(STEP_M);
         let (mut stretched_m, mut swings_m) = (T::SUM_START, T::SUM_START);
         for ([slow_m, fast_m], &now_m) in
             reference.elongations_m.iter_mut().zip(&error.elongations_m)

@@ -31,6 +31,7 @@ struct Seen {
     led: bool,
     tensioned: bool,
     trusted: bool,
+    contradicted: bool,
     residual_m: f64,
 }
 
@@ -65,6 +66,7 @@ impl Seen {
             led: true,
             tensioned: true,
             trusted: true,
+            contradicted: false,
             residual_m: 0.0,
         }
     }
@@ -78,6 +80,7 @@ impl Seen {
             tensioned: self.tensioned,
             residual_m: Some(self.residual_m),
             cells_trusted: self.trusted,
+            contradicted: self.contradicted,
         }
     }
 }
