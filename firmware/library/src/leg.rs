@@ -236,15 +236,15 @@ impl<T: Scalar> Leg<T> {
             },
             cells_trusted: matches!(state, State::Homing | State::Jogging)
                 || self.agreement.trusts() && !self.supervisor.stopped(),
-            contradicted: self.agreement.steps(),
         };
         let mut faults = self.monitors.watch(&input);
         // Once another fault has been named, what follows from it needs no name of its own.
         let first = !self.supervisor.stopped_by_another(Fault::Residual);
         faults.add(Fault::Residual, first && !self.agreement.agree());
         if self.phase.monitors_cells() {
+            let jump_n = self.monitors.jump_n(self.agreement.contradicts());
             for turn in 0..self.shared.axes.len() {
-                self.monitors.watch_cell(turn, &input);
+                self.monitors.watch_cell(turn, &input, jump_n);
             }
         }
         if let Some(turn) = self.phase.monitored_motor()

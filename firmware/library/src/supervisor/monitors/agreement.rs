@@ -31,10 +31,6 @@ const CURVE_PART: f32 = 0.09;
 const FORGET_GAIN: f32 = CYCLE_S / (FORGET_TIME_S + CYCLE_S);
 const SWING_GAIN: f32 = CYCLE_S / (SWING_TIME_S + CYCLE_S);
 
-/// The mean changes by more than this within two cycles where a load cell or a count steps, m: by 10 µm where a cell shows 8 N more at the
-/// maximum tension, and by more below it.
-const STEP_M: f32 = 4e-6;
-
 /// What is allowed for the sum of the three changes before that, of the elongations from which changes count and of swings; and what is
 /// learned of the first.
 const STRETCH_ALLOWED: f32 = CURVE_PART / 3.0 * (1.0 - FORGET_GAIN);
@@ -76,10 +72,6 @@ pub struct Agreement<T> {
     /// The same now, with nothing allowed for a swing.
     beyond_now_m: T,
     change_max_m: T,
-    /// The means of the last two cycles, m.
-    last_m: [T; 2],
-    /// Whether the mean has changed by more than [`STEP_M`] since the first of them.
-    steps: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -101,15 +93,12 @@ impl<T: Scalar> Agreement<T> {
             beyond: LowPass::new(FILTER_TIME_S, CYCLE_S),
             beyond_now_m: T::zero(),
             change_max_m: settings.limits.residual_change_m.into(),
-            last_m: [T::zero(); 2],
-            steps: false,
         }
     }
 
     /// Forgets everything: the tendons need not pull any more.
     pub fn end(&mut self) {
         self.reference = None;
-        self.steps = false;
         self.beyond.set(T::zero());
     }
 
@@ -127,11 +116,11 @@ impl<T: Scalar> Agreement<T> {
             .is_some_and(|reference| reference.young_cycles <= FADE_CYCLES)
     }
 
-    /// Whether lengths and tensions have contradicted each other within the last millisecond: then a tension that changes at once is no
-    /// knock.
+    /// Whether the sensors are watched, and disagree at this moment: a tension that changes at once then is no knock, for that changes
+    /// the lengths alike.
     #[inline(always)]
-    pub fn steps(&self) -> bool {
-        self.steps
+    pub fn contradicts(&self) -> bool {
+        self.watches() && self.beyond_now_m > T::zero()
     }
 
     /// Whether the sensors agree: not where the change is no number.
@@ -151,12 +140,8 @@ impl<T: Scalar> Agreement<T> {
     pub fn watch(&mut self, error: &LengthError<T>, growth: ErrorGrowth) {
         let Some(reference) = &mut self.reference else {
             self.reference = Some(Reference::new(error));
-            self.last_m = [error.mean_m; 2];
             return;
         };
-        let [before_m, last_m] = self.last_m;
-        self.last_m = [last_m, error.mean_m];
-        self.steps = (error.mean_m - before_m).abs() > T::from(STEP_M);
         let (mut stretched_m, mut swings_m) = (T::SUM_START, T::SUM_START);
         for ([slow_m, fast_m], &now_m) in
             reference.elongations_m.iter_mut().zip(&error.elongations_m)

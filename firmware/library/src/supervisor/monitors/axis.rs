@@ -17,10 +17,6 @@ const JUMP_CHECKS: usize = 2;
 /// cell needs to jump. Scenario `fault_over_current` holds it.
 const OVER_CHECKS: u32 = 4;
 
-/// Part of `jump_n` by which a tension may jump whose cell the lengths contradict at once: 7.5 N at the default. Without a fault no tension
-/// changed by more than 6.3 N within a millisecond in an hour of use of the ready rigs (`leg strikes --false-alarms`).
-pub const CONTRADICTED_PART: f32 = 0.3;
-
 /// Part of `following_m` by which a motor may be away from where it is led while it goes farther. A third was too little: motors
 /// that give way to the maximum tension came there in `leg strikes --false-alarms`.
 const AWAY_PART: f32 = 0.6;
@@ -94,7 +90,6 @@ struct AxisBounds<T> {
     slack_n: T,
     tension_n: T,
     jump_n: T,
-    contradicted_n: T,
     step_m: T,
     m_per_count: T,
     following_m: T,
@@ -146,7 +141,6 @@ impl<T: Scalar> AxisMonitor<T> {
                 slack_n: limits.slack_n.into(),
                 tension_n: T::from(f_max_n + limits.over_tension_part * f_max_n),
                 jump_n: limits.jump_n.into(),
-                contradicted_n: T::from(CONTRADICTED_PART * limits.jump_n),
                 step_m: T::from(
                     (STEP_PART * servo.speed_m_per_s * TICK_S).max(STEP_COUNTS * m_per_count.abs()),
                 ),
@@ -166,9 +160,15 @@ impl<T: Scalar> AxisMonitor<T> {
         }
     }
 
-    /// The load cell and the tension that it reports.
+    /// The load cell and the tension that it reports; `jump_n` is the change of it within a millisecond that is a jump, N.
     #[inline(always)]
-    pub fn watch_cell(&mut self, i: usize, view: &MonitorInput<'_, T>, faults: &mut FaultSet) {
+    pub fn watch_cell(
+        &mut self,
+        i: usize,
+        view: &MonitorInput<'_, T>,
+        jump_n: T,
+        faults: &mut FaultSet,
+    ) {
         let (sensors, bounds) = (view.sensors, &self.bounds);
         let (Some(&code), Some(&fresh), Some(&tension)) = (
             sensors.cell_codes.get(i),
@@ -200,13 +200,8 @@ impl<T: Scalar> AxisMonitor<T> {
         let place = self.place & (JUMP_CHECKS - 1);
         let before = core::mem::replace(&mut self.history[place], tension);
         self.place = place + 1;
-        let allowed_n = if view.contradicted {
-            bounds.contradicted_n
-        } else {
-            bounds.jump_n
-        };
         let change_n = (tension - before).abs();
-        let jump = self.filled && alive && !(change_n <= allowed_n);
+        let jump = self.filled && alive && !(change_n <= jump_n);
         self.filled |= self.place == JUMP_CHECKS;
         faults.add(Fault::TensionJump, jump);
         // A cell that comes back from the dead while the leg is held does not jump away.

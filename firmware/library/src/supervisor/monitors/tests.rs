@@ -80,7 +80,6 @@ impl Seen {
             tensioned: self.tensioned,
             residual_m: Some(self.residual_m),
             cells_trusted: self.trusted,
-            contradicted: self.contradicted,
         }
     }
 }
@@ -123,7 +122,8 @@ impl Watched {
         }
         let input = seen.input(&sensors);
         for axis in 0..3 {
-            self.monitors.watch_cell(axis, &input);
+            let jump_n = self.monitors.jump_n(seen.contradicted);
+            self.monitors.watch_cell(axis, &input, jump_n);
             let view = if axis == AXIS {
                 seen.view
             } else {

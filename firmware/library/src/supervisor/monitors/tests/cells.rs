@@ -1,6 +1,6 @@
 //! What load cells show.
 
-use super::super::axis::CONTRADICTED_PART;
+use super::super::CONTRADICTED_PART;
 use super::*;
 use crate::sensors::CODE_MAX;
 
