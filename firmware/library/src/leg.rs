@@ -242,10 +242,8 @@ impl<T: Scalar> Leg<T> {
         let first = !self.supervisor.stopped_by_another(Fault::Residual);
         faults.add(Fault::Residual, first && !self.agreement.agree());
         if self.phase.monitors_cells() {
-            let jump_n = self.monitors.jump_n(self.agreement.contradicts());
-            for turn in 0..self.shared.axes.len() {
-                self.monitors.watch_cell(turn, &input, jump_n);
-            }
+            let contradicted = self.agreement.contradicts();
+            self.monitors.watch_cells(&input, contradicted);
         }
         if let Some(turn) = self.phase.monitored_motor()
             && let (Some(axis), Some(&pulled)) =

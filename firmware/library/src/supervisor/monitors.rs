@@ -67,26 +67,24 @@ impl<T: Scalar> Monitors<T> {
         }
     }
 
-    /// The change of a tension within a millisecond that is a jump, N; `contradicted`: while lengths and tensions disagree.
-    #[inline(always)]
-    pub fn jump_n(&self, contradicted: bool) -> T {
+    /// Checks the load cells, once a cycle; `contradicted`: while lengths and tensions disagree.
+    // One after the other without a loop: there is little time left in their tick.
+    #[inline(never)]
+    pub fn watch_cells(&mut self, view: &MonitorInput<'_, T>, contradicted: bool) {
         let [alone_n, contradicted_n] = self.jump_n;
-        if contradicted {
+        let jump_n = if contradicted {
             contradicted_n
         } else {
             alone_n
-        }
-    }
-
-    /// Checks the load cell of an axis, from 0 to 2, with the change that is a jump, N; each has its turn once a cycle.
-    #[inline(never)]
-    pub fn watch_cell(&mut self, axis: usize, view: &MonitorInput<'_, T>, jump_n: T) {
-        if let (Some(monitor), Some(faults)) =
-            (self.axes.get_mut(axis), self.axis_faults.get_mut(axis))
-        {
-            *faults = faults.difference(FaultSet::OF_CELLS);
-            monitor.watch_cell(axis, view, jump_n, faults);
-        }
+        };
+        let [first, second, third] = &mut self.axes;
+        let [a, b, c] = &mut self.axis_faults;
+        *a = a.difference(FaultSet::OF_CELLS);
+        first.watch_cell(0, view, jump_n, a);
+        *b = b.difference(FaultSet::OF_CELLS);
+        second.watch_cell(1, view, jump_n, b);
+        *c = c.difference(FaultSet::OF_CELLS);
+        third.watch_cell(2, view, jump_n, c);
     }
 
     /// Checks the motor of an axis, from 0 to 2, and its encoder; each has its turn once a cycle.

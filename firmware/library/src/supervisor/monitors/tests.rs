@@ -121,9 +121,8 @@ impl Watched {
             *code ^= u16::from(changes && self.cycle.is_multiple_of(2));
         }
         let input = seen.input(&sensors);
+        self.monitors.watch_cells(&input, seen.contradicted);
         for axis in 0..3 {
-            let jump_n = self.monitors.jump_n(seen.contradicted);
-            self.monitors.watch_cell(axis, &input, jump_n);
             let view = if axis == AXIS {
                 seen.view
             } else {
