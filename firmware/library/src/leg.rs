@@ -240,9 +240,8 @@ impl<T: Scalar> Leg<T> {
         let first = !self.supervisor.stopped_by_another(Fault::Residual);
         faults.add(Fault::Residual, first && !self.agreement.agree());
         if self.phase.monitors_cells() {
-            for turn in 0..self.shared.axes.len() {
-                self.monitors.watch_cell(turn, &input);
-            }
+            let contradicted = self.agreement.contradicts();
+            self.monitors.watch_cells(&input, contradicted);
         }
         if let Some(turn) = self.phase.monitored_motor()
             && let (Some(axis), Some(&pulled)) =

@@ -58,7 +58,7 @@ fn a_sensor_that_reads_wrong_ends_it_in_hold_or_moves_nothing() {
     }
     for (defect, fault) in [
         (Defect::ExcitationLost, None),
-        (Defect::ExcitationSags, Some(Fault::Residual)),
+        (Defect::ExcitationSags, Some(Fault::TensionJump)),
         (Defect::SupplySag, Some(Fault::SupplyLow)),
         (Defect::SupplySurge, Some(Fault::SupplyHigh)),
         (Defect::LateTicks, Some(Fault::LateTick)),

@@ -12,11 +12,11 @@ const GIVEN_WAY_M: f32 = 5e-5;
 /// Part of the maximum tension above which a motor that stays behind is held back by it: the servo is slowed down in the last newtons.
 const NEAR_MAX_PART: f32 = 0.95;
 
-/// Whether a tendon is paid out because its tension is at the maximum, although no estimate of the load asks for it: a leg that leans goes
-/// on sinking so, and a load cell that reads too much has it sink too.
+/// Whether a tendon is paid out because its tension is at the maximum, although no target asks for it: a leg that leans goes on sinking so,
+/// and a load cell that reads too much has it sink too. Where the load is estimated, there is a target for it, unless no pretension holds it.
 #[inline(always)]
 pub fn gives_way<T: Scalar>(shared: &Shared<T>, measured: &Measured<T>) -> bool {
-    if shared.compensation == Compensation::Estimated {
+    if shared.compensation == Compensation::Estimated && !shared.refused {
         return false;
     }
     let near_max_n = shared.mechanism.f_max_n * T::from(NEAR_MAX_PART);
@@ -37,7 +37,7 @@ mod tests {
     use crate::settings::Settings;
 
     /// A leg gives way where one motor is behind its reference and its tendon is near the maximum tension, and its load is not
-    /// estimated. Either alone is none, nor are the two at different tendons.
+    /// estimated or no target holds it. Either alone is none, nor are the two at different tendons.
     #[test]
     fn a_leg_gives_way_where_a_taut_tendon_is_paid_out() {
         let settings = Settings::table_1().unwrap();
@@ -57,12 +57,13 @@ mod tests {
                 axis.rest(0.01);
             }
             let measured = Measured::resting(behind_m.map(|behind| 0.01 - behind), tensions_n);
-            for (compensation, expected) in [
-                (Compensation::Off, gives),
-                (Compensation::Frozen, gives),
-                (Compensation::Estimated, false),
+            for (compensation, refused, expected) in [
+                (Compensation::Off, false, gives),
+                (Compensation::Frozen, false, gives),
+                (Compensation::Estimated, false, false),
+                (Compensation::Estimated, true, gives),
             ] {
-                shared.compensation = compensation;
+                (shared.compensation, shared.refused) = (compensation, refused);
                 let found = gives_way(&shared, &measured);
                 assert_eq!(found, expected, "{behind_m:?} {tensions_n:?}");
             }

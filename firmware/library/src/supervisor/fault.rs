@@ -83,7 +83,7 @@ faults! {
     3 TensionJump {
         name: "jump of a tension",
         reaction: Hold,
-        cause: "a tension changes by jump_n within a millisecond",
+        cause: "a tension changes by jump_n within a millisecond, or by three tenths of it while lengths and tensions come to disagree",
         remedy: "look for a cut or slipped tendon; where the tension does not come back, disarm the leg, clear the fault and home",
         clears: Command,
     }
@@ -125,7 +125,7 @@ faults! {
     9 Following {
         name: "motor stays behind",
         reaction: Hold,
-        cause: "a motor is following_m away from where it is led; or, in a leg at rest whose load is not estimated, a tendon at the maximum tension is paid out by 0.05 mm",
+        cause: "a motor is following_m away from where it is led; or, in a leg at rest whose load is not estimated or too heavy, a tendon at the maximum tension is paid out by 0.05 mm",
         remedy: "look for a slipping encoder or a stiff screw; move more slowly; at the maximum tension, have the load estimated or lower the pretension",
         clears: Command,
     }

@@ -24,6 +24,10 @@ const STIFFNESS_NM_PER_RAD: [f64; 2] = [10.0, 120.0];
 /// How far before an alarm the true tensions are looked at, s.
 const BEFORE_S: f64 = 0.25;
 
+/// How long after an arm lengths and tensions are not yet watched, s: until every tendon pulls, and 0.1 s more. Until then a tension that is too
+/// much is a pose on which the sensors disagree.
+const ARMED_S: f64 = 0.2;
+
 /// The uses that are remembered for a report.
 const REMEMBERED: usize = 8;
 
@@ -87,6 +91,22 @@ pub(super) fn use_leg(
     usage
 }
 
+/// Whether a fault says that a tension has left its bounds, and the true ones, from the lowest to the highest, N, had, or a load cell may
+/// have shown that; so long after an arm, s.
+fn is_beyond(file: &RigFile, fault: Fault, [lowest_n, highest_n]: [f64; 2], armed_s: f64) -> bool {
+    // A leg knows no more than its cells show.
+    let shown_n = highest_n * (1.0 + CELL_GAIN) + TARED_N;
+    let over_n = file.f_max_n * (1.0 + f64::from(file.gains.limits.over_tension_part));
+    match fault {
+        Fault::Slack => lowest_n < 0.5 * file.f_min_n,
+        // A leg at rest for whose load there is no target gives way to the maximum tension: then its motor stays behind.
+        Fault::OverTension | Fault::Following => shown_n > file.f_max_n,
+        // Just after an arm it says by this name that a tension is too much.
+        Fault::Residual => shown_n > over_n && armed_s < ARMED_S,
+        _ => false,
+    }
+}
+
 /// A user with a leg.
 struct User<'a> {
     file: &'a RigFile,
@@ -97,6 +117,8 @@ struct User<'a> {
     /// The extreme true tensions of now, and of the time before.
     extremes_n: [[f64; 2]; 2],
     extremes_s: f64,
+    /// When the leg was armed last, s.
+    armed_s: f64,
     uses: Vec<String>,
 }
 
@@ -111,6 +133,7 @@ impl<'a> User<'a> {
         stand.tick_until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
         stand.command(&Command::Arm)?;
         stand.tick_until(2.0, "active", |stand| stand.state() == State::Active)?;
+        let armed_s = stand.time_s();
         Ok(Self {
             file,
             rng,
@@ -119,6 +142,7 @@ impl<'a> User<'a> {
             payload_kg: 0.0,
             extremes_n: [NO_RANGE; 2],
             extremes_s: 0.0,
+            armed_s,
             uses: Vec::new(),
         })
     }
@@ -141,18 +165,12 @@ impl<'a> User<'a> {
 
     fn alarm(&self, fault: Fault, time_s: f64) -> Alarm {
         let [now, before] = self.extremes_n;
-        let tensions_n @ [lowest_n, highest_n] = [now[0].min(before[0]), now[1].max(before[1])];
-        // A leg knows no more than its cells show.
-        let shown_n = highest_n * (1.0 + CELL_GAIN) + TARED_N;
+        let tensions_n = [now[0].min(before[0]), now[1].max(before[1])];
+        let armed_s = self.stand.time_s() - self.armed_s;
         Alarm {
             fault: fault.entry().name,
             time_s,
-            beyond: match fault {
-                Fault::Slack => lowest_n < 0.5 * self.file.f_min_n,
-                // A leg at rest whose load is not estimated gives way to the maximum tension: then its motor stays behind.
-                Fault::OverTension | Fault::Following => shown_n > self.file.f_max_n,
-                _ => false,
-            },
+            beyond: is_beyond(self.file, fault, tensions_n, armed_s),
             tensions_n,
             uses: self.uses.join("; "),
         }
@@ -287,7 +305,35 @@ impl<'a> User<'a> {
                 return Ok(());
             }
             self.stand.command(&command)?;
+            self.armed_s = self.stand.time_s();
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::{ARMED_S, is_beyond};
+    use leg_firmware::supervisor::Fault;
+    use leg_rig::rig_file::RigFile;
+
+    /// Bounds of 8 and 150 N, and 165 N from which on a tension is too much.
+    #[test]
+    fn an_alarm_is_right_where_a_tension_has_left_its_bounds() {
+        let file = RigFile::load(None).unwrap();
+        for (fault, tensions_n, armed_s, right) in [
+            (Fault::Slack, [3.9, 100.0], 9.0, true),
+            (Fault::Slack, [4.1, 170.0], 9.0, false),
+            (Fault::OverTension, [8.0, 149.7], 9.0, true),
+            (Fault::Following, [8.0, 149.5], 9.0, false),
+            (Fault::Residual, [8.0, 164.7], 0.9 * ARMED_S, true),
+            (Fault::Residual, [8.0, 164.5], 0.9 * ARMED_S, false),
+            (Fault::Residual, [0.0, 180.0], 1.1 * ARMED_S, false),
+            (Fault::TensionJump, [0.0, 180.0], 0.0, false),
+        ] {
+            let found = is_beyond(&file, fault, tensions_n, armed_s);
+            assert_eq!(found, right, "{fault:?} {tensions_n:?} {armed_s}");
+        }
     }
 }

@@ -23,8 +23,9 @@ const SWING_PART: f32 = 0.5;
 const FORGET_TIME_S: f32 = 1.0;
 
 /// Part of the change of the elongations that tendons may stretch otherwise than by their curves. A single wrong cell changes
-/// the mean by about a third of its elongation, which is the mean change of elongations: eight times this.
-const CURVE_PART: f32 = 0.12;
+/// the mean by a quarter of its elongation or more: eight times what this allows. At 0.12 a cell that wanders or drifts was found too late
+/// (`tests/suite/bench/strikes.rs`).
+const CURVE_PART: f32 = 0.09;
 
 /// Part of a change that both filters take over in a cycle.
 const FORGET_GAIN: f32 = CYCLE_S / (FORGET_TIME_S + CYCLE_S);
@@ -113,6 +114,13 @@ impl<T: Scalar> Agreement<T> {
         self.reference
             .as_ref()
             .is_some_and(|reference| reference.young_cycles <= FADE_CYCLES)
+    }
+
+    /// Whether the sensors are watched, and disagree at this moment: a tension that changes at once then is no knock, for that changes
+    /// the lengths alike.
+    #[inline(always)]
+    pub fn contradicts(&self) -> bool {
+        self.watches() && self.beyond_now_m > T::zero()
     }
 
     /// Whether the sensors agree: not where the change is no number.

@@ -1,7 +1,9 @@
 //! What raises the faults of one axis.
 
 use super::MonitorInput;
-use crate::control::{AxisView, CYCLE_S, CYCLE_TICKS, Debounce, LowPass, TICK_S, ticks};
+use crate::control::{
+    AxisView, CYCLE_S, CYCLE_TICKS, Debounce, LowPass, TICK_S, bounds::min, ticks,
+};
 use crate::sensors::CODE_MAX;
 use crate::settings::{Servo, Settings};
 use crate::supervisor::{Fault, FaultSet};
@@ -78,6 +80,8 @@ pub struct AxisMonitor<T> {
     filled: bool,
     /// Whether the tension has jumped since faults were cleared last: the history then begins with what it was before, and stays so.
     jumped: bool,
+    /// How near to that the tension has to come back, N: by half of its jump, or of the least one that counts in any case.
+    near_n: T,
     bounds: AxisBounds<T>,
 }
 
@@ -131,6 +135,7 @@ impl<T: Scalar> AxisMonitor<T> {
             place: 0,
             filled: false,
             jumped: false,
+            near_n: T::zero(),
             bounds: AxisBounds {
                 m_per_count: m_per_count.into(),
                 slack_n: limits.slack_n.into(),
@@ -155,9 +160,15 @@ impl<T: Scalar> AxisMonitor<T> {
         }
     }
 
-    /// The load cell and the tension that it reports.
+    /// The load cell and the tension that it reports; `jump_n` is the change of it within a millisecond that is a jump, N.
     #[inline(always)]
-    pub fn watch_cell(&mut self, i: usize, view: &MonitorInput<'_, T>, faults: &mut FaultSet) {
+    pub fn watch_cell(
+        &mut self,
+        i: usize,
+        view: &MonitorInput<'_, T>,
+        jump_n: T,
+        faults: &mut FaultSet,
+    ) {
         let (sensors, bounds) = (view.sensors, &self.bounds);
         let (Some(&code), Some(&fresh), Some(&tension)) = (
             sensors.cell_codes.get(i),
@@ -189,21 +200,22 @@ impl<T: Scalar> AxisMonitor<T> {
         let place = self.place & (JUMP_CHECKS - 1);
         let before = core::mem::replace(&mut self.history[place], tension);
         self.place = place + 1;
-        let jump = self.filled && alive && !((tension - before).abs() <= bounds.jump_n);
+        let change_n = (tension - before).abs();
+        let jump = self.filled && alive && !(change_n <= jump_n);
         self.filled |= self.place == JUMP_CHECKS;
         faults.add(Fault::TensionJump, jump);
         // A cell that comes back from the dead while the leg is held does not jump away.
         if jump && (view.led || view.cells_trusted) {
             self.jumped = true;
             self.history[0] = before;
+            self.near_n = min(change_n, bounds.jump_n) * T::HALF;
         }
     }
 
     /// Whether a tension, N, has jumped and not come back since: a cut or slipped tendon, or a load cell that reads wrong. After a knock it comes
     /// back.
     pub fn stays_jumped(&self, tension_n: T) -> bool {
-        let near_n = self.bounds.jump_n * T::HALF;
-        self.jumped && !((tension_n - self.history[0]).abs() <= near_n)
+        self.jumped && !((tension_n - self.history[0]).abs() <= self.near_n)
     }
 
     /// What has jumped before is no matter any more.

@@ -31,6 +31,7 @@ struct Seen {
     led: bool,
     tensioned: bool,
     trusted: bool,
+    contradicted: bool,
     residual_m: f64,
 }
 
@@ -65,6 +66,7 @@ impl Seen {
             led: true,
             tensioned: true,
             trusted: true,
+            contradicted: false,
             residual_m: 0.0,
         }
     }
@@ -119,8 +121,8 @@ impl Watched {
             *code ^= u16::from(changes && self.cycle.is_multiple_of(2));
         }
         let input = seen.input(&sensors);
+        self.monitors.watch_cells(&input, seen.contradicted);
         for axis in 0..3 {
-            self.monitors.watch_cell(axis, &input);
             let view = if axis == AXIS {
                 seen.view
             } else {

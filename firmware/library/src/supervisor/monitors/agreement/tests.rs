@@ -91,6 +91,21 @@ fn a_cell_that_fades_in_seconds_is_found_while_little_is_missing() {
     assert!(found_s.is_some_and(|s| s < 0.6), "{found_s:?}");
 }
 
+/// A cell that steps contradicts the others before it is a fault; nothing does before the sensors are watched.
+#[test]
+fn a_step_contradicts_at_once() {
+    for off_m in [4e-5, -4e-5] {
+        let mut leg = Leg::taut();
+        leg.watch(false);
+        assert!(!leg.agreement.contradicts());
+        misread(&mut leg.error, 1, off_m);
+        leg.watch(false);
+        assert!(leg.agreement.contradicts() && leg.agreement.agree());
+        leg.agreement.end();
+        assert!(!leg.agreement.contradicts());
+    }
+}
+
 #[test]
 fn a_count_that_is_lost_is_found() {
     let found_s = Leg::taut().disagrees_after(|_, error| error.mean_m += 4e-5 / 3.0);

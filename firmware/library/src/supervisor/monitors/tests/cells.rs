@@ -1,5 +1,6 @@
 //! What load cells show.
 
+use super::super::CONTRADICTED_PART;
 use super::*;
 use crate::sensors::CODE_MAX;
 
@@ -104,6 +105,32 @@ fn a_tension_that_jumps_up_or_down_is_a_fault() {
     let jump = FaultSet::single(Fault::TensionJump);
     assert_eq!(watched.cycle(&seen), jump);
     assert_eq!(watched.cycle(&seen), FaultSet::NONE);
+}
+
+/// What the lengths contradict is a jump by less, which lasts until the tension is back within half of it.
+#[test]
+fn a_tension_that_the_lengths_contradict_jumps_by_less() {
+    let least_n = f64::from(CONTRADICTED_PART * limits().jump_n);
+    let to = |change_n: f64, contradicted: bool| {
+        move |_: &Limits, s: &mut Seen| {
+            s.measured.tensions_n[AXIS] += change_n;
+            s.contradicted = contradicted;
+        }
+    };
+    for sign in [1.0, -1.0] {
+        is_no_fault("no jump", to(sign * (least_n - 0.01), true));
+        is_fault(Fault::TensionJump, 1, to(sign * (least_n + 0.01), true));
+        is_no_fault("a knock", to(sign * (least_n + 0.01), false));
+        let mut watched = Watched::new();
+        let mut seen = Seen::sound();
+        to(sign * 10.0, true)(&watched.limits(), &mut seen);
+        watched.cycle(&seen);
+        for (back_n, stays) in [(0.0, true), (4.9, true), (5.1, false)] {
+            let mut tensions_n = seen.measured.tensions_n;
+            tensions_n[AXIS] -= sign * back_n;
+            assert_eq!(watched.monitors.stay_jumped(&tensions_n), stays, "{back_n}");
+        }
+    }
 }
 
 /// A jump lasts until the tension is back within half of what counts as one. One of a leg that is held already counts where its cells
