@@ -253,7 +253,7 @@ mod tests {
     /// What is left when the leg is taken over is gone no faster, and to its end.
     #[test]
     fn what_is_left_is_released_at_the_same_speed() {
-        let mut rest_m = tilting(3.8e-3);
+        let mut rest_m = tilting(3.74e-3);
         let there = |_: &u32| {
             limits().release(&mut rest_m);
             rest_m == [0.0; 3]
@@ -264,7 +264,7 @@ mod tests {
 
     #[test]
     fn the_tip_is_led_at_its_speed_and_no_faster() {
-        let steps = steps(3.8e-3);
+        let steps = steps(3.74e-3);
         assert!((1_990..2_010).contains(&steps), "{steps}");
     }
 
@@ -301,7 +301,7 @@ mod tests {
     /// What is left of the way comes to whatever else makes the tendons longer.
     #[test]
     fn the_rest_of_a_correction_is_added() {
-        let rest_m = tilting(3.8e-3);
+        let rest_m = tilting(3.74e-3);
         let (mut keeping, mut longer_m) = (StationKeeping::Releasing(rest_m), [1e-3; 3]);
         keeping.step(&limits(), &[0.2; 3], &mut longer_m);
         for (longer, rest) in longer_m.iter().zip(rest_m) {
