@@ -31,7 +31,6 @@ impl Bench {
         Self {
             trajectory: Trajectory::new(
                 MotionLimits::new(&settings.motion),
-                0.0,
                 HalfTangent::new(0.0, 0.0),
             ),
             stream: Stream::new(StreamLimits::new(&settings)),
@@ -72,7 +71,7 @@ impl Bench {
     fn advance(&mut self) {
         let [a, b, c, _] = self.places;
         self.places = [self.trajectory.step().xy(), a, b, c];
-        self.trajectory.advance_plan(&mut self.stream);
+        self.trajectory.advance_plan(&mut self.stream, 0.0);
         self.tick = self.tick.wrapping_add(u32::from(CYCLE_TICKS));
     }
 

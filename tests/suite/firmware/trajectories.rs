@@ -26,7 +26,6 @@ fn trajectories_keep_their_limits() {
     let mut rng = fastrand::Rng::with_seed(5);
     let mut trajectory = Trajectory::<f64>::new(
         MotionLimits::new(&settings.motion),
-        0.0,
         HalfTangent::new(0.0, 0.0),
     );
     let mut stream = Stream::new(StreamLimits::new(&settings));
@@ -41,7 +40,7 @@ fn trajectories_keep_their_limits() {
         if cycle % 7000 == 900 {
             trajectory.stop();
         }
-        trajectory.advance_plan(&mut stream);
+        trajectory.advance_plan(&mut stream, 0.0);
         course.step(trajectory.step().xy());
     }
     let peaks = course.peaks;
@@ -89,8 +88,7 @@ fn a_trajectory_keeps_its_jerk_to_the_end() {
         for second in [1.3, 2.0, 4.0] {
             for after in (20..400).step_by(20) {
                 let limits = MotionLimits::new(&settings.motion);
-                let mut trajectory =
-                    Trajectory::<f64>::new(limits, 0.0, HalfTangent::new(0.0, 0.0));
+                let mut trajectory = Trajectory::<f64>::new(limits, HalfTangent::new(0.0, 0.0));
                 let mut stream = Stream::new(StreamLimits::new(&settings));
                 let mut course = Course::default();
                 trajectory.go(HalfTangent::new(first, 0.0));
@@ -98,7 +96,7 @@ fn a_trajectory_keeps_its_jerk_to_the_end() {
                     if cycle == after {
                         trajectory.go(HalfTangent::new(first * second, 0.0));
                     }
-                    trajectory.advance_plan(&mut stream);
+                    trajectory.advance_plan(&mut stream, 0.0);
                     course.step(trajectory.step().xy());
                 }
                 let [.., jerk] = course.peaks;

@@ -30,8 +30,6 @@ pub struct PretensionSearch<T> {
     last_pretension_n: T,
     last_stiffness: T,
     mean_stiffness: T,
-    /// Those of the tendons, N/m.
-    tendon_stiffnesses: [T; 3],
     /// Stiffness per pretension.
     slope: T,
     unreachable: bool,
@@ -46,7 +44,6 @@ impl<T: Scalar> PretensionSearch<T> {
             last_pretension_n: T::zero(),
             last_stiffness: T::zero(),
             mean_stiffness: T::zero(),
-            tendon_stiffnesses: [T::MAX; 3],
             slope: T::one(),
             unreachable: false,
         }
@@ -87,19 +84,13 @@ impl<T: Scalar> PretensionSearch<T> {
         self.mean_stiffness
     }
 
-    /// Stiffness of each tendon at that pretension, N/m.
-    #[inline(always)]
-    pub fn tendon_stiffnesses_n_per_m(&self) -> &[T; 3] {
-        &self.tendon_stiffnesses
-    }
-
     /// Whether the bounds on the tensions stop the search short of the demand.
     #[inline(always)]
     pub fn unreachable(&self) -> bool {
         self.unreachable
     }
 
-    /// One step at a target, with the payload that it carries.
+    /// One step at a target, with the payload that it carries; gives the stiffnesses of the tendons at that pretension, N/m.
     ///
     /// # Errors
     /// A tension beyond a tendon's curve; [`Error::Unstable`].
@@ -109,7 +100,7 @@ impl<T: Scalar> PretensionSearch<T> {
         mechanism: &Mechanism<T>,
         target: &Target<T>,
         payload_kg: T,
-    ) -> Result<(), Error> {
+    ) -> Result<[T; 3], Error> {
         let (axis, demand) = match self.demand {
             PretensionDemand::Pretension(_) => (BendingAxis::Softest, None),
             PretensionDemand::Stiffness(demand, axis) => (axis, Some(demand)),
@@ -130,15 +121,15 @@ impl<T: Scalar> PretensionSearch<T> {
             target.distribution.pretension_max,
         );
         let pretension = min(max(self.pretension_n, lowest), highest);
-        self.tendon_stiffnesses = command.tendon_stiffnesses(pretension)?;
-        let bending = command.bending_with(pretension, &self.tendon_stiffnesses)?;
+        let stiffnesses_n_per_m = command.tendon_stiffnesses(pretension)?;
+        let bending = command.bending_with(pretension, &stiffnesses_n_per_m)?;
         let stiffness = bending.stiffness_about(&axis)?;
         self.mean_stiffness = bending.mean();
         if let Some(demand) = demand {
             self.search(pretension, stiffness, demand, [lowest, highest]);
         }
         (self.last_pretension_n, self.last_stiffness) = (pretension, stiffness);
-        Ok(())
+        Ok(stiffnesses_n_per_m)
     }
 
     /// A step of the secant method, kept short.

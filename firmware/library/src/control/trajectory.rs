@@ -16,8 +16,6 @@ pub type Point<T> = HalfTangent<T>;
 #[derive(Clone, Copy, Debug)]
 pub struct Trajectory<T> {
     limits: MotionLimits<T>,
-    /// Damping of the joint, N·m·s/rad.
-    joint_damping: T,
     path: Quintic<T>,
     /// Ticks since its start, and from there to its end. A segment of a stream may start within the next cycle: then the first are
     /// negative.
@@ -73,12 +71,11 @@ enum End<T> {
 }
 
 impl<T: Scalar> Trajectory<T> {
-    /// At rest at a point, on a joint with a damping, N·m·s/rad.
-    pub fn new(limits: MotionLimits<T>, joint_damping: T, start: Point<T>) -> Self {
+    /// At rest at a point.
+    pub fn new(limits: MotionLimits<T>, start: Point<T>) -> Self {
         let start = start.xy();
         Self {
             limits,
-            joint_damping,
             path: Quintic::new(&MotionState::resting(start), start, T::one()),
             elapsed: 0,
             duration: 0,
@@ -187,9 +184,9 @@ impl<T: Scalar> Trajectory<T> {
         HalfTangent::new(x, y)
     }
 
-    /// Goes on with the plan of another path, or with a stream, once a cycle.
+    /// Goes on with the plan of another path, or with a stream, once a cycle; on a joint with a damping, N·m·s/rad.
     #[inline(never)]
-    pub fn advance_plan(&mut self, stream: &mut Stream<T>) {
+    pub fn advance_plan(&mut self, stream: &mut Stream<T>, joint_damping: T) {
         if self.streamed {
             self.advance_stream(stream);
         } else if let Some(plan) = self.planned {
@@ -200,7 +197,7 @@ impl<T: Scalar> Trajectory<T> {
         }
         let motion = self.next_motion();
         self.next = motion.position;
-        self.turn = motion.turn(self.joint_damping);
+        self.turn = motion.turn(joint_damping);
     }
 
     /// How the leg turns at the next point.
@@ -314,12 +311,12 @@ mod tests {
         settings.motion.speed_rad_per_s = 1e-4;
         let limits = MotionLimits::<f64>::new(&settings.motion);
         for (part, begins) in [(0.9, true), (1.1, false)] {
-            let mut trajectory = Trajectory::new(limits, 0.0, HalfTangent::new(0.0, 0.0));
+            let mut trajectory = Trajectory::new(limits, HalfTangent::new(0.0, 0.0));
             let mut stream = Stream::new(StreamLimits::new(&settings));
             let per_s = 1.0 / limits.shortest_s(&trajectory.path.motion(1.0), [1.0, 0.0]);
             trajectory.go(HalfTangent::new(part * f64::from(LONGEST_S) * per_s, 0.0));
             for _ in 0..=AHEAD {
-                trajectory.advance_plan(&mut stream);
+                trajectory.advance_plan(&mut stream, 0.0);
                 trajectory.step();
             }
             assert_eq!(trajectory.moving(), begins, "{part}");

@@ -54,11 +54,7 @@ impl<T: Scalar> Active<T> {
         let unloaded =
             (taut && !compensated).then(|| Unloaded::search(loaded, &measured.steady_tensions_n));
         Self {
-            trajectory: Trajectory::new(
-                shared.limits.motion,
-                shared.limits.joint_damping,
-                loaded.half_tangent(),
-            ),
+            trajectory: Trajectory::new(shared.limits.motion, loaded.half_tangent()),
             commanded: None,
             tensioned: false,
             disarming: false,
@@ -112,7 +108,9 @@ impl<T: Scalar> Active<T> {
             Phase::Plan => {
                 // A leg that is not taut yet does not set out.
                 if self.slack.taken_up() {
-                    self.trajectory.advance_plan(&mut shared.stream);
+                    let joint_damping = shared.limits.joint_damping;
+                    self.trajectory
+                        .advance_plan(&mut shared.stream, joint_damping);
                 }
                 Ok(())
             }
@@ -340,9 +338,8 @@ fn search_pretension<T: Scalar>(shared: &mut Shared<T>) -> Result<(), Error> {
     if let Some(target) = &shared.target {
         let payload_kg = shared.estimator.payload_kg();
         let search = &mut shared.pretension;
-        search.step(&shared.mechanism, target, payload_kg)?;
-        let stiffnesses = search.tendon_stiffnesses_n_per_m();
-        shared.targets.set_stiffnesses(stiffnesses);
+        let stiffnesses_n_per_m = search.step(&shared.mechanism, target, payload_kg)?;
+        shared.targets.set_stiffnesses(&stiffnesses_n_per_m);
     }
     Ok(())
 }

@@ -89,7 +89,7 @@ impl ImageBudget {
             FirmwareImage::Qemu => Self {
                 flash: ByteBounds::new(206_000, 275_000),
                 ram: ByteBounds::new(38_500, 51_300),
-                stack: ByteBounds::new(29_400, 39_300),
+                stack: ByteBounds::new(35_500, 47_300),
                 tasks: QEMU_TASKS,
                 hot: &[],
             },
