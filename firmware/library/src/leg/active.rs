@@ -326,6 +326,7 @@ impl<T: Scalar> Active<T> {
         if let Some(target) = &shared.target {
             self.trajectory.start(target.direction.half_tangent());
         }
+        shared.targets.rest();
         self.offsets.stay();
         shared.refused = true;
         self.stuck = true;

@@ -95,7 +95,7 @@ fields! {
         /// It is a fault after this time.
         residual_time_s ["s"]: 1.25e-4..=10.0 = 0.1;
         /// The most that the mean of what forward kinematics leaves over may change without a motion or a load that explains it.
-        residual_change_m ["m"]: 1e-7..=0.1 = 8e-6;
+        residual_change_m ["m"]: 1e-7..=0.1 = 9e-6;
         /// A load cell whose code has not changed for this time is stuck.
         stuck_time_s ["s"]: 1.25e-4..=10.0 = 0.02;
         /// A load cell whose code is not fresh for this time is stale.
