@@ -220,8 +220,7 @@ impl<T: Scalar> Estimator<T> {
     }
 
     /// Estimates the pose and, as `load_estimation` says, the load. `target_torsion`, rad, is the elastic one of a leg whose
-    /// tendons are slack; taut ones show it by themselves. The tendons are
-    /// longer than their tensions stretch them by `damped_m`, and what the leg's `turn` takes is no load.
+    /// tendons are slack; taut ones show it by themselves. What the leg's `turn` takes is no load.
     ///
     /// # Errors
     /// A tension beyond a tendon's curve; what forward kinematics refuses.
@@ -233,7 +232,6 @@ impl<T: Scalar> Estimator<T> {
         tensions_n: &[T; 3],
         target_torsion: T,
         load_estimation: LoadEstimation,
-        damped_m: &[T; 3],
         turn: &Turn<T>,
     ) -> Result<Estimate<T>, Error> {
         let (mut lengths, mut pull) = (SVector::<T, 3>::zeros(), SVector::<T, 3>::zeros());
@@ -241,7 +239,7 @@ impl<T: Scalar> Estimator<T> {
         for (i, tendon) in mechanism.tendons.iter().enumerate() {
             // A slack tendon is as long as it is; noise does not make it push.
             pull[i] = max(tensions_n[i], T::zero());
-            elongations_m[i] = tendon.elongation(pull[i])? + damped_m[i];
+            elongations_m[i] = tendon.elongation(pull[i])?;
             lengths[i] = unstretched_m[i] + elongations_m[i];
         }
         let slack = load_estimation == LoadEstimation::Slack;

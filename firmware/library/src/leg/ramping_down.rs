@@ -153,9 +153,7 @@ mod tests {
         let lengths = inverse_kinematics(geometry, &direction).unwrap().lengths;
         let (slack, still) = (LoadEstimation::Slack, Turn::none());
         let (estimator, lengths) = (&mut shared.estimator, lengths.into());
-        let found = estimator.update(
-            mechanism, &lengths, &[0.0; 3], 0.0, slack, &[0.0; 3], &still,
-        );
+        let found = estimator.update(mechanism, &lengths, &[0.0; 3], 0.0, slack, &still);
         found.unwrap();
     }
 

@@ -225,7 +225,7 @@ impl<T: Scalar> Shared<T> {
         Some(unstretched_m)
     }
 
-    /// Estimates pose and load of a leg that shall turn so.
+    /// Estimates pose and load of a leg that shall turn so, and whose tendons are longer than their tensions show as the last target says.
     #[inline(never)]
     pub fn estimate(
         &mut self,
@@ -233,16 +233,18 @@ impl<T: Scalar> Shared<T> {
         load_estimation: LoadEstimation,
         turn: &Turn<T>,
     ) -> Result<(), Error> {
-        let Some(unstretched_m) = self.unstretched_m(measured) else {
+        let Some(mut unstretched_m) = self.unstretched_m(measured) else {
             return Err(Error::NotConverged);
         };
+        for (unstretched, &damped) in unstretched_m.iter_mut().zip(self.targets.damped_m()) {
+            *unstretched += damped;
+        }
         let estimate = self.estimator.update(
             &self.mechanism,
             &unstretched_m,
             &measured.steady_tensions_n,
             self.targets.torsion(),
             load_estimation,
-            self.targets.damped_m(),
             turn,
         )?;
         self.estimate = Some(estimate);

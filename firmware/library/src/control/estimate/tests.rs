@@ -32,7 +32,6 @@ fn a_pose_is_found_in_one_cycle() {
                     &[70.0; 3],
                     0.0,
                     slack,
-                    &[0.0; 3],
                     &Turn::none(),
                 )
                 .unwrap();
@@ -70,7 +69,6 @@ fn a_push_that_twists_a_leg_moves_neither_the_pose_nor_the_length_error() {
                 &tensions,
                 0.0,
                 load,
-                &[0.0; 3],
                 &Turn::none(),
             );
             estimate = Some(found.unwrap());
@@ -125,16 +123,8 @@ fn a_push_is_taken_up_as_the_mode_allows() {
             let lengths_m = [other, free, free];
             let tensions_n = [80.0, 70.0, 70.0];
             let load = LoadEstimation::Filtered;
-            let (undamped, still) = ([0.0; 3], Turn::none());
-            let found = estimator.update(
-                &mechanism,
-                &lengths_m,
-                &tensions_n,
-                0.0,
-                load,
-                &undamped,
-                &still,
-            );
+            let still = Turn::none();
+            let found = estimator.update(&mechanism, &lengths_m, &tensions_n, 0.0, load, &still);
             found.unwrap();
             let [x, y] = estimator.excess_nm(&mechanism);
             x.hypot(y)
