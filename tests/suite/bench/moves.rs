@@ -73,9 +73,13 @@ fn the_tip_comes_to_rest_on_a_leg_unlike_its_settings() {
             rigs: vec![(unlike.into(), RigFile::parse(unlike, &text).unwrap())],
             payload_kg: None,
         };
-        let [off_mm, swing_mm, settled_s, rest_mm] = largest(&campaign);
+        let [off_mm, swing_mm, found_s, rest_mm] = largest(&campaign);
+        let settled_s = match unlike {
+            "no play" => NO_PLAY_SETTLED_S,
+            _ => UNLIKE_SETTLED_S,
+        };
         assert!(off_mm < UNLIKE_OFF_MM && rest_mm < 0.03);
-        assert!(swing_mm < UNLIKE_SWING_MM && settled_s < UNLIKE_SETTLED_S);
+        assert!(swing_mm < UNLIKE_SWING_MM && found_s < settled_s);
     }
 }
 
@@ -83,6 +87,9 @@ fn the_tip_comes_to_rest_on_a_leg_unlike_its_settings() {
 const UNLIKE_OFF_MM: f64 = 0.375;
 const UNLIKE_SWING_MM: f64 = 0.15;
 const UNLIKE_SETTLED_S: f64 = 0.6;
+
+/// The same for a leg without the play that its settings say: what is left is corrected slowly at rest.
+const NO_PLAY_SETTLED_S: f64 = 1.0;
 
 /// The largest of moves from where the payload shows: off the trajectory and swing, mm, time to rest, s, and off the commanded point at
 /// rest, mm.

@@ -255,7 +255,7 @@ fn a_cell_that_steps_against_the_others_stops_the_leg_at_once() {
     require_within(7301, &[(2827, "cell_offset_step", 0.1)]);
     require_within(
         1202,
-        &[(551, "cell_gain_step", 1.0), (9384, "cell_pwm_noise", 1.5)],
+        &[(551, "cell_gain_step", 1.0), (9384, "cell_pwm_noise", 3.0)],
     );
     require_within(4711, &[(2472, "cell_pwm_noise", 3.0)]);
     require_within(7302, &[(674, "cell_pwm_noise", 1.5)]);
