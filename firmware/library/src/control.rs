@@ -10,10 +10,12 @@ mod friction;
 mod homing;
 mod inertia;
 mod jog_bounds;
+mod load_estimate;
 mod magnitude;
 mod measure;
 mod mechanism;
 mod payload_estimate;
+mod payload_moments;
 mod plan;
 mod play;
 mod pretension;
@@ -30,12 +32,13 @@ mod unloaded;
 pub use axis::{Axis, AxisGoal, AxisInput, AxisView};
 pub use damping::SwingDamping;
 pub use debounce::Debounce;
-pub use estimate::{Estimate, Estimator, LengthError, LoadEstimate, LoadEstimation};
+pub use estimate::{Estimate, Estimator, LengthError};
 pub use filter::LowPass;
 pub use friction::{FRICTION_ALLOWANCE, Friction, PULL_ALLOWANCE};
 pub use homing::{HaulLimit, HomingSequence, HomingStep};
 pub use inertia::Turn;
 pub use jog_bounds::{JOG_RISE_S, JOG_TIME_MAX_S, JogBounds, step_range_m};
+pub use load_estimate::{LoadEstimate, LoadEstimation};
 pub use magnitude::{Applied, Magnitude, SHOWN_PART};
 pub use measure::{Measured, Measurement, ZERO_READINGS};
 pub use mechanism::Mechanism;
@@ -60,6 +63,9 @@ pub const CYCLE_TICKS: u8 = 4;
 
 /// Time of a cycle, s.
 pub const CYCLE_S: f32 = CYCLE_TICKS as f32 * TICK_S;
+
+/// Time of two cycles, s: the offsets of the lengths and the load have one of them, the search for the pretension the other.
+pub const SLOW_STEP_S: f32 = 2.0 * CYCLE_S;
 
 /// Ticks in a time in s, at least one.
 #[must_use]

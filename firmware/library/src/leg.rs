@@ -22,7 +22,7 @@ mod station;
 
 pub use command_queue::CommandOutcome;
 
-use crate::control::{Axis, LoadEstimation, Magnitude, Measured, Measurement, Turn};
+use crate::control::{Axis, LoadEstimation, Magnitude, Measured, Measurement};
 use crate::drive::Drive;
 use crate::jog::JogEnd;
 use crate::sensors::Sensors;
@@ -204,7 +204,7 @@ impl<T: Scalar> Leg<T> {
         // The estimate goes on although nothing uses it, so that the leg starts from where it is.
         if self.phase == Phase::Estimate && shared.zero_m.is_some() {
             shared.targets.rest();
-            let found = shared.estimate(measured, LoadEstimation::Immediate, &Turn::none());
+            let found = shared.estimate(measured, LoadEstimation::Immediate);
             if found.is_err() {
                 // The last pose stands, but nothing is compared with it.
                 shared.estimate = None;

@@ -1,8 +1,9 @@
 //! Damping of the leg's own swing: the tendons brake how the leg deviates from its trajectory.
 
 use super::{
+    SLOW_STEP_S,
     bounds::{clamp_symmetric, min},
-    swing_speed::{FAST_GAIN, STEP_S, SwingFilter, SwingSpeed},
+    swing_speed::{FAST_GAIN, SwingFilter, SwingSpeed},
 };
 use crate::settings::Settings;
 use leg_model::Scalar;
@@ -43,13 +44,13 @@ const RINGS_DOWN: f32 = 0.7;
 
 /// A leg that swings at rest for so many steps, 1.2 s, and does not ring down meanwhile, does so by itself: at 3 Hz with a damping ratio
 /// of 0.02, the least that tendons and joint have without the brake, it rings down to that part in half a second.
-const SWINGING_STEPS: u16 = (1.2 / STEP_S) as u16;
+const SWINGING_STEPS: u16 = (1.2 / SLOW_STEP_S) as u16;
 
 /// A swing that is this many times as large as its mean, as squares, grows: one that stays is twice as large where it is fastest.
 const GROWS: f32 = 3.0;
 
 /// Steps after which the mean has followed a swing that has begun so far that no more than growth makes it exceed that.
-const FOLLOWED_STEPS: u16 = (MEAN_S / STEP_S) as u16;
+const FOLLOWED_STEPS: u16 = (MEAN_S / SLOW_STEP_S) as u16;
 
 /// A step in which the swing grows counts for so many from then on: two load cells on each other's tendon have the brake drive the swing,
 /// which grows tenfold in 0.7 s.
@@ -119,7 +120,7 @@ impl<T: Scalar> SwingDamping<T> {
         for &length_m in swing_m {
             square += length_m * length_m;
         }
-        self.mean_square += (square - self.mean_square) * T::from(STEP_S / MEAN_S);
+        self.mean_square += (square - self.mean_square) * T::from(SLOW_STEP_S / MEAN_S);
         let decayed = self.mean_square < self.highest_square * T::from(RINGS_DOWN);
         if decayed || self.mean_square > self.highest_square {
             self.highest_square = self.mean_square;

@@ -1,10 +1,7 @@
 //! How fast a tendon's length swings with the leg's first mode, as a length: the speed by the angular frequency of the mode.
 
-use super::CYCLE_S;
+use super::SLOW_STEP_S;
 use leg_model::Scalar;
-
-/// Time between two steps, s: every other cycle.
-pub const STEP_S: f32 = 2.0 * CYCLE_S;
 
 /// The two fast poles by the angular frequency of the mode. Faster ones pass more of what motors and tendons do above the mode, which takes
 /// gain margin of the loops; slower ones lag more above it, which takes phase margin (`the_loops_keep_their_margins`).
@@ -38,7 +35,7 @@ impl<T: Scalar> SwingFilter<T> {
     #[inline(always)]
     pub fn new(time_constant_s: T) -> Self {
         let share = |pole: f32| {
-            let step = T::from(STEP_S * pole);
+            let step = T::from(SLOW_STEP_S * pole);
             step / (step + time_constant_s)
         };
         Self {
@@ -81,7 +78,7 @@ impl<T: Scalar> SwingSpeed<T> {
 
 #[cfg(test)]
 mod tests {
-    use super::{FAST_GAIN, STEP_S, SwingFilter, SwingSpeed};
+    use super::{FAST_GAIN, SLOW_STEP_S, SwingFilter, SwingSpeed};
 
     /// Time constant of a mode of 4 Hz, s.
     const TIME_CONSTANT_S: f64 = 0.04;
@@ -91,7 +88,7 @@ mod tests {
     fn shown(faster: f64) -> (f64, f64) {
         let filter = SwingFilter::new(TIME_CONSTANT_S);
         let mut speed = SwingSpeed::new(0.0);
-        let step_rad = faster * f64::from(STEP_S) / TIME_CONSTANT_S;
+        let step_rad = faster * f64::from(SLOW_STEP_S) / TIME_CONSTANT_S;
         let period = core::f64::consts::TAU / step_rad;
         let (begin, end) = ((40.0 * period) as u32, (60.0 * period) as u32);
         let (mut along, mut across) = (0.0, 0.0);
@@ -140,7 +137,7 @@ mod tests {
     fn a_steady_speed_shows_little() {
         let filter = SwingFilter::new(TIME_CONSTANT_S);
         let mut speed = SwingSpeed::new(0.0);
-        let grows_m = |i: u32| f64::from(i) * f64::from(STEP_S);
+        let grows_m = |i: u32| f64::from(i) * f64::from(SLOW_STEP_S);
         let shown = (0..1000).map(|i| speed.step(grows_m(i), &filter)).last();
         assert!(shown.is_some_and(|shown_m| shown_m.abs() < 2.0 * TIME_CONSTANT_S));
     }

@@ -83,6 +83,7 @@ impl<T: Scalar> Active<T> {
             // In turn, for each takes most of the time that is left.
             Phase::Pretension => {
                 if self.offsets.take_turn() {
+                    shared.estimate_load(self.trajectory.turn());
                     self.offsets.step(shared, self.tensioned, &mut self.station);
                     if self.tensioned {
                         shared.feed_friction();
@@ -235,7 +236,7 @@ impl<T: Scalar> Active<T> {
             self.tensioned =
                 self.slack.taken_up() && tensions_n.iter().all(|&tension| tension > least_n);
         }
-        shared.estimate(measured, load_estimation, self.trajectory.turn())
+        shared.estimate(measured, load_estimation)
     }
 
     /// Computes the next target, and leads the axes there.
@@ -252,8 +253,8 @@ impl<T: Scalar> Active<T> {
         let demand = TargetDemand {
             q: self.trajectory.step(),
             turn: self.trajectory.turn(),
-            payload_kg: shared.estimator.moved_kg(),
-            load: shared.estimator.load(),
+            payload_kg: shared.estimator.load.moved_kg(),
+            load: shared.estimator.load.estimate(),
             compensated: shared.compensation != Compensation::Off,
             trimmed: shared.compensation == Compensation::Estimated && self.tensioned,
             // The pretension comes up when every tendon is as far from slack as every other.
@@ -337,7 +338,7 @@ impl<T: Scalar> Active<T> {
 #[inline(never)]
 fn search_pretension<T: Scalar>(shared: &mut Shared<T>) -> Result<(), Error> {
     if let Some(target) = &shared.target {
-        let payload_kg = shared.estimator.payload_kg();
+        let payload_kg = shared.estimator.load.payload_kg();
         let search = &mut shared.pretension;
         let stiffnesses_n_per_m = search.step(&shared.mechanism, target, payload_kg)?;
         shared.targets.set_stiffnesses(&stiffnesses_n_per_m);

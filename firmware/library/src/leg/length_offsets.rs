@@ -51,10 +51,10 @@ impl<T: Scalar> LengthOffsets<T> {
         station: &mut StationKeeping<T>,
     ) {
         let mut goals_m = if tensioned {
-            let known = shared.mechanism.inertia(shared.estimator.payload_kg());
+            let known = shared.mechanism.inertia(shared.estimator.load.payload_kg());
             let known_s = first_mode_s(shared, known);
-            shared.estimator.follow_mode(known_s);
-            let likely_kg = shared.estimator.likely_payload_kg();
+            shared.estimator.load.follow_mode(known_s);
+            let likely_kg = shared.estimator.load.likely_payload_kg();
             let inertia = shared.mechanism.inertia(likely_kg);
             let time_constant_s = first_mode_s(shared, inertia);
             brake_m(shared, inertia, time_constant_s)

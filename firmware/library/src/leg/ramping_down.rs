@@ -99,7 +99,7 @@ fn slack_m<T: Scalar>(shared: &Shared<T>) -> Option<[T; 3]> {
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::{RampingDown, goals};
-    use crate::control::{CYCLE_TICKS, LoadEstimation, Measured, Turn};
+    use crate::control::{CYCLE_TICKS, LoadEstimation, Measured};
     use crate::leg::phase::Phase;
     use crate::leg::shared::{Checked, Shared};
     use crate::settings::Settings;
@@ -151,9 +151,9 @@ mod tests {
         let (mechanism, mut twisted) = (&shared.mechanism, None);
         let geometry = mechanism.geometry(&direction, 0.0, &mut twisted);
         let lengths = inverse_kinematics(geometry, &direction).unwrap().lengths;
-        let (slack, still) = (LoadEstimation::Slack, Turn::none());
+        let slack = LoadEstimation::Slack;
         let (estimator, lengths) = (&mut shared.estimator, lengths.into());
-        let found = estimator.update(mechanism, &lengths, &[0.0; 3], 0.0, slack, &still);
+        let found = estimator.update(mechanism, &lengths, &[0.0; 3], 0.0, slack);
         found.unwrap();
     }
 

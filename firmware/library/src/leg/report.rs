@@ -65,7 +65,7 @@ impl<T: Scalar> Leg<T> {
                 .map_or(T::zero(), |target| target.pretension_n),
             stiffness_nm_per_rad: shared.pretension.stiffness_nm_per_rad(),
             load_nm: shared.estimator.excess_nm(&shared.mechanism),
-            payload_kg: shared.estimator.payload_kg(),
+            payload_kg: shared.estimator.load.payload_kg(),
             unstretched_at_zero_m: shared.zero_m.unwrap_or(zero),
         }
     }

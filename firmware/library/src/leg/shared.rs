@@ -225,13 +225,12 @@ impl<T: Scalar> Shared<T> {
         Some(unstretched_m)
     }
 
-    /// Estimates pose and load of a leg that shall turn so, and whose tendons are longer than their tensions show as the last target says.
+    /// Estimates the pose of a leg whose tendons are longer than their tensions show as the last target says, and takes the load.
     #[inline(never)]
     pub fn estimate(
         &mut self,
         measured: &Measured<T>,
         load_estimation: LoadEstimation,
-        turn: &Turn<T>,
     ) -> Result<(), Error> {
         let Some(mut unstretched_m) = self.unstretched_m(measured) else {
             return Err(Error::NotConverged);
@@ -245,10 +244,18 @@ impl<T: Scalar> Shared<T> {
             &measured.steady_tensions_n,
             self.targets.torsion(),
             load_estimation,
-            turn,
         )?;
         self.estimate = Some(estimate);
         Ok(())
+    }
+
+    /// A step of the load of a leg that shall turn so.
+    #[inline(never)]
+    pub fn estimate_load(&mut self, turn: &Turn<T>) {
+        if let Some(target) = &self.target {
+            self.estimator
+                .step_load(&self.mechanism, &target.direction, turn);
+        }
     }
 
     /// What forward kinematics left over in the last estimate, m.

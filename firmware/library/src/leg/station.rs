@@ -1,11 +1,8 @@
 //! Keeping station: the load is compensated where the leg was left, slowly and not far.
 
-use crate::control::CYCLE_S;
+use crate::control::SLOW_STEP_S;
 use crate::settings::Settings;
 use leg_model::Scalar;
-
-/// Time between two steps, s: those of the brake, in whose turn there is time.
-const STEP_S: f32 = 2.0 * CYCLE_S;
 
 /// Fastest correction at the tip of a leg that hangs straight down, m/s; at a tilt of 30° it is up to 2 mm/s, for the levers of the
 /// tendons are shorter there.
@@ -38,7 +35,7 @@ impl<T: Scalar> StationLimits<T> {
         let lever_m = Scalar::sqrt(0.5 * squares);
         let per_tip = lever_m / (rig.joint_length_m + rig.leg_length_m);
         let square = |length_m: f32| T::from(length_m * length_m);
-        let step_m = TIP_M_PER_S * per_tip * STEP_S;
+        let step_m = TIP_M_PER_S * per_tip * SLOW_STEP_S;
         Self {
             allowed: settings.keeps_station,
             step_m: step_m.into(),

@@ -22,11 +22,11 @@ const SHOWN: MoveBars = MoveBars {
     rest_mm: 0.02,
 };
 
-/// A move from straight down with a payload that nothing has shown yet: it is found on the way, later at low pretension.
+/// A move from straight down with a payload that nothing has shown yet: it is found on the way.
 const HIDDEN: MoveBars = MoveBars {
-    off_mm: 1.5,
-    swing_mm: 0.7,
-    settled_s: 2.0,
+    off_mm: 0.4,
+    swing_mm: 0.2,
+    settled_s: 0.8,
     rest_mm: 0.02,
 };
 

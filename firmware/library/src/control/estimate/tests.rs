@@ -26,14 +26,7 @@ fn a_pose_is_found_in_one_cycle() {
             let mut estimator = Estimator::new(&settings);
             let slack = LoadEstimation::Slack;
             let found = estimator
-                .update(
-                    &mechanism,
-                    &unstretched_m,
-                    &[70.0; 3],
-                    0.0,
-                    slack,
-                    &Turn::none(),
-                )
+                .update(&mechanism, &unstretched_m, &[70.0; 3], 0.0, slack)
                 .unwrap();
             let off = found.direction.vector() - direction.vector();
             assert!(off.dot(&off) < 1e-12, "{support:?}, {azimuth_deg}°: {off}");
@@ -63,14 +56,8 @@ fn a_push_that_twists_a_leg_moves_neither_the_pose_nor_the_length_error() {
         let mut estimate = None;
         for _ in 0..200 {
             let (tensions, load) = (tensions.into(), LoadEstimation::Filtered);
-            let found = estimator.update(
-                &mechanism,
-                &unstretched_m,
-                &tensions,
-                0.0,
-                load,
-                &Turn::none(),
-            );
+            let found = estimator.update(&mechanism, &unstretched_m, &tensions, 0.0, load);
+            estimator.step_load(&mechanism, &direction, &Turn::none());
             estimate = Some(found.unwrap());
         }
         let estimate = estimate.unwrap();
@@ -115,17 +102,18 @@ fn a_push_is_taken_up_as_the_mode_allows() {
     let elongation = mechanism.tendons[0].elongation(70.0).unwrap();
     let pulled = mechanism.tendons[0].elongation(80.0).unwrap();
     let [free, other] = [elongation, pulled].map(|stretch| kinematics.lengths[0] - stretch);
-    // Cycles until half of a push shows in the load.
-    let cycles = |time_constant_s: f64| {
+    // Steps until half of a push shows in the load.
+    let steps = |time_constant_s: f64| {
         let mut estimator = Estimator::new(&settings);
-        estimator.follow_mode(time_constant_s);
+        estimator.load.follow_mode(time_constant_s);
         let mut push_nm = move || {
             let lengths_m = [other, free, free];
             let tensions_n = [80.0, 70.0, 70.0];
             let load = LoadEstimation::Filtered;
             let still = Turn::none();
-            let found = estimator.update(&mechanism, &lengths_m, &tensions_n, 0.0, load, &still);
-            found.unwrap();
+            let found = estimator.update(&mechanism, &lengths_m, &tensions_n, 0.0, load);
+            let direction = found.unwrap().direction;
+            estimator.step_load(&mechanism, &direction, &still);
             let [x, y] = estimator.excess_nm(&mechanism);
             x.hypot(y)
         };
@@ -134,7 +122,7 @@ fn a_push_is_taken_up_as_the_mode_allows() {
         assert!(half_nm > 0.1, "{half_nm}");
         pushes_nm.iter().position(|&nm| nm > half_nm).unwrap()
     };
-    let [fast, edge, slow] = [0.01, 0.03, 0.12].map(cycles);
+    let [fast, edge, slow] = [0.01, 0.03, 0.12].map(steps);
     assert_eq!(fast, edge);
     assert!(
         (2.0..4.0).contains(&(slow as f64 / edge as f64)),

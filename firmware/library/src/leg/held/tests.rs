@@ -57,7 +57,7 @@ fn a_leg_near_its_maximum_tension_is_braked_more_gently() {
             q: Direction::straight_down().half_tangent(),
             turn: &Turn::none(),
             payload_kg: 0.0,
-            load: shared.estimator.load(),
+            load: shared.estimator.load.estimate(),
             compensated: true,
             trimmed: false,
             pretension_n: 0.0,
