@@ -214,7 +214,8 @@ impl<T: Scalar> LoadEstimator<T> {
 }
 
 /// What neither weight nor inertia of a leg explains of a load, N·m, and the moment that 1 kg makes, N·m/kg, where it points and turns so.
-#[inline(always)]
+// Once in memory, and not beside the code of every tick.
+#[inline(never)]
 fn moments<T: Scalar>(
     mechanism: &Mechanism<T>,
     direction: &Direction<T>,

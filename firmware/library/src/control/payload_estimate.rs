@@ -13,23 +13,31 @@ const EARTH_M_PER_S2: f32 = 9.81;
 /// both.
 const SHOWN_SINE: f32 = 0.15;
 
+/// Sine of the tilt up to which a leg at rest shows nothing of its payload: 1.9°. What its tip is off there would be taken for one.
+const HIDDEN_SINE: f32 = 0.033;
+
 /// Variance of a payload of which nothing is known, kg²: a deviation of half of the 2 kg that the paper's leg carries.
 /// `tests/suite/bench/moves.rs` holds it.
 const UNKNOWN_KG2: f32 = 1.0;
 
 /// How much that grows in a step of a leg at rest, kg²: a payload of a leg that leans by 15° is followed with a
 /// time constant of 0.3 s.
-const CHANGE_KG2: f32 = 4e-8;
+const CHANGE_KG2: f32 = 1e-7;
 
-/// The same where nothing shows the payload, kg²: after two seconds it may have been changed.
+/// The same of a leg that leans so little that its payload hardly shows, kg²: one of a leg that leans by 5° is followed with a time constant
+/// of 0.2 s. At ten times as much a load cell that is 2 % off has the leg swing too far after a move.
+/// `tests/suite/bench/moves.rs` holds it.
+const LITTLE_SHOWN_CHANGE_KG2: f32 = 2e-6;
+
+/// The same where nothing shows the payload, kg²: after some seconds it may have been changed.
 const HIDDEN_CHANGE_KG2: f32 = 2e-4;
 
 /// The same of a leg that moves, kg²: then the friction of joint and tendons looks like a payload.
-const MOVING_CHANGE_KG2: f32 = 3e-9;
+const MOVING_CHANGE_KG2: f32 = 7e-9;
 
-/// Variance of a moment in a step, as a part of the square of that of 1 kg on a horizontal leg: a deviation of 1.4 %. At ten times as much
+/// Variance of a moment in a step, as a part of the square of that of 1 kg on a horizontal leg: a deviation of 2 %. At ten times as much
 /// a payload is found too late by a leg that sets out from straight down. `tests/suite/bench/moves.rs` holds it.
-const NOISE_PART: f32 = 2e-4;
+const NOISE_PART: f32 = 5e-4;
 
 /// Part of its variance, 1/kg, that is added to a payload for the inertia that is moved: where nothing has shown it, half of the 2 kg that
 /// the paper's leg carries is in the middle of what it may be. `tests/suite/bench/moves.rs` holds what that saves.
@@ -42,8 +50,9 @@ pub struct PayloadEstimate<T> {
     pub kg: T,
     variance_kg2: T,
     noise: T,
-    /// Square of the moment of 1 kg, N·m/kg, from which the payload shows.
+    /// Squares of the moment of 1 kg, N·m/kg, from which the payload shows, and up to which nothing does.
     shown: T,
+    hidden: T,
     /// What the tendons could hold at the farthest tilt; what pulls harder is a push.
     max_kg: T,
 }
@@ -53,7 +62,7 @@ impl<T: Scalar> PayloadEstimate<T> {
     pub fn new(settings: &Settings) -> Self {
         let rig = &settings.rig;
         let lever = EARTH_M_PER_S2 * (rig.joint_length_m + rig.leg_length_m);
-        let shown = lever * SHOWN_SINE;
+        let square = |sine: f32| T::from((lever * sine) * (lever * sine));
         let anchors = &rig.leg_anchors_m;
         let reach_m: f32 = anchors
             .iter()
@@ -64,7 +73,8 @@ impl<T: Scalar> PayloadEstimate<T> {
             kg: T::zero(),
             variance_kg2: T::from(UNKNOWN_KG2),
             noise: T::from(NOISE_PART * lever * lever),
-            shown: T::from(shown * shown),
+            shown: square(SHOWN_SINE),
+            hidden: square(HIDDEN_SINE),
             max_kg: T::from(held_nm / (lever * settings.tilt_max_sine)),
         }
     }
@@ -105,11 +115,17 @@ impl<T: Scalar> PayloadEstimate<T> {
         let before_kg = self.kg;
         let asked = moments.asked_per_kg;
         let square = dot(asked, asked);
-        let missing = dot(moments.excess, asked) - before_kg * dot(moments.per_kg, asked);
+        let missing = if moving || square > self.hidden {
+            dot(moments.excess, asked) - before_kg * dot(moments.per_kg, asked)
+        } else {
+            T::zero()
+        };
         let change = if moving {
             MOVING_CHANGE_KG2
         } else if square > self.shown {
             CHANGE_KG2
+        } else if square > self.hidden {
+            LITTLE_SHOWN_CHANGE_KG2
         } else {
             HIDDEN_CHANGE_KG2
         };

@@ -3,10 +3,9 @@
 use super::{SLOW_STEP_S, filter::TripleLowPass};
 use leg_model::Scalar;
 
-/// Time constant of each of three low-pass filters in series, s. The noise of the leg's own acceleration falls by its third power and more:
-/// at 0.008 it hides the payload of a leg with 13 N, whose mode is slow; at 0.02 a payload is found later.
-/// `tests/suite/bench/moves.rs` holds both.
-const FILTER_S: f32 = 0.008;
+/// Time constant of each of three low-pass filters in series, s. At 0.004 noise hides the payload of a leg with 13 N, whose mode is slow;
+/// at 0.01 a payload is found later. `tests/suite/bench/moves.rs` holds both.
+const FILTER_S: f32 = 0.006;
 
 /// Horizontal moments (x, y) of a load.
 #[derive(Clone, Copy, Debug, PartialEq)]

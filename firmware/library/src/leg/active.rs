@@ -83,7 +83,7 @@ impl<T: Scalar> Active<T> {
             // In turn, for each takes most of the time that is left.
             Phase::Pretension => {
                 if self.offsets.take_turn() {
-                    shared.estimate_load(self.trajectory.turn());
+                    shared.step_load(self.trajectory.turn());
                     self.offsets.step(shared, self.tensioned, &mut self.station);
                     if self.tensioned {
                         shared.feed_friction();

@@ -251,7 +251,7 @@ impl<T: Scalar> Shared<T> {
 
     /// A step of the load of a leg that shall turn so.
     #[inline(never)]
-    pub fn estimate_load(&mut self, turn: &Turn<T>) {
+    pub fn step_load(&mut self, turn: &Turn<T>) {
         if let Some(target) = &self.target {
             self.estimator
                 .step_load(&self.mechanism, &target.direction, turn);
