@@ -4,7 +4,6 @@
 mod tests;
 
 use super::activity::Activity;
-use super::cut_off::CutOff;
 use leg_sim::plant::Defect;
 use serde::Serialize;
 
@@ -13,7 +12,7 @@ const BEYOND: f64 = 0.1;
 
 /// The same where a moving leg is cut off: its motors stop at once, and it swings on with up to 2 kg, which adds the weight that it
 /// held back once more; and where a cell that is wrong comes to show the maximum tension on the way, which stops its motor as fast. One that is
-/// beyond it may do what it does by itself: see [`CutOff`].
+/// beyond it may do what it does by itself, and a tenth more: see `cut_off.rs`.
 const CUT_OFF_BEYOND: f64 = 0.4;
 
 /// The same where a tendon of a moving leg is cut: it swings away, and one of the other two catches it as it comes back. Each of these has
@@ -182,15 +181,6 @@ impl StrikeBars {
     /// Whether a strike by a defect is judged by a leg whose motors stop at once where that does more than these bars allow.
     pub(super) const fn may_be_those_of_a_cut_off(defect: Defect, activity: Activity) -> bool {
         activity.is_on_the_way() && cuts_off(defect)
-    }
-
-    /// Those, or what a leg does by itself that is cut off at the same moment.
-    pub(super) fn or_cut_off(self, cut_off: &CutOff) -> Self {
-        Self {
-            tension_n: self.tension_n.max(cut_off.tension_bar_n()),
-            tip_mm: self.tip_mm.max(cut_off.tip_bar_mm()),
-            ..self
-        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! What a moving leg does by itself whose motors stop at once.
 
+use super::bars::StrikeBars;
 use super::preparation::PreparedLeg;
 use leg_sim::plant::Defect;
 
@@ -39,13 +40,13 @@ impl CutOff {
         Ok(found)
     }
 
-    /// The highest tension that is allowed where it is judged by this, N.
-    pub fn tension_bar_n(&self) -> f64 {
-        (1.0 + MORE) * self.tension_n
-    }
-
-    /// How far the tip may go where it is judged by this, mm.
-    pub fn tip_bar_mm(&self) -> f64 {
-        (1.0 + MORE) * self.tip_mm
+    /// Bars, or what this leg does and a part more where that is wider.
+    pub fn or_bars(&self, bars: StrikeBars) -> StrikeBars {
+        let part = 1.0 + MORE;
+        StrikeBars {
+            tension_n: bars.tension_n.max(part * self.tension_n),
+            tip_mm: bars.tip_mm.max(part * self.tip_mm),
+            ..bars
+        }
     }
 }

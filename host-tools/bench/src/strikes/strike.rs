@@ -152,7 +152,7 @@ impl Struck {
             return bars;
         }
         match CutOff::new(prepared) {
-            Ok(cut_off) => bars.or_cut_off(&cut_off),
+            Ok(cut_off) => cut_off.or_bars(bars),
             Err(error) => {
                 self.failures.push(error);
                 bars
