@@ -319,7 +319,7 @@ impl<T: Scalar> Leg<T> {
         let trust = Trust {
             pose: self.agreement.watches() && !self.supervisor.stopped(),
             counters: !latched.overlaps(FaultSet::SUSPECT_COUNTERS),
-            motors: !latched.has(Fault::CurrentDisagrees),
+            motors: !latched.overlaps(FaultSet::HINDERED),
             cells: !latched.overlaps(FaultSet::SUSPECT_CELLS),
         };
         let momentum = self.mode.momentum(&self.shared, trust);

@@ -8,6 +8,7 @@ mod activity;
 mod bars;
 mod case;
 mod course;
+mod cut_off;
 mod false_alarms;
 mod preparation;
 mod push;

@@ -9,7 +9,6 @@ use nalgebra::Vector3;
 /// The faults in which what the leg concludes from its sensors may be wrong: a tendon, a load cell or an encoder may have failed.
 const DOUBTS: FaultSet = FaultSet::OF_CELLS
     .union(FaultSet::SUSPECT_COUNTERS)
-    .difference(FaultSet::single(Fault::LateTick))
     .union(FaultSet::single(Fault::CurrentDisagrees))
     .union(FaultSet::single(Fault::PoseLost));
 

@@ -287,3 +287,59 @@ fn a_leg_for_whose_load_there_is_no_target_does_not_sink() {
     require_within(1201, &[(521, "cell_gain_drift", 0.5)]);
     require_within(4711, &[(12_932, "cell_drifting", 0.8)]);
 }
+
+/// Strikes that failed once: a leg whose tick was late stopped its motors at once, and swung on with its payload to 219.6 N.
+#[test]
+fn a_leg_whose_tick_was_late_is_braked() {
+    require_within(12_001, &[(2221, "late_ticks", 0.5)]);
+    require_within(501, &[(18_855, "late_ticks", 0.5)]);
+}
+
+/// Strikes that failed once: motors pulled for 0.15 s against the hand that held the tip, to 309.6 N, and one went on to lift a leg that homed
+/// by 3.8 mm after its supply had dipped.
+#[test]
+fn a_leg_that_is_held_by_a_hand_or_homes_is_braked_shortly() {
+    require_within(7302, &[(811, "leg_grasped", 1.0)]);
+    require_within(12_001, &[(829, "supply_dip", 0.5)]);
+}
+
+/// A leg that is cut off on its way is judged by what it does by itself, where that is beyond the bars of every leg, and by nothing else.
+#[test]
+fn a_leg_that_is_cut_off_does_no_more_than_it_does_by_itself() {
+    for (seed, index, cut_off) in [
+        (12_001, 3234, true),
+        (501, 19_617, true),
+        (12_001, 2222, false),
+    ] {
+        let campaign = StrikeCampaign {
+            seed,
+            ..campaign("none")
+        };
+        let (struck, _) = campaign.repeat(index, 0.1);
+        assert!(struck.passes(), "{struck:?}");
+        let bars = struck.bars.unwrap();
+        assert!((bars.tension_n - 210.0).abs() < 1e-9);
+        if cut_off {
+            assert!(struck.tip_mm > 6.0 && bars.tip_mm < 1.15 * struck.tip_mm);
+        } else {
+            assert!((bars.tip_mm - 6.0).abs() < 1e-9);
+        }
+    }
+}
+
+/// Strikes that failed once, beyond bars that no firmware could have kept.
+#[test]
+fn what_cannot_be_braked_or_told_stays_within_its_bar() {
+    require_within(
+        12_001,
+        &[
+            (10_638, "cell_offset_step", 3.0),
+            (13_946, "cell_wanders", 3.5),
+            (16_553, "tendon_cut", 20.0),
+        ],
+    );
+    require_within(501, &[(18_857, "tendon_cut", 80.0)]);
+    require_within(903, &[(1447, "cell_wanders", 4.0)]);
+    require_within(1201, &[(522, "cell_gain_drift_down", 1.5)]);
+    require_within(7303, &[(1377, "cells_swapped", 20.0)]);
+}

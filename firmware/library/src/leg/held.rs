@@ -12,7 +12,7 @@ const BRAKE_S: f32 = 0.15;
 /// slower it is braked.
 const GENTLE_BRAKE_S: f32 = 0.2;
 
-/// The same where a motor may not obey, s: meanwhile the others pull against it. No leg on its way is braked in less.
+/// The same where a motor may not obey, or something holds the leg, s: meanwhile the motors pull against it. No leg on its way is braked in less.
 const SHORT_BRAKE_S: f32 = 0.06;
 
 /// The same of a leg at rest, s: its motors brake its swing, and go on by less than 0.1 mm.
@@ -36,7 +36,7 @@ pub struct Momentum<T> {
     /// How far each goes in a tick, m.
     pub steps_m: [T; 3],
     /// Ticks in which the path would have ended, if there is one: braked more slowly, the leg would go beyond its end. None are left of a
-    /// leg at rest.
+    /// leg at rest, and one of a leg that homes, which has no end to go to.
     pub ticks_to_end: Option<u32>,
 }
 
@@ -52,7 +52,8 @@ pub struct Held<T> {
 }
 
 impl<T: Scalar> Held<T> {
-    /// From what the motors do now; `obeyed`: whether every motor does what it is asked.
+    /// From what the motors do now; `obeyed`: whether every motor does what it is asked, and nothing
+    /// holds the leg.
     pub fn braking(shared: &Shared<T>, momentum: Momentum<T>, obeyed: bool) -> Self {
         let steps_m = momentum
             .steps_m

@@ -139,6 +139,8 @@ impl<T: Scalar> Mode<T> {
             // One at rest has no way to go: it stops what brakes its swing.
             Self::Active(active) if !active.trajectory.moving() => Some(0),
             Self::Active(active) => active.trajectory.ticks_to_end(),
+            // A tendon that comes taut while it is braked lifts the leg, which hangs free: as soon as may be.
+            Self::Homing(_) => Some(1),
             _ => None,
         };
         Momentum {
@@ -200,7 +202,7 @@ pub struct Trust {
     pub pose: bool,
     /// The counters: no fault is latched that they may cause.
     pub counters: bool,
-    /// The motors: none is known not to do what it is asked.
+    /// The motors: none is known not to do what it is asked, and nothing that holds the leg.
     pub motors: bool,
     /// The load cells: no fault is latched that one may cause.
     pub cells: bool,

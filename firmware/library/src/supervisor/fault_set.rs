@@ -34,8 +34,12 @@ impl FaultSet {
     pub const SUSPECT_COUNTERS: Self = Self::single(Fault::EncoderJump)
         .union(Self::single(Fault::EncoderStill))
         .union(Self::single(Fault::EncoderReversed))
-        .union(Self::single(Fault::Following))
-        .union(Self::single(Fault::LateTick));
+        .union(Self::single(Fault::Following));
+
+    /// Those in which the motors may pull against one that does not obey, or against what holds the leg: it is braked shortly. A hand that
+    /// holds the tip of a moving leg leaves a tendon slack first, while the others are stretched by all that their motors still go.
+    pub const HINDERED: Self =
+        Self::single(Fault::CurrentDisagrees).union(Self::single(Fault::Slack));
 
     /// Those that say that a counter has not counted its tendon: the zero goes with them.
     pub const LOSES_ZERO: Self =

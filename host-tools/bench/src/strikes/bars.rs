@@ -11,8 +11,21 @@ use serde::Serialize;
 const BEYOND: f64 = 0.1;
 
 /// The same where a moving leg is cut off: its motors stop at once, and it swings on with up to 2 kg, which adds the weight that it
-/// held back once more.
+/// held back once more; and where a cell that is wrong comes to show the maximum tension on the way, which stops its motor as fast. One that is
+/// beyond it may do what it does by itself, and a tenth more: see `cut_off.rs`.
 const CUT_OFF_BEYOND: f64 = 0.4;
+
+/// The same where a tendon of a moving leg is cut: it swings away, and one of the other two catches it as it comes back. Each of these has
+/// stored up to 0.10 J, at 150 N on the curve of the paper's tendon; at 0.8 rad/s 2 kg at 0.19 m have 0.02 J. Where one tendon takes up
+/// all of that, it is at 297 N. Nothing is driven by then: the brake has ended, and a cell without its bridge's supply shows the same.
+const CUT_BEYOND: f64 = 1.0;
+
+/// The same where two load cells change their places while the leg is driven. That is no single fault that happens by itself:
+/// both plugs have to be pulled and put back, each in the other's place, within a tick; homing finds cells that have changed their
+/// places before. Tensions and counters agree on another load, and the leg gives way by it and swings ever more, with up to 17 mm at the tip, until a
+/// true tension is a tenth above the maximum, or a tendon is slack: that swing goes on, whatever the motors do. How far it has grown by then
+/// depends on pose, load and moment, and no calculation bounds it closely: this is the highest that is known, 327 N, and 3 % more.
+const SWAPPED_BEYOND: f64 = 1.25;
 
 /// The same where half of a bridge is open: the other half still brakes.
 const HALF_OPEN_BEYOND: f64 = 0.25;
@@ -49,7 +62,11 @@ const REARMED_MM: f64 = 2.0;
 /// The same where a gain is 20 % off, which cannot be distinguished from a load, mm.
 const GAIN_MM: f64 = 1.1;
 
-/// The same where such a cell comes to show the maximum tension: its tendon is paid out, as under a load that is too heavy, until
+/// The same where it drifts down by that: what the cell lacks is 0.16 mm of a tendon's stretch at 70 to 150 N, on the curve of the paper's
+/// tendon, by which it is pulled in; a millimetre of it is 9.2 mm at the tip. 20 % more are 0.12 mm.
+const GAIN_DOWN_MM: f64 = 1.5;
+
+/// The same where a cell that grows, steps by 10 N or wanders comes to show the maximum tension: its tendon is paid out, as under a load that is too heavy, until
 /// another is slack, mm.
 const GAIN_AT_MAX_MM: f64 = 4.5;
 
@@ -57,7 +74,7 @@ const GAIN_AT_MAX_MM: f64 = 4.5;
 /// for the time until a counter contradicts.
 const SWAPPED_MM: f64 = 20.0;
 
-/// How far a moving leg may swing off its way that is cut off with its payload, mm.
+/// How far a moving leg may swing off its way that is cut off with its payload, mm: or as far as it does by itself.
 const CUT_OFF_MM: f64 = 6.0;
 
 /// How far a tendon that homing pulls, and whose cell or motor fails, may lift a leg that hangs free, mm: by what its motor can pull
@@ -146,13 +163,24 @@ impl StrikeBars {
         f_max_n: f64,
         before: &Unstruck,
     ) -> Self {
+        let at_max = defect.is_some_and(|defect| shows_maximum(defect, f_max_n, before.highest_n));
+        let (stopped_part, paid_out_mm) = match (at_max, activity.is_on_the_way()) {
+            (true, true) => (CUT_OFF_BEYOND, GAIN_AT_MAX_MM),
+            (true, false) => (0.0, GAIN_AT_MAX_MM),
+            (false, _) => (0.0, 0.0),
+        };
         Self {
-            tension_n: f_max_n * (1.0 + excess_part(defect, activity)),
+            tension_n: f_max_n * (1.0 + excess_part(defect, activity).max(stopped_part)),
             homing_n: HOMING_N,
-            tip_mm: tip_mm(defect, activity).max(gain_at_max_mm(defect, f_max_n, before.highest_n)),
+            tip_mm: tip_mm(defect, activity).max(paid_out_mm),
             named_s: defect.and_then(|defect| named_s(defect, activity, before)),
             sags: defect == Some(Defect::CellsSwapped),
         }
+    }
+
+    /// Whether a strike by a defect is judged by a leg whose motors stop at once where that does more than these bars allow.
+    pub(super) const fn may_be_those_of_a_cut_off(defect: Defect, activity: Activity) -> bool {
+        activity.is_on_the_way() && cuts_off(defect)
     }
 }
 
@@ -164,7 +192,12 @@ fn excess_part(defect: Option<Defect>, activity: Activity) -> f64 {
         Some(Defect::TendonSlips(_)) => SLIP_BEYOND,
         Some(Defect::DirectionStuck(_)) => STUCK_BEYOND,
         Some(Defect::LegGrasped) => GRASPED_BEYOND,
-        Some(Defect::CellsSwapped) => CUT_OFF_BEYOND,
+        Some(Defect::CellsSwapped) => SWAPPED_BEYOND,
+        Some(Defect::TendonCut(_))
+            if matches!(activity, Activity::Moving | Activity::RampingDown) =>
+        {
+            CUT_BEYOND
+        }
         Some(defect) if is_slow(defect, activity) => BEYOND,
         Some(Defect::HalfBridgeOpen(_)) if activity.is_on_the_way() => HALF_OPEN_BEYOND,
         Some(defect) if activity.is_on_the_way() && cuts_off(defect) => CUT_OFF_BEYOND,
@@ -194,7 +227,7 @@ const fn cuts_off(defect: Defect) -> bool {
             | Defect::EncoderJumps(_)
             | Defect::EncoderSlipsQuarter(_)
             | Defect::EncodersSwapped
-            | Defect::LateTicks
+            // A board finds that at its start alone; a simulated leg is cut off by it on its way, too.
             | Defect::SettingsCorrupt
     )
 }
@@ -236,19 +269,18 @@ const fn is_found_at_once(defect: Defect) -> bool {
     )
 }
 
-/// How far the tip may go where a cell that shows ever more comes to the maximum tension, mm.
-fn gain_at_max_mm(defect: Option<Defect>, f_max_n: f64, highest_n: [f64; 3]) -> f64 {
+/// Whether a cell that is wrong comes to show the maximum tension.
+fn shows_maximum(defect: Defect, f_max_n: f64, highest_n: [f64; 3]) -> bool {
     let shows_n = match defect {
-        Some(Defect::CellGainDrift(i)) => 1.2 * highest_n[i],
+        Defect::CellGainDrift(i) => 1.2 * highest_n[i],
         // 5 N in a second, for the time in which it is to be named.
-        Some(Defect::CellDrifting(i)) => highest_n[i] + 5.0 * DRIFTS_S,
-        _ => return 0.0,
+        Defect::CellDrifting(i) => highest_n[i] + 5.0 * DRIFTS_S,
+        Defect::CellOffsetStep(i) => highest_n[i] + 10.0,
+        // 20 N in a second, by its root, for the time in which it is to be named.
+        Defect::CellWanders(i) => highest_n[i] + 20.0 * WANDERS_S.sqrt(),
+        _ => return false,
     };
-    if shows_n > f_max_n {
-        GAIN_AT_MAX_MM
-    } else {
-        0.0
-    }
+    shows_n > f_max_n
 }
 
 /// How far the tip may go, mm.
@@ -290,12 +322,12 @@ fn tip_mm(defect: Option<Defect>, activity: Activity) -> f64 {
             Defect::CellGainStep(_)
             | Defect::CellGainStepDown(_)
             | Defect::CellGainDrift(_)
-            | Defect::CellGainDriftDown(_)
             | Defect::CellCrosstalk(_)
             | Defect::CellWanders(_)
             | Defect::CellDrifting(_)
             | Defect::ExcitationSags,
         ) => GAIN_MM,
+        Some(Defect::CellGainDriftDown(_)) => GAIN_DOWN_MM,
         _ => usual_mm,
     };
     usual_mm.max(least_mm)

@@ -3,6 +3,7 @@
 use super::activity::Activity;
 use super::bars::StrikeBars;
 use super::case::Case;
+use super::cut_off::CutOff;
 use super::preparation::PreparedLeg;
 use super::way::Way;
 use crate::stand::Stand;
@@ -137,6 +138,28 @@ impl Struck {
         self.failures.is_empty()
     }
 
+    /// The bars of one that is beyond them, where no firmware could have braked it.
+    fn bars_by_cut_off(
+        &mut self,
+        prepared: &PreparedLeg,
+        defect: Option<Defect>,
+        bars: StrikeBars,
+    ) -> StrikeBars {
+        let within = self.tension_n <= bars.tension_n && self.tip_mm <= bars.tip_mm;
+        let cut_off =
+            defect.is_some_and(|defect| StrikeBars::may_be_those_of_a_cut_off(defect, self.state));
+        if within || !cut_off {
+            return bars;
+        }
+        match CutOff::new(prepared) {
+            Ok(cut_off) => cut_off.or_bars(bars),
+            Err(error) => {
+                self.failures.push(error);
+                bars
+            }
+        }
+    }
+
     fn judge(&mut self, bars: &StrikeBars, fault: bool) {
         let mut failures = Vec::new();
         if self.tension_n > bars.tension_n {
@@ -203,6 +226,7 @@ pub(super) fn strike(
             break;
         }
     }
+    let bars = watch.struck.bars_by_cut_off(prepared, strike.defect, bars);
     watch.struck.judge(&bars, strike.defect.is_some());
     (watch.struck, watch.moments)
 }

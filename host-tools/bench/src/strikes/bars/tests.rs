@@ -12,6 +12,8 @@ fn the_page_says_the_bars() {
             "{:.0} % where half of a bridge is open",
             100.0 * HALF_OPEN_BEYOND
         ),
+        format!("{:.0} % where a tendon of a moving leg", 100.0 * CUT_BEYOND),
+        format!("{:.0} % where two load cells", 100.0 * SWAPPED_BEYOND),
         format!("{:.0} % where a driver pulls", 100.0 * STUCK_BEYOND),
         format!("{:.0} % where a hand holds", 100.0 * GRASPED_BEYOND),
         format!("{:.0} % where a driver switches", 100.0 * RUNAWAY_BEYOND),
@@ -19,7 +21,10 @@ fn the_page_says_the_bars() {
         format!("{HOMING_N} N while homing"),
         format!("{REST_MM} mm; {REARMED_MM} mm where it is armed again"),
         format!("{GAIN_MM} mm where a gain is 20 % off, or a cell wanders or drifts"),
-        format!("{GAIN_AT_MAX_MM} mm where such a cell comes to show the maximum tension"),
+        format!("{GAIN_DOWN_MM} mm where it drifts down by that"),
+        format!(
+            "{GAIN_AT_MAX_MM} mm where a cell that grows, steps by 10 N or wanders comes to show the maximum tension"
+        ),
         format!("{CUT_OFF_MM} mm where a moving leg is cut off"),
         format!("{SWAPPED_MM} mm where two sensors"),
         format!("{WAY_MM} mm; {ASIDE_MM} mm while it is paid out, {LIFTED_MM} mm while homing"),
@@ -49,6 +54,8 @@ fn the_page_on_safety_says_how_far_beyond_the_maximum_tension() {
             "cut off from full speed: up to {} more",
             percent(CUT_OFF_BEYOND)
         ),
+        format!("catch it: up to {} more", percent(CUT_BEYOND)),
+        format!("by it: up to {} above the maximum", percent(SWAPPED_BEYOND)),
         format!(
             "switches on fully by itself: up to {} more",
             percent(RUNAWAY_BEYOND)

@@ -1,0 +1,52 @@
+//! What a moving leg does by itself whose motors stop at once.
+
+use super::bars::StrikeBars;
+use super::preparation::PreparedLeg;
+use leg_sim::plant::Defect;
+
+/// How long it is watched, s: its first mode has a period of a third of a second at the most, and its swing only decays.
+const WATCHED_S: f64 = 1.0;
+
+/// What a struck leg may do more than that, as a part of it: its motors stop some ticks later, or turn on a little.
+const MORE: f64 = 0.1;
+
+/// How far a leg goes by itself that is cut off where another is struck: by its speed, its payload and the stretch of its tendons, which
+/// no firmware brakes any more.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct CutOff {
+    /// Highest true tension, N.
+    tension_n: f64,
+    /// How far the tip is off its way, mm.
+    tip_mm: f64,
+}
+
+impl CutOff {
+    /// Of a leg whose drivers are switched off by their fault line.
+    ///
+    /// # Errors
+    /// As the simulation.
+    pub fn new(prepared: &PreparedLeg) -> Result<Self, String> {
+        let mut stand = prepared.stand.clone();
+        stand.plant().set_defect(Defect::DriverFault(0), true);
+        let end_s = stand.time_s() + WATCHED_S;
+        let mut found = Self::default();
+        while stand.time_s() < end_s {
+            stand.tick()?;
+            let tensions_n = stand.truth.tensions_n;
+            found.tension_n = tensions_n.into_iter().fold(found.tension_n, f64::max);
+            let tip_mm = prepared.way.distance_mm(&stand.truth.tip_m);
+            found.tip_mm = found.tip_mm.max(tip_mm);
+        }
+        Ok(found)
+    }
+
+    /// Bars, or what this leg does and a part more where that is wider.
+    pub fn or_bars(&self, bars: StrikeBars) -> StrikeBars {
+        let part = 1.0 + MORE;
+        StrikeBars {
+            tension_n: bars.tension_n.max(part * self.tension_n),
+            tip_mm: bars.tip_mm.max(part * self.tip_mm),
+            ..bars
+        }
+    }
+}
