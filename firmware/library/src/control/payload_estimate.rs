@@ -13,7 +13,7 @@ const EARTH_M_PER_S2: f32 = 9.81;
 /// both.
 const SHOWN_SINE: f32 = 0.15;
 
-/// Sine of the tilt up to which a leg at rest shows nothing of its payload: 1.9°. What its tip is off there would be taken for one.
+/// The same up to which it hardly does: 1.9°. What its load cells are off looks like a payload there.
 const HIDDEN_SINE: f32 = 0.033;
 
 /// Variance of a payload of which nothing is known, kg²: a deviation of half of the 2 kg that the paper's leg carries.
@@ -39,6 +39,9 @@ const MOVING_CHANGE_KG2: f32 = 7e-9;
 /// a payload is found too late by a leg that sets out from straight down. `tests/suite/bench/moves.rs` holds it.
 const NOISE_PART: f32 = 5e-4;
 
+/// The same of a leg at rest whose payload is hidden: by what its load cells are off it would find one within a second.
+const HIDDEN_NOISE_PART: f32 = 0.1;
+
 /// Part of its variance, 1/kg, that is added to a payload for the inertia that is moved: where nothing has shown it, half of the 2 kg that
 /// the paper's leg carries is in the middle of what it may be. `tests/suite/bench/moves.rs` holds what that saves.
 const MOVED_PART: f32 = 0.7;
@@ -49,7 +52,9 @@ pub struct PayloadEstimate<T> {
     /// Below zero where something lifts the leg.
     pub kg: T,
     variance_kg2: T,
+    /// Variances of a moment in a step, where something shows of the payload, and where it is hidden.
     noise: T,
+    hidden_noise: T,
     /// Squares of the moment of 1 kg, N·m/kg, from which the payload shows, and up to which nothing does.
     shown: T,
     hidden: T,
@@ -73,6 +78,7 @@ impl<T: Scalar> PayloadEstimate<T> {
             kg: T::zero(),
             variance_kg2: T::from(UNKNOWN_KG2),
             noise: T::from(NOISE_PART * lever * lever),
+            hidden_noise: T::from(HIDDEN_NOISE_PART * lever * lever),
             shown: square(SHOWN_SINE),
             hidden: square(HIDDEN_SINE),
             max_kg: T::from(held_nm / (lever * settings.tilt_max_sine)),
@@ -115,23 +121,19 @@ impl<T: Scalar> PayloadEstimate<T> {
         let before_kg = self.kg;
         let asked = moments.asked_per_kg;
         let square = dot(asked, asked);
-        let missing = if moving || square > self.hidden {
-            dot(moments.excess, asked) - before_kg * dot(moments.per_kg, asked)
-        } else {
-            T::zero()
-        };
-        let change = if moving {
-            MOVING_CHANGE_KG2
+        let missing = dot(moments.excess, asked) - before_kg * dot(moments.per_kg, asked);
+        let (change, noise) = if moving {
+            (MOVING_CHANGE_KG2, self.noise)
         } else if square > self.shown {
-            CHANGE_KG2
+            (CHANGE_KG2, self.noise)
         } else if square > self.hidden {
-            LITTLE_SHOWN_CHANGE_KG2
+            (LITTLE_SHOWN_CHANGE_KG2, self.noise)
         } else {
-            HIDDEN_CHANGE_KG2
+            (HIDDEN_CHANGE_KG2, self.hidden_noise)
         };
         let before = min(self.variance_kg2 + T::from(change), T::from(UNKNOWN_KG2));
-        let gain = before / (square * before + self.noise);
-        self.variance_kg2 = gain * self.noise;
+        let gain = before / (square * before + noise);
+        self.variance_kg2 = gain * noise;
         // A push near the vertical looks like less than nothing, the more the farther the leg gives way: it stays a push.
         let least_kg = if moving || square > self.shown {
             -self.max_kg
