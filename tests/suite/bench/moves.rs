@@ -89,7 +89,7 @@ const UNLIKE_SWING_MM: f64 = 0.15;
 const UNLIKE_SETTLED_S: f64 = 0.6;
 
 /// The same for a leg without the play that its settings say: what is left is corrected slowly at rest.
-const NO_PLAY_SETTLED_S: f64 = 1.0;
+const NO_PLAY_SETTLED_S: f64 = 1.5;
 
 /// The largest of moves from where the payload shows: off the trajectory and swing, mm, time to rest, s, and off the commanded point at
 /// rest, mm.

@@ -13,7 +13,7 @@ const EARTH_M_PER_S2: f32 = 9.81;
 /// both.
 const SHOWN_SINE: f32 = 0.15;
 
-/// The same up to which it hardly does: 1.9°. What its load cells are off looks like a payload there.
+/// The same at which a leg at rest shows half as much as it seems to: 1.9°. Below it, what load cells are off looks like a payload.
 const HIDDEN_SINE: f32 = 0.033;
 
 /// Variance of a payload of which nothing is known, kg²: a deviation of half of the 2 kg that the paper's leg carries.
@@ -21,15 +21,10 @@ const HIDDEN_SINE: f32 = 0.033;
 const UNKNOWN_KG2: f32 = 1.0;
 
 /// How much that grows in a step of a leg at rest, kg²: a payload of a leg that leans by 15° is followed with a
-/// time constant of 0.3 s.
-const CHANGE_KG2: f32 = 1e-7;
+/// time constant of 0.2 s. At half of that some heavy legs ring down by less than 0.2. `tests/suite/sim/ring_down.rs` holds it.
+const CHANGE_KG2: f32 = 2e-7;
 
-/// The same of a leg that leans so little that its payload hardly shows, kg²: one of a leg that leans by 5° is followed with a time constant
-/// of 0.2 s. At ten times as much a load cell that is 2 % off has the leg swing too far after a move.
-/// `tests/suite/bench/moves.rs` holds it.
-const LITTLE_SHOWN_CHANGE_KG2: f32 = 2e-6;
-
-/// The same where nothing shows the payload, kg²: after some seconds it may have been changed.
+/// How much it grows beside that where nothing shows the payload, kg²: after some seconds it may have been changed.
 const HIDDEN_CHANGE_KG2: f32 = 2e-4;
 
 /// The same of a leg that moves, kg²: then the friction of joint and tendons looks like a payload.
@@ -39,8 +34,8 @@ const MOVING_CHANGE_KG2: f32 = 7e-9;
 /// a payload is found too late by a leg that sets out from straight down. `tests/suite/bench/moves.rs` holds it.
 const NOISE_PART: f32 = 5e-4;
 
-/// The same of a leg at rest whose payload is hidden: by what its load cells are off it would find one within a second.
-const HIDDEN_NOISE_PART: f32 = 0.1;
+/// Square of what a moment may be off by the load cells of a leg at rest, (N·m)²: 0.04 N·m.
+const OFF_NM2: f32 = 1.6e-3;
 
 /// Part of its variance, 1/kg, that is added to a payload for the inertia that is moved: where nothing has shown it, half of the 2 kg that
 /// the paper's leg carries is in the middle of what it may be. `tests/suite/bench/moves.rs` holds what that saves.
@@ -52,10 +47,11 @@ pub struct PayloadEstimate<T> {
     /// Below zero where something lifts the leg.
     pub kg: T,
     variance_kg2: T,
-    /// Variances of a moment in a step, where something shows of the payload, and where it is hidden.
+    /// Its variance by what the load cells of a leg at rest may be off.
+    off_kg2: T,
+    /// Variance of a moment in a step.
     noise: T,
-    hidden_noise: T,
-    /// Squares of the moment of 1 kg, N·m/kg, from which the payload shows, and up to which nothing does.
+    /// Square of the moment of 1 kg, N·m/kg, from which the payload shows; and the square of that at which it shows half as much.
     shown: T,
     hidden: T,
     /// What the tendons could hold at the farthest tilt; what pulls harder is a push.
@@ -77,10 +73,10 @@ impl<T: Scalar> PayloadEstimate<T> {
         Self {
             kg: T::zero(),
             variance_kg2: T::from(UNKNOWN_KG2),
+            off_kg2: T::zero(),
             noise: T::from(NOISE_PART * lever * lever),
-            hidden_noise: T::from(HIDDEN_NOISE_PART * lever * lever),
             shown: square(SHOWN_SINE),
-            hidden: square(HIDDEN_SINE),
+            hidden: square(HIDDEN_SINE) * square(HIDDEN_SINE),
             max_kg: T::from(held_nm / (lever * settings.tilt_max_sine)),
         }
     }
@@ -88,7 +84,7 @@ impl<T: Scalar> PayloadEstimate<T> {
     /// The standard deviation, kg.
     #[inline(always)]
     pub fn deviation_kg(&self) -> T {
-        self.variance_kg2.sqrt()
+        max(self.variance_kg2, self.off_kg2).sqrt()
     }
 
     /// The payload whose inertia is moved, kg: by what may be hidden more than what is known. Nothing weighs less than nothing.
@@ -121,26 +117,37 @@ impl<T: Scalar> PayloadEstimate<T> {
         let before_kg = self.kg;
         let asked = moments.asked_per_kg;
         let square = dot(asked, asked);
+        let lag = [moments.per_kg[0] - asked[0], moments.per_kg[1] - asked[1]];
+        // Noise, or lengths that jump: a leg that lags turns less than it is asked to, and no other way.
+        if dot(lag, lag) > square * T::TWO {
+            return T::zero();
+        }
         let missing = dot(moments.excess, asked) - before_kg * dot(moments.per_kg, asked);
-        let (change, noise) = if moving {
-            (MOVING_CHANGE_KG2, self.noise)
-        } else if square > self.shown {
-            (CHANGE_KG2, self.noise)
-        } else if square > self.hidden {
-            (LITTLE_SHOWN_CHANGE_KG2, self.noise)
+        let (change, weight) = if moving {
+            (T::from(MOVING_CHANGE_KG2), T::one())
         } else {
-            (HIDDEN_CHANGE_KG2, self.hidden_noise)
+            let hidden = self.hidden / (square * square + self.hidden);
+            let change = T::from(CHANGE_KG2) + T::from(HIDDEN_CHANGE_KG2) * hidden;
+            (change, T::one() - hidden)
         };
-        let before = min(self.variance_kg2 + T::from(change), T::from(UNKNOWN_KG2));
-        let gain = before / (square * before + noise);
-        self.variance_kg2 = gain * noise;
+        let before = min(self.variance_kg2 + change, T::from(UNKNOWN_KG2));
+        let gain = before / (weight * square * before + self.noise);
+        self.variance_kg2 = gain * self.noise;
+        self.off_kg2 = if moving {
+            T::zero()
+        } else {
+            T::from(UNKNOWN_KG2 * OFF_NM2) / (square + T::from(OFF_NM2))
+        };
         // A push near the vertical looks like less than nothing, the more the farther the leg gives way: it stays a push.
         let least_kg = if moving || square > self.shown {
             -self.max_kg
         } else {
             T::zero()
         };
-        self.kg = max(min(before_kg + gain * missing, self.max_kg), least_kg);
+        self.kg = max(
+            min(before_kg + gain * weight * missing, self.max_kg),
+            least_kg,
+        );
         self.kg - before_kg
     }
 }

@@ -12,7 +12,8 @@ const BRAKE_S: f32 = 0.15;
 /// slower it is braked.
 const GENTLE_BRAKE_S: f32 = 0.2;
 
-/// The same where a motor may not obey, or something holds the leg, s: meanwhile the motors pull against it. No leg on its way is braked in less.
+/// The same where a motor may not obey, or something holds the leg, s: meanwhile the motors pull against it. No leg on its way is braked
+/// in less.
 const SHORT_BRAKE_S: f32 = 0.06;
 
 /// The same of a leg at rest, s: its motors brake its swing, and go on by less than 0.1 mm.
@@ -36,7 +37,7 @@ pub struct Momentum<T> {
     /// How far each goes in a tick, m.
     pub steps_m: [T; 3],
     /// Ticks in which the path would have ended, if there is one: braked more slowly, the leg would go beyond its end. None are left of a
-    /// leg at rest, and one of a leg that homes, which has no end to go to.
+    /// leg at rest.
     pub ticks_to_end: Option<u32>,
 }
 

@@ -139,8 +139,6 @@ impl<T: Scalar> Mode<T> {
             // One at rest has no way to go: it stops what brakes its swing.
             Self::Active(active) if !active.trajectory.moving() => Some(0),
             Self::Active(active) => active.trajectory.ticks_to_end(),
-            // A tendon that comes taut while it is braked lifts the leg, which hangs free: as soon as may be.
-            Self::Homing(_) => Some(1),
             _ => None,
         };
         Momentum {

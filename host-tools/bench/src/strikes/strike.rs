@@ -1,7 +1,7 @@
 //! One strike and its measures.
 
 use super::activity::Activity;
-use super::bars::StrikeBars;
+use super::bars::{StrikeBars, WANDERS_BY_N, shown_as};
 use super::case::Case;
 use super::cut_off::CutOff;
 use super::preparation::PreparedLeg;
@@ -9,9 +9,7 @@ use super::way::Way;
 use crate::stand::Stand;
 use leg_base::description;
 use leg_firmware::command::Command;
-use leg_firmware::settings::CurrentOutput;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
-use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Defect;
 use serde::Serialize;
 
@@ -70,7 +68,7 @@ pub struct Struck {
     pub tip_mm: f64,
     /// The first fault that the leg named.
     pub named: Option<&'static str>,
-    /// How long after the strike, s.
+    /// How long after the strike, or after a cell that wanders was off so far that it has to be named, s.
     pub named_s: Option<f64>,
     /// How long after the leg had stopped a motor was driven last, s; zero if none was 0.1 s after it.
     pub driven_s: f64,
@@ -210,6 +208,11 @@ pub(super) fn strike(
         case,
         way: &prepared.way,
         began_s: stand.time_s(),
+        wanders: match strike.defect {
+            Some(Defect::CellWanders(i)) => Some(i),
+            _ => None,
+        },
+        off_s: None,
         before: stand.faults(),
         stopped_s: None,
         given: 0,
@@ -229,18 +232,6 @@ pub(super) fn strike(
     let bars = watch.struck.bars_by_cut_off(prepared, strike.defect, bars);
     watch.struck.judge(&bars, strike.defect.is_some());
     (watch.struck, watch.moments)
-}
-
-/// The defect that a current output shows in the same way: where code 0 is no current, or nearly none, an output that is dead reads none.
-fn shown_as(defect: Defect, file: &RigFile) -> Defect {
-    match defect {
-        Defect::CurrentDead(i)
-            if file.actuators[i].current_output != CurrentOutput::Bidirectional =>
-        {
-            Defect::CurrentZero(i)
-        }
-        other => other,
-    }
 }
 
 fn watched_s(case: &Case, defect: Option<Defect>) -> f64 {
@@ -268,6 +259,9 @@ struct Watch<'a> {
     case: &'a Case,
     way: &'a Way,
     began_s: f64,
+    /// The tendon whose cell wanders, and when that is off so far that it has to be named, s.
+    wanders: Option<usize>,
+    off_s: Option<f64>,
     /// Faults that were there before.
     before: FaultSet,
     /// Since when the leg has stopped after a fault.
@@ -340,12 +334,17 @@ impl Watch<'_> {
         if self.struck.named.is_some() {
             return;
         }
+        if let (Some(i), None, Some(telemetry)) = (self.wanders, self.off_s, &stand.telemetry) {
+            let off_n = f64::from(telemetry.tensions_n[i]) - stand.truth.tensions_n[i];
+            self.off_s = (off_n.abs() >= WANDERS_BY_N).then_some(now_s);
+        }
         let found: Option<Fault> = stand
             .faults()
             .faults()
             .find(|fault| !self.before.has(*fault));
         self.struck.named = found.map(|fault| fault.entry().name);
-        self.struck.named_s = found.map(|_| now_s);
+        let since_s = self.wanders.map_or(0.0, |_| self.off_s.unwrap_or(now_s));
+        self.struck.named_s = found.map(|_| now_s - since_s);
     }
 
     fn watch_motors(&mut self, stand: &Stand, now_s: f64) {

@@ -36,7 +36,7 @@ fn the_page_says_the_bars() {
         ),
         format!("{GRASPED_MM} mm where a hand holds the tip"),
         format!(
-            "{NAMED_S} s where something shows it; a cell that wanders {WANDERS_S} s, drifts {DRIFTS_S} s"
+            "{NAMED_S} s where something shows it; a cell that wanders {WANDERS_S} s after it is {WANDERS_BY_N} N off, drifts {DRIFTS_S} s"
         ),
     ] {
         assert!(page.contains(&words), "{words}");
