@@ -251,6 +251,31 @@ mod tests {
         assert!((1.3..1.5).contains(&estimate.kg), "{}", estimate.kg);
     }
 
+    /// A leg that seems to turn far more than it is asked to, or the other way, shows nothing: lengths that jump do that.
+    #[test]
+    fn what_no_lag_explains_shows_no_payload() {
+        let mut estimate = estimate();
+        for per_kg in [[0.1, 0.0], [-0.02, 0.0], [0.03, 0.05]] {
+            let moments = PayloadMoments {
+                excess: [0.2, 0.1],
+                per_kg,
+                asked_per_kg: SETTING_OUT,
+            };
+            assert_eq!(estimate.step(&moments, true), 0.0);
+        }
+        assert_eq!(estimate.kg, 0.0);
+    }
+
+    /// A leg that rests 0.2° from the vertical, and whose load cells make up 0.03 N·m: by that alone it would carry 4 kg.
+    #[test]
+    fn what_load_cells_are_off_is_no_payload_near_the_vertical() {
+        let mut estimate = estimate();
+        for _ in 0..1_000 {
+            step(&mut estimate, [0.03, 0.0], [0.0075, 0.0], false);
+        }
+        assert!((0.0..0.1).contains(&estimate.kg), "{}", estimate.kg);
+    }
+
     /// What may be hidden is moved, and little beside what is known.
     #[test]
     fn a_payload_that_is_hidden_is_moved_in_part() {
