@@ -297,7 +297,7 @@ fn a_leg_whose_tick_was_late_is_braked() {
 
 /// A strike that failed once: motors pulled for 0.15 s against the hand that held the tip, to 309.6 N.
 #[test]
-fn a_leg_that_is_held_by_a_hand_is_braked_shortly() {
+fn a_leg_that_is_held_by_a_hand_is_braked_for_a_short_time() {
     require_within(7302, &[(811, "leg_grasped", 1.0)]);
 }
 

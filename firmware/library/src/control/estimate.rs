@@ -42,7 +42,7 @@ pub struct LengthError<T> {
     pub elongations_m: [T; 3],
 }
 
-/// Estimates pose and load, warm-started from the last estimate.
+/// Estimates the pose, warm-started from the last estimate, and keeps the estimator of the load.
 #[derive(Clone, Copy, Debug)]
 pub struct Estimator<T> {
     direction: Direction<T>,
@@ -103,6 +103,7 @@ impl<T: Scalar> Estimator<T> {
         target_torsion: T,
         load_estimation: LoadEstimation,
     ) -> Result<Estimate<T>, Error> {
+        self.load.keep();
         let (mut lengths, mut pull) = (SVector::<T, 3>::zeros(), SVector::<T, 3>::zeros());
         let mut elongations_m = [T::zero(); 3];
         for (i, tendon) in mechanism.tendons.iter().enumerate() {
@@ -111,7 +112,6 @@ impl<T: Scalar> Estimator<T> {
             elongations_m[i] = tendon.elongation(pull[i])?;
             lengths[i] = unstretched_m[i] + elongations_m[i];
         }
-        self.load.keep();
         let slack = load_estimation == LoadEstimation::Slack;
         if slack {
             self.torsion = target_torsion;

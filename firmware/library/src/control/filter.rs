@@ -1,4 +1,4 @@
-//! Low-pass filters, of first and second order.
+//! Low-pass filters, of first to third order.
 
 use leg_model::Scalar;
 
@@ -117,7 +117,7 @@ impl<T: Scalar> TripleLowPass<T> {
 
     /// The second derivative of the filtered value by time, times the square of the time constant.
     #[inline(always)]
-    pub fn bend(&self) -> T {
+    pub fn second_difference(&self) -> T {
         let [first, second, third] = self.stages.each_ref().map(LowPass::value);
         first - T::TWO * second + third
     }
@@ -127,9 +127,9 @@ impl<T: Scalar> TripleLowPass<T> {
 mod tests {
     use super::TripleLowPass;
 
-    /// Of a motion that accelerates steadily the bend is the acceleration.
+    /// Of a motion that accelerates steadily the second difference is the acceleration.
     #[test]
-    fn the_bend_is_the_second_derivative() {
+    fn a_steady_acceleration_is_found() {
         let (time_s, step_s, acceleration) = (0.01_f32, 1e-3_f32, 3.0);
         let mut filter = TripleLowPass::<f64>::new(time_s, step_s);
         let square = f64::from(time_s).powi(2);
@@ -137,17 +137,21 @@ mod tests {
             let time_s = f64::from(i) * f64::from(step_s);
             filter.step(0.4 - 0.2 * time_s + 0.5 * acceleration * time_s * time_s);
         }
-        let part = filter.bend() / square / acceleration;
+        let part = filter.second_difference() / square / acceleration;
         assert!((part - 1.0).abs() < 1e-4, "{part}");
     }
 
-    /// A value that jumps has the bend begin with a part of it.
+    /// A value that jumps has the second difference begin with a part of it.
     #[test]
-    fn the_bend_does_not_jump() {
+    fn the_second_difference_does_not_jump() {
         let mut filter = TripleLowPass::<f64>::new(0.01, 1e-3);
         filter.set(2.0);
-        assert_eq!((filter.step(2.0), filter.bend()), (2.0, 0.0));
+        assert_eq!((filter.step(2.0), filter.second_difference()), (2.0, 0.0));
         filter.step(3.0);
-        assert!((0.0..0.1).contains(&filter.bend()), "{}", filter.bend());
+        assert!(
+            (0.0..0.1).contains(&filter.second_difference()),
+            "{}",
+            filter.second_difference()
+        );
     }
 }

@@ -98,6 +98,8 @@ impl<T: Scalar> LoadEstimator<T> {
             push.set(T::zero());
         }
         self.push_share = T::one();
+        self.moments.rest();
+        self.shown = None;
     }
 
     /// Takes up a push as a leg allows whose first mode has a time constant 1/ω, s.
@@ -165,6 +167,7 @@ impl<T: Scalar> LoadEstimator<T> {
 
     #[inline(always)]
     fn set(&mut self, mechanism: &Mechanism<T>, direction: &Direction<T>, load: &Vector3<T>) {
+        self.moments.rest();
         let (excess, per_kg) = moments(mechanism, direction, load, &Turn::none());
         self.payload.set(excess, per_kg);
         for (i, push) in self.push_nm.iter_mut().enumerate() {
@@ -196,7 +199,7 @@ impl<T: Scalar> LoadEstimator<T> {
             self.moments.step(excess, per_kg, &deviation)
         } else {
             self.moments.rest();
-            PayloadMoments::as_asked(excess, per_kg)
+            PayloadMoments::unfiltered(excess, per_kg)
         };
         let found_kg = self.payload.step(&payload_moments, moving);
         let payload_kg = self.payload.kg;

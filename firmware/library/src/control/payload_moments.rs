@@ -22,7 +22,7 @@ pub struct PayloadMoments<T> {
 impl<T: Scalar> PayloadMoments<T> {
     /// Of a leg that turns as its trajectory asks.
     #[inline(always)]
-    pub fn as_asked(excess: [T; 2], per_kg: [T; 2]) -> Self {
+    pub fn unfiltered(excess: [T; 2], per_kg: [T; 2]) -> Self {
         Self {
             excess,
             per_kg,
@@ -89,7 +89,7 @@ impl<T: Scalar> MomentFilter<T> {
         deviation: &Deviation<T>,
     ) -> PayloadMoments<T> {
         let starts = !core::mem::replace(&mut self.runs, true);
-        let mut moments = PayloadMoments::as_asked(excess, per_kg);
+        let mut moments = PayloadMoments::unfiltered(excess, per_kg);
         for (i, axis) in self.axes.iter_mut().enumerate() {
             let turned = deviation.turned[i];
             if starts {
@@ -98,7 +98,8 @@ impl<T: Scalar> MomentFilter<T> {
                 axis.turned.set(turned);
             }
             axis.turned.step(turned);
-            let acceleration = axis.turned.bend() * T::from(1.0 / (FILTER_S * FILTER_S));
+            let acceleration =
+                axis.turned.second_difference() * T::from(1.0 / (FILTER_S * FILTER_S));
             let asked_per_kg = axis.per_kg.step(per_kg[i]);
             moments.asked_per_kg[i] = asked_per_kg;
             moments.per_kg[i] = asked_per_kg - acceleration * deviation.payload_inertia;
@@ -109,6 +110,7 @@ impl<T: Scalar> MomentFilter<T> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::{Deviation, MomentFilter};
     use crate::control::SLOW_STEP_S;
@@ -142,7 +144,7 @@ mod tests {
                 assert!(excess / per_kg < 0.7 * payload_kg);
             }
         }
-        let Some(moments) = last else { return };
+        let moments = last.unwrap();
         for i in 0..2 {
             let found_kg = moments.excess[i] / moments.per_kg[i];
             assert!((found_kg - payload_kg).abs() < 0.02, "{found_kg}");

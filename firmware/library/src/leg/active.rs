@@ -80,7 +80,7 @@ impl<T: Scalar> Active<T> {
     ) -> Result<(), Error> {
         match phase {
             Phase::Estimate => self.estimate(shared, measured),
-            // In turn, for each takes most of the time that is left.
+            // In turn, for each takes most of the time that is left. The load comes first: the brake is made for it.
             Phase::Pretension => {
                 if self.offsets.take_turn() {
                     shared.step_load(self.trajectory.turn());
@@ -211,7 +211,7 @@ impl<T: Scalar> Active<T> {
         !self.tensioned && self.slack.cycles > shared.limits.taut_cycles
     }
 
-    /// Estimates pose and load. While the tendons come up from slack, their tensions do not show the load.
+    /// Estimates the pose, and takes the load that the tendons show. While they come up from slack, their tensions do not show it.
     #[inline(always)]
     fn estimate(&mut self, shared: &mut Shared<T>, measured: &Measured<T>) -> Result<(), Error> {
         let load_estimation = if !self.tensioned {

@@ -200,7 +200,7 @@ pub struct Trust {
     pub pose: bool,
     /// The counters: no fault is latched that they may cause.
     pub counters: bool,
-    /// The motors: none is known not to do what it is asked, and nothing that holds the leg.
+    /// The motors: none is known not to do what it is asked, and nothing is known to hold the leg.
     pub motors: bool,
     /// The load cells: no fault is latched that one may cause.
     pub cells: bool,

@@ -4,9 +4,9 @@
 /// tick computes all of it; the axes' controllers run in every tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// Estimates pose and load; the monitors check the motor of axis 1.
+    /// Estimates the pose; the monitors check the motor of axis 1.
     Estimate,
-    /// Makes one step of the search for the pretension.
+    /// Makes one step of the search for the pretension or, in every other cycle, of the load and of what is added to the lengths.
     Pretension,
     /// Executes a command in the place of that.
     Command,

@@ -65,7 +65,8 @@ const REARMED_MM: f64 = 2.0;
 const GAIN_MM: f64 = 1.1;
 
 /// The same where it drifts down by that: what the cell lacks is 0.16 mm of a tendon's stretch at 70 to 150 N, on the curve of the paper's
-/// tendon, by which it is pulled in; a millimetre of it is 9.2 mm at the tip. 20 % more are 0.12 mm.
+/// tendon, by which it is pulled in; a millimetre of it is 9.2 mm at the tip. One that shows
+/// 20 % more lets out 0.12 mm, 1.1 mm at the tip.
 const GAIN_DOWN_MM: f64 = 1.5;
 
 /// The same where a cell that grows, steps by 10 N or wanders comes to show the maximum tension: its tendon is paid out, as under a load that is too heavy, until
@@ -183,8 +184,8 @@ impl StrikeBars {
     }
 
     /// Whether a strike by a defect is judged by a leg whose motors stop at once where that does more than these bars allow.
-    pub(super) const fn may_be_those_of_a_cut_off(defect: Defect, activity: Activity) -> bool {
-        activity.is_on_the_way() && cuts_off(defect)
+    pub(super) const fn is_judged_by_cut_off(defect: Defect, activity: Activity) -> bool {
+        activity.is_on_the_way() && cuts_off(defect) && !is_slow(defect, activity)
     }
 }
 
@@ -196,6 +197,14 @@ fn excess_part(defect: Option<Defect>, activity: Activity) -> f64 {
         Some(Defect::TendonSlips(_)) => SLIP_BEYOND,
         Some(Defect::DirectionStuck(_)) => STUCK_BEYOND,
         Some(Defect::LegGrasped) => GRASPED_BEYOND,
+        Some(Defect::CellsSwapped)
+            if matches!(
+                activity,
+                Activity::Homing | Activity::Held | Activity::Disarmed
+            ) =>
+        {
+            CUT_OFF_BEYOND
+        }
         Some(Defect::CellsSwapped) => SWAPPED_BEYOND,
         Some(Defect::TendonCut(_))
             if matches!(activity, Activity::Moving | Activity::RampingDown) =>
@@ -280,8 +289,8 @@ fn shows_maximum(defect: Defect, f_max_n: f64, highest_n: [f64; 3]) -> bool {
         // 5 N in a second, for the time in which it is to be named.
         Defect::CellDrifting(i) => highest_n[i] + 5.0 * DRIFTS_S,
         Defect::CellOffsetStep(i) => highest_n[i] + 10.0,
-        // 20 N in a second, by its root, for the time in which it is to be named.
-        Defect::CellWanders(i) => highest_n[i] + 20.0 * WANDERS_S.sqrt(),
+        // What has to be named, and one deviation of what it wanders in the time to that: 20 N in a second, by its root.
+        Defect::CellWanders(i) => highest_n[i] + WANDERS_BY_N + 20.0 * WANDERS_S.sqrt(),
         _ => return false,
     };
     shows_n > f_max_n

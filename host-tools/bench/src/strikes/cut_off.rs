@@ -41,7 +41,7 @@ impl CutOff {
     }
 
     /// Bars, or what this leg does and a part more where that is wider.
-    pub fn or_bars(&self, bars: StrikeBars) -> StrikeBars {
+    pub fn widened(&self, bars: StrikeBars) -> StrikeBars {
         let part = 1.0 + MORE;
         StrikeBars {
             tension_n: bars.tension_n.max(part * self.tension_n),

@@ -145,12 +145,12 @@ impl Struck {
     ) -> StrikeBars {
         let within = self.tension_n <= bars.tension_n && self.tip_mm <= bars.tip_mm;
         let cut_off =
-            defect.is_some_and(|defect| StrikeBars::may_be_those_of_a_cut_off(defect, self.state));
+            defect.is_some_and(|defect| StrikeBars::is_judged_by_cut_off(defect, self.state));
         if within || !cut_off {
             return bars;
         }
         match CutOff::new(prepared) {
-            Ok(cut_off) => cut_off.or_bars(bars),
+            Ok(cut_off) => cut_off.widened(bars),
             Err(error) => {
                 self.failures.push(error);
                 bars
@@ -195,12 +195,8 @@ pub(super) fn strike(
     every_s: Option<f64>,
 ) -> (Struck, Vec<Moment>) {
     let mut stand = prepared.stand.clone();
-    let bars = StrikeBars::new(
-        strike.defect.map(|defect| shown_as(defect, &case.file)),
-        case.activity,
-        case.file.f_max_n,
-        &prepared.unstruck,
-    );
+    let shown = strike.defect.map(|defect| shown_as(defect, &case.file));
+    let bars = StrikeBars::new(shown, case.activity, case.file.f_max_n, &prepared.unstruck);
     if let Some(defect) = strike.defect {
         stand.plant().set_defect(defect, true);
     }
@@ -229,7 +225,7 @@ pub(super) fn strike(
             break;
         }
     }
-    let bars = watch.struck.bars_by_cut_off(prepared, strike.defect, bars);
+    let bars = watch.struck.bars_by_cut_off(prepared, shown, bars);
     watch.struck.judge(&bars, strike.defect.is_some());
     (watch.struck, watch.moments)
 }
