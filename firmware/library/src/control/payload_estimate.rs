@@ -8,12 +8,11 @@ use leg_model::Scalar;
 /// Gravity by which moments are judged, whatever that of the rig is: where a payload weighs nothing it shows by its inertia alone.
 const EARTH_M_PER_S2: f32 = 9.81;
 
-/// Sine of the tilt from which a leg at rest shows its payload: 8.6°. At 0.03 a leg that leans by 5° still estimates 0.4 kg of a payload
-/// that was taken off; at 0.4 one that leans by 20° sags farther than its bar when a payload changes. `tests/suite/sim/station.rs` holds
-/// both.
+/// Sine of the tilt from which a payload is set to what a leg at rest shows, and may be below zero, where something lifts the leg: 8.6°.
+/// Nearer to the vertical what lifts it stays a push.
 const SHOWN_SINE: f32 = 0.15;
 
-/// The same at which a leg at rest shows half as much as it seems to: 1.9°. Below it, what load cells are off looks like a payload.
+/// Sine of the tilt at which a leg at rest shows half as much of its payload as it seems to: 1.9°. Below it, what load cells are off looks like a payload.
 const HIDDEN_SINE: f32 = 0.033;
 
 /// Variance of a payload of which nothing is known, kg²: a deviation of half of the 2 kg that the paper's leg carries.
@@ -34,7 +33,8 @@ const MOVING_CHANGE_KG2: f32 = 7e-9;
 /// a payload is found too late by a leg that sets out from straight down. `tests/suite/bench/moves.rs` holds it.
 const NOISE_PART: f32 = 5e-4;
 
-/// Square of what a moment may be off by the load cells of a leg at rest, (N·m)²: 0.04 N·m.
+/// Square of what a moment may be off by the load cells of a leg at rest, (N·m)²: 0.04 N·m. The brake of the swing is made
+/// for a payload that is heavier by that.
 const OFF_NM2: f32 = 1.6e-3;
 
 /// Part of its variance, 1/kg, that is added to a payload for the inertia that is moved: 0.7 kg where nothing has shown it, of the up to

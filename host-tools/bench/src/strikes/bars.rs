@@ -232,7 +232,7 @@ const fn cuts_off(defect: Defect) -> bool {
             | Defect::CurrentOffset(_)
             | Defect::CurrentFullScale(_)
             | Defect::CurrentDead(_)
-            // A motor that shows no current is taken for one that is not connected, against which the others pull shortly.
+            // A motor that shows no current is taken for one that is not connected, against which the others pull for a short time.
             | Defect::CurrentZero(_)
             | Defect::EncoderLost(_)
             | Defect::EncoderReversed(_)
