@@ -59,6 +59,7 @@ mod rig {
 
 mod sim {
     mod braking;
+    mod commanded_often;
     mod comparison;
     mod current_outputs;
     mod current_zeros;

@@ -46,6 +46,8 @@ use shared::Shared;
 pub struct Leg<T> {
     tick: u32,
     phase: Phase,
+    /// Whether this cycle is one of the two that steps the offsets.
+    offsets_turn: bool,
     supervisor: Supervisor,
     link: LinkWatch,
     measurement: Measurement<T>,
@@ -73,6 +75,7 @@ impl<T: Scalar> Leg<T> {
         Self {
             tick: 0,
             phase: Phase::Estimate,
+            offsets_turn: false,
             queue: CommandQueue::default(),
             link: LinkWatch::new(&settings.limits),
             measurement: Measurement::new(settings),
@@ -86,7 +89,7 @@ impl<T: Scalar> Leg<T> {
         }
     }
 
-    /// One tick. One in four executes a command, if one waits.
+    /// One tick. One in eight executes a command, if one waits.
     #[inline(never)]
     pub fn tick(&mut self, sensors: &Sensors) -> Drive<T> {
         self.tick = self.tick.wrapping_add(1);
@@ -130,7 +133,8 @@ impl<T: Scalar> Leg<T> {
         if state != before {
             self.enter(state, &measured);
         }
-        self.phase = self.phase.next();
+        self.offsets_turn ^= self.phase == Phase::Plan;
+        self.phase = self.phase.next(self.offsets_turn);
         let mut drive = self
             .shared
             .drive(state.driven(), self.mode.turns(), &measured);
@@ -327,6 +331,7 @@ impl<T: Scalar> Leg<T> {
         if state == State::Active {
             // The first target comes in the next tick: pose and load have been estimated until now.
             self.phase = Phase::Command;
+            self.offsets_turn = true;
         }
         if lost {
             // Homing turns one motor after the other, with little tension, before the leg follows them together.

@@ -36,6 +36,36 @@ fn the_tip_of_every_rig_stays_on_its_trajectory() {
     require_passed(&campaign.run(0..14, || ()));
 }
 
+/// Moves whose payload is hardest to find: by 3° in 0.35 s from straight down at 13 and 16 N, whose mode is slow, with 1.7 kg and with
+/// nothing.
+#[test]
+fn a_soft_leg_that_sets_out_from_straight_down_stays_on_its_trajectory() {
+    for (seed, payload_kg, number) in [(35, None, 48), (61, Some(0.0), 30)] {
+        let campaign = MoveCampaign {
+            seed,
+            rigs: vec![rig("table1")],
+            payload_kg,
+        };
+        let moved = campaign.run(number..number + 1, || ());
+        let [drawn] = [&moved[0].drawn];
+        assert!(drawn.begin_deg[1] < 0.1 && drawn.pretension_n < 17.0);
+        require_passed(&moved);
+    }
+}
+
+/// Moves after which a tip swung by 0.03 mm for up to 0.7 s, when motors that broke away too late went on beyond their references.
+#[test]
+fn motors_at_rest_do_not_stick_and_slip() {
+    for (seed, number) in [(33, 40), (36, 9)] {
+        let campaign = MoveCampaign {
+            seed,
+            rigs: vec![rig("table1")],
+            payload_kg: None,
+        };
+        require_passed(&campaign.run(number..number + 1, || ()));
+    }
+}
+
 /// A simulated leg that is not what the settings say: damping of joint and tendons halved and doubled, friction of the motors halved and
 /// half more, play of the gears none and double, 5° of play that is known.
 #[test]
@@ -88,9 +118,8 @@ const UNLIKE_OFF_MM: f64 = 0.375;
 const UNLIKE_SWING_MM: f64 = 0.15;
 const UNLIKE_SETTLED_S: f64 = 0.6;
 
-/// The same for a leg without the play that its settings say: what its motors cross in vain is corrected slowly at rest, as late as after
-/// 1.2 s in one of 14 moves.
-const NO_PLAY_SETTLED_S: f64 = 1.5;
+/// The same for a leg without the play that its settings say: what its motors cross in vain is corrected slowly at rest.
+const NO_PLAY_SETTLED_S: f64 = 0.8;
 
 /// The largest of moves from where the payload shows: off the trajectory and swing, mm, time to rest, s, and off the commanded point at
 /// rest, mm.

@@ -8,7 +8,7 @@ use leg_bench::stand::{Stand, move_to};
 use leg_firmware::command::Command;
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::supervisor::{Fault, State};
-use leg_sim::plant::Defect;
+use leg_sim::plant::{Defect, Start};
 
 /// Part of the maximum tension above which a leg brakes longer.
 const NEAR_PART: f32 = 0.8;
@@ -41,7 +41,7 @@ fn brake_s(stand: &mut Stand) -> f64 {
         match (stand.state(), stand.moving()) {
             (State::Held, true) => ticks += 1,
             (State::Held, false) => return f64::from(ticks) / f64::from(TICK_HZ),
-            (state, _) => assert_eq!(state, State::Active),
+            (state, _) => assert!(matches!(state, State::Active | State::Homing)),
         }
     }
 }
@@ -52,7 +52,7 @@ fn a_leg_that_is_stopped_brakes_longer_near_its_maximum_tension() {
         "firmware/SAFETY.md",
         &[format!(
             "brake within {BRAKE_S} s by their counters, {GENTLE_BRAKE_S} s where the target asks a tendon for more than {NEAR_PART} of \
-             the maximum tension, {SHORT_BRAKE_S} s where"
+             the maximum tension, {SHORT_BRAKE_S} s where the leg homes, where"
         )],
     );
     for (pretension_n, payload_kg, near, time_s) in [
@@ -77,6 +77,23 @@ fn a_leg_whose_motor_is_not_counted_brakes_for_a_short_time() {
         assert!(faults(&stand).has(Fault::CurrentDisagrees));
         assert!((found_s - SHORT_BRAKE_S).abs() < 0.001, "{found_s} s");
     }
+}
+
+/// It hangs free: whatever its motor goes on lifts it.
+#[test]
+fn a_leg_that_homes_brakes_for_a_short_time() {
+    let rig = paper();
+    let start = Start::Slack { slack_mm: 2.0 };
+    let mut stand = Stand::new(&rig, &rig.plant, start, 11).unwrap();
+    stand.wait(0.1).unwrap();
+    stand.command(&Command::Home).unwrap();
+    stand.wait(0.2).unwrap();
+    let speeds = stand.truth.speeds_rad_per_s;
+    assert!(speeds.iter().any(|speed| speed.abs() > 1.0), "{speeds:?}");
+    assert_eq!(stand.state(), State::Homing);
+    stand.command(&Command::Stop).unwrap();
+    let found_s = brake_s(&mut stand);
+    assert!((found_s - SHORT_BRAKE_S).abs() < 0.001, "{found_s} s");
 }
 
 /// A motor that turns uncounted is led on nowhere: its driver is at rest in a tenth of the time of the brake.

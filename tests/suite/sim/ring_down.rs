@@ -93,12 +93,16 @@ fn ring_down(halves: &[(f64, f64)]) -> Option<RingDown> {
         .first()
         .map(|half| half.1)
         .filter(|&first_m| first_m > 2.0 * LEAST_M)?;
-    let counted = halves.iter().rposition(|half| half.1 > LEAST_M)? + 1;
-    let last = counted.min(halves.len() - 1);
-    if last == 0 {
+    let last = halves.iter().rposition(|half| half.1 > LEAST_M)?;
+    // A part of the step down to what is counted no more: one from 0.101 mm to nothing, which friction ends, is almost no half swing.
+    let decrement = if let Some(below) = halves.get(last + 1) {
+        let part = (halves[last].1 / LEAST_M).ln() / (halves[last].1 / below.1.max(1e-6)).ln();
+        (first_m / LEAST_M).ln() / (last as f64 + part)
+    } else if last > 0 {
+        (first_m / halves[last].1).ln() / last as f64
+    } else {
         return None;
-    }
-    let decrement = (first_m / halves[last].1.max(LEAST_M)).ln() / last as f64;
+    };
     let tenth = |half: &&(f64, f64)| half.1 > 0.1 * first_m;
     Some(RingDown {
         ratio: decrement / decrement.hypot(std::f64::consts::PI),

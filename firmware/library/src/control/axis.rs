@@ -195,12 +195,24 @@ impl<T: Scalar> Axis<T> {
     }
 
     /// Feeds the voltage against friction at a tension that is asked for, N. The integral takes it, so that a tick of the servo costs no
-    /// more.
+    /// more. A motor that is ahead of its reference gets less, down to nothing: it would go on.
     #[inline(always)]
     pub fn feed_friction(&mut self, friction: &Friction<T>, tension_n: T) {
-        let fed_v = friction.voltage_v(self.step_m, tension_n);
+        let fed_v = friction.voltage_v(self.missing_step_m(), tension_n);
         self.integral_v += fed_v - self.fed_v;
         self.fed_v = fed_v;
+    }
+
+    /// How far the axis is led in a tick, m, less what the servo takes back of that where the motor is ahead.
+    #[inline(always)]
+    fn missing_step_m(&self) -> T {
+        let behind_m = self.reference_m - self.tracked_m;
+        let wanted_m = self.step_m + self.gains.position * self.gains.tick_s * behind_m;
+        if self.step_m > T::zero() {
+            min(self.step_m, max(wanted_m, T::zero()))
+        } else {
+            max(self.step_m, min(wanted_m, T::zero()))
+        }
     }
 
     /// Follows the motor without driving it.
@@ -282,5 +294,46 @@ impl<T: Scalar> Axis<T> {
         self.voltage_v = voltage;
         self.voltage_sum_v += voltage;
         voltage * input.duty_per_v
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::{Axis, TICK_S};
+    use crate::control::Friction;
+    use crate::settings::Settings;
+
+    /// A tension that is asked for, N.
+    const TENSION_N: f64 = 100.0;
+
+    /// What is fed to a motor that is led at a speed, mm/s, and is so far ahead of its reference, µm, by what is fed to one that is not
+    /// ahead.
+    fn fed_part(mm_per_s: f64, ahead_um: f64) -> f64 {
+        let [servo, ..] = Settings::table_1().unwrap().servos;
+        let friction = Friction::new(&servo);
+        let mut axis = Axis::<f64>::new(&servo);
+        axis.lead_by(mm_per_s * 1e-3 * f64::from(TICK_S));
+        axis.tracked_m = ahead_um * 1e-6 * mm_per_s.signum();
+        axis.feed_friction(&friction, TENSION_N);
+        axis.fed_v / friction.voltage_v(axis.step_m, TENSION_N)
+    }
+
+    /// Led at 0.05 mm/s, 0.3 µm is what the servo takes back at 0.036 mm/s; it feeds nothing against friction to a motor that it wants to
+    /// turn back, and no more to one that is behind.
+    #[test]
+    fn a_motor_ahead_of_its_reference_is_not_fed_on() {
+        for mm_per_s in [0.05, -0.05] {
+            for (ahead_um, range) in [
+                (-1.0, 1.0..=1.0),
+                (0.0, 1.0..=1.0),
+                (0.3, 0.05..=0.3),
+                (1.0, 0.0..=0.0),
+            ] {
+                let part = fed_part(mm_per_s, ahead_um);
+                assert!(range.contains(&part), "{mm_per_s} {ahead_um}: {part}");
+            }
+        }
+        assert_eq!(fed_part(5.0, 1.0), 1.0, "a motor on its way");
     }
 }

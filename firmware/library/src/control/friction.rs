@@ -15,9 +15,9 @@ pub const PULL_ALLOWANCE: f64 = 1.05;
 /// wanders at 1 µm/s, ten times as slowly.
 const LEAST_M_PER_S: f32 = 1e-5;
 
-/// How much faster the whole friction is fed, m/s. At a fifth of it motors at rest turn to and fro by a count; at all of it a swing of
-/// the tip by 0.1 mm is still braked.
-const WHOLE_M_PER_S: f32 = 1e-4;
+/// How much faster the whole friction is fed, m/s. At twice as much a motor breaks away too late to brake the last 0.03 mm of a swing at
+/// the tip (`tests/suite/bench/moves.rs`); at half of it rounding decides when a motor at rest does (`fault_off_station`).
+const WHOLE_M_PER_S: f32 = 5e-5;
 
 /// The friction of a motor, as voltages.
 #[derive(Clone, Copy, Debug)]

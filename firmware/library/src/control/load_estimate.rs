@@ -65,7 +65,7 @@ struct Shown<T> {
     moving: bool,
 }
 
-/// Estimates the load, in the cycles in which the search for the pretension has no turn.
+/// Estimates the load, in every other cycle.
 #[derive(Clone, Copy, Debug)]
 pub struct LoadEstimator<T> {
     payload: PayloadEstimate<T>,

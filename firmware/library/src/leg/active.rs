@@ -80,30 +80,27 @@ impl<T: Scalar> Active<T> {
     ) -> Result<(), Error> {
         match phase {
             Phase::Estimate => self.estimate(shared, measured),
-            // In turn, for each takes most of the time that is left. The load comes first: the brake is made for it.
-            Phase::Pretension => {
-                if self.offsets.take_turn() {
-                    shared.step_load(self.trajectory.turn());
-                    self.offsets.step(shared, self.tensioned, &mut self.station);
-                    if self.tensioned {
-                        shared.feed_friction();
-                    }
-                    if self.trajectory.moving() {
-                        shared.damping.forget_swing();
-                    }
-                    let off_station = self.station.kept().is_some_and(Station::too_far);
-                    self.faults = FaultSet::NONE;
-                    self.faults.add(Fault::OffStation, off_station);
-                    self.faults
-                        .add(Fault::Swings, shared.damping.keeps_swinging());
-                    let rests = self.tensioned && !self.trajectory.moving();
-                    let given_way = rests && gives_way(shared, measured);
-                    self.faults.add(Fault::Following, given_way);
-                    Ok(())
-                } else {
-                    search_pretension(shared)
+            // The load comes first: the brake is made for it.
+            Phase::Offsets => {
+                shared.step_load(self.trajectory.turn());
+                self.offsets.step(shared, self.tensioned, &mut self.station);
+                if self.tensioned {
+                    shared.feed_friction();
                 }
+                if self.trajectory.moving() {
+                    shared.damping.forget_swing();
+                }
+                let off_station = self.station.kept().is_some_and(Station::too_far);
+                self.faults = FaultSet::NONE;
+                self.faults.add(Fault::OffStation, off_station);
+                self.faults
+                    .add(Fault::Swings, shared.damping.keeps_swinging());
+                let rests = self.tensioned && !self.trajectory.moving();
+                let given_way = rests && gives_way(shared, measured);
+                self.faults.add(Fault::Following, given_way);
+                Ok(())
             }
+            Phase::Pretension => search_pretension(shared),
             Phase::Command => Ok(()),
             Phase::Target => self.aim(shared, measured),
             Phase::Plan => {

@@ -3,7 +3,7 @@
 use crate::command::{Command, CommandRefusal};
 use heapless::Deque;
 
-/// Commands that may wait: a cycle executes one.
+/// Commands that may wait: two cycles execute one.
 const COMMANDS_MAX: usize = 8;
 
 /// What became of a command.

@@ -7,14 +7,12 @@ use crate::control::{SwingDamping, bounds};
 use leg_model::Scalar;
 
 /// Cycles from one step to the next, over which the step is spread so that the speed of a tendon is steady. Two, because a cycle has
-/// time for these offsets or for the search for the pretension: they take turns.
+/// time for these offsets or for the search for the pretension.
 const CYCLES: u8 = 2;
 
 /// By how much the tendons are longer than the target asks, and their motors behind.
 #[derive(Clone, Copy, Debug)]
 pub struct LengthOffsets<T> {
-    /// Whether they had the last turn, so that the search for the pretension has the next one.
-    had_turn: bool,
     /// Cycles in which the last step still comes.
     cycles_left: u8,
     longer_m: [T; 3],
@@ -26,19 +24,10 @@ impl<T: Scalar> LengthOffsets<T> {
     /// At rest, with motors that are so far behind their screws, m.
     pub fn new(behind_m: &[T; 3]) -> Self {
         Self {
-            had_turn: false,
             cycles_left: 0,
             longer_m: *behind_m,
             step_m: [T::zero(); 3],
         }
-    }
-
-    /// Whether they have their turn, of two. A cycle that executes a command has none, so that commands in every other cycle make a step
-    /// of every fourth.
-    #[inline(always)]
-    pub fn take_turn(&mut self) -> bool {
-        self.had_turn = !self.had_turn;
-        self.had_turn
     }
 
     /// Brakes a swing about the last target, keeps a leg at its station from going there too fast, and leads the motors across the play.
@@ -116,17 +105,4 @@ fn brake_m<T: Scalar>(shared: &mut Shared<T>, inertia: T, time_constant_s: T) ->
     shared
         .damping
         .step(&deviations_m, per_pretension, inertia, time_constant_s)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::LengthOffsets;
-
-    /// The search for the pretension has every other turn.
-    #[test]
-    fn every_other_turn_is_theirs() {
-        let mut offsets = LengthOffsets::new(&[0.0; 3]);
-        let turns = [(); 6].map(|()| offsets.take_turn());
-        assert_eq!(turns, [true, false, true, false, true, false]);
-    }
 }

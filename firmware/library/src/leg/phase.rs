@@ -1,4 +1,4 @@
-//! The schedule of a cycle: which part of the control law each of its four ticks computes.
+//! The schedule of two cycles: which part of the control law each of their eight ticks computes.
 
 /// A tick of the cycle. The control law is spread over [`CYCLE_TICKS`](crate::control::CYCLE_TICKS) of them, so that no
 /// tick computes all of it; the axes' controllers run in every tick.
@@ -6,9 +6,11 @@
 pub enum Phase {
     /// Estimates the pose; the monitors check the motor of axis 1.
     Estimate,
-    /// Makes one step of the search for the pretension or, in every other cycle, of the load and of what is added to the lengths.
+    /// Makes a step of the load and of what is added to the lengths, in every other cycle.
+    Offsets,
+    /// Makes a step of the search for the pretension, in the other cycles.
     Pretension,
-    /// Executes a command in the place of that.
+    /// Executes a command in the place of that search: no command keeps the load and the brake of the swing waiting.
     Command,
     /// Computes the next target and the goals of the axes; the monitors check the motor of axis 2.
     Target,
@@ -18,12 +20,13 @@ pub enum Phase {
 }
 
 impl Phase {
-    /// The phase of the next tick.
+    /// The phase of the next tick, in a cycle that is that of the offsets or not.
     #[inline(always)]
-    pub const fn next(self) -> Self {
+    pub const fn next(self, offsets: bool) -> Self {
         match self {
+            Self::Estimate if offsets => Self::Offsets,
             Self::Estimate => Self::Pretension,
-            Self::Pretension | Self::Command => Self::Target,
+            Self::Offsets | Self::Pretension | Self::Command => Self::Target,
             Self::Target => Self::Plan,
             Self::Plan => Self::Estimate,
         }
@@ -40,9 +43,26 @@ impl Phase {
     pub const fn monitored_motor(self) -> Option<usize> {
         match self {
             Self::Estimate => Some(0),
-            Self::Pretension | Self::Command => None,
+            Self::Offsets | Self::Pretension | Self::Command => None,
             Self::Target => Some(1),
             Self::Plan => Some(2),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Phase;
+
+    /// Offsets and search have every other cycle, of four ticks each.
+    #[test]
+    fn the_second_tick_of_a_cycle_is_that_of_the_offsets_or_of_the_search() {
+        for (offsets, expected) in [(true, Phase::Offsets), (false, Phase::Pretension)] {
+            let mut phase = Phase::Estimate;
+            for next in [expected, Phase::Target, Phase::Plan, Phase::Estimate] {
+                phase = phase.next(offsets);
+                assert_eq!(phase, next);
+            }
         }
     }
 }
