@@ -46,8 +46,8 @@ use shared::Shared;
 pub struct Leg<T> {
     tick: u32,
     phase: Phase,
-    /// Whether this cycle is one of the two that steps the offsets.
-    offsets_turn: bool,
+    /// Whether the offsets had the last cycle, so that the next one is that of the search for the pretension.
+    offsets_had: bool,
     supervisor: Supervisor,
     link: LinkWatch,
     measurement: Measurement<T>,
@@ -75,7 +75,7 @@ impl<T: Scalar> Leg<T> {
         Self {
             tick: 0,
             phase: Phase::Estimate,
-            offsets_turn: false,
+            offsets_had: true,
             queue: CommandQueue::default(),
             link: LinkWatch::new(&settings.limits),
             measurement: Measurement::new(settings),
@@ -133,8 +133,7 @@ impl<T: Scalar> Leg<T> {
         if state != before {
             self.enter(state, &measured);
         }
-        self.offsets_turn ^= self.phase == Phase::Plan;
-        self.phase = self.phase.next(self.offsets_turn);
+        self.phase = self.phase.next(&mut self.offsets_had);
         let mut drive = self
             .shared
             .drive(state.driven(), self.mode.turns(), &measured);
@@ -331,7 +330,7 @@ impl<T: Scalar> Leg<T> {
         if state == State::Active {
             // The first target comes in the next tick: pose and load have been estimated until now.
             self.phase = Phase::Command;
-            self.offsets_turn = true;
+            self.offsets_had = true;
         }
         if lost {
             // Homing turns one motor after the other, with little tension, before the leg follows them together.

@@ -20,12 +20,18 @@ pub enum Phase {
 }
 
 impl Phase {
-    /// The phase of the next tick, in a cycle that is that of the offsets or not.
+    /// The phase of the next tick; `offsets_had` is whether the offsets had the last cycle.
     #[inline(always)]
-    pub const fn next(self, offsets: bool) -> Self {
+    pub const fn next(self, offsets_had: &mut bool) -> Self {
         match self {
-            Self::Estimate if offsets => Self::Offsets,
-            Self::Estimate => Self::Pretension,
+            Self::Estimate => {
+                *offsets_had = !*offsets_had;
+                if *offsets_had {
+                    Self::Offsets
+                } else {
+                    Self::Pretension
+                }
+            }
             Self::Offsets | Self::Pretension | Self::Command => Self::Target,
             Self::Target => Self::Plan,
             Self::Plan => Self::Estimate,
@@ -57,10 +63,10 @@ mod tests {
     /// Offsets and search have every other cycle, of four ticks each.
     #[test]
     fn the_second_tick_of_a_cycle_is_that_of_the_offsets_or_of_the_search() {
-        for (offsets, expected) in [(true, Phase::Offsets), (false, Phase::Pretension)] {
-            let mut phase = Phase::Estimate;
-            for next in [expected, Phase::Target, Phase::Plan, Phase::Estimate] {
-                phase = phase.next(offsets);
+        let (mut phase, mut offsets_had) = (Phase::Estimate, true);
+        for second in [Phase::Pretension, Phase::Offsets, Phase::Pretension] {
+            for next in [second, Phase::Target, Phase::Plan, Phase::Estimate] {
+                phase = phase.next(&mut offsets_had);
                 assert_eq!(phase, next);
             }
         }

@@ -265,7 +265,8 @@ impl<T: Scalar> Shared<T> {
     }
 
     /// Feeds each motor the voltage against its friction, at the tensions of the last target.
-    #[inline(always)]
+    // Not beside the code of every tick, which it would take registers from.
+    #[inline(never)]
     pub fn feed_friction(&mut self) {
         let Some(target) = &self.target else { return };
         let asked = self.friction.iter().zip(&target.tensions_n);
