@@ -39,6 +39,7 @@ mod firmware {
     mod set_points;
     mod still_leg;
     mod trajectories;
+    mod true_set_points;
 }
 
 mod base {

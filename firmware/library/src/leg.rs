@@ -330,6 +330,7 @@ impl<T: Scalar> Leg<T> {
         if state == State::Active {
             // The first target comes in the next tick: pose and load have been estimated until now.
             self.phase = Phase::Command;
+            // They need a target: the search comes first.
             self.offsets_had = true;
         }
         if lost {

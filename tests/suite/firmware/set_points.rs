@@ -92,7 +92,7 @@ impl Bench {
     }
 }
 
-fn point(part: StreamPart, tick: u32, [azimuth_deg, tilt_deg]: [f64; 2]) -> SetPoint {
+pub fn point(part: StreamPart, tick: u32, [azimuth_deg, tilt_deg]: [f64; 2]) -> SetPoint {
     SetPoint {
         part,
         tick,
@@ -168,7 +168,7 @@ fn no_points_lead_beyond_the_limits() {
 }
 
 /// A point that follows from the last one by a jerk that is drawn, or is anywhere.
-fn wild(rng: &mut fastrand::Rng, last: &SetPoint, streamed: bool, now: u32) -> SetPoint {
+pub fn wild(rng: &mut fastrand::Rng, last: &SetPoint, streamed: bool, now: u32) -> SetPoint {
     let ticks = 10.0_f64.powf(1.61 + 1.2 * rng.f64().powi(2));
     let time_s = ticks / 8000.0;
     let anywhere = rng.u8(..10) == 0;

@@ -114,3 +114,24 @@ fn a_half_tangent_is_that_of_half_the_tilt() {
     let tilt = direction.vector().x.atan2(-direction.vector().z);
     assert!((tilt - 2.0 * 0.25_f64.atan()).abs() < 1e-15 && Scalar::is_finite(tilt));
 }
+
+/// By 20° from straight down, and by 40° through the vertical, in no more time than ever.
+#[test]
+fn a_move_takes_no_longer_than_it_did() {
+    let settings = Settings::table_1().unwrap();
+    let at = |tilt_deg: f64| HalfTangent::new((0.5 * tilt_deg.to_radians()).tan(), 0.0);
+    for (begin_deg, end_deg, time_s) in [(0.0, 20.0, 0.86), (-20.0, 20.0, 1.71)] {
+        let mut trajectory =
+            Trajectory::<f64>::new(MotionLimits::new(&settings.motion), at(begin_deg));
+        let mut stream = Stream::new(StreamLimits::new(&settings));
+        trajectory.go(at(end_deg));
+        let mut cycles = 0;
+        while cycles == 0 || trajectory.moving() {
+            trajectory.advance_plan(&mut stream, 0.0);
+            trajectory.step();
+            cycles += 1;
+        }
+        let found_s = f64::from(cycles) * CYCLE_S;
+        assert!(found_s < time_s + 0.005, "{end_deg}°: {found_s} s");
+    }
+}

@@ -43,7 +43,7 @@ fn a_leg_with_a_command_in_every_cycle_takes_up_a_payload_as_fast() {
         let (found_kg, moved_m) = loaded(Some(ticks_between));
         let pairs = alone_kg.iter().zip(&found_kg);
         let most_kg = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        println!("{ticks_between}: {most_kg} {alone_m} {moved_m}");
+        println!("{ticks_between} ticks: {most_kg} kg, tip {alone_m} m alone, {moved_m} m");
         assert!(most_kg < 0.02, "{ticks_between} ticks: {most_kg} kg");
         assert!(
             (moved_m - alone_m).abs() < 0.02 * alone_m,

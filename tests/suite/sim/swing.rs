@@ -12,7 +12,7 @@ use leg_sim::plant::Defect;
 use leg_sim::scenario::Scenario;
 use leg_sim::simulation::{Simulation, Tick};
 
-/// A command takes the tick in which the swing is braked: many of them, one after the other, must not let the brake run on.
+/// Commands take every cycle that the brake of the swing has not: many of them, one after the other, leave the leg braked.
 #[test]
 fn commands_in_the_middle_of_a_swing_leave_the_leg_at_rest() {
     let commands = "{ pretension_n = 70 },".repeat(8);

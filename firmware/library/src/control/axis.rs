@@ -198,14 +198,14 @@ impl<T: Scalar> Axis<T> {
     /// more. A motor that is ahead of its reference gets less, down to nothing: it would go on.
     #[inline(always)]
     pub fn feed_friction(&mut self, friction: &Friction<T>, tension_n: T) {
-        let fed_v = friction.voltage_v(self.missing_step_m(), tension_n);
+        let fed_v = friction.voltage_v(self.step_to_go_m(), tension_n);
         self.integral_v += fed_v - self.fed_v;
         self.fed_v = fed_v;
     }
 
     /// How far the axis is led in a tick, m, less what the servo takes back of that where the motor is ahead.
     #[inline(always)]
-    fn missing_step_m(&self) -> T {
+    fn step_to_go_m(&self) -> T {
         let behind_m = self.reference_m - self.tracked_m;
         let wanted_m = self.step_m + self.gains.position * self.gains.tick_s * behind_m;
         if self.step_m > T::zero() {

@@ -22,9 +22,10 @@ const WHOLE_RAD_PER_S: f32 = 50.0;
 /// The longest time constant of a mode, 1/ω, that the filters are made for, s: 1 Hz.
 const LONGEST_S: f32 = 0.16;
 
-/// Amplitude of a tendon's swing that is not braked, m: above the noise of the load cells, or the motors would never rest. That is 4.5 µm
-/// at the tip of the paper's leg.
-const LEAST_M: f32 = 5e-7;
+/// Amplitude of a tendon's swing that is not braked, m: above the noise of the load cells, or the motors would never rest. That is 9 µm
+/// at the tip of the paper's leg. With half of it motors at 2 kg and 30° break away again a second after a move, which swings the tip by
+/// 0.03 mm (`tests/suite/bench/moves.rs`).
+const LEAST_M: f32 = 1e-6;
 
 /// The most that a tendon is longer or shorter for it, m: a swing of the paper's leg by 5 mm at the tip asks for no more.
 const MOST_M: f32 = 3e-4;

@@ -37,7 +37,7 @@ pub struct Momentum<T> {
     /// How far each goes in a tick, m.
     pub steps_m: [T; 3],
     /// Ticks in which the path would have ended, if there is one: braked more slowly, the leg would go beyond its end. None are left of a
-    /// leg at rest.
+    /// leg at rest; one of a leg that homes, which is braked as shortly as any that moves.
     pub ticks_to_end: Option<u32>,
 }
 

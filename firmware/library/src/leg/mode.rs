@@ -139,7 +139,7 @@ impl<T: Scalar> Mode<T> {
             // One at rest has no way to go: it stops what brakes its swing.
             Self::Active(active) if !active.trajectory.moving() => Some(0),
             Self::Active(active) => active.trajectory.ticks_to_end(),
-            // A leg that homes hangs free: whatever its motor goes on lifts it.
+            // A leg that homes has no end to go to, and hangs free: whatever its motor goes on lifts it.
             Self::Homing(_) => Some(1),
             _ => None,
         };
