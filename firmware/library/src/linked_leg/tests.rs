@@ -38,13 +38,13 @@ impl Bench {
 
     fn obey(&mut self, command: Command) -> Result<(), CommandRefusal> {
         assert!(self.leg.command(7, command));
-        for _ in 0..CYCLE_TICKS {
+        for _ in 0..2 * CYCLE_TICKS {
             self.run(1);
             if let Some(outcome) = self.leg.outcome() {
                 return outcome.result;
             }
         }
-        panic!("a command is executed within a cycle");
+        panic!("a command is executed within two cycles");
     }
 
     fn restart(&mut self) -> Result<(), HostRefusal> {
