@@ -95,7 +95,8 @@ fn no_clear_passes_between_two_looks_at_an_axis() {
         let well = bench.sensors.cell_codes[axis];
         bench.sensors.cell_codes[axis] = CODE_MAX;
         bench.run(SOME_TICKS);
-        for _ in 0..8 {
+        // Not for longer: these sensors have no noise, which a stuck cell shows.
+        for _ in 0..4 {
             assert_eq!(bench.obey(Command::Clear), Err(CommandRefusal::Faulted));
         }
         bench.sensors.cell_codes[axis] = well;
