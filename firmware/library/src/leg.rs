@@ -355,6 +355,11 @@ impl<T: Scalar> Leg<T> {
         self.shared.zero_m = None;
     }
 
+    /// Refuses the commands that wait. Whoever lets another leg take this one's place does it before, where that takes too long at once.
+    pub fn refuse_commands(&mut self) {
+        self.queue.refuse_waiting();
+    }
+
     /// Starts in the place of another leg on the same board: with its count of ticks and the faults that nobody has cleared.
     /// The commands that wait are refused, and their outcomes reported from here.
     pub fn inherit_from(&mut self, before: &mut Self) {

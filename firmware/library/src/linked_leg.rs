@@ -58,6 +58,13 @@ impl<T: Scalar> SensingLeg<T> {
         self.leg.forget_zero();
     }
 
+    /// Refuses the commands that wait, unless this leg drives its motors: see [`Leg::refuse_commands`].
+    pub fn refuse_commands(&mut self) {
+        if !self.leg.state().driven() {
+            self.leg.refuse_commands();
+        }
+    }
+
     /// Lets another leg take this one's place on the board: see [`Leg::inherit_from`].
     ///
     /// # Errors

@@ -145,6 +145,8 @@ impl CommandedLeg for SharedLeg {
     #[inline(never)]
     fn restart(&mut self, settings: &Settings) -> Result<(), HostRefusal> {
         rebuild(self.spare, settings).map_err(HostRefusal::Settings)?;
+        // Apart: the interrupt may come before the legs change their places.
+        with_control(|control| control.leg.refuse_commands());
         let spare = &mut self.spare;
         let changed = with_control(|control| {
             control.leg.hand_over(spare)?;

@@ -110,7 +110,7 @@ impl Bench {
         // Those of a host that keeps alive.
         while self.leg.outcome().is_some() {}
         assert!(self.leg.command(7, command));
-        for _ in 0..CYCLE_TICKS {
+        for _ in 0..2 * CYCLE_TICKS {
             self.run(1);
             if let Some(CommandOutcome { number: 7, result }) = self.leg.outcome() {
                 return result;
@@ -202,10 +202,10 @@ fn silence_holds_a_leg_whatever_it_is_asked_for() {
         let mut bench = Bench::new(zero);
         assert_eq!(bench.obey(command), Ok(()));
         let silence = bench.settings.limits.command_time_s * f32::from(TICK_HZ);
-        bench.run_silent(silence as u16 - u16::from(CYCLE_TICKS));
+        bench.run_silent(silence as u16 - 2 * u16::from(CYCLE_TICKS));
         assert!(!bench.has(Fault::CommandTimeout));
         assert_eq!(bench.leg.state(), state);
-        bench.run_silent(2 * u16::from(CYCLE_TICKS));
+        bench.run_silent(3 * u16::from(CYCLE_TICKS));
         assert!(bench.has(Fault::CommandTimeout));
         assert_eq!(bench.leg.state(), State::Held);
     }
@@ -336,7 +336,7 @@ fn what_a_stop_overtakes_is_refused_at_once_and_in_order() {
         result: Err(CommandRefusal::Superseded),
     };
     assert_eq!(outcomes, (0..8).map(refused).collect::<Vec<_>>());
-    bench.run(u16::from(CYCLE_TICKS));
+    bench.run(2 * u16::from(CYCLE_TICKS));
     let result = Ok(());
     assert_eq!(
         bench.leg.outcome(),
@@ -355,7 +355,7 @@ fn a_stop_overtakes_what_waits() {
     }
     assert_eq!(taken, 8);
     assert!(bench.leg.command(100, Command::Stop));
-    bench.run(u16::from(CYCLE_TICKS));
+    bench.run(2 * u16::from(CYCLE_TICKS));
     assert_eq!(bench.leg.state(), State::Held);
     let outcomes: Vec<_> = std::iter::from_fn(|| bench.leg.outcome()).collect();
     assert_eq!(outcomes.len(), 8);

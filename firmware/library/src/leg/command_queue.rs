@@ -60,6 +60,12 @@ impl CommandQueue {
         Some(CommandOutcome { number, result })
     }
 
+    /// Refuses every command that waits, now.
+    pub fn refuse_waiting(&mut self) {
+        self.supersede();
+        self.refuse_all();
+    }
+
     /// Refuses what is superseded and was not yet.
     #[cold]
     #[inline(never)]
@@ -89,8 +95,7 @@ impl CommandQueue {
 
     /// Takes over the outcomes of another queue, whose commands are refused.
     pub fn inherit_outcomes(&mut self, before: &mut Self) {
-        before.supersede();
-        before.refuse_all();
+        before.refuse_waiting();
         core::mem::swap(&mut self.outcomes, &mut before.outcomes);
     }
 }
