@@ -67,7 +67,7 @@ fn armed(seed: u64) -> HostedLeg {
         azimuth_deg: 0.0,
         tilt_deg: 0.0,
         pretension_n: rig.pretension_n,
-        payload_kg: if seed % 2 == 0 { 2.0 } else { 0.0 },
+        payload_kg: if seed.is_multiple_of(2) { 2.0 } else { 0.0 },
     };
     let leg = EmulatedLeg::start_in_process(&rig, &rig.plant, start, seed).unwrap();
     let mut leg = HostedLeg::new(leg, &rig, [0.0; 2], seed);
