@@ -28,6 +28,7 @@ fn the_page_says_the_bars() {
         format!("{CUT_OFF_MM} mm where a moving leg is cut off"),
         format!("{SWAPPED_MM} mm where two sensors"),
         format!("{WAY_MM} mm; {ASIDE_MM} mm while it is paid out, {LIFTED_MM} mm while homing"),
+        format!("{HOMING_STOPS_MM} mm where the supply dips then"),
         format!("{CUT_MM} mm where a tendon is cut, {SLIP_MM} mm where it slips"),
         format!("{CREEP_MM} mm where it creeps, {RUNAWAY_MM} mm where a driver"),
         format!("{RUNAWAY_AGAIN_MM} mm where it is armed again with it"),
