@@ -77,6 +77,7 @@ mod sim {
     mod station_defects;
     pub mod station_stand;
     mod stiffness_floor;
+    mod streamed_tension;
     mod swing;
     mod ways_down;
 }

@@ -14,6 +14,26 @@ pub enum StreamPart {
     Last,
 }
 
+/// What a set-point asks of the tendons, as the commands of the same names do.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub enum StreamTension {
+    /// A pretension, N.
+    Pretension(f32),
+    /// A stiffness where the leg is softest, N·m/rad.
+    Stiffness(f32),
+}
+
+impl StreamTension {
+    /// Whether it may be asked for: a finite number, and a stiffness that is one.
+    #[must_use]
+    pub fn is_possible(self) -> bool {
+        match self {
+            Self::Pretension(pretension_n) => pretension_n.is_finite(),
+            Self::Stiffness(stiffness) => stiffness > 0.0 && stiffness.is_finite(),
+        }
+    }
+}
+
 /// A point of a stream: how the leg shall move at a tick.
 ///
 /// Between two points the direction follows a polynomial of fifth degree (in half-tangent coordinates) that has position, rate
@@ -31,6 +51,8 @@ pub struct SetPoint {
     pub rate: [f32; 2],
     /// Their accelerations, 1/s²; none for those that a smooth motion through the points has.
     pub acceleration: Option<[f32; 2]>,
+    /// What the pretension is made for from the point before on, at no more than `pretension_rate_n_per_s`; none for what it was.
+    pub tension: Option<StreamTension>,
 }
 
 /// A limit on the motion of a set-point stream: those of a move.
@@ -47,7 +69,7 @@ pub enum MotionLimit {
 /// Why a set-point is not taken. The stream goes on with those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum PointRefusal {
-    /// A number is not finite.
+    /// A number is not finite, or a stiffness not above 0.
     Number,
     /// The direction, or the way to it or from it to rest, leans too far.
     OutOfReach,
@@ -75,7 +97,7 @@ impl PointRefusal {
     pub const fn description(self) -> [&'static str; 2] {
         match self {
             Self::Number => [
-                "a number of the set-point is not finite",
+                "a number of the set-point is not finite, or its stiffness not above 0",
                 "give another number",
             ],
             Self::OutOfReach => [

@@ -3,7 +3,7 @@
 use crate::angles;
 use leg_firmware::control::{Knot, MotionState, Quintic, Stream, StreamLimits};
 use leg_firmware::sensors::TICK_HZ;
-use leg_firmware::set_point::{MotionLimit, PointRefusal, SetPoint, StreamPart};
+use leg_firmware::set_point::{MotionLimit, PointRefusal, SetPoint, StreamPart, StreamTension};
 use leg_firmware::settings::Settings;
 use std::ops::RangeInclusive;
 
@@ -19,6 +19,8 @@ pub struct PathRow {
     pub time_s: f64,
     /// Horizontal components.
     pub direction: [f64; 2],
+    /// What the pretension is made for on the way to it; none for what it was.
+    pub tension: Option<StreamTension>,
 }
 
 impl PathRow {
@@ -28,6 +30,7 @@ impl PathRow {
         Self {
             time_s,
             direction: angles::direction(azimuth_deg, tilt_deg),
+            tension: None,
         }
     }
 }
@@ -39,6 +42,8 @@ pub struct TimedPoint {
     pub time_s: f64,
     /// The motion of the direction's horizontal components.
     pub motion: MotionState<f64>,
+    /// What the pretension is made for on the way to it; none for what it was.
+    pub tension: Option<StreamTension>,
 }
 
 impl TimedPoint {
@@ -59,6 +64,7 @@ impl TimedPoint {
             direction: [0, 1].map(|i| later(p[i], v[i] + a[i] * later_s / 2.0)),
             rate: [0, 1].map(|i| later(v[i], a[i])),
             acceleration: Some(a.map(|a| a as f32)),
+            tension: self.tension,
         }
     }
 }
@@ -98,6 +104,7 @@ pub fn way(from: &TimedPoint, to: &TimedPoint) -> Vec<TimedPoint> {
         TimedPoint {
             time_s: from.time_s + part * span_s,
             motion: path.motion(part),
+            tension: to.tension,
         }
     };
     let mut points: Vec<_> = (1..pieces).map(between).collect();
@@ -150,6 +157,7 @@ impl PathBuilder {
         let motion = |row: &PathRow| TimedPoint {
             time_s: row.time_s - self.first_s,
             motion: self.motion(row),
+            tension: row.tension,
         };
         rows.iter().map(motion).collect()
     }
@@ -310,6 +318,7 @@ fn run_up_lasting(
     let rest = TimedPoint {
         time_s: first.time_s - time_s,
         motion: backwards.rest_after(time_s),
+        tension: first.tension,
     };
     let mut points = vec![rest];
     points.extend(way(&rest, first));

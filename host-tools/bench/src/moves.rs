@@ -104,7 +104,10 @@ fn make(drawn: &DrawnMove) -> Moved {
         failures: Vec::new(),
         way: Vec::new(),
     };
-    let went = prepared(drawn).and_then(|mut stand| go(drawn, &mut stand, &mut moved));
+    let went = prepared(drawn).and_then(|mut stand| {
+        go(drawn, &mut stand, &mut moved)?;
+        stand.require_shadow()
+    });
     moved.failures = match went {
         Ok(()) => MoveBars::new(drawn.begin_deg[1]).failures(&moved),
         Err(reason) => vec![reason],
@@ -115,7 +118,7 @@ fn make(drawn: &DrawnMove) -> Moved {
 /// A leg at rest where the move begins.
 fn prepared(drawn: &DrawnMove) -> Result<Stand, String> {
     let start = Start::hanging(drawn.pretension_n);
-    let mut stand = Stand::new(&drawn.file, &drawn.plant, start, drawn.seed)?;
+    let mut stand = Stand::shadowed(&drawn.file, &drawn.plant, start, drawn.seed)?;
     stand.tick_until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
     stand.wait(0.1)?;
     stand.command(&Command::Arm)?;

@@ -12,6 +12,7 @@ use leg_sim::emulated_leg::{EmulatedLeg, SignalChange};
 use leg_sim::host::Host;
 use leg_sim::link::InProcess;
 use leg_sim::plant::{Plant, Start, Truth};
+use leg_sim::shadow::Shadow;
 
 /// How little a leg moves that has come to rest, m, in how many ticks; and how often that is awaited.
 const STILL_M: f64 = 5e-5;
@@ -22,6 +23,8 @@ const STILL_SPANS: u32 = 80;
 #[derive(Clone)]
 pub struct Stand {
     leg: EmulatedLeg<InProcess>,
+    /// The control law in f64 beside it, where that is compared.
+    shadow: Option<Shadow>,
     host: Host,
     ticks: u64,
     /// What is true after the last tick.
@@ -47,9 +50,14 @@ impl Stand {
     ) -> Result<Self, String> {
         let leg = EmulatedLeg::start_in_process(rig, plant, start, seed);
         let leg = leg.map_err(|error| error.to_string())?;
-        Ok(Self {
+        Ok(Self::started(leg, None, seed))
+    }
+
+    fn started(leg: EmulatedLeg<InProcess>, shadow: Option<Shadow>, seed: u64) -> Self {
+        Self {
             truth: leg.plant().truth(),
             leg,
+            shadow,
             host: Host::new(seed),
             ticks: 0,
             telemetry: None,
@@ -58,7 +66,34 @@ impl Stand {
                 duty: [0.0; 3],
                 enabled: false,
             },
-        })
+        }
+    }
+
+    /// The same with the control law in f64 beside it.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn shadowed(
+        rig: &RigFile,
+        plant: &PlantSettings,
+        start: Start,
+        seed: u64,
+    ) -> Result<Self, String> {
+        let both = EmulatedLeg::start_shadowed(rig, plant, start, seed);
+        let (leg, shadow) = both.map_err(|error| error.to_string())?;
+        Ok(Self::started(leg, Some(shadow), seed))
+    }
+
+    /// # Errors
+    /// The control law in f64 came to another state, or had other faults.
+    pub fn require_shadow(&self) -> Result<(), String> {
+        match &self.shadow {
+            Some(shadow) if !shadow.divergence.stays() => Err(format!(
+                "the firmware leaves the state of its shadow in f64 at tick {}",
+                shadow.divergence.first_other_tick.unwrap_or_default()
+            )),
+            _ => Ok(()),
+        }
     }
 
     /// The simulated leg.
@@ -119,6 +154,9 @@ impl Stand {
         let advanced = self.leg.advance_through(change, bytes);
         let (taken, reply) = advanced.map_err(|error| error.to_string())?;
         self.ticks += 1;
+        if let Some(shadow) = &mut self.shadow {
+            shadow.tick(&taken.sensors, &taken.link, &reply);
+        }
         self.truth = self.leg.plant().truth();
         self.telemetry = Some(reply.telemetry);
         self.sensors = taken.sensors;
@@ -194,4 +232,25 @@ impl Stand {
 pub fn move_to([azimuth_deg, tilt_deg]: [f64; 2]) -> Command {
     let [x, y] = angles::direction(azimuth_deg, tilt_deg).map(|c| c as f32);
     Command::Move { x, y }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::Stand;
+    use leg_rig::rig_file::RigFile;
+    use leg_sim::plant::Start;
+    use leg_sim::shadow::OTHER_TICKS_MAX;
+
+    #[test]
+    fn a_leg_that_leaves_its_shadow_is_told() {
+        let rig = RigFile::load(None).unwrap();
+        let mut stand = Stand::shadowed(&rig, &rig.plant, Start::hanging(70.0), 1).unwrap();
+        stand.wait(0.01).unwrap();
+        for (ticks, stays) in [(OTHER_TICKS_MAX, true), (OTHER_TICKS_MAX + 1, false)] {
+            let shadow = stand.shadow.as_mut().unwrap();
+            shadow.divergence.longest_other_ticks = ticks;
+            assert_eq!(stand.require_shadow().is_ok(), stays);
+        }
+    }
 }

@@ -1,9 +1,11 @@
-//! Paths as rows of text: `time_s,azimuth_deg,tilt_deg`, from a file or a program.
+//! Paths as rows of text: `time_s,azimuth_deg,tilt_deg`, with `pretension_n` or `stiffness_nm_per_rad` where that changes, from a file or a
+//! program.
 
 use csv::{ReaderBuilder, StringRecord};
 use leg_base::failure::Failure;
 use leg_base::text_input::{Line, next_line, too_long};
 use leg_base::timed_path::{PathBuilder, PathRow, TimedPoint};
+use leg_firmware::set_point::StreamTension;
 use serde::Deserialize;
 use std::collections::VecDeque;
 use std::io::BufRead;
@@ -27,7 +29,23 @@ struct RowText {
     time_s: f64,
     azimuth_deg: f64,
     tilt_deg: f64,
+    pretension_n: Option<f64>,
+    stiffness_nm_per_rad: Option<f64>,
 }
+
+impl RowText {
+    /// What it asks of the tendons; the values are checked already.
+    fn tension(&self) -> Option<StreamTension> {
+        let pretension = |value| StreamTension::Pretension(value as f32);
+        let stiffness = |value| StreamTension::Stiffness(value as f32);
+        let asked = self.pretension_n.map(pretension);
+        asked.or(self.stiffness_nm_per_rad.map(stiffness))
+    }
+}
+
+/// What is read of these, N and N·m/rad: the leg says what it can reach.
+const PRETENSION_N: [f64; 2] = [0.0, 1e5];
+const STIFFNESS_NM_PER_RAD: [f64; 2] = [1e-3, 1e6];
 
 /// Reads a path row by row.
 pub struct PathReader<R> {
@@ -113,19 +131,33 @@ impl<R: BufRead> PathReader<R> {
     }
 
     fn row(&mut self, text: RowText) -> Result<PathRow, Failure> {
+        let tension = text.tension();
         let RowText {
             time_s,
             azimuth_deg,
             tilt_deg,
+            pretension_n,
+            stiffness_nm_per_rad,
         } = text;
-        for (name, value, most) in [
-            ("time_s", time_s, 1e9),
-            ("azimuth_deg", azimuth_deg, 1e6),
-            ("tilt_deg", tilt_deg, 90.0),
+        if pretension_n.is_some() && stiffness_nm_per_rad.is_some() {
+            return Err(self.refused("both pretension_n and stiffness_nm_per_rad"));
+        }
+        for (name, value, [least, most]) in [
+            ("time_s", Some(time_s), [-1e9, 1e9]),
+            ("azimuth_deg", Some(azimuth_deg), [-1e6, 1e6]),
+            ("tilt_deg", Some(tilt_deg), [-90.0, 90.0]),
+            ("pretension_n", pretension_n, PRETENSION_N),
+            (
+                "stiffness_nm_per_rad",
+                stiffness_nm_per_rad,
+                STIFFNESS_NM_PER_RAD,
+            ),
         ] {
-            if !(-most..=most).contains(&value) {
+            if let Some(value) = value
+                && !(least..=most).contains(&value)
+            {
                 return Err(
-                    self.refused(&format!("{name} = {value} is not from -{most} to {most}"))
+                    self.refused(&format!("{name} = {value} is not from {least} to {most}"))
                 );
             }
         }
@@ -138,7 +170,10 @@ impl<R: BufRead> PathReader<R> {
             return Err(self.refused(&sentence));
         }
         self.last_s = time_s;
-        Ok(PathRow::from_angles(time_s, azimuth_deg, tilt_deg))
+        Ok(PathRow {
+            tension,
+            ..PathRow::from_angles(time_s, azimuth_deg, tilt_deg)
+        })
     }
 
     fn refused(&self, what: &str) -> Failure {

@@ -25,7 +25,8 @@ pub(crate) enum LegCommand {
     /// Follows a path in time, streamed as set-points; the leg keeps station then.
     ///
     /// The leg goes to where it rests before the path, follows it from there within the limits of speed, acceleration and jerk,
-    /// and comes to rest after it. A file is checked before the leg moves. A leg that is homed and disarmed is armed first.
+    /// and comes to rest after it. A column `pretension_n` or `stiffness_nm_per_rad` changes the pretension on the way. A file is checked
+    /// before the leg moves. A leg that is homed and disarmed is armed first.
     Follow(FollowArgs),
     /// Holds the leg where it is, on its screws.
     ///

@@ -42,6 +42,7 @@ pub const MECHANISM_KEYS: &[MechanismKey] = keys! {
     "tendon" "diameter_mm" ["mm"] "Its diameter.";
     "tendon" "tendon_length_mm" ["mm"] "Length of the tendons themselves.";
     "tendon" "tendon_diameter_mm" ["mm"] "Their diameter.";
+    "tendon" "elongation_factor" ["1"] "Elongation of the leg's tendons over that by their curve or stiffness, measured by `leg tune`; 1 where left out.";
     "workspace" "tilt_deg" ["°"] "How far the leg leans at most.";
     "support" "kind" [""] "How the joint guides the leg; each kind has keys of its own.";
     "support" "bending_nm_per_rad" ["N·m/rad"] "Stiffness of the joint against bending, as measured.";

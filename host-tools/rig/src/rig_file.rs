@@ -8,6 +8,7 @@ mod support;
 mod tendon;
 
 pub use buckling::Buckling;
+pub use tendon::{ELONGATION_FACTOR, MEASURED_TENDON};
 
 use crate::actuator::Actuator;
 use crate::calibration::Calibration;
@@ -27,8 +28,10 @@ use std::path::Path;
 pub struct RigFile {
     /// The geometry and the masses.
     pub parameters: RigParameters<f64, 3>,
-    /// The tendons.
+    /// The tendons, as the leg measured them.
     pub tendons: [Tendon<f64>; 3],
+    /// Their elongation over that by the file's curve or stiffness.
+    pub elongation_factor: f64,
     /// At which tension their stiffness is read.
     pub stiffness_at: StiffnessAt,
     /// Lowest tension allowed, N.

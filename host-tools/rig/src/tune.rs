@@ -13,6 +13,7 @@ mod motor;
 mod play;
 mod ring;
 mod servo;
+mod stretch;
 mod swing;
 mod tuned_leg;
 

@@ -2,6 +2,7 @@
 
 use crate::link::{InProcess, Link, LinkError};
 use crate::plant::{Plant, Start};
+use crate::shadow::Shadow;
 use leg_firmware::drive::Drive;
 use leg_firmware::linked_leg::LINK_BYTES_MAX;
 use leg_firmware::sensors::{Sensors, TICK_HZ};
@@ -140,6 +141,21 @@ impl EmulatedLeg<InProcess> {
     ) -> Result<Self, EmulationError> {
         let (plant, settings) = assembled(rig, plant, &rig.gains, start, seed)?;
         Self::start(plant, &settings, InProcess::new(), false)
+    }
+
+    /// The same, and its shadow in f64.
+    ///
+    /// # Errors
+    /// As [`Self::start_in_process`].
+    pub fn start_shadowed(
+        rig: &RigFile,
+        plant: &PlantSettings,
+        start: Start,
+        seed: u64,
+    ) -> Result<(Self, Shadow), EmulationError> {
+        let (plant, settings) = assembled(rig, plant, &rig.gains, start, seed)?;
+        let leg = Self::start(plant, &settings, InProcess::new(), false)?;
+        Ok((leg, Shadow::new(&settings)?))
     }
 }
 

@@ -34,7 +34,8 @@
 //! | [`path_sender`] | a path as a stream of set-points, each sent in time |
 //! | [`signals`] | every signal of a leg, declared once: reports, recordings, charts |
 //! | [`scenario`], [`ready_scenarios`] | scenario files, and those that come with the program |
-//! | [`simulation`] | a scenario with an emulated leg, and a shadow of the control law in f64 beside it |
+//! | [`shadow`] | the control law in f64 beside a leg, and how far that gets from it |
+//! | [`simulation`] | a scenario with an emulated leg and its shadow |
 
 pub mod action;
 pub mod emulated_leg;
@@ -47,5 +48,6 @@ mod range;
 pub mod ready_scenarios;
 mod sag_model;
 pub mod scenario;
+pub mod shadow;
 pub mod signals;
 pub mod simulation;

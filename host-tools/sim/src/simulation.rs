@@ -5,13 +5,11 @@ mod follow_error;
 mod follower;
 mod measure;
 mod sequencer;
-mod shadow;
 mod summary;
 mod test_stand;
 mod tick_hash;
 
 pub use crate::hosted_leg::Comparison;
-pub use shadow::{Divergence, OTHER_TICKS_MAX};
 pub use summary::{Sample, ScenarioMeasurement, SimulationError, Summary};
 pub use test_stand::SAMPLE_TICKS;
 pub use tick_hash::TickHash;
@@ -20,6 +18,7 @@ use crate::emulated_leg::{EmulatedLeg, assembled};
 use crate::link::Link;
 use crate::plant::{Plant, Truth};
 use crate::scenario::Scenario;
+use crate::shadow::Shadow;
 use crate::signals::{LegConstants, Report, Simulated};
 use leg_firmware::drive::Drive;
 use leg_firmware::sensors::Sensors;
@@ -28,7 +27,6 @@ use leg_firmware::telemetry::Telemetry;
 use leg_rig::gains;
 use leg_rig::rig_file::RigFile;
 use sequencer::Sequencer;
-use shadow::Shadow;
 use test_stand::TestStand;
 
 /// Longest simulation, s.

@@ -10,7 +10,7 @@ use leg_firmware::jog::{JogDemand, JogDrive};
 use leg_firmware::linked_leg::LINK_BYTES_MAX;
 use leg_firmware::recorder::RecorderRequest;
 use leg_firmware::sensors::{CODE_MAX, Sensors};
-use leg_firmware::set_point::{SetPoint, StreamPart};
+use leg_firmware::set_point::{SetPoint, StreamPart, StreamTension};
 use leg_firmware_bench::protocol::{Request, TickRequest};
 use std::mem::discriminant;
 
@@ -61,6 +61,7 @@ const COMMANDS: [Command; 17] = [
         direction: [0.01, 0.0],
         rate: [0.1, 0.0],
         acceleration: Some([0.0, 0.5]),
+        tension: Some(StreamTension::Stiffness(50.0)),
     }),
     Command::Follow(SetPoint {
         part: StreamPart::Next,
@@ -68,6 +69,7 @@ const COMMANDS: [Command; 17] = [
         direction: [0.011, 0.0],
         rate: [0.1, 0.0],
         acceleration: None,
+        tension: None,
     }),
     Command::Jog(JogDemand {
         motor: 1,

@@ -5,7 +5,7 @@
 use leg_base::timed_path::{PathRow, TimedPath, TimedPoint, check, run_up, way};
 use leg_firmware::control::MotionState;
 use leg_firmware::sensors::TICK_HZ;
-use leg_firmware::set_point::{MotionLimit, PointRefusal, StreamPart};
+use leg_firmware::set_point::{MotionLimit, PointRefusal, StreamPart, StreamTension};
 use leg_firmware::settings::Settings;
 
 const RADIUS: f64 = 0.3;
@@ -25,6 +25,7 @@ fn rows(times_s: &[f64]) -> Vec<PathRow> {
     let row = |&time_s: &f64| PathRow {
         time_s: 100.0 + time_s,
         direction: circle(time_s).position,
+        tension: None,
     };
     times_s.iter().map(row).collect()
 }
@@ -78,7 +79,11 @@ fn few_rows_are_a_path_too() {
     let path = TimedPath::new(&rows(&[0.0, 0.1, 0.2, 0.3]));
     for time_s in [0.05, 0.15, 0.29] {
         let motion = path.motion(time_s).unwrap();
-        let [position, ..] = deviation(&TimedPoint { time_s, motion });
+        let [position, ..] = deviation(&TimedPoint {
+            time_s,
+            motion,
+            tension: None,
+        });
         assert!(position < 1e-5, "{position}");
     }
     assert_eq!((path.motion(-0.01), path.motion(0.31)), (None, None));
@@ -91,6 +96,7 @@ fn a_set_point_is_where_the_leg_is_at_its_tick() {
         let point = TimedPoint {
             time_s,
             motion: circle(time_s),
+            tension: None,
         };
         let sent = point.set_point(u32::MAX, StreamPart::Next);
         let at_s = f64::from(sent.tick.wrapping_add(1)) / f64::from(TICK_HZ);
@@ -105,13 +111,16 @@ fn a_set_point_is_where_the_leg_is_at_its_tick() {
 
 #[test]
 fn rows_far_from_each_other_have_points_between() {
-    let [from, to] = [0.0, 0.5].map(|time_s| TimedPoint {
+    let tension = Some(StreamTension::Pretension(60.0));
+    let [from, to] = [(0.0, None), (0.5, tension)].map(|(time_s, tension)| TimedPoint {
         time_s,
         motion: circle(time_s),
+        tension,
     });
     let points = way(&from, &to);
     assert_eq!((points.len(), points.last()), (25, Some(&to)));
     for point in points {
+        assert_eq!(point.tension, tension);
         let [position, rate, acceleration] = deviation(&point);
         assert!(
             position < 1e-6 && rate < 1e-4 && acceleration < 2e-3,
@@ -126,6 +135,7 @@ fn a_start_in_motion_has_a_run_up() {
     let first = TimedPoint {
         time_s: 0.0,
         motion: circle(0.0),
+        tension: None,
     };
     let points = run_up(&first, &settings()).unwrap();
     assert_eq!(points.last(), Some(&first));
@@ -151,6 +161,7 @@ fn a_path_that_is_much_too_fast_is_told_so() {
         let row = |i: u32| PathRow {
             time_s: f64::from(i) * 0.01,
             direction: circle(f64::from(i) * 0.01 * faster).position,
+            tension: None,
         };
         let rows: Vec<_> = (0..500).map(row).collect();
         let (time_s, refusal) = TimedPath::new(&rows).streamed(&settings()).unwrap_err();

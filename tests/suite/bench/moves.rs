@@ -191,6 +191,35 @@ fn a_leg_with_other_tendons_is_held() {
     }
 }
 
+/// With what `leg tune` measures of such tendons, to half a percent (`other_tendons_are_told_and_then_measured`), the leg moves within the bars
+/// of one that is unlike its settings, and rests where that error has it rest.
+#[test]
+fn a_leg_that_knows_its_tendons_moves() {
+    for (factor, left) in [(1.2, 0.005), (1.2, -0.005), (0.8, 0.005), (0.8, -0.005)] {
+        let measured = format!("[tendon.measured]\nelongation_factor = {factor}\n");
+        let text = [READY_RIGS[0].text, &measured].concat();
+        let mut file = RigFile::parse("measured", &text).unwrap();
+        file.plant.curve_error = left;
+        let name = format!("{factor} of the elongation, {left}");
+        let campaign = MoveCampaign {
+            seed: 7,
+            rigs: vec![(name.clone(), file)],
+            payload_kg: None,
+        };
+        let moved = campaign.run(0..20, || ());
+        let [hidden_off_mm, hidden_swing_mm, hidden_settled_s, _] = UNLIKE_HIDDEN;
+        for (hidden, bars) in [
+            (true, [hidden_off_mm, hidden_swing_mm, hidden_settled_s]),
+            (false, [UNLIKE_OFF_MM, UNLIKE_SWING_MM, UNLIKE_SETTLED_S]),
+        ] {
+            let [off_mm, swing_mm, settled_s, rest_mm] = largest(&name, &moved, hidden);
+            let found = [off_mm - rest_mm, swing_mm, settled_s];
+            assert!(found.iter().zip(bars).all(|(&found, bar)| found < bar));
+            assert!(rest_mm < 0.15, "{name}: {rest_mm} mm");
+        }
+    }
+}
+
 /// Without the brake heavy legs swing for longer than the bars allow.
 #[test]
 fn a_leg_whose_swing_is_not_braked_fails() {

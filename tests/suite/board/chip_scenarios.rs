@@ -177,26 +177,37 @@ fn damaged_bytes_are_found_by_a_chip_and_its_shadow_in_the_same_tick() {
 /// It takes minutes, and does on a chip what `tour` does.
 const LEFT_OUT: &str = "workspace";
 
-/// All of them but one, homed first: `cargo test --test suite -- --ignored --nocapture chip_scenarios` prints each as it ends. The samples
-/// above are run always.
-#[test]
-#[ignore = "takes a quarter of an hour on two cores: run with --ignored"]
-fn every_ready_scenario_passes_on_the_chip_as_in_process() {
-    let image = image();
-    let mut left: Vec<(&str, Scenario)> = vec![(
-        "following",
-        Scenario::parse("following", FOLLOWING).unwrap(),
-    )];
-    for ready in READY_SCENARIOS
-        .iter()
-        .filter(|ready| ready.name != LEFT_OUT)
-    {
+/// Those that take a core 45 s to 150 s each, more than half of the time of all: what they do beyond the others is the control law's alone,
+/// and `bits_under_qemu` compares its bits in them.
+const LONG: [&str; 8] = [
+    "fault_infeasible_load",
+    "fault_off_station",
+    "fig9",
+    "homing_again",
+    "stiffness",
+    "stiffness_lean",
+    "tour",
+    "trim",
+];
+
+/// The ready scenarios, as they are run on a board; those that are long, or the others.
+fn ready(long: bool) -> Vec<(&'static str, Scenario)> {
+    let mut found = Vec::new();
+    for ready in READY_SCENARIOS {
+        if ready.name == LEFT_OUT || LONG.contains(&ready.name) != long {
+            continue;
+        }
         let scenario = Scenario::parse(ready.name, ready.text).unwrap();
         match scenario.board_variant() {
-            Ok(scenario) => left.push((ready.name, scenario)),
+            Ok(scenario) => found.push((ready.name, scenario)),
             Err(why) => eprintln!("{}: not run: {why}", ready.name),
         }
     }
+    found
+}
+
+fn require_passed(mut left: Vec<(&str, Scenario)>) {
+    let image = image();
     // The longest first.
     left.sort_by_key(|(_, scenario)| scenario.steps.len());
     let homings = Homings::default();
@@ -213,4 +224,22 @@ fn every_ready_scenario_passes_on_the_chip_as_in_process() {
         }
     });
     assert_eq!(failed.into_inner().unwrap(), [""; 0]);
+}
+
+/// All of them but the long ones, homed first: `cargo test --test suite -- --ignored --nocapture chip_scenarios` runs those, too, and prints
+/// each as it ends. The samples above are run always.
+#[test]
+#[ignore = "takes six minutes on two cores: run with --ignored"]
+fn the_ready_scenarios_pass_on_the_chip_as_in_process() {
+    let following = Scenario::parse("following", FOLLOWING).unwrap();
+    let mut scenarios = ready(false);
+    scenarios.push(("following", following));
+    require_passed(scenarios);
+}
+
+#[test]
+#[ignore = "takes six minutes on two cores: run with --ignored"]
+fn the_long_scenarios_pass_on_the_chip_as_in_process() {
+    assert_eq!(ready(true).len(), LONG.len());
+    require_passed(ready(true));
 }

@@ -8,7 +8,7 @@ use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::control::{
     CYCLE_S, CYCLE_TICKS, Knot, MotionLimits, POINTS_MAX, Stream, StreamLimits, Trajectory,
 };
-use leg_firmware::set_point::{MotionLimit, PointRefusal, SetPoint, StreamPart};
+use leg_firmware::set_point::{MotionLimit, PointRefusal, SetPoint, StreamPart, StreamTension};
 use leg_firmware::settings::Settings;
 use leg_model::HalfTangent;
 
@@ -99,6 +99,7 @@ pub fn point(part: StreamPart, tick: u32, [azimuth_deg, tilt_deg]: [f64; 2]) -> 
         direction: angles::direction(azimuth_deg, tilt_deg).map(|component| component as f32),
         rate: [0.0; 2],
         acceleration: Some([0.0; 2]),
+        tension: None,
     }
 }
 
@@ -200,6 +201,17 @@ pub fn wild(rng: &mut fastrand::Rng, last: &SetPoint, streamed: bool, now: u32) 
         direction: pair(0),
         rate: pair(1),
         acceleration: (rng.u8(..20) > 0).then(|| pair(2)),
+        tension: wild_tension(rng),
+    }
+}
+
+/// Now and then a pretension or a stiffness, also one that no leg has.
+fn wild_tension(rng: &mut fastrand::Rng) -> Option<StreamTension> {
+    let value = 300.0 * rng.f32() - 20.0;
+    match rng.u8(..40) {
+        0 => Some(StreamTension::Pretension(value)),
+        1 => Some(StreamTension::Stiffness(value)),
+        _ => None,
     }
 }
 
@@ -244,8 +256,20 @@ fn a_point_is_refused_by_name() {
         ..second
     };
     let limit = PointRefusal::Limit;
+    let tensioned = |tension| SetPoint {
+        tension: Some(tension),
+        ..second
+    };
     for (refused, refusal) in [
         (number, PointRefusal::Number),
+        (
+            tensioned(StreamTension::Pretension(f32::INFINITY)),
+            PointRefusal::Number,
+        ),
+        (
+            tensioned(StreamTension::Stiffness(0.0)),
+            PointRefusal::Number,
+        ),
         (
             point(StreamPart::Next, 8000, [0.0, 50.0]),
             PointRefusal::OutOfReach,

@@ -220,6 +220,41 @@ fn what_is_written_is_a_part_of_a_rig_file() {
     }
 }
 
+/// A leg whose tendons stretch by a fifth more or less than its file says is held as they are tensioned. What is told of it lets it be
+/// measured.
+#[test]
+fn other_tendons_are_told_and_then_measured() {
+    for curve_error in [0.2, -0.2] {
+        let paper = RigFile::load(None).unwrap();
+        let mut real = paper;
+        real.plant.curve_error = curve_error;
+        let swing = |rig: &RigFile| {
+            let (_, mut operator, _) = leg(rig, &real, 1);
+            measure_swing(&mut operator, &SwingPlan::new(rig), rig, &mut |_| ())
+        };
+        let with = |section: &str| {
+            let text = [READY_RIGS[0].text, section].concat();
+            RigFile::parse("measured", &text).unwrap()
+        };
+        let told = swing(&paper).unwrap_err().to_string();
+        println!("{told}");
+        let (_, after) = told.split_once("its tendons stretch ").unwrap();
+        let (factor, _) = after.split_once(" times as much").unwrap();
+        let rough = with(&format!(
+            "[tendon.measured]\nelongation_factor = {factor}\n"
+        ));
+        let swings = swing(&rough).unwrap();
+        let found = swings.stretched().unwrap().value * rough.elongation_factor;
+        println!("{curve_error}: {found}");
+        assert!((found / (1.0 + curve_error) - 1.0).abs() < 0.005);
+        // The section that is written says so.
+        let (_, mut operator, _) = leg(&rough, &real, 1);
+        let motor = jog(&mut operator, 1, &mut |_| ()).unwrap();
+        let written = with(&section(1, &comparison(&motor, Some(&swings), &rough)));
+        assert!((written.elongation_factor / found - 1.0).abs() < 0.005);
+    }
+}
+
 /// A leg whose motors have another winding than its settings say, so that it does not home.
 #[test]
 fn what_the_jogs_tell_lets_a_leg_home_that_did_not() {

@@ -13,7 +13,8 @@ use leg_sim::link::{InProcess, Link, LinkError};
 use leg_sim::plant::Defect;
 use leg_sim::ready_scenarios::{self, READY_SCENARIOS};
 use leg_sim::scenario::{BOARD_EXCEPTIONS, Scenario, Step, TestStep};
-use leg_sim::simulation::{OTHER_TICKS_MAX, Simulation};
+use leg_sim::shadow::OTHER_TICKS_MAX;
+use leg_sim::simulation::Simulation;
 use std::fs;
 
 #[test]

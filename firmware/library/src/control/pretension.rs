@@ -4,6 +4,7 @@ use super::{
     Mechanism, Target,
     bounds::{clamp_symmetric, max, min},
 };
+use crate::set_point::StreamTension;
 use leg_model::{BendingAxis, Error, Scalar, StiffnessCommand};
 
 /// Stiffnesses that differ by no more than this part of the demand are equal: well below what a tendon's curve is known to.
@@ -20,6 +21,17 @@ pub enum PretensionDemand<T> {
     Pretension(T),
     /// A bending stiffness, N·m/rad.
     Stiffness(T, BendingAxis<T>),
+}
+
+impl<T: Scalar> From<StreamTension> for PretensionDemand<T> {
+    fn from(tension: StreamTension) -> Self {
+        match tension {
+            StreamTension::Pretension(pretension_n) => Self::Pretension(pretension_n.into()),
+            StreamTension::Stiffness(stiffness) => {
+                Self::Stiffness(stiffness.into(), BendingAxis::Softest)
+            }
+        }
+    }
 }
 
 /// The search for the pretension.

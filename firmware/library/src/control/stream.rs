@@ -1,10 +1,11 @@
 //! Set-points that a host streams: checked when they come, kept until their time.
 
+use super::pretension::PretensionDemand;
 use super::quintic::MotionState;
 use super::segment::{Knot, Segment};
 use super::stream_limits::StreamLimits;
 use super::{CYCLE_TICKS, TICK_S};
-use crate::set_point::{PointRefusal, SetPoint, StreamPart};
+use crate::set_point::{PointRefusal, SetPoint, StreamPart, StreamTension};
 use heapless::Deque;
 use leg_model::Scalar;
 
@@ -23,7 +24,9 @@ const AHEAD_MAX_TICKS: u32 = 80_000;
 pub struct Stream<T> {
     /// What every path keeps to.
     pub limits: StreamLimits<T>,
-    waiting: Deque<Knot<T>, POINTS_MAX>,
+    waiting: Deque<Waiting<T>, POINTS_MAX>,
+    /// What the segment that was entered asks of the tendons, until that is taken.
+    tension: Option<StreamTension>,
     /// Where the segment that is followed ends.
     reached: Knot<T>,
     /// The last point that was accepted, as a knot and as it came.
@@ -31,6 +34,13 @@ pub struct Stream<T> {
     last_point: Option<SetPoint>,
     /// Whether more points may come.
     open: bool,
+}
+
+/// A point that waits.
+#[derive(Clone, Copy, Debug)]
+struct Waiting<T> {
+    knot: Knot<T>,
+    tension: Option<StreamTension>,
 }
 
 impl<T: Scalar> Stream<T> {
@@ -43,6 +53,7 @@ impl<T: Scalar> Stream<T> {
         Self {
             limits,
             waiting: Deque::new(),
+            tension: None,
             reached: origin,
             last: origin,
             last_point: None,
@@ -70,7 +81,7 @@ impl<T: Scalar> Stream<T> {
 
     /// Forgets it: the stream was left, and a point that comes again is not followed.
     pub fn leave(&mut self) {
-        self.last_point = None;
+        (self.last_point, self.tension) = (None, None);
     }
 
     /// Takes the next point of a stream.
@@ -93,7 +104,8 @@ impl<T: Scalar> Stream<T> {
     fn push(&mut self, knot: Knot<T>, point: &SetPoint) {
         (self.last, self.last_point) = (knot, Some(*point));
         // There is room: it was just checked, or made.
-        let _ = self.waiting.push_back(knot);
+        let tension = point.tension;
+        let _ = self.waiting.push_back(Waiting { knot, tension });
     }
 
     /// The knot of a point that may follow on `before`: the segment to it keeps the limits, and after it the leg can come to rest
@@ -105,6 +117,9 @@ impl<T: Scalar> Stream<T> {
         point: &SetPoint,
     ) -> Result<Knot<T>, PointRefusal> {
         let ticks = spacing(before.tick, now, point.tick)?;
+        if !point.tension.is_none_or(StreamTension::is_possible) {
+            return Err(PointRefusal::Number);
+        }
         let mut motion = self.limits.motion(point)?;
         if point.acceleration.is_none() {
             let time_s = T::from(ticks as f32 * TICK_S);
@@ -121,9 +136,16 @@ impl<T: Scalar> Stream<T> {
 
     /// The segment to the next point; none without one.
     pub fn next_segment(&mut self) -> Option<Segment<T>> {
-        let to = self.waiting.pop_front()?;
+        let Waiting { knot: to, tension } = self.waiting.pop_front()?;
+        self.tension = tension.or(self.tension);
         let from = core::mem::replace(&mut self.reached, to);
         Some(Segment::connect(&from, &to))
+    }
+
+    /// What the segment that was entered asks of the tendons, once.
+    #[inline(always)]
+    pub fn take_demand(&mut self) -> Option<PretensionDemand<T>> {
+        Some(PretensionDemand::from(self.tension.take()?))
     }
 
     /// The segment that ends a stream in rest, and whether it ends before its last point came.

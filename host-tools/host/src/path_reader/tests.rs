@@ -1,5 +1,6 @@
 use super::{PathReader, PathSource, PathStep};
 use leg_base::failure::Failure;
+use leg_firmware::set_point::StreamTension;
 
 fn rows(text: &'static str) -> Result<Vec<f64>, Failure> {
     let mut reader = PathReader::new(text.as_bytes(), "path.csv");
@@ -14,6 +15,22 @@ fn rows(text: &'static str) -> Result<Vec<f64>, Failure> {
 fn rows_are_read_in_any_order_of_the_columns() {
     let text = "tilt_deg, azimuth_deg ,time_s\n\n20,45,0\n21 , 46,0.5\n";
     assert_eq!(rows(text), Ok(vec![0.0, 0.5]));
+}
+
+/// A cell that is empty asks for nothing.
+#[test]
+fn a_row_may_ask_for_a_pretension_or_a_stiffness() {
+    let text = "time_s,azimuth_deg,tilt_deg,pretension_n,stiffness_nm_per_rad\n\
+                0,0,1,60,\n1,0,1,,\n2,0,1,,50\n";
+    let mut reader = PathReader::new(text.as_bytes(), "path.csv");
+    for tension in [
+        Some(StreamTension::Pretension(60.0)),
+        None,
+        Some(StreamTension::Stiffness(50.0)),
+    ] {
+        let row = reader.next_row().map(|row| row.map(|row| row.tension));
+        assert_eq!(row, Ok(Some(tension)));
+    }
 }
 
 #[test]
@@ -39,6 +56,18 @@ fn what_is_wrong_with_a_row_is_said_with_its_line() {
         (
             "time_s,azimuth_deg,tilt_deg\n0,0,1\n0,0,2\n",
             "line 3: time_s = 0 is not after 0",
+        ),
+        (
+            "time_s,azimuth_deg,tilt_deg,pretension_n\n0,0,1,-1\n",
+            "line 2: pretension_n = -1 is not from 0 to 100000",
+        ),
+        (
+            "time_s,azimuth_deg,tilt_deg,stiffness_nm_per_rad\n0,0,1,0\n",
+            "line 2: stiffness_nm_per_rad = 0 is not from 0.001 to 1000000",
+        ),
+        (
+            "time_s,azimuth_deg,tilt_deg,pretension_n,stiffness_nm_per_rad\n0,0,1,70,50\n",
+            "line 2: both pretension_n and stiffness_nm_per_rad",
         ),
         (
             "time_s,azimuth_deg,tilt_deg,force_n\n0,0,1,2\n",

@@ -4,7 +4,8 @@ use crate::output::chart_line;
 use leg_base::json_object;
 use leg_base::tick_time::tick_s;
 use leg_firmware::supervisor::Fault;
-use leg_sim::simulation::{Divergence, ScenarioMeasurement, Summary};
+use leg_sim::shadow::Divergence;
+use leg_sim::simulation::{ScenarioMeasurement, Summary};
 use serde::Serialize;
 use std::path::PathBuf;
 

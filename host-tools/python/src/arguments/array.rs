@@ -2,7 +2,6 @@
 
 use super::LONGEST_S;
 use crate::interpreter::Call;
-use leg_base::angles;
 use leg_base::timed_path::{PathRow, TimedPath};
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyTypeError, PyValueError};
@@ -160,10 +159,7 @@ pub fn path(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<TimedPath> {
             ));
         }
         last_s = time_s;
-        rows.push(PathRow {
-            time_s,
-            direction: angles::direction(azimuth_deg, tilt_deg),
-        });
+        rows.push(PathRow::from_angles(time_s, azimuth_deg, tilt_deg));
     }
     Ok(TimedPath::new(&rows))
 }

@@ -61,9 +61,11 @@ fn read(root: &Section<'_>) -> Result<RigFile, TomlError> {
     let (support_name, support, critical_n) = support::read(root, tilt_deg)?;
     let actuators = Actuator::read_all(root)?;
     let control = gains::read_rig(root)?;
+    let elongation_factor = tendon::read_elongation_factor(&tendon)?;
     let mut file = RigFile {
         parameters,
-        tendons: tendon::read(&tendon)?,
+        tendons: tendon::read(&tendon, elongation_factor)?,
+        elongation_factor,
         stiffness_at: tendon::read_stiffness_at(&tendon)?,
         f_min_n: tendon.number("f_min_n")?,
         f_max_n: tendon.number("f_max_n")?,

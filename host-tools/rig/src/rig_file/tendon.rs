@@ -2,17 +2,19 @@
 
 use crate::toml_error::TomlError;
 use crate::toml_section::Section;
+use leg_firmware::settings::Field;
 use leg_model::{CURVE_POINTS_MAX, CurvePoint, Error, Reason, StiffnessAt, Tendon};
 use std::ops::Range;
 
 /// The keys of the section.
-pub(super) const KEYS: [&str; 10] = [
+pub(super) const KEYS: [&str; 11] = [
     "stiffness_n_per_m",
     "curve",
     "curve_1",
     "curve_2",
     "curve_3",
     "test_piece",
+    "measured",
     "stiffness_at",
     "f_min_n",
     "f_max_n",
@@ -27,8 +29,35 @@ const SIZES: [&str; 4] = [
     "tendon_diameter_mm",
 ];
 
+/// The section of what a leg measured of its own tendons.
+pub const MEASURED_TENDON: &str = "tendon.measured";
+
+/// The tendons' elongation over what their curve or stiffness gives: of the leg as it is, knots and clamps with it.
+pub const ELONGATION_FACTOR: Field<f64> = Field::new(
+    "elongation_factor",
+    "1",
+    "Elongation of the leg's tendons over that by their curve or stiffness, measured by `leg tune`.",
+    [0.5, 2.0],
+    1.0,
+);
+
+/// What stands in [`MEASURED_TENDON`].
+pub(super) fn read_elongation_factor(section: &Section<'_>) -> Result<f64, TomlError> {
+    let measured = section.optional("measured", &[ELONGATION_FACTOR.name])?;
+    let values = measured.map(|measured| measured.values([&ELONGATION_FACTOR]));
+    let [factor] = values
+        .transpose()?
+        .flatten()
+        .unwrap_or([ELONGATION_FACTOR.default]);
+    Ok(factor)
+}
+
 /// The three tendons: of one constant stiffness, with one curve, or with a curve each.
-pub(super) fn read(section: &Section<'_>) -> Result<[Tendon<f64>; 3], TomlError> {
+pub(super) fn read(
+    section: &Section<'_>,
+    elongation_factor: f64,
+) -> Result<[Tendon<f64>; 3], TomlError> {
+    let one = |key| curve(section, key, elongation_factor);
     let curve_key = ["curve", "curve_1"]
         .into_iter()
         .find(|key| section.has(key));
@@ -36,13 +65,9 @@ pub(super) fn read(section: &Section<'_>) -> Result<[Tendon<f64>; 3], TomlError>
         Some(key) if section.has("stiffness_n_per_m") => {
             Err(conflict(section.span(), "stiffness_n_per_m", key))
         }
-        Some("curve_1") => Ok([
-            curve(section, "curve_1")?,
-            curve(section, "curve_2")?,
-            curve(section, "curve_3")?,
-        ]),
-        Some(_) => Ok([curve(section, "curve")?; 3]),
-        None => Ok([constant(section)?; 3]),
+        Some("curve_1") => Ok([one("curve_1")?, one("curve_2")?, one("curve_3")?]),
+        Some(_) => Ok([one("curve")?; 3]),
+        None => Ok([constant(section, elongation_factor)?; 3]),
     }
 }
 
@@ -76,14 +101,20 @@ fn conflict(span: Range<usize>, first: &str, second: &str) -> TomlError {
     )
 }
 
-fn constant(section: &Section<'_>) -> Result<Tendon<f64>, TomlError> {
+fn constant(section: &Section<'_>, elongation_factor: f64) -> Result<Tendon<f64>, TomlError> {
     let key = "stiffness_n_per_m";
     let stiffness = section.number(key)?;
     let span = || section.place(&[key]).unwrap_or(section.span());
-    Tendon::constant(stiffness).map_err(|error| TomlError::refused(span(), key, reason(error)))
+    let tendon =
+        Tendon::constant(stiffness).and_then(|_| Tendon::constant(stiffness / elongation_factor));
+    tendon.map_err(|error| TomlError::refused(span(), key, reason(error)))
 }
 
-fn curve(section: &Section<'_>, key: &str) -> Result<Tendon<f64>, TomlError> {
+fn curve(
+    section: &Section<'_>,
+    key: &str,
+    elongation_factor: f64,
+) -> Result<Tendon<f64>, TomlError> {
     let table = section.section(key, &COLUMNS)?;
     let [tensions, elongations, stiffnesses] = COLUMNS.map(|column| table.numbers(column));
     let (tensions, elongations, stiffnesses) = (tensions?, elongations?, stiffnesses?);
@@ -110,7 +141,12 @@ fn curve(section: &Section<'_>, key: &str) -> Result<Tendon<f64>, TomlError> {
         .collect();
     check(&points, |index| tensions.get_ref()[index].span())?;
     let refused = |error| TomlError::refused(tensions.span(), key, reason(error));
-    Tendon::curve(&scaled(section, points)?).map_err(refused)
+    let points = scaled(section, points)?;
+    let points: Vec<_> = points
+        .iter()
+        .map(|point| point.scaled(elongation_factor, 1.0))
+        .collect();
+    Tendon::curve(&points).map_err(refused)
 }
 
 /// Refuses the first point that the model refuses, at its place.

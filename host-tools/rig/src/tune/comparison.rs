@@ -10,7 +10,7 @@ use crate::loop_response::Margins;
 use crate::motor_sections::motor_section;
 use crate::number::{plain, significant};
 use crate::plant_settings::{SIMULATION, TRANSVERSE_INERTIA};
-use crate::rig_file::RigFile;
+use crate::rig_file::{ELONGATION_FACTOR, MEASURED_TENDON, RigFile};
 use serde::Serialize;
 
 /// A quantity, as measured and as configured.
@@ -201,10 +201,18 @@ fn swing_rows(swings: &Swings, rig: &RigFile, section: &str) -> Vec<ComparisonRo
             configured: swings.configured_stretch_m.map(|m| 1000.0 * m),
             key: None,
         };
-        [play, stretch]
+        let factor = swings.stretched().map(|stretched| ComparisonRow {
+            name: ELONGATION_FACTOR.name.into(),
+            unit: ELONGATION_FACTOR.unit,
+            measured: stretched.scaled(rig.elongation_factor),
+            configured: Some(rig.elongation_factor),
+            key: Some((MEASURED_TENDON.into(), ELONGATION_FACTOR.name)),
+        });
+        [Some(play), Some(stretch), factor]
     });
     travels
         .into_iter()
+        .flatten()
         .flatten()
         .chain(first_mode)
         .chain([inertia])
@@ -311,7 +319,9 @@ pub fn section(motor: u8, rows: &[ComparisonRow]) -> String {
 
 /// What a rig file may say of a key.
 fn range(key: &str) -> Option<[f64; 2]> {
-    let mut fields = Actuator::FIELDS.iter().chain([&TRANSVERSE_INERTIA]);
+    let mut fields = Actuator::FIELDS
+        .iter()
+        .chain([&TRANSVERSE_INERTIA, &ELONGATION_FACTOR]);
     fields
         .find(|field| field.name == key)
         .map(|field| field.range)

@@ -4,6 +4,7 @@ use super::error::TuneError;
 use super::estimate::UncertainValue;
 use super::play::{Travels, is_wide, measure_travels, stopped_n};
 use super::ring::Ring;
+use super::stretch;
 use super::tuned_leg::TunedLeg;
 use crate::rig_file::RigFile;
 use leg_base::angles;
@@ -102,11 +103,36 @@ pub struct Swings {
     pub configured_stretch_m: Option<f64>,
 }
 
+impl Swings {
+    /// How much the tendons stretch for what they do by the rig file; none where it was not measured.
+    #[must_use]
+    pub fn stretched(&self) -> Option<UncertainValue> {
+        stretched(self.travels, self.configured_stretch_m)
+    }
+}
+
+fn stretched(travels: Option<Travels>, configured_m: Option<f64>) -> Option<UncertainValue> {
+    let (travels, configured_m) = travels.zip(configured_m)?;
+    Some(travels.stretch_m.scaled(configured_m.recip()))
+}
+
 /// Homes the leg, and lets it swing by the plan; calls `seen` after each pretension.
 ///
 /// # Errors
-/// A [`TuneError`]: a fault on the way, a leg that does not swing.
+/// A [`TuneError`]: a fault on the way, which tells where it may come from tendons that stretch otherwise; a leg that does not swing.
 pub async fn measure_swing<L: TunedLeg>(
+    leg: &mut L,
+    plan: &SwingPlan,
+    rig: &RigFile,
+    seen: &mut dyn FnMut(&Swing),
+) -> Result<Swings, TuneError<L::Error>> {
+    match measured(leg, plan, rig, seen).await {
+        Ok(swings) => Ok(swings),
+        Err(error) => Err(stretch::explained(leg, rig, error).await),
+    }
+}
+
+async fn measured<L: TunedLeg>(
     leg: &mut L,
     plan: &SwingPlan,
     rig: &RigFile,
@@ -134,13 +160,9 @@ pub async fn measure_swing<L: TunedLeg>(
     }
     leg.hang_straight(rig.pretension_n as f32).await?;
     leg.stop().await?;
-    let stretched = travels
-        .zip(configured_stretch_m)
-        .map_or(UncertainValue::new(1.0, 0.0), |(travels, configured_m)| {
-            travels.stretch_m.scaled(configured_m.recip())
-        });
+    let stretched = stretched(travels, configured_stretch_m);
     Ok(Swings {
-        inertia_kg_m2: inertia(&all, stretched),
+        inertia_kg_m2: inertia(&all, stretched.unwrap_or(UncertainValue::new(1.0, 0.0))),
         all,
         travels,
         configured_stretch_m,

@@ -1,9 +1,9 @@
 //! What came out of a simulation.
 
 use super::Comparison;
-use super::shadow::Divergence;
 use crate::emulated_leg::EmulationError;
 use crate::scenario::Measurand;
+use crate::shadow::Divergence;
 use leg_firmware::supervisor::Fault;
 use leg_firmware::telemetry::Telemetry;
 use serde::Serialize;

@@ -134,6 +134,7 @@ fn a_set_point_is_a_motion_in_half_tangents() {
             direction: p.map(|x| x as f32),
             rate: v.map(|x| x as f32),
             acceleration: Some(a.map(|x| x as f32)),
+            tension: None,
         })
         .unwrap();
     let at = |time_s: f64| {

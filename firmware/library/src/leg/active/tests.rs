@@ -50,6 +50,7 @@ fn tendons_that_pull_already_are_not_taken_up_from_slack() {
             direction: [0.0; 2],
             rate: [0.0; 2],
             acceleration: None,
+            tension: None,
         };
         let followed = active.follow(&mut shared, 0, &point);
         let expected = if taut {

@@ -31,6 +31,7 @@ fn leading() -> [Command; 6] {
             direction: [0.0; 2],
             rate: [0.0; 2],
             acceleration: None,
+            tension: None,
         }),
         Command::Pretension(10.0),
         Command::Stiffness {

@@ -12,11 +12,13 @@ use leg_firmware_bench::protocol::TickReply;
 use leg_firmware_bench::server::emulated;
 use serde::Serialize;
 
-/// The control law in f64.
-pub(super) struct Shadow {
+/// The control law in f64, beside a leg.
+#[derive(Clone, Debug)]
+pub struct Shadow {
     leg: LinkedLeg<f64>,
     /// What a host asks of it, it answers from here: nothing is recorded in f64.
     recorder: Box<Recorder>,
+    /// How far the leg got from it.
     pub divergence: Divergence,
 }
 
@@ -45,6 +47,10 @@ pub struct Divergence {
 pub const OTHER_TICKS_MAX: u64 = 8;
 
 impl Shadow {
+    /// With a leg's settings, before its first tick.
+    ///
+    /// # Errors
+    /// Settings that are refused.
     pub fn new(settings: &Settings) -> Result<Self, EmulationError> {
         let leg = LinkedLeg::new(emulated(BoardKind::InProcess), settings);
         Ok(Self {
