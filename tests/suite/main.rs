@@ -78,6 +78,7 @@ mod sim {
     pub mod station_stand;
     mod stiffness_floor;
     mod streamed_tension;
+    mod strike_bars_page;
     mod swing;
     mod ways_down;
 }

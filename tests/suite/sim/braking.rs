@@ -112,3 +112,29 @@ fn a_motor_that_is_not_counted_rests_while_the_others_brake() {
     assert_eq!(duty[0], 0.0, "{duty:?}");
     assert!(duty[1..].iter().any(|duty| *duty != 0.0), "{duty:?}");
 }
+
+/// What a suspect counter says leads no motor: they stand from the first tick on.
+#[test]
+fn a_leg_whose_counters_are_suspect_is_held_without_braking() {
+    let mut rig = paper();
+    for servo in &mut rig.gains.servos {
+        servo.duty_max = 0.05;
+    }
+    let start = Start::Held {
+        azimuth_deg: 40.0,
+        tilt_deg: 20.0,
+        pretension_n: rig.pretension_n,
+        payload_kg: 1.0,
+    };
+    let mut stand = Stand::new(&rig, &rig.plant, start, 12).unwrap();
+    stand.wait(0.1).unwrap();
+    stand.command(&Command::Arm).unwrap();
+    stand.wait(0.3).unwrap();
+    stand.command(&move_to([60.0, 15.0])).unwrap();
+    while stand.state() != State::Held {
+        assert!(stand.time_s() < 5.0);
+        stand.tick().unwrap();
+    }
+    assert!(faults(&stand).has(Fault::Following));
+    assert!(!stand.moving() && stand.motors.duty == [0.0; 3]);
+}

@@ -30,8 +30,13 @@ const PARTS: [&str; 15] = [
     "User",
 ];
 
+/// The rows' tables, without that of the strikes' bars.
 fn page() -> String {
-    fs::read_to_string(workspace_root().join("host-tools/docs/fmea.md")).unwrap()
+    let page = fs::read_to_string(workspace_root().join("host-tools/docs/fmea.md")).unwrap();
+    page.split("\n## Bars of the strikes")
+        .next()
+        .unwrap()
+        .into()
 }
 
 /// The cells of each row.

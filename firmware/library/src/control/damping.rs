@@ -215,7 +215,7 @@ fn swing<T: Scalar>(speeds: [T; 3], per_pretension: &SVector<T, 3>) -> [T; 3] {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{LEAST_M, SWINGING_M, SwingDamping};
+    use super::{LEAST_M, MOST_M, SWINGING_M, SwingDamping};
     use crate::settings::Settings;
     use nalgebra::SVector;
 
@@ -260,6 +260,15 @@ mod tests {
         let ideal = twice_ratio * core::f64::consts::PI * amplitude_m * amplitude_m;
         assert!((0.9..1.1).contains(&(work / ideal)), "{}", work / ideal);
         assert!(largest(&offsets) < 1.3 * twice_ratio * amplitude_m);
+    }
+
+    #[test]
+    fn a_large_swing_is_braked_by_no_more_than_is_said() {
+        let most_m = largest(&offsets(SWING, 1e-2));
+        assert!((most_m - f64::from(MOST_M)).abs() < 1e-9, "{most_m}");
+        let page = include_str!("../../../SAFETY.md");
+        let said = format!("by at most {} mm of each", 1000.0 * MOST_M);
+        assert!(page.contains(&said), "{said}");
     }
 
     /// One length that changes alone is a sensor that reads wrong; so are three that change as pretension does.

@@ -75,6 +75,12 @@ fn the_page_on_safety_says_how_far_beyond_the_maximum_tension() {
             percent(GRASPED_BEYOND)
         ),
         format!("up to {HOMING_N} N where a load cell fails"),
+        format!("switches it off (tip {RUNAWAY_MM} mm)"),
+        format!("armed again with it ({RUNAWAY_AGAIN_MM} mm)"),
+        format!(
+            "so that its motor stops: up to {} more",
+            percent(CUT_OFF_BEYOND)
+        ),
     ] {
         assert!(page.contains(&words), "{words}");
     }
