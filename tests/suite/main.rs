@@ -84,7 +84,7 @@ mod sim {
 }
 
 mod board {
-    mod bits_under_qemu;
+    pub mod bits_under_qemu;
     mod chip_boot;
     mod chip_bus;
     mod chip_cuts;
@@ -114,13 +114,14 @@ mod recording {
 mod host {
     mod can_bus;
     mod flash;
+    mod follow_tension;
     mod jog;
     mod link_damage;
     mod monitor_screen;
     mod plot;
     mod protocol_page;
     mod telemetry_page;
-    mod tune;
+    pub mod tune;
     mod ui;
     mod ui_live;
 }

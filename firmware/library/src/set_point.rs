@@ -24,7 +24,7 @@ pub enum StreamTension {
 }
 
 impl StreamTension {
-    /// Whether it may be asked for: a finite number, and a stiffness that is one.
+    /// Whether it may be asked for: a finite number, and a stiffness above 0. Of a pretension below 0 the lowest possible one is made.
     #[must_use]
     pub fn is_possible(self) -> bool {
         match self {
@@ -51,7 +51,8 @@ pub struct SetPoint {
     pub rate: [f32; 2],
     /// Their accelerations, 1/s²; none for those that a smooth motion through the points has.
     pub acceleration: Option<[f32; 2]>,
-    /// What the pretension is made for from the point before on, at no more than `pretension_rate_n_per_s`; none for what it was.
+    /// What the pretension is made for from the point before on, and from where the stream begins for the first, at no more than
+    /// `pretension_rate_n_per_s`; none for what it was. It stays after the stream, until another point or a command asks for something else.
     pub tension: Option<StreamTension>,
 }
 

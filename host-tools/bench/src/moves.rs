@@ -106,10 +106,13 @@ fn make(drawn: &DrawnMove) -> Moved {
     };
     let went = prepared(drawn).and_then(|mut stand| {
         go(drawn, &mut stand, &mut moved)?;
-        stand.require_shadow()
+        Ok(stand.require_shadow())
     });
     moved.failures = match went {
-        Ok(()) => MoveBars::new(drawn.begin_deg[1]).failures(&moved),
+        Ok(shadow) => {
+            let beyond = MoveBars::new(drawn.begin_deg[1]).failures(&moved);
+            beyond.into_iter().chain(shadow.err()).collect()
+        }
         Err(reason) => vec![reason],
     };
     moved

@@ -19,8 +19,8 @@ const ROWS_MAX: usize = 1024;
 const LONGEST_S: f64 = 2e5;
 
 /// What is said of a path that is refused.
-const HELP: &str =
-    "give rows as `0.01,45,20` under the header `time_s,azimuth_deg,tilt_deg`, the times rising";
+const HELP: &str = "give rows as `0.01,45,20` under the header `time_s,azimuth_deg,tilt_deg`, the times rising; `pretension_n` and \
+     `stiffness_nm_per_rad` may be further columns";
 
 /// A row as it is written.
 #[derive(Debug, Deserialize)]
@@ -140,7 +140,8 @@ impl<R: BufRead> PathReader<R> {
             stiffness_nm_per_rad,
         } = text;
         if pretension_n.is_some() && stiffness_nm_per_rad.is_some() {
-            return Err(self.refused("both pretension_n and stiffness_nm_per_rad"));
+            return Err(self
+                .refused("it gives both pretension_n and stiffness_nm_per_rad; give one of them"));
         }
         for (name, value, [least, most]) in [
             ("time_s", Some(time_s), [-1e9, 1e9]),

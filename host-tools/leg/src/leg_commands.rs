@@ -50,7 +50,8 @@ pub(crate) enum LegCommand {
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct FollowArgs {
-    /// The path: a CSV file with the columns time_s, azimuth_deg and tilt_deg, or - for standard input.
+    /// The path: a CSV file with the columns time_s, azimuth_deg and tilt_deg, and pretension_n or stiffness_nm_per_rad where that
+    /// shall change; or - for standard input.
     #[arg(value_name = "FILE")]
     path: PathBuf,
     /// The time from the rest before the path to its first point, beside the run-up, s: how long a point may be on its way to

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// Each move is drawn from the seed: two poses of the workspace, a payload up to 2 kg and a feasible pretension. Off is how far
 /// the tip is from the trajectory on the way, swing how far from where it comes to rest after the end; it has settled when it
 /// stays within 0.02 mm of that. The command fails where a bar is exceeded, which is wider for a move from straight down with a
-/// payload that nothing has shown yet.
+/// payload that nothing has shown yet, or where the control law in f64 beside the leg comes to another state.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// Everything random follows from it.

@@ -28,9 +28,9 @@ use std::path::Path;
 pub struct RigFile {
     /// The geometry and the masses.
     pub parameters: RigParameters<f64, 3>,
-    /// The tendons, as the leg measured them.
+    /// The tendons: the file's curve or stiffness, by `elongation_factor`.
     pub tendons: [Tendon<f64>; 3],
-    /// Their elongation over that by the file's curve or stiffness.
+    /// Their elongation over that by the file's curve or stiffness: 0.5 to 2, 1 where the leg has not measured it.
     pub elongation_factor: f64,
     /// At which tension their stiffness is read.
     pub stiffness_at: StiffnessAt,

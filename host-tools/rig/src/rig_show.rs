@@ -26,6 +26,7 @@ struct RigSummary {
     f_min_n: f64,
     f_max_n: f64,
     stiffness_at_pretension_n_per_m: [f64; 3],
+    elongation_factor: f64,
     tilt_deg: f64,
     keeps_station: bool,
     recorded: Vec<&'static str>,
@@ -50,6 +51,7 @@ impl RigSummary {
             f_min_n: file.f_min_n,
             f_max_n: file.f_max_n,
             stiffness_at_pretension_n_per_m: file.stiffnesses_n_per_m(),
+            elongation_factor: file.elongation_factor,
             tilt_deg: file.tilt_deg,
             keeps_station: file.keeps_station,
             recorded: recorded_signals::words(file.recorded).collect(),
@@ -60,6 +62,14 @@ impl RigSummary {
             derived: derived_gains(file),
         }
     }
+}
+
+/// Where the leg has measured its tendons, what it found.
+fn elongation_words(factor: f64) -> String {
+    if factor == 1.0 {
+        return String::new();
+    }
+    format!("elongation             {factor} times that of the curve or stiffness, measured\n")
 }
 
 /// A table for people.
@@ -77,6 +87,7 @@ pub fn words(file: &RigFile) -> String {
          leg                    {} kg, centroid {:.1} mm below the joint\n\
          tensions               {} to {} N, pretension {} N\n\
          tendons at pretension  {first:.0}, {second:.0}, {third:.0} N/m\n\
+         {}\
          workspace              tilt to {}°\n\
          after a command        {}\n\
          recorded at every tick {}\n\
@@ -92,6 +103,7 @@ pub fn words(file: &RigFile) -> String {
         summary.f_min_n,
         summary.f_max_n,
         summary.pretension_n,
+        elongation_words(summary.elongation_factor),
         summary.tilt_deg,
         if summary.keeps_station {
             "keeps station"

@@ -139,8 +139,7 @@ impl EmulatedLeg<InProcess> {
         start: Start,
         seed: u64,
     ) -> Result<Self, EmulationError> {
-        let (plant, settings) = assembled(rig, plant, &rig.gains, start, seed)?;
-        Self::start(plant, &settings, InProcess::new(), false)
+        Self::start_shadowed(rig, plant, start, seed).map(|(leg, _)| leg)
     }
 
     /// The same, and its shadow in f64.

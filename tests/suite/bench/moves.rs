@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use crate::host::tune::MEASURED_STRETCH;
 use leg_bench::moves::{MoveCampaign, Moved};
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
@@ -191,11 +192,12 @@ fn a_leg_with_other_tendons_is_held() {
     }
 }
 
-/// With what `leg tune` measures of such tendons, to half a percent (`other_tendons_are_told_and_then_measured`), the leg moves within the bars
-/// of one that is unlike its settings, and rests where that error has it rest.
+/// With what `leg tune` measures of such tendons, as far off as it may be (`other_tendons_are_told_and_then_measured`), the leg moves within the
+/// bars of one that is unlike its settings, and rests within 0.15 mm of the commanded point.
 #[test]
 fn a_leg_that_knows_its_tendons_moves() {
-    for (factor, left) in [(1.2, 0.005), (1.2, -0.005), (0.8, 0.005), (0.8, -0.005)] {
+    let off = MEASURED_STRETCH;
+    for (factor, left) in [(1.2, off), (1.2, -off), (0.8, off), (0.8, -off)] {
         let measured = format!("[tendon.measured]\nelongation_factor = {factor}\n");
         let text = [READY_RIGS[0].text, &measured].concat();
         let mut file = RigFile::parse("measured", &text).unwrap();
@@ -214,7 +216,8 @@ fn a_leg_that_knows_its_tendons_moves() {
         ] {
             let [off_mm, swing_mm, settled_s, rest_mm] = largest(&name, &moved, hidden);
             let found = [off_mm - rest_mm, swing_mm, settled_s];
-            assert!(found.iter().zip(bars).all(|(&found, bar)| found < bar));
+            let kept = found.iter().zip(bars).all(|(&found, bar)| found < bar);
+            assert!(kept, "{name}: {found:?} beyond {bars:?}");
             assert!(rest_mm < 0.15, "{name}: {rest_mm} mm");
         }
     }

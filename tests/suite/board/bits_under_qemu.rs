@@ -8,7 +8,7 @@ use crate::sim::ready_runs::{ready, run, scenario};
 use leg_sim::ready_scenarios::READY_SCENARIOS;
 
 /// Those that take minutes and do what others do, too.
-const LONG: [&str; 2] = ["workspace", "tour"];
+pub const NOT_COMPARED: [&str; 2] = ["workspace", "tour"];
 
 fn is_fault(name: &str) -> bool {
     name.starts_with("fault_")
@@ -18,7 +18,7 @@ fn is_fault(name: &str) -> bool {
 fn every_bit_is_the_same(chosen: fn(&str) -> bool) {
     let mut session = crate::common::qemu().unwrap();
     let names = READY_SCENARIOS.iter().map(|ready| ready.name);
-    for name in names.filter(|name| chosen(name) && !LONG.contains(name)) {
+    for name in names.filter(|name| chosen(name) && !NOT_COMPARED.contains(name)) {
         let (here, emulated) = (ready(name), run(&scenario(name), &mut session));
         let mut pairs = here.bits.iter().zip(&emulated.bits);
         let first = pairs.position(|(a, b)| a != b);

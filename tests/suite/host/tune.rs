@@ -12,6 +12,7 @@ use leg_host::cancel_flag::CancelFlag;
 use leg_host::operator::{HostIdentity, Operator, OperatorError};
 use leg_host::transport::emulated::EmulatedLine;
 use leg_host::tune::{OperatorTuneError, measure_motor, measure_swing, supply_v};
+use leg_rig::control_settings;
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
 use leg_rig::tune::{
@@ -20,6 +21,9 @@ use leg_rig::tune::{
 use leg_sim::emulated_leg::EmulatedLeg;
 use leg_sim::link::InProcess;
 use leg_sim::plant::{Plant, Start};
+
+/// How far the stretch of the paper's tendons is measured off, as a part of it.
+pub const MEASURED_STRETCH: f64 = 0.005;
 
 /// Nothing is driven: the screws hold.
 const OFF: Drive<f32> = Drive {
@@ -220,38 +224,55 @@ fn what_is_written_is_a_part_of_a_rig_file() {
     }
 }
 
-/// A leg whose tendons stretch by a fifth more or less than its file says is held as they are tensioned. What is told of it lets it be
-/// measured.
+/// A leg whose tendons stretch by a fifth more or less than its file says is held as they are tensioned. The factor that its user is told lets
+/// it be measured, after a disarm, a clear and other settings.
 #[test]
 fn other_tendons_are_told_and_then_measured() {
     for curve_error in [0.2, -0.2] {
         let paper = RigFile::load(None).unwrap();
         let mut real = paper;
         real.plant.curve_error = curve_error;
-        let swing = |rig: &RigFile| {
-            let (_, mut operator, _) = leg(rig, &real, 1);
-            measure_swing(&mut operator, &SwingPlan::new(rig), rig, &mut |_| ())
-        };
         let with = |section: &str| {
             let text = [READY_RIGS[0].text, section].concat();
             RigFile::parse("measured", &text).unwrap()
         };
-        let told = swing(&paper).unwrap_err().to_string();
+        let swing = |operator: &mut Operator, rig: &RigFile| {
+            measure_swing(operator, &SwingPlan::new(rig), rig, &mut |_| ())
+        };
+        let (_, mut operator, _) = leg(&paper, &real, 1);
+        let told = swing(&mut operator, &paper).unwrap_err().to_string();
         println!("{told}");
         let (_, after) = told.split_once("its tendons stretch ").unwrap();
         let (factor, _) = after.split_once(" times as much").unwrap();
         let rough = with(&format!(
             "[tendon.measured]\nelongation_factor = {factor}\n"
         ));
-        let swings = swing(&rough).unwrap();
-        let found = swings.stretched().unwrap().value * rough.elongation_factor;
-        println!("{curve_error}: {found}");
-        assert!((found / (1.0 + curve_error) - 1.0).abs() < 0.005);
-        // The section that is written says so.
-        let (_, mut operator, _) = leg(&rough, &real, 1);
+        operator.disarm().unwrap();
+        operator.clear().unwrap();
+        let settings = control_settings::settings(&rough, &rough.gains, None);
+        operator.set_settings(&settings).unwrap();
         let motor = jog(&mut operator, 1, &mut |_| ()).unwrap();
+        let swings = swing(&mut operator, &rough).unwrap();
         let written = with(&section(1, &comparison(&motor, Some(&swings), &rough)));
-        assert!((written.elongation_factor / found - 1.0).abs() < 0.005);
+        println!("{curve_error}: {}", written.elongation_factor);
+        let off = (written.elongation_factor / (1.0 + curve_error) - 1.0).abs();
+        assert!(off < MEASURED_STRETCH, "{}", written.elongation_factor);
+    }
+}
+
+/// What else makes the sensors disagree is not called other tendons: one cell that is off, and tendons that are hardly off.
+#[test]
+fn one_load_cell_that_is_off_is_not_called_other_tendons() {
+    let paper = RigFile::load(None).unwrap();
+    for cell_gain_error in [[0.5, 0.0, 0.0], [0.0, -0.5, 0.0]] {
+        let mut real = paper;
+        real.plant.cell_gain_error = cell_gain_error;
+        let (_, mut operator, _) = leg(&paper, &real, 1);
+        let swing = measure_swing(&mut operator, &SwingPlan::new(&paper), &paper, &mut |_| ());
+        let ended = swing.unwrap_err().to_string();
+        println!("{ended}");
+        assert!(ended.contains("sensors disagree on the pose"), "{ended}");
+        assert!(!ended.contains("its tendons stretch"), "{ended}");
     }
 }
 

@@ -12,6 +12,7 @@ use leg_rig::rig_file::RigFile;
 use leg_sim::emulated_leg::EmulatedLeg;
 use leg_sim::hosted_leg::HostedLeg;
 use leg_sim::plant::Start;
+use leg_sim::shadow::Shadow;
 
 /// How soon before its time a point is sent, ticks.
 const LEAD_TICKS: u32 = 1_200;
@@ -34,6 +35,12 @@ fn circle() -> TimedPath {
     TimedPath::new(&(0..=700).map(row).collect::<Vec<_>>())
 }
 
+/// A tick of the leg, and of its control law in f64.
+fn step(leg: &mut HostedLeg, shadow: &mut Shadow) {
+    let (taken, reply) = leg.tick().unwrap();
+    shadow.tick(&taken.sensors, &taken.link, &reply);
+}
+
 /// Where the leg is before a change, and at the end, what was asked for is there; the tip is on its circle all the time.
 #[test]
 fn a_stream_changes_the_pretension_on_the_way() {
@@ -49,14 +56,14 @@ fn a_stream_changes_the_pretension_on_the_way() {
         pretension_n: rig.pretension_n,
         payload_kg: 1.0,
     };
-    let leg = EmulatedLeg::start_in_process(&rig, &rig.plant, start, 1).unwrap();
+    let (leg, mut shadow) = EmulatedLeg::start_shadowed(&rig, &rig.plant, start, 1).unwrap();
     let mut leg = HostedLeg::new(leg, &rig, [0.0; 2], 1);
     while leg.state() != State::Disarmed {
-        leg.tick().unwrap();
+        step(&mut leg, &mut shadow);
     }
     leg.send(&Command::Arm).unwrap();
     for _ in 0..8_000 {
-        leg.tick().unwrap();
+        step(&mut leg, &mut shadow);
     }
     let now = leg.telemetry().unwrap().tick;
     let begin = now + LEAD_TICKS + (-first.time_s * 8000.0) as u32;
@@ -79,7 +86,7 @@ fn a_stream_changes_the_pretension_on_the_way() {
             part = StreamPart::Next;
             points.pop();
         }
-        leg.tick().unwrap();
+        step(&mut leg, &mut shadow);
         let refused = leg.answers().iter().find(|answer| answer.result.is_err());
         assert!(refused.is_none(), "{refused:?}");
         let telemetry = *leg.telemetry().unwrap();
@@ -103,7 +110,8 @@ fn a_stream_changes_the_pretension_on_the_way() {
             break;
         }
     }
-    println!("{farthest_mm} mm; {seen:?}");
+    println!("{farthest_mm} mm; {seen:?}, {:?}", shadow.divergence);
+    assert!(shadow.divergence.stays(), "{:?}", shadow.divergence);
     let [before, pulled, stiff, after] = seen[..] else {
         panic!("{seen:?}");
     };

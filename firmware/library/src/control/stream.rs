@@ -25,7 +25,7 @@ pub struct Stream<T> {
     /// What every path keeps to.
     pub limits: StreamLimits<T>,
     waiting: Deque<Waiting<T>, POINTS_MAX>,
-    /// What the segment that was entered asks of the tendons, until that is taken.
+    /// What the segment that was just entered asks of the tendons, until that is taken.
     tension: Option<StreamTension>,
     /// Where the segment that is followed ends.
     reached: Knot<T>,
@@ -81,7 +81,7 @@ impl<T: Scalar> Stream<T> {
 
     /// Forgets it: the stream was left, and a point that comes again is not followed.
     pub fn leave(&mut self) {
-        (self.last_point, self.tension) = (None, None);
+        self.last_point = None;
     }
 
     /// Takes the next point of a stream.
@@ -137,7 +137,7 @@ impl<T: Scalar> Stream<T> {
     /// The segment to the next point; none without one.
     pub fn next_segment(&mut self) -> Option<Segment<T>> {
         let Waiting { knot: to, tension } = self.waiting.pop_front()?;
-        self.tension = tension.or(self.tension);
+        self.tension = tension;
         let from = core::mem::replace(&mut self.reached, to);
         Some(Segment::connect(&from, &to))
     }

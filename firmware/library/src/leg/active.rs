@@ -109,6 +109,9 @@ impl<T: Scalar> Active<T> {
                     let joint_damping = shared.limits.joint_damping;
                     self.trajectory
                         .advance_plan(&mut shared.stream, joint_damping);
+                    if let Some(demand) = shared.stream.take_demand() {
+                        shared.pretension.demand(demand);
+                    }
                 }
                 Ok(())
             }
@@ -334,12 +337,9 @@ impl<T: Scalar> Active<T> {
 /// One step of the search for the pretension, at the last target.
 #[inline(never)]
 fn search_pretension<T: Scalar>(shared: &mut Shared<T>) -> Result<(), Error> {
-    let search = &mut shared.pretension;
-    if let Some(demand) = shared.stream.take_demand() {
-        search.demand(demand);
-    }
     if let Some(target) = &shared.target {
         let payload_kg = shared.estimator.load.payload_kg();
+        let search = &mut shared.pretension;
         let stiffnesses_n_per_m = search.step(&shared.mechanism, target, payload_kg)?;
         shared.targets.set_stiffnesses(&stiffnesses_n_per_m);
     }

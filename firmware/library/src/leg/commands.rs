@@ -8,7 +8,7 @@ use super::{CommandOutcome, Leg};
 use crate::command::{Command, CommandRefusal};
 use crate::control::{JogBounds, Measured, PretensionDemand};
 use crate::jog::JogDemand;
-use crate::set_point::SetPoint;
+use crate::set_point::{SetPoint, StreamTension};
 use crate::supervisor::{Event, State};
 use leg_model::{BendingAxis, Direction, Scalar};
 
@@ -212,11 +212,11 @@ impl<T: Scalar> Leg<T> {
     }
 
     fn demand_pretension(&mut self, pretension_n: f32) -> Result<(), CommandRefusal> {
-        if !pretension_n.is_finite() {
+        let tension = StreamTension::Pretension(pretension_n);
+        if !tension.is_possible() {
             return self.refuse(CommandRefusal::Number);
         }
-        let demand = PretensionDemand::Pretension(pretension_n.into());
-        self.shared.pretension.demand(demand);
+        self.shared.pretension.demand(tension.into());
         Ok(())
     }
 
@@ -225,7 +225,7 @@ impl<T: Scalar> Leg<T> {
         demand_nm_per_rad: f32,
         towards: Option<[f32; 2]>,
     ) -> Result<(), CommandRefusal> {
-        let possible = demand_nm_per_rad > 0.0 && demand_nm_per_rad.is_finite();
+        let possible = StreamTension::Stiffness(demand_nm_per_rad).is_possible();
         if !possible || !towards.is_none_or(is_azimuth) {
             return self.refuse(CommandRefusal::Number);
         }

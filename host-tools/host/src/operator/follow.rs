@@ -9,6 +9,7 @@ use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::host_link::HostRefusal;
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::set_point::{PointRefusal, StreamPart};
+use leg_firmware::supervisor::{Fault, FaultSet};
 use leg_firmware::telemetry::Telemetry;
 use std::time::Duration;
 
@@ -158,7 +159,13 @@ impl Operator {
         if !telemetry.state.follows() {
             return Err(not_following(ASKED, &telemetry));
         }
-        unlimited(ASKED, &telemetry)
+        // A tension that is out of reach is held at its bound, and the stream goes on.
+        let mut limits = telemetry.faults.limits();
+        limits = limits.difference(FaultSet::single(Fault::Unreachable));
+        if limits.any() {
+            return Err(OperatorError::Limited(ASKED, Box::new(telemetry)));
+        }
+        Ok(())
     }
 
     /// Sends a point, as soon as there is room for it.

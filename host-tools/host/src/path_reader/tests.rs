@@ -67,7 +67,7 @@ fn what_is_wrong_with_a_row_is_said_with_its_line() {
         ),
         (
             "time_s,azimuth_deg,tilt_deg,pretension_n,stiffness_nm_per_rad\n0,0,1,70,50\n",
-            "line 2: both pretension_n and stiffness_nm_per_rad",
+            "line 2: it gives both pretension_n and stiffness_nm_per_rad",
         ),
         (
             "time_s,azimuth_deg,tilt_deg,force_n\n0,0,1,2\n",

@@ -105,9 +105,8 @@ fn constant(section: &Section<'_>, elongation_factor: f64) -> Result<Tendon<f64>
     let key = "stiffness_n_per_m";
     let stiffness = section.number(key)?;
     let span = || section.place(&[key]).unwrap_or(section.span());
-    let tendon =
-        Tendon::constant(stiffness).and_then(|_| Tendon::constant(stiffness / elongation_factor));
-    tendon.map_err(|error| TomlError::refused(span(), key, reason(error)))
+    Tendon::constant(stiffness / elongation_factor)
+        .map_err(|error| TomlError::refused(span(), key, reason(error)))
 }
 
 fn curve(
@@ -197,7 +196,7 @@ fn reason(error: Error) -> Reason {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{COLUMNS, KEYS, SIZES};
+    use super::{COLUMNS, ELONGATION_FACTOR, KEYS, SIZES};
     use crate::mechanism_keys;
     use crate::ready_rigs::READY_RIGS;
     use crate::rig_file::RigFile;
@@ -206,9 +205,21 @@ mod tests {
 
     #[test]
     fn the_keys_that_are_read_are_those_of_the_table() {
-        let tables = ["curve", "curve_1", "curve_2", "curve_3", "test_piece"];
+        let tables = [
+            "curve",
+            "curve_1",
+            "curve_2",
+            "curve_3",
+            "measured",
+            "test_piece",
+        ];
         let numbers = KEYS.into_iter().filter(|key| !tables.contains(key));
-        let read: BTreeSet<&str> = numbers.chain(COLUMNS).chain(SIZES).collect();
+        let measured = [ELONGATION_FACTOR.name];
+        let read: BTreeSet<&str> = numbers
+            .chain(COLUMNS)
+            .chain(SIZES)
+            .chain(measured)
+            .collect();
         assert_eq!(read, mechanism_keys::names("tendon").into_iter().collect());
     }
 
@@ -245,6 +256,49 @@ mod tests {
         for tension in [5.0, 70.0, 150.0] {
             let [a, b] = [plain, scaled].map(|file| file.tendons[0].stiffness(tension).unwrap());
             assert!((b / a - 32.0 / 15.0).abs() < 1e-12, "{tension} N: {a} {b}");
+        }
+    }
+
+    /// What a leg measured of its tendons holds for a curve, for that of each tendon, and for a stiffness that is constant.
+    #[test]
+    fn a_factor_stretches_every_kind_of_tendon() {
+        let measured = "[tendon.measured]\nelongation_factor = 1.25\n";
+        let three = |curve: &str| {
+            let named = |name: &str| curve.replace("[tendon.curve]", name);
+            let names = ["[tendon.curve_1]", "[tendon.curve_2]", "[tendon.curve_3]"];
+            names.map(named).concat()
+        };
+        for tendon in [&str::to_owned as &dyn Fn(&str) -> String, &three] {
+            let plain = rig_with(tendon);
+            let stretched = rig_with(|curve| [&tendon(curve), measured].concat());
+            let factors = (plain.elongation_factor, stretched.elongation_factor);
+            assert_eq!(factors, (1.0, 1.25));
+            for (plain, stretched) in plain.tendons.into_iter().zip(stretched.tendons) {
+                let both = [plain, stretched];
+                let [a, b] = both.map(|tendon| tendon.elongation(70.0).unwrap());
+                assert!((b / a - 1.25).abs() < 1e-12);
+                let [a, b] = both.map(|tendon| tendon.stiffness(70.0).unwrap());
+                assert!((b / a - 0.8).abs() < 1e-12);
+            }
+        }
+        let text = READY_RIGS[0].text;
+        let text = text.replace("stiffness_at = \"pretension\"", "stiffness_n_per_m = 1e5");
+        let [start, end] = ["[tendon.curve]", "[workspace]"].map(|at| text.find(at).unwrap());
+        let text = [&text[..start], measured, &text[end..]].concat();
+        let constant = RigFile::parse("test", &text).unwrap();
+        assert_eq!(constant.tendons[0].stiffness(70.0).unwrap(), 8e4);
+    }
+
+    #[test]
+    fn a_factor_out_of_its_range_is_refused() {
+        for (line, said) in [
+            ("elongation_factor = 0.49", "elongation_factor"),
+            ("elongation_factor = 2.01", "elongation_factor"),
+            ("elongation = 1", "`elongation`"),
+        ] {
+            let text = [READY_RIGS[0].text, "[tendon.measured]\n", line].concat();
+            let refused = RigFile::parse("test", &text).unwrap_err().to_string();
+            assert!(refused.contains(said), "{refused}");
         }
     }
 }

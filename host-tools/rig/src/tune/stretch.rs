@@ -11,8 +11,13 @@ use leg_model::{Elasticity, evaluate};
 /// How far the leg may lean, as a direction: its lengths are taken for those straight down.
 const STRAIGHT: f32 = 0.005;
 
-/// Why the leg was not measured. Where its sensors disagree while it hangs straight down, on tendons that all pull, the tendons may stretch
-/// otherwise than by the rig file: by how much is told.
+/// How far the three tendons may be off each other, as parts of what is expected, and how far a file that is right may be: homing finds the zero to
+/// some hundredths of the elongation at the lowest tension.
+const ALIKE: f64 = 0.1;
+const RIGHT: f64 = 0.05;
+
+/// Why the leg was not measured. Where its sensors disagree while it hangs straight down, by the same part on all three tendons, these may
+/// stretch otherwise than the rig file says: by how much is told.
 pub(super) async fn explained<L: TunedLeg>(
     leg: &mut L,
     rig: &RigFile,
@@ -27,36 +32,43 @@ pub(super) async fn explained<L: TunedLeg>(
     };
     TuneError::undetermined(
         format!(
-            "the sensors disagree on the pose of a leg that hangs straight down: its tendons stretch {} times as much as by the curve or \
-             stiffness of the rig file, or its load cells are off",
+            "the sensors disagree on the pose of a leg that hangs straight down: its tendons stretch {} times as much as the curve or \
+             stiffness of the rig file says, or all its load cells or encoders are off",
             plain(significant(factor, 2)),
         ),
-        "calibrate the load cells; where they were right, write this number as `elongation_factor` under `[tendon.measured]` of the rig \
-         file, send that with `leg settings set`, and measure again",
+        "`leg disarm`, `leg clear`, calibrate the load cells; where they were right, write this number as `elongation_factor` under \
+         `[tendon.measured]` of the rig file, send that with `leg settings set`, and measure again",
     )
 }
 
 /// What the lengths and tensions of a resting leg give for the key of a rig file, roughly: they begin where homing found the zero. None
-/// where nothing says that the tendons are others, or no file may say so.
+/// where a tendon does not pull, where the three differ, as with one sensor that is off, or where the file is right.
 fn elongation_factor(telemetry: &Telemetry<f32>, rig: &RigFile) -> Option<f64> {
     let [x, y] = telemetry.pose;
     let hangs = telemetry.homed && x.abs() < STRAIGHT && y.abs() < STRAIGHT;
     if !hangs || !telemetry.faults.has(Fault::Residual) {
         return None;
     }
-    let lengths_m = evaluate(&rig.parameters, &rig.query(0.0, 0.0, 0.0))
-        .ok()?
-        .lengths_m;
-    let (mut stretched_m, mut expected_m) = (0.0, 0.0);
+    let query = rig.query(0.0, 0.0, 0.0);
+    let lengths_m = evaluate(&rig.parameters, &query).ok()?.lengths_m;
+    let [mut least, mut most] = [f64::INFINITY, f64::NEG_INFINITY];
     for (i, length_m) in lengths_m.into_iter().enumerate() {
-        let [at_zero_m, pulled_m] =
-            [telemetry.unstretched_at_zero_m, telemetry.pulled_m].map(|all| f64::from(all[i]));
-        stretched_m += length_m - (at_zero_m - pulled_m);
-        expected_m += rig.tendons[i]
-            .elongation(telemetry.tensions_n[i].into())
-            .ok()?;
+        let [at_zero_m, pulled_m, tension_n] = [
+            telemetry.unstretched_at_zero_m,
+            telemetry.pulled_m,
+            telemetry.tensions_n,
+        ]
+        .map(|all| f64::from(all[i]));
+        if tension_n < rig.f_min_n {
+            return None;
+        }
+        let expected_m = rig.tendons[i].elongation(tension_n).ok()?;
+        let ratio = (length_m - (at_zero_m - pulled_m)) / expected_m;
+        (least, most) = (least.min(ratio), most.max(ratio));
     }
-    let factor = rig.elongation_factor * stretched_m / expected_m;
+    let ratio = 0.5 * (least + most);
+    let alike = most - least < ALIKE && (ratio - 1.0).abs() > RIGHT;
+    let factor = rig.elongation_factor * ratio;
     let [low, high] = ELONGATION_FACTOR.range;
-    (low..=high).contains(&factor).then_some(factor)
+    (alike && (low..=high).contains(&factor)).then_some(factor)
 }
