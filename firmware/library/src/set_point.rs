@@ -24,11 +24,11 @@ pub enum StreamTension {
 }
 
 impl StreamTension {
-    /// Whether it may be asked for: a finite number, and a stiffness above 0. Of a pretension below 0 the lowest possible one is made.
+    /// Whether it may be asked for: a finite pretension that is not below 0, or a finite stiffness above 0.
     #[must_use]
     pub fn is_possible(self) -> bool {
         match self {
-            Self::Pretension(pretension_n) => pretension_n.is_finite(),
+            Self::Pretension(pretension_n) => pretension_n >= 0.0 && pretension_n.is_finite(),
             Self::Stiffness(stiffness) => stiffness > 0.0 && stiffness.is_finite(),
         }
     }
@@ -70,7 +70,7 @@ pub enum MotionLimit {
 /// Why a set-point is not taken. The stream goes on with those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum PointRefusal {
-    /// A number is not finite, or a stiffness not above 0.
+    /// A number is not finite, a pretension is below 0, or a stiffness not above 0.
     Number,
     /// The direction, or the way to it or from it to rest, leans too far.
     OutOfReach,
@@ -98,7 +98,7 @@ impl PointRefusal {
     pub const fn description(self) -> [&'static str; 2] {
         match self {
             Self::Number => [
-                "a number of the set-point is not finite, or its stiffness not above 0",
+                "a number of the set-point is not finite, its pretension is below 0, or its stiffness not above 0",
                 "give another number",
             ],
             Self::OutOfReach => [

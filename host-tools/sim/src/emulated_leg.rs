@@ -154,7 +154,8 @@ impl EmulatedLeg<InProcess> {
     ) -> Result<(Self, Shadow), EmulationError> {
         let (plant, settings) = assembled(rig, plant, &rig.gains, start, seed)?;
         let leg = Self::start(plant, &settings, InProcess::new(), false)?;
-        Ok((leg, Shadow::new(&settings)?))
+        let shadow = Shadow::new(&settings).map_err(EmulationError::Settings)?;
+        Ok((leg, shadow))
     }
 }
 

@@ -1,12 +1,11 @@
 //! The control law in f64 on the same sensors, and how far the one in f32 gets from it.
 
-use crate::emulated_leg::EmulationError;
 use leg_firmware::drive::Drive;
 use leg_firmware::host_link::BoardKind;
 use leg_firmware::linked_leg::LinkedLeg;
 use leg_firmware::recorder::Recorder;
 use leg_firmware::sensors::Sensors;
-use leg_firmware::settings::Settings;
+use leg_firmware::settings::{Settings, SettingsError};
 use leg_firmware::telemetry::Telemetry;
 use leg_firmware_bench::protocol::TickReply;
 use leg_firmware_bench::server::emulated;
@@ -51,10 +50,9 @@ impl Shadow {
     ///
     /// # Errors
     /// Settings that are refused.
-    pub fn new(settings: &Settings) -> Result<Self, EmulationError> {
-        let leg = LinkedLeg::new(emulated(BoardKind::InProcess), settings);
+    pub fn new(settings: &Settings) -> Result<Self, SettingsError> {
         Ok(Self {
-            leg: leg.map_err(EmulationError::Settings)?,
+            leg: LinkedLeg::new(emulated(BoardKind::InProcess), settings)?,
             recorder: Box::default(),
             divergence: Divergence::default(),
         })

@@ -14,7 +14,7 @@ pub use summary::{Sample, ScenarioMeasurement, SimulationError, Summary};
 pub use test_stand::SAMPLE_TICKS;
 pub use tick_hash::TickHash;
 
-use crate::emulated_leg::{EmulatedLeg, assembled};
+use crate::emulated_leg::{EmulatedLeg, EmulationError, assembled};
 use crate::link::Link;
 use crate::plant::{Plant, Truth};
 use crate::scenario::Scenario;
@@ -121,7 +121,7 @@ impl Simulation {
         link: &mut dyn Link,
         watch: &mut dyn FnMut(&Tick<'_>),
     ) -> Result<Summary, SimulationError> {
-        let mut shadow = Shadow::new(&self.settings)?;
+        let mut shadow = Shadow::new(&self.settings).map_err(EmulationError::Settings)?;
         let leg = EmulatedLeg::start(self.plant, &self.settings, link, self.counting)?;
         let mut stand = TestStand::new(leg, &self.rig, &self.settings, &self.scenario);
         let mut sequencer = Sequencer::new(&self.scenario);

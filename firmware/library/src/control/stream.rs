@@ -40,7 +40,32 @@ pub struct Stream<T> {
 #[derive(Clone, Copy, Debug)]
 struct Waiting<T> {
     knot: Knot<T>,
-    tension: Option<StreamTension>,
+    tension: PackedTension,
+}
+
+/// What a point asks of the tendons, in four bytes, as many points wait: a stiffness is kept below 0, and nothing as no number. A pretension
+/// that is possible is not below 0, and a stiffness above it.
+#[derive(Clone, Copy, Debug)]
+struct PackedTension(f32);
+
+impl PackedTension {
+    const fn new(tension: Option<StreamTension>) -> Self {
+        match tension {
+            None => Self(f32::NAN),
+            Some(StreamTension::Pretension(pretension_n)) => Self(pretension_n),
+            Some(StreamTension::Stiffness(stiffness)) => Self(-stiffness),
+        }
+    }
+
+    fn tension(self) -> Option<StreamTension> {
+        if self.0.is_nan() {
+            None
+        } else if self.0 < 0.0 {
+            Some(StreamTension::Stiffness(-self.0))
+        } else {
+            Some(StreamTension::Pretension(self.0))
+        }
+    }
 }
 
 impl<T: Scalar> Stream<T> {
@@ -104,7 +129,7 @@ impl<T: Scalar> Stream<T> {
     fn push(&mut self, knot: Knot<T>, point: &SetPoint) {
         (self.last, self.last_point) = (knot, Some(*point));
         // There is room: it was just checked, or made.
-        let tension = point.tension;
+        let tension = PackedTension::new(point.tension);
         let _ = self.waiting.push_back(Waiting { knot, tension });
     }
 
@@ -137,7 +162,7 @@ impl<T: Scalar> Stream<T> {
     /// The segment to the next point; none without one.
     pub fn next_segment(&mut self) -> Option<Segment<T>> {
         let Waiting { knot: to, tension } = self.waiting.pop_front()?;
-        self.tension = tension;
+        self.tension = tension.tension();
         let from = core::mem::replace(&mut self.reached, to);
         Some(Segment::connect(&from, &to))
     }
@@ -174,7 +199,9 @@ fn spacing(before: u32, now: u32, tick: u32) -> Result<u32, PointRefusal> {
 
 #[cfg(test)]
 mod tests {
-    use super::{AHEAD_MAX_TICKS, PointRefusal, SPACING_MIN_TICKS, spacing};
+    use super::{
+        AHEAD_MAX_TICKS, PackedTension, PointRefusal, SPACING_MIN_TICKS, StreamTension, spacing,
+    };
 
     /// Also where the count of ticks wraps meanwhile.
     #[test]
@@ -190,6 +217,31 @@ mod tests {
                 assert_eq!(in_ticks(ticks), Ok(ticks));
             }
             assert_eq!(in_ticks(AHEAD_MAX_TICKS + 1), Err(PointRefusal::Early));
+        }
+    }
+
+    #[test]
+    fn what_a_point_asks_is_kept() {
+        for tension in [
+            None,
+            Some(StreamTension::Pretension(0.0)),
+            Some(StreamTension::Pretension(70.0)),
+            Some(StreamTension::Stiffness(f32::MIN_POSITIVE)),
+            Some(StreamTension::Stiffness(90.0)),
+        ] {
+            assert!(tension.is_none_or(StreamTension::is_possible));
+            assert_eq!(PackedTension::new(tension).tension(), tension);
+        }
+        for tension in [
+            StreamTension::Pretension(-1e-3),
+            StreamTension::Pretension(f32::NAN),
+            StreamTension::Pretension(f32::INFINITY),
+            StreamTension::Stiffness(0.0),
+            StreamTension::Stiffness(-1.0),
+            StreamTension::Stiffness(f32::NAN),
+            StreamTension::Stiffness(f32::INFINITY),
+        ] {
+            assert!(!tension.is_possible(), "{tension:?}");
         }
     }
 }

@@ -212,11 +212,11 @@ impl<T: Scalar> Leg<T> {
     }
 
     fn demand_pretension(&mut self, pretension_n: f32) -> Result<(), CommandRefusal> {
-        let tension = StreamTension::Pretension(pretension_n);
-        if !tension.is_possible() {
+        if !pretension_n.is_finite() {
             return self.refuse(CommandRefusal::Number);
         }
-        self.shared.pretension.demand(tension.into());
+        let demand = PretensionDemand::Pretension(pretension_n.into());
+        self.shared.pretension.demand(demand);
         Ok(())
     }
 
