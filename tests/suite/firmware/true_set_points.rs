@@ -27,7 +27,7 @@ const LEGS: u32 = 8;
 const TICKS_BETWEEN: u64 = 20;
 
 /// What the true leg does beyond the limits of its settings, for it swings about its reference. It keeps those on speed and tension: a
-/// million points come to 30.18°, 4.68 rad/s² of 4, 0.733 rad/s of 0.8 and 148.4 N of 150.
+/// million points come to 30.19°, 4.33 rad/s² of 4, 0.736 rad/s of 0.8 and 148.9 N of 150.
 const BEYOND_DEG: f64 = 0.3;
 const ACCELERATION_PART: f64 = 1.2;
 
