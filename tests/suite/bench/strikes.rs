@@ -156,20 +156,45 @@ fn a_motor_that_turned_the_wrong_way_is_not_armed_again() {
     require_within(77, &[(9074, "encoder_reversed", 2.0)]);
 }
 
-/// A use that once ended in an alarm: a leg that was stopped and armed in a push, which took a tendon's tension, swung by 160 N as that came
-/// taut, and what its sensors showed then was taken for how they agree.
-#[test]
-fn a_leg_that_swings_hard_as_its_tendons_come_taut_raises_no_alarm() {
-    let seed = 660_014;
+/// Asserts that a part of a use of a seed, on its rig, goes on for so many seconds without an alarm that is not true.
+fn require_no_alarm(seed: u64, part: u64, rig: &str, time_s: f64) {
     let usage = StrikeCampaign {
         seed,
         ..campaign("none")
     }
-    .repeat_use(10, 12.0);
-    assert_eq!(usage.rig, "compliant_pivot");
+    .repeat_use(part, time_s);
+    assert_eq!(usage.rig, rig);
     assert_eq!(usage.stopped, None);
-    assert!(usage.alarms.is_empty(), "{:?}", usage.alarms);
-    assert!(usage.time_s >= 12.0);
+    let alarms: Vec<_> = usage.alarms.iter().filter(|alarm| !alarm.beyond).collect();
+    assert!(alarms.is_empty(), "{alarms:?}");
+    assert!(usage.time_s >= time_s);
+}
+
+/// A use that once ended in an alarm: a leg that was stopped and armed in a push, which took a tendon's tension, swung by 160 N as that came
+/// taut, and what its sensors showed then was taken for how they agree.
+#[test]
+fn a_leg_that_swings_hard_as_its_tendons_come_taut_raises_no_alarm() {
+    require_no_alarm(660_014, 10, "compliant_pivot", 12.0);
+}
+
+/// Uses that once ended in **leg swings**: a push that lasts was taken for a swing that grows.
+#[test]
+fn a_leg_that_is_pushed_while_it_swings_raises_no_alarm() {
+    require_no_alarm(61177, 0, "table1", 80.0);
+    require_no_alarm(5503, 3, "compliant_pivot", 300.0);
+}
+
+/// A use that once ended in **motor stays behind**: a motor that the servo had slowed down near the maximum tension had not caught up yet
+/// where its way ended.
+#[test]
+fn a_motor_that_is_slowed_down_near_the_maximum_tension_may_catch_up() {
+    require_no_alarm(5502, 10, "compliant_pivot", 322.0);
+}
+
+/// A use that once ended in **motor runs away**: a motor that paid out at its highest speed was led to stop, and braked by all it had.
+#[test]
+fn a_motor_that_brakes_as_hard_as_it_can_does_not_run_away() {
+    require_no_alarm(5502, 5, "notch_universal", 342.0);
 }
 
 /// A part of a use of each rig.

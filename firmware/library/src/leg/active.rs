@@ -1,6 +1,6 @@
 //! Following commands: estimate, pretension, target and plan in turn, one a tick.
 
-use super::give_way::gives_way;
+use super::give_way::{GIVEN_WAY_STEPS, gives_way};
 use super::length_offsets::LengthOffsets;
 use super::phase::Phase;
 use super::shared::Shared;
@@ -8,7 +8,8 @@ use super::slack::Slack;
 use super::station::{Station, StationKeeping};
 use crate::command::Compensation;
 use crate::control::{
-    CYCLE_TICKS, Knot, LoadEstimation, Measured, TICK_S, TargetDemand, Trajectory, Unloaded, bounds,
+    CYCLE_TICKS, Debounce, Knot, LoadEstimation, Measured, TICK_S, TargetDemand, Trajectory,
+    Unloaded, bounds,
 };
 use crate::set_point::{PointRefusal, SetPoint, StreamPart};
 use crate::supervisor::{Fault, FaultSet, SETTLE_CYCLES};
@@ -32,6 +33,8 @@ pub struct Active<T> {
     stuck: bool,
     offsets: LengthOffsets<T>,
     slack: Slack<T>,
+    /// Whether the leg gives way to the maximum tension.
+    given_way: Debounce,
     /// The search for where a taut leg with its compensation off begins; none once it is over.
     unloaded: Option<Unloaded<T>>,
 }
@@ -66,6 +69,7 @@ impl<T: Scalar> Active<T> {
                 left_m: (taut && compensated).then(T::zero),
                 cycles: 0,
             },
+            given_way: Debounce::new(GIVEN_WAY_STEPS),
             unloaded,
         }
     }
@@ -96,7 +100,7 @@ impl<T: Scalar> Active<T> {
                 self.faults
                     .add(Fault::Swings, shared.damping.keeps_swinging());
                 let rests = self.tensioned && !self.trajectory.moving();
-                let given_way = rests && gives_way(shared, measured);
+                let given_way = self.given_way.update(rests && gives_way(shared, measured));
                 self.faults.add(Fault::Following, given_way);
                 Ok(())
             }

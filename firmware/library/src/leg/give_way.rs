@@ -2,7 +2,7 @@
 
 use super::shared::Shared;
 use crate::command::Compensation;
-use crate::control::Measured;
+use crate::control::{Measured, SLOW_STEP_S};
 use leg_model::Scalar;
 
 /// How far a tendon of a leg at rest may be paid out for its tension, m: half of what its reference stays ahead of it, and on the paper's
@@ -11,6 +11,10 @@ const GIVEN_WAY_M: f32 = 5e-5;
 
 /// Part of the maximum tension above which a motor that stays behind is held back by it: the servo is slowed down in the last newtons.
 const NEAR_MAX_PART: f32 = 0.95;
+
+/// How many steps it lasts until the leg has given way, 8 ms: at the end of a move to where a tension is near the maximum, a motor that the
+/// servo has slowed down catches up in that.
+pub const GIVEN_WAY_STEPS: u32 = (0.008 / SLOW_STEP_S) as u32;
 
 /// Whether a tendon is paid out because its tension is at the maximum, although no target asks for it: a leg that leans goes on sinking so,
 /// and a load cell that reads too much has it sink too. Where the load is estimated, there is a target for it, unless no pretension holds it.

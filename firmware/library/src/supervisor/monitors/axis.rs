@@ -17,9 +17,9 @@ const JUMP_CHECKS: usize = 2;
 /// cell needs to jump. Scenario `fault_over_current` holds it.
 const OVER_CHECKS: u32 = 4;
 
-/// Part of `following_m` by which a motor may be away from where it is led while it goes farther. A third was too little: motors
-/// that give way to the maximum tension came there in `leg strikes --false-alarms`.
-const AWAY_PART: f32 = 0.6;
+/// Part of `following_m` by which a motor may be away from where it is led while it goes farther. Three fifths were too little: a motor
+/// that pays out at 29 mm/s and has to stop came there in `leg strikes --false-alarms`, at its highest current.
+const AWAY_PART: f32 = 0.75;
 
 /// A counter that goes farther between two checks than at its speed has jumped, by this part of what the fastest motor goes in a
 /// tick: on the paper's rig 3.4 µm. A motor at its highest current gains 0.4 µm meanwhile, and its tracked speed lags by 1 µm.
