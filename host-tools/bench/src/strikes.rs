@@ -29,6 +29,7 @@ use fastrand::Rng;
 use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Defect;
 use rayon::prelude::*;
+use serde::Serialize;
 
 /// Longest time that one user goes on, s.
 const PART_S: f64 = 600.0;
@@ -44,6 +45,39 @@ pub struct StrikeCampaign {
     pub activities: Vec<Activity>,
     /// The faults, by their names in scenarios, or `none`; empty for all.
     pub faults: Vec<String>,
+}
+
+/// What came of all strikes.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct StrikeSummary {
+    /// How many there were.
+    pub strikes: usize,
+    /// How many were beyond a bar.
+    pub failed: usize,
+    /// How many left their shadow in f64, and how many of so many may: one of a hundred, and three. One of 600 did.
+    pub left_shadow: usize,
+    /// See `left_shadow`.
+    pub left_shadow_at_most: usize,
+    /// Whether neither is too many.
+    pub passed: bool,
+}
+
+impl StrikeSummary {
+    /// Of strikes.
+    #[must_use]
+    pub fn new(struck: &[Struck]) -> Self {
+        let count = |is: fn(&&Struck) -> bool| struck.iter().filter(is).count();
+        let failed = count(|struck| !struck.passes());
+        let left_shadow = count(|struck| struck.left_shadow);
+        let left_shadow_at_most = 3 + struck.len() / 100;
+        Self {
+            strikes: struck.len(),
+            failed,
+            left_shadow,
+            left_shadow_at_most,
+            passed: failed == 0 && left_shadow <= left_shadow_at_most,
+        }
+    }
 }
 
 impl StrikeCampaign {

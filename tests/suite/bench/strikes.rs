@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_bench::strikes::{Activity, StrikeCampaign, Struck, rows};
+use leg_bench::strikes::{Activity, StrikeCampaign, StrikeSummary, Struck, rows};
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Defect;
@@ -32,6 +32,8 @@ fn require_passed(struck: &[Struck]) {
         })
         .collect();
     assert!(failed.is_empty(), "{}", failed.join("\n"));
+    let summary = StrikeSummary::new(struck);
+    assert!(summary.passed, "{summary:?}");
 }
 
 /// Every fault in every state, once, and legs that nothing strikes.

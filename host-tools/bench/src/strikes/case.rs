@@ -58,10 +58,13 @@ pub(super) fn kind_of(case: u64, slot: u64) -> Option<usize> {
     (slot + 1 < SLOTS).then_some(kind as usize)
 }
 
+/// The name of no fault.
+pub(super) const UNSTRUCK: &str = "none";
+
 /// Its name in scenarios.
 pub(super) fn name_of(kind: Option<usize>) -> &'static str {
     let named = kind.and_then(|kind| Defect::descriptions().nth(kind));
-    named.map_or("none", |(name, _)| name)
+    named.map_or(UNSTRUCK, |(name, _)| name)
 }
 
 impl Case {

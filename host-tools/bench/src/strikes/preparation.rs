@@ -42,8 +42,14 @@ pub(super) struct PreparedLeg {
 /// A load that a leg cannot hold without an estimate is compensated: the case then says so.
 ///
 /// # Errors
-/// Why the leg does not get there: a fault that nothing caused, or a time that is over.
+/// Why the leg does not get there: a fault that nothing caused, a time that is over, or that it left its shadow.
 pub(super) fn prepare(case: &mut Case) -> Result<PreparedLeg, String> {
+    let prepared = bring_there(case)?;
+    prepared.stand.require_shadow()?;
+    Ok(prepared)
+}
+
+fn bring_there(case: &mut Case) -> Result<PreparedLeg, String> {
     let mut stand = started(case)?;
     let command = match case.activity {
         Activity::Following | Activity::Rearmed | Activity::Disarmed => None,
@@ -106,7 +112,7 @@ fn started(case: &mut Case) -> Result<Stand, String> {
         },
         _ => Start::hanging(case.pretension_n),
     };
-    let mut stand = Stand::new(&case.file, &case.plant, start, case.seed)?;
+    let mut stand = Stand::shadowed(&case.file, &case.plant, start, case.seed)?;
     stand.tick_until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
     stand.wait(0.1)?;
     if matches!(case.activity, Activity::Homing | Activity::Arming) {
@@ -169,7 +175,7 @@ fn prepare_on_the_way(case: &mut Case, stand: Stand) -> Result<PreparedLeg, Stri
         course.add(&whole);
         if case.compensation != Compensation::Estimated && whole.faults().has(Fault::Following) {
             case.compensation = Compensation::Estimated;
-            return prepare(case);
+            return bring_there(case);
         }
         if whole.faults().any() {
             let names = leg_base::description::faults(whole.faults());

@@ -2,7 +2,7 @@
 
 use super::activity::Activity;
 use super::bars::{StrikeBars, WANDERS_BY_N, shown_as};
-use super::case::Case;
+use super::case::{Case, UNSTRUCK};
 use super::cut_off::CutOff;
 use super::preparation::PreparedLeg;
 use super::way::Way;
@@ -72,6 +72,8 @@ pub struct Struck {
     pub named_s: Option<f64>,
     /// How long after the leg had stopped a motor was driven last, s; zero if none was 0.1 s after it.
     pub driven_s: f64,
+    /// Whether the control law in f64 on the same sensors came to another state, or had other faults, for more than a millisecond.
+    pub left_shadow: bool,
     /// What it may do at most; none where the leg was not brought to where it should be struck.
     pub bars: Option<StrikeBars>,
     /// What was beyond its bar, as sentences.
@@ -111,6 +113,7 @@ impl Struck {
             named: None,
             named_s: None,
             driven_s: 0.0,
+            left_shadow: false,
             bars: None,
             failures: Vec::new(),
         }
@@ -121,7 +124,7 @@ impl Struck {
         let strike = Strike {
             index,
             defect: None,
-            name: "none",
+            name: UNSTRUCK,
             tendon: 0,
         };
         Self {
@@ -134,6 +137,18 @@ impl Struck {
     #[must_use]
     pub fn passes(&self) -> bool {
         self.failures.is_empty()
+    }
+
+    /// A sound leg keeps to its shadow. A fault comes to a limit at which what is rounded otherwise passes it some milliseconds sooner; once one of
+    /// the two has stopped, the other may never pass it.
+    fn compare_shadow(&mut self, stand: &Stand) {
+        let Err(error) = stand.require_shadow() else {
+            return;
+        };
+        self.left_shadow = true;
+        if self.fault == UNSTRUCK {
+            self.failures.push(error);
+        }
     }
 
     /// The bars of one that is beyond them, where no firmware could have braked it.
@@ -225,6 +240,7 @@ pub(super) fn strike(
             break;
         }
     }
+    watch.struck.compare_shadow(&stand);
     let bars = watch.struck.bars_by_cut_off(prepared, shown, bars);
     watch.struck.judge(&bars, strike.defect.is_some());
     (watch.struck, watch.moments)

@@ -1,25 +1,34 @@
 //! What `leg strikes` prints.
 
-use leg_bench::strikes::{Alarm, Moment, StrikeRow, Struck, UseResult, WorstByBar, WorstStrike};
+use leg_bench::strikes::{
+    Alarm, Moment, StrikeRow, StrikeSummary, Struck, UseResult, WorstByBar, WorstStrike,
+};
 
 const HEADING: &str = "\
 fault                        state         strikes     highest tension          tip moved      named        after  first fault                  driven after  failed\n";
 
-pub(super) fn table(rows: &[StrikeRow], strikes: usize, seed: u64) -> String {
+pub(super) fn table(rows: &[StrikeRow], summary: &StrikeSummary, seed: u64) -> String {
     let lines: String = rows.iter().map(row).collect();
-    format!("{}{HEADING}{lines}", summary(rows, strikes, seed))
+    format!("{}{HEADING}{lines}", heading(summary, seed))
 }
 
-fn summary(rows: &[StrikeRow], strikes: usize, seed: u64) -> String {
-    let failed: u64 = rows.iter().map(|row| row.failed).sum();
-    format!("{strikes} strikes at seed {seed}, {failed} failed\n\n")
+fn heading(summary: &StrikeSummary, seed: u64) -> String {
+    let StrikeSummary {
+        strikes,
+        failed,
+        left_shadow,
+        ..
+    } = summary;
+    format!(
+        "{strikes} strikes at seed {seed}, {failed} failed, {left_shadow} left their shadow in f64\n\n"
+    )
 }
 
 const BARS_HEADING: &str = "\
 fault                        state         strikes       tension / bar         homing / bar            tip / bar          named / bar\n";
 
 /// The worst of each measure beside its bar.
-pub(super) fn bar_report(rows: &[StrikeRow], strikes: usize, seed: u64) -> String {
+pub(super) fn bar_report(rows: &[StrikeRow], summary: &StrikeSummary, seed: u64) -> String {
     let line = |row: &StrikeRow| {
         let measures = row.by_bars;
         format!(
@@ -34,7 +43,7 @@ pub(super) fn bar_report(rows: &[StrikeRow], strikes: usize, seed: u64) -> Strin
         )
     };
     let lines: String = rows.iter().map(line).collect();
-    format!("{}{BARS_HEADING}{lines}", summary(rows, strikes, seed))
+    format!("{}{BARS_HEADING}{lines}", heading(summary, seed))
 }
 
 fn value_and_bar(measure: WorstByBar, digits: usize, unit: &str) -> String {
@@ -95,6 +104,11 @@ pub(super) fn course(struck: &Struck, course: &[Moment]) -> String {
         (Some(name), Some(after_s)) => format!("{name} after {after_s:.3} s"),
         _ => "no fault".into(),
     };
+    let shadow = if struck.left_shadow {
+        "; left its shadow in f64"
+    } else {
+        ""
+    };
     let verdict = if struck.passes() {
         "pass".into()
     } else {
@@ -103,7 +117,7 @@ pub(super) fn course(struck: &Struck, course: &[Moment]) -> String {
     format!(
         "#{}: {} of tendon {}\n{}\n\n\
          time s     tip mm    true tensions N          measured N               duties                    state, faults\n{lines}\n\
-         {named}; highest tension {:.1} N; tip {:.2} mm\n{verdict}\n",
+         {named}; highest tension {:.1} N; tip {:.2} mm{shadow}\n{verdict}\n",
         struck.index, struck.fault, struck.tendon, struck.case, struck.tension_n, struck.tip_mm,
     )
 }
