@@ -14,6 +14,7 @@ use leg_firmware::command::Command;
 use leg_firmware::supervisor::State;
 use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Start;
+use leg_sim::shadow::OTHER_TICKS_MAX;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use reference::Reference;
@@ -106,7 +107,7 @@ fn make(drawn: &DrawnMove) -> Moved {
     };
     let went = prepared(drawn).and_then(|mut stand| {
         go(drawn, &mut stand, &mut moved)?;
-        Ok(stand.require_shadow())
+        Ok(stand.require_shadow(OTHER_TICKS_MAX))
     });
     moved.failures = match went {
         Ok(shadow) => {

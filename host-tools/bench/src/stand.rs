@@ -85,10 +85,10 @@ impl Stand {
     }
 
     /// # Errors
-    /// The control law in f64 came to another state, or had other faults, for more than a millisecond.
-    pub fn require_shadow(&self) -> Result<(), String> {
+    /// The control law in f64 was in another state, or had other faults, for more than so many ticks in a row.
+    pub fn require_shadow(&self, other_ticks: u64) -> Result<(), String> {
         match &self.shadow {
-            Some(shadow) if !shadow.divergence.stays() => Err(format!(
+            Some(shadow) if !shadow.divergence.stays_within(other_ticks) => Err(format!(
                 "the firmware leaves the state of its shadow in f64, first at tick {}",
                 shadow.divergence.first_other_tick.unwrap_or_default()
             )),
@@ -242,6 +242,7 @@ mod tests {
     use leg_firmware::supervisor::State;
     use leg_rig::rig_file::RigFile;
     use leg_sim::plant::Start;
+    use leg_sim::shadow::OTHER_TICKS_MAX;
 
     /// A shadow that begins anew beside a leg that is armed is in another state.
     #[test]
@@ -253,11 +254,11 @@ mod tests {
         stand.command(&Command::Arm).unwrap();
         stand.wait(0.5).unwrap();
         assert_eq!(stand.state(), State::Active);
-        assert_eq!(stand.require_shadow(), Ok(()));
+        assert_eq!(stand.require_shadow(OTHER_TICKS_MAX), Ok(()));
         let divergence = stand.shadow.as_ref().unwrap().divergence;
         assert!(divergence.duty > 0.0 && divergence.reference_m > 0.0);
         stand.shadow = started().shadow;
         stand.wait(0.01).unwrap();
-        assert!(stand.require_shadow().is_err());
+        assert!(stand.require_shadow(OTHER_TICKS_MAX).is_err());
     }
 }

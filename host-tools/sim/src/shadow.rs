@@ -75,7 +75,13 @@ impl Divergence {
     /// Whether the two came to the same states and faults.
     #[must_use]
     pub const fn stays(&self) -> bool {
-        self.longest_other_ticks <= OTHER_TICKS_MAX
+        self.stays_within(OTHER_TICKS_MAX)
+    }
+
+    /// The same with so many ticks in a row in which they may differ.
+    #[must_use]
+    pub const fn stays_within(&self, other_ticks: u64) -> bool {
+        self.longest_other_ticks <= other_ticks
     }
 
     fn compare(&mut self, reply: &TickReply, shadow: &Drive<f64>, reported: &Telemetry<f64>) {

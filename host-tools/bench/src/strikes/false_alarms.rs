@@ -1,5 +1,6 @@
 //! What a user does to a leg without any fault: no fault may come.
 
+use super::OTHER_TICKS;
 use super::case::TARED_N;
 use super::push::strongest_n;
 use crate::draw::{CELL_GAIN, feasible, mixed, plant};
@@ -161,7 +162,7 @@ impl<'a> User<'a> {
                 return Ok(());
             }
         }
-        self.stand.require_shadow()
+        self.stand.require_shadow(OTHER_TICKS)
     }
 
     fn alarm(&self, fault: Fault, time_s: f64) -> Alarm {

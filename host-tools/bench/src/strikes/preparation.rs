@@ -1,5 +1,6 @@
 //! Brings a leg to what it does when it is struck.
 
+use super::OTHER_TICKS;
 use super::activity::Activity;
 use super::bars::Unstruck;
 use super::case::Case;
@@ -45,7 +46,7 @@ pub(super) struct PreparedLeg {
 /// Why the leg does not get there: a fault that nothing caused, a time that is over, or that it left its shadow.
 pub(super) fn prepare(case: &mut Case) -> Result<PreparedLeg, String> {
     let prepared = bring_there(case)?;
-    prepared.stand.require_shadow()?;
+    prepared.stand.require_shadow(OTHER_TICKS)?;
     Ok(prepared)
 }
 

@@ -1,5 +1,6 @@
 //! One strike and its measures.
 
+use super::OTHER_TICKS;
 use super::activity::Activity;
 use super::bars::{StrikeBars, WANDERS_BY_N, shown_as};
 use super::case::{Case, UNSTRUCK};
@@ -72,7 +73,7 @@ pub struct Struck {
     pub named_s: Option<f64>,
     /// How long after the leg had stopped a motor was driven last, s; zero if none was 0.1 s after it.
     pub driven_s: f64,
-    /// Whether the control law in f64 on the same sensors came to another state, or had other faults, for more than a millisecond.
+    /// Whether the control law in f64 on the same sensors came to another state, or had other faults, for more than 0.1 s.
     pub left_shadow: bool,
     /// What it may do at most; none where the leg was not brought to where it should be struck.
     pub bars: Option<StrikeBars>,
@@ -139,10 +140,10 @@ impl Struck {
         self.failures.is_empty()
     }
 
-    /// A sound leg keeps to its shadow. A fault comes to a limit at which what is rounded otherwise passes it some milliseconds sooner; once one of
-    /// the two has stopped, the other may never pass it.
+    /// A sound leg keeps to its shadow. A fault comes to a limit at which what is rounded otherwise passes it a little sooner; once one of the two has
+    /// stopped, the other may never pass it.
     fn compare_shadow(&mut self, stand: &Stand) {
-        let Err(error) = stand.require_shadow() else {
+        let Err(error) = stand.require_shadow(OTHER_TICKS) else {
             return;
         };
         self.left_shadow = true;
