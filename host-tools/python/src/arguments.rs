@@ -2,9 +2,11 @@
 
 mod array;
 mod dictionary;
+mod path;
 
-pub use array::{Numbers, broadcast, common_shape, list, not_negative, numbers, path};
+pub use array::{Numbers, broadcast, common_shape, list, not_negative, numbers};
 pub use dictionary::{from_json, loads, to_json};
+pub use path::{TensionArguments, path};
 
 use crate::rig::Rig;
 use leg_base::angles;

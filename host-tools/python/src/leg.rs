@@ -4,7 +4,7 @@ mod access;
 mod calibration;
 mod settings;
 
-use crate::arguments::{self, bounded, tensioning};
+use crate::arguments::{self, TensionArguments, bounded, tensioning};
 use crate::errors::leg_error;
 use crate::interpreter::Call;
 use crate::named;
@@ -171,15 +171,23 @@ impl Leg {
 
     /// Streams a path: rows of time in s, azimuth and tilt in degrees. It is checked as a whole before the leg moves.
     ///
+    /// pretension_n, stiffness_nm_per_rad: what the tendons are tensioned for on the way to each row, or to all; one of them. What is
+    /// out of reach is held at its bound, and raises LegFault at the end.
     /// lead_s: how long a point may be on its way to the leg, s.
-    #[pyo3(signature = (points, *, lead_s = 0.2))]
+    #[pyo3(signature = (points, *, pretension_n = None, stiffness_nm_per_rad = None, lead_s = 0.2))]
     fn follow<'py>(
         &self,
         py: Python<'py>,
         points: &Bound<'_, PyAny>,
+        pretension_n: Option<&Bound<'_, PyAny>>,
+        stiffness_nm_per_rad: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = named::lead_s)] lead_s: f64,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let path = arguments::path("points", points)?;
+        let tensions = TensionArguments {
+            pretension_n,
+            stiffness_nm_per_rad,
+        };
+        let path = arguments::path("points", points, tensions)?;
         let lead = Duration::from_secs_f64(bounded("lead_s", lead_s, 0.0, 10.0)?);
         self.report(py, move |operator| operator.follow_whole(&path, lead))
     }

@@ -10,6 +10,8 @@ from tendon_leg import DEFECTS, LegError, RigError, ScenarioError, SimulatedLeg,
 
 NAN, INFINITY = math.nan, math.inf
 
+LINE = [[0, 0, 0], [1, 0, 1], [2, 0, 2]]
+
 
 @pytest.mark.parametrize(
     ("call", "error", "words"),
@@ -22,6 +24,16 @@ NAN, INFINITY = math.nan, math.inf
         (lambda leg: leg.follow(np.zeros((5, 3))), ValueError, "points has the time 0 s at index 1"),
         (lambda leg: leg.follow([[0, 0, 0]]), ValueError, "points has the shape [1, 3]"),
         (lambda leg: leg.follow([[0, 0, 0], [1, NAN, 0]]), ValueError, "points holds NaN at index 4"),
+        (lambda leg: leg.follow(LINE, pretension_n=[60, 70]), ValueError, "one for each of the 3 rows"),
+        (lambda leg: leg.follow(LINE, pretension_n=[60, -1, 70]), ValueError, "pretension_n holds -1 at index 1"),
+        (lambda leg: leg.follow(LINE, stiffness_nm_per_rad=0), ValueError, "stiffness_nm_per_rad holds 0 at index 0"),
+        (lambda leg: leg.follow(LINE, pretension_n=NAN), ValueError, "pretension_n holds NaN"),
+        (lambda leg: leg.follow(LINE, pretension_n="x"), TypeError, "pretension_n is no array of numbers"),
+        (
+            lambda leg: leg.follow(LINE, pretension_n=60, stiffness_nm_per_rad=60),
+            ValueError,
+            "pretension_n and stiffness_nm_per_rad are given; give one of them",
+        ),
         (lambda leg: leg.follow("x"), TypeError, "points is no array of numbers"),
         (lambda leg: leg.follow([[0, 0, 0], [1, 0]]), TypeError, "points is no array of numbers"),
         (lambda leg: leg.follow([[0, 0, 0], [1, 0, 91]]), ValueError, "tilt 91° at index 1"),

@@ -60,6 +60,19 @@ def test_a_path_that_is_too_fast_is_refused_for_its_speed():
             leg.follow(turns)
 
 
+def test_a_path_changes_the_tensions_on_the_way():
+    points = circle(3.0)
+    with Leg.emulated() as leg:
+        leg.follow(points, pretension_n=np.linspace(70.0, 85.0, len(points)))
+        assert leg.telemetry()["pretension_n"] == pytest.approx(85.0, abs=0.1)
+        leg.follow(points, stiffness_nm_per_rad=60.0)
+        assert leg.telemetry()["stiffness_nm_per_rad"] == pytest.approx(60.0, abs=0.5)
+        with pytest.raises(LegFault) as fault:
+            leg.follow(points, stiffness_nm_per_rad=1e4)
+        assert (fault.value.code, fault.value.name) == (14, "stiffness out of reach")
+        assert leg.telemetry()["tilt_deg"] == pytest.approx(20.0, abs=0.1)
+
+
 def test_refusals_and_faults_have_their_words():
     leg = Leg.emulated()
     with pytest.raises(Refused) as refusal:

@@ -150,6 +150,18 @@ def test_a_path_is_followed_to_its_end():
     assert leg.read("tip_error_mm") < 0.05
 
 
+def test_a_path_changes_the_pretension_on_the_way():
+    leg = armed(payload_kg=1.0)
+    points = circle()
+    leg.record(["path_error_mm", "pretension_n"], every_ticks=8)
+    leg.follow(points, pretension_n=np.linspace(70.0, 85.0, len(points)))
+    seen = leg.recording()
+    on_path = np.isfinite(seen["path_error_mm"])
+    assert seen["path_error_mm"][on_path].max() < 0.2
+    assert np.ptp(seen["pretension_n"][on_path]) > 13.0
+    assert leg.read("pretension_n") == pytest.approx(85.0, abs=0.1)
+
+
 def test_a_path_is_left_by_a_hold():
     leg = armed()
     leg.follow(circle(), wait=False)

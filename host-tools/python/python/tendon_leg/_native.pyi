@@ -75,9 +75,18 @@ class Leg:
     def stiffness(self, nm_per_rad: float, towards_deg: float | None = None) -> dict[str, Any]:
         """Changes the bending stiffness where the leg is: of the softest tilt, or against a push towards an azimuth."""
 
-    def follow(self, points: ArrayLike, *, lead_s: float = 0.2) -> dict[str, Any]:
+    def follow(
+        self,
+        points: ArrayLike,
+        *,
+        pretension_n: ArrayLike | None = None,
+        stiffness_nm_per_rad: ArrayLike | None = None,
+        lead_s: float = 0.2,
+    ) -> dict[str, Any]:
         """Streams a path: rows of time in s, azimuth and tilt in degrees. It is checked as a whole before the leg moves.
 
+        pretension_n, stiffness_nm_per_rad: what the tendons are tensioned for on the way to each row, or to all; one of them. What is
+        out of reach is held at its bound, and raises LegFault at the end.
         lead_s: how long a point may be on its way to the leg, s.
         """
 
@@ -366,11 +375,21 @@ class SimulatedLeg:
     def move(self, azimuth_deg: float, tilt_deg: float, *, wait: bool = True) -> None:
         """Leans the leg: towards an azimuth, degrees, by a tilt, degrees. A negative tilt is the opposite azimuth."""
 
-    def follow(self, points: ArrayLike, *, wait: bool = True) -> None:
+    def follow(
+        self,
+        points: ArrayLike,
+        *,
+        pretension_n: ArrayLike | None = None,
+        stiffness_nm_per_rad: ArrayLike | None = None,
+        wait: bool = True,
+    ) -> None:
         """Streams a path to the leg as set-points: rows of time in s, azimuth and tilt in degrees, in the order of their times.
 
         The leg is led to a run-up first, and comes to rest at the end. With `wait=False` later ticks send the points.
         Refused, before the leg moves, where a point is beyond a limit of the motion; the message has its time.
+
+        pretension_n, stiffness_nm_per_rad: what the tendons are tensioned for on the way to each row, or to all; one of them. What is
+        out of reach is held at its bound, and is told by `faults`.
         """
 
     def stiffness(

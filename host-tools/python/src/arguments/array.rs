@@ -1,17 +1,12 @@
-//! Arrays of numbers, and paths made of them.
+//! Arrays of numbers.
 
-use super::LONGEST_S;
 use crate::interpreter::Call;
-use leg_base::timed_path::{PathRow, TimedPath};
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 /// Most numbers of an array: they have to fit into memory.
 const NUMBERS_MAX: usize = 100_000_000;
-
-/// Most points of a path: three hours at 100 Hz.
-const POINTS_MAX: usize = 1_000_000;
 
 /// Numbers in the order of an array, and its shape.
 pub struct Numbers {
@@ -133,33 +128,4 @@ fn require_real(name: &str, array: &Bound<'_, PyAny>) -> PyResult<()> {
         return Err(PyValueError::new_err(sentence));
     }
     Ok(())
-}
-
-/// A path: rows of time in s, azimuth and tilt in degrees.
-pub fn path(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<TimedPath> {
-    let Numbers { values, shape } = numbers(name, argument)?;
-    let refuse = |what: String| Err(PyValueError::new_err(format!("{name} {what}")));
-    if !matches!(shape[..], [2..=POINTS_MAX, 3]) {
-        return refuse(format!(
-            "has the shape {shape:?}, not (n, 3) with 2 to {POINTS_MAX} rows of time_s, azimuth_deg, tilt_deg"
-        ));
-    }
-    let mut rows = Vec::with_capacity(shape[0]);
-    let mut last_s = f64::NEG_INFINITY;
-    for (index, row) in values.chunks_exact(3).enumerate() {
-        let [time_s, azimuth_deg, tilt_deg] = [row[0], row[1], row[2]];
-        if time_s <= last_s || time_s - values[0] > LONGEST_S {
-            return refuse(format!(
-                "has the time {time_s} s at index {index}, which is not after {last_s} s and within a day"
-            ));
-        }
-        if azimuth_deg.abs() > 1e6 || tilt_deg.abs() > 90.0 {
-            return refuse(format!(
-                "leads to azimuth {azimuth_deg}°, tilt {tilt_deg}° at index {index}; a tilt is from -90 to 90"
-            ));
-        }
-        last_s = time_s;
-        rows.push(PathRow::from_angles(time_s, azimuth_deg, tilt_deg));
-    }
-    Ok(TimedPath::new(&rows))
 }

@@ -1,7 +1,7 @@
 //! Commands, as a host gives them.
 
 use super::{HOMING_S, MOVE_S, SimulatedLeg};
-use crate::arguments::{self, bounded};
+use crate::arguments::{self, TensionArguments, bounded};
 use crate::named;
 use leg_firmware::command::{Command, Compensation};
 use leg_firmware::supervisor::State;
@@ -50,14 +50,23 @@ impl SimulatedLeg {
     ///
     /// The leg is led to a run-up first, and comes to rest at the end. With `wait=False` later ticks send the points.
     /// Refused, before the leg moves, where a point is beyond a limit of the motion; the message has its time.
-    #[pyo3(signature = (points, *, wait = true))]
+    ///
+    /// pretension_n, stiffness_nm_per_rad: what the tendons are tensioned for on the way to each row, or to all; one of them. What is
+    /// out of reach is held at its bound, and is told by `faults`.
+    #[pyo3(signature = (points, *, pretension_n = None, stiffness_nm_per_rad = None, wait = true))]
     fn follow(
         &self,
         py: Python<'_>,
         points: &Bound<'_, PyAny>,
+        pretension_n: Option<&Bound<'_, PyAny>>,
+        stiffness_nm_per_rad: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = named::wait)] wait: bool,
     ) -> PyResult<()> {
-        let path = arguments::path("points", points)?;
+        let tensions = TensionArguments {
+            pretension_n,
+            stiffness_nm_per_rad,
+        };
+        let path = arguments::path("points", points, tensions)?;
         let lasts_s = path.points().last().map_or(0.0, |last| last.time_s);
         self.work(py, |session| {
             session.follow(path)?;
