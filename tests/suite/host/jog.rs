@@ -386,13 +386,23 @@ fn silence_and_a_stop_switch_the_motor_off() {
         if stops {
             operator.stop().unwrap();
         }
+        // A motor that stops is off at once; one of a silent host within command_time_s, 0.2 s, from the last message on.
+        let time_s = f64::from(operator.settings().unwrap().limits.command_time_s);
+        let off_ms = if stops {
+            10
+        } else {
+            (1e3 * time_s) as u64 + 10
+        };
         operator
-            .pause(std::time::Duration::from_millis(600))
+            .pause(std::time::Duration::from_millis(off_ms))
             .unwrap();
         let telemetry = operator.telemetry().unwrap().telemetry;
         let expected = if stops { State::Disarmed } else { State::Off };
         assert_eq!(telemetry.state, expected, "{:?}", telemetry.faults);
         assert_eq!(telemetry.faults.has(Fault::CommandTimeout), !stops);
+        operator
+            .pause(std::time::Duration::from_millis(100))
+            .unwrap();
         let speed = line.with_plant(|plant| plant.truth().speeds_rad_per_s[0]);
         assert_eq!(speed, 0.0);
         assert!(telemetry.pulled_m[0] < 1.2e-3, "{:?}", telemetry.pulled_m);
