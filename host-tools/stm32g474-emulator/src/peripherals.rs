@@ -171,6 +171,13 @@ impl Peripherals {
         self.advance();
     }
 
+    /// A crystal that stood still swings again, at so many Hz.
+    pub fn start_crystal(&mut self, crystal_hz: u32) {
+        let (devices, context) = self.now();
+        devices.rcc.start_crystal(crystal_hz, &context);
+        self.advance();
+    }
+
     /// Resets the blocks that the image holds in reset.
     fn reset_blocks(&mut self) {
         for (switch, block) in &self.resets {

@@ -101,9 +101,11 @@ impl Rcc {
         std::mem::take(&mut self.changed)
     }
 
-    /// A crystal that stood still swings again, at so many Hz: who switches it on then finds it ready in its time.
-    pub fn start_crystal(&mut self, crystal_hz: u32) {
+    /// A crystal that stood still swings again, at so many Hz: who has switched it on, or does then, finds it ready in its time.
+    pub fn start_crystal(&mut self, crystal_hz: u32, context: &Context<'_>) {
         self.crystal_hz = crystal_hz;
+        let on = self.registers.is_set(self.fields.hse_on);
+        self.hse.switch(on, HSE_START_US, context);
         self.changed = true;
     }
 

@@ -197,9 +197,14 @@ fn a_crystal_that_stops_ends_the_pulses_and_is_told() -> Outcome {
     chip.stop_crystal();
     assert!(!chip.peripherals().devices.tim1.outputs().on);
     assert_eq!(reset_within(chip, 100 * MS), Some(ResetFlag::Software));
-    // Without it the chip does not start again.
-    let hz = Board::default().crystal_hz;
-    chip.peripherals().devices.rcc.start_crystal(hz);
+    // Without it the chip does not start again, and drives nothing.
+    assert_eq!(reset_within(chip, 50 * MS), None);
+    assert!(!chip.peripherals().devices.tim1.outputs().on);
+    while chip.peripherals().devices.lpuart.host_receive().is_some() {}
+    send(chip, &HostRequest::Telemetry)?;
+    assert_eq!(reset_within(chip, 50 * MS), None);
+    assert_eq!(chip.peripherals().devices.lpuart.host_receive(), None);
+    chip.start_crystal(Board::default().crystal_hz);
     let identity = identity_after(chip)?;
     assert_eq!(
         (identity.reset, identity.crash_report.as_str()),

@@ -47,4 +47,9 @@ impl Chip {
     pub fn stop_crystal(&mut self) {
         self.peripherals().stop_crystal();
     }
+
+    /// Lets a crystal that stood still swing again, at so many Hz.
+    pub fn start_crystal(&mut self, crystal_hz: u32) {
+        self.peripherals().start_crystal(crystal_hz);
+    }
 }
