@@ -199,6 +199,20 @@ fn a_motor_that_brakes_as_hard_as_it_can_does_not_run_away() {
     require_no_alarm(5502, 5, "notch_universal", 342.0);
 }
 
+/// A use that once ended in **sensors disagree**: a leg that can twist was armed with the torsion of its last target, which a frozen load that was
+/// gone had been part of. Its estimated pose jumped by half a degree.
+#[test]
+fn a_leg_is_armed_with_the_torsion_that_its_tendons_show() {
+    require_no_alarm(70707, 36, "spherical", 362.0);
+}
+
+/// A use that once ended in **sensors disagree**: a push that had come while the load was frozen was taken for 4 kg at once when the leg was on
+/// its way, and its tensions jumped.
+#[test]
+fn a_frozen_load_is_let_go_where_the_leg_rests() {
+    require_no_alarm(70707, 69, "leaf_spring_universal", 100.0);
+}
+
 /// A part of a use of each rig.
 #[test]
 fn a_leg_that_is_used_raises_no_alarm() {

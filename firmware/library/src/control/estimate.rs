@@ -76,6 +76,12 @@ impl<T: Scalar> Estimator<T> {
         &self.direction
     }
 
+    /// The last elastic torsion, rad.
+    #[inline(always)]
+    pub fn torsion(&self) -> T {
+        self.torsion
+    }
+
     /// Starts anew, straight down, without a load.
     pub fn straight_down(&mut self) {
         self.direction = Direction::straight_down();

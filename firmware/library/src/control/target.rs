@@ -97,6 +97,11 @@ impl<T: Scalar> TargetGenerator<T> {
         self.share = if compensated { T::one() } else { T::zero() };
     }
 
+    /// Has the first target this torsion, rad: that of a leg whose tendons pull.
+    pub fn start_twisted(&mut self, torsion: T) {
+        self.torsion.start_at(torsion);
+    }
+
     /// Has the first target this pretension, N, whatever the tensions show.
     pub fn start_at(&mut self, pretension_n: T) {
         self.pretension_n = Some(pretension_n);
@@ -275,6 +280,11 @@ impl<T: Scalar> Torsion<T> {
             last_moment: T::zero(),
             slope: -T::one(),
         }
+    }
+
+    /// Starts anew from an angle, with the slope that is known.
+    fn start_at(&mut self, angle: T) {
+        (self.angle, self.last_angle) = (angle, angle);
     }
 
     /// Takes the moment about the third axis at the present angle, N·m.

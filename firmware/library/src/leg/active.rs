@@ -33,6 +33,9 @@ pub struct Active<T> {
     stuck: bool,
     offsets: LengthOffsets<T>,
     slack: Slack<T>,
+    /// Whether the load stays as it is: where it was frozen, until the leg rests. On its way a push that came meanwhile would be taken for a payload
+    /// at once, and a target whose tensions jump moves the leg.
+    frozen: bool,
     /// Whether the leg gives way to the maximum tension.
     given_way: Debounce,
     /// The search for where a taut leg with its compensation off begins; none once it is over.
@@ -53,6 +56,10 @@ impl<T: Scalar> Active<T> {
         // what any target asks for, and above what is left in tendons that were paid out.
         let taut_n = shared.mechanism.f_min_n * T::HALF;
         let taut = measured.steady_tensions_n.iter().all(|&n| n > taut_n);
+        if taut {
+            // The last target may have been made for another load, and twisted otherwise.
+            shared.targets.start_twisted(shared.estimator.torsion());
+        }
         let loaded = shared.estimator.direction();
         let unloaded =
             (taut && !compensated).then(|| Unloaded::search(loaded, &measured.steady_tensions_n));
@@ -69,6 +76,7 @@ impl<T: Scalar> Active<T> {
                 left_m: (taut && compensated).then(T::zero),
                 cycles: 0,
             },
+            frozen: false,
             given_way: Debounce::new(GIVEN_WAY_STEPS),
             unloaded,
         }
@@ -218,11 +226,13 @@ impl<T: Scalar> Active<T> {
     /// Estimates the pose, and takes the load that the tendons show. While they come up from slack, their tensions do not show it.
     #[inline(always)]
     fn estimate(&mut self, shared: &mut Shared<T>, measured: &Measured<T>) -> Result<(), Error> {
+        let moving = self.trajectory.moving();
+        self.frozen = shared.compensation == Compensation::Frozen || self.frozen && moving;
         let load_estimation = if !self.tensioned {
             LoadEstimation::Slack
-        } else if shared.compensation == Compensation::Frozen {
+        } else if self.frozen {
             LoadEstimation::Frozen
-        } else if self.trajectory.moving() {
+        } else if moving {
             LoadEstimation::Moving
         } else {
             LoadEstimation::Filtered

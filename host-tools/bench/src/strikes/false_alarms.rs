@@ -93,7 +93,7 @@ pub(super) fn use_leg(
 }
 
 /// Whether a fault says that a tension has left its bounds, and the true ones, from the lowest to the highest, N, had, or a load cell may
-/// have shown that; so long after an arm, s.
+/// have shown that; so long after an arm, s. No tension shows how long a slack tendon is: what is measured of it cannot agree.
 fn is_beyond(file: &RigFile, fault: Fault, [lowest_n, highest_n]: [f64; 2], armed_s: f64) -> bool {
     // A leg knows no more than its cells show.
     let shown_n = highest_n * (1.0 + CELL_GAIN) + TARED_N;
@@ -103,7 +103,7 @@ fn is_beyond(file: &RigFile, fault: Fault, [lowest_n, highest_n]: [f64; 2], arme
         // A leg at rest for whose load there is no target gives way to the maximum tension: then its motor stays behind.
         Fault::OverTension | Fault::Following => shown_n > file.f_max_n,
         // Just after an arm it says by this name that a tension is too much.
-        Fault::Residual => shown_n > over_n && armed_s < ARMED_S,
+        Fault::Residual => lowest_n <= 0.0 || shown_n > over_n && armed_s < ARMED_S,
         _ => false,
     }
 }
@@ -331,7 +331,8 @@ mod tests {
             (Fault::Following, [8.0, 149.5], 9.0, false),
             (Fault::Residual, [8.0, 164.7], 0.9 * ARMED_S, true),
             (Fault::Residual, [8.0, 164.5], 0.9 * ARMED_S, false),
-            (Fault::Residual, [0.0, 180.0], 1.1 * ARMED_S, false),
+            (Fault::Residual, [0.1, 180.0], 1.1 * ARMED_S, false),
+            (Fault::Residual, [0.0, 80.0], 9.0, true),
             (Fault::TensionJump, [0.0, 180.0], 0.0, false),
         ] {
             let found = is_beyond(&file, fault, tensions_n, armed_s);
