@@ -75,7 +75,7 @@ impl RowTensions {
         Ok(Some(Self { values, of_value }))
     }
 
-    fn at(&self, row: usize) -> StreamTension {
+    fn row_tension(&self, row: usize) -> StreamTension {
         (self.of_value)(self.values[row] as f32)
     }
 }
@@ -110,7 +110,7 @@ pub fn path(
         }
         last_s = time_s;
         rows.push(PathRow {
-            tension: tensions.as_ref().map(|tensions| tensions.at(index)),
+            tension: tensions.as_ref().map(|tensions| tensions.row_tension(index)),
             ..PathRow::from_angles(time_s, azimuth_deg, tilt_deg)
         });
     }
