@@ -32,6 +32,14 @@ const SWAPPED_BEYOND: f64 = 1.25;
 /// The same where half of a bridge is open: the other half still brakes.
 const HALF_OPEN_BEYOND: f64 = 0.25;
 
+/// The same where the play of a gear is 1 rad of its screw at once while its motor pays out: the tendon stands for 0.16 mm, at 179 N/mm, the
+/// stiffness of the paper's tendon at 150 N, while the others move the leg on.
+const PLAY_BEYOND: f64 = 0.2;
+
+/// The same where a counter that counts the other way is armed again with it, twice: near the maximum tension each arm pulls in for the
+/// 0.1 mm and more until that is found.
+const REVERSED_AGAIN_BEYOND: f64 = 0.15;
+
 /// The same where one driver pulls inwards whatever is asked, for the 5 ms and more until its counter contradicts, and is then cut
 /// off.
 const STUCK_BEYOND: f64 = 0.5;
@@ -70,7 +78,7 @@ const GAIN_MM: f64 = 1.1;
 const GAIN_DOWN_MM: f64 = 1.5;
 
 /// The same where a cell that grows, steps by 10 N or wanders comes to show the maximum tension, mm: its tendon is paid out until another is slack.
-const GAIN_AT_MAX_MM: f64 = 4.5;
+const GAIN_AT_MAX_MM: f64 = 5.0;
 
 /// The same where two sensors change their places or an encoder counts the other way, mm: a controller with its sign reversed runs
 /// for the time until a counter contradicts.
@@ -110,11 +118,14 @@ const GRASPED_MM: f64 = 10.0;
 /// Time to the fault's name, s.
 const NAMED_S: f64 = 0.5;
 
-/// The same of a cell that wanders, once it is off by so many N, and of one that drifts, s. As a random walk of 20 N in a second it stays
-/// nearer to its tension for 2 s once in a thousand times, and shows nothing.
+/// The same of a cell that wanders, while it is off by so many N, and of one that drifts, s. As a random walk it comes back to its tension
+/// again and again, and shows nothing then; while a leg arms or moves, less is compared.
 pub(super) const WANDERS_BY_N: f64 = 12.0;
-const WANDERS_S: f64 = 2.0;
+const WANDERS_S: f64 = 1.5;
 const DRIFTS_S: f64 = 5.0;
+
+/// By how much a cell wanders in the time until it is named, as one deviation, N: 20 N by the root of 2 s.
+const WANDERED_N: f64 = 28.3;
 
 /// Error of a cell from which on it has to be named, N.
 const WRONG_BY_N: f64 = 8.0;
@@ -214,6 +225,8 @@ fn excess_part(defect: Option<Defect>, activity: Activity) -> f64 {
             CUT_BEYOND
         }
         Some(defect) if is_slow(defect, activity) => BEYOND,
+        Some(Defect::GearPlay(_)) if activity.is_on_the_way() => PLAY_BEYOND,
+        Some(Defect::EncoderReversed(_)) if activity == Activity::Rearmed => REVERSED_AGAIN_BEYOND,
         Some(Defect::HalfBridgeOpen(_)) if activity.is_on_the_way() => HALF_OPEN_BEYOND,
         Some(defect) if activity.is_on_the_way() && cuts_off(defect) => CUT_OFF_BEYOND,
         _ => BEYOND,
@@ -291,8 +304,7 @@ fn shows_maximum(defect: Defect, f_max_n: f64, highest_n: [f64; 3]) -> bool {
         // 5 N in a second, for the time in which it is to be named.
         Defect::CellDrifting(i) => highest_n[i] + 5.0 * DRIFTS_S,
         Defect::CellOffsetStep(i) => highest_n[i] + 10.0,
-        // What has to be named, and one deviation of what it wanders in the time to that: 20 N in a second, by its root.
-        Defect::CellWanders(i) => highest_n[i] + WANDERS_BY_N + 20.0 * WANDERS_S.sqrt(),
+        Defect::CellWanders(i) => highest_n[i] + WANDERS_BY_N + WANDERED_N,
         _ => return false,
     };
     shows_n > f_max_n

@@ -10,6 +10,7 @@ use super::way::Way;
 use crate::stand::Stand;
 use leg_base::description;
 use leg_firmware::command::Command;
+use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_sim::plant::Defect;
 use serde::Serialize;
@@ -69,7 +70,7 @@ pub struct Struck {
     pub tip_mm: f64,
     /// The first fault that the leg named.
     pub named: Option<&'static str>,
-    /// How long after the strike, or after a cell that wanders was off so far that it has to be named, s.
+    /// How long after the strike, s; of a cell that wanders, how long it was off so far by then that it has to be named.
     pub named_s: Option<f64>,
     /// How long after the leg had stopped a motor was driven last, s; zero if none was 0.1 s after it.
     pub driven_s: f64,
@@ -224,7 +225,7 @@ pub(super) fn strike(
             Some(Defect::CellWanders(i)) => Some(i),
             _ => None,
         },
-        off_s: None,
+        off_s: 0.0,
         before: stand.faults(),
         stopped_s: None,
         given: 0,
@@ -272,9 +273,9 @@ struct Watch<'a> {
     case: &'a Case,
     way: &'a Way,
     began_s: f64,
-    /// The tendon whose cell wanders, and when that is off so far that it has to be named, s.
+    /// The tendon whose cell wanders, and for how long that has been off so far that it has to be named, s.
     wanders: Option<usize>,
-    off_s: Option<f64>,
+    off_s: f64,
     /// Faults that were there before.
     before: FaultSet,
     /// Since when the leg has stopped after a fault.
@@ -308,7 +309,7 @@ impl Watch<'_> {
         if stand.state() == State::Homing {
             self.struck.homing_n = self.struck.homing_n.max(highest);
         }
-        let tick = (now_s * 8000.0).round() as u64;
+        let tick = (now_s * f64::from(TICK_HZ)).round() as u64;
         self.sags |= self.may_sag && stand.state() == State::RampingDown && self.exceeds_tension();
         if !self.sags && (!self.case.activity.is_on_the_way() || tick.is_multiple_of(WAY_TICKS)) {
             let tip_mm = self.way.distance_mm(&stand.truth.tip_m);
@@ -347,17 +348,19 @@ impl Watch<'_> {
         if self.struck.named.is_some() {
             return;
         }
-        if let (Some(i), None, Some(telemetry)) = (self.wanders, self.off_s, &stand.telemetry) {
+        if let (Some(i), Some(telemetry)) = (self.wanders, &stand.telemetry) {
             let off_n = f64::from(telemetry.tensions_n[i]) - stand.truth.tensions_n[i];
-            self.off_s = (off_n.abs() >= WANDERS_BY_N).then_some(now_s);
+            if off_n.abs() >= WANDERS_BY_N {
+                self.off_s += 1.0 / f64::from(TICK_HZ);
+            }
         }
         let found: Option<Fault> = stand
             .faults()
             .faults()
             .find(|fault| !self.before.has(*fault));
         self.struck.named = found.map(|fault| fault.entry().name);
-        let since_s = self.wanders.map_or(0.0, |_| self.off_s.unwrap_or(now_s));
-        self.struck.named_s = found.map(|_| now_s - since_s);
+        let after_s = self.wanders.map_or(now_s, |_| self.off_s);
+        self.struck.named_s = found.map(|_| after_s);
     }
 
     fn watch_motors(&mut self, stand: &Stand, now_s: f64) {

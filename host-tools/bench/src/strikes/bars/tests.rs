@@ -14,6 +14,14 @@ fn the_page_says_the_bars() {
         ),
         format!("{:.0} % where a tendon of a moving leg", 100.0 * CUT_BEYOND),
         format!("{:.0} % where two load cells", 100.0 * SWAPPED_BEYOND),
+        format!(
+            "{:.0} % where the play of a gear grows on the way",
+            100.0 * PLAY_BEYOND
+        ),
+        format!(
+            "{:.0} % where a counter that counts the other way is armed again",
+            100.0 * REVERSED_AGAIN_BEYOND
+        ),
         format!("{:.0} % where a driver pulls", 100.0 * STUCK_BEYOND),
         format!("{:.0} % where a hand holds", 100.0 * GRASPED_BEYOND),
         format!("{:.0} % where a driver switches", 100.0 * RUNAWAY_BEYOND),
@@ -37,7 +45,7 @@ fn the_page_says_the_bars() {
         ),
         format!("{GRASPED_MM} mm where a hand holds the tip"),
         format!(
-            "{NAMED_S} s where something shows it; a cell that wanders {WANDERS_S} s after it is {WANDERS_BY_N} N off, drifts {DRIFTS_S} s"
+            "{NAMED_S} s where something shows it; a cell that wanders when it has been {WANDERS_BY_N} N off for {WANDERS_S} s, drifts {DRIFTS_S} s"
         ),
     ] {
         assert!(page.contains(&words), "{words}");
