@@ -178,13 +178,18 @@ fn damaged_bytes_are_found_by_a_chip_and_its_shadow_in_the_same_tick() {
 /// It takes minutes, and does on a chip what `tour` does.
 const LEFT_OUT: &str = "workspace";
 
-/// Those that take a core 45 s to 150 s each, together 9 minutes of 22: what they do beyond the others is the control law's alone, and
+/// Those that take a core 25 s to 150 s each, together 12 minutes of 22: what they do beyond the others is the control law's alone, and
 /// `bits_under_qemu` compares its bits in them.
-const LONG: [&str; 7] = [
+const LONG: [&str; 12] = [
+    "fault_homing_failed",
     "fault_infeasible_load",
+    "fault_not_taut",
     "fault_off_station",
+    "fault_point_missing",
     "fig9",
+    "hold",
     "homing_again",
+    "payload",
     "stiffness",
     "stiffness_lean",
     "trim",
@@ -239,7 +244,7 @@ fn the_ready_scenarios_pass_on_the_chip_as_in_process() {
 
 /// The long ones, each of which runs under QEMU, too.
 #[test]
-#[ignore = "takes five minutes on two cores: run with --ignored"]
+#[ignore = "takes six minutes on two cores: run with --ignored"]
 fn the_long_scenarios_pass_on_the_chip_as_in_process() {
     let long = ready(true);
     assert_eq!(long.len(), LONG.len());
