@@ -13,6 +13,9 @@ use leg_model::Scalar;
 /// Ticks of [`State::Boot`]: in which the filters of the sensors settle, and the zeros of the currents are found.
 const BOOT_TICKS: u32 = ZERO_READINGS as u32;
 
+/// Ticks to the end of a way of which nothing is gone on with: it is braked as fast as may be.
+const ENDING_TICKS: u32 = 1;
+
 /// The mode: the leg's [`State`] with the data that lives only as long as the state does.
 #[derive(Clone, Debug)]
 #[repr(u8)]
@@ -140,7 +143,7 @@ impl<T: Scalar> Mode<T> {
             Self::Active(active) if !active.trajectory.moving() => Some(0),
             Self::Active(active) => active.trajectory.ticks_to_end(),
             // A leg that homes has no end to go to, and hangs free: whatever its motor goes on lifts it.
-            Self::Homing(_) => Some(1),
+            Self::Homing(_) => Some(ENDING_TICKS),
             _ => None,
         };
         Momentum {
