@@ -52,14 +52,14 @@ pub struct StrikeCampaign {
 const OTHER_TICKS: u64 = 800;
 
 /// What came of all strikes.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct StrikeSummary {
     /// How many there were.
     pub strikes: usize,
     /// How many were beyond a bar.
     pub failed: usize,
-    /// How many left their shadow in f64, and how many of so many may: one of a thousand, and one. One of 4480 did.
-    pub left_shadow: usize,
+    /// The numbers of those that left their shadow in f64, and how many of so many may: one of each thousand. One of 4480 did.
+    pub left_shadow: Vec<u64>,
     /// See `left_shadow`.
     pub left_shadow_at_most: usize,
     /// Whether neither is too many.
@@ -70,16 +70,16 @@ impl StrikeSummary {
     /// Of strikes.
     #[must_use]
     pub fn new(struck: &[Struck]) -> Self {
-        let count = |is: fn(&&Struck) -> bool| struck.iter().filter(is).count();
-        let failed = count(|struck| !struck.passes());
-        let left_shadow = count(|struck| struck.left_shadow);
-        let left_shadow_at_most = 1 + struck.len() / 1000;
+        let failed = struck.iter().filter(|struck| !struck.passes()).count();
+        let left = struck.iter().filter(|struck| struck.left_shadow);
+        let left_shadow: Vec<u64> = left.map(|struck| struck.index).collect();
+        let left_shadow_at_most = struck.len().div_ceil(1000);
         Self {
             strikes: struck.len(),
             failed,
+            passed: failed == 0 && left_shadow.len() <= left_shadow_at_most,
             left_shadow,
             left_shadow_at_most,
-            passed: failed == 0 && left_shadow <= left_shadow_at_most,
         }
     }
 }

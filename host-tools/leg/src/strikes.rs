@@ -75,7 +75,7 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
         seed: args.seed,
         strikes: summary.strikes,
         failed: summary.failed,
-        left_shadow: summary.left_shadow,
+        left_shadow: &summary.left_shadow,
         left_shadow_at_most: summary.left_shadow_at_most,
         passed: summary.passed,
         rows: &rows,
@@ -93,9 +93,10 @@ pub(crate) fn run(args: &Args, options: Options) -> Result<(), Failure> {
     Err(Failure::failed(
         format!(
             "{} strikes left their shadow in f64, {} at most may",
-            summary.left_shadow, summary.left_shadow_at_most
+            summary.left_shadow.len(),
+            summary.left_shadow_at_most
         ),
-        "JSON of --only says which ones: the control law in f32 comes to other states than in f64",
+        "--json has their numbers under left_shadow: repeat one with --only",
     ))
 }
 

@@ -172,7 +172,7 @@ impl Leg {
     /// Streams a path: rows of time in s, azimuth and tilt in degrees. It is checked as a whole before the leg moves.
     ///
     /// pretension_n, stiffness_nm_per_rad: what the tendons are tensioned for on the way to each row, or to all; one of them. What is
-    /// out of reach is held at its bound, and raises LegFault at the end.
+    /// out of reach is held at its bound; the last one stays, and raises LegFault where it is out of reach at the end.
     /// lead_s: how long a point may be on its way to the leg, s.
     #[pyo3(signature = (points, *, pretension_n = None, stiffness_nm_per_rad = None, lead_s = 0.2))]
     fn follow<'py>(

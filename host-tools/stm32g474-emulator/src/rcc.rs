@@ -104,8 +104,8 @@ impl Rcc {
     /// A crystal that stood still swings again, at so many Hz: who has switched it on, or does then, finds it ready in its time.
     pub fn start_crystal(&mut self, crystal_hz: u32, context: &Context<'_>) {
         self.crystal_hz = crystal_hz;
-        let on = self.registers.is_set(self.fields.hse_on);
-        self.hse.switch(on, HSE_START_US, context);
+        let enabled = self.registers.is_set(self.fields.hse_on);
+        self.hse.switch(enabled, HSE_START_US, context);
         self.changed = true;
     }
 
@@ -113,6 +113,7 @@ impl Rcc {
     pub fn stop_crystal(&mut self) {
         self.crystal_hz = 0;
         self.changed = true;
+        self.hse = Oscillator::default();
         let watched =
             self.registers.is_set(self.fields.css_on) && self.registers.is_set(self.fields.hse_on);
         if watched {
@@ -120,7 +121,6 @@ impl Rcc {
             self.registers.set_value(self.fields.hse_on, 0);
             self.registers.set_value(self.fields.pll_on, 0);
             self.registers.set_value(self.fields.source, SOURCE_HSI);
-            self.hse = Oscillator::default();
             self.pll = Oscillator::default();
             self.hsi.ready_at.get_or_insert(0);
         }

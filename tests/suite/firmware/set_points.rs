@@ -29,10 +29,7 @@ impl Bench {
     fn new(tick: u32) -> Self {
         let settings = settings();
         Self {
-            trajectory: Trajectory::new(
-                MotionLimits::new(&settings.motion),
-                HalfTangent::new(0.0, 0.0),
-            ),
+            trajectory: Trajectory::new(MotionLimits::new(&settings), HalfTangent::new(0.0, 0.0)),
             stream: Stream::new(StreamLimits::new(&settings)),
             tick,
             places: [[0.0; 2]; 4],

@@ -24,10 +24,8 @@ fn trajectories_keep_their_limits() {
     ]
     .map(|limit| 0.5 * f64::from(limit));
     let mut rng = fastrand::Rng::with_seed(5);
-    let mut trajectory = Trajectory::<f64>::new(
-        MotionLimits::new(&settings.motion),
-        HalfTangent::new(0.0, 0.0),
-    );
+    let mut trajectory =
+        Trajectory::<f64>::new(MotionLimits::new(&settings), HalfTangent::new(0.0, 0.0));
     let mut stream = Stream::new(StreamLimits::new(&settings));
     let mut course = Course::default();
     for cycle in 0..200_000_u32 {
@@ -48,6 +46,44 @@ fn trajectories_keep_their_limits() {
         assert!(peak <= limit * 1.001, "{peaks:?} beyond {limits:?}");
         assert!(peak > 0.5 * limit, "{peaks:?} far below {limits:?}");
     }
+}
+
+/// A path from a motion the other way swings out, the farther the longer it takes: 33.6° of 30° here, where such a leg did not brake first. Each
+/// way that is left alone ends where it shall.
+#[test]
+fn a_way_that_is_changed_stays_within_the_greatest_tilt() {
+    let settings = Settings::table_1().unwrap();
+    let mut rng = fastrand::Rng::with_seed(5);
+    let mut trajectory =
+        Trajectory::<f64>::new(MotionLimits::new(&settings), HalfTangent::new(0.0, 0.0));
+    let mut stream = Stream::new(StreamLimits::new(&settings));
+    let (mut farthest, mut reached) = (0.0_f64, 0);
+    for change in 0..2000 {
+        let (tilt, azimuth) = (30.0 * rng.f64(), 360.0 * rng.f64());
+        let q = (0.5 * tilt.to_radians()).tan();
+        let end = angles::unit_vector(azimuth).map(|component| q * component);
+        trajectory.go(HalfTangent::new(end[0], end[1]));
+        // Every tenth is left alone for 5 s.
+        let alone = change % 10 == 9;
+        let cycles = if alone {
+            10_000
+        } else {
+            200 + (3000.0 * rng.f64().powi(2)) as u32
+        };
+        for _ in 0..cycles {
+            trajectory.advance_plan(&mut stream, 0.0);
+            let [x, y] = trajectory.step().xy();
+            farthest = farthest.max(x.hypot(y));
+        }
+        if alone {
+            let [x, y] = trajectory.motion().position;
+            assert!((x - end[0]).hypot(y - end[1]) < 1e-9 && !trajectory.moving());
+            reached += 1;
+        }
+    }
+    let farthest_deg = 2.0 * farthest.atan().to_degrees();
+    assert!((29.0..30.15).contains(&farthest_deg), "{farthest_deg}°");
+    assert_eq!(reached, 200);
 }
 
 /// The last points of a trajectory, and the greatest rate, acceleration and jerk so far.
@@ -87,7 +123,7 @@ fn a_trajectory_keeps_its_jerk_to_the_end() {
     for first in [2e-3, 5e-3, 2e-2] {
         for second in [1.3, 2.0, 4.0] {
             for after in (20..400).step_by(20) {
-                let limits = MotionLimits::new(&settings.motion);
+                let limits = MotionLimits::new(&settings);
                 let mut trajectory = Trajectory::<f64>::new(limits, HalfTangent::new(0.0, 0.0));
                 let mut stream = Stream::new(StreamLimits::new(&settings));
                 let mut course = Course::default();
@@ -121,8 +157,7 @@ fn a_move_takes_no_longer_than_it_did() {
     let settings = Settings::table_1().unwrap();
     let at = |tilt_deg: f64| HalfTangent::new((0.5 * tilt_deg.to_radians()).tan(), 0.0);
     for (begin_deg, end_deg, time_s) in [(0.0, 20.0, 0.86), (-20.0, 20.0, 1.71)] {
-        let mut trajectory =
-            Trajectory::<f64>::new(MotionLimits::new(&settings.motion), at(begin_deg));
+        let mut trajectory = Trajectory::<f64>::new(MotionLimits::new(&settings), at(begin_deg));
         let mut stream = Stream::new(StreamLimits::new(&settings));
         trajectory.go(at(end_deg));
         let mut cycles = 0;

@@ -256,7 +256,7 @@ fn a_motor_that_coasts_after_it_stayed_behind_does_not_run_away() {
         assert!(held_m.is_some(), "{duty_max}");
         assert!(summary.unexpected.is_empty(), "{:?}", summary.unexpected);
     }
-    // Three fifths of 0.6 mm is a motor that runs away.
+    // Three quarters of 0.6 mm is a motor that runs away.
     assert!((5e-5..1.8e-4).contains(&coasted_m), "{coasted_m} m");
 }
 

@@ -59,7 +59,7 @@ const GROWING_STEPS: u16 = 4;
 
 /// After so many of them in a row each counts once: what grows for longer without a fall is pushed. A swing of its own is larger than
 /// that for a part of each half alone.
-const GROWING_ROW: u8 = 30;
+const OWN_GROWTH_STEPS: u8 = 30;
 
 /// Brakes the swing, and finds one that does not end.
 #[derive(Clone, Copy, Debug)]
@@ -76,8 +76,8 @@ pub struct SwingDamping<T> {
     highest_square: T,
     /// Steps since then for which it has been beyond [`SWINGING_M`].
     swinging_steps: u16,
-    /// Steps in a row in which it grew.
-    growing_row: u8,
+    /// Steps in a row in which it grew, up to now.
+    growing_steps: u8,
 }
 
 impl<T: Scalar> SwingDamping<T> {
@@ -97,7 +97,7 @@ impl<T: Scalar> SwingDamping<T> {
             mean_square: T::zero(),
             highest_square: T::zero(),
             swinging_steps: 0,
-            growing_row: 0,
+            growing_steps: 0,
         }
     }
 
@@ -107,7 +107,7 @@ impl<T: Scalar> SwingDamping<T> {
         self.mean_square = T::zero();
         self.highest_square = T::zero();
         self.swinging_steps = 0;
-        self.growing_row = 0;
+        self.growing_steps = 0;
     }
 
     /// A leg on its way swings by its commands: what lasts is counted anew.
@@ -136,15 +136,15 @@ impl<T: Scalar> SwingDamping<T> {
         }
         let least = T::from(MEAN_SQUARES * SWINGING_M * SWINGING_M);
         let grows = square > self.mean_square * T::from(GROWS);
-        self.growing_row = if grows {
-            self.growing_row.saturating_add(1)
+        self.growing_steps = if grows {
+            self.growing_steps.saturating_add(1)
         } else {
             0
         };
         self.swinging_steps = if decayed || self.mean_square < least {
             0
         } else {
-            let swings_itself = grows && self.growing_row <= GROWING_ROW;
+            let swings_itself = grows && self.growing_steps <= OWN_GROWTH_STEPS;
             let followed = self.swinging_steps > FOLLOWED_STEPS;
             let steps = if swings_itself && followed {
                 GROWING_STEPS
@@ -233,7 +233,7 @@ fn swing<T: Scalar>(speeds: [T; 3], per_pretension: &SVector<T, 3>) -> [T; 3] {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use super::{LEAST_M, MOST_M, SWINGING_M, SwingDamping};
+    use super::{FOLLOWED_STEPS, LEAST_M, MOST_M, SWINGING_M, SwingDamping};
     use crate::settings::Settings;
     use nalgebra::SVector;
 
@@ -325,7 +325,8 @@ mod tests {
         })
     }
 
-    /// A damping ratio of 0.02 at 25 rad/s lets a swing fall by 0.5 in a second.
+    /// A damping ratio of 0.02 at 25 rad/s lets a swing fall by 0.5 in a second. One that grows by 5 in a second is beyond its mean for more than
+    /// 30 ms of each half: it is found after 1 s, 0.2 s later than if all of that counted.
     #[test]
     fn a_swing_that_does_not_ring_down_is_found() {
         let swinging_m = f64::from(SWINGING_M);
@@ -338,5 +339,31 @@ mod tests {
         for growth_per_s in [-0.5, -2.0] {
             assert_eq!(found_after_s(20.0 * swinging_m, growth_per_s, false), None);
         }
+    }
+
+    /// A leg that swings a little, and whose lengths then change by a push for 0.1 s ever faster: 0.1 s of growth count for 0.22 s, not for 0.4 s.
+    #[test]
+    fn a_push_counts_little_more_than_it_lasts() {
+        let mut damping = SwingDamping::<f64>::new(&Settings::table_1().unwrap());
+        let mut counted = |begin: u32, steps: u32, length_m: &dyn Fn(f64) -> f64| {
+            let before = damping.swinging_steps;
+            for i in begin..begin + steps {
+                let length_m = length_m(f64::from(i) * 1e-3);
+                damping.step(
+                    &SWING.map(|part| part * length_m),
+                    &SVector::repeat(1.0),
+                    INERTIA,
+                    TIME_CONSTANT_S,
+                );
+            }
+            damping.swinging_steps - before
+        };
+        let swing = |time_s: f64| 2.0 * f64::from(SWINGING_M) * (time_s / TIME_CONSTANT_S).sin();
+        let swung = counted(0, 500, &swing);
+        assert!((FOLLOWED_STEPS..500).contains(&swung), "{swung}");
+        let pushed = counted(500, 100, &|time_s| {
+            swing(time_s) + 0.3 * (time_s - 0.5).powi(2)
+        });
+        assert!((130..230).contains(&pushed), "{pushed}");
     }
 }

@@ -85,6 +85,7 @@ impl<T: Scalar> Estimator<T> {
     /// Starts anew, straight down, without a load.
     pub fn straight_down(&mut self) {
         self.direction = Direction::straight_down();
+        self.torsion = T::zero();
         self.load.forget();
     }
 

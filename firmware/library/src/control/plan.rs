@@ -2,8 +2,8 @@
 
 use super::CYCLE_S;
 use super::bounds::max;
-use super::quintic::{MotionState, Peaks, Quintic};
-use crate::settings;
+use super::quintic::{Peaks, Quintic};
+use crate::settings::Settings;
 use leg_model::Scalar;
 
 /// Intervals between the places at which a trajectory is checked; see [`MARGIN`].
@@ -24,17 +24,25 @@ pub const SHORTEST_S: f32 = 0.02;
 /// exact in f32.
 pub const LONGEST_S: f32 = 600.0;
 
+/// A path may leave the greatest tilt by this part of it: what one bulges out on which the leg stops near it, or between the parts of its time at
+/// which it is looked at. The test `a_way_that_is_changed_stays_within_the_greatest_tilt` holds both.
+const BULGE: f32 = 1.002;
+const SWINGS_OUT: [f32; 3] = [0.2, 0.4, 0.65];
+
 /// The limits as squares, in half-tangent coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionLimits<T> {
     /// The limits themselves.
     pub(super) peaks: Peaks<T>,
     squares: Peaks<T>,
+    /// The square of the greatest tilt's half-tangent, with the bulge.
+    reach_square: T,
 }
 
 impl<T: Scalar> MotionLimits<T> {
     /// The settings' limits. A half-tangent changes by at least half of the angle, so half of each limit holds everywhere.
-    pub fn new(motion: &settings::Motion) -> Self {
+    pub fn new(settings: &Settings) -> Self {
+        let motion = &settings.motion;
         let half = |limit: f32| T::from(0.5 * MARGIN * limit);
         let square = |value: T| value * value;
         let peaks = Peaks {
@@ -49,10 +57,20 @@ impl<T: Scalar> MotionLimits<T> {
                 acceleration: square(peaks.acceleration),
                 jerk: square(peaks.jerk),
             },
+            reach_square: square(half_tangent(T::from(settings.tilt_max_sine)) * T::from(BULGE)),
         }
     }
 
-    /// Whether a path keeps them at one of its places, 0 to `PLACES`.
+    /// Whether a path leads beyond the greatest tilt, or farther than it starts where that is beyond.
+    #[inline(always)]
+    pub fn leads_too_far(&self, path: &Quintic<T>) -> bool {
+        let square = |[x, y]: [T; 2]| x * x + y * y;
+        let reach_square = max(square(path.position(T::zero())), self.reach_square);
+        let beyond = |&part: &f32| square(path.position(T::from(part))) > reach_square;
+        SWINGS_OUT.iter().any(beyond)
+    }
+
+    /// Whether a path keeps the others at one of its places, 0 to `PLACES`.
     #[inline(always)]
     pub fn kept(&self, path: &Quintic<T>, place: u8) -> bool {
         let part = T::from(f32::from(place) * (1.0 / PLACES as f32));
@@ -64,13 +82,18 @@ impl<T: Scalar> MotionLimits<T> {
 
     /// A time that is too short for a path, or just enough, s.
     #[inline(always)]
-    pub fn shortest_s(&self, start: &MotionState<T>, end: [T; 2]) -> T {
-        let (x, y) = (end[0] - start.position[0], end[1] - start.position[1]);
+    pub fn shortest_s(&self, start: [T; 2], end: [T; 2]) -> T {
+        let (x, y) = (end[0] - start[0], end[1] - start[1]);
         // The fastest place of a path from rest to rest is at 15/8 of the average. A little more, so that rounding does
         // not decide.
         let s = (x * x + y * y).sqrt() * T::from(1.89) / self.peaks.rate;
         max(s, T::from(SHORTEST_S))
     }
+}
+
+/// The half-tangent of a tilt, of its sine.
+pub fn half_tangent<T: Scalar>(sine: T) -> T {
+    sine / (T::one() + (T::one() - sine * sine).sqrt())
 }
 
 /// The next time to try, s.

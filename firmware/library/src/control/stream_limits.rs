@@ -1,7 +1,7 @@
 //! What a streamed set-point may ask for: a path to it within the limits, and one from it to rest.
 
 use super::bounds::max;
-use super::plan::{LONGEST_S, MotionLimits, SHORTEST_S, cycles};
+use super::plan::{LONGEST_S, MotionLimits, SHORTEST_S, cycles, half_tangent};
 use super::quintic::{MotionState, Peaks, Quintic};
 use super::segment::Segment;
 use super::{CYCLE_TICKS, TICK_S};
@@ -32,10 +32,9 @@ impl<T: Scalar> StreamLimits<T> {
     /// The settings' limits.
     pub fn new(settings: &Settings) -> Self {
         let sine = T::from(settings.tilt_max_sine);
-        let cosine = (T::one() - sine * sine).sqrt();
-        let reach = sine / (T::one() + cosine) * T::from(BULGE);
+        let reach = half_tangent(sine) * T::from(BULGE);
         Self {
-            peaks: MotionLimits::new(&settings.motion).peaks,
+            peaks: MotionLimits::new(settings).peaks,
             reach_sine_square: sine * sine,
             reach_square: reach * reach,
         }

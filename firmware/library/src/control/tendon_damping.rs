@@ -12,8 +12,8 @@ pub struct TendonDamping<T> {
     n_per_m: T,
     /// The part of what is new in an elongation that a tendon follows in a cycle.
     follows: [T; 3],
-    /// The elongations that the tendons have, m; none before the first ones of a leg that begins: what it had before is no matter.
-    elongations_m: Option<[T; 3]>,
+    /// The elongations that the tendons have, m.
+    elongations_m: [T; 3],
     /// By how much these are larger than those of the tensions, m.
     damped_m: [T; 3],
 }
@@ -24,15 +24,14 @@ impl<T: Scalar> TendonDamping<T> {
         Self {
             n_per_m: T::from(settings.motion.tendon_damping_n_s_per_m / CYCLE_S),
             follows: [T::one(); 3],
-            elongations_m: None,
+            elongations_m: [T::zero(); 3],
             damped_m: [T::zero(); 3],
         }
     }
 
-    /// At rest: the next elongations are there at once, and all until stiffnesses come.
+    /// At rest: until stiffnesses come, the tendons follow at once.
     pub fn rest(&mut self) {
         self.follows = [T::one(); 3];
-        self.elongations_m = None;
         self.damped_m = [T::zero(); 3];
     }
 
@@ -47,12 +46,11 @@ impl<T: Scalar> TendonDamping<T> {
     /// The elongations in a cycle with these by the tensions, m.
     #[inline(always)]
     pub fn step(&mut self, by_tensions_m: &[T; 3]) -> &[T; 3] {
-        let elongations_m = self.elongations_m.get_or_insert(*by_tensions_m);
-        for (i, elongation) in elongations_m.iter_mut().enumerate() {
+        for (i, elongation) in self.elongations_m.iter_mut().enumerate() {
             *elongation += (by_tensions_m[i] - *elongation) * self.follows[i];
             self.damped_m[i] = *elongation - by_tensions_m[i];
         }
-        elongations_m
+        &self.elongations_m
     }
 
     /// By how much the last ones are larger than those of the tensions, m.
@@ -109,9 +107,6 @@ mod tests {
         assert!(soft < stiff && stiff < 0.0);
         damping.rest();
         assert_eq!(*damping.damped_m(), [0.0; 3]);
-        damping.set_stiffnesses(&STIFFNESSES);
-        assert_eq!(damped_m(&mut damping, 5e-3), [0.0; 3]);
-        damping.rest();
         assert_eq!(damped_m(&mut damping, 1e-3), [0.0; 3]);
         settings.motion.tendon_damping_n_s_per_m = 0.0;
         let mut damping = TendonDamping::<f64>::new(&settings);

@@ -39,9 +39,42 @@ const CYCLE: i32 = CYCLE_TICKS as i32;
 /// A path that is tried with ever more time, and checked place by place.
 #[derive(Clone, Copy, Debug)]
 struct Plan<T> {
-    end: End<T>,
-    duration_s: Option<T>,
+    /// Where the leg shall come to rest, unless it stops.
+    end: [T; 2],
+    way: Way,
+    /// The time that is tried, s.
+    duration_s: T,
     tried: Option<Attempt<T>>,
+}
+
+/// How a path leads to its end. From a motion the other way the path to the end swings out, the farther the longer it takes: one that would
+/// leave the greatest tilt begins where the leg has braked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Way {
+    /// From the present motion.
+    Direct,
+    /// The leg comes to rest as soon as the limits allow, and then goes there.
+    BrakesFirst,
+    /// The leg comes to rest meanwhile, and goes there as soon as it is slow enough.
+    Braked,
+    /// The leg comes to rest as soon as the limits allow, wherever that is.
+    Stops,
+}
+
+impl Way {
+    /// Whether it leads to rest as soon as the limits allow.
+    const fn brakes(self) -> bool {
+        matches!(self, Self::BrakesFirst | Self::Stops)
+    }
+
+    /// The way instead of one that leads too far; none where the leg brakes.
+    const fn if_too_far(self) -> Option<Self> {
+        match self {
+            Self::Direct => Some(Self::BrakesFirst),
+            Self::Braked => Some(Self::Braked),
+            Self::BrakesFirst | Self::Stops => None,
+        }
+    }
 }
 
 /// A path that is being checked. It starts where the present path will be in a few cycles.
@@ -55,20 +88,13 @@ struct Attempt<T> {
     place: u8,
 }
 
-/// Cycles that are given to check a path: enough for all its places.
+/// Cycles that are given to check a path: the first for one place, the others for the rest.
 const AHEAD: i32 = PLACES as i32 / PLACES_A_CYCLE as i32 + 1;
+
+const _: () = assert!(PLACES.is_multiple_of(PLACES_A_CYCLE));
 
 /// Places checked in a cycle: as many as fit beside the monitors of two axes in a tick of the instruction budget.
 const PLACES_A_CYCLE: u8 = 2;
-
-/// Where a path shall end.
-#[derive(Clone, Copy, Debug)]
-enum End<T> {
-    /// There.
-    At([T; 2]),
-    /// As soon as the limits allow.
-    Soon,
-}
 
 impl<T: Scalar> Trajectory<T> {
     /// At rest at a point.
@@ -145,21 +171,31 @@ impl<T: Scalar> Trajectory<T> {
 
     /// Goes to a point, from wherever the trajectory is and however it moves.
     pub fn go(&mut self, q: Point<T>) {
-        self.plan(End::At(q.xy()));
+        self.plan(q.xy(), Way::Direct);
     }
 
     /// Comes to rest.
     pub fn stop(&mut self) {
-        self.plan(End::Soon);
+        self.plan(self.next, Way::Stops);
     }
 
-    fn plan(&mut self, end: End<T>) {
+    fn plan(&mut self, end: [T; 2], way: Way) {
         self.point_missing = false;
-        self.planned = Some(Plan {
+        self.planned = Some(self.begin_plan(end, way));
+    }
+
+    /// A plan that begins with a time that is too short, or just enough.
+    fn begin_plan(&self, end: [T; 2], way: Way) -> Plan<T> {
+        Plan {
             end,
-            duration_s: None,
+            way,
+            duration_s: if way.brakes() {
+                T::from(SHORTEST_S)
+            } else {
+                self.limits.shortest_s(self.next, end)
+            },
             tried: None,
-        });
+        }
     }
 
     /// Whether it moves, or a plan is being made.
@@ -189,11 +225,8 @@ impl<T: Scalar> Trajectory<T> {
     pub fn advance_plan(&mut self, stream: &mut Stream<T>, joint_damping: T) {
         if self.streamed {
             self.advance_stream(stream);
-        } else if let Some(plan) = self.planned {
-            self.planned = match plan.tried {
-                Some(attempt) => self.check(plan, attempt),
-                None => self.attempt(plan),
-            };
+        } else {
+            self.go_on_planning();
         }
         let motion = self.next_motion();
         self.next = motion.position;
@@ -236,63 +269,71 @@ impl<T: Scalar> Trajectory<T> {
         }
     }
 
-    /// Makes a path from where the trajectory will be; no plan if it would take too long.
+    /// Makes a path from where the trajectory will be, or checks the next places of one, and first of all how far it leads. One that leads too
+    /// far is begun where the leg has braked, one that is too fast is tried again with more time, and given up if that is too long; one
+    /// that keeps the limits is taken when its start has come.
+    // In place: to copy a plan would take a tick of the budget's last instructions.
     #[inline(always)]
-    fn attempt(&self, plan: Plan<T>) -> Option<Plan<T>> {
-        let start = self.path.motion(self.part(AHEAD * CYCLE));
-        let duration_s = match (plan.duration_s, plan.end) {
-            (Some(duration_s), _) => duration_s,
-            (None, End::At(end)) => self.limits.shortest_s(&start, end),
-            (None, End::Soon) => T::from(SHORTEST_S),
+    fn go_on_planning(&mut self) {
+        let start_part = self.part(AHEAD * CYCLE);
+        let Some(plan) = &mut self.planned else {
+            return;
         };
-        if duration_s > T::from(LONGEST_S) {
-            return None;
-        }
-        let end = match plan.end {
-            End::At(end) => end,
-            End::Soon => start.rest_after(duration_s).position,
-        };
-        // Whole cycles: the path is stretched to them.
-        let cycles = cycles(duration_s);
-        let attempt = Attempt {
-            path: Quintic::new(&start, end, T::from(cycles as f32 * CYCLE_S)),
-            cycles,
-            ahead: AHEAD,
-            place: 0,
-        };
-        Some(Plan {
-            duration_s: Some(duration_s),
-            tried: Some(attempt),
-            ..plan
-        })
-    }
-
-    /// Checks the next places of a path. One that leaves the limits is tried again with more time; one that keeps them
-    /// is taken when its start has come.
-    #[inline(always)]
-    fn check(&mut self, plan: Plan<T>, mut attempt: Attempt<T>) -> Option<Plan<T>> {
-        attempt.ahead -= 1;
-        for _ in 0..PLACES_A_CYCLE {
-            if attempt.place > PLACES {
-                break;
+        let Some(attempt) = &mut plan.tried else {
+            if plan.duration_s > T::from(LONGEST_S) {
+                self.planned = None;
+            } else {
+                plan.tried = Some(plan.attempt(&self.path.motion(start_part)));
             }
+            return;
+        };
+        attempt.ahead -= 1;
+        // How far the path leads takes the time of a place.
+        let mut places = PLACES_A_CYCLE;
+        if attempt.place == 0 {
+            if let Some(way) = plan.way.if_too_far()
+                && self.limits.leads_too_far(&attempt.path)
+            {
+                let end = plan.end;
+                self.planned = Some(self.begin_plan(end, way));
+                return;
+            }
+            places -= 1;
+        }
+        for _ in 0..places {
             if !self.limits.kept(&attempt.path, attempt.place) {
-                return Some(Plan {
-                    duration_s: plan.duration_s.map(longer),
-                    tried: None,
-                    ..plan
-                });
+                plan.duration_s = longer(plan.duration_s);
+                plan.tried = None;
+                return;
             }
             attempt.place += 1;
         }
         if attempt.ahead > 0 {
-            return Some(Plan {
-                tried: Some(attempt),
-                ..plan
-            });
+            return;
         }
         (self.path, self.elapsed, self.duration) = (attempt.path, 0, attempt.cycles * CYCLE);
-        None
+        let (end, way) = (plan.end, plan.way);
+        self.planned = (way == Way::BrakesFirst).then(|| self.begin_plan(end, Way::Braked));
+    }
+}
+
+impl<T: Scalar> Plan<T> {
+    /// A path from where the trajectory will be.
+    #[inline(always)]
+    fn attempt(&self, start: &MotionState<T>) -> Attempt<T> {
+        let end = if self.way.brakes() {
+            start.rest_after(self.duration_s).position
+        } else {
+            self.end
+        };
+        // Whole cycles: the path is stretched to them.
+        let cycles = cycles(self.duration_s);
+        Attempt {
+            path: Quintic::new(start, end, T::from(cycles as f32 * CYCLE_S)),
+            cycles,
+            ahead: AHEAD,
+            place: 0,
+        }
     }
 }
 
@@ -309,11 +350,11 @@ mod tests {
     fn a_way_that_takes_too_long_is_not_begun() {
         let mut settings = Settings::table_1().unwrap();
         settings.motion.speed_rad_per_s = 1e-4;
-        let limits = MotionLimits::<f64>::new(&settings.motion);
+        let limits = MotionLimits::<f64>::new(&settings);
         for (part, begins) in [(0.9, true), (1.1, false)] {
             let mut trajectory = Trajectory::new(limits, HalfTangent::new(0.0, 0.0));
             let mut stream = Stream::new(StreamLimits::new(&settings));
-            let per_s = 1.0 / limits.shortest_s(&trajectory.path.motion(1.0), [1.0, 0.0]);
+            let per_s = 1.0 / limits.shortest_s([0.0; 2], [1.0, 0.0]);
             trajectory.go(HalfTangent::new(part * f64::from(LONGEST_S) * per_s, 0.0));
             for _ in 0..=AHEAD {
                 trajectory.advance_plan(&mut stream, 0.0);

@@ -100,7 +100,7 @@ impl<T: Scalar> LegLimits<T> {
                 .each_ref()
                 .map(|servo| JogBounds::new(settings, servo)),
             slack_lengths_m: (hanging_m.add_scalar(T::from(SLACK_M))).into(),
-            motion: MotionLimits::new(&settings.motion),
+            motion: MotionLimits::new(settings),
             joint_damping: settings.motion.joint_damping_nm_s_per_rad.into(),
             homing: settings.homing,
             ramp_m_per_s: limits.ramp_m_per_s.into(),

@@ -36,9 +36,10 @@ const HALF_OPEN_BEYOND: f64 = 0.25;
 /// stiffness of the paper's tendon at 150 N, while the others move the leg on.
 const PLAY_BEYOND: f64 = 0.2;
 
-/// The same where a counter that counts the other way is armed again with it, twice: near the maximum tension each arm pulls in for the
-/// 0.1 mm and more until that is found.
+/// The same where a counter that counts the other way is armed again with it, twice, with a tendon within a tenth of the maximum: each arm
+/// pulls in for the 0.1 mm and more until that is found. Known are 171.7 N from 146 N (seed 24601, #11378).
 const REVERSED_AGAIN_BEYOND: f64 = 0.15;
+const NEAR_MAX_PART: f64 = 0.9;
 
 /// The same where one driver pulls inwards whatever is asked, for the 5 ms and more until its counter contradicts, and is then cut
 /// off.
@@ -48,7 +49,7 @@ const STUCK_BEYOND: f64 = 0.5;
 /// above the maximum.
 const GRASPED_BEYOND: f64 = 0.8;
 
-/// The same where a driver gives the whole supply: at 37 mm/s of the free motor the tendon is 0.4 mm shorter before its motor
+/// The same where a driver gives the whole supply: at 37 mm/s of the free motor the tendon is 0.45 mm shorter before its motor
 /// is far enough away to tell, and turns on by its inertia.
 const RUNAWAY_BEYOND: f64 = 1.6;
 
@@ -78,6 +79,7 @@ const GAIN_MM: f64 = 1.1;
 const GAIN_DOWN_MM: f64 = 1.5;
 
 /// The same where a cell that grows, steps by 10 N or wanders comes to show the maximum tension, mm: its tendon is paid out until another is slack.
+/// Known are 4.74 mm, on the way at a pretension of 140 N (seed 24601, `--fault cell_wanders`, #32298).
 const GAIN_AT_MAX_MM: f64 = 5.0;
 
 /// The same where two sensors change their places or an encoder counts the other way, mm: a controller with its sign reversed runs
@@ -124,7 +126,7 @@ pub(super) const WANDERS_BY_N: f64 = 12.0;
 const WANDERS_S: f64 = 1.5;
 const DRIFTS_S: f64 = 5.0;
 
-/// By how much a cell wanders in the time until it is named, as one deviation, N: 20 N by the root of 2 s.
+/// By how much a cell wanders until it is named, as one deviation, N: 20 N by the root of 2 s, for it is off for a part of the time alone.
 const WANDERED_N: f64 = 28.3;
 
 /// Error of a cell from which on it has to be named, N.
@@ -182,13 +184,26 @@ impl StrikeBars {
         before: &Unstruck,
     ) -> Self {
         let at_max = defect.is_some_and(|defect| shows_maximum(defect, f_max_n, before.highest_n));
+        let near_max = before
+            .highest_n
+            .into_iter()
+            .any(|n| n > NEAR_MAX_PART * f_max_n);
+        let again = activity == Activity::Rearmed;
+        let again_part = match defect {
+            Some(Defect::EncoderReversed(_)) if again && near_max => REVERSED_AGAIN_BEYOND,
+            _ => 0.0,
+        };
         let (stopped_part, paid_out_mm) = match (at_max, activity.is_on_the_way()) {
             (true, true) => (CUT_OFF_BEYOND, GAIN_AT_MAX_MM),
             (true, false) => (0.0, GAIN_AT_MAX_MM),
             (false, _) => (0.0, 0.0),
         };
         Self {
-            tension_n: f_max_n * (1.0 + excess_part(defect, activity).max(stopped_part)),
+            tension_n: f_max_n
+                * (1.0
+                    + excess_part(defect, activity)
+                        .max(stopped_part)
+                        .max(again_part)),
             homing_n: HOMING_N,
             tip_mm: tip_mm(defect, activity).max(paid_out_mm),
             named_s: defect.and_then(|defect| named_s(defect, activity, before)),
@@ -226,7 +241,6 @@ fn excess_part(defect: Option<Defect>, activity: Activity) -> f64 {
         }
         Some(defect) if is_slow(defect, activity) => BEYOND,
         Some(Defect::GearPlay(_)) if activity.is_on_the_way() => PLAY_BEYOND,
-        Some(Defect::EncoderReversed(_)) if activity == Activity::Rearmed => REVERSED_AGAIN_BEYOND,
         Some(Defect::HalfBridgeOpen(_)) if activity.is_on_the_way() => HALF_OPEN_BEYOND,
         Some(defect) if activity.is_on_the_way() && cuts_off(defect) => CUT_OFF_BEYOND,
         _ => BEYOND,

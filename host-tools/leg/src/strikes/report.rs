@@ -13,14 +13,10 @@ pub(super) fn table(rows: &[StrikeRow], summary: &StrikeSummary, seed: u64) -> S
 }
 
 fn heading(summary: &StrikeSummary, seed: u64) -> String {
-    let StrikeSummary {
-        strikes,
-        failed,
-        left_shadow,
-        ..
-    } = summary;
+    let left = summary.left_shadow.len();
     format!(
-        "{strikes} strikes at seed {seed}, {failed} failed, {left_shadow} left their shadow in f64\n\n"
+        "{} strikes at seed {seed}, {} failed, {left} left their shadow in f64\n\n",
+        summary.strikes, summary.failed
     )
 }
 

@@ -24,13 +24,13 @@ pub struct TensionArguments<'a, 'py> {
 /// What each row asks of the tendons.
 struct RowTensions {
     values: Vec<f64>,
-    of_value: fn(f32) -> StreamTension,
+    make_tension: fn(f32) -> StreamTension,
 }
 
 impl RowTensions {
     /// For so many rows.
     fn read(arguments: TensionArguments<'_, '_>, rows: usize) -> PyResult<Option<Self>> {
-        let (name, argument, range, of_value): (_, _, _, fn(f32) -> _) =
+        let (name, argument, range, make_tension): (_, _, _, fn(f32) -> _) =
             match (arguments.pretension_n, arguments.stiffness_nm_per_rad) {
                 (Some(_), Some(_)) => {
                     return Err(PyValueError::new_err(
@@ -72,11 +72,14 @@ impl RowTensions {
                 values[index]
             ));
         }
-        Ok(Some(Self { values, of_value }))
+        Ok(Some(Self {
+            values,
+            make_tension,
+        }))
     }
 
     fn row_tension(&self, row: usize) -> StreamTension {
-        (self.of_value)(self.values[row] as f32)
+        (self.make_tension)(self.values[row] as f32)
     }
 }
 
@@ -110,7 +113,9 @@ pub fn path(
         }
         last_s = time_s;
         rows.push(PathRow {
-            tension: tensions.as_ref().map(|tensions| tensions.row_tension(index)),
+            tension: tensions
+                .as_ref()
+                .map(|tensions| tensions.row_tension(index)),
             ..PathRow::from_angles(time_s, azimuth_deg, tilt_deg)
         });
     }

@@ -77,6 +77,8 @@ fn the_page_on_safety_says_how_far_beyond_the_maximum_tension() {
             "catches the falling leg: up to {} more",
             percent(SLIP_BEYOND)
         ),
+        format!("on the way: up to {} more", percent(PLAY_BEYOND)),
+        format!("other way: up to {} more", percent(REVERSED_AGAIN_BEYOND)),
         format!(
             "up to {} and {} more",
             percent(STUCK_BEYOND),
