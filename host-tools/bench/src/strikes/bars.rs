@@ -36,11 +36,6 @@ const HALF_OPEN_BEYOND: f64 = 0.25;
 /// stiffness of the paper's tendon at 150 N, while the others move the leg on.
 const PLAY_BEYOND: f64 = 0.2;
 
-/// The same where a counter that counts the other way is armed again with it, twice, with a tendon within a tenth of the maximum: each arm
-/// pulls in for the 0.1 mm and more until that is found. Known are 171.7 N from 146 N (seed 24601, #11378).
-const REVERSED_AGAIN_BEYOND: f64 = 0.15;
-const NEAR_MAX_PART: f64 = 0.9;
-
 /// The same where one driver pulls inwards whatever is asked, for the 5 ms and more until its counter contradicts, and is then cut
 /// off.
 const STUCK_BEYOND: f64 = 0.5;
@@ -184,26 +179,13 @@ impl StrikeBars {
         before: &Unstruck,
     ) -> Self {
         let at_max = defect.is_some_and(|defect| shows_maximum(defect, f_max_n, before.highest_n));
-        let near_max = before
-            .highest_n
-            .into_iter()
-            .any(|n| n > NEAR_MAX_PART * f_max_n);
-        let again = activity == Activity::Rearmed;
-        let again_part = match defect {
-            Some(Defect::EncoderReversed(_)) if again && near_max => REVERSED_AGAIN_BEYOND,
-            _ => 0.0,
-        };
         let (stopped_part, paid_out_mm) = match (at_max, activity.is_on_the_way()) {
             (true, true) => (CUT_OFF_BEYOND, GAIN_AT_MAX_MM),
             (true, false) => (0.0, GAIN_AT_MAX_MM),
             (false, _) => (0.0, 0.0),
         };
         Self {
-            tension_n: f_max_n
-                * (1.0
-                    + excess_part(defect, activity)
-                        .max(stopped_part)
-                        .max(again_part)),
+            tension_n: f_max_n * (1.0 + excess_part(defect, activity).max(stopped_part)),
             homing_n: HOMING_N,
             tip_mm: tip_mm(defect, activity).max(paid_out_mm),
             named_s: defect.and_then(|defect| named_s(defect, activity, before)),

@@ -18,10 +18,6 @@ fn the_page_says_the_bars() {
             "{:.0} % where the play of a gear grows on the way",
             100.0 * PLAY_BEYOND
         ),
-        format!(
-            "{:.0} % where a counter that counts the other way is armed again",
-            100.0 * REVERSED_AGAIN_BEYOND
-        ),
         format!("{:.0} % where a driver pulls", 100.0 * STUCK_BEYOND),
         format!("{:.0} % where a hand holds", 100.0 * GRASPED_BEYOND),
         format!("{:.0} % where a driver switches", 100.0 * RUNAWAY_BEYOND),
@@ -78,7 +74,6 @@ fn the_page_on_safety_says_how_far_beyond_the_maximum_tension() {
             percent(SLIP_BEYOND)
         ),
         format!("on the way: up to {} more", percent(PLAY_BEYOND)),
-        format!("other way: up to {} more", percent(REVERSED_AGAIN_BEYOND)),
         format!(
             "up to {} and {} more",
             percent(STUCK_BEYOND),
