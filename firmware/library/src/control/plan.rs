@@ -24,10 +24,8 @@ pub const SHORTEST_S: f32 = 0.02;
 /// exact in f32.
 pub const LONGEST_S: f32 = 600.0;
 
-/// A path may leave the greatest tilt by this part of it: what one bulges out on which the leg stops near it, or between the parts of its time at
-/// which it is looked at. The test `a_way_that_is_changed_stays_within_the_greatest_tilt` holds both.
-const BULGE: f32 = 1.002;
-const SWINGS_OUT: [f32; 3] = [0.2, 0.4, 0.65];
+/// A path may leave the greatest tilt by this part of its half-tangent, so that rounding does not refuse a path to it: 0.014° of 30°.
+const ROUNDED: f32 = 1.0005;
 
 /// The limits as squares, in half-tangent coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +33,7 @@ pub struct MotionLimits<T> {
     /// The limits themselves.
     pub(super) peaks: Peaks<T>,
     squares: Peaks<T>,
-    /// The square of the greatest tilt's half-tangent, with the bulge.
+    /// The square of the greatest tilt's half-tangent, with what rounding may add.
     reach_square: T,
 }
 
@@ -57,17 +55,18 @@ impl<T: Scalar> MotionLimits<T> {
                 acceleration: square(peaks.acceleration),
                 jerk: square(peaks.jerk),
             },
-            reach_square: square(half_tangent(T::from(settings.tilt_max_sine)) * T::from(BULGE)),
+            reach_square: square(half_tangent(T::from(settings.tilt_max_sine)) * T::from(ROUNDED)),
         }
     }
 
-    /// Whether a path leads beyond the greatest tilt, or farther than it starts where that is beyond.
+    /// Whether a path may lead beyond the greatest tilt, or farther than it starts where that is beyond. It stays in the hull of its start, its
+    /// end and two points that its start determines.
     #[inline(always)]
     pub fn leads_too_far(&self, path: &Quintic<T>) -> bool {
         let square = |[x, y]: [T; 2]| x * x + y * y;
-        let reach_square = max(square(path.position(T::zero())), self.reach_square);
-        let beyond = |&part: &f32| square(path.position(T::from(part))) > reach_square;
-        SWINGS_OUT.iter().any(beyond)
+        let [start, farther @ ..] = path.hull_to_rest();
+        let reach_square = max(square(start), self.reach_square);
+        farther.iter().any(|&point| square(point) > reach_square)
     }
 
     /// Whether a path keeps the others at one of its places, 0 to `PLACES`.

@@ -122,6 +122,13 @@ impl<T: Scalar> Quintic<T> {
         })
     }
 
+    /// The control points that differ where it leads to rest, as points: the last three are one.
+    #[inline(always)]
+    pub fn hull_to_rest(&self) -> [[T; 2]; 4] {
+        let [x, y] = self.control_points();
+        [0, 1, 2, 5].map(|i| [x[i], y[i]])
+    }
+
     /// Its time, s.
     #[inline(always)]
     pub fn duration_s(&self) -> T {

@@ -67,12 +67,13 @@ impl Way {
         matches!(self, Self::BrakesFirst | Self::Stops)
     }
 
-    /// The way instead of one that leads too far; none where the leg brakes.
+    /// The way instead of one that leads too far. None where the leg shall stop: the path that it is on leads to rest within the greatest tilt,
+    /// and does so about as soon as one that leaves it.
     const fn if_too_far(self) -> Option<Self> {
         match self {
             Self::Direct => Some(Self::BrakesFirst),
-            Self::Braked => Some(Self::Braked),
-            Self::BrakesFirst | Self::Stops => None,
+            Self::BrakesFirst | Self::Braked => Some(Self::Braked),
+            Self::Stops => None,
         }
     }
 }
@@ -269,9 +270,9 @@ impl<T: Scalar> Trajectory<T> {
         }
     }
 
-    /// Makes a path from where the trajectory will be, or checks the next places of one, and first of all how far it leads. One that leads too
-    /// far is begun where the leg has braked, one that is too fast is tried again with more time, and given up if that is too long; one
-    /// that keeps the limits is taken when its start has come.
+    /// Makes a path from where the trajectory will be, or checks the next places of one, and first of all how far it leads. Instead of one
+    /// that leads too far another way is planned; one that is too fast is tried again with more time, and given up if that is too
+    /// long; one that keeps the limits is taken when its start has come.
     // In place: to copy a plan would take a tick of the budget's last instructions.
     #[inline(always)]
     fn go_on_planning(&mut self) {
@@ -291,11 +292,9 @@ impl<T: Scalar> Trajectory<T> {
         // How far the path leads takes the time of a place.
         let mut places = PLACES_A_CYCLE;
         if attempt.place == 0 {
-            if let Some(way) = plan.way.if_too_far()
-                && self.limits.leads_too_far(&attempt.path)
-            {
-                let end = plan.end;
-                self.planned = Some(self.begin_plan(end, way));
+            if self.limits.leads_too_far(&attempt.path) {
+                let (end, way) = (plan.end, plan.way.if_too_far());
+                self.planned = way.map(|way| self.begin_plan(end, way));
                 return;
             }
             places -= 1;
