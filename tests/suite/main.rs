@@ -68,6 +68,7 @@ mod sim {
     mod homing_with_faults;
     mod load_left_out;
     mod lost_numbers;
+    mod ramped_pretension;
     mod random_scenarios;
     pub mod ready_runs;
     mod ring_down;

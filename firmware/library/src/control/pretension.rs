@@ -14,6 +14,10 @@ const TOLERANCE: f32 = 1e-3;
 /// and `stiffness_lean` hold it.
 const STEP_N: f32 = 10.0;
 
+/// A target whose pretension is farther than this from the one that is found is on its way, N: its tendons are up to 4 % softer or stiffer
+/// than those that are found.
+const ON_ITS_WAY_N: f32 = 2.0;
+
 /// What the pretension is made for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PretensionDemand<T> {
@@ -45,6 +49,8 @@ pub struct PretensionSearch<T> {
     /// Stiffness per pretension.
     slope: T,
     unreachable: bool,
+    /// Whether the last step was skipped.
+    skipped: bool,
 }
 
 impl<T: Scalar> PretensionSearch<T> {
@@ -58,6 +64,7 @@ impl<T: Scalar> PretensionSearch<T> {
             mean_stiffness: T::zero(),
             slope: T::one(),
             unreachable: false,
+            skipped: false,
         }
     }
 
@@ -100,6 +107,19 @@ impl<T: Scalar> PretensionSearch<T> {
     #[inline(always)]
     pub fn unreachable(&self) -> bool {
         self.unreachable
+    }
+
+    /// Whether the pretension found so far is another than one that is on its way to it, N.
+    #[inline(always)]
+    pub fn is_far_from(&self, pretension_n: T) -> bool {
+        (pretension_n - self.pretension_n).abs() > T::from(ON_ITS_WAY_N)
+    }
+
+    /// Whether this step is skipped, as every second one.
+    #[inline(always)]
+    pub fn skips(&mut self) -> bool {
+        self.skipped = !self.skipped;
+        self.skipped
     }
 
     /// One step at a target, with the payload that it carries; gives the stiffnesses of the tendons at that pretension, N/m.

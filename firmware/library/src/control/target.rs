@@ -130,6 +130,24 @@ impl<T: Scalar> TargetGenerator<T> {
         self.damping.set_stiffnesses(stiffnesses_n_per_m);
     }
 
+    /// Takes the stiffnesses that the tendons have at these tensions, N, from now on.
+    ///
+    /// # Errors
+    /// A tension beyond a tendon's curve.
+    #[inline(always)]
+    pub fn set_stiffnesses_at(
+        &mut self,
+        mechanism: &Mechanism<T>,
+        tensions_n: &[T; 3],
+    ) -> Result<(), Error> {
+        let mut stiffnesses_n_per_m = *tensions_n;
+        for (stiffness, tendon) in stiffnesses_n_per_m.iter_mut().zip(&mechanism.tendons) {
+            *stiffness = tendon.stiffness(*stiffness)?;
+        }
+        self.set_stiffnesses(&stiffnesses_n_per_m);
+        Ok(())
+    }
+
     /// The next target; `measured_n` are the tensions now.
     ///
     /// # Errors

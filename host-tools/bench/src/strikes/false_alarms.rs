@@ -29,6 +29,12 @@ const BEFORE_S: f64 = 0.25;
 /// much is a pose on which the sensors disagree.
 const ARMED_S: f64 = 0.2;
 
+/// How long after a push a leg swings, s.
+const REST_S: f64 = 0.5;
+
+/// How near to the maximum a tension is that is held at it, N: a leg that gives way does so by cells that are noisy.
+const HELD_N: f64 = 0.5;
+
 /// The uses that are remembered for a report.
 const REMEMBERED: usize = 8;
 
@@ -98,12 +104,16 @@ fn is_beyond(file: &RigFile, fault: Fault, [lowest_n, highest_n]: [f64; 2], arme
     // A leg knows no more than its cells show.
     let shown_n = highest_n * (1.0 + CELL_GAIN) + TARED_N;
     let over_n = file.f_max_n * (1.0 + f64::from(file.gains.limits.over_tension_part));
+    let slackens = lowest_n < 0.5 * file.f_min_n;
+    // A leg at rest for whose load there is no target gives way to the maximum tension: then its motor stays behind.
+    let gives_way = shown_n > file.f_max_n - HELD_N;
     match fault {
-        Fault::Slack => lowest_n < 0.5 * file.f_min_n,
-        // A leg at rest for whose load there is no target gives way to the maximum tension: then its motor stays behind.
-        Fault::OverTension | Fault::Following => shown_n > file.f_max_n,
-        // Just after an arm it says by this name that a tension is too much.
-        Fault::Residual => shown_n > over_n && armed_s < ARMED_S,
+        Fault::Slack => slackens,
+        Fault::OverTension | Fault::Following => gives_way,
+        // Just after an arm it says by this name that a tension is too much. Later a leg that gives way or slackens may swing by millimetres,
+        // which the damping of a soft tendon makes disagree.
+        Fault::Residual if armed_s < ARMED_S => shown_n > over_n,
+        Fault::Residual => gives_way || slackens,
         _ => false,
     }
 }
@@ -118,8 +128,9 @@ struct User<'a> {
     /// The extreme true tensions of now, and of the time before.
     extremes_n: [[f64; 2]; 2],
     extremes_s: f64,
-    /// When the leg was armed last, s.
+    /// When the leg was armed last, and when it is pushed no more, s.
     armed_s: f64,
+    pushed_s: f64,
     uses: Vec<String>,
 }
 
@@ -144,6 +155,7 @@ impl<'a> User<'a> {
             extremes_n: [NO_RANGE; 2],
             extremes_s: 0.0,
             armed_s,
+            pushed_s: 0.0,
             uses: Vec::new(),
         })
     }
@@ -171,18 +183,10 @@ impl<'a> User<'a> {
         Alarm {
             fault: fault.entry().name,
             time_s,
-            beyond: is_beyond(self.file, fault, tensions_n, armed_s)
-                || self.has_gone_slack(fault, armed_s),
+            beyond: is_beyond(self.file, fault, tensions_n, armed_s),
             tensions_n,
             uses: self.uses.join("; "),
         }
-    }
-
-    /// Whether a leg has sensors that disagree because one of its tendons is slack: no tension shows how long that is. One that just comes taut
-    /// is no such leg.
-    fn has_gone_slack(&self, fault: Fault, armed_s: f64) -> bool {
-        let slack = self.stand.truth.tensions_n.iter().any(|n| *n <= 0.0);
-        fault == Fault::Residual && slack && armed_s > ARMED_S
     }
 
     /// Waits, and gives the fault that comes.
@@ -233,6 +237,11 @@ impl<'a> User<'a> {
                 self.command(&command, &format!("stiffness {demand:.1} N·m/rad"))?;
             }
             18 => {
+                // What pushes would be frozen as a payload.
+                let rest_s = (self.pushed_s - self.stand.time_s()).max(0.0);
+                if self.wait(rest_s)?.is_some() {
+                    return Ok(wait_s);
+                }
                 let all = [
                     Compensation::Off,
                     Compensation::Estimated,
@@ -288,6 +297,7 @@ impl<'a> User<'a> {
     fn push(&mut self) {
         let (azimuth_deg, asked_n) = (360.0 * self.rng.f64(), PUSH_N * self.rng.f64());
         let (for_s, rise_s) = (self.uniform([0.05, 1.0]), self.uniform([0.02, 0.2]));
+        self.pushed_s = self.stand.time_s() + for_s + REST_S;
         let across = self.stand.plant().transverse(azimuth_deg);
         let force_n = asked_n.min(strongest_n(self.file, &self.stand.truth, &across));
         self.note(format!(
@@ -334,11 +344,14 @@ mod tests {
         for (fault, tensions_n, armed_s, right) in [
             (Fault::Slack, [3.9, 100.0], 9.0, true),
             (Fault::Slack, [4.1, 170.0], 9.0, false),
-            (Fault::OverTension, [8.0, 149.7], 9.0, true),
-            (Fault::Following, [8.0, 149.5], 9.0, false),
+            (Fault::OverTension, [8.0, 149.2], 9.0, true),
+            (Fault::Following, [8.0, 149.0], 9.0, false),
             (Fault::Residual, [8.0, 164.7], 0.9 * ARMED_S, true),
             (Fault::Residual, [8.0, 164.5], 0.9 * ARMED_S, false),
-            (Fault::Residual, [0.0, 180.0], 1.1 * ARMED_S, false),
+            (Fault::Residual, [0.0, 164.5], 0.9 * ARMED_S, false),
+            (Fault::Residual, [3.9, 100.0], 1.1 * ARMED_S, true),
+            (Fault::Residual, [4.1, 149.2], 1.1 * ARMED_S, true),
+            (Fault::Residual, [4.1, 149.0], 1.1 * ARMED_S, false),
             (Fault::TensionJump, [0.0, 180.0], 0.0, false),
         ] {
             let found = is_beyond(&file, fault, tensions_n, armed_s);
