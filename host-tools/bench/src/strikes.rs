@@ -10,9 +10,11 @@ mod case;
 mod course;
 mod cut_off;
 mod false_alarms;
+mod naming;
 mod preparation;
 mod push;
 mod strike;
+mod struck;
 mod table;
 mod way;
 
@@ -20,7 +22,8 @@ pub use activity::Activity;
 pub use bars::StrikeBars;
 pub use case::Case;
 pub use false_alarms::{Alarm, UseResult};
-pub use strike::{Moment, Struck};
+pub use strike::Moment;
+pub use struck::Struck;
 pub use table::{Measures, StrikeRow, WorstByBar, WorstStrike, rows};
 
 use crate::draw::mixed;
@@ -141,10 +144,10 @@ impl StrikeCampaign {
     }
 
     /// What strikes in a number.
-    fn fault_of(&self, index: u64) -> strike::Strike {
+    fn fault_of(&self, index: u64) -> struck::Strike {
         let mut rng = Rng::with_seed(mixed(self.seed, index) ^ 1);
         let (kind, tendon) = (kind_of(index / SLOTS, index % SLOTS), rng.usize(0..3));
-        strike::Strike {
+        struck::Strike {
             index,
             defect: kind.and_then(|kind| Defect::numbered(kind, tendon)),
             name: name_of(kind),

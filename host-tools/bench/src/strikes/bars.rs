@@ -4,6 +4,7 @@
 mod tests;
 
 use super::activity::Activity;
+use super::naming::{DRIFTS_S, Unstruck, WANDERED_N, WANDERS_BY_N, named_s};
 use leg_firmware::settings::CurrentOutput;
 use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Defect;
@@ -111,35 +112,6 @@ const UNCOUNTED_WAY_MM: f64 = 5.0;
 
 /// The same where a hand holds the tip that should move, with 5 N for each millimetre, mm: the leg gives way by its stiffness.
 const GRASPED_MM: f64 = 10.0;
-
-/// Time to the fault's name, s.
-const NAMED_S: f64 = 0.5;
-
-/// The same of a cell that wanders, while it is off by so many N, and of one that drifts, s. As a random walk it comes back to its tension
-/// again and again, and shows nothing then; while a leg arms or moves, less is compared.
-pub(super) const WANDERS_BY_N: f64 = 12.0;
-const WANDERS_S: f64 = 1.5;
-const DRIFTS_S: f64 = 5.0;
-
-/// By how much a cell wanders until it is named, as one deviation, N: 20 N by the root of 2 s, for it is off for a part of the time alone.
-const WANDERED_N: f64 = 28.3;
-
-/// Error of a cell from which on it has to be named, N.
-const WRONG_BY_N: f64 = 8.0;
-
-/// How far a motor has to go for its failure to show, m: 1 mm at the tip.
-const SHOWN_M: f64 = 1e-4;
-
-/// A leg without its strike.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Unstruck {
-    /// True tensions when it is struck, N.
-    pub tensions_n: [f64; 3],
-    /// The highest from then on, N.
-    pub highest_n: [f64; 3],
-    /// How far each motor goes from then on, m of its tendon.
-    pub travels_m: [f64; 3],
-}
 
 /// The bars of one strike.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -355,43 +327,6 @@ fn tip_mm(defect: Option<Defect>, activity: Activity) -> f64 {
         _ => usual_mm,
     };
     usual_mm.max(least_mm)
-}
-
-/// When a defect has to be named.
-fn named_s(defect: Defect, activity: Activity, before: &Unstruck) -> Option<f64> {
-    let tensions_n = before.tensions_n;
-    use Activity::{Disarmed, Following, Held, Homing, Moving, RampingDown};
-    // Tendons that barely pull, or less and less, show little.
-    let pulls = !matches!(activity, Homing | RampingDown | Disarmed);
-    // On its way a leg changes its tensions by itself.
-    let rests = matches!(activity, Following | Held);
-    let wrong = |by_n: f64| (pulls && by_n.abs() >= WRONG_BY_N).then_some(NAMED_S);
-    let driven = activity != Disarmed;
-    match defect {
-        Defect::DriverFault(_) | Defect::LateTicks | Defect::SettingsCorrupt => Some(NAMED_S),
-        Defect::SupplySag
-        | Defect::SupplySurge
-        | Defect::CellSaturated(_)
-        | Defect::CellDead(_)
-        | Defect::CellStale(_)
-        | Defect::CurrentOffset(_)
-        | Defect::CurrentFullScale(_)
-        | Defect::CurrentDead(_)
-        | Defect::DriverFullOn(_) => driven.then_some(NAMED_S),
-        Defect::CellStuck(_) | Defect::TendonCut(_) | Defect::TendonSlips(_) => {
-            pulls.then_some(NAMED_S)
-        }
-        Defect::CellReversed(_) | Defect::ExcitationLost => pulls.then_some(NAMED_S),
-        Defect::CellExcitationLost(i) | Defect::CellFades(i) => wrong(tensions_n[i]),
-        Defect::CellWanders(_) => pulls.then_some(WANDERS_S),
-        Defect::CellDrifting(_) => rests.then_some(DRIFTS_S),
-        Defect::CellFollows(i) if rests => wrong(tensions_n[(i + 1) % 3] - tensions_n[i]),
-        // One that has hardly to turn on shows nothing.
-        Defect::EncoderLost(i) | Defect::EncoderReversed(i) | Defect::MotorJammed(i) => {
-            (activity == Moving && before.travels_m[i] >= SHOWN_M).then_some(NAMED_S)
-        }
-        _ => None,
-    }
 }
 
 /// The defect that a current output shows in the same way: where code 0 is no current, or nearly none, an output that is dead reads none.

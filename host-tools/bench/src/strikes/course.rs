@@ -1,6 +1,6 @@
 //! What tensions and motors of an unstruck leg do.
 
-use super::bars::Unstruck;
+use super::naming::Unstruck;
 use crate::stand::Stand;
 
 /// How often it is looked at, s.

@@ -2,9 +2,9 @@
 
 use super::OTHER_TICKS;
 use super::activity::Activity;
-use super::bars::Unstruck;
 use super::case::Case;
 use super::course::Course;
+use super::naming::Unstruck;
 use super::push::strongest_n;
 use super::way::Way;
 use crate::stand::{self, Stand};

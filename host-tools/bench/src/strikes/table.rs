@@ -1,7 +1,7 @@
 //! The strikes, grouped by fault and what the leg was doing.
 
 use super::activity::Activity;
-use super::strike::Struck;
+use super::struck::Struck;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -1,6 +1,7 @@
 //! The pages say the bars.
 
 use super::*;
+use crate::strikes::naming::{NAMED_S, WANDERS_S};
 
 #[test]
 fn the_page_says_the_bars() {
