@@ -18,13 +18,19 @@ const CUT_MAX: u64 = MS * 8 / 5;
 /// `b .`, an instruction that is its own successor.
 const ENDLESS: u32 = 0xe7fe;
 
-/// Lets a function hang at its first instruction, as a debugger would.
-fn hang(chip: &mut Chip, image: &Image, function: &str) -> Outcome {
-    let address = image.symbol(function).ok_or("no such function")? & !1;
-    let shift = 8 * (address & 2);
-    let word = chip.processor().word(address & !3).ok_or("no memory")?;
-    let word = word & !(0xffff << shift) | ENDLESS << shift;
-    assert!(chip.set_word(address & !3, word));
+/// `movs r0, #0`, `mov sp, r0`, and what is no instruction: the handler of that fault has no stack.
+const LOCKS_UP: [u32; 3] = [0x2000, 0x4685, 0xde00];
+
+/// Lets a function begin with other instructions, as a debugger would.
+fn replace(chip: &mut Chip, image: &Image, function: &str, instructions: &[u32]) -> Outcome {
+    let mut address = image.symbol(function).ok_or("no such function")? & !1;
+    for instruction in instructions {
+        let shift = 8 * (address & 2);
+        let word = chip.processor().word(address & !3).ok_or("no memory")?;
+        let word = word & !(0xffff << shift) | instruction << shift;
+        assert!(chip.set_word(address & !3, word));
+        address += 2;
+    }
     Ok(())
 }
 
@@ -35,7 +41,7 @@ fn a_tick_that_hangs_ends_the_pulses_within_two_milliseconds_and_is_told() -> Ou
     let mut session = driving(&path, Board::default())?;
     let chip = session.chip().ok_or("no chip")?;
     let begun = chip.cycle();
-    hang(chip, &parsed, "ADC1_2")?;
+    replace(chip, &parsed, "ADC1_2", &[ENDLESS])?;
     assert_eq!(reset_within(chip, CUT_MAX), Some(ResetFlag::WindowWatchdog));
     eprintln!(
         "a tick that hangs: pulses end after {} µs",
@@ -53,6 +59,27 @@ fn a_tick_that_hangs_ends_the_pulses_within_two_milliseconds_and_is_told() -> Ou
     // The independent watchdog is told apart.
     chip.reset(ResetFlag::IndependentWatchdog);
     assert_eq!(identity_after(chip)?.reset, ResetCause::Watchdog);
+    Ok(())
+}
+
+/// A fault in the handler of a fault: nothing runs any more. The break ends the pulses at once, and then the control tick is missed.
+#[test]
+fn a_locked_up_processor_is_reset_by_the_window_watchdog() -> Outcome {
+    let path = image(FirmwareImage::Stm32g474)?;
+    let parsed = Image::parse(&fs::read(&path)?)?;
+    let mut session = driving(&path, Board::default())?;
+    let chip = session.chip().ok_or("no chip")?;
+    replace(chip, &parsed, "ADC1_2", &LOCKS_UP)?;
+    let end = chip.cycle() + CUT_MAX;
+    let mut stop = chip.run(end);
+    while stop != Stop::LockedUp && chip.cycle() < end {
+        stop = chip.run(end);
+    }
+    assert_eq!(stop, Stop::LockedUp);
+    assert!(!chip.peripherals().devices.tim1.outputs().on);
+    assert_eq!(reset_within(chip, CUT_MAX), Some(ResetFlag::WindowWatchdog));
+    assert_eq!(identity_after(chip)?.reset, ResetCause::HungTick);
+    assert!(!chip.peripherals().devices.tim1.outputs().on);
     Ok(())
 }
 
