@@ -2,8 +2,8 @@
 //! and what a leg that was held does after a reset.
 
 use crate::common::chip::{
-    MS, Outcome, carry_out, driving, findings, identity, identity_after, image, reply, send,
-    started, started_with, telemetry,
+    MS, Outcome, carry_out, driving, findings, identity, identity_after, image, reply,
+    reset_within, send, started, started_with, telemetry,
 };
 use leg_boards::image::FirmwareImage;
 use leg_firmware::command::{Command, CommandRefusal};
@@ -16,6 +16,9 @@ use stm32g474_emulator::chip::Chip;
 use stm32g474_emulator::devices::SystemBreak;
 use stm32g474_emulator::image::Image;
 use stm32g474_emulator::rcc::ResetFlag;
+
+/// A word of the program.
+const PROGRAM: u32 = 0x0800_1000;
 
 /// The size of the stack's guard, which begins at a multiple of it.
 const GUARD: u32 = 1_024;
@@ -69,6 +72,22 @@ fn what_the_chip_finds_of_itself_ends_the_pulses() -> Outcome {
         stays_off(chip, MS);
         assert!(telemetry(chip)?.faults.has(Fault::DriverFault), "{cause:?}");
     }
+    Ok(())
+}
+
+/// A word of the program that has two wrong bits is the end: nothing of it may be carried out.
+#[test]
+fn wrong_bits_in_the_program_reset_the_chip_and_are_told() -> Outcome {
+    let mut session = driving(&image(FirmwareImage::Stm32g474)?, Board::default())?;
+    let chip = session.chip().ok_or("no chip")?;
+    chip.peripherals().devices.flash.damage(PROGRAM);
+    chip.peripherals().read_flash(PROGRAM, 4);
+    assert_eq!(reset_within(chip, MS), Some(ResetFlag::Software));
+    let identity = identity_after(chip)?;
+    assert_eq!(identity.reset, ResetCause::Software);
+    let report = identity.crash_report.as_str();
+    assert!(report.starts_with("NMI, flash ECC "), "{report}");
+    assert!(!outputs_on(chip));
     Ok(())
 }
 

@@ -18,6 +18,12 @@ const CUT_MAX: u64 = MS * 8 / 5;
 /// `b .`, an instruction that is its own successor.
 const ENDLESS: u32 = 0xe7fe;
 
+/// Words of a task's storage in which the executor keeps the function that polls it.
+const HEADER: u32 = 16;
+
+/// The longest that all tasks may hang: the time of the watchdog.
+const TASK_MAX: u64 = 100 * MS;
+
 /// `movs r0, #0`, `mov sp, r0`, and what is no instruction: the handler of that fault has no stack.
 const LOCKS_UP: [u32; 3] = [0x2000, 0x4685, 0xde00];
 
@@ -59,6 +65,44 @@ fn a_tick_that_hangs_ends_the_pulses_within_two_milliseconds_and_is_told() -> Ou
     // The independent watchdog is told apart.
     chip.reset(ResetFlag::IndependentWatchdog);
     assert_eq!(identity_after(chip)?.reset, ResetCause::Watchdog);
+    Ok(())
+}
+
+/// All tasks share one executor: where one does not come back none checks in, while the control ticks go on.
+#[test]
+fn a_task_that_hangs_is_reset_by_the_watchdog_and_is_told() -> Outcome {
+    let path = image(FirmwareImage::Stm32g474)?;
+    let parsed = Image::parse(&fs::read(&path)?)?;
+    let mut session = driving(&path, Board::default())?;
+    let chip = session.chip().ok_or("no chip")?;
+    let task = parsed.variable("leg_stm32g474::serial::serve::POOL");
+    let task = task.ok_or("no such task")?;
+    let polls = parsed
+        .functions_ending("serial::__serve_task::__serve_task_inner_function::{closure#0}>>::poll");
+    let endless = parsed
+        .symbol("__sheap")
+        .ok_or("no variables")?
+        .next_multiple_of(4);
+    assert!(chip.set_word(endless, ENDLESS));
+    let is_poll = |chip: &Chip, at| {
+        let word = chip.processor().word(at).unwrap_or_default();
+        polls.contains(&(word & !1))
+    };
+    let at = (task..task + 4 * HEADER)
+        .step_by(4)
+        .find(|at| is_poll(chip, *at));
+    assert!(chip.set_word(at.ok_or("no function that polls")?, endless | 1));
+    let begun = chip.cycle();
+    assert_eq!(
+        reset_within(chip, TASK_MAX),
+        Some(ResetFlag::IndependentWatchdog)
+    );
+    eprintln!(
+        "a task that hangs: reset after {} ms",
+        (chip.cycle() - begun) / MS
+    );
+    assert_eq!(identity_after(chip)?.reset, ResetCause::Watchdog);
+    assert!(!chip.peripherals().devices.tim1.outputs().on);
     Ok(())
 }
 
