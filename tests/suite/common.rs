@@ -7,6 +7,7 @@ pub mod panic_free;
 pub mod python;
 pub mod sources;
 pub mod stalls;
+pub mod unlike;
 
 pub use leg_base::numeric;
 pub use leg_model_tools::plain_vectors as reference;

@@ -33,6 +33,7 @@ mod firmware {
     mod disarm;
     mod doubts;
     mod encoder_jump;
+    mod point_arrival;
     mod residual;
     mod safe_states;
     mod safety_page;
@@ -60,6 +61,7 @@ mod rig {
 
 mod sim {
     mod braking;
+    mod circles;
     mod commanded_often;
     mod comparison;
     mod current_outputs;

@@ -48,7 +48,7 @@ pub struct Telemetry<T> {
     pub stiffness_commanded_nm_per_rad: Option<T>,
     /// Pretension of the target, N.
     pub pretension_n: T,
-    /// Bending stiffness at the pretension that is asked for, N·m/rad.
+    /// Bending stiffness at that pretension, N·m/rad; where a stiffness is commanded, at the one that is found for it.
     pub stiffness_nm_per_rad: T,
     /// The load beyond the leg's own weight, as a horizontal moment, N·m.
     pub load_nm: [T; 2],

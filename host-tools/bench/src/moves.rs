@@ -64,8 +64,11 @@ pub struct Moved {
     pub settled_s: f64,
     /// How far from the commanded point it rests, mm.
     pub rest_mm: f64,
-    /// What was beyond its bar, or why the move did not come to its end.
+    /// What was beyond its bar, and [`Self::error`].
     pub failures: Vec<String>,
+    /// Why the move did not come to its end, or that the leg left its shadow.
+    #[serde(skip)]
+    pub error: Option<String>,
     /// Time since the command, s, and how far the true tip was off, mm: off the trajectory, and off its end after that.
     #[serde(skip)]
     pub way: Vec<(f64, f64)>,
@@ -103,19 +106,16 @@ fn make(drawn: &DrawnMove) -> Moved {
         settled_s: 0.0,
         rest_mm: 0.0,
         failures: Vec::new(),
+        error: None,
         way: Vec::new(),
     };
     let went = prepared(drawn).and_then(|mut stand| {
         go(drawn, &mut stand, &mut moved)?;
-        Ok(stand.require_shadow(OTHER_TICKS_MAX))
+        moved.failures = MoveBars::new(drawn.begin_deg[1]).failures(&moved);
+        stand.require_shadow(OTHER_TICKS_MAX)
     });
-    moved.failures = match went {
-        Ok(shadow) => {
-            let beyond = MoveBars::new(drawn.begin_deg[1]).failures(&moved);
-            beyond.into_iter().chain(shadow.err()).collect()
-        }
-        Err(reason) => vec![reason],
-    };
+    moved.error = went.err();
+    moved.failures.extend(moved.error.clone());
     moved
 }
 

@@ -9,7 +9,7 @@ use crate::progress;
 use clap::builder::PossibleValuesParser;
 use leg_base::failure::Failure;
 use leg_base::json_object;
-use leg_bench::strikes::{self, Activity, StrikeCampaign, StrikeSummary};
+use leg_bench::strikes::{self, Activity, StrikeCampaign, StrikeSummary, UseResult};
 use leg_sim::plant::Defect;
 use std::path::PathBuf;
 
@@ -111,12 +111,17 @@ fn false_alarms(campaign: &StrikeCampaign, hours: f64, options: Options) -> Resu
         .filter(|usage| usage.stopped.is_some())
         .count();
     let false_ones = alarms().filter(|alarm| !alarm.beyond).count();
-    let passed = false_ones + stopped == 0;
+    let uses = usages.iter().map(|usage| usage.uses).sum();
+    let left_shadow: u64 = usages.iter().map(|usage| usage.left_shadow).sum();
+    let left_shadow_at_most = UseResult::left_shadow_at_most(uses);
+    let passed = false_ones + stopped == 0 && left_shadow <= left_shadow_at_most;
     let json = json_object! {
         seed: campaign.seed,
         hours: hours,
         alarms: alarms().count(),
         false_alarms: false_ones,
+        left_shadow: left_shadow,
+        left_shadow_at_most: left_shadow_at_most,
         passed: passed,
         usages: &usages,
     };
@@ -125,7 +130,9 @@ fn false_alarms(campaign: &StrikeCampaign, hours: f64, options: Options) -> Resu
         return Ok(());
     }
     Err(Failure::failed(
-        format!("{false_ones} false alarms, {stopped} parts that did not go on"),
+        format!(
+            "{false_ones} false alarms, {stopped} parts that did not go on, {left_shadow} legs that left their shadow in f64 ({left_shadow_at_most} at most may)"
+        ),
         "look at what was done before each; the same seed and rigs repeat it",
     ))
 }

@@ -229,7 +229,12 @@ fn a_leg_that_is_used_raises_no_alarm() {
     let usages = campaign("none").use_legs(20.0, |_| ());
     assert_eq!(usages.len(), READY_RIGS.len());
     for usage in &usages {
-        assert_eq!(usage.stopped, None, "{}", usage.rig);
+        assert_eq!(
+            (usage.left_shadow, &usage.stopped),
+            (0, &None),
+            "{}",
+            usage.rig
+        );
         assert!(usage.time_s >= 20.0 && usage.uses > 10);
         let alarms: Vec<_> = usage.alarms.iter().filter(|alarm| !alarm.beyond).collect();
         assert!(alarms.is_empty(), "{alarms:?}");

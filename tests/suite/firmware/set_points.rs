@@ -17,16 +17,16 @@ fn settings() -> Settings {
 }
 
 /// The trajectory of a leg, its stream, and the tick.
-struct Bench {
+pub struct Bench {
     trajectory: Trajectory<f64>,
     stream: Stream<f64>,
     tick: u32,
     /// Half-tangents of the last four cycles, the newest first.
-    places: [[f64; 2]; 4],
+    pub places: [[f64; 2]; 4],
 }
 
 impl Bench {
-    fn new(tick: u32) -> Self {
+    pub fn new(tick: u32) -> Self {
         let settings = settings();
         Self {
             trajectory: Trajectory::new(MotionLimits::new(&settings), HalfTangent::new(0.0, 0.0)),
@@ -37,7 +37,7 @@ impl Bench {
     }
 
     /// What a leg does with a point.
-    fn follow(&mut self, point: &SetPoint) -> Result<(), PointRefusal> {
+    pub fn follow(&mut self, point: &SetPoint) -> Result<(), PointRefusal> {
         if self.stream.repeats(point) {
             return Ok(());
         }
@@ -65,7 +65,7 @@ impl Bench {
     }
 
     /// The rest of a cycle, after its command.
-    fn advance(&mut self) {
+    pub fn advance(&mut self) {
         let [a, b, c, _] = self.places;
         self.places = [self.trajectory.step().xy(), a, b, c];
         self.trajectory.advance_plan(&mut self.stream, 0.0);

@@ -6,7 +6,7 @@ use leg_base::angles;
 use leg_firmware::control::{CYCLE_TICKS, MotionLimits, Stream, StreamLimits, Trajectory};
 use leg_firmware::sensors::TICK_HZ;
 use leg_firmware::settings::Settings;
-use leg_model::{HalfTangent, Scalar};
+use leg_model::{Direction, HalfTangent, Scalar};
 
 /// Time of a cycle, s.
 const CYCLE_S: f64 = CYCLE_TICKS as f64 / TICK_HZ as f64;
@@ -48,22 +48,35 @@ fn trajectories_keep_their_limits() {
     }
 }
 
-/// A path from a motion the other way swings out, the farther the longer it takes, and one on which the leg brakes leads on: to 33° of 30°
-/// where such paths are taken. Each way that is left alone ends where it shall, and a stop comes to rest.
-#[test]
-fn a_way_that_is_changed_stays_within_the_greatest_tilt() {
-    const LONGEST_MOVE_S: f64 = 3.0;
-    const LONGEST_STOP_S: f64 = 1.1;
+/// What changes of a way come to at most: how far it leads, degrees, and how long a move takes, and a stop beyond the end of the path that it
+/// ends, s.
+struct Changes {
+    tilt_deg: f64,
+    move_s: f64,
+    late_s: f64,
+}
+
+/// Changes the way of a trajectory that begins at rest at a tilt: eight in ten moves are left for another after up to 1.3 s, one comes to its end,
+/// and one change is a stop. Three in ten lead to the greatest tilt itself.
+fn change<T: Scalar + Into<f64>>(seed: u64, begin_deg: f64, changes: u32) -> Changes {
     let settings = Settings::table_1().unwrap();
-    let mut rng = fastrand::Rng::with_seed(5);
-    let mut trajectory =
-        Trajectory::<f64>::new(MotionLimits::new(&settings), HalfTangent::new(0.0, 0.0));
+    let point = |tilt_deg: f64, azimuth_deg: f64| {
+        let [x, y] =
+            angles::direction(azimuth_deg, tilt_deg).map(|component| T::from(component as f32));
+        Direction::from_xy(x, y).unwrap().half_tangent()
+    };
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let begin = T::from((0.5 * begin_deg.to_radians()).tan() as f32);
+    let mut trajectory = Trajectory::<T>::new(
+        MotionLimits::new(&settings),
+        HalfTangent::new(begin, T::zero()),
+    );
     let mut stream = Stream::new(StreamLimits::new(&settings));
-    let (mut farthest, mut move_s, mut stop_s) = (0.0_f64, 0.0_f64, 0.0_f64);
-    let mut run = |trajectory: &mut Trajectory<f64>, cycles: u32| {
+    let mut farthest = 0.0_f64;
+    let mut run = |trajectory: &mut Trajectory<T>, cycles: u32| {
         for cycle in 0..cycles {
-            trajectory.advance_plan(&mut stream, 0.0);
-            let [x, y] = trajectory.step().xy();
+            trajectory.advance_plan(&mut stream, T::zero());
+            let [x, y] = trajectory.step().xy().map(Into::<f64>::into);
             farthest = farthest.max(x.hypot(y));
             if !trajectory.moving() {
                 return f64::from(cycle) * CYCLE_S;
@@ -71,31 +84,57 @@ fn a_way_that_is_changed_stays_within_the_greatest_tilt() {
         }
         f64::INFINITY
     };
-    for change in 0..20_000 {
-        let (tilt, azimuth) = (30.0 * rng.f64(), 360.0 * rng.f64());
-        let q = (0.5 * tilt.to_radians()).tan();
-        let end = angles::unit_vector(azimuth).map(|component| q * component);
-        match change % 10 {
-            5 => {
-                trajectory.stop();
-                stop_s = stop_s.max(run(&mut trajectory, 20_000));
-            }
-            9 => {
-                trajectory.go(HalfTangent::new(end[0], end[1]));
-                move_s = move_s.max(run(&mut trajectory, 20_000));
-                let [x, y] = trajectory.motion().position;
-                assert!((x - end[0]).hypot(y - end[1]) < 1e-9);
-            }
-            _ => {
-                trajectory.go(HalfTangent::new(end[0], end[1]));
-                run(&mut trajectory, 100 + (2500.0 * rng.f64().powi(2)) as u32);
-            }
+    let (mut move_s, mut late_s) = (0.0_f64, 0.0_f64);
+    for change in 0..changes {
+        let tilt_deg = (43.0 * rng.f64()).min(30.0);
+        let end = point(tilt_deg, 360.0 * rng.f64());
+        if change % 10 == 5 {
+            let left = trajectory.ticks_to_end().unwrap_or_default();
+            trajectory.stop();
+            let stop_s = run(&mut trajectory, 20_000);
+            late_s = late_s.max(stop_s - f64::from(left) / f64::from(TICK_HZ));
+            continue;
+        }
+        trajectory.go(end);
+        if change % 10 == 9 {
+            move_s = move_s.max(run(&mut trajectory, 20_000));
+            let [[x, y], [end_x, end_y]] =
+                [trajectory.motion().position, end.xy()].map(|point| point.map(Into::into));
+            assert!((x - end_x).hypot(y - end_y) < 1e-6);
+        } else {
+            run(&mut trajectory, 100 + (2500.0 * rng.f64().powi(2)) as u32);
         }
     }
-    let farthest_deg = 2.0 * farthest.atan().to_degrees();
-    assert!((29.0..30.01).contains(&farthest_deg), "{farthest_deg}°");
-    assert!(move_s <= LONGEST_MOVE_S, "{move_s} s to a target");
-    assert!(stop_s <= LONGEST_STOP_S, "{stop_s} s to rest");
+    let tilt_deg = 2.0 * farthest.atan().to_degrees();
+    Changes {
+        tilt_deg,
+        move_s,
+        late_s,
+    }
+}
+
+/// A path from a motion the other way swings out, the farther the longer it takes, and one on which the leg brakes leads on. Where no path but
+/// the direct one was looked at, the leg came to 33.1° of 30°. A leg that begins beyond, as one that sags may, comes back and is not stuck.
+#[test]
+fn a_way_that_is_changed_stays_within_the_greatest_tilt() {
+    for found in [change::<f64>(5, 0.0, 20_000), change::<f32>(6, 0.0, 20_000)] {
+        let Changes {
+            tilt_deg,
+            move_s,
+            late_s,
+        } = found;
+        println!("to {tilt_deg:.4}°, moves within {move_s:.3} s, stops late by {late_s:.4} s");
+        assert!((29.9..30.004).contains(&tilt_deg), "{tilt_deg}°");
+        assert!(move_s < 3.0, "{move_s} s to a target");
+        assert!(late_s < 2.0 * CYCLE_S, "{late_s} s late");
+    }
+    for begin_deg in [30.1, 31.0, 33.0] {
+        let tilt_deg = change::<f32>(7, begin_deg, 10).tilt_deg;
+        assert!(
+            (begin_deg - 1e-3..begin_deg + 0.004).contains(&tilt_deg),
+            "{tilt_deg}°"
+        );
+    }
 }
 
 /// The last points of a trajectory, and the greatest rate, acceleration and jerk so far.

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::station_stand::{paper, pass, ticks};
+use crate::common::unlike::{rigs_with_a_cell_off, unlike_rigs};
 use fastrand::Rng;
 use leg_bench::stand::{Stand, move_to};
 use leg_firmware::command::Command;
@@ -307,4 +308,22 @@ fn a_leg_with_any_support_rings_down() {
         counted += ratios.count() + found.fast_s.len();
     }
     assert!(counted >= 4 * (READY_RIGS.len() - 1), "{counted}");
+}
+
+/// Legs that their settings do not describe, or with a cell that is off, keep the bars by one and a half.
+#[test]
+fn a_leg_unlike_its_settings_rings_down() {
+    const SEEDS: [u64; 1] = [41];
+    const COUNT: u32 = 6;
+    for (unlike, rig) in unlike_rigs().chain(rigs_with_a_cell_off()) {
+        let found = ring_downs(&rig, &SEEDS, COUNT);
+        let ratios = found.ratios.iter().flatten();
+        assert!(ratios.clone().all(|&ratio| ratio >= 0.2 / 1.5), "{unlike}");
+        assert!(
+            found.fast_s.iter().all(|&tenth_s| tenth_s <= 0.6),
+            "{unlike}"
+        );
+        assert!(found.last_m < 1.5 * REST_M, "{unlike}: {} m", found.last_m);
+        assert!(ratios.count() + found.fast_s.len() >= 6, "{unlike}");
+    }
 }

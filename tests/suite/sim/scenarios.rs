@@ -13,7 +13,7 @@ use leg_rig::rig_file::RigFile;
 use leg_sim::link::{InProcess, Link, LinkError};
 use leg_sim::plant::Defect;
 use leg_sim::ready_scenarios::{self, READY_SCENARIOS};
-use leg_sim::scenario::{BOARD_EXCEPTIONS, Scenario, Step, TestStep};
+use leg_sim::scenario::{BOARD_EXCEPTIONS, Measurand, Scenario, Step, TestStep};
 use leg_sim::shadow::OTHER_TICKS_MAX;
 use leg_sim::simulation::Simulation;
 use std::fs;
@@ -39,6 +39,29 @@ fn every_ready_scenario_passes() {
             scenario.name
         );
     }
+}
+
+/// An error is judged from above: a leg that is better than expected passes. What a leg sags that leaves its load out is none.
+#[test]
+fn no_error_is_too_small() {
+    let mut errors = 0;
+    for scenario in READY_SCENARIOS {
+        for measurement in &ready(scenario.name).summary.measurements {
+            let is_error = matches!(
+                measurement.quantity,
+                Some(Measurand::TipErrorMm | Measurand::HomingErrorMm | Measurand::FollowErrorMm)
+            );
+            if is_error && measurement.compensated {
+                assert!(
+                    measurement.between[0] <= 0.0,
+                    "{}: {measurement:?}",
+                    scenario.name
+                );
+                errors += 1;
+            }
+        }
+    }
+    assert!(errors > 40, "{errors}");
 }
 
 /// The scenario of a fault waits for the fault and the state that its reaction leads to.

@@ -331,7 +331,7 @@ mod tests {
     #[test]
     fn a_swing_that_does_not_ring_down_is_found() {
         let swinging_m = f64::from(SWINGING_M);
-        for (growth_per_s, within_s) in [(0.0, 1.0..2.5), (1.5, 0.4..1.3), (5.0, 0.4..1.2)] {
+        for (growth_per_s, within_s) in [(0.0, 1.8..2.5), (1.5, 0.4..1.3), (5.0, 0.4..1.2)] {
             let after_s = found_after_s(1.3 * swinging_m, growth_per_s, false).unwrap();
             assert!(within_s.contains(&after_s), "{growth_per_s}: {after_s}");
         }
@@ -344,7 +344,7 @@ mod tests {
 
     /// A leg that swings a little, and whose lengths then change by a push for 0.1 s ever faster: 0.1 s of growth count for less than 0.4 s, not for 1 s.
     #[test]
-    fn a_push_counts_little_more_than_it_lasts() {
+    fn a_push_counts_for_no_more_than_four_times_as_long() {
         let mut damping = SwingDamping::<f64>::new(&Settings::table_1().unwrap());
         let mut counted = |begin: u32, steps: u32, length_m: &dyn Fn(f64) -> f64| {
             let before = damping.swinging_steps;
@@ -361,7 +361,7 @@ mod tests {
         };
         let swing = |time_s: f64| 2.0 * f64::from(SWINGING_M) * (time_s / TIME_CONSTANT_S).sin();
         let swung = counted(0, 800, &swing);
-        assert!((FOLLOWED_STEPS..900).contains(&swung), "{swung}");
+        assert!((FOLLOWED_STEPS..=800).contains(&swung), "{swung}");
         let pushed = counted(800, 100, &|time_s| {
             swing(time_s) + 0.3 * (time_s - 0.8).powi(2)
         });

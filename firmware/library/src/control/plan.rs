@@ -24,8 +24,8 @@ pub const SHORTEST_S: f32 = 0.02;
 /// exact in f32.
 pub const LONGEST_S: f32 = 600.0;
 
-/// A path may leave the greatest tilt by this part of its half-tangent, so that rounding does not refuse a path to it: 0.014° of 30°.
-const ROUNDED: f32 = 1.0005;
+/// A path may leave the greatest tilt by this part of its half-tangent, 0.003° of 30°: rounding in f32 shall not refuse one to it.
+const ROUNDED: f32 = 1.0001;
 
 /// The limits as squares, in half-tangent coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,7 +60,7 @@ impl<T: Scalar> MotionLimits<T> {
     }
 
     /// Whether a path may lead beyond the greatest tilt, or farther than it starts where that is beyond. It stays in the hull of its start, its
-    /// end and two points that its start determines.
+    /// end and two points that its start and its time determine.
     #[inline(always)]
     pub fn leads_too_far(&self, path: &Quintic<T>) -> bool {
         let square = |[x, y]: [T; 2]| x * x + y * y;

@@ -1,4 +1,4 @@
-//! Stiffness on command, one step a cycle: the pretension that makes the leg as stiff as demanded.
+//! Stiffness on command, step by step: the pretension that makes the leg as stiff as demanded.
 
 use super::{
     Mechanism, Target,
@@ -14,9 +14,9 @@ const TOLERANCE: f32 = 1e-3;
 /// and `stiffness_lean` hold it.
 const STEP_N: f32 = 10.0;
 
-/// A target whose pretension is farther than this from the one that is found is on its way, N: its tendons are up to 4 % softer or stiffer
-/// than those that are found.
-const ON_ITS_WAY_N: f32 = 2.0;
+/// A target is on its way where its pretension differs by more than this part from the one at which a stiffness is searched for: its tendons are
+/// about as much softer or stiffer.
+const ON_ITS_WAY_PART: f32 = 0.05;
 
 /// What the pretension is made for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,8 +49,8 @@ pub struct PretensionSearch<T> {
     /// Stiffness per pretension.
     slope: T,
     unreachable: bool,
-    /// Whether the last step was skipped.
-    skipped: bool,
+    /// Whether the last turn was the search's.
+    has_turn: bool,
 }
 
 impl<T: Scalar> PretensionSearch<T> {
@@ -64,7 +64,7 @@ impl<T: Scalar> PretensionSearch<T> {
             mean_stiffness: T::zero(),
             slope: T::one(),
             unreachable: false,
-            skipped: false,
+            has_turn: true,
         }
     }
 
@@ -91,7 +91,7 @@ impl<T: Scalar> PretensionSearch<T> {
         self.pretension_n
     }
 
-    /// Stiffness at that pretension, N·m/rad: the smallest against a tilt unless another was demanded.
+    /// Stiffness at the pretension of the last step, N·m/rad: the smallest against a tilt unless another was demanded.
     #[inline(always)]
     pub fn stiffness_nm_per_rad(&self) -> T {
         self.last_stiffness
@@ -109,20 +109,21 @@ impl<T: Scalar> PretensionSearch<T> {
         self.unreachable
     }
 
-    /// Whether the pretension found so far is another than one that is on its way to it, N.
+    /// Whether a target with this pretension, N, is on its way to the one at which the last step looked.
     #[inline(always)]
     pub fn is_far_from(&self, pretension_n: T) -> bool {
-        (pretension_n - self.pretension_n).abs() > T::from(ON_ITS_WAY_N)
+        (pretension_n - self.last_pretension_n).abs() > T::from(ON_ITS_WAY_PART) * pretension_n
     }
 
-    /// Whether this step is skipped, as every second one.
+    /// Takes turns with another: whether this one is the search's.
     #[inline(always)]
-    pub fn skips(&mut self) -> bool {
-        self.skipped = !self.skipped;
-        self.skipped
+    pub fn take_turn(&mut self) -> bool {
+        self.has_turn = !self.has_turn;
+        self.has_turn
     }
 
-    /// One step at a target, with the payload that it carries; gives the stiffnesses of the tendons at that pretension, N/m.
+    /// One step at a target, with the payload that it carries: at the target's own pretension where one is asked for, and at the one found so far
+    /// where a stiffness is. Gives the stiffnesses of the tendons at that pretension, N/m.
     ///
     /// # Errors
     /// A tension beyond a tendon's curve; [`Error::Unstable`].
@@ -152,7 +153,10 @@ impl<T: Scalar> PretensionSearch<T> {
             target.distribution.pretension_min,
             target.distribution.pretension_max,
         );
-        let pretension = min(max(self.pretension_n, lowest), highest);
+        let pretension = match demand {
+            None => target.pretension_n,
+            Some(_) => min(max(self.pretension_n, lowest), highest),
+        };
         let stiffnesses_n_per_m = command.tendon_stiffnesses(pretension)?;
         let bending = command.bending_with(pretension, &stiffnesses_n_per_m)?;
         let stiffness = bending.stiffness_about(&axis)?;

@@ -7,6 +7,7 @@ use super::quintic::{MotionState, Quintic};
 use super::segment::Segment;
 use super::stream::Stream;
 use super::{CYCLE_S, CYCLE_TICKS};
+use crate::sensors::TICK_HZ;
 use leg_model::{HalfTangent, Scalar};
 
 /// A point of the trajectory.
@@ -33,8 +34,9 @@ pub struct Trajectory<T> {
     turn: Turn<T>,
 }
 
-/// Ticks of a cycle.
+/// Ticks of a cycle, and the time of a tick, s.
 const CYCLE: i32 = CYCLE_TICKS as i32;
+const TICK_S: f32 = 1.0 / TICK_HZ as f32;
 
 /// A path that is tried with ever more time, and checked place by place.
 #[derive(Clone, Copy, Debug)]
@@ -47,16 +49,16 @@ struct Plan<T> {
     tried: Option<Attempt<T>>,
 }
 
-/// How a path leads to its end. From a motion the other way the path to the end swings out, the farther the longer it takes: one that would
-/// leave the greatest tilt begins where the leg has braked.
+/// How a path leads to its end. From a motion the other way the path to the end swings out, the farther the longer it takes: where it would leave
+/// the greatest tilt, the leg brakes first, or follows the path that it is on for longer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
     /// From the present motion.
     Direct,
     /// The leg comes to rest as soon as the limits allow, and then goes there.
     BrakesFirst,
-    /// The leg comes to rest meanwhile, and goes there as soon as it is slow enough.
-    Braked,
+    /// The leg follows the path that it is on, and leaves it as soon as one to the end stays within the greatest tilt.
+    Later,
     /// The leg comes to rest as soon as the limits allow, wherever that is.
     Stops,
 }
@@ -67,12 +69,12 @@ impl Way {
         matches!(self, Self::BrakesFirst | Self::Stops)
     }
 
-    /// The way instead of one that leads too far. None where the leg shall stop: the path that it is on leads to rest within the greatest tilt,
-    /// and does so about as soon as one that leaves it.
-    const fn if_too_far(self) -> Option<Self> {
+    /// The way instead of one that leads too far, or that comes to rest later than the path that the leg is on; none where that is
+    /// followed to its end.
+    const fn instead(self) -> Option<Self> {
         match self {
             Self::Direct => Some(Self::BrakesFirst),
-            Self::BrakesFirst | Self::Braked => Some(Self::Braked),
+            Self::BrakesFirst | Self::Later => Some(Self::Later),
             Self::Stops => None,
         }
     }
@@ -185,6 +187,13 @@ impl<T: Scalar> Trajectory<T> {
         self.planned = Some(self.begin_plan(end, way));
     }
 
+    /// Takes another way, if there is one.
+    fn plan_instead(&mut self) {
+        self.planned = self
+            .planned
+            .and_then(|plan| Some(self.begin_plan(plan.end, plan.way.instead()?)));
+    }
+
     /// A plan that begins with a time that is too short, or just enough.
     fn begin_plan(&self, end: [T; 2], way: Way) -> Plan<T> {
         Plan {
@@ -271,8 +280,8 @@ impl<T: Scalar> Trajectory<T> {
     }
 
     /// Makes a path from where the trajectory will be, or checks the next places of one, and first of all how far it leads. Instead of one
-    /// that leads too far another way is planned; one that is too fast is tried again with more time, and given up if that is too
-    /// long; one that keeps the limits is taken when its start has come.
+    /// that leads too far, or that is no sooner at rest, another way is planned; one that is too fast is tried again with more time,
+    /// and given up if that is too long; one that keeps the limits is taken when its start has come.
     // In place: to copy a plan would take a tick of the budget's last instructions.
     #[inline(always)]
     fn go_on_planning(&mut self) {
@@ -281,10 +290,19 @@ impl<T: Scalar> Trajectory<T> {
             return;
         };
         let Some(attempt) = &mut plan.tried else {
+            let left = self.duration - self.elapsed - AHEAD * CYCLE;
             if plan.duration_s > T::from(LONGEST_S) {
                 self.planned = None;
+            } else if plan.way.brakes() && plan.duration_s >= T::from(left as f32 * TICK_S) {
+                // A shorter one stays in the hull of the path that the leg is on: it leads no farther.
+                self.plan_instead();
             } else {
-                plan.tried = Some(plan.attempt(&self.path.motion(start_part)));
+                let mut start = self.path.motion(start_part);
+                if left <= 0 {
+                    // What rounding leaves of its motion would lead farther, the longer a path takes.
+                    start = MotionState::resting(start.position);
+                }
+                plan.tried = Some(plan.attempt(&start));
             }
             return;
         };
@@ -292,10 +310,8 @@ impl<T: Scalar> Trajectory<T> {
         // How far the path leads takes the time of a place.
         let mut places = PLACES_A_CYCLE;
         if attempt.place == 0 {
-            if self.limits.leads_too_far(&attempt.path) {
-                let (end, way) = (plan.end, plan.way.if_too_far());
-                self.planned = way.map(|way| self.begin_plan(end, way));
-                return;
+            if !plan.way.brakes() && self.limits.leads_too_far(&attempt.path) {
+                return self.plan_instead();
             }
             places -= 1;
         }
@@ -312,7 +328,7 @@ impl<T: Scalar> Trajectory<T> {
         }
         (self.path, self.elapsed, self.duration) = (attempt.path, 0, attempt.cycles * CYCLE);
         let (end, way) = (plan.end, plan.way);
-        self.planned = (way == Way::BrakesFirst).then(|| self.begin_plan(end, Way::Braked));
+        self.planned = (way == Way::BrakesFirst).then(|| self.begin_plan(end, Way::Later));
     }
 }
 

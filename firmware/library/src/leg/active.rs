@@ -348,14 +348,14 @@ impl<T: Scalar> Active<T> {
     }
 }
 
-/// One step of the search for the pretension, at the last target, or of the damping of its tendons: where the pretension is on its way the
-/// tendons are others than at the one that is found, and there is no time for both.
+/// One step of the search for the pretension, at the last target. Where that is on its way to the one at which a stiffness is searched for, every
+/// second one looks at its own tendons instead: there is no time for both.
 #[inline(never)]
 fn search_pretension<T: Scalar>(shared: &mut Shared<T>) -> Result<(), Error> {
     if let Some(target) = &shared.target {
         let (search, targets) = (&mut shared.pretension, &mut shared.targets);
         let on_its_way = search.is_far_from(target.pretension_n);
-        if on_its_way && search.skips() {
+        if on_its_way && !search.take_turn() {
             return targets.set_stiffnesses_at(&shared.mechanism, &target.tensions_n);
         }
         let payload_kg = shared.estimator.load.payload_kg();

@@ -1,0 +1,58 @@
+//! Simulated legs that are not what the settings say.
+
+use leg_rig::ready_rigs::READY_RIGS;
+use leg_rig::rig_file::RigFile;
+
+/// What is added to the paper's rig file: damping of joint and tendons halved and doubled, friction of the motors halved and half more, play of
+/// the gears none and double.
+const UNLIKE: [(&str, &str); 6] = [
+    (
+        "half the damping",
+        "[simulation]\njoint_damping_nm_s_per_rad = 0.015\ntendon_damping_n_s_per_m = 100\n",
+    ),
+    (
+        "twice the damping",
+        "[simulation]\njoint_damping_nm_s_per_rad = 0.06\ntendon_damping_n_s_per_m = 400\n",
+    ),
+    (
+        "half the friction",
+        "[actuator]\nfriction_nm = 0.45e-3\n[control.servo]\nfriction_a = 0.1\n",
+    ),
+    (
+        "half more friction",
+        "[actuator]\nfriction_nm = 1.35e-3\n[control.servo]\nfriction_a = 0.1\n",
+    ),
+    (
+        "no play",
+        "[actuator]\nbacklash_rad = 0\n[control.servo]\nplay_m = 2.4e-6\n",
+    ),
+    (
+        "twice the play",
+        "[actuator]\nbacklash_rad = 0.03\n[control.servo]\nplay_m = 2.4e-6\n",
+    ),
+];
+
+/// The paper's rig with more lines.
+fn rig(name: &str, more: &str) -> (String, RigFile) {
+    let text = [READY_RIGS[0].text, more].concat();
+    (name.into(), RigFile::parse(name, &text).unwrap())
+}
+
+/// Rig files of such legs by their names.
+pub fn unlike_rigs() -> impl Iterator<Item = (String, RigFile)> {
+    UNLIKE.into_iter().map(|(name, more)| rig(name, more))
+}
+
+/// The same of legs with a load cell that is 2 % off.
+pub fn rigs_with_a_cell_off() -> [(String, RigFile); 2] {
+    [[0.02, 0.0, 0.0], [0.0, -0.02, 0.0]].map(|cell_gain_error| {
+        let (_, mut file) = rig("cell", "");
+        file.plant.cell_gain_error = cell_gain_error;
+        (format!("cells {cell_gain_error:?}"), file)
+    })
+}
+
+/// The paper's rig with 5° of play, which its settings know.
+pub fn rig_with_5_degrees_of_play() -> (String, RigFile) {
+    rig("5° of play", "[actuator]\nbacklash_rad = 0.087\n")
+}
