@@ -6,8 +6,7 @@ use super::plan::{LONGEST_S, MotionLimits, PLACES, SHORTEST_S, cycles, longer};
 use super::quintic::{MotionState, Quintic};
 use super::segment::Segment;
 use super::stream::Stream;
-use super::{CYCLE_S, CYCLE_TICKS};
-use crate::sensors::TICK_HZ;
+use super::{CYCLE_S, CYCLE_TICKS, TICK_S};
 use leg_model::{HalfTangent, Scalar};
 
 /// A point of the trajectory.
@@ -34,9 +33,8 @@ pub struct Trajectory<T> {
     turn: Turn<T>,
 }
 
-/// Ticks of a cycle, and the time of a tick, s.
+/// Ticks of a cycle.
 const CYCLE: i32 = CYCLE_TICKS as i32;
-const TICK_S: f32 = 1.0 / TICK_HZ as f32;
 
 /// A path that is tried with ever more time, and checked place by place.
 #[derive(Clone, Copy, Debug)]
@@ -187,7 +185,7 @@ impl<T: Scalar> Trajectory<T> {
         self.planned = Some(self.begin_plan(end, way));
     }
 
-    /// Takes another way, if there is one.
+    /// Plans the way instead of the one that was tried, if there is one.
     fn plan_instead(&mut self) {
         self.planned = self
             .planned
