@@ -15,6 +15,10 @@ const SHOWN_SINE: f32 = 0.15;
 /// Sine of the tilt at which a leg at rest shows half as much of its payload as it seems to: 1.9°. Below it, what load cells are off looks like a payload.
 const HIDDEN_SINE: f32 = 0.033;
 
+/// Sine of the tilt at which the tendons shall hold a payload, even of a leg that leans by less: that of 30°. Such a leg would take a push near
+/// the vertical for more than any tensions hold where it goes.
+const HELD_SINE: f32 = 0.5;
+
 /// Variance of a payload of which nothing is known, kg²: a deviation of half of the 2 kg that the paper's leg carries.
 /// `tests/suite/bench/moves.rs` holds it.
 const UNKNOWN_KG2: f32 = 1.0;
@@ -55,7 +59,7 @@ pub struct PayloadEstimate<T> {
     /// Square of the moment of 1 kg, N·m/kg, from which the payload shows; and the square of that at which it shows half as much.
     shown: T,
     hidden: T,
-    /// What the tendons could hold at the farthest tilt; what pulls harder is a push.
+    /// What the tendons could hold at the farthest tilt, or at 30°; what pulls harder is a push.
     max_kg: T,
 }
 
@@ -78,7 +82,7 @@ impl<T: Scalar> PayloadEstimate<T> {
             noise: T::from(NOISE_PART * lever * lever),
             shown: square(SHOWN_SINE),
             hidden: square(HIDDEN_SINE) * square(HIDDEN_SINE),
-            max_kg: T::from(held_nm / (lever * settings.tilt_max_sine)),
+            max_kg: T::from(held_nm / (lever * settings.tilt_max_sine.max(HELD_SINE))),
         }
     }
 
