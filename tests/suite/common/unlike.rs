@@ -1,5 +1,7 @@
 //! Simulated legs that are not what the settings say.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
 
