@@ -1,11 +1,13 @@
-//! A control tick that hangs, or does not come: the window watchdog ends the pulses, and the next start tells why.
+//! A control tick, a task or the processor that hangs: a watchdog resets the chip, and the next start tells why.
 
 use crate::common::chip::{
     MS, Outcome, carry_out, driving, findings, identity, identity_after, image, other_settings,
     reset_within, started,
 };
+use leg_boards::chip::ChipSession;
 use leg_boards::image::FirmwareImage;
 use leg_firmware::host_link::{HostRequest, ResetCause};
+use std::error::Error;
 use std::fs;
 use stm32g474_emulator::board::Board;
 use stm32g474_emulator::chip::{Chip, Stop};
@@ -40,11 +42,16 @@ fn replace(chip: &mut Chip, image: &Image, function: &str, instructions: &[u32])
     Ok(())
 }
 
-#[test]
-fn a_tick_that_hangs_ends_the_pulses_within_two_milliseconds_and_is_told() -> Outcome {
+/// A chip that drives, and its image.
+fn driven() -> Result<(ChipSession, Image), Box<dyn Error>> {
     let path = image(FirmwareImage::Stm32g474)?;
     let parsed = Image::parse(&fs::read(&path)?)?;
-    let mut session = driving(&path, Board::default())?;
+    Ok((driving(&path, Board::default())?, parsed))
+}
+
+#[test]
+fn a_tick_that_hangs_ends_the_pulses_within_two_milliseconds_and_is_told() -> Outcome {
+    let (mut session, parsed) = driven()?;
     let chip = session.chip().ok_or("no chip")?;
     let begun = chip.cycle();
     replace(chip, &parsed, "ADC1_2", &[ENDLESS])?;
@@ -71,9 +78,7 @@ fn a_tick_that_hangs_ends_the_pulses_within_two_milliseconds_and_is_told() -> Ou
 /// All tasks share one executor: where one does not come back none checks in, while the control ticks go on.
 #[test]
 fn a_task_that_hangs_is_reset_by_the_watchdog_and_is_told() -> Outcome {
-    let path = image(FirmwareImage::Stm32g474)?;
-    let parsed = Image::parse(&fs::read(&path)?)?;
-    let mut session = driving(&path, Board::default())?;
+    let (mut session, parsed) = driven()?;
     let chip = session.chip().ok_or("no chip")?;
     let task = parsed.variable("leg_stm32g474::serial::serve::POOL");
     let task = task.ok_or("no such task")?;
@@ -109,9 +114,7 @@ fn a_task_that_hangs_is_reset_by_the_watchdog_and_is_told() -> Outcome {
 /// A fault in the handler of a fault: nothing runs any more. The break ends the pulses at once, and then the control tick is missed.
 #[test]
 fn a_locked_up_processor_is_reset_by_the_window_watchdog() -> Outcome {
-    let path = image(FirmwareImage::Stm32g474)?;
-    let parsed = Image::parse(&fs::read(&path)?)?;
-    let mut session = driving(&path, Board::default())?;
+    let (mut session, parsed) = driven()?;
     let chip = session.chip().ok_or("no chip")?;
     replace(chip, &parsed, "ADC1_2", &LOCKS_UP)?;
     let end = chip.cycle() + CUT_MAX;
