@@ -84,6 +84,23 @@ impl<T: Scalar> Tendon<T> {
     pub fn curve(points: &[CurvePoint<T>]) -> Result<Self, Error> {
         TendonCurve::new(points).map(Self::Curve)
     }
+
+    /// Has it stretch `elongation_factor` times as much under each tension: a measured one of about 1.
+    ///
+    /// ```
+    /// use leg_model::{Elasticity, Tendon};
+    ///
+    /// let mut tendon = Tendon::constant(1e5)?;
+    /// tendon.scale(1.25);
+    /// assert_eq!(tendon.stiffness(70.0)?, 8e4);
+    /// # Ok::<(), leg_model::Error>(())
+    /// ```
+    pub fn scale(&mut self, elongation_factor: T) {
+        match self {
+            Self::Constant(constant) => constant.scale(elongation_factor),
+            Self::Curve(curve) => curve.scale(elongation_factor),
+        }
+    }
 }
 
 impl<T: Scalar> Elasticity<T> for Tendon<T> {

@@ -83,6 +83,7 @@ mod sim {
     mod streamed_tension;
     mod strike_bars_page;
     mod swing;
+    mod tensioning;
     mod ways_down;
 }
 

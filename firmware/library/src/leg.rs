@@ -19,6 +19,7 @@ mod shadow;
 mod shared;
 mod slack;
 mod station;
+mod stretch;
 
 pub use command_queue::CommandOutcome;
 
@@ -37,6 +38,7 @@ use mode::{Mode, ModeStep, Trust};
 use phase::Phase;
 pub use shared::Checked;
 use shared::Shared;
+use stretch::StretchSearch;
 
 /// The controller of a leg.
 ///
@@ -230,7 +232,7 @@ impl<T: Scalar> Leg<T> {
             driven: state.driven(),
             led: state.led(),
             tensioned,
-            residual_m: if tensioned {
+            residual_m: if tensioned && active.is_some_and(|active| active.stretch.is_over()) {
                 self.shared.residual_m()
             } else {
                 None
@@ -261,7 +263,9 @@ impl<T: Scalar> Leg<T> {
         faults = faults.union(self.monitors.axis_faults());
         faults.add(Fault::Infeasible, self.shared.refused);
         if let Some(active) = active {
-            let limited = self.shared.target.is_some_and(|target| target.limited);
+            // What tendons of another make ask of the trim is known soon.
+            let limited =
+                self.shared.target.is_some_and(|target| target.limited) && active.stretch.is_over();
             faults.add(
                 Fault::Unreachable,
                 limited || self.shared.pretension.unreachable(),
@@ -283,16 +287,20 @@ impl<T: Scalar> Leg<T> {
         let error = estimate.and_then(|estimate| estimate.length_error.as_ref());
         let growth = match (&self.mode, error) {
             (Mode::Active(active), Some(_)) if active.tensioned => {
-                if active.station.kept().is_some() {
-                    ErrorGrowth::KEEPING_STATION
+                if active.stretch == StretchSearch::Scaled {
+                    return self.agreement.end();
+                } else if !active.stretch.is_over() {
+                    &ErrorGrowth::TENSIONING
+                } else if active.station.kept().is_some() {
+                    &ErrorGrowth::KEEPING_STATION
                 } else if active.trajectory.moving() {
-                    ErrorGrowth::MOVING
+                    &ErrorGrowth::MOVING
                 } else {
-                    ErrorGrowth::RESTING
+                    &ErrorGrowth::RESTING
                 }
             }
             (Mode::Active(active), None) if active.begins_taut() => return self.agreement.pause(),
-            (Mode::Held(_), Some(_)) if self.agreement.watches() => ErrorGrowth::RESTING,
+            (Mode::Held(_), Some(_)) if self.agreement.watches() => &ErrorGrowth::RESTING,
             _ => return self.agreement.end(),
         };
         if let Some(error) = error {

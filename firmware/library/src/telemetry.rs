@@ -56,6 +56,9 @@ pub struct Telemetry<T> {
     pub payload_kg: T,
     /// Lengths of the tendons without tension when the board started, m.
     pub unstretched_at_zero_m: [T; 3],
+    /// Elongation of the tendons over that by the settings: found as the leg is tensioned after homing, 1 before and where the settings are right
+    /// to 3 %.
+    pub elongation_factor: T,
 }
 
 impl<T: Copy> Telemetry<T> {
@@ -86,6 +89,7 @@ impl<T: Copy> Telemetry<T> {
             load_nm: self.load_nm.map(&number),
             payload_kg: number(self.payload_kg),
             unstretched_at_zero_m: self.unstretched_at_zero_m.map(&number),
+            elongation_factor: number(self.elongation_factor),
         }
     }
 }

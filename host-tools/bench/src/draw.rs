@@ -12,7 +12,7 @@ pub(crate) const PAYLOAD_KG: f64 = 2.0;
 
 /// How far load cells may be off after their calibration, as a part, and tendons from their curve.
 pub(crate) const CELL_GAIN: f64 = 0.002;
-const CURVE: f64 = 0.01;
+pub(crate) const CURVE: f64 = 0.01;
 
 /// A simulated leg whose cells are off by no more than an offset, N, and by what a calibration leaves.
 pub(crate) fn plant(file: &RigFile, offset_n: f64, rng: &mut Rng) -> PlantSettings {

@@ -8,6 +8,7 @@ mod reference;
 pub use chart::save_comparison;
 pub use drawn_move::DrawnMove;
 
+use crate::draw::CURVE;
 use crate::stand::{self, Stand};
 use bars::MoveBars;
 use leg_firmware::command::Command;
@@ -37,6 +38,11 @@ const MOVE_S: f64 = 10.0;
 /// Time of a change of payload, s, and in which the leg then comes to rest.
 const LOADING_S: f64 = 0.4;
 const REST_S: f64 = 1.0;
+
+/// Longest homing, s; how slack the tendons are before it, mm; and time in which the leg is tensioned after it and its tendons are measured, s.
+const HOMING_S: f64 = 30.0;
+const SLACK_MM: f64 = 2.0;
+const TENSIONED_S: f64 = 4.0;
 
 /// Which moves are made.
 #[derive(Clone, Debug)]
@@ -121,13 +127,7 @@ fn make(drawn: &DrawnMove) -> Moved {
 
 /// A leg at rest where the move begins.
 fn prepared(drawn: &DrawnMove) -> Result<Stand, String> {
-    let start = Start::hanging(drawn.pretension_n);
-    let mut stand = Stand::shadowed(&drawn.file, &drawn.plant, start, drawn.seed)?;
-    stand.tick_until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
-    stand.wait(0.1)?;
-    stand.command(&Command::Arm)?;
-    stand.tick_until(2.0, "active", |stand| stand.state() == State::Active)?;
-    stand.wait(0.3)?;
+    let mut stand = tensioned(drawn)?;
     stand.command(&Command::Pretension(drawn.pretension_n as f32))?;
     stand.wait(REST_S)?;
     // The leg has learnt that it carries nothing before a payload is hung on it.
@@ -140,6 +140,23 @@ fn prepared(drawn: &DrawnMove) -> Result<Stand, String> {
     stand.plant().set_payload(drawn.payload_kg, LOADING_S);
     stand.wait(LOADING_S + REST_S)?;
     stand.rest()?;
+    Ok(stand)
+}
+
+/// A leg that follows commands. One whose tendons are not as their curves say has to home: it finds that as they are tensioned.
+fn tensioned(drawn: &DrawnMove) -> Result<Stand, String> {
+    let homes = drawn.plant.curve_error.abs() > CURVE;
+    let (start, command) = if homes {
+        (Start::Slack { slack_mm: SLACK_MM }, Command::Home)
+    } else {
+        (Start::hanging(drawn.pretension_n), Command::Arm)
+    };
+    let mut stand = Stand::shadowed(&drawn.file, &drawn.plant, start, drawn.seed)?;
+    stand.tick_until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
+    stand.wait(0.1)?;
+    stand.command(&command)?;
+    stand.tick_until(HOMING_S, "active", |stand| stand.state() == State::Active)?;
+    stand.wait(if homes { TENSIONED_S } else { 0.3 })?;
     Ok(stand)
 }
 

@@ -193,6 +193,16 @@ fn run<T>(
     })
 }
 
+/// What tendons of another make are to be told of, as a line.
+fn stretch(factor: f32) -> String {
+    if factor == 1.0 {
+        return String::new();
+    }
+    format!(
+        "tendons    stretch {factor:.2} times as much as the settings say; measure that with `leg tune`, and see that the load cells are calibrated\n"
+    )
+}
+
 /// `leg home`, and `leg calibrate zero`.
 pub(crate) fn home(leg: &LegArgs, options: Options) -> Result<(), Failure> {
     let connection = leg.open(Purpose::Calibrate, options)?;
@@ -201,12 +211,14 @@ pub(crate) fn home(leg: &LegArgs, options: Options) -> Result<(), Failure> {
         #[serde(flatten)]
         leg: leg_report::json(&telemetry),
         unstretched_at_zero_m: telemetry.unstretched_at_zero_m,
+        elongation_factor: telemetry.elongation_factor,
     };
     options.report(&json, || {
         let [a, b, c] = telemetry.unstretched_at_zero_m.map(|m| m * 1000.0);
         format!(
-            "{}zero       {a:.3}  {b:.3}  {c:.3} mm of tendon when the board started\n",
-            leg_report::text(&telemetry)
+            "{}zero       {a:.3}  {b:.3}  {c:.3} mm of tendon when the board started\n{}",
+            leg_report::text(&telemetry),
+            stretch(telemetry.elongation_factor)
         )
     })
 }

@@ -24,6 +24,7 @@ pub const READY_SCENARIOS: &[ReadyScenario] = ready![
     "cost_station",
     "homing",
     "homing_again",
+    "other_tendons",
     "tour",
     "stiffness",
     "stiffness_lean",

@@ -32,6 +32,10 @@ impl SagModel {
         }
         let [x, y] = telemetry.pose.map(f64::from);
         let [f_min_n, f_max_n] = self.bounds_n;
+        let mut tendons = self.tendons;
+        for tendon in &mut tendons {
+            tendon.scale(telemetry.elongation_factor.into());
+        }
         let query = Query {
             azimuth_rad: y.atan2(x),
             tilt_rad: x.hypot(y).min(1.0).asin(),
@@ -39,7 +43,7 @@ impl SagModel {
             pretension_n: f64::from(telemetry.pretension_n),
             f_min_n,
             f_max_n,
-            tendons: self.tendons,
+            tendons,
             stiffness_at: StiffnessAt::Pretension,
             support: self.support,
             demand: None,

@@ -27,6 +27,11 @@ impl<T: Scalar> ConstantStiffness<T> {
     pub fn stiffness_n_per_m(&self) -> T {
         self.stiffness
     }
+
+    /// See [`Tendon::scale`](super::Tendon::scale).
+    pub(super) fn scale(&mut self, elongation_factor: T) {
+        self.stiffness = self.stiffness / elongation_factor;
+    }
 }
 
 /// Asked by tension it checks nothing: the fast path asks it for every tendon, with tensions that are already checked.

@@ -75,6 +75,14 @@ impl<T: Scalar> TendonCurve<T> {
         }))
     }
 
+    /// See [`Tendon::scale`](super::Tendon::scale).
+    pub(super) fn scale(&mut self, elongation_factor: T) {
+        for piece in &mut self.pieces {
+            piece.scale(elongation_factor);
+        }
+        self.elongation_max *= elongation_factor;
+    }
+
     /// The piece at a tension: the last one that does not start above it.
     #[inline(always)]
     fn piece(&self, tension: T) -> &Piece<T> {

@@ -46,6 +46,15 @@ impl<T: Scalar> Piece<T> {
         }
     }
 
+    /// Everything but the tensions is proportional to the elongation. What no elongation reaches stays so.
+    #[inline(always)]
+    pub fn scale(&mut self, elongation_factor: T) {
+        for coefficient in &mut self.elongation {
+            *coefficient *= elongation_factor;
+        }
+        self.complement *= elongation_factor;
+    }
+
     pub fn point_at(&self, tension: T) -> CurvePoint<T> {
         CurvePoint {
             tension_n: tension,

@@ -5,7 +5,7 @@
 use crate::common::unlike::{rig_with_5_degrees_of_play, rigs_with_a_cell_off, unlike_rigs};
 use crate::host::tune::MEASURED_STRETCH;
 use leg_bench::moves::{MoveCampaign, Moved};
-use leg_rig::ready_rigs::READY_RIGS;
+use leg_rig::ready_rigs::{READY_RIGS, ReadyRig};
 use leg_rig::rig_file::RigFile;
 
 fn rig(name: &str) -> (String, RigFile) {
@@ -130,54 +130,40 @@ fn largest(unlike: &str, moved: &[Moved], hidden: bool) -> [f64; 4] {
     largest
 }
 
-/// A leg whose tendons stretch by so much more than their curve says.
-fn with_tendons(curve_error: f64) -> MoveCampaign {
-    let (_, mut file) = rig(READY_RIGS[0].name);
-    file.plant.curve_error = curve_error;
-    MoveCampaign {
-        seed: 7,
-        rigs: vec![(format!("curve {curve_error}"), file)],
-        payload_kg: None,
-    }
-}
-
-/// A load cell that is off has the leg rest elsewhere, by no more than 0.6 mm: it is judged about there.
+/// Tendons that stretch by a fifth more or less than their curve says are measured as the leg is tensioned after homing.
 #[test]
-fn the_tip_comes_to_rest_with_a_cell_that_is_off() {
-    for rig in rigs_with_a_cell_off() {
-        let name = rig.0.clone();
-        let campaign = MoveCampaign {
-            seed: 7,
-            rigs: vec![rig],
-            payload_kg: None,
-        };
-        let moved = campaign.run(0..20, || ());
-        let [off_mm, swing_mm, settled_s, rest_mm] = largest(&name, &moved, false);
-        assert!(off_mm < UNLIKE_OFF_MM + rest_mm);
-        assert!(swing_mm < UNLIKE_SWING_MM && settled_s < UNLIKE_SETTLED_S);
-        assert!(rest_mm < 0.6, "{rest_mm} mm");
-        let [off_mm, swing_mm, settled_s, rest_mm] = largest(&name, &moved, true);
-        let [bar_off_mm, bar_swing_mm, bar_settled_s, _] = UNLIKE_HIDDEN;
-        assert!(off_mm < bar_off_mm + rest_mm && swing_mm < bar_swing_mm);
-        assert!(settled_s < bar_settled_s);
-    }
-}
-
-/// Tendons that stretch by a fifth more or less than their curve says would have the tip rest some millimetres off: the leg is held.
-#[test]
-fn a_leg_with_other_tendons_is_held() {
+fn a_leg_with_other_tendons_moves() {
     for curve_error in [0.2, -0.2] {
-        let moved = with_tendons(curve_error).run(0..14, || ());
-        for moved in moved {
-            assert!(
-                moved.failures[0].contains("sensors disagree on the pose"),
-                "{moved:?}"
-            );
+        for (rigs, moves) in [(&READY_RIGS[..1], 20), (&READY_RIGS[1..], 18)] {
+            let unlike = |ready: &ReadyRig| {
+                let (name, mut file) = rig(ready.name);
+                file.plant.curve_error = curve_error;
+                (name, file)
+            };
+            let campaign = MoveCampaign {
+                seed: 7,
+                rigs: rigs.iter().map(unlike).collect(),
+                payload_kg: None,
+            };
+            let moved = campaign.run(0..moves, || ());
+            assert_eq!(moved.len() as u64, moves);
+            let name = format!("curve {curve_error}, {} rigs", rigs.len());
+            for (hidden, bars) in [
+                (true, UNLIKE_HIDDEN),
+                (
+                    false,
+                    [UNLIKE_OFF_MM, UNLIKE_SWING_MM, UNLIKE_SETTLED_S, 0.05],
+                ),
+            ] {
+                let found = largest(&name, &moved, hidden);
+                let kept = found.iter().zip(bars).all(|(&found, bar)| found < bar);
+                assert!(kept, "{name}, hidden {hidden}: {found:?} beyond {bars:?}");
+            }
         }
     }
 }
 
-/// With what `leg tune` measures of such tendons, as far off as it may be (`other_tendons_are_told_and_then_measured`), the leg moves within the
+/// With what `leg tune` measures of such tendons, as far off as it may be (`other_tendons_are_measured`), the leg moves within the
 /// bars of one that is unlike its settings, and rests within 0.15 mm of the commanded point.
 #[test]
 fn a_leg_that_knows_its_tendons_moves() {

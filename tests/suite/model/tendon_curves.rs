@@ -98,3 +98,29 @@ fn the_tension_at_an_elongation_is_the_one_that_stretches_so_far() {
         }
     }
 }
+
+/// A tendon that is scaled is the one whose points were.
+#[test]
+fn a_scaled_tendon_is_that_of_scaled_points() {
+    for factor in [0.8, 1.0, 1.25] {
+        let points = CurvePoint::<f64>::PAPER.map(|point| point.scaled(factor, 1.0));
+        let expected = Tendon::curve(&points).unwrap();
+        let mut scaled = Tendon::curve(&CurvePoint::<f64>::PAPER).unwrap();
+        scaled.scale(factor);
+        let mut constant = Tendon::constant(1e5).unwrap();
+        constant.scale(factor);
+        for tension in [0.0, 0.3, 7.0, 69.0, 70.0, 71.0, 149.0] {
+            let same = |a: f64, b: f64| (a - b).abs() <= 1e-14 * a.abs().max(1e-9);
+            let elongation = scaled.elongation(tension).unwrap();
+            assert!(same(elongation, expected.elongation(tension).unwrap()));
+            let stiffness = [&scaled, &expected].map(|one| one.stiffness(tension).unwrap());
+            assert!(same(stiffness[0], stiffness[1]), "{stiffness:?}");
+            let energy = [&scaled, &expected].map(|one| one.energy(elongation).unwrap());
+            assert!(same(energy[0], energy[1]), "{energy:?}");
+            assert!((scaled.tension(elongation).unwrap() - tension).abs() < 1e-6);
+            let length = constant.elongation(tension).unwrap();
+            assert!(same(length, factor * tension / 1e5));
+        }
+        assert!(scaled.elongation(1e3).is_err() && scaled.tension(1.0).is_err());
+    }
+}

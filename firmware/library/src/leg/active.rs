@@ -6,6 +6,7 @@ use super::phase::Phase;
 use super::shared::Shared;
 use super::slack::Slack;
 use super::station::{Station, StationKeeping};
+use super::stretch::StretchSearch;
 use crate::command::Compensation;
 use crate::control::{
     CYCLE_TICKS, Debounce, Knot, LoadEstimation, Measured, TICK_S, TargetDemand, Trajectory,
@@ -38,6 +39,8 @@ pub struct Active<T> {
     frozen: bool,
     /// Whether the leg gives way to the maximum tension.
     given_way: Debounce,
+    /// The search for how much the tendons stretch.
+    pub stretch: StretchSearch,
     /// The search for where a taut leg with its compensation off begins; none once it is over.
     unloaded: Option<Unloaded<T>>,
 }
@@ -46,6 +49,7 @@ impl<T: Scalar> Active<T> {
     /// Follows commands from the present pose and pretension on.
     pub fn begin(shared: &mut Shared<T>, measured: &Measured<T>) -> Self {
         let compensated = shared.compensation != Compensation::Off;
+        let just_homed = core::mem::take(&mut shared.just_homed);
         shared.targets.start(compensated);
         shared.damping.start();
         shared.play.start();
@@ -78,6 +82,11 @@ impl<T: Scalar> Active<T> {
             },
             frozen: false,
             given_way: Debounce::new(GIVEN_WAY_STEPS),
+            stretch: if just_homed && !taut && compensated {
+                StretchSearch::begin()
+            } else {
+                StretchSearch::Over
+            },
             unloaded,
         }
     }
@@ -112,7 +121,14 @@ impl<T: Scalar> Active<T> {
                 self.faults.add(Fault::Following, given_way);
                 Ok(())
             }
-            Phase::Pretension => search_pretension(shared),
+            Phase::Pretension => {
+                // A tick has no time for both.
+                if self.stretch.is_over() || !self.search_stretch(shared) {
+                    search_pretension(shared)
+                } else {
+                    Ok(())
+                }
+            }
             Phase::Command => Ok(()),
             Phase::Target => self.aim(shared, measured),
             Phase::Plan => {
@@ -185,6 +201,16 @@ impl<T: Scalar> Active<T> {
             (_, false) => Err(PointRefusal::NoStream),
             (_, true) => stream.extend(tick, point),
         }
+    }
+
+    /// A step of the search for how much the tendons stretch, until the leg is asked for more than a pretension. True if they were scaled.
+    #[inline(always)]
+    fn search_stretch(&mut self, shared: &mut Shared<T>) -> bool {
+        let asked = self.commanded.is_some() || self.trajectory.moving() || self.disarming;
+        if asked {
+            self.stretch = StretchSearch::Over;
+        }
+        self.stretch.step(shared, self.tensioned, &mut self.faults)
     }
 
     /// Whether it rests at its target with its load compensated, so that it can be left there.

@@ -67,6 +67,7 @@ impl<T: Scalar> Leg<T> {
             load_nm: shared.estimator.excess_nm(&shared.mechanism),
             payload_kg: shared.estimator.load.payload_kg(),
             unstretched_at_zero_m: shared.zero_m.unwrap_or(zero),
+            elongation_factor: shared.elongation_factor,
         }
     }
 }

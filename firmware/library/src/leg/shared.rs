@@ -48,6 +48,10 @@ pub struct Shared<T> {
     pub jog_report: Option<JogReport<T>>,
     pub station: StationLimits<T>,
     pub friction: [Friction<T>; 3],
+    /// Elongation of the tendons over that of the settings.
+    pub elongation_factor: T,
+    /// Whether the leg was homed and not armed since.
+    pub just_homed: bool,
 }
 
 /// Slack of each tendon of a relaxed leg whose zero is known, m: more than the servo leaves, and little enough that the tip of a
@@ -170,6 +174,8 @@ impl<T: Scalar> Shared<T> {
             jog_report: None,
             station: StationLimits::new(settings),
             friction: [friction(0), friction(1), friction(2)],
+            elongation_factor: T::one(),
+            just_homed: false,
         }
     }
 
@@ -262,6 +268,18 @@ impl<T: Scalar> Shared<T> {
     #[inline(always)]
     pub fn residual_m(&self) -> Option<T> {
         self.estimate.as_ref().map(|estimate| estimate.residual_m)
+    }
+
+    /// Has every tendon stretch by a factor of what it did, at the tensions that they have now.
+    #[cold]
+    #[inline(never)]
+    pub fn scale_tendons(&mut self, factor: T) {
+        for tendon in &mut self.mechanism.tendons {
+            tendon.scale(factor);
+        }
+        self.elongation_factor *= factor;
+        // The next target begins where the tensions are.
+        self.targets.start(self.compensation != Compensation::Off);
     }
 
     /// Feeds each motor the voltage against its friction, at the tensions of the last target.

@@ -40,6 +40,7 @@ fn telemetry() -> Telemetry<f32> {
         load_nm: [0.1, -0.4],
         payload_kg: 1.003,
         unstretched_at_zero_m: [0.038; 3],
+        elongation_factor: 1.0,
     }
 }
 

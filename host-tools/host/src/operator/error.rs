@@ -4,6 +4,7 @@ use crate::leg_report::pose_words;
 use leg_base::description::{causes, faults, hex, remedies, state};
 use leg_base::failure::Failure;
 use leg_base::refusal;
+use leg_base::settling::same_direction;
 use leg_firmware::frame::FrameError;
 use leg_firmware::host_link::{HOST_SCHEMA, HostRefusal};
 use leg_firmware::set_point::PointRefusal;
@@ -170,15 +171,7 @@ impl OperatorError {
                 format!("the leg sends a reply of another kind when asked to {asked}"),
                 refusal::OTHER_SOURCES,
             ),
-            Self::TimedOut(asked, timeout, telemetry) => Failure::failed(
-                format!(
-                    "the leg did not {asked} within {} s; it is {}, faults: {}",
-                    timeout.as_secs_f64(),
-                    state(telemetry.state),
-                    faults(telemetry.faults)
-                ),
-                "look with `leg monitor` at what the leg does",
-            ),
+            Self::TimedOut(asked, timeout, telemetry) => timed_out(asked, *timeout, telemetry),
             Self::ReadBack(names) => Failure::failed(
                 format!(
                     "the leg has other settings than were sent: {}",
@@ -204,6 +197,46 @@ impl OperatorError {
             ),
         }
     }
+}
+
+fn timed_out(asked: &str, timeout: Duration, telemetry: &Telemetry<f32>) -> Failure {
+    let Telemetry { pose, target, .. } = telemetry;
+    let strays = telemetry.state.follows() && !same_direction(pose, target);
+    let (place, remedy) = if strays {
+        (
+            format!(", {:.2}° off its target", angle_deg(*pose, *target)),
+            "calibrate the load cells (`leg calibrate`), and see that the leg hung free, without a payload, as it was homed: a \
+             cell or a zero that is off keeps a leg from its target",
+        )
+    } else {
+        (
+            String::new(),
+            "look with `leg monitor` at what the leg does",
+        )
+    };
+    Failure::failed(
+        format!(
+            "the leg did not {asked} within {} s; it is {}{place}, faults: {}",
+            timeout.as_secs_f64(),
+            state(telemetry.state),
+            faults(telemetry.faults)
+        ),
+        remedy,
+    )
+}
+
+/// The angle between two directions, given by their horizontal components, degrees.
+fn angle_deg(a: [f32; 2], b: [f32; 2]) -> f64 {
+    let unit = |direction: [f32; 2]| {
+        let [x, y] = direction.map(f64::from);
+        [x, y, (1.0 - x * x - y * y).max(0.0).sqrt()]
+    };
+    let chord_squared: f64 = unit(a)
+        .iter()
+        .zip(unit(b))
+        .map(|(a, b)| (a - b).powi(2))
+        .sum();
+    2.0 * (0.5 * chord_squared.sqrt()).asin().to_degrees()
 }
 
 fn remedies_and_clear(present: FaultSet) -> String {

@@ -39,7 +39,19 @@ pub(super) fn bar_report(rows: &[StrikeRow], summary: &StrikeSummary, seed: u64)
         )
     };
     let lines: String = rows.iter().map(line).collect();
-    format!("{}{BARS_HEADING}{lines}", heading(summary, seed))
+    let failed: String = rows.iter().filter_map(failed_line).collect();
+    format!("{}{BARS_HEADING}{lines}{failed}", heading(summary, seed))
+}
+
+/// What failed by a fault in a state, if anything did.
+fn failed_line(row: &StrikeRow) -> Option<String> {
+    let (index, why) = row.first_failed.as_ref()?;
+    Some(format!(
+        "{} {}: {} FAIL, first #{index}: {why}\n",
+        row.fault,
+        row.state.name(),
+        row.failed
+    ))
 }
 
 fn value_and_bar(measure: WorstByBar, digits: usize, unit: &str) -> String {

@@ -1,4 +1,4 @@
-//! How much the tendons stretch for what they do by the rig file, of a leg that its firmware holds for it.
+//! How much the tendons stretch for what they do by the rig file, of a leg whose firmware holds it because they are nothing like it.
 
 use super::error::TuneError;
 use super::tuned_leg::TunedLeg;
@@ -11,10 +11,10 @@ use leg_model::{Elasticity, evaluate};
 /// How far the leg may lean, as a direction: its lengths are taken for those straight down.
 const STRAIGHT: f32 = 0.005;
 
-/// How far the three tendons may be off each other, as parts of what is expected, and how far a file that is right may be: homing finds the zero to
-/// some hundredths of the elongation at the lowest tension.
+/// How far the three tendons may be off each other, as parts of what is expected, and by how much they are measured by the leg itself as it is
+/// tensioned (`leg/stretch.rs` in the firmware).
 const ALIKE: f64 = 0.1;
-const RIGHT: f64 = 0.05;
+const MEASURED: f64 = 0.25;
 
 /// Why the leg was not measured. Where its sensors disagree while it hangs straight down, by the same part on all three tendons, these may
 /// stretch otherwise than the rig file says: by how much is told.
@@ -42,7 +42,7 @@ pub(super) async fn explained<L: TunedLeg>(
 }
 
 /// What the lengths and tensions of a resting leg give for the key of a rig file, roughly: they begin where homing found the zero. None
-/// where a tendon does not pull, where the three differ, as with one sensor that is off, or where the file is right.
+/// where a tendon does not pull, where the three differ, as with one sensor that is off, or where the leg finds that by itself.
 fn elongation_factor(telemetry: &Telemetry<f32>, rig: &RigFile) -> Option<f64> {
     let [x, y] = telemetry.pose;
     let hangs = telemetry.homed && x.abs() < STRAIGHT && y.abs() < STRAIGHT;
@@ -67,7 +67,7 @@ fn elongation_factor(telemetry: &Telemetry<f32>, rig: &RigFile) -> Option<f64> {
         (least, most) = (least.min(ratio), most.max(ratio));
     }
     let ratio = 0.5 * (least + most);
-    let alike = most - least < ALIKE && (ratio - 1.0).abs() > RIGHT;
+    let alike = most - least < ALIKE && (ratio - 1.0).abs() > MEASURED;
     let factor = rig.elongation_factor * ratio;
     let [low, high] = ELONGATION_FACTOR.range;
     (alike && (low..=high).contains(&factor)).then_some(factor)

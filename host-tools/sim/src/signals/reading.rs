@@ -40,6 +40,7 @@ struct Reported {
     load_nm: [f32; 2],
     payload_kg: f32,
     unstretched_at_zero_m: [f32; 3],
+    elongation_factor: f32,
 }
 
 /// The telemetry of a report, exactly as it was.
@@ -75,6 +76,7 @@ pub fn telemetry(json: &[u8]) -> Result<Telemetry<f32>, String> {
         load_nm: reported.load_nm,
         payload_kg: reported.payload_kg,
         unstretched_at_zero_m: reported.unstretched_at_zero_m,
+        elongation_factor: reported.elongation_factor,
     })
 }
 

@@ -179,6 +179,8 @@ signals! {
         = |at| at.telemetry.reference_m;
     Estimated SingleThree unstretched_at_zero_m "Length of each without tension where its encoder counts zero, m; 0 before homing."
         = |at| at.telemetry.unstretched_at_zero_m;
+    Estimated Single elongation_factor "Elongation of the tendons over that by the rig file, found after homing; 1 before, and where the file is right to 3 %."
+        = |at| at.telemetry.elongation_factor;
     Measured SingleThree motor_currents_a "Current of each motor, A, a mean over 0.5 ms; without meaning while the drivers are off. A driver's own output that is silent reads none."
         = |at| at.telemetry.motor_currents_a;
     Measured Single supply_v "Voltage at the drivers, V."

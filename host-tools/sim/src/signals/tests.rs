@@ -37,6 +37,7 @@ fn reported(state: State, faults: FaultSet) -> Telemetry<f32> {
         load_nm: [-0.7, 1.0 / 3.0],
         payload_kg: 0.987_654_3,
         unstretched_at_zero_m: [0.033_149_127, 0.034, 0.035],
+        elongation_factor: 1.199_999_9,
     }
 }
 

@@ -1,8 +1,9 @@
 //! Boards that do not know their host, do not do as they report, and send what was not asked.
 
 use super::scripted_board::{resting_leg, scripted, scripted_from_start, telemetry_reply};
-use super::{is_failed, lean};
+use super::{is_failed, lean, stiffness};
 use crate::operator::{Operator, OperatorError};
+use leg_base::failure::Failure;
 use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest};
 use leg_firmware::supervisor::State;
 use std::cell::{Cell, RefCell};
@@ -127,6 +128,37 @@ fn a_leg_that_never_comes_to_rest_is_late() {
         "{text}"
     );
     assert!(is_failed(&error));
+}
+
+/// What a load cell that is off by half its gain comes to.
+#[test]
+fn a_leg_that_stays_off_its_target_is_late_and_its_cells_are_named() {
+    let (mut telemetry, _) = resting_leg();
+    telemetry.state = State::Active;
+    telemetry.pose[0] = telemetry.target[0] + 0.0009;
+    let mut operator = scripted(move |request| {
+        Some(match request {
+            HostRequest::Telemetry => telemetry_reply(&telemetry),
+            _ => HostReply::Done,
+        })
+    });
+    let error = error_of!(
+        operator.reach(&stiffness(60.0)),
+        OperatorError::TimedOut(..)
+    );
+    let Failure::Failed(message) = error.failure() else {
+        panic!("{error}");
+    };
+    assert_eq!(
+        message.sentence,
+        "the leg did not change its stiffness within 60 s; it is active, 0.05° off its target, faults: none"
+    );
+    assert!(
+        message
+            .help
+            .unwrap()
+            .starts_with("calibrate the load cells")
+    );
 }
 
 /// A leg that is paid out is waited for as long as its motors move, however slowly, and for five seconds once they stand.

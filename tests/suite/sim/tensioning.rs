@@ -1,0 +1,167 @@
+//! What a leg finds as it is tensioned after homing: tendons of another make, and sensors or a hand that show a load which it cannot have.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use super::station_stand::pass;
+use leg_bench::stand::{Stand, move_to};
+use leg_firmware::command::Command;
+use leg_firmware::supervisor::{Fault, State};
+use leg_rig::plant_settings::PlantSettings;
+use leg_rig::ready_rigs::READY_RIGS;
+use leg_rig::rig_file::RigFile;
+use leg_sim::plant::Start;
+use leg_sim::shadow::OTHER_TICKS_MAX;
+use nalgebra::Vector3;
+
+/// How slack the tendons are before homing, mm.
+const SLACK_MM: f64 = 2.0;
+
+/// Longest homing, and time in which the leg is tensioned and its tendons are measured, s.
+const HOMING_S: f64 = 30.0;
+const TENSIONED_S: f64 = 4.0;
+
+/// How far the tip moves until a load cell that shows half to twice its tension is found, mm.
+const MOVED_MM: f64 = 4.0;
+
+fn rigs() -> impl Iterator<Item = (&'static str, RigFile)> {
+    READY_RIGS
+        .iter()
+        .map(|rig| (rig.name, RigFile::load(Some(rig.name.as_ref())).unwrap()))
+}
+
+/// A leg that is homed by now, and not tensioned yet.
+fn homed(rig: &RigFile, plant: PlantSettings) -> Stand {
+    let start = Start::Slack { slack_mm: SLACK_MM };
+    let mut stand = Stand::shadowed(rig, &plant, start, 1).unwrap();
+    stand.wait(0.2).unwrap();
+    home(&mut stand);
+    stand
+}
+
+fn home(stand: &mut Stand) {
+    stand.command(&Command::Home).unwrap();
+    stand.wait(0.1).unwrap();
+    stand
+        .tick_until(HOMING_S, "active", |stand| stand.state() == State::Active)
+        .unwrap();
+}
+
+/// Lets a time pass in which a fault may come: how far the tip moves until then, mm, and whether it came.
+fn moved_until_fault(stand: &mut Stand, time_s: f64) -> (f64, bool) {
+    let (begun_s, from_m) = (stand.time_s(), stand.truth.tip_m);
+    let mut moved_mm = 0.0_f64;
+    while stand.time_s() < begun_s + time_s {
+        stand.tick().unwrap();
+        moved_mm = moved_mm.max(1e3 * (stand.truth.tip_m - from_m).norm());
+        if stand.faults().stopping().any() {
+            return (moved_mm, true);
+        }
+    }
+    (moved_mm, false)
+}
+
+fn elongation_factor(stand: &Stand) -> f64 {
+    stand.telemetry.unwrap().elongation_factor.into()
+}
+
+#[test]
+fn tendons_of_another_make_are_measured_to_half_a_percent() {
+    for (name, rig) in rigs() {
+        for curve_error in [0.35, 0.2, 0.05, -0.05, -0.2, -0.25] {
+            let mut stand = homed(
+                &rig,
+                PlantSettings {
+                    curve_error,
+                    ..rig.plant
+                },
+            );
+            assert_eq!(elongation_factor(&stand), 1.0);
+            stand.wait(TENSIONED_S).unwrap();
+            let off = elongation_factor(&stand) / (1.0 + curve_error) - 1.0;
+            println!("{name}, {curve_error}: {off:.4} off");
+            assert!(off.abs() < 0.005, "{name}, {curve_error}: {off}");
+            stand.command(&move_to([70.0, 0.8 * rig.tilt_deg])).unwrap();
+            stand.wait(3.0).unwrap();
+            assert_eq!(stand.state(), State::Active, "{:?}", stand.faults());
+            stand.require_shadow(OTHER_TICKS_MAX).unwrap();
+        }
+    }
+}
+
+/// What was measured stays over a disarm and the next homing.
+#[test]
+fn what_was_measured_stays_until_other_settings_come() {
+    let rig = RigFile::load(None).unwrap();
+    let mut stand = homed(
+        &rig,
+        PlantSettings {
+            curve_error: 0.2,
+            ..rig.plant
+        },
+    );
+    stand.wait(TENSIONED_S).unwrap();
+    let measured = elongation_factor(&stand);
+    assert!((measured - 1.2).abs() < 0.006, "{measured}");
+    stand.command(&Command::Disarm).unwrap();
+    stand
+        .tick_until(10.0, "disarmed", |stand| stand.state() == State::Disarmed)
+        .unwrap();
+    home(&mut stand);
+    stand.wait(TENSIONED_S).unwrap();
+    assert_eq!(elongation_factor(&stand), measured);
+    assert_eq!(stand.state(), State::Active, "{:?}", stand.faults());
+}
+
+/// One load cell that shows a third more or less than its tension has the leg feel a load that it cannot have straight down.
+#[test]
+fn a_load_cell_that_is_off_is_found_as_the_leg_is_tensioned() {
+    for (name, rig) in rigs() {
+        for tendon in 0..3 {
+            for gain_error in [-0.5, -0.33, 0.33, 0.5, 1.0] {
+                let mut plant = rig.plant;
+                plant.cell_gain_error[tendon] = gain_error;
+                let mut stand = homed(&rig, plant);
+                let (moved_mm, found) = moved_until_fault(&mut stand, TENSIONED_S);
+                let what = format!("{name}, cell {}, {gain_error}", tendon + 1);
+                println!("{what}: {moved_mm:.2} mm");
+                assert!(found && moved_mm < MOVED_MM, "{what}: {moved_mm} mm");
+                assert!(
+                    stand.faults().has(Fault::Residual),
+                    "{what}: {:?}",
+                    stand.faults()
+                );
+                assert_eq!(elongation_factor(&stand), 1.0, "{what}");
+                pass(&mut stand, 0.5);
+                assert_eq!(stand.state(), State::Held, "{what}");
+            }
+        }
+    }
+}
+
+/// A hand at the tip: 3 N are found, 0.2 N are none of a hand's. With tendons of another make neither is taken for a length.
+#[test]
+fn a_leg_that_does_not_hang_free_is_held_as_it_is_tensioned() {
+    for (name, rig) in rigs() {
+        for (force_n, held) in [(3.0, true), (0.2, false)] {
+            let mut stand = homed(&rig, rig.plant);
+            let force = Vector3::new(force_n * 0.6, force_n * 0.8, 0.0);
+            stand.plant().push(force, 2.0 * TENSIONED_S, 0.3);
+            let (_, found) = moved_until_fault(&mut stand, TENSIONED_S);
+            assert_eq!(found, held, "{name}: {:?}", stand.faults());
+            assert_eq!(stand.faults().has(Fault::Residual), held, "{name}");
+            assert_eq!(elongation_factor(&stand), 1.0, "{name}");
+        }
+    }
+}
+
+/// A leg that is sent somewhere before its tendons were measured is not measured on the way.
+#[test]
+fn a_leg_that_is_sent_away_is_not_measured() {
+    let rig = RigFile::load(None).unwrap();
+    let mut stand = homed(&rig, rig.plant);
+    stand.wait(0.8).unwrap();
+    stand.command(&move_to([20.0, 10.0])).unwrap();
+    stand.wait(TENSIONED_S).unwrap();
+    assert_eq!(stand.state(), State::Active, "{:?}", stand.faults());
+    assert_eq!(elongation_factor(&stand), 1.0);
+}
