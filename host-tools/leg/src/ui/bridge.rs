@@ -186,3 +186,6 @@ fn framed<'a>(
 ) -> io::Result<&'a [u8]> {
     frame::encode(number, request, out).map_err(|_| ErrorKind::InvalidInput.into())
 }
+
+#[cfg(test)]
+mod tests;

@@ -9,7 +9,7 @@ mod connection;
 mod pages;
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 
 use acceptor::Acceptor;
 use connection::{PATIENCE, TURN_TIME};

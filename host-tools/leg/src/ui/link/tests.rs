@@ -10,7 +10,7 @@ use std::thread::sleep;
 use tungstenite::Message;
 
 /// A link without a socket.
-fn link() -> PageLink {
+pub fn link() -> PageLink {
     let (pages, frames) = Pages::new("{}".into());
     PageLink {
         address: ([127, 0, 0, 1], 0).into(),
@@ -22,7 +22,7 @@ fn link() -> PageLink {
     }
 }
 
-fn add(link: &PageLink) -> (u64, Receiver<Message>) {
+pub fn add(link: &PageLink) -> (u64, Receiver<Message>) {
     link.pages.lock().unwrap().add()
 }
 
@@ -30,11 +30,11 @@ fn take(link: &PageLink, page: u64, message: Message) -> bool {
     link.pages.lock().unwrap().take(page, message)
 }
 
-fn word(link: &PageLink, page: u64, word: &'static str) {
+pub fn word(link: &PageLink, page: u64, word: &'static str) {
     assert!(take(link, page, Message::text(word)));
 }
 
-fn frames(link: &PageLink, page: u64, bytes: &[u8]) -> bool {
+pub fn frames(link: &PageLink, page: u64, bytes: &[u8]) -> bool {
     take(link, page, Message::binary(bytes.to_vec()))
 }
 
