@@ -2,6 +2,7 @@
 
 pub mod chip;
 pub mod chip_bus;
+pub mod chip_patches;
 pub mod homed_chip;
 pub mod panic_free;
 pub mod python;

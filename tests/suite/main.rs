@@ -92,6 +92,7 @@ mod board {
     mod chip_boot;
     mod chip_bus;
     mod chip_cuts;
+    mod chip_fatal;
     mod chip_guards;
     mod chip_hang;
     mod chip_latency;

@@ -9,17 +9,19 @@ use cortex_m::peripheral::SCB;
 use cortex_m_rt::{ExceptionFrame, exception};
 use embassy_stm32::pac;
 use embassy_stm32::pac::iwdg::vals::Key;
+use leg_firmware::board::timing::CLOCK_HZ;
 use leg_firmware::board::{CrashRecord, CrashReport, ShortText, file_name, reset_cause};
 use leg_firmware::host_link::ResetCause;
 
 /// Failures in a row from which on the next start is put off, so that a debugger has time to attach.
 const HASTY_FAILURES: u32 = 3;
 
-/// How long it is put off, in steps of 0.5 ms.
+/// How long it is put off, in steps of 0.5 ms at least.
 const REST_STEPS: u32 = 2_000;
 
-/// 0.5 ms at least, half as long again at most.
-const REST_STEP_CYCLES: u32 = leg_firmware::board::timing::CLOCK_HZ / 2_000;
+/// Rounds of the loop of `delay` in a step. The core takes two to four cycles for one: 0.5 to 1 ms.
+const REST_STEP_ROUNDS: u32 = CLOCK_HZ / 4_000;
+const _: () = assert!(4 * REST_STEP_ROUNDS < tick_watchdog::TIMEOUT_CYCLES * 63 / 64);
 
 /// Set by the first failure: a second one, say while the first is reported, ends at once.
 static FAILING: AtomicBool = AtomicBool::new(false);
@@ -98,7 +100,7 @@ fn rest() {
     for _ in 0..REST_STEPS {
         pac::IWDG.kr().write(|w| w.set_key(Key::RESET));
         tick_watchdog::refresh_if_started();
-        cortex_m::asm::delay(REST_STEP_CYCLES);
+        cortex_m::asm::delay(REST_STEP_ROUNDS);
     }
 }
 

@@ -14,7 +14,7 @@ const REFRESH: u32 = 0x80 | 0x7f;
 
 /// Cycles from a refresh to the reset at most: 64 steps, from 127 to below 64, of 4096 cycles of APB1. The divider runs on over
 /// a refresh: it may be a step less.
-const TIMEOUT_CYCLES: u32 = 64 * 4_096;
+pub const TIMEOUT_CYCLES: u32 = 64 * 4_096;
 const _: () = assert!(TIMEOUT_CYCLES < CLOCK_HZ / 1_000 * 2);
 const _: () = assert!(TIMEOUT_CYCLES > 8 * TICK_CYCLES);
 

@@ -3,11 +3,14 @@
 
 use crate::common::chip::{
     MS, Outcome, carry_out, driving, findings, identity, identity_after, image, reply,
-    reset_within, send, started, started_with, telemetry,
+    reset_within, send, settings, started, started_with, telemetry,
 };
+use leg_boards::chip::SETTINGS_PLACE;
 use leg_boards::image::FirmwareImage;
 use leg_firmware::command::{Command, CommandRefusal};
 use leg_firmware::host_link::{HostRefusal, HostReply, HostRequest, ResetCause};
+use leg_firmware::settings::Settings;
+use leg_firmware::store::PAGE_SIZE;
 use leg_firmware::supervisor::{Fault, State};
 use std::error::Error;
 use std::fs;
@@ -88,6 +91,57 @@ fn wrong_bits_in_the_program_reset_the_chip_and_are_told() -> Outcome {
     let report = identity.crash_report.as_str();
     assert!(report.starts_with("NMI, flash ECC "), "{report}");
     assert!(!outputs_on(chip));
+    Ok(())
+}
+
+/// Settings whose word has two wrong bits are read as damaged ones: older ones are used, or the built-in ones, with which nothing is driven.
+#[test]
+fn wrong_bits_in_the_settings_leave_older_or_the_built_in_ones() -> Outcome {
+    let mut session = started(40)?;
+    let chip = session.chip().ok_or("no chip")?;
+    identity(chip)?;
+    let built_in = Settings::table_1().ok_or("no built-in settings")?;
+    let mut kept = vec![built_in.clone()];
+    for factor in [2.0, 3.0] {
+        let mut other = built_in.clone();
+        other.limits.command_time_s *= factor;
+        carry_out(chip, &HostRequest::SetSettings(other.clone()))?;
+        carry_out(chip, &HostRequest::SaveSettings)?;
+        kept.push(other);
+    }
+    // From the newest to the oldest: each record has a page of its own.
+    for page in [2, 1] {
+        damage_page(chip, page)?;
+        chip.reset(ResetFlag::Pin);
+        assert_eq!(identity_after(chip)?.crash_report.as_str(), "");
+        assert_eq!(settings(chip)?, kept[page - 1]);
+        assert!(!telemetry(chip)?.faults.has(Fault::SettingsCorrupt));
+    }
+    damage_page(chip, 0)?;
+    chip.reset(ResetFlag::Pin);
+    assert_eq!(identity_after(chip)?.reset, ResetCause::Pin);
+    assert_eq!(settings(chip)?, built_in);
+    let telemetry = telemetry(chip)?;
+    assert!(telemetry.faults.has(Fault::SettingsCorrupt));
+    assert_eq!(telemetry.state, State::Off);
+    assert!(!outputs_on(chip));
+    assert_eq!(findings(chip), [""; 0]);
+    Ok(())
+}
+
+/// Lets two bits be wrong in the middle of what was written in a page of the settings.
+fn damage_page(chip: &mut Chip, page: usize) -> Outcome {
+    let start = SETTINGS_PLACE.start + (page * PAGE_SIZE) as u32;
+    let flash = &mut chip.peripherals().devices.flash;
+    let bytes = flash
+        .bytes(start..start + PAGE_SIZE as u32)
+        .ok_or("no page")?;
+    let written = bytes.iter().rposition(|byte| *byte != 0xff);
+    let at = written.ok_or("nothing is written")? / 2;
+    let wrong = [bytes[at] ^ 0b11];
+    let address = start + at as u32;
+    flash.load(address, &wrong);
+    flash.damage(address);
     Ok(())
 }
 

@@ -4,14 +4,11 @@ use crate::common::chip::{
     MS, Outcome, carry_out, driving, findings, identity, identity_after, image, other_settings,
     reset_within, started,
 };
-use leg_boards::chip::ChipSession;
+use crate::common::chip_patches::{LINK, driven, place_words, poll_by, replace};
 use leg_boards::image::FirmwareImage;
 use leg_firmware::host_link::{HostRequest, ResetCause};
-use std::error::Error;
-use std::fs;
 use stm32g474_emulator::board::Board;
-use stm32g474_emulator::chip::{Chip, Stop};
-use stm32g474_emulator::image::Image;
+use stm32g474_emulator::chip::Stop;
 use stm32g474_emulator::rcc::ResetFlag;
 
 /// From the last duty that was written to the end of the pulses, at most: 1.6 ms, as SAFETY.md promises.
@@ -20,34 +17,11 @@ const CUT_MAX: u64 = MS * 8 / 5;
 /// `b .`, an instruction that is its own successor.
 const ENDLESS: u32 = 0xe7fe;
 
-/// Words of a task's storage in which the executor keeps the function that polls it.
-const HEADER: u32 = 16;
-
 /// The longest that all tasks may hang: the time of the watchdog.
 const TASK_MAX: u64 = 100 * MS;
 
 /// `movs r0, #0`, `mov sp, r0`, and what is no instruction: the handler of that fault has no stack.
 const LOCKS_UP: [u32; 3] = [0x2000, 0x4685, 0xde00];
-
-/// Lets a function begin with other instructions, as a debugger would.
-fn replace(chip: &mut Chip, image: &Image, function: &str, instructions: &[u32]) -> Outcome {
-    let mut address = image.symbol(function).ok_or("no such function")? & !1;
-    for instruction in instructions {
-        let shift = 8 * (address & 2);
-        let word = chip.processor().word(address & !3).ok_or("no memory")?;
-        let word = word & !(0xffff << shift) | instruction << shift;
-        assert!(chip.set_word(address & !3, word));
-        address += 2;
-    }
-    Ok(())
-}
-
-/// A chip that drives, and its image.
-fn driven() -> Result<(ChipSession, Image), Box<dyn Error>> {
-    let path = image(FirmwareImage::Stm32g474)?;
-    let parsed = Image::parse(&fs::read(&path)?)?;
-    Ok((driving(&path, Board::default())?, parsed))
-}
 
 #[test]
 fn a_tick_that_hangs_ends_the_pulses_within_two_milliseconds_and_is_told() -> Outcome {
@@ -80,23 +54,8 @@ fn a_tick_that_hangs_ends_the_pulses_within_two_milliseconds_and_is_told() -> Ou
 fn a_task_that_hangs_is_reset_by_the_watchdog_and_is_told() -> Outcome {
     let (mut session, parsed) = driven()?;
     let chip = session.chip().ok_or("no chip")?;
-    let task = parsed.variable("leg_stm32g474::serial::serve::POOL");
-    let task = task.ok_or("no such task")?;
-    let polls = parsed
-        .functions_ending("serial::__serve_task::__serve_task_inner_function::{closure#0}>>::poll");
-    let endless = parsed
-        .symbol("__sheap")
-        .ok_or("no variables")?
-        .next_multiple_of(4);
-    assert!(chip.set_word(endless, ENDLESS));
-    let is_poll = |chip: &Chip, at| {
-        let word = chip.processor().word(at).unwrap_or_default();
-        polls.contains(&(word & !1))
-    };
-    let at = (task..task + 4 * HEADER)
-        .step_by(4)
-        .find(|at| is_poll(chip, *at));
-    assert!(chip.set_word(at.ok_or("no function that polls")?, endless | 1));
+    let at = place_words(chip, &parsed, &[ENDLESS])?;
+    poll_by(chip, &parsed, LINK, at)?;
     let begun = chip.cycle();
     assert_eq!(
         reset_within(chip, TASK_MAX),

@@ -86,14 +86,19 @@ pub fn started(ticks: usize) -> Result<ChipSession, Box<dyn Error>> {
 /// A session whose chip homes: its pulses are on.
 pub fn driving(image: &Path, board: Board) -> Result<ChipSession, Box<dyn Error>> {
     let mut session = started_with(image, board, 10)?;
-    let chip = session.chip().ok_or("no chip")?;
+    drive(session.chip().ok_or("no chip")?)?;
+    Ok(session)
+}
+
+/// Lets a chip home: its pulses are on.
+pub fn drive(chip: &mut Chip) -> Outcome {
     identity(chip)?;
     let command = Command::Home;
     carry_out(chip, &HostRequest::Command { host: 1, command })?;
     let end = chip.cycle() + 5 * MS;
     while chip.cycle() < end {
         if chip.peripherals().devices.tim1.outputs().on {
-            return Ok(session);
+            return Ok(());
         }
         chip.run(end);
     }
