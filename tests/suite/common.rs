@@ -6,6 +6,7 @@ pub mod chip_patches;
 pub mod homed_chip;
 pub mod panic_free;
 pub mod python;
+pub mod quoted_tests;
 pub mod sources;
 pub mod stalls;
 pub mod unlike;

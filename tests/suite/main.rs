@@ -67,6 +67,7 @@ mod sim {
     mod current_outputs;
     mod current_zeros;
     mod fmea_page;
+    mod held_leg;
     mod homing_with_faults;
     mod load_left_out;
     mod lost_numbers;
@@ -84,6 +85,7 @@ mod sim {
     mod strike_bars_page;
     mod swing;
     mod tensioning;
+    mod tension_limits;
     mod ways_down;
 }
 
@@ -134,6 +136,7 @@ mod host {
 mod bench {
     mod bode;
     mod check;
+    mod cut_tendons;
     mod image_budget;
     mod moves;
     mod proof;

@@ -70,6 +70,9 @@ pub struct Moved {
     pub settled_s: f64,
     /// How far from the commanded point it rests, mm.
     pub rest_mm: f64,
+    /// The least and the greatest true tension on the way and after it, N.
+    #[serde(skip)]
+    pub tensions_n: [f64; 2],
     /// What was beyond its bar, and [`Self::error`].
     pub failures: Vec<String>,
     /// Why the move did not come to its end, or that the leg left its shadow.
@@ -85,6 +88,15 @@ impl Moved {
     #[must_use]
     pub fn passes(&self) -> bool {
         self.failures.is_empty()
+    }
+
+    fn note_tensions(&mut self, stand: &Stand) {
+        let [least_n, greatest_n] = self.tensions_n;
+        let tensions_n = stand.truth.tensions_n.into_iter();
+        self.tensions_n = [
+            tensions_n.clone().fold(least_n, f64::min),
+            tensions_n.fold(greatest_n, f64::max),
+        ];
     }
 }
 
@@ -111,6 +123,7 @@ fn make(drawn: &DrawnMove) -> Moved {
         swing_mm: 0.0,
         settled_s: 0.0,
         rest_mm: 0.0,
+        tensions_n: [f64::INFINITY, 0.0],
         failures: Vec::new(),
         error: None,
         way: Vec::new(),
@@ -168,6 +181,7 @@ fn go(drawn: &DrawnMove, stand: &mut Stand, moved: &mut Moved) -> Result<(), Str
         stand.tick()?;
         stand.require_no_fault()?;
         moved.took_s = stand.time_s() - began_s;
+        moved.note_tensions(stand);
         if let Some(off_m) = reference.tip_error_m(stand) {
             moved.off_mm = moved.off_mm.max(off_m * 1000.0);
             moved.way.push((moved.took_s, off_m * 1000.0));
@@ -184,6 +198,7 @@ fn go(drawn: &DrawnMove, stand: &mut Stand, moved: &mut Moved) -> Result<(), Str
     while stand.time_s() < ended_s + WATCHED_S {
         stand.tick()?;
         stand.require_no_fault()?;
+        moved.note_tensions(stand);
         tips_m.push(stand.truth.tip_m);
         if tips_m.len() % WATCHED_TICKS == 0 {
             let off_m = (stand.truth.tip_m - drawn.end_tip_m()).norm();

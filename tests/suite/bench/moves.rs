@@ -38,6 +38,29 @@ fn the_tip_of_every_rig_stays_on_its_trajectory() {
     require_passed(&campaign.run(0..14, || ()));
 }
 
+/// Between poses whose tensions are within their limits for the payload, whatever it is: on the way they swing beyond them by little.
+#[test]
+fn a_move_keeps_the_tensions_between_minimum_and_maximum() {
+    let campaign = MoveCampaign {
+        seed: 9,
+        rigs: READY_RIGS.iter().map(|ready| rig(ready.name)).collect(),
+        payload_kg: None,
+    };
+    let [f_min_n, f_max_n] = [rig("table1").1.f_min_n, rig("table1").1.f_max_n];
+    let (mut below_n, mut above_n) = (0.0_f64, 0.0_f64);
+    for moved in campaign.run(0..56, || ()) {
+        assert_eq!(moved.error, None);
+        let [least_n, greatest_n] = moved.tensions_n;
+        below_n = below_n.max(f_min_n - least_n);
+        above_n = above_n.max(greatest_n - f_max_n);
+    }
+    println!("{below_n} N below, {above_n} N above");
+    assert!(
+        below_n < 0.5 && above_n < 0.5,
+        "{below_n} N below, {above_n} N above"
+    );
+}
+
 /// Moves whose payload is hardest to find: by 3° in 0.35 s from straight down at 13 and 16 N, whose mode is slow, with 1.7 kg and with
 /// nothing.
 #[test]

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use crate::common::sources::sources;
+use crate::common::quoted_tests::{require_test, test_sources};
 use leg_boards::image::workspace_root;
 use leg_firmware::jog::JOG_TRAVEL_MAX_M;
 use leg_rig::control_settings;
@@ -16,15 +16,6 @@ const UNDERSCORES: usize = 4;
 
 fn page() -> String {
     fs::read_to_string(workspace_root().join("firmware/SAFETY.md")).unwrap()
-}
-
-/// The sources of all tests.
-fn tests() -> String {
-    let mut text = String::new();
-    for directory in ["tests/suite", "firmware/library/src", "host-tools"] {
-        sources(&workspace_root().join(directory), &mut text);
-    }
-    text
 }
 
 /// The tests and ready scenarios between backticks.
@@ -50,19 +41,14 @@ fn section<'a>(page: &'a str, heading: &str) -> &'a str {
 
 #[test]
 fn every_test_that_the_page_quotes_is_there() {
-    let (page, tests) = (page(), tests());
+    let (page, tests) = (page(), test_sources());
     let quoted = quotes(&page);
     assert!(quoted.len() > 80, "{}", quoted.len());
     for name in quoted {
         if ready_scenarios::named(name).is_some() {
             continue;
         }
-        let (before, _) = tests
-            .split_once(&format!("fn {name}()"))
-            .unwrap_or_else(|| panic!("no test is called {name}"));
-        let attributes = before.trim_end().rsplit("\n\n").next().unwrap();
-        assert!(attributes.contains("#[test]"), "{name} is no test");
-        assert!(!attributes.contains("#[ignore"), "{name} is ignored");
+        require_test(&tests, name);
     }
 }
 
@@ -137,6 +123,12 @@ fn the_settings_that_the_page_names_are_the_built_in_ones() {
             limits.command_time_s
         ),
         format!("within {} s (`taut_time_s`)", limits.taut_time_s),
+        format!("an offset of up to {} N (`tare_max_n`)", homing.tare_max_n),
+        // Test `a_tendon_gives_way_by_the_square_of_what_is_beyond_the_maximum`: 2.5 bands.
+        format!(
+            "slowly at first, {} N beyond it by the whole speed",
+            2.5 * settings.greatest(|servo| servo.f_max_band_n)
+        ),
         format!(
             "turns at a low voltage by {} mm of tendon at the most",
             1e3 * JOG_TRAVEL_MAX_M

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::ready_runs::scenario;
-use crate::common::sources::sources;
+use crate::common::quoted_tests::{require_test, test_sources};
 use leg_bench::strikes::{Activity, StrikeBars};
 use leg_boards::image::workspace_root;
 use leg_firmware::supervisor::{FAULT_TABLE, Fault, Reaction, State};
@@ -71,10 +71,7 @@ fn every_fault_of_the_simulated_leg_has_a_row_and_every_part_a_table() {
 #[test]
 fn what_shows_a_row_is_there() {
     let page = page();
-    let mut tests = String::new();
-    for directory in ["tests/suite", "firmware/library/src", "host-tools/host/src"] {
-        sources(&workspace_root().join(directory), &mut tests);
-    }
+    let tests = test_sources();
     for row in rows(&page) {
         assert_eq!(row.len(), 6, "{row:?}");
         assert!(row.iter().all(|cell| !cell.is_empty()), "{row:?}");
@@ -95,7 +92,10 @@ fn what_shows_a_row_is_there() {
             let known = match kind {
                 "scenario" => ready_scenarios::named(name).is_some(),
                 "strike" => Defect::descriptions().any(|(defect, _)| defect == name),
-                "test" | "calculation" => tests.contains(&format!("fn {name}(")),
+                "test" | "calculation" => {
+                    require_test(&tests, name);
+                    true
+                }
                 _ => false,
             };
             assert!(known, "{row:?}: {shown}");
@@ -163,8 +163,8 @@ fn reactions(row: &[&str]) -> Vec<(Fault, State, f64)> {
     reactions.collect()
 }
 
-/// The bars of the strikes of a row.
-fn bars(row: &[&str]) -> Vec<StrikeBars> {
+/// The bars of the strikes of a row, with their states.
+fn bars_by_state(row: &[&str]) -> Vec<(Activity, StrikeBars)> {
     let kinds = shown(row, "strike").map(|name| {
         let mut names = Defect::descriptions().map(|(defect, _)| defect);
         Defect::numbered(names.position(|defect| defect == name).unwrap(), 0).unwrap()
@@ -172,10 +172,17 @@ fn bars(row: &[&str]) -> Vec<StrikeBars> {
     let bars = kinds.flat_map(|defect| {
         let all = (0..Activity::count()).map(Activity::nth);
         all.flat_map(move |activity| {
-            [false, true].map(|near| StrikeBars::widest(defect, activity, F_MAX_N, near))
+            let bars = |near| StrikeBars::widest(defect, activity, F_MAX_N, near);
+            [false, true].map(|near| (activity, bars(near)))
         })
     });
     bars.collect()
+}
+
+/// The bars of the strikes of a row.
+fn bars(row: &[&str]) -> Vec<StrikeBars> {
+    let bars = bars_by_state(row).into_iter();
+    bars.map(|(_, bars)| bars).collect()
 }
 
 /// Any maximum tension: the bars are parts of it, N.
@@ -264,8 +271,7 @@ fn a_row_says_how_far_its_strikes_may_go() {
             let steps = shown(&row, "scenario").flat_map(|name| scenario(name).steps);
             allowed_mm = steps.filter_map(|step| tip_moved_mm(&step)).collect();
         }
-        let tips_mm = row[4].split("tip ").skip(1);
-        for claimed_mm in tips_mm.flat_map(|words| numbers(words, "mm").into_iter().take(1)) {
+        for claimed_mm in tips_mm(&row) {
             if !has(&allowed_mm, claimed_mm) {
                 wrong.push(format!("{claimed_mm} mm of {allowed_mm:?}: {row:?}"));
             }
@@ -284,6 +290,67 @@ fn a_row_says_how_far_its_strikes_may_go() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     assert!(checked > 15, "{checked}");
+}
+
+/// How far the tip goes by what is left of a row, mm.
+fn tips_mm(row: &[&str]) -> Vec<f64> {
+    let tips = row[4].split("tip ").skip(1);
+    tips.flat_map(|words| numbers(words, "mm").into_iter().take(1))
+        .collect()
+}
+
+/// What any strike may do in a state, as the page says above its rows: how far the tip may go, mm.
+const fn usual_mm(activity: Activity) -> f64 {
+    match activity {
+        Activity::Following | Activity::Held | Activity::Disarmed => 0.5,
+        Activity::Moving | Activity::Arming => 3.0,
+        Activity::Rearmed => 2.0,
+        Activity::RampingDown => 10.0,
+        Activity::Homing => 90.0,
+    }
+}
+
+/// The same of the tension, N: of one of 100 N, and while homing.
+const USUAL_N: f64 = 110.0;
+const USUAL_HOMING_N: f64 = 25.0;
+
+/// A row says how far the tip goes, and how high a tension, wherever that is more than what any strike may do in that state.
+#[test]
+fn a_row_says_what_its_strikes_may_do_beyond_the_usual() {
+    let page = page();
+    let words: Vec<&str> = page.split_whitespace().collect();
+    let [rest, way, again, out, homing] = [
+        Activity::Held,
+        Activity::Moving,
+        Activity::Rearmed,
+        Activity::RampingDown,
+        Activity::Homing,
+    ]
+    .map(usual_mm);
+    let said = format!(
+        "tension {:.0} % above the maximum, {USUAL_HOMING_N} N while homing; tip {rest} mm at rest, {way} mm off its way, {again} mm where it is armed \
+         again with its fault, {out} mm while it is paid out, {homing} mm while homing",
+        USUAL_N - F_MAX_N
+    );
+    assert!(words.join(" ").contains(&said), "{said}");
+    let mut wrong = Vec::new();
+    for row in rows(&page) {
+        let (tips_mm, percents) = (tips_mm(&row), numbers(&row[4], "%"));
+        let mut highest_n = USUAL_N;
+        for (activity, bars) in bars_by_state(&row) {
+            assert!(bars.homing_n <= USUAL_HOMING_N, "{row:?}");
+            highest_n = highest_n.max(bars.tension_n);
+            if bars.tip_mm > usual_mm(activity) && !has(&tips_mm, bars.tip_mm) {
+                let state = activity.name();
+                wrong.push(format!("{} mm in {state}: {row:?}", bars.tip_mm));
+            }
+        }
+        if highest_n > USUAL_N + 1e-9 && !has(&percents, highest_n - F_MAX_N) {
+            wrong.push(format!("{} %: {row:?}", highest_n - F_MAX_N));
+        }
+    }
+    wrong.dedup();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 /// The highest motion of the tip that a step lets pass, mm.

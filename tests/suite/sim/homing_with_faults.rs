@@ -8,7 +8,7 @@ use leg_firmware::command::Command;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
 use leg_rig::ready_rigs::READY_RIGS;
 use leg_rig::rig_file::RigFile;
-use leg_sim::plant::Defect;
+use leg_sim::plant::{Defect, Start};
 
 /// The highest tension while homing, N: a bar of the strikes.
 const HOMING_N: f64 = 25.0;
@@ -106,4 +106,35 @@ fn load_cells_that_have_changed_their_places_are_found_by_homing() {
         );
     }
     assert!(found >= 6, "{found} rigs");
+}
+
+/// The state in which a homing ends, of a leg whose second cell is off by an offset, N, and by a gain.
+fn state_after_homing(offset_n: f64, gain_error: f64) -> State {
+    let rig = RigFile::load(None).unwrap();
+    let mut plant = rig.plant;
+    plant.cell_offset_n[1] = offset_n;
+    plant.cell_gain_error[1] = gain_error;
+    let start = Start::Slack { slack_mm: 3.0 };
+    let mut stand = Stand::new(&rig, &plant, start, 1).unwrap();
+    pass(&mut stand, 0.2);
+    obey(&mut stand, Command::Home);
+    for _ in 0..30 * 8000 {
+        if stand.state() != State::Homing {
+            break;
+        }
+        stand.tick().unwrap();
+    }
+    stand.state()
+}
+
+/// An offset is tared, up to what the settings allow; with a gain that is wrong homing finds nothing, and ends as always.
+#[test]
+fn homing_does_not_find_a_load_cell_that_is_off() {
+    let tare_max_n = f64::from(RigFile::load(None).unwrap().gains.homing.tare_max_n);
+    for sign in [-1.0, 1.0] {
+        let found = |part: f64| state_after_homing(sign * part * tare_max_n, 0.0);
+        assert_eq!(found(0.95), State::Active);
+        assert_eq!(found(1.05), State::RampingDown);
+        assert_eq!(state_after_homing(0.0, sign * 0.2), State::Active);
+    }
 }

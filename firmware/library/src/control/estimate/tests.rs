@@ -40,7 +40,12 @@ fn a_push_that_twists_a_leg_moves_neither_the_pose_nor_the_length_error() {
     let mut settings = Settings::table_1().unwrap();
     settings.support = SupportKind::Spherical;
     let mechanism = Mechanism::<f64>::new(&settings).unwrap();
-    for (x, y, torsion) in [(0.3, 0.1, 0.02), (-0.1, 0.45, -0.03)] {
+    // Whether its load is estimated or stays as it is.
+    for (x, y, torsion, load) in [
+        (0.3, 0.1, 0.02, LoadEstimation::Filtered),
+        (-0.1, 0.45, -0.03, LoadEstimation::Filtered),
+        (-0.1, 0.45, -0.03, LoadEstimation::Frozen),
+    ] {
         let direction = Direction::from_xy(x, y).unwrap();
         let mut twisted = None;
         let geometry = mechanism.geometry(&direction, torsion, &mut twisted);
@@ -55,7 +60,7 @@ fn a_push_that_twists_a_leg_moves_neither_the_pose_nor_the_length_error() {
         estimator.direction = direction;
         let mut estimate = None;
         for _ in 0..200 {
-            let (tensions, load) = (tensions.into(), LoadEstimation::Filtered);
+            let tensions = tensions.into();
             let found = estimator.update(&mechanism, &unstretched_m, &tensions, 0.0, load);
             estimator.step_load(&mechanism, &direction, &Turn::none());
             estimate = Some(found.unwrap());
@@ -73,6 +78,44 @@ fn a_push_that_twists_a_leg_moves_neither_the_pose_nor_the_length_error() {
             "{off} {estimate:?}"
         );
         assert!(estimate.length_error.unwrap().mean_m.abs() < 1e-8);
+    }
+}
+
+/// Where the load is frozen, or the tendons are slack, it stays as it is, whatever they show.
+#[test]
+fn a_load_that_is_frozen_stays_as_it_is() {
+    use LoadEstimation::{Filtered, Frozen, Moving, Slack};
+    for support in [SupportKind::TorsionFree, SupportKind::Spherical] {
+        let settings = Settings {
+            support,
+            ..Settings::table_1().unwrap()
+        };
+        let mechanism = Mechanism::<f64>::new(&settings).unwrap();
+        let direction = Direction::from_xy(0.3, 0.1).unwrap();
+        let mut twisted = None;
+        let geometry = mechanism.geometry(&direction, 0.0, &mut twisted);
+        let lengths = inverse_kinematics(geometry, &direction).unwrap().lengths;
+        let tensions_n = [90.0, 70.0, 60.0];
+        let unstretched_m =
+            [0, 1, 2].map(|i| lengths[i] - mechanism.tendons[i].elongation(tensions_n[i]).unwrap());
+        for (estimation, stays) in [
+            (Frozen, true),
+            (Slack, true),
+            (Filtered, false),
+            (Moving, false),
+        ] {
+            let mut estimator = Estimator::new(&settings);
+            estimator.direction = direction;
+            let before = estimator.load.estimate();
+            for _ in 0..2_000 {
+                estimator
+                    .update(&mechanism, &unstretched_m, &tensions_n, 0.0, estimation)
+                    .unwrap();
+                estimator.step_load(&mechanism, &direction, &Turn::none());
+            }
+            let same = estimator.load.estimate() == before;
+            assert_eq!(same, stays, "{support:?} {estimation:?}");
+        }
     }
 }
 

@@ -1,12 +1,12 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{Active, StationKeeping};
+use super::{Active, GIVEN_WAY_STEPS, Phase, StationKeeping};
 use crate::command::Compensation;
 use crate::control::Measured;
 use crate::leg::shared::{Checked, Shared};
 use crate::set_point::{PointRefusal, SetPoint, StreamPart};
 use crate::settings::Settings;
-use crate::supervisor::SETTLE_CYCLES;
+use crate::supervisor::{Fault, SETTLE_CYCLES};
 use leg_model::Direction;
 
 /// What is measured of a leg at rest with these tensions.
@@ -121,5 +121,69 @@ fn a_leg_begins_taut_while_its_sensors_settle() {
         assert_eq!(active.begins_taut(), taut);
         let _ = active.estimate(&mut shared, &shown);
         assert!(!active.begins_taut());
+    }
+}
+
+/// Where the compensation is frozen the load stays as it is, and then until the leg has come to rest: neither its way nor the command alone
+/// ends that.
+#[test]
+fn a_load_that_was_frozen_stays_so_until_the_leg_rests() {
+    use Compensation::{Estimated, Frozen, Off};
+    let away = Direction::from_xy(0.1, 0.0).unwrap();
+    for (before, compensation, moves, frozen) in [
+        (false, Frozen, false, true),
+        (false, Frozen, true, true),
+        (false, Estimated, false, false),
+        (false, Estimated, true, false),
+        (false, Off, true, false),
+        (true, Frozen, false, true),
+        (true, Estimated, true, true),
+        (true, Estimated, false, false),
+        (true, Off, false, false),
+    ] {
+        let (mut active, mut shared, f_min_n) = armed(2.0);
+        active.tensioned = true;
+        active.frozen = before;
+        shared.compensation = compensation;
+        if moves {
+            active.go(&mut shared, &away);
+        }
+        // The pose is no matter.
+        let _ = active.estimate(&mut shared, &measured([2.0 * f_min_n; 3]));
+        assert_eq!(active.frozen, frozen, "{before} {compensation:?} {moves}");
+    }
+}
+
+/// A leg that gives way to its maximum tension for 8 ms has stayed behind: only one at rest, whose tendons have all pulled since it was armed, and
+/// not where that ends before.
+#[test]
+fn a_leg_at_rest_that_gives_way_for_long_stays_behind() {
+    let away = Direction::from_xy(0.1, 0.0).unwrap();
+    for (tensioned, moves, part, pause, behind) in [
+        (true, false, 0.96, None, true),
+        (true, false, 0.94, None, false),
+        (false, false, 0.96, None, false),
+        (true, true, 0.96, None, false),
+        (true, false, 0.96, Some(GIVEN_WAY_STEPS - 1), false),
+    ] {
+        let (mut active, mut shared, _) = armed(2.0);
+        let f_max_n = shared.mechanism.f_max_n;
+        active.tensioned = tensioned;
+        shared.compensation = Compensation::Off;
+        if moves {
+            active.go(&mut shared, &away);
+        }
+        for step in 1..=GIVEN_WAY_STEPS {
+            for axis in &mut shared.axes {
+                axis.rest(6e-5);
+            }
+            let part = if pause == Some(step) { 0.9 } else { part };
+            let shown = measured([part * f_max_n, 20.0, 20.0]);
+            let stepped = active.step(Phase::Offsets, &mut shared, &shown);
+            assert_eq!(stepped, Ok(()));
+            let stays_behind = active.faults.has(Fault::Following);
+            let expected = behind && step == GIVEN_WAY_STEPS;
+            assert_eq!(stays_behind, expected, "{tensioned} {moves} {part} {step}");
+        }
     }
 }

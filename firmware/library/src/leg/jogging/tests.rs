@@ -111,6 +111,28 @@ fn a_jog_ends_by_the_counts_of_the_motor_that_should_not_turn() {
     }
 }
 
+/// A motor that goes on, but never comes to its end, has twice the time of its way.
+#[test]
+fn a_jog_that_does_not_arrive_ends_after_its_time() {
+    let mut jog = Jog::new(5e-3);
+    let ticks_max = jog.jogging.ticks_max;
+    let time_s = f64::from(ticks_max) * f64::from(TICK_S);
+    let step_m = 0.9 * 5e-3 / f64::from(ticks_max);
+    for tick in 1..ticks_max {
+        jog.measured.pulled_m[1] += step_m;
+        jog.jogging.step(&mut jog.shared, &jog.measured);
+        assert_eq!(jog.report().end, JogEnd::Running, "{tick}");
+    }
+    jog.measured.pulled_m[1] += step_m;
+    jog.jogging.step(&mut jog.shared, &jog.measured);
+    assert_eq!(jog.report().end, JogEnd::Time);
+    assert_eq!(jog.jogging.voltage(), (1, 0.0));
+    assert!(
+        (2.0..101.2).contains(&time_s) && (jog.report().time_s - time_s).abs() < 1e-3,
+        "{time_s} s"
+    );
+}
+
 /// A current beyond what any tension of a jog asks for ends it after 30 ms: a motor that has not turned counts nothing.
 #[test]
 fn a_jog_ends_by_a_current_that_lasts() {

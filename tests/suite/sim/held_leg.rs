@@ -1,0 +1,115 @@
+//! A leg that is held: for how long, and that no tension moves it.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use super::station_stand::{armed, faults, paper, pass, ticks};
+use leg_bench::stand::Stand;
+use leg_firmware::command::Command;
+use leg_firmware::supervisor::{Fault, FaultSet, State};
+use nalgebra::Vector3;
+
+/// How little the tip of a leg moves that stands still, mm: its estimates' noise moves nothing.
+const STILL_MM: f64 = 0.01;
+
+/// A leg whose motors have to stand.
+struct Standing {
+    pulled_m: [f32; 3],
+    unstretched_m: [f64; 3],
+    tip_m: Vector3<f64>,
+}
+
+impl Standing {
+    fn new(stand: &Stand) -> Self {
+        Self {
+            pulled_m: stand.telemetry.unwrap().pulled_m,
+            unstretched_m: stand.truth.unstretched_m,
+            tip_m: stand.truth.tip_m,
+        }
+    }
+
+    /// A tick of a leg that is held: its drivers are on, and no motor is driven or turns.
+    fn tick(&self, stand: &mut Stand) {
+        stand.tick().unwrap();
+        assert_eq!(stand.state(), State::Held);
+        assert!(stand.motors.enabled);
+        assert_eq!(stand.motors.duty, [0.0; 3]);
+        assert_eq!(stand.telemetry.unwrap().pulled_m, self.pulled_m);
+        for (now_m, before_m) in stand.truth.unstretched_m.iter().zip(self.unstretched_m) {
+            assert!((now_m - before_m).abs() < 1e-6, "{now_m} m");
+        }
+    }
+
+    fn moved_mm(&self, stand: &Stand) -> f64 {
+        (stand.truth.tip_m - self.tip_m).norm() * 1e3
+    }
+}
+
+/// A leg at rest, stopped and come to rest.
+fn held(pretension_n: f64, pose_deg: [f64; 2], payload_kg: f64) -> Stand {
+    let mut rig = paper();
+    rig.pretension_n = pretension_n;
+    let mut stand = armed(&rig, pose_deg, payload_kg, 81);
+    stand.command(&Command::Stop).unwrap();
+    pass(&mut stand, 0.5);
+    assert_eq!(stand.state(), State::Held);
+    stand
+}
+
+/// Whether it was stopped or has lost its host, and whether a host is there.
+#[test]
+fn a_held_leg_stays_where_it_is_with_or_without_a_host() {
+    let pose_deg = [60.0, 20.0];
+    let stopped = held(70.0, pose_deg, 1.0);
+    let mut silent = stopped.clone();
+    silent.silence();
+    let mut lost = armed(&paper(), pose_deg, 1.0, 81);
+    lost.silence();
+    pass(&mut lost, 0.5);
+    let lost_faults = FaultSet::single(Fault::CommandTimeout);
+    for (mut stand, expected, time_s) in [
+        (stopped, FaultSet::NONE, 5.0),
+        (silent, FaultSet::NONE, 60.0),
+        (lost, lost_faults, 60.0),
+    ] {
+        let standing = Standing::new(&stand);
+        for _ in 0..ticks(time_s) {
+            standing.tick(&mut stand);
+            assert_eq!(faults(&stand), expected);
+            let moved_mm = standing.moved_mm(&stand);
+            assert!(moved_mm < STILL_MM, "{moved_mm} mm");
+        }
+    }
+}
+
+/// A payload and pushes from all sides, on a leg that is held by high tensions: up to a tenth above the maximum, and down to slack tendons.
+#[test]
+fn a_held_leg_is_moved_by_no_tension() {
+    let f_max_n = paper().f_max_n;
+    let mut range_n = [f64::INFINITY, 0.0_f64];
+    let mut moved_mm = 0.0_f64;
+    for (pretension_n, payload_kg) in [(110.0, 2.0), (30.0, 0.0)] {
+        let start = held(pretension_n, [60.0, 20.0], 0.5);
+        for azimuth_deg in (0..360).step_by(60) {
+            let mut stand = start.clone();
+            let standing = Standing::new(&stand);
+            let plant = stand.plant();
+            plant.set_payload(payload_kg, 1.0);
+            plant.push(plant.transverse(f64::from(azimuth_deg)) * 8.0, 2.0, 1.0);
+            for _ in 0..ticks(2.5) {
+                let highest_n = stand.truth.tensions_n.into_iter().fold(0.0, f64::max);
+                // Beyond a tenth more it is let down.
+                if highest_n > 1.09 * f_max_n {
+                    break;
+                }
+                standing.tick(&mut stand);
+                for tension_n in stand.truth.tensions_n {
+                    range_n = [range_n[0].min(tension_n), range_n[1].max(tension_n)];
+                }
+                moved_mm = moved_mm.max(standing.moved_mm(&stand));
+            }
+        }
+    }
+    println!("{range_n:?} N, the tip by {moved_mm} mm");
+    assert!(range_n[1] > 1.05 * f_max_n, "{range_n:?} N");
+    assert!(range_n[0] < 0.5 * paper().f_min_n, "{range_n:?} N");
+}
