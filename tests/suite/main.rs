@@ -84,8 +84,8 @@ mod sim {
     mod streamed_tension;
     mod strike_bars_page;
     mod swing;
-    mod tensioning;
     mod tension_limits;
+    mod tensioning;
     mod ways_down;
 }
 

@@ -15,9 +15,10 @@ use leg_firmware::board::{CheckIns, ShortText, TaskWatchdog, WatchedTask};
 const TIMEOUT_US: u32 = 100_000;
 const _: () = assert!(TIMEOUT_US as u64 > 5 * 1000 * CheckIns::PERIOD_MS);
 
-/// At most 1 ms, in steps of 10 µs: the oscillator starts within 130 µs, and five of its periods follow.
+/// At most 4 ms, in steps of 20 to 40 µs, for a round of the loop of `delay` takes two to four cycles: the oscillator starts within 130 µs, and five
+/// of its periods follow.
 const SETTLING_STEPS: u32 = 100;
-const SETTLING_STEP_CYCLES: u32 = leg_firmware::board::timing::CLOCK_HZ / 100_000;
+const SETTLING_STEP_ROUNDS: u32 = leg_firmware::board::timing::CLOCK_HZ / 100_000;
 
 /// The watchdog, and the count of missed tasks.
 pub struct Watchdog {
@@ -68,7 +69,7 @@ fn wait_for_settings() {
         if !status.pvu() && !status.rvu() && !status.wvu() {
             return;
         }
-        cortex_m::asm::delay(SETTLING_STEP_CYCLES);
+        cortex_m::asm::delay(SETTLING_STEP_ROUNDS);
     }
 }
 

@@ -5,6 +5,7 @@ use crate::common::chip::{
     MS, Outcome, carry_out, driving, findings, identity, identity_after, image, reply,
     reset_within, send, settings, started, started_with, telemetry,
 };
+use crate::common::chip_patches::{GUARD, guard};
 use leg_boards::chip::SETTINGS_PLACE;
 use leg_boards::image::FirmwareImage;
 use leg_firmware::command::{Command, CommandRefusal};
@@ -23,9 +24,6 @@ use stm32g474_emulator::rcc::ResetFlag;
 /// A word of the program.
 const PROGRAM: u32 = 0x0800_1000;
 
-/// The size of the stack's guard, which begins at a multiple of it.
-const GUARD: u32 = 1_024;
-
 fn outputs_on(chip: &Chip) -> bool {
     chip.peripherals().devices.tim1.outputs().on
 }
@@ -37,7 +35,7 @@ fn nothing_can_write_below_the_stack_or_into_the_code_of_the_ccm() -> Outcome {
     let stack = parsed.symbol("_stack_start").ok_or("no stack")?;
     let mut session = started(10)?;
     let chip = session.chip().ok_or("no chip")?;
-    let guard = end.next_multiple_of(GUARD);
+    let guard = guard(&parsed)?;
     let permits = |address| chip.processor().permits_write(address);
     for address in (guard..guard + GUARD).step_by(4) {
         assert!(!permits(address), "{address:#010x}");

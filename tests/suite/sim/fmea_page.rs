@@ -335,7 +335,7 @@ fn a_row_says_what_its_strikes_may_do_beyond_the_usual() {
     assert!(words.join(" ").contains(&said), "{said}");
     let mut wrong = Vec::new();
     for row in rows(&page) {
-        let (tips_mm, percents) = (tips_mm(&row), numbers(&row[4], "%"));
+        let (tips_mm, percents) = (tips_mm(&row), numbers(row[4], "%"));
         let mut highest_n = USUAL_N;
         for (activity, bars) in bars_by_state(&row) {
             assert!(bars.homing_n <= USUAL_HOMING_N, "{row:?}");

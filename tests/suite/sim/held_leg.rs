@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::station_stand::{armed, faults, paper, pass, ticks};
-use leg_bench::stand::Stand;
+use leg_bench::stand::{Stand, move_to};
 use leg_firmware::command::Command;
 use leg_firmware::supervisor::{Fault, FaultSet, State};
 use nalgebra::Vector3;
@@ -44,11 +44,16 @@ impl Standing {
     }
 }
 
-/// A leg at rest, stopped and come to rest.
-fn held(pretension_n: f64, pose_deg: [f64; 2], payload_kg: f64) -> Stand {
+/// A leg that was stopped at rest or on its way, and has come to rest.
+fn held(pretension_n: f64, pose_deg: [f64; 2], payload_kg: f64, moves: bool) -> Stand {
     let mut rig = paper();
     rig.pretension_n = pretension_n;
     let mut stand = armed(&rig, pose_deg, payload_kg, 81);
+    if moves {
+        stand.command(&move_to([60.0, 10.0])).unwrap();
+        pass(&mut stand, 0.2);
+        assert!(stand.moving());
+    }
     stand.command(&Command::Stop).unwrap();
     pass(&mut stand, 0.5);
     assert_eq!(stand.state(), State::Held);
@@ -59,7 +64,7 @@ fn held(pretension_n: f64, pose_deg: [f64; 2], payload_kg: f64) -> Stand {
 #[test]
 fn a_held_leg_stays_where_it_is_with_or_without_a_host() {
     let pose_deg = [60.0, 20.0];
-    let stopped = held(70.0, pose_deg, 1.0);
+    let stopped = held(70.0, pose_deg, 1.0, false);
     let mut silent = stopped.clone();
     silent.silence();
     let mut lost = armed(&paper(), pose_deg, 1.0, 81);
@@ -87,8 +92,13 @@ fn a_held_leg_is_moved_by_no_tension() {
     let f_max_n = paper().f_max_n;
     let mut range_n = [f64::INFINITY, 0.0_f64];
     let mut moved_mm = 0.0_f64;
-    for (pretension_n, payload_kg) in [(110.0, 2.0), (30.0, 0.0)] {
-        let start = held(pretension_n, [60.0, 20.0], 0.5);
+    for (pretension_n, payload_kg, moves) in [
+        (110.0, 2.0, false),
+        (110.0, 2.0, true),
+        (30.0, 0.0, false),
+        (30.0, 0.0, true),
+    ] {
+        let start = held(pretension_n, [60.0, 20.0], 0.5, moves);
         for azimuth_deg in (0..360).step_by(60) {
             let mut stand = start.clone();
             let standing = Standing::new(&stand);
