@@ -153,6 +153,28 @@ fn largest(unlike: &str, moved: &[Moved], hidden: bool) -> [f64; 4] {
     largest
 }
 
+/// A load cell that is off has the leg rest elsewhere, by no more than 0.6 mm: it is judged about there.
+#[test]
+fn the_tip_comes_to_rest_with_a_cell_that_is_off() {
+    for rig in rigs_with_a_cell_off() {
+        let name = rig.0.clone();
+        let campaign = MoveCampaign {
+            seed: 7,
+            rigs: vec![rig],
+            payload_kg: None,
+        };
+        let moved = campaign.run(0..20, || ());
+        let [off_mm, swing_mm, settled_s, rest_mm] = largest(&name, &moved, false);
+        assert!(off_mm < UNLIKE_OFF_MM + rest_mm);
+        assert!(swing_mm < UNLIKE_SWING_MM && settled_s < UNLIKE_SETTLED_S);
+        assert!(rest_mm < 0.6, "{rest_mm} mm");
+        let [off_mm, swing_mm, settled_s, rest_mm] = largest(&name, &moved, true);
+        let [bar_off_mm, bar_swing_mm, bar_settled_s, _] = UNLIKE_HIDDEN;
+        assert!(off_mm < bar_off_mm + rest_mm && swing_mm < bar_swing_mm);
+        assert!(settled_s < bar_settled_s);
+    }
+}
+
 /// Tendons that stretch by a fifth more or less than their curve says are measured as the leg is tensioned after homing.
 #[test]
 fn a_leg_with_other_tendons_moves() {
