@@ -55,8 +55,9 @@ const RUNAWAY_AGAIN_BEYOND: f64 = 1.8;
 /// The same where a tendon slips by 5 mm and catches the leg, which has fallen by the 46 mm of the tip that belong to it.
 const SLIP_BEYOND: f64 = 2.5;
 
-/// The highest tension while homing, N.
+/// The highest tension while homing, N; and where a driver gives the whole supply then, for the 10 ms until its motor is told to run away.
 const HOMING_N: f64 = 25.0;
+const HOMING_RUNAWAY_N: f64 = 40.0;
 
 /// How far the tip may move from where it rests, and off its way, mm.
 const REST_MM: f64 = 0.5;
@@ -84,6 +85,9 @@ const SWAPPED_MM: f64 = 20.0;
 
 /// How far a moving leg may swing off its way that is cut off with its payload, mm: or as far as it does by itself.
 const CUT_OFF_MM: f64 = 6.0;
+
+/// The same where a motor jams, mm: the other two go on for 35 ms, until it is told, at up to 160 mm/s at the tip, and brake.
+const JAMMED_MM: f64 = 9.0;
 
 /// How far a tendon that homing pulls, and whose cell or motor fails, may lift a leg that hangs free, mm: by what its motor can pull
 /// below the current at which homing ends, about 20 N, which holds the leg's own weight far aside.
@@ -118,7 +122,7 @@ const GRASPED_MM: f64 = 10.0;
 pub struct StrikeBars {
     /// Highest tension, N.
     pub tension_n: f64,
-    /// The same while homing, N.
+    /// The same while homing, and after a fault that ended that, N.
     pub homing_n: f64,
     /// How far the tip may go, mm.
     pub tip_mm: f64,
@@ -158,7 +162,11 @@ impl StrikeBars {
         };
         Self {
             tension_n: f_max_n * (1.0 + excess_part(defect, activity).max(stopped_part)),
-            homing_n: HOMING_N,
+            homing_n: if matches!(defect, Some(Defect::DriverFullOn(_))) {
+                HOMING_RUNAWAY_N
+            } else {
+                HOMING_N
+            },
             tip_mm: tip_mm(defect, activity).max(paid_out_mm),
             named_s: defect.and_then(|defect| named_s(defect, activity, before)),
             sags: defect == Some(Defect::CellsSwapped),
@@ -313,6 +321,7 @@ fn tip_mm(defect: Option<Defect>, activity: Activity) -> f64 {
         {
             usual_mm
         }
+        Some(Defect::MotorJammed(_)) if activity == Activity::Moving => JAMMED_MM,
         Some(defect) if activity.is_on_the_way() && cuts_off(defect) => CUT_OFF_MM,
         Some(
             Defect::CellGainStep(_)

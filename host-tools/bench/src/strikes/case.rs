@@ -46,6 +46,8 @@ pub struct Case {
     pub push: Option<[f64; 2]>,
     /// A change of payload before, kg.
     pub step_kg: f64,
+    /// Whether a leg at rest keeps station, without a host.
+    pub keeps_station: bool,
     pub(super) file: RigFile,
     pub(super) plant: PlantSettings,
     pub(super) seed: u64,
@@ -97,6 +99,7 @@ impl Case {
             part: rng.f64(),
             push: (rng.f64() < 0.3).then(|| [360.0 * rng.f64(), 10.0 * rng.f64()]),
             step_kg: 0.0,
+            keeps_station: false,
             file: *file,
             plant: plant(file, offset_n, &mut rng),
             seed,
@@ -104,6 +107,10 @@ impl Case {
         if activity != Activity::Homing {
             case.draw_pose(&mut rng);
         }
+        // A leg keeps station by its estimate of the load alone.
+        case.keeps_station = rng.bool()
+            && activity == Activity::Following
+            && case.compensation == Compensation::Estimated;
         case
     }
 
@@ -171,6 +178,9 @@ impl fmt::Display for Case {
             100.0 * self.part,
             self.compensation
         )?;
+        if self.keeps_station {
+            formatter.write_str(", keeping station")?;
+        }
         if self.step_kg != 0.0 {
             write!(
                 formatter,

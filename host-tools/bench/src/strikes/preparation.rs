@@ -63,6 +63,8 @@ fn bring_there(case: &mut Case) -> Result<PreparedLeg, String> {
     let Some(command) = command else {
         if case.activity == Activity::Disarmed {
             disarm(&mut stand)?;
+        } else if case.keeps_station {
+            keep_station(&mut stand)?;
         }
         return Ok(resting(stand));
     };
@@ -155,6 +157,16 @@ fn lead(case: &Case, stand: &mut Stand) -> Result<(), String> {
         stand.plant().push(across * force_n, LOADING_S, 0.1);
         stand.wait(LOADING_S)?;
     }
+    stand.rest()
+}
+
+/// Leaves the leg to itself: nothing is heard of its host from then on.
+fn keep_station(stand: &mut Stand) -> Result<(), String> {
+    stand.command(&Command::KeepStation)?;
+    stand.tick_until(1.0, "keeping station", |stand| {
+        stand.state() == State::KeepingStation
+    })?;
+    stand.silence();
     stand.rest()
 }
 

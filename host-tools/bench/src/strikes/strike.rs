@@ -119,6 +119,8 @@ struct Watch<'a> {
     stopped_s: Option<f64>,
     /// Commands that the user has given since.
     given: usize,
+    /// Whether homing has come to its end: the tendons are tensioned then.
+    homed: bool,
     /// Whether it may sag once a true tension has it ramp down, and whether it does.
     may_sag: bool,
     sags: bool,
@@ -149,6 +151,7 @@ impl<'a> Watch<'a> {
             before: stand.faults(),
             stopped_s: None,
             given: 0,
+            homed: false,
             may_sag,
             sags: false,
             every_s,
@@ -174,7 +177,8 @@ impl<'a> Watch<'a> {
         let now_s = stand.time_s() - self.began_s;
         let highest = stand.truth.tensions_n.into_iter().fold(0.0, f64::max);
         self.struck.tension_n = self.struck.tension_n.max(highest);
-        if stand.state() == State::Homing {
+        self.homed |= stand.state() == State::Active;
+        if self.case.activity == Activity::Homing && !self.homed {
             self.struck.homing_n = self.struck.homing_n.max(highest);
         }
         let tick = (now_s * f64::from(TICK_HZ)).round() as u64;

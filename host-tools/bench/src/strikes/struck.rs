@@ -35,7 +35,7 @@ pub struct Struck {
     pub case: String,
     /// Highest true tension, N.
     pub tension_n: f64,
-    /// Highest true tension while the leg homed, N.
+    /// Highest true tension while the leg homed, and after a fault that ended that, N.
     pub homing_n: f64,
     /// How far the tip was from rest or off the way, mm.
     pub tip_mm: f64,
