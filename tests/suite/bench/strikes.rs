@@ -53,8 +53,11 @@ fn a_sample_of_the_strikes_passes() {
         let states = rows.iter().filter(|row| row.fault == name).count();
         assert_eq!(states, 8, "states of {name}");
     }
-    let keep_station = |struck: &&Struck| struck.case.contains("keeping station");
-    assert!(struck.iter().filter(keep_station).count() > 10);
+    assert!(
+        struck
+            .iter()
+            .any(|one| one.case.contains("keeping station"))
+    );
     require_passed(&struck);
 }
 
