@@ -15,7 +15,6 @@ use leg_firmware::command::Command;
 use leg_firmware::supervisor::State;
 use leg_rig::rig_file::RigFile;
 use leg_sim::plant::Start;
-use leg_sim::shadow::OTHER_TICKS_MAX;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use reference::Reference;
@@ -130,8 +129,8 @@ fn make(drawn: &DrawnMove) -> Moved {
     };
     let went = prepared(drawn).and_then(|mut stand| {
         go(drawn, &mut stand, &mut moved)?;
-        moved.failures = MoveBars::new(drawn.begin_deg[1]).failures(&moved);
-        stand.require_shadow(OTHER_TICKS_MAX)
+        moved.failures = MoveBars::new(drawn).failures(&moved);
+        Ok(())
     });
     moved.error = went.err();
     moved.failures.extend(moved.error.clone());
@@ -164,7 +163,7 @@ fn tensioned(drawn: &DrawnMove) -> Result<Stand, String> {
     } else {
         (Start::hanging(drawn.pretension_n), Command::Arm)
     };
-    let mut stand = Stand::shadowed(&drawn.file, &drawn.plant, start, drawn.seed)?;
+    let mut stand = Stand::new(&drawn.file, &drawn.plant, start, drawn.seed)?;
     stand.tick_until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
     stand.wait(0.1)?;
     stand.command(&command)?;

@@ -12,7 +12,7 @@ use leg_sim::emulated_leg::{EmulatedLeg, SignalChange};
 use leg_sim::host::Host;
 use leg_sim::link::InProcess;
 use leg_sim::plant::{Plant, Start, Truth};
-use leg_sim::shadow::Shadow;
+use leg_sim::shadow::{OTHER_TICKS_MAX, Shadow};
 
 /// How little a leg moves that has come to rest, m, in how many ticks; and how often that is awaited.
 const STILL_M: f64 = 5e-5;
@@ -23,8 +23,10 @@ const STILL_SPANS: u32 = 80;
 #[derive(Clone)]
 pub struct Stand {
     leg: EmulatedLeg<InProcess>,
-    /// The control law in f64 beside it, where that is compared.
-    shadow: Option<Shadow>,
+    /// The control law in f64 beside it.
+    shadow: Shadow,
+    /// For how many ticks in a row that may be in another state or have other faults before a tick fails; none where that is looked at later.
+    other_ticks: Option<u64>,
     host: Host,
     ticks: u64,
     /// What is true after the last tick.
@@ -38,7 +40,8 @@ pub struct Stand {
 }
 
 impl Stand {
-    /// A leg that has just started.
+    /// A leg that has just started. Its ticks fail once the control law in f64 beside it has been in another state, or had other faults,
+    /// for more than [`OTHER_TICKS_MAX`] in a row.
     ///
     /// # Errors
     /// Settings or a start that are refused, as all errors here in words.
@@ -48,16 +51,19 @@ impl Stand {
         start: Start,
         seed: u64,
     ) -> Result<Self, String> {
-        let leg = EmulatedLeg::start_in_process(rig, plant, start, seed);
-        let leg = leg.map_err(|error| error.to_string())?;
-        Ok(Self::started(leg, None, seed))
+        let unjudged = Self::unjudged(rig, plant, start, seed)?;
+        Ok(Self {
+            other_ticks: Some(OTHER_TICKS_MAX),
+            ..unjudged
+        })
     }
 
-    fn started(leg: EmulatedLeg<InProcess>, shadow: Option<Shadow>, seed: u64) -> Self {
+    fn started((leg, shadow): (EmulatedLeg<InProcess>, Shadow), seed: u64) -> Self {
         Self {
             truth: leg.plant().truth(),
             leg,
             shadow,
+            other_ticks: None,
             host: Host::new(seed),
             ticks: 0,
             telemetry: None,
@@ -69,31 +75,32 @@ impl Stand {
         }
     }
 
-    /// The same with the control law in f64 beside it.
+    /// The same, but no tick fails for the control law in f64: [`Self::require_shadow`] tells how far apart they were.
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn shadowed(
+    pub fn unjudged(
         rig: &RigFile,
         plant: &PlantSettings,
         start: Start,
         seed: u64,
     ) -> Result<Self, String> {
         let both = EmulatedLeg::start_shadowed(rig, plant, start, seed);
-        let (leg, shadow) = both.map_err(|error| error.to_string())?;
-        Ok(Self::started(leg, Some(shadow), seed))
+        let both = both.map_err(|error| error.to_string())?;
+        Ok(Self::started(both, seed))
     }
 
     /// # Errors
     /// The control law in f64 was in another state, or had other faults, for more than so many ticks in a row.
     pub fn require_shadow(&self, other_ticks: u64) -> Result<(), String> {
-        match &self.shadow {
-            Some(shadow) if !shadow.divergence.stays_within(other_ticks) => Err(format!(
-                "the firmware leaves the state of its shadow in f64, first at tick {}",
-                shadow.divergence.first_other_tick.unwrap_or_default()
-            )),
-            _ => Ok(()),
+        let divergence = &self.shadow.divergence;
+        if divergence.stays_within(other_ticks) {
+            return Ok(());
         }
+        Err(format!(
+            "the firmware leaves the state of its shadow in f64, first at tick {}",
+            divergence.first_other_tick.unwrap_or_default()
+        ))
     }
 
     /// The simulated leg.
@@ -140,7 +147,7 @@ impl Stand {
     /// One tick.
     ///
     /// # Errors
-    /// A link that fails; a number of the simulated leg that is lost.
+    /// A link that fails; a number of the simulated leg that is lost; a shadow that is left, see [`Self::new`].
     pub fn tick(&mut self) -> Result<(), String> {
         self.tick_through(&mut ())
     }
@@ -154,18 +161,16 @@ impl Stand {
         let advanced = self.leg.advance_through(change, bytes);
         let (taken, reply) = advanced.map_err(|error| error.to_string())?;
         self.ticks += 1;
-        if let Some(shadow) = &mut self.shadow {
-            shadow.tick(&taken.sensors, &taken.link, &reply);
-        }
+        self.shadow.tick(&taken.sensors, &taken.link, &reply);
         self.truth = self.leg.plant().truth();
         self.telemetry = Some(reply.telemetry);
         self.sensors = taken.sensors;
         self.motors = reply.motors;
-        if self.truth.is_finite() {
-            Ok(())
-        } else {
-            Err("a number of the simulated leg is lost".into())
+        if !self.truth.is_finite() {
+            return Err("a number of the simulated leg is lost".into());
         }
+        let judged = self.other_ticks;
+        judged.map_or(Ok(()), |other_ticks| self.require_shadow(other_ticks))
     }
 
     /// # Errors
@@ -244,21 +249,25 @@ mod tests {
     use leg_sim::plant::Start;
     use leg_sim::shadow::OTHER_TICKS_MAX;
 
-    /// A shadow that begins anew beside a leg that is armed is in another state.
+    /// A shadow that begins anew beside a leg that is armed is in another state: a tick fails, where it is judged.
     #[test]
     fn a_leg_that_leaves_its_shadow_is_told() {
         let rig = RigFile::load(None).unwrap();
-        let started = || Stand::shadowed(&rig, &rig.plant, Start::hanging(70.0), 1).unwrap();
+        let started = || Stand::new(&rig, &rig.plant, Start::hanging(70.0), 1).unwrap();
         let mut stand = started();
         stand.wait(0.1).unwrap();
         stand.command(&Command::Arm).unwrap();
         stand.wait(0.5).unwrap();
         assert_eq!(stand.state(), State::Active);
         assert_eq!(stand.require_shadow(OTHER_TICKS_MAX), Ok(()));
-        let divergence = stand.shadow.as_ref().unwrap().divergence;
+        let divergence = stand.shadow.divergence;
         assert!(divergence.duty > 0.0 && divergence.reference_m > 0.0);
         stand.shadow = started().shadow;
-        stand.wait(0.01).unwrap();
-        assert!(stand.require_shadow(OTHER_TICKS_MAX).is_err());
+        let mut unjudged = stand.clone();
+        let left = stand.wait(0.01).unwrap_err();
+        assert!(left.contains("leaves the state of its shadow"), "{left}");
+        unjudged.other_ticks = None;
+        unjudged.wait(0.01).unwrap();
+        assert!(unjudged.require_shadow(OTHER_TICKS_MAX).is_err());
     }
 }

@@ -1,6 +1,6 @@
 //! What a move may do.
 
-use super::Moved;
+use super::{DrawnMove, Moved};
 
 /// The most that a move may do.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,12 +30,20 @@ const HIDDEN: MoveBars = MoveBars {
     rest_mm: 0.02,
 };
 
+/// A move from straight down with nothing: the leg does not know that either before it moves. It has nothing to swing with.
+const NOTHING: MoveBars = MoveBars {
+    off_mm: HIDDEN.off_mm,
+    ..SHOWN
+};
+
 impl MoveBars {
-    pub fn new(begin_tilt_deg: f64) -> Self {
-        if begin_tilt_deg < HIDDEN_DEG {
+    pub fn new(drawn: &DrawnMove) -> Self {
+        if drawn.begin_deg[1] >= HIDDEN_DEG {
+            SHOWN
+        } else if drawn.payload_kg > 0.0 {
             HIDDEN
         } else {
-            SHOWN
+            NOTHING
         }
     }
 

@@ -153,7 +153,7 @@ impl<'a> User<'a> {
     fn new(file: &'a RigFile, rng: &'a mut Rng) -> Result<Self, String> {
         let plant = plant(file, TARED_N, rng);
         let start = Start::hanging(file.pretension_n);
-        let mut stand = Stand::shadowed(file, &plant, start, rng.u64(..))?;
+        let mut stand = Stand::unjudged(file, &plant, start, rng.u64(..))?;
         stand.tick_until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
         stand.command(&Command::Arm)?;
         stand.tick_until(2.0, "active", |stand| stand.state() == State::Active)?;

@@ -115,7 +115,7 @@ fn started(case: &mut Case) -> Result<Stand, String> {
         },
         _ => Start::hanging(case.pretension_n),
     };
-    let mut stand = Stand::shadowed(&case.file, &case.plant, start, case.seed)?;
+    let mut stand = Stand::unjudged(&case.file, &case.plant, start, case.seed)?;
     stand.tick_until(1.0, "disarmed", |stand| stand.state() == State::Disarmed)?;
     stand.wait(0.1)?;
     if matches!(case.activity, Activity::Homing | Activity::Arming) {
