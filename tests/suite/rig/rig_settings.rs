@@ -39,6 +39,7 @@ fn run(rig: &RigFile) -> (Summary, Vec<[u32; 3]>) {
             bits.push(tick.drive.duty.map(f32::to_bits));
         })
         .unwrap();
+    assert!(summary.divergence.stays(), "{:?}", summary.divergence);
     (summary, bits)
 }
 

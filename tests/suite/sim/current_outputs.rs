@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::ready_runs::scenario;
+use super::ready_runs::{require_shadow, scenario};
 use super::station_stand::{armed, pass};
 use leg_bench::stand::{Stand, move_to};
 use leg_firmware::command::Command;
@@ -22,7 +22,9 @@ fn rig(output: &str) -> RigFile {
 
 fn run(name: &str, rig: &RigFile) -> Summary {
     let simulation = Simulation::new(&scenario(name), rig).unwrap();
-    simulation.run(&mut InProcess::new(), &mut |_| {}).unwrap()
+    let summary = simulation.run(&mut InProcess::new(), &mut |_| {}).unwrap();
+    require_shadow(&summary, name);
+    summary
 }
 
 /// Homes, goes round its workspace with a payload, follows a circle, jogs; and finds what the current shows.

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::ready_runs::scenario;
+use super::ready_runs::{require_shadow, scenario};
 use super::station_stand::pass;
 use leg_bench::stand::Stand;
 use leg_firmware::command::Command;
@@ -25,7 +25,9 @@ fn rig(current_offset_a: [f64; 3]) -> RigFile {
 
 fn run(name: &str, rig: &RigFile) -> Summary {
     let simulation = Simulation::new(&scenario(name), rig).unwrap();
-    simulation.run(&mut InProcess::new(), &mut |_| {}).unwrap()
+    let summary = simulation.run(&mut InProcess::new(), &mut |_| {}).unwrap();
+    require_shadow(&summary, name);
+    summary
 }
 
 /// Homing, which a current of 0.24 A ends, and both checks of the currents.

@@ -1,4 +1,5 @@
-//! Random scenarios: whatever comes, no number is lost, no tendon is pulled above the maximum tension, and nothing re-arms.
+//! Random scenarios: whatever comes, no number is lost, no tendon is pulled above the maximum tension, nothing re-arms, and the control law in
+//! f64 beside the leg comes to the same states.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -172,6 +173,9 @@ fn run(seed: u64, rig: &RigFile) -> Result<bool, String> {
     }
     match watch.complaint {
         Some(complaint) => Err(complaint),
+        None if !summary.divergence.stays() => {
+            Err(format!("it left its shadow: {:?}", summary.divergence))
+        }
         None if highest > max_n => Err(format!("a tension of {highest} N")),
         None => Ok(true),
     }

@@ -45,6 +45,12 @@ pub fn run(scenario: &Scenario, link: &mut dyn Link) -> Run {
     }
 }
 
+/// The control law in f64 beside the leg came to the same states and faults.
+pub fn require_shadow(summary: &Summary, what: &str) {
+    let divergence = &summary.divergence;
+    assert!(divergence.stays(), "{what}: {divergence:?}");
+}
+
 /// The run of a ready scenario in this process.
 pub fn ready(name: &str) -> &'static Run {
     static RUNS: [OnceLock<Run>; READY_SCENARIOS.len()] =

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::ready_runs::{Run, ready, run, scenario};
+use super::ready_runs::{Run, ready, require_shadow, run, scenario};
 use crate::common::require_said;
 use leg_bench::sensitivity;
 use leg_boards::image::workspace_root;
@@ -30,7 +30,7 @@ fn every_ready_scenario_passes() {
             .collect();
         assert!(failed.is_empty(), "{}: {failed:?}", scenario.name);
         assert_eq!(summary.stopped, None, "{}", scenario.name);
-        assert!(summary.divergence.stays(), "{}", scenario.name);
+        require_shadow(summary, scenario.name);
         let unexpected = &summary.unexpected;
         assert!(unexpected.is_empty(), "{}: {unexpected:?}", scenario.name);
         assert!(
@@ -142,6 +142,7 @@ fn cells_and_curves_that_are_off_move_the_tip_by_as_much_as_is_said() {
     let largest_mm = |cell_percent: f64, curve_percent: f64| {
         let scenario = scenario("support").with_errors(cell_percent, curve_percent);
         let run = run(&scenario, &mut InProcess::new());
+        require_shadow(&run.summary, "support");
         sensitivity::largest_mm(&run.summary).unwrap()
     };
     let (exact, cells, curves) = (
@@ -184,6 +185,7 @@ fn a_cut_tendon_lets_the_tip_swing_no_farther_than_is_said() {
                     let simulation = Simulation::new(&scenario, &rig).ok()?;
                     let link = &mut InProcess::new();
                     let summary = simulation.run(link, &mut |_| ()).unwrap();
+                    require_shadow(&summary, text);
                     let moved = summary.measurements.iter().find(|found| found.unit == "mm");
                     Some(moved.map(|moved| moved.value))
                 };
@@ -246,6 +248,7 @@ payload_kg = {payload}
         let rig = RigFile::load(Some(rig.as_ref())).unwrap();
         let simulation = Simulation::new(&scenario, &rig).ok()?;
         let summary = simulation.run(&mut InProcess::new(), &mut |_| ()).unwrap();
+        require_shadow(&summary, &text);
         let sag = summary.measurements.iter().find(|found| found.unit == "mm");
         Some(sag.unwrap().value)
     };
@@ -315,6 +318,7 @@ fn a_leg_is_armed_where_it_stands() {
             };
             starts += 1;
             let summary = simulation.run(&mut InProcess::new(), &mut |_| ()).unwrap();
+            require_shadow(&summary, &text);
             let moved = summary.measurements.iter().find(|found| found.unit == "mm");
             let moved_mm = moved.unwrap().value;
             assert!(moved_mm < 0.5, "{moved_mm} mm:\n{text}");
@@ -335,6 +339,7 @@ fn what_came_out_before_a_step_that_never_ends_is_kept() {
     let text = "title = \"never\"\nsteps = [{ wait_s = 0.1 }, { measure = { name = \"level\", quantity = \"pretension_n\", between = [0, 0] } }, { await = { state = \"held\", timeout_s = 0.1 } }]";
     let scenario = Scenario::parse("never", text).unwrap();
     let Run { summary, bits, .. } = run(&scenario, &mut InProcess::new());
+    require_shadow(&summary, "never");
     let stopped = summary.stopped.clone().unwrap();
     assert!(
         stopped.starts_with("step 3: held did not come within 0.1 s"),

@@ -30,6 +30,7 @@ pub fn armed(
         pretension_n: rig.pretension_n,
         payload_kg,
     };
+    println!("seed {seed}: azimuth {azimuth_deg}°, tilt {tilt_deg}°, {payload_kg} kg");
     let mut stand = Stand::new(rig, &rig.plant, start, seed).unwrap();
     stand.wait(0.1).unwrap();
     stand.command(&Command::Arm).unwrap();

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use super::ready_runs::require_shadow;
 use leg_firmware::supervisor::Fault;
 use leg_rig::rig_file::RigFile;
 use leg_sim::link::InProcess;
@@ -46,6 +47,7 @@ fn tendons_do_not_go_to_and_fro_while_their_pretension_follows_its_bound() {
         references.push(tick.telemetry.reference_m);
     });
     let summary = run.unwrap();
+    require_shadow(&summary, "floor");
     let faults: Vec<_> = summary.faults.iter().map(|(fault, _)| *fault).collect();
     assert_eq!(faults, [Fault::Unreachable]);
     // The last 0.5 s.
