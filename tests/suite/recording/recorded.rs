@@ -17,14 +17,27 @@ use std::io::Cursor;
 
 /// A short scenario.
 pub fn simulation() -> Simulation {
-    let text = ready_scenarios::named("fault_driver_fault").unwrap().text;
-    let scenario = Scenario::parse("test", text).unwrap();
-    Simulation::new(&scenario, &RigFile::load(None).unwrap()).unwrap()
+    ready_simulation("fault_driver_fault")
 }
 
-/// Records that scenario; `spoil` may change what a tick gave. Gives the file, and the number of its ticks.
+/// A ready scenario.
+pub fn ready_simulation(name: &str) -> Simulation {
+    let text = ready_scenarios::named(name).unwrap().text;
+    let scenario = Scenario::parse(name, text).unwrap();
+    let rig = RigFile::load(Some(scenario.rig.as_ref())).unwrap();
+    Simulation::new(&scenario, &rig).unwrap()
+}
+
+/// Records the short scenario; `spoil` may change what a tick gave. Gives the file, and the number of its ticks.
 pub fn recorded(spoil: impl Fn(&mut Drive<f32>, u32)) -> (Vec<u8>, u64) {
-    let simulation = simulation();
+    recorded_run(simulation(), spoil)
+}
+
+/// The same of any simulation.
+pub fn recorded_run(
+    simulation: Simulation,
+    spoil: impl Fn(&mut Drive<f32>, u32),
+) -> (Vec<u8>, u64) {
     let leg = LegConstants::new(simulation.settings());
     let about = About::log("test");
     let mut file = McapWriter::new(Cursor::new(Vec::new()), &about, simulation.settings()).unwrap();
