@@ -2,10 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use leg_rig::ready_rigs::READY_RIGS;
+use leg_rig::ready_rigs::{self, READY_RIGS};
 use leg_rig::rig_file::RigFile;
 
-/// What is added to the paper's rig file: damping of joint and tendons halved and doubled, friction of the motors halved and half more, play of
+/// What is added to a rig file: damping of joint and tendons halved and doubled, friction of the motors halved and half more, play of
 /// the gears none and double.
 const UNLIKE: [(&str, &str); 6] = [
     (
@@ -34,21 +34,33 @@ const UNLIKE: [(&str, &str); 6] = [
     ),
 ];
 
-/// The paper's rig with more lines.
-fn rig(name: &str, more: &str) -> (String, RigFile) {
-    let text = [READY_RIGS[0].text, more].concat();
+/// A ready rig with more lines.
+fn rig(ready: &str, name: &str, more: &str) -> (String, RigFile) {
+    let text = [ready_rigs::named(ready).unwrap().text, more].concat();
     (name.into(), RigFile::parse(name, &text).unwrap())
 }
 
-/// Rig files of such legs by their names.
+/// Rig files of such legs by their names: of the paper's rig.
 pub fn unlike_rigs() -> impl Iterator<Item = (String, RigFile)> {
-    UNLIKE.into_iter().map(|(name, more)| rig(name, more))
+    unlike_rigs_like(READY_RIGS[0].name)
+}
+
+/// The same of any ready rig.
+pub fn unlike_rigs_like(ready: &str) -> impl Iterator<Item = (String, RigFile)> {
+    UNLIKE
+        .into_iter()
+        .map(|(name, more)| rig(ready, name, more))
 }
 
 /// The same of legs with a load cell that is 2 % off.
 pub fn rigs_with_a_cell_off() -> [(String, RigFile); 2] {
+    rigs_with_a_cell_off_like(READY_RIGS[0].name)
+}
+
+/// The same of any ready rig.
+pub fn rigs_with_a_cell_off_like(ready: &str) -> [(String, RigFile); 2] {
     [[0.02, 0.0, 0.0], [0.0, -0.02, 0.0]].map(|cell_gain_error| {
-        let (_, mut file) = rig("cell", "");
+        let (_, mut file) = rig(ready, "cell", "");
         file.plant.cell_gain_error = cell_gain_error;
         (format!("cells {cell_gain_error:?}"), file)
     })
@@ -56,5 +68,9 @@ pub fn rigs_with_a_cell_off() -> [(String, RigFile); 2] {
 
 /// The paper's rig with 5° of play, which its settings know.
 pub fn rig_with_5_degrees_of_play() -> (String, RigFile) {
-    rig("5° of play", "[actuator]\nbacklash_rad = 0.087\n")
+    rig(
+        READY_RIGS[0].name,
+        "5° of play",
+        "[actuator]\nbacklash_rad = 0.087\n",
+    )
 }

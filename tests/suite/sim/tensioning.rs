@@ -32,7 +32,7 @@ fn rigs() -> impl Iterator<Item = (&'static str, RigFile)> {
 /// A leg that is homed by now, and not tensioned yet.
 fn homed(rig: &RigFile, plant: PlantSettings) -> Stand {
     let start = Start::Slack { slack_mm: SLACK_MM };
-    let mut stand = Stand::shadowed(rig, &plant, start, 1).unwrap();
+    let mut stand = Stand::new(rig, &plant, start, 1).unwrap();
     stand.wait(0.2).unwrap();
     home(&mut stand);
     stand
