@@ -41,6 +41,7 @@ mod firmware {
     mod still_leg;
     mod trajectories;
     mod true_set_points;
+    mod wild_points;
 }
 
 mod base {
@@ -68,9 +69,12 @@ mod sim {
     mod current_zeros;
     mod fmea_page;
     mod held_leg;
+    mod half_swings;
     mod homing_with_faults;
+    mod late_points;
     mod load_left_out;
     mod lost_numbers;
+    mod move_times;
     mod ramped_pretension;
     mod random_scenarios;
     pub mod ready_runs;

@@ -1,7 +1,8 @@
 //! The control law in f64 on the same sensors, and how far the one in f32 gets from it.
 
 use leg_firmware::drive::Drive;
-use leg_firmware::host_link::BoardKind;
+use leg_firmware::frame::Decoder;
+use leg_firmware::host_link::{BoardKind, HostReply};
 use leg_firmware::linked_leg::LinkedLeg;
 use leg_firmware::recorder::Recorder;
 use leg_firmware::sensors::Sensors;
@@ -10,6 +11,7 @@ use leg_firmware::telemetry::Telemetry;
 use leg_firmware_bench::protocol::TickReply;
 use leg_firmware_bench::server::emulated;
 use serde::Serialize;
+use std::collections::VecDeque;
 
 /// The control law in f64, beside a leg.
 #[derive(Clone, Debug)]
@@ -17,6 +19,8 @@ pub struct Shadow {
     leg: LinkedLeg<f64>,
     /// What a host asks of it, it answers from here: nothing is recorded in f64.
     recorder: Box<Recorder>,
+    /// What the leg and the shadow answered a host.
+    answers: [Answers; 2],
     /// How far the leg got from it.
     pub divergence: Divergence,
 }
@@ -39,6 +43,17 @@ pub struct Divergence {
     /// Those in a row up to now.
     #[serde(skip)]
     other_ticks: u64,
+    /// Requests of a host that one of the two did and the other refused: a set-point at a limit, which is rounded otherwise. From then on they
+    /// are led otherwise.
+    #[serde(skip)]
+    pub other_answers: u64,
+}
+
+/// Whether each request was done, in their order, until the other one has answered it, too.
+#[derive(Clone, Debug)]
+struct Answers {
+    decoder: Decoder,
+    waiting: VecDeque<(u16, bool)>,
 }
 
 /// For so many ticks the two may differ in state or faults: rounded otherwise, a limit is passed a little sooner or later.
@@ -54,6 +69,7 @@ impl Shadow {
         Ok(Self {
             leg: LinkedLeg::new(emulated(BoardKind::InProcess), settings)?,
             recorder: Box::default(),
+            answers: Default::default(),
             divergence: Divergence::default(),
         })
     }
@@ -68,6 +84,42 @@ impl Shadow {
             duty: reply.drive.duty.map(f64::from),
             enabled: reply.drive.enabled,
         });
+        let sent = self.leg.sent(&mut self.recorder, |_| true);
+        let [answered, shadow] = &mut self.answers;
+        answered.take(&reply.link);
+        shadow.take(&sent);
+        self.divergence.other_answers += answered.compare(shadow);
+    }
+}
+
+impl Default for Answers {
+    fn default() -> Self {
+        Self {
+            decoder: Decoder::new(),
+            waiting: VecDeque::new(),
+        }
+    }
+}
+
+impl Answers {
+    fn take(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            let Some(Ok(frame)) = self.decoder.push(*byte) else {
+                continue;
+            };
+            match frame.message() {
+                Some(HostReply::Done) => self.waiting.push_back((frame.sequence, true)),
+                Some(HostReply::Refused(_)) => self.waiting.push_back((frame.sequence, false)),
+                _ => {}
+            }
+        }
+    }
+
+    /// Forgets what both have answered, and gives how many of them otherwise.
+    fn compare(&mut self, other: &mut Self) -> u64 {
+        let both = self.waiting.len().min(other.waiting.len());
+        let pairs = self.waiting.drain(..both).zip(other.waiting.drain(..both));
+        pairs.filter(|(one, other)| one != other).count() as u64
     }
 }
 

@@ -2,7 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::set_points::{Bench, point};
+use super::set_points::Bench;
+use super::wild_points::point;
 use leg_firmware::control::CYCLE_TICKS;
 use leg_firmware::set_point::{SetPoint, StreamPart};
 use std::f64::consts::PI;
